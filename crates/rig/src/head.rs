@@ -1,0 +1,49 @@
+use crate::{Command, PanTilt, Telemetry};
+
+/// What one encoder says at a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measurement {
+    /// Signed count since homing; count 0 is centred on angle zero.
+    pub count: i32,
+    /// Age of the last edge, ticks before this measurement, in `[0, 1)`; `None` when no edge came in the last
+    /// tick or where the hardware does not stamp edges.
+    pub edge_age_ticks: Option<f32>,
+}
+
+/// What the controller does to the motors and the laser in one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Actuation {
+    /// Command at the amplifiers' inputs, V.
+    pub command_v: PanTilt<f32>,
+    /// Whether the laser's switch is driven on.
+    pub gate: bool,
+}
+
+/// The hardware seam: motors, encoders and laser of one head, boards or equations.
+///
+/// Implementations MUST
+/// - return from [`exchange`](Self::exchange) once per tick, one tick after the last return;
+/// - hold the actuation (zero-order) until the next exchange;
+/// - take both encoders' counts at the same instant, and never wrap them within a job;
+/// - stamp an edge either always or never ([`Measurement::edge_age_ticks`]);
+/// - open the laser's switch and zero the amplifiers by themselves when the exchanges stop coming;
+/// - never fail: a dead encoder is a count that does not move, which is the controller's to notice.
+pub trait Head {
+    /// Applies an actuation for one tick and returns what the encoders read at its end.
+    fn exchange(&mut self, actuation: &Actuation) -> PanTilt<Measurement>;
+}
+
+/// The host's seam: a controller with its head, behind a wire or in this process.
+///
+/// Implementations MUST
+/// - start dark and disarmed;
+/// - refuse a command they cannot hold by returning it, and lose none they accepted;
+/// - deliver one [`Telemetry`] for every tick, in order, none twice;
+/// - darken within one tick of the host's disappearance becoming known.
+pub trait Rig {
+    /// Hands over a command; gives it back when the rig's queue is full.
+    fn send(&mut self, command: Command) -> Result<(), Command>;
+
+    /// Waits for the next tick's telemetry; `None` once the rig is gone.
+    fn next(&mut self) -> Option<Telemetry>;
+}

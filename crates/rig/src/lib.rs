@@ -1,0 +1,32 @@
+//! The words a pan/tilt laser head and its host share.
+//!
+//! This crate holds types and the two seams, nothing else: no control, no physics, no allocation, no clock.
+//! Everything that crosses from the host's planner to the controller ([`Segment`], [`Command`]), from the
+//! controller to the motors ([`Actuation`]), from the encoders back ([`Measurement`]) and from the controller to
+//! whoever watches ([`Telemetry`]) is named here once, in `f32` and integer ticks, so that a simulated head and a
+//! real one are told the same things with the same bits.
+//!
+//! | seam | one side | other side |
+//! |---|---|---|
+//! | [`Head`] | the controller's tick | motors, encoders and laser: boards or equations |
+//! | [`Rig`] | the host program | a controller with its head, over a wire or in this process |
+
+#![no_std]
+
+mod fault;
+mod head;
+mod joint;
+mod segment;
+mod telemetry;
+
+pub use fault::{Darkness, DarknessSet, Fault};
+pub use head::{Actuation, Head, Measurement, Rig};
+pub use joint::{Joint, JointLimits, PanTilt};
+pub use segment::{Command, Segment, Setpoint};
+pub use telemetry::{Phase, Telemetry};
+
+/// Length of one control tick, s. The law is discretized for it; other rates need other gains.
+pub const TICK_S: f32 = 1e-3;
+
+/// [`TICK_S`] for code that computes in `f64`: exactly one millisecond.
+pub const TICK_F64_S: f64 = 1e-3;

@@ -1,0 +1,95 @@
+use crate::PanTilt;
+
+/// Where one joint should be at one instant.
+///
+/// Produced by [`Segment::sample`]; consumed by the law once per tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Setpoint {
+    /// Angle, rad; zero is the calibrated straight-ahead pose.
+    pub position_rad: f32,
+    /// Angular velocity, rad/s.
+    pub velocity_rad_s: f32,
+    /// Angular acceleration, rad/s².
+    pub acceleration_rad_s2: f32,
+}
+
+/// A stretch of motion of both joints: one quintic polynomial a joint over a whole number of ticks.
+///
+/// Coefficients are Taylor-like in ticks since the segment's start, lowest order first:
+/// position = Σ cᵢ nⁱ, rad. A segment carries everything the controller needs to judge itself while it runs: how
+/// far the joints may stray and whether the laser is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// First tick of the segment, counted from the start of the job.
+    pub start_tick: u32,
+    /// Length, ticks; at least one.
+    pub ticks: u16,
+    /// Polynomial coefficients per joint, rad per tickⁱ.
+    pub coefficients: PanTilt<[f32; 6]>,
+    /// Largest following error at which the laser may stay lit, rad per joint.
+    pub tolerance_rad: PanTilt<f32>,
+    /// Whether the laser's switch is to be on. The planner shifts it by the relay's delays, so that *light* falls
+    /// on the stroke.
+    pub gate: bool,
+}
+
+impl Segment {
+    /// First tick after the segment.
+    pub const fn end_tick(&self) -> u32 {
+        self.start_tick + self.ticks as u32
+    }
+
+    /// The setpoint `elapsed_ticks` (fractions allowed) after the segment's start.
+    pub fn sample(&self, elapsed_ticks: f32) -> PanTilt<Setpoint> {
+        self.coefficients.map(|c| evaluate(&c, elapsed_ticks))
+    }
+}
+
+/// Horner's rule for a quintic and its first two derivatives; ticks become seconds at the end.
+fn evaluate(c: &[f32; 6], n: f32) -> Setpoint {
+    let [c0, c1, c2, c3, c4, c5] = *c;
+    let position = c0 + n * (c1 + n * (c2 + n * (c3 + n * (c4 + n * c5))));
+    let velocity = c1 + n * (2.0 * c2 + n * (3.0 * c3 + n * (4.0 * c4 + n * (5.0 * c5))));
+    let acceleration = 2.0 * c2 + n * (6.0 * c3 + n * (12.0 * c4 + n * (20.0 * c5)));
+    const TICKS_PER_S: f32 = 1.0 / crate::TICK_S;
+    Setpoint {
+        position_rad: position,
+        velocity_rad_s: velocity * TICKS_PER_S,
+        acceleration_rad_s2: acceleration * TICKS_PER_S * TICKS_PER_S,
+    }
+}
+
+/// What the host may tell a rig.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Allow light. Without it every gate stays shut.
+    Arm,
+    /// Forbid light and stop where the head is.
+    Disarm,
+    /// Append a segment; it must start where and when the one before it ends.
+    Append(Segment),
+    /// No further segment will come: running out of them is the end of the job, not a fault.
+    Finish,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quintic_is_sampled_with_its_derivatives() {
+        let c = [0.1, 1e-3, 2e-6, 0.0, 0.0, 0.0];
+        let segment = Segment {
+            start_tick: 5,
+            ticks: 10,
+            coefficients: PanTilt::new(c, [0.0; 6]),
+            tolerance_rad: PanTilt::default(),
+            gate: false,
+        };
+        let pan = segment.sample(10.0).pan;
+        assert!((pan.position_rad - 0.1102).abs() < 1e-6);
+        assert!((pan.velocity_rad_s - 1.04).abs() < 1e-5);
+        assert!((pan.acceleration_rad_s2 - 4.0).abs() < 1e-4);
+        assert_eq!(segment.end_tick(), 15);
+    }
+}

@@ -1,0 +1,54 @@
+use crate::{Actuation, DarknessSet, Fault, Measurement, PanTilt, Setpoint};
+
+/// Where the supervisor stands.
+///
+/// ```text
+///          Arm             first segment            off its stroke
+///  Dark ─────────► Armed ───────────────► Tracing ◄────────────────► Holding
+///   ▲                │                       │      back on it          │
+///   │     Disarm     │                       │ last segment done        │ too long
+///   ├────────────────┴───────────────────────┴──► Done                  │
+///   │                                        │                          ▼
+///   └──── power-up                           └── any Fault ─────────► Faulted
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    /// Power-up: no light allowed; joints are held where they are.
+    #[default]
+    Dark,
+    /// Light allowed, nothing to draw yet.
+    Armed,
+    /// The plan's clock runs.
+    Tracing,
+    /// The plan's clock stands: dark until the head is back where it left its stroke.
+    Holding,
+    /// All segments done.
+    Done,
+    /// A fault is latched.
+    Faulted,
+}
+
+/// One tick as the controller saw it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Telemetry {
+    /// Ticks since power-up.
+    pub tick: u32,
+    /// The plan's own clock, whole ticks; it stands still while [`Phase::Holding`].
+    pub plan_tick: u32,
+    /// What the encoders read at the start of the tick.
+    pub measured: PanTilt<Measurement>,
+    /// Where the joints should be at the start of the tick.
+    pub setpoint: PanTilt<Setpoint>,
+    /// Where the observer believes the joints are, rad.
+    pub position_rad: PanTilt<f32>,
+    /// How fast the observer believes they turn, rad/s.
+    pub velocity_rad_s: PanTilt<f32>,
+    /// What is done about it until the next tick.
+    pub actuation: Actuation,
+    /// Why the gate is shut; empty when it is open.
+    pub darkness: DarknessSet,
+    /// Supervisor's state.
+    pub phase: Phase,
+    /// The latched fault, if any.
+    pub fault: Option<Fault>,
+}
