@@ -1,0 +1,39 @@
+/// Viscous and Coulomb friction of one joint, each direction its own: τ = sign(ω)(Fv |ω| + Fc).
+///
+/// Signs as identified by fitting a line to each direction: `coulomb_neg_nm` is the intercept of the negative side
+/// and negative itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Friction {
+    /// Slope for positive speeds, N m s/rad.
+    pub viscous_pos: f64,
+    /// Slope for negative speeds, N m s/rad.
+    pub viscous_neg: f64,
+    /// Intercept for positive speeds, N m, ≥ 0.
+    pub coulomb_pos_nm: f64,
+    /// Intercept for negative speeds, N m, ≤ 0.
+    pub coulomb_neg_nm: f64,
+}
+
+impl Friction {
+    /// The same in both directions.
+    pub const fn symmetric(viscous: f64, coulomb_nm: f64) -> Self {
+        Self {
+            viscous_pos: viscous,
+            viscous_neg: viscous,
+            coulomb_pos_nm: coulomb_nm,
+            coulomb_neg_nm: -coulomb_nm,
+        }
+    }
+
+    /// Torque that a motion at `rate_rad_s` costs, N m; zero at rest, where friction takes any value between the two
+    /// intercepts.
+    pub fn torque(&self, rate_rad_s: f64) -> f64 {
+        if rate_rad_s > 0.0 {
+            self.viscous_pos * rate_rad_s + self.coulomb_pos_nm
+        } else if rate_rad_s < 0.0 {
+            self.viscous_neg * rate_rad_s + self.coulomb_neg_nm
+        } else {
+            0.0
+        }
+    }
+}
