@@ -1,0 +1,271 @@
+use tracelight_rig::{Joint, PanTilt};
+use tracelight_stroke::{Point, Vec2};
+
+use crate::jet::{Jet, Scalar};
+use crate::pose::HeadPose;
+
+/// The head as the beam sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadGeometry {
+    /// Where the beam leaves, in the tilt body's frame, m: forward, left, up of the crossing of the axes. The
+    /// beam itself is parallel to the tilt body's x.
+    pub laser_offset_m: [f64; 3],
+    /// Angles each joint can take, rad: lowest and highest.
+    pub range_rad: PanTilt<(f64, f64)>,
+}
+
+/// Why a point of the target cannot be lit.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum AimError {
+    /// The beam never meets the point.
+    #[error("no pan and tilt bring the beam to ({:.4} m, {:.4} m): it is beside or behind the head", .0.x, .0.y)]
+    Unreachable(Point),
+    /// A joint would have to leave its range.
+    #[error(
+        "({:.4} m, {:.4} m) needs {joint} at {:.2}°, its range is {:.2}° to {:.2}°",
+        .point.x, .point.y, .angle_rad.to_degrees(), .lower_rad.to_degrees(), .upper_rad.to_degrees()
+    )]
+    BeyondLimit {
+        /// The point asked for, target frame, m.
+        point: Point,
+        /// Which joint.
+        joint: Joint,
+        /// Angle it would need.
+        angle_rad: f64,
+        /// Its lowest angle.
+        lower_rad: f64,
+        /// Its highest angle.
+        upper_rad: f64,
+    },
+}
+
+/// A place on the target with the motion of the spot there, by some parameter (time, or arc length).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotMotion {
+    /// Where, m.
+    pub point: Point,
+    /// First derivative.
+    pub velocity: Vec2,
+    /// Second derivative.
+    pub acceleration: Vec2,
+}
+
+/// Joint angles and their derivatives by the same parameter as the [`SpotMotion`] they come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JointPath {
+    /// Angles, rad.
+    pub angle_rad: PanTilt<f64>,
+    /// First derivative.
+    pub first: PanTilt<f64>,
+    /// Second derivative.
+    pub second: PanTilt<f64>,
+}
+
+impl HeadGeometry {
+    /// Where the beam meets the target plane, m; `None` when it points away from it or along it.
+    pub fn spot(&self, pose: &HeadPose, angle_rad: PanTilt<f64>) -> Option<Point> {
+        let [x, y] = self.meet(pose, angle_rad)?;
+        Some(Point::new(x, y))
+    }
+
+    /// Joint angles that bring the beam to `point`, within the joints' ranges.
+    ///
+    /// Closed form for a laser on the axes; Newton's method from there with exact derivatives otherwise.
+    pub fn angles(&self, pose: &HeadPose, point: Point) -> Result<PanTilt<f64>, AimError> {
+        let mut angle = first_guess(pose, point).ok_or(AimError::Unreachable(point))?;
+        if self.laser_offset_m != [0.0; 3] {
+            angle = self.refine(pose, point, angle).ok_or(AimError::Unreachable(point))?;
+        }
+        self.check_range(point, angle)?;
+        Ok(angle)
+    }
+
+    /// Joint angles for a spot in motion, with exact first and second derivatives.
+    ///
+    /// J q′ = p′ and J q″ = p″ − J′q′: the Jacobian's columns and J′q′ come from forward kinematics on jets.
+    pub fn motion(&self, pose: &HeadPose, spot: &SpotMotion) -> Result<JointPath, AimError> {
+        let angle_rad = self.angles(pose, spot.point)?;
+        let lost = AimError::Unreachable(spot.point);
+        let jacobian = self.jacobian(pose, angle_rad).ok_or(lost)?;
+        let first = solve(jacobian, spot.velocity).ok_or(lost)?;
+        let along = self.meet(pose, jets(angle_rad, first)).ok_or(lost)?;
+        let turning = Vec2::new(along[0].second, along[1].second);
+        let second = solve(jacobian, spot.acceleration - turning).ok_or(lost)?;
+        Ok(JointPath { angle_rad, first, second })
+    }
+
+    /// Columns ∂p/∂pan and ∂p/∂tilt of the spot, m/rad.
+    pub fn jacobian(&self, pose: &HeadPose, angle_rad: PanTilt<f64>) -> Option<[Vec2; 2]> {
+        let pan = self.meet(pose, jets(angle_rad, PanTilt::new(1.0, 0.0)))?;
+        let tilt = self.meet(pose, jets(angle_rad, PanTilt::new(0.0, 1.0)))?;
+        Some([Vec2::new(pan[0].first, pan[1].first), Vec2::new(tilt[0].first, tilt[1].first)])
+    }
+
+    /// Forward kinematics: the ray from the laser, Rz(pan) Ry(tilt), cut with the target plane z = 0.
+    fn meet<S: Scalar + Value>(&self, pose: &HeadPose, angle: PanTilt<S>) -> Option<[S; 2]> {
+        let (s1, c1) = angle.pan.sin_cos();
+        let (s2, c2) = angle.tilt.sin_cos();
+        let turn = |[x, y, z]: [f64; 3]| {
+            let (x, y, z) = (S::constant(x), S::constant(y), S::constant(z));
+            let (forward, up) = (c2 * x + s2 * z, c2 * z - s2 * x);
+            [c1 * forward - s1 * y, s1 * forward + c1 * y, up]
+        };
+        let [direction, origin] = [[1.0, 0.0, 0.0], self.laser_offset_m].map(turn);
+        let rows = pose.rotation().map(|r| r.map(S::constant));
+        let across = |v: [S; 3]| rows.map(|r| r[0] * v[0] + r[1] * v[1] + r[2] * v[2]);
+        let (direction, origin) = (across(direction), across(origin));
+        let [x0, y0, z0] = pose.translation().map(S::constant);
+        let range = -(origin[2] + z0) / direction[2];
+        // a beam nearly along the plane would light a point kilometres away: that is away from it
+        let forward = direction[2].value() < -1e-6 && range.value() > 0.0;
+        forward.then(|| [origin[0] + x0 + range * direction[0], origin[1] + y0 + range * direction[1]])
+    }
+
+    fn refine(&self, pose: &HeadPose, point: Point, from: PanTilt<f64>) -> Option<PanTilt<f64>> {
+        let mut angle = from;
+        // converges quadratically: four steps from centimetres to 1e-16 rad, the rest is margin
+        for _ in 0..12 {
+            let miss = point - self.spot(pose, angle)?;
+            let step = solve(self.jacobian(pose, angle)?, miss)?;
+            angle = PanTilt::new(angle.pan + step.pan, angle.tilt + step.tilt);
+            if step.pan.abs() + step.tilt.abs() < 1e-15 {
+                break;
+            }
+        }
+        let close = (self.spot(pose, angle)? - point).hypot() < 1e-9 * (1.0 + point.to_vec2().hypot());
+        close.then_some(angle)
+    }
+
+    fn check_range(&self, point: Point, angle: PanTilt<f64>) -> Result<(), AimError> {
+        for joint in Joint::BOTH {
+            let (lower_rad, upper_rad) = self.range_rad[joint];
+            if !(lower_rad <= angle[joint] && angle[joint] <= upper_rad) {
+                return Err(AimError::BeyondLimit {
+                    point,
+                    joint,
+                    angle_rad: angle[joint],
+                    lower_rad,
+                    upper_rad,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The number without its derivatives.
+trait Value {
+    fn value(&self) -> f64;
+}
+
+impl Value for f64 {
+    fn value(&self) -> f64 {
+        *self
+    }
+}
+
+impl Value for Jet {
+    fn value(&self) -> f64 {
+        self.value
+    }
+}
+
+fn jets(angle: PanTilt<f64>, rate: PanTilt<f64>) -> PanTilt<Jet> {
+    PanTilt::new(Jet::new(angle.pan, rate.pan, 0.0), Jet::new(angle.tilt, rate.tilt, 0.0))
+}
+
+/// Exact angles for a laser on the crossing of the axes.
+fn first_guess(pose: &HeadPose, point: Point) -> Option<PanTilt<f64>> {
+    let [x0, y0, z0] = pose.translation();
+    let to = [point.x - x0, point.y - y0, -z0];
+    let rows = pose.rotation();
+    let [x, y, z] = [0, 1, 2].map(|i| rows[0][i] * to[0] + rows[1][i] * to[1] + rows[2][i] * to[2]);
+    let level = x.hypot(y);
+    (z0 > 0.0 && level > 0.0 && level.is_finite()).then(|| PanTilt::new(y.atan2(x), (-z).atan2(level)))
+}
+
+/// Solves [a b] q = v for the two columns a, b.
+fn solve([a, b]: [Vec2; 2], v: Vec2) -> Option<PanTilt<f64>> {
+    let det = a.cross(b);
+    let q = PanTilt::new(v.cross(b) / det, a.cross(v) / det);
+    (q.pan.is_finite() && q.tilt.is_finite()).then_some(q)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WIDE: PanTilt<(f64, f64)> = PanTilt::new((-3.14, 3.14), (-1.6, 1.6));
+
+    fn heads() -> [(HeadGeometry, HeadPose); 3] {
+        let skew = HeadPose {
+            distance_m: 1.3,
+            right_m: 0.1,
+            up_m: -0.2,
+            yaw_rad: 0.1,
+            pitch_rad: -0.07,
+            roll_rad: 0.05,
+        };
+        let centred = HeadGeometry { laser_offset_m: [0.0; 3], range_rad: WIDE };
+        let offset = HeadGeometry { laser_offset_m: [0.03, 0.01, 0.025], range_rad: WIDE };
+        [(centred, HeadPose::square_on(0.9144)), (offset, HeadPose::square_on(0.9144)), (offset, skew)]
+    }
+
+    #[test]
+    fn square_on_the_signs_are_those_of_the_contract() {
+        let (head, pose) = heads()[0];
+        let (pan, tilt) = (0.2_f64, 0.3_f64);
+        let spot = head.spot(&pose, PanTilt::new(pan, tilt)).unwrap();
+        assert!((spot.x + 0.9144 * pan.tan()).abs() < 1e-15);
+        assert!((spot.y + 0.9144 * tilt.tan() / pan.cos()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn angles_to_spot_and_back_agree_to_a_picoradian() {
+        for (head, pose) in heads() {
+            for i in -20..=20 {
+                for j in -20..=20 {
+                    let asked = PanTilt::new(f64::from(i) * 0.05, f64::from(j) * 0.05);
+                    let Some(point) = head.spot(&pose, asked) else { continue };
+                    let got = head.angles(&pose, point).unwrap();
+                    let off = (got.pan - asked.pan).abs().max((got.tilt - asked.tilt).abs());
+                    assert!(off <= 1e-12, "{asked:?}: {off:e}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn joint_derivatives_match_differences_of_the_inverse() {
+        for (head, pose) in heads() {
+            let at = |t: f64| Point::new(0.2 + 0.3 * t - 0.4 * t * t, -0.1 + 0.25 * t + 0.7 * t * t);
+            let spot = SpotMotion {
+                point: at(0.0),
+                velocity: Vec2::new(0.3, 0.25),
+                acceleration: Vec2::new(-0.8, 1.4),
+            };
+            let joints = head.motion(&pose, &spot).unwrap();
+            let h = 1e-4;
+            let [m, z, p] = [-h, 0.0, h].map(|t| head.angles(&pose, at(t)).unwrap());
+            assert!(((p.pan - m.pan) / (2.0 * h) - joints.first.pan).abs() < 1e-7);
+            assert!(((p.tilt - 2.0 * z.tilt + m.tilt) / (h * h) - joints.second.tilt).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_point_beyond_a_limit_names_the_joint() {
+        let (mut head, pose) = heads()[0];
+        head.range_rad.pan = (-0.3, 0.3);
+        let error = head.angles(&pose, Point::new(-0.5, 0.0)).unwrap_err();
+        assert!(matches!(error, AimError::BeyondLimit { joint: Joint::Pan, .. }));
+        assert!(error.to_string().contains("pan at 28.67°"), "{error}");
+    }
+
+    #[test]
+    fn nothing_behind_the_head_is_reachable() {
+        let (head, _) = heads()[0];
+        let behind = HeadPose::square_on(-1.0);
+        assert!(head.angles(&behind, Point::new(0.1, 0.1)).is_err());
+        assert!(head.spot(&HeadPose::square_on(1.0), PanTilt::new(2.0, 0.0)).is_none());
+    }
+}

@@ -1,0 +1,19 @@
+//! Where frames meet: pixels, target, head, joints.
+//!
+//! | frame | axes |
+//! |---|---|
+//! | pixel | x right, y down; the image spans [0, w] × [0, h] |
+//! | target | metres on the plane drawn on; origin at the picture's centre, x right, y up, z towards the head |
+//! | head | x along the beam at zero, y left, z up; origin where the axes cross |
+//! | joint | pan about z, tilt about the pan-carried y, rad; positive tilt turns the beam down |
+//!
+//! Every conversion between two of them is done here and nowhere else. The crate knows no images and no time.
+
+mod head;
+mod jet;
+mod placement;
+mod pose;
+
+pub use head::{AimError, HeadGeometry, JointPath, SpotMotion};
+pub use placement::{Placement, SizeRequest};
+pub use pose::HeadPose;
