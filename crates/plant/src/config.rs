@@ -1,0 +1,73 @@
+use tracelight_dynamics::{Friction, HeadBodies, Motor};
+use tracelight_rig::PanTilt;
+
+/// An incremental encoder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EncoderConfig {
+    /// Counts per revolution of the joint.
+    pub counts_per_rev: u32,
+    /// Whether the hardware stamps edges with their time.
+    pub edge_stamps: bool,
+}
+
+impl EncoderConfig {
+    /// Width of one count, rad.
+    pub fn count_rad(&self) -> f64 {
+        std::f64::consts::TAU / f64::from(self.counts_per_rev)
+    }
+}
+
+/// The relay between gate and laser.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelayConfig {
+    /// From the gate's rise to light, s.
+    pub on_s: f64,
+    /// From the gate's fall to dark, s.
+    pub off_s: f64,
+}
+
+/// How a real head differs from its equations. [`Wear::NONE`] is a head as good as new.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wear {
+    /// Break-away over Coulomb friction, ≥ 1.
+    pub stribeck_ratio: f64,
+    /// Speed at which that excess has fallen to 1/e, rad/s.
+    pub stribeck_speed_rad_s: f64,
+    /// Friction's ripple over a turn, as a share of it; its phase is drawn from the seed.
+    pub friction_ripple: f64,
+    /// Largest misplacement of an encoder edge, counts; the four-phase table is drawn from the seed.
+    pub edge_error_counts: f64,
+    /// Play between encoder and beam, rad: the beam lags by half of it either way.
+    pub backlash_rad: f64,
+    /// Largest relative error of an amplifier's gain; drawn from the seed.
+    pub gain_spread: f64,
+}
+
+impl Wear {
+    /// No wear.
+    pub const NONE: Self = Self {
+        stribeck_ratio: 1.0,
+        stribeck_speed_rad_s: 0.02,
+        friction_ripple: 0.0,
+        edge_error_counts: 0.0,
+        backlash_rad: 0.0,
+        gain_spread: 0.0,
+    };
+}
+
+/// Everything a plant is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlantConfig {
+    /// Masses.
+    pub bodies: HeadBodies,
+    /// Friction as identified at speed.
+    pub friction: PanTilt<Friction>,
+    /// Amplifiers and motors.
+    pub motors: PanTilt<Motor>,
+    /// Encoders, both alike.
+    pub encoder: EncoderConfig,
+    /// The laser's relay.
+    pub relay: RelayConfig,
+    /// What is worse than that.
+    pub wear: Wear,
+}

@@ -1,0 +1,95 @@
+use tracelight_rig::Measurement;
+
+/// Number of edges after which a quadrature encoder's misplacements repeat.
+const PHASES: usize = 4;
+
+/// One incremental encoder: count k is seen between its lower edge at (k − ½) and its upper at (k + ½) counts,
+/// each edge misplaced by a four-phase table.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Encoder {
+    count_rad: f64,
+    edge_stamps: bool,
+    edge_error_counts: [f64; PHASES],
+    count: i32,
+    edge_age_ticks: Option<f32>,
+}
+
+impl Encoder {
+    /// Homed: the count is that of `angle_rad`.
+    pub(crate) fn new(
+        count_rad: f64,
+        edge_stamps: bool,
+        edge_error_counts: [f64; PHASES],
+        angle_rad: f64,
+    ) -> Self {
+        let count = (angle_rad / count_rad + 0.5).floor() as i32;
+        Self { count_rad, edge_stamps, edge_error_counts, count, edge_age_ticks: None }
+    }
+
+    /// Angle of the edge below count `k`, rad.
+    fn lower_edge_rad(&self, k: i32) -> f64 {
+        let phase = k.rem_euclid(PHASES as i32) as usize;
+        (f64::from(k) - 0.5 + self.edge_error_counts[phase]) * self.count_rad
+    }
+
+    /// Forgets the last tick's edge.
+    pub(crate) fn begin_tick(&mut self) {
+        self.edge_age_ticks = None;
+    }
+
+    /// Follows the joint from one angle to the next within a substep. `end_age_ticks` is how long before the
+    /// tick's end the substep ends, `length_ticks` how long it is.
+    #[inline]
+    pub(crate) fn follow(&mut self, from_rad: f64, to_rad: f64, end_age_ticks: f64, length_ticks: f64) {
+        while to_rad >= self.lower_edge_rad(self.count + 1) {
+            self.count += 1;
+            self.stamp(self.lower_edge_rad(self.count), from_rad, to_rad, end_age_ticks, length_ticks);
+        }
+        while to_rad < self.lower_edge_rad(self.count) {
+            self.stamp(self.lower_edge_rad(self.count), from_rad, to_rad, end_age_ticks, length_ticks);
+            self.count -= 1;
+        }
+    }
+
+    fn stamp(&mut self, edge_rad: f64, from_rad: f64, to_rad: f64, end_age_ticks: f64, length_ticks: f64) {
+        if self.edge_stamps {
+            let left = (to_rad - edge_rad) / (to_rad - from_rad);
+            let age = end_age_ticks + left.clamp(0.0, 1.0) * length_ticks;
+            self.edge_age_ticks = Some((age as f32).clamp(0.0, 1.0 - f32::EPSILON));
+        }
+    }
+
+    pub(crate) fn measurement(&self) -> Measurement {
+        Measurement { count: self.count, edge_age_ticks: self.edge_age_ticks }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_is_stamped_when_it_is_crossed() {
+        let mut encoder = Encoder::new(1.0, true, [0.0; 4], 0.0);
+        encoder.begin_tick();
+        encoder.follow(0.0, 1.0, 0.5, 0.5); // crosses 0.5 halfway through the first half of the tick
+        assert_eq!(encoder.measurement(), Measurement { count: 1, edge_age_ticks: Some(0.75) });
+        encoder.begin_tick();
+        encoder.follow(1.0, 0.4, 0.0, 1.0); // back over it
+        assert_eq!(encoder.measurement().count, 0);
+        encoder.begin_tick();
+        encoder.follow(0.4, 0.3, 0.0, 1.0);
+        assert_eq!(encoder.measurement().edge_age_ticks, None);
+    }
+
+    #[test]
+    fn misplaced_edges_move_the_count() {
+        let encoder = |angle| {
+            let mut e = Encoder::new(1.0, false, [0.0, 0.2, 0.0, 0.0], 0.0);
+            e.follow(0.0, angle, 0.0, 1.0);
+            e.measurement()
+        };
+        assert_eq!(encoder(0.6).count, 0);
+        assert_eq!(encoder(0.8), Measurement { count: 1, edge_age_ticks: None });
+    }
+}

@@ -1,0 +1,16 @@
+//! A pan/tilt laser head made of equations.
+//!
+//! [`Plant`] is a [`tracelight_rig::Head`]: volts and gate in, counts out, once a tick. Behind that seam it steps the
+//! nonlinear equations of motion with friction that truly sticks, quantizes what the encoders see, switches the
+//! laser through a relay and knows where the beam really is. It never sees the controller.
+
+mod config;
+mod encoder;
+mod friction;
+mod light;
+mod plant;
+mod step;
+
+pub use config::{EncoderConfig, PlantConfig, RelayConfig, Wear};
+pub use plant::Plant;
+pub use step::{JointState, Stepper};
