@@ -1,0 +1,32 @@
+//! The law that runs every tick.
+//!
+//! Counts and segments in, volts and the laser's gate out, a thousand times a second:
+//!
+//! ```text
+//! Measurement ─► Observer ─► estimate ─┐
+//!                                      ├─► Law (feedback + feedforward) ─► volts
+//! Segment ─────► Player ───► setpoint ─┤
+//!                                      └─► Supervisor + interlock ───────► gate, clock
+//! ```
+//!
+//! `no_std`, `f32`, no allocation, no panic, constant work a tick: the law that is simulated is, bit for bit, the law
+//! that is flashed. The crate does not know what hangs on the motors beyond its [`Config`], nor what is drawn, nor
+//! what time it is. Configuration ([`Controller`]) and state ([`State`]) are two types; a tick reads one and
+//! rewrites the other.
+
+#![no_std]
+
+mod config;
+mod controller;
+mod law;
+mod model;
+mod observer;
+mod player;
+mod return_path;
+mod supervisor;
+mod watch;
+
+pub use config::{AxisConfig, Config, Gains, ObserverTuning};
+pub use controller::{Controller, State};
+pub use model::{FrictionModel, HeadModel};
+pub use player::QUEUE_LENGTH;

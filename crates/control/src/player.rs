@@ -1,0 +1,177 @@
+use tracelight_rig::{PanTilt, Segment, Setpoint, TICK_S};
+
+/// Segments the controller can hold ahead of time.
+pub const QUEUE_LENGTH: usize = 64;
+
+/// Time in which the plan's clock gets back to full speed after a hold, s. At 1 ft/s on a target 3 ft away this
+/// asks for 2.2 rad/s², a quarter of what the weaker motor can do.
+const RESUME_S: f32 = 0.15;
+
+/// Largest step between the end of one segment and the start of the next that still counts as joined, rad.
+const JOIN_RAD: f32 = 2e-4;
+
+/// The plan's clock and the segments it runs through.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Player {
+    queue: [Option<Segment>; QUEUE_LENGTH],
+    head: usize,
+    length: usize,
+    finished: bool,
+    /// Plan time: whole ticks and a fraction.
+    tick: u32,
+    fraction: f32,
+    /// Speed of the plan's clock, 0 to 1.
+    rate: f32,
+    /// Change of `rate`, 1/s.
+    rate_slope: f32,
+    /// Where the joints rest while there is nothing to play.
+    rest: PanTilt<Setpoint>,
+    /// End of the newest segment: tick, and position.
+    end: Option<(u32, PanTilt<f32>)>,
+}
+
+/// What the player has for a tick.
+pub(crate) struct Played {
+    /// Setpoint now.
+    pub(crate) setpoint: PanTilt<Setpoint>,
+    /// Setpoint half a tick later.
+    pub(crate) ahead: PanTilt<Setpoint>,
+    /// The segment they come from; `None` when resting.
+    pub(crate) segment: Option<Segment>,
+}
+
+impl Player {
+    pub(crate) fn resting_at(position_rad: PanTilt<f32>) -> Self {
+        Self {
+            queue: [None; QUEUE_LENGTH],
+            head: 0,
+            length: 0,
+            finished: false,
+            tick: 0,
+            fraction: 0.0,
+            rate: 1.0,
+            rate_slope: 0.0,
+            rest: position_rad.map(at_rest),
+            end: None,
+        }
+    }
+
+    /// Whether another segment fits.
+    pub(crate) const fn has_room(&self) -> bool {
+        self.length < QUEUE_LENGTH
+    }
+
+    /// Appends a segment; false when it does not join the one before it in time and place.
+    pub(crate) fn append(&mut self, segment: Segment) -> bool {
+        let from = segment.sample(0.0).map(|s| s.position_rad);
+        let (tick, place) = self.end.unwrap_or((self.tick, self.rest.map(|s| s.position_rad)));
+        // a first segment may start anywhere within a count of where the head was homed
+        let reach = if self.end.is_some() { JOIN_RAD } else { 10.0 * JOIN_RAD };
+        let near = |a: f32, b: f32| (a - b).abs() <= reach;
+        let joins = segment.start_tick == tick && near(from.pan, place.pan) && near(from.tilt, place.tilt);
+        if !joins || segment.ticks == 0 || !self.has_room() {
+            return false;
+        }
+        self.queue[(self.head + self.length) % QUEUE_LENGTH] = Some(segment);
+        self.length += 1;
+        let end = segment.sample(f32::from(segment.ticks)).map(|s| s.position_rad);
+        self.end = Some((segment.end_tick(), end));
+        true
+    }
+
+    pub(crate) fn finish(&mut self) {
+        self.finished = true;
+    }
+
+    pub(crate) const fn plan_tick(&self) -> u32 {
+        self.tick
+    }
+
+    /// Nothing left to play and nothing to come.
+    pub(crate) const fn is_done(&self) -> bool {
+        self.length == 0 && self.finished
+    }
+
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.length == 0
+    }
+
+    /// Setpoints at the plan's present time.
+    pub(crate) fn play(&self) -> Played {
+        let Some(segment) = self.current() else {
+            return Played { setpoint: self.rest, ahead: self.rest, segment: None };
+        };
+        let elapsed = (self.tick - segment.start_tick) as f32 + self.fraction;
+        let later = self.rate + 0.5 * TICK_S * self.rate_slope;
+        Played {
+            setpoint: self.scaled(segment.sample(elapsed), self.rate),
+            ahead: self.scaled(segment.sample(elapsed + 0.5 * later), later),
+            segment: Some(segment),
+        }
+    }
+
+    /// Motion by true time of a plan whose clock runs at `rate`: q̇ = q′ρ, q̈ = q″ρ² + q′ρ̇.
+    fn scaled(&self, planned: PanTilt<Setpoint>, rate: f32) -> PanTilt<Setpoint> {
+        planned.map(|s| Setpoint {
+            position_rad: s.position_rad,
+            velocity_rad_s: s.velocity_rad_s * rate,
+            acceleration_rad_s2: s.acceleration_rad_s2 * rate * rate + s.velocity_rad_s * self.rate_slope,
+        })
+    }
+
+    /// Stops the plan's clock on the spot.
+    pub(crate) fn hold(&mut self) {
+        self.rate = 0.0;
+        self.rate_slope = 0.0;
+    }
+
+    /// The same for a plan that has begun; one that has not keeps its clock's full speed for its start.
+    pub(crate) fn hold_if_started(&mut self) {
+        if self.tick > 0 {
+            self.hold();
+        }
+    }
+
+    /// Lets one tick of true time pass; after a hold the plan's clock speeds up gently.
+    pub(crate) fn advance(&mut self) {
+        if self.length == 0 {
+            return;
+        }
+        let before = self.rate;
+        if before == 0.0 {
+            self.rate_slope = 1.0 / RESUME_S;
+        }
+        self.rate += self.rate_slope * TICK_S;
+        if self.rate >= 1.0 {
+            self.rate = 1.0;
+            self.rate_slope = 0.0;
+        }
+        self.fraction += 0.5 * (before + self.rate);
+        // back on whole ticks once at full speed would jump; the fraction simply stays
+        if self.fraction >= 1.0 {
+            self.fraction -= 1.0;
+            self.tick += 1;
+        }
+        self.drop_passed();
+    }
+
+    fn drop_passed(&mut self) {
+        while let Some(segment) = self.current() {
+            if self.tick < segment.end_tick() {
+                return;
+            }
+            self.rest = segment.sample(f32::from(segment.ticks)).map(|s| at_rest(s.position_rad));
+            self.queue[self.head] = None;
+            self.head = (self.head + 1) % QUEUE_LENGTH;
+            self.length -= 1;
+        }
+    }
+
+    fn current(&self) -> Option<Segment> {
+        self.queue[self.head]
+    }
+}
+
+fn at_rest(position_rad: f32) -> Setpoint {
+    Setpoint { position_rad, ..Setpoint::default() }
+}

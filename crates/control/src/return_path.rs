@@ -1,0 +1,66 @@
+use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_S};
+
+use crate::Config;
+
+/// Share of a motor's torque the way back may use; the rest holds against gravity, friction and whoever pushes.
+const TORQUE_SHARE: f32 = 0.4;
+/// Near the goal the speed falls in proportion to the distance, with this time constant, s.
+const APPROACH_S: f32 = 0.04;
+/// Distance from the way back at which it is begun anew from where the head is, counts.
+const LOST_COUNTS: f32 = 3.0;
+
+/// A gentle way back to where a stroke was left.
+///
+/// A step of tens of counts would drive the loop from one stop of the amplifier to the other; instead the reference
+/// starts where the head is, with its speed, and goes to the goal under a bound on acceleration: v = √(2 a d), linear
+/// near the goal (proximate time-optimal servomechanism; Workman 1987, cited in Franklin, Powell & Workman, *Digital
+/// Control of Dynamic Systems*, §13).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ReturnPath {
+    reference: PanTilt<Setpoint>,
+}
+
+impl ReturnPath {
+    /// From where the head is.
+    pub(crate) fn from(position_rad: PanTilt<f32>, rate_rad_s: PanTilt<f32>) -> Self {
+        let start = |j: Joint| Setpoint {
+            position_rad: position_rad[j],
+            velocity_rad_s: rate_rad_s[j],
+            acceleration_rad_s2: 0.0,
+        };
+        Self { reference: PanTilt::from_fn(start) }
+    }
+
+    /// Whether the head is too far from this way to follow it.
+    pub(crate) fn is_lost(&self, config: &Config, position_rad: PanTilt<f32>) -> bool {
+        Joint::BOTH.iter().any(|&j| {
+            (self.reference[j].position_rad - position_rad[j]).abs() > LOST_COUNTS * config.axes[j].count_rad
+        })
+    }
+
+    /// The reference now, moved on by a tick towards `goal`.
+    pub(crate) fn tick(&mut self, config: &Config, goal: &PanTilt<Setpoint>) -> PanTilt<Setpoint> {
+        let now = self.reference;
+        self.reference = PanTilt::from_fn(|j| {
+            let axis = &config.axes[j];
+            let inertia = config.model.own_inertia_at_most(j);
+            let most = TORQUE_SHARE * axis.torque_nm_per_v * axis.limit_v / inertia;
+            step(&now[j], goal[j].position_rad, most)
+        });
+        now
+    }
+}
+
+fn step(from: &Setpoint, goal_rad: f32, most_rad_s2: f32) -> Setpoint {
+    let left = goal_rad - from.position_rad;
+    let braking = libm::sqrtf(2.0 * most_rad_s2 * left.abs());
+    let wanted = braking.min(left.abs() / APPROACH_S);
+    let wanted = if left < 0.0 { -wanted } else { wanted };
+    let acceleration = ((wanted - from.velocity_rad_s) / TICK_S).clamp(-most_rad_s2, most_rad_s2);
+    let velocity = from.velocity_rad_s + acceleration * TICK_S;
+    Setpoint {
+        position_rad: from.position_rad + 0.5 * TICK_S * (from.velocity_rad_s + velocity),
+        velocity_rad_s: velocity,
+        acceleration_rad_s2: acceleration,
+    }
+}

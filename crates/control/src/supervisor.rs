@@ -1,0 +1,142 @@
+use tracelight_rig::{Darkness, DarknessSet, Fault, Joint, PanTilt, Phase, Segment, Setpoint};
+
+use crate::Config;
+
+/// Share of the tolerance within which a head that left its stroke counts as back on it.
+const RETURN_SHARE: f32 = 0.25;
+/// Speed below which it counts as at rest there, rad/s.
+const RETURN_RATE_RAD_S: f32 = 0.02;
+/// How long it must stay there, ticks: four time constants of the default loop are 67.
+const RETURN_TICKS: u32 = 60;
+
+/// Where the supervisor stands, and for how long.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Supervisor {
+    pub(crate) phase: Phase,
+    pub(crate) fault: Option<Fault>,
+    held_ticks: u32,
+    settled_ticks: u32,
+}
+
+/// What the supervisor judges a tick by.
+pub(crate) struct Situation<'a> {
+    pub(crate) setpoint: &'a PanTilt<Setpoint>,
+    pub(crate) segment: Option<&'a Segment>,
+    pub(crate) position_rad: PanTilt<f32>,
+    pub(crate) rate_rad_s: PanTilt<f32>,
+    pub(crate) error_rad: PanTilt<f32>,
+    /// Segments ran out and more were promised.
+    pub(crate) starved: bool,
+    /// Segments ran out as announced.
+    pub(crate) done: bool,
+}
+
+/// What the plan's clock is to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Clock {
+    /// Runs, after a stop gently.
+    Run,
+    /// Stands still until it may run again.
+    Stop,
+    /// Has not begun, or is over.
+    Wait,
+}
+
+impl Supervisor {
+    /// Latches a fault; the first one stays.
+    pub(crate) fn trip(&mut self, fault: Fault) {
+        self.fault = self.fault.or(Some(fault));
+        self.phase = Phase::Faulted;
+    }
+
+    pub(crate) fn arm(&mut self) {
+        if self.phase == Phase::Dark {
+            self.phase = Phase::Armed;
+        }
+    }
+
+    pub(crate) fn disarm(&mut self) {
+        if self.phase != Phase::Faulted {
+            self.phase = Phase::Dark;
+        }
+    }
+
+    /// One tick: moves between phases and says what the clock does.
+    pub(crate) fn tick(&mut self, config: &Config, at: &Situation<'_>) -> Clock {
+        if out_of_range(config, at.position_rad) && self.phase != Phase::Dark {
+            self.trip(Fault::LimitReached);
+        }
+        match self.phase {
+            Phase::Armed if at.segment.is_some() => self.phase = Phase::Tracing,
+            Phase::Tracing if at.done => self.phase = Phase::Done,
+            Phase::Tracing if at.starved => self.trip(Fault::SetpointsStale),
+            Phase::Tracing if strayed(at) => self.begin_hold(),
+            Phase::Holding => self.hold(config, at),
+            _ => {}
+        }
+        match self.phase {
+            Phase::Tracing => Clock::Run,
+            Phase::Holding | Phase::Faulted => Clock::Stop,
+            Phase::Dark | Phase::Armed | Phase::Done => Clock::Wait,
+        }
+    }
+
+    fn begin_hold(&mut self) {
+        self.phase = Phase::Holding;
+        self.held_ticks = 0;
+        self.settled_ticks = 0;
+    }
+
+    fn hold(&mut self, config: &Config, at: &Situation<'_>) {
+        self.held_ticks += 1;
+        self.settled_ticks = if returned(at) { self.settled_ticks + 1 } else { 0 };
+        if self.settled_ticks >= RETURN_TICKS {
+            self.phase = Phase::Tracing;
+        } else if self.held_ticks > config.hold_limit_ticks {
+            self.trip(Fault::HoldTimedOut);
+        }
+    }
+
+    /// Every reason against light in this tick. The gate is open only if there is none.
+    pub(crate) fn darkness(&self, config: &Config, at: &Situation<'_>) -> DarknessSet {
+        let mut reasons = DarknessSet::default();
+        let planned = at.segment.is_some_and(|s| s.gate);
+        reasons.insert_if(!planned, Darkness::Planned);
+        reasons.insert_if(self.phase == Phase::Dark, Darkness::Disarmed);
+        reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);
+        reasons.insert_if(spot_error(at) > 1.0, Darkness::SpotError);
+        reasons.insert_if(self.phase == Phase::Holding, Darkness::Holding);
+        let asked = at.setpoint.map(|s| s.position_rad);
+        reasons.insert_if(out_of_range(config, asked), Darkness::OutOfBounds);
+        reasons.insert_if(at.starved || at.segment.is_none(), Darkness::Stale);
+        reasons.insert_if(self.fault.is_some(), Darkness::Faulted);
+        reasons
+    }
+}
+
+fn out_of_range(config: &Config, position_rad: PanTilt<f32>) -> bool {
+    Joint::BOTH.iter().any(|&j| !config.axes[j].limits.contains(position_rad[j]))
+}
+
+fn tolerance(at: &Situation<'_>) -> Option<PanTilt<f32>> {
+    at.segment.map(|s| s.tolerance_rad)
+}
+
+fn beyond_tolerance(at: &Situation<'_>) -> bool {
+    tolerance(at).is_some_and(|t| at.error_rad.pan.abs() > t.pan || at.error_rad.tilt.abs() > t.tilt)
+}
+
+/// Distance of the spot from its setpoint as a share of what is allowed: the tolerances are the semi-axes, in joint
+/// terms, of the allowed circle on the target.
+fn spot_error(at: &Situation<'_>) -> f32 {
+    tolerance(at).map_or(0.0, |t| libm::hypotf(at.error_rad.pan / t.pan, at.error_rad.tilt / t.tilt))
+}
+
+fn strayed(at: &Situation<'_>) -> bool {
+    spot_error(at) > 1.0
+}
+
+fn returned(at: &Situation<'_>) -> bool {
+    let still = at.rate_rad_s.pan.abs().max(at.rate_rad_s.tilt.abs()) < RETURN_RATE_RAD_S;
+    still && spot_error(at) < RETURN_SHARE
+}

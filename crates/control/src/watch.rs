@@ -1,0 +1,81 @@
+//! Watches on the encoders: what a following-error limit alone never sees.
+
+use tracelight_rig::{Fault, Joint, Measurement, PanTilt, TICK_S};
+
+use crate::Config;
+use crate::model::Terms;
+
+/// Share of Coulomb friction that must be overcome before a joint is expected to move: stiction and ripple of worn
+/// heads stay under it.
+const BREAK_AWAY_MARGIN: f32 = 1.6;
+/// Predicted motion without any edge that means the encoder is dead, counts.
+const DEAD_COUNTS: f32 = 4.0;
+/// Count change a tick over what the speed limit allows that means it jumped; noise of one edge either way is not.
+const JUMP_MARGIN: f32 = 1.5;
+
+/// Cautious open-loop prediction of one joint since its last edge, from the speed it had there.
+#[derive(Clone, Copy, Debug, Default)]
+struct Expectation {
+    rate_rad_s: f32,
+    travel_rad: f32,
+}
+
+/// State of both watches.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct EncoderWatch {
+    counts: PanTilt<i32>,
+    expected: PanTilt<Expectation>,
+}
+
+impl EncoderWatch {
+    pub(crate) fn new(measured: &PanTilt<Measurement>) -> Self {
+        Self { counts: measured.map(|m| m.count), expected: PanTilt::default() }
+    }
+
+    /// One tick under the torque that was applied; the fault it shows, if any. `rate_rad_s` is the observer's.
+    pub(crate) fn tick(
+        &mut self,
+        config: &Config,
+        terms: &Terms,
+        (torque_nm, rate_rad_s): (PanTilt<f32>, PanTilt<f32>),
+        measured: &PanTilt<Measurement>,
+    ) -> Option<Fault> {
+        let inertia = terms.own_inertia();
+        for joint in Joint::BOTH {
+            let axis = &config.axes[joint];
+            let moved = measured[joint].count.wrapping_sub(self.counts[joint]);
+            self.counts[joint] = measured[joint].count;
+            let most = 1.0 + JUMP_MARGIN * axis.limits.speed_rad_s * TICK_S / axis.count_rad;
+            if moved.unsigned_abs() as f32 > most {
+                return Some(Fault::EncoderJumped);
+            }
+            let threshold = BREAK_AWAY_MARGIN * axis.friction.coulomb_nm();
+            let net = beyond(torque_nm[joint] - terms.bias_nm[joint], threshold);
+            let expected = &mut self.expected[joint];
+            if moved != 0 {
+                *expected = Expectation { rate_rad_s: rate_rad_s[joint], travel_rad: 0.0 };
+            }
+            expected.tick(net / inertia[joint], threshold / inertia[joint]);
+            if expected.travel_rad.abs() > DEAD_COUNTS * axis.count_rad {
+                return Some(Fault::EncoderDead);
+            }
+        }
+        None
+    }
+}
+
+impl Expectation {
+    /// Friction brakes what moves whether or not the effort drives it on.
+    fn tick(&mut self, acceleration: f32, braking: f32) {
+        if acceleration * self.rate_rad_s <= 0.0 {
+            self.rate_rad_s = beyond(self.rate_rad_s, braking * TICK_S);
+        }
+        self.rate_rad_s += acceleration * TICK_S;
+        self.travel_rad += self.rate_rad_s * TICK_S;
+    }
+}
+
+/// What of `value` lies beyond ±`threshold`.
+fn beyond(value: f32, threshold: f32) -> f32 {
+    value - value.clamp(-threshold, threshold)
+}
