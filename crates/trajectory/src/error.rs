@@ -1,0 +1,42 @@
+use tracelight_aim::AimError;
+use tracelight_rig::Joint;
+
+/// Why a drawing cannot be planned. Strokes are counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// Nothing to draw.
+    #[error("the drawing has no strokes; give one with at least one line")]
+    Empty,
+    /// Part of a stroke is out of reach.
+    #[error(
+        "stroke {stroke} leaves the head's reach: {source}; make the picture smaller (--width), shift it (--offset) or step back (--distance)"
+    )]
+    Aim {
+        /// Which stroke.
+        stroke: usize,
+        /// Where and why.
+        source: AimError,
+    },
+    /// A motor cannot even hold or start its joint.
+    #[error(
+        "the {joint} motor is too weak: gravity and friction take {needed_nm:.3} N m of the {available_nm:.3} N m a plan may use; raise motion.torque_share or the motor's limit in the rig file"
+    )]
+    TooWeak {
+        /// Which joint.
+        joint: Joint,
+        /// Torque needed, N m.
+        needed_nm: f64,
+        /// Torque there is, N m.
+        available_nm: f64,
+    },
+    /// More time than a run can be kept in memory.
+    #[error(
+        "the drawing would take {needed_s:.0} s, a job may take {most_s:.0} s; draw it larger and faster, or in parts"
+    )]
+    TooLong {
+        /// Duration, s.
+        needed_s: f64,
+        /// Bound, s.
+        most_s: f64,
+    },
+}

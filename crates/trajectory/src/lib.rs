@@ -1,0 +1,28 @@
+//! Strokes and motor limits in, timed joint segments out.
+//!
+//! ```text
+//! stroke ─► legs (cut at corners) ─► retime (torque, speed) ─► S-curve ─┐
+//!                                                                        ├─► ticks ─► segments
+//! end of one, start of the next ─► travel (synchronised profile, dark) ─┘
+//! ```
+//!
+//! Limits come from the motors: amplifier volts, what they give as torque, and what friction and gravity leave of it.
+//! The crate knows neither images nor encoder counts, and computes torque only to stay under it: what the motors are
+//! told is the controller's.
+
+mod compress;
+mod error;
+mod leg;
+mod machine;
+mod mark;
+mod plan;
+mod planner;
+mod profile;
+mod retime;
+mod travel;
+
+pub use error::PlanError;
+pub use machine::{AccelerationDemand, Machine};
+pub use plan::{JointMotion, LegEnd, Plan, PlanPoint};
+pub use planner::{PlanRequest, plan};
+pub use profile::{MoveLimits, MovePoint, Profile, Ramps, Shape};

@@ -1,0 +1,117 @@
+use tracelight_aim::{AimError, HeadGeometry, HeadPose};
+use tracelight_dynamics::{Friction, Lumped, Motor};
+use tracelight_rig::{Joint, PanTilt};
+use tracelight_stroke::Point;
+
+/// What the planner believes of head, motors and target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Machine {
+    /// Inertia and gravity.
+    pub lumped: Lumped,
+    /// Friction of each joint.
+    pub friction: PanTilt<Friction>,
+    /// Amplifier and motor of each joint.
+    pub motors: PanTilt<Motor>,
+    /// Share of the motors' torque a plan may use.
+    pub torque_share: f64,
+    /// Highest joint speeds, rad/s.
+    pub speed_limit_rad_s: PanTilt<f64>,
+    /// Highest joint accelerations wished for, rad/s².
+    pub acceleration_limit_rad_s2: PanTilt<f64>,
+    /// Laser and joint ranges.
+    pub geometry: HeadGeometry,
+    /// Where the head stands.
+    pub pose: HeadPose,
+    /// From the gate's rise to light, ticks.
+    pub relay_on_ticks: u32,
+    /// From the gate's fall to dark, ticks.
+    pub relay_off_ticks: u32,
+}
+
+/// What a joint acceleration would need, against what the motor has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AccelerationDemand {
+    /// Which joint.
+    pub joint: Joint,
+    /// Acceleration asked for, rad/s².
+    pub asked_rad_s2: f64,
+    /// Command it would need, V.
+    pub needed_v: f64,
+    /// Command there is, V.
+    pub limit_v: f64,
+    /// Acceleration that command gives against friction and gravity, rad/s².
+    pub possible_rad_s2: f64,
+}
+
+impl Machine {
+    /// Torque of both motors for a motion, N m. At rest friction is left out: it holds by itself.
+    pub fn torque(
+        &self,
+        angle_rad: PanTilt<f64>,
+        rate_rad_s: PanTilt<f64>,
+        acceleration: PanTilt<f64>,
+    ) -> PanTilt<f64> {
+        let rigid = self.lumped.inverse(angle_rad.tilt, rate_rad_s, acceleration);
+        PanTilt::from_fn(|j| rigid[j] + self.friction[j].torque(rate_rad_s[j]))
+    }
+
+    /// A torque as a share of what the amplifiers can do.
+    pub fn fraction(&self, torque_nm: PanTilt<f64>) -> PanTilt<f64> {
+        PanTilt::from_fn(|j| torque_nm[j] / self.motors[j].torque_limit_nm())
+    }
+
+    /// Joint angles for a point of the target.
+    pub fn angles(&self, point: Point) -> Result<PanTilt<f64>, AimError> {
+        self.geometry.angles(&self.pose, point)
+    }
+
+    /// What the wished-for accelerations would need near `tilt_rad`, for joints whose motor cannot give them.
+    pub fn impossible_wishes(&self, tilt_rad: f64) -> Vec<AccelerationDemand> {
+        let demands = Joint::BOTH.map(|j| self.demand(j, self.acceleration_limit_rad_s2[j], tilt_rad));
+        demands.into_iter().filter(|d| d.needed_v > d.limit_v).collect()
+    }
+
+    /// Inertia alone is counted in what is needed, as the original rig's planners would have; friction and gravity
+    /// in what is possible.
+    fn demand(&self, joint: Joint, asked_rad_s2: f64, tilt_rad: f64) -> AccelerationDemand {
+        let inertia = self.own_inertia(joint, tilt_rad);
+        let motor = &self.motors[joint];
+        let held = self.lumped.gravity(tilt_rad)[joint].abs() + self.friction[joint].coulomb_pos_nm;
+        AccelerationDemand {
+            joint,
+            asked_rad_s2,
+            needed_v: motor.volts_for(asked_rad_s2 * inertia),
+            limit_v: motor.limit_v,
+            possible_rad_s2: (motor.torque_limit_nm() - held) / inertia,
+        }
+    }
+
+    /// Inertia a joint feels, kg m².
+    pub(crate) fn own_inertia(&self, joint: Joint, tilt_rad: f64) -> f64 {
+        let mass = self.lumped.mass(tilt_rad);
+        match joint {
+            Joint::Pan => mass.m11,
+            Joint::Tilt => mass.m22,
+        }
+    }
+
+    /// About how long a dark move between two points takes, s: the slower joint's bang-bang time. For ordering,
+    /// where only comparisons matter; unreachable points cost an hour.
+    pub fn travel_time_s(&self, from: Point, to: Point) -> f64 {
+        const NEVER_S: f64 = 3600.0;
+        let (Ok(a), Ok(b)) = (self.angles(from), self.angles(to)) else { return NEVER_S };
+        let time = |j: Joint| {
+            let torque = self.torque_share * self.motors[j].torque_limit_nm();
+            let limit = (torque / self.own_inertia(j, a.tilt)).min(self.acceleration_limit_rad_s2[j]);
+            2.0 * ((b[j] - a[j]).abs() / limit).sqrt()
+        };
+        time(Joint::Pan).max(time(Joint::Tilt))
+    }
+
+    /// How far each joint may stray for the spot to stay within `tolerance_m`, rad.
+    pub(crate) fn joint_tolerance(&self, angle_rad: PanTilt<f64>, tolerance_m: f64) -> PanTilt<f32> {
+        let columns = self.geometry.jacobian(&self.pose, angle_rad).map(|c| c.map(|v| v.hypot()));
+        let [pan, tilt] = columns.unwrap_or([self.pose.distance_m; 2]);
+        PanTilt::new((tolerance_m / pan) as f32, (tolerance_m / tilt) as f32)
+    }
+}

@@ -1,0 +1,78 @@
+use tracelight_rig::{PanTilt, Segment, TICK_F64_S};
+use tracelight_stroke::{Point, Vec2};
+
+/// Angle, speed and acceleration of one joint, in `f64`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JointMotion {
+    /// Angle, rad.
+    pub position_rad: f64,
+    /// Speed, rad/s.
+    pub velocity_rad_s: f64,
+    /// Acceleration, rad/s².
+    pub acceleration_rad_s2: f64,
+}
+
+/// Where everything is to be at one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanPoint {
+    /// Planned spot on the target, m.
+    pub spot: Point,
+    /// Planned joint motion.
+    pub joints: PanTilt<JointMotion>,
+    /// Torque the motors need for it, as a share of what the amplifiers allow; signed.
+    pub torque_fraction: PanTilt<f32>,
+    /// Whether light is to fall on the target (the gate leads it by the relay's delays).
+    pub lit: bool,
+    /// Number of the stroke this tick belongs to; `None` on the way between strokes.
+    pub stroke: Option<u32>,
+}
+
+/// Where the spot comes to rest at a corner or at the end of a stroke.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LegEnd {
+    /// Tick of the rest.
+    pub tick: u32,
+    /// Tick at which the leg began.
+    pub start_tick: u32,
+    /// Place, m.
+    pub point: Point,
+    /// Unit vector in which the leg arrives.
+    pub tangent: Vec2,
+    /// Length of the leg, m.
+    pub length_m: f64,
+}
+
+/// A whole job in time: what is executed is exactly this.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plan {
+    /// What the controller is sent.
+    pub segments: Vec<Segment>,
+    /// The same, tick by tick, for scoring and plots; the first is tick 0, the last the rest at the end.
+    pub points: Vec<PlanPoint>,
+    /// Every corner and stroke end, in time order.
+    pub leg_ends: Vec<LegEnd>,
+}
+
+impl Plan {
+    /// Length of the job, s. This is the time that is executed, to the tick.
+    pub fn duration_s(&self) -> f64 {
+        self.points.len().saturating_sub(1) as f64 * TICK_F64_S
+    }
+
+    /// How much of it is lit, s.
+    pub fn lit_s(&self) -> f64 {
+        self.points.iter().filter(|p| p.lit).count() as f64 * TICK_F64_S
+    }
+
+    /// Highest speed of the lit spot, m/s.
+    pub fn top_speed_m_s(&self) -> f64 {
+        let lit = self.points.windows(2).filter(|w| w[0].lit && w[1].lit);
+        lit.map(|w| w[0].spot.distance(w[1].spot) / TICK_F64_S).fold(0.0, f64::max)
+    }
+
+    /// Largest torque asked of a motor, as a share of its limit.
+    pub fn torque_peak_fraction(&self) -> f64 {
+        let of = |p: &PlanPoint| p.torque_fraction.pan.abs().max(p.torque_fraction.tilt.abs());
+        f64::from(self.points.iter().map(of).fold(0.0, f32::max))
+    }
+}
