@@ -1,0 +1,92 @@
+//! What each room is told of a rig.
+
+use tracelight_aim::HeadPose;
+use tracelight_control::{AxisConfig, Config, FrictionModel, Gains, HeadModel, ObserverTuning};
+use tracelight_dynamics::{Friction, Lumped};
+use tracelight_plant::PlantConfig;
+use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
+use tracelight_trajectory::Machine;
+
+use crate::RigConfig;
+
+impl RigConfig {
+    /// What the planner believes, for a head standing at `pose`.
+    pub fn machine(&self, pose: HeadPose) -> Machine {
+        let ticks = |s: f64| (s / TICK_F64_S).round() as u32;
+        Machine {
+            lumped: self.model.bodies.lumped(),
+            friction: self.model.friction,
+            motors: self.model.motors,
+            torque_share: self.motion.torque_share,
+            speed_limit_rad_s: self.motion.speed_limit_rad_s,
+            acceleration_limit_rad_s2: self.motion.acceleration_limit_rad_s2,
+            geometry: self.model.geometry,
+            pose,
+            relay_on_ticks: ticks(self.model.relay.on_s),
+            relay_off_ticks: ticks(self.model.relay.off_s),
+        }
+    }
+
+    /// What the controller believes, in its own `f32`.
+    pub fn control_config(&self) -> Config {
+        Config {
+            model: head_model(&self.model.bodies.lumped()),
+            axes: PanTilt::from_fn(|j| self.axis(j)),
+            hold_limit_ticks: (self.control.hold_limit_s / TICK_F64_S).round() as u32,
+        }
+    }
+
+    fn axis(&self, joint: Joint) -> AxisConfig {
+        let motor = &self.model.motors[joint];
+        let (lower, upper) = self.model.geometry.range_rad[joint];
+        AxisConfig {
+            torque_nm_per_v: motor.torque_nm_per_v as f32,
+            limit_v: motor.limit_v as f32,
+            count_rad: self.model.encoder.count_rad() as f32,
+            friction: friction_model(&self.model.friction[joint]),
+            gains: Gains::triple_pole(self.control.bandwidth_rad_s[joint] as f32),
+            limits: JointLimits {
+                lower_rad: lower as f32,
+                upper_rad: upper as f32,
+                speed_rad_s: self.motion.speed_limit_rad_s[joint] as f32,
+            },
+            observer: ObserverTuning::DEFAULT,
+        }
+    }
+
+    /// What the simulated plant is.
+    pub fn plant_config(&self) -> PlantConfig {
+        let truth = &self.truth.model;
+        PlantConfig {
+            bodies: truth.bodies,
+            friction: truth.friction,
+            motors: truth.motors,
+            encoder: truth.encoder,
+            relay: truth.relay,
+            wear: self.truth.wear,
+        }
+    }
+}
+
+fn head_model(lumped: &Lumped) -> HeadModel {
+    HeadModel {
+        m11_fixed: lumped.m11_fixed as f32,
+        m11_ss: lumped.m11_ss as f32,
+        m11_sc: lumped.m11_sc as f32,
+        m11_cc: lumped.m11_cc as f32,
+        m12_s: lumped.m12_s as f32,
+        m12_c: lumped.m12_c as f32,
+        m22: lumped.m22 as f32,
+        gravity_c: lumped.gravity_c as f32,
+        gravity_s: lumped.gravity_s as f32,
+    }
+}
+
+fn friction_model(friction: &Friction) -> FrictionModel {
+    FrictionModel {
+        viscous_pos: friction.viscous_pos as f32,
+        viscous_neg: friction.viscous_neg as f32,
+        coulomb_pos_nm: friction.coulomb_pos_nm as f32,
+        coulomb_neg_nm: friction.coulomb_neg_nm as f32,
+    }
+}

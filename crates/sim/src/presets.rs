@@ -1,0 +1,105 @@
+//! Rigs that come with the program.
+
+use std::f64::consts::PI;
+
+use tracelight_aim::HeadGeometry;
+use tracelight_dynamics::{Friction, HeadBodies, Motor};
+use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
+use tracelight_rig::PanTilt;
+
+use crate::config::{ControlSettings, Model, MotionSettings, RigConfig, Truth};
+
+/// Motor torque constant × gearhead × belt, N m at the joint per A.
+const JOINT_TORQUE_NM_PER_A: f64 = 0.0432 * 6.3 * 2.8435;
+/// Pan's amplifier as measured with the motor turning, A/V.
+const PAN_A_PER_V: f64 = 0.08;
+/// Tilt's amplifier, A/V.
+const TILT_A_PER_V: f64 = 0.1;
+/// Range of such amplifiers' inputs, V.
+const COMMAND_LIMIT_V: f64 = 10.0;
+
+impl RigConfig {
+    /// Every preset, in the order they are listed.
+    pub fn presets() -> Vec<Self> {
+        vec![Self::report(), Self::worn()]
+    }
+
+    /// The preset of that name.
+    pub fn preset(name: &str) -> Option<Self> {
+        Self::presets().into_iter().find(|p| p.name == name)
+    }
+
+    /// The rig of the 2006 report: parameter set A, friction as its tables have it, 4096 counts a turn.
+    pub fn report() -> Self {
+        let model = report_model();
+        Self {
+            name: "report".into(),
+            description: "the rig of the 2006 report, as good as new".into(),
+            model,
+            truth: Truth { model, wear: Wear::NONE },
+            control: ControlSettings {
+                bandwidth_rad_s: PanTilt::new(60.0, 60.0),
+                tolerance_m: 3e-3,
+                hold_limit_s: 3.0,
+            },
+            motion: MotionSettings {
+                torque_share: 0.85,
+                speed_limit_rad_s: PanTilt::new(24.0, 24.0),
+                acceleration_limit_rad_s2: PanTilt::new(100.0, 100.0),
+                ramp_s: 0.02,
+                settle_s: 0.04,
+            },
+        }
+    }
+
+    /// The same rig after some years: what is believed stays, what is true has worn.
+    pub fn worn() -> Self {
+        const ARCMINUTE_RAD: f64 = PI / 180.0 / 60.0;
+        let wear = Wear {
+            stribeck_ratio: 1.3,
+            stribeck_speed_rad_s: 0.02,
+            friction_ripple: 0.1,
+            edge_error_counts: 0.1,
+            backlash_rad: ARCMINUTE_RAD,
+            gain_spread: 0.1,
+        };
+        let new = Self::report();
+        Self {
+            name: "worn".into(),
+            description:
+                "the same rig with sticking friction, backlash, uneven encoder edges and drifted amplifiers"
+                    .into(),
+            truth: Truth { wear, ..new.truth },
+            ..new
+        }
+    }
+}
+
+fn report_model() -> Model {
+    let motor =
+        |a_per_v: f64| Motor { torque_nm_per_v: a_per_v * JOINT_TORQUE_NM_PER_A, limit_v: COMMAND_LIMIT_V };
+    Model {
+        bodies: HeadBodies::set_a(),
+        friction: PanTilt::new(
+            Friction {
+                viscous_pos: 0.0009,
+                viscous_neg: 0.0009,
+                coulomb_pos_nm: 0.0406,
+                coulomb_neg_nm: -0.0385,
+            },
+            Friction {
+                viscous_pos: 0.0019,
+                viscous_neg: 0.0017,
+                coulomb_pos_nm: 0.0584,
+                coulomb_neg_nm: -0.0569,
+            },
+        ),
+        motors: PanTilt::new(motor(PAN_A_PER_V), motor(TILT_A_PER_V)),
+        encoder: EncoderConfig { counts_per_rev: 4096, edge_stamps: true },
+        relay: RelayConfig { on_s: 5e-3, off_s: 3e-3 },
+        geometry: HeadGeometry {
+            laser_offset_m: [0.0; 3],
+            range_rad: PanTilt::new((-PI, PI), (-95.0 * PI / 180.0, 95.0 * PI / 180.0)),
+        },
+    }
+}

@@ -1,0 +1,185 @@
+use std::ops::ControlFlow;
+
+use tracelight_aim::{HeadGeometry, HeadPose};
+use tracelight_control::{Controller, State};
+use tracelight_plant::Plant;
+use tracelight_rig::{Command, Head, Joint, Measurement, PanTilt, Phase, Rig, Segment, Telemetry};
+use tracelight_stroke::Point;
+use tracelight_trajectory::Plan;
+
+use crate::RigConfig;
+
+/// Ticks a run goes on after a fault, so that the log shows what followed: 0.2 s.
+const AFTERMATH_TICKS: u32 = 200;
+
+/// Ticks a run may take beyond its plan before it is given up: many holds of the longest kind.
+const PATIENCE_TICKS: usize = 60_000;
+
+/// What is known of one tick after it happened: what the controller saw, and where the light really was.
+///
+/// In simulation `angle_rad`, `spot` and `light` are the plant's truth; on a real head they are the encoders'
+/// opinion and the gate. All of them are instants: the start of the tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    /// The controller's side.
+    pub telemetry: Telemetry,
+    /// Joint angles, rad.
+    pub angle_rad: PanTilt<f64>,
+    /// Where the beam meets the target plane, m; `None` when it misses it.
+    pub spot: Option<Point>,
+    /// Where the setpoint would put it, m.
+    pub asked: Option<Point>,
+    /// Whether light leaves the head, after the relay.
+    pub light: bool,
+}
+
+/// One seeded run, tick by tick.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Run {
+    /// In time order; `telemetry.plan_tick` says which point of the plan each one follows.
+    pub ticks: Vec<Tick>,
+}
+
+/// A controller with a simulated head, in this process.
+///
+/// [`Rig`] on the host's side; the truth is on [`step`](Self::step).
+#[derive(Clone, Debug)]
+pub struct SimulatedRig {
+    controller: Controller,
+    state: State,
+    plant: Plant,
+    measured: PanTilt<Measurement>,
+    lines: PanTilt<Line>,
+    model: HeadGeometry,
+    truth: HeadGeometry,
+    pose: HeadPose,
+}
+
+impl SimulatedRig {
+    /// A rig at rest straight ahead, dark, in front of the target. `seed` draws what differs from head to head.
+    pub fn new(config: &RigConfig, pose: HeadPose, seed: u64) -> Self {
+        let controller = Controller::new(config.control_config());
+        let plant = Plant::new(&config.plant_config(), seed);
+        let measured = PanTilt::default(); // homed: count 0 on both
+        Self {
+            state: controller.start(&measured),
+            controller,
+            plant,
+            measured,
+            lines: PanTilt::default(),
+            model: config.model.geometry,
+            truth: config.truth.model.geometry,
+            pose,
+        }
+    }
+
+    /// One tick of the closed loop, with the truth.
+    pub fn step(&mut self) -> Tick {
+        let telemetry = self.controller.tick(&mut self.state, &self.measured);
+        let asked = telemetry.setpoint.map(|s| f64::from(s.position_rad));
+        let tick = Tick {
+            telemetry,
+            angle_rad: self.plant.angle_rad(),
+            spot: self.truth.spot(&self.pose, self.plant.beam_rad()),
+            asked: self.model.spot(&self.pose, asked),
+            light: self.plant.light(),
+        };
+        let seen = self.plant.exchange(&telemetry.actuation);
+        self.measured = PanTilt::from_fn(|j| self.lines[j].carry(seen[j]));
+        tick
+    }
+
+    /// Somebody leans on the head from now on: torque at the joints, N m.
+    pub fn push(&mut self, torque_nm: PanTilt<f64>) {
+        self.plant.push(torque_nm);
+    }
+
+    /// Cuts an encoder's line: from now on its count stands still.
+    pub fn cut_encoder(&mut self, joint: Joint) {
+        self.lines[joint].cut_at = Some(self.measured[joint].count);
+    }
+
+    /// Lets an encoder slip: from now on its count is off by that many more.
+    pub fn slip_encoder(&mut self, joint: Joint, counts: i32) {
+        self.lines[joint].slip += counts;
+    }
+}
+
+/// What happens to a count on its way to the controller.
+#[derive(Clone, Copy, Debug, Default)]
+struct Line {
+    cut_at: Option<i32>,
+    slip: i32,
+}
+
+impl Line {
+    fn carry(&self, measured: Measurement) -> Measurement {
+        match self.cut_at {
+            Some(count) => Measurement { count, edge_age_ticks: None },
+            None => Measurement { count: measured.count + self.slip, ..measured },
+        }
+    }
+}
+
+impl Rig for SimulatedRig {
+    fn send(&mut self, command: Command) -> Result<(), Command> {
+        self.controller.accept(&mut self.state, command)
+    }
+
+    fn next(&mut self) -> Option<Telemetry> {
+        Some(self.step().telemetry)
+    }
+}
+
+/// Feeds a plan's segments to a rig as it takes them.
+pub struct Feeder<'a> {
+    segments: &'a [Segment],
+    dark: bool,
+    next: usize,
+    finished: bool,
+}
+
+impl<'a> Feeder<'a> {
+    /// `dark` shuts every segment's gate: a dry run.
+    pub const fn new(segments: &'a [Segment], dark: bool) -> Self {
+        Self { segments, dark, next: 0, finished: false }
+    }
+
+    /// Sends as many segments as the rig takes now, then the end of the job.
+    pub fn feed(&mut self, rig: &mut impl Rig) {
+        while let Some(&segment) = self.segments.get(self.next) {
+            let segment = Segment { gate: segment.gate && !self.dark, ..segment };
+            if rig.send(Command::Append(segment)).is_err() {
+                return;
+            }
+            self.next += 1;
+        }
+        if !self.finished {
+            self.finished = rig.send(Command::Finish).is_ok();
+        }
+    }
+}
+
+/// Runs a plan on a simulated rig from power-up to rest. `watch` sees every tick as it happens and may stop the run.
+pub fn run(
+    rig: &mut SimulatedRig,
+    plan: &Plan,
+    dry: bool,
+    mut watch: impl FnMut(&mut SimulatedRig, &Tick) -> ControlFlow<()>,
+) -> Run {
+    let mut feeder = Feeder::new(&plan.segments, dry);
+    let mut ticks = Vec::with_capacity(plan.points.len());
+    let mut aftermath = AFTERMATH_TICKS;
+    let armed = rig.send(Command::Arm).is_ok();
+    while armed && ticks.len() < plan.points.len() + PATIENCE_TICKS {
+        feeder.feed(rig);
+        let tick = rig.step();
+        ticks.push(tick);
+        aftermath -= u32::from(tick.telemetry.phase == Phase::Faulted);
+        let over = tick.telemetry.phase == Phase::Done || aftermath == 0;
+        if watch(rig, &tick).is_break() || over {
+            break;
+        }
+    }
+    Run { ticks }
+}

@@ -1,0 +1,115 @@
+use tracelight_rig::TICK_F64_S;
+use tracelight_stroke::{Point, Vec2};
+use tracelight_trajectory::{LegEnd, Plan};
+
+use crate::{Run, Tick};
+
+/// How well the light followed the plan; lengths on the target.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tracking {
+    /// Spot against the plan's point of the same tick, lit ticks, root mean square, mm.
+    pub rms_mm: f64,
+    /// The same, largest, mm.
+    pub max_mm: f64,
+    /// Lit spot to the nearest point of the stroke, root mean square, mm.
+    pub off_stroke_rms_mm: f64,
+    /// The same, largest, mm.
+    pub off_stroke_max_mm: f64,
+    /// Furthest excursion past a stroke end or corner along the incoming tangent, % of that leg (legs ≥ 20 mm).
+    pub overshoot_percent: f64,
+    /// Mean distance from the last planned point over the last 0.2 s at rest, mm.
+    pub final_error_mm: f64,
+    /// Mean speed of the lit spot, m/s.
+    pub lit_speed_m_s: f64,
+    /// Share of the lit time within ±2 % of the set speed.
+    pub at_speed_share: f64,
+}
+
+/// Legs shorter than this do not count for overshoot, m.
+const SHORTEST_LEG_M: f64 = 0.02;
+/// How long after an end its overshoot is looked for, ticks.
+const AFTER_END_TICKS: usize = 200;
+/// How far along the plan the nearest point of a stroke is looked for, ticks either way.
+const NEAR_TICKS: usize = 150;
+/// The rest over which the final error is averaged, ticks.
+const REST_TICKS: usize = 200;
+/// "At speed" means this close to it.
+const AT_SPEED: f64 = 0.02;
+const MM: f64 = 1e3;
+
+/// Scores a run against its plan, with the truth about where the light was.
+pub fn score(plan: &Plan, run: &Run, set_speed_m_s: f64) -> Tracking {
+    let lit: Vec<&Tick> = run.ticks.iter().filter(|t| t.light).collect();
+    let (rms_mm, max_mm) = rms_and_max(lit.iter().filter_map(|t| Some(t.spot?.distance(t.asked?))));
+    let (off_stroke_rms_mm, off_stroke_max_mm) = rms_and_max(lit.iter().filter_map(|t| off_stroke(plan, t)));
+    let speeds = lit_speeds(run);
+    let at_speed = speeds.iter().filter(|&&v| (v / set_speed_m_s - 1.0).abs() <= AT_SPEED).count();
+    Tracking {
+        rms_mm,
+        max_mm,
+        off_stroke_rms_mm,
+        off_stroke_max_mm,
+        overshoot_percent: overshoot_percent(plan, run),
+        final_error_mm: final_error_mm(plan, run),
+        lit_speed_m_s: mean(&speeds),
+        at_speed_share: at_speed as f64 / (speeds.len() as f64).max(1.0),
+    }
+}
+
+/// Of lengths in m, in mm.
+fn rms_and_max(errors_m: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (count, sum, max) =
+        errors_m.fold((0.0, 0.0, 0.0f64), |(n, sum, max), e| (n + 1.0, sum + e * e, max.max(e)));
+    ((sum / f64::max(count, 1.0)).sqrt() * MM, max * MM)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / (values.len() as f64).max(1.0)
+}
+
+/// Distance of a lit spot from the stroke it is on, m.
+fn off_stroke(plan: &Plan, tick: &Tick) -> Option<f64> {
+    let spot = tick.spot?;
+    let at = (tick.telemetry.plan_tick as usize).min(plan.points.len().checked_sub(1)?);
+    let window = &plan.points[at.saturating_sub(NEAR_TICKS)..(at + NEAR_TICKS).min(plan.points.len())];
+    let stroke = plan.points[at].stroke;
+    let on_it = |i: usize| window[i].stroke == stroke && window[i + 1].stroke == stroke;
+    let near = (0..window.len().saturating_sub(1)).filter(|&i| on_it(i));
+    let distances = near.map(|i| to_segment(spot, window[i].spot, window[i + 1].spot));
+    let nearest = distances.fold(f64::INFINITY, f64::min);
+    nearest.is_finite().then_some(nearest)
+}
+
+fn to_segment(p: Point, a: Point, b: Point) -> f64 {
+    let along: Vec2 = b - a;
+    let share = ((p - a).dot(along) / along.hypot2().max(1e-300)).clamp(0.0, 1.0);
+    p.distance(a + along * share)
+}
+
+/// Speeds of the true spot between lit ticks, m/s.
+fn lit_speeds(run: &Run) -> Vec<f64> {
+    let pairs = run.ticks.windows(2).filter(|w| w[0].light && w[1].light);
+    pairs.filter_map(|w| Some(w[1].spot?.distance(w[0].spot?) / TICK_F64_S)).collect()
+}
+
+fn overshoot_percent(plan: &Plan, run: &Run) -> f64 {
+    let long = plan.leg_ends.iter().filter(|e| e.length_m >= SHORTEST_LEG_M);
+    long.map(|end| beyond(end, run) / end.length_m * 100.0).fold(0.0, f64::max)
+}
+
+/// How far the spot goes past the end of a leg along its last direction, beyond where the plan itself goes that
+/// way afterwards, m.
+fn beyond(end: &LegEnd, run: &Run) -> f64 {
+    let first = run.ticks.partition_point(|t| t.telemetry.plan_tick < end.start_tick);
+    let last = run.ticks.partition_point(|t| t.telemetry.plan_tick <= end.tick) + AFTER_END_TICKS;
+    let ahead = |p: Point| (p - end.point).dot(end.tangent).max(0.0);
+    let window = &run.ticks[first..last.min(run.ticks.len())];
+    let over = window.iter().filter_map(|t| Some(ahead(t.spot?) - ahead(t.asked?)));
+    over.fold(0.0, f64::max)
+}
+
+fn final_error_mm(plan: &Plan, run: &Run) -> f64 {
+    let Some(last) = plan.points.last() else { return 0.0 };
+    let rest = run.ticks.iter().rev().take(REST_TICKS).filter_map(|t| t.spot);
+    mean(&rest.map(|s| s.distance(last.spot) * MM).collect::<Vec<_>>())
+}

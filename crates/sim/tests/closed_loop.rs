@@ -1,0 +1,198 @@
+//! The controller on the plant, through the seams only: accuracy, sameness, faults.
+
+mod shapes;
+
+use std::ops::ControlFlow;
+
+use shapes::{POSE, circle, line, plan_of, star, trace};
+use tracelight_rig::{Darkness, Fault, Joint, PanTilt, Phase};
+use tracelight_sim::{RigConfig, Run, SimulatedRig, run};
+use tracelight_trajectory::Plan;
+
+#[test]
+fn shapes_on_the_report_rig_are_drawn_within_a_quarter_of_a_millimetre() {
+    let shapes = [("circle", circle(0.2)), ("star", star(0.2)), ("line", line(0.15))];
+    for (name, path) in shapes {
+        for seed in 0..3 {
+            let (_, run, tracking) = trace(&RigConfig::report(), path.clone(), seed);
+            assert_eq!(run.ticks.last().unwrap().telemetry.phase, Phase::Done, "{name}");
+            let good = tracking.rms_mm <= 0.25
+                && tracking.max_mm <= 1.4
+                && tracking.overshoot_percent <= 0.5
+                && tracking.final_error_mm <= 0.25;
+            assert!(good, "{name}, seed {seed}: {tracking:?}");
+        }
+    }
+}
+
+#[test]
+fn a_head_without_edge_stamps_is_nearly_as_good() {
+    let mut config = RigConfig::report();
+    config.model.encoder.edge_stamps = false;
+    config.truth.model.encoder.edge_stamps = false;
+    let (_, _, tracking) = trace(&config, star(0.2), 0);
+    assert!(tracking.rms_mm <= 0.25, "{tracking:?}");
+}
+
+#[test]
+fn a_worn_head_still_finishes_its_drawing() {
+    for seed in 0..5 {
+        let (_, run, tracking) = trace(&RigConfig::worn(), star(0.2), seed);
+        assert_eq!(run.ticks.last().unwrap().telemetry.phase, Phase::Done);
+        assert!(tracking.rms_mm <= 1.0, "{tracking:?}");
+    }
+}
+
+#[test]
+fn equal_seeds_give_equal_runs_to_the_bit_and_others_do_not() {
+    let run = |seed| trace(&RigConfig::worn(), circle(0.05), seed).1;
+    assert_eq!(run(1), run(1));
+    assert_ne!(run(1), run(2));
+}
+
+#[test]
+fn the_plan_takes_the_time_it_says() {
+    let (plan, run, _) = trace(&RigConfig::report(), star(0.1), 0);
+    // the tick after the last setpoint is the first that knows it is done
+    assert_eq!(run.ticks.len(), plan.points.len());
+}
+
+#[test]
+fn light_falls_on_exactly_the_planned_ticks() {
+    let (plan, run, _) = trace(&RigConfig::report(), star(0.1), 0);
+    for (tick, point) in run.ticks.iter().zip(&plan.points) {
+        assert_eq!(tick.light, point.lit, "tick {}", tick.telemetry.tick);
+    }
+}
+
+/// Runs a plan; at `from` and until `until` (ticks) somebody does something to the rig.
+fn disturbed(plan: &Plan, mut act: impl FnMut(&mut SimulatedRig, u32)) -> Run {
+    let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
+    run(&mut rig, plan, false, |rig, tick| {
+        act(rig, tick.telemetry.tick);
+        ControlFlow::Continue(())
+    })
+}
+
+/// The middle of the lit ticks.
+fn middle(plan: &Plan) -> u32 {
+    let lit: Vec<usize> = (0..plan.points.len()).filter(|&i| plan.points[i].lit).collect();
+    lit[lit.len() / 2] as u32
+}
+
+#[test]
+fn a_push_darkens_at_once_and_the_stroke_goes_on_where_it_was_left() {
+    let plan = plan_of(&RigConfig::report(), circle(0.2));
+    let at = middle(&plan);
+    let run = disturbed(&plan, |rig, tick| {
+        if tick == at {
+            rig.push(PanTilt::new(1.0, 0.0));
+        } else if tick == at + 80 {
+            rig.push(PanTilt::default());
+        }
+    });
+    let strayed = |t: &tracelight_sim::Tick| {
+        t.telemetry.darkness.contains(Darkness::SpotError)
+            || t.telemetry.darkness.contains(Darkness::FollowingError)
+    };
+    let crossed = run.ticks.iter().position(strayed).unwrap();
+    let dark =
+        run.ticks.iter().skip(at as usize).position(|t| !t.telemetry.actuation.gate).unwrap() + at as usize;
+    assert!(dark <= crossed + 2, "crossed at {crossed}, dark at {dark}");
+    let relit = run.ticks.iter().skip(dark).position(|t| t.telemetry.actuation.gate).unwrap() + dark;
+    assert!(relit > dark + 80, "it cannot be back while it is pushed");
+    let (left, back) = (&run.ticks[dark], &run.ticks[relit]);
+    assert_eq!(left.telemetry.plan_tick, back.telemetry.plan_tick);
+    assert!(back.spot.unwrap().distance(left.asked.unwrap()) < 0.75e-3);
+    assert_eq!(run.ticks.last().unwrap().telemetry.phase, Phase::Done);
+    // everything lit after it is on the stroke again
+    let stray = run.ticks[relit..].iter().filter(|t| t.light);
+    assert!(stray.clone().all(|t| t.spot.unwrap().distance(t.asked.unwrap()) < 1.0e-3));
+}
+
+#[test]
+fn a_dead_encoder_is_noticed_and_the_laser_darkens() {
+    let plan = plan_of(&RigConfig::report(), circle(0.2));
+    let at = middle(&plan);
+    for joint in Joint::BOTH {
+        // on the circle's far side tilt moves and pan turns round, a quarter later they change roles
+        let when = if joint == Joint::Tilt { at } else { at + 1000 };
+        let run = disturbed(&plan, |rig, tick| {
+            if tick == when {
+                rig.cut_encoder(joint);
+            }
+        });
+        let last = run.ticks.last().unwrap();
+        assert_eq!(last.telemetry.fault, Some(Fault::EncoderDead), "{joint}");
+        let fault = run.ticks.iter().position(|t| t.telemetry.fault.is_some()).unwrap() as u32;
+        assert!(fault < when + 100, "{joint}: {} ms", fault - when);
+        assert!(!run.ticks[fault as usize].telemetry.actuation.gate);
+    }
+}
+
+#[test]
+fn a_jump_of_the_count_is_a_fault_in_the_same_tick() {
+    let plan = plan_of(&RigConfig::report(), circle(0.2));
+    let at = middle(&plan);
+    let run = disturbed(&plan, |rig, tick| {
+        if tick == at {
+            rig.slip_encoder(Joint::Tilt, 100);
+        }
+    });
+    let fault = run.ticks.iter().find(|t| t.telemetry.fault.is_some()).unwrap();
+    assert_eq!(fault.telemetry.fault, Some(Fault::EncoderJumped));
+    assert!(fault.telemetry.tick <= at + 2 && !fault.telemetry.actuation.gate);
+}
+
+#[test]
+fn a_dry_run_moves_and_stays_dark() {
+    let plan = plan_of(&RigConfig::report(), circle(0.1));
+    let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
+    let run = run(&mut rig, &plan, true, |_, _| ControlFlow::Continue(()));
+    assert!(run.ticks.iter().all(|t| !t.light && !t.telemetry.actuation.gate));
+    let end = run.ticks.last().unwrap().spot.unwrap();
+    assert!(end.distance(plan.points.last().unwrap().spot) < 1e-3);
+}
+
+#[test]
+fn segments_that_stop_coming_darken_the_beam() {
+    use tracelight_rig::{Command, Rig};
+    let plan = plan_of(&RigConfig::report(), circle(0.2));
+    let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
+    rig.send(Command::Arm).unwrap();
+    for &segment in plan.segments.iter().take(60) {
+        rig.send(Command::Append(segment)).unwrap();
+    }
+    let ticks: Vec<_> = (0..plan.points.len()).map(|_| rig.step()).collect();
+    let fault = ticks.iter().find(|t| t.telemetry.fault.is_some()).unwrap();
+    assert_eq!(fault.telemetry.fault, Some(Fault::SetpointsStale));
+    assert_eq!(fault.telemetry.tick, plan.segments[59].end_tick());
+    assert!(ticks.iter().skip(fault.telemetry.tick as usize).all(|t| !t.telemetry.actuation.gate));
+}
+
+#[test]
+fn a_segment_that_does_not_join_is_refused_with_a_fault() {
+    use tracelight_rig::{Command, Rig, Segment};
+    let plan = plan_of(&RigConfig::report(), circle(0.2));
+    let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
+    rig.send(Command::Arm).unwrap();
+    rig.send(Command::Append(plan.segments[0])).unwrap();
+    let late = Segment { start_tick: plan.segments[1].start_tick + 1, ..plan.segments[1] };
+    rig.send(Command::Append(late)).unwrap();
+    assert_eq!(rig.step().telemetry.fault, Some(Fault::SetpointInvalid));
+}
+
+#[test]
+fn ten_seeds_draw_the_same_line() {
+    let runs: Vec<Run> = (0..10).map(|seed| trace(&RigConfig::report(), star(0.2), seed).1).collect();
+    let lit = |i: usize| runs.iter().all(|r| r.ticks[i].light);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for i in (0..runs[0].ticks.len()).filter(|&i| lit(i)) {
+        let spots: Vec<_> = runs.iter().map(|r| r.ticks[i].spot.unwrap()).collect();
+        let (x, y) = spots.iter().fold((0.0, 0.0), |(x, y), p| (x + p.x / 10.0, y + p.y / 10.0));
+        sum += spots.iter().map(|p| p.distance_squared((x, y).into())).sum::<f64>();
+        count += 10.0;
+    }
+    let spread_mm = (sum / f64::max(count, 1.0)).sqrt() * 1e3;
+    assert!(spread_mm <= 0.2, "{spread_mm} mm");
+}

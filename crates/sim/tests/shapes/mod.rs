@@ -1,0 +1,54 @@
+//! Shapes to trace, 3 ft in front of the head.
+
+use std::ops::ControlFlow;
+
+use tracelight_aim::HeadPose;
+use tracelight_sim::{RigConfig, Run, SimulatedRig, Tracking, run, score};
+use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
+use tracelight_trajectory::{Plan, PlanRequest, Ramps, Shape, plan};
+
+/// 1 ft/s.
+pub(crate) const SPEED_M_S: f64 = 0.3048;
+/// 3 ft.
+pub(crate) const POSE: HeadPose = HeadPose::square_on(0.9144);
+
+pub(crate) fn circle(radius: f64) -> Path {
+    let mut path = Path::new(Point::new(radius, 0.0));
+    path.push(Element::Arc { centre: Point::ORIGIN, sweep: std::f64::consts::TAU });
+    path.close();
+    path
+}
+
+pub(crate) fn star(radius: f64) -> Path {
+    let point = |i: u32| {
+        let r = if i.is_multiple_of(2) { radius } else { 0.38 * radius };
+        let (s, c) = (f64::from(i) * std::f64::consts::PI / 5.0).sin_cos();
+        Point::new(r * s, r * c)
+    };
+    Path::polyline(&(0..10).map(point).collect::<Vec<_>>(), true).unwrap()
+}
+
+/// A level line at a height: the hardest for tilt, which creeps through a reversal on it.
+pub(crate) fn line(height: f64) -> Path {
+    Path::polyline(&[Point::new(-0.2, height), Point::new(0.2, height)], false).unwrap()
+}
+
+pub(crate) fn plan_of(config: &RigConfig, path: Path) -> Plan {
+    let request = PlanRequest {
+        speed_m_s: SPEED_M_S,
+        travel: Shape::Ramped(Ramps::REPORT),
+        ramp_s: config.motion.ramp_s,
+        settle_s: config.motion.settle_s,
+        tolerance_m: config.control.tolerance_m,
+    };
+    let drawing = Drawing { strokes: vec![Stroke::new(path)] };
+    plan(&drawing, &config.machine(POSE), &request).unwrap()
+}
+
+pub(crate) fn trace(config: &RigConfig, path: Path, seed: u64) -> (Plan, Run, Tracking) {
+    let plan = plan_of(config, path);
+    let mut rig = SimulatedRig::new(config, POSE, seed);
+    let run = run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(()));
+    let tracking = score(&plan, &run, SPEED_M_S);
+    (plan, run, tracking)
+}
