@@ -52,6 +52,8 @@ pub struct PathPoint {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
     start: Point,
+    /// End of the last element: kept, because finding it means walking all of them.
+    end: Point,
     elements: Vec<Element>,
     closed: bool,
 }
@@ -59,7 +61,14 @@ pub struct Path {
 impl Path {
     /// An open path without elements; add some with [`push`](Self::push).
     pub const fn new(start: Point) -> Self {
-        Self { start, elements: Vec::new(), closed: false }
+        Self { start, end: start, elements: Vec::new(), closed: false }
+    }
+
+    fn of(start: Point, elements: impl IntoIterator<Item = Element>, closed: bool) -> Self {
+        let mut path = Self::new(start);
+        elements.into_iter().for_each(|e| path.push(e));
+        path.closed = closed;
+        path
     }
 
     /// Straight lines through `points`; repeated points are dropped. `None` for fewer than two distinct points.
@@ -78,6 +87,7 @@ impl Path {
 
     /// Appends an element.
     pub fn push(&mut self, element: Element) {
+        self.end = Piece { from: self.end, element }.end();
         self.elements.push(element);
     }
 
@@ -108,11 +118,8 @@ impl Path {
     }
 
     /// Last point; the first one for a closed path.
-    pub fn end(&self) -> Point {
-        if self.closed {
-            return self.start;
-        }
-        self.pieces().last().map_or(self.start, |p| p.end())
+    pub const fn end(&self) -> Point {
+        if self.closed { self.start } else { self.end }
     }
 
     /// Whether the path returns to its start.
@@ -146,7 +153,8 @@ impl Path {
         let mut points = vec![self.start];
         for piece in self.pieces() {
             let n = piece.flat_steps(tolerance);
-            points.extend((1..=n).map(|i| piece.at(i as f64 / n as f64)));
+            points.extend((1..n).map(|i| piece.at(i as f64 / n as f64)));
+            points.push(piece.end());
         }
         if let (true, Some(last)) = (self.closed, points.last_mut()) {
             *last = self.start;
@@ -158,7 +166,7 @@ impl Path {
     pub fn reversed(&self) -> Self {
         let pieces: Vec<_> = self.pieces().collect();
         let elements = pieces.iter().rev().map(|p| p.reversed_element());
-        Self { start: self.end(), elements: elements.collect(), closed: self.closed }
+        Self::of(self.end(), elements, self.closed)
     }
 
     /// A closed path begun at its element number `first` instead (taken modulo their number); an open one as it is.
@@ -170,7 +178,7 @@ impl Path {
         let start = self.pieces().nth(first).map_or(self.start, |p| p.from);
         let mut elements = self.elements.clone();
         elements.rotate_left(first);
-        Self { start, elements, closed: true }
+        Self::of(start, elements, true)
     }
 
     /// The path moved by a similarity (rotation, uniform scale, reflection, shift).
@@ -185,7 +193,7 @@ impl Path {
                 Element::Cubic { c1: similarity * c1, c2: similarity * c2, to: similarity * to }
             }
         });
-        Self { start: similarity * self.start, elements: elements.collect(), closed: self.closed }
+        Self::of(similarity * self.start, elements, self.closed)
     }
 }
 

@@ -1,0 +1,70 @@
+use crate::MAX_COORDINATE;
+
+/// Why bytes are no drawing: what, where, the value, the bound, and what to do.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FormatError {
+    /// More of something than is read.
+    #[error("the {what} has {found}, and at most {limit} are read: simplify or split the drawing")]
+    TooLarge {
+        /// Of what, in which unit.
+        what: &'static str,
+        /// How many.
+        found: usize,
+        /// How many at most.
+        limit: usize,
+    },
+    /// Bytes that are no UTF-8 text.
+    #[error("byte {offset} is not UTF-8 text: save the file as plain text, not compressed")]
+    NotText {
+        /// Offset of the first byte that is not.
+        offset: usize,
+    },
+    /// The format's own grammar is broken.
+    #[error("line {line}, column {column}: not valid {format}: {message}")]
+    Syntax {
+        /// `SVG`, `JSON`.
+        format: &'static str,
+        /// From 1.
+        line: usize,
+        /// From 1.
+        column: usize,
+        /// What is wrong there.
+        message: String,
+    },
+    /// A value that cannot be meant.
+    #[error("{place}: {field} is {value}, expected {expected}")]
+    Value {
+        /// Line, stroke and point.
+        place: String,
+        /// Name of the field.
+        field: &'static str,
+        /// As found.
+        value: String,
+        /// What is accepted.
+        expected: &'static str,
+    },
+    /// A point beyond what is drawn.
+    #[error("{place}: the point ({x}, {y}) lies beyond ±{MAX_COORDINATE}: check the file's numbers and unit")]
+    Far {
+        /// Stroke and point.
+        place: String,
+        /// As found.
+        x: f64,
+        /// As found.
+        y: f64,
+    },
+    /// A file that is in order and draws nothing.
+    #[error("nothing to draw: {hint}")]
+    Nothing {
+        /// Why that may be.
+        hint: &'static str,
+    },
+    /// Something that is in order and not read, because it can be made to fill the memory.
+    #[error("{what} is not read: {instead}")]
+    Refused {
+        /// What it is.
+        what: &'static str,
+        /// What to do instead.
+        instead: &'static str,
+    },
+}

@@ -1,0 +1,56 @@
+//! Drawings from and to bytes. Nothing here opens a file: bytes in, bytes out.
+//!
+//! | module | reads | writes | frame |
+//! |---|---|---|---|
+//! | [`svg`] | any SVG's paths, as a [`Sheet`] | a placed drawing in true millimetres | sheet; target |
+//! | [`json`] | `strokes --json` | the same | pixels |
+//! | [`csv`] | `stroke,x_m,y_m` | the same | target |
+//!
+//! Readers take bytes from anywhere: what is malformed, not a number or too large is a [`FormatError`] that says
+//! where; none panics, runs for long, or takes memory out of proportion to [`MAX_BYTES`].
+
+pub mod csv;
+mod error;
+pub mod json;
+mod pen;
+pub mod svg;
+
+pub use error::FormatError;
+use tracelight_stroke::{Drawing, Point};
+
+/// Largest file that is read, bytes. The worst ones of this size take 2 s and 900 MB (measured).
+pub const MAX_BYTES: usize = 16 << 20;
+
+/// Coordinates beyond this are a broken file's. A million metres, or pixels, is more than anyone draws, and leaves
+/// ten digits behind the point.
+pub const MAX_COORDINATE: f64 = 1e6;
+
+/// A drawing on its sheet, as a file has it: x right, y down, the sheet spans `[0, width] × [0, height]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// Width, in the file's unit.
+    pub width: f64,
+    /// Height, in the file's unit.
+    pub height: f64,
+    /// Size of the file's unit on paper, where the file says so.
+    pub metres_per_unit: Option<f64>,
+    /// What is drawn, in the file's unit and order.
+    pub drawing: Drawing,
+}
+
+fn check_size(bytes: &[u8]) -> Result<(), FormatError> {
+    match bytes.len() > MAX_BYTES {
+        true => Err(FormatError::TooLarge { what: "file", found: bytes.len(), limit: MAX_BYTES }),
+        false => Ok(()),
+    }
+}
+
+fn text(bytes: &[u8]) -> Result<&str, FormatError> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    std::str::from_utf8(bytes).map_err(|e| FormatError::NotText { offset: e.valid_up_to() })
+}
+
+fn is_sound(point: Point) -> bool {
+    // asked this way round, what is not a number is not sound
+    point.x.abs() <= MAX_COORDINATE && point.y.abs() <= MAX_COORDINATE
+}

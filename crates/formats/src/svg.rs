@@ -1,0 +1,11 @@
+//! SVG: anyone's in, ours out.
+
+mod guard;
+mod read;
+mod write;
+
+pub use read::read;
+pub use write::write;
+
+#[cfg(test)]
+mod tests;

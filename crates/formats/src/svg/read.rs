@@ -1,0 +1,202 @@
+use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, StrokeKind};
+use usvg::tiny_skia_path::PathSegment;
+
+use super::guard;
+use crate::pen::Pen;
+use crate::{FormatError, Sheet, check_size, is_sound, text};
+
+/// CSS: an inch is 96 px.
+const METRES_PER_PX: f64 = 0.0254 / 96.0;
+
+/// Elements of all strokes at most, for the memory they take.
+const MAX_ELEMENTS: usize = 2_000_000;
+
+/// A stroke takes the memory of so many elements at least.
+const LEAST_ELEMENTS: usize = 4;
+
+/// Nodes of the XML tree at most, for the memory they take.
+const MAX_NODES: u32 = 2_000_000;
+
+/// Reads the visible paths of an SVG, in document order, a stroke for each subpath.
+///
+/// Shapes, `use`, CSS, transforms, `viewBox` and units are resolved. Lines stay lines and cubics cubics; quadratic
+/// curves become cubics, and elliptical arcs too, within 3e-4 of their radius. A path with a stroke is a centreline
+/// of that width, one with a fill only is an outline. A filled rectangle that covers the whole sheet is background
+/// and left out. Clipping, masks, dashes and filters are not applied; text and pictures are not read.
+///
+/// The unit is the CSS px; a sheet with a physical size (mm, cm, in, pt, pc, Q) says how large that is.
+///
+/// # Errors
+/// Anything that is not an SVG, one that draws nothing, and one that is made to fill the memory.
+pub fn read(bytes: &[u8]) -> Result<Sheet, FormatError> {
+    check_size(bytes)?;
+    let text = text(bytes)?;
+    guard::check_entities(text)?;
+    let options =
+        usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };
+    let xml = usvg::roxmltree::Document::parse_with_options(text, options).map_err(syntax)?;
+    guard::check_tree(&xml)?;
+    let tree = usvg::Tree::from_xmltree(&xml, &resolve_nothing()).map_err(unreadable)?;
+    let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
+    if !is_sound(Point::new(width, height)) {
+        return Err(FormatError::Far { place: "size of the sheet".into(), x: width, y: height });
+    }
+    let mut collector = Collector { width, height, elements: 0, strokes: Vec::new() };
+    collector.group(tree.root())?;
+    if collector.strokes.is_empty() {
+        return Err(FormatError::Nothing { hint: hint(&xml) });
+    }
+    let metres_per_unit = is_physical(xml.root_element()).then_some(METRES_PER_PX);
+    Ok(Sheet { width, height, metres_per_unit, drawing: Drawing { strokes: collector.strokes } })
+}
+
+/// Options that never open a file: links to pictures lead nowhere.
+fn resolve_nothing() -> usvg::Options<'static> {
+    usvg::Options {
+        image_href_resolver: usvg::ImageHrefResolver {
+            resolve_data: Box::new(|_, _, _| None),
+            resolve_string: Box::new(|_, _| None),
+        },
+        ..Default::default()
+    }
+}
+
+fn syntax(error: usvg::roxmltree::Error) -> FormatError {
+    let at = error.pos();
+    let message = error.to_string();
+    FormatError::Syntax { format: "SVG", line: at.row as usize, column: at.col as usize, message }
+}
+
+fn unreadable(error: usvg::Error) -> FormatError {
+    match error {
+        usvg::Error::ParsingFailed(error) => syntax(error),
+        other => FormatError::Syntax { format: "SVG", line: 1, column: 1, message: other.to_string() },
+    }
+}
+
+fn hint(xml: &usvg::roxmltree::Document) -> &'static str {
+    let has = |name: &str| xml.descendants().any(|n| n.tag_name().name() == name);
+    if has("text") {
+        "the SVG holds text, not paths: convert the text to paths in the drawing program"
+    } else if has("image") {
+        "the SVG holds an embedded picture, not paths: trace the picture's own file"
+    } else {
+        "the SVG has no visible path"
+    }
+}
+
+/// Whether the sheet has its size in a unit of length.
+fn is_physical(svg: usvg::roxmltree::Node) -> bool {
+    let in_unit = |name: &str| {
+        let size = svg.attribute(name).unwrap_or_default().trim();
+        let unit = size.trim_start_matches(|c: char| !c.is_ascii_alphabetic() || c == 'e' || c == 'E');
+        ["mm", "cm", "in", "pt", "pc", "Q"].contains(&unit)
+    };
+    in_unit("width") || in_unit("height")
+}
+
+struct Collector {
+    width: f64,
+    height: f64,
+    elements: usize,
+    strokes: Vec<Stroke>,
+}
+
+impl Collector {
+    fn group(&mut self, root: &usvg::Group) -> Result<(), FormatError> {
+        let mut left: Vec<&usvg::Node> = root.children().iter().rev().collect();
+        while let Some(node) = left.pop() {
+            match node {
+                usvg::Node::Group(group) => left.extend(group.children().iter().rev()),
+                usvg::Node::Path(path) => self.path(path)?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn path(&mut self, path: &usvg::Path) -> Result<(), FormatError> {
+        let stroke = path.stroke().filter(|s| s.opacity().get() > 0.0);
+        let fill = path.fill().filter(|f| f.opacity().get() > 0.0);
+        let filled_only = stroke.is_none();
+        if !path.is_visible() || (stroke.is_none() && fill.is_none()) {
+            return Ok(());
+        }
+        if filled_only && self.is_background(path) {
+            return Ok(());
+        }
+        let at = path.abs_transform();
+        let scale = (f64::from(at.sx) * f64::from(at.sy) - f64::from(at.kx) * f64::from(at.ky)).abs().sqrt();
+        let pen = stroke.map(|s| f64::from(s.width().get()) * scale);
+        let kind = if filled_only { StrokeKind::Outline } else { StrokeKind::Centreline };
+        for line in subpaths(path, filled_only) {
+            self.elements += line.elements().len().max(LEAST_ELEMENTS);
+            self.check(&line)?;
+            self.strokes.push(Stroke { path: line, kind, pen });
+        }
+        Ok(())
+    }
+
+    fn check(&self, path: &Path) -> Result<(), FormatError> {
+        if self.elements > MAX_ELEMENTS {
+            let found = self.elements;
+            return Err(FormatError::TooLarge { what: "SVG's path segments", found, limit: MAX_ELEMENTS });
+        }
+        let control = |element: &Element| match *element {
+            Element::Line { to } => [to; 3],
+            Element::Arc { centre, .. } => [centre; 3],
+            Element::Cubic { c1, c2, to } => [c1, c2, to],
+        };
+        let mut points = std::iter::once(path.start()).chain(path.elements().iter().flat_map(control));
+        match points.find(|&p| !is_sound(p)) {
+            Some(Point { x, y }) => {
+                Err(FormatError::Far { place: format!("stroke {}", self.strokes.len() + 1), x, y })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// A rectangle over the whole sheet, which drawing programs put behind everything.
+    fn is_background(&self, path: &usvg::Path) -> bool {
+        let bounds = path.abs_bounding_box();
+        let slack = 0.005 * (self.width + self.height) as f32;
+        let covers = bounds.left() <= slack
+            && bounds.top() <= slack
+            && bounds.right() >= self.width as f32 - slack
+            && bounds.bottom() >= self.height as f32 - slack;
+        let straight = |s: PathSegment| matches!(s, PathSegment::LineTo(_));
+        covers && path.data().segments().filter(|s| straight(*s)).count() <= 4 && path.data().len() <= 6
+    }
+}
+
+/// The connected parts of a path that have a length, in sheet coordinates.
+fn subpaths(path: &usvg::Path, close_all: bool) -> Vec<Path> {
+    let t = path.abs_transform();
+    let [sx, kx, tx, ky, sy, ty] = [t.sx, t.kx, t.tx, t.ky, t.sy, t.ty].map(f64::from);
+    let at = |p: usvg::tiny_skia_path::Point| {
+        let (x, y) = (f64::from(p.x), f64::from(p.y));
+        Point::new(sx * x + kx * y + tx, ky * x + sy * y + ty)
+    };
+    let mut done = Vec::new();
+    let mut open: Option<Pen> = None;
+    for segment in path.data().segments() {
+        if let PathSegment::MoveTo(p) = segment {
+            done.extend(open.replace(Pen::new(at(p))).and_then(|pen| pen.finish(close_all)));
+            continue;
+        }
+        let Some(mut pen) = open.take() else { continue };
+        match segment {
+            PathSegment::MoveTo(_) => {}
+            PathSegment::LineTo(p) => pen.line_to(at(p)),
+            PathSegment::QuadTo(c, p) => pen.quadratic_to(at(c), at(p)),
+            PathSegment::CubicTo(c1, c2, p) => pen.cubic_to(at(c1), at(c2), at(p)),
+            PathSegment::Close => {
+                done.extend(pen.finish(true));
+                continue;
+            }
+        }
+        open = Some(pen);
+    }
+    done.extend(open.and_then(|pen| pen.finish(close_all)));
+    done
+}

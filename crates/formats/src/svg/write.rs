@@ -1,0 +1,80 @@
+use std::f64::consts::PI;
+use std::fmt::Write;
+
+use tracelight_stroke::{Affine, Drawing, Element, Path, Piece, Point, Stroke};
+
+/// Width of the line where the pen's is not known, mm.
+const USUAL_PEN_MM: f64 = 0.8;
+
+/// A drawing on the target (metres, y up, origin at the centre) as an SVG of true size: millimetres, one path a
+/// stroke, in tracing order. Lines stay lines, arcs arcs, cubics cubics; coordinates to 0.1 µm.
+pub fn write(drawing: &Drawing, width_m: f64, height_m: f64) -> String {
+    let (w, h) = (1e3 * width_m, 1e3 * height_m);
+    let millimetres = drawing.transformed(Affine::new([1e3, 0.0, 0.0, -1e3, 0.5 * w, 0.5 * h]));
+    let (w, h) = (number(w), number(h));
+    let mut svg = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}mm\" height=\"{h}mm\" viewBox=\"0 0 {w} {h}\">\n\
+         <title>{} strokes, in tracing order, {w} × {h} mm</title>\n\
+         <g fill=\"none\" stroke=\"#c8102e\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
+        drawing.strokes.len()
+    );
+    for (i, stroke) in millimetres.strokes.iter().enumerate() {
+        write_stroke(&mut svg, i + 1, stroke);
+    }
+    svg.push_str("</g>\n</svg>\n");
+    svg
+}
+
+fn write_stroke(svg: &mut String, number_of: usize, stroke: &Stroke) {
+    let pen = number(stroke.pen.unwrap_or(USUAL_PEN_MM));
+    let kind = stroke.kind.name();
+    let _ = writeln!(
+        svg,
+        "<path id=\"stroke-{number_of}\" data-kind=\"{kind}\" stroke-width=\"{pen}\" d=\"{}\"/>",
+        path_data(&stroke.path)
+    );
+}
+
+fn path_data(path: &Path) -> String {
+    let mut data = format!("M{}", point(path.start()));
+    for piece in path.pieces() {
+        match piece.element {
+            Element::Line { to } => push(&mut data, 'L', &[to]),
+            Element::Cubic { c1, c2, to } => push(&mut data, 'C', &[c1, c2, to]),
+            Element::Arc { centre, sweep } => push_arc(&mut data, &piece, centre, sweep),
+        }
+    }
+    if path.is_closed() {
+        data.push('Z');
+    }
+    data
+}
+
+fn push(data: &mut String, command: char, points: &[Point]) {
+    data.push(command);
+    data.push_str(&points.iter().map(|&p| point(p)).collect::<Vec<_>>().join(" "));
+}
+
+/// An SVG arc names its end, not its centre: a half turn or more is cut into equal parts of less.
+fn push_arc(data: &mut String, piece: &Piece, centre: Point, sweep: f64) {
+    const MOST: f64 = 1000.0;
+    let parts = (sweep.abs() / (0.99 * PI)).ceil().clamp(1.0, MOST) as usize;
+    let radius = number(piece.from.distance(centre));
+    let turn = u8::from(sweep > 0.0);
+    for i in 1..=parts {
+        let to = point(piece.at(i as f64 / parts as f64));
+        let _ = write!(data, "A{radius} {radius} 0 0 {turn} {to}");
+    }
+}
+
+fn point(p: Point) -> String {
+    format!("{} {}", number(p.x), number(p.y))
+}
+
+/// Four decimals, without trailing zeros.
+fn number(value: f64) -> String {
+    let text = format!("{value:.4}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
+}

@@ -1,0 +1,112 @@
+//! From the points of a tracer to a path that a head can follow.
+//!
+//! Corners are found first and put where their sides meet; between them, straight runs become lines and the rest
+//! few cubics, each passing into the next without a break of direction. A head stops at every corner and brakes at
+//! every kink, so neither is made up and none is rounded away.
+
+mod chain;
+mod circle;
+mod corner;
+mod cubic;
+mod samples;
+mod section;
+mod straight;
+mod window;
+
+use kurbo::Point;
+
+use crate::{Path, simplify};
+use corner::Corner;
+use samples::Samples;
+
+/// How [`fit`] treats its points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitOptions {
+    /// Furthest the path may be from the points, in their unit; it should be some four times their noise.
+    pub tolerance: f64,
+    /// Change of direction from which on a break is a corner, rad.
+    pub corner_rad: f64,
+    /// Half the width of what drew the line: points nearer than this to a corner (more, to an acute one) show the
+    /// pen's shape and are not used.
+    pub reach: f64,
+}
+
+impl FitOptions {
+    /// Corners from 25° on, hidden by no more than four tolerances either side.
+    pub fn new(tolerance: f64) -> Self {
+        Self { tolerance, corner_rad: 25f64.to_radians(), reach: 4.0 * tolerance }
+    }
+}
+
+/// Fewer samples than this hold no curve.
+const LEAST_SAMPLES: usize = 8;
+
+/// A path of few lines, arcs and cubics near `points`, taken in order; `None` for fewer than two distinct points.
+///
+/// Open paths keep their end points. A closed path (its first point need not be repeated) starts at a corner where
+/// it has one. Between corners neighbouring elements share their direction, at the seam of a closed path too.
+/// Cubics after Schneider (1990), corners and lines as the modules here describe.
+pub fn fit(points: &[Point], closed: bool, options: &FitOptions) -> Option<Path> {
+    let samples = Samples::of(points, closed, 2.0 * options.tolerance)?;
+    if samples.len() < LEAST_SAMPLES {
+        return Path::polyline(&simplify(&samples.points, samples.closed, options.tolerance), samples.closed);
+    }
+    let corners = corner::find(&samples, options);
+    match (samples.closed, corners.is_empty()) {
+        (true, true) => Some(smooth_ring(&samples, options)),
+        (true, false) => Some(cornered_ring(&samples, &corners, options)),
+        (false, _) => Some(open_line(&samples, &corners, options)),
+    }
+}
+
+fn smooth_ring(samples: &Samples, options: &FitOptions) -> Path {
+    if let Some(circle) = circle::through(&samples.points, 0.7 * options.tolerance) {
+        return circle;
+    }
+    let tangent = samples.tangent(0, LEAST_SAMPLES - 1).unwrap_or_default();
+    let (start, elements) = section::ring(&samples.points, tangent, options);
+    assembled(start, elements, true)
+}
+
+fn cornered_ring(samples: &Samples, corners: &[Corner], options: &FitOptions) -> Path {
+    let next = corners.iter().skip(1).chain(corners.first());
+    let mut elements = Vec::new();
+    for (from, to) in corners.iter().zip(next) {
+        let ahead = if to.index > from.index { to.index } else { to.index + samples.len() };
+        let inner = trusted(samples, from.index + from.zone, ahead as isize - to.zone as isize);
+        elements.extend(section::open(&[&[from.point], &inner[..], &[to.point]].concat(), options));
+    }
+    assembled(corners[0].point, elements, true)
+}
+
+fn open_line(samples: &Samples, corners: &[Corner], options: &FitOptions) -> Path {
+    let last = samples.len() - 1;
+    let (start, end) = (samples.points[0], samples.points[last]);
+    let mut stops = vec![Corner { index: 0, zone: 1, point: start }];
+    stops.extend(corners);
+    stops.push(Corner { index: last, zone: 1, point: end });
+    let mut elements = Vec::new();
+    for pair in stops.windows(2) {
+        let inner =
+            trusted(samples, pair[0].index + pair[0].zone, pair[1].index as isize - pair[1].zone as isize);
+        elements.extend(section::open(&[&[pair[0].point], &inner[..], &[pair[1].point]].concat(), options));
+    }
+    assembled(start, elements, false)
+}
+
+/// Samples from one index to another, none when the zones of two corners overlap.
+fn trusted(samples: &Samples, from: usize, to: isize) -> Vec<Point> {
+    (from as isize..=to).filter_map(|i| samples.get(i)).collect()
+}
+
+fn assembled(start: Point, elements: Vec<crate::Element>, closed: bool) -> Path {
+    let mut path = Path::new(start);
+    elements.into_iter().for_each(|e| path.push(e));
+    if closed {
+        path.close();
+    }
+    path
+}
+
+#[cfg(test)]
+mod tests;

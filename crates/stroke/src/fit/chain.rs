@@ -1,0 +1,129 @@
+//! A curved stretch as few cubics that share their directions where they join.
+
+use kurbo::{CubicBez, Point, Vec2};
+
+use super::cubic::{self, Ends};
+use super::window::{Parabola, turn, unit, widest};
+
+/// Samples either side from which a joint's place and direction are taken: as many as lie on a parabola.
+const WINDOWS: [usize; 6] = [7, 10, 14, 20, 28, 40];
+
+/// More turn than this in one cubic makes its curvature uneven, rad (100°).
+const MOST_TURN: f64 = 1.75;
+
+/// Cubics through `points` from end to end, nowhere further off than `tolerance` where that is possible.
+///
+/// The joints share out the turning evenly; a cubic that is too far off is cut in two. `points` lie strictly
+/// between the ends.
+pub(super) fn through(points: &[Point], ends: &Ends, tolerance: f64) -> Vec<CubicBez> {
+    let row = Row::of([&[ends.from], points, &[ends.to]].concat(), 0.3 * tolerance);
+    let turned: f64 = row.weights.iter().sum::<f64>() / (1.0 + EVEN);
+    let least = ((turned / MOST_TURN).ceil() as usize).clamp(1, row.points.len() / SHORTEST + 1);
+    let mut joints: Vec<usize> =
+        (1..least).map(|k| row.share(0, row.last(), k as f64 / least as f64)).collect();
+    joints.dedup();
+    loop {
+        let chain = row.chained(ends, &joints);
+        let bounds: Vec<usize> = [&[0], &joints[..], &[row.last()]].concat();
+        let long = |k: usize| bounds[k + 1] - bounds[k] >= 2 * SHORTEST;
+        let cuts = (0..chain.len()).filter(|&k| chain[k].1 > tolerance && long(k));
+        let cuts: Vec<usize> = cuts.map(|k| row.share(bounds[k], bounds[k + 1], 0.5)).collect();
+        if cuts.is_empty() {
+            return chain.into_iter().map(|(curve, _)| curve).collect();
+        }
+        joints.extend(cuts);
+        joints.sort_unstable();
+    }
+}
+
+/// Share of the turning that is spread evenly over the length, so that straight stretches get joints too.
+const EVEN: f64 = 0.2;
+
+/// Fewest steps in one cubic.
+const SHORTEST: usize = 4;
+
+/// Points from end to end of a curved stretch.
+struct Row {
+    points: Vec<Point>,
+    /// Arc length at each point.
+    lengths: Vec<f64>,
+    /// What each step counts when the stretch is shared out: its turning, rad, and some of its length.
+    weights: Vec<f64>,
+    /// How far samples may be from a parabola that stands for them, root mean square.
+    rms: f64,
+}
+
+impl Row {
+    fn of(points: Vec<Point>, rms: f64) -> Self {
+        let lengths = arc_lengths(&points);
+        let mut row = Self { points, lengths, weights: Vec::new(), rms };
+        let tangent = |i| row.local(i).map_or_else(Vec2::default, |p| p.tangent(row.lengths[i]));
+        let tangents: Vec<Vec2> = (0..row.points.len()).map(tangent).collect();
+        let bends: Vec<f64> = tangents.windows(2).map(|w| turn(w[0], w[1]).abs()).collect();
+        let even = EVEN * bends.iter().sum::<f64>().max(1e-9) / row.lengths[row.last()].max(1e-300);
+        let steps = row.lengths.windows(2).map(|w| w[1] - w[0]);
+        row.weights = bends.iter().zip(steps).map(|(bend, step)| bend + even * step).collect();
+        row
+    }
+
+    fn last(&self) -> usize {
+        self.points.len() - 1
+    }
+
+    /// The parabola about point `i`.
+    fn local(&self, i: usize) -> Option<Parabola> {
+        let window = |half: usize| {
+            let range = i.saturating_sub(half)..(i + half + 1).min(self.points.len());
+            Parabola::through(range.map(|k| (self.lengths[k], self.points[k])))
+        };
+        widest(WINDOWS.into_iter().map(window), self.rms)
+    }
+
+    /// The point strictly between two others before which this share of the weights between them lies.
+    fn share(&self, from: usize, to: usize, share: f64) -> usize {
+        let due = share * self.weights[from..to].iter().sum::<f64>();
+        let mut passed = 0.0;
+        let reached = self.weights[from..to].iter().position(|w| {
+            passed += w;
+            passed >= due
+        });
+        let at = from + 1 + reached.unwrap_or(0);
+        at.clamp(from + 2, to.max(4) - 2).clamp(from + 1, to.max(from + 2) - 1)
+    }
+
+    /// Cubics between the joints, each with how far it is off at most.
+    fn chained(&self, ends: &Ends, joints: &[usize]) -> Vec<(CubicBez, f64)> {
+        let mut stops = vec![(0, ends.from, ends.leaving)];
+        let at = |&i: &usize| {
+            let local = self.local(i)?;
+            Some((i, local.point(self.lengths[i]), local.tangent(self.lengths[i])))
+        };
+        stops.extend(joints.iter().filter_map(at));
+        stops.push((self.last(), ends.to, ends.arriving));
+        let piece = |w: &[(usize, Point, Vec2)]| {
+            let ends = Ends { from: w[0].1, leaving: w[0].2, to: w[1].1, arriving: w[1].2 };
+            cubic::through(&self.points[w[0].0 + 1..w[1].0], &ends)
+        };
+        stops.windows(2).map(piece).collect()
+    }
+}
+
+fn arc_lengths(row: &[Point]) -> Vec<f64> {
+    let mut passed = 0.0;
+    let steps = row.windows(2).map(|w| {
+        passed += w[0].distance(w[1]);
+        passed
+    });
+    [0.0].into_iter().chain(steps).collect()
+}
+
+/// Direction in which a row leaves its first point; samples count as on a parabola up to `rms` from it.
+pub(super) fn leaving(row: &[Point], rms: f64) -> Vec2 {
+    let lengths = arc_lengths(&row[..row.len().min(2 * WINDOWS[WINDOWS.len() - 1])]);
+    let window = |half: usize| {
+        let range = 0..(2 * half).min(lengths.len());
+        Parabola::through(range.map(|k| (lengths[k], row[k])))
+    };
+    let along = widest(WINDOWS.into_iter().map(window), rms);
+    along.map_or_else(|| unit(row[row.len() - 1] - row[0]), |p| p.tangent(0.0))
+}

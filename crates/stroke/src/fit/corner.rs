@@ -1,0 +1,164 @@
+//! Corners: places where the direction breaks within the line's own width.
+//!
+//! The direction on either side is taken from a parabola through a flank that keeps clear of the place itself, so
+//! that a tight bend (its flanks bend alike) is told from a corner (its flanks do not).
+
+use kurbo::Point;
+
+use super::FitOptions;
+use super::samples::Samples;
+use super::window::{Parabola, turn, widest};
+
+/// A break of direction, with what was found out about it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// Nearest sample.
+    pub(super) index: usize,
+    /// Samples either side that show the pen and not the line.
+    pub(super) zone: usize,
+    /// Where the two sides meet.
+    pub(super) point: Point,
+}
+
+/// How the neighbourhood of a place is looked at, in samples.
+struct Scale {
+    reach: f64,
+    gap: usize,
+    flank: usize,
+    /// How far samples may be from a parabola that stands for them, root mean square.
+    rms: f64,
+}
+
+impl Scale {
+    fn of(samples: &Samples, options: &FitOptions) -> Self {
+        let reach = options.reach / samples.step;
+        // 24 tolerances of flank: noise of a third of the tolerance turns a parabola through them by some 5°
+        let flank = (24.0 * options.tolerance / samples.step).max(3.0 * reach).round() as usize;
+        Self { reach, gap: zone(reach, 1.0), flank: flank.max(6), rms: 0.2 * options.tolerance }
+    }
+}
+
+/// How far from a corner that turns by `turn_rad` a pen of half-width `reach` hides it: its inner edges meet at
+/// `reach · tan(turn/2)` along either side. Past 152° the ink of both sides is one.
+fn zone(reach: f64, turn_rad: f64) -> usize {
+    (reach * (1.15 * (0.5 * turn_rad.abs()).tan().min(4.0) + 0.3)).ceil() as usize + 1
+}
+
+impl FitOptions {
+    /// How far the points pass inside a corner at most. The middle of a pen's line cuts a corner that turns by φ
+    /// as an arc of half the pen's half-width would, whose sagitta is r/2 · (1/cos(φ/2) − 1); a bend of twice that
+    /// radius is no corner.
+    fn cut(&self, turn_rad: f64) -> f64 {
+        let sagitta = 1.0 / (0.5 * turn_rad).cos().max(0.05) - 1.0;
+        self.reach * sagitta + 0.6 * self.tolerance
+    }
+}
+
+/// All corners in order.
+pub(super) fn find(samples: &Samples, options: &FitOptions) -> Vec<Corner> {
+    let scale = Scale::of(samples, options);
+    let breaks: Vec<f64> = (0..samples.len()).map(|i| break_at(samples, i, scale.gap, scale.flank)).collect();
+    let smooth = Samples::smoothed_ring(&breaks, scale.gap, samples.closed);
+    let mut found: Vec<Corner> = Vec::new();
+    for peak in peaks(samples, &breaks, &smooth, options.corner_rad, scale.gap + scale.flank / 2) {
+        let corner = measured(samples, peak, &scale, options);
+        let apart = |c: &Corner| found.iter().all(|f| samples.apart(f.index, c.index) > f.zone.max(c.zone));
+        found.extend(corner.filter(apart));
+    }
+    found.sort_by_key(|c| c.index);
+    found
+}
+
+/// Turn between the flanks of sample `i`, both carried on to it, rad.
+fn break_at(samples: &Samples, i: usize, gap: usize, flank: usize) -> f64 {
+    let side = |side| samples.flank(i, side, gap, flank).map(|p| p.tangent(0.0));
+    match (side(-1), side(1)) {
+        (Some(before), Some(after)) => turn(before, after),
+        _ => 0.0,
+    }
+}
+
+impl Samples {
+    /// How many samples lie between two.
+    fn apart(&self, a: usize, b: usize) -> usize {
+        let d = a.abs_diff(b);
+        if self.closed { d.min(self.len() - d) } else { d }
+    }
+
+    /// Mean of the values up to `reach` neighbours away.
+    fn smoothed_ring(values: &[f64], reach: usize, closed: bool) -> Vec<f64> {
+        let (n, reach) = (values.len() as isize, reach as isize);
+        let at = |i: isize| if closed { i.rem_euclid(n) } else { i.clamp(0, n - 1) } as usize;
+        let mean = |i: isize| (i - reach..=i + reach).map(|k| values[at(k)]).sum::<f64>();
+        (0..n).map(|i| mean(i) / (2 * reach + 1) as f64).collect()
+    }
+}
+
+/// Samples where the break is over `least` and its mean is the largest for `apart` samples either way.
+fn peaks(samples: &Samples, breaks: &[f64], smooth: &[f64], least: f64, apart: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..breaks.len()).filter(|&i| breaks[i].abs() >= least).collect();
+    order.sort_by(|&a, &b| smooth[b].abs().total_cmp(&smooth[a].abs()));
+    let mut taken: Vec<usize> = Vec::new();
+    for i in order {
+        if taken.iter().all(|&t| samples.apart(t, i) > apart) {
+            taken.push(i);
+        }
+    }
+    taken
+}
+
+/// Looks again with flanks that keep clear of the zone this very turn hides, and puts the corner where they meet.
+fn measured(samples: &Samples, peak: usize, scale: &Scale, options: &FitOptions) -> Option<Corner> {
+    let (mut index, mut gap) = (peak, scale.gap);
+    let mut point = samples.points[peak];
+    for _ in 0..3 {
+        let side = |side| {
+            let lengths = [2, 3, 4, 6, 8, 12, 16, 24].map(|quarters| (quarters * scale.flank / 4).max(6));
+            widest(lengths.into_iter().map(|length| samples.flank(index, side, gap, length)), scale.rms)
+        };
+        let (before, after) = (side(-1)?, side(1)?);
+        let turned = turn(before.tangent(0.0), after.tangent(0.0));
+        if turned.abs() < options.corner_rad {
+            return None;
+        }
+        let hidden = gap as f64 * samples.step;
+        let reachable = 2.5 * hidden + 2.0 * samples.step;
+        let here = samples.points[index];
+        point = meeting(&before, &after, hidden).filter(|p| p.distance(here) < reachable).unwrap_or(here);
+        index = nearest(samples, index, gap, point);
+        gap = zone(scale.reach, turned);
+        if point.distance(samples.points[index]) > options.cut(turned) {
+            return None;
+        }
+    }
+    Some(Corner { index, zone: gap, point })
+}
+
+/// Where two flanks meet when they are carried on: tangents are intersected, and taken again at the meeting point.
+fn meeting(before: &Parabola, after: &Parabola, hidden: f64) -> Option<Point> {
+    let (mut s, mut t) = (-hidden, hidden);
+    let mut point = None;
+    for _ in 0..4 {
+        let (a, u) = (before.point(s), before.tangent(s));
+        let (b, v) = (after.point(t), after.tangent(t));
+        let cross = u.cross(v);
+        if cross.abs() < 0.05 {
+            return None; // back on its own line: it meets itself everywhere
+        }
+        let along = (b - a).cross(v) / cross;
+        let met = a + u * along;
+        point = Some(met);
+        s = (s + along).clamp(-3.0 * hidden, 3.0 * hidden);
+        t = (t + (met - b).dot(v)).clamp(-3.0 * hidden, 3.0 * hidden);
+    }
+    point
+}
+
+/// The sample nearest to `point` within `reach` samples of `index`.
+fn nearest(samples: &Samples, index: usize, reach: usize, point: Point) -> usize {
+    let reach = reach as isize;
+    let candidates = (-reach..=reach).filter_map(|k| Some((k, samples.get(index as isize + k)?)));
+    let best = candidates.min_by(|a, b| a.1.distance(point).total_cmp(&b.1.distance(point)));
+    let offset = best.map_or(0, |(k, _)| k);
+    (index as isize + offset).rem_euclid(samples.len() as isize) as usize
+}

@@ -1,0 +1,84 @@
+use kurbo::{Point, Vec2};
+
+use super::window::Parabola;
+
+/// More samples than this are not taken, however long the polyline is.
+const MOST: f64 = 200_000.0;
+
+/// A polyline resampled at equal steps of arc length.
+#[derive(Clone, Debug)]
+pub(super) struct Samples {
+    pub(super) points: Vec<Point>,
+    /// Arc length between neighbours.
+    pub(super) step: f64,
+    pub(super) closed: bool,
+}
+
+impl Samples {
+    /// Steps of about `step`; `None` for fewer than two distinct finite points.
+    pub(super) fn of(points: &[Point], closed: bool, step: f64) -> Option<Self> {
+        let mut line: Vec<Point> = points.iter().copied().filter(|p| p.is_finite()).collect();
+        line.dedup();
+        if closed && line.len() > 2 && line.first() != line.last() {
+            line.push(line[0]);
+        }
+        let length: f64 = line.windows(2).map(|w| w[0].distance(w[1])).sum();
+        if !(length.is_finite() && length > 0.0) {
+            return None;
+        }
+        let closed = closed && line.len() > 3;
+        let count = (length / step.max(1e-300)).round().clamp(if closed { 3.0 } else { 1.0 }, MOST);
+        let mut points = at_equal_steps(&line, length / count, count as usize);
+        if !closed {
+            points.extend(line.last());
+        }
+        Some(Self { points, step: length / count, closed })
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Sample number `i`, round the seam where closed; `None` beyond an open end.
+    pub(super) fn get(&self, i: isize) -> Option<Point> {
+        let n = self.points.len() as isize;
+        let i = if self.closed { i.rem_euclid(n) } else { i };
+        usize::try_from(i).ok().and_then(|i| self.points.get(i)).copied()
+    }
+
+    /// What lies between `gap` and `gap + length` samples from sample `i`, ahead (`side` 1) or behind (−1), with
+    /// arc lengths measured from `i`. Short ones end where an open line ends.
+    pub(super) fn flank(&self, i: usize, side: isize, gap: usize, length: usize) -> Option<Parabola> {
+        let of = |k: usize| {
+            let offset = side * k as isize;
+            Some((offset as f64 * self.step, self.get(i as isize + offset)?))
+        };
+        let window = (gap..gap + length).map_while(of);
+        (window.clone().count() >= LEAST_FLANK).then(|| Parabola::through(window))?
+    }
+
+    /// Direction at sample `i` from its neighbours up to `reach` samples away.
+    pub(super) fn tangent(&self, i: usize, reach: usize) -> Option<Vec2> {
+        let reach = reach as isize;
+        let of = |k: isize| Some((k as f64 * self.step, self.get(i as isize + k)?));
+        Some(Parabola::through((-reach..=reach).filter_map(of))?.tangent(0.0))
+    }
+}
+
+/// Fewer samples than this say nothing about a direction.
+const LEAST_FLANK: usize = 4;
+
+/// Points at multiples of `step` along a polyline, `count` of them from its start on.
+fn at_equal_steps(line: &[Point], step: f64, count: usize) -> Vec<Point> {
+    let mut points = Vec::with_capacity(count + 1);
+    let mut passed = 0.0;
+    for pair in line.windows(2) {
+        let length = pair[0].distance(pair[1]);
+        while points.len() < count && points.len() as f64 * step < passed + length {
+            let share = (points.len() as f64 * step - passed) / length;
+            points.push(pair[0].lerp(pair[1], share.clamp(0.0, 1.0)));
+        }
+        passed += length;
+    }
+    points
+}

@@ -1,0 +1,162 @@
+//! Straight runs in a row of points.
+
+use kurbo::{Point, Vec2};
+
+use super::window::unit;
+
+/// A run of points `first..=last` that lie on a straight line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    pub(super) first: usize,
+    pub(super) last: usize,
+    at: Point,
+    pub(super) direction: Vec2,
+}
+
+impl Run {
+    /// The point of the run's line nearest to `p`.
+    pub(super) fn project(&self, p: Point) -> Point {
+        self.at + self.direction * (p - self.at).dot(self.direction)
+    }
+}
+
+/// Points given back to the bend at either end of a run.
+const MARGIN: usize = 3;
+
+/// Sums of powers of the coordinates, so that a line through any run costs the same.
+pub(super) struct Straightness<'a> {
+    points: &'a [Point],
+    sums: Vec<[f64; 5]>,
+    /// Root mean square distance from its line that a run may have.
+    rms: f64,
+    /// Shortest run, in length.
+    least: f64,
+}
+
+impl<'a> Straightness<'a> {
+    pub(super) fn new(points: &'a [Point], tolerance: f64, least: f64) -> Self {
+        let origin = points.first().copied().unwrap_or_default();
+        let mut sums = vec![[0.0; 5]];
+        for &p in points {
+            let (x, y) = (p - origin).into();
+            let [sx, sy, sxx, sxy, syy] = sums[sums.len() - 1];
+            sums.push([sx + x, sy + y, sxx + x * x, sxy + x * y, syy + y * y]);
+        }
+        Self { points, sums, rms: 0.3 * tolerance, least }
+    }
+
+    /// Line through points `i..=j` by total least squares and the root mean square distance from it.
+    fn line(&self, i: usize, j: usize) -> (Run, f64) {
+        let n = (j - i + 1) as f64;
+        let of = |k: usize| (self.sums[j + 1][k] - self.sums[i][k]) / n;
+        let (mx, my) = (of(0), of(1));
+        let (a, b, c) = (of(2) - mx * mx, of(3) - mx * my, of(4) - my * my);
+        let angle = 0.5 * (2.0 * b).atan2(a - c);
+        let along = Vec2::from_angle(angle);
+        let ahead = along.dot(self.points[j] - self.points[i]) >= 0.0;
+        let across = (0.5 * (a + c) - (0.25 * (a - c).powi(2) + b * b).sqrt()).max(0.0);
+        let at = self.points[0] + Vec2::new(mx, my);
+        (Run { first: i, last: j, at, direction: if ahead { along } else { -along } }, across.sqrt())
+    }
+
+    /// Straight runs that are not just flat places of a curve, in order, none overlapping.
+    pub(super) fn runs(&self) -> Vec<Run> {
+        let mut found = Vec::new();
+        let mut spans = vec![(0, self.points.len().saturating_sub(1))];
+        while let Some((from, to)) = spans.pop() {
+            let Some(run) = self.longest(from, to) else { continue };
+            spans.extend([(from, run.first), (run.last, to)].into_iter().filter(|(a, b)| b > a));
+            if !self.bends_on(&run) {
+                found.push(run);
+            }
+        }
+        found.sort_by_key(|r| r.first);
+        found
+    }
+
+    /// The longest straight run between two points of the row.
+    fn longest(&self, from: usize, to: usize) -> Option<Run> {
+        let mut best: Option<Run> = None;
+        let (mut j, mut i) = (from, from);
+        while i < to {
+            j = j.max(i);
+            while j < to && self.straight(i, j + 1) {
+                j += 1;
+            }
+            if best.is_none_or(|b| j - i > b.last - b.first) {
+                best = Some(self.line(i, j).0);
+            }
+            if j == to {
+                break;
+            }
+            i += 1;
+        }
+        best.map(|b| self.trimmed(b)).filter(|b| self.length(b) >= self.least)
+    }
+
+    fn length(&self, run: &Run) -> f64 {
+        self.points[run.first].distance(self.points[run.last])
+    }
+
+    fn straight(&self, i: usize, j: usize) -> bool {
+        j < i + 3 || self.line(i, j).1 <= self.rms
+    }
+
+    /// Without the ends that already leave the line of the middle.
+    fn trimmed(&self, run: Run) -> Run {
+        let tenth = (run.last - run.first) / 10;
+        let (middle, rms) = self.line(run.first + tenth, run.last - tenth);
+        let near = |i: &usize| {
+            self.points[*i].distance(middle.project(self.points[*i])) <= 1.5 * rms.max(0.2 * self.rms)
+        };
+        let first = (run.first..run.last).find(near).unwrap_or(run.first);
+        let last = (first + 1..=run.last).rev().find(near).unwrap_or(run.last);
+        // a bend leaves its tangent so gently that its first steps still pass for straight
+        let bends = |end: usize| if end == 0 || end + 1 == self.points.len() { 0 } else { MARGIN };
+        let (first, last) = (first + bends(first), last.saturating_sub(bends(last)));
+        if last > first { self.line(first, last).0 } else { run }
+    }
+
+    /// Whether a curve of one bend explains the run together with as much again beyond its ends: then the run is
+    /// only the flattest place of that curve.
+    fn bends_on(&self, run: &Run) -> bool {
+        let (more, end) = (run.last - run.first, self.points.len() - 1);
+        let behind = run.first.min(more - (more / 2).min(end - run.last));
+        let ahead = (end - run.last).min(more - behind);
+        if 6 * (behind + ahead) < more {
+            return false;
+        }
+        let (first, last) = (run.first - behind, run.last + ahead);
+        let across = Vec2::new(-run.direction.y, run.direction.x);
+        let of = |p: &Point| ((*p - run.at).dot(run.direction), (*p - run.at).dot(across));
+        let points: Vec<(f64, f64)> = self.points[first..=last].iter().map(of).collect();
+        cubic_rms(&points) <= 1.5 * self.rms
+    }
+}
+
+/// Root mean square residual of the cubic polynomial v(u) that fits best, by orthogonal polynomials (Forsythe,
+/// "Generation and use of orthogonal polynomials for data-fitting with a digital computer", 1957).
+fn cubic_rms(points: &[(f64, f64)]) -> f64 {
+    let mut residual: Vec<f64> = points.iter().map(|p| p.1).collect();
+    let (mut before, mut now) = (vec![0.0; points.len()], vec![1.0; points.len()]);
+    let mut norm_before = 1.0;
+    for degree in 0..4 {
+        let norm: f64 = now.iter().map(|q| q * q).sum();
+        if norm <= 1e-300 {
+            break;
+        }
+        let share: f64 = now.iter().zip(&residual).map(|(q, r)| q * r).sum::<f64>() / norm;
+        residual.iter_mut().zip(&now).for_each(|(r, q)| *r -= share * q);
+        let centre = now.iter().zip(points).map(|(q, p)| p.0 * q * q).sum::<f64>() / norm;
+        let back = if degree == 0 { 0.0 } else { norm / norm_before };
+        let next = now.iter().zip(&before).zip(points).map(|((q, b), p)| (p.0 - centre) * q - back * b);
+        (before, now) = (now.clone(), next.collect());
+        norm_before = norm;
+    }
+    (residual.iter().map(|r| r * r).sum::<f64>() / points.len() as f64).sqrt()
+}
+
+/// Direction from one point to another.
+pub(super) fn direction(from: Point, to: Point) -> Vec2 {
+    unit(to - from)
+}

@@ -1,0 +1,22 @@
+//! Plane geometry of drawings.
+//!
+//! A [`Drawing`] is strokes in drawing order; a [`Stroke`] is a [`Path`] drawn lit; a path is lines, circular arcs
+//! and cubic curves. The crate knows lengths and directions in *some* plane unit. It knows nothing of pixels, of
+//! angles of a head, or of time: the unit of every length here is whatever unit the caller's points have.
+//!
+//! Points and vectors are [`kurbo`]'s: differences of points are vectors, and adding two points does not compile.
+
+mod compare;
+mod fit;
+mod order;
+mod path;
+mod simplify;
+mod stroke;
+
+pub use compare::{Comparison, compare, compare_polylines};
+pub use fit::{FitOptions, fit};
+pub use kurbo::{Affine, Point, Vec2};
+pub use order::{Effort, OrderOptions, Ordered, order};
+pub use path::{Element, Path, PathPoint, Piece};
+pub use simplify::simplify;
+pub use stroke::{Drawing, Stroke, StrokeKind};

@@ -1,0 +1,131 @@
+//! Which stroke comes when, from which end, and where a closed one begins.
+//!
+//! The dark way between strokes is an open travelling-salesman path over strokes that may be drawn from either end
+//! (a rural postman's problem in general, NP-hard). Here: nearest neighbour, then 2-opt and Or-opt over neighbour
+//! lists until neither helps, then seeded local kicks, each kept only when it pays (iterated local search, after
+//! Johnson & McGeoch, "The traveling salesman problem: a case study in local optimization", 1997).
+
+mod bound;
+mod greedy;
+mod kdtree;
+mod ports;
+mod route;
+mod search;
+mod tour;
+
+use kurbo::Point;
+
+use crate::Drawing;
+use ports::Ports;
+use route::Route;
+
+/// How much work goes into an order: an amount, not a time, so that equal inputs give equal orders on any machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Effort {
+    /// The first order that no single move improves.
+    Quick,
+    /// Local kicks on top: about a second for 5000 strokes.
+    #[default]
+    Normal,
+    /// Ten times as many kicks.
+    Best,
+}
+
+impl Effort {
+    /// Kicks for a region of so many of all strokes. The caps bound the time on endless drawings.
+    fn kicks(self, region: usize, strokes: usize) -> usize {
+        let most_each = 6_000_000_usize.div_ceil(strokes.max(1));
+        match self {
+            Effort::Quick => 0,
+            Effort::Normal => KICKS_EACH.min(most_each) * region,
+            Effort::Best => 10 * KICKS_EACH.min(most_each) * region,
+        }
+    }
+}
+
+/// Kicks a stroke: where the curve of gain over work bends. Of the 9 % that kicks gain on 5000 random strokes, twice
+/// as many add 0.3 %.
+const KICKS_EACH: usize = 30;
+
+/// Times that all regions are kicked and the starts of closed strokes chosen anew. Two, for the borders of the
+/// regions lie elsewhere the second time.
+const ROUNDS: usize = 2;
+
+/// How to search for an order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct OrderOptions {
+    /// How much work.
+    pub effort: Effort,
+    /// Seed of the kicks: equal seeds, equal orders.
+    pub seed: u64,
+}
+
+/// A drawing put in order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ordered {
+    /// The strokes in the order, direction and from the start points that were found.
+    pub drawing: Drawing,
+    /// Sum of the handed-in cost over the travels, in its unit.
+    pub cost: f64,
+    /// Straight travel from the start through every stroke, plane units.
+    pub travel: f64,
+    /// No order whatever travels less than this, plane units. Valid, rarely tight.
+    pub lower_bound: f64,
+}
+
+impl Ordered {
+    /// How far [`travel`](Self::travel) may be above the best order's, % of the lower bound; zero where nothing is
+    /// left to gain, `None` where the bound is zero and the travel is not.
+    pub fn gap_percent(&self) -> Option<f64> {
+        let excess = self.travel - self.lower_bound;
+        match self.lower_bound > 0.0 {
+            true => Some(100.0 * excess / self.lower_bound),
+            false => (excess <= 0.0).then_some(0.0),
+        }
+    }
+}
+
+/// Puts a drawing's strokes in an order with little travel, starting at `start`, ending anywhere.
+///
+/// Open strokes may be reversed. A closed stroke may begin at any joint of its elements; at its corners only, if it
+/// has any, because a spot that starts and stops in a corner shows least. `cost` of a travel from one point to
+/// another is in any unit; where it is not symmetric, one direction stands for both during the search and
+/// [`Ordered::cost`] is summed the way the strokes are drawn.
+pub fn order(
+    drawing: &Drawing,
+    start: Point,
+    options: OrderOptions,
+    cost: &impl Fn(Point, Point) -> f64,
+) -> Ordered {
+    let ports = Ports::of(drawing);
+    let mut route = Route { stops: greedy::nearest_neighbour(&ports, start), ports: &ports, start, cost };
+    for round in 0..ROUNDS {
+        route.settle();
+        for region in route.regions(round) {
+            let kicks = options.effort.kicks(region.len(), drawing.strokes.len()) / ROUNDS;
+            route.kick_region(&region, kicks, options.seed.wrapping_add(round as u64));
+        }
+        route.choose_joints();
+    }
+    route.settle();
+    let drawing = Drawing { strokes: route.stops.iter().map(|stop| stop.drawn(drawing, &ports)).collect() };
+    Ordered {
+        cost: travel_cost(&drawing, start, cost),
+        travel: drawing.travel(start),
+        lower_bound: bound::lower_bound(&ports, start).min(drawing.travel(start)),
+        drawing,
+    }
+}
+
+fn travel_cost(drawing: &Drawing, start: Point, cost: &impl Fn(Point, Point) -> f64) -> f64 {
+    let mut at = start;
+    let mut sum = 0.0;
+    for stroke in &drawing.strokes {
+        sum += cost(at, stroke.path.start());
+        at = stroke.path.end();
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests;
