@@ -20,6 +20,17 @@ pub enum AimError {
     /// The beam never meets the point.
     #[error("no pan and tilt bring the beam to ({:.4} m, {:.4} m): it is beside or behind the head", .0.x, .0.y)]
     Unreachable(Point),
+    /// The beam would graze the target.
+    #[error(
+        "the beam would meet ({:.4} m, {:.4} m) at {:.1}° from the target's normal, more than {:.0}°: the spot would \
+         be a streak", .point.x, .point.y, .incidence_rad.to_degrees(), GRAZING_RAD.to_degrees()
+    )]
+    Grazing {
+        /// The point asked for, target frame, m.
+        point: Point,
+        /// Angle between the beam and the target's normal.
+        incidence_rad: f64,
+    },
     /// A joint would have to leave its range.
     #[error(
         "({:.4} m, {:.4} m) needs {joint} at {:.2}°, its range is {:.2}° to {:.2}°",
@@ -50,6 +61,9 @@ pub struct SpotMotion {
     pub acceleration: Vec2,
 }
 
+/// Steepest angle to the target's normal at which a spot is still a spot: 80°, where it is six times as long as wide.
+const GRAZING_RAD: f64 = 80.0 * std::f64::consts::PI / 180.0;
+
 /// Joint angles and their derivatives by the same parameter as the [`SpotMotion`] they come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointPath {
@@ -73,6 +87,7 @@ impl HeadGeometry {
     /// Closed form for a laser on the axes; Newton's method from there with exact derivatives otherwise.
     pub fn angles(&self, pose: &HeadPose, point: Point) -> Result<PanTilt<f64>, AimError> {
         let mut angle = first_guess(pose, point).ok_or(AimError::Unreachable(point))?;
+        check_incidence(pose, point)?;
         if self.laser_offset_m != [0.0; 3] {
             angle = self.refine(pose, point, angle).ok_or(AimError::Unreachable(point))?;
         }
@@ -174,6 +189,13 @@ fn jets(angle: PanTilt<f64>, rate: PanTilt<f64>) -> PanTilt<Jet> {
     PanTilt::new(Jet::new(angle.pan, rate.pan, 0.0), Jet::new(angle.tilt, rate.tilt, 0.0))
 }
 
+/// From the crossing of the axes: the laser's own offset changes this by the angle it is seen under.
+fn check_incidence(pose: &HeadPose, point: Point) -> Result<(), AimError> {
+    let [x, y, z] = pose.translation();
+    let incidence_rad = (point.x - x).hypot(point.y - y).atan2(z);
+    if incidence_rad <= GRAZING_RAD { Ok(()) } else { Err(AimError::Grazing { point, incidence_rad }) }
+}
+
 /// Exact angles for a laser on the crossing of the axes.
 fn first_guess(pose: &HeadPose, point: Point) -> Option<PanTilt<f64>> {
     let [x0, y0, z0] = pose.translation();
@@ -259,6 +281,13 @@ mod tests {
         let error = head.angles(&pose, Point::new(-0.5, 0.0)).unwrap_err();
         assert!(matches!(error, AimError::BeyondLimit { joint: Joint::Pan, .. }));
         assert!(error.to_string().contains("pan at 28.67°"), "{error}");
+    }
+
+    #[test]
+    fn a_grazing_beam_is_refused() {
+        let (head, pose) = heads()[0];
+        let error = head.angles(&pose, Point::new(100.0, 0.0)).unwrap_err();
+        assert!(error.to_string().contains("at 89.5° from the target's normal"), "{error}");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_S};
 
 use crate::Config;
+use crate::limit::within;
 
 /// Reference speed over which Coulomb feedforward is faded in, rad/s: 1 mm/s on a target at 1 m. It only keeps the
 /// torque from jumping on a reference at rest.
@@ -50,7 +51,7 @@ pub(crate) fn command(config: &Config, state: &mut LawState, input: &LawInput<'_
         let axis = &config.axes[j];
         let friction = axis.friction.feedforward(rate[j], FRICTION_FADE_RAD_S);
         let volts = (inertial[j] + terms.bias_nm[j] + friction) / axis.torque_nm_per_v;
-        let limited = volts.clamp(-axis.limit_v, axis.limit_v);
+        let limited = within(volts, axis.limit_v);
         integrate(&mut state.integral, j, input.error_rad[j], volts - limited);
         limited
     })

@@ -19,6 +19,7 @@
 mod config;
 mod controller;
 mod law;
+mod limit;
 mod model;
 mod observer;
 mod player;

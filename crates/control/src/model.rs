@@ -1,3 +1,4 @@
+use crate::limit::within;
 use tracelight_rig::{Joint, PanTilt};
 
 /// The head's inertia and gravity in nine sums, `f32`; s and c are sine and cosine of tilt.
@@ -97,7 +98,7 @@ impl FrictionModel {
 
     /// Torque that keeps a motion at `rate_rad_s` going, the Coulomb part faded in over `fade_rad_s`.
     pub(crate) fn feedforward(&self, rate_rad_s: f32, fade_rad_s: f32) -> f32 {
-        let share = (rate_rad_s / fade_rad_s).clamp(-1.0, 1.0);
+        let share = within(rate_rad_s / fade_rad_s, 1.0);
         if rate_rad_s >= 0.0 {
             self.viscous_pos * rate_rad_s + share * self.coulomb_pos_nm
         } else {

@@ -9,6 +9,7 @@
 
 use tracelight_rig::{Joint, Measurement, PanTilt, TICK_S};
 
+use crate::limit::within;
 use crate::model::Terms;
 use crate::{AxisConfig, Config};
 
@@ -126,14 +127,14 @@ impl Axis {
             };
             self.observe(edge, age_s, noise * noise + blur * blur / 12.0);
         }
-        let inside = self.offset_rad.clamp(-0.5 * width, 0.5 * width);
+        let inside = within(self.offset_rad, 0.5 * width);
         if inside != self.offset_rad {
             let noise = noise + 0.05 * width;
             self.observe(inside, 0.0, noise * noise);
         }
         // whatever the model says, the joint is in its count, give or take a badly placed edge
         let most = 0.5 * width + 3.0 * noise;
-        self.offset_rad = self.offset_rad.clamp(-most, most);
+        self.offset_rad = within(self.offset_rad, most);
     }
 
     /// Kalman update: `age_s` ago the joint was at `offset_rad` ± √`variance`.

@@ -161,14 +161,14 @@ impl Player {
                 return;
             }
             self.rest = segment.sample(f32::from(segment.ticks)).map(|s| at_rest(s.position_rad));
-            self.queue[self.head] = None;
+            self.queue[self.head % QUEUE_LENGTH] = None;
             self.head = (self.head + 1) % QUEUE_LENGTH;
             self.length -= 1;
         }
     }
 
     fn current(&self) -> Option<Segment> {
-        self.queue[self.head]
+        self.queue[self.head % QUEUE_LENGTH]
     }
 }
 

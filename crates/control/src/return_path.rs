@@ -1,6 +1,7 @@
 use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_S};
 
 use crate::Config;
+use crate::limit::within;
 
 /// Share of a motor's torque the way back may use; the rest holds against gravity, friction and whoever pushes.
 const TORQUE_SHARE: f32 = 0.4;
@@ -56,7 +57,7 @@ fn step(from: &Setpoint, goal_rad: f32, most_rad_s2: f32) -> Setpoint {
     let braking = libm::sqrtf(2.0 * most_rad_s2 * left.abs());
     let wanted = braking.min(left.abs() / APPROACH_S);
     let wanted = if left < 0.0 { -wanted } else { wanted };
-    let acceleration = ((wanted - from.velocity_rad_s) / TICK_S).clamp(-most_rad_s2, most_rad_s2);
+    let acceleration = within((wanted - from.velocity_rad_s) / TICK_S, most_rad_s2);
     let velocity = from.velocity_rad_s + acceleration * TICK_S;
     Setpoint {
         position_rad: from.position_rad + 0.5 * TICK_S * (from.velocity_rad_s + velocity),

@@ -3,6 +3,7 @@
 use tracelight_rig::{Fault, Joint, Measurement, PanTilt, TICK_S};
 
 use crate::Config;
+use crate::limit::within;
 use crate::model::Terms;
 
 /// Share of Coulomb friction that must be overcome before a joint is expected to move: stiction and ripple of worn
@@ -77,5 +78,5 @@ impl Expectation {
 
 /// What of `value` lies beyond ±`threshold`.
 fn beyond(value: f32, threshold: f32) -> f32 {
-    value - value.clamp(-threshold, threshold)
+    value - within(value, threshold)
 }

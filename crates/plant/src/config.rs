@@ -1,6 +1,9 @@
 use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_rig::PanTilt;
 
+use crate::Stepper;
+use crate::friction::WornFriction;
+
 /// An incremental encoder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EncoderConfig {
@@ -70,4 +73,13 @@ pub struct PlantConfig {
     pub relay: RelayConfig,
     /// What is worse than that.
     pub wear: Wear,
+}
+
+impl PlantConfig {
+    /// The equations of motion ready to be stepped; `ripple_phase_rad` places the friction ripple of each joint.
+    pub fn stepper(&self, ripple_phase_rad: PanTilt<f64>) -> Stepper {
+        let friction =
+            PanTilt::from_fn(|j| WornFriction::new(self.friction[j], &self.wear, ripple_phase_rad[j]));
+        Stepper::new(self.bodies.lumped(), friction)
+    }
 }

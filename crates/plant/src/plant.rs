@@ -1,12 +1,11 @@
 use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, TICK_F64_S};
 
 use crate::encoder::Encoder;
-use crate::friction::WornFriction;
 use crate::light::{Relay, play};
 use crate::{JointState, PlantConfig, Stepper};
 
-/// Plant substeps in a tick. At 0.1 ms the tracing error of a whole drawing differs from that at 0.05 ms by less
-/// than 1 % (test `the_substep_is_small_enough` of the simulation crate).
+/// Plant substeps in a tick. Measured on a traced polygon: four times as many change the rms and the largest error by
+/// error by less than 0.02 % on the preset `report` and by 0.02 % on `worn`.
 const SUBSTEPS: u32 = 10;
 
 /// A simulated head: [`Head`] on the controller's side, the truth on the other.
@@ -33,16 +32,14 @@ impl Plant {
         let wear = &config.wear;
         let count_rad = config.encoder.count_rad();
         let rest = PanTilt::from_fn(|_| 0.5 * count_rad * dice.signed());
-        let friction = PanTilt::from_fn(|j| {
-            WornFriction::new(config.friction[j], wear, std::f64::consts::PI * dice.signed())
-        });
+        let ripple_phase = PanTilt::from_fn(|_| std::f64::consts::PI * dice.signed());
         let encoders = PanTilt::from_fn(|j| {
             let table = [0; 4].map(|_| wear.edge_error_counts * dice.signed());
             Encoder::new(count_rad, config.encoder.edge_stamps, table, rest[j])
         });
         let gain = |j: Joint| config.motors[j].torque_nm_per_v * (1.0 + wear.gain_spread * dice.signed());
         Self {
-            stepper: Stepper::new(config.bodies.lumped(), friction),
+            stepper: config.stepper(ripple_phase),
             torque_nm_per_v: PanTilt::from_fn(gain),
             limit_v: config.motors.map(|m| m.limit_v),
             backlash_rad: wear.backlash_rad,

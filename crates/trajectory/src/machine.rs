@@ -71,16 +71,17 @@ impl Machine {
         demands.into_iter().filter(|d| d.needed_v > d.limit_v).collect()
     }
 
-    /// Inertia alone is counted in what is needed, as the original rig's planners would have; friction and gravity
-    /// in what is possible.
+    /// Inertia and friction are counted in what is needed; gravity, which helps one way and hinders the other, in
+    /// what is possible for sure.
     fn demand(&self, joint: Joint, asked_rad_s2: f64, tilt_rad: f64) -> AccelerationDemand {
         let inertia = self.own_inertia(joint, tilt_rad);
         let motor = &self.motors[joint];
-        let held = self.lumped.gravity(tilt_rad)[joint].abs() + self.friction[joint].coulomb_pos_nm;
+        let friction = self.friction[joint].coulomb_pos_nm;
+        let held = self.lumped.gravity(tilt_rad)[joint].abs() + friction;
         AccelerationDemand {
             joint,
             asked_rad_s2,
-            needed_v: motor.volts_for(asked_rad_s2 * inertia),
+            needed_v: motor.volts_for(asked_rad_s2 * inertia + friction),
             limit_v: motor.limit_v,
             possible_rad_s2: (motor.torque_limit_nm() - held) / inertia,
         }
