@@ -269,8 +269,12 @@ mod tests {
             let joints = head.motion(&pose, &spot).unwrap();
             let h = 1e-4;
             let [m, z, p] = [-h, 0.0, h].map(|t| head.angles(&pose, at(t)).unwrap());
-            assert!(((p.pan - m.pan) / (2.0 * h) - joints.first.pan).abs() < 1e-7);
-            assert!(((p.tilt - 2.0 * z.tilt + m.tilt) / (h * h) - joints.second.tilt).abs() < 1e-6);
+            for j in Joint::BOTH {
+                let first = (p[j] - m[j]) / (2.0 * h);
+                let second = (p[j] - 2.0 * z[j] + m[j]) / (h * h);
+                assert!((first - joints.first[j]).abs() < 1e-7, "{j}");
+                assert!((second - joints.second[j]).abs() < 1e-6, "{j}");
+            }
         }
     }
 

@@ -1,4 +1,4 @@
-use tracelight_stroke::{Affine, Drawing, Point, Vec2};
+use tracelight_stroke::{Affine, Drawing, Vec2};
 
 /// The size a picture is asked to have on the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,19 +50,13 @@ impl Placement {
     pub fn place(&self, pixels: &Drawing, sheet_width: f64) -> Drawing {
         pixels.transformed(self.target_from_pixel(sheet_width))
     }
-
-    /// Corners of the placed picture on the target, m, clockwise from the pixel origin.
-    pub fn corners(&self, sheet_width: f64, sheet_height: f64) -> [Point; 4] {
-        let map = self.target_from_pixel(sheet_width);
-        [(0.0, 0.0), (sheet_width, 0.0), (sheet_width, sheet_height), (0.0, sheet_height)]
-            .map(|(u, v)| map * Point::new(u, v))
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::f64::consts::FRAC_PI_2;
+    use tracelight_stroke::Point;
 
     fn check(placement: Placement, pixel: (f64, f64), target: (f64, f64)) {
         let got = placement.target_from_pixel(640.0) * Point::new(pixel.0, pixel.1);

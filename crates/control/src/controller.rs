@@ -1,4 +1,6 @@
-use tracelight_rig::{Actuation, Command, Fault, Joint, Measurement, PanTilt, Phase, Setpoint, Telemetry};
+use tracelight_rig::{
+    Actuation, Command, Fault, Joint, Measurement, PanTilt, Phase, Segment, Setpoint, Telemetry,
+};
 
 use crate::Config;
 use crate::law::{LawInput, LawState, command};
@@ -53,7 +55,10 @@ impl Controller {
     /// and latches a fault.
     pub fn accept(&self, state: &mut State, command: Command) -> Result<(), Command> {
         match command {
-            Command::Arm => state.supervisor.arm(),
+            Command::Arm => {
+                state.player.reopen();
+                state.supervisor.arm();
+            }
             Command::Disarm => {
                 state.supervisor.disarm();
                 state.player.hold_if_started();
@@ -61,12 +66,20 @@ impl Controller {
             Command::Finish => state.player.finish(),
             Command::Append(_) if !state.player.has_room() => return Err(command),
             Command::Append(segment) => {
-                if !state.player.append(segment) {
+                if !self.in_range(&segment) || !state.player.append(segment) {
                     state.supervisor.trip(Fault::SetpointInvalid);
                 }
             }
         }
         Ok(())
+    }
+
+    /// Whether both ends of a segment lie within the joints' limits.
+    fn in_range(&self, segment: &Segment) -> bool {
+        [0.0, f32::from(segment.ticks)].into_iter().all(|n| {
+            let at = segment.sample(n);
+            Joint::BOTH.iter().all(|&j| self.config.axes[j].limits.contains(at[j].position_rad))
+        })
     }
 
     /// One tick. `measured` is what the encoders read at its start; the returned telemetry carries what to do until
@@ -118,6 +131,7 @@ impl Controller {
             position_rad,
             rate_rad_s: state.observer.rate_rad_s(),
             error_rad: PanTilt::from_fn(|j| played.setpoint[j].position_rad - position_rad[j]),
+            begun: state.player.has_begun(),
             starved: state.player.is_empty() && !state.player.is_done(),
             done: state.player.is_done(),
         }
@@ -149,7 +163,12 @@ impl Controller {
         position_rad: PanTilt<f32>,
         rate_rad_s: PanTilt<f32>,
     ) -> (PanTilt<Setpoint>, PanTilt<Setpoint>) {
-        if !matches!(state.supervisor.phase, Phase::Holding | Phase::Faulted) {
+        let stands = match state.supervisor.phase {
+            Phase::Holding | Phase::Faulted => true,
+            Phase::Dark | Phase::Armed => state.player.has_begun() && played.segment.is_some(),
+            Phase::Tracing | Phase::Done => false,
+        };
+        if !stands {
             state.way_back = None;
             return (played.setpoint, played.ahead);
         }

@@ -51,7 +51,8 @@ pub(crate) fn command(config: &Config, state: &mut LawState, input: &LawInput<'_
         let axis = &config.axes[j];
         let friction = axis.friction.feedforward(rate[j], FRICTION_FADE_RAD_S);
         let volts = (inertial[j] + terms.bias_nm[j] + friction) / axis.torque_nm_per_v;
-        let limited = within(volts, axis.limit_v);
+        // a number that is none must not become the amplifier's stop
+        let limited = if volts.is_finite() { within(volts, axis.limit_v) } else { 0.0 };
         integrate(&mut state.integral, j, input.error_rad[j], volts - limited);
         limited
     })

@@ -61,7 +61,8 @@ impl Player {
         self.length < QUEUE_LENGTH
     }
 
-    /// Appends a segment; false when it does not join the one before it in time and place.
+    /// Appends a segment; false when it does not join the one before it in time and place, comes after the last, or
+    /// says nothing of how far the head may stray.
     pub(crate) fn append(&mut self, segment: Segment) -> bool {
         let from = segment.sample(0.0).map(|s| s.position_rad);
         let (tick, place) = self.end.unwrap_or((self.tick, self.rest.map(|s| s.position_rad)));
@@ -69,7 +70,9 @@ impl Player {
         let reach = if self.end.is_some() { JOIN_RAD } else { 10.0 * JOIN_RAD };
         let near = |a: f32, b: f32| (a - b).abs() <= reach;
         let joins = segment.start_tick == tick && near(from.pan, place.pan) && near(from.tilt, place.tilt);
-        if !joins || segment.ticks == 0 || !self.has_room() {
+        let tolerable = |t: f32| t.is_finite() && t > 0.0;
+        let judged = tolerable(segment.tolerance_rad.pan) && tolerable(segment.tolerance_rad.tilt);
+        if !joins || !judged || segment.ticks == 0 || self.finished || !self.has_room() {
             return false;
         }
         self.queue[(self.head + self.length) % QUEUE_LENGTH] = Some(segment);
@@ -81,6 +84,23 @@ impl Player {
 
     pub(crate) fn finish(&mut self) {
         self.finished = true;
+    }
+
+    /// Makes ready for another job after one that is done.
+    pub(crate) fn reopen(&mut self) {
+        if self.is_done() {
+            self.tick = 0;
+            self.fraction = 0.0;
+            self.rate = 1.0;
+            self.rate_slope = 0.0;
+            self.finished = false;
+            self.end = None;
+        }
+    }
+
+    /// Whether the plan's clock has left its start.
+    pub(crate) fn has_begun(&self) -> bool {
+        self.tick > 0 || self.fraction > 0.0
     }
 
     pub(crate) const fn plan_tick(&self) -> u32 {
@@ -127,7 +147,7 @@ impl Player {
 
     /// The same for a plan that has begun; one that has not keeps its clock's full speed for its start.
     pub(crate) fn hold_if_started(&mut self) {
-        if self.tick > 0 {
+        if self.has_begun() {
             self.hold();
         }
     }

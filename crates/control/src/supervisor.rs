@@ -25,6 +25,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) position_rad: PanTilt<f32>,
     pub(crate) rate_rad_s: PanTilt<f32>,
     pub(crate) error_rad: PanTilt<f32>,
+    /// The plan's clock has left its start.
+    pub(crate) begun: bool,
     /// Segments ran out and more were promised.
     pub(crate) starved: bool,
     /// Segments ran out as announced.
@@ -67,6 +69,8 @@ impl Supervisor {
             self.trip(Fault::LimitReached);
         }
         match self.phase {
+            // a job that was disarmed on its way goes on only from where it stopped
+            Phase::Armed if at.segment.is_some() && at.begun => self.begin_hold(),
             Phase::Armed if at.segment.is_some() => self.phase = Phase::Tracing,
             Phase::Tracing if at.done => self.phase = Phase::Done,
             Phase::Tracing if at.starved => self.trip(Fault::SetpointsStale),
@@ -104,11 +108,12 @@ impl Supervisor {
         reasons.insert_if(!planned, Darkness::Planned);
         reasons.insert_if(self.phase == Phase::Dark, Darkness::Disarmed);
         reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);
-        reasons.insert_if(spot_error(at) > 1.0, Darkness::SpotError);
+        reasons.insert_if(strayed(at), Darkness::SpotError);
         reasons.insert_if(self.phase == Phase::Holding, Darkness::Holding);
         let asked = at.setpoint.map(|s| s.position_rad);
         reasons.insert_if(out_of_range(config, asked), Darkness::OutOfBounds);
-        reasons.insert_if(at.starved || at.segment.is_none(), Darkness::Stale);
+        let idle = matches!(self.phase, Phase::Armed | Phase::Done);
+        reasons.insert_if(idle || at.starved || at.segment.is_none(), Darkness::Stale);
         reasons.insert_if(self.fault.is_some(), Darkness::Faulted);
         reasons
     }
@@ -123,7 +128,8 @@ fn tolerance(at: &Situation<'_>) -> Option<PanTilt<f32>> {
 }
 
 fn beyond_tolerance(at: &Situation<'_>) -> bool {
-    tolerance(at).is_some_and(|t| at.error_rad.pan.abs() > t.pan || at.error_rad.tilt.abs() > t.tilt)
+    tolerance(at)
+        .is_some_and(|t| exceeds(at.error_rad.pan.abs(), t.pan) || exceeds(at.error_rad.tilt.abs(), t.tilt))
 }
 
 /// Distance of the spot from its setpoint as a share of what is allowed: the tolerances are the semi-axes, in joint
@@ -133,7 +139,12 @@ fn spot_error(at: &Situation<'_>) -> f32 {
 }
 
 fn strayed(at: &Situation<'_>) -> bool {
-    spot_error(at) > 1.0
+    exceeds(spot_error(at), 1.0)
+}
+
+/// Whether a value is beyond its bound; what is not a number is.
+fn exceeds(value: f32, bound: f32) -> bool {
+    value > bound || value.is_nan() || bound.is_nan()
 }
 
 fn returned(at: &Situation<'_>) -> bool {

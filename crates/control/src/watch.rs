@@ -11,8 +11,11 @@ use crate::model::Terms;
 const BREAK_AWAY_MARGIN: f32 = 1.6;
 /// Predicted motion without any edge that means the encoder is dead, counts.
 const DEAD_COUNTS: f32 = 4.0;
-/// Count change a tick over what the speed limit allows that means it jumped; noise of one edge either way is not.
+/// Count change a tick over what the fastest joint could make that means it jumped; noise of one edge either way is
+/// not.
 const JUMP_MARGIN: f32 = 1.5;
+/// Nothing turns a head of this kind faster, whatever a plan may ask, rad/s: four turns a second.
+const FASTEST_RAD_S: f32 = 24.0;
 
 /// Cautious open-loop prediction of one joint since its last edge, from the speed it had there.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,7 +49,8 @@ impl EncoderWatch {
             let axis = &config.axes[joint];
             let moved = measured[joint].count.wrapping_sub(self.counts[joint]);
             self.counts[joint] = measured[joint].count;
-            let most = 1.0 + JUMP_MARGIN * axis.limits.speed_rad_s * TICK_S / axis.count_rad;
+            let fastest = axis.limits.speed_rad_s.max(FASTEST_RAD_S);
+            let most = 1.0 + JUMP_MARGIN * fastest * TICK_S / axis.count_rad;
             if moved.unsigned_abs() as f32 > most {
                 return Some(Fault::EncoderJumped);
             }

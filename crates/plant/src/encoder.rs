@@ -41,6 +41,13 @@ impl Encoder {
     /// tick's end the substep ends, `length_ticks` how long it is.
     #[inline]
     pub(crate) fn follow(&mut self, from_rad: f64, to_rad: f64, end_age_ticks: f64, length_ticks: f64) {
+        const MOST_COUNTS: f64 = 1e3;
+        let way = (to_rad - from_rad).abs();
+        if !way.is_finite() || way > MOST_COUNTS * self.count_rad {
+            // no joint does that: equations gone wrong are not followed edge by edge
+            self.count = (to_rad / self.count_rad + 0.5).floor() as i32;
+            return;
+        }
         while to_rad >= self.lower_edge_rad(self.count + 1) {
             self.count += 1;
             self.stamp(self.lower_edge_rad(self.count), from_rad, to_rad, end_age_ticks, length_ticks);

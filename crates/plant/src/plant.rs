@@ -4,7 +4,7 @@ use crate::encoder::Encoder;
 use crate::light::{Relay, play};
 use crate::{JointState, PlantConfig, Stepper};
 
-/// Plant substeps in a tick. Measured on a traced polygon: four times as many change the rms and the largest error by
+/// Plant substeps in a tick. Measured on a traced polygon: four times as many change the rms and the largest
 /// error by less than 0.02 % on the preset `report` and by 0.02 % on `worn`.
 const SUBSTEPS: u32 = 10;
 

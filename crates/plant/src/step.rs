@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn halving_the_substep_moves_the_result_by_microradians() {
+    fn halving_the_substep_moves_a_joint_by_less_than_a_tenth_of_a_count() {
         let run = |h: f64| {
             let stepper = stepper(0.04);
             let mut state = JointState::default();

@@ -8,7 +8,7 @@ pub enum Fault {
     EncoderDead,
     /// Segments ran out in the middle of a job.
     SetpointsStale,
-    /// A segment left the joint limits or did not join the one before it.
+    /// A segment leaves the joint limits, does not join the one before it, or says nothing of its tolerance.
     SetpointInvalid,
     /// The joint itself left its limits.
     LimitReached,

@@ -52,11 +52,6 @@ impl<T> PanTilt<T> {
     pub fn map<U>(self, mut f: impl FnMut(T) -> U) -> PanTilt<U> {
         PanTilt { pan: f(self.pan), tilt: f(self.tilt) }
     }
-
-    /// Joins two quantities joint by joint.
-    pub fn zip<U>(self, other: PanTilt<U>) -> PanTilt<(T, U)> {
-        PanTilt { pan: (self.pan, other.pan), tilt: (self.tilt, other.tilt) }
-    }
 }
 
 impl<T> Index<Joint> for PanTilt<T> {

@@ -64,11 +64,12 @@ fn evaluate(c: &[f32; 6], n: f32) -> Setpoint {
 pub enum Command {
     /// Allow light. Without it every gate stays shut.
     Arm,
-    /// Forbid light and stop where the head is.
+    /// Forbid light and stop the plan's clock; the head is held where that stands. Armed again, the job goes on from
+    /// there; after its end, a new one may begin at tick 0.
     Disarm,
     /// Append a segment; it must start where and when the one before it ends.
     Append(Segment),
-    /// No further segment will come: running out of them is the end of the job, not a fault.
+    /// No further segment will come (one that does is a fault): running out of them is the end of the job, not a fault.
     Finish,
 }
 

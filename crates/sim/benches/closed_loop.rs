@@ -66,7 +66,10 @@ fn control_tick(bencher: Bencher<'_, '_>) {
         for &segment in plan.segments.iter().take(60) {
             controller.accept(&mut state, Command::Append(segment)).ok();
         }
-        measured.iter().map(|m| controller.tick(&mut state, black_box(m)).actuation.command_v.pan).sum::<f32>()
+        measured
+            .iter()
+            .map(|m| controller.tick(&mut state, black_box(m)).actuation.command_v.pan)
+            .sum::<f32>()
     });
 }
 

@@ -9,6 +9,9 @@ use tracelight_trajectory::Machine;
 
 use crate::RigConfig;
 
+/// How far past the end of its range a joint may be before that is a fault, counts.
+const RANGE_MARGIN_COUNTS: f64 = 3.0;
+
 impl RigConfig {
     /// What the planner believes, for a head standing at `pose`.
     pub fn machine(&self, pose: HeadPose) -> Machine {
@@ -38,7 +41,9 @@ impl RigConfig {
 
     fn axis(&self, joint: Joint) -> AxisConfig {
         let motor = &self.model.motors[joint];
+        // a stroke may be planned up to the very end of the range: the controller forgives what control needs
         let (lower, upper) = self.model.geometry.range_rad[joint];
+        let margin = RANGE_MARGIN_COUNTS * self.model.encoder.count_rad();
         AxisConfig {
             torque_nm_per_v: motor.torque_nm_per_v as f32,
             limit_v: motor.limit_v as f32,
@@ -46,8 +51,8 @@ impl RigConfig {
             friction: friction_model(&self.model.friction[joint]),
             gains: Gains::triple_pole(self.control.bandwidth_rad_s[joint] as f32),
             limits: JointLimits {
-                lower_rad: lower as f32,
-                upper_rad: upper as f32,
+                lower_rad: (lower - margin) as f32,
+                upper_rad: (upper + margin) as f32,
                 speed_rad_s: self.motion.speed_limit_rad_s[joint] as f32,
             },
             observer: ObserverTuning::DEFAULT,

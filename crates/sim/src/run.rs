@@ -12,7 +12,7 @@ use crate::RigConfig;
 /// Ticks a run goes on after a fault, so that the log shows what followed: 0.2 s.
 const AFTERMATH_TICKS: u32 = 200;
 
-/// Ticks a run may take beyond its plan before it is given up: many holds of the longest kind.
+/// Ticks a run may take beyond its plan and its longest hold before it is given up.
 const PATIENCE_TICKS: usize = 60_000;
 
 /// What is known of one tick after it happened: what the controller saw, and where the light really was.
@@ -53,6 +53,8 @@ pub struct SimulatedRig {
     model: HeadGeometry,
     truth: HeadGeometry,
     pose: HeadPose,
+    /// Ticks beyond a plan after which a run is given up.
+    patience_ticks: usize,
 }
 
 impl SimulatedRig {
@@ -70,6 +72,7 @@ impl SimulatedRig {
             model: config.model.geometry,
             truth: config.truth.model.geometry,
             pose,
+            patience_ticks: PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize,
         }
     }
 
@@ -171,7 +174,7 @@ pub fn run(
     let mut ticks = Vec::with_capacity(plan.points.len());
     let mut aftermath = AFTERMATH_TICKS;
     let armed = rig.send(Command::Arm).is_ok();
-    while armed && ticks.len() < plan.points.len() + PATIENCE_TICKS {
+    while armed && ticks.len() < plan.points.len() + rig.patience_ticks {
         feeder.feed(rig);
         let tick = rig.step();
         ticks.push(tick);

@@ -72,8 +72,12 @@ fn off_stroke(plan: &Plan, tick: &Tick) -> Option<f64> {
     let spot = tick.spot?;
     let at = (tick.telemetry.plan_tick as usize).min(plan.points.len().checked_sub(1)?);
     let window = &plan.points[at.saturating_sub(NEAR_TICKS)..(at + NEAR_TICKS).min(plan.points.len())];
+    // light on the way between strokes is off whichever stroke is nearest
     let stroke = plan.points[at].stroke;
-    let on_it = |i: usize| window[i].stroke == stroke && window[i + 1].stroke == stroke;
+    let on_it = |i: usize| {
+        let (from, to) = (window[i].stroke, window[i + 1].stroke);
+        from.is_some() && from == to && (stroke.is_none() || stroke == from)
+    };
     let near = (0..window.len().saturating_sub(1)).filter(|&i| on_it(i));
     let distances = near.map(|i| to_segment(spot, window[i].spot, window[i + 1].spot));
     let nearest = distances.fold(f64::INFINITY, f64::min);

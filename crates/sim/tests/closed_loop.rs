@@ -1,12 +1,18 @@
 //! The controller on the plant, through the seams only: accuracy, sameness, faults.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on may panic, and shows figures"
+)]
+
 mod shapes;
 
 use std::ops::ControlFlow;
 
 use shapes::{POSE, circle, line, plan_of, star, trace};
-use tracelight_rig::{Darkness, Fault, Joint, PanTilt, Phase};
-use tracelight_sim::{RigConfig, Run, SimulatedRig, run};
+use tracelight_rig::{Fault, Joint, PanTilt, Phase};
+use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, run};
 use tracelight_trajectory::Plan;
 
 #[test]
@@ -91,14 +97,17 @@ fn a_push_darkens_at_once_and_the_stroke_goes_on_where_it_was_left() {
             rig.push(PanTilt::default());
         }
     });
-    let strayed = |t: &tracelight_sim::Tick| {
-        t.telemetry.darkness.contains(Darkness::SpotError)
-            || t.telemetry.darkness.contains(Darkness::FollowingError)
+    // what the controller believes, on the target
+    let geometry = RigConfig::report().model.geometry;
+    let off_mm = |t: &Tick| {
+        let believed = t.telemetry.position_rad.map(f64::from);
+        1e3 * geometry.spot(&POSE, believed).unwrap().distance(t.asked.unwrap())
     };
-    let crossed = run.ticks.iter().position(strayed).unwrap();
+    let crossed = run.ticks.iter().position(|t| off_mm(t) > 3.0).unwrap();
     let dark =
-        run.ticks.iter().skip(at as usize).position(|t| !t.telemetry.actuation.gate).unwrap() + at as usize;
+        at as usize + run.ticks[at as usize..].iter().position(|t| !t.telemetry.actuation.gate).unwrap();
     assert!(dark <= crossed + 2, "crossed at {crossed}, dark at {dark}");
+    assert!(off_mm(&run.ticks[dark]) > 2.0, "not before it must");
     let relit = run.ticks.iter().skip(dark).position(|t| t.telemetry.actuation.gate).unwrap() + dark;
     assert!(relit > dark + 80, "it cannot be back while it is pushed");
     let (left, back) = (&run.ticks[dark], &run.ticks[relit]);
@@ -195,4 +204,51 @@ fn ten_seeds_draw_the_same_line() {
     }
     let spread_mm = (sum / f64::max(count, 1.0)).sqrt() * 1e3;
     assert!(spread_mm <= 0.2, "{spread_mm} mm");
+}
+
+#[test]
+fn a_segment_after_the_end_of_the_job_lights_nothing() {
+    use tracelight_rig::{Command, Rig};
+    let plan = plan_of(&RigConfig::report(), circle(0.1));
+    let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
+    run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(()));
+    let last = *plan.segments.last().unwrap();
+    let still = last.sample(f32::from(last.ticks)).map(|s| [s.position_rad, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let lit =
+        tracelight_rig::Segment { start_tick: last.end_tick(), coefficients: still, gate: true, ..last };
+    rig.send(Command::Append(lit)).unwrap();
+    assert!((0..100).all(|_| !rig.step().telemetry.actuation.gate));
+}
+
+#[test]
+fn a_segment_without_a_bound_on_its_error_is_refused() {
+    use tracelight_rig::{Command, Rig, Segment};
+    let first = plan_of(&RigConfig::report(), circle(0.1)).segments[0];
+    for bound in [f32::NAN, f32::INFINITY, 0.0] {
+        let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
+        rig.send(Command::Arm).unwrap();
+        rig.send(Command::Append(Segment { tolerance_rad: PanTilt::new(bound, 1e-3), ..first })).unwrap();
+        assert_eq!(rig.step().telemetry.fault, Some(Fault::SetpointInvalid), "{bound}");
+    }
+}
+
+#[test]
+fn a_job_disarmed_on_its_way_goes_on_dark_until_it_is_back() {
+    use tracelight_rig::{Command, Rig};
+    let plan = plan_of(&RigConfig::report(), circle(0.2));
+    let at = middle(&plan);
+    let run = disturbed(&plan, |rig, tick| {
+        if tick == at {
+            rig.send(Command::Disarm).unwrap();
+        } else if tick == at + 300 {
+            rig.send(Command::Arm).unwrap();
+        }
+    });
+    let off = at as usize + 1;
+    assert!(run.ticks[off..off + 300].iter().all(|t| !t.telemetry.actuation.gate));
+    let relit = off + run.ticks[off..].iter().position(|t| t.telemetry.actuation.gate).unwrap();
+    assert!(relit > off + 350, "it has to be still on its stroke first");
+    assert_eq!(run.ticks[relit].telemetry.plan_tick, run.ticks[off].telemetry.plan_tick);
+    assert!(run.ticks[relit].spot.unwrap().distance(run.ticks[relit].asked.unwrap()) < 0.75e-3);
+    assert_eq!(run.ticks.last().unwrap().telemetry.phase, Phase::Done);
 }

@@ -1,7 +1,7 @@
 use tracelight_aim::{AimError, HeadGeometry, HeadPose};
 use tracelight_dynamics::{Friction, Lumped, Motor};
 use tracelight_rig::{Joint, PanTilt};
-use tracelight_stroke::Point;
+use tracelight_stroke::{Point, Vec2};
 
 /// What the planner believes of head, motors and target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,10 +109,14 @@ impl Machine {
         time(Joint::Pan).max(time(Joint::Tilt))
     }
 
-    /// How far each joint may stray for the spot to stay within `tolerance_m`, rad.
+    /// How far each joint may stray for the spot to stay within `tolerance_m`, rad: semi-axes of an ellipse of joint
+    /// errors. Where the Jacobian's columns are not at right angles, that ellipse maps to one that is longer by
+    /// √(1 + |cos|) at most, so both are made smaller by it.
     pub(crate) fn joint_tolerance(&self, angle_rad: PanTilt<f64>, tolerance_m: f64) -> PanTilt<f32> {
-        let columns = self.geometry.jacobian(&self.pose, angle_rad).map(|c| c.map(|v| v.hypot()));
-        let [pan, tilt] = columns.unwrap_or([self.pose.distance_m; 2]);
-        PanTilt::new((tolerance_m / pan) as f32, (tolerance_m / tilt) as f32)
+        let right_angles = [Vec2::new(self.pose.distance_m, 0.0), Vec2::new(0.0, self.pose.distance_m)];
+        let [a, b] = self.geometry.jacobian(&self.pose, angle_rad).unwrap_or(right_angles);
+        let (pan, tilt) = (a.hypot(), b.hypot());
+        let safe_m = tolerance_m / (1.0 + (a.dot(b) / (pan * tilt)).abs()).sqrt();
+        PanTilt::new((safe_m / pan) as f32, (safe_m / tilt) as f32)
     }
 }

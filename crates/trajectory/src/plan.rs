@@ -64,6 +64,13 @@ impl Plan {
         self.points.iter().filter(|p| p.lit).count() as f64 * TICK_F64_S
     }
 
+    /// How long the head is on its way in the dark, s; rests are left out.
+    pub fn travel_s(&self) -> f64 {
+        let moving =
+            |p: &&PlanPoint| p.joints.pan.velocity_rad_s != 0.0 || p.joints.tilt.velocity_rad_s != 0.0;
+        self.points.iter().filter(|p| !p.lit).filter(moving).count() as f64 * TICK_F64_S
+    }
+
     /// Highest speed of the lit spot, m/s.
     pub fn top_speed_m_s(&self) -> f64 {
         let lit = self.points.windows(2).filter(|w| w[0].lit && w[1].lit);

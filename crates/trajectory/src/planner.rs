@@ -39,7 +39,6 @@ pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Resu
     for (index, stroke) in drawing.strokes.iter().enumerate() {
         approach(&mut plan.points, machine, request, stroke, index)?;
         draw(&mut plan, machine, request, stroke, index)?;
-        check_duration(plan.points.len() as f64 * TICK_F64_S)?;
     }
     linger(&mut plan.points, FINAL_REST_S);
     plan.segments = compress(&plan.points, machine, request.tolerance_m);
@@ -70,7 +69,9 @@ fn approach(
     let from = points.last().map_or(PanTilt::default(), |p| p.joints.map(|j| j.position_rad));
     let way = travel(machine, request.travel, from, to)?;
     points.extend(way.into_iter().map(|joints| dark(machine, joints)));
-    linger(points, request.settle_s);
+    // dark long enough for the relay to have let go before it is to hold again
+    let relay_ticks = machine.relay_on_ticks + machine.relay_off_ticks + 1;
+    linger(points, request.settle_s.max(f64::from(relay_ticks) * TICK_F64_S));
     if let Some(last) = points.last_mut() {
         *last = PlanPoint { spot: start, lit: true, stroke: Some(index as u32), ..*last };
     }
@@ -99,6 +100,7 @@ fn draw(
             tangent: end.tangent,
             length_m: leg.length_m(),
         });
+        check_duration(plan.points.len() as f64 * TICK_F64_S)?;
     }
     Ok(())
 }
@@ -119,7 +121,7 @@ fn rest(machine: &Machine, angle_rad: PanTilt<f64>) -> PlanPoint {
     dark(machine, angle_rad.map(|position_rad| JointMotion { position_rad, ..JointMotion::default() }))
 }
 
-/// A point on the way: its spot is wherever the beam points, or the last place on the target's side it could.
+/// A point on the way: its spot is wherever the beam points, the target's origin where it points away from it.
 fn dark(machine: &Machine, joints: PanTilt<JointMotion>) -> PlanPoint {
     let spot = machine.geometry.spot(&machine.pose, joints.map(|j| j.position_rad));
     assess(machine, spot.unwrap_or(Point::ORIGIN), joints, false, None)

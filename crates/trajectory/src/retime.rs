@@ -163,7 +163,10 @@ fn place_limits(machine: &Machine, joints: &JointPath, speed_m_s: f64) -> Result
     for j in Joint::BOTH {
         let torque = machine.torque_share * machine.motors[j].torque_limit_nm();
         let (a, b) = (along[j], bent[j] + swing[j] - gravity[j]);
-        for friction in friction_range(machine, j, joints.first[j] * speed_m_s) {
+        // the joint never turns faster than its limit, however fast the spot may be asked to go
+        let limit = machine.speed_limit_rad_s[j];
+        let fastest = (joints.first[j] * speed_m_s).max(-limit).min(limit);
+        for friction in friction_range(machine, j, fastest) {
             let c = gravity[j] + friction;
             if c.abs() >= torque {
                 return Err(PlanError::TooWeak { joint: j, needed_nm: c.abs(), available_nm: torque });

@@ -4,11 +4,17 @@ use crate::plan::JointMotion;
 use crate::profile::{MoveLimits, Profile};
 use crate::{Machine, PlanError, Shape};
 
+/// A dark move that takes longer means that a motor can hardly hold its joint, s.
+const LONGEST_S: f64 = 60.0;
+
+/// A shorter way is none, rad.
+const NOTHING_RAD: f64 = 1e-9;
+
 /// Both joints tick by tick along a dark move from rest to rest, the start left out, the end included.
 ///
-/// The joints are synchronised: each covers its own distance with the same profile of the shared parameter from 0 to
-/// 1. Its acceleration and deceleration limits are what the motors have left after friction, gravity and coupling
-/// *anywhere* on the move, found by shrinking them until a check of every tick's torque passes.
+/// The joints are synchronised: each covers its own distance with the same profile of the shared parameter from 0
+/// to 1. Its limits are what the motors have left after friction, gravity and coupling at any place of the move,
+/// found by shrinking them until a check of the torque of every tick passes.
 pub(crate) fn travel(
     machine: &Machine,
     shape: Shape,
@@ -16,13 +22,17 @@ pub(crate) fn travel(
     to: PanTilt<f64>,
 ) -> Result<Vec<PanTilt<JointMotion>>, PlanError> {
     let span = PanTilt::new(to.pan - from.pan, to.tilt - from.tilt);
-    if span.pan == 0.0 && span.tilt == 0.0 {
+    if span.pan.abs().max(span.tilt.abs()) < NOTHING_RAD {
         return Ok(Vec::new());
     }
     let mut limits = first_limits(machine, from, span)?;
-    // each round takes at least 3 % off: 200 rounds are a factor of 400
+    // each round takes at least 3 % off: 200 rounds are a factor of 400, and 20 in time
     for _ in 0..200 {
-        let motion = sample(&Profile::new(shape, 1.0, &limits), from, span);
+        let profile = Profile::new(shape, 1.0, &limits);
+        if !profile.duration_s().is_finite() || profile.duration_s() > LONGEST_S {
+            break;
+        }
+        let motion = sample(&profile, from, span);
         let worst = worst_fractions(machine, &motion, limits.acceleration);
         if worst.speeding_up <= machine.torque_share && worst.braking <= machine.torque_share {
             return Ok(motion);
@@ -43,7 +53,7 @@ fn first_limits(machine: &Machine, from: PanTilt<f64>, span: PanTilt<f64>) -> Re
     let mut limits = MoveLimits { speed: f64::MAX, acceleration: f64::MAX, deceleration: f64::MAX };
     for joint in Joint::BOTH {
         let share = span[joint].abs();
-        if share == 0.0 {
+        if share < NOTHING_RAD {
             continue;
         }
         let inertia = machine.own_inertia(joint, from.tilt);

@@ -1,0 +1,181 @@
+//! Whole plans: within the motors' limits, exact at the segments, honest when they cannot be.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on may panic, and shows figures"
+)]
+
+use tracelight_aim::{HeadGeometry, HeadPose};
+use tracelight_dynamics::{Friction, HeadBodies, Motor};
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
+use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
+use tracelight_trajectory::{Machine, Plan, PlanError, PlanRequest, Ramps, Shape, plan};
+
+const SPEED_M_S: f64 = 0.3048;
+
+fn machine() -> Machine {
+    let motor = |torque_nm_per_v| Motor { torque_nm_per_v, limit_v: 10.0 };
+    Machine {
+        lumped: HeadBodies::set_a().lumped(),
+        friction: PanTilt::new(Friction::symmetric(0.0009, 0.04), Friction::symmetric(0.0018, 0.058)),
+        motors: PanTilt::new(motor(0.0619), motor(0.0774)),
+        torque_share: 0.85,
+        speed_limit_rad_s: PanTilt::new(24.0, 24.0),
+        acceleration_limit_rad_s2: PanTilt::new(100.0, 100.0),
+        geometry: HeadGeometry {
+            laser_offset_m: [0.02, 0.005, 0.01],
+            range_rad: PanTilt::new((-3.1, 3.1), (-1.6, 1.6)),
+        },
+        pose: HeadPose::square_on(0.9144),
+        relay_on_ticks: 5,
+        relay_off_ticks: 3,
+    }
+}
+
+fn request(travel: Shape) -> PlanRequest {
+    PlanRequest { speed_m_s: SPEED_M_S, travel, ramp_s: 0.02, settle_s: 0.04, tolerance_m: 3e-3 }
+}
+
+fn drawing(paths: impl IntoIterator<Item = Path>) -> Drawing {
+    Drawing { strokes: paths.into_iter().map(Stroke::new).collect() }
+}
+
+fn circle(x: f64, y: f64, radius: f64) -> Path {
+    let mut path = Path::new(Point::new(x + radius, y));
+    path.push(Element::Arc { centre: Point::new(x, y), sweep: std::f64::consts::TAU });
+    path.close();
+    path
+}
+
+fn line(points: &[(f64, f64)]) -> Path {
+    let points: Vec<Point> = points.iter().map(|&p| p.into()).collect();
+    Path::polyline(&points, false).unwrap()
+}
+
+/// Tight circles, a long line, a letter-sized curve, a line of small breaks.
+fn mixed() -> Drawing {
+    let mut curl = Path::new(Point::new(0.0, -0.2));
+    curl.push(Element::Cubic {
+        c1: Point::new(0.03, -0.17),
+        c2: Point::new(-0.02, -0.16),
+        to: Point::new(0.01, -0.2),
+    });
+    let breaks: Vec<_> =
+        (0..40).map(|i| (0.01 * f64::from(i) - 0.2, 0.2 + 1e-4 * f64::from(i % 3))).collect();
+    drawing([
+        circle(-0.1, 0.1, 0.004),
+        circle(0.2, -0.1, 0.03),
+        line(&[(-0.3, 0.0), (0.3, 0.1)]),
+        curl,
+        line(&breaks),
+    ])
+}
+
+fn made(shape: Shape) -> Plan {
+    plan(&mixed(), &machine(), &request(shape)).unwrap()
+}
+
+#[test]
+fn no_plan_asks_more_than_the_motors_have() {
+    for shape in [Shape::Ramped(Ramps::NONE), Shape::Ramped(Ramps::REPORT), Shape::Sine, Shape::Sigmoid] {
+        let peak = made(shape).torque_peak_fraction();
+        assert!(0.8 < peak && peak <= 0.901, "{shape:?}: {peak}");
+    }
+}
+
+#[test]
+fn the_lit_spot_reaches_its_speed_on_the_long_line_and_never_exceeds_it() {
+    let top = made(Shape::Ramped(Ramps::REPORT)).top_speed_m_s();
+    assert!((top / SPEED_M_S - 1.0).abs() < 1e-3, "{top}");
+}
+
+#[test]
+fn position_and_speed_of_the_plan_belong_together() {
+    let plan = made(Shape::Ramped(Ramps::REPORT));
+    for pair in plan.points.windows(2) {
+        for joint in Joint::BOTH {
+            let (a, b) = (pair[0].joints[joint], pair[1].joints[joint]);
+            let mean = 0.5 * (a.velocity_rad_s + b.velocity_rad_s) * TICK_F64_S;
+            // at a small break of the tangent the speed jumps by up to 16 mrad/s somewhere within the tick
+            assert!((b.position_rad - a.position_rad - mean).abs() < 2e-5, "{joint}: {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn segments_meet_the_plan_at_every_tick() {
+    let plan = made(Shape::Ramped(Ramps::REPORT));
+    let mut next = 0;
+    for segment in &plan.segments {
+        assert_eq!(segment.start_tick, next);
+        next = segment.end_tick();
+        for n in 0..=u32::from(segment.ticks) {
+            let point = &plan.points[(segment.start_tick + n) as usize];
+            let sampled = segment.sample(n as f32);
+            for joint in Joint::BOTH {
+                let off = f64::from(sampled[joint].position_rad) - point.joints[joint].position_rad;
+                assert!(off.abs() < 1e-6, "{joint}: {off:e}");
+            }
+        }
+    }
+    assert_eq!(next as usize, plan.points.len() - 1);
+}
+
+#[test]
+fn the_gate_leads_the_light_by_the_relays_delays() {
+    let plan = made(Shape::Ramped(Ramps::REPORT));
+    let mut gate = vec![false; plan.points.len()];
+    for s in &plan.segments {
+        gate[s.start_tick as usize..s.end_tick() as usize].fill(s.gate);
+    }
+    let lit: Vec<bool> = plan.points.iter().map(|p| p.lit).collect();
+    let changes = |v: &[bool], to: bool| -> Vec<usize> {
+        (1..v.len()).filter(|&i| v[i] == to && v[i - 1] != to).collect()
+    };
+    assert_eq!(changes(&lit, true).len(), 5);
+    assert_eq!(changes(&gate, true), changes(&lit, true).iter().map(|i| i - 5).collect::<Vec<_>>());
+    assert_eq!(changes(&gate, false), changes(&lit, false).iter().map(|i| i - 3).collect::<Vec<_>>());
+}
+
+#[test]
+fn stroke_ends_are_at_rest_and_on_the_path() {
+    let plan = made(Shape::Ramped(Ramps::REPORT));
+    assert_eq!(plan.leg_ends.len(), 5);
+    for end in &plan.leg_ends {
+        let point = &plan.points[end.tick as usize];
+        assert!(point.spot.distance(end.point) < 1e-9);
+        assert!(Joint::BOTH.iter().all(|&j| point.joints[j].velocity_rad_s == 0.0));
+    }
+}
+
+#[test]
+fn a_stroke_out_of_reach_is_named() {
+    let far = line(&[(0.0, 0.0), (9.0, 0.0)]);
+    let error = plan(&drawing([circle(0.0, 0.0, 0.1), far]), &machine(), &request(Shape::Sine)).unwrap_err();
+    assert!(matches!(error, PlanError::Aim { stroke: 2, .. }), "{error}");
+}
+
+#[test]
+fn a_motor_that_cannot_hold_its_joint_is_named() {
+    let mut weak = machine();
+    weak.motors.tilt.limit_v = 2.0;
+    let error = plan(&drawing([circle(0.0, 0.0, 0.1)]), &weak, &request(Shape::Sine)).unwrap_err();
+    assert!(matches!(error, PlanError::TooWeak { joint: Joint::Tilt, .. }), "{error}");
+}
+
+#[test]
+fn nothing_to_draw_and_too_much_to_draw_are_refused_at_once() {
+    let request = request(Shape::Sine);
+    assert_eq!(plan(&Drawing::default(), &machine(), &request).unwrap_err(), PlanError::Empty);
+    let slow = PlanRequest { speed_m_s: 1e-6, ..request };
+    let error = plan(&drawing([circle(0.0, 0.0, 0.1)]), &machine(), &slow).unwrap_err();
+    assert!(matches!(error, PlanError::TooLong { .. }), "{error}");
+}
+
+#[test]
+fn the_reports_wish_needs_a_hundred_volts() {
+    let wishes = machine().impossible_wishes(0.4636);
+    let needs = |j: Joint| wishes.iter().find(|w| w.joint == j).unwrap().needed_v;
+    assert!((needs(Joint::Pan) - 123.0).abs() < 1.0 && (needs(Joint::Tilt) - 98.0).abs() < 1.0);
+}
