@@ -19,6 +19,8 @@ use crate::{Path, simplify};
 use corner::Corner;
 use samples::Samples;
 
+pub use window::Parabola;
+
 /// How [`fit`] treats its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {

@@ -14,7 +14,7 @@ mod simplify;
 mod stroke;
 
 pub use compare::{Comparison, compare, compare_polylines};
-pub use fit::{FitOptions, fit};
+pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Vec2};
 pub use order::{Effort, OrderOptions, Ordered, order};
 pub use path::{Element, Path, PathPoint, Piece};

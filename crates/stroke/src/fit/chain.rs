@@ -3,7 +3,7 @@
 use kurbo::{CubicBez, Point, Vec2};
 
 use super::cubic::{self, Ends};
-use super::window::{Parabola, turn, unit, widest};
+use super::window::{Parabola, turn, unit};
 
 /// Samples either side from which a joint's place and direction are taken: as many as lie on a parabola.
 const WINDOWS: [usize; 6] = [7, 10, 14, 20, 28, 40];
@@ -76,7 +76,7 @@ impl Row {
             let range = i.saturating_sub(half)..(i + half + 1).min(self.points.len());
             Parabola::through(range.map(|k| (self.lengths[k], self.points[k])))
         };
-        widest(WINDOWS.into_iter().map(window), self.rms)
+        Parabola::widest(WINDOWS.into_iter().map(window), self.rms)
     }
 
     /// The point strictly between two others before which this share of the weights between them lies.
@@ -124,6 +124,6 @@ pub(super) fn leaving(row: &[Point], rms: f64) -> Vec2 {
         let range = 0..(2 * half).min(lengths.len());
         Parabola::through(range.map(|k| (lengths[k], row[k])))
     };
-    let along = widest(WINDOWS.into_iter().map(window), rms);
+    let along = Parabola::widest(WINDOWS.into_iter().map(window), rms);
     along.map_or_else(|| unit(row[row.len() - 1] - row[0]), |p| p.tangent(0.0))
 }

@@ -4,13 +4,13 @@ use kurbo::{Point, Vec2};
 
 /// A parabola x(s), y(s) through samples by least squares; `s` is arc length.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Parabola {
+pub struct Parabola {
     origin: f64,
     at: Point,
     slope: Vec2,
     bend: Vec2,
     /// Root mean square distance of the samples from it.
-    pub(super) rms: f64,
+    pub rms: f64,
 }
 
 /// A bend is believed when it takes away more than this times the variance that stays: 3 standard errors.
@@ -20,7 +20,7 @@ impl Parabola {
     /// Through samples at arc lengths `s`, by orthogonal polynomials; `None` for fewer than two.
     ///
     /// A bend that noise explains as well is left out: extrapolated, it would do more harm than good.
-    pub(super) fn through(samples: impl Iterator<Item = (f64, Point)> + Clone) -> Option<Self> {
+    pub fn through(samples: impl Iterator<Item = (f64, Point)> + Clone) -> Option<Self> {
         let n = samples.clone().count() as f64;
         let origin = samples.clone().map(|(s, _)| s).sum::<f64>() / n;
         let mean = samples.clone().map(|(_, p)| p.to_vec2()).sum::<Vec2>() / n;
@@ -48,29 +48,29 @@ impl Parabola {
         Some(Self { origin, at: (mean - bend * shift).to_point(), slope: slope - bend * tilt, bend, rms })
     }
 
+    /// The parabola of the widest window that still is one: windows of growing size are tried until the samples are
+    /// further than `rms` from it. The first is taken as it is.
+    pub fn widest(windows: impl Iterator<Item = Option<Self>>, rms: f64) -> Option<Self> {
+        let mut best: Option<Self> = None;
+        for parabola in windows.map_while(|p| p) {
+            if best.is_some() && parabola.rms > rms {
+                break;
+            }
+            best = Some(parabola);
+        }
+        best
+    }
+
     /// Place at arc length `s`.
-    pub(super) fn point(&self, s: f64) -> Point {
+    pub fn point(&self, s: f64) -> Point {
         let u = s - self.origin;
         self.at + self.slope * u + self.bend * (u * u)
     }
 
     /// Unit direction at arc length `s`; zero where there is none.
-    pub(super) fn tangent(&self, s: f64) -> Vec2 {
+    pub fn tangent(&self, s: f64) -> Vec2 {
         unit(self.slope + self.bend * (2.0 * (s - self.origin)))
     }
-}
-
-/// The parabola of the widest window that still is one: windows of growing size are tried until the samples are
-/// further than `rms` from it. The first is taken as it is.
-pub(super) fn widest(windows: impl Iterator<Item = Option<Parabola>>, rms: f64) -> Option<Parabola> {
-    let mut best: Option<Parabola> = None;
-    for parabola in windows.map_while(|p| p) {
-        if best.is_some() && parabola.rms > rms {
-            break;
-        }
-        best = Some(parabola);
-    }
-    best
 }
 
 /// A vector of length one, or zero.

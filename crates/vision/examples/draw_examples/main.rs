@@ -1,0 +1,73 @@
+//! Draws the pictures of `examples/` and writes down exactly what it drew.
+//!
+//! ```text
+//! cargo run --release -p tracelight-vision --example draw_examples -- examples
+//! ```
+//!
+//! Each picture is strokes first; pixels and truth both come from those strokes, so that a tracer can be scored
+//! against what the pen did and not against what another program saw. Equal code, equal bytes.
+
+mod boat;
+mod canvas;
+mod cat;
+mod figures;
+mod grain;
+mod hello;
+mod house;
+mod pen;
+mod ruler;
+mod sheet;
+mod spline;
+mod truth;
+
+use std::{error::Error, fs, path::Path};
+
+use canvas::Canvas;
+use sheet::Sheet;
+use tracelight_stroke::Drawing;
+
+/// Size of a picture, pixels.
+const SIZE: [usize; 2] = [640, 480];
+
+/// Chords of a flattened curve stay this close to it, pixels: both in the picture and in the truth.
+const TOLERANCE_PX: f64 = 0.01;
+
+/// What is drawn, on what.
+struct Picture {
+    name: &'static str,
+    drawing: Drawing,
+    sheet: Sheet,
+}
+
+fn pictures() -> [Picture; 6] {
+    [
+        Picture { name: "star", drawing: figures::star(), sheet: Sheet::WHITE },
+        Picture { name: "shapes", drawing: figures::shapes(), sheet: Sheet::WHITE },
+        Picture { name: "house", drawing: house::house(), sheet: Sheet::PAPER },
+        Picture { name: "silhouette", drawing: cat::cat(), sheet: Sheet::WHITE },
+        Picture { name: "handwriting", drawing: hello::hello(), sheet: Sheet::WHITE },
+        Picture { name: "chalk", drawing: boat::boat(), sheet: Sheet::BOARD },
+    ]
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder =
+        std::env::args_os().nth(1).ok_or("name the folder for the pictures, for example `examples`")?;
+    let folder = Path::new(&folder);
+    fs::create_dir_all(folder.join("truth"))?;
+    for picture in pictures() {
+        let coverage = Canvas::inked(SIZE, &picture.drawing);
+        let truth = truth::of_drawing(SIZE, &picture.drawing);
+        save(folder, picture.name, &picture.sheet.png(&coverage)?, &truth)?;
+    }
+    for ruler in ruler::RULERS {
+        save(folder, ruler.name, &ruler.png()?, &truth::of_marks(ruler.marks()))?;
+    }
+    Ok(())
+}
+
+fn save(folder: &Path, name: &str, png: &[u8], truth: &str) -> Result<(), Box<dyn Error>> {
+    fs::write(folder.join(name).with_extension("png"), png)?;
+    fs::write(folder.join("truth").join(name).with_extension("json"), truth)?;
+    Ok(())
+}

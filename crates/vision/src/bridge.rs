@@ -1,0 +1,165 @@
+//! What the pen did where its line cannot be seen: between two ends that belong together.
+
+use tracelight_stroke::{Parabola, Point, Vec2};
+
+/// Points from a line's end on of which its direction there is taken: as many as lie on a parabola.
+const WINDOWS: [usize; 6] = [6, 9, 13, 19, 28, 40];
+/// How far points of one parabola are from it, px, root mean square.
+const ON_PARABOLA_PX: f64 = 0.06;
+/// A pair that turns more than this is a corner, less a bend, rad (25°).
+const CORNER_RAD: f64 = 25.0 / 180.0 * std::f64::consts::PI;
+
+/// The end of a row of points and the direction out of it (a unit vector, or zero for a single point).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tip {
+    pub(crate) at: Point,
+    pub(crate) along: Vec2,
+    /// The row's curve; arc length from the tip grows into the row.
+    curve: Option<Parabola>,
+}
+
+impl Tip {
+    /// Of a row's first (`end` 0) or last point; `None` for no points.
+    pub(crate) fn of(points: &[Point], end: usize) -> Option<Self> {
+        let n = points.len();
+        let at = |k: usize| points[if end == 0 { k } else { n - 1 - k }];
+        let mut lengths = vec![0.0];
+        for k in 1..n.min(WINDOWS[WINDOWS.len() - 1]) {
+            lengths.push(lengths[k - 1] + at(k).distance(at(k - 1)));
+        }
+        let window = |size: usize| Parabola::through((0..size.min(lengths.len())).map(|k| (lengths[k], at(k))));
+        let curve = (n > 0).then(|| Parabola::widest(WINDOWS.into_iter().map(window), ON_PARABOLA_PX))?;
+        Some(Self { at: at(0), along: curve.map_or(Vec2::ZERO, |c| -c.tangent(0.0)), curve })
+    }
+
+    /// A lone point, without direction.
+    pub(crate) const fn single(at: Point) -> Self {
+        Self { at, along: Vec2::ZERO, curve: None }
+    }
+
+    /// Where the row's curve is, and where it leads, `ahead` of the tip.
+    fn beyond(&self, ahead: f64) -> (Point, Vec2) {
+        let on = |c: Parabola| (c.point(-ahead), -c.tangent(-ahead));
+        self.curve.map_or((self.at + self.along * ahead, self.along), on)
+    }
+
+    /// How far ahead of this tip and of another their curves meet; `None` where they run side by side.
+    fn meets(&self, other: &Tip) -> Option<(f64, f64)> {
+        let (mut s, mut t) = (0.0, 0.0);
+        // tangents are intersected, and taken again at the meeting point
+        for _ in 0..4 {
+            let ((a, u), (b, v)) = (self.beyond(s), other.beyond(t));
+            let cross = u.cross(v);
+            if cross.abs() < 0.14 {
+                return None;
+            }
+            s += (b - a).cross(v) / cross;
+            t += (b - a).cross(u) / cross;
+        }
+        Some((s, t))
+    }
+
+    /// How much a line turns on its way from this tip to another: from this one's direction to the way over, and on
+    /// to the other's, rad. For an offset pair that is more than the angle between the two.
+    pub(crate) fn bend(&self, other: &Tip) -> f64 {
+        let over = other.at - self.at;
+        if over.hypot() < 0.5 {
+            return self.turn(other).abs();
+        }
+        angle(self.along, over).abs() + angle(over, -other.along).abs()
+    }
+
+    /// Whether lines from here to `other` and from `across` to `beyond` are two that cross: neither bends by `most`
+    /// and the ways over cut each other.
+    pub(crate) fn crosses(&self, other: &Tip, across: &Tip, beyond: &Tip, most: f64) -> bool {
+        let (way, cut) = (other.at - self.at, beyond.at - across.at);
+        let side = |p: Point| way.cross(p - self.at);
+        let flank = |p: Point| cut.cross(p - across.at);
+        let parted = side(across.at) * side(beyond.at) < 0.0 && flank(self.at) * flank(other.at) < 0.0;
+        parted && self.bend(other) < most && across.bend(beyond) < most
+    }
+
+    /// Angle between the direction out of here and the one into the other, rad.
+    fn turn(&self, other: &Tip) -> f64 {
+        angle(self.along, -other.along)
+    }
+
+    /// Points about 1 px apart from this tip to another, without the two: a smooth curve, or a corner where their
+    /// lines meet. A corner within 1.5 px of one of the points `near` is put there.
+    pub(crate) fn bridge(&self, other: &Tip, near: impl Iterator<Item = Point>) -> Vec<Point> {
+        let over = other.at - self.at;
+        let far = 2.0 * over.hypot() + 4.0;
+        let ahead = |s: f64| (-1.0..far).contains(&s);
+        match self.meets(other).filter(|&(s, t)| ahead(s) && ahead(t) && self.turn(other).abs() >= CORNER_RAD) {
+            Some((s, t)) => {
+                let corner = self.beyond(s).0;
+                let nearest = near.min_by(|p, q| p.distance(corner).total_cmp(&q.distance(corner)));
+                let corner = nearest.filter(|p| p.distance(corner) < 1.5).unwrap_or(corner);
+                let steps = |length: f64| 1..=(length - 0.5).max(0.0) as usize;
+                let out = steps(s).map(|k| self.beyond(k as f64).0);
+                let back = steps(t).rev().map(|k| other.beyond(k as f64).0);
+                out.chain([corner]).chain(back).collect()
+            }
+            None => {
+                let steps = over.hypot().round().max(1.0) as usize;
+                let (from, to) = (self.along * over.hypot(), -other.along * over.hypot());
+                (1..steps).map(|k| hermite(self.at, from, other.at, to, k as f64 / steps as f64)).collect()
+            }
+        }
+    }
+}
+
+fn angle(a: Vec2, b: Vec2) -> f64 {
+    a.cross(b).atan2(a.dot(b))
+}
+
+/// The place nearest to all tips' lines; `None` where they are nearly parallel.
+pub(crate) fn meeting(tips: &[Tip]) -> Option<Point> {
+    let (mut xx, mut xy, mut yy, mut x, mut y) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let origin = tips.first()?.at;
+    for tip in tips {
+        // the projector across the line, 1 − u uᵀ
+        let (u, p) = (tip.along, tip.at - origin);
+        let (a, b, c) = (1.0 - u.x * u.x, -u.x * u.y, 1.0 - u.y * u.y);
+        (xx, xy, yy) = (xx + a, xy + b, yy + c);
+        (x, y) = (x + a * p.x + b * p.y, y + b * p.x + c * p.y);
+    }
+    // sin² of the angle between two lines: under 8° they meet nowhere in particular
+    let determinant = xx * yy - xy * xy;
+    let met = Vec2::new(x * yy - y * xy, xx * y - xy * x) / determinant;
+    (determinant > 0.02).then(|| origin + met)
+}
+
+/// Cubic Hermite interpolation between two places with their derivatives.
+fn hermite(p: Point, u: Vec2, q: Point, v: Vec2, t: f64) -> Point {
+    let s = 1.0 - t;
+    let at = p.to_vec2() * (s * s * (1.0 + 2.0 * t)) + q.to_vec2() * (t * t * (3.0 - 2.0 * t));
+    (at + u * (t * s * s) - v * (t * t * s)).to_point()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(from: (f64, f64), to: (f64, f64)) -> Vec<Point> {
+        (0..=20).map(|k| Point::from(from).lerp(to.into(), f64::from(k) / 20.0)).collect()
+    }
+
+    #[test]
+    fn two_ends_that_meet_at_an_angle_make_a_corner() {
+        let (a, b) = (row((0.0, 0.0), (20.0, 0.0)), row((25.0, 6.0), (25.0, 30.0)));
+        let (tip, start) = (Tip::of(&a, 1).unwrap(), Tip::of(&b, 0).unwrap());
+        let bridge = tip.bridge(&start, std::iter::empty());
+        let off = |p: &Point| p.distance(Point::new(25.0, 0.0));
+        assert!(bridge.iter().map(off).fold(f64::INFINITY, f64::min) < 1e-9, "{bridge:?}");
+        assert!(bridge.iter().all(|p| p.x == 25.0 || p.y == 0.0));
+    }
+
+    #[test]
+    fn two_ends_on_one_line_are_joined_straight() {
+        let (a, b) = (row((0.0, 0.0), (20.0, 10.0)), row((30.0, 15.0), (60.0, 30.0)));
+        let bridge = Tip::of(&a, 1).unwrap().bridge(&Tip::of(&b, 0).unwrap(), std::iter::empty());
+        assert_eq!(bridge.len(), 10);
+        assert!(bridge.iter().all(|p| (p.y - 0.5 * p.x).abs() < 1e-9));
+    }
+}

@@ -1,0 +1,108 @@
+use thiserror::Error;
+
+/// Why an image gives no strokes. The message says which figure failed, its value, its bound, and what to do.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum VisionError {
+    /// Number of levels and size do not agree.
+    #[error("an image of {width} × {height} px needs width × height levels, not {levels}")]
+    Levels {
+        /// Pixels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Levels given.
+        levels: usize,
+    },
+    /// Too few pixels for a drawing.
+    #[error("the image is {width} × {height} px; a drawing needs at least {least} px either way: use a larger picture")]
+    TooSmall {
+        /// Pixels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Least of either.
+        least: usize,
+    },
+    /// Ink and paper are of nearly the same brightness.
+    #[error(
+        "contrast between ink and paper is {contrast:.1} % and must be at least {least:.1} %: use a darker pen, more \
+         light, or crop the picture to the drawing"
+    )]
+    NoContrast {
+        /// Mean brightness of the ink below that of the paper, % of the paper's.
+        contrast: f64,
+        /// Its bound.
+        least: f64,
+    },
+    /// Brightness varies without drawing anything.
+    #[error(
+        "contrast is {ratio:.1} times the picture's noise and must be at least {least:.1} times: this looks like \
+         noise, not like a drawing; use more light, or blur the picture first"
+    )]
+    Noise {
+        /// Contrast over the standard deviation within the paper.
+        ratio: f64,
+        /// Its bound.
+        least: f64,
+    },
+    /// Everything dark is small enough to be dust.
+    #[error(
+        "the largest patch of ink has {largest_px} px and dust has up to {least_px} px here: there is nothing to \
+         draw; use a larger drawing or a thicker pen"
+    )]
+    NoInk {
+        /// Pixels of the largest patch.
+        largest_px: usize,
+        /// Pixels a patch must have.
+        least_px: usize,
+    },
+    /// The sweep found no white pixel all round.
+    #[error(
+        "sweep: at step {step}, pixel ({x:.0}, {y:.0}), no ink at {radius:.0} px in any direction; it needs one closed \
+         figure without breaks: use --mode auto"
+    )]
+    SweepLost {
+        /// Steps done before.
+        step: usize,
+        /// Where, px.
+        x: f64,
+        /// Where, px.
+        y: f64,
+        /// Length of a step, px.
+        radius: f64,
+    },
+    /// The sweep never came back to its start.
+    #[error(
+        "sweep: not back at its start ({x:.0}, {y:.0}) after {steps} steps, more than the figure's ink allows; it \
+         needs one closed figure without crossings or hollows: use --mode auto"
+    )]
+    SweepEndless {
+        /// Where it started, px.
+        x: f64,
+        /// Where it started, px.
+        y: f64,
+        /// Steps done.
+        steps: usize,
+    },
+    /// Not two ruler marks.
+    #[error(
+        "found {found} marks of one size on the ruler and need 2: use two like tapes, dark on a light ruler or light \
+         on a dark one, and crop the picture to the ruler"
+    )]
+    Marks {
+        /// Marks found.
+        found: usize,
+    },
+    /// The marks lie on a slant.
+    #[error(
+        "the line through the two marks is {slant_deg:.1}° off upright or level and may be at most {most_deg:.0}°: \
+         hold the ruler straight"
+    )]
+    Slant {
+        /// Angle to the nearer of upright and level, degrees.
+        slant_deg: f64,
+        /// Its bound.
+        most_deg: f64,
+    },
+}

@@ -1,0 +1,254 @@
+//! The skeleton as a graph: branches of pixels between nodes.
+
+use tracelight_stroke::{Point, Vec2};
+
+use crate::plane::Plane;
+use crate::ridge::median;
+use crate::thin::Skeleton;
+
+/// A line of skeleton pixels between two nodes, or an end, or round in a ring.
+#[derive(Clone, Debug)]
+pub(crate) struct Branch {
+    /// Centres of its pixels; without those of its nodes.
+    pub(crate) points: Vec<Point>,
+    /// Distance of each to the paper's edge, px.
+    pub(crate) radii: Vec<f64>,
+    /// Node at either end; `None` is a free end.
+    pub(crate) nodes: [Option<usize>; 2],
+    /// Whether it returns to its own first point.
+    pub(crate) ring: bool,
+}
+
+impl Branch {
+    /// Length from first to last point, px.
+    pub(crate) fn length(&self) -> f64 {
+        self.points.windows(2).map(|w| w[0].distance(w[1])).sum()
+    }
+
+    /// The same branch from its other end.
+    fn reversed(mut self) -> Self {
+        self.points.reverse();
+        self.radii.reverse();
+        self.nodes.reverse();
+        self
+    }
+
+    /// The ring of a branch whose ends both are at `node`.
+    fn closed_at(mut self, node: Node) -> Self {
+        self.points.push(node.at);
+        self.radii.push(node.radius);
+        Self { nodes: [None; 2], ring: true, ..self }
+    }
+
+    /// This branch, which ends at `node`, and `tail`, which begins there.
+    fn joined_at(mut self, node: Node, tail: Self) -> Self {
+        self.points.push(node.at);
+        self.radii.push(node.radius);
+        self.points.extend(tail.points);
+        self.radii.extend(tail.radii);
+        Self { nodes: [self.nodes[0], tail.nodes[1]], ..self }
+    }
+}
+
+/// Where branches meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node {
+    pub(crate) at: Point,
+    /// Distance to the paper's edge, px.
+    pub(crate) radius: f64,
+}
+
+/// Branches and nodes of one patch of ink.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Graph {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) branches: Vec<Branch>,
+}
+
+/// Marks on skeleton pixels while a graph is read.
+const SEEN: u8 = 2;
+
+impl Graph {
+    /// Reads the graph off a skeleton; `pixels` are the region's skeleton pixels (indices with margin), which are
+    /// marked as seen. `distance` is that of the image without margin.
+    pub(crate) fn read(skeleton: &mut Skeleton, pixels: &[usize], distance: &Plane<f32>) -> Self {
+        let mut reader = Reader { skeleton, distance, graph: Self::default(), node_of: Vec::new() };
+        reader.nodes(pixels);
+        reader.branches(pixels);
+        reader.rings(pixels);
+        reader.graph.widen_nodes();
+        reader.graph
+    }
+
+    /// Gives each node the widest ink near it: thinning sets forks at acute angles off the middle.
+    fn widen_nodes(&mut self) {
+        const NEAR: usize = 4;
+        for branch in &self.branches {
+            let first = branch.radii.iter().take(NEAR).copied().fold(0.0, f64::max);
+            let last = branch.radii.iter().rev().take(NEAR).copied().fold(0.0, f64::max);
+            for (node, radius) in branch.nodes.iter().zip([first, last]) {
+                if let Some(node) = node {
+                    self.nodes[*node].radius = self.nodes[*node].radius.max(radius);
+                }
+            }
+        }
+    }
+
+    /// Half the pen's width as the median along all branches, px.
+    pub(crate) fn pen_radius(&self) -> f64 {
+        median(&self.branches.iter().flat_map(|b| b.radii.iter().copied()).collect::<Vec<_>>())
+    }
+
+    /// The ends of branches at each node: (branch, which end).
+    pub(crate) fn ends_at_nodes(&self) -> Vec<Vec<(usize, usize)>> {
+        let mut at = vec![Vec::new(); self.nodes.len()];
+        for (b, branch) in self.branches.iter().enumerate() {
+            for (end, node) in branch.nodes.iter().enumerate() {
+                node.iter().for_each(|&n| at[n].push((b, end)));
+            }
+        }
+        at
+    }
+
+    /// Joins the branches at nodes where only two ends are left, through the node's own place.
+    pub(crate) fn join_pairs(&mut self) {
+        let mut at = self.ends_at_nodes();
+        let mut slots: Vec<Option<Branch>> = std::mem::take(&mut self.branches).into_iter().map(Some).collect();
+        for node in 0..self.nodes.len() {
+            let [(a, end), (b, other)] = at[node][..] else { continue };
+            let Some(first) = slots[a].take() else { continue };
+            let first = if end == 1 { first } else { first.reversed() };
+            let joined = match slots[b].take() {
+                None => first.closed_at(self.nodes[node]),
+                Some(second) => {
+                    first.joined_at(self.nodes[node], if other == 0 { second } else { second.reversed() })
+                }
+            };
+            for (k, far) in joined.nodes.iter().enumerate().filter_map(|(k, far)| Some((k, (*far)?))) {
+                let old = if k == 0 { (a, 1 - end) } else { (b, 1 - other) };
+                at[far].iter_mut().filter(|e| **e == old).for_each(|e| *e = (a, k));
+            }
+            slots[a] = Some(joined);
+        }
+        self.branches = slots.into_iter().flatten().collect();
+    }
+}
+
+struct Reader<'a> {
+    skeleton: &'a mut Skeleton,
+    distance: &'a Plane<f32>,
+    graph: Graph,
+    /// Node pixels and their nodes, sorted by pixel.
+    node_of: Vec<(usize, usize)>,
+}
+
+impl Reader<'_> {
+    fn is_node(&self, i: usize) -> bool {
+        self.skeleton.neighbours(i).count() > 2
+    }
+
+    fn node(&self, i: usize) -> Option<usize> {
+        let found = self.node_of.binary_search_by_key(&i, |&(pixel, _)| pixel).ok()?;
+        Some(self.node_of[found].1)
+    }
+
+    fn seen(&self, i: usize) -> bool {
+        self.skeleton.ink.values[i] & SEEN != 0
+    }
+
+    fn see(&mut self, i: usize) {
+        self.skeleton.ink.values[i] |= SEEN;
+    }
+
+    fn centre(&self, i: usize) -> Point {
+        self.distance.centre(self.skeleton.without_margin(i))
+    }
+
+    /// Distance to the edge of the ink: half a pixel less than to the next pixel's centre.
+    fn radius(&self, i: usize) -> f64 {
+        f64::from(self.distance.values[self.skeleton.without_margin(i)]) - 0.5
+    }
+
+    /// Pixels with three neighbours and more, those that touch as one node.
+    fn nodes(&mut self, pixels: &[usize]) {
+        for &start in pixels {
+            if self.seen(start) || !self.is_node(start) {
+                continue;
+            }
+            let mut cluster = vec![start];
+            self.see(start);
+            let mut next = 0;
+            while let Some(&i) = cluster.get(next) {
+                let more: Vec<usize> = self.skeleton.neighbours(i).collect();
+                for k in more {
+                    if !self.seen(k) && self.is_node(k) {
+                        self.see(k);
+                        cluster.push(k);
+                    }
+                }
+                next += 1;
+            }
+            let node = self.graph.nodes.len();
+            self.node_of.extend(cluster.iter().map(|&i| (i, node)));
+            let middle = cluster.iter().map(|&i| self.centre(i).to_vec2()).sum::<Vec2>() / cluster.len() as f64;
+            let radius = cluster.iter().map(|&i| self.radius(i)).fold(0.0, f64::max);
+            self.graph.nodes.push(Node { at: middle.to_point(), radius });
+        }
+        self.node_of.sort_unstable();
+    }
+
+    /// Walks from every node's and every free end's neighbours.
+    fn branches(&mut self, pixels: &[usize]) {
+        let node_pixels = self.node_of.clone();
+        for (i, node) in node_pixels {
+            let starts: Vec<usize> = self.skeleton.neighbours(i).collect();
+            for start in starts {
+                if !self.seen(start) {
+                    self.walk(start, Some(node));
+                }
+            }
+        }
+        for &i in pixels {
+            if !self.seen(i) && self.skeleton.neighbours(i).count() <= 1 {
+                self.walk(i, None);
+            }
+        }
+    }
+
+    fn rings(&mut self, pixels: &[usize]) {
+        for &i in pixels {
+            if !self.seen(i) {
+                self.walk(i, None);
+                if let Some(branch) = self.graph.branches.last_mut() {
+                    branch.ring = branch.points.len() > 2;
+                }
+            }
+        }
+    }
+
+    /// Follows unseen pixels from `start` until there is none; a node beside the last one ends the branch.
+    fn walk(&mut self, start: usize, from: Option<usize>) {
+        let mut chain = vec![start];
+        self.see(start);
+        let mut at = start;
+        let onward = |reader: &Self, at| reader.skeleton.neighbours(at).find(|&k| !reader.seen(k));
+        while let Some(next) = onward(self, at) {
+            self.see(next);
+            chain.push(next);
+            at = next;
+        }
+        let beside: Vec<usize> = self.skeleton.neighbours(at).filter_map(|k| self.node(k)).collect();
+        // a single pixel between two nodes touches both: the one it came from is not its end too
+        let end = if chain.len() == 1 {
+            beside.iter().copied().find(|&n| Some(n) != from)
+        } else {
+            beside.first().copied()
+        };
+        self.graph.branches.push(Branch {
+            points: chain.iter().map(|&i| self.centre(i)).collect(),
+            radii: chain.iter().map(|&i| self.radius(i)).collect(),
+            nodes: [from, end],
+            ring: false,
+        });
+    }
+}

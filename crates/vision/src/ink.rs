@@ -1,0 +1,278 @@
+//! What is ink: polarity, even light, noise, threshold, and the gate that refuses a bad picture.
+
+use crate::light::{Paper, percentile};
+use crate::plane::Plane;
+use crate::{Grey, VisionError};
+
+/// Least difference between mean ink and mean paper, % of the paper's brightness: 20 levels of 255.
+const LEAST_CONTRAST_PERCENT: f64 = 8.0;
+
+/// Least contrast over the deviation within the paper. Splitting noise at its best threshold gives 2.7 (normal) to
+/// 3.5 (uniform) whatever its strength; a webcam's picture of a faint drawing gives 6 and more.
+const LEAST_CONTRAST_TO_NOISE: f64 = 4.5;
+
+/// Noise from which on the picture is smoothed, levels.
+const SMOOTHED_FROM: f64 = 2.5;
+
+/// Figures of an image's quality.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// Mean ink against mean paper, % of the paper's brightness.
+    pub contrast_percent: f64,
+    /// Contrast over the standard deviation within the paper.
+    pub contrast_to_noise: f64,
+    /// Standard deviation of the image's pixel noise, levels of 255.
+    pub noise_levels: f64,
+    /// Darkest paper over brightest: 1 is even light.
+    pub light_evenness: f64,
+    /// Share of the picture that is ink, %.
+    pub ink_percent: f64,
+    /// Whether the ink is lighter than the paper.
+    pub light_on_dark: bool,
+}
+
+/// An image with its light and polarity evened out.
+#[derive(Clone, Debug)]
+pub(crate) struct Ink {
+    /// 0 is paper, 255 total darkness.
+    pub(crate) darkness: Plane<u8>,
+    /// Ink is darker than this.
+    pub(crate) threshold: u8,
+    /// Pixels averaged into one, either way.
+    pub(crate) reduction: usize,
+    pub(crate) quality: Quality,
+}
+
+impl Ink {
+    /// Finds the ink of an image and refuses one that has none.
+    pub(crate) fn of(image: &Grey) -> Result<Self, VisionError> {
+        let reduction = image.reduction();
+        let mut plane = if reduction > 1 { image.reduced(reduction) } else { image.plane.clone() };
+        let light_on_dark = is_light_on_dark(&plane);
+        if light_on_dark {
+            plane.values.iter_mut().for_each(|v| *v = 255 - *v);
+        }
+        let paper = Paper::of(&plane);
+        let mut darkness = paper.darkness(&plane);
+        let noise_levels = noise(&darkness);
+        if noise_levels > SMOOTHED_FROM {
+            darkness = smoothed(&darkness);
+        }
+        let split = Split::of(&histogram(&darkness));
+        let (dimmest, brightest) = paper.range();
+        let quality = Quality {
+            contrast_percent: (split.ink - split.paper) / 2.55,
+            contrast_to_noise: (split.ink - split.paper) / split.paper_deviation.max(0.5),
+            noise_levels,
+            light_evenness: dimmest / brightest,
+            ink_percent: 100.0 * split.share,
+            light_on_dark,
+        };
+        gate(&quality)?;
+        Ok(Self { darkness, threshold: split.threshold, reduction, quality })
+    }
+
+    /// 1 where there is ink.
+    pub(crate) fn mask(&self) -> Plane<u8> {
+        let values = self.darkness.values.iter().map(|&d| u8::from(d > self.threshold)).collect();
+        Plane { values, ..self.darkness }
+    }
+}
+
+fn gate(quality: &Quality) -> Result<(), VisionError> {
+    let &Quality { contrast_percent: contrast, contrast_to_noise: ratio, .. } = quality;
+    if contrast < LEAST_CONTRAST_PERCENT {
+        return Err(VisionError::NoContrast { contrast, least: LEAST_CONTRAST_PERCENT });
+    }
+    if ratio < LEAST_CONTRAST_TO_NOISE {
+        return Err(VisionError::Noise { ratio, least: LEAST_CONTRAST_TO_NOISE });
+    }
+    Ok(())
+}
+
+pub(crate) fn histogram(plane: &Plane<u8>) -> [u32; 256] {
+    let mut histogram = [0u32; 256];
+    plane.values.iter().for_each(|&v| histogram[usize::from(v)] += 1);
+    histogram
+}
+
+/// A histogram cut in two.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Split {
+    /// Highest level of the lower class.
+    pub(crate) threshold: u8,
+    /// Mean of the lower class.
+    pub(crate) paper: f64,
+    /// Mean of the upper class.
+    pub(crate) ink: f64,
+    /// Standard deviation of the lower class.
+    paper_deviation: f64,
+    /// Share of the upper class.
+    share: f64,
+}
+
+impl Split {
+    /// Where the variance between the classes is largest (Otsu, "A threshold selection method from gray-level
+    /// histograms", 1979); in the middle of a stretch where it is.
+    pub(crate) fn of(histogram: &[u32; 256]) -> Self {
+        let moments = |range: std::ops::Range<usize>| {
+            range.fold((0.0, 0.0, 0.0), |(n, sum, square), level| {
+                let (count, v) = (f64::from(histogram[level]), level as f64);
+                (n + count, sum + count * v, square + count * v * v)
+            })
+        };
+        let (all, total, _) = moments(0..256);
+        let (mut n, mut sum) = (0.0, 0.0);
+        let (mut best, mut first, mut last) = (0.0, 0, 0);
+        for (level, &count) in histogram.iter().enumerate().take(255) {
+            n += f64::from(count);
+            sum += f64::from(count) * level as f64;
+            let between = if n > 0.0 && n < all { (sum * all - n * total).powi(2) / (n * (all - n)) } else { 0.0 };
+            if between > best * (1.0 + 1e-12) {
+                (best, first) = (between, level);
+            }
+            if between >= best * (1.0 - 1e-12) {
+                last = level;
+            }
+        }
+        let threshold = (first + last) / 2;
+        let (lower, upper) = (moments(0..threshold + 1), moments(threshold + 1..256));
+        // a class without pixels is no different from the other
+        let mean = |class: (f64, f64, f64), other: (f64, f64, f64)| {
+            if class.0 > 0.0 { class.1 / class.0 } else { other.1 / other.0.max(1.0) }
+        };
+        let paper = mean(lower, upper);
+        Self {
+            threshold: threshold as u8,
+            paper,
+            ink: mean(upper, lower),
+            paper_deviation: (lower.2 / lower.0.max(1.0) - paper * paper).max(0.0).sqrt(),
+            share: upper.0 / all.max(1.0),
+        }
+    }
+}
+
+/// Whether the picture's lines are lighter than what they are drawn on.
+///
+/// In a tile with ink in it most pixels are paper, so that its mean lies on the paper's side of the middle between
+/// its extremes. The picture's border votes too, which decides where the tiles do not (filled shapes).
+fn is_light_on_dark(image: &Plane<u8>) -> bool {
+    const TILE: usize = 16;
+    const BORDER: f64 = 0.4;
+    let whole = histogram(image);
+    let (low, high) = (percentile(&whole, 0.003), percentile(&whole, 0.997));
+    let (mut votes, mut tiles) = (0.0, 0.0);
+    for ty in 0..image.height / TILE {
+        for tx in 0..image.width / TILE {
+            let rows = (ty * TILE..(ty + 1) * TILE).map(|y| &image.row(y)[tx * TILE..(tx + 1) * TILE]);
+            let (mut dark, mut light, mut sum) = (u8::MAX, 0, 0.0);
+            for &v in rows.flatten() {
+                (dark, light, sum) = (dark.min(v), light.max(v), sum + f64::from(v));
+            }
+            let (middle, range) = (0.5 * (f64::from(dark) + f64::from(light)), f64::from(light) - f64::from(dark));
+            if range > 0.3 * (high - low).max(1.0) {
+                votes += (sum / (TILE * TILE) as f64 - middle) / (0.5 * range);
+                tiles += 1.0;
+            }
+        }
+    }
+    let vote: f64 = if tiles > 0.0 { votes / tiles } else { 0.0 };
+    let border = if 2.0 * border_level(image) >= low + high { BORDER } else { -BORDER };
+    vote + border < 0.0
+}
+
+/// Median level of the outermost pixels.
+fn border_level(image: &Plane<u8>) -> f64 {
+    let mut border = [0u32; 256];
+    let last = image.height - 1;
+    let ends = image.row(0).iter().chain(image.row(last));
+    let sides = (0..image.height).flat_map(|y| [&image.row(y)[0], &image.row(y)[image.width - 1]]);
+    ends.chain(sides).for_each(|&v| border[usize::from(v)] += 1);
+    percentile(&border, 0.5)
+}
+
+/// Standard deviation of the pixel noise, levels: the mask of Immerkær, "Fast noise variance estimation" (1996),
+/// which is blind to flat places and slopes, with the median instead of the mean, which is blind to lines too.
+fn noise(plane: &Plane<u8>) -> f64 {
+    const TIMES: f64 = 6.0; // the mask's gain on white noise
+    const MEDIAN: f64 = 0.6745; // of |x| for a standard normal x
+    let mut counts = [0u32; 256];
+    for y in 1..plane.height - 1 {
+        let [above, here, below] = [y - 1, y, y + 1].map(|y| plane.row(y));
+        for x in 1..plane.width - 1 {
+            let row = |r: &[u8]| [r[x - 1], r[x], r[x + 1]].map(i32::from);
+            let ([a, b, c], [d, e, f], [g, h, i]) = (row(above), row(here), row(below));
+            let response = a + c + g + i - 2 * (b + d + f + h) + 4 * e;
+            counts[(response.unsigned_abs() as usize).min(255)] += 1;
+        }
+    }
+    percentile(&counts, 0.5) / (TIMES * MEDIAN)
+}
+
+/// The binomial mean of 3 × 3 pixels: noise falls to 3/8.
+fn smoothed(plane: &Plane<u8>) -> Plane<u8> {
+    let (w, h) = (plane.width, plane.height);
+    let mut out = plane.clone();
+    for y in 0..h {
+        let [above, here, below] = [y.saturating_sub(1), y, (y + 1).min(h - 1)].map(|y| plane.row(y));
+        let column = |x: usize| u32::from(above[x]) + 2 * u32::from(here[x]) + u32::from(below[x]);
+        for (x, v) in out.row_mut(y).iter_mut().enumerate() {
+            *v = ((column(x.saturating_sub(1)) + 2 * column(x) + column((x + 1).min(w - 1)) + 8) / 16) as u8;
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(level: impl Fn(usize, usize) -> u8) -> Grey {
+        Grey::new(160, 120, (0..160 * 120).map(|i| level(i % 160, i / 160)).collect()).unwrap()
+    }
+
+    fn noise_at(x: usize, y: usize) -> f64 {
+        let mut v = (x * 7919 + y * 104_729 + 12_345) as u64;
+        for _ in 0..3 {
+            v = (v ^ (v >> 31)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        }
+        (v >> 40) as f64 / f64::from(1 << 24)
+    }
+
+    #[test]
+    fn polarity_is_found_without_being_told() {
+        let line = |x: usize, y: usize| (x + y) % 60 < 5 && (20..100).contains(&y);
+        let dark = Ink::of(&image(|x, y| if line(x, y) { 40 } else { 220 })).unwrap();
+        let light = Ink::of(&image(|x, y| if line(x, y) { 220 } else { 40 })).unwrap();
+        assert!(!dark.quality.light_on_dark && light.quality.light_on_dark);
+        let filled = |x: usize, y: usize| (x as f64 - 80.0).hypot(y as f64 - 60.0) < 55.0;
+        assert!(!Ink::of(&image(|x, y| if filled(x, y) { 30 } else { 230 })).unwrap().quality.light_on_dark);
+        assert!(Ink::of(&image(|x, y| if filled(x, y) { 230 } else { 30 })).unwrap().quality.light_on_dark);
+    }
+
+    #[test]
+    fn pictures_without_a_drawing_are_refused_with_the_figure_that_failed() {
+        for level in [0, 128, 255] {
+            let error = Ink::of(&image(|_, _| level)).unwrap_err();
+            assert!(matches!(error, VisionError::NoContrast { contrast, .. } if contrast < 1.0), "{error}");
+        }
+        let faint = Ink::of(&image(|x, y| 127 + ((x + y) % 2) as u8)).unwrap_err();
+        assert!(matches!(faint, VisionError::NoContrast { .. }), "{faint}");
+        for strength in [255.0, 80.0] {
+            let noise = Ink::of(&image(|x, y| (strength * noise_at(x, y)) as u8)).unwrap_err();
+            assert!(matches!(noise, VisionError::Noise { .. }), "{noise}");
+        }
+    }
+
+    #[test]
+    fn a_faint_line_in_noise_is_still_ink() {
+        let level = |x: usize, y: usize| {
+            let pen = if (60..65).contains(&x) && y > 20 { 60.0 } else { 0.0 };
+            (200.0 - pen + 20.0 * (noise_at(x, y) - 0.5)) as u8
+        };
+        let ink = Ink::of(&image(level)).unwrap();
+        let mask = ink.mask();
+        assert!(mask.row(60)[60..65].iter().all(|&m| m == 1));
+        assert!(ink.quality.ink_percent < 4.0, "{:?}", ink.quality);
+    }
+}

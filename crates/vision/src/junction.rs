@@ -1,0 +1,178 @@
+//! Junctions: which lines run on through one another, and where the others end.
+//!
+//! A skeleton is bent where lines meet: a crossing becomes two forks with a bridge, a T pulls its bar aside. So the
+//! ink about a junction is not used. The lines are carried on into it from outside, and those that carry on into
+//! each other are joined.
+
+use std::f64::consts::PI;
+
+use tracelight_stroke::Point;
+
+use crate::bridge::{Tip, meeting};
+use crate::graph::{Graph, Node};
+use crate::line::Line;
+
+/// A pair of lines that turns less than this from one into the other is one line passing through, rad (60°).
+const THROUGH: f64 = PI / 3.0;
+/// A pair that turns more than this is not joined: it would go back on itself, rad (165°).
+const BACK: f64 = 165.0 * PI / 180.0;
+
+/// Lines that cross bend less than this on the way over, rad (40°).
+const CROSSING: f64 = 40.0 * PI / 180.0;
+/// Longest common part of two crossing lines, pen widths: that of a crossing at 15°.
+const LONGEST_CROSSING: f64 = 6.0;
+
+/// An end of a line at a junction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Port {
+    pub(crate) line: usize,
+    pub(crate) end: usize,
+    /// Its direction leads into the junction.
+    tip: Tip,
+}
+
+/// Two ports made one, with the points between them.
+#[derive(Clone, Debug)]
+pub(crate) struct Joint {
+    pub(crate) ports: [Port; 2],
+    /// From the first port's line to the second's, without their own points.
+    pub(crate) bridge: Vec<Point>,
+}
+
+/// What became of the lines at the junctions.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Junctions {
+    pub(crate) joints: Vec<Joint>,
+    /// Ports that end there, each with the place where.
+    pub(crate) ends: Vec<(Port, Point)>,
+}
+
+/// Nodes whose discs of ink nearly touch and are bridged are one junction: the cluster of each node, and which branches
+/// are bridges.
+pub(crate) fn clusters(graph: &Graph) -> (Vec<usize>, Vec<bool>) {
+    let mut cluster: Vec<usize> = (0..graph.nodes.len()).collect();
+    let find = |cluster: &[usize], mut n: usize| {
+        while cluster[n] != n {
+            n = cluster[n];
+        }
+        n
+    };
+    let pen = graph.pen_radius();
+    let is_bridge = |branch: &crate::graph::Branch| {
+        let [Some(a), Some(b)] = branch.nodes else { return false };
+        let Node { radius, at } = graph.nodes[a];
+        let reach = radius + graph.nodes[b].radius + pen;
+        // a way round between the same two nodes is no bridge, however near they are
+        at.distance(graph.nodes[b].at) <= reach && branch.length() <= 1.3 * reach
+    };
+    let bridges: Vec<bool> = graph.branches.iter().map(is_bridge).collect();
+    for (branch, _) in graph.branches.iter().zip(&bridges).filter(|(_, bridge)| **bridge) {
+        if let [Some(a), Some(b)] = branch.nodes {
+            let (a, b) = (find(&cluster, a), find(&cluster, b));
+            cluster[a.max(b)] = a.min(b);
+        }
+    }
+    ((0..cluster.len()).map(|n| find(&cluster, n)).collect(), bridges)
+}
+
+/// Two lines that cross at an acute angle run together for a while: the skeleton has two forks and one line between
+/// them. Such lines are taken away and their ends made one junction.
+pub(crate) fn merge_acute(lines: &mut Vec<Line>, cluster: &mut [usize]) {
+    let mut number = 0;
+    while number < lines.len() {
+        match acute(lines, number, &ports(lines, cluster), cluster) {
+            Some((a, b)) => {
+                cluster.iter_mut().filter(|c| **c == b).for_each(|c| *c = a);
+                lines.remove(number);
+            }
+            None => number += 1,
+        }
+    }
+}
+
+/// The two junctions a line lies between, if it only is the common part of two that cross there.
+fn acute(lines: &[Line], number: usize, ports: &[Vec<Port>], cluster: &[usize]) -> Option<(usize, usize)> {
+    let [Some(a), Some(b)] = lines[number].nodes else { return None };
+    let (a, b) = (cluster[a], cluster[b]);
+    let short = lines[number].length() < LONGEST_CROSSING * lines[number].width;
+    if a == b || !short || ports[a].len() != 3 || ports[b].len() != 3 {
+        return None;
+    }
+    let others = |at: usize| ports[at].iter().filter(|p| p.line != number).map(|p| p.tip).collect::<Vec<Tip>>();
+    let (before, after) = (others(a), others(b));
+    let [p, q] = before[..] else { return None };
+    let [r, s] = after[..] else { return None };
+    let crossing = p.crosses(&r, &q, &s, CROSSING) || p.crosses(&s, &q, &r, CROSSING);
+    crossing.then_some((a, b))
+}
+
+/// The ends of lines at each cluster.
+fn ports(lines: &[Line], cluster: &[usize]) -> Vec<Vec<Port>> {
+    let mut ports: Vec<Vec<Port>> = vec![Vec::new(); cluster.len()];
+    for (number, line) in lines.iter().enumerate() {
+        for (end, node) in line.nodes.iter().enumerate() {
+            if let Some(node) = node {
+                ports[cluster[*node]].push(Port { line: number, end, tip: line.tip(end) });
+            }
+        }
+    }
+    ports
+}
+
+/// Joins the lines of a graph at its junctions.
+pub(crate) fn join(lines: &[Line], cluster: &[usize]) -> Junctions {
+    let mut junctions = Junctions::default();
+    ports(lines, cluster).into_iter().filter(|p| !p.is_empty()).for_each(|p| junctions.resolve(p, lines));
+    junctions
+}
+
+impl Junctions {
+    /// One junction: the straightest pairs first, then any two that are left.
+    fn resolve(&mut self, mut left: Vec<Port>, lines: &[Line]) {
+        let tips: Vec<Tip> = left.iter().map(|p| p.tip).collect();
+        let middle = meeting(&tips);
+        let first = self.joints.len();
+        for most in [THROUGH, BACK] {
+            while let Some((i, j)) = straightest(&left, most) {
+                let (b, a) = (left.remove(j), left.remove(i));
+                let others = self.joints[first..].iter().flat_map(|j| &j.bridge).copied();
+                let bridge = a.tip.bridge(&b.tip, others.collect::<Vec<_>>().into_iter());
+                self.joints.push(Joint { ports: [a, b], bridge });
+            }
+        }
+        for port in left {
+            let stop = self.joints[first..].iter().find_map(|joint| hit(&port, joint, lines));
+            self.ends.push((port, stop.or(middle).unwrap_or(port.tip.at)));
+        }
+    }
+}
+
+/// The pair of ports that bends least on the way from one to the other, if less than `most`.
+fn straightest(ports: &[Port], most: f64) -> Option<(usize, usize)> {
+    let pairs = (0..ports.len()).flat_map(|i| (i + 1..ports.len()).map(move |j| (i, j)));
+    let bends = pairs.map(|(i, j)| (ports[i].tip.bend(&ports[j].tip), i, j));
+    let best = bends.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|b| b.0 < most)?;
+    Some((best.1, best.2))
+}
+
+/// Where a port carried straight on hits a joint's line.
+fn hit(port: &Port, joint: &Joint, lines: &[Line]) -> Option<Point> {
+    let [a, b] = joint.ports;
+    let mut row = near_tip(&lines[a.line], a.end);
+    row.reverse();
+    row.extend(&joint.bridge);
+    row.extend(near_tip(&lines[b.line], b.end));
+    row.windows(2).find_map(|w| {
+        let (across, back) = (w[1] - w[0], port.tip.at - w[0]);
+        let cross = port.tip.along.cross(across);
+        let (ahead, share) = (-back.cross(across) / cross, port.tip.along.cross(back) / cross);
+        (cross.abs() > 1e-9 && ahead > -1.0 && (0.0..=1.0).contains(&share)).then(|| port.tip.at + port.tip.along * ahead)
+    })
+}
+
+/// Up to 12 points of a line from one end on.
+fn near_tip(line: &Line, end: usize) -> Vec<Point> {
+    let forward = line.points.iter().take(12).copied();
+    let backward = line.points.iter().rev().take(12).copied();
+    if end == 0 { forward.collect() } else { backward.collect() }
+}

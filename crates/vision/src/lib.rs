@@ -1,0 +1,44 @@
+//! A picture in, strokes out.
+//!
+//! [`trace`] takes a [`Grey`] image and gives the strokes that draw it, in the pixel frame: x right, y down, the
+//! image spans [0, width] × [0, height], the first pixel's centre is (0.5, 0.5). The way: even out the light and
+//! the polarity, cut ink from paper (`ink`), part it into regions, then follow the middle of pen lines (thinning, a
+//! graph, junctions resolved, points moved on to the grey levels' ridge) and the edges of filled shapes. Nothing
+//! here knows metres, angles, files or cameras; the host decodes.
+//!
+//! | module | what |
+//! |---|---|
+//! | `light`, `ink` | even light, polarity, threshold, the gate that refuses bad pictures |
+//! | `region`, `distance` | connected patches of ink; distance to the paper |
+//! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
+//! | `ridge`, `line`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
+//! | `outline` | edges of filled shapes, holes too |
+//! | `sweep` | the original report's tracer |
+//! | `marks` | the two marks on a ruler |
+
+mod bridge;
+mod centreline;
+mod distance;
+mod error;
+mod graph;
+mod grey;
+mod ink;
+mod junction;
+mod light;
+mod line;
+mod marks;
+mod outline;
+mod plane;
+mod prune;
+mod region;
+mod ridge;
+mod solve;
+mod sweep;
+mod thin;
+mod trace;
+
+pub use error::VisionError;
+pub use grey::Grey;
+pub use ink::Quality;
+pub use marks::{Marks, find_two_marks};
+pub use trace::{Mode, Options, Traced, trace};

@@ -1,0 +1,211 @@
+//! The paper's brightness everywhere, also under the ink: uneven light divided out.
+//!
+//! The image is cut into tiles; the brightness of a tile's paper is a high percentile of its levels. A smooth
+//! surface is laid on the tiles from above (asymmetric least squares, after Eilers, "A perfect smoother", 2003, in
+//! the plane: tiles below the surface hardly count). A tile far below it is all ink and takes its neighbours'
+//! ratio to the surface instead of its own. Unlike a morphological closing this needs no window larger than the
+//! largest patch of ink.
+
+use crate::plane::Plane;
+use crate::solve;
+
+/// Tiles along the shorter side.
+const TILES: usize = 24;
+/// Smallest tile, px.
+const LEAST_TILE: usize = 8;
+/// Share of a tile's pixels below its paper's brightness: a pen covers less than the rest.
+const PERCENTILE: f64 = 0.85;
+/// A tile below this share of the surface is ink: paper in a shadow keeps more, ink rarely that much.
+const INK_RATIO: f64 = 0.7;
+/// A tile below this share of its neighbours is partly ink.
+const DIP: f64 = 0.95;
+/// Dimmest paper that is believed, levels: below, division would only enlarge noise.
+const DIMMEST: f64 = 12.0;
+
+/// Brightness of the paper at the tiles' centres.
+#[derive(Clone, Debug)]
+pub(crate) struct Paper {
+    tile: usize,
+    levels: Plane<f64>,
+}
+
+impl Paper {
+    /// Of an image with light paper.
+    pub(crate) fn of(image: &Plane<u8>) -> Self {
+        let tile = (image.width.min(image.height) / TILES).max(LEAST_TILE);
+        let bright = tile_levels(image, tile);
+        let surface = Surface::over(&bright);
+        let ratio = Plane {
+            values: bright.values.iter().zip(surface.on(&bright)).map(|(b, s)| b / s).collect(),
+            ..bright
+        };
+        let even = filled_in(&ratio);
+        let levels = even.values.iter().zip(surface.on(&even)).map(|(r, s)| (r * s).clamp(DIMMEST, 255.0)).collect();
+        Self { tile, levels: Plane { values: levels, ..even } }
+    }
+
+    /// Darkest and brightest paper, levels.
+    pub(crate) fn range(&self) -> (f64, f64) {
+        let fold = |f: fn(f64, f64) -> f64, from| self.levels.values.iter().copied().fold(from, f);
+        (fold(f64::min, 255.0), fold(f64::max, 0.0))
+    }
+
+    /// How much light the ink takes: 0 is paper, 255 total darkness.
+    pub(crate) fn darkness(&self, image: &Plane<u8>) -> Plane<u8> {
+        let mut dark = Plane::filled(image.width, image.height, 0);
+        let mut across = vec![0.0; self.levels.width];
+        for y in 0..image.height {
+            self.row_at(y, &mut across);
+            for (x, (out, &level)) in dark.row_mut(y).iter_mut().zip(image.row(y)).enumerate() {
+                let (low, high, share) = self.between(x, across.len());
+                let paper = across[low] + (across[high] - across[low]) * share;
+                *out = (255.5 - 255.0 * f32::from(level) / paper).clamp(0.0, 255.0) as u8;
+            }
+        }
+        dark
+    }
+
+    /// Paper along pixel row `y`, at the tiles' centres.
+    fn row_at(&self, y: usize, across: &mut [f32]) {
+        let (low, high, share) = self.between(y, self.levels.height);
+        let rows = self.levels.row(low).iter().zip(self.levels.row(high));
+        across.iter_mut().zip(rows).for_each(|(a, (l, h))| *a = (l + (h - l) * f64::from(share)) as f32);
+    }
+
+    /// The two of `tiles` centres a pixel lies between, and how far along.
+    fn between(&self, pixel: usize, tiles: usize) -> (usize, usize, f32) {
+        let at = ((pixel as f32 + 0.5) / self.tile as f32 - 0.5).clamp(0.0, (tiles - 1) as f32);
+        let low = at as usize;
+        (low, (low + 1).min(tiles - 1), at - low as f32)
+    }
+}
+
+/// The percentile of each tile; tiles at the right and lower border may be cut.
+fn tile_levels(image: &Plane<u8>, tile: usize) -> Plane<f64> {
+    let (width, height) = (image.width.div_ceil(tile), image.height.div_ceil(tile));
+    let mut levels = Plane::filled(width, height, 0.0);
+    for ty in 0..height {
+        for tx in 0..width {
+            let mut histogram = [0u32; 256];
+            for y in ty * tile..((ty + 1) * tile).min(image.height) {
+                let row = &image.row(y)[tx * tile..((tx + 1) * tile).min(image.width)];
+                row.iter().for_each(|&v| histogram[usize::from(v)] += 1);
+            }
+            levels.values[ty * width + tx] = percentile(&histogram, PERCENTILE).max(DIMMEST);
+        }
+    }
+    levels
+}
+
+/// The level below which `share` of a histogram lies.
+pub(crate) fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
+    let due = share * histogram.iter().map(|&n| f64::from(n)).sum::<f64>();
+    let mut passed = 0.0;
+    let level = histogram.iter().position(|&n| {
+        passed += f64::from(n);
+        passed >= due
+    });
+    level.unwrap_or(255) as f64
+}
+
+/// A quadratic surface of log-brightness over the tiles, in coordinates from −1 to 1.
+struct Surface([f64; 6]);
+
+impl Surface {
+    fn over(bright: &Plane<f64>) -> Self {
+        let logs: Vec<f64> = bright.values.iter().map(|b| b.ln()).collect();
+        let mut surface = Self([logs.iter().copied().fold(f64::MIN, f64::max), 0.0, 0.0, 0.0, 0.0, 0.0]);
+        for _ in 0..12 {
+            surface = surface.nearer(bright, &logs);
+        }
+        surface
+    }
+
+    /// One round of asymmetric least squares: a tile below the surface counts the less the further it is below.
+    fn nearer(&self, bright: &Plane<f64>, logs: &[f64]) -> Self {
+        let mut normal = [[0.0; 7]; 6];
+        for (i, &log) in logs.iter().enumerate() {
+            let basis = basis(bright, i);
+            let below = (self.log_at(&basis) - log).max(0.0);
+            let weight = 1.0 / (1.0 + (below / 0.08).powi(2)).powi(2);
+            for (row, a) in normal.iter_mut().zip(basis) {
+                row[..6].iter_mut().zip(basis).for_each(|(cell, b)| *cell += weight * a * b);
+                row[6] += weight * a * log;
+            }
+        }
+        // a hundredth of a tile's weight against bends and slopes that no paper calls for
+        let ridge = 0.01 * logs.len() as f64;
+        (1..6).for_each(|k| normal[k][k] += 0.1 * ridge);
+        solve::linear(normal).map_or(Self(self.0), Self)
+    }
+
+    fn log_at(&self, basis: &[f64; 6]) -> f64 {
+        self.0.iter().zip(basis).map(|(c, b)| c * b).sum()
+    }
+
+    fn on<'a, T>(&'a self, tiles: &'a Plane<T>) -> impl Iterator<Item = f64> + 'a
+    where
+        T: Copy + Default,
+    {
+        (0..tiles.values.len()).map(|i| self.log_at(&basis(tiles, i)).exp())
+    }
+}
+
+fn basis<T>(tiles: &Plane<T>, i: usize) -> [f64; 6] {
+    let along = |k: usize, n: usize| if n > 1 { 2.0 * k as f64 / (n - 1) as f64 - 1.0 } else { 0.0 };
+    let (x, y) = (along(i % tiles.width, tiles.width), along(i / tiles.width, tiles.height));
+    [1.0, x, y, x * x, x * y, y * y]
+}
+
+/// Ratios of brightness to surface, with those of ink replaced by their neighbours'.
+fn filled_in(ratio: &Plane<f64>) -> Plane<f64> {
+    let mut paper: Vec<bool> = ratio.values.iter().map(|&r| r >= INK_RATIO).collect();
+    let dips: Vec<bool> = (0..paper.len()).map(|i| ratio.values[i] < DIP * around(ratio, &paper, i, 2)).collect();
+    paper.iter_mut().zip(dips).for_each(|(p, dip)| *p &= !dip);
+    let fill = |i: usize| {
+        let reach = if paper[i] { 1 } else { 3 };
+        around(ratio, &paper, i, reach)
+    };
+    Plane { values: (0..paper.len()).map(fill).collect(), ..*ratio }
+}
+
+/// Mean of the paper's ratios up to `reach` tiles away; 1 (the surface itself) where there is none.
+fn around(ratio: &Plane<f64>, paper: &[bool], i: usize, reach: usize) -> f64 {
+    let (x, y) = (i % ratio.width, i / ratio.width);
+    let (mut sum, mut weight) = (0.02, 0.02);
+    for ny in y.saturating_sub(reach)..(y + reach + 1).min(ratio.height) {
+        for nx in x.saturating_sub(reach)..(x + reach + 1).min(ratio.width) {
+            let k = ny * ratio.width + nx;
+            if paper[k] {
+                let near = 1.0 / (1.0 + (nx.abs_diff(x).pow(2) + ny.abs_diff(y).pow(2)) as f64);
+                (sum, weight) = (sum + near * ratio.values[k], weight + near);
+            }
+        }
+    }
+    sum / weight
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_from_one_side_and_a_large_filled_shape_leave_even_paper() {
+        let paper = |x: usize| 240.0 - 160.0 * x as f64 / 640.0;
+        let ink = |x: usize, y: usize| (x as f64 - 330.0).hypot(y as f64 - 240.0) < 160.0;
+        let level = |i: usize| {
+            let (x, y) = (i % 640, i / 640);
+            (paper(x) * if ink(x, y) { 0.12 } else { 1.0 }) as u8
+        };
+        let image = Plane { width: 640, height: 480, values: (0..640 * 480).map(level).collect() };
+        let dark = Paper::of(&image).darkness(&image);
+        let (mut palest, mut darkest) = (255, 0);
+        for (i, &d) in dark.values.iter().enumerate() {
+            match ink(i % 640, i / 640) {
+                true => palest = palest.min(d),
+                false => darkest = darkest.max(d),
+            }
+        }
+        assert!(darkest < 15 && palest > 215, "paper up to {darkest}, ink from {palest}");
+    }
+}

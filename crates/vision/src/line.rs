@@ -1,0 +1,124 @@
+//! Branches of the skeleton as lines on the middle of the pen.
+
+use tracelight_stroke::Point;
+
+use crate::bridge::Tip;
+use crate::graph::{Branch, Graph};
+use crate::plane::Plane;
+use crate::ridge::{self, Ridge, median};
+
+/// A stretch of pen line without junctions.
+#[derive(Clone, Debug)]
+pub(crate) struct Line {
+    /// At least one.
+    pub(crate) points: Vec<Point>,
+    /// Width of the pen, px.
+    pub(crate) width: f64,
+    /// Node of the graph at either end.
+    pub(crate) nodes: [Option<usize>; 2],
+    pub(crate) ring: bool,
+}
+
+impl Line {
+    /// From a branch: its points without those that show a junction, a corner or an end instead of the line,
+    /// centred on the grey levels, with its corners where its sides meet and its free ends where the pen was lifted.
+    pub(crate) fn of(dark: &Plane<u8>, graph: &Graph, branch: &Branch) -> Self {
+        let radius = median(&branch.radii).max(0.5);
+        let (from, to) = if branch.ring { (0, branch.points.len()) } else { trusted(graph, branch, radius) };
+        let ridge = ridge::centred(dark, &branch.points[from..to], radius, branch.ring);
+        let width = ridge.width;
+        let mut points = bridged(ridge, branch.ring);
+        if points.is_empty() {
+            points.push(branch.points[(from + to) / 2]);
+        }
+        let mut line = Self { points, width, nodes: branch.nodes, ring: branch.ring };
+        if !branch.ring {
+            (0..2).filter(|&end| branch.nodes[end].is_none()).for_each(|end| line.reach_out(dark, end));
+        }
+        line
+    }
+
+    /// Length, px.
+    pub(crate) fn length(&self) -> f64 {
+        self.points.windows(2).map(|w| w[0].distance(w[1])).sum()
+    }
+
+    /// The line's end (0: at its first point) and the direction out of it.
+    pub(crate) fn tip(&self, end: usize) -> Tip {
+        Tip::of(&self.points, end).unwrap_or(Tip::single(self.points[0]))
+    }
+
+    /// Moves a free end to where the pen was lifted.
+    fn reach_out(&mut self, dark: &Plane<u8>, end: usize) {
+        let Tip { at, along, .. } = self.tip(end);
+        let reach = 4.0 * self.width + 4.0;
+        if let Some(lifted) = ridge::pen_end(dark, at, along, self.width, reach) {
+            self.end_at(end, lifted);
+        }
+    }
+
+    /// Carries an end on to `stop`, or back to it.
+    pub(crate) fn end_at(&mut self, end: usize, stop: Point) {
+        let along = self.tip(end).along;
+        if end == 0 {
+            self.points.reverse();
+        }
+        let beyond = |p: &Point| (*p - stop).dot(along) > -0.25;
+        while self.points.len() > 1 && self.points.last().is_some_and(beyond) {
+            self.points.pop();
+        }
+        self.points.push(stop);
+        if end == 0 {
+            self.points.reverse();
+        }
+    }
+}
+
+/// Fewer points than this in a row, between two gaps, tell no direction.
+const LEAST_STRETCH: usize = 4;
+
+/// The stretches in one row, the gaps between them bridged.
+fn bridged(mut ridge: Ridge, ring: bool) -> Vec<Point> {
+    if ridge.stretches.len() > 1 {
+        ridge.stretches.retain(|s| s.len() >= LEAST_STRETCH);
+    }
+    let mut row: Vec<Point> = Vec::new();
+    for stretch in &ridge.stretches {
+        row.extend(gap(&row, stretch));
+        row.extend(stretch);
+    }
+    if let (true, Some(first)) = (ring, ridge.stretches.first()) {
+        // a ring that can be seen all round needs no bridge to its own start
+        let open = row.last().is_some_and(|last| last.distance(first[0]) > 2.5);
+        row.extend(if open { gap(&row, first) } else { Vec::new() });
+    }
+    row
+}
+
+/// Points between the end of one row and the start of another.
+fn gap(before: &[Point], after: &[Point]) -> Vec<Point> {
+    match (Tip::of(before, 1), Tip::of(after, 0)) {
+        (Some(end), Some(start)) => end.bridge(&start, std::iter::empty()),
+        _ => Vec::new(),
+    }
+}
+
+/// The points of a branch away from its nodes' discs of ink and from its free ends, as a range of indices.
+fn trusted(graph: &Graph, branch: &Branch, radius: f64) -> (usize, usize) {
+    let n = branch.points.len();
+    let clear = |end: usize| {
+        let index = |k: usize| if end == 0 { k } else { n - 1 - k };
+        let ok = |k: &usize| match branch.nodes[end] {
+            None => branch.points[index(*k)].distance(branch.points[index(0)]) >= radius,
+            Some(node) => {
+                let node = graph.nodes[node];
+                let away = branch.points[index(*k)].distance(node.at);
+                away > 1.1 * node.radius + 0.5 && branch.radii[index(*k)] <= 1.1 * radius + 0.3
+            }
+        };
+        // never more than 45 % from either end: something of a short branch must stay
+        let most = n * 9 / 20;
+        (0..most).find(ok).unwrap_or(most)
+    };
+    (clear(0), (n - clear(1)).max(clear(0) + 1))
+}

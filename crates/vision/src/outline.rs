@@ -1,0 +1,211 @@
+//! Filled shapes: strokes along their edges, holes included.
+
+use tracelight_stroke::{FitOptions, Point, Stroke, StrokeKind, fit};
+
+use crate::Options;
+use crate::plane::Plane;
+use crate::region::Region;
+
+/// Around a corner the pixel's own size shows, not the shape: px either side.
+const REACH_PX: f64 = 2.0;
+
+/// Outlines smaller than this enclose dust, px².
+const LEAST_AREA_PX2: f64 = 12.0;
+
+/// Directions along pixel edges, clockwise from right: (x, y) steps.
+const STEPS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+
+/// Edges of pixels of `mask` that have been walked, as marks on the ink right of them.
+pub(crate) struct Walked(Plane<u8>);
+
+impl Walked {
+    /// None of an image of this size.
+    pub(crate) fn none(width: usize, height: usize) -> Self {
+        Self(Plane::filled(width, height, 0))
+    }
+}
+
+/// The closed outlines of a region: outer edge and holes.
+pub(crate) fn strokes(
+    dark: &Plane<u8>,
+    mask: &Plane<u8>,
+    region: &Region,
+    walked: &mut Walked,
+    options: &Options,
+) -> Vec<Stroke> {
+    let full = full_level(dark, region);
+    let mut found = Vec::new();
+    for run in &region.runs {
+        if walked.0.row(run.y as usize)[run.from as usize] == 0 {
+            let border = border(mask, run.from as isize, run.y as isize, walked);
+            let points: Vec<Point> = border.iter().filter_map(|edge| edge.place(dark, full)).collect();
+            if area(&points).abs() >= LEAST_AREA_PX2 {
+                found.extend(stroke(&points, options));
+            }
+        }
+    }
+    found
+}
+
+fn stroke(points: &[Point], options: &Options) -> Option<Stroke> {
+    let fitting =
+        FitOptions { tolerance: options.tolerance_px, corner_rad: options.corner_rad, reach: REACH_PX };
+    let path = fit(points, true, &fitting)?;
+    Some(Stroke { path, kind: StrokeKind::Outline, pen: None })
+}
+
+/// The darkness of a pixel all inside a region.
+fn full_level(dark: &Plane<u8>, region: &Region) -> f64 {
+    let mut levels: Vec<u8> = region.pixels(dark.width).map(|i| dark.values[i]).collect();
+    let middle = levels.len() / 2;
+    let (_, median, _) = levels.select_nth_unstable(middle);
+    f64::from(*median)
+}
+
+/// An edge between an ink pixel and a paper pixel.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    ink: (isize, isize),
+    paper: (isize, isize),
+}
+
+impl Edge {
+    /// Where the shape's edge crosses the line through the two pixels' centres; `None` where it runs along that
+    /// line and a neighbouring edge knows better.
+    ///
+    /// Each pixel's darkness is the share of it that is inked, so the sum from a full pixel to an empty one is how
+    /// far the ink reaches: exact for a straight edge, where interpolation between two pixels is off by up to
+    /// 0.08 px.
+    fn place(&self, dark: &Plane<u8>, full: f64) -> Option<Point> {
+        let (dx, dy) = (self.paper.0 - self.ink.0, self.paper.1 - self.ink.1);
+        let at = |k: isize, side: isize| {
+            let (x, y) = (self.ink.0 + k * dx - side * dy, self.ink.1 + k * dy + side * dx);
+            (f64::from(dark.get(x, y)) / full).min(1.0)
+        };
+        let fall = |side: isize| at(0, side) - at(1, side);
+        let slant = |k: isize| at(k, 1) - at(k, -1);
+        if 2.0 * (fall(-1) + 2.0 * fall(0) + fall(1)) < 1.2 * (slant(0) + slant(1)).abs() {
+            return None;
+        }
+        // inside: WINDOW pixels that would all be full; outside: as many that would all be empty
+        let inside = covered(true, |k| at(-k, 0));
+        let outside = covered(false, |k| at(k + 1, 0));
+        let reach = inside + outside - WINDOW as f64;
+        let centre = Point::new(self.ink.0 as f64 + 0.5, self.ink.1 as f64 + 0.5);
+        let share = reach.clamp(-1.5, 1.5) + 0.5;
+        Some(Point::new(centre.x + share * dx as f64, centre.y + share * dy as f64))
+    }
+}
+
+/// Pixels either way of an edge whose darkness counts.
+const WINDOW: isize = 3;
+
+/// Sum of the shares of the pixels from an edge on, as far as they keep rising (into ink) or falling (into paper);
+/// beyond, another edge begins, and they count as the last.
+fn covered(rising: bool, share: impl Fn(isize) -> f64) -> f64 {
+    let (mut last, mut sum) = (share(0), 0.0);
+    for k in 0..WINDOW {
+        let next = share(k);
+        last = if rising { last.max(next) } else { last.min(next) };
+        sum += last;
+    }
+    sum
+}
+
+/// The edges of a border in order, ink on the right, from the left edge of ink pixel (x, y) upwards until there
+/// again (crack following: Rosenfeld, "Connectivity in digital pictures", 1970). Ink joined at corners stays joined.
+fn border(mask: &Plane<u8>, x: isize, y: isize, walked: &mut Walked) -> Vec<Edge> {
+    const UP: usize = 3;
+    let ink = |p: (isize, isize)| mask.get(p.0, p.1) != 0;
+    let start = ((x, y), UP);
+    let (mut pixel, mut direction) = start;
+    let mut edges = Vec::new();
+    loop {
+        let (ahead, left) = (STEPS[direction], STEPS[(direction + 3) % 4]);
+        let paper = (pixel.0 + left.0, pixel.1 + left.1);
+        edges.push(Edge { ink: pixel, paper });
+        if direction == UP {
+            walked.0.row_mut(pixel.1 as usize)[pixel.0 as usize] = 1;
+        }
+        let beyond = (paper.0 + ahead.0, paper.1 + ahead.1);
+        let before = (pixel.0 + ahead.0, pixel.1 + ahead.1);
+        (pixel, direction) = if ink(beyond) {
+            (beyond, (direction + 3) % 4)
+        } else if ink(before) {
+            (before, direction)
+        } else {
+            (pixel, (direction + 1) % 4)
+        };
+        if (pixel, direction) == start {
+            return edges;
+        }
+    }
+}
+
+/// Signed area of a polygon.
+fn area(points: &[Point]) -> f64 {
+    let next = points.iter().skip(1).chain(points.first());
+    0.5 * points.iter().zip(next).map(|(a, b)| a.to_vec2().cross(b.to_vec2())).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::region::regions;
+
+    fn traced(width: usize, height: usize, darkness: impl Fn(f64, f64) -> f64) -> Vec<Stroke> {
+        let level = |i: usize| {
+            let (x, y) = ((i % width) as f64, (i / width) as f64);
+            // exact enough an area: 8 × 8 samples
+            let sample = |k: usize| darkness(x + ((k % 8) as f64 + 0.5) / 8.0, y + ((k / 8) as f64 + 0.5) / 8.0);
+            (255.0 * (0..64).map(sample).sum::<f64>() / 64.0).round() as u8
+        };
+        let dark = Plane { width, height, values: (0..width * height).map(level).collect() };
+        let mask = Plane { values: dark.values.iter().map(|&d| u8::from(d > 127)).collect(), ..dark };
+        let mut walked = Walked::none(width, height);
+        let each = |r: &Region| strokes(&dark, &mask, r, &mut walked, &Options::default());
+        regions(&mask).iter().flat_map(each).collect()
+    }
+
+    #[test]
+    fn an_outline_lies_on_the_edge_and_not_half_a_pixel_beside() {
+        for (cx, cy) in [(50.0, 50.0), (50.5, 49.5), (50.3, 49.8)] {
+            let found = traced(100, 100, |x, y| f64::from(u8::from((x - cx).hypot(y - cy) < 30.0)));
+            assert_eq!(found.len(), 1);
+            let line = found[0].path.flatten(0.01);
+            let off = line.iter().map(|p| ((p.x - cx).hypot(p.y - cy) - 30.0).abs()).fold(0.0, f64::max);
+            assert!(off < 0.06, "off by {off} about ({cx}, {cy})");
+        }
+    }
+
+    #[test]
+    fn a_ring_of_ink_has_an_outer_edge_and_a_hole() {
+        let found = traced(100, 100, |x, y| {
+            let r = (x - 50.0).hypot(y - 50.0);
+            f64::from(u8::from(r < 40.0 && r > 20.0))
+        });
+        let mut lengths: Vec<f64> = found.iter().map(|s| s.path.length(1e-3)).collect();
+        lengths.sort_by(f64::total_cmp);
+        assert_eq!(lengths.len(), 2);
+        assert!((lengths[0] / 20.0 - std::f64::consts::TAU).abs() < 0.02, "{lengths:?}");
+        assert!((lengths[1] / 40.0 - std::f64::consts::TAU).abs() < 0.02, "{lengths:?}");
+    }
+
+    #[test]
+    fn a_square_has_four_sharp_corners_where_they_are() {
+        let found = traced(100, 100, |x, y| f64::from(u8::from((20.25..70.5).contains(&x) && (30.5..80.75).contains(&y))));
+        let corners: Vec<Point> = found[0].path.pieces().map(|p| p.from).collect();
+        assert_eq!(corners.len(), 4, "{:#?}", found[0].path.elements());
+        for truth in [(20.25, 30.5), (70.5, 30.5), (70.5, 80.75), (20.25, 80.75)].map(Point::from) {
+            let off = corners.iter().map(|c| c.distance(truth)).fold(f64::INFINITY, f64::min);
+            assert!(off < 0.15, "{truth} is off by {off}");
+        }
+    }
+
+    #[test]
+    fn a_shape_cut_by_the_pictures_border_is_closed_along_it() {
+        let found = traced(60, 60, |x, y| f64::from(u8::from(x.hypot(y) < 40.0)));
+        assert_eq!(found.len(), 1);
+        assert!(found[0].path.is_closed());
+    }
+}

@@ -1,0 +1,122 @@
+//! Branches that the pen's outline made and not the pen.
+
+use tracelight_stroke::{Point, Vec2};
+
+use crate::graph::{Branch, Graph, Node};
+use crate::ridge::median;
+
+/// Removes spurs, shortest first, and joins what they parted, until none is left.
+pub(crate) fn prune(graph: &mut Graph) {
+    let pen = graph.pen_radius();
+    loop {
+        graph.join_pairs();
+        let mut spurs = Vec::new();
+        for ends in graph.ends_at_nodes() {
+            let short = ends.iter().filter(|&&end| is_bump(graph, end) || is_mitre(graph, &ends, end, pen));
+            // one at a time at each node: a spur less can make a line of the two others
+            spurs.extend(short.map(|&(b, _)| b).min_by(|&a, &b| {
+                graph.branches[a].length().total_cmp(&graph.branches[b].length())
+            }));
+        }
+        if spurs.is_empty() {
+            return;
+        }
+        spurs.sort_unstable_by(|a, b| b.cmp(a));
+        spurs.into_iter().for_each(|i| drop(graph.branches.swap_remove(i)));
+    }
+}
+
+/// The node at an end of a branch whose other end is free, and the free end's place and distance to the edge.
+fn free_end(graph: &Graph, (branch, end): (usize, usize)) -> Option<(Node, Point, f64)> {
+    let Branch { nodes, points, radii, .. } = &graph.branches[branch];
+    let node = graph.nodes[nodes[end].filter(|_| nodes[1 - end].is_none())?];
+    let tip = if end == 0 { points.len() - 1 } else { 0 };
+    Some((node, points[tip], radii[tip]))
+}
+
+/// Whether a branch with one free end hardly leaves the disc of ink about its node: a bump of the outline.
+fn is_bump(graph: &Graph, end: (usize, usize)) -> bool {
+    free_end(graph, end).is_some_and(|(node, tip, radius)| {
+        tip.distance(node.at) + radius - node.radius < (0.6 * node.radius).max(1.5)
+    })
+}
+
+/// Whether a branch with one free end is the point of a mitred corner: it leads away from two others, midway
+/// between their backs, as far as their outer edges take to meet.
+///
+/// With pen half-width r and s = sin(θ/2) of the angle θ between the two, the fork lies r(1 − s)/(s(1 + s)) inside
+/// the corner (a disc there touches the inner corner and both outer edges) and the point r/s outside.
+fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f64) -> bool {
+    let Some((node, tip, _)) = free_end(graph, end).filter(|_| ends.len() == 3) else { return false };
+    let out = tip - node.at;
+    // between curved sides the point is longer, but it thins out all along
+    let tapers = median(&graph.branches[end.0].radii) < 0.85 * pen;
+    let most = if tapers { 7.0 * pen } else { 0.0 };
+    // near an acute corner the two skeletons lean together, far from it they may have bent: either may tell
+    [(0, 10), (12, 36)].into_iter().any(|window| {
+        let others = ends.iter().filter(|&&e| e != end).map(|&e| leaving(graph, e, node.at, window));
+        let others: Vec<Vec2> = others.collect();
+        let back = -(others[0] + others[1]);
+        let s = (0.5 * others[0].cross(others[1]).atan2(others[0].dot(others[1])).abs()).sin();
+        let length = pen * ((1.0 - s) / (s * (1.0 + s)).max(0.05) + 1.0 / s.max(0.1));
+        let midway = out.dot(back) > 0.9 * out.hypot() * back.hypot();
+        s < MITRED && midway && out.hypot() < (1.25 * length + 2.5).max(most)
+    })
+}
+
+/// Sine of half the widest angle at which a corner's point is long enough to show: 150°.
+const MITRED: f64 = 0.966;
+
+/// Direction in which a branch leaves its node, between two of its points; over all of a short one.
+fn leaving(graph: &Graph, (branch, end): (usize, usize), node: Point, (near, far): (usize, usize)) -> Vec2 {
+    let points = &graph.branches[branch].points;
+    let at = |k: usize| points[if end == 0 { k } else { points.len() - 1 - k }];
+    let far = (points.len() - 1).min(far);
+    let way = if near > 0 && far >= near + 8 { at(far) - at(near) } else { at(far) - node };
+    way / way.hypot().max(1e-9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn branch(length: i32, direction: (f64, f64), radius: f64, nodes: [Option<usize>; 2]) -> Branch {
+        let at = |i: i32| Point::new(50.0 + f64::from(i) * direction.0, 50.0 + f64::from(i) * direction.1);
+        let points: Vec<Point> = (1..=length).map(at).collect();
+        Branch { radii: vec![radius; points.len()], points, nodes, ring: false }
+    }
+
+    fn pruned(branches: Vec<Branch>) -> Graph {
+        let node = Node { at: Point::new(50.0, 50.0), radius: 3.0 };
+        let mut graph = Graph { nodes: vec![node], branches };
+        prune(&mut graph);
+        graph
+    }
+
+    #[test]
+    fn a_bump_goes_and_leaves_one_line() {
+        let n = [Some(0), None];
+        let graph = pruned(vec![branch(30, (1.0, 0.0), 2.5, n), branch(30, (-1.0, 0.0), 2.5, n), branch(2, (0.0, 1.0), 1.0, n)]);
+        assert_eq!(graph.branches.len(), 1);
+        assert_eq!(graph.branches[0].points.len(), 61);
+        assert_eq!(graph.branches[0].length(), 60.0);
+    }
+
+    #[test]
+    fn the_point_of_a_mitred_corner_goes() {
+        let n = [Some(0), None];
+        let (c, s) = (0.866, 0.5);
+        let legs = || vec![branch(30, (c, s), 2.5, n), branch(30, (c, -s), 2.5, n)];
+        let with = |stub| pruned([legs(), vec![stub]].concat()).branches.len();
+        assert_eq!(with(branch(6, (-1.0, 0.0), 1.5, n)), 1);
+        assert_eq!(with(branch(14, (-1.0, 0.0), 2.5, n)), 3);
+        assert_eq!(with(branch(6, (0.0, 1.0), 2.5, n)), 3);
+    }
+
+    #[test]
+    fn a_short_bar_stays() {
+        let n = [Some(0), None];
+        let graph = pruned(vec![branch(30, (1.0, 0.0), 2.5, n), branch(30, (-1.0, 0.0), 2.5, n), branch(6, (0.0, 1.0), 2.5, n)]);
+        assert_eq!(graph.branches.len(), 3);
+    }
+}
