@@ -1,0 +1,131 @@
+use clap::{Args, ValueEnum};
+use tracelight_aim::HeadPose;
+use tracelight_sim::RigConfig;
+use tracelight_trajectory::{AccelerationDemand, Machine, PlanRequest, Ramps, Shape};
+
+use crate::cli::placing::positive_length;
+use crate::failure::Failure;
+use crate::units::{AngularAcceleration, Length, Speed};
+
+/// 3 ft: where the original rig's camera stood.
+const DEFAULT_DISTANCE_M: f64 = 0.9144;
+/// 1 ft/s: what the original rig was to reach.
+const DEFAULT_SPEED_M_S: f64 = 0.3048;
+
+/// Where inertia and gravity are taken for remarks on what motors can do: the edge of the original rig's working
+/// range, atan(18 in / 36 in).
+const WORKING_TILT_RAD: f64 = 0.463_647_609_000_806_1;
+
+/// With what and how a drawing is run.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct DrivingArgs {
+    /// From the head to the target [default: 3ft]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
+    pub(crate) distance: Option<Length>,
+    /// Speed of the lit spot on the target [default: 1ft/s]
+    #[arg(long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed)]
+    pub(crate) speed: Option<Speed>,
+    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
+    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
+    pub(crate) rig: String,
+    /// Shape of the dark moves between strokes
+    #[arg(long, value_enum, default_value_t = ProfileName::SCurve)]
+    pub(crate) profile: ProfileName,
+    /// Highest joint acceleration wished for, such as 100rad/s2; the motors decide where they allow less
+    #[arg(long, value_name = "ACCELERATION", allow_hyphen_values = true, value_parser = positive_acceleration)]
+    pub(crate) amax: Option<AngularAcceleration>,
+}
+
+/// The four velocity profiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProfileName {
+    /// Constant acceleration and deceleration
+    Trapezoid,
+    /// Acceleration that builds up and fades over a fifth of its phase
+    SCurve,
+    /// Half a sine of velocity
+    Sine,
+    /// Logistic position
+    Sigmoid,
+}
+
+impl ProfileName {
+    pub(crate) const fn shape(self) -> Shape {
+        match self {
+            ProfileName::Trapezoid => Shape::Ramped(Ramps::NONE),
+            ProfileName::SCurve => Shape::Ramped(Ramps::REPORT),
+            ProfileName::Sine => Shape::Sine,
+            ProfileName::Sigmoid => Shape::Sigmoid,
+        }
+    }
+
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            ProfileName::Trapezoid => "trapezoid",
+            ProfileName::SCurve => "s-curve",
+            ProfileName::Sine => "sine",
+            ProfileName::Sigmoid => "sigmoid",
+        }
+    }
+}
+
+/// What the arguments mean: a rig, where it stands, what is asked of it.
+pub(crate) struct Driving {
+    pub(crate) rig: RigConfig,
+    pub(crate) pose: HeadPose,
+    pub(crate) machine: Machine,
+    pub(crate) request: PlanRequest,
+    /// The speed was asked for, not assumed.
+    pub(crate) speed_is_asked: bool,
+    /// Remarks for the user.
+    pub(crate) notes: Vec<String>,
+}
+
+impl DrivingArgs {
+    /// Reads the rig and gathers the rest.
+    pub(crate) fn resolve(&self) -> Result<Driving, Failure> {
+        let mut rig = crate::rigfile::load(&self.rig)?;
+        if let Some(wish) = self.amax {
+            rig.motion.acceleration_limit_rad_s2 = rig.motion.acceleration_limit_rad_s2.map(|_| wish.0);
+        }
+        let pose = HeadPose::square_on(self.distance.map_or(DEFAULT_DISTANCE_M, |d| d.0));
+        let machine = rig.machine(pose);
+        let request = PlanRequest {
+            speed_m_s: self.speed.map_or(DEFAULT_SPEED_M_S, |s| s.0),
+            travel: self.profile.shape(),
+            ramp_s: rig.motion.ramp_s,
+            settle_s: rig.motion.settle_s,
+            tolerance_m: rig.control.tolerance_m,
+        };
+        let notes = machine.impossible_wishes(WORKING_TILT_RAD).iter().map(wish_note).collect();
+        Ok(Driving { rig, pose, machine, request, speed_is_asked: self.speed.is_some(), notes })
+    }
+}
+
+fn wish_note(wish: &AccelerationDemand) -> String {
+    let AccelerationDemand { joint, asked_rad_s2, needed_v, limit_v, possible_rad_s2 } = wish;
+    format!(
+        "{asked_rad_s2:.0} rad/s² on {joint} would need {needed_v:.0} V, its amplifier gives {limit_v:.0} V: planned \
+         with what the motor has, about {possible_rad_s2:.1} rad/s² against gravity"
+    )
+}
+
+fn positive_speed(text: &str) -> Result<Speed, String> {
+    const MOST_M_S: f64 = 1000.0;
+    let speed: Speed = text.parse().map_err(|e| format!("{e}"))?;
+    if 0.0 < speed.0 && speed.0 <= MOST_M_S {
+        Ok(speed)
+    } else {
+        Err(format!("{text} is not between 0 and {MOST_M_S} m/s; give a speed such as 1ft/s or 0.3m/s"))
+    }
+}
+
+fn positive_acceleration(text: &str) -> Result<AngularAcceleration, String> {
+    const MOST_RAD_S2: f64 = 1e6;
+    let wish: AngularAcceleration = text.parse().map_err(|e| format!("{e}"))?;
+    if 0.0 < wish.0 && wish.0 <= MOST_RAD_S2 {
+        Ok(wish)
+    } else {
+        Err(format!("{text} is not between 0 and {MOST_RAD_S2} rad/s2; give one such as 100rad/s2"))
+    }
+}

@@ -1,0 +1,95 @@
+use clap::Args;
+use tracelight_rig::{Darkness, Fault};
+
+use crate::cli::{Answer, Voice};
+use crate::failure::Failure;
+use crate::output::{darkness_words, fault_words};
+
+/// Say what a code in a message, a summary or a log means, and what to do
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight explain following-error")]
+pub(crate) struct ExplainArgs {
+    /// The code; without it all of them are listed
+    code: Option<String>,
+    #[command(flatten)]
+    pub(crate) voice: Voice,
+}
+
+/// Codes of messages, with what they mean and what to do.
+const MESSAGES: &[(&str, &str)] = &[
+    ("unreadable", "A file could not be opened or read. Check its name and permissions."),
+    ("empty-file", "A file has no bytes. Save it again."),
+    (
+        "malformed",
+        "A file is of a known kind but broken. The message says where; save it again from its source.",
+    ),
+    ("not-a-picture", "A file's first bytes are those of no picture or drawing that is known here."),
+    ("unsupported", "A picture uses a part of its format that is not decoded here. Save it as PNG."),
+    ("too-large", "A picture has more pixels or bytes than are traced (100 megapixels). Scale it down."),
+    (
+        "no-strokes-found",
+        "A picture was read, but has nothing to draw: no ink, no contrast, or only noise. The message names the figure that failed and its bound.",
+    ),
+    ("no-strokes", "A drawing has no strokes to plan."),
+    (
+        "unreachable",
+        "Part of the drawing cannot be lit from where the head stands. Make it smaller, shift it, or step back.",
+    ),
+    (
+        "motor-too-weak",
+        "Gravity and friction take more torque than a plan may use. See motion.torque_share in the rig file.",
+    ),
+    ("too-long", "The job takes longer than a run may. Draw larger steps, faster, or in parts."),
+    (
+        "speed-unreachable",
+        "The speed asked for with --speed is reached nowhere on the drawing. The message names the best possible.",
+    ),
+    (
+        "rig-file",
+        "A rig file is wrong. The message shows file, line and value, what is allowed and what to do.",
+    ),
+    (
+        "marks-not-found",
+        "A ruler picture does not show two marks. Use two dark tapes across a light ruler, or the reverse.",
+    ),
+    ("cannot-write", "A result could not be written. Check the folder, its permissions and the free space."),
+    ("usage", "The command line is wrong. `tracelight --help` shows what there is."),
+    (
+        "unfinished",
+        "The run was given up: it took far longer than its plan, holding again and again. The report shows where.",
+    ),
+    ("interrupted", "Ctrl-C: the laser was darkened, then the log closed."),
+];
+
+pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Failure> {
+    let all = codes();
+    let Some(code) = &args.code else {
+        let lines: Vec<String> = all.iter().map(|(code, words)| format!("{code:18} {words}")).collect();
+        return Ok(Answer::new(lines.join("\n"), json(&all)));
+    };
+    let found: Vec<_> = all.iter().copied().filter(|(c, _)| c == code).collect();
+    let Some((_, words)) = found.first() else {
+        let message = format!("{code} is no code; `tracelight explain` lists all of them");
+        return Err(Failure::usage("usage", message));
+    };
+    Ok(Answer::new(*words, json(&found)))
+}
+
+fn json(codes: &[(&str, &str)]) -> String {
+    let entries: Vec<_> = codes.iter().map(|(c, w)| serde_json::json!({ "code": c, "meaning": w })).collect();
+    serde_json::json!({ "codes": entries }).to_string()
+}
+
+fn codes() -> Vec<(&'static str, &'static str)> {
+    let faults = [
+        Fault::EncoderJumped,
+        Fault::EncoderDead,
+        Fault::SetpointsStale,
+        Fault::SetpointInvalid,
+        Fault::LimitReached,
+        Fault::HoldTimedOut,
+    ];
+    let faults = faults.map(|f| (f.code(), fault_words(f)));
+    let darkness = Darkness::ALL.map(|d| (d.code(), darkness_words(d)));
+    MESSAGES.iter().copied().chain(faults).chain(darkness).collect()
+}

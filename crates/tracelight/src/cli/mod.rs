@@ -1,0 +1,145 @@
+//! The command line: one file a subcommand.
+
+mod calibrate;
+mod completions;
+pub(crate) mod driving;
+mod explain;
+pub(crate) mod placing;
+mod plan;
+mod rigs;
+mod strokes;
+pub(crate) mod trace;
+
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{Args, Parser, Subcommand};
+
+use crate::failure::Failure;
+use crate::stop::Stop;
+
+/// Give it a picture: a pan/tilt laser head draws it on the wall, to scale.
+#[derive(Parser, Debug)]
+#[command(
+    name = "tracelight",
+    version,
+    after_help = "Example: tracelight trace examples/house.png --width 24in --open\n\n\
+                  Without hardware everything runs on a simulated rig (see `tracelight rigs`)."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    Trace(Box<trace::TraceArgs>),
+    Strokes(strokes::StrokesArgs),
+    Plan(Box<plan::PlanArgs>),
+    Calibrate(calibrate::CalibrateArgs),
+    Rigs(rigs::RigsArgs),
+    Explain(explain::ExplainArgs),
+    Completions(completions::CompletionsArgs),
+}
+
+/// What every command has.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(crate) struct Voice {
+    /// One JSON object on standard output, nothing else there
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// No progress and no remarks on standard error
+    #[arg(long, global = true)]
+    pub(crate) quiet: bool,
+}
+
+/// What a command prints on standard output when it succeeds, for people and for scripts.
+pub(crate) struct Answer {
+    pub(crate) text: String,
+    pub(crate) json: String,
+    /// The command did its work, and what it worked on failed.
+    pub(crate) failure: Option<Failure>,
+}
+
+impl Answer {
+    pub(crate) fn new(text: impl Into<String>, json: impl Into<String>) -> Self {
+        Self { text: text.into(), json: json.into(), failure: None }
+    }
+}
+
+/// Runs the program on the process's arguments.
+pub(crate) fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return refuse(&error),
+    };
+    let stop = Stop::listen();
+    let (voice, result) = match cli.command {
+        Command::Trace(args) => (args.voice, trace::run(&args, &stop)),
+        Command::Strokes(args) => (args.voice, strokes::run(&args, &stop)),
+        Command::Plan(args) => (args.voice, plan::run(&args, &stop)),
+        Command::Calibrate(args) => (args.voice(), calibrate::run(&args)),
+        Command::Rigs(args) => (args.voice, rigs::run(&args)),
+        Command::Explain(args) => (args.voice, explain::run(&args)),
+        Command::Completions(args) => (args.voice, Ok(completions::run::<Cli>(&args))),
+    };
+    finish(voice, result)
+}
+
+fn finish(voice: Voice, result: Result<Answer, Failure>) -> ExitCode {
+    match result {
+        Ok(Answer { text, json, failure: None }) => {
+            print(if voice.json { &json } else { &text });
+            ExitCode::SUCCESS
+        }
+        Ok(Answer { text, json, failure: Some(failure) }) => {
+            print(if voice.json { with_error(&json, &failure) } else { text }.as_str());
+            report(voice.json, false, &failure)
+        }
+        Err(failure) => report(voice.json, voice.json, &failure),
+    }
+}
+
+/// The figures of work that went wrong, with what went wrong: one object still.
+fn with_error(json: &str, failure: &Failure) -> String {
+    let error = failure.json();
+    match (json.strip_suffix('}'), error.strip_prefix('{')) {
+        (Some(figures), Some(error)) => format!("{},{error}", figures.trim_end()),
+        _ => error,
+    }
+}
+
+#[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
+fn report(json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
+    if on_stdout {
+        print(&failure.json());
+    }
+    let hint = if json { String::new() } else { format!(" (see `tracelight explain {}`)", failure.code) };
+    eprintln!("error: {}{hint}", failure.message);
+    failure.exit_code()
+}
+
+/// Wrong command lines: help and version are no errors; the rest is said on stderr, and as JSON where asked for.
+#[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
+fn refuse(error: &clap::Error) -> ExitCode {
+    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
+        print(error.render().to_string().trim_end());
+        return ExitCode::SUCCESS;
+    }
+    if std::env::args_os().any(|a| a == "--json") {
+        let text = error.render().to_string();
+        let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+        print(&Failure::usage("usage", first).json());
+    }
+    eprint!("{}", error.render());
+    Failure::usage("usage", "").exit_code()
+}
+
+/// To standard output; a reader that has left is no error.
+fn print(text: &str) {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    if !text.is_empty() {
+        drop(writeln!(out, "{text}"));
+    }
+}

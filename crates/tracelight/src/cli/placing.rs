@@ -1,0 +1,37 @@
+use clap::Args;
+
+use crate::units::{Angle, Length, Offset};
+
+/// Where and how large a picture lies on the target.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(crate) struct PlacementArgs {
+    /// Width on the target, such as 24in or 0.6m; the height follows. Without it, a drawing of true size keeps it,
+    /// everything else is 24in wide
+    #[arg(long, value_name = "LENGTH", conflicts_with = "height", allow_hyphen_values = true,
+          value_parser = positive_length)]
+    pub(crate) width: Option<Length>,
+    /// Height on the target; the width follows
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
+    pub(crate) height: Option<Length>,
+    /// Where the picture's centre goes, right and up of the target's: 10cm,-2in
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(crate) offset: Option<Offset>,
+    /// Turn the picture anticlockwise: 15deg
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
+    pub(crate) rotate: Option<Angle>,
+    /// Mirror the picture left to right
+    #[arg(long)]
+    pub(crate) flip: bool,
+}
+
+/// A length between a millimetre and a kilometre.
+pub(crate) fn positive_length(text: &str) -> Result<Length, String> {
+    const LEAST_M: f64 = 1e-3;
+    const MOST_M: f64 = 1e3;
+    let length: Length = text.parse().map_err(|e| format!("{e}"))?;
+    if LEAST_M <= length.0 && length.0 <= MOST_M {
+        Ok(length)
+    } else {
+        Err(format!("{text} is not between {LEAST_M} and {MOST_M} m; give a length such as 24in or 0.6m"))
+    }
+}

@@ -1,0 +1,121 @@
+use std::fmt::Write;
+use std::time::Instant;
+
+use clap::Args;
+use tracelight_rig::TICK_F64_S;
+use tracelight_trajectory::Plan;
+use tracelight_vision::Mode;
+
+use crate::cli::driving::DrivingArgs;
+use crate::cli::placing::PlacementArgs;
+use crate::cli::trace::ModeName;
+use crate::cli::{Answer, Voice};
+use crate::failure::Failure;
+use crate::output::{PlanFigures, StrokeFigures};
+use crate::picture;
+use crate::progress::Progress;
+use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
+use crate::sketch::{Placed, place, sketch};
+use crate::stop::Stop;
+
+/// Order a drawing and time it within what the motors can do
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight plan examples/star.png -o star.csv --order-by time")]
+pub(crate) struct PlanArgs {
+    /// A drawing (SVG, JSON, CSV) or a picture; - is standard input
+    drawing: String,
+    /// Write the plan, a row a millisecond, to this CSV file
+    #[arg(short, long, value_name = "FILE.csv")]
+    out: Option<String>,
+    /// What the order is to save
+    #[arg(long, value_enum, default_value_t)]
+    order_by: OrderBy,
+    /// How much work goes into the order; the same amount gives the same order
+    #[arg(long, value_enum, default_value_t)]
+    order_effort: OrderEffort,
+    /// How pixels become strokes
+    #[arg(long, value_enum, default_value_t)]
+    mode: ModeName,
+    #[command(flatten)]
+    placement: PlacementArgs,
+    #[command(flatten)]
+    driving: DrivingArgs,
+    #[command(flatten)]
+    pub(crate) voice: Voice,
+}
+
+pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
+    let progress = Progress::new(args.voice.quiet);
+    let driving = args.driving.resolve()?;
+    progress.stage("strokes", 1);
+    let sketch = sketch(&args.drawing, picture::read(&args.drawing)?, Mode::from(args.mode))?;
+    let placed = place(&sketch, &args.placement);
+    stop.check()?;
+    progress.stage("plan", 1);
+    let began = Instant::now();
+    let schedule = schedule(&placed, &driving, args.order_by, args.order_effort)?;
+    let plan_ms = began.elapsed().as_secs_f64() * 1e3;
+    if args.driving.amax.is_some() {
+        driving.notes.iter().for_each(|n| progress.say(&format!("note: {n}")));
+    }
+    if let Some(path) = &args.out {
+        std::fs::write(path, csv(&schedule.plan))
+            .map_err(|e| Failure::failed("cannot-write", format!("cannot write {path}: {e}")))?;
+    }
+    let timing = serde_json::json!({ "vision": sketch.vision_ms, "plan": plan_ms });
+    Ok(Answer::new(text(&schedule), json(&placed, &schedule, &timing)))
+}
+
+fn text(schedule: &Schedule) -> String {
+    let (ordered, plan) = (&schedule.ordered, &schedule.plan);
+    let gap =
+        ordered.gap_percent().map_or_else(String::new, |g| format!(", at most {g:.1} % over the shortest"));
+    format!(
+        "{} strokes, {:.3} m lit, {:.3} m travel{gap}\n{:.3} s: {:.3} s lit, up to {:.3} m/s, torque up to {:.0} %",
+        ordered.drawing.strokes.len(),
+        ordered.drawing.length(1e-6),
+        ordered.travel,
+        plan.duration_s(),
+        plan.lit_s(),
+        plan.top_speed_m_s(),
+        100.0 * plan.torque_peak_fraction(),
+    )
+}
+
+fn json(placed: &Placed, schedule: &Schedule, timing: &serde_json::Value) -> String {
+    let (ordered, plan) = (&schedule.ordered, &schedule.plan);
+    serde_json::json!({
+        "target": { "width_m": placed.size_m.0, "height_m": placed.size_m.1 },
+        "strokes": StrokeFigures::of(&ordered.drawing, plan),
+        "plan": PlanFigures::of(plan),
+        "order": {
+            "travel_m": ordered.travel,
+            "travel_s": plan.travel_s(),
+            "lower_bound_m": ordered.lower_bound,
+            "gap_percent": ordered.gap_percent(),
+        },
+        "timing_ms": timing,
+    })
+    .to_string()
+}
+
+fn csv(plan: &Plan) -> String {
+    let mut text = String::from("t_s,lit,pan_rad,tilt_rad,pan_rad_s,tilt_rad_s,x_m,y_m\n");
+    for (tick, p) in plan.points.iter().enumerate() {
+        let (pan, tilt) = (&p.joints.pan, &p.joints.tilt);
+        // writing to a String cannot fail
+        let _ = writeln!(
+            text,
+            "{:.3},{},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9}",
+            tick as f64 * TICK_F64_S,
+            u8::from(p.lit),
+            pan.position_rad,
+            tilt.position_rad,
+            pan.velocity_rad_s,
+            tilt.velocity_rad_s,
+            p.spot.x,
+            p.spot.y
+        );
+    }
+    text
+}

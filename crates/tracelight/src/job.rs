@@ -1,0 +1,231 @@
+//! One job from picture to results: the stages in their order.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use tracelight_rig::{Command, PanTilt, Phase, Rig};
+use tracelight_sim::{Run, SimulatedRig, Tick, Tracking, score};
+use tracelight_trajectory::Plan;
+
+use crate::cli::driving::Driving;
+use crate::cli::trace::TraceArgs;
+use crate::failure::{Failure, Status};
+use crate::output::{self, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing};
+use crate::picture;
+use crate::progress::Progress;
+use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
+use crate::settings;
+use crate::sketch::{Placed, Sketch, place, sketch};
+use crate::stop::Stop;
+
+/// A job that ran to an end, its own or another.
+pub(crate) struct Outcome {
+    pub(crate) summary: Summary,
+    /// Where its results are.
+    pub(crate) dir: PathBuf,
+    /// Why it ended early: a rig's fault, or Ctrl-C.
+    pub(crate) failure: Option<Failure>,
+}
+
+/// What the stages before the run made.
+struct Prepared {
+    sketch: Sketch,
+    placed: Placed,
+    driving: Driving,
+    schedule: Schedule,
+    plan_ms: f64,
+}
+
+/// Every lap that was run.
+struct Laps {
+    earlier: Vec<Run>,
+    last: Run,
+    run_ms: f64,
+}
+
+/// Picture → strokes → target → order → plan → run → results.
+pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
+    let progress = Progress::new(args.voice.quiet);
+    let prepared = prepare(args, &progress, stop)?;
+    check_laps(args.laps, &prepared.schedule.plan)?;
+    let dir = args.out.clone().unwrap_or_else(|| default_dir(&args.picture));
+    std::fs::create_dir_all(&dir).map_err(|e| cannot_write(&dir, &e))?;
+    let settings = settings::of(args, &prepared.driving, &prepared.placed);
+    let laps = run_laps(args, &prepared, &dir, &settings, (&progress, stop))?;
+    progress.stage("report", 1);
+    let summary = write(args, &prepared, &laps, &dir, &settings)?;
+    let failure = ending(&laps.last, stop);
+    Ok(Outcome { summary, dir, failure })
+}
+
+fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepared, Failure> {
+    let driving = args.driving.resolve()?;
+    progress.stage("strokes", 1);
+    let sketch = sketch(&args.picture, picture::read(&args.picture)?, args.mode.into())?;
+    stop.check()?;
+    progress.stage("plan", 1);
+    let placed = place(&sketch, &args.placement);
+    let began = Instant::now();
+    let schedule = schedule(&placed, &driving, OrderBy::default(), OrderEffort::default())?;
+    let plan_ms = began.elapsed().as_secs_f64() * 1e3;
+    stop.check()?;
+    if args.driving.amax.is_some() {
+        driving.notes.iter().for_each(|n| progress.say(&format!("note: {n}")));
+    }
+    Ok(Prepared { sketch, placed, driving, schedule, plan_ms })
+}
+
+/// `out/<the picture's stem>/`.
+fn default_dir(picture: &str) -> PathBuf {
+    let stem = Path::new(picture).file_stem().filter(|_| picture != "-");
+    Path::new("out").join(stem.unwrap_or_else(|| "picture".as_ref()))
+}
+
+fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::failed(
+        "cannot-write",
+        format!("cannot write {}: {error}; choose another with --out", path.display()),
+    )
+}
+
+/// Longest run of all laps together, s: every tick is kept for the results, at some 200 bytes.
+const LONGEST_S: f64 = 1800.0;
+
+/// Refuses more laps than can be kept.
+fn check_laps(laps: u32, plan: &Plan) -> Result<(), Failure> {
+    let needed_s = f64::from(laps) * plan.duration_s();
+    if needed_s <= LONGEST_S {
+        return Ok(());
+    }
+    let message = format!(
+        "--laps {laps} would take {needed_s:.0} s together, at most {LONGEST_S:.0} s are run at once"
+    );
+    Err(Failure::failed("too-long", message))
+}
+
+/// Runs the laps, each from power-up on the same head, and logs them all.
+fn run_laps(
+    args: &TraceArgs,
+    prepared: &Prepared,
+    dir: &Path,
+    settings: &[Setting],
+    (progress, stop): (&Progress, &Stop),
+) -> Result<Laps, Failure> {
+    let began = Instant::now();
+    let plan = &prepared.schedule.plan;
+    let meta = LogMeta { picture_path: &args.picture, settings, seed: args.seed };
+    let mut laps: Vec<Run> = Vec::new();
+    let mut log = LogWriter::open(&dir.join("run.mcap"), &meta)?;
+    while laps.len() < args.laps as usize && !stop.is_wanted() {
+        progress.stage("run", plan.points.len() as u64);
+        let rig = SimulatedRig::new(&prepared.driving.rig, prepared.driving.pose, args.seed);
+        laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
+    }
+    log.finish()?;
+    let last = laps.pop().unwrap_or_default();
+    Ok(Laps { earlier: laps, last, run_ms: began.elapsed().as_secs_f64() * 1e3 })
+}
+
+/// Ticks the head is watched after the user stopped it: longer than any relay of a rig file takes to open.
+const GOODBYE_TICKS: u32 = 80;
+
+/// One lap, every tick in the log as it happens. Ctrl-C darkens first and then ends the lap.
+fn run_lap(
+    mut rig: SimulatedRig,
+    plan: &Plan,
+    dry: bool,
+    log: &mut LogWriter,
+    (progress, stop): (&Progress, &Stop),
+) -> Result<Run, Failure> {
+    let mut failed: Option<OutputError> = None;
+    let mut goodbye = 0;
+    let run = tracelight_sim::run(&mut rig, plan, dry, |rig, tick| {
+        if let Err(error) = log_tick(log, plan, tick) {
+            failed = Some(error);
+            return ControlFlow::Break(());
+        }
+        let number = tick.telemetry.tick;
+        if number.is_multiple_of(256) {
+            progress.at(u64::from(number));
+        }
+        if !stop.is_wanted() {
+            return ControlFlow::Continue(());
+        }
+        // a simulated rig takes every command but a segment for a full queue
+        let _ = rig.send(Command::Disarm);
+        goodbye += 1;
+        if goodbye > GOODBYE_TICKS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    failed.map_or(Ok(run), |error| Err(error.into()))
+}
+
+fn log_tick(log: &mut LogWriter, plan: &Plan, tick: &Tick) -> Result<(), OutputError> {
+    let at = (tick.telemetry.plan_tick as usize).min(plan.points.len().saturating_sub(1));
+    plan.points.get(at).map_or(Ok(()), |planned| log.tick(tick, planned))
+}
+
+fn write(
+    args: &TraceArgs,
+    prepared: &Prepared,
+    laps: &Laps,
+    dir: &Path,
+    settings: &[Setting],
+) -> Result<Summary, Failure> {
+    let Prepared { sketch, placed, driving, schedule, .. } = prepared;
+    let drawing = &schedule.ordered.drawing;
+    let strokes = tracelight_formats::svg::write(drawing, placed.size_m.0, placed.size_m.1);
+    let path = dir.join("strokes.svg");
+    std::fs::write(&path, strokes).map_err(|e| cannot_write(&path, &e))?;
+    let tracking: Tracking = score(&schedule.plan, &laps.last, driving.request.speed_m_s);
+    let motors = &driving.rig.model.motors;
+    let job = Job {
+        picture_path: &args.picture,
+        picture: sketch
+            .picture
+            .as_ref()
+            .map(|raster| Picture { raster, target_from_pixel: placed.target_from_sheet }),
+        target: Target {
+            width_m: placed.size_m.0,
+            height_m: placed.size_m.1,
+            distance_m: driving.pose.distance_m,
+        },
+        drawing,
+        plan: &schedule.plan,
+        run: &laps.last,
+        earlier_laps: &laps.earlier,
+        tracking,
+        set_speed_m_s: driving.request.speed_m_s,
+        command_limit_v: motors.map(|m| m.limit_v),
+        torque_limit_nm: PanTilt::new(motors.pan.torque_limit_nm(), motors.tilt.torque_limit_nm()),
+        tolerance_mm: driving.request.tolerance_m * 1e3,
+        settings,
+        notes: &driving.notes,
+        timing: Timing {
+            vision_ms: sketch.vision_ms,
+            plan_ms: prepared.plan_ms,
+            run_ms: laps.run_ms,
+            report_ms: 0.0,
+        },
+        seed: args.seed,
+    };
+    Ok(output::write_all(dir, &job)?)
+}
+
+/// Whether the last lap ended as it should.
+fn ending(run: &Run, stop: &Stop) -> Option<Failure> {
+    let last = run.ticks.last();
+    if let Some(fault) = last.and_then(|t| t.telemetry.fault) {
+        let message = format!(
+            "the laser darkened and the run stopped: {} ({})",
+            fault.code(),
+            output::fault_words(fault)
+        );
+        return Some(Failure { status: Status::Fault, code: fault.code(), message });
+    }
+    if stop.is_wanted() {
+        return Some(Failure::interrupted());
+    }
+    let done = last.is_some_and(|t| t.telemetry.phase == Phase::Done);
+    (!done).then(|| Failure::failed("unfinished", "the run did not come to its end; see the report"))
+}

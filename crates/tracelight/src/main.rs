@@ -1,0 +1,20 @@
+//! Tracelight: give it a picture, and a pan/tilt laser head draws it on the wall, to scale.
+
+mod cli;
+mod failure;
+mod job;
+mod output;
+mod picture;
+mod progress;
+mod rigfile;
+mod schedule;
+mod settings;
+mod sketch;
+mod stop;
+mod units;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::main()
+}

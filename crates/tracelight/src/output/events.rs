@@ -1,0 +1,139 @@
+use tracelight_rig::{Darkness, TICK_F64_S, Telemetry};
+use tracelight_sim::Run;
+
+use super::words::{darkness_words, fault_words};
+
+/// A time when the rig darkened a beam that the plan wanted lit, or a fault that ended the job.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Event {
+    /// Stable code of the first reason.
+    pub(crate) code: &'static str,
+    /// What it means.
+    pub(crate) words: &'static str,
+    /// When it began, s since power-up.
+    pub(crate) t_s: f64,
+    /// How long it lasted, s.
+    pub(crate) lasted_s: f64,
+    /// Whether the job ended with it.
+    pub(crate) stops: bool,
+}
+
+/// Finds events in a stream of ticks, one open at a time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Watch {
+    open: Option<Event>,
+}
+
+/// What changed with a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Change {
+    /// Nothing.
+    None,
+    /// An event began; its length is not known yet.
+    Began(Event),
+    /// An event ended.
+    Ended(Event),
+    /// One ended by turning into another, which began.
+    Became(Event, Event),
+}
+
+impl Watch {
+    /// Takes the next tick.
+    pub(super) fn push(&mut self, telemetry: &Telemetry) -> Change {
+        let now = trouble(telemetry);
+        match (self.open.as_mut(), now) {
+            (None, None) => Change::None,
+            (None, Some(event)) => {
+                self.open = Some(event);
+                Change::Began(event)
+            }
+            (Some(open), Some(event)) if open.stops || !event.stops => {
+                open.lasted_s += TICK_F64_S;
+                Change::None
+            }
+            (Some(_), event) => {
+                let ended = std::mem::replace(&mut self.open, event);
+                match (ended, event) {
+                    (Some(ended), Some(event)) => Change::Became(ended, event),
+                    (Some(ended), None) => Change::Ended(ended),
+                    (None, _) => Change::None,
+                }
+            }
+        }
+    }
+
+    /// The event still going on, as it stands.
+    pub(super) const fn open(&self) -> Option<Event> {
+        self.open
+    }
+}
+
+/// The event a tick belongs to: a latched fault, or the interlock against the plan's will.
+fn trouble(telemetry: &Telemetry) -> Option<Event> {
+    let t_s = f64::from(telemetry.tick) * TICK_F64_S;
+    if let Some(fault) = telemetry.fault {
+        let (code, words) = (fault.code(), fault_words(fault));
+        return Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: true });
+    }
+    let dark = telemetry.darkness;
+    if dark.contains(Darkness::Planned) || dark.contains(Darkness::Disarmed) {
+        return None;
+    }
+    let reason = Darkness::ALL.into_iter().find(|&r| dark.contains(r))?;
+    let (code, words) = (reason.code(), darkness_words(reason));
+    Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: false })
+}
+
+/// All events of a run in time order; an event's length runs to the tick before the light was allowed again.
+pub(crate) fn events(run: &Run) -> Vec<Event> {
+    let mut watch = Watch::default();
+    let mut found = Vec::new();
+    for tick in &run.ticks {
+        if let Change::Ended(event) | Change::Became(event, _) = watch.push(&tick.telemetry) {
+            found.push(event);
+        }
+    }
+    found.extend(watch.open());
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_rig::{DarknessSet, Fault};
+    use tracelight_sim::Tick;
+
+    fn run_of(reasons: &[&[Darkness]], fault_from: usize) -> Run {
+        let tick = |(i, set): (usize, &&[Darkness])| {
+            let mut darkness = DarknessSet::default();
+            set.iter().for_each(|&reason| darkness.insert_if(true, reason));
+            let fault = (i >= fault_from).then_some(Fault::EncoderDead);
+            let telemetry = Telemetry { tick: i as u32, darkness, fault, ..Telemetry::default() };
+            Tick { telemetry, angle_rad: Default::default(), spot: None, asked: None, light: false }
+        };
+        Run { ticks: reasons.iter().enumerate().map(tick).collect() }
+    }
+
+    #[test]
+    fn a_planned_darkness_is_no_event() {
+        let run = run_of(&[&[], &[Darkness::Planned], &[Darkness::Planned, Darkness::Holding], &[]], 9);
+        assert_eq!(events(&run), []);
+    }
+
+    #[test]
+    fn an_event_carries_its_first_reason_and_its_length() {
+        let run =
+            run_of(&[&[], &[Darkness::SpotError], &[Darkness::Holding], &[Darkness::Holding], &[], &[]], 9);
+        let found = events(&run);
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].code, found[0].stops), ("spot-error", false));
+        assert!((found[0].t_s - 0.001).abs() < 1e-12 && (found[0].lasted_s - 0.003).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_latched_fault_is_told_once_and_lasts_to_the_end() {
+        let run = run_of(&[&[], &[Darkness::SpotError], &[Darkness::Faulted], &[Darkness::Faulted]], 2);
+        let codes: Vec<_> = events(&run).iter().map(|e| (e.code, e.stops)).collect();
+        assert_eq!(codes, [("spot-error", false), ("encoder-dead", true)]);
+    }
+}

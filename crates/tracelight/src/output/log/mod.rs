@@ -1,0 +1,356 @@
+//! The run log: everything measured, tick by tick, in a form that outlives the program.
+//!
+//! While the run goes on, each tick's messages go to the file bare and at once, so a killed program loses nothing it
+//! had been handed: readers take such a file to its last whole record. When the run ends, the file is copied into
+//! chunks with an index, which viewers can seek in, and takes the first one's place in one rename.
+
+mod protobuf;
+mod schema;
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufReader, BufWriter};
+use std::path::{Path, PathBuf};
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::sans_io::LinearReaderOptions;
+use mcap::{McapError, McapResult, WriteOptions, Writer};
+use tracelight_sim::Tick;
+use tracelight_trajectory::PlanPoint;
+
+use self::protobuf::{Encoder, descriptor_set};
+use self::schema::time_ns;
+use super::events::{Change, Watch};
+use super::sample::Sample;
+use super::{OutputError, Setting};
+
+/// What is known before the first tick; it becomes the log's metadata record `tracelight`.
+pub(crate) struct LogMeta<'a> {
+    /// The picture's file as the user named it.
+    pub(crate) picture_path: &'a str,
+    /// What the job was asked to do.
+    pub(crate) settings: &'a [Setting],
+    /// Seed of the run.
+    pub(crate) seed: u64,
+}
+
+/// Writes `run.mcap` while the run goes on.
+///
+/// Dropping it without [`finish`](Self::finish) leaves a log that is complete but for its index.
+pub(crate) struct LogWriter {
+    path: PathBuf,
+    writer: Writer<BufWriter<File>>,
+    channels: Channels,
+    message: Encoder,
+    watch: Watch,
+    clock: Clock,
+}
+
+/// The log's time: ticks that start again with every lap, laid end to end.
+#[derive(Clone, Copy, Default)]
+struct Clock {
+    /// Laps before this one.
+    laps: u32,
+    /// Where this one began.
+    lap_began: u64,
+    /// The tick after the last; `None` before the first.
+    next: Option<u64>,
+}
+
+/// Numbers of the log's channels.
+struct Channels {
+    telemetry: u16,
+    spot: u16,
+    plan: u16,
+    faults: u16,
+}
+
+/// Size of a finished log's chunks: a few seconds of ticks each.
+const CHUNK_BYTES: u64 = 1 << 20;
+
+impl LogWriter {
+    /// Begins a log; a file of that name is replaced.
+    pub(crate) fn open(path: &Path, meta: &LogMeta<'_>) -> Result<Self, OutputError> {
+        let file = File::create(path).map_err(OutputError::at(path))?;
+        Self::begin(path, file, meta).map_err(|source| OutputError::Log { path: path.to_owned(), source })
+    }
+
+    fn begin(path: &Path, file: File, meta: &LogMeta<'_>) -> McapResult<Self> {
+        let mut writer = options().use_chunks(false).create(BufWriter::new(file))?;
+        writer.write_metadata(&metadata(meta))?;
+        let channels = Channels::declare(&mut writer)?;
+        writer.flush()?;
+        Ok(Self {
+            path: path.to_owned(),
+            writer,
+            channels,
+            message: Encoder::default(),
+            watch: Watch::default(),
+            clock: Clock::default(),
+        })
+    }
+
+    /// Appends a tick and the point of the plan it follows; both are in the file when this returns. Laps follow each
+    /// other in one log: where the ticks start again, the log's time goes on.
+    pub(crate) fn tick(&mut self, tick: &Tick, planned: &PlanPoint) -> Result<(), OutputError> {
+        self.append(&Sample::new(tick, planned)).map_err(|source| self.failure(source))
+    }
+
+    fn append(&mut self, sample: &Sample<'_>) -> McapResult<()> {
+        let tick = self.clock.at(sample.tick.telemetry.tick);
+        let lap = self.clock.laps + 1;
+        self.send(self.channels.telemetry, tick, |out| schema::telemetry(out, sample, lap))?;
+        self.send(self.channels.spot, tick, |out| schema::spot(out, sample))?;
+        self.send(self.channels.plan, tick, |out| schema::plan(out, sample.planned))?;
+        match self.watch.push(&sample.tick.telemetry) {
+            Change::Began(event) | Change::Became(_, event) => {
+                self.send(self.channels.faults, tick, |out| schema::fault(out, &event, tick))?;
+            }
+            Change::None | Change::Ended(_) => {}
+        }
+        self.writer.flush()
+    }
+
+    fn send(&mut self, channel_id: u16, tick: u64, fill: impl FnOnce(&mut Encoder)) -> McapResult<()> {
+        let time = time_ns(tick);
+        let header = MessageHeader { channel_id, sequence: tick as u32, log_time: time, publish_time: time };
+        self.message.clear();
+        fill(&mut self.message);
+        self.writer.write_to_known_channel(&header, self.message.bytes())
+    }
+
+    /// Closes the log: indexed, and whole for every reader.
+    pub(crate) fn finish(mut self) -> Result<(), OutputError> {
+        self.writer.finish().map_err(|source| self.failure(source))?;
+        let indexed = self.path.with_extension("mcap.part");
+        index(&self.path, &indexed).map_err(|source| self.failure(source))?;
+        std::fs::rename(&indexed, &self.path).map_err(OutputError::at(&self.path))
+    }
+
+    fn failure(&self, source: McapError) -> OutputError {
+        OutputError::Log { path: self.path.clone(), source }
+    }
+}
+
+impl Clock {
+    /// The log's tick for a lap's; a number that goes back begins the next lap.
+    fn at(&mut self, tick: u32) -> u64 {
+        let mut now = self.lap_began + u64::from(tick);
+        if let Some(next) = self.next.filter(|&next| now < next) {
+            self.laps += 1;
+            self.lap_began = next;
+            now = next + u64::from(tick);
+        }
+        self.next = Some(now + 1);
+        now
+    }
+}
+
+impl Channels {
+    fn declare(writer: &mut Writer<BufWriter<File>>) -> McapResult<Self> {
+        let own = descriptor_set(&[&schema::TRACELIGHT]);
+        let log = descriptor_set(&[&schema::TIMESTAMP, &schema::FOXGLOVE_LOG]);
+        let mut channel = |topic: &str, schema: &str, descriptor: &[u8]| {
+            let schema = writer.add_schema(schema, "protobuf", descriptor)?;
+            writer.add_channel(schema, topic, "protobuf", &BTreeMap::new())
+        };
+        Ok(Self {
+            telemetry: channel("/telemetry", "tracelight.Telemetry", &own)?,
+            spot: channel("/spot", "tracelight.Spot", &own)?,
+            plan: channel("/plan", "tracelight.Plan", &own)?,
+            faults: channel("/faults", "foxglove.Log", &log)?,
+        })
+    }
+}
+
+fn options() -> WriteOptions {
+    WriteOptions::new()
+        .library(concat!("tracelight ", env!("CARGO_PKG_VERSION")))
+        .chunk_size(Some(CHUNK_BYTES))
+}
+
+/// Copies a bare log into an indexed one, record by record.
+fn index(bare: &Path, indexed: &Path) -> McapResult<()> {
+    let reader = BufReader::new(File::open(bare)?);
+    let mut writer = options().create(BufWriter::new(File::create(indexed)?))?;
+    for metadata in metadata_of(bare)? {
+        writer.write_metadata(&metadata)?;
+    }
+    for message in mcap::io::MessageReader::new_with_options(reader, LinearReaderOptions::default()) {
+        writer.write(&message?)?;
+    }
+    writer.finish()?;
+    Ok(())
+}
+
+/// The metadata records of a log.
+fn metadata_of(path: &Path) -> McapResult<Vec<Metadata>> {
+    let mut reader = mcap::sans_io::LinearReader::new();
+    let mut file = BufReader::new(File::open(path)?);
+    let mut found = Vec::new();
+    while let Some(event) = reader.next_event() {
+        match event? {
+            mcap::sans_io::LinearReadEvent::ReadRequest(wanted) => {
+                let got = std::io::Read::read(&mut file, reader.insert(wanted))?;
+                reader.notify_read(got);
+            }
+            mcap::sans_io::LinearReadEvent::Record { data, opcode } => {
+                match mcap::parse_record(opcode, data)? {
+                    mcap::records::Record::Metadata(record) => found.push(record),
+                    mcap::records::Record::Message { .. } => break, // all of it stands before the first tick
+                    _ => {}
+                }
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn metadata(meta: &LogMeta<'_>) -> Metadata {
+    let own = [
+        ("picture", meta.picture_path.to_owned()),
+        ("seed", meta.seed.to_string()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+    ];
+    let settings = meta.settings.iter().map(|s| (s.name.clone(), s.value.clone()));
+    // a setting of the same name does not hide what the log itself says
+    let metadata = settings.chain(own.map(|(name, value)| (name.to_owned(), value))).collect();
+    Metadata { name: "tracelight".to_owned(), metadata }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::fixture;
+    use std::sync::atomic::{AtomicU32, Ordering};
+    use tracelight_rig::Fault;
+
+    fn file(name: &str) -> PathBuf {
+        static NUMBER: AtomicU32 = AtomicU32::new(0);
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        std::env::temp_dir().join(format!("tracelight-{}-{number}-{name}.mcap", std::process::id()))
+    }
+
+    fn begun(path: &Path, ticks: usize) -> (LogWriter, fixture::Fixture) {
+        let fixture = fixture::star();
+        let meta = LogMeta { picture_path: "star.png", settings: &fixture.settings, seed: 7 };
+        let mut log = LogWriter::open(path, &meta).unwrap();
+        for (tick, planned) in fixture.run.ticks.iter().zip(&fixture.plan.points).take(ticks) {
+            log.tick(tick, planned).unwrap();
+        }
+        (log, fixture)
+    }
+
+    /// Messages on a topic, until the file ends, however it ends.
+    fn count(bytes: &[u8], topic: &str) -> usize {
+        let messages =
+            mcap::MessageStream::new_with_options(bytes, mcap::read::Options::IgnoreEndMagic.into()).unwrap();
+        messages.map_while(Result::ok).filter(|m| m.channel.topic == topic).count()
+    }
+
+    /// Doubles of a message's fields by number, one level deep.
+    fn double_field(data: &[u8], number: u8) -> f64 {
+        let key = number << 3 | 1;
+        let at = data.iter().position(|&b| b == key).unwrap(); // the asked-for field stands first
+        f64::from_le_bytes(data[at + 1..at + 9].try_into().unwrap())
+    }
+
+    #[test]
+    fn a_finished_log_is_whole_indexed_and_true() {
+        let path = file("finished");
+        let (log, fixture) = begun(&path, 3000);
+        log.finish().unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+        assert!(!summary.chunk_indexes.is_empty());
+        assert_eq!(summary.stats.unwrap().message_count, 9000);
+        let metadata = mcap::read::metadata(&bytes, &summary.metadata_indexes[0]).unwrap();
+        assert_eq!(
+            (metadata.metadata["seed"].as_str(), metadata.metadata["profile"].as_str()),
+            ("7", "s-curve")
+        );
+        let spots = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+        let spots: Vec<_> = spots.filter(|m| m.channel.topic == "/spot").collect();
+        assert_eq!(spots.len(), 3000);
+        assert_eq!(spots[1234].log_time, 1_234_000_000);
+        assert_eq!(double_field(&spots[1234].data, 1), fixture.run.ticks[1234].spot.unwrap().x);
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn a_killed_program_leaves_every_tick() {
+        let path = file("killed");
+        let (log, _) = begun(&path, 777);
+        let bytes = std::fs::read(&path).unwrap(); // as a kill would leave it
+        for topic in ["/telemetry", "/spot", "/plan"] {
+            assert_eq!(count(&bytes, topic), 777, "{topic}");
+        }
+        drop(log);
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn a_log_cut_anywhere_is_read_up_to_the_cut() {
+        let path = file("cut");
+        let (log, _) = begun(&path, 200);
+        let bytes = std::fs::read(&path).unwrap();
+        let mut before = 0;
+        for length in (bytes.len() / 2..bytes.len()).step_by(97) {
+            let ticks = count(&bytes[..length], "/telemetry");
+            assert!(ticks >= before && ticks <= 200);
+            before = ticks;
+        }
+        assert!(before >= 199, "{before}");
+        drop(log);
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn a_fault_is_a_line_in_the_log() {
+        let path = file("fault");
+        let (mut log, fixture) = begun(&path, 10);
+        let mut tick = fixture.run.ticks[10];
+        tick.telemetry.fault = Some(Fault::EncoderJumped);
+        log.tick(&tick, &fixture.plan.points[10]).unwrap();
+        log.tick(&tick, &fixture.plan.points[11]).unwrap();
+        log.finish().unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        assert_eq!(count(&bytes, "/faults"), 1);
+        assert!(bytes.windows(14).any(|w| w == b"encoder-jumped"));
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn laps_follow_each_other_in_time() {
+        let path = file("laps");
+        let (mut log, fixture) = begun(&path, 40);
+        for tick in &fixture.run.ticks[..40] {
+            log.tick(tick, &fixture.plan.points[0]).unwrap();
+        }
+        log.finish().unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let spots = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+        let times: Vec<_> = spots.filter(|m| m.channel.topic == "/spot").map(|m| m.log_time).collect();
+        assert!(times.iter().copied().eq((0..80).map(|i| i * 1_000_000)), "{times:?}");
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn equal_runs_give_equal_logs() {
+        let logs = [file("one"), file("two")].map(|path| {
+            begun(&path, 500).0.finish().unwrap();
+            let bytes = std::fs::read(&path).unwrap();
+            std::fs::remove_file(&path).unwrap();
+            bytes
+        });
+        assert!(logs[0] == logs[1]);
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_is_named_in_the_error() {
+        let path = Path::new("/nowhere/at/all/run.mcap");
+        let meta = LogMeta { picture_path: "", settings: &[], seed: 0 };
+        let Err(error) = LogWriter::open(path, &meta) else { panic!("opened {path:?}") };
+        assert!(error.to_string().contains("/nowhere/at/all/run.mcap"), "{error}");
+    }
+}

@@ -1,0 +1,139 @@
+use std::fmt::Write;
+
+use super::axis::Axis;
+
+/// Side of a plot's own coordinates; it is stretched to whatever room the page has.
+pub(super) const SIDE: f64 = 1000.0;
+/// Columns a curve is thinned to.
+const COLUMNS: f64 = 1000.0;
+
+/// What a column of a curve holds: two values, in the order they came.
+#[derive(Clone, Copy)]
+struct Column {
+    number: i64,
+    low: (u32, f64),
+    high: (u32, f64),
+    count: u32,
+}
+
+/// SVG path data of a curve over time, thinned so that no peak is lost: each column keeps its lowest and its highest
+/// value. A `None` lifts the pen.
+pub(super) fn curve(points: impl Iterator<Item = (f64, Option<f64>)>, x: &Axis, y: &Axis) -> String {
+    let mut out = String::new();
+    let mut column: Option<Column> = None;
+    let mut pen_down = false;
+    for (at, value) in points {
+        let number = (x.share(at) * COLUMNS).floor() as i64;
+        let Some(value) = value.filter(|v| v.is_finite()) else {
+            finish(&mut out, column.take(), &mut pen_down, y);
+            pen_down = false;
+            continue;
+        };
+        match &mut column {
+            Some(c) if c.number == number => c.add(value),
+            _ => {
+                finish(&mut out, column.take(), &mut pen_down, y);
+                column = Some(Column { number, low: (0, value), high: (0, value), count: 1 });
+            }
+        }
+    }
+    finish(&mut out, column, &mut pen_down, y);
+    out
+}
+
+impl Column {
+    fn add(&mut self, value: f64) {
+        if value < self.low.1 {
+            self.low = (self.count, value);
+        }
+        if value > self.high.1 {
+            self.high = (self.count, value);
+        }
+        self.count += 1;
+    }
+}
+
+/// Draws a column's values.
+fn finish(out: &mut String, column: Option<Column>, pen_down: &mut bool, y: &Axis) {
+    let Some(c) = column else { return };
+    let (first, second) = if c.low.0 <= c.high.0 { (c.low, c.high) } else { (c.high, c.low) };
+    let at = c.number as f64 * SIDE / COLUMNS;
+    let mut point = |value: f64, at: f64| {
+        let letter = if std::mem::replace(pen_down, true) { 'L' } else { 'M' };
+        let height = tenth((1.0 - y.share(value)) * SIDE);
+        // writing to a String cannot fail
+        let _ = write!(out, "{letter}{} {height}", tenth(at));
+    };
+    point(first.1, at);
+    if first.0 != second.0 {
+        point(second.1, at + 0.5);
+    }
+}
+
+/// One decimal, no idle zero.
+pub(super) fn tenth(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
+}
+
+/// Spans where something holds, as path data of rectangles from edge to edge; gaps no wider than a column close up.
+pub(super) fn bands(points: impl Iterator<Item = (f64, bool)>, x: &Axis) -> String {
+    strip(points, x, SIDE)
+}
+
+/// The same, only `height` high from the top.
+pub(super) fn strip(points: impl Iterator<Item = (f64, bool)>, x: &Axis, height: f64) -> String {
+    let mut out = String::new();
+    let mut open: Option<(f64, f64)> = None;
+    for (at, holds) in points {
+        let place = x.share(at) * SIDE;
+        open = match (open, holds) {
+            (None, true) => Some((place, place)),
+            (Some((from, _)), true) => Some((from, place)),
+            (Some((from, to)), false) if place - to > SIDE / COLUMNS => {
+                band(&mut out, from, to, height);
+                None
+            }
+            (open, _) => open,
+        };
+    }
+    if let Some((from, to)) = open {
+        band(&mut out, from, to, height);
+    }
+    out
+}
+
+fn band(out: &mut String, from: f64, to: f64, height: f64) {
+    let _ = write!(out, "M{} 0H{}V{height}H{}Z", tenth(from), tenth(to), tenth(from));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thinned_curve_keeps_its_peaks_and_is_short() {
+        let x = Axis::new(0.0, 100.0, 5);
+        let y = Axis::new(-1.0, 3.0, 4);
+        let spike = |i: u32| if i == 77_777 { 3.0 } else { f64::from(i % 2) };
+        let path = curve((0..100_000).map(|i| (f64::from(i) * 1e-3, Some(spike(i)))), &x, &y);
+        assert!(path.contains(" 0L"), "the spike reaches the top");
+        assert!(path.matches(['M', 'L']).count() <= 2002);
+        assert_eq!(path.matches('M').count(), 1);
+    }
+
+    #[test]
+    fn a_gap_lifts_the_pen() {
+        let x = Axis::new(0.0, 3.0, 3);
+        let y = Axis::new(0.0, 1.0, 2);
+        let points =
+            [(0.0, Some(0.0)), (1.0, Some(1.0)), (1.5, None), (2.0, Some(1.0)), (3.0, Some(f64::NAN))];
+        assert_eq!(curve(points.into_iter(), &x, &y), "M0 1000L333 0M666 0");
+    }
+
+    #[test]
+    fn bands_cover_what_holds() {
+        let x = Axis::new(0.0, 10.0, 5);
+        let points = (0..=10).map(|i| (f64::from(i), (2..5).contains(&i) || i > 8));
+        assert_eq!(bands(points, &x), "M200 0H400V1000H200ZM900 0H1000V1000H900Z");
+    }
+}

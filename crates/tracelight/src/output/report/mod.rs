@@ -1,0 +1,154 @@
+//! `report.html`: the whole job on one page that needs nothing but itself.
+//!
+//! No request leaves the page (its own policy forbids it); the script only moves a cursor. Everything that came from
+//! outside, names above all, is escaped.
+
+mod axis;
+mod curve;
+mod diagrams;
+mod html;
+mod map;
+mod plot;
+mod tables;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use self::html::{data_uri, escaped};
+use super::sample::samples;
+use super::{Job, OutputError, Raster, Summary};
+
+/// Writes the page.
+pub(super) fn write(
+    path: &Path,
+    job: &Job<'_>,
+    figures: &Summary,
+    painting: &Raster,
+) -> Result<(), OutputError> {
+    let text = page(job, figures, painting)?;
+    std::fs::write(path, text).map_err(OutputError::at(path))
+}
+
+fn page(job: &Job<'_>, figures: &Summary, painting: &Raster) -> Result<String, OutputError> {
+    const PAINTING_PX: u32 = 1400;
+    const QUALITY: u8 = 84;
+    let jpeg = painting
+        .shrunk(PAINTING_PX)
+        .jpeg(QUALITY)
+        .map_err(|e| OutputError::Encode { path: "report.html".into(), reason: e.to_string() })?;
+    let (class, verdict) = tables::verdict(job);
+    Ok(format!(
+        include_str!("page.html"),
+        style = include_str!("style.css"),
+        script = include_str!("cursor.js"),
+        track = track(job),
+        title = escaped(&job.title()),
+        subtitle = tables::subtitle(job),
+        class = class,
+        verdict = escaped(&verdict),
+        painting = data_uri("image/jpeg", &jpeg),
+        painting_width = painting.width(),
+        painting_height = painting.height(),
+        tiles = tables::tiles(job, figures),
+        happenings = tables::happenings(job),
+        map = map::map(job)?,
+        diagrams = diagrams::diagrams(job),
+        schedule = diagrams::schedule(job),
+        figures = tables::figures(job, figures),
+        settings = tables::settings(job),
+        version = env!("CARGO_PKG_VERSION"),
+    ))
+}
+
+/// Where the spot was, thinned, for the cursor: `[[t_s, x_mm, y_mm, error_mm, lit], …]`, and the map's frame.
+fn track(job: &Job<'_>) -> String {
+    const MOST: usize = 1500;
+    let every = job.run.ticks.len().div_ceil(MOST).max(1);
+    let mut rows = String::new();
+    for sample in samples(job.plan, job.run).step_by(every) {
+        let Some(spot) = sample.tick.spot.filter(|p| p.is_finite()) else { continue };
+        let comma = if rows.is_empty() { "" } else { "," };
+        let error = sample.error_mm().filter(|e| e.is_finite()).unwrap_or(0.0);
+        let _ = write!(
+            rows,
+            "{comma}[{:.3},{:.1},{:.1},{error:.3},{}]",
+            sample.t_s,
+            spot.x * 1e3,
+            spot.y * 1e3,
+            u8::from(sample.tick.light)
+        );
+    }
+    let [a, _, _, d, e, f] = map::frame(job).as_coeffs();
+    format!("const track=[{rows}],frame=[{},{},{e},{f}];", a / 1e3, d / 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::{fixture, painting};
+
+    fn text(job: &Job<'_>) -> String {
+        page(job, &Summary::new(job), &painting::paint(job)).unwrap()
+    }
+
+    #[test]
+    fn the_page_asks_nobody_for_anything() {
+        let fixture = fixture::star();
+        let text = text(&fixture.job());
+        for outside in ["http://", "https://", "src=\"//", "url(", "@import", "<link"] {
+            assert!(!text.contains(outside), "{outside}");
+        }
+        assert!(text.contains("default-src 'none'"));
+        assert!(text.len() < 3_000_000, "{}", text.len());
+    }
+
+    #[test]
+    fn names_from_outside_are_text_not_markup() {
+        let fixture = fixture::star();
+        let text = text(&fixture.job());
+        assert!(!text.contains("<script>alert"));
+        assert!(text.contains("star &lt;&amp;&gt; &quot;friends&quot;.png"));
+    }
+
+    #[test]
+    fn every_diagram_is_there_with_its_unit() {
+        let fixture = fixture::star();
+        let text = text(&fixture.job());
+        for words in [
+            "Where the light fell",
+            "Pan angle",
+            "Tilt angle",
+            "angle, °",
+            "Tracking error",
+            "planned place, mm",
+            "Pan torque",
+            "Tilt torque",
+            "share of the limit, %",
+            "Time plan and speed",
+            "m/s",
+        ] {
+            assert!(text.contains(words), "{words}");
+        }
+    }
+
+    #[test]
+    fn a_long_run_stays_a_small_page() {
+        let mut fixture = fixture::star();
+        for _ in 0..3 {
+            let again = fixture.run.ticks.clone();
+            fixture.run.ticks.extend(again);
+        }
+        for (i, tick) in fixture.run.ticks.iter_mut().enumerate() {
+            tick.telemetry.tick = i as u32;
+        }
+        assert!(fixture.run.ticks.len() > 60_000);
+        assert!(text(&fixture.job()).len() < 3_000_000);
+    }
+
+    #[test]
+    fn a_job_that_never_ran_has_a_page() {
+        let fixture = fixture::nothing();
+        let text = text(&fixture.job());
+        assert!(text.contains("not run") && text.contains("Nothing was run"));
+    }
+}

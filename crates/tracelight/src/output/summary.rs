@@ -1,0 +1,249 @@
+use std::path::Path;
+
+use serde::Serialize;
+use tracelight_stroke::Drawing;
+use tracelight_trajectory::Plan;
+
+use super::sample::lit_s;
+use super::{Event, Job, OutputError, events};
+
+/// The figures of a job: `summary.json` and the `--json` of `trace`. Lengths in m unless the name says mm.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Summary {
+    /// What was traced.
+    pub(crate) picture: PictureFigures,
+    /// Where.
+    pub(crate) target: TargetFigures,
+    /// What it became.
+    pub(crate) strokes: StrokeFigures,
+    /// What was meant to happen.
+    pub(crate) plan: PlanFigures,
+    /// What happened instead.
+    pub(crate) tracking: TrackingFigures,
+    /// Light and what kept it away.
+    pub(crate) laser: LaserFigures,
+    /// Wall-clock time of the stages, ms.
+    pub(crate) timing_ms: TimingFigures,
+    /// Seed of the run.
+    pub(crate) seed: u64,
+    /// Version of the program.
+    pub(crate) version: &'static str,
+}
+
+/// See [`Summary::picture`]; sizes are `null` for a vector file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct PictureFigures {
+    pub(crate) path: String,
+    pub(crate) width_px: Option<u32>,
+    pub(crate) height_px: Option<u32>,
+}
+
+/// See [`Summary::target`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct TargetFigures {
+    pub(crate) width_m: f64,
+    pub(crate) height_m: f64,
+    pub(crate) distance_m: f64,
+}
+
+/// See [`Summary::strokes`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct StrokeFigures {
+    pub(crate) count: usize,
+    pub(crate) length_m: f64,
+    pub(crate) travel_m: f64,
+}
+
+/// See [`Summary::plan`]; `speed_m_s` is the mean planned speed while lit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct PlanFigures {
+    pub(crate) duration_s: f64,
+    pub(crate) lit_s: f64,
+    pub(crate) speed_m_s: f64,
+    pub(crate) torque_peak_fraction: f64,
+}
+
+/// See [`Summary::tracking`] and [`tracelight_sim::Tracking`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct TrackingFigures {
+    pub(crate) rms_mm: f64,
+    pub(crate) max_mm: f64,
+    pub(crate) off_stroke_rms_mm: f64,
+    pub(crate) off_stroke_max_mm: f64,
+    pub(crate) overshoot_percent: f64,
+    pub(crate) final_error_mm: f64,
+    pub(crate) lit_speed_m_s: f64,
+    pub(crate) at_speed_share: f64,
+}
+
+/// See [`Summary::laser`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct LaserFigures {
+    pub(crate) lit_s: f64,
+    pub(crate) faults: Vec<FaultFigures>,
+}
+
+/// A fault, or a darkening by the interlock.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct FaultFigures {
+    pub(crate) code: &'static str,
+    pub(crate) t_s: f64,
+    pub(crate) lasted_s: f64,
+    pub(crate) stops: bool,
+}
+
+/// See [`Summary::timing_ms`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct TimingFigures {
+    pub(crate) vision: f64,
+    pub(crate) plan: f64,
+    pub(crate) run: f64,
+    pub(crate) report: f64,
+}
+
+impl Summary {
+    /// All figures of a job.
+    pub(crate) fn new(job: &Job<'_>) -> Self {
+        Self {
+            picture: picture(job),
+            target: TargetFigures {
+                width_m: round(job.target.width_m),
+                height_m: round(job.target.height_m),
+                distance_m: round(job.target.distance_m),
+            },
+            strokes: StrokeFigures::of(job.drawing, job.plan),
+            plan: PlanFigures::of(job.plan),
+            tracking: tracking(job),
+            laser: LaserFigures {
+                lit_s: round(lit_s(job.run)),
+                faults: events(job.run).iter().map(FaultFigures::new).collect(),
+            },
+            timing_ms: TimingFigures {
+                vision: job.timing.vision_ms,
+                plan: job.timing.plan_ms,
+                run: job.timing.run_ms,
+                report: job.timing.report_ms,
+            },
+            seed: job.seed,
+            version: env!("CARGO_PKG_VERSION"),
+        }
+    }
+
+    /// The figures as JSON text, indented for people.
+    pub(crate) fn json(&self) -> String {
+        // numbers, texts and options cannot fail to become JSON
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+
+    /// Writes `summary.json`.
+    pub(super) fn write(&self, path: &Path) -> Result<(), OutputError> {
+        std::fs::write(path, self.json() + "\n").map_err(OutputError::at(path))
+    }
+}
+
+impl FaultFigures {
+    fn new(event: &Event) -> Self {
+        Self { code: event.code, t_s: round(event.t_s), lasted_s: round(event.lasted_s), stops: event.stops }
+    }
+}
+
+fn picture(job: &Job<'_>) -> PictureFigures {
+    PictureFigures {
+        path: job.picture_path.to_owned(),
+        width_px: job.picture.map(|p| p.raster.width()),
+        height_px: job.picture.map(|p| p.raster.height()),
+    }
+}
+
+impl StrokeFigures {
+    /// Of a drawing in tracing order and its plan.
+    pub(crate) fn of(drawing: &Drawing, plan: &Plan) -> Self {
+        const LENGTH_TOLERANCE_M: f64 = 1e-6;
+        let start = plan.points.first().map_or_else(Default::default, |p| p.spot);
+        Self {
+            count: drawing.strokes.len(),
+            length_m: round(drawing.length(LENGTH_TOLERANCE_M)),
+            travel_m: round(drawing.travel(start)),
+        }
+    }
+}
+
+impl PlanFigures {
+    /// Of a plan.
+    pub(crate) fn of(plan: &Plan) -> Self {
+        Self {
+            duration_s: round(plan.duration_s()),
+            lit_s: round(plan.lit_s()),
+            speed_m_s: round(planned_speed(plan)),
+            torque_peak_fraction: round(plan.torque_peak_fraction()),
+        }
+    }
+}
+
+/// Planned way of the lit spot over its time, m/s; zero for a plan without light.
+fn planned_speed(plan: &Plan) -> f64 {
+    let lit = plan.points.windows(2).filter(|pair| pair[0].lit && pair[1].lit);
+    let (way, ticks) =
+        lit.fold((0.0, 0_u32), |(way, ticks), pair| (way + pair[0].spot.distance(pair[1].spot), ticks + 1));
+    way / (f64::from(ticks.max(1)) * tracelight_rig::TICK_F64_S)
+}
+
+fn tracking(job: &Job<'_>) -> TrackingFigures {
+    let t = &job.tracking;
+    TrackingFigures {
+        rms_mm: round(t.rms_mm),
+        max_mm: round(t.max_mm),
+        off_stroke_rms_mm: round(t.off_stroke_rms_mm),
+        off_stroke_max_mm: round(t.off_stroke_max_mm),
+        overshoot_percent: round(t.overshoot_percent),
+        final_error_mm: round(t.final_error_mm),
+        lit_speed_m_s: round(t.lit_speed_m_s),
+        at_speed_share: round(t.at_speed_share),
+    }
+}
+
+/// Six decimals: a micrometre, a nanometre in mm, a microsecond.
+fn round(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::fixture;
+
+    #[test]
+    fn the_summary_has_every_name_scripts_rely_on() {
+        let fixture = fixture::star();
+        let value: serde_json::Value = serde_json::from_str(&Summary::new(&fixture.job()).json()).unwrap();
+        let check = |object: &str, names: &[&str]| {
+            for name in names {
+                assert!(value[object].get(name).is_some(), "{object}.{name}");
+            }
+        };
+        check("picture", &["path", "width_px", "height_px"]);
+        check("target", &["width_m", "height_m", "distance_m"]);
+        check("strokes", &["count", "length_m", "travel_m"]);
+        check("plan", &["duration_s", "lit_s", "speed_m_s", "torque_peak_fraction"]);
+        check("tracking", &["rms_mm", "max_mm", "overshoot_percent", "final_error_mm"]);
+        check("tracking", &["off_stroke_rms_mm", "off_stroke_max_mm", "lit_speed_m_s", "at_speed_share"]);
+        check("laser", &["lit_s", "faults"]);
+        check("timing_ms", &["vision", "plan", "run", "report"]);
+        assert!(value["seed"].is_u64() && value["version"].is_string());
+    }
+
+    #[test]
+    fn the_planned_speed_is_that_of_the_lit_spot() {
+        let fixture = fixture::star();
+        let speed = Summary::new(&fixture.job()).plan.speed_m_s;
+        assert!((speed - fixture::SPEED_M_S).abs() < 2e-3, "{speed}");
+    }
+
+    #[test]
+    fn a_job_that_never_ran_has_figures_too() {
+        let fixture = fixture::nothing();
+        let summary = Summary::new(&fixture.job());
+        assert_eq!((summary.strokes.count, summary.plan.speed_m_s, summary.laser.lit_s), (0, 0.0, 0.0));
+        assert!(summary.json().contains("\"width_px\": null"));
+    }
+}

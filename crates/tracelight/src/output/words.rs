@@ -1,0 +1,52 @@
+use tracelight_rig::{Darkness, Fault, Phase};
+
+/// What a fault means and what to look at, one sentence each.
+pub(crate) const fn fault_words(fault: Fault) -> &'static str {
+    match fault {
+        Fault::EncoderJumped => {
+            "An encoder's count moved faster than the joint can: look for a loose plug, interference or a slipping disc."
+        }
+        Fault::EncoderDead => {
+            "The motor was driven but its encoder did not move: look for a broken wire, a slipping disc or a blocked joint."
+        }
+        Fault::SetpointsStale => {
+            "Segments ran out in the middle of the job: the host was too slow or the connection broke."
+        }
+        Fault::SetpointInvalid => {
+            "A segment left the joint limits or did not join the one before it: plan the job again with this rig file."
+        }
+        Fault::LimitReached => {
+            "A joint left its limits: check the zero of the head and the limits in the rig file."
+        }
+        Fault::HoldTimedOut => {
+            "The head did not come back to its stroke in time: something holds it, or the gains do not suit this rig."
+        }
+        _ => "The rig stopped the job for a reason this version has no words for.",
+    }
+}
+
+/// Why the interlock darkened the beam, one sentence each.
+pub(crate) const fn darkness_words(reason: Darkness) -> &'static str {
+    match reason {
+        Darkness::Planned => "The plan wants no light here.",
+        Darkness::Disarmed => "Nobody armed the rig.",
+        Darkness::FollowingError => "A joint was further from its setpoint than the stroke allows.",
+        Darkness::SpotError => "Both joints together put the spot too far from its stroke.",
+        Darkness::Holding => "The plan waited until the head was back on its stroke.",
+        Darkness::OutOfBounds => "A setpoint lay outside the joint limits.",
+        Darkness::Stale => "There was no valid setpoint for this tick.",
+        Darkness::Faulted => "A fault is latched.",
+    }
+}
+
+/// A phase's name in tables and logs.
+pub(super) const fn phase_word(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Dark => "dark",
+        Phase::Armed => "armed",
+        Phase::Tracing => "tracing",
+        Phase::Holding => "holding",
+        Phase::Done => "done",
+        Phase::Faulted => "faulted",
+    }
+}

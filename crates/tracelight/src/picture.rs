@@ -1,0 +1,205 @@
+//! Bytes of a picture file to something that can be traced.
+
+use std::io::{Cursor, Read};
+use std::path::Path;
+
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use tracelight_formats::{FormatError, Sheet, csv, json, svg};
+use tracelight_stroke::{Affine, Drawing, Vec2};
+use tracelight_vision::Grey;
+
+use crate::failure::Failure;
+use crate::output::Raster;
+
+/// Largest picture, pixels: 100 megapixels.
+const MOST_PIXELS: u64 = 100_000_000;
+/// Largest file that is read, bytes: such a picture at 16 bit and four channels, uncompressed.
+const MOST_BYTES: u64 = 8 * MOST_PIXELS;
+/// What a decoder may allocate, bytes: the pixels of such a picture at 8 bit and four channels, and as much again.
+const MOST_DECODER_BYTES: u64 = 8 * MOST_PIXELS;
+
+/// What a file holds.
+pub(crate) enum Source {
+    /// Pixels, to be traced.
+    Pixels(Pixels),
+    /// Strokes, to be taken as they are.
+    Strokes(Sheet),
+}
+
+/// A decoded picture, upright, over white.
+pub(crate) struct Pixels {
+    /// For display.
+    pub(crate) colour: Raster,
+    /// For tracing.
+    pub(crate) grey: Grey,
+}
+
+/// Reads a picture or a drawing; `-` is standard input. What it is, its content says, not its name.
+pub(crate) fn read(path: &str) -> Result<Source, Failure> {
+    let bytes = read_bytes(path)?;
+    decode(path, &bytes)
+}
+
+/// The whole of a file, or of standard input, bounded.
+pub(crate) fn read_bytes(path: &str) -> Result<Vec<u8>, Failure> {
+    let unreadable = |e: std::io::Error| {
+        Failure::usage("unreadable", format!("cannot read {path}: {e}; check the name and the permissions"))
+    };
+    let mut bytes = Vec::new();
+    let limit = MOST_BYTES + 1;
+    if path == "-" {
+        std::io::stdin().lock().take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
+    } else {
+        let file = std::fs::File::open(path).map_err(unreadable)?;
+        if file.metadata().map_err(unreadable)?.is_dir() {
+            return Err(Failure::usage("unreadable", format!("{path} is a folder; give a picture in it")));
+        }
+        file.take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
+    }
+    if bytes.len() as u64 > MOST_BYTES {
+        let most = MOST_BYTES / 1_000_000;
+        return Err(Failure::usage(
+            "too-large",
+            format!("{path} is larger than {most} MB; give a smaller one"),
+        ));
+    }
+    if bytes.is_empty() {
+        return Err(Failure::usage("empty-file", format!("{path} is empty; give a picture or a drawing")));
+    }
+    Ok(bytes)
+}
+
+fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
+    let malformed = |e: &FormatError| match e {
+        FormatError::Nothing { .. } => Failure::failed("no-strokes", format!("{path}: {e}")),
+        _ => Failure::usage("malformed", format!("{path}: {e}")),
+    };
+    let extension = Path::new(path).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    match kind_of(bytes, extension.as_deref()) {
+        Kind::Svg => svg::read(bytes).map(Source::Strokes).map_err(|e| malformed(&e)),
+        Kind::Json => json::read(bytes).map(|t| Source::Strokes(t.sheet)).map_err(|e| malformed(&e)),
+        Kind::Csv => csv::read(bytes).map(|d| Source::Strokes(sheet_about(&d))).map_err(|e| malformed(&e)),
+        Kind::Image => decode_image(path, bytes).map(Source::Pixels),
+    }
+}
+
+/// A sheet of true size whose centre is the target's origin, just large enough for a drawing in target metres.
+fn sheet_about(drawing: &Drawing) -> Sheet {
+    const LEAST_M: f64 = 1e-3;
+    let points = drawing.strokes.iter().flat_map(|s| s.path.flatten(LEAST_M));
+    let reach =
+        points.fold(Vec2::new(LEAST_M, LEAST_M), |r, p| Vec2::new(r.x.max(p.x.abs()), r.y.max(p.y.abs())));
+    Sheet {
+        width: 2.0 * reach.x,
+        height: 2.0 * reach.y,
+        metres_per_unit: Some(1.0),
+        drawing: drawing.transformed(Affine::FLIP_Y.then_translate(reach)),
+    }
+}
+
+enum Kind {
+    Svg,
+    Json,
+    Csv,
+    Image,
+}
+
+/// By content; a name only decides where the content is silent.
+fn kind_of(bytes: &[u8], extension: Option<&str>) -> Kind {
+    if image::guess_format(bytes).is_ok() {
+        return Kind::Image;
+    }
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1024)]);
+    let head = head.trim_start_matches('\u{feff}').trim_start();
+    match extension {
+        _ if head.starts_with('<') => Kind::Svg,
+        _ if head.starts_with('{') => Kind::Json,
+        _ if head.starts_with("stroke,") => Kind::Csv,
+        Some("svg") => Kind::Svg,
+        Some("json") => Kind::Json,
+        Some("csv") => Kind::Csv,
+        _ => Kind::Image,
+    }
+}
+
+fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
+    let not_a_picture = || {
+        let known = "PNG, JPEG, WebP, BMP, GIF, PNM, TIFF, SVG, JSON or CSV";
+        Failure::usage("not-a-picture", format!("{path} is none of {known}"))
+    };
+    let broken = |e: ImageError| match e {
+        ImageError::Limits(_) => too_large(path, "more than the memory a picture may take"),
+        ImageError::Unsupported(_) => Failure::usage("unsupported", format!("{path}: {e}; save it as PNG")),
+        _ => {
+            Failure::usage("malformed", format!("{path} is broken: {e}; save it again or give another file"))
+        }
+    };
+    let mut reader =
+        ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|_| not_a_picture())?;
+    if reader.format().is_none() {
+        return Err(not_a_picture());
+    }
+    if reader.format() == Some(ImageFormat::Jpeg) && !jpeg_is_whole(bytes) {
+        return Err(Failure::usage(
+            "malformed",
+            format!("{path} is cut off: its picture has no end; save it again"),
+        ));
+    }
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MOST_DECODER_BYTES);
+    reader.limits(limits);
+    let mut decoder = reader.into_decoder().map_err(broken)?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        return Err(too_large(path, &format!("{width} × {height} pixels")));
+    }
+    let upright = decoder.orientation().ok();
+    let mut image = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    if let Some(orientation) = upright {
+        image.apply_orientation(orientation);
+    }
+    pixels(path, image)
+}
+
+/// Whether the last scan of a JPEG ends: decoders fill what is missing with grey. Within a scan 0xFF is followed by 0,
+/// so neither marker can be picture data; a thumbnail's stand before the picture's (ITU-T T.81, §B.1.1.3).
+fn jpeg_is_whole(bytes: &[u8]) -> bool {
+    let last = |marker: u8| bytes.windows(2).rposition(|w| w == [0xFF, marker]);
+    let (start_of_scan, end_of_image) = (last(0xDA), last(0xD9));
+    start_of_scan.is_none() || end_of_image > start_of_scan
+}
+
+fn too_large(path: &str, what: &str) -> Failure {
+    let most = MOST_PIXELS / 1_000_000;
+    Failure::usage(
+        "too-large",
+        format!("{path} declares {what}; at most {most} megapixels are traced: scale it down"),
+    )
+}
+
+/// Alpha over white, 8 bit, and the luma of it.
+fn pixels(path: &str, image: DynamicImage) -> Result<Pixels, Failure> {
+    let (width, height) = (image.width(), image.height());
+    let rgb = if image.color().has_alpha() { over_white(image) } else { image.into_rgb8().into_raw() };
+    let luma = rgb.chunks_exact(3).map(luma).collect();
+    let grey = Grey::new(width as usize, height as usize, luma)
+        .map_err(|e| Failure::failed("no-strokes-found", format!("{path}: {e}")))?;
+    let colour = Raster::new(width, height, rgb)
+        .ok_or_else(|| Failure::usage("malformed", format!("{path} has no pixels")))?;
+    Ok(Pixels { colour, grey })
+}
+
+fn over_white(image: DynamicImage) -> Vec<u8> {
+    let rgba = image.into_rgba8();
+    let blend = |c: u8, a: u8| {
+        let (c, a) = (u32::from(c), u32::from(a));
+        ((c * a + 255 * (255 - a) + 127) / 255) as u8
+    };
+    rgba.pixels().flat_map(|p| [0, 1, 2].map(|i| blend(p.0[i], p.0[3]))).collect()
+}
+
+/// ITU-R BT.601 luma in integers.
+fn luma(rgb: &[u8]) -> u8 {
+    let [r, g, b] = [rgb[0], rgb[1], rgb[2]].map(u32::from);
+    ((299 * r + 587 * g + 114 * b + 500) / 1000) as u8
+}

@@ -1,0 +1,50 @@
+//! What stderr shows while work goes on.
+
+use std::io::IsTerminal;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A bar with the stage's name when stderr is a terminal, nothing otherwise.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    quiet: bool,
+}
+
+impl Progress {
+    pub(crate) fn new(quiet: bool) -> Self {
+        let shown = !quiet && std::io::stderr().is_terminal();
+        let bar = if shown { ProgressBar::new(1) } else { ProgressBar::hidden() };
+        if let Ok(style) =
+            ProgressStyle::with_template("{msg:10} {wide_bar} {percent:>3} %  {elapsed} of {duration}")
+        {
+            bar.set_style(style);
+        }
+        Self { bar, quiet }
+    }
+
+    /// Begins a stage of `steps` steps.
+    pub(crate) fn stage(&self, name: &'static str, steps: u64) {
+        self.bar.set_length(steps.max(1));
+        self.bar.set_position(0);
+        self.bar.set_message(name);
+    }
+
+    /// Moves the bar to a step.
+    pub(crate) fn at(&self, step: u64) {
+        self.bar.set_position(step);
+    }
+
+    /// A remark that stays on stderr.
+    #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
+    pub(crate) fn say(&self, message: &str) {
+        if !self.quiet {
+            self.bar.suspend(|| eprintln!("{message}"));
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,319 @@
+//! Rig files: `rig.toml` to [`RigConfig`] and back.
+//!
+//! A file has two halves. `[model]` is what planner and controller believe; `[truth]` is what the simulated head is,
+//! and defaults to the model. Keys that are not given keep the values of the preset `report`.
+
+mod caret;
+mod keys;
+
+use std::ops::Range;
+
+use toml_edit::{Document, Item, TableLike, Value};
+use tracelight_plant::Wear;
+use tracelight_sim::{Model, RigConfig};
+
+use crate::failure::Failure;
+use crate::picture::read_bytes;
+use crate::units;
+use caret::Mark;
+use keys::{Key, RIG_KEYS, Slot, model_keys};
+
+/// Largest rig file, bytes: a hundred times what `rigs show` prints.
+const MOST_BYTES: usize = 1 << 20;
+
+/// A preset by name, or a rig file by path.
+pub(crate) fn load(name: &str) -> Result<RigConfig, Failure> {
+    if let Some(preset) = RigConfig::preset(name) {
+        return Ok(preset);
+    }
+    if !name.ends_with(".toml") && !std::path::Path::new(name).exists() {
+        let known: Vec<String> = RigConfig::presets().into_iter().map(|p| p.name).collect();
+        let message = format!("{name} is no preset ({}) and no rig file", known.join(", "));
+        return Err(Failure::usage("rig-file", message));
+    }
+    let bytes = read_bytes(name)?;
+    if bytes.len() > MOST_BYTES {
+        let message = format!("{name} has {} bytes, a rig file has at most {MOST_BYTES}", bytes.len());
+        return Err(Failure::usage("rig-file", message));
+    }
+    let text = String::from_utf8(bytes)
+        .map_err(|_| Failure::usage("rig-file", format!("{name} is not text; give a rig file (.toml)")))?;
+    parse(name, &text).map_err(|message| Failure::usage("rig-file", message))
+}
+
+/// One value of a file with where it stands.
+struct Entry<'a> {
+    path: String,
+    value: &'a Value,
+    /// Of the key, for unknown ones.
+    key_span: Option<Range<usize>>,
+}
+
+/// Parses a file; the message of an error is complete, with file, line and caret.
+pub(crate) fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
+    let document = Document::parse(text).map_err(|e| {
+        let place = Mark { file, text, span: e.span() };
+        place.message(&format!("not valid TOML: {}", e.message().trim()))
+    })?;
+    let mut entries = Vec::new();
+    flatten("", document.as_table(), &mut entries);
+    let mut config = RigConfig::report();
+    config.truth.wear = Wear::NONE;
+    let models = model_keys();
+    // the model first: the truth starts from it, wherever it stands in the file
+    for entry in &entries {
+        let Some(path) = entry.path.strip_prefix("model.") else { continue };
+        let place = Mark { file, text, span: entry.value.span() };
+        let Some(key) = models.iter().find(|k| k.path == path) else {
+            return Err(unknown(file, text, entry));
+        };
+        set(key, &mut config.model, entry, &place)?;
+    }
+    config.truth.model = config.model;
+    for entry in entries.iter().filter(|e| !e.path.starts_with("model.")) {
+        let place = Mark { file, text, span: entry.value.span() };
+        set_other(&models, &mut config, entry, &place).unwrap_or_else(|| Err(unknown(file, text, entry)))?;
+    }
+    for (half, model) in [("model", &config.model), ("truth", &config.truth.model)] {
+        if let Some(trouble) = impossible(model) {
+            return Err(format!("{file}: [{half}] {trouble}"));
+        }
+    }
+    Ok(config)
+}
+
+/// What no head can be, however sound each number is by itself.
+fn impossible(model: &Model) -> Option<String> {
+    const LEAST_KG_M2: f64 = 1e-9;
+    const STRONGEST_COUPLING: f64 = 0.5; // of M11 and M22: the plant resolves friction joint by joint
+    let lumped = model.bodies.lumped();
+    for degrees in -180..=180 {
+        let mass = lumped.mass(f64::from(degrees).to_radians());
+        let least = mass.m11.min(mass.m22);
+        if least < LEAST_KG_M2 {
+            let what = format!("the inertia at a joint is {least:e} kgm2 at {degrees}° of tilt");
+            return Some(format!(
+                "{what}, and must be at least {LEAST_KG_M2:e}: give masses, inertias, rotors"
+            ));
+        }
+        if mass.m12.abs() > STRONGEST_COUPLING * least {
+            let what = format!("the joints' coupling inertia is {:e} kgm2 at {degrees}° of tilt", mass.m12);
+            return Some(format!("{what}, more than half of a joint's own ({least:e}): check the tilt body"));
+        }
+    }
+    None
+}
+
+/// Sets a key outside `[model]`; `None` if there is no such key.
+fn set_other(
+    models: &[Key<Model>],
+    config: &mut RigConfig,
+    entry: &Entry<'_>,
+    place: &Mark<'_>,
+) -> Option<Result<(), String>> {
+    match (entry.path.as_str(), entry.value) {
+        ("name", Value::String(s)) => {
+            config.name = s.value().clone();
+            return Some(Ok(()));
+        }
+        ("description", Value::String(s)) => {
+            config.description = s.value().clone();
+            return Some(Ok(()));
+        }
+        ("name" | "description", _) => {
+            return Some(Err(place.message(&format!("{} must be text", entry.path))));
+        }
+        _ => {}
+    }
+    if let Some(key) = RIG_KEYS.iter().find(|k| k.path == entry.path) {
+        return Some(set(key, config, entry, place));
+    }
+    let path = entry.path.strip_prefix("truth.")?;
+    let key = models.iter().find(|k| k.path == path)?;
+    Some(set(key, &mut config.truth.model, entry, place))
+}
+
+/// Every value under a table with its dotted path.
+fn flatten<'a>(prefix: &str, table: &'a dyn TableLike, into: &mut Vec<Entry<'a>>) {
+    for (name, item) in table.iter() {
+        let path = if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") };
+        match item {
+            Item::Table(inner) => flatten(&path, inner, into),
+            Item::Value(Value::InlineTable(inner)) => flatten(&path, inner, into),
+            Item::Value(value) => {
+                let key_span = table.key(name).and_then(|k| k.span());
+                into.push(Entry { path, value, key_span });
+            }
+            // no key here is an array: whatever stands in one is reported as unknown under this name
+            Item::ArrayOfTables(tables) => tables.iter().for_each(|t| flatten(&format!("{path}[]"), t, into)),
+            Item::None => {}
+        }
+    }
+}
+
+fn unknown(file: &str, text: &str, entry: &Entry<'_>) -> String {
+    const LONGEST: usize = 80; // no key is longer, and comparing takes the product of the lengths
+    let place = Mark { file, text, span: entry.key_span.clone() };
+    if entry.path.len() > LONGEST {
+        let start: String = entry.path.chars().take(LONGEST).collect();
+        return place.message(&format!("unknown key {start}…"));
+    }
+    let nearest =
+        known_paths().into_iter().map(|path| (strsim::damerau_levenshtein(&entry.path, &path), path)).min();
+    let hint = nearest.map_or_else(String::new, |(_, path)| format!("; did you mean {path}?"));
+    place.message(&format!("unknown key {}{hint}", entry.path))
+}
+
+fn known_paths() -> Vec<String> {
+    let halves =
+        ["model", "truth"].map(|half| model_keys().into_iter().map(move |k| format!("{half}.{}", k.path)));
+    let own = RIG_KEYS.iter().map(|k| k.path.to_owned()).chain(["name".to_owned(), "description".to_owned()]);
+    halves.into_iter().flatten().chain(own).collect()
+}
+
+fn set<T>(key: &Key<T>, target: &mut T, entry: &Entry<'_>, place: &Mark<'_>) -> Result<(), String> {
+    let complain = |what: String| place.message(&format!("{}: {what}", entry.path));
+    if let Slot::Flag(field) = key.slot {
+        let flag = entry.value.as_bool().ok_or_else(|| complain("must be true or false".into()))?;
+        *field(target) = flag;
+        return Ok(());
+    }
+    let value = number(key, entry.value).map_err(&complain)?;
+    let (low, high) = key.bounds;
+    if !(low <= value && value <= high) {
+        let unit = key.units.first().map_or("", |u| u.0);
+        let given = entry.value.to_string();
+        return Err(complain(format!("{} must be from {low}{unit} to {high}{unit}", given.trim())));
+    }
+    match key.slot {
+        Slot::Real(field) => *field(target) = value,
+        Slot::Count(field) if value.fract() == 0.0 => *field(target) = value as u32,
+        Slot::Count(_) => return Err(complain("must be a whole number".into())),
+        Slot::Flag(_) => {}
+    }
+    Ok(())
+}
+
+/// A value in SI: a text with its unit, or a bare number where there is none.
+fn number<T>(key: &Key<T>, value: &Value) -> Result<f64, String> {
+    let fits = || key.units.iter().map(|u| u.0).collect::<Vec<_>>().join(", ");
+    let bare = value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
+    match (value.as_str(), bare) {
+        (Some(text), _) if !key.units.is_empty() => units::parse(text, key.units).map_err(|e| e.to_string()),
+        (None, Some(number)) if key.units.is_empty() => Ok(number),
+        (_, Some(number)) => Err(format!("{number} has no unit; write it as a text with one of {}", fits())),
+        _ if key.units.is_empty() => Err("must be a bare number".into()),
+        _ => Err(format!("must be a text with a number and one of {}", fits())),
+    }
+}
+
+/// A rig as a file, every key with its meaning.
+pub(crate) fn write(config: &RigConfig) -> String {
+    let mut config = config.clone();
+    let mut text = String::from(
+        "# A rig file for Tracelight. [model]: what planner and controller believe. [truth]: what the simulated head\n\
+         # is; keys left out there are as in [model]. Keys left out elsewhere are as in the preset `report`.\n\n",
+    );
+    text += &format!("name = {}\ndescription = {}\n", quoted(&config.name), quoted(&config.description));
+    let models = model_keys();
+    let (mut model, mut truth) = (config.model, config.truth.model);
+    section(&mut text, "model", &models, &mut model);
+    let differs = |key: &Key<Model>| shown(key, &mut config.model.clone()) != shown(key, &mut truth.clone());
+    let different: Vec<_> = models.iter().copied().filter(differs).collect();
+    section(&mut text, "truth", &different, &mut truth);
+    section(&mut text, "", &RIG_KEYS, &mut config);
+    text
+}
+
+fn quoted(text: &str) -> String {
+    Value::from(text).to_string()
+}
+
+/// Keys grouped under their tables, tables in the order in which they first appear.
+fn section<T>(text: &mut String, prefix: &str, keys: &[Key<T>], from: &mut T) {
+    let table_of = |key: &Key<T>| {
+        let own = key.path.rsplit_once('.').map_or("", |(table, _)| table);
+        [prefix, own].into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(".")
+    };
+    let mut tables: Vec<String> = Vec::new();
+    keys.iter().map(&table_of).for_each(|table| {
+        if !tables.contains(&table) {
+            tables.push(table);
+        }
+    });
+    for table in tables {
+        *text += &format!("\n[{table}]\n");
+        for key in keys.iter().filter(|k| table_of(k) == table) {
+            let name = key.path.rsplit_once('.').map_or(key.path, |(_, name)| name);
+            *text += &format!("{:42} # {}\n", format!("{name} = {}", shown(key, from)), key.meaning);
+        }
+    }
+}
+
+/// A value as it stands in a file: shortest digits that read back to the same bits.
+fn shown<T>(key: &Key<T>, from: &mut T) -> String {
+    match key.slot {
+        Slot::Real(field) => match key.units.first() {
+            Some((unit, _)) => format!("\"{}{unit}\"", field(from)),
+            None => format!("{:?}", field(from)),
+        },
+        Slot::Count(field) => field(from).to_string(),
+        Slot::Flag(field) => field(from).to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        parse("my.toml", text).unwrap_err()
+    }
+
+    #[test]
+    fn every_preset_reads_back_to_the_same_bits() {
+        for preset in RigConfig::presets() {
+            assert_eq!(parse("rig.toml", &write(&preset)).unwrap(), preset);
+        }
+    }
+
+    #[test]
+    fn the_truth_starts_from_the_model_wherever_that_stands() {
+        let text = "[truth.pan.motor]\nlimit = \"9V\"\n[model.pan.motor]\ntorque_per_volt = \"0.05Nm/V\"\n";
+        let rig = parse("my.toml", text).unwrap();
+        assert_eq!(rig.truth.model.motors.pan.torque_nm_per_v, 0.05);
+        assert_eq!((rig.model.motors.pan.limit_v, rig.truth.model.motors.pan.limit_v), (10.0, 9.0));
+    }
+
+    #[test]
+    fn a_wrong_unit_is_shown_with_line_and_caret() {
+        let message = error("name = \"x\"\n[model.pan.motor]\nlimit = \"10A\"\n");
+        assert!(message.contains("my.toml:3:9"), "{message}");
+        assert!(message.contains("the unit A does not fit") && message.contains("^^^^^"), "{message}");
+    }
+
+    #[test]
+    fn a_bare_number_a_bound_and_a_typo_say_what_to_do() {
+        assert!(error("[model.pan.motor]\nlimit = 10\n").contains("one of V, mV"));
+        let bound = error("[model.pan.motor]\nlimit = \"-10V\"\n");
+        assert!(bound.contains("must be from 0.001V to 1000V"), "{bound}");
+        let typo = error("[model.pan.motr]\nlimit = \"10V\"\n");
+        assert!(typo.contains("did you mean model.pan.motor.limit?"), "{typo}");
+    }
+
+    #[test]
+    fn a_head_without_inertia_or_of_nothing_but_coupling_is_refused() {
+        let none = "mass = \"0kg\"\ninertia_xx = \"0kgm2\"\ninertia_yy = \"0kgm2\"\ninertia_zz = \"0kgm2\"\n";
+        let massless = format!("[truth.tilt]\nrotor_inertia = \"0kgm2\"\n[truth.tilt.body]\n{none}");
+        assert!(error(&massless).contains("[truth] the inertia at a joint"), "{}", error(&massless));
+        assert!(error("[truth.tilt.body]\ninertia_yz = \"10kgm2\"\n").contains("coupling"));
+    }
+
+    #[test]
+    fn broken_toml_is_shown_where_it_breaks() {
+        let message = error("[model\nname = 3");
+        assert!(message.contains("my.toml:1:") && message.contains("not valid TOML"), "{message}");
+        assert!(error("[[model.pan.motor]]\nlimit = \"9V\"\n").contains("unknown key"));
+        assert!(error("[model.model.pan.motor]\nlimit = \"9V\"\n").contains("unknown key"));
+    }
+}

@@ -1,0 +1,266 @@
+//! Every key of a rig file: its place, unit, bounds, meaning, and the field it sets.
+
+use tracelight_sim::{Model, RigConfig};
+
+use crate::units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, LENGTHS, TIMES, Unit};
+
+/// The field a key sets.
+#[derive(Clone, Copy)]
+pub(super) enum Slot<T> {
+    /// A quantity or a pure number.
+    Real(fn(&mut T) -> &mut f64),
+    /// A whole number.
+    Count(fn(&mut T) -> &mut u32),
+    /// Yes or no.
+    Flag(fn(&mut T) -> &mut bool),
+}
+
+/// A key of `T`.
+#[derive(Clone, Copy)]
+pub(super) struct Key<T: 'static> {
+    /// Dotted path under its section.
+    pub(super) path: &'static str,
+    /// Units that fit; empty for a pure number.
+    pub(super) units: &'static [Unit],
+    /// Lowest and highest value, SI.
+    pub(super) bounds: (f64, f64),
+    /// What it is.
+    pub(super) meaning: &'static str,
+    /// Where it goes.
+    pub(super) slot: Slot<T>,
+}
+
+const PURE: &[Unit] = &[];
+const MASS: &[Unit] = &[("kg", 1.0), ("g", 1e-3)];
+const INERTIA: &[Unit] = &[("kgm2", 1.0), ("gcm2", 1e-7)];
+const GRAVITY: &[Unit] = &[("m/s2", 1.0)];
+const TORQUE: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
+const VISCOUS: &[Unit] = &[("Nms/rad", 1.0), ("mNms/rad", 1e-3)];
+const GAIN: &[Unit] = &[("Nm/V", 1.0), ("mNm/V", 1e-3)];
+const VOLTAGE: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
+
+type Real = fn(&mut Model) -> &mut f64;
+
+const fn real<T>(
+    path: &'static str,
+    units: &'static [Unit],
+    bounds: (f64, f64),
+    meaning: &'static str,
+    field: fn(&mut T) -> &mut f64,
+) -> Key<T> {
+    Key { path, units, bounds, meaning, slot: Slot::Real(field) }
+}
+
+/// A body's mass, centre and inertia.
+macro_rules! body {
+    ($name:literal, $field:ident) => {
+        [
+            real(
+                concat!($name, ".body.mass"),
+                MASS,
+                (0.0, 100.0),
+                "mass of what the joint carries by itself",
+                (|m| &mut m.bodies.$field.mass_kg) as Real,
+            ),
+            real(
+                concat!($name, ".body.centre_x"),
+                LENGTHS,
+                (-1.0, 1.0),
+                "its centre of mass, forward",
+                |m| &mut m.bodies.$field.centre_m[0],
+            ),
+            real(concat!($name, ".body.centre_y"), LENGTHS, (-1.0, 1.0), "left", |m| {
+                &mut m.bodies.$field.centre_m[1]
+            }),
+            real(concat!($name, ".body.centre_z"), LENGTHS, (-1.0, 1.0), "up", |m| {
+                &mut m.bodies.$field.centre_m[2]
+            }),
+            real(
+                concat!($name, ".body.inertia_xx"),
+                INERTIA,
+                (0.0, 10.0),
+                "its inertia tensor about that centre",
+                |m| &mut m.bodies.$field.inertia.xx,
+            ),
+            real(concat!($name, ".body.inertia_xy"), INERTIA, (-10.0, 10.0), "entry 12 of it", |m| {
+                &mut m.bodies.$field.inertia.xy
+            }),
+            real(concat!($name, ".body.inertia_xz"), INERTIA, (-10.0, 10.0), "entry 13", |m| {
+                &mut m.bodies.$field.inertia.xz
+            }),
+            real(concat!($name, ".body.inertia_yy"), INERTIA, (0.0, 10.0), "entry 22", |m| {
+                &mut m.bodies.$field.inertia.yy
+            }),
+            real(concat!($name, ".body.inertia_yz"), INERTIA, (-10.0, 10.0), "entry 23", |m| {
+                &mut m.bodies.$field.inertia.yz
+            }),
+            real(concat!($name, ".body.inertia_zz"), INERTIA, (0.0, 10.0), "entry 33", |m| {
+                &mut m.bodies.$field.inertia.zz
+            }),
+        ]
+    };
+}
+
+/// A joint's drive.
+macro_rules! drive {
+    ($name:literal, $joint:ident) => {
+        [
+            real(
+                concat!($name, ".rotor_inertia"),
+                INERTIA,
+                (0.0, 100.0),
+                "motor's inertia as felt at the joint (motor × ratio²)",
+                (|m| &mut m.bodies.rotor_kg_m2.$joint) as Real,
+            ),
+            real(concat!($name, ".motor.torque_per_volt"), GAIN, (1e-9, 1e3), "joint torque per volt", |m| {
+                &mut m.motors.$joint.torque_nm_per_v
+            }),
+            real(concat!($name, ".motor.limit"), VOLTAGE, (1e-3, 1e3), "largest command", |m| {
+                &mut m.motors.$joint.limit_v
+            }),
+            real(
+                concat!($name, ".friction.viscous_pos"),
+                VISCOUS,
+                (0.0, 10.0),
+                "slope of friction, turning positively",
+                |m| &mut m.friction.$joint.viscous_pos,
+            ),
+            real(concat!($name, ".friction.viscous_neg"), VISCOUS, (0.0, 10.0), "turning negatively", |m| {
+                &mut m.friction.$joint.viscous_neg
+            }),
+            real(
+                concat!($name, ".friction.coulomb_pos"),
+                TORQUE,
+                (0.0, 100.0),
+                "friction that does not grow with speed, turning positively",
+                |m| &mut m.friction.$joint.coulomb_pos_nm,
+            ),
+            real(
+                concat!($name, ".friction.coulomb_neg"),
+                TORQUE,
+                (-100.0, 0.0),
+                "turning negatively; negative itself",
+                |m| &mut m.friction.$joint.coulomb_neg_nm,
+            ),
+            real(concat!($name, ".range_min"), ANGLES, (-3.2, 0.0), "lowest angle", |m| {
+                &mut m.geometry.range_rad.$joint.0
+            }),
+            real(concat!($name, ".range_max"), ANGLES, (0.0, 3.2), "highest angle", |m| {
+                &mut m.geometry.range_rad.$joint.1
+            }),
+        ]
+    };
+}
+
+/// What belongs to no joint.
+const WHOLE: [Key<Model>; 8] = [
+    real("gravity", GRAVITY, (0.0, 30.0), "along −z", (|m| &mut m.bodies.gravity_m_s2) as Real),
+    Key {
+        path: "encoder.counts_per_rev",
+        units: PURE,
+        bounds: (16.0, 1e8),
+        meaning: "counts a turn of the joint",
+        slot: Slot::Count(|m| &mut m.encoder.counts_per_rev),
+    },
+    Key {
+        path: "encoder.edge_stamps",
+        units: PURE,
+        bounds: (0.0, 1.0),
+        meaning: "whether the hardware stamps edges with their time",
+        slot: Slot::Flag(|m| &mut m.encoder.edge_stamps),
+    },
+    real("relay.on", TIMES, (0.0, 0.05), "from the gate's rise to light", |m| &mut m.relay.on_s),
+    real("relay.off", TIMES, (0.0, 0.05), "from the gate's fall to dark", |m| &mut m.relay.off_s),
+    real(
+        "laser.forward",
+        LENGTHS,
+        (-0.5, 0.5),
+        "where the beam leaves, from the crossing of the axes",
+        |m| &mut m.geometry.laser_offset_m[0],
+    ),
+    real("laser.left", LENGTHS, (-0.5, 0.5), "the same, to the left", |m| &mut m.geometry.laser_offset_m[1]),
+    real("laser.up", LENGTHS, (-0.5, 0.5), "the same, upwards", |m| &mut m.geometry.laser_offset_m[2]),
+];
+
+/// Keys of `[model]` and of `[truth]`.
+pub(super) fn model_keys() -> Vec<Key<Model>> {
+    let mut keys = WHOLE.to_vec();
+    keys.extend(drive!("pan", pan));
+    keys.extend(body!("pan", pan_body));
+    keys.extend(drive!("tilt", tilt));
+    keys.extend(body!("tilt", tilt_body));
+    keys
+}
+
+/// Keys of `[truth.wear]`, `[control]` and `[motion]`.
+pub(super) const RIG_KEYS: [Key<RigConfig>; 17] = [
+    real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
+        &mut r.truth.wear.stribeck_ratio
+    }),
+    real(
+        "truth.wear.stribeck_speed",
+        ANGULAR_SPEEDS,
+        (1e-6, 10.0),
+        "speed at which that excess has fallen to 1/e",
+        |r| &mut r.truth.wear.stribeck_speed_rad_s,
+    ),
+    real(
+        "truth.wear.friction_ripple",
+        PURE,
+        (0.0, 0.9),
+        "share by which friction ripples over a turn",
+        |r| &mut r.truth.wear.friction_ripple,
+    ),
+    real("truth.wear.edge_error", PURE, (0.0, 0.4), "largest misplacement of an encoder edge, counts", |r| {
+        &mut r.truth.wear.edge_error_counts
+    }),
+    real("truth.wear.backlash", ANGLES, (0.0, 0.1), "play between encoder and beam", |r| {
+        &mut r.truth.wear.backlash_rad
+    }),
+    real("truth.wear.gain_spread", PURE, (0.0, 0.9), "largest relative error of an amplifier's gain", |r| {
+        &mut r.truth.wear.gain_spread
+    }),
+    real("control.pan_bandwidth", ANGULAR_SPEEDS, (0.1, 500.0), "where pan's closed-loop poles lie", |r| {
+        &mut r.control.bandwidth_rad_s.pan
+    }),
+    real("control.tilt_bandwidth", ANGULAR_SPEEDS, (0.1, 500.0), "where tilt's lie", |r| {
+        &mut r.control.bandwidth_rad_s.tilt
+    }),
+    real(
+        "control.tolerance",
+        LENGTHS,
+        (1e-5, 1.0),
+        "distance on the target beyond which the laser is darkened",
+        |r| &mut r.control.tolerance_m,
+    ),
+    real("control.hold_limit", TIMES, (0.1, 600.0), "how long the head may need to come back", |r| {
+        &mut r.control.hold_limit_s
+    }),
+    real("motion.torque_share", PURE, (0.05, 0.95), "share of the motors' torque a plan may use", |r| {
+        &mut r.motion.torque_share
+    }),
+    real("motion.pan_speed", ANGULAR_SPEEDS, (1e-3, 1e3), "highest speed of pan", |r| {
+        &mut r.motion.speed_limit_rad_s.pan
+    }),
+    real("motion.tilt_speed", ANGULAR_SPEEDS, (1e-3, 1e3), "highest speed of tilt", |r| {
+        &mut r.motion.speed_limit_rad_s.tilt
+    }),
+    real(
+        "motion.pan_acceleration",
+        ANGULAR_ACCELERATIONS,
+        (1e-3, 1e6),
+        "highest acceleration wished for; the motors decide where they allow less",
+        |r| &mut r.motion.acceleration_limit_rad_s2.pan,
+    ),
+    real("motion.tilt_acceleration", ANGULAR_ACCELERATIONS, (1e-3, 1e6), "the same for tilt", |r| {
+        &mut r.motion.acceleration_limit_rad_s2.tilt
+    }),
+    real(
+        "motion.ramp",
+        TIMES,
+        (1e-3, 1.0),
+        "time over which the acceleration along a stroke builds up",
+        |r| &mut r.motion.ramp_s,
+    ),
+    real("motion.settle", TIMES, (0.0, 5.0), "rest before a stroke is lit", |r| &mut r.motion.settle_s),
+];

@@ -1,0 +1,94 @@
+//! Strokes on the target to a plan: order, then time.
+
+use tracelight_stroke::{Effort, OrderOptions, Ordered, Point, order};
+use tracelight_trajectory::{Plan, PlanError, plan};
+
+use crate::cli::driving::Driving;
+use crate::failure::Failure;
+use crate::sketch::Placed;
+
+/// What the order is to save.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum OrderBy {
+    /// Seconds of dark moves
+    #[default]
+    Time,
+    /// Metres of dark moves
+    Distance,
+}
+
+/// How much work goes into the order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum OrderEffort {
+    /// No single move improves it
+    Quick,
+    /// About a second for 5000 strokes
+    #[default]
+    Normal,
+    /// Ten times that
+    Best,
+}
+
+impl OrderEffort {
+    const fn effort(self) -> Effort {
+        match self {
+            OrderEffort::Quick => Effort::Quick,
+            OrderEffort::Normal => Effort::Normal,
+            OrderEffort::Best => Effort::Best,
+        }
+    }
+}
+
+/// A drawing in order, and in time.
+pub(crate) struct Schedule {
+    pub(crate) ordered: Ordered,
+    pub(crate) plan: Plan,
+}
+
+/// Orders and times a drawing. Every stroke must be in reach before any work goes into its order.
+pub(crate) fn schedule(
+    placed: &Placed,
+    driving: &Driving,
+    by: OrderBy,
+    effort: OrderEffort,
+) -> Result<Schedule, Failure> {
+    check_reach(placed, driving)?;
+    let start = driving.machine.geometry.spot(&driving.pose, Default::default()).unwrap_or(Point::ORIGIN);
+    let options = OrderOptions { effort: effort.effort(), seed: 0 };
+    let time = |a: Point, b: Point| driving.machine.travel_time_s(a, b);
+    let ordered = match by {
+        OrderBy::Time => order(&placed.drawing, start, options, &time),
+        OrderBy::Distance => order(&placed.drawing, start, options, &|a: Point, b: Point| a.distance(b)),
+    };
+    let plan = plan(&ordered.drawing, &driving.machine, &driving.request)?;
+    check_speed(&plan, driving)?;
+    Ok(Schedule { ordered, plan })
+}
+
+/// A look at a few places of every piece; planning looks at all of them.
+fn check_reach(placed: &Placed, driving: &Driving) -> Result<(), Failure> {
+    const PLACES: [f64; 5] = [0.0, 1.0, 0.5, 0.25, 0.75];
+    for (index, stroke) in placed.drawing.strokes.iter().enumerate() {
+        for piece in stroke.path.pieces() {
+            for place in PLACES {
+                let aimed = driving.machine.angles(piece.at(place));
+                aimed.map_err(|source| PlanError::Aim { stroke: index + 1, source })?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A speed that is asked for and reached nowhere is refused; slowing down here and there is no error.
+fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
+    let (asked, best) = (driving.request.speed_m_s, plan.top_speed_m_s());
+    if !driving.speed_is_asked || best >= 0.98 * asked {
+        return Ok(());
+    }
+    let message = format!(
+        "--speed {asked:.4} m/s is reached nowhere on this drawing: its lines are too short or too bent for these \
+         motors; the best possible is {best:.4} m/s ({:.3} ft/s)",
+        best / 0.3048
+    );
+    Err(Failure::failed("speed-unreachable", message))
+}

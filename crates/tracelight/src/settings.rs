@@ -1,0 +1,31 @@
+//! What a job was asked to do, in words: the report's and the log's table.
+
+use crate::cli::driving::Driving;
+use crate::cli::trace::TraceArgs;
+use crate::output::Setting;
+use crate::sketch::Placed;
+
+/// In the order to show.
+pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Setting> {
+    let mm = |m: f64| format!("{:.1} mm", m * 1e3);
+    let rows = [
+        ("picture", args.picture.clone()),
+        ("size", format!("{} × {}", mm(placed.size_m.0), mm(placed.size_m.1))),
+        ("offset", args.placement.offset.map_or("none".into(), |o| format!("{}, {}", o.0, o.1))),
+        ("rotate", args.placement.rotate.map_or("none".into(), |a| a.to_string())),
+        ("flip", if args.placement.flip { "yes" } else { "no" }.into()),
+        ("distance", mm(driving.pose.distance_m)),
+        (
+            "speed",
+            format!("{:.4} m/s ({:.2} ft/s)", driving.request.speed_m_s, driving.request.speed_m_s / 0.3048),
+        ),
+        ("mode", format!("{:?}", args.mode).to_lowercase()),
+        ("profile", args.driving.profile.name().into()),
+        ("rig", format!("{} ({})", driving.rig.name, driving.rig.description)),
+        ("tolerance", mm(driving.request.tolerance_m)),
+        ("seed", args.seed.to_string()),
+        ("laps", args.laps.to_string()),
+        ("dry run", if args.dry_run { "yes" } else { "no" }.into()),
+    ];
+    rows.map(|(name, value)| Setting { name: name.into(), value }).into()
+}

@@ -1,0 +1,97 @@
+//! From a source to strokes on the target.
+
+use std::time::Instant;
+
+use tracelight_aim::{Placement, SizeRequest};
+use tracelight_stroke::{Affine, Drawing};
+use tracelight_vision::{Mode, Options};
+
+use crate::cli::placing::PlacementArgs;
+use crate::failure::Failure;
+use crate::output::Raster;
+use crate::picture::Source;
+
+/// Width of a picture that says nothing of its size, m: 24 in.
+const DEFAULT_WIDTH_M: f64 = 24.0 * 0.0254;
+
+/// Strokes on the sheet they came from.
+pub(crate) struct Sketch {
+    /// In the sheet's unit, x right, y down.
+    pub(crate) drawing: Drawing,
+    /// The sheet's size in that unit.
+    pub(crate) size: (f64, f64),
+    /// The sheet's true width, m, where the file says it.
+    pub(crate) true_width_m: Option<f64>,
+    /// The picture, for display.
+    pub(crate) picture: Option<Raster>,
+    /// How it was traced.
+    pub(crate) mode: &'static str,
+    /// Time it took, ms.
+    pub(crate) vision_ms: f64,
+}
+
+/// A drawing on the target.
+pub(crate) struct Placed {
+    /// In target metres.
+    pub(crate) drawing: Drawing,
+    /// Size of the sheet on the target, m.
+    pub(crate) size_m: (f64, f64),
+    /// From the sheet to the target.
+    pub(crate) target_from_sheet: Affine,
+}
+
+/// Traces pixels, takes strokes as they are.
+pub(crate) fn sketch(name: &str, source: Source, mode: Mode) -> Result<Sketch, Failure> {
+    let began = Instant::now();
+    let mut sketch = match source {
+        Source::Strokes(sheet) => Sketch {
+            size: (sheet.width, sheet.height),
+            true_width_m: sheet.metres_per_unit.map(|m| m * sheet.width),
+            drawing: sheet.drawing,
+            picture: None,
+            mode: "strokes",
+            vision_ms: 0.0,
+        },
+        Source::Pixels(pixels) => {
+            let options = Options { mode, ..Options::default() };
+            let traced = tracelight_vision::trace(&pixels.grey, &options)
+                .map_err(|e| Failure::failed("no-strokes-found", format!("{name}: {e}")))?;
+            Sketch {
+                size: (f64::from(pixels.colour.width()), f64::from(pixels.colour.height())),
+                true_width_m: None,
+                drawing: traced.strokes,
+                picture: Some(pixels.colour),
+                mode: mode.name(),
+                vision_ms: 0.0,
+            }
+        }
+    };
+    if sketch.drawing.strokes.is_empty() {
+        let why = "it has no strokes; give a picture with at least one line";
+        return Err(Failure::failed("no-strokes-found", format!("{name}: {why}")));
+    }
+    sketch.vision_ms = began.elapsed().as_secs_f64() * 1e3;
+    Ok(sketch)
+}
+
+/// Puts a sketch on the target: as large as asked, as it is truly, or 24 in wide.
+pub(crate) fn place(sketch: &Sketch, args: &PlacementArgs) -> Placed {
+    let size = match (args.width, args.height) {
+        (Some(width), _) => SizeRequest::Width(width.0),
+        (None, Some(height)) => SizeRequest::Height(height.0),
+        (None, None) => SizeRequest::Width(sketch.true_width_m.unwrap_or(DEFAULT_WIDTH_M)),
+    };
+    let (width, height) = sketch.size;
+    let upright = Placement::new(size, width, height);
+    let placement = Placement {
+        offset_m: args.offset.map_or(upright.offset_m, |o| (o.0.0, o.1.0).into()),
+        rotation_rad: args.rotate.map_or(0.0, |a| a.0),
+        flip: args.flip,
+        ..upright
+    };
+    Placed {
+        drawing: placement.place(&sketch.drawing, width),
+        size_m: (placement.width_m, placement.height_m),
+        target_from_sheet: placement.target_from_pixel(width),
+    }
+}

@@ -1,0 +1,214 @@
+//! Quantities as people type them: a number with its unit.
+//!
+//! `24in`, `0.6m`, `1ft/s`, `15deg`: each quantity has a type that parses its units and nothing else, holds SI, and
+//! prints SI. A bare number is an error that says which units fit.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// Why a text is no quantity.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum UnitError {
+    /// A number without unit.
+    #[error("{text} has no unit; write it with one of {units}, such as {text}{first}")]
+    Bare {
+        /// As typed.
+        text: String,
+        /// What fits.
+        units: String,
+        /// The first of them.
+        first: &'static str,
+    },
+    /// A unit of something else, or of nothing.
+    #[error("{text}: the unit {unit} does not fit here; use one of {units}")]
+    Unit {
+        /// As typed.
+        text: String,
+        /// What was taken for a unit.
+        unit: String,
+        /// What fits.
+        units: String,
+    },
+    /// No number in front.
+    #[error("{text} is no number with a unit; write it as 1{first}, with one of {units}")]
+    Number {
+        /// As typed.
+        text: String,
+        /// What fits.
+        units: String,
+        /// The first of them.
+        first: &'static str,
+    },
+    /// Two numbers were wanted.
+    #[error("{text} is no pair; write two lengths with a comma between, such as 10cm,-2in")]
+    Pair {
+        /// As typed.
+        text: String,
+    },
+}
+
+/// A unit's name and what one of it is in SI.
+pub(crate) type Unit = (&'static str, f64);
+
+const DEG: f64 = std::f64::consts::PI / 180.0;
+
+/// The first of each list is the SI unit the quantity prints in.
+pub(crate) const LENGTHS: &[Unit] = &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("ft", 0.3048)];
+/// See [`LENGTHS`].
+pub(crate) const ANGLES: &[Unit] =
+    &[("rad", 1.0), ("mrad", 1e-3), ("deg", DEG), ("arcmin", DEG / 60.0), ("arcsec", DEG / 3600.0)];
+/// See [`LENGTHS`].
+pub(crate) const SPEEDS: &[Unit] =
+    &[("m/s", 1.0), ("mm/s", 1e-3), ("cm/s", 1e-2), ("in/s", 0.0254), ("ft/s", 0.3048)];
+/// See [`LENGTHS`].
+pub(crate) const TIMES: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
+/// See [`LENGTHS`].
+pub(crate) const ANGULAR_SPEEDS: &[Unit] = &[("rad/s", 1.0), ("deg/s", DEG)];
+/// See [`LENGTHS`].
+pub(crate) const ANGULAR_ACCELERATIONS: &[Unit] = &[("rad/s2", 1.0), ("deg/s2", DEG)];
+
+/// Splits a text into number and unit and converts to SI.
+pub(crate) fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError> {
+    const LONGEST: usize = 64; // no quantity is longer, and splitting takes the square of the length
+    let text = text.trim();
+    let names = || units.iter().map(|u| u.0).collect::<Vec<_>>().join(", ");
+    let first = units.first().map_or("", |u| u.0);
+    if text.chars().count() > LONGEST {
+        let text = text.chars().take(LONGEST).chain("…".chars()).collect();
+        return Err(UnitError::Number { text, units: names(), first });
+    }
+    let (number, unit) = split(text);
+    let Ok(value) = number.parse::<f64>() else {
+        return Err(UnitError::Number { text: text.into(), units: names(), first });
+    };
+    if !value.is_finite() {
+        return Err(UnitError::Number { text: text.into(), units: names(), first });
+    }
+    if unit.is_empty() {
+        return Err(UnitError::Bare { text: text.into(), units: names(), first });
+    }
+    let factor = units.iter().find(|u| u.0 == unit).map(|u| u.1);
+    factor.map(|f| value * f).ok_or_else(|| UnitError::Unit {
+        text: text.into(),
+        unit: unit.into(),
+        units: names(),
+    })
+}
+
+/// Cuts after the longest prefix that is a number: `1e3m` is a thousand metres, `1em` is one of the unit `em`.
+fn split(text: &str) -> (&str, &str) {
+    let ends = text.char_indices().map(|(i, c)| i + c.len_utf8()).rev();
+    let numbers = ends.filter(|&end| text[..end].parse::<f64>().is_ok());
+    // `inf` and `nan` parse as numbers, but `1inch` must not be read as 1 and `infinity…`: digits come first
+    let end = numbers.into_iter().next().unwrap_or(0);
+    let (number, unit) = text.split_at(end);
+    (number.trim(), unit.trim())
+}
+
+/// Defines a quantity: its type, its units, its doc.
+macro_rules! quantity {
+    ($(#[$doc:meta])* $name:ident, $units:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+        pub(crate) struct $name(pub(crate) f64);
+
+        impl FromStr for $name {
+            type Err = UnitError;
+
+            fn from_str(text: &str) -> Result<Self, UnitError> {
+                parse(text, $units).map(Self)
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{}{}", self.0, $units[0].0)
+            }
+        }
+    };
+}
+
+quantity!(
+    /// Metres.
+    Length,
+    LENGTHS
+);
+quantity!(
+    /// Radians.
+    Angle,
+    ANGLES
+);
+quantity!(
+    /// Metres per second.
+    Speed,
+    SPEEDS
+);
+quantity!(
+    /// Radians per second squared.
+    AngularAcceleration,
+    ANGULAR_ACCELERATIONS
+);
+
+/// Two lengths: right and up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Offset(pub(crate) Length, pub(crate) Length);
+
+impl FromStr for Offset {
+    type Err = UnitError;
+
+    fn from_str(text: &str) -> Result<Self, UnitError> {
+        let (x, y) = text.split_once(',').ok_or_else(|| UnitError::Pair { text: text.into() })?;
+        Ok(Self(x.parse()?, y.parse()?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn length(text: &str) -> f64 {
+        text.parse::<Length>().unwrap().0
+    }
+
+    #[test]
+    fn lengths_have_the_units_of_the_contract() {
+        for (text, metres) in [
+            ("24in", 0.6096),
+            ("0.6m", 0.6),
+            ("610mm", 0.61),
+            ("3ft", 0.9144),
+            ("12 cm", 0.12),
+            ("1e3mm", 1.0),
+        ] {
+            assert!((length(text) - metres).abs() < 1e-12, "{text}");
+        }
+        assert!(("1ft/s".parse::<Speed>().unwrap().0 - 0.3048).abs() < 1e-15);
+        assert!(("15deg".parse::<Angle>().unwrap().0 - 0.261_799_387_799_149_4).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_bare_number_says_which_units_fit() {
+        let message = "24".parse::<Length>().unwrap_err().to_string();
+        assert!(message.contains("no unit") && message.contains("mm, cm, in, ft"), "{message}");
+    }
+
+    #[test]
+    fn a_unit_of_something_else_is_named() {
+        let message = "24deg".parse::<Length>().unwrap_err().to_string();
+        assert!(message.contains("the unit deg does not fit"), "{message}");
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for text in ["", "in", "1e400m", "nanm", "infm", "--3m", "1,5m", "0x10m"] {
+            assert!(text.parse::<Length>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_offset_is_two_lengths() {
+        let offset: Offset = "10cm,-2in".parse().unwrap();
+        assert!((offset.0.0 - 0.1).abs() < 1e-12 && (offset.1.0 + 0.0508).abs() < 1e-12);
+        assert!("10cm".parse::<Offset>().is_err());
+    }
+}
