@@ -2,6 +2,8 @@
 
 use tracelight_stroke::{Parabola, Point, Vec2};
 
+use crate::plane::Plane;
+
 /// Points from a line's end on of which its direction there is taken: as many as lie on a parabola.
 const WINDOWS: [usize; 6] = [6, 9, 13, 19, 28, 40];
 /// How far points of one parabola are from it, px, root mean square.
@@ -27,7 +29,8 @@ impl Tip {
         for k in 1..n.min(WINDOWS[WINDOWS.len() - 1]) {
             lengths.push(lengths[k - 1] + at(k).distance(at(k - 1)));
         }
-        let window = |size: usize| Parabola::through((0..size.min(lengths.len())).map(|k| (lengths[k], at(k))));
+        let window =
+            |size: usize| Parabola::through((0..size.min(lengths.len())).map(|k| (lengths[k], at(k))));
         let curve = (n > 0).then(|| Parabola::widest(WINDOWS.into_iter().map(window), ON_PARABOLA_PX))?;
         Some(Self { at: at(0), along: curve.map_or(Vec2::ZERO, |c| -c.tangent(0.0)), curve })
     }
@@ -38,7 +41,7 @@ impl Tip {
     }
 
     /// Where the row's curve is, and where it leads, `ahead` of the tip.
-    fn beyond(&self, ahead: f64) -> (Point, Vec2) {
+    pub(crate) fn beyond(&self, ahead: f64) -> (Point, Vec2) {
         let on = |c: Parabola| (c.point(-ahead), -c.tangent(-ahead));
         self.curve.map_or((self.at + self.along * ahead, self.along), on)
     }
@@ -85,15 +88,18 @@ impl Tip {
     }
 
     /// Points about 1 px apart from this tip to another, without the two: a smooth curve, or a corner where their
-    /// lines meet. A corner within 1.5 px of one of the points `near` is put there.
-    pub(crate) fn bridge(&self, other: &Tip, near: impl Iterator<Item = Point>) -> Vec<Point> {
+    /// lines meet, if there is ink. A corner within 1.5 px of one of the points `near` is put there.
+    pub(crate) fn bridge(&self, other: &Tip, dark: &Plane<u8>, near: &[Point]) -> Vec<Point> {
         let over = other.at - self.at;
         let far = 2.0 * over.hypot() + 4.0;
         let ahead = |s: f64| (-1.0..far).contains(&s);
-        match self.meets(other).filter(|&(s, t)| ahead(s) && ahead(t) && self.turn(other).abs() >= CORNER_RAD) {
+        let inked = |s: f64| is_inked(dark, self.at, self.beyond(s).0);
+        let corner = self.meets(other).filter(|&(s, t)| ahead(s) && ahead(t) && inked(s));
+        match corner.filter(|_| self.turn(other).abs() >= CORNER_RAD) {
             Some((s, t)) => {
                 let corner = self.beyond(s).0;
-                let nearest = near.min_by(|p, q| p.distance(corner).total_cmp(&q.distance(corner)));
+                let nearest =
+                    near.iter().copied().min_by(|p, q| p.distance(corner).total_cmp(&q.distance(corner)));
                 let corner = nearest.filter(|p| p.distance(corner) < 1.5).unwrap_or(corner);
                 let steps = |length: f64| 1..=(length - 0.5).max(0.0) as usize;
                 let out = steps(s).map(|k| self.beyond(k as f64).0);
@@ -107,6 +113,11 @@ impl Tip {
             }
         }
     }
+}
+
+/// Whether a place is at least a third as dark as one on the line.
+pub(crate) fn is_inked(dark: &Plane<u8>, line: Point, place: Point) -> bool {
+    3.0 * dark.at(place) >= dark.at(line)
 }
 
 fn angle(a: Vec2, b: Vec2) -> f64 {
@@ -149,7 +160,7 @@ mod tests {
     fn two_ends_that_meet_at_an_angle_make_a_corner() {
         let (a, b) = (row((0.0, 0.0), (20.0, 0.0)), row((25.0, 6.0), (25.0, 30.0)));
         let (tip, start) = (Tip::of(&a, 1).unwrap(), Tip::of(&b, 0).unwrap());
-        let bridge = tip.bridge(&start, std::iter::empty());
+        let bridge = tip.bridge(&start, &Plane::filled(80, 80, 255), &[]);
         let off = |p: &Point| p.distance(Point::new(25.0, 0.0));
         assert!(bridge.iter().map(off).fold(f64::INFINITY, f64::min) < 1e-9, "{bridge:?}");
         assert!(bridge.iter().all(|p| p.x == 25.0 || p.y == 0.0));
@@ -158,7 +169,8 @@ mod tests {
     #[test]
     fn two_ends_on_one_line_are_joined_straight() {
         let (a, b) = (row((0.0, 0.0), (20.0, 10.0)), row((30.0, 15.0), (60.0, 30.0)));
-        let bridge = Tip::of(&a, 1).unwrap().bridge(&Tip::of(&b, 0).unwrap(), std::iter::empty());
+        let bridge =
+            Tip::of(&a, 1).unwrap().bridge(&Tip::of(&b, 0).unwrap(), &Plane::filled(80, 80, 255), &[]);
         assert_eq!(bridge.len(), 10);
         assert!(bridge.iter().all(|p| (p.y - 0.5 * p.x).abs() < 1e-9));
     }

@@ -1,8 +1,9 @@
 //! Pen lines: strokes down their middle.
 
-use tracelight_stroke::{Element, FitOptions, Path, Point, Stroke, StrokeKind, Vec2, fit};
+use tracelight_stroke::{Element, Path, Point, Stroke, StrokeKind, Vec2};
 
 use crate::Options;
+use crate::follow;
 use crate::graph::Graph;
 use crate::junction::{self, Joint};
 use crate::line::Line;
@@ -19,27 +20,27 @@ struct Row {
 
 /// The strokes of one region's graph.
 pub(crate) fn strokes(dark: &Plane<u8>, region: &Region, graph: &Graph, options: &Options) -> Vec<Stroke> {
-    if let Some(dot) = dot(dark, region, graph) {
-        return vec![dot];
+    if is_dot(graph) {
+        return vec![dot(dark, region)];
     }
     let (mut cluster, bridges) = junction::clusters(graph);
     let real = graph.branches.iter().zip(bridges).filter(|(_, bridge)| !bridge);
     let mut lines: Vec<Line> = real.map(|(branch, _)| Line::of(dark, graph, branch)).collect();
     junction::merge_acute(&mut lines, &mut cluster);
-    let junctions = junction::join(&lines, &cluster);
+    let junctions = junction::join(dark, &lines, &cluster);
     for (port, stop) in &junctions.ends {
         lines[port.line].end_at(port.end, *stop);
     }
-    rows(&lines, &junctions.joints).iter().filter_map(|row| stroke(row, options)).collect()
+    let found: Vec<Stroke> =
+        rows(&lines, &junctions.joints).iter().filter_map(|row| stroke(dark, row, options)).collect();
+    // a knot of nothing but junctions is a blot
+    if found.is_empty() { vec![dot(dark, region)] } else { found }
 }
 
-fn stroke(row: &Row, options: &Options) -> Option<Stroke> {
-    let fitting = FitOptions {
-        tolerance: options.tolerance_px,
-        corner_rad: options.corner_rad,
-        reach: 0.5 * row.width,
-    };
-    let path = fit(&row.points, row.closed, &fitting)?;
+fn stroke(dark: &Plane<u8>, row: &Row, options: &Options) -> Option<Stroke> {
+    // a line that was carried on out of the picture ends at its border
+    let points: Vec<Point> = row.points.iter().map(|&p| dark.clamp(p)).collect();
+    let path = follow::path(&points, row.closed, 0.5 * row.width, options)?;
     Some(Stroke { path, kind: StrokeKind::Centreline, pen: Some(row.width) })
 }
 
@@ -55,7 +56,8 @@ fn rows(lines: &[Line], joints: &[Joint]) -> Vec<Row> {
     let mut rows = Vec::new();
     // from the free ends first; what is left then goes round
     let free = |i: &usize| joint_at[*i].iter().any(Option::is_none);
-    let order: Vec<usize> = (0..lines.len()).filter(free).chain((0..lines.len()).filter(|i| !free(i))).collect();
+    let order: Vec<usize> =
+        (0..lines.len()).filter(free).chain((0..lines.len()).filter(|i| !free(i))).collect();
     for start in order {
         if !used[start] {
             rows.push(strung(start, lines, joints, &joint_at, &mut used));
@@ -74,7 +76,8 @@ fn strung(
 ) -> Row {
     let mut row = Row { points: Vec::new(), closed: lines[start].ring, width: 0.0 };
     let mut widths = Vec::new();
-    let (mut line, mut entry) = (start, usize::from(joint_at[start][0].is_some() && joint_at[start][1].is_none()));
+    let (mut line, mut entry) =
+        (start, usize::from(joint_at[start][0].is_some() && joint_at[start][1].is_none()));
     while !used[line] {
         used[line] = true;
         widths.push(lines[line].width);
@@ -97,27 +100,28 @@ fn strung(
     row
 }
 
-/// A region no longer than one and a half times its width is a dot or a dash of the pen: a short straight stroke
-/// along its longer axis.
-fn dot(dark: &Plane<u8>, region: &Region, graph: &Graph) -> Option<Stroke> {
-    let longest = graph.branches.iter().map(|b| b.length()).sum::<f64>();
-    let radius = graph.branches.iter().flat_map(|b| &b.radii).copied().fold(0.0, f64::max).max(0.5);
-    let single = graph.branches.len() <= 1 && graph.branches.iter().all(|b| !b.ring);
-    if !single || longest > 3.0 * radius {
-        return None;
-    }
+/// Whether a region is no longer than one and a half times its width: a dot or a dash of the pen.
+fn is_dot(graph: &Graph) -> bool {
+    let length: f64 = graph.branches.iter().map(|b| b.length()).sum();
+    let radius = graph.branches.iter().flat_map(|b| &b.radii).copied().fold(0.5, f64::max);
+    graph.branches.len() <= 1 && graph.branches.iter().all(|b| !b.ring) && length <= 3.0 * radius
+}
+
+/// A short straight stroke along a region's longer axis, at least half the pen's width long, so that light falls on
+/// it at all.
+fn dot(dark: &Plane<u8>, region: &Region) -> Stroke {
     let (centre, axis, length, width) = extent(dark, region);
-    // at least half the pen's width, so that light falls on it at all
-    let half = 0.5 * (length - width).max(0.5 * width);
-    let mut path = Path::new(centre - axis * half);
-    path.push(Element::Line { to: centre + axis * half });
-    Some(Stroke { path, kind: StrokeKind::Centreline, pen: Some(width) })
+    let half = 0.5 * (length - width).max(0.5 * width).max(0.5);
+    let mut path = Path::new(dark.clamp(centre - axis * half));
+    path.push(Element::Line { to: dark.clamp(centre + axis * half) });
+    Stroke { path, kind: StrokeKind::Centreline, pen: Some(width) }
 }
 
 /// Centre, long axis, length and width of a region, from the moments of its darkness. A stadium's are those of its
 /// second moments to within some percent.
 fn extent(dark: &Plane<u8>, region: &Region) -> (Point, Vec2, f64, f64) {
-    let weighted = || region.pixels(dark.width).map(|i| (dark.centre(i).to_vec2(), f64::from(dark.values[i])));
+    let weighted =
+        || region.pixels(dark.width).map(|i| (dark.centre(i).to_vec2(), f64::from(dark.values[i])));
     let mass = weighted().map(|(_, w)| w).sum::<f64>().max(1e-9);
     let centre = weighted().map(|(p, w)| p * w).sum::<Vec2>() / mass;
     let moment = |f: fn(Vec2) -> f64| weighted().map(|(p, w)| w * f(p - centre)).sum::<f64>() / mass;

@@ -93,7 +93,9 @@ mod tests {
     fn every_distance_is_the_shortest_there_is() {
         let (w, h) = (40isize, 30isize);
         let ink = |x: isize, y: isize| {
-            (0..w).contains(&x) && (0..h).contains(&y) && ((x - 15).pow(2) + (y - 14).pow(2) < 150 || (x * y) % 7 > 2)
+            (0..w).contains(&x)
+                && (0..h).contains(&y)
+                && ((x - 15).pow(2) + (y - 14).pow(2) < 150 || (x * y) % 7 > 2)
         };
         let values = (0..w * h).map(|i| u8::from(ink(i % w, i / w))).collect();
         let found = to_paper(&Plane { width: 40, height: 30, values });

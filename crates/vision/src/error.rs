@@ -15,7 +15,9 @@ pub enum VisionError {
         levels: usize,
     },
     /// Too few pixels for a drawing.
-    #[error("the image is {width} × {height} px; a drawing needs at least {least} px either way: use a larger picture")]
+    #[error(
+        "the image is {width} × {height} px; a drawing needs at least {least} px either way: use a larger picture"
+    )]
     TooSmall {
         /// Pixels in a row.
         width: usize,

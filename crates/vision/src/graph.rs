@@ -113,7 +113,8 @@ impl Graph {
     /// Joins the branches at nodes where only two ends are left, through the node's own place.
     pub(crate) fn join_pairs(&mut self) {
         let mut at = self.ends_at_nodes();
-        let mut slots: Vec<Option<Branch>> = std::mem::take(&mut self.branches).into_iter().map(Some).collect();
+        let mut slots: Vec<Option<Branch>> =
+            std::mem::take(&mut self.branches).into_iter().map(Some).collect();
         for node in 0..self.nodes.len() {
             let [(a, end), (b, other)] = at[node][..] else { continue };
             let Some(first) = slots[a].take() else { continue };
@@ -190,7 +191,8 @@ impl Reader<'_> {
             }
             let node = self.graph.nodes.len();
             self.node_of.extend(cluster.iter().map(|&i| (i, node)));
-            let middle = cluster.iter().map(|&i| self.centre(i).to_vec2()).sum::<Vec2>() / cluster.len() as f64;
+            let middle =
+                cluster.iter().map(|&i| self.centre(i).to_vec2()).sum::<Vec2>() / cluster.len() as f64;
             let radius = cluster.iter().map(|&i| self.radius(i)).fold(0.0, f64::max);
             self.graph.nodes.push(Node { at: middle.to_point(), radius });
         }

@@ -127,7 +127,8 @@ impl Split {
         for (level, &count) in histogram.iter().enumerate().take(255) {
             n += f64::from(count);
             sum += f64::from(count) * level as f64;
-            let between = if n > 0.0 && n < all { (sum * all - n * total).powi(2) / (n * (all - n)) } else { 0.0 };
+            let between =
+                if n > 0.0 && n < all { (sum * all - n * total).powi(2) / (n * (all - n)) } else { 0.0 };
             if between > best * (1.0 + 1e-12) {
                 (best, first) = (between, level);
             }
@@ -169,7 +170,8 @@ fn is_light_on_dark(image: &Plane<u8>) -> bool {
             for &v in rows.flatten() {
                 (dark, light, sum) = (dark.min(v), light.max(v), sum + f64::from(v));
             }
-            let (middle, range) = (0.5 * (f64::from(dark) + f64::from(light)), f64::from(light) - f64::from(dark));
+            let (middle, range) =
+                (0.5 * (f64::from(dark) + f64::from(light)), f64::from(light) - f64::from(dark));
             if range > 0.3 * (high - low).max(1.0) {
                 votes += (sum / (TILE * TILE) as f64 - middle) / (0.5 * range);
                 tiles += 1.0;

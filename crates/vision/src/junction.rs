@@ -8,9 +8,10 @@ use std::f64::consts::PI;
 
 use tracelight_stroke::Point;
 
-use crate::bridge::{Tip, meeting};
+use crate::bridge::{Tip, is_inked, meeting};
 use crate::graph::{Graph, Node};
 use crate::line::Line;
+use crate::plane::Plane;
 
 /// A pair of lines that turns less than this from one into the other is one line passing through, rad (60°).
 const THROUGH: f64 = PI / 3.0;
@@ -21,6 +22,9 @@ const BACK: f64 = 165.0 * PI / 180.0;
 const CROSSING: f64 = 40.0 * PI / 180.0;
 /// Longest common part of two crossing lines, pen widths: that of a crossing at 15°.
 const LONGEST_CROSSING: f64 = 6.0;
+
+/// Where more lines than this meet, no pen drew them through: texture, not a drawing.
+const MOST_PORTS: usize = 32;
 
 /// An end of a line at a junction.
 #[derive(Clone, Copy, Debug)]
@@ -51,12 +55,6 @@ pub(crate) struct Junctions {
 /// are bridges.
 pub(crate) fn clusters(graph: &Graph) -> (Vec<usize>, Vec<bool>) {
     let mut cluster: Vec<usize> = (0..graph.nodes.len()).collect();
-    let find = |cluster: &[usize], mut n: usize| {
-        while cluster[n] != n {
-            n = cluster[n];
-        }
-        n
-    };
     let pen = graph.pen_radius();
     let is_bridge = |branch: &crate::graph::Branch| {
         let [Some(a), Some(b)] = branch.nodes else { return false };
@@ -68,42 +66,53 @@ pub(crate) fn clusters(graph: &Graph) -> (Vec<usize>, Vec<bool>) {
     let bridges: Vec<bool> = graph.branches.iter().map(is_bridge).collect();
     for (branch, _) in graph.branches.iter().zip(&bridges).filter(|(_, bridge)| **bridge) {
         if let [Some(a), Some(b)] = branch.nodes {
-            let (a, b) = (find(&cluster, a), find(&cluster, b));
+            let (a, b) = (root(&mut cluster, a), root(&mut cluster, b));
             cluster[a.max(b)] = a.min(b);
         }
     }
-    ((0..cluster.len()).map(|n| find(&cluster, n)).collect(), bridges)
+    // roots come before what hangs on them, so that one pass shortens every way
+    (0..cluster.len()).for_each(|n| cluster[n] = cluster[cluster[n]]);
+    (cluster, bridges)
 }
 
 /// Two lines that cross at an acute angle run together for a while: the skeleton has two forks and one line between
 /// them. Such lines are taken away and their ends made one junction.
 pub(crate) fn merge_acute(lines: &mut Vec<Line>, cluster: &mut [usize]) {
-    let mut number = 0;
-    while number < lines.len() {
-        match acute(lines, number, &ports(lines, cluster), cluster) {
-            Some((a, b)) => {
-                cluster.iter_mut().filter(|c| **c == b).for_each(|c| *c = a);
-                lines.remove(number);
-            }
-            None => number += 1,
+    let mut ports = ports(lines, cluster);
+    let mut joined: Vec<usize> = (0..cluster.len()).collect();
+    let mut gone = vec![false; lines.len()];
+    for (number, line) in lines.iter().enumerate() {
+        let [Some(a), Some(b)] = line.nodes else { continue };
+        let (a, b) = (root(&mut joined, cluster[a]), root(&mut joined, cluster[b]));
+        let short = line.length() < LONGEST_CROSSING * line.width;
+        if a != b && short && is_acute(number, &ports[a], &ports[b]) {
+            gone[number] = true;
+            joined[b] = a;
+            let moved = std::mem::take(&mut ports[b]);
+            ports[a].extend(moved);
+            ports[a].retain(|p| p.line != number);
         }
     }
+    cluster.iter_mut().for_each(|c| *c = root(&mut joined, *c));
+    let mut gone = gone.into_iter();
+    lines.retain(|_| gone.next() == Some(false));
 }
 
-/// The two junctions a line lies between, if it only is the common part of two that cross there.
-fn acute(lines: &[Line], number: usize, ports: &[Vec<Port>], cluster: &[usize]) -> Option<(usize, usize)> {
-    let [Some(a), Some(b)] = lines[number].nodes else { return None };
-    let (a, b) = (cluster[a], cluster[b]);
-    let short = lines[number].length() < LONGEST_CROSSING * lines[number].width;
-    if a == b || !short || ports[a].len() != 3 || ports[b].len() != 3 {
-        return None;
+/// The first of those joined with `n`.
+fn root(joined: &mut [usize], mut n: usize) -> usize {
+    while joined[n] != n {
+        joined[n] = joined[joined[n]]; // halves the way for the next one
+        n = joined[n];
     }
-    let others = |at: usize| ports[at].iter().filter(|p| p.line != number).map(|p| p.tip).collect::<Vec<Tip>>();
-    let (before, after) = (others(a), others(b));
-    let [p, q] = before[..] else { return None };
-    let [r, s] = after[..] else { return None };
-    let crossing = p.crosses(&r, &q, &s, CROSSING) || p.crosses(&s, &q, &r, CROSSING);
-    crossing.then_some((a, b))
+    n
+}
+
+/// Whether a line between two junctions of three only is the common part of two that cross there.
+fn is_acute(number: usize, from: &[Port], to: &[Port]) -> bool {
+    let others = |at: &[Port]| at.iter().filter(|p| p.line != number).map(|p| p.tip).collect::<Vec<Tip>>();
+    let (before, after) = (others(from), others(to));
+    let ([p, q], [r, s]) = (&before[..], &after[..]) else { return false };
+    p.crosses(r, q, s, CROSSING) || p.crosses(s, q, r, CROSSING)
 }
 
 /// The ends of lines at each cluster.
@@ -120,23 +129,31 @@ fn ports(lines: &[Line], cluster: &[usize]) -> Vec<Vec<Port>> {
 }
 
 /// Joins the lines of a graph at its junctions.
-pub(crate) fn join(lines: &[Line], cluster: &[usize]) -> Junctions {
+pub(crate) fn join(dark: &Plane<u8>, lines: &[Line], cluster: &[usize]) -> Junctions {
     let mut junctions = Junctions::default();
-    ports(lines, cluster).into_iter().filter(|p| !p.is_empty()).for_each(|p| junctions.resolve(p, lines));
+    ports(lines, cluster)
+        .into_iter()
+        .filter(|p| !p.is_empty())
+        .for_each(|p| junctions.resolve(dark, p, lines));
     junctions
 }
 
 impl Junctions {
     /// One junction: the straightest pairs first, then any two that are left.
-    fn resolve(&mut self, mut left: Vec<Port>, lines: &[Line]) {
+    fn resolve(&mut self, dark: &Plane<u8>, mut left: Vec<Port>, lines: &[Line]) {
+        if left.len() > MOST_PORTS {
+            self.ends.extend(left.into_iter().map(|p| (p, p.tip.at)));
+            return;
+        }
         let tips: Vec<Tip> = left.iter().map(|p| p.tip).collect();
-        let middle = meeting(&tips);
+        let middle = meeting(&tips).filter(|&p| is_inked(dark, tips[0].at, p));
         let first = self.joints.len();
         for most in [THROUGH, BACK] {
             while let Some((i, j)) = straightest(&left, most) {
                 let (b, a) = (left.remove(j), left.remove(i));
-                let others = self.joints[first..].iter().flat_map(|j| &j.bridge).copied();
-                let bridge = a.tip.bridge(&b.tip, others.collect::<Vec<_>>().into_iter());
+                let others: Vec<Point> =
+                    self.joints[first..].iter().flat_map(|j| &j.bridge).copied().collect();
+                let bridge = a.tip.bridge(&b.tip, dark, &others);
                 self.joints.push(Joint { ports: [a, b], bridge });
             }
         }
@@ -166,7 +183,8 @@ fn hit(port: &Port, joint: &Joint, lines: &[Line]) -> Option<Point> {
         let (across, back) = (w[1] - w[0], port.tip.at - w[0]);
         let cross = port.tip.along.cross(across);
         let (ahead, share) = (-back.cross(across) / cross, port.tip.along.cross(back) / cross);
-        (cross.abs() > 1e-9 && ahead > -1.0 && (0.0..=1.0).contains(&share)).then(|| port.tip.at + port.tip.along * ahead)
+        (cross.abs() > 1e-9 && ahead > -1.0 && (0.0..=1.0).contains(&share))
+            .then(|| port.tip.at + port.tip.along * ahead)
     })
 }
 

@@ -13,6 +13,7 @@
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
+//! | `follow` | points to paths |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
 
@@ -20,6 +21,7 @@ mod bridge;
 mod centreline;
 mod distance;
 mod error;
+mod follow;
 mod graph;
 mod grey;
 mod ink;

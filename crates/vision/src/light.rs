@@ -40,7 +40,8 @@ impl Paper {
             ..bright
         };
         let even = filled_in(&ratio);
-        let levels = even.values.iter().zip(surface.on(&even)).map(|(r, s)| (r * s).clamp(DIMMEST, 255.0)).collect();
+        let levels =
+            even.values.iter().zip(surface.on(&even)).map(|(r, s)| (r * s).clamp(DIMMEST, 255.0)).collect();
         Self { tile, levels: Plane { values: levels, ..even } }
     }
 
@@ -160,7 +161,8 @@ fn basis<T>(tiles: &Plane<T>, i: usize) -> [f64; 6] {
 /// Ratios of brightness to surface, with those of ink replaced by their neighbours'.
 fn filled_in(ratio: &Plane<f64>) -> Plane<f64> {
     let mut paper: Vec<bool> = ratio.values.iter().map(|&r| r >= INK_RATIO).collect();
-    let dips: Vec<bool> = (0..paper.len()).map(|i| ratio.values[i] < DIP * around(ratio, &paper, i, 2)).collect();
+    let dips: Vec<bool> =
+        (0..paper.len()).map(|i| ratio.values[i] < DIP * around(ratio, &paper, i, 2)).collect();
     paper.iter_mut().zip(dips).for_each(|(p, dip)| *p &= !dip);
     let fill = |i: usize| {
         let reach = if paper[i] { 1 } else { 3 };

@@ -27,7 +27,7 @@ impl Line {
         let (from, to) = if branch.ring { (0, branch.points.len()) } else { trusted(graph, branch, radius) };
         let ridge = ridge::centred(dark, &branch.points[from..to], radius, branch.ring);
         let width = ridge.width;
-        let mut points = bridged(ridge, branch.ring);
+        let mut points = bridged(dark, ridge, branch.ring);
         if points.is_empty() {
             points.push(branch.points[(from + to) / 2]);
         }
@@ -48,12 +48,14 @@ impl Line {
         Tip::of(&self.points, end).unwrap_or(Tip::single(self.points[0]))
     }
 
-    /// Moves a free end to where the pen was lifted.
+    /// Moves a free end to where the pen was lifted, along its curve.
     fn reach_out(&mut self, dark: &Plane<u8>, end: usize) {
-        let Tip { at, along, .. } = self.tip(end);
+        let tip = self.tip(end);
         let reach = 4.0 * self.width + 4.0;
-        if let Some(lifted) = ridge::pen_end(dark, at, along, self.width, reach) {
-            self.end_at(end, lifted);
+        let Some(ahead) = ridge::pen_end(dark, |s| tip.beyond(s).0, self.width, reach) else { return };
+        let whole = (ahead - 0.5).max(0.0) as usize;
+        for s in (1..=whole).map(|k| k as f64).chain([ahead]) {
+            self.end_at(end, tip.beyond(s).0);
         }
     }
 
@@ -78,27 +80,27 @@ impl Line {
 const LEAST_STRETCH: usize = 4;
 
 /// The stretches in one row, the gaps between them bridged.
-fn bridged(mut ridge: Ridge, ring: bool) -> Vec<Point> {
+fn bridged(dark: &Plane<u8>, mut ridge: Ridge, ring: bool) -> Vec<Point> {
     if ridge.stretches.len() > 1 {
         ridge.stretches.retain(|s| s.len() >= LEAST_STRETCH);
     }
     let mut row: Vec<Point> = Vec::new();
     for stretch in &ridge.stretches {
-        row.extend(gap(&row, stretch));
+        row.extend(gap(dark, &row, stretch));
         row.extend(stretch);
     }
     if let (true, Some(first)) = (ring, ridge.stretches.first()) {
         // a ring that can be seen all round needs no bridge to its own start
         let open = row.last().is_some_and(|last| last.distance(first[0]) > 2.5);
-        row.extend(if open { gap(&row, first) } else { Vec::new() });
+        row.extend(if open { gap(dark, &row, first) } else { Vec::new() });
     }
     row
 }
 
 /// Points between the end of one row and the start of another.
-fn gap(before: &[Point], after: &[Point]) -> Vec<Point> {
+fn gap(dark: &Plane<u8>, before: &[Point], after: &[Point]) -> Vec<Point> {
     match (Tip::of(before, 1), Tip::of(after, 0)) {
-        (Some(end), Some(start)) => end.bridge(&start, std::iter::empty()),
+        (Some(end), Some(start)) => end.bridge(&start, dark, &[]),
         _ => Vec::new(),
     }
 }

@@ -126,7 +126,9 @@ fn ruler_level(full: f64) -> f64 {
 fn pair(found: &[Patch]) -> Option<(Patch, Patch)> {
     let like = |a: f64, b: f64| a.max(b) <= LIKE * a.min(b);
     let alike = |a: &Patch, b: &Patch| {
-        like(a.area, b.area) && like(a.sides.x + 1.0, b.sides.x + 1.0) && like(a.sides.y + 1.0, b.sides.y + 1.0)
+        like(a.area, b.area)
+            && like(a.sides.x + 1.0, b.sides.x + 1.0)
+            && like(a.sides.y + 1.0, b.sides.y + 1.0)
     };
     let pairs = (1..found.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
     let (i, j) = pairs.into_iter().find(|&(i, j)| alike(&found[i], &found[j]))?;

@@ -1,8 +1,9 @@
 //! Filled shapes: strokes along their edges, holes included.
 
-use tracelight_stroke::{FitOptions, Point, Stroke, StrokeKind, fit};
+use tracelight_stroke::{Point, Stroke, StrokeKind};
 
 use crate::Options;
+use crate::follow;
 use crate::plane::Plane;
 use crate::region::Region;
 
@@ -48,9 +49,7 @@ pub(crate) fn strokes(
 }
 
 fn stroke(points: &[Point], options: &Options) -> Option<Stroke> {
-    let fitting =
-        FitOptions { tolerance: options.tolerance_px, corner_rad: options.corner_rad, reach: REACH_PX };
-    let path = fit(points, true, &fitting)?;
+    let path = follow::path(points, true, REACH_PX, options)?;
     Some(Stroke { path, kind: StrokeKind::Outline, pen: None })
 }
 
@@ -157,7 +156,8 @@ mod tests {
         let level = |i: usize| {
             let (x, y) = ((i % width) as f64, (i / width) as f64);
             // exact enough an area: 8 × 8 samples
-            let sample = |k: usize| darkness(x + ((k % 8) as f64 + 0.5) / 8.0, y + ((k / 8) as f64 + 0.5) / 8.0);
+            let sample =
+                |k: usize| darkness(x + ((k % 8) as f64 + 0.5) / 8.0, y + ((k / 8) as f64 + 0.5) / 8.0);
             (255.0 * (0..64).map(sample).sum::<f64>() / 64.0).round() as u8
         };
         let dark = Plane { width, height, values: (0..width * height).map(level).collect() };
@@ -193,7 +193,9 @@ mod tests {
 
     #[test]
     fn a_square_has_four_sharp_corners_where_they_are() {
-        let found = traced(100, 100, |x, y| f64::from(u8::from((20.25..70.5).contains(&x) && (30.5..80.75).contains(&y))));
+        let found = traced(100, 100, |x, y| {
+            f64::from(u8::from((20.25..70.5).contains(&x) && (30.5..80.75).contains(&y)))
+        });
         let corners: Vec<Point> = found[0].path.pieces().map(|p| p.from).collect();
         assert_eq!(corners.len(), 4, "{:#?}", found[0].path.elements());
         for truth in [(20.25, 30.5), (70.5, 30.5), (70.5, 80.75), (20.25, 80.75)].map(Point::from) {

@@ -36,6 +36,11 @@ impl<T: Copy + Default> Plane<T> {
         }
     }
 
+    /// The nearest place within the image.
+    pub(crate) fn clamp(&self, p: Point) -> Point {
+        Point::new(p.x.clamp(0.0, self.width as f64), p.y.clamp(0.0, self.height as f64))
+    }
+
     /// Centre of the pixel with this index.
     pub(crate) fn centre(&self, index: usize) -> Point {
         Point::new((index % self.width) as f64 + 0.5, (index / self.width) as f64 + 0.5)

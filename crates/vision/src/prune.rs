@@ -8,15 +8,17 @@ use crate::ridge::median;
 /// Removes spurs, shortest first, and joins what they parted, until none is left.
 pub(crate) fn prune(graph: &mut Graph) {
     let pen = graph.pen_radius();
-    loop {
+    for _ in 0..MOST_ROUNDS {
         graph.join_pairs();
         let mut spurs = Vec::new();
         for ends in graph.ends_at_nodes() {
             let short = ends.iter().filter(|&&end| is_bump(graph, end) || is_mitre(graph, &ends, end, pen));
             // one at a time at each node: a spur less can make a line of the two others
-            spurs.extend(short.map(|&(b, _)| b).min_by(|&a, &b| {
-                graph.branches[a].length().total_cmp(&graph.branches[b].length())
-            }));
+            spurs.extend(
+                short
+                    .map(|&(b, _)| b)
+                    .min_by(|&a, &b| graph.branches[a].length().total_cmp(&graph.branches[b].length())),
+            );
         }
         if spurs.is_empty() {
             return;
@@ -25,6 +27,9 @@ pub(crate) fn prune(graph: &mut Graph) {
         spurs.into_iter().for_each(|i| drop(graph.branches.swap_remove(i)));
     }
 }
+
+/// Rounds of pruning; drawings take two or three, texture could take thousands.
+const MOST_ROUNDS: usize = 50;
 
 /// The node at an end of a branch whose other end is free, and the free end's place and distance to the edge.
 fn free_end(graph: &Graph, (branch, end): (usize, usize)) -> Option<(Node, Point, f64)> {
@@ -49,6 +54,7 @@ fn is_bump(graph: &Graph, end: (usize, usize)) -> bool {
 fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f64) -> bool {
     let Some((node, tip, _)) = free_end(graph, end).filter(|_| ends.len() == 3) else { return false };
     let out = tip - node.at;
+    // skeleton pixels lie up to half a pixel beside the middle, hence `pen + 0.5` below;
     // between curved sides the point is longer, but it thins out all along
     let tapers = median(&graph.branches[end.0].radii) < 0.85 * pen;
     let most = if tapers { 7.0 * pen } else { 0.0 };
@@ -58,7 +64,7 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
         let others: Vec<Vec2> = others.collect();
         let back = -(others[0] + others[1]);
         let s = (0.5 * others[0].cross(others[1]).atan2(others[0].dot(others[1])).abs()).sin();
-        let length = pen * ((1.0 - s) / (s * (1.0 + s)).max(0.05) + 1.0 / s.max(0.1));
+        let length = (pen + 0.5) * ((1.0 - s) / (s * (1.0 + s)).max(0.05) + 1.0 / s.max(0.1));
         let midway = out.dot(back) > 0.9 * out.hypot() * back.hypot();
         s < MITRED && midway && out.hypot() < (1.25 * length + 2.5).max(most)
     })
@@ -96,7 +102,11 @@ mod tests {
     #[test]
     fn a_bump_goes_and_leaves_one_line() {
         let n = [Some(0), None];
-        let graph = pruned(vec![branch(30, (1.0, 0.0), 2.5, n), branch(30, (-1.0, 0.0), 2.5, n), branch(2, (0.0, 1.0), 1.0, n)]);
+        let graph = pruned(vec![
+            branch(30, (1.0, 0.0), 2.5, n),
+            branch(30, (-1.0, 0.0), 2.5, n),
+            branch(2, (0.0, 1.0), 1.0, n),
+        ]);
         assert_eq!(graph.branches.len(), 1);
         assert_eq!(graph.branches[0].points.len(), 61);
         assert_eq!(graph.branches[0].length(), 60.0);
@@ -116,7 +126,11 @@ mod tests {
     #[test]
     fn a_short_bar_stays() {
         let n = [Some(0), None];
-        let graph = pruned(vec![branch(30, (1.0, 0.0), 2.5, n), branch(30, (-1.0, 0.0), 2.5, n), branch(6, (0.0, 1.0), 2.5, n)]);
+        let graph = pruned(vec![
+            branch(30, (1.0, 0.0), 2.5, n),
+            branch(30, (-1.0, 0.0), 2.5, n),
+            branch(6, (0.0, 1.0), 2.5, n),
+        ]);
         assert_eq!(graph.branches.len(), 3);
     }
 }

@@ -109,7 +109,10 @@ mod tests {
     fn of(picture: &str) -> Vec<usize> {
         let rows: Vec<&str> = picture.split_whitespace().collect();
         let values = rows.iter().flat_map(|r| r.bytes()).map(|b| u8::from(b == b'#')).collect();
-        regions(&Plane { width: rows[0].len(), height: rows.len(), values }).iter().map(Region::area).collect()
+        regions(&Plane { width: rows[0].len(), height: rows.len(), values })
+            .iter()
+            .map(Region::area)
+            .collect()
     }
 
     #[test]

@@ -21,8 +21,11 @@ struct Section {
     width: f64,
 }
 
+/// Points either side with whose median width a point's is compared: a pen's width changes slowly.
+const LOCAL: usize = 15;
+
 /// More points than this left out in a row are a gap: the line cannot be seen there.
-const GAP: usize = 3;
+const GAP: usize = 2;
 
 /// A row of points moved on to the middle of their line.
 #[derive(Clone, Debug)]
@@ -51,8 +54,12 @@ pub(crate) fn centred(dark: &Plane<u8>, points: &[Point], radius: f64, ring: boo
             break;
         }
         width = median(&widths);
-        let like = |w: f64| (w - width).abs() <= (0.25 * width).max(0.8);
-        rows = found.into_iter().filter(|f| like(f.2)).map(|(k, p, _)| (k, p)).collect();
+        let like = |i: usize| {
+            let near = &widths[i.saturating_sub(LOCAL)..(i + LOCAL + 1).min(widths.len())];
+            let usual = median(near);
+            (widths[i] - usual).abs() <= (0.15 * usual).max(0.5)
+        };
+        rows = (0..found.len()).filter(|&i| like(i)).map(|i| (found[i].0, found[i].1)).collect();
     }
     let mut stretches: Vec<Vec<Point>> = Vec::new();
     let mut before = None;
@@ -79,7 +86,11 @@ fn normal(points: &[Point], i: usize, reach: usize, ring: bool) -> Option<Vec2> 
     let mean = |side: isize| {
         let at = |k: usize| {
             let j = i as isize + side * k as isize;
-            if ring { Some(points[j.rem_euclid(n as isize) as usize]) } else { points.get(usize::try_from(j).ok()?).copied() }
+            if ring {
+                Some(points[j.rem_euclid(n as isize) as usize])
+            } else {
+                points.get(usize::try_from(j).ok()?).copied()
+            }
         };
         let near: Vec<Vec2> = (1..=reach).map_while(at).map(Point::to_vec2).collect();
         (!near.is_empty()).then(|| near.iter().copied().sum::<Vec2>() / near.len() as f64)
@@ -96,7 +107,11 @@ fn section(dark: &Plane<u8>, at: Point, normal: Vec2, radius: f64) -> Option<Sec
     let inner = ((0.7 * radius).max(1.0) / STEP).round() as usize;
     let middle = half as usize;
     let core = &profile[middle - inner..=middle + inner];
-    let (top, peak) = core.iter().copied().enumerate().fold((0, 0.0), |best, (i, v)| if v > best.1 { (i, v) } else { best });
+    let (top, peak) = core
+        .iter()
+        .copied()
+        .enumerate()
+        .fold((0, 0.0), |best, (i, v)| if v > best.1 { (i, v) } else { best });
     let level = 0.5 * peak;
     let start = if profile[middle] >= level { middle } else { middle - inner + top };
     let right = foot(profile[start..].iter(), level)?;
@@ -139,11 +154,12 @@ fn edge<'a>(profile: impl Iterator<Item = &'a f64>, level: f64) -> Option<f64> {
     None
 }
 
-/// Where a line that runs on from `from` in direction `along` ends: half its width before the ink does (a pen's end
-/// is round). `None` when there is no end within `reach`.
-pub(crate) fn pen_end(dark: &Plane<u8>, from: Point, along: Vec2, width: f64, reach: f64) -> Option<Point> {
+/// How far a line runs on along `way` (a place for each distance ahead, px) before its pen is lifted: half its width
+/// less than the ink does, for a pen's end is round. `None` when there is no end within `reach`; beyond the picture
+/// is paper.
+pub(crate) fn pen_end(dark: &Plane<u8>, way: impl Fn(f64) -> Point, width: f64, reach: f64) -> Option<f64> {
     let steps = (reach / STEP).ceil() as usize;
-    let profile: Vec<f64> = (0..=steps).map(|k| dark.at(from + along * (k as f64 * STEP))).collect();
-    let ink_end = edge(profile.iter(), 0.5 * profile[0])?;
-    Some(from + along * (ink_end - 0.5 * width))
+    let level = |p: Point| if dark.clamp(p) == p { dark.at(p) } else { 0.0 };
+    let profile: Vec<f64> = (0..=steps).map(|k| level(way(k as f64 * STEP))).collect();
+    Some(edge(profile.iter(), 0.5 * profile[0])? - 0.5 * width)
 }

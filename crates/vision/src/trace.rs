@@ -80,6 +80,10 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
         Mode::Outline => outlines(&ink, &mask, &regions, options),
         Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, &mask, &regions, options),
     };
+    if strokes.is_empty() {
+        let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
+        return Err(VisionError::NoInk { largest_px, least_px: largest_px + 1 });
+    }
     let scale = Affine::scale(ink.reduction as f64);
     Ok(Traced {
         width_px: image.width(),
@@ -143,9 +147,11 @@ fn kinds(mask: &Plane<u8>, regions: &[Region], mode: Mode) -> Vec<Kind> {
     let distance = distance::to_paper(mask);
     let thickest = |r: &Region| r.pixels(mask.width).map(|i| distance.values[i]).fold(0.0, f32::max);
     // no pen is a 12th of the picture wide
-    let widest_pen = if mode == Mode::Auto { mask.width.min(mask.height) as f32 / 12.0 } else { f32::INFINITY };
+    let widest_pen =
+        if mode == Mode::Auto { mask.width.min(mask.height) as f32 / 12.0 } else { f32::INFINITY };
     let solid: Vec<bool> = regions.iter().map(|r| 2.0 * thickest(r) - 1.0 > widest_pen).collect();
-    let thin = regions.iter().zip(&solid).filter(|(_, solid)| !**solid).flat_map(|(r, _)| r.pixels(mask.width));
+    let thin =
+        regions.iter().zip(&solid).filter(|(_, solid)| !**solid).flat_map(|(r, _)| r.pixels(mask.width));
     let mut skeleton = Skeleton::of(mask.width, mask.height, thin);
     let mut graph = |region: &Region| {
         let pixels: Vec<usize> = region.pixels(mask.width).map(|i| skeleton.with_margin(i)).collect();
@@ -167,7 +173,9 @@ fn kinds(mask: &Plane<u8>, regions: &[Region], mode: Mode) -> Vec<Kind> {
 /// The picture's pen: the median width along all of its lines, px.
 fn pen_width<'a>(graphs: impl Iterator<Item = &'a Graph>) -> f64 {
     let lines = graphs.filter(|g| !g.is_uneven() && !g.is_blob());
-    2.0 * median(&lines.flat_map(|g| g.branches.iter().flat_map(|b| b.radii.iter().copied())).collect::<Vec<_>>())
+    2.0 * median(
+        &lines.flat_map(|g| g.branches.iter().flat_map(|b| b.radii.iter().copied())).collect::<Vec<_>>(),
+    )
 }
 
 impl Graph {

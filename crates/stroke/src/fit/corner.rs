@@ -49,7 +49,7 @@ impl FitOptions {
     /// as an arc of half the pen's half-width would, whose sagitta is r/2 · (1/cos(φ/2) − 1), the pixels of a shape's
     /// edge up to a pixel more; a bend of three times that radius is no corner.
     fn cut(&self, turn_rad: f64) -> f64 {
-        let sagitta = 1.0 / (0.5 * turn_rad).cos().max(0.05) - 1.0;
+        let sagitta = 1.0 / (0.5 * turn_rad).cos().max(0.25) - 1.0;
         1.4 * self.reach * sagitta + 0.6 * self.tolerance
     }
 }
@@ -114,7 +114,10 @@ fn measured(samples: &Samples, peak: usize, scale: &Scale, options: &FitOptions)
     for _ in 0..3 {
         let side = |side| {
             let lengths = [2, 3, 4, 6, 8, 12, 16, 24].map(|quarters| (quarters * scale.flank / 4).max(6));
-            Parabola::widest(lengths.into_iter().map(|length| samples.flank(index, side, gap, length)), scale.rms)
+            Parabola::widest(
+                lengths.into_iter().map(|length| samples.flank(index, side, gap, length)),
+                scale.rms,
+            )
         };
         let (before, after) = (side(-1)?, side(1)?);
         let turned = turn(before.tangent(0.0), after.tangent(0.0));
