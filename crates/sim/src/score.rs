@@ -33,6 +33,8 @@ const AFTER_END_TICKS: usize = 200;
 const NEAR_TICKS: usize = 150;
 /// The rest over which the final error is averaged, ticks.
 const REST_TICKS: usize = 200;
+/// Time over which the spot's speed is measured, ticks.
+const SPEED_TICKS: usize = 5;
 /// "At speed" means this close to it.
 const AT_SPEED: f64 = 0.02;
 const MM: f64 = 1e3;
@@ -64,7 +66,8 @@ fn rms_and_max(errors_m: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / (values.len() as f64).max(1.0)
+    // the sum of nothing is −0
+    (values.iter().sum::<f64>() + 0.0) / (values.len() as f64).max(1.0)
 }
 
 /// Distance of a lit spot from the stroke it is on, m.
@@ -90,10 +93,12 @@ fn to_segment(p: Point, a: Point, b: Point) -> f64 {
     p.distance(a + along * share)
 }
 
-/// Speeds of the true spot between lit ticks, m/s.
+/// Speeds of the true spot while lit, m/s, each over [`SPEED_TICKS`]: over a single tick a few micrometres of
+/// trembling would count as speed.
 fn lit_speeds(run: &Run) -> Vec<f64> {
-    let pairs = run.ticks.windows(2).filter(|w| w[0].light && w[1].light);
-    pairs.filter_map(|w| Some(w[1].spot?.distance(w[0].spot?) / TICK_F64_S)).collect()
+    let stretches = run.ticks.windows(SPEED_TICKS + 1).filter(|w| w.iter().all(|t| t.light));
+    let speed = |w: &[Tick]| Some(w[SPEED_TICKS].spot?.distance(w[0].spot?) / (SPEED_TICKS as f64 * TICK_F64_S));
+    stretches.filter_map(speed).collect()
 }
 
 fn overshoot_percent(plan: &Plan, run: &Run) -> f64 {

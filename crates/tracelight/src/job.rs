@@ -34,6 +34,8 @@ struct Prepared {
     placed: Placed,
     driving: Driving,
     schedule: Schedule,
+    /// Remarks for the user.
+    notes: Vec<String>,
     plan_ms: f64,
 }
 
@@ -70,10 +72,9 @@ fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepare
     let schedule = schedule(&placed, &driving, OrderBy::default(), OrderEffort::default())?;
     let plan_ms = began.elapsed().as_secs_f64() * 1e3;
     stop.check()?;
-    if args.driving.amax.is_some() {
-        driving.notes.iter().for_each(|n| progress.say(&format!("note: {n}")));
-    }
-    Ok(Prepared { sketch, placed, driving, schedule, plan_ms })
+    let notes = driving.remarks(&schedule.plan);
+    notes.iter().for_each(|n| progress.say(&format!("note: {n}")));
+    Ok(Prepared { sketch, placed, driving, schedule, notes, plan_ms })
 }
 
 /// `out/<the picture's stem>/`.
@@ -174,7 +175,7 @@ fn write(
 ) -> Result<Summary, Failure> {
     let Prepared { sketch, placed, driving, schedule, .. } = prepared;
     let drawing = &schedule.ordered.drawing;
-    let strokes = tracelight_formats::svg::write(drawing, placed.size_m.0, placed.size_m.1);
+    let strokes = placed.svg(drawing);
     let path = dir.join("strokes.svg");
     std::fs::write(&path, strokes).map_err(|e| cannot_write(&path, &e))?;
     let tracking: Tracking = score(&schedule.plan, &laps.last, driving.request.speed_m_s);
@@ -200,7 +201,7 @@ fn write(
         torque_limit_nm: PanTilt::new(motors.pan.torque_limit_nm(), motors.tilt.torque_limit_nm()),
         tolerance_mm: driving.request.tolerance_m * 1e3,
         settings,
-        notes: &driving.notes,
+        notes: &prepared.notes,
         timing: Timing {
             vision_ms: sketch.vision_ms,
             plan_ms: prepared.plan_ms,
@@ -208,6 +209,7 @@ fn write(
             report_ms: 0.0,
         },
         seed: args.seed,
+        dry_run: args.dry_run,
     };
     Ok(output::write_all(dir, &job)?)
 }
@@ -227,5 +229,10 @@ fn ending(run: &Run, stop: &Stop) -> Option<Failure> {
         return Some(Failure::interrupted());
     }
     let done = last.is_some_and(|t| t.telemetry.phase == Phase::Done);
-    (!done).then(|| Failure::failed("unfinished", "the run did not come to its end; see the report"))
+    (!done).then(|| {
+        let message = "the run was given up: the head left its stroke again and again, and the laser was dark most of \
+                       the time. One encoder count is more on a target that is further away: step nearer \
+                       (--distance), or allow more (control.tolerance in the rig file)";
+        Failure::failed("unfinished", message)
+    })
 }

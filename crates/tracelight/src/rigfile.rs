@@ -31,7 +31,10 @@ pub(crate) fn load(name: &str) -> Result<RigConfig, Failure> {
         let message = format!("{name} is no preset ({}) and no rig file", known.join(", "));
         return Err(Failure::usage("rig-file", message));
     }
-    let bytes = read_bytes(name)?;
+    let bytes = match std::fs::metadata(name) {
+        Ok(about) if about.is_file() && about.len() == 0 => Vec::new(), // every key left out: the preset `report`
+        _ => read_bytes(name)?,
+    };
     if bytes.len() > MOST_BYTES {
         let message = format!("{name} has {} bytes, a rig file has at most {MOST_BYTES}", bytes.len());
         return Err(Failure::usage("rig-file", message));
@@ -245,7 +248,7 @@ fn section<T>(text: &mut String, prefix: &str, keys: &[Key<T>], from: &mut T) {
         *text += &format!("\n[{table}]\n");
         for key in keys.iter().filter(|k| table_of(k) == table) {
             let name = key.path.rsplit_once('.').map_or(key.path, |(_, name)| name);
-            *text += &format!("{:42} # {}\n", format!("{name} = {}", shown(key, from)), key.meaning);
+            *text += &format!("{:50} # {}\n", format!("{name} = {}", shown(key, from)), key.meaning);
         }
     }
 }

@@ -3,7 +3,7 @@
 use tracelight_stroke::{Effort, OrderOptions, Ordered, Point, order};
 use tracelight_trajectory::{Plan, PlanError, plan};
 
-use crate::cli::driving::Driving;
+use crate::cli::driving::{Driving, REACHED};
 use crate::failure::Failure;
 use crate::sketch::Placed;
 
@@ -82,7 +82,7 @@ fn check_reach(placed: &Placed, driving: &Driving) -> Result<(), Failure> {
 /// A speed that is asked for and reached nowhere is refused; slowing down here and there is no error.
 fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
     let (asked, best) = (driving.request.speed_m_s, plan.top_speed_m_s());
-    if !driving.speed_is_asked || best >= 0.98 * asked {
+    if !driving.speed_is_asked || best >= REACHED * asked {
         return Ok(());
     }
     let message = format!(

@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use tracelight_aim::{Placement, SizeRequest};
-use tracelight_stroke::{Affine, Drawing};
+use tracelight_formats::svg;
+use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 use tracelight_vision::{Mode, Options};
 
 use crate::cli::placing::PlacementArgs;
@@ -38,6 +39,22 @@ pub(crate) struct Placed {
     pub(crate) size_m: (f64, f64),
     /// From the sheet to the target.
     pub(crate) target_from_sheet: Affine,
+    /// Where the sheet's corners lie on the target, m.
+    corners_m: [Point; 4],
+}
+
+impl Placed {
+    /// Its strokes as an SVG of true size, on a page that just holds the sheet as it lies, moved and turned.
+    pub(crate) fn svg(&self, drawing: &Drawing) -> String {
+        let corners = self.corners_m;
+        let reach = |of: fn(&Point) -> f64| {
+            let values = corners.iter().map(of);
+            (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max))
+        };
+        let ((left, right), (low, high)) = (reach(|p| p.x), reach(|p| p.y));
+        let to_centre = Vec2::new(-0.5 * (left + right), -0.5 * (low + high));
+        svg::write(&drawing.transformed(Affine::translate(to_centre)), right - left, high - low)
+    }
 }
 
 /// Traces pixels, takes strokes as they are.
@@ -89,9 +106,12 @@ pub(crate) fn place(sketch: &Sketch, args: &PlacementArgs) -> Placed {
         flip: args.flip,
         ..upright
     };
+    let target_from_sheet = placement.target_from_pixel(width);
+    let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
     Placed {
         drawing: placement.place(&sketch.drawing, width),
         size_m: (placement.width_m, placement.height_m),
-        target_from_sheet: placement.target_from_pixel(width),
+        target_from_sheet,
+        corners_m: corners.map(|(u, v)| target_from_sheet * Point::new(u, v)),
     }
 }

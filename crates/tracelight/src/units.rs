@@ -16,7 +16,7 @@ pub(crate) enum UnitError {
         text: String,
         /// What fits.
         units: String,
-        /// The first of them.
+        /// One of them, for an example.
         first: &'static str,
     },
     /// A unit of something else, or of nothing.
@@ -36,7 +36,7 @@ pub(crate) enum UnitError {
         text: String,
         /// What fits.
         units: String,
-        /// The first of them.
+        /// One of them, for an example.
         first: &'static str,
     },
     /// Two numbers were wanted.
@@ -72,7 +72,7 @@ pub(crate) fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError
     const LONGEST: usize = 64; // no quantity is longer, and splitting takes the square of the length
     let text = text.trim();
     let names = || units.iter().map(|u| u.0).collect::<Vec<_>>().join(", ");
-    let first = units.first().map_or("", |u| u.0);
+    let first = usual(units);
     if text.chars().count() > LONGEST {
         let text = text.chars().take(LONGEST).chain("…".chars()).collect();
         return Err(UnitError::Number { text, units: names(), first });
@@ -93,6 +93,13 @@ pub(crate) fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError
         unit: unit.into(),
         units: names(),
     })
+}
+
+/// The unit to show in an example: the one people type most.
+fn usual(units: &[Unit]) -> &'static str {
+    const USUAL: [&str; 3] = ["in", "deg", "ft/s"];
+    let known = units.iter().map(|u| u.0);
+    known.clone().find(|u| USUAL.contains(u)).or(known.clone().next()).unwrap_or("")
 }
 
 /// Cuts after the longest prefix that is a number: `1e3m` is a thousand metres, `1em` is one of the unit `em`.

@@ -1,7 +1,7 @@
 use clap::{Args, ValueEnum};
 use tracelight_aim::HeadPose;
 use tracelight_sim::RigConfig;
-use tracelight_trajectory::{AccelerationDemand, Machine, PlanRequest, Ramps, Shape};
+use tracelight_trajectory::{AccelerationDemand, Machine, Plan, PlanRequest, Ramps, Shape};
 
 use crate::cli::placing::positive_length;
 use crate::failure::Failure;
@@ -77,9 +77,28 @@ pub(crate) struct Driving {
     pub(crate) request: PlanRequest,
     /// The speed was asked for, not assumed.
     pub(crate) speed_is_asked: bool,
-    /// Remarks for the user.
-    pub(crate) notes: Vec<String>,
+    /// An acceleration was asked for, not taken from the rig.
+    acceleration_is_asked: bool,
 }
+
+impl Driving {
+    /// What the user should know about a plan: wishes the motors do not fulfil, and a speed it never reaches.
+    pub(crate) fn remarks(&self, plan: &Plan) -> Vec<String> {
+        let wishes = self.machine.impossible_wishes(WORKING_TILT_RAD);
+        let asked = wishes.iter().filter(|_| self.acceleration_is_asked);
+        let mut remarks: Vec<String> = asked.map(wish_note).collect();
+        let (set, top) = (self.request.speed_m_s, plan.top_speed_m_s());
+        if top < REACHED * set {
+            remarks.push(format!(
+                "{set:.3} m/s is reached nowhere: the lines are too short or too bent; the fastest is {top:.3} m/s"
+            ));
+        }
+        remarks
+    }
+}
+
+/// A speed counts as reached from this share of it on.
+pub(crate) const REACHED: f64 = 0.98;
 
 impl DrivingArgs {
     /// Reads the rig and gathers the rest.
@@ -97,8 +116,14 @@ impl DrivingArgs {
             settle_s: rig.motion.settle_s,
             tolerance_m: rig.control.tolerance_m,
         };
-        let notes = machine.impossible_wishes(WORKING_TILT_RAD).iter().map(wish_note).collect();
-        Ok(Driving { rig, pose, machine, request, speed_is_asked: self.speed.is_some(), notes })
+        Ok(Driving {
+            rig,
+            pose,
+            machine,
+            request,
+            speed_is_asked: self.speed.is_some(),
+            acceleration_is_asked: self.amax.is_some(),
+        })
     }
 }
 

@@ -67,20 +67,20 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Failure> {
         let lines: Vec<String> = all.iter().map(|(code, words)| format!("{code:18} {words}")).collect();
         return Ok(Answer::new(lines.join("\n"), json(&all)));
     };
-    let found: Vec<_> = all.iter().copied().filter(|(c, _)| c == code).collect();
+    let found: Vec<_> = all.into_iter().filter(|(c, _)| c == code).collect();
     let Some((_, words)) = found.first() else {
         let message = format!("{code} is no code; `tracelight explain` lists all of them");
         return Err(Failure::usage("usage", message));
     };
-    Ok(Answer::new(*words, json(&found)))
+    Ok(Answer::new(words, json(&found)))
 }
 
-fn json(codes: &[(&str, &str)]) -> String {
+fn json(codes: &[(&'static str, String)]) -> String {
     let entries: Vec<_> = codes.iter().map(|(c, w)| serde_json::json!({ "code": c, "meaning": w })).collect();
     serde_json::json!({ "codes": entries }).to_string()
 }
 
-fn codes() -> Vec<(&'static str, &'static str)> {
+fn codes() -> Vec<(&'static str, String)> {
     let faults = [
         Fault::EncoderJumped,
         Fault::EncoderDead,
@@ -90,6 +90,31 @@ fn codes() -> Vec<(&'static str, &'static str)> {
         Fault::HoldTimedOut,
     ];
     let faults = faults.map(|f| (f.code(), fault_words(f)));
-    let darkness = Darkness::ALL.map(|d| (d.code(), darkness_words(d)));
-    MESSAGES.iter().copied().chain(faults).chain(darkness).collect()
+    let own = MESSAGES.iter().map(|&(code, words)| (code, words.to_owned()));
+    let faults = faults.map(|(code, words)| (code, words.to_owned()));
+    let darkness = Darkness::ALL.map(|d| (d.code(), format!("{} {}", darkness_words(d), what_to_do(d))));
+    own.chain(faults).chain(darkness).collect()
+}
+
+/// What a user can do about a darkening.
+const fn what_to_do(reason: Darkness) -> &'static str {
+    match reason {
+        Darkness::Planned => "Nothing: the head is on its way between strokes.",
+        Darkness::Disarmed => "Arm it.",
+        Darkness::FollowingError | Darkness::SpotError => {
+            "See whether somebody or something pushes the head, whether --speed or --distance is more than it can \
+             hold, and whether the friction and gains in the rig file are its own. control.tolerance sets the bound."
+        }
+        Darkness::Holding => {
+            "Nothing, if it is rare: the head goes back to where it left and on from there. If not, look at the \
+             darkening before it."
+        }
+        Darkness::OutOfBounds => {
+            "Make the picture smaller or shift it; range_min and range_max in the rig file set the bound."
+        }
+        Darkness::Stale => {
+            "Nothing before the first and after the last stroke. Within a job the host was too slow."
+        }
+        Darkness::Faulted => "Look up the fault's own code.",
+    }
 }

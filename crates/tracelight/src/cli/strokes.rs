@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use tracelight_formats::json::Traced;
-use tracelight_formats::{Sheet, csv, json, svg};
+use tracelight_formats::{Sheet, csv, json};
 use tracelight_vision::Mode;
 
 use crate::cli::placing::PlacementArgs;
@@ -132,7 +132,7 @@ fn write(path: &Path, sketch: &Sketch, args: &StrokesArgs, json: &str) -> Result
     let placed = place(sketch, &args.placement);
     let kind = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let text = match kind.as_str() {
-        "svg" => svg::write(&placed.drawing, placed.size_m.0, placed.size_m.1),
+        "svg" => placed.svg(&placed.drawing),
         "json" => json.to_owned(),
         "csv" => csv::write(&placed.drawing, POINTS_TOLERANCE_M),
         other => {
@@ -148,13 +148,18 @@ fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
 }
 
 fn line(picture: &str, sketch: &Sketch) -> String {
+    // what has no true size is measured in its pixels
+    let (scale, unit) = match sketch.true_width_m {
+        Some(width_m) => (1e3 * width_m / sketch.size.0, "mm"),
+        None => (1.0, "px"),
+    };
     let closed = sketch.drawing.strokes.iter().filter(|s| s.path.is_closed()).count();
     format!(
-        "{picture}: {} strokes ({closed} closed), {:.0} units long on a sheet of {:.0} × {:.0}, {:.0} ms",
+        "{picture}: {} strokes ({closed} closed), {:.0} {unit} of line on a sheet of {:.0} × {:.0} {unit}, {:.0} ms",
         sketch.drawing.strokes.len(),
-        sketch.drawing.length(1e-3),
-        sketch.size.0,
-        sketch.size.1,
+        sketch.drawing.length(1e-3) * scale,
+        sketch.size.0 * scale,
+        sketch.size.1 * scale,
         sketch.vision_ms
     )
 }

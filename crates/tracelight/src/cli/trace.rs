@@ -80,24 +80,35 @@ pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
 
 fn text(s: &Summary) -> String {
     let mm = |m: f64| m * 1e3;
-    format!(
+    let mut text = format!(
         "{}: {} strokes, {:.3} m of line at {:.0} × {:.0} mm\n\
-         time:     {:.2} s, of it lit {:.2} s at {:.3} m/s; torque up to {:.0} %\n\
-         error:    {:.3} mm rms, {:.3} mm at most; overshoot {:.2} %, {:.3} mm at rest",
+         time:   {:.2} s, of it lit {:.2} s at {:.3} m/s; torque up to {:.0} %",
         s.picture.path,
         s.strokes.count,
         s.strokes.length_m,
         mm(s.target.width_m),
         mm(s.target.height_m),
-        s.plan.duration_s,
+        s.run.duration_s,
         s.laser.lit_s,
         s.tracking.lit_speed_m_s,
         100.0 * s.plan.torque_peak_fraction,
-        s.tracking.rms_mm,
-        s.tracking.max_mm,
-        s.tracking.overshoot_percent,
-        s.tracking.final_error_mm,
-    )
+    );
+    if (s.run.duration_s - s.plan.duration_s).abs() > 0.01 {
+        text += &format!("\n        (planned: {:.2} s)", s.plan.duration_s);
+    }
+    text += &match s.laser.lit_s > 0.0 {
+        true => format!(
+            "\nerror:  {:.3} mm rms, {:.3} mm at most; overshoot {:.2} %, {:.3} mm at rest",
+            s.tracking.rms_mm, s.tracking.max_mm, s.tracking.overshoot_percent, s.tracking.final_error_mm,
+        ),
+        false => "\nerror:  none to measure, nothing was lit".to_owned(),
+    };
+    match s.laser.faults.len() {
+        0 => {}
+        1 => text += "\ndark:   once where light was planned; the report says when and why",
+        n => text += &format!("\ndark:   {n} times where light was planned; the report says when and why"),
+    }
+    text
 }
 
 /// Hands a page to whatever shows pages here. Failing to is not worth an error: the path is printed.

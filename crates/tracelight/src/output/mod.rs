@@ -70,6 +70,8 @@ pub(crate) struct Job<'a> {
     pub(crate) timing: Timing,
     /// Seed of the run.
     pub(crate) seed: u64,
+    /// The gate was held dark on purpose.
+    pub(crate) dry_run: bool,
 }
 
 /// A decoded picture and where it lies.

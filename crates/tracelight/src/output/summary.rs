@@ -1,6 +1,8 @@
 use std::path::Path;
 
 use serde::Serialize;
+use tracelight_rig::{Phase, TICK_F64_S};
+use tracelight_sim::Run;
 use tracelight_stroke::Drawing;
 use tracelight_trajectory::Plan;
 
@@ -18,6 +20,8 @@ pub(crate) struct Summary {
     pub(crate) strokes: StrokeFigures,
     /// What was meant to happen.
     pub(crate) plan: PlanFigures,
+    /// Whether it was done, and how long that took.
+    pub(crate) run: RunFigures,
     /// What happened instead.
     pub(crate) tracking: TrackingFigures,
     /// Light and what kept it away.
@@ -61,6 +65,13 @@ pub(crate) struct PlanFigures {
     pub(crate) lit_s: f64,
     pub(crate) speed_m_s: f64,
     pub(crate) torque_peak_fraction: f64,
+}
+
+/// See [`Summary::run`]; of the last lap.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct RunFigures {
+    pub(crate) duration_s: f64,
+    pub(crate) finished: bool,
 }
 
 /// See [`Summary::tracking`] and [`tracelight_sim::Tracking`].
@@ -113,6 +124,7 @@ impl Summary {
             },
             strokes: StrokeFigures::of(job.drawing, job.plan),
             plan: PlanFigures::of(job.plan),
+            run: RunFigures::of(job.run),
             tracking: tracking(job),
             laser: LaserFigures {
                 lit_s: round(lit_s(job.run)),
@@ -155,6 +167,15 @@ fn picture(job: &Job<'_>) -> PictureFigures {
     }
 }
 
+impl RunFigures {
+    fn of(run: &Run) -> Self {
+        Self {
+            duration_s: round(run.ticks.len().saturating_sub(1) as f64 * TICK_F64_S),
+            finished: run.ticks.last().is_some_and(|t| t.telemetry.phase == Phase::Done),
+        }
+    }
+}
+
 impl StrokeFigures {
     /// Of a drawing in tracing order and its plan.
     pub(crate) fn of(drawing: &Drawing, plan: &Plan) -> Self {
@@ -185,7 +206,7 @@ fn planned_speed(plan: &Plan) -> f64 {
     let lit = plan.points.windows(2).filter(|pair| pair[0].lit && pair[1].lit);
     let (way, ticks) =
         lit.fold((0.0, 0_u32), |(way, ticks), pair| (way + pair[0].spot.distance(pair[1].spot), ticks + 1));
-    way / (f64::from(ticks.max(1)) * tracelight_rig::TICK_F64_S)
+    way / (f64::from(ticks.max(1)) * TICK_F64_S)
 }
 
 fn tracking(job: &Job<'_>) -> TrackingFigures {

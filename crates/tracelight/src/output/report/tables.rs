@@ -1,5 +1,6 @@
 use super::html::{escaped, number};
 use crate::output::{Job, Summary, events};
+use tracelight_rig::Phase;
 
 const METRES_PER_INCH: f64 = 0.0254;
 
@@ -14,7 +15,7 @@ pub(super) fn tiles(job: &Job<'_>, figures: &Summary) -> String {
         (number(t.final_error_mm, 3), "mm", "error at rest"),
         (number(t.lit_speed_m_s, 4), "m/s", "speed of the lit spot"),
         (number(at_speed, 3), "%", "of the lit time within 2 % of the set speed"),
-        (number(figures.plan.duration_s, 3), "s", "for the whole job"),
+        (number(figures.run.duration_s, 3), "s", "for the whole job"),
         (number(torque_peak(job) * 100.0, 3), "%", "of the torque used at most"),
     ];
     let tile = |(value, unit, what): (String, &str, &str)| {
@@ -122,8 +123,12 @@ pub(super) fn verdict(job: &Job<'_>) -> (&'static str, String) {
     if let Some(stop) = events.iter().find(|e| e.stops) {
         return ("bad", format!("stopped: {}", stop.code));
     }
-    if job.run.ticks.is_empty() {
-        return ("fair", "not run".to_owned());
+    let Some(last) = job.run.ticks.last() else { return ("fair", "not run".to_owned()) };
+    if last.telemetry.phase != Phase::Done {
+        return ("bad", format!("not finished, darkened {} times", events.len()));
+    }
+    if job.dry_run {
+        return ("fair", "dry run: dark on purpose".to_owned());
     }
     match events.len() {
         0 => ("good", "finished without a fault".to_owned()),
