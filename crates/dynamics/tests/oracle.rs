@@ -1,6 +1,10 @@
 //! The equations of motion against an independent rigid-body library (see `oracle/make_oracle.py`).
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that cannot go on may panic, and shows figures")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on may panic, and shows figures"
+)]
 
 use tracelight_dynamics::HeadBodies;
 use tracelight_rig::PanTilt;

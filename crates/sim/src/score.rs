@@ -97,7 +97,8 @@ fn to_segment(p: Point, a: Point, b: Point) -> f64 {
 /// trembling would count as speed.
 fn lit_speeds(run: &Run) -> Vec<f64> {
     let stretches = run.ticks.windows(SPEED_TICKS + 1).filter(|w| w.iter().all(|t| t.light));
-    let speed = |w: &[Tick]| Some(w[SPEED_TICKS].spot?.distance(w[0].spot?) / (SPEED_TICKS as f64 * TICK_F64_S));
+    let speed =
+        |w: &[Tick]| Some(w[SPEED_TICKS].spot?.distance(w[0].spot?) / (SPEED_TICKS as f64 * TICK_F64_S));
     stretches.filter_map(speed).collect()
 }
 
