@@ -8,6 +8,8 @@ use crate::plane::Plane;
 const WINDOWS: [usize; 6] = [6, 9, 13, 19, 28, 40];
 /// How far points of one parabola are from it, px, root mean square.
 const ON_PARABOLA_PX: f64 = 0.06;
+/// Sine of the least angle between two lines that are said to meet: 4°.
+const LEAST_CROSS: f64 = 0.07;
 /// A pair that turns more than this is a corner, less a bend, rad (25°).
 const CORNER_RAD: f64 = 25.0 / 180.0 * std::f64::consts::PI;
 
@@ -53,7 +55,7 @@ impl Tip {
         for _ in 0..4 {
             let ((a, u), (b, v)) = (self.beyond(s), other.beyond(t));
             let cross = u.cross(v);
-            if cross.abs() < 0.14 {
+            if cross.abs() < LEAST_CROSS {
                 return None;
             }
             s += (b - a).cross(v) / cross;
@@ -91,7 +93,8 @@ impl Tip {
     /// lines meet, if there is ink. A corner within 1.5 px of one of the points `near` is put there.
     pub(crate) fn bridge(&self, other: &Tip, dark: &Plane<u8>, near: &[Point]) -> Vec<Point> {
         let over = other.at - self.at;
-        let far = 2.0 * over.hypot() + 4.0;
+        // lines an angle θ apart meet |over|/θ ahead; nearly parallel ones nowhere in particular
+        let far = over.hypot() / LEAST_CROSS + 4.0;
         let ahead = |s: f64| (-1.0..far).contains(&s);
         let inked = |s: f64| is_inked(dark, self.at, self.beyond(s).0);
         let corner = self.meets(other).filter(|&(s, t)| ahead(s) && ahead(t) && inked(s));

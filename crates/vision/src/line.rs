@@ -105,17 +105,24 @@ fn gap(dark: &Plane<u8>, before: &[Point], after: &[Point]) -> Vec<Point> {
     }
 }
 
+/// Points that tell the pen's width near an end.
+const NEAR_END: usize = 40;
+
 /// The points of a branch away from its nodes' discs of ink and from its free ends, as a range of indices.
 fn trusted(graph: &Graph, branch: &Branch, radius: f64) -> (usize, usize) {
     let n = branch.points.len();
     let clear = |end: usize| {
         let index = |k: usize| if end == 0 { k } else { n - 1 - k };
+        // the pen's half-width near this end: elsewhere on a long branch it may have been another
+        let near = (4.0 * radius) as usize;
+        let window: Vec<f64> = (near..(near + NEAR_END).min(n)).map(|k| branch.radii[index(k)]).collect();
+        let usual = if window.len() < NEAR_END { radius } else { median(&window).max(0.5) };
         let ok = |k: &usize| match branch.nodes[end] {
             None => branch.points[index(*k)].distance(branch.points[index(0)]) >= radius,
             Some(node) => {
                 let node = graph.nodes[node];
                 let away = branch.points[index(*k)].distance(node.at);
-                away > 1.1 * node.radius + 0.5 && branch.radii[index(*k)] <= 1.1 * radius + 0.3
+                away > 1.1 * node.radius + 0.5 && branch.radii[index(*k)] <= 1.1 * usual + 0.3
             }
         };
         // never more than 45 % from either end: something of a short branch must stay
