@@ -217,7 +217,7 @@ fn solve([a, b]: [Vec2; 2], v: Vec2) -> Option<PanTilt<f64>> {
 mod tests {
     use super::*;
 
-    const WIDE: PanTilt<(f64, f64)> = PanTilt::new((-3.14, 3.14), (-1.6, 1.6));
+    const WIDE: PanTilt<(f64, f64)> = PanTilt::new((-3.1, 3.1), (-1.6, 1.6));
 
     fn heads() -> [(HeadGeometry, HeadPose); 3] {
         let skew = HeadPose {

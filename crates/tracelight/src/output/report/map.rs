@@ -38,8 +38,8 @@ pub(super) fn map(job: &Job<'_>) -> Result<String, OutputError> {
         numbers = numbers(job, &place),
         bar = bar(&place),
         swatches = swatches(),
-        half = number(scale / 2.0, 2),
-        top = number(scale, 2),
+        half = number(scale / 2.0, 3),
+        top = number(scale, 3),
         name = escaped(&job.title()),
     ))
 }

@@ -9,10 +9,10 @@ pub(super) fn tiles(job: &Job<'_>, figures: &Summary) -> String {
     let t = &figures.tracking;
     let at_speed = t.at_speed_share * 100.0;
     let tiles = [
-        (number(t.rms_mm, 3), "mm", "tracking error, rms"),
-        (number(t.max_mm, 3), "mm", "largest error while lit"),
+        (number(t.rms_mm, 4), "mm", "tracking error, rms"),
+        (number(t.max_mm, 4), "mm", "largest error while lit"),
         (number(t.overshoot_percent, 3), "%", "overshoot past ends and corners"),
-        (number(t.final_error_mm, 3), "mm", "error at rest"),
+        (number(t.final_error_mm, 4), "mm", "error at rest"),
         (number(t.lit_speed_m_s, 4), "m/s", "speed of the lit spot"),
         (number(at_speed, 3), "%", "of the lit time within 2 % of the set speed"),
         (number(figures.run.duration_s, 3), "s", "for the whole job"),
