@@ -223,6 +223,23 @@ fn a_speed_that_is_reached_nowhere_is_refused_with_the_best_possible() {
 }
 
 #[test]
+fn a_rig_fault_darkens_stops_and_exits_with_3() {
+    let dir = folder("fault");
+    let rig = dir.join("weak.toml");
+    // believed to be as strong as ever, its pan motor does nothing
+    std::fs::write(&rig, "[truth.pan.motor]\ntorque_per_volt = \"0.0001Nm/V\"\n").unwrap();
+    let out = dir.join("out");
+    let output =
+        program().args(["trace", STAR, "--json", "--rig"]).arg(&rig).arg("--out").arg(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let fault = summary["error"]["code"].as_str().unwrap();
+    assert!(["encoder-dead", "hold-timed-out"].contains(&fault), "{fault}");
+    assert_eq!(summary["run"]["finished"], false);
+    assert!(!rows(&out).last().unwrap().lit);
+}
+
+#[test]
 fn explain_knows_every_code_it_lists() {
     let list = stdout(&run(&["explain"]));
     for code in list.lines().filter_map(|l| l.split_whitespace().next()) {
