@@ -9,7 +9,7 @@ use tracelight_sim::{Run, SimulatedRig, Tick, Tracking, score};
 use tracelight_trajectory::Plan;
 
 use crate::cli::driving::Driving;
-use crate::cli::trace::TraceArgs;
+use crate::cli::request::TraceArgs;
 use crate::failure::{Failure, Status};
 use crate::output::{self, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing};
 use crate::picture;

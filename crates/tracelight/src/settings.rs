@@ -1,7 +1,7 @@
 //! What a job was asked to do, in words: the report's and the log's table.
 
 use crate::cli::driving::Driving;
-use crate::cli::trace::TraceArgs;
+use crate::cli::request::TraceArgs;
 use crate::output::Setting;
 use crate::sketch::Placed;
 

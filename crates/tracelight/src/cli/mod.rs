@@ -6,9 +6,10 @@ pub(crate) mod driving;
 mod explain;
 pub(crate) mod placing;
 mod plan;
+pub(crate) mod request;
 mod rigs;
 mod strokes;
-pub(crate) mod trace;
+mod trace;
 
 use std::process::ExitCode;
 
@@ -33,7 +34,7 @@ struct Cli {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    Trace(Box<trace::TraceArgs>),
+    Trace(Box<request::TraceArgs>),
     Strokes(strokes::StrokesArgs),
     Plan(Box<plan::PlanArgs>),
     Calibrate(calibrate::CalibrateArgs),

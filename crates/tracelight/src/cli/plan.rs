@@ -8,7 +8,7 @@ use tracelight_vision::Mode;
 
 use crate::cli::driving::DrivingArgs;
 use crate::cli::placing::PlacementArgs;
-use crate::cli::trace::ModeName;
+use crate::cli::request::ModeName;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::output::{PlanFigures, StrokeFigures};

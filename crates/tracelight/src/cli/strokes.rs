@@ -6,7 +6,7 @@ use tracelight_formats::{Sheet, csv, json};
 use tracelight_vision::Mode;
 
 use crate::cli::placing::PlacementArgs;
-use crate::cli::trace::ModeName;
+use crate::cli::request::ModeName;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::picture;

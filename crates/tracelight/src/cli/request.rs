@@ -1,0 +1,68 @@
+//! What `trace` is asked for; other commands share parts of it.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use tracelight_vision::Mode;
+
+use crate::cli::Voice;
+use crate::cli::driving::DrivingArgs;
+use crate::cli::placing::PlacementArgs;
+
+/// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight trace examples/house.png --width 24in --speed 1ft/s --open")]
+pub(crate) struct TraceArgs {
+    /// PNG, JPEG, WebP, BMP, GIF, PNM, TIFF; or SVG, JSON, CSV with strokes to be taken as they are; - is standard
+    /// input
+    pub(crate) picture: String,
+    /// How pixels become strokes
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) mode: ModeName,
+    #[command(flatten)]
+    pub(crate) placement: PlacementArgs,
+    #[command(flatten)]
+    pub(crate) driving: DrivingArgs,
+    /// Draw it that many times, each from power-up; the figures are the last lap's
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) laps: u32,
+    /// What differs from head to head is drawn from this seed
+    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
+    pub(crate) seed: u64,
+    /// Folder for the results [default: out/<the picture's name>/]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Everything, with the laser's gate held dark
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    /// Show the report in the browser when done
+    #[arg(long)]
+    pub(crate) open: bool,
+    #[command(flatten)]
+    pub(crate) voice: Voice,
+}
+
+/// How pixels become strokes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ModeName {
+    /// Each part by its width: pen lines as centrelines, shapes as outlines
+    #[default]
+    Auto,
+    /// The middle of every line
+    Centreline,
+    /// The edge of all ink
+    Outline,
+    /// The 2006 report's radial sweep round one closed figure, for comparison
+    Sweep,
+}
+
+impl From<ModeName> for Mode {
+    fn from(name: ModeName) -> Self {
+        match name {
+            ModeName::Auto => Mode::Auto,
+            ModeName::Centreline => Mode::Centreline,
+            ModeName::Outline => Mode::Outline,
+            ModeName::Sweep => Mode::Sweep,
+        }
+    }
+}
