@@ -72,7 +72,7 @@ fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepare
     let schedule = schedule(&placed, &driving, OrderBy::default(), OrderEffort::default())?;
     let plan_ms = began.elapsed().as_secs_f64() * 1e3;
     stop.check()?;
-    let notes = driving.remarks(&schedule.plan);
+    let notes: Vec<String> = sketch.doubt.iter().cloned().chain(driving.remarks(&schedule.plan)).collect();
     notes.iter().for_each(|n| progress.say(&format!("note: {n}")));
     Ok(Prepared { sketch, placed, driving, schedule, notes, plan_ms })
 }

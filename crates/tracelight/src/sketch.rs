@@ -27,8 +27,23 @@ pub(crate) struct Sketch {
     pub(crate) picture: Option<Raster>,
     /// How it was traced.
     pub(crate) mode: &'static str,
+    /// What the user should know about it.
+    pub(crate) doubt: Option<String>,
     /// Time it took, ms.
     pub(crate) vision_ms: f64,
+}
+
+/// Share of the ink that may be missed without a word: what blots at junctions and ends make of a clean drawing.
+const MISSED_SILENTLY: f64 = 0.01;
+
+fn doubt(missed_ink: f64) -> Option<String> {
+    (missed_ink > MISSED_SILENTLY).then(|| {
+        format!(
+            "{:.1} % of the ink lies on no stroke: lines that run together, or ink of uneven width. Compare the \
+             strokes with the picture; --mode outline follows the edge of all ink",
+            100.0 * missed_ink
+        )
+    })
 }
 
 /// A drawing on the target.
@@ -67,6 +82,7 @@ pub(crate) fn sketch(name: &str, source: Source, mode: Mode) -> Result<Sketch, F
             drawing: sheet.drawing,
             picture: None,
             mode: "strokes",
+            doubt: None,
             vision_ms: 0.0,
         },
         Source::Pixels(pixels) => {
@@ -79,6 +95,7 @@ pub(crate) fn sketch(name: &str, source: Source, mode: Mode) -> Result<Sketch, F
                 drawing: traced.strokes,
                 picture: Some(pixels.colour),
                 mode: mode.name(),
+                doubt: doubt(traced.missed_ink),
                 vision_ms: 0.0,
             }
         }

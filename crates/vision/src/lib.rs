@@ -14,6 +14,7 @@
 //! | `ridge`, `line`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
 //! | `follow` | points to paths |
+//! | `missed` | ink that no stroke follows |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
 
@@ -29,6 +30,7 @@ mod junction;
 mod light;
 mod line;
 mod marks;
+mod missed;
 mod outline;
 mod plane;
 mod prune;

@@ -2,6 +2,7 @@ use tracelight_stroke::{Affine, Drawing, Stroke};
 
 use crate::graph::Graph;
 use crate::ink::Ink;
+use crate::missed;
 use crate::outline::Walked;
 use crate::plane::Plane;
 use crate::region::{Region, regions};
@@ -65,6 +66,8 @@ pub struct Traced {
     pub strokes: Drawing,
     /// Figures of the image.
     pub quality: Quality,
+    /// Share of the pen lines' ink that lies further from every stroke than the pen reaches: lost, or run together.
+    pub missed_ink: f64,
 }
 
 /// Finds the strokes of an image.
@@ -75,9 +78,12 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
     let ink = Ink::of(image)?;
     let mut mask = ink.mask();
     let regions = drawn(&mut mask)?;
-    let strokes = match options.mode {
-        Mode::Sweep => vec![sweep::stroke(&only(&mask, &regions), regions.iter().map(Region::area).sum())?],
-        Mode::Outline => outlines(&ink, &mask, &regions, options),
+    let (strokes, missed_ink) = match options.mode {
+        Mode::Sweep => {
+            let area = regions.iter().map(Region::area).sum();
+            (vec![sweep::stroke(&only(&mask, &regions), area)?], 0.0)
+        }
+        Mode::Outline => (outlines(&ink, &mask, &regions, options), 0.0),
         Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, &mask, &regions, options),
     };
     if strokes.is_empty() {
@@ -91,6 +97,7 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
         mode: options.mode,
         strokes: Drawing { strokes }.transformed(scale),
         quality: ink.quality,
+        missed_ink,
     })
 }
 
@@ -130,16 +137,26 @@ enum Kind {
     Shape,
 }
 
-fn lines_and_shapes(ink: &Ink, mask: &Plane<u8>, regions: &[Region], options: &Options) -> Vec<Stroke> {
+/// The strokes, and the share of the lines' ink that they miss.
+fn lines_and_shapes(
+    ink: &Ink,
+    mask: &Plane<u8>,
+    regions: &[Region],
+    options: &Options,
+) -> (Vec<Stroke>, f64) {
     let mut walked = Walked::none(mask.width, mask.height);
-    let mut strokes = Vec::new();
+    let (mut strokes, mut lined) = (Vec::new(), Vec::new());
     for (region, kind) in regions.iter().zip(kinds(mask, regions, options.mode)) {
         strokes.extend(match kind {
-            Kind::Lines(graph) => centreline::strokes(&ink.darkness, region, &graph, options),
+            Kind::Lines(graph) => {
+                lined.push(region);
+                centreline::strokes(&ink.darkness, region, &graph, options)
+            }
             Kind::Shape => outline::strokes(&ink.darkness, mask, region, &mut walked, options),
         });
     }
-    strokes
+    let missed = missed::share(&lined, &strokes, mask.width, mask.height);
+    (strokes, missed)
 }
 
 /// Lines or shape, for each region.

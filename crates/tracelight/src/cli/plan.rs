@@ -55,7 +55,11 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let began = Instant::now();
     let schedule = schedule(&placed, &driving, args.order_by, args.order_effort)?;
     let plan_ms = began.elapsed().as_secs_f64() * 1e3;
-    driving.remarks(&schedule.plan).iter().for_each(|n| progress.say(&format!("note: {n}")));
+    sketch
+        .doubt
+        .iter()
+        .chain(&driving.remarks(&schedule.plan))
+        .for_each(|n| progress.say(&format!("note: {n}")));
     if let Some(path) = &args.out {
         std::fs::write(path, csv(&schedule.plan))
             .map_err(|e| Failure::failed("cannot-write", format!("cannot write {path}: {e}")))?;

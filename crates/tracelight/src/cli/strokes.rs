@@ -100,6 +100,9 @@ fn check_names(args: &StrokesArgs) -> Result<(), Failure> {
 
 fn one(args: &StrokesArgs, picture: &str) -> Result<(Sketch, String), Failure> {
     let sketch = sketch(picture, picture::read(picture)?, Mode::from(args.mode))?;
+    if let Some(doubt) = &sketch.doubt {
+        Progress::new(args.voice.quiet).say(&format!("note: {picture}: {doubt}"));
+    }
     let json = pixel_json(&sketch);
     if let Some(out) = &args.out {
         let path = if is_folder(out) { in_folder(out, picture)? } else { out.clone() };
