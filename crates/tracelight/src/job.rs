@@ -162,8 +162,7 @@ fn run_lap(
 }
 
 fn log_tick(log: &mut LogWriter, plan: &Plan, tick: &Tick) -> Result<(), OutputError> {
-    let at = (tick.telemetry.plan_tick as usize).min(plan.points.len().saturating_sub(1));
-    plan.points.get(at).map_or(Ok(()), |planned| log.tick(tick, planned))
+    output::planned(plan, tick.telemetry.plan_tick).map_or(Ok(()), |planned| log.tick(tick, planned))
 }
 
 fn write(

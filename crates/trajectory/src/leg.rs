@@ -1,7 +1,7 @@
 //! Strokes cut into legs: stretches without a corner, each run from rest to rest.
 
 use tracelight_aim::{AimError, JointPath, SpotMotion};
-use tracelight_stroke::{Path, PathPoint, Piece};
+use tracelight_stroke::{Path, PathPoint, Piece, Point};
 
 use crate::Machine;
 
@@ -77,18 +77,18 @@ impl Leg {
         self.pieces[index].at_length(within, LENGTH_TOLERANCE_M)
     }
 
-    /// Joint angles and their derivatives by arc length at `s_m`.
-    pub(crate) fn joints_at(&self, machine: &Machine, s_m: f64) -> Result<JointPath, AimError> {
+    /// The place at arc length `s_m`, with the joint angles there and their derivatives by arc length.
+    pub(crate) fn joints_at(&self, machine: &Machine, s_m: f64) -> Result<(Point, JointPath), AimError> {
         let PathPoint { point, tangent, curvature } = self.at(s_m);
         let spot = SpotMotion { point, velocity: tangent, acceleration: curvature };
-        machine.geometry.motion(&machine.pose, &spot)
+        Ok((point, machine.geometry.motion(&machine.pose, &spot)?))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tracelight_stroke::{Element, Point};
+    use tracelight_stroke::Element;
 
     #[test]
     fn a_square_has_four_legs_and_a_circle_one() {

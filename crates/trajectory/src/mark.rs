@@ -59,7 +59,7 @@ fn slow_where_too_much(grid: &mut Grid, points: &[MarkPoint], allowed: f64, reac
     for point in points.iter().filter(|p| p.fraction > allowed) {
         // torque beyond friction and gravity goes with the square of the speed; the overshoot is taken off at least
         let share = (1.0 - 1.5 * (point.fraction - allowed)).clamp(0.5, 0.95);
-        grid.slow_down(point.s_m, reach_m, share, point.speed_m_s * point.speed_m_s);
+        grid.cap(point.s_m, reach_m, share * point.speed_m_s * point.speed_m_s);
         fine = false;
     }
     fine
@@ -86,7 +86,8 @@ fn sample(
 }
 
 fn point(machine: &Machine, leg: &Leg, along: &Along, stroke: usize) -> Result<MarkPoint, PlanError> {
-    let joints = leg.joints_at(machine, along.s).map_err(|source| PlanError::Aim { stroke, source })?;
+    let (spot, joints) =
+        leg.joints_at(machine, along.s).map_err(|source| PlanError::Aim { stroke, source })?;
     let (rate, acceleration) = chain(&joints, along);
     let fraction = machine.fraction(machine.torque(joints.angle_rad, rate, acceleration)).map(f64::abs);
     let motion = PanTilt::from_fn(|j| JointMotion {
@@ -95,7 +96,7 @@ fn point(machine: &Machine, leg: &Leg, along: &Along, stroke: usize) -> Result<M
         acceleration_rad_s2: acceleration[j],
     });
     Ok(MarkPoint {
-        spot: leg.at(along.s).point,
+        spot,
         joints: motion,
         s_m: along.s,
         speed_m_s: along.v,

@@ -52,7 +52,7 @@ impl Grid {
         let count = (length / GRID_M).ceil().clamp(FEWEST, MOST);
         let step_m = length / count;
         let place = |i: usize| {
-            let joints = leg
+            let (_, joints) = leg
                 .joints_at(machine, i as f64 * step_m)
                 .map_err(|source| PlanError::Aim { stroke, source })?;
             place_limits(machine, &joints, speed_m_s)
@@ -66,16 +66,11 @@ impl Grid {
     }
 
     /// Bounds x near a place.
-    fn cap(&mut self, at_m: f64, reach_m: f64, x: f64) {
+    pub(crate) fn cap(&mut self, at_m: f64, reach_m: f64, x: f64) {
         let (first, last) = self.range(at_m, reach_m);
         for place in &mut self.places[first..=last] {
             place.x_most = place.x_most.min(x);
         }
-    }
-
-    /// Takes a share off the bound on x near a place where the motors were asked too much.
-    pub(crate) fn slow_down(&mut self, at_m: f64, reach_m: f64, share: f64, speed_squared: f64) {
-        self.cap(at_m, reach_m, share * speed_squared);
     }
 
     fn range(&self, at_m: f64, reach_m: f64) -> (usize, usize) {

@@ -33,6 +33,7 @@ use tracelight_trajectory::Plan;
 pub(crate) use events::{Event, events};
 pub(crate) use log::{LogMeta, LogWriter};
 pub(crate) use raster::Raster;
+pub(crate) use sample::planned;
 pub(crate) use summary::{PlanFigures, StrokeFigures, Summary};
 pub(crate) use words::{darkness_words, fault_words};
 

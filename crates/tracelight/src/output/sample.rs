@@ -38,7 +38,7 @@ impl<'a> Sample<'a> {
 }
 
 /// The point of the plan that a tick follows: its own, or the rest at the end. `None` for an empty plan.
-pub(super) fn planned(plan: &Plan, plan_tick: u32) -> Option<&PlanPoint> {
+pub(crate) fn planned(plan: &Plan, plan_tick: u32) -> Option<&PlanPoint> {
     plan.points.get(plan_tick as usize).or(plan.points.last())
 }
 
