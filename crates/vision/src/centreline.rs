@@ -120,8 +120,9 @@ fn dot(dark: &Plane<u8>, region: &Region) -> Stroke {
 /// Centre, long axis, length and width of a region, from the moments of its darkness. A stadium's are those of its
 /// second moments to within some percent.
 fn extent(dark: &Plane<u8>, region: &Region) -> (Point, Vec2, f64, f64) {
-    let weighted =
-        || region.pixels(dark.width).map(|i| (dark.centre(i).to_vec2(), f64::from(dark.values[i])));
+    let weighted = || {
+        region.places().map(|(x, y)| (Vec2::new(x as f64 + 0.5, y as f64 + 0.5), f64::from(dark.row(y)[x])))
+    };
     let mass = weighted().map(|(_, w)| w).sum::<f64>().max(1e-9);
     let centre = weighted().map(|(p, w)| p * w).sum::<Vec2>() / mass;
     let moment = |f: fn(Vec2) -> f64| weighted().map(|(p, w)| w * f(p - centre)).sum::<f64>() / mass;

@@ -2,9 +2,10 @@
 
 use tracelight_stroke::{Point, Vec2};
 
-use crate::plane::Plane;
+use crate::distance::to_paper;
+use crate::mask::{Cell, Mask, Neighbours};
+use crate::region::Region;
 use crate::ridge::median;
-use crate::thin::Skeleton;
 
 /// A line of skeleton pixels between two nodes, or an end, or round in a ring.
 #[derive(Clone, Debug)]
@@ -65,17 +66,37 @@ pub(crate) struct Graph {
     pub(crate) branches: Vec<Branch>,
 }
 
-/// Marks on skeleton pixels while a graph is read.
-const SEEN: u8 = 2;
+/// A mask's ink and its skeleton, and which skeleton pixels have been read.
+#[derive(Debug)]
+pub(crate) struct Skeleton<'a> {
+    ink: &'a Mask,
+    line: Mask,
+    seen: Mask,
+}
+
+impl<'a> Skeleton<'a> {
+    /// `line` is `ink` thinned.
+    pub(crate) fn new(ink: &'a Mask, line: Mask) -> Self {
+        let seen = Mask::empty(ink.width, ink.height);
+        Self { ink, line, seen }
+    }
+
+    /// Its pixels in a region.
+    pub(crate) fn cells_of(&self, region: &Region) -> Vec<Cell> {
+        region.cells(&self.line).collect()
+    }
+}
+
+/// Half widths beyond this are all one: no pen has them, px.
+const WIDEST_RADIUS: f64 = 400.0;
 
 impl Graph {
-    /// Reads the graph off a skeleton; `pixels` are the region's skeleton pixels (indices with margin), which are
-    /// marked as seen. `distance` is that of the image without margin.
-    pub(crate) fn read(skeleton: &mut Skeleton, pixels: &[usize], distance: &Plane<f32>) -> Self {
-        let mut reader = Reader { skeleton, distance, graph: Self::default(), node_of: Vec::new() };
-        reader.nodes(pixels);
-        reader.branches(pixels);
-        reader.rings(pixels);
+    /// Reads the graph of some pixels of a skeleton: whole patches of it.
+    pub(crate) fn read(skeleton: &mut Skeleton<'_>, cells: &[Cell]) -> Self {
+        let mut reader = Reader { skeleton, graph: Self::default(), node_of: Vec::new() };
+        reader.nodes(cells);
+        reader.branches(cells);
+        reader.rings(cells);
         reader.graph.widen_nodes();
         reader.graph
     }
@@ -135,44 +156,47 @@ impl Graph {
     }
 }
 
-struct Reader<'a> {
-    skeleton: &'a mut Skeleton,
-    distance: &'a Plane<f32>,
+struct Reader<'a, 'b> {
+    skeleton: &'a mut Skeleton<'b>,
     graph: Graph,
     /// Node pixels and their nodes, sorted by pixel.
-    node_of: Vec<(usize, usize)>,
+    node_of: Vec<(Cell, usize)>,
 }
 
-impl Reader<'_> {
-    fn is_node(&self, i: usize) -> bool {
-        self.skeleton.neighbours(i).count() > 2
+impl Reader<'_, '_> {
+    fn neighbours(&self, cell: Cell) -> Neighbours {
+        self.skeleton.line.neighbours(cell)
     }
 
-    fn node(&self, i: usize) -> Option<usize> {
-        let found = self.node_of.binary_search_by_key(&i, |&(pixel, _)| pixel).ok()?;
+    fn is_node(&self, cell: Cell) -> bool {
+        self.neighbours(cell).len() > 2
+    }
+
+    fn node(&self, cell: Cell) -> Option<usize> {
+        let found = self.node_of.binary_search_by_key(&cell, |&(pixel, _)| pixel).ok()?;
         Some(self.node_of[found].1)
     }
 
-    fn seen(&self, i: usize) -> bool {
-        self.skeleton.ink.values[i] & SEEN != 0
+    fn seen(&self, cell: Cell) -> bool {
+        self.skeleton.seen.has(cell)
     }
 
-    fn see(&mut self, i: usize) {
-        self.skeleton.ink.values[i] |= SEEN;
+    fn see(&mut self, cell: Cell) {
+        self.skeleton.seen.set(cell);
     }
 
-    fn centre(&self, i: usize) -> Point {
-        self.distance.centre(self.skeleton.without_margin(i))
+    fn centre(&self, cell: Cell) -> Point {
+        self.skeleton.line.centre(cell)
     }
 
     /// Distance to the edge of the ink: half a pixel less than to the next pixel's centre.
-    fn radius(&self, i: usize) -> f64 {
-        f64::from(self.distance.values[self.skeleton.without_margin(i)]) - 0.5
+    fn radius(&self, cell: Cell) -> f64 {
+        to_paper(self.skeleton.ink, cell, WIDEST_RADIUS) - 0.5
     }
 
     /// Pixels with three neighbours and more, those that touch as one node.
-    fn nodes(&mut self, pixels: &[usize]) {
-        for &start in pixels {
+    fn nodes(&mut self, cells: &[Cell]) {
+        for &start in cells {
             if self.seen(start) || !self.is_node(start) {
                 continue;
             }
@@ -180,8 +204,7 @@ impl Reader<'_> {
             self.see(start);
             let mut next = 0;
             while let Some(&i) = cluster.get(next) {
-                let more: Vec<usize> = self.skeleton.neighbours(i).collect();
-                for k in more {
+                for k in self.neighbours(i) {
                     if !self.seen(k) && self.is_node(k) {
                         self.see(k);
                         cluster.push(k);
@@ -200,25 +223,24 @@ impl Reader<'_> {
     }
 
     /// Walks from every node's and every free end's neighbours.
-    fn branches(&mut self, pixels: &[usize]) {
+    fn branches(&mut self, cells: &[Cell]) {
         let node_pixels = self.node_of.clone();
         for (i, node) in node_pixels {
-            let starts: Vec<usize> = self.skeleton.neighbours(i).collect();
-            for start in starts {
+            for start in self.neighbours(i) {
                 if !self.seen(start) {
                     self.walk(start, Some(node));
                 }
             }
         }
-        for &i in pixels {
-            if !self.seen(i) && self.skeleton.neighbours(i).count() <= 1 {
+        for &i in cells {
+            if !self.seen(i) && self.neighbours(i).len() <= 1 {
                 self.walk(i, None);
             }
         }
     }
 
-    fn rings(&mut self, pixels: &[usize]) {
-        for &i in pixels {
+    fn rings(&mut self, cells: &[Cell]) {
+        for &i in cells {
             if !self.seen(i) {
                 self.walk(i, None);
                 if let Some(branch) = self.graph.branches.last_mut() {
@@ -229,17 +251,17 @@ impl Reader<'_> {
     }
 
     /// Follows unseen pixels from `start` until there is none; a node beside the last one ends the branch.
-    fn walk(&mut self, start: usize, from: Option<usize>) {
+    fn walk(&mut self, start: Cell, from: Option<usize>) {
         let mut chain = vec![start];
         self.see(start);
         let mut at = start;
-        let onward = |reader: &Self, at| reader.skeleton.neighbours(at).find(|&k| !reader.seen(k));
+        let onward = |reader: &Self, at| reader.neighbours(at).find(|&k| !reader.seen(k));
         while let Some(next) = onward(self, at) {
             self.see(next);
             chain.push(next);
             at = next;
         }
-        let beside: Vec<usize> = self.skeleton.neighbours(at).filter_map(|k| self.node(k)).collect();
+        let beside: Vec<usize> = self.neighbours(at).filter_map(|k| self.node(k)).collect();
         // a single pixel between two nodes touches both: the one it came from is not its end too
         let end = if chain.len() == 1 {
             beside.iter().copied().find(|&n| Some(n) != from)

@@ -1,6 +1,7 @@
 //! What is ink: polarity, even light, noise, threshold, and the gate that refuses a bad picture.
 
 use crate::light::{Paper, percentile};
+use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::{Grey, VisionError};
 
@@ -58,7 +59,7 @@ impl Ink {
         if noise_levels > SMOOTHED_FROM {
             darkness = smoothed(&darkness);
         }
-        let split = Split::of(&histogram(&darkness));
+        let split = Split::of(&sampled_histogram(&darkness));
         let (dimmest, brightest) = paper.range();
         let quality = Quality {
             contrast_percent: (split.ink - split.paper) / 2.55,
@@ -72,11 +73,32 @@ impl Ink {
         Ok(Self { darkness, threshold: split.threshold, reduction, quality })
     }
 
-    /// 1 where there is ink.
-    pub(crate) fn mask(&self) -> Plane<u8> {
-        let values = self.darkness.values.iter().map(|&d| u8::from(d > self.threshold)).collect();
-        Plane { values, ..self.darkness }
+    /// Where there is ink.
+    pub(crate) fn mask(&self) -> Mask {
+        over(&self.darkness, self.threshold)
     }
+}
+
+/// Where a plane is over a threshold.
+pub(crate) fn over(plane: &Plane<u8>, threshold: u8) -> Mask {
+    let mut mask = Mask::empty(plane.width, plane.height);
+    for y in 0..plane.height {
+        let words = mask.row_mut(y).iter_mut();
+        words.zip(plane.row(y).chunks(64)).for_each(|(word, levels)| *word = word_over(levels, threshold));
+    }
+    mask
+}
+
+/// Bit k: level k is over the threshold; up to 64 levels.
+fn word_over(levels: &[u8], threshold: u8) -> u64 {
+    let mut flags = [0u8; 64];
+    flags.iter_mut().zip(levels).for_each(|(flag, &level)| *flag = u8::from(level > threshold));
+    // the product moves the lowest bits of eight bytes next to each other, into the highest byte
+    let byte = |k: usize| {
+        let eight: [u8; 8] = std::array::from_fn(|i| flags[8 * k + i]);
+        (u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * k)
+    };
+    (0..8).map(byte).fold(0, |word, bits| word | bits)
 }
 
 fn gate(quality: &Quality) -> Result<(), VisionError> {
@@ -94,6 +116,29 @@ pub(crate) fn histogram(plane: &Plane<u8>) -> [u32; 256] {
     let mut histogram = [0u32; 256];
     plane.values.iter().for_each(|&v| histogram[usize::from(v)] += 1);
     histogram
+}
+
+/// Blocks of pixels that are looked at together, px.
+const BLOCK: usize = 64;
+/// As many pixels tell a picture's levels: another half million would move a share by a thousandth at most.
+const SAMPLED: usize = 500_000;
+
+/// The histogram of about half a million pixels: every k-th block of a row, one further in each row, so that no line
+/// whatever its direction is left out.
+fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
+    let every = (plane.values.len() / SAMPLED).max(1);
+    // four tables, for a level that repeats need not wait for itself
+    let mut tables = [[0u32; 256]; 4];
+    for y in 0..plane.height {
+        for block in plane.row(y).chunks(BLOCK).skip(y % every).step_by(every) {
+            let fours = block.chunks_exact(4);
+            fours.remainder().iter().for_each(|&v| tables[0][usize::from(v)] += 1);
+            for four in fours {
+                four.iter().zip(&mut tables).for_each(|(&v, table)| table[usize::from(v)] += 1);
+            }
+        }
+    }
+    std::array::from_fn(|level| tables.iter().map(|table| table[level]).sum())
 }
 
 /// A histogram cut in two.
@@ -160,20 +205,22 @@ impl Split {
 fn is_light_on_dark(image: &Plane<u8>) -> bool {
     const TILE: usize = 16;
     const BORDER: f64 = 0.4;
-    let whole = histogram(image);
+    let whole = sampled_histogram(image);
     let (low, high) = (percentile(&whole, 0.003), percentile(&whole, 0.997));
     let (mut votes, mut tiles) = (0.0, 0.0);
     for ty in 0..image.height / TILE {
         for tx in 0..image.width / TILE {
-            let rows = (ty * TILE..(ty + 1) * TILE).map(|y| &image.row(y)[tx * TILE..(tx + 1) * TILE]);
-            let (mut dark, mut light, mut sum) = (u8::MAX, 0, 0.0);
-            for &v in rows.flatten() {
-                (dark, light, sum) = (dark.min(v), light.max(v), sum + f64::from(v));
+            let (mut dark, mut light, mut sum) = (u8::MAX, 0, 0u32);
+            for y in ty * TILE..(ty + 1) * TILE {
+                let row = &image.row(y)[tx * TILE..(tx + 1) * TILE];
+                dark = row.iter().fold(dark, |a, &v| a.min(v));
+                light = row.iter().fold(light, |a, &v| a.max(v));
+                sum += row.iter().map(|&v| u32::from(v)).sum::<u32>();
             }
             let (middle, range) =
                 (0.5 * (f64::from(dark) + f64::from(light)), f64::from(light) - f64::from(dark));
             if range > 0.3 * (high - low).max(1.0) {
-                votes += (sum / (TILE * TILE) as f64 - middle) / (0.5 * range);
+                votes += (f64::from(sum) / (TILE * TILE) as f64 - middle) / (0.5 * range);
                 tiles += 1.0;
             }
         }
@@ -199,7 +246,8 @@ fn noise(plane: &Plane<u8>) -> f64 {
     const TIMES: f64 = 6.0; // the mask's gain on white noise
     const MEDIAN: f64 = 0.6745; // of |x| for a standard normal x
     let mut counts = [0u32; 256];
-    for y in 1..plane.height - 1 {
+    let every = (plane.values.len() / SAMPLED).max(1);
+    for y in (1..plane.height - 1).step_by(every) {
         let [above, here, below] = [y - 1, y, y + 1].map(|y| plane.row(y));
         for x in 1..plane.width - 1 {
             let row = |r: &[u8]| [r[x - 1], r[x], r[x + 1]].map(i32::from);
@@ -214,12 +262,20 @@ fn noise(plane: &Plane<u8>) -> f64 {
 /// The binomial mean of 3 × 3 pixels: noise falls to 3/8.
 fn smoothed(plane: &Plane<u8>) -> Plane<u8> {
     let (w, h) = (plane.width, plane.height);
-    let mut out = plane.clone();
+    let mut out = Plane::filled(w, h, 0);
+    // sums of columns of three, with one more at either end, which repeats the border
+    let mut columns = vec![0u16; w + 2];
     for y in 0..h {
         let [above, here, below] = [y.saturating_sub(1), y, (y + 1).min(h - 1)].map(|y| plane.row(y));
-        let column = |x: usize| u32::from(above[x]) + 2 * u32::from(here[x]) + u32::from(below[x]);
-        for (x, v) in out.row_mut(y).iter_mut().enumerate() {
-            *v = ((column(x.saturating_sub(1)) + 2 * column(x) + column((x + 1).min(w - 1)) + 8) / 16) as u8;
+        let threes = above.iter().zip(here).zip(below);
+        columns[1..=w]
+            .iter_mut()
+            .zip(threes)
+            .for_each(|(c, ((a, b), d))| *c = u16::from(*a) + 2 * u16::from(*b) + u16::from(*d));
+        (columns[0], columns[w + 1]) = (columns[1], columns[w]);
+        let (left, right) = (&columns[..w], &columns[2..]);
+        for (((v, l), c), r) in out.row_mut(y).iter_mut().zip(left).zip(&columns[1..=w]).zip(right) {
+            *v = ((l + 2 * c + r + 8) / 16) as u8;
         }
     }
     out
@@ -274,7 +330,7 @@ mod tests {
         };
         let ink = Ink::of(&image(level)).unwrap();
         let mask = ink.mask();
-        assert!(mask.row(60)[60..65].iter().all(|&m| m == 1));
+        assert!((60..65).all(|x| mask.get(x, 60)));
         assert!(ink.quality.ink_percent < 4.0, "{:?}", ink.quality);
     }
 }

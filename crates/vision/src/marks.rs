@@ -2,7 +2,7 @@
 
 use tracelight_stroke::{Point, Vec2};
 
-use crate::ink::{Ink, Split, histogram};
+use crate::ink::{Ink, Split, histogram, over};
 use crate::plane::Plane;
 use crate::region::{Region, regions};
 use crate::{Grey, VisionError};
@@ -78,9 +78,8 @@ struct Patch {
 
 /// Patches that are large enough and filled, largest first.
 fn candidates(dark: &Plane<u8>, threshold: u8) -> Vec<Patch> {
-    let values = dark.values.iter().map(|&d| u8::from(d > threshold)).collect();
     let least = LEAST_SHARE * dark.values.len() as f64;
-    let all = regions(&Plane { values, ..*dark });
+    let all = regions(&over(dark, threshold));
     let large = all.iter().filter(|r| r.area() as f64 >= least);
     let mut found: Vec<Patch> = large.map(|r| patch(dark, r)).collect();
     // a bar, even a slanted one, or a blob fills its box; a ruler's outline does not

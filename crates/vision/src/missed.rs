@@ -1,9 +1,8 @@
 //! How much of the pen's ink no stroke follows.
 
-use tracelight_stroke::Stroke;
+use tracelight_stroke::{Point, Stroke};
 
-use crate::distance::to_paper;
-use crate::plane::Plane;
+use crate::mask::Mask;
 use crate::region::Region;
 
 /// How far ink may lie from its stroke, pen widths: half of one is its edge, the rest the blots of junctions.
@@ -11,27 +10,95 @@ const NEAR_PENS: f64 = 1.2;
 /// The same for hair lines, px.
 const LEAST_PX: f64 = 3.0;
 
-/// Share of the regions' pixels that lie further from every stroke than the pen reaches, 0 to 1. Pixels nearer to
-/// the image's border than that count as followed.
-pub(crate) fn share(regions: &[&Region], strokes: &[Stroke], width: usize, height: usize) -> f64 {
-    // the strokes are the paper, and all the rest is ink, as far as distances go
-    let mut plane = Plane::filled(width, height, 1u8);
+/// How closely strokes are followed, px.
+const FLAT_PX: f64 = 0.5;
+
+/// Share of the regions' pixels that lie further from every stroke than the pen reaches, 0 to 1.
+pub(crate) fn share(ink: &Mask, regions: &[&Region], strokes: &[Stroke]) -> f64 {
+    let pen = strokes.iter().filter_map(|s| s.pen).fold(0.0, f64::max);
+    let near = (NEAR_PENS * pen).max(LEAST_PX);
+    let mut painted = Mask::empty(ink.width, ink.height);
     for stroke in strokes {
-        let points = stroke.path.flatten(0.25);
-        for pair in points.windows(2) {
-            let steps = pair[0].distance(pair[1]).ceil().max(1.0) as usize;
-            for k in 0..=steps {
-                let p = pair[0].lerp(pair[1], k as f64 / steps as f64);
-                let (x, y) = (p.x.max(0.0) as usize, p.y.max(0.0) as usize);
-                plane.values[y.min(height - 1) * width + x.min(width - 1)] = 0;
+        stroke.path.flatten(FLAT_PX).windows(2).for_each(|w| paint(&mut painted, w[0], w[1], near));
+    }
+    let (mut all, mut followed) = (0, 0);
+    for region in regions {
+        all += region.area();
+        followed += region.cells(&painted).count();
+    }
+    (all - followed) as f64 / (all as f64).max(1.0)
+}
+
+/// Paints all pixels whose centres are within `radius` of the line from `a` to `b`, row by row.
+fn paint(mask: &mut Mask, a: Point, b: Point, radius: f64) {
+    let rows = |y: f64, last: usize| (y.max(0.0) as usize).min(last);
+    let last = mask.height - 1;
+    let (top, low) = (a.y.min(b.y) - radius, a.y.max(b.y) + radius);
+    for y in rows(top, last)..=rows(low, last) {
+        if let Some((from, to)) = chord(a, b, radius, y as f64 + 0.5) {
+            let column = |x: f64| (x + 0.5).clamp(0.0, mask.width as f64) as usize;
+            let (from, to) = (column(from), column(to));
+            if to > from {
+                mask.fill(y, from, to);
             }
         }
     }
-    let pen = strokes.iter().filter_map(|s| s.pen).fold(0.0, f64::max);
-    let near = (NEAR_PENS * pen).max(LEAST_PX) as f32;
-    let distance = to_paper(&plane);
-    let far = |r: &&Region| r.pixels(width).filter(|&i| distance.values[i] > near).count();
-    let missed: usize = regions.iter().map(far).sum();
-    let all: usize = regions.iter().map(|r| r.area()).sum();
-    missed as f64 / (all as f64).max(1.0)
+}
+
+/// What a level line at height `y` has in common with the stadium of `radius` about the line from `a` to `b`.
+fn chord(a: Point, b: Point, radius: f64, y: f64) -> Option<(f64, f64)> {
+    let disc = |c: Point| {
+        let square = radius * radius - (y - c.y) * (y - c.y);
+        (square >= 0.0).then(|| (c.x - square.sqrt(), c.x + square.sqrt()))
+    };
+    // between the discs: where the two sides, shifted by the radius, are crossed
+    let along = b - a;
+    let length = along.hypot();
+    let side = |sign: f64| {
+        let shift = tracelight_stroke::Vec2::new(-along.y, along.x) * (sign * radius / length.max(1e-9));
+        let (p, q) = (a + shift, b + shift);
+        let share = (y - p.y) / (q.y - p.y);
+        (0.0..=1.0).contains(&share).then(|| p.x + (q.x - p.x) * share)
+    };
+    let sides = [side(1.0), side(-1.0)].into_iter().flatten().map(|x| (x, x));
+    let parts = [disc(a), disc(b)].into_iter().flatten().chain(sides);
+    parts.reduce(|x, y| (x.0.min(y.0), x.1.max(y.1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_stroke::Path;
+
+    use crate::region::regions;
+
+    #[test]
+    fn a_painted_line_is_all_that_is_near_it() {
+        for (a, b) in
+            [((20.0, 20.0), (70.0, 43.0)), ((50.0, 10.0), (50.0, 60.0)), ((30.0, 30.0), (30.0, 30.0))]
+        {
+            let (a, b) = (Point::from(a), Point::from(b));
+            let mut mask = Mask::empty(100, 80);
+            paint(&mut mask, a, b, 7.3);
+            for (x, y) in (0..80).flat_map(|y| (0..100).map(move |x| (x, y))) {
+                let p = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+                let share = ((p - a).dot(b - a) / (b - a).hypot2().max(1e-9)).clamp(0.0, 1.0);
+                let distance = p.distance(a.lerp(b, share));
+                let found = mask.get(x, y);
+                assert!((distance - 7.3).abs() < 0.51 || found == (distance < 7.3), "({x}, {y}): {distance}");
+            }
+        }
+    }
+
+    #[test]
+    fn half_of_a_line_left_out_is_half_missed() {
+        let mut ink = Mask::empty(300, 40);
+        (18..22).for_each(|y| ink.fill(y, 20, 280));
+        let found = regions(&ink);
+        let path = Path::polyline(&[Point::new(20.0, 20.0), Point::new(150.0, 20.0)], false).unwrap();
+        let mut stroke = Stroke::new(path);
+        stroke.pen = Some(4.0);
+        let missed = share(&ink, &[&found[0]], &[stroke]);
+        assert!((missed - 0.5).abs() < 0.03, "{missed}");
+    }
 }

@@ -4,6 +4,7 @@ use tracelight_stroke::{Point, Stroke, StrokeKind};
 
 use crate::Options;
 use crate::follow;
+use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::region::Region;
 
@@ -17,19 +18,19 @@ const LEAST_AREA_PX2: f64 = 12.0;
 const STEPS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
 /// Edges of pixels of `mask` that have been walked, as marks on the ink right of them.
-pub(crate) struct Walked(Plane<u8>);
+pub(crate) struct Walked(Mask);
 
 impl Walked {
     /// None of an image of this size.
     pub(crate) fn none(width: usize, height: usize) -> Self {
-        Self(Plane::filled(width, height, 0))
+        Self(Mask::empty(width, height))
     }
 }
 
 /// The closed outlines of a region: outer edge and holes.
 pub(crate) fn strokes(
     dark: &Plane<u8>,
-    mask: &Plane<u8>,
+    mask: &Mask,
     region: &Region,
     walked: &mut Walked,
     options: &Options,
@@ -37,7 +38,7 @@ pub(crate) fn strokes(
     let full = full_level(dark, region);
     let mut found = Vec::new();
     for run in &region.runs {
-        if walked.0.row(run.y as usize)[run.from as usize] == 0 {
+        if !walked.0.has(mask.cell(run.from as usize, run.y as usize)) {
             let border = border(mask, run.from as isize, run.y as isize, walked);
             let points: Vec<Point> = border.iter().filter_map(|edge| edge.place(dark, full)).collect();
             if area(&points).abs() >= LEAST_AREA_PX2 {
@@ -55,7 +56,7 @@ fn stroke(points: &[Point], options: &Options) -> Option<Stroke> {
 
 /// The darkness of a pixel all inside a region.
 fn full_level(dark: &Plane<u8>, region: &Region) -> f64 {
-    let mut levels: Vec<u8> = region.pixels(dark.width).map(|i| dark.values[i]).collect();
+    let mut levels: Vec<u8> = region.places().map(|(x, y)| dark.row(y)[x]).collect();
     let middle = levels.len() / 2;
     let (_, median, _) = levels.select_nth_unstable(middle);
     f64::from(*median)
@@ -113,9 +114,9 @@ fn covered(rising: bool, share: impl Fn(isize) -> f64) -> f64 {
 
 /// The edges of a border in order, ink on the right, from the left edge of ink pixel (x, y) upwards until there
 /// again (crack following: Rosenfeld, "Connectivity in digital pictures", 1970). Ink joined at corners stays joined.
-fn border(mask: &Plane<u8>, x: isize, y: isize, walked: &mut Walked) -> Vec<Edge> {
+fn border(mask: &Mask, x: isize, y: isize, walked: &mut Walked) -> Vec<Edge> {
     const UP: usize = 3;
-    let ink = |p: (isize, isize)| mask.get(p.0, p.1) != 0;
+    let ink = |p: (isize, isize)| mask.get(p.0, p.1);
     let start = ((x, y), UP);
     let (mut pixel, mut direction) = start;
     let mut edges = Vec::new();
@@ -124,7 +125,7 @@ fn border(mask: &Plane<u8>, x: isize, y: isize, walked: &mut Walked) -> Vec<Edge
         let paper = (pixel.0 + left.0, pixel.1 + left.1);
         edges.push(Edge { ink: pixel, paper });
         if direction == UP {
-            walked.0.row_mut(pixel.1 as usize)[pixel.0 as usize] = 1;
+            walked.0.set(mask.cell(pixel.0 as usize, pixel.1 as usize));
         }
         let beyond = (paper.0 + ahead.0, paper.1 + ahead.1);
         let before = (pixel.0 + ahead.0, pixel.1 + ahead.1);
@@ -150,6 +151,7 @@ fn area(points: &[Point]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ink::over;
     use crate::region::regions;
 
     fn traced(width: usize, height: usize, darkness: impl Fn(f64, f64) -> f64) -> Vec<Stroke> {
@@ -161,7 +163,7 @@ mod tests {
             (255.0 * (0..64).map(sample).sum::<f64>() / 64.0).round() as u8
         };
         let dark = Plane { width, height, values: (0..width * height).map(level).collect() };
-        let mask = Plane { values: dark.values.iter().map(|&d| u8::from(d > 127)).collect(), ..dark };
+        let mask = over(&dark, 127);
         let mut walked = Walked::none(width, height);
         let each = |r: &Region| strokes(&dark, &mask, r, &mut walked, &Options::default());
         regions(&mask).iter().flat_map(each).collect()

@@ -1,8 +1,8 @@
-//! Connected patches of ink.
+//! Patches of ink.
 
-use crate::plane::Plane;
+use crate::mask::{Cell, Mask};
 
-/// Pixels `from..to` of row `y`, all ink.
+/// Ink pixels `from..to` of row `y`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Run {
     pub(crate) y: u32,
@@ -11,14 +11,9 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    fn length(self) -> usize {
+    /// Number of pixels.
+    pub(crate) fn length(&self) -> usize {
         (self.to - self.from) as usize
-    }
-
-    /// Indices of its pixels in a plane of this width.
-    pub(crate) fn indices(self, width: usize) -> std::ops::Range<usize> {
-        let row = self.y as usize * width;
-        row + self.from as usize..row + self.to as usize
     }
 }
 
@@ -32,87 +27,171 @@ pub(crate) struct Region {
 impl Region {
     /// Number of pixels.
     pub(crate) fn area(&self) -> usize {
-        self.runs.iter().map(|r| r.length()).sum()
+        self.runs.iter().map(Run::length).sum()
     }
 
-    /// Indices of its pixels in a plane of this width, row by row.
-    pub(crate) fn pixels(&self, width: usize) -> impl Iterator<Item = usize> + '_ {
-        self.runs.iter().flat_map(move |run| run.indices(width))
+    /// Columns and rows of its pixels, row by row.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.runs.iter().flat_map(|run| (run.from as usize..run.to as usize).map(|x| (x, run.y as usize)))
+    }
+
+    /// Those of its pixels that are ink in `mask`.
+    pub(crate) fn cells<'a>(&'a self, mask: &'a Mask) -> impl Iterator<Item = Cell> + 'a {
+        self.runs.iter().flat_map(|run| mask.cells_in(run.y as usize, run.from as usize, run.to as usize))
+    }
+
+    /// Makes all of it paper.
+    pub(crate) fn erase_from(&self, mask: &mut Mask) {
+        self.runs.iter().for_each(|run| mask.erase(run.y as usize, run.from as usize, run.to as usize));
+    }
+
+    /// Makes all of it ink.
+    pub(crate) fn fill_into(&self, mask: &mut Mask) {
+        self.runs.iter().for_each(|run| mask.fill(run.y as usize, run.from as usize, run.to as usize));
     }
 }
 
-/// Every region of a mask, in the order of their first pixels, by joining runs that touch (Rosenfeld & Pfaltz,
-/// "Sequential operations in digital picture processing", 1966, on runs).
-pub(crate) fn regions(mask: &Plane<u8>) -> Vec<Region> {
-    let mut runs: Vec<Run> = Vec::new();
-    let mut parents: Vec<u32> = Vec::new();
-    let mut above = 0..0;
+/// How pixels hang together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Joined {
+    /// By sides and corners: ink.
+    Corners = 1,
+    /// By sides only: paper.
+    Sides = 0,
+}
+
+/// Every region of a mask's ink, in the order of their first pixels.
+pub(crate) fn regions(mask: &Mask) -> Vec<Region> {
+    let mut runs = Runs::default();
     for y in 0..mask.height {
-        let first = runs.len();
-        runs_of(mask.row(y), y as u32, &mut runs);
-        parents.extend(first as u32..runs.len() as u32);
-        let mut candidate = above.start;
-        for i in first..runs.len() {
-            while candidate < above.end && runs[candidate].to < runs[i].from {
+        runs.row(y, Joined::Corners, |found| ink_runs(mask.row(y), y as u32, found));
+    }
+    runs.gathered(|_| true)
+}
+
+/// Patches of paper of fewer than `least` pixels.
+pub(crate) fn pinholes(mask: &Mask, least: usize) -> Vec<Region> {
+    let mut runs = Runs::default();
+    let mut inks = Vec::new();
+    for y in 0..mask.height {
+        inks.clear();
+        ink_runs(mask.row(y), y as u32, &mut inks);
+        runs.row(y, Joined::Sides, |found| paper_between(&inks, mask.width as u32, y as u32, found));
+    }
+    runs.gathered(|area| area < least)
+}
+
+/// The paper before, between and behind the ink of a row.
+fn paper_between(inks: &[Run], width: u32, y: u32, found: &mut Vec<Run>) {
+    let mut from = 0;
+    for (ink, next) in inks.iter().map(|run| (run.from, run.to)).chain([(width, width)]) {
+        if ink > from {
+            found.push(Run { y, from, to: ink });
+        }
+        from = next;
+    }
+}
+
+fn ink_runs(row: &[u64], y: u32, found: &mut Vec<Run>) {
+    let (mut start, mut inside) = (0, false);
+    for (i, &word) in row.iter().enumerate() {
+        // bits that differ from the one before them: where runs begin and end
+        let mut turns = word ^ (word << 1 | u64::from(inside));
+        while turns != 0 {
+            let at = i as u32 * u64::BITS + turns.trailing_zeros();
+            if inside {
+                found.push(Run { y, from: start, to: at });
+            }
+            (start, inside) = (at, !inside);
+            turns &= turns - 1;
+        }
+    }
+    if inside {
+        found.push(Run { y, from: start, to: row.len() as u32 * u64::BITS });
+    }
+}
+
+/// Runs joined where they touch (Rosenfeld & Pfaltz, "Sequential operations in digital picture processing", 1966).
+#[derive(Default)]
+struct Runs {
+    all: Vec<Run>,
+    /// An older run that each hangs together with; itself if there is none.
+    parents: Vec<u32>,
+    /// Where the row above begins.
+    above: usize,
+}
+
+impl Runs {
+    /// Adds a row and joins it to the one above.
+    fn row(&mut self, y: usize, joined: Joined, read: impl FnOnce(&mut Vec<Run>)) {
+        let (above, first) = (self.above, self.all.len());
+        read(&mut self.all);
+        self.parents.extend(first as u32..self.all.len() as u32);
+        let reach = joined as u32;
+        let mut candidate = if y == 0 { first } else { above };
+        for i in first..self.all.len() {
+            let Run { from, to, .. } = self.all[i];
+            while candidate < first && self.all[candidate].to + reach <= from {
                 candidate += 1;
             }
-            let touching = (candidate..above.end).take_while(|&k| runs[k].from <= runs[i].to);
-            touching.for_each(|k| join(&mut parents, k as u32, i as u32));
+            let mut k = candidate;
+            while k < first && self.all[k].from < to + reach {
+                self.join(k as u32, i as u32);
+                k += 1;
+            }
         }
-        above = first..runs.len();
+        self.above = first;
     }
-    gathered(&runs, &mut parents)
-}
 
-fn runs_of(row: &[u8], y: u32, runs: &mut Vec<Run>) {
-    let mut x = 0;
-    while let Some(from) = row[x..].iter().position(|&m| m != 0).map(|k| x + k) {
-        let to = row[from..].iter().position(|&m| m == 0).map_or(row.len(), |k| from + k);
-        runs.push(Run { y, from: from as u32, to: to as u32 });
-        x = to;
-    }
-}
-
-/// The oldest run of a run's tree, with the way there halved.
-fn root(parents: &mut [u32], mut i: u32) -> u32 {
-    while parents[i as usize] != i {
-        let up = parents[parents[i as usize] as usize];
-        parents[i as usize] = up;
-        i = up;
-    }
-    i
-}
-
-fn join(parents: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(parents, a), root(parents, b));
-    parents[a.max(b) as usize] = a.min(b);
-}
-
-fn gathered(runs: &[Run], parents: &mut [u32]) -> Vec<Region> {
-    let mut number = vec![u32::MAX; runs.len()];
-    let mut regions: Vec<Region> = Vec::new();
-    for (i, &run) in runs.iter().enumerate() {
-        let root = root(parents, i as u32) as usize;
-        if number[root] == u32::MAX {
-            number[root] = regions.len() as u32;
-            regions.push(Region { runs: Vec::new() });
+    /// The oldest run of a run's tree, with the way there halved.
+    fn root(&mut self, mut i: u32) -> u32 {
+        while self.parents[i as usize] != i {
+            let up = self.parents[self.parents[i as usize] as usize];
+            self.parents[i as usize] = up;
+            i = up;
         }
-        regions[number[root] as usize].runs.push(run);
+        i
     }
-    regions
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parents[a.max(b) as usize] = a.min(b);
+    }
+
+    /// The regions whose area is wanted.
+    fn gathered(mut self, wanted: impl Fn(usize) -> bool) -> Vec<Region> {
+        let mut areas = vec![0u32; self.all.len()];
+        let mut counts = vec![0u32; self.all.len()];
+        for i in 0..self.all.len() {
+            let root = self.root(i as u32);
+            self.parents[i] = root;
+            areas[root as usize] += self.all[i].to - self.all[i].from;
+            counts[root as usize] += 1;
+        }
+        let mut number = vec![u32::MAX; self.all.len()];
+        let mut regions: Vec<Region> = Vec::new();
+        for (i, &run) in self.all.iter().enumerate() {
+            let root = self.parents[i] as usize;
+            if !wanted(areas[root] as usize) {
+                continue;
+            }
+            if number[root] == u32::MAX {
+                number[root] = regions.len() as u32;
+                regions.push(Region { runs: Vec::with_capacity(counts[root] as usize) });
+            }
+            regions[number[root] as usize].runs.push(run);
+        }
+        regions
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mask::tests::drawn;
 
     fn of(picture: &str) -> Vec<usize> {
-        let rows: Vec<&str> = picture.split_whitespace().collect();
-        let values = rows.iter().flat_map(|r| r.bytes()).map(|b| u8::from(b == b'#')).collect();
-        regions(&Plane { width: rows[0].len(), height: rows.len(), values })
-            .iter()
-            .map(Region::area)
-            .collect()
+        regions(&drawn(picture)).iter().map(Region::area).collect()
     }
 
     #[test]
@@ -121,5 +200,19 @@ mod tests {
         assert_eq!(of("#...# #...# ##### ....."), [9]);
         assert_eq!(of("##.## ..#.. ##.##"), [9]);
         assert_eq!(of("....."), []);
+    }
+
+    #[test]
+    fn a_run_over_several_words_is_one() {
+        let row = format!("{}{}{}", ".".repeat(60), "#".repeat(140), ".".repeat(3));
+        assert_eq!(of(&row), [140]);
+        assert_eq!(of(&"#".repeat(128)), [128]);
+    }
+
+    #[test]
+    fn pinholes_are_paper_closed_in_by_sides() {
+        let holes = |picture: &str| pinholes(&drawn(picture), 4).iter().map(Region::area).collect::<Vec<_>>();
+        assert_eq!(holes("##### #.#.# ##### #...# #...# #####"), [1, 1]);
+        assert_eq!(holes(".#### #.### #####"), [1, 1]);
     }
 }

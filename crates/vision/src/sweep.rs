@@ -3,7 +3,7 @@
 use tracelight_stroke::{Path, Point, Stroke, StrokeKind, Vec2};
 
 use crate::VisionError;
-use crate::plane::Plane;
+use crate::mask::Mask;
 
 /// Length of a step, px: the report's.
 const RADIUS_PX: f64 = 5.0;
@@ -19,9 +19,8 @@ const DIRECTIONS: usize = 128;
 ///
 /// # Errors
 /// When no direction leads to ink, or the walk does not come back.
-pub(crate) fn stroke(mask: &Plane<u8>, ink_px: usize) -> Result<Stroke, VisionError> {
-    let first = mask.values.iter().position(|&m| m != 0).unwrap_or(0);
-    let start = mask.centre(first);
+pub(crate) fn stroke(mask: &Mask, ink_px: usize) -> Result<Stroke, VisionError> {
+    let start = mask.cells().next().map_or(Point::new(0.5, 0.5), |first| mask.centre(first));
     let most = ink_px / RADIUS_PX as usize + DIRECTIONS;
     let mut points = vec![start];
     let mut heading = 0;
@@ -53,9 +52,9 @@ fn passes(a: Point, b: Point, start: Point) -> bool {
 ///
 /// That way, from 160° to 280°, is where the last step came from; the report does not say so, but with it every walk
 /// that drifts to the inner edge of its line would turn round there.
-fn next_heading(mask: &Plane<u8>, at: Point, heading: usize) -> Option<usize> {
+fn next_heading(mask: &Mask, at: Point, heading: usize) -> Option<usize> {
     const BACK: std::ops::Range<usize> = DIRECTIONS * 160 / 360..DIRECTIONS * 280 / 360;
-    let ink = |p: Point| mask.get(p.x.floor() as isize, p.y.floor() as isize) != 0;
+    let ink = |p: Point| mask.get(p.x.floor() as isize, p.y.floor() as isize);
     let ahead = (0..DIRECTIONS).filter(|turn| !BACK.contains(turn));
     ahead.map(|turn| (heading + turn) % DIRECTIONS).find(|&h| ink(at + direction(h) * RADIUS_PX))
 }

@@ -1,14 +1,13 @@
 use tracelight_stroke::{Affine, Drawing, Stroke};
 
-use crate::graph::Graph;
+use crate::graph::{Graph, Skeleton};
 use crate::ink::Ink;
+use crate::mask::Mask;
 use crate::missed;
 use crate::outline::Walked;
-use crate::plane::Plane;
-use crate::region::{Region, regions};
+use crate::region::{Region, pinholes, regions};
 use crate::ridge::median;
-use crate::thin::Skeleton;
-use crate::{Grey, Quality, VisionError, centreline, distance, outline, prune, sweep};
+use crate::{Grey, Quality, VisionError, centreline, outline, prune, solid, sweep, thin};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -81,7 +80,7 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
     let (strokes, missed_ink) = match options.mode {
         Mode::Sweep => {
             let area = regions.iter().map(Region::area).sum();
-            (vec![sweep::stroke(&only(&mask, &regions), area)?], 0.0)
+            (vec![sweep::stroke(&mask, area)?], 0.0)
         }
         Mode::Outline => (outlines(&ink, &mask, &regions, options), 0.0),
         Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, &mask, &regions, options),
@@ -103,29 +102,24 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
 
 /// The regions that are large enough to have been drawn, their pinholes filled: a speck of a 120th of the picture's
 /// height either way is dust, and one of fewer than 6 px always.
-fn drawn(mask: &mut Plane<u8>) -> Result<Vec<Region>, VisionError> {
+fn drawn(mask: &mut Mask) -> Result<Vec<Region>, VisionError> {
     let side = mask.width.min(mask.height) / 120;
     let least_px = (side * side).max(LEAST_PX);
-    let paper = Plane { values: mask.values.iter().map(|&m| 1 - m).collect(), ..*mask };
-    let holes = regions(&paper).into_iter().filter(|r| r.area() < LEAST_PX);
-    holes.for_each(|r| r.pixels(mask.width).for_each(|i| mask.values[i] = 1));
-    let mut found = regions(mask);
-    let largest_px = found.iter().map(Region::area).max().unwrap_or(0);
-    found.retain(|r| r.area() >= least_px);
-    if found.is_empty() { Err(VisionError::NoInk { largest_px, least_px }) } else { Ok(found) }
+    pinholes(mask, LEAST_PX).iter().for_each(|hole| hole.fill_into(mask));
+    let (found, dust): (Vec<Region>, Vec<Region>) =
+        regions(mask).into_iter().partition(|r| r.area() >= least_px);
+    dust.iter().for_each(|speck| speck.erase_from(mask));
+    if found.is_empty() {
+        let largest_px = dust.iter().map(Region::area).max().unwrap_or(0);
+        return Err(VisionError::NoInk { largest_px, least_px });
+    }
+    Ok(found)
 }
 
 /// Fewer pixels than this were never drawn, nor left out, on purpose.
 const LEAST_PX: usize = 6;
 
-/// The mask of these regions alone.
-fn only(mask: &Plane<u8>, regions: &[Region]) -> Plane<u8> {
-    let mut kept = Plane::filled(mask.width, mask.height, 0);
-    regions.iter().flat_map(|r| r.pixels(mask.width)).for_each(|i| kept.values[i] = 1);
-    kept
-}
-
-fn outlines(ink: &Ink, mask: &Plane<u8>, regions: &[Region], options: &Options) -> Vec<Stroke> {
+fn outlines(ink: &Ink, mask: &Mask, regions: &[Region], options: &Options) -> Vec<Stroke> {
     let mut walked = Walked::none(mask.width, mask.height);
     let each = |r: &Region| outline::strokes(&ink.darkness, mask, r, &mut walked, options);
     regions.iter().flat_map(each).collect()
@@ -138,12 +132,7 @@ enum Kind {
 }
 
 /// The strokes, and the share of the lines' ink that they miss.
-fn lines_and_shapes(
-    ink: &Ink,
-    mask: &Plane<u8>,
-    regions: &[Region],
-    options: &Options,
-) -> (Vec<Stroke>, f64) {
+fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: &[Region], options: &Options) -> (Vec<Stroke>, f64) {
     let mut walked = Walked::none(mask.width, mask.height);
     let (mut strokes, mut lined) = (Vec::new(), Vec::new());
     for (region, kind) in regions.iter().zip(kinds(mask, regions, options.mode)) {
@@ -155,25 +144,24 @@ fn lines_and_shapes(
             Kind::Shape => outline::strokes(&ink.darkness, mask, region, &mut walked, options),
         });
     }
-    let missed = missed::share(&lined, &strokes, mask.width, mask.height);
+    let missed = missed::share(mask, &lined, &strokes);
     (strokes, missed)
 }
 
 /// Lines or shape, for each region.
-fn kinds(mask: &Plane<u8>, regions: &[Region], mode: Mode) -> Vec<Kind> {
-    let distance = distance::to_paper(mask);
-    let thickest = |r: &Region| r.pixels(mask.width).map(|i| distance.values[i]).fold(0.0, f32::max);
-    // no pen is a 12th of the picture wide
-    let widest_pen =
-        if mode == Mode::Auto { mask.width.min(mask.height) as f32 / 12.0 } else { f32::INFINITY };
-    let solid: Vec<bool> = regions.iter().map(|r| 2.0 * thickest(r) - 1.0 > widest_pen).collect();
-    let thin =
-        regions.iter().zip(&solid).filter(|(_, solid)| !**solid).flat_map(|(r, _)| r.pixels(mask.width));
-    let mut skeleton = Skeleton::of(mask.width, mask.height, thin);
+fn kinds(mask: &Mask, regions: &[Region], mode: Mode) -> Vec<Kind> {
+    // no pen's lines, nor two of them where they cross, hold a square of a 16th of the picture
+    let side = mask.width.min(mask.height) / 16;
+    let solid: Vec<bool> = match mode {
+        Mode::Auto => solid::hold_a_square(mask, regions, side),
+        _ => vec![false; regions.len()],
+    };
+    let mut thick = Mask::empty(mask.width, mask.height);
+    regions.iter().zip(&solid).filter(|(_, solid)| **solid).for_each(|(r, _)| r.fill_into(&mut thick));
+    let mut skeleton = Skeleton::new(mask, thin::thinned(mask.clone().without(&thick)));
     let mut graph = |region: &Region| {
-        let pixels: Vec<usize> = region.pixels(mask.width).map(|i| skeleton.with_margin(i)).collect();
-        let left: Vec<usize> = pixels.into_iter().filter(|&i| skeleton.ink.values[i] != 0).collect();
-        let mut graph = Graph::read(&mut skeleton, &left, &distance);
+        let cells = skeleton.cells_of(region);
+        let mut graph = Graph::read(&mut skeleton, &cells);
         prune::prune(&mut graph);
         graph
     };
