@@ -1,11 +1,15 @@
 //! How well one drawing matches another.
 
+mod matching;
+mod score;
 mod segments;
 
 use kurbo::Point;
 
 use crate::Drawing;
 use segments::Segments;
+
+pub use score::{Score, score, score_polylines};
 
 /// Samples in one tolerance along a line: a stretch that is just out of tolerance is then found to a tenth.
 const SAMPLES_PER_TOLERANCE: f64 = 10.0;
@@ -33,8 +37,12 @@ pub struct Comparison {
 /// Both are sampled evenly along their length; distances to the other side are exact. `None` if either has no
 /// length: nothing can be said of it then.
 pub fn compare(drawn: &[Vec<Point>], truth: &Drawing, tolerance: f64) -> Option<Comparison> {
-    let truth: Vec<_> = truth.strokes.iter().map(|s| s.path.flatten(0.01 * tolerance)).collect();
-    compare_polylines(drawn, &truth, tolerance)
+    compare_polylines(drawn, &polylines(truth, tolerance), tolerance)
+}
+
+/// A drawing's strokes as polylines, to a hundredth of `tolerance`.
+fn polylines(drawing: &Drawing, tolerance: f64) -> Vec<Vec<Point>> {
+    drawing.strokes.iter().map(|s| s.path.flatten(0.01 * tolerance)).collect()
 }
 
 /// [`compare`] for two sets of polylines.

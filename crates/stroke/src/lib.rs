@@ -13,7 +13,7 @@ mod path;
 mod simplify;
 mod stroke;
 
-pub use compare::{Comparison, compare, compare_polylines};
+pub use compare::{Comparison, Score, compare, compare_polylines, score, score_polylines};
 pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Vec2};
 pub use order::{Effort, OrderOptions, Ordered, order};

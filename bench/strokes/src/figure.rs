@@ -1,0 +1,93 @@
+use tracelight_stroke::{Affine, Path, Stroke, StrokeKind};
+
+/// How a pen's line ends and turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nib {
+    /// Round caps and joins: a pen.
+    Round,
+    /// Butt caps and mitre joins: a drawing program.
+    Sharp,
+}
+
+/// What a figure is drawn with, and how large. Lengths in px.
+#[derive(Clone, Copy, Debug)]
+pub struct Hand {
+    /// Width of the line.
+    pub pen: f64,
+    /// Ends and corners of the line.
+    pub nib: Nib,
+    /// Least paper between two lines.
+    pub paper: f64,
+    /// Half of what the figure measures across, about.
+    pub size: f64,
+}
+
+/// What is put on the paper.
+#[derive(Clone, Debug)]
+pub enum Ink {
+    /// A line along the path.
+    Line {
+        /// Its middle.
+        path: Path,
+        /// Its width, px.
+        pen: f64,
+        /// Its ends and corners.
+        nib: Nib,
+    },
+    /// The inside of closed paths; a path inside another one is a hole.
+    Fill(Vec<Path>),
+}
+
+/// Ink, and the strokes that a hand would draw it with.
+#[derive(Clone, Debug, Default)]
+pub struct Figure {
+    /// The truth.
+    pub strokes: Vec<Stroke>,
+    /// What is seen.
+    pub ink: Vec<Ink>,
+}
+
+impl Figure {
+    /// Pen lines, each of them a stroke.
+    pub(crate) fn lines(hand: &Hand, paths: impl IntoIterator<Item = Path>) -> Self {
+        let mut figure = Self::default();
+        for path in paths {
+            figure.ink.push(Ink::Line { path: path.clone(), pen: hand.pen, nib: hand.nib });
+            figure.strokes.push(pen_stroke(path, hand.pen));
+        }
+        figure
+    }
+
+    /// One stroke of which only these pieces are inked.
+    pub(crate) fn broken(hand: &Hand, whole: Path, pieces: impl IntoIterator<Item = Path>) -> Self {
+        let ink = pieces.into_iter().map(|path| Ink::Line { path, pen: hand.pen, nib: hand.nib });
+        Self { ink: ink.collect(), strokes: vec![pen_stroke(whole, hand.pen)] }
+    }
+
+    /// A filled shape: its outline and its holes'.
+    pub(crate) fn filled(outlines: Vec<Path>) -> Self {
+        let stroke = |path: &Path| Stroke { path: path.clone(), kind: StrokeKind::Outline, pen: None };
+        Self { strokes: outlines.iter().map(stroke).collect(), ink: vec![Ink::Fill(outlines)] }
+    }
+
+    /// Both.
+    pub(crate) fn and(mut self, other: Self) -> Self {
+        self.strokes.extend(other.strokes);
+        self.ink.extend(other.ink);
+        self
+    }
+
+    /// Moved by a similarity that keeps lengths.
+    pub(crate) fn moved(&self, by: Affine) -> Self {
+        let stroke = |s: &Stroke| Stroke { path: s.path.transformed(by), ..*s };
+        let ink = |i: &Ink| match i {
+            Ink::Line { path, pen, nib } => Ink::Line { path: path.transformed(by), pen: *pen, nib: *nib },
+            Ink::Fill(paths) => Ink::Fill(paths.iter().map(|p| p.transformed(by)).collect()),
+        };
+        Self { strokes: self.strokes.iter().map(stroke).collect(), ink: self.ink.iter().map(ink).collect() }
+    }
+}
+
+fn pen_stroke(path: Path, pen: f64) -> Stroke {
+    Stroke { pen: Some(pen), ..Stroke::new(path) }
+}

@@ -1,0 +1,352 @@
+//! How a drawing looks to a camera: levels of paper and ink, light, and what spoils a picture.
+
+use clap::ValueEnum;
+use tracelight_stroke::{Point, Vec2};
+
+use crate::ink::{Plane, dot, draw};
+use crate::picture::through_jpeg;
+use crate::random::Normal;
+use crate::shapes::line;
+use crate::warp::Warp;
+use crate::{Ink, Nib, Page, Random, Size};
+
+/// What is done to a clean picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
+pub enum Degradation {
+    /// Nothing.
+    Clean,
+    /// Light from one side, 1 falling to 0.35.
+    Light,
+    /// A shadow with a hard edge, 0.5 to 0.7 of the light.
+    Shadow,
+    /// Corners darker, down to 0.45.
+    Vignette,
+    /// Out of focus, up to 0.8 px per 240 rows.
+    Blur,
+    /// Noise up to σ 6 levels.
+    Noise,
+    /// Noise of σ 10.
+    Noise10,
+    /// Single pixels black or white, 0.06 %.
+    Speckle,
+    /// JPEG of quality 55 to 85.
+    Jpeg,
+    /// Coloured ink on coloured paper.
+    Tint,
+    /// Light ink on dark paper.
+    Inverted,
+    /// Faint pencil: contrast 20 to 30 %.
+    Pencil,
+    /// Ruled paper, its rules at 15 to 30 % of the ink's contrast.
+    Ruled,
+    /// A few specks of 1 to 3 px.
+    Dust,
+    /// Seen up to 5° aside.
+    Perspective,
+    /// Light from one side, blur, noise of σ 6, speckle.
+    Webcam,
+    /// Shadow, perspective, JPEG, noise.
+    Photo,
+}
+
+impl Degradation {
+    /// All of them.
+    pub fn all() -> &'static [Self] {
+        Self::value_variants()
+    }
+
+    /// As it is typed.
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default()
+    }
+
+    pub(crate) fn is_tilted(self) -> bool {
+        matches!(self, Self::Perspective | Self::Photo)
+    }
+}
+
+/// Share of pixels that speckle hits.
+const SPECKS: f64 = 0.0006;
+/// Strongest blur, σ in px on 240 rows.
+const BLUR_240: f64 = 0.8;
+/// Blur stays below these shares of the pen and of the least paper between lines: more undoes them.
+const BLUR_OF_PEN: f64 = 0.45;
+const BLUR_OF_PAPER: f64 = 0.27;
+/// Least difference of the levels of tinted ink and paper.
+const LEAST_TINT: f64 = 90.0;
+
+/// Everything about how a picture looks, decided.
+pub(crate) struct Look {
+    paper: [f64; 3],
+    ink: [f64; 3],
+    light: Light,
+    blur_px: f64,
+    noise: f64,
+    specks: f64,
+    jpeg: Option<u8>,
+    rules: Option<f64>,
+    dust: usize,
+}
+
+/// The share of the light that arrives at a place.
+#[derive(Clone, Copy)]
+enum Light {
+    Even,
+    /// From a lamp near a corner: (x, y) as shares of the picture.
+    Lamp(f64, f64),
+    /// Linear, from 1 to 0.35 along a direction.
+    Slope(f64),
+    /// Behind an edge through a point (shares) with a normal (rad), this share arrives; soft over so many px.
+    Shadow {
+        through: (f64, f64),
+        normal: f64,
+        left: f64,
+        soft: f64,
+    },
+    /// Down by this much in the corners.
+    Vignette(f64),
+}
+
+impl Look {
+    pub(crate) fn clean(paper: f64, ink: f64) -> Self {
+        Self {
+            paper: [paper; 3],
+            ink: [ink; 3],
+            light: Light::Even,
+            blur_px: 0.0,
+            noise: 0.0,
+            specks: 0.0,
+            jpeg: None,
+            rules: None,
+            dust: 0,
+        }
+    }
+
+    /// As a webcam sees black ink on white paper: `quality.py`'s recipe.
+    pub(crate) fn webcam(size: Size, paper: f64, ink: f64) -> Self {
+        let blur_px = BLUR_240 * size.height as f64 / 240.0;
+        let light = Light::Lamp(0.15, 0.1);
+        Self { light, blur_px, noise: 6.0, specks: SPECKS, ..Self::clean(paper, ink) }
+    }
+
+    /// A degradation's look for a page; some of it is drawn at random.
+    pub(crate) fn of(degradation: Degradation, random: &mut Random, size: Size, page: &Page) -> Self {
+        let most_blur = (BLUR_240 * size.height as f64 / 240.0)
+            .min(BLUR_OF_PEN * page.pen)
+            .min(BLUR_OF_PAPER * page.paper);
+        let look = Self::clean(random.between(225.0, 255.0), random.between(0.0, 60.0));
+        match degradation {
+            Degradation::Clean | Degradation::Perspective => look,
+            Degradation::Light => Self { light: one_sided(random), ..look },
+            Degradation::Shadow => Self { light: shadow(random), ..look },
+            Degradation::Vignette => Self { light: Light::Vignette(random.between(0.3, 0.55)), ..look },
+            Degradation::Blur => Self { blur_px: most_blur * random.between(0.5, 1.0), ..look },
+            Degradation::Noise => Self { noise: random.between(2.0, 6.0), ..look },
+            Degradation::Noise10 => Self { noise: 10.0, ..look },
+            Degradation::Speckle => Self { specks: SPECKS, ..look },
+            Degradation::Jpeg => Self { jpeg: Some(random.whole(55, 85) as u8), ..look },
+            Degradation::Tint => tinted(random),
+            Degradation::Inverted => Self { paper: look.ink, ink: look.paper, ..look },
+            Degradation::Pencil => pencil(random),
+            Degradation::Ruled => Self { rules: Some(random.between(0.15, 0.3)), ..look },
+            Degradation::Dust => Self { dust: random.whole(4, 20), ..look },
+            Degradation::Webcam => {
+                let light = one_sided(random);
+                Self { light, blur_px: most_blur, noise: 6.0, specks: SPECKS, ..look }
+            }
+            Degradation::Photo => {
+                let noise = random.between(1.0, 4.0);
+                Self { light: shadow(random), noise, jpeg: Some(random.whole(60, 90) as u8), ..look }
+            }
+        }
+    }
+
+    /// The grey levels of a picture with this ink on it.
+    pub(crate) fn levels(
+        &self,
+        random: &mut Random,
+        size: Size,
+        ink: &[&Ink],
+        warp: Option<&Warp>,
+    ) -> Vec<u8> {
+        let (width, height) = (size.width, size.height);
+        let mut covered = Plane::filled(width, height, 0.0);
+        ink.iter().for_each(|ink| draw(&mut covered, ink, warp));
+        (0..self.dust).for_each(|_| {
+            let at = Point::new(random.between(0.0, width as f64), random.between(0.0, height as f64));
+            dot(&mut covered, at, 0.5 * random.between(1.0, 3.0));
+        });
+        let mut ruled = Plane::filled(width, height, 0.0);
+        if self.rules.is_some() {
+            rules(random, size).iter().for_each(|ink| draw(&mut ruled, ink, warp));
+        }
+        let mut seen = self.composed(&covered, &ruled);
+        self.lit(&mut seen);
+        blur(&mut seen, self.blur_px);
+        self.spoil(random, &mut seen);
+        let levels = seen.values.iter().map(|v| v.round().clamp(0.0, 255.0) as u8).collect();
+        match self.jpeg {
+            Some(quality) => through_jpeg(levels, width, height, quality),
+            None => levels,
+        }
+    }
+
+    /// Paper, rules and ink by their coverage, red, green and blue rounded and then made grey as the host does it.
+    fn composed(&self, covered: &Plane, ruled: &Plane) -> Plane {
+        let share = self.rules.unwrap_or(0.0);
+        let level = |(&ink, &rule): (&f32, &f32)| {
+            let (ink, rule) = (f64::from(ink), share * f64::from(rule));
+            let colour = |i: usize| {
+                let under = self.paper[i] + (self.ink[i] - self.paper[i]) * rule;
+                under + (self.ink[i] - under) * ink
+            };
+            if self.paper[0] == self.paper[1] && self.paper[1] == self.paper[2] {
+                colour(0) as f32
+            } else {
+                luma([0, 1, 2].map(|i| colour(i).round() as u32)) as f32
+            }
+        };
+        let values = covered.values.iter().zip(&ruled.values).map(level).collect();
+        Plane { values, ..*covered }
+    }
+
+    fn lit(&self, seen: &mut Plane) {
+        if matches!(self.light, Light::Even) {
+            return;
+        }
+        let (width, height) = (seen.width as f64, seen.height as f64);
+        for (i, value) in seen.values.iter_mut().enumerate() {
+            let (x, y) = ((i % seen.width) as f64, (i / seen.width) as f64);
+            *value *= self.light.at(x, y, width, height) as f32;
+        }
+    }
+
+    fn spoil(&self, random: &mut Random, seen: &mut Plane) {
+        if self.noise > 0.0 {
+            let normal = Normal::new();
+            for four in seen.values.chunks_mut(4) {
+                let draws = normal.four(random);
+                four.iter_mut().zip(draws).for_each(|(v, d)| *v += d * self.noise as f32);
+            }
+        }
+        let specks = (seen.values.len() as f64 * self.specks) as usize;
+        for _ in 0..specks {
+            let at = random.whole(0, seen.values.len() - 1);
+            seen.values[at] = random.pick(&[0.0, 255.0]);
+        }
+    }
+}
+
+impl Light {
+    fn at(self, x: f64, y: f64, width: f64, height: f64) -> f64 {
+        let (u, v) = (x / width, y / height);
+        match self {
+            Light::Even => 1.0,
+            Light::Lamp(lx, ly) => {
+                0.35 + 0.65 * (1.0 - (u - lx).powi(2) - ((v - ly) / 1.15).powi(2)).clamp(0.0, 1.0)
+            }
+            Light::Slope(way) => {
+                let (sin, cos) = way.sin_cos();
+                let along = ((u - 0.5) * cos + (v - 0.5) * sin) / (cos.abs() + sin.abs());
+                1.0 - 0.65 * (along + 0.5)
+            }
+            Light::Shadow { through, normal, left, soft } => {
+                let from = Vec2::new(x - through.0 * width, y - through.1 * height);
+                let into = (from.dot(Vec2::from_angle(normal)) / soft + 0.5).clamp(0.0, 1.0);
+                1.0 - (1.0 - left) * into
+            }
+            Light::Vignette(depth) => 1.0 - depth * 2.0 * ((u - 0.5).powi(2) + (v - 0.5).powi(2)),
+        }
+    }
+}
+
+fn one_sided(random: &mut Random) -> Light {
+    if random.chance(0.5) {
+        return Light::Slope(random.angle());
+    }
+    Light::Lamp(random.pick(&[0.15, 0.85]), random.pick(&[0.1, 0.9]))
+}
+
+fn shadow(random: &mut Random) -> Light {
+    let through = (random.between(0.25, 0.75), random.between(0.25, 0.75));
+    Light::Shadow {
+        through,
+        normal: random.angle(),
+        left: random.between(0.5, 0.7),
+        soft: random.between(1.0, 3.0),
+    }
+}
+
+fn pencil(random: &mut Random) -> Look {
+    let paper = random.between(215.0, 245.0);
+    Look { noise: 1.5, ..Look::clean(paper, paper * (1.0 - random.between(0.2, 0.3))) }
+}
+
+/// Pastel paper and dark ink of any colours that still differ enough in grey.
+fn tinted(random: &mut Random) -> Look {
+    let mut colour = |least: f64, most: f64| [0; 3].map(|_| random.between(least, most));
+    let mut found = Look::clean(240.0, 20.0);
+    for _ in 0..100 {
+        let (paper, ink) = (colour(150.0, 255.0), colour(0.0, 190.0));
+        let grey = |c: [f64; 3]| f64::from(luma(c.map(|v| v as u32)));
+        if grey(paper) - grey(ink) >= LEAST_TINT {
+            found = Look { paper, ink, ..found };
+            break;
+        }
+    }
+    found
+}
+
+/// ITU-R BT.601 luma in integers, as the host program makes grey of colours.
+fn luma([r, g, b]: [u32; 3]) -> u32 {
+    (299 * r + 587 * g + 114 * b + 500) / 1000
+}
+
+/// Level lines across the page, squared now and then.
+fn rules(random: &mut Random, size: Size) -> Vec<Ink> {
+    let (width, height) = (size.width as f64, size.height as f64);
+    let pitch = height * random.between(1.0 / 22.0, 1.0 / 12.0);
+    let pen = (height / 240.0).max(1.0) * random.between(0.8, 1.2);
+    let first = pitch * random.between(0.2, 1.0);
+    let ink = |from: Point, to: Point| Ink::Line { path: line(from, to), pen, nib: Nib::Round };
+    let count = |length: f64| ((length - first) / pitch) as usize + 1;
+    let level = (0..count(height)).map(|i| first + pitch * i as f64);
+    let mut rules: Vec<_> = level.map(|y| ink(Point::new(-9.0, y), Point::new(width + 9.0, y))).collect();
+    if random.chance(0.4) {
+        let upright = (0..count(width)).map(|i| first + pitch * i as f64);
+        rules.extend(upright.map(|x| ink(Point::new(x, -9.0), Point::new(x, height + 9.0))));
+    }
+    rules
+}
+
+/// Gaussian, σ in px, cut at 3.5 σ.
+fn blur(plane: &mut Plane, sigma: f64) {
+    if sigma <= 0.0 {
+        return;
+    }
+    let reach = (3.5 * sigma).ceil() as usize;
+    let weight = |i: usize| (-0.5 * ((i as f64 - reach as f64) / sigma).powi(2)).exp();
+    let weights: Vec<f64> = (0..=2 * reach).map(weight).collect();
+    let sum: f64 = weights.iter().sum();
+    let weights: Vec<f32> = weights.iter().map(|w| (w / sum) as f32).collect();
+    let (width, height) = (plane.width, plane.height);
+    let mut padded = vec![0.0; width + 2 * reach];
+    for row in plane.values.chunks_exact_mut(width) {
+        padded[..reach].fill(row[0]);
+        padded[reach..reach + width].copy_from_slice(row);
+        padded[reach + width..].fill(row[width - 1]);
+        let seen = padded.windows(weights.len());
+        row.iter_mut()
+            .zip(seen)
+            .for_each(|(v, around)| *v = around.iter().zip(&weights).map(|(a, w)| a * w).sum());
+    }
+    let mut out = vec![0.0_f32; width * height];
+    for (y, row) in out.chunks_exact_mut(width).enumerate() {
+        for (k, weight) in weights.iter().enumerate() {
+            let from = (y + k).saturating_sub(reach).min(height - 1);
+            let other = &plane.values[from * width..][..width];
+            row.iter_mut().zip(other).for_each(|(v, o)| *v += weight * o);
+        }
+    }
+    plane.values = out;
+}
