@@ -40,6 +40,13 @@ impl FitOptions {
     }
 }
 
+impl FitOptions {
+    /// Distance of the samples that are looked at: no finer than the points' noise nor than the pen can turn.
+    fn step(&self) -> f64 {
+        (2.0 * self.tolerance).max(self.reach / 3.0)
+    }
+}
+
 /// Fewer samples than this hold no curve.
 const LEAST_SAMPLES: usize = 8;
 
@@ -49,7 +56,7 @@ const LEAST_SAMPLES: usize = 8;
 /// it has one. Between corners neighbouring elements share their direction, at the seam of a closed path too.
 /// Cubics after Schneider (1990), corners and lines as the modules here describe.
 pub fn fit(points: &[Point], closed: bool, options: &FitOptions) -> Option<Path> {
-    let samples = Samples::of(points, closed, 2.0 * options.tolerance)?;
+    let samples = Samples::of(points, closed, options.step())?;
     if samples.len() < LEAST_SAMPLES {
         return Path::polyline(&simplify(&samples.points, samples.closed, options.tolerance), samples.closed);
     }

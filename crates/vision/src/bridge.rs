@@ -27,13 +27,12 @@ impl Tip {
     pub(crate) fn of(points: &[Point], end: usize) -> Option<Self> {
         let n = points.len();
         let at = |k: usize| points[if end == 0 { k } else { n - 1 - k }];
-        let mut lengths = vec![0.0];
-        for k in 1..n.min(WINDOWS[WINDOWS.len() - 1]) {
-            lengths.push(lengths[k - 1] + at(k).distance(at(k - 1)));
-        }
-        let window =
-            |size: usize| Parabola::through((0..size.min(lengths.len())).map(|k| (lengths[k], at(k))));
-        let curve = (n > 0).then(|| Parabola::widest(WINDOWS.into_iter().map(window), ON_PARABOLA_PX))?;
+        let mut length = 0.0;
+        let samples = (0..n).map(|k| {
+            length += if k > 0 { at(k).distance(at(k - 1)) } else { 0.0 };
+            (length, at(k))
+        });
+        let curve = (n > 0).then(|| Parabola::widest(samples, &WINDOWS, ON_PARABOLA_PX))?;
         Some(Self { at: at(0), along: curve.map_or(Vec2::ZERO, |c| -c.tangent(0.0)), curve })
     }
 
@@ -109,12 +108,16 @@ impl Tip {
                 let back = steps(t).rev().map(|k| other.beyond(k as f64).0);
                 out.chain([corner]).chain(back).collect()
             }
-            None => {
-                let steps = over.hypot().round().max(1.0) as usize;
-                let (from, to) = (self.along * over.hypot(), -other.along * over.hypot());
-                (1..steps).map(|k| hermite(self.at, from, other.at, to, k as f64 / steps as f64)).collect()
-            }
+            None => self.smoothly_to(other),
         }
+    }
+
+    /// Points about 1 px apart on a smooth curve from this tip to another, without the two.
+    pub(crate) fn smoothly_to(&self, other: &Tip) -> Vec<Point> {
+        let length = self.at.distance(other.at);
+        let steps = length.round().max(1.0) as usize;
+        let (from, to) = (self.along * length, -other.along * length);
+        (1..steps).map(|k| hermite(self.at, from, other.at, to, k as f64 / steps as f64)).collect()
     }
 }
 

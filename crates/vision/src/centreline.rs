@@ -1,43 +1,48 @@
 //! Pen lines: strokes down their middle.
 
-use tracelight_stroke::{Element, Path, Point, Stroke, StrokeKind, Vec2};
+use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
 
 use crate::Options;
 use crate::follow;
 use crate::graph::Graph;
 use crate::junction::{self, Joint};
 use crate::line::Line;
+use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::region::Region;
 use crate::ridge::median;
 
 /// A row of points to be fitted, and the pen that drew it.
-struct Row {
-    points: Vec<Point>,
-    closed: bool,
-    width: f64,
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) points: Vec<Point>,
+    pub(crate) closed: bool,
+    /// Width of the pen, px.
+    pub(crate) width: f64,
+    /// Whether the line ends free at its first and last point: not at another line nor at a shape.
+    pub(crate) free: [bool; 2],
 }
 
-/// The strokes of one region's graph.
-pub(crate) fn strokes(dark: &Plane<u8>, region: &Region, graph: &Graph, options: &Options) -> Vec<Stroke> {
+/// The rows of one patch's graph; lines end where they meet `shapes`.
+pub(crate) fn rows(dark: &Plane<u8>, shapes: &Mask, region: &Region, graph: &Graph) -> Vec<Row> {
     if is_dot(graph) {
         return vec![dot(dark, region)];
     }
     let (mut cluster, bridges) = junction::clusters(graph);
     let real = graph.branches.iter().zip(bridges).filter(|(_, bridge)| !bridge);
-    let mut lines: Vec<Line> = real.map(|(branch, _)| Line::of(dark, graph, branch)).collect();
+    let mut lines: Vec<Line> = real.map(|(branch, _)| Line::of(dark, shapes, graph, branch)).collect();
     junction::merge_acute(&mut lines, &mut cluster);
     let junctions = junction::join(dark, &lines, &cluster);
     for (port, stop) in &junctions.ends {
         lines[port.line].end_at(port.end, *stop);
     }
-    let found: Vec<Stroke> =
-        rows(&lines, &junctions.joints).iter().filter_map(|row| stroke(dark, row, options)).collect();
+    let found = strung_together(&lines, &junctions.joints);
     // a knot of nothing but junctions is a blot
     if found.is_empty() { vec![dot(dark, region)] } else { found }
 }
 
-fn stroke(dark: &Plane<u8>, row: &Row, options: &Options) -> Option<Stroke> {
+/// The stroke along a row.
+pub(crate) fn stroke(dark: &Plane<u8>, row: &Row, options: &Options) -> Option<Stroke> {
     // a line that was carried on out of the picture ends at its border
     let points: Vec<Point> = row.points.iter().map(|&p| dark.clamp(p)).collect();
     let path = follow::path(&points, row.closed, 0.5 * row.width, options)?;
@@ -45,7 +50,7 @@ fn stroke(dark: &Plane<u8>, row: &Row, options: &Options) -> Option<Stroke> {
 }
 
 /// Lines strung together through the joints.
-fn rows(lines: &[Line], joints: &[Joint]) -> Vec<Row> {
+fn strung_together(lines: &[Line], joints: &[Joint]) -> Vec<Row> {
     let mut joint_at: Vec<[Option<(usize, usize)>; 2]> = vec![[None; 2]; lines.len()];
     for (number, joint) in joints.iter().enumerate() {
         for (side, port) in joint.ports.iter().enumerate() {
@@ -74,10 +79,11 @@ fn strung(
     joint_at: &[[Option<(usize, usize)>; 2]],
     used: &mut [bool],
 ) -> Row {
-    let mut row = Row { points: Vec::new(), closed: lines[start].ring, width: 0.0 };
+    let mut row = Row { points: Vec::new(), closed: lines[start].ring, width: 0.0, free: [false; 2] };
     let mut widths = Vec::new();
     let (mut line, mut entry) =
         (start, usize::from(joint_at[start][0].is_some() && joint_at[start][1].is_none()));
+    row.free[0] = lines[line].free[entry];
     while !used[line] {
         used[line] = true;
         widths.push(lines[line].width);
@@ -86,6 +92,7 @@ fn strung(
             0 => row.points.extend(forward),
             _ => row.points.extend(forward.rev()),
         }
+        row.free[1] = lines[line].free[1 - entry];
         let Some((number, side)) = joint_at[line][1 - entry] else { break };
         let bridge = joints[number].bridge.iter().copied();
         match side {
@@ -109,12 +116,12 @@ fn is_dot(graph: &Graph) -> bool {
 
 /// A short straight stroke along a region's longer axis, at least half the pen's width long, so that light falls on
 /// it at all.
-fn dot(dark: &Plane<u8>, region: &Region) -> Stroke {
+fn dot(dark: &Plane<u8>, region: &Region) -> Row {
     let (centre, axis, length, width) = extent(dark, region);
     let half = 0.5 * (length - width).max(0.5 * width).max(0.5);
-    let mut path = Path::new(dark.clamp(centre - axis * half));
-    path.push(Element::Line { to: dark.clamp(centre + axis * half) });
-    Stroke { path, kind: StrokeKind::Centreline, pen: Some(width) }
+    let points = vec![dark.clamp(centre - axis * half), dark.clamp(centre + axis * half)];
+    // a dot stands for itself; a dash may be part of a line
+    Row { points, closed: false, width, free: [length > 1.5 * width; 2] }
 }
 
 /// Centre, long axis, length and width of a region, from the moments of its darkness. A stadium's are those of its

@@ -6,8 +6,9 @@
 //! ratio to the surface instead of its own. Unlike a morphological closing this needs no window larger than the
 //! largest patch of ink.
 
+use crate::ink::smoothed;
 use crate::plane::Plane;
-use crate::solve;
+use crate::{shadow, solve};
 
 /// Tiles along the shorter side.
 const TILES: usize = 24;
@@ -27,6 +28,8 @@ const DIMMEST: f64 = 12.0;
 pub(crate) struct Paper {
     tile: usize,
     levels: Plane<f64>,
+    /// Of every pixel, where there are shadows with hard edges.
+    shaded: Option<Plane<u8>>,
 }
 
 impl Paper {
@@ -37,12 +40,15 @@ impl Paper {
         let surface = Surface::over(&bright);
         let ratio = Plane {
             values: bright.values.iter().zip(surface.on(&bright)).map(|(b, s)| b / s).collect(),
-            ..bright
+            ..bright.clone()
         };
         let even = filled_in(&ratio);
         let levels =
             even.values.iter().zip(surface.on(&even)).map(|(r, s)| (r * s).clamp(DIMMEST, 255.0)).collect();
-        Self { tile, levels: Plane { values: levels, ..even } }
+        let levels = Plane { values: levels, ..even };
+        let shaded =
+            shadow::is_cast(&bright).then(|| shaded(image, tile, &surface.on(&bright).collect::<Vec<_>>()));
+        Self { tile, levels, shaded }
     }
 
     /// Darkest and brightest paper, levels.
@@ -56,6 +62,9 @@ impl Paper {
     /// A level v on paper p leaves 255 (1 − v/p). 255/p is interpolated along the row with 11 bits behind the point
     /// (the dimmest paper's, 21, needs 5 before it), so that a pixel is one 16-bit product.
     pub(crate) fn darkness(&self, image: &Plane<u8>) -> Plane<u8> {
+        if let Some(paper) = &self.shaded {
+            return below(image, paper);
+        }
         let mut dark = Plane::filled(image.width, image.height, 0);
         let mut gains = vec![0u16; image.width];
         // over an eighth of a tile paper changes by less than a level
@@ -65,7 +74,7 @@ impl Paper {
                 self.gains_at(y + rows / 2, &mut gains);
             }
             for ((out, &level), &gain) in dark.row_mut(y).iter_mut().zip(image.row(y)).zip(&gains) {
-                let lit = (u32::from(u16::from(level) << 8) * u32::from(gain) >> 16) as u16;
+                let lit = ((u32::from(u16::from(level) << 8) * u32::from(gain)) >> 16) as u16;
                 *out = 255 - (lit.saturating_add(HALF) >> (GAIN_BITS - 8)).min(255) as u8;
             }
         }
@@ -104,6 +113,30 @@ impl Paper {
     }
 }
 
+/// How much darker each pixel is than its own paper.
+fn below(image: &Plane<u8>, paper: &Plane<u8>) -> Plane<u8> {
+    let gain = |p: usize| 255.0 / (p as f32).max(DIMMEST as f32);
+    let gains: Vec<f32> = (0..256).map(gain).collect();
+    let dark = |(&v, &p): (&u8, &u8)| (255.5 - f32::from(v) * gains[usize::from(p)]).clamp(0.0, 255.0) as u8;
+    Plane { values: image.values.iter().zip(&paper.values).map(dark).collect(), ..*image }
+}
+
+/// The paper of every pixel of a picture with hard shadows, `expected` by tile.
+fn shaded(image: &Plane<u8>, tile: usize, expected: &[f64]) -> Plane<u8> {
+    // twice a tile is wider than any pen
+    let side = 2 * tile + 1;
+    shadow::paper(&smoothed(image), side, tile, expected, |closed| {
+        // what is ink in the closed picture, filled, takes the paper next to it
+        let levels = tile_levels(closed, tile);
+        let ratio = levels.values.iter().zip(expected).map(|(l, e)| l / e);
+        let paper: Vec<bool> =
+            levels.values.iter().zip(expected).map(|(&l, &e)| !shadow::is_ink(l, e)).collect();
+        let ratio = Plane { values: ratio.collect(), ..levels };
+        let near = |i: usize| around(&ratio, &paper, i, 3) * expected[i];
+        Plane { values: (0..expected.len()).map(near).collect(), ..ratio }
+    })
+}
+
 /// Bits behind the point of a gain.
 const GAIN_BITS: u32 = 11;
 /// Half a level at the precision of a product, to round.
@@ -130,13 +163,15 @@ fn tile_levels(image: &Plane<u8>, tile: usize) -> Plane<f64> {
 
 /// The level below which `share` of a histogram lies.
 pub(crate) fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
-    let due = share * histogram.iter().map(|&n| f64::from(n)).sum::<f64>();
-    let mut passed = 0.0;
-    let level = histogram.iter().position(|&n| {
-        passed += f64::from(n);
-        passed >= due
+    let all = histogram.iter().map(|&n| u64::from(n)).sum::<u64>();
+    // counted from above: paper is bright, and its levels are few
+    let above = ((1.0 - share) * all as f64) as u64;
+    let mut passed = 0;
+    let level = histogram.iter().rposition(|&n| {
+        passed += u64::from(n);
+        passed > above
     });
-    level.unwrap_or(255) as f64
+    level.unwrap_or(0) as f64
 }
 
 /// A quadratic surface of log-brightness over the tiles, in coordinates from −1 to 1.

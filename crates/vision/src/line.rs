@@ -4,6 +4,7 @@ use tracelight_stroke::Point;
 
 use crate::bridge::Tip;
 use crate::graph::{Branch, Graph};
+use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::ridge::{self, Ridge, median};
 
@@ -17,12 +18,14 @@ pub(crate) struct Line {
     /// Node of the graph at either end.
     pub(crate) nodes: [Option<usize>; 2],
     pub(crate) ring: bool,
+    /// Whether the pen was lifted at either end, away from other ink.
+    pub(crate) free: [bool; 2],
 }
 
 impl Line {
     /// From a branch: its points without those that show a junction, a corner or an end instead of the line,
     /// centred on the grey levels, with its corners where its sides meet and its free ends where the pen was lifted.
-    pub(crate) fn of(dark: &Plane<u8>, graph: &Graph, branch: &Branch) -> Self {
+    pub(crate) fn of(dark: &Plane<u8>, shapes: &Mask, graph: &Graph, branch: &Branch) -> Self {
         let radius = median(&branch.radii).max(0.5);
         let (from, to) = if branch.ring { (0, branch.points.len()) } else { trusted(graph, branch, radius) };
         let ridge = ridge::centred(dark, &branch.points[from..to], radius, branch.ring);
@@ -31,9 +34,11 @@ impl Line {
         if points.is_empty() {
             points.push(branch.points[(from + to) / 2]);
         }
-        let mut line = Self { points, width, nodes: branch.nodes, ring: branch.ring };
+        let mut line = Self { points, width, nodes: branch.nodes, ring: branch.ring, free: [false; 2] };
         if !branch.ring {
-            (0..2).filter(|&end| branch.nodes[end].is_none()).for_each(|end| line.reach_out(dark, end));
+            (0..2)
+                .filter(|&end| branch.nodes[end].is_none())
+                .for_each(|end| line.reach_out(dark, shapes, end));
         }
         line
     }
@@ -48,11 +53,20 @@ impl Line {
         Tip::of(&self.points, end).unwrap_or(Tip::single(self.points[0]))
     }
 
-    /// Moves a free end to where the pen was lifted, along its curve.
-    fn reach_out(&mut self, dark: &Plane<u8>, end: usize) {
+    /// Moves a free end, along its curve, to where the pen was lifted or where the line meets a shape.
+    fn reach_out(&mut self, dark: &Plane<u8>, shapes: &Mask, end: usize) {
         let tip = self.tip(end);
         let reach = 4.0 * self.width + 4.0;
-        let Some(ahead) = ridge::pen_end(dark, |s| tip.beyond(s).0, self.width, reach) else { return };
+        let ahead = match shape_ahead(shapes, &tip, reach) {
+            Some(ahead) => ahead,
+            None => {
+                let Some(ahead) = ridge::pen_end(dark, |s| tip.beyond(s).0, self.width, reach) else {
+                    return;
+                };
+                self.free[end] = true;
+                ahead
+            }
+        };
         let whole = (ahead - 0.5).max(0.0) as usize;
         for s in (1..=whole).map(|k| k as f64).chain([ahead]) {
             self.end_at(end, tip.beyond(s).0);
@@ -74,6 +88,16 @@ impl Line {
             self.points.reverse();
         }
     }
+}
+
+/// How far ahead of a tip a shape begins, px.
+fn shape_ahead(shapes: &Mask, tip: &Tip, reach: f64) -> Option<f64> {
+    const STEP: f64 = 0.25;
+    let inside = |s: &f64| {
+        let at = tip.beyond(*s).0;
+        shapes.get(at.x.floor() as isize, at.y.floor() as isize)
+    };
+    (0..(reach / STEP) as usize).map(|k| k as f64 * STEP).find(inside)
 }
 
 /// Fewer points than this in a row, between two gaps, tell no direction.

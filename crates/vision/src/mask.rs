@@ -103,8 +103,29 @@ impl Mask {
     }
 
     /// Number of ink pixels.
+    #[cfg(test)]
     pub(crate) fn count(&self) -> usize {
         self.words.iter().map(|w| w.count_ones() as usize).sum()
+    }
+
+    /// All words, with those of the margins.
+    pub(crate) fn words(&self) -> &[u64] {
+        &self.words
+    }
+
+    /// The same, to be written; margins must stay 0.
+    pub(crate) fn words_mut(&mut self) -> &mut [u64] {
+        &mut self.words
+    }
+
+    /// Words from a row to the next.
+    pub(crate) fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// Numbers of the words that hold ink.
+    pub(crate) fn inked_words(&self) -> impl Iterator<Item = u32> + '_ {
+        self.words.iter().enumerate().filter(|(_, word)| **word != 0).map(|(i, _)| i as u32)
     }
 
     /// All ink pixels, row by row.
@@ -172,6 +193,50 @@ impl Mask {
         each_shift(side, |by| self.or_above(by));
         self.trim();
         self
+    }
+
+    /// What upright octagons of this width, which fit into the ink, cover.
+    pub(crate) fn opened(self, width: usize) -> Self {
+        // a regular octagon is a square of 0.41 of its width, widened all round by a diamond
+        let rim = (0.293 * width as f64).round() as usize;
+        let side = width.saturating_sub(2 * rim).max(1);
+        let mut inner = self.eroded(side);
+        (0..rim).for_each(|_| inner.erode_by_plus());
+        (0..rim).for_each(|_| inner.dilate_by_plus());
+        inner.dilated(side)
+    }
+
+    /// All within `reach` steps sideways, up or down.
+    pub(crate) fn dilated_by(mut self, reach: usize) -> Self {
+        (0..reach).for_each(|_| self.dilate_by_plus());
+        self
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.words.iter().all(|&word| word == 0)
+    }
+
+    /// Takes away what has paper beside, above or below it.
+    fn erode_by_plus(&mut self) {
+        let before = self.words.clone();
+        let stride = self.stride;
+        for i in stride..before.len() - stride {
+            let (left, here, right) = (before[i - 1], before[i], before[i + 1]);
+            let beside = (here << 1 | left >> 63) & (here >> 1 | right << 63);
+            self.words[i] = here & beside & before[i - stride] & before[i + stride];
+        }
+    }
+
+    /// Adds what has ink beside, above or below it.
+    fn dilate_by_plus(&mut self) {
+        let before = self.words.clone();
+        let stride = self.stride;
+        for i in stride..before.len() - stride {
+            let (left, here, right) = (before[i - 1], before[i], before[i + 1]);
+            let beside = (here << 1 | left >> 63) | (here >> 1 | right << 63);
+            self.words[i] = here | beside | before[i - stride] | before[i + stride];
+        }
+        self.trim();
     }
 
     /// Each pixel and the one `by` (up to 64) right of it; the margin keeps rows apart.

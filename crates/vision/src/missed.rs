@@ -4,6 +4,7 @@ use tracelight_stroke::{Point, Stroke};
 
 use crate::mask::Mask;
 use crate::region::Region;
+use crate::ridge::median;
 
 /// How far ink may lie from its stroke, pen widths: half of one is its edge, the rest the blots of junctions.
 const NEAR_PENS: f64 = 1.2;
@@ -11,14 +12,14 @@ const NEAR_PENS: f64 = 1.2;
 const LEAST_PX: f64 = 3.0;
 
 /// How closely strokes are followed, px.
-const FLAT_PX: f64 = 0.5;
+const FLAT_PX: f64 = 1.0;
 
 /// Share of the regions' pixels that lie further from every stroke than the pen reaches, 0 to 1.
 pub(crate) fn share(ink: &Mask, regions: &[&Region], strokes: &[Stroke]) -> f64 {
-    let pen = strokes.iter().filter_map(|s| s.pen).fold(0.0, f64::max);
-    let near = (NEAR_PENS * pen).max(LEAST_PX);
+    let usual = median(&strokes.iter().filter_map(|s| s.pen).collect::<Vec<_>>());
     let mut painted = Mask::empty(ink.width, ink.height);
     for stroke in strokes {
+        let near = (NEAR_PENS * stroke.pen.unwrap_or(0.0).max(usual)).max(LEAST_PX);
         stroke.path.flatten(FLAT_PX).windows(2).for_each(|w| paint(&mut painted, w[0], w[1], near));
     }
     let (mut all, mut followed) = (0, 0);
@@ -58,7 +59,7 @@ fn chord(a: Point, b: Point, radius: f64, y: f64) -> Option<(f64, f64)> {
         let shift = tracelight_stroke::Vec2::new(-along.y, along.x) * (sign * radius / length.max(1e-9));
         let (p, q) = (a + shift, b + shift);
         let share = (y - p.y) / (q.y - p.y);
-        (0.0..=1.0).contains(&share).then(|| p.x + (q.x - p.x) * share)
+        (0.0..=1.0).contains(&share).then_some(p.x + (q.x - p.x) * share)
     };
     let sides = [side(1.0), side(-1.0)].into_iter().flatten().map(|x| (x, x));
     let parts = [disc(a), disc(b)].into_iter().flatten().chain(sides);

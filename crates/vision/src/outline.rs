@@ -17,37 +17,53 @@ const LEAST_AREA_PX2: f64 = 12.0;
 /// Directions along pixel edges, clockwise from right: (x, y) steps.
 const STEPS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// Edges of pixels of `mask` that have been walked, as marks on the ink right of them.
-pub(crate) struct Walked(Mask);
-
-impl Walked {
-    /// None of an image of this size.
-    pub(crate) fn none(width: usize, height: usize) -> Self {
-        Self(Mask::empty(width, height))
-    }
+/// Follows the edges of shapes.
+#[derive(Debug)]
+pub(crate) struct Outliner<'a> {
+    dark: &'a Plane<u8>,
+    shapes: &'a Mask,
+    ink: &'a Mask,
+    /// Ink pixels whose left edge has been walked.
+    walked: Mask,
 }
 
-/// The closed outlines of a region: outer edge and holes.
-pub(crate) fn strokes(
-    dark: &Plane<u8>,
-    mask: &Mask,
-    region: &Region,
-    walked: &mut Walked,
-    options: &Options,
-) -> Vec<Stroke> {
-    let full = full_level(dark, region);
-    let mut found = Vec::new();
-    for run in &region.runs {
-        if !walked.0.has(mask.cell(run.from as usize, run.y as usize)) {
-            let border = border(mask, run.from as isize, run.y as isize, walked);
-            let points: Vec<Point> = border.iter().filter_map(|edge| edge.place(dark, full)).collect();
-            if area(&points).abs() >= LEAST_AREA_PX2 {
-                found.extend(stroke(&points, options));
+impl<'a> Outliner<'a> {
+    /// `shapes` is what is followed, `ink` all the ink there is: where a line leaves a shape there is no edge.
+    pub(crate) fn new(dark: &'a Plane<u8>, shapes: &'a Mask, ink: &'a Mask) -> Self {
+        Self { dark, shapes, ink, walked: Mask::empty(ink.width, ink.height) }
+    }
+
+    /// The closed outlines of a region: outer edge and holes.
+    pub(crate) fn strokes(&mut self, region: &Region, options: &Options) -> Vec<Stroke> {
+        let full = full_level(self.dark, region);
+        let mut found = Vec::new();
+        for run in &region.runs {
+            if !self.walked.has(self.shapes.cell(run.from as usize, run.y as usize)) {
+                let border = border(self.shapes, run.from as isize, run.y as isize, &mut self.walked);
+                let points = self.places(&border, full);
+                if area(&points).abs() >= LEAST_AREA_PX2 {
+                    found.extend(stroke(&points, options));
+                }
             }
         }
+        found
     }
-    found
+
+    /// Where the shape's edge is along a border, but for where lines leave it.
+    fn places(&self, border: &[Edge], full: f64) -> Vec<Point> {
+        let n = border.len();
+        let joined = |edge: &Edge| self.ink.get(edge.paper.0, edge.paper.1);
+        let mut open = vec![false; n];
+        for i in (0..n).filter(|&i| joined(&border[i])) {
+            (0..=2 * BESIDE_LINES).for_each(|k| open[(i + n + k - BESIDE_LINES.min(n)) % n] = true);
+        }
+        let all = border.iter().zip(open).filter(|(_, open)| !open);
+        all.filter_map(|(edge, _)| edge.place(self.dark, full)).collect()
+    }
 }
+
+/// Edges either side of a line that leaves a shape which show the line and not the shape.
+const BESIDE_LINES: usize = 4;
 
 fn stroke(points: &[Point], options: &Options) -> Option<Stroke> {
     let path = follow::path(points, true, REACH_PX, options)?;
@@ -114,7 +130,7 @@ fn covered(rising: bool, share: impl Fn(isize) -> f64) -> f64 {
 
 /// The edges of a border in order, ink on the right, from the left edge of ink pixel (x, y) upwards until there
 /// again (crack following: Rosenfeld, "Connectivity in digital pictures", 1970). Ink joined at corners stays joined.
-fn border(mask: &Mask, x: isize, y: isize, walked: &mut Walked) -> Vec<Edge> {
+fn border(mask: &Mask, x: isize, y: isize, walked: &mut Mask) -> Vec<Edge> {
     const UP: usize = 3;
     let ink = |p: (isize, isize)| mask.get(p.0, p.1);
     let start = ((x, y), UP);
@@ -125,7 +141,7 @@ fn border(mask: &Mask, x: isize, y: isize, walked: &mut Walked) -> Vec<Edge> {
         let paper = (pixel.0 + left.0, pixel.1 + left.1);
         edges.push(Edge { ink: pixel, paper });
         if direction == UP {
-            walked.0.set(mask.cell(pixel.0 as usize, pixel.1 as usize));
+            walked.set(mask.cell(pixel.0 as usize, pixel.1 as usize));
         }
         let beyond = (paper.0 + ahead.0, paper.1 + ahead.1);
         let before = (pixel.0 + ahead.0, pixel.1 + ahead.1);
@@ -164,9 +180,8 @@ mod tests {
         };
         let dark = Plane { width, height, values: (0..width * height).map(level).collect() };
         let mask = over(&dark, 127);
-        let mut walked = Walked::none(width, height);
-        let each = |r: &Region| strokes(&dark, &mask, r, &mut walked, &Options::default());
-        regions(&mask).iter().flat_map(each).collect()
+        let mut outliner = Outliner::new(&dark, &mask, &mask);
+        regions(&mask).iter().flat_map(|r| outliner.strokes(r, &Options::default())).collect()
     }
 
     #[test]

@@ -1,4 +1,4 @@
-use tracelight_stroke::Point;
+use tracelight_stroke::{Point, Vec2};
 
 /// Values on a grid of pixels, row by row from the top left.
 #[derive(Clone)]
@@ -40,11 +40,6 @@ impl<T: Copy + Default> Plane<T> {
     pub(crate) fn clamp(&self, p: Point) -> Point {
         Point::new(p.x.clamp(0.0, self.width as f64), p.y.clamp(0.0, self.height as f64))
     }
-
-    /// Centre of the pixel with this index.
-    pub(crate) fn centre(&self, index: usize) -> Point {
-        Point::new((index % self.width) as f64 + 0.5, (index / self.width) as f64 + 0.5)
-    }
 }
 
 impl Plane<u8> {
@@ -62,6 +57,33 @@ impl Plane<u8> {
         };
         row(y0) * (1.0 - fy) + row(y1) * fy
     }
+
+    /// Values at equal steps from a place on, as [`Self::at`] gives them but for its last digits.
+    pub(crate) fn along(&self, from: Point, step: Vec2, values: &mut [f32]) {
+        let to = from + step * (values.len() - 1) as f64;
+        let inside = |p: Point| {
+            (0.5..self.width as f64 - 0.51).contains(&p.x) && (0.5..self.height as f64 - 0.51).contains(&p.y)
+        };
+        if !(inside(from) && inside(to)) {
+            values.iter_mut().enumerate().for_each(|(k, v)| *v = self.at(from + step * k as f64) as f32);
+            return;
+        }
+        // 16 bits behind the point for the way, 8 of them for the mixture
+        let fixed = |v: f64| (v * 65536.0) as i32;
+        let (mut x, mut y) = (fixed(from.x - 0.5), fixed(from.y - 0.5));
+        let (dx, dy) = (fixed(step.x), fixed(step.y));
+        for value in values {
+            let first = (y >> 16) as usize * self.width + (x >> 16) as usize;
+            let (fx, fy) = (x >> 8 & 0xff, y >> 8 & 0xff);
+            let mix = |first: usize| match self.values.get(first..first + 2) {
+                Some(&[a, b]) => i32::from(a) * 256 + (i32::from(b) - i32::from(a)) * fx,
+                _ => 0,
+            };
+            let (above, below) = (mix(first), mix(first + self.width));
+            *value = (above * 256 + (below - above) * fy) as f32 * (1.0 / 65536.0);
+            (x, y) = (x + dx, y + dy);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -75,6 +97,22 @@ mod tests {
         assert_eq!(plane.at(Point::new(1.0, 0.5)), 50.0);
         assert_eq!(plane.at(Point::new(1.0, 1.0)), 100.0);
         assert_eq!(plane.at(Point::new(9.0, 9.0)), 200.0);
-        assert_eq!(plane.centre(3), Point::new(1.5, 1.5));
+    }
+
+    #[test]
+    fn values_along_a_line_are_those_at_its_places() {
+        let values = (0..64 * 48).map(|i| (i * 37 % 251) as u8).collect();
+        let plane = Plane { width: 64, height: 48, values };
+        for (from, step) in
+            [((5.2, 6.1), (1.3, 0.7)), ((60.0, 40.0), (-1.9, -1.2)), ((1.0, 47.0), (0.4, 0.3))]
+        {
+            let (from, step) = (Point::from(from), Vec2::from(step));
+            let mut found = [0.0; 20];
+            plane.along(from, step, &mut found);
+            for (k, v) in found.into_iter().enumerate() {
+                // 1/256 px of the steepest slope there is, either way
+                assert!((f64::from(v) - plane.at(from + step * k as f64)).abs() < 2.0);
+            }
+        }
     }
 }

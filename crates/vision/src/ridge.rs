@@ -8,10 +8,13 @@ use tracelight_stroke::{Point, Vec2};
 
 use crate::plane::Plane;
 
-/// Distance of the samples across a line, px.
+/// Distance of the samples across a hair line, px; across a thick one a twelfth of it.
 const STEP: f64 = 0.5;
 /// How far beyond the expected edge the line's edge is looked for, px.
 const BEYOND: f64 = 2.5;
+/// Samples either side of the middle: no line needs more, as its radius is six of them (or they are `STEP` apart) and
+/// what lies beyond is five at most.
+const MOST_HALF: usize = 11;
 
 /// The line's cross-section at one place.
 #[derive(Clone, Copy, Debug)]
@@ -21,10 +24,18 @@ struct Section {
     width: f64,
 }
 
-/// Points either side with whose median width a point's is compared: a pen's width changes slowly.
+/// A place on a line: which of the given points it came from, where it is, and the line's width there.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    index: usize,
+    at: Point,
+    width: f64,
+}
+
+/// Places either side with whose median width a place's is compared: a pen's width changes slowly.
 const LOCAL: usize = 15;
 
-/// More points than this left out in a row are a gap: the line cannot be seen there.
+/// More places than this left out in a row are a gap: the line cannot be seen there.
 const GAP: usize = 2;
 
 /// A row of points moved on to the middle of their line.
@@ -36,101 +47,154 @@ pub(crate) struct Ridge {
     pub(crate) width: f64,
 }
 
-/// Moves points on to the middle of their line; those whose cross-section is not that of one line are left out.
-/// `radius` is about half the line's width. A ring's first stretch may go on after its last.
+/// Moves points on to the middle of their line, one for every quarter of its width; those whose cross-section is not
+/// that of one line are left out. `radius` is about half the line's width. A ring's first stretch may go on after its
+/// last.
 pub(crate) fn centred(dark: &Plane<u8>, points: &[Point], radius: f64, ring: bool) -> Ridge {
-    let mut rows: Vec<(usize, Point)> = points.iter().copied().enumerate().collect();
-    let mut width = 2.0 * radius;
-    for reach in [5, 3] {
-        let places: Vec<Point> = rows.iter().map(|r| r.1).collect();
-        let of = |i: usize| {
-            let normal = normal(&places, i, reach, ring)?;
-            let section = section(dark, places[i], normal, 0.5 * width)?;
-            Some((rows[i].0, places[i] + normal * section.offset, section.width))
-        };
-        let found: Vec<(usize, Point, f64)> = (0..rows.len()).filter_map(of).collect();
-        let widths: Vec<f64> = found.iter().map(|f| f.2).collect();
-        if widths.is_empty() {
-            break;
+    let stride = spacing(2.0 * radius);
+    // first across the pixels' own row, then across what became of it: the pixels lead round corners and wobble
+    let first: Vec<Place> = (0..points.len())
+        .step_by(stride)
+        .filter_map(|i| place(dark, i, points[i], normal(points, i, 5, ring)?, radius))
+        .collect();
+    let width = usual_width(&first).unwrap_or(2.0 * radius);
+    let first = of_usual_width(&first);
+    let row: Vec<Point> = first.iter().map(|p| p.at).collect();
+    let again = |i: usize| place(dark, first[i].index, row[i], normal(&row, i, 3, ring)?, 0.5 * width);
+    let second: Vec<Place> = (0..row.len()).filter_map(again).collect();
+    let width = usual_width(&second).unwrap_or(width);
+    let places = of_usual_width(&second);
+    Ridge { stretches: stretches(&places, stride), width }
+}
+
+/// Points from one place of a line of this width to the next: its bends have at least its width as radius.
+fn spacing(width: f64) -> usize {
+    ((0.25 * width).round() as usize).clamp(1, 16)
+}
+
+/// The middle of the line near `at`.
+fn place(dark: &Plane<u8>, index: usize, at: Point, normal: Vec2, radius: f64) -> Option<Place> {
+    let section = section(dark, at, normal, radius)?;
+    Some(Place { index, at: at + normal * section.offset, width: section.width })
+}
+
+/// The median width; `None` of no places.
+fn usual_width(places: &[Place]) -> Option<f64> {
+    (!places.is_empty()).then(|| median(&places.iter().map(|p| p.width).collect::<Vec<_>>()))
+}
+
+/// Those as wide as the line usually is thereabouts.
+fn of_usual_width(places: &[Place]) -> Vec<Place> {
+    let mut near = Vec::with_capacity(2 * LOCAL + 1);
+    let mut usual = 0.0;
+    let like = |(i, place): (usize, &Place)| {
+        // every third place: the median of 31 moves by less than the bound in between
+        if i % 3 == 0 {
+            near.clear();
+            let range = i.saturating_sub(LOCAL)..(i + LOCAL + 1).min(places.len());
+            near.extend(places[range].iter().map(|p| p.width));
+            let middle = near.len() / 2;
+            usual = *near.select_nth_unstable_by(middle, f64::total_cmp).1;
         }
-        width = median(&widths);
-        let like = |i: usize| {
-            let near = &widths[i.saturating_sub(LOCAL)..(i + LOCAL + 1).min(widths.len())];
-            let usual = median(near);
-            (widths[i] - usual).abs() <= (0.15 * usual).max(0.5)
-        };
-        rows = (0..found.len()).filter(|&i| like(i)).map(|i| (found[i].0, found[i].1)).collect();
-    }
-    let mut stretches: Vec<Vec<Point>> = Vec::new();
-    let mut before = None;
-    for (k, p) in rows {
-        match (before, stretches.last_mut()) {
-            (Some(b), Some(stretch)) if k - b <= GAP => stretch.push(p),
-            _ => stretches.push(vec![p]),
-        }
-        before = Some(k);
-    }
-    Ridge { stretches, width }
+        ((place.width - usual).abs() <= (0.15 * usual).max(0.5)).then_some(*place)
+    };
+    places.iter().enumerate().filter_map(like).collect()
+}
+
+/// The places parted where more than two in a row are missing.
+fn stretches(places: &[Place], stride: usize) -> Vec<Vec<Point>> {
+    let parted = |a: &Place, b: &Place| b.index - a.index > GAP * stride;
+    let rows = places.chunk_by(|a, b| !parted(a, b));
+    rows.map(|row| row.iter().map(|p| p.at).collect()).collect()
 }
 
 /// The middle value; 0 of none.
 pub(crate) fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+    let mut values = values.to_vec();
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// Unit normal of a row of points at one of them, from means of up to `reach` points either side.
 fn normal(points: &[Point], i: usize, reach: usize, ring: bool) -> Option<Vec2> {
     let n = points.len();
-    let mean = |side: isize| {
-        let at = |k: usize| {
-            let j = i as isize + side * k as isize;
-            if ring {
-                Some(points[j.rem_euclid(n as isize) as usize])
-            } else {
-                points.get(usize::try_from(j).ok()?).copied()
-            }
+    let mean = |ahead: bool| {
+        let at = |k: usize| match (ahead, ring) {
+            (true, false) => points.get(i + k),
+            (false, false) => points.get(i.wrapping_sub(k)),
+            (true, true) => points.get((i + k) % n),
+            (false, true) => points.get((i + n - k % n) % n),
         };
-        let near: Vec<Vec2> = (1..=reach).map_while(at).map(Point::to_vec2).collect();
-        (!near.is_empty()).then(|| near.iter().copied().sum::<Vec2>() / near.len() as f64)
+        let (mut sum, mut count) = (Vec2::ZERO, 0.0);
+        for p in (1..=reach).map_while(at) {
+            (sum, count) = (sum + p.to_vec2(), count + 1.0);
+        }
+        if count > 0.0 { sum / count } else { points[i].to_vec2() }
     };
-    let here = points[i].to_vec2();
-    let along = mean(1).unwrap_or(here) - mean(-1).unwrap_or(here);
+    let along = mean(true) - mean(false);
     (along.hypot() > 1e-9).then(|| Vec2::new(-along.y, along.x) / along.hypot())
+}
+
+/// The darkness across a line, sample by sample.
+struct Profile {
+    values: [f32; 2 * MOST_HALF + 1],
+    half: usize,
+    /// Distance of the samples, px.
+    step: f64,
+}
+
+impl Profile {
+    fn across(dark: &Plane<u8>, at: Point, normal: Vec2, radius: f64) -> Self {
+        let step = STEP.max(radius / 6.0);
+        let half = (((radius + BEYOND) / step).ceil() as usize).min(MOST_HALF);
+        let mut values = [0.0; 2 * MOST_HALF + 1];
+        dark.along(at - normal * (half as f64 * step), normal * step, &mut values[..=2 * half]);
+        Self { values, half, step }
+    }
+
+    fn samples(&self) -> &[f32] {
+        &self.values[..=2 * self.half]
+    }
+
+    /// Where the line is darkest near the middle, and how dark.
+    fn peak(&self, inner: usize) -> (usize, f32) {
+        let core = self.half - inner..=self.half + inner;
+        let darker =
+            |best: (usize, f32), i: usize| if self.values[i] > best.1 { (i, self.values[i]) } else { best };
+        core.fold((self.half, 0.0), darker)
+    }
 }
 
 /// The cross-section through `at`; `None` where the line has no two edges near the expected ones or lies elsewhere.
 fn section(dark: &Plane<u8>, at: Point, normal: Vec2, radius: f64) -> Option<Section> {
-    let half = ((radius + BEYOND) / STEP).ceil() as isize;
-    let profile: Vec<f64> = (-half..=half).map(|k| dark.at(at + normal * (k as f64 * STEP))).collect();
-    let inner = ((0.7 * radius).max(1.0) / STEP).round() as usize;
-    let middle = half as usize;
-    let core = &profile[middle - inner..=middle + inner];
-    let (top, peak) = core
-        .iter()
-        .copied()
-        .enumerate()
-        .fold((0, 0.0), |best, (i, v)| if v > best.1 { (i, v) } else { best });
+    let profile = Profile::across(dark, at, normal, radius);
+    let inner = (((0.7 * radius).max(1.0) / profile.step).round() as usize).min(profile.half);
+    let (top, peak) = profile.peak(inner);
     let level = 0.5 * peak;
-    let start = if profile[middle] >= level { middle } else { middle - inner + top };
-    let right = foot(profile[start..].iter(), level)?;
-    let left = foot(profile[..=start].iter().rev(), level)?;
-    let inside = start - left..=start + right;
-    let mass: f64 = profile[inside.clone()].iter().sum();
-    let moment: f64 = inside.map(|k| (k as f64 - half as f64) * profile[k]).sum();
-    let section = Section { offset: moment / mass * STEP, width: mass / peak * STEP };
+    let start = if profile.values[profile.half] >= level { profile.half } else { top };
+    let samples = profile.samples();
+    let reach = (2.0 / profile.step) as usize;
+    let right = foot(samples[start..].iter(), level, reach)?;
+    let left = foot(samples[..=start].iter().rev(), level, reach)?;
+    let (mut mass, mut moment) = (0.0, 0.0);
+    for (k, &v) in samples.iter().enumerate().take(start + right + 1).skip(start - left) {
+        (mass, moment) = (mass + v, moment + (k as f32 - profile.half as f32) * v);
+    }
+    let section = Section {
+        offset: f64::from(moment / mass) * profile.step,
+        width: f64::from(mass / peak) * profile.step,
+    };
     (section.offset.abs() <= radius + 1.0).then_some(section)
 }
 
 /// Samples from the first one to where the line's darkness has run out: the profile fell through `level` and falls
-/// no further, 2 px on at most. `None` where it never falls through.
-fn foot<'a>(profile: impl Iterator<Item = &'a f64>, level: f64) -> Option<usize> {
+/// no further, `reach` samples on at most. `None` where it never falls through.
+fn foot<'a>(profile: impl Iterator<Item = &'a f32>, level: f32, reach: usize) -> Option<usize> {
     let mut through = None;
-    let mut before = f64::INFINITY;
+    let mut before = f32::INFINITY;
     for (i, &v) in profile.enumerate() {
         if let Some(first) = through
-            && (v > before || i > first + (2.0 / STEP) as usize)
+            && (v > before || i > first + reach)
         {
             return Some(i - 1);
         }

@@ -7,6 +7,10 @@ use super::window::{Parabola, turn, unit};
 
 /// Samples either side from which a joint's place and direction are taken: as many as lie on a parabola.
 const WINDOWS: [usize; 6] = [7, 10, 14, 20, 28, 40];
+/// The same, both sides and the sample itself.
+const BOTH: [usize; 6] = [15, 21, 29, 41, 57, 81];
+/// Directions are looked at this often, in steps; between, the turning is even.
+const STRIDE: usize = 4;
 
 /// More turn than this in one cubic makes its curvature uneven, rad (100°).
 const MOST_TURN: f64 = 1.75;
@@ -23,7 +27,7 @@ pub(super) fn through(points: &[Point], ends: &Ends, tolerance: f64) -> Vec<Cubi
         (1..least).map(|k| row.share(0, row.last(), k as f64 / least as f64)).collect();
     joints.dedup();
     loop {
-        let chain = row.chained(ends, &joints);
+        let chain = row.chained(ends, &joints, tolerance);
         let bounds: Vec<usize> = [&[0], &joints[..], &[row.last()]].concat();
         let long = |k: usize| bounds[k + 1] - bounds[k] >= 2 * SHORTEST;
         let cuts = (0..chain.len()).filter(|&k| chain[k].1 > tolerance && long(k));
@@ -57,9 +61,14 @@ impl Row {
     fn of(points: Vec<Point>, rms: f64) -> Self {
         let lengths = arc_lengths(&points);
         let mut row = Self { points, lengths, weights: Vec::new(), rms };
-        let tangent = |i| row.local(i).map_or_else(Vec2::default, |p| p.tangent(row.lengths[i]));
-        let tangents: Vec<Vec2> = (0..row.points.len()).map(tangent).collect();
-        let bends: Vec<f64> = tangents.windows(2).map(|w| turn(w[0], w[1]).abs()).collect();
+        let stops: Vec<usize> = (0..row.last()).step_by(STRIDE).chain([row.last()]).collect();
+        let tangent = |&i: &usize| row.local(i).map_or_else(Vec2::default, |p| p.tangent(row.lengths[i]));
+        let tangents: Vec<Vec2> = stops.iter().map(tangent).collect();
+        let mut bends = Vec::with_capacity(row.points.len());
+        for (ends, way) in stops.windows(2).zip(tangents.windows(2)) {
+            let steps = ends[1] - ends[0];
+            bends.extend(std::iter::repeat_n(turn(way[0], way[1]).abs() / steps as f64, steps));
+        }
         let even = EVEN * bends.iter().sum::<f64>().max(1e-9) / row.lengths[row.last()].max(1e-300);
         let steps = row.lengths.windows(2).map(|w| w[1] - w[0]);
         row.weights = bends.iter().zip(steps).map(|(bend, step)| bend + even * step).collect();
@@ -72,11 +81,14 @@ impl Row {
 
     /// The parabola about point `i`.
     fn local(&self, i: usize) -> Option<Parabola> {
-        let window = |half: usize| {
-            let range = i.saturating_sub(half)..(i + half + 1).min(self.points.len());
-            Parabola::through(range.map(|k| (self.lengths[k], self.points[k])))
-        };
-        Parabola::widest(WINDOWS.into_iter().map(window), self.rms)
+        let sample = |k: usize| (self.lengths[k], self.points[k]);
+        // outwards, both sides in turn; near an end the other side goes on alone
+        let outwards = (1..self.points.len()).flat_map(|k| {
+            let behind = i.checked_sub(k).map(sample);
+            let ahead = (i + k <= self.last()).then(|| sample(i + k));
+            behind.into_iter().chain(ahead)
+        });
+        Parabola::widest(std::iter::once(sample(i)).chain(outwards), &BOTH, self.rms)
     }
 
     /// The point strictly between two others before which this share of the weights between them lies.
@@ -92,7 +104,7 @@ impl Row {
     }
 
     /// Cubics between the joints, each with how far it is off at most.
-    fn chained(&self, ends: &Ends, joints: &[usize]) -> Vec<(CubicBez, f64)> {
+    fn chained(&self, ends: &Ends, joints: &[usize], tolerance: f64) -> Vec<(CubicBez, f64)> {
         let mut stops = vec![(0, ends.from, ends.leaving)];
         let at = |&i: &usize| {
             let local = self.local(i)?;
@@ -102,7 +114,7 @@ impl Row {
         stops.push((self.last(), ends.to, ends.arriving));
         let piece = |w: &[(usize, Point, Vec2)]| {
             let ends = Ends { from: w[0].1, leaving: w[0].2, to: w[1].1, arriving: w[1].2 };
-            cubic::through(&self.points[w[0].0 + 1..w[1].0], &ends)
+            cubic::through(&self.points[w[0].0 + 1..w[1].0], &ends, tolerance)
         };
         stops.windows(2).map(piece).collect()
     }
@@ -120,10 +132,7 @@ fn arc_lengths(row: &[Point]) -> Vec<f64> {
 /// Direction in which a row leaves its first point; samples count as on a parabola up to `rms` from it.
 pub(super) fn leaving(row: &[Point], rms: f64) -> Vec2 {
     let lengths = arc_lengths(&row[..row.len().min(2 * WINDOWS[WINDOWS.len() - 1])]);
-    let window = |half: usize| {
-        let range = 0..(2 * half).min(lengths.len());
-        Parabola::through(range.map(|k| (lengths[k], row[k])))
-    };
-    let along = Parabola::widest(WINDOWS.into_iter().map(window), rms);
+    let samples = lengths.iter().copied().zip(row.iter().copied());
+    let along = Parabola::widest(samples, &WINDOWS.map(|half| 2 * half), rms);
     along.map_or_else(|| unit(row[row.len() - 1] - row[0]), |p| p.tangent(0.0))
 }

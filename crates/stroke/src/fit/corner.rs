@@ -57,7 +57,8 @@ impl FitOptions {
 /// All corners in order.
 pub(super) fn find(samples: &Samples, options: &FitOptions) -> Vec<Corner> {
     let scale = Scale::of(samples, options);
-    let breaks: Vec<f64> = (0..samples.len()).map(|i| break_at(samples, i, scale.gap, scale.flank)).collect();
+    let breaks: Vec<f64> =
+        (0..samples.len()).map(|i| break_at(samples, i, &scale, options.corner_rad)).collect();
     let smooth = Samples::smoothed_ring(&breaks, scale.gap, samples.closed);
     let mut found: Vec<Corner> = Vec::new();
     for peak in peaks(samples, &breaks, &smooth, options.corner_rad, scale.gap + scale.flank / 2) {
@@ -69,8 +70,16 @@ pub(super) fn find(samples: &Samples, options: &FitOptions) -> Vec<Corner> {
     found
 }
 
-/// Turn between the flanks of sample `i`, both carried on to it, rad.
-fn break_at(samples: &Samples, i: usize, gap: usize, flank: usize) -> f64 {
+/// Where chords that reach over gap and flank turn by less than this share of a corner, there is none. A corner turns
+/// them all, wherever it lies between their middles; only an S of two bends at once could hide one from them.
+const CHORDS: f64 = 0.6;
+
+/// Turn between the flanks of sample `i`, both carried on to it, rad; 0 where it cannot be a corner.
+fn break_at(samples: &Samples, i: usize, scale: &Scale, corner_rad: f64) -> f64 {
+    let &Scale { gap, flank, .. } = scale;
+    if samples.chord_turn(i, gap + flank / 2).is_some_and(|turned| turned.abs() < CHORDS * corner_rad) {
+        return 0.0;
+    }
     let side = |side| samples.flank(i, side, gap, flank).map(|p| p.tangent(0.0));
     match (side(-1), side(1)) {
         (Some(before), Some(after)) => turn(before, after),
@@ -83,6 +92,14 @@ impl Samples {
     fn apart(&self, a: usize, b: usize) -> usize {
         let d = a.abs_diff(b);
         if self.closed { d.min(self.len() - d) } else { d }
+    }
+
+    /// Turn between the chords from `reach` samples before sample `i` to it and on to `reach` samples behind it, rad;
+    /// `None` near an open end.
+    fn chord_turn(&self, i: usize, reach: usize) -> Option<f64> {
+        let (i, reach) = (i as isize, reach as isize);
+        let (before, here, after) = (self.get(i - reach)?, self.get(i)?, self.get(i + reach)?);
+        Some(turn(here - before, after - here))
     }
 
     /// Mean of the values up to `reach` neighbours away.
@@ -114,10 +131,7 @@ fn measured(samples: &Samples, peak: usize, scale: &Scale, options: &FitOptions)
     for _ in 0..3 {
         let side = |side| {
             let lengths = [2, 3, 4, 6, 8, 12, 16, 24].map(|quarters| (quarters * scale.flank / 4).max(6));
-            Parabola::widest(
-                lengths.into_iter().map(|length| samples.flank(index, side, gap, length)),
-                scale.rms,
-            )
+            samples.widest_flank(index, side, gap, &lengths, scale.rms)
         };
         let (before, after) = (side(-1)?, side(1)?);
         let turned = turn(before.tangent(0.0), after.tangent(0.0));

@@ -16,6 +16,8 @@ pub(super) struct Ends {
 
 /// Rounds of least squares and re-parametrization; the gain of a further one is below 1 % of the tolerance.
 const ROUNDS: usize = 6;
+/// A cubic that is off by less than this share of the tolerance is not improved further.
+const GOOD: f64 = 0.5;
 
 /// A handle this share of the points' length makes the parameter run evenly; that is 1/3 on a line, 0.35 on a
 /// quarter circle.
@@ -24,17 +26,22 @@ const EVEN_HANDLE: f64 = 0.345;
 /// Shortest and longest handle as a share of the points' length: beyond, the curvature peaks at the ends.
 const HANDLES: std::ops::RangeInclusive<f64> = 0.16..=0.62;
 
-/// The best cubic and its greatest distance from the points.
-pub(super) fn through(points: &[Point], ends: &Ends) -> (CubicBez, f64) {
+/// The best cubic and its greatest distance from the points; one well within `tolerance` is good enough.
+pub(super) fn through(points: &[Point], ends: &Ends, tolerance: f64) -> (CubicBez, f64) {
     let (mut u, length) = chord_parameters(points, ends);
     let mut curve = with_handles(ends, EVEN_HANDLE * length, EVEN_HANDLE * length);
+    let mut off = f64::INFINITY;
     for _ in 0..ROUNDS {
         let (a, b) = handles(points, &u, ends, length);
         curve = with_handles(ends, a, b);
         reparametrize(points, &mut u, &curve);
+        let square = points.iter().zip(&u).map(|(p, &t)| p.distance_squared(curve.eval(t)));
+        off = square.fold(0.0, f64::max).sqrt();
+        if off <= GOOD * tolerance {
+            break;
+        }
     }
-    let off = points.iter().zip(&u).map(|(p, &t)| p.distance(curve.eval(t)));
-    (curve, off.fold(0.0, f64::max))
+    (curve, off)
 }
 
 fn with_handles(ends: &Ends, a: f64, b: f64) -> CubicBez {

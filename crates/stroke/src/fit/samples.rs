@@ -46,15 +46,42 @@ impl Samples {
         usize::try_from(i).ok().and_then(|i| self.points.get(i)).copied()
     }
 
+    /// Samples from `gap` on, ahead of sample `i` (`side` 1) or behind it (−1), with arc lengths measured from `i`; on a
+    /// closed line never more than once round, on an open one up to its end.
+    pub(super) fn beside(&self, i: usize, side: isize, gap: usize) -> impl Iterator<Item = (f64, Point)> {
+        let n = self.points.len();
+        let left = match (self.closed, side > 0) {
+            (true, _) => n,
+            (false, true) => n - i,
+            (false, false) => i + 1,
+        };
+        let of = move |k: usize| {
+            let at = if side > 0 { i + k } else { i + n - k };
+            (side as f64 * k as f64 * self.step, self.points[if at >= n { at - n } else { at }])
+        };
+        (gap..left).map(of)
+    }
+
     /// What lies between `gap` and `gap + length` samples from sample `i`, ahead (`side` 1) or behind (−1), with
     /// arc lengths measured from `i`. Short ones end where an open line ends.
     pub(super) fn flank(&self, i: usize, side: isize, gap: usize, length: usize) -> Option<Parabola> {
-        let of = |k: usize| {
-            let offset = side * k as isize;
-            Some((offset as f64 * self.step, self.get(i as isize + offset)?))
-        };
-        let window = (gap..gap + length).map_while(of);
-        (window.clone().count() >= LEAST_FLANK).then(|| Parabola::through(window))?
+        self.widest_flank(i, side, gap, &[length], f64::INFINITY)
+    }
+
+    /// The widest of flanks of these lengths that is a parabola up to `rms`.
+    pub(super) fn widest_flank(
+        &self,
+        i: usize,
+        side: isize,
+        gap: usize,
+        lengths: &[usize],
+        rms: f64,
+    ) -> Option<Parabola> {
+        let flank = self.beside(i, side, gap);
+        if flank.size_hint().0 < LEAST_FLANK {
+            return None;
+        }
+        Parabola::widest(flank, lengths, rms)
     }
 
     /// Direction at sample `i` from its neighbours up to `reach` samples away.

@@ -1,0 +1,149 @@
+//! Gaps that were not meant: where a pen skipped, its line goes on.
+
+use tracelight_stroke::Point;
+
+use crate::bridge::Tip;
+use crate::centreline::Row;
+use crate::ridge::median;
+
+/// Widest gap, from where the pen was lifted to where it was put down, pen widths: one of paper and the pen's two
+/// halves, and some more for what blur and threshold took.
+const WIDEST_PENS: f64 = 2.3;
+/// The same for hair lines, whose paper is at least this wide, px.
+const LEAST_PX: f64 = 1.5;
+/// Lines that go on into each other bend less than this over the gap, rad (32°): 2 pens of a curve of the smallest
+/// radius, 2 pens, would be 57°, but then its two sides lean as much.
+const BEND: f64 = 0.56;
+/// Two ends of one line differ less than this in the width of their pen, as a ratio.
+const LIKE: f64 = 1.6;
+
+/// A free end of a row.
+struct End {
+    row: usize,
+    end: usize,
+    tip: Tip,
+    width: f64,
+}
+
+/// The rows with those joined that go on into each other over a gap, the straightest first.
+pub(crate) fn bridged(rows: Vec<Row>) -> Vec<Row> {
+    let mut pairs = pairs(&rows);
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut chains = Chains::new(rows);
+    for (_, a, b) in pairs {
+        chains.join(a, b);
+    }
+    chains.rows()
+}
+
+/// A row as it was given, and which of its ends.
+type Place = (usize, usize);
+
+/// Pairs of ends that may be one line, with how much it would bend there, rad.
+fn pairs(rows: &[Row]) -> Vec<(f64, Place, Place)> {
+    let ends = ends(rows);
+    let usual = median(&rows.iter().map(|row| row.width).collect::<Vec<_>>());
+    let widest = |a: &End, b: &End| WIDEST_PENS * a.width.max(b.width).max(0.8 * usual) + LEAST_PX;
+    let farthest = ends.iter().map(|e| widest(e, e)).fold(0.0, f64::max);
+    // sorted by column, only near ends are compared
+    let mut order: Vec<usize> = (0..ends.len()).collect();
+    order.sort_by(|&a, &b| ends[a].tip.at.x.total_cmp(&ends[b].tip.at.x));
+    let mut found = Vec::new();
+    for (k, &i) in order.iter().enumerate() {
+        let a = &ends[i];
+        for &j in &order[k + 1..] {
+            let b = &ends[j];
+            if b.tip.at.x - a.tip.at.x > farthest {
+                break;
+            }
+            if a.tip.at.distance(b.tip.at) <= widest(a, b) && (a.row, a.end) != (b.row, b.end) {
+                found.extend(fit(a, b).map(|bend| (bend, (a.row, a.end), (b.row, b.end))));
+            }
+        }
+    }
+    found
+}
+
+fn ends(rows: &[Row]) -> Vec<End> {
+    let all = rows.iter().enumerate().flat_map(|(row, r)| (0..2).map(move |end| (row, end, r)));
+    let free = all.filter(|(_, end, r)| r.free[*end] && !r.closed);
+    free.filter_map(|(row, end, r)| Some(End { row, end, tip: Tip::of(&r.points, end)?, width: r.width }))
+        .collect()
+}
+
+/// How much the line would bend from one end to the other, rad; `None` if it is not one line.
+fn fit(a: &End, b: &End) -> Option<f64> {
+    let like = a.width.max(b.width) <= LIKE * a.width.min(b.width) + 1.0;
+    let bend = a.tip.bend(&b.tip);
+    (like && bend < BEND).then_some(bend)
+}
+
+/// Rows strung together end to end.
+struct Chains {
+    rows: Vec<Option<Row>>,
+    /// For each row's either end as it was given: the row it is now part of, and which end of it.
+    now: Vec<[Option<Place>; 2]>,
+}
+
+impl Chains {
+    fn new(rows: Vec<Row>) -> Self {
+        let now = (0..rows.len()).map(|i| [Some((i, 0)), Some((i, 1))]).collect();
+        Self { rows: rows.into_iter().map(Some).collect(), now }
+    }
+
+    /// Joins two ends, unless one of them has been joined before.
+    fn join(&mut self, a: Place, b: Place) {
+        let (Some((first, end)), Some((second, other))) = (self.now[a.0][a.1], self.now[b.0][b.1]) else {
+            return;
+        };
+        (self.now[a.0][a.1], self.now[b.0][b.1]) = (None, None);
+        if first == second {
+            if let Some(row) = &mut self.rows[first] {
+                let between = over(&row.points, &row.points);
+                row.points.extend(between);
+                row.closed = true;
+            }
+            return;
+        }
+        let (Some(mut head), Some(mut tail)) = (self.rows[first].take(), self.rows[second].take()) else {
+            return;
+        };
+        if end == 0 {
+            turn(&mut head);
+        }
+        if other == 1 {
+            turn(&mut tail);
+        }
+        // the far ends now are the joined row's
+        self.move_end((first, 1 - end), (first, 0));
+        self.move_end((second, 1 - other), (first, 1));
+        let between = over(&head.points, &tail.points);
+        let share = head.points.len() as f64 / (head.points.len() + tail.points.len()) as f64;
+        let width = head.width * share + tail.width * (1.0 - share);
+        head.points.extend(between);
+        head.points.extend(tail.points);
+        self.rows[first] = Some(Row { width, free: [head.free[0], tail.free[1]], ..head });
+    }
+
+    /// The end that was at `from` is at `to` from now on.
+    fn move_end(&mut self, from: Place, to: Place) {
+        self.now.iter_mut().flatten().filter(|end| **end == Some(from)).for_each(|end| *end = Some(to));
+    }
+
+    fn rows(self) -> Vec<Row> {
+        self.rows.into_iter().flatten().collect()
+    }
+}
+
+fn turn(row: &mut Row) {
+    row.points.reverse();
+    row.free.reverse();
+}
+
+/// Points over the gap from the end of one row to the start of another.
+fn over(head: &[Point], tail: &[Point]) -> Vec<Point> {
+    match (Tip::of(head, 1), Tip::of(tail, 0)) {
+        (Some(from), Some(to)) => from.smoothly_to(&to),
+        _ => Vec::new(),
+    }
+}

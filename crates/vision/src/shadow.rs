@@ -1,0 +1,220 @@
+//! Hard shadows: paper whose brightness has steps, which no smooth surface follows.
+//!
+//! Whether there are any is seen on the tiles. If so, the paper is the picture closed (Serra, "Image Analysis and
+//! Mathematical Morphology", 1982) by a square that is wider than any pen: lines are filled up, the edges of shadows
+//! stay where they are to a pixel.
+
+use crate::plane::Plane;
+
+/// Neighbouring tiles of one paper differ less than this in brightness, as a ratio.
+const SAME: f64 = 0.9;
+/// A patch of tiles that is paper has at least this share of all of them and reaches the picture's border.
+const LEAST_SHARE: f64 = 0.03;
+/// Shadows let through this much of the light; what is darker is ink, what is brighter is no matter.
+const SHADE: std::ops::Range<f64> = 0.42..0.88;
+
+/// Whether the tiles' paper falls into patches of different brightness.
+pub(crate) fn is_cast(bright: &Plane<f64>) -> bool {
+    let levels: Vec<f64> = patches(bright);
+    let brightest = levels.iter().copied().fold(0.0, f64::max);
+    levels.iter().any(|level| SHADE.contains(&(level / brightest)))
+}
+
+/// Mean brightness of each patch of paper.
+fn patches(bright: &Plane<f64>) -> Vec<f64> {
+    let mut seen = vec![false; bright.values.len()];
+    let mut found = Vec::new();
+    for start in 0..seen.len() {
+        if !seen[start] {
+            let patch = flooded(bright, start, &mut seen);
+            let on_border = |i: &&usize| {
+                let (x, y) = (**i % bright.width, **i / bright.width);
+                x == 0 || y == 0 || x + 1 == bright.width || y + 1 == bright.height
+            };
+            let large = patch.len() as f64 >= LEAST_SHARE * seen.len() as f64;
+            if large && patch.iter().filter(on_border).count() > 2 {
+                found.push(patch.iter().map(|&i| bright.values[i]).sum::<f64>() / patch.len() as f64);
+            }
+        }
+    }
+    found
+}
+
+/// The tiles that can be reached from one without a step in brightness.
+fn flooded(bright: &Plane<f64>, start: usize, seen: &mut [bool]) -> Vec<usize> {
+    let mut patch = vec![start];
+    seen[start] = true;
+    let mut next = 0;
+    while let Some(&i) = patch.get(next) {
+        let (x, y) = ((i % bright.width) as isize, (i / bright.width) as isize);
+        for (x, y) in [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)] {
+            let inside = (0..bright.width as isize).contains(&x) && (0..bright.height as isize).contains(&y);
+            if inside {
+                let k = y as usize * bright.width + x as usize;
+                let (a, b) = (bright.values[i], bright.values[k]);
+                if !seen[k] && a.min(b) > SAME * a.max(b) {
+                    seen[k] = true;
+                    patch.push(k);
+                }
+            }
+        }
+        next += 1;
+    }
+    patch
+}
+
+/// The picture's paper, pixel by pixel: closed by squares of `side` px, and where that is darker than any shadow on
+/// the paper expected there, `instead`, both by tile of `tile` px.
+pub(crate) fn paper(
+    image: &Plane<u8>,
+    side: usize,
+    tile: usize,
+    expected: &[f64],
+    instead: impl Fn(&Plane<u8>) -> Plane<f64>,
+) -> Plane<u8> {
+    let mut closed = closed(image, side);
+    let instead = instead(&closed);
+    for y in 0..closed.height {
+        for (x, level) in closed.row_mut(y).iter_mut().enumerate() {
+            let k = y / tile * instead.width + x / tile;
+            if f64::from(*level) < SHADE.start * expected[k] {
+                *level = instead.values[k] as u8;
+            }
+        }
+    }
+    closed
+}
+
+/// Whether a level is ink on the paper expected, not a shadow.
+pub(crate) fn is_ink(level: f64, expected: f64) -> bool {
+    level < SHADE.start * expected
+}
+
+/// The least of the greatest: what is darker than its surroundings and narrower than `side` px is filled up. The
+/// picture's outermost pixels go on beyond it, so that a shadow's tip at the border is as wide there as the shadow.
+fn closed(image: &Plane<u8>, side: usize) -> Plane<u8> {
+    let reach = side / 2;
+    let wide = widened(image, reach);
+    let greatest = along_rows(along_columns(wide, reach, u8::max), reach, u8::max);
+    let closed = along_rows(along_columns(greatest, reach, u8::min), reach, u8::min);
+    let mut out = Plane::filled(image.width, image.height, 0);
+    for y in 0..image.height {
+        out.row_mut(y).copy_from_slice(&closed.row(y + reach)[reach..][..image.width]);
+    }
+    out
+}
+
+/// The image with its outermost pixels repeated on all sides.
+fn widened(image: &Plane<u8>, by: usize) -> Plane<u8> {
+    let mut wide = Plane::filled(image.width + 2 * by, image.height + 2 * by, 0);
+    for y in 0..wide.height {
+        let row = image.row(y.saturating_sub(by).min(image.height - 1));
+        let (left, right) = (row[0], row[image.width - 1]);
+        let out = wide.row_mut(y);
+        out[..by].fill(left);
+        out[by..][..row.len()].copy_from_slice(row);
+        out[by + row.len()..].fill(right);
+    }
+    wide
+}
+
+/// For each pixel the most of those up to `reach` above and below (van Herk, "A fast algorithm for local minimum and
+/// maximum filters", 1992): most of a block of rows up to a row, most of a block from a row on.
+fn along_columns(plane: Plane<u8>, reach: usize, most: fn(u8, u8) -> u8) -> Plane<u8> {
+    let (w, h, block) = (plane.width, plane.height, 2 * reach + 1);
+    let (mut before, mut after) = (plane.clone(), plane);
+    for y in (1..h).filter(|y| y % block != 0) {
+        let (above, here) = before.values.split_at_mut(y * w);
+        here[..w].iter_mut().zip(&above[(y - 1) * w..]).for_each(|(v, &a)| *v = most(*v, a));
+    }
+    for y in (0..h - 1).rev().filter(|y| (y + 1) % block != 0) {
+        let (here, below) = after.values.split_at_mut((y + 1) * w);
+        here[y * w..].iter_mut().zip(&below[..w]).for_each(|(v, &b)| *v = most(*v, b));
+    }
+    let mut out = Plane::filled(w, h, 0);
+    for y in 0..h {
+        let (first, last) = (y.saturating_sub(reach), (y + reach).min(h - 1));
+        // at the borders the window may lie within one block: then one of the two reaches beyond it
+        let alone = first / block == last / block;
+        let both = before.row(last).iter().zip(after.row(first)).map(|(&b, &a)| match (alone, first) {
+            (true, 0) => b,
+            (true, _) => a,
+            _ => most(a, b),
+        });
+        out.row_mut(y).iter_mut().zip(both).for_each(|(v, both)| *v = both);
+    }
+    out
+}
+
+fn along_rows(plane: Plane<u8>, reach: usize, most: fn(u8, u8) -> u8) -> Plane<u8> {
+    transposed(&along_columns(transposed(&plane), reach, most))
+}
+
+/// Rows as columns, in squares that fit into the cache.
+fn transposed(plane: &Plane<u8>) -> Plane<u8> {
+    const SQUARE: usize = 32;
+    let (w, h) = (plane.width, plane.height);
+    let mut out = Plane::filled(h, w, 0);
+    for top in (0..h).step_by(SQUARE) {
+        for left in (0..w).step_by(SQUARE) {
+            for y in top..(top + SQUARE).min(h) {
+                for x in left..(left + SQUARE).min(w) {
+                    out.values[x * h + y] = plane.values[y * w + x];
+                }
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closing_takes_the_least_of_the_greatest_in_each_window() {
+        let (w, h) = (37usize, 29usize);
+        let values = (0..w * h).map(|i| ((i * 7919 + i * i * 31) % 251) as u8).collect();
+        let plane = Plane { width: w, height: h, values };
+        let filter = |plane: &Plane<u8>, reach: usize, most: fn(u8, u8) -> u8| {
+            let (w, h) = (plane.width, plane.height);
+            let at = |i: usize| {
+                let (x, y) = (i % w, i / w);
+                let rows = y.saturating_sub(reach)..(y + reach + 1).min(h);
+                let columns = x.saturating_sub(reach)..(x + reach + 1).min(w);
+                rows.flat_map(|y| columns.clone().map(move |x| (x, y)))
+                    .map(|(x, y)| plane.row(y)[x])
+                    .reduce(most)
+                    .unwrap()
+            };
+            Plane { width: w, height: h, values: (0..w * h).map(at).collect() }
+        };
+        for side in [3, 5, 9] {
+            let reach = side / 2;
+            let expected = filter(&filter(&widened(&plane, reach), reach, u8::max), reach, u8::min);
+            let found = closed(&plane, side);
+            for y in 0..h {
+                let row = &expected.row(y + reach)[reach..][..w];
+                assert_eq!(found.row(y), row, "side {side}, row {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_slope_is_no_shadow_and_a_step_is() {
+        let tiles = |level: &dyn Fn(usize, usize) -> f64| Plane {
+            width: 32,
+            height: 24,
+            values: (0..768).map(|i| level(i % 32, i / 32)).collect(),
+        };
+        assert!(!is_cast(&tiles(&|x, _| 240.0 - 5.0 * x as f64)));
+        assert!(is_cast(&tiles(&|x, y| if x + y > 30 { 140.0 } else { 235.0 })));
+        // a filled shape inside the picture, and one of dark ink at its border
+        assert!(!is_cast(&tiles(&|x, y| if x.abs_diff(16) < 8 && y.abs_diff(12) < 6 {
+            140.0
+        } else {
+            235.0
+        })));
+        assert!(!is_cast(&tiles(&|x, _| if x < 9 { 40.0 } else { 235.0 })));
+    }
+}
