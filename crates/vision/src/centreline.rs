@@ -21,6 +21,8 @@ pub(crate) struct Row {
     pub(crate) width: f64,
     /// Whether the line ends free at its first and last point: not at another line nor at a shape.
     pub(crate) free: [bool; 2],
+    /// Whether this is a dot, whose direction says nothing.
+    pub(crate) dot: bool,
 }
 
 /// The rows of one patch's graph; lines end where they meet `shapes`.
@@ -79,7 +81,8 @@ fn strung(
     joint_at: &[[Option<(usize, usize)>; 2]],
     used: &mut [bool],
 ) -> Row {
-    let mut row = Row { points: Vec::new(), closed: lines[start].ring, width: 0.0, free: [false; 2] };
+    let mut row =
+        Row { points: Vec::new(), closed: lines[start].ring, width: 0.0, free: [false; 2], dot: false };
     let mut widths = Vec::new();
     let (mut line, mut entry) =
         (start, usize::from(joint_at[start][0].is_some() && joint_at[start][1].is_none()));
@@ -114,14 +117,16 @@ fn is_dot(graph: &Graph) -> bool {
     graph.branches.len() <= 1 && graph.branches.iter().all(|b| !b.ring) && length <= 3.0 * radius
 }
 
+/// A dash is this much longer than wide; what is shorter is a dot.
+const DASH: f64 = 1.5;
+
 /// A short straight stroke along a region's longer axis, at least half the pen's width long, so that light falls on
 /// it at all.
 fn dot(dark: &Plane<u8>, region: &Region) -> Row {
     let (centre, axis, length, width) = extent(dark, region);
     let half = 0.5 * (length - width).max(0.5 * width).max(0.5);
     let points = vec![dark.clamp(centre - axis * half), dark.clamp(centre + axis * half)];
-    // a dot stands for itself; a dash may be part of a line
-    Row { points, closed: false, width, free: [length > 1.5 * width; 2] }
+    Row { points, closed: false, width, free: [true; 2], dot: length < DASH * width }
 }
 
 /// Centre, long axis, length and width of a region, from the moments of its darkness. A stadium's are those of its

@@ -1,6 +1,6 @@
 //! Gaps that were not meant: where a pen skipped, its line goes on.
 
-use tracelight_stroke::Point;
+use tracelight_stroke::{Point, Vec2};
 
 use crate::bridge::Tip;
 use crate::centreline::Row;
@@ -26,7 +26,8 @@ struct End {
 }
 
 /// The rows with those joined that go on into each other over a gap, the straightest first.
-pub(crate) fn bridged(rows: Vec<Row>) -> Vec<Row> {
+pub(crate) fn bridged(mut rows: Vec<Row>) -> Vec<Row> {
+    orient_dots(&mut rows);
     let mut pairs = pairs(&rows);
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut chains = Chains::new(rows);
@@ -64,8 +65,57 @@ fn pairs(rows: &[Row]) -> Vec<(f64, Place, Place)> {
     found
 }
 
+/// More dots times rows than this are not compared, which takes some milliseconds.
+const MOST_COMPARED: usize = 1_000_000;
+
+/// Gives a dot between two ends the direction from one to the other: a dash of a broken line. Others stay dots.
+fn orient_dots(rows: &mut [Row]) {
+    let dots: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].dot).collect();
+    // so many dots are a texture
+    if dots.len() * rows.len() > MOST_COMPARED {
+        return;
+    }
+    for i in dots {
+        let at = rows[i].points[0].midpoint(rows[i].points[1]);
+        let reach = WIDEST_PENS * rows[i].width + LEAST_PX;
+        let near: Vec<End> = ends_where(rows, |k, row| {
+            k != i
+                && (row.points[0].distance(at) < reach
+                    || row.points[row.points.len() - 1].distance(at) < reach)
+        });
+        let near: Vec<&End> = near.iter().filter(|end| end.tip.at.distance(at) < reach).collect();
+        if let Some(along) = through(at, &near) {
+            let half = along * (0.25 * rows[i].width);
+            rows[i].points = vec![at - half, at + half];
+            rows[i].dot = false;
+        }
+    }
+}
+
+/// The direction of the straightest way from one of these ends through a place to another, if it is straight.
+fn through(at: Point, ends: &[&End]) -> Option<Vec2> {
+    let middle = Tip::single(at);
+    let pairs = (0..ends.len()).flat_map(|i| (i + 1..ends.len()).map(move |k| (ends[i], ends[k])));
+    let bend = |(a, b): (&End, &End)| {
+        let (to, on) = (at - a.tip.at, b.tip.at - at);
+        let turned = to.cross(on).atan2(to.dot(on)).abs();
+        (a.tip.bend(&middle) + turned + b.tip.bend(&middle), b.tip.at - a.tip.at)
+    };
+    let (least, along) = pairs.map(bend).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (least < BEND).then(|| along.normalize())
+}
+
 fn ends(rows: &[Row]) -> Vec<End> {
-    let all = rows.iter().enumerate().flat_map(|(row, r)| (0..2).map(move |end| (row, end, r)));
+    ends_where(rows, |_, row| !row.dot)
+}
+
+/// The free ends of some rows.
+fn ends_where(rows: &[Row], wanted: impl Fn(usize, &Row) -> bool) -> Vec<End> {
+    let all = rows
+        .iter()
+        .enumerate()
+        .filter(|(i, row)| wanted(*i, row))
+        .flat_map(|(row, r)| (0..2).map(move |end| (row, end, r)));
     let free = all.filter(|(_, end, r)| r.free[*end] && !r.closed);
     free.filter_map(|(row, end, r)| Some(End { row, end, tip: Tip::of(&r.points, end)?, width: r.width }))
         .collect()

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::light::{Paper, percentile};
 use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::region::regions;
 use crate::{Grey, VisionError};
 
 /// Least difference between mean ink and mean paper, % of the paper's brightness: 20 levels of 255.
@@ -44,6 +45,8 @@ pub(crate) struct Ink {
     pub(crate) darkness: Plane<u8>,
     /// Ink is darker than this.
     pub(crate) threshold: u8,
+    /// Ruled paper's lines are paler than this.
+    above_rules: u8,
     /// Pixels averaged into one, either way.
     pub(crate) reduction: usize,
     pub(crate) quality: Quality,
@@ -67,7 +70,7 @@ impl Ink {
         }
         let levels = sampled_histogram(&darkness);
         let split = Split::of(&levels);
-        let threshold = split.threshold.max((RULES * split.strongest(&levels)) as u8);
+        let (threshold, above_rules) = (split.threshold, (RULES * strongest(&levels)) as u8);
         let (dimmest, brightest) = paper.range();
         let quality = Quality {
             contrast_percent: (split.ink - split.paper) / 2.55,
@@ -78,12 +81,15 @@ impl Ink {
             light_on_dark,
         };
         gate(&quality)?;
-        Ok(Self { darkness, threshold, reduction, quality })
+        Ok(Self { darkness, threshold, above_rules, reduction, quality })
     }
 
-    /// Where there is ink.
+    /// Where there is ink. Where some of it leads from border to border, the paper is ruled perhaps: then only what is
+    /// darker than rules.
     pub(crate) fn mask(&self) -> Mask {
-        over(&self.darkness, self.threshold)
+        let mask = over(&self.darkness, self.threshold);
+        let ruled = self.above_rules > self.threshold && regions(&mask).iter().any(|r| r.spans(&mask));
+        if ruled { over(&self.darkness, self.above_rules) } else { mask }
     }
 }
 
@@ -149,6 +155,11 @@ fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
     std::array::from_fn(|level| tables.iter().map(|table| table[level]).sum())
 }
 
+/// The level that a two-thousandth of all pixels exceed: more than specks of dust cover, and less than any drawing.
+fn strongest(histogram: &[u32; 256]) -> f64 {
+    percentile(histogram, 1.0 - 1.0 / 2000.0)
+}
+
 /// A histogram cut in two.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Split {
@@ -165,13 +176,6 @@ pub(crate) struct Split {
 }
 
 impl Split {
-    /// The darkest twentieth of the upper class begins here.
-    fn strongest(&self, histogram: &[u32; 256]) -> f64 {
-        let mut upper = *histogram;
-        upper[..=usize::from(self.threshold)].fill(0);
-        percentile(&upper, 0.95)
-    }
-
     /// Where the variance between the classes is largest (Otsu, "A threshold selection method from gray-level
     /// histograms", 1979); in the middle of a stretch where it is.
     pub(crate) fn of(histogram: &[u32; 256]) -> Self {
@@ -216,10 +220,13 @@ impl Split {
 /// Whether the picture's lines are lighter than what they are drawn on.
 ///
 /// In a tile with a line in it most pixels are paper, so that its mean lies on the paper's side of the middle between its
-/// extremes: a vote of up to ±1. Edges of shapes and shadows vote for either side alike, a variance of 1/3 each. Where
-/// the votes add up to no more than chance, the picture's border is paper.
+/// extremes: a vote of up to ±1. Edges of shapes and shadows vote for either side alike, a variance of 1/3 each. They
+/// are asked where the picture's border is neither clearly light nor dark; where they add up to no more than chance,
+/// the border is paper.
 fn is_light_on_dark(image: &Plane<u8>) -> bool {
     const TILE: usize = 16;
+    /// A border is clearly paper if, as a ratio, it is nearer to one extreme than to the other by this.
+    const CLEAR: f64 = 2.0;
     /// Standard deviations of chance.
     const SURE: f64 = 4.0;
     let whole = sampled_histogram(image);
@@ -242,11 +249,13 @@ fn is_light_on_dark(image: &Plane<u8>) -> bool {
             }
         }
     }
-    if votes * votes > SURE * SURE * tiles / 3.0 {
-        return votes < 0.0;
-    }
     // light multiplies: a shadow on paper is nearer to its brightest than to its ink as a ratio
-    border_level(image) < (low.max(10.0) * high).sqrt()
+    let (low, border) = (low.max(10.0), border_level(image).max(10.0));
+    let (from_dark, to_light) = (border / low, high / border);
+    if from_dark.max(to_light) > CLEAR * from_dark.min(to_light) {
+        return from_dark < to_light;
+    }
+    if votes * votes > SURE * SURE * tiles / 3.0 { votes < 0.0 } else { from_dark < to_light }
 }
 
 /// Median level of the outermost pixels.

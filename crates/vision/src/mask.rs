@@ -168,10 +168,9 @@ impl Mask {
         self
     }
 
-    /// What is ink in either of two masks of one size.
-    pub(crate) fn or(mut self, other: &Self) -> Self {
+    /// Makes ink what is ink in `other`, which has the same size.
+    pub(crate) fn add(&mut self, other: &Self) {
         self.words.iter_mut().zip(&other.words).for_each(|(a, b)| *a |= b);
-        self
     }
 }
 

@@ -41,47 +41,95 @@ impl Parts {
 
     /// Each part by its width.
     pub(crate) fn of(mask: &Mask, patches: Vec<Region>) -> Self {
-        let solid = mask.clone().eroded(mask.width.min(mask.height) / SOLID_SHARE);
+        let side = mask.width.min(mask.height) / SOLID_SHARE;
+        let solid = mask.clone().eroded(side);
         let (bulky, thin): (Vec<Region>, Vec<Region>) =
             patches.into_iter().partition(|region| region.cells(&solid).next().is_some());
         let thin = graphs(&mask.clone().without(&mask_of(mask, &bulky)), thin);
         let pen = pen_width(thin.iter().map(|(_, graph)| graph));
-        let (mut lines, wide): (Vec<_>, Vec<_>) =
+        let thin = without_dust(mask, &bulky, thin, pen);
+        let (lines, wide): (Vec<_>, Vec<_>) =
             thin.into_iter().partition(|(_, graph)| graph.is_pure_line(pen));
-        let doubtful = mask_of(mask, wide.iter().map(|(region, _)| region).chain(&bulky));
-        let inner = doubtful.clone().opened(bulk_width(&doubtful, pen));
-        // what holds no octagon is a small shape, or lines of a wider pen, and is judged whole
-        let (mixed, whole): (Vec<_>, Vec<_>) =
-            wide.into_iter().partition(|(region, _)| region.cells(&inner).next().is_some());
-        let (small, lines_too): (Vec<_>, Vec<_>) =
-            whole.into_iter().partition(|(_, graph)| graph.is_shape(pen));
-        lines.extend(lines_too);
-        let mut shape_mask = mask_of(mask, small.iter().map(|(region, _)| region));
-        let mixed = mask_of(mask, mixed.iter().map(|(region, _)| region).chain(&bulky));
-        let (sticks, shapes) = split(mixed, inner, pen);
-        lines.extend(sticks);
-        shape_mask = shape_mask.or(&shapes);
+        let mut sorter = Sorter { pen, lines, shape_mask: Mask::empty(mask.width, mask.height) };
+        sorter.sort(bulky, wide, 2 * side);
+        let Sorter { lines, shape_mask, .. } = sorter;
         Self { lines, shapes: regions(&shape_mask), shape_mask }
     }
 }
 
-/// Width of an octagon that fits into no line, px: some pens, and two pixels for how coarsely thin ones are measured;
-/// where no pen is known, half of the widest place.
-fn bulk_width(mask: &Mask, pen: f64) -> usize {
-    if pen > 0.0 { (BULK_PENS * pen + 2.0).ceil() as usize } else { (widest_square(mask) / 2).max(3) }
+/// Specks of fewer pixels may be dust; so may those smaller than the pen's own dot, which covers π/4 of its width
+/// squared.
+const SPECK_PX: f64 = 10.0;
+const SPECK_PENS: f64 = 0.6;
+/// A speck this near to a line, pen widths, belongs to it: the dot of an i.
+const BELONGS_PENS: f64 = 4.0;
+
+/// Without the specks that lie by themselves.
+fn without_dust(mask: &Mask, bulky: &[Region], thin: Vec<(Region, Graph)>, pen: f64) -> Vec<(Region, Graph)> {
+    let speck = |region: &Region| (region.area() as f64) < SPECK_PX.max(SPECK_PENS * pen * pen);
+    let drawn = thin.iter().map(|(region, _)| region).filter(|r| !speck(r)).chain(bulky);
+    let drawn = mask_of(mask, drawn);
+    // a picture of nothing but specks means them
+    if drawn.is_empty() {
+        return thin;
+    }
+    let reach = (BELONGS_PENS * pen).max(SPECK_PX) as usize;
+    thin.into_iter().filter(|(region, _)| !speck(region) || region.is_near(&drawn, reach)).collect()
 }
 
-/// Lines that lead away from what is wider than the pen, and the shapes without them. `inner` is what octagons cover.
-fn split(mixed: Mask, inner: Mask, pen: f64) -> (Vec<(Region, Graph)>, Mask) {
-    let bulk = inner.dilated_by(RIM).and(&mixed);
-    let rest = mixed.clone().without(&bulk);
-    let pieces = graphs(&rest, regions(&rest));
-    let (lines, corners): (Vec<_>, Vec<_>) =
-        pieces.into_iter().partition(|(_, graph)| graph.is_line_beside(pen));
-    let mut shapes = bulk;
-    corners.iter().for_each(|(corner, _)| corner.fill_into(&mut shapes));
-    (lines, shapes)
+/// Parts the patches that may hold both kinds.
+struct Sorter {
+    /// The picture's, px; 0 where none is known.
+    pen: f64,
+    lines: Vec<(Region, Graph)>,
+    shape_mask: Mask,
 }
+
+impl Sorter {
+    /// `bulky` patches are wider than any pen somewhere, `wide` ones wider than a line of the pen.
+    ///
+    /// Where the pen is known, octagons that fit into none of its lines tell shapes from lines. Where it is not,
+    /// octagons of half a patch's own width do: from the widest on, each patch is parted by the first that fits twice.
+    fn sort(&mut self, bulky: Vec<Region>, wide: Vec<(Region, Graph)>, widest: usize) {
+        let mut left: Vec<(Region, Option<Graph>)> = bulky.into_iter().map(|region| (region, None)).collect();
+        left.extend(wide.into_iter().map(|(region, graph)| (region, Some(graph))));
+        let known = (BULK_PENS * self.pen + 2.0).ceil() as usize;
+        let mut width = if self.pen > 0.0 { known } else { widest };
+        loop {
+            let mask = mask_of(&self.shape_mask, left.iter().map(|(region, _)| region));
+            let inner = mask.clone().opened(width.max(LEAST_BULK));
+            let (fits, rest): (Vec<_>, Vec<_>) =
+                left.into_iter().partition(|(region, _)| region.cells(&inner).next().is_some());
+            self.split(mask_of(&mask, fits.iter().map(|(region, _)| region)), inner);
+            left = rest;
+            if left.is_empty() || self.pen > 0.0 || width <= LEAST_BULK {
+                break;
+            }
+            width /= 2;
+        }
+        for (region, graph) in left {
+            match graph {
+                Some(graph) if !graph.is_shape(self.pen) => self.lines.push((region, graph)),
+                _ => region.fill_into(&mut self.shape_mask),
+            }
+        }
+    }
+
+    /// Lines that lead away from what octagons cover, `inner`, and the shapes without them.
+    fn split(&mut self, mixed: Mask, inner: Mask) {
+        let bulk = inner.dilated_by(RIM).and(&mixed);
+        let rest = mixed.clone().without(&bulk);
+        let pieces = graphs(&rest, regions(&rest));
+        let (lines, corners): (Vec<_>, Vec<_>) =
+            pieces.into_iter().partition(|(_, graph)| graph.is_line_beside(self.pen));
+        self.lines.extend(lines);
+        self.shape_mask.add(&bulk);
+        corners.iter().for_each(|(corner, _)| corner.fill_into(&mut self.shape_mask));
+    }
+}
+
+/// Octagons smaller than this are pixels, px.
+const LEAST_BULK: usize = 8;
 
 /// The mask of these regions alone.
 fn mask_of<'a>(like: &Mask, regions: impl IntoIterator<Item = &'a Region>) -> Mask {
@@ -100,16 +148,6 @@ fn graphs(mask: &Mask, regions: Vec<Region>) -> Vec<(Region, Graph)> {
         (region, graph)
     };
     regions.into_iter().map(read).collect()
-}
-
-/// The side of the largest upright square in the ink, px, to an eighth.
-fn widest_square(mask: &Mask) -> usize {
-    let (mut fits, mut side) = (1, 2);
-    while side < mask.width.min(mask.height) && !mask.clone().eroded(side).is_empty() {
-        fits = side;
-        side = side + (side / 8).max(1);
-    }
-    fits
 }
 
 /// The picture's pen: the median width along all of its lines, px; 0 if there are none.
@@ -159,14 +197,23 @@ impl Graph {
         large && (self.is_uneven() || self.is_blob() || (pen > 0.0 && 2.0 * self.widest() > 3.0 * pen))
     }
 
-    /// Whether a piece next to a shape is a line: as wide all along, and long for its width; the less so, the more its
+    /// Whether a piece next to a shape is a line: as wide at both ends, and long for its width; the less so, the more its
     /// width is the pen's.
     fn is_line_beside(&self, pen: f64) -> bool {
         let radii = self.radii();
         let at = |share: usize| radii.get(radii.len() * share / 100).copied().unwrap_or(0.0);
         let width = 2.0 * at(50);
         let even = at(80) - at(20) <= (0.2 * at(50)).max(0.75);
-        let pens = if (width - pen).abs() < 0.3 * pen { 1.5 } else { 4.0 };
-        even && self.length() > (pens * width).max(4.0)
+        let lengths = if (width - pen).abs() < 0.3 * pen { 2.0 } else { 4.0 };
+        even && !self.tapers() && self.length() > (lengths * width).max(8.0)
+    }
+
+    /// Whether the longest branch gets thinner from one end to the other, as the corner of a shape does.
+    fn tapers(&self) -> bool {
+        let longest = self.branches.iter().max_by(|a, b| a.points.len().cmp(&b.points.len()));
+        let Some(radii) = longest.map(|branch| &branch.radii) else { return true };
+        let third = (radii.len() / 3).max(1);
+        let (first, last) = (median(&radii[..third]), median(&radii[radii.len() - third..]));
+        (first - last).abs() > 0.12 * (first + last) + 0.3
     }
 }

@@ -40,6 +40,26 @@ impl Region {
         self.runs.iter().flat_map(|run| mask.cells_in(run.y as usize, run.from as usize, run.to as usize))
     }
 
+    /// Whether it leads from one border of its image to the one across.
+    pub(crate) fn spans(&self, mask: &Mask) -> bool {
+        let rows = self.runs.first().is_some_and(|run| run.y == 0)
+            && self.runs.last().is_some_and(|run| run.y as usize + 1 == mask.height);
+        let columns = self.runs.iter().any(|run| run.from == 0)
+            && self.runs.iter().any(|run| run.to as usize == mask.width);
+        rows || columns
+    }
+
+    /// Whether there is ink of `mask` at most `reach` px beyond its bounding box.
+    pub(crate) fn is_near(&self, mask: &Mask, reach: usize) -> bool {
+        let from = self.runs.iter().map(|run| run.from as usize).min().unwrap_or(0);
+        let to = self.runs.iter().map(|run| run.to as usize).max().unwrap_or(0);
+        let top = self.runs.first().map_or(0, |run| run.y as usize);
+        let low = self.runs.last().map_or(0, |run| run.y as usize);
+        let columns = (from.saturating_sub(reach), (to + reach).min(mask.width));
+        let mut rows = top.saturating_sub(reach)..(low + reach + 1).min(mask.height);
+        rows.any(|y| mask.cells_in(y, columns.0, columns.1).next().is_some())
+    }
+
     /// Makes all of it paper.
     pub(crate) fn erase_from(&self, mask: &mut Mask) {
         self.runs.iter().for_each(|run| mask.erase(run.y as usize, run.from as usize, run.to as usize));
