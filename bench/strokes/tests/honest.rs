@@ -3,7 +3,7 @@
 
 use tracelight_bench_strokes::case::Wanted;
 use tracelight_bench_strokes::{Case, Degradation, Figure, Kind, Page, Picture, Random, Size, nine, rules};
-use tracelight_stroke::{Point, StrokeKind, compare_polylines, score};
+use tracelight_stroke::{Drawing, Point, StrokeKind, Vec2, compare_polylines, score};
 
 const SMALL: Size = Size { width: 320, height: 240 };
 
@@ -12,11 +12,13 @@ fn series(count: usize, kind: Option<Kind>, degradation: Degradation) -> Vec<Cas
     Case::series(3, count, &wanted)
 }
 
-/// How dark a picture is at a point: 0 its paper, 1 its ink.
-fn darkness(picture: &Picture, at: Point) -> f64 {
+/// How dark a clean picture is at a point: 0 its paper, 1 its ink.
+fn darkness(picture: &Picture) -> impl Fn(Point) -> f64 {
     let (paper, ink) = (*picture.levels.iter().max().unwrap(), *picture.levels.iter().min().unwrap());
-    let level = picture.levels[at.y as usize * picture.width + at.x as usize];
-    f64::from(paper - level) / f64::from(paper - ink)
+    move |at| {
+        let level = picture.levels[at.y as usize * picture.width + at.x as usize];
+        f64::from(paper - level) / f64::from(paper - ink)
+    }
 }
 
 #[test]
@@ -36,12 +38,17 @@ fn a_seed_draws_the_same_picture_every_time() {
 fn pen_strokes_lie_on_ink() {
     for case in series(78, None, Degradation::Clean).into_iter().filter(|c| c.kind != Kind::Gaps) {
         let picture = case.draw();
+        let dark_at = darkness(&picture);
         let gaps = case.kind == Kind::Mixed;
         let strokes = picture.truth.strokes.iter().filter(|s| s.kind == StrokeKind::Centreline);
         let points: Vec<_> = strokes.flat_map(|s| s.path.flatten(0.01)).collect();
-        let pale = points.iter().filter(|p| darkness(&picture, **p) < 0.3).count();
-        // only a page of everything has lines with gaps
-        assert!(pale == 0 || gaps, "{case}: {pale} of {} points are not on ink", points.len());
+        let pale = points.iter().filter(|p| dark_at(**p) < 0.3).count();
+        // a butt cap may cover little of an end's pixel; of these kinds only a page of everything has lines with gaps
+        assert!(
+            pale <= 2 * picture.truth.strokes.len() || gaps,
+            "{case}: {pale} of {} points are not on ink",
+            points.len()
+        );
     }
 }
 
@@ -49,20 +56,19 @@ fn pen_strokes_lie_on_ink() {
 fn there_is_no_ink_away_from_the_truth() {
     for case in series(78, None, Degradation::Clean).into_iter().filter(|c| c.kind != Kind::Filled) {
         let picture = case.draw();
+        let dark_at = darkness(&picture);
         if picture.truth.strokes.iter().any(|s| s.kind == StrokeKind::Outline) {
             continue;
         }
         let lines: Vec<_> = picture.truth.strokes.iter().map(|s| s.path.flatten(0.01)).collect();
         let pen = picture.truth.strokes.iter().filter_map(|s| s.pen).fold(0.0, f64::max);
-        for (i, _) in picture.levels.iter().enumerate() {
-            let at = Point::new((i % picture.width) as f64 + 0.5, (i / picture.width) as f64 + 0.5);
-            if darkness(&picture, at) > 0.5 {
-                let spot = [vec![at, at + tracelight_stroke::Vec2::new(1e-6, 0.0)]];
-                // a mitre reaches four pens from its corner at most
-                let off = compare_polylines(&spot, &lines, 1.0).unwrap().max;
-                assert!(off < 2.0 * pen, "{case}: ink {off} px from the truth at {at:?}");
-            }
-        }
+        let centres = (0..picture.levels.len())
+            .map(|i| Point::new((i % picture.width) as f64 + 0.5, (i / picture.width) as f64 + 0.5));
+        let dark = centres.filter(|&at| dark_at(at) > 0.5);
+        let spots: Vec<_> = dark.map(|at| vec![at, at + Vec2::new(1e-3, 0.0)]).collect();
+        // a mitre reaches two pens from its corner at most
+        let off = compare_polylines(&spots, &lines, 1.0).unwrap().max;
+        assert!(off < 2.0 * pen, "{case}: ink {off} px from the truth");
     }
 }
 
@@ -70,10 +76,11 @@ fn there_is_no_ink_away_from_the_truth() {
 fn outlines_run_along_edges() {
     for case in series(24, Some(Kind::Filled), Degradation::Clean) {
         let picture = case.draw();
+        let dark_at = darkness(&picture);
         let outlines = picture.truth.strokes.iter().filter(|s| s.kind == StrokeKind::Outline);
         let points: Vec<_> = outlines.flat_map(|s| s.path.flatten(0.01)).collect();
         // an edge's pixels are half covered, except where a stick begins and in the tips of corners
-        let odd = points.iter().filter(|p| !(0.0..1.0).contains(&darkness(&picture, **p))).count();
+        let odd = points.iter().filter(|p| !(0.0..1.0).contains(&dark_at(**p))).count();
         assert!(10 * odd <= 3 * points.len(), "{case}: {odd} of {}", points.len());
     }
 }
@@ -107,7 +114,7 @@ fn truth_stays_in_the_picture_and_moves_with_the_perspective() {
             assert!((0.0..320.0).contains(&p.x) && (0.0..240.0).contains(&p.y), "{case}: {p:?}");
         }
         let strokes = case.page().figures.iter().flat_map(|f| f.strokes.clone()).collect();
-        let flat = tracelight_stroke::Drawing { strokes };
+        let flat = Drawing { strokes };
         let found = score(&seen, &flat, 2.0).unwrap();
         assert!(found.max > 0.2 && found.max < 12.0, "{case}: {found:?}");
     }
