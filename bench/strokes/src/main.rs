@@ -60,7 +60,7 @@ enum Command {
         /// Show so many of the worst pictures
         #[arg(long, default_value_t = 0)]
         worst: usize,
-        /// Where to write those: truth green, strokes red
+        /// Where to write those: truth green, strokes red; the picture itself and its truth in plain/
         #[arg(long, default_value = "target/strokes-worst")]
         dump: PathBuf,
     },
@@ -276,6 +276,7 @@ fn show_worst(mut judged: Vec<Judged>, worst: usize, folder: &Path) -> Result<()
         let picture = case.draw();
         let png = show::png(&picture, &verdict.found).map_err(|e| Failure::Picture(file.clone(), e))?;
         write(&file, &png)?;
+        save(&folder.join("plain"), &case.to_string(), &picture)?;
         let refused = verdict.refused.as_deref().unwrap_or("");
         println!("{} {} {refused}", file.display(), told(&verdict.found, &picture.truth, verdict.score));
     }
