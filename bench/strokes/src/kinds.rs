@@ -66,8 +66,8 @@ impl Kind {
         }
     }
 
-    /// One figure about the origin.
-    pub(crate) fn figure(self, random: &mut Random, hand: &Hand) -> Figure {
+    /// One figure about the origin. It may break the rules; who places it asks.
+    pub fn figure(self, random: &mut Random, hand: &Hand) -> Figure {
         match self {
             Kind::Lines => plain::straight(random, hand),
             Kind::Polylines => plain::cornered(random, hand),

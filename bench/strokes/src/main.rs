@@ -36,7 +36,7 @@ enum Command {
         folder: PathBuf,
         #[command(flatten)]
         series: Series,
-        /// The nine-stroke drawing instead: clean and webcam-like, 320x240 and 1280x720
+        /// The nine-stroke drawing instead: clean and webcam-like, 320x240, 1280x720, 3840x2160
         #[arg(long)]
         nine: bool,
     },
@@ -60,7 +60,7 @@ enum Command {
         /// Show so many of the worst pictures
         #[arg(long, default_value_t = 0)]
         worst: usize,
-        /// Where to write those: truth green, strokes red
+        /// Where to write those: truth green, strokes red; the picture itself and its truth in plain/
         #[arg(long, default_value = "target/strokes-worst")]
         dump: PathBuf,
     },
@@ -69,6 +69,14 @@ enum Command {
         /// Also show the pictures in this folder
         #[arg(long)]
         dump: Option<PathBuf>,
+    },
+    /// Trace pictures and write the strokes (JSON) beside each other into a folder
+    Trace {
+        /// PNG or PNM pictures
+        files: Vec<PathBuf>,
+        /// Where to
+        #[arg(long)]
+        out: PathBuf,
     },
     /// Time tracing of pictures on one core: median milliseconds
     Time {
@@ -140,6 +148,7 @@ fn run(command: Command) -> Result<(), Failure> {
             show_worst(judged, worst, &dump)
         }
         Command::Nine { dump } => nine_drawing(dump.as_deref()),
+        Command::Trace { files, out } => files.iter().try_for_each(|file| trace_file(file, &out)),
         Command::Time { files, repeat } => files.iter().try_for_each(|file| time(file, repeat)),
     }
 }
@@ -149,8 +158,12 @@ fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
     folder.and_then(|()| fs::write(file, bytes)).map_err(|e| Failure::File(file.to_owned(), e))
 }
 
-fn nine_cases() -> impl Iterator<Item = (String, Size, Picture)> {
-    let sizes = [Size { width: 320, height: 240 }, Size { width: 1280, height: 720 }];
+const SMALL: Size = Size { width: 320, height: 240 };
+const HD: Size = Size { width: 1280, height: 720 };
+const UHD: Size = Size { width: 3840, height: 2160 };
+
+fn nine_cases(sizes: &[Size]) -> impl Iterator<Item = (String, Size, Picture)> {
+    let sizes = sizes.to_vec();
     let both = sizes.into_iter().flat_map(|size| [(size, false), (size, true)]);
     both.map(|(size, webcam)| {
         let name = format!("nine-{}-{size}", if webcam { "webcam" } else { "clean" });
@@ -160,7 +173,8 @@ fn nine_cases() -> impl Iterator<Item = (String, Size, Picture)> {
 
 fn make(folder: &Path, series: &Series, nine: bool) -> Result<(), Failure> {
     if nine {
-        return nine_cases().try_for_each(|(name, _, picture)| save(folder, &name, &picture));
+        return nine_cases(&[SMALL, HD, UHD])
+            .try_for_each(|(name, _, picture)| save(folder, &name, &picture));
     }
     series.cases().iter().try_for_each(|case| save(folder, &case.to_string(), &case.draw()))
 }
@@ -169,14 +183,30 @@ fn save(folder: &Path, name: &str, picture: &Picture) -> Result<(), Failure> {
     let file = folder.join(format!("{name}.png"));
     let png = picture.png().map_err(|e| Failure::Picture(file.clone(), e))?;
     write(&file, &png)?;
-    let sheet = Sheet {
-        width: picture.width as f64,
-        height: picture.height as f64,
-        metres_per_unit: None,
-        drawing: picture.truth.clone(),
-    };
-    let truth = json::write(&json::Traced { sheet, mode: "truth".to_owned() }, TRUTH_PX);
-    write(&folder.join(format!("{name}.json")), truth.as_bytes())
+    let size = Size { width: picture.width, height: picture.height };
+    save_strokes(&folder.join(format!("{name}.json")), size, picture.truth.clone(), "truth")
+}
+
+fn save_strokes(file: &Path, size: Size, drawing: Drawing, mode: &str) -> Result<(), Failure> {
+    let (width, height) = (size.width as f64, size.height as f64);
+    let sheet = Sheet { width, height, metres_per_unit: None, drawing };
+    write(file, json::write(&json::Traced { sheet, mode: mode.to_owned() }, TRUTH_PX).as_bytes())
+}
+
+fn read_grey(file: &Path) -> Result<Grey, Failure> {
+    let bytes = fs::read(file).map_err(|e| Failure::File(file.to_owned(), e))?;
+    let image =
+        image::load_from_memory(&bytes).map_err(|e| Failure::Picture(file.to_owned(), e))?.into_luma8();
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    Grey::new(width, height, image.into_raw()).map_err(|e| Failure::Trace(file.to_owned(), e))
+}
+
+/// A refused picture has no strokes; the file says so.
+fn trace_file(file: &Path, folder: &Path) -> Result<(), Failure> {
+    let grey = read_grey(file)?;
+    let found = trace(&grey, &Options::default()).map(|t| t.strokes).unwrap_or_default();
+    let out = folder.join(file.with_extension("json").file_name().unwrap_or_default());
+    save_strokes(&out, Size { width: grey.width(), height: grey.height() }, found, "auto")
 }
 
 fn read_strokes(file: &Path) -> Result<(Drawing, Size), Failure> {
@@ -246,6 +276,7 @@ fn show_worst(mut judged: Vec<Judged>, worst: usize, folder: &Path) -> Result<()
         let picture = case.draw();
         let png = show::png(&picture, &verdict.found).map_err(|e| Failure::Picture(file.clone(), e))?;
         write(&file, &png)?;
+        save(&folder.join("plain"), &case.to_string(), &picture)?;
         let refused = verdict.refused.as_deref().unwrap_or("");
         println!("{} {} {refused}", file.display(), told(&verdict.found, &picture.truth, verdict.score));
     }
@@ -255,7 +286,7 @@ fn show_worst(mut judged: Vec<Judged>, worst: usize, folder: &Path) -> Result<()
 fn nine_drawing(dump: Option<&Path>) -> Result<(), Failure> {
     println!("| picture | strokes of 9 | matched | rms px | max px | missed % | false % | length |");
     println!("|---|---|---|---|---|---|---|---|");
-    for (name, size, picture) in nine_cases() {
+    for (name, size, picture) in nine_cases(&[SMALL, HD]) {
         let verdict = judge(&picture, size.tolerance_px());
         match verdict.score {
             None => println!("| {name} | refused: {} |", verdict.refused.as_deref().unwrap_or("no strokes")),
@@ -280,12 +311,8 @@ fn nine_drawing(dump: Option<&Path>) -> Result<(), Failure> {
 }
 
 fn time(file: &Path, repeat: usize) -> Result<(), Failure> {
-    let bytes = fs::read(file).map_err(|e| Failure::File(file.to_owned(), e))?;
-    let image =
-        image::load_from_memory(&bytes).map_err(|e| Failure::Picture(file.to_owned(), e))?.into_luma8();
-    let (width, height) = (image.width() as usize, image.height() as usize);
+    let grey = read_grey(file)?;
     let refused = |e| Failure::Trace(file.to_owned(), e);
-    let grey = Grey::new(width, height, image.into_raw()).map_err(refused)?;
     let mut strokes = 0;
     let mut once = || {
         let started = Instant::now();

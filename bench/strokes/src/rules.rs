@@ -196,8 +196,8 @@ impl Near {
 
 /// Where strokes cross, join, turn and end.
 struct Nodes {
-    /// Each once, with the corner's turn if it is one and nothing else.
-    places: Vec<Point>,
+    /// Each once, with the stroke whose corner or end it is; none for a crossing or a junction.
+    places: Vec<(Point, Option<usize>)>,
     corners: Vec<(Point, f64)>,
     joints: Vec<Point>,
     ends: Vec<(Point, Vec2)>,
@@ -222,18 +222,18 @@ impl Nodes {
             }
         }
         near.pairs.iter().for_each(|&pair| nodes.cross(chains, pair));
-        for at in nodes.corners.clone().iter().map(|c| c.0) {
-            nodes.add(at);
-        }
-        for at in nodes.ends.clone().iter().map(|e| e.0) {
-            nodes.add(at);
+        for (number, chain) in chains.iter().enumerate() {
+            let ends = chain.ends();
+            let corners = chain.corners.iter().map(|&(i, _)| chain.points[i]);
+            corners.chain(ends.iter().map(|e| e.0)).for_each(|at| nodes.add(at, Some(number)));
         }
         nodes
     }
 
-    fn add(&mut self, at: Point) {
-        if !self.places.iter().any(|p| p.distance(at) < SAME_PX) {
-            self.places.push(at);
+    /// Crossings and junctions come first: a corner or an end in one is no place of its own.
+    fn add(&mut self, at: Point, of: Option<usize>) {
+        if !self.places.iter().any(|p| p.0.distance(at) < SAME_PX) {
+            self.places.push((at, of));
         }
     }
 
@@ -252,7 +252,7 @@ impl Nodes {
         }
         met.iter().for_each(|&way| self.angle(folded(way, out)));
         self.joints.push(end);
-        self.add(end);
+        self.add(end, None);
     }
 
     /// Pieces after these points that cross in their insides.
@@ -266,7 +266,7 @@ impl Nodes {
         let inside = (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s);
         if inside && !self.joints.iter().any(|j| j.distance(at) < 2.0 * SAME_PX) {
             self.angle(folded(u, v));
-            self.add(at);
+            self.add(at, None);
         }
     }
 
@@ -281,27 +281,28 @@ impl Nodes {
         self.corners.iter().find_map(odd)
     }
 
+    /// Two nodes of one stroke, or a crossing or junction and anything, nearer than `least`. Ends and corners of lines
+    /// side by side may be as near as the lines are.
     fn too_near(&self, least: f64) -> Option<f64> {
-        let pairs = self
-            .places
-            .iter()
-            .enumerate()
-            .flat_map(|(i, p)| self.places[..i].iter().map(move |q| p.distance(*q)));
-        let mut pairs = pairs;
-        pairs.find(|&d| d < least)
+        let pairs =
+            self.places.iter().enumerate().flat_map(|(i, p)| self.places[..i].iter().map(move |q| (p, q)));
+        let mut near = pairs.filter(|(p, q)| p.1.is_none() || q.1.is_none() || p.1 == q.1);
+        near.find_map(|(p, q)| Some(p.0.distance(q.0)).filter(|&d| d < least))
     }
 }
 
-/// Lines side by side nearer than `clearance`, away from where they meet.
+/// Lines side by side nearer than `clearance`, away from where they meet: a crossing, a junction, a corner of their own.
 fn alongside(chains: &[Chain], near: &Near, nodes: &Nodes, clearance: f64) -> Option<f64> {
-    let reach = NODE_REACH * clearance;
-    let by_a_node =
-        |p: Point, q: Point| nodes.places.iter().any(|n| n.distance(p) < reach && n.distance(q) < reach);
     let point = |(c, i): (usize, usize)| chains[c].points[i];
-    near.pairs.iter().find_map(|&[a, b]| {
+    let meet = |a: (usize, usize), b: (usize, usize)| {
         let (p, q) = (point(a), point(b));
-        let apart = p.distance(q);
-        (apart < clearance - SAME_PX && !by_a_node(p, q)).then_some(apart)
+        let by = |n: Point| n.distance(p).max(n.distance(q)) < NODE_REACH * clearance;
+        let own = chains[a.0].corners.iter().filter(|_| a.0 == b.0).map(|&(i, _)| chains[a.0].points[i]);
+        nodes.places.iter().filter(|n| n.1.is_none()).map(|n| n.0).chain(own).any(by)
+    };
+    near.pairs.iter().find_map(|&[a, b]| {
+        let apart = point(a).distance(point(b));
+        (apart < clearance - SAME_PX && !meet(a, b)).then_some(apart)
     })
 }
 
@@ -350,7 +351,7 @@ mod tests {
         let flat = check(&[&[(0., 0.), (100., 0.)], &[(0., -20.), (100., 20.)]]);
         assert!(matches!(flat, Some(Broken::Angle(a)) if (a - 21.8).abs() < 0.1), "{flat:?}");
         let side = check(&[&[(0., 0.), (100., 0.)], &[(0., 4.), (100., 4.)]]);
-        assert!(matches!(side, Some(Broken::Alongside(_) | Broken::Nodes(_))), "{side:?}");
+        assert!(matches!(side, Some(Broken::Alongside(_))), "{side:?}");
         let two = check(&[&[(0., 0.), (100., 0.)], &[(50., 30.), (50., 0.)], &[(55., -30.), (55., 0.)]]);
         assert!(matches!(two, Some(Broken::Nodes(_))), "{two:?}");
         assert!(matches!(check(&[&[(0., 0.), (50., 0.), (10., 9.)]]), Some(Broken::Corner(_))));
@@ -365,8 +366,8 @@ mod tests {
     #[test]
     fn a_tight_curve_is_not_drawn() {
         let hand = Hand { pen: 2.0, nib: Nib::Round, paper: 3.0, size: 50.0 };
-        let bow = |radius: f64| Figure::lines(&hand, [crate::shapes::arc(Point::ORIGIN, radius, 0.0, 5.0)]);
-        assert_eq!(broken(&bow(5.0), 2.0, 3.0), None);
-        assert!(matches!(broken(&bow(3.0), 2.0, 3.0), Some(Broken::Radius(_))));
+        let bow = |radius: f64| Figure::lines(&hand, [crate::shapes::arc(Point::ORIGIN, radius, 0.0, 4.3)]);
+        assert_eq!(broken(&bow(6.0), 2.0, 3.0), None);
+        assert!(matches!(broken(&bow(3.8), 2.0, 3.0), Some(Broken::Radius(_))));
     }
 }

@@ -86,7 +86,7 @@ fn arcs_and_line(random: &mut Random, size: f64) -> Vec<Path> {
     if random.chance(0.5) {
         let turns = random.whole(2, 4);
         let corner = |i: usize| {
-            let side = if i % 2 == 0 { 0.5 } else { -0.5 };
+            let side = if i.is_multiple_of(2) { 0.5 } else { -0.5 };
             Point::new(size * (1.7 * i as f64 / turns as f64 - 0.85), size * side)
         };
         let corners: Vec<_> = (0..=turns).map(corner).collect();

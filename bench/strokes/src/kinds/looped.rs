@@ -13,20 +13,22 @@ pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
 
 /// Letters e and l in a chain: a trochoid whose loops differ in height.
 fn writing(random: &mut Random, hand: &Hand) -> Path {
-    let letters = random.whole(1, 5);
+    let letters = random.whole(1, 4);
     let pitch = 2.0 * hand.size / (letters as f64 + 0.5);
-    let widths: f64 = pitch * random.between(0.25, 0.6);
-    let heights: Vec<f64> =
-        (0..letters + 2).map(|_| pitch * random.pick(&[0.5, 0.7, 1.1]) * random.between(0.9, 1.1)).collect();
+    let widths = pitch * random.between(0.4, 0.7);
+    let mut height = |_| pitch * random.pick(&[0.7, 0.8, 1.3]) * random.between(0.9, 1.1);
+    let heights: Vec<f64> = (0..letters + 2).map(&mut height).collect();
     // the loops lean to the right, as most hands do
-    let slant = random.between(0.0, 0.4);
+    let slant = random.between(0.0, 0.3);
     let at = move |t: f64| {
-        let letter = ((t / TAU + 0.5).max(0.0) as usize).min(heights.len() - 1);
-        let rise = heights[letter] * (1.0 - (t).cos());
-        Point::new(pitch * t / TAU - widths * t.sin() + slant * rise - hand.size, 0.5 * hand.size - rise)
+        // heights change at the foot, where the rise is none
+        let letter = ((t / TAU + 1.0) as usize).min(heights.len() - 1);
+        let rise = 0.5 * heights[letter] * (1.0 - t.cos());
+        let x = pitch * t / TAU + widths * t.sin() + slant * rise;
+        Point::new(x - hand.size, 0.5 * hand.size - rise)
     };
-    let ends = random.between(0.25, 0.4) * TAU;
-    curve(at, -ends, TAU * letters as f64 - TAU + TAU - ends * 0.5, 14 * (letters + 1))
+    let tail = random.between(0.2, 0.35) * TAU;
+    curve(at, -tail, TAU * letters as f64 + tail, 16 * (letters + 1))
 }
 
 /// Gerono's curve.

@@ -109,6 +109,9 @@ pub(super) fn gapped(random: &mut Random, hand: &Hand) -> Figure {
     }
 }
 
+/// Length from gap to gap, in pens, about.
+const PIECE_PENS: f64 = 10.0;
+
 /// `part(a, b)` is the path from share `a` to share `b` of its length.
 fn with_gaps(
     random: &mut Random,
@@ -117,7 +120,9 @@ fn with_gaps(
     part: impl Fn(f64, f64) -> Path,
     closed: bool,
 ) -> Figure {
-    let gaps = random.whole(1, 3);
+    // what is left between gaps is long enough to be a line
+    let most = (length / (PIECE_PENS * hand.pen)) as usize;
+    let gaps = random.whole(1, 3).min(most.saturating_sub(1)).max(1);
     let mut pieces = Vec::new();
     let mut from = 0.0;
     for gap in 1..=gaps {

@@ -192,10 +192,9 @@ impl Laps {
 
     /// Length beyond one lap, where there is clearly more than one.
     fn doubled(&self) -> f64 {
-        let of = |(bin, drawn): &(f64, Vec<f64>)| -> f64 {
-            drawn.iter().filter(|&&d| d > DOUBLED_BIN * bin).map(|d| d - bin).sum()
-        };
-        self.bins.iter().map(of).sum()
+        let bins = self.bins.iter().flat_map(|(bin, drawn)| drawn.iter().map(move |d| (bin, d)));
+        // summed from zero: the sum of no floats is −0
+        bins.filter(|&(bin, d)| *d > DOUBLED_BIN * bin).fold(0.0, |sum, (bin, d)| sum + d - bin)
     }
 }
 
