@@ -22,6 +22,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use figures::Figures;
@@ -83,18 +84,17 @@ pub(crate) fn run(batch: &Batch<'_>, trace: &Tracer<'_>, stop: &Stop) -> Result<
         .map(|out| places::files(&batch.pictures, out.folder, out.extension))
         .transpose()?
         .unwrap_or_default();
-    let mut manifest = batch.out.as_ref().map(|out| Manifest::open(out.folder)).transpose()?;
+    let manifest = batch.out.as_ref().map(|out| Manifest::open(out.folder)).transpose()?;
     let mut report = Report::new(batch.pictures.len(), batch.voice.json);
     let left = keep(batch, &files, manifest.as_ref(), &mut report);
     let progress = Progress::new(batch.voice.quiet);
     progress.pictures(left.len() as u64);
-    let work = Work { batch, files: &files, left: &left, trace };
+    let work = Work { batch, files: &files, left: &left, manifest: manifest.map(Mutex::new), trace };
     let limits = queue::Limits { jobs: batch.jobs, bytes: weight::MOST_BYTES };
     queue::run(&work, left.len(), limits, stop, |index, result| {
         let index = left[index];
         let name = &batch.pictures[index].name;
         let made = result.unwrap_or_else(|panicked| Made::fallen(name, &panicked));
-        note(manifest.as_mut(), made.entry.as_ref(), &progress);
         report.add(index, Row { picture: name.clone(), outcome: made.outcome }, made.told);
         progress.finished(&table::shortened(name, LAST_NAME_COLUMNS));
     });
@@ -135,28 +135,16 @@ fn file_name(batch: &Batch<'_>, file: Option<&PathBuf>) -> Option<String> {
     Some(folder.join(file?).to_string_lossy().into_owned())
 }
 
-/// A full disk must not stop the batch: what is not noted is only traced again.
-fn note(manifest: Option<&mut Manifest>, entry: Option<&Entry>, progress: &Progress) {
-    if let (Some(manifest), Some(entry)) = (manifest, entry)
-        && let Err(error) = manifest.append(entry)
-    {
-        let name = manifest::NAME;
-        progress.say(&format!("note: {name} cannot be written ({error}): the next run begins anew"));
-    }
-}
-
 /// What one picture came to.
 struct Made {
     outcome: Outcome,
     told: report::Told,
-    /// For the next run.
-    entry: Option<Entry>,
 }
 
 impl Made {
     fn failed(failure: Failure) -> Self {
         let Failure { code, message, .. } = failure;
-        Self { outcome: Outcome::Failed { code, message }, told: report::Told::default(), entry: None }
+        Self { outcome: Outcome::Failed { code, message }, told: report::Told::default() }
     }
 
     fn fallen(picture: &str, Panicked(words): &Panicked) -> Self {
@@ -172,6 +160,7 @@ struct Work<'a> {
     files: &'a [PathBuf],
     /// Indices into the batch's pictures.
     left: &'a [usize],
+    manifest: Option<Mutex<Manifest>>,
     trace: &'a Tracer<'a>,
 }
 
@@ -200,10 +189,22 @@ impl Work<'_> {
             None => (self.trace)(picture, None)?,
         };
         let timing_ms = rounded_ms(began);
-        let entry = self.entry(index, picture_stamp, path.as_deref(), &traced.figures, timing_ms);
+        if let Some(entry) = self.entry(index, picture_stamp, path.as_deref(), &traced.figures, timing_ms) {
+            self.note(&entry);
+        }
         let outcome = Outcome::Done { figures: traced.figures, timing_ms, kept: false };
         let told = report::Told { file: file_name(self.batch, file), strokes: traced.json };
-        Ok(Made { outcome, told, entry })
+        Ok(Made { outcome, told })
+    }
+
+    /// At once, for the next run.
+    fn note(&self, entry: &Entry) {
+        if let Some(manifest) = &self.manifest {
+            // lines are whole whatever thread panicked while it held them
+            let mut manifest = manifest.lock().unwrap_or_else(PoisonError::into_inner);
+            // a full disk is told of where strokes are written; what is not noted is only traced again
+            drop(manifest.append(entry));
+        }
     }
 
     fn entry(

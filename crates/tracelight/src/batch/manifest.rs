@@ -15,7 +15,7 @@ use crate::batch::figures::Figures;
 use crate::failure::Failure;
 
 /// The journal's name in the folder.
-pub(crate) const NAME: &str = ".tracelight-strokes.jsonl";
+const NAME: &str = ".tracelight-strokes.jsonl";
 /// Longest journal that is read, bytes: some hundred thousand pictures. What is beyond is traced again.
 const MOST_BYTES: u64 = 256 << 20;
 
@@ -168,7 +168,7 @@ mod tests {
             figures: Figures {
                 strokes: 3,
                 closed: 1,
-                length: 1234.567_891,
+                length: 1_234.5,
                 sheet: (640.0, 480.0),
                 unit: Unit::Px,
                 missed_ink: Some(0.001_234),
@@ -198,7 +198,7 @@ mod tests {
         let (entry, _) = made(&folder);
         let newer = Entry { made_with: "2".to_owned(), ..entry.clone() };
         let mut manifest = Manifest::open(&folder).unwrap();
-        [&entry, &newer].map(|e| manifest.append(e).unwrap());
+        [&entry, &newer].iter().for_each(|e| manifest.append(e).unwrap());
         drop(manifest);
         assert_eq!(Manifest::open(&folder).unwrap().entry(Path::new("a.svg")), Some(&newer));
         assert_eq!(fs::read_to_string(folder.join(NAME)).unwrap().lines().count(), 1);

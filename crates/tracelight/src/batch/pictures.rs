@@ -24,9 +24,10 @@ pub(crate) struct Found {
     pub(crate) remarks: Vec<String>,
 }
 
-/// Whether an argument stands for other names than its own.
+/// Whether an argument stands for other names than its own. A pattern that matches nothing is a name.
 pub(crate) fn stands_for_several(argument: &str) -> bool {
-    argument != "-" && (Path::new(argument).is_dir() || is_pattern(argument))
+    let matches = || glob::glob(argument).is_ok_and(|mut found| found.next().is_some());
+    argument != "-" && (Path::new(argument).is_dir() || is_pattern(argument) && matches())
 }
 
 /// Files as they are; folders as the pictures in them, by name; patterns that no shell expanded as what they match.

@@ -41,18 +41,24 @@ pub(super) fn run<W: Work>(
     stop: &Stop,
     mut done: impl FnMut(usize, Result<W::Done, Panicked>),
 ) {
-    let (sender, receiver) = mpsc::channel();
+    // bounded: while `done` is busy, say with a reader that does not read, results do not pile up
+    let (sender, receiver) = mpsc::sync_channel(limits.jobs);
     let queue = Queue { work, count, stop, next: Mutex::new(0), room: Room::of(limits.bytes) };
     thread::scope(|scope| {
         let queue = &queue;
-        let worker = |sender: mpsc::Sender<_>| move || queue.work_off(&sender);
+        let worker = |sender: mpsc::SyncSender<_>| {
+            move || queue.work_off(|index, result| sender.send((index, result)).is_ok())
+        };
         let builder = || thread::Builder::new().stack_size(STACK_BYTES);
         let spawned = (0..limits.jobs.min(count))
             .filter(|_| builder().spawn_scoped(scope, worker(sender.clone())).is_ok())
             .count();
         if spawned == 0 {
             // a system that is out of threads still has this one
-            queue.work_off(&sender);
+            queue.work_off(|index, result| {
+                done(index, result);
+                true
+            });
         }
         drop(sender);
         receiver.iter().for_each(|(index, result)| done(index, result));
@@ -69,11 +75,13 @@ struct Queue<'a, W> {
 }
 
 impl<W: Work> Queue<'_, W> {
-    fn work_off(&self, sender: &mpsc::Sender<(usize, Result<W::Done, Panicked>)>) {
-        while let Some((index, _place)) = self.begin() {
+    /// Takes pieces until there are none, or nobody listens any more.
+    fn work_off(&self, mut tell: impl FnMut(usize, Result<W::Done, Panicked>) -> bool) {
+        while let Some((index, place)) = self.begin() {
             let result = caught(|| self.work.run(index));
-            if sender.send((index, result)).is_err() {
-                return; // nobody listens any more
+            drop(place);
+            if !tell(index, result) {
+                return;
             }
         }
     }

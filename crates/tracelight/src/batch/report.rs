@@ -70,15 +70,19 @@ impl Totals {
 
     /// The table's last line.
     pub(super) fn text(&self) -> String {
-        let plural = if self.pictures == 1 { "" } else { "s" };
-        // what was kept took no time; what failed did
-        let rate = (self.traced + self.failed) as f64 / (self.timing_ms / 1e3).max(1e-3);
         let Self { pictures, traced, kept, failed, strokes, timing_ms } = self;
+        let plural = if *pictures == 1 { "" } else { "s" };
         let time = table::time(*timing_ms);
+        let rate = self.rate().map_or_else(String::new, |rate| format!(", {rate:.1} pictures a second"));
         format!(
-            "{pictures} picture{plural}: {traced} traced, {kept} kept, {failed} failed; {strokes} strokes; {time}, \
-             {rate:.1} pictures a second"
+            "{pictures} picture{plural}: {traced} traced, {kept} kept, {failed} failed; {strokes} strokes; {time}{rate}"
         )
+    }
+
+    /// Pictures a second: what was kept took no time, what failed did. None where that says nothing.
+    fn rate(&self) -> Option<f64> {
+        let seconds = self.timing_ms / 1e3;
+        (self.traced > 0 && seconds > 0.0).then(|| (self.traced + self.failed) as f64 / seconds)
     }
 
     fn json(&self) -> Value {
@@ -180,10 +184,14 @@ fn failure(rows: &[Row], keeps: bool) -> Option<Failure> {
         more => format!(" and {more} more"),
     };
     let kept = if keeps { ": what is done is kept" } else { "" };
+    let them = if failed.len() == 1 { ["it", "it"] } else { ["them", "each"] };
     let message = format!(
-        "{} of {} pictures failed: {names}{more}. Mend them or leave them out, and run the same command again{kept}",
+        "{} of {} pictures failed: {names}{more}; the reason stands beside {}. Mend or leave out {}, and run the same \
+         command again{kept}",
         failed.len(),
-        rows.len()
+        rows.len(),
+        them[1],
+        them[0],
     );
     (!failed.is_empty()).then(|| Failure::failed("pictures-failed", message))
 }
