@@ -68,14 +68,14 @@ impl Totals {
         totals
     }
 
-    /// The table's last line.
+    /// The table's last lines.
     pub(super) fn text(&self) -> String {
         let Self { pictures, traced, kept, failed, strokes, timing_ms } = self;
         let plural = if *pictures == 1 { "" } else { "s" };
         let time = table::time(*timing_ms);
         let rate = self.rate().map_or_else(String::new, |rate| format!(", {rate:.1} pictures a second"));
         format!(
-            "{pictures} picture{plural}: {traced} traced, {kept} kept, {failed} failed; {strokes} strokes; {time}{rate}"
+            "{pictures} picture{plural}: {traced} traced, {kept} kept, {failed} failed\n{strokes} strokes; {time}{rate}"
         )
     }
 

@@ -14,7 +14,7 @@ const HEADINGS: [(&str, usize); 6] =
 /// Between columns.
 const GAP: usize = 2;
 
-/// A row a picture, then a line of totals.
+/// A row a picture, then two lines of totals.
 pub(super) fn text(rows: &[Row], totals: &Totals) -> String {
     let rest: usize = HEADINGS.iter().map(|(_, width)| GAP + width).sum();
     let longest = rows.iter().map(|row| plain(&row.picture).width()).max().unwrap_or(0);
@@ -152,7 +152,8 @@ picture        strokes  closed      length  missed    time  verdict
 a.png                9       2     1234 mm       -   12 ms  ok
 long name.png        9       2     1234 mm       -   12 ms  kept
 b.png          failed: is broken
-3 pictures: 1 traced, 1 kept, 1 failed; 18 strokes; 2.0 s, 1.0 pictures a second";
+3 pictures: 1 traced, 1 kept, 1 failed
+18 strokes; 2.0 s, 1.0 pictures a second";
         assert_eq!(text(&rows, &totals), expected);
     }
 
@@ -173,6 +174,6 @@ b.png          failed: is broken
     fn a_long_name_loses_its_middle() {
         assert_eq!(shortened("photos/holiday/IMG_0001.jpg", 15), "photos/…001.jpg");
         assert_eq!(shortened("photos/IMG.jpg", 14), "photos/IMG.jpg");
-        assert_eq!(shortened("猫猫猫猫猫猫", 7), "猫…猫");
+        assert_eq!(shortened("猫猫猫猫猫猫", 7), "猫…猫猫");
     }
 }
