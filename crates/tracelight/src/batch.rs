@@ -78,12 +78,7 @@ pub(crate) type Tracer<'a> = dyn Fn(&str, Option<&Path>) -> Result<Finding, Fail
 /// written. A picture that fails is a row of the answer, and the answer's failure.
 pub(crate) fn run(batch: &Batch<'_>, trace: &Tracer<'_>, stop: &Stop) -> Result<Answer, Failure> {
     let began = Instant::now();
-    let files = batch
-        .out
-        .as_ref()
-        .map(|out| places::files(&batch.pictures, out.folder, out.extension))
-        .transpose()?
-        .unwrap_or_default();
+    let files = files(batch)?;
     let manifest = batch.out.as_ref().map(|out| Manifest::open(out.folder)).transpose()?;
     let mut report = Report::new(batch.pictures.len(), batch.voice.json);
     let left = keep(batch, &files, manifest.as_ref(), &mut report);
@@ -99,6 +94,14 @@ pub(crate) fn run(batch: &Batch<'_>, trace: &Tracer<'_>, stop: &Stop) -> Result<
         progress.finished(&table::shortened(name, LAST_NAME_COLUMNS));
     });
     Ok(report.answer(batch, &progress, began.elapsed().as_secs_f64() * 1e3))
+}
+
+/// A file for each picture, if they are to be written.
+fn files(batch: &Batch<'_>) -> Result<Vec<PathBuf>, Failure> {
+    match &batch.out {
+        Some(out) => places::files(&batch.pictures, out.folder, out.extension),
+        None => Ok(Vec::new()),
+    }
 }
 
 /// Room for a name beside the progress bar.
@@ -259,4 +262,52 @@ fn part_name(path: &Path) -> String {
     path.file_name().hash(&mut hasher);
     let extension = path.extension().map(OsStr::to_string_lossy).unwrap_or_default();
     format!(".tracelight-part-{:016x}.{extension}", hasher.finish())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::batch::figures::Unit;
+
+    fn traced() -> Finding {
+        let (missed_ink, doubt) = (Some(0.0), None);
+        let sheet = (640.0, 480.0);
+        let figures =
+            Figures { strokes: 1, closed: 0, length: 9.0, sheet, unit: Unit::Px, missed_ink, doubt };
+        Finding { figures, json: None, vision_ms: 1.0 }
+    }
+
+    #[test]
+    fn a_picture_that_panics_is_a_row_like_any_that_fails() {
+        let pictures =
+            ["a.png", "b.png", "c.png"].map(|name| Picture { name: name.to_owned(), within: None }).to_vec();
+        let batch = Batch { pictures, out: None, jobs: 2, voice: Voice { json: false, quiet: true } };
+        let trace = |name: &str, _: Option<&Path>| {
+            assert!(name != "b.png", "no such stroke");
+            Ok(traced())
+        };
+        let answer = run(&batch, &trace, &Stop::default()).unwrap();
+        assert!(answer.text.contains("2 traced, 0 kept, 1 failed"), "{}", answer.text);
+        assert!(
+            answer.text.contains("b.png    failed: b.png: the program made a mistake"),
+            "{}",
+            answer.text
+        );
+        assert!(answer.failure.unwrap().message.contains("1 of 3 pictures failed: b.png"));
+    }
+
+    #[test]
+    fn a_file_is_written_whole_or_not_at_all() {
+        let folder = std::env::temp_dir().join(format!("tracelight-whole-{}", std::process::id()));
+        let path = folder.join("below/a.svg");
+        whole(&path, |part| fs::write(part, "old").map_err(|e| Failure::failed("cannot-write", e))).unwrap();
+        let failed = whole(&path, |part| -> Result<(), Failure> {
+            fs::write(part, "half").unwrap();
+            Err(Failure::failed("cannot-write", "the disk is full"))
+        });
+        assert_eq!(failed.unwrap_err().message, "the disk is full");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(fs::read_dir(folder.join("below")).unwrap().count(), 1, "the half is gone");
+        fs::remove_dir_all(folder).unwrap();
+    }
 }

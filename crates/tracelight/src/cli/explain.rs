@@ -63,7 +63,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "unfinished",
         "The run was given up: it took far longer than its plan, holding again and again. The report shows where.",
     ),
-    ("interrupted", "Ctrl-C: the laser was darkened, then the log closed."),
+    (
+        "interrupted",
+        "Ctrl-C: the laser was darkened, then the log closed. A batch keeps what is done; the same command goes on.",
+    ),
 ];
 
 pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Failure> {
