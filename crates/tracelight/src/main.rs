@@ -1,5 +1,6 @@
 //! Tracelight: give it a picture, and a pan/tilt laser head draws it on the wall, to scale.
 
+mod batch;
 mod cli;
 mod failure;
 mod job;

@@ -1,8 +1,9 @@
 //! What stderr shows while work goes on.
 
+use std::fmt::Write;
 use std::io::IsTerminal;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 /// A bar with the stage's name when stderr is a terminal, nothing otherwise.
 pub(crate) struct Progress {
@@ -27,6 +28,24 @@ impl Progress {
         self.bar.set_length(steps.max(1));
         self.bar.set_position(0);
         self.bar.set_message(name);
+    }
+
+    /// Begins a stage of many pictures, shown with their rate and the last one's name.
+    pub(crate) fn pictures(&self, count: u64) {
+        const TEMPLATE: &str = "{pos} of {len} {wide_bar} {rate}  {eta:>4} left  {msg}";
+        let rate = |state: &ProgressState, text: &mut dyn Write| {
+            let _ = write!(text, "{:.1} pictures/s", state.per_sec()); // the bar goes on without it
+        };
+        if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
+            self.bar.set_style(style.with_key("rate", rate));
+        }
+        self.stage("", count);
+    }
+
+    /// One more picture has ended.
+    pub(crate) fn finished(&self, picture: &str) {
+        self.bar.set_message(picture.to_owned());
+        self.bar.inc(1);
     }
 
     /// Moves the bar to a step.

@@ -29,6 +29,8 @@ pub(crate) struct Sketch {
     pub(crate) mode: &'static str,
     /// What the user should know about it.
     pub(crate) doubt: Option<String>,
+    /// Share of the ink that lies on no stroke; none where there was no ink.
+    pub(crate) missed_ink: Option<f64>,
     /// Time it took, ms.
     pub(crate) vision_ms: f64,
 }
@@ -83,6 +85,7 @@ pub(crate) fn sketch(name: &str, source: Source, mode: Mode) -> Result<Sketch, F
             picture: None,
             mode: "strokes",
             doubt: None,
+            missed_ink: None,
             vision_ms: 0.0,
         },
         Source::Pixels(pixels) => {
@@ -96,6 +99,7 @@ pub(crate) fn sketch(name: &str, source: Source, mode: Mode) -> Result<Sketch, F
                 picture: Some(pixels.colour),
                 mode: mode.name(),
                 doubt: doubt(traced.missed_ink),
+                missed_ink: Some(traced.missed_ink),
                 vision_ms: 0.0,
             }
         }

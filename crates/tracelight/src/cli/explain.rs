@@ -52,13 +52,21 @@ const MESSAGES: &[(&str, &str)] = &[
         "marks-not-found",
         "A ruler picture does not show two marks. Use two dark tapes across a light ruler, or the reverse.",
     ),
+    (
+        "pictures-failed",
+        "Some pictures of a batch failed, the others are done. The table says why each of them did; the same command again goes on with those that are left.",
+    ),
+    ("internal", "The program made a mistake on a picture. Please report it, with the picture."),
     ("cannot-write", "A result could not be written. Check the folder, its permissions and the free space."),
     ("usage", "The command line is wrong. `tracelight --help` shows what there is."),
     (
         "unfinished",
         "The run was given up: it took far longer than its plan, holding again and again. The report shows where.",
     ),
-    ("interrupted", "Ctrl-C: the laser was darkened, then the log closed."),
+    (
+        "interrupted",
+        "Ctrl-C: the laser was darkened, then the log closed. A batch keeps what is done; the same command goes on.",
+    ),
 ];
 
 pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Failure> {

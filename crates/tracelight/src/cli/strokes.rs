@@ -1,10 +1,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, csv, json};
 use tracelight_vision::Mode;
 
+use crate::batch::figures::Figures;
+use crate::batch::pictures::{self, Picture, stands_for_several};
+use crate::batch::{self, Batch, Finding, Out, places};
 use crate::cli::placing::PlacementArgs;
 use crate::cli::request::ModeName;
 use crate::cli::{Answer, Voice};
@@ -19,21 +23,37 @@ const POINTS_TOLERANCE_PX: f64 = 0.05;
 /// The same in CSV, m: a hundredth of a millimetre.
 const POINTS_TOLERANCE_M: f64 = 1e-5;
 
+/// The formats that `write` writes.
+const FORMATS: [&str; 3] = ["svg", "json", "csv"];
+
 /// Find the strokes of pictures, without a rig
 #[derive(Args, Debug)]
 #[command(after_help = "Examples: tracelight strokes drawing.jpg -o drawing.svg --width 60cm\n          \
-                        tracelight strokes *.png -o out/")]
+                        tracelight strokes *.png -o out/\n          \
+                        tracelight strokes photos/ --recursive -o out/ --format json")]
 pub(crate) struct StrokesArgs {
-    /// Pictures or drawings; - is standard input
+    /// Pictures or drawings, or folders of pictures; - is standard input
     #[arg(required = true, value_name = "PICTURE")]
     pictures: Vec<String>,
     /// Write the strokes here: .svg (true size), .json (pixels) or .csv (metres); a folder, with / at its end, for
-    /// several pictures
+    /// several pictures. What is done there already is kept
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Format of the files in a folder
+    #[arg(long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(FORMATS))]
+    format: Option<String>,
     /// How pixels become strokes
     #[arg(long, value_enum, default_value_t)]
     mode: ModeName,
+    /// Also the pictures in the folders of a folder
+    #[arg(short, long)]
+    recursive: bool,
+    /// Pictures that are traced at the same time [default: as many as there are processors]
+    #[arg(short, long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Trace also pictures whose strokes are in the folder already
+    #[arg(long, visible_alias = "force")]
+    again: bool,
     #[command(flatten)]
     placement: PlacementArgs,
     #[command(flatten)]
@@ -41,74 +61,101 @@ pub(crate) struct StrokesArgs {
 }
 
 pub(crate) fn run(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
-    if let [only] = args.pictures.as_slice() {
-        let (sketch, json) = one(args, only)?;
-        return Ok(Answer::new(line(only, &sketch), json));
+    match args.pictures.as_slice() {
+        [only] if !stands_for_several(only) => single(args, only),
+        _ => many(args, stop),
     }
-    if args.out.as_ref().is_some_and(|out| !is_folder(out)) {
-        let message = "several pictures need a folder: end --out with / (such as -o strokes/)";
-        return Err(Failure::usage("usage", message));
+}
+
+/// One picture: a sentence, or its strokes as JSON.
+fn single(args: &StrokesArgs, picture: &str) -> Result<Answer, Failure> {
+    check_format(args)?;
+    let named = Picture { name: picture.to_owned(), within: None };
+    let traced = match args.out.as_deref() {
+        Some(out) if is_folder(out) => {
+            let files = places::files(&[named], out, extension(args))?;
+            batch::whole(&out.join(&files[0]), |path| one(args, picture, Some(path)))?
+        }
+        out => one(args, picture, out)?,
+    };
+    if let Some(doubt) = &traced.figures.doubt {
+        Progress::new(args.voice.quiet).say(&format!("note: {picture}: {doubt}"));
     }
-    many(args, stop)
+    Ok(Answer::new(line(picture, &traced), traced.json.unwrap_or_default()))
 }
 
 /// Every picture, past those that fail.
 fn many(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
-    check_names(args)?;
+    if args.out.as_deref().is_some_and(|out| !may_become_folder(out)) {
+        let message = "several pictures need a folder: end --out with / (such as -o strokes/)";
+        return Err(Failure::usage("usage", message));
+    }
+    let found = pictures::find(&args.pictures, args.recursive)?;
     let progress = Progress::new(args.voice.quiet);
-    progress.stage("strokes", args.pictures.len() as u64);
-    let (mut lines, mut results, mut failed) = (Vec::new(), Vec::new(), Vec::new());
-    for (index, picture) in args.pictures.iter().enumerate() {
-        stop.check()?;
-        match one(args, picture) {
-            Ok((sketch, json)) => {
-                lines.push(line(picture, &sketch));
-                results.push(format!("{{\"picture\":{},\"strokes\":{json}}}", serde_json::json!(picture)));
-            }
-            Err(failure) => {
-                failed.push(picture.as_str());
-                lines.push(format!("{picture}: failed: {}", failure.message));
-                let error = serde_json::json!({ "code": failure.code, "message": failure.message });
-                results.push(format!("{{\"picture\":{},\"error\":{error}}}", serde_json::json!(picture)));
-            }
-        }
-        progress.at(index as u64 + 1);
-    }
-    let mut answer = Answer::new(lines.join("\n"), format!("{{\"pictures\":[{}]}}", results.join(",")));
-    if !failed.is_empty() {
-        let message =
-            format!("{} of {} pictures failed: {}", failed.len(), args.pictures.len(), failed.join(", "));
-        answer.failure = Some(Failure::failed("no-strokes-found", message));
-    }
-    Ok(answer)
+    found.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
+    drop(progress);
+    let out = args.out.as_deref().map(|folder| Out {
+        folder,
+        extension: extension(args),
+        made_with: made_with(args),
+        again: args.again,
+    });
+    let jobs = args.jobs.map_or_else(processors, usize::from);
+    let batch = Batch { pictures: found.pictures, out, jobs, voice: args.voice };
+    batch::run(&batch, &|picture, path| one(args, picture, path), stop)
 }
 
-/// Two pictures must not end in one file.
-fn check_names(args: &StrokesArgs) -> Result<(), Failure> {
-    let mut stems: Vec<_> = args.pictures.iter().map(|p| Path::new(p).file_stem()).collect();
-    stems.sort_unstable();
-    match stems.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) if args.out.is_some() => {
-            let name = pair[0].unwrap_or_default().to_string_lossy();
-            let message =
-                format!("two pictures are named {name}: --out would write them to one file; rename one");
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn extension(args: &StrokesArgs) -> &str {
+    args.format.as_deref().unwrap_or(FORMATS[0])
+}
+
+/// A file's own name says its format.
+fn check_format(args: &StrokesArgs) -> Result<(), Failure> {
+    let (Some(format), Some(out)) = (&args.format, args.out.as_deref().filter(|out| !is_folder(out))) else {
+        return Ok(());
+    };
+    match out.extension().is_some_and(|e| e.eq_ignore_ascii_case(format)) {
+        true => Ok(()),
+        false => {
+            let message = format!("--format {format} does not fit --out {}; leave one out", out.display());
             Err(Failure::usage("usage", message))
         }
-        _ => Ok(()),
     }
 }
 
-fn one(args: &StrokesArgs, picture: &str) -> Result<(Sketch, String), Failure> {
-    let sketch = sketch(picture, picture::read(picture)?, Mode::from(args.mode))?;
-    if let Some(doubt) = &sketch.doubt {
-        Progress::new(args.voice.quiet).say(&format!("note: {picture}: {doubt}"));
+/// Version and options: whatever makes a difference to a written file. A flag that is added must be put on one side.
+fn made_with(args: &StrokesArgs) -> String {
+    let StrokesArgs {
+        mode,
+        placement,
+        format: _,
+        pictures: _,
+        out: _,
+        recursive: _,
+        jobs: _,
+        again: _,
+        voice: _,
+    } = args;
+    let PlacementArgs { width, height, offset, rotate, flip } = placement;
+    let version = env!("CARGO_PKG_VERSION");
+    let format = extension(args);
+    format!("{version} {format} {mode:?} {width:?} {height:?} {offset:?} {rotate:?} {flip}")
+}
+
+fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding, Failure> {
+    let mut sketch = sketch(picture, picture::read(picture)?, Mode::from(args.mode))?;
+    sketch.picture = None; // its colours are not needed, and large
+    let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    let json = (args.voice.json || path.is_some_and(is_json)).then(|| pixel_json(&sketch));
+    if let Some(path) = path {
+        write(path, &sketch, args, json.as_deref().unwrap_or_default())?;
     }
-    let json = pixel_json(&sketch);
-    if let Some(out) = &args.out {
-        let path = if is_folder(out) { in_folder(out, picture)? } else { out.clone() };
-        write(&path, &sketch, args, &json)?;
-    }
-    Ok((sketch, json))
+    let figures = Figures::of(&sketch, &args.placement);
+    Ok(Finding { figures, json: json.filter(|_| args.voice.json), vision_ms: sketch.vision_ms })
 }
 
 fn pixel_json(sketch: &Sketch) -> String {
@@ -122,13 +169,12 @@ fn pixel_json(sketch: &Sketch) -> String {
 }
 
 fn is_folder(path: &Path) -> bool {
-    path.is_dir() || path.to_string_lossy().ends_with('/')
+    path.is_dir() || path.to_string_lossy().ends_with(std::path::is_separator)
 }
 
-fn in_folder(folder: &Path, picture: &str) -> Result<PathBuf, Failure> {
-    std::fs::create_dir_all(folder).map_err(|e| cannot_write(folder, &e))?;
-    let stem = Path::new(picture).file_stem().unwrap_or_else(|| "strokes".as_ref());
-    Ok(folder.join(format!("{}.svg", stem.to_string_lossy())))
+/// With several pictures a name without an extension can only mean a folder.
+fn may_become_folder(path: &Path) -> bool {
+    is_folder(path) || path.extension().is_none() && !path.exists()
 }
 
 fn write(path: &Path, sketch: &Sketch, args: &StrokesArgs, json: &str) -> Result<(), Failure> {
@@ -150,19 +196,12 @@ fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
     Failure::failed("cannot-write", format!("cannot write {}: {error}", path.display()))
 }
 
-fn line(picture: &str, sketch: &Sketch) -> String {
-    // what has no true size is measured in its pixels
-    let (scale, unit) = match sketch.true_width_m {
-        Some(width_m) => (1e3 * width_m / sketch.size.0, "mm"),
-        None => (1.0, "px"),
-    };
-    let closed = sketch.drawing.strokes.iter().filter(|s| s.path.is_closed()).count();
+fn line(picture: &str, traced: &Finding) -> String {
+    let Figures { strokes, closed, length, sheet: (width, height), unit, .. } = &traced.figures;
+    let unit = unit.name();
     format!(
-        "{picture}: {} strokes ({closed} closed), {:.0} {unit} of line on a sheet of {:.0} × {:.0} {unit}, {:.0} ms",
-        sketch.drawing.strokes.len(),
-        sketch.drawing.length(1e-3) * scale,
-        sketch.size.0 * scale,
-        sketch.size.1 * scale,
-        sketch.vision_ms
+        "{picture}: {strokes} strokes ({closed} closed), {length:.0} {unit} of line on a sheet of {width:.0} × \
+         {height:.0} {unit}, {:.0} ms",
+        traced.vision_ms
     )
 }

@@ -1,0 +1,71 @@
+//! What is told of one picture.
+
+use serde::{Deserialize, Serialize};
+
+use crate::cli::placing::PlacementArgs;
+use crate::sketch::Sketch;
+
+/// A traced picture in figures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Figures {
+    /// Strokes found.
+    #[serde(rename = "count")]
+    pub(crate) strokes: usize,
+    /// Closed ones among them.
+    pub(crate) closed: usize,
+    /// Length of line, in `unit`.
+    pub(crate) length: f64,
+    /// Width and height of the sheet, in `unit`.
+    pub(crate) sheet: (f64, f64),
+    /// What lengths are in.
+    pub(crate) unit: Unit,
+    /// Share of the ink that lies on no stroke; none where there was no ink.
+    pub(crate) missed_ink: Option<f64>,
+    /// What the user should know about it.
+    pub(crate) doubt: Option<String>,
+}
+
+/// What a picture is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Unit {
+    /// Millimetres on the target, where its size is known.
+    Mm,
+    /// The picture's own pixels.
+    Px,
+}
+
+impl Unit {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Unit::Mm => "mm",
+            Unit::Px => "px",
+        }
+    }
+}
+
+/// Decimals kept of lengths and shares: as many as survive being written and read.
+const DECIMALS: f64 = 1e6;
+
+fn rounded(value: f64) -> f64 {
+    (value * DECIMALS).round() / DECIMALS
+}
+
+impl Figures {
+    /// Of a sketch, in millimetres if it was asked to be of a size or says its own.
+    pub(crate) fn of(sketch: &Sketch, placement: &PlacementArgs) -> Self {
+        let (width, height) = sketch.size;
+        let asked = placement.width.map(|w| w.0 / width).or(placement.height.map(|h| h.0 / height));
+        let metres = asked.or(sketch.true_width_m.map(|w| w / width));
+        let (scale, unit) = metres.map_or((1.0, Unit::Px), |m| (1e3 * m, Unit::Mm));
+        Self {
+            strokes: sketch.drawing.strokes.len(),
+            closed: sketch.drawing.strokes.iter().filter(|s| s.path.is_closed()).count(),
+            length: rounded(sketch.drawing.length(1e-3) * scale),
+            sheet: (rounded(width * scale), rounded(height * scale)),
+            unit,
+            missed_ink: sketch.missed_ink.map(rounded),
+            doubt: sketch.doubt.clone(),
+        }
+    }
+}
