@@ -3,11 +3,13 @@
 use tracelight_stroke::{Parabola, Point, Vec2};
 
 use crate::plane::Plane;
+use crate::ridge::median;
 
 /// Points from a line's end on of which its direction there is taken: as many as lie on a parabola.
 const WINDOWS: [usize; 6] = [6, 9, 13, 19, 28, 40];
-/// How far points of one parabola are from it, px, root mean square.
+/// How far points of one parabola are from it, px, root mean square, where they have no noise; or, over their noise.
 const ON_PARABOLA_PX: f64 = 0.06;
+const OVER_NOISE: f64 = 1.3;
 /// Sine of the least angle between two lines that are said to meet: 4°.
 const LEAST_CROSS: f64 = 0.07;
 /// A pair that turns more than this is a corner, less a bend, rad (25°).
@@ -32,7 +34,8 @@ impl Tip {
             length += if k > 0 { at(k).distance(at(k - 1)) } else { 0.0 };
             (length, at(k))
         });
-        let curve = (n > 0).then(|| Parabola::widest(samples, &WINDOWS, ON_PARABOLA_PX))?;
+        let rms = ON_PARABOLA_PX.max(OVER_NOISE * noise_near(points, end));
+        let curve = (n > 0).then(|| Parabola::widest(samples, &WINDOWS, rms))?;
         Some(Self { at: at(0), along: curve.map_or(Vec2::ZERO, |c| -c.tangent(0.0)), curve })
     }
 
@@ -119,6 +122,20 @@ impl Tip {
         let (from, to) = (self.along * length, -other.along * length);
         (1..steps).map(|k| hermite(self.at, from, other.at, to, k as f64 / steps as f64)).collect()
     }
+}
+
+/// How far the points near a row's end scatter about their line, px.
+fn noise_near(points: &[Point], end: usize) -> f64 {
+    let reach = points.len().min(2 * WINDOWS[WINDOWS.len() - 1]);
+    scatter_px(if end == 0 { &points[..reach] } else { &points[points.len() - reach..] })
+}
+
+/// How far points scatter about their line, px, from third differences, which a bend leaves alone; 0 of few.
+pub(crate) fn scatter_px(points: &[Point]) -> f64 {
+    // across the line: √20 times the scatter, of which the median is 0.6745
+    const TIMES: f64 = 3.016;
+    let third = |w: &[Point]| ((w[3] - w[0]) - (w[2] - w[1]) * 3.0).hypot();
+    median(&points.windows(4).map(third).collect::<Vec<_>>()) / TIMES
 }
 
 /// Whether a place is at least a third as dark as one on the line.

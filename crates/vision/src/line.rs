@@ -1,8 +1,8 @@
 //! Branches of the skeleton as lines on the middle of the pen.
 
-use tracelight_stroke::Point;
+use tracelight_stroke::{Parabola, Point};
 
-use crate::bridge::Tip;
+use crate::bridge::{Tip, scatter_px};
 use crate::graph::{Branch, Graph};
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -31,6 +31,7 @@ impl Line {
         let ridge = ridge::centred(dark, &branch.points[from..to], radius, branch.ring);
         let width = ridge.width;
         let mut points = bridged(dark, ridge, branch.ring);
+        (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
         if points.is_empty() {
             points.push(branch.points[(from + to) / 2]);
         }
@@ -89,6 +90,42 @@ impl Line {
         }
     }
 }
+
+/// Takes away the points at an end that lean towards the ink of a junction: what lies off the straight line through
+/// those further in. Blur carries that ink further than its own width. (A bend, carried on, would be less sure than
+/// its points are.)
+fn settle(points: &mut Vec<Point>, end: usize, width: f64) {
+    let noise = scatter_px(points);
+    if end == 0 {
+        points.reverse();
+    }
+    let steps: Vec<f64> = points.windows(2).map(|w| w[0].distance(w[1])).collect();
+    let spacing = median(&steps).max(0.5);
+    let leaning = ((1.5 * width / spacing) as usize).min(points.len() / 4);
+    // arc length from the last point inwards
+    let mut at = 0.0;
+    let places: Vec<(f64, Point)> = (0..points.len())
+        .rev()
+        .map(|k| {
+            at += if k + 1 < points.len() { steps[k] } else { 0.0 };
+            (at, points[k])
+        })
+        .collect();
+    let further_in = places.iter().copied().skip(leaning);
+    let line = Parabola::widest(further_in, &SETTLED, (1.3 * noise).max(0.06));
+    let long = places.len() >= leaning + SETTLED[0];
+    if let Some(line) = line.filter(|line| long && line.is_straight()) {
+        let off = |&(s, p): &(f64, Point)| line.point(s).distance(p) > (3.0 * noise).max(0.25);
+        let leans = places[..leaning].iter().rposition(off).map_or(0, |k| k + 1);
+        points.truncate(points.len() - leans);
+    }
+    if end == 0 {
+        points.reverse();
+    }
+}
+
+/// Points further in from which a line's curve is taken: as many as lie on a parabola.
+const SETTLED: [usize; 5] = [8, 12, 18, 26, 38];
 
 /// How far ahead of a tip a shape begins, px.
 fn shape_ahead(shapes: &Mask, tip: &Tip, reach: f64) -> Option<f64> {

@@ -34,7 +34,7 @@ impl Scale {
         let reach = options.reach / samples.step;
         // 24 tolerances of flank: noise of a third of the tolerance turns a parabola through them by some 5°
         let flank = (24.0 * options.tolerance / samples.step).max(3.0 * reach).round() as usize;
-        Self { reach, gap: zone(reach, 1.0), flank: flank.max(6), rms: 0.2 * options.tolerance }
+        Self { reach, gap: zone(reach, 1.0), flank: flank.max(6), rms: 0.25 * options.tolerance }
     }
 }
 

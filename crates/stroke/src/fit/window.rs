@@ -119,6 +119,11 @@ impl Parabola {
         best
     }
 
+    /// Whether the samples show no bend.
+    pub fn is_straight(&self) -> bool {
+        self.bend == Vec2::ZERO
+    }
+
     /// Place at arc length `s`.
     pub fn point(&self, s: f64) -> Point {
         let u = s - self.origin;
