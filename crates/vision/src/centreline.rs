@@ -1,6 +1,6 @@
 //! Pen lines: strokes down their middle.
 
-use tracelight_stroke::{Element, Path, Point, Stroke, StrokeKind, Vec2};
+use tracelight_stroke::{Element, Path, Point, Stroke, Vec2};
 
 use crate::Options;
 use crate::follow;
@@ -41,7 +41,7 @@ fn stroke(dark: &Plane<u8>, row: &Row, options: &Options) -> Option<Stroke> {
     // a line that was carried on out of the picture ends at its border
     let points: Vec<Point> = row.points.iter().map(|&p| dark.clamp(p)).collect();
     let path = follow::path(&points, row.closed, 0.5 * row.width, options)?;
-    Some(Stroke { path, kind: StrokeKind::Centreline, pen: Some(row.width) })
+    Some(Stroke { pen: Some(row.width), ..Stroke::new(path) })
 }
 
 /// Lines strung together through the joints.
@@ -114,7 +114,7 @@ fn dot(dark: &Plane<u8>, region: &Region) -> Stroke {
     let half = 0.5 * (length - width).max(0.5 * width).max(0.5);
     let mut path = Path::new(dark.clamp(centre - axis * half));
     path.push(Element::Line { to: dark.clamp(centre + axis * half) });
-    Stroke { path, kind: StrokeKind::Centreline, pen: Some(width) }
+    Stroke { pen: Some(width), ..Stroke::new(path) }
 }
 
 /// Centre, long axis, length and width of a region, from the moments of its darkness. A stadium's are those of its

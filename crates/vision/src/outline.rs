@@ -50,7 +50,7 @@ pub(crate) fn strokes(
 
 fn stroke(points: &[Point], options: &Options) -> Option<Stroke> {
     let path = follow::path(points, true, REACH_PX, options)?;
-    Some(Stroke { path, kind: StrokeKind::Outline, pen: None })
+    Some(Stroke { kind: StrokeKind::Outline, ..Stroke::new(path) })
 }
 
 /// The darkness of a pixel all inside a region.

@@ -11,7 +11,7 @@ fn svg(attributes: &str, content: &str) -> String {
 }
 
 fn of(content: &str) -> Sheet {
-    read(svg("width='100' height='80'", content).as_bytes()).unwrap()
+    read(svg("width='100' height='80'", content).as_bytes()).unwrap().sheet
 }
 
 fn lines(drawing: &Drawing, tolerance: f64) -> Vec<Vec<Point>> {
@@ -43,7 +43,7 @@ fn a_drawing_comes_back_in_true_size() {
     let text = write(&example(), 0.6096, 0.4572);
     assert!(text.contains("width=\"609.6mm\" height=\"457.2mm\" viewBox=\"0 0 609.6 457.2\""), "{text}");
     assert_eq!(text.matches("<path").count(), 3);
-    let sheet = read(text.as_bytes()).unwrap();
+    let sheet = read(text.as_bytes()).unwrap().sheet;
     let unit = sheet.metres_per_unit.unwrap();
     assert!((sheet.width * unit - 0.6096).abs() < 1e-6, "{}", sheet.width * unit);
     let to_target = Affine::new([unit, 0.0, 0.0, -unit, -0.3048, 0.2286]);
@@ -98,7 +98,7 @@ fn shapes_uses_styles_and_transforms_are_resolved() {
 #[test]
 fn physical_sizes_are_kept() {
     let check = |attributes: &str, width_m: Option<f64>| {
-        let sheet = read(svg(attributes, "<path d='M0 0H9' stroke='red'/>").as_bytes()).unwrap();
+        let sheet = read(svg(attributes, "<path d='M0 0H9' stroke='red'/>").as_bytes()).unwrap().sheet;
         let found = sheet.metres_per_unit.map(|unit| sheet.width * unit);
         let same = found.zip(width_m).is_some_and(|(a, b)| (a - b).abs() < 1e-6) || found == width_m;
         assert!(same, "{attributes}: {found:?}");
@@ -159,7 +159,9 @@ fn coordinates_that_are_no_numbers_are_never_drawn() {
     for d in ["M0 0L1e308 1e308", "M0 0LNaN 1", "M0 0L1e39 0L5 5", "M0 0L-1e20 3"] {
         let content = format!("<path d='{d}' stroke='red'/>");
         let sound = match read(svg("width='9' height='9'", &content).as_bytes()) {
-            Ok(sheet) => lines(&sheet.drawing, 1e-3).iter().flatten().all(|p| p.to_vec2().hypot() < 1e6),
+            Ok(reading) => {
+                lines(&reading.sheet.drawing, 1e-3).iter().flatten().all(|p| p.to_vec2().hypot() < 1e6)
+            }
             Err(_) => true,
         };
         assert!(sound, "{d}");
@@ -170,7 +172,7 @@ fn coordinates_that_are_no_numbers_are_never_drawn() {
 fn bombs_are_refused_before_they_go_off() {
     let refused = |text: String| match read(text.as_bytes()) {
         Err(FormatError::TooLarge { .. } | FormatError::Refused { .. } | FormatError::Syntax { .. }) => {}
-        other => panic!("{:.80}: {:?}", text, other.map(|s| s.drawing.strokes.len())),
+        other => panic!("{:.80}: {:?}", text, other.map(|r| r.sheet.drawing.strokes.len())),
     };
     let nested = |open: &str, close: &str, n: usize| {
         svg("width='9' height='9'", &(open.repeat(n) + "<path d='M0 0H9' stroke='red'/>" + &close.repeat(n)))
@@ -237,7 +239,7 @@ fn what_is_just_not_too_deep_is_read() {
 fn short_entities_of_drawing_programs_are_read() {
     let text = "<!DOCTYPE svg [<!ENTITY ns_svg \"http://www.w3.org/2000/svg\">]>\
         <svg xmlns=\"&ns_svg;\" width='9' height='9'><path d='M0 0H9' stroke='red'/></svg>";
-    assert_eq!(read(text.as_bytes()).unwrap().drawing.strokes.len(), 1);
+    assert_eq!(read(text.as_bytes()).unwrap().sheet.drawing.strokes.len(), 1);
 }
 
 #[test]

@@ -2,13 +2,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use tracelight_formats::json::Traced;
-use tracelight_formats::{Sheet, csv, json};
+use tracelight_formats::{Sheet, json};
 use tracelight_vision::Mode;
 
 use crate::cli::placing::PlacementArgs;
 use crate::cli::request::ModeName;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
+use crate::output::drawing;
 use crate::picture;
 use crate::progress::Progress;
 use crate::sketch::{Sketch, place, sketch};
@@ -16,8 +17,6 @@ use crate::stop::Stop;
 
 /// How close `points` keep to their path, px.
 const POINTS_TOLERANCE_PX: f64 = 0.05;
-/// The same in CSV, m: a hundredth of a millimetre.
-const POINTS_TOLERANCE_M: f64 = 1e-5;
 
 /// Find the strokes of pictures, without a rig
 #[derive(Args, Debug)]
@@ -27,8 +26,8 @@ pub(crate) struct StrokesArgs {
     /// Pictures or drawings; - is standard input
     #[arg(required = true, value_name = "PICTURE")]
     pictures: Vec<String>,
-    /// Write the strokes here: .svg (true size), .json (pixels) or .csv (metres); a folder, with / at its end, for
-    /// several pictures
+    /// Write the strokes here: .svg, .dxf, .gcode (GRBL laser), .hpgl or .ild (ILDA) in true size, .csv (metres),
+    /// .json (pixels); a folder, with / at its end, for several pictures
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// How pixels become strokes
@@ -99,9 +98,9 @@ fn check_names(args: &StrokesArgs) -> Result<(), Failure> {
 }
 
 fn one(args: &StrokesArgs, picture: &str) -> Result<(Sketch, String), Failure> {
-    let sketch = sketch(picture, picture::read(picture)?, Mode::from(args.mode))?;
-    if let Some(doubt) = &sketch.doubt {
-        Progress::new(args.voice.quiet).say(&format!("note: {picture}: {doubt}"));
+    let sketch = sketch(picture, picture::read(picture)?, Mode::from(args.mode), &args.placement.choice)?;
+    for remark in &sketch.remarks {
+        Progress::new(args.voice.quiet).say(&format!("note: {picture}: {remark}"));
     }
     let json = pixel_json(&sketch);
     if let Some(out) = &args.out {
@@ -132,18 +131,7 @@ fn in_folder(folder: &Path, picture: &str) -> Result<PathBuf, Failure> {
 }
 
 fn write(path: &Path, sketch: &Sketch, args: &StrokesArgs, json: &str) -> Result<(), Failure> {
-    let placed = place(sketch, &args.placement);
-    let kind = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let text = match kind.as_str() {
-        "svg" => placed.svg(&placed.drawing),
-        "json" => json.to_owned(),
-        "csv" => csv::write(&placed.drawing, POINTS_TOLERANCE_M),
-        other => {
-            let message = format!("{}: cannot write .{other}; use .svg, .json or .csv", path.display());
-            return Err(Failure::usage("usage", message));
-        }
-    };
-    std::fs::write(path, text).map_err(|e| cannot_write(path, &e))
+    drawing::write(path, &place(sketch, &args.placement), json)
 }
 
 fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
