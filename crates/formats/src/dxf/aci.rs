@@ -27,7 +27,7 @@ pub(super) fn colour(number: i64) -> Option<Colour> {
 }
 
 fn hue(number: usize) -> Colour {
-    const VALUES: [f64; 5] = [255.0, 165.0, 127.0, 76.0, 38.0];
+    const VALUES: [f64; 5] = [255.0, 165.75, 127.5, 76.5, 38.25];
     let degrees = (number / 10 - 1) * 15;
     let high = VALUES[number % 10 / 2];
     let low = if number.is_multiple_of(2) { 0.0 } else { 0.5 * high };
@@ -67,7 +67,7 @@ mod tests {
             (12, 0xa50000),
             (23, 0xa56752),
             (42, 0xa57c00),
-            (83, 0x52a567),
+            (83, 0x67a552),
             (122, 0x00a57c),
             (245, 0x7f3f4f),
         ];

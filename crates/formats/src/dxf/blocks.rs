@@ -2,18 +2,22 @@
 
 use std::collections::HashMap;
 
-use tracelight_stroke::{Affine, Colour, Path};
+use tracelight_stroke::{Affine, Colour, Path, Point};
 
 use super::curves::{has_length, moved};
 use super::scene::Block;
 use super::scene::{Insert, Item, LAYER_0, Layer, Layers, Look, Paint, Scene, Shape, Skipped};
 use crate::FormatError;
+use crate::extent::controls;
 
 /// Inserts within inserts. Nobody nests this deep; circles do.
 const MAX_DEPTH: usize = 32;
 
 /// Items looked at, at most: blocks may repeat nothing a billion times.
 const MAX_VISITS: usize = 4_000_000;
+
+/// Points beyond this, after all scales of all inserts, are a broken file's.
+const MAX_PLACE: f64 = 1e15;
 
 /// A path in the world with its own look.
 pub(super) struct Drawn {
@@ -81,10 +85,25 @@ impl Unfolding<'_> {
         };
         self.elements += path.elements().len().max(super::LEAST_ELEMENTS);
         check("DXF, its blocks repeated, in path segments", self.elements, super::MAX_ELEMENTS)?;
+        self.check_place(&path)?;
         if has_length(&path) {
             self.drawn.push(Drawn { path, layer, colour });
         }
         Ok(())
+    }
+
+    fn check_place(&self, path: &Path) -> Result<(), FormatError> {
+        // asked this way round, what is not a number is not sound
+        let is_sound = |p: &Point| p.x.abs() <= MAX_PLACE && p.y.abs() <= MAX_PLACE;
+        match controls(path).find(|p| !is_sound(p)) {
+            Some(Point { x, y }) => Err(FormatError::Value {
+                place: format!("path {}", self.drawn.len() + 1),
+                field: "a point",
+                value: format!("({x}, {y})"),
+                expected: "coordinates up to 1e15, all scales of inserts applied",
+            }),
+            None => Ok(()),
+        }
     }
 
     fn insert(&mut self, insert: &Insert, at: Setting) -> Result<(), FormatError> {
@@ -101,10 +120,10 @@ impl Unfolding<'_> {
         check("DXF's nesting of blocks (one may hold itself)", at.depth + 1, MAX_DEPTH)?;
         let own = at.world_from_block * insert.place * Affine::translate(-block.base.to_vec2());
         for (row, column) in (0..insert.rows).flat_map(|r| (0..insert.columns).map(move |c| (r, c))) {
-            self.visits += 1;
+            self.visits += 1 + block.skipped.kinds();
             check("DXF, its blocks repeated, in inserts", self.visits, MAX_VISITS)?;
             let step = insert.steps[0] * f64::from(column) + insert.steps[1] * f64::from(row);
-            let step = at.world_from_block * step.to_point() - at.world_from_block * kurbo::Point::ORIGIN;
+            let step = at.world_from_block * step.to_point() - at.world_from_block * Point::ORIGIN;
             let world_from_block = Affine::translate(step) * own;
             self.skipped.add(&block.skipped);
             self.items(&block.items, Setting { world_from_block, layer, colour, depth: at.depth + 1 })?;

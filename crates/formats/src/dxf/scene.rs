@@ -180,6 +180,11 @@ impl Skipped {
         self.hidden += block.hidden;
     }
 
+    /// How many kinds there are: the work that [`add`](Self::add) is.
+    pub(super) fn kinds(&self) -> usize {
+        self.kinds.len()
+    }
+
     /// Whether anything of a kind was counted.
     pub(super) fn has(&self, kinds: &[&str]) -> bool {
         kinds.iter().any(|k| self.kinds.contains_key(*k))

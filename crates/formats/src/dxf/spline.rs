@@ -207,8 +207,8 @@ fn halves(bezier: &[Weighted], t: f64) -> (Vec<Weighted>, Vec<Weighted>) {
 
 /// A cubic spline through points, its parameter the chords' length: smooth to the second derivative, with the given
 /// end tangents, or straight at ends that have none (de Boor, *A Practical Guide to Splines*, chapter IV).
-fn through(mut points: Vec<Point>, tangents: [Vec2; 2], is_closed: bool) -> Option<Path> {
-    points.dedup();
+fn through(points: Vec<Point>, tangents: [Vec2; 2], is_closed: bool) -> Option<Path> {
+    let points = apart(points);
     if is_closed && points.len() > 2 {
         return closed_through(&points);
     }
@@ -219,11 +219,22 @@ fn through(mut points: Vec<Point>, tangents: [Vec2; 2], is_closed: bool) -> Opti
     pen.finish(false)
 }
 
+/// Points without those that are too near the one before for a chord between them.
+fn apart(mut points: Vec<Point>) -> Vec<Point> {
+    const NEAR: f64 = 1e-9;
+    let size = points.iter().map(|p| p.distance(points[0])).fold(0.0, f64::max);
+    points.dedup_by(|next, last| next.distance(*last) <= NEAR * size);
+    points
+}
+
 /// Points that a closed curve is solved with beyond its seam: the solution forgets 2 − √3 of it at each, 10⁻¹⁴ here.
 const OVERLAP: usize = 25;
 
 fn closed_through(points: &[Point]) -> Option<Path> {
-    let ring = if points.first() == points.last() { &points[1..] } else { points };
+    let (first, last) = (points[0], points[points.len() - 1]);
+    // the first point may be given again at the end, or nearly
+    let is_repeated = first.distance(last) <= 1e-6 * first.distance(points[1]);
+    let ring = if is_repeated { &points[1..] } else { points };
     let n = ring.len();
     let around: Vec<Point> =
         (0..n + 1 + 2 * OVERLAP).map(|i| ring[(i + n * OVERLAP - OVERLAP) % n]).collect();
