@@ -1,7 +1,7 @@
 //! HPGL, for pen plotters and cutters: HP-GL as the HP 7475A reads it (*Interfacing and Programming Manual*, 1983),
 //! which every later one does.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use tracelight_stroke::{Affine, Colour, Drawing, Element, Path, Piece, Point};
@@ -24,7 +24,8 @@ pub fn write(drawing: &Drawing, width_m: f64, height_m: f64, tolerance_m: f64) -
     let tolerance = (UNITS_PER_M * tolerance_m).max(0.05);
     let mut pens: Vec<Option<Colour>> = Vec::new();
     let mut taken = None;
-    let mut hpgl = String::from("IN;\n");
+    // readers know HPGL by how it begins, some only with the defaults asked for as well
+    let mut hpgl = String::from("IN;DF;\n");
     for stroke in &drawing.transformed(units).strokes {
         let known = pens.iter().position(|&c| c == stroke.colour);
         let pen = known.unwrap_or_else(|| {
@@ -68,15 +69,15 @@ fn arc(piece: &Piece, tolerance: f64) -> Option<String> {
     let Element::Arc { centre, sweep } = piece.element else { return None };
     let (from, rounded) = (piece.from.round(), centre.round());
     let radius = from.distance(rounded);
-    let middle = |p: &Piece| {
-        p.at(0.5).distance(Piece { from, element: Element::Arc { centre: rounded, sweep } }.at(0.5))
-    };
     let drawn = Piece { from, element: Element::Arc { centre: rounded, sweep } };
-    let off = drawn.end().distance(piece.end()).max(middle(piece));
-    let chord_degrees = (2.0 * (1.0 - (tolerance / radius).min(1.0)).acos()).to_degrees().min(5.0).floor();
-    // whole degrees only, for the oldest plotters; and less than a whole turn, which some take for none
-    let is_exact = off <= tolerance.max(1.0) && chord_degrees >= 1.0 && sweep.abs() <= TAU - 1e-3;
-    let is_long = sweep.abs() * radius > 8.0 && sweep.abs() > 0.01 * PI;
+    let off = [0.5, 1.0].map(|t| drawn.at(t).distance(piece.at(t)));
+    let chord_degrees =
+        (2.0 * (1.0 - (0.7 * tolerance / radius).min(1.0)).acos()).to_degrees().min(5.0).floor();
+    // whole degrees only, for the oldest plotters; and less than a whole turn, which some take for none. A plotter makes
+    // the chords even and may round their number down: there should be several
+    let is_exact =
+        off.iter().all(|&d| d <= tolerance.max(1.0)) && chord_degrees >= 1.0 && sweep.abs() <= TAU - 1e-3;
+    let is_long = sweep.abs().to_degrees() >= 3.0 * chord_degrees;
     (is_exact && is_long).then(|| {
         let [x, y] = [rounded.x, rounded.y].map(|v| v as i64);
         let degrees = crate::number::fixed(sweep.to_degrees(), 3);
