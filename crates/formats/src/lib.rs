@@ -2,9 +2,16 @@
 //!
 //! | module | reads | writes | frame |
 //! |---|---|---|---|
-//! | [`svg`] | any SVG's paths, as a [`Sheet`] | a placed drawing in true millimetres | sheet; target |
+//! | [`svg`] | any SVG's paths | a placed drawing in true millimetres | sheet; target |
+//! | [`dxf`] | the model of an ASCII DXF | the same, release 2004 | sheet; target |
 //! | [`json`] | `strokes --json` | the same | pixels |
 //! | [`csv`] | `stroke,x_m,y_m` | the same | target |
+//! | [`gcode`] | – | GRBL in laser mode, millimetres | target |
+//! | [`hpgl`] | – | HPGL, plotter units | target |
+//! | [`ild`] | – | ILDA, format 5 | target |
+//!
+//! Layers and colours of SVG, DXF and JSON are the strokes'. CSV, G-code, HPGL and ILDA keep the strokes and their
+//! order, HPGL and ILDA the colours too. Whatever is written keeps the tracing order.
 //!
 //! Readers take bytes from anywhere: what is malformed, not a number or too large is a [`FormatError`] that says
 //! where; none panics, runs for long, or takes memory out of proportion to [`MAX_BYTES`].

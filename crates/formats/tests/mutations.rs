@@ -59,7 +59,9 @@ const NASTY: [&str; 14] = [
 fn broken(text: &str, random: &mut Rand32) -> Vec<u8> {
     let mut lines: Vec<Vec<u8>> = text.lines().map(|l| l.as_bytes().to_vec()).collect();
     for _ in 0..random.rand_range(1..5) {
-        lines.push(b"0".to_vec()); // never none
+        if lines.is_empty() {
+            break;
+        }
         let at = random.rand_range(0..lines.len() as u32) as usize;
         let other = random.rand_range(0..lines.len() as u32) as usize;
         match random.rand_range(0..7) {

@@ -237,7 +237,9 @@ def read_hpgl(path, strokes, size):
     check(commands, "HPGL: not taken for HPGL")
     interpreter = Interpreter(Plotter(Collector()))
     interpreter.run(commands)
-    check(not interpreter.errors and not interpreter.not_implemented_commands, f"HPGL: {interpreter.errors} {interpreter.not_implemented_commands}")
+    # beginning anew changes nothing of a plotter that just begins
+    unknown = interpreter.not_implemented_commands - {"IN", "DF"}
+    check(not interpreter.errors and not unknown, f"HPGL: {interpreter.errors} {unknown}")
     found = chains("HPGL by ezdxf", strokes, pieces, 0.06)
     compare("HPGL by ezdxf", strokes, found, 0.06, length_share=4e-3)
 

@@ -1,7 +1,7 @@
 //! Lines and arcs that meet become one stroke, as they were drawn: a CAD program keeps an outline in pieces.
 //!
-//! Ends of one layer and colour that lie together are a node. Where two ends meet they are joined; where more meet,
-//! those that go straight on are, the straightest first. Ends are found by a grid, so this is linear; every choice is
+//! Ends of one layer and colour that lie together are a node. Where two ends meet they are joined, and so are the only
+//! two at the very same point; else, where more meet, those that go straight on, the straightest first. Ends are found by a grid, so this is linear; every choice is
 //! by place and file order, so equal files give equal strokes.
 
 use std::collections::HashMap;
@@ -73,18 +73,16 @@ fn nodes(drawn: &[Drawn], near: f64) -> Vec<Vec<End>> {
 
 /// Decides which ends of a node belong together.
 fn pair(node: &[End], drawn: &[Drawn], partners: &mut [Option<End>]) {
-    let straight_only = match node.len() {
-        2 => false,
-        3..=MOST_ENDS => true,
-        _ => return,
-    };
+    if !(2..=MOST_ENDS).contains(&node.len()) {
+        return;
+    }
     let mut pairs: Vec<(f64, End, End)> = Vec::new();
     for (i, &a) in node.iter().enumerate() {
         for &b in &node[i + 1..] {
             let turn = turn(a, b, drawn);
-            let allowed =
-                if straight_only { turn <= STRAIGHT_RAD } else { turn < std::f64::consts::PI - BACK_RAD };
-            if allowed && is_near(a, b, drawn) {
+            let most =
+                if is_alone(a, b, node, drawn) { std::f64::consts::PI - BACK_RAD } else { STRAIGHT_RAD };
+            if turn <= most && is_near(a, b, drawn) {
                 pairs.push((turn, a, b));
             }
         }
@@ -95,6 +93,13 @@ fn pair(node: &[End], drawn: &[Drawn], partners: &mut [Option<End>]) {
             (partners[a], partners[b]) = (Some(b), Some(a));
         }
     }
+}
+
+/// Whether two ends are a node's only ones, or the only ones at their very point.
+fn is_alone(a: End, b: End, node: &[End], drawn: &[Drawn]) -> bool {
+    let here = point_of(a, drawn);
+    let same = node.iter().filter(|&&end| point_of(end, drawn) == here).count();
+    node.len() == 2 || (same == 2 && point_of(b, drawn) == here)
 }
 
 fn is_near(a: End, b: End, drawn: &[Drawn]) -> bool {

@@ -248,3 +248,60 @@ fn a_long_path_is_read_quickly() {
     let sheet = of(&content);
     assert_eq!(sheet.drawing.strokes[0].path.elements().len(), 400_000);
 }
+
+#[test]
+fn circles_are_arcs_wherever_they_are_round() {
+    let sheet = of("<g stroke='red' fill='none'><circle cx='50' cy='40' r='10'/>
+        <ellipse cx='20' cy='40' rx='5' ry='10' transform='translate(20 0) scale(2 1)'/>
+        <ellipse cx='20' cy='40' rx='5' ry='10'/>
+        <rect x='1' y='1' width='30' height='20' rx='4'/>
+        <path d='M0 0H10A5 5 0 0 1 15 5V9'/><path d='M0 0C10 0 20 0 30 10'/></g>");
+    let kinds = |i: usize| -> String {
+        let elements = sheet.drawing.strokes[i].path.elements();
+        let kind = |e: &Element| match e {
+            Element::Line { .. } => 'L',
+            Element::Arc { .. } => 'A',
+            Element::Cubic { .. } => 'C',
+        };
+        elements.iter().map(kind).collect()
+    };
+    assert_eq!([0, 1, 2, 3, 4, 5].map(kinds), ["A", "A", "CCCC", "LALALALA", "LAL", "C"]);
+    let circle = &sheet.drawing.strokes[0].path;
+    assert!(circle.is_closed() && (circle.length(1e-9) - 20.0 * PI).abs() < 1e-4);
+    let corner = &sheet.drawing.strokes[4].path;
+    assert!((corner.length(1e-9) - (14.0 + 2.5 * PI)).abs() < 1e-4);
+}
+
+#[test]
+fn layers_and_colours_are_kept() {
+    let content = "<g xmlns:i='http://www.inkscape.org/namespaces/inkscape' stroke='#0a0b0c' fill='none'>
+        <g id='layer1' i:groupmode='layer' i:label='Cut &amp; go'><g id='g7'><path d='M0 0H9'/></g></g>
+        <g id='plain'><path d='M0 5H9' stroke='teal'/><g id='inner'><path d='M0 6H9'/></g></g>
+        <path d='M0 7H9'/><path d='M0 8H9V9Z' stroke='none' fill='#00ff00'/></g>";
+    let strokes = of(content).drawing.strokes;
+    let looks: Vec<_> = strokes.iter().map(|s| (s.layer.as_deref(), s.colour.unwrap().to_string())).collect();
+    let looks: Vec<_> = looks.iter().map(|(layer, colour)| (*layer, colour.as_str())).collect();
+    let wanted = [
+        (Some("Cut & go"), "#0a0b0c"),
+        (Some("plain"), "#008080"),
+        (Some("inner"), "#0a0b0c"),
+        (None, "#0a0b0c"),
+        (None, "#00ff00"),
+    ];
+    assert_eq!(looks, wanted);
+    let text = write(&Drawing { strokes: strokes.clone() }.transformed(Affine::scale(1e-3)), 0.1, 0.08);
+    let back = read(text.as_bytes()).unwrap().sheet.drawing.strokes;
+    let look = |s: &Stroke| (s.layer.clone(), s.colour);
+    assert_eq!(back.iter().map(look).collect::<Vec<_>>(), strokes.iter().map(look).collect::<Vec<_>>());
+}
+
+#[test]
+fn what_is_left_out_is_said() {
+    let found =
+        read(svg("width='9' height='9'", "<path d='M0 0H9' stroke='red'/><text>hi</text><text/>").as_bytes());
+    let remarks = found.unwrap().remarks;
+    assert_eq!(
+        remarks,
+        ["1 text element(s) of the SVG not drawn: convert text to paths in the drawing program"]
+    );
+}
