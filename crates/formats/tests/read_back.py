@@ -299,4 +299,5 @@ def main():
         reader(folder / f"{stem}.{extension}", strokes, size)
 
 
-main()
+if __name__ == "__main__":
+    main()

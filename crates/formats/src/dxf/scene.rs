@@ -199,12 +199,12 @@ impl Skipped {
         let more = if kinds.len() > NAMED { ", …" } else { "" };
         let kinds = (!named.is_empty()).then(|| {
             let named = named.join(", ");
-            format!("not drawn: {named}{more}; explode them into lines and arcs to have them drawn")
+            format!("not drawn: {named}{more}; explode them into lines and arcs")
         });
-        let said = |n: usize, what: &str| (n > 0).then(|| format!("not drawn: {n} {what}"));
-        let hidden = said(self.hidden, "entities that are invisible, or on layers that are off or frozen");
-        let paper = said(self.in_paper_space, "entities of layouts (paper space); the model is drawn");
-        let missing = said(self.missing_blocks, "inserts of blocks that the file does not hold (bind them)");
+        let said = |n: usize, what: &str| (n > 0).then(|| format!("not drawn: {what} ({n} found)"));
+        let hidden = said(self.hidden, "what is invisible, or on a layer that is off or frozen");
+        let paper = said(self.in_paper_space, "layouts (paper space); the model is");
+        let missing = said(self.missing_blocks, "blocks that the file does not hold; bind them to it");
         [kinds, hidden, paper, missing].into_iter().flatten().collect()
     }
 }

@@ -202,7 +202,12 @@ fn layers_give_colours_and_hide() {
     assert_eq!(looks, [("Red", rgb(0xff0000)), ("True", rgb(0x123456)), ("Red", rgb(0x0000ff))]);
     assert_eq!(found.sheet.metres_per_unit, None);
     let remarks = found.remarks.join("; ");
-    for said in ["2 TEXT, 1 HATCH", "3 entities that are invisible", "1 entities of layouts", "1 inserts"] {
+    for said in [
+        "2 TEXT, 1 HATCH",
+        "is off or frozen (3 found)",
+        "the model is (1 found)",
+        "bind them to it (1 found)",
+    ] {
         assert!(remarks.contains(said), "{said}: {remarks}");
     }
 }

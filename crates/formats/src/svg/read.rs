@@ -91,12 +91,12 @@ fn count(xml: &Document, name: &str) -> usize {
 
 /// What is left out of a drawing that has strokes.
 fn remarks(xml: &Document) -> Vec<String> {
-    let said = |name, what: &str, instead: &str| {
+    let said = |name, what: &str| {
         let found = count(xml, name);
-        (found > 0).then(|| format!("{found} {what} of the SVG not drawn: {instead}"))
+        (found > 0).then(|| format!("not drawn: {what} ({found} found)"))
     };
-    let text = said("text", "text element(s)", "convert text to paths in the drawing program");
-    let image = said("image", "embedded picture(s)", "trace their own files");
+    let text = said("text", "text; convert it to paths in the drawing program");
+    let image = said("image", "embedded pictures; trace their own files");
     text.into_iter().chain(image).collect()
 }
 
