@@ -88,10 +88,11 @@ def truth(document):
 def found(path, tracelight):
     run = subprocess.run([tracelight, "strokes", str(path), "--json"], capture_output=True, text=True)
     check(run.returncode == 0, run.stderr)
-    document, lengths = json.loads(run.stdout), {}
+    document, lengths, colours = json.loads(run.stdout), {}, {}
     for stroke in document["strokes"]:
         lengths[stroke["layer"]] = lengths.get(stroke["layer"], 0) + length(dense(stroke["path"]))
-    return lengths, (document["width_px"], document["height_px"])
+        colours.setdefault(stroke["layer"], set()).add(stroke["colour"])
+    return lengths, colours, (document["width_px"], document["height_px"])
 
 
 def main():
@@ -100,7 +101,12 @@ def main():
         path = folder / f"theirs-{version}.dxf"
         document = drawing(version)
         document.saveas(path)
-        (wanted, size), (got, sheet) = truth(document), found(path, tracelight)
+        (wanted, size), (got, colours, sheet) = truth(document), found(path, tracelight)
+        for layer, shown in colours.items():
+            own = "#%02x%02x%02x" % tuple(ezdxf.colors.aci2rgb(document.layers.get(layer).color))
+            # one line has a colour of its own
+            own = {own, "#ff0000"} if layer == "lines" else {own}
+            check(shown == own, f"{version}, {layer}: {shown} instead of {own}")
         # layer 0 within a block is the insert's, which taking apart does not say
         check("0" not in got, f"{version}: strokes on layer 0")
         got["0"] = got.pop("blocks") + got.pop("nested")

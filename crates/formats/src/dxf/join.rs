@@ -1,8 +1,8 @@
 //! Lines and arcs that meet become one stroke, as they were drawn: a CAD program keeps an outline in pieces.
 //!
 //! Ends of one layer and colour that lie together are a node. Where two ends meet they are joined, and so are the only
-//! two at the very same point; else, where more meet, those that go straight on, the straightest first. Ends are found by a grid, so this is linear; every choice is
-//! by place and file order, so equal files give equal strokes.
+//! two at the very same point; else, where more meet, those that go straight on, the straightest first. Ends are found
+//! by a grid, so this is linear; every choice is by place and file order, so equal files give equal strokes.
 
 use std::collections::HashMap;
 
