@@ -26,8 +26,8 @@ pub(crate) struct StrokesArgs {
     /// Pictures or drawings; - is standard input
     #[arg(required = true, value_name = "PICTURE")]
     pictures: Vec<String>,
-    /// Write the strokes here: .svg, .dxf, .gcode (GRBL laser), .hpgl or .ild (ILDA) in true size, .csv (metres),
-    /// .json (pixels); a folder, with / at its end, for several pictures
+    /// Write the strokes here: .svg, .dxf, .gcode (GRBL laser) or .hpgl in true size, .ild (ILDA, over its whole
+    /// range), .csv (metres), .json (pixels); a folder, with / at its end, for several pictures
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// How pixels become strokes
