@@ -12,8 +12,8 @@ const RANGE: f64 = 32_767.0;
 /// Furthest that chords may be from their curve, units: a 3000th of the sheet, less than the beam's width.
 const TOLERANCE: f64 = 20.0;
 
-/// Longest lit step, units: 1.5 % of the range, what scanners follow at their rated pace (8° of 60° optical, ILDA
-/// test pattern) with room to spare.
+/// Longest lit step, units: 1.5 % of the range. A line across the whole of it is 66 points, 2 ms at the usual 30 000
+/// points a second.
 const LIT_STEP: f64 = 1000.0;
 
 /// Longest dark step, units. The mirrors may lag; nobody sees it.

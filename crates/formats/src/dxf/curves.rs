@@ -41,8 +41,8 @@ fn is_similarity(map: Affine) -> bool {
     size > 0.0 && like.min(unlike) <= 1e-6 * size
 }
 
-/// An arc as cubics of an eighth of a turn at most, each off by 4e-6 radii (Goldapp 1991: 4/27·(θ/4)⁶·… falls with
-/// the sixth power of the angle; a quarter turn is off by 2.7e-4).
+/// An arc as cubics of an eighth of a turn at most. Their error falls with the sixth power of the angle: 2.7e-4 radii
+/// for a quarter of a turn, 4.3e-6 for an eighth (Goldapp, "Approximation of circular arcs by cubic polynomials", 1991).
 fn cubics(arc: &Piece, centre: Point, sweep: f64) -> impl Iterator<Item = [Point; 3]> {
     let parts = (sweep.abs() / FRAC_PI_4).ceil().clamp(1.0, 16.0) as usize;
     let handle = 4.0 / 3.0 * (0.25 * sweep / parts as f64).tan();
@@ -103,4 +103,32 @@ pub(super) fn has_length(path: &Path) -> bool {
         Element::Arc { centre, sweep } => centre != p.from && sweep != 0.0,
         Element::Cubic { c1, c2, to } => [c1, c2, to].iter().any(|&c| c != p.from),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ellipse_is_as_exact_as_it_says() {
+        let squeezed = Affine::new([3.0, 0.0, 0.5, 0.7, 9.0, -4.0]);
+        for (from, to) in [(0.0, 0.0), (0.3, 5.9), (-2.0, 1.0)] {
+            let path = moved(&unit_arc(from, to), squeezed);
+            assert!(path.pieces().all(|p| matches!(p.element, Element::Cubic { .. })));
+            let back = squeezed.inverse();
+            for (piece, i) in path.pieces().flat_map(|p| (0..=20).map(move |i| (p, i))) {
+                let off = (back * piece.at(f64::from(i) / 20.0)).to_vec2().hypot() - 1.0;
+                assert!(off.abs() < 5e-6, "{off}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_plane_that_leans_is_foreshortened() {
+        let text = b"0\nCIRCLE\n210\n0\n220\n0.6\n230\n0.8\n0\nEOF\n";
+        let mut record = Record::default();
+        crate::dxf::groups::Records::new(text).read(&mut record).unwrap();
+        let place = world_from_plane(&record, 0.0).unwrap();
+        assert!((place.determinant().abs() - 0.8).abs() < 1e-12, "{place:?}");
+    }
 }

@@ -23,8 +23,8 @@ const MOST_ENDS: usize = 8;
 /// Where more than two meet, a join turns by less than this: 10°.
 const STRAIGHT_RAD: f64 = 0.1745;
 
-/// Two ends that meet and go back the way they came are two lines on top of each other: within 0.1°.
-const BACK_RAD: f64 = 0.0017;
+/// Two ends that meet and go back the way they came, to a ten-thousandth, are two lines on top of each other.
+const BACK_RAD: f64 = 1e-4;
 
 /// An end of a path: twice its number, plus one for its last point.
 type End = usize;

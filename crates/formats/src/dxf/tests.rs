@@ -74,6 +74,16 @@ fn a_line_drawn_twice_does_not_turn_back_on_itself() {
 }
 
 #[test]
+fn ends_at_the_very_same_point_belong_together() {
+    // a third line ends a micrometre beside a corner
+    let corner = "0 LINE, 10 0, 20 0, 11 100, 21 0, 0 LINE, 10 100, 20 0, 11 100, 21 100,
+                  0 LINE, 10 100.001, 20 0, 11 150, 21 -80";
+    let strokes = sheet(corner).drawing.strokes;
+    let lengths: Vec<f64> = strokes.iter().map(|s| s.path.length(1e-9).round()).collect();
+    assert_eq!(lengths, [200.0, 94.0]);
+}
+
+#[test]
 fn bulges_are_arcs() {
     let path = sheet("0 LWPOLYLINE, 90 3, 70 1, 10 0, 20 0, 42 1, 10 10, 20 0, 10 10, 20 20").drawing.strokes;
     let path = &path[0].path;
