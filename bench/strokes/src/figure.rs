@@ -66,7 +66,7 @@ impl Figure {
 
     /// A filled shape: its outline and its holes'.
     pub(crate) fn filled(outlines: Vec<Path>) -> Self {
-        let stroke = |path: &Path| Stroke { path: path.clone(), kind: StrokeKind::Outline, pen: None };
+        let stroke = |path: &Path| Stroke { kind: StrokeKind::Outline, ..Stroke::new(path.clone()) };
         Self { strokes: outlines.iter().map(stroke).collect(), ink: vec![Ink::Fill(outlines)] }
     }
 
@@ -79,7 +79,7 @@ impl Figure {
 
     /// Moved by a similarity that keeps lengths.
     pub(crate) fn moved(&self, by: Affine) -> Self {
-        let stroke = |s: &Stroke| Stroke { path: s.path.transformed(by), ..*s };
+        let stroke = |s: &Stroke| s.along(s.path.transformed(by));
         let ink = |i: &Ink| match i {
             Ink::Line { path, pen, nib } => Ink::Line { path: path.transformed(by), pen: *pen, nib: *nib },
             Ink::Fill(paths) => Ink::Fill(paths.iter().map(|p| p.transformed(by)).collect()),

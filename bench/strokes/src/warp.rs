@@ -50,7 +50,7 @@ impl Warp {
 
     /// Strokes as they are seen.
     pub(crate) fn drawing(&self, strokes: &[Stroke]) -> Drawing {
-        let seen = |s: &Stroke| Stroke { path: self.path(&s.path), ..*s };
+        let seen = |s: &Stroke| s.along(self.path(&s.path));
         Drawing { strokes: strokes.iter().map(seen).collect() }
     }
 }

@@ -1,8 +1,9 @@
 //! Strokes in pixels as JSON: what `strokes --json` prints.
 
 use serde::{Deserialize, Serialize};
-use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, StrokeKind};
+use tracelight_stroke::{Colour, Drawing, Element, Path, Point, Stroke, StrokeKind};
 
+use crate::layers::Layers;
 use crate::pen::polyline;
 use crate::{FormatError, Sheet, check_size, is_sound};
 
@@ -36,6 +37,11 @@ struct Line {
     points: Vec<[f64; 2]>,
     #[serde(default)]
     path: Option<Course>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    layer: Option<String>,
+    /// `#rrggbb`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    colour: Option<String>,
 }
 
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
@@ -94,6 +100,8 @@ fn line_of(stroke: &Stroke, tolerance_px: f64) -> Line {
             start: pair(stroke.path.start()),
             elements: stroke.path.elements().iter().map(step_of).collect(),
         }),
+        layer: stroke.layer.as_deref().map(str::to_owned),
+        colour: stroke.colour.map(|c| c.to_string()),
     }
 }
 
@@ -145,7 +153,8 @@ pub fn read(bytes: &[u8]) -> Result<Traced, FormatError> {
             expected: "two positive numbers up to 1e6",
         });
     }
-    let strokes = document.strokes.iter().enumerate().map(|(i, line)| stroke_of(line, i));
+    let mut layers = Layers::default();
+    let strokes = document.strokes.iter().enumerate().map(|(i, line)| stroke_of(line, i, &mut layers));
     let strokes = strokes.collect::<Result<Vec<_>, _>>()?;
     if strokes.is_empty() {
         return Err(FormatError::Nothing { hint: "\"strokes\" is empty" });
@@ -154,7 +163,7 @@ pub fn read(bytes: &[u8]) -> Result<Traced, FormatError> {
     Ok(Traced { sheet, mode: document.mode })
 }
 
-fn stroke_of(line: &Line, number: usize) -> Result<Stroke, FormatError> {
+fn stroke_of(line: &Line, number: usize, layers: &mut Layers) -> Result<Stroke, FormatError> {
     let place = format!("strokes[{number}]");
     let path = match &line.path {
         Some(course) => path_of(course, line.closed, &place)?,
@@ -168,7 +177,17 @@ fn stroke_of(line: &Line, number: usize) -> Result<Stroke, FormatError> {
         Kind::Centreline => StrokeKind::Centreline,
         Kind::Outline => StrokeKind::Outline,
     };
-    Ok(Stroke { path, kind, pen: line.pen_px })
+    let colour = line.colour.as_deref().map(|text| colour_of(text, &place)).transpose()?;
+    Ok(Stroke { path, kind, pen: line.pen_px, layer: line.layer.as_deref().map(|l| layers.named(l)), colour })
+}
+
+fn colour_of(text: &str, place: &str) -> Result<Colour, FormatError> {
+    Colour::from_hex(text).ok_or_else(|| FormatError::Value {
+        place: place.into(),
+        field: "colour",
+        value: format!("{:?}", text.chars().take(40).collect::<String>()),
+        expected: "#rrggbb, such as \"#c8102e\"",
+    })
 }
 
 fn sound([x, y]: [f64; 2], place: &str) -> Result<Point, FormatError> {

@@ -2,21 +2,36 @@
 //!
 //! | module | reads | writes | frame |
 //! |---|---|---|---|
-//! | [`svg`] | any SVG's paths, as a [`Sheet`] | a placed drawing in true millimetres | sheet; target |
+//! | [`svg`] | any SVG's paths | a placed drawing in true millimetres | sheet; target |
+//! | [`dxf`] | the model of an ASCII DXF | the same, release 2004 | sheet; target |
 //! | [`json`] | `strokes --json` | the same | pixels |
 //! | [`csv`] | `stroke,x_m,y_m` | the same | target |
+//! | [`gcode`] | – | GRBL in laser mode, millimetres | target |
+//! | [`hpgl`] | – | HPGL, plotter units | target |
+//! | [`ild`] | – | ILDA, format 5 | target |
+//!
+//! Layers and colours of SVG, DXF and JSON are the strokes'. CSV, G-code, HPGL and ILDA keep the strokes and their
+//! order, HPGL and ILDA the colours too. Whatever is written keeps the tracing order.
 //!
 //! Readers take bytes from anywhere: what is malformed, not a number or too large is a [`FormatError`] that says
 //! where; none panics, runs for long, or takes memory out of proportion to [`MAX_BYTES`].
 
+mod circular;
 pub mod csv;
+pub mod dxf;
 mod error;
+mod extent;
+pub mod gcode;
+pub mod hpgl;
+pub mod ild;
 pub mod json;
+mod layers;
+mod number;
 mod pen;
 pub mod svg;
 
 pub use error::FormatError;
-use tracelight_stroke::{Drawing, Point};
+use tracelight_stroke::{Colour, Drawing, Point};
 
 /// Largest file that is read, bytes. The worst ones of this size take 2 s and 900 MB (measured).
 pub const MAX_BYTES: usize = 16 << 20;
@@ -36,6 +51,22 @@ pub struct Sheet {
     pub metres_per_unit: Option<f64>,
     /// What is drawn, in the file's unit and order.
     pub drawing: Drawing,
+}
+
+/// What a reader made of a file, and what it left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// The drawing.
+    pub sheet: Sheet,
+    /// What of the file is not in the drawing, and what to do about it: one sentence each.
+    pub remarks: Vec<String>,
+}
+
+/// A colour as people write it: `#rrggbb`, `#rgb`, `rgb(…)`, or one of CSS's names; `None` for anything else.
+pub fn colour_of(text: &str) -> Option<Colour> {
+    let text = text.trim().to_ascii_lowercase();
+    let css: svgtypes::Color = text.parse().ok()?;
+    Some(Colour::new(css.red, css.green, css.blue))
 }
 
 fn check_size(bytes: &[u8]) -> Result<(), FormatError> {

@@ -1,6 +1,7 @@
 //! SVG: anyone's in, ours out.
 
 mod guard;
+mod names;
 mod read;
 mod write;
 

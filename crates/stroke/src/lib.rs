@@ -6,6 +6,7 @@
 //!
 //! Points and vectors are [`kurbo`]'s: differences of points are vectors, and adding two points does not compile.
 
+mod colour;
 mod compare;
 mod fit;
 mod order;
@@ -13,6 +14,7 @@ mod path;
 mod simplify;
 mod stroke;
 
+pub use colour::Colour;
 pub use compare::{Comparison, Score, compare, compare_polylines, score, score_polylines};
 pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Vec2};

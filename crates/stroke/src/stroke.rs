@@ -1,6 +1,8 @@
+use std::sync::Arc;
+
 use kurbo::{Affine, Point};
 
-use crate::Path;
+use crate::{Colour, Path};
 
 /// What of the ink a stroke follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -31,17 +33,26 @@ pub struct Stroke {
     pub kind: StrokeKind,
     /// Width of the pen that drew it, in the path's unit, where known.
     pub pen: Option<f64>,
+    /// Name of the layer it lay on, where the drawing has layers.
+    pub layer: Option<Arc<str>>,
+    /// Colour it had, where the drawing has colours.
+    pub colour: Option<Colour>,
 }
 
 impl Stroke {
-    /// A centreline of unknown pen width.
+    /// A centreline of unknown pen width, on no layer, of no colour.
     pub const fn new(path: Path) -> Self {
-        Self { path, kind: StrokeKind::Centreline, pen: None }
+        Self { path, kind: StrokeKind::Centreline, pen: None, layer: None, colour: None }
+    }
+
+    /// A stroke with everything of this one but its path.
+    pub fn along(&self, path: Path) -> Self {
+        Self { path, kind: self.kind, pen: self.pen, layer: self.layer.clone(), colour: self.colour }
     }
 
     /// The same stroke drawn from its other end.
     pub fn reversed(&self) -> Self {
-        Self { path: self.path.reversed(), ..*self }
+        self.along(self.path.reversed())
     }
 }
 
@@ -72,11 +83,36 @@ impl Drawing {
     /// Every path moved by a similarity (rotation, uniform scale, reflection, shift); pen widths scale with it.
     pub fn transformed(&self, similarity: Affine) -> Self {
         let scale = similarity.determinant().abs().sqrt();
-        let strokes = self.strokes.iter().map(|s| Stroke {
-            path: s.path.transformed(similarity),
-            kind: s.kind,
-            pen: s.pen.map(|w| w * scale),
-        });
+        let strokes = self
+            .strokes
+            .iter()
+            .map(|s| Stroke { pen: s.pen.map(|w| w * scale), ..s.along(s.path.transformed(similarity)) });
         Self { strokes: strokes.collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{OrderOptions, order};
+
+    #[test]
+    fn layer_and_colour_stay_with_a_stroke() {
+        let square = [(0., 0.), (1., 0.), (1., 1.), (0., 1.)].map(Point::from);
+        let named = |closed| Stroke {
+            layer: Some("cut".into()),
+            colour: Some(Colour::new(255, 0, 0)),
+            pen: Some(1.0),
+            ..Stroke::new(Path::polyline(&square, closed).unwrap())
+        };
+        let drawing = Drawing { strokes: vec![named(true), named(false), named(false).reversed()] };
+        let moved = drawing.transformed(Affine::scale(2.0));
+        let ordered =
+            order(&moved, Point::new(5.0, 5.0), OrderOptions::default(), &|a, b| a.distance(b)).drawing;
+        assert_eq!(ordered.strokes.len(), 3);
+        for stroke in &ordered.strokes {
+            assert_eq!(stroke.layer.as_deref(), Some("cut"));
+            assert_eq!((stroke.colour, stroke.pen), (Some(Colour::new(255, 0, 0)), Some(2.0)));
+        }
     }
 }

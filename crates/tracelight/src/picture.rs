@@ -4,7 +4,7 @@ use std::io::{Cursor, Read};
 use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
-use tracelight_formats::{FormatError, Sheet, csv, json, svg};
+use tracelight_formats::{FormatError, Reading, Sheet, csv, dxf, json, svg};
 use tracelight_stroke::{Affine, Drawing, Vec2};
 use tracelight_vision::Grey;
 
@@ -23,7 +23,7 @@ pub(crate) enum Source {
     /// Pixels, to be traced.
     Pixels(Pixels),
     /// Strokes, to be taken as they are.
-    Strokes(Sheet),
+    Strokes(Reading),
 }
 
 /// A decoded picture, upright, over white.
@@ -77,10 +77,16 @@ fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
     let extension = Path::new(path).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     match kind_of(bytes, extension.as_deref()) {
         Kind::Svg => svg::read(bytes).map(Source::Strokes).map_err(|e| malformed(&e)),
-        Kind::Json => json::read(bytes).map(|t| Source::Strokes(t.sheet)).map_err(|e| malformed(&e)),
-        Kind::Csv => csv::read(bytes).map(|d| Source::Strokes(sheet_about(&d))).map_err(|e| malformed(&e)),
+        Kind::Dxf => dxf::read(bytes).map(Source::Strokes).map_err(|e| malformed(&e)),
+        Kind::Json => json::read(bytes).map(|t| whole(t.sheet)).map_err(|e| malformed(&e)),
+        Kind::Csv => csv::read(bytes).map(|d| whole(sheet_about(&d))).map_err(|e| malformed(&e)),
         Kind::Image => decode_image(path, bytes).map(Source::Pixels),
     }
+}
+
+/// A sheet that is all its file holds.
+const fn whole(sheet: Sheet) -> Source {
+    Source::Strokes(Reading { sheet, remarks: Vec::new() })
 }
 
 /// A sheet of true size whose centre is the target's origin, just large enough for a drawing in target metres.
@@ -99,6 +105,7 @@ fn sheet_about(drawing: &Drawing) -> Sheet {
 
 enum Kind {
     Svg,
+    Dxf,
     Json,
     Csv,
     Image,
@@ -112,19 +119,32 @@ fn kind_of(bytes: &[u8], extension: Option<&str>) -> Kind {
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1024)]);
     let head = head.trim_start_matches('\u{feff}').trim_start();
     match extension {
+        _ if is_dxf(bytes, head) => Kind::Dxf,
         _ if head.starts_with('<') => Kind::Svg,
         _ if head.starts_with('{') => Kind::Json,
         _ if head.starts_with("stroke,") => Kind::Csv,
         Some("svg") => Kind::Svg,
+        Some("dxf") => Kind::Dxf,
         Some("json") => Kind::Json,
         Some("csv") => Kind::Csv,
         _ => Kind::Image,
     }
 }
 
+/// A first group of code 0 (a section) or 999 (a comment); or what says that it is of a kind no one reads.
+fn is_dxf(bytes: &[u8], head: &str) -> bool {
+    let mut lines = head.lines().map(str::trim);
+    let ascii = match (lines.next(), lines.next()) {
+        (Some("0"), Some(second)) => second == "SECTION",
+        (Some("999"), Some(_)) => true,
+        _ => false,
+    };
+    ascii || bytes.starts_with(b"AutoCAD Binary DXF") || bytes.starts_with(b"AC10")
+}
+
 fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
     let not_a_picture = || {
-        let known = "PNG, JPEG, WebP, BMP, GIF, PNM, TIFF, SVG, JSON or CSV";
+        let known = "PNG, JPEG, WebP, BMP, GIF, PNM, TIFF, SVG, DXF, JSON or CSV";
         Failure::usage("not-a-picture", format!("{path} is none of {known}"))
     };
     let broken = |e: ImageError| match e {

@@ -3,10 +3,11 @@
 use std::time::Instant;
 
 use tracelight_aim::{Placement, SizeRequest};
-use tracelight_formats::svg;
+use tracelight_formats::{Reading, svg};
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 use tracelight_vision::{Mode, Options};
 
+use crate::cli::choosing::ChoiceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::failure::Failure;
 use crate::output::Raster;
@@ -27,8 +28,8 @@ pub(crate) struct Sketch {
     pub(crate) picture: Option<Raster>,
     /// How it was traced.
     pub(crate) mode: &'static str,
-    /// What the user should know about it.
-    pub(crate) doubt: Option<String>,
+    /// What the user should know about it: one sentence each.
+    pub(crate) remarks: Vec<String>,
     /// Share of the ink that lies on no stroke; none where there was no ink.
     pub(crate) missed_ink: Option<f64>,
     /// Time it took, ms.
@@ -48,6 +49,16 @@ fn doubt(missed_ink: f64) -> Option<String> {
     })
 }
 
+/// Strokes on a page of their own, for a file.
+pub(crate) struct Page {
+    /// Metres, y up, the origin at the page's centre.
+    pub(crate) drawing: Drawing,
+    /// The page's width, m.
+    pub(crate) width_m: f64,
+    /// The page's height, m.
+    pub(crate) height_m: f64,
+}
+
 /// A drawing on the target.
 pub(crate) struct Placed {
     /// In target metres.
@@ -61,8 +72,14 @@ pub(crate) struct Placed {
 }
 
 impl Placed {
-    /// Its strokes as an SVG of true size, on a page that just holds the sheet as it lies, moved and turned.
+    /// Its strokes as an SVG of true size.
     pub(crate) fn svg(&self, drawing: &Drawing) -> String {
+        let Page { drawing, width_m, height_m } = self.page(drawing);
+        svg::write(&drawing, width_m, height_m)
+    }
+
+    /// Strokes on a page that just holds the sheet as it lies, moved and turned.
+    pub(crate) fn page(&self, drawing: &Drawing) -> Page {
         let corners = self.corners_m;
         let reach = |of: fn(&Point) -> f64| {
             let values = corners.iter().map(of);
@@ -70,21 +87,22 @@ impl Placed {
         };
         let ((left, right), (low, high)) = (reach(|p| p.x), reach(|p| p.y));
         let to_centre = Vec2::new(-0.5 * (left + right), -0.5 * (low + high));
-        svg::write(&drawing.transformed(Affine::translate(to_centre)), right - left, high - low)
+        let drawing = drawing.transformed(Affine::translate(to_centre));
+        Page { drawing, width_m: right - left, height_m: high - low }
     }
 }
 
-/// Traces pixels, takes strokes as they are.
-pub(crate) fn sketch(name: &str, source: Source, mode: Mode) -> Result<Sketch, Failure> {
+/// Traces pixels, takes strokes as they are; of these, the chosen ones.
+pub(crate) fn sketch(name: &str, source: Source, mode: Mode, choice: &ChoiceArgs) -> Result<Sketch, Failure> {
     let began = Instant::now();
     let mut sketch = match source {
-        Source::Strokes(sheet) => Sketch {
+        Source::Strokes(Reading { sheet, remarks }) => Sketch {
             size: (sheet.width, sheet.height),
             true_width_m: sheet.metres_per_unit.map(|m| m * sheet.width),
             drawing: sheet.drawing,
             picture: None,
             mode: "strokes",
-            doubt: None,
+            remarks,
             missed_ink: None,
             vision_ms: 0.0,
         },
@@ -98,12 +116,13 @@ pub(crate) fn sketch(name: &str, source: Source, mode: Mode) -> Result<Sketch, F
                 drawing: traced.strokes,
                 picture: Some(pixels.colour),
                 mode: mode.name(),
-                doubt: doubt(traced.missed_ink),
+                remarks: doubt(traced.missed_ink).into_iter().collect(),
                 missed_ink: Some(traced.missed_ink),
                 vision_ms: 0.0,
             }
         }
     };
+    sketch.drawing = choice.of(name, sketch.drawing)?;
     if sketch.drawing.strokes.is_empty() {
         let why = "it has no strokes; give a picture with at least one line";
         return Err(Failure::failed("no-strokes-found", format!("{name}: {why}")));

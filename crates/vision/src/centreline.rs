@@ -1,6 +1,6 @@
 //! Pen lines: strokes down their middle.
 
-use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
+use tracelight_stroke::{Point, Stroke, Vec2};
 
 use crate::Options;
 use crate::follow;
@@ -48,7 +48,7 @@ pub(crate) fn stroke(dark: &Plane<u8>, row: &Row, options: &Options) -> Option<S
     // a line that was carried on out of the picture ends at its border
     let points: Vec<Point> = row.points.iter().map(|&p| dark.clamp(p)).collect();
     let path = follow::path(&points, row.closed, 0.5 * row.width, options)?;
-    Some(Stroke { path, kind: StrokeKind::Centreline, pen: Some(row.width) })
+    Some(Stroke { pen: Some(row.width), ..Stroke::new(path) })
 }
 
 /// Lines strung together through the joints.

@@ -67,7 +67,7 @@ const BESIDE_LINES: usize = 4;
 
 fn stroke(points: &[Point], options: &Options) -> Option<Stroke> {
     let path = follow::path(points, true, REACH_PX, options)?;
-    Some(Stroke { path, kind: StrokeKind::Outline, pen: None })
+    Some(Stroke { kind: StrokeKind::Outline, ..Stroke::new(path) })
 }
 
 /// The darkness of a pixel all inside a region.

@@ -1,6 +1,6 @@
 //! The original report's tracer, kept for comparison: one closed figure, walked in steps of 5 px.
 
-use tracelight_stroke::{Path, Point, Stroke, StrokeKind, Vec2};
+use tracelight_stroke::{Path, Point, Stroke, Vec2};
 
 use crate::VisionError;
 use crate::mask::Mask;
@@ -66,5 +66,5 @@ fn direction(heading: usize) -> Vec2 {
 
 fn polygon(points: &[Point]) -> Option<Stroke> {
     let path = Path::polyline(points, true)?;
-    Some(Stroke { path, kind: StrokeKind::Centreline, pen: None })
+    Some(Stroke::new(path))
 }

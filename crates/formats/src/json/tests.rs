@@ -10,8 +10,13 @@ fn example() -> Traced {
     let square = [(0., 0.), (9., 0.), (9., 9.), (0., 9.)].map(Point::from);
     let square = polyline(&square, true).unwrap();
     let strokes = vec![
-        Stroke { path: curved, kind: StrokeKind::Centreline, pen: Some(2.5) },
-        Stroke { path: square, kind: StrokeKind::Outline, pen: None },
+        Stroke {
+            pen: Some(2.5),
+            layer: Some("Lines & more".into()),
+            colour: Some(Colour::new(200, 16, 46)),
+            ..Stroke::new(curved)
+        },
+        Stroke { kind: StrokeKind::Outline, ..Stroke::new(square) },
     ];
     let sheet = Sheet { width: 640.0, height: 480.0, metres_per_unit: None, drawing: Drawing { strokes } };
     Traced { sheet, mode: "auto".into() }

@@ -1,9 +1,12 @@
-use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, StrokeKind};
+use tracelight_stroke::{Colour, Drawing, Path, Point, Stroke, StrokeKind};
+use usvg::roxmltree::{Document, Node};
 use usvg::tiny_skia_path::PathSegment;
 
 use super::guard;
+use super::names::{Names, Place};
+use crate::extent::controls;
 use crate::pen::Pen;
-use crate::{FormatError, Sheet, check_size, is_sound, text};
+use crate::{FormatError, Reading, Sheet, check_size, is_sound, text};
 
 /// CSS: an inch is 96 px.
 const METRES_PER_PX: f64 = 0.0254 / 96.0;
@@ -20,34 +23,40 @@ const MAX_NODES: u32 = 2_000_000;
 /// Reads the visible paths of an SVG, in document order, a stroke for each subpath.
 ///
 /// Shapes, `use`, CSS, transforms, `viewBox` and units are resolved. Lines stay lines and cubics cubics; quadratic
-/// curves become cubics, and elliptical arcs too, within 3e-4 of their radius. A path with a stroke is a centreline
-/// of that width, one with a fill only is an outline. A filled rectangle that covers the whole sheet is background
-/// and left out. Clipping, masks, dashes and filters are not applied; text and pictures are not read.
+/// curves become cubics; arcs that are circular on the sheet are arcs again, elliptical ones cubics within 3e-4 of
+/// their radius. A path with a stroke is a centreline of that width, one with a fill only is an outline. A filled
+/// rectangle that covers the whole sheet is background and left out. Clipping, masks, dashes and filters are not
+/// applied; text and pictures are not read, which a remark says.
+///
+/// A stroke's colour is that of its line, else of its fill. Its layer is the nearest layer of the drawing program
+/// (`inkscape:groupmode="layer"`, by its label) or, outside of all of them, the nearest group with an id.
 ///
 /// The unit is the CSS px; a sheet with a physical size (mm, cm, in, pt, pc, Q) says how large that is.
 ///
 /// # Errors
 /// Anything that is not an SVG, one that draws nothing, and one that is made to fill the memory.
-pub fn read(bytes: &[u8]) -> Result<Sheet, FormatError> {
+pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
     check_size(bytes)?;
     let text = text(bytes)?;
     guard::check_entities(text)?;
     let options =
         usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };
-    let xml = usvg::roxmltree::Document::parse_with_options(text, options).map_err(syntax)?;
+    let xml = Document::parse_with_options(text, options).map_err(syntax)?;
     guard::check_tree(&xml)?;
     let tree = usvg::Tree::from_xmltree(&xml, &resolve_nothing()).map_err(unreadable)?;
     let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
     if !is_sound(Point::new(width, height)) {
         return Err(FormatError::Far { place: "size of the sheet".into(), x: width, y: height });
     }
-    let mut collector = Collector { width, height, elements: 0, strokes: Vec::new() };
+    let names = Names::of(&xml);
+    let mut collector = Collector { width, height, names, elements: 0, strokes: Vec::new() };
     collector.group(tree.root())?;
     if collector.strokes.is_empty() {
         return Err(FormatError::Nothing { hint: hint(&xml) });
     }
     let metres_per_unit = is_physical(xml.root_element()).then_some(METRES_PER_PX);
-    Ok(Sheet { width, height, metres_per_unit, drawing: Drawing { strokes: collector.strokes } })
+    let sheet = Sheet { width, height, metres_per_unit, drawing: Drawing { strokes: collector.strokes } };
+    Ok(Reading { sheet, remarks: remarks(&xml) })
 }
 
 /// Options that never open a file: links to pictures lead nowhere.
@@ -74,11 +83,27 @@ fn unreadable(error: usvg::Error) -> FormatError {
     }
 }
 
-fn hint(xml: &usvg::roxmltree::Document) -> &'static str {
-    let has = |name: &str| xml.descendants().any(|n| n.tag_name().name() == name);
-    if has("text") {
+/// Elements of that name, in whatever namespace, that hold something.
+fn count(xml: &Document, name: &str) -> usize {
+    let holds = |n: &Node| n.descendants().any(|d| d.text().is_some_and(|t| !t.trim().is_empty()));
+    xml.descendants().filter(|n| n.tag_name().name() == name && (name != "text" || holds(n))).count()
+}
+
+/// What is left out of a drawing that has strokes.
+fn remarks(xml: &Document) -> Vec<String> {
+    let said = |name, what: &str| {
+        let found = count(xml, name);
+        (found > 0).then(|| format!("not drawn: {what} ({found} found)"))
+    };
+    let text = said("text", "text; convert it to paths in the drawing program");
+    let image = said("image", "embedded pictures; trace their own files");
+    text.into_iter().chain(image).collect()
+}
+
+fn hint(xml: &Document) -> &'static str {
+    if count(xml, "text") > 0 {
         "the SVG holds text, not paths: convert the text to paths in the drawing program"
-    } else if has("image") {
+    } else if count(xml, "image") > 0 {
         "the SVG holds an embedded picture, not paths: trace the picture's own file"
     } else {
         "the SVG has no visible path"
@@ -86,7 +111,7 @@ fn hint(xml: &usvg::roxmltree::Document) -> &'static str {
 }
 
 /// Whether the sheet has its size in a unit of length.
-fn is_physical(svg: usvg::roxmltree::Node) -> bool {
+fn is_physical(svg: Node) -> bool {
     let in_unit = |name: &str| {
         let size = svg.attribute(name).unwrap_or_default().trim();
         let unit = size.trim_start_matches(|c: char| !c.is_ascii_alphabetic() || c == 'e' || c == 'E');
@@ -98,24 +123,29 @@ fn is_physical(svg: usvg::roxmltree::Node) -> bool {
 struct Collector {
     width: f64,
     height: f64,
+    names: Names,
     elements: usize,
     strokes: Vec<Stroke>,
 }
 
 impl Collector {
     fn group(&mut self, root: &usvg::Group) -> Result<(), FormatError> {
-        let mut left: Vec<&usvg::Node> = root.children().iter().rev().collect();
-        while let Some(node) = left.pop() {
+        let mut left: Vec<(&usvg::Node, Place)> =
+            root.children().iter().rev().map(|n| (n, Place::default())).collect();
+        while let Some((node, around)) = left.pop() {
             match node {
-                usvg::Node::Group(group) => left.extend(group.children().iter().rev()),
-                usvg::Node::Path(path) => self.path(path)?,
+                usvg::Node::Group(group) => {
+                    let place = self.names.within(&around, group.id());
+                    left.extend(group.children().iter().rev().map(|n| (n, place.clone())));
+                }
+                usvg::Node::Path(path) => self.path(path, &around)?,
                 _ => {}
             }
         }
         Ok(())
     }
 
-    fn path(&mut self, path: &usvg::Path) -> Result<(), FormatError> {
+    fn path(&mut self, path: &usvg::Path, place: &Place) -> Result<(), FormatError> {
         let stroke = path.stroke().filter(|s| s.opacity().get() > 0.0);
         let fill = path.fill().filter(|f| f.opacity().get() > 0.0);
         let filled_only = stroke.is_none();
@@ -125,14 +155,14 @@ impl Collector {
         if filled_only && self.is_background(path) {
             return Ok(());
         }
-        let at = path.abs_transform();
-        let scale = (f64::from(at.sx) * f64::from(at.sy) - f64::from(at.kx) * f64::from(at.ky)).abs().sqrt();
+        let scale = scale(path);
         let pen = stroke.map(|s| f64::from(s.width().get()) * scale);
+        let colour = colour_of(stroke.map(usvg::Stroke::paint).or(fill.map(usvg::Fill::paint)));
         let kind = if filled_only { StrokeKind::Outline } else { StrokeKind::Centreline };
         for line in subpaths(path, filled_only) {
             self.elements += line.elements().len().max(LEAST_ELEMENTS);
             self.check(&line)?;
-            self.strokes.push(Stroke { path: line, kind, pen });
+            self.strokes.push(Stroke { path: line, kind, pen, layer: place.layer.clone(), colour });
         }
         Ok(())
     }
@@ -142,13 +172,7 @@ impl Collector {
             let found = self.elements;
             return Err(FormatError::TooLarge { what: "SVG's path segments", found, limit: MAX_ELEMENTS });
         }
-        let control = |element: &Element| match *element {
-            Element::Line { to } => [to; 3],
-            Element::Arc { centre, .. } => [centre; 3],
-            Element::Cubic { c1, c2, to } => [c1, c2, to],
-        };
-        let mut points = std::iter::once(path.start()).chain(path.elements().iter().flat_map(control));
-        match points.find(|&p| !is_sound(p)) {
+        match controls(path).find(|&p| !is_sound(p)) {
             Some(Point { x, y }) => {
                 Err(FormatError::Far { place: format!("stroke {}", self.strokes.len() + 1), x, y })
             }
@@ -169,6 +193,28 @@ impl Collector {
     }
 }
 
+/// The colour of a paint; gradients and patterns have several.
+fn colour_of(paint: Option<&usvg::Paint>) -> Option<Colour> {
+    match paint {
+        Some(usvg::Paint::Color(c)) => Some(Colour::new(c.red, c.green, c.blue)),
+        _ => None,
+    }
+}
+
+/// How much larger a path is on the sheet than in its own numbers.
+fn scale(path: &usvg::Path) -> f64 {
+    let at = path.abs_transform();
+    (f64::from(at.sx) * f64::from(at.sy) - f64::from(at.kx) * f64::from(at.ky)).abs().sqrt()
+}
+
+/// What single precision, in which paths are resolved, leaves uncertain of a path's points on the sheet.
+fn noise(path: &usvg::Path) -> f64 {
+    let bounds = path.bounding_box();
+    let sides = [bounds.left(), bounds.top(), bounds.right(), bounds.bottom()];
+    let largest = sides.into_iter().map(|v| f64::from(v.abs())).fold(0.0, f64::max);
+    8.0 * f64::from(f32::EPSILON) * largest * scale(path)
+}
+
 /// The connected parts of a path that have a length, in sheet coordinates.
 fn subpaths(path: &usvg::Path, close_all: bool) -> Vec<Path> {
     let t = path.abs_transform();
@@ -177,6 +223,7 @@ fn subpaths(path: &usvg::Path, close_all: bool) -> Vec<Path> {
         let (x, y) = (f64::from(p.x), f64::from(p.y));
         Point::new(sx * x + kx * y + tx, ky * x + sy * y + ty)
     };
+    let noise = noise(path);
     let mut done = Vec::new();
     let mut open: Option<Pen> = None;
     for segment in path.data().segments() {
@@ -189,7 +236,7 @@ fn subpaths(path: &usvg::Path, close_all: bool) -> Vec<Path> {
             PathSegment::MoveTo(_) => {}
             PathSegment::LineTo(p) => pen.line_to(at(p)),
             PathSegment::QuadTo(c, p) => pen.quadratic_to(at(c), at(p)),
-            PathSegment::CubicTo(c1, c2, p) => pen.cubic_to(at(c1), at(c2), at(p)),
+            PathSegment::CubicTo(c1, c2, p) => pen.cubic_or_arc_to([c1, c2, p].map(at), noise),
             PathSegment::Close => {
                 done.extend(pen.finish(true));
                 continue;

@@ -11,7 +11,7 @@ fn svg(attributes: &str, content: &str) -> String {
 }
 
 fn of(content: &str) -> Sheet {
-    read(svg("width='100' height='80'", content).as_bytes()).unwrap()
+    read(svg("width='100' height='80'", content).as_bytes()).unwrap().sheet
 }
 
 fn lines(drawing: &Drawing, tolerance: f64) -> Vec<Vec<Point>> {
@@ -43,7 +43,7 @@ fn a_drawing_comes_back_in_true_size() {
     let text = write(&example(), 0.6096, 0.4572);
     assert!(text.contains("width=\"609.6mm\" height=\"457.2mm\" viewBox=\"0 0 609.6 457.2\""), "{text}");
     assert_eq!(text.matches("<path").count(), 3);
-    let sheet = read(text.as_bytes()).unwrap();
+    let sheet = read(text.as_bytes()).unwrap().sheet;
     let unit = sheet.metres_per_unit.unwrap();
     assert!((sheet.width * unit - 0.6096).abs() < 1e-6, "{}", sheet.width * unit);
     let to_target = Affine::new([unit, 0.0, 0.0, -unit, -0.3048, 0.2286]);
@@ -98,7 +98,7 @@ fn shapes_uses_styles_and_transforms_are_resolved() {
 #[test]
 fn physical_sizes_are_kept() {
     let check = |attributes: &str, width_m: Option<f64>| {
-        let sheet = read(svg(attributes, "<path d='M0 0H9' stroke='red'/>").as_bytes()).unwrap();
+        let sheet = read(svg(attributes, "<path d='M0 0H9' stroke='red'/>").as_bytes()).unwrap().sheet;
         let found = sheet.metres_per_unit.map(|unit| sheet.width * unit);
         let same = found.zip(width_m).is_some_and(|(a, b)| (a - b).abs() < 1e-6) || found == width_m;
         assert!(same, "{attributes}: {found:?}");
@@ -159,7 +159,9 @@ fn coordinates_that_are_no_numbers_are_never_drawn() {
     for d in ["M0 0L1e308 1e308", "M0 0LNaN 1", "M0 0L1e39 0L5 5", "M0 0L-1e20 3"] {
         let content = format!("<path d='{d}' stroke='red'/>");
         let sound = match read(svg("width='9' height='9'", &content).as_bytes()) {
-            Ok(sheet) => lines(&sheet.drawing, 1e-3).iter().flatten().all(|p| p.to_vec2().hypot() < 1e6),
+            Ok(reading) => {
+                lines(&reading.sheet.drawing, 1e-3).iter().flatten().all(|p| p.to_vec2().hypot() < 1e6)
+            }
             Err(_) => true,
         };
         assert!(sound, "{d}");
@@ -170,7 +172,7 @@ fn coordinates_that_are_no_numbers_are_never_drawn() {
 fn bombs_are_refused_before_they_go_off() {
     let refused = |text: String| match read(text.as_bytes()) {
         Err(FormatError::TooLarge { .. } | FormatError::Refused { .. } | FormatError::Syntax { .. }) => {}
-        other => panic!("{:.80}: {:?}", text, other.map(|s| s.drawing.strokes.len())),
+        other => panic!("{:.80}: {:?}", text, other.map(|r| r.sheet.drawing.strokes.len())),
     };
     let nested = |open: &str, close: &str, n: usize| {
         svg("width='9' height='9'", &(open.repeat(n) + "<path d='M0 0H9' stroke='red'/>" + &close.repeat(n)))
@@ -237,7 +239,7 @@ fn what_is_just_not_too_deep_is_read() {
 fn short_entities_of_drawing_programs_are_read() {
     let text = "<!DOCTYPE svg [<!ENTITY ns_svg \"http://www.w3.org/2000/svg\">]>\
         <svg xmlns=\"&ns_svg;\" width='9' height='9'><path d='M0 0H9' stroke='red'/></svg>";
-    assert_eq!(read(text.as_bytes()).unwrap().drawing.strokes.len(), 1);
+    assert_eq!(read(text.as_bytes()).unwrap().sheet.drawing.strokes.len(), 1);
 }
 
 #[test]
@@ -245,4 +247,58 @@ fn a_long_path_is_read_quickly() {
     let content = format!("<path d='M0 0{}' stroke='red'/>", "l.1 .1l.1-.1".repeat(200_000));
     let sheet = of(&content);
     assert_eq!(sheet.drawing.strokes[0].path.elements().len(), 400_000);
+}
+
+#[test]
+fn circles_are_arcs_wherever_they_are_round() {
+    let sheet = of("<g stroke='red' fill='none'><circle cx='50' cy='40' r='10'/>
+        <ellipse cx='20' cy='40' rx='5' ry='10' transform='translate(20 0) scale(2 1)'/>
+        <ellipse cx='20' cy='40' rx='5' ry='10'/>
+        <rect x='1' y='1' width='30' height='20' rx='4'/>
+        <path d='M0 0H10A5 5 0 0 1 15 5V9'/><path d='M0 0C10 0 20 0 30 10'/></g>");
+    let kinds = |i: usize| -> String {
+        let elements = sheet.drawing.strokes[i].path.elements();
+        let kind = |e: &Element| match e {
+            Element::Line { .. } => 'L',
+            Element::Arc { .. } => 'A',
+            Element::Cubic { .. } => 'C',
+        };
+        elements.iter().map(kind).collect()
+    };
+    assert_eq!([0, 1, 2, 3, 4, 5].map(kinds), ["A", "A", "CCCC", "LALALALA", "LAL", "C"]);
+    let circle = &sheet.drawing.strokes[0].path;
+    assert!(circle.is_closed() && (circle.length(1e-9) - 20.0 * PI).abs() < 1e-4);
+    let corner = &sheet.drawing.strokes[4].path;
+    assert!((corner.length(1e-9) - (14.0 + 2.5 * PI)).abs() < 1e-4);
+}
+
+#[test]
+fn layers_and_colours_are_kept() {
+    let content = "<g xmlns:i='http://www.inkscape.org/namespaces/inkscape' stroke='#0a0b0c' fill='none'>
+        <g id='layer1' i:groupmode='layer' i:label='Cut &amp; go'><g id='g7'><path d='M0 0H9'/></g></g>
+        <g id='plain'><path d='M0 5H9' stroke='teal'/><g id='inner'><path d='M0 6H9'/></g></g>
+        <path d='M0 7H9'/><path d='M0 8H9V9Z' stroke='none' fill='#00ff00'/></g>";
+    let strokes = of(content).drawing.strokes;
+    let looks: Vec<_> = strokes.iter().map(|s| (s.layer.as_deref(), s.colour.unwrap().to_string())).collect();
+    let looks: Vec<_> = looks.iter().map(|(layer, colour)| (*layer, colour.as_str())).collect();
+    let wanted = [
+        (Some("Cut & go"), "#0a0b0c"),
+        (Some("plain"), "#008080"),
+        (Some("inner"), "#0a0b0c"),
+        (None, "#0a0b0c"),
+        (None, "#00ff00"),
+    ];
+    assert_eq!(looks, wanted);
+    let text = write(&Drawing { strokes: strokes.clone() }.transformed(Affine::scale(1e-3)), 0.1, 0.08);
+    let back = read(text.as_bytes()).unwrap().sheet.drawing.strokes;
+    let look = |s: &Stroke| (s.layer.clone(), s.colour);
+    assert_eq!(back.iter().map(look).collect::<Vec<_>>(), strokes.iter().map(look).collect::<Vec<_>>());
+}
+
+#[test]
+fn what_is_left_out_is_said() {
+    let found =
+        read(svg("width='9' height='9'", "<path d='M0 0H9' stroke='red'/><text>hi</text><text/>").as_bytes());
+    let remarks = found.unwrap().remarks;
+    assert_eq!(remarks, ["not drawn: text; convert it to paths in the drawing program (1 found)"]);
 }

@@ -3,35 +3,76 @@ use std::fmt::Write;
 
 use tracelight_stroke::{Affine, Drawing, Element, Path, Piece, Point, Stroke};
 
+use crate::number::fixed;
+
+/// What layers need.
+const INKSCAPE: &str = " xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\"";
+
 /// Width of the line where the pen's is not known, mm.
 const USUAL_PEN_MM: f64 = 0.8;
 
 /// A drawing on the target (metres, y up, origin at the centre) as an SVG of true size: millimetres, one path a
 /// stroke, in tracing order. Lines stay lines, arcs arcs, cubics cubics; coordinates to 0.1 µm.
+///
+/// Colours are kept. Where a stroke has a layer, each run of strokes of one layer is a group that Inkscape shows as a
+/// layer; a layer that tracing comes back to has several groups of its name, for the order is kept above all.
 pub fn write(drawing: &Drawing, width_m: f64, height_m: f64) -> String {
     let (w, h) = (1e3 * width_m, 1e3 * height_m);
     let millimetres = drawing.transformed(Affine::new([1e3, 0.0, 0.0, -1e3, 0.5 * w, 0.5 * h]));
     let (w, h) = (number(w), number(h));
+    let layered = drawing.strokes.iter().any(|s| s.layer.is_some());
+    let inkscape = if layered { INKSCAPE } else { "" };
     let mut svg = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-         <svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}mm\" height=\"{h}mm\" viewBox=\"0 0 {w} {h}\">\n\
+         <svg xmlns=\"http://www.w3.org/2000/svg\"{inkscape} width=\"{w}mm\" height=\"{h}mm\" viewBox=\"0 0 {w} {h}\">\n\
          <title>{} strokes, in tracing order, {w} × {h} mm</title>\n\
          <g fill=\"none\" stroke=\"#c8102e\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
         drawing.strokes.len()
     );
-    for (i, stroke) in millimetres.strokes.iter().enumerate() {
-        write_stroke(&mut svg, i + 1, stroke);
+    let mut number_of = 0;
+    for (i, run) in millimetres.strokes.chunk_by(|a, b| a.layer == b.layer).enumerate() {
+        let layer = run.first().and_then(|s| s.layer.as_deref());
+        if let Some(name) = layer {
+            open_layer(&mut svg, i + 1, name);
+        }
+        for stroke in run {
+            number_of += 1;
+            write_stroke(&mut svg, number_of, stroke);
+        }
+        svg.push_str(if layer.is_some() { "</g>\n" } else { "" });
     }
     svg.push_str("</g>\n</svg>\n");
     svg
 }
 
+fn open_layer(svg: &mut String, number_of: usize, name: &str) {
+    let name = escaped(name);
+    let _ =
+        writeln!(svg, "<g id=\"layer-{number_of}\" inkscape:groupmode=\"layer\" inkscape:label=\"{name}\">");
+}
+
+/// Text as it may stand in an attribute. What XML 1.0 cannot say at all becomes a space.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}') => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
 fn write_stroke(svg: &mut String, number_of: usize, stroke: &Stroke) {
     let pen = number(stroke.pen.unwrap_or(USUAL_PEN_MM));
     let kind = stroke.kind.name();
+    let colour = stroke.colour.map_or_else(String::new, |c| format!(" stroke=\"{c}\""));
     let _ = writeln!(
         svg,
-        "<path id=\"stroke-{number_of}\" data-kind=\"{kind}\" stroke-width=\"{pen}\" d=\"{}\"/>",
+        "<path id=\"stroke-{number_of}\" data-kind=\"{kind}\"{colour} stroke-width=\"{pen}\" d=\"{}\"/>",
         path_data(&stroke.path)
     );
 }
@@ -74,7 +115,5 @@ fn point(p: Point) -> String {
 
 /// Four decimals, without trailing zeros.
 fn number(value: f64) -> String {
-    let text = format!("{value:.4}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".into() } else { text.into() }
+    fixed(value, 4)
 }

@@ -24,7 +24,7 @@ impl Stop {
         let stroke = &drawing.strokes[self.stroke as usize];
         let joint = ports.joint[self.entry as usize] as usize;
         match (stroke.path.is_closed(), joint) {
-            (true, _) => Stroke { path: stroke.path.started_at(joint), ..*stroke },
+            (true, _) => stroke.along(stroke.path.started_at(joint)),
             (false, 0) => stroke.clone(),
             (false, _) => stroke.reversed(),
         }

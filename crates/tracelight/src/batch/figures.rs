@@ -65,7 +65,7 @@ impl Figures {
             sheet: (rounded(width * scale), rounded(height * scale)),
             unit,
             missed_ink: sketch.missed_ink.map(rounded),
-            doubt: sketch.doubt.clone(),
+            doubt: (!sketch.remarks.is_empty()).then(|| sketch.remarks.join("; ")),
         }
     }
 }

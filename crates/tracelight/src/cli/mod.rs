@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand.
 
 mod calibrate;
+pub(crate) mod choosing;
 mod completions;
 pub(crate) mod driving;
 mod explain;

@@ -1,9 +1,10 @@
 use clap::Args;
 
+use crate::cli::choosing::ChoiceArgs;
 use crate::units::{Angle, Length, Offset};
 
-/// Where and how large a picture lies on the target.
-#[derive(Args, Clone, Copy, Debug, Default)]
+/// What of a picture is drawn, where and how large it lies on the target.
+#[derive(Args, Clone, Debug, Default)]
 pub(crate) struct PlacementArgs {
     /// Width on the target, such as 24in or 0.6m; the height follows. Without it, a drawing of true size keeps it,
     /// everything else is 24in wide
@@ -22,6 +23,8 @@ pub(crate) struct PlacementArgs {
     /// Mirror the picture left to right
     #[arg(long)]
     pub(crate) flip: bool,
+    #[command(flatten)]
+    pub(crate) choice: ChoiceArgs,
 }
 
 /// A length between a millimetre and a kilometre.

@@ -22,7 +22,7 @@ use crate::stop::Stop;
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight plan examples/star.png -o star.csv --order-by time")]
 pub(crate) struct PlanArgs {
-    /// A drawing (SVG, JSON, CSV) or a picture; - is standard input
+    /// A drawing (SVG, DXF, JSON, CSV) or a picture; - is standard input
     drawing: String,
     /// Write the plan, a row a millisecond, to this CSV file
     #[arg(short, long, value_name = "FILE.csv")]
@@ -48,7 +48,8 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let progress = Progress::new(args.voice.quiet);
     let driving = args.driving.resolve()?;
     progress.stage("strokes", 1);
-    let sketch = sketch(&args.drawing, picture::read(&args.drawing)?, Mode::from(args.mode))?;
+    let sketch =
+        sketch(&args.drawing, picture::read(&args.drawing)?, Mode::from(args.mode), &args.placement.choice)?;
     let placed = place(&sketch, &args.placement);
     stop.check()?;
     progress.stage("plan", 1);
@@ -56,7 +57,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let schedule = schedule(&placed, &driving, args.order_by, args.order_effort)?;
     let plan_ms = began.elapsed().as_secs_f64() * 1e3;
     sketch
-        .doubt
+        .remarks
         .iter()
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| progress.say(&format!("note: {n}")));

@@ -13,8 +13,8 @@ use crate::cli::placing::PlacementArgs;
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight trace examples/house.png --width 24in --speed 1ft/s --open")]
 pub(crate) struct TraceArgs {
-    /// PNG, JPEG, WebP, BMP, GIF, PNM, TIFF; or SVG, JSON, CSV with strokes to be taken as they are; - is standard
-    /// input
+    /// PNG, JPEG, WebP, BMP, GIF, PNM, TIFF; or SVG, DXF, JSON, CSV with strokes to be taken as they are; - is
+    /// standard input
     pub(crate) picture: String,
     /// How pixels become strokes
     #[arg(long, value_enum, default_value_t)]

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use tracelight_formats::json::Traced;
-use tracelight_formats::{Sheet, csv, json};
+use tracelight_formats::{Sheet, json};
 use tracelight_vision::Mode;
 
 use crate::batch::figures::Figures;
@@ -13,6 +13,7 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::request::ModeName;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
+use crate::output::drawing::{self, FORMATS};
 use crate::picture;
 use crate::progress::Progress;
 use crate::sketch::{Sketch, place, sketch};
@@ -20,11 +21,6 @@ use crate::stop::Stop;
 
 /// How close `points` keep to their path, px.
 const POINTS_TOLERANCE_PX: f64 = 0.05;
-/// The same in CSV, m: a hundredth of a millimetre.
-const POINTS_TOLERANCE_M: f64 = 1e-5;
-
-/// The formats that `write` writes.
-const FORMATS: [&str; 3] = ["svg", "json", "csv"];
 
 /// Find the strokes of pictures, without a rig
 #[derive(Args, Debug)]
@@ -35,8 +31,9 @@ pub(crate) struct StrokesArgs {
     /// Pictures or drawings, or folders of pictures; - is standard input
     #[arg(required = true, value_name = "PICTURE")]
     pictures: Vec<String>,
-    /// Write the strokes here: .svg (true size), .json (pixels) or .csv (metres); a folder, with / at its end, for
-    /// several pictures. What is done there already is kept
+    /// Write the strokes here: .svg, .dxf, .gcode (GRBL laser) or .hpgl in true size, .ild (ILDA, over its whole
+    /// range), .csv (metres), .json (pixels); a folder, with / at its end, for several pictures. What is done there
+    /// already is kept
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Format of the files in a folder
@@ -140,14 +137,13 @@ fn made_with(args: &StrokesArgs) -> String {
         again: _,
         voice: _,
     } = args;
-    let PlacementArgs { width, height, offset, rotate, flip } = placement;
     let version = env!("CARGO_PKG_VERSION");
     let format = extension(args);
-    format!("{version} {format} {mode:?} {width:?} {height:?} {offset:?} {rotate:?} {flip}")
+    format!("{version} {format} {mode:?} {placement:?}")
 }
 
 fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding, Failure> {
-    let mut sketch = sketch(picture, picture::read(picture)?, Mode::from(args.mode))?;
+    let mut sketch = sketch(picture, picture::read(picture)?, Mode::from(args.mode), &args.placement.choice)?;
     sketch.picture = None; // its colours are not needed, and large
     let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let json = (args.voice.json || path.is_some_and(is_json)).then(|| pixel_json(&sketch));
@@ -178,22 +174,7 @@ fn may_become_folder(path: &Path) -> bool {
 }
 
 fn write(path: &Path, sketch: &Sketch, args: &StrokesArgs, json: &str) -> Result<(), Failure> {
-    let placed = place(sketch, &args.placement);
-    let kind = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let text = match kind.as_str() {
-        "svg" => placed.svg(&placed.drawing),
-        "json" => json.to_owned(),
-        "csv" => csv::write(&placed.drawing, POINTS_TOLERANCE_M),
-        other => {
-            let message = format!("{}: cannot write .{other}; use .svg, .json or .csv", path.display());
-            return Err(Failure::usage("usage", message));
-        }
-    };
-    std::fs::write(path, text).map_err(|e| cannot_write(path, &e))
-}
-
-fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::failed("cannot-write", format!("cannot write {}: {error}", path.display()))
+    drawing::write(path, &place(sketch, &args.placement), json)
 }
 
 fn line(picture: &str, traced: &Finding) -> String {

@@ -11,6 +11,7 @@
 //! | `report.html` | [`report`] |
 
 mod csv;
+pub(crate) mod drawing;
 mod events;
 #[cfg(test)]
 mod fixture;

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
 
 mod drawings;
+mod exchange;
 mod pictures;
 mod program;
 
@@ -65,6 +66,15 @@ fn a_hostile_svg_is_refused_by_name() {
 fn a_broken_table_of_strokes_is_refused_by_name() {
     let folder = folder("tables");
     let files = drawings::tables();
+    files.iter().for_each(|(name, bytes, _)| write(&folder, name, bytes));
+    let case = |name: &str, exit| Case::new(&format!("plan {name} -o plan.csv"), exit, &[name]);
+    check(&folder, &files.iter().map(|(name, _, exit)| case(name, *exit)).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_hostile_dxf_is_refused_by_name() {
+    let folder = folder("dxf");
+    let files = exchange::files();
     files.iter().for_each(|(name, bytes, _)| write(&folder, name, bytes));
     let case = |name: &str, exit| Case::new(&format!("plan {name} -o plan.csv"), exit, &[name]);
     check(&folder, &files.iter().map(|(name, _, exit)| case(name, *exit)).collect::<Vec<_>>());
