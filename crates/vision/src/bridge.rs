@@ -126,7 +126,7 @@ impl Tip {
 
 /// How far the points near a row's end scatter about their line, px.
 fn noise_near(points: &[Point], end: usize) -> f64 {
-    let reach = points.len().min(2 * WINDOWS[WINDOWS.len() - 1]);
+    let reach = points.len().min(WINDOWS[WINDOWS.len() - 1]);
     scatter_px(if end == 0 { &points[..reach] } else { &points[points.len() - reach..] })
 }
 

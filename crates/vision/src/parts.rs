@@ -118,13 +118,46 @@ impl Sorter {
     /// Lines that lead away from what octagons cover, `inner`, and the shapes without them.
     fn split(&mut self, mixed: Mask, inner: Mask) {
         let bulk = inner.dilated_by(RIM).and(&mixed);
-        let rest = mixed.clone().without(&bulk);
-        let pieces = graphs(&rest, regions(&rest));
-        let (lines, corners): (Vec<_>, Vec<_>) =
-            pieces.into_iter().partition(|(_, graph)| graph.is_line_beside(self.pen));
-        self.lines.extend(lines);
+        let mut rest = mixed.clone().without(&bulk);
         self.shape_mask.add(&bulk);
-        corners.iter().for_each(|(corner, _)| corner.fill_into(&mut self.shape_mask));
+        let (compact, long): (Vec<_>, Vec<_>) = {
+            let squares = Squares::in_ink(&rest);
+            regions(&rest).into_iter().partition(|piece| squares.fill(piece))
+        };
+        for corner in &compact {
+            corner.fill_into(&mut self.shape_mask);
+            corner.erase_from(&mut rest);
+        }
+        for (piece, graph) in graphs(&rest, long) {
+            match graph.is_line_beside(self.pen) {
+                true => self.lines.push((piece, graph)),
+                false => piece.fill_into(&mut self.shape_mask),
+            }
+        }
+    }
+}
+
+/// The squares of 8, 16, 32 … px that fit into a mask, by their upper left corners: thinning what holds a large one
+/// takes long and shows no line.
+struct Squares(Vec<Mask>);
+
+impl Squares {
+    fn in_ink(mask: &Mask) -> Self {
+        let mut squares = vec![mask.clone().eroded(LEAST_BULK)];
+        while squares.last().is_some_and(|mask| !mask.is_empty()) && squares.len() < 5 {
+            let side = LEAST_BULK << squares.len();
+            squares.push(mask.clone().eroded(side));
+        }
+        Self(squares)
+    }
+
+    /// Whether a piece holds a square of a third of its extent: a line is four times as long as wide, and a square in a
+    /// slanted one has 0.7 of its width.
+    fn fill(&self, piece: &Region) -> bool {
+        let (width, height) = piece.extent();
+        let third = width.max(height) / 3;
+        let fitting = self.0.iter().enumerate().filter(|(k, _)| LEAST_BULK << k <= third);
+        fitting.last().is_some_and(|(_, squares)| piece.cells(squares).next().is_some())
     }
 }
 

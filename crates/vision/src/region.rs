@@ -40,6 +40,14 @@ impl Region {
         self.runs.iter().flat_map(|run| mask.cells_in(run.y as usize, run.from as usize, run.to as usize))
     }
 
+    /// Width and height of its bounding box, px.
+    pub(crate) fn extent(&self) -> (usize, usize) {
+        let from = self.runs.iter().map(|run| run.from).min().unwrap_or(0);
+        let to = self.runs.iter().map(|run| run.to).max().unwrap_or(0);
+        let rows = self.runs.first().zip(self.runs.last()).map_or(0, |(top, low)| low.y + 1 - top.y);
+        ((to - from) as usize, rows as usize)
+    }
+
     /// Whether it leads from one border of its image to the one across.
     pub(crate) fn spans(&self, mask: &Mask) -> bool {
         let rows = self.runs.first().is_some_and(|run| run.y == 0)

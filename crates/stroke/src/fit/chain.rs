@@ -10,7 +10,7 @@ const WINDOWS: [usize; 6] = [7, 10, 14, 20, 28, 40];
 /// The same, both sides and the sample itself.
 const BOTH: [usize; 6] = [15, 21, 29, 41, 57, 81];
 /// Directions are looked at this often, in steps; between, the turning is even.
-const STRIDE: usize = 4;
+const STRIDE: usize = 6;
 
 /// More turn than this in one cubic makes its curvature uneven, rad (100°).
 const MOST_TURN: f64 = 1.75;
