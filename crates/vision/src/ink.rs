@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::light::{Paper, percentile};
 use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::polarity::is_light_on_dark;
 use crate::region::regions;
 use crate::{Grey, VisionError};
 
@@ -139,7 +140,7 @@ const SAMPLED: usize = 250_000;
 
 /// The histogram of about a quarter of a million pixels: every k-th block of a row, one further in each row, so that no line
 /// whatever its direction is left out.
-fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
+pub(crate) fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
     let every = (plane.values.len() / SAMPLED).max(1);
     // four tables, for a level that repeats need not wait for itself
     let mut tables = [[0u32; 256]; 4];
@@ -215,61 +216,6 @@ impl Split {
             share: upper.0 / all.max(1.0),
         }
     }
-}
-
-/// Whether the picture's lines are lighter than what they are drawn on.
-///
-/// In a tile with a line in it most pixels are paper, so that its mean lies on the paper's side of the middle between its
-/// extremes: a vote of up to ±1. Edges of shapes and shadows vote for either side alike, a variance of 1/3 each. They
-/// are asked where the picture's border is neither clearly light nor dark; where they add up to no more than chance,
-/// the border is paper.
-fn is_light_on_dark(image: &Plane<u8>) -> bool {
-    const TILE: usize = 16;
-    /// As many tiles tell as much as all.
-    const TILES: usize = 2000;
-    /// A border is clearly paper if, as a ratio, it is nearer to one extreme than to the other by this.
-    const CLEAR: f64 = 2.0;
-    /// Standard deviations of chance.
-    const SURE: f64 = 4.0;
-    let whole = sampled_histogram(image);
-    let (low, high) = (percentile(&whole, 0.003), percentile(&whole, 0.997));
-    let (mut votes, mut tiles) = (0.0_f64, 0.0_f64);
-    let (across, down) = (image.width / TILE, image.height / TILE);
-    let every = (across * down / TILES).max(1);
-    for ty in 0..down {
-        for tx in (ty % every..across).step_by(every) {
-            let (mut dark, mut light, mut sum) = (u8::MAX, 0, 0u32);
-            for y in ty * TILE..(ty + 1) * TILE {
-                let row = &image.row(y)[tx * TILE..(tx + 1) * TILE];
-                dark = row.iter().fold(dark, |a, &v| a.min(v));
-                light = row.iter().fold(light, |a, &v| a.max(v));
-                sum += row.iter().map(|&v| u32::from(v)).sum::<u32>();
-            }
-            let (middle, range) =
-                (0.5 * (f64::from(dark) + f64::from(light)), f64::from(light) - f64::from(dark));
-            if range > 0.3 * (high - low).max(1.0) {
-                votes += (f64::from(sum) / (TILE * TILE) as f64 - middle) / (0.5 * range);
-                tiles += 1.0;
-            }
-        }
-    }
-    // light multiplies: a shadow on paper is nearer to its brightest than to its ink as a ratio
-    let (low, border) = (low.max(10.0), border_level(image).max(10.0));
-    let (from_dark, to_light) = (border / low, high / border);
-    if from_dark.max(to_light) > CLEAR * from_dark.min(to_light) {
-        return from_dark < to_light;
-    }
-    if votes * votes > SURE * SURE * tiles / 3.0 { votes < 0.0 } else { from_dark < to_light }
-}
-
-/// Median level of the outermost pixels.
-fn border_level(image: &Plane<u8>) -> f64 {
-    let mut border = [0u32; 256];
-    let last = image.height - 1;
-    let ends = image.row(0).iter().chain(image.row(last));
-    let sides = (0..image.height).flat_map(|y| [&image.row(y)[0], &image.row(y)[image.width - 1]]);
-    ends.chain(sides).for_each(|&v| border[usize::from(v)] += 1);
-    percentile(&border, 0.5)
 }
 
 /// Standard deviation of the pixel noise, levels: the mask of Immerkær, "Fast noise variance estimation" (1996),

@@ -36,6 +36,7 @@ mod missed;
 mod outline;
 mod parts;
 mod plane;
+mod polarity;
 mod prune;
 mod region;
 mod ridge;

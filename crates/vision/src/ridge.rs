@@ -8,13 +8,13 @@ use tracelight_stroke::{Point, Vec2};
 
 use crate::plane::Plane;
 
-/// Distance of the samples across a hair line, px; across a thick one an eighth of it.
+/// Distance of the samples across a hair line, px; across a thick one a tenth of it.
 const STEP: f64 = 0.5;
 /// How far beyond the expected edge the line's edge is looked for, px.
 const BEYOND: f64 = 2.5;
-/// Samples either side of the middle: no line needs more, as its radius is four of them at most and what lies beyond
+/// Samples either side of the middle: no line needs more, as its radius is five of them at most and what lies beyond
 /// is five at most.
-const MOST_HALF: usize = 9;
+const MOST_HALF: usize = 10;
 
 /// The line's cross-section at one place.
 #[derive(Clone, Copy, Debug)]
@@ -145,7 +145,7 @@ struct Profile {
 
 impl Profile {
     fn across(dark: &Plane<u8>, at: Point, normal: Vec2, radius: f64) -> Self {
-        let step = STEP.max(radius / 4.0);
+        let step = STEP.max(radius / 5.0);
         let half = (((radius + BEYOND) / step).ceil() as usize).min(MOST_HALF);
         let mut values = [0.0; 2 * MOST_HALF + 1];
         dark.along(at - normal * (half as f64 * step), normal * step, &mut values[..=2 * half]);

@@ -1,0 +1,140 @@
+//! Dark lines on light paper, or light ones on dark.
+
+use crate::ink::sampled_histogram;
+use crate::light::percentile;
+use crate::plane::Plane;
+
+/// A fall and a rise of brightness count from this share of the picture's range on.
+const STEP: f64 = 0.22;
+/// Lines are thinner than this share of the picture's shorter side.
+const THIN: usize = 30;
+/// About so many pixels are looked at along rows, and as many along columns.
+const SAMPLED: usize = 130_000;
+/// So many more thin runs of one kind are no chance.
+const SURE: i64 = 8;
+/// Nor is this share more: side by side, n dark lines have n − 1 light gaps between them.
+const SURE_SHARE: f64 = 0.04;
+
+/// Whether the picture's lines are lighter than what they are drawn on.
+///
+/// Along rows and columns, what is thin and darker than both its neighbours is counted against what is thin and
+/// lighter: lines are thin, and there is one more of them than of the gaps between. The edges of shapes, of shadows and
+/// of the paper itself are neither. Where that says nothing, the picture's border is paper.
+pub(crate) fn is_light_on_dark(image: &Plane<u8>) -> bool {
+    let whole = sampled_histogram(image);
+    let (low, high) = (percentile(&whole, 0.003), percentile(&whole, 0.997));
+    let runs = Runs::of(image, ((STEP * (high - low)) as u8).max(2));
+    if runs.are_sure() {
+        return runs.light > runs.dark;
+    }
+    // light multiplies: a shadow on paper is nearer to its brightest than to its ink as a ratio
+    let border = border_level(image).max(10.0);
+    border / low.max(10.0) < high / border
+}
+
+/// Thin runs between two of the other kind.
+#[derive(Default)]
+struct Runs {
+    dark: i64,
+    light: i64,
+}
+
+impl Runs {
+    fn of(image: &Plane<u8>, step: u8) -> Self {
+        let mut runs = Self::default();
+        let thin = (image.width.min(image.height) / THIN).max(4);
+        let every = (image.values.len() / SAMPLED).max(1);
+        for y in (every / 2..image.height).step_by(every) {
+            runs.along(image.row(y).iter().copied(), step, thin);
+        }
+        for x in (every / 2..image.width).step_by(every) {
+            runs.along(image.values[x..].iter().step_by(image.width).copied(), step, thin);
+        }
+        runs
+    }
+
+    /// Follows a row from extreme to extreme: one is left behind when the level has moved away from it by `step`.
+    fn along(&mut self, levels: impl Iterator<Item = u8>, step: u8, thin: usize) {
+        let mut levels = levels.enumerate();
+        let Some((_, first)) = levels.next() else { return };
+        let (mut least, mut most) = (first, first);
+        // where the level last fell away from a peak and rose from a hollow
+        let (mut fell, mut rose): (Option<usize>, Option<usize>) = (None, None);
+        let mut falling = None;
+        for (at, level) in levels {
+            (least, most) = (least.min(level), most.max(level));
+            if falling != Some(true) && most - level >= step {
+                if let Some(start) = rose {
+                    self.light += i64::from(at - start <= thin);
+                }
+                (falling, fell, least) = (Some(true), Some(at), level);
+            } else if falling != Some(false) && level - least >= step {
+                if let Some(start) = fell {
+                    self.dark += i64::from(at - start <= thin);
+                }
+                (falling, rose, most) = (Some(false), Some(at), level);
+            }
+        }
+    }
+
+    fn are_sure(&self) -> bool {
+        let (more, all) = ((self.dark - self.light).abs(), self.dark + self.light);
+        more >= SURE && more as f64 >= SURE_SHARE * all as f64
+    }
+}
+
+/// Median level of the outermost pixels.
+fn border_level(image: &Plane<u8>) -> f64 {
+    let mut border = [0u32; 256];
+    let last = image.height - 1;
+    let ends = image.row(0).iter().chain(image.row(last));
+    let sides = (0..image.height).flat_map(|y| [&image.row(y)[0], &image.row(y)[image.width - 1]]);
+    ends.chain(sides).for_each(|&v| border[usize::from(v)] += 1);
+    percentile(&border, 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(light_on_dark: bool, level: impl Fn(usize, usize) -> u8) {
+        let image = |invert: bool| {
+            let value = |i: usize| {
+                let v = level(i % 320, i / 320);
+                if invert { 255 - v } else { v }
+            };
+            Plane { width: 320, height: 240, values: (0..320 * 240).map(value).collect() }
+        };
+        assert_eq!(is_light_on_dark(&image(false)), light_on_dark);
+        assert_eq!(is_light_on_dark(&image(true)), !light_on_dark, "inverted");
+    }
+
+    #[test]
+    fn lines_are_found_beside_larger_things() {
+        let line = |x: usize, y: usize| y.abs_diff(100 + x / 4) < 2 && (20..300).contains(&x);
+        check(false, |x, y| if line(x, y) { 40 } else { 230 });
+        // half in a shadow whose edge is level
+        check(false, |x, y| {
+            if line(x, y) {
+                20
+            } else if y < 121 {
+                125
+            } else {
+                240
+            }
+        });
+        // paper on a dark table
+        let paper = |x: usize, y: usize| (30..290).contains(&x) && (25..215).contains(&y);
+        check(false, |x, y| if !paper(x, y) || line(x, y) { 30 } else { 220 });
+        // dense lines, wider than their gaps
+        check(
+            false,
+            |x, y| if (60..200).contains(&x) && (40..200).contains(&y) && x % 9 < 6 { 30 } else { 230 },
+        );
+    }
+
+    #[test]
+    fn a_shape_alone_is_told_from_its_paper_by_the_border() {
+        check(false, |x, y| if (x as f64 - 160.0).hypot(y as f64 - 120.0) < 100.0 { 30 } else { 230 });
+    }
+}
