@@ -65,7 +65,7 @@ impl Ink {
         }
         let paper = Paper::of(&plane);
         let mut darkness = paper.darkness(&plane);
-        let noise_levels = noise(&darkness);
+        let noise_levels = noise(&darkness, SAMPLED);
         if noise_levels > SMOOTHED_FROM {
             darkness = smoothed(&darkness);
         }
@@ -219,12 +219,13 @@ impl Split {
 }
 
 /// Standard deviation of the pixel noise, levels: the mask of Immerkær, "Fast noise variance estimation" (1996),
-/// which is blind to flat places and slopes, with the median instead of the mean, which is blind to lines too.
-fn noise(plane: &Plane<u8>) -> f64 {
+/// which is blind to flat places and slopes, with the median instead of the mean, which is blind to lines too; of about
+/// `sampled` pixels.
+pub(crate) fn noise(plane: &Plane<u8>, sampled: usize) -> f64 {
     const TIMES: f64 = 6.0; // the mask's gain on white noise
     const MEDIAN: f64 = 0.6745; // of |x| for a standard normal x
     let mut counts = [0u32; 256];
-    let every = (plane.values.len() / SAMPLED).max(1);
+    let every = (plane.values.len() / sampled).max(1);
     for y in (1..plane.height - 1).step_by(every) {
         let [above, here, below] = [y - 1, y, y + 1].map(|y| plane.row(y));
         for x in 1..plane.width - 1 {

@@ -57,12 +57,24 @@ impl Parts {
     }
 }
 
+impl Region {
+    /// Whether a piece touches what it lies beside with its ends only. A sliver, which octagons leave along a slanted
+    /// edge, touches it all along.
+    fn leads_away(&self, beside: &Mask, graph: &Graph) -> bool {
+        let width = 2.0 * graph.widest();
+        let touching = self.cells(beside).count() as f64;
+        // two rows of pixels at either end
+        touching <= 4.0 * width + 0.25 * graph.length()
+    }
+}
+
 /// Specks of fewer pixels may be dust; so may those smaller than the pen's own dot, which covers π/4 of its width
 /// squared.
 const SPECK_PX: f64 = 10.0;
 const SPECK_PENS: f64 = 0.6;
-/// A speck this near to a line, pen widths, belongs to it: the dot of an i.
+/// A speck this near to a line, pen widths, and not much smaller than the pen, squared, belongs to it: the dot of an i.
 const BELONGS_PENS: f64 = 4.0;
+const LEAST_DOT_PENS: f64 = 0.4;
 
 /// Without the specks that lie by themselves.
 fn without_dust(mask: &Mask, bulky: &[Region], thin: Vec<(Region, Graph)>, pen: f64) -> Vec<(Region, Graph)> {
@@ -74,7 +86,9 @@ fn without_dust(mask: &Mask, bulky: &[Region], thin: Vec<(Region, Graph)>, pen: 
         return thin;
     }
     let reach = (BELONGS_PENS * pen).max(SPECK_PX) as usize;
-    thin.into_iter().filter(|(region, _)| !speck(region) || region.is_near(&drawn, reach)).collect()
+    let dot =
+        |region: &Region| region.area() as f64 >= LEAST_DOT_PENS * pen * pen && region.is_near(&drawn, reach);
+    thin.into_iter().filter(|(region, _)| !speck(region) || dot(region)).collect()
 }
 
 /// Parts the patches that may hold both kinds.
@@ -119,6 +133,7 @@ impl Sorter {
     fn split(&mut self, mixed: Mask, inner: Mask) {
         let bulk = inner.dilated_by(RIM).and(&mixed);
         let mut rest = mixed.clone().without(&bulk);
+        let beside = bulk.clone().dilated_by(2);
         self.shape_mask.add(&bulk);
         let (compact, long): (Vec<_>, Vec<_>) = {
             let squares = Squares::in_ink(&rest);
@@ -129,7 +144,7 @@ impl Sorter {
             corner.erase_from(&mut rest);
         }
         for (piece, graph) in graphs(&rest, long) {
-            match graph.is_line_beside(self.pen) {
+            match graph.is_line_beside(self.pen) && piece.leads_away(&beside, &graph) {
                 true => self.lines.push((piece, graph)),
                 false => piece.fill_into(&mut self.shape_mask),
             }
@@ -226,8 +241,7 @@ impl Graph {
 
     /// Whether this was filled and not drawn with a pen of width `pen` (0: no line is known in this picture).
     fn is_shape(&self, pen: f64) -> bool {
-        let large = 2.0 * self.widest() > 1.6 * pen;
-        large && (self.is_uneven() || self.is_blob() || (pen > 0.0 && 2.0 * self.widest() > 3.0 * pen))
+        2.0 * self.widest() > 1.6 * pen && (self.is_uneven() || self.is_blob())
     }
 
     /// Whether a piece next to a shape is a line: as wide at both ends, and long for its width; the less so, the more its

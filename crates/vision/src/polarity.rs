@@ -1,11 +1,13 @@
 //! Dark lines on light paper, or light ones on dark.
 
-use crate::ink::sampled_histogram;
+use crate::ink::{noise, sampled_histogram};
 use crate::light::percentile;
 use crate::plane::Plane;
 
 /// A fall and a rise of brightness count from this share of the picture's range on.
 const STEP: f64 = 0.22;
+/// And from this many times the noise's deviation on.
+const NOISE: f64 = 5.5;
 /// Lines are thinner than this share of the picture's shorter side.
 const THIN: usize = 30;
 /// About so many pixels are looked at along rows, and as many along columns.
@@ -15,6 +17,10 @@ const SURE: i64 = 8;
 /// Nor is this share more: side by side, n dark lines have n − 1 light gaps between them.
 const SURE_SHARE: f64 = 0.04;
 
+/// A row through a line falls and rises once. With fewer thin runs than this share of the turns the picture is one of
+/// shapes, and its thin places are gaps as well as lines.
+const SHAPES: i64 = 4;
+
 /// Whether the picture's lines are lighter than what they are drawn on.
 ///
 /// Along rows and columns, what is thin and darker than both its neighbours is counted against what is thin and
@@ -23,7 +29,8 @@ const SURE_SHARE: f64 = 0.04;
 pub(crate) fn is_light_on_dark(image: &Plane<u8>) -> bool {
     let whole = sampled_histogram(image);
     let (low, high) = (percentile(&whole, 0.003), percentile(&whole, 0.997));
-    let runs = Runs::of(image, ((STEP * (high - low)) as u8).max(2));
+    let least = NOISE * noise(image, SAMPLED / 2);
+    let runs = Runs::of(image, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
     if runs.are_sure() {
         return runs.light > runs.dark;
     }
@@ -32,11 +39,13 @@ pub(crate) fn is_light_on_dark(image: &Plane<u8>) -> bool {
     border / low.max(10.0) < high / border
 }
 
-/// Thin runs between two of the other kind.
+/// Thin runs between two of the other kind, without single pixels, which are specks.
 #[derive(Default)]
 struct Runs {
     dark: i64,
     light: i64,
+    /// Falls and rises of the level.
+    turns: i64,
 }
 
 impl Runs {
@@ -65,21 +74,23 @@ impl Runs {
             (least, most) = (least.min(level), most.max(level));
             if falling != Some(true) && most - level >= step {
                 if let Some(start) = rose {
-                    self.light += i64::from(at - start <= thin);
+                    self.light += i64::from((2..=thin).contains(&(at - start)));
                 }
                 (falling, fell, least) = (Some(true), Some(at), level);
+                self.turns += 1;
             } else if falling != Some(false) && level - least >= step {
                 if let Some(start) = fell {
-                    self.dark += i64::from(at - start <= thin);
+                    self.dark += i64::from((2..=thin).contains(&(at - start)));
                 }
                 (falling, rose, most) = (Some(false), Some(at), level);
+                self.turns += 1;
             }
         }
     }
 
     fn are_sure(&self) -> bool {
         let (more, all) = ((self.dark - self.light).abs(), self.dark + self.light);
-        more >= SURE && more as f64 >= SURE_SHARE * all as f64
+        more >= SURE && more as f64 >= SURE_SHARE * all as f64 && all >= self.turns / SHAPES
     }
 }
 

@@ -54,6 +54,9 @@ fn is_bump(graph: &Graph, end: (usize, usize)) -> bool {
 fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f64) -> bool {
     let Some((node, tip, _)) = free_end(graph, end).filter(|_| ends.len() == 3) else { return false };
     let out = tip - node.at;
+    if out.hypot() > 3.0 * pen + 2.0 && is_even(&graph.branches[end.0].radii, pen) {
+        return false;
+    }
     // skeleton pixels lie up to half a pixel beside the middle, hence `pen + 0.5` below;
     // between curved sides the point is longer, but it thins out all along
     let tapers = median(&graph.branches[end.0].radii) < 0.85 * pen;
@@ -68,6 +71,15 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
         let midway = out.dot(back) > 0.9 * out.hypot() * back.hypot();
         s < MITRED && midway && out.hypot() < (1.25 * length + 2.5).max(most)
     })
+}
+
+/// Whether a branch is as wide as the pen all along: a line's. Over a corner's point the two sides' ink is one, wider
+/// than the pen, and runs out.
+fn is_even(radii: &[f64], pen: f64) -> bool {
+    let mut sorted = radii.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let at = |share: usize| sorted[sorted.len() * share / 100];
+    !sorted.is_empty() && (0.85..1.12).contains(&(at(50) / pen)) && at(85) - at(15) < 0.2 * pen + 0.2
 }
 
 /// Sine of half the widest angle at which a corner's point is long enough to show: 150°.
