@@ -125,7 +125,7 @@ fn below(image: &Plane<u8>, paper: &Plane<u8>) -> Plane<u8> {
 fn shaded(image: &Plane<u8>, tile: usize, expected: &[f64]) -> Plane<u8> {
     // twice a tile is wider than any pen
     let side = 2 * tile + 1;
-    shadow::paper(&smoothed(image), side, tile, expected, |closed| {
+    shadow::paper(&smoothed(&smoothed(image)), side, tile, expected, |closed| {
         // what is ink in the closed picture, filled, takes the paper next to it
         let levels = tile_levels(closed, tile);
         let ratio = levels.values.iter().zip(expected).map(|(l, e)| l / e);

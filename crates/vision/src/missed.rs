@@ -14,20 +14,16 @@ const LEAST_PX: f64 = 3.0;
 /// How closely strokes are followed, px.
 const FLAT_PX: f64 = 1.0;
 
-/// Share of the regions' pixels that lie further from every stroke than the pen reaches, 0 to 1.
-pub(crate) fn share(ink: &Mask, regions: &[&Region], strokes: &[Stroke]) -> f64 {
+/// For each region its pixels, and how many of them lie further from every stroke than the pen reaches.
+pub(crate) fn counts(ink: &Mask, regions: &[&Region], strokes: &[Stroke]) -> Vec<(usize, usize)> {
     let usual = median(&strokes.iter().filter_map(|s| s.pen).collect::<Vec<_>>());
     let mut painted = Mask::empty(ink.width, ink.height);
     for stroke in strokes {
         let near = (NEAR_PENS * stroke.pen.unwrap_or(0.0).max(usual)).max(LEAST_PX);
         stroke.path.flatten(FLAT_PX).windows(2).for_each(|w| paint(&mut painted, w[0], w[1], near));
     }
-    let (mut all, mut followed) = (0, 0);
-    for region in regions {
-        all += region.area();
-        followed += region.cells(&painted).count();
-    }
-    (all - followed) as f64 / (all as f64).max(1.0)
+    let count = |region: &&Region| (region.area(), region.area() - region.cells(&painted).count());
+    regions.iter().map(count).collect()
 }
 
 /// Paints all pixels whose centres are within `radius` of the line from `a` to `b`, row by row.
@@ -99,7 +95,7 @@ mod tests {
         let path = Path::polyline(&[Point::new(20.0, 20.0), Point::new(150.0, 20.0)], false).unwrap();
         let mut stroke = Stroke::new(path);
         stroke.pen = Some(4.0);
-        let missed = share(&ink, &[&found[0]], &[stroke]);
-        assert!((missed - 0.5).abs() < 0.03, "{missed}");
+        let [(all, missed)] = counts(&ink, &[&found[0]], &[stroke])[..] else { panic!("one region") };
+        assert!((missed as f64 / all as f64 - 0.5).abs() < 0.03, "{missed} of {all}");
     }
 }

@@ -63,7 +63,7 @@ impl<'a> Outliner<'a> {
 }
 
 /// Edges either side of a line that leaves a shape which show the line and not the shape.
-const BESIDE_LINES: usize = 4;
+const BESIDE_LINES: usize = 6;
 
 fn stroke(points: &[Point], options: &Options) -> Option<Stroke> {
     let path = follow::path(points, true, REACH_PX, options)?;

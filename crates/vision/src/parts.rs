@@ -18,8 +18,10 @@ const SOLID_SHARE: usize = 16;
 /// blur and noise fill corners.
 const BULK_PENS: f64 = 3.0;
 
-/// Pixels by which a shape is larger than the octagons in it: what is left of a disc by them is thinner.
-const RIM: usize = 2;
+/// Pixels by which a shape is larger than the octagons in it, and the share of their width: a disc just wider than them
+/// leaves that much.
+const RIM_PX: usize = 2;
+const RIM_SHARE: usize = 12;
 
 /// The ink in two kinds of parts.
 #[derive(Debug)]
@@ -114,7 +116,8 @@ impl Sorter {
             let inner = mask.clone().opened(width.max(LEAST_BULK));
             let (fits, rest): (Vec<_>, Vec<_>) =
                 left.into_iter().partition(|(region, _)| region.cells(&inner).next().is_some());
-            self.split(mask_of(&mask, fits.iter().map(|(region, _)| region)), inner);
+            let rim = RIM_PX + width / RIM_SHARE;
+            self.split(mask_of(&mask, fits.iter().map(|(region, _)| region)), inner.dilated_by(rim));
             left = rest;
             if left.is_empty() || self.pen > 0.0 || width <= LEAST_BULK {
                 break;
@@ -129,9 +132,9 @@ impl Sorter {
         }
     }
 
-    /// Lines that lead away from what octagons cover, `inner`, and the shapes without them.
-    fn split(&mut self, mixed: Mask, inner: Mask) {
-        let bulk = inner.dilated_by(RIM).and(&mixed);
+    /// Lines that lead away from what octagons and their rims cover, and the shapes without them.
+    fn split(&mut self, mixed: Mask, covered: Mask) {
+        let bulk = covered.and(&mixed);
         let mut rest = mixed.clone().without(&bulk);
         let beside = bulk.clone().dilated_by(2);
         self.shape_mask.add(&bulk);
@@ -171,8 +174,8 @@ impl Squares {
     fn fill(&self, piece: &Region) -> bool {
         let (width, height) = piece.extent();
         let third = width.max(height) / 3;
-        let fitting = self.0.iter().enumerate().filter(|(k, _)| LEAST_BULK << k <= third);
-        fitting.last().is_some_and(|(_, squares)| piece.cells(squares).next().is_some())
+        let mut fitting = self.0.iter().enumerate().filter(|(k, _)| LEAST_BULK << k <= third);
+        fitting.next_back().is_some_and(|(_, squares)| piece.cells(squares).next().is_some())
     }
 }
 
@@ -241,7 +244,10 @@ impl Graph {
 
     /// Whether this was filled and not drawn with a pen of width `pen` (0: no line is known in this picture).
     fn is_shape(&self, pen: f64) -> bool {
-        2.0 * self.widest() > 1.6 * pen && (self.is_uneven() || self.is_blob())
+        let radii = self.radii();
+        let usual = radii.get(radii.len() / 2).copied().unwrap_or(0.0);
+        let wide = pen > 0.0 && 2.0 * usual > 2.2 * pen;
+        2.0 * self.widest() > 1.6 * pen && (wide || self.is_uneven() || self.is_blob())
     }
 
     /// Whether a piece next to a shape is a line: as wide at both ends, and long for its width; the less so, the more its

@@ -6,8 +6,8 @@ use crate::plane::Plane;
 
 /// A fall and a rise of brightness count from this share of the picture's range on.
 const STEP: f64 = 0.22;
-/// And from this many times the noise's deviation on.
-const NOISE: f64 = 5.5;
+/// And from this many times the noise's deviation on: along a row of thousands of pixels it spans eight.
+const NOISE: f64 = 9.0;
 /// Lines are thinner than this share of the picture's shorter side.
 const THIN: usize = 30;
 /// About so many pixels are looked at along rows, and as many along columns.
@@ -19,7 +19,7 @@ const SURE_SHARE: f64 = 0.04;
 
 /// A row through a line falls and rises once. With fewer thin runs than this share of the turns the picture is one of
 /// shapes, and its thin places are gaps as well as lines.
-const SHAPES: i64 = 4;
+const SHAPES: i64 = 8;
 
 /// Whether the picture's lines are lighter than what they are drawn on.
 ///
@@ -28,7 +28,7 @@ const SHAPES: i64 = 4;
 /// of the paper itself are neither. Where that says nothing, the picture's border is paper.
 pub(crate) fn is_light_on_dark(image: &Plane<u8>) -> bool {
     let whole = sampled_histogram(image);
-    let (low, high) = (percentile(&whole, 0.003), percentile(&whole, 0.997));
+    let (low, high) = (percentile(&whole, 0.0005), percentile(&whole, 0.9995));
     let least = NOISE * noise(image, SAMPLED / 2);
     let runs = Runs::of(image, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
     if runs.are_sure() {
@@ -44,7 +44,7 @@ pub(crate) fn is_light_on_dark(image: &Plane<u8>) -> bool {
 struct Runs {
     dark: i64,
     light: i64,
-    /// Falls and rises of the level.
+    /// Sharp falls and rises of the level.
     turns: i64,
 }
 
@@ -62,28 +62,26 @@ impl Runs {
         runs
     }
 
-    /// Follows a row from extreme to extreme: one is left behind when the level has moved away from it by `step`.
+    /// Follows a row from extreme to extreme: one is left behind when the level has moved away from it by `step`. What
+    /// took longer than a line is thin is the light that changes, no edge.
     fn along(&mut self, levels: impl Iterator<Item = u8>, step: u8, thin: usize) {
         let mut levels = levels.enumerate();
         let Some((_, first)) = levels.next() else { return };
-        let (mut least, mut most) = (first, first);
+        let (mut least, mut most) = ((first, 0), (first, 0));
         // where the level last fell away from a peak and rose from a hollow
         let (mut fell, mut rose): (Option<usize>, Option<usize>) = (None, None);
         let mut falling = None;
         for (at, level) in levels {
-            (least, most) = (least.min(level), most.max(level));
-            if falling != Some(true) && most - level >= step {
-                if let Some(start) = rose {
-                    self.light += i64::from((2..=thin).contains(&(at - start)));
-                }
-                (falling, fell, least) = (Some(true), Some(at), level);
-                self.turns += 1;
-            } else if falling != Some(false) && level - least >= step {
-                if let Some(start) = fell {
-                    self.dark += i64::from((2..=thin).contains(&(at - start)));
-                }
-                (falling, rose, most) = (Some(false), Some(at), level);
-                self.turns += 1;
+            least = if level <= least.0 { (level, at) } else { least };
+            most = if level >= most.0 { (level, at) } else { most };
+            if falling != Some(true) && most.0 - level >= step {
+                self.light += i64::from(rose.is_some_and(|start| (2..=thin).contains(&(at - start))));
+                self.turns += i64::from(at - most.1 <= thin);
+                (falling, fell, least) = (Some(true), Some(at), (level, at));
+            } else if falling != Some(false) && level - least.0 >= step {
+                self.dark += i64::from(fell.is_some_and(|start| (2..=thin).contains(&(at - start))));
+                self.turns += i64::from(at - least.1 <= thin);
+                (falling, rose, most) = (Some(false), Some(at), (level, at));
             }
         }
     }

@@ -5,7 +5,7 @@ use crate::ink::Ink;
 use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
-use crate::region::{Region, pinholes, regions};
+use crate::region::{self, Region, pinholes, regions};
 use crate::{Grey, Quality, VisionError, gap, missed, sweep};
 
 /// Which tracer follows the ink.
@@ -140,6 +140,21 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
         .collect();
     strokes.extend(gap::bridged(rows).iter().filter_map(|row| centreline::stroke(dark, row, options)));
     let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
-    let missed = missed::share(mask, &lined, &strokes);
-    (strokes, missed)
+    let counts = missed::counts(mask, &lined, &strokes);
+    let (mut missed, mut all) = (0, 0);
+    let mut lost_ink = Mask::empty(mask.width, mask.height);
+    for (region, (area, lost)) in lined.iter().zip(counts) {
+        all += area;
+        match lost as f64 > LOST * area as f64 {
+            true => region.fill_into(&mut lost_ink),
+            false => missed += lost,
+        }
+    }
+    // no lines, whatever they are: then their edges at least
+    let mut outliner = Outliner::new(dark, &lost_ink, mask);
+    strokes.extend(region::regions(&lost_ink).iter().flat_map(|region| outliner.strokes(region, options)));
+    (strokes, missed as f64 / (all as f64).max(1.0))
 }
+
+/// A patch whose lines leave out more than this share of it is none of lines.
+const LOST: f64 = 0.6;
