@@ -208,10 +208,13 @@ impl Mask {
         self.dilated(side)
     }
 
-    /// All within `reach` steps sideways, up or down.
-    pub(crate) fn dilated_by(mut self, reach: usize) -> Self {
-        (0..reach).for_each(|_| self.dilate_by_plus());
-        self
+    /// All within the upright squares of `reach` px either way about each ink pixel.
+    pub(crate) fn dilated_by(self, reach: usize) -> Self {
+        let mut grown = self.dilated(reach + 1);
+        each_shift(reach + 1, |by| grown.or_shifted_back(by));
+        each_shift(reach + 1, |by| grown.or_below(by));
+        grown.trim();
+        grown
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -252,18 +255,6 @@ impl Mask {
         self.trim();
     }
 
-    /// Adds what has ink beside, above or below it.
-    fn dilate_by_plus(&mut self) {
-        let before = self.words.clone();
-        let stride = self.stride;
-        for i in stride..before.len() - stride {
-            let (left, here, right) = (before[i - 1], before[i], before[i + 1]);
-            let beside = (here << 1 | left >> 63) | (here >> 1 | right << 63);
-            self.words[i] = here | beside | before[i - stride] | before[i + stride];
-        }
-        self.trim();
-    }
-
     /// Each pixel and the one `by` (up to 64) right of it; the margin keeps rows apart.
     fn and_shifted(&mut self, by: usize) {
         for i in 0..self.words.len() - 1 {
@@ -285,6 +276,21 @@ impl Mask {
         }
         // what ran over into the margin would come back in the next row
         self.trim();
+    }
+
+    /// Each pixel or the one `by` (up to 64) right of it.
+    fn or_shifted_back(&mut self, by: usize) {
+        for i in 0..self.words.len() - 1 {
+            self.words[i] |= shifted_down(self.words[i], self.words[i + 1], by);
+        }
+        self.trim();
+    }
+
+    fn or_below(&mut self, by: usize) {
+        let reach = by * self.stride;
+        for i in 0..self.words.len().saturating_sub(reach) {
+            self.words[i] |= self.words[i + reach];
+        }
     }
 
     fn or_above(&mut self, by: usize) {
@@ -444,6 +450,21 @@ pub(crate) mod tests {
         let opened = mask.clone().eroded(77).dilated(77);
         assert_eq!(opened.count(), 140 * 140);
         assert_eq!(opened.without(&mask).count(), 0);
+    }
+
+    #[test]
+    fn squares_about_a_pixel_reach_as_far_either_way() {
+        for reach in [1, 2, 5, 24] {
+            let mut mask = Mask::empty(200, 80);
+            for (x, y) in [(64, 40), (0, 0), (199, 79)] {
+                let cell = mask.cell(x, y);
+                mask.set(cell);
+            }
+            let side = 2 * reach + 1;
+            let grown = mask.dilated_by(reach);
+            assert_eq!(grown.count(), side * side + 2 * (reach + 1) * (reach + 1), "reach {reach}");
+            assert!(grown.get(64 - reach as isize, 40 + reach as isize));
+        }
     }
 
     #[test]

@@ -256,7 +256,8 @@ impl Graph {
         let radii = self.radii();
         let at = |share: usize| radii.get(radii.len() * share / 100).copied().unwrap_or(0.0);
         let width = 2.0 * at(50);
-        let even = at(80) - at(20) <= (0.2 * at(50)).max(0.75);
+        // distances to pixels go in steps of up to a pixel where they are small
+        let even = at(80) - at(20) <= (0.25 * at(50)).max(1.05);
         let lengths = if (width - pen).abs() < 0.3 * pen { 2.0 } else { 4.0 };
         even && !self.tapers() && self.length() > (lengths * width).max(8.0)
     }
