@@ -1,9 +1,10 @@
 //! From the points of a tracer to a path that a head can follow.
 //!
 //! Corners are found first and put where their sides meet; between them, straight runs become lines and the rest
-//! few cubics, each passing into the next without a break of direction. A head stops at every corner and brakes at
+//! an arc or few cubics, each passing into the next without a break of direction. A head stops at every corner and brakes at
 //! every kink, so neither is made up and none is rounded away.
 
+mod arc;
 mod chain;
 mod circle;
 mod corner;

@@ -3,6 +3,7 @@
 use kurbo::{CubicBez, Point, Vec2};
 
 use super::FitOptions;
+use super::arc;
 use super::chain;
 use super::cubic::Ends;
 use super::straight::{Run, Straightness, direction};
@@ -23,6 +24,9 @@ struct Line {
 /// The section through `row`, from its first point to its last.
 pub(super) fn open(row: &[Point], options: &FitOptions) -> Vec<Element> {
     let lines = lines(row, options);
+    if let Some(arc) = arc::through(row, 0.7 * options.tolerance).filter(|_| lines.is_empty()) {
+        return vec![arc];
+    }
     let leaving = match lines.first() {
         Some(line) if line.first == 0 => direction(line.from, line.to),
         _ => chain::leaving(row, 0.2 * options.tolerance),
