@@ -62,6 +62,8 @@ pub(crate) struct Out<'a> {
 /// A traced picture.
 pub(crate) struct Finding {
     pub(crate) figures: Figures,
+    /// What its pixels are worth, a sentence.
+    pub(crate) verdict: Option<String>,
     /// Its strokes, if they were asked for.
     pub(crate) json: Option<String>,
     /// Time from pixels to strokes, ms.
@@ -272,9 +274,17 @@ mod tests {
     fn traced() -> Finding {
         let (missed_ink, doubt) = (Some(0.0), None);
         let sheet = (640.0, 480.0);
-        let figures =
-            Figures { strokes: 1, closed: 0, length: 9.0, sheet, unit: Unit::Px, missed_ink, doubt };
-        Finding { figures, json: None, vision_ms: 1.0 }
+        let figures = Figures {
+            strokes: 1,
+            closed: 0,
+            length: 9.0,
+            sheet,
+            unit: Unit::Px,
+            missed_ink,
+            doubt,
+            quality: None,
+        };
+        Finding { figures, verdict: None, json: None, vision_ms: 1.0 }
     }
 
     #[test]

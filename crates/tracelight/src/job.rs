@@ -64,8 +64,7 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
 fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepared, Failure> {
     let driving = args.driving.resolve()?;
     progress.stage("strokes", 1);
-    let sketch =
-        sketch(&args.picture, picture::read(&args.picture)?, args.mode.into(), &args.placement.choice)?;
+    let sketch = sketch(&args.picture, picture::read(&args.picture)?, &args.tracing, &args.placement)?;
     stop.check()?;
     progress.stage("plan", 1);
     let placed = place(&sketch, &args.placement);
@@ -73,7 +72,7 @@ fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepare
     let schedule = schedule(&placed, &driving, OrderBy::default(), OrderEffort::default())?;
     let plan_ms = began.elapsed().as_secs_f64() * 1e3;
     stop.check()?;
-    let notes: Vec<String> = sketch.remarks.iter().cloned().chain(driving.remarks(&schedule.plan)).collect();
+    let notes: Vec<String> = sketch.notes().into_iter().chain(driving.remarks(&schedule.plan)).collect();
     notes.iter().for_each(|n| progress.say(&format!("note: {n}")));
     Ok(Prepared { sketch, placed, driving, schedule, notes, plan_ms })
 }
@@ -186,6 +185,7 @@ fn write(
             .picture
             .as_ref()
             .map(|raster| Picture { raster, target_from_pixel: placed.target_from_sheet }),
+        quality: sketch.quality.as_ref(),
         target: Target {
             width_m: placed.size_m.0,
             height_m: placed.size_m.1,

@@ -7,6 +7,7 @@ mod job;
 mod output;
 mod picture;
 mod progress;
+mod quality;
 mod rigfile;
 mod schedule;
 mod settings;

@@ -3,7 +3,7 @@
 use std::io::{Cursor, Read};
 use std::path::Path;
 
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
 use tracelight_formats::{FormatError, Reading, Sheet, csv, dxf, json, svg};
 use tracelight_stroke::{Affine, Drawing, Vec2};
 use tracelight_vision::Grey;
@@ -26,7 +26,7 @@ pub(crate) enum Source {
     Strokes(Reading),
 }
 
-/// A decoded picture, upright, over white.
+/// A decoded picture, upright, on paper where it was transparent.
 pub(crate) struct Pixels {
     /// For display.
     pub(crate) colour: Raster,
@@ -197,10 +197,10 @@ fn too_large(path: &str, what: &str) -> Failure {
     )
 }
 
-/// Alpha over white, 8 bit, and the luma of it.
+/// Alpha on paper, 8 bit, and the luma of it.
 fn pixels(path: &str, image: DynamicImage) -> Result<Pixels, Failure> {
     let (width, height) = (image.width(), image.height());
-    let rgb = if image.color().has_alpha() { over_white(image) } else { image.into_rgb8().into_raw() };
+    let rgb = if image.color().has_alpha() { on_paper(image) } else { image.into_rgb8().into_raw() };
     let luma = rgb.chunks_exact(3).map(luma).collect();
     let grey = Grey::new(width as usize, height as usize, luma)
         .map_err(|e| Failure::failed("no-strokes-found", format!("{path}: {e}")))?;
@@ -209,17 +209,65 @@ fn pixels(path: &str, image: DynamicImage) -> Result<Pixels, Failure> {
     Ok(Pixels { colour, grey })
 }
 
-fn over_white(image: DynamicImage) -> Vec<u8> {
+/// Alpha on white paper, or on black where hardly anything that is seen would show on white.
+fn on_paper(image: DynamicImage) -> Vec<u8> {
     let rgba = image.into_rgba8();
+    let paper = if is_light(&rgba) { 0 } else { 255 };
     let blend = |c: u8, a: u8| {
         let (c, a) = (u32::from(c), u32::from(a));
-        ((c * a + 255 * (255 - a) + 127) / 255) as u8
+        ((c * a + paper * (255 - a) + 127) / 255) as u8
     };
     rgba.pixels().flat_map(|p| [0, 1, 2].map(|i| blend(p.0[i], p.0[3]))).collect()
+}
+
+/// Whether what is seen of a picture is light ink: light in the mean, and hardly any of it dark. A light figure with
+/// dark lines, or a page with clear corners, is drawn on white.
+fn is_light(rgba: &RgbaImage) -> bool {
+    let (mut seen, mut light, mut dark) = (0_u64, 0_u64, 0_u64);
+    for p in rgba.pixels() {
+        let (alpha, level) = (u64::from(p.0[3]), u64::from(luma(&p.0[..3])));
+        seen += alpha;
+        light += alpha * level;
+        dark += if level < 128 { alpha } else { 0 };
+    }
+    let all = 255 * u64::from(rgba.width()) * u64::from(rgba.height());
+    // ink covers less than half of a picture and fringes of it may be dark; a page covers more, and its ink may be
+    // one part in two hundred
+    let most_dark = if 2 * seen < all { seen / 20 } else { seen / 200 };
+    2 * light > 255 * seen && dark <= most_dark
 }
 
 /// ITU-R BT.601 luma in integers.
 fn luma(rgb: &[u8]) -> u8 {
     let [r, g, b] = [rgb[0], rgb[1], rgb[2]].map(u32::from);
     ((299 * r + 587 * g + 114 * b + 500) / 1000) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Rgba;
+
+    /// A bar of one colour across a transparent picture, and a dash of another in it.
+    fn bar(bar: [u8; 4], dash: [u8; 4], rows: std::ops::Range<u32>) -> DynamicImage {
+        let colour = |x: u32, y: u32| match (rows.contains(&y), (x, y)) {
+            (true, (20..40, 10..15)) => dash,
+            (true, _) => bar,
+            (false, _) => [0, 0, 0, 0],
+        };
+        RgbaImage::from_fn(100, 100, |x, y| Rgba(colour(x, y))).into()
+    }
+
+    #[test]
+    fn light_ink_lies_on_black_paper_and_all_else_on_white() {
+        let corner = |image| on_paper(image)[0];
+        let (white, black, grey) = ([255, 255, 255, 255], [0, 0, 0, 255], [90, 90, 90, 255]);
+        assert_eq!(corner(bar(white, white, 8..18)), 0, "white ink");
+        assert_eq!(corner(bar([255, 255, 0, 90], white, 8..18)), 0, "faint yellow ink");
+        assert_eq!(corner(bar(black, black, 8..18)), 255, "black ink");
+        assert_eq!(corner(bar(grey, grey, 8..18)), 255, "grey ink");
+        assert_eq!(corner(bar(white, black, 8..18)), 255, "a light figure with dark lines");
+        assert_eq!(corner(bar(white, black, 4..98)), 255, "a page with clear borders");
+        assert_eq!(corner(bar([0; 4], [0; 4], 0..0)), 255, "nothing");
+    }
 }

@@ -19,7 +19,6 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
             "speed",
             format!("{:.4} m/s ({:.2} ft/s)", driving.request.speed_m_s, driving.request.speed_m_s / 0.3048),
         ),
-        ("mode", format!("{:?}", args.mode).to_lowercase()),
         ("profile", args.driving.profile.name().into()),
         ("rig", format!("{} ({})", driving.rig.name, driving.rig.description)),
         ("tolerance", mm(driving.request.tolerance_m)),
@@ -27,5 +26,6 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
         ("laps", args.laps.to_string()),
         ("dry run", if args.dry_run { "yes" } else { "no" }.into()),
     ];
-    rows.map(|(name, value)| Setting { name: name.into(), value }).into()
+    let all = rows.into_iter().chain(args.tracing.settings());
+    all.map(|(name, value)| Setting { name: name.into(), value }).collect()
 }

@@ -5,13 +5,13 @@ use std::time::Instant;
 use tracelight_aim::{Placement, SizeRequest};
 use tracelight_formats::{Reading, svg};
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
-use tracelight_vision::{Mode, Options};
+use tracelight_vision::{Quality, VisionError};
 
-use crate::cli::choosing::ChoiceArgs;
 use crate::cli::placing::PlacementArgs;
+use crate::cli::tracing::TracingArgs;
 use crate::failure::Failure;
 use crate::output::Raster;
-use crate::picture::Source;
+use crate::picture::{Pixels, Source};
 
 /// Width of a picture that says nothing of its size, m: 24 in.
 const DEFAULT_WIDTH_M: f64 = 24.0 * 0.0254;
@@ -30,10 +30,24 @@ pub(crate) struct Sketch {
     pub(crate) mode: &'static str,
     /// What the user should know about it: one sentence each.
     pub(crate) remarks: Vec<String>,
+    /// What its pixels are worth; none of a drawing.
+    pub(crate) quality: Option<Quality>,
     /// Share of the ink that lies on no stroke; none where there was no ink.
     pub(crate) missed_ink: Option<f64>,
     /// Time it took, ms.
     pub(crate) vision_ms: f64,
+}
+
+impl Sketch {
+    /// All that the user should know of it.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        let weak = self.quality.iter().flat_map(Quality::remarks);
+        self.remarks
+            .iter()
+            .cloned()
+            .chain(weak.map(|remark| format!("the picture is usable: {remark}")))
+            .collect()
+    }
 }
 
 /// Share of the ink that may be missed without a word: what blots at junctions and ends make of a clean drawing.
@@ -92,43 +106,81 @@ impl Placed {
     }
 }
 
-/// Traces pixels, takes strokes as they are; of these, the chosen ones.
-pub(crate) fn sketch(name: &str, source: Source, mode: Mode, choice: &ChoiceArgs) -> Result<Sketch, Failure> {
+/// Traces pixels, takes strokes as they are; of these, the chosen ones that are long enough.
+pub(crate) fn sketch(
+    name: &str,
+    source: Source,
+    tracing: &TracingArgs,
+    placement: &PlacementArgs,
+) -> Result<Sketch, Failure> {
     let began = Instant::now();
     let mut sketch = match source {
-        Source::Strokes(Reading { sheet, remarks }) => Sketch {
-            size: (sheet.width, sheet.height),
-            true_width_m: sheet.metres_per_unit.map(|m| m * sheet.width),
-            drawing: sheet.drawing,
-            picture: None,
-            mode: "strokes",
-            remarks,
-            missed_ink: None,
-            vision_ms: 0.0,
-        },
-        Source::Pixels(pixels) => {
-            let options = Options { mode, ..Options::default() };
-            let traced = tracelight_vision::trace(&pixels.grey, &options)
-                .map_err(|e| Failure::failed("no-strokes-found", format!("{name}: {e}")))?;
-            Sketch {
-                size: (f64::from(pixels.colour.width()), f64::from(pixels.colour.height())),
-                true_width_m: None,
-                drawing: traced.strokes,
-                picture: Some(pixels.colour),
-                mode: mode.name(),
-                remarks: doubt(traced.missed_ink).into_iter().collect(),
-                missed_ink: Some(traced.missed_ink),
-                vision_ms: 0.0,
-            }
-        }
+        Source::Strokes(reading) => taken(reading),
+        Source::Pixels(pixels) => traced(name, pixels, tracing, placement)?,
     };
-    sketch.drawing = choice.of(name, sketch.drawing)?;
+    sketch.drawing = placement.choice.of(name, sketch.drawing)?;
+    let refused = |why: &str| Err(Failure::failed("no-strokes-found", format!("{name}: {why}")));
     if sketch.drawing.strokes.is_empty() {
-        let why = "it has no strokes; give a picture with at least one line";
-        return Err(Failure::failed("no-strokes-found", format!("{name}: {why}")));
+        return refused("it has no strokes; give a picture with at least one line");
+    }
+    let least = tracing.min_length.in_units(metres_per_unit(sketch.size, sketch.true_width_m, placement));
+    if least > 0.0 {
+        // a thousandth of the length asked for is as good as all of it
+        sketch.drawing.strokes.retain(|stroke| stroke.path.length(1e-3 * least) >= least);
+    }
+    if sketch.drawing.strokes.is_empty() {
+        return refused("all its strokes are shorter than --min-length; set it lower");
     }
     sketch.vision_ms = began.elapsed().as_secs_f64() * 1e3;
     Ok(sketch)
+}
+
+/// Strokes as they are.
+fn taken(Reading { sheet, remarks }: Reading) -> Sketch {
+    Sketch {
+        size: (sheet.width, sheet.height),
+        true_width_m: sheet.metres_per_unit.map(|m| m * sheet.width),
+        drawing: sheet.drawing,
+        picture: None,
+        mode: "strokes",
+        remarks,
+        quality: None,
+        missed_ink: None,
+        vision_ms: 0.0,
+    }
+}
+
+/// Pixels traced.
+fn traced(
+    name: &str,
+    pixels: Pixels,
+    tracing: &TracingArgs,
+    placement: &PlacementArgs,
+) -> Result<Sketch, Failure> {
+    let size = (f64::from(pixels.colour.width()), f64::from(pixels.colour.height()));
+    let options = tracing.options(metres_per_unit(size, None, placement));
+    let refused = |e: VisionError| match e {
+        VisionError::Option { .. } => Failure::usage("usage", format!("{name}: {e}")),
+        _ => Failure::failed("no-strokes-found", format!("{name}: {e}")),
+    };
+    let traced = tracelight_vision::trace(&pixels.grey, &options).map_err(refused)?;
+    Ok(Sketch {
+        size,
+        true_width_m: None,
+        drawing: traced.strokes,
+        picture: Some(pixels.colour),
+        mode: options.mode.name(),
+        remarks: doubt(traced.missed_ink).into_iter().collect(),
+        quality: Some(traced.quality),
+        missed_ink: Some(traced.missed_ink),
+        vision_ms: 0.0,
+    })
+}
+
+/// How long a sheet's unit is on the target: as large as asked, as it is truly, or 24 in wide.
+fn metres_per_unit((width, height): (f64, f64), true_width_m: Option<f64>, args: &PlacementArgs) -> f64 {
+    let asked = args.width.map(|w| w.0 / width).or(args.height.map(|h| h.0 / height));
+    asked.unwrap_or_else(|| true_width_m.unwrap_or(DEFAULT_WIDTH_M) / width)
 }
 
 /// Puts a sketch on the target: as large as asked, as it is truly, or 24 in wide.

@@ -54,6 +54,8 @@ const DEG: f64 = std::f64::consts::PI / 180.0;
 
 /// The first of each list is the SI unit the quantity prints in.
 pub(crate) const LENGTHS: &[Unit] = &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("ft", 0.3048)];
+/// Lengths in a picture.
+pub(crate) const PIXELS: &[Unit] = &[("px", 1.0)];
 /// See [`LENGTHS`].
 pub(crate) const ANGLES: &[Unit] =
     &[("rad", 1.0), ("mrad", 1e-3), ("deg", DEG), ("arcmin", DEG / 60.0), ("arcsec", DEG / 3600.0)];

@@ -48,6 +48,42 @@ pub enum VisionError {
         /// Its bound.
         least: f64,
     },
+    /// At the threshold that was set all is ink, or nothing is.
+    #[error(
+        "--threshold {threshold:.1} % parts no ink from the paper: the strongest ink is {darkest:.1} % darker than it; set \
+         it below that and above 0, or leave it to be found (auto)"
+    )]
+    Threshold {
+        /// As set, % of the paper's brightness.
+        threshold: f64,
+        /// Darkness of the strongest ink, % of the paper's brightness.
+        darkest: f64,
+    },
+    /// An option out of its bounds.
+    #[error("{option} is {value} and must be from {least} to {most} {unit}")]
+    Option {
+        /// Its name on a command line.
+        option: &'static str,
+        /// As set.
+        value: f64,
+        /// Its lower bound.
+        least: f64,
+        /// Its upper bound.
+        most: f64,
+        /// What it is in.
+        unit: &'static str,
+    },
+    /// All strokes are shorter than asked for.
+    #[error(
+        "the longest stroke is {longest_px:.1} px and --min-length drops what is shorter than {least_px:.1} px: set it \
+         lower"
+    )]
+    TooShort {
+        /// Length of the longest stroke, px.
+        longest_px: f64,
+        /// Length that was asked for, px.
+        least_px: f64,
+    },
     /// Everything dark is small enough to be dust.
     #[error(
         "the largest patch of ink has {largest_px} px and dust has up to {least_px} px here: there is nothing to \

@@ -6,38 +6,16 @@ use crate::light::{Paper, percentile};
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
+use crate::quality::clipped_percent;
 use crate::region::regions;
-use crate::{Grey, VisionError};
-
-/// Least difference between mean ink and mean paper, % of the paper's brightness: 20 levels of 255.
-const LEAST_CONTRAST_PERCENT: f64 = 8.0;
-
-/// Least contrast over the deviation within the paper. Splitting noise at its best threshold gives 2.7 (normal) to
-/// 3.5 (uniform) whatever its strength; a webcam's picture of a faint drawing gives 6 and more.
-const LEAST_CONTRAST_TO_NOISE: f64 = 4.5;
+use crate::sharpness::{self, Step};
+use crate::{Grey, Quality, VisionError};
 
 /// Noise from which on the picture is smoothed, levels.
 const SMOOTHED_FROM: f64 = 2.5;
 
 /// What is fainter than this share of the strongest ink is not ink: ruled paper's lines have up to a third of it.
 const RULES: f64 = 0.42;
-
-/// Figures of an image's quality.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quality {
-    /// Mean ink against mean paper, % of the paper's brightness.
-    pub contrast_percent: f64,
-    /// Contrast over the standard deviation within the paper.
-    pub contrast_to_noise: f64,
-    /// Standard deviation of the image's pixel noise, levels of 255.
-    pub noise_levels: f64,
-    /// Darkest paper over brightest: 1 is even light.
-    pub light_evenness: f64,
-    /// Share of the picture that is ink, %.
-    pub ink_percent: f64,
-    /// Whether the ink is lighter than the paper.
-    pub light_on_dark: bool,
-}
 
 /// An image with its light and polarity evened out.
 #[derive(Clone, Debug)]
@@ -54,24 +32,34 @@ pub(crate) struct Ink {
 }
 
 impl Ink {
-    /// Finds the ink of an image and refuses one that has none.
-    pub(crate) fn of(image: &Grey) -> Result<Self, VisionError> {
+    /// Finds the ink of an image and refuses one that has none. `threshold_percent` is the darkness from which on it
+    /// is ink, % of the paper's brightness; without it, it is found.
+    pub(crate) fn of(image: &Grey, threshold_percent: Option<f64>) -> Result<Self, VisionError> {
         let reduction = image.reduction();
         let mut plane =
             if reduction > 1 { Cow::Owned(image.reduced(reduction)) } else { Cow::Borrowed(&image.plane) };
-        let light_on_dark = is_light_on_dark(&plane);
+        let mut raw_levels = sampled_histogram(&plane);
+        let light_on_dark = is_light_on_dark(&plane, &raw_levels);
         if light_on_dark {
             plane.to_mut().values.iter_mut().for_each(|v| *v = 255 - *v);
+            raw_levels.reverse();
         }
         let paper = Paper::of(&plane);
         let mut darkness = paper.darkness(&plane);
         let noise_levels = noise(&darkness, SAMPLED);
-        if noise_levels > SMOOTHED_FROM {
+        let is_noisy = noise_levels > SMOOTHED_FROM;
+        if is_noisy {
             darkness = smoothed(&darkness);
         }
         let levels = sampled_histogram(&darkness);
-        let split = Split::of(&levels);
-        let (threshold, above_rules) = (split.threshold, (RULES * strongest(&levels)) as u8);
+        let split = match threshold_percent {
+            Some(percent) => Split::at(&levels, (2.55 * percent).round() as u8),
+            None => Split::of(&levels),
+        };
+        let strongest = strongest(&levels);
+        split.check(threshold_percent, strongest)?;
+        // whoever sets a threshold means it: rules over it are ink
+        let above_rules = if threshold_percent.is_some() { 0 } else { (RULES * strongest) as u8 };
         let (dimmest, brightest) = paper.range();
         let quality = Quality {
             contrast_percent: (split.ink - split.paper) / 2.55,
@@ -79,10 +67,13 @@ impl Ink {
             noise_levels,
             light_evenness: dimmest / brightest,
             ink_percent: 100.0 * split.share,
+            edge_px: split.edge_px(&darkness, noise_levels, is_noisy).map(|px| px * reduction as f64),
+            clipped_percent: clipped_percent(&raw_levels, split.share),
+            pen_px: None,
             light_on_dark,
         };
-        gate(&quality)?;
-        Ok(Self { darkness, threshold, above_rules, reduction, quality })
+        quality.gate(threshold_percent.is_some())?;
+        Ok(Self { darkness, threshold: split.threshold, above_rules, reduction, quality })
     }
 
     /// Where there is ink. Where some of it leads from border to border, the paper is ruled perhaps: then only what is
@@ -114,17 +105,6 @@ fn word_over(levels: &[u8], threshold: u8) -> u64 {
         (u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * k)
     };
     (0..8).map(byte).fold(0, |word, bits| word | bits)
-}
-
-fn gate(quality: &Quality) -> Result<(), VisionError> {
-    let &Quality { contrast_percent: contrast, contrast_to_noise: ratio, .. } = quality;
-    if contrast < LEAST_CONTRAST_PERCENT {
-        return Err(VisionError::NoContrast { contrast, least: LEAST_CONTRAST_PERCENT });
-    }
-    if ratio < LEAST_CONTRAST_TO_NOISE {
-        return Err(VisionError::Noise { ratio, least: LEAST_CONTRAST_TO_NOISE });
-    }
-    Ok(())
 }
 
 pub(crate) fn histogram(plane: &Plane<u8>) -> [u32; 256] {
@@ -180,13 +160,7 @@ impl Split {
     /// Where the variance between the classes is largest (Otsu, "A threshold selection method from gray-level
     /// histograms", 1979); in the middle of a stretch where it is.
     pub(crate) fn of(histogram: &[u32; 256]) -> Self {
-        let moments = |range: std::ops::Range<usize>| {
-            range.fold((0.0, 0.0, 0.0), |(n, sum, square), level| {
-                let (count, v) = (f64::from(histogram[level]), level as f64);
-                (n + count, sum + count * v, square + count * v * v)
-            })
-        };
-        let (all, total, _) = moments(0..256);
+        let (all, total, _) = moments(histogram, 0..256);
         let (mut n, mut sum) = (0.0, 0.0);
         let (mut best, mut first, mut last) = (0.0, 0, 0);
         for (level, &count) in histogram.iter().enumerate().take(255) {
@@ -201,7 +175,13 @@ impl Split {
                 last = level;
             }
         }
-        let threshold = (first + last) / 2;
+        Self::at(histogram, ((first + last) / 2) as u8)
+    }
+
+    /// At a threshold.
+    fn at(histogram: &[u32; 256], threshold: u8) -> Self {
+        let threshold = usize::from(threshold);
+        let moments = |range: std::ops::Range<usize>| moments(histogram, range);
         let (lower, upper) = (moments(0..threshold + 1), moments(threshold + 1..256));
         // a class without pixels is no different from the other
         let mean = |class: (f64, f64, f64), other: (f64, f64, f64)| {
@@ -213,9 +193,45 @@ impl Split {
             paper,
             ink: mean(upper, lower),
             paper_deviation: (lower.2 / lower.0.max(1.0) - paper * paper).max(0.0).sqrt(),
-            share: upper.0 / all.max(1.0),
+            share: upper.0 / (lower.0 + upper.0).max(1.0),
         }
     }
+
+    /// Refuses a threshold that leaves no ink, or no paper.
+    fn check(&self, threshold_percent: Option<f64>, strongest: f64) -> Result<(), VisionError> {
+        match threshold_percent {
+            Some(threshold) if !(0.0 < self.share && self.share < 1.0) => {
+                Err(VisionError::Threshold { threshold, darkest: strongest / 2.55 })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Width of the ink's edges, px, without what smoothing added.
+    fn edge_px(&self, darkness: &Plane<u8>, noise: f64, smoothed: bool) -> Option<f64> {
+        // the binomial mean of 3 px has a variance of 1/2; a Gaussian's integral rises from 10 to 90 % in 2.563 σ
+        const ADDED_SQ: f64 = 2.563 * 2.563 * 0.5;
+        let noise = if smoothed { 3.0 / 8.0 * noise } else { noise };
+        // two deviations: what differs by less is as likely to be noise
+        let step = Step {
+            threshold: self.threshold,
+            least: 0.5 * (self.ink - self.paper),
+            noise: (2.0 * noise).max(1.0),
+        };
+        let width = sharpness::edge_px(darkness, step)?;
+        Some(if smoothed { (width * width - ADDED_SQ).max(SHARPEST_SQ).sqrt() } else { width })
+    }
+}
+
+/// Square of the least width an edge has on pixels: from 10 to 90 % of one pixel.
+const SHARPEST_SQ: f64 = 0.8 * 0.8;
+
+/// Count, sum and sum of squares of the levels in a range.
+fn moments(histogram: &[u32; 256], range: std::ops::Range<usize>) -> (f64, f64, f64) {
+    range.fold((0.0, 0.0, 0.0), |(n, sum, square), level| {
+        let (count, v) = (f64::from(histogram[level]), level as f64);
+        (n + count, sum + count * v, square + count * v * v)
+    })
 }
 
 /// Standard deviation of the pixel noise, levels: the mask of Immerkær, "Fast noise variance estimation" (1996),
@@ -279,24 +295,28 @@ mod tests {
     #[test]
     fn polarity_is_found_without_being_told() {
         let line = |x: usize, y: usize| (x + y) % 60 < 5 && (20..100).contains(&y);
-        let dark = Ink::of(&image(|x, y| if line(x, y) { 40 } else { 220 })).unwrap();
-        let light = Ink::of(&image(|x, y| if line(x, y) { 220 } else { 40 })).unwrap();
+        let dark = Ink::of(&image(|x, y| if line(x, y) { 40 } else { 220 }), None).unwrap();
+        let light = Ink::of(&image(|x, y| if line(x, y) { 220 } else { 40 }), None).unwrap();
         assert!(!dark.quality.light_on_dark && light.quality.light_on_dark);
         let filled = |x: usize, y: usize| (x as f64 - 80.0).hypot(y as f64 - 60.0) < 55.0;
-        assert!(!Ink::of(&image(|x, y| if filled(x, y) { 30 } else { 230 })).unwrap().quality.light_on_dark);
-        assert!(Ink::of(&image(|x, y| if filled(x, y) { 230 } else { 30 })).unwrap().quality.light_on_dark);
+        assert!(
+            !Ink::of(&image(|x, y| if filled(x, y) { 30 } else { 230 }), None).unwrap().quality.light_on_dark
+        );
+        assert!(
+            Ink::of(&image(|x, y| if filled(x, y) { 230 } else { 30 }), None).unwrap().quality.light_on_dark
+        );
     }
 
     #[test]
     fn pictures_without_a_drawing_are_refused_with_the_figure_that_failed() {
         for level in [0, 128, 255] {
-            let error = Ink::of(&image(|_, _| level)).unwrap_err();
+            let error = Ink::of(&image(|_, _| level), None).unwrap_err();
             assert!(matches!(error, VisionError::NoContrast { contrast, .. } if contrast < 1.0), "{error}");
         }
-        let faint = Ink::of(&image(|x, y| 127 + ((x + y) % 2) as u8)).unwrap_err();
+        let faint = Ink::of(&image(|x, y| 127 + ((x + y) % 2) as u8), None).unwrap_err();
         assert!(matches!(faint, VisionError::NoContrast { .. }), "{faint}");
         for strength in [255.0, 80.0] {
-            let noise = Ink::of(&image(|x, y| (strength * noise_at(x, y)) as u8)).unwrap_err();
+            let noise = Ink::of(&image(|x, y| (strength * noise_at(x, y)) as u8), None).unwrap_err();
             assert!(matches!(noise, VisionError::Noise { .. }), "{noise}");
         }
     }
@@ -307,7 +327,7 @@ mod tests {
             let pen = if (60..65).contains(&x) && y > 20 { 60.0 } else { 0.0 };
             (200.0 - pen + 20.0 * (noise_at(x, y) - 0.5)) as u8
         };
-        let ink = Ink::of(&image(level)).unwrap();
+        let ink = Ink::of(&image(level), None).unwrap();
         let mask = ink.mask();
         assert!((60..65).all(|x| mask.get(x, 60)));
         assert!(ink.quality.ink_percent < 4.0, "{:?}", ink.quality);

@@ -8,7 +8,8 @@
 //!
 //! | module | what |
 //! |---|---|
-//! | `light`, `ink` | even light, polarity, threshold, the gate that refuses bad pictures |
+//! | `light`, `ink` | even light, polarity, threshold |
+//! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
 //! | `region`, `distance` | connected patches of ink; distance to the paper |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
@@ -38,9 +39,11 @@ mod parts;
 mod plane;
 mod polarity;
 mod prune;
+mod quality;
 mod region;
 mod ridge;
 mod shadow;
+mod sharpness;
 mod solve;
 mod sweep;
 mod thin;
@@ -48,6 +51,6 @@ mod trace;
 
 pub use error::VisionError;
 pub use grey::Grey;
-pub use ink::Quality;
 pub use marks::{Marks, find_two_marks};
+pub use quality::{Figure, Quality, Verdict};
 pub use trace::{Mode, Options, Traced, trace};

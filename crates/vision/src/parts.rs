@@ -42,14 +42,14 @@ impl Parts {
     }
 
     /// Each part by its width.
-    pub(crate) fn of(mask: &Mask, patches: Vec<Region>) -> Self {
+    pub(crate) fn of(mask: &Mask, patches: Vec<Region>, keep_dust: bool) -> Self {
         let side = mask.width.min(mask.height) / SOLID_SHARE;
         let solid = mask.clone().eroded(side);
         let (bulky, thin): (Vec<Region>, Vec<Region>) =
             patches.into_iter().partition(|region| region.cells(&solid).next().is_some());
         let thin = graphs(&mask.clone().without(&mask_of(mask, &bulky)), thin);
         let pen = pen_width(thin.iter().map(|(_, graph)| graph));
-        let thin = without_dust(mask, &bulky, thin, pen);
+        let thin = if keep_dust { thin } else { without_dust(mask, &bulky, thin, pen) };
         let (lines, wide): (Vec<_>, Vec<_>) =
             thin.into_iter().partition(|(_, graph)| graph.is_pure_line(pen));
         let mut sorter = Sorter { pen, lines, shape_mask: Mask::empty(mask.width, mask.height) };

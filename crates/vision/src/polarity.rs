@@ -1,6 +1,6 @@
 //! Dark lines on light paper, or light ones on dark.
 
-use crate::ink::{noise, sampled_histogram};
+use crate::ink::noise;
 use crate::light::percentile;
 use crate::plane::Plane;
 
@@ -26,9 +26,8 @@ const SHAPES: i64 = 8;
 /// Along rows and columns, what is thin and darker than both its neighbours is counted against what is thin and
 /// lighter: lines are thin, and there is one more of them than of the gaps between. The edges of shapes, of shadows and
 /// of the paper itself are neither. Where that says nothing, the picture's border is paper.
-pub(crate) fn is_light_on_dark(image: &Plane<u8>) -> bool {
-    let whole = sampled_histogram(image);
-    let (low, high) = (percentile(&whole, 0.0005), percentile(&whole, 0.9995));
+pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256]) -> bool {
+    let (low, high) = (percentile(levels, 0.0005), percentile(levels, 0.9995));
     let least = NOISE * noise(image, SAMPLED / 2);
     let runs = Runs::of(image, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
     if runs.are_sure() {
@@ -105,6 +104,7 @@ fn border_level(image: &Plane<u8>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ink::sampled_histogram;
 
     fn check(light_on_dark: bool, level: impl Fn(usize, usize) -> u8) {
         let image = |invert: bool| {
@@ -114,8 +114,9 @@ mod tests {
             };
             Plane { width: 320, height: 240, values: (0..320 * 240).map(value).collect() }
         };
-        assert_eq!(is_light_on_dark(&image(false)), light_on_dark);
-        assert_eq!(is_light_on_dark(&image(true)), !light_on_dark, "inverted");
+        let found = |image: Plane<u8>| is_light_on_dark(&image, &sampled_histogram(&image));
+        assert_eq!(found(image(false)), light_on_dark);
+        assert_eq!(found(image(true)), !light_on_dark, "inverted");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-use tracelight_stroke::{Affine, Drawing, Stroke};
+use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind};
 
 use crate::centreline::{self, Row};
 use crate::ink::Ink;
@@ -43,11 +43,55 @@ pub struct Options {
     pub tolerance_px: f64,
     /// Change of direction from which on a break is a corner, rad.
     pub corner_rad: f64,
+    /// Darkness from which on a pixel is ink, % of its paper's brightness; `None`: found. On dark paper both count
+    /// from white.
+    pub threshold_percent: Option<f64>,
+    /// Area of the smallest patch of ink that is kept, px²; 0 keeps all. `None`: by the picture's size and the pen.
+    pub despeckle_px2: Option<f64>,
+    /// Strokes shorter than this are dropped, px.
+    pub min_length_px: f64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { mode: Mode::Auto, tolerance_px: 0.35, corner_rad: 25f64.to_radians() }
+        Self {
+            mode: Mode::Auto,
+            tolerance_px: 0.35,
+            corner_rad: 25f64.to_radians(),
+            threshold_percent: None,
+            despeckle_px2: None,
+            min_length_px: 0.0,
+        }
+    }
+}
+
+impl Options {
+    /// Bounds of [`Self::tolerance_px`]: closer than the pixels' noise allows nothing is followed, and ten pixels off
+    /// no drawing is left.
+    pub const TOLERANCE_PX: (f64, f64) = (0.05, 10.0);
+    /// Bounds of [`Self::corner_rad`]: below 5° the pixels' noise makes corners, and sides that meet at less than a
+    /// right angle are a corner to any pen.
+    pub const CORNER_RAD: (f64, f64) = (5.0 / 180.0 * std::f64::consts::PI, std::f64::consts::FRAC_PI_2);
+    /// Bounds of [`Self::threshold_percent`]: one level of 255, and one below total darkness.
+    pub const THRESHOLD_PERCENT: (f64, f64) = (0.4, 99.6);
+    /// Bounds of [`Self::despeckle_px2`]: up to the largest image that is not averaged down.
+    pub const DESPECKLE_PX2: (f64, f64) = (0.0, 12e6);
+    /// Bounds of [`Self::min_length_px`]: a hundred times round the largest image.
+    pub const MIN_LENGTH_PX: (f64, f64) = (0.0, 1e6);
+
+    fn check(&self) -> Result<(), VisionError> {
+        let set = [
+            ("--tolerance", Some(self.tolerance_px), Self::TOLERANCE_PX, "px"),
+            ("--corner-angle", Some(self.corner_rad), Self::CORNER_RAD, "rad"),
+            ("--threshold", self.threshold_percent, Self::THRESHOLD_PERCENT, "% of the paper's brightness"),
+            ("--despeckle", self.despeckle_px2, Self::DESPECKLE_PX2, "px²"),
+            ("--min-length", Some(self.min_length_px), Self::MIN_LENGTH_PX, "px"),
+        ];
+        let wrong = set.into_iter().find_map(|(option, value, (least, most), unit)| {
+            let value = value.filter(|v| !(least..=most).contains(v))?;
+            Some(VisionError::Option { option, value, least, most, unit })
+        });
+        wrong.map_or(Ok(()), Err)
     }
 }
 
@@ -71,11 +115,13 @@ pub struct Traced {
 /// Finds the strokes of an image.
 ///
 /// # Errors
-/// When the image has no ink, no contrast, nothing but noise, or (sweep) is no single closed figure.
+/// When the image has no ink, no contrast, nothing but noise, or (sweep) is no single closed figure; when an option is
+/// out of its bounds, or leaves nothing.
 pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
-    let ink = Ink::of(image)?;
+    options.check()?;
+    let ink = Ink::of(image, options.threshold_percent)?;
     let mut mask = ink.mask();
-    let regions = drawn(&mut mask)?;
+    let regions = drawn(&mut mask, least_patch(&ink, options))?;
     let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
     let (strokes, missed_ink) = match options.mode {
         Mode::Sweep => {
@@ -89,21 +135,67 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
         return Err(VisionError::NoInk { largest_px, least_px: largest_px + 1 });
     }
     let scale = Affine::scale(ink.reduction as f64);
+    let strokes = long_enough(Drawing { strokes }.transformed(scale), options.min_length_px)?;
     Ok(Traced {
         width_px: image.width(),
         height_px: image.height(),
         mode: options.mode,
-        strokes: Drawing { strokes }.transformed(scale),
-        quality: ink.quality,
+        quality: Quality { pen_px: usual_pen(&strokes), ..ink.quality },
+        strokes,
         missed_ink,
     })
 }
 
-/// The regions that are large enough to have been drawn, their pinholes filled: a speck of a 120th of the picture's
-/// height either way is dust, and one of fewer than 6 px always.
-fn drawn(mask: &mut Mask) -> Result<Vec<Region>, VisionError> {
-    let side = mask.width.min(mask.height) / 120;
-    let least_px = (side * side).max(LEAST_PX);
+/// Chords that measure a length or a pen's share of it stay this close to their path, px.
+const LENGTH_TOLERANCE_PX: f64 = 0.1;
+
+/// Without the strokes that are shorter than asked for.
+fn long_enough(mut drawing: Drawing, least_px: f64) -> Result<Drawing, VisionError> {
+    if least_px > 0.0 {
+        let mut longest_px = 0.0_f64;
+        drawing.strokes.retain(|stroke| {
+            let length = stroke.path.length(LENGTH_TOLERANCE_PX);
+            longest_px = longest_px.max(length);
+            length >= least_px
+        });
+        if drawing.strokes.is_empty() {
+            return Err(VisionError::TooShort { longest_px, least_px });
+        }
+    }
+    Ok(drawing)
+}
+
+/// The median width of the pen over the length of the lines, px.
+fn usual_pen(drawing: &Drawing) -> Option<f64> {
+    let of = |stroke: &Stroke| {
+        // of a curve its joints' distances: a weight needs no more
+        let places = stroke.path.pieces().map(|piece| piece.from).chain([stroke.path.end()]);
+        let places: Vec<_> = places.collect();
+        let length: f64 = places.windows(2).map(|w| w[0].distance(w[1])).sum();
+        stroke.pen.filter(|_| stroke.kind == StrokeKind::Centreline).map(|pen| (pen, length))
+    };
+    let mut pens: Vec<(f64, f64)> = drawing.strokes.iter().filter_map(of).collect();
+    pens.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let half = 0.5 * pens.iter().map(|(_, length)| length).sum::<f64>();
+    let mut passed = 0.0;
+    let reached = |(_, length): &&(f64, f64)| {
+        passed += length;
+        passed >= half
+    };
+    pens.iter().find(reached).map(|&(pen, _)| pen)
+}
+
+/// Pixels a patch must have: a speck of a 120th of the picture's height either way is dust, and one of fewer than 6 px
+/// always; or as many as asked for.
+fn least_patch(ink: &Ink, options: &Options) -> usize {
+    let side = ink.darkness.width.min(ink.darkness.height) / 120;
+    let averaged = (ink.reduction * ink.reduction) as f64;
+    let asked = options.despeckle_px2.map(|area| (area / averaged).ceil() as usize);
+    asked.unwrap_or((side * side).max(LEAST_PX))
+}
+
+/// The regions of at least so many pixels, their pinholes filled.
+fn drawn(mask: &mut Mask, least_px: usize) -> Result<Vec<Region>, VisionError> {
     pinholes(mask, LEAST_PX).iter().for_each(|hole| hole.fill_into(mask));
     let (found, dust): (Vec<Region>, Vec<Region>) =
         regions(mask).into_iter().partition(|r| r.area() >= least_px);
@@ -128,7 +220,7 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
     let dark = &ink.darkness;
     let parts = match options.mode {
         Mode::Centreline => Parts::all_lines(mask, regions),
-        _ => Parts::of(mask, regions),
+        _ => Parts::of(mask, regions, options.despeckle_px2.is_some()),
     };
     let mut outliner = Outliner::new(dark, &parts.shape_mask, mask);
     let mut strokes: Vec<Stroke> =

@@ -131,12 +131,10 @@ struct Stranger<'a> {
 }
 
 impl Gather for Stranger<'_> {
-    fn reach_sq(&self) -> f64 {
-        self.best.distance_sq
-    }
-
-    fn wants(&self, node: usize) -> bool {
-        self.uniform[node] != Some(self.own)
+    fn wants(&self, node: usize, distance_sq: f64) -> bool {
+        // asked this way round, a point that is not a number is still found
+        let no_nearer = distance_sq >= self.best.distance_sq;
+        !no_nearer && self.uniform[node] != Some(self.own)
     }
 
     fn offer(&mut self, point: u32, distance_sq: f64) {

@@ -20,11 +20,16 @@ struct Node {
 }
 
 /// What a search is after; it sees candidates roughly nearest first.
+///
+/// Points on one spot are all equally near: a search that wanted each of them to be looked at would take the square
+/// of their number.
 pub(super) trait Gather {
-    /// Squared distance beyond which nothing is of interest any more.
-    fn reach_sq(&self) -> f64;
-    /// Whether anything below a node can be of interest.
-    fn wants(&self, node: usize) -> bool;
+    /// Whether anything below a node, whose box is this far away, can be of interest.
+    fn wants(&self, node: usize, distance_sq: f64) -> bool;
+    /// Which of two nodes that are equally near is to be seen first: the one of lower rank.
+    fn rank(&self, _node: usize) -> u32 {
+        0
+    }
     /// A point and its squared distance.
     fn offer(&mut self, point: u32, distance_sq: f64);
 }
@@ -55,7 +60,9 @@ impl<'a> KdTree<'a> {
     }
 
     pub(super) fn search(&self, at: Point, gather: &mut impl Gather) {
-        if !self.nodes.is_empty() && gather.wants(0) {
+        if let Some(root) = self.nodes.first()
+            && gather.wants(0, distance_sq(&root.bounds, at))
+        {
             self.descend(0, at, gather);
         }
     }
@@ -69,13 +76,13 @@ impl<'a> KdTree<'a> {
             return;
         };
         let mut children = [node + 1, right as usize].map(|c| (distance_sq(&self.nodes[c].bounds, at), c));
-        if children[1].0 < children[0].0 {
+        let [left, right] = children;
+        let tied = left.0 == right.0 && gather.rank(right.1) < gather.rank(left.1);
+        if right.0 < left.0 || tied {
             children.swap(0, 1);
         }
         for (distance, child) in children {
-            // asked this way round, a point that is not a number is still found
-            let too_far = distance > gather.reach_sq();
-            if !too_far && gather.wants(child) {
+            if gather.wants(child, distance) {
                 self.descend(child, at, gather);
             }
         }
@@ -90,6 +97,17 @@ impl<'a> KdTree<'a> {
             values[i] = Some(children.map_or_else(|| leaf(points), |(l, r)| join(l, r)));
         }
         values.into_iter().flatten().collect()
+    }
+
+    /// The points below a node.
+    pub(super) fn points_of(&self, node: usize) -> &[u32] {
+        let Node { range, .. } = &self.nodes[node];
+        &self.sorted[range.start as usize..range.end as usize]
+    }
+
+    /// The two halves of a node; none where it is a leaf.
+    pub(super) fn children(&self, node: usize) -> Option<[usize; 2]> {
+        self.nodes[node].right.map(|right| [node + 1, right as usize])
     }
 
     /// The nodes a point lies in, root first.

@@ -227,7 +227,7 @@ impl<'a, C: Fn(Point, Point) -> f64> Search<'a, C> {
     /// tour got no longer.
     pub(super) fn kick(&mut self, count: usize, seed: u64) {
         let longest = LONGEST_KICK.min(self.tour.len().saturating_sub(2) / 2);
-        if longest == 0 || count == 0 {
+        if longest == 0 || count == 0 || self.is_free() {
             return;
         }
         self.ends_anywhere = false;
@@ -238,6 +238,11 @@ impl<'a, C: Fn(Point, Point) -> f64> Search<'a, C> {
             self.swap_runs(u, first, second);
         }
         self.settle();
+    }
+
+    /// Whether no travel costs anything: then there is nothing to gain.
+    fn is_free(&self) -> bool {
+        (0..self.ends.len() as u32).all(|end| self.travel(end, self.tour.link(end)) <= 0.0)
     }
 
     /// Swaps the run of `first` strokes from `u` on with the `second` strokes after it, for as long as it pays.
@@ -279,16 +284,21 @@ struct NearestEnds {
     found: Vec<(f64, u32)>,
 }
 
-impl Gather for NearestEnds {
+impl NearestEnds {
+    /// Squared distance from which on an end is none of the nearest.
     fn reach_sq(&self) -> f64 {
         match self.found.len() < NEIGHBOURS {
             true => f64::INFINITY,
             false => self.found[NEIGHBOURS - 1].0,
         }
     }
+}
 
-    fn wants(&self, _: usize) -> bool {
-        true
+impl Gather for NearestEnds {
+    fn wants(&self, _: usize, distance_sq: f64) -> bool {
+        // asked this way round, a point that is not a number is still found
+        let too_far = distance_sq >= self.reach_sq();
+        !too_far
     }
 
     fn offer(&mut self, end: u32, distance_sq: f64) {

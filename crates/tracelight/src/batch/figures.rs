@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::cli::placing::PlacementArgs;
+use crate::quality::QualityFigures;
 use crate::sketch::Sketch;
 
 /// A traced picture in figures.
@@ -23,6 +24,9 @@ pub(crate) struct Figures {
     pub(crate) missed_ink: Option<f64>,
     /// What the user should know about it.
     pub(crate) doubt: Option<String>,
+    /// What its pixels are worth; none of a drawing.
+    #[serde(default)]
+    pub(crate) quality: Option<QualityFigures>,
 }
 
 /// What a picture is measured in.
@@ -66,6 +70,7 @@ impl Figures {
             unit,
             missed_ink: sketch.missed_ink.map(rounded),
             doubt: (!sketch.remarks.is_empty()).then(|| sketch.remarks.join("; ")),
+            quality: sketch.quality.as_ref().map(QualityFigures::of),
         }
     }
 }

@@ -173,6 +173,7 @@ mod tests {
                 unit: Unit::Px,
                 missed_ink: Some(0.001_234),
                 doubt: None,
+                quality: None,
             },
             timing_ms: 12.5,
         };

@@ -136,8 +136,10 @@ impl Report {
 /// What stderr says of a picture whose strokes may not be what its owner wants.
 fn remark(row: &Row) -> Option<String> {
     match &row.outcome {
-        Outcome::Done { figures: Figures { doubt: Some(doubt), .. }, kept: false, .. } => {
-            Some(format!("note: {}: {doubt}", row.picture))
+        Outcome::Done { figures: Figures { doubt, quality, .. }, kept: false, .. } => {
+            let weak = quality.iter().flat_map(|q| &q.remarks);
+            let all: Vec<&str> = doubt.iter().chain(weak).map(String::as_str).collect();
+            (!all.is_empty()).then(|| format!("note: {}: {}", row.picture, all.join("; ")))
         }
         _ => None,
     }

@@ -43,10 +43,11 @@ fn line(text: &mut String, name: &str, cells: &[String; 6]) {
 
 fn cells(row: &Row) -> [String; 6] {
     let Outcome::Done { figures, timing_ms, kept, .. } = &row.outcome else { return Default::default() };
-    let verdict = match (kept, &figures.doubt) {
-        (true, _) => "kept",
-        (false, Some(_)) => "look",
-        (false, None) => "ok",
+    let verdict = match (kept, &figures.doubt, &figures.quality) {
+        (true, ..) => "kept",
+        (false, Some(_), _) => "look",
+        (false, None, Some(quality)) => &quality.verdict,
+        (false, None, None) => "ok",
     };
     [
         figures.strokes.to_string(),
@@ -133,6 +134,7 @@ mod tests {
             unit: Unit::Mm,
             missed_ink: doubt.map(|_| 0.031),
             doubt: doubt.map(str::to_owned),
+            quality: None,
         };
         Row { picture: picture.to_owned(), outcome: Outcome::Done { figures, timing_ms: 12.3, kept } }
     }

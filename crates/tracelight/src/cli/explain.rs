@@ -28,7 +28,11 @@ const MESSAGES: &[(&str, &str)] = &[
     ("too-large", "A picture has more pixels or bytes than are traced (100 megapixels). Scale it down."),
     (
         "no-strokes-found",
-        "A picture was read, but has nothing to draw: no ink, no contrast, or only noise. The message names the figure that failed and its bound.",
+        "A picture was read, but has nothing to draw: no ink, no contrast, or only noise; or what was set by --threshold, --despeckle or --min-length leaves nothing. The message names the figure that failed and its bound.",
+    ),
+    (
+        "usable",
+        "The verdict on a picture that was traced although a figure of it is weak: strokes may be missing or wrong there. The verdict names the figure, its value, its bound and what to do; `good` is a picture without any.",
     ),
     ("no-strokes", "A drawing has no strokes to plan."),
     (

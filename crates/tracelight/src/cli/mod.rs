@@ -11,6 +11,7 @@ pub(crate) mod request;
 mod rigs;
 mod strokes;
 mod trace;
+pub(crate) mod tracing;
 
 use std::process::ExitCode;
 

@@ -4,11 +4,10 @@ use std::time::Instant;
 use clap::Args;
 use tracelight_rig::TICK_F64_S;
 use tracelight_trajectory::Plan;
-use tracelight_vision::Mode;
 
 use crate::cli::driving::DrivingArgs;
 use crate::cli::placing::PlacementArgs;
-use crate::cli::request::ModeName;
+use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::output::{PlanFigures, StrokeFigures};
@@ -33,9 +32,8 @@ pub(crate) struct PlanArgs {
     /// How much work goes into the order; the same amount gives the same order
     #[arg(long, value_enum, default_value_t)]
     order_effort: OrderEffort,
-    /// How pixels become strokes
-    #[arg(long, value_enum, default_value_t)]
-    mode: ModeName,
+    #[command(flatten)]
+    tracing: TracingArgs,
     #[command(flatten)]
     placement: PlacementArgs,
     #[command(flatten)]
@@ -48,8 +46,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let progress = Progress::new(args.voice.quiet);
     let driving = args.driving.resolve()?;
     progress.stage("strokes", 1);
-    let sketch =
-        sketch(&args.drawing, picture::read(&args.drawing)?, Mode::from(args.mode), &args.placement.choice)?;
+    let sketch = sketch(&args.drawing, picture::read(&args.drawing)?, &args.tracing, &args.placement)?;
     let placed = place(&sketch, &args.placement);
     stop.check()?;
     progress.stage("plan", 1);
@@ -57,7 +54,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let schedule = schedule(&placed, &driving, args.order_by, args.order_effort)?;
     let plan_ms = began.elapsed().as_secs_f64() * 1e3;
     sketch
-        .remarks
+        .notes()
         .iter()
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| progress.say(&format!("note: {n}")));

@@ -8,6 +8,7 @@ use tracelight_vision::Mode;
 use crate::cli::Voice;
 use crate::cli::driving::DrivingArgs;
 use crate::cli::placing::PlacementArgs;
+use crate::cli::tracing::TracingArgs;
 
 /// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
 #[derive(Args, Debug)]
@@ -16,9 +17,8 @@ pub(crate) struct TraceArgs {
     /// PNG, JPEG, WebP, BMP, GIF, PNM, TIFF; or SVG, DXF, JSON, CSV with strokes to be taken as they are; - is
     /// standard input
     pub(crate) picture: String,
-    /// How pixels become strokes
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) mode: ModeName,
+    #[command(flatten)]
+    pub(crate) tracing: TracingArgs,
     #[command(flatten)]
     pub(crate) placement: PlacementArgs,
     #[command(flatten)]

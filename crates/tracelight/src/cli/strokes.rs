@@ -4,18 +4,18 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, json};
-use tracelight_vision::Mode;
 
 use crate::batch::figures::Figures;
 use crate::batch::pictures::{self, Picture, stands_for_several};
 use crate::batch::{self, Batch, Finding, Out, places};
 use crate::cli::placing::PlacementArgs;
-use crate::cli::request::ModeName;
+use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::output::drawing::{self, FORMATS};
 use crate::picture;
 use crate::progress::Progress;
+use crate::quality::QualityFigures;
 use crate::sketch::{Sketch, place, sketch};
 use crate::stop::Stop;
 
@@ -39,9 +39,8 @@ pub(crate) struct StrokesArgs {
     /// Format of the files in a folder
     #[arg(long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(FORMATS))]
     format: Option<String>,
-    /// How pixels become strokes
-    #[arg(long, value_enum, default_value_t)]
-    mode: ModeName,
+    #[command(flatten)]
+    tracing: TracingArgs,
     /// Also the pictures in the folders of a folder
     #[arg(short, long)]
     recursive: bool,
@@ -78,7 +77,8 @@ fn single(args: &StrokesArgs, picture: &str) -> Result<Answer, Failure> {
     if let Some(doubt) = &traced.figures.doubt {
         Progress::new(args.voice.quiet).say(&format!("note: {picture}: {doubt}"));
     }
-    Ok(Answer::new(line(picture, &traced), traced.json.unwrap_or_default()))
+    let verdict = traced.verdict.as_ref().map_or_else(String::new, |words| format!("\n{words}"));
+    Ok(Answer::new(line(picture, &traced) + &verdict, traced.json.unwrap_or_default()))
 }
 
 /// Every picture, past those that fail.
@@ -127,7 +127,7 @@ fn check_format(args: &StrokesArgs) -> Result<(), Failure> {
 /// Version and options: whatever makes a difference to a written file. A flag that is added must be put on one side.
 fn made_with(args: &StrokesArgs) -> String {
     let StrokesArgs {
-        mode,
+        tracing,
         placement,
         format: _,
         pictures: _,
@@ -139,11 +139,11 @@ fn made_with(args: &StrokesArgs) -> String {
     } = args;
     let version = env!("CARGO_PKG_VERSION");
     let format = extension(args);
-    format!("{version} {format} {mode:?} {placement:?}")
+    format!("{version} {format} {tracing:?} {placement:?}")
 }
 
 fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding, Failure> {
-    let mut sketch = sketch(picture, picture::read(picture)?, Mode::from(args.mode), &args.placement.choice)?;
+    let mut sketch = sketch(picture, picture::read(picture)?, &args.tracing, &args.placement)?;
     sketch.picture = None; // its colours are not needed, and large
     let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let json = (args.voice.json || path.is_some_and(is_json)).then(|| pixel_json(&sketch));
@@ -151,7 +151,12 @@ fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding
         write(path, &sketch, args, json.as_deref().unwrap_or_default())?;
     }
     let figures = Figures::of(&sketch, &args.placement);
-    Ok(Finding { figures, json: json.filter(|_| args.voice.json), vision_ms: sketch.vision_ms })
+    Ok(Finding {
+        figures,
+        verdict: sketch.quality.map(|quality| quality.words()),
+        json: json.filter(|_| args.voice.json),
+        vision_ms: sketch.vision_ms,
+    })
 }
 
 fn pixel_json(sketch: &Sketch) -> String {
@@ -161,7 +166,13 @@ fn pixel_json(sketch: &Sketch) -> String {
         metres_per_unit: None,
         drawing: sketch.drawing.clone(),
     };
-    json::write(&Traced { sheet, mode: sketch.mode.to_owned() }, POINTS_TOLERANCE_PX)
+    let text = json::write(&Traced { sheet, mode: sketch.mode.to_owned() }, POINTS_TOLERANCE_PX);
+    let quality = sketch.quality.as_ref().map(QualityFigures::of);
+    let quality = quality.and_then(|figures| serde_json::to_string(&figures).ok());
+    match (quality, text.strip_suffix('}')) {
+        (Some(quality), Some(object)) => format!("{object},\"quality\":{quality}}}"),
+        _ => text,
+    }
 }
 
 fn is_folder(path: &Path) -> bool {

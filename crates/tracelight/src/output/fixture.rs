@@ -6,6 +6,7 @@ use tracelight_rig::{
 use tracelight_sim::{Run, Tick, Tracking};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{JointMotion, Plan, PlanPoint};
+use tracelight_vision::Quality;
 
 use super::{Job, Picture, Raster, Setting, Target, Timing};
 
@@ -17,6 +18,7 @@ const TARGET: Target = Target { width_m: 0.6096, height_m: 0.4572, distance_m: 0
 /// Owns what a [`Job`] borrows.
 pub(super) struct Fixture {
     pub(super) raster: Option<Raster>,
+    pub(super) quality: Option<Quality>,
     pub(super) drawing: Drawing,
     pub(super) plan: Plan,
     pub(super) run: Run,
@@ -32,6 +34,7 @@ impl Fixture {
         Job {
             picture_path: "examples/star <&> \"friends\".png",
             picture: self.raster.as_ref().map(|raster| Picture { raster, target_from_pixel: place }),
+            quality: self.quality.as_ref(),
             target: TARGET,
             drawing: &self.drawing,
             plan: &self.plan,
@@ -81,13 +84,28 @@ pub(super) fn star() -> Fixture {
     ];
     let notes = vec!["1 ft/s is not reached at the 10 corners of stroke 1: torque & light.".to_owned()];
     let raster = Some(drawn(&drawing));
-    Fixture { raster, drawing, plan, run, settings, notes }
+    Fixture { raster, quality: Some(quality()), drawing, plan, run, settings, notes }
 }
 
 /// A job of a vector file without a stroke that never ran.
 pub(super) fn nothing() -> Fixture {
     let (drawing, plan, run) = (Drawing::default(), Plan::default(), Run::default());
-    Fixture { raster: None, drawing, plan, run, settings: vec![], notes: vec![] }
+    Fixture { raster: None, quality: None, drawing, plan, run, settings: vec![], notes: vec![] }
+}
+
+/// Of a drawing seen out of focus.
+const fn quality() -> Quality {
+    Quality {
+        contrast_percent: 83.2,
+        contrast_to_noise: 40.0,
+        noise_levels: 0.4,
+        light_evenness: 0.93,
+        ink_percent: 3.1,
+        edge_px: Some(6.2),
+        clipped_percent: 0.0,
+        pen_px: Some(4.1),
+        light_on_dark: false,
+    }
 }
 
 fn five_points() -> Stroke {

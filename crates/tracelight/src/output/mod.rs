@@ -30,6 +30,7 @@ use tracelight_rig::PanTilt;
 use tracelight_sim::{Run, Tracking};
 use tracelight_stroke::{Affine, Drawing, Point};
 use tracelight_trajectory::Plan;
+use tracelight_vision::Quality;
 
 pub(crate) use events::{Event, events};
 pub(crate) use log::{LogMeta, LogWriter};
@@ -44,6 +45,8 @@ pub(crate) struct Job<'a> {
     pub(crate) picture_path: &'a str,
     /// Its pixels; `None` where the strokes came from a vector file.
     pub(crate) picture: Option<Picture<'a>>,
+    /// What those are worth.
+    pub(crate) quality: Option<&'a Quality>,
     /// Where and how large the job is drawn.
     pub(crate) target: Target,
     /// The strokes in target metres, in tracing order.

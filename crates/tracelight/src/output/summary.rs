@@ -8,12 +8,15 @@ use tracelight_trajectory::Plan;
 
 use super::sample::lit_s;
 use super::{Event, Job, OutputError, events};
+use crate::quality::QualityFigures;
 
 /// The figures of a job: `summary.json` and the `--json` of `trace`. Lengths in m unless the name says mm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Summary {
     /// What was traced.
     pub(crate) picture: PictureFigures,
+    /// What its pixels are worth; `null` for a vector file.
+    pub(crate) quality: Option<QualityFigures>,
     /// Where.
     pub(crate) target: TargetFigures,
     /// What it became.
@@ -117,6 +120,7 @@ impl Summary {
     pub(crate) fn new(job: &Job<'_>) -> Self {
         Self {
             picture: picture(job),
+            quality: job.quality.map(QualityFigures::of),
             target: TargetFigures {
                 width_m: round(job.target.width_m),
                 height_m: round(job.target.height_m),
@@ -243,6 +247,8 @@ mod tests {
             }
         };
         check("picture", &["path", "width_px", "height_px"]);
+        check("quality", &["ink_percent", "contrast_percent", "contrast_to_noise", "noise_levels"]);
+        check("quality", &["light_evenness", "edge_px", "clipped_percent", "pen_px", "verdict", "remarks"]);
         check("target", &["width_m", "height_m", "distance_m"]);
         check("strokes", &["count", "length_m", "travel_m"]);
         check("plan", &["duration_s", "lit_s", "speed_m_s", "torque_peak_fraction"]);

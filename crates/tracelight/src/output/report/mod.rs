@@ -125,6 +125,8 @@ mod tests {
             "Tilt torque",
             "share of the limit, %",
             "Time plan and speed",
+            "Quality of the picture",
+            "edges are blurred over 1.51 pen widths",
             "m/s",
         ] {
             assert!(text.contains(words), "{words}");

@@ -1,6 +1,7 @@
 use super::html::{escaped, number};
 use crate::output::{Job, Summary, events};
 use tracelight_rig::Phase;
+use tracelight_vision::Quality;
 
 const METRES_PER_INCH: f64 = 0.0254;
 
@@ -48,6 +49,7 @@ pub(super) fn figures(job: &Job<'_>, f: &Summary) -> String {
     let share = |x: f64| number(x * 100.0, 3);
     let groups = [
         ("Picture and target", picture_rows(job, f)),
+        ("Quality of the picture", job.quality.map(quality_rows).unwrap_or_default()),
         (
             "Plan",
             vec![
@@ -80,7 +82,8 @@ pub(super) fn figures(job: &Job<'_>, f: &Summary) -> String {
             ],
         ),
     ];
-    groups.into_iter().map(|(title, rows)| group(title, &rows.concat())).collect()
+    let filled = groups.into_iter().filter(|(_, rows)| !rows.is_empty());
+    filled.map(|(title, rows)| group(title, &rows.concat())).collect()
 }
 
 fn picture_rows(job: &Job<'_>, f: &Summary) -> Vec<String> {
@@ -97,6 +100,22 @@ fn picture_rows(job: &Job<'_>, f: &Summary) -> Vec<String> {
         row("travel between them", number(f.strokes.travel_m, 4), "m"),
     ]);
     rows
+}
+
+fn quality_rows(q: &Quality) -> Vec<String> {
+    let known = |value: Option<f64>| value.map_or_else(|| "not known".to_owned(), |v| number(v, 3));
+    let unit = |value: Option<f64>| if value.is_some() { "px" } else { "" };
+    vec![
+        row("verdict", escaped(&q.words()), ""),
+        row("contrast of the ink", number(q.contrast_percent, 3), "%"),
+        row("contrast over the paper's noise", number(q.contrast_to_noise, 3), ""),
+        row("noise", number(q.noise_levels, 3), "levels of 255"),
+        row("darkest paper over brightest", number(q.light_evenness, 3), ""),
+        row("ink's share of the picture", number(q.ink_percent, 3), "%"),
+        row("width of the edges", known(q.edge_px), unit(q.edge_px)),
+        row("burnt or black spots", number(q.clipped_percent, 3), "%"),
+        row("width of the pen", known(q.pen_px), unit(q.pen_px)),
+    ]
 }
 
 /// What was asked for.

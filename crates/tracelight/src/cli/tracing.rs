@@ -1,0 +1,190 @@
+//! How pixels become strokes: the flags of every command that takes a picture.
+
+use std::ops::RangeInclusive;
+
+use clap::Args;
+use tracelight_vision::Options;
+
+use crate::cli::request::ModeName;
+use crate::units::{self, Angle, LENGTHS, PIXELS};
+
+/// How pixels become strokes. Without a flag, what the picture itself says.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct TracingArgs {
+    /// How pixels become strokes
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) mode: ModeName,
+    /// What is ink: at least so much darker than its paper, % of the paper's brightness, such as 30 (on dark paper,
+    /// lighter, counted from white)
+    #[arg(long, value_name = "auto|PERCENT", default_value = "auto", allow_hyphen_values = true, value_parser = threshold)]
+    pub(crate) threshold: OrAuto,
+    /// Smallest patch of ink that is kept, in square pixels, such as 20; 0 keeps all
+    #[arg(long, value_name = "auto|AREA", default_value = "auto", allow_hyphen_values = true, value_parser = despeckle)]
+    pub(crate) despeckle: OrAuto,
+    /// Drop strokes shorter than this, in the picture (8px) or on the target (5mm, 0.2in)
+    #[arg(long, value_name = "LENGTH", default_value = "0px", allow_hyphen_values = true, value_parser = least_length)]
+    pub(crate) min_length: LeastLength,
+    /// Furthest a stroke may be from the ink's middle or edge
+    #[arg(long, value_name = "LENGTH", default_value = "0.35px", allow_hyphen_values = true, value_parser = tolerance)]
+    pub(crate) tolerance: Pixels,
+    /// Change of direction from which on a break is a corner and stays sharp
+    #[arg(long, value_name = "ANGLE", default_value = "25deg", allow_hyphen_values = true, value_parser = corner_angle)]
+    pub(crate) corner_angle: Angle,
+}
+
+/// A number, or what the picture itself says.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct OrAuto(pub(crate) Option<f64>);
+
+/// Pixels of the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Pixels(pub(crate) f64);
+
+/// Where a length is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LeastLength {
+    /// In the picture, px.
+    Pixels(f64),
+    /// On the target, m.
+    Metres(f64),
+}
+
+impl LeastLength {
+    /// In the sheet's unit, of which one is so long on the target.
+    pub(crate) fn in_units(self, metres_per_unit: f64) -> f64 {
+        match self {
+            LeastLength::Pixels(px) => px,
+            LeastLength::Metres(m) => m / metres_per_unit,
+        }
+    }
+}
+
+impl TracingArgs {
+    /// For a picture of which a pixel is so long on the target.
+    pub(crate) fn options(&self, metres_per_px: f64) -> Options {
+        Options {
+            mode: self.mode.into(),
+            tolerance_px: self.tolerance.0,
+            corner_rad: self.corner_angle.0,
+            threshold_percent: self.threshold.0,
+            despeckle_px2: self.despeckle.0,
+            min_length_px: self.min_length.in_units(metres_per_px),
+        }
+    }
+
+    /// What was set by hand, flag and value.
+    pub(crate) fn settings(&self) -> Vec<(&'static str, String)> {
+        let least = match self.min_length {
+            LeastLength::Pixels(px) => format!("{px} px"),
+            LeastLength::Metres(m) => format!("{:.1} mm", m * 1e3),
+        };
+        let or_auto = |set: OrAuto, unit| set.0.map_or_else(|| "auto".to_owned(), |v| format!("{v} {unit}"));
+        vec![
+            ("mode", format!("{:?}", self.mode).to_lowercase()),
+            ("threshold", or_auto(self.threshold, "%")),
+            ("despeckle", or_auto(self.despeckle, "px²")),
+            ("shortest stroke", least),
+            ("tolerance of the tracing", format!("{} px", self.tolerance.0)),
+            ("corners from", format!("{:.1}°", self.corner_angle.0.to_degrees())),
+        ]
+    }
+}
+
+fn threshold(text: &str) -> Result<OrAuto, String> {
+    or_auto(text, "%", Options::THRESHOLD_PERCENT, "% of the paper's brightness")
+}
+
+fn despeckle(text: &str) -> Result<OrAuto, String> {
+    let squared = ["px2", "px²"].into_iter().find_map(|unit| text.strip_suffix(unit));
+    or_auto(squared.unwrap_or(text), "px", Options::DESPECKLE_PX2, "px²")
+}
+
+/// `auto`, or a number with or without its unit.
+fn or_auto(text: &str, unit: &str, (least, most): (f64, f64), unit_name: &str) -> Result<OrAuto, String> {
+    let number = text.trim();
+    if number.eq_ignore_ascii_case("auto") {
+        return Ok(OrAuto(None));
+    }
+    let number = number.strip_suffix(unit).unwrap_or(number).trim_end();
+    let value: f64 =
+        number.parse().map_err(|_| format!("{text} is neither auto nor a number ({unit_name})"))?;
+    within(text, value, least..=most, unit_name).map(|value| OrAuto(Some(value)))
+}
+
+fn within(text: &str, value: f64, bounds: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
+    match bounds.contains(&value) {
+        true => Ok(value),
+        false => Err(format!("{text} is not between {} and {} {unit}", bounds.start(), bounds.end())),
+    }
+}
+
+fn tolerance(text: &str) -> Result<Pixels, String> {
+    let value = units::parse(text, PIXELS).map_err(|e| e.to_string())?;
+    let (least, most) = Options::TOLERANCE_PX;
+    within(text, value, least..=most, "px").map(Pixels)
+}
+
+fn corner_angle(text: &str) -> Result<Angle, String> {
+    let angle: Angle = text.parse().map_err(|e| format!("{e}"))?;
+    let (least, most) = Options::CORNER_RAD;
+    // a bound as it is typed is within it, whatever the last digit of its radians
+    match (least - 1e-9..=most + 1e-9).contains(&angle.0) {
+        true => Ok(Angle(angle.0.clamp(least, most))),
+        false => {
+            Err(format!("{text} is not between {:.0} and {:.0} deg", least.to_degrees(), most.to_degrees()))
+        }
+    }
+}
+
+fn least_length(text: &str) -> Result<LeastLength, String> {
+    const MOST_M: f64 = 1e3;
+    if text.trim_end().ends_with("px") {
+        let value = units::parse(text, PIXELS).map_err(|e| e.to_string())?;
+        let (least, most) = Options::MIN_LENGTH_PX;
+        return within(text, value, least..=most, "px").map(LeastLength::Pixels);
+    }
+    let value =
+        units::parse(text, LENGTHS).map_err(|e| format!("{e}; or pixels of the picture, such as 8px"))?;
+    within(text, value, 0.0..=MOST_M, "m").map(LeastLength::Metres)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_take_their_units_and_name_their_bounds() {
+        assert_eq!(threshold("auto"), Ok(OrAuto(None)));
+        assert_eq!(threshold("30 %"), Ok(OrAuto(Some(30.0))));
+        assert_eq!(despeckle("0"), Ok(OrAuto(Some(0.0))));
+        for text in ["25", "25px", "25px2", "25 px²"] {
+            assert_eq!(despeckle(text), Ok(OrAuto(Some(25.0))), "{text}");
+        }
+        assert_eq!(despeckle("12"), Ok(OrAuto(Some(12.0))));
+        assert_eq!(least_length("8px"), Ok(LeastLength::Pixels(8.0)));
+        assert_eq!(least_length("5mm"), Ok(LeastLength::Metres(5e-3)));
+        assert_eq!(tolerance("0.5px"), Ok(Pixels(0.5)));
+        assert!(threshold("100").unwrap_err().contains("100 is not between 0.4 and 99.6 %"));
+        assert!(despeckle("-1").unwrap_err().contains("px²"));
+        assert!(tolerance("0.35").unwrap_err().contains("no unit"));
+        assert!(tolerance("11px").unwrap_err().contains("between 0.05 and 10 px"));
+        assert!(least_length("5").unwrap_err().contains("8px"));
+        assert!(least_length("nanpx").is_err() && threshold("nan").is_err() && despeckle("inf").is_err());
+        for (angle, ok) in
+            [("5deg", true), ("90deg", true), ("4.9deg", false), ("91deg", false), ("30", false)]
+        {
+            assert_eq!(corner_angle(angle).is_ok(), ok, "{angle}");
+        }
+    }
+
+    #[test]
+    fn what_nobody_sets_is_what_the_tracer_takes_by_itself() {
+        use clap::Parser;
+        #[derive(Parser)]
+        struct Line {
+            #[command(flatten)]
+            tracing: TracingArgs,
+        }
+        assert_eq!(Line::parse_from(["line"]).tracing.options(1.0), Options::default());
+    }
+}
