@@ -54,7 +54,7 @@ fn is_bump(graph: &Graph, end: (usize, usize)) -> bool {
 fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f64) -> bool {
     let Some((node, tip, _)) = free_end(graph, end).filter(|_| ends.len() == 3) else { return false };
     let out = tip - node.at;
-    if out.hypot() > 3.0 * pen + 2.0 && is_even(&graph.branches[end.0].radii, pen) {
+    if is_line(&graph.branches[end.0], node.at, pen) {
         return false;
     }
     // skeleton pixels lie up to half a pixel beside the middle, hence `pen + 0.5` below;
@@ -73,13 +73,15 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
     })
 }
 
-/// Whether a branch is as wide as the pen all along: a line's. Over a corner's point the two sides' ink is one, wider
-/// than the pen, and runs out.
-fn is_even(radii: &[f64], pen: f64) -> bool {
-    let mut sorted = radii.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let at = |share: usize| sorted[sorted.len() * share / 100];
-    !sorted.is_empty() && (0.85..1.12).contains(&(at(50) / pen)) && at(85) - at(15) < 0.2 * pen + 0.2
+/// Whether a branch is as wide as the pen beyond the ink of its node, for a while: a line's. Over a corner's point the
+/// two sides' ink is one, wider than the pen, and runs out.
+fn is_line(branch: &Branch, node: Point, pen: f64) -> bool {
+    let beyond = branch.points.iter().zip(&branch.radii).filter(|(p, _)| p.distance(node) > 1.3 * pen + 0.5);
+    let mut radii: Vec<f64> = beyond.map(|(_, &radius)| radius).collect();
+    radii.sort_unstable_by(f64::total_cmp);
+    let at = |share: usize| radii[radii.len() * share / 100];
+    let long = radii.len() as f64 > (0.8 * pen).max(3.0);
+    long && (0.8..1.25).contains(&(at(50) / pen)) && at(85) - at(15) < 0.2 * pen + 0.2
 }
 
 /// Sine of half the widest angle at which a corner's point is long enough to show: 150°.
