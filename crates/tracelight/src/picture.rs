@@ -69,7 +69,8 @@ pub(crate) fn read_bytes(path: &str) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
+/// What a file's bytes are; `path` is for messages, and its extension for contents that say nothing of themselves.
+pub(crate) fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
     let malformed = |e: &FormatError| match e {
         FormatError::Nothing { .. } => Failure::failed("no-strokes", format!("{path}: {e}")),
         _ => Failure::usage("malformed", format!("{path}: {e}")),
