@@ -54,7 +54,11 @@ fn pictures(folder: &FilePath) {
     write(folder, "grey.jpg", encoded(&colour.to_luma8().into(), ImageFormat::Jpeg));
     write(folder, "deep.tif", encoded(&colour.to_luma16().into(), ImageFormat::Tiff));
     write(folder, "clear.webp", encoded(&colour.to_rgba8().into(), ImageFormat::WebP));
-    write(folder, "bits.pbm", b"P1\n8 8\n00000000 01111110 01000010 01000010 01000010 01000010 01111110 00000000\n");
+    write(
+        folder,
+        "bits.pbm",
+        b"P1\n8 8\n00000000 01111110 01000010 01000010 01000010 01000010 01111110 00000000\n",
+    );
     write(folder, "plate.svg", svg_of(&plate()));
     write(folder, "plate.dxf", dxf::write(&plate(), 0.3, 0.2));
 }
@@ -122,10 +126,26 @@ fn images(folder: &FilePath) {
     const PAPER: u8 = 235;
     let pens: [(&str, &[[u8; 6]]); 5] = [
         ("cross", &[[30, 30, 220, 220, 10, 20], [30, 220, 220, 40, 10, 20]]),
-        ("box", &[[40, 40, 200, 40, 8, 9], [200, 40, 200, 210, 8, 9], [200, 210, 40, 210, 8, 9], [40, 210, 40, 40, 8, 9]]),
+        (
+            "box",
+            &[
+                [40, 40, 200, 40, 8, 9],
+                [200, 40, 200, 210, 8, 9],
+                [200, 210, 40, 210, 8, 9],
+                [40, 210, 40, 40, 8, 9],
+            ],
+        ),
         ("lollipop", &[[128, 80, 128, 82, 47, 30], [128, 80, 128, 240, 8, 30]]),
         ("border", &[[0, 0, 255, 0, 12, 5], [0, 0, 0, 255, 12, 5], [100, 0, 255, 180, 12, 5]]),
-        ("fan", &[[20, 128, 240, 20, 5, 0], [20, 128, 240, 90, 5, 0], [20, 128, 240, 150, 5, 0], [20, 128, 240, 230, 5, 0]]),
+        (
+            "fan",
+            &[
+                [20, 128, 240, 20, 5, 0],
+                [20, 128, 240, 90, 5, 0],
+                [20, 128, 240, 150, 5, 0],
+                [20, 128, 240, 230, 5, 0],
+            ],
+        ),
     ];
     for (number, (name, lines)) in pens.iter().enumerate() {
         for mode in 0..4 {
@@ -135,7 +155,8 @@ fn images(folder: &FilePath) {
     }
     let texture: Vec<u8> = (0..67_u32).map(|i| if i * i % 7 < 3 { 25 } else { 225 }).collect();
     write(folder, "texture", [&[60, 60, 0, 0, 0, 0][..], &texture].concat());
-    let bits: Vec<u8> = (0..98_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8 & (i * 40_503 >> 5) as u8).collect();
+    let bits: Vec<u8> =
+        (0..98_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8 & (i * 40_503 >> 5) as u8).collect();
     write(folder, "bits", [&[20, 20, 0, 0, 0, 1][..], &bits].concat());
 }
 
@@ -171,7 +192,9 @@ fn tours(folder: &FilePath) {
         };
         (0..count).flat_map(stroke).collect()
     };
-    for (name, flags, count, effort) in [("open", 4, 12, 0), ("rings", 5, 12, 1), ("few", 4, 2, 1), ("dots", 0, 3, 0)] {
+    for (name, flags, count, effort) in
+        [("open", 4, 12, 0), ("rings", 5, 12, 1), ("few", 4, 2, 1), ("dots", 0, 3, 0)]
+    {
         write(folder, name, [&[effort, 7, 0, 0][..], &lines(flags, count)].concat());
     }
 }

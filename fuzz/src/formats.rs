@@ -106,17 +106,26 @@ fn landmarks(path: &Path) -> Vec<Point> {
     std::iter::once(path.start()).chain(path.pieces().flat_map(of)).collect()
 }
 
-/// The drawing scaled and shifted onto the middle of the target, a metre across with its circles; the sheet's y is
-/// down, the target's up. `None` where it has no size.
+/// The drawing scaled to a metre across with all its circles, its middle the target's origin; the sheet's y is down, the
+/// target's up. `None` where it has no size.
 fn on_a_metre(drawing: &Drawing) -> Option<Drawing> {
-    let points: Vec<Point> = drawing.strokes.iter().flat_map(|s| landmarks(&s.path)).collect();
-    let fold = |f: fn(f64, f64) -> f64| {
-        points.iter().copied().reduce(|a, b| Point::new(f(a.x, b.x), f(a.y, b.y))).unwrap_or_default()
-    };
-    let (low, high) = (fold(f64::min), fold(f64::max));
+    let landmarks = drawing.strokes.iter().flat_map(|s| landmarks(&s.path));
+    let (low, high) = bounds(landmarks);
     let size = (high.x - low.x).max(high.y - low.y);
-    let placed = Affine::translate(-low.midpoint(high).to_vec2()).then_scale_non_uniform(1.0 / size, -1.0 / size);
-    (size > 1e-3).then(|| drawing.transformed(placed))
+    if size < 1e-3 {
+        return None;
+    }
+    let corner = Affine::translate(-low.to_vec2()).then_scale_non_uniform(1.0 / size, -1.0 / size);
+    let scaled = drawing.transformed(corner);
+    let (low, high) = bounds(scaled.strokes.iter().flat_map(|s| s.path.flatten(0.1 * TOLERANCE_M)));
+    Some(scaled.transformed(Affine::translate(-low.midpoint(high).to_vec2())))
+}
+
+fn bounds(points: impl Iterator<Item = Point>) -> (Point, Point) {
+    let nowhere = (Point::new(f64::MAX, f64::MAX), Point::new(f64::MIN, f64::MIN));
+    points.fold(nowhere, |(low, high), p| {
+        (Point::new(low.x.min(p.x), low.y.min(p.y)), Point::new(high.x.max(p.x), high.y.max(p.y)))
+    })
 }
 
 /// From the target's frame to a sheet's of that height.

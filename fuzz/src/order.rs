@@ -40,10 +40,9 @@ fn path(bytes: &mut Bytes<'_>) -> Path {
     let mut path = Path::new(point(bytes));
     for _ in 0..flags >> 1 & 7 {
         match bytes.byte() % 4 {
-            0 => path.push(Element::Arc {
-                centre: point(bytes),
-                sweep: f64::from(bytes.byte() as i8) / 20.0,
-            }),
+            0 => {
+                path.push(Element::Arc { centre: point(bytes), sweep: f64::from(bytes.byte() as i8) / 20.0 })
+            }
             1 => path.push(Element::Cubic { c1: point(bytes), c2: point(bytes), to: point(bytes) }),
             2 => path.push(Element::Line { to: point(bytes) }),
             _ => path.line_to(point(bytes)),

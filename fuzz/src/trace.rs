@@ -64,10 +64,13 @@ fn check_traced(traced: &Traced, width: usize, height: usize) {
     }
 }
 
+/// How far outside the image a stroke may reach, px: corners are put where their sides meet, and that may be beyond
+/// the border.
+const OUTSIDE_PX: f64 = 12.0;
+
 fn is_inside(p: Point, width: usize, height: usize) -> bool {
-    // a nanometre of a pixel for what rounding adds
-    let (low, right, bottom) = (-1e-9, width as f64 + 1e-9, height as f64 + 1e-9);
-    (low..=right).contains(&p.x) && (low..=bottom).contains(&p.y)
+    let within = |v: f64, side: usize| (-OUTSIDE_PX..=side as f64 + OUTSIDE_PX).contains(&v);
+    within(p.x, width) && within(p.y, height)
 }
 
 /// Level by level; a short row is repeated, which makes a texture.

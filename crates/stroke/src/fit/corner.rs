@@ -94,6 +94,14 @@ impl Samples {
         if self.closed { d.min(self.len() - d) } else { d }
     }
 
+    /// The samples up to `reach` from sample `i`, itself included.
+    fn around(&self, i: usize, reach: usize) -> impl Iterator<Item = usize> {
+        let (n, closed) = (self.len() as isize, self.closed);
+        let reach = reach.min(self.len()) as isize;
+        let all = (i as isize - reach..=i as isize + reach).filter(move |k| closed || (0..n).contains(k));
+        all.map(move |k| k.rem_euclid(n) as usize)
+    }
+
     /// Turn between the chords from `reach` samples before sample `i` to it and on to `reach` samples behind it, rad;
     /// `None` near an open end.
     fn chord_turn(&self, i: usize, reach: usize) -> Option<f64> {
@@ -115,10 +123,11 @@ impl Samples {
 fn peaks(samples: &Samples, breaks: &[f64], smooth: &[f64], least: f64, apart: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..breaks.len()).filter(|&i| breaks[i].abs() >= least).collect();
     order.sort_by(|&a, &b| smooth[b].abs().total_cmp(&smooth[a].abs()));
-    let mut taken: Vec<usize> = Vec::new();
+    let (mut taken, mut free) = (Vec::new(), vec![true; samples.len()]);
     for i in order {
-        if taken.iter().all(|&t| samples.apart(t, i) > apart) {
+        if free[i] {
             taken.push(i);
+            samples.around(i, apart).for_each(|near| free[near] = false);
         }
     }
     taken
