@@ -10,9 +10,8 @@ use tracelight_vision::{Grey, Mode, Options, Traced, VisionError, find_two_marks
 
 const MODES: [Mode; 4] = [Mode::Auto, Mode::Centreline, Mode::Outline, Mode::Sweep];
 
-/// How far outside the image a stroke may reach, px: 6.8 is the most that was seen. A corner at the border is put where its
-/// sides meet, and a fitted
-/// curve bulges.
+/// How far outside the image a stroke may reach, px. Corners are put where their sides meet, and fitted curves bulge;
+/// 6.8 px is the most that was seen, about a gradient.
 const OUTSIDE_PX: f64 = 12.0;
 
 /// No image of this size takes longer, whatever else the machine does: the slowest ones take 10 ms.
@@ -123,7 +122,6 @@ fn sweep(pictures: u32, seed: u64) {
             }
         }
     }
-    println!("{pictures} pictures, {traced} tracings, {:.3} px outside at most ({})", furthest.0, furthest.1);
     assert!(furthest.0 <= OUTSIDE_PX, "{} px outside the image: {}", furthest.0, furthest.1);
     assert!(traced > pictures, "only {traced} tracings of {pictures} pictures");
 }
