@@ -61,10 +61,16 @@ pub(super) fn find(samples: &Samples, options: &FitOptions) -> Vec<Corner> {
         (0..samples.len()).map(|i| break_at(samples, i, &scale, options.corner_rad)).collect();
     let smooth = Samples::smoothed_ring(&breaks, scale.gap, samples.closed);
     let mut found: Vec<Corner> = Vec::new();
+    let (mut is_corner, mut in_zone) = (vec![false; samples.len()], vec![false; samples.len()]);
     for peak in peaks(samples, &breaks, &smooth, options.corner_rad, scale.gap + scale.flank / 2) {
-        let corner = measured(samples, peak, &scale, options);
-        let apart = |c: &Corner| found.iter().all(|f| samples.apart(f.index, c.index) > f.zone.max(c.zone));
-        found.extend(corner.filter(apart));
+        let Some(corner) = measured(samples, peak, &scale, options) else { continue };
+        let zone = || samples.around(corner.index, corner.zone);
+        if in_zone[corner.index] || zone().any(|i| is_corner[i]) {
+            continue;
+        }
+        is_corner[corner.index] = true;
+        zone().for_each(|i| in_zone[i] = true);
+        found.push(corner);
     }
     found.sort_by_key(|c| c.index);
     found
@@ -88,12 +94,6 @@ fn break_at(samples: &Samples, i: usize, scale: &Scale, corner_rad: f64) -> f64 
 }
 
 impl Samples {
-    /// How many samples lie between two.
-    fn apart(&self, a: usize, b: usize) -> usize {
-        let d = a.abs_diff(b);
-        if self.closed { d.min(self.len() - d) } else { d }
-    }
-
     /// The samples up to `reach` from sample `i`, itself included.
     fn around(&self, i: usize, reach: usize) -> impl Iterator<Item = usize> {
         let (n, closed) = (self.len() as isize, self.closed);
