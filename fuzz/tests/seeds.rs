@@ -48,7 +48,7 @@ fn strokes_are_ordered_and_none_is_lost() {
 }
 
 #[test]
-#[should_panic(expected = "adds a line")]
+#[should_panic(expected = "loses a line")]
 fn a_drawing_that_came_back_changed_would_be_seen() {
     // one stroke of our own SVG in another place than its twin in the drawing
     let line =
