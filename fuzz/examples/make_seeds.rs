@@ -155,8 +155,9 @@ fn images(folder: &FilePath) {
     }
     let texture: Vec<u8> = (0..67_u32).map(|i| if i * i % 7 < 3 { 25 } else { 225 }).collect();
     write(folder, "texture", [&[60, 60, 0, 0, 0, 0][..], &texture].concat());
-    let bits: Vec<u8> =
-        (0..98_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8 & (i * 40_503 >> 5) as u8).collect();
+    let bits: Vec<u8> = (0..98_u32)
+        .map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8 & ((i * 40_503) >> 5) as u8)
+        .collect();
     write(folder, "bits", [&[20, 20, 0, 0, 0, 1][..], &bits].concat());
 }
 
