@@ -3,6 +3,7 @@
 mod guard;
 mod names;
 mod read;
+mod swell;
 mod write;
 
 pub use read::read;

@@ -16,7 +16,7 @@ mod window;
 
 use kurbo::Point;
 
-use crate::{Path, simplify};
+use crate::{Element, Path, Piece, simplify};
 use corner::Corner;
 use samples::Samples;
 
@@ -52,20 +52,37 @@ impl FitOptions {
 const LEAST_SAMPLES: usize = 8;
 
 /// A path of few lines, arcs and cubics near `points`, taken in order; `None` for fewer than two distinct points.
+/// Points that are no numbers, or beyond 1e60, are passed over.
 ///
 /// Open paths keep their end points. A closed path (its first point need not be repeated) starts at a corner where
 /// it has one. Between corners neighbouring elements share their direction, at the seam of a closed path too.
 /// Cubics after Schneider (1990), corners and lines as the modules here describe.
 pub fn fit(points: &[Point], closed: bool, options: &FitOptions) -> Option<Path> {
     let samples = Samples::of(points, closed, options.step())?;
+    let as_lines = || {
+        let few = simplify(&samples.points, samples.closed, options.tolerance);
+        // what is smaller than the tolerance would be a point
+        let small = || points.iter().copied().filter(samples::is_near).collect::<Vec<_>>();
+        Path::polyline(&few, samples.closed).or_else(|| Path::polyline(&small(), closed))
+    };
     if samples.len() < LEAST_SAMPLES {
-        return Path::polyline(&simplify(&samples.points, samples.closed, options.tolerance), samples.closed);
+        return as_lines();
     }
     let corners = corner::find(&samples, options);
-    match (samples.closed, corners.is_empty()) {
-        (true, true) => Some(smooth_ring(&samples, options)),
-        (true, false) => Some(cornered_ring(&samples, &corners, options)),
-        (false, _) => Some(open_line(&samples, &corners, options)),
+    let path = match (samples.closed, corners.is_empty()) {
+        (true, true) => smooth_ring(&samples, options),
+        (true, false) => cornered_ring(&samples, &corners, options),
+        (false, _) => open_line(&samples, &corners, options),
+    };
+    // a small ring may be all zone of its only corner: then nothing between is trusted, and nothing is left
+    if path.pieces().any(|piece| moves(&piece)) { Some(path) } else { as_lines() }
+}
+
+fn moves(piece: &Piece) -> bool {
+    match piece.element {
+        Element::Line { to } => to != piece.from,
+        Element::Arc { centre, .. } => centre != piece.from,
+        Element::Cubic { c1, c2, to } => [c1, c2, to].iter().any(|&p| p != piece.from),
     }
 }
 
@@ -109,7 +126,7 @@ fn trusted(samples: &Samples, from: usize, to: isize) -> Vec<Point> {
     (from as isize..=to).filter_map(|i| samples.get(i)).collect()
 }
 
-fn assembled(start: Point, elements: Vec<crate::Element>, closed: bool) -> Path {
+fn assembled(start: Point, elements: Vec<Element>, closed: bool) -> Path {
     let mut path = Path::new(start);
     elements.into_iter().for_each(|e| path.push(e));
     if closed {

@@ -1,5 +1,6 @@
 //! Bytes of a picture file to something that can be traced.
 
+use std::fmt::Display;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
@@ -69,10 +70,11 @@ pub(crate) fn read_bytes(path: &str) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
+/// What a file's bytes are; `path` is for messages, and its extension for contents that say nothing of themselves.
+pub(crate) fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
     let malformed = |e: &FormatError| match e {
         FormatError::Nothing { .. } => Failure::failed("no-strokes", format!("{path}: {e}")),
-        _ => Failure::usage("malformed", format!("{path}: {e}")),
+        _ => Failure::usage("malformed", format!("{path}: {}", brief(e))),
     };
     let extension = Path::new(path).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     match kind_of(bytes, extension.as_deref()) {
@@ -149,9 +151,15 @@ fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
     };
     let broken = |e: ImageError| match e {
         ImageError::Limits(_) => too_large(path, "more than the memory a picture may take"),
-        ImageError::Unsupported(_) => Failure::usage("unsupported", format!("{path}: {e}; save it as PNG")),
+        ImageError::Unsupported(_) => {
+            Failure::usage("unsupported", format!("{path}: {}; save it as PNG", brief(&e)))
+        }
         _ => {
-            Failure::usage("malformed", format!("{path} is broken: {e}; save it again or give another file"))
+            let what = brief(&e);
+            Failure::usage(
+                "malformed",
+                format!("{path} is broken: {what}; save it again or give another file"),
+            )
         }
     };
     let mut reader =
@@ -179,6 +187,16 @@ fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
         image.apply_orientation(orientation);
     }
     pixels(path, image)
+}
+
+/// What a decoder says, cut off where it goes on to repeat the file.
+fn brief(error: &impl Display) -> String {
+    const MOST_CHARACTERS: usize = 500;
+    let text = error.to_string();
+    match text.char_indices().nth(MOST_CHARACTERS) {
+        Some((end, _)) => format!("{} …", &text[..end]),
+        None => text,
+    }
 }
 
 /// Whether the last scan of a JPEG ends: decoders fill what is missing with grey. Within a scan 0xFF is followed by 0,

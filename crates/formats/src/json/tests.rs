@@ -89,3 +89,13 @@ fn broken_json_is_refused_with_its_place() {
     }
     assert!(matches!(read(&vec![b' '; crate::MAX_BYTES + 1]), Err(FormatError::TooLarge { .. })));
 }
+
+#[test]
+fn every_bit_of_a_number_comes_back() {
+    let x = 0.003_711_742_597_104_224_2; // the quick way to read numbers is one bit off here
+    let path = Path::polyline(&[Point::ORIGIN, Point::new(x, 1.0)], false).unwrap();
+    let drawing = Drawing { strokes: vec![Stroke::new(path)] };
+    let sheet = Sheet { width: 1.0, height: 1.0, metres_per_unit: None, drawing };
+    let traced = Traced { sheet, mode: "auto".into() };
+    assert_eq!(read(write(&traced, 0.1).as_bytes()).unwrap(), traced);
+}

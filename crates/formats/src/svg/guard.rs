@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use usvg::roxmltree::{Document, Node, NodeId};
 
+use super::swell;
 use crate::FormatError;
 
 /// Nesting of elements. `usvg` walks the tree by recursion, some kilobytes of stack a level.
@@ -91,16 +92,18 @@ fn unquoted(rest: &str) -> &str {
     address.trim_matches(|c: char| c.is_whitespace() || c == '"' || c == '\'')
 }
 
-/// How many bytes of attributes each element stands for.
+/// How many bytes of attributes each element stands for, what round things swell to included.
 struct Weights<'a> {
     by_id: HashMap<&'a str, Node<'a, 'a>>,
     known: HashMap<NodeId, u64>,
+    /// See [`swell::largest_size`].
+    largest: f64,
 }
 
 impl<'a> Weights<'a> {
     fn of(document: &'a Document<'a>) -> Self {
         let named = document.descendants().filter_map(|n| n.attribute("id").map(|id| (id, n)));
-        Self { by_id: named.collect(), known: HashMap::new() }
+        Self { by_id: named.collect(), known: HashMap::new(), largest: swell::largest_size(document) }
     }
 
     /// Of the element, its children, and whatever it shows by reference. References are followed as deep as the
@@ -114,6 +117,7 @@ impl<'a> Weights<'a> {
         }
         // an element takes memory without attributes too
         let mut weight = 16 + node.attributes().map(|a| a.value().len() as u64).sum::<u64>();
+        weight = weight.saturating_add(swell::weight(node, self.largest));
         let children: Vec<_> = node.children().filter(Node::is_element).collect();
         for part in children.into_iter().chain(self.shown_by(node)) {
             // enough is enough: two groups of many uses of each other would take for ever to weigh

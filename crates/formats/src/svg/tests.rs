@@ -302,3 +302,23 @@ fn what_is_left_out_is_said() {
     let remarks = found.unwrap().remarks;
     assert_eq!(remarks, ["not drawn: text; convert it to paths in the drawing program (1 found)"]);
 }
+
+#[test]
+fn a_vast_arc_is_refused_before_it_swells() {
+    let svg =
+        |inner: &str| format!("<svg xmlns='http://www.w3.org/2000/svg' width='90' height='60'>{inner}</svg>");
+    let bombs = [
+        "<path stroke='red' d='M0 0A1e90 1e90 0 0 1 9 9'/>".to_owned(),
+        // a radius too small for the ends is as large as they are apart
+        "<path stroke='red' d='M0 0a1 1 0 0 1 1e90 9'/>".to_owned(),
+        "<circle r='3e38'/>".repeat(100),
+        "<ellipse rx='1e38mm' ry='1'/>".repeat(100),
+        format!("<g font-size='1e38'>{}</g>", "<circle r='1em'/>".repeat(100)),
+    ];
+    for bomb in bombs {
+        let refused = read(svg(&bomb).as_bytes());
+        assert!(matches!(refused, Err(FormatError::TooLarge { .. })), "{bomb}: {refused:?}");
+    }
+    let many = "<path stroke='red' fill='none' d='M0 0A9 9 0 0 1 9 9a1e5 1e5 0 0 0 1 1'/><circle r='20%'/>";
+    assert_eq!(read(svg(&many.repeat(2000)).as_bytes()).unwrap().sheet.drawing.strokes.len(), 4000);
+}

@@ -61,10 +61,16 @@ pub(super) fn find(samples: &Samples, options: &FitOptions) -> Vec<Corner> {
         (0..samples.len()).map(|i| break_at(samples, i, &scale, options.corner_rad)).collect();
     let smooth = Samples::smoothed_ring(&breaks, scale.gap, samples.closed);
     let mut found: Vec<Corner> = Vec::new();
+    let (mut is_corner, mut in_zone) = (vec![false; samples.len()], vec![false; samples.len()]);
     for peak in peaks(samples, &breaks, &smooth, options.corner_rad, scale.gap + scale.flank / 2) {
-        let corner = measured(samples, peak, &scale, options);
-        let apart = |c: &Corner| found.iter().all(|f| samples.apart(f.index, c.index) > f.zone.max(c.zone));
-        found.extend(corner.filter(apart));
+        let Some(corner) = measured(samples, peak, &scale, options) else { continue };
+        let zone = || samples.around(corner.index, corner.zone);
+        if in_zone[corner.index] || zone().any(|i| is_corner[i]) {
+            continue;
+        }
+        is_corner[corner.index] = true;
+        zone().for_each(|i| in_zone[i] = true);
+        found.push(corner);
     }
     found.sort_by_key(|c| c.index);
     found
@@ -88,10 +94,12 @@ fn break_at(samples: &Samples, i: usize, scale: &Scale, corner_rad: f64) -> f64 
 }
 
 impl Samples {
-    /// How many samples lie between two.
-    fn apart(&self, a: usize, b: usize) -> usize {
-        let d = a.abs_diff(b);
-        if self.closed { d.min(self.len() - d) } else { d }
+    /// The samples up to `reach` from sample `i`, itself included.
+    fn around(&self, i: usize, reach: usize) -> impl Iterator<Item = usize> {
+        let (n, closed) = (self.len() as isize, self.closed);
+        let reach = reach.min(self.len()) as isize;
+        let all = (i as isize - reach..=i as isize + reach).filter(move |k| closed || (0..n).contains(k));
+        all.map(move |k| k.rem_euclid(n) as usize)
     }
 
     /// Turn between the chords from `reach` samples before sample `i` to it and on to `reach` samples behind it, rad;
@@ -115,10 +123,11 @@ impl Samples {
 fn peaks(samples: &Samples, breaks: &[f64], smooth: &[f64], least: f64, apart: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..breaks.len()).filter(|&i| breaks[i].abs() >= least).collect();
     order.sort_by(|&a, &b| smooth[b].abs().total_cmp(&smooth[a].abs()));
-    let mut taken: Vec<usize> = Vec::new();
+    let (mut taken, mut free) = (Vec::new(), vec![true; samples.len()]);
     for i in order {
-        if taken.iter().all(|&t| samples.apart(t, i) > apart) {
+        if free[i] {
             taken.push(i);
+            samples.around(i, apart).for_each(|near| free[near] = false);
         }
     }
     taken

@@ -5,6 +5,14 @@ use super::window::Parabola;
 /// More samples than this are not taken, however long the polyline is.
 const MOST: f64 = 200_000.0;
 
+/// A point further out than this is none: fourth powers of lengths are summed, and must stay finite.
+const FURTHEST: f64 = 1e60;
+
+/// Whether a point can be reckoned with.
+pub(super) fn is_near(p: &Point) -> bool {
+    p.x.abs() <= FURTHEST && p.y.abs() <= FURTHEST
+}
+
 /// A polyline resampled at equal steps of arc length.
 #[derive(Clone, Debug)]
 pub(super) struct Samples {
@@ -15,9 +23,9 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Steps of about `step`; `None` for fewer than two distinct finite points.
+    /// Steps of about `step`; `None` for fewer than two distinct points up to [`FURTHEST`].
     pub(super) fn of(points: &[Point], closed: bool, step: f64) -> Option<Self> {
-        let mut line: Vec<Point> = points.iter().copied().filter(|p| p.is_finite()).collect();
+        let mut line: Vec<Point> = points.iter().copied().filter(is_near).collect();
         line.dedup();
         if closed && line.len() > 2 && line.first() != line.last() {
             line.push(line[0]);

@@ -3,7 +3,6 @@ use std::f64::consts::{PI, TAU};
 use kurbo::{Point, Vec2};
 
 use super::*;
-use crate::Element;
 
 /// Points every 1 along a polyline, moved by seeded noise of this amplitude.
 fn drawn(path: &[Point], noise: f64, seed: u64) -> Vec<Point> {
@@ -36,7 +35,7 @@ fn breaks(path: &Path) -> Vec<f64> {
 }
 
 fn greatest_curvature(path: &Path) -> f64 {
-    let of = |p: crate::Piece| {
+    let of = |p: Piece| {
         let length = p.length(1e-3);
         (0..=40)
             .map(|i| p.at_length(length * f64::from(i) / 40.0, 1e-4).curvature.hypot())
@@ -167,4 +166,27 @@ fn hardly_any_points_are_no_reason_to_fail() {
             assert!(path.flatten(0.01).iter().all(|p| p.is_finite()));
         }
     }
+}
+
+#[test]
+fn a_small_ring_of_one_corner_is_not_lost() {
+    // the edge of a triangle 11 px wide, as a tracer found it, and a tolerance as wide as its noise
+    let down = (0..15).map(|i| Point::new(8.5 - 0.5 * f64::from(i), 8.0 - 0.5 * f64::from(i)));
+    let right =
+        [(12., 0.5), (12., 1.5), (12., 2.5), (11.5, 3.), (11., 3.5), (11., 4.5), (11., 5.5), (10.5, 6.)];
+    let across = (0..11).map(|i| Point::new(1.5 + f64::from(i), 0.0));
+    let rest = [(10., 6.5), (9.5, 7.), (9., 7.5)].map(Point::from);
+    let start = Point::new(1.0, 0.5);
+    let ring: Vec<_> =
+        std::iter::once(start).chain(across).chain(right.map(Point::from)).chain(rest).chain(down).collect();
+    let options = FitOptions { reach: 2.0, ..FitOptions::new(1.585) };
+    let path = fit(&ring, true, &options).unwrap();
+    assert!((20.0..40.0).contains(&path.length(1e-6)), "{path:?}");
+}
+
+#[test]
+fn points_too_far_out_to_reckon_with_are_passed_over() {
+    let far = [(0.0, 1.0), (1e300, -1e200), (5.0, -7.5), (f64::INFINITY, 0.0)].map(Point::from);
+    let path = fit(&far, false, &options()).unwrap();
+    assert_eq!((path.start(), path.end()), (far[0], far[2]));
 }
