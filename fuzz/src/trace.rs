@@ -64,9 +64,8 @@ fn check_traced(traced: &Traced, width: usize, height: usize) {
     }
 }
 
-/// How far outside the image a stroke may reach, px: corners are put where their sides meet, and fitted curves bulge;
-/// 14 px is the most that was seen.
-const OUTSIDE_PX: f64 = 24.0;
+/// How far outside the image a stroke may reach, px: rounding.
+const OUTSIDE_PX: f64 = 1e-9;
 
 fn is_inside(p: Point, width: usize, height: usize) -> bool {
     let within = |v: f64, side: usize| (-OUTSIDE_PX..=side as f64 + OUTSIDE_PX).contains(&v);

@@ -28,6 +28,7 @@ mod gap;
 mod graph;
 mod grey;
 mod ink;
+mod inside;
 mod junction;
 mod light;
 mod line;

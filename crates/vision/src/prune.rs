@@ -73,15 +73,16 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
     })
 }
 
-/// Whether a branch is as wide as the pen beyond the ink of its node, for a while: a line's. Over a corner's point the
+/// Whether a branch is as wide as the pen beyond the ink of its node, and stays so: a line's. Over a corner's point the
 /// two sides' ink is one, wider than the pen, and runs out.
 fn is_line(branch: &Branch, node: Point, pen: f64) -> bool {
-    let beyond = branch.points.iter().zip(&branch.radii).filter(|(p, _)| p.distance(node) > 1.3 * pen + 0.5);
-    let mut radii: Vec<f64> = beyond.map(|(_, &radius)| radius).collect();
-    radii.sort_unstable_by(f64::total_cmp);
-    let at = |share: usize| radii[radii.len() * share / 100];
-    let long = radii.len() as f64 > (0.8 * pen).max(3.0);
-    long && (0.8..1.25).contains(&(at(50) / pen)) && at(85) - at(15) < 0.2 * pen + 0.2
+    let rows = branch.points.iter().zip(&branch.radii);
+    let radii: Vec<f64> =
+        rows.filter(|(p, _)| p.distance(node) > 1.3 * pen + 0.5).map(|(_, &radius)| radius).collect();
+    let long = radii.len() as f64 > (1.5 * pen).max(4.0);
+    let (first, second) = radii.split_at(radii.len() / 2);
+    let (one, other) = (median(first), median(second));
+    long && (0.75..1.25).contains(&(median(&radii) / pen)) && one.min(other) > 0.8 * one.max(other)
 }
 
 /// Sine of half the widest angle at which a corner's point is long enough to show: 150°.

@@ -2,6 +2,7 @@ use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind};
 
 use crate::centreline::{self, Row};
 use crate::ink::Ink;
+use crate::inside::inside;
 use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
@@ -134,6 +135,8 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
     if strokes.is_empty() {
         return Err(VisionError::NoInk { largest_px, least_px: largest_px + 1 });
     }
+    let (width, height) = (mask.width as f64, mask.height as f64);
+    let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
     let scale = Affine::scale(ink.reduction as f64);
     let strokes = long_enough(Drawing { strokes }.transformed(scale), options.min_length_px)?;
     Ok(Traced {

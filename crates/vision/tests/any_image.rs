@@ -10,9 +10,8 @@ use tracelight_vision::{Grey, Mode, Options, Traced, VisionError, find_two_marks
 
 const MODES: [Mode; 4] = [Mode::Auto, Mode::Centreline, Mode::Outline, Mode::Sweep];
 
-/// How far outside the image a stroke may reach, px. Corners are put where their sides meet, and fitted curves bulge;
-/// 6.8 px is the most that was seen, about a gradient.
-const OUTSIDE_PX: f64 = 12.0;
+/// How far outside the image a stroke may reach, px: rounding.
+const OUTSIDE_PX: f64 = 1e-9;
 
 /// No image of this size takes longer, whatever else the machine does: the slowest ones take 10 ms.
 const LONGEST: Duration = Duration::from_secs(2);
