@@ -105,13 +105,13 @@ impl Sorter {
     /// `bulky` patches are wider than any pen somewhere, `wide` ones wider than a line of the pen.
     ///
     /// Where the pen is known, octagons that fit into none of its lines tell shapes from lines. Where it is not,
-    /// octagons of half a patch's own width do: from the widest on, each patch is parted by the first that fits twice.
+    /// octagons of half a patch's own width or more do: each patch is parted by the first that fits, from the widest on.
     fn sort(&mut self, bulky: Vec<Region>, wide: Vec<(Region, Graph)>, widest: usize) {
         let mut left: Vec<(Region, Option<Graph>)> = bulky.into_iter().map(|region| (region, None)).collect();
         left.extend(wide.into_iter().map(|(region, graph)| (region, Some(graph))));
         let known = (BULK_PENS * self.pen + 2.0).ceil() as usize;
         let mut width = if self.pen > 0.0 { known } else { widest };
-        loop {
+        while !left.is_empty() {
             let mask = mask_of(&self.shape_mask, left.iter().map(|(region, _)| region));
             let inner = mask.clone().opened(width.max(LEAST_BULK));
             let (fits, rest): (Vec<_>, Vec<_>) =
@@ -119,7 +119,7 @@ impl Sorter {
             let rim = RIM_PX + width / RIM_SHARE;
             self.split(mask_of(&mask, fits.iter().map(|(region, _)| region)), inner.dilated_by(rim));
             left = rest;
-            if left.is_empty() || self.pen > 0.0 || width <= LEAST_BULK {
+            if self.pen > 0.0 || width <= LEAST_BULK {
                 break;
             }
             width /= 2;
