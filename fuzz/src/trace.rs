@@ -1,6 +1,6 @@
 //! The tracer: any image, any mode.
 
-use std::f64::consts::PI;
+use std::f64::consts::FRAC_PI_2;
 
 use tracelight_stroke::Point;
 use tracelight_vision::{Grey, Mode, Options, Traced, find_two_marks, trace};
@@ -12,8 +12,8 @@ use crate::sound::check_path;
 const SIDES: [usize; 2] = [8, 128];
 
 const MODES: [Mode; 4] = [Mode::Auto, Mode::Centreline, Mode::Outline, Mode::Sweep];
-const TOLERANCES_PX: [f64; 8] = [0.35, 0.35, 0.35, 0.0, 0.01, 0.1, 2.0, 50.0];
-const CORNERS_RAD: [f64; 6] = [0.436, 0.436, 0.0, 0.05, 1.5, PI];
+const TOLERANCES_PX: [f64; 8] = [0.35, 0.35, 0.35, 0.05, 0.08, 0.1, 2.0, 10.0];
+const CORNERS_RAD: [f64; 6] = [0.436, 0.436, 0.09, 0.2, 1.5, FRAC_PI_2];
 
 /// Layout: width, height, mode, tolerance, corner, style, then what the style makes an image of.
 ///
@@ -26,6 +26,7 @@ pub fn check(data: &[u8]) {
         mode: bytes.one_of(&MODES),
         tolerance_px: bytes.one_of(&TOLERANCES_PX),
         corner_rad: bytes.one_of(&CORNERS_RAD),
+        ..Options::default()
     };
     let levels = match bytes.byte() % 3 {
         0 => raw(bytes.rest(), width * height),
