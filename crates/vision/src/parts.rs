@@ -209,6 +209,11 @@ fn pen_width<'a>(graphs: impl Iterator<Item = &'a Graph>) -> f64 {
     )
 }
 
+/// What this share of sorted values, %, are under; 0 of none.
+fn at_share(sorted: &[f64], share: usize) -> f64 {
+    sorted.get(sorted.len() * share / 100).copied().unwrap_or(0.0)
+}
+
 impl Graph {
     /// The half widths along all branches, px, from the narrowest.
     fn radii(&self) -> Vec<f64> {
@@ -224,7 +229,7 @@ impl Graph {
     /// Whether the ink's width varies along its skeleton as no pen's does: it runs out towards a shape's corners.
     fn is_uneven(&self) -> bool {
         let radii = self.radii();
-        let at = |share: usize| radii.get(radii.len() * share / 100).copied().unwrap_or(0.0);
+        let at = |share| at_share(&radii, share);
         at(90) > 1.5 * at(50) + 0.7
     }
 
@@ -244,9 +249,7 @@ impl Graph {
 
     /// Whether this was filled and not drawn with a pen of width `pen` (0: no line is known in this picture).
     fn is_shape(&self, pen: f64) -> bool {
-        let radii = self.radii();
-        let usual = radii.get(radii.len() / 2).copied().unwrap_or(0.0);
-        let wide = pen > 0.0 && 2.0 * usual > 2.2 * pen;
+        let wide = pen > 0.0 && 2.0 * at_share(&self.radii(), 50) > 2.2 * pen;
         2.0 * self.widest() > 1.6 * pen && (wide || self.is_uneven() || self.is_blob())
     }
 
@@ -254,7 +257,7 @@ impl Graph {
     /// width is the pen's.
     fn is_line_beside(&self, pen: f64) -> bool {
         let radii = self.radii();
-        let at = |share: usize| radii.get(radii.len() * share / 100).copied().unwrap_or(0.0);
+        let at = |share| at_share(&radii, share);
         let width = 2.0 * at(50);
         // distances to pixels go in steps of up to a pixel where they are small
         let even = at(80) - at(20) <= (0.25 * at(50)).max(1.05);
