@@ -26,18 +26,19 @@ pub(super) fn through(points: &[Point], ends: &Ends, tolerance: f64) -> Vec<Cubi
     let mut joints: Vec<usize> =
         (1..least).map(|k| row.share(0, row.last(), k as f64 / least as f64)).collect();
     joints.dedup();
-    loop {
-        let chain = row.chained(ends, &joints, tolerance);
-        let bounds: Vec<usize> = [&[0], &joints[..], &[row.last()]].concat();
-        let long = |k: usize| bounds[k + 1] - bounds[k] >= 2 * SHORTEST;
-        let cuts = (0..chain.len()).filter(|&k| chain[k].1 > tolerance && long(k));
-        let cuts: Vec<usize> = cuts.map(|k| row.share(bounds[k], bounds[k + 1], 0.5)).collect();
-        if cuts.is_empty() {
-            return chain.into_iter().map(|(curve, _)| curve).collect();
-        }
-        joints.extend(cuts);
-        joints.sort_unstable();
-    }
+    let mut stops = vec![Stop { index: 0, at: ends.from, along: ends.leaving }];
+    stops.extend(joints.into_iter().filter_map(|i| row.stop(i)));
+    stops.push(Stop { index: row.last(), at: ends.to, along: ends.arriving });
+    let mut chain = Vec::new();
+    stops.windows(2).for_each(|w| row.fit(&w[0], &w[1], tolerance, &mut chain));
+    chain
+}
+
+/// Where two cubics meet.
+struct Stop {
+    index: usize,
+    at: Point,
+    along: Vec2,
 }
 
 /// Share of the turning that is spread evenly over the length, so that straight stretches get joints too.
@@ -103,20 +104,26 @@ impl Row {
         at.clamp(from + 2, to.max(4) - 2).clamp(from + 1, to.max(from + 2) - 1)
     }
 
-    /// Cubics between the joints, each with how far it is off at most.
-    fn chained(&self, ends: &Ends, joints: &[usize], tolerance: f64) -> Vec<(CubicBez, f64)> {
-        let mut stops = vec![(0, ends.from, ends.leaving)];
-        let at = |&i: &usize| {
-            let local = self.local(i)?;
-            Some((i, local.point(self.lengths[i]), local.tangent(self.lengths[i])))
-        };
-        stops.extend(joints.iter().filter_map(at));
-        stops.push((self.last(), ends.to, ends.arriving));
-        let piece = |w: &[(usize, Point, Vec2)]| {
-            let ends = Ends { from: w[0].1, leaving: w[0].2, to: w[1].1, arriving: w[1].2 };
-            cubic::through(&self.points[w[0].0 + 1..w[1].0], &ends, tolerance)
-        };
-        stops.windows(2).map(piece).collect()
+    /// The joint at a point.
+    fn stop(&self, index: usize) -> Option<Stop> {
+        let local = self.local(index)?;
+        let length = self.lengths[index];
+        Some(Stop { index, at: local.point(length), along: local.tangent(length) })
+    }
+
+    /// Adds the cubic from stop to stop, or those of its halves where it is too far off.
+    fn fit(&self, from: &Stop, to: &Stop, tolerance: f64, chain: &mut Vec<CubicBez>) {
+        let ends = Ends { from: from.at, leaving: from.along, to: to.at, arriving: to.along };
+        let (curve, off) = cubic::through(&self.points[from.index + 1..to.index], &ends, tolerance);
+        let is_long = to.index - from.index >= 2 * SHORTEST;
+        let cut = || self.stop(self.share(from.index, to.index, 0.5));
+        match if off > tolerance && is_long { cut() } else { None } {
+            Some(middle) => {
+                self.fit(from, &middle, tolerance, chain);
+                self.fit(&middle, to, tolerance, chain);
+            }
+            None => chain.push(curve),
+        }
     }
 }
 

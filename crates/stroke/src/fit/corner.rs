@@ -83,7 +83,7 @@ const CHORDS: f64 = 0.6;
 /// Turn between the flanks of sample `i`, both carried on to it, rad; 0 where it cannot be a corner.
 fn break_at(samples: &Samples, i: usize, scale: &Scale, corner_rad: f64) -> f64 {
     let &Scale { gap, flank, .. } = scale;
-    if samples.chord_turn(i, gap + flank / 2).is_some_and(|turned| turned.abs() < CHORDS * corner_rad) {
+    if samples.goes_on(i, gap + flank / 2, CHORDS * corner_rad) {
         return 0.0;
     }
     let side = |side| samples.flank(i, side, gap, flank).map(|p| p.tangent(0.0));
@@ -102,20 +102,23 @@ impl Samples {
         all.map(move |k| k.rem_euclid(n) as usize)
     }
 
-    /// Turn between the chords from `reach` samples before sample `i` to it and on to `reach` samples behind it, rad;
-    /// `None` near an open end.
-    fn chord_turn(&self, i: usize, reach: usize) -> Option<f64> {
-        let (i, reach) = (i as isize, reach as isize);
-        let (before, here, after) = (self.get(i - reach)?, self.get(i)?, self.get(i + reach)?);
-        Some(turn(here - before, after - here))
+    /// Whether the chords from `reach` samples before sample `i` to it and on to `reach` samples behind it turn by less
+    /// than `most`, rad, up to a right angle; near an open end that is not known.
+    fn goes_on(&self, i: usize, reach: usize, most: f64) -> bool {
+        let Some((before, after)) = self.before(i, reach).zip(self.after(i, reach)) else { return false };
+        let (chord, next) = (self.points[i] - before, after - self.points[i]);
+        let dot = chord.dot(next);
+        dot > 0.0 && dot * dot > most.cos().powi(2) * chord.hypot2() * next.hypot2()
     }
 
-    /// Mean of the values up to `reach` neighbours away.
+    /// Mean of the values up to `reach` neighbours away; 0 where the value is.
     fn smoothed_ring(values: &[f64], reach: usize, closed: bool) -> Vec<f64> {
         let (n, reach) = (values.len() as isize, reach as isize);
         let at = |i: isize| if closed { i.rem_euclid(n) } else { i.clamp(0, n - 1) } as usize;
-        let mean = |i: isize| (i - reach..=i + reach).map(|k| values[at(k)]).sum::<f64>();
-        (0..n).map(|i| mean(i) / (2 * reach + 1) as f64).collect()
+        let mean = |i: usize| (i as isize - reach..=i as isize + reach).map(|k| values[at(k)]).sum::<f64>();
+        // only where there is a break its mean is asked for
+        let smooth = |i: usize| if values[i] == 0.0 { 0.0 } else { mean(i) / (2 * reach + 1) as f64 };
+        (0..values.len()).map(smooth).collect()
     }
 }
 

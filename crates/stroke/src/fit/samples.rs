@@ -54,6 +54,18 @@ impl Samples {
         usize::try_from(i).ok().and_then(|i| self.points.get(i)).copied()
     }
 
+    /// The sample `reach` behind sample `i`; `None` beyond an open end.
+    pub(super) fn before(&self, i: usize, reach: usize) -> Option<Point> {
+        let round = || if self.closed { (i + self.len()).checked_sub(reach) } else { None };
+        self.points.get(i.checked_sub(reach).or_else(round)?).copied()
+    }
+
+    /// The sample `reach` ahead of sample `i`; `None` beyond an open end.
+    pub(super) fn after(&self, i: usize, reach: usize) -> Option<Point> {
+        let round = || if self.closed { self.points.get(i + reach - self.len()) } else { None };
+        self.points.get(i + reach).or_else(round).copied()
+    }
+
     /// Samples from `gap` on, ahead of sample `i` (`side` 1) or behind it (−1), with arc lengths measured from `i`; on a
     /// closed line never more than once round, on an open one up to its end.
     pub(super) fn beside(&self, i: usize, side: isize, gap: usize) -> impl Iterator<Item = (f64, Point)> {

@@ -45,18 +45,23 @@ impl<'a> Straightness<'a> {
         Self { points, sums, rms: 0.3 * tolerance, least }
     }
 
+    /// Mean of points `i..=j` and their second moments about it: xx, xy, yy.
+    fn moments(&self, i: usize, j: usize) -> (Vec2, [f64; 3]) {
+        let (n, to, from) = ((j - i + 1) as f64, &self.sums[j + 1], &self.sums[i]);
+        let of = |k: usize| (to[k] - from[k]) / n;
+        let (mx, my) = (of(0), of(1));
+        (Vec2::new(mx, my), [of(2) - mx * mx, of(3) - mx * my, of(4) - my * my])
+    }
+
     /// Line through points `i..=j` by total least squares and the root mean square distance from it.
     fn line(&self, i: usize, j: usize) -> (Run, f64) {
-        let n = (j - i + 1) as f64;
-        let of = |k: usize| (self.sums[j + 1][k] - self.sums[i][k]) / n;
-        let (mx, my) = (of(0), of(1));
-        let (a, b, c) = (of(2) - mx * mx, of(3) - mx * my, of(4) - my * my);
-        let angle = 0.5 * (2.0 * b).atan2(a - c);
-        let along = Vec2::from_angle(angle);
+        let (mean, [a, b, c]) = self.moments(i, j);
+        // of the two forms of the long axis the one that does not cancel
+        let long = 0.5 * (a + c) + root(a, b, c);
+        let along = unit(if a > c { Vec2::new(long - c, b) } else { Vec2::new(b, long - a) });
         let ahead = along.dot(self.points[j] - self.points[i]) >= 0.0;
-        let across = (0.5 * (a + c) - (0.25 * (a - c).powi(2) + b * b).sqrt()).max(0.0);
-        let at = self.points[0] + Vec2::new(mx, my);
-        (Run { first: i, last: j, at, direction: if ahead { along } else { -along } }, across.sqrt())
+        let direction = if ahead { along } else { -along };
+        (Run { first: i, last: j, at: self.points[0] + mean, direction }, across(a, b, c).sqrt())
     }
 
     /// Straight runs that are not just flat places of a curve, in order, none overlapping.
@@ -99,7 +104,8 @@ impl<'a> Straightness<'a> {
     }
 
     fn straight(&self, i: usize, j: usize) -> bool {
-        j < i + 3 || self.line(i, j).1 <= self.rms
+        let [a, b, c] = if j < i + 3 { return true } else { self.moments(i, j).1 };
+        across(a, b, c) <= self.rms * self.rms
     }
 
     /// Without the ends that already leave the line of the middle.
@@ -132,6 +138,16 @@ impl<'a> Straightness<'a> {
         let points: Vec<(f64, f64)> = self.points[first..=last].iter().map(of).collect();
         cubic_rms(&points) <= 1.5 * self.rms
     }
+}
+
+/// Half the difference of the moments along and across.
+fn root(a: f64, b: f64, c: f64) -> f64 {
+    (0.25 * (a - c) * (a - c) + b * b).sqrt()
+}
+
+/// The second moment across the line of least squares.
+fn across(a: f64, b: f64, c: f64) -> f64 {
+    (0.5 * (a + c) - root(a, b, c)).max(0.0)
 }
 
 /// Root mean square residual of the cubic polynomial v(u) that fits best, by orthogonal polynomials (Forsythe,
