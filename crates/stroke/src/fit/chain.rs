@@ -82,14 +82,16 @@ impl Row {
 
     /// The parabola about point `i`.
     fn local(&self, i: usize) -> Option<Parabola> {
-        let sample = |k: usize| (self.lengths[k], self.points[k]);
         // outwards, both sides in turn; near an end the other side goes on alone
-        let outwards = (1..self.points.len()).flat_map(|k| {
-            let behind = i.checked_sub(k).map(sample);
-            let ahead = (i + k <= self.last()).then(|| sample(i + k));
-            behind.into_iter().chain(ahead)
-        });
-        Parabola::widest(std::iter::once(sample(i)).chain(outwards), &BOTH, self.rms)
+        let both = i.min(self.last() - i);
+        let outwards = |k: usize| match k {
+            _ if k > 2 * both && both < i => i + both - k,
+            _ if k > 2 * both => i + k - both,
+            _ if k % 2 == 1 => i - k.div_ceil(2),
+            _ => i + k / 2,
+        };
+        let samples = (0..self.points.len()).map(outwards).map(|k| (self.lengths[k], self.points[k]));
+        Parabola::widest(samples, &BOTH, self.rms)
     }
 
     /// The point strictly between two others before which this share of the weights between them lies.
