@@ -53,14 +53,16 @@ pub(crate) struct Ridge {
 pub(crate) fn centred(dark: &Plane<u8>, points: &[Point], radius: f64, ring: bool) -> Ridge {
     let stride = spacing(2.0 * radius);
     // first across the pixels' own row, then across what became of it: the pixels lead round corners and wobble
+    let cut = Cut::of(radius);
     let first: Vec<Place> = (0..points.len())
         .step_by(stride)
-        .filter_map(|i| place(dark, i, points[i], normal(points, i, 5, ring)?, radius))
+        .filter_map(|i| place(dark, i, points[i], normal(points, i, 5, ring)?, cut))
         .collect();
     let width = usual_width(&first).unwrap_or(2.0 * radius);
     let first = of_usual_width(&first);
     let row: Vec<Point> = first.iter().map(|p| p.at).collect();
-    let again = |i: usize| place(dark, first[i].index, row[i], normal(&row, i, 3, ring)?, 0.5 * width);
+    let cut = Cut::of(0.5 * width);
+    let again = |i: usize| place(dark, first[i].index, row[i], normal(&row, i, 3, ring)?, cut);
     let second: Vec<Place> = (0..row.len()).filter_map(again).collect();
     let width = usual_width(&second).unwrap_or(width);
     let places = of_usual_width(&second);
@@ -73,8 +75,8 @@ fn spacing(width: f64) -> usize {
 }
 
 /// The middle of the line near `at`.
-fn place(dark: &Plane<u8>, index: usize, at: Point, normal: Vec2, radius: f64) -> Option<Place> {
-    let section = section(dark, at, normal, radius)?;
+fn place(dark: &Plane<u8>, index: usize, at: Point, normal: Vec2, cut: Cut) -> Option<Place> {
+    let section = section(dark, at, normal, cut)?;
     Some(Place { index, at: at + normal * section.offset, width: section.width })
 }
 
@@ -85,20 +87,30 @@ fn usual_width(places: &[Place]) -> Option<f64> {
 
 /// Those as wide as the line usually is thereabouts.
 fn of_usual_width(places: &[Place]) -> Vec<Place> {
-    let mut near = Vec::with_capacity(2 * LOCAL + 1);
-    let mut usual = 0.0;
-    let like = |(i, place): (usize, &Place)| {
-        // every third place: the median of 31 moves by less than the bound in between
-        if i % 3 == 0 {
-            near.clear();
-            let range = i.saturating_sub(LOCAL)..(i + LOCAL + 1).min(places.len());
-            near.extend(places[range].iter().map(|p| p.width));
-            let middle = near.len() / 2;
-            usual = *near.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let mut kept = Vec::with_capacity(places.len());
+    let mut near = Vec::with_capacity(2 * LOCAL + 3);
+    // three places at a time: the median of 31 moves by less than the bound in between
+    for (i, three) in places.chunks(3).enumerate() {
+        let range = (3 * i).saturating_sub(LOCAL)..(3 * i + LOCAL + 1).min(places.len());
+        let widths = places[range.clone()].iter().map(|p| p.width);
+        let (least, most) = widths.fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
+        // a median is none of these further from
+        if most - least <= bound(least) {
+            kept.extend_from_slice(three);
+            continue;
         }
-        ((place.width - usual).abs() <= (0.15 * usual).max(0.5)).then_some(*place)
-    };
-    places.iter().enumerate().filter_map(like).collect()
+        near.clear();
+        near.extend(places[range].iter().map(|p| p.width));
+        let middle = near.len() / 2;
+        let usual = *near.select_nth_unstable_by(middle, f64::total_cmp).1;
+        kept.extend(three.iter().filter(|place| (place.width - usual).abs() <= bound(usual)));
+    }
+    kept
+}
+
+/// How far from the usual width a place of a line may be.
+fn bound(usual: f64) -> f64 {
+    (0.15 * usual).max(0.5)
 }
 
 /// The places parted where more than two in a row are missing.
@@ -135,21 +147,36 @@ fn normal(points: &[Point], i: usize, reach: usize, ring: bool) -> Option<Vec2> 
     (along.hypot() > 1e-9).then(|| Vec2::new(-along.y, along.x) / along.hypot())
 }
 
+/// How lines of about one width are cut across.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    /// About half the line's width, px.
+    radius: f64,
+    /// Distance of the samples, px.
+    step: f64,
+    /// Samples either side of the middle.
+    half: usize,
+}
+
+impl Cut {
+    fn of(radius: f64) -> Self {
+        let step = STEP.max(radius / 5.0);
+        Self { radius, step, half: (((radius + BEYOND) / step).ceil() as usize).min(MOST_HALF) }
+    }
+}
+
 /// The darkness across a line, sample by sample.
 struct Profile {
     values: [f32; 2 * MOST_HALF + 1],
     half: usize,
-    /// Distance of the samples, px.
-    step: f64,
 }
 
 impl Profile {
-    fn across(dark: &Plane<u8>, at: Point, normal: Vec2, radius: f64) -> Self {
-        let step = STEP.max(radius / 5.0);
-        let half = (((radius + BEYOND) / step).ceil() as usize).min(MOST_HALF);
+    fn across(dark: &Plane<u8>, at: Point, normal: Vec2, cut: Cut) -> Self {
+        let Cut { step, half, .. } = cut;
         let mut values = [0.0; 2 * MOST_HALF + 1];
         dark.along(at - normal * (half as f64 * step), normal * step, &mut values[..=2 * half]);
-        Self { values, half, step }
+        Self { values, half }
     }
 
     fn samples(&self) -> &[f32] {
@@ -166,14 +193,15 @@ impl Profile {
 }
 
 /// The cross-section through `at`; `None` where the line has no two edges near the expected ones or lies elsewhere.
-fn section(dark: &Plane<u8>, at: Point, normal: Vec2, radius: f64) -> Option<Section> {
-    let profile = Profile::across(dark, at, normal, radius);
-    let inner = (((0.7 * radius).max(1.0) / profile.step).round() as usize).min(profile.half);
+fn section(dark: &Plane<u8>, at: Point, normal: Vec2, cut: Cut) -> Option<Section> {
+    let Cut { radius, step, .. } = cut;
+    let profile = Profile::across(dark, at, normal, cut);
+    let inner = (((0.7 * radius).max(1.0) / step).round() as usize).min(profile.half);
     let (top, peak) = profile.peak(inner);
     let level = 0.5 * peak;
     let start = if profile.values[profile.half] >= level { profile.half } else { top };
     let samples = profile.samples();
-    let reach = (2.0 / profile.step) as usize;
+    let reach = (2.0 / step) as usize;
     let right = foot(samples[start..].iter(), level, reach)?;
     let left = foot(samples[..=start].iter().rev(), level, reach)?;
     let (mut mass, mut moment) = (0.0, 0.0);
@@ -181,8 +209,8 @@ fn section(dark: &Plane<u8>, at: Point, normal: Vec2, radius: f64) -> Option<Sec
         (mass, moment) = (mass + v, moment + (k as f32 - profile.half as f32) * v);
     }
     let section = Section {
-        offset: f64::from(moment / mass) * profile.step,
-        width: f64::from(mass / peak) * profile.step,
+        offset: f64::from(moment / mass) * step,
+        width: f64::from(mass / peak) * step,
     };
     (section.offset.abs() <= radius + 1.0).then_some(section)
 }
