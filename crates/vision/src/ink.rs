@@ -107,10 +107,34 @@ fn word_over(levels: &[u8], threshold: u8) -> u64 {
     (0..8).map(byte).fold(0, |word, bits| word | bits)
 }
 
-pub(crate) fn histogram(plane: &Plane<u8>) -> [u32; 256] {
-    let mut histogram = [0u32; 256];
-    plane.values.iter().for_each(|&v| histogram[usize::from(v)] += 1);
-    histogram
+/// A histogram in the making: four tables, for a level that repeats need not wait for itself.
+struct Counts([[u32; 256]; 4]);
+
+impl Default for Counts {
+    fn default() -> Self {
+        Self([[0; 256]; 4])
+    }
+}
+
+impl Counts {
+    fn add(&mut self, levels: &[u8]) {
+        let fours = levels.chunks_exact(4);
+        fours.remainder().iter().for_each(|&v| self.0[0][usize::from(v)] += 1);
+        for four in fours {
+            four.iter().zip(&mut self.0).for_each(|(&v, table)| table[usize::from(v)] += 1);
+        }
+    }
+
+    fn sum(&self) -> [u32; 256] {
+        std::array::from_fn(|level| self.0.iter().map(|table| table[level]).sum())
+    }
+}
+
+/// How many times each level occurs.
+pub(crate) fn histogram<'a>(levels: impl Iterator<Item = &'a [u8]>) -> [u32; 256] {
+    let mut counts = Counts::default();
+    levels.for_each(|levels| counts.add(levels));
+    counts.sum()
 }
 
 /// Blocks of pixels that are looked at together, px.
@@ -122,18 +146,8 @@ const SAMPLED: usize = 250_000;
 /// whatever its direction is left out.
 pub(crate) fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
     let every = (plane.values.len() / SAMPLED).max(1);
-    // four tables, for a level that repeats need not wait for itself
-    let mut tables = [[0u32; 256]; 4];
-    for y in 0..plane.height {
-        for block in plane.row(y).chunks(BLOCK).skip(y % every).step_by(every) {
-            let fours = block.chunks_exact(4);
-            fours.remainder().iter().for_each(|&v| tables[0][usize::from(v)] += 1);
-            for four in fours {
-                four.iter().zip(&mut tables).for_each(|(&v, table)| table[usize::from(v)] += 1);
-            }
-        }
-    }
-    std::array::from_fn(|level| tables.iter().map(|table| table[level]).sum())
+    let blocks = |y| plane.row(y).chunks(BLOCK).skip(y % every).step_by(every);
+    histogram((0..plane.height).flat_map(blocks))
 }
 
 /// The level that a two-thousandth of all pixels exceed: more than specks of dust cover, and less than any drawing.
@@ -240,18 +254,21 @@ fn moments(histogram: &[u32; 256], range: std::ops::Range<usize>) -> (f64, f64, 
 pub(crate) fn noise(plane: &Plane<u8>, sampled: usize) -> f64 {
     const TIMES: f64 = 6.0; // the mask's gain on white noise
     const MEDIAN: f64 = 0.6745; // of |x| for a standard normal x
-    let mut counts = [0u32; 256];
+    let mut counts = Counts::default();
+    let (mut bends, mut responses) = (vec![0i16; plane.width], vec![0u8; plane.width.saturating_sub(2)]);
     let every = (plane.values.len() / sampled).max(1);
     for y in (1..plane.height - 1).step_by(every) {
         let [above, here, below] = [y - 1, y, y + 1].map(|y| plane.row(y));
-        for x in 1..plane.width - 1 {
-            let row = |r: &[u8]| [r[x - 1], r[x], r[x + 1]].map(i32::from);
-            let ([a, b, c], [d, e, f], [g, h, i]) = (row(above), row(here), row(below));
-            let response = a + c + g + i - 2 * (b + d + f + h) + 4 * e;
-            counts[(response.unsigned_abs() as usize).min(255)] += 1;
-        }
+        // 1 −2 1 down the columns, and of those the same along the row
+        let threes = above.iter().zip(here).zip(below);
+        let bend = |((a, h), b): ((&u8, &u8), &u8)| i16::from(*a) + i16::from(*b) - 2 * i16::from(*h);
+        bends.iter_mut().zip(threes).for_each(|(out, three)| *out = bend(three));
+        let threes = bends.iter().zip(&bends[1..]).zip(&bends[2..]);
+        let response = |((a, h), b): ((&i16, &i16), &i16)| (a + b - 2 * h).unsigned_abs().min(255) as u8;
+        responses.iter_mut().zip(threes).for_each(|(out, three)| *out = response(three));
+        counts.add(&responses);
     }
-    percentile(&counts, 0.5) / (TIMES * MEDIAN)
+    percentile(&counts.sum(), 0.5) / (TIMES * MEDIAN)
 }
 
 /// The binomial mean of 3 × 3 pixels: noise falls to 3/8.

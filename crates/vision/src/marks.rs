@@ -62,7 +62,7 @@ pub fn find_two_marks(image: &Grey) -> Result<Marks, VisionError> {
 
 /// The histogram of what is darker than the threshold.
 fn darker_half(ink: &Ink) -> [u32; 256] {
-    let mut counts = histogram(&ink.darkness);
+    let mut counts = histogram(std::iter::once(&ink.darkness.values[..]));
     counts[..=usize::from(ink.threshold)].fill(0);
     counts
 }

@@ -4,9 +4,11 @@ use tracelight_stroke::{Point, Stroke, StrokeKind};
 
 use crate::Options;
 use crate::follow;
+use crate::ink::histogram;
+use crate::light::percentile;
 use crate::mask::Mask;
 use crate::plane::Plane;
-use crate::region::Region;
+use crate::region::{Region, Run};
 
 /// Around a corner the pixel's own size shows, not the shape: px either side.
 const REACH_PX: f64 = 2.0;
@@ -72,10 +74,8 @@ fn stroke(points: &[Point], options: &Options) -> Option<Stroke> {
 
 /// The darkness of a pixel all inside a region.
 fn full_level(dark: &Plane<u8>, region: &Region) -> f64 {
-    let mut levels: Vec<u8> = region.places().map(|(x, y)| dark.row(y)[x]).collect();
-    let middle = levels.len() / 2;
-    let (_, median, _) = levels.select_nth_unstable(middle);
-    f64::from(*median)
+    let levels = |run: &Run| &dark.row(run.y as usize)[run.from as usize..run.to as usize];
+    percentile(&histogram(region.runs.iter().map(levels)), 0.5).max(1.0)
 }
 
 /// An edge between an ink pixel and a paper pixel.

@@ -53,41 +53,88 @@ impl Runs {
         let thin = (image.width.min(image.height) / THIN).max(4);
         let every = (image.values.len() / SAMPLED).max(1);
         for y in (every / 2..image.height).step_by(every) {
-            runs.along(image.row(y).iter().copied(), step, thin);
+            runs.along(image.row(y), step, thin);
         }
+        let mut column = Vec::with_capacity(image.height);
         for x in (every / 2..image.width).step_by(every) {
-            runs.along(image.values[x..].iter().step_by(image.width).copied(), step, thin);
+            column.clear();
+            column.extend(image.values[x..].iter().step_by(image.width));
+            runs.along(&column, step, thin);
         }
         runs
     }
 
     /// Follows a row from extreme to extreme: one is left behind when the level has moved away from it by `step`. What
     /// took longer than a line is thin is the light that changes, no edge.
-    fn along(&mut self, levels: impl Iterator<Item = u8>, step: u8, thin: usize) {
-        let mut levels = levels.enumerate();
-        let Some((_, first)) = levels.next() else { return };
-        let (mut least, mut most) = ((first, 0), (first, 0));
-        // where the level last fell away from a peak and rose from a hollow
-        let (mut fell, mut rose): (Option<usize>, Option<usize>) = (None, None);
-        let mut falling = None;
-        for (at, level) in levels {
-            least = if level <= least.0 { (level, at) } else { least };
-            most = if level >= most.0 { (level, at) } else { most };
-            if falling != Some(true) && most.0 - level >= step {
-                self.light += i64::from(rose.is_some_and(|start| (2..=thin).contains(&(at - start))));
-                self.turns += i64::from(at - most.1 <= thin);
-                (falling, fell, least) = (Some(true), Some(at), (level, at));
-            } else if falling != Some(false) && level - least.0 >= step {
-                self.dark += i64::from(fell.is_some_and(|start| (2..=thin).contains(&(at - start))));
-                self.turns += i64::from(at - least.1 <= thin);
-                (falling, rose, most) = (Some(false), Some(at), (level, at));
+    fn along(&mut self, levels: &[u8], step: u8, thin: usize) {
+        let Some(&first) = levels.first() else { return };
+        let mut way = Way { least: (first, 0), most: (first, 0), fell: None, rose: None, falling: None };
+        for (block, levels) in levels.chunks(EVEN).enumerate() {
+            let lowest = levels.iter().fold(255, |a, &b| a.min(b));
+            let highest = levels.iter().fold(0, |a, &b| a.max(b));
+            if way.turns_within(lowest, highest, step) {
+                for (k, &level) in levels.iter().enumerate() {
+                    self.follow(&mut way, block * EVEN + k, level, step, thin);
+                }
+            } else {
+                way.pass(block * EVEN, levels, lowest, highest);
             }
+        }
+    }
+
+    /// One level further.
+    fn follow(&mut self, way: &mut Way, at: usize, level: u8, step: u8, thin: usize) {
+        way.least = if level <= way.least.0 { (level, at) } else { way.least };
+        way.most = if level >= way.most.0 { (level, at) } else { way.most };
+        let is_thin = |start: Option<usize>| i64::from(start.is_some_and(|s| (2..=thin).contains(&(at - s))));
+        if way.falling != Some(true) && way.most.0 - level >= step {
+            self.light += is_thin(way.rose);
+            self.turns += i64::from(at - way.most.1 <= thin);
+            (way.falling, way.fell, way.least) = (Some(true), Some(at), (level, at));
+        } else if way.falling != Some(false) && level - way.least.0 >= step {
+            self.dark += is_thin(way.fell);
+            self.turns += i64::from(at - way.least.1 <= thin);
+            (way.falling, way.rose, way.most) = (Some(false), Some(at), (level, at));
         }
     }
 
     fn are_sure(&self) -> bool {
         let (more, all) = ((self.dark - self.light).abs(), self.dark + self.light);
         more >= SURE && more as f64 >= SURE_SHARE * all as f64 && all >= self.turns / SHAPES
+    }
+}
+
+/// Levels that are looked at together: most of them are even paper.
+const EVEN: usize = 32;
+
+/// What is known on the way along a row.
+struct Way {
+    /// Level and place of the extremes since the last turn.
+    least: (u8, usize),
+    most: (u8, usize),
+    /// Where the level last fell away from a peak and rose from a hollow.
+    fell: Option<usize>,
+    rose: Option<usize>,
+    falling: Option<bool>,
+}
+
+impl Way {
+    /// Whether levels from lowest to highest may turn the way, in whatever order they come.
+    fn turns_within(&self, lowest: u8, highest: u8, step: u8) -> bool {
+        let falls = self.falling != Some(true) && self.most.0.max(highest) - lowest >= step;
+        let rises = self.falling != Some(false) && highest - self.least.0.min(lowest) >= step;
+        falls || rises
+    }
+
+    /// Goes on over levels that do not turn it, the first of them at place `from`.
+    fn pass(&mut self, from: usize, levels: &[u8], lowest: u8, highest: u8) {
+        let last = |sought: u8| from + levels.iter().rposition(|&level| level == sought).unwrap_or(0);
+        if lowest <= self.least.0 {
+            self.least = (lowest, last(lowest));
+        }
+        if highest >= self.most.0 {
+            self.most = (highest, last(highest));
+        }
     }
 }
 
