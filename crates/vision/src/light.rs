@@ -23,6 +23,11 @@ const DIP: f64 = 0.95;
 /// Dimmest paper that is believed, levels: below, division would only enlarge noise.
 const DIMMEST: f64 = 12.0;
 
+/// Rounds in which the surface is laid on the tiles, at most.
+const ROUNDS: usize = 12;
+/// A surface that moves by less than this in a round has settled: a fifth of a level of 255, as a logarithm.
+const SETTLED: f64 = 8e-4;
+
 /// Brightness of the paper at the tiles' centres.
 #[derive(Clone, Debug)]
 pub(crate) struct Paper {
@@ -146,14 +151,14 @@ const HALF: u16 = 1 << (GAIN_BITS - 9);
 fn tile_levels(image: &Plane<u8>, tile: usize) -> Plane<f64> {
     let (width, height) = (image.width.div_ceil(tile), image.height.div_ceil(tile));
     let mut levels = Plane::filled(width, height, 0.0);
-    // 15 × 15 pixels of a tile tell its paper to a level or two
-    let step = (tile / 15).max(1);
+    // 7 rows of 30 pixels of a tile tell its paper to a level or two
+    let (down, along) = ((tile / 7).max(1), (tile / 30).max(1));
     for ty in 0..height {
         for tx in 0..width {
             let mut histogram = [0u32; 256];
-            for y in (ty * tile..((ty + 1) * tile).min(image.height)).step_by(step) {
+            for y in (ty * tile..((ty + 1) * tile).min(image.height)).step_by(down) {
                 let row = &image.row(y)[tx * tile..((tx + 1) * tile).min(image.width)];
-                row.iter().step_by(step).for_each(|&v| histogram[usize::from(v)] += 1);
+                row.chunks(along).for_each(|levels| histogram[usize::from(levels[0])] += 1);
             }
             levels.values[ty * width + tx] = percentile(&histogram, PERCENTILE).max(DIMMEST);
         }
@@ -163,12 +168,12 @@ fn tile_levels(image: &Plane<u8>, tile: usize) -> Plane<f64> {
 
 /// The level below which `share` of a histogram lies.
 pub(crate) fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
-    let all = histogram.iter().map(|&n| u64::from(n)).sum::<u64>();
+    let all = histogram.iter().sum::<u32>();
     // counted from above: paper is bright, and its levels are few
-    let above = ((1.0 - share) * all as f64) as u64;
+    let above = ((1.0 - share) * f64::from(all)) as u32;
     let mut passed = 0;
     let level = histogram.iter().rposition(|&n| {
-        passed += u64::from(n);
+        passed += n;
         passed > above
     });
     level.unwrap_or(0) as f64
@@ -180,25 +185,34 @@ struct Surface([f64; 6]);
 impl Surface {
     fn over(bright: &Plane<f64>) -> Self {
         let logs: Vec<f64> = bright.values.iter().map(|b| b.ln()).collect();
+        let bases: Vec<[f64; 6]> = (0..logs.len()).map(|i| basis(bright, i)).collect();
         let mut surface = Self([logs.iter().copied().fold(f64::MIN, f64::max), 0.0, 0.0, 0.0, 0.0, 0.0]);
-        for _ in 0..12 {
-            surface = surface.nearer(bright, &logs);
+        for _ in 0..ROUNDS {
+            let before = surface.0;
+            surface = surface.nearer(&bases, &logs);
+            let moved = surface.0.iter().zip(before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            if moved < SETTLED {
+                break;
+            }
         }
         surface
     }
 
     /// One round of asymmetric least squares: a tile below the surface counts the less the further it is below.
-    fn nearer(&self, bright: &Plane<f64>, logs: &[f64]) -> Self {
+    fn nearer(&self, bases: &[[f64; 6]], logs: &[f64]) -> Self {
         let mut normal = [[0.0; 7]; 6];
-        for (i, &log) in logs.iter().enumerate() {
-            let basis = basis(bright, i);
-            let below = (self.log_at(&basis) - log).max(0.0);
-            let weight = 1.0 / (1.0 + (below / 0.08).powi(2)).powi(2);
-            for (row, a) in normal.iter_mut().zip(basis) {
-                row[..6].iter_mut().zip(basis).for_each(|(cell, b)| *cell += weight * a * b);
-                row[6] += weight * a * log;
+        for (basis, &log) in bases.iter().zip(logs) {
+            let below = ((self.log_at(basis) - log) * (1.0 / 0.08)).max(0.0);
+            let weight = 1.0 + below * below;
+            let weight = 1.0 / (weight * weight);
+            for (k, row) in normal.iter_mut().enumerate() {
+                let a = weight * basis[k];
+                row[..=k].iter_mut().zip(basis).for_each(|(cell, b)| *cell += a * b);
+                row[6] += a * log;
             }
         }
+        // the matrix is symmetric
+        (0..6).for_each(|k| (k + 1..6).for_each(|m| normal[k][m] = normal[m][k]));
         // a hundredth of a tile's weight against bends and slopes that no paper calls for
         let ridge = 0.01 * logs.len() as f64;
         (1..6).for_each(|k| normal[k][k] += 0.1 * ridge);
