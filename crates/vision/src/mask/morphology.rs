@@ -8,7 +8,9 @@ impl Mask {
     /// A run of n in common is had from runs of n/2 in common by one more shift (van Herk's idea for words).
     pub(crate) fn eroded(mut self, side: usize) -> Self {
         let side = side.clamp(1, MOST_SIDE);
-        each_shift(side, |by| self.and_shifted(by));
+        for row in self.inked_rows() {
+            each_shift(side, |by| and_right(row, by));
+        }
         each_shift(side, |by| self.and_below(by));
         self
     }
@@ -16,9 +18,13 @@ impl Mask {
     /// The squares of `side` pixels whose upper left pixels are ink: undoes [`Self::eroded`] for what survived it.
     pub(crate) fn dilated(mut self, side: usize) -> Self {
         let side = side.clamp(1, MOST_SIDE);
-        each_shift(side, |by| self.or_shifted(by));
+        let (last, mut was) = (self.last_word(), vec![0; self.stride]);
+        for row in self.inked_rows() {
+            each_shift(side, |by| or_left(row, by, &mut was));
+            row[row.len() - 1] &= last;
+        }
         each_shift(side, |by| self.or_above(by));
-        self.trim();
+        self.clear_margins();
         self
     }
 
@@ -32,6 +38,9 @@ impl Mask {
         let slants = [Slant::Right, Slant::Left];
         self = self.eroded(side);
         slants.iter().for_each(|&way| each_shift(slant + 1, |by| self.and_slanted(by, way)));
+        if self.is_empty() {
+            return self;
+        }
         slants.iter().for_each(|&way| each_shift(slant + 1, |by| self.or_slanted(by, way)));
         self.dilated(side)
     }
@@ -39,14 +48,38 @@ impl Mask {
     /// All within the upright squares of `reach` px either way about each ink pixel.
     pub(crate) fn dilated_by(self, reach: usize) -> Self {
         let mut grown = self.dilated(reach + 1);
-        each_shift(reach + 1, |by| grown.or_shifted_back(by));
+        for row in grown.inked_rows() {
+            each_shift(reach + 1, |by| or_right(row, by));
+        }
         each_shift(reach + 1, |by| grown.or_below(by));
-        grown.trim();
+        grown.clear_margins();
         grown
     }
 
     pub(crate) fn is_empty(&self) -> bool {
         self.words.iter().all(|&word| word == 0)
+    }
+
+    /// The rows that hold ink, each with the margin word on its left.
+    fn inked_rows(&mut self) -> impl Iterator<Item = &mut [u64]> {
+        let rows = self.words.chunks_exact_mut(self.stride).skip(1).take(self.height);
+        rows.filter(|row| row.iter().any(|&word| word != 0))
+    }
+
+    /// The bits of a row's last word that are in the image.
+    fn last_word(&self) -> u64 {
+        span(self.stride - 2, 0, self.width)
+    }
+
+    /// Clears what is not in the image.
+    fn clear_margins(&mut self) {
+        let (stride, last, rows) = (self.stride, self.last_word(), self.height + 1);
+        self.words[..stride].fill(0);
+        self.words[rows * stride..].fill(0);
+        for row in self.words[..rows * stride].chunks_exact_mut(stride) {
+            row[0] = 0;
+            row[stride - 1] &= last;
+        }
     }
 
     /// Each pixel and the one `by` rows below and `by` columns aside. Stretches as long as the way are done at once: what
@@ -80,62 +113,62 @@ impl Mask {
             let last = [above[reach - 2], above[reach - 1], 0];
             stretch.iter_mut().skip(reach - 1).take(1).for_each(|w| *w |= way.moved_on(&last, by));
         }
-        self.trim();
+        self.clear_margins();
     }
 
-    /// Each pixel and the one `by` (up to 64) right of it; the margin keeps rows apart.
-    fn and_shifted(&mut self, by: usize) {
-        for i in 0..self.words.len() - 1 {
-            self.words[i] &= shifted_down(self.words[i], self.words[i + 1], by);
-        }
-    }
-
+    /// Each pixel and the one `by` rows below it.
     fn and_below(&mut self, by: usize) {
-        let reach = by * self.stride;
-        for i in 0..self.words.len() {
-            self.words[i] &= self.words.get(i + reach).copied().unwrap_or(0);
+        let (reach, all) = (by * self.stride, self.words.len());
+        for from in (0..all).step_by(reach) {
+            let (stretch, below) = self.words.split_at_mut((from + reach).min(all));
+            let (read, beyond) = stretch[from..].split_at_mut(below.len().min(reach));
+            read.iter_mut().zip(below).for_each(|(w, b)| *w &= *b);
+            beyond.fill(0);
         }
     }
 
-    fn or_shifted(&mut self, by: usize) {
-        for i in (1..self.words.len()).rev() {
-            let up = if by == WORD { 0 } else { self.words[i] << by };
-            self.words[i] |= up | self.words[i - 1] >> (WORD - by);
-        }
-        // what ran over into the margin would come back in the next row
-        self.trim();
-    }
-
-    /// Each pixel or the one `by` (up to 64) right of it.
-    fn or_shifted_back(&mut self, by: usize) {
-        for i in 0..self.words.len() - 1 {
-            self.words[i] |= shifted_down(self.words[i], self.words[i + 1], by);
-        }
-        self.trim();
-    }
-
+    /// Each pixel or the one `by` rows below it.
     fn or_below(&mut self, by: usize) {
-        let reach = by * self.stride;
-        for i in 0..self.words.len().saturating_sub(reach) {
-            self.words[i] |= self.words[i + reach];
+        let (reach, all) = (by * self.stride, self.words.len());
+        for from in (0..all.saturating_sub(reach)).step_by(reach) {
+            let (stretch, below) = self.words.split_at_mut(from + reach);
+            stretch[from..].iter_mut().zip(below).for_each(|(w, b)| *w |= *b);
         }
     }
 
+    /// Each pixel or the one `by` rows above it.
     fn or_above(&mut self, by: usize) {
         let reach = by * self.stride;
-        for i in (reach..self.words.len()).rev() {
-            self.words[i] |= self.words[i - reach];
+        for from in (1..self.words.len().div_ceil(reach)).rev().map(|k| k * reach) {
+            let (above, stretch) = self.words.split_at_mut(from);
+            stretch.iter_mut().zip(&above[from - reach..]).for_each(|(w, a)| *w |= *a);
         }
     }
+}
 
-    /// Clears what is not in the image.
-    fn trim(&mut self) {
-        let (stride, width, height) = (self.stride, self.width, self.height);
-        for (i, word) in self.words.iter_mut().enumerate() {
-            let inside = (1..=height).contains(&(i / stride)) && i % stride > 0;
-            *word &= if inside { span(i % stride - 1, 0, width) } else { 0 };
-        }
+/// Each pixel of a row and the one `by` (up to 64) right of it.
+fn and_right(row: &mut [u64], by: usize) {
+    for i in 0..row.len() - 1 {
+        row[i] &= shifted_down(row[i], row[i + 1], by);
     }
+    let last = row.len() - 1;
+    row[last] &= shifted_down(row[last], 0, by);
+}
+
+/// Each pixel of a row or the one `by` right of it; the margin word stays as it is.
+fn or_right(row: &mut [u64], by: usize) {
+    for i in 1..row.len() - 1 {
+        row[i] |= shifted_down(row[i], row[i + 1], by);
+    }
+    let last = row.len() - 1;
+    row[last] |= shifted_down(row[last], 0, by);
+}
+
+/// Each pixel of a row or the one `by` left of it; `was` is room for the row.
+fn or_left(row: &mut [u64], by: usize, was: &mut [u64]) {
+    was.copy_from_slice(row);
+    let pairs = was.iter().zip(&was[1..]);
+    row[1..].iter_mut().zip(pairs).for_each(|(w, (low, high))| *w |= shifted_up(*low, *high, by));
 }
 
 /// Which way a slant leads downwards.
@@ -165,7 +198,8 @@ impl Slant {
 
 /// Word `high` with the bits of `low` before it, moved up by `by` (1 to 64) bits.
 fn shifted_up(low: u64, high: u64, by: usize) -> u64 {
-    if by == WORD { low } else { high << by | low >> (WORD - by) }
+    // a shift by 64 is none: hence the two steps
+    high << 1 << (by - 1) | low >> (WORD - by)
 }
 
 /// The widest square that [`Mask::eroded`] looks for, px: three words.
@@ -183,7 +217,7 @@ fn each_shift(side: usize, mut shift: impl FnMut(usize)) {
 
 /// Word `low` with the bits of `high` behind it, moved down by `by` (1 to 64) bits.
 fn shifted_down(low: u64, high: u64, by: usize) -> u64 {
-    if by == WORD { high } else { low >> by | high << (WORD - by) }
+    low >> 1 >> (by - 1) | high << (WORD - by)
 }
 
 #[cfg(test)]
