@@ -7,10 +7,14 @@ use crate::ridge::median;
 
 /// Tolerance over the points' own noise: their largest deviations are three to four times its mean square's root,
 /// and the fit uses 0.7 of the tolerance.
-const TOLERANCE_TO_NOISE: f64 = 5.0;
+const TOLERANCE_TO_NOISE: f64 = 4.4;
 
-/// Points in a window over which a line is a parabola, but for noise: 13 px of a bend of 16 px leave 0.03 px.
-const WINDOW: usize = 13;
+/// Length over which a line is a parabola, but for noise, px: a bend of 16 px leaves 0.03 px.
+const WINDOW_PX: f64 = 13.0;
+/// Fewer points than this say nothing about a parabola.
+const LEAST_WINDOW: usize = 6;
+/// More windows than this do not move their median.
+const MOST_WINDOWS: usize = 100;
 
 /// The path through points; where their noise is worth more than the tolerance, the tolerance gives way. `reach_px`
 /// is how far about a corner they are not to be trusted.
@@ -42,14 +46,18 @@ fn stays_near(path: &Path, points: &[Point], margin: f64) -> bool {
 
 /// How far points scatter about their line, px: the median over windows.
 fn noise_px(points: &[Point]) -> f64 {
+    let spacing = points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>() / points.len() as f64;
+    let window = ((WINDOW_PX / spacing.max(1e-9)) as usize).clamp(LEAST_WINDOW, WINDOW_PX as usize);
+    // three points of each window are the parabola's own
+    let own = (window as f64 / (window - 3) as f64).sqrt();
     let rms = |window: &[Point]| {
         let mut length = 0.0;
-        let lengths = window.windows(2).map(|w| {
-            length += w[0].distance(w[1]);
-            length
+        let samples = window.iter().enumerate().map(|(k, p)| {
+            length += if k > 0 { p.distance(window[k - 1]) } else { 0.0 };
+            (length, *p)
         });
-        let lengths: Vec<f64> = [0.0].into_iter().chain(lengths).collect();
-        Parabola::through(lengths.iter().copied().zip(window.iter().copied())).map(|p| p.rms)
+        Parabola::through(samples).map(|p| p.rms)
     };
-    median(&points.windows(WINDOW).step_by(4).filter_map(rms).collect::<Vec<f64>>())
+    let stride = (points.len() / MOST_WINDOWS).max(4);
+    own * median(&points.windows(window).step_by(stride).filter_map(rms).collect::<Vec<f64>>())
 }

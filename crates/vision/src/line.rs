@@ -152,7 +152,7 @@ fn bridged(dark: &Plane<u8>, mut ridge: Ridge, ring: bool) -> Vec<Point> {
     }
     if let (true, Some(first)) = (ring, ridge.stretches.first()) {
         // a ring that can be seen all round needs no bridge to its own start
-        let open = row.last().is_some_and(|last| last.distance(first[0]) > 2.5);
+        let open = row.last().is_some_and(|last| last.distance(first[0]) > ridge.gap);
         row.extend(if open { gap(dark, &row, first) } else { Vec::new() });
     }
     row

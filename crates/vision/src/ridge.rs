@@ -45,9 +45,11 @@ pub(crate) struct Ridge {
     pub(crate) stretches: Vec<Vec<Point>>,
     /// The line's width in the median, px.
     pub(crate) width: f64,
+    /// Points further apart than this are two stretches', px.
+    pub(crate) gap: f64,
 }
 
-/// Moves points on to the middle of their line, one for every quarter of its width; those whose cross-section is not
+/// Moves points on to the middle of their line, one for every third of its width; those whose cross-section is not
 /// that of one line are left out. `radius` is about half the line's width. A ring's first stretch may go on after its
 /// last.
 pub(crate) fn centred(dark: &Plane<u8>, points: &[Point], radius: f64, ring: bool) -> Ridge {
@@ -66,12 +68,14 @@ pub(crate) fn centred(dark: &Plane<u8>, points: &[Point], radius: f64, ring: boo
     let second: Vec<Place> = (0..row.len()).filter_map(again).collect();
     let width = usual_width(&second).unwrap_or(width);
     let places = of_usual_width(&second);
-    Ridge { stretches: stretches(&places, stride), width }
+    // a step from pixel to pixel is up to √2 long
+    let gap = std::f64::consts::SQRT_2 * (GAP * stride) as f64;
+    Ridge { stretches: stretches(&places, stride), width, gap }
 }
 
 /// Points from one place of a line of this width to the next: its bends have at least its width as radius.
 fn spacing(width: f64) -> usize {
-    ((0.25 * width).round() as usize).clamp(1, 16)
+    ((0.35 * width).round() as usize).clamp(1, 16)
 }
 
 /// The middle of the line near `at`.
