@@ -9,6 +9,7 @@ mod chain;
 mod circle;
 mod corner;
 mod cubic;
+mod flank;
 mod samples;
 mod section;
 mod straight;

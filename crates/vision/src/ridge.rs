@@ -212,10 +212,7 @@ fn section(dark: &Plane<u8>, at: Point, normal: Vec2, cut: Cut) -> Option<Sectio
     for (k, &v) in samples.iter().enumerate().take(start + right + 1).skip(start - left) {
         (mass, moment) = (mass + v, moment + (k as f32 - profile.half as f32) * v);
     }
-    let section = Section {
-        offset: f64::from(moment / mass) * step,
-        width: f64::from(mass / peak) * step,
-    };
+    let section = Section { offset: f64::from(moment / mass) * step, width: f64::from(mass / peak) * step };
     (section.offset.abs() <= radius + 1.0).then_some(section)
 }
 

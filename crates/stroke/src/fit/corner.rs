@@ -6,6 +6,7 @@
 use kurbo::Point;
 
 use super::FitOptions;
+use super::flank::Flanks;
 use super::samples::Samples;
 use super::window::{Parabola, turn};
 
@@ -57,8 +58,9 @@ impl FitOptions {
 /// All corners in order.
 pub(super) fn find(samples: &Samples, options: &FitOptions) -> Vec<Corner> {
     let scale = Scale::of(samples, options);
+    let flanks = Flanks::new(scale.gap, scale.flank);
     let breaks: Vec<f64> =
-        (0..samples.len()).map(|i| break_at(samples, i, &scale, options.corner_rad)).collect();
+        (0..samples.len()).map(|i| break_at(samples, i, &scale, &flanks, options.corner_rad)).collect();
     let smooth = Samples::smoothed_ring(&breaks, scale.gap, samples.closed);
     let mut found: Vec<Corner> = Vec::new();
     let (mut is_corner, mut in_zone) = (vec![false; samples.len()], vec![false; samples.len()]);
@@ -81,13 +83,12 @@ pub(super) fn find(samples: &Samples, options: &FitOptions) -> Vec<Corner> {
 const CHORDS: f64 = 0.6;
 
 /// Turn between the flanks of sample `i`, both carried on to it, rad; 0 where it cannot be a corner.
-fn break_at(samples: &Samples, i: usize, scale: &Scale, corner_rad: f64) -> f64 {
+fn break_at(samples: &Samples, i: usize, scale: &Scale, flanks: &Flanks, corner_rad: f64) -> f64 {
     let &Scale { gap, flank, .. } = scale;
     if samples.goes_on(i, gap + flank / 2, CHORDS * corner_rad) {
         return 0.0;
     }
-    let side = |side| samples.flank(i, side, gap, flank).map(|p| p.tangent(0.0));
-    match (side(-1), side(1)) {
+    match (flanks.tangent(samples, i, -1), flanks.tangent(samples, i, 1)) {
         (Some(before), Some(after)) => turn(before, after),
         _ => 0.0,
     }

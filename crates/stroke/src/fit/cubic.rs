@@ -39,7 +39,8 @@ pub(super) fn through(points: &[Point], ends: &Ends, tolerance: f64) -> (CubicBe
     let (mut u, length) = chord_parameters(points, ends);
     let mut sums = Sums::default();
     points.iter().zip(&u).for_each(|(&p, &t)| sums.add(p - ends.from, ends.to - ends.from, t));
-    let (mut curve, mut off) = (with_handles(ends, EVEN_HANDLE * length, EVEN_HANDLE * length), f64::INFINITY);
+    let (mut curve, mut off) =
+        (with_handles(ends, EVEN_HANDLE * length, EVEN_HANDLE * length), f64::INFINITY);
     for _ in 0..ROUNDS {
         let (a, b) = sums.handles(points.len(), ends, length);
         curve = with_handles(ends, a, b);

@@ -16,6 +16,11 @@ pub struct Parabola {
 /// A bend is believed when it takes away more than this times the variance that stays: 3 standard errors.
 const BELIEVED: f64 = 9.0;
 
+/// Whether a bend that takes `gain` off the squared residuals of `n` samples, and leaves `left`, is more than noise.
+pub(super) fn is_believed(n: f64, gain: f64, left: f64) -> bool {
+    n >= 5.0 && gain * (n - 3.0) > BELIEVED * left
+}
+
 /// Sums over samples, about the first of them, from which a parabola through them follows.
 #[derive(Clone, Copy, Debug)]
 struct Moments {
@@ -62,7 +67,7 @@ impl Moments {
         let of_line = (self.square - at.hypot2() * n - slope.hypot2() * m2).max(0.0);
         let gain = bend.hypot2() / norm.max(1e-300);
         let left = (of_line - gain).max(0.0);
-        let believed = n >= 5.0 && norm > 1e-9 * m4 && gain * (n - 3.0) > BELIEVED * left;
+        let believed = norm > 1e-9 * m4 && is_believed(n, gain, left);
         let bend = if believed { bend / norm } else { Vec2::ZERO };
         Some(Parabola {
             origin: self.first.0 + mean,
