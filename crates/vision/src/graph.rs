@@ -89,6 +89,8 @@ impl<'a> Skeleton<'a> {
 
 /// Half widths beyond this are all one: no pen has them, px.
 const WIDEST_RADIUS: f64 = 400.0;
+/// Radii are measured this share of one apart.
+const APART: f64 = 3.0;
 
 impl Graph {
     /// Reads the graph of some pixels of a skeleton: whole patches of it.
@@ -194,6 +196,21 @@ impl Reader<'_, '_> {
         to_paper(self.skeleton.ink, cell, WIDEST_RADIUS) - 0.5
     }
 
+    /// The radius at each pixel of a chain: wide ink is as wide a few pixels on, and between two that are measured it is
+    /// taken to change evenly.
+    fn radii(&self, chain: &[Cell]) -> Vec<f64> {
+        let mut radii: Vec<f64> = Vec::with_capacity(chain.len());
+        radii.extend(chain.first().map(|&cell| self.radius(cell)));
+        while radii.len() < chain.len() {
+            let last = radii.len() - 1;
+            let here = radii[last];
+            let step = ((here / APART) as usize).clamp(1, chain.len() - radii.len());
+            let rise = (self.radius(chain[last + step]) - here) / step as f64;
+            radii.extend((1..=step).map(|k| here + rise * k as f64));
+        }
+        radii
+    }
+
     /// Pixels with three neighbours and more, those that touch as one node.
     fn nodes(&mut self, cells: &[Cell]) {
         for &start in cells {
@@ -270,7 +287,7 @@ impl Reader<'_, '_> {
         };
         self.graph.branches.push(Branch {
             points: chain.iter().map(|&i| self.centre(i)).collect(),
-            radii: chain.iter().map(|&i| self.radius(i)).collect(),
+            radii: self.radii(&chain),
             nodes: [from, end],
             ring: false,
         });

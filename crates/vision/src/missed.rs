@@ -1,6 +1,6 @@
 //! How much of the pen's ink no stroke follows.
 
-use tracelight_stroke::{Point, Stroke};
+use tracelight_stroke::{Point, Stroke, Vec2};
 
 use crate::mask::Mask;
 use crate::region::Region;
@@ -11,8 +11,9 @@ const NEAR_PENS: f64 = 1.2;
 /// The same for hair lines, px.
 const LEAST_PX: f64 = 3.0;
 
-/// How closely strokes are followed, px.
+/// How closely strokes are followed, px, and as a share of how far their ink reaches.
 const FLAT_PX: f64 = 1.0;
+const FLAT_SHARE: f64 = 0.1;
 
 /// For each region its pixels, and how many of them lie further from every stroke than the pen reaches.
 pub(crate) fn counts(ink: &Mask, regions: &[&Region], strokes: &[Stroke]) -> Vec<(usize, usize)> {
@@ -20,7 +21,8 @@ pub(crate) fn counts(ink: &Mask, regions: &[&Region], strokes: &[Stroke]) -> Vec
     let mut painted = Mask::empty(ink.width, ink.height);
     for stroke in strokes {
         let near = (NEAR_PENS * stroke.pen.unwrap_or(0.0).max(usual)).max(LEAST_PX);
-        stroke.path.flatten(FLAT_PX).windows(2).for_each(|w| paint(&mut painted, w[0], w[1], near));
+        let flat = FLAT_PX.max(FLAT_SHARE * near);
+        stroke.path.flatten(flat).windows(2).for_each(|w| paint(&mut painted, w[0], w[1], near));
     }
     let count = |region: &&Region| (region.area(), region.area() - region.cells(&painted).count());
     regions.iter().map(count).collect()
@@ -31,35 +33,52 @@ fn paint(mask: &mut Mask, a: Point, b: Point, radius: f64) {
     let rows = |y: f64, last: usize| (y.max(0.0) as usize).min(last);
     let last = mask.height - 1;
     let (top, low) = (a.y.min(b.y) - radius, a.y.max(b.y) + radius);
+    let stadium = Stadium::about(a, b, radius);
     for y in rows(top, last)..=rows(low, last) {
-        if let Some((from, to)) = chord(a, b, radius, y as f64 + 0.5) {
-            let column = |x: f64| (x + 0.5).clamp(0.0, mask.width as f64) as usize;
-            let (from, to) = (column(from), column(to));
-            if to > from {
-                mask.fill(y, from, to);
-            }
+        let (from, to) = stadium.chord(y as f64 + 0.5);
+        let column = |x: f64| (x + 0.5).clamp(0.0, mask.width as f64) as usize;
+        let (from, to) = (column(from), column(to));
+        if to > from {
+            mask.fill(y, from, to);
         }
     }
 }
 
-/// What a level line at height `y` has in common with the stadium of `radius` about the line from `a` to `b`.
-fn chord(a: Point, b: Point, radius: f64, y: f64) -> Option<(f64, f64)> {
-    let disc = |c: Point| {
-        let square = radius * radius - (y - c.y) * (y - c.y);
-        (square >= 0.0).then(|| (c.x - square.sqrt(), c.x + square.sqrt()))
-    };
-    // between the discs: where the two sides, shifted by the radius, are crossed
-    let along = b - a;
-    let length = along.hypot();
-    let side = |sign: f64| {
-        let shift = tracelight_stroke::Vec2::new(-along.y, along.x) * (sign * radius / length.max(1e-9));
-        let (p, q) = (a + shift, b + shift);
-        let share = (y - p.y) / (q.y - p.y);
-        (0.0..=1.0).contains(&share).then_some(p.x + (q.x - p.x) * share)
-    };
-    let sides = [side(1.0), side(-1.0)].into_iter().flatten().map(|x| (x, x));
-    let parts = [disc(a), disc(b)].into_iter().flatten().chain(sides);
-    parts.reduce(|x, y| (x.0.min(y.0), x.1.max(y.1)))
+/// All that is within a radius of a line.
+struct Stadium {
+    ends: [Point; 2],
+    radius_sq: f64,
+    /// One end of either side, and the other from there.
+    sides: [(Point, Vec2); 2],
+}
+
+impl Stadium {
+    fn about(a: Point, b: Point, radius: f64) -> Self {
+        let along = b - a;
+        let across = Vec2::new(-along.y, along.x) * (radius / along.hypot().max(1e-9));
+        Self { ends: [a, b], radius_sq: radius * radius, sides: [(a + across, along), (a - across, along)] }
+    }
+
+    /// What a level line at height `y` has in common with it, from and to; the other way round where it has nothing.
+    fn chord(&self, y: f64) -> (f64, f64) {
+        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+        for end in self.ends {
+            let square = self.radius_sq - (y - end.y) * (y - end.y);
+            if square >= 0.0 {
+                let half = square.sqrt();
+                (from, to) = (from.min(end.x - half), to.max(end.x + half));
+            }
+        }
+        // between the discs: where the two sides are crossed
+        for (at, along) in self.sides {
+            let share = (y - at.y) / along.y;
+            if (0.0..=1.0).contains(&share) {
+                let x = at.x + along.x * share;
+                (from, to) = (from.min(x), to.max(x));
+            }
+        }
+        (from, to)
+    }
 }
 
 #[cfg(test)]
