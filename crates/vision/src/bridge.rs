@@ -134,8 +134,8 @@ fn noise_near(points: &[Point], end: usize) -> f64 {
 pub(crate) fn scatter_px(points: &[Point]) -> f64 {
     // across the line: √20 times the scatter, of which the median is 0.6745
     const TIMES: f64 = 3.016;
-    let third = |w: &[Point]| ((w[3] - w[0]) - (w[2] - w[1]) * 3.0).hypot();
-    median(&points.windows(4).map(third).collect::<Vec<_>>()) / TIMES
+    let third_sq = |w: &[Point]| ((w[3] - w[0]) - (w[2] - w[1]) * 3.0).hypot2();
+    median(&points.windows(4).map(third_sq).collect::<Vec<_>>()).sqrt() / TIMES
 }
 
 /// Whether a place is at least a third as dark as one on the line.

@@ -1,6 +1,6 @@
 //! Branches of the skeleton as lines on the middle of the pen.
 
-use tracelight_stroke::{Parabola, Point};
+use tracelight_stroke::{Parabola, Point, Vec2};
 
 use crate::bridge::{Tip, scatter_px};
 use crate::graph::{Branch, Graph};
@@ -69,22 +69,27 @@ impl Line {
             }
         };
         let whole = (ahead - 0.5).max(0.0) as usize;
-        for s in (1..=whole).map(|k| k as f64).chain([ahead]) {
-            self.end_at(end, tip.beyond(s).0);
-        }
+        let way = (1..=whole).map(|k| k as f64).chain([ahead]).map(|s| tip.beyond(s).0);
+        self.end_with(end, tip.along, way);
     }
 
     /// Carries an end on to `stop`, or back to it.
     pub(crate) fn end_at(&mut self, end: usize, stop: Point) {
-        let along = self.tip(end).along;
+        self.end_with(end, self.tip(end).along, std::iter::once(stop));
+    }
+
+    /// Carries an end, whose direction is `along`, on along a way, or back to where that begins.
+    fn end_with(&mut self, end: usize, along: Vec2, way: impl Iterator<Item = Point>) {
+        let mut way = way.peekable();
+        let Some(&first) = way.peek() else { return };
         if end == 0 {
             self.points.reverse();
         }
-        let beyond = |p: &Point| (*p - stop).dot(along) > -0.25;
+        let beyond = |p: &Point| (*p - first).dot(along) > -0.25;
         while self.points.len() > 1 && self.points.last().is_some_and(beyond) {
             self.points.pop();
         }
-        self.points.push(stop);
+        self.points.extend(way);
         if end == 0 {
             self.points.reverse();
         }

@@ -235,14 +235,17 @@ fn foot<'a>(profile: impl Iterator<Item = &'a f32>, level: f32, reach: usize) ->
     through
 }
 
-/// How far from the first sample the profile falls through `level`, px.
-fn edge<'a>(profile: impl Iterator<Item = &'a f64>, level: f64) -> Option<f64> {
+/// How far from the first sample the profile falls through half of it, px.
+fn edge(profile: impl Iterator<Item = f64>) -> Option<f64> {
     let mut before: Option<f64> = None;
-    for (i, &v) in profile.enumerate() {
+    let mut level = 0.0;
+    for (i, v) in profile.enumerate() {
         match before {
             Some(b) if v < level => return Some((i as f64 - 1.0 + (b - level) / (b - v)) * STEP),
-            _ => before = Some(v),
+            Some(_) => {}
+            None => level = 0.5 * v,
         }
+        before = Some(v);
     }
     None
 }
@@ -253,6 +256,5 @@ fn edge<'a>(profile: impl Iterator<Item = &'a f64>, level: f64) -> Option<f64> {
 pub(crate) fn pen_end(dark: &Plane<u8>, way: impl Fn(f64) -> Point, width: f64, reach: f64) -> Option<f64> {
     let steps = (reach / STEP).ceil() as usize;
     let level = |p: Point| if dark.clamp(p) == p { dark.at(p) } else { 0.0 };
-    let profile: Vec<f64> = (0..=steps).map(|k| level(way(k as f64 * STEP))).collect();
-    Some(edge(profile.iter(), 0.5 * profile[0])? - 0.5 * width)
+    Some(edge((0..=steps).map(|k| level(way(k as f64 * STEP))))? - 0.5 * width)
 }
