@@ -5,13 +5,19 @@
 //! every kink, so neither is made up and none is rounded away.
 
 mod arc;
+mod bend;
 mod chain;
 mod circle;
 mod corner;
 mod cubic;
+mod noise;
+mod plan;
+mod round;
 mod samples;
 mod section;
+mod skyline;
 mod straight;
+mod tangent;
 mod window;
 
 use kurbo::Point;
