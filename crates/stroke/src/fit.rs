@@ -1,18 +1,24 @@
 //! From the points of a tracer to a path that a head can follow.
 //!
-//! Corners are found first and put where their sides meet; between them, straight runs become lines and the rest
-//! an arc or few cubics, each passing into the next without a break of direction. A head stops at every corner and brakes at
-//! every kink, so neither is made up and none is rounded away.
+//! Corners are found first and put where their sides meet; between them, straight runs become lines, round ones arcs
+//! that touch them, and the rest few cubics, each passing into the next without a break of direction. A head stops at
+//! every corner and brakes at every kink, so neither is made up and none is rounded away.
 
 mod arc;
+mod bend;
 mod chain;
 mod circle;
 mod corner;
 mod cubic;
 mod flank;
+mod noise;
+mod plan;
+mod round;
 mod samples;
 mod section;
+mod skyline;
 mod straight;
+mod tangent;
 mod window;
 
 use kurbo::Point;

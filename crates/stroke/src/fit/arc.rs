@@ -33,7 +33,7 @@ pub(super) fn through(row: &[Point], tolerance: f64) -> Option<Element> {
     let centre = middle + normal * (0.5 * weighted / weights.max(1e-300));
     let radius = centre.distance(*from);
     let on = points.iter().all(|p| (p.distance(centre) - radius).abs() <= tolerance);
-    let sweep = swept(row, centre).filter(|_| on)?;
+    let sweep = if on { swept(row, centre)? } else { return None };
     Some(Element::Arc { centre, sweep })
 }
 

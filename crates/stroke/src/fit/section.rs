@@ -1,12 +1,16 @@
-//! A stretch between corners as straight lines and cubics that pass smoothly into each other.
+//! A stretch between corners as straight lines, arcs and cubics that pass smoothly into each other.
 
 use kurbo::{CubicBez, Point, Vec2};
 
 use super::FitOptions;
 use super::arc;
+use super::bend::{Bends, is_near};
 use super::chain;
 use super::cubic::Ends;
-use super::straight::{Run, Straightness, direction};
+use super::plan::Shut;
+use super::round::Circle;
+use super::straight::{Run, Straightness};
+use super::tangent::Part;
 use crate::Element;
 
 /// Points between two straight runs, at least: a break of direction gets this much room to become a bend.
@@ -14,21 +18,22 @@ const ROOM: usize = 4;
 
 /// A line of the section, with the indices of the points it replaces.
 #[derive(Clone, Copy, Debug)]
-struct Line {
-    first: usize,
-    last: usize,
-    from: Point,
-    to: Point,
+pub(super) struct Line {
+    pub(super) first: usize,
+    pub(super) last: usize,
+    pub(super) from: Point,
+    pub(super) to: Point,
 }
 
 /// The section through `row`, from its first point to its last.
 pub(super) fn open(row: &[Point], options: &FitOptions) -> Vec<Element> {
     let lines = lines(row, options);
-    if let Some(arc) = arc::through(row, 0.7 * options.tolerance).filter(|_| lines.is_empty()) {
-        return vec![arc];
+    if let Some(whole) = whole(row, options).filter(|_| lines.is_empty()) {
+        return vec![whole];
     }
-    let leaving = match lines.first() {
-        Some(line) if line.first == 0 => direction(line.from, line.to),
+    let parts = Bends { row, lines: &lines, shut: Shut::Open(tip(row, options)), options }.parts();
+    let leaving = match parts.first() {
+        Some(part) if part.first == 0 => part.leaving(),
         _ => chain::leaving(row, 0.2 * options.tolerance),
     };
     let back: Vec<Point> = row.iter().rev().copied().collect();
@@ -38,7 +43,28 @@ pub(super) fn open(row: &[Point], options: &FitOptions) -> Vec<Element> {
         to: row[row.len() - 1],
         arriving: -chain::leaving(&back, 0.2 * options.tolerance),
     };
-    joined(row, &lines, &ends, options)
+    joined(row, &parts, &ends, options)
+}
+
+/// Points up to so many pen's half-widths from an end may show the pen's tip and not the line.
+const TIP: f64 = 3.0;
+
+/// How many points at an end of a row may show the tip of a pen: not more than one in six.
+fn tip(row: &[Point], options: &FitOptions) -> usize {
+    let length: f64 = row.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let step = length / (row.len() - 1).max(1) as f64;
+    (TIP * options.reach / step).ceil().clamp(1.0, 1.0 + row.len() as f64 / 6.0) as usize
+}
+
+/// One arc from end to end. Its ends stay where they are, however far from the circle of the others: then it may be off
+/// by more.
+fn whole(row: &[Point], options: &FitOptions) -> Option<Element> {
+    let (arc, tip) = (arc::through(row, options.tolerance)?, tip(row, options));
+    let near = arc::through(row, 0.7 * options.tolerance).is_some();
+    let Element::Arc { centre, sweep } = arc else { return None };
+    let circle = Circle { centre, radius: centre.distance(row[0]).copysign(sweep) };
+    let round = |tip: usize| is_near(&row[tip..row.len() - tip], &circle, options);
+    (near || round(1) || round(tip)).then_some(arc)
 }
 
 /// The closed line through the ring `row` (its first point is not repeated), with its start point; smooth at the
@@ -49,17 +75,18 @@ pub(super) fn ring(row: &[Point], tangent: Vec2, options: &FitOptions) -> (Point
     row.rotate_left(seam.unwrap_or(0));
     row.push(row[0]);
     let last = row.len() - 1;
-    let mut lines = lines(&row, options);
+    let lines = lines(&row, options);
+    let parts = Bends { row: &row, lines: &lines, shut: Shut::Ring, options }.parts();
     let (mut at, mut along) = (row[0], tangent);
-    if let Some(line) = lines.last_mut().filter(|l| seam.is_some() && l.last == last) {
-        (at, along) = (line.to, direction(line.from, line.to));
+    if let Some(part) = parts.last().filter(|p| p.linked || seam.is_some() && p.last == last) {
+        (at, along) = (part.to, part.arriving());
     } else if seam.is_some() {
         along = chain::leaving(&row, 0.2 * options.tolerance);
     }
     row[0] = at;
     row[last] = at;
     let ends = Ends { from: at, leaving: along, to: at, arriving: along };
-    (at, joined(&row, &lines, &ends, options))
+    (at, joined(&row, &parts, &ends, options))
 }
 
 /// The straight lines of a row, carried through to its ends where the points between allow it.
@@ -93,20 +120,20 @@ fn apart(mut runs: Vec<Run>) -> Vec<Run> {
     runs
 }
 
-/// Lines and what bends between them.
-fn joined(row: &[Point], lines: &[Line], ends: &Ends, options: &FitOptions) -> Vec<Element> {
+/// Lines and arcs, and cubics between those that do not touch.
+fn joined(row: &[Point], parts: &[Part], ends: &Ends, options: &FitOptions) -> Vec<Element> {
     let mut elements = Vec::new();
     let (mut at, mut from, mut leaving) = (0, ends.from, ends.leaving);
-    for line in lines {
-        let along = direction(line.from, line.to);
-        if line.first > at {
-            let bend = Ends { from, leaving, to: line.from, arriving: along };
-            elements.extend(bent(&row[at + 1..line.first], &bend, options));
+    let mut touches = parts.last().is_some_and(|p| p.linked);
+    for part in parts {
+        if part.first > at && !touches {
+            let bend = Ends { from, leaving, to: part.from, arriving: part.leaving() };
+            elements.extend(bent(&row[at + 1..part.first], &bend, options));
         }
-        elements.push(Element::Line { to: line.to });
-        (at, from, leaving) = (line.last, line.to, along);
+        elements.push(part.element());
+        (at, from, leaving, touches) = (part.last, part.to, part.arriving(), part.linked);
     }
-    if at + 1 < row.len() {
+    if at + 1 < row.len() && !touches {
         let bend = Ends { from, leaving, to: ends.to, arriving: ends.arriving };
         elements.extend(bent(&row[at + 1..row.len() - 1], &bend, options));
     }
