@@ -7,7 +7,7 @@ use tracelight_stroke::Drawing;
 
 use crate::look::Look;
 use crate::warp::Warp;
-use crate::{Degradation, Ink, Kind, Page, Picture, Random};
+use crate::{Degradation, Figure, Ink, Kind, Page, Picture, Random};
 
 /// Furthest a page is seen aside, degrees.
 const MOST_TILT_DEG: f64 = 5.0;
@@ -123,7 +123,7 @@ impl Case {
         let look = Look::of(self.degradation, random, self.size, &page);
         let tilt = random.between(2.0, MOST_TILT_DEG).to_radians() * random.sign();
         let warp = self.degradation.is_tilted().then(|| Warp::new(self.size, random.angle(), tilt));
-        let ink: Vec<&Ink> = page.figures.iter().flat_map(|f| &f.ink).collect();
+        let ink: Vec<Vec<&Ink>> = page.figures.iter().flat_map(Figure::by_stroke).collect();
         let strokes: Vec<_> = page.figures.iter().flat_map(|f| f.strokes.clone()).collect();
         Picture {
             width: self.size.width,

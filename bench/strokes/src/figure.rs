@@ -70,6 +70,14 @@ impl Figure {
         Self { strokes: outlines.iter().map(stroke).collect(), ink: vec![Ink::Fill(outlines)] }
     }
 
+    /// The ink, what certainly belongs to one stroke together.
+    pub(crate) fn by_stroke(&self) -> Vec<Vec<&Ink>> {
+        match self.ink.len() == self.strokes.len() {
+            true => self.ink.iter().map(|ink| vec![ink]).collect(),
+            false => vec![self.ink.iter().collect()],
+        }
+    }
+
     /// Both.
     pub(crate) fn and(mut self, other: Self) -> Self {
         self.strokes.extend(other.strokes);

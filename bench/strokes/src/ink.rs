@@ -43,7 +43,8 @@ impl Plane {
         }
     }
 
-    fn at_least(&mut self, other: &Self) {
+    /// Makes each value no less than the other plane's.
+    pub(crate) fn at_least(&mut self, other: &Self) {
         self.values.iter_mut().zip(&other.values).for_each(|(v, o)| *v = v.max(*o));
     }
 }

@@ -47,6 +47,8 @@ pub enum Degradation {
     Webcam,
     /// Shadow, perspective, JPEG, noise.
     Photo,
+    /// A pen and a pencil on one sheet: some figures at 30 to 60 % of the others' contrast; noise.
+    Inks,
 }
 
 impl Degradation {
@@ -86,6 +88,8 @@ pub(crate) struct Look {
     jpeg: Option<u8>,
     rules: Option<f64>,
     dust: usize,
+    /// What the second ink has of the first one's darkness.
+    second: Option<f64>,
 }
 
 /// The share of the light that arrives at a place.
@@ -119,6 +123,7 @@ impl Look {
             jpeg: None,
             rules: None,
             dust: 0,
+            second: None,
         }
     }
 
@@ -158,6 +163,9 @@ impl Look {
                 let noise = random.between(1.0, 4.0);
                 Self { light: shadow(random), noise, jpeg: Some(random.whole(60, 90) as u8), ..look }
             }
+            Degradation::Inks => {
+                Self { second: Some(random.between(0.3, 0.6)), noise: random.between(1.0, 3.0), ..look }
+            }
         }
     }
 
@@ -166,12 +174,11 @@ impl Look {
         &self,
         random: &mut Random,
         size: Size,
-        ink: &[&Ink],
+        ink: &[Vec<&Ink>],
         warp: Option<&Warp>,
     ) -> Vec<u8> {
         let (width, height) = (size.width, size.height);
-        let mut covered = Plane::filled(width, height, 0.0);
-        ink.iter().for_each(|ink| draw(&mut covered, ink, warp));
+        let mut covered = self.covered(random, size, ink, warp);
         (0..self.dust).for_each(|_| {
             let at = Point::new(random.between(0.0, width as f64), random.between(0.0, height as f64));
             dot(&mut covered, at, 0.5 * random.between(1.0, 3.0));
@@ -189,6 +196,21 @@ impl Look {
             Some(quality) => through_jpeg(levels, width, height, quality),
             None => levels,
         }
+    }
+
+    /// How much of the first ink's darkness each pixel has from the ink, what one stroke is of together.
+    fn covered(&self, random: &mut Random, size: Size, ink: &[Vec<&Ink>], warp: Option<&Warp>) -> Plane {
+        let mut inks = [(); 2].map(|()| Plane::filled(size.width, size.height, 0.0));
+        // by turns and not by chance: a picture with two strokes has both inks
+        let first = self.second.map_or(0, |_| random.whole(0, 1));
+        for (number, together) in ink.iter().enumerate() {
+            let which = if self.second.is_some() { (first + number) % 2 } else { 0 };
+            together.iter().for_each(|ink| draw(&mut inks[which], ink, warp));
+        }
+        let [mut covered, mut pale] = inks;
+        pale.values.iter_mut().for_each(|v| *v *= self.second.unwrap_or(0.0) as f32);
+        covered.at_least(&pale);
+        covered
     }
 
     /// Paper, rules and ink by their coverage, red, green and blue rounded and then made grey as the host does it.

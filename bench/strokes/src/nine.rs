@@ -14,7 +14,7 @@ pub fn picture(size: Size, webcam: bool, seed: u64) -> Picture {
     let figure = figure(size);
     let look = if webcam { Look::webcam(size, 255.0, 20.0) } else { Look::clean(255.0, 20.0) };
     let ink: Vec<&Ink> = figure.ink.iter().collect();
-    let levels = look.levels(&mut Random::new(u128::from(seed)), size, &ink, None);
+    let levels = look.levels(&mut Random::new(u128::from(seed)), size, &[ink], None);
     Picture {
         width: size.width,
         height: size.height,
