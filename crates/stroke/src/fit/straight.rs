@@ -64,12 +64,23 @@ impl<'a> Straightness<'a> {
         (Run { first: i, last: j, at: self.points[0] + mean, direction }, across(a, b, c).sqrt())
     }
 
-    /// Straight runs that are not just flat places of a curve, in order, none overlapping.
+    /// Straight runs that are not just flat places of a curve, in order, none overlapping: the longest first, then the
+    /// longest of what it leaves on either side, and so on.
     pub(super) fn runs(&self) -> Vec<Run> {
+        let ends = self.ends();
+        let is_long = |(i, &end): (usize, &usize)| self.points[i].distance(self.points[end]) >= self.least;
+        if !ends.iter().enumerate().any(is_long) {
+            return Vec::new();
+        }
+        let reaches = Longest::of(ends);
         let mut found = Vec::new();
-        let mut spans = vec![(0, self.points.len().saturating_sub(1))];
+        let mut spans = vec![(0, self.points.len() - 1)];
         while let Some((from, to)) = spans.pop() {
-            let Some(run) = self.longest(from, to) else { continue };
+            let (first, last) = reaches.within(from, to);
+            let run = self.trimmed(self.line(first, last).0);
+            if self.length(&run) < self.least {
+                continue;
+            }
             spans.extend([(from, run.first), (run.last, to)].into_iter().filter(|(a, b)| b > a));
             if !self.bends_on(&run) {
                 found.push(run);
@@ -79,24 +90,18 @@ impl<'a> Straightness<'a> {
         found
     }
 
-    /// The longest straight run between two points of the row.
-    fn longest(&self, from: usize, to: usize) -> Option<Run> {
-        let mut best: Option<Run> = None;
-        let (mut j, mut i) = (from, from);
-        while i < to {
-            j = j.max(i);
-            while j < to && self.straight(i, j + 1) {
-                j += 1;
+    /// For each point the last one up to which the row from it is straight; they never go back.
+    fn ends(&self) -> Vec<usize> {
+        let last = self.points.len().saturating_sub(1);
+        let mut end = 0;
+        let reached = |i: usize| {
+            end = end.max(i);
+            while end < last && self.straight(i, end + 1) {
+                end += 1;
             }
-            if best.is_none_or(|b| j - i > b.last - b.first) {
-                best = Some(self.line(i, j).0);
-            }
-            if j == to {
-                break;
-            }
-            i += 1;
-        }
-        best.map(|b| self.trimmed(b)).filter(|b| self.length(b) >= self.least)
+            end
+        };
+        (0..self.points.len()).map(reached).collect()
     }
 
     fn length(&self, run: &Run) -> f64 {
@@ -140,6 +145,52 @@ impl<'a> Straightness<'a> {
     }
 }
 
+/// Of runs that start at each point, and end ever later, the longest in any span: by a tree of the best of two, the best
+/// of those two and so on, so that a row of many short sides costs little more than a curve.
+struct Longest {
+    ends: Vec<usize>,
+    /// Starts of the best runs: the points themselves from `ends.len()` on, before them the better of places 2k and 2k+1.
+    best: Vec<usize>,
+}
+
+impl Longest {
+    fn of(ends: Vec<usize>) -> Self {
+        let n = ends.len();
+        let mut best: Vec<usize> = (0..n).chain(0..n).collect();
+        for k in (1..n).rev() {
+            best[k] = better(&ends, best[2 * k], best[2 * k + 1]);
+        }
+        Self { ends, best }
+    }
+
+    /// First and last point of the longest run between two points, `from` before `to`.
+    fn within(&self, from: usize, to: usize) -> (usize, usize) {
+        // from here on a run is cut off by the span's end, and the first of them is the longest
+        let cut = self.ends.partition_point(|&end| end < to).max(from);
+        let (mut low, mut high) = (from + self.ends.len(), cut.min(to) + self.ends.len());
+        let mut first = cut.min(to);
+        let longer =
+            |a: usize, b: usize| if self.ends[b].min(to) - b > self.ends[a].min(to) - a { b } else { a };
+        while low < high {
+            if low % 2 == 1 {
+                first = longer(first, self.best[low]);
+                low += 1;
+            }
+            if high % 2 == 1 {
+                high -= 1;
+                first = longer(first, self.best[high]);
+            }
+            (low, high) = (low / 2, high / 2);
+        }
+        (first, self.ends[first].min(to))
+    }
+}
+
+/// Which of two starts has the longer run.
+fn better(ends: &[usize], a: usize, b: usize) -> usize {
+    if ends[b] - b > ends[a] - a { b } else { a }
+}
+
 /// Half the difference of the moments along and across.
 fn root(a: f64, b: f64, c: f64) -> f64 {
     (0.25 * (a - c) * (a - c) + b * b).sqrt()
@@ -175,4 +226,27 @@ fn cubic_rms(points: &[(f64, f64)]) -> f64 {
 /// Direction from one point to another.
 pub(super) fn direction(from: Point, to: Point) -> Vec2 {
     unit(to - from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_run_of_any_span_is_found() {
+        let mut ends = vec![0usize];
+        for i in 1..97 {
+            let rise = [0, 3, 0, 1, 7, 0, 0, 2][(i * 5 + i / 9) % 8];
+            ends.push((ends[i - 1] + rise).clamp(i, 96));
+        }
+        let runs = Longest::of(ends.clone());
+        for from in 0..96 {
+            for to in from + 1..97 {
+                let (first, last) = runs.within(from, to);
+                let longest = (from..to).map(|i| ends[i].min(to) - i).max();
+                assert_eq!(Some(last - first), longest, "{from} to {to}: {first} to {last}");
+                assert!(from <= first && last <= to && last <= ends[first]);
+            }
+        }
+    }
 }
