@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use crate::light::{Paper, percentile};
 use crate::mask::Mask;
+use crate::paler::with_paler;
 use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
 use crate::quality::clipped_percent;
@@ -26,6 +27,9 @@ pub(crate) struct Ink {
     pub(crate) threshold: u8,
     /// Ruled paper's lines are paler than this.
     above_rules: u8,
+    /// How much darker the ink is than the paper, levels; `None` where all that is paler is paper: the threshold was
+    /// given, or there are shadows.
+    strength: Option<f64>,
     /// Pixels averaged into one, either way.
     pub(crate) reduction: usize,
     pub(crate) quality: Quality,
@@ -73,15 +77,23 @@ impl Ink {
             light_on_dark,
         };
         quality.gate(threshold_percent.is_some())?;
-        Ok(Self { darkness, threshold: split.threshold, above_rules, reduction, quality })
+        let is_alone = threshold_percent.is_some() || paper.has_shadows();
+        let strength = (!is_alone).then_some(split.ink - split.paper);
+        Ok(Self { darkness, threshold: split.threshold, above_rules, strength, reduction, quality })
     }
 
     /// Where there is ink. Where some of it leads from border to border, the paper is ruled perhaps: then only what is
-    /// darker than rules.
+    /// darker than rules. Elsewhere there may be a second, paler ink.
     pub(crate) fn mask(&self) -> Mask {
         let mask = over(&self.darkness, self.threshold);
-        let ruled = self.above_rules > self.threshold && regions(&mask).iter().any(|r| r.spans(&mask));
-        if ruled { over(&self.darkness, self.above_rules) } else { mask }
+        if self.above_rules > self.threshold && regions(&mask).iter().any(|r| r.spans(&mask)) {
+            return over(&self.darkness, self.above_rules);
+        }
+        let edge_px = self.quality.edge_px.map(|px| px / self.reduction as f64);
+        match self.strength {
+            Some(strength) => with_paler(&self.darkness, mask, strength, edge_px),
+            None => mask,
+        }
     }
 }
 

@@ -36,6 +36,7 @@ mod marks;
 mod mask;
 mod missed;
 mod outline;
+mod paler;
 mod parts;
 mod plane;
 mod polarity;

@@ -56,6 +56,11 @@ impl Paper {
         Self { tile, levels, shaded }
     }
 
+    /// Whether shadows with hard edges fall on it: what is left of those edges looks like a pale line.
+    pub(crate) fn has_shadows(&self) -> bool {
+        self.shaded.is_some()
+    }
+
     /// Darkest and brightest paper, levels.
     pub(crate) fn range(&self) -> (f64, f64) {
         let fold = |f: fn(f64, f64) -> f64, from| self.levels.values.iter().copied().fold(from, f);

@@ -57,6 +57,14 @@ impl Region {
         rows || columns
     }
 
+    /// Whether it touches a border of its image.
+    pub(crate) fn is_at_border(&self, mask: &Mask) -> bool {
+        let at_border = |run: &Run| {
+            run.y == 0 || run.y as usize + 1 == mask.height || run.from == 0 || run.to as usize == mask.width
+        };
+        self.runs.iter().any(at_border)
+    }
+
     /// Whether there is ink of `mask` at most `reach` px beyond its bounding box.
     pub(crate) fn is_near(&self, mask: &Mask, reach: usize) -> bool {
         let from = self.runs.iter().map(|run| run.from as usize).min().unwrap_or(0);
