@@ -25,14 +25,19 @@ pub(super) fn weight(node: Node, largest: f64) -> u64 {
     if cubics.is_finite() { (2.0 * cubics) as u64 } else { u64::MAX }
 }
 
-/// Of all arcs of a path. Where they begin is not followed up: no point is further out than all numbers before it
+/// More cubics than this no arc of a drawing becomes: a radius of 1e17. Whoever resolves the SVG takes them from the front
+/// of their row one by one, so that their number counts twice.
+const MOST_OF_ARC: f64 = 1000.0;
+
+/// Of all arcs of a path, endless with one that becomes too many. Where they begin is not followed up: no point is further out than all numbers before it
 /// together, and a radius that is too small for its arc's ends is as large as they are apart.
 fn of_path(d: &str) -> f64 {
     let (mut reach, mut sum) = (0.0, 0.0);
     for segment in PathParser::from(d).map_while(Result::ok) {
         reach += extent(&segment);
         if let PathSegment::EllipticalArc { rx, ry, .. } = segment {
-            sum += cubics(rx.abs().max(ry.abs()).max(2.0 * reach));
+            let of_arc = cubics(rx.abs().max(ry.abs()).max(2.0 * reach));
+            sum += if of_arc > MOST_OF_ARC { f64::INFINITY } else { of_arc };
         }
     }
     sum

@@ -311,6 +311,8 @@ fn a_vast_arc_is_refused_before_it_swells() {
         "<path stroke='red' d='M0 0A1e90 1e90 0 0 1 9 9'/>".to_owned(),
         // a radius too small for the ends is as large as they are apart
         "<path stroke='red' d='M0 0a1 1 0 0 1 1e90 9'/>".to_owned(),
+        // not so many that they would not fit, but moved once for each of the others
+        "<path stroke='red' d='M0 0A9 9 0 0 1 1e30 9'/>".to_owned(),
         "<circle r='3e38'/>".repeat(100),
         "<ellipse rx='1e38mm' ry='1'/>".repeat(100),
         format!("<g font-size='1e38'>{}</g>", "<circle r='1em'/>".repeat(100)),
