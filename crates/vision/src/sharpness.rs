@@ -1,5 +1,6 @@
 //! How sharp a picture's edges are.
 
+use crate::ink::word_over;
 use crate::plane::Plane;
 use crate::ridge::median;
 
@@ -29,11 +30,11 @@ pub(crate) fn edge_px(darkness: &Plane<u8>, step: Step) -> Option<f64> {
     let (w, h) = (darkness.width, darkness.height);
     let rows = lines(h).map(|y| Lane { plane: darkness, first: y * w, along: 1, across: w, length: w });
     let columns = lines(w).map(|x| Lane { plane: darkness, first: x, along: w, across: 1, length: h });
-    let mut widths = Vec::new();
+    let (mut widths, mut levels) = (Vec::new(), Vec::new());
     for side in [rows.collect::<Vec<_>>(), columns.collect()] {
         let from = widths.len();
         for lane in side {
-            lane.measure(step, &mut widths);
+            lane.measure(step, &mut levels, &mut widths);
             if widths.len() > from + ENOUGH {
                 break;
             }
@@ -66,20 +67,28 @@ impl Lane<'_> {
         self.plane.values[self.first + k * self.along]
     }
 
-    /// Adds the widths of the edges along it.
-    fn measure(&self, step: Step, widths: &mut Vec<f64>) {
-        let mut before = self.at(0) > step.threshold;
-        for k in 1..self.length {
-            let here = self.at(k) > step.threshold;
-            if here != before {
+    /// Adds the widths of the edges along it; `levels` is room for its levels.
+    fn measure(&self, step: Step, levels: &mut Vec<u8>, widths: &mut Vec<f64>) {
+        levels.clear();
+        levels.extend(self.plane.values[self.first..].iter().step_by(self.along).take(self.length));
+        let mut before = levels[0] > step.threshold;
+        for (block, levels) in levels.chunks(64).enumerate() {
+            let ink = word_over(levels, step.threshold);
+            // pixels that differ from the one before them
+            let mut turns = ink ^ (ink << 1 | u64::from(before));
+            turns &= u64::MAX >> (64 - levels.len());
+            before = ink >> (levels.len() - 1) & 1 != 0;
+            while turns != 0 {
+                let bit = turns.trailing_zeros() as usize;
+                turns &= turns - 1;
+                let k = 64 * block + bit;
                 // from the paper to the ink
-                let (paper, ink) = if here { (k - 1, k) } else { (k, k - 1) };
+                let (paper, ink) = if ink >> bit & 1 != 0 { (k - 1, k) } else { (k, k - 1) };
                 let cosine = self.cosine(paper, ink);
                 if cosine > std::f64::consts::FRAC_1_SQRT_2 {
                     widths.extend(self.edge(paper, ink, step).map(|width| width * cosine));
                 }
             }
-            before = here;
         }
     }
 
