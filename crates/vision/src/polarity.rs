@@ -6,6 +6,11 @@ use crate::plane::Plane;
 
 /// A fall and a rise of brightness count from this share of the picture's range on.
 const STEP: f64 = 0.22;
+/// Less than this share of the pixels may be dust, and does not count in the range; unless that leaves less than so many
+/// levels: then there is hardly any ink, and only less than the other share does not.
+const DUST: f64 = 0.0005;
+const LEAST_RANGE: f64 = 32.0;
+const SPECK: f64 = 0.000_05;
 /// And from this many times the noise's deviation on: along a row of thousands of pixels it spans eight.
 const NOISE: f64 = 9.0;
 /// Lines are thinner than this share of the picture's shorter side.
@@ -27,7 +32,11 @@ const SHAPES: i64 = 8;
 /// lighter: lines are thin, and there is one more of them than of the gaps between. The edges of shapes, of shadows and
 /// of the paper itself are neither. Where that says nothing, the picture's border is paper.
 pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256]) -> bool {
-    let (low, high) = (percentile(levels, 0.0005), percentile(levels, 0.9995));
+    let range = |share: f64| (percentile(levels, share), percentile(levels, 1.0 - share));
+    let (low, high) = match range(DUST) {
+        (low, high) if high - low < LEAST_RANGE => range(SPECK),
+        range => range,
+    };
     let least = NOISE * noise(image, SAMPLED / 2);
     let runs = Runs::of(image, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
     if runs.are_sure() {
@@ -188,6 +197,14 @@ mod tests {
             false,
             |x, y| if (60..200).contains(&x) && (40..200).contains(&y) && x % 9 < 6 { 30 } else { 230 },
         );
+    }
+
+    #[test]
+    fn a_short_line_is_not_lost_in_what_jpeg_leaves_about_it() {
+        let line = |x: usize, y: usize| (150..165).contains(&x) && (120..122).contains(&y);
+        let about =
+            |x: usize, y: usize| (144..176).contains(&x) && (112..136).contains(&y) && (x + y) % 4 == 0;
+        check(false, |x, y| if line(x, y) { 20 } else { 236 + 8 * u8::from(about(x, y)) });
     }
 
     #[test]
