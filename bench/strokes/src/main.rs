@@ -16,7 +16,7 @@ use tracelight_bench_strokes::verdict::judge;
 use tracelight_bench_strokes::{Case, Degradation, Kind, Picture, Size, nine, show};
 use tracelight_formats::{FormatError, Sheet, json};
 use tracelight_stroke::{Drawing, Score, score};
-use tracelight_vision::{Grey, Options, VisionError, trace};
+use tracelight_vision::{Grey, Mode, Options, VisionError, trace};
 
 /// Truth is written to this, px.
 const TRUTH_PX: f64 = 0.004;
@@ -85,6 +85,9 @@ enum Command {
         /// Times each is traced
         #[arg(long, default_value_t = 15)]
         repeat: usize,
+        /// Follow the edges of all ink, and no lines
+        #[arg(long)]
+        outlines: bool,
     },
 }
 
@@ -149,7 +152,10 @@ fn run(command: Command) -> Result<(), Failure> {
         }
         Command::Nine { dump } => nine_drawing(dump.as_deref()),
         Command::Trace { files, out } => files.iter().try_for_each(|file| trace_file(file, &out)),
-        Command::Time { files, repeat } => files.iter().try_for_each(|file| time(file, repeat)),
+        Command::Time { files, repeat, outlines } => {
+            let mode = if outlines { Mode::Outline } else { Mode::Auto };
+            files.iter().try_for_each(|file| time(file, repeat, mode))
+        }
     }
 }
 
@@ -310,13 +316,14 @@ fn nine_drawing(dump: Option<&Path>) -> Result<(), Failure> {
     Ok(())
 }
 
-fn time(file: &Path, repeat: usize) -> Result<(), Failure> {
+fn time(file: &Path, repeat: usize, mode: Mode) -> Result<(), Failure> {
+    let options = Options { mode, ..Options::default() };
     let grey = read_grey(file)?;
     let refused = |e| Failure::Trace(file.to_owned(), e);
     let mut strokes = 0;
     let mut once = || {
         let started = Instant::now();
-        strokes = trace(&grey, &Options::default()).map_err(refused)?.strokes.strokes.len();
+        strokes = trace(&grey, &options).map_err(refused)?.strokes.strokes.len();
         Ok(1e3 * started.elapsed().as_secs_f64())
     };
     // the first call warms caches and is dropped

@@ -35,11 +35,12 @@ pub(crate) fn with_paler(dark: &Plane<u8>, mut ink: Mask, strength: f64, edge_px
     let near = ink.clone().dilated_by(reach);
     let Some(threshold) = threshold(dark, &near, strength) else { return ink };
     let pale = over(dark, threshold);
-    // from border to border lead ruled paper's lines and the edges of shadows
-    if regions(&pale).iter().any(|region| region.spans(&pale)) {
+    let mut drawn = pale.clone().without(&near);
+    // from border to border lead ruled paper's lines and the edges of shadows, unless the first ink does itself
+    let leads = |mask: &Mask| regions(mask).iter().any(|region| region.spans(mask));
+    if leads(if leads(&ink) { &drawn } else { &pale }) {
         return ink;
     }
-    let mut drawn = pale.clone().without(&near);
     let solid = drawn.clone().eroded(dark.width.min(dark.height) / SOLID_SHARE);
     regions(&drawn).iter().filter(|r| !is_drawn(r, &solid)).for_each(|region| region.erase_from(&mut drawn));
     // up to the first ink's own edge, through what its blur hides
