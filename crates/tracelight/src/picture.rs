@@ -1,8 +1,11 @@
 //! Bytes of a picture file to something that can be traced.
 
+use std::cell::Cell;
 use std::fmt::Display;
 use std::io::{Cursor, Read};
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::path::Path;
+use std::sync::Once;
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
 use tracelight_formats::{FormatError, Reading, Sheet, csv, dxf, json, svg};
@@ -82,7 +85,7 @@ pub(crate) fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
         Kind::Dxf => dxf::read(bytes).map(Source::Strokes).map_err(|e| malformed(&e)),
         Kind::Json => json::read(bytes).map(|t| whole(t.sheet)).map_err(|e| malformed(&e)),
         Kind::Csv => csv::read(bytes).map(|d| whole(sheet_about(&d))).map_err(|e| malformed(&e)),
-        Kind::Image => decode_image(path, bytes).map(Source::Pixels),
+        Kind::Image => image(path, bytes).map(Source::Pixels),
     }
 }
 
@@ -144,6 +147,13 @@ fn is_dxf(bytes: &[u8], head: &str) -> bool {
     ascii || bytes.starts_with(b"AutoCAD Binary DXF") || bytes.starts_with(b"AC10")
 }
 
+fn image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
+    decoded_quietly(|| decode_image(path, bytes)).unwrap_or_else(|| {
+        let why = "its decoder gave up on it; save it again or give another file";
+        Err(Failure::usage("malformed", format!("{path} is broken: {why}")))
+    })
+}
+
 fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
     let not_a_picture = || {
         let known = "PNG, JPEG, WebP, BMP, GIF, PNM, TIFF, SVG, DXF, JSON or CSV";
@@ -187,6 +197,30 @@ fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
         image.apply_orientation(orientation);
     }
     pixels(path, image)
+}
+
+thread_local! {
+    /// Whether a decoder is at work on this thread.
+    static DECODING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// What a decoder answers; `None` where it panics, which the one for JPEG does on some broken files (zune-image's issue
+/// 362). It works on nothing but the bytes it was given, so nothing is left half changed, and the user need not read where
+/// in it that was.
+fn decoded_quietly<T>(decode: impl FnOnce() -> T) -> Option<T> {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let told = take_hook();
+        set_hook(Box::new(move |panic| {
+            if !DECODING.get() {
+                told(panic);
+            }
+        }));
+    });
+    DECODING.set(true);
+    let answer = catch_unwind(AssertUnwindSafe(decode));
+    DECODING.set(false);
+    answer.ok()
 }
 
 /// What a decoder says, cut off where it goes on to repeat the file.

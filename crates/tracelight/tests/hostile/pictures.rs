@@ -77,6 +77,7 @@ pub(crate) fn malformed() -> Vec<File> {
         file("giant.tif", tiff_of(1 << 31, 1 << 31)),
         file("lost.tif", b"II*\0\xf0\xff\xff\xff".to_vec()),
         file("giant.jpg", jpeg_of(65_500, 65_500)),
+        file("panicking.jpg", include_bytes!("../../../../fuzz/found/picture/panicking_decoder.jpg")),
     ]
 }
 
