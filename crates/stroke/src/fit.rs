@@ -65,6 +65,8 @@ const LEAST_SAMPLES: usize = 8;
 /// it has one. Between corners neighbouring elements share their direction, at the seam of a closed path too.
 /// Cubics after Schneider (1990), corners and lines as the modules here describe.
 pub fn fit(points: &[Point], closed: bool, options: &FitOptions) -> Option<Path> {
+    // a tolerance that is negative or no number is none
+    let options = &FitOptions { tolerance: options.tolerance.max(0.0), ..*options };
     let samples = Samples::of(points, closed, options.step())?;
     let as_lines = || {
         let few = simplify(&samples.points, samples.closed, options.tolerance);

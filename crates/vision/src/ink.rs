@@ -152,14 +152,19 @@ pub(crate) fn histogram<'a>(levels: impl Iterator<Item = &'a [u8]>) -> [u32; 256
 /// Blocks of pixels that are looked at together, px.
 const BLOCK: usize = 64;
 /// As many pixels tell a picture's levels: all the others would move a share by a thousandth at most.
-const SAMPLED: usize = 130_000;
+const SAMPLED: usize = 250_000;
 
-/// The histogram of about so many pixels: every k-th block of a row, one further in each row, so that no line
-/// whatever its direction is left out.
+/// The histogram of about [`SAMPLED`] pixels: every k-th block of a row.
 pub(crate) fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
     let every = (plane.values.len() / SAMPLED).max(1);
-    let blocks = |y| plane.row(y).chunks(BLOCK).skip(y % every).step_by(every);
+    let blocks = |y| plane.row(y).chunks(BLOCK).skip(staggered(y, every)).step_by(every);
     histogram((0..plane.height).flat_map(blocks))
+}
+
+/// The first of every `every` blocks that is looked at in row `y`: without a pattern, so that no line falls between them all
+/// along, whatever its direction (Knuth's multiplicative hash, *Sorting and Searching*, §6.4).
+pub(crate) fn staggered(y: usize, every: usize) -> usize {
+    ((y as u32).wrapping_mul(2_654_435_769) >> 12) as usize % every
 }
 
 /// The level that a two-thousandth of all pixels exceed: more than specks of dust cover, and less than any drawing.
@@ -267,15 +272,15 @@ pub(crate) fn noise(plane: &Plane<u8>, sampled: usize) -> f64 {
     const TIMES: f64 = 6.0; // the mask's gain on white noise
     const MEDIAN: f64 = 0.6745; // of |x| for a standard normal x
     let mut counts = Counts::default();
-    let (mut bends, mut responses) = (vec![0i16; plane.width], vec![0u8; plane.width.saturating_sub(2)]);
+    let (mut seconds, mut responses) = (vec![0i16; plane.width], vec![0u8; plane.width.saturating_sub(2)]);
     let every = (plane.values.len() / sampled).max(1);
     for y in (1..plane.height - 1).step_by(every) {
         let [above, here, below] = [y - 1, y, y + 1].map(|y| plane.row(y));
         // 1 −2 1 down the columns, and of those the same along the row
         let threes = above.iter().zip(here).zip(below);
-        let bend = |((a, h), b): ((&u8, &u8), &u8)| i16::from(*a) + i16::from(*b) - 2 * i16::from(*h);
-        bends.iter_mut().zip(threes).for_each(|(out, three)| *out = bend(three));
-        let threes = bends.iter().zip(&bends[1..]).zip(&bends[2..]);
+        let second = |((a, h), b): ((&u8, &u8), &u8)| i16::from(*a) + i16::from(*b) - 2 * i16::from(*h);
+        seconds.iter_mut().zip(threes).for_each(|(out, three)| *out = second(three));
+        let threes = seconds.iter().zip(&seconds[1..]).zip(&seconds[2..]);
         let response = |((a, h), b): ((&i16, &i16), &i16)| (a + b - 2 * h).unsigned_abs().min(255) as u8;
         responses.iter_mut().zip(threes).for_each(|(out, three)| *out = response(three));
         counts.add(&responses);
@@ -347,6 +352,29 @@ mod tests {
         for strength in [255.0, 80.0] {
             let noise = Ink::of(&image(|x, y| (strength * noise_at(x, y)) as u8), None).unwrap_err();
             assert!(matches!(noise, VisionError::Noise { .. }), "{noise}");
+        }
+    }
+
+    #[test]
+    fn a_line_is_in_the_sample_whatever_its_direction() {
+        let (width, height) = (1280, 720);
+        for (rise, run) in [(0, 1), (1, 64), (1, 32), (29, 64), (-1, 64), (-3, 64), (1, 1)] {
+            for from in 0..8 {
+                let at = |x: i32| 360 + from + (x - 640) * rise / run;
+                let level = |i: usize| {
+                    let (x, y) = ((i % width) as i32, (i / width) as i32);
+                    255 * u8::from((y - at(x)).abs() < 2)
+                };
+                let plane = Plane { width, height, values: (0..width * height).map(level).collect() };
+                let counts = sampled_histogram(&plane);
+                let share = f64::from(counts[255]) / f64::from(counts.iter().sum::<u32>());
+                let true_share =
+                    plane.values.iter().filter(|&&v| v == 255).count() as f64 / (width * height) as f64;
+                assert!(
+                    (0.4..2.5).contains(&(share / true_share)),
+                    "{rise}/{run} {from}: {share} {true_share}"
+                );
+            }
         }
     }
 

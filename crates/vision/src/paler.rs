@@ -4,7 +4,7 @@
 //! beside a pen is lost, or the pen's blur is ink. So what is beyond the reach of the first ink's blur is looked at by
 //! itself: what stands out from the paper there is the second ink.
 
-use crate::ink::{histogram, over};
+use crate::ink::{histogram, over, staggered};
 use crate::light::percentile;
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -18,7 +18,7 @@ const DEVIATIONS: f64 = 8.0;
 const LEAST_LEVELS: f64 = 8.0;
 /// Less than this share of the pixels that are looked at is no ink but specks.
 const LEAST_INK: f64 = 1e-4;
-/// A line is at least this long, px, and so many of the picture's rows.
+/// A line is at least this long, px, and this share of the picture's rows.
 const LEAST_PX: usize = 12;
 const LEAST_ROWS: usize = 40;
 /// A patch that holds an upright square of this share of the shorter side is no line.
@@ -41,7 +41,8 @@ pub(crate) fn with_paler(dark: &Plane<u8>, mut ink: Mask, strength: f64, edge_px
     if leads(if leads(&ink) { &drawn } else { &pale }) {
         return ink;
     }
-    let solid = drawn.clone().eroded(dark.width.min(dark.height) / SOLID_SHARE);
+    let side = (dark.width.min(dark.height) / SOLID_SHARE).max(LEAST_PX);
+    let solid = drawn.clone().eroded(side);
     regions(&drawn).iter().filter(|r| !is_drawn(r, &solid)).for_each(|region| region.erase_from(&mut drawn));
     // up to the first ink's own edge, through what its blur hides
     for _ in 0..reach {
@@ -55,11 +56,11 @@ pub(crate) fn with_paler(dark: &Plane<u8>, mut ink: Mask, strength: f64, edge_px
 /// Darkness from which on there is ink beyond `near`; `None` where there is nothing but paper.
 fn threshold(dark: &Plane<u8>, near: &Mask, strength: f64) -> Option<u8> {
     let every = (dark.values.len() / SAMPLED).max(1);
-    let clear = |y: usize| {
-        let eights = near.row(y).iter().flat_map(|word| word.to_le_bytes());
-        dark.row(y).chunks(8).zip(eights).filter(|(_, near)| *near == 0).map(|(levels, _)| levels)
+    let row = |y: usize| {
+        let blocks = dark.row(y).chunks(64).zip(near.row(y));
+        blocks.skip(staggered(y, every)).step_by(every).flat_map(|(levels, near)| clear(levels, *near))
     };
-    let levels = histogram((0..dark.height).step_by(every).flat_map(clear));
+    let levels = histogram((0..dark.height).flat_map(row));
     let paper = percentile(&levels, 0.5);
     // of a normal distribution a sixth is more than a deviation above the middle
     let deviation = (percentile(&levels, 0.841) - paper).max(0.5);
@@ -71,6 +72,12 @@ fn threshold(dark: &Plane<u8>, near: &Mask, strength: f64) -> Option<u8> {
     let ((all, _), (count, sum)) = (class(0), class(least as usize + 1));
     let is_ink = count >= (LEAST_INK * all).max(LEAST_PX as f64);
     is_ink.then(|| least.max(0.5 * (paper + sum / count)) as u8)
+}
+
+/// Of up to 64 levels those eights that have nothing in `near`.
+fn clear(levels: &[u8], near: u64) -> impl Iterator<Item = &[u8]> {
+    let eights = levels.chunks(8).zip(near.to_le_bytes());
+    eights.filter(|(_, near)| *near == 0).map(|(levels, _)| levels)
 }
 
 /// Whether a patch is long enough for a line, and no shadow that falls into the picture.
@@ -106,6 +113,21 @@ mod tests {
                 assert!(found.get(x, y), "{share}: nothing at {x}, {y}");
             }
             assert_eq!(regions(&found).len(), 1, "{share}");
+        }
+    }
+
+    #[test]
+    fn a_level_line_is_found_at_any_height() {
+        for top in 300..314 {
+            let level = |i: usize| {
+                let (x, y) = (i % 1280, i / 1280);
+                let inside = (100..1100).contains(&x);
+                u8::from(inside && (top..top + 3).contains(&y)) * 80
+                    + u8::from(inside && (500..505).contains(&y)) * 220
+            };
+            let dark = Plane { width: 1280, height: 720, values: (0..1280 * 720).map(level).collect() };
+            let found = with_paler(&dark, over(&dark, 150), 220.0, Some(1.0));
+            assert!(found.get(600, top as isize + 1), "nothing at {top}");
         }
     }
 

@@ -42,6 +42,9 @@ impl<T: Copy + Default> Plane<T> {
     }
 }
 
+/// Longest side on which places have 16 bits behind the point and fit into 32, px.
+const LONGEST: usize = 1 << 15;
+
 impl Plane<u8> {
     /// Between the four nearest pixels' centres, bilinear; the border's values go on outside.
     pub(crate) fn at(&self, p: Point) -> f64 {
@@ -64,7 +67,7 @@ impl Plane<u8> {
         let inside = |p: Point| {
             (0.5..self.width as f64 - 0.51).contains(&p.x) && (0.5..self.height as f64 - 0.51).contains(&p.y)
         };
-        if !(inside(from) && inside(to)) {
+        if !(inside(from) && inside(to)) || self.width.max(self.height) > LONGEST {
             values.iter_mut().enumerate().for_each(|(k, v)| *v = self.at(from + step * k as f64) as f32);
             return;
         }

@@ -7,7 +7,7 @@ use crate::plane::Plane;
 /// A fall and a rise of brightness count from this share of the picture's range on.
 const STEP: f64 = 0.22;
 /// Less than this share of the pixels may be dust, and does not count in the range; unless that leaves less than so many
-/// levels: then there is hardly any ink, and only less than the other share does not.
+/// levels: then there is hardly any ink, and only less than [`SPECK`] of them is left out.
 const DUST: f64 = 0.0005;
 const LEAST_RANGE: f64 = 32.0;
 const SPECK: f64 = 0.000_05;
@@ -61,11 +61,11 @@ impl Runs {
         let mut runs = Self::default();
         let thin = (image.width.min(image.height) / THIN).max(4);
         let every = (image.values.len() / SAMPLED).max(1);
-        for y in (every / 2..image.height).step_by(every) {
+        for y in ((every / 2).min(image.height / 2)..image.height).step_by(every) {
             runs.along(image.row(y), step, thin);
         }
         let mut column = Vec::with_capacity(image.height);
-        for x in (every / 2..image.width).step_by(every) {
+        for x in ((every / 2).min(image.width / 2)..image.width).step_by(every) {
             column.clear();
             column.extend(image.values[x..].iter().step_by(image.width));
             runs.along(&column, step, thin);

@@ -98,7 +98,7 @@ fn of_usual_width(places: &[Place]) -> Vec<Place> {
         let range = (3 * i).saturating_sub(LOCAL)..(3 * i + LOCAL + 1).min(places.len());
         let widths = places[range.clone()].iter().map(|p| p.width);
         let (least, most) = widths.fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
-        // a median is none of these further from
+        // then none is further than that from a median of them
         if most - least <= bound(least) {
             kept.extend_from_slice(three);
             continue;

@@ -26,10 +26,10 @@ pub(super) fn weight(node: Node, largest: f64) -> u64 {
 }
 
 /// More cubics than this no arc of a drawing becomes: a radius of 1e17. Whoever resolves the SVG takes them from the front
-/// of their row one by one, so that their number counts twice.
+/// of their row one by one, so that the work grows with the square of their number: [`weigh`].
 const MOST_OF_ARC: f64 = 1000.0;
 
-/// Of all arcs of a path, endless with one that becomes too many. Where they begin is not followed up: no point is further out than all numbers before it
+/// Of all arcs of a path, infinite where one of them becomes too many. Where they begin is not followed up: no point is further out than all numbers before it
 /// together, and a radius that is too small for its arc's ends is as large as they are apart.
 fn of_path(d: &str) -> f64 {
     let (mut reach, mut sum) = (0.0, 0.0);
@@ -37,10 +37,15 @@ fn of_path(d: &str) -> f64 {
         reach += extent(&segment);
         if let PathSegment::EllipticalArc { rx, ry, .. } = segment {
             let of_arc = cubics(rx.abs().max(ry.abs()).max(2.0 * reach));
-            sum += if of_arc > MOST_OF_ARC { f64::INFINITY } else { of_arc };
+            sum += weigh(of_arc);
         }
     }
     sum
+}
+
+/// What so many cubics of one arc count: they and, 32 of them moved as fast as one is made, their moves.
+fn weigh(cubics: f64) -> f64 {
+    if cubics > MOST_OF_ARC { f64::INFINITY } else { cubics * (1.0 + cubics / 32.0) }
 }
 
 /// Sum of the numbers that say where a segment ends.

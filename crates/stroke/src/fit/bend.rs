@@ -3,7 +3,7 @@
 use kurbo::Point;
 
 use super::FitOptions;
-use super::plan::{Plan, Shut};
+use super::plan::{Plan, Shut, is_moved};
 use super::round::{Bow, Circle, FEWEST, bows, scatter};
 use super::section::Line;
 use super::straight::direction;
@@ -43,7 +43,7 @@ impl Bends<'_> {
             let failed: Vec<usize> = match self.joined(&plan) {
                 Err(part) => plan.beside(part).collect(),
                 Ok(parts) => {
-                    let bad = (0..parts.len()).filter(|&i| !self.holds(&parts, i));
+                    let bad = (0..parts.len()).filter(|&i| is_moved(&parts, i) && !self.holds(&parts, i));
                     let failed: Vec<usize> = bad.flat_map(|i| plan.beside(i)).collect();
                     if failed.is_empty() {
                         return plan.with(&parts);

@@ -21,6 +21,8 @@ pub(super) enum Shut {
 pub(super) struct Plan {
     pub(super) parts: Vec<Part>,
     of: Vec<Of>,
+    /// Bends of the row, with and without arcs.
+    bends: usize,
 }
 
 /// What a part is: a piece of bend so and so, or line so and so. Bend i lies before line i.
@@ -35,7 +37,7 @@ impl Plan {
     /// Arcs at ends that are `loose` end where a pen's tip begins.
     pub(super) fn of(bends: &Bends, arcs: &[Vec<Bow>], loose: [bool; 2]) -> Self {
         let &Bends { row, lines, shut, .. } = bends;
-        let mut plan = Self { parts: Vec::new(), of: Vec::new() };
+        let mut plan = Self { parts: Vec::new(), of: Vec::new(), bends: arcs.len().max(1) };
         for bend in 0..arcs.len().max(lines.len()) {
             let here = arcs.get(bend).map_or(&[][..], Vec::as_slice);
             if let Some(before) = plan.parts.last_mut() {
@@ -53,7 +55,8 @@ impl Plan {
         match shut {
             Shut::Open(tip) => plan.pin(row, tip, loose),
             Shut::Ring => {
-                let linked = arcs.first().is_some_and(|bows| !bows.is_empty());
+                let ends_there = lines.last().is_none_or(|line| line.last + 1 == row.len());
+                let linked = ends_there && arcs.first().is_some_and(|bows| !bows.is_empty());
                 plan.parts.last_mut().into_iter().for_each(|end| end.linked = linked);
             }
         }
@@ -90,20 +93,22 @@ impl Plan {
     pub(super) fn beside(&self, part: usize) -> impl Iterator<Item = usize> + use<> {
         let bends = match self.of[part] {
             Of::Bend(bend) => [Some(bend), None],
-            Of::Line(line) => [Some(line), Some(line + 1)],
+            // behind a ring's last line comes its first bend
+            Of::Line(line) => [Some(line), Some((line + 1) % self.bends)],
         };
         bends.into_iter().flatten()
     }
 
     /// The parts as they were joined; lines that are not linked stay as they were.
     pub(super) fn with(&self, joined: &[Part]) -> Vec<Part> {
-        let n = joined.len();
-        let moved = |i: usize| {
-            let line = matches!(joined[i].shape, Shape::Line { .. });
-            !line || joined[i].linked || joined[(i + n - 1) % n].linked
-        };
-        (0..n).map(|i| if moved(i) { joined[i] } else { self.parts[i] }).collect()
+        (0..joined.len()).map(|i| if is_moved(joined, i) { joined[i] } else { self.parts[i] }).collect()
     }
+}
+
+/// Whether a part is an arc or linked to one: other lines stay as they are.
+pub(super) fn is_moved(parts: &[Part], i: usize) -> bool {
+    let line = matches!(parts[i].shape, Shape::Line { .. });
+    !line || parts[i].linked || parts[(i + parts.len() - 1) % parts.len()].linked
 }
 
 fn straight(line: &Line) -> Part {
