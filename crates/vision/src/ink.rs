@@ -8,7 +8,7 @@ use crate::paler::with_paler;
 use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
 use crate::quality::clipped_percent;
-use crate::region::regions;
+use crate::region::any_spans;
 use crate::sharpness::{self, Step};
 use crate::{Grey, Quality, VisionError};
 
@@ -86,7 +86,7 @@ impl Ink {
     /// darker than rules. Elsewhere there may be a second, paler ink.
     pub(crate) fn mask(&self) -> Mask {
         let mask = over(&self.darkness, self.threshold);
-        if self.above_rules > self.threshold && regions(&mask).iter().any(|r| r.spans(&mask)) {
+        if self.above_rules > self.threshold && any_spans(&mask) {
             return over(&self.darkness, self.above_rules);
         }
         let edge_px = self.quality.edge_px.map(|px| px / self.reduction as f64);
@@ -149,22 +149,29 @@ pub(crate) fn histogram<'a>(levels: impl Iterator<Item = &'a [u8]>) -> [u32; 256
     counts.sum()
 }
 
-/// Blocks of pixels that are looked at together, px.
+/// Pixels that are looked at together: as many as a mask has in a word.
 const BLOCK: usize = 64;
 /// As many pixels tell a picture's levels: all the others would move a share by a thousandth at most.
 const SAMPLED: usize = 250_000;
 
-/// The histogram of about [`SAMPLED`] pixels: every k-th block of a row.
+/// The histogram of about [`SAMPLED`] pixels.
 pub(crate) fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
-    let every = (plane.values.len() / SAMPLED).max(1);
-    let blocks = |y| plane.row(y).chunks(BLOCK).skip(staggered(y, every)).step_by(every);
-    histogram((0..plane.height).flat_map(blocks))
+    histogram(sampled_blocks(plane, SAMPLED).map(|(.., levels)| levels))
 }
 
-/// The first of every `every` blocks that is looked at in row `y`: without a pattern, so that no line falls between them all
-/// along, whatever its direction (Knuth's multiplicative hash, *Sorting and Searching*, §6.4).
-pub(crate) fn staggered(y: usize, every: usize) -> usize {
-    ((y as u32).wrapping_mul(2_654_435_769) >> 12) as usize % every
+/// Every k-th block of 64 pixels, about `sampled` in all, with its row and its number there: without a pattern, so that no
+/// line falls between them all along, whatever its direction (Knuth's multiplicative hash, *Sorting and Searching*, §6.4).
+pub(crate) fn sampled_blocks(
+    plane: &Plane<u8>,
+    sampled: usize,
+) -> impl Iterator<Item = (usize, usize, &[u8])> {
+    let every = (plane.values.len() / sampled).max(1);
+    let row = move |y: usize| {
+        let first = ((y as u32).wrapping_mul(2_654_435_769) >> 12) as usize % every;
+        let blocks = plane.row(y).chunks(BLOCK).enumerate().skip(first).step_by(every);
+        blocks.map(move |(number, levels)| (y, number, levels))
+    };
+    (0..plane.height).flat_map(row)
 }
 
 /// The level that a two-thousandth of all pixels exceed: more than specks of dust cover, and less than any drawing.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use tracelight_stroke::{Element, Path, Piece, Point, Vec2};
+use tracelight_stroke::{Element, Path, Piece, Point};
 
 /// The path with whatever lies outside `[0, width] × [0, height]` moved to the border. Lines and cubics lie within the
 /// hull of their points, so it is these that are moved; arcs that leave the image become cubics first.
@@ -46,16 +46,12 @@ fn cubics(arc: &Piece, centre: Point, sweep: f64) -> Vec<[Point; 3]> {
     let parts = (sweep.abs() / most).ceil().clamp(1.0, 1e4);
     let handle = 4.0 / 3.0 * (0.25 * sweep / parts).tan();
     let at = |i: f64| arc.at(i / parts);
-    let ahead = |p: Point| quarter_turn(p - centre) * handle;
+    let ahead = |p: Point| (p - centre).turn_90() * handle;
     let part = |i: usize| {
         let (from, to) = (at(i as f64), at(i as f64 + 1.0));
         [from + ahead(from), to - ahead(to), to]
     };
     (0..parts as usize).map(part).collect()
-}
-
-fn quarter_turn(v: Vec2) -> Vec2 {
-    Vec2::new(-v.y, v.x)
 }
 
 #[cfg(test)]

@@ -55,7 +55,7 @@ struct Stadium {
 impl Stadium {
     fn about(a: Point, b: Point, radius: f64) -> Self {
         let along = b - a;
-        let across = Vec2::new(-along.y, along.x) * (radius / along.hypot().max(1e-9));
+        let across = along.turn_90() * (radius / along.hypot().max(1e-9));
         Self { ends: [a, b], radius_sq: radius * radius, sides: [(a + across, along), (a - across, along)] }
     }
 

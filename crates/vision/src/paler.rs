@@ -4,11 +4,12 @@
 //! beside a pen is lost, or the pen's blur is ink. So what is beyond the reach of the first ink's blur is looked at by
 //! itself: what stands out from the paper there is the second ink.
 
-use crate::ink::{histogram, over, staggered};
+use crate::ink::{histogram, over, sampled_blocks};
 use crate::light::percentile;
 use crate::mask::Mask;
+use crate::parts::SOLID_SHARE;
 use crate::plane::Plane;
-use crate::region::{Region, regions};
+use crate::region::{Region, any_spans, regions};
 
 /// Ink is at least this much darker than the paper about it, as a share of the first ink: the middle of the edge of a
 /// pencil of 28 %.
@@ -21,8 +22,6 @@ const LEAST_INK: f64 = 1e-4;
 /// A line is at least this long, px, and this share of the picture's rows.
 const LEAST_PX: usize = 12;
 const LEAST_ROWS: usize = 40;
-/// A patch that holds an upright square of this share of the shorter side is no line.
-const SOLID_SHARE: usize = 16;
 /// An edge's foot is this many of its widths from 10 to 90 % away from where it is cut.
 const FOOT: f64 = 0.9;
 /// Most pixels that are looked at.
@@ -37,8 +36,7 @@ pub(crate) fn with_paler(dark: &Plane<u8>, mut ink: Mask, strength: f64, edge_px
     let pale = over(dark, threshold);
     let mut drawn = pale.clone().without(&near);
     // from border to border lead ruled paper's lines and the edges of shadows, unless the first ink does itself
-    let leads = |mask: &Mask| regions(mask).iter().any(|region| region.spans(mask));
-    if leads(if leads(&ink) { &drawn } else { &pale }) {
+    if any_spans(if any_spans(&ink) { &drawn } else { &pale }) {
         return ink;
     }
     let side = (dark.width.min(dark.height) / SOLID_SHARE).max(LEAST_PX);
@@ -46,8 +44,7 @@ pub(crate) fn with_paler(dark: &Plane<u8>, mut ink: Mask, strength: f64, edge_px
     regions(&drawn).iter().filter(|r| !is_drawn(r, &solid)).for_each(|region| region.erase_from(&mut drawn));
     // up to the first ink's own edge, through what its blur hides
     for _ in 0..reach {
-        let grown = drawn.clone().dilated_by(1).and(&pale);
-        drawn.add(&grown);
+        drawn = drawn.dilated_by(1).and(&pale);
     }
     ink.add(&drawn);
     ink
@@ -55,12 +52,8 @@ pub(crate) fn with_paler(dark: &Plane<u8>, mut ink: Mask, strength: f64, edge_px
 
 /// Darkness from which on there is ink beyond `near`; `None` where there is nothing but paper.
 fn threshold(dark: &Plane<u8>, near: &Mask, strength: f64) -> Option<u8> {
-    let every = (dark.values.len() / SAMPLED).max(1);
-    let row = |y: usize| {
-        let blocks = dark.row(y).chunks(64).zip(near.row(y));
-        blocks.skip(staggered(y, every)).step_by(every).flat_map(|(levels, near)| clear(levels, *near))
-    };
-    let levels = histogram((0..dark.height).flat_map(row));
+    let blocks = sampled_blocks(dark, SAMPLED);
+    let levels = histogram(blocks.flat_map(|(y, number, levels)| clear(levels, near.row(y)[number])));
     let paper = percentile(&levels, 0.5);
     // of a normal distribution a sixth is more than a deviation above the middle
     let deviation = (percentile(&levels, 0.841) - paper).max(0.5);

@@ -12,7 +12,7 @@ use crate::thin;
 
 /// No pen's lines, nor two of them where they cross, hold an upright square of this share of the picture's shorter
 /// side.
-const SOLID_SHARE: usize = 16;
+pub(crate) const SOLID_SHARE: usize = 16;
 
 /// An octagon this many pens wide fits in no crossing of lines: where three cross at 60°, a disc of two pens fits, and
 /// blur and noise fill corners.

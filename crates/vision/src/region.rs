@@ -105,6 +105,11 @@ pub(crate) fn regions(mask: &Mask) -> Vec<Region> {
     runs.gathered(|_| true)
 }
 
+/// Whether some of a mask's ink leads from border to border.
+pub(crate) fn any_spans(mask: &Mask) -> bool {
+    regions(mask).iter().any(|region| region.spans(mask))
+}
+
 /// Patches of paper of fewer than `least` pixels.
 pub(crate) fn pinholes(mask: &Mask, least: usize) -> Vec<Region> {
     let mut runs = Runs::default();
@@ -128,7 +133,8 @@ fn paper_between(inks: &[Run], width: u32, y: u32, found: &mut Vec<Run>) {
     }
 }
 
-fn ink_runs(row: &[u64], y: u32, found: &mut Vec<Run>) {
+/// Adds the runs of ink in the words of a row.
+pub(crate) fn ink_runs(row: &[u64], y: u32, found: &mut Vec<Run>) {
     let (mut start, mut inside) = (0, false);
     for (i, &word) in row.iter().enumerate() {
         // bits that differ from the one before them: where runs begin and end

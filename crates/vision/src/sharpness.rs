@@ -2,6 +2,7 @@
 
 use crate::ink::word_over;
 use crate::plane::Plane;
+use crate::region::ink_runs;
 use crate::ridge::median;
 
 /// Rows, and columns, that are looked at: of 720 rows every fifteenth crosses each longer stroke, in 0.1 ms.
@@ -30,11 +31,11 @@ pub(crate) fn edge_px(darkness: &Plane<u8>, step: Step) -> Option<f64> {
     let (w, h) = (darkness.width, darkness.height);
     let rows = lines(h).map(|y| Lane { plane: darkness, first: y * w, along: 1, across: w, length: w });
     let columns = lines(w).map(|x| Lane { plane: darkness, first: x, along: w, across: 1, length: h });
-    let (mut widths, mut levels) = (Vec::new(), Vec::new());
+    let mut widths = Vec::new();
     for side in [rows.collect::<Vec<_>>(), columns.collect()] {
         let from = widths.len();
         for lane in side {
-            lane.measure(step, &mut levels, &mut widths);
+            lane.measure(step, &mut widths);
             if widths.len() > from + ENOUGH {
                 break;
             }
@@ -67,23 +68,18 @@ impl Lane<'_> {
         self.plane.values[self.first + k * self.along]
     }
 
-    /// Adds the widths of the edges along it; `levels` is room for its levels.
-    fn measure(&self, step: Step, levels: &mut Vec<u8>, widths: &mut Vec<f64>) {
-        levels.clear();
-        levels.extend(self.plane.values[self.first..].iter().step_by(self.along).take(self.length));
-        let mut before = levels[0] > step.threshold;
-        for (block, levels) in levels.chunks(64).enumerate() {
-            let ink = word_over(levels, step.threshold);
-            // pixels that differ from the one before them
-            let mut turns = ink ^ (ink << 1 | u64::from(before));
-            turns &= u64::MAX >> (64 - levels.len());
-            before = ink >> (levels.len() - 1) & 1 != 0;
-            while turns != 0 {
-                let bit = turns.trailing_zeros() as usize;
-                turns &= turns - 1;
-                let k = 64 * block + bit;
-                // from the paper to the ink
-                let (paper, ink) = if ink >> bit & 1 != 0 { (k - 1, k) } else { (k, k - 1) };
+    /// Adds the widths of the edges along it.
+    fn measure(&self, step: Step, widths: &mut Vec<f64>) {
+        let levels = self.plane.values[self.first..].iter().step_by(self.along).take(self.length);
+        let levels: Vec<u8> = levels.copied().collect();
+        let words: Vec<u64> = levels.chunks(64).map(|levels| word_over(levels, step.threshold)).collect();
+        let mut runs = Vec::new();
+        ink_runs(&words, 0, &mut runs);
+        for run in runs {
+            let (from, to) = (run.from as usize, run.to as usize);
+            // either end of the ink that has paper beyond it
+            let ends = [(from > 0).then(|| (from - 1, from)), (to < self.length).then(|| (to, to - 1))];
+            for (paper, ink) in ends.into_iter().flatten() {
                 let cosine = self.cosine(paper, ink);
                 if cosine > std::f64::consts::FRAC_1_SQRT_2 {
                     widths.extend(self.edge(paper, ink, step).map(|width| width * cosine));

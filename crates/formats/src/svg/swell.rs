@@ -29,15 +29,15 @@ pub(super) fn weight(node: Node, largest: f64) -> u64 {
 /// of their row one by one, so that the work grows with the square of their number: [`weigh`].
 const MOST_OF_ARC: f64 = 1000.0;
 
-/// Of all arcs of a path, infinite where one of them becomes too many. Where they begin is not followed up: no point is further out than all numbers before it
-/// together, and a radius that is too small for its arc's ends is as large as they are apart.
+/// Of all arcs of a path, infinite where one of them becomes too many. Where they begin is not followed up: no point is
+/// further out than all numbers before it together, and a radius that is too small for its arc's ends is as large as they
+/// are apart.
 fn of_path(d: &str) -> f64 {
     let (mut reach, mut sum) = (0.0, 0.0);
     for segment in PathParser::from(d).map_while(Result::ok) {
         reach += extent(&segment);
         if let PathSegment::EllipticalArc { rx, ry, .. } = segment {
-            let of_arc = cubics(rx.abs().max(ry.abs()).max(2.0 * reach));
-            sum += weigh(of_arc);
+            sum += weigh(cubics(rx.abs().max(ry.abs()).max(2.0 * reach)));
         }
     }
     sum

@@ -1,16 +1,15 @@
 //! One arc through many points.
 
-use kurbo::{Point, Vec2};
+use kurbo::Point;
 
 use super::window::turn;
 use crate::Element;
 
 /// Fewer points than this have no curvature.
 const LEAST_POINTS: usize = 4;
-/// An arc sweeps at least this, rad (6°); what bends less is as good a cubic.
-const LEAST_SWEEP: f64 = 0.1;
-/// And at most this, rad: nearly all round, the ends do not tell the centre.
-const MOST_SWEEP: f64 = 6.0;
+/// What an arc sweeps, rad: what bends by less than 6° is as good a cubic; nearly all round, the ends do not tell the
+/// centre.
+pub(super) const SWEEPS: std::ops::Range<f64> = 0.1..6.0;
 
 /// The arc through a row's first and last point that none of the others is further off than `tolerance`; `None` where
 /// there is none.
@@ -23,7 +22,7 @@ pub(super) fn through(row: &[Point], tolerance: f64) -> Option<Element> {
     if points.len() < LEAST_POINTS || chord.hypot() < tolerance {
         return None;
     }
-    let (middle, normal) = (from.midpoint(*to), Vec2::new(-chord.y, chord.x) / chord.hypot());
+    let (middle, normal) = (from.midpoint(*to), chord.turn_90() / chord.hypot());
     let quarter = 0.25 * chord.hypot2();
     let (mut weighted, mut weights) = (0.0, 0.0);
     for v in points.iter().map(|&p| p - middle) {
@@ -41,11 +40,13 @@ pub(super) fn through(row: &[Point], tolerance: f64) -> Option<Element> {
 fn swept(row: &[Point], centre: Point) -> Option<f64> {
     let turns = row.windows(2).map(|w| turn(w[0] - centre, w[1] - centre));
     let (sum, all) = turns.fold((0.0_f64, 0.0), |(sum, all), t| (sum + t, all + t.abs()));
-    ((LEAST_SWEEP..MOST_SWEEP).contains(&sum.abs()) && all < 1.05 * sum.abs() + 0.02).then_some(sum)
+    (SWEEPS.contains(&sum.abs()) && all < 1.05 * sum.abs() + 0.02).then_some(sum)
 }
 
 #[cfg(test)]
 mod tests {
+    use kurbo::Vec2;
+
     use super::*;
 
     #[test]

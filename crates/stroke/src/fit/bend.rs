@@ -3,20 +3,18 @@
 use kurbo::Point;
 
 use super::FitOptions;
+use super::arc::SWEEPS;
 use super::plan::{Plan, Shut, is_moved};
 use super::round::{Bow, Circle, FEWEST, bows, scatter};
 use super::section::Line;
-use super::straight::direction;
+use super::straight::{RMS, direction};
 use super::tangent::{Part, Shape, join};
 
 /// A bend is looked at from where it has left the lines beside it by this share of the tolerance: noise leaves them
 /// by half as much.
 const LEFT: f64 = 0.5;
-/// Root mean square distance of an arc's points from it, as a share of the tolerance; the same as for lines.
-pub(super) const RMS: f64 = 0.3;
-/// An arc sweeps at least this, rad (6°), and less than once round.
-const SWEEPS: std::ops::Range<f64> = 0.1..6.0;
-/// What is beside an arc, and its ends, may move it by so much off its points, root mean square, as a share of the tolerance.
+/// What is beside an arc, and its ends, may move it by so much off its points, root mean square, as a share of the
+/// tolerance.
 const PULL: f64 = 0.25;
 /// Bends are tried anew so often, each time without those that turned out to be no arcs.
 const TRIALS: usize = 4;

@@ -28,7 +28,7 @@ pub(super) struct Line {
 /// The section through `row`, from its first point to its last.
 pub(super) fn open(row: &[Point], options: &FitOptions) -> Vec<Element> {
     let lines = lines(row, options);
-    if let Some(whole) = whole(row, options).filter(|_| lines.is_empty()) {
+    if let Some(whole) = if lines.is_empty() { whole(row, options) } else { None } {
         return vec![whole];
     }
     let parts = Bends { row, lines: &lines, shut: Shut::Open(tip(row, options)), options }.parts();
@@ -59,12 +59,13 @@ fn tip(row: &[Point], options: &FitOptions) -> usize {
 /// One arc from end to end. Its ends stay where they are, however far from the circle of the others: then it may be off
 /// by more.
 fn whole(row: &[Point], options: &FitOptions) -> Option<Element> {
-    let (arc, tip) = (arc::through(row, options.tolerance)?, tip(row, options));
-    let near = arc::through(row, 0.7 * options.tolerance).is_some();
+    let arc = arc::through(row, options.tolerance)?;
     let Element::Arc { centre, sweep } = arc else { return None };
-    let circle = Circle { centre, radius: centre.distance(row[0]).copysign(sweep) };
+    let radius = centre.distance(row[0]);
+    let near = row.iter().all(|p| (p.distance(centre) - radius).abs() <= 0.7 * options.tolerance);
+    let circle = Circle { centre, radius: radius.copysign(sweep) };
     let round = |tip: usize| is_near(&row[tip..row.len() - tip], &circle, options);
-    (near || round(1) || round(tip)).then_some(arc)
+    (near || round(1) || round(tip(row, options))).then_some(arc)
 }
 
 /// The closed line through the ring `row` (its first point is not repeated), with its start point; smooth at the

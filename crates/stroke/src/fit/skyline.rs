@@ -28,8 +28,8 @@ impl Skyline {
         row.entries[column - row.first] += value;
     }
 
-    /// What times this matrix is `right`; without a solution, the row where that shows. The matrix is taken apart as L D Lᵀ without
-    /// exchange of rows, which needs every constraint after unknowns that it leaves free (Vanderbei, "Symmetric
+    /// What times this matrix is `right`; without a solution, the row where that shows. The matrix is taken apart as
+    /// L D Lᵀ without exchange of rows, which needs every constraint after unknowns that it leaves free (Vanderbei, "Symmetric
     /// quasidefinite matrices", 1995).
     pub(super) fn solve(mut self, mut right: Vec<f64>) -> Result<Vec<f64>, usize> {
         for i in 0..self.rows.len() {

@@ -20,6 +20,9 @@ impl Run {
     }
 }
 
+/// Root mean square distance of points from the line or the arc they make, at most, as a share of the tolerance.
+pub(super) const RMS: f64 = 0.3;
+
 /// Points given back to the bend at either end of a run.
 const MARGIN: usize = 3;
 
@@ -42,7 +45,7 @@ impl<'a> Straightness<'a> {
             let [sx, sy, sxx, sxy, syy] = sums[sums.len() - 1];
             sums.push([sx + x, sy + y, sxx + x * x, sxy + x * y, syy + y * y]);
         }
-        Self { points, sums, rms: 0.3 * tolerance, least }
+        Self { points, sums, rms: RMS * tolerance, least }
     }
 
     /// Mean of points `i..=j` and their second moments about it: xx, xy, yy.

@@ -92,7 +92,7 @@ impl Shape {
     fn changed(&self, by: &[f64]) -> Self {
         match *self {
             Self::Line { at, along } => {
-                let across = Vec2::new(-along.y, along.x);
+                let across = along.turn_90();
                 Self::Line { at: at + across * by[1], along: unit(along + across * by[0]) }
             }
             Self::Round(Circle { centre, radius }) => {
@@ -105,10 +105,7 @@ impl Shape {
     fn direction(&self, p: Point) -> Vec2 {
         match *self {
             Self::Line { along, .. } => along,
-            Self::Round(Circle { centre, radius }) => {
-                let arm = unit(p - centre) * radius.signum();
-                Vec2::new(-arm.y, arm.x)
-            }
+            Self::Round(Circle { centre, radius }) => (unit(p - centre) * radius.signum()).turn_90(),
         }
     }
 }
