@@ -148,10 +148,12 @@ fn is_dxf(bytes: &[u8], head: &str) -> bool {
 }
 
 fn image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
-    decoded_quietly(|| decode_image(path, bytes)).unwrap_or_else(|| {
-        let why = "its decoder gave up on it; save it again or give another file";
-        Err(Failure::usage("malformed", format!("{path} is broken: {why}")))
-    })
+    decoded_quietly(|| decode_image(path, bytes))
+        .unwrap_or_else(|| Err(broken(path, "its decoder gave up on it")))
+}
+
+fn broken(path: &str, what: &str) -> Failure {
+    Failure::usage("malformed", format!("{path} is broken: {what}; save it again or give another file"))
 }
 
 fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
@@ -159,18 +161,12 @@ fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
         let known = "PNG, JPEG, WebP, BMP, GIF, PNM, TIFF, SVG, DXF, JSON or CSV";
         Failure::usage("not-a-picture", format!("{path} is none of {known}"))
     };
-    let broken = |e: ImageError| match e {
+    let unread = |e: ImageError| match e {
         ImageError::Limits(_) => too_large(path, "more than the memory a picture may take"),
         ImageError::Unsupported(_) => {
             Failure::usage("unsupported", format!("{path}: {}; save it as PNG", brief(&e)))
         }
-        _ => {
-            let what = brief(&e);
-            Failure::usage(
-                "malformed",
-                format!("{path} is broken: {what}; save it again or give another file"),
-            )
-        }
+        _ => broken(path, &brief(&e)),
     };
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|_| not_a_picture())?;
@@ -186,13 +182,13 @@ fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
     let mut limits = Limits::default();
     limits.max_alloc = Some(MOST_DECODER_BYTES);
     reader.limits(limits);
-    let mut decoder = reader.into_decoder().map_err(broken)?;
+    let mut decoder = reader.into_decoder().map_err(unread)?;
     let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > MOST_PIXELS {
         return Err(too_large(path, &format!("{width} × {height} pixels")));
     }
     let upright = decoder.orientation().ok();
-    let mut image = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    let mut image = DynamicImage::from_decoder(decoder).map_err(unread)?;
     if let Some(orientation) = upright {
         image.apply_orientation(orientation);
     }
