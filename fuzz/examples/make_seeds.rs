@@ -9,10 +9,14 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path as FilePath, PathBuf};
 
+#[path = "../../crates/formats/tests/support/plate.rs"]
+mod plate;
+
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
+use plate::plate;
 use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, csv, dxf, json, svg};
-use tracelight_stroke::{Colour, Drawing, Element, Path, Point, Stroke};
+use tracelight_stroke::Drawing;
 
 fn main() {
     let root = FilePath::new(env!("CARGO_MANIFEST_DIR"));
@@ -67,24 +71,6 @@ fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, format).unwrap();
     bytes.into_inner()
-}
-
-/// Lines, an arc, a cubic, a circle; two layers.
-fn plate() -> Drawing {
-    let mut mixed = Path::new(Point::new(-0.1, -0.05));
-    mixed.line_to(Point::new(0.0, -0.05));
-    mixed.push(Element::Arc { centre: Point::ORIGIN, sweep: 2.0 });
-    let (c1, c2, to) = (Point::new(0.0, 0.02), Point::new(-0.1, 0.08), Point::new(-0.09, 0.03));
-    mixed.push(Element::Cubic { c1, c2, to });
-    let mut circle = Path::new(Point::new(0.03, 0.02));
-    circle.push(Element::Arc { centre: Point::new(0.02, 0.02), sweep: TAU });
-    circle.close();
-    let look = |path, layer: &str| Stroke {
-        layer: Some(layer.into()),
-        colour: Some(Colour::new(1, 2, 3)),
-        ..Stroke::new(path)
-    };
-    Drawing { strokes: vec![look(mixed, "one"), look(circle, "two")] }
 }
 
 fn svg_of(drawing: &Drawing) -> String {

@@ -5,27 +5,12 @@
 
 use std::time::{Duration, Instant};
 
-use oorandom::Rand32;
-use tracelight_formats::{FormatError, MAX_COORDINATE, Sheet, dxf, svg};
-use tracelight_stroke::{Colour, Drawing, Element, Path, Point, Stroke};
+#[path = "support/plate.rs"]
+mod plate;
 
-/// A drawing with everything in it.
-fn drawing() -> Drawing {
-    let mut mixed = Path::new(Point::new(-0.1, -0.05));
-    mixed.line_to(Point::new(0.0, -0.05));
-    mixed.push(Element::Arc { centre: Point::ORIGIN, sweep: 2.0 });
-    let (c1, c2, to) = (Point::new(0.0, 0.02), Point::new(-0.1, 0.08), Point::new(-0.09, 0.03));
-    mixed.push(Element::Cubic { c1, c2, to });
-    let mut circle = Path::new(Point::new(0.03, 0.02));
-    circle.push(Element::Arc { centre: Point::new(0.02, 0.02), sweep: std::f64::consts::TAU });
-    circle.close();
-    let look = |path, layer: &str| Stroke {
-        layer: Some(layer.into()),
-        colour: Some(Colour::new(1, 2, 3)),
-        ..Stroke::new(path)
-    };
-    Drawing { strokes: vec![look(mixed, "one"), look(circle, "two")] }
-}
+use oorandom::Rand32;
+use plate::plate;
+use tracelight_formats::{FormatError, MAX_COORDINATE, Sheet, dxf, svg};
 
 /// A DXF with blocks, a layer table, and entities that our writer has no use for.
 const OTHERS: &str = "0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n0\nLAYER\n2\nL\n62\n3\n70\n0\n0\nENDTAB\n0\nENDSEC\n\
@@ -122,15 +107,14 @@ fn check(cases: u32, texts: &[String], read: impl Fn(&[u8]) -> Result<Sheet, For
 }
 
 fn check_dxf(cases: u32) {
-    let texts = [dxf::write(&drawing(), 0.3, 0.2), OTHERS.to_owned()];
+    let texts = [dxf::write(&plate(), 0.3, 0.2), OTHERS.to_owned()];
     texts.iter().for_each(|t| check_sheet(&dxf::read(t.as_bytes()).unwrap().sheet, t.as_bytes()));
     check(cases, &texts, |bytes| dxf::read(bytes).map(|r| r.sheet));
 }
 
 fn check_svg(cases: u32) {
     // a line an attribute, so that lines are what is broken
-    let text =
-        svg::write(&drawing(), 0.3, 0.2).replace("\" ", "\"\n").replace('M', "\nM").replace('A', "\nA");
+    let text = svg::write(&plate(), 0.3, 0.2).replace("\" ", "\"\n").replace('M', "\nM").replace('A', "\nA");
     check(cases, &[text], |bytes| svg::read(bytes).map(|r| r.sheet));
 }
 

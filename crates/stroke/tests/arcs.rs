@@ -4,38 +4,14 @@
 
 use std::f64::consts::{PI, TAU};
 
+#[path = "support/drawn.rs"]
+mod drawn;
+
+use drawn::Drawn::{self, Arc, Line};
+use drawn::{kinds, kinds_drawn, kink, path};
 use tracelight_stroke::{Element, FitOptions, Path, Point, Vec2, fit};
 
 const TOLERANCE: f64 = 0.35;
-
-/// What was drawn: a line's length, or an arc's radius and sweep in degrees (positive turns x towards y).
-#[derive(Clone, Copy, Debug)]
-enum Drawn {
-    Line(f64),
-    Arc(f64, f64),
-}
-use Drawn::{Arc, Line};
-
-/// Draws one after the other, from a place in a direction.
-fn path(start: Point, angle_rad: f64, drawn: &[Drawn], closed: bool) -> Path {
-    let mut path = Path::new(start);
-    let mut along = Vec2::from_angle(angle_rad);
-    for d in drawn {
-        match *d {
-            Line(length) => path.line_to(path.end() + along * length),
-            Arc(radius, degrees) => {
-                let sweep = degrees.to_radians();
-                let centre = path.end() + Vec2::new(-along.y, along.x) * radius.copysign(sweep);
-                path.push(Element::Arc { centre, sweep });
-                along = Vec2::from_angle(along.atan2() + sweep);
-            }
-        }
-    }
-    if closed {
-        path.close();
-    }
-    path
-}
 
 /// Points every 1 along a path, each moved by noise of this amplitude either way, drawn from `seed`.
 fn seen(path: &Path, noise: f64, seed: u64) -> Vec<Point> {
@@ -55,23 +31,6 @@ fn seen(path: &Path, noise: f64, seed: u64) -> Vec<Point> {
     points.into_iter().map(|p| p + Vec2::new(draw(), draw())).collect()
 }
 
-/// Greatest break of direction between neighbours, degrees.
-fn kink(path: &Path) -> f64 {
-    let pieces: Vec<_> = path.pieces().collect();
-    let next = pieces.iter().skip(1).chain(pieces.first().filter(|_| path.is_closed()));
-    let turn = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b)).abs().to_degrees();
-    pieces.iter().zip(next).map(|(a, b)| turn(a.end_tangent(), b.start_tangent())).fold(0.0, f64::max)
-}
-
-fn kinds(path: &Path) -> String {
-    let kind = |e: &Element| match e {
-        Element::Line { .. } => 'L',
-        Element::Arc { .. } => 'A',
-        Element::Cubic { .. } => 'C',
-    };
-    path.elements().iter().map(kind).collect()
-}
-
 /// Noise of a quarter of the tolerance.
 const NOISE: f64 = 0.25 * TOLERANCE;
 
@@ -82,7 +41,7 @@ fn fitted(points: &[Point], closed: bool) -> Path {
 /// Draws a figure in twelve directions with noise of its own each: it must come back as it was drawn, radii to 1 %,
 /// sweeps to 1°.
 fn check(name: &str, closed: bool, drawn: &[Drawn]) {
-    let wanted: String = drawn.iter().map(|d| if matches!(d, Line(_)) { 'L' } else { 'A' }).collect();
+    let wanted = kinds_drawn(drawn);
     for seed in 1..=12u32 {
         let what = format!("{name}, seed {seed}");
         let truth = path(Point::new(30.0, 40.0), f64::from(seed) * 0.53, drawn, closed);

@@ -3,43 +3,17 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on may panic")]
 #![allow(clippy::print_stdout, reason = "the figures are worth seeing when a bound is missed")]
 
+#[path = "../../stroke/tests/support/drawn.rs"]
+mod drawn;
 #[path = "support/raster.rs"]
 #[allow(dead_code, reason = "each test draws with some of it")]
 mod raster;
 
+use drawn::Drawn::{self, Arc, Line};
+use drawn::{kinds, kinds_drawn, kink, path};
 use raster::Canvas;
-use tracelight_stroke::{Element, Path, Vec2};
+use tracelight_stroke::{Element, Path};
 use tracelight_vision::{Grey, Options, trace};
-
-/// A line's length, or an arc's radius and sweep in degrees (positive turns x towards y).
-#[derive(Clone, Copy, Debug)]
-enum Drawn {
-    Line(f64),
-    Arc(f64, f64),
-}
-use Drawn::{Arc, Line};
-
-/// Draws one after the other, from a place in a direction.
-fn path(start: (f64, f64), degrees: f64, drawn: &[Drawn], closed: bool) -> Path {
-    let mut path = Path::new(start.into());
-    let mut angle_rad = degrees.to_radians();
-    for d in drawn {
-        let along = Vec2::from_angle(angle_rad);
-        match *d {
-            Line(length) => path.line_to(path.end() + along * length),
-            Arc(radius, degrees) => {
-                let sweep = degrees.to_radians();
-                let centre = path.end() + Vec2::new(-along.y, along.x) * radius.copysign(sweep);
-                path.push(Element::Arc { centre, sweep });
-                angle_rad += sweep;
-            }
-        }
-    }
-    if closed {
-        path.close();
-    }
-    path
-}
 
 /// The path drawn with a pen on 640 × 480 px, and traced.
 fn traced(path: &Path, pen_px: f64) -> Vec<Path> {
@@ -50,16 +24,6 @@ fn traced(path: &Path, pen_px: f64) -> Vec<Path> {
     found.strokes.strokes.into_iter().map(|s| s.path).collect()
 }
 
-/// L, A and C of a path's elements.
-fn kinds(path: &Path) -> String {
-    let kind = |e: &Element| match e {
-        Element::Line { .. } => 'L',
-        Element::Arc { .. } => 'A',
-        Element::Cubic { .. } => 'C',
-    };
-    path.elements().iter().map(kind).collect()
-}
-
 /// Radii in order.
 fn radii(path: &Path) -> Vec<f64> {
     let radius = |p: tracelight_stroke::Piece| match p.element {
@@ -67,14 +31,6 @@ fn radii(path: &Path) -> Vec<f64> {
         _ => None,
     };
     path.pieces().filter_map(radius).collect()
-}
-
-/// Greatest break of direction between neighbours, degrees.
-fn kink(path: &Path) -> f64 {
-    let pieces: Vec<_> = path.pieces().collect();
-    let next = pieces.iter().skip(1).chain(pieces.first().filter(|_| path.is_closed()));
-    let turn = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b)).abs().to_degrees();
-    pieces.iter().zip(next).map(|(a, b)| turn(a.end_tangent(), b.start_tangent())).fold(0.0, f64::max)
 }
 
 /// The path begun at any element, either way round, so that its kinds are these in this order; where a pen's tip is off
@@ -87,10 +43,10 @@ fn turned(path: &Path, wanted: &str) -> Option<Path> {
 }
 
 fn check(name: &str, start: (f64, f64), drawn: &[Drawn], closed: bool) {
-    let wanted: String = drawn.iter().map(|d| if matches!(d, Line(_)) { 'L' } else { 'A' }).collect();
-    for (pen_px, degrees) in [(3.0, 0.0), (3.0, 17.0), (6.0, 0.0), (6.0, -23.0)] {
+    let wanted = kinds_drawn(drawn);
+    for (pen_px, degrees) in [(3.0, 0.0_f64), (3.0, 17.0), (6.0, 0.0), (6.0, -23.0)] {
         let what = format!("{name}, pen {pen_px} px, turned by {degrees}°");
-        let found = traced(&path(start, degrees, drawn, closed), pen_px);
+        let found = traced(&path(start.into(), degrees.to_radians(), drawn, closed), pen_px);
         assert_eq!(found.len(), 1, "{what}: strokes");
         println!("{what}: {} {:.2?}", kinds(&found[0]), radii(&found[0]));
         assert!(kink(&found[0]) < 0.1, "{what}: kink of {}°", kink(&found[0]));
