@@ -38,9 +38,20 @@ pub(crate) fn rows(dark: &Plane<u8>, shapes: &Mask, region: &Region, graph: &Gra
     for (port, stop) in &junctions.ends {
         lines[port.line].end_at(port.end, *stop);
     }
-    let found = strung_together(&lines, &junctions.joints);
+    let mut found = strung_together(&lines, &junctions.joints);
+    if found.len() > 1 {
+        found.retain(|row| !is_stub(row));
+    }
     // a knot of nothing but junctions is a blot
     if found.is_empty() { vec![dot(dark, region)] } else { found }
+}
+
+/// A row is at least so long, in pen widths, beside others of its patch: what is shorter is the bump of a blot.
+const LEAST_ROW_PENS: f64 = 0.5;
+
+fn is_stub(row: &Row) -> bool {
+    let length: f64 = row.points.windows(2).map(|w| w[0].distance(w[1])).sum();
+    !row.closed && length < LEAST_ROW_PENS * row.width
 }
 
 /// The stroke along a row.

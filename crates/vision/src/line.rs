@@ -30,7 +30,7 @@ impl Line {
         let (from, to) = if branch.ring { (0, branch.points.len()) } else { trusted(graph, branch, radius) };
         let ridge = ridge::centred(dark, &branch.points[from..to], radius, branch.ring);
         let width = ridge.width;
-        let mut points = bridged(dark, ridge, branch.ring);
+        let mut points = bridged(dark, &ridge, branch.ring);
         (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
         if points.is_empty() {
             points.push(branch.points[(from + to) / 2]);
@@ -142,14 +142,8 @@ fn shape_ahead(shapes: &Mask, tip: &Tip, reach: f64) -> Option<f64> {
     (0..(reach / STEP) as usize).map(|k| k as f64 * STEP).find(inside)
 }
 
-/// Fewer points than this in a row, between two gaps, tell no direction.
-const LEAST_STRETCH: usize = 4;
-
 /// The stretches in one row, the gaps between them bridged.
-fn bridged(dark: &Plane<u8>, mut ridge: Ridge, ring: bool) -> Vec<Point> {
-    if ridge.stretches.len() > 1 {
-        ridge.stretches.retain(|s| s.len() >= LEAST_STRETCH);
-    }
+fn bridged(dark: &Plane<u8>, ridge: &Ridge, ring: bool) -> Vec<Point> {
     let mut row: Vec<Point> = Vec::new();
     for stretch in &ridge.stretches {
         row.extend(gap(dark, &row, stretch));

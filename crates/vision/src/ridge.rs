@@ -67,10 +67,14 @@ pub(crate) fn centred(dark: &Plane<u8>, points: &[Point], radius: f64, ring: boo
     let again = |i: usize| place(dark, first[i].index, row[i], normal(&row, i, 3, ring)?, cut);
     let second: Vec<Place> = (0..row.len()).filter_map(again).collect();
     let width = usual_width(&second).unwrap_or(width);
-    let places = of_usual_width(&second);
+    let mut places = without_lone(of_usual_width(&second), stride);
+    if !ring && add_lost(dark, points, Cut::of(0.5 * width), &mut places) {
+        places = without_lone(places, stride);
+    }
     // a step from pixel to pixel is up to √2 long
     let gap = std::f64::consts::SQRT_2 * (GAP * stride) as f64;
-    Ridge { stretches: stretches(&places, stride), width, gap }
+    let stretches = rows(&places, stride).map(|row| row.iter().map(|p| p.at).collect()).collect();
+    Ridge { stretches, width, gap }
 }
 
 /// Points from one place of a line of this width to the next: its bends have at least its width as radius.
@@ -112,16 +116,70 @@ fn of_usual_width(places: &[Place]) -> Vec<Place> {
     kept
 }
 
+/// Fewer places than this in a row, between two gaps, tell no direction.
+const LEAST_STRETCH: usize = 4;
+
+/// Without the stretches that are too short for a direction, unless there is but one.
+fn without_lone(places: Vec<Place>, stride: usize) -> Vec<Place> {
+    if rows(&places, stride).nth(1).is_none() {
+        return places;
+    }
+    let long = |row: &&[Place]| row.len() >= LEAST_STRETCH;
+    rows(&places, stride).filter(long).flatten().copied().collect()
+}
+
+/// Corners and blots reach no further than this from the next place, or from a row's end, pen widths.
+const CORNER_PENS: f64 = 1.5;
+const END_PENS: f64 = 1.0;
+/// Fewer places than this in a row, or over less than this share of the pen's width, tell no line.
+const LEAST_EVEN: usize = 4;
+const LEAST_EVEN_PENS: f64 = 0.8;
+
+/// Adds places to a row of `points` where there are none for long, if several in a row are about as wide as each other:
+/// a line goes on thinner or thicker there, as those of letters do. Tells whether it added any.
+fn add_lost(dark: &Plane<u8>, points: &[Point], cut: Cut, places: &mut Vec<Place>) -> bool {
+    let width = 2.0 * cut.radius;
+    let indices = || places.iter().map(|p| p.index);
+    let gaps = std::iter::once(0).chain(indices()).zip(indices().chain([points.len()]));
+    let is_far = |&(from, to): &(usize, usize)| {
+        let at_end = from == 0 || to == points.len();
+        (to - from) as f64 > width * if at_end { END_PENS } else { CORNER_PENS }
+    };
+    let seen = |i: usize| place(dark, i, points[i], normal(points, i, 4, false)?, cut);
+    let least = LEAST_EVEN.max((LEAST_EVEN_PENS * width) as usize);
+    let mut lost = Vec::new();
+    for (from, to) in gaps.filter(is_far) {
+        let between: Vec<Place> = (from + 1..to).filter_map(seen).collect();
+        lost.extend(even_rows(&between).filter(|row| row.len() >= least).flatten());
+    }
+    places.extend(&lost);
+    places.sort_unstable_by_key(|p| p.index);
+    !lost.is_empty()
+}
+
+/// Rows of places, as long as they can be, in which each is about as wide as all others.
+fn even_rows(places: &[Place]) -> impl Iterator<Item = &[Place]> {
+    let mut left = places;
+    std::iter::from_fn(move || {
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        let even = |p: &&Place| {
+            (least, most) = (least.min(p.width), most.max(p.width));
+            most - least <= bound(least)
+        };
+        let (row, rest) = left.split_at(left.iter().take_while(even).count());
+        left = rest;
+        (!row.is_empty()).then_some(row)
+    })
+}
+
 /// How far from the usual width a place of a line may be.
 fn bound(usual: f64) -> f64 {
     (0.15 * usual).max(0.5)
 }
 
 /// The places parted where more than two in a row are missing.
-fn stretches(places: &[Place], stride: usize) -> Vec<Vec<Point>> {
-    let parted = |a: &Place, b: &Place| b.index - a.index > GAP * stride;
-    let rows = places.chunk_by(|a, b| !parted(a, b));
-    rows.map(|row| row.iter().map(|p| p.at).collect()).collect()
+fn rows(places: &[Place], stride: usize) -> impl Iterator<Item = &[Place]> {
+    places.chunk_by(move |a, b| b.index - a.index <= GAP * stride)
 }
 
 /// The middle value; 0 of none.
