@@ -10,6 +10,8 @@ const WINDOWS: [usize; 6] = [6, 9, 13, 19, 28, 40];
 /// How far points of one parabola are from it, px, root mean square, where they have no noise; or, over their noise.
 const ON_PARABOLA_PX: f64 = 0.06;
 const OVER_NOISE: f64 = 1.3;
+/// Fewer points lead from the last to the first, if they are this far apart, px.
+const LEAST_PAIR_PX: f64 = 0.5;
 /// Sine of the least angle between two lines that are said to meet: 4°.
 const LEAST_CROSS: f64 = 0.07;
 /// A pair that turns more than this is a corner, less a bend, rad (25°).
@@ -36,7 +38,12 @@ impl Tip {
         });
         let rms = ON_PARABOLA_PX.max(OVER_NOISE * noise_near(points, end));
         let curve = (n > 0).then(|| Parabola::widest(samples, &WINDOWS, rms))?;
-        Some(Self { at: at(0), along: curve.map_or(Vec2::ZERO, |c| -c.tangent(0.0)), curve })
+        let along = match (curve, points) {
+            (Some(curve), _) => -curve.tangent(0.0),
+            (None, [a, .., b]) if a.distance(*b) > LEAST_PAIR_PX => (at(0) - at(n - 1)).normalize(),
+            _ => Vec2::ZERO,
+        };
+        Some(Self { at: at(0), along, curve })
     }
 
     /// A lone point, without direction.

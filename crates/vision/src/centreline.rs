@@ -5,7 +5,7 @@ use tracelight_stroke::{Point, Stroke, Vec2};
 use crate::Options;
 use crate::follow;
 use crate::graph::Graph;
-use crate::junction::{self, Joint};
+use crate::junction::{self, Joint, Junctions};
 use crate::line::Line;
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -30,11 +30,12 @@ pub(crate) fn rows(dark: &Plane<u8>, shapes: &Mask, region: &Region, graph: &Gra
     if is_dot(graph) {
         return vec![dot(dark, region)];
     }
-    let (mut cluster, bridges) = junction::clusters(graph);
-    let real = graph.branches.iter().zip(bridges).filter(|(_, bridge)| !bridge);
-    let mut lines: Vec<Line> = real.map(|(branch, _)| Line::of(dark, shapes, graph, branch)).collect();
-    junction::merge_acute(&mut lines, &mut cluster);
-    let junctions = junction::join(dark, &lines, &cluster);
+    let mut drawn = Drawn::of(dark, shapes, graph, &[]);
+    let bars = drawn.bars(graph);
+    if !bars.is_empty() {
+        drawn = Drawn::of(dark, shapes, graph, &bars);
+    }
+    let Drawn { mut lines, junctions, .. } = drawn;
     for (port, stop) in &junctions.ends {
         lines[port.line].end_at(port.end, *stop);
     }
@@ -45,6 +46,46 @@ pub(crate) fn rows(dark: &Plane<u8>, shapes: &Mask, region: &Region, graph: &Gra
     // a knot of nothing but junctions is a blot
     if found.is_empty() { vec![dot(dark, region)] } else { found }
 }
+
+/// The lines of a graph and what became of them at its junctions.
+struct Drawn {
+    lines: Vec<Line>,
+    junctions: Junctions,
+    /// Branches that are part of a junction.
+    bridges: Vec<usize>,
+}
+
+impl Drawn {
+    /// Branches `bars` are lines, however short they are.
+    fn of(dark: &Plane<u8>, shapes: &Mask, graph: &Graph, bars: &[usize]) -> Self {
+        let (mut cluster, bridges) = junction::clusters(graph, bars);
+        let (bridges, real): (Vec<usize>, Vec<usize>) =
+            (0..graph.branches.len()).partition(|&branch| bridges[branch]);
+        let line = |&branch: &usize| Line::of(dark, shapes, graph, &graph.branches[branch]);
+        let mut lines: Vec<Line> = real.iter().map(line).collect();
+        junction::merge_acute(&mut lines, &mut cluster);
+        let junctions = junction::join(dark, &lines, &cluster);
+        Self { lines, junctions, bridges }
+    }
+
+    /// The bridges that nothing leads over: bars between two lines beside each other, shorter than the discs of ink at
+    /// their ends, such as an R's.
+    fn bars(&self, graph: &Graph) -> Vec<usize> {
+        if self.bridges.is_empty() {
+            return Vec::new();
+        }
+        let pen = graph.pen_radius();
+        let mut followed = self.junctions.ways();
+        followed.extend(self.lines.iter().flat_map(|line| &line.points));
+        let reach = BARE_RADII * pen + 0.5;
+        let is_bare = |p: &&Point| followed.iter().all(|q| q.distance(**p) > reach);
+        let bare = |&branch: &usize| graph.branches[branch].points.iter().filter(is_bare).count() as f64;
+        self.bridges.iter().copied().filter(|branch| bare(branch) >= (0.5 * pen).max(2.0)).collect()
+    }
+}
+
+/// Ink this far from every line, in half widths of the pen, no line drew: one is its edge, the rest is blur.
+const BARE_RADII: f64 = 1.2;
 
 /// A row is at least so long, in pen widths, beside others of its patch: what is shorter is the bump of a blot.
 const LEAST_ROW_PENS: f64 = 0.5;

@@ -52,8 +52,8 @@ pub(crate) struct Junctions {
 }
 
 /// Nodes whose discs of ink nearly touch and are bridged are one junction: the cluster of each node, and which branches
-/// are bridges.
-pub(crate) fn clusters(graph: &Graph) -> (Vec<usize>, Vec<bool>) {
+/// are bridges; `bars` are none.
+pub(crate) fn clusters(graph: &Graph, bars: &[usize]) -> (Vec<usize>, Vec<bool>) {
     let mut cluster: Vec<usize> = (0..graph.nodes.len()).collect();
     let pen = graph.pen_radius();
     let is_bridge = |branch: &crate::graph::Branch| {
@@ -63,7 +63,8 @@ pub(crate) fn clusters(graph: &Graph) -> (Vec<usize>, Vec<bool>) {
         // a way round between the same two nodes is no bridge, however near they are
         at.distance(graph.nodes[b].at) <= reach && branch.length() <= 1.3 * reach
     };
-    let bridges: Vec<bool> = graph.branches.iter().map(is_bridge).collect();
+    let mut bridges: Vec<bool> = graph.branches.iter().map(is_bridge).collect();
+    bars.iter().for_each(|&bar| bridges[bar] = false);
     for (branch, _) in graph.branches.iter().zip(&bridges).filter(|(_, bridge)| **bridge) {
         if let [Some(a), Some(b)] = branch.nodes {
             let (a, b) = (root(&mut cluster, a), root(&mut cluster, b));
@@ -139,6 +140,16 @@ pub(crate) fn join(dark: &Plane<u8>, lines: &[Line], cluster: &[usize]) -> Junct
 }
 
 impl Junctions {
+    /// Points along all ways through the junctions, about 1 px apart.
+    pub(crate) fn ways(&self) -> Vec<Point> {
+        let mut ways: Vec<Point> = self.joints.iter().flat_map(|joint| &joint.bridge).copied().collect();
+        for (Port { tip, .. }, stop) in &self.ends {
+            let steps = tip.at.distance(*stop).ceil().max(1.0) as u32;
+            ways.extend((0..=steps).map(|k| tip.at.lerp(*stop, f64::from(k) / f64::from(steps))));
+        }
+        ways
+    }
+
     /// One junction: the straightest pairs first, then any two that are left.
     fn resolve(&mut self, dark: &Plane<u8>, mut left: Vec<Port>, lines: &[Line]) {
         if left.len() > MOST_PORTS {

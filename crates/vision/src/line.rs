@@ -32,8 +32,14 @@ impl Line {
         let width = ridge.width;
         let mut points = bridged(dark, &ridge, branch.ring);
         (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
-        if points.is_empty() {
-            points.push(branch.points[(from + to) / 2]);
+        let n = branch.points.len();
+        match branch.nodes {
+            // of a short bar its pixels have to tell the direction
+            [Some(_), Some(_)] if points.len() < 2 && n > 3 => {
+                points = vec![branch.points[n / 4], branch.points[n - 1 - n / 4]];
+            }
+            _ if points.is_empty() => points.push(branch.points[(from + to) / 2]),
+            _ => {}
         }
         let mut line = Self { points, width, nodes: branch.nodes, ring: branch.ring, free: [false; 2] };
         if !branch.ring {

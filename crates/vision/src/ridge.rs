@@ -139,36 +139,46 @@ const LEAST_EVEN_PENS: f64 = 0.8;
 /// a line goes on thinner or thicker there, as those of letters do. Tells whether it added any.
 fn add_lost(dark: &Plane<u8>, points: &[Point], cut: Cut, places: &mut Vec<Place>) -> bool {
     let width = 2.0 * cut.radius;
-    let indices = || places.iter().map(|p| p.index);
-    let gaps = std::iter::once(0).chain(indices()).zip(indices().chain([points.len()]));
-    let is_far = |&(from, to): &(usize, usize)| {
-        let at_end = from == 0 || to == points.len();
-        (to - from) as f64 > width * if at_end { END_PENS } else { CORNER_PENS }
-    };
+    let kept: Vec<usize> = places.iter().map(|p| p.index).collect();
+    let gaps = std::iter::once(None).chain(kept.iter().map(Some)).zip(kept.iter().map(Some).chain([None]));
     let seen = |i: usize| place(dark, i, points[i], normal(points, i, 4, false)?, cut);
     let least = LEAST_EVEN.max((LEAST_EVEN_PENS * width) as usize);
     let mut lost = Vec::new();
-    for (from, to) in gaps.filter(is_far) {
-        let between: Vec<Place> = (from + 1..to).filter_map(seen).collect();
-        lost.extend(even_rows(&between).filter(|row| row.len() >= least).flatten());
+    for (before, after) in gaps {
+        let (from, to) = (before.map_or(0, |i| i + 1), after.copied().unwrap_or(points.len()));
+        let most = width * if before.is_some() && after.is_some() { CORNER_PENS } else { END_PENS };
+        if (to - from) as f64 <= most {
+            continue;
+        }
+        // what goes on from a place that is left and is as wide was left out for leaning to a corner
+        let leans = |row: &[Place]| {
+            let widths: Vec<f64> = row.iter().map(|p| p.width).collect();
+            let goes_on = (before.is_some() && row[0].index == from)
+                || (after.is_some() && row[row.len() - 1].index + 1 == to);
+            goes_on && (median(&widths) - width).abs() <= bound(width)
+        };
+        let between: Vec<Place> = (from..to).filter_map(seen).collect();
+        lost.extend(even_rows(&between).filter(|row| row.len() >= least && !leans(row)).flatten());
     }
     places.extend(&lost);
     places.sort_unstable_by_key(|p| p.index);
     !lost.is_empty()
 }
 
-/// Rows of places, as long as they can be, in which each is about as wide as all others.
+/// Rows of places next to each other, as long as they can be, in which each is about as wide as all others.
 fn even_rows(places: &[Place]) -> impl Iterator<Item = &[Place]> {
     let mut left = places;
     std::iter::from_fn(move || {
-        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        let first = left.first()?;
+        let (mut least, mut most, mut index) = (first.width, first.width, first.index);
         let even = |p: &&Place| {
             (least, most) = (least.min(p.width), most.max(p.width));
-            most - least <= bound(least)
+            index += 1;
+            most - least <= bound(least) && p.index < index
         };
         let (row, rest) = left.split_at(left.iter().take_while(even).count());
         left = rest;
-        (!row.is_empty()).then_some(row)
+        Some(row)
     })
 }
 

@@ -12,9 +12,22 @@ use tracelight_vision::{Grey, Options, trace};
 
 /// Polylines in pens of their own on 640 × 480 px, traced; strokes found, and how they compare with what was drawn.
 fn traced(figures: &[(Vec<Point>, f64)]) -> (usize, Comparison) {
+    traced_blurred(figures, 0)
+}
+
+/// The same through a lens: each of so many passes blurs by a binomial of half a pixel's variance either way.
+fn traced_blurred(figures: &[(Vec<Point>, f64)], passes: usize) -> (usize, Comparison) {
     let mut canvas = Canvas::new(640, 480);
     figures.iter().for_each(|(figure, pen)| canvas.pen(figure, *pen));
-    let levels = canvas.shares().map(|s| (245.0 - 225.0 * s) as u8).collect();
+    let mut shares: Vec<f64> = canvas.shares().collect();
+    for _ in 0..passes {
+        for step in [1, 640] {
+            let at = |i: usize| shares.get(i).copied().unwrap_or(0.0);
+            let mean = |i: usize| 0.5 * at(i) + 0.25 * (at(i.wrapping_sub(step)) + at(i + step));
+            shares = (0..shares.len()).map(mean).collect();
+        }
+    }
+    let levels = shares.iter().map(|s| (245.0 - 225.0 * s) as u8).collect();
     let found = trace(&Grey::new(640, 480, levels).unwrap(), &Options::default()).unwrap();
     let drawn: Vec<_> = found.strokes.strokes.iter().map(|s| s.path.flatten(0.02)).collect();
     let truth: Vec<_> = figures.iter().map(|(figure, _)| figure.clone()).collect();
@@ -56,5 +69,40 @@ fn an_acute_corner_reaches_to_its_point() {
         let (strokes, comparison) = traced(&[(vec![leg(-0.5), Point::new(80.0, 240.0), leg(0.5)], 5.0)]);
         assert!(comparison.coverage > 0.995 && comparison.precision > 0.995, "{degrees}°: {comparison:?}");
         assert!(strokes <= 2, "{degrees}°: {strokes}");
+    }
+}
+
+#[test]
+fn the_short_arm_of_a_letter_is_kept_though_another_pen_drew_it() {
+    for (stem, arm) in [(5.0, 6.2), (6.2, 5.0), (5.0, 6.6)] {
+        let at = |k: f64| (40.0 + 50.0 * k, 200.0);
+        let figures = (0..10).flat_map(|k| {
+            let (x, y) = at(f64::from(k));
+            [(row(&[(x, y), (x, y + 36.0)]), stem), (row(&[(x, y + 36.0), (x + 16.0, y + 36.0)]), arm)]
+        });
+        let (strokes, comparison) = traced(&figures.collect::<Vec<_>>());
+        assert_eq!(strokes, 10, "{stem} and {arm} px: one stroke for each L");
+        assert!(comparison.coverage > 0.98, "{stem} and {arm} px: {comparison:?}");
+    }
+}
+
+#[test]
+fn a_bar_as_short_as_its_junctions_are_wide_is_kept() {
+    // an R: its bar leads from the stem to where bowl and leg meet
+    for (bar, degrees) in [(9.0, 0.0), (10.0, 20.0), (11.0, 0.0), (11.0, 75.0), (12.0, 40.0), (14.0, 0.0)] {
+        let turned = |p: Point| {
+            Point::new(320.0, 240.0) + Vec2::from_angle(f64::to_radians(degrees)).rotate_scale(p.to_vec2())
+        };
+        let bowl = (0..=30).map(|k| {
+            let angle = std::f64::consts::PI * (f64::from(k) / 30.0 - 0.5);
+            Point::new(bar + 15.0 * angle.cos(), 15.0 * angle.sin())
+        });
+        let stem = row(&[(0.0, -15.0), (0.0, 45.0)]);
+        let leg = row(&[(bar, 15.0), (bar + 15.0, 45.0)]);
+        let top = stem[..1].iter().copied().chain(bowl).chain([Point::new(0.0, 15.0)]).collect();
+        let figures = [stem, top, leg].map(|figure| (figure.into_iter().map(turned).collect(), 6.0));
+        let (_, comparison) = traced_blurred(&figures, 6);
+        assert!(comparison.coverage > 0.97, "bar of {bar} px, {degrees}°: {comparison:?}");
+        assert!(comparison.precision > 0.99, "bar of {bar} px, {degrees}°: {comparison:?}");
     }
 }
