@@ -89,11 +89,15 @@ impl Ink {
         if self.above_rules > self.threshold && any_spans(&mask) {
             return over(&self.darkness, self.above_rules);
         }
-        let edge_px = self.quality.edge_px.map(|px| px / self.reduction as f64);
         match self.strength {
-            Some(strength) => with_paler(&self.darkness, mask, strength, edge_px),
+            Some(strength) => with_paler(&self.darkness, mask, strength, self.edge_px()),
             None => mask,
         }
+    }
+
+    /// How wide the ink's edges are, px of [`Self::darkness`]; `None` where too few could be measured.
+    pub(crate) fn edge_px(&self) -> Option<f64> {
+        self.quality.edge_px.map(|px| px / self.reduction as f64)
     }
 }
 

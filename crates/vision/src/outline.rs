@@ -1,6 +1,6 @@
 //! Filled shapes: strokes along their edges, holes included.
 
-use tracelight_stroke::{Point, Stroke, StrokeKind};
+use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
 
 use crate::Options;
 use crate::follow;
@@ -25,14 +25,15 @@ pub(crate) struct Outliner<'a> {
     dark: &'a Plane<u8>,
     shapes: &'a Mask,
     ink: &'a Mask,
+    edge_px: f64,
     /// Ink pixels whose left edge has been walked.
     walked: Mask,
 }
 
 impl<'a> Outliner<'a> {
     /// `shapes` is what is followed, `ink` all the ink there is: where a line leaves a shape there is no edge.
-    pub(crate) fn new(dark: &'a Plane<u8>, shapes: &'a Mask, ink: &'a Mask) -> Self {
-        Self { dark, shapes, ink, walked: Mask::empty(ink.width, ink.height) }
+    pub(crate) fn new(dark: &'a Plane<u8>, shapes: &'a Mask, ink: &'a Mask, edge_px: f64) -> Self {
+        Self { dark, shapes, ink, edge_px, walked: Mask::empty(ink.width, ink.height) }
     }
 
     /// The closed outlines of a region: outer edge and holes.
@@ -44,7 +45,7 @@ impl<'a> Outliner<'a> {
                 let border = border(self.shapes, run.from as isize, run.y as isize, &mut self.walked);
                 let points = self.places(&border, full);
                 if area(&points).abs() >= LEAST_AREA_PX2 {
-                    found.extend(stroke(&points, options));
+                    found.extend(stroke(&points, self.edge_px, options));
                 }
             }
         }
@@ -67,9 +68,21 @@ impl<'a> Outliner<'a> {
 /// Edges either side of a line that leaves a shape which show the line and not the shape.
 const BESIDE_LINES: usize = 6;
 
-fn stroke(points: &[Point], options: &Options) -> Option<Stroke> {
-    let path = follow::path(points, true, REACH_PX, options)?;
+fn stroke(points: &[Point], edge_px: f64, options: &Options) -> Option<Stroke> {
+    let together = (points.len() / ENOUGH).max((edge_px / PER_EDGE) as usize).clamp(1, MOST_TOGETHER);
+    let points: Vec<Point> = points.chunks(together).map(mean).collect();
+    let path = follow::path(&points, true, REACH_PX.max(together as f64), options)?;
     Some(Stroke { kind: StrokeKind::Outline, ..Stroke::new(path) })
+}
+
+/// As many places tell an outline: of longer ones several are made one, for their noise to even out.
+const ENOUGH: usize = 500;
+const MOST_TOGETHER: usize = 4;
+/// Across a blurred edge so many places are enough: nothing on it is smaller than the blur.
+const PER_EDGE: f64 = 3.0;
+
+fn mean(points: &[Point]) -> Point {
+    (points.iter().map(|p| p.to_vec2()).sum::<Vec2>() / points.len() as f64).to_point()
 }
 
 /// The darkness of a pixel all inside a region.
@@ -180,7 +193,7 @@ mod tests {
         };
         let dark = Plane { width, height, values: (0..width * height).map(level).collect() };
         let mask = over(&dark, 127);
-        let mut outliner = Outliner::new(&dark, &mask, &mask);
+        let mut outliner = Outliner::new(&dark, &mask, &mask, 1.0);
         regions(&mask).iter().flat_map(|r| outliner.strokes(r, &Options::default())).collect()
     }
 

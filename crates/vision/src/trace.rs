@@ -6,7 +6,6 @@ use crate::inside::inside;
 use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
-use crate::plane::Plane;
 use crate::region::{self, Region, pinholes, regions};
 use crate::{Grey, Quality, VisionError, gap, missed, sweep};
 
@@ -130,7 +129,7 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
             let area = regions.iter().map(Region::area).sum();
             (vec![sweep::stroke(&mask, area)?], 0.0)
         }
-        Mode::Outline => (outlines(&ink.darkness, &mask, &mask, &regions, options), 0.0),
+        Mode::Outline => (outlines(&ink, &mask, &mask, &regions, options), 0.0),
         Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, &mask, regions, options),
     };
     if strokes.is_empty() {
@@ -214,15 +213,9 @@ fn drawn(mask: &mut Mask, least_px: usize) -> Result<Vec<Region>, VisionError> {
 /// Fewer pixels than this were never drawn, nor left out, on purpose.
 const LEAST_PX: usize = 6;
 
-/// The outlines of some shapes, which are all the ink of `filled`; `ink` is all there is.
-fn outlines(
-    dark: &Plane<u8>,
-    filled: &Mask,
-    ink: &Mask,
-    shapes: &[Region],
-    options: &Options,
-) -> Vec<Stroke> {
-    let mut outliner = Outliner::new(dark, filled, ink);
+/// The outlines of some shapes, which are all the ink of `filled`; `mask` is all there is.
+fn outlines(ink: &Ink, filled: &Mask, mask: &Mask, shapes: &[Region], options: &Options) -> Vec<Stroke> {
+    let mut outliner = Outliner::new(&ink.darkness, filled, mask, ink.edge_px().unwrap_or(1.0));
     shapes.iter().flat_map(|shape| outliner.strokes(shape, options)).collect()
 }
 
@@ -233,7 +226,7 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
         Mode::Centreline => Parts::all_lines(mask, regions),
         _ => Parts::of(mask, regions, options.despeckle_px2.is_some()),
     };
-    let mut strokes = outlines(dark, &parts.shape_mask, mask, &parts.shapes, options);
+    let mut strokes = outlines(ink, &parts.shape_mask, mask, &parts.shapes, options);
     let rows: Vec<Row> = parts
         .lines
         .iter()
@@ -253,7 +246,7 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
     }
     // no lines, whatever they are: then their edges at least
     if !lost_ink.is_empty() {
-        strokes.extend(outlines(dark, &lost_ink, mask, &region::regions(&lost_ink), options));
+        strokes.extend(outlines(ink, &lost_ink, mask, &region::regions(&lost_ink), options));
     }
     (strokes, missed as f64 / (all as f64).max(1.0))
 }
