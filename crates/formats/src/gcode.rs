@@ -43,10 +43,11 @@ pub fn write(drawing: &Drawing, width_m: f64, height_m: f64, options: &GcodeOpti
     let millimetres = drawing.transformed(Affine::new([1e3, 0.0, 0.0, 1e3, 0.5 * w, 0.5 * h]));
     let light = if options.dynamic { "M4" } else { "M3" };
     let mut gcode = format!(
-        "; Tracelight: {} strokes on {} x {} mm, origin at the lower left corner\n\
+        "; Tracelight: {} stroke{} on {} x {} mm, origin at the lower left corner\n\
          ; for GRBL in laser mode ($32=1); S{} is full power if $30 is 1000\n\
          G21 G90 G17 G94\nM5\n{light} S0\n",
         drawing.strokes.len(),
+        if drawing.strokes.len() == 1 { "" } else { "s" },
         fixed(w, 2),
         fixed(h, 2),
         fixed(options.power, 1),

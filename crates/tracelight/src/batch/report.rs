@@ -9,6 +9,7 @@ use crate::batch::{Batch, table};
 use crate::cli::Answer;
 use crate::failure::{Failure, Status};
 use crate::progress::Progress;
+use crate::units::counted;
 
 /// What became of one picture.
 #[derive(Clone, Debug)]
@@ -71,12 +72,10 @@ impl Totals {
     /// The table's last lines.
     pub(super) fn text(&self) -> String {
         let Self { pictures, traced, kept, failed, strokes, timing_ms } = self;
-        let plural = if *pictures == 1 { "" } else { "s" };
+        let (pictures, strokes) = (counted(*pictures, "picture"), counted(*strokes, "stroke"));
         let time = table::time(*timing_ms);
         let rate = self.rate().map_or_else(String::new, |rate| format!(", {rate:.1} pictures a second"));
-        format!(
-            "{pictures} picture{plural}: {traced} traced, {kept} kept, {failed} failed\n{strokes} strokes; {time}{rate}"
-        )
+        format!("{pictures}: {traced} traced, {kept} kept, {failed} failed\n{strokes}; {time}{rate}")
     }
 
     /// Pictures a second: what was kept took no time, what failed did. None where that says nothing.

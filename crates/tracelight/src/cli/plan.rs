@@ -16,6 +16,7 @@ use crate::progress::Progress;
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::sketch::{Placed, place, sketch};
 use crate::stop::Stop;
+use crate::units::counted;
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]
@@ -71,8 +72,8 @@ fn text(schedule: &Schedule) -> String {
     let gap =
         ordered.gap_percent().map_or_else(String::new, |g| format!(", at most {g:.1} % over the shortest"));
     format!(
-        "{} strokes, {:.3} m lit, {:.3} m travel{gap}\n{:.3} s: {:.3} s lit, up to {:.3} m/s, torque up to {:.0} %",
-        ordered.drawing.strokes.len(),
+        "{}, {:.3} m lit, {:.3} m travel{gap}\n{:.3} s: {:.3} s lit, up to {:.3} m/s, torque up to {:.0} %",
+        counted(ordered.drawing.strokes.len(), "stroke"),
         ordered.drawing.length(1e-6),
         ordered.travel,
         plan.duration_s(),

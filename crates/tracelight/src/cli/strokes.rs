@@ -18,6 +18,7 @@ use crate::progress::Progress;
 use crate::quality::QualityFigures;
 use crate::sketch::{Sketch, place, sketch};
 use crate::stop::Stop;
+use crate::units::counted;
 
 /// How close `points` keep to their path, px.
 const POINTS_TOLERANCE_PX: f64 = 0.05;
@@ -190,9 +191,9 @@ fn write(path: &Path, sketch: &Sketch, args: &StrokesArgs, json: &str) -> Result
 
 fn line(picture: &str, traced: &Finding) -> String {
     let Figures { strokes, closed, length, sheet: (width, height), unit, .. } = &traced.figures;
-    let unit = unit.name();
+    let (strokes, unit) = (counted(*strokes, "stroke"), unit.name());
     format!(
-        "{picture}: {strokes} strokes ({closed} closed), {length:.0} {unit} of line on a sheet of {width:.0} × \
+        "{picture}: {strokes} ({closed} closed), {length:.0} {unit} of line on a sheet of {width:.0} × \
          {height:.0} {unit}, {:.0} ms",
         traced.vision_ms
     )

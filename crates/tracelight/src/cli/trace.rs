@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::job::{self, Outcome};
 use crate::output::Summary;
 use crate::stop::Stop;
+use crate::units::counted;
 
 pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
     let Outcome { summary, dir, failure } = job::trace(args, stop)?;
@@ -17,10 +18,10 @@ pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
 fn text(s: &Summary) -> String {
     let mm = |m: f64| m * 1e3;
     let mut text = format!(
-        "{}: {} strokes, {:.3} m of line at {:.0} × {:.0} mm\n\
+        "{}: {}, {:.3} m of line at {:.0} × {:.0} mm\n\
          time:   {:.2} s, of it lit {:.2} s at {:.3} m/s; torque up to {:.0} %",
         s.picture.path,
-        s.strokes.count,
+        counted(s.strokes.count, "stroke"),
         s.strokes.length_m,
         mm(s.target.width_m),
         mm(s.target.height_m),

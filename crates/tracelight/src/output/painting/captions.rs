@@ -4,6 +4,7 @@ use super::layout::{Layout, WIDTH};
 use super::lettering::{Align, Pen, fitted};
 use super::plane::Plane;
 use crate::output::Job;
+use crate::units::counted;
 
 /// Height of a capital, px.
 const LARGE: f64 = 13.0;
@@ -48,7 +49,7 @@ fn under_the_sheet(chalk: &mut Plane, job: &Job<'_>, layout: &Layout) {
     let name = fitted(&job.title(), LARGE, layout.sheet_size.x.max(200.0));
     CHALK.text(chalk, &name, LARGE, Point::new(middle, y), Align::Middle);
     let size = job.picture.map(|p| format!("{} × {} px", p.raster.width(), p.raster.height()));
-    let size = size.unwrap_or_else(|| format!("{} strokes", job.drawing.strokes.len()));
+    let size = size.unwrap_or_else(|| counted(job.drawing.strokes.len(), "stroke"));
     FAINT.text(chalk, &size, SMALL, Point::new(middle, y + 24.0), Align::Middle);
 }
 
