@@ -47,7 +47,7 @@ impl Paper {
             values: bright.values.iter().zip(surface.on(&bright)).map(|(b, s)| b / s).collect(),
             ..bright.clone()
         };
-        let even = filled_in(&ratio);
+        let even = filled_in(&ratio, &reached(&bright, &ratio));
         let levels =
             even.values.iter().zip(surface.on(&even)).map(|(r, s)| (r * s).clamp(DIMMEST, 255.0)).collect();
         let levels = Plane { values: levels, ..even };
@@ -242,9 +242,29 @@ fn basis<T>(tiles: &Plane<T>, i: usize) -> [f64; 6] {
     [1.0, x, y, x * x, x * y, y * y]
 }
 
-/// Ratios of brightness to surface, with those of ink replaced by their neighbours'.
-fn filled_in(ratio: &Plane<f64>) -> Plane<f64> {
-    let mut paper: Vec<bool> = ratio.values.iter().map(|&r| r >= INK_RATIO).collect();
+/// Light changes by less than this from tile to tile, as a ratio: from one side to the other it falls to a third over
+/// some forty tiles, and twice as steeply towards a lens's corners. What ink covers begins with a step.
+const GENTLE: f64 = 0.93;
+
+/// The tiles that are reached from paper at the picture's border without a step.
+fn reached(bright: &Plane<f64>, ratio: &Plane<f64>) -> Vec<bool> {
+    let mut seen = vec![false; bright.values.len()];
+    for i in (0..seen.len()).filter(|&i| bright.is_at_border(i)) {
+        if !seen[i] && ratio.values[i] >= INK_RATIO {
+            shadow::flooded(bright, i, GENTLE, &mut seen);
+        }
+    }
+    seen
+}
+
+/// Ratios of brightness to surface, with those of ink replaced by their neighbours'. What is not `reached` from the
+/// border and darker than what is near it was filled in, however pale.
+fn filled_in(ratio: &Plane<f64>, reached: &[bool]) -> Plane<f64> {
+    let is_paper = |i: usize| {
+        let level = ratio.values[i];
+        reached[i] || (level >= INK_RATIO && level >= GENTLE * around(ratio, reached, i, 3))
+    };
+    let mut paper: Vec<bool> = (0..reached.len()).map(is_paper).collect();
     let dips: Vec<bool> =
         (0..paper.len()).map(|i| ratio.values[i] < DIP * around(ratio, &paper, i, 2)).collect();
     paper.iter_mut().zip(dips).for_each(|(p, dip)| *p &= !dip);

@@ -233,9 +233,20 @@ impl Graph {
         at(90) > 1.5 * at(50) + 0.7
     }
 
-    /// Whether the ink is hardly longer than wide.
+    /// Whether the ink is hardly longer than wide, or goes round holes that are smaller than it is wide.
     fn is_blob(&self) -> bool {
-        self.length() < 2.5 * 2.0 * self.widest()
+        let width = 2.0 * self.widest();
+        // a circle whose radius is its pen's width has a hole of that diameter
+        let least = std::f64::consts::TAU * self.rounds() as f64;
+        self.length() < width * least.max(2.5)
+    }
+
+    /// How many ways round there are in a connected graph (its first Betti number).
+    fn rounds(&self) -> usize {
+        let rings = self.branches.iter().filter(|b| b.ring).count();
+        // free ends are nodes of their own
+        let free = self.branches.iter().flat_map(|b| b.nodes).filter(Option::is_none).count() - 2 * rings;
+        (self.branches.len() + usize::from(rings == 0)).saturating_sub(self.nodes.len() + free)
     }
 
     fn widest(&self) -> f64 {

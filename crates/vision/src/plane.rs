@@ -36,6 +36,12 @@ impl<T: Copy + Default> Plane<T> {
         }
     }
 
+    /// Whether the value with this number is one of the outermost.
+    pub(crate) fn is_at_border(&self, i: usize) -> bool {
+        let (x, y) = (i % self.width, i / self.width);
+        x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
+    }
+
     /// The nearest place within the image.
     pub(crate) fn clamp(&self, p: Point) -> Point {
         Point::new(p.x.clamp(0.0, self.width as f64), p.y.clamp(0.0, self.height as f64))

@@ -26,13 +26,9 @@ fn patches(bright: &Plane<f64>) -> Vec<f64> {
     let mut found = Vec::new();
     for start in 0..seen.len() {
         if !seen[start] {
-            let patch = flooded(bright, start, &mut seen);
-            let on_border = |i: &&usize| {
-                let (x, y) = (**i % bright.width, **i / bright.width);
-                x == 0 || y == 0 || x + 1 == bright.width || y + 1 == bright.height
-            };
+            let patch = flooded(bright, start, SAME, &mut seen);
             let large = patch.len() as f64 >= LEAST_SHARE * seen.len() as f64;
-            if large && patch.iter().filter(on_border).count() > 2 {
+            if large && patch.iter().filter(|&&i| bright.is_at_border(i)).count() > 2 {
                 found.push(patch.iter().map(|&i| bright.values[i]).sum::<f64>() / patch.len() as f64);
             }
         }
@@ -40,8 +36,8 @@ fn patches(bright: &Plane<f64>) -> Vec<f64> {
     found
 }
 
-/// The tiles that can be reached from one without a step in brightness.
-fn flooded(bright: &Plane<f64>, start: usize, seen: &mut [bool]) -> Vec<usize> {
+/// The tiles that can be reached from one over neighbours whose brightness differs by no more than the ratio `same`.
+pub(crate) fn flooded(bright: &Plane<f64>, start: usize, same: f64, seen: &mut [bool]) -> Vec<usize> {
     let mut patch = vec![start];
     seen[start] = true;
     let mut next = 0;
@@ -52,7 +48,7 @@ fn flooded(bright: &Plane<f64>, start: usize, seen: &mut [bool]) -> Vec<usize> {
             if inside {
                 let k = y as usize * bright.width + x as usize;
                 let (a, b) = (bright.values[i], bright.values[k]);
-                if !seen[k] && a.min(b) > SAME * a.max(b) {
+                if !seen[k] && a.min(b) > same * a.max(b) {
                     seen[k] = true;
                     patch.push(k);
                 }
