@@ -3,7 +3,6 @@
 use tracelight_stroke::{FitOptions, Parabola, Path, Point, fit, simplify};
 
 use crate::Options;
-use crate::ridge::median;
 
 /// Tolerance over the points' own noise: their largest deviations are three to four times its mean square's root,
 /// and the fit uses 0.7 of the tolerance.
@@ -44,7 +43,11 @@ fn stays_near(path: &Path, points: &[Point], margin: f64) -> bool {
     })
 }
 
-/// How far points scatter about their line, px: the median over windows.
+/// The median of windows' scatters over the least tenth of them, where all have the same noise.
+const TENTH_TO_MEDIAN: f64 = 1.35;
+
+/// How far points scatter about their line, px: in the median over windows, as the calmest tenth of them tells it, for
+/// of a small star most have a corner in them.
 fn noise_px(points: &[Point]) -> f64 {
     let spacing = points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>() / points.len() as f64;
     let window = ((WINDOW_PX / spacing.max(1e-9)) as usize).clamp(LEAST_WINDOW, WINDOW_PX as usize);
@@ -59,5 +62,10 @@ fn noise_px(points: &[Point]) -> f64 {
         Parabola::through(samples).map(|p| p.rms)
     };
     let stride = (points.len() / MOST_WINDOWS).max(4);
-    own * median(&points.windows(window).step_by(stride).filter_map(rms).collect::<Vec<f64>>())
+    let mut scatters: Vec<f64> = points.windows(window).step_by(stride).filter_map(rms).collect();
+    let tenth = scatters.len() / 10;
+    if scatters.is_empty() {
+        return 0.0;
+    }
+    TENTH_TO_MEDIAN * own * *scatters.select_nth_unstable_by(tenth, f64::total_cmp).1
 }

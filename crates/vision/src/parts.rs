@@ -201,12 +201,13 @@ fn graphs(mask: &Mask, regions: Vec<Region>) -> Vec<(Region, Graph)> {
     regions.into_iter().map(read).collect()
 }
 
-/// The picture's pen: the median width along all of its lines, px; 0 if there are none.
+/// The picture's pen, px: the median width along all of its lines; where there are none, of the lines that lead to
+/// shapes; 0 if there are none either.
 fn pen_width<'a>(graphs: impl Iterator<Item = &'a Graph>) -> f64 {
-    let lines = graphs.filter(|g| !g.is_uneven() && !g.is_blob());
-    2.0 * median(
-        &lines.flat_map(|g| g.branches.iter().flat_map(|b| b.radii.iter().copied())).collect::<Vec<_>>(),
-    )
+    let (uneven, even): (Vec<&Graph>, Vec<&Graph>) = graphs.partition(|graph| graph.is_uneven());
+    let lines: Vec<f64> = even.iter().filter(|graph| !graph.is_blob()).flat_map(|g| g.radii()).collect();
+    let lead = || uneven.iter().flat_map(|graph| graph.narrow_radii()).collect();
+    2.0 * median(&if lines.is_empty() { lead() } else { lines })
 }
 
 /// What this share of sorted values, %, are under; 0 of none.
@@ -239,6 +240,14 @@ impl Graph {
         // a circle whose radius is its pen's width has a hole of that diameter
         let least = std::f64::consts::TAU * self.rounds() as f64;
         self.length() < width * least.max(2.5)
+    }
+
+    /// The half widths of the part that is about as narrow as the narrowest quarter, if that is long enough for a line.
+    fn narrow_radii(&self) -> Vec<f64> {
+        let mut radii = self.radii();
+        let narrow = at_share(&radii, 25);
+        radii.retain(|r| (0.8 * narrow..=1.25 * narrow + 0.5).contains(r));
+        if radii.len() as f64 > 8.0 * narrow { radii } else { Vec::new() }
     }
 
     /// How many ways round there are in a connected graph (its first Betti number).

@@ -24,7 +24,7 @@ const SURE_SHARE: f64 = 0.04;
 
 /// A row through a line falls and rises once. With fewer thin runs than this share of the turns the picture is one of
 /// shapes, and its thin places are gaps as well as lines.
-const SHAPES: i64 = 8;
+const SHAPES: i64 = 6;
 
 /// Whether the picture's lines are lighter than what they are drawn on.
 ///

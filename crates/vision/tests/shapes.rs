@@ -1,0 +1,98 @@
+//! Filled shapes come back as their outlines: pale ones, ones with holes, small ones with many corners.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+use std::f64::consts::TAU;
+
+#[path = "support/raster.rs"]
+#[allow(dead_code, reason = "each test draws with some of it")]
+mod raster;
+
+use raster::Canvas;
+use tracelight_stroke::{Comparison, Point, StrokeKind, Vec2, compare_polylines};
+use tracelight_vision::{Grey, Options, Traced, trace};
+
+/// What is found of ink on paper of level 245, and how it compares with what was drawn.
+fn traced(canvas: &Canvas, width: usize, ink: f64, truth: &[Vec<Point>]) -> (Traced, Comparison) {
+    let levels: Vec<u8> = canvas.shares().map(|s| (245.0 - (245.0 - ink) * s) as u8).collect();
+    let height = levels.len() / width;
+    let found = trace(&Grey::new(width, height, levels).unwrap(), &Options::default()).unwrap();
+    let drawn: Vec<_> = found.strokes.strokes.iter().map(|s| s.path.flatten(0.02)).collect();
+    let comparison = compare_polylines(&drawn, truth, 2.0).unwrap();
+    (found, comparison)
+}
+
+fn ring(centre: (f64, f64), radii: (f64, f64)) -> Vec<Point> {
+    let at = |k: u32| {
+        let way = Vec2::from_angle(TAU * f64::from(k) / 200.0);
+        Point::new(centre.0 + radii.0 * way.x, centre.1 + radii.1 * way.y)
+    };
+    (0..=200).map(at).collect()
+}
+
+/// A star of so many points, from its hollows' radius to its tips', closed.
+fn star(centre: (f64, f64), radii: (f64, f64), points: u32) -> Vec<Point> {
+    let at = |k: u32| {
+        let radius = if k.is_multiple_of(2) { radii.1 } else { radii.0 };
+        Point::from(centre) + Vec2::from_angle(TAU * f64::from(k) / f64::from(2 * points) + 0.1) * radius
+    };
+    (0..=2 * points).map(at).collect()
+}
+
+#[test]
+fn a_large_pale_shape_is_no_shadow() {
+    for ink in [170.0, 190.0, 205.0] {
+        for radii in [(90.0, 90.0), (140.0, 100.0), (60.0, 45.0)] {
+            let truth = [ring((330.0, 230.0), radii)];
+            let mut canvas = Canvas::new(640, 480);
+            canvas.fill(&truth);
+            let (found, comparison) = traced(&canvas, 640, ink, &truth);
+            assert_eq!(found.strokes.strokes.len(), 1, "level {ink}, {radii:?}");
+            assert!(comparison.coverage > 0.999 && comparison.precision > 0.999, "{ink}: {comparison:?}");
+        }
+    }
+}
+
+#[test]
+fn a_small_hole_makes_no_pen_of_a_shape() {
+    for hole in [4.0, 5.5, 7.0] {
+        let disc = [ring((200.0, 150.0), (27.0, 27.0)), ring((200.0, 150.0), (hole, hole))];
+        let drop = ring((420.0, 300.0), (16.0, 13.0));
+        let truth = [&disc[..], &[drop]].concat();
+        let mut canvas = Canvas::new(640, 480);
+        canvas.fill(&truth);
+        let (found, comparison) = traced(&canvas, 640, 30.0, &truth);
+        let is_outline = |s: &tracelight_stroke::Stroke| s.kind == StrokeKind::Outline;
+        assert!(found.strokes.strokes.iter().all(is_outline), "hole of {hole} px");
+        assert_eq!(found.strokes.strokes.len(), 3, "hole of {hole} px");
+        assert!(comparison.coverage > 0.999 && comparison.precision > 0.999, "{hole}: {comparison:?}");
+    }
+}
+
+#[test]
+fn the_stick_of_a_lollipop_tells_the_pen_where_it_is_the_only_line() {
+    // the second shape would else be lines about its two holes
+    let holes = [ring((430.0, 318.0), (6.0, 6.0)), ring((430.0, 342.0), (6.0, 6.0))];
+    let shapes = [vec![star((430.0, 330.0), (30.0, 36.0), 3)], holes.to_vec()].concat();
+    let stick = vec![Point::new(100.0, 300.0), Point::new(160.0, 170.0)];
+    let mut canvas = Canvas::new(640, 480);
+    canvas.fill(&shapes);
+    canvas.pen(&stick, 4.0);
+    let disc = ring((165.0, 159.0), (12.0, 12.0));
+    canvas.pen(&[Point::new(165.0, 159.0); 2], 24.0);
+    let (found, comparison) = traced(&canvas, 640, 30.0, &[shapes, vec![stick, disc]].concat());
+    let lines = found.strokes.strokes.iter().filter(|s| s.kind == StrokeKind::Centreline).count();
+    assert_eq!((lines, found.strokes.strokes.len()), (1, 5));
+    assert!(comparison.coverage > 0.98 && comparison.precision > 0.99, "{comparison:?}");
+}
+
+#[test]
+fn a_small_star_keeps_its_points() {
+    for (points, radii) in [(6, (15.0, 26.0)), (6, (17.0, 30.0)), (8, (20.0, 32.0))] {
+        let truth = [star((160.0, 120.0), radii, points)];
+        let mut canvas = Canvas::new(320, 240);
+        canvas.fill(&truth);
+        let (_, comparison) = traced(&canvas, 320, 30.0, &truth);
+        assert!(comparison.rms < 0.3 && comparison.coverage > 0.99, "{points} points: {comparison:?}");
+    }
+}
