@@ -77,7 +77,7 @@ fn stroke(points: &[Point], edge_px: f64, options: &Options) -> Option<Stroke> {
 
 /// As many places tell an outline: of longer ones several are made one, for their noise to even out.
 const ENOUGH: usize = 500;
-const MOST_TOGETHER: usize = 4;
+const MOST_TOGETHER: usize = 2;
 /// Across a blurred edge so many places are enough: nothing on it is smaller than the blur.
 const PER_EDGE: f64 = 3.0;
 

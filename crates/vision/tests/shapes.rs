@@ -96,3 +96,19 @@ fn a_small_star_keeps_its_points() {
         assert!(comparison.rms < 0.3 && comparison.coverage > 0.99, "{points} points: {comparison:?}");
     }
 }
+
+#[test]
+fn steps_of_a_few_pixels_are_followed_though_most_of_an_outline_is_steps() {
+    for side in [8.0, 10.0, 14.0] {
+        // down a diagonal, and back along a border
+        let corner =
+            |k: u32| Point::new(60.0 + side * f64::from(k / 2), 50.0 + side * f64::from(k.div_ceil(2)));
+        let steps: Vec<Point> = (0..=48).map(corner).collect();
+        let back = [Point::new(60.0, steps[48].y), steps[0]];
+        let truth = [[&steps[..], &back].concat()];
+        let mut canvas = Canvas::new(640, 480);
+        canvas.fill(&truth);
+        let (_, comparison) = traced(&canvas, 640, 30.0, &truth);
+        assert!(comparison.max < 1.5 && comparison.rms < 0.25, "{side} px: {comparison:?}");
+    }
+}
