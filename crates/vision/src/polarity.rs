@@ -39,13 +39,24 @@ pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256]) -> bool {
     };
     let least = NOISE * noise(image, SAMPLED / 2);
     let runs = Runs::of(image, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
-    if runs.are_sure() {
-        return runs.light > runs.dark;
-    }
     // light multiplies: a shadow on paper is nearer to its brightest than to its ink as a ratio
-    let border = border_level(image).max(10.0);
-    border / low.max(10.0) < high / border
+    let middle = (low.max(10.0) * high).sqrt();
+    let light_border = border_level(image).max(10.0) >= middle;
+    if !runs.are_sure() {
+        return !light_border;
+    }
+    let light_ink = runs.light > runs.dark;
+    let all: u32 = levels.iter().sum();
+    let above: u32 = levels[middle as usize + 1..].iter().sum();
+    let light = f64::from(above) / f64::from(all.max(1));
+    let ink = if light_ink { light } else { 1.0 - light };
+    // nothing but shapes, whose holes are thin: what is ink then would be most of the picture, its border too
+    let contradicted = light_ink == light_border && ink > MOST_INK;
+    light_ink != contradicted
 }
+
+/// No drawing's ink is a larger share of its picture.
+const MOST_INK: f64 = 0.6;
 
 /// Thin runs between two of the other kind, without single pixels, which are specks.
 #[derive(Default)]
