@@ -17,8 +17,14 @@ const MOST_WINDOWS: usize = 100;
 
 /// The path through points; where their noise is worth more than the tolerance, the tolerance gives way. `reach_px`
 /// is how far about a corner they are not to be trusted.
-pub(crate) fn path(points: &[Point], closed: bool, reach_px: f64, options: &Options) -> Option<Path> {
-    let tolerance = options.tolerance_px.max(TOLERANCE_TO_NOISE * noise_px(points));
+pub(crate) fn path(
+    points: &[Point],
+    closed: bool,
+    noise_px: f64,
+    reach_px: f64,
+    options: &Options,
+) -> Option<Path> {
+    let tolerance = options.tolerance_px.max(TOLERANCE_TO_NOISE * noise_px);
     let fitted =
         |reach| fit(points, closed, &FitOptions { tolerance, corner_rad: options.corner_rad, reach });
     let margin = 2.0 * tolerance + 1.0 + (2.0 * reach_px).min(6.0);
@@ -43,12 +49,27 @@ fn stays_near(path: &Path, points: &[Point], margin: f64) -> bool {
     })
 }
 
-/// The median of windows' scatters over the least tenth of them, where all have the same noise.
-const TENTH_TO_MEDIAN: f64 = 1.35;
+/// How far points scatter about their line, px: the median over windows as their quarter tells it, for many may have a
+/// corner in them. (Some windows are where the line was carried on, and have no noise at all.)
+pub(crate) fn noise_px(points: &[Point]) -> f64 {
+    1.15 * from_below(scatters(points), 4)
+}
 
-/// How far points scatter about their line, px: in the median over windows, as the calmest tenth of them tells it, for
-/// of a small star most have a corner in them.
-fn noise_px(points: &[Point]) -> f64 {
+/// The same where no points were added: as the calmest tenth of the windows tells it, for of a small star most have a
+/// corner in them.
+pub(crate) fn calm_noise_px(points: &[Point]) -> f64 {
+    1.35 * from_below(scatters(points), 10)
+}
+
+/// The value that an n-th of all are below, but never the least of several; 0 of none.
+fn from_below(mut values: Vec<f64>, n: usize) -> f64 {
+    let Some(last) = values.len().checked_sub(1) else { return 0.0 };
+    let nth = (values.len() / n).max(1).min(last);
+    *values.select_nth_unstable_by(nth, f64::total_cmp).1
+}
+
+/// How far points scatter about the parabola through each of up to [`MOST_WINDOWS`] windows and some, px, root mean square.
+fn scatters(points: &[Point]) -> Vec<f64> {
     let spacing = points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>() / points.len() as f64;
     let window = ((WINDOW_PX / spacing.max(1e-9)) as usize).clamp(LEAST_WINDOW, WINDOW_PX as usize);
     // three points of each window are the parabola's own
@@ -59,13 +80,8 @@ fn noise_px(points: &[Point]) -> f64 {
             length += if k > 0 { p.distance(window[k - 1]) } else { 0.0 };
             (length, *p)
         });
-        Parabola::through(samples).map(|p| p.rms)
+        Parabola::through(samples).map(|p| own * p.rms)
     };
     let stride = (points.len() / MOST_WINDOWS).max(4);
-    let mut scatters: Vec<f64> = points.windows(window).step_by(stride).filter_map(rms).collect();
-    let tenth = scatters.len() / 10;
-    if scatters.is_empty() {
-        return 0.0;
-    }
-    TENTH_TO_MEDIAN * own * *scatters.select_nth_unstable_by(tenth, f64::total_cmp).1
+    points.windows(window).step_by(stride).filter_map(rms).collect()
 }

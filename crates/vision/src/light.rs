@@ -257,12 +257,18 @@ fn reached(bright: &Plane<f64>, ratio: &Plane<f64>) -> Vec<bool> {
     seen
 }
 
+/// Paper has at least this share of the surface's brightness, however gently it fades: what is shaded down to less was
+/// meant.
+const LEAST_PAPER: f64 = 0.5;
+
 /// Ratios of brightness to surface, with those of ink replaced by their neighbours'. What is not `reached` from the
-/// border and darker than what is near it was filled in, however pale.
+/// border and darker than what is near it was filled in, however pale; unless nothing is reached, on a dark table.
 fn filled_in(ratio: &Plane<f64>, reached: &[bool]) -> Plane<f64> {
+    let on_table = !reached.contains(&true);
     let is_paper = |i: usize| {
         let level = ratio.values[i];
-        reached[i] || (level >= INK_RATIO && level >= GENTLE * around(ratio, reached, i, 3))
+        let even = || on_table || level >= GENTLE * around(ratio, reached, i, 3);
+        (reached[i] && level >= LEAST_PAPER) || (level >= INK_RATIO && even())
     };
     let mut paper: Vec<bool> = (0..reached.len()).map(is_paper).collect();
     let dips: Vec<bool> =

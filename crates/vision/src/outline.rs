@@ -69,17 +69,18 @@ impl<'a> Outliner<'a> {
 const BESIDE_LINES: usize = 6;
 
 fn stroke(points: &[Point], edge_px: f64, options: &Options) -> Option<Stroke> {
-    let together = (points.len() / ENOUGH).max((edge_px / PER_EDGE) as usize).clamp(1, MOST_TOGETHER);
-    let points: Vec<Point> = points.chunks(together).map(mean).collect();
-    let path = follow::path(&points, true, REACH_PX.max(together as f64), options)?;
+    // where a line leaves the shape there are no places, and none in the middle of it
+    let unbroken = points.chunk_by(|a, b| a.distance(*b) < 2.0);
+    let together = if points.len() >= MANY || edge_px >= BLURRED_PX { 2 } else { 1 };
+    let fewer: Vec<Point> = unbroken.flat_map(|row| row.chunks(together)).map(mean).collect();
+    let path = follow::path(&fewer, true, follow::calm_noise_px(points), REACH_PX, options)?;
     Some(Stroke { kind: StrokeKind::Outline, ..Stroke::new(path) })
 }
 
-/// As many places tell an outline: of longer ones several are made one, for their noise to even out.
-const ENOUGH: usize = 500;
-const MOST_TOGETHER: usize = 2;
-/// Across a blurred edge so many places are enough: nothing on it is smaller than the blur.
-const PER_EDGE: f64 = 3.0;
+/// Of so many places two are made one, for their noise to even out; also where edges are so wide that nothing on them is
+/// as small as two pixels.
+const MANY: usize = 1000;
+const BLURRED_PX: f64 = 6.0;
 
 fn mean(points: &[Point]) -> Point {
     (points.iter().map(|p| p.to_vec2()).sum::<Vec2>() / points.len() as f64).to_point()

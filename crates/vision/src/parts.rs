@@ -50,6 +50,7 @@ impl Parts {
         let thin = graphs(&mask.clone().without(&mask_of(mask, &bulky)), thin);
         let pen = pen_width(thin.iter().map(|(_, graph)| graph));
         let thin = if keep_dust { thin } else { without_dust(mask, &bulky, thin, pen) };
+        let pen = if pen > 0.0 { pen } else { stick_width(thin.iter().map(|(_, graph)| graph)) };
         let (lines, wide): (Vec<_>, Vec<_>) =
             thin.into_iter().partition(|(_, graph)| graph.is_pure_line(pen));
         let mut sorter = Sorter { pen, lines, shape_mask: Mask::empty(mask.width, mask.height) };
@@ -201,13 +202,16 @@ fn graphs(mask: &Mask, regions: Vec<Region>) -> Vec<(Region, Graph)> {
     regions.into_iter().map(read).collect()
 }
 
-/// The picture's pen, px: the median width along all of its lines; where there are none, of the lines that lead to
-/// shapes; 0 if there are none either.
+/// The median width along all lines of the picture, px; 0 if there are none.
 fn pen_width<'a>(graphs: impl Iterator<Item = &'a Graph>) -> f64 {
-    let (uneven, even): (Vec<&Graph>, Vec<&Graph>) = graphs.partition(|graph| graph.is_uneven());
-    let lines: Vec<f64> = even.iter().filter(|graph| !graph.is_blob()).flat_map(|g| g.radii()).collect();
-    let lead = || uneven.iter().flat_map(|graph| graph.narrow_radii()).collect();
-    2.0 * median(&if lines.is_empty() { lead() } else { lines })
+    let lines = graphs.filter(|graph| !graph.is_uneven() && !graph.is_blob());
+    2.0 * median(&lines.flat_map(Graph::radii).collect::<Vec<_>>())
+}
+
+/// The median width of lines that lead to shapes, px; 0 if there are none.
+fn stick_width<'a>(graphs: impl Iterator<Item = &'a Graph>) -> f64 {
+    let sticks = graphs.filter(|graph| graph.is_uneven());
+    2.0 * median(&sticks.flat_map(Graph::narrow_radii).collect::<Vec<_>>())
 }
 
 /// What this share of sorted values, %, are under; 0 of none.
@@ -236,10 +240,14 @@ impl Graph {
 
     /// Whether the ink is hardly longer than wide, or goes round holes that are smaller than it is wide.
     fn is_blob(&self) -> bool {
-        let width = 2.0 * self.widest();
-        // a circle whose radius is its pen's width has a hole of that diameter
-        let least = std::f64::consts::TAU * self.rounds() as f64;
-        self.length() < width * least.max(2.5)
+        let width = |share| 2.0 * at_share(&self.radii(), share);
+        let least = match self.rounds() {
+            0 => 2.5 * 2.0 * self.widest(),
+            // circles whose radius is the width; of more, which share their sides, squares of two widths
+            rounds @ 1..=2 => std::f64::consts::TAU * rounds as f64 * width(75),
+            rounds => 4.0 * (rounds + 1) as f64 * width(50),
+        };
+        self.length() < least
     }
 
     /// The half widths of the part that is about as narrow as the narrowest quarter, if that is long enough for a line.
@@ -253,9 +261,10 @@ impl Graph {
     /// How many ways round there are in a connected graph (its first Betti number).
     fn rounds(&self) -> usize {
         let rings = self.branches.iter().filter(|b| b.ring).count();
-        // free ends are nodes of their own
+        // free ends are nodes of their own; some nodes have lost their branches
         let free = self.branches.iter().flat_map(|b| b.nodes).filter(Option::is_none).count() - 2 * rings;
-        (self.branches.len() + usize::from(rings == 0)).saturating_sub(self.nodes.len() + free)
+        let nodes = self.ends_at_nodes().iter().filter(|ends| !ends.is_empty()).count();
+        (self.branches.len() + usize::from(rings == 0)).saturating_sub(nodes + free)
     }
 
     fn widest(&self) -> f64 {

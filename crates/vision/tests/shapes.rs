@@ -70,6 +70,61 @@ fn a_small_hole_makes_no_pen_of_a_shape() {
 }
 
 #[test]
+fn a_nut_with_a_small_hole_is_a_shape_however_it_is_turned() {
+    // their corners' spurs are pruned from the skeleton
+    for (corners, radius) in [(4, 38.0), (5, 33.0), (6, 31.0)] {
+        for turn in [0.0, 0.1, 0.3] {
+            let at = |k: u32| {
+                Point::new(200.0, 150.0)
+                    + Vec2::from_angle(TAU * f64::from(k) / f64::from(corners) + turn) * radius
+            };
+            let truth = [
+                (0..=corners).map(at).collect(),
+                ring((200.0, 150.0), (7.0, 7.0)),
+                ring((420.0, 300.0), (16.0, 13.0)),
+            ];
+            let mut canvas = Canvas::new(640, 480);
+            canvas.fill(&truth);
+            let (found, comparison) = traced(&canvas, 640, 30.0, &truth);
+            assert_eq!(found.strokes.strokes.len(), 3, "{corners} corners, {turn} rad");
+            assert!(comparison.coverage > 0.99, "{corners} corners, {turn} rad: {comparison:?}");
+        }
+    }
+}
+
+#[test]
+fn a_grid_alone_is_lines() {
+    for (pen, pitch) in [(6.0, 20.0), (6.0, 16.0), (4.0, 12.0)] {
+        let line = |k: i32| {
+            let at = 120.0 + pitch * f64::from(k);
+            let (from, to) = (120.0 - pitch, 120.0 + 9.0 * pitch);
+            [vec![Point::new(at, from), Point::new(at, to)], vec![Point::new(from, at), Point::new(to, at)]]
+        };
+        let truth: Vec<Vec<Point>> = (0..9).flat_map(line).collect();
+        let mut canvas = Canvas::new(640, 480);
+        truth.iter().for_each(|line| canvas.pen(line, pen));
+        let (found, comparison) = traced(&canvas, 640, 30.0, &truth);
+        let is_line = |s: &tracelight_stroke::Stroke| s.kind == StrokeKind::Centreline;
+        assert!(found.strokes.strokes.iter().all(is_line), "pen {pen}, pitch {pitch}");
+        assert_eq!(found.strokes.strokes.len(), 18, "pen {pen}, pitch {pitch}");
+        assert!(comparison.coverage > 0.99, "pen {pen}, pitch {pitch}: {comparison:?}");
+    }
+}
+
+#[test]
+fn where_a_thick_line_leaves_a_disc_its_edge_goes_on_round() {
+    let centre = Point::new(500.0, 500.0);
+    let mut canvas = Canvas::new(1000, 900);
+    canvas.fill(&[ring((500.0, 500.0), (210.0, 210.0))]);
+    canvas.pen(&[centre, Point::new(900.0, 120.0)], 14.0);
+    let (found, _) = traced(&canvas, 1000, 30.0, &[ring((500.0, 500.0), (210.0, 210.0))]);
+    let outline = found.strokes.strokes.iter().find(|s| s.kind == StrokeKind::Outline).unwrap();
+    let off = outline.path.flatten(0.02).into_iter().map(|p| (p.distance(centre) - 210.0).abs());
+    let worst = off.fold(0.0, f64::max);
+    assert!(worst < 0.35, "{worst} px off");
+}
+
+#[test]
 fn the_stick_of_a_lollipop_tells_the_pen_where_it_is_the_only_line() {
     // the second shape would else be lines about its two holes
     let holes = [ring((430.0, 318.0), (6.0, 6.0)), ring((430.0, 342.0), (6.0, 6.0))];
