@@ -49,23 +49,16 @@ fn stays_near(path: &Path, points: &[Point], margin: f64) -> bool {
     })
 }
 
-/// How far points scatter about their line, px: the median over windows as their quarter tells it, for many may have a
-/// corner in them. (Some windows are where the line was carried on, and have no noise at all.)
+/// The median of windows' scatters over the quarter of them, where all have the same noise.
+const QUARTER_TO_MEDIAN: f64 = 1.15;
+
+/// How far points scatter about their line, px: in the median over windows, as their quarter tells it, for of a small
+/// star's most have a corner in them. (Not as the calmest tells it, which may be where a line was carried on.)
 pub(crate) fn noise_px(points: &[Point]) -> f64 {
-    1.15 * from_below(scatters(points), 4)
-}
-
-/// The same where no points were added: as the calmest tenth of the windows tells it, for of a small star most have a
-/// corner in them.
-pub(crate) fn calm_noise_px(points: &[Point]) -> f64 {
-    1.35 * from_below(scatters(points), 10)
-}
-
-/// The value that an n-th of all are below, but never the least of several; 0 of none.
-fn from_below(mut values: Vec<f64>, n: usize) -> f64 {
-    let Some(last) = values.len().checked_sub(1) else { return 0.0 };
-    let nth = (values.len() / n).max(1).min(last);
-    *values.select_nth_unstable_by(nth, f64::total_cmp).1
+    let mut scatters = scatters(points);
+    let Some(last) = scatters.len().checked_sub(1) else { return 0.0 };
+    let quarter = (scatters.len() / 4).max(1).min(last);
+    QUARTER_TO_MEDIAN * *scatters.select_nth_unstable_by(quarter, f64::total_cmp).1
 }
 
 /// How far points scatter about the parabola through each of up to [`MOST_WINDOWS`] windows and some, px, root mean square.

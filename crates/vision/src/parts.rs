@@ -243,8 +243,8 @@ impl Graph {
         let width = |share| 2.0 * at_share(&self.radii(), share);
         let least = match self.rounds() {
             0 => 2.5 * 2.0 * self.widest(),
-            // circles whose radius is the width; of more, which share their sides, squares of two widths
-            rounds @ 1..=2 => std::f64::consts::TAU * rounds as f64 * width(75),
+            // squares whose holes are as wide as their sides; of more, each shares two of its sides with others
+            rounds @ 1..=2 => 8.0 * rounds as f64 * width(75),
             rounds => 4.0 * (rounds + 1) as f64 * width(50),
         };
         self.length() < least
