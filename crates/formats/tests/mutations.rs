@@ -129,7 +129,7 @@ fn a_broken_svg_is_refused_or_sound() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: `bash .ci/run long`; its short twin always runs"]
 fn very_many_broken_files_are_refused_or_sound() {
     check_dxf(1_000_000);
     check_svg(50_000);

@@ -131,7 +131,7 @@ fn any_image_ends_in_sound_strokes_or_in_an_error() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: `bash .ci/run long`; its short twin always runs"]
 fn very_many_images_end_in_sound_strokes_or_in_an_error() {
     (2..30).for_each(|seed| sweep(6_000, seed));
 }
