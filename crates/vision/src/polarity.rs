@@ -25,6 +25,8 @@ const SURE_SHARE: f64 = 0.04;
 /// A row through a line falls and rises once. With fewer thin runs than this share of the turns the picture is one of
 /// shapes, and its thin places are gaps as well as lines.
 const SHAPES: i64 = 6;
+/// No drawing's ink is a larger share of its picture.
+const MOST_INK: f64 = 0.6;
 
 /// Whether the picture's lines are lighter than what they are drawn on.
 ///
@@ -54,9 +56,6 @@ pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256]) -> bool {
     let contradicted = light_ink == light_border && ink > MOST_INK;
     light_ink != contradicted
 }
-
-/// No drawing's ink is a larger share of its picture.
-const MOST_INK: f64 = 0.6;
 
 /// Thin runs between two of the other kind, without single pixels, which are specks.
 #[derive(Default)]
@@ -215,6 +214,19 @@ mod tests {
         let line = |x: usize, y: usize| (150..165).contains(&x) && (120..122).contains(&y);
         let about = |x: usize, y: usize| (144..176).contains(&x) && (112..136).contains(&y) && x % 5 < 2;
         check(false, |x, y| if line(x, y) { 20 } else { 236 + 8 * u8::from(about(x, y)) });
+    }
+
+    #[test]
+    fn holes_in_shapes_are_no_light_lines() {
+        let round = |x: usize, y: usize, cx: f64, cy: f64, r: f64| (x as f64 - cx).hypot(y as f64 - cy) < r;
+        let shape = |x, y| {
+            [(70.0, 70.0), (220.0, 90.0), (140.0, 180.0)].into_iter().any(|(cx, cy)| {
+                let holes = [(-9.0, -6.0), (9.0, -6.0), (-9.0, 6.0), (9.0, 6.0)];
+                let hole = || holes.into_iter().any(|(dx, dy)| round(x, y, cx + dx, cy + dy, 3.5));
+                round(x, y, cx, cy, 22.0) && !hole()
+            })
+        };
+        check(false, |x, y| if shape(x, y) { 30 } else { 230 });
     }
 
     #[test]
