@@ -11,6 +11,7 @@ mod compare;
 mod fit;
 mod order;
 mod path;
+mod polyline;
 mod simplify;
 mod stroke;
 
@@ -20,5 +21,6 @@ pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Vec2};
 pub use order::{Effort, OrderOptions, Ordered, order};
 pub use path::{Element, Path, PathPoint, Piece};
+pub use polyline::polyline_length;
 pub use simplify::simplify;
 pub use stroke::{Drawing, Stroke, StrokeKind};

@@ -6,12 +6,6 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// So many of something, in words: "1 stroke", "2 strokes".
-pub(crate) fn counted(count: usize, one: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {one}{plural}")
-}
-
 /// Why a text is no quantity.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum UnitError {

@@ -1,6 +1,6 @@
 //! Pen lines: strokes down their middle.
 
-use tracelight_stroke::{Point, Stroke, Vec2};
+use tracelight_stroke::{Point, Stroke, Vec2, polyline_length};
 
 use crate::Options;
 use crate::follow;
@@ -109,8 +109,8 @@ impl Near {
         let (row, column) = Self::cell(p, self.reach);
         (row - 1..=row + 1).any(|row| {
             let from = self.points.partition_point(|(cell, _)| *cell < (row, column - 1));
-            let near = self.points[from..].iter().take_while(|(cell, _)| *cell <= (row, column + 1));
-            near.into_iter().any(|(_, q)| q.distance(p) <= self.reach)
+            let mut near = self.points[from..].iter().take_while(|(cell, _)| *cell <= (row, column + 1));
+            near.any(|(_, q)| q.distance(p) <= self.reach)
         })
     }
 }
@@ -122,8 +122,7 @@ const BARE_RADII: f64 = 1.2;
 const LEAST_ROW_PENS: f64 = 0.5;
 
 fn is_stub(row: &Row) -> bool {
-    let length: f64 = row.points.windows(2).map(|w| w[0].distance(w[1])).sum();
-    !row.closed && length < LEAST_ROW_PENS * row.width
+    !row.closed && polyline_length(&row.points) < LEAST_ROW_PENS * row.width
 }
 
 /// The stroke along a row.

@@ -1,6 +1,6 @@
 //! From points found in an image to a path.
 
-use tracelight_stroke::{FitOptions, Parabola, Path, Point, fit, simplify};
+use tracelight_stroke::{FitOptions, Parabola, Path, Point, fit, polyline_length, simplify};
 
 use crate::Options;
 
@@ -63,7 +63,7 @@ pub(crate) fn noise_px(points: &[Point]) -> f64 {
 
 /// How far points scatter about the parabola through each of up to [`MOST_WINDOWS`] windows and some, px, root mean square.
 fn scatters(points: &[Point]) -> Vec<f64> {
-    let spacing = points.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>() / points.len() as f64;
+    let spacing = polyline_length(points) / points.len() as f64;
     let window = ((WINDOW_PX / spacing.max(1e-9)) as usize).clamp(LEAST_WINDOW, WINDOW_PX as usize);
     // three points of each window are the parabola's own
     let own = (window as f64 / (window - 3) as f64).sqrt();

@@ -1,6 +1,6 @@
 //! The skeleton as a graph: branches of pixels between nodes.
 
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::distance::to_paper;
 use crate::mask::{Cell, Mask, Neighbours};
@@ -23,7 +23,7 @@ pub(crate) struct Branch {
 impl Branch {
     /// Length from first to last point, px.
     pub(crate) fn length(&self) -> f64 {
-        self.points.windows(2).map(|w| w[0].distance(w[1])).sum()
+        polyline_length(&self.points)
     }
 
     /// The same branch from its other end.

@@ -1,6 +1,6 @@
 //! Branches of the skeleton as lines on the middle of the pen.
 
-use tracelight_stroke::{Parabola, Point, Vec2};
+use tracelight_stroke::{Parabola, Point, Vec2, polyline_length};
 
 use crate::bridge::{Tip, scatter_px};
 use crate::graph::{Branch, Graph};
@@ -52,7 +52,7 @@ impl Line {
 
     /// Length, px.
     pub(crate) fn length(&self) -> f64 {
-        self.points.windows(2).map(|w| w[0].distance(w[1])).sum()
+        polyline_length(&self.points)
     }
 
     /// The line's end (0: at its first point) and the direction out of it.

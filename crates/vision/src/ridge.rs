@@ -143,7 +143,7 @@ fn add_lost(dark: &Plane<u8>, points: &[Point], cut: Cut, places: &mut Vec<Place
     let gaps = std::iter::once(None).chain(kept.iter().map(Some)).zip(kept.iter().map(Some).chain([None]));
     let seen = |i: usize| place(dark, i, points[i], normal(points, i, 4, false)?, cut);
     let least = LEAST_EVEN.max((LEAST_EVEN_PENS * width) as usize);
-    let mut lost = Vec::new();
+    let mut lost: Vec<Place> = Vec::new();
     for (before, after) in gaps {
         let (from, to) = (before.map_or(0, |i| i + 1), after.copied().unwrap_or(points.len()));
         let most = width * if before.is_some() && after.is_some() { CORNER_PENS } else { END_PENS };
@@ -160,9 +160,12 @@ fn add_lost(dark: &Plane<u8>, points: &[Point], cut: Cut, places: &mut Vec<Place
         let between: Vec<Place> = (from..to).filter_map(seen).collect();
         lost.extend(even_rows(&between).filter(|row| row.len() >= least && !leans(row)).flatten());
     }
-    places.extend(&lost);
+    if lost.is_empty() {
+        return false;
+    }
+    places.extend(lost);
     places.sort_unstable_by_key(|p| p.index);
-    !lost.is_empty()
+    true
 }
 
 /// Rows of places next to each other, as long as they can be, in which each is about as wide as all others.

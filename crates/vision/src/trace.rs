@@ -1,4 +1,4 @@
-use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind};
+use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 
 use crate::centreline::{self, Row};
 use crate::ink::Ink;
@@ -174,7 +174,7 @@ fn usual_pen(drawing: &Drawing) -> Option<f64> {
         // of a curve its joints' distances: a weight needs no more
         let places = stroke.path.pieces().map(|piece| piece.from).chain([stroke.path.end()]);
         let places: Vec<_> = places.collect();
-        let length: f64 = places.windows(2).map(|w| w[0].distance(w[1])).sum();
+        let length = polyline_length(&places);
         stroke.pen.filter(|_| stroke.kind == StrokeKind::Centreline).map(|pen| (pen, length))
     };
     let mut pens: Vec<(f64, f64)> = drawing.strokes.iter().filter_map(of).collect();

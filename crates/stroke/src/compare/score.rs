@@ -5,7 +5,7 @@ use kurbo::Point;
 use super::matching::most_pairs;
 use super::segments::{Foot, Segments};
 use super::{length, polylines};
-use crate::Drawing;
+use crate::{Drawing, polyline_length};
 
 /// Share of a true stroke that one drawn stroke must cover, and share of the drawn one that must lie on it, for the two
 /// to match.
@@ -136,7 +136,7 @@ impl Walk {
 
 /// Calls `each` with the middles of equal steps along a line, and the step.
 fn for_samples(line: &[Point], spacing: f64, mut each: impl FnMut(Point, f64)) {
-    let whole = line.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>();
+    let whole = polyline_length(line);
     let step = whole / (whole / spacing).max(LEAST_SAMPLES).ceil();
     let mut next = 0.5 * step;
     for pair in line.windows(2) {

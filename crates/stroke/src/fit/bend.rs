@@ -9,6 +9,7 @@ use super::round::{Bow, Circle, FEWEST, bows, scatter};
 use super::section::Line;
 use super::straight::{RMS, direction};
 use super::tangent::{Part, Shape, join};
+use crate::polyline_length;
 
 /// A bend is looked at from where it has left the lines beside it by this share of the tolerance: noise leaves them
 /// by half as much.
@@ -144,7 +145,7 @@ impl Bends<'_> {
     /// round.
     fn is_as_long(&self, part: &Part) -> bool {
         let points = &self.row[part.first..=part.last];
-        let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+        let length = polyline_length(points);
         let step = length / (points.len() - 1).max(1) as f64;
         (part.length() - length).abs() <= 0.1 * length + 3.0 * step
     }

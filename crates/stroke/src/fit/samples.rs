@@ -1,6 +1,7 @@
 use kurbo::{Point, Vec2};
 
 use super::window::Parabola;
+use crate::polyline_length;
 
 /// More samples than this are not taken, however long the polyline is.
 const MOST: f64 = 200_000.0;
@@ -30,7 +31,7 @@ impl Samples {
         if closed && line.len() > 2 && line.first() != line.last() {
             line.push(line[0]);
         }
-        let length: f64 = line.windows(2).map(|w| w[0].distance(w[1])).sum();
+        let length = polyline_length(&line);
         if !(length.is_finite() && length > 0.0) {
             return None;
         }

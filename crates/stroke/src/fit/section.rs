@@ -11,7 +11,7 @@ use super::plan::Shut;
 use super::round::Circle;
 use super::straight::{Run, Straightness};
 use super::tangent::Part;
-use crate::Element;
+use crate::{Element, polyline_length};
 
 /// Points between two straight runs, at least: a break of direction gets this much room to become a bend.
 const ROOM: usize = 4;
@@ -51,7 +51,7 @@ const TIP: f64 = 3.0;
 
 /// How many points at an end of a row may show the tip of a pen: not more than one in six.
 fn tip(row: &[Point], options: &FitOptions) -> usize {
-    let length: f64 = row.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let length = polyline_length(row);
     let step = length / (row.len() - 1).max(1) as f64;
     (TIP * options.reach / step).ceil().clamp(1.0, 1.0 + row.len() as f64 / 6.0) as usize
 }

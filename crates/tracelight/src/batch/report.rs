@@ -8,8 +8,8 @@ use crate::batch::figures::Figures;
 use crate::batch::{Batch, table};
 use crate::cli::Answer;
 use crate::failure::{Failure, Status};
+use crate::output::counted;
 use crate::progress::Progress;
-use crate::units::counted;
 
 /// What became of one picture.
 #[derive(Clone, Debug)]

@@ -10,13 +10,12 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
-use crate::output::{PlanFigures, StrokeFigures};
+use crate::output::{PlanFigures, StrokeFigures, counted};
 use crate::picture;
 use crate::progress::Progress;
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::sketch::{Placed, place, sketch};
 use crate::stop::Stop;
-use crate::units::counted;
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]

@@ -12,13 +12,13 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
+use crate::output::counted;
 use crate::output::drawing::{self, FORMATS};
 use crate::picture;
 use crate::progress::Progress;
 use crate::quality::QualityFigures;
 use crate::sketch::{Sketch, place, sketch};
 use crate::stop::Stop;
-use crate::units::counted;
 
 /// How close `points` keep to their path, px.
 const POINTS_TOLERANCE_PX: f64 = 0.05;

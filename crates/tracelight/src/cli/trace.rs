@@ -2,9 +2,8 @@ use crate::cli::Answer;
 use crate::cli::request::TraceArgs;
 use crate::failure::Failure;
 use crate::job::{self, Outcome};
-use crate::output::Summary;
+use crate::output::{Summary, counted};
 use crate::stop::Stop;
-use crate::units::counted;
 
 pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
     let Outcome { summary, dir, failure } = job::trace(args, stop)?;

@@ -37,7 +37,7 @@ pub(crate) use log::{LogMeta, LogWriter};
 pub(crate) use raster::Raster;
 pub(crate) use sample::planned;
 pub(crate) use summary::{PlanFigures, StrokeFigures, Summary};
-pub(crate) use words::{darkness_words, fault_words};
+pub(crate) use words::{counted, darkness_words, fault_words};
 
 /// A finished (or stopped) job, as the outputs see it.
 pub(crate) struct Job<'a> {

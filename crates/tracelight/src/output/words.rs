@@ -1,5 +1,11 @@
 use tracelight_rig::{Darkness, Fault, Phase};
 
+/// So many of something, in words: "1 stroke", "2 strokes".
+pub(crate) fn counted(count: usize, one: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {one}{plural}")
+}
+
 /// What a fault means and what to look at, one sentence each.
 pub(crate) const fn fault_words(fault: Fault) -> &'static str {
     match fault {

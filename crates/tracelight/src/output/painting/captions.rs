@@ -3,8 +3,7 @@ use tracelight_stroke::{Point, Vec2};
 use super::layout::{Layout, WIDTH};
 use super::lettering::{Align, Pen, fitted};
 use super::plane::Plane;
-use crate::output::Job;
-use crate::units::counted;
+use crate::output::{Job, counted};
 
 /// Height of a capital, px.
 const LARGE: f64 = 13.0;
