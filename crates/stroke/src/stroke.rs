@@ -108,7 +108,8 @@ mod tests {
         let drawing = Drawing { strokes: vec![named(true), named(false), named(false).reversed()] };
         let moved = drawing.transformed(Affine::scale(2.0));
         let ordered =
-            order(&moved, Point::new(5.0, 5.0), OrderOptions::default(), &|a, b| a.distance(b)).drawing;
+            order(&moved, Point::new(5.0, 5.0), OrderOptions::default(), &|a: Point, b: Point| a.distance(b))
+                .drawing;
         assert_eq!(ordered.strokes.len(), 3);
         for stroke in &ordered.strokes {
             assert_eq!(stroke.layer.as_deref(), Some("cut"));

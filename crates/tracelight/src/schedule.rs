@@ -1,7 +1,7 @@
 //! Strokes on the target to a plan: order, then time.
 
 use tracelight_stroke::{Effort, OrderOptions, Ordered, Point, order};
-use tracelight_trajectory::{Plan, PlanError, plan};
+use tracelight_trajectory::{Plan, PlanError, TravelTime, plan};
 
 use crate::cli::driving::{Driving, REACHED};
 use crate::failure::Failure;
@@ -55,9 +55,13 @@ pub(crate) fn schedule(
     check_reach(placed, driving)?;
     let start = driving.machine.geometry.spot(&driving.pose, Default::default()).unwrap_or(Point::ORIGIN);
     let options = OrderOptions { effort: effort.effort(), seed: 0 };
-    let time = |a: Point, b: Point| driving.machine.travel_time_s(a, b);
     let ordered = match by {
-        OrderBy::Time => order(&placed.drawing, start, options, &time),
+        OrderBy::Time => order(
+            &placed.drawing,
+            start,
+            options,
+            &TravelTime::new(&driving.machine, driving.request.settle_s),
+        ),
         OrderBy::Distance => order(&placed.drawing, start, options, &|a: Point, b: Point| a.distance(b)),
     };
     let plan = plan(&ordered.drawing, &driving.machine, &driving.request)?;

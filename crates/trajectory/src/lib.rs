@@ -20,9 +20,11 @@ mod planner;
 mod profile;
 mod retime;
 mod travel;
+mod travel_time;
 
 pub use error::PlanError;
 pub use machine::{AccelerationDemand, Machine};
 pub use plan::{JointMotion, LegEnd, Plan, PlanPoint};
 pub use planner::{PlanRequest, plan};
 pub use profile::{MoveLimits, MovePoint, Profile, Ramps, Shape};
+pub use travel_time::{Aimed, TravelTime};

@@ -96,19 +96,6 @@ impl Machine {
         }
     }
 
-    /// About how long a dark move between two points takes, s: the slower joint's bang-bang time. For ordering,
-    /// where only comparisons matter; unreachable points cost an hour.
-    pub fn travel_time_s(&self, from: Point, to: Point) -> f64 {
-        const NEVER_S: f64 = 3600.0;
-        let (Ok(a), Ok(b)) = (self.angles(from), self.angles(to)) else { return NEVER_S };
-        let time = |j: Joint| {
-            let torque = self.torque_share * self.motors[j].torque_limit_nm();
-            let limit = (torque / self.own_inertia(j, a.tilt)).min(self.acceleration_limit_rad_s2[j]);
-            2.0 * ((b[j] - a[j]).abs() / limit).sqrt()
-        };
-        time(Joint::Pan).max(time(Joint::Tilt))
-    }
-
     /// How far each joint may stray for the spot to stay within `tolerance_m`, rad: semi-axes of an ellipse of joint
     /// errors. Where the Jacobian's columns are not at right angles, that ellipse maps to one that is longer by
     /// √(1 + |cos|) at most, so both are made smaller by it.

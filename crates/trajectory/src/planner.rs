@@ -56,7 +56,7 @@ fn check_duration(needed_s: f64) -> Result<(), PlanError> {
     if needed_s <= LONGEST_S { Ok(()) } else { Err(PlanError::TooLong { needed_s, most_s: LONGEST_S }) }
 }
 
-/// Appends the dark way to a stroke, and the rest before it up to the first lit tick.
+/// Appends the dark way to a stroke, if there is one, and the rest before it up to the first lit tick.
 fn approach(
     points: &mut Vec<PlanPoint>,
     machine: &Machine,
@@ -68,6 +68,10 @@ fn approach(
     let to = machine.angles(start).map_err(|source| PlanError::Aim { stroke: index + 1, source })?;
     let from = points.last().map_or(PanTilt::default(), |p| p.joints.map(|j| j.position_rad));
     let way = travel(machine, request.travel, from, to)?;
+    if way.is_empty() && points.last().is_some_and(|p| p.lit) {
+        // it begins where the one before ends: the laser stays on, as at a corner
+        return Ok(());
+    }
     points.extend(way.into_iter().map(|joints| dark(machine, joints)));
     // dark long enough for the relay to have let go before it is to hold again
     let relay_ticks = machine.relay_on_ticks + machine.relay_off_ticks + 1;

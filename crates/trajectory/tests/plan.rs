@@ -150,6 +150,18 @@ fn stroke_ends_are_at_rest_and_on_the_path() {
 }
 
 #[test]
+fn a_stroke_that_begins_where_the_last_one_ends_is_drawn_without_going_dark() {
+    let apart = [line(&[(0.0, 0.0), (0.1, 0.0)]), line(&[(0.1, 0.001), (0.2, 0.05)])];
+    let joined = [line(&[(0.0, 0.0), (0.1, 0.0)]), line(&[(0.1, 0.0), (0.2, 0.05)])];
+    let [apart, joined] =
+        [apart, joined].map(|paths| plan(&drawing(paths), &machine(), &request(Shape::Sine)).unwrap());
+    let lit_runs = |plan: &Plan| plan.points.chunk_by(|a, b| a.lit == b.lit).filter(|run| run[0].lit).count();
+    assert_eq!((lit_runs(&apart), lit_runs(&joined)), (2, 1));
+    assert!(joined.duration_s() < apart.duration_s() - 0.04, "{} s", joined.duration_s());
+    assert_eq!(joined.leg_ends.len(), 2);
+}
+
+#[test]
 fn a_stroke_out_of_reach_is_named() {
     let far = line(&[(0.0, 0.0), (9.0, 0.0)]);
     let error = plan(&drawing([circle(0.0, 0.0, 0.1), far]), &machine(), &request(Shape::Sine)).unwrap_err();

@@ -1,4 +1,4 @@
-use kurbo::Point;
+use kurbo::{Point, Rect};
 
 use super::kdtree::{Gather, KdTree};
 use super::ports::Ports;
@@ -70,7 +70,7 @@ struct Nearest<'a> {
 }
 
 impl Gather for Nearest<'_> {
-    fn wants(&self, node: usize, distance_sq: f64) -> bool {
+    fn wants(&self, node: usize, _: &Rect, distance_sq: f64) -> bool {
         let lowest = self.left.lowest[node];
         // asked this way round, a point that is not a number is still found
         let no_better = self.best.is_some_and(|best| (distance_sq, lowest) >= best);

@@ -24,8 +24,8 @@ struct Node {
 /// Points on one spot are all equally near: a search that wanted each of them to be looked at would take the square
 /// of their number.
 pub(super) trait Gather {
-    /// Whether anything below a node, whose box is this far away, can be of interest.
-    fn wants(&self, node: usize, distance_sq: f64) -> bool;
+    /// Whether anything below a node can be of interest: its box, and how far that is.
+    fn wants(&self, node: usize, bounds: &Rect, distance_sq: f64) -> bool;
     /// Which of two nodes that are equally near is to be seen first: the one of lower rank.
     fn rank(&self, _node: usize) -> u32 {
         0
@@ -61,7 +61,7 @@ impl<'a> KdTree<'a> {
 
     pub(super) fn search(&self, at: Point, gather: &mut impl Gather) {
         if let Some(root) = self.nodes.first()
-            && gather.wants(0, distance_sq(&root.bounds, at))
+            && gather.wants(0, &root.bounds, distance_sq(&root.bounds, at))
         {
             self.descend(0, at, gather);
         }
@@ -82,7 +82,7 @@ impl<'a> KdTree<'a> {
             children.swap(0, 1);
         }
         for (distance, child) in children {
-            if gather.wants(child, distance) {
+            if gather.wants(child, &self.nodes[child].bounds, distance) {
                 self.descend(child, at, gather);
             }
         }

@@ -2,11 +2,12 @@ use kurbo::Point;
 
 use super::ports::Ports;
 use super::search::Search;
+use super::travel::Travel;
 use crate::{Drawing, Stroke};
 
 /// Most strokes of a region. A kick costs time in proportion to the tour it is in, since moves turn around parts of
 /// it, and regions smaller than this lose more at their borders than they gain.
-const REGION: usize = 1000;
+const REGION: usize = 600;
 
 /// Sweeps over the start joints at most; each lowers the cost, and later ones hardly do.
 const SWEEPS: usize = 8;
@@ -39,7 +40,7 @@ pub(super) struct Route<'a, C> {
     pub(super) cost: &'a C,
 }
 
-impl<C: Fn(Point, Point) -> f64> Route<'_, C> {
+impl<C: Travel> Route<'_, C> {
     /// Improves the whole until no single move does.
     pub(super) fn settle(&mut self) {
         let runs: Vec<_> = (0..self.stops.len()).map(|i| i..i + 1).collect();
@@ -114,6 +115,10 @@ impl<C: Fn(Point, Point) -> f64> Route<'_, C> {
         }
     }
 
+    fn between(&self, from: Point, to: Point) -> f64 {
+        self.cost.cost(self.cost.place(from), self.cost.place(to))
+    }
+
     fn choose_joint(&mut self, i: usize) -> bool {
         let stop = self.stops[i];
         if !self.ports.is_closed(stop.stroke) {
@@ -124,8 +129,8 @@ impl<C: Fn(Point, Point) -> f64> Route<'_, C> {
         let before = if i == 0 { self.start } else { exit_of(&self.stops[i - 1]) };
         let after = self.stops.get(i + 1).map(|next| at(next.entry));
         let through = |port: u32| {
-            let on = after.map_or(0.0, |next| (self.cost)(at(port), next));
-            (self.cost)(before, at(port)) + on
+            let on = after.map_or(0.0, |next| self.between(at(port), next));
+            self.between(before, at(port)) + on
         };
         let mut best = (through(stop.entry), stop.entry);
         for port in self.ports.range(stop.stroke) {

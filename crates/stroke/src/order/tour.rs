@@ -49,6 +49,13 @@ impl Tour {
         }
     }
 
+    /// Whether `x` belongs to the run of strokes that begins at `from`, away from its travel, and ends at `to`.
+    pub(super) fn is_between(&self, from: u32, x: u32, to: u32) -> bool {
+        let (a, b, x) = (self.place(from), self.place(to), self.place(x));
+        let (a, b) = if self.entry[a] == from { (a, b) } else { (b, a) };
+        if a <= b { a <= x && x <= b } else { x >= a || x <= b }
+    }
+
     /// The far end of the run of `strokes` strokes that begins with `end` and leads away from its travel.
     pub(super) fn far_end(&self, end: u32, strokes: usize) -> u32 {
         (1..strokes).fold(end ^ 1, |far, _| self.link(far) ^ 1)
