@@ -4,6 +4,7 @@ use tracelight_aim::{AimError, JointPath, SpotMotion};
 use tracelight_stroke::{Path, PathPoint, Piece, Point};
 
 use crate::Machine;
+use crate::retime::PathSample;
 
 /// A break of the tangent from which on the head stops: 20°. Below it the spot passes with the speed that keeps the
 /// jump of velocity under [`JUMP_M_S`].
@@ -64,11 +65,6 @@ impl Leg {
         self.starts_m.last().copied().unwrap_or(0.0)
     }
 
-    /// Speed limits at places along the leg: (m, m/s).
-    pub(crate) fn breaks(&self) -> &[(f64, f64)] {
-        &self.breaks
-    }
-
     /// Place, tangent and curvature at arc length `s_m`, clamped to the leg.
     pub(crate) fn at(&self, s_m: f64) -> PathPoint {
         let index = self.starts_m.partition_point(|&start| start <= s_m).clamp(1, self.pieces.len()) - 1;
@@ -77,11 +73,42 @@ impl Leg {
         self.pieces[index].at_length(within, LENGTH_TOLERANCE_M)
     }
 
+    /// Places along the leg, at most `step_m` apart and at least `fewest` steps: all ends of its pieces twice, for
+    /// the curvature may jump there, and every place once. Nowhere faster than `speed_m_s`, nor at a break of the
+    /// tangent than that allows.
+    pub(crate) fn samples(
+        &self,
+        machine: &Machine,
+        speed_m_s: f64,
+        (step_m, fewest): (f64, f64),
+    ) -> Result<Vec<PathSample>, AimError> {
+        let step_m = step_m.min(self.length_m() / fewest);
+        let mut samples = Vec::with_capacity((self.length_m() / step_m) as usize + 2 * self.pieces.len());
+        for (piece, ends) in self.pieces.iter().zip(self.starts_m.windows(2)) {
+            let length = ends[1] - ends[0];
+            let count = (length / step_m).ceil().max(1.0);
+            for i in 0..=count as usize {
+                let within = length * i as f64 / count;
+                let joints = self.aim(machine, &piece.at_length(within, LENGTH_TOLERANCE_M))?;
+                samples.push(PathSample { s: ends[0] + within, joints, cap: speed_m_s });
+            }
+        }
+        for &(at_m, speed) in &self.breaks {
+            let at_break = |sample: &&mut PathSample| (sample.s - at_m).abs() < DUST_M;
+            samples.iter_mut().filter(at_break).for_each(|sample| sample.cap = sample.cap.min(speed));
+        }
+        Ok(samples)
+    }
+
     /// The place at arc length `s_m`, with the joint angles there and their derivatives by arc length.
     pub(crate) fn joints_at(&self, machine: &Machine, s_m: f64) -> Result<(Point, JointPath), AimError> {
-        let PathPoint { point, tangent, curvature } = self.at(s_m);
-        let spot = SpotMotion { point, velocity: tangent, acceleration: curvature };
-        Ok((point, machine.geometry.motion(&machine.pose, &spot)?))
+        let at = self.at(s_m);
+        Ok((at.point, self.aim(machine, &at)?))
+    }
+
+    fn aim(&self, machine: &Machine, at: &PathPoint) -> Result<JointPath, AimError> {
+        let spot = SpotMotion { point: at.point, velocity: at.tangent, acceleration: at.curvature };
+        machine.geometry.motion(&machine.pose, &spot)
     }
 }
 
@@ -112,7 +139,7 @@ mod tests {
         let points = [(0.0, 0.0), (0.1, 0.0), (0.2, 0.01)].map(|(x, y)| Point::new(x, y));
         let legs = Leg::split(&Path::polyline(&points, false).unwrap());
         assert_eq!(legs.len(), 1);
-        let (at, speed) = legs[0].breaks()[0];
+        let (at, speed) = legs[0].breaks[0];
         assert!((at - 0.1).abs() < 1e-12 && (speed - 0.1505).abs() < 1e-3, "{speed}");
     }
 }

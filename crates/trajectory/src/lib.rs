@@ -27,4 +27,5 @@ pub use machine::{AccelerationDemand, Machine};
 pub use plan::{JointMotion, LegEnd, Plan, PlanPoint};
 pub use planner::{PlanRequest, plan};
 pub use profile::{MoveLimits, MovePoint, Profile, Ramps, Shape};
+pub use retime::{Binding, PathSample, Retimed, retime};
 pub use travel_time::{Aimed, TravelTime};

@@ -5,7 +5,7 @@ use tracelight_stroke::Point;
 
 use crate::leg::Leg;
 use crate::plan::JointMotion;
-use crate::retime::{Along, Grid, TimeLaw, chain};
+use crate::retime::{Along, PathSample, Retimed, chain};
 use crate::{Machine, PlanError};
 
 /// One tick on a stroke.
@@ -34,17 +34,25 @@ pub(crate) struct MarkRequest {
 /// there: rounding moves a little speed into curves.
 const BORROW: f64 = 0.05;
 
+/// Distance of the places at which a leg is looked at, m, and their least number.
+const GRID_M: f64 = 5e-4;
+const FEWEST: f64 = 16.0;
+
+/// Reach of a slow-down around a tick that asks too much, m; it grows from round to round.
+const REACH_M: f64 = 1e-3;
+
 /// A leg from rest to rest, the start left out, the end included.
 ///
 /// After rounding, every tick's torque is checked against the motors; where it is too much the leg is slowed down
 /// and timed again, and if that does not end, all of it is run slower.
 pub(crate) fn mark(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Result<Vec<MarkPoint>, PlanError> {
-    let mut grid = Grid::new(machine, leg, request.speed_m_s, request.stroke)?;
+    let aim = |source| PlanError::Aim { stroke: request.stroke, source };
+    let mut samples = leg.samples(machine, request.speed_m_s, (GRID_M, FEWEST)).map_err(aim)?;
     let allowed = machine.torque_share + BORROW;
-    let mut reach_m = 2.0 * grid.step_m();
+    let mut reach_m = REACH_M;
     for _ in 0..16 {
-        let points = sample(machine, leg, &grid, request)?;
-        if slow_where_too_much(&mut grid, &points, allowed, reach_m) {
+        let points = in_time(machine, leg, &samples, request)?;
+        if slow_where_too_much(&mut samples, &points, allowed, reach_m) {
             return Ok(points);
         }
         reach_m *= 1.3;
@@ -53,25 +61,27 @@ pub(crate) fn mark(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Resul
     mark(machine, leg, &slower)
 }
 
-/// Slows the grid down around every tick that asks too much; true if there was none.
-fn slow_where_too_much(grid: &mut Grid, points: &[MarkPoint], allowed: f64, reach_m: f64) -> bool {
+/// Slows the leg down around every tick that asks too much; true if there was none.
+fn slow_where_too_much(samples: &mut [PathSample], points: &[MarkPoint], allowed: f64, reach_m: f64) -> bool {
     let mut fine = true;
     for point in points.iter().filter(|p| p.fraction > allowed) {
         // torque beyond friction and gravity goes with the square of the speed; the overshoot is taken off at least
         let share = (1.0 - 1.5 * (point.fraction - allowed)).clamp(0.5, 0.95);
-        grid.cap(point.s_m, reach_m, share * point.speed_m_s * point.speed_m_s);
+        let first = samples.partition_point(|sample| sample.s < point.s_m - reach_m);
+        let near = samples[first..].iter_mut().take_while(|sample| sample.s <= point.s_m + reach_m);
+        near.for_each(|sample| sample.cap = sample.cap.min(share.sqrt() * point.speed_m_s));
         fine = false;
     }
     fine
 }
 
-fn sample(
+fn in_time(
     machine: &Machine,
     leg: &Leg,
-    grid: &Grid,
+    samples: &[PathSample],
     request: &MarkRequest,
 ) -> Result<Vec<MarkPoint>, PlanError> {
-    let law = TimeLaw::new(&grid.fastest(), grid.step_m(), request.ramp_s);
+    let law = Retimed::new(machine, samples.to_vec())?.law(request.ramp_s);
     let ticks = (law.duration_s() / TICK_F64_S).ceil() as usize;
     let length = leg.length_m();
     let at = |tick: usize| {

@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, reason = "a benchmark prints its figures")]
 
 mod order;
+mod retime;
 
 use std::process::ExitCode;
 
@@ -15,12 +16,15 @@ struct Arguments {
 enum Command {
     /// Orders strokes given by their ends: `x0,y0,x1,y1` a line.
     Order(order::Arguments),
+    /// Times the fastest motion along sampled joint paths.
+    Retime(retime::Arguments),
 }
 
 fn main() -> ExitCode {
     let arguments = <Arguments as clap::Parser>::parse();
     let done = match arguments.command {
         Command::Order(arguments) => order::run(&arguments),
+        Command::Retime(arguments) => retime::run(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

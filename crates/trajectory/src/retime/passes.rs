@@ -1,0 +1,132 @@
+use tracelight_rig::{Joint, PanTilt};
+
+use super::limits::{PathSample, Place, Rows};
+use crate::{Machine, PlanError};
+
+/// A stretch between two neighbouring places. The acceleration goes in a straight line over s from one end to the
+/// other, and keeps to the limits at both.
+#[derive(Clone, Copy)]
+struct Cell<'a> {
+    /// Length.
+    h: f64,
+    start: &'a Rows,
+    end: &'a Rows,
+}
+
+/// The limits along a path. Where a joint turns round, friction jumps: the cell before and the cell after have limits
+/// of their own there.
+struct Limits {
+    rows: Vec<Rows>,
+    /// Of every cell its length and where its start's and its end's limits are.
+    cells: Vec<(f64, u32, u32)>,
+}
+
+impl Limits {
+    fn cells(&self) -> impl DoubleEndedIterator<Item = Cell<'_>> + ExactSizeIterator {
+        let rows = |i: u32| &self.rows[i as usize];
+        self.cells.iter().map(move |&(h, start, end)| Cell { h, start: rows(start), end: rows(end) })
+    }
+
+    fn of(machine: &Machine, samples: &[PathSample]) -> Result<Self, PlanError> {
+        let mut limits = Self {
+            rows: Vec::with_capacity(samples.len() + samples.len() / 8),
+            cells: Vec::with_capacity(samples.len()),
+        };
+        let mut last_ways = PanTilt::new(0.0, 0.0);
+        let mut place = samples.first().map(|sample| Place::new(machine, sample));
+        for pair in samples.windows(2) {
+            let ways = PanTilt::from_fn(|j| (pair[0].joints.first[j] + pair[1].joints.first[j]).signum());
+            if let (Some(place), true) = (place, ways != last_ways) {
+                check_strength(machine, &place, ways)?;
+                limits.rows.push(place.rows(machine, ways));
+            }
+            let next = Place::new(machine, &pair[1]);
+            check_strength(machine, &next, ways)?;
+            limits.rows.push(next.rows(machine, ways));
+            let end = limits.rows.len() as u32 - 1;
+            limits.cells.push((pair[1].s - pair[0].s, end - 1, end));
+            (place, last_ways) = (Some(next), ways);
+        }
+        Ok(limits)
+    }
+}
+
+/// Every motor must be able to start its joint anywhere.
+fn check_strength(machine: &Machine, place: &Place, ways: PanTilt<f64>) -> Result<(), PlanError> {
+    for joint in Joint::BOTH {
+        let available_nm = machine.torque_share * machine.motors[joint].torque_limit_nm();
+        let needed_nm = place.starting_nm(machine, joint, ways[joint]).abs();
+        if needed_nm >= available_nm {
+            return Err(PlanError::TooWeak { joint, needed_nm, available_nm });
+        }
+    }
+    Ok(())
+}
+
+/// Speeds at all places, and the accelerations at both ends of every cell.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Speeds {
+    pub(super) v: Vec<f64>,
+    pub(super) u: Vec<[f64; 2]>,
+}
+
+/// The fastest speeds along samples that keep to all limits, from `first` at most at the start to `last` at most.
+///
+/// A backward pass finds the highest speed at every place from which the rest can still be followed, a forward pass
+/// takes the highest acceleration that stays under it (reachability analysis; Pham & Pham, "A new approach to
+/// time-optimal path parameterization based on reachability analysis", IEEE T-RO 2018, §III). There u is constant
+/// between places, so that it keeps to the limits of one end only, or to both at the cost of speed; here it is
+/// linear (the trapezoidal rule: v² + h·u at one end equals v² − h·u at the other), so what is lost to the grid
+/// goes with the square of its step. Viscous friction makes limits quadratic in v rather than linear in v²; their
+/// roots are taken as they are.
+pub(super) fn fastest(
+    machine: &Machine,
+    samples: &[PathSample],
+    [first, last]: [f64; 2],
+) -> Result<Speeds, PlanError> {
+    let limits = Limits::of(machine, samples)?;
+    let (ceiling, middle) = ceilings(&limits, last);
+    let mut v = Vec::with_capacity(ceiling.len());
+    let mut u = Vec::with_capacity(middle.len());
+    v.push(first.min(ceiling[0]));
+    for (i, cell) in limits.cells().enumerate() {
+        let (next, ends) = cell.onwards(v[i], middle[i], ceiling[i + 1]);
+        v.push(next);
+        u.push(ends);
+    }
+    Ok(Speeds { v, u })
+}
+
+/// For every place the highest speed from which the end can be reached at `last` or less, and for every cell the
+/// highest v² + h·u at its start.
+fn ceilings(limits: &Limits, last: f64) -> (Vec<f64>, Vec<f64>) {
+    let count = limits.cells.len();
+    let mut ceiling = vec![0.0; count + 1];
+    let mut middle = vec![0.0; count];
+    ceiling[count] = last;
+    for (i, cell) in limits.cells().enumerate().rev() {
+        let most = ceiling[i + 1].min(cell.end.speed_most);
+        ceiling[i + 1] = most;
+        middle[i] = cell.end.most_before(cell.h, most);
+        ceiling[i] = cell.start.slowest_ends_below(cell.h, middle[i]);
+    }
+    (ceiling, middle)
+}
+
+impl Cell<'_> {
+    /// The highest speed at the end when it is entered at `v`, and the accelerations at both ends.
+    fn onwards(&self, v: f64, middle: f64, ceiling: f64) -> (f64, [f64; 2]) {
+        let (low, high) = self.start.range(v);
+        let z = (v * v + self.h * high).min(middle);
+        let next = self.end.fastest_comes_from(self.h, z).min(ceiling);
+        if self.h <= 0.0 {
+            return (next, [low.max(0.0).min(high); 2]);
+        }
+        // any two accelerations with this sum lead from v to next: the two nearest to each other are the smoothest
+        let sum = (next * next - v * v) / self.h;
+        let (end_low, end_high) = self.end.range(next);
+        let (from, to) = (low.max(sum - end_high), high.min(sum - end_low));
+        let start = (0.5 * sum).max(from).min(to);
+        (next, [start, sum - start])
+    }
+}
