@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Seeded strokes, junctions and paths for the motion benchmarks, written as CSV: `cases.py DIRECTORY`.
 
-The same seeds give the same files with any numpy ≥ 1.22. Metres on a canvas of 0.6 × 0.45 m around the axis.
+The same seeds give the same files with any numpy ≥ 1.22 and scipy. Metres on a canvas of 0.6 × 0.45 m around the axis.
 """
 
 import sys
 from pathlib import Path
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 
 WIDTH, HEIGHT = 0.6, 0.45
 SEED = 2006
@@ -80,6 +81,40 @@ def junctions(nx=20, ny=15, kept=0.6):
     return [place[edge] for edge in edges]
 
 
+WALL = 0.9
+PATHS = ("lissajous", "rose", "circle50", "scribble", "loops")
+
+
+def joint_path(name, points=4001):
+    """A C4 quintic spline of pan and tilt over 0…1 through a curve on the wall, 0.9 m away."""
+    u = np.linspace(0, 2 * np.pi, points)
+    if name == "lissajous":
+        x, y = 0.30 * np.sin(3 * u + 0.3), 0.20 * np.sin(2 * u)
+    elif name == "rose":
+        r = 0.2 * (1 + 0.35 * np.cos(5 * u))
+        x, y = r * np.cos(u), r * np.sin(u)
+    elif name == "circle50":
+        x, y = 0.05 * np.cos(u), 0.05 * np.sin(u)
+    elif name == "scribble":
+        rng = np.random.default_rng([SEED, 77])
+        knots = rng.uniform([-0.3, -0.2], [0.3, 0.2], (24, 2))
+        chord = np.r_[0, np.cumsum(np.sqrt(np.hypot(*np.diff(knots, axis=0).T)))]
+        u = np.linspace(0, chord[-1], points)
+        x, y = make_interp_spline(chord, knots, k=5)(u).T
+    else:  # loops as in handwriting, 12 mm high
+        u = np.linspace(0, 40 * np.pi, points)
+        x, y = -0.25 + 0.004 * u + 0.006 * np.cos(u), 0.01 * np.sin(u)
+    pan, tilt = np.arctan2(x, WALL), np.arctan2(y, np.hypot(x, WALL))
+    return make_interp_spline((u - u[0]) / (u[-1] - u[0]), np.c_[pan, tilt], k=5)
+
+
+def write_path(path, spline, cells=16000):
+    s = np.linspace(0, 1, cells + 1)
+    columns = [s[:, None]] + [spline.derivative(k)(s) if k else spline(s) for k in range(3)]
+    np.savetxt(path, np.hstack(columns), delimiter=",", fmt="%.15g",
+               header="s,pan,tilt,d_pan,d_tilt,dd_pan,dd_tilt", comments="")
+
+
 def write_ends(path, strokes):
     ends = np.array([[*s[0], *s[-1]] for s in strokes])
     np.savetxt(path, ends, delimiter=",", fmt="%.9f", header="x0,y0,x1,y1", comments="")
@@ -92,6 +127,8 @@ def main():
         for n in (500, 5000, 20000):
             write_ends(out / f"{kind.__name__}_{n}.csv", kind(n))
     write_ends(out / "junctions.csv", junctions())
+    for name in PATHS:
+        write_path(out / f"path_{name}.csv", joint_path(name))
 
 
 if __name__ == "__main__":

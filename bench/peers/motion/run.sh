@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Our order beside others', on the same strokes, in the same run: `bash bench/peers/motion/run.sh [quick]`.
+# Our order and timing beside others', on the same cases, in the same run: `bash bench/peers/motion/run.sh [quick]`.
 # Makes a Python environment in target/. `quick` leaves out 20 000 strokes, which take vpype a minute.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../../.."
@@ -10,8 +10,11 @@ export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE=1
 loud() { printf '\n!!! %s\n\n' "$*" >&2; }
 
 [ -x "$VENV/bin/pip" ] || python3 -m venv "$VENV"
-"$VENV/bin/pip" install --quiet --disable-pip-version-check numpy
+"$VENV/bin/pip" install --quiet --disable-pip-version-check numpy scipy
 "$VENV/bin/pip" install --quiet --disable-pip-version-check vpype || loud 'no vpype: it is left out of the comparison'
+for package in toppra copp-py; do
+    "$VENV/bin/pip" install --quiet --disable-pip-version-check "$package" || loud "no $package: it is left out of the comparison"
+done
 "$VENV/bin/python" bench/peers/motion/cases.py "$CASES"
 cargo build --release --locked --quiet -p tracelight-bench-motion
 
@@ -29,3 +32,8 @@ ours --by time --times 1 "$CASES"/{uniform,sketch,hatch}_500.csv
 printf '\nA net of 328 lines that meet at junctions; ours counts a lift as 10 mm\n'
 ours --lift-m 0.01 "$CASES/junctions.csv"
 theirs "$CASES/junctions.csv" || true
+
+printf '\nThe fastest motion at full torque, Coulomb friction; ours, then with viscous friction\n'
+target/release/tracelight-bench-motion retime --cells 1000,16000 "$CASES"/path_*.csv
+target/release/tracelight-bench-motion retime --cells 1000,16000 --viscous 0.0015 "$CASES"/path_*.csv
+"$VENV/bin/python" bench/peers/motion/retime_peers.py 1000 8000
