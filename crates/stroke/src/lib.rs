@@ -18,7 +18,7 @@ mod stroke;
 pub use colour::Colour;
 pub use compare::{Comparison, Score, compare, compare_polylines, score, score_polylines};
 pub use fit::{FitOptions, Parabola, fit};
-pub use kurbo::{Affine, Point, Vec2};
+pub use kurbo::{Affine, Point, Rect, Vec2};
 pub use order::{Effort, OrderOptions, Ordered, Travel, order};
 pub use path::{Element, Path, PathPoint, Piece};
 pub use polyline::polyline_length;

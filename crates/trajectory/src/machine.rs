@@ -3,6 +3,9 @@ use tracelight_dynamics::{Friction, Lumped, Motor};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::{Point, Vec2};
 
+use crate::plan::JointMotion;
+use crate::retime::Binding;
+
 /// What the planner believes of head, motors and target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Machine {
@@ -58,6 +61,30 @@ impl Machine {
     /// A torque as a share of what the amplifiers can do.
     pub fn fraction(&self, torque_nm: PanTilt<f64>) -> PanTilt<f64> {
         PanTilt::from_fn(|j| torque_nm[j] / self.motors[j].torque_limit_nm())
+    }
+
+    /// The limit that a motion comes nearest to, if it uses nine tenths of one. `torque_fraction` is a share of what
+    /// the amplifiers can do, `speed_share` one of the set speed.
+    pub(crate) fn binding(
+        &self,
+        joints: &PanTilt<JointMotion>,
+        torque_fraction: PanTilt<f64>,
+        speed_share: f64,
+    ) -> Option<Binding> {
+        const BINDS: f64 = 0.9;
+        let of_joint = |j: Joint| {
+            let motion = &joints[j];
+            [
+                (Binding::Torque(j), torque_fraction[j].abs() / self.torque_share),
+                (Binding::JointSpeed(j), motion.velocity_rad_s.abs() / self.speed_limit_rad_s[j]),
+                (
+                    Binding::Acceleration(j),
+                    motion.acceleration_rad_s2.abs() / self.acceleration_limit_rad_s2[j],
+                ),
+            ]
+        };
+        let all = Joint::BOTH.into_iter().flat_map(of_joint).chain([(Binding::SpeedCap, speed_share)]);
+        all.filter(|(_, used)| *used >= BINDS).max_by(|a, b| a.1.total_cmp(&b.1)).map(|(limit, _)| limit)
     }
 
     /// Joint angles for a point of the target.

@@ -14,7 +14,7 @@ pub(crate) struct MarkPoint {
     pub(crate) spot: Point,
     pub(crate) joints: PanTilt<JointMotion>,
     s_m: f64,
-    speed_m_s: f64,
+    pub(crate) speed_m_s: f64,
     /// Largest share of a motor's torque.
     fraction: f64,
 }

@@ -1,6 +1,8 @@
 use tracelight_rig::{PanTilt, Segment, TICK_F64_S};
 use tracelight_stroke::{Point, Vec2};
 
+use crate::retime::Binding;
+
 /// Angle, speed and acceleration of one joint, in `f64`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointMotion {
@@ -21,6 +23,8 @@ pub struct PlanPoint {
     pub joints: PanTilt<JointMotion>,
     /// Torque the motors need for it, as a share of what the amplifiers allow; signed.
     pub torque_fraction: PanTilt<f32>,
+    /// The limit the motion comes nearest to; none where it speeds up or slows down softly, or stands.
+    pub limit: Option<Binding>,
     /// Whether light is to fall on the target (the gate leads it by the relay's delays).
     pub lit: bool,
     /// Number of the stroke this tick belongs to; `None` on the way between strokes.
@@ -75,6 +79,20 @@ impl Plan {
     pub fn top_speed_m_s(&self) -> f64 {
         let lit = self.points.windows(2).filter(|w| w[0].lit && w[1].lit);
         lit.map(|w| w[0].spot.distance(w[1].spot) / TICK_F64_S).fold(0.0, f64::max)
+    }
+
+    /// How much of the lit time each limit holds the spot back, as shares, the largest first; the rest is soft starts
+    /// and stops.
+    pub fn limit_shares(&self) -> Vec<(Binding, f64)> {
+        let lit: Vec<Option<Binding>> = self.points.iter().filter(|p| p.lit).map(|p| p.limit).collect();
+        let count = |limit: Binding| lit.iter().filter(|&&l| l == Some(limit)).count();
+        let mut shares: Vec<(Binding, f64)> = Binding::ALL
+            .map(|limit| (limit, count(limit) as f64 / lit.len().max(1) as f64))
+            .into_iter()
+            .filter(|(_, share)| *share > 0.0)
+            .collect();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+        shares
     }
 
     /// Largest torque asked of a motor, as a share of its limit.

@@ -91,11 +91,16 @@ fn draw(
     index: usize,
 ) -> Result<(), PlanError> {
     let id = Some(index as u32);
-    let request = MarkRequest { speed_m_s: request.speed_m_s, ramp_s: request.ramp_s, stroke: index + 1 };
+    let set_m_s = request.speed_m_s;
+    let request = MarkRequest { speed_m_s: set_m_s, ramp_s: request.ramp_s, stroke: index + 1 };
     for leg in Leg::split(&stroke.path) {
         let start_tick = last_tick(plan);
         let marks = mark(machine, &leg, &request)?;
-        plan.points.extend(marks.into_iter().map(|m| assess(machine, m.spot, m.joints, true, id)));
+        plan.points.extend(marks.into_iter().map(|m| PlanPoint {
+            lit: true,
+            stroke: id,
+            ..assess(machine, m.spot, m.joints, m.speed_m_s / set_m_s)
+        }));
         let end = leg.at(leg.length_m());
         plan.leg_ends.push(LegEnd {
             tick: last_tick(plan),
@@ -118,7 +123,8 @@ fn linger(points: &mut Vec<PlanPoint>, time_s: f64) {
     let Some(&last) = points.last() else { return };
     let ticks = (time_s / TICK_F64_S).round() as usize;
     let still = last.joints.map(|j| JointMotion { position_rad: j.position_rad, ..JointMotion::default() });
-    points.extend(std::iter::repeat_n(PlanPoint { lit: false, stroke: None, joints: still, ..last }, ticks));
+    let resting = PlanPoint { lit: false, stroke: None, limit: None, joints: still, ..last };
+    points.extend(std::iter::repeat_n(resting, ticks));
 }
 
 fn rest(machine: &Machine, angle_rad: PanTilt<f64>) -> PlanPoint {
@@ -128,20 +134,23 @@ fn rest(machine: &Machine, angle_rad: PanTilt<f64>) -> PlanPoint {
 /// A point on the way: its spot is wherever the beam points, the target's origin where it points away from it.
 fn dark(machine: &Machine, joints: PanTilt<JointMotion>) -> PlanPoint {
     let spot = machine.geometry.spot(&machine.pose, joints.map(|j| j.position_rad));
-    assess(machine, spot.unwrap_or(Point::ORIGIN), joints, false, None)
+    assess(machine, spot.unwrap_or(Point::ORIGIN), joints, 0.0)
 }
 
-fn assess(
-    machine: &Machine,
-    spot: Point,
-    joints: PanTilt<JointMotion>,
-    lit: bool,
-    stroke: Option<u32>,
-) -> PlanPoint {
+/// A dark point with its torques and the limit it is at, `speed_share` of the set speed.
+fn assess(machine: &Machine, spot: Point, joints: PanTilt<JointMotion>, speed_share: f64) -> PlanPoint {
     let torque = machine.torque(
         joints.map(|j| j.position_rad),
         joints.map(|j| j.velocity_rad_s),
         joints.map(|j| j.acceleration_rad_s2),
     );
-    PlanPoint { spot, joints, torque_fraction: machine.fraction(torque).map(|f| f as f32), lit, stroke }
+    let fraction = machine.fraction(torque);
+    PlanPoint {
+        spot,
+        joints,
+        torque_fraction: fraction.map(|f| f as f32),
+        limit: machine.binding(&joints, fraction, speed_share),
+        lit: false,
+        stroke: None,
+    }
 }

@@ -10,7 +10,7 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
-use crate::output::{PlanFigures, StrokeFigures, counted};
+use crate::output::{ColourBy, PlanFigures, StrokeFigures, counted, preview};
 use crate::picture;
 use crate::progress::Progress;
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
@@ -26,6 +26,12 @@ pub(crate) struct PlanArgs {
     /// Write the plan, a row a millisecond, to this CSV file
     #[arg(short, long, value_name = "FILE.csv")]
     out: Option<String>,
+    /// Draw the plan, its lit way in colours, into this SVG
+    #[arg(long, value_name = "FILE.svg")]
+    preview: Option<String>,
+    /// What the colours of the preview say
+    #[arg(long, value_enum, default_value_t, requires = "preview")]
+    colour_by: ColourBy,
     /// What the order is to save
     #[arg(long, value_enum, default_value_t)]
     order_by: OrderBy,
@@ -59,11 +65,18 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| progress.say(&format!("note: {n}")));
     if let Some(path) = &args.out {
-        std::fs::write(path, csv(&schedule.plan))
-            .map_err(|e| Failure::failed("cannot-write", format!("cannot write {path}: {e}")))?;
+        write(path, &csv(&schedule.plan))?;
+    }
+    if let Some(path) = &args.preview {
+        write(path, &preview(&schedule.plan, args.colour_by, driving.request.speed_m_s))?;
     }
     let timing = serde_json::json!({ "vision": sketch.vision_ms, "plan": plan_ms });
     Ok(Answer::new(text(&schedule), json(&placed, &schedule, &timing)))
+}
+
+fn write(path: &str, text: &str) -> Result<(), Failure> {
+    let failed = |e| Failure::failed("cannot-write", format!("cannot write {path}: {e}"));
+    std::fs::write(path, text).map_err(failed)
 }
 
 fn text(schedule: &Schedule) -> String {
@@ -84,6 +97,8 @@ fn text(schedule: &Schedule) -> String {
 
 fn json(placed: &Placed, schedule: &Schedule, timing: &serde_json::Value) -> String {
     let (ordered, plan) = (&schedule.ordered, &schedule.plan);
+    let limits: serde_json::Map<_, _> =
+        plan.limit_shares().into_iter().map(|(limit, share)| (limit.to_string(), share.into())).collect();
     serde_json::json!({
         "target": { "width_m": placed.size_m.0, "height_m": placed.size_m.1 },
         "strokes": StrokeFigures::of(&ordered.drawing, plan),
@@ -94,19 +109,20 @@ fn json(placed: &Placed, schedule: &Schedule, timing: &serde_json::Value) -> Str
             "lower_bound_m": ordered.lower_bound,
             "gap_percent": ordered.gap_percent(),
         },
+        "limits": limits,
         "timing_ms": timing,
     })
     .to_string()
 }
 
 fn csv(plan: &Plan) -> String {
-    let mut text = String::from("t_s,lit,pan_rad,tilt_rad,pan_rad_s,tilt_rad_s,x_m,y_m\n");
+    let mut text = String::from("t_s,lit,pan_rad,tilt_rad,pan_rad_s,tilt_rad_s,x_m,y_m,limit\n");
     for (tick, p) in plan.points.iter().enumerate() {
         let (pan, tilt) = (&p.joints.pan, &p.joints.tilt);
         // writing to a String cannot fail
         let _ = writeln!(
             text,
-            "{:.3},{},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9}",
+            "{:.3},{},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9},{}",
             tick as f64 * TICK_F64_S,
             u8::from(p.lit),
             pan.position_rad,
@@ -114,7 +130,8 @@ fn csv(plan: &Plan) -> String {
             pan.velocity_rad_s,
             tilt.velocity_rad_s,
             p.spot.x,
-            p.spot.y
+            p.spot.y,
+            p.limit.map_or_else(String::new, |limit| limit.to_string())
         );
     }
     text

@@ -185,7 +185,7 @@ fn walk(line: &[Point], speed: f64, mut visit: impl FnMut(Point)) {
 fn point(spot: Point, stroke: Option<u32>) -> PlanPoint {
     let joints = angles(spot).map(|position_rad| JointMotion { position_rad, ..JointMotion::default() });
     let share = PanTilt::new((spot.x * 2.0).sin() as f32 * 0.7, 0.2 + (spot.y * 9.0).sin() as f32 * 0.4);
-    PlanPoint { spot, joints, torque_fraction: share, lit: stroke.is_some(), stroke }
+    PlanPoint { spot, joints, torque_fraction: share, limit: None, lit: stroke.is_some(), stroke }
 }
 
 fn angles(spot: Point) -> PanTilt<f64> {

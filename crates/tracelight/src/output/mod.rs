@@ -17,6 +17,7 @@ mod events;
 mod fixture;
 mod log;
 mod painting;
+mod preview;
 mod raster;
 mod report;
 mod sample;
@@ -34,6 +35,7 @@ use tracelight_vision::Quality;
 
 pub(crate) use events::{Event, events};
 pub(crate) use log::{LogMeta, LogWriter};
+pub(crate) use preview::{ColourBy, preview};
 pub(crate) use raster::Raster;
 pub(crate) use sample::planned;
 pub(crate) use summary::{PlanFigures, StrokeFigures, Summary};

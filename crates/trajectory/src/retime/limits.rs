@@ -16,6 +16,19 @@ pub enum Binding {
     SpeedCap,
 }
 
+impl Binding {
+    /// All there are.
+    pub const ALL: [Binding; 7] = [
+        Binding::SpeedCap,
+        Binding::Torque(Joint::Pan),
+        Binding::Torque(Joint::Tilt),
+        Binding::Acceleration(Joint::Pan),
+        Binding::Acceleration(Joint::Tilt),
+        Binding::JointSpeed(Joint::Pan),
+        Binding::JointSpeed(Joint::Tilt),
+    ];
+}
+
 impl core::fmt::Display for Binding {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
