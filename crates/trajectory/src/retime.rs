@@ -81,31 +81,34 @@ impl Retimed {
 /// double.
 const AROUND: [f64; 11] = [-1.4, -0.85, -0.5, -0.28, -0.14, 0.0, 0.14, 0.28, 0.5, 0.85, 1.4];
 
-/// No place is put in nearer to another than this share of a cell.
+/// No place is put in nearer to another than this share of a cell; turning places themselves are, for friction jumps
+/// there.
 const APART: f64 = 0.04;
+const TURNING_APART: f64 = 1e-9;
 
 /// The samples, and more wherever a joint turns round between two of them.
 fn with_turning_places(samples: Vec<PathSample>) -> Vec<PathSample> {
     let turns = |pair: &[PathSample], j: Joint| pair[0].joints.first[j] * pair[1].joints.first[j] < 0.0;
-    let mut wanted: Vec<f64> = Vec::new();
+    // where, and whether it is the turning place itself
+    let mut wanted: Vec<(f64, bool)> = Vec::new();
     for pair in samples.windows(2) {
         for joint in Joint::BOTH.into_iter().filter(|&j| turns(pair, j)) {
             let (at, h) = (turning_share(pair, joint), pair[1].s - pair[0].s);
-            wanted.extend(AROUND.map(|share| pair[0].s + h * (at + share)));
+            wanted.extend(AROUND.map(|share| (pair[0].s + h * (at + share), share == 0.0)));
         }
     }
     if wanted.is_empty() {
         return samples;
     }
-    wanted.sort_by(f64::total_cmp);
+    wanted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut wanted = wanted.into_iter().peekable();
     let mut all: Vec<PathSample> = Vec::with_capacity(samples.len() + wanted.len());
     for pair in samples.windows(2) {
         let (from, to) = (pair[0].s, pair[1].s);
         all.push(pair[0]);
-        let apart = APART * (to - from);
         let mut last = from;
-        while let Some(s) = wanted.next_if(|&s| s < to) {
+        while let Some((s, is_turning)) = wanted.next_if(|&(s, _)| s < to) {
+            let apart = if is_turning { TURNING_APART } else { APART } * (to - from);
             if s > last + apart && s < to - apart {
                 all.push(between(pair, (s - from) / (to - from)));
                 last = s;

@@ -189,10 +189,12 @@ impl Rows {
         most
     }
 
-    /// The speed up to which v² + h·u ≤ z for some allowed u.
+    /// The speed up to which 0 ≤ v² + h·u ≤ z for some allowed u: where limits press hard on a moving joint the motion
+    /// would come to rest within h, and below.
     pub(super) fn slowest_ends_below(&self, h: f64, z: f64) -> f64 {
-        let root = |row: &Row| first_root(1.0 + h * row.m, h * row.e, h * (row.n - row.reach) - z);
-        self.each().iter().map(root).fold(self.speed_most, f64::min)
+        let below = |row: &Row| first_root(1.0 + h * row.m, h * row.e, h * (row.n - row.reach) - z);
+        let above = |row: &Row| first_root(-1.0 - h * row.m, -h * row.e, -h * (row.n + row.reach));
+        self.each().iter().map(|row| below(row).min(above(row))).fold(self.speed_most, f64::min)
     }
 
     /// The speed up to which v² − h·u ≤ z for some allowed u.
@@ -201,20 +203,41 @@ impl Rows {
         self.each().iter().map(root).fold(self.speed_most, f64::min)
     }
 
-    /// The largest v² − h·u for a speed up to `most`. It grows with v but where a joint hardly moves, and there the
-    /// largest is found by thirds: v² less the largest of curves bent upwards has one top.
+    /// The largest v² − h·u for a speed up to `most`.
     pub(super) fn most_before(&self, h: f64, most: f64) -> f64 {
-        let before = |v: f64| v * v - h * self.range(v).0;
-        let nearly = (1.0 - 1e-6) * most;
-        if before(nearly) <= before(most) {
-            return before(most);
+        self.before(h, self.best_before(h, most))
+    }
+
+    /// The highest speed up to `most` with v² − h·u ≥ z for some allowed u, if there is one.
+    pub(super) fn fastest_after(&self, h: f64, z: f64, most: f64) -> f64 {
+        if self.before(h, most) >= z {
+            return most;
+        }
+        let (mut low, mut high) = (self.best_before(h, most), most);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.before(h, middle) >= z { low = middle } else { high = middle }
+        }
+        low
+    }
+
+    /// The largest v² − h·u at a speed.
+    fn before(&self, h: f64, v: f64) -> f64 {
+        v * v - h * self.range(v).0
+    }
+
+    /// The speed up to `most` where v² − h·u is largest. It grows with v but where a joint hardly moves, and there the
+    /// largest is found by thirds: v² less the largest of curves bent upwards has one top.
+    fn best_before(&self, h: f64, most: f64) -> f64 {
+        if self.before(h, (1.0 - 1e-6) * most) <= self.before(h, most) {
+            return most;
         }
         let (mut from, mut to) = (0.0, most);
         for _ in 0..60 {
             let (a, b) = (from + (to - from) / 3.0, to - (to - from) / 3.0);
-            if before(a) < before(b) { from = a } else { to = b }
+            if self.before(h, a) < self.before(h, b) { from = a } else { to = b }
         }
-        before(0.5 * (from + to)).max(before(most))
+        0.5 * (from + to)
     }
 }
 

@@ -119,6 +119,7 @@ impl Cell<'_> {
         let (low, high) = self.start.range(v);
         let z = (v * v + self.h * high).min(middle);
         let next = self.end.fastest_comes_from(self.h, z).min(ceiling);
+        let next = self.end.fastest_after(self.h, z, next);
         if self.h <= 0.0 {
             return (next, [low.max(0.0).min(high); 2]);
         }

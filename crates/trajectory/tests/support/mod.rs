@@ -1,6 +1,7 @@
 //! A rig of inertia and friction alone, and closed curves on its wall with exact joint derivatives.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+#![allow(dead_code, reason = "no test needs all of it")]
 
 use std::f64::consts::TAU;
 
@@ -33,6 +34,11 @@ pub(crate) fn bare_rig(coulomb_nm: f64, viscous: f64) -> Machine {
     }
 }
 
+/// The joints for a place on the wall and its derivatives.
+pub(crate) fn aim(machine: &Machine, point: Point, velocity: Vec2, acceleration: Vec2) -> JointPath {
+    machine.geometry.motion(&machine.pose, &SpotMotion { point, velocity, acceleration }).unwrap()
+}
+
 /// A curve on the wall over u from 0 to 2π × turns.
 #[derive(Clone, Copy)]
 pub(crate) struct Curve {
@@ -49,13 +55,8 @@ impl Curve {
             Vec2::new(x, y)
         };
         let (before, here, after) = (p(u - H), p(u), p(u + H));
-        let spot = SpotMotion {
-            point: Point::ORIGIN + here,
-            velocity: (after - before) / (2.0 * H),
-            acceleration: (after - 2.0 * here + before) / (H * H),
-        };
-        let machine = bare_rig(0.0, 0.0);
-        machine.geometry.motion(&machine.pose, &spot).unwrap()
+        let (first, second) = ((after - before) / (2.0 * H), (after - 2.0 * here + before) / (H * H));
+        aim(&bare_rig(0.0, 0.0), Point::ORIGIN + here, first, second)
     }
 
     /// `count` cells, even in u; the cap is of du/dt.
@@ -82,10 +83,14 @@ pub(crate) fn tilt_line(count: usize, angle_rad: f64) -> Vec<PathSample> {
     (0..=count).map(place).collect()
 }
 
+/// Joint rates and accelerations at a place, speed and acceleration along the path.
+pub(crate) fn joint_motion(at: &JointPath, v: f64, u: f64) -> (PanTilt<f64>, PanTilt<f64>) {
+    (at.first.map(|d| d * v), PanTilt::from_fn(|j| at.second[j] * v * v + at.first[j] * u))
+}
+
 /// Share of the motors' torque at a place, speed and acceleration along the path.
 pub(crate) fn torque_share(machine: &Machine, at: &JointPath, v: f64, u: f64) -> PanTilt<f64> {
-    let rate = at.first.map(|d| d * v);
-    let acceleration = PanTilt::from_fn(|j| at.second[j] * v * v + at.first[j] * u);
+    let (rate, acceleration) = joint_motion(at, v, u);
     machine.fraction(machine.torque(at.angle_rad, rate, acceleration)).map(f64::abs)
 }
 
