@@ -60,7 +60,7 @@ pub(crate) fn schedule(
             &placed.drawing,
             start,
             options,
-            &TravelTime::new(&driving.machine, driving.request.settle_s),
+            &TravelTime::new(&driving.machine, driving.request.lift_s(&driving.machine)),
         ),
         OrderBy::Distance => order(&placed.drawing, start, options, &|a: Point, b: Point| a.distance(b)),
     };

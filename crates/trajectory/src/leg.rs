@@ -17,6 +17,9 @@ const JUMP_M_S: f64 = 0.015;
 /// Shorter pieces than this are dust, m.
 const DUST_M: f64 = 1e-7;
 
+/// Most places at which a leg is looked at: 50 m at the finest.
+const MOST_PLACES: f64 = 1e5;
+
 /// Error of arc length on curves, m: a thousandth of what the spot moves in a tick at 1 ft/s.
 const LENGTH_TOLERANCE_M: f64 = 3e-7;
 
@@ -82,7 +85,7 @@ impl Leg {
         speed_m_s: f64,
         (step_m, fewest): (f64, f64),
     ) -> Result<Vec<PathSample>, AimError> {
-        let step_m = step_m.min(self.length_m() / fewest);
+        let step_m = step_m.min(self.length_m() / fewest).max(self.length_m() / MOST_PLACES);
         let mut samples = Vec::with_capacity((self.length_m() / step_m) as usize + 2 * self.pieces.len());
         for (piece, ends) in self.pieces.iter().zip(self.starts_m.windows(2)) {
             let length = ends[1] - ends[0];

@@ -5,8 +5,9 @@ use tracelight_stroke::Point;
 
 use crate::leg::Leg;
 use crate::plan::JointMotion;
+use crate::planner::check_duration;
 use crate::retime::{Along, PathSample, Retimed, chain};
-use crate::{Machine, PlanError};
+use crate::{Machine, PlanError, travel};
 
 /// One tick on a stroke.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +39,8 @@ const BORROW: f64 = 0.05;
 const GRID_M: f64 = 5e-4;
 const FEWEST: f64 = 16.0;
 
-/// Reach of a slow-down around a tick that asks too much, m; it grows from round to round.
-const REACH_M: f64 = 1e-3;
+/// Slower than this, m/s, a leg that still asks too much is given up.
+const SLOWEST_M_S: f64 = 1e-3;
 
 /// A leg from rest to rest, the start left out, the end included.
 ///
@@ -49,7 +50,7 @@ pub(crate) fn mark(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Resul
     let aim = |source| PlanError::Aim { stroke: request.stroke, source };
     let mut samples = leg.samples(machine, request.speed_m_s, (GRID_M, FEWEST)).map_err(aim)?;
     let allowed = machine.torque_share + BORROW;
-    let mut reach_m = REACH_M;
+    let mut reach_m = 2.0 * GRID_M.min(leg.length_m() / FEWEST);
     for _ in 0..16 {
         let points = in_time(machine, leg, &samples, request)?;
         if slow_where_too_much(&mut samples, &points, allowed, reach_m) {
@@ -57,14 +58,26 @@ pub(crate) fn mark(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Resul
         }
         reach_m *= 1.3;
     }
+    if request.speed_m_s < SLOWEST_M_S {
+        return Err(too_weak(machine, leg, request.stroke));
+    }
     let slower = MarkRequest { speed_m_s: 0.7 * request.speed_m_s, ..*request };
     mark(machine, leg, &slower)
+}
+
+/// The motor that holds its joint worst at the leg's end.
+fn too_weak(machine: &Machine, leg: &Leg, stroke: usize) -> PlanError {
+    match leg.joints_at(machine, leg.length_m()) {
+        Ok((_, joints)) => travel::too_weak(machine, joints.angle_rad),
+        Err(source) => PlanError::Aim { stroke, source },
+    }
 }
 
 /// Slows the leg down around every tick that asks too much; true if there was none.
 fn slow_where_too_much(samples: &mut [PathSample], points: &[MarkPoint], allowed: f64, reach_m: f64) -> bool {
     let mut fine = true;
-    for point in points.iter().filter(|p| p.fraction > allowed) {
+    // asked this way round, a number that is none is too much
+    for point in points.iter().filter(|p| !within(p.fraction, allowed)) {
         // torque beyond friction and gravity goes with the square of the speed; the overshoot is taken off at least
         let share = (1.0 - 1.5 * (point.fraction - allowed)).clamp(0.5, 0.95);
         let first = samples.partition_point(|sample| sample.s < point.s_m - reach_m);
@@ -75,6 +88,10 @@ fn slow_where_too_much(samples: &mut [PathSample], points: &[MarkPoint], allowed
     fine
 }
 
+fn within(fraction: f64, allowed: f64) -> bool {
+    fraction <= allowed
+}
+
 fn in_time(
     machine: &Machine,
     leg: &Leg,
@@ -82,6 +99,7 @@ fn in_time(
     request: &MarkRequest,
 ) -> Result<Vec<MarkPoint>, PlanError> {
     let law = Retimed::new(machine, samples.to_vec())?.law(request.ramp_s);
+    check_duration(law.duration_s())?;
     let ticks = (law.duration_s() / TICK_F64_S).ceil() as usize;
     let length = leg.length_m();
     let at = |tick: usize| {

@@ -23,7 +23,7 @@ pub struct PlanPoint {
     pub joints: PanTilt<JointMotion>,
     /// Torque the motors need for it, as a share of what the amplifiers allow; signed.
     pub torque_fraction: PanTilt<f32>,
-    /// The limit the motion comes nearest to; none where it speeds up or slows down softly, or stands.
+    /// The limit the motion comes nearest to; none where it speeds up or slows down softly, passes a small break, or stands.
     pub limit: Option<Binding>,
     /// Whether light is to fall on the target (the gate leads it by the relay's delays).
     pub lit: bool,
@@ -82,7 +82,7 @@ impl Plan {
     }
 
     /// How much of the lit time each limit holds the spot back, as shares, the largest first; the rest is soft starts
-    /// and stops.
+    /// and stops, and small breaks that are passed slowly.
     pub fn limit_shares(&self) -> Vec<(Binding, f64)> {
         let lit: Vec<Option<Binding>> = self.points.iter().filter(|p| p.lit).map(|p| p.limit).collect();
         let count = |limit: Binding| lit.iter().filter(|&&l| l == Some(limit)).count();

@@ -29,10 +29,19 @@ pub struct PlanRequest {
     pub tolerance_m: f64,
 }
 
+impl PlanRequest {
+    /// Rest before a stroke that does not begin where the last one ends, s: to settle, and for the relay to have let go
+    /// before it is to hold again.
+    pub fn lift_s(&self, machine: &Machine) -> f64 {
+        let relay_ticks = machine.relay_on_ticks + machine.relay_off_ticks + 1;
+        self.settle_s.max(f64::from(relay_ticks) * TICK_F64_S)
+    }
+}
+
 /// Times a drawing, strokes in the order given, starting from rest straight ahead.
 ///
-/// Every stroke is reached by a dark move and a short rest, lit, run from rest to rest between its corners, and
-/// darkened. The result is what is executed, tick by tick.
+/// Every stroke is reached by a dark move and a short rest, unless it begins where the one before ends; lit, run from
+/// rest to rest between its corners, and darkened. The result is what is executed, tick by tick.
 pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Result<Plan, PlanError> {
     check_length(drawing, request)?;
     let mut plan = Plan { points: vec![rest(machine, PanTilt::new(0.0, 0.0))], ..Plan::default() };
@@ -52,7 +61,7 @@ fn check_length(drawing: &Drawing, request: &PlanRequest) -> Result<(), PlanErro
     check_duration(drawing.length(1e-4) / request.speed_m_s)
 }
 
-fn check_duration(needed_s: f64) -> Result<(), PlanError> {
+pub(crate) fn check_duration(needed_s: f64) -> Result<(), PlanError> {
     if needed_s <= LONGEST_S { Ok(()) } else { Err(PlanError::TooLong { needed_s, most_s: LONGEST_S }) }
 }
 
@@ -73,9 +82,7 @@ fn approach(
         return Ok(());
     }
     points.extend(way.into_iter().map(|joints| dark(machine, joints)));
-    // dark long enough for the relay to have let go before it is to hold again
-    let relay_ticks = machine.relay_on_ticks + machine.relay_off_ticks + 1;
-    linger(points, request.settle_s.max(f64::from(relay_ticks) * TICK_F64_S));
+    linger(points, request.lift_s(machine));
     if let Some(last) = points.last_mut() {
         *last = PlanPoint { spot: start, lit: true, stroke: Some(index as u32), ..*last };
     }

@@ -29,7 +29,8 @@ pub struct Retimed {
 /// accelerations, and to each sample's cap, from rest to rest. Between samples the acceleration is linear over s; the
 /// limits hold at the samples, and between them but for what the path bends within a cell.
 ///
-/// Two samples may share a place where the path's curvature jumps. Where a joint turns round between two samples, a
+/// There must be three samples at least, and at each of them a joint that moves or a cap above zero. Two samples may
+/// share a place where the path's curvature jumps. Where a joint turns round between two samples, a
 /// place is put in, since friction jumps there.
 ///
 /// # Errors

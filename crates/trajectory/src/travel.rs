@@ -8,7 +8,7 @@ use crate::{Machine, PlanError, Shape};
 const LONGEST_S: f64 = 60.0;
 
 /// A shorter way is none, rad.
-const NOTHING_RAD: f64 = 1e-9;
+pub(crate) const NOTHING_RAD: f64 = 1e-9;
 
 /// Both joints tick by tick along a dark move from rest to rest, the start left out, the end included.
 ///
@@ -70,7 +70,7 @@ fn first_limits(machine: &Machine, from: PanTilt<f64>, span: PanTilt<f64>) -> Re
     if possible { Ok(limits) } else { Err(too_weak(machine, from)) }
 }
 
-fn too_weak(machine: &Machine, at: PanTilt<f64>) -> PlanError {
+pub(crate) fn too_weak(machine: &Machine, at: PanTilt<f64>) -> PlanError {
     let gravity = machine.lumped.gravity(at.tilt);
     let need = |j: Joint| gravity[j].abs() + machine.friction[j].coulomb_pos_nm;
     let have = |j: Joint| machine.torque_share * machine.motors[j].torque_limit_nm();

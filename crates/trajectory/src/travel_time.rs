@@ -2,11 +2,12 @@ use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::{Point, Travel};
 
 use crate::Machine;
+use crate::travel::NOTHING_RAD;
 
 /// How long dark moves take from rest to rest, s, for ordering strokes: what the slower joint needs at full torque
-/// with friction, up to its speed limit.
+/// with Coulomb friction, up to its speed limit.
 ///
-/// Inertia and friction are those at the ends of the move, coupling and gravity are left out, so the times are near
+/// Inertia and friction are those at the ends of the move, coupling, gravity and viscous friction are left out, so the times are near
 /// those of the plan and no more. Points out of reach are an hour away from any other.
 #[derive(Clone, Copy, Debug)]
 pub struct TravelTime<'a> {
@@ -67,7 +68,8 @@ impl Travel for TravelTime<'_> {
     fn cost(&self, from: Option<Aimed>, to: Option<Aimed>) -> f64 {
         const NEVER_S: f64 = 3600.0;
         let (Some(from), Some(to)) = (from, to) else { return NEVER_S };
-        if from.angle_rad == to.angle_rad {
+        let span = |j: Joint| (to.angle_rad[j] - from.angle_rad[j]).abs();
+        if span(Joint::Pan).max(span(Joint::Tilt)) < NOTHING_RAD {
             return 0.0;
         }
         self.lift_s + self.joint_s(Joint::Pan, &from, &to).max(self.joint_s(Joint::Tilt, &from, &to))

@@ -10,7 +10,7 @@ use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
-use tracelight_trajectory::{Machine, Plan, PlanError, PlanRequest, Ramps, Shape, plan};
+use tracelight_trajectory::{Binding, Machine, Plan, PlanError, PlanRequest, Ramps, Shape, plan};
 
 const SPEED_M_S: f64 = 0.3048;
 
@@ -147,6 +147,25 @@ fn stroke_ends_are_at_rest_and_on_the_path() {
         assert!(point.spot.distance(end.point) < 1e-9);
         assert!(Joint::BOTH.iter().all(|&j| point.joints[j].velocity_rad_s == 0.0));
     }
+}
+
+#[test]
+fn a_line_in_many_pieces_is_run_like_one() {
+    let pieces: Vec<_> = (0..=60).map(|i| (0.005 * f64::from(i) - 0.15, 0.05)).collect();
+    let took = |points: &[(f64, f64)]| {
+        plan(&drawing([line(points)]), &machine(), &request(Shape::Sine)).unwrap().duration_s()
+    };
+    let (one, many) = (took(&[(-0.15, 0.05), (0.15, 0.05)]), took(&pieces));
+    assert!((one - many).abs() < 2.5e-3, "{one} s, in pieces {many} s");
+}
+
+#[test]
+fn every_moment_of_a_long_line_has_its_limit() {
+    let plan = plan(&drawing([line(&[(-0.3, 0.0), (0.3, 0.1)])]), &machine(), &request(Shape::Sine)).unwrap();
+    let shares = plan.limit_shares();
+    assert_eq!(shares[0].0, Binding::SpeedCap, "{shares:?}");
+    assert!(shares[0].1 > 0.8 && shares[1].0 == Binding::Torque(Joint::Pan), "{shares:?}");
+    assert!(plan.points.iter().all(|p| p.lit || p.limit != Some(Binding::SpeedCap)));
 }
 
 #[test]

@@ -142,8 +142,16 @@ fn paid(tax: &[f64], degree: &[i32]) -> f64 {
 /// From every point to the nearest ones of other knots.
 fn short_links(tree: &KdTree<'_>, points: &[Point], knot: &[u32]) -> Vec<[u32; 2]> {
     let mut links = Vec::with_capacity(NEAREST * points.len());
+    let shared = tree.fold(
+        |points| {
+            let first = points.first().map(|&p| knot[p as usize]);
+            first.filter(|&first| points.iter().all(|&p| knot[p as usize] == first))
+        },
+        |a, b| a.filter(|_| a == b),
+    );
     for (i, &at) in points.iter().enumerate() {
-        let mut search = Nearest { knot, own: knot[i], found: Vec::with_capacity(NEAREST + 1) };
+        let mut search =
+            Nearest { knot, shared: &shared, own: knot[i], found: Vec::with_capacity(NEAREST + 1) };
         tree.search(at, &mut search);
         links.extend(search.found.iter().map(|&(_, to)| [i as u32, to]));
     }
@@ -152,6 +160,8 @@ fn short_links(tree: &KdTree<'_>, points: &[Point], knot: &[u32]) -> Vec<[u32; 2
 
 struct Nearest<'a> {
     knot: &'a [u32],
+    /// Of every box the knot all its points belong to, if they do.
+    shared: &'a [Option<u32>],
     own: u32,
     found: Vec<(f64, u32)>,
 }
@@ -163,8 +173,8 @@ impl Nearest<'_> {
 }
 
 impl Gather for Nearest<'_> {
-    fn wants(&self, _: usize, _: &Rect, distance_sq: f64) -> bool {
-        distance_sq < self.reach_sq()
+    fn wants(&self, node: usize, _: &Rect, distance_sq: f64) -> bool {
+        distance_sq < self.reach_sq() && self.shared[node] != Some(self.own)
     }
 
     fn offer(&mut self, point: u32, distance_sq: f64) {

@@ -14,7 +14,11 @@ use super::travel::Travel;
 /// 5000 strokes.
 const DEPTH: usize = 2;
 
-/// A move must gain this share of the travel it removes: anything less is rounding, and might go on forever.
+/// Of larger tours only exchanges that gain by themselves are done: trying others turns long parts of the tour around
+/// and back.
+const LARGE: usize = 50_000;
+
+/// A move must gain this share of the travels it removes: anything less is rounding, and might go on forever.
 pub(super) const LEAST_GAIN: f64 = 1e-9;
 
 /// An exchange that begins with a new travel from `end` to `v`.
@@ -28,6 +32,14 @@ struct Exchange {
     open: f64,
     /// What is gained in all.
     closed: f64,
+    /// The travels taken out, this exchange's and those before it.
+    removed: f64,
+}
+
+impl Exchange {
+    fn gains(&self) -> bool {
+        self.closed > LEAST_GAIN * self.removed.abs()
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -43,15 +55,15 @@ enum Kind {
 }
 
 /// The best exchange so far: the first that gains ends the search, else the one that leaves most to go on with.
+#[derive(Default)]
 struct Best {
-    least: f64,
     found: Option<Exchange>,
 }
 
 impl Best {
     /// Takes note of an exchange; whether it gains.
     fn offer(&mut self, exchange: Exchange) -> bool {
-        let gains = exchange.closed > self.least;
+        let gains = exchange.gains();
         if gains || self.found.is_none_or(|best| exchange.open > best.open) {
             self.found = Some(exchange);
         }
@@ -64,24 +76,25 @@ impl<T: Travel> Search<'_, T> {
     /// several that do together; returns the gain.
     pub(super) fn exchange(&mut self, base: u32) -> Option<f64> {
         let held = self.travel(base, self.tour.link(base));
-        if held > 0.0 { self.exchange_on(base, held, LEAST_GAIN * held, 1) } else { None }
+        if held > 0.0 { self.exchange_on(base, [held, held], 1) } else { None }
     }
 
-    /// `open` is what the exchanges so far have gained, the travel from `base` to its link not counted.
-    fn exchange_on(&mut self, base: u32, open: f64, least: f64, depth: usize) -> Option<f64> {
+    /// `open` is what the exchanges so far have gained, the travel from `base` to its link not counted, `removed` the
+    /// travels they took out.
+    fn exchange_on(&mut self, base: u32, [open, removed]: [f64; 2], depth: usize) -> Option<f64> {
         let end = self.tour.link(base);
-        let mut best = Best { least, found: None };
-        self.look_for(base, end, open, &mut best);
+        let mut best = Best::default();
+        self.look_for(base, end, [open, removed], &mut best);
         let exchange = best.found?;
-        let gains = exchange.closed > least;
-        if !gains && depth == DEPTH {
+        let gains = exchange.gains();
+        if !gains && (depth == DEPTH || self.tour.len() > LARGE) {
             return None;
         }
         let done = self.log.len();
         self.perform(end, &exchange);
         let gain = match gains {
             true => Some(exchange.closed),
-            false => self.exchange_on(base, exchange.open, least, depth + 1),
+            false => self.exchange_on(base, [exchange.open, exchange.removed], depth + 1),
         };
         match gain {
             Some(_) => self.wake(base, end, &exchange),
@@ -90,12 +103,12 @@ impl<T: Travel> Search<'_, T> {
         gain
     }
 
-    fn look_for(&self, base: u32, end: u32, open: f64, best: &mut Best) {
+    fn look_for(&self, base: u32, end: u32, [open, removed]: [f64; 2], best: &mut Best) {
         let side = self.tour.enters(end);
         for (v, reach) in self.ways_from(end) {
             let left = open - reach;
             // asked this way round, a cost that is not a number ends the search too
-            let goes_on = left > best.least;
+            let goes_on = left > 0.0;
             if !goes_on {
                 return;
             }
@@ -103,15 +116,17 @@ impl<T: Travel> Search<'_, T> {
             if v == base || v == end {
                 continue;
             }
-            let open = left + self.travel(v, w);
+            let out = self.travel(v, w);
+            let (open, removed) = (left + out, removed + out);
             let turns = self.tour.enters(v) == side;
             if turns {
                 let closed = open - self.travel(base, w);
-                if best.offer(Exchange { v, w, kind: Kind::Two, open, closed }) {
+                if best.offer(Exchange { v, w, kind: Kind::Two, open, closed, removed }) {
                     return;
                 }
             }
-            if self.look_for_third(base, end, Exchange { v, w, kind: Kind::Two, open, closed: 0.0 }, best) {
+            let first = Exchange { v, w, kind: Kind::Two, open, closed: 0.0, removed };
+            if self.look_for_third(base, end, first, best) {
                 return;
             }
         }
@@ -124,7 +139,7 @@ impl<T: Travel> Search<'_, T> {
         let turns = self.tour.enters(v) == side;
         for &(q, reach) in self.neighbours.of(w) {
             let left = first.open - reach;
-            let goes_on = left > best.least;
+            let goes_on = left > 0.0;
             if !goes_on {
                 return false;
             }
@@ -142,9 +157,10 @@ impl<T: Travel> Search<'_, T> {
                 // the tour would fall in two
                 _ => continue,
             };
-            let open = left + self.travel(q, r);
+            let out = self.travel(q, r);
+            let (open, removed) = (left + out, first.removed + out);
             let closed = open - self.travel(base, r);
-            if best.offer(Exchange { v, w, kind, open, closed }) {
+            if best.offer(Exchange { v, w, kind, open, closed, removed }) {
                 return true;
             }
         }

@@ -131,6 +131,7 @@ impl<'a, T: Travel> Search<'a, T> {
             return;
         }
         self.ends_anywhere = false;
+        let before = self.tour.clone();
         let patience = PATIENCE * whole / self.tour.len() as f64;
         let mut random = Xorshift::new(seed);
         for left in (0..count).rev() {
@@ -139,6 +140,9 @@ impl<'a, T: Travel> Search<'a, T> {
             self.swap_runs([u, first as u32, second as u32], patience * left as f64 / count as f64);
         }
         self.settle();
+        if self.total() > whole {
+            self.tour = before;
+        }
     }
 
     /// Cost of the whole tour.

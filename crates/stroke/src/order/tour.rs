@@ -2,6 +2,7 @@
 ///
 /// An open path becomes a round by one more stroke, the depot, that leads from its end "nowhere" (any travel to it
 /// costs nothing) to the start point. A round may be read in either sense; ends, not directions, name a move.
+#[derive(Clone)]
 pub(super) struct Tour {
     /// The end each place of the round is entered by.
     entry: Vec<u32>,

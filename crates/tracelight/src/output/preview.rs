@@ -29,7 +29,10 @@ const NO_LIMIT: &str = "#a3a3a3";
 /// The longer side of the drawing in the picture's own units, and the room around it and for the legend below.
 const SIDE: f64 = 1000.0;
 const MARGIN: f64 = 40.0;
-const LEGEND: f64 = 110.0;
+const LEGEND: f64 = 90.0;
+/// Narrower drawings get room for the legend, as wide as its longest row; and what an entry of it takes.
+const NARROWEST: f64 = 760.0;
+const ENTRY: (f64, f64) = (330.0, 30.0);
 /// Moves shorter than this many units are joined: a third of a pixel on a large screen.
 const SHORTEST: f64 = 0.4;
 /// More strokes than this go without a number beside their start.
@@ -51,7 +54,12 @@ const fn limit_colour(limit: Option<Binding>) -> &'static str {
 /// An SVG of the plan, `set_m_s` the speed it was asked for.
 pub(crate) fn preview(plan: &Plan, by: ColourBy, set_m_s: f64) -> String {
     let frame = Frame::around(plan);
-    let (width, height) = (frame.size.0 + 2.0 * MARGIN, frame.size.1 + 2.0 * MARGIN + LEGEND);
+    let inner = frame.size.0.max(NARROWEST);
+    let columns = (inner / ENTRY.0).floor().max(1.0) as usize;
+    let rows = if by == ColourBy::Limit { plan.limit_shares().len() / columns } else { 0 };
+    let (width, height) =
+        (inner + 2.0 * MARGIN, frame.size.1 + 2.0 * MARGIN + LEGEND + ENTRY.1 * rows as f64);
+    let last = plan.points.iter().rev().find_map(|p| p.stroke).unwrap_or(0);
     let mut svg = format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0} {height:.0}" font-family="system-ui, sans-serif" font-size="20" fill="#333">
 <rect width="100%" height="100%" fill="#fff"/>
@@ -65,7 +73,11 @@ pub(crate) fn preview(plan: &Plan, by: ColourBy, set_m_s: f64) -> String {
     svg.push_str(
         "\n<g fill=\"none\" stroke-width=\"4\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
     );
-    lit_way(&mut svg, plan, &frame, &|p, speed_m_s| colour(plan, by, set_m_s, p, speed_m_s));
+    lit_way(&mut svg, plan, &frame, &|p, speed_m_s| match by {
+        ColourBy::Speed => of_ramp(&SPEEDS, speed_m_s / set_m_s),
+        ColourBy::Order => of_ramp(&ORDER, f64::from(p.stroke.unwrap_or(0)) / f64::from(last + 1)),
+        ColourBy::Limit => limit_colour(p.limit),
+    });
     svg.push_str("</g>\n");
     numbers(&mut svg, plan, &frame);
     let top = frame.size.1 + 2.0 * MARGIN;
@@ -78,20 +90,19 @@ pub(crate) fn preview(plan: &Plan, by: ColourBy, set_m_s: f64) -> String {
             "Speed of the spot",
         ),
         ColourBy::Order => ramp(&mut svg, top, &ORDER, ["first", "last"], "Order of the strokes"),
-        ColourBy::Limit => limits(&mut svg, top, plan),
+        ColourBy::Limit => limits(&mut svg, top, columns, plan),
     }
-    scale_bar(&mut svg, &frame, top);
+    scale_bar(&mut svg, &frame, (inner + MARGIN, top + 10.0));
     svg.push_str("</svg>\n");
     svg
 }
 
 /// How long a round number of millimetres is, at the right below the drawing.
-fn scale_bar(svg: &mut String, frame: &Frame, top: f64) {
-    const LONGEST: f64 = 220.0;
+fn scale_bar(svg: &mut String, frame: &Frame, (to, y): (f64, f64)) {
+    const LONGEST: f64 = 180.0;
     let most_mm = 1e3 * LONGEST / frame.scale;
     let decade = 10_f64.powf(most_mm.log10().floor());
     let length_mm = [5.0, 2.0, 1.0].map(|n| n * decade).into_iter().find(|&l| l <= most_mm).unwrap_or(decade);
-    let (to, y) = (frame.size.0 + MARGIN, top + 84.0);
     let from = to - 1e-3 * length_mm * frame.scale;
     let _ = writeln!(
         svg,
@@ -101,16 +112,8 @@ fn scale_bar(svg: &mut String, frame: &Frame, top: f64) {
     );
 }
 
-fn colour(plan: &Plan, by: ColourBy, set_m_s: f64, p: &PlanPoint, speed_m_s: f64) -> &'static str {
-    let of = |ramp: &[&'static str; 8], share: f64| ramp[((8.0 * share) as usize).min(7)];
-    match by {
-        ColourBy::Speed => of(&SPEEDS, speed_m_s / set_m_s),
-        ColourBy::Order => {
-            let last = plan.points.iter().rev().find_map(|p| p.stroke).unwrap_or(0);
-            of(&ORDER, f64::from(p.stroke.unwrap_or(0)) / f64::from(last + 1))
-        }
-        ColourBy::Limit => limit_colour(p.limit),
-    }
+fn of_ramp(ramp: &[&'static str; 8], share: f64) -> &'static str {
+    ramp[((8.0 * share) as usize).min(7)]
 }
 
 /// From target metres to the picture, y down.
@@ -235,18 +238,18 @@ fn ramp(svg: &mut String, top: f64, colours: &[&str; 8], ends: [&str; 2], title:
         writeln!(svg, r#"<text x="{:.1}" y="{y:.1}" text-anchor="end">{}</text>"#, MARGIN + 400.0, ends[1]);
 }
 
-fn limits(svg: &mut String, top: f64, plan: &Plan) {
+fn limits(svg: &mut String, top: f64, columns: usize, plan: &Plan) {
     let shares = plan.limit_shares();
     let soft = 1.0 - shares.iter().map(|(_, share)| share).sum::<f64>();
     let named = shares.into_iter().map(|(limit, share)| (limit.to_string(), Some(limit), share));
-    let all = named.chain([("soft starts and stops".to_owned(), None, soft)]);
+    let all = named.chain([("starts, stops, small breaks".to_owned(), None, soft)]);
     let _ = writeln!(
         svg,
         r#"<text x="{MARGIN}" y="{:.1}" font-weight="600">What holds the spot back, share of the lit time</text>"#,
         top + 12.0
     );
     for (i, (name, limit, share)) in all.enumerate() {
-        let (x, y) = (MARGIN + 330.0 * (i % 3) as f64, top + 44.0 + 30.0 * (i / 3) as f64);
+        let (x, y) = (MARGIN + ENTRY.0 * (i % columns) as f64, top + 44.0 + ENTRY.1 * (i / columns) as f64);
         let _ = writeln!(
             svg,
             r#"<rect x="{x:.1}" y="{:.1}" width="28" height="16" fill="{}"/><text x="{:.1}" y="{y:.1}">{name}, {:.1} %</text>"#,

@@ -109,6 +109,10 @@ fn hermite(from: Along, to: Along, time: f64) -> [f64; 6] {
     ]
 }
 
+/// A cell entered and left at rest cannot be crossed. Only a cap of nothing, or a path of one single cell, makes one; it
+/// is given a time beyond any job's, ns for each unit of way.
+const STANDING: f64 = 1e-9;
+
 /// How long a cell takes whose acceleration goes in a straight line over s: ∫ ds/v with v² = v₀² + 2u₀s + (u₁−u₀)s²/h.
 ///
 /// The integral is taken over the time θ of the motion with constant acceleration between the same speeds, in which
@@ -116,8 +120,10 @@ fn hermite(from: Along, to: Along, time: f64) -> [f64; 6] {
 pub(super) fn crossing_s(h: f64, v: [f64; 2], u: [f64; 2]) -> f64 {
     const NODES: [(f64, f64); 3] =
         [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-    // a cell entered and left at rest cannot be crossed; the passes never leave one
-    let even_s = 2.0 * h / (v[0] + v[1]).max(1e-9);
+    if v[0] + v[1] <= STANDING {
+        return h / STANDING;
+    }
+    let even_s = 2.0 * h / (v[0] + v[1]);
     let share: f64 = NODES
         .iter()
         .map(|&(at, weight)| {

@@ -12,7 +12,7 @@ pub enum Binding {
     Acceleration(Joint),
     /// The highest speed of a joint.
     JointSpeed(Joint),
-    /// The set speed of the spot, or what a small break of the tangent leaves of it.
+    /// The set speed of the spot.
     SpeedCap,
 }
 

@@ -107,6 +107,10 @@ fn ceilings(limits: &Limits, last: f64) -> (Vec<f64>, Vec<f64>) {
     for (i, cell) in limits.cells().enumerate().rev() {
         let most = ceiling[i + 1].min(cell.end.speed_most);
         ceiling[i + 1] = most;
+        if cell.h <= 0.0 {
+            (middle[i], ceiling[i]) = (most * most, most.min(cell.start.speed_most));
+            continue;
+        }
         middle[i] = cell.end.most_before(cell.h, most);
         ceiling[i] = cell.start.slowest_ends_below(cell.h, middle[i]);
     }
@@ -117,12 +121,12 @@ impl Cell<'_> {
     /// The highest speed at the end when it is entered at `v`, and the accelerations at both ends.
     fn onwards(&self, v: f64, middle: f64, ceiling: f64) -> (f64, [f64; 2]) {
         let (low, high) = self.start.range(v);
+        if self.h <= 0.0 {
+            return (v.min(ceiling), [low.max(0.0).min(high); 2]);
+        }
         let z = (v * v + self.h * high).min(middle);
         let next = self.end.fastest_comes_from(self.h, z).min(ceiling);
         let next = self.end.fastest_after(self.h, z, next);
-        if self.h <= 0.0 {
-            return (next, [low.max(0.0).min(high); 2]);
-        }
         // any two accelerations with this sum lead from v to next: the two nearest to each other are the smoothest
         let sum = (next * next - v * v) / self.h;
         let (end_low, end_high) = self.end.range(next);
