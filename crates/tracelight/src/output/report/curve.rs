@@ -77,11 +77,11 @@ pub(super) fn tenth(value: f64) -> f64 {
 
 /// Spans where something holds, as path data of rectangles from edge to edge; gaps no wider than a column close up.
 pub(super) fn bands(points: impl Iterator<Item = (f64, bool)>, x: &Axis) -> String {
-    strip(points, x, SIDE)
+    strip(points, x, [0.0, SIDE])
 }
 
-/// The same, only `height` high from the top.
-pub(super) fn strip(points: impl Iterator<Item = (f64, bool)>, x: &Axis, height: f64) -> String {
+/// The same, only between two heights, from the top down.
+pub(super) fn strip(points: impl Iterator<Item = (f64, bool)>, x: &Axis, heights: [f64; 2]) -> String {
     let mut out = String::new();
     let mut open: Option<(f64, f64)> = None;
     for (at, holds) in points {
@@ -90,20 +90,20 @@ pub(super) fn strip(points: impl Iterator<Item = (f64, bool)>, x: &Axis, height:
             (None, true) => Some((place, place)),
             (Some((from, _)), true) => Some((from, place)),
             (Some((from, to)), false) if place - to > SIDE / COLUMNS => {
-                band(&mut out, from, to, height);
+                band(&mut out, from, to, heights);
                 None
             }
             (open, _) => open,
         };
     }
     if let Some((from, to)) = open {
-        band(&mut out, from, to, height);
+        band(&mut out, from, to, heights);
     }
     out
 }
 
-fn band(out: &mut String, from: f64, to: f64, height: f64) {
-    let _ = write!(out, "M{} 0H{}V{height}H{}Z", tenth(from), tenth(to), tenth(from));
+fn band(out: &mut String, from: f64, to: f64, [top, bottom]: [f64; 2]) {
+    let _ = write!(out, "M{} {top}H{}V{bottom}H{}Z", tenth(from), tenth(to), tenth(from));
 }
 
 #[cfg(test)]

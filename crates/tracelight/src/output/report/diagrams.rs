@@ -1,5 +1,6 @@
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_stroke::Point;
+use tracelight_trajectory::Binding;
 
 use super::axis::Axis;
 use super::curve::{bands, curve, strip};
@@ -139,7 +140,10 @@ pub(super) fn schedule(job: &Job<'_>) -> String {
         .height(13.0)
         .area("lit", &lit, None)
         .area("stroke-odd", &strokes(false), Some("strokes, by number"))
-        .area("stroke-even", &strokes(true), None)
+        .area("stroke-even", &strokes(true), None);
+    let plot = limits(job, &time)
+        .into_iter()
+        .fold(plot, |plot, (class, data, name)| plot.area(class, &data, Some(&name)))
         .line("wanted speed", &curve(planned_speed(job), &time, &y), Some("planned"))
         .line("speed", &curve(actual_speed(job), &time, &y), Some("actual"))
         .level("set", job.set_speed_m_s, Some(&format!("set speed {} m/s", number(job.set_speed_m_s, 4))));
@@ -147,8 +151,29 @@ pub(super) fn schedule(job: &Job<'_>) -> String {
     plot.note(&cut_note(job, &y)).html()
 }
 
-/// Height of the strip of strokes, of 1000.
-const STRIP: f64 = 95.0;
+/// Heights of the strip of strokes and of the one of limits below it, of 1000 from the top.
+const STRIP: [f64; 2] = [0.0, 95.0];
+const LIMIT_STRIP: [f64; 2] = [103.0, 143.0];
+
+/// What holds the motion back, over time: for each limit that does its class, its spans and its name.
+fn limits(job: &Job<'_>, time: &Axis) -> Vec<(&'static str, String, String)> {
+    let points = || job.plan.points.iter().enumerate().map(|(i, p)| (i as f64 * TICK_F64_S, p.limit));
+    let spans = |limit: Binding| strip(points().map(|(t, l)| (t, l == Some(limit))), time, LIMIT_STRIP);
+    let all = Binding::ALL.into_iter().map(|limit| (limit_class(limit), spans(limit), limit.to_string()));
+    all.filter(|(_, data, _)| !data.is_empty()).collect()
+}
+
+const fn limit_class(limit: Binding) -> &'static str {
+    match limit {
+        Binding::SpeedCap => "binds-cap",
+        Binding::Torque(Joint::Pan) => "binds-torque-pan",
+        Binding::Torque(Joint::Tilt) => "binds-torque-tilt",
+        Binding::Acceleration(Joint::Pan) => "binds-acceleration-pan",
+        Binding::Acceleration(Joint::Tilt) => "binds-acceleration-tilt",
+        Binding::JointSpeed(Joint::Pan) => "binds-speed-pan",
+        Binding::JointSpeed(Joint::Tilt) => "binds-speed-tilt",
+    }
+}
 
 /// Half of the ticks a speed is taken over.
 const REACH: usize = 4;
@@ -184,7 +209,7 @@ const MOST_SET_SPEEDS: f64 = 2.0;
 fn speed_axis(job: &Job<'_>) -> Axis {
     let fastest = fastest(job);
     let top = fastest.min(job.set_speed_m_s * MOST_SET_SPEEDS).max(job.set_speed_m_s * 1.1);
-    Axis::new(0.0, top * 1.15, 4) // air for the strip of strokes
+    Axis::new(0.0, top * 1.2, 4) // air for the strips of strokes and limits
 }
 
 fn fastest(job: &Job<'_>) -> f64 {
