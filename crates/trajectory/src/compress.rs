@@ -2,6 +2,7 @@ use tracelight_rig::{Joint, PanTilt, Segment};
 
 use crate::Machine;
 use crate::plan::{JointMotion, PlanPoint};
+use crate::retime::{Along, hermite};
 use tracelight_rig::TICK_F64_S;
 
 /// Longest segment, ticks: short enough that a stroke's shape and the tolerance hardly change within.
@@ -52,7 +53,7 @@ fn longest(points: &[PlanPoint], gates: &[bool], start: usize) -> (usize, PanTil
     let mut length = LONGEST.min(same_gate).min(points.len() - 1 - start).max(1);
     loop {
         let fit = PanTilt::from_fn(|j| {
-            hermite(&points[start].joints[j], &points[start + length].joints[j], length as f64)
+            in_ticks(&points[start].joints[j], &points[start + length].joints[j], length as f64)
         });
         if length == 1 || keeps_to(&points[start..=start + length], &fit) {
             return (length, fit);
@@ -71,21 +72,11 @@ fn keeps_to(points: &[PlanPoint], fit: &PanTilt<[f64; 6]>) -> bool {
 }
 
 /// The quintic through position, speed and acceleration at both ends, `n` ticks apart, coefficients per tickⁱ.
-fn hermite(from: &JointMotion, to: &JointMotion, n: f64) -> [f64; 6] {
-    let speed = |m: &JointMotion| m.velocity_rad_s * TICK_F64_S;
-    let acceleration = |m: &JointMotion| m.acceleration_rad_s2 * TICK_F64_S * TICK_F64_S;
-    let (v0, a0) = (speed(from), acceleration(from));
-    let (v1, a1) = (speed(to), acceleration(to));
-    // what the first three coefficients leave over at the far end
-    let dp = to.position_rad - from.position_rad - v0 * n - 0.5 * a0 * n * n;
-    let dv = (v1 - v0 - a0 * n) * n;
-    let da = (a1 - a0) * n * n;
-    [
-        from.position_rad,
-        v0,
-        0.5 * a0,
-        (10.0 * dp - 4.0 * dv + 0.5 * da) / n.powi(3),
-        (-15.0 * dp + 7.0 * dv - da) / n.powi(4),
-        (6.0 * dp - 3.0 * dv + 0.5 * da) / n.powi(5),
-    ]
+fn in_ticks(from: &JointMotion, to: &JointMotion, n: f64) -> [f64; 6] {
+    let per_tick = |m: &JointMotion| Along {
+        s: m.position_rad,
+        v: m.velocity_rad_s * TICK_F64_S,
+        a: m.acceleration_rad_s2 * TICK_F64_S * TICK_F64_S,
+    };
+    hermite(per_tick(from), per_tick(to), n)
 }

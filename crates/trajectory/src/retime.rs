@@ -12,7 +12,7 @@ mod passes;
 use tracelight_aim::JointPath;
 use tracelight_rig::{Joint, PanTilt};
 
-pub(crate) use law::{Along, TimeLaw};
+pub(crate) use law::{Along, TimeLaw, hermite};
 pub use limits::{Binding, PathSample};
 use passes::Speeds;
 

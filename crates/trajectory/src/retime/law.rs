@@ -93,7 +93,7 @@ impl Cell {
 }
 
 /// The quintic with the given place, speed and acceleration at both ends of `time`.
-fn hermite(from: Along, to: Along, time: f64) -> [f64; 6] {
+pub(crate) fn hermite(from: Along, to: Along, time: f64) -> [f64; 6] {
     let n = time;
     // what the first three coefficients leave over at the far end
     let ds = to.s - from.s - from.v * n - 0.5 * from.a * n * n;
