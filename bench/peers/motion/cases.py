@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Seeded strokes, junctions and paths for the motion benchmarks, written as CSV: `cases.py DIRECTORY`.
+"""Seeded strokes, junctions, moves and paths for the motion benchmarks, written as CSV: `cases.py DIRECTORY`.
 
 The same seeds give the same files with any numpy ≥ 1.22 and scipy. Metres on a canvas of 0.6 × 0.45 m around the axis.
 """
@@ -115,6 +115,25 @@ def write_path(path, spline, cells=16000):
                header="s,pan,tilt,d_pan,d_tilt,dd_pan,dd_tilt", comments="")
 
 
+def moves(n=20000):
+    """Starts and ends of moves of two joints: every other from rest to rest, the rest anything within 24, 100, 2000."""
+    rng = np.random.default_rng([SEED, n, 2])
+    v, a, j = 24.0, 100.0, 2000.0
+    places = [rng.uniform(-np.pi, np.pi, (n, 2)) for _ in range(2)]
+    speeds = [rng.uniform(-0.6 * v, 0.6 * v, (n, 2)) for _ in range(2)]
+    rises = [rng.uniform(-0.6 * a, 0.6 * a, (n, 2)) for _ in range(2)]
+    for speed, rise in zip(speeds, rises):
+        room = np.sqrt(2 * j * (v - np.abs(speed)))
+        np.clip(rise, -0.9 * room, 0.9 * room, out=rise)
+        speed[::2] = rise[::2] = 0
+    return np.hstack([places[0], speeds[0], rises[0], places[1], speeds[1], rises[1]])
+
+
+def write_moves(path, table):
+    names = [f"{what}{end}_{joint}" for end in "01" for what in "pva" for joint in ("pan", "tilt")]
+    np.savetxt(path, table, delimiter=",", fmt="%.12g", header=",".join(names), comments="")
+
+
 def write_ends(path, strokes):
     ends = np.array([[*s[0], *s[-1]] for s in strokes])
     np.savetxt(path, ends, delimiter=",", fmt="%.9f", header="x0,y0,x1,y1", comments="")
@@ -127,6 +146,7 @@ def main():
         for n in (500, 5000, 20000):
             write_ends(out / f"{kind.__name__}_{n}.csv", kind(n))
     write_ends(out / "junctions.csv", junctions())
+    write_moves(out / "moves.csv", moves())
     for name in PATHS:
         write_path(out / f"path_{name}.csv", joint_path(name))
 

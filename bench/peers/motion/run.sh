@@ -12,7 +12,7 @@ loud() { printf '\n!!! %s\n\n' "$*" >&2; }
 [ -x "$VENV/bin/pip" ] || python3 -m venv "$VENV"
 "$VENV/bin/pip" install --quiet --disable-pip-version-check numpy scipy
 "$VENV/bin/pip" install --quiet --disable-pip-version-check vpype || loud 'no vpype: it is left out of the comparison'
-for package in toppra copp-py; do
+for package in toppra copp-py ruckig; do
     "$VENV/bin/pip" install --quiet --disable-pip-version-check "$package" || loud "no $package: it is left out of the comparison"
 done
 "$VENV/bin/python" bench/peers/motion/cases.py "$CASES"
@@ -37,3 +37,7 @@ printf '\nThe fastest motion at full torque, Coulomb friction; ours, then with v
 target/release/tracelight-bench-motion retime --cells 1000,16000 "$CASES"/path_*.csv
 target/release/tracelight-bench-motion retime --cells 1000,16000 --viscous 0.0015 "$CASES"/path_*.csv
 "$VENV/bin/python" bench/peers/motion/retime_peers.py 1000 8000
+
+printf '\nFrom any state to any other: 20 000 moves of two joints\n'
+target/release/tracelight-bench-motion steer "$CASES/moves.csv"
+"$VENV/bin/python" bench/peers/motion/steer_peers.py "$CASES/moves.csv" || loud 'no ruckig: it is left out of the comparison'

@@ -19,6 +19,7 @@ mod plan;
 mod planner;
 mod profile;
 mod retime;
+mod steer;
 mod travel;
 mod travel_time;
 
@@ -28,4 +29,5 @@ pub use plan::{JointMotion, LegEnd, Plan, PlanPoint};
 pub use planner::{PlanRequest, plan};
 pub use profile::{MoveLimits, MovePoint, Profile, Ramps, Shape};
 pub use retime::{Binding, PathSample, Retimed, retime};
+pub use steer::{Bounds, SteerError, Steered, steer};
 pub use travel_time::{Aimed, TravelTime};

@@ -3,6 +3,7 @@
 
 mod order;
 mod retime;
+mod steer;
 
 use std::process::ExitCode;
 
@@ -18,6 +19,8 @@ enum Command {
     Order(order::Arguments),
     /// Times the fastest motion along sampled joint paths.
     Retime(retime::Arguments),
+    /// Finds the fastest moves of two joints from any state to any other.
+    Steer(steer::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -25,6 +28,7 @@ fn main() -> ExitCode {
     let done = match arguments.command {
         Command::Order(arguments) => order::run(&arguments),
         Command::Retime(arguments) => retime::run(&arguments),
+        Command::Steer(arguments) => steer::run(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
