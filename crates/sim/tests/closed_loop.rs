@@ -10,10 +10,11 @@ mod shapes;
 
 use std::ops::ControlFlow;
 
-use shapes::{POSE, circle, line, plan_of, star, trace};
+use shapes::{POSE, SPEED_M_S, circle, line, plan_at, plan_of, star, trace};
 use tracelight_rig::{Fault, Joint, PanTilt, Phase};
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, run};
-use tracelight_trajectory::Plan;
+use tracelight_stroke::Point;
+use tracelight_trajectory::{LitSpeed, Plan};
 
 #[test]
 fn shapes_on_the_report_rig_are_drawn_within_a_quarter_of_a_millimetre() {
@@ -28,6 +29,37 @@ fn shapes_on_the_report_rig_are_drawn_within_a_quarter_of_a_millimetre() {
                 && tracking.final_error_mm <= 0.25;
             assert!(good, "{name}, seed {seed}: {tracking:?}");
         }
+    }
+}
+
+/// A square at one speed, whatever the relay's delays: light goes on and off where the lines begin and end, to what the
+/// spot moves in a tick and a half.
+#[test]
+fn the_light_begins_and_ends_where_the_lines_do_at_full_speed() {
+    const SIDE_M: f64 = 0.2;
+    let corners =
+        [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point::new(SIDE_M * x, SIDE_M * y));
+    for (on_s, off_s) in [(5e-3, 3e-3), (2e-3, 10e-3), (10e-3, 2e-3), (0.0, 0.0)] {
+        let mut config = RigConfig::report();
+        for relay in [&mut config.model.relay, &mut config.truth.model.relay] {
+            (relay.on_s, relay.off_s) = (on_s, off_s);
+        }
+        let square = tracelight_stroke::Path::polyline(&corners, true).unwrap();
+        let plan = plan_at(&config, square, LitSpeed::Exact);
+        let mut rig = SimulatedRig::new(&config, POSE, 0);
+        let ran = run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(()));
+        let lines: Vec<&[Tick]> =
+            ran.ticks.chunk_by(|a, b| a.light == b.light).filter(|run| run[0].light).collect();
+        assert_eq!(lines.len(), 4);
+        let mut worst = 0.0f64;
+        for (i, line) in lines.iter().enumerate() {
+            let end = |tick: &Tick, corner: Point| tick.spot.unwrap().distance(corner);
+            // the last tick's light falls on the way to the next
+            worst =
+                worst.max(end(&line[0], corners[i])).max(end(&line[line.len() - 1], corners[(i + 1) % 4]));
+        }
+        println!("relay {on_s} {off_s} s: at most {:.3} mm off", 1e3 * worst);
+        assert!(worst < 1.5e-3 * SPEED_M_S + 1e-4, "{on_s} {off_s}: {worst} m");
     }
 }
 

@@ -79,6 +79,8 @@ impl From<tracelight_trajectory::PlanError> for Failure {
             PlanError::Aim { .. } => "unreachable",
             PlanError::TooWeak { .. } => "motor-too-weak",
             PlanError::TooLong { .. } => "too-long",
+            PlanError::NoWayAtSpeed { .. } => "no-way-at-speed",
+            PlanError::TooBent { .. } => "too-bent",
         };
         Self::failed(code, error)
     }

@@ -177,7 +177,7 @@ fn write(
     let strokes = placed.svg(drawing);
     let path = dir.join("strokes.svg");
     std::fs::write(&path, strokes).map_err(|e| cannot_write(&path, &e))?;
-    let tracking: Tracking = score(&schedule.plan, &laps.last, driving.request.speed_m_s);
+    let tracking: Tracking = score(&schedule.plan, &laps.last, schedule.plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
     let job = Job {
         picture_path: &args.picture,
@@ -196,7 +196,7 @@ fn write(
         run: &laps.last,
         earlier_laps: &laps.earlier,
         tracking,
-        set_speed_m_s: driving.request.speed_m_s,
+        set_speed_m_s: schedule.plan.set_speed_m_s,
         command_limit_v: motors.map(|m| m.limit_v),
         torque_limit_nm: PanTilt::new(motors.pan.torque_limit_nm(), motors.tilt.torque_limit_nm()),
         tolerance_mm: driving.request.tolerance_m * 1e3,

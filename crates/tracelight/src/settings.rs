@@ -19,6 +19,7 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
             "speed",
             format!("{:.4} m/s ({:.2} ft/s)", driving.request.speed_m_s, driving.request.speed_m_s / 0.3048),
         ),
+        ("lit speed", args.driving.lit_speed.name().into()),
         ("profile", args.driving.profile.name().into()),
         ("rig", format!("{} ({})", driving.rig.name, driving.rig.description)),
         ("tolerance", mm(driving.request.tolerance_m)),

@@ -29,6 +29,28 @@ pub enum PlanError {
         /// Torque there is, N m.
         available_nm: f64,
     },
+    /// A stroke cannot be passed at an even speed.
+    #[error(
+        "stroke {stroke} cannot be run up to, or out of, at {:.0} mm/s: the way there leaves the joints' range or the target; lower --speed, move the picture away from the edge, or leave --lit-speed at fastest",
+        1e3 * speed_m_s
+    )]
+    NoWayAtSpeed {
+        /// Which stroke.
+        stroke: usize,
+        /// The speed, m/s.
+        speed_m_s: f64,
+    },
+    /// A stroke has a bend too tight for any even speed.
+    #[error(
+        "stroke {stroke} bends with a radius of {:.4} mm: no even speed is slow enough for that; leave --lit-speed at fastest, or smooth the drawing",
+        1e3 * radius_m
+    )]
+    TooBent {
+        /// Which stroke.
+        stroke: usize,
+        /// Radius of the bend, m.
+        radius_m: f64,
+    },
     /// More time than a run can be kept in memory.
     #[error(
         "the drawing would take {needed_s:.0} s, a job may take {most_s:.0} s; draw it larger and faster, or in parts"

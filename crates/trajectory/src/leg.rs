@@ -20,8 +20,8 @@ const DUST_M: f64 = 1e-7;
 /// Most places at which a leg is looked at: 50 m at the finest.
 const MOST_PLACES: f64 = 1e5;
 
-/// Error of arc length on curves, m: a thousandth of what the spot moves in a tick at 1 ft/s.
-const LENGTH_TOLERANCE_M: f64 = 3e-7;
+/// Error of arc length on curves, m: a ten-thousandth of what the spot moves in a tick at 1 ft/s.
+const LENGTH_TOLERANCE_M: f64 = 3e-8;
 
 /// A stretch of a stroke without a corner, with arc length along it.
 #[derive(Clone, Debug)]
@@ -34,8 +34,9 @@ pub(crate) struct Leg {
 }
 
 impl Leg {
-    /// The legs of a path in drawing order.
-    pub(crate) fn split(path: &Path) -> Vec<Leg> {
+    /// The legs of a path in drawing order, cut at corners, and where a break of the tangent would have to be passed
+    /// slower than `slowest_m_s`.
+    pub(crate) fn split(path: &Path, slowest_m_s: f64) -> Vec<Leg> {
         let mut legs: Vec<Leg> = Vec::new();
         let mut incoming = None;
         for piece in path.pieces() {
@@ -48,7 +49,9 @@ impl Leg {
                 t.cross(out).atan2(t.dot(out)).abs()
             });
             match (turn, legs.last_mut()) {
-                (Some(turn), Some(leg)) if turn < CORNER_RAD => leg.extend(piece, length, turn),
+                (Some(turn), Some(leg)) if turn < CORNER_RAD && break_speed(turn) >= slowest_m_s => {
+                    leg.extend(piece, length, turn)
+                }
                 _ => legs.push(Leg { pieces: vec![piece], starts_m: vec![0.0, length], breaks: Vec::new() }),
             }
             incoming = Some(piece.end_tangent());
@@ -58,8 +61,7 @@ impl Leg {
 
     fn extend(&mut self, piece: Piece, length: f64, turn: f64) {
         let at = self.length_m();
-        let speed = JUMP_M_S / (2.0 * (0.5 * turn).sin()).max(1e-12);
-        self.breaks.push((at, speed));
+        self.breaks.push((at, break_speed(turn)));
         self.pieces.push(piece);
         self.starts_m.push(at + length);
     }
@@ -68,8 +70,14 @@ impl Leg {
         self.starts_m.last().copied().unwrap_or(0.0)
     }
 
-    /// Place, tangent and curvature at arc length `s_m`, clamped to the leg.
+    /// Place, tangent and curvature at arc length `s_m`; beyond an end the leg goes on along the circle it follows
+    /// there, so that whoever runs up to it or out of it feels no jerk.
     pub(crate) fn at(&self, s_m: f64) -> PathPoint {
+        let within = s_m.clamp(0.0, self.length_m());
+        onwards(self.within(within), s_m - within)
+    }
+
+    fn within(&self, s_m: f64) -> PathPoint {
         let index = self.starts_m.partition_point(|&start| start <= s_m).clamp(1, self.pieces.len()) - 1;
         let (start, end) = (self.starts_m[index], self.starts_m[index + 1]);
         let within = (s_m - start).clamp(0.0, end - start);
@@ -115,6 +123,31 @@ impl Leg {
     }
 }
 
+/// How fast a small break of the tangent is passed, m/s.
+fn break_speed(turn: f64) -> f64 {
+    JUMP_M_S / (2.0 * (0.5 * turn).sin()).max(1e-12)
+}
+
+/// A place `by_m` further along the circle of curvature.
+fn onwards(at: PathPoint, by_m: f64) -> PathPoint {
+    if by_m == 0.0 {
+        return at;
+    }
+    let per_radius = at.tangent.cross(at.curvature);
+    let angle = per_radius * by_m;
+    let (sin, cos) = angle.sin_cos();
+    let normal = at.tangent.turn_90();
+    // sin x / x and (1 − cos x) / x
+    let (along, aside) =
+        if angle.abs() < 1e-6 { (1.0, 0.5 * angle) } else { (sin / angle, (1.0 - cos) / angle) };
+    let tangent = at.tangent * cos + normal * sin;
+    PathPoint {
+        point: at.point + at.tangent * (along * by_m) + normal * (aside * by_m),
+        tangent,
+        curvature: tangent.turn_90() * per_radius,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,13 +157,13 @@ mod tests {
     fn a_square_has_four_legs_and_a_circle_one() {
         let corners = [(0.0, 0.0), (0.1, 0.0), (0.1, 0.1), (0.0, 0.1)].map(|(x, y)| Point::new(x, y));
         let square = Path::polyline(&corners, true).unwrap();
-        assert_eq!(Leg::split(&square).len(), 4);
+        assert_eq!(Leg::split(&square, 0.0).len(), 4);
         let mut circle = Path::new(Point::new(0.1, 0.0));
         for _ in 0..4 {
             circle.push(Element::Arc { centre: Point::ORIGIN, sweep: std::f64::consts::FRAC_PI_2 });
         }
         circle.close();
-        let legs = Leg::split(&circle);
+        let legs = Leg::split(&circle, 0.0);
         assert_eq!(legs.len(), 1);
         assert!((legs[0].length_m() - 0.2 * std::f64::consts::PI).abs() < 1e-12);
         let halfway = legs[0].at(0.1 * std::f64::consts::PI).point;
@@ -140,7 +173,7 @@ mod tests {
     #[test]
     fn a_small_break_limits_the_speed_instead_of_cutting() {
         let points = [(0.0, 0.0), (0.1, 0.0), (0.2, 0.01)].map(|(x, y)| Point::new(x, y));
-        let legs = Leg::split(&Path::polyline(&points, false).unwrap());
+        let legs = Leg::split(&Path::polyline(&points, false).unwrap(), 0.0);
         assert_eq!(legs.len(), 1);
         let (at, speed) = legs[0].breaks[0];
         assert!((at - 0.1).abs() < 1e-12 && (speed - 0.1505).abs() < 1e-3, "{speed}");

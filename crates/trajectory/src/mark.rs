@@ -1,5 +1,6 @@
-//! Lit strokes tick by tick.
+//! Lit strokes tick by tick, with the dark ways up to them and out of them.
 
+use tracelight_aim::AimError;
 use tracelight_rig::{PanTilt, TICK_F64_S};
 use tracelight_stroke::Point;
 
@@ -16,19 +17,47 @@ pub(crate) struct MarkPoint {
     pub(crate) joints: PanTilt<JointMotion>,
     s_m: f64,
     pub(crate) speed_m_s: f64,
+    /// On the leg, not on the way up to it or out of it.
+    pub(crate) lit: bool,
     /// Largest share of a motor's torque.
     fraction: f64,
 }
 
-/// How lit strokes are to be run.
+/// How the spot comes to a leg's start, or leaves its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// It rests there.
+    Rest,
+    /// It is under way: it has run up to the start in the dark, or runs out of the end.
+    Moving,
+}
+
+impl End {
+    pub(crate) const BOTH: [End; 2] = [End::Rest, End::Moving];
+}
+
+/// How a leg is to be run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MarkRequest {
     /// Set speed, m/s.
     pub(crate) speed_m_s: f64,
     /// Window of the S-curve, s.
     pub(crate) ramp_s: f64,
+    /// How long the spot runs up to the leg at even speed, s; half a window at least.
+    pub(crate) run_up_s: f64,
+    /// How it starts and ends.
+    pub(crate) ends: [End; 2],
     /// Number of the stroke, for messages.
     pub(crate) stroke: usize,
+}
+
+/// A leg in time.
+#[derive(Clone, Debug)]
+pub(crate) struct Marked {
+    /// Where the joints are at first: at rest at the leg's start, or where the run-up begins.
+    pub(crate) start: PanTilt<JointMotion>,
+    /// Every tick after that.
+    pub(crate) points: Vec<MarkPoint>,
 }
 
 /// How much of the motors' torque beyond the planned share the S-curve may borrow before the leg is slowed down
@@ -42,19 +71,26 @@ const FEWEST: f64 = 16.0;
 /// Slower than this, m/s, a leg that still asks too much is given up.
 const SLOWEST_M_S: f64 = 1e-3;
 
-/// A leg from rest to rest, the start left out, the end included.
+impl Leg {
+    /// The places at which a leg is looked at, nowhere faster than `speed_m_s`.
+    pub(crate) fn places(&self, machine: &Machine, speed_m_s: f64) -> Result<Vec<PathSample>, AimError> {
+        self.samples(machine, speed_m_s, (GRID_M, FEWEST))
+    }
+}
+
+/// A leg tick by tick.
 ///
 /// After rounding, every tick's torque is checked against the motors; where it is too much the leg is slowed down
 /// and timed again, and if that does not end, all of it is run slower.
-pub(crate) fn mark(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Result<Vec<MarkPoint>, PlanError> {
+pub(crate) fn mark(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Result<Marked, PlanError> {
     let aim = |source| PlanError::Aim { stroke: request.stroke, source };
-    let mut samples = leg.samples(machine, request.speed_m_s, (GRID_M, FEWEST)).map_err(aim)?;
+    let mut samples = leg.places(machine, request.speed_m_s).map_err(aim)?;
     let allowed = machine.torque_share + BORROW;
     let mut reach_m = 2.0 * GRID_M.min(leg.length_m() / FEWEST);
     for _ in 0..16 {
-        let points = in_time(machine, leg, &samples, request)?;
-        if slow_where_too_much(&mut samples, &points, allowed, reach_m) {
-            return Ok(points);
+        let marked = in_time(machine, leg, &samples, request)?;
+        if slow_where_too_much(&mut samples, &marked.points, allowed, reach_m) {
+            return Ok(marked);
         }
         reach_m *= 1.3;
     }
@@ -76,12 +112,14 @@ fn too_weak(machine: &Machine, leg: &Leg, stroke: usize) -> PlanError {
 /// Slows the leg down around every tick that asks too much; true if there was none.
 fn slow_where_too_much(samples: &mut [PathSample], points: &[MarkPoint], allowed: f64, reach_m: f64) -> bool {
     let mut fine = true;
+    let [start, end] = [samples.first(), samples.last()].map(|place| place.map_or(0.0, |place| place.s));
     // asked this way round, a number that is none is too much
     for point in points.iter().filter(|p| !within(p.fraction, allowed)) {
         // torque beyond friction and gravity goes with the square of the speed; the overshoot is taken off at least
         let share = (1.0 - 1.5 * (point.fraction - allowed)).clamp(0.5, 0.95);
-        let first = samples.partition_point(|sample| sample.s < point.s_m - reach_m);
-        let near = samples[first..].iter_mut().take_while(|sample| sample.s <= point.s_m + reach_m);
+        let at = point.s_m.clamp(start, end);
+        let first = samples.partition_point(|sample| sample.s < at - reach_m);
+        let near = samples[first..].iter_mut().take_while(|sample| sample.s <= at + reach_m);
         near.for_each(|sample| sample.cap = sample.cap.min(share.sqrt() * point.speed_m_s));
         fine = false;
     }
@@ -97,25 +135,42 @@ fn in_time(
     leg: &Leg,
     samples: &[PathSample],
     request: &MarkRequest,
-) -> Result<Vec<MarkPoint>, PlanError> {
-    let law = Retimed::new(machine, samples.to_vec())?.law(request.ramp_s);
+) -> Result<Marked, PlanError> {
+    let speeds = request.ends.map(|end| if end == End::Moving { request.speed_m_s } else { 0.0 });
+    let law = Retimed::new(machine, samples.to_vec(), speeds)?.law(request.ramp_s);
     check_duration(law.duration_s())?;
-    let ticks = (law.duration_s() / TICK_F64_S).ceil() as usize;
+    // a run-up's ticks are laid so that one of them falls on the leg's start
+    let first_s = match request.ends[0] {
+        End::Rest => 0.0,
+        End::Moving => law.start_s() - (request.run_up_s / TICK_F64_S).ceil() * TICK_F64_S,
+    };
+    let ticks = ((law.duration_s() - first_s) / TICK_F64_S).ceil().max(1.0) as usize;
     let length = leg.length_m();
     let at = |tick: usize| {
-        let along = if tick == ticks {
+        let along = if tick == ticks && request.ends[1] == End::Rest {
             Along { s: length, v: 0.0, a: 0.0 }
         } else {
-            law.at(tick as f64 * TICK_F64_S)
+            law.at(first_s + tick as f64 * TICK_F64_S)
         };
-        point(machine, leg, &along, request.stroke)
+        point(machine, leg, &along, request)
     };
-    (1..=ticks).map(at).collect()
+    let start = at(0)?.joints;
+    let points: Result<Vec<MarkPoint>, PlanError> = (1..=ticks).map(at).collect();
+    Ok(Marked { start, points: points? })
 }
 
-fn point(machine: &Machine, leg: &Leg, along: &Along, stroke: usize) -> Result<MarkPoint, PlanError> {
-    let (spot, joints) =
-        leg.joints_at(machine, along.s).map_err(|source| PlanError::Aim { stroke, source })?;
+/// A spot that passes lights the way to where it is a tick later: it is lit up to the tick nearest to the leg's end.
+fn is_lit(along: &Along, length_m: f64, ends: [End; 2]) -> bool {
+    let tick_m = along.v * TICK_F64_S;
+    let begun = ends[0] == End::Rest || along.s > -1e-3 * tick_m;
+    let nearly_over = along.s + 0.5 * tick_m > length_m && along.s > 0.5 * tick_m;
+    begun && (ends[1] == End::Rest || !nearly_over)
+}
+
+fn point(machine: &Machine, leg: &Leg, along: &Along, request: &MarkRequest) -> Result<MarkPoint, PlanError> {
+    let (spot, joints) = leg
+        .joints_at(machine, along.s)
+        .map_err(|source| PlanError::Aim { stroke: request.stroke, source })?;
     let (rate, acceleration) = chain(&joints, along);
     let fraction = machine.fraction(machine.torque(joints.angle_rad, rate, acceleration)).map(f64::abs);
     let motion = PanTilt::from_fn(|j| JointMotion {
@@ -128,6 +183,7 @@ fn point(machine: &Machine, leg: &Leg, along: &Along, stroke: usize) -> Result<M
         joints: motion,
         s_m: along.s,
         speed_m_s: along.v,
+        lit: is_lit(along, leg.length_m(), request.ends),
         fraction: fraction.pan.max(fraction.tilt),
     })
 }

@@ -46,6 +46,19 @@ pub struct LegEnd {
     pub length_m: f64,
 }
 
+/// Where a drawing bends most: what bounds the speed that can be kept throughout.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tightest {
+    /// Number of the stroke, from 0.
+    pub stroke: usize,
+    /// Place, m.
+    pub point: Point,
+    /// Radius of curvature there, m.
+    pub radius_m: f64,
+    /// Speed it permits, m/s.
+    pub speed_m_s: f64,
+}
+
 /// A whole job in time: what is executed is exactly this.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
@@ -53,8 +66,12 @@ pub struct Plan {
     pub segments: Vec<Segment>,
     /// The same, tick by tick, for scoring and plots; the first is tick 0, the last the rest at the end.
     pub points: Vec<PlanPoint>,
-    /// Every corner and stroke end, in time order.
+    /// Every corner and stroke end where the spot comes to rest, in time order.
     pub leg_ends: Vec<LegEnd>,
+    /// Speed that lit strokes are run at where nothing holds them back, m/s.
+    pub set_speed_m_s: f64,
+    /// What made it less than what was asked, if one speed throughout was.
+    pub tightest: Option<Tightest>,
 }
 
 impl Plan {

@@ -1,10 +1,13 @@
 use tracelight_rig::{PanTilt, TICK_F64_S};
-use tracelight_stroke::{Drawing, Point, Stroke};
+use tracelight_stroke::{Drawing, Point};
 
 use crate::compress::compress;
 use crate::leg::Leg;
-use crate::mark::{MarkRequest, mark};
-use crate::plan::{JointMotion, LegEnd, Plan, PlanPoint};
+use crate::mark::{End, Marked, mark};
+use crate::plan::{JointMotion, LegEnd, Plan, PlanPoint, Tightest};
+use crate::retime::steady_speed;
+use crate::swing::Swing;
+use crate::tour::{Tour, TourLeg, stopped};
 use crate::travel::travel;
 use crate::{Machine, PlanError, Shape};
 
@@ -14,16 +17,32 @@ const FINAL_REST_S: f64 = 0.4;
 /// Longest job, s: its ticks are kept in memory, planned and run, at about 350 bytes each.
 const LONGEST_S: f64 = 1800.0;
 
+/// How lit strokes are run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LitSpeed {
+    /// As fast as the set speed and the motors allow: from rest to rest at corners and stroke ends, or past them at
+    /// speed, whichever is quicker.
+    #[default]
+    Fastest,
+    /// From rest to rest at every corner and stroke end.
+    Stops,
+    /// At one speed throughout: what the tightest curve permits of the set speed. Every corner and stroke end is passed at
+    /// that speed, with dark ways up to it and out of it.
+    Exact,
+}
+
 /// How a drawing is to be run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanRequest {
     /// Speed of the lit spot on the target, m/s; slower where the motors need it.
     pub speed_m_s: f64,
-    /// Shape of the dark moves.
+    /// Whether that is to be kept.
+    pub lit_speed: LitSpeed,
+    /// Shape of the dark moves from rest to rest.
     pub travel: Shape,
     /// Time over which the acceleration along a stroke builds up, s.
     pub ramp_s: f64,
-    /// Rest before a stroke is lit, s.
+    /// Rest before a stroke that begins at rest is lit, s.
     pub settle_s: f64,
     /// Distance from the stroke at which the laser is to be darkened, m.
     pub tolerance_m: f64,
@@ -33,26 +52,105 @@ impl PlanRequest {
     /// Rest before a stroke that does not begin where the last one ends, s: to settle, and for the relay to have let go
     /// before it is to hold again.
     pub fn lift_s(&self, machine: &Machine) -> f64 {
-        let relay_ticks = machine.relay_on_ticks + machine.relay_off_ticks + 1;
-        self.settle_s.max(f64::from(relay_ticks) * TICK_F64_S)
+        self.settle_s.max(f64::from(relay_ticks(machine)) * TICK_F64_S)
+    }
+
+    /// How long the spot runs up to a stroke, s: past the end of the S-curve, and for the relay to have let go before it
+    /// is to hold again.
+    pub(crate) fn run_up_s(&self, machine: &Machine) -> f64 {
+        RUN_UP_S.max(0.5 * self.ramp_s).max(f64::from(relay_ticks(machine)) * TICK_F64_S)
+    }
+
+    /// Time over which the acceleration of dark moves under way builds up, s.
+    pub(crate) fn swing_rise_s(&self) -> f64 {
+        0.5 * self.ramp_s
+    }
+
+    /// A break of the tangent that is to be passed slower than this is a corner, m/s.
+    pub(crate) fn slowest_break_m_s(&self) -> f64 {
+        match self.lit_speed {
+            LitSpeed::Fastest | LitSpeed::Stops => 0.0,
+            LitSpeed::Exact => self.speed_m_s,
+        }
     }
 }
 
+/// From one light to the next at least, ticks.
+const fn relay_ticks(machine: &Machine) -> u32 {
+    machine.relay_on_ticks + machine.relay_off_ticks + 1
+}
+
+/// Shortest run-up, s: on the simulated 2006 rig the error at a stroke's start is no smaller after a longer one.
+const RUN_UP_S: f64 = 0.015;
+
 /// Times a drawing, strokes in the order given, starting from rest straight ahead.
 ///
-/// Every stroke is reached by a dark move and a short rest, unless it begins where the one before ends; lit, run from
-/// rest to rest between its corners, and darkened. The result is what is executed, tick by tick.
+/// Every stroke is reached in the dark. Its corners and ends are drawn from rest to rest, or passed at speed, with a dark
+/// way up and out: whichever makes the whole drawing faster, unless [`LitSpeed::Exact`] asks for the latter. A stroke that
+/// begins where the one before ends may stay lit between. The result is what is executed, tick by tick.
 pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Result<Plan, PlanError> {
     check_length(drawing, request)?;
-    let mut plan = Plan { points: vec![rest(machine, PanTilt::new(0.0, 0.0))], ..Plan::default() };
-    for (index, stroke) in drawing.strokes.iter().enumerate() {
-        approach(&mut plan.points, machine, request, stroke, index)?;
-        draw(&mut plan, machine, request, stroke, index)?;
+    let (request, tightest) = at_one_speed(drawing, machine, request)?;
+    let home = PanTilt::new(0.0, 0.0);
+    let mut tour = Tour::new(drawing, machine, &request, home)?;
+    loop {
+        let no_way = |leg: usize| PlanError::NoWayAtSpeed {
+            stroke: tour.legs.get(leg).map_or(0, |leg| leg.stroke + 1),
+            speed_m_s: request.speed_m_s,
+        };
+        let ends = tour.choose().map_err(no_way)?;
+        let mut draft = Draft::new(machine, &request, home);
+        draft.lay(&tour, &ends)?;
+        if draft.blocked.is_empty() {
+            let mut plan = draft.plan;
+            linger(&mut plan.points, FINAL_REST_S);
+            plan.segments = compress(&plan.points, machine, request.tolerance_m);
+            (plan.set_speed_m_s, plan.tightest) = (request.speed_m_s, tightest);
+            return Ok(plan);
+        }
+        draft.blocked.iter().for_each(|&(link, ends)| tour.forbid(link, ends));
     }
-    linger(&mut plan.points, FINAL_REST_S);
-    plan.segments = compress(&plan.points, machine, request.tolerance_m);
-    Ok(plan)
 }
+
+/// The request with the speed that can be kept throughout, if one is asked for, and where the drawing bends most if that
+/// is less than the set speed.
+fn at_one_speed(
+    drawing: &Drawing,
+    machine: &Machine,
+    request: &PlanRequest,
+) -> Result<(PlanRequest, Option<Tightest>), PlanError> {
+    let mut tightest: Option<Tightest> = None;
+    if request.lit_speed != LitSpeed::Exact {
+        return Ok((*request, None));
+    }
+    for (stroke, drawn) in drawing.strokes.iter().enumerate() {
+        for leg in Leg::split(&drawn.path, 0.0) {
+            let aim = |source| PlanError::Aim { stroke: stroke + 1, source };
+            let mut samples = leg.places(machine, request.speed_m_s).map_err(aim)?;
+            samples.iter_mut().for_each(|sample| sample.cap = request.speed_m_s);
+            let (speed, place) = steady_speed(machine, &samples);
+            if speed < tightest.map_or(request.speed_m_s, |t| t.speed_m_s) {
+                let at = leg.at(samples[place].s);
+                let radius_m = 1.0 / at.curvature.hypot();
+                tightest = Some(Tightest { stroke, point: at.point, radius_m, speed_m_s: speed });
+            }
+        }
+    }
+    match tightest {
+        Some(Tightest { stroke, radius_m, speed_m_s, .. }) if speed_m_s < SLOWEST_M_S => {
+            Err(PlanError::TooBent { stroke: stroke + 1, radius_m })
+        }
+        Some(found) => {
+            // rounding must not make it a limit that is met nowhere
+            let speed_m_s = (1.0 - 1e-6) * found.speed_m_s;
+            Ok((PlanRequest { speed_m_s, ..*request }, Some(Tightest { speed_m_s, ..found })))
+        }
+        None => Ok((*request, None)),
+    }
+}
+
+/// Slower than this, m/s, a drawing is not drawn at one speed.
+const SLOWEST_M_S: f64 = 1e-3;
 
 fn check_length(drawing: &Drawing, request: &PlanRequest) -> Result<(), PlanError> {
     if drawing.strokes.is_empty() {
@@ -65,60 +163,94 @@ pub(crate) fn check_duration(needed_s: f64) -> Result<(), PlanError> {
     if needed_s <= LONGEST_S { Ok(()) } else { Err(PlanError::TooLong { needed_s, most_s: LONGEST_S }) }
 }
 
-/// Appends the dark way to a stroke, if there is one, and the rest before it up to the first lit tick.
-fn approach(
-    points: &mut Vec<PlanPoint>,
-    machine: &Machine,
-    request: &PlanRequest,
-    stroke: &Stroke,
-    index: usize,
-) -> Result<(), PlanError> {
-    let start = stroke.path.start();
-    let to = machine.angles(start).map_err(|source| PlanError::Aim { stroke: index + 1, source })?;
-    let from = points.last().map_or(PanTilt::default(), |p| p.joints.map(|j| j.position_rad));
-    let way = travel(machine, request.travel, from, to)?;
-    if way.is_empty() && points.last().is_some_and(|p| p.lit) {
-        // it begins where the one before ends: the laser stays on, as at a corner
-        return Ok(());
-    }
-    points.extend(way.into_iter().map(|joints| dark(machine, joints)));
-    linger(points, request.lift_s(machine));
-    if let Some(last) = points.last_mut() {
-        *last = PlanPoint { spot: start, lit: true, stroke: Some(index as u32), ..*last };
-    }
-    Ok(())
+/// A plan in the making.
+struct Draft<'a> {
+    plan: Plan,
+    machine: &'a Machine,
+    request: &'a PlanRequest,
+    /// Links that turned out impossible, and with which ends: the plan is of no use then.
+    blocked: Vec<(usize, [End; 2])>,
 }
 
-/// Appends the lit ticks of one stroke.
-fn draw(
-    plan: &mut Plan,
-    machine: &Machine,
-    request: &PlanRequest,
-    stroke: &Stroke,
-    index: usize,
-) -> Result<(), PlanError> {
-    let id = Some(index as u32);
-    let set_m_s = request.speed_m_s;
-    let request = MarkRequest { speed_m_s: set_m_s, ramp_s: request.ramp_s, stroke: index + 1 };
-    for leg in Leg::split(&stroke.path) {
-        let start_tick = last_tick(plan);
-        let marks = mark(machine, &leg, &request)?;
-        plan.points.extend(marks.into_iter().map(|m| PlanPoint {
-            lit: true,
-            stroke: id,
-            ..assess(machine, m.spot, m.joints, m.speed_m_s / set_m_s)
-        }));
-        let end = leg.at(leg.length_m());
-        plan.leg_ends.push(LegEnd {
-            tick: last_tick(plan),
-            start_tick,
-            point: end.point,
-            tangent: end.tangent,
-            length_m: leg.length_m(),
-        });
-        check_duration(plan.points.len() as f64 * TICK_F64_S)?;
+impl<'a> Draft<'a> {
+    fn new(machine: &'a Machine, request: &'a PlanRequest, home: PanTilt<f64>) -> Self {
+        let plan = Plan { points: vec![rest(machine, home)], ..Plan::default() };
+        Self { plan, machine, request, blocked: Vec::new() }
     }
-    Ok(())
+
+    /// All legs and what is between them.
+    fn lay(&mut self, tour: &Tour, ends: &[[End; 2]]) -> Result<(), PlanError> {
+        let mut before = End::Rest;
+        for (i, (leg, &ends)) in tour.legs.iter().zip(ends).enumerate() {
+            let marked = mark(self.machine, &leg.leg, &leg.request(self.machine, self.request, ends))?;
+            self.approach(leg, &marked, (i, [before, ends[0]]))?;
+            self.draw(leg, marked, ends);
+            check_duration(self.plan.points.len() as f64 * TICK_F64_S)?;
+            before = ends[1];
+        }
+        if before == End::Moving {
+            let to = stopped(self.machine, &self.joints(), self.request.ramp_s);
+            self.swing(to, (tour.legs.len(), [before, End::Rest]));
+        }
+        Ok(())
+    }
+
+    fn joints(&self) -> PanTilt<JointMotion> {
+        self.plan.points.last().map_or(PanTilt::default(), |point| point.joints)
+    }
+
+    /// The dark way to a leg, if there is one, and the rest before it up to the first lit tick.
+    fn approach(&mut self, leg: &TourLeg, marked: &Marked, link: (usize, [End; 2])) -> Result<(), PlanError> {
+        let (_, [before, after]) = link;
+        if [before, after] == [End::Rest; 2] {
+            let [from, to] = [self.joints(), marked.start].map(|joints| joints.map(|j| j.position_rad));
+            let way = travel(self.machine, self.request.travel, from, to)?;
+            if way.is_empty() && self.plan.points.last().is_some_and(|p| p.lit) {
+                // it begins where the one before ends: the laser stays on, as at a corner
+                return Ok(());
+            }
+            self.plan.points.extend(way.into_iter().map(|joints| dark(self.machine, joints)));
+        } else {
+            self.swing(marked.start, link);
+        }
+        if after == End::Rest {
+            linger(&mut self.plan.points, self.request.lift_s(self.machine));
+            if let Some(last) = self.plan.points.last_mut() {
+                let spot = leg.leg.at(0.0).point;
+                *last = PlanPoint { spot, lit: true, stroke: Some(leg.stroke as u32), ..*last };
+            }
+        }
+        Ok(())
+    }
+
+    fn swing(&mut self, to: PanTilt<JointMotion>, link: (usize, [End; 2])) {
+        let swing = Swing::new(self.machine, self.joints(), to, self.request.swing_rise_s());
+        match swing.ticks(self.machine) {
+            Some(way) => self.plan.points.extend(way.into_iter().map(|joints| dark(self.machine, joints))),
+            None => self.blocked.push(link),
+        }
+    }
+
+    /// The ticks of a leg, with its way up and out.
+    fn draw(&mut self, leg: &TourLeg, marked: Marked, ends: [End; 2]) {
+        let start_tick = last_tick(&self.plan);
+        let set_m_s = self.request.speed_m_s;
+        self.plan.points.extend(marked.points.into_iter().map(|m| PlanPoint {
+            lit: m.lit,
+            stroke: m.lit.then_some(leg.stroke as u32),
+            ..assess(self.machine, m.spot, m.joints, if m.lit { m.speed_m_s / set_m_s } else { 0.0 })
+        }));
+        let end = leg.leg.at(leg.leg.length_m());
+        if ends[1] == End::Rest {
+            self.plan.leg_ends.push(LegEnd {
+                tick: last_tick(&self.plan),
+                start_tick,
+                point: end.point,
+                tangent: end.tangent,
+                length_m: leg.leg.length_m(),
+            });
+        }
+    }
 }
 
 fn last_tick(plan: &Plan) -> u32 {

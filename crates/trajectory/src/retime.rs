@@ -36,13 +36,32 @@ pub struct Retimed {
 /// # Errors
 /// [`PlanError::TooWeak`] where a motor cannot start its joint.
 pub fn retime(machine: &Machine, samples: &[PathSample]) -> Result<Retimed, PlanError> {
-    Retimed::new(machine, samples.to_vec())
+    Retimed::new(machine, samples.to_vec(), [0.0, 0.0])
+}
+
+/// The highest speed that can be kept along all of the samples, without any acceleration along the path, and the
+/// number of the sample that bounds it; caps count too.
+pub(crate) fn steady_speed(machine: &Machine, samples: &[PathSample]) -> (f64, usize) {
+    let mut slowest = (f64::INFINITY, 0);
+    for (i, sample) in samples.iter().enumerate() {
+        let ways = sample.joints.first.map(|first| if first < 0.0 { -1.0 } else { 1.0 });
+        let speed = limits::Place::new(machine, sample).rows(machine, ways).steady_most();
+        if speed < slowest.0 {
+            slowest = (speed, i);
+        }
+    }
+    slowest
 }
 
 impl Retimed {
-    pub(crate) fn new(machine: &Machine, samples: Vec<PathSample>) -> Result<Self, PlanError> {
+    /// With the highest speeds at both ends.
+    pub(crate) fn new(
+        machine: &Machine,
+        samples: Vec<PathSample>,
+        ends: [f64; 2],
+    ) -> Result<Self, PlanError> {
         let samples = with_turning_places(samples);
-        let speeds = passes::fastest(machine, &samples, [0.0, 0.0])?;
+        let speeds = passes::fastest(machine, &samples, ends)?;
         Ok(Self { samples, speeds })
     }
 

@@ -77,30 +77,46 @@ pub fn steer<const N: usize>(
     to: &[MovePoint; N],
     bounds: &[Bounds; N],
 ) -> Result<Steered<N>, SteerError> {
+    steer_no_faster(from, to, bounds, 0.0)
+}
+
+/// The same, but of the moves that take `at_least_s`.
+///
+/// It may have to take longer: who comes fast cannot wait for any time asked for.
+///
+/// # Errors
+/// As [`steer`].
+pub fn steer_no_faster<const N: usize>(
+    from: &[MovePoint; N],
+    to: &[MovePoint; N],
+    bounds: &[Bounds; N],
+    at_least_s: f64,
+) -> Result<Steered<N>, SteerError> {
     for joint in 0..N {
         check(joint, &from[joint], &to[joint], &bounds[joint])?;
     }
     let mut problems: [Problem; N] =
         core::array::from_fn(|joint| Problem::new(&from[joint], &to[joint], &bounds[joint]));
     let mut choices = [Choice { duration_s: 0.0, upper: None, lower: None, share: 0.0 }; N];
-    let mut duration_s = -1.0;
+    let mut duration_s = None;
     // A joint that is made to wait may have to wait longer still, and then others with it. Each of them has at most
     // three stretches of time it cannot do.
     for _ in 0..8 * N.max(1) {
-        let mut longest = duration_s;
+        let mut longest: f64 = duration_s.unwrap_or(at_least_s);
         for (problem, choice) in problems.iter_mut().zip(&mut choices) {
-            if choice.duration_s < longest || duration_s < 0.0 {
-                *choice = problem.first_from(longest.max(0.0));
+            if choice.duration_s < longest || duration_s.is_none() {
+                *choice = problem.first_from(longest);
             }
             longest = choice.duration_s.max(longest);
         }
-        if longest == duration_s {
+        if duration_s == Some(longest) {
             break;
         }
-        duration_s = longest;
+        duration_s = Some(longest);
     }
+    let duration_s = duration_s.unwrap_or(at_least_s);
     let joints = core::array::from_fn(|joint| problems[joint].chosen(&choices[joint]));
-    Ok(Steered { joints, duration_s: duration_s.max(0.0) })
+    Ok(Steered { joints, duration_s })
 }
 
 impl<const N: usize> Steered<N> {

@@ -43,6 +43,21 @@ pub(crate) fn travel(
     Err(too_weak(machine, from))
 }
 
+/// About how long such a move takes, s; what gravity and coupling cost is left out.
+pub(crate) fn travel_estimate_s(
+    machine: &Machine,
+    shape: Shape,
+    from: PanTilt<f64>,
+    to: PanTilt<f64>,
+) -> f64 {
+    let span = PanTilt::new(to.pan - from.pan, to.tilt - from.tilt);
+    match first_limits(machine, from, span) {
+        Ok(limits) if limits.speed < f64::MAX => Profile::new(shape, 1.0, &limits).duration_s(),
+        Ok(_) => 0.0,
+        Err(_) => LONGEST_S,
+    }
+}
+
 fn shrink(allowed: f64, got: f64) -> f64 {
     if got <= allowed { 1.0 } else { (allowed / got).clamp(0.5, 0.97) }
 }

@@ -6,71 +6,12 @@
     reason = "a test that cannot go on may panic, and shows figures"
 )]
 
-use tracelight_aim::{HeadGeometry, HeadPose};
-use tracelight_dynamics::{Friction, HeadBodies, Motor};
-use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
-use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
-use tracelight_trajectory::{Binding, Machine, Plan, PlanError, PlanRequest, Ramps, Shape, plan};
+mod support;
 
-const SPEED_M_S: f64 = 0.3048;
-
-fn machine() -> Machine {
-    let motor = |torque_nm_per_v| Motor { torque_nm_per_v, limit_v: 10.0 };
-    Machine {
-        lumped: HeadBodies::set_a().lumped(),
-        friction: PanTilt::new(Friction::symmetric(0.0009, 0.04), Friction::symmetric(0.0018, 0.058)),
-        motors: PanTilt::new(motor(0.0619), motor(0.0774)),
-        torque_share: 0.85,
-        speed_limit_rad_s: PanTilt::new(24.0, 24.0),
-        acceleration_limit_rad_s2: PanTilt::new(100.0, 100.0),
-        geometry: HeadGeometry {
-            laser_offset_m: [0.02, 0.005, 0.01],
-            range_rad: PanTilt::new((-3.1, 3.1), (-1.6, 1.6)),
-        },
-        pose: HeadPose::square_on(0.9144),
-        relay_on_ticks: 5,
-        relay_off_ticks: 3,
-    }
-}
-
-fn request(travel: Shape) -> PlanRequest {
-    PlanRequest { speed_m_s: SPEED_M_S, travel, ramp_s: 0.02, settle_s: 0.04, tolerance_m: 3e-3 }
-}
-
-fn drawing(paths: impl IntoIterator<Item = Path>) -> Drawing {
-    Drawing { strokes: paths.into_iter().map(Stroke::new).collect() }
-}
-
-fn circle(x: f64, y: f64, radius: f64) -> Path {
-    let mut path = Path::new(Point::new(x + radius, y));
-    path.push(Element::Arc { centre: Point::new(x, y), sweep: std::f64::consts::TAU });
-    path.close();
-    path
-}
-
-fn line(points: &[(f64, f64)]) -> Path {
-    let points: Vec<Point> = points.iter().map(|&p| p.into()).collect();
-    Path::polyline(&points, false).unwrap()
-}
-
-/// Tight circles, a long line, a letter-sized curve, a line of small breaks.
-fn mixed() -> Drawing {
-    let mut curl = Path::new(Point::new(0.0, -0.2));
-    curl.push(Element::Cubic {
-        c1: Point::new(0.03, -0.17),
-        c2: Point::new(-0.02, -0.16),
-        to: Point::new(0.01, -0.2),
-    });
-    let breaks: Vec<_> =
-        (0..40).map(|i| (0.01 * f64::from(i) - 0.2, 0.2 + 1e-4 * f64::from(i % 3))).collect();
-    drawing([
-        circle(-0.1, 0.1, 0.004),
-        circle(0.2, -0.1, 0.03),
-        line(&[(-0.3, 0.0), (0.3, 0.1)]),
-        curl,
-        line(&breaks),
-    ])
-}
+use support::drawings::{SPEED_M_S, circle, drawing, line, machine, mixed, request};
+use tracelight_rig::{Joint, TICK_F64_S};
+use tracelight_stroke::Drawing;
+use tracelight_trajectory::{Binding, LitSpeed, Plan, PlanError, PlanRequest, Ramps, Shape, plan};
 
 fn made(shape: Shape) -> Plan {
     plan(&mixed(), &machine(), &request(shape)).unwrap()
@@ -140,7 +81,8 @@ fn the_gate_leads_the_light_by_the_relays_delays() {
 
 #[test]
 fn stroke_ends_are_at_rest_and_on_the_path() {
-    let plan = made(Shape::Ramped(Ramps::REPORT));
+    let stops = PlanRequest { lit_speed: LitSpeed::Stops, ..request(Shape::Ramped(Ramps::REPORT)) };
+    let plan = plan(&mixed(), &machine(), &stops).unwrap();
     assert_eq!(plan.leg_ends.len(), 5);
     for end in &plan.leg_ends {
         let point = &plan.points[end.tick as usize];

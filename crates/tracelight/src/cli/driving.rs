@@ -1,7 +1,7 @@
 use clap::{Args, ValueEnum};
 use tracelight_aim::HeadPose;
 use tracelight_sim::RigConfig;
-use tracelight_trajectory::{AccelerationDemand, Machine, Plan, PlanRequest, Ramps, Shape};
+use tracelight_trajectory::{AccelerationDemand, LitSpeed, Machine, Plan, PlanRequest, Ramps, Shape};
 
 use crate::cli::placing::positive_length;
 use crate::failure::Failure;
@@ -25,6 +25,9 @@ pub(crate) struct DrivingArgs {
     /// Speed of the lit spot on the target [default: 1ft/s]
     #[arg(long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed)]
     pub(crate) speed: Option<Speed>,
+    /// How the lit spot keeps to that speed
+    #[arg(long, value_enum, default_value_t = LitSpeedName::Fastest)]
+    pub(crate) lit_speed: LitSpeedName,
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     pub(crate) rig: String,
@@ -34,6 +37,35 @@ pub(crate) struct DrivingArgs {
     /// Highest joint acceleration wished for, such as 100rad/s2; the motors decide where they allow less
     #[arg(long, value_name = "ACCELERATION", allow_hyphen_values = true, value_parser = positive_acceleration)]
     pub(crate) amax: Option<AngularAcceleration>,
+}
+
+/// What becomes of the speed at corners, stroke ends and tight curves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LitSpeedName {
+    /// Whatever is quicker at each: to rest there, or past it, with a dark run-up
+    Fastest,
+    /// One speed for all that is lit, which the tightest curve permits; corners get dark loops
+    Exact,
+    /// To rest at every corner and stroke end
+    Stops,
+}
+
+impl LitSpeedName {
+    const fn lit_speed(self) -> LitSpeed {
+        match self {
+            LitSpeedName::Fastest => LitSpeed::Fastest,
+            LitSpeedName::Exact => LitSpeed::Exact,
+            LitSpeedName::Stops => LitSpeed::Stops,
+        }
+    }
+
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            LitSpeedName::Fastest => "fastest",
+            LitSpeedName::Exact => "exact",
+            LitSpeedName::Stops => "stops",
+        }
+    }
 }
 
 /// The four velocity profiles.
@@ -87,7 +119,19 @@ impl Driving {
         let wishes = self.machine.impossible_wishes(WORKING_TILT_RAD);
         let asked = wishes.iter().filter(|_| self.acceleration_is_asked);
         let mut remarks: Vec<String> = asked.map(wish_note).collect();
-        let (set, top) = (self.request.speed_m_s, plan.top_speed_m_s());
+        if let Some(bend) = &plan.tightest {
+            remarks.push(format!(
+                "lit at {:.4} m/s throughout instead of {:.4}: stroke {} bends with a radius of {:.1} mm at ({:.1}, {:.1}) mm, \
+                 and the motors hold no more there",
+                plan.set_speed_m_s,
+                self.request.speed_m_s,
+                bend.stroke + 1,
+                1e3 * bend.radius_m,
+                1e3 * bend.point.x,
+                1e3 * bend.point.y
+            ));
+        }
+        let (set, top) = (plan.set_speed_m_s, plan.top_speed_m_s());
         if top < REACHED * set {
             remarks.push(format!(
                 "{set:.3} m/s is reached nowhere: the lines are too short or too bent; the fastest is {top:.3} m/s"
@@ -111,6 +155,7 @@ impl DrivingArgs {
         let machine = rig.machine(pose);
         let request = PlanRequest {
             speed_m_s: self.speed.map_or(DEFAULT_SPEED_M_S, |s| s.0),
+            lit_speed: self.lit_speed.lit_speed(),
             travel: self.profile.shape(),
             ramp_s: rig.motion.ramp_s,
             settle_s: rig.motion.settle_s,

@@ -45,6 +45,14 @@ const MESSAGES: &[(&str, &str)] = &[
     ),
     ("too-long", "The job takes longer than a run may. Draw larger steps, faster, or in parts."),
     (
+        "no-way-at-speed",
+        "With --lit-speed exact every stroke is run up to and out of in the dark, at its speed, and there is no room for that: the way would leave a joint's range or the target. Lower --speed, move the picture away from the edge of what the head can reach, or let the spot rest at stroke ends (--lit-speed fastest).",
+    ),
+    (
+        "too-bent",
+        "With --lit-speed exact all that is lit is drawn at one speed, and a stroke bends so sharply that no speed is slow enough. Smooth the drawing, or let the spot slow down in bends (--lit-speed fastest).",
+    ),
+    (
         "speed-unreachable",
         "The speed asked for with --speed is reached nowhere on the drawing. The message names the best possible.",
     ),

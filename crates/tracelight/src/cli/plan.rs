@@ -68,7 +68,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         write(path, &csv(&schedule.plan))?;
     }
     if let Some(path) = &args.preview {
-        write(path, &preview(&schedule.plan, args.colour_by, driving.request.speed_m_s))?;
+        write(path, &preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
     }
     let timing = serde_json::json!({ "vision": sketch.vision_ms, "plan": plan_ms });
     Ok(Answer::new(text(&schedule), json(&placed, &schedule, &timing)))

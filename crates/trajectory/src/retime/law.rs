@@ -44,20 +44,32 @@ impl TimeLaw {
             time += cell_s;
             law.cells.push(cell);
         }
-        let length = s.last().copied().unwrap_or(0.0);
-        law.end = Cell { start_s: time, k: [length, 0.0, 0.0, 0.0, 0.0, 0.0], integral };
+        let at_end = |values: &[f64]| values.last().copied().unwrap_or(0.0);
+        law.end = Cell { start_s: time, k: [at_end(s), at_end(&speeds.v), 0.0, 0.0, 0.0, 0.0], integral };
         law
     }
 
+    /// When the last of it, rounded, is over.
     pub(crate) const fn duration_s(&self) -> f64 {
         self.end.start_s + self.ramp_s
     }
 
-    /// The fastest motion and its integral at time `t`; at rest before and after.
+    /// When a motion that is under way at its start comes by there; rounding makes it half a ramp late.
+    pub(crate) fn start_s(&self) -> f64 {
+        let start = self.cells.first().map_or(0.0, |cell| cell.k[0]);
+        let (mut low, mut high) = (0.0, self.ramp_s);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if self.at(middle).s < start { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+
+    /// The fastest motion and its integral at time `t`; before and after it at the speeds of its ends.
     fn fast(&self, t: f64) -> (f64, Along) {
-        let first = self.cells.first().map_or(0.0, |cell| cell.k[0]);
+        let (first, v) = self.cells.first().map_or((0.0, 0.0), |cell| (cell.k[0], cell.k[1]));
         if t <= 0.0 {
-            return (first * t, Along { s: first, ..Along::default() });
+            return ((first + 0.5 * v * t) * t, Along { s: first + v * t, v, a: 0.0 });
         }
         let index = self.cells.partition_point(|cell| cell.start_s <= t);
         let cell = if t >= self.end.start_s { &self.end } else { &self.cells[index.max(1) - 1] };
@@ -65,7 +77,7 @@ impl TimeLaw {
         (cell.integral + cell.integral_of(since), cell.at(since))
     }
 
-    /// Arc length, speed and acceleration at time `t`.
+    /// Arc length, speed and acceleration at time `t`, also before the start and after the end.
     pub(crate) fn at(&self, t: f64) -> Along {
         if self.ramp_s <= 0.0 {
             return self.fast(t).1;

@@ -175,6 +175,14 @@ impl Rows {
         })
     }
 
+    /// The speed up to which no acceleration keeps to all limits.
+    pub(super) fn steady_most(&self) -> f64 {
+        let either = |row: &Row| {
+            first_root(row.m, row.e, row.n - row.reach).min(first_root(-row.m, -row.e, -row.n - row.reach))
+        };
+        self.each().iter().map(either).fold(self.speed_most, f64::min)
+    }
+
     /// The speed up to which some acceleration keeps to all limits.
     fn compatible(&self) -> f64 {
         let mut most = f64::INFINITY;

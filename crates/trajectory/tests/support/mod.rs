@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 #![allow(dead_code, reason = "no test needs all of it")]
 
+pub(crate) mod drawings;
+
 use std::f64::consts::TAU;
 
 use tracelight_aim::{HeadGeometry, HeadPose, JointPath, SpotMotion};
