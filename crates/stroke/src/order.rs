@@ -23,7 +23,7 @@ use kurbo::Point;
 use crate::Drawing;
 use ports::Ports;
 use route::Route;
-pub use travel::Travel;
+pub use travel::{StrokeEnd, Travel};
 
 /// How much work goes into an order: an amount, not a time, so that equal inputs give equal orders on any machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -138,11 +138,12 @@ pub fn order(drawing: &Drawing, start: Point, options: OrderOptions, cost: &impl
 }
 
 fn travel_cost(drawing: &Drawing, start: Point, cost: &impl Travel) -> f64 {
-    let mut at = start;
+    let mut at = StrokeEnd::resting(start);
     let mut sum = 0.0;
     for stroke in &drawing.strokes {
-        sum += cost.cost(cost.place(at), cost.place(stroke.path.start()));
-        at = stroke.path.end();
+        let [entry, exit] = StrokeEnd::of(&stroke.path);
+        sum += cost.cost(cost.place(at), cost.place(entry));
+        at = exit;
     }
     sum
 }

@@ -56,12 +56,9 @@ pub(crate) fn schedule(
     let start = driving.machine.geometry.spot(&driving.pose, Default::default()).unwrap_or(Point::ORIGIN);
     let options = OrderOptions { effort: effort.effort(), seed: 0 };
     let ordered = match by {
-        OrderBy::Time => order(
-            &placed.drawing,
-            start,
-            options,
-            &TravelTime::new(&driving.machine, driving.request.lift_s(&driving.machine)),
-        ),
+        OrderBy::Time => {
+            order(&placed.drawing, start, options, &TravelTime::new(&driving.machine, &driving.request))
+        }
         OrderBy::Distance => order(&placed.drawing, start, options, &|a: Point, b: Point| a.distance(b)),
     };
     let plan = plan(&ordered.drawing, &driving.machine, &driving.request)?;

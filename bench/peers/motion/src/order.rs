@@ -1,7 +1,9 @@
 use std::path::{Path as FilePath, PathBuf};
 use std::time::Instant;
 
-use tracelight_stroke::{Drawing, Effort, OrderOptions, Ordered, Path, Point, Stroke, Travel, order};
+use tracelight_stroke::{
+    Drawing, Effort, OrderOptions, Ordered, Path, Point, Stroke, StrokeEnd, Travel, order,
+};
 
 const EFFORTS: [(&str, Effort); 3] =
     [("quick", Effort::Quick), ("normal", Effort::Normal), ("best", Effort::Best)];
@@ -84,7 +86,7 @@ fn travels(drawing: &Drawing) -> Travels {
     ways.fold(Travels { length_m: 0.0, lifts: 0, time_s: 0.0 }, |sum, (from, to)| Travels {
         length_m: sum.length_m + from.distance(to),
         lifts: sum.lifts + usize::from(from.distance(to) > 1e-9),
-        time_s: sum.time_s + RestToRest.cost(RestToRest.place(from), RestToRest.place(to)),
+        time_s: sum.time_s + rest_to_rest_s(from, to),
     })
 }
 
@@ -92,10 +94,16 @@ fn travels(drawing: &Drawing) -> Travels {
 /// from the wall: the measure of the research's table.
 struct RestToRest;
 
+fn rest_to_rest_s(from: Point, to: Point) -> f64 {
+    let [from, to] = [from, to].map(|at| RestToRest.place(StrokeEnd::resting(at)));
+    RestToRest.cost(from, to)
+}
+
 impl Travel for RestToRest {
     type Place = [f64; 2];
 
-    fn place(&self, at: Point) -> [f64; 2] {
+    fn place(&self, end: StrokeEnd) -> [f64; 2] {
+        let at = end.point;
         const WALL_M: f64 = 0.9;
         [at.x.atan2(WALL_M), at.y.atan2(at.x.hypot(WALL_M))]
     }

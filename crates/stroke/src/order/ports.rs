@@ -1,7 +1,8 @@
 use std::ops::Range;
 
-use kurbo::Point;
+use kurbo::{Point, Vec2};
 
+use super::travel::StrokeEnd;
 use crate::{Drawing, Path};
 
 /// A joint counts as a corner when the direction turns by more than this there: 10°, below the 15° joints of a
@@ -14,6 +15,7 @@ const CORNER_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
 /// at and is left where it was entered.
 pub(super) struct Ports {
     pub(super) points: Vec<Point>,
+    outward: Vec<Vec2>,
     pub(super) stroke: Vec<u32>,
     /// Of a closed stroke: the element that starts at the port. Of an open one: 0 its start, 1 its end.
     pub(super) joint: Vec<u32>,
@@ -25,6 +27,7 @@ impl Ports {
     pub(super) fn of(drawing: &Drawing) -> Self {
         let mut ports = Self {
             points: Vec::new(),
+            outward: Vec::new(),
             stroke: Vec::new(),
             joint: Vec::new(),
             closed: Vec::new(),
@@ -38,11 +41,15 @@ impl Ports {
 
     fn add(&mut self, stroke: u32, path: &Path) {
         let entries = match path.is_closed() {
-            true => start_joints(path),
-            false => vec![(0, path.start()), (1, path.end())],
+            true => start_joints(path)
+                .into_iter()
+                .map(|(joint, point)| (joint, StrokeEnd::resting(point)))
+                .collect(),
+            false => (0..).zip(StrokeEnd::of(path)).collect::<Vec<_>>(),
         };
-        for (joint, point) in entries {
-            self.points.push(point);
+        for (joint, end) in entries {
+            self.points.push(end.point);
+            self.outward.push(end.outward);
             self.stroke.push(stroke);
             self.joint.push(joint);
         }
@@ -52,6 +59,11 @@ impl Ports {
 
     pub(super) fn strokes(&self) -> usize {
         self.closed.len()
+    }
+
+    /// A port as the cost sees it.
+    pub(super) fn end(&self, port: u32) -> StrokeEnd {
+        StrokeEnd { point: self.points[port as usize], outward: self.outward[port as usize] }
     }
 
     /// The ports of one stroke.

@@ -2,7 +2,7 @@ use kurbo::Point;
 
 use super::ports::Ports;
 use super::search::Search;
-use super::travel::Travel;
+use super::travel::{StrokeEnd, Travel};
 use crate::{Drawing, Stroke};
 
 /// Most strokes of a region. A kick costs time in proportion to the tour it is in, since moves turn around parts of
@@ -69,7 +69,7 @@ impl<C: Travel> Route<'_, C> {
 
     /// Improves the order of runs of stops.
     fn search(&mut self, runs: &[std::ops::Range<usize>], kicks: usize, seed: u64) {
-        let at = |port: u32| self.ports.points[port as usize];
+        let at = |port: u32| self.ports.end(port);
         let ends = |run: &std::ops::Range<usize>| {
             let (first, last) = (self.stops[run.start], self.stops[run.end - 1]);
             (at(first.entry), at(self.ports.exit(last.entry)))
@@ -115,7 +115,7 @@ impl<C: Travel> Route<'_, C> {
         }
     }
 
-    fn between(&self, from: Point, to: Point) -> f64 {
+    fn between(&self, from: StrokeEnd, to: StrokeEnd) -> f64 {
         self.cost.cost(self.cost.place(from), self.cost.place(to))
     }
 
@@ -124,9 +124,9 @@ impl<C: Travel> Route<'_, C> {
         if !self.ports.is_closed(stop.stroke) {
             return false;
         }
-        let at = |port: u32| self.ports.points[port as usize];
+        let at = |port: u32| self.ports.end(port);
         let exit_of = |stop: &Stop| at(self.ports.exit(stop.entry));
-        let before = if i == 0 { self.start } else { exit_of(&self.stops[i - 1]) };
+        let before = if i == 0 { StrokeEnd::resting(self.start) } else { exit_of(&self.stops[i - 1]) };
         let after = self.stops.get(i + 1).map(|next| at(next.entry));
         let through = |port: u32| {
             let on = after.map_or(0.0, |next| self.between(at(port), next));

@@ -3,7 +3,7 @@ use kurbo::Point;
 use super::exchange::LEAST_GAIN;
 use super::neighbours::Neighbours;
 use super::tour::Tour;
-use super::travel::Travel;
+use super::travel::{StrokeEnd, Travel};
 
 /// Longest run of strokes that a kick swaps with another: short, so that mending it stays local. Measured at equal
 /// time on 5000 random strokes: 5 and 10 stall earlier, 50 costs half as much again and gains nothing.
@@ -29,10 +29,11 @@ pub(super) struct Search<'a, T: Travel> {
 }
 
 impl<'a, T: Travel> Search<'a, T> {
-    /// Strokes in a first order, each given by the points it is entered and left at.
-    pub(super) fn new(strokes: &[(Point, Point)], start: Point, cost: &'a T) -> Self {
-        let mut ends: Vec<Point> = strokes.iter().flat_map(|&(entry, exit)| [entry, exit]).collect();
-        ends.extend([start, start]);
+    /// Strokes in a first order, each given by the ends it is entered and left by.
+    pub(super) fn new(strokes: &[(StrokeEnd, StrokeEnd)], start: Point, cost: &'a T) -> Self {
+        let mut ends: Vec<StrokeEnd> = strokes.iter().flat_map(|&(entry, exit)| [entry, exit]).collect();
+        ends.extend([StrokeEnd::resting(start); 2]);
+        let points: Vec<Point> = ends.iter().map(|&end| cost.about(end)).collect();
         let mut search = Self {
             tour: Tour::new((0..=strokes.len() as u32).map(|k| 2 * k).collect()),
             neighbours: Neighbours::default(),
@@ -43,7 +44,7 @@ impl<'a, T: Travel> Search<'a, T> {
             waiting: Vec::new(),
             is_waiting: vec![false; ends.len()],
         };
-        search.neighbours = Neighbours::of_all(&ends, search.nowhere(), |a, b| search.travel(a, b));
+        search.neighbours = Neighbours::of_all(&points, search.nowhere(), |a, b| search.travel(a, b));
         search
     }
 

@@ -134,7 +134,7 @@ fn a_search_gains_what_the_tour_gets_shorter_by() {
     for seed in 0..40 {
         let mut random = Random(seed);
         let drawing = if seed % 2 == 0 { random.drawing(60, false) } else { net(&mut random, 60, 6.0) };
-        let ends: Vec<_> = drawing.strokes.iter().map(|s| (s.path.start(), s.path.end())).collect();
+        let ends: Vec<_> = drawing.strokes.iter().map(|s| StrokeEnd::of(&s.path).into()).collect();
         let mut search = Search::new(&ends, Point::ORIGIN, &euclid);
         let before = search.total();
         let gained = search.settle();

@@ -3,7 +3,7 @@ use std::time::Instant;
 
 use clap::Args;
 use tracelight_rig::TICK_F64_S;
-use tracelight_trajectory::Plan;
+use tracelight_trajectory::{LitSpeed, Plan};
 
 use crate::cli::driving::DrivingArgs;
 use crate::cli::placing::PlacementArgs;
@@ -71,7 +71,8 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         write(path, &preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
     }
     let timing = serde_json::json!({ "vision": sketch.vision_ms, "plan": plan_ms });
-    Ok(Answer::new(text(&schedule), json(&placed, &schedule, &timing)))
+    let shortest = args.order_by == OrderBy::Distance || driving.request.lit_speed == LitSpeed::Stops;
+    Ok(Answer::new(text(&schedule, shortest), json(&placed, &schedule, &timing)))
 }
 
 fn write(path: &str, text: &str) -> Result<(), Failure> {
@@ -79,10 +80,13 @@ fn write(path: &str, text: &str) -> Result<(), Failure> {
     std::fs::write(path, text).map_err(failed)
 }
 
-fn text(schedule: &Schedule) -> String {
+fn text(schedule: &Schedule, shortest: bool) -> String {
     let (ordered, plan) = (&schedule.ordered, &schedule.plan);
-    let gap =
-        ordered.gap_percent().map_or_else(String::new, |g| format!(", at most {g:.1} % over the shortest"));
+    // where ends are passed at speed the shortest way is not what is looked for
+    let gap = match ordered.gap_percent() {
+        Some(gap) if shortest => format!(", at most {gap:.1} % over the shortest"),
+        _ => String::new(),
+    };
     format!(
         "{}, {:.3} m lit, {:.3} m travel{gap}\n{:.3} s: {:.3} s lit, up to {:.3} m/s, torque up to {:.0} %",
         counted(ordered.drawing.strokes.len(), "stroke"),

@@ -201,12 +201,9 @@ fn lit_way(svg: &mut String, plan: &Plan, frame: &Frame, colour: &dyn Fn(&PlanPo
 
 /// Each stroke's number where it begins.
 fn numbers(svg: &mut String, plan: &Plan, frame: &Frame) {
-    let starts: Vec<&PlanPoint> = plan
-        .points
-        .windows(2)
-        .filter(|pair| pair[1].lit && pair[1].stroke != pair[0].stroke)
-        .map(|pair| &pair[1])
-        .collect();
+    // corners that are passed in the dark part a stroke: it has one number all the same
+    let mut starts: Vec<&PlanPoint> = plan.points.iter().filter(|p| p.lit).collect();
+    starts.dedup_by_key(|p| p.stroke);
     if starts.len() > NUMBERED {
         return;
     }
