@@ -99,6 +99,7 @@ fn circle(config: &RigConfig) -> Plan {
         ramp_s: config.motion.ramp_s,
         settle_s: config.motion.settle_s,
         tolerance_m: config.control.tolerance_m,
+        corner_m: 0.0,
     };
     plan(&Drawing { strokes: vec![Stroke::new(path)] }, &config.machine(POSE), &request).unwrap_or_default()
 }

@@ -240,6 +240,28 @@ impl Piece {
         }
     }
 
+    /// The part between two arc lengths from the start, which on a cubic are found to `tolerance`.
+    pub fn part(&self, from: f64, to: f64, tolerance: f64) -> Self {
+        match self.element {
+            Element::Line { .. } => {
+                let [start, end] = [from, to].map(|s| self.at_length(s, tolerance).point);
+                Self { from: start, element: Element::Line { to: end } }
+            }
+            Element::Arc { centre, sweep } => {
+                let radius = self.from.distance(centre);
+                let part = (to - from) / radius * sweep.signum();
+                let start = self.at_length(from, tolerance).point;
+                Self { from: start, element: Element::Arc { centre, sweep: part } }
+            }
+            Element::Cubic { c1, c2, to: end } => {
+                let curve = CubicBez::new(self.from, c1, c2, end);
+                let [first, last] = [from, to].map(|s| curve.inv_arclen(s, tolerance));
+                let part = curve.subsegment(first..last);
+                Self { from: part.p0, element: Element::Cubic { c1: part.p1, c2: part.p2, to: part.p3 } }
+            }
+        }
+    }
+
     /// Unit tangent at the start.
     pub fn start_tangent(&self) -> Vec2 {
         self.at_length(0.0, 1e-6).tangent

@@ -20,6 +20,7 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
             format!("{:.4} m/s ({:.2} ft/s)", driving.request.speed_m_s, driving.request.speed_m_s / 0.3048),
         ),
         ("lit speed", args.driving.lit_speed.name().into()),
+        ("corners", args.driving.corner.map_or("sharp".into(), |c| format!("rounded by up to {}", mm(c.0)))),
         ("profile", args.driving.profile.name().into()),
         ("rig", format!("{} ({})", driving.rig.name, driving.rig.description)),
         ("tolerance", mm(driving.request.tolerance_m)),

@@ -4,15 +4,8 @@ use tracelight_aim::{AimError, JointPath, SpotMotion};
 use tracelight_stroke::{Path, PathPoint, Piece, Point};
 
 use crate::Machine;
+use crate::corner::{Corners, Fate, rounding};
 use crate::retime::PathSample;
-
-/// A break of the tangent from which on the head stops: 20°. Below it the spot passes with the speed that keeps the
-/// jump of velocity under [`JUMP_M_S`].
-const CORNER_RAD: f64 = 0.35;
-
-/// Jump of the spot's velocity at a small break of the tangent, m/s: at 3 ft that is 16 mrad/s, which a 60 rad/s
-/// loop makes good with 0.1 mrad (0.1 mm) of error.
-const JUMP_M_S: f64 = 0.015;
 
 /// Shorter pieces than this are dust, m.
 const DUST_M: f64 = 1e-7;
@@ -21,7 +14,7 @@ const DUST_M: f64 = 1e-7;
 const MOST_PLACES: f64 = 1e5;
 
 /// Error of arc length on curves, m: a ten-thousandth of what the spot moves in a tick at 1 ft/s.
-const LENGTH_TOLERANCE_M: f64 = 3e-8;
+pub(crate) const LENGTH_TOLERANCE_M: f64 = 3e-8;
 
 /// A stretch of a stroke without a corner, with arc length along it.
 #[derive(Clone, Debug)]
@@ -34,36 +27,53 @@ pub(crate) struct Leg {
 }
 
 impl Leg {
-    /// The legs of a path in drawing order, cut at corners, and where a break of the tangent would have to be passed
-    /// slower than `slowest_m_s`.
-    pub(crate) fn split(path: &Path, slowest_m_s: f64) -> Vec<Leg> {
+    /// The legs of a path in drawing order, cut or rounded off at corners.
+    pub(crate) fn split(path: &Path, corners: &Corners<'_>) -> Vec<Leg> {
+        let sized = path.pieces().map(|piece| (piece, piece.length(LENGTH_TOLERANCE_M)));
+        let (pieces, lengths): (Vec<Piece>, Vec<f64>) = sized.filter(|&(_, length)| length >= DUST_M).unzip();
+        // a piece may be cut back at both ends
+        let room_m = |i: usize| 0.5 * lengths[i].min(lengths[i + 1]);
+        let fate = |(i, pair): (usize, &[Piece])| corners.fate(&pair[0], &pair[1], room_m(i));
+        let fates: Vec<Fate> = pieces.windows(2).enumerate().map(fate).collect();
+        Self::joined(&pieces, &fates)
+    }
+
+    /// Legs of pieces that are joined by what becomes of the breaks between them.
+    pub(crate) fn joined(pieces: &[Piece], fates: &[Fate]) -> Vec<Leg> {
+        let cut_m = |fate: Option<&Fate>| if let Some(&Fate::Round(cut_m)) = fate { cut_m } else { 0.0 };
         let mut legs: Vec<Leg> = Vec::new();
-        let mut incoming = None;
-        for piece in path.pieces() {
+        for (i, &piece) in pieces.iter().enumerate() {
+            let before = i.checked_sub(1).and_then(|last| fates.get(last));
             let length = piece.length(LENGTH_TOLERANCE_M);
-            if length < DUST_M {
-                continue;
-            }
-            let turn = incoming.map(|t: tracelight_stroke::Vec2| {
-                let out = piece.start_tangent();
-                t.cross(out).atan2(t.dot(out)).abs()
-            });
-            match (turn, legs.last_mut()) {
-                (Some(turn), Some(leg)) if turn < CORNER_RAD && break_speed(turn) >= slowest_m_s => {
-                    leg.extend(piece, length, turn)
+            let (from, to) = (cut_m(before), length - cut_m(fates.get(i)));
+            let piece =
+                if (from, to) == (0.0, length) { piece } else { piece.part(from, to, LENGTH_TOLERANCE_M) };
+            match (before, legs.last_mut()) {
+                (Some(&Fate::Pass(speed)), Some(leg)) => {
+                    leg.breaks.push((leg.length_m(), speed));
+                    leg.push(piece, to - from);
                 }
-                _ => legs.push(Leg { pieces: vec![piece], starts_m: vec![0.0, length], breaks: Vec::new() }),
+                (Some(Fate::Round(_)), Some(leg)) => {
+                    if let Some(last) = leg.pieces.last() {
+                        let curve = rounding(last, &piece);
+                        leg.push(curve, curve.length(LENGTH_TOLERANCE_M));
+                    }
+                    leg.push(piece, to - from);
+                }
+                _ => {
+                    legs.push(Leg { pieces: vec![piece], starts_m: vec![0.0, to - from], breaks: Vec::new() })
+                }
             }
-            incoming = Some(piece.end_tangent());
         }
         legs
     }
 
-    fn extend(&mut self, piece: Piece, length: f64, turn: f64) {
-        let at = self.length_m();
-        self.breaks.push((at, break_speed(turn)));
-        self.pieces.push(piece);
-        self.starts_m.push(at + length);
+    /// Appends a piece, if anything is left of it.
+    fn push(&mut self, piece: Piece, length: f64) {
+        if length >= DUST_M {
+            self.starts_m.push(self.length_m() + length);
+            self.pieces.push(piece);
+        }
     }
 
     pub(crate) fn length_m(&self) -> f64 {
@@ -123,11 +133,6 @@ impl Leg {
     }
 }
 
-/// How fast a small break of the tangent is passed, m/s.
-fn break_speed(turn: f64) -> f64 {
-    JUMP_M_S / (2.0 * (0.5 * turn).sin()).max(1e-12)
-}
-
 /// A place `by_m` further along the circle of curvature.
 fn onwards(at: PathPoint, by_m: f64) -> PathPoint {
     if by_m == 0.0 {
@@ -151,31 +156,49 @@ fn onwards(at: PathPoint, by_m: f64) -> PathPoint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tracelight_stroke::Element;
+    use tracelight_stroke::{Element, Vec2};
 
-    #[test]
-    fn a_square_has_four_legs_and_a_circle_one() {
-        let corners = [(0.0, 0.0), (0.1, 0.0), (0.1, 0.1), (0.0, 0.1)].map(|(x, y)| Point::new(x, y));
-        let square = Path::polyline(&corners, true).unwrap();
-        assert_eq!(Leg::split(&square, 0.0).len(), 4);
-        let mut circle = Path::new(Point::new(0.1, 0.0));
-        for _ in 0..4 {
-            circle.push(Element::Arc { centre: Point::ORIGIN, sweep: std::f64::consts::FRAC_PI_2 });
-        }
-        circle.close();
-        let legs = Leg::split(&circle, 0.0);
-        assert_eq!(legs.len(), 1);
-        assert!((legs[0].length_m() - 0.2 * std::f64::consts::PI).abs() < 1e-12);
-        let halfway = legs[0].at(0.1 * std::f64::consts::PI).point;
-        assert!(halfway.distance(Point::new(-0.1, 0.0)) < 1e-12);
+    fn pieces(path: &Path) -> Vec<Piece> {
+        path.pieces().collect()
     }
 
     #[test]
-    fn a_small_break_limits_the_speed_instead_of_cutting() {
-        let points = [(0.0, 0.0), (0.1, 0.0), (0.2, 0.01)].map(|(x, y)| Point::new(x, y));
-        let legs = Leg::split(&Path::polyline(&points, false).unwrap(), 0.0);
+    fn pieces_that_are_passed_make_one_leg_and_cuts_part_them() {
+        let corners = [(0.0, 0.0), (0.1, 0.0), (0.1, 0.1), (0.0, 0.1)].map(|(x, y)| Point::new(x, y));
+        let square = pieces(&Path::polyline(&corners, true).unwrap());
+        let fates = [Fate::Cut, Fate::Pass(0.2), Fate::Round(0.01)];
+        let legs = Leg::joined(&square, &fates);
+        assert_eq!(legs.len(), 2);
+        assert_eq!(legs[1].breaks, [(0.1, 0.2)]);
+        // the arc of 10 mm is shorter than the corner it replaces
+        let with_arc = 0.3 - 0.02 + 0.01 * std::f64::consts::FRAC_PI_2;
+        assert!((legs[1].length_m() - with_arc).abs() < 1e-5, "{}", legs[1].length_m());
+        for i in 0..=280 {
+            let (at, on) = (legs[1].at(1e-3 * f64::from(i)), legs[1].at(1e-3 * f64::from(i) + 1e-7));
+            assert!(at.point.distance(on.point) < 1.01e-7);
+        }
+    }
+
+    #[test]
+    fn a_leg_goes_on_along_its_circle_beyond_its_ends() {
+        let mut circle = Path::new(Point::new(0.1, 0.0));
+        for _ in 0..2 {
+            circle.push(Element::Arc { centre: Point::ORIGIN, sweep: std::f64::consts::FRAC_PI_2 });
+        }
+        let legs = Leg::joined(&pieces(&circle), &[Fate::Pass(f64::INFINITY)]);
         assert_eq!(legs.len(), 1);
-        let (at, speed) = legs[0].breaks[0];
-        assert!((at - 0.1).abs() < 1e-12 && (speed - 0.1505).abs() < 1e-3, "{speed}");
+        let length = 0.1 * std::f64::consts::PI;
+        assert!((legs[0].length_m() - length).abs() < 1e-12);
+        for (s, angle) in [
+            (-0.01, -0.1),
+            (0.5 * length, 0.5 * std::f64::consts::PI),
+            (length + 0.02, std::f64::consts::PI + 0.2),
+        ] {
+            let at = legs[0].at(s);
+            let arm = Vec2::from_angle(angle) * 0.1;
+            assert!((at.point.to_vec2() - arm).hypot() < 1e-12, "{s}: {at:?}");
+            assert!((at.tangent - Vec2::from_angle(angle).turn_90()).hypot() < 1e-12, "{s}: {at:?}");
+            assert!((at.curvature + arm * 100.0).hypot() < 1e-9, "{s}: {at:?}");
+        }
     }
 }

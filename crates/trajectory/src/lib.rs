@@ -11,6 +11,7 @@
 //! told is the controller's.
 
 mod compress;
+mod corner;
 mod error;
 mod leg;
 mod machine;

@@ -114,6 +114,16 @@ impl Machine {
         }
     }
 
+    /// Acceleration that the weaker motor has for the spot, gravity left out, m/s².
+    pub(crate) fn spot_acceleration_m_s2(&self) -> f64 {
+        let of_joint = |j: Joint| {
+            let torque =
+                self.torque_share * self.motors[j].torque_limit_nm() - self.friction[j].coulomb_pos_nm;
+            (torque / self.own_inertia(j, 0.0)).min(self.acceleration_limit_rad_s2[j])
+        };
+        self.pose.distance_m * of_joint(Joint::Pan).min(of_joint(Joint::Tilt)).max(0.0)
+    }
+
     /// Inertia a joint feels, kg m².
     pub(crate) fn own_inertia(&self, joint: Joint, tilt_rad: f64) -> f64 {
         let mass = self.lumped.mass(tilt_rad);

@@ -2,6 +2,7 @@ use tracelight_rig::{PanTilt, TICK_F64_S};
 use tracelight_stroke::{Drawing, Point};
 
 use crate::compress::compress;
+use crate::corner::Corners;
 use crate::leg::Leg;
 use crate::mark::{End, Marked, mark};
 use crate::plan::{JointMotion, LegEnd, Plan, PlanPoint, Tightest};
@@ -46,6 +47,9 @@ pub struct PlanRequest {
     pub settle_s: f64,
     /// Distance from the stroke at which the laser is to be darkened, m.
     pub tolerance_m: f64,
+    /// How far corners may be rounded off, m: by so much the line may lie inside of them where that is quicker than to stop
+    /// there or to pass them in the dark. Zero keeps all of them sharp.
+    pub corner_m: f64,
 }
 
 impl PlanRequest {
@@ -64,14 +68,6 @@ impl PlanRequest {
     /// Time over which the acceleration of dark moves under way builds up, s.
     pub(crate) fn swing_rise_s(&self) -> f64 {
         0.5 * self.ramp_s
-    }
-
-    /// A break of the tangent that is to be passed slower than this is a corner, m/s.
-    pub(crate) fn slowest_break_m_s(&self) -> f64 {
-        match self.lit_speed {
-            LitSpeed::Fastest | LitSpeed::Stops => 0.0,
-            LitSpeed::Exact => self.speed_m_s,
-        }
     }
 }
 
@@ -123,8 +119,10 @@ fn at_one_speed(
     if request.lit_speed != LitSpeed::Exact {
         return Ok((*request, None));
     }
+    // breaks are judged when the speed is known
+    let unhurried = PlanRequest { lit_speed: LitSpeed::Fastest, corner_m: 0.0, ..*request };
     for (stroke, drawn) in drawing.strokes.iter().enumerate() {
-        for leg in Leg::split(&drawn.path, 0.0) {
+        for leg in Leg::split(&drawn.path, &Corners::of(machine, &unhurried)) {
             let aim = |source| PlanError::Aim { stroke: stroke + 1, source };
             let mut samples = leg.places(machine, request.speed_m_s).map_err(aim)?;
             samples.iter_mut().for_each(|sample| sample.cap = request.speed_m_s);

@@ -3,6 +3,7 @@
 use tracelight_rig::PanTilt;
 use tracelight_stroke::Drawing;
 
+use crate::corner::Corners;
 use crate::leg::Leg;
 use crate::mark::{End, MarkRequest};
 use crate::plan::JointMotion;
@@ -47,7 +48,7 @@ impl Tour {
         let rest = |position_rad| JointMotion { position_rad, ..JointMotion::default() };
         let mut at = home.map(rest);
         for (stroke, drawn) in drawing.strokes.iter().enumerate() {
-            for leg in Leg::split(&drawn.path, request.slowest_break_m_s()) {
+            for leg in Leg::split(&drawn.path, &Corners::of(machine, request)) {
                 let leg = TourLeg::new(leg, stroke, machine, request, at, legs.is_empty())?;
                 at = leg.ends[End::Rest as usize].unwrap_or(at);
                 legs.push(leg);

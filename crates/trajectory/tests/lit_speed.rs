@@ -129,6 +129,44 @@ fn passing_at_speed_is_never_slower_than_stopping() {
     }
 }
 
+/// Corners that may be rounded off are, where that is quicker; then the line stays as near as was asked.
+#[test]
+fn rounded_corners_save_time_and_keep_to_their_distance() {
+    let corners = [(0.0, 0.0), (0.1, 0.0), (0.1, 0.1), (0.0, 0.1)].map(|(x, y)| Point::new(x, y));
+    let square = Path::polyline(&corners, true).unwrap();
+    let drawn = square.flatten(1e-6);
+    let took = |corner_m: f64, lit_speed| {
+        let wanted = PlanRequest { corner_m, lit_speed, ..request(Shape::Ramped(Ramps::REPORT)) };
+        let plan = plan(&drawing([square.clone()]), &machine(), &wanted).unwrap();
+        asks_no_more_than_there_is(&plan);
+        let away = |p: &PlanPoint| {
+            let to_side = |side: &[Point]| to_line(p.spot, side[0], side[1]);
+            drawn.windows(2).map(to_side).fold(f64::INFINITY, f64::min)
+        };
+        let worst = plan.points.iter().filter(|p| p.lit).map(away).fold(0.0, f64::max);
+        assert!(worst <= corner_m * 1.01 + 1e-8, "{worst} m of {corner_m}");
+        plan.duration_s()
+    };
+    let sharp_s = took(0.0, LitSpeed::Stops);
+    let rounded_s = took(5e-4, LitSpeed::Stops);
+    assert!(rounded_s < sharp_s - 0.02, "{rounded_s} s, sharp {sharp_s} s");
+    let hardly_s = took(1e-5, LitSpeed::Stops);
+    println!("sharp {sharp_s} s, off by 0.01 mm {hardly_s} s, by 0.5 mm {rounded_s} s");
+    assert!(hardly_s <= sharp_s, "{hardly_s} s");
+    // at one speed only corners that need no slowing down are rounded: 60 lines for a circle, but not a square
+    let round: Vec<(f64, f64)> =
+        (0..60).map(|i| f64::from(i) * 0.1).map(|a| (0.1 * a.cos(), 0.1 * a.sin())).collect();
+    let wanted = PlanRequest { corner_m: 5e-4, lit_speed: LitSpeed::Exact, ..request(Shape::Sine) };
+    let runs = |path: Path| lit_runs(&plan(&drawing([path]), &machine(), &wanted).unwrap()).len();
+    assert_eq!((runs(line(&round)), runs(square.clone())), (1, 4));
+}
+
+fn to_line(p: Point, from: Point, to: Point) -> f64 {
+    let along = to - from;
+    let share = ((p - from).dot(along) / along.hypot2()).clamp(0.0, 1.0);
+    p.distance(from + along * share)
+}
+
 /// Strokes that are passed at speed want another order than strokes that are stopped at: from each on to one that lies
 /// ahead.
 #[test]

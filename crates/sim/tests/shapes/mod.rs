@@ -45,6 +45,7 @@ pub(crate) fn plan_at(config: &RigConfig, path: Path, lit_speed: LitSpeed) -> Pl
         ramp_s: config.motion.ramp_s,
         settle_s: config.motion.settle_s,
         tolerance_m: config.control.tolerance_m,
+        corner_m: 0.0,
     };
     let drawing = Drawing { strokes: vec![Stroke::new(path)] };
     plan(&drawing, &config.machine(POSE), &request).unwrap()

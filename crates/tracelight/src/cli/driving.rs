@@ -28,6 +28,10 @@ pub(crate) struct DrivingArgs {
     /// How the lit spot keeps to that speed
     #[arg(long, value_enum, default_value_t = LitSpeedName::Fastest)]
     pub(crate) lit_speed: LitSpeedName,
+    /// How far corners may be rounded off where that is faster than to stop there or to pass them in the dark, such as
+    /// 0.2mm [default: not at all]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = rounding)]
+    pub(crate) corner: Option<Length>,
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     pub(crate) rig: String,
@@ -160,6 +164,7 @@ impl DrivingArgs {
             ramp_s: rig.motion.ramp_s,
             settle_s: rig.motion.settle_s,
             tolerance_m: rig.control.tolerance_m,
+            corner_m: self.corner.map_or(0.0, |c| c.0),
         };
         Ok(Driving {
             rig,
@@ -187,6 +192,16 @@ fn positive_speed(text: &str) -> Result<Speed, String> {
         Ok(speed)
     } else {
         Err(format!("{text} is not between 0 and {MOST_M_S} m/s; give a speed such as 1ft/s or 0.3m/s"))
+    }
+}
+
+fn rounding(text: &str) -> Result<Length, String> {
+    const MOST_M: f64 = 0.01;
+    let length: Length = text.parse().map_err(|e| format!("{e}"))?;
+    if 0.0 <= length.0 && length.0 <= MOST_M {
+        Ok(length)
+    } else {
+        Err(format!("{text} is not between 0 and {} mm; give a length such as 0.2mm", 1e3 * MOST_M))
     }
 }
 

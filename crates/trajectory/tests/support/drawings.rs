@@ -35,6 +35,7 @@ pub(crate) fn request(travel: Shape) -> PlanRequest {
         ramp_s: 0.02,
         settle_s: 0.04,
         tolerance_m: 3e-3,
+        corner_m: 0.0,
     }
 }
 

@@ -1,0 +1,145 @@
+//! What becomes of a break of the tangent: passed, rounded off, or the end of a leg.
+
+use tracelight_stroke::{Element, Piece, Vec2};
+
+use crate::leg::{LENGTH_TOLERANCE_M, Leg};
+use crate::mark::{End, MarkRequest, mark};
+use crate::{LitSpeed, Machine, PlanRequest};
+
+/// A break of the tangent from which on the head stops: 20°. Below it the spot passes with the speed that keeps the
+/// jump of velocity under [`JUMP_M_S`].
+const CORNER_RAD: f64 = 0.35;
+
+/// Jump of the spot's velocity at a small break of the tangent, m/s: at 3 ft that is 16 mrad/s, which a 60 rad/s
+/// loop makes good with 0.1 mrad (0.1 mm) of error.
+const JUMP_M_S: f64 = 0.015;
+
+/// A smaller break than this is none, rad.
+const NONE_RAD: f64 = 1e-3;
+
+/// How much of the pieces on either side of a corner is timed to see what rounding it off is worth, m: the way from rest to
+/// 1 ft/s on the 2006 rig twice.
+const TRIAL_M: f64 = 0.015;
+
+/// A shorter curve is a corner to places that lie half a millimetre apart, m.
+const SHORTEST_M: f64 = 2.5e-4;
+
+/// What counts as gained: a tick is lost or won at either end of a trial by where the ticks fall.
+const LEAST_GAIN_TICKS: usize = 3;
+
+/// How breaks of the tangent are judged.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corners<'a> {
+    machine: &'a Machine,
+    request: &'a PlanRequest,
+    /// What the motors have for the spot, about, m/s².
+    acceleration_m_s2: f64,
+}
+
+/// What becomes of a break.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Fate {
+    /// It is passed, no faster than this, m/s.
+    Pass(f64),
+    /// So much of both pieces, m, gives way to a curve from one to the other.
+    Round(f64),
+    /// One leg ends there and another begins.
+    Cut,
+}
+
+impl<'a> Corners<'a> {
+    pub(crate) fn of(machine: &'a Machine, request: &'a PlanRequest) -> Self {
+        Self { machine, request, acceleration_m_s2: machine.spot_acceleration_m_s2() }
+    }
+
+    /// What becomes of the break between two pieces; no more than `room_m` of either may be given up.
+    pub(crate) fn fate(&self, before: &Piece, after: &Piece, room_m: f64) -> Fate {
+        let turn = turn_rad(before.end_tangent(), after.start_tangent());
+        let passed_m_s = break_speed(turn);
+        if turn < NONE_RAD || passed_m_s >= self.request.speed_m_s {
+            return Fate::Pass(passed_m_s);
+        }
+        let exact = self.request.lit_speed == LitSpeed::Exact;
+        let sharp = if turn < CORNER_RAD && !exact { Fate::Pass(passed_m_s) } else { Fate::Cut };
+        // an arc that touches both lines leaves the corner by d tan(θ/4) and has the radius d / tan(θ/2)
+        let cut_m = (self.request.corner_m / (0.25 * turn).tan()).min(room_m);
+        let rounded_m_s = (self.acceleration_m_s2 * cut_m / (0.5 * turn).tan()).max(0.0).sqrt();
+        let rounds = match exact {
+            true => rounded_m_s >= self.request.speed_m_s,
+            false => {
+                cut_m * turn / (0.5 * turn).tan() >= SHORTEST_M && self.gains(before, after, cut_m, sharp)
+            }
+        };
+        if rounds { Fate::Round(cut_m) } else { sharp }
+    }
+
+    /// Whether a corner is passed sooner when it is rounded off: both are timed.
+    fn gains(&self, before: &Piece, after: &Piece, cut_m: f64, sharp: Fate) -> bool {
+        let lengths = [before, after].map(|piece| piece.length(LENGTH_TOLERANCE_M));
+        let near_m = lengths.map(|length| length.min(TRIAL_M));
+        let before = before.part(lengths[0] - near_m[0], lengths[0], LENGTH_TOLERANCE_M);
+        let after = after.part(0.0, near_m[1], LENGTH_TOLERANCE_M);
+        let ticks = |legs: Vec<Leg>| -> Option<usize> {
+            let last = legs.len() - 1;
+            let end = |there: bool| if there { End::Moving } else { End::Rest };
+            let timed = legs.iter().enumerate().map(|(i, leg)| {
+                let request = MarkRequest {
+                    speed_m_s: self.request.speed_m_s,
+                    ramp_s: self.request.ramp_s,
+                    run_up_s: 0.5 * self.request.ramp_s,
+                    ends: [end(i == 0), end(i == last)],
+                    stroke: 0,
+                };
+                mark(self.machine, leg, &request).ok().map(|marked| marked.points.len())
+            });
+            timed.sum()
+        };
+        let rounded = ticks(Leg::joined(&[before, after], &[Fate::Round(cut_m)]));
+        let sharp = ticks(Leg::joined(&[before, after], &[sharp]));
+        matches!((rounded, sharp), (Some(rounded), Some(sharp)) if rounded + LEAST_GAIN_TICKS <= sharp)
+    }
+}
+
+/// How fast a small break of the tangent is passed, m/s.
+fn break_speed(turn_rad: f64) -> f64 {
+    JUMP_M_S / (2.0 * (0.5 * turn_rad).sin()).max(1e-12)
+}
+
+/// The angle between two directions, rad.
+pub(crate) fn turn_rad(incoming: Vec2, outgoing: Vec2) -> f64 {
+    incoming.cross(outgoing).atan2(incoming.dot(outgoing)).abs()
+}
+
+/// The curve that leads from the end of one piece to the start of the next, touching both: between straight lines cut
+/// back equally, a circle's arc but for 3 parts in 10 000 of its radius.
+pub(crate) fn rounding(before: &Piece, after: &Piece) -> Piece {
+    let (from, to) = (before.end(), after.from);
+    let (incoming, outgoing) = (before.end_tangent(), after.start_tangent());
+    let turn = turn_rad(incoming, outgoing);
+    let radius = 0.5 * from.distance(to) / (0.5 * turn).sin().max(1e-12);
+    let handle = 4.0 / 3.0 * (0.25 * turn).tan() * radius;
+    Piece { from, element: Element::Cubic { c1: from + incoming * handle, c2: to - outgoing * handle, to } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_stroke::Point;
+
+    #[test]
+    fn a_rounded_corner_keeps_to_its_distance() {
+        const TOLERANCE_M: f64 = 2e-4;
+        for degrees in [10.0f64, 45.0, 90.0, 135.0, 170.0] {
+            let turn = degrees.to_radians();
+            let cut = TOLERANCE_M / (0.25 * turn).tan();
+            let (out, corner) = (Vec2::from_angle(turn), Point::new(0.1, 0.0));
+            let line = |from, to| Piece { from, element: Element::Line { to } };
+            let before = line(Point::ORIGIN, corner - Vec2::new(cut, 0.0));
+            let after = line(corner + out * cut, corner + out * 0.1);
+            let curve = rounding(&before, &after);
+            let away = (0..=1000).map(|i| curve.at(f64::from(i) / 1000.0).distance(corner));
+            let nearest = away.fold(f64::INFINITY, f64::min);
+            assert!((nearest / TOLERANCE_M - 1.0).abs() < 0.03, "{degrees}°: {nearest} m");
+        }
+    }
+}
