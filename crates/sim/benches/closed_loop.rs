@@ -12,7 +12,7 @@ use tracelight_plant::JointState;
 use tracelight_rig::{Command, PanTilt, Rig};
 use tracelight_sim::{RigConfig, SimulatedRig};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
-use tracelight_trajectory::{LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
+use tracelight_trajectory::{DarkMove, LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
 
 fn main() {
     divan::main();
@@ -95,7 +95,7 @@ fn circle(config: &RigConfig) -> Plan {
     let request = PlanRequest {
         speed_m_s: 0.3048,
         lit_speed: LitSpeed::Fastest,
-        travel: Shape::Ramped(Ramps::REPORT),
+        travel: DarkMove::Shaped(Shape::Ramped(Ramps::REPORT)),
         ramp_s: config.motion.ramp_s,
         settle_s: config.motion.settle_s,
         tolerance_m: config.control.tolerance_m,

@@ -118,11 +118,30 @@ fn placement_moves_turns_and_mirrors_the_light() {
 
 #[test]
 fn every_profile_draws_the_picture() {
-    for profile in ["trapezoid", "s-curve", "sine", "sigmoid"] {
+    for profile in ["trapezoid", "s-curve", "sine", "sigmoid", "optimal"] {
         let dir = folder(&format!("profile-{profile}"));
-        let summary = trace(&[STAR, "--profile", profile], &dir);
+        let summary = trace(&[STAR, "--profile", profile, "--lit-speed", "stops"], &dir);
         assert!(summary["tracking"]["rms_mm"].as_f64().unwrap() < 0.25, "{profile}");
     }
+}
+
+/// At one speed: the plan's, which the drawing's tightest bend bounds, and it says so.
+#[test]
+fn lit_speed_exact_keeps_one_speed_and_says_which() {
+    let dir = folder("exact");
+    let summary = trace(&[STAR, "--lit-speed", "exact"], &dir);
+    let (plan, tracking) = (&summary["plan"], &summary["tracking"]);
+    let set = plan["set_speed_m_s"].as_f64().unwrap();
+    assert!(0.05 < set && set < 0.3048, "{plan}");
+    assert!((plan["speed_m_s"].as_f64().unwrap() / set - 1.0).abs() < 1e-3, "{plan}");
+    assert!(tracking["at_speed_share"].as_f64().unwrap() >= 0.99, "{tracking}");
+    let output = run(&["plan", STAR, "--lit-speed", "exact"]);
+    let remark = String::from_utf8(output.stderr).unwrap();
+    assert!(remark.contains("throughout instead of 0.3048") && remark.contains("radius"), "{remark}");
+    // corners may be rounded off, but not by a hand's width
+    let refused = run(&["plan", STAR, "--corner", "2cm"]);
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(refused.status.code() == Some(2) && message.contains("between 0 and 10 mm"), "{message}");
 }
 
 #[test]

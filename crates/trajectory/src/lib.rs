@@ -29,7 +29,7 @@ mod travel_time;
 pub use error::PlanError;
 pub use machine::{AccelerationDemand, Machine};
 pub use plan::{JointMotion, LegEnd, Plan, PlanPoint, Tightest};
-pub use planner::{LitSpeed, PlanRequest, plan};
+pub use planner::{DarkMove, LitSpeed, PlanRequest, plan};
 pub use profile::{MoveLimits, MovePoint, Profile, Ramps, Shape};
 pub use retime::{Binding, PathSample, Retimed, retime};
 pub use steer::{Bounds, SteerError, Steered, steer, steer_no_faster};

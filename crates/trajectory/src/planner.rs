@@ -32,6 +32,15 @@ pub enum LitSpeed {
     Exact,
 }
 
+/// How a dark move goes from rest to rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DarkMove {
+    /// Both joints by one profile of that shape, each over its own distance.
+    Shaped(Shape),
+    /// As fast as each joint can, limited in jerk, both arriving together ([`crate::steer`]).
+    Optimal,
+}
+
 /// How a drawing is to be run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanRequest {
@@ -39,8 +48,8 @@ pub struct PlanRequest {
     pub speed_m_s: f64,
     /// Whether that is to be kept.
     pub lit_speed: LitSpeed,
-    /// Shape of the dark moves from rest to rest.
-    pub travel: Shape,
+    /// The dark moves from rest to rest.
+    pub travel: DarkMove,
     /// Time over which the acceleration along a stroke builds up, s.
     pub ramp_s: f64,
     /// Rest before a stroke that begins at rest is lit, s.
@@ -200,16 +209,17 @@ impl<'a> Draft<'a> {
     /// The dark way to a leg, if there is one, and the rest before it up to the first lit tick.
     fn approach(&mut self, leg: &TourLeg, marked: &Marked, link: (usize, [End; 2])) -> Result<(), PlanError> {
         let (_, [before, after]) = link;
-        if [before, after] == [End::Rest; 2] {
-            let [from, to] = [self.joints(), marked.start].map(|joints| joints.map(|j| j.position_rad));
-            let way = travel(self.machine, self.request.travel, from, to)?;
-            if way.is_empty() && self.plan.points.last().is_some_and(|p| p.lit) {
-                // it begins where the one before ends: the laser stays on, as at a corner
-                return Ok(());
+        if [before, after] == [End::Rest; 2] && leg.joined && self.plan.points.last().is_some_and(|p| p.lit) {
+            // it begins where the one before ends: the laser stays on, as at a corner
+            return Ok(());
+        }
+        match self.request.travel {
+            DarkMove::Shaped(shape) if [before, after] == [End::Rest; 2] => {
+                let [from, to] = [self.joints(), marked.start].map(|joints| joints.map(|j| j.position_rad));
+                let way = travel(self.machine, shape, from, to)?;
+                self.plan.points.extend(way.into_iter().map(|joints| dark(self.machine, joints)));
             }
-            self.plan.points.extend(way.into_iter().map(|joints| dark(self.machine, joints)));
-        } else {
-            self.swing(marked.start, link);
+            _ => self.swing(marked.start, link),
         }
         if after == End::Rest {
             linger(&mut self.plan.points, self.request.lift_s(self.machine));

@@ -10,7 +10,7 @@ use crate::plan::JointMotion;
 use crate::retime::{Along, PathSample, Retimed, chain};
 use crate::swing::Swing;
 use crate::travel::travel_estimate_s;
-use crate::{LitSpeed, Machine, PlanError, PlanRequest};
+use crate::{DarkMove, LitSpeed, Machine, PlanError, PlanRequest};
 
 /// The legs of a drawing in order, with what it takes to draw each and to get from one to the next.
 pub(crate) struct Tour {
@@ -98,16 +98,17 @@ impl Tour {
             return match leg {
                 None => 0.0,
                 Some(leg) if leg.joined => 0.0,
-                Some(_) => {
-                    let [from, to] = [from, to].map(|end| end.map(|j| j.position_rad));
-                    travel_estimate_s(machine, request.travel, from, to) + request.lift_s(machine)
-                }
+                Some(_) => match request.travel {
+                    DarkMove::Shaped(shape) => {
+                        let [from, to] = [from, to].map(|end| end.map(|j| j.position_rad));
+                        travel_estimate_s(machine, shape, from, to) + request.lift_s(machine)
+                    }
+                    DarkMove::Optimal => swing_s(machine, request, from, to) + request.lift_s(machine),
+                },
             };
         }
         let settled_s = if after == End::Rest && leg.is_some() { request.lift_s(machine) } else { 0.0 };
-        Swing::new(machine, from, to, request.swing_rise_s())
-            .estimate_s()
-            .map_or(f64::INFINITY, |time| time + settled_s)
+        swing_s(machine, request, from, to) + settled_s
     }
 
     /// The ends of every leg that make the tour shortest; the number of the leg that cannot be reached if there are none.
@@ -210,6 +211,16 @@ impl TourLeg {
             stroke: self.stroke + 1,
         }
     }
+}
+
+/// About how long a dark move between joints under way takes, s; infinite where there is none.
+fn swing_s(
+    machine: &Machine,
+    request: &PlanRequest,
+    from: PanTilt<JointMotion>,
+    to: PanTilt<JointMotion>,
+) -> f64 {
+    Swing::new(machine, from, to, request.swing_rise_s()).estimate_s().unwrap_or(f64::INFINITY)
 }
 
 /// How long a leg takes with its run-up and run-out, and how fast it is passed at both ends.

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use tracelight_aim::HeadPose;
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tracking, run, score};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
-use tracelight_trajectory::{LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
+use tracelight_trajectory::{DarkMove, LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
 
 /// 1 ft/s.
 pub(crate) const SPEED_M_S: f64 = 0.3048;
@@ -41,7 +41,7 @@ pub(crate) fn plan_at(config: &RigConfig, path: Path, lit_speed: LitSpeed) -> Pl
     let request = PlanRequest {
         speed_m_s: SPEED_M_S,
         lit_speed,
-        travel: Shape::Ramped(Ramps::REPORT),
+        travel: DarkMove::Shaped(Shape::Ramped(Ramps::REPORT)),
         ramp_s: config.motion.ramp_s,
         settle_s: config.motion.settle_s,
         tolerance_m: config.control.tolerance_m,

@@ -1,7 +1,9 @@
 use clap::{Args, ValueEnum};
 use tracelight_aim::HeadPose;
 use tracelight_sim::RigConfig;
-use tracelight_trajectory::{AccelerationDemand, LitSpeed, Machine, Plan, PlanRequest, Ramps, Shape};
+use tracelight_trajectory::{
+    AccelerationDemand, DarkMove, LitSpeed, Machine, Plan, PlanRequest, Ramps, Shape,
+};
 
 use crate::cli::placing::positive_length;
 use crate::failure::Failure;
@@ -72,7 +74,7 @@ impl LitSpeedName {
     }
 }
 
-/// The four velocity profiles.
+/// How dark moves go from rest to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ProfileName {
     /// Constant acceleration and deceleration
@@ -83,16 +85,19 @@ pub(crate) enum ProfileName {
     Sine,
     /// Logistic position
     Sigmoid,
+    /// As fast as each joint can, limited in jerk
+    Optimal,
 }
 
 impl ProfileName {
-    pub(crate) const fn shape(self) -> Shape {
-        match self {
+    pub(crate) const fn dark_move(self) -> DarkMove {
+        DarkMove::Shaped(match self {
             ProfileName::Trapezoid => Shape::Ramped(Ramps::NONE),
             ProfileName::SCurve => Shape::Ramped(Ramps::REPORT),
             ProfileName::Sine => Shape::Sine,
             ProfileName::Sigmoid => Shape::Sigmoid,
-        }
+            ProfileName::Optimal => return DarkMove::Optimal,
+        })
     }
 
     pub(crate) const fn name(self) -> &'static str {
@@ -101,6 +106,7 @@ impl ProfileName {
             ProfileName::SCurve => "s-curve",
             ProfileName::Sine => "sine",
             ProfileName::Sigmoid => "sigmoid",
+            ProfileName::Optimal => "optimal",
         }
     }
 }
@@ -160,7 +166,7 @@ impl DrivingArgs {
         let request = PlanRequest {
             speed_m_s: self.speed.map_or(DEFAULT_SPEED_M_S, |s| s.0),
             lit_speed: self.lit_speed.lit_speed(),
-            travel: self.profile.shape(),
+            travel: self.profile.dark_move(),
             ramp_s: rig.motion.ramp_s,
             settle_s: rig.motion.settle_s,
             tolerance_m: rig.control.tolerance_m,

@@ -61,12 +61,14 @@ pub(crate) struct StrokeFigures {
     pub(crate) travel_m: f64,
 }
 
-/// See [`Summary::plan`]; `speed_m_s` is the mean planned speed while lit.
+/// See [`Summary::plan`]; `speed_m_s` is the mean planned speed while lit, `set_speed_m_s` what lit strokes are run at where
+/// nothing holds them back.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct PlanFigures {
     pub(crate) duration_s: f64,
     pub(crate) lit_s: f64,
     pub(crate) speed_m_s: f64,
+    pub(crate) set_speed_m_s: f64,
     pub(crate) torque_peak_fraction: f64,
 }
 
@@ -200,6 +202,7 @@ impl PlanFigures {
             duration_s: round(plan.duration_s()),
             lit_s: round(plan.lit_s()),
             speed_m_s: round(planned_speed(plan)),
+            set_speed_m_s: round(plan.set_speed_m_s),
             torque_peak_fraction: round(plan.torque_peak_fraction()),
         }
     }

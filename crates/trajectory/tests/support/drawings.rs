@@ -4,7 +4,7 @@ use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_rig::PanTilt;
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
-use tracelight_trajectory::{LitSpeed, Machine, PlanRequest, Shape};
+use tracelight_trajectory::{DarkMove, LitSpeed, Machine, PlanRequest, Shape};
 
 pub(crate) const SPEED_M_S: f64 = 0.3048;
 
@@ -30,7 +30,7 @@ pub(crate) fn machine() -> Machine {
 pub(crate) fn request(travel: Shape) -> PlanRequest {
     PlanRequest {
         speed_m_s: SPEED_M_S,
-        travel,
+        travel: DarkMove::Shaped(travel),
         lit_speed: LitSpeed::Fastest,
         ramp_s: 0.02,
         settle_s: 0.04,

@@ -55,6 +55,7 @@ pub(super) fn figures(job: &Job<'_>, f: &Summary) -> String {
             vec![
                 row("duration", number(f.plan.duration_s, 4), "s"),
                 row("lit", number(f.plan.lit_s, 4), "s"),
+                row("set speed", number(f.plan.set_speed_m_s, 4), "m/s"),
                 row("mean planned speed while lit", number(f.plan.speed_m_s, 4), "m/s"),
                 row("highest torque, share of the limit", share(f.plan.torque_peak_fraction), "%"),
             ],
