@@ -139,12 +139,18 @@ def write_ends(path, strokes):
     np.savetxt(path, ends, delimiter=",", fmt="%.9f", header="x0,y0,x1,y1", comments="")
 
 
+def write_drawing(path, strokes):
+    rows = [f"{number},{x:.9f},{y:.9f}" for number, stroke in enumerate(strokes, 1) for x, y in stroke]
+    path.write_text("\n".join(["stroke,x_m,y_m", *rows]) + "\n")
+
+
 def main():
     out = Path(sys.argv[1])
     out.mkdir(parents=True, exist_ok=True)
     for kind in (uniform, sketch, hatch):
         for n in (500, 5000, 20000):
             write_ends(out / f"{kind.__name__}_{n}.csv", kind(n))
+    write_drawing(out / "drawing_uniform_500.csv", uniform(500))
     write_ends(out / "junctions.csv", junctions())
     write_moves(out / "moves.csv", moves())
     for name in PATHS:

@@ -38,6 +38,13 @@ target/release/tracelight-bench-motion retime --cells 1000,16000 "$CASES"/path_*
 target/release/tracelight-bench-motion retime --cells 1000,16000 --viscous 0.0015 "$CASES"/path_*.csv
 "$VENV/bin/python" bench/peers/motion/retime_peers.py 1000 8000
 
+printf '\nWhole plans of 500 uniform strokes at 1 ft/s with the 2006 rig: stopping, passing, at one speed\n'
+cargo build --release --locked --quiet -p tracelight
+for lit_speed in stops fastest exact; do
+    printf '%s: ' "$lit_speed"
+    target/release/tracelight plan "$CASES/drawing_uniform_500.csv" --lit-speed "$lit_speed" | tail -n 1
+done
+
 printf '\nFrom any state to any other: 20 000 moves of two joints\n'
 target/release/tracelight-bench-motion steer "$CASES/moves.csv"
 "$VENV/bin/python" bench/peers/motion/steer_peers.py "$CASES/moves.csv" || loud 'no ruckig: it is left out of the comparison'

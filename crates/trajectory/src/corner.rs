@@ -4,6 +4,7 @@ use tracelight_stroke::{Element, Piece, Vec2};
 
 use crate::leg::{LENGTH_TOLERANCE_M, Leg};
 use crate::mark::{End, MarkRequest, mark};
+use crate::retime::steady_speed;
 use crate::{LitSpeed, Machine, PlanRequest};
 
 /// A break of the tangent from which on the head stops: 20°. Below it the spot passes with the speed that keeps the
@@ -65,7 +66,9 @@ impl<'a> Corners<'a> {
         let cut_m = (self.request.corner_m / (0.25 * turn).tan()).min(room_m);
         let rounded_m_s = (self.acceleration_m_s2 * cut_m / (0.5 * turn).tan()).max(0.0).sqrt();
         let rounds = match exact {
-            true => rounded_m_s >= self.request.speed_m_s,
+            true => {
+                cut_m > 0.0 && rounded_m_s >= self.request.speed_m_s && self.keeps_speed(before, after, cut_m)
+            }
             false => {
                 cut_m * turn / (0.5 * turn).tan() >= SHORTEST_M && self.gains(before, after, cut_m, sharp)
             }
@@ -73,12 +76,28 @@ impl<'a> Corners<'a> {
         if rounds { Fate::Round(cut_m) } else { sharp }
     }
 
+    /// The pieces near a corner that loses so much of both.
+    fn near(before: &Piece, after: &Piece, cut_m: f64) -> [Piece; 2] {
+        let lengths = [before, after].map(|piece| piece.length(LENGTH_TOLERANCE_M));
+        let near_m = lengths.map(|length| length.min(cut_m + TRIAL_M));
+        let before = before.part(lengths[0] - near_m[0], lengths[0], LENGTH_TOLERANCE_M);
+        [before, after.part(0.0, near_m[1], LENGTH_TOLERANCE_M)]
+    }
+
+    /// Whether the motors hold the set speed on a rounded corner.
+    fn keeps_speed(&self, before: &Piece, after: &Piece, cut_m: f64) -> bool {
+        let legs = Leg::joined(&Self::near(before, after, cut_m), &[Fate::Round(cut_m)]);
+        let speed_m_s = self.request.speed_m_s;
+        let holds = |leg: &Leg| {
+            leg.places(self.machine, speed_m_s)
+                .is_ok_and(|all| steady_speed(self.machine, &all).0 >= speed_m_s)
+        };
+        legs.iter().all(holds)
+    }
+
     /// Whether a corner is passed sooner when it is rounded off: both are timed.
     fn gains(&self, before: &Piece, after: &Piece, cut_m: f64, sharp: Fate) -> bool {
-        let lengths = [before, after].map(|piece| piece.length(LENGTH_TOLERANCE_M));
-        let near_m = lengths.map(|length| length.min(TRIAL_M));
-        let before = before.part(lengths[0] - near_m[0], lengths[0], LENGTH_TOLERANCE_M);
-        let after = after.part(0.0, near_m[1], LENGTH_TOLERANCE_M);
+        let near = Self::near(before, after, cut_m);
         let ticks = |legs: Vec<Leg>| -> Option<usize> {
             let last = legs.len() - 1;
             let end = |there: bool| if there { End::Moving } else { End::Rest };
@@ -94,8 +113,8 @@ impl<'a> Corners<'a> {
             });
             timed.sum()
         };
-        let rounded = ticks(Leg::joined(&[before, after], &[Fate::Round(cut_m)]));
-        let sharp = ticks(Leg::joined(&[before, after], &[sharp]));
+        let rounded = ticks(Leg::joined(&near, &[Fate::Round(cut_m)]));
+        let sharp = ticks(Leg::joined(&near, &[sharp]));
         matches!((rounded, sharp), (Some(rounded), Some(sharp)) if rounded + LEAST_GAIN_TICKS <= sharp)
     }
 }

@@ -31,7 +31,7 @@ pub enum PlanError {
     },
     /// A stroke cannot be passed at an even speed.
     #[error(
-        "stroke {stroke} cannot be run up to, or out of, at {:.0} mm/s: the way there leaves the joints' range or the target; lower --speed, move the picture away from the edge, or leave --lit-speed at fastest",
+        "stroke {stroke} cannot be run up to, or out of, at {:.0} mm/s: the way there leaves the joints' range or the target, asks too much of the motors, or the stroke is too short for the laser's relay; lower --speed, move the picture away from the edge, or leave --lit-speed at fastest",
         1e3 * speed_m_s
     )]
     NoWayAtSpeed {

@@ -1,4 +1,4 @@
-//! Strokes cut into legs: stretches without a corner, each run from rest to rest.
+//! Strokes cut into legs: stretches without a corner.
 
 use tracelight_aim::{AimError, JointPath, SpotMotion};
 use tracelight_stroke::{Path, PathPoint, Piece, Point};
@@ -31,8 +31,8 @@ impl Leg {
     pub(crate) fn split(path: &Path, corners: &Corners<'_>) -> Vec<Leg> {
         let sized = path.pieces().map(|piece| (piece, piece.length(LENGTH_TOLERANCE_M)));
         let (pieces, lengths): (Vec<Piece>, Vec<f64>) = sized.filter(|&(_, length)| length >= DUST_M).unzip();
-        // a piece may be cut back at both ends
-        let room_m = |i: usize| 0.5 * lengths[i].min(lengths[i + 1]);
+        // a piece may be cut back at both ends, and some of it must be left to tell its direction
+        let room_m = |i: usize| 0.45 * lengths[i].min(lengths[i + 1]);
         let fate = |(i, pair): (usize, &[Piece])| corners.fate(&pair[0], &pair[1], room_m(i));
         let fates: Vec<Fate> = pieces.windows(2).enumerate().map(fate).collect();
         Self::joined(&pieces, &fates)
@@ -119,6 +119,16 @@ impl Leg {
             samples.iter_mut().filter(at_break).for_each(|sample| sample.cap = sample.cap.min(speed));
         }
         Ok(samples)
+    }
+
+    /// Places before its start and after its end, up to where the spot is so many seconds before and after at a speed; as
+    /// far as they are in reach.
+    pub(crate) fn around(&self, machine: &Machine, speed_m_s: f64, times_s: [f64; 2]) -> Vec<PathSample> {
+        let steps = (1..=8).map(|i| f64::from(i) / 8.0 * speed_m_s);
+        let ways = steps.flat_map(|way| [-way * times_s[0], self.length_m() + way * times_s[1]]);
+        let place =
+            |s: f64| Some(PathSample { s, joints: self.aim(machine, &self.at(s)).ok()?, cap: speed_m_s });
+        ways.filter_map(place).collect()
     }
 
     /// The place at arc length `s_m`, with the joint angles there and their derivatives by arc length.

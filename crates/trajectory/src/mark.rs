@@ -62,7 +62,7 @@ pub(crate) struct Marked {
 
 /// How much of the motors' torque beyond the planned share the S-curve may borrow before the leg is slowed down
 /// there: rounding moves a little speed into curves.
-const BORROW: f64 = 0.05;
+pub(crate) const BORROW: f64 = 0.05;
 
 /// Distance of the places at which a leg is looked at, m, and their least number.
 const GRID_M: f64 = 5e-4;

@@ -32,6 +32,17 @@ pub enum LitSpeed {
     Exact,
 }
 
+impl LitSpeed {
+    /// How legs may start and end.
+    pub(crate) const fn ends(self) -> &'static [End] {
+        match self {
+            LitSpeed::Fastest => &End::BOTH,
+            LitSpeed::Stops => &[End::Rest],
+            LitSpeed::Exact => &[End::Moving],
+        }
+    }
+}
+
 /// How a dark move goes from rest to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DarkMove {
@@ -57,7 +68,8 @@ pub struct PlanRequest {
     /// Distance from the stroke at which the laser is to be darkened, m.
     pub tolerance_m: f64,
     /// How far corners may be rounded off, m: by so much the line may lie inside of them where that is quicker than to stop
-    /// there or to pass them in the dark. Zero keeps all of them sharp.
+    /// there; at one speed, where they need no slowing down then. Zero keeps all of them sharp, and where a closed stroke
+    /// begins it stays sharp anyway.
     pub corner_m: f64,
 }
 
@@ -95,27 +107,58 @@ const RUN_UP_S: f64 = 0.015;
 /// begins where the one before ends may stay lit between. The result is what is executed, tick by tick.
 pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Result<Plan, PlanError> {
     check_length(drawing, request)?;
-    let (request, tightest) = at_one_speed(drawing, machine, request)?;
+    let (mut request, mut tightest) = at_one_speed(drawing, machine, request)?;
+    loop {
+        let mut plan = at_speed(drawing, machine, &request)?;
+        plan.set_speed_m_s = request.speed_m_s;
+        let uneven = if request.lit_speed == LitSpeed::Exact { slowest_place(&plan) } else { None };
+        let Some(place) = uneven.filter(|_| request.speed_m_s > SLOWEST_M_S) else {
+            plan.tightest = tightest.map(|bend| Tightest { speed_m_s: request.speed_m_s, ..bend });
+            return Ok(plan);
+        };
+        // between places the motors had a little less than at them
+        request.speed_m_s *= 0.97;
+        tightest = tightest.or(Some(place));
+    }
+}
+
+/// Times a drawing at the speed asked for.
+fn at_speed(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Result<Plan, PlanError> {
     let home = PanTilt::new(0.0, 0.0);
-    let mut tour = Tour::new(drawing, machine, &request, home)?;
+    let mut tour = Tour::new(drawing, machine, request, home)?;
     loop {
         let no_way = |leg: usize| PlanError::NoWayAtSpeed {
             stroke: tour.legs.get(leg).map_or(0, |leg| leg.stroke + 1),
             speed_m_s: request.speed_m_s,
         };
         let ends = tour.choose().map_err(no_way)?;
-        let mut draft = Draft::new(machine, &request, home);
+        let mut draft = Draft::new(machine, request, home);
         draft.lay(&tour, &ends)?;
         if draft.blocked.is_empty() {
             let mut plan = draft.plan;
             linger(&mut plan.points, FINAL_REST_S);
             plan.segments = compress(&plan.points, machine, request.tolerance_m);
-            (plan.set_speed_m_s, plan.tightest) = (request.speed_m_s, tightest);
             return Ok(plan);
         }
         draft.blocked.iter().for_each(|&(link, ends)| tour.forbid(link, ends));
     }
 }
+
+/// Where lit strokes are slowest, if that is slower than the set speed.
+fn slowest_place(plan: &Plan) -> Option<Tightest> {
+    let lit = plan.points.windows(2).filter(|pair| pair[0].lit && pair[1].lit);
+    let places = lit.map(|pair| Tightest {
+        stroke: pair[0].stroke.unwrap_or(0) as usize,
+        point: pair[0].spot,
+        radius_m: f64::INFINITY,
+        speed_m_s: pair[0].spot.distance(pair[1].spot) / TICK_F64_S,
+    });
+    let slowest = places.min_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s))?;
+    (slowest.speed_m_s < (1.0 - EVEN) * plan.set_speed_m_s).then_some(slowest)
+}
+
+/// A spot that is slower by less keeps its speed.
+const EVEN: f64 = 1e-3;
 
 /// The request with the speed that can be kept throughout, if one is asked for, and where the drawing bends most if that
 /// is less than the set speed.
@@ -135,6 +178,12 @@ fn at_one_speed(
             let aim = |source| PlanError::Aim { stroke: stroke + 1, source };
             let mut samples = leg.places(machine, request.speed_m_s).map_err(aim)?;
             samples.iter_mut().for_each(|sample| sample.cap = request.speed_m_s);
+            // what is run up to it and out of it must be passed as fast; what is out of reach is found when it is planned
+            samples.extend(leg.around(
+                machine,
+                request.speed_m_s,
+                [request.run_up_s(machine), request.ramp_s],
+            ));
             let (speed, place) = steady_speed(machine, &samples);
             if speed < tightest.map_or(request.speed_m_s, |t| t.speed_m_s) {
                 let at = leg.at(samples[place].s);
@@ -188,8 +237,20 @@ impl<'a> Draft<'a> {
     /// All legs and what is between them.
     fn lay(&mut self, tour: &Tour, ends: &[[End; 2]]) -> Result<(), PlanError> {
         let mut before = End::Rest;
-        for (i, (leg, &ends)) in tour.legs.iter().zip(ends).enumerate() {
-            let marked = mark(self.machine, &leg.leg, &leg.request(self.machine, self.request, ends))?;
+        for (i, (leg, &own)) in tour.legs.iter().zip(ends).enumerate() {
+            let marked = match mark(self.machine, &leg.leg, &leg.request(self.machine, self.request, own)) {
+                // the leg itself is in reach: its run-up or run-out is not
+                Err(PlanError::Aim { .. }) if own != [End::Rest; 2] => {
+                    let next = ends.get(i + 1).map_or(End::Rest, |next| next[0]);
+                    let links = [(i, [before, own[0]], own[0]), (i + 1, [own[1], next], own[1])];
+                    let moving = links.into_iter().filter(|&(_, _, end)| end == End::Moving);
+                    self.blocked.extend(moving.map(|(link, ends, _)| (link, ends)));
+                    before = own[1];
+                    continue;
+                }
+                marked => marked?,
+            };
+            let ends = own;
             self.approach(leg, &marked, (i, [before, ends[0]]))?;
             self.draw(leg, marked, ends);
             check_duration(self.plan.points.len() as f64 * TICK_F64_S)?;

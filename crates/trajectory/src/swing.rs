@@ -1,5 +1,6 @@
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 
+use crate::mark::BORROW;
 use crate::plan::JointMotion;
 use crate::{Bounds, Machine, MovePoint, Steered, steer, steer_no_faster};
 
@@ -13,13 +14,21 @@ pub(crate) struct Swing {
     from: PanTilt<JointMotion>,
     to: PanTilt<JointMotion>,
     bounds: PanTilt<Bounds>,
+    /// One that takes longer is none.
+    longest_s: f64,
 }
 
 /// Each round takes at least 3 % off a bound that is too high.
 const ROUNDS: usize = 150;
 
 /// A swing that takes longer is none, s.
-const LONGEST_S: f64 = 5.0;
+const LONGEST_S: f64 = 60.0;
+
+/// One that gravity makes so much slower than the motors alone would let it be is none either.
+const SLOWER: f64 = 6.0;
+
+/// Of a motor that can hardly move its joint, rad/s².
+const LEAST_RAD_S2: f64 = 1e-3;
 
 impl Swing {
     /// With what the motors have where it starts; acceleration builds up over `rise_s`.
@@ -30,7 +39,7 @@ impl Swing {
         rise_s: f64,
     ) -> Self {
         let bounds = PanTilt::from_fn(|j| first_bounds(machine, j, &from, &to, rise_s));
-        Self { from, to, bounds }
+        Self { from, to, bounds, longest_s: LONGEST_S }
     }
 
     fn steered(&self) -> Option<Steered<2>> {
@@ -50,12 +59,13 @@ impl Swing {
     /// Both joints at every tick, the start left out, the end included. `None` where motors are too weak for it, or a
     /// joint would leave its range.
     pub(crate) fn ticks(mut self, machine: &Machine) -> Option<Vec<PanTilt<JointMotion>>> {
+        self.longest_s = self.longest_s.min(SLOWER * self.steered()?.duration_s().max(TICK_F64_S));
         for _ in 0..ROUNDS {
             let motion = self.sampled()?;
             if !in_range(machine, &motion) {
                 return None;
             }
-            if !self.shrink(machine, &motion) {
+            if !self.shrink(machine, &motion)? {
                 return Some(motion);
             }
         }
@@ -67,11 +77,11 @@ impl Swing {
         let [from, to] = self.ends();
         let bounds = [self.bounds.pan, self.bounds.tilt];
         let mut way = self.steered()?;
-        let mut ticks = whole_ticks(way.duration_s())?;
+        let mut ticks = self.whole_ticks(way.duration_s())?;
         // one that has to take longer than the next tick may not fit the one after either
         for _ in 0..8 {
             way = steer_no_faster(&from, &to, &bounds, ticks as f64 * TICK_F64_S).ok()?;
-            let needed = whole_ticks(way.duration_s())?;
+            let needed = self.whole_ticks(way.duration_s())?;
             if needed == ticks {
                 break;
             }
@@ -84,43 +94,57 @@ impl Swing {
         Some((1..=ticks).map(at).collect())
     }
 
-    /// Lowers the bounds that ask too much of a motor; false if there are none.
-    fn shrink(&mut self, machine: &Machine, motion: &[PanTilt<JointMotion>]) -> bool {
+    fn whole_ticks(&self, time_s: f64) -> Option<usize> {
+        let ticks = (time_s / TICK_F64_S - 1e-6).ceil().max(1.0);
+        (ticks * TICK_F64_S <= self.longest_s + TICK_F64_S).then_some(ticks as usize)
+    }
+
+    /// Lowers the bounds that ask too much of a motor; false if there are none, `None` if that cannot help.
+    fn shrink(&mut self, machine: &Machine, motion: &[PanTilt<JointMotion>]) -> Option<bool> {
         // largest share of each motor's torque while its joint speeds up backwards and forwards
         let mut worst = PanTilt::new([0.0f64; 2], [0.0f64; 2]);
         for joints in motion {
-            let torque = machine.torque(
-                joints.map(|j| j.position_rad),
-                joints.map(|j| j.velocity_rad_s),
-                joints.map(|j| j.acceleration_rad_s2),
-            );
-            let fraction = machine.fraction(torque).map(f64::abs);
+            let fraction = asked(machine, joints);
             for joint in Joint::BOTH {
                 let way = usize::from(joints[joint].acceleration_rad_s2 > 0.0);
-                // a number that is none is too much
-                let asked = if fraction[joint].is_nan() { f64::INFINITY } else { fraction[joint] };
-                worst[joint][way] = worst[joint][way].max(asked);
+                worst[joint][way] = worst[joint][way].max(fraction[joint]);
             }
         }
-        let allowed = machine.torque_share;
+        let ends = [&self.from, &self.to];
+        let given = ends.map(|end| asked(machine, end));
         let mut lowered = false;
         for joint in Joint::BOTH {
-            for way in 0..2 {
-                if worst[joint][way] > allowed {
-                    let share = (allowed / worst[joint][way]).clamp(0.5, 0.97);
-                    self.bounds[joint].acceleration[way] *= share;
-                    self.bounds[joint].jerk *= share.sqrt();
-                    lowered = true;
+            // near an end that takes all there is, the move may borrow what a leg may
+            let most = given[0][joint].max(given[1][joint]);
+            let allowed =
+                machine.torque_share.max((most + BORROW).min(machine.torque_share + BORROW)).max(most);
+            for way in [0, 1].into_iter().filter(|&way| worst[joint][way] > allowed) {
+                let sign = if way == 0 { -1.0 } else { 1.0 };
+                let needed =
+                    ends.iter().fold(0.0, |a: f64, end| a.max(sign * end[joint].acceleration_rad_s2));
+                let bounds = &mut self.bounds[joint];
+                let now = sign * bounds.acceleration[way];
+                if now <= needed {
+                    return None;
                 }
+                let share = (allowed / worst[joint][way]).clamp(0.5, 0.97);
+                bounds.acceleration[way] = sign * (share * now).max(needed).max(LEAST_RAD_S2);
+                bounds.jerk *= share.sqrt();
+                lowered = true;
             }
         }
-        lowered
+        Some(lowered)
     }
 }
 
-fn whole_ticks(time_s: f64) -> Option<usize> {
-    let ticks = (time_s / TICK_F64_S - 1e-6).ceil().max(1.0);
-    (ticks * TICK_F64_S < LONGEST_S).then_some(ticks as usize)
+/// Shares of the motors' torque a motion asks for; a number that is none is too much.
+fn asked(machine: &Machine, joints: &PanTilt<JointMotion>) -> PanTilt<f64> {
+    let torque = machine.torque(
+        joints.map(|j| j.position_rad),
+        joints.map(|j| j.velocity_rad_s),
+        joints.map(|j| j.acceleration_rad_s2),
+    );
+    machine.fraction(torque).map(|share| if share.is_nan() { f64::INFINITY } else { share.abs() })
 }
 
 fn in_range(machine: &Machine, motion: &[PanTilt<JointMotion>]) -> bool {
@@ -148,9 +172,8 @@ fn first_bounds(
     let forwards = to[joint].position_rad >= from[joint].position_rad;
     let coulomb = if forwards { friction.coulomb_pos_nm } else { friction.coulomb_neg_nm };
     let wish = machine.acceleration_limit_rad_s2[joint];
-    let least = 1e-3;
-    let up = ((torque - coulomb) / inertia).min(wish).max(least);
-    let down = ((torque + coulomb) / inertia).min(wish).max(least);
+    let up = ((torque - coulomb) / inertia).min(wish).max(LEAST_RAD_S2);
+    let down = ((torque + coulomb) / inertia).min(wish).max(LEAST_RAD_S2);
     let ends = [from[joint], to[joint]].map(|end| end.acceleration_rad_s2);
     let acceleration =
         [ends.iter().fold(-down, |a, &end| a.min(end)), ends.iter().fold(up, |a, &end| a.max(end))];

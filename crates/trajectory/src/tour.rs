@@ -1,6 +1,6 @@
 //! Where the spot rests and where it passes: the choice at every end of every leg.
 
-use tracelight_rig::PanTilt;
+use tracelight_rig::{PanTilt, TICK_F64_S};
 use tracelight_stroke::Drawing;
 
 use crate::corner::Corners;
@@ -133,7 +133,7 @@ impl Tour {
             });
             times = best.map(|(time, _)| time);
             if times.iter().all(|time| time.is_infinite()) {
-                return Err(came.len());
+                return Err(self.out_of_reach(came.len()));
             }
             came.push(best.map(|(_, way)| way));
         }
@@ -151,6 +151,12 @@ impl Tour {
         }
         ends.reverse();
         Ok(ends)
+    }
+
+    /// Whether it is a leg that cannot be reached, or the one before that cannot be left.
+    fn out_of_reach(&self, leg: usize) -> usize {
+        let is_left = |last: usize| self.legs[last].ends[End::Moving as usize].is_some();
+        leg.checked_sub(1).filter(|&last| !is_left(last)).unwrap_or(leg)
     }
 
     /// Takes a link out of the choice.
@@ -171,10 +177,10 @@ impl TourLeg {
         let samples = leg
             .places(machine, request.speed_m_s)
             .map_err(|source| PlanError::Aim { stroke: stroke + 1, source })?;
-        let mut drawn_s = [[0.0; 2]; 2];
+        let mut drawn_s = [[f64::INFINITY; 2]; 2];
         let mut passing = [0.0; 2];
-        for start in End::BOTH {
-            for end in End::BOTH {
+        for &start in request.lit_speed.ends() {
+            for &end in request.lit_speed.ends() {
                 let ends = [start, end];
                 let (time, speeds) = timed(machine, &samples, request, ends)?;
                 drawn_s[start as usize][end as usize] = time;
@@ -191,8 +197,12 @@ impl TourLeg {
             }))
         };
         let length = leg.length_m();
-        let starts = [at(0.0, 0.0), at(-passing[0] * request.run_up_s(machine), passing[0])];
-        let ends = [at(length, 0.0), at(length + 0.5 * passing[1] * request.ramp_s, passing[1])];
+        // a relay that lets go more slowly than it takes hold cannot make light as short as it likes
+        let least_ticks = f64::from(machine.relay_off_ticks) - f64::from(machine.relay_on_ticks) + 1.0;
+        let passes = length >= least_ticks * TICK_F64_S * passing[0].max(passing[1]);
+        let passed = |s_m: f64, v: f64| if passes { at(s_m, v) } else { None };
+        let starts = [at(0.0, 0.0), passed(-passing[0] * request.run_up_s(machine), passing[0])];
+        let ends = [at(length, 0.0), passed(length + 0.5 * passing[1] * request.ramp_s, passing[1])];
         let joined = !is_first
             && starts[0].is_some_and(|start| {
                 let away = |j| f64::abs(start[j].position_rad - before[j].position_rad);

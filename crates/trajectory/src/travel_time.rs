@@ -8,8 +8,9 @@ use crate::{LitSpeed, Machine, PlanRequest};
 /// How long dark moves take, s, for ordering strokes: what the slower joint needs at full torque with Coulomb friction,
 /// from rest to rest or between strokes that are passed at speed, whichever is quicker of what the request allows.
 ///
-/// Inertia and friction are those at the ends of the move, coupling, gravity and viscous friction are left out, so the times are near
-/// those of the plan and no more. Points out of reach are an hour away from any other.
+/// Inertia and friction are those at the ends of the move, coupling, gravity and viscous friction are left out, and closed
+/// strokes counted as stopped at, so the times are near those of the plan and no more. A run-up may be longer than a run-out:
+/// there and back are not quite the same. Points out of reach are an hour away from any other.
 #[derive(Clone, Copy, Debug)]
 pub struct TravelTime<'a> {
     machine: &'a Machine,
@@ -162,8 +163,9 @@ impl Travel for TravelTime<'_> {
         let span = |j: Joint| (to.angle_rad[j] - from.angle_rad[j]).abs();
         let touching = span(Joint::Pan).max(span(Joint::Tilt)) < NOTHING_RAD;
         let rested_s = if touching { 0.0 } else { self.lift_s + self.resting_s(from, to) };
-        // to stop and start takes time on the strokes too
-        passed_s.map_or(rested_s, |time| time.min(rested_s + from.stopping_s + to.stopping_s))
+        // to stop and start takes time on the strokes too, where it could be saved
+        let rested_s = if self.passes { rested_s + from.stopping_s + to.stopping_s } else { rested_s };
+        passed_s.map_or(rested_s, |time| time.min(rested_s))
     }
 }
 

@@ -39,6 +39,12 @@ fn moves_that_made_others_fail_are_found() {
         ([at(1.0, 1e-12, -1e-12), still], [at(1.0, 0.0, 0.0), at(3e-9, 0.0, 0.0)], bounds(2.0, 5.0, 10.0)),
         ([at(0.0, 1.0, 0.0), still], [at(1e-12, 1.0, 0.0), at(0.5, 0.0, 0.0)], bounds(1.0, 2.0, 4.0)),
         ([at(0.0, 0.0, 1.0), still], [at(0.0, 0.0, 1.0), at(0.0, 1e-9, 0.0)], bounds(1.0, 1.0, 1e4)),
+        // from one place of a stretch at full jerk to another: the shortest way is the only one of its kind
+        (
+            [at(0.0, -0.153_391_057_275_610_98, 2.909_597_754_305_79), still],
+            [at(1.0, -0.130_992_201_028_664_1, 2.234_421_424_285_973), still],
+            bounds(10.0, 5.0, 77.528_958_449_084_88),
+        ),
         ([at(0.3, -0.5, 0.7), still], [at(0.3, -0.5, 0.7), at(1e-3, 0.0, 0.0)], bounds(0.6, 0.8, 1e3)),
     ];
     for (from, to, bounds) in cases {

@@ -11,7 +11,7 @@ mod support;
 use oorandom::Rand64;
 use support::drawings::{SPEED_M_S, circle, drawing, line, machine, mixed, request};
 use tracelight_rig::{Joint, TICK_F64_S};
-use tracelight_stroke::{Drawing, OrderOptions, Path, Point, order};
+use tracelight_stroke::{Drawing, Element, OrderOptions, Path, Point, Vec2, order};
 use tracelight_trajectory::{
     LitSpeed, Plan, PlanError, PlanPoint, PlanRequest, Ramps, Shape, TravelTime, plan,
 };
@@ -99,6 +99,35 @@ fn one_speed_is_what_the_tightest_curve_permits() {
     assert!(at(0.012).is_some() && at(0.019).is_none());
 }
 
+/// What comes before and after a bent stroke bends as much, and may ask more of the weaker joint.
+#[test]
+fn short_bends_anywhere_are_drawn_at_one_speed() {
+    for i in 0..24 {
+        let turn = f64::from(i) * std::f64::consts::TAU / 24.0;
+        let centre = Point::new(0.25 * turn.cos(), 0.2 * turn.sin());
+        let arm = Vec2::from_angle(3.0 * turn) * 0.005;
+        let mut arc = Path::new(centre + arm);
+        arc.push(Element::Arc { centre, sweep: 1.0 });
+        let plan = planned(&drawing([arc, line(&[(0.0, 0.0), (0.05, 0.0)])]), LitSpeed::Exact);
+        assert!(plan.tightest.is_some());
+        keeps_its_speed(&plan);
+        asks_no_more_than_there_is(&plan);
+    }
+}
+
+/// Light cannot be shorter than the relay is slow to let go.
+#[test]
+fn strokes_too_short_for_the_relay_are_refused_at_speed_and_stopped_at_otherwise() {
+    let mut slow = machine();
+    (slow.relay_on_ticks, slow.relay_off_ticks) = (1, 10);
+    let short = drawing([line(&[(0.0, 0.0), (0.0025, 0.0)])]);
+    let asked = |lit_speed| PlanRequest { lit_speed, ..request(Shape::Sine) };
+    let error = plan(&short, &slow, &asked(LitSpeed::Exact)).err().unwrap();
+    assert!(matches!(error, PlanError::NoWayAtSpeed { stroke: 1, .. }), "{error}");
+    let stopped = plan(&short, &slow, &asked(LitSpeed::Fastest)).unwrap();
+    assert!(stopped.segments.iter().any(|segment| segment.gate));
+}
+
 #[test]
 fn small_breaks_are_corners_at_one_speed() {
     let plan = planned(&mixed(), LitSpeed::Exact);
@@ -151,13 +180,19 @@ fn rounded_corners_save_time_and_keep_to_their_distance() {
     let rounded_s = took(5e-4, LitSpeed::Stops);
     assert!(rounded_s < sharp_s - 0.02, "{rounded_s} s, sharp {sharp_s} s");
     let hardly_s = took(1e-5, LitSpeed::Stops);
+    let [wide_s, wider_s] = [5e-3, 9e-3].map(|corner_m| took(corner_m, LitSpeed::Stops));
+    assert!(wide_s < rounded_s && wider_s < wide_s, "{wide_s} s, {wider_s} s");
     println!("sharp {sharp_s} s, off by 0.01 mm {hardly_s} s, by 0.5 mm {rounded_s} s");
     assert!(hardly_s <= sharp_s, "{hardly_s} s");
     // at one speed only corners that need no slowing down are rounded: 60 lines for a circle, but not a square
     let round: Vec<(f64, f64)> =
         (0..60).map(|i| f64::from(i) * 0.1).map(|a| (0.1 * a.cos(), 0.1 * a.sin())).collect();
     let wanted = PlanRequest { corner_m: 5e-4, lit_speed: LitSpeed::Exact, ..request(Shape::Sine) };
-    let runs = |path: Path| lit_runs(&plan(&drawing([path]), &machine(), &wanted).unwrap()).len();
+    let runs = |path: Path| {
+        let plan = plan(&drawing([path]), &machine(), &wanted).unwrap();
+        keeps_its_speed(&plan);
+        lit_runs(&plan).len()
+    };
     assert_eq!((runs(line(&round)), runs(square.clone())), (1, 4));
 }
 

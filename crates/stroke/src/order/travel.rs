@@ -27,8 +27,8 @@ pub trait Travel {
 pub struct StrokeEnd {
     /// Place.
     pub point: Point,
-    /// Unit vector out of the stroke: who leaves goes this way, who enters comes from there. Zero where there is none, as on
-    /// a closed stroke and at the start of all.
+    /// Unit vector out of the stroke: who leaves goes this way, who enters comes from there. Zero where none is known:
+    /// on a closed stroke and at the start of all.
     pub outward: Vec2,
 }
 

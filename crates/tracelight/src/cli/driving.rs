@@ -30,8 +30,7 @@ pub(crate) struct DrivingArgs {
     /// How the lit spot keeps to that speed
     #[arg(long, value_enum, default_value_t = LitSpeedName::Fastest)]
     pub(crate) lit_speed: LitSpeedName,
-    /// How far corners may be rounded off where that is faster than to stop there or to pass them in the dark, such as
-    /// 0.2mm [default: not at all]
+    /// How far corners may be rounded off where that is faster than to stop there, such as 0.2mm [default: not at all]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = rounding)]
     pub(crate) corner: Option<Length>,
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
@@ -130,13 +129,18 @@ impl Driving {
         let asked = wishes.iter().filter(|_| self.acceleration_is_asked);
         let mut remarks: Vec<String> = asked.map(wish_note).collect();
         if let Some(bend) = &plan.tightest {
+            // all but straight: it is not the bend that holds it back
+            let why = if bend.radius_m < 10.0 {
+                format!("bends with a radius of {:.1} mm", 1e3 * bend.radius_m)
+            } else {
+                "asks most of the joints".to_string()
+            };
             remarks.push(format!(
-                "lit at {:.4} m/s throughout instead of {:.4}: stroke {} bends with a radius of {:.1} mm at ({:.1}, {:.1}) mm, \
-                 and the motors hold no more there",
+                "lit at {:.4} m/s throughout instead of {:.4}: stroke {} {why} at ({:.1}, {:.1}) mm, and the motors hold no \
+                 more there",
                 plan.set_speed_m_s,
                 self.request.speed_m_s,
                 bend.stroke + 1,
-                1e3 * bend.radius_m,
                 1e3 * bend.point.x,
                 1e3 * bend.point.y
             ));

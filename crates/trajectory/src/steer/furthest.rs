@@ -223,6 +223,8 @@ impl Furthest {
     pub(super) fn first_to_reach(&self, target: f64, from: f64, until: f64) -> Option<f64> {
         let slope = |q: f64| self.reach(&self.shape(q)).1;
         let mut from = from;
+        // a range that is next to none may end a rounding error before it begins
+        let until = until.max(from);
         // The slope falls, then rises: distance may have a top and a bottom. It only rises where the trough is below zero.
         if from * from < 4.0 * self.k {
             let bottom = self.least_slope().clamp(from, until);
