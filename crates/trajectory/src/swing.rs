@@ -21,11 +21,14 @@ pub(crate) struct Swing {
 /// Each round takes at least 3 % off a bound that is too high.
 const ROUNDS: usize = 150;
 
-/// A swing that takes longer is none, s.
-const LONGEST_S: f64 = 60.0;
+/// A swing that takes longer is none, s, unless the motors alone would already take long,
+const LONGEST_S: f64 = 5.0;
 
-/// One that gravity makes so much slower than the motors alone would let it be is none either.
+/// and gravity makes it no more than so much longer,
 const SLOWER: f64 = 6.0;
+
+/// and never beyond this, s.
+const LONGEST_OF_ALL_S: f64 = 60.0;
 
 /// Of a motor that can hardly move its joint, rad/s².
 const LEAST_RAD_S2: f64 = 1e-3;
@@ -39,7 +42,7 @@ impl Swing {
         rise_s: f64,
     ) -> Self {
         let bounds = PanTilt::from_fn(|j| first_bounds(machine, j, &from, &to, rise_s));
-        Self { from, to, bounds, longest_s: LONGEST_S }
+        Self { from, to, bounds, longest_s: LONGEST_OF_ALL_S }
     }
 
     fn steered(&self) -> Option<Steered<2>> {
@@ -53,13 +56,13 @@ impl Swing {
 
     /// About how long it takes, s; what gravity and coupling cost is left out. `None` if there is none.
     pub(crate) fn estimate_s(&self) -> Option<f64> {
-        self.steered().map(|way| way.duration_s()).filter(|&time| time < LONGEST_S)
+        self.steered().map(|way| way.duration_s()).filter(|&time| time < LONGEST_OF_ALL_S)
     }
 
     /// Both joints at every tick, the start left out, the end included. `None` where motors are too weak for it, or a
     /// joint would leave its range.
     pub(crate) fn ticks(mut self, machine: &Machine) -> Option<Vec<PanTilt<JointMotion>>> {
-        self.longest_s = self.longest_s.min(SLOWER * self.steered()?.duration_s().max(TICK_F64_S));
+        self.longest_s = (SLOWER * self.steered()?.duration_s()).clamp(LONGEST_S, self.longest_s);
         for _ in 0..ROUNDS {
             let motion = self.sampled()?;
             if !in_range(machine, &motion) {
