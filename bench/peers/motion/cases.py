@@ -110,7 +110,7 @@ def joint_path(name, points=4001):
 
 def write_path(path, spline, cells=16000):
     s = np.linspace(0, 1, cells + 1)
-    columns = [s[:, None]] + [spline.derivative(k)(s) if k else spline(s) for k in range(3)]
+    columns = [s[:, None]] + [spline(s, k) for k in range(3)]
     np.savetxt(path, np.hstack(columns), delimiter=",", fmt="%.15g",
                header="s,pan,tilt,d_pan,d_tilt,dd_pan,dd_tilt", comments="")
 
@@ -153,6 +153,7 @@ def main():
     write_drawing(out / "drawing_uniform_500.csv", uniform(500))
     write_ends(out / "junctions.csv", junctions())
     write_moves(out / "moves.csv", moves())
+    write_path(out / "path_line.csv", make_interp_spline([0, 1], [[0, 0], [np.pi, 0]], k=1))
     for name in PATHS:
         write_path(out / f"path_{name}.csv", joint_path(name))
 

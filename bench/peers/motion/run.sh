@@ -37,6 +37,8 @@ printf '\nThe fastest motion at full torque, Coulomb friction; ours, then with v
 target/release/tracelight-bench-motion retime --cells 1000,16000 "$CASES"/path_*.csv
 target/release/tracelight-bench-motion retime --cells 1000,16000 --viscous 0.0015 "$CASES"/path_*.csv
 "$VENV/bin/python" bench/peers/motion/retime_peers.py 1000 8000
+printf '\nThe same within 24 rad/s, 100 rad/s2 and 2000 rad/s3, jerk bounded; the line takes 0.4079996 s\n'
+target/release/tracelight-bench-motion retime --smooth 24,100,2000 --cells 100,500,1000 --times 5 "$CASES"/path_*.csv
 
 printf '\nWhole plans of 500 uniform strokes at 1 ft/s with the 2006 rig: stopping, passing, at one speed\n'
 cargo build --release --locked --quiet -p tracelight

@@ -31,6 +31,6 @@ pub use machine::{AccelerationDemand, Machine};
 pub use plan::{JointMotion, LegEnd, Plan, PlanPoint, Tightest};
 pub use planner::{DarkMove, LitSpeed, PlanRequest, plan};
 pub use profile::{MoveLimits, MovePoint, Profile, Ramps, Shape};
-pub use retime::{Binding, PathSample, Retimed, retime};
+pub use retime::{Binding, JointLimits, PathSample, Retimed, Smooth, SmoothError, retime, retime_smooth};
 pub use steer::{Bounds, SteerError, Steered, steer, steer_no_faster};
 pub use travel_time::{Aimed, TravelTime};

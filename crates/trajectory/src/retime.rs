@@ -8,6 +8,7 @@
 mod law;
 mod limits;
 mod passes;
+mod smooth;
 
 use tracelight_aim::JointPath;
 use tracelight_rig::{Joint, PanTilt};
@@ -15,6 +16,7 @@ use tracelight_rig::{Joint, PanTilt};
 pub(crate) use law::{Along, TimeLaw, hermite};
 pub use limits::{Binding, PathSample};
 use passes::Speeds;
+pub use smooth::{JointLimits, Smooth, SmoothError, retime_smooth};
 
 use crate::{Machine, PlanError};
 

@@ -4,7 +4,7 @@ use std::time::Instant;
 use tracelight_aim::{HeadGeometry, HeadPose, JointPath};
 use tracelight_dynamics::{Friction, Lumped, Motor};
 use tracelight_rig::PanTilt;
-use tracelight_trajectory::{Machine, PathSample, retime};
+use tracelight_trajectory::{JointLimits, Machine, PathSample, retime, retime_smooth};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -20,6 +20,9 @@ pub(crate) struct Arguments {
     /// Viscous friction of both joints, N m s/rad.
     #[arg(long, default_value_t = 0.0)]
     viscous: f64,
+    /// With bounded jerk instead of torque: highest joint speed, acceleration and jerk, such as 24,100,2000.
+    #[arg(long, value_delimiter = ',')]
+    smooth: Option<Vec<f64>>,
     /// How often each is timed; the shortest time counts.
     #[arg(long, default_value_t = 50)]
     times: u32,
@@ -40,15 +43,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), String> {
             let mut duration_s = 0.0;
             for _ in 0..arguments.times {
                 let start = Instant::now();
-                let motion = retime(&machine, &samples).map_err(|e| e.to_string())?;
+                let motion_s = timed(&machine, &samples, arguments.smooth.as_deref())?;
                 took = took.min(start.elapsed().as_secs_f64());
-                duration_s = motion.duration_s();
+                duration_s = motion_s;
             }
             let name = file.file_stem().unwrap_or_default().to_string_lossy();
             println!("{name:16} {cells:7} {duration_s:12.6} {:9.4}", 1e3 * took);
         }
     }
     Ok(())
+}
+
+/// The duration of the fastest motion, s.
+fn timed(machine: &Machine, samples: &[PathSample], smooth: Option<&[f64]>) -> Result<f64, String> {
+    match smooth {
+        Some(&[speed_rad_s, acceleration_rad_s2, jerk_rad_s3]) => {
+            let limits = JointLimits { speed_rad_s, acceleration_rad_s2, jerk_rad_s3 };
+            let motion = retime_smooth(samples, &PanTilt::new(limits, limits));
+            Ok(motion.map_err(|e| e.to_string())?.duration_s())
+        }
+        _ => Ok(retime(machine, samples).map_err(|e| e.to_string())?.duration_s()),
+    }
 }
 
 /// The 2006 rig: inertia and friction alone, at full torque.
