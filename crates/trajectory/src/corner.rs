@@ -76,12 +76,13 @@ impl<'a> Corners<'a> {
         if rounds { Fate::Round(cut_m) } else { sharp }
     }
 
-    /// The pieces near a corner that loses so much of both.
-    fn near(before: &Piece, after: &Piece, cut_m: f64) -> [Piece; 2] {
+    /// The pieces near a corner that loses so much of both, with their lengths.
+    fn near(before: &Piece, after: &Piece, cut_m: f64) -> [(Piece, f64); 2] {
         let lengths = [before, after].map(|piece| piece.length(LENGTH_TOLERANCE_M));
         let near_m = lengths.map(|length| length.min(cut_m + TRIAL_M));
         let before = before.part(lengths[0] - near_m[0], lengths[0], LENGTH_TOLERANCE_M);
-        [before, after.part(0.0, near_m[1], LENGTH_TOLERANCE_M)]
+        let after = after.part(0.0, near_m[1], LENGTH_TOLERANCE_M);
+        [before, after].map(|piece| (piece, piece.length(LENGTH_TOLERANCE_M)))
     }
 
     /// Whether the motors hold the set speed on a rounded corner.

@@ -30,21 +30,22 @@ impl Leg {
     /// The legs of a path in drawing order, cut or rounded off at corners.
     pub(crate) fn split(path: &Path, corners: &Corners<'_>) -> Vec<Leg> {
         let sized = path.pieces().map(|piece| (piece, piece.length(LENGTH_TOLERANCE_M)));
-        let (pieces, lengths): (Vec<Piece>, Vec<f64>) = sized.filter(|&(_, length)| length >= DUST_M).unzip();
+        let pieces: Vec<(Piece, f64)> = sized.filter(|&(_, length)| length >= DUST_M).collect();
         // a piece may be cut back at both ends, and some of it must be left to tell its direction
-        let room_m = |i: usize| 0.45 * lengths[i].min(lengths[i + 1]);
-        let fate = |(i, pair): (usize, &[Piece])| corners.fate(&pair[0], &pair[1], room_m(i));
-        let fates: Vec<Fate> = pieces.windows(2).enumerate().map(fate).collect();
+        let fate = |pair: &[(Piece, f64)]| {
+            let [(before, before_m), (after, after_m)] = [pair[0], pair[1]];
+            corners.fate(&before, &after, 0.45 * before_m.min(after_m))
+        };
+        let fates: Vec<Fate> = pieces.windows(2).map(fate).collect();
         Self::joined(&pieces, &fates)
     }
 
-    /// Legs of pieces that are joined by what becomes of the breaks between them.
-    pub(crate) fn joined(pieces: &[Piece], fates: &[Fate]) -> Vec<Leg> {
+    /// Legs of pieces, each with its length, that are joined by what becomes of the breaks between them.
+    pub(crate) fn joined(pieces: &[(Piece, f64)], fates: &[Fate]) -> Vec<Leg> {
         let cut_m = |fate: Option<&Fate>| if let Some(&Fate::Round(cut_m)) = fate { cut_m } else { 0.0 };
         let mut legs: Vec<Leg> = Vec::new();
-        for (i, &piece) in pieces.iter().enumerate() {
+        for (i, &(piece, length)) in pieces.iter().enumerate() {
             let before = i.checked_sub(1).and_then(|last| fates.get(last));
-            let length = piece.length(LENGTH_TOLERANCE_M);
             let (from, to) = (cut_m(before), length - cut_m(fates.get(i)));
             let piece =
                 if (from, to) == (0.0, length) { piece } else { piece.part(from, to, LENGTH_TOLERANCE_M) };
@@ -168,8 +169,8 @@ mod tests {
     use super::*;
     use tracelight_stroke::{Element, Vec2};
 
-    fn pieces(path: &Path) -> Vec<Piece> {
-        path.pieces().collect()
+    fn pieces(path: &Path) -> Vec<(Piece, f64)> {
+        path.pieces().map(|piece| (piece, piece.length(LENGTH_TOLERANCE_M))).collect()
     }
 
     #[test]

@@ -58,6 +58,16 @@ impl Machine {
         PanTilt::from_fn(|j| rigid[j] + self.friction[j].torque(rate_rad_s[j]))
     }
 
+    /// Torque of both motors for a motion, as a share of what the amplifiers can do; signed.
+    pub(crate) fn fraction_of(&self, joints: &PanTilt<JointMotion>) -> PanTilt<f64> {
+        let torque = self.torque(
+            joints.map(|j| j.position_rad),
+            joints.map(|j| j.velocity_rad_s),
+            joints.map(|j| j.acceleration_rad_s2),
+        );
+        self.fraction(torque)
+    }
+
     /// A torque as a share of what the amplifiers can do.
     pub fn fraction(&self, torque_nm: PanTilt<f64>) -> PanTilt<f64> {
         PanTilt::from_fn(|j| torque_nm[j] / self.motors[j].torque_limit_nm())

@@ -171,13 +171,8 @@ fn point(machine: &Machine, leg: &Leg, along: &Along, request: &MarkRequest) -> 
     let (spot, joints) = leg
         .joints_at(machine, along.s)
         .map_err(|source| PlanError::Aim { stroke: request.stroke, source })?;
-    let (rate, acceleration) = chain(&joints, along);
-    let fraction = machine.fraction(machine.torque(joints.angle_rad, rate, acceleration)).map(f64::abs);
-    let motion = PanTilt::from_fn(|j| JointMotion {
-        position_rad: joints.angle_rad[j],
-        velocity_rad_s: rate[j],
-        acceleration_rad_s2: acceleration[j],
-    });
+    let motion = chain(&joints, along);
+    let fraction = machine.fraction_of(&motion).map(f64::abs);
     Ok(MarkPoint {
         spot,
         joints: motion,

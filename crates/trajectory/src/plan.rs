@@ -14,6 +14,13 @@ pub struct JointMotion {
     pub acceleration_rad_s2: f64,
 }
 
+impl JointMotion {
+    /// Standing still.
+    pub(crate) fn at_rest(position_rad: f64) -> Self {
+        Self { position_rad, ..Self::default() }
+    }
+}
+
 /// Where everything is to be at one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanPoint {

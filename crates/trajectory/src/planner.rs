@@ -250,11 +250,10 @@ impl<'a> Draft<'a> {
                 }
                 marked => marked?,
             };
-            let ends = own;
-            self.approach(leg, &marked, (i, [before, ends[0]]))?;
-            self.draw(leg, marked, ends);
+            self.approach(leg, &marked, (i, [before, own[0]]))?;
+            self.draw(leg, marked, own);
             check_duration(self.plan.points.len() as f64 * TICK_F64_S)?;
-            before = ends[1];
+            before = own[1];
         }
         if before == End::Moving {
             let to = stopped(self.machine, &self.joints(), self.request.ramp_s);
@@ -330,13 +329,13 @@ fn last_tick(plan: &Plan) -> u32 {
 fn linger(points: &mut Vec<PlanPoint>, time_s: f64) {
     let Some(&last) = points.last() else { return };
     let ticks = (time_s / TICK_F64_S).round() as usize;
-    let still = last.joints.map(|j| JointMotion { position_rad: j.position_rad, ..JointMotion::default() });
+    let still = last.joints.map(|j| JointMotion::at_rest(j.position_rad));
     let resting = PlanPoint { lit: false, stroke: None, limit: None, joints: still, ..last };
     points.extend(std::iter::repeat_n(resting, ticks));
 }
 
 fn rest(machine: &Machine, angle_rad: PanTilt<f64>) -> PlanPoint {
-    dark(machine, angle_rad.map(|position_rad| JointMotion { position_rad, ..JointMotion::default() }))
+    dark(machine, angle_rad.map(JointMotion::at_rest))
 }
 
 /// A point on the way: its spot is wherever the beam points, the target's origin where it points away from it.
@@ -347,12 +346,7 @@ fn dark(machine: &Machine, joints: PanTilt<JointMotion>) -> PlanPoint {
 
 /// A dark point with its torques and the limit it is at, `speed_share` of the set speed.
 fn assess(machine: &Machine, spot: Point, joints: PanTilt<JointMotion>, speed_share: f64) -> PlanPoint {
-    let torque = machine.torque(
-        joints.map(|j| j.position_rad),
-        joints.map(|j| j.velocity_rad_s),
-        joints.map(|j| j.acceleration_rad_s2),
-    );
-    let fraction = machine.fraction(torque);
+    let fraction = machine.fraction_of(&joints);
     PlanPoint {
         spot,
         joints,

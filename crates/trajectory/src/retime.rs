@@ -18,7 +18,7 @@ pub use limits::{Binding, PathSample};
 use passes::Speeds;
 pub use smooth::{JointLimits, Smooth, SmoothError, retime_smooth};
 
-use crate::{Machine, PlanError};
+use crate::{JointMotion, Machine, PlanError};
 
 /// The fastest motion along a path.
 #[derive(Clone, Debug)]
@@ -186,8 +186,10 @@ fn between(pair: &[PathSample], t: f64) -> PathSample {
 }
 
 /// Joint motion of a spot that moves along a path: q̇ = q′ṡ, q̈ = q″ṡ² + q′s̈.
-pub(crate) fn chain(joints: &JointPath, along: &Along) -> (PanTilt<f64>, PanTilt<f64>) {
-    let rate = joints.first.map(|d| d * along.v);
-    let acceleration = PanTilt::from_fn(|j| joints.second[j] * along.v * along.v + joints.first[j] * along.a);
-    (rate, acceleration)
+pub(crate) fn chain(joints: &JointPath, along: &Along) -> PanTilt<JointMotion> {
+    PanTilt::from_fn(|j| JointMotion {
+        position_rad: joints.angle_rad[j],
+        velocity_rad_s: joints.first[j] * along.v,
+        acceleration_rad_s2: joints.second[j] * along.v * along.v + joints.first[j] * along.a,
+    })
 }

@@ -142,12 +142,7 @@ impl Swing {
 
 /// Shares of the motors' torque a motion asks for; a number that is none is too much.
 fn asked(machine: &Machine, joints: &PanTilt<JointMotion>) -> PanTilt<f64> {
-    let torque = machine.torque(
-        joints.map(|j| j.position_rad),
-        joints.map(|j| j.velocity_rad_s),
-        joints.map(|j| j.acceleration_rad_s2),
-    );
-    machine.fraction(torque).map(|share| if share.is_nan() { f64::INFINITY } else { share.abs() })
+    machine.fraction_of(joints).map(|share| if share.is_nan() { f64::INFINITY } else { share.abs() })
 }
 
 fn in_range(machine: &Machine, motion: &[PanTilt<JointMotion>]) -> bool {

@@ -9,8 +9,8 @@ use crate::mark::{End, MarkRequest};
 use crate::plan::JointMotion;
 use crate::retime::{Along, PathSample, Retimed, chain};
 use crate::swing::Swing;
-use crate::travel::travel_estimate_s;
-use crate::{DarkMove, LitSpeed, Machine, PlanError, PlanRequest};
+use crate::travel::{touches, travel_estimate_s};
+use crate::{DarkMove, Machine, PlanError, PlanRequest};
 
 /// The legs of a drawing in order, with what it takes to draw each and to get from one to the next.
 pub(crate) struct Tour {
@@ -33,9 +33,6 @@ pub(crate) struct TourLeg {
     ends: [Option<PanTilt<JointMotion>>; 2],
 }
 
-/// Nearer than this, rad, one leg begins where another ends.
-const JOINED_RAD: f64 = 1e-9;
-
 impl Tour {
     /// The tour from `home`, at rest, through all strokes to rest.
     pub(crate) fn new(
@@ -45,8 +42,7 @@ impl Tour {
         home: PanTilt<f64>,
     ) -> Result<Self, PlanError> {
         let mut legs: Vec<TourLeg> = Vec::new();
-        let rest = |position_rad| JointMotion { position_rad, ..JointMotion::default() };
-        let mut at = home.map(rest);
+        let mut at = home.map(JointMotion::at_rest);
         for (stroke, drawn) in drawing.strokes.iter().enumerate() {
             for leg in Leg::split(&drawn.path, &Corners::of(machine, request)) {
                 let leg = TourLeg::new(leg, stroke, machine, request, at, legs.is_empty())?;
@@ -73,25 +69,18 @@ impl Tour {
         ends: [End; 2],
     ) -> f64 {
         let [before, after] = ends;
-        let rest = |position_rad| JointMotion { position_rad, ..JointMotion::default() };
         let last = next.checked_sub(1).and_then(|i| self.legs.get(i));
         let leg = self.legs.get(next);
-        let exact = request.lit_speed == LitSpeed::Exact;
+        let allowed = request.lit_speed.ends();
+        // before all of them and after, the head is at rest
         let from = match last {
-            None if before == End::Moving => None,
-            None => Some(home.map(rest)),
-            Some(_) if exact && before == End::Rest => None,
-            Some(last) => last.ends[before as usize],
+            None => (before == End::Rest).then(|| home.map(JointMotion::at_rest)),
+            Some(last) => last.ends[before as usize].filter(|_| allowed.contains(&before)),
         };
         let Some(from) = from else { return f64::INFINITY };
-        if request.lit_speed == LitSpeed::Stops && ends != [End::Rest; 2] {
-            return f64::INFINITY;
-        }
         let to = match leg {
-            None if after == End::Moving => None,
-            None => Some(stopped(machine, &from, request.ramp_s)),
-            Some(_) if exact && after == End::Rest => None,
-            Some(leg) => leg.starts[after as usize],
+            None => (after == End::Rest).then(|| stopped(machine, &from, request.ramp_s)),
+            Some(leg) => leg.starts[after as usize].filter(|_| allowed.contains(&after)),
         };
         let Some(to) = to else { return f64::INFINITY };
         if ends == [End::Rest; 2] {
@@ -189,12 +178,7 @@ impl TourLeg {
         }
         let at = |s_m: f64, v: f64| {
             let (_, joints) = leg.joints_at(machine, s_m).ok()?;
-            let (rate, acceleration) = chain(&joints, &Along { s: s_m, v, a: 0.0 });
-            Some(PanTilt::from_fn(|j| JointMotion {
-                position_rad: joints.angle_rad[j],
-                velocity_rad_s: rate[j],
-                acceleration_rad_s2: acceleration[j],
-            }))
+            Some(chain(&joints, &Along { s: s_m, v, a: 0.0 }))
         };
         let length = leg.length_m();
         // a relay that lets go more slowly than it takes hold cannot make light as short as it likes
@@ -204,10 +188,8 @@ impl TourLeg {
         let starts = [at(0.0, 0.0), passed(-passing[0] * request.run_up_s(machine), passing[0])];
         let ends = [at(length, 0.0), passed(length + 0.5 * passing[1] * request.ramp_s, passing[1])];
         let joined = !is_first
-            && starts[0].is_some_and(|start| {
-                let away = |j| f64::abs(start[j].position_rad - before[j].position_rad);
-                away(tracelight_rig::Joint::Pan).max(away(tracelight_rig::Joint::Tilt)) < JOINED_RAD
-            });
+            && starts[0]
+                .is_some_and(|start| touches(before.map(|j| j.position_rad), start.map(|j| j.position_rad)));
         Ok(Self { leg, stroke, joined, drawn_s, starts, ends })
     }
 
@@ -256,9 +238,6 @@ pub(crate) fn stopped(machine: &Machine, from: &PanTilt<JointMotion>, ramp_s: f6
         let torque = machine.torque_share * machine.motors[j].torque_limit_nm();
         let most = torque / machine.own_inertia(j, from.tilt.position_rad);
         let time_s = motion.velocity_rad_s.abs() / most + ramp_s;
-        JointMotion {
-            position_rad: motion.position_rad + 0.5 * motion.velocity_rad_s * time_s,
-            ..JointMotion::default()
-        }
+        JointMotion::at_rest(motion.position_rad + 0.5 * motion.velocity_rad_s * time_s)
     })
 }

@@ -8,7 +8,13 @@ use crate::{Machine, PlanError, Shape};
 const LONGEST_S: f64 = 60.0;
 
 /// A shorter way is none, rad.
-pub(crate) const NOTHING_RAD: f64 = 1e-9;
+const NOTHING_RAD: f64 = 1e-9;
+
+/// Whether there is no way from one pose to the other.
+pub(crate) fn touches(from: PanTilt<f64>, to: PanTilt<f64>) -> bool {
+    let span = |j: Joint| (to[j] - from[j]).abs();
+    span(Joint::Pan).max(span(Joint::Tilt)) < NOTHING_RAD
+}
 
 /// Both joints tick by tick along a dark move from rest to rest, the start left out, the end included.
 ///
@@ -21,10 +27,10 @@ pub(crate) fn travel(
     from: PanTilt<f64>,
     to: PanTilt<f64>,
 ) -> Result<Vec<PanTilt<JointMotion>>, PlanError> {
-    let span = PanTilt::new(to.pan - from.pan, to.tilt - from.tilt);
-    if span.pan.abs().max(span.tilt.abs()) < NOTHING_RAD {
+    if touches(from, to) {
         return Ok(Vec::new());
     }
+    let span = PanTilt::new(to.pan - from.pan, to.tilt - from.tilt);
     let mut limits = first_limits(machine, from, span)?;
     // each round takes at least 3 % off: 200 rounds are a factor of 400, and 20 in time
     for _ in 0..200 {
@@ -117,12 +123,7 @@ fn worst_fractions(machine: &Machine, motion: &[PanTilt<JointMotion>], accelerat
     let mut worst = Worst { speeding_up: 0.0, braking: 0.0 };
     let floor = 1e-6 * acceleration;
     for joints in motion {
-        let torque = machine.torque(
-            joints.map(|j| j.position_rad),
-            joints.map(|j| j.velocity_rad_s),
-            joints.map(|j| j.acceleration_rad_s2),
-        );
-        let fraction = machine.fraction(torque).map(f64::abs);
+        let fraction = machine.fraction_of(joints).map(f64::abs);
         let most = fraction.pan.max(fraction.tilt);
         let push = |j: Joint| joints[j].acceleration_rad_s2 * joints[j].velocity_rad_s;
         let sense = push(Joint::Pan) + push(Joint::Tilt);

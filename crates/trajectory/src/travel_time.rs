@@ -2,7 +2,7 @@ use tracelight_aim::SpotMotion;
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::{Point, StrokeEnd, Travel, Vec2};
 
-use crate::travel::NOTHING_RAD;
+use crate::travel::touches;
 use crate::{LitSpeed, Machine, PlanRequest};
 
 /// How long dark moves take, s, for ordering strokes: what the slower joint needs at full torque with Coulomb friction,
@@ -160,9 +160,8 @@ impl Travel for TravelTime<'_> {
         if let (Some(time), false) = (passed_s, self.rests) {
             return time;
         }
-        let span = |j: Joint| (to.angle_rad[j] - from.angle_rad[j]).abs();
-        let touching = span(Joint::Pan).max(span(Joint::Tilt)) < NOTHING_RAD;
-        let rested_s = if touching { 0.0 } else { self.lift_s + self.resting_s(from, to) };
+        let rested_s =
+            if touches(from.angle_rad, to.angle_rad) { 0.0 } else { self.lift_s + self.resting_s(from, to) };
         // to stop and start takes time on the strokes too, where it could be saved
         let rested_s = if self.passes { rested_s + from.stopping_s + to.stopping_s } else { rested_s };
         passed_s.map_or(rested_s, |time| time.min(rested_s))

@@ -9,8 +9,10 @@
 mod support;
 
 use oorandom::Rand64;
-use support::drawings::{SPEED_M_S, circle, drawing, line, machine, mixed, request};
-use tracelight_rig::{Joint, TICK_F64_S};
+use support::drawings::{
+    SPEED_M_S, circle, drawing, line, machine, mixed, places_and_speeds_belong_together, request,
+};
+use tracelight_rig::TICK_F64_S;
 use tracelight_stroke::{Drawing, Element, OrderOptions, Path, Point, Vec2, order};
 use tracelight_trajectory::{
     LitSpeed, Plan, PlanError, PlanPoint, PlanRequest, Ramps, Shape, TravelTime, plan,
@@ -49,13 +51,7 @@ fn keeps_its_speed(plan: &Plan) {
 
 fn asks_no_more_than_there_is(plan: &Plan) {
     assert!(plan.torque_peak_fraction() <= 0.901, "{}", plan.torque_peak_fraction());
-    for pair in plan.points.windows(2) {
-        for joint in Joint::BOTH {
-            let (a, b) = (pair[0].joints[joint], pair[1].joints[joint]);
-            let mean = 0.5 * (a.velocity_rad_s + b.velocity_rad_s) * TICK_F64_S;
-            assert!((b.position_rad - a.position_rad - mean).abs() < 2e-5, "{joint}: {a:?} {b:?}");
-        }
-    }
+    places_and_speeds_belong_together(plan);
 }
 
 /// Square, triangle, circle and line: every leg is lit from its start to its end, give or take half a tick's way.

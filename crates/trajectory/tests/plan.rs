@@ -8,8 +8,10 @@
 
 mod support;
 
-use support::drawings::{SPEED_M_S, circle, drawing, line, machine, mixed, request};
-use tracelight_rig::{Joint, TICK_F64_S};
+use support::drawings::{
+    SPEED_M_S, circle, drawing, line, machine, mixed, places_and_speeds_belong_together, request,
+};
+use tracelight_rig::Joint;
 use tracelight_stroke::Drawing;
 use tracelight_trajectory::{Binding, LitSpeed, Plan, PlanError, PlanRequest, Ramps, Shape, plan};
 
@@ -33,15 +35,7 @@ fn the_lit_spot_reaches_its_speed_on_the_long_line_and_never_exceeds_it() {
 
 #[test]
 fn position_and_speed_of_the_plan_belong_together() {
-    let plan = made(Shape::Ramped(Ramps::REPORT));
-    for pair in plan.points.windows(2) {
-        for joint in Joint::BOTH {
-            let (a, b) = (pair[0].joints[joint], pair[1].joints[joint]);
-            let mean = 0.5 * (a.velocity_rad_s + b.velocity_rad_s) * TICK_F64_S;
-            // at a small break of the tangent the speed jumps by up to 16 mrad/s somewhere within the tick
-            assert!((b.position_rad - a.position_rad - mean).abs() < 2e-5, "{joint}: {a:?} {b:?}");
-        }
-    }
+    places_and_speeds_belong_together(&made(Shape::Ramped(Ramps::REPORT)));
 }
 
 #[test]

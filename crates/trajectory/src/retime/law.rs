@@ -125,18 +125,20 @@ pub(crate) fn hermite(from: Along, to: Along, time: f64) -> [f64; 6] {
 /// is given a time beyond any job's, ns for each unit of way.
 const STANDING: f64 = 1e-9;
 
+/// Gauss and Legendre's three places of a cell, and their weights.
+pub(super) const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
 /// How long a cell takes whose acceleration goes in a straight line over s: ∫ ds/v with v² = v₀² + 2u₀s + (u₁−u₀)s²/h.
 ///
 /// The integral is taken over the time θ of the motion with constant acceleration between the same speeds, in which
 /// the integrand is smooth also from rest (Gauss–Legendre, three points).
 pub(super) fn crossing_s(h: f64, v: [f64; 2], u: [f64; 2]) -> f64 {
-    const NODES: [(f64, f64); 3] =
-        [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
     if v[0] + v[1] <= STANDING {
         return h / STANDING;
     }
     let even_s = 2.0 * h / (v[0] + v[1]);
-    let share: f64 = NODES
+    let share: f64 = GAUSS
         .iter()
         .map(|&(at, weight)| {
             let even_v = v[0] + (v[1] - v[0]) * at;

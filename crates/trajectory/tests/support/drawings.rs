@@ -2,9 +2,9 @@
 
 use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_dynamics::{Friction, HeadBodies, Motor};
-use tracelight_rig::PanTilt;
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
-use tracelight_trajectory::{DarkMove, LitSpeed, Machine, PlanRequest, Shape};
+use tracelight_trajectory::{DarkMove, LitSpeed, Machine, Plan, PlanRequest, Shape};
 
 pub(crate) const SPEED_M_S: f64 = 0.3048;
 
@@ -72,4 +72,16 @@ pub(crate) fn mixed() -> Drawing {
         curl,
         line(&breaks),
     ])
+}
+
+/// Places are what the speeds lead to.
+pub(crate) fn places_and_speeds_belong_together(plan: &Plan) {
+    for pair in plan.points.windows(2) {
+        for joint in Joint::BOTH {
+            let (a, b) = (pair[0].joints[joint], pair[1].joints[joint]);
+            let mean = 0.5 * (a.velocity_rad_s + b.velocity_rad_s) * TICK_F64_S;
+            // at a small break of the tangent the speed jumps by up to 16 mrad/s somewhere within the tick
+            assert!((b.position_rad - a.position_rad - mean).abs() < 2e-5, "{joint}: {a:?} {b:?}");
+        }
+    }
 }

@@ -2,6 +2,7 @@ use tracelight_rig::{Joint, PanTilt};
 
 use super::band::Local;
 use super::{Along, JointLimits, PathSample, hermite};
+use crate::retime::law::GAUSS;
 
 /// Coefficients of a cell's four numbers: x and its slope at the start, x and its slope at the end.
 pub(super) type Row4 = [f64; 4];
@@ -12,9 +13,7 @@ pub(super) const ROWS: usize = 20 + 12 + 3;
 const FIVE: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 const THREE: [f64; 3] = [0.0, 0.5, 1.0];
 
-/// Gauss's places and weights, three and five to a cell.
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+/// Gauss and Legendre's five places of a cell, and their weights.
 const GAUSS_5: [(f64, f64); 5] = [
     (0.046_910_077_030_668, 0.118_463_442_528_094_54),
     (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
