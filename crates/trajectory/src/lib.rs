@@ -12,6 +12,7 @@
 
 mod compress;
 mod corner;
+mod course;
 mod error;
 mod leg;
 mod machine;
@@ -26,11 +27,12 @@ mod tour;
 mod travel;
 mod travel_time;
 
+pub use course::{Course, CourseError, CoursePoint, Pace};
 pub use error::PlanError;
 pub use machine::{AccelerationDemand, Machine};
 pub use plan::{JointMotion, LegEnd, Plan, PlanPoint, Tightest};
 pub use planner::{DarkMove, LitSpeed, PlanRequest, plan};
-pub use profile::{MoveLimits, MovePoint, Profile, Ramps, Shape};
+pub use profile::{MoveLimits, MovePoint, Peaks, Profile, Ramps, Shape};
 pub use retime::{Binding, JointLimits, PathSample, Retimed, Smooth, SmoothError, retime, retime_smooth};
 pub use steer::{Bounds, SteerError, Steered, steer, steer_no_faster};
 pub use travel_time::{Aimed, TravelTime};

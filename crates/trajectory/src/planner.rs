@@ -13,7 +13,7 @@ use crate::travel::travel;
 use crate::{Machine, PlanError, Shape};
 
 /// Rest after the last stroke, s: the error at rest is measured over its last 0.2 s.
-const FINAL_REST_S: f64 = 0.4;
+pub(crate) const FINAL_REST_S: f64 = 0.4;
 
 /// Longest job, s: its ticks are kept in memory, planned and run, at about 350 bytes each.
 const LONGEST_S: f64 = 1800.0;
@@ -326,7 +326,7 @@ fn last_tick(plan: &Plan) -> u32 {
 }
 
 /// Stays where the last point is, dark and on no stroke.
-fn linger(points: &mut Vec<PlanPoint>, time_s: f64) {
+pub(crate) fn linger(points: &mut Vec<PlanPoint>, time_s: f64) {
     let Some(&last) = points.last() else { return };
     let ticks = (time_s / TICK_F64_S).round() as usize;
     let still = last.joints.map(|j| JointMotion::at_rest(j.position_rad));
@@ -334,18 +334,23 @@ fn linger(points: &mut Vec<PlanPoint>, time_s: f64) {
     points.extend(std::iter::repeat_n(resting, ticks));
 }
 
-fn rest(machine: &Machine, angle_rad: PanTilt<f64>) -> PlanPoint {
+pub(crate) fn rest(machine: &Machine, angle_rad: PanTilt<f64>) -> PlanPoint {
     dark(machine, angle_rad.map(JointMotion::at_rest))
 }
 
 /// A point on the way: its spot is wherever the beam points, the target's origin where it points away from it.
-fn dark(machine: &Machine, joints: PanTilt<JointMotion>) -> PlanPoint {
+pub(crate) fn dark(machine: &Machine, joints: PanTilt<JointMotion>) -> PlanPoint {
     let spot = machine.geometry.spot(&machine.pose, joints.map(|j| j.position_rad));
     assess(machine, spot.unwrap_or(Point::ORIGIN), joints, 0.0)
 }
 
 /// A dark point with its torques and the limit it is at, `speed_share` of the set speed.
-fn assess(machine: &Machine, spot: Point, joints: PanTilt<JointMotion>, speed_share: f64) -> PlanPoint {
+pub(crate) fn assess(
+    machine: &Machine,
+    spot: Point,
+    joints: PanTilt<JointMotion>,
+    speed_share: f64,
+) -> PlanPoint {
     let fraction = machine.fraction_of(&joints);
     PlanPoint {
         spot,

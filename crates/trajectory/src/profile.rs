@@ -1,40 +1,29 @@
 //! Moves of one coordinate from rest to rest: closed forms.
 
-use std::f64::consts::PI;
+mod ramped;
+mod smooth;
 
-/// How long the acceleration builds up and fades, as shares of the acceleration phase (`pa`) and of the
-/// deceleration phase (`pb`); all zero is a trapezoid of velocity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ramps {
-    /// Build-up of acceleration, share of its phase.
-    pub pa1: f64,
-    /// Fading of acceleration.
-    pub pa2: f64,
-    /// Build-up of deceleration, share of its phase.
-    pub pb1: f64,
-    /// Fading of deceleration.
-    pub pb2: f64,
-}
-
-impl Ramps {
-    /// A trapezoid.
-    pub const NONE: Self = Self { pa1: 0.0, pa2: 0.0, pb1: 0.0, pb2: 0.0 };
-    /// The report's S-curve.
-    pub const REPORT: Self = Self { pa1: 0.20, pa2: 0.20, pb1: 0.15, pb2: 0.15 };
-}
+use ramped::Phases;
+pub use ramped::Ramps;
+use smooth::Unit;
 
 /// Shape of the velocity over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     /// Constant acceleration, cruise, constant deceleration; with ramps an S-curve.
     Ramped(Ramps),
-    /// Half a sine of velocity: x = (d/2)(1 − cos πt/T).
+    /// Half a sine of velocity: x = (d/2)(1 − cos πt/T). The acceleration jumps at both ends.
     Sine,
-    /// Logistic position, cut where 1 % of it is missing at either end and rescaled to the whole distance.
+    /// A whole sine of acceleration, a raised cosine of velocity: x = d(t/T − sin(2πt/T)/2π).
+    Cycloid,
+    /// Logistic position, cut where 1 % of it is missing at either end and rescaled to the whole distance: it starts
+    /// and ends with a jump of the speed.
     Sigmoid,
+    /// The polynomial of fifth degree with speed and acceleration zero at both ends.
+    Quintic,
 }
 
-/// What a move may do.
+/// What a move may do, in whatever unit its distance has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoveLimits {
     /// Highest speed, unit/s.
@@ -56,6 +45,21 @@ pub struct MovePoint {
     pub acceleration: f64,
 }
 
+/// The most of a move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peaks {
+    /// Highest speed, unit/s.
+    pub speed: f64,
+    /// Highest acceleration, unit/s²; what a jump of the speed would be is left out.
+    pub acceleration: f64,
+    /// Highest deceleration, unit/s².
+    pub deceleration: f64,
+    /// Highest jerk, unit/s³; none where the acceleration jumps.
+    pub jerk: Option<f64>,
+    /// By how much the speed jumps at both ends, unit/s.
+    pub speed_jump: f64,
+}
+
 /// A move of a positive distance, fully determined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile {
@@ -67,80 +71,60 @@ pub struct Profile {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Curve {
     Ramped(Phases),
-    Sine,
-    Sigmoid,
-}
-
-/// Seven phases of constant jerk; a trapezoid's ramps have no length.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Phases {
-    /// Acceleration phase, cruise, deceleration phase, s.
-    accelerate_s: f64,
-    cruise_s: f64,
-    decelerate_s: f64,
-    peak_speed: f64,
-    ramps: Ramps,
-}
-
-/// Missing share at either end of a sigmoid.
-const SIGMOID_CUT: f64 = 0.01;
-
-/// Steepness of the cut logistic over its whole length: σ(−k/2) = [`SIGMOID_CUT`].
-fn sigmoid_steepness() -> f64 {
-    2.0 * (1.0 / SIGMOID_CUT - 1.0).ln()
+    Smooth(Unit),
 }
 
 impl Profile {
     /// The fastest move of that shape over `distance` > 0 within the limits, all > 0.
     pub fn new(shape: Shape, distance: f64, limits: &MoveLimits) -> Self {
-        let gentle = limits.acceleration.min(limits.deceleration);
         match shape {
-            Shape::Ramped(ramps) => Self::ramped(distance, limits, ramps),
-            // peak velocity (π/2)d/T, peak acceleration (π²/2)d/T²
-            Shape::Sine => Self::smooth(
-                Curve::Sine,
-                distance,
-                PI / 2.0 * distance / limits.speed,
-                PI * (distance / (2.0 * gentle)).sqrt(),
-            ),
-            // peak of σ′ is 1/4, of σ″ 1/(6√3)
-            Shape::Sigmoid => {
-                let k = sigmoid_steepness();
-                let spread = distance / (1.0 - 2.0 * SIGMOID_CUT);
-                Self::smooth(
-                    Curve::Sigmoid,
-                    distance,
-                    k / 4.0 * spread / limits.speed,
-                    k * (spread / (6.0 * 3f64.sqrt() * gentle)).sqrt(),
-                )
-            }
+            Shape::Ramped(ramps) => Self::ramped(distance, Phases::fastest(distance, limits, ramps)),
+            Shape::Sine => Self::smooth(Unit::Sine, distance, limits),
+            Shape::Cycloid => Self::smooth(Unit::Cycloid, distance, limits),
+            Shape::Sigmoid => Self::smooth(Unit::Sigmoid, distance, limits),
+            Shape::Quintic => Self::smooth(Unit::Quintic, distance, limits),
         }
     }
 
-    fn smooth(curve: Curve, distance: f64, by_speed_s: f64, by_acceleration_s: f64) -> Self {
-        Self { distance, duration_s: by_speed_s.max(by_acceleration_s), curve }
+    /// Over one unit of way in one of time. Of a ramped shape's time, acceleration and deceleration take `shares`, not
+    /// more than one together; other shapes have no phases.
+    pub(crate) fn unit(shape: Shape, shares: [f64; 2]) -> Self {
+        let even = MoveLimits { speed: f64::MAX, acceleration: 1.0, deceleration: 1.0 };
+        let profile = match shape {
+            Shape::Ramped(ramps) => Self::ramped(1.0, Phases::of_shares(1.0, ramps, shares)),
+            _ => Self::new(shape, 1.0, &even),
+        };
+        profile.lasting(1.0)
     }
 
-    /// Ramps scale with their phase, so both phases' lengths are proportional to the peak speed v: the distance
-    /// without cruise is v²(cₐ/(a kₐ) + c_b/(d k_b)), k mean over peak acceleration, c mean over peak velocity.
-    fn ramped(distance: f64, limits: &MoveLimits, ramps: Ramps) -> Self {
-        let ka = 1.0 - 0.5 * (ramps.pa1 + ramps.pa2);
-        let kb = 1.0 - 0.5 * (ramps.pb1 + ramps.pb2);
-        let up = 1.0 / (limits.acceleration * ka);
-        let down = 1.0 / (limits.deceleration * kb);
-        let (ca, cb) = (mean_speed(ramps.pa1, ramps.pa2), mean_speed(ramps.pb2, ramps.pb1));
-        let ramp_distance_per_v2 = ca * up + cb * down;
-        let peak_speed = (distance / ramp_distance_per_v2).sqrt().min(limits.speed);
-        let cruise_s = (distance / peak_speed - peak_speed * ramp_distance_per_v2).max(0.0);
-        let phases = Phases {
-            accelerate_s: peak_speed * up,
-            cruise_s,
-            decelerate_s: peak_speed * down,
-            peak_speed,
-            ramps,
+    fn ramped(distance: f64, phases: Phases) -> Self {
+        Self { distance, duration_s: phases.duration_s(), curve: Curve::Ramped(phases) }
+    }
+
+    fn smooth(unit: Unit, distance: f64, limits: &MoveLimits) -> Self {
+        let peaks = unit.peaks();
+        let gentle = limits.acceleration.min(limits.deceleration);
+        let by_speed_s = peaks.velocity * distance / limits.speed;
+        let by_acceleration_s = (peaks.acceleration * distance / gentle).sqrt();
+        Self { distance, duration_s: by_speed_s.max(by_acceleration_s), curve: Curve::Smooth(unit) }
+    }
+
+    /// The same move in another time, s.
+    pub(crate) fn lasting(&self, duration_s: f64) -> Self {
+        let curve = match self.curve {
+            Curve::Ramped(phases) => Curve::Ramped(phases.slower(duration_s / self.duration_s)),
+            smooth @ Curve::Smooth(_) => smooth,
         };
-        let duration_s = phases.accelerate_s + cruise_s + phases.decelerate_s;
-        Self { distance, duration_s, curve: Curve::Ramped(phases) }
+        Self { duration_s, curve, ..*self }
+    }
+
+    /// The same move over another distance.
+    pub(crate) fn over(&self, distance: f64) -> Self {
+        let curve = match self.curve {
+            Curve::Ramped(phases) => Curve::Ramped(phases.longer(distance / self.distance)),
+            smooth @ Curve::Smooth(_) => smooth,
+        };
+        Self { distance, curve, ..*self }
     }
 
     /// Length of the move, s.
@@ -150,9 +134,32 @@ impl Profile {
 
     /// Highest speed of the move, unit/s.
     pub fn peak_speed(&self) -> f64 {
+        self.peaks().speed
+    }
+
+    /// The most of its derivatives.
+    pub fn peaks(&self) -> Peaks {
         match self.curve {
-            Curve::Ramped(p) => p.peak_speed,
-            Curve::Sine | Curve::Sigmoid => self.at(0.5 * self.duration_s).velocity,
+            Curve::Ramped(phases) => phases.peaks(),
+            Curve::Smooth(unit) => {
+                let (most, per_s) = (unit.peaks(), 1.0 / self.duration_s);
+                let acceleration = most.acceleration * self.distance * per_s * per_s;
+                Peaks {
+                    speed: most.velocity * self.distance * per_s,
+                    acceleration,
+                    deceleration: acceleration,
+                    jerk: (!unit.starts_hard()).then_some(most.jerk * self.distance * per_s.powi(3)),
+                    speed_jump: unit.at(0.0).velocity * self.distance * per_s,
+                }
+            }
+        }
+    }
+
+    /// Times within the move at which its acceleration may jump, s.
+    pub(crate) fn breaks_s(&self) -> [f64; 2] {
+        match self.curve {
+            Curve::Ramped(phases) => phases.breaks_s(),
+            Curve::Smooth(_) => [0.0, self.duration_s],
         }
     }
 
@@ -166,89 +173,24 @@ impl Profile {
         }
         match self.curve {
             Curve::Ramped(phases) => phases.at(t_s, self.distance),
-            Curve::Sine => self.sine_at(t_s),
-            Curve::Sigmoid => self.sigmoid_at(t_s),
+            Curve::Smooth(unit) => {
+                let per_s = 1.0 / self.duration_s;
+                let at = unit.at(t_s * per_s);
+                MovePoint {
+                    position: self.distance * at.position,
+                    velocity: self.distance * per_s * at.velocity,
+                    acceleration: self.distance * per_s * per_s * at.acceleration,
+                }
+            }
         }
     }
-
-    fn sine_at(&self, t_s: f64) -> MovePoint {
-        let w = PI / self.duration_s;
-        let (s, c) = (w * t_s).sin_cos();
-        let half = 0.5 * self.distance;
-        MovePoint { position: half * (1.0 - c), velocity: half * w * s, acceleration: half * w * w * c }
-    }
-
-    fn sigmoid_at(&self, t_s: f64) -> MovePoint {
-        let w = sigmoid_steepness() / self.duration_s;
-        let y = 1.0 / (1.0 + (-w * (t_s - 0.5 * self.duration_s)).exp());
-        let scale = self.distance / (1.0 - 2.0 * SIGMOID_CUT);
-        let slope = y * (1.0 - y);
-        MovePoint {
-            position: scale * (y - SIGMOID_CUT),
-            velocity: scale * w * slope,
-            acceleration: scale * w * w * slope * (1.0 - 2.0 * y),
-        }
-    }
-}
-
-impl Phases {
-    fn at(&self, t_s: f64, distance: f64) -> MovePoint {
-        let braking = self.accelerate_s + self.cruise_s;
-        if t_s < self.accelerate_s {
-            return speed_up(t_s, self.accelerate_s, self.peak_speed, self.ramps.pa1, self.ramps.pa2);
-        }
-        if t_s < braking {
-            let reached = mean_speed(self.ramps.pa1, self.ramps.pa2) * self.peak_speed * self.accelerate_s;
-            let position = reached + self.peak_speed * (t_s - self.accelerate_s);
-            return MovePoint { position, velocity: self.peak_speed, acceleration: 0.0 };
-        }
-        // braking is speeding up in a mirror: time and place counted from the end
-        let left = braking + self.decelerate_s - t_s;
-        let mirrored = speed_up(left, self.decelerate_s, self.peak_speed, self.ramps.pb2, self.ramps.pb1);
-        MovePoint {
-            position: distance - mirrored.position,
-            velocity: mirrored.velocity,
-            acceleration: -mirrored.acceleration,
-        }
-    }
-}
-
-/// From rest to `speed` in `length_s`, the acceleration building up over the share `p1` and fading over `p2`.
-fn speed_up(t: f64, length_s: f64, speed: f64, p1: f64, p2: f64) -> MovePoint {
-    let peak = speed / (length_s * (1.0 - 0.5 * (p1 + p2)));
-    let (t1, t3) = (p1 * length_s, p2 * length_s);
-    let t2 = length_s - t1 - t3;
-    if t < t1 {
-        let jerk = peak / t1;
-        return MovePoint {
-            position: jerk * t * t * t / 6.0,
-            velocity: 0.5 * jerk * t * t,
-            acceleration: jerk * t,
-        };
-    }
-    let (x1, v1) = (peak * t1 * t1 / 6.0, 0.5 * peak * t1);
-    let u = (t - t1).min(t2);
-    let (x2, v2) = (x1 + v1 * u + 0.5 * peak * u * u, v1 + peak * u);
-    let w = t - t1 - t2;
-    if w <= 0.0 || t3 == 0.0 {
-        return MovePoint { position: x2, velocity: v2, acceleration: peak };
-    }
-    let jerk = peak / t3;
-    MovePoint {
-        position: x2 + v2 * w + 0.5 * peak * w * w - jerk * w * w * w / 6.0,
-        velocity: v2 + peak * w - 0.5 * jerk * w * w,
-        acceleration: peak - jerk * w,
-    }
-}
-
-/// Mean speed of [`speed_up`] over its peak speed.
-fn mean_speed(p1: f64, p2: f64) -> f64 {
-    speed_up(1.0, 1.0, 1.0, p1, p2).position
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    use std::f64::consts::PI;
 
     const SEED: MoveLimits = MoveLimits { speed: 24.0, acceleration: 100.0, deceleration: 100.0 };
     const FEASIBLE: MoveLimits = MoveLimits { speed: 5.0, acceleration: 4.0, deceleration: 1.0 };
@@ -266,6 +208,8 @@ mod tests {
         check(TRAPEZOID, &SEED, 0.3545, 17.72);
         check(S_CURVE, &SEED, 0.390461, 16.09);
         check(Shape::Sine, &SEED, 0.3937, 12.53);
+        check(Shape::Cycloid, &SEED, 0.4443, 14.14);
+        check(Shape::Quintic, &SEED, 0.4259, 13.83);
         check(TRAPEZOID, &FEASIBLE, 2.8025, 2.242);
         check(S_CURVE, &FEASIBLE, 3.0587, 2.054);
     }
@@ -288,7 +232,14 @@ mod tests {
             };
             let ramps =
                 Ramps { pa1: draw(0.0, 0.5), pa2: draw(0.0, 0.5), pb1: draw(0.0, 0.5), pb2: draw(0.0, 0.5) };
-            let shape = [TRAPEZOID, Shape::Ramped(ramps), Shape::Sine, Shape::Sigmoid][round % 4];
+            let shape = [
+                TRAPEZOID,
+                Shape::Ramped(ramps),
+                Shape::Sine,
+                Shape::Cycloid,
+                Shape::Sigmoid,
+                Shape::Quintic,
+            ][round % 6];
             obeys(&Profile::new(shape, draw(1e-3, 4.0), &limits), &limits);
         }
     }
@@ -304,9 +255,60 @@ mod tests {
             assert!(-p.acceleration <= limits.deceleration * (1.0 + 1e-9), "{profile:?}");
             place += p.velocity * h;
         }
+        peaks_are_what_is_seen(profile);
         assert!((place - profile.distance).abs() < 2e-3 * profile.distance, "{profile:?}: {place}");
         let end = profile.at(profile.duration_s() * (1.0 - 1e-12)).position;
-        let cut = if profile.curve == Curve::Sigmoid { 1e-9 } else { 1e-6 };
+        let cut = if profile.curve == Curve::Smooth(Unit::Sigmoid) { 1e-9 } else { 1e-6 };
         assert!((end - profile.distance).abs() <= cut * profile.distance.max(1.0), "{profile:?}: {end}");
+    }
+
+    fn peaks_are_what_is_seen(profile: &Profile) {
+        const STEPS: usize = 4000;
+        let points: Vec<MovePoint> =
+            (1..STEPS).map(|i| profile.at(i as f64 / STEPS as f64 * profile.duration_s())).collect();
+        let most = |value: &dyn Fn(&MovePoint) -> f64| points.iter().map(value).fold(0.0, f64::max);
+        let peaks = profile.peaks();
+        let near = |seen: f64, said: f64| {
+            assert!(seen <= said * (1.0 + 1e-9) && seen > 0.98 * said, "{profile:?}: {seen} {said}");
+        };
+        near(most(&|p| p.velocity), peaks.speed);
+        near(most(&|p| p.acceleration), peaks.acceleration);
+        near(most(&|p| -p.acceleration), peaks.deceleration);
+        if let Some(jerk) = peaks.jerk {
+            let h = profile.duration_s() / STEPS as f64;
+            let steepest = points.windows(2).map(|w| (w[1].acceleration - w[0].acceleration).abs() / h);
+            let seen = steepest.fold(0.0, f64::max);
+            // a ramp may be shorter than a step
+            let least = if matches!(profile.curve, Curve::Smooth(_)) { 0.9 * jerk } else { 0.0 };
+            assert!(seen <= jerk * (1.0 + 1e-6) && seen > least, "{profile:?}: {seen} {jerk}");
+        }
+        assert!(
+            (profile.at(1e-9 * profile.duration_s()).velocity - peaks.speed_jump).abs() < 1e-6 * peaks.speed
+        );
+    }
+
+    #[test]
+    fn a_jump_of_the_acceleration_has_no_jerk() {
+        let jerk = |shape| Profile::new(shape, PI, &SEED).peaks().jerk;
+        assert_eq!([TRAPEZOID, Shape::Sine, Shape::Sigmoid].map(jerk), [None; 3]);
+        assert_eq!(jerk(Shape::Ramped(Ramps { pa1: 0.0, ..Ramps::REPORT })), None);
+        // the report's: 100 rad/s² over 0.15 of the deceleration phase
+        assert!((jerk(S_CURVE).unwrap() - 3521.0).abs() < 1.0);
+        assert!((jerk(Shape::Quintic).unwrap() - 60.0 * PI / 0.4259f64.powi(3)).abs() < 3.0);
+    }
+
+    #[test]
+    fn another_time_and_distance_make_the_same_shape() {
+        for shape in [S_CURVE, Shape::Quintic] {
+            let profile = Profile::new(shape, PI, &FEASIBLE);
+            let other = profile.over(2.0).lasting(1.5);
+            for i in 0..=20 {
+                let share = f64::from(i) / 20.0;
+                let (a, b) = (profile.at(share * profile.duration_s()), other.at(share * 1.5));
+                assert!((a.position / PI - b.position / 2.0).abs() < 1e-12);
+                let per = profile.duration_s() / 1.5 * 2.0 / PI;
+                assert!((a.velocity * per - b.velocity).abs() < 1e-12);
+            }
+        }
     }
 }

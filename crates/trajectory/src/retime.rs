@@ -14,6 +14,7 @@ use tracelight_aim::JointPath;
 use tracelight_rig::{Joint, PanTilt};
 
 pub(crate) use law::{Along, TimeLaw, hermite};
+pub(crate) use limits::AlongLimits;
 pub use limits::{Binding, PathSample};
 use passes::Speeds;
 pub use smooth::{JointLimits, Smooth, SmoothError, retime_smooth};
@@ -55,6 +56,12 @@ pub(crate) fn steady_speed(machine: &Machine, samples: &[PathSample]) -> (f64, u
     slowest
 }
 
+/// Up to which w a motion along the path with ṡ = w·v and s̈ = w²·u keeps to the motors' torque and the joints' speeds
+/// and accelerations at a place.
+pub(crate) fn most_pace(machine: &Machine, sample: &PathSample, v: f64, u: f64) -> f64 {
+    limits::Place::new(machine, sample).most_pace(machine, v, u)
+}
+
 impl Retimed {
     /// With the highest speeds at both ends.
     pub(crate) fn new(
@@ -62,8 +69,18 @@ impl Retimed {
         samples: Vec<PathSample>,
         ends: [f64; 2],
     ) -> Result<Self, PlanError> {
+        Self::within(machine, samples, ends, None)
+    }
+
+    /// With bounds on the acceleration along the path too.
+    pub(crate) fn within(
+        machine: &Machine,
+        samples: Vec<PathSample>,
+        ends: [f64; 2],
+        along: Option<&AlongLimits>,
+    ) -> Result<Self, PlanError> {
         let samples = with_turning_places(samples);
-        let speeds = passes::fastest(machine, &samples, ends)?;
+        let speeds = passes::fastest(machine, &samples, ends, along)?;
         Ok(Self { samples, speeds })
     }
 

@@ -52,6 +52,13 @@ pub struct PathSample {
     pub cap: f64,
 }
 
+/// Bounds on the acceleration along a path, unit/s².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct AlongLimits {
+    pub(crate) acceleration: f64,
+    pub(crate) deceleration: f64,
+}
+
 /// A joint's torque on a path, τ = a·s̈ + b·ṡ² + c, friction left out, and the way it moves.
 #[derive(Clone, Copy, Debug)]
 struct JointTorque {
@@ -95,7 +102,7 @@ impl Place {
 
     /// The limits while the joints turn the given ways (+1 or −1).
     pub(super) fn rows(&self, machine: &Machine, ways: PanTilt<f64>) -> Rows {
-        let mut rows = Rows { rows: [Row::FREE; 4], count: 0, speed_most: self.speed_most };
+        let mut rows = Rows { rows: [Row::FREE; 5], count: 0, speed_most: self.speed_most };
         for j in Joint::BOTH {
             let JointTorque { a, b, c, first, second } = self.torque[j];
             let friction = &machine.friction[j];
@@ -112,6 +119,28 @@ impl Place {
         }
         rows.speed_most = rows.speed_most.min(rows.compatible());
         rows
+    }
+
+    /// A motion along the path with ṡ = w·v and s̈ = w²·u: up to which w it keeps to all limits but the cap.
+    pub(super) fn most_pace(&self, machine: &Machine, v: f64, u: f64) -> f64 {
+        let mut most = f64::INFINITY;
+        for j in Joint::BOTH {
+            let JointTorque { a, b, c, first, second } = self.torque[j];
+            let friction = &machine.friction[j];
+            let (viscous, coulomb) = match first {
+                way if way > 0.0 => (friction.viscous_pos, friction.coulomb_pos_nm),
+                way if way < 0.0 => (friction.viscous_neg, friction.coulomb_neg_nm),
+                _ => (0.0, 0.0),
+            };
+            let torque = machine.torque_share * machine.motors[j].torque_limit_nm();
+            let (square, linear, still) = (a * u + b * v * v, viscous * first * v, c + coulomb);
+            most = most.min(first_root(square, linear, still - torque));
+            most = most.min(first_root(-square, -linear, -still - torque));
+            let acceleration = (first * u + second * v * v).abs();
+            most = most.min((machine.acceleration_limit_rad_s2[j] / acceleration).sqrt());
+            most = most.min(machine.speed_limit_rad_s[j] / (first * v).abs());
+        }
+        most
     }
 
     /// Torque that standing still and starting off the given way takes, N m.
@@ -142,7 +171,7 @@ impl Row {
 /// All limits at one place: on the acceleration u = s̈ at a speed v = ṡ, and on the speed itself.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rows {
-    rows: [Row; 4],
+    rows: [Row; 5],
     count: usize,
     pub(super) speed_most: f64,
 }
@@ -161,6 +190,15 @@ impl Rows {
         self.rows[self.count] =
             Row { m: -b * inverse, e: -d * inverse, n: -c * inverse, reach: most * inverse.abs() };
         self.count += 1;
+    }
+
+    /// Bounds the acceleration along the path itself.
+    pub(super) fn bound_along(&mut self, limits: &AlongLimits) {
+        let AlongLimits { acceleration, deceleration } = *limits;
+        let (n, reach) = (0.5 * (acceleration - deceleration), 0.5 * (acceleration + deceleration));
+        self.rows[self.count] = Row { m: 0.0, e: 0.0, n, reach };
+        self.count += 1;
+        self.speed_most = self.speed_most.min(self.compatible());
     }
 
     fn each(&self) -> &[Row] {

@@ -1,6 +1,6 @@
 use tracelight_rig::{Joint, PanTilt};
 
-use super::limits::{PathSample, Place, Rows};
+use super::limits::{AlongLimits, PathSample, Place, Rows};
 use crate::{Machine, PlanError};
 
 /// A stretch between two neighbouring places. The acceleration goes in a straight line over s from one end to the
@@ -27,7 +27,12 @@ impl Limits {
         self.cells.iter().map(move |&(h, start, end)| Cell { h, start: rows(start), end: rows(end) })
     }
 
-    fn of(machine: &Machine, samples: &[PathSample]) -> Result<Self, PlanError> {
+    fn of(machine: &Machine, samples: &[PathSample], along: Option<&AlongLimits>) -> Result<Self, PlanError> {
+        let rows = |place: &Place, ways| {
+            let mut rows = place.rows(machine, ways);
+            along.into_iter().for_each(|limits| rows.bound_along(limits));
+            rows
+        };
         let mut limits = Self {
             rows: Vec::with_capacity(samples.len() + samples.len() / 8),
             cells: Vec::with_capacity(samples.len()),
@@ -38,11 +43,11 @@ impl Limits {
             let ways = PanTilt::from_fn(|j| (pair[0].joints.first[j] + pair[1].joints.first[j]).signum());
             if let (Some(place), true) = (place, ways != last_ways) {
                 check_strength(machine, &place, ways)?;
-                limits.rows.push(place.rows(machine, ways));
+                limits.rows.push(rows(&place, ways));
             }
             let next = Place::new(machine, &pair[1]);
             check_strength(machine, &next, ways)?;
-            limits.rows.push(next.rows(machine, ways));
+            limits.rows.push(rows(&next, ways));
             let end = limits.rows.len() as u32 - 1;
             limits.cells.push((pair[1].s - pair[0].s, end - 1, end));
             (place, last_ways) = (Some(next), ways);
@@ -70,7 +75,8 @@ pub(super) struct Speeds {
     pub(super) u: Vec<[f64; 2]>,
 }
 
-/// The fastest speeds along samples that keep to all limits, from `first` at most at the start to `last` at most.
+/// The fastest speeds along samples that keep to all limits, those on the acceleration `along` the path too, from
+/// `first` at most at the start to `last` at most.
 ///
 /// A backward pass finds the highest speed at every place from which the rest can still be followed, a forward pass
 /// takes the highest acceleration that stays under it (reachability analysis; Pham & Pham, "A new approach to
@@ -83,8 +89,9 @@ pub(super) fn fastest(
     machine: &Machine,
     samples: &[PathSample],
     [first, last]: [f64; 2],
+    along: Option<&AlongLimits>,
 ) -> Result<Speeds, PlanError> {
-    let limits = Limits::of(machine, samples)?;
+    let limits = Limits::of(machine, samples, along)?;
     let (ceiling, middle) = ceilings(&limits, last);
     let mut v = Vec::with_capacity(ceiling.len());
     let mut u = Vec::with_capacity(middle.len());
