@@ -1,6 +1,7 @@
 //! Tracelight: give it a picture, and a pan/tilt laser head draws it on the wall, to scale.
 
 mod batch;
+mod chart;
 mod cli;
 mod failure;
 mod job;

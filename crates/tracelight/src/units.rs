@@ -63,6 +63,9 @@ pub(crate) const ANGLES: &[Unit] =
 pub(crate) const SPEEDS: &[Unit] =
     &[("m/s", 1.0), ("mm/s", 1e-3), ("cm/s", 1e-2), ("in/s", 0.0254), ("ft/s", 0.3048)];
 /// See [`LENGTHS`].
+pub(crate) const ACCELERATIONS: &[Unit] =
+    &[("m/s2", 1.0), ("mm/s2", 1e-3), ("cm/s2", 1e-2), ("in/s2", 0.0254), ("ft/s2", 0.3048)];
+/// See [`LENGTHS`].
 pub(crate) const TIMES: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 /// See [`LENGTHS`].
 pub(crate) const ANGULAR_SPEEDS: &[Unit] = &[("rad/s", 1.0), ("deg/s", DEG)];
@@ -153,10 +156,58 @@ quantity!(
     SPEEDS
 );
 quantity!(
+    /// Radians per second.
+    AngularSpeed,
+    ANGULAR_SPEEDS
+);
+quantity!(
     /// Radians per second squared.
     AngularAcceleration,
     ANGULAR_ACCELERATIONS
 );
+
+/// A rate of a length or of an angle: one of [`SPEEDS`] or [`ANGULAR_SPEEDS`], [`ACCELERATIONS`] or
+/// [`ANGULAR_ACCELERATIONS`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Rate {
+    /// m/s or m/s².
+    Linear(f64),
+    /// rad/s or rad/s².
+    Angular(f64),
+}
+
+impl Rate {
+    /// A rate of either kind; what fits neither is said of both.
+    pub(crate) fn parse(
+        text: &str,
+        linear: &'static [Unit],
+        angular: &'static [Unit],
+    ) -> Result<Self, String> {
+        match (parse(text, linear), parse(text, angular)) {
+            (Ok(value), _) => Ok(Rate::Linear(value)),
+            (_, Ok(value)) => Ok(Rate::Angular(value)),
+            (Err(error), _) => {
+                let angular: Vec<_> = angular.iter().map(|unit| unit.0).collect();
+                Err(format!("{error}; or, for an angle, {}", angular.join(", ")))
+            }
+        }
+    }
+
+    /// As a rate of a length, where a radian is so many metres long.
+    pub(crate) fn linear(self, metres_per_rad: f64) -> f64 {
+        match self {
+            Rate::Linear(value) => value,
+            Rate::Angular(value) => value * metres_per_rad,
+        }
+    }
+
+    /// The number alone, SI.
+    pub(crate) const fn value(self) -> f64 {
+        match self {
+            Rate::Linear(value) | Rate::Angular(value) => value,
+        }
+    }
+}
 
 /// Two lengths: right and up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -211,6 +262,18 @@ mod tests {
     fn nonsense_is_refused() {
         for text in ["", "in", "1e400m", "nanm", "infm", "--3m", "1,5m", "0x10m"] {
             assert!(text.parse::<Length>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_rate_is_of_a_length_or_an_angle() {
+        let speed = |text| Rate::parse(text, SPEEDS, ANGULAR_SPEEDS);
+        assert_eq!(speed("24rad/s"), Ok(Rate::Angular(24.0)));
+        assert_eq!(speed("2m/s").unwrap().linear(7.0), 2.0);
+        assert_eq!(speed("2rad/s").unwrap().linear(0.5), 1.0);
+        for text in ["24", "24V", "rad/s", ""] {
+            let message = speed(text).unwrap_err();
+            assert!(message.contains("ft/s") && message.contains("rad/s"), "{message}");
         }
     }
 

@@ -202,7 +202,7 @@ impl<'m> Course<'m> {
     /// None within reach.
     pub fn torque_peaks_nm(&self, pace: &Pace) -> Result<PanTilt<f64>, CourseError> {
         let mut most = PanTilt::new(0.0, 0.0);
-        for t_s in pace.times_s(DENSE) {
+        for t_s in pace.times_s(DENSE.max(self.samples.len())) {
             let torque = self.at(pace, t_s)?.torque_nm;
             most = PanTilt::from_fn(|j| f64::max(most[j], torque[j].abs()));
         }
@@ -275,7 +275,7 @@ const SHORTEST_M: f64 = 1e-6;
 const GRID_M: f64 = 2e-4;
 const FEWEST: f64 = 500.0;
 
-/// Times at which a motion's torque is looked at, once it stands.
+/// Times at which a motion's torque is looked at at least, once it stands.
 const DENSE: usize = 2000;
 
 /// How far along a leg the head can follow, m.

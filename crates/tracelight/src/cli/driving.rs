@@ -1,16 +1,15 @@
 use clap::{Args, ValueEnum};
 use tracelight_aim::HeadPose;
 use tracelight_sim::RigConfig;
-use tracelight_trajectory::{
-    AccelerationDemand, DarkMove, LitSpeed, Machine, Plan, PlanRequest, Ramps, Shape,
-};
+use tracelight_trajectory::{AccelerationDemand, LitSpeed, Machine, Plan, PlanRequest};
 
 use crate::cli::placing::positive_length;
+use crate::cli::shapes::ProfileName;
 use crate::failure::Failure;
 use crate::units::{AngularAcceleration, Length, Speed};
 
 /// 3 ft: where the original rig's camera stood.
-const DEFAULT_DISTANCE_M: f64 = 0.9144;
+pub(crate) const DEFAULT_DISTANCE_M: f64 = 0.9144;
 /// 1 ft/s: what the original rig was to reach.
 const DEFAULT_SPEED_M_S: f64 = 0.3048;
 
@@ -69,43 +68,6 @@ impl LitSpeedName {
             LitSpeedName::Fastest => "fastest",
             LitSpeedName::Exact => "exact",
             LitSpeedName::Stops => "stops",
-        }
-    }
-}
-
-/// How dark moves go from rest to rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ProfileName {
-    /// Constant acceleration and deceleration
-    Trapezoid,
-    /// Acceleration that builds up and fades over a fifth of its phase
-    SCurve,
-    /// Half a sine of velocity
-    Sine,
-    /// Logistic position
-    Sigmoid,
-    /// As fast as each joint can, limited in jerk
-    Optimal,
-}
-
-impl ProfileName {
-    pub(crate) const fn dark_move(self) -> DarkMove {
-        DarkMove::Shaped(match self {
-            ProfileName::Trapezoid => Shape::Ramped(Ramps::NONE),
-            ProfileName::SCurve => Shape::Ramped(Ramps::REPORT),
-            ProfileName::Sine => Shape::Sine,
-            ProfileName::Sigmoid => Shape::Sigmoid,
-            ProfileName::Optimal => return DarkMove::Optimal,
-        })
-    }
-
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            ProfileName::Trapezoid => "trapezoid",
-            ProfileName::SCurve => "s-curve",
-            ProfileName::Sine => "sine",
-            ProfileName::Sigmoid => "sigmoid",
-            ProfileName::Optimal => "optimal",
         }
     }
 }
@@ -171,10 +133,8 @@ impl DrivingArgs {
             speed_m_s: self.speed.map_or(DEFAULT_SPEED_M_S, |s| s.0),
             lit_speed: self.lit_speed.lit_speed(),
             travel: self.profile.dark_move(),
-            ramp_s: rig.motion.ramp_s,
-            settle_s: rig.motion.settle_s,
-            tolerance_m: rig.control.tolerance_m,
             corner_m: self.corner.map_or(0.0, |c| c.0),
+            ..request_of(&rig)
         };
         Ok(Driving {
             rig,
@@ -184,6 +144,19 @@ impl DrivingArgs {
             speed_is_asked: self.speed.is_some(),
             acceleration_is_asked: self.amax.is_some(),
         })
+    }
+}
+
+/// What a rig's own settings ask of a plan; the rest as without any flag.
+pub(crate) fn request_of(rig: &RigConfig) -> PlanRequest {
+    PlanRequest {
+        speed_m_s: DEFAULT_SPEED_M_S,
+        lit_speed: LitSpeed::default(),
+        travel: ProfileName::SCurve.dark_move(),
+        ramp_s: rig.motion.ramp_s,
+        settle_s: rig.motion.settle_s,
+        tolerance_m: rig.control.tolerance_m,
+        corner_m: 0.0,
     }
 }
 

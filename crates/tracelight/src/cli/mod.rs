@@ -5,10 +5,12 @@ pub(crate) mod choosing;
 mod completions;
 pub(crate) mod driving;
 mod explain;
+mod lab;
 pub(crate) mod placing;
 mod plan;
 pub(crate) mod request;
 mod rigs;
+pub(crate) mod shapes;
 mod strokes;
 mod trace;
 pub(crate) mod tracing;
@@ -40,6 +42,7 @@ enum Command {
     Strokes(strokes::StrokesArgs),
     Plan(Box<plan::PlanArgs>),
     Calibrate(calibrate::CalibrateArgs),
+    Lab(lab::LabArgs),
     Rigs(rigs::RigsArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
@@ -82,6 +85,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Strokes(args) => (args.voice, strokes::run(&args, &stop)),
         Command::Plan(args) => (args.voice, plan::run(&args, &stop)),
         Command::Calibrate(args) => (args.voice(), calibrate::run(&args)),
+        Command::Lab(args) => (args.voice(), lab::run(&args, &stop)),
         Command::Rigs(args) => (args.voice, rigs::run(&args)),
         Command::Explain(args) => (args.voice, explain::run(&args)),
         Command::Completions(args) => (args.voice, Ok(completions::run::<Cli>(&args))),
@@ -136,6 +140,12 @@ fn refuse(error: &clap::Error) -> ExitCode {
     }
     eprint!("{}", error.render());
     Failure::usage("usage", "").exit_code()
+}
+
+/// Writes a file the user named.
+pub(crate) fn write_file(path: &str, text: &str) -> Result<(), Failure> {
+    let failed = |e| Failure::failed("cannot-write", format!("cannot write {path}: {e}"));
+    std::fs::write(path, text).map_err(failed)
 }
 
 /// To standard output; a reader that has left is no error.

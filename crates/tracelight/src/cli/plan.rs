@@ -8,7 +8,7 @@ use tracelight_trajectory::{LitSpeed, Plan};
 use crate::cli::driving::DrivingArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::cli::{Answer, Voice};
+use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
 use crate::output::{ColourBy, PlanFigures, StrokeFigures, counted, preview};
 use crate::picture;
@@ -65,19 +65,14 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| progress.say(&format!("note: {n}")));
     if let Some(path) = &args.out {
-        write(path, &csv(&schedule.plan))?;
+        write_file(path, &csv(&schedule.plan))?;
     }
     if let Some(path) = &args.preview {
-        write(path, &preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
+        write_file(path, &preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
     }
     let timing = serde_json::json!({ "vision": sketch.vision_ms, "plan": plan_ms });
     let shortest = args.order_by == OrderBy::Distance || driving.request.lit_speed == LitSpeed::Stops;
     Ok(Answer::new(text(&schedule, shortest), json(&placed, &schedule, &timing)))
-}
-
-fn write(path: &str, text: &str) -> Result<(), Failure> {
-    let failed = |e| Failure::failed("cannot-write", format!("cannot write {path}: {e}"));
-    std::fs::write(path, text).map_err(failed)
 }
 
 fn text(schedule: &Schedule, shortest: bool) -> String {

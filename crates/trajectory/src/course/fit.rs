@@ -17,7 +17,8 @@ const COARSE: usize = 200;
 
 pub(super) fn fit(course: &Course<'_>, shape: Shape, limits: &MoveLimits) -> Result<Profile, CourseError> {
     let asked = Profile::new(shape, course.length_m(), limits);
-    if fastest_pace(course, &asked, DENSE)? >= 1.0 {
+    let dense = DENSE.max(course.samples.len());
+    if fastest_pace(course, &asked, dense)? >= 1.0 {
         return Ok(asked);
     }
     let shares = match shape {
@@ -25,7 +26,7 @@ pub(super) fn fit(course: &Course<'_>, shape: Shape, limits: &MoveLimits) -> Res
         _ => [0.5, 0.5],
     };
     let profile = Profile::unit(shape, shares).over(course.length_m());
-    let fitted = profile.lasting(shortest_s(course, &profile, limits, DENSE)?);
+    let fitted = profile.lasting(shortest_s(course, &profile, limits, dense)?);
     if fitted.duration_s().is_finite() { Ok(fitted) } else { Err(too_weak(course).into()) }
 }
 

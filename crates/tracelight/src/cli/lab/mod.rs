@@ -1,0 +1,92 @@
+//! The control engineer's bench, one file a subcommand.
+
+mod moves;
+mod profile;
+
+use clap::{Args, Subcommand};
+
+use crate::chart::Colour;
+use crate::cli::shapes::ProfileName;
+use crate::cli::{Answer, Voice};
+use crate::failure::Failure;
+use crate::stop::Stop;
+use crate::units::Unit;
+
+/// The control engineer's bench: profiles and moves, computed, plotted, compared
+#[derive(Args, Debug)]
+pub(crate) struct LabArgs {
+    #[command(subcommand)]
+    action: LabAction,
+}
+
+#[derive(Subcommand, Debug)]
+enum LabAction {
+    Profile(profile::ProfileArgs),
+    Move(moves::MoveArgs),
+}
+
+impl LabArgs {
+    pub(crate) const fn voice(&self) -> Voice {
+        match &self.action {
+            LabAction::Profile(args) => args.voice,
+            LabAction::Move(args) => args.voice(),
+        }
+    }
+}
+
+pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
+    match &args.action {
+        LabAction::Profile(args) => profile::run(args),
+        LabAction::Move(args) => moves::run(args, stop),
+    }
+}
+
+/// A file to write; its ending says what goes into it.
+#[derive(Clone, Debug)]
+struct OutFile {
+    path: String,
+    kind: OutKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum OutKind {
+    Plot,
+    Table,
+}
+
+fn out_file(text: &str) -> Result<OutFile, String> {
+    let ending = text.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    let kind = match ending.as_deref() {
+        Some("svg") => OutKind::Plot,
+        Some("csv") => OutKind::Table,
+        _ => return Err(format!("{text} ends in neither .svg (a plot) nor .csv (a table)")),
+    };
+    Ok(OutFile { path: text.into(), kind })
+}
+
+/// What limits of moves may be, in SI: more is no head's, and less takes for ever.
+const LEAST: f64 = 1e-6;
+const MOST: f64 = 1e6;
+
+/// `value` if it is within reason.
+fn within<T>(text: &str, value: T, number: f64, units: &[Unit]) -> Result<T, String> {
+    let unit = units.first().map_or("", |unit| unit.0);
+    if (LEAST..=MOST).contains(&number) {
+        Ok(value)
+    } else {
+        Err(format!("{text} is not between {LEAST} and {MOST} {unit}"))
+    }
+}
+
+/// The colour of a profile in every plot.
+const fn colour(profile: ProfileName) -> Colour {
+    match profile {
+        ProfileName::Trapezoid => Colour::Vermilion,
+        ProfileName::SCurve => Colour::Blue,
+        ProfileName::Sine => Colour::Green,
+        ProfileName::Cycloid => Colour::Purple,
+        ProfileName::Sigmoid => Colour::Orange,
+        ProfileName::Quintic => Colour::Sky,
+        ProfileName::Optimal => Colour::Black,
+    }
+}

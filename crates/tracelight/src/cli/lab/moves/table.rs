@@ -1,0 +1,221 @@
+//! The moves of a course in numbers.
+
+use std::fmt::Write;
+
+use tracelight_rig::{Joint, PanTilt};
+use tracelight_trajectory::{Pace, Peaks};
+
+use super::{Bench, Entry, OnRig, failure};
+use crate::cli::shapes::ProfileName;
+use crate::failure::Failure;
+
+pub(super) fn text(bench: &Bench<'_>) -> String {
+    let limits = &bench.wish.limits;
+    let mut text = format!(
+        "{}\n{:.1} mm, at most {:.4} m/s, {:.4} m/s² speeding up, {:.4} m/s² braking\n",
+        bench.wish.title,
+        1e3 * bench.course.length_m(),
+        limits.speed,
+        limits.acceleration,
+        limits.deceleration
+    );
+    asked(&mut text, bench);
+    if !bench.args.as_asked {
+        on_rig(&mut text, bench);
+    }
+    text.push_str("\nA sigmoid starts and stops with a jump of the speed; no torque is counted for it.");
+    text
+}
+
+fn asked(text: &mut String, bench: &Bench<'_>) {
+    let rows: Vec<(&Entry, &Pace, &PanTilt<f64>)> = bench
+        .entries
+        .iter()
+        .filter_map(|e| e.asked.as_ref().map(|(pace, torque)| (e, pace, torque)))
+        .collect();
+    let trapezoid = duration_of(&rows.iter().map(|row| (row.0.name, row.1)).collect::<Vec<_>>());
+    // writing to a String cannot fail
+    let _ = writeln!(
+        text,
+        "\nas asked    duration, s  over the trapezoid  peak, m/s  peak, m/s²  takes of the motors (rig {})",
+        bench.rig.name
+    );
+    for (entry, pace, torque) in &rows {
+        let Peaks { speed, acceleration, deceleration, .. } = *pace.peaks();
+        let _ = writeln!(
+            text,
+            "{:10} {:12.4} {:>19} {:10.4} {:11.3}  {}",
+            entry.name.name(),
+            pace.duration_s(),
+            over(pace.duration_s(), trapezoid),
+            speed,
+            acceleration.max(deceleration),
+            demand(bench, torque)
+        );
+    }
+    if let Some(verdict) = verdict(bench, &rows) {
+        let _ = writeln!(text, "{verdict}");
+    }
+}
+
+fn on_rig(text: &mut String, bench: &Bench<'_>) {
+    let rows: Vec<(&Entry, &OnRig)> =
+        bench.entries.iter().filter_map(|e| Some((e, e.on_rig.as_ref()?))).collect();
+    let trapezoid = duration_of(&rows.iter().map(|row| (row.0.name, &row.1.pace)).collect::<Vec<_>>());
+    let _ = writeln!(
+        text,
+        "\non the rig  duration, s  over the trapezoid  peak, m/s  peak, m/s²  error of the spot, mm: rms / max / at rest"
+    );
+    for (entry, OnRig { pace, tracking, held, .. }) in rows {
+        let Peaks { speed, acceleration, deceleration, .. } = *pace.peaks();
+        let _ = writeln!(
+            text,
+            "{:10} {:12.4} {:>19} {:10.4} {:11.3}  {:.3} / {:.3} / {:.3}{}",
+            entry.name.name(),
+            pace.duration_s(),
+            over(pace.duration_s(), trapezoid),
+            speed,
+            acceleration.max(deceleration),
+            tracking.rms_mm,
+            tracking.max_mm,
+            tracking.final_error_mm,
+            if *held { "  left its course, and went back dark" } else { "" }
+        );
+    }
+}
+
+fn duration_of(rows: &[(ProfileName, &Pace)]) -> Option<f64> {
+    rows.iter().find(|(name, _)| *name == ProfileName::Trapezoid).map(|(_, pace)| pace.duration_s())
+}
+
+/// How much longer than the trapezoid, in words.
+fn over(duration_s: f64, trapezoid_s: Option<f64>) -> String {
+    match trapezoid_s.map(|t| 100.0 * (duration_s / t - 1.0)) {
+        Some(percent) if percent.abs() >= 5e-3 => format!("{percent:+.2} %").replace('-', "−"),
+        Some(_) => "0".to_owned(),
+        None => "–".to_owned(),
+    }
+}
+
+/// The joint whose motor is asked most, and its command.
+fn demand(bench: &Bench<'_>, torque_nm: &PanTilt<f64>) -> String {
+    let share = bench.machine.fraction(*torque_nm);
+    let joint = if share.pan >= share.tilt { Joint::Pan } else { Joint::Tilt };
+    let motor = &bench.machine.motors[joint];
+    let words = format!("{:.1} V on {joint}", motor.volts_for(torque_nm[joint]));
+    if share[joint] > 1.0 {
+        format!("{words}, which has {} V: not possible", motor.limit_v)
+    } else {
+        format!("{words}, of {} V", motor.limit_v)
+    }
+}
+
+/// Why trapezoid and S-curve take as long as they do.
+fn verdict(bench: &Bench<'_>, rows: &[(&Entry, &Pace, &PanTilt<f64>)]) -> Option<String> {
+    let of = |name| rows.iter().find(|row| row.0.name == name).map(|row| row.1);
+    let (trapezoid, s_curve) = (of(ProfileName::Trapezoid)?, of(ProfileName::SCurve)?);
+    let limits = &bench.wish.limits;
+    let cruise_s = |pace: &Pace| {
+        let Peaks { speed, .. } = *pace.peaks();
+        pace.duration_s() - speed / limits.acceleration - speed / limits.deceleration
+    };
+    let share = cruise_s(trapezoid) / trapezoid.duration_s();
+    let later_s = s_curve.duration_s() - trapezoid.duration_s();
+    Some(if share < 1e-9 {
+        "The highest speed is never reached: then the S-curve takes the same share longer on every path and length, line \
+         or arc."
+            .to_owned()
+    } else {
+        format!(
+            "{:.0} % of the trapezoid is at the highest speed, where profiles do not differ: the S-curve is later by \
+             {later_s:.4} s, however long the path.",
+            100.0 * share
+        )
+    })
+}
+
+pub(super) fn json(bench: &Bench<'_>) -> String {
+    let limits = &bench.wish.limits;
+    let moves: Vec<_> = bench.entries.iter().map(|entry| figures(bench, entry)).collect();
+    serde_json::json!({
+        "length_m": bench.course.length_m(),
+        "limits": {
+            "speed_m_s": limits.speed,
+            "acceleration_m_s2": limits.acceleration,
+            "deceleration_m_s2": limits.deceleration,
+        },
+        "moves": moves,
+    })
+    .to_string()
+}
+
+fn figures(bench: &Bench<'_>, entry: &Entry) -> serde_json::Value {
+    let of = |pace: &Pace| {
+        let Peaks { speed, acceleration, deceleration, jerk, speed_jump } = *pace.peaks();
+        serde_json::json!({
+            "duration_s": pace.duration_s(),
+            "peak_m_s": speed,
+            "peak_m_s2": acceleration.max(deceleration),
+            "peak_m_s3": jerk,
+            "jump_m_s": speed_jump,
+        })
+    };
+    let asked = entry.asked.as_ref().map(|(pace, torque_nm)| {
+        let share = bench.machine.fraction(*torque_nm);
+        let mut figures = of(pace);
+        figures["torque_fraction"] = serde_json::json!({ "pan": share.pan, "tilt": share.tilt });
+        figures
+    });
+    let on_rig = entry.on_rig.as_ref().map(|OnRig { pace, tracking, held, .. }| {
+        let mut figures = of(pace);
+        figures["tracking"] = serde_json::json!({
+            "rms_mm": tracking.rms_mm,
+            "max_mm": tracking.max_mm,
+            "final_error_mm": tracking.final_error_mm,
+        });
+        figures["held"] = (*held).into();
+        figures
+    });
+    serde_json::json!({ "profile": entry.name.name(), "asked": asked, "rig": on_rig })
+}
+
+/// A row a tick: along the course, on the target, at the joints, and as encoder counts.
+pub(super) fn csv(bench: &Bench<'_>) -> Result<String, Failure> {
+    let mut text = String::from(
+        "t_s,s_m,v_m_s,a_m_s2,x_m,y_m,pan_rad,tilt_rad,pan_rad_s,tilt_rad_s,pan_rad_s2,tilt_rad_s2,pan_count,tilt_count,pan_nm,\
+         tilt_nm\n",
+    );
+    let Some(pace) = bench.chosen().next().and_then(|entry| bench.pace(entry)) else { return Ok(text) };
+    for p in bench.course.ticks(pace).map_err(failure)? {
+        let (pan, tilt) = (&p.joints.pan, &p.joints.tilt);
+        let count = bench.counts(p.joints.map(|j| j.position_rad));
+        let _ = writeln!(
+            text,
+            "{:.3},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9},{},{},{:.6},{:.6}",
+            p.t_s,
+            p.along.position,
+            p.along.velocity,
+            p.along.acceleration,
+            p.spot.x,
+            p.spot.y,
+            pan.position_rad,
+            tilt.position_rad,
+            pan.velocity_rad_s,
+            tilt.velocity_rad_s,
+            pan.acceleration_rad_s2,
+            tilt.acceleration_rad_s2,
+            count.pan,
+            count.tilt,
+            p.torque_nm.pan,
+            p.torque_nm.tilt
+        );
+    }
+    Ok(text)
+}
+
+impl Bench<'_> {
+    /// What an ideal encoder would count, from straight ahead.
+    pub(super) fn counts(&self, angle_rad: PanTilt<f64>) -> PanTilt<i64> {
+        angle_rad.map(|angle| (angle / self.rig.model.encoder.count_rad()).round() as i64)
+    }
+}
