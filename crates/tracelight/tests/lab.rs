@@ -156,6 +156,20 @@ fn a_moves_rows_are_on_its_course_and_count_what_an_encoder_would() {
 }
 
 #[test]
+fn the_page_on_moves_shows_what_its_commands_print() {
+    let page = std::fs::read_to_string(support::root().join("docs/moves.md")).unwrap();
+    let blocks: Vec<&str> = page.split("```text\n$ tracelight ").skip(1).collect();
+    assert!(blocks.len() >= 5, "only {} commands", blocks.len());
+    for block in blocks {
+        let (command, rest) = block.split_once('\n').unwrap();
+        let shown = rest.split_once("\n```").unwrap().0;
+        let output = run(&command.split(' ').collect::<Vec<_>>());
+        let printed = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(printed.trim_end(), shown, "{command}");
+    }
+}
+
+#[test]
 fn what_makes_no_sense_is_refused_in_a_sentence() {
     for (arguments, exit, words) in [
         ("profile --distance 180", 2, "no unit"),
