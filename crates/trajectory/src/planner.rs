@@ -4,12 +4,10 @@ use tracelight_stroke::{Drawing, Point};
 use crate::compress::compress;
 use crate::corner::Corners;
 use crate::leg::Leg;
-use crate::mark::{End, Marked, mark};
+use crate::mark::{End, Marked};
 use crate::plan::{JointMotion, LegEnd, Plan, PlanPoint, Tightest};
 use crate::retime::steady_speed;
-use crate::swing::Swing;
-use crate::tour::{Tour, TourLeg, stopped};
-use crate::travel::travel;
+use crate::tour::{NoTour, Run, Tour, TourLeg};
 use crate::{Machine, PlanError, Shape};
 
 /// Rest after the last stroke, s: the error at rest is measured over its last 0.2 s.
@@ -126,22 +124,19 @@ pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Resu
 fn at_speed(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Result<Plan, PlanError> {
     let home = PanTilt::new(0.0, 0.0);
     let mut tour = Tour::new(drawing, machine, request, home)?;
-    loop {
-        let no_way = |leg: usize| PlanError::NoWayAtSpeed {
+    let runs = tour.settle().map_err(|why| match why {
+        NoTour::Plan(error) => error,
+        NoTour::NoWay(leg) => PlanError::NoWayAtSpeed {
             stroke: tour.legs.get(leg).map_or(0, |leg| leg.stroke + 1),
             speed_m_s: request.speed_m_s,
-        };
-        let ends = tour.choose().map_err(no_way)?;
-        let mut draft = Draft::new(machine, request, home);
-        draft.lay(&tour, &ends)?;
-        if draft.blocked.is_empty() {
-            let mut plan = draft.plan;
-            linger(&mut plan.points, FINAL_REST_S);
-            plan.segments = compress(&plan.points, machine, request.tolerance_m);
-            return Ok(plan);
-        }
-        draft.blocked.iter().for_each(|&(link, ends)| tour.forbid(link, ends));
-    }
+        },
+    })?;
+    let mut draft = Draft::new(machine, request, home);
+    draft.lay(&tour, &runs)?;
+    let mut plan = draft.plan;
+    linger(&mut plan.points, FINAL_REST_S);
+    plan.segments = compress(&plan.points, machine, request.tolerance_m);
+    Ok(plan)
 }
 
 /// Where lit strokes are slowest, if that is slower than the set speed.
@@ -224,97 +219,70 @@ struct Draft<'a> {
     plan: Plan,
     machine: &'a Machine,
     request: &'a PlanRequest,
-    /// Links that turned out impossible, and with which ends: the plan is of no use then.
-    blocked: Vec<(usize, [End; 2])>,
 }
 
 impl<'a> Draft<'a> {
     fn new(machine: &'a Machine, request: &'a PlanRequest, home: PanTilt<f64>) -> Self {
         let plan = Plan { points: vec![rest(machine, home)], ..Plan::default() };
-        Self { plan, machine, request, blocked: Vec::new() }
+        Self { plan, machine, request }
     }
 
     /// All legs and what is between them.
-    fn lay(&mut self, tour: &Tour, ends: &[[End; 2]]) -> Result<(), PlanError> {
-        let mut before = End::Rest;
-        for (i, (leg, &own)) in tour.legs.iter().zip(ends).enumerate() {
-            let marked = match mark(self.machine, &leg.leg, &leg.request(self.machine, self.request, own)) {
-                // the leg itself is in reach: its run-up or run-out is not
-                Err(PlanError::Aim { .. }) if own != [End::Rest; 2] => {
-                    let next = ends.get(i + 1).map_or(End::Rest, |next| next[0]);
-                    let links = [(i, [before, own[0]], own[0]), (i + 1, [own[1], next], own[1])];
-                    let moving = links.into_iter().filter(|&(_, _, end)| end == End::Moving);
-                    self.blocked.extend(moving.map(|(link, ends, _)| (link, ends)));
-                    before = own[1];
-                    continue;
-                }
-                marked => marked?,
-            };
-            self.approach(leg, &marked, (i, [before, own[0]]))?;
-            self.draw(leg, marked, own);
+    fn lay(&mut self, tour: &Tour<'_>, runs: &[Run]) -> Result<(), PlanError> {
+        self.plan.points.reserve((tour.total_s(runs) / TICK_F64_S) as usize);
+        let mut before = None;
+        for (i, (leg, &run)) in tour.legs.iter().zip(runs).enumerate() {
+            self.approach(
+                leg,
+                tour.way(i, before, Some(run)),
+                [before.map_or(End::Rest, |run| run.end), run.start],
+            );
+            if let Some(marked) = tour.marked(i, run) {
+                self.draw(leg, marked, run.end);
+            }
             check_duration(self.plan.points.len() as f64 * TICK_F64_S)?;
-            before = own[1];
+            before = Some(run);
         }
-        if before == End::Moving {
-            let to = stopped(self.machine, &self.joints(), self.request.ramp_s);
-            self.swing(to, (tour.legs.len(), [before, End::Rest]));
-        }
+        self.go(tour.way(tour.legs.len(), before, None));
         Ok(())
     }
 
-    fn joints(&self) -> PanTilt<JointMotion> {
-        self.plan.points.last().map_or(PanTilt::default(), |point| point.joints)
+    fn go(&mut self, way: &[PanTilt<JointMotion>]) {
+        self.plan.points.extend(way.iter().map(|&joints| dark(self.machine, joints)));
     }
 
     /// The dark way to a leg, if there is one, and the rest before it up to the first lit tick.
-    fn approach(&mut self, leg: &TourLeg, marked: &Marked, link: (usize, [End; 2])) -> Result<(), PlanError> {
-        let (_, [before, after]) = link;
-        if [before, after] == [End::Rest; 2] && leg.joined && self.plan.points.last().is_some_and(|p| p.lit) {
+    fn approach(&mut self, leg: &TourLeg, way: &[PanTilt<JointMotion>], ends: [End; 2]) {
+        if ends == [End::Rest; 2] && leg.joined && self.plan.points.last().is_some_and(|p| p.lit) {
             // it begins where the one before ends: the laser stays on, as at a corner
-            return Ok(());
+            return;
         }
-        match self.request.travel {
-            DarkMove::Shaped(shape) if [before, after] == [End::Rest; 2] => {
-                let [from, to] = [self.joints(), marked.start].map(|joints| joints.map(|j| j.position_rad));
-                let way = travel(self.machine, shape, from, to)?;
-                self.plan.points.extend(way.into_iter().map(|joints| dark(self.machine, joints)));
-            }
-            _ => self.swing(marked.start, link),
-        }
-        if after == End::Rest {
+        self.go(way);
+        if ends[1] == End::Rest {
             linger(&mut self.plan.points, self.request.lift_s(self.machine));
             if let Some(last) = self.plan.points.last_mut() {
                 let spot = leg.leg.at(0.0).point;
                 *last = PlanPoint { spot, lit: true, stroke: Some(leg.stroke as u32), ..*last };
             }
         }
-        Ok(())
-    }
-
-    fn swing(&mut self, to: PanTilt<JointMotion>, link: (usize, [End; 2])) {
-        let swing = Swing::new(self.machine, self.joints(), to, self.request.swing_rise_s());
-        match swing.ticks(self.machine) {
-            Some(way) => self.plan.points.extend(way.into_iter().map(|joints| dark(self.machine, joints))),
-            None => self.blocked.push(link),
-        }
     }
 
     /// The ticks of a leg, with its way up and out.
-    fn draw(&mut self, leg: &TourLeg, marked: Marked, ends: [End; 2]) {
+    fn draw(&mut self, leg: &TourLeg, marked: &Marked, end: End) {
         let start_tick = last_tick(&self.plan);
         let set_m_s = self.request.speed_m_s;
-        self.plan.points.extend(marked.points.into_iter().map(|m| PlanPoint {
+        self.plan.points.extend(marked.points.iter().map(|m| PlanPoint {
             lit: m.lit,
             stroke: m.lit.then_some(leg.stroke as u32),
             ..assess(self.machine, m.spot, m.joints, if m.lit { m.speed_m_s / set_m_s } else { 0.0 })
         }));
-        let end = leg.leg.at(leg.leg.length_m());
-        if ends[1] == End::Rest {
+        let at = leg.leg.at(leg.leg.length_m());
+        if end == End::Rest {
             self.plan.leg_ends.push(LegEnd {
                 tick: last_tick(&self.plan),
                 start_tick,
-                point: end.point,
-                tangent: end.tangent,
+                point: at.point,
+                tangent: at.tangent,
                 length_m: leg.leg.length_m(),
             });
         }

@@ -18,8 +18,10 @@ pub(crate) struct Swing {
     longest_s: f64,
 }
 
-/// Each round takes at least 3 % off a bound that is too high.
+/// Each round takes what is too much off a bound, and at least so much of it, more with every round.
 const ROUNDS: usize = 150;
+const LEAST_SHRINK: f64 = 0.002;
+const MOST_SHRINK: f64 = 0.03;
 
 /// A swing that takes longer is none, s, unless the motors alone would already take long,
 const LONGEST_S: f64 = 5.0;
@@ -63,12 +65,13 @@ impl Swing {
     /// joint would leave its range.
     pub(crate) fn ticks(mut self, machine: &Machine) -> Option<Vec<PanTilt<JointMotion>>> {
         self.longest_s = (SLOWER * self.steered()?.duration_s()).clamp(LONGEST_S, self.longest_s);
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
             let motion = self.sampled()?;
             if !in_range(machine, &motion) {
                 return None;
             }
-            if !self.shrink(machine, &motion)? {
+            let least = (LEAST_SHRINK * 1.5f64.powi(round as i32)).min(MOST_SHRINK);
+            if !self.shrink(machine, &motion, least)? {
                 return Some(motion);
             }
         }
@@ -103,7 +106,7 @@ impl Swing {
     }
 
     /// Lowers the bounds that ask too much of a motor; false if there are none, `None` if that cannot help.
-    fn shrink(&mut self, machine: &Machine, motion: &[PanTilt<JointMotion>]) -> Option<bool> {
+    fn shrink(&mut self, machine: &Machine, motion: &[PanTilt<JointMotion>], least: f64) -> Option<bool> {
         // largest share of each motor's torque while its joint speeds up backwards and forwards
         let mut worst = PanTilt::new([0.0f64; 2], [0.0f64; 2]);
         for joints in motion {
@@ -130,7 +133,9 @@ impl Swing {
                 if now <= needed {
                     return None;
                 }
-                let share = (allowed / worst[joint][way]).clamp(0.5, 0.97);
+                let excess_nm = (worst[joint][way] - allowed) * machine.motors[joint].torque_limit_nm();
+                let excess = excess_nm / machine.own_inertia(joint, self.from.tilt.position_rad);
+                let share = (1.0 - excess / now).clamp(0.5, 1.0 - least);
                 bounds.acceleration[way] = sign * (share * now).max(needed).max(LEAST_RAD_S2);
                 bounds.jerk *= share.sqrt();
                 lowered = true;
@@ -165,13 +170,15 @@ fn first_bounds(
 ) -> Bounds {
     let inertia = machine.own_inertia(joint, from.tilt.position_rad);
     let friction = &machine.friction[joint];
-    let helped = machine.lumped.gravity(from.tilt.position_rad)[joint].abs();
-    let torque = machine.torque_share * machine.motors[joint].torque_limit_nm() + helped;
+    // gravity pulls one way: where it pulls least
+    let torque = machine.torque_share * machine.motors[joint].torque_limit_nm();
+    let gravity = [from, to].map(|end| machine.lumped.gravity(end.tilt.position_rad)[joint]);
+    let (least_nm, most_nm) = (gravity[0].min(gravity[1]), gravity[0].max(gravity[1]));
     let forwards = to[joint].position_rad >= from[joint].position_rad;
     let coulomb = if forwards { friction.coulomb_pos_nm } else { friction.coulomb_neg_nm };
     let wish = machine.acceleration_limit_rad_s2[joint];
-    let up = ((torque - coulomb) / inertia).min(wish).max(LEAST_RAD_S2);
-    let down = ((torque + coulomb) / inertia).min(wish).max(LEAST_RAD_S2);
+    let up = ((torque - coulomb - least_nm) / inertia).min(wish).max(LEAST_RAD_S2);
+    let down = ((torque + coulomb + most_nm) / inertia).min(wish).max(LEAST_RAD_S2);
     let ends = [from[joint], to[joint]].map(|end| end.acceleration_rad_s2);
     let acceleration =
         [ends.iter().fold(-down, |a, &end| a.min(end)), ends.iter().fold(up, |a, &end| a.max(end))];

@@ -96,7 +96,7 @@ struct RestToRest;
 
 fn rest_to_rest_s(from: Point, to: Point) -> f64 {
     let [from, to] = [from, to].map(|at| RestToRest.place(StrokeEnd::resting(at)));
-    RestToRest.cost(from, to)
+    RestToRest.cost(&from, &to)
 }
 
 impl Travel for RestToRest {
@@ -108,7 +108,7 @@ impl Travel for RestToRest {
         [at.x.atan2(WALL_M), at.y.atan2(at.x.hypot(WALL_M))]
     }
 
-    fn cost(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
+    fn cost(&self, from: &[f64; 2], to: &[f64; 2]) -> f64 {
         const INERTIA: f64 = 0.075;
         const COULOMB_NM: f64 = 0.05;
         const GEARED_NM_PER_A: f64 = 0.0432 * 6.3 * 2.8435;

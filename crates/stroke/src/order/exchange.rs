@@ -75,7 +75,7 @@ impl<T: Travel> Search<'_, T> {
     /// Makes the first exchange found that replaces the travel between `base` and its link by something shorter, or
     /// several that do together; returns the gain.
     pub(super) fn exchange(&mut self, base: u32) -> Option<f64> {
-        let held = self.travel(base, self.tour.link(base));
+        let held = self.held(base);
         if held > 0.0 { self.exchange_on(base, [held, held], 1) } else { None }
     }
 
@@ -90,7 +90,7 @@ impl<T: Travel> Search<'_, T> {
         if !gains && (depth == DEPTH || self.tour.len() > LARGE) {
             return None;
         }
-        let done = self.log.len();
+        let done = self.flips();
         self.perform(end, &exchange);
         let gain = match gains {
             true => Some(exchange.closed),
@@ -116,7 +116,7 @@ impl<T: Travel> Search<'_, T> {
             if v == base || v == end {
                 continue;
             }
-            let out = self.travel(v, w);
+            let out = self.held(v);
             let (open, removed) = (left + out, removed + out);
             let turns = self.tour.enters(v) == side;
             if turns {
@@ -157,7 +157,7 @@ impl<T: Travel> Search<'_, T> {
                 // the tour would fall in two
                 _ => continue,
             };
-            let out = self.travel(q, r);
+            let out = self.held(q);
             let (open, removed) = (left + out, first.removed + out);
             let closed = open - self.travel(base, r);
             if best.offer(Exchange { v, w, kind, open, closed, removed }) {

@@ -1,3 +1,4 @@
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use kurbo::{Point, Rect};
@@ -37,10 +38,26 @@ impl Neighbours {
                     }
                 }
             }
-            neighbours.list[from..].sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+            neighbours.list[from..].sort_by(cheapest_first);
+
             neighbours.first.push(neighbours.list.len() as u32);
         }
         neighbours
+    }
+
+    /// What the cheapest travel from an end costs; nothing where it has no neighbours.
+    pub(super) fn cheapest(&self, end: u32) -> f64 {
+        self.of(end).first().map_or(0.0, |&(_, cost)| cost)
+    }
+
+    /// Takes its share off each end's costs.
+    pub(super) fn discount(&mut self, shares: &[f64]) {
+        for end in 0..shares.len() as u32 {
+            let range = self.range(end);
+            let list = &mut self.list[range];
+            list.iter_mut().for_each(|(to, cost)| *cost -= shares[end as usize] + shares[*to as usize]);
+            list.sort_by(cheapest_first);
+        }
     }
 
     /// Those of one end.
@@ -51,6 +68,10 @@ impl Neighbours {
     fn range(&self, end: u32) -> Range<usize> {
         self.first[end as usize] as usize..self.first[end as usize + 1] as usize
     }
+}
+
+fn cheapest_first(a: &(u32, f64), b: &(u32, f64)) -> Ordering {
+    a.1.total_cmp(&b.1).then(a.0.cmp(&b.0))
 }
 
 /// The nearest ends of other strokes, in one quadrant around an end or all around it.

@@ -116,7 +116,7 @@ impl<C: Travel> Route<'_, C> {
     }
 
     fn between(&self, from: StrokeEnd, to: StrokeEnd) -> f64 {
-        self.cost.cost(self.cost.place(from), self.cost.place(to))
+        self.cost.cost(&self.cost.place(from), &self.cost.place(to))
     }
 
     fn choose_joint(&mut self, i: usize) -> bool {

@@ -1,6 +1,7 @@
 use kurbo::Point;
 
 use super::exchange::LEAST_GAIN;
+use super::memo::Memo;
 use super::neighbours::Neighbours;
 use super::tour::Tour;
 use super::travel::{StrokeEnd, Travel};
@@ -13,15 +14,34 @@ const LONGEST_KICK: usize = 25;
 /// nothing at the last kick. (Threshold accepting: Dueck & Scheuer, 1990.)
 const PATIENCE: f64 = 0.1;
 
+/// Costs that are remembered: what fits a core's own cache. A region's ends make more pairs, but few of them are asked for
+/// at a time.
+const MEMO: usize = 1 << 14;
+
+/// Two travels that were taken out: between `u` and `p`, and the other.
+#[derive(Clone, Copy)]
+struct Join {
+    u: u32,
+    p: u32,
+    /// What they cost.
+    held: f64,
+    other: f64,
+}
+
 /// Local search over one tour with fixed ends.
 pub(super) struct Search<'a, T: Travel> {
     pub(super) tour: Tour,
     pub(super) neighbours: Neighbours,
-    /// Joins done, each as the pair that undoes it.
-    pub(super) log: Vec<(u32, u32)>,
+    /// Joins done, each as what undoes it.
+    log: Vec<Join>,
+    /// Of each end what its travel costs.
+    held: Vec<f64>,
     /// What the cost knows of the ends; the last two belong to the depot.
     places: Vec<T::Place>,
     cost: &'a T,
+    memo: Memo,
+    /// Half of what the cheapest travel from each end costs; nothing at the end "nowhere".
+    shares: Vec<f64>,
     /// Whether moves that change the last stroke are tried: they cost a fifth of the time and matter only once.
     ends_anywhere: bool,
     waiting: Vec<u32>,
@@ -38,13 +58,20 @@ impl<'a, T: Travel> Search<'a, T> {
             tour: Tour::new((0..=strokes.len() as u32).map(|k| 2 * k).collect()),
             neighbours: Neighbours::default(),
             log: Vec::new(),
+            held: Vec::new(),
             places: ends.iter().map(|&end| cost.place(end)).collect(),
             cost,
+            memo: Memo::new(if T::IS_DEAR { MEMO } else { 1 }),
+            shares: Vec::new(),
             ends_anywhere: true,
             waiting: Vec::new(),
             is_waiting: vec![false; ends.len()],
         };
-        search.neighbours = Neighbours::of_all(&points, search.nowhere(), |a, b| search.travel(a, b));
+        search.neighbours = Neighbours::of_all(&points, search.nowhere(), |a, b| search.cost_of(a, b));
+        let ends = 0..search.places.len() as u32;
+        search.shares = ends.map(|end| 0.5 * search.neighbours.cheapest(end)).collect();
+        search.neighbours.discount(&search.shares);
+        search.hold();
         search
     }
 
@@ -70,21 +97,28 @@ impl<'a, T: Travel> Search<'a, T> {
         self.places.len() as u32 - 2
     }
 
+    /// Cost of a travel beyond what both of its ends cost at least. In every tour each end has one travel, so what is
+    /// taken off for an end is the same for all of them, and exchanges that cannot gain are told at their first step.
+    pub(super) fn travel(&self, a: u32, b: u32) -> f64 {
+        self.cost_of(a, b) - self.shares[a as usize] - self.shares[b as usize]
+    }
+
     /// Cost of a travel; always computed from the lower number to the higher, so that no asymmetry of the caller's
     /// cost makes a move and its opposite both look like a gain.
-    pub(super) fn travel(&self, a: u32, b: u32) -> f64 {
+    fn cost_of(&self, a: u32, b: u32) -> f64 {
         let nowhere = self.nowhere();
         if a == nowhere || b == nowhere {
             return 0.0;
         }
         let (from, to) = if a < b { (a, b) } else { (b, a) };
-        self.cost.cost(self.places[from as usize], self.places[to as usize])
+        let cost = || self.cost.cost(&self.places[from as usize], &self.places[to as usize]);
+        if T::IS_DEAR { self.memo.get((from, to), cost) } else { cost() }
     }
 
     /// Where a new travel from `end` may lead and what it costs, cheapest first.
     pub(super) fn ways_from(&self, end: u32) -> impl Iterator<Item = (u32, f64)> + '_ {
         let nowhere = self.nowhere();
-        let free = (self.ends_anywhere && end != nowhere).then_some((nowhere, 0.0));
+        let free = (self.ends_anywhere && end != nowhere).then(|| (nowhere, -self.shares[end as usize]));
         free.into_iter().chain(self.neighbours.of(end).iter().copied())
     }
 
@@ -107,17 +141,45 @@ impl<'a, T: Travel> Search<'a, T> {
         gained
     }
 
+    /// What the travel of an end costs.
+    pub(super) fn held(&self, end: u32) -> f64 {
+        self.held[end as usize]
+    }
+
+    /// Asks anew for what all travels of the tour cost.
+    fn hold(&mut self) {
+        let ends = 0..self.places.len() as u32;
+        self.held = ends.map(|end| self.travel(end, self.tour.link(end))).collect();
+    }
+
     /// 2-opt: the travels of `u` and `v` become one between them and one between their links.
     pub(super) fn flip(&mut self, u: u32, v: u32) {
-        let p = self.tour.link(u);
+        let (p, w) = (self.tour.link(u), self.tour.link(v));
+        self.log.push(Join { u, p, held: self.held(u), other: self.held(v) });
         self.tour.join(u, v);
-        self.log.push((u, p));
+        let costs = [self.travel(u, v), self.travel(p, w)];
+        self.put(u, v, costs[0]);
+        self.put(p, w, costs[1]);
+    }
+
+    fn put(&mut self, a: u32, b: u32, cost: f64) {
+        self.held[a as usize] = cost;
+        self.held[b as usize] = cost;
+    }
+
+    /// Number of flips that can be taken back.
+    pub(super) fn flips(&self) -> usize {
+        self.log.len()
     }
 
     /// Takes back all flips but the first `kept`.
     pub(super) fn undo(&mut self, kept: usize) {
-        for (u, p) in self.log.drain(kept..).rev() {
+        while self.log.len() > kept {
+            let Some(Join { u, p, held, other }) = self.log.pop() else { return };
+            let (v, w) = (self.tour.link(u), self.tour.link(p));
             self.tour.join(u, p);
+            self.put(u, p, held);
+            self.put(v, w, other);
         }
     }
 
@@ -143,13 +205,14 @@ impl<'a, T: Travel> Search<'a, T> {
         self.settle();
         if self.total() > whole {
             self.tour = before;
+            self.hold();
         }
     }
 
     /// Cost of the whole tour.
     pub(super) fn total(&self) -> f64 {
         let ends = 0..self.places.len() as u32;
-        0.5 * ends.map(|end| self.travel(end, self.tour.link(end))).sum::<f64>()
+        0.5 * ends.map(|end| self.cost_of(end, self.tour.link(end))).sum::<f64>()
     }
 
     /// Swaps the run of `first` strokes from `u` on with the `second` strokes after it, for as long as that does not
@@ -160,7 +223,7 @@ impl<'a, T: Travel> Search<'a, T> {
         let q = self.tour.link(f);
         let v = self.tour.far_end(q, second as usize);
         let w = self.tour.link(v);
-        let cut = self.travel(p, u) + self.travel(f, q) + self.travel(v, w);
+        let cut = self.held(u) + self.held(f) + self.held(v);
         let added = self.travel(p, q) + self.travel(v, u) + self.travel(f, w);
         self.log.clear();
         self.flip(u, w);

@@ -8,7 +8,10 @@ use crate::Path;
 /// [`place`](Self::place): a search asks for the cost of millions of travels between a few thousand places.
 pub trait Travel {
     /// All that the cost has to know of an end.
-    type Place: Copy;
+    type Place;
+
+    /// Whether a cost takes so long to compute that a search had better remember it: longer than to look something up.
+    const IS_DEAR: bool = false;
 
     /// Where a stroke may be entered or left.
     fn place(&self, end: StrokeEnd) -> Self::Place;
@@ -19,7 +22,7 @@ pub trait Travel {
     }
 
     /// From the end by which a stroke is left to the end by which another is entered.
-    fn cost(&self, from: Self::Place, to: Self::Place) -> f64;
+    fn cost(&self, from: &Self::Place, to: &Self::Place) -> f64;
 }
 
 /// Where a stroke may be entered or left, and the way it leads there.
@@ -57,7 +60,7 @@ impl<F: Fn(Point, Point) -> f64> Travel for F {
         end.point
     }
 
-    fn cost(&self, from: Point, to: Point) -> f64 {
+    fn cost(&self, &from: &Point, &to: &Point) -> f64 {
         self(from, to)
     }
 }
