@@ -2,6 +2,7 @@ use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 
 use crate::mark::BORROW;
 use crate::plan::JointMotion;
+use crate::travel::{ROUNDS, least_shrink};
 use crate::{Bounds, Machine, MovePoint, Steered, steer, steer_no_faster};
 
 /// A dark move between joints that are under way, or from or to rest: the fastest there is within each joint's own
@@ -17,11 +18,6 @@ pub(crate) struct Swing {
     /// One that takes longer is none.
     longest_s: f64,
 }
-
-/// Each round takes what is too much off a bound, and at least so much of it, more with every round.
-const ROUNDS: usize = 150;
-const LEAST_SHRINK: f64 = 0.002;
-const MOST_SHRINK: f64 = 0.03;
 
 /// A swing that takes longer is none, s, unless the motors alone would already take long,
 const LONGEST_S: f64 = 5.0;
@@ -70,8 +66,7 @@ impl Swing {
             if !in_range(machine, &motion) {
                 return None;
             }
-            let least = (LEAST_SHRINK * 1.5f64.powi(round as i32)).min(MOST_SHRINK);
-            if !self.shrink(machine, &motion, least)? {
+            if !self.shrink(machine, &motion, least_shrink(round))? {
                 return Some(motion);
             }
         }

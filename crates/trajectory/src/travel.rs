@@ -32,21 +32,36 @@ pub(crate) fn travel(
     }
     let span = PanTilt::new(to.pan - from.pan, to.tilt - from.tilt);
     let mut limits = first_limits(machine, from, span)?;
-    // each round takes at least 3 % off: 200 rounds are a factor of 400, and 20 in time
-    for _ in 0..200 {
+    for round in 0..ROUNDS {
         let profile = Profile::new(shape, 1.0, &limits);
         if !profile.duration_s().is_finite() || profile.duration_s() > LONGEST_S {
             break;
         }
         let motion = sample(&profile, from, span);
-        let worst = worst_fractions(machine, &motion, limits.acceleration);
-        if worst.speeding_up <= machine.torque_share && worst.braking <= machine.torque_share {
+        let excess = Excess::of(machine, &motion, span);
+        if excess.speeding_up <= 0.0 && excess.braking <= 0.0 {
             return Ok(motion);
         }
-        limits.acceleration *= shrink(machine.torque_share, worst.speeding_up);
-        limits.deceleration *= shrink(machine.torque_share, worst.braking);
+        let least = least_shrink(round);
+        limits.acceleration = lowered(limits.acceleration, excess.speeding_up, least);
+        limits.deceleration = lowered(limits.deceleration, excess.braking, least);
     }
     Err(too_weak(machine, from))
+}
+
+/// Each round takes what is too much off a limit, and at least this share of it, more with every round: 200 rounds are a
+/// factor of 400 at least.
+pub(crate) const ROUNDS: usize = 200;
+
+/// See [`ROUNDS`].
+pub(crate) fn least_shrink(round: usize) -> f64 {
+    const FIRST: f64 = 0.002;
+    const MOST: f64 = 0.03;
+    (FIRST * 1.5f64.powi(round.min(10) as i32)).min(MOST)
+}
+
+fn lowered(limit: f64, excess: f64, least: f64) -> f64 {
+    if excess <= 0.0 { limit } else { limit * (1.0 - excess / limit).clamp(0.5, 1.0 - least) }
 }
 
 /// About how long such a move takes, s; what gravity and coupling cost is left out.
@@ -62,10 +77,6 @@ pub(crate) fn travel_estimate_s(
         Ok(_) => 0.0,
         Err(_) => LONGEST_S,
     }
-}
-
-fn shrink(allowed: f64, got: f64) -> f64 {
-    if got <= allowed { 1.0 } else { (allowed / got).clamp(0.5, 0.97) }
 }
 
 /// Limits of the shared parameter from what each motor has at the start, friction helping to brake; optimistic about
@@ -113,26 +124,38 @@ fn sample(profile: &Profile, from: PanTilt<f64>, span: PanTilt<f64>) -> Vec<PanT
     (1..=ticks.max(1)).map(point).collect()
 }
 
-/// Largest shares of the motors' torque in each half of a move.
-struct Worst {
+/// A joint that takes less torque for each of the parameter's acceleration is not what asks too much, N m s².
+const LEAST_NM_S2: f64 = 1e-9;
+
+/// How much too high the acceleration of the shared parameter is in each half of a move, 1/s².
+struct Excess {
     speeding_up: f64,
     braking: f64,
 }
 
-fn worst_fractions(machine: &Machine, motion: &[PanTilt<JointMotion>], acceleration: f64) -> Worst {
-    let mut worst = Worst { speeding_up: 0.0, braking: 0.0 };
-    let floor = 1e-6 * acceleration;
-    for joints in motion {
-        let fraction = machine.fraction_of(joints).map(f64::abs);
-        let most = fraction.pan.max(fraction.tilt);
-        let push = |j: Joint| joints[j].acceleration_rad_s2 * joints[j].velocity_rad_s;
-        let sense = push(Joint::Pan) + push(Joint::Tilt);
-        if sense >= -floor {
-            worst.speeding_up = most.max(worst.speeding_up);
+impl Excess {
+    fn of(machine: &Machine, motion: &[PanTilt<JointMotion>], span: PanTilt<f64>) -> Self {
+        let mut excess = Self { speeding_up: 0.0, braking: 0.0 };
+        for joints in motion {
+            let fraction = machine.fraction_of(joints).map(f64::abs);
+            // torque goes with the acceleration of the parameter, and with its speed's square, which goes with it too
+            let (mass, swing) = machine.lumped.mass_and_bias(joints.tilt.position_rad, span);
+            let along = mass.times(span);
+            let too_much = |j: Joint| {
+                let torque = (fraction[j] - machine.torque_share) * machine.motors[j].torque_limit_nm();
+                torque / (along[j].abs() + swing[j].abs()).max(LEAST_NM_S2)
+            };
+            let most = too_much(Joint::Pan).max(too_much(Joint::Tilt));
+            // the joints go together: one tells for both
+            let leading = if span.pan.abs() >= span.tilt.abs() { Joint::Pan } else { Joint::Tilt };
+            let sense = joints[leading].acceleration_rad_s2 * joints[leading].velocity_rad_s;
+            if sense >= 0.0 {
+                excess.speeding_up = most.max(excess.speeding_up);
+            }
+            if sense <= 0.0 {
+                excess.braking = most.max(excess.braking);
+            }
         }
-        if sense <= floor {
-            worst.braking = most.max(worst.braking);
-        }
+        excess
     }
-    worst
 }
