@@ -66,6 +66,8 @@ pub struct MotionSettings {
     pub speed_limit_rad_s: PanTilt<f64>,
     /// Highest joint acceleration that is wished for, rad/s²; the motors decide where they allow less.
     pub acceleration_limit_rad_s2: PanTilt<f64>,
+    /// Highest jerk of each joint, from one tick to the next, rad/s³; so high that it binds nothing where there is none.
+    pub jerk_limit_rad_s3: PanTilt<f64>,
     /// Time over which the acceleration along a lit stroke builds up, s: the S of its run-up and run-down.
     pub ramp_s: f64,
     /// Rest before a stroke is lit, s.

@@ -23,6 +23,7 @@ impl RigConfig {
             torque_share: self.motion.torque_share,
             speed_limit_rad_s: self.motion.speed_limit_rad_s,
             acceleration_limit_rad_s2: self.motion.acceleration_limit_rad_s2,
+            jerk_limit_rad_s3: self.motion.jerk_limit_rad_s3,
             geometry: self.model.geometry,
             pose,
             relay_on_ticks: ticks(self.model.relay.on_s),

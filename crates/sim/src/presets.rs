@@ -46,6 +46,7 @@ impl RigConfig {
                 torque_share: 0.85,
                 speed_limit_rad_s: PanTilt::new(24.0, 24.0),
                 acceleration_limit_rad_s2: PanTilt::new(100.0, 100.0),
+                jerk_limit_rad_s3: PanTilt::new(1e9, 1e9),
                 ramp_s: 0.02,
                 settle_s: 0.04,
             },

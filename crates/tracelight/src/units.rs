@@ -71,6 +71,8 @@ pub(crate) const TIMES: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 pub(crate) const ANGULAR_SPEEDS: &[Unit] = &[("rad/s", 1.0), ("deg/s", DEG)];
 /// See [`LENGTHS`].
 pub(crate) const ANGULAR_ACCELERATIONS: &[Unit] = &[("rad/s2", 1.0), ("deg/s2", DEG)];
+/// See [`LENGTHS`].
+pub(crate) const ANGULAR_JERKS: &[Unit] = &[("rad/s3", 1.0), ("deg/s3", DEG)];
 
 /// Splits a text into number and unit and converts to SI.
 pub(crate) fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError> {

@@ -1,6 +1,6 @@
 use tracelight_aim::{AimError, HeadGeometry, HeadPose};
 use tracelight_dynamics::{Friction, Lumped, Motor};
-use tracelight_rig::{Joint, PanTilt};
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::{Point, Vec2};
 
 use crate::plan::JointMotion;
@@ -21,6 +21,8 @@ pub struct Machine {
     pub speed_limit_rad_s: PanTilt<f64>,
     /// Highest joint accelerations wished for, rad/s².
     pub acceleration_limit_rad_s2: PanTilt<f64>,
+    /// Highest jerk of each joint, from tick to tick, rad/s³; infinite where there is none.
+    pub jerk_limit_rad_s3: PanTilt<f64>,
     /// Laser and joint ranges.
     pub geometry: HeadGeometry,
     /// Where the head stands.
@@ -66,6 +68,31 @@ impl Machine {
             joints.map(|j| j.acceleration_rad_s2),
         );
         self.fraction(torque)
+    }
+
+    /// How fast the acceleration changes from one tick to the next, as a share of the highest jerk.
+    pub(crate) fn jerk_share(
+        &self,
+        before: &PanTilt<JointMotion>,
+        after: &PanTilt<JointMotion>,
+    ) -> PanTilt<f64> {
+        PanTilt::from_fn(|j| {
+            let change = after[j].acceleration_rad_s2 - before[j].acceleration_rad_s2;
+            change.abs() / (TICK_F64_S * self.jerk_limit_rad_s3[j])
+        })
+    }
+
+    /// The window that rounds an acceleration from nothing to all there is, or back, within the highest jerk, s.
+    pub(crate) fn least_ramp_s(&self) -> f64 {
+        let of_joint = |j: Joint| {
+            let friction = &self.friction[j];
+            let helped = friction.coulomb_pos_nm.abs().max(friction.coulomb_neg_nm.abs())
+                + self.lumped.gravity(0.0)[j].abs();
+            let torque = self.torque_share * self.motors[j].torque_limit_nm() + helped;
+            let most = (torque / self.own_inertia(j, 0.0)).min(self.acceleration_limit_rad_s2[j]);
+            most / self.jerk_limit_rad_s3[j]
+        };
+        of_joint(Joint::Pan).max(of_joint(Joint::Tilt))
     }
 
     /// A torque as a share of what the amplifiers can do.

@@ -80,25 +80,42 @@ impl Leg {
 
 /// A leg tick by tick.
 ///
-/// After rounding, every tick's torque is checked against the motors; where it is too much the leg is slowed down
-/// and timed again, and if that does not end, all of it is run slower.
+/// After rounding, every tick's torque and jerk are checked; where they are too much the leg is slowed down and timed again. If
+/// that does not end it is rounded more widely, where jerk is bounded, and then run slower as a whole.
 pub(crate) fn mark(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Result<Marked, PlanError> {
-    let aim = |source| PlanError::Aim { stroke: request.stroke, source };
-    let mut samples = leg.places(machine, request.speed_m_s).map_err(aim)?;
-    let allowed = machine.torque_share + BORROW;
-    let mut reach_m = 2.0 * GRID_M.min(leg.length_m() / FEWEST);
-    for _ in 0..16 {
-        let marked = in_time(machine, leg, &samples, request)?;
-        if slow_where_too_much(&mut samples, &marked.points, allowed, reach_m) {
-            return Ok(marked);
-        }
-        reach_m *= 1.3;
+    if let Some(marked) = settled(machine, leg, request)? {
+        return Ok(marked);
+    }
+    // from all there is one way to all there is the other, with something left for what the leg's own bends ask
+    let widest_s = 2.4 * machine.least_ramp_s();
+    if widest_s > request.ramp_s {
+        let run_up_s = request.run_up_s.max(0.5 * widest_s);
+        return mark(machine, leg, &MarkRequest { ramp_s: widest_s, run_up_s, ..*request });
     }
     if request.speed_m_s < SLOWEST_M_S {
         return Err(too_weak(machine, leg, request.stroke));
     }
-    let slower = MarkRequest { speed_m_s: 0.7 * request.speed_m_s, ..*request };
-    mark(machine, leg, &slower)
+    mark(machine, leg, &MarkRequest { speed_m_s: 0.7 * request.speed_m_s, ..*request })
+}
+
+/// Slowed down wherever it asks too much; none if there is no end to that.
+fn settled(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Result<Option<Marked>, PlanError> {
+    let aim = |source| PlanError::Aim { stroke: request.stroke, source };
+    let mut samples = leg.places(machine, request.speed_m_s).map_err(aim)?;
+    let allowed = machine.torque_share + BORROW;
+    let mut reach_m = 2.0 * GRID_M.min(leg.length_m() / FEWEST);
+    for round in 0..16 {
+        let marked = match in_time(machine, leg, &samples, request) {
+            // it was slowed down to nearly nothing
+            Err(PlanError::TooLong { .. }) if round > 0 => return Ok(None),
+            marked => marked?,
+        };
+        if slow_where_too_much(&mut samples, &marked.points, allowed, reach_m) {
+            return Ok(Some(marked));
+        }
+        reach_m *= 1.3;
+    }
+    Ok(None)
 }
 
 /// The motor that holds its joint worst at the leg's end.
@@ -156,7 +173,20 @@ fn in_time(
     };
     let start = at(0)?.joints;
     let points: Result<Vec<MarkPoint>, PlanError> = (1..=ticks).map(at).collect();
-    Ok(Marked { start, points: points? })
+    let mut points = points?;
+    count_jerk(machine, &start, &mut points);
+    Ok(Marked { start, points })
+}
+
+/// Counts too high a jerk like as much too high a torque.
+fn count_jerk(machine: &Machine, start: &PanTilt<JointMotion>, points: &mut [MarkPoint]) {
+    let mut before = *start;
+    for point in points {
+        let jerk = machine.jerk_share(&before, &point.joints);
+        let most = (machine.torque_share + BORROW) * jerk.pan.max(jerk.tilt);
+        point.fraction = point.fraction.max(most);
+        before = point.joints;
+    }
 }
 
 /// A spot that passes lights the way to where it is a tick later: it is lit up to the tick nearest to the leg's end.

@@ -1,4 +1,4 @@
-use tracelight_rig::{PanTilt, TICK_F64_S};
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::{Drawing, Point};
 
 use crate::compress::compress;
@@ -6,7 +6,7 @@ use crate::corner::Corners;
 use crate::leg::Leg;
 use crate::mark::{End, Marked};
 use crate::plan::{JointMotion, LegEnd, Plan, PlanPoint, Tightest};
-use crate::retime::steady_speed;
+use crate::retime::{Binding, steady_speed};
 use crate::tour::{NoTour, Run, Tour, TourLeg};
 use crate::{Machine, PlanError, Shape};
 
@@ -78,6 +78,11 @@ impl PlanRequest {
         self.settle_s.max(f64::from(relay_ticks(machine)) * TICK_F64_S)
     }
 
+    /// The same with time enough for the acceleration to build up within the highest jerk.
+    pub(crate) fn within_jerk(&self, machine: &Machine) -> Self {
+        Self { ramp_s: self.ramp_s.max(machine.least_ramp_s()), ..*self }
+    }
+
     /// How long the spot runs up to a stroke, s: past the end of the S-curve, and for the relay to have let go before it
     /// is to hold again.
     pub(crate) fn run_up_s(&self, machine: &Machine) -> f64 {
@@ -105,6 +110,7 @@ const RUN_UP_S: f64 = 0.015;
 /// begins where the one before ends may stay lit between. The result is what is executed, tick by tick.
 pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Result<Plan, PlanError> {
     check_length(drawing, request)?;
+    let request = &request.within_jerk(machine);
     let (mut request, mut tightest) = at_one_speed(drawing, machine, request)?;
     loop {
         let mut plan = at_speed(drawing, machine, &request)?;
@@ -114,8 +120,8 @@ pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Resu
             plan.tightest = tightest.map(|bend| Tightest { speed_m_s: request.speed_m_s, ..bend });
             return Ok(plan);
         };
-        // between places the motors had a little less than at them
-        request.speed_m_s *= 0.97;
+        // between places the motors had a little less than at them, and no place knows of jerk
+        request.speed_m_s *= (place.speed_m_s / request.speed_m_s).clamp(0.7, 0.97);
         tightest = tightest.or(Some(place));
     }
 }
@@ -135,6 +141,7 @@ fn at_speed(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Resu
     draft.lay(&tour, &runs)?;
     let mut plan = draft.plan;
     linger(&mut plan.points, FINAL_REST_S);
+    name_jerk(&mut plan.points, machine);
     plan.segments = compress(&plan.points, machine, request.tolerance_m);
     Ok(plan)
 }
@@ -285,6 +292,18 @@ impl<'a> Draft<'a> {
                 tangent: at.tangent,
                 length_m: leg.leg.length_m(),
             });
+        }
+    }
+}
+
+/// Names the jerk as the limit where nothing else is.
+fn name_jerk(points: &mut [PlanPoint], machine: &Machine) {
+    const BINDS: f64 = 0.9;
+    for i in 1..points.len() {
+        let share = machine.jerk_share(&points[i - 1].joints, &points[i].joints);
+        let joint = if share.pan >= share.tilt { Joint::Pan } else { Joint::Tilt };
+        if points[i].limit.is_none() && share[joint] >= BINDS {
+            points[i].limit = Some(Binding::Jerk(joint));
         }
     }
 }

@@ -178,7 +178,8 @@ fn first_bounds(
     let acceleration =
         [ends.iter().fold(-down, |a, &end| a.min(end)), ends.iter().fold(up, |a, &end| a.max(end))];
     let speed = machine.speed_limit_rad_s[joint];
-    Bounds { velocity: [-speed, speed], acceleration, jerk: up.min(down) / rise_s.max(TICK_F64_S) }
+    let jerk = (up.min(down) / rise_s.max(TICK_F64_S)).min(machine.jerk_limit_rad_s3[joint]);
+    Bounds { velocity: [-speed, speed], acceleration, jerk }
 }
 
 impl From<JointMotion> for MovePoint {

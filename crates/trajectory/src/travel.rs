@@ -32,21 +32,37 @@ pub(crate) fn travel(
     }
     let span = PanTilt::new(to.pan - from.pan, to.tilt - from.tilt);
     let mut limits = first_limits(machine, from, span)?;
+    let mut slower = 1.0;
     for round in 0..ROUNDS {
         let profile = Profile::new(shape, 1.0, &limits);
+        let profile = profile.lasting(slower * profile.duration_s());
         if !profile.duration_s().is_finite() || profile.duration_s() > LONGEST_S {
             break;
         }
         let motion = sample(&profile, from, span);
         let excess = Excess::of(machine, &motion, span);
         if excess.speeding_up <= 0.0 && excess.braking <= 0.0 {
-            return Ok(motion);
+            let jerk = worst_jerk(machine, from, &motion);
+            if jerk <= 1.0 {
+                return Ok(motion);
+            }
+            // jerk goes with the third power of the time; between ticks, where the acceleration jumps, with the second
+            slower *= jerk.cbrt().max(1.002);
+            continue;
         }
         let least = least_shrink(round);
         limits.acceleration = lowered(limits.acceleration, excess.speeding_up, least);
         limits.deceleration = lowered(limits.deceleration, excess.braking, least);
     }
     Err(too_weak(machine, from))
+}
+
+/// Largest share of the highest jerk on a move that begins at rest.
+fn worst_jerk(machine: &Machine, from: PanTilt<f64>, motion: &[PanTilt<JointMotion>]) -> f64 {
+    let start = from.map(JointMotion::at_rest);
+    let befores = std::iter::once(&start).chain(motion);
+    let shares = befores.zip(motion).map(|(before, after)| machine.jerk_share(before, after));
+    shares.map(|share| share.pan.max(share.tilt)).fold(0.0, f64::max)
 }
 
 /// Each round takes what is too much off a limit, and at least this share of it, more with every round: 200 rounds are a

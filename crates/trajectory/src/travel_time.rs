@@ -65,6 +65,7 @@ struct Rates {
 impl<'a> TravelTime<'a> {
     /// With the motors of `machine`, for plans made by `request`.
     pub fn new(machine: &'a Machine, request: &PlanRequest) -> Self {
+        let request = &request.within_jerk(machine);
         let jerk_s = JERK * request.swing_rise_s();
         Self {
             machine,

@@ -11,9 +11,11 @@ mod support;
 use support::drawings::{
     SPEED_M_S, circle, drawing, line, machine, mixed, places_and_speeds_belong_together, request,
 };
-use tracelight_rig::Joint;
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::Drawing;
-use tracelight_trajectory::{Binding, LitSpeed, Plan, PlanError, PlanRequest, Ramps, Shape, plan};
+use tracelight_trajectory::{
+    Binding, DarkMove, LitSpeed, Machine, Plan, PlanError, PlanRequest, Ramps, Shape, plan,
+};
 
 fn made(shape: Shape) -> Plan {
     plan(&mixed(), &machine(), &request(shape)).unwrap()
@@ -145,4 +147,37 @@ fn the_reports_wish_needs_a_hundred_volts() {
     let wishes = machine().impossible_wishes(0.4636);
     let needs = |j: Joint| wishes.iter().find(|w| w.joint == j).unwrap().needed_v;
     assert!((needs(Joint::Pan) - 123.0).abs() < 1.0 && (needs(Joint::Tilt) - 98.0).abs() < 1.0);
+}
+
+#[test]
+fn a_bound_on_jerk_holds_from_tick_to_tick() {
+    let free = plan(&mixed(), &machine(), &request(Shape::Ramped(Ramps::REPORT))).unwrap();
+    for lit_speed in [LitSpeed::Fastest, LitSpeed::Exact, LitSpeed::Stops] {
+        for (most, travel) in [
+            (2000.0, DarkMove::Shaped(Shape::Ramped(Ramps::REPORT))),
+            (300.0, DarkMove::Shaped(Shape::Quintic)),
+            (300.0, DarkMove::Shaped(Shape::Ramped(Ramps::NONE))),
+            (1000.0, DarkMove::Optimal),
+        ] {
+            let bound = Machine { jerk_limit_rad_s3: PanTilt::new(most, 0.8 * most), ..machine() };
+            let request = PlanRequest { lit_speed, travel, ..request(Shape::Sine) };
+            let plan = plan(&mixed(), &bound, &request).unwrap();
+            let jerks = plan.points.windows(2).map(|pair| {
+                let jerk = |j: Joint| {
+                    let [from, to] = [0, 1].map(|i: usize| pair[i].joints[j].acceleration_rad_s2);
+                    (to - from).abs() / TICK_F64_S / bound.jerk_limit_rad_s3[j]
+                };
+                jerk(Joint::Pan).max(jerk(Joint::Tilt))
+            });
+            let worst = jerks.fold(0.0, f64::max);
+            assert!(
+                worst <= 1.0 + 1e-6 && (worst > 0.5 || most > 1000.0),
+                "{lit_speed:?} {most} {travel:?}: {worst}"
+            );
+            let slower = plan.duration_s() / free.duration_s();
+            assert!(slower > if most < 1000.0 { 1.05 } else { 0.99 }, "{lit_speed:?} {most}: {slower}");
+            let is_named = plan.points.iter().any(|p| matches!(p.limit, Some(Binding::Jerk(_))));
+            assert!(is_named || most > 500.0, "{lit_speed:?} {most}");
+        }
+    }
 }

@@ -46,6 +46,8 @@ const fn limit_colour(limit: Option<Binding>) -> &'static str {
         Some(Binding::Torque(Joint::Tilt)) => "#e8a33d",
         Some(Binding::Acceleration(Joint::Pan)) => "#238b57",
         Some(Binding::Acceleration(Joint::Tilt)) => "#7cc29a",
+        Some(Binding::Jerk(Joint::Pan)) => "#b0136f",
+        Some(Binding::Jerk(Joint::Tilt)) => "#e08ac0",
         Some(Binding::JointSpeed(Joint::Pan)) => "#6a3d9a",
         Some(Binding::JointSpeed(Joint::Tilt)) => "#b79ad6",
     }

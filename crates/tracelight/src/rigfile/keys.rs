@@ -2,7 +2,7 @@
 
 use tracelight_sim::{Model, RigConfig};
 
-use crate::units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, LENGTHS, TIMES, Unit};
+use crate::units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_JERKS, ANGULAR_SPEEDS, LENGTHS, TIMES, Unit};
 
 /// The field a key sets.
 #[derive(Clone, Copy)]
@@ -193,7 +193,7 @@ pub(super) fn model_keys() -> Vec<Key<Model>> {
 }
 
 /// Keys of `[truth.wear]`, `[control]` and `[motion]`.
-pub(super) const RIG_KEYS: [Key<RigConfig>; 17] = [
+pub(super) const RIG_KEYS: [Key<RigConfig>; 19] = [
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),
@@ -254,6 +254,16 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 17] = [
     ),
     real("motion.tilt_acceleration", ANGULAR_ACCELERATIONS, (1e-3, 1e6), "the same for tilt", |r| {
         &mut r.motion.acceleration_limit_rad_s2.tilt
+    }),
+    real(
+        "motion.pan_jerk",
+        ANGULAR_JERKS,
+        (10.0, 1e9),
+        "highest jerk of pan, from tick to tick; 1e9 is none",
+        |r| &mut r.motion.jerk_limit_rad_s3.pan,
+    ),
+    real("motion.tilt_jerk", ANGULAR_JERKS, (10.0, 1e9), "the same for tilt", |r| {
+        &mut r.motion.jerk_limit_rad_s3.tilt
     }),
     real(
         "motion.ramp",

@@ -17,6 +17,7 @@ pub(crate) fn machine() -> Machine {
         torque_share: 0.85,
         speed_limit_rad_s: PanTilt::new(24.0, 24.0),
         acceleration_limit_rad_s2: PanTilt::new(100.0, 100.0),
+        jerk_limit_rad_s3: PanTilt::new(f64::INFINITY, f64::INFINITY),
         geometry: HeadGeometry {
             laser_offset_m: [0.02, 0.005, 0.01],
             range_rad: PanTilt::new((-3.1, 3.1), (-1.6, 1.6)),

@@ -170,6 +170,8 @@ const fn limit_class(limit: Binding) -> &'static str {
         Binding::Torque(Joint::Tilt) => "binds-torque-tilt",
         Binding::Acceleration(Joint::Pan) => "binds-acceleration-pan",
         Binding::Acceleration(Joint::Tilt) => "binds-acceleration-tilt",
+        Binding::Jerk(Joint::Pan) => "binds-jerk-pan",
+        Binding::Jerk(Joint::Tilt) => "binds-jerk-tilt",
         Binding::JointSpeed(Joint::Pan) => "binds-speed-pan",
         Binding::JointSpeed(Joint::Tilt) => "binds-speed-tilt",
     }
