@@ -48,7 +48,8 @@ pub(crate) fn steady_speed(machine: &Machine, samples: &[PathSample]) -> (f64, u
     let mut slowest = (f64::INFINITY, 0);
     for (i, sample) in samples.iter().enumerate() {
         let ways = sample.joints.first.map(|first| if first < 0.0 { -1.0 } else { 1.0 });
-        let speed = limits::Place::new(machine, sample).rows(machine, ways).steady_most();
+        let speed =
+            limits::Place::new(machine, sample).rows::<{ limits::OF_JOINTS }>(machine, ways).steady_most();
         if speed < slowest.0 {
             slowest = (speed, i);
         }

@@ -106,8 +106,8 @@ impl Place {
     }
 
     /// The limits while the joints turn the given ways (+1 or −1).
-    pub(super) fn rows(&self, machine: &Machine, ways: PanTilt<f64>) -> Rows {
-        let mut rows = Rows { rows: [Row::FREE; 5], count: 0, speed_most: self.speed_most };
+    pub(super) fn rows<const N: usize>(&self, machine: &Machine, ways: PanTilt<f64>) -> Rows<N> {
+        let mut rows = Rows { rows: [Row::FREE; N], count: 0, speed_most: self.speed_most };
         for j in Joint::BOTH {
             let JointTorque { a, b, c, first, second } = self.torque[j];
             let friction = &machine.friction[j];
@@ -173,15 +173,19 @@ impl Row {
     }
 }
 
-/// All limits at one place: on the acceleration u = s̈ at a speed v = ṡ, and on the speed itself.
+/// Rows of the joints: torque and acceleration of both.
+pub(super) const OF_JOINTS: usize = 4;
+
+/// All limits at one place: on the acceleration u = s̈ at a speed v = ṡ, and on the speed itself. There is room for `N` of
+/// them, [`OF_JOINTS`] or one more: the passes are as fast as memory lets them.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rows {
-    rows: [Row; 5],
+pub(super) struct Rows<const N: usize> {
+    rows: [Row; N],
     count: usize,
     pub(super) speed_most: f64,
 }
 
-impl Rows {
+impl<const N: usize> Rows<N> {
     /// Adds |a·u + b·v² + d·v + c| ≤ most.
     fn push(&mut self, [a, b, d, c]: [f64; 4], most: f64) {
         // where a joint does not move along the path, as where it turns round, only the speed is bounded

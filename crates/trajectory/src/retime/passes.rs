@@ -1,38 +1,33 @@
 use tracelight_rig::{Joint, PanTilt};
 
-use super::limits::{AlongLimits, PathSample, Place, Rows};
+use super::limits::{AlongLimits, OF_JOINTS, PathSample, Place, Rows};
 use crate::{Machine, PlanError};
 
 /// A stretch between two neighbouring places. The acceleration goes in a straight line over s from one end to the
 /// other, and keeps to the limits at both.
 #[derive(Clone, Copy)]
-struct Cell<'a> {
+struct Cell<'a, const N: usize> {
     /// Length.
     h: f64,
-    start: &'a Rows,
-    end: &'a Rows,
+    start: &'a Rows<N>,
+    end: &'a Rows<N>,
 }
 
 /// The limits along a path. Where a joint turns round, friction jumps: the cell before and the cell after have limits
 /// of their own there.
-struct Limits {
-    rows: Vec<Rows>,
+struct Limits<const N: usize> {
+    rows: Vec<Rows<N>>,
     /// Of every cell its length and where its start's and its end's limits are.
     cells: Vec<(f64, u32, u32)>,
 }
 
-impl Limits {
-    fn cells(&self) -> impl DoubleEndedIterator<Item = Cell<'_>> + ExactSizeIterator {
+impl<const N: usize> Limits<N> {
+    fn cells(&self) -> impl DoubleEndedIterator<Item = Cell<'_, N>> + ExactSizeIterator {
         let rows = |i: u32| &self.rows[i as usize];
         self.cells.iter().map(move |&(h, start, end)| Cell { h, start: rows(start), end: rows(end) })
     }
 
     fn of(machine: &Machine, samples: &[PathSample], along: Option<&AlongLimits>) -> Result<Self, PlanError> {
-        let rows = |place: &Place, ways| {
-            let mut rows = place.rows(machine, ways);
-            along.into_iter().for_each(|limits| rows.bound_along(limits));
-            rows
-        };
         let mut limits = Self {
             rows: Vec::with_capacity(samples.len() + samples.len() / 8),
             cells: Vec::with_capacity(samples.len()),
@@ -43,14 +38,17 @@ impl Limits {
             let ways = PanTilt::from_fn(|j| (pair[0].joints.first[j] + pair[1].joints.first[j]).signum());
             if let (Some(place), true) = (place, ways != last_ways) {
                 check_strength(machine, &place, ways)?;
-                limits.rows.push(rows(&place, ways));
+                limits.rows.push(place.rows(machine, ways));
             }
             let next = Place::new(machine, &pair[1]);
             check_strength(machine, &next, ways)?;
-            limits.rows.push(rows(&next, ways));
+            limits.rows.push(next.rows(machine, ways));
             let end = limits.rows.len() as u32 - 1;
             limits.cells.push((pair[1].s - pair[0].s, end - 1, end));
             (place, last_ways) = (Some(next), ways);
+        }
+        if let Some(along) = along {
+            limits.rows.iter_mut().for_each(|rows| rows.bound_along(along));
         }
         Ok(limits)
     }
@@ -88,11 +86,17 @@ pub(super) struct Speeds {
 pub(super) fn fastest(
     machine: &Machine,
     samples: &[PathSample],
-    [first, last]: [f64; 2],
+    ends: [f64; 2],
     along: Option<&AlongLimits>,
 ) -> Result<Speeds, PlanError> {
-    let limits = Limits::of(machine, samples, along)?;
-    let (ceiling, middle) = ceilings(&limits, last);
+    match along {
+        None => Ok(within(&Limits::<OF_JOINTS>::of(machine, samples, None)?, ends)),
+        Some(_) => Ok(within(&Limits::<{ OF_JOINTS + 1 }>::of(machine, samples, along)?, ends)),
+    }
+}
+
+fn within<const N: usize>(limits: &Limits<N>, [first, last]: [f64; 2]) -> Speeds {
+    let (ceiling, middle) = ceilings(limits, last);
     let mut v = Vec::with_capacity(ceiling.len());
     let mut u = Vec::with_capacity(middle.len());
     v.push(first.min(ceiling[0]));
@@ -101,12 +105,12 @@ pub(super) fn fastest(
         v.push(next);
         u.push(ends);
     }
-    Ok(Speeds { v, u })
+    Speeds { v, u }
 }
 
 /// For every place the highest speed from which the end can be reached at `last` or less, and for every cell the
 /// highest v² + h·u at its start.
-fn ceilings(limits: &Limits, last: f64) -> (Vec<f64>, Vec<f64>) {
+fn ceilings<const N: usize>(limits: &Limits<N>, last: f64) -> (Vec<f64>, Vec<f64>) {
     let count = limits.cells.len();
     let mut ceiling = vec![0.0; count + 1];
     let mut middle = vec![0.0; count];
@@ -124,7 +128,7 @@ fn ceilings(limits: &Limits, last: f64) -> (Vec<f64>, Vec<f64>) {
     (ceiling, middle)
 }
 
-impl Cell<'_> {
+impl<const N: usize> Cell<'_, N> {
     /// The highest speed at the end when it is entered at `v`, and the accelerations at both ends.
     fn onwards(&self, v: f64, middle: f64, ceiling: f64) -> (f64, [f64; 2]) {
         let (low, high) = self.start.range(v);
