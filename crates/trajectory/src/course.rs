@@ -280,9 +280,9 @@ const DENSE: usize = 2000;
 
 /// How far along a leg the head can follow, m.
 fn first_out_of_reach(machine: &Machine, leg: &Leg) -> f64 {
-    const PLACES: u32 = 1000;
-    let at = |i: u32| f64::from(i) / f64::from(PLACES) * leg.length_m();
-    (0..=PLACES).map(at).find(|&s| leg.joints_at(machine, s).is_err()).unwrap_or(leg.length_m())
+    let places = (leg.length_m() / GRID_M).clamp(FEWEST, 1e5).ceil() as u32;
+    let at = |i: u32| f64::from(i) / f64::from(places) * leg.length_m();
+    (0..=places).map(at).find(|&s| leg.joints_at(machine, s).is_err()).unwrap_or(leg.length_m())
 }
 
 #[cfg(test)]

@@ -87,7 +87,7 @@ pub(crate) fn mark(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Resul
         return Ok(marked);
     }
     // from all there is one way to all there is the other, with something left for what the leg's own bends ask
-    let widest_s = 2.4 * machine.least_ramp_s();
+    let widest_s = WIDEN * machine.least_ramp_s();
     if widest_s > request.ramp_s {
         let run_up_s = request.run_up_s.max(0.5 * widest_s);
         return mark(machine, leg, &MarkRequest { ramp_s: widest_s, run_up_s, ..*request });
@@ -98,18 +98,28 @@ pub(crate) fn mark(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Resul
     mark(machine, leg, &MarkRequest { speed_m_s: 0.7 * request.speed_m_s, ..*request })
 }
 
+/// The widest window that rounds, in the least that jerk asks for.
+const WIDEN: f64 = 2.4;
+
 /// Slowed down wherever it asks too much; none if there is no end to that.
 fn settled(machine: &Machine, leg: &Leg, request: &MarkRequest) -> Result<Option<Marked>, PlanError> {
     let aim = |source| PlanError::Aim { stroke: request.stroke, source };
     let mut samples = leg.places(machine, request.speed_m_s).map_err(aim)?;
     let allowed = machine.torque_share + BORROW;
     let mut reach_m = 2.0 * GRID_M.min(leg.length_m() / FEWEST);
-    for round in 0..16 {
+    let can_widen = WIDEN * machine.least_ramp_s() > request.ramp_s;
+    let mut longest = usize::MAX;
+    for _ in 0..16 {
         let marked = match in_time(machine, leg, &samples, request) {
             // it was slowed down to nearly nothing
-            Err(PlanError::TooLong { .. }) if round > 0 => return Ok(None),
+            Err(PlanError::TooLong { .. }) if longest < usize::MAX => return Ok(None),
             marked => marked?,
         };
+        // jerk where it is slow anyway is no less where it is slower still
+        if can_widen && marked.points.len() > longest {
+            return Ok(None);
+        }
+        longest = longest.min(2 * marked.points.len());
         if slow_where_too_much(&mut samples, &marked.points, allowed, reach_m) {
             return Ok(Some(marked));
         }

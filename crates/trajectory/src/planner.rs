@@ -115,7 +115,7 @@ pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Resu
     loop {
         let mut plan = at_speed(drawing, machine, &request)?;
         plan.set_speed_m_s = request.speed_m_s;
-        let uneven = if request.lit_speed == LitSpeed::Exact { slowest_place(&plan) } else { None };
+        let uneven = if request.lit_speed == LitSpeed::Exact { slowest_place(machine, &plan) } else { None };
         let Some(place) = uneven.filter(|_| request.speed_m_s > SLOWEST_M_S) else {
             plan.tightest = tightest.map(|bend| Tightest { speed_m_s: request.speed_m_s, ..bend });
             return Ok(plan);
@@ -147,13 +147,18 @@ fn at_speed(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Resu
 }
 
 /// Where lit strokes are slowest, if that is slower than the set speed.
-fn slowest_place(plan: &Plan) -> Option<Tightest> {
+fn slowest_place(machine: &Machine, plan: &Plan) -> Option<Tightest> {
+    // by how fast the joints turn: where the line breaks a little, from tick to tick the spot takes a short cut
+    let speed_m_s = |p: &PlanPoint| {
+        let [a, b] = machine.geometry.jacobian(&machine.pose, p.joints.map(|j| j.position_rad))?;
+        Some((a * p.joints.pan.velocity_rad_s + b * p.joints.tilt.velocity_rad_s).hypot())
+    };
     let lit = plan.points.windows(2).filter(|pair| pair[0].lit && pair[1].lit);
     let places = lit.map(|pair| Tightest {
         stroke: pair[0].stroke.unwrap_or(0) as usize,
         point: pair[0].spot,
         radius_m: f64::INFINITY,
-        speed_m_s: pair[0].spot.distance(pair[1].spot) / TICK_F64_S,
+        speed_m_s: speed_m_s(&pair[0]).unwrap_or(f64::INFINITY),
     });
     let slowest = places.min_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s))?;
     (slowest.speed_m_s < (1.0 - EVEN) * plan.set_speed_m_s).then_some(slowest)

@@ -29,7 +29,7 @@ const SLOWER: f64 = 6.0;
 const LONGEST_OF_ALL_S: f64 = 60.0;
 
 /// Of a motor that can hardly move its joint, rad/s².
-const LEAST_RAD_S2: f64 = 1e-3;
+pub(crate) const LEAST_RAD_S2: f64 = 1e-3;
 
 impl Swing {
     /// With what the motors have where it starts; acceleration builds up over `rise_s`.

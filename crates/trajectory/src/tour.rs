@@ -54,6 +54,8 @@ pub(crate) struct Tour<'a> {
     /// Before each leg, and after the last.
     links: Vec<Link>,
     excess: Excess,
+    /// Why something that was looked at cannot be.
+    refused: Option<PlanError>,
 }
 
 /// A leg of the tour.
@@ -97,7 +99,7 @@ impl<'a> Tour<'a> {
             }
         }
         let links = Vec::with_capacity(legs.len() + 1);
-        let mut tour = Self { machine, request, home, links, legs, excess: Excess::default() };
+        let mut tour = Self { machine, request, home, links, legs, excess: Excess::default(), refused: None };
         for i in 0..=tour.legs.len() {
             let link = tour.estimated(i);
             tour.links.push(link);
@@ -111,7 +113,8 @@ impl<'a> Tour<'a> {
         let mut is_first = true;
         loop {
             // what was not looked at yet may turn out slower, hardly faster: there is no more to be hoped for than that
-            let (runs, hoped_s) = self.choose().map_err(NoTour::NoWay)?;
+            let no_tour = |leg| self.refused.map_or(NoTour::NoWay(leg), NoTour::Plan);
+            let (runs, hoped_s) = self.choose().map_err(no_tour)?;
             check_duration(hoped_s).map_err(NoTour::Plan)?;
             let is_exact = self.is_exact(&runs).map_err(NoTour::Plan)?;
             if is_exact || self.total_s(&runs) <= (1.0 + ENOUGH) * hoped_s {
@@ -148,13 +151,21 @@ impl<'a> Tour<'a> {
     /// Times legs and links of a choice tick by tick; whether all of them are what they were taken for.
     fn is_exact(&mut self, runs: &[Run]) -> Result<bool, PlanError> {
         let mut is_exact = true;
+        let mut drawn_s = 0.0;
         for (leg, &run) in self.legs.iter_mut().zip(runs) {
-            is_exact &= leg.look_closer(self.machine, self.request, run)?;
+            is_exact &= leg.look_closer(self.machine, self.request, run).unwrap_or_else(|error| {
+                self.refused = Some(error);
+                false
+            });
+            let exact_s = leg.drawn_s[run.index()];
+            drawn_s += if exact_s.is_finite() { exact_s } else { 0.0 };
+            // before all memory is full of it
+            check_duration(drawn_s)?;
         }
         let befores = std::iter::once(None).chain(runs.iter().copied().map(Some));
         let afters = runs.iter().copied().map(Some).chain(std::iter::once(None));
         for (i, (before, after)) in befores.zip(afters).enumerate() {
-            is_exact &= self.look_closer(i, before, after)?;
+            is_exact &= self.look_closer(i, before, after);
         }
         Ok(is_exact)
     }
@@ -257,7 +268,10 @@ impl TourLeg {
         *drawn_s = match mark(machine, &self.leg, &request) {
             // the leg itself is in reach: its run-up or run-out is not
             Err(PlanError::Aim { .. }) if run.ends() != [End::Rest; 2] => f64::INFINITY,
-            Err(error) => return Err(error),
+            Err(error) => {
+                *drawn_s = f64::INFINITY;
+                return Err(error);
+            }
             Ok(ticks) => marked.insert(ticks).points.len() as f64 * TICK_F64_S,
         };
         Ok(is_near(*drawn_s, known_s))

@@ -2,6 +2,7 @@ use tracelight_aim::SpotMotion;
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::{Point, StrokeEnd, Travel, Vec2};
 
+use crate::swing::LEAST_RAD_S2;
 use crate::travel::touches;
 use crate::{DarkMove, LitSpeed, Machine, MoveLimits, PlanRequest, Profile, Ramps, Shape};
 
@@ -243,9 +244,6 @@ fn over_a_trapezoid(travel: DarkMove) -> f64 {
         DarkMove::Optimal => 1.0,
     }
 }
-
-/// Of a motor that can hardly start its joint, rad/s²: slow, but no division by zero.
-const LEAST_RAD_S2: f64 = 1e-3;
 
 impl Travel for TravelTime<'_> {
     type Place = Option<Aimed>;

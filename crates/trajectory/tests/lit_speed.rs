@@ -233,3 +233,16 @@ fn what_cannot_be_passed_at_speed_is_named() {
     let fastest = PlanRequest { lit_speed: LitSpeed::Fastest, ..request };
     plan(&drawing([line(&[(0.0, 0.0), (0.17, 0.0)])]), &narrow, &fastest).unwrap();
 }
+
+#[test]
+fn small_breaks_that_are_passed_slow_nothing_down() {
+    // a circle of 24 lines: from one tick to the next across a break the spot takes a short cut, which is no slower
+    let corner = |i: u32| {
+        let angle = f64::from(i) / 24.0 * std::f64::consts::TAU;
+        (0.0435 * angle.cos(), 0.0435 * angle.sin())
+    };
+    let corners: Vec<_> = (0..24).map(corner).collect();
+    let request = PlanRequest { lit_speed: LitSpeed::Exact, speed_m_s: 0.03, ..request(Shape::Sine) };
+    let plan = plan(&drawing([line(&corners)]), &machine(), &request).unwrap();
+    assert!((plan.set_speed_m_s - 0.03).abs() < 3e-5, "{} m/s", plan.set_speed_m_s);
+}

@@ -177,7 +177,16 @@ fn a_bound_on_jerk_holds_from_tick_to_tick() {
             let slower = plan.duration_s() / free.duration_s();
             assert!(slower > if most < 1000.0 { 1.05 } else { 0.99 }, "{lit_speed:?} {most}: {slower}");
             let is_named = plan.points.iter().any(|p| matches!(p.limit, Some(Binding::Jerk(_))));
-            assert!(is_named || most > 500.0, "{lit_speed:?} {most}");
+            // rounded more widely than it must be, a stop may stay below
+            assert!(is_named || most > 500.0 || lit_speed == LitSpeed::Stops, "{lit_speed:?} {most}");
         }
     }
+}
+
+#[test]
+fn one_joint_without_jerk_does_not_make_the_other_crawl() {
+    let bound = Machine { jerk_limit_rad_s3: PanTilt::new(100.0, f64::INFINITY), ..machine() };
+    let request = PlanRequest { lit_speed: LitSpeed::Stops, ..request(Shape::Sine) };
+    let plan = plan(&drawing([line(&[(0.0, 0.0), (0.1, 0.0)])]), &bound, &request).unwrap();
+    assert!(plan.lit_s() < 1.0, "0.33 s at the set speed take {} s", plan.lit_s());
 }

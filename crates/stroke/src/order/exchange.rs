@@ -32,7 +32,7 @@ struct Exchange {
     open: f64,
     /// What is gained in all.
     closed: f64,
-    /// The travels taken out, this exchange's and those before it.
+    /// What the travels taken out cost in full, this exchange's and those before it.
     removed: f64,
 }
 
@@ -76,7 +76,7 @@ impl<T: Travel> Search<'_, T> {
     /// several that do together; returns the gain.
     pub(super) fn exchange(&mut self, base: u32) -> Option<f64> {
         let held = self.held(base);
-        if held > 0.0 { self.exchange_on(base, [held, held], 1) } else { None }
+        if held > 0.0 { self.exchange_on(base, [held, self.full(base)], 1) } else { None }
     }
 
     /// `open` is what the exchanges so far have gained, the travel from `base` to its link not counted, `removed` the
@@ -117,7 +117,7 @@ impl<T: Travel> Search<'_, T> {
                 continue;
             }
             let out = self.held(v);
-            let (open, removed) = (left + out, removed + out);
+            let (open, removed) = (left + out, removed + self.full(v));
             let turns = self.tour.enters(v) == side;
             if turns {
                 let closed = open - self.travel(base, w);
@@ -158,7 +158,7 @@ impl<T: Travel> Search<'_, T> {
                 _ => continue,
             };
             let out = self.held(q);
-            let (open, removed) = (left + out, first.removed + out);
+            let (open, removed) = (left + out, first.removed + self.full(q));
             let closed = open - self.travel(base, r);
             if best.offer(Exchange { v, w, kind, open, closed, removed }) {
                 return true;

@@ -17,9 +17,9 @@ impl Memo {
     /// What is remembered of a pair, or what `cost` says.
     pub(super) fn get(&self, (from, to): (u32, u32), cost: impl FnOnce() -> f64) -> f64 {
         let pair = u64::from(from) << 32 | u64::from(to);
-        // Fibonacci hashing: the high bits of the product depend on all of the pair's
-        let hash = pair.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
-        let slot = &self.slots[hash as usize & (self.slots.len() - 1)];
+        // Fibonacci hashing: the highest bits of the product depend on all of the pair's
+        let hash = pair.wrapping_mul(0x9E37_79B9_7F4A_7C15).checked_shr(64 - self.slots.len().ilog2());
+        let slot = &self.slots[hash.unwrap_or(0) as usize];
         let (known, remembered) = slot.get();
         if known == pair {
             return remembered;

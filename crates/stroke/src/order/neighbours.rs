@@ -55,7 +55,10 @@ impl Neighbours {
         for end in 0..shares.len() as u32 {
             let range = self.range(end);
             let list = &mut self.list[range];
-            list.iter_mut().for_each(|(to, cost)| *cost -= shares[end as usize] + shares[*to as usize]);
+            for (to, cost) in list.iter_mut() {
+                let (a, b) = (end.min(*to), end.max(*to));
+                *cost -= shares[a as usize] + shares[b as usize];
+            }
             list.sort_by(cheapest_first);
         }
     }

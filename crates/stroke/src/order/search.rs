@@ -100,7 +100,15 @@ impl<'a, T: Travel> Search<'a, T> {
     /// Cost of a travel beyond what both of its ends cost at least. In every tour each end has one travel, so what is
     /// taken off for an end is the same for all of them, and exchanges that cannot gain are told at their first step.
     pub(super) fn travel(&self, a: u32, b: u32) -> f64 {
-        self.cost_of(a, b) - self.shares[a as usize] - self.shares[b as usize]
+        let (a, b) = (a.min(b), a.max(b));
+        // rounded in one way only, wherever it is computed: an exchange and its opposite must not both look like a gain
+        self.cost_of(a, b) - (self.shares[a as usize] + self.shares[b as usize])
+    }
+
+    /// What the travel of an end costs in full: beside it what rounding does is nothing.
+    pub(super) fn full(&self, end: u32) -> f64 {
+        let link = self.tour.link(end);
+        self.held(end) + self.shares[end as usize] + self.shares[link as usize]
     }
 
     /// Cost of a travel; always computed from the lower number to the higher, so that no asymmetry of the caller's
@@ -224,6 +232,7 @@ impl<'a, T: Travel> Search<'a, T> {
         let v = self.tour.far_end(q, second as usize);
         let w = self.tour.link(v);
         let cut = self.held(u) + self.held(f) + self.held(v);
+        let rounding = LEAST_GAIN * (self.full(u) + self.full(f) + self.full(v));
         let added = self.travel(p, q) + self.travel(v, u) + self.travel(f, w);
         self.log.clear();
         self.flip(u, w);
@@ -231,7 +240,7 @@ impl<'a, T: Travel> Search<'a, T> {
         self.flip(v, u);
         [p, u, f, q, v, w].into_iter().for_each(|end| self.wait(end));
         let gain = cut - added + self.mend();
-        if gain < -patience - LEAST_GAIN * cut {
+        if gain < -patience - rounding {
             self.undo(0);
         }
     }

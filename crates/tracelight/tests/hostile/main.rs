@@ -174,6 +174,25 @@ fn a_command_that_is_none_is_refused() {
 }
 
 #[test]
+fn a_drawing_full_of_ties_is_put_in_order() {
+    // what rounding makes of equal costs must not look like a gain, over and over
+    let folder = folder("ties");
+    let square = |i: u32| {
+        let (x, y) = (20 + 7 * (i / 40), 20 + 7 * (i % 40));
+        let (right, down) = (x + 5, y + 5);
+        format!(
+            "<polyline fill=\"none\" stroke=\"black\" points=\"{x},{y} {right},{y} {right},{down} {x},{down} {x},{y}\"/>"
+        )
+    };
+    let squares: String = (0..1600).map(square).collect();
+    let head =
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"400mm\" height=\"400mm\" viewBox=\"0 0 400 400\">";
+    write(&folder, "squares.svg", format!("{head}{squares}</svg>").as_bytes());
+    let ending = run(&folder, &["plan".to_owned(), "squares.svg".to_owned()]);
+    assert!(ending.code == Some(0) && !ending.late, "{:?} {}", ending.code, ending.stderr);
+}
+
+#[test]
 fn a_broken_rig_file_is_refused_by_name() {
     let folder = folder("rigs");
     let shown = run(&folder, &["rigs", "show", "report"].map(str::to_owned));

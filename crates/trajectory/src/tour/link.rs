@@ -117,23 +117,21 @@ impl Tour<'_> {
     }
 
     /// Times a link between legs that are timed; whether it takes what it was taken for.
-    pub(super) fn look_closer(
-        &mut self,
-        i: usize,
-        before: Option<Run>,
-        after: Option<Run>,
-    ) -> Result<bool, PlanError> {
+    pub(super) fn look_closer(&mut self, i: usize, before: Option<Run>, after: Option<Run>) -> bool {
         let [from, to] = [before, after].map(index);
         let known_s = self.links[i].seconds[from][to];
         if is_known(&self.links[i].ways, from, to) || known_s.is_infinite() {
-            return Ok(true);
+            return true;
         }
-        let Some(motions) = self.around(i, before, after) else { return Ok(false) };
+        let Some(motions) = self.around(i, before, after) else { return false };
         let ends = [before.map_or(End::Rest, |run| run.end), after.map_or(End::Rest, |run| run.start)];
         let stays_lit = ends == [End::Rest; 2] && self.legs.get(i).is_none_or(|leg| leg.joined);
         let way = match stays_lit {
             true => Some(Way::new()),
-            false => dark_way(self.machine, self.request, motions, ends)?,
+            false => dark_way(self.machine, self.request, motions, ends).unwrap_or_else(|error| {
+                self.refused = Some(error);
+                None
+            }),
         };
         let settles = ends[1] == End::Rest && after.is_some() && !stays_lit;
         let lift_s = if settles { self.request.lift_s(self.machine) } else { 0.0 };
@@ -149,7 +147,7 @@ impl Tour<'_> {
                 time_s
             }
         };
-        Ok(is_near(link.seconds[from][to], known_s))
+        is_near(link.seconds[from][to], known_s)
     }
 
     /// How the joints move before a link and after it, if the legs there are timed.

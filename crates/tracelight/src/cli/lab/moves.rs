@@ -3,6 +3,8 @@
 mod figure;
 mod table;
 
+use std::ops::ControlFlow;
+
 use clap::{Args, Subcommand};
 use tracelight_aim::HeadPose;
 use tracelight_rig::{PanTilt, Phase};
@@ -105,7 +107,7 @@ struct PaceArgs {
     /// Seed of what differs from head to head
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Plot the moves into an SVG, or write one, a row a millisecond, to a CSV; may be given twice
+    /// Plot the moves into an SVG, or write one, a row a millisecond, to a CSV; may be given again
     #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
@@ -143,12 +145,17 @@ fn turn(text: &str) -> Result<Angle, String> {
 
 fn speed(text: &str) -> Result<Rate, String> {
     let rate = Rate::parse(text, SPEEDS, ANGULAR_SPEEDS)?;
-    within(text, rate, rate.value(), SPEEDS)
+    within(text, rate, rate.value(), if let Rate::Linear(_) = rate { SPEEDS } else { ANGULAR_SPEEDS })
 }
 
 fn acceleration(text: &str) -> Result<Rate, String> {
     let rate = Rate::parse(text, ACCELERATIONS, ANGULAR_ACCELERATIONS)?;
-    within(text, rate, rate.value(), ACCELERATIONS)
+    within(
+        text,
+        rate,
+        rate.value(),
+        if let Rate::Linear(_) = rate { ACCELERATIONS } else { ANGULAR_ACCELERATIONS },
+    )
 }
 
 /// What is to be followed.
@@ -193,7 +200,11 @@ pub(crate) fn run(args: &MoveArgs, stop: &Stop) -> Result<Answer, Failure> {
     let mut entries = Vec::new();
     for name in ProfileName::ALL {
         stop.check()?;
-        entries.push(entry(name, &course, (&wish, pace), (&rig, &pose)).map_err(failure)?);
+        let asked = asked(name, &course, (&wish, pace)).map_err(failure)?;
+        entries.push(Entry { name, asked, on_rig: None });
+    }
+    if !pace.as_asked {
+        run_all(&mut entries, &course, (&wish, pace), (&rig, &pose), stop)?;
     }
     let bench =
         Bench { args: pace, wish: &wish, rig: &rig, machine: &machine, course: &course, entries: &entries };
@@ -283,36 +294,67 @@ fn in_mm(at: Point) -> String {
     format!("({:.1}, {:.1})", 1e3 * at.x, 1e3 * at.y)
 }
 
-fn entry(
+/// A profile by the limits as they were asked for, and the torque that takes.
+fn asked(
     name: ProfileName,
     course: &Course<'_>,
     (wish, args): (&Wish, &PaceArgs),
+) -> Result<Option<(Pace, PanTilt<f64>)>, CourseError> {
+    let Some(shape) = name.shape(args.ramps) else { return Ok(None) };
+    let pace = course.shaped(shape, &wish.limits);
+    let torque_nm = course.torque_peaks_nm(&pace)?;
+    Ok(Some((pace, torque_nm)))
+}
+
+/// Longest move that is run, s: all seven are kept, tick by tick.
+const LONGEST_S: f64 = 60.0;
+
+/// Fits every profile to the motors, and if none takes too long runs them all.
+fn run_all(
+    entries: &mut [Entry],
+    course: &Course<'_>,
+    (wish, args): (&Wish, &PaceArgs),
     (rig, pose): (&RigConfig, &HeadPose),
-) -> Result<Entry, CourseError> {
-    let asked = match name.shape(args.ramps) {
-        None => None,
-        Some(shape) => {
-            let pace = course.shaped(shape, &wish.limits);
-            let torque = course.torque_peaks_nm(&pace)?;
-            Some((pace, torque))
+    stop: &Stop,
+) -> Result<(), Failure> {
+    let mut paces = Vec::new();
+    for entry in entries.iter() {
+        let pace = match entry.name.shape(args.ramps) {
+            None => course.optimal(&wish.limits),
+            Some(shape) => course.shaped_for_motors(shape, &wish.limits),
+        };
+        let pace = pace.map_err(failure)?;
+        if pace.duration_s() > LONGEST_S {
+            let too_long = PlanError::TooLong { needed_s: pace.duration_s(), most_s: LONGEST_S };
+            return Err(failure(too_long.into()));
         }
-    };
-    if args.as_asked {
-        return Ok(Entry { name, asked, on_rig: None });
+        paces.push(pace);
     }
-    let pace = match name.shape(args.ramps) {
-        None => course.optimal(&wish.limits)?,
-        Some(shape) => course.shaped_for_motors(shape, &wish.limits)?,
-    };
+    for (entry, pace) in entries.iter_mut().zip(paces) {
+        entry.on_rig = Some(run_one(pace, course, (rig, pose), args.seed, stop).map_err(failure)?);
+        stop.check()?;
+    }
+    Ok(())
+}
+
+fn run_one(
+    pace: Pace,
+    course: &Course<'_>,
+    (rig, pose): (&RigConfig, &HeadPose),
+    seed: u64,
+    stop: &Stop,
+) -> Result<OnRig, CourseError> {
     let plan = course.plan(&pace, &request_of(rig))?;
-    let mut simulated = SimulatedRig::new(rig, *pose, args.seed);
-    let run = tracelight_sim::run(&mut simulated, &plan, false, |_, _| std::ops::ControlFlow::Continue(()));
+    let mut simulated = SimulatedRig::new(rig, *pose, seed);
+    let run = tracelight_sim::run(&mut simulated, &plan, false, |_, _| {
+        if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
     let tracking = score(&plan, &run, plan.set_speed_m_s);
     let done = run.ticks.last().is_some_and(|tick| tick.telemetry.phase == Phase::Done);
     // a rig that holds takes longer than its plan
     let held = !done || run.ticks.len() > plan.points.len() + 50;
     let start_tick = plan.leg_ends.first().map_or(0, |end| end.start_tick);
-    Ok(Entry { name, asked, on_rig: Some(OnRig { pace, run, tracking, start_tick, held }) })
+    Ok(OnRig { pace, run, tracking, start_tick, held })
 }
 
 fn failure(error: CourseError) -> Failure {

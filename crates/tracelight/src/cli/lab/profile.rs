@@ -37,7 +37,7 @@ pub(crate) struct ProfileArgs {
     /// Which to plot, the first of them in the CSV and first in --json
     #[arg(long, value_enum, value_delimiter = ',', default_value = "trapezoid,s-curve")]
     profile: Vec<ProfileName>,
-    /// Plot angle, speed and acceleration into an SVG, or write them, a row a millisecond, to a CSV; may be given twice
+    /// Plot angle, speed and acceleration into an SVG, or write them, a row a millisecond, to a CSV; may be given again
     #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
