@@ -14,6 +14,7 @@ use crate::units::Unit;
 
 /// The control engineer's bench: profiles and moves, computed, plotted, compared
 #[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight lab profile --distance 180deg -o profiles.svg")]
 pub(crate) struct LabArgs {
     #[command(subcommand)]
     action: LabAction,

@@ -26,6 +26,7 @@ use crate::units::{
 
 /// Follow a line or an arc of the target from rest to rest: every profile as asked, and as the motors can
 #[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight lab move arc --start 10in,0in --angle 90deg -o arc.svg")]
 pub(crate) struct MoveArgs {
     #[command(subcommand)]
     course: CourseArgs,
