@@ -9,11 +9,11 @@ use tracelight_stroke::{Piece, Point};
 use crate::compress::compress;
 use crate::leg::{LENGTH_TOLERANCE_M, Leg};
 use crate::plan::JointMotion;
-use crate::planner::{FINAL_REST_S, assess, check_duration, dark, linger, rest};
+use crate::planner::{FINAL_REST_S, assess, check_duration, dark, last_tick, light_up, linger, rest};
 use crate::profile::{MoveLimits, MovePoint, Peaks, Profile, Shape};
 use crate::retime::{Along, AlongLimits, PathSample, Retimed, TimeLaw, chain};
 use crate::travel::travel;
-use crate::{DarkMove, LegEnd, Machine, Plan, PlanError, PlanPoint, PlanRequest, Ramps};
+use crate::{DarkMove, Machine, Plan, PlanError, PlanPoint, PlanRequest, Ramps};
 
 /// Why a course cannot be followed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -223,25 +223,15 @@ impl<'m> Course<'m> {
         };
         let mut points = vec![rest(machine, home)];
         points.extend(travel(machine, shape, home, start)?.into_iter().map(|joints| dark(machine, joints)));
-        linger(&mut points, request.lift_s(machine));
-        if let Some(last) = points.last_mut() {
-            *last = PlanPoint { spot: ticks[0].spot, lit: true, stroke: Some(0), ..*last };
-        }
-        let start_tick = points.len() as u32 - 1;
+        light_up(&mut points, request.lift_s(machine), ticks[0].spot, 0);
+        let start_tick = last_tick(&points);
         let lit = |p: &CoursePoint| PlanPoint {
             lit: true,
             stroke: Some(0),
             ..assess(machine, p.spot, p.joints, p.along.velocity / pace.peaks.speed)
         };
         points.extend(ticks[1..].iter().map(lit));
-        let end = self.leg.at(self.length_m());
-        let leg_end = LegEnd {
-            tick: points.len() as u32 - 1,
-            start_tick,
-            point: end.point,
-            tangent: end.tangent,
-            length_m: self.length_m(),
-        };
+        let leg_end = self.leg.rest_at_end(start_tick, last_tick(&points));
         linger(&mut points, FINAL_REST_S);
         Ok(Plan {
             segments: compress(&points, machine, request.tolerance_m),
@@ -284,6 +274,3 @@ fn first_out_of_reach(machine: &Machine, leg: &Leg) -> f64 {
     let at = |i: u32| f64::from(i) / f64::from(places) * leg.length_m();
     (0..=places).map(at).find(|&s| leg.joints_at(machine, s).is_err()).unwrap_or(leg.length_m())
 }
-
-#[cfg(test)]
-mod tests;

@@ -3,9 +3,9 @@
 use tracelight_aim::{AimError, JointPath, SpotMotion};
 use tracelight_stroke::{Path, PathPoint, Piece, Point};
 
-use crate::Machine;
 use crate::corner::{Corners, Fate, rounding};
 use crate::retime::PathSample;
+use crate::{LegEnd, Machine};
 
 /// Shorter pieces than this are dust, m.
 const DUST_M: f64 = 1e-7;
@@ -79,6 +79,13 @@ impl Leg {
 
     pub(crate) fn length_m(&self) -> f64 {
         self.starts_m.last().copied().unwrap_or(0.0)
+    }
+
+    /// The rest at its end, at a tick, of a spot that began at another.
+    pub(crate) fn rest_at_end(&self, start_tick: u32, tick: u32) -> LegEnd {
+        let length_m = self.length_m();
+        let end = self.at(length_m);
+        LegEnd { tick, start_tick, point: end.point, tangent: end.tangent, length_m }
     }
 
     /// Place, tangent and curvature at arc length `s_m`; beyond an end the leg goes on along the circle it follows

@@ -88,11 +88,19 @@ impl Machine {
             let friction = &self.friction[j];
             let helped = friction.coulomb_pos_nm.abs().max(friction.coulomb_neg_nm.abs())
                 + self.lumped.gravity(0.0)[j].abs();
-            let torque = self.torque_share * self.motors[j].torque_limit_nm() + helped;
-            let most = (torque / self.own_inertia(j, 0.0)).min(self.acceleration_limit_rad_s2[j]);
-            most / self.jerk_limit_rad_s3[j]
+            self.acceleration_rad_s2(j, 0.0, self.usable_nm(j) + helped) / self.jerk_limit_rad_s3[j]
         };
         of_joint(Joint::Pan).max(of_joint(Joint::Tilt))
+    }
+
+    /// What a plan may use of a motor's torque, N m.
+    pub(crate) fn usable_nm(&self, joint: Joint) -> f64 {
+        self.torque_share * self.motors[joint].torque_limit_nm()
+    }
+
+    /// What a torque makes of a joint, and is wished for at most, rad/s².
+    pub(crate) fn acceleration_rad_s2(&self, joint: Joint, tilt_rad: f64, torque_nm: f64) -> f64 {
+        (torque_nm / self.own_inertia(joint, tilt_rad)).min(self.acceleration_limit_rad_s2[joint])
     }
 
     /// A torque as a share of what the amplifiers can do.
@@ -153,11 +161,8 @@ impl Machine {
 
     /// Acceleration that the weaker motor has for the spot, gravity left out, m/s².
     pub(crate) fn spot_acceleration_m_s2(&self) -> f64 {
-        let of_joint = |j: Joint| {
-            let torque =
-                self.torque_share * self.motors[j].torque_limit_nm() - self.friction[j].coulomb_pos_nm;
-            (torque / self.own_inertia(j, 0.0)).min(self.acceleration_limit_rad_s2[j])
-        };
+        let of_joint =
+            |j: Joint| self.acceleration_rad_s2(j, 0.0, self.usable_nm(j) - self.friction[j].coulomb_pos_nm);
         self.pose.distance_m * of_joint(Joint::Pan).min(of_joint(Joint::Tilt)).max(0.0)
     }
 

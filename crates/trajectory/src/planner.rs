@@ -5,7 +5,7 @@ use crate::compress::compress;
 use crate::corner::Corners;
 use crate::leg::Leg;
 use crate::mark::{End, Marked};
-use crate::plan::{JointMotion, LegEnd, Plan, PlanPoint, Tightest};
+use crate::plan::{JointMotion, Plan, PlanPoint, Tightest};
 use crate::retime::{Binding, steady_speed};
 use crate::tour::{NoTour, Run, Tour, TourLeg};
 use crate::{Machine, PlanError, Shape};
@@ -271,32 +271,22 @@ impl<'a> Draft<'a> {
         }
         self.go(way);
         if ends[1] == End::Rest {
-            linger(&mut self.plan.points, self.request.lift_s(self.machine));
-            if let Some(last) = self.plan.points.last_mut() {
-                let spot = leg.leg.at(0.0).point;
-                *last = PlanPoint { spot, lit: true, stroke: Some(leg.stroke as u32), ..*last };
-            }
+            let spot = leg.leg.at(0.0).point;
+            light_up(&mut self.plan.points, self.request.lift_s(self.machine), spot, leg.stroke);
         }
     }
 
     /// The ticks of a leg, with its way up and out.
     fn draw(&mut self, leg: &TourLeg, marked: &Marked, end: End) {
-        let start_tick = last_tick(&self.plan);
+        let start_tick = last_tick(&self.plan.points);
         let set_m_s = self.request.speed_m_s;
         self.plan.points.extend(marked.points.iter().map(|m| PlanPoint {
             lit: m.lit,
             stroke: m.lit.then_some(leg.stroke as u32),
             ..assess(self.machine, m.spot, m.joints, if m.lit { m.speed_m_s / set_m_s } else { 0.0 })
         }));
-        let at = leg.leg.at(leg.leg.length_m());
         if end == End::Rest {
-            self.plan.leg_ends.push(LegEnd {
-                tick: last_tick(&self.plan),
-                start_tick,
-                point: at.point,
-                tangent: at.tangent,
-                length_m: leg.leg.length_m(),
-            });
+            self.plan.leg_ends.push(leg.leg.rest_at_end(start_tick, last_tick(&self.plan.points)));
         }
     }
 }
@@ -313,8 +303,16 @@ fn name_jerk(points: &mut [PlanPoint], machine: &Machine) {
     }
 }
 
-fn last_tick(plan: &Plan) -> u32 {
-    plan.points.len().saturating_sub(1) as u32
+pub(crate) fn last_tick(points: &[PlanPoint]) -> u32 {
+    points.len().saturating_sub(1) as u32
+}
+
+/// Rests before a stroke that begins at rest; the last tick of it is lit.
+pub(crate) fn light_up(points: &mut Vec<PlanPoint>, lift_s: f64, spot: Point, stroke: usize) {
+    linger(points, lift_s);
+    if let Some(last) = points.last_mut() {
+        *last = PlanPoint { spot, lit: true, stroke: Some(stroke as u32), ..*last };
+    }
 }
 
 /// Stays where the last point is, dark and on no stroke.

@@ -2,7 +2,7 @@ use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 
 use crate::mark::BORROW;
 use crate::plan::JointMotion;
-use crate::travel::{ROUNDS, least_shrink};
+use crate::travel::{ROUNDS, kept_share, least_shrink};
 use crate::{Bounds, Machine, MovePoint, Steered, steer, steer_no_faster};
 
 /// A dark move between joints that are under way, or from or to rest: the fastest there is within each joint's own
@@ -130,7 +130,7 @@ impl Swing {
                 }
                 let excess_nm = (worst[joint][way] - allowed) * machine.motors[joint].torque_limit_nm();
                 let excess = excess_nm / machine.own_inertia(joint, self.from.tilt.position_rad);
-                let share = (1.0 - excess / now).clamp(0.5, 1.0 - least);
+                let share = kept_share(now, excess, least);
                 bounds.acceleration[way] = sign * (share * now).max(needed).max(LEAST_RAD_S2);
                 bounds.jerk *= share.sqrt();
                 lowered = true;
@@ -163,17 +163,17 @@ fn first_bounds(
     to: &PanTilt<JointMotion>,
     rise_s: f64,
 ) -> Bounds {
-    let inertia = machine.own_inertia(joint, from.tilt.position_rad);
     let friction = &machine.friction[joint];
     // gravity pulls one way: where it pulls least
-    let torque = machine.torque_share * machine.motors[joint].torque_limit_nm();
+    let torque = machine.usable_nm(joint);
     let gravity = [from, to].map(|end| machine.lumped.gravity(end.tilt.position_rad)[joint]);
     let (least_nm, most_nm) = (gravity[0].min(gravity[1]), gravity[0].max(gravity[1]));
     let forwards = to[joint].position_rad >= from[joint].position_rad;
     let coulomb = if forwards { friction.coulomb_pos_nm } else { friction.coulomb_neg_nm };
-    let wish = machine.acceleration_limit_rad_s2[joint];
-    let up = ((torque - coulomb - least_nm) / inertia).min(wish).max(LEAST_RAD_S2);
-    let down = ((torque + coulomb + most_nm) / inertia).min(wish).max(LEAST_RAD_S2);
+    let most = |torque_nm: f64| {
+        machine.acceleration_rad_s2(joint, from.tilt.position_rad, torque_nm).max(LEAST_RAD_S2)
+    };
+    let (up, down) = (most(torque - coulomb - least_nm), most(torque + coulomb + most_nm));
     let ends = [from[joint], to[joint]].map(|end| end.acceleration_rad_s2);
     let acceleration =
         [ends.iter().fold(-down, |a, &end| a.min(end)), ends.iter().fold(up, |a, &end| a.max(end))];

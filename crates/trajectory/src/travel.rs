@@ -51,8 +51,8 @@ pub(crate) fn travel(
             continue;
         }
         let least = least_shrink(round);
-        limits.acceleration = lowered(limits.acceleration, excess.speeding_up, least);
-        limits.deceleration = lowered(limits.deceleration, excess.braking, least);
+        limits.acceleration *= kept_share(limits.acceleration, excess.speeding_up, least);
+        limits.deceleration *= kept_share(limits.deceleration, excess.braking, least);
     }
     Err(too_weak(machine, from))
 }
@@ -76,8 +76,9 @@ pub(crate) fn least_shrink(round: usize) -> f64 {
     (FIRST * 1.5f64.powi(round.min(10) as i32)).min(MOST)
 }
 
-fn lowered(limit: f64, excess: f64, least: f64) -> f64 {
-    if excess <= 0.0 { limit } else { limit * (1.0 - excess / limit).clamp(0.5, 1.0 - least) }
+/// What is left of a limit that is too high by `excess`, as a share of it: half at least.
+pub(crate) fn kept_share(limit: f64, excess: f64, least_shrink: f64) -> f64 {
+    if excess <= 0.0 { 1.0 } else { (1.0 - excess / limit).clamp(0.5, 1.0 - least_shrink) }
 }
 
 /// About how long such a move takes, s; what gravity and coupling cost is left out.
@@ -104,15 +105,14 @@ fn first_limits(machine: &Machine, from: PanTilt<f64>, span: PanTilt<f64>) -> Re
         if share < NOTHING_RAD {
             continue;
         }
-        let inertia = machine.own_inertia(joint, from.tilt);
         let coulomb = machine.friction[joint].torque(span[joint].signum() * 1e-9).abs();
         let helped = machine.lumped.gravity(from.tilt)[joint].abs();
-        let torque = machine.torque_share * machine.motors[joint].torque_limit_nm() + helped;
-        let wish = machine.acceleration_limit_rad_s2[joint];
+        let torque = machine.usable_nm(joint) + helped;
+        let most = |torque_nm: f64| machine.acceleration_rad_s2(joint, from.tilt, torque_nm);
         let least = |now: f64, new: f64| now.min(new / share);
         limits.speed = least(limits.speed, machine.speed_limit_rad_s[joint]);
-        limits.acceleration = least(limits.acceleration, ((torque - coulomb) / inertia).min(wish));
-        limits.deceleration = least(limits.deceleration, ((torque + coulomb) / inertia).min(wish));
+        limits.acceleration = least(limits.acceleration, most(torque - coulomb));
+        limits.deceleration = least(limits.deceleration, most(torque + coulomb));
     }
     let possible = limits.acceleration > 0.0 && limits.deceleration > 0.0;
     if possible { Ok(limits) } else { Err(too_weak(machine, from)) }
@@ -121,7 +121,7 @@ fn first_limits(machine: &Machine, from: PanTilt<f64>, span: PanTilt<f64>) -> Re
 pub(crate) fn too_weak(machine: &Machine, at: PanTilt<f64>) -> PlanError {
     let gravity = machine.lumped.gravity(at.tilt);
     let need = |j: Joint| gravity[j].abs() + machine.friction[j].coulomb_pos_nm;
-    let have = |j: Joint| machine.torque_share * machine.motors[j].torque_limit_nm();
+    let have = |j: Joint| machine.usable_nm(j);
     let tilt_is_worse = need(Joint::Tilt) / have(Joint::Tilt) > need(Joint::Pan) / have(Joint::Pan);
     let joint = if tilt_is_worse { Joint::Tilt } else { Joint::Pan };
     PlanError::TooWeak { joint, needed_nm: need(joint), available_nm: have(joint) }

@@ -83,31 +83,29 @@ impl<'a> TravelTime<'a> {
     }
 
     fn most_rad_s2(&self, joint: Joint, tilt_rad: f64) -> f64 {
-        let machine = self.machine;
-        let inertia = machine.own_inertia(joint, tilt_rad);
-        let torque = machine.torque_share * machine.motors[joint].torque_limit_nm();
-        let friction = &machine.friction[joint];
+        let torque = self.machine.usable_nm(joint);
+        let friction = &self.machine.friction[joint];
         let coulomb = 0.5 * (friction.coulomb_pos_nm - friction.coulomb_neg_nm);
-        let wish = machine.acceleration_limit_rad_s2[joint];
         let [speeding_up, braking] =
-            [torque - coulomb, torque + coulomb].map(|t| (t / inertia).min(wish).max(LEAST_RAD_S2));
+            [torque - coulomb, torque + coulomb].map(|nm| self.by_torque_rad_s2(joint, tilt_rad, nm));
         2.0 / (1.0 / speeding_up + 1.0 / braking)
     }
 
     /// What a joint can do at a tilt while it goes backwards or forwards.
     fn rates(&self, joint: Joint, tilt_rad: f64) -> [Rates; 2] {
-        let machine = self.machine;
-        let inertia = machine.own_inertia(joint, tilt_rad);
-        let torque = machine.torque_share * machine.motors[joint].torque_limit_nm();
-        let friction = &machine.friction[joint];
-        let gravity = machine.lumped.gravity(tilt_rad)[joint];
-        let wish = machine.acceleration_limit_rad_s2[joint];
+        let torque = self.machine.usable_nm(joint);
+        let friction = &self.machine.friction[joint];
+        let gravity = self.machine.lumped.gravity(tilt_rad)[joint];
         [friction.coulomb_neg_nm, friction.coulomb_pos_nm].map(|coulomb| {
             let held = gravity + coulomb;
-            let [gain, lose] = [torque - held, torque + held]
-                .map(|torque| 1.0 / (torque / inertia).min(wish).max(LEAST_RAD_S2));
+            let [gain, lose] =
+                [torque - held, torque + held].map(|nm| 1.0 / self.by_torque_rad_s2(joint, tilt_rad, nm));
             Rates { gain, lose, per_both: 1.0 / (gain + lose) }
         })
+    }
+
+    fn by_torque_rad_s2(&self, joint: Joint, tilt_rad: f64, torque_nm: f64) -> f64 {
+        self.machine.acceleration_rad_s2(joint, tilt_rad, torque_nm).max(LEAST_RAD_S2)
     }
 
     /// How an end is passed, if it leads anywhere, and how long it takes to come from there to rest, s.

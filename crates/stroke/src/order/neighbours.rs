@@ -55,10 +55,7 @@ impl Neighbours {
         for end in 0..shares.len() as u32 {
             let range = self.range(end);
             let list = &mut self.list[range];
-            for (to, cost) in list.iter_mut() {
-                let (a, b) = (end.min(*to), end.max(*to));
-                *cost -= shares[a as usize] + shares[b as usize];
-            }
+            list.iter_mut().for_each(|(to, cost)| *cost = discounted(*cost, shares, [end, *to]));
             list.sort_by(cheapest_first);
         }
     }
@@ -71,6 +68,12 @@ impl Neighbours {
     fn range(&self, end: u32) -> Range<usize> {
         self.first[end as usize] as usize..self.first[end as usize + 1] as usize
     }
+}
+
+/// A travel's cost without the shares of its ends. Rounded in one way only, whichever end comes first: an exchange and its
+/// opposite must not both look like a gain.
+pub(super) fn discounted(cost: f64, shares: &[f64], [a, b]: [u32; 2]) -> f64 {
+    cost - (shares[a.min(b) as usize] + shares[a.max(b) as usize])
 }
 
 fn cheapest_first(a: &(u32, f64), b: &(u32, f64)) -> Ordering {

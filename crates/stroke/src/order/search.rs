@@ -2,7 +2,7 @@ use kurbo::Point;
 
 use super::exchange::LEAST_GAIN;
 use super::memo::Memo;
-use super::neighbours::Neighbours;
+use super::neighbours::{Neighbours, discounted};
 use super::tour::Tour;
 use super::travel::{StrokeEnd, Travel};
 
@@ -100,9 +100,7 @@ impl<'a, T: Travel> Search<'a, T> {
     /// Cost of a travel beyond what both of its ends cost at least. In every tour each end has one travel, so what is
     /// taken off for an end is the same for all of them, and exchanges that cannot gain are told at their first step.
     pub(super) fn travel(&self, a: u32, b: u32) -> f64 {
-        let (a, b) = (a.min(b), a.max(b));
-        // rounded in one way only, wherever it is computed: an exchange and its opposite must not both look like a gain
-        self.cost_of(a, b) - (self.shares[a as usize] + self.shares[b as usize])
+        discounted(self.cost_of(a, b), &self.shares, [a, b])
     }
 
     /// What the travel of an end costs in full: beside it what rounding does is nothing.

@@ -115,7 +115,7 @@ impl Place {
                 true => (friction.viscous_pos, friction.coulomb_pos_nm),
                 false => (friction.viscous_neg, friction.coulomb_neg_nm),
             };
-            let torque = machine.torque_share * machine.motors[j].torque_limit_nm();
+            let torque = machine.usable_nm(j);
             rows.push([a, b, viscous * first, c + coulomb], torque);
             let wish = machine.acceleration_limit_rad_s2[j];
             if wish.is_finite() {
@@ -137,7 +137,7 @@ impl Place {
                 way if way < 0.0 => (friction.viscous_neg, friction.coulomb_neg_nm),
                 _ => (0.0, 0.0),
             };
-            let torque = machine.torque_share * machine.motors[j].torque_limit_nm();
+            let torque = machine.usable_nm(j);
             let (square, linear, still) = (a * u + b * v * v, viscous * first * v, c + coulomb);
             most = most.min(first_root(square, linear, still - torque));
             most = most.min(first_root(-square, -linear, -still - torque));

@@ -57,7 +57,7 @@ impl<const N: usize> Limits<N> {
 /// Every motor must be able to start its joint anywhere.
 fn check_strength(machine: &Machine, place: &Place, ways: PanTilt<f64>) -> Result<(), PlanError> {
     for joint in Joint::BOTH {
-        let available_nm = machine.torque_share * machine.motors[joint].torque_limit_nm();
+        let available_nm = machine.usable_nm(joint);
         let needed_nm = place.starting_nm(machine, joint, ways[joint]).abs();
         if needed_nm >= available_nm {
             return Err(PlanError::TooWeak { joint, needed_nm, available_nm });

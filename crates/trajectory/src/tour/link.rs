@@ -184,7 +184,7 @@ fn dark_way(
 fn stopped(machine: &Machine, from: &PanTilt<JointMotion>, ramp_s: f64) -> PanTilt<JointMotion> {
     PanTilt::from_fn(|j| {
         let motion = from[j];
-        let torque = machine.torque_share * machine.motors[j].torque_limit_nm();
+        let torque = machine.usable_nm(j);
         let most = torque / machine.own_inertia(j, from.tilt.position_rad);
         let time_s = motion.velocity_rad_s.abs() / most + ramp_s;
         JointMotion::at_rest(motion.position_rad + 0.5 * motion.velocity_rad_s * time_s)

@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 
 use crate::chart::Colour;
 use crate::cli::shapes::ProfileName;
-use crate::cli::{Answer, Voice};
+use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
 use crate::stop::Stop;
 use crate::units::Unit;
@@ -63,6 +63,21 @@ fn out_file(text: &str) -> Result<OutFile, String> {
         _ => return Err(format!("{text} ends in neither .svg (a plot) nor .csv (a table)")),
     };
     Ok(OutFile { path: text.into(), kind })
+}
+
+/// Writes every file that was asked for.
+fn write_all(
+    files: &[OutFile],
+    plot: impl Fn() -> Result<String, Failure>,
+    table: impl Fn() -> Result<String, Failure>,
+) -> Result<(), Failure> {
+    files.iter().try_for_each(|file| {
+        let text = match file.kind {
+            OutKind::Plot => plot()?,
+            OutKind::Table => table()?,
+        };
+        write_file(&file.path, &text)
+    })
 }
 
 /// What limits of moves may be, in SI: more is no head's, and less takes for ever.

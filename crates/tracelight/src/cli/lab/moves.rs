@@ -12,16 +12,16 @@ use tracelight_sim::{RigConfig, Run, SimulatedRig, Tracking, score};
 use tracelight_stroke::{Element, Piece, Point, Vec2};
 use tracelight_trajectory::{Course, CourseError, Machine, MoveLimits, Pace, PlanError, Ramps};
 
-use super::{OutFile, OutKind, out_file, within};
+use super::{OutFile, out_file, within, write_all};
 use crate::cli::driving::{DEFAULT_DISTANCE_M, request_of};
 use crate::cli::placing::positive_length;
 use crate::cli::shapes::{ProfileName, ramps};
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::rigfile;
 use crate::stop::Stop;
 use crate::units::{
-    ACCELERATIONS, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, Length, Offset, Rate, SPEEDS,
+    ACCELERATIONS, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, Length, Offset, Rate, SPEEDS, Unit,
 };
 
 /// Follow a line or an arc of the target from rest to rest: every profile as asked, and as the motors can
@@ -145,18 +145,16 @@ fn turn(text: &str) -> Result<Angle, String> {
 }
 
 fn speed(text: &str) -> Result<Rate, String> {
-    let rate = Rate::parse(text, SPEEDS, ANGULAR_SPEEDS)?;
-    within(text, rate, rate.value(), if let Rate::Linear(_) = rate { SPEEDS } else { ANGULAR_SPEEDS })
+    rate(text, SPEEDS, ANGULAR_SPEEDS)
 }
 
 fn acceleration(text: &str) -> Result<Rate, String> {
-    let rate = Rate::parse(text, ACCELERATIONS, ANGULAR_ACCELERATIONS)?;
-    within(
-        text,
-        rate,
-        rate.value(),
-        if let Rate::Linear(_) = rate { ACCELERATIONS } else { ANGULAR_ACCELERATIONS },
-    )
+    rate(text, ACCELERATIONS, ANGULAR_ACCELERATIONS)
+}
+
+fn rate(text: &str, linear: &'static [Unit], angular: &'static [Unit]) -> Result<Rate, String> {
+    let rate = Rate::parse(text, linear, angular)?;
+    within(text, rate, rate.value(), if let Rate::Linear(_) = rate { linear } else { angular })
 }
 
 /// What is to be followed.
@@ -209,13 +207,7 @@ pub(crate) fn run(args: &MoveArgs, stop: &Stop) -> Result<Answer, Failure> {
     }
     let bench =
         Bench { args: pace, wish: &wish, rig: &rig, machine: &machine, course: &course, entries: &entries };
-    for out in &pace.out {
-        let text = match out.kind {
-            OutKind::Plot => figure::figure(&bench)?,
-            OutKind::Table => table::csv(&bench)?,
-        };
-        write_file(&out.path, &text)?;
-    }
+    write_all(&pace.out, || figure::figure(&bench), || table::csv(&bench))?;
     Ok(Answer::new(table::text(&bench), table::json(&bench)))
 }
 

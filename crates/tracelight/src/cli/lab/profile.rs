@@ -4,10 +4,10 @@ use clap::Args;
 use tracelight_rig::TICK_F64_S;
 use tracelight_trajectory::{MoveLimits, MovePoint, Peaks, Profile, Ramps};
 
-use super::{OutFile, OutKind, colour, out_file, within};
+use super::{OutFile, colour, out_file, within, write_all};
 use crate::chart::{Curve, Figure, Key, Panel, Pen};
 use crate::cli::shapes::{ProfileName, ramps};
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, AngularAcceleration, AngularSpeed};
 
@@ -71,13 +71,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<Answer, Failure> {
     if chosen.len() < args.profile.len() {
         return Err(no_optimum());
     }
-    for out in &args.out {
-        let text = match out.kind {
-            OutKind::Plot => figure(args, &chosen)?,
-            OutKind::Table => csv(&profile)?,
-        };
-        write_file(&out.path, &text)?;
-    }
+    write_all(&args.out, || figure(args, &chosen), || csv(&profile))?;
     Ok(Answer::new(table(args, &all), json(first, &profile, &all)))
 }
 

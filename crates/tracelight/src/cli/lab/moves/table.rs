@@ -41,17 +41,7 @@ fn asked(text: &mut String, bench: &Bench<'_>) {
         bench.rig.name
     );
     for (entry, pace, torque) in &rows {
-        let Peaks { speed, acceleration, deceleration, .. } = *pace.peaks();
-        let _ = writeln!(
-            text,
-            "{:10} {:12.4} {:>19} {:10.4} {:11.3}  {}",
-            entry.name.name(),
-            pace.duration_s(),
-            over(pace.duration_s(), trapezoid),
-            speed,
-            acceleration.max(deceleration),
-            demand(bench, torque)
-        );
+        let _ = writeln!(text, "{}  {}", columns(entry.name, pace, trapezoid), demand(bench, torque));
     }
     if let Some(verdict) = verdict(bench, &rows) {
         let _ = writeln!(text, "{verdict}");
@@ -67,21 +57,29 @@ fn on_rig(text: &mut String, bench: &Bench<'_>) {
         "\non the rig  duration, s  over the trapezoid  peak, m/s  peak, m/s²  error of the spot, mm: rms / max / at rest"
     );
     for (entry, OnRig { pace, tracking, held, .. }) in rows {
-        let Peaks { speed, acceleration, deceleration, .. } = *pace.peaks();
         let _ = writeln!(
             text,
-            "{:10} {:12.4} {:>19} {:10.4} {:11.3}  {:.3} / {:.3} / {:.3}{}",
-            entry.name.name(),
-            pace.duration_s(),
-            over(pace.duration_s(), trapezoid),
-            speed,
-            acceleration.max(deceleration),
+            "{}  {:.3} / {:.3} / {:.3}{}",
+            columns(entry.name, pace, trapezoid),
             tracking.rms_mm,
             tracking.max_mm,
             tracking.final_error_mm,
             if *held { "  left its course, and went back dark" } else { "" }
         );
     }
+}
+
+/// What both tables begin with.
+fn columns(name: ProfileName, pace: &Pace, trapezoid_s: Option<f64>) -> String {
+    let Peaks { speed, acceleration, deceleration, .. } = *pace.peaks();
+    format!(
+        "{:10} {:12.4} {:>19} {:10.4} {:11.3}",
+        name.name(),
+        pace.duration_s(),
+        over(pace.duration_s(), trapezoid_s),
+        speed,
+        acceleration.max(deceleration)
+    )
 }
 
 fn duration_of(rows: &[(ProfileName, &Pace)]) -> Option<f64> {

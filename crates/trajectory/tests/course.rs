@@ -1,10 +1,15 @@
+//! One line or arc followed by every profile: as fast as the motors can, and no faster.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+mod support;
+
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use tracelight_aim::{HeadGeometry, HeadPose};
-use tracelight_dynamics::{Friction, HeadBodies, Motor};
-use tracelight_stroke::Element;
-
-use super::*;
+use support::drawings;
+use tracelight_rig::TICK_F64_S;
+use tracelight_stroke::{Element, Piece, Point};
+use tracelight_trajectory::{Course, CourseError, Machine, MoveLimits, Pace, PlanError, Ramps, Shape};
 
 const SHAPES: [Shape; 6] = [
     Shape::Ramped(Ramps::NONE),
@@ -15,24 +20,11 @@ const SHAPES: [Shape; 6] = [
     Shape::Quintic,
 ];
 
+/// With the beam where the axes cross.
 fn machine() -> Machine {
-    let motor = |torque_nm_per_v| Motor { torque_nm_per_v, limit_v: 10.0 };
-    Machine {
-        lumped: HeadBodies::set_a().lumped(),
-        friction: PanTilt::new(Friction::symmetric(0.0009, 0.04), Friction::symmetric(0.0018, 0.058)),
-        motors: PanTilt::new(motor(0.0619), motor(0.0774)),
-        torque_share: 0.85,
-        speed_limit_rad_s: PanTilt::new(24.0, 24.0),
-        acceleration_limit_rad_s2: PanTilt::new(100.0, 100.0),
-        jerk_limit_rad_s3: PanTilt::new(f64::INFINITY, f64::INFINITY),
-        geometry: HeadGeometry {
-            laser_offset_m: [0.0; 3],
-            range_rad: PanTilt::new((-3.1, 3.1), (-1.6, 1.6)),
-        },
-        pose: HeadPose::square_on(0.9144),
-        relay_on_ticks: 5,
-        relay_off_ticks: 3,
-    }
+    let mut machine = drawings::machine();
+    machine.geometry.laser_offset_m = [0.0; 3];
+    machine
 }
 
 fn line(from: (f64, f64), to: (f64, f64)) -> Piece {
@@ -45,8 +37,7 @@ fn arc(radius_m: f64, sweep: f64) -> Piece {
 
 /// Nothing of a pace asks more of the motors than a plan may use, but for `excess`, looked at ten times as densely as when
 /// it was made.
-fn check_torque(course: &Course<'_>, pace: &Pace, excess: f64) {
-    let machine = course.machine;
+fn check_torque(machine: &Machine, course: &Course<'_>, pace: &Pace, excess: f64) {
     let most = 20_000;
     for i in 0..=most {
         let at = course.at(pace, f64::from(i) / f64::from(most) * pace.duration_s()).unwrap();
@@ -70,14 +61,14 @@ fn shapes_are_as_fast_as_the_motors_can_follow_and_optimal_is_faster() {
         let optimal = course.optimal(&wish).unwrap();
         for shape in SHAPES {
             let pace = course.shaped_for_motors(shape, &wish).unwrap();
-            check_torque(&course, &pace, 1e-4);
+            check_torque(&machine, &course, &pace, 1e-4);
             let peaks = course.torque_peaks_nm(&pace).unwrap();
             let share = machine.fraction(peaks);
             assert!(share.pan.max(share.tilt) > 0.999 * machine.torque_share, "{shape:?} could be faster");
             assert!(pace.duration_s() > 0.999 * optimal.duration_s(), "{shape:?}: {}", optimal.duration_s());
         }
         // its limits hold at its places; between them the course bends
-        check_torque(&course, &optimal, 5e-3);
+        check_torque(&machine, &course, &optimal, 5e-3);
     }
 }
 
@@ -108,8 +99,7 @@ fn phases_are_chosen_for_the_shortest_time() {
     let like_it = |factor: f64| {
         let (a, d) = (best.peaks().acceleration, best.peaks().deceleration);
         let limits = MoveLimits { speed: 22.0, acceleration: factor * a, deceleration: d / factor };
-        let asked = Profile::new(SHAPES[0], course.length_m(), &limits);
-        let torque = course.torque_peaks_nm(&Pace::shaped(asked)).unwrap();
+        let torque = course.torque_peaks_nm(&course.shaped(SHAPES[0], &limits)).unwrap();
         let share = machine.fraction(torque);
         share.pan.max(share.tilt)
     };
