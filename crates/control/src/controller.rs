@@ -1,14 +1,11 @@
-use tracelight_rig::{
-    Actuation, Command, Fault, Joint, Measurement, PanTilt, Phase, Segment, Setpoint, Telemetry,
-};
+use tracelight_rig::{Actuation, Command, Fault, Joint, Measurement, PanTilt, Phase, Segment, Telemetry};
 
-use crate::Config;
-use crate::law::{LawInput, LawState, command};
-use crate::observer::Observer;
 use crate::player::{Played, Player};
 use crate::return_path::ReturnPath;
+use crate::servo::{Reference, Servo};
 use crate::supervisor::{Clock, Situation, Supervisor};
 use crate::watch::EncoderWatch;
+use crate::{Config, Estimate};
 
 /// The controller: its configuration, fixed at start.
 #[derive(Clone, Copy, Debug)]
@@ -20,14 +17,18 @@ pub struct Controller {
 #[derive(Clone, Copy, Debug)]
 pub struct State {
     tick: u32,
-    observer: Observer,
+    servo: Servo,
     watch: EncoderWatch,
     player: Player,
     supervisor: Supervisor,
-    law: LawState,
     way_back: Option<ReturnPath>,
-    /// Torque applied during the last tick, N m.
-    torque_nm: PanTilt<f32>,
+}
+
+impl State {
+    /// What is believed of the joints.
+    pub const fn estimates(&self) -> &PanTilt<Estimate> {
+        self.servo.estimates()
+    }
 }
 
 impl Controller {
@@ -38,16 +39,14 @@ impl Controller {
 
     /// State of a head at rest whose encoders read `measured`: dark, disarmed, held where it is.
     pub fn start(&self, measured: &PanTilt<Measurement>) -> State {
-        let observer = Observer::at_rest(&self.config, measured);
+        let servo = Servo::at_rest(&self.config, measured);
         State {
             tick: 0,
-            observer,
+            servo,
             watch: EncoderWatch::new(measured),
-            player: Player::resting_at(observer.position_rad(&self.config)),
+            player: Player::resting_at(servo.estimates().map(|estimate| estimate.position_rad)),
             supervisor: Supervisor::default(),
-            law: LawState::default(),
             way_back: None,
-            torque_nm: PanTilt::default(),
         }
     }
 
@@ -90,15 +89,16 @@ impl Controller {
         let situation = self.situation(state, &played);
         let clock = state.supervisor.tick(&self.config, &situation);
         let darkness = state.supervisor.darkness(&self.config, &situation);
-        let Situation { position_rad, rate_rad_s: velocity_rad_s, .. } = situation;
+        let estimates = *state.servo.estimates();
         let command_v = self.drive(state, &played);
         let telemetry = Telemetry {
             tick: state.tick,
             plan_tick: state.player.plan_tick(),
             measured: *measured,
             setpoint: played.setpoint,
-            position_rad,
-            velocity_rad_s,
+            position_rad: estimates.map(|estimate| estimate.position_rad),
+            velocity_rad_s: estimates.map(|estimate| estimate.velocity_rad_s),
+            acceleration_rad_s2: estimates.map(|estimate| estimate.acceleration_rad_s2),
             actuation: Actuation { command_v, gate: darkness.is_empty() },
             darkness,
             phase: state.supervisor.phase,
@@ -113,23 +113,20 @@ impl Controller {
         if state.tick == 0 {
             return;
         }
-        state.observer.tick(&self.config, state.torque_nm, measured);
-        let tilt = state.observer.position_rad(&self.config).tilt;
-        let rate = state.observer.rate_rad_s();
-        let terms = self.config.model.terms(tilt, rate);
-        let effort = (state.torque_nm, rate);
-        if let Some(fault) = state.watch.tick(&self.config, &terms, effort, measured) {
+        state.servo.observe(&self.config, measured);
+        let (efforts, estimates) = (state.servo.efforts(), state.servo.estimates());
+        if let Some(fault) = state.watch.tick(&self.config, efforts, estimates, measured) {
             state.supervisor.trip(fault);
         }
     }
 
     fn situation<'a>(&self, state: &State, played: &'a Played) -> Situation<'a> {
-        let position_rad = state.observer.position_rad(&self.config);
+        let position_rad = state.servo.estimates().map(|estimate| estimate.position_rad);
         Situation {
             setpoint: &played.setpoint,
             segment: played.segment.as_ref(),
             position_rad,
-            rate_rad_s: state.observer.rate_rad_s(),
+            rate_rad_s: state.servo.estimates().map(|estimate| estimate.velocity_rad_s),
             error_rad: PanTilt::from_fn(|j| played.setpoint[j].position_rad - position_rad[j]),
             begun: state.player.has_begun(),
             starved: state.player.is_empty() && !state.player.is_done(),
@@ -139,30 +136,14 @@ impl Controller {
 
     /// Volts for this tick. With an encoder that lies there is nothing to control by: no volts.
     fn drive(&self, state: &mut State, played: &Played) -> PanTilt<f32> {
-        let position = state.observer.position_rad(&self.config);
-        let rate = state.observer.rate_rad_s();
-        let (setpoint, ahead) = self.reference(state, played, position, rate);
-        let input = LawInput {
-            ahead: &ahead,
-            error_rad: PanTilt::from_fn(|j| setpoint[j].position_rad - position[j]),
-            rate_error_rad_s: PanTilt::from_fn(|j| setpoint[j].velocity_rad_s - rate[j]),
-        };
-        let volts = command(&self.config, &mut state.law, &input);
+        let reference = self.reference(state, played);
         let blind = matches!(state.supervisor.fault, Some(Fault::EncoderDead | Fault::EncoderJumped));
-        let volts = if blind { PanTilt::default() } else { volts };
-        state.torque_nm = PanTilt::from_fn(|j: Joint| volts[j] * self.config.axes[j].torque_nm_per_v);
-        volts
+        if blind { state.servo.coast() } else { state.servo.drive(&self.config, &reference) }
     }
 
     /// Where the loop is to go now and half a tick later: along the plan, or, when its clock stands, gently back to
     /// where it stands.
-    fn reference(
-        &self,
-        state: &mut State,
-        played: &Played,
-        position_rad: PanTilt<f32>,
-        rate_rad_s: PanTilt<f32>,
-    ) -> (PanTilt<Setpoint>, PanTilt<Setpoint>) {
+    fn reference(&self, state: &mut State, played: &Played) -> Reference {
         let stands = match state.supervisor.phase {
             Phase::Holding | Phase::Faulted => true,
             Phase::Dark | Phase::Armed => state.player.has_begun() && played.segment.is_some(),
@@ -170,16 +151,17 @@ impl Controller {
         };
         if !stands {
             state.way_back = None;
-            return (played.setpoint, played.ahead);
+            return Reference { now: played.setpoint, ahead: played.ahead };
         }
+        let position_rad = state.servo.estimates().map(|estimate| estimate.position_rad);
         let kept = state.way_back.filter(|w| !w.is_lost(&self.config, position_rad));
         let mut way = kept.unwrap_or_else(|| {
-            state.law.reset();
-            ReturnPath::from(position_rad, rate_rad_s)
+            state.servo.forget();
+            ReturnPath::from(state.servo.estimates())
         });
         let now = way.tick(&self.config, &played.setpoint);
         state.way_back = Some(way);
-        (now, now)
+        Reference { now, ahead: now }
     }
 }
 

@@ -24,10 +24,16 @@ mod model;
 mod observer;
 mod player;
 mod return_path;
+mod servo;
 mod supervisor;
 mod watch;
 
-pub use config::{AxisConfig, Config, Gains, ObserverTuning};
+pub use config::{AxisConfig, Config};
 pub use controller::{Controller, State};
+pub use law::{Biquad, Feedback, Feedforward, LawConfig, LeadLag, Pid, StateFeedback};
 pub use model::{FrictionModel, HeadModel};
+pub use observer::{
+    Effort, Estimate, KalmanTuning, LONGEST_INTERVAL_TICKS, Learned, Observer, ObserverConfig, Unknown,
+};
 pub use player::QUEUE_LENGTH;
+pub use servo::{Reference, Servo};

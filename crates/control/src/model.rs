@@ -96,6 +96,15 @@ impl FrictionModel {
         }
     }
 
+    /// The same with `excess_nm` more Coulomb friction either way.
+    pub(crate) fn with_excess(&self, excess_nm: f32) -> Self {
+        Self {
+            coulomb_pos_nm: self.coulomb_pos_nm + excess_nm,
+            coulomb_neg_nm: self.coulomb_neg_nm - excess_nm,
+            ..*self
+        }
+    }
+
     /// Torque that keeps a motion at `rate_rad_s` going, the Coulomb part faded in over `fade_rad_s`.
     pub(crate) fn feedforward(&self, rate_rad_s: f32, fade_rad_s: f32) -> f32 {
         let share = within(rate_rad_s / fade_rad_s, 1.0);

@@ -1,7 +1,7 @@
 use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_S};
 
-use crate::Config;
 use crate::limit::within;
+use crate::{Config, Estimate};
 
 /// Share of a motor's torque the way back may use; the rest holds against gravity, friction and whoever pushes.
 const TORQUE_SHARE: f32 = 0.4;
@@ -23,13 +23,13 @@ pub(crate) struct ReturnPath {
 
 impl ReturnPath {
     /// From where the head is.
-    pub(crate) fn from(position_rad: PanTilt<f32>, rate_rad_s: PanTilt<f32>) -> Self {
-        let start = |j: Joint| Setpoint {
-            position_rad: position_rad[j],
-            velocity_rad_s: rate_rad_s[j],
+    pub(crate) fn from(estimates: &PanTilt<Estimate>) -> Self {
+        let start = |estimate: Estimate| Setpoint {
+            position_rad: estimate.position_rad,
+            velocity_rad_s: estimate.velocity_rad_s,
             acceleration_rad_s2: 0.0,
         };
-        Self { reference: PanTilt::from_fn(start) }
+        Self { reference: estimates.map(start) }
     }
 
     /// Whether the head is too far from this way to follow it.

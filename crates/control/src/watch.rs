@@ -2,9 +2,8 @@
 
 use tracelight_rig::{Fault, Joint, Measurement, PanTilt, TICK_S};
 
-use crate::Config;
 use crate::limit::within;
-use crate::model::Terms;
+use crate::{Config, Effort, Estimate};
 
 /// Share of Coulomb friction that must be overcome before a joint is expected to move: stiction and ripple of worn
 /// heads stay under it.
@@ -22,6 +21,10 @@ const FASTEST_RAD_S: f32 = 24.0;
 struct Expectation {
     rate_rad_s: f32,
     travel_rad: f32,
+    /// Which way the last edge was crossed.
+    way: i32,
+    /// How long ago, ticks.
+    since: f32,
 }
 
 /// State of both watches.
@@ -36,15 +39,14 @@ impl EncoderWatch {
         Self { counts: measured.map(|m| m.count), expected: PanTilt::default() }
     }
 
-    /// One tick under the torque that was applied; the fault it shows, if any. `rate_rad_s` is the observer's.
+    /// One tick under what acted on the joints; the fault it shows, if any.
     pub(crate) fn tick(
         &mut self,
         config: &Config,
-        terms: &Terms,
-        (torque_nm, rate_rad_s): (PanTilt<f32>, PanTilt<f32>),
+        efforts: &PanTilt<Effort>,
+        estimates: &PanTilt<Estimate>,
         measured: &PanTilt<Measurement>,
     ) -> Option<Fault> {
-        let inertia = terms.own_inertia();
         for joint in Joint::BOTH {
             let axis = &config.axes[joint];
             let moved = measured[joint].count.wrapping_sub(self.counts[joint]);
@@ -55,12 +57,13 @@ impl EncoderWatch {
                 return Some(Fault::EncoderJumped);
             }
             let threshold = BREAK_AWAY_MARGIN * axis.friction.coulomb_nm();
-            let net = beyond(torque_nm[joint] - terms.bias_nm[joint], threshold);
+            let Effort { torque_nm, bias_nm, inertia_kg_m2: inertia } = efforts[joint];
+            let net = beyond(torque_nm - bias_nm, threshold);
             let expected = &mut self.expected[joint];
             if moved != 0 {
-                *expected = Expectation { rate_rad_s: rate_rad_s[joint], travel_rad: 0.0 };
+                expected.begin(moved, estimates[joint].velocity_rad_s, axis.count_rad);
             }
-            expected.tick(net / inertia[joint], threshold / inertia[joint]);
+            expected.tick(net / inertia, threshold / inertia);
             if expected.travel_rad.abs() > DEAD_COUNTS * axis.count_rad {
                 return Some(Fault::EncoderDead);
             }
@@ -70,8 +73,18 @@ impl EncoderWatch {
 }
 
 impl Expectation {
+    /// At an edge: the observer's speed, but no more than this edge and the one before it show. Some observers take a
+    /// single count for a speed of radians a second.
+    fn begin(&mut self, moved: i32, rate_rad_s: f32, count_rad: f32) {
+        let shown = moved.unsigned_abs() as f32 * count_rad / (self.since.max(1.0) * TICK_S);
+        let way = moved.signum();
+        let most = if way == self.way { shown } else { 0.0 };
+        *self = Self { rate_rad_s: within(rate_rad_s, most), travel_rad: 0.0, way, since: 0.0 };
+    }
+
     /// Friction brakes what moves whether or not the effort drives it on.
     fn tick(&mut self, acceleration: f32, braking: f32) {
+        self.since += 1.0;
         if acceleration * self.rate_rad_s <= 0.0 {
             self.rate_rad_s = beyond(self.rate_rad_s, braking * TICK_S);
         }

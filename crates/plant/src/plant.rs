@@ -56,6 +56,11 @@ impl Plant {
         self.state.angle_rad
     }
 
+    /// True rates of the joints, rad/s.
+    pub const fn rate_rad_s(&self) -> PanTilt<f64> {
+        self.state.rate_rad_s
+    }
+
     /// True direction of the beam, rad: the joints' angles less the play.
     pub const fn beam_rad(&self) -> PanTilt<f64> {
         self.beam_rad

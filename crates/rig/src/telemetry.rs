@@ -43,6 +43,8 @@ pub struct Telemetry {
     pub position_rad: PanTilt<f32>,
     /// How fast the observer believes they turn, rad/s.
     pub velocity_rad_s: PanTilt<f32>,
+    /// How fast it believes that changes, rad/s².
+    pub acceleration_rad_s2: PanTilt<f32>,
     /// What is done about it until the next tick.
     pub actuation: Actuation,
     /// Why the gate is shut; empty when it is open.

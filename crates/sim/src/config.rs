@@ -3,6 +3,8 @@ use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
 use tracelight_rig::PanTilt;
 
+use crate::{LawName, ObserverName};
+
 /// A rig, whole: what we believe it is, what it really is (in simulation), and how it is to be driven.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigConfig {
@@ -49,7 +51,12 @@ pub struct Truth {
 /// Settings of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlSettings {
-    /// Bandwidth of each loop, rad/s: all three closed-loop poles of the double integrator with PID lie there.
+    /// From error to torque.
+    pub law: LawName,
+    /// From counts to position and velocity; none is the one the law is meant for.
+    pub observer: Option<ObserverName>,
+    /// Bandwidth of each loop, rad/s: how far its closed-loop poles lie from the origin. The 2006 report's laws have
+    /// their own.
     pub bandwidth_rad_s: PanTilt<f64>,
     /// Distance on the target beyond which the laser is darkened, m.
     pub tolerance_m: f64,

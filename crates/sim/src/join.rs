@@ -1,13 +1,14 @@
 //! What each room is told of a rig.
 
 use tracelight_aim::HeadPose;
-use tracelight_control::{AxisConfig, Config, FrictionModel, Gains, HeadModel, ObserverTuning};
+use tracelight_control::{AxisConfig, Config, FrictionModel, HeadModel};
 use tracelight_dynamics::{Friction, Lumped};
 use tracelight_plant::PlantConfig;
 use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
 use tracelight_trajectory::Machine;
 
 use crate::RigConfig;
+use crate::laws::INTERVAL_TICKS;
 
 /// How far past the end of its range a joint may be before that is a fault, counts.
 const RANGE_MARGIN_COUNTS: f64 = 3.0;
@@ -45,18 +46,25 @@ impl RigConfig {
         // a stroke may be planned up to the very end of the range: the controller forgives what control needs
         let (lower, upper) = self.model.geometry.range_rad[joint];
         let margin = RANGE_MARGIN_COUNTS * self.model.encoder.count_rad();
+        let control = &self.control;
+        let observer = control.observer.unwrap_or(control.law.observer());
+        let mass = self.model.bodies.lumped().mass(0.0);
+        let inertia = match joint {
+            Joint::Pan => mass.m11,
+            Joint::Tilt => mass.m22,
+        };
         AxisConfig {
             torque_nm_per_v: motor.torque_nm_per_v as f32,
             limit_v: motor.limit_v as f32,
             count_rad: self.model.encoder.count_rad() as f32,
             friction: friction_model(&self.model.friction[joint]),
-            gains: Gains::triple_pole(self.control.bandwidth_rad_s[joint] as f32),
+            observer: observer.config(INTERVAL_TICKS),
+            law: control.law.config(joint, control.bandwidth_rad_s[joint], inertia),
             limits: JointLimits {
                 lower_rad: (lower - margin) as f32,
                 upper_rad: (upper + margin) as f32,
                 speed_rad_s: self.motion.speed_limit_rad_s[joint] as f32,
             },
-            observer: ObserverTuning::DEFAULT,
         }
     }
 

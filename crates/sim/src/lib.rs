@@ -3,12 +3,26 @@
 //! Plant and controller meet here, and only through the seams of [`tracelight_rig`]. Same inputs, same bytes: the
 //! crate reads no clock, starts no thread and draws nothing that its seed does not decide.
 
+mod bench;
 mod config;
 mod join;
+mod laws;
+mod lead_lag;
+mod linear;
 mod presets;
+mod replay;
 mod run;
 mod score;
+mod spread;
+mod step;
 
+pub use bench::{Bench, BenchTick, Truth as BenchTruth};
 pub use config::{ControlSettings, Model, MotionSettings, RigConfig, Truth};
+pub use laws::{LawName, ObserverName};
+pub use linear::LinearHead;
+pub use replay::replay;
 pub use run::{Feeder, Run, SimulatedRig, Tick, run};
 pub use score::{Tracking, score};
+pub use spread::Spread;
+pub use step::{StepResponse, step_response};
+pub use tracelight_control::{Estimate, Learned};

@@ -7,6 +7,7 @@ use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
 use tracelight_rig::PanTilt;
 
+use crate::LawName;
 use crate::config::{ControlSettings, Model, MotionSettings, RigConfig, Truth};
 
 /// Motor torque constant × gearhead × belt, N m at the joint per A.
@@ -38,7 +39,9 @@ impl RigConfig {
             model,
             truth: Truth { model, wear: Wear::NONE },
             control: ControlSettings {
-                bandwidth_rad_s: PanTilt::new(60.0, 60.0),
+                law: LawName::State,
+                observer: None,
+                bandwidth_rad_s: PanTilt::new(120.0, 120.0),
                 tolerance_m: 3e-3,
                 hold_limit_s: 3.0,
             },

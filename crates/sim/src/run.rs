@@ -1,7 +1,7 @@
 use std::ops::ControlFlow;
 
 use tracelight_aim::{HeadGeometry, HeadPose};
-use tracelight_control::{Controller, State};
+use tracelight_control::{Controller, Estimate, State};
 use tracelight_plant::Plant;
 use tracelight_rig::{Command, Head, Joint, Measurement, PanTilt, Phase, Rig, Segment, Telemetry};
 use tracelight_stroke::Point;
@@ -17,7 +17,7 @@ const PATIENCE_TICKS: usize = 60_000;
 
 /// What is known of one tick after it happened: what the controller saw, and where the light really was.
 ///
-/// In simulation `angle_rad`, `spot` and `light` are the plant's truth; on a real head they are the encoders'
+/// In simulation `angle_rad`, `rate_rad_s`, `spot` and `light` are the plant's truth; on a real head they are the encoders'
 /// opinion and the gate. All of them are instants: the start of the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
@@ -25,6 +25,8 @@ pub struct Tick {
     pub telemetry: Telemetry,
     /// Joint angles, rad.
     pub angle_rad: PanTilt<f64>,
+    /// Rates of the joints, rad/s.
+    pub rate_rad_s: PanTilt<f64>,
     /// Where the beam meets the target plane, m; `None` when it misses it.
     pub spot: Option<Point>,
     /// Where the setpoint would put it, m.
@@ -83,6 +85,7 @@ impl SimulatedRig {
         let tick = Tick {
             telemetry,
             angle_rad: self.plant.angle_rad(),
+            rate_rad_s: self.plant.rate_rad_s(),
             spot: self.truth.spot(&self.pose, self.plant.beam_rad()),
             asked: self.model.spot(&self.pose, asked),
             light: self.plant.light(),
@@ -90,6 +93,11 @@ impl SimulatedRig {
         let seen = self.plant.exchange(&telemetry.actuation);
         self.measured = PanTilt::from_fn(|j| self.lines[j].carry(seen[j]));
         tick
+    }
+
+    /// What the controller believes of the joints.
+    pub const fn estimates(&self) -> &PanTilt<Estimate> {
+        self.state.estimates()
     }
 
     /// Somebody leans on the head from now on: torque at the joints, N m.

@@ -62,7 +62,8 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
 }
 
 fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepared, Failure> {
-    let driving = args.driving.resolve()?;
+    let mut driving = args.driving.resolve()?;
+    args.law.apply(&mut driving.rig);
     progress.stage("strokes", 1);
     let sketch = sketch(&args.picture, picture::read(&args.picture)?, &args.tracing, &args.placement)?;
     stop.check()?;

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::picture::read_bytes;
 use crate::units;
 use caret::Mark;
-use keys::{Key, RIG_KEYS, Slot, model_keys};
+use keys::{Choice, Key, RIG_KEYS, Slot, model_keys};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
 const MOST_BYTES: usize = 1 << 20;
@@ -181,6 +181,13 @@ fn set<T>(key: &Key<T>, target: &mut T, entry: &Entry<'_>, place: &Mark<'_>) -> 
         *field(target) = flag;
         return Ok(());
     }
+    if let Slot::Choice(Choice { names, set, .. }) = key.slot {
+        let known = names();
+        let name = entry.value.as_str().filter(|name| known.contains(name));
+        let name = name.ok_or_else(|| complain(format!("must be one of {}", known.join(", "))))?;
+        set(target, name);
+        return Ok(());
+    }
     let value = number(key, entry.value).map_err(&complain)?;
     let (low, high) = key.bounds;
     if !(low <= value && value <= high) {
@@ -192,7 +199,7 @@ fn set<T>(key: &Key<T>, target: &mut T, entry: &Entry<'_>, place: &Mark<'_>) -> 
         Slot::Real(field) => *field(target) = value,
         Slot::Count(field) if value.fract() == 0.0 => *field(target) = value as u32,
         Slot::Count(_) => return Err(complain("must be a whole number".into())),
-        Slot::Flag(_) => {}
+        Slot::Flag(_) | Slot::Choice(_) => {}
     }
     Ok(())
 }
@@ -262,6 +269,7 @@ fn shown<T>(key: &Key<T>, from: &mut T) -> String {
         },
         Slot::Count(field) => field(from).to_string(),
         Slot::Flag(field) => field(from).to_string(),
+        Slot::Choice(Choice { get, .. }) => quoted(get(from)),
     }
 }
 

@@ -4,6 +4,7 @@ use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::output::Setting;
 use crate::sketch::Placed;
+use tracelight_sim::RigConfig;
 
 /// In the order to show.
 pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Setting> {
@@ -23,6 +24,7 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
         ("corners", args.driving.corner.map_or("sharp".into(), |c| format!("rounded by up to {}", mm(c.0)))),
         ("profile", args.driving.profile.name().into()),
         ("rig", format!("{} ({})", driving.rig.name, driving.rig.description)),
+        ("law", law_of(&driving.rig)),
         ("tolerance", mm(driving.request.tolerance_m)),
         ("seed", args.seed.to_string()),
         ("laps", args.laps.to_string()),
@@ -30,4 +32,10 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
     ];
     let all = rows.into_iter().chain(args.tracing.settings());
     all.map(|(name, value)| Setting { name: name.into(), value }).collect()
+}
+
+/// The law, and what it is told of the joints by.
+fn law_of(rig: &RigConfig) -> String {
+    let law = rig.control.law;
+    format!("{} on {}", law.name(), rig.control.observer.unwrap_or(law.observer()).name())
 }

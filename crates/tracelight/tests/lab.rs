@@ -155,18 +155,32 @@ fn a_moves_rows_are_on_its_course_and_count_what_an_encoder_would() {
     assert_eq!(std::fs::read_to_string(&svg).unwrap(), plot, "the same again");
 }
 
-#[test]
-fn the_page_on_moves_shows_what_its_commands_print() {
-    let page = std::fs::read_to_string(support::root().join("docs/moves.md")).unwrap();
-    let blocks: Vec<&str> = page.split("```text\n$ tracelight ").skip(1).collect();
-    assert!(blocks.len() >= 5, "only {} commands", blocks.len());
+/// Every `$ tracelight …` on a page of `docs` prints what stands below it. With `RENEW_DOCS` set, it is written there.
+fn check_page(name: &str, commands: usize) {
+    const BEGIN: &str = "```text\n$ tracelight ";
+    let path = support::root().join("docs").join(name);
+    let page = std::fs::read_to_string(&path).unwrap();
+    assert!(page.matches(BEGIN).count() >= commands, "{name}: too few commands");
+    let mut blocks = page.split(BEGIN);
+    let mut renewed = blocks.next().unwrap().to_owned();
     for block in blocks {
         let (command, rest) = block.split_once('\n').unwrap();
-        let shown = rest.split_once("\n```").unwrap().0;
+        let (shown, after) = rest.split_once("\n```").unwrap();
         let output = run(&command.split(' ').collect::<Vec<_>>());
         let printed = String::from_utf8(output.stdout).unwrap();
-        assert_eq!(printed.trim_end(), shown, "{command}");
+        renewed += &format!("{BEGIN}{command}\n{}\n```{after}", printed.trim_end());
+        if std::env::var_os("RENEW_DOCS").is_none() {
+            assert_eq!(printed.trim_end(), shown, "{name}: {command}");
+        }
     }
+    if renewed != page {
+        std::fs::write(path, renewed).unwrap();
+    }
+}
+
+#[test]
+fn the_page_on_moves_shows_what_its_commands_print() {
+    check_page("moves.md", 5);
 }
 
 #[test]

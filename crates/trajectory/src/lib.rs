@@ -35,4 +35,5 @@ pub use planner::{DarkMove, LitSpeed, PlanRequest, plan};
 pub use profile::{MoveLimits, MovePoint, Peaks, Profile, Ramps, Shape};
 pub use retime::{Binding, JointLimits, PathSample, Retimed, Smooth, SmoothError, retime, retime_smooth};
 pub use steer::{Bounds, SteerError, Steered, steer, steer_no_faster};
+pub use swing::rest_to_rest;
 pub use travel_time::{Aimed, TravelTime};

@@ -19,6 +19,19 @@ pub(crate) struct Swing {
     longest_s: f64,
 }
 
+/// The fastest move of both joints from rest to rest within the machine's limits, tick by tick, the start left out, the
+/// end included; acceleration builds up over `rise_s`. `None` where motors are too weak for it, or a joint would leave
+/// its range.
+pub fn rest_to_rest(
+    machine: &Machine,
+    from_rad: PanTilt<f64>,
+    to_rad: PanTilt<f64>,
+    rise_s: f64,
+) -> Option<Vec<PanTilt<JointMotion>>> {
+    let (from, to) = (from_rad.map(JointMotion::at_rest), to_rad.map(JointMotion::at_rest));
+    Swing::new(machine, from, to, rise_s).ticks(machine)
+}
+
 /// A swing that takes longer is none, s, unless the motors alone would already take long,
 const LONGEST_S: f64 = 5.0;
 

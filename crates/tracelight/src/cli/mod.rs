@@ -6,6 +6,7 @@ mod completions;
 pub(crate) mod driving;
 mod explain;
 mod lab;
+pub(crate) mod laws;
 pub(crate) mod placing;
 mod plan;
 pub(crate) mod request;

@@ -7,6 +7,7 @@ use tracelight_vision::Mode;
 
 use crate::cli::Voice;
 use crate::cli::driving::DrivingArgs;
+use crate::cli::laws::LawArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 
@@ -23,6 +24,8 @@ pub(crate) struct TraceArgs {
     pub(crate) placement: PlacementArgs,
     #[command(flatten)]
     pub(crate) driving: DrivingArgs,
+    #[command(flatten)]
+    pub(crate) law: LawArgs,
     /// Draw it that many times, each from power-up; the figures are the last lap's
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) laps: u32,

@@ -32,6 +32,20 @@ pub(crate) struct TracingArgs {
     pub(crate) corner_angle: Angle,
 }
 
+impl Default for TracingArgs {
+    /// As without any flag.
+    fn default() -> Self {
+        Self {
+            mode: ModeName::default(),
+            threshold: OrAuto(None),
+            despeckle: OrAuto(None),
+            min_length: LeastLength::Pixels(0.0),
+            tolerance: Pixels(0.35),
+            corner_angle: Angle(25_f64.to_radians()),
+        }
+    }
+}
+
 /// A number, or what the picture itself says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct OrAuto(pub(crate) Option<f64>);
@@ -186,5 +200,6 @@ mod tests {
             tracing: TracingArgs,
         }
         assert_eq!(Line::parse_from(["line"]).tracing.options(1.0), Options::default());
+        assert_eq!(TracingArgs::default().options(1.0), Options::default());
     }
 }

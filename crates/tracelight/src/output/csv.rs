@@ -10,7 +10,8 @@ use super::{Job, OutputError};
 
 /// Columns of `trace.csv`; `lap` follows where there were several.
 const HEADER: &str = "t_s,x_m,y_m,laser,pan_rad,tilt_rad,pan_set_rad,tilt_set_rad,pan_count,tilt_count,pan_v,tilt_v,\
-                      gate,plan_x_m,plan_y_m,error_mm,phase,dark,pan_est_rad,tilt_est_rad,plan_tick";
+                      gate,plan_x_m,plan_y_m,error_mm,phase,dark,pan_est_rad,tilt_est_rad,plan_tick,pan_est_rad_s,tilt_est_rad_s,\
+                      pan_est_rad_s2,tilt_est_rad_s2";
 
 /// Writes one row a control tick, laps after each other.
 ///
@@ -67,6 +68,10 @@ fn row(line: &mut Vec<u8>, sample: &Sample<'_>) {
     push_fixed(line, telemetry.position_rad.pan.into(), 7);
     push_fixed(line, telemetry.position_rad.tilt.into(), 7);
     push_integer(line, telemetry.plan_tick.into());
+    push_fixed(line, telemetry.velocity_rad_s.pan.into(), 5);
+    push_fixed(line, telemetry.velocity_rad_s.tilt.into(), 5);
+    push_fixed(line, telemetry.acceleration_rad_s2.pan.into(), 3);
+    push_fixed(line, telemetry.acceleration_rad_s2.tilt.into(), 3);
 }
 
 fn push_word(line: &mut Vec<u8>, word: &str) {
@@ -182,7 +187,7 @@ mod tests {
         let text = text(&fixture.job());
         let mut lines = text.lines();
         let columns = lines.next().unwrap().split(',').count();
-        assert_eq!(columns, 21);
+        assert_eq!(columns, 25);
         let rows: Vec<_> = lines.collect();
         assert_eq!(rows.len(), fixture.run.ticks.len());
         assert!(rows.iter().all(|row| row.split(',').count() == columns));

@@ -109,7 +109,14 @@ mod tests {
             set.iter().for_each(|&reason| darkness.insert_if(true, reason));
             let fault = (i >= fault_from).then_some(Fault::EncoderDead);
             let telemetry = Telemetry { tick: i as u32, darkness, fault, ..Telemetry::default() };
-            Tick { telemetry, angle_rad: Default::default(), spot: None, asked: None, light: false }
+            Tick {
+                telemetry,
+                angle_rad: Default::default(),
+                rate_rad_s: Default::default(),
+                spot: None,
+                asked: None,
+                light: false,
+            }
         };
         Run { ticks: reasons.iter().enumerate().map(tick).collect() }
     }

@@ -216,6 +216,7 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
             .map(|j| Setpoint { position_rad: j.position_rad as f32, ..Setpoint::default() }),
         position_rad: angle_rad.map(|a| a as f32),
         velocity_rad_s: PanTilt::default(),
+        acceleration_rad_s2: PanTilt::default(),
         actuation: Actuation {
             command_v: planned.torque_fraction.map(|f| f * 10.0 + (t * 400.0).sin() as f32 * 0.3),
             gate: planned.lit,
@@ -224,5 +225,12 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
         phase: Phase::Tracing,
         fault: None,
     };
-    Tick { telemetry, angle_rad, spot: Some(spot), asked: Some(planned.spot), light: planned.lit }
+    Tick {
+        telemetry,
+        angle_rad,
+        rate_rad_s: PanTilt::default(),
+        spot: Some(spot),
+        asked: Some(planned.spot),
+        light: planned.lit,
+    }
 }

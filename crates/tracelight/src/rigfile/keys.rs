@@ -1,6 +1,6 @@
 //! Every key of a rig file: its place, unit, bounds, meaning, and the field it sets.
 
-use tracelight_sim::{Model, RigConfig};
+use tracelight_sim::{LawName, Model, ObserverName, RigConfig};
 
 use crate::units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_JERKS, ANGULAR_SPEEDS, LENGTHS, TIMES, Unit};
 
@@ -13,6 +13,19 @@ pub(super) enum Slot<T> {
     Count(fn(&mut T) -> &mut u32),
     /// Yes or no.
     Flag(fn(&mut T) -> &mut bool),
+    /// One of some names.
+    Choice(Choice<T>),
+}
+
+/// A key whose value is a name.
+#[derive(Clone, Copy)]
+pub(super) struct Choice<T> {
+    /// What fits.
+    pub(super) names: fn() -> Vec<&'static str>,
+    /// The name that holds.
+    pub(super) get: fn(&T) -> &'static str,
+    /// Takes one of `names`.
+    pub(super) set: fn(&mut T, &str),
 }
 
 /// A key of `T`.
@@ -193,7 +206,7 @@ pub(super) fn model_keys() -> Vec<Key<Model>> {
 }
 
 /// Keys of `[truth.wear]`, `[control]` and `[motion]`.
-pub(super) const RIG_KEYS: [Key<RigConfig>; 19] = [
+pub(super) const RIG_KEYS: [Key<RigConfig>; 21] = [
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),
@@ -220,10 +233,36 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 19] = [
     real("truth.wear.gain_spread", PURE, (0.0, 0.9), "largest relative error of an amplifier's gain", |r| {
         &mut r.truth.wear.gain_spread
     }),
-    real("control.pan_bandwidth", ANGULAR_SPEEDS, (0.1, 500.0), "where pan's closed-loop poles lie", |r| {
-        &mut r.control.bandwidth_rad_s.pan
-    }),
-    real("control.tilt_bandwidth", ANGULAR_SPEEDS, (0.1, 500.0), "where tilt's lie", |r| {
+    Key {
+        path: "control.law",
+        units: PURE,
+        bounds: (0.0, 0.0),
+        meaning: "from error to torque",
+        slot: Slot::Choice(Choice {
+            names: || LawName::ALL.map(LawName::name).to_vec(),
+            get: |r| r.control.law.name(),
+            set: |r, name| r.control.law = LawName::named(name).unwrap_or(r.control.law),
+        }),
+    },
+    Key {
+        path: "control.observer",
+        units: PURE,
+        bounds: (0.0, 0.0),
+        meaning: "from counts to position and speed; own: the one the law is meant for",
+        slot: Slot::Choice(Choice {
+            names: || std::iter::once("own").chain(ObserverName::ALL.map(ObserverName::name)).collect(),
+            get: |r| r.control.observer.map_or("own", ObserverName::name),
+            set: |r, name| r.control.observer = ObserverName::named(name),
+        }),
+    },
+    real(
+        "control.pan_bandwidth",
+        ANGULAR_SPEEDS,
+        (0.1, 500.0),
+        "how far pan's closed-loop poles lie from the origin",
+        |r| &mut r.control.bandwidth_rad_s.pan,
+    ),
+    real("control.tilt_bandwidth", ANGULAR_SPEEDS, (0.1, 500.0), "the same for tilt", |r| {
         &mut r.control.bandwidth_rad_s.tilt
     }),
     real(

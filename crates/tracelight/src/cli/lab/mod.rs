@@ -1,7 +1,10 @@
 //! The control engineer's bench, one file a subcommand.
 
+mod montecarlo;
 mod moves;
 mod profile;
+mod shape;
+mod step;
 
 use clap::{Args, Subcommand};
 
@@ -12,7 +15,7 @@ use crate::failure::Failure;
 use crate::stop::Stop;
 use crate::units::Unit;
 
-/// The control engineer's bench: profiles and moves, computed, plotted, compared
+/// The control engineer's bench: profiles, moves, step responses, many heads at once
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab profile --distance 180deg -o profiles.svg")]
 pub(crate) struct LabArgs {
@@ -24,6 +27,9 @@ pub(crate) struct LabArgs {
 enum LabAction {
     Profile(profile::ProfileArgs),
     Move(moves::MoveArgs),
+    Step(step::StepArgs),
+    #[command(name = "montecarlo")]
+    MonteCarlo(montecarlo::MonteCarloArgs),
 }
 
 impl LabArgs {
@@ -31,6 +37,8 @@ impl LabArgs {
         match &self.action {
             LabAction::Profile(args) => args.voice,
             LabAction::Move(args) => args.voice(),
+            LabAction::Step(args) => args.voice,
+            LabAction::MonteCarlo(args) => args.voice,
         }
     }
 }
@@ -39,6 +47,8 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
     match &args.action {
         LabAction::Profile(args) => profile::run(args),
         LabAction::Move(args) => moves::run(args, stop),
+        LabAction::Step(args) => step::run(args),
+        LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
 }
 

@@ -32,6 +32,7 @@ pub(super) const TRACELIGHT: ProtoFile = ProtoFile {
                 ("estimate_rad_s", Kind::Double),
                 ("following_error_rad", Kind::Double),
                 ("command_v", Kind::Double),
+                ("estimate_rad_s2", Kind::Double),
             ],
             choice: None,
         },
@@ -139,6 +140,7 @@ fn joint_state(out: &mut Encoder, tick: &Tick, seen: &Telemetry, joint: Joint) {
     out.double(7, seen.velocity_rad_s[joint].into());
     out.double(8, f64::from(set.position_rad) - f64::from(seen.position_rad[joint]));
     out.double(9, seen.actuation.command_v[joint].into());
+    out.double(10, seen.acceleration_rad_s2[joint].into());
 }
 
 /// `tracelight.Spot`: where the beam met the target.

@@ -1,0 +1,101 @@
+use tracelight_rig::TICK_S;
+
+/// Number of quantities a [`Kalman`](super::kalman::Kalman) filter estimates.
+pub(super) const STATES: usize = 6;
+
+/// What the places of a row and of a covariance stand for.
+pub(super) const POSITION: usize = 0;
+pub(super) const VELOCITY: usize = 1;
+pub(super) const LOAD: usize = 2;
+pub(super) const FRICTION: usize = 3;
+pub(super) const BREAK_AWAY: usize = 4;
+pub(super) const INERTIA: usize = 5;
+
+/// One number a quantity.
+pub(super) type Row = [f32; STATES];
+
+/// Symmetric covariance of the estimated quantities.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Covariance([Row; STATES]);
+
+impl Covariance {
+    /// Of quantities that know nothing of each other.
+    pub(super) fn independent(deviations: &Row) -> Self {
+        let mut covariance = Self::default();
+        for (i, deviation) in deviations.iter().enumerate() {
+            covariance.0[i][i] = deviation * deviation;
+        }
+        covariance
+    }
+
+    /// P ← F P Fᵀ, where the new velocity depends on everything by `velocity_row`, the position advances by the mean of
+    /// old and new velocity, and the rest stays.
+    pub(super) fn predict(&mut self, velocity_row: &Row) {
+        let p = &mut self.0;
+        let mut velocity = [0.0; STATES];
+        for (entry, line) in velocity_row.iter().zip(p.iter()) {
+            for (sum, value) in velocity.iter_mut().zip(line) {
+                *sum += entry * value;
+            }
+        }
+        let mut position = [0.0; STATES];
+        for (i, sum) in position.iter_mut().enumerate() {
+            *sum = p[POSITION][i] + 0.5 * TICK_S * (p[VELOCITY][i] + velocity[i]);
+        }
+        let on_velocity = |row: &Row| row.iter().zip(velocity_row).map(|(a, b)| a * b).sum::<f32>();
+        let (vv, pv) = (on_velocity(&velocity), on_velocity(&position));
+        let pp = position[POSITION] + 0.5 * TICK_S * (position[VELOCITY] + pv);
+        (velocity[POSITION], velocity[VELOCITY]) = (pv, vv);
+        (position[POSITION], position[VELOCITY]) = (pp, pv);
+        for (i, line) in p.iter_mut().enumerate() {
+            (line[POSITION], line[VELOCITY]) = (position[i], velocity[i]);
+        }
+        (p[POSITION], p[VELOCITY]) = (position, velocity);
+    }
+
+    /// Adds process noise to one quantity.
+    pub(super) fn disturb(&mut self, quantity: usize, variance: f32) {
+        self.0[quantity][quantity] += variance;
+    }
+
+    /// Makes room for a surprise: an innovation beyond three standard deviations says that something happens which
+    /// the model does not know (a push, a stall), so position, velocity and load are made uncertain until three fit
+    /// (fading memory; Xia et al., *Adaptive fading Kalman filter*, Automatica 1994). What a head is made of stays: a
+    /// push says nothing of it.
+    pub(super) fn expect(&mut self, innovation: f32, age_s: f32, variance: f32) {
+        const DEVIATIONS_SQUARED: f32 = 9.0;
+        const MOST: f32 = 1e4;
+        let own = self.variance_of_place(age_s);
+        let needed = innovation * innovation / DEVIATIONS_SQUARED - variance;
+        if needed > own && own > 0.0 {
+            let by = libm::sqrtf((needed / own).min(MOST));
+            for (i, line) in self.0.iter_mut().enumerate() {
+                for (j, entry) in line.iter_mut().enumerate() {
+                    *entry *= if i <= LOAD { by } else { 1.0 } * if j <= LOAD { by } else { 1.0 };
+                }
+            }
+        }
+    }
+
+    /// Of where the joint was `age_s` ago.
+    fn variance_of_place(&self, age_s: f32) -> f32 {
+        let p = &self.0;
+        let (pp, pv, vv) = (p[POSITION][POSITION], p[POSITION][VELOCITY], p[VELOCITY][VELOCITY]);
+        pp - 2.0 * age_s * pv + age_s * age_s * vv
+    }
+
+    /// Gains for a measurement of where the joint was `age_s` ago (H = [1 −age 0 …]), and P ← (I − KH) P.
+    pub(super) fn update(&mut self, age_s: f32, variance: f32) -> Row {
+        let seen = self.0.map(|line| line[POSITION] - age_s * line[VELOCITY]);
+        let innovation = seen[POSITION] - age_s * seen[VELOCITY] + variance;
+        let gain = seen.map(|entry| entry / innovation);
+        for (i, line) in self.0.iter_mut().enumerate() {
+            for (entry, other) in line.iter_mut().zip(seen) {
+                *entry -= gain[i] * other;
+            }
+            // rounding must not make a variance negative
+            line[i] = line[i].max(0.0);
+        }
+        gain
+    }
+}

@@ -1,0 +1,122 @@
+//! Position, velocity and acceleration of a joint from what an incremental encoder says.
+//!
+//! Plain differences of counts say little: one count of 4096 a turn in one tick of a millisecond is 1.5 rad/s. Five
+//! ways out, from the oldest to the best, behind one interface:
+//!
+//! | observer | idea | knows of the head |
+//! |---|---|---|
+//! | [`Differences`](ObserverConfig::Differences) | counts gained over a fixed interval | nothing |
+//! | [`Washout`](ObserverConfig::Washout) | the position through s·ω/(s + ω) | nothing |
+//! | [`EdgeTimes`](ObserverConfig::EdgeTimes) | edges gained over the time between the first and the last (M/T) | nothing |
+//! | [`TrackingLoop`](ObserverConfig::TrackingLoop) | a double integrator held to the counts (PLL) | nothing |
+//! | [`Kalman`](ObserverConfig::Kalman) | the equations of motion with sticking friction, corrected by edges and counts | its model |
+
+mod covariance;
+mod differences;
+mod edge_times;
+mod kalman;
+mod past;
+mod tracking_loop;
+
+use tracelight_rig::Measurement;
+
+use crate::AxisConfig;
+pub use kalman::{KalmanTuning, Learned, Unknown};
+
+use differences::Differences;
+use edge_times::EdgeTimes;
+use kalman::Kalman;
+use tracking_loop::TrackingLoop;
+
+/// Longest interval of [`ObserverConfig::Differences`] and [`ObserverConfig::EdgeTimes`], ticks.
+pub const LONGEST_INTERVAL_TICKS: usize = 64;
+
+/// How position and velocity are told from counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ObserverConfig {
+    /// Counts gained over this many ticks, at most [`LONGEST_INTERVAL_TICKS`].
+    Differences(usize),
+    /// The washout filter with its corner, rad/s: differences of one tick, smoothed.
+    Washout(f32),
+    /// Time between the edges of this many ticks, at most [`LONGEST_INTERVAL_TICKS`]; more when none came.
+    EdgeTimes(usize),
+    /// Tracking loop of that bandwidth, rad/s.
+    TrackingLoop(f32),
+    /// Kalman filter with sticking friction.
+    Kalman(KalmanTuning),
+}
+
+/// What is believed of one joint.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// Angle, rad.
+    pub position_rad: f32,
+    /// Angular velocity, rad/s.
+    pub velocity_rad_s: f32,
+    /// Angular acceleration, rad/s².
+    pub acceleration_rad_s2: f32,
+    /// What the model does not know of this head; nothing for observers that have no model.
+    pub learned: Learned,
+}
+
+/// What acted on a joint during the last tick, as far as is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// Torque of the motor, N m.
+    pub torque_nm: f32,
+    /// Torque that gravity, Coriolis and the other joint's acceleration ask for, N m.
+    pub bias_nm: f32,
+    /// Inertia the joint feels, kg m².
+    pub inertia_kg_m2: f32,
+}
+
+/// State of one joint's observer.
+#[derive(Clone, Copy, Debug)]
+pub struct Observer(Kind);
+
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one a joint, and no heap to put the large ones on")]
+enum Kind {
+    Differences(Differences),
+    EdgeTimes(EdgeTimes),
+    TrackingLoop(TrackingLoop),
+    Kalman(Kalman),
+}
+
+impl Observer {
+    /// Of a joint at rest on this count.
+    pub fn at_rest(axis: &AxisConfig, measured: &Measurement) -> Self {
+        let count = measured.count;
+        Self(match axis.observer {
+            ObserverConfig::Differences(ticks) => {
+                Kind::Differences(Differences::at_rest(count, ticks, f32::INFINITY))
+            }
+            ObserverConfig::Washout(corner) => Kind::Differences(Differences::at_rest(count, 1, corner)),
+            ObserverConfig::EdgeTimes(ticks) => Kind::EdgeTimes(EdgeTimes::at_rest(count, ticks)),
+            ObserverConfig::TrackingLoop(bandwidth) => {
+                Kind::TrackingLoop(TrackingLoop::at_rest(count, bandwidth))
+            }
+            ObserverConfig::Kalman(tuning) => Kind::Kalman(Kalman::at_rest(axis, count, tuning)),
+        })
+    }
+
+    /// One tick: what acted on the joint, and what its encoder reads at the tick's end.
+    pub fn tick(&mut self, axis: &AxisConfig, effort: &Effort, measured: &Measurement) {
+        match &mut self.0 {
+            Kind::Differences(observer) => observer.tick(axis.count_rad, measured),
+            Kind::EdgeTimes(observer) => observer.tick(axis.count_rad, measured),
+            Kind::TrackingLoop(observer) => observer.tick(axis.count_rad, measured),
+            Kind::Kalman(observer) => observer.tick(axis, effort, measured),
+        }
+    }
+
+    /// What is believed now.
+    pub fn estimate(&self, axis: &AxisConfig) -> Estimate {
+        match &self.0 {
+            Kind::Differences(observer) => observer.estimate(axis.count_rad),
+            Kind::EdgeTimes(observer) => observer.estimate(axis.count_rad),
+            Kind::TrackingLoop(observer) => observer.estimate(axis.count_rad),
+            Kind::Kalman(observer) => observer.estimate(axis.count_rad),
+        }
+    }
+}

@@ -1,0 +1,44 @@
+use tracelight_rig::{Measurement, TICK_S};
+
+use super::Estimate;
+
+/// A double integrator that is held to the count's middle by both its poles at −ω: the tracking loop of resolver
+/// converters, and what open motor controllers use.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TrackingLoop {
+    count: i32,
+    /// Estimate − middle of the count, counts: small numbers keep their digits.
+    offset: f32,
+    /// Counts a tick.
+    rate: f32,
+    /// Counts a tick².
+    acceleration: f32,
+    /// ω times a tick.
+    turn: f32,
+}
+
+impl TrackingLoop {
+    pub(super) const fn at_rest(count: i32, bandwidth_rad_s: f32) -> Self {
+        Self { count, offset: 0.0, rate: 0.0, acceleration: 0.0, turn: bandwidth_rad_s * TICK_S }
+    }
+
+    pub(super) fn tick(&mut self, _count_rad: f32, measured: &Measurement) {
+        let moved = measured.count.wrapping_sub(self.count);
+        self.count = measured.count;
+        let error = moved as f32 - (self.offset + self.rate);
+        let change = self.turn * self.turn * error;
+        self.offset = 2.0 * self.turn * error - error;
+        self.rate += change;
+        // as smooth as the loop itself
+        self.acceleration += self.turn / (1.0 + self.turn) * (change - self.acceleration);
+    }
+
+    pub(super) fn estimate(&self, count_rad: f32) -> Estimate {
+        Estimate {
+            position_rad: (self.count as f32 + self.offset) * count_rad,
+            velocity_rad_s: self.rate * count_rad / TICK_S,
+            acceleration_rad_s2: self.acceleration * count_rad / (TICK_S * TICK_S),
+            ..Estimate::default()
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! A control engineer's bench: records in, numbers out.
+//!
+//! No file is read and no thread started here; what is measured comes as a record of a run, simulated or real.
+
+mod statistics;
+mod step;
+mod velocity;
+
+pub use statistics::Quantiles;
+pub use step::StepFigures;
+pub use velocity::{Peaks, VelocityError, peaks, peaks_seen, velocity_error};

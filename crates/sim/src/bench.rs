@@ -1,0 +1,81 @@
+use tracelight_control::{Config, Estimate, Reference, Servo};
+use tracelight_plant::Plant;
+use tracelight_rig::{Actuation, Head, Measurement, PanTilt, Setpoint};
+
+use crate::RigConfig;
+use crate::linear::LinearHead;
+
+/// Observers and laws on a head, without plan, supervisor and light: what a control engineer puts on the bench.
+#[derive(Clone, Debug)]
+pub struct Bench<H> {
+    config: Config,
+    servo: Servo,
+    head: H,
+    measured: PanTilt<Measurement>,
+    begun: bool,
+}
+
+/// One tick on the bench; all of it at the tick's start.
+#[derive(Clone, Copy, Debug)]
+pub struct BenchTick {
+    /// Where the joints should be.
+    pub setpoint: PanTilt<Setpoint>,
+    /// Where they truly are, rad.
+    pub angle_rad: PanTilt<f64>,
+    /// How fast they truly turn, rad/s.
+    pub rate_rad_s: PanTilt<f64>,
+    /// What the encoders read.
+    pub measured: PanTilt<Measurement>,
+    /// What is believed.
+    pub estimates: PanTilt<Estimate>,
+    /// What is done about it, V.
+    pub command_v: PanTilt<f32>,
+}
+
+/// A simulated head whose truth can be looked at.
+pub trait Truth: Head {
+    /// Joint angles, rad, and their rates, rad/s.
+    fn truth(&self) -> (PanTilt<f64>, PanTilt<f64>);
+}
+
+impl Truth for Plant {
+    fn truth(&self) -> (PanTilt<f64>, PanTilt<f64>) {
+        (self.angle_rad(), self.rate_rad_s())
+    }
+}
+
+impl Bench<Plant> {
+    /// The rig's head as it truly is, at rest at zero.
+    pub fn nonlinear(rig: &RigConfig, seed: u64) -> Self {
+        Self::new(rig.control_config(), Plant::new(&rig.plant_config(), seed))
+    }
+}
+
+impl Bench<LinearHead> {
+    /// The same head linearized at rest at `pose_rad`, with an ideal encoder and amplifier; the law is told so.
+    pub fn linear(rig: &RigConfig, pose_rad: PanTilt<f64>) -> Self {
+        let head = LinearHead::new(rig, pose_rad);
+        Self::new(head.control_config(rig), head)
+    }
+}
+
+impl<H: Truth> Bench<H> {
+    fn new(config: Config, head: H) -> Self {
+        let measured = PanTilt::default();
+        Self { servo: Servo::at_rest(&config, &measured), config, head, measured, begun: false }
+    }
+
+    /// One tick.
+    pub fn step(&mut self, reference: &Reference) -> BenchTick {
+        if self.begun {
+            self.servo.observe(&self.config, &self.measured);
+        }
+        self.begun = true;
+        let (angle_rad, rate_rad_s) = self.head.truth();
+        let estimates = *self.servo.estimates();
+        let command_v = self.servo.drive(&self.config, reference);
+        let measured = self.measured;
+        self.measured = self.head.exchange(&Actuation { command_v, gate: false });
+        BenchTick { setpoint: reference.now, angle_rad, rate_rad_s, measured, estimates, command_v }
+    }
+}

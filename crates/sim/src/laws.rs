@@ -1,0 +1,198 @@
+//! Laws and observers by name.
+
+use tracelight_control::{
+    Feedback, Feedforward, KalmanTuning, LawConfig, LeadLag, ObserverConfig, Pid, StateFeedback,
+};
+use tracelight_rig::Joint;
+
+use crate::lead_lag::{Format, LeadLagDesign};
+
+/// A law that a rig can be driven by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LawName {
+    /// State feedback with what disturbs estimated, and feedforward by what the head has shown to be.
+    State,
+    /// PID and feedforward of inertia, Coriolis, gravity and friction by the model.
+    PidFeedforward,
+    /// PID and gravity.
+    Pid,
+    /// A lead for the phase, a lag for the static error, and gravity.
+    LeadLag,
+    /// The 2006 report's K11 and K22, its figures read as poles and zeros, as they are typeset.
+    ReportZpk,
+    /// The same, read as time constants, as its design tool displayed them.
+    ReportTimeConstants,
+    /// The report's PD gains.
+    ReportPd,
+}
+
+impl LawName {
+    /// Every law, the best first.
+    pub const ALL: [Self; 7] = [
+        Self::State,
+        Self::PidFeedforward,
+        Self::Pid,
+        Self::LeadLag,
+        Self::ReportZpk,
+        Self::ReportTimeConstants,
+        Self::ReportPd,
+    ];
+
+    /// As on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::State => "state",
+            Self::PidFeedforward => "pid-ff",
+            Self::Pid => "pid",
+            Self::LeadLag => "lead-lag",
+            Self::ReportZpk => "report-zpk",
+            Self::ReportTimeConstants => "report-tc",
+            Self::ReportPd => "report-pd",
+        }
+    }
+
+    /// The law of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|law| law.name() == name)
+    }
+
+    /// The observer it is meant for.
+    pub const fn observer(self) -> ObserverName {
+        match self {
+            Self::State => ObserverName::Kalman,
+            Self::PidFeedforward => ObserverName::KalmanModel,
+            Self::Pid | Self::LeadLag => ObserverName::TrackingLoop,
+            Self::ReportZpk | Self::ReportTimeConstants | Self::ReportPd => ObserverName::Counts,
+        }
+    }
+
+    /// Whether its reference is shaped: a step is then a move as fast as the motors can, otherwise a jump.
+    pub const fn shapes_reference(self) -> bool {
+        matches!(self, Self::State | Self::PidFeedforward)
+    }
+
+    /// Share of a rig's bandwidth that it is given: an observer that knows nothing of the head lags behind it, and leaves
+    /// a sixth; an integrator takes half.
+    const fn bandwidth_share(self) -> f64 {
+        match self {
+            Self::State => 1.0,
+            Self::PidFeedforward => 0.5,
+            Self::Pid | Self::LeadLag => 1.0 / 6.0,
+            // these have their own
+            Self::ReportZpk | Self::ReportTimeConstants | Self::ReportPd => 1.0,
+        }
+    }
+
+    /// The law of one joint with that inertia, kg m²; `bandwidth_rad_s` is for those that are not the report's.
+    pub fn config(self, joint: Joint, bandwidth_rad_s: f64, inertia_kg_m2: f64) -> LawConfig {
+        let bandwidth_rad_s = self.bandwidth_share() * bandwidth_rad_s;
+        let (bandwidth, inertia) = (bandwidth_rad_s as f32, inertia_kg_m2 as f32);
+        let pid = Feedback::Pid(Pid::triple_pole(bandwidth, inertia));
+        let (feedback, feedforward) = match self {
+            Self::State => (
+                Feedback::State(StateFeedback { bandwidth_rad_s: bandwidth, damping: DAMPING }),
+                Feedforward::Learned,
+            ),
+            Self::PidFeedforward => (pid, Feedforward::Model),
+            Self::Pid => (pid, Feedforward::Gravity),
+            Self::LeadLag => (
+                Feedback::LeadLag(LeadLagDesign::for_inertia(bandwidth_rad_s, inertia_kg_m2).discretize()),
+                Feedforward::Gravity,
+            ),
+            Self::ReportZpk => (Feedback::LeadLag(report(joint, Format::Zpk)), Feedforward::None),
+            Self::ReportTimeConstants => {
+                (Feedback::LeadLag(report(joint, Format::TimeConstants)), Feedforward::None)
+            }
+            Self::ReportPd => (Feedback::Pid(report_pd(joint)), Feedforward::None),
+        };
+        LawConfig { feedback, feedforward }
+    }
+}
+
+/// Of the pair of closed-loop poles: a step of the load overshoots by 1.5 %.
+const DAMPING: f32 = 0.8;
+
+/// K11 = 281 (s + 32.9)(s + 97.8) / ((s + 250)(s + 177)), K22 = 144 (s + 31.5)(s + 33.4) / ((s + 194)(s + 83.5)).
+fn report(joint: Joint, format: Format) -> LeadLag {
+    let (gain, zeros, poles) = match joint {
+        Joint::Pan => (281.0, [32.9, 97.8], [250.0, 177.0]),
+        Joint::Tilt => (144.0, [31.5, 33.4], [194.0, 83.5]),
+    };
+    LeadLagDesign::report(gain, zeros, poles, format).discretize()
+}
+
+/// "PD gains tried: pan kp 2, kd 10; tilt kp 2, kd 5", their units taken to be N m/rad and N m s/rad.
+fn report_pd(joint: Joint) -> Pid {
+    let kd = match joint {
+        Joint::Pan => 10.0,
+        Joint::Tilt => 5.0,
+    };
+    Pid { kd, ..Pid::proportional(2.0) }
+}
+
+/// How counts become position and velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ObserverName {
+    /// Kalman filter with sticking friction that learns what the head is.
+    Kalman,
+    /// The same, believing the model.
+    KalmanModel,
+    /// Tracking loop (PLL).
+    TrackingLoop,
+    /// Time between edges (M/T).
+    EdgeTimes,
+    /// Differences over a fixed interval.
+    Differences,
+    /// Washout filter.
+    Washout,
+    /// Differences from tick to tick.
+    Counts,
+}
+
+impl ObserverName {
+    /// Every observer, the best first.
+    pub const ALL: [Self; 7] = [
+        Self::Kalman,
+        Self::KalmanModel,
+        Self::TrackingLoop,
+        Self::EdgeTimes,
+        Self::Differences,
+        Self::Washout,
+        Self::Counts,
+    ];
+
+    /// As in rig files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Kalman => "kalman",
+            Self::KalmanModel => "kalman-model",
+            Self::TrackingLoop => "tracking-loop",
+            Self::EdgeTimes => "edge-times",
+            Self::Differences => "differences",
+            Self::Washout => "washout",
+            Self::Counts => "counts",
+        }
+    }
+
+    /// The observer of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|observer| observer.name() == name)
+    }
+
+    /// With the interval, ticks, that those take which have one; the others' corner is its reciprocal.
+    pub fn config(self, interval_ticks: usize) -> ObserverConfig {
+        let corner = 1.0 / (interval_ticks as f32 * tracelight_rig::TICK_S);
+        match self {
+            Self::Kalman => ObserverConfig::Kalman(KalmanTuning::LEARNING),
+            Self::KalmanModel => ObserverConfig::Kalman(KalmanTuning::BELIEVING),
+            Self::TrackingLoop => ObserverConfig::TrackingLoop(corner),
+            Self::EdgeTimes => ObserverConfig::EdgeTimes(interval_ticks),
+            Self::Differences => ObserverConfig::Differences(interval_ticks),
+            Self::Washout => ObserverConfig::Washout(corner),
+            Self::Counts => ObserverConfig::Differences(1),
+        }
+    }
+}
+
+/// Interval of observers that have one, ticks: a tracking loop of 200 rad/s.
+pub(crate) const INTERVAL_TICKS: usize = 5;

@@ -1,0 +1,24 @@
+use tracelight_control::{Estimate, ObserverConfig, Servo};
+use tracelight_rig::{Joint, PanTilt};
+
+use crate::{RigConfig, Tick};
+
+/// What an observer would have believed in every tick of a run: counts, edges and volts are played to it, and nothing it
+/// says has any effect.
+pub fn replay(rig: &RigConfig, ticks: &[Tick], observer: ObserverConfig) -> Vec<PanTilt<Estimate>> {
+    let mut config = rig.control_config();
+    for joint in Joint::BOTH {
+        config.axes[joint].observer = observer;
+    }
+    let Some(first) = ticks.first() else { return Vec::new() };
+    let mut servo = Servo::at_rest(&config, &first.telemetry.measured);
+    let mut believed = Vec::with_capacity(ticks.len());
+    for (number, tick) in ticks.iter().enumerate() {
+        if number > 0 {
+            servo.observe(&config, &tick.telemetry.measured);
+        }
+        servo.apply(&config, tick.telemetry.actuation.command_v);
+        believed.push(*servo.estimates());
+    }
+    believed
+}

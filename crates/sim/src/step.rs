@@ -1,0 +1,87 @@
+use tracelight_aim::HeadPose;
+use tracelight_control::Reference;
+use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_F64_S, TICK_S};
+use tracelight_trajectory::{JointMotion, rest_to_rest};
+
+use crate::RigConfig;
+use crate::bench::{Bench, BenchTick, Truth};
+
+/// What a joint does when it is sent somewhere else, for [`StepResponse::LENGTH_S`].
+#[derive(Clone, Debug)]
+pub struct StepResponse {
+    /// The head as it truly is.
+    pub nonlinear: Vec<BenchTick>,
+    /// The same linearized where the step ends.
+    pub linear: Vec<BenchTick>,
+}
+
+impl StepResponse {
+    /// How long a step is watched, s.
+    pub const LENGTH_S: f64 = 3.0;
+}
+
+/// Sends one joint from rest at zero to `to_rad`, the other is held at zero. A law that shapes its reference gets the
+/// fastest move within the rig's limits, the others a jump. `None` if the motors are too weak for the move, or it ends out
+/// of the joint's range.
+pub fn step_response(rig: &RigConfig, joint: Joint, to_rad: f64, seed: u64) -> Option<StepResponse> {
+    let mut to = PanTilt::default();
+    to[joint] = to_rad;
+    let references = if rig.control.law.shapes_reference() { shaped(rig, to)? } else { jump(rig, to)? };
+    Some(StepResponse {
+        nonlinear: follow(Bench::nonlinear(rig, seed), &references),
+        linear: follow(Bench::linear(rig, to), &references),
+    })
+}
+
+fn follow<H: Truth>(mut bench: Bench<H>, references: &[Reference]) -> Vec<BenchTick> {
+    references.iter().map(|reference| bench.step(reference)).collect()
+}
+
+fn ticks() -> usize {
+    (StepResponse::LENGTH_S / TICK_F64_S).round() as usize
+}
+
+fn jump(rig: &RigConfig, to_rad: PanTilt<f64>) -> Option<Vec<Reference>> {
+    let in_range = |j: Joint| {
+        let (lower, upper) = rig.model.geometry.range_rad[j];
+        lower <= to_rad[j] && to_rad[j] <= upper
+    };
+    let there = to_rad.map(|at| setpoint(&JointMotion { position_rad: at, ..JointMotion::default() }));
+    Joint::BOTH.into_iter().all(in_range).then(|| vec![Reference { now: there, ahead: there }; ticks()])
+}
+
+fn shaped(rig: &RigConfig, to_rad: PanTilt<f64>) -> Option<Vec<Reference>> {
+    // where the head stands does not matter: no point of a target is aimed at
+    let machine = rig.machine(HeadPose::square_on(1.0));
+    let start = PanTilt::default();
+    let way = rest_to_rest(&machine, start, to_rad, rig.motion.ramp_s)?;
+    let start = start.map(|position_rad| JointMotion { position_rad, ..JointMotion::default() });
+    let points: Vec<PanTilt<Setpoint>> =
+        std::iter::once(start).chain(way).map(|joints| joints.map(|j| setpoint(&j))).collect();
+    let last = *points.last()?;
+    let at = |tick: usize| *points.get(tick).unwrap_or(&last);
+    Some((0..ticks()).map(|tick| between(at(tick), at(tick + 1))).collect())
+}
+
+fn setpoint(motion: &JointMotion) -> Setpoint {
+    Setpoint {
+        position_rad: motion.position_rad as f32,
+        velocity_rad_s: motion.velocity_rad_s as f32,
+        acceleration_rad_s2: motion.acceleration_rad_s2 as f32,
+    }
+}
+
+/// The setpoint of a tick, and the one halfway to the next.
+fn between(now: PanTilt<Setpoint>, next: PanTilt<Setpoint>) -> Reference {
+    let ahead = PanTilt::from_fn(|j| {
+        let (a, b) = (&now[j], &next[j]);
+        // the middle of the cubic through both ends with their velocities
+        let bend = TICK_S / 8.0 * (a.velocity_rad_s - b.velocity_rad_s);
+        Setpoint {
+            position_rad: 0.5 * (a.position_rad + b.position_rad) + bend,
+            velocity_rad_s: 0.5 * (a.velocity_rad_s + b.velocity_rad_s),
+            acceleration_rad_s2: 0.5 * (a.acceleration_rad_s2 + b.acceleration_rad_s2),
+        }
+    });
+    Reference { now, ahead }
+}

@@ -1,0 +1,189 @@
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use clap::Args;
+use tracelight_lab::Quantiles;
+use tracelight_rig::Phase;
+use tracelight_sim::{SimulatedRig, Spread, Tracking, score};
+use tracelight_trajectory::Plan;
+
+use super::shape::ShapeArgs;
+use super::{OutFile, out_file, write_all};
+use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen};
+use crate::cli::driving::Driving;
+use crate::cli::{Answer, Voice};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::stop::Stop;
+
+/// Draw the same on many heads that differ: how exact it is on the middle one, on 95 of 100, on the worst
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight lab montecarlo --plants 1000 --shape circle -o heads.svg\n\n\
+                  What is believed of the rig stays; what each head truly is differs: Coulomb friction by up to 15 %, viscous \
+                  30 %, inertia and gravity 5 %; break-away 1 to 1.3 times Coulomb friction, ripple of friction up to 10 %, \
+                  edges misplaced by up to 0.1 counts.")]
+pub(crate) struct MonteCarloArgs {
+    /// How many heads
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    plants: u32,
+    #[command(flatten)]
+    shape: ShapeArgs,
+    /// Seed of the first head; the next have the seeds after it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..u64::MAX / 2))]
+    seed: u64,
+    /// Plot the heads' errors, sorted, into an SVG, or write a row a head to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    out: Vec<OutFile>,
+    #[command(flatten)]
+    pub(super) voice: Voice,
+}
+
+/// What became of one head.
+#[derive(Clone, Copy, Debug)]
+struct Trial {
+    finished: bool,
+    /// Ticks it took beyond its plan: it left its stroke and came back.
+    late_ticks: usize,
+    tracking: Tracking,
+}
+
+pub(crate) fn run(args: &MonteCarloArgs, stop: &Stop) -> Result<Answer, Failure> {
+    let driving = args.shape.resolve()?;
+    let plan = args.shape.plan(&driving)?;
+    let trials = run_all(args, &driving, &plan, stop);
+    stop.check()?;
+    write_all(&args.out, || figure(args, &trials), || Ok(csv(args, &trials)))?;
+    Ok(Answer::new(table(args, &driving, &trials), json(&trials)))
+}
+
+/// Every head, on all cores; what comes out does not depend on how many there are.
+fn run_all(args: &MonteCarloArgs, driving: &Driving, plan: &Plan, stop: &Stop) -> Vec<Trial> {
+    let progress = Progress::new(args.voice.quiet);
+    progress.stage("heads", u64::from(args.plants));
+    let next = AtomicUsize::new(0);
+    let count = args.plants as usize;
+    let done: Mutex<Vec<(usize, Trial)>> = Mutex::new(Vec::with_capacity(count));
+    let work = || {
+        while let Some(number) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&n| n < count) {
+            if stop.is_wanted() {
+                return;
+            }
+            let trial = trial(driving, plan, args.seed + number as u64);
+            let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            done.push((number, trial));
+            progress.at(done.len() as u64);
+        }
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| (0..cores).for_each(|_| drop(scope.spawn(work))));
+    let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    done.sort_by_key(|(number, _)| *number);
+    done.into_iter().map(|(_, trial)| trial).collect()
+}
+
+fn trial(driving: &Driving, plan: &Plan, seed: u64) -> Trial {
+    let rig = Spread::USUAL.draw(&driving.rig, seed);
+    let mut simulated = SimulatedRig::new(&rig, driving.pose, seed);
+    let run = tracelight_sim::run(&mut simulated, plan, false, |_, _| ControlFlow::Continue(()));
+    Trial {
+        finished: run.ticks.last().is_some_and(|tick| tick.telemetry.phase == Phase::Done),
+        late_ticks: run.ticks.len().saturating_sub(plan.points.len()),
+        tracking: score(plan, &run, plan.set_speed_m_s),
+    }
+}
+
+/// A figure of a trial that is shown.
+type Value = fn(&Trial) -> f64;
+
+/// Their names in JSON and in the table.
+const FIGURES: [(&str, &str, Value); 6] = [
+    ("rms_mm", "error rms, mm", |t| t.tracking.rms_mm),
+    ("max_mm", "error at most, mm", |t| t.tracking.max_mm),
+    ("off_stroke_rms_mm", "off its stroke rms, mm", |t| t.tracking.off_stroke_rms_mm),
+    ("off_stroke_max_mm", "off its stroke at most, mm", |t| t.tracking.off_stroke_max_mm),
+    ("overshoot_percent", "overshoot, %", |t| t.tracking.overshoot_percent),
+    ("final_error_mm", "error at rest, mm", |t| t.tracking.final_error_mm),
+];
+
+fn finished(trials: &[Trial]) -> usize {
+    trials.iter().filter(|trial| trial.finished).count()
+}
+
+fn table(args: &MonteCarloArgs, driving: &Driving, trials: &[Trial]) -> String {
+    let law = driving.rig.control.law;
+    let held = trials.iter().filter(|trial| trial.late_ticks > 0).count();
+    let mut text = format!(
+        "{} on {} heads like {}, law {}: {} finished, {held} left the stroke and came back\n\n{:28} {:>8} {:>8} {:>8}",
+        args.shape.shape,
+        trials.len(),
+        driving.rig.name,
+        law.name(),
+        finished(trials),
+        "",
+        "median",
+        "95 %",
+        "worst"
+    );
+    for (_, words, value) in FIGURES {
+        let Quantiles { median, p95, worst } = Quantiles::of(trials.iter().map(value));
+        // writing to a String cannot fail
+        let _ = write!(text, "\n{words:28} {median:8.3} {p95:8.3} {worst:8.3}");
+    }
+    text
+}
+
+fn json(trials: &[Trial]) -> String {
+    let mut object = serde_json::json!({
+        "plants": trials.len(),
+        "finished": finished(trials),
+        "held": trials.iter().filter(|trial| trial.late_ticks > 0).count(),
+    });
+    for (name, _, value) in FIGURES {
+        let Quantiles { median, p95, worst } = Quantiles::of(trials.iter().map(value));
+        object[name] = serde_json::json!({ "median": median, "p95": p95, "worst": worst });
+    }
+    object.to_string()
+}
+
+fn csv(args: &MonteCarloArgs, trials: &[Trial]) -> String {
+    let names: Vec<&str> = FIGURES.iter().map(|(name, _, _)| *name).collect();
+    let mut text = format!("seed,finished,late_ticks,{}\n", names.join(","));
+    for (number, trial) in trials.iter().enumerate() {
+        let _ =
+            write!(text, "{},{},{}", args.seed + number as u64, u8::from(trial.finished), trial.late_ticks);
+        for (_, _, value) in FIGURES {
+            let _ = write!(text, ",{:.6}", value(trial));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn figure(args: &MonteCarloArgs, trials: &[Trial]) -> Result<String, Failure> {
+    let sorted = |colour: Colour, value: Value| {
+        let mut values: Vec<f64> = trials.iter().map(value).collect();
+        values.sort_by(f64::total_cmp);
+        let share = |k: usize| 100.0 * (k + 1) as f64 / values.len() as f64;
+        let points = values.iter().enumerate().map(|(k, &v)| (share(k), v)).collect();
+        Curve { colour, pen: Pen::Solid, points }
+    };
+    let figure = Figure {
+        title: format!("{} on {} heads that differ", args.shape.shape, trials.len()),
+        legend: vec![
+            Key { colour: Colour::Blue, name: "at most".into() },
+            Key { colour: Colour::Vermilion, name: "rms".into() },
+        ],
+        panels: vec![Panel {
+            x_title: "share of the heads, %".into(),
+            y_title: "error not above, mm".into(),
+            curves: vec![sorted(Colour::Blue, FIGURES[1].2), sorted(Colour::Vermilion, FIGURES[0].2)],
+            levels: vec![0.0],
+            even: false,
+        }],
+        columns: 1,
+        panel: (680, 380),
+    };
+    figure.svg().map_err(|e| Failure::failed("internal", e))
+}

@@ -1,0 +1,257 @@
+use std::fmt::Write;
+
+use clap::{Args, ValueEnum};
+use tracelight_lab::StepFigures;
+use tracelight_rig::{Joint, TICK_F64_S};
+use tracelight_sim::{BenchTick, LawName, ObserverName, RigConfig, StepResponse, step_response};
+
+use super::{OutFile, out_file, write_all};
+use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen};
+use crate::cli::driving::DEFAULT_DISTANCE_M;
+use crate::cli::laws::{law, observer};
+use crate::cli::{Answer, Voice};
+use crate::failure::Failure;
+use crate::rigfile;
+use crate::units::Angle;
+
+/// Send one joint from rest at zero to an angle: overshoot, settling, what stays, on the head as it is and linearized
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example: tracelight lab step --axis tilt --to 15deg --law state,report-zpk -o steps.svg\n\n\
+                  state and pid-ff shape their reference: they are given a move as fast as the rig's limits allow; the other \
+                  laws a jump. The linear response is of the joint by itself, linearized where the step ends, without \
+                  Coulomb friction, quantizer and amplifier's limit."
+)]
+pub(crate) struct StepArgs {
+    /// Which joint
+    #[arg(long, value_enum, default_value = "pan")]
+    axis: Axis,
+    /// How far
+    #[arg(long, value_name = "ANGLE", default_value = "15deg", allow_hyphen_values = true, value_parser = step)]
+    to: Angle,
+    /// Laws, the first of them first in --json and alone in the CSV [default: the rig's]
+    #[arg(long, value_name = "LAW", value_delimiter = ',', value_parser = law())]
+    law: Vec<LawName>,
+    /// How counts become position and speed [default: as each law is meant]
+    #[arg(long, value_name = "OBSERVER", value_parser = observer())]
+    observer: Option<ObserverName>,
+    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
+    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
+    rig: String,
+    /// Seed of what differs from head to head
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// Plot the responses into an SVG, or write the first, a row a millisecond, to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    out: Vec<OutFile>,
+    #[command(flatten)]
+    pub(super) voice: Voice,
+}
+
+/// A joint on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Axis {
+    /// About the vertical
+    Pan,
+    /// Up and down
+    Tilt,
+}
+
+impl Axis {
+    pub(super) const fn joint(self) -> Joint {
+        match self {
+            Axis::Pan => Joint::Pan,
+            Axis::Tilt => Joint::Tilt,
+        }
+    }
+}
+
+fn step(text: &str) -> Result<Angle, String> {
+    const LEAST_RAD: f64 = 1e-5;
+    let angle: Angle = text.parse().map_err(|e| format!("{e}"))?;
+    if (LEAST_RAD..=std::f64::consts::PI).contains(&angle.0.abs()) {
+        Ok(angle)
+    } else {
+        Err(format!("{text} is not between {LEAST_RAD} rad and half a turn, either way"))
+    }
+}
+
+/// One law's responses and what they are like.
+struct Entry {
+    law: LawName,
+    response: StepResponse,
+    nonlinear: StepFigures,
+    linear: StepFigures,
+}
+
+pub(crate) fn run(args: &StepArgs) -> Result<Answer, Failure> {
+    let rig = rigfile::load(&args.rig)?;
+    let own = [rig.control.law];
+    let laws = if args.law.is_empty() { &own[..] } else { &args.law };
+    let entries =
+        laws.iter().map(|&law| respond(args, &rig, law)).collect::<Result<Vec<Entry>, Failure>>()?;
+    let Some(first) = entries.first() else {
+        return Err(Failure::usage("usage", "--law names no law"));
+    };
+    write_all(&args.out, || figure(args, &entries), || Ok(csv(args, first)))?;
+    Ok(Answer::new(table(args, &rig, &entries), json(args, &rig, &entries)))
+}
+
+fn respond(args: &StepArgs, rig: &RigConfig, law: LawName) -> Result<Entry, Failure> {
+    let mut rig = rig.clone();
+    if law != rig.control.law {
+        rig.control.observer = None;
+    }
+    rig.control.law = law;
+    rig.control.observer = args.observer.or(rig.control.observer);
+    let joint = args.axis.joint();
+    let response = step_response(&rig, joint, args.to.0, args.seed).ok_or_else(|| {
+        let message = format!(
+            "{joint} cannot be sent to {:.4} rad: that is out of its range, or its motor is too weak to hold or move it; see \
+             `tracelight rigs show`",
+            args.to.0
+        );
+        Failure::failed("unreachable", message)
+    })?;
+    let figures = |ticks: &[BenchTick]| {
+        let angles: Vec<f64> = ticks.iter().map(|tick| tick.angle_rad[joint]).collect();
+        StepFigures::of(&angles, args.to.0, TICK_F64_S)
+    };
+    let (nonlinear, linear) = (figures(&response.nonlinear), figures(&response.linear));
+    Ok(Entry { law, response, nonlinear, linear })
+}
+
+fn error_mm(figures: &StepFigures) -> f64 {
+    1e3 * DEFAULT_DISTANCE_M * figures.final_error
+}
+
+fn table(args: &StepArgs, rig: &RigConfig, entries: &[Entry]) -> String {
+    let mut text = format!(
+        "{} from rest at 0 to {:.4} rad ({:.2}°) on rig {}; settled: within 2 %\n\n\
+         law         overshoot, %  settles, s  final error, mm  counts    linear: overshoot, %  settles, s",
+        args.axis.joint(),
+        args.to.0,
+        args.to.0.to_degrees(),
+        rig.name
+    );
+    for entry in entries {
+        let (is, linear) = (&entry.nonlinear, &entry.linear);
+        // writing to a String cannot fail
+        let _ = write!(
+            text,
+            "\n{:10} {:13.2} {:>11} {:16.3} {:7.2} {:22.2} {:>11}",
+            entry.law.name(),
+            is.overshoot_percent,
+            seconds(is.settle_s),
+            error_mm(is),
+            is.final_error / rig.truth.model.encoder.count_rad(),
+            linear.overshoot_percent,
+            seconds(linear.settle_s),
+        );
+    }
+    text + "\n\nmm on a target 3 ft away."
+}
+
+fn seconds(settle_s: Option<f64>) -> String {
+    settle_s.map_or_else(|| "never".to_owned(), |s| format!("{s:.3}"))
+}
+
+fn json(args: &StepArgs, rig: &RigConfig, entries: &[Entry]) -> String {
+    let of = |figures: &StepFigures| {
+        serde_json::json!({
+            "overshoot_percent": figures.overshoot_percent,
+            "settle_s": figures.settle_s,
+            "final_error_mm": error_mm(figures),
+            "final_error_counts": figures.final_error / rig.truth.model.encoder.count_rad(),
+        })
+    };
+    let whole = |entry: &Entry| {
+        let mut object = of(&entry.nonlinear);
+        object["law"] = entry.law.name().into();
+        object["linear"] = of(&entry.linear);
+        object
+    };
+    let mut flat = entries.first().map(whole).unwrap_or_default();
+    flat["axis"] = args.axis.joint().name().into();
+    flat["to_rad"] = args.to.0.into();
+    flat["laws"] = entries.iter().map(whole).collect();
+    flat.to_string()
+}
+
+fn csv(args: &StepArgs, entry: &Entry) -> String {
+    let joint = args.axis.joint();
+    let mut text = String::from("t_s,set_rad,angle_rad,est_rad,est_rad_s,count,command_v,linear_rad\n");
+    let both = entry.response.nonlinear.iter().zip(&entry.response.linear);
+    for (number, (is, linear)) in both.enumerate() {
+        let estimate = &is.estimates[joint];
+        let _ = writeln!(
+            text,
+            "{:.3},{:.7},{:.7},{:.7},{:.6},{},{:.4},{:.7}",
+            number as f64 * TICK_F64_S,
+            is.setpoint[joint].position_rad,
+            is.angle_rad[joint],
+            estimate.position_rad,
+            estimate.velocity_rad_s,
+            is.measured[joint].count,
+            is.command_v[joint],
+            linear.angle_rad[joint],
+        );
+    }
+    text
+}
+
+/// The colour of a law in every plot.
+const fn colour(law: LawName) -> Colour {
+    match law {
+        LawName::State => Colour::Blue,
+        LawName::PidFeedforward => Colour::Green,
+        LawName::Pid => Colour::Sky,
+        LawName::LeadLag => Colour::Purple,
+        LawName::ReportZpk => Colour::Vermilion,
+        LawName::ReportTimeConstants => Colour::Orange,
+        LawName::ReportPd => Colour::Black,
+    }
+}
+
+fn figure(args: &StepArgs, entries: &[Entry]) -> Result<String, Failure> {
+    let joint = args.axis.joint();
+    let curve = |entry: &Entry, ticks: &[BenchTick], pen: Pen, value: &dyn Fn(&BenchTick) -> f64| Curve {
+        colour: colour(entry.law),
+        pen,
+        points: ticks.iter().enumerate().map(|(k, tick)| (k as f64 * TICK_F64_S, value(tick))).collect(),
+    };
+    let panel = |title: &str, levels: Vec<f64>, curves: Vec<Curve>| Panel {
+        x_title: "time, s".into(),
+        y_title: title.into(),
+        curves,
+        levels,
+        even: false,
+    };
+    let angle = |tick: &BenchTick| tick.angle_rad[joint].to_degrees();
+    let volts = |tick: &BenchTick| f64::from(tick.command_v[joint]);
+    let of_head = |value: &dyn Fn(&BenchTick) -> f64| {
+        entries.iter().map(|e| curve(e, &e.response.nonlinear, Pen::Solid, value)).collect::<Vec<_>>()
+    };
+    let mut angles = of_head(&angle);
+    angles.extend(entries.iter().map(|e| curve(e, &e.response.linear, Pen::Dashed, &angle)));
+    let figure = Figure {
+        title: format!(
+            "{joint} sent to {:.2}°: the head (solid), linearized (dashed)",
+            args.to.0.to_degrees()
+        ),
+        legend: entries
+            .iter()
+            .map(|e| Key {
+                colour: colour(e.law),
+                name: format!("{}, {:.2} % over", e.law.name(), e.nonlinear.overshoot_percent),
+            })
+            .collect(),
+        panels: vec![
+            panel("angle, °", vec![args.to.0.to_degrees()], angles),
+            panel("command, V", Vec::new(), of_head(&volts)),
+        ],
+        columns: 1,
+        panel: (760, 300),
+    };
+    figure.svg().map_err(|e| Failure::failed("internal", e))
+}
