@@ -1,7 +1,7 @@
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{ObserverName, RigConfig, Run, replay};
 
-/// How far an observer's velocity and acceleration are from the truth over a run, both joints together.
+/// How far an observer's velocity and acceleration are from the truth while light is on, both joints together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VelocityError {
     /// Root mean square, rad/s.
@@ -36,7 +36,8 @@ pub fn velocity_error(
     let mut error = VelocityError::default();
     let (mut velocity, mut acceleration, mut count) = (0.0, 0.0, 0.0);
     let inner = run.ticks.len().saturating_sub(2 * reach);
-    for (k, (tick, believed)) in run.ticks.iter().zip(&believed).enumerate().skip(reach).take(inner) {
+    let all = run.ticks.iter().zip(&believed).enumerate().skip(reach).take(inner);
+    for (k, (tick, believed)) in all.filter(|(_, (tick, _))| tick.light) {
         for joint in Joint::BOTH {
             let is = believed[joint];
             let off = f64::from(is.velocity_rad_s) - tick.rate_rad_s[joint];

@@ -1,9 +1,11 @@
 //! Figures of curves as SVG: panels in a grid under one title and one legend.
 
+use plotters::chart::ChartContext;
 use plotters::coord::Shift;
+use plotters::coord::ranged1d::{Ranged, ValueFormatter};
 use plotters::prelude::{
-    ChartBuilder, Circle, DashedLineSeries, DrawingArea, EmptyElement, IntoDrawingArea, IntoFont, LineSeries,
-    PathElement, RGBColor, SVGBackend, Text,
+    Cartesian2d, ChartBuilder, Circle, DashedLineSeries, DrawingArea, EmptyElement, IntoDrawingArea,
+    IntoFont, IntoLogRange, LineSeries, PathElement, RGBColor, SVGBackend, Text,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, TextStyle};
@@ -34,8 +36,18 @@ pub(crate) struct Panel {
     pub(crate) curves: Vec<Curve>,
     /// Values of y that are marked by a line.
     pub(crate) levels: Vec<f64>,
-    /// Whether a unit is as long on both axes.
-    pub(crate) even: bool,
+    pub(crate) scale: Scale,
+}
+
+/// How values become places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scale {
+    /// Each axis as its values need.
+    Free,
+    /// A unit is as long on both axes.
+    Even,
+    /// Both axes logarithmic; what is not positive is not drawn.
+    Log,
 }
 
 /// One line of a diagram.
@@ -95,6 +107,8 @@ type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
+type Chart<'a, X, Y> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>;
+
 impl Figure {
     /// The figure as an SVG file.
     pub(crate) fn svg(&self) -> Result<String, Box<dyn std::error::Error>> {
@@ -139,15 +153,52 @@ fn lettering<'a>(pixels: i32) -> TextStyle<'a> {
     ("sans-serif", FINE * pixels).into_font().color(&INK)
 }
 
+impl Curve {
+    fn draw<X, Y>(&self, chart: &mut Chart<'_, X, Y>) -> Drawn
+    where
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        let style = self.colour.rgb().stroke_width((3 * FINE / 2) as u32);
+        let dot = |&at: &(f64, f64)| EmptyElement::at(at) + Circle::new((0, 0), FINE * 2, style.filled());
+        if self.pen == Pen::Dots {
+            chart.draw_series(self.points.iter().map(dot))?;
+            return Ok(());
+        }
+        for run in self.points.split(|p| p.1.is_nan()) {
+            let run = run.iter().copied();
+            if self.pen == Pen::Dashed {
+                chart.draw_series(DashedLineSeries::new(run, FINE * 5, FINE * 3, style))?;
+            } else {
+                chart.draw_series(LineSeries::new(run, style))?;
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Panel {
     fn draw(&self, area: &Area<'_>, size: (i32, i32)) -> Drawn {
         let (x, y) = self.ranges(size);
-        let mut chart = ChartBuilder::on(area)
+        let mut chart = ChartBuilder::on(area);
+        chart
             .margin(FINE * 8)
             .margin_right(FINE * 20)
             .x_label_area_size(FINE * 40)
-            .y_label_area_size(FINE * 64)
-            .build_cartesian_2d(x.low..x.high, y.low..y.high)?;
+            .y_label_area_size(FINE * 64);
+        if self.scale == Scale::Log {
+            let (x, y) = ((x.low..x.high).log_scale(), (y.low..y.high).log_scale());
+            self.fill(chart.build_cartesian_2d(x, y)?)
+        } else {
+            self.fill(chart.build_cartesian_2d(x.low..x.high, y.low..y.high)?)
+        }
+    }
+
+    fn fill<X, Y>(&self, mut chart: Chart<'_, X, Y>) -> Drawn
+    where
+        X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+        Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    {
         chart
             .configure_mesh()
             .x_labels(6)
@@ -163,41 +214,27 @@ impl Panel {
             .x_desc(self.x_title.as_str())
             .y_desc(self.y_title.as_str())
             .draw()?;
+        let x = chart.x_range();
         for &level in &self.levels {
-            let line = [(x.low, level), (x.high, level)];
+            let line = [(x.start, level), (x.end, level)];
             let dashes = DashedLineSeries::new(line, FINE * 6, FINE * 4, INK.stroke_width(FINE as u32));
             chart.draw_series(dashes)?;
         }
         for curve in &self.curves {
-            let style = curve.colour.rgb().stroke_width((3 * FINE / 2) as u32);
-            match curve.pen {
-                Pen::Dots => {
-                    let dot = |&at: &(f64, f64)| {
-                        EmptyElement::at(at) + Circle::new((0, 0), FINE * 2, style.filled())
-                    };
-                    chart.draw_series(curve.points.iter().map(dot))?;
-                }
-                Pen::Solid | Pen::Dashed => {
-                    for run in curve.points.split(|p| p.1.is_nan()) {
-                        match curve.pen {
-                            Pen::Dashed => {
-                                let run = run.iter().copied();
-                                chart.draw_series(DashedLineSeries::new(run, FINE * 5, FINE * 3, style))?
-                            }
-                            _ => chart.draw_series(LineSeries::new(run.iter().copied(), style))?,
-                        };
-                    }
-                }
-            }
+            curve.draw(&mut chart)?;
         }
         Ok(())
     }
 
     fn ranges(&self, size: (i32, i32)) -> (Range, Range) {
-        let points = || self.curves.iter().flat_map(|curve| &curve.points);
+        let log = self.scale == Scale::Log;
+        let shown = move |p: &&(f64, f64)| !log || (p.0 > 0.0 && p.1 > 0.0);
+        let points = || self.curves.iter().flat_map(|curve| &curve.points).filter(shown);
         let mut x = Range::of(points().map(|p| p.0));
         let mut y = Range::of(points().map(|p| p.1).chain(self.levels.iter().copied()));
-        if self.even {
+        if self.scale == Scale::Log {
+            (x, y) = (x.decades(), y.decades());
+        } else if self.scale == Scale::Even {
             // what is left of a panel for its curves
             let (width, height) = (f64::from(size.0 - 90), f64::from(size.1 - 54));
             let unit = f64::max(x.span() / width, y.span() / height);
@@ -230,6 +267,11 @@ impl Range {
         }
     }
 
+    /// Somewhat wider on a logarithmic axis.
+    fn decades(&self) -> Self {
+        Self { low: 0.8 * self.low, high: 1.25 * self.high }
+    }
+
     fn span(&self) -> f64 {
         self.high - self.low
     }
@@ -258,7 +300,7 @@ mod tests {
             y_title: "<v>".into(),
             curves: vec![curve],
             levels: vec![],
-            even: false,
+            scale: Scale::Free,
         }
     }
 

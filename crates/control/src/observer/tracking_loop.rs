@@ -3,7 +3,8 @@ use tracelight_rig::{Measurement, TICK_S};
 use super::Estimate;
 
 /// A double integrator that is held to the count's middle by both its poles at −ω: the tracking loop of resolver
-/// converters, and what open motor controllers use.
+/// converters, and what open motor controllers use. In ticks both poles are at r = exp(−ωT), which gives the gains
+/// 1 − r² and (1 − r)² of the fading-memory filter (Zarchan & Musoff, *Fundamentals of Kalman Filtering*, §8).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TrackingLoop {
     count: i32,
@@ -13,24 +14,25 @@ pub(super) struct TrackingLoop {
     rate: f32,
     /// Counts a tick².
     acceleration: f32,
-    /// ω times a tick.
-    turn: f32,
+    /// r.
+    pole: f32,
 }
 
 impl TrackingLoop {
-    pub(super) const fn at_rest(count: i32, bandwidth_rad_s: f32) -> Self {
-        Self { count, offset: 0.0, rate: 0.0, acceleration: 0.0, turn: bandwidth_rad_s * TICK_S }
+    pub(super) fn at_rest(count: i32, bandwidth_rad_s: f32) -> Self {
+        Self { count, offset: 0.0, rate: 0.0, acceleration: 0.0, pole: libm::expf(-bandwidth_rad_s * TICK_S) }
     }
 
     pub(super) fn tick(&mut self, _count_rad: f32, measured: &Measurement) {
         let moved = measured.count.wrapping_sub(self.count);
         self.count = measured.count;
         let error = moved as f32 - (self.offset + self.rate);
-        let change = self.turn * self.turn * error;
-        self.offset = 2.0 * self.turn * error - error;
+        let fading = 1.0 - self.pole;
+        let change = fading * fading * error;
+        self.offset = -self.pole * self.pole * error;
         self.rate += change;
         // as smooth as the loop itself
-        self.acceleration += self.turn / (1.0 + self.turn) * (change - self.acceleration);
+        self.acceleration += fading * (change - self.acceleration);
     }
 
     pub(super) fn estimate(&self, count_rad: f32) -> Estimate {

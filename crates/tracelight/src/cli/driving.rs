@@ -168,7 +168,7 @@ fn wish_note(wish: &AccelerationDemand) -> String {
     )
 }
 
-fn positive_speed(text: &str) -> Result<Speed, String> {
+pub(crate) fn positive_speed(text: &str) -> Result<Speed, String> {
     const MOST_M_S: f64 = 1000.0;
     let speed: Speed = text.parse().map_err(|e| format!("{e}"))?;
     if 0.0 < speed.0 && speed.0 <= MOST_M_S {

@@ -5,6 +5,7 @@ mod moves;
 mod profile;
 mod shape;
 mod step;
+mod velocity;
 
 use clap::{Args, Subcommand};
 
@@ -28,6 +29,7 @@ enum LabAction {
     Profile(profile::ProfileArgs),
     Move(moves::MoveArgs),
     Step(step::StepArgs),
+    Velocity(velocity::VelocityArgs),
     #[command(name = "montecarlo")]
     MonteCarlo(montecarlo::MonteCarloArgs),
 }
@@ -38,6 +40,7 @@ impl LabArgs {
             LabAction::Profile(args) => args.voice,
             LabAction::Move(args) => args.voice(),
             LabAction::Step(args) => args.voice,
+            LabAction::Velocity(args) => args.voice,
             LabAction::MonteCarlo(args) => args.voice,
         }
     }
@@ -48,6 +51,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Profile(args) => profile::run(args),
         LabAction::Move(args) => moves::run(args, stop),
         LabAction::Step(args) => step::run(args),
+        LabAction::Velocity(args) => velocity::run(args, stop),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
 }

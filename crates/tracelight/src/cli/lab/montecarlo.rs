@@ -11,7 +11,7 @@ use tracelight_trajectory::Plan;
 
 use super::shape::ShapeArgs;
 use super::{OutFile, out_file, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen};
+use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
 use crate::cli::driving::Driving;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
@@ -180,7 +180,7 @@ fn figure(args: &MonteCarloArgs, trials: &[Trial]) -> Result<String, Failure> {
             y_title: "error not above, mm".into(),
             curves: vec![sorted(Colour::Blue, FIGURES[1].2), sorted(Colour::Vermilion, FIGURES[0].2)],
             levels: vec![0.0],
-            even: false,
+            scale: Scale::Free,
         }],
         columns: 1,
         panel: (680, 380),

@@ -5,7 +5,7 @@ use tracelight_rig::TICK_F64_S;
 use tracelight_trajectory::{MoveLimits, MovePoint, Peaks, Profile, Ramps};
 
 use super::{OutFile, colour, out_file, within, write_all};
-use crate::chart::{Curve, Figure, Key, Panel, Pen};
+use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale};
 use crate::cli::shapes::{ProfileName, ramps};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
@@ -174,7 +174,7 @@ fn figure(args: &ProfileArgs, chosen: &[(ProfileName, Profile)]) -> Result<Strin
         y_title: y_title.into(),
         curves: chosen.iter().map(|(name, profile)| curve(*name, profile, value)).collect(),
         levels: Vec::new(),
-        even: false,
+        scale: Scale::Free,
     };
     let key = |(name, profile): &(ProfileName, Profile)| Key {
         colour: colour(*name),

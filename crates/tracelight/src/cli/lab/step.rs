@@ -6,7 +6,7 @@ use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{BenchTick, LawName, ObserverName, RigConfig, StepResponse, step_response};
 
 use super::{OutFile, out_file, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen};
+use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{law, observer};
 use crate::cli::{Answer, Voice};
@@ -225,7 +225,7 @@ fn figure(args: &StepArgs, entries: &[Entry]) -> Result<String, Failure> {
         y_title: title.into(),
         curves,
         levels,
-        even: false,
+        scale: Scale::Free,
     };
     let angle = |tick: &BenchTick| tick.angle_rad[joint].to_degrees();
     let volts = |tick: &BenchTick| f64::from(tick.command_v[joint]);

@@ -6,7 +6,7 @@ use tracelight_trajectory::CoursePoint;
 
 use super::super::colour;
 use super::{Bench, Entry, OnRig, failure};
-use crate::chart::{Curve, Figure, Key, Panel, Pen};
+use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale};
 use crate::failure::Failure;
 
 /// Points of a plotted curve.
@@ -59,7 +59,7 @@ fn panels(bench: &Bench<'_>, moves: &[Plotted<'_>]) -> Vec<Panel> {
         y_title: y_title.into(),
         curves,
         levels: Vec::new(),
-        even: false,
+        scale: Scale::Free,
     };
     let each = |values: &[(Pen, &Value<'_>)]| {
         moves.iter().flat_map(|m| values.iter().map(|&(pen, value)| m.curve(pen, value))).collect::<Vec<_>>()
@@ -129,7 +129,7 @@ fn path(moves: &[Plotted<'_>]) -> Panel {
         y_title: "y, mm".into(),
         curves: lines.chain(dots).collect(),
         levels: Vec::new(),
-        even: true,
+        scale: Scale::Even,
     }
 }
 
