@@ -1,6 +1,6 @@
 use tracelight_rig::{JointLimits, PanTilt};
 
-use crate::{FrictionModel, HeadModel, LawConfig, ObserverConfig};
+use crate::{FrictionModel, HeadModel, LawConfig, MotorRating, ObserverConfig};
 
 /// Everything the controller is told before it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +11,12 @@ pub struct Config {
     pub axes: PanTilt<AxisConfig>,
     /// Ticks the head may need to come back to its stroke before that is a fault.
     pub hold_limit_ticks: u32,
+    /// From the gate's rise to light, ticks.
+    pub laser_on_ticks: u32,
+    /// From the gate's fall to dark, ticks.
+    pub laser_off_ticks: u32,
+    /// Ticks a host that has said it is there may be silent.
+    pub host_silence_ticks: u32,
 }
 
 /// One axis: motor, encoder, friction, observer, law.
@@ -28,6 +34,8 @@ pub struct AxisConfig {
     pub observer: ObserverConfig,
     /// How they become torque.
     pub law: LawConfig,
+    /// How much the motor may be driven.
+    pub rating: MotorRating,
     /// What the joint may do.
     pub limits: JointLimits,
 }

@@ -1,10 +1,10 @@
-use tracelight_rig::{Actuation, Command, Fault, Joint, Measurement, PanTilt, Phase, Segment, Telemetry};
+use tracelight_rig::{Actuation, Command, Fault, Joint, PanTilt, Phase, Segment, Sensed, Telemetry};
 
 use crate::player::{Played, Player};
 use crate::return_path::ReturnPath;
 use crate::servo::{Reference, Servo};
 use crate::supervisor::{Clock, Situation, Supervisor};
-use crate::watch::EncoderWatch;
+use crate::watch::Watch;
 use crate::{Config, Estimate};
 
 /// The controller: its configuration, fixed at start.
@@ -17,8 +17,9 @@ pub struct Controller {
 #[derive(Clone, Copy, Debug)]
 pub struct State {
     tick: u32,
+    sensed: Sensed,
     servo: Servo,
-    watch: EncoderWatch,
+    watch: Watch,
     player: Player,
     supervisor: Supervisor,
     way_back: Option<ReturnPath>,
@@ -37,13 +38,14 @@ impl Controller {
         Self { config }
     }
 
-    /// State of a head at rest whose encoders read `measured`: dark, disarmed, held where it is.
-    pub fn start(&self, measured: &PanTilt<Measurement>) -> State {
-        let servo = Servo::at_rest(&self.config, measured);
+    /// State of a head at rest that reports `sensed`: dark, disarmed, held where it is.
+    pub fn start(&self, sensed: &Sensed) -> State {
+        let servo = Servo::at_rest(&self.config, &sensed.encoders);
         State {
             tick: 0,
+            sensed: *sensed,
             servo,
-            watch: EncoderWatch::new(measured),
+            watch: Watch::new(sensed, servo.estimates()),
             player: Player::resting_at(servo.estimates().map(|estimate| estimate.position_rad)),
             supervisor: Supervisor::default(),
             way_back: None,
@@ -54,14 +56,12 @@ impl Controller {
     /// and latches a fault.
     pub fn accept(&self, state: &mut State, command: Command) -> Result<(), Command> {
         match command {
-            Command::Arm => {
-                state.player.reopen();
-                state.supervisor.arm();
-            }
+            Command::Arm => self.arm(state),
             Command::Disarm => {
                 state.supervisor.disarm();
                 state.player.hold_if_started();
             }
+            Command::KeepAlive => state.watch.hear(),
             Command::Finish => state.player.finish(),
             Command::Append(_) if !state.player.has_room() => return Err(command),
             Command::Append(segment) => {
@@ -73,6 +73,19 @@ impl Controller {
         Ok(())
     }
 
+    fn arm(&self, state: &mut State) {
+        if let Some(fault) = state.supervisor.fault {
+            if fault.leaves_motors_blind() {
+                // what was believed is not worth keeping
+                state.servo = Servo::at_rest(&self.config, &state.sensed.encoders);
+            }
+            state.watch.rearm(&state.sensed, state.servo.estimates());
+            state.way_back = None;
+        }
+        state.player.reopen();
+        state.supervisor.arm();
+    }
+
     /// Whether both ends of a segment lie within the joints' limits.
     fn in_range(&self, segment: &Segment) -> bool {
         [0.0, f32::from(segment.ticks)].into_iter().all(|n| {
@@ -81,25 +94,28 @@ impl Controller {
         })
     }
 
-    /// One tick. `measured` is what the encoders read at its start; the returned telemetry carries what to do until
-    /// its end. The first tick after [`start`](Self::start) takes the same measurement.
-    pub fn tick(&self, state: &mut State, measured: &PanTilt<Measurement>) -> Telemetry {
-        self.observe(state, measured);
+    /// One tick. `sensed` is what the head reports at its start; the returned telemetry carries what to do until its
+    /// end. The first tick after [`start`](Self::start) takes the same.
+    pub fn tick(&self, state: &mut State, sensed: &Sensed) -> Telemetry {
+        self.observe(state, sensed);
         let played = state.player.play();
+        let estimates = *state.servo.estimates();
         let situation = self.situation(state, &played);
         let clock = state.supervisor.tick(&self.config, &situation);
-        let darkness = state.supervisor.darkness(&self.config, &situation);
-        let estimates = *state.servo.estimates();
         let command_v = self.drive(state, &played);
+        // last of all: whatever this tick has shown is known
+        let darkness = state.supervisor.darkness(&self.config, &situation);
+        let gate = darkness.is_empty();
+        state.watch.light(gate);
         let telemetry = Telemetry {
             tick: state.tick,
             plan_tick: state.player.plan_tick(),
-            measured: *measured,
+            measured: sensed.encoders,
             setpoint: played.setpoint,
             position_rad: estimates.map(|estimate| estimate.position_rad),
             velocity_rad_s: estimates.map(|estimate| estimate.velocity_rad_s),
             acceleration_rad_s2: estimates.map(|estimate| estimate.acceleration_rad_s2),
-            actuation: Actuation { command_v, gate: darkness.is_empty() },
+            actuation: Actuation { command_v, gate },
             darkness,
             phase: state.supervisor.phase,
             fault: state.supervisor.fault,
@@ -109,13 +125,13 @@ impl Controller {
         telemetry
     }
 
-    fn observe(&self, state: &mut State, measured: &PanTilt<Measurement>) {
+    fn observe(&self, state: &mut State, sensed: &Sensed) {
+        state.sensed = *sensed;
         if state.tick == 0 {
             return;
         }
-        state.servo.observe(&self.config, measured);
-        let (efforts, estimates) = (state.servo.efforts(), state.servo.estimates());
-        if let Some(fault) = state.watch.tick(&self.config, efforts, estimates, measured) {
+        state.servo.observe(&self.config, &sensed.encoders);
+        if let Some(fault) = state.watch.sense(&self.config, &state.servo, sensed) {
             state.supervisor.trip(fault);
         }
     }
@@ -128,17 +144,25 @@ impl Controller {
             position_rad,
             rate_rad_s: state.servo.estimates().map(|estimate| estimate.velocity_rad_s),
             error_rad: PanTilt::from_fn(|j| played.setpoint[j].position_rad - position_rad[j]),
+            doubtful: state.watch.is_doubtful(),
             begun: state.player.has_begun(),
             starved: state.player.is_empty() && !state.player.is_done(),
             done: state.player.is_done(),
         }
     }
 
-    /// Volts for this tick. With an encoder that lies there is nothing to control by: no volts.
+    /// Volts for this tick; none when there is nothing to control by.
     fn drive(&self, state: &mut State, played: &Played) -> PanTilt<f32> {
         let reference = self.reference(state, played);
-        let blind = matches!(state.supervisor.fault, Some(Fault::EncoderDead | Fault::EncoderJumped));
-        if blind { state.servo.coast() } else { state.servo.drive(&self.config, &reference) }
+        if state.supervisor.fault.is_some_and(Fault::leaves_motors_blind) {
+            return state.servo.coast();
+        }
+        let volts = state.servo.drive(&self.config, &reference);
+        let unsound = (!state.servo.is_sound()).then_some(Fault::NotANumber);
+        if let Some(fault) = unsound.or(state.watch.drive(&self.config, &volts)) {
+            state.supervisor.trip(fault);
+        }
+        volts
     }
 
     /// Where the loop is to go now and half a tick later: along the plan, or, when its clock stands, gently back to

@@ -37,3 +37,4 @@ pub use observer::{
 };
 pub use player::QUEUE_LENGTH;
 pub use servo::{Reference, Servo};
+pub use watch::MotorRating;

@@ -15,6 +15,8 @@ pub struct Servo {
     efforts: PanTilt<Effort>,
     /// Torque of the motors in this tick, N m.
     torque_nm: PanTilt<f32>,
+    /// The last volts were numbers.
+    sound: bool,
 }
 
 /// Where the joints should be.
@@ -33,12 +35,17 @@ impl Servo {
         let estimates = PanTilt::from_fn(|j| observers[j].estimate(&config.axes[j]));
         let torque_nm = PanTilt::default();
         let efforts = efforts(config, &estimates, torque_nm);
-        Self { observers, laws: PanTilt::default(), estimates, efforts, torque_nm }
+        Self { observers, laws: PanTilt::default(), estimates, efforts, torque_nm, sound: true }
     }
 
     /// What is believed of the joints.
     pub const fn estimates(&self) -> &PanTilt<Estimate> {
         &self.estimates
+    }
+
+    /// Whether the last volts were numbers; those that were none became 0.
+    pub const fn is_sound(&self) -> bool {
+        self.sound
     }
 
     /// What acted on them during the last tick.
@@ -58,6 +65,7 @@ impl Servo {
     /// Volts for this tick.
     pub fn drive(&mut self, config: &Config, reference: &Reference) -> PanTilt<f32> {
         let added = feedforward(config, &reference.ahead, &self.estimates);
+        let mut sound = true;
         let volts = PanTilt::from_fn(|j| {
             let axis = &config.axes[j];
             let input = LawInput {
@@ -68,10 +76,12 @@ impl Servo {
             let law = &mut self.laws[j];
             let volts = (axis.law.feedback.torque_nm(law, &input) + added[j]) / axis.torque_nm_per_v;
             // a number that is none must not become the amplifier's stop
+            sound &= volts.is_finite();
             let limited = if volts.is_finite() { within(volts, axis.limit_v) } else { 0.0 };
             axis.law.feedback.settle(law, &input, volts - limited);
             limited
         });
+        self.sound = sound;
         self.apply(config, volts);
         volts
     }

@@ -25,6 +25,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) position_rad: PanTilt<f32>,
     pub(crate) rate_rad_s: PanTilt<f32>,
     pub(crate) error_rad: PanTilt<f32>,
+    /// An encoder shows nothing where it should.
+    pub(crate) doubtful: bool,
     /// The plan's clock has left its start.
     pub(crate) begun: bool,
     /// Segments ran out and more were promised.
@@ -51,9 +53,11 @@ impl Supervisor {
         self.phase = Phase::Faulted;
     }
 
+    /// Allows light; a fault is forgotten.
     pub(crate) fn arm(&mut self) {
-        if self.phase == Phase::Dark {
+        if matches!(self.phase, Phase::Dark | Phase::Faulted) {
             self.phase = Phase::Armed;
+            self.fault = None;
         }
     }
 
@@ -74,7 +78,7 @@ impl Supervisor {
             Phase::Armed if at.segment.is_some() => self.phase = Phase::Tracing,
             Phase::Tracing if at.done => self.phase = Phase::Done,
             Phase::Tracing if at.starved => self.trip(Fault::SetpointsStale),
-            Phase::Tracing if strayed(at) => self.begin_hold(),
+            Phase::Tracing if strayed(at) || at.doubtful => self.begin_hold(),
             Phase::Holding => self.hold(config, at),
             _ => {}
         }
@@ -109,6 +113,7 @@ impl Supervisor {
         reasons.insert_if(self.phase == Phase::Dark, Darkness::Disarmed);
         reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);
         reasons.insert_if(strayed(at), Darkness::SpotError);
+        reasons.insert_if(at.doubtful, Darkness::Doubtful);
         reasons.insert_if(self.phase == Phase::Holding, Darkness::Holding);
         let asked = at.setpoint.map(|s| s.position_rad);
         reasons.insert_if(out_of_range(config, asked), Darkness::OutOfBounds);

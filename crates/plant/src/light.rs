@@ -8,20 +8,26 @@ pub(crate) struct Relay {
     closed: bool,
     /// How long the coil has asked for the other state, s.
     asked_s: f64,
+    stuck: bool,
 }
 
 impl Relay {
     pub(crate) const fn new(config: RelayConfig) -> Self {
-        Self { config, closed: false, asked_s: 0.0 }
+        Self { config, closed: false, asked_s: 0.0, stuck: false }
     }
 
     pub(crate) const fn is_closed(&self) -> bool {
         self.closed
     }
 
+    /// The contact stays as it is, welded or worn out.
+    pub(crate) const fn stick(&mut self) {
+        self.stuck = true;
+    }
+
     /// Holds the coil for `step_s`.
     pub(crate) fn drive(&mut self, coil: bool, step_s: f64) {
-        if coil == self.closed {
+        if coil == self.closed || self.stuck {
             self.asked_s = 0.0;
             return;
         }

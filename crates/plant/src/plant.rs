@@ -1,4 +1,4 @@
-use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, TICK_F64_S};
+use tracelight_rig::{Actuation, Head, Joint, PanTilt, Sensed, TICK_F64_S};
 
 use crate::encoder::Encoder;
 use crate::light::{Relay, play};
@@ -71,6 +71,11 @@ impl Plant {
         self.relay.is_closed()
     }
 
+    /// The laser's switch stays as it is from now on, whatever the gate.
+    pub const fn stick_laser(&mut self) {
+        self.relay.stick();
+    }
+
     /// Somebody leans on the head: torque at the joints from now on, N m.
     pub fn push(&mut self, torque_nm: PanTilt<f64>) {
         self.push_nm = torque_nm;
@@ -90,7 +95,7 @@ impl Plant {
 }
 
 impl Head for Plant {
-    fn exchange(&mut self, actuation: &Actuation) -> PanTilt<Measurement> {
+    fn exchange(&mut self, actuation: &Actuation) -> Sensed {
         let torque = PanTilt::from_fn(|j| {
             let limit = self.limit_v[j];
             let volts = f64::from(actuation.command_v[j]).clamp(-limit, limit);
@@ -103,7 +108,7 @@ impl Head for Plant {
             self.substep(torque, number);
             self.relay.drive(actuation.gate, TICK_F64_S / f64::from(SUBSTEPS));
         }
-        self.encoders.map(|e| e.measurement())
+        Sensed { encoders: self.encoders.map(|e| e.measurement()), laser_on: Some(self.relay.is_closed()) }
     }
 }
 
@@ -136,7 +141,7 @@ mod tests {
         }
     }
 
-    fn drive(plant: &mut Plant, pan_v: f32, ticks: usize) -> PanTilt<Measurement> {
+    fn drive(plant: &mut Plant, pan_v: f32, ticks: usize) -> Sensed {
         let actuation = Actuation { command_v: PanTilt::new(pan_v, -1.94), gate: true };
         (0..ticks).map(|_| plant.exchange(&actuation)).last().unwrap()
     }
@@ -146,7 +151,7 @@ mod tests {
         let mut plant = Plant::new(&config(), 3);
         let seen = drive(&mut plant, 3.0, 500);
         let counts = plant.angle_rad().pan / config().encoder.count_rad();
-        assert!((counts - f64::from(seen.pan.count)).abs() <= 0.5 && seen.pan.count > 100);
+        assert!((counts - f64::from(seen.encoders.pan.count)).abs() <= 0.5 && seen.encoders.pan.count > 100);
     }
 
     #[test]

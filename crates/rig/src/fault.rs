@@ -1,4 +1,4 @@
-/// A reason that stops a job: the laser is dark and stays dark.
+/// A reason that stops a job: the laser is dark and stays dark until somebody arms again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Fault {
@@ -6,6 +6,10 @@ pub enum Fault {
     EncoderJumped,
     /// The model says the joint moved several counts, its encoder says nothing.
     EncoderDead,
+    /// Edges came where the joint was not, again and again.
+    EncoderNoisy,
+    /// What an encoder shows and what its motor must have done do not belong together.
+    EncoderSlipping,
     /// Segments ran out in the middle of a job.
     SetpointsStale,
     /// A segment leaves the joint limits, does not join the one before it, or says nothing of its tolerance.
@@ -14,18 +18,76 @@ pub enum Fault {
     LimitReached,
     /// The head did not come back to its stroke in time.
     HoldTimedOut,
+    /// An amplifier gave all it has for too long.
+    AmplifierSaturated,
+    /// A motor was driven harder than it can be cooled.
+    MotorHot,
+    /// The laser does not follow its gate.
+    LaserStuck,
+    /// The host stopped saying that it is there.
+    HostLost,
+    /// What is believed of a joint's speed does not add up to what its encoder counted.
+    EstimateDiverged,
+    /// Something that should be a number is none.
+    NotANumber,
 }
 
 impl Fault {
+    /// Every fault.
+    pub const ALL: [Fault; 14] = [
+        Fault::EncoderJumped,
+        Fault::EncoderDead,
+        Fault::EncoderNoisy,
+        Fault::EncoderSlipping,
+        Fault::SetpointsStale,
+        Fault::SetpointInvalid,
+        Fault::LimitReached,
+        Fault::HoldTimedOut,
+        Fault::AmplifierSaturated,
+        Fault::MotorHot,
+        Fault::LaserStuck,
+        Fault::HostLost,
+        Fault::EstimateDiverged,
+        Fault::NotANumber,
+    ];
+
     /// Stable code for scripts and `explain`.
     pub const fn code(self) -> &'static str {
         match self {
             Fault::EncoderJumped => "encoder-jumped",
             Fault::EncoderDead => "encoder-dead",
+            Fault::EncoderNoisy => "encoder-noisy",
+            Fault::EncoderSlipping => "encoder-slipping",
             Fault::SetpointsStale => "setpoints-stale",
             Fault::SetpointInvalid => "setpoint-invalid",
             Fault::LimitReached => "limit-reached",
             Fault::HoldTimedOut => "hold-timed-out",
+            Fault::AmplifierSaturated => "amplifier-saturated",
+            Fault::MotorHot => "motor-hot",
+            Fault::LaserStuck => "laser-stuck",
+            Fault::HostLost => "host-lost",
+            Fault::EstimateDiverged => "estimate-diverged",
+            Fault::NotANumber => "not-a-number",
+        }
+    }
+
+    /// Whether there is nothing left to control a motor by, so that it gets no volts.
+    pub const fn leaves_motors_blind(self) -> bool {
+        match self {
+            Fault::EncoderJumped
+            | Fault::EncoderDead
+            | Fault::EncoderNoisy
+            | Fault::EncoderSlipping
+            | Fault::AmplifierSaturated
+            | Fault::MotorHot
+            | Fault::EstimateDiverged
+            | Fault::NotANumber => true,
+            Fault::SetpointsStale
+            | Fault::SetpointInvalid
+            | Fault::LimitReached
+            | Fault::HoldTimedOut
+            | Fault::LaserStuck
+            | Fault::HostLost => false,
         }
     }
 }
@@ -50,11 +112,14 @@ pub enum Darkness {
     Stale = 6,
     /// A [`Fault`] is latched.
     Faulted = 7,
+    /// An encoder has shown no edge where its joint should have passed several, or does not fit what its motor does: it may
+    /// be dead or slip, or somebody holds the head.
+    Doubtful = 8,
 }
 
 impl Darkness {
     /// Every reason, in bit order.
-    pub const ALL: [Darkness; 8] = [
+    pub const ALL: [Darkness; 9] = [
         Darkness::Planned,
         Darkness::Disarmed,
         Darkness::FollowingError,
@@ -63,6 +128,7 @@ impl Darkness {
         Darkness::OutOfBounds,
         Darkness::Stale,
         Darkness::Faulted,
+        Darkness::Doubtful,
     ];
 
     /// Stable code for logs and `explain`.
@@ -76,25 +142,26 @@ impl Darkness {
             Darkness::OutOfBounds => "out-of-bounds",
             Darkness::Stale => "stale",
             Darkness::Faulted => "faulted",
+            Darkness::Doubtful => "doubtful",
         }
     }
 }
 
 /// The reasons that hold at once; empty means the gate is open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DarknessSet(u8);
+pub struct DarknessSet(u16);
 
 impl DarknessSet {
     /// Adds a reason when `holds` is true.
     pub fn insert_if(&mut self, holds: bool, reason: Darkness) {
         if holds {
-            self.0 |= 1 << reason as u8;
+            self.0 |= 1 << reason as u16;
         }
     }
 
     /// Whether a reason is in the set.
     pub const fn contains(self, reason: Darkness) -> bool {
-        self.0 & (1 << reason as u8) != 0
+        self.0 & (1 << reason as u16) != 0
     }
 
     /// Whether nothing speaks against light.
@@ -103,7 +170,7 @@ impl DarknessSet {
     }
 
     /// One bit a reason, [`Darkness::ALL`] order.
-    pub const fn bits(self) -> u8 {
+    pub const fn bits(self) -> u16 {
         self.0
     }
 }

@@ -10,6 +10,15 @@ pub struct Measurement {
     pub edge_age_ticks: Option<f32>,
 }
 
+/// What a head says at a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sensed {
+    /// Of each joint's encoder.
+    pub encoders: PanTilt<Measurement>,
+    /// Whether the laser's switch is closed, where something watches it: a relay's second contact, a photodiode.
+    pub laser_on: Option<bool>,
+}
+
 /// What the controller does to the motors and the laser in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Actuation {
@@ -29,8 +38,8 @@ pub struct Actuation {
 /// - open the laser's switch and zero the amplifiers by themselves when the exchanges stop coming;
 /// - never fail: a dead encoder is a count that does not move, which is the controller's to notice.
 pub trait Head {
-    /// Applies an actuation for one tick and returns what the encoders read at its end.
-    fn exchange(&mut self, actuation: &Actuation) -> PanTilt<Measurement>;
+    /// Applies an actuation for one tick and returns what is sensed at its end.
+    fn exchange(&mut self, actuation: &Actuation) -> Sensed;
 }
 
 /// The host's seam: a controller with its head, behind a wire or in this process.

@@ -20,7 +20,7 @@ mod segment;
 mod telemetry;
 
 pub use fault::{Darkness, DarknessSet, Fault};
-pub use head::{Actuation, Head, Measurement, Rig};
+pub use head::{Actuation, Head, Measurement, Rig, Sensed};
 pub use joint::{Joint, JointLimits, PanTilt};
 pub use segment::{Command, Segment, Setpoint};
 pub use telemetry::{Phase, Telemetry};

@@ -62,13 +62,16 @@ fn evaluate(c: &[f32; 6], n: f32) -> Setpoint {
 /// What the host may tell a rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Allow light. Without it every gate stays shut.
+    /// Allow light. Without it every gate stays shut. After a fault it is forgotten, the head goes back to where its job
+    /// stopped, and on from there.
     Arm,
     /// Forbid light and stop the plan's clock; the head is held where that stands. Armed again, the job goes on from
     /// there; after its end, a new one may begin at tick 0.
     Disarm,
     /// Append a segment; it must start where and when the one before it ends.
     Append(Segment),
+    /// The host is there. Who has said so once must go on saying it: silence is a fault.
+    KeepAlive,
     /// No further segment will come (one that does is a fault): running out of them is the end of the job, not a fault.
     Finish,
 }

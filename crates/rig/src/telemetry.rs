@@ -9,7 +9,7 @@ use crate::{Actuation, DarknessSet, Fault, Measurement, PanTilt, Setpoint};
 ///   │     Disarm     │                       │ last segment done        │ too long
 ///   ├────────────────┴───────────────────────┴──► Done                  │
 ///   │                                        │                          ▼
-///   └──── power-up                           └── any Fault ─────────► Faulted
+///   └──── power-up            any Fault, from anywhere ────────────► Faulted ── Arm ─► Armed
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {

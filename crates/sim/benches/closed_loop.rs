@@ -9,7 +9,7 @@ use divan::counter::ItemsCount;
 use tracelight_aim::HeadPose;
 use tracelight_control::Controller;
 use tracelight_plant::JointState;
-use tracelight_rig::{Command, PanTilt, Rig};
+use tracelight_rig::{Command, PanTilt, Rig, Sensed};
 use tracelight_sim::{RigConfig, SimulatedRig};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
 use tracelight_trajectory::{DarkMove, LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
@@ -59,17 +59,15 @@ fn control_tick(bencher: Bencher<'_, '_>) {
         rig.send(Command::Append(segment)).ok();
     }
     // the head's answers are recorded once and played back, so that only the controller is timed
-    let measured: Vec<_> = (0..1000).map(|_| rig.step().telemetry.measured).collect();
-    bencher.counter(ItemsCount::new(measured.len())).bench(|| {
-        let mut state = controller.start(&measured[0]);
+    let heard = |encoders| Sensed { encoders, laser_on: None };
+    let sensed: Vec<_> = (0..1000).map(|_| heard(rig.step().telemetry.measured)).collect();
+    bencher.counter(ItemsCount::new(sensed.len())).bench(|| {
+        let mut state = controller.start(&sensed[0]);
         controller.accept(&mut state, Command::Arm).ok();
         for &segment in plan.segments.iter().take(60) {
             controller.accept(&mut state, Command::Append(segment)).ok();
         }
-        measured
-            .iter()
-            .map(|m| controller.tick(&mut state, black_box(m)).actuation.command_v.pan)
-            .sum::<f32>()
+        sensed.iter().map(|m| controller.tick(&mut state, black_box(m)).actuation.command_v.pan).sum::<f32>()
     });
 }
 

@@ -75,7 +75,7 @@ impl<H: Truth> Bench<H> {
         let estimates = *self.servo.estimates();
         let command_v = self.servo.drive(&self.config, reference);
         let measured = self.measured;
-        self.measured = self.head.exchange(&Actuation { command_v, gate: false });
+        self.measured = self.head.exchange(&Actuation { command_v, gate: false }).encoders;
         BenchTick { setpoint: reference.now, angle_rad, rate_rad_s, measured, estimates, command_v }
     }
 }

@@ -62,6 +62,12 @@ pub struct ControlSettings {
     pub tolerance_m: f64,
     /// How long the head may need to come back to its stroke, s.
     pub hold_limit_s: f64,
+    /// How long a host may be silent, s.
+    pub host_silence_s: f64,
+    /// Share of its amplifier's limit that a motor stands for ever.
+    pub motor_continuous: f64,
+    /// Time constant of a motor's temperature, s.
+    pub motor_heating_s: f64,
 }
 
 /// Settings of the planner.

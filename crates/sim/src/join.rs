@@ -1,7 +1,7 @@
 //! What each room is told of a rig.
 
 use tracelight_aim::HeadPose;
-use tracelight_control::{AxisConfig, Config, FrictionModel, HeadModel};
+use tracelight_control::{AxisConfig, Config, FrictionModel, HeadModel, MotorRating};
 use tracelight_dynamics::{Friction, Lumped};
 use tracelight_plant::PlantConfig;
 use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
@@ -16,7 +16,6 @@ const RANGE_MARGIN_COUNTS: f64 = 3.0;
 impl RigConfig {
     /// What the planner believes, for a head standing at `pose`.
     pub fn machine(&self, pose: HeadPose) -> Machine {
-        let ticks = |s: f64| (s / TICK_F64_S).round() as u32;
         Machine {
             lumped: self.model.bodies.lumped(),
             friction: self.model.friction,
@@ -37,7 +36,10 @@ impl RigConfig {
         Config {
             model: head_model(&self.model.bodies.lumped()),
             axes: PanTilt::from_fn(|j| self.axis(j)),
-            hold_limit_ticks: (self.control.hold_limit_s / TICK_F64_S).round() as u32,
+            hold_limit_ticks: ticks(self.control.hold_limit_s),
+            laser_on_ticks: ticks(self.model.relay.on_s),
+            laser_off_ticks: ticks(self.model.relay.off_s),
+            host_silence_ticks: ticks(self.control.host_silence_s),
         }
     }
 
@@ -60,6 +62,10 @@ impl RigConfig {
             friction: friction_model(&self.model.friction[joint]),
             observer: observer.config(INTERVAL_TICKS),
             law: control.law.config(joint, control.bandwidth_rad_s[joint], inertia),
+            rating: MotorRating {
+                continuous_share: control.motor_continuous as f32,
+                heating_s: control.motor_heating_s as f32,
+            },
             limits: JointLimits {
                 lower_rad: (lower - margin) as f32,
                 upper_rad: (upper + margin) as f32,
@@ -80,6 +86,10 @@ impl RigConfig {
             wear: self.truth.wear,
         }
     }
+}
+
+fn ticks(time_s: f64) -> u32 {
+    (time_s / TICK_F64_S).round() as u32
 }
 
 fn head_model(lumped: &Lumped) -> HeadModel {

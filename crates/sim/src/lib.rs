@@ -15,6 +15,7 @@ mod run;
 mod score;
 mod spread;
 mod step;
+mod trouble;
 
 pub use bench::{Bench, BenchTick, Truth as BenchTruth};
 pub use config::{ControlSettings, Model, MotionSettings, RigConfig, Truth};
@@ -26,3 +27,4 @@ pub use score::{Tracking, score};
 pub use spread::Spread;
 pub use step::{StepResponse, step_response};
 pub use tracelight_control::{Estimate, Learned};
+pub use trouble::Trouble;

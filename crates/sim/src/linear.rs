@@ -1,5 +1,5 @@
 use tracelight_control::{Config, FrictionModel, HeadModel};
-use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, TICK_F64_S};
+use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, Sensed, TICK_F64_S};
 
 use crate::RigConfig;
 use crate::bench::Truth;
@@ -60,7 +60,7 @@ impl LinearHead {
 }
 
 impl Head for LinearHead {
-    fn exchange(&mut self, actuation: &Actuation) -> PanTilt<Measurement> {
+    fn exchange(&mut self, actuation: &Actuation) -> Sensed {
         let step_s = TICK_F64_S / f64::from(SUBSTEPS);
         for joint in Joint::BOTH {
             let torque = f64::from(actuation.command_v[joint]) * self.torque_nm_per_v[joint];
@@ -73,7 +73,8 @@ impl Head for LinearHead {
             }
         }
         let count = |angle: f64| (angle * COUNTS_PER_REV / std::f64::consts::TAU).round() as i32;
-        self.angle_rad.map(|angle| Measurement { count: count(angle), edge_age_ticks: None })
+        let encoders = self.angle_rad.map(|angle| Measurement { count: count(angle), edge_age_ticks: None });
+        Sensed { encoders, laser_on: None }
     }
 }
 

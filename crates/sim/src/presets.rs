@@ -44,6 +44,10 @@ impl RigConfig {
                 bandwidth_rad_s: PanTilt::new(120.0, 120.0),
                 tolerance_m: 3e-3,
                 hold_limit_s: 3.0,
+                host_silence_s: 0.05,
+                // small geared motors stand 1.4 times their rated current for half a minute
+                motor_continuous: 0.7,
+                motor_heating_s: 60.0,
             },
             motion: MotionSettings {
                 torque_share: 0.85,

@@ -3,11 +3,12 @@ use std::ops::ControlFlow;
 use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_control::{Controller, Estimate, State};
 use tracelight_plant::Plant;
-use tracelight_rig::{Command, Head, Joint, Measurement, PanTilt, Phase, Rig, Segment, Telemetry};
+use tracelight_rig::{Command, Head, PanTilt, Phase, Rig, Segment, Sensed, Telemetry};
 use tracelight_stroke::Point;
 use tracelight_trajectory::Plan;
 
 use crate::RigConfig;
+use crate::trouble::{Line, Trouble};
 
 /// Ticks a run goes on after a fault, so that the log shows what followed: 0.2 s.
 const AFTERMATH_TICKS: u32 = 200;
@@ -50,7 +51,7 @@ pub struct SimulatedRig {
     controller: Controller,
     state: State,
     plant: Plant,
-    measured: PanTilt<Measurement>,
+    sensed: Sensed,
     lines: PanTilt<Line>,
     model: HeadGeometry,
     truth: HeadGeometry,
@@ -64,13 +65,13 @@ impl SimulatedRig {
     pub fn new(config: &RigConfig, pose: HeadPose, seed: u64) -> Self {
         let controller = Controller::new(config.control_config());
         let plant = Plant::new(&config.plant_config(), seed);
-        let measured = PanTilt::default(); // homed: count 0 on both
+        let sensed = Sensed::default(); // homed: count 0 on both
         Self {
-            state: controller.start(&measured),
+            state: controller.start(&sensed),
             controller,
             plant,
-            measured,
-            lines: PanTilt::default(),
+            sensed,
+            lines: PanTilt::from_fn(|_| Line::new(seed)),
             model: config.model.geometry,
             truth: config.truth.model.geometry,
             pose,
@@ -80,7 +81,7 @@ impl SimulatedRig {
 
     /// One tick of the closed loop, with the truth.
     pub fn step(&mut self) -> Tick {
-        let telemetry = self.controller.tick(&mut self.state, &self.measured);
+        let telemetry = self.controller.tick(&mut self.state, &self.sensed);
         let asked = telemetry.setpoint.map(|s| f64::from(s.position_rad));
         let tick = Tick {
             telemetry,
@@ -91,7 +92,8 @@ impl SimulatedRig {
             light: self.plant.light(),
         };
         let seen = self.plant.exchange(&telemetry.actuation);
-        self.measured = PanTilt::from_fn(|j| self.lines[j].carry(seen[j]));
+        let encoders = PanTilt::from_fn(|j| self.lines[j].carry(seen.encoders[j]));
+        self.sensed = Sensed { encoders, ..seen };
         tick
     }
 
@@ -100,34 +102,16 @@ impl SimulatedRig {
         self.state.estimates()
     }
 
-    /// Somebody leans on the head from now on: torque at the joints, N m.
-    pub fn push(&mut self, torque_nm: PanTilt<f64>) {
-        self.plant.push(torque_nm);
-    }
-
-    /// Cuts an encoder's line: from now on its count stands still.
-    pub fn cut_encoder(&mut self, joint: Joint) {
-        self.lines[joint].cut_at = Some(self.measured[joint].count);
-    }
-
-    /// Lets an encoder slip: from now on its count is off by that many more.
-    pub fn slip_encoder(&mut self, joint: Joint, counts: i32) {
-        self.lines[joint].slip += counts;
-    }
-}
-
-/// What happens to a count on its way to the controller.
-#[derive(Clone, Copy, Debug, Default)]
-struct Line {
-    cut_at: Option<i32>,
-    slip: i32,
-}
-
-impl Line {
-    fn carry(&self, measured: Measurement) -> Measurement {
-        match self.cut_at {
-            Some(count) => Measurement { count, edge_age_ticks: None },
-            None => Measurement { count: measured.count + self.slip, ..measured },
+    /// Something goes wrong from now on.
+    pub fn suffer(&mut self, trouble: Trouble) {
+        match trouble {
+            Trouble::Push(torque_nm) => self.plant.push(torque_nm),
+            Trouble::EncoderCut(j) => self.lines[j].cut_at = Some(self.sensed.encoders[j].count),
+            Trouble::EncoderJump(j, counts) => self.lines[j].off += counts,
+            Trouble::EncoderNoise(j, share) => self.lines[j].noise = share,
+            Trouble::EncoderSlip(j, share) => self.lines[j].slip(share),
+            Trouble::StampGarbled(j) => self.lines[j].garbled = true,
+            Trouble::LaserStuck => self.plant.stick_laser(),
         }
     }
 }
@@ -183,6 +167,8 @@ pub fn run(
     let mut aftermath = AFTERMATH_TICKS;
     let armed = rig.send(Command::Arm).is_ok();
     while armed && ticks.len() < plan.points.len() + rig.patience_ticks {
+        let alive = rig.send(Command::KeepAlive).is_ok();
+        debug_assert!(alive, "only segments wait");
         feeder.feed(rig);
         let tick = rig.step();
         ticks.push(tick);

@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 use shapes::{POSE, SPEED_M_S, circle, line, plan_at, plan_of, star, trace};
 use tracelight_rig::{Fault, Joint, PanTilt, Phase};
-use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, run};
+use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Trouble, run};
 use tracelight_stroke::Point;
 use tracelight_trajectory::{LitSpeed, Plan};
 
@@ -124,9 +124,9 @@ fn a_push_darkens_at_once_and_the_stroke_goes_on_where_it_was_left() {
     let at = middle(&plan);
     let run = disturbed(&plan, |rig, tick| {
         if tick == at {
-            rig.push(PanTilt::new(1.0, 0.0));
+            rig.suffer(Trouble::Push(PanTilt::new(1.0, 0.0)));
         } else if tick == at + 80 {
-            rig.push(PanTilt::default());
+            rig.suffer(Trouble::Push(PanTilt::default()));
         }
     });
     // what the controller believes, on the target
@@ -160,7 +160,7 @@ fn a_dead_encoder_is_noticed_and_the_laser_darkens() {
         let when = if joint == Joint::Tilt { at } else { at + 1000 };
         let run = disturbed(&plan, |rig, tick| {
             if tick == when {
-                rig.cut_encoder(joint);
+                rig.suffer(Trouble::EncoderCut(joint));
             }
         });
         let last = run.ticks.last().unwrap();
@@ -177,7 +177,7 @@ fn a_jump_of_the_count_is_a_fault_in_the_same_tick() {
     let at = middle(&plan);
     let run = disturbed(&plan, |rig, tick| {
         if tick == at {
-            rig.slip_encoder(Joint::Tilt, 100);
+            rig.suffer(Trouble::EncoderJump(Joint::Tilt, 100));
         }
     });
     let fault = run.ticks.iter().find(|t| t.telemetry.fault.is_some()).unwrap();

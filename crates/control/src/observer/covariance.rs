@@ -14,6 +14,9 @@ pub(super) const INERTIA: usize = 5;
 /// One number a quantity.
 pub(super) type Row = [f32; STATES];
 
+/// What is further off than three standard deviations is a surprise.
+const DEVIATIONS_SQUARED: f32 = 9.0;
+
 /// Symmetric covariance of the estimated quantities.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Covariance([Row; STATES]);
@@ -58,12 +61,16 @@ impl Covariance {
         self.0[quantity][quantity] += variance;
     }
 
+    /// Whether an innovation is beyond three standard deviations.
+    pub(super) fn is_surprised(&self, innovation: f32, age_s: f32, variance: f32) -> bool {
+        innovation * innovation > DEVIATIONS_SQUARED * (self.variance_of_place(age_s) + variance)
+    }
+
     /// Makes room for a surprise: an innovation beyond three standard deviations says that something happens which
     /// the model does not know (a push, a stall), so position, velocity and load are made uncertain until three fit
     /// (fading memory; Xia et al., *Adaptive fading Kalman filter*, Automatica 1994). What a head is made of stays: a
     /// push says nothing of it.
     pub(super) fn expect(&mut self, innovation: f32, age_s: f32, variance: f32) {
-        const DEVIATIONS_SQUARED: f32 = 9.0;
         const MOST: f32 = 1e4;
         let own = self.variance_of_place(age_s);
         let needed = innovation * innovation / DEVIATIONS_SQUARED - variance;
@@ -77,6 +84,11 @@ impl Covariance {
         }
     }
 
+    /// Lets the load be as much as that.
+    pub(super) fn suspect_load(&mut self, load_nm: f32) {
+        self.0[LOAD][LOAD] = self.0[LOAD][LOAD].max(load_nm * load_nm);
+    }
+
     /// Of where the joint was `age_s` ago.
     fn variance_of_place(&self, age_s: f32) -> f32 {
         let p = &self.0;
@@ -84,18 +96,24 @@ impl Covariance {
         pp - 2.0 * age_s * pv + age_s * age_s * vv
     }
 
-    /// Gains for a measurement of where the joint was `age_s` ago (H = [1 −age 0 …]), and P ← (I − KH) P.
-    pub(super) fn update(&mut self, age_s: f32, variance: f32) -> Row {
+    /// Gains for a measurement of where the joint was `age_s` ago (H = [1 −age 0 …]), and P ← (I − KH) P. While it is
+    /// `pushed` nothing is learned of what the head is made of (a consider filter; Schmidt 1966).
+    pub(super) fn update(&mut self, age_s: f32, variance: f32, pushed: bool) -> Row {
         let seen = self.0.map(|line| line[POSITION] - age_s * line[VELOCITY]);
         let innovation = seen[POSITION] - age_s * seen[VELOCITY] + variance;
         let gain = seen.map(|entry| entry / innovation);
+        let learns = |i: usize| i <= LOAD || !pushed;
         for (i, line) in self.0.iter_mut().enumerate() {
-            for (entry, other) in line.iter_mut().zip(seen) {
-                *entry -= gain[i] * other;
+            for (j, (entry, other)) in line.iter_mut().zip(seen).enumerate() {
+                *entry -= if learns(i) || learns(j) { gain[i] * other } else { 0.0 };
             }
             // rounding must not make a variance negative
             line[i] = line[i].max(0.0);
         }
-        gain
+        let mut applied = gain;
+        for entry in applied.iter_mut().skip(LOAD + 1) {
+            *entry = if pushed { 0.0 } else { *entry };
+        }
+        applied
     }
 }

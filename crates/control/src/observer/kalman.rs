@@ -14,7 +14,7 @@ const LEAST_FRICTION: f32 = -0.6;
 const MOST_FRICTION: f32 = 1.5;
 const LEAST_BREAK_AWAY: f32 = -0.1;
 const MOST_BREAK_AWAY: f32 = 1.0;
-const MOST_INERTIA: f32 = 0.4;
+pub(crate) const MOST_INERTIA: f32 = 0.6;
 
 /// What a joint has shown to be different from its model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -130,6 +130,9 @@ pub(super) struct Kalman {
     offset_rad: f32,
     velocity_rad_s: f32,
     acceleration_rad_s2: f32,
+    /// Inertia the joint feels, by the model, kg m².
+    inertia_kg_m2: f32,
+    since_edge_s: f32,
     learned: Learned,
     covariance: Covariance,
 }
@@ -157,6 +160,8 @@ impl Kalman {
             offset_rad: 0.0,
             velocity_rad_s: 0.0,
             acceleration_rad_s2: 0.0,
+            inertia_kg_m2: 0.0,
+            since_edge_s: 0.0,
             learned,
             covariance,
         }
@@ -186,6 +191,8 @@ impl Kalman {
             against * break_away_share(before),
             (before - after) / (1.0 + self.learned.inertia_share),
         ];
+        self.inertia_kg_m2 = effort.inertia_kg_m2;
+        self.since_edge_s += TICK_S;
         self.offset_rad += 0.5 * TICK_S * (before + after);
         self.acceleration_rad_s2 = (after - before) / TICK_S;
         self.velocity_rad_s = after;
@@ -215,7 +222,6 @@ impl Kalman {
         self.count = measured.count;
         self.offset_rad -= moved as f32 * width;
         if moved != 0 {
-            self.homed = true;
             self.see_edge(axis, moved, measured.edge_age_ticks);
         }
         let inside = within(self.offset_rad, 0.5 * width);
@@ -225,7 +231,7 @@ impl Kalman {
             self.offset_rad = inside;
         } else if (self.offset_rad - inside).abs() > tuning.bound_slack_counts * width {
             let noise = tuning.bound_noise_counts * width;
-            self.observe(axis, inside, 0.0, noise * noise);
+            self.observe(axis, (inside, 0.0, noise * noise), false);
         }
     }
 
@@ -242,16 +248,46 @@ impl Kalman {
             }
         };
         let noise = self.tuning.edge_noise_counts * width;
-        self.observe(axis, edge, age_s, noise * noise + blur * blur / 12.0);
+        let variance = noise * noise + blur * blur / 12.0;
+        let innovation = self.innovation(edge, age_s);
+        // the first edge says where in its count the joint began, nothing else
+        let surprised = self.homed && self.covariance.is_surprised(innovation, age_s, variance);
+        let pushed = surprised && self.is_pushed(axis, innovation.abs() - blur.abs());
+        self.homed = true;
+        self.since_edge_s = age_s;
+        self.observe(axis, (edge, age_s, variance), pushed);
+    }
+
+    /// Whether an edge came so early or late that only somebody who pushes explains it; a load is then suspected that
+    /// makes such a difference in the time since the last edge.
+    fn is_pushed(&mut self, axis: &AxisConfig, early_rad: f32) -> bool {
+        /// Counts that neither friction nor a misplaced edge is off from one edge to the next.
+        const PUSHED_COUNTS: f32 = 0.25;
+        /// Shortest time a load is reckoned over, s: what is faster is a blow.
+        const SHORTEST_S: f32 = 0.005;
+        /// Shares of Coulomb friction that break-away and ripple of a worn head stay well under.
+        const PUSHED_SHARE: f32 = 3.0;
+        let time = self.since_edge_s.max(SHORTEST_S);
+        let load_nm = 2.0 * early_rad * self.inertia_kg_m2 / (time * time);
+        let far = early_rad > PUSHED_COUNTS * axis.count_rad;
+        let pushed = far && load_nm > PUSHED_SHARE * axis.friction.coulomb_nm();
+        if pushed {
+            self.covariance.suspect_load(within(load_nm, axis.torque_nm_per_v * axis.limit_v));
+        }
+        pushed
+    }
+
+    /// How far ahead of the estimate the joint was `age_s` ago, if it was there, rad.
+    fn innovation(&self, offset_rad: f32, age_s: f32) -> f32 {
+        let bend = 0.5 * age_s * age_s * self.acceleration_rad_s2;
+        offset_rad - (self.offset_rad - age_s * self.velocity_rad_s + bend)
     }
 
     /// Kalman update: `age_s` ago the joint was at `offset_rad` ± √`variance`.
-    fn observe(&mut self, axis: &AxisConfig, offset_rad: f32, age_s: f32, variance: f32) {
-        let then =
-            self.offset_rad - age_s * self.velocity_rad_s + 0.5 * age_s * age_s * self.acceleration_rad_s2;
-        let innovation = offset_rad - then;
+    fn observe(&mut self, axis: &AxisConfig, (offset_rad, age_s, variance): (f32, f32, f32), pushed: bool) {
+        let innovation = self.innovation(offset_rad, age_s);
         self.covariance.expect(innovation, age_s, variance);
-        let step = self.covariance.update(age_s, variance).map(|gain| gain * innovation);
+        let step = self.covariance.update(age_s, variance, pushed).map(|gain| gain * innovation);
         self.offset_rad += step[POSITION];
         self.velocity_rad_s += step[VELOCITY];
         self.learned.learn(&step, axis.friction.coulomb_nm());

@@ -21,6 +21,7 @@ mod tracking_loop;
 use tracelight_rig::Measurement;
 
 use crate::AxisConfig;
+pub(crate) use kalman::MOST_INERTIA;
 pub use kalman::{KalmanTuning, Learned, Unknown};
 
 use differences::Differences;
@@ -57,6 +58,16 @@ pub struct Estimate {
     pub acceleration_rad_s2: f32,
     /// What the model does not know of this head; nothing for observers that have no model.
     pub learned: Learned,
+}
+
+impl Estimate {
+    /// Whether every number of it is one.
+    pub(crate) fn is_finite(&self) -> bool {
+        let Learned { load_nm, friction_nm, break_away_nm, inertia_share } = self.learned;
+        let motion = self.position_rad + self.velocity_rad_s + self.acceleration_rad_s2;
+        // a sum is finite only if each of its terms is
+        (motion + load_nm + friction_nm + break_away_nm + inertia_share).is_finite()
+    }
 }
 
 /// What acted on a joint during the last tick, as far as is known.

@@ -101,17 +101,8 @@ fn json(codes: &[(&'static str, String)]) -> String {
 }
 
 fn codes() -> Vec<(&'static str, String)> {
-    let faults = [
-        Fault::EncoderJumped,
-        Fault::EncoderDead,
-        Fault::SetpointsStale,
-        Fault::SetpointInvalid,
-        Fault::LimitReached,
-        Fault::HoldTimedOut,
-    ];
-    let faults = faults.map(|f| (f.code(), fault_words(f)));
     let own = MESSAGES.iter().map(|&(code, words)| (code, words.to_owned()));
-    let faults = faults.map(|(code, words)| (code, words.to_owned()));
+    let faults = Fault::ALL.map(|fault| (fault.code(), fault_words(fault).to_owned()));
     let darkness = Darkness::ALL.map(|d| (d.code(), format!("{} {}", darkness_words(d), what_to_do(d))));
     own.chain(faults).chain(darkness).collect()
 }
@@ -135,6 +126,7 @@ const fn what_to_do(reason: Darkness) -> &'static str {
         Darkness::Stale => {
             "Nothing before the first and after the last stroke. Within a job the host was too slow."
         }
+        Darkness::Doubtful => "See whether somebody holds the head; if not, an encoder is going dead.",
         Darkness::Faulted => "Look up the fault's own code.",
     }
 }

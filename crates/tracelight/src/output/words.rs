@@ -27,6 +27,30 @@ pub(crate) const fn fault_words(fault: Fault) -> &'static str {
         Fault::HoldTimedOut => {
             "The head did not come back to its stroke in time: something holds it, or the gains do not suit this rig."
         }
+        Fault::EncoderNoisy => {
+            "Edges came where the joint was not: look for interference on an encoder's lines, a loose plug or a missing shield."
+        }
+        Fault::EncoderSlipping => {
+            "What an encoder shows and what its motor must have done do not belong together: look for a slipping disc or belt, or an amplifier whose gain is not the rig file's."
+        }
+        Fault::AmplifierSaturated => {
+            "An amplifier gave all it has for 0.3 s: something blocks the joint, or the law and its bandwidth do not suit this rig."
+        }
+        Fault::MotorHot => {
+            "A motor was driven harder than it can be cooled: let it rest. control.motor_continuous and control.motor_heating in the rig file set the bound."
+        }
+        Fault::LaserStuck => {
+            "The laser did not follow its gate: a relay's contact sticks or its coil is not driven. Switch the laser's supply off by hand."
+        }
+        Fault::HostLost => {
+            "The host stopped saying that it is there: it ended, hangs, or the connection broke. control.host_silence sets the bound."
+        }
+        Fault::EstimateDiverged => {
+            "What is believed of a joint's speed does not add up to what its encoder counted: the observer does not suit this rig, or its model is far off."
+        }
+        Fault::NotANumber => {
+            "A measurement, a setpoint or a law's result was no number: look for a broken edge stamp, and report it if there is none."
+        }
         _ => "The rig stopped the job for a reason this version has no words for.",
     }
 }
@@ -36,6 +60,9 @@ pub(crate) const fn darkness_words(reason: Darkness) -> &'static str {
     match reason {
         Darkness::Planned => "The plan wants no light here.",
         Darkness::Disarmed => "Nobody armed the rig.",
+        Darkness::Doubtful => {
+            "An encoder showed no edge where its joint should have passed several, or does not fit what its motor does."
+        }
         Darkness::FollowingError => "A joint was further from its setpoint than the stroke allows.",
         Darkness::SpotError => "Both joints together put the spot too far from its stroke.",
         Darkness::Holding => "The plan waited until the head was back on its stroke.",

@@ -206,7 +206,7 @@ pub(super) fn model_keys() -> Vec<Key<Model>> {
 }
 
 /// Keys of `[truth.wear]`, `[control]` and `[motion]`.
-pub(super) const RIG_KEYS: [Key<RigConfig>; 21] = [
+pub(super) const RIG_KEYS: [Key<RigConfig>; 24] = [
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),
@@ -274,6 +274,23 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 21] = [
     ),
     real("control.hold_limit", TIMES, (0.1, 600.0), "how long the head may need to come back", |r| {
         &mut r.control.hold_limit_s
+    }),
+    real(
+        "control.host_silence",
+        TIMES,
+        (5e-3, 10.0),
+        "how long a host may be silent before that is a fault",
+        |r| &mut r.control.host_silence_s,
+    ),
+    real(
+        "control.motor_continuous",
+        PURE,
+        (0.01, 1.0),
+        "share of its amplifier's limit a motor stands for ever",
+        |r| &mut r.control.motor_continuous,
+    ),
+    real("control.motor_heating", TIMES, (0.1, 1e5), "time constant of a motor's temperature", |r| {
+        &mut r.control.motor_heating_s
     }),
     real("motion.torque_share", PURE, (0.05, 0.95), "share of the motors' torque a plan may use", |r| {
         &mut r.motion.torque_share

@@ -1,0 +1,176 @@
+use tracelight_rig::{Fault, Measurement, TICK_S};
+
+use crate::limit::within;
+use crate::observer::MOST_INERTIA;
+use crate::{AxisConfig, Effort, Estimate, Learned};
+
+/// Share of Coulomb friction that must be overcome before a joint is expected to move: stiction and ripple of worn
+/// heads stay under it.
+const BREAK_AWAY_MARGIN: f32 = 1.6;
+/// Predicted motion without any edge that makes an encoder doubtful, counts,
+const DOUBT_COUNTS: f32 = 4.0;
+/// and how long it may be so before it is taken for dead, ticks: somebody who holds the head looks the same.
+const DOUBT_TICKS: u32 = 20;
+/// Counts beside where the joint can be that mean it jumped: a kick that moves a joint by one count within a tick
+/// gives it 3000 rad/s², and breaks it.
+const JUMP_COUNTS: f32 = 3.0;
+/// Counts beside it that are a surprise: an observer that knows no more than the count is half a count off at every edge.
+const SURPRISE_COUNTS: f32 = 0.6;
+/// Surprises back and forth together that mean noise, counts; what was is forgotten by a share of a 50th a tick. Whoever
+/// pushes a joint surprises too, but in one direction.
+const NOISE_COUNTS: f32 = 3.0;
+const NOISE_FADES: f32 = 1.0 / 50.0;
+/// How much more speed than counts, over some 20 ticks, means that an observer has lost its joint, counts. The slowest
+/// observer, 64 ticks of differences, is 3.4 off while a joint speeds up with 8 rad/s².
+const DIVERGED_COUNTS: f32 = 6.0;
+const DIVERGENCE_FADES: f32 = 1.0 / 20.0;
+/// What an encoder shows and what its motor did do not belong together when the joint seems to have this share of all
+/// the inertia that can be learned,
+const SLIP_INERTIA: f32 = 0.95;
+/// or a load acts on it of this share of the motor's torque: somebody who pushes that hard wants no light either.
+const SLIP_LOAD: f32 = 0.3;
+/// After so many ticks of it an encoder is taken to slip; a tick without makes good one with.
+const SLIP_TICKS: u32 = 150;
+
+/// Watch on one encoder: what a following-error limit alone never sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EncoderWatch {
+    count: i32,
+    believed: Estimate,
+    expected: Expectation,
+    /// Which way the last edge was crossed.
+    way: i32,
+    surprises: f32,
+    /// Speed believed beyond what was counted, rad.
+    gap_rad: f32,
+    is_strange: bool,
+    slipping_ticks: u32,
+    doubtful_ticks: u32,
+}
+
+impl EncoderWatch {
+    pub(super) fn new(measured: &Measurement, estimate: &Estimate) -> Self {
+        Self {
+            count: measured.count,
+            believed: *estimate,
+            expected: Expectation::default(),
+            way: 0,
+            surprises: 0.0,
+            gap_rad: 0.0,
+            is_strange: false,
+            slipping_ticks: 0,
+            doubtful_ticks: 0,
+        }
+    }
+
+    /// One tick under what acted on the joint; the fault it shows, if any.
+    pub(super) fn tick(
+        &mut self,
+        axis: &AxisConfig,
+        effort: &Effort,
+        estimate: &Estimate,
+        measured: &Measurement,
+    ) -> Option<Fault> {
+        let moved = measured.count.wrapping_sub(self.count);
+        self.count = measured.count;
+        let before = core::mem::replace(&mut self.believed, *estimate);
+        let surprise = surprise_counts(axis, &before, measured.count);
+        if surprise > JUMP_COUNTS {
+            return Some(Fault::EncoderJumped);
+        }
+        let back = moved.signum() * self.way < 0;
+        self.way = if moved == 0 { self.way } else { moved.signum() };
+        self.surprises -= NOISE_FADES * self.surprises;
+        self.surprises += if back && surprise > SURPRISE_COUNTS { surprise } else { 0.0 };
+        if self.surprises > NOISE_COUNTS {
+            return Some(Fault::EncoderNoisy);
+        }
+        self.doubt(axis, effort, estimate, moved);
+        if self.doubtful_ticks > DOUBT_TICKS {
+            return Some(Fault::EncoderDead);
+        }
+        if self.slips(axis, estimate) {
+            return Some(Fault::EncoderSlipping);
+        }
+        self.has_diverged(axis, estimate, moved).then_some(Fault::EstimateDiverged)
+    }
+
+    /// Whether the laser is better dark until an edge comes.
+    pub(super) const fn is_doubtful(&self) -> bool {
+        self.doubtful_ticks > 0 || self.is_strange
+    }
+
+    fn doubt(&mut self, axis: &AxisConfig, effort: &Effort, estimate: &Estimate, moved: i32) {
+        let threshold = BREAK_AWAY_MARGIN * axis.friction.coulomb_nm();
+        if moved != 0 {
+            self.expected.begin(moved, estimate, axis.count_rad);
+        }
+        let drive = effort.torque_nm - effort.bias_nm + self.expected.load_nm;
+        let net = beyond(drive, threshold);
+        self.expected.tick(net / effort.inertia_kg_m2, threshold / effort.inertia_kg_m2);
+        let missing = self.expected.travel_rad.abs() > DOUBT_COUNTS * axis.count_rad;
+        self.doubtful_ticks = if missing { self.doubtful_ticks + 1 } else { 0 };
+    }
+
+    fn slips(&mut self, axis: &AxisConfig, estimate: &Estimate) -> bool {
+        let Learned { load_nm, inertia_share, .. } = estimate.learned;
+        let strange = inertia_share.abs() > SLIP_INERTIA * MOST_INERTIA
+            || load_nm.abs() > SLIP_LOAD * axis.torque_nm_per_v * axis.limit_v;
+        self.is_strange = strange;
+        self.slipping_ticks =
+            if strange { self.slipping_ticks + 1 } else { self.slipping_ticks.saturating_sub(1) };
+        self.slipping_ticks > SLIP_TICKS
+    }
+
+    fn has_diverged(&mut self, axis: &AxisConfig, estimate: &Estimate, moved: i32) -> bool {
+        self.gap_rad -= DIVERGENCE_FADES * self.gap_rad;
+        self.gap_rad += estimate.velocity_rad_s * TICK_S - moved as f32 * axis.count_rad;
+        self.gap_rad.abs() > DIVERGED_COUNTS * axis.count_rad
+    }
+}
+
+/// How far from where the joint was to be expected a tick later the nearest end of a count is, counts.
+fn surprise_counts(axis: &AxisConfig, before: &Estimate, count: i32) -> f32 {
+    let expected = (before.position_rad + TICK_S * before.velocity_rad_s) / axis.count_rad;
+    ((expected - count as f32).abs() - 0.5).max(0.0)
+}
+
+/// Cautious open-loop prediction of one joint since its last edge, from the speed it had there.
+#[derive(Clone, Copy, Debug, Default)]
+struct Expectation {
+    rate_rad_s: f32,
+    travel_rad: f32,
+    /// Load that was known at the last edge, N m. What is taken for one later may be how a dead encoder looks.
+    load_nm: f32,
+    /// Which way the last edge was crossed.
+    way: i32,
+    /// How long ago, ticks.
+    since: f32,
+}
+
+impl Expectation {
+    /// At an edge: the observer's speed, but no more than this edge and the one before it show. Some observers take a
+    /// single count for a speed of radians a second.
+    fn begin(&mut self, moved: i32, estimate: &Estimate, count_rad: f32) {
+        let shown = moved.unsigned_abs() as f32 * count_rad / (self.since.max(1.0) * TICK_S);
+        let way = moved.signum();
+        let most = if way == self.way { shown } else { 0.0 };
+        let (rate_rad_s, load_nm) = (within(estimate.velocity_rad_s, most), estimate.learned.load_nm);
+        *self = Self { rate_rad_s, travel_rad: 0.0, load_nm, way, since: 0.0 };
+    }
+
+    /// Friction brakes what moves whether or not the effort drives it on.
+    fn tick(&mut self, acceleration: f32, braking: f32) {
+        self.since += 1.0;
+        if acceleration * self.rate_rad_s <= 0.0 {
+            self.rate_rad_s = beyond(self.rate_rad_s, braking * TICK_S);
+        }
+        self.rate_rad_s += acceleration * TICK_S;
+        self.travel_rad += self.rate_rad_s * TICK_S;
+    }
+}
+
+/// What of `value` lies beyond ±`threshold`.
+fn beyond(value: f32, threshold: f32) -> f32 {
+    value - within(value, threshold)
+}

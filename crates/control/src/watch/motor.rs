@@ -1,0 +1,51 @@
+use tracelight_rig::{Fault, TICK_S};
+
+use crate::AxisConfig;
+
+/// Share of an amplifier's limit from which on it is saturated.
+const SATURATED: f32 = 0.999;
+/// For how long an amplifier may give all it has in one direction, ticks: the longest move of a joint at full torque,
+/// half a turn, speeds up for 0.64 s and is planned at less; what goes on for half of that is stuck.
+const SATURATED_TICKS: u32 = 300;
+
+/// How much a motor may be driven.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorRating {
+    /// Share of its amplifier's limit that it stands for ever, 0 to 1.
+    pub continuous_share: f32,
+    /// Time constant of its temperature, s.
+    pub heating_s: f32,
+}
+
+/// Watch on one motor and its amplifier.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct MotorWatch {
+    saturated_ticks: u32,
+    upwards: bool,
+    /// Temperature over its surroundings, as a share of what full drive would make of it: the square of the current,
+    /// smoothed (I²t).
+    heat: f32,
+}
+
+impl MotorWatch {
+    /// One tick with that command; the fault it shows, if any.
+    pub(super) fn tick(&mut self, axis: &AxisConfig, command_v: f32) -> Option<Fault> {
+        let share = command_v / axis.limit_v;
+        let (saturated, upwards) = (share.abs() >= SATURATED, share > 0.0);
+        let goes_on = saturated && upwards == self.upwards;
+        self.saturated_ticks = if goes_on { self.saturated_ticks + 1 } else { u32::from(saturated) };
+        self.upwards = upwards;
+        self.heat += TICK_S / axis.rating.heating_s * (share * share - self.heat);
+        let most = axis.rating.continuous_share * axis.rating.continuous_share;
+        if self.saturated_ticks > SATURATED_TICKS {
+            Some(Fault::AmplifierSaturated)
+        } else {
+            (self.heat > most).then_some(Fault::MotorHot)
+        }
+    }
+
+    /// A motor stays as hot as it is, whoever arms.
+    pub(super) fn rearm(&mut self) {
+        self.saturated_ticks = 0;
+    }
+}
