@@ -77,7 +77,7 @@ impl Controller {
         if let Some(fault) = state.supervisor.fault {
             if fault.leaves_motors_blind() {
                 // what was believed is not worth keeping
-                state.servo = Servo::at_rest(&self.config, &state.sensed.encoders);
+                state.servo = Servo::anew(&self.config, &state.sensed.encoders);
             }
             state.watch.rearm(&state.sensed, state.servo.estimates());
             state.way_back = None;

@@ -3,9 +3,12 @@ use tracelight_rig::{PanTilt, Segment, Setpoint, TICK_S};
 /// Segments the controller can hold ahead of time.
 pub const QUEUE_LENGTH: usize = 64;
 
-/// Time in which the plan's clock gets back to full speed after a hold, s. At 1 ft/s on a target 3 ft away this
-/// asks for 2.2 rad/s², a quarter of what the weaker motor can do.
+/// Time in which the plan's clock gets back to full speed after a hold, s,
 const RESUME_S: f32 = 0.15;
+
+/// or longer where a joint is planned to be fast: a quarter of what the weaker motor can do, rad/s². At 1 ft/s on a target
+/// 3 ft away the two are alike.
+const RESUME_RAD_S2: f32 = 2.2;
 
 /// Largest step between the end of one segment and the start of the next that still counts as joined, rad.
 const JOIN_RAD: f32 = 2e-4;
@@ -159,7 +162,7 @@ impl Player {
         }
         let before = self.rate;
         if before == 0.0 {
-            self.rate_slope = 1.0 / RESUME_S;
+            self.rate_slope = 1.0 / RESUME_S.max(self.planned_rad_s() / RESUME_RAD_S2);
         }
         self.rate += self.rate_slope * TICK_S;
         if self.rate >= 1.0 {
@@ -173,6 +176,13 @@ impl Player {
             self.tick += 1;
         }
         self.drop_passed();
+    }
+
+    /// Speed of the faster joint where the plan stands, rad/s.
+    fn planned_rad_s(&self) -> f32 {
+        let Some(segment) = self.current() else { return 0.0 };
+        let planned = segment.sample((self.tick - segment.start_tick) as f32 + self.fraction);
+        planned.pan.velocity_rad_s.abs().max(planned.tilt.velocity_rad_s.abs())
     }
 
     fn drop_passed(&mut self) {

@@ -19,6 +19,11 @@ pub struct Servo {
     sound: bool,
 }
 
+/// Standard deviation of the speed of a joint at rest, rad/s,
+const STILL_RAD_S: f32 = 1e-3;
+/// and of one that was left alone: tilt falls with 2 rad/s² at most.
+const ANY_RAD_S: f32 = 1.0;
+
 /// Where the joints should be.
 #[derive(Clone, Copy, Debug)]
 pub struct Reference {
@@ -31,7 +36,16 @@ pub struct Reference {
 impl Servo {
     /// Of a head at rest whose encoders read `measured`.
     pub fn at_rest(config: &Config, measured: &PanTilt<Measurement>) -> Self {
-        let observers = PanTilt::from_fn(|j| Observer::at_rest(&config.axes[j], &measured[j]));
+        Self::begin(config, measured, STILL_RAD_S)
+    }
+
+    /// Of a head nobody knows how fast it turns.
+    pub(crate) fn anew(config: &Config, measured: &PanTilt<Measurement>) -> Self {
+        Self::begin(config, measured, ANY_RAD_S)
+    }
+
+    fn begin(config: &Config, measured: &PanTilt<Measurement>, speed_rad_s: f32) -> Self {
+        let observers = PanTilt::from_fn(|j| Observer::begin(&config.axes[j], &measured[j], speed_rad_s));
         let estimates = PanTilt::from_fn(|j| observers[j].estimate(&config.axes[j]));
         let torque_nm = PanTilt::default();
         let efforts = efforts(config, &estimates, torque_nm);

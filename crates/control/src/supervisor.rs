@@ -6,6 +6,8 @@ use crate::Config;
 const RETURN_SHARE: f32 = 0.25;
 /// Speed below which it counts as at rest there, rad/s.
 const RETURN_RATE_RAD_S: f32 = 0.02;
+/// Distance in tolerances at which a head is lost on its way in the dark, too.
+const LOST_TOLERANCES: f32 = 10.0;
 /// How long it must stay there, ticks: four time constants of the default loop are 67.
 const RETURN_TICKS: u32 = 60;
 
@@ -78,7 +80,7 @@ impl Supervisor {
             Phase::Armed if at.segment.is_some() => self.phase = Phase::Tracing,
             Phase::Tracing if at.done => self.phase = Phase::Done,
             Phase::Tracing if at.starved => self.trip(Fault::SetpointsStale),
-            Phase::Tracing if strayed(at) || at.doubtful => self.begin_hold(),
+            Phase::Tracing if must_hold(at) => self.begin_hold(),
             Phase::Holding => self.hold(config, at),
             _ => {}
         }
@@ -145,6 +147,15 @@ fn spot_error(at: &Situation<'_>) -> f32 {
 
 fn strayed(at: &Situation<'_>) -> bool {
     exceeds(spot_error(at), 1.0)
+}
+
+/// Whether the plan's clock must stand until the head is back: where there is to be light, off the stroke or in doubt of
+/// an encoder. In the dark nothing is lost, and to stop a fast move and begin it again halfway takes more torque than to
+/// go on.
+fn must_hold(at: &Situation<'_>) -> bool {
+    let lit = at.segment.is_some_and(|segment| segment.gate);
+    let lost = exceeds(spot_error(at), LOST_TOLERANCES);
+    (lit && (strayed(at) || at.doubtful)) || lost
 }
 
 /// Whether a value is beyond its bound; what is not a number is.

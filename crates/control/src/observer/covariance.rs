@@ -90,7 +90,7 @@ impl Covariance {
     }
 
     /// Of where the joint was `age_s` ago.
-    fn variance_of_place(&self, age_s: f32) -> f32 {
+    pub(super) fn variance_of_place(&self, age_s: f32) -> f32 {
         let p = &self.0;
         let (pp, pv, vv) = (p[POSITION][POSITION], p[POSITION][VELOCITY], p[VELOCITY][VELOCITY]);
         pp - 2.0 * age_s * pv + age_s * age_s * vv

@@ -1,6 +1,7 @@
 use tracelight_rig::{Measurement, TICK_S};
 
 use super::covariance::{BREAK_AWAY, Covariance, FRICTION, INERTIA, LOAD, POSITION, Row, VELOCITY};
+use super::edge_table::EdgeTable;
 use super::{Effort, Estimate};
 use crate::AxisConfig;
 use crate::limit::within;
@@ -87,11 +88,11 @@ impl KalmanTuning {
     /// within a factor of two of each.
     pub const LEARNING: Self = Self {
         acceleration_noise: 7.5e-4,
-        edge_noise_counts: 0.067,
+        edge_noise_counts: 0.04,
         bound_slack_counts: 0.05,
         bound_noise_counts: 0.3,
-        load: Unknown { deviation: 0.1, drift: 5e-4 },
-        friction: Unknown { deviation: 0.115, drift: 3.5e-5 },
+        load: Unknown { deviation: 0.15, drift: 5e-4 },
+        friction: Unknown { deviation: 0.3, drift: 3.5e-5 },
         friction_change: 0.16,
         break_away: (0.0, Unknown { deviation: 0.3, drift: 0.0 }),
         inertia: Unknown { deviation: 0.13, drift: 1.5e-8 },
@@ -133,20 +134,19 @@ pub(super) struct Kalman {
     /// Inertia the joint feels, by the model, kg m².
     inertia_kg_m2: f32,
     since_edge_s: f32,
+    edges: EdgeTable,
     learned: Learned,
     covariance: Covariance,
 }
 
 impl Kalman {
-    pub(super) fn at_rest(axis: &AxisConfig, count: i32, tuning: KalmanTuning) -> Self {
-        /// Standard deviation of the velocity of a joint at rest, rad/s.
-        const STILL_RAD_S: f32 = 1e-3;
+    pub(super) fn begin(axis: &AxisConfig, count: i32, speed_rad_s: f32, tuning: KalmanTuning) -> Self {
         let coulomb = axis.friction.coulomb_nm();
         // anywhere in its count: the deviation of an even distribution
         let anywhere = axis.count_rad / libm::sqrtf(12.0);
         let covariance = Covariance::independent(&[
             anywhere,
-            STILL_RAD_S,
+            speed_rad_s,
             tuning.load.deviation * coulomb,
             tuning.friction.deviation * coulomb,
             tuning.break_away.1.deviation * coulomb,
@@ -162,6 +162,7 @@ impl Kalman {
             acceleration_rad_s2: 0.0,
             inertia_kg_m2: 0.0,
             since_edge_s: 0.0,
+            edges: EdgeTable::unknown(tuning.edge_noise_counts),
             learned,
             covariance,
         }
@@ -238,7 +239,9 @@ impl Kalman {
     fn see_edge(&mut self, axis: &AxisConfig, moved: i32, age_ticks: Option<f32>) {
         let width = axis.count_rad;
         // the last edge crossed is the one on the side it came from
-        let edge = if moved > 0 { -0.5 * width } else { 0.5 * width };
+        let (number, side) = if moved > 0 { (self.count, -0.5) } else { (self.count.wrapping_add(1), 0.5) };
+        let (off, placed) = self.edges.place(number);
+        let edge = (side + off) * width;
         let (age_s, blur) = match age_ticks {
             Some(age) => (age * TICK_S, 0.0),
             // without a stamp it was some time in the last of the tick's equal parts
@@ -247,12 +250,15 @@ impl Kalman {
                 (0.5 * part, self.velocity_rad_s * part)
             }
         };
-        let noise = self.tuning.edge_noise_counts * width;
-        let variance = noise * noise + blur * blur / 12.0;
+        let variance = placed * width * width + blur * blur / 12.0;
         let innovation = self.innovation(edge, age_s);
         // the first edge says where in its count the joint began, nothing else
-        let surprised = self.homed && self.covariance.is_surprised(innovation, age_s, variance);
-        let pushed = surprised && self.is_pushed(axis, innovation.abs() - blur.abs());
+        let surprised = self.covariance.is_surprised(innovation, age_s, variance);
+        let pushed = self.homed && surprised && self.is_pushed(axis, innovation.abs() - blur.abs());
+        if self.homed && !surprised {
+            let all = (self.covariance.variance_of_place(age_s) + variance) / (width * width);
+            self.edges.learn(number, innovation / width, all);
+        }
         self.homed = true;
         self.since_edge_s = age_s;
         self.observe(axis, (edge, age_s, variance), pushed);
@@ -261,8 +267,8 @@ impl Kalman {
     /// Whether an edge came so early or late that only somebody who pushes explains it; a load is then suspected that
     /// makes such a difference in the time since the last edge.
     fn is_pushed(&mut self, axis: &AxisConfig, early_rad: f32) -> bool {
-        /// Counts that neither friction nor a misplaced edge is off from one edge to the next.
-        const PUSHED_COUNTS: f32 = 0.25;
+        /// Counts that neither friction nor two misplaced edges are off from one edge to the next.
+        const PUSHED_COUNTS: f32 = 0.4;
         /// Shortest time a load is reckoned over, s: what is faster is a blow.
         const SHORTEST_S: f32 = 0.005;
         /// Shares of Coulomb friction that break-away and ripple of a worn head stay well under.

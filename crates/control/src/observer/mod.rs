@@ -13,6 +13,7 @@
 
 mod covariance;
 mod differences;
+mod edge_table;
 mod edge_times;
 mod kalman;
 mod past;
@@ -95,8 +96,8 @@ enum Kind {
 }
 
 impl Observer {
-    /// Of a joint at rest on this count.
-    pub fn at_rest(axis: &AxisConfig, measured: &Measurement) -> Self {
+    /// Of a joint on this count that is about at rest: its speed has that standard deviation, rad/s.
+    pub fn begin(axis: &AxisConfig, measured: &Measurement, speed_rad_s: f32) -> Self {
         let count = measured.count;
         Self(match axis.observer {
             ObserverConfig::Differences(ticks) => {
@@ -107,7 +108,7 @@ impl Observer {
             ObserverConfig::TrackingLoop(bandwidth) => {
                 Kind::TrackingLoop(TrackingLoop::at_rest(count, bandwidth))
             }
-            ObserverConfig::Kalman(tuning) => Kind::Kalman(Kalman::at_rest(axis, count, tuning)),
+            ObserverConfig::Kalman(tuning) => Kind::Kalman(Kalman::begin(axis, count, speed_rad_s, tuning)),
         })
     }
 

@@ -23,6 +23,30 @@ pub(super) fn write(path: &Path, job: &Job<'_>) -> Result<(), OutputError> {
     write_rows(&mut out, job).and_then(|()| out.flush()).map_err(OutputError::at(path))
 }
 
+/// What a fault's log shows of the run: ticks before it,
+const BEFORE_FAULT: usize = 200;
+/// and after it.
+const AFTER_FAULT: usize = 100;
+
+/// Writes `fault.csv`, the rows about the tick in which the last lap's fault was seen; where there was none, a log that an
+/// earlier job left under this name is removed.
+pub(super) fn write_fault(path: &Path, job: &Job<'_>) -> Result<(), OutputError> {
+    let Some(at) = job.run.ticks.iter().position(|tick| tick.telemetry.fault.is_some()) else {
+        return match std::fs::remove_file(path) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(OutputError::at(path)(e)),
+            _ => Ok(()),
+        };
+    };
+    let from = at.saturating_sub(BEFORE_FAULT);
+    let mut text = format!("{HEADER}\n").into_bytes();
+    for sample in samples(job.plan, job.run).skip(from).take(at - from + AFTER_FAULT + 1) {
+        row(&mut text, &sample);
+        text.pop(); // the last comma
+        text.push(b'\n');
+    }
+    std::fs::write(path, text).map_err(OutputError::at(path))
+}
+
 fn write_rows(out: &mut impl Write, job: &Job<'_>) -> std::io::Result<()> {
     let laps = job.earlier_laps.iter().chain([job.run]);
     let numbered = !job.earlier_laps.is_empty();
@@ -191,6 +215,32 @@ mod tests {
         let rows: Vec<_> = lines.collect();
         assert_eq!(rows.len(), fixture.run.ticks.len());
         assert!(rows.iter().all(|row| row.split(',').count() == columns));
+    }
+
+    #[test]
+    fn the_ticks_about_a_fault_have_their_own_file() {
+        let dir = std::env::temp_dir().join(format!("tracelight-fault-{}", std::process::id()));
+        std::fs::create_dir_all(&dir).unwrap();
+        let path = dir.join("fault.csv");
+        let mut fixture = fixture::star();
+        for tick in fixture.run.ticks.iter_mut().skip(300) {
+            tick.telemetry.fault = Some(tracelight_rig::Fault::EncoderDead);
+        }
+        write_fault(&path, &fixture.job()).unwrap();
+        let written = std::fs::read_to_string(&path).unwrap();
+        let rows: Vec<&str> = written.lines().collect();
+        assert_eq!(rows.len(), 1 + 200 + 1 + 100);
+        assert!(
+            rows[1].starts_with("0.100,") && rows[301].starts_with("0.400,"),
+            "{} {}",
+            rows[1],
+            rows[301]
+        );
+        let whole = text(&fixture.job());
+        assert!(whole.contains(&written[written.find('\n').unwrap()..]), "the same rows");
+        write_fault(&path, &fixture::star().job()).unwrap();
+        assert!(!path.exists(), "no fault, no log of one");
+        std::fs::remove_dir_all(dir).unwrap();
     }
 
     #[test]

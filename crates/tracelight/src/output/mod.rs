@@ -5,7 +5,7 @@
 //! | file | written by |
 //! |---|---|
 //! | `summary.json`, `--json` | [`Summary`] |
-//! | `trace.csv` | [`csv`] |
+//! | `trace.csv`, `fault.csv` | [`csv`] |
 //! | `run.mcap` | [`LogWriter`], tick by tick while the run goes on |
 //! | `trace.png` | [`painting`] |
 //! | `report.html` | [`report`] |
@@ -197,14 +197,17 @@ impl Picture<'_> {
 /// Chords of shown strokes stay this close to them, m: a tenth of a millimetre is under a pixel everywhere.
 const DISPLAY_TOLERANCE_M: f64 = 1e-4;
 
-/// Writes `trace.csv`, `trace.png`, `report.html` and `summary.json` into `dir`, which is made if missing.
+/// Writes `trace.csv`, after a fault `fault.csv`, `trace.png`, `report.html` and `summary.json` into `dir`, which is made if missing.
 ///
 /// Returns the figures as they stand in `summary.json`, the time this took included. The run log and
 /// `strokes.svg` are not written here: the one exists before, the other is a drawing format's.
 pub(crate) fn write_all(dir: &Path, job: &Job<'_>) -> Result<Summary, OutputError> {
     let began = Instant::now();
     std::fs::create_dir_all(dir).map_err(OutputError::at(dir))?;
-    let table = || csv::write(&dir.join("trace.csv"), job);
+    let table = || {
+        csv::write_fault(&dir.join("fault.csv"), job)?;
+        csv::write(&dir.join("trace.csv"), job)
+    };
     let pictures = || {
         let wall = painting::paint(job);
         painting::write(&dir.join("trace.png"), &wall)?;
