@@ -64,10 +64,10 @@ fn every_example_is_drawn_true_to_the_picture() {
             precision * 100.0,
             length_ratio
         );
-        let good = figure(&summary, "rms_mm") <= 0.25
-            && figure(&summary, "max_mm") <= 1.4
+        let good = figure(&summary, "rms_mm") <= 0.06
+            && figure(&summary, "max_mm") <= 0.4
             && figure(&summary, "overshoot_percent") <= 0.5
-            && figure(&summary, "final_error_mm") <= 0.25
+            && figure(&summary, "final_error_mm") <= 0.1
             && rms <= 0.6e-3
             && coverage >= 0.995
             && precision >= 0.995

@@ -165,7 +165,10 @@ fn check_page(name: &str, commands: usize) {
     let mut renewed = blocks.next().unwrap().to_owned();
     for block in blocks {
         let (command, rest) = block.split_once('\n').unwrap();
+        // a command that nothing stands below yet ends its block
+        let rest = format!("\n{rest}");
         let (shown, after) = rest.split_once("\n```").unwrap();
+        let shown = shown.trim_start_matches('\n');
         let output = run(&command.split(' ').collect::<Vec<_>>());
         let printed = String::from_utf8(output.stdout).unwrap();
         renewed += &format!("{BEGIN}{command}\n{}\n```{after}", printed.trim_end());
@@ -181,6 +184,16 @@ fn check_page(name: &str, commands: usize) {
 #[test]
 fn the_page_on_moves_shows_what_its_commands_print() {
     check_page("moves.md", 5);
+}
+
+#[test]
+fn the_page_on_tracking_shows_what_its_commands_print() {
+    check_page("tracking.md", 6);
+}
+
+#[test]
+fn the_page_on_velocity_shows_what_its_commands_print() {
+    check_page("velocity.md", 2);
 }
 
 #[test]
