@@ -30,6 +30,9 @@ pub struct AxisConfig {
     pub count_rad: f32,
     /// Friction as it is believed to be.
     pub friction: FrictionModel,
+    /// Torque by which the model may be wrong, N m: what the Kalman filter's deviations are shares of. The joint's Coulomb
+    /// friction, where it has any to speak of.
+    pub unknown_nm: f32,
     /// How counts become position and velocity.
     pub observer: ObserverConfig,
     /// How they become torque.

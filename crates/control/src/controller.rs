@@ -74,15 +74,20 @@ impl Controller {
     }
 
     fn arm(&self, state: &mut State) {
-        if let Some(fault) = state.supervisor.fault {
-            if fault.leaves_motors_blind() {
+        if !state.supervisor.may_arm() {
+            return;
+        }
+        if state.supervisor.fault.is_some() {
+            if state.supervisor.blind {
                 // what was believed is not worth keeping
                 state.servo = Servo::anew(&self.config, &state.sensed.encoders);
             }
             state.watch.rearm(&state.sensed, state.servo.estimates());
             state.way_back = None;
         }
-        state.player.reopen();
+        if state.supervisor.phase != Phase::Tracing {
+            state.player.reopen();
+        }
         state.supervisor.arm();
     }
 
@@ -107,6 +112,7 @@ impl Controller {
         let darkness = state.supervisor.darkness(&self.config, &situation);
         let gate = darkness.is_empty();
         state.watch.light(gate);
+        state.supervisor.tell();
         let telemetry = Telemetry {
             tick: state.tick,
             plan_tick: state.player.plan_tick(),
@@ -145,6 +151,7 @@ impl Controller {
             rate_rad_s: state.servo.estimates().map(|estimate| estimate.velocity_rad_s),
             error_rad: PanTilt::from_fn(|j| played.setpoint[j].position_rad - position_rad[j]),
             doubtful: state.watch.is_doubtful(),
+            light_due: state.player.light_is_due(self.config.laser_on_ticks),
             begun: state.player.has_begun(),
             starved: state.player.is_empty() && !state.player.is_done(),
             done: state.player.is_done(),
@@ -154,8 +161,11 @@ impl Controller {
     /// Volts for this tick; none when there is nothing to control by.
     fn drive(&self, state: &mut State, played: &Played) -> PanTilt<f32> {
         let reference = self.reference(state, played);
-        if state.supervisor.fault.is_some_and(Fault::leaves_motors_blind) {
-            return state.servo.coast();
+        if state.supervisor.blind {
+            let none = state.servo.coast();
+            // a motor cools meanwhile; what it still is too hot for is known
+            let _ = state.watch.drive(&self.config, &none);
+            return none;
         }
         let volts = state.servo.drive(&self.config, &reference);
         let unsound = (!state.servo.is_sound()).then_some(Fault::NotANumber);
@@ -170,7 +180,9 @@ impl Controller {
     fn reference(&self, state: &mut State, played: &Played) -> Reference {
         let stands = match state.supervisor.phase {
             Phase::Holding | Phase::Faulted => true,
-            Phase::Dark | Phase::Armed => state.player.has_begun() && played.segment.is_some(),
+            Phase::Dark | Phase::Armed => {
+                state.way_back.is_some() || (state.player.has_begun() && played.segment.is_some())
+            }
             Phase::Tracing | Phase::Done => false,
         };
         if !stands {
@@ -192,7 +204,7 @@ impl Controller {
 fn run_clock(player: &mut Player, clock: Clock) {
     match clock {
         Clock::Run => player.advance(),
-        Clock::Stop => player.hold(),
+        Clock::Stop => player.hold_if_started(),
         Clock::Wait => {}
     }
 }

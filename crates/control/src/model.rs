@@ -96,11 +96,11 @@ impl FrictionModel {
         }
     }
 
-    /// The same with `excess_nm` more Coulomb friction either way.
+    /// The same with `excess_nm` more Coulomb friction either way, or less, but never one that drives.
     pub(crate) fn with_excess(&self, excess_nm: f32) -> Self {
         Self {
-            coulomb_pos_nm: self.coulomb_pos_nm + excess_nm,
-            coulomb_neg_nm: self.coulomb_neg_nm - excess_nm,
+            coulomb_pos_nm: (self.coulomb_pos_nm + excess_nm).max(0.0),
+            coulomb_neg_nm: (self.coulomb_neg_nm - excess_nm).min(0.0),
             ..*self
         }
     }
@@ -113,10 +113,5 @@ impl FrictionModel {
         } else {
             self.viscous_neg * rate_rad_s - share * self.coulomb_neg_nm
         }
-    }
-
-    /// The larger of the two Coulomb levels, N m.
-    pub(crate) fn coulomb_nm(&self) -> f32 {
-        self.coulomb_pos_nm.max(-self.coulomb_neg_nm)
     }
 }

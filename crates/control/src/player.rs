@@ -27,6 +27,8 @@ pub(crate) struct Player {
     rate: f32,
     /// Change of `rate`, 1/s.
     rate_slope: f32,
+    /// Plan tick in which the gate rose that is open now.
+    gate_rose: Option<u32>,
     /// Where the joints rest while there is nothing to play.
     rest: PanTilt<Setpoint>,
     /// End of the newest segment: tick, and position.
@@ -54,6 +56,7 @@ impl Player {
             fraction: 0.0,
             rate: 1.0,
             rate_slope: 0.0,
+            gate_rose: None,
             rest: position_rad.map(at_rest),
             end: None,
         }
@@ -80,6 +83,7 @@ impl Player {
         }
         self.queue[(self.head + self.length) % QUEUE_LENGTH] = Some(segment);
         self.length += 1;
+        self.watch_gate();
         let end = segment.sample(f32::from(segment.ticks)).map(|s| s.position_rad);
         self.end = Some((segment.end_tick(), end));
         true
@@ -108,6 +112,14 @@ impl Player {
 
     pub(crate) const fn plan_tick(&self) -> u32 {
         self.tick
+    }
+
+    /// Whether light that follows the gate after `delay_ticks` falls where it is wanted. A plan's gate rises that much before its
+    /// stroke; a clock that gets under way from within that lead is too slow for it, and the gate has to wait.
+    pub(crate) fn light_is_due(&self, delay_ticks: u32) -> bool {
+        let Some(rose) = self.gate_rose else { return true };
+        let since = (self.tick - rose) as f32 + self.fraction;
+        since + self.rate * delay_ticks as f32 >= delay_ticks as f32
     }
 
     /// Nothing left to play and nothing to come.
@@ -173,9 +185,10 @@ impl Player {
         // back on whole ticks once at full speed would jump; the fraction simply stays
         if self.fraction >= 1.0 {
             self.fraction -= 1.0;
-            self.tick += 1;
+            self.tick = self.tick.saturating_add(1);
         }
         self.drop_passed();
+        self.watch_gate();
     }
 
     /// Speed of the faster joint where the plan stands, rad/s.
@@ -195,6 +208,13 @@ impl Player {
             self.head = (self.head + 1) % QUEUE_LENGTH;
             self.length -= 1;
         }
+    }
+
+    fn watch_gate(&mut self) {
+        self.gate_rose = match self.current() {
+            Some(segment) if segment.gate => self.gate_rose.or(Some(segment.start_tick)),
+            _ => None,
+        };
     }
 
     fn current(&self) -> Option<Segment> {

@@ -6,6 +6,8 @@ use crate::Config;
 const RETURN_SHARE: f32 = 0.25;
 /// Speed below which it counts as at rest there, rad/s.
 const RETURN_RATE_RAD_S: f32 = 0.02;
+/// Ticks without a hold after which the next one is another.
+const CALM_TICKS: u32 = 500;
 /// Distance in tolerances at which a head is lost on its way in the dark, too.
 const LOST_TOLERANCES: f32 = 10.0;
 /// How long it must stay there, ticks: four time constants of the default loop are 67.
@@ -16,7 +18,13 @@ const RETURN_TICKS: u32 = 60;
 pub(crate) struct Supervisor {
     pub(crate) phase: Phase,
     pub(crate) fault: Option<Fault>,
+    /// A fault, the first or a later one, left nothing to control the motors by.
+    pub(crate) blind: bool,
+    /// The fault stood in a telemetry: whoever arms can have seen it.
+    told: bool,
     held_ticks: u32,
+    /// Since the last hold.
+    calm_ticks: u32,
     settled_ticks: u32,
 }
 
@@ -29,6 +37,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) error_rad: PanTilt<f32>,
     /// An encoder shows nothing where it should.
     pub(crate) doubtful: bool,
+    /// What the gate lets through now falls where the plan wants light, however slowly its clock runs.
+    pub(crate) light_due: bool,
     /// The plan's clock has left its start.
     pub(crate) begun: bool,
     /// Segments ran out and more were promised.
@@ -49,17 +59,28 @@ pub(crate) enum Clock {
 }
 
 impl Supervisor {
-    /// Latches a fault; the first one stays.
+    /// Latches a fault; the first one stays, and what any of them means for the motors.
     pub(crate) fn trip(&mut self, fault: Fault) {
+        self.told &= self.fault.is_some();
         self.fault = self.fault.or(Some(fault));
+        self.blind |= fault.leaves_motors_blind();
         self.phase = Phase::Faulted;
+    }
+
+    /// The fault, if any, goes out with this tick's telemetry.
+    pub(crate) const fn tell(&mut self) {
+        self.told = self.fault.is_some();
+    }
+
+    /// Whether arming means something now: a fault nobody was told of yet stays.
+    pub(crate) const fn may_arm(&self) -> bool {
+        self.fault.is_none() || self.told
     }
 
     /// Allows light; a fault is forgotten.
     pub(crate) fn arm(&mut self) {
-        if matches!(self.phase, Phase::Dark | Phase::Faulted) {
-            self.phase = Phase::Armed;
-            self.fault = None;
+        if matches!(self.phase, Phase::Dark | Phase::Done | Phase::Faulted) {
+            *self = Self { phase: Phase::Armed, ..Self::default() };
         }
     }
 
@@ -75,13 +96,14 @@ impl Supervisor {
             self.trip(Fault::LimitReached);
         }
         match self.phase {
-            // a job that was disarmed on its way goes on only from where it stopped
-            Phase::Armed if at.segment.is_some() && at.begun => self.begin_hold(),
+            // a job that was disarmed on its way goes on only from where it stopped, a new one from where it begins
+            Phase::Armed if at.segment.is_some() && (at.begun || strayed(at)) => self.begin_hold(),
             Phase::Armed if at.segment.is_some() => self.phase = Phase::Tracing,
             Phase::Tracing if at.done => self.phase = Phase::Done,
             Phase::Tracing if at.starved => self.trip(Fault::SetpointsStale),
             Phase::Tracing if must_hold(at) => self.begin_hold(),
             Phase::Holding => self.hold(config, at),
+            Phase::Tracing => self.calm(),
             _ => {}
         }
         match self.phase {
@@ -93,12 +115,20 @@ impl Supervisor {
 
     fn begin_hold(&mut self) {
         self.phase = Phase::Holding;
-        self.held_ticks = 0;
+        self.calm_ticks = 0;
         self.settled_ticks = 0;
     }
 
+    /// Holds that follow each other soon are one: what comes back again and again does not get its time anew.
+    const fn calm(&mut self) {
+        self.calm_ticks = self.calm_ticks.saturating_add(1);
+        if self.calm_ticks > CALM_TICKS {
+            self.held_ticks = 0;
+        }
+    }
+
     fn hold(&mut self, config: &Config, at: &Situation<'_>) {
-        self.held_ticks += 1;
+        self.held_ticks = self.held_ticks.saturating_add(1);
         self.settled_ticks = if returned(at) { self.settled_ticks + 1 } else { 0 };
         if self.settled_ticks >= RETURN_TICKS {
             self.phase = Phase::Tracing;
@@ -116,7 +146,7 @@ impl Supervisor {
         reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);
         reasons.insert_if(strayed(at), Darkness::SpotError);
         reasons.insert_if(at.doubtful, Darkness::Doubtful);
-        reasons.insert_if(self.phase == Phase::Holding, Darkness::Holding);
+        reasons.insert_if(self.phase == Phase::Holding || !at.light_due, Darkness::Holding);
         let asked = at.setpoint.map(|s| s.position_rad);
         reasons.insert_if(out_of_range(config, asked), Darkness::OutOfBounds);
         let idle = matches!(self.phase, Phase::Armed | Phase::Done);
@@ -165,5 +195,5 @@ fn exceeds(value: f32, bound: f32) -> bool {
 
 fn returned(at: &Situation<'_>) -> bool {
     let still = at.rate_rad_s.pan.abs().max(at.rate_rad_s.tilt.abs()) < RETURN_RATE_RAD_S;
-    still && spot_error(at) < RETURN_SHARE
+    still && !at.doubtful && spot_error(at) < RETURN_SHARE
 }

@@ -18,6 +18,7 @@ fn axis(observer: ObserverConfig) -> AxisConfig {
         limit_v: 10.0,
         count_rad: COUNT_RAD as f32,
         friction: FrictionModel::default(),
+        unknown_nm: 0.03,
         observer,
         law: LawConfig { feedback: Feedback::Pid(Pid::proportional(1.0)), feedforward: Feedforward::None },
         rating: MotorRating { continuous_share: 1.0, heating_s: 60.0 },
@@ -131,6 +132,7 @@ fn acceleration_is_found_too() {
 fn what_differs_from_the_model_is_learned() {
     let mut axis = axis(ObserverConfig::Kalman(KalmanTuning::LEARNING));
     axis.friction = FrictionModel { coulomb_pos_nm: 0.05, coulomb_neg_nm: -0.05, ..FrictionModel::default() };
+    axis.unknown_nm = 0.05;
     let (coulomb, inertia) = (0.056, 1.04 * INERTIA);
     let mut state = Observer::begin(&axis, &Measurement::default(), 1e-3);
     let (mut angle, mut rate) = (0.0f64, 0.0f64);

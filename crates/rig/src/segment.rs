@@ -63,7 +63,7 @@ fn evaluate(c: &[f32; 6], n: f32) -> Setpoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Allow light. Without it every gate stays shut. After a fault it is forgotten, the head goes back to where its job
-    /// stopped, and on from there.
+    /// stopped, and on from there. Counts are believed as they are: after a fault of an encoder the head must be homed first.
     Arm,
     /// Forbid light and stop the plan's clock; the head is held where that stands. Armed again, the job goes on from
     /// there; after its end, a new one may begin at tick 0.

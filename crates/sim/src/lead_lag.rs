@@ -45,17 +45,14 @@ impl LeadLagDesign {
     /// Tustin's rule, s = (2/T)(1 − z⁻¹)/(1 + z⁻¹), for the controller's tick.
     pub(crate) fn discretize(&self) -> LeadLag {
         let rate = 2.0 / TICK_F64_S;
-        // (s + c) = ((rate + c) + (c − rate) z⁻¹) / (1 + z⁻¹); the denominators cancel
-        let product = |[a, b]: [f64; 2]| {
-            let ((a0, a1), (b0, b1)) = ((rate + a, a - rate), (rate + b, b - rate));
-            [a0 * b0, a0 * b1 + a1 * b0, a1 * b1]
+        // (s + z) / (s + p) = ((rate + z) + (z − rate) z⁻¹) / ((rate + p) + (p − rate) z⁻¹); a section each, since `f32` has
+        // no digits for a slow pole beside a fast one
+        let section = |gain: f64, zero: f64, pole: f64| Biquad {
+            numerator: [gain * (rate + zero) / (rate + pole), gain * (zero - rate) / (rate + pole), 0.0]
+                .map(|b| b as f32),
+            denominator: [((pole - rate) / (rate + pole)) as f32, 0.0],
         };
-        let (numerator, denominator) = (product(self.zeros), product(self.poles));
-        let first = denominator[0];
-        let section = Biquad {
-            numerator: numerator.map(|b| (self.gain * b / first) as f32),
-            denominator: [denominator[1] / first, denominator[2] / first].map(|a| a as f32),
-        };
-        LeadLag { sections: [section, Biquad::PASS] }
+        let [first, second] = [0, 1].map(|i| (self.zeros[i], self.poles[i]));
+        LeadLag { sections: [section(self.gain, first.0, first.1), section(1.0, second.0, second.1)] }
     }
 }

@@ -115,7 +115,7 @@ fn check(case: &Case, config: &RigConfig) {
 fn a_jump_of_the_count_is_seen_in_the_next_tick() {
     let mischief: Mischief = |rig, j, since| {
         if since == 0 {
-            rig.suffer(Trouble::EncoderJump(j, 6));
+            rig.suffer(Trouble::EncoderJump(j, 3));
         }
     };
     let faults = &[Fault::EncoderJumped];
@@ -363,4 +363,79 @@ fn after_a_fault_only_arming_lights_again_and_no_ink_is_missing() {
         let far = ticks.iter().filter(|t| t.light).map(off_mm).fold(0.0, f64::max);
         assert!(far < 3.0, "seed {seed}: light {far} mm off");
     }
+}
+
+/// A head that strays on its way in the dark is waited for where the gate rises, some milliseconds before its stroke; the
+/// clock gets under way slowly, and light must not fall before the stroke all the same.
+#[test]
+fn after_a_hold_at_a_strokes_start_light_falls_on_the_stroke() {
+    let mut config = RigConfig::report();
+    config.control.tolerance_m = 0.8e-3;
+    config.truth.model.bodies.rotor_kg_m2 = PanTilt::new(0.09, 0.09);
+    let plan = plan_of(&config, shapes::star(0.2));
+    let (mut holds, mut early) = (0, 0);
+    for seed in 0..20 {
+        let ticks = run_with(&config, &plan, |_, _, _| {}, seed);
+        holds += ticks.windows(2).filter(|w| w[1].telemetry.phase == Phase::Holding && w[0] != w[1]).count();
+        let dark = |t: &Tick| !plan.points[(t.telemetry.plan_tick as usize).min(plan.points.len() - 1)].lit;
+        early += ticks.iter().filter(|t| t.light && dark(t)).count();
+    }
+    assert!(holds > 0, "nothing to see: it never strayed");
+    assert!(early <= 40, "{early} lit ticks where the plan is dark");
+}
+
+/// The first fault names what stopped the job; one that comes after it may still leave nothing to control by.
+#[test]
+fn an_encoder_that_jumps_after_another_fault_still_gets_its_motor_switched_off() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, circle(0.2));
+    for seed in 0..10 {
+        let (when, joint) = moment(&plan, seed);
+        let mut rig = SimulatedRig::new(&config, POSE, seed);
+        rig.send(Command::Arm).unwrap();
+        let mut feeder = tracelight_sim::Feeder::new(&plan.segments, false);
+        let mut last = None;
+        for number in 0..when + 800 {
+            if number < when {
+                rig.send(Command::KeepAlive).unwrap();
+                feeder.feed(&mut rig);
+            }
+            if number == when + 300 {
+                rig.suffer(Trouble::EncoderJump(joint, 40));
+            }
+            last = Some(rig.step());
+        }
+        let seen = last.unwrap().telemetry;
+        assert_eq!(seen.fault, Some(Fault::HostLost), "seed {seed}");
+        assert_eq!(seen.actuation.command_v, PanTilt::default(), "seed {seed}");
+    }
+}
+
+/// Nobody can have meant to forget a fault that no telemetry has shown yet.
+#[test]
+fn arming_does_not_forget_a_fault_that_was_not_told() {
+    let plan = plan_of(&RigConfig::report(), circle(0.2));
+    let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
+    rig.send(Command::Arm).unwrap();
+    rig.send(Command::Append(Segment { ticks: 0, ..plan.segments[0] })).unwrap();
+    rig.send(Command::Arm).unwrap();
+    assert_eq!(rig.step().telemetry.fault, Some(Fault::SetpointInvalid));
+    rig.send(Command::Arm).unwrap();
+    assert_eq!(rig.step().telemetry.fault, None);
+}
+
+/// Whoever arms and dies is missed as before.
+#[test]
+fn a_host_that_arms_after_a_fault_and_falls_silent_is_missed_again() {
+    let plan = plan_of(&RigConfig::report(), circle(0.2));
+    let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
+    rig.send(Command::Arm).unwrap();
+    rig.send(Command::KeepAlive).unwrap();
+    for &segment in plan.segments.iter().take(40) {
+        rig.send(Command::Append(segment)).unwrap();
+    }
+    let faults = |rig: &mut SimulatedRig| (0..200).map(|_| rig.step()).last().unwrap().telemetry.fault;
+    assert_eq!(faults(&mut rig), Some(Fault::HostLost));
+    rig.send(Command::Arm).unwrap();
+    assert_eq!(faults(&mut rig), Some(Fault::HostLost));
 }

@@ -81,7 +81,7 @@ fn check_reach(placed: &Placed, driving: &Driving) -> Result<(), Failure> {
 }
 
 /// A speed that is asked for and reached nowhere is refused; slowing down here and there is no error.
-fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
+pub(crate) fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
     let (asked, best) = (plan.set_speed_m_s, plan.top_speed_m_s());
     if !driving.speed_is_asked || best >= REACHED * asked {
         return Ok(());

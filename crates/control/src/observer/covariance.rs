@@ -1,5 +1,7 @@
 use tracelight_rig::TICK_S;
 
+use crate::limit::within;
+
 /// Number of quantities a [`Kalman`](super::kalman::Kalman) filter estimates.
 pub(super) const STATES: usize = 6;
 
@@ -72,8 +74,10 @@ impl Covariance {
     /// push says nothing of it.
     pub(super) fn expect(&mut self, innovation: f32, age_s: f32, variance: f32) {
         const MOST: f32 = 1e4;
+        // a radian: what is further off is no surprise but a lost joint, and must not make the numbers run out
+        const FURTHEST: f32 = 1.0;
         let own = self.variance_of_place(age_s);
-        let needed = innovation * innovation / DEVIATIONS_SQUARED - variance;
+        let needed = (innovation * innovation / DEVIATIONS_SQUARED - variance).min(FURTHEST);
         if needed > own && own > 0.0 {
             let by = libm::sqrtf((needed / own).min(MOST));
             for (i, line) in self.0.iter_mut().enumerate() {
@@ -96,24 +100,40 @@ impl Covariance {
         pp - 2.0 * age_s * pv + age_s * age_s * vv
     }
 
-    /// Gains for a measurement of where the joint was `age_s` ago (H = [1 −age 0 …]), and P ← (I − KH) P. While it is
-    /// `pushed` nothing is learned of what the head is made of (a consider filter; Schmidt 1966).
+    /// Gains for a measurement of where the joint was `age_s` ago (H = [1 −age 0 …]), and P after it, in Joseph's form,
+    /// (I − KH) P (I − KH)ᵀ + K R Kᵀ, which is a covariance whatever the gain. While the joint is `pushed` nothing is
+    /// learned of what the head is made of: its gains are zero, its uncertainty stays (a consider filter; Schmidt 1966).
     pub(super) fn update(&mut self, age_s: f32, variance: f32, pushed: bool) -> Row {
         let seen = self.0.map(|line| line[POSITION] - age_s * line[VELOCITY]);
         let innovation = seen[POSITION] - age_s * seen[VELOCITY] + variance;
-        let gain = seen.map(|entry| entry / innovation);
-        let learns = |i: usize| i <= LOAD || !pushed;
-        for (i, line) in self.0.iter_mut().enumerate() {
-            for (j, (entry, other)) in line.iter_mut().zip(seen).enumerate() {
-                *entry -= if learns(i) || learns(j) { gain[i] * other } else { 0.0 };
-            }
-            // rounding must not make a variance negative
-            line[i] = line[i].max(0.0);
-        }
-        let mut applied = gain;
-        for entry in applied.iter_mut().skip(LOAD + 1) {
+        let mut gain = seen.map(|entry| entry / innovation);
+        for entry in gain.iter_mut().skip(LOAD + 1) {
             *entry = if pushed { 0.0 } else { *entry };
         }
-        applied
+        for (i, line) in self.0.iter_mut().enumerate() {
+            for (j, entry) in line.iter_mut().enumerate() {
+                let (both, crossed) = (gain[i] * gain[j], gain[i] * seen[j] + seen[i] * gain[j]);
+                *entry += innovation * both - crossed;
+            }
+        }
+        self.keep_sound();
+        gain
+    }
+
+    /// Rounding must not make a variance negative, nor two quantities know more of each other than they can.
+    fn keep_sound(&mut self) {
+        const MOST: f32 = 0.9999;
+        let mut deviations = [0.0; STATES];
+        for (i, deviation) in deviations.iter_mut().enumerate() {
+            self.0[i][i] = self.0[i][i].max(0.0);
+            *deviation = libm::sqrtf(self.0[i][i]);
+        }
+        for (i, line) in self.0.iter_mut().enumerate() {
+            for (j, entry) in line.iter_mut().enumerate() {
+                if i != j {
+                    *entry = within(*entry, MOST * deviations[i] * deviations[j]);
+                }
+            }
+        }
     }
 }

@@ -45,7 +45,7 @@ fn break_away_share(velocity_rad_s: f32) -> f32 {
     fall * fall
 }
 
-/// How far the filter trusts model and encoder. Shares are of a joint's Coulomb friction, as the model has it.
+/// How far the filter trusts model and encoder. Shares are of [`AxisConfig::unknown_nm`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KalmanTuning {
     /// Spectral density of accelerations that nothing explains, (rad/s²)²·s.
@@ -141,18 +141,18 @@ pub(super) struct Kalman {
 
 impl Kalman {
     pub(super) fn begin(axis: &AxisConfig, count: i32, speed_rad_s: f32, tuning: KalmanTuning) -> Self {
-        let coulomb = axis.friction.coulomb_nm();
+        let unknown = axis.unknown_nm;
         // anywhere in its count: the deviation of an even distribution
         let anywhere = axis.count_rad / libm::sqrtf(12.0);
         let covariance = Covariance::independent(&[
             anywhere,
             speed_rad_s,
-            tuning.load.deviation * coulomb,
-            tuning.friction.deviation * coulomb,
-            tuning.break_away.1.deviation * coulomb,
+            tuning.load.deviation * unknown,
+            tuning.friction.deviation * unknown,
+            tuning.break_away.1.deviation * unknown,
             tuning.inertia.deviation,
         ]);
-        let learned = Learned { break_away_nm: tuning.break_away.0 * coulomb, ..Learned::default() };
+        let learned = Learned { break_away_nm: tuning.break_away.0 * unknown, ..Learned::default() };
         Self {
             tuning,
             count,
@@ -198,12 +198,12 @@ impl Kalman {
         self.acceleration_rad_s2 = (after - before) / TICK_S;
         self.velocity_rad_s = after;
         self.covariance.predict(&row);
-        self.disturb(axis.friction.coulomb_nm());
+        self.disturb(axis.unknown_nm);
     }
 
-    fn disturb(&mut self, coulomb_nm: f32) {
+    fn disturb(&mut self, unknown_nm: f32) {
         let tuning = &self.tuning;
-        let level = coulomb_nm * coulomb_nm;
+        let level = unknown_nm * unknown_nm;
         let way = TICK_S * self.velocity_rad_s.abs();
         let noise = [
             (VELOCITY, TICK_S * tuning.acceleration_noise),
@@ -276,7 +276,7 @@ impl Kalman {
         let time = self.since_edge_s.max(SHORTEST_S);
         let load_nm = 2.0 * early_rad * self.inertia_kg_m2 / (time * time);
         let far = early_rad > PUSHED_COUNTS * axis.count_rad;
-        let pushed = far && load_nm > PUSHED_SHARE * axis.friction.coulomb_nm();
+        let pushed = far && load_nm > PUSHED_SHARE * axis.unknown_nm;
         if pushed {
             self.covariance.suspect_load(within(load_nm, axis.torque_nm_per_v * axis.limit_v));
         }
@@ -296,7 +296,7 @@ impl Kalman {
         let step = self.covariance.update(age_s, variance, pushed).map(|gain| gain * innovation);
         self.offset_rad += step[POSITION];
         self.velocity_rad_s += step[VELOCITY];
-        self.learned.learn(&step, axis.friction.coulomb_nm());
+        self.learned.learn(&step, axis.unknown_nm);
     }
 
     pub(super) fn estimate(&self, count_rad: f32) -> Estimate {
@@ -311,15 +311,15 @@ impl Kalman {
 }
 
 impl Learned {
-    fn learn(&mut self, step: &Row, coulomb_nm: f32) {
+    fn learn(&mut self, step: &Row, unknown_nm: f32) {
         let held = |value: f32, least: f32, most: f32| value.max(least).min(most);
         self.load_nm += step[LOAD];
         self.friction_nm =
-            held(self.friction_nm + step[FRICTION], LEAST_FRICTION * coulomb_nm, MOST_FRICTION * coulomb_nm);
+            held(self.friction_nm + step[FRICTION], LEAST_FRICTION * unknown_nm, MOST_FRICTION * unknown_nm);
         self.break_away_nm = held(
             self.break_away_nm + step[BREAK_AWAY],
-            LEAST_BREAK_AWAY * coulomb_nm,
-            MOST_BREAK_AWAY * coulomb_nm,
+            LEAST_BREAK_AWAY * unknown_nm,
+            MOST_BREAK_AWAY * unknown_nm,
         );
         self.inertia_share = within(self.inertia_share + step[INERTIA], MOST_INERTIA);
     }

@@ -12,8 +12,9 @@ const DOUBT_COUNTS: f32 = 4.0;
 /// and how long it may be so before it is taken for dead, ticks: somebody who holds the head looks the same.
 const DOUBT_TICKS: u32 = 20;
 /// Counts beside where the joint can be that mean it jumped: a kick that moves a joint by one count within a tick
-/// gives it 3000 rad/s², and breaks it.
-const JUMP_COUNTS: f32 = 3.0;
+/// gives it 3000 rad/s², and breaks it. An observer that knows no more than the count is half a count off by itself, and
+/// noise of a count either way is not a jump. A jump of three counts is always seen, of two if the joint was near an edge.
+const JUMP_COUNTS: f32 = 1.5;
 /// Counts beside it that are a surprise: an observer that knows no more than the count is half a count off at every edge.
 const SURPRISE_COUNTS: f32 = 0.6;
 /// Surprises back and forth together that mean noise, counts; what was is forgotten by a share of a 50th a tick. Whoever
@@ -101,7 +102,7 @@ impl EncoderWatch {
     }
 
     fn doubt(&mut self, axis: &AxisConfig, effort: &Effort, estimate: &Estimate, moved: i32) {
-        let threshold = BREAK_AWAY_MARGIN * axis.friction.coulomb_nm();
+        let threshold = BREAK_AWAY_MARGIN * axis.unknown_nm;
         if moved != 0 {
             self.expected.begin(moved, estimate, axis.count_rad);
         }
@@ -109,7 +110,7 @@ impl EncoderWatch {
         let net = beyond(drive, threshold);
         self.expected.tick(net / effort.inertia_kg_m2, threshold / effort.inertia_kg_m2);
         let missing = self.expected.travel_rad.abs() > DOUBT_COUNTS * axis.count_rad;
-        self.doubtful_ticks = if missing { self.doubtful_ticks + 1 } else { 0 };
+        self.doubtful_ticks = if missing { self.doubtful_ticks.saturating_add(1) } else { 0 };
     }
 
     fn slips(&mut self, axis: &AxisConfig, estimate: &Estimate) -> bool {
@@ -117,8 +118,11 @@ impl EncoderWatch {
         let strange = inertia_share.abs() > SLIP_INERTIA * MOST_INERTIA
             || load_nm.abs() > SLIP_LOAD * axis.torque_nm_per_v * axis.limit_v;
         self.is_strange = strange;
-        self.slipping_ticks =
-            if strange { self.slipping_ticks + 1 } else { self.slipping_ticks.saturating_sub(1) };
+        self.slipping_ticks = if strange {
+            self.slipping_ticks.saturating_add(1)
+        } else {
+            self.slipping_ticks.saturating_sub(1)
+        };
         self.slipping_ticks > SLIP_TICKS
     }
 

@@ -57,7 +57,9 @@ impl Watch {
 
     /// What a tick's senses show, if anything.
     pub(crate) fn sense(&mut self, config: &Config, servo: &Servo, sensed: &Sensed) -> Option<Fault> {
-        if !Joint::BOTH.iter().all(|&j| servo.estimates()[j].is_finite()) {
+        let stamped =
+            |j: Joint| sensed.encoders[j].edge_age_ticks.is_none_or(|age| (0.0..1.0).contains(&age));
+        if !Joint::BOTH.iter().all(|&j| stamped(j) && servo.estimates()[j].is_finite()) {
             return Some(Fault::NotANumber);
         }
         let encoder = |watch: &mut EncoderWatch, j: Joint| {
@@ -103,7 +105,8 @@ impl Watch {
     pub(crate) fn rearm(&mut self, sensed: &Sensed, estimates: &PanTilt<Estimate>) {
         self.encoders = encoders(sensed, estimates);
         Joint::BOTH.iter().for_each(|&j| self.motors[j].rearm());
-        self.silence_ticks = None;
+        // who has said that it is there must go on saying so
+        self.silence_ticks = self.silence_ticks.map(|_| 0);
     }
 }
 

@@ -10,7 +10,7 @@ pub(crate) fn counted(count: usize, one: &str) -> String {
 pub(crate) const fn fault_words(fault: Fault) -> &'static str {
     match fault {
         Fault::EncoderJumped => {
-            "An encoder's count moved faster than the joint can: look for a loose plug, interference or a slipping disc."
+            "An encoder's count moved faster than the joint can: look for a loose plug, interference or a slipping disc, and home the head before it is armed again."
         }
         Fault::EncoderDead => {
             "The motor was driven but its encoder did not move: look for a broken wire, a slipping disc or a blocked joint."

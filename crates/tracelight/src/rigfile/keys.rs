@@ -289,7 +289,7 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 24] = [
         "share of its amplifier's limit a motor stands for ever",
         |r| &mut r.control.motor_continuous,
     ),
-    real("control.motor_heating", TIMES, (0.1, 1e5), "time constant of a motor's temperature", |r| {
+    real("control.motor_heating", TIMES, (0.1, 3e3), "time constant of a motor's temperature", |r| {
         &mut r.control.motor_heating_s
     }),
     real("motion.torque_share", PURE, (0.05, 0.95), "share of the motors' torque a plan may use", |r| {

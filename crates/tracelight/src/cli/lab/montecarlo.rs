@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
 use tracelight_lab::Quantiles;
-use tracelight_rig::Phase;
+use tracelight_rig::{Fault, Phase};
 use tracelight_sim::{SimulatedRig, Spread, Tracking, score};
 use tracelight_trajectory::Plan;
 
@@ -44,6 +44,7 @@ pub(crate) struct MonteCarloArgs {
 #[derive(Clone, Copy, Debug)]
 struct Trial {
     finished: bool,
+    fault: Option<Fault>,
     /// Ticks it took beyond its plan: it left its stroke and came back.
     late_ticks: usize,
     tracking: Tracking,
@@ -55,7 +56,8 @@ pub(crate) fn run(args: &MonteCarloArgs, stop: &Stop) -> Result<Answer, Failure>
     let trials = run_all(args, &driving, &plan, stop);
     stop.check()?;
     write_all(&args.out, || figure(args, &trials), || Ok(csv(args, &trials)))?;
-    Ok(Answer::new(table(args, &driving, &trials), json(&trials)))
+    let answer = Answer::new(table(args, &driving, &trials), json(&trials));
+    Ok(Answer { failure: failure(&trials), ..answer })
 }
 
 /// Every head, on all cores; what comes out does not depend on how many there are.
@@ -89,6 +91,7 @@ fn trial(driving: &Driving, plan: &Plan, seed: u64) -> Trial {
     let run = tracelight_sim::run(&mut simulated, plan, false, |_, _| ControlFlow::Continue(()));
     Trial {
         finished: run.ticks.last().is_some_and(|tick| tick.telemetry.phase == Phase::Done),
+        fault: run.ticks.last().and_then(|tick| tick.telemetry.fault),
         late_ticks: run.ticks.len().saturating_sub(plan.points.len()),
         tracking: score(plan, &run, plan.set_speed_m_s),
     }
@@ -107,27 +110,50 @@ const FIGURES: [(&str, &str, Value); 6] = [
     ("final_error_mm", "error at rest, mm", |t| t.tracking.final_error_mm),
 ];
 
-fn finished(trials: &[Trial]) -> usize {
-    trials.iter().filter(|trial| trial.finished).count()
+/// Those that drew all of it: the others have no error to speak of.
+fn finished(trials: &[Trial]) -> impl Iterator<Item = &Trial> {
+    trials.iter().filter(|trial| trial.finished)
+}
+
+fn held(trials: &[Trial]) -> usize {
+    finished(trials).filter(|trial| trial.late_ticks > 0).count()
+}
+
+/// What to say of heads that did not finish.
+fn failure(trials: &[Trial]) -> Option<Failure> {
+    let missing = trials.len() - finished(trials).count();
+    let mut names: Vec<&str> = trials
+        .iter()
+        .filter(|trial| !trial.finished)
+        .map(|trial| trial.fault.map_or("held again and again", |fault| fault.code()))
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    let message = format!(
+        "{missing} of {} heads did not finish ({}); their errors are not in the figures",
+        trials.len(),
+        names.join(", ")
+    );
+    (missing > 0).then(|| Failure::failed("unfinished", message))
 }
 
 fn table(args: &MonteCarloArgs, driving: &Driving, trials: &[Trial]) -> String {
     let law = driving.rig.control.law;
-    let held = trials.iter().filter(|trial| trial.late_ticks > 0).count();
     let mut text = format!(
-        "{} on {} heads like {}, law {}: {} finished, {held} left the stroke and came back\n\n{:28} {:>8} {:>8} {:>8}",
+        "{} on {} heads like {}, law {}: {} finished, {} left the stroke and came back\n\n{:28} {:>8} {:>8} {:>8}",
         args.shape.shape,
         trials.len(),
         driving.rig.name,
         law.name(),
-        finished(trials),
+        finished(trials).count(),
+        held(trials),
         "",
         "median",
         "95 %",
         "worst"
     );
     for (_, words, value) in FIGURES {
-        let Quantiles { median, p95, worst } = Quantiles::of(trials.iter().map(value));
+        let Quantiles { median, p95, worst } = Quantiles::of(finished(trials).map(value));
         // writing to a String cannot fail
         let _ = write!(text, "\n{words:28} {median:8.3} {p95:8.3} {worst:8.3}");
     }
@@ -137,11 +163,15 @@ fn table(args: &MonteCarloArgs, driving: &Driving, trials: &[Trial]) -> String {
 fn json(trials: &[Trial]) -> String {
     let mut object = serde_json::json!({
         "plants": trials.len(),
-        "finished": finished(trials),
-        "held": trials.iter().filter(|trial| trial.late_ticks > 0).count(),
+        "finished": finished(trials).count(),
+        "held": held(trials),
     });
     for (name, _, value) in FIGURES {
-        let Quantiles { median, p95, worst } = Quantiles::of(trials.iter().map(value));
+        if finished(trials).next().is_none() {
+            object[name] = serde_json::Value::Null;
+            continue;
+        }
+        let Quantiles { median, p95, worst } = Quantiles::of(finished(trials).map(value));
         object[name] = serde_json::json!({ "median": median, "p95": p95, "worst": worst });
     }
     object.to_string()
@@ -154,7 +184,8 @@ fn csv(args: &MonteCarloArgs, trials: &[Trial]) -> String {
         let _ =
             write!(text, "{},{},{}", args.seed + number as u64, u8::from(trial.finished), trial.late_ticks);
         for (_, _, value) in FIGURES {
-            let _ = write!(text, ",{:.6}", value(trial));
+            let figure = if trial.finished { format!("{:.6}", value(trial)) } else { String::new() };
+            text += &format!(",{figure}");
         }
         text.push('\n');
     }
@@ -163,7 +194,7 @@ fn csv(args: &MonteCarloArgs, trials: &[Trial]) -> String {
 
 fn figure(args: &MonteCarloArgs, trials: &[Trial]) -> Result<String, Failure> {
     let sorted = |colour: Colour, value: Value| {
-        let mut values: Vec<f64> = trials.iter().map(value).collect();
+        let mut values: Vec<f64> = finished(trials).map(value).collect();
         values.sort_by(f64::total_cmp);
         let share = |k: usize| 100.0 * (k + 1) as f64 / values.len() as f64;
         let points = values.iter().enumerate().map(|(k, &v)| (share(k), v)).collect();

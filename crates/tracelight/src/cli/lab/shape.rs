@@ -8,7 +8,7 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::failure::Failure;
 use crate::picture;
-use crate::schedule::{OrderBy, OrderEffort, schedule};
+use crate::schedule::{OrderBy, OrderEffort, check_speed, schedule};
 use crate::sketch::{place, sketch};
 
 /// Radius of the circle, m.
@@ -60,7 +60,9 @@ impl ShapeArgs {
             picture => return plan_picture(picture, driving),
         };
         let drawing = Drawing { strokes: vec![Stroke::new(path)] };
-        Ok(plan(&drawing, &driving.machine, &driving.request)?)
+        let plan = plan(&drawing, &driving.machine, &driving.request)?;
+        check_speed(&plan, driving)?;
+        Ok(plan)
     }
 }
 

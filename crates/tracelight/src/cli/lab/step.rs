@@ -8,7 +8,7 @@ use tracelight_sim::{BenchTick, LawName, ObserverName, RigConfig, StepResponse, 
 use super::{OutFile, out_file, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
-use crate::cli::laws::{law, observer};
+use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::rigfile;
@@ -67,7 +67,8 @@ impl Axis {
 }
 
 fn step(text: &str) -> Result<Angle, String> {
-    const LEAST_RAD: f64 = 1e-5;
+    // less than a count of the original rig shows nothing but where in its count the joint was
+    const LEAST_RAD: f64 = 1.5e-3;
     let angle: Angle = text.parse().map_err(|e| format!("{e}"))?;
     if (LEAST_RAD..=std::f64::consts::PI).contains(&angle.0.abs()) {
         Ok(angle)
@@ -99,11 +100,7 @@ pub(crate) fn run(args: &StepArgs) -> Result<Answer, Failure> {
 
 fn respond(args: &StepArgs, rig: &RigConfig, law: LawName) -> Result<Entry, Failure> {
     let mut rig = rig.clone();
-    if law != rig.control.law {
-        rig.control.observer = None;
-    }
-    rig.control.law = law;
-    rig.control.observer = args.observer.or(rig.control.observer);
+    choose(&mut rig, law, args.observer);
     let joint = args.axis.joint();
     let response = step_response(&rig, joint, args.to.0, args.seed).ok_or_else(|| {
         let message = format!(

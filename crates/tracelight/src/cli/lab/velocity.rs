@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 
 use clap::Args;
 use tracelight_lab::{Peaks, VelocityError, peaks, peaks_seen, velocity_error};
-use tracelight_rig::{Joint, TICK_F64_S};
+use tracelight_rig::{Joint, Phase, TICK_F64_S};
 use tracelight_sim::{ObserverName, Run, SimulatedRig};
 
 use super::shape::ShapeArgs;
@@ -82,6 +82,7 @@ pub(crate) fn run(args: &VelocityArgs, stop: &Stop) -> Result<Answer, Failure> {
     for (number, speed) in args.speeds.iter().enumerate() {
         stop.check()?;
         driving.request.speed_m_s = speed.0;
+        driving.speed_is_asked = true;
         runs.push(draw(args, &driving)?);
         progress.at(number as u64 + 1);
     }
@@ -94,7 +95,19 @@ pub(crate) fn run(args: &VelocityArgs, stop: &Stop) -> Result<Answer, Failure> {
 fn draw(args: &VelocityArgs, driving: &Driving) -> Result<Run, Failure> {
     let plan = args.shape.plan(driving)?;
     let mut rig = SimulatedRig::new(&driving.rig, driving.pose, args.seed);
-    Ok(tracelight_sim::run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(())))
+    let run = tracelight_sim::run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(()));
+    match run.ticks.last().map(|tick| (tick.telemetry.phase, tick.telemetry.fault)) {
+        Some((Phase::Done, _)) => Ok(run),
+        ending => {
+            let fault =
+                ending.and_then(|(_, fault)| fault).map_or("held again and again", |fault| fault.code());
+            let message = format!(
+                "the head did not finish at {:.4} m/s ({fault}), so there is nothing to compare with; choose another --law or speed",
+                driving.request.speed_m_s
+            );
+            Err(Failure::failed("unfinished", message))
+        }
+    }
 }
 
 fn rows(args: &VelocityArgs, driving: &Driving, runs: &[Run], stop: &Stop) -> Result<Vec<Row>, Failure> {
