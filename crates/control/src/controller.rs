@@ -83,7 +83,8 @@ impl Controller {
                 state.servo = Servo::anew(&self.config, &state.sensed.encoders);
             }
             state.watch.rearm(&state.sensed, state.servo.estimates());
-            state.way_back = None;
+            // from wherever it fell to, gently
+            state.way_back = Some(ReturnPath::from(state.servo.estimates()));
         }
         if state.supervisor.phase != Phase::Tracing {
             state.player.reopen();

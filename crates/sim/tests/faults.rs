@@ -439,3 +439,28 @@ fn a_host_that_arms_after_a_fault_and_falls_silent_is_missed_again() {
     rig.send(Command::Arm).unwrap();
     assert_eq!(faults(&mut rig), Some(Fault::HostLost));
 }
+
+/// A head that fell while its motors had no volts comes back gently, also when there is nothing to draw yet.
+#[test]
+fn a_head_that_is_armed_where_it_fell_to_comes_back_without_a_jerk() {
+    let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
+    for _ in 0..50 {
+        rig.step();
+    }
+    rig.suffer(Trouble::EncoderJump(Joint::Pan, 6));
+    let fallen = (0..400).map(|_| rig.step()).last().unwrap();
+    assert!(fallen.telemetry.fault.is_some() && fallen.angle_rad.tilt > 0.05, "{:?}", fallen.angle_rad);
+    rig.suffer(Trouble::EncoderJump(Joint::Pan, -6));
+    // what the line carries now is read at the end of a tick, and seen in the next
+    rig.step();
+    rig.step();
+    rig.send(Command::Arm).unwrap();
+    let back: Vec<Tick> = (0..3000).map(|_| rig.step()).collect();
+    let last = back.last().unwrap();
+    assert_eq!((last.telemetry.phase, last.telemetry.fault), (Phase::Armed, None));
+    assert!(last.angle_rad.tilt.abs() < 2.0 * COUNT_RAD, "{:?}", last.angle_rad);
+    let beyond = back.iter().map(|t| -t.angle_rad.tilt).fold(0.0, f64::max);
+    assert!(beyond < 3.0 * COUNT_RAD, "{beyond} rad past it");
+    let most = back[200..].iter().map(|t| t.telemetry.actuation.command_v.tilt.abs()).fold(0.0, f32::max);
+    assert!(most < 9.0, "{most} V");
+}

@@ -197,6 +197,50 @@ fn the_page_on_velocity_shows_what_its_commands_print() {
 }
 
 #[test]
+fn a_step_says_what_the_contract_promises() {
+    let step = lab(&["step", "--axis", "tilt", "--to", "30deg", "--law", "state,report-zpk"]);
+    let figure = |v: &Value, name: &str| v[name].as_f64().unwrap();
+    assert!(figure(&step, "overshoot_percent") <= 0.1 && figure(&step, "final_error_mm") <= 0.16, "{step}");
+    assert!(figure(&step, "settle_s") <= 0.6 && figure(&step, "final_error_counts") <= 0.12, "{step}");
+    let report = &step["laws"][1];
+    assert_eq!(report["law"], "report-zpk");
+    assert!(
+        figure(report, "overshoot_percent") > 40.0 && report["linear"]["settle_s"].is_number(),
+        "{report}"
+    );
+}
+
+#[test]
+fn many_heads_give_the_same_bytes_however_many_cores_there_are() {
+    let arguments = ["lab", "montecarlo", "--plants", "12", "--shape", "line", "--json"];
+    let all = run(&arguments);
+    assert_eq!(run(&arguments).stdout, all.stdout);
+    // a machine with one core has nothing to compare with
+    let one = std::process::Command::new("taskset")
+        .args(["-c", "0", env!("CARGO_BIN_EXE_tracelight")])
+        .args(arguments)
+        .current_dir(support::root())
+        .output()
+        .unwrap();
+    assert_eq!(String::from_utf8_lossy(&one.stdout), String::from_utf8_lossy(&all.stdout));
+    let figures: Value = serde_json::from_slice(&all.stdout).unwrap();
+    assert_eq!((&figures["plants"], &figures["finished"]), (&12.into(), &12.into()));
+    for figure in ["rms_mm", "max_mm"] {
+        let of = |name: &str| figures[figure][name].as_f64().unwrap();
+        assert!(0.0 < of("median") && of("median") <= of("p95") && of("p95") <= of("worst"), "{figures}");
+    }
+}
+
+/// Heads that did not finish have no error, and are not passed over.
+#[test]
+fn heads_that_fail_are_said_to() {
+    let output = run(&["lab", "montecarlo", "--plants", "2", "--law", "report-zpk", "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let figures: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(figures["rms_mm"].is_null() && figures["error"]["code"] == "unfinished", "{figures}");
+}
+
+#[test]
 fn what_makes_no_sense_is_refused_in_a_sentence() {
     for (arguments, exit, words) in [
         ("profile --distance 180", 2, "no unit"),
@@ -217,6 +261,17 @@ fn what_makes_no_sense_is_refused_in_a_sentence() {
         ("move arc --as-asked --profile optimal", 2, "--as-asked"),
         ("move arc --rig none-such", 2, "none-such"),
         ("move spiral", 2, "spiral"),
+        ("step --to 1mrad", 2, "rad"),
+        ("step --to 0.05deg", 2, "not between"),
+        ("step --axis tilt --to 179deg", 1, "out of its range"),
+        ("step --law pd", 2, "report-pd"),
+        ("step --observer pll", 2, "tracking-loop"),
+        ("velocity --intervals 0.5ms", 2, "whole number of milliseconds"),
+        ("velocity --speeds 100ft/s", 1, "reached nowhere"),
+        ("velocity --law report-zpk", 1, "did not finish"),
+        ("montecarlo --plants 0", 2, "--plants"),
+        ("montecarlo --shape none-such.png", 2, "none-such.png"),
+        ("montecarlo --edge-stamps perhaps", 2, "neither on nor off"),
     ] {
         let arguments: Vec<&str> = std::iter::once("lab").chain(arguments.split(' ')).collect();
         let output = run(&arguments);
