@@ -46,7 +46,7 @@ impl Controller {
             sensed: *sensed,
             servo,
             watch: Watch::new(sensed, servo.estimates()),
-            player: Player::resting_at(servo.estimates().map(|estimate| estimate.position_rad)),
+            player: Player::resting_at(servo.position_rad()),
             supervisor: Supervisor::default(),
             way_back: None,
         }
@@ -59,7 +59,7 @@ impl Controller {
             Command::Arm => self.arm(state),
             Command::Disarm => {
                 state.supervisor.disarm();
-                state.player.hold_if_started();
+                state.player.hold();
             }
             Command::KeepAlive => state.watch.hear(),
             Command::Finish => state.player.finish(),
@@ -144,7 +144,7 @@ impl Controller {
     }
 
     fn situation<'a>(&self, state: &State, played: &'a Played) -> Situation<'a> {
-        let position_rad = state.servo.estimates().map(|estimate| estimate.position_rad);
+        let position_rad = state.servo.position_rad();
         Situation {
             setpoint: &played.setpoint,
             segment: played.segment.as_ref(),
@@ -190,7 +190,7 @@ impl Controller {
             state.way_back = None;
             return Reference { now: played.setpoint, ahead: played.ahead };
         }
-        let position_rad = state.servo.estimates().map(|estimate| estimate.position_rad);
+        let position_rad = state.servo.position_rad();
         let kept = state.way_back.filter(|w| !w.is_lost(&self.config, position_rad));
         let mut way = kept.unwrap_or_else(|| {
             state.servo.forget();
@@ -205,7 +205,7 @@ impl Controller {
 fn run_clock(player: &mut Player, clock: Clock) {
     match clock {
         Clock::Run => player.advance(),
-        Clock::Stop => player.hold_if_started(),
+        Clock::Stop => player.hold(),
         Clock::Wait => {}
     }
 }

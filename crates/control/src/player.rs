@@ -118,8 +118,7 @@ impl Player {
     /// stroke; a clock that gets under way from within that lead is too slow for it, and the gate has to wait.
     pub(crate) fn light_is_due(&self, delay_ticks: u32) -> bool {
         let Some(rose) = self.gate_rose else { return true };
-        let since = (self.tick - rose) as f32 + self.fraction;
-        since + self.rate * delay_ticks as f32 >= delay_ticks as f32
+        self.since(rose) + self.rate * delay_ticks as f32 >= delay_ticks as f32
     }
 
     /// Nothing left to play and nothing to come.
@@ -136,7 +135,7 @@ impl Player {
         let Some(segment) = self.current() else {
             return Played { setpoint: self.rest, ahead: self.rest, segment: None };
         };
-        let elapsed = (self.tick - segment.start_tick) as f32 + self.fraction;
+        let elapsed = self.since(segment.start_tick);
         let later = self.rate + 0.5 * TICK_S * self.rate_slope;
         Played {
             setpoint: self.scaled(segment.sample(elapsed), self.rate),
@@ -154,16 +153,11 @@ impl Player {
         })
     }
 
-    /// Stops the plan's clock on the spot.
+    /// Stops the plan's clock on the spot. One that has not left its start keeps its full speed for it.
     pub(crate) fn hold(&mut self) {
-        self.rate = 0.0;
-        self.rate_slope = 0.0;
-    }
-
-    /// The same for a plan that has begun; one that has not keeps its clock's full speed for its start.
-    pub(crate) fn hold_if_started(&mut self) {
         if self.has_begun() {
-            self.hold();
+            self.rate = 0.0;
+            self.rate_slope = 0.0;
         }
     }
 
@@ -194,7 +188,7 @@ impl Player {
     /// Speed of the faster joint where the plan stands, rad/s.
     fn planned_rad_s(&self) -> f32 {
         let Some(segment) = self.current() else { return 0.0 };
-        let planned = segment.sample((self.tick - segment.start_tick) as f32 + self.fraction);
+        let planned = segment.sample(self.since(segment.start_tick));
         planned.pan.velocity_rad_s.abs().max(planned.tilt.velocity_rad_s.abs())
     }
 
@@ -215,6 +209,11 @@ impl Player {
             Some(segment) if segment.gate => self.gate_rose.or(Some(segment.start_tick)),
             _ => None,
         };
+    }
+
+    /// Plan time since a tick that has begun, ticks.
+    fn since(&self, tick: u32) -> f32 {
+        (self.tick - tick) as f32 + self.fraction
     }
 
     fn current(&self) -> Option<Segment> {

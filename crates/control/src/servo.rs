@@ -57,6 +57,11 @@ impl Servo {
         &self.estimates
     }
 
+    /// Where they are believed to be, rad.
+    pub(crate) fn position_rad(&self) -> PanTilt<f32> {
+        self.estimates.map(|estimate| estimate.position_rad)
+    }
+
     /// Whether the last volts were numbers; those that were none became 0.
     pub const fn is_sound(&self) -> bool {
         self.sound

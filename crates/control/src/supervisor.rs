@@ -6,12 +6,12 @@ use crate::Config;
 const RETURN_SHARE: f32 = 0.25;
 /// Speed below which it counts as at rest there, rad/s.
 const RETURN_RATE_RAD_S: f32 = 0.02;
+/// How long it must stay there, ticks: four time constants of the default loop are 67.
+const RETURN_TICKS: u32 = 60;
 /// Ticks without a hold after which the next one is another.
 const CALM_TICKS: u32 = 500;
 /// Distance in tolerances at which a head is lost on its way in the dark, too.
 const LOST_TOLERANCES: f32 = 10.0;
-/// How long it must stay there, ticks: four time constants of the default loop are 67.
-const RETURN_TICKS: u32 = 60;
 
 /// Where the supervisor stands, and for how long.
 #[derive(Clone, Copy, Debug, Default)]

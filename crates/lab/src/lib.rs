@@ -8,4 +8,4 @@ mod velocity;
 
 pub use statistics::Quantiles;
 pub use step::StepFigures;
-pub use velocity::{Peaks, VelocityError, peaks, peaks_seen, velocity_error};
+pub use velocity::{Peaks, VelocityError, highest, peaks, peaks_seen, velocity_error};

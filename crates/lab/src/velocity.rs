@@ -1,4 +1,4 @@
-use tracelight_rig::{Joint, TICK_F64_S};
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{ObserverName, RigConfig, Run, replay};
 
 /// How far an observer's velocity and acceleration are from the truth while light is on, both joints together.
@@ -12,13 +12,27 @@ pub struct VelocityError {
     pub acceleration_rms_rad_s2: f64,
 }
 
-/// Highest rates a joint had in a run.
+/// Highest velocity and acceleration of a joint, either way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peaks {
     /// rad/s.
     pub velocity_rad_s: f64,
     /// rad/s².
     pub acceleration_rad_s2: f64,
+}
+
+impl Peaks {
+    /// The higher of both, each by itself.
+    fn or_higher(self, other: Self) -> Self {
+        Self {
+            velocity_rad_s: self.velocity_rad_s.max(other.velocity_rad_s),
+            acceleration_rad_s2: self.acceleration_rad_s2.max(other.acceleration_rad_s2),
+        }
+    }
+
+    fn of(velocity_rad_s: f64, acceleration_rad_s2: f64) -> Self {
+        Self { velocity_rad_s: velocity_rad_s.abs(), acceleration_rad_s2: acceleration_rad_s2.abs() }
+    }
 }
 
 /// Ticks over which the true acceleration is taken: over one it would be that of a single substep's friction.
@@ -60,27 +74,31 @@ fn true_acceleration(run: &Run, tick: usize, joint: Joint) -> f64 {
     change / ((to - from) as f64 * TICK_F64_S)
 }
 
-/// Highest velocity and acceleration of a joint that an observer saw in a run.
+/// Highest rates of the joints that an observer saw in a run.
 pub fn peaks_seen(
     rig: &RigConfig,
     run: &Run,
     observer: ObserverName,
     interval_ticks: usize,
-    joint: Joint,
-) -> Peaks {
+) -> PanTilt<Peaks> {
     let believed = replay(rig, &run.ticks, observer.config(interval_ticks));
-    believed.iter().fold(Peaks::default(), |peaks, is| Peaks {
-        velocity_rad_s: peaks.velocity_rad_s.max(f64::from(is[joint].velocity_rad_s.abs())),
-        acceleration_rad_s2: peaks.acceleration_rad_s2.max(f64::from(is[joint].acceleration_rad_s2.abs())),
-    })
+    highest(believed.iter().map(|joints| {
+        joints.map(|is| Peaks::of(f64::from(is.velocity_rad_s), f64::from(is.acceleration_rad_s2)))
+    }))
 }
 
 /// What they truly were.
-pub fn peaks(run: &Run, joint: Joint) -> Peaks {
+pub fn peaks(run: &Run) -> PanTilt<Peaks> {
     let reach = ACCELERATION_TICKS;
     let inner = reach..run.ticks.len().saturating_sub(reach);
-    inner.fold(Peaks::default(), |peaks, k| Peaks {
-        velocity_rad_s: peaks.velocity_rad_s.max(run.ticks[k].rate_rad_s[joint].abs()),
-        acceleration_rad_s2: peaks.acceleration_rad_s2.max(true_acceleration(run, k, joint).abs()),
-    })
+    highest(
+        inner.map(|k| {
+            PanTilt::from_fn(|j| Peaks::of(run.ticks[k].rate_rad_s[j], true_acceleration(run, k, j)))
+        }),
+    )
+}
+
+/// The highest of all.
+pub fn highest(all: impl Iterator<Item = PanTilt<Peaks>>) -> PanTilt<Peaks> {
+    all.fold(PanTilt::default(), |so_far, next| PanTilt::from_fn(|j| so_far[j].or_higher(next[j])))
 }

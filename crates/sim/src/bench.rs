@@ -7,7 +7,7 @@ use crate::linear::LinearHead;
 
 /// Observers and laws on a head, without plan, supervisor and light: what a control engineer puts on the bench.
 #[derive(Clone, Debug)]
-pub struct Bench<H> {
+pub(crate) struct Bench<H> {
     config: Config,
     servo: Servo,
     head: H,
@@ -22,8 +22,6 @@ pub struct BenchTick {
     pub setpoint: PanTilt<Setpoint>,
     /// Where they truly are, rad.
     pub angle_rad: PanTilt<f64>,
-    /// How fast they truly turn, rad/s.
-    pub rate_rad_s: PanTilt<f64>,
     /// What the encoders read.
     pub measured: PanTilt<Measurement>,
     /// What is believed.
@@ -33,27 +31,27 @@ pub struct BenchTick {
 }
 
 /// A simulated head whose truth can be looked at.
-pub trait Truth: Head {
-    /// Joint angles, rad, and their rates, rad/s.
-    fn truth(&self) -> (PanTilt<f64>, PanTilt<f64>);
+pub(crate) trait Truth: Head {
+    /// Joint angles, rad.
+    fn angle_rad(&self) -> PanTilt<f64>;
 }
 
 impl Truth for Plant {
-    fn truth(&self) -> (PanTilt<f64>, PanTilt<f64>) {
-        (self.angle_rad(), self.rate_rad_s())
+    fn angle_rad(&self) -> PanTilt<f64> {
+        Plant::angle_rad(self)
     }
 }
 
 impl Bench<Plant> {
     /// The rig's head as it truly is, at rest at zero.
-    pub fn nonlinear(rig: &RigConfig, seed: u64) -> Self {
+    pub(crate) fn nonlinear(rig: &RigConfig, seed: u64) -> Self {
         Self::new(rig.control_config(), Plant::new(&rig.plant_config(), seed))
     }
 }
 
 impl Bench<LinearHead> {
     /// The same head linearized at rest at `pose_rad`, with an ideal encoder and amplifier; the law is told so.
-    pub fn linear(rig: &RigConfig, pose_rad: PanTilt<f64>) -> Self {
+    pub(crate) fn linear(rig: &RigConfig, pose_rad: PanTilt<f64>) -> Self {
         let head = LinearHead::new(rig, pose_rad);
         Self::new(head.control_config(rig), head)
     }
@@ -66,16 +64,16 @@ impl<H: Truth> Bench<H> {
     }
 
     /// One tick.
-    pub fn step(&mut self, reference: &Reference) -> BenchTick {
+    pub(crate) fn step(&mut self, reference: &Reference) -> BenchTick {
         if self.begun {
             self.servo.observe(&self.config, &self.measured);
         }
         self.begun = true;
-        let (angle_rad, rate_rad_s) = self.head.truth();
+        let angle_rad = self.head.angle_rad();
         let estimates = *self.servo.estimates();
         let command_v = self.servo.drive(&self.config, reference);
         let measured = self.measured;
         self.measured = self.head.exchange(&Actuation { command_v, gate: false }).encoders;
-        BenchTick { setpoint: reference.now, angle_rad, rate_rad_s, measured, estimates, command_v }
+        BenchTick { setpoint: reference.now, angle_rad, measured, estimates, command_v }
     }
 }

@@ -70,6 +70,13 @@ pub struct ControlSettings {
     pub motor_heating_s: f64,
 }
 
+impl ControlSettings {
+    /// The observer that is chosen, or the one the law is meant for.
+    pub fn observer_in_use(&self) -> ObserverName {
+        self.observer.unwrap_or(self.law.observer())
+    }
+}
+
 /// Settings of the planner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionSettings {

@@ -52,7 +52,6 @@ impl RigConfig {
         let (lower, upper) = self.model.geometry.range_rad[joint];
         let margin = RANGE_MARGIN_COUNTS * self.model.encoder.count_rad();
         let control = &self.control;
-        let observer = control.observer.unwrap_or(control.law.observer());
         let mass = self.model.bodies.lumped().mass(0.0);
         let inertia = match joint {
             Joint::Pan => mass.m11,
@@ -66,7 +65,7 @@ impl RigConfig {
             count_rad: self.model.encoder.count_rad() as f32,
             friction: friction_model(&self.model.friction[joint]),
             unknown_nm: coulomb_nm.max(LEAST_UNKNOWN_SHARE * motor.torque_limit_nm()) as f32,
-            observer: observer.config(INTERVAL_TICKS),
+            observer: control.observer_in_use().config(INTERVAL_TICKS),
             law: control.law.config(joint, control.bandwidth_rad_s[joint], inertia),
             rating: MotorRating {
                 continuous_share: control.motor_continuous as f32,

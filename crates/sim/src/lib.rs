@@ -17,14 +17,13 @@ mod spread;
 mod step;
 mod trouble;
 
-pub use bench::{Bench, BenchTick, Truth as BenchTruth};
+pub use bench::BenchTick;
 pub use config::{ControlSettings, Model, MotionSettings, RigConfig, Truth};
 pub use laws::{LawName, ObserverName};
-pub use linear::LinearHead;
 pub use replay::replay;
 pub use run::{Feeder, Run, SimulatedRig, Tick, run};
 pub use score::{Tracking, score};
 pub use spread::Spread;
 pub use step::{StepResponse, step_response};
-pub use tracelight_control::{Estimate, Learned};
+pub use tracelight_control::LONGEST_INTERVAL_TICKS;
 pub use trouble::Trouble;

@@ -14,7 +14,7 @@ const NO_LIMIT_V: f32 = 1e9;
 /// Two joints by themselves, J q̈ + b q̇ + k q = τ: what is left of a head at rest in a pose once Coulomb friction,
 /// quantizer, amplifier's limit and coupling are left out, and the constant part of gravity with them.
 #[derive(Clone, Copy, Debug)]
-pub struct LinearHead {
+pub(crate) struct LinearHead {
     inertia_kg_m2: PanTilt<f64>,
     viscous: PanTilt<f64>,
     stiffness: PanTilt<f64>,
@@ -79,7 +79,7 @@ impl Head for LinearHead {
 }
 
 impl Truth for LinearHead {
-    fn truth(&self) -> (PanTilt<f64>, PanTilt<f64>) {
-        (self.angle_rad, self.rate_rad_s)
+    fn angle_rad(&self) -> PanTilt<f64> {
+        self.angle_rad
     }
 }

@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_control::{Controller, Estimate, State};
 use tracelight_plant::Plant;
-use tracelight_rig::{Command, Head, PanTilt, Phase, Rig, Segment, Sensed, Telemetry};
+use tracelight_rig::{Command, Fault, Head, PanTilt, Phase, Rig, Segment, Sensed, Telemetry};
 use tracelight_stroke::Point;
 use tracelight_trajectory::Plan;
 
@@ -41,6 +41,18 @@ pub struct Tick {
 pub struct Run {
     /// In time order; `telemetry.plan_tick` says which point of the plan each one follows.
     pub ticks: Vec<Tick>,
+}
+
+impl Run {
+    /// Whether the plan was followed to its end.
+    pub fn is_done(&self) -> bool {
+        self.ticks.last().is_some_and(|tick| tick.telemetry.phase == Phase::Done)
+    }
+
+    /// The fault it ended with, if any.
+    pub fn fault(&self) -> Option<Fault> {
+        self.ticks.last().and_then(|tick| tick.telemetry.fault)
+    }
 }
 
 /// A controller with a simulated head, in this process.

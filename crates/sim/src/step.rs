@@ -46,7 +46,7 @@ fn jump(rig: &RigConfig, to_rad: PanTilt<f64>) -> Option<Vec<Reference>> {
         let (lower, upper) = rig.model.geometry.range_rad[j];
         lower <= to_rad[j] && to_rad[j] <= upper
     };
-    let there = to_rad.map(|at| setpoint(&JointMotion { position_rad: at, ..JointMotion::default() }));
+    let there = to_rad.map(|at| setpoint(&JointMotion::at_rest(at)));
     Joint::BOTH.into_iter().all(in_range).then(|| vec![Reference { now: there, ahead: there }; ticks()])
 }
 
@@ -55,9 +55,10 @@ fn shaped(rig: &RigConfig, to_rad: PanTilt<f64>) -> Option<Vec<Reference>> {
     let machine = rig.machine(HeadPose::square_on(1.0));
     let start = PanTilt::default();
     let way = rest_to_rest(&machine, start, to_rad, rig.motion.ramp_s)?;
-    let start = start.map(|position_rad| JointMotion { position_rad, ..JointMotion::default() });
-    let points: Vec<PanTilt<Setpoint>> =
-        std::iter::once(start).chain(way).map(|joints| joints.map(|j| setpoint(&j))).collect();
+    let points: Vec<PanTilt<Setpoint>> = std::iter::once(start.map(JointMotion::at_rest))
+        .chain(way)
+        .map(|joints| joints.map(|j| setpoint(&j)))
+        .collect();
     let last = *points.last()?;
     let at = |tick: usize| *points.get(tick).unwrap_or(&last);
     Some((0..ticks()).map(|tick| between(at(tick), at(tick + 1))).collect())

@@ -88,6 +88,15 @@ fn run_with(config: &RigConfig, plan: &Plan, mischief: Mischief, seed: u64) -> V
     run(&mut rig, plan, false, watch).ticks
 }
 
+/// When a run shows its first fault, and which; no light is let out from then on.
+fn fault_of(ticks: &[Tick], what: &str) -> (usize, Fault) {
+    let seen = ticks.iter().enumerate().find_map(|(at, t)| Some((at, t.telemetry.fault?)));
+    assert!(seen.is_some(), "{what}: not seen");
+    let (at, fault) = seen.unwrap();
+    assert!(ticks[at..].iter().all(|t| !t.telemetry.actuation.gate), "{what}: lit after it");
+    (at, fault)
+}
+
 /// Runs a case at every moment: seen in time, dark in that tick and after it, no light further off than the limit.
 fn check(case: &Case, config: &RigConfig) {
     let name = case.name;
@@ -96,14 +105,10 @@ fn check(case: &Case, config: &RigConfig) {
     for seed in 0..MOMENTS {
         let (when, joint) = moment(&plan, seed);
         let ticks = run_with(config, &plan, case.mischief, seed);
-        let at = ticks.iter().position(|t| t.telemetry.fault.is_some());
-        assert!(at.is_some(), "{name}, seed {seed}: not seen");
-        let at = at.unwrap();
-        let fault = ticks[at].telemetry.fault.unwrap();
+        let (at, fault) = fault_of(&ticks, &format!("{name}, seed {seed}"));
         assert!(case.faults.contains(&fault), "{name}, seed {seed}: {fault:?}");
         assert!(at > when as usize, "{name}, seed {seed}: before anything happened");
         slowest = slowest.max(at.saturating_sub((case.due)(&ticks, joint, when as usize)));
-        assert!(ticks[at..].iter().all(|t| !t.telemetry.actuation.gate), "{name}, seed {seed}: lit after it");
         furthest = ticks.iter().filter(|t| t.light).map(off_mm).fold(furthest, f64::max);
     }
     println!("{name}: seen within {slowest} ticks, light at most {furthest:.2} mm off");
@@ -247,12 +252,11 @@ fn a_motor_that_gets_too_hot_is_seen_in_the_tick() {
         let continuous = 0.1 + 0.2 * seed as f64 / MOMENTS as f64;
         config.control.motor_continuous = continuous;
         let ticks = run_with(&config, &plan, |_, _, _| {}, seed);
-        let at = ticks.iter().position(|t| t.telemetry.fault.is_some()).unwrap();
-        assert_eq!(ticks[at].telemetry.fault, Some(Fault::MotorHot), "{continuous}");
+        let (at, fault) = fault_of(&ticks, &format!("{continuous}"));
+        assert_eq!(fault, Fault::MotorHot, "{continuous}");
         // f32 and f64 may differ by a tick where the temperature creeps
         let due = heats_over(&ticks, HEATING_S, continuous).unwrap_or(at);
         assert!(at.abs_diff(due) <= 1, "{continuous}: {at}, not {due}");
-        assert!(ticks[at..].iter().all(|t| !t.telemetry.actuation.gate));
     }
 }
 
@@ -282,10 +286,9 @@ fn a_segment_that_is_no_number_is_refused_before_its_time() {
         let good = plan.segments[segments];
         let bad = Segment { coefficients: PanTilt::new([f32::NAN; 6], [0.0; 6]), ..good };
         let ticks = fed_until(&plan, segments, Some(bad));
-        let at = ticks.iter().position(|t| t.telemetry.fault.is_some()).unwrap();
-        assert_eq!(ticks[at].telemetry.fault, Some(Fault::SetpointInvalid));
+        let (at, fault) = fault_of(&ticks, &format!("seed {seed}"));
+        assert_eq!(fault, Fault::SetpointInvalid);
         assert!(at as u32 <= bad.start_tick);
-        assert!(ticks[at..].iter().all(|t| !t.telemetry.actuation.gate));
     }
 }
 
@@ -296,10 +299,9 @@ fn segments_that_stop_coming_are_seen_in_the_tick_they_are_missing() {
         let (when, _) = moment(&plan, seed);
         let segments = plan.segments.iter().position(|s| s.end_tick() > when).unwrap();
         let ticks = fed_until(&plan, segments, None);
-        let at = ticks.iter().position(|t| t.telemetry.fault.is_some()).unwrap();
-        assert_eq!(ticks[at].telemetry.fault, Some(Fault::SetpointsStale));
+        let (at, fault) = fault_of(&ticks, &format!("seed {seed}"));
+        assert_eq!(fault, Fault::SetpointsStale);
         assert_eq!(at as u32, plan.segments[segments - 1].end_tick());
-        assert!(ticks[at..].iter().all(|t| !t.telemetry.actuation.gate));
     }
 }
 
@@ -319,10 +321,9 @@ fn a_host_that_falls_silent_is_missed_after_50_ms() {
             rig.step()
         };
         let ticks: Vec<Tick> = (0..when + 200).map(step).collect();
-        let at = ticks.iter().position(|t| t.telemetry.fault.is_some()).unwrap();
-        assert_eq!(ticks[at].telemetry.fault, Some(Fault::HostLost));
+        let (at, fault) = fault_of(&ticks, &format!("seed {seed}"));
+        assert_eq!(fault, Fault::HostLost);
         assert_eq!(at as u32, when - 1 + 50, "after the last word");
-        assert!(ticks[at..].iter().all(|t| !t.telemetry.actuation.gate));
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use tracelight_rig::{Command, PanTilt, Phase, Rig};
+use tracelight_rig::{Command, PanTilt, Rig};
 use tracelight_sim::{Run, SimulatedRig, Tick, Tracking, score};
 use tracelight_trajectory::Plan;
 
@@ -217,8 +217,7 @@ fn write(
 
 /// Whether the last lap ended as it should.
 fn ending(run: &Run, stop: &Stop) -> Option<Failure> {
-    let last = run.ticks.last();
-    if let Some(fault) = last.and_then(|t| t.telemetry.fault) {
+    if let Some(fault) = run.fault() {
         let message = format!(
             "the laser darkened and the run stopped: {} ({})",
             fault.code(),
@@ -229,8 +228,7 @@ fn ending(run: &Run, stop: &Stop) -> Option<Failure> {
     if stop.is_wanted() {
         return Some(Failure::interrupted());
     }
-    let done = last.is_some_and(|t| t.telemetry.phase == Phase::Done);
-    (!done).then(|| {
+    (!run.is_done()).then(|| {
         let message = "the run was given up: the head left its stroke again and again, and the laser was dark most of \
                        the time. One encoder count is more on a target that is further away: step nearer \
                        (--distance), or allow more (control.tolerance in the rig file)";

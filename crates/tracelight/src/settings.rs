@@ -36,6 +36,5 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
 
 /// The law, and what it is told of the joints by.
 fn law_of(rig: &RigConfig) -> String {
-    let law = rig.control.law;
-    format!("{} on {}", law.name(), rig.control.observer.unwrap_or(law.observer()).name())
+    format!("{} on {}", rig.control.law.name(), rig.control.observer_in_use().name())
 }

@@ -16,7 +16,7 @@ pub struct JointMotion {
 
 impl JointMotion {
     /// Standing still.
-    pub(crate) fn at_rest(position_rad: f64) -> Self {
+    pub fn at_rest(position_rad: f64) -> Self {
         Self { position_rad, ..Self::default() }
     }
 }

@@ -27,7 +27,7 @@ impl Differences {
         Self { counts: Past::constant(count), rates: Past::constant(0.0), acceleration: 0.0, interval, share }
     }
 
-    pub(super) fn tick(&mut self, _count_rad: f32, measured: &Measurement) {
+    pub(super) fn tick(&mut self, measured: &Measurement) {
         self.counts.push(measured.count);
         let gained = measured.count.wrapping_sub(self.counts.ago(self.interval));
         let raw = gained as f32 / self.interval as f32;

@@ -41,7 +41,7 @@ impl EdgeTimes {
         }
     }
 
-    pub(super) fn tick(&mut self, _count_rad: f32, measured: &Measurement) {
+    pub(super) fn tick(&mut self, measured: &Measurement) {
         let moved = measured.count.wrapping_sub(self.count);
         self.count = measured.count;
         let last = self.edges.ago(0);

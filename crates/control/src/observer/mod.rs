@@ -115,9 +115,9 @@ impl Observer {
     /// One tick: what acted on the joint, and what its encoder reads at the tick's end.
     pub fn tick(&mut self, axis: &AxisConfig, effort: &Effort, measured: &Measurement) {
         match &mut self.0 {
-            Kind::Differences(observer) => observer.tick(axis.count_rad, measured),
-            Kind::EdgeTimes(observer) => observer.tick(axis.count_rad, measured),
-            Kind::TrackingLoop(observer) => observer.tick(axis.count_rad, measured),
+            Kind::Differences(observer) => observer.tick(measured),
+            Kind::EdgeTimes(observer) => observer.tick(measured),
+            Kind::TrackingLoop(observer) => observer.tick(measured),
             Kind::Kalman(observer) => observer.tick(axis, effort, measured),
         }
     }

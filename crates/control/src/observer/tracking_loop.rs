@@ -23,7 +23,7 @@ impl TrackingLoop {
         Self { count, offset: 0.0, rate: 0.0, acceleration: 0.0, pole: libm::expf(-bandwidth_rad_s * TICK_S) }
     }
 
-    pub(super) fn tick(&mut self, _count_rad: f32, measured: &Measurement) {
+    pub(super) fn tick(&mut self, measured: &Measurement) {
         let moved = measured.count.wrapping_sub(self.count);
         self.count = measured.count;
         let error = moved as f32 - (self.offset + self.rate);

@@ -39,8 +39,6 @@ pub(super) struct EncoderWatch {
     count: i32,
     believed: Estimate,
     expected: Expectation,
-    /// Which way the last edge was crossed.
-    way: i32,
     surprises: f32,
     /// Speed believed beyond what was counted, rad.
     gap_rad: f32,
@@ -55,7 +53,6 @@ impl EncoderWatch {
             count: measured.count,
             believed: *estimate,
             expected: Expectation::default(),
-            way: 0,
             surprises: 0.0,
             gap_rad: 0.0,
             is_strange: false,
@@ -79,8 +76,7 @@ impl EncoderWatch {
         if surprise > JUMP_COUNTS {
             return Some(Fault::EncoderJumped);
         }
-        let back = moved.signum() * self.way < 0;
-        self.way = if moved == 0 { self.way } else { moved.signum() };
+        let back = moved.signum() * self.expected.way < 0;
         self.surprises -= NOISE_FADES * self.surprises;
         self.surprises += if back && surprise > SURPRISE_COUNTS { surprise } else { 0.0 };
         if self.surprises > NOISE_COUNTS {

@@ -2,7 +2,7 @@
 //!
 //! | fault | seen when |
 //! |---|---|
-//! | encoder jumped | in the tick: over three counts beside where the joint can be |
+//! | encoder jumped | in the tick: over one and a half counts beside the count the joint is expected on |
 //! | encoder noisy | surprises of three counts together within some 50 ticks |
 //! | encoder dead | four counts of motion predicted, none counted: dark at once, a fault 20 ticks later |
 //! | encoder slipping | a load of 30 % of the motor's torque, or 57 % more or less inertia than there is: dark at once, a fault after 150 ticks |

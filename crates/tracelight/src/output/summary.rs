@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use serde::Serialize;
-use tracelight_rig::{Phase, TICK_F64_S};
+use tracelight_rig::TICK_F64_S;
 use tracelight_sim::Run;
 use tracelight_stroke::Drawing;
 use tracelight_trajectory::Plan;
@@ -177,7 +177,7 @@ impl RunFigures {
     fn of(run: &Run) -> Self {
         Self {
             duration_s: round(run.ticks.len().saturating_sub(1) as f64 * TICK_F64_S),
-            finished: run.ticks.last().is_some_and(|t| t.telemetry.phase == Phase::Done),
+            finished: run.is_done(),
         }
     }
 }

@@ -64,6 +64,10 @@ const fn real<T>(
     Key { path, units, bounds, meaning, slot: Slot::Real(field) }
 }
 
+const fn choice<T>(path: &'static str, meaning: &'static str, choice: Choice<T>) -> Key<T> {
+    Key { path, units: PURE, bounds: (0.0, 0.0), meaning, slot: Slot::Choice(choice) }
+}
+
 /// A body's mass, centre and inertia.
 macro_rules! body {
     ($name:literal, $field:ident) => {
@@ -233,28 +237,24 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 24] = [
     real("truth.wear.gain_spread", PURE, (0.0, 0.9), "largest relative error of an amplifier's gain", |r| {
         &mut r.truth.wear.gain_spread
     }),
-    Key {
-        path: "control.law",
-        units: PURE,
-        bounds: (0.0, 0.0),
-        meaning: "from error to torque",
-        slot: Slot::Choice(Choice {
+    choice(
+        "control.law",
+        "from error to torque",
+        Choice {
             names: || LawName::ALL.map(LawName::name).to_vec(),
             get: |r| r.control.law.name(),
             set: |r, name| r.control.law = LawName::named(name).unwrap_or(r.control.law),
-        }),
-    },
-    Key {
-        path: "control.observer",
-        units: PURE,
-        bounds: (0.0, 0.0),
-        meaning: "from counts to position and speed; own: the one the law is meant for",
-        slot: Slot::Choice(Choice {
+        },
+    ),
+    choice(
+        "control.observer",
+        "from counts to position and speed; own: the one the law is meant for",
+        Choice {
             names: || std::iter::once("own").chain(ObserverName::ALL.map(ObserverName::name)).collect(),
             get: |r| r.control.observer.map_or("own", ObserverName::name),
             set: |r, name| r.control.observer = ObserverName::named(name),
-        }),
-    },
+        },
+    ),
     real(
         "control.pan_bandwidth",
         ANGULAR_SPEEDS,

@@ -8,6 +8,7 @@ mod step;
 mod velocity;
 
 use clap::{Args, Subcommand};
+use tracelight_rig::Fault;
 
 use crate::chart::Colour;
 use crate::cli::shapes::ProfileName;
@@ -92,6 +93,11 @@ fn write_all(
         };
         write_file(&file.path, &text)
     })
+}
+
+/// Why a run is not done, given the fault it ended with.
+fn why_unfinished(fault: Option<Fault>) -> &'static str {
+    fault.map_or("held again and again", |fault| fault.code())
 }
 
 /// What limits of moves may be, in SI: more is no head's, and less takes for ever.

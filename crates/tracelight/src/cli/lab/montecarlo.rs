@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
 use tracelight_lab::Quantiles;
-use tracelight_rig::{Fault, Phase};
+use tracelight_rig::Fault;
 use tracelight_sim::{SimulatedRig, Spread, Tracking, score};
 use tracelight_trajectory::Plan;
 
 use super::shape::ShapeArgs;
-use super::{OutFile, out_file, write_all};
+use super::{OutFile, out_file, why_unfinished, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
 use crate::cli::driving::Driving;
 use crate::cli::{Answer, Voice};
@@ -90,8 +90,8 @@ fn trial(driving: &Driving, plan: &Plan, seed: u64) -> Trial {
     let mut simulated = SimulatedRig::new(&rig, driving.pose, seed);
     let run = tracelight_sim::run(&mut simulated, plan, false, |_, _| ControlFlow::Continue(()));
     Trial {
-        finished: run.ticks.last().is_some_and(|tick| tick.telemetry.phase == Phase::Done),
-        fault: run.ticks.last().and_then(|tick| tick.telemetry.fault),
+        finished: run.is_done(),
+        fault: run.fault(),
         late_ticks: run.ticks.len().saturating_sub(plan.points.len()),
         tracking: score(plan, &run, plan.set_speed_m_s),
     }
@@ -122,11 +122,8 @@ fn held(trials: &[Trial]) -> usize {
 /// What to say of heads that did not finish.
 fn failure(trials: &[Trial]) -> Option<Failure> {
     let missing = trials.len() - finished(trials).count();
-    let mut names: Vec<&str> = trials
-        .iter()
-        .filter(|trial| !trial.finished)
-        .map(|trial| trial.fault.map_or("held again and again", |fault| fault.code()))
-        .collect();
+    let mut names: Vec<&str> =
+        trials.iter().filter(|trial| !trial.finished).map(|trial| why_unfinished(trial.fault)).collect();
     names.sort_unstable();
     names.dedup();
     let message = format!(

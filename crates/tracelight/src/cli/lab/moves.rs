@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use clap::{Args, Subcommand};
 use tracelight_aim::HeadPose;
-use tracelight_rig::{PanTilt, Phase};
+use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tracking, score};
 use tracelight_stroke::{Element, Piece, Point, Vec2};
 use tracelight_trajectory::{Course, CourseError, Machine, MoveLimits, Pace, PlanError, Ramps};
@@ -343,9 +343,8 @@ fn run_one(
         if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     let tracking = score(&plan, &run, plan.set_speed_m_s);
-    let done = run.ticks.last().is_some_and(|tick| tick.telemetry.phase == Phase::Done);
     // a rig that holds takes longer than its plan
-    let held = !done || run.ticks.len() > plan.points.len() + 50;
+    let held = !run.is_done() || run.ticks.len() > plan.points.len() + 50;
     let start_tick = plan.leg_ends.first().map_or(0, |end| end.start_tick);
     Ok(OnRig { pace, run, tracking, start_tick, held })
 }

@@ -2,12 +2,12 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 
 use clap::Args;
-use tracelight_lab::{Peaks, VelocityError, peaks, peaks_seen, velocity_error};
-use tracelight_rig::{Joint, Phase, TICK_F64_S};
-use tracelight_sim::{ObserverName, Run, SimulatedRig};
+use tracelight_lab::{Peaks, VelocityError, highest, peaks, peaks_seen, velocity_error};
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
+use tracelight_sim::{LONGEST_INTERVAL_TICKS, ObserverName, Run, SimulatedRig};
 
 use super::shape::ShapeArgs;
-use super::{OutFile, out_file, write_all};
+use super::{OutFile, out_file, why_unfinished, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
 use crate::cli::driving::{Driving, positive_speed};
 use crate::cli::{Answer, Voice};
@@ -41,17 +41,14 @@ pub(crate) struct VelocityArgs {
     pub(super) voice: Voice,
 }
 
-/// Longest interval, ticks.
-const LONGEST_TICKS: usize = 64;
-
 /// An interval in ticks.
 fn interval(text: &str) -> Result<usize, String> {
     let time_s = units::parse(text, TIMES).map_err(|e| e.to_string())?;
     let ticks = (time_s / TICK_F64_S).round();
-    if (ticks * TICK_F64_S - time_s).abs() < 1e-9 && (1.0..=LONGEST_TICKS as f64).contains(&ticks) {
+    if (ticks * TICK_F64_S - time_s).abs() < 1e-9 && (1.0..=LONGEST_INTERVAL_TICKS as f64).contains(&ticks) {
         Ok(ticks as usize)
     } else {
-        Err(format!("{text} is not a whole number of milliseconds from 1ms to {LONGEST_TICKS}ms"))
+        Err(format!("{text} is not a whole number of milliseconds from 1ms to {LONGEST_INTERVAL_TICKS}ms"))
     }
 }
 
@@ -87,7 +84,9 @@ pub(crate) fn run(args: &VelocityArgs, stop: &Stop) -> Result<Answer, Failure> {
         progress.at(number as u64 + 1);
     }
     let rows = rows(args, &driving, &runs, stop)?;
-    let found = Found { args, driving: &driving, runs: &runs, rows: &rows };
+    let seen = highest(runs.iter().map(|run| peaks_seen(&driving.rig, run, ObserverName::Kalman, 1)));
+    let truly = highest(runs.iter().map(peaks));
+    let found = Found { args, driving: &driving, rows: &rows, seen, truly };
     write_all(&args.out, || found.figure(), || Ok(found.csv()))?;
     Ok(Answer::new(found.table(), found.json()))
 }
@@ -96,18 +95,15 @@ fn draw(args: &VelocityArgs, driving: &Driving) -> Result<Run, Failure> {
     let plan = args.shape.plan(driving)?;
     let mut rig = SimulatedRig::new(&driving.rig, driving.pose, args.seed);
     let run = tracelight_sim::run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(()));
-    match run.ticks.last().map(|tick| (tick.telemetry.phase, tick.telemetry.fault)) {
-        Some((Phase::Done, _)) => Ok(run),
-        ending => {
-            let fault =
-                ending.and_then(|(_, fault)| fault).map_or("held again and again", |fault| fault.code());
-            let message = format!(
-                "the head did not finish at {:.4} m/s ({fault}), so there is nothing to compare with; choose another --law or speed",
-                driving.request.speed_m_s
-            );
-            Err(Failure::failed("unfinished", message))
-        }
+    if run.is_done() {
+        return Ok(run);
     }
+    let message = format!(
+        "the head did not finish at {:.4} m/s ({}), so there is nothing to compare with; choose another --law or speed",
+        driving.request.speed_m_s,
+        why_unfinished(run.fault())
+    );
+    Err(Failure::failed("unfinished", message))
 }
 
 fn rows(args: &VelocityArgs, driving: &Driving, runs: &[Run], stop: &Stop) -> Result<Vec<Row>, Failure> {
@@ -128,8 +124,11 @@ fn rows(args: &VelocityArgs, driving: &Driving, runs: &[Run], stop: &Stop) -> Re
 struct Found<'a> {
     args: &'a VelocityArgs,
     driving: &'a Driving,
-    runs: &'a [Run],
     rows: &'a [Row],
+    /// Highest rates that the default law's observer saw at any speed,
+    seen: PanTilt<Peaks>,
+    /// and what they truly were.
+    truly: PanTilt<Peaks>,
 }
 
 impl Found<'_> {
@@ -141,17 +140,6 @@ impl Found<'_> {
         };
         let all = WITH_INTERVAL.into_iter().chain([ObserverName::KalmanModel, ObserverName::Kalman]);
         all.filter_map(best).collect()
-    }
-
-    fn peaks(&self, joint: Joint) -> (Peaks, Peaks) {
-        let higher = |a: Peaks, b: Peaks| Peaks {
-            velocity_rad_s: a.velocity_rad_s.max(b.velocity_rad_s),
-            acceleration_rad_s2: a.acceleration_rad_s2.max(b.acceleration_rad_s2),
-        };
-        let rig = &self.driving.rig;
-        let seen = self.runs.iter().map(|run| peaks_seen(rig, run, ObserverName::Kalman, 1, joint));
-        let truly = self.runs.iter().map(|run| peaks(run, joint));
-        (seen.fold(Peaks::default(), higher), truly.fold(Peaks::default(), higher))
     }
 
     fn table(&self) -> String {
@@ -172,7 +160,7 @@ impl Found<'_> {
         }
         text += "\n\nhighest:";
         for joint in Joint::BOTH {
-            let (seen, truly) = self.peaks(joint);
+            let (seen, truly) = (self.seen[joint], self.truly[joint]);
             // writing to a String cannot fail
             let _ = write!(
                 text,
@@ -208,7 +196,7 @@ impl Found<'_> {
             })
             .collect();
         let highest = |joint: Joint| {
-            let (seen, truly) = self.peaks(joint);
+            let (seen, truly) = (self.seen[joint], self.truly[joint]);
             serde_json::json!({
                 "velocity_rad_s": seen.velocity_rad_s, "acceleration_rad_s2": seen.acceleration_rad_s2,
                 "true_velocity_rad_s": truly.velocity_rad_s, "true_acceleration_rad_s2": truly.acceleration_rad_s2,

@@ -6,8 +6,12 @@
     reason = "a test that cannot go on may panic, and shows figures"
 )]
 
+use tracelight_lab::StepFigures;
 use tracelight_rig::{Joint, TICK_F64_S};
-use tracelight_sim::{LawName, RigConfig, step_response};
+use tracelight_sim::{BenchTick, LawName, RigConfig, step_response};
+
+/// On a target 3 ft away.
+const MM_PER_RAD: f64 = 914.4;
 
 /// The rig whose truth has so much more inertia, gravity and Coulomb friction.
 fn rig(inertia: f64, gravity: f64, coulomb: f64) -> RigConfig {
@@ -34,15 +38,9 @@ fn corners() -> Vec<(String, RigConfig)> {
     all
 }
 
-/// Overshoot, %; last moment outside ±2 %, s; mean error of the last 0.2 s, mm at 3 ft.
-fn figures(rig: &RigConfig, joint: Joint, to_rad: f64, seed: u64) -> (f64, f64, f64) {
-    let response = step_response(rig, joint, to_rad, seed).unwrap();
-    let at: Vec<f64> = response.nonlinear.iter().map(|t| t.angle_rad[joint] / to_rad - 1.0).collect();
-    let over = at.iter().copied().fold(0.0, f64::max);
-    let settled = at.iter().rposition(|e| e.abs() > 0.02).unwrap() + 1;
-    let rest = &at[at.len() - 200..];
-    let last = rest.iter().map(|e| e.abs()).sum::<f64>() / rest.len() as f64;
-    (100.0 * over, settled as f64 * TICK_F64_S, 914.4 * last * to_rad.abs())
+fn figures(response: &[BenchTick], joint: Joint, to_rad: f64) -> StepFigures {
+    let angles: Vec<f64> = response.iter().map(|tick| tick.angle_rad[joint]).collect();
+    StepFigures::of(&angles, to_rad, TICK_F64_S)
 }
 
 /// The fastest a joint can be from rest to rest by 30°: all the torque there is, less friction and the least gravity, one way
@@ -66,8 +64,12 @@ fn steps_do_not_overshoot_and_leave_no_error_on_any_head() {
             let (mut over, mut settle, mut last) = (0.0f64, 0.0f64, 0.0f64);
             for (_, rig) in &corners {
                 for seed in 0..5 {
-                    let (o, s, e) = figures(rig, joint, degrees.to_radians(), seed);
-                    (over, settle, last) = (over.max(o), settle.max(s), last.max(e));
+                    let to_rad = degrees.to_radians();
+                    let response = step_response(rig, joint, to_rad, seed).unwrap();
+                    let step = figures(&response.nonlinear, joint, to_rad);
+                    over = over.max(step.overshoot_percent);
+                    settle = settle.max(step.settle_s.unwrap());
+                    last = last.max(MM_PER_RAD * step.final_error);
                 }
             }
             println!("{joint} {degrees}°: overshoot {over:.3} %, settled {settle:.3} s, left {last:.3} mm");
@@ -93,7 +95,9 @@ fn the_reports_laws_overshoot_as_they_did() {
     ] {
         let mut rig = RigConfig::report();
         rig.control.law = law;
-        let over = figures(&rig, joint, 15_f64.to_radians(), 0).0;
+        let to_rad = 15_f64.to_radians();
+        let response = step_response(&rig, joint, to_rad, 0).unwrap();
+        let over = figures(&response.nonlinear, joint, to_rad).overshoot_percent;
         assert!((least..=most).contains(&over), "{} {joint}: {over} %", law.name());
     }
 }
@@ -108,8 +112,7 @@ fn the_linear_loops_are_those_of_other_tools() {
             rig.control.law = law;
             let to = 26.565_f64.to_radians();
             let response = step_response(&rig, joint, to, 0).unwrap();
-            let peak = response.linear.iter().map(|t| t.angle_rad[joint]).fold(0.0, f64::max);
-            let over = 100.0 * (peak / to - 1.0);
+            let over = figures(&response.linear, joint, to).overshoot_percent;
             println!("{} {joint}: {over:.2} %, {expected} % in continuous time", law.name());
             assert!((expected..expected + 3.0).contains(&over), "{} {joint}: {over} %", law.name());
         }
