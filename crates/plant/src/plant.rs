@@ -22,6 +22,7 @@ pub struct Plant {
     encoders: PanTilt<Encoder>,
     relay: Relay,
     push_nm: PanTilt<f64>,
+    supply_left: f64,
 }
 
 impl Plant {
@@ -48,6 +49,7 @@ impl Plant {
             encoders,
             relay: Relay::new(config.relay),
             push_nm: PanTilt::default(),
+            supply_left: 1.0,
         }
     }
 
@@ -81,6 +83,11 @@ impl Plant {
         self.push_nm = torque_nm;
     }
 
+    /// The supply gives that share of what it should from now on: so much is left of every volt's torque.
+    pub const fn sag(&mut self, left: f64) {
+        self.supply_left = left;
+    }
+
     fn substep(&mut self, torque_nm: PanTilt<f64>, number: u32) {
         const LENGTH: f64 = 1.0 / SUBSTEPS as f64;
         let from = self.state.angle_rad;
@@ -99,7 +106,7 @@ impl Head for Plant {
         let torque = PanTilt::from_fn(|j| {
             let limit = self.limit_v[j];
             let volts = f64::from(actuation.command_v[j]).clamp(-limit, limit);
-            volts * self.torque_nm_per_v[j] + self.push_nm[j]
+            volts * self.supply_left * self.torque_nm_per_v[j] + self.push_nm[j]
         });
         for joint in Joint::BOTH {
             self.encoders[joint].begin_tick();

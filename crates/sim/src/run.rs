@@ -118,6 +118,7 @@ impl SimulatedRig {
     pub fn suffer(&mut self, trouble: Trouble) {
         match trouble {
             Trouble::Push(torque_nm) => self.plant.push(torque_nm),
+            Trouble::SupplySag(left) => self.plant.sag(left),
             Trouble::EncoderCut(j) => self.lines[j].cut_at = Some(self.sensed.encoders[j].count),
             Trouble::EncoderJump(j, counts) => self.lines[j].off += counts,
             Trouble::EncoderNoise(j, share) => self.lines[j].noise = share,

@@ -5,6 +5,8 @@ use tracelight_rig::{Joint, Measurement, PanTilt};
 pub enum Trouble {
     /// Somebody leans on the head: torque at the joints, N m.
     Push(PanTilt<f64>),
+    /// The supply sags: that share is left of what the amplifiers give, and of the most they can.
+    SupplySag(f64),
     /// An encoder's line is cut: its count stands still.
     EncoderCut(Joint),
     /// An encoder's count is off by that many more.

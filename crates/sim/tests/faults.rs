@@ -159,7 +159,7 @@ fn a_disc_that_slips_by_most_of_its_turn_is_seen() {
     // dark at the first doubt; where a few edges come now and then, only the time to come back gives it away
     let faults = &[Fault::EncoderDead, Fault::EncoderSlipping, Fault::EstimateDiverged, Fault::HoldTimedOut];
     let case =
-        Case { name: "slipping disc", mischief, faults, bound: 600, due: after_four_counts, limit_mm: 35.0 };
+        Case { name: "slipping disc", mischief, faults, bound: 2000, due: after_four_counts, limit_mm: 35.0 };
     check(&case, &RigConfig::report());
 }
 

@@ -100,6 +100,12 @@ impl Covariance {
         pp - 2.0 * age_s * pv + age_s * age_s * vv
     }
 
+    /// Standard deviation of load and friction together, whichever way the joint turns, N m.
+    pub(super) fn deviation_of_torque(&self) -> f32 {
+        let p = &self.0;
+        libm::sqrtf(p[LOAD][LOAD] + p[FRICTION][FRICTION] + 2.0 * p[LOAD][FRICTION].abs())
+    }
+
     /// Gains for a measurement of where the joint was `age_s` ago (H = [1 −age 0 …]), and P after it, in Joseph's form,
     /// (I − KH) P (I − KH)ᵀ + K R Kᵀ, which is a covariance whatever the gain. While the joint is `pushed` nothing is
     /// learned of what the head is made of: its gains are zero, its uncertainty stays (a consider filter; Schmidt 1966).

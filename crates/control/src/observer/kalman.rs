@@ -301,6 +301,7 @@ impl Kalman {
             velocity_rad_s: self.velocity_rad_s,
             acceleration_rad_s2: self.acceleration_rad_s2,
             learned: self.learned,
+            torque_deviation_nm: self.covariance.deviation_of_torque(),
         }
     }
 }

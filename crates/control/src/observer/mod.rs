@@ -59,6 +59,8 @@ pub struct Estimate {
     pub acceleration_rad_s2: f32,
     /// What the model does not know of this head; nothing for observers that have no model.
     pub learned: Learned,
+    /// How far off what is taken for load and friction together may be: a standard deviation, N m.
+    pub torque_deviation_nm: f32,
 }
 
 impl Estimate {
@@ -66,8 +68,8 @@ impl Estimate {
     pub(crate) fn is_finite(&self) -> bool {
         let Learned { load_nm, friction_nm, break_away_nm, inertia_share } = self.learned;
         let motion = self.position_rad + self.velocity_rad_s + self.acceleration_rad_s2;
-        // a sum is finite only if each of its terms is
-        (motion + load_nm + friction_nm + break_away_nm + inertia_share).is_finite()
+        let learned = load_nm + friction_nm + break_away_nm + inertia_share;
+        (motion + learned + self.torque_deviation_nm).is_finite()
     }
 }
 

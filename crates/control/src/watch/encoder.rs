@@ -7,6 +7,9 @@ use crate::{AxisConfig, Effort, Estimate, Learned};
 /// Share of Coulomb friction that must be overcome before a joint is expected to move: stiction and ripple of worn
 /// heads stay under it.
 const BREAK_AWAY_MARGIN: f32 = 1.6;
+/// Standard deviations of what load and friction were taken for that must be overcome besides: who pushed a moment ago may
+/// push otherwise now.
+const LOAD_DEVIATIONS: f32 = 2.0;
 /// Predicted motion without any edge that makes an encoder doubtful, counts,
 const DOUBT_COUNTS: f32 = 4.0;
 /// and how long it may be so before it is taken for dead, ticks: somebody who holds the head looks the same.
@@ -30,7 +33,10 @@ const DIVERGENCE_FADES: f32 = 1.0 / 20.0;
 const SLIP_INERTIA: f32 = 0.95;
 /// or a load acts on it of this share of the motor's torque: somebody who pushes that hard wants no light either.
 const SLIP_LOAD: f32 = 0.3;
-/// After so many ticks of it an encoder is taken to slip; a tick without makes good one with.
+/// A joint that does not even seem to turn with this speed, rad/s, is held or leant on.
+const SLIP_RAD_S: f32 = 0.02;
+/// After so many ticks of being braked or heavy an encoder is taken to slip; a tick without load makes good one with, and
+/// one in which it is leant on counts for neither.
 const SLIP_TICKS: u32 = 150;
 
 /// Watch on one encoder: what a following-error limit alone never sees.
@@ -98,12 +104,13 @@ impl EncoderWatch {
     }
 
     fn doubt(&mut self, axis: &AxisConfig, effort: &Effort, estimate: &Estimate, moved: i32) {
-        let threshold = BREAK_AWAY_MARGIN * axis.unknown_nm;
         if moved != 0 {
-            self.expected.begin(moved, estimate, axis.count_rad);
+            self.expected.begin(moved, axis, estimate);
         }
-        let drive = effort.torque_nm - effort.bias_nm + self.expected.load_nm;
-        let net = beyond(drive, threshold);
+        let threshold = self.expected.holding_nm.max(BREAK_AWAY_MARGIN * axis.unknown_nm);
+        // who pushed may have let go
+        let (alone, loaded) = (effort.torque_nm - effort.bias_nm, self.expected.load_nm);
+        let net = nearer(beyond(alone, threshold), beyond(alone + loaded, threshold));
         self.expected.tick(net / effort.inertia_kg_m2, threshold / effort.inertia_kg_m2);
         let missing = self.expected.travel_rad.abs() > DOUBT_COUNTS * axis.count_rad;
         self.doubtful_ticks = if missing { self.doubtful_ticks.saturating_add(1) } else { 0 };
@@ -111,14 +118,16 @@ impl EncoderWatch {
 
     fn slips(&mut self, axis: &AxisConfig, estimate: &Estimate) -> bool {
         let Learned { load_nm, inertia_share, .. } = estimate.learned;
-        let strange = inertia_share.abs() > SLIP_INERTIA * MOST_INERTIA
-            || load_nm.abs() > SLIP_LOAD * axis.torque_nm_per_v * axis.limit_v;
-        self.is_strange = strange;
-        self.slipping_ticks = if strange {
-            self.slipping_ticks.saturating_add(1)
-        } else {
-            self.slipping_ticks.saturating_sub(1)
-        };
+        let heavy = inertia_share.abs() > SLIP_INERTIA * MOST_INERTIA;
+        let loaded = load_nm.abs() > SLIP_LOAD * axis.torque_nm_per_v * axis.limit_v;
+        // what turns by less than its joint seems to be braked
+        let braked = load_nm * estimate.velocity_rad_s < -SLIP_RAD_S * load_nm.abs();
+        self.is_strange = heavy || loaded;
+        if heavy || (loaded && braked) {
+            self.slipping_ticks = self.slipping_ticks.saturating_add(1);
+        } else if !loaded {
+            self.slipping_ticks = self.slipping_ticks.saturating_sub(1);
+        }
         self.slipping_ticks > SLIP_TICKS
     }
 
@@ -142,6 +151,8 @@ struct Expectation {
     travel_rad: f32,
     /// Load that was known at the last edge, N m. What is taken for one later may be how a dead encoder looks.
     load_nm: f32,
+    /// Torque that friction and what is not known of the load may hold, N m.
+    holding_nm: f32,
     /// Which way the last edge was crossed.
     way: i32,
     /// How long ago, ticks.
@@ -151,12 +162,15 @@ struct Expectation {
 impl Expectation {
     /// At an edge: the observer's speed, but no more than this edge and the one before it show. Some observers take a
     /// single count for a speed of radians a second.
-    fn begin(&mut self, moved: i32, estimate: &Estimate, count_rad: f32) {
-        let shown = moved.unsigned_abs() as f32 * count_rad / (self.since.max(1.0) * TICK_S);
+    fn begin(&mut self, moved: i32, axis: &AxisConfig, estimate: &Estimate) {
+        let shown = moved.unsigned_abs() as f32 * axis.count_rad / (self.since.max(1.0) * TICK_S);
         let way = moved.signum();
         let most = if way == self.way { shown } else { 0.0 };
         let (rate_rad_s, load_nm) = (within(estimate.velocity_rad_s, most), estimate.learned.load_nm);
-        *self = Self { rate_rad_s, travel_rad: 0.0, load_nm, way, since: 0.0 };
+        let holding_nm = axis.unknown_nm
+            + estimate.learned.friction_at(0.0).max(0.0)
+            + LOAD_DEVIATIONS * estimate.torque_deviation_nm;
+        *self = Self { rate_rad_s, travel_rad: 0.0, load_nm, holding_nm, way, since: 0.0 };
     }
 
     /// Friction brakes what moves whether or not the effort drives it on.
@@ -167,6 +181,17 @@ impl Expectation {
         }
         self.rate_rad_s += acceleration * TICK_S;
         self.travel_rad += self.rate_rad_s * TICK_S;
+    }
+}
+
+/// The one nearer to zero; zero if they lie on either side of it.
+fn nearer(a: f32, b: f32) -> f32 {
+    if a * b <= 0.0 {
+        0.0
+    } else if a.abs() < b.abs() {
+        a
+    } else {
+        b
     }
 }
 
