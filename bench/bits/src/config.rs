@@ -1,6 +1,6 @@
 use tracelight_control::{
     AxisConfig, Config, Feedback, Feedforward, FrictionModel, HeadModel, KalmanTuning, LawConfig,
-    MotorRating, ObserverConfig, StateFeedback,
+    MotorRating, ObserverConfig, Quirks, StateFeedback,
 };
 use tracelight_rig::{JointLimits, PanTilt};
 
@@ -39,6 +39,7 @@ fn axis(torque_nm_per_v: f32, range_rad: f32, friction: (f32, f32, f32, f32)) ->
         count_rad: 0.0015339808,
         friction: FrictionModel { viscous_pos, viscous_neg, coulomb_pos_nm, coulomb_neg_nm },
         unknown_nm: coulomb_pos_nm,
+        quirks: Quirks::NONE,
         observer: ObserverConfig::Kalman(KalmanTuning::LEARNING),
         law: LawConfig { feedback: Feedback::State(state), feedforward: Feedforward::Learned },
         rating: MotorRating { continuous_share: 0.7, heating_s: 60.0 },

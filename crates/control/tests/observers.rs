@@ -4,7 +4,7 @@
 
 use tracelight_control::{
     AxisConfig, Effort, Estimate, Feedback, Feedforward, FrictionModel, KalmanTuning, LawConfig, MotorRating,
-    Observer, ObserverConfig, Pid,
+    Observer, ObserverConfig, Pid, Quirks,
 };
 use tracelight_rig::{JointLimits, Measurement};
 
@@ -19,6 +19,7 @@ fn axis(observer: ObserverConfig) -> AxisConfig {
         count_rad: COUNT_RAD as f32,
         friction: FrictionModel::default(),
         unknown_nm: 0.03,
+        quirks: Quirks::NONE,
         observer,
         law: LawConfig { feedback: Feedback::Pid(Pid::proportional(1.0)), feedforward: Feedforward::None },
         rating: MotorRating { continuous_share: 1.0, heating_s: 60.0 },

@@ -1,7 +1,7 @@
 use tracelight_aim::HeadGeometry;
 use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
-use tracelight_rig::PanTilt;
+use tracelight_rig::{Joint, PanTilt};
 
 use crate::{LawName, ObserverName};
 
@@ -16,6 +16,8 @@ pub struct RigConfig {
     pub model: Model,
     /// What the simulated plant is.
     pub truth: Truth,
+    /// What was identified of this very head beyond the equations of the model, if it ever was.
+    pub identified: Option<Identified>,
     /// How the controller is set.
     pub control: ControlSettings,
     /// How the planner is set.
@@ -37,6 +39,69 @@ pub struct Model {
     pub relay: RelayConfig,
     /// Where the beam leaves, and how far the joints turn.
     pub geometry: HeadGeometry,
+}
+
+/// What was identified of a head besides its model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identified {
+    /// When, as year-month-day; empty where nobody said.
+    pub date: String,
+    /// How far the model is off what it was identified from, root mean square over stretches of motion, counts.
+    pub residual_counts: PanTilt<f64>,
+    /// What each joint has beyond its equations.
+    pub quirks: PanTilt<Quirks>,
+}
+
+/// What a joint has beyond its equations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quirks {
+    /// What friction has on top of its Coulomb level near standstill, N m,
+    pub break_away_nm: f64,
+    /// and the speed at which that has fallen to 1/e, rad/s.
+    pub break_away_rad_s: f64,
+    /// How far the four kinds of encoder edges lie beyond their places, counts; edge n is the one below count n, and n mod 4
+    /// its kind.
+    pub edges_counts: [f64; 4],
+    /// How Coulomb friction changes along the way.
+    pub ripple: Ripple,
+}
+
+impl Identified {
+    /// Of a head of which nothing is known.
+    pub const NONE: Self = Self {
+        date: String::new(),
+        residual_counts: PanTilt::new(0.0, 0.0),
+        quirks: PanTilt::new(Quirks::NONE, Quirks::NONE),
+    };
+}
+
+impl RigConfig {
+    /// What was identified of a joint beyond its equations.
+    pub fn quirks_of(&self, joint: Joint) -> Quirks {
+        self.identified.as_ref().map_or(Quirks::NONE, |identified| identified.quirks[joint])
+    }
+}
+
+impl Quirks {
+    /// Of a joint of which nothing is known.
+    pub const NONE: Self = Self {
+        break_away_nm: 0.0,
+        break_away_rad_s: 0.02,
+        edges_counts: [0.0; 4],
+        ripple: Ripple { periods: 0.0, sin_nm: 0.0, cos_nm: 0.0 },
+    };
+}
+
+/// Friction that ripples over a turn of a joint, as gears make it: `sin_nm` sin(nq) + `cos_nm` cos(nq) on top of the Coulomb
+/// level, either way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ripple {
+    /// n, periods a turn; zero where none was found.
+    pub periods: f64,
+    /// N m.
+    pub sin_nm: f64,
+    /// N m.
+    pub cos_nm: f64,
 }
 
 /// The simulated plant: a head and its wear.

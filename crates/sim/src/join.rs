@@ -1,7 +1,7 @@
 //! What each room is told of a rig.
 
 use tracelight_aim::HeadPose;
-use tracelight_control::{AxisConfig, Config, FrictionModel, HeadModel, MotorRating};
+use tracelight_control::{AxisConfig, Config, FrictionModel, HeadModel, MotorRating, Quirks, Ripple};
 use tracelight_dynamics::{Friction, Lumped};
 use tracelight_plant::PlantConfig;
 use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
@@ -65,6 +65,7 @@ impl RigConfig {
             count_rad: self.model.encoder.count_rad() as f32,
             friction: friction_model(&self.model.friction[joint]),
             unknown_nm: coulomb_nm.max(LEAST_UNKNOWN_SHARE * motor.torque_limit_nm()) as f32,
+            quirks: self.quirks(joint),
             observer: control.observer_in_use().config(INTERVAL_TICKS),
             law: control.law.config(joint, control.bandwidth_rad_s[joint], inertia),
             rating: MotorRating {
@@ -75,6 +76,20 @@ impl RigConfig {
                 lower_rad: (lower - margin) as f32,
                 upper_rad: (upper + margin) as f32,
                 speed_rad_s: self.motion.speed_limit_rad_s[joint] as f32,
+            },
+        }
+    }
+
+    fn quirks(&self, joint: Joint) -> Quirks {
+        let found = self.quirks_of(joint);
+        Quirks {
+            break_away_nm: found.break_away_nm as f32,
+            break_away_rad_s: found.break_away_rad_s as f32,
+            edges_counts: found.edges_counts.map(|edge| edge as f32),
+            ripple: Ripple {
+                periods: found.ripple.periods as f32,
+                sin_nm: found.ripple.sin_nm as f32,
+                cos_nm: found.ripple.cos_nm as f32,
             },
         }
     }

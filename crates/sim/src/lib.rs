@@ -18,10 +18,10 @@ mod step;
 mod trouble;
 
 pub use bench::BenchTick;
-pub use config::{ControlSettings, Model, MotionSettings, RigConfig, Truth};
+pub use config::{ControlSettings, Identified, Model, MotionSettings, Quirks, RigConfig, Ripple, Truth};
 pub use laws::{LawName, ObserverName};
 pub use replay::replay;
-pub use run::{Feeder, Run, SimulatedRig, Tick, run};
+pub use run::{Feeder, Run, SimulatedRig, Tick, run, run_segments};
 pub use score::{Tracking, score};
 pub use spread::Spread;
 pub use step::{StepResponse, step_response};

@@ -38,6 +38,7 @@ impl RigConfig {
             description: "the rig of the 2006 report, as good as new".into(),
             model,
             truth: Truth { model, wear: Wear::NONE },
+            identified: None,
             control: ControlSettings {
                 law: LawName::State,
                 observer: None,

@@ -173,13 +173,24 @@ pub fn run(
     rig: &mut SimulatedRig,
     plan: &Plan,
     dry: bool,
+    watch: impl FnMut(&mut SimulatedRig, &Tick) -> ControlFlow<()>,
+) -> Run {
+    run_segments(rig, &plan.segments, dry, watch)
+}
+
+/// The same for segments that come from no plan.
+pub fn run_segments(
+    rig: &mut SimulatedRig,
+    segments: &[Segment],
+    dry: bool,
     mut watch: impl FnMut(&mut SimulatedRig, &Tick) -> ControlFlow<()>,
 ) -> Run {
-    let mut feeder = Feeder::new(&plan.segments, dry);
-    let mut ticks = Vec::with_capacity(plan.points.len());
+    let mut feeder = Feeder::new(segments, dry);
+    let planned = segments.last().map_or(0, |segment| segment.end_tick() as usize + 1);
+    let mut ticks = Vec::with_capacity(planned);
     let mut aftermath = AFTERMATH_TICKS;
     let armed = rig.send(Command::Arm).is_ok();
-    while armed && ticks.len() < plan.points.len() + rig.patience_ticks {
+    while armed && ticks.len() < planned + rig.patience_ticks {
         let alive = rig.send(Command::KeepAlive).is_ok();
         debug_assert!(alive, "only segments wait");
         feeder.feed(rig);

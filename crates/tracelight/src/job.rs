@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use tracelight_rig::{Command, PanTilt, Rig};
-use tracelight_sim::{Run, SimulatedRig, Tick, Tracking, score};
+use tracelight_lab::identify;
+use tracelight_rig::{Command, Joint, PanTilt, Rig, Telemetry};
+use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Tracking, score};
 use tracelight_trajectory::Plan;
 
 use crate::cli::driving::Driving;
@@ -14,6 +15,7 @@ use crate::failure::{Failure, Status};
 use crate::output::{self, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing};
 use crate::picture;
 use crate::progress::Progress;
+use crate::rigfile;
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::settings;
 use crate::sketch::{Placed, Sketch, place, sketch};
@@ -43,6 +45,9 @@ struct Prepared {
 struct Laps {
     earlier: Vec<Run>,
     last: Run,
+    /// The rig as it was identified between laps, if it was.
+    identified: Option<RigConfig>,
+    notes: Vec<String>,
     run_ms: f64,
 }
 
@@ -106,7 +111,8 @@ fn check_laps(laps: u32, plan: &Plan) -> Result<(), Failure> {
     Err(Failure::failed("too-long", message))
 }
 
-/// Runs the laps, each from power-up on the same head, and logs them all.
+/// Runs the laps, each from power-up on the same head, and logs them all. Between two of them the head is identified from
+/// those before, and the controller is told.
 fn run_laps(
     args: &TraceArgs,
     prepared: &Prepared,
@@ -118,15 +124,43 @@ fn run_laps(
     let plan = &prepared.schedule.plan;
     let meta = LogMeta { picture_path: &args.picture, settings, seed: args.seed };
     let mut laps: Vec<Run> = Vec::new();
+    let mut learned = prepared.driving.rig.clone();
+    let mut notes = Vec::new();
     let mut log = LogWriter::open(&dir.join("run.mcap"), &meta)?;
     while laps.len() < args.laps as usize && !stop.is_wanted() {
         progress.stage("run", plan.points.len() as u64);
-        let rig = SimulatedRig::new(&prepared.driving.rig, prepared.driving.pose, args.seed);
+        if !laps.is_empty() {
+            (learned, notes) = learn(&prepared.driving.rig, &laps);
+        }
+        let rig = SimulatedRig::new(&learned, prepared.driving.pose, args.seed);
         laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
     }
     log.finish()?;
     let last = laps.pop().unwrap_or_default();
-    Ok(Laps { earlier: laps, last, run_ms: began.elapsed().as_secs_f64() * 1e3 })
+    notes.iter().for_each(|note| progress.say(&format!("note: {note}")));
+    let identified = learned.identified.is_some().then_some(learned);
+    Ok(Laps { earlier: laps, last, identified, notes, run_ms: began.elapsed().as_secs_f64() * 1e3 })
+}
+
+/// A rig with what its laps so far tell of it; what they tell is said.
+fn learn(rig: &RigConfig, laps: &[Run]) -> (RigConfig, Vec<String>) {
+    let records: Vec<Vec<Telemetry>> =
+        laps.iter().map(|lap| lap.ticks.iter().map(|tick| tick.telemetry).collect()).collect();
+    let slices: Vec<&[Telemetry]> = records.iter().map(Vec::as_slice).collect();
+    match identify(rig, &slices) {
+        Ok(found) => {
+            let notes = Joint::BOTH.map(|j| {
+                let fit = &found.joints[j];
+                let verdict = if fit.taken { "" } else { ", no better: what was believed is kept" };
+                format!(
+                    "{j} identified from the laps before: edges off the model by {:.3} counts rms, before {:.3}{verdict}",
+                    fit.after_counts, fit.before_counts
+                )
+            });
+            (found.rig, notes.to_vec())
+        }
+        Err(error) => (rig.clone(), vec![format!("nothing identified between laps: {error}")]),
+    }
 }
 
 /// Ticks the head is watched after the user stopped it: longer than any relay of a rig file takes to open.
@@ -178,6 +212,8 @@ fn write(
     let strokes = placed.svg(drawing);
     let path = dir.join("strokes.svg");
     std::fs::write(&path, strokes).map_err(|e| cannot_write(&path, &e))?;
+    write_rig(dir, laps)?;
+    let notes: Vec<String> = prepared.notes.iter().chain(&laps.notes).cloned().collect();
     let tracking: Tracking = score(&schedule.plan, &laps.last, schedule.plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
     let job = Job {
@@ -202,7 +238,7 @@ fn write(
         torque_limit_nm: PanTilt::new(motors.pan.torque_limit_nm(), motors.tilt.torque_limit_nm()),
         tolerance_mm: driving.request.tolerance_m * 1e3,
         settings,
-        notes: &prepared.notes,
+        notes: &notes,
         timing: Timing {
             vision_ms: sketch.vision_ms,
             plan_ms: prepared.plan_ms,
@@ -213,6 +249,21 @@ fn write(
         dry_run: args.dry_run,
     };
     Ok(output::write_all(dir, &job)?)
+}
+
+/// Writes `rig.toml`, the rig as its laps identified it; where they did not, one that an earlier job left under this name is
+/// removed.
+fn write_rig(dir: &Path, laps: &Laps) -> Result<(), Failure> {
+    let path = dir.join("rig.toml");
+    let Some(rig) = &laps.identified else {
+        return match std::fs::remove_file(&path) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(cannot_write(&path, &e)),
+            _ => Ok(()),
+        };
+    };
+    let mut rig = rig.clone();
+    rigfile::date(&mut rig);
+    std::fs::write(&path, rigfile::write(&rig)).map_err(|e| cannot_write(&path, &e))
 }
 
 /// Whether the last lap ended as it should.

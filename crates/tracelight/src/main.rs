@@ -9,6 +9,7 @@ mod output;
 mod picture;
 mod progress;
 mod quality;
+mod record;
 mod rigfile;
 mod schedule;
 mod settings;

@@ -1,22 +1,25 @@
 //! Rig files: `rig.toml` to [`RigConfig`] and back.
 //!
 //! A file has two halves. `[model]` is what planner and controller believe; `[truth]` is what the simulated head is,
-//! and defaults to the model. Keys that are not given keep the values of the preset `report`.
+//! and defaults to the model; `[identified]` is what was identified of this very head besides. Keys that are not given keep
+//! the values of the preset `report`.
 
 mod caret;
 mod keys;
+mod save;
 
 use std::ops::Range;
 
 use toml_edit::{Document, Item, TableLike, Value};
 use tracelight_plant::Wear;
-use tracelight_sim::{Model, RigConfig};
+use tracelight_sim::{Identified, Model, RigConfig};
 
 use crate::failure::Failure;
 use crate::picture::read_bytes;
 use crate::units;
 use caret::Mark;
-use keys::{Choice, Key, RIG_KEYS, Slot, model_keys};
+use keys::{Choice, Key, RIG_KEYS, Slot, identified_keys, model_keys};
+pub(crate) use save::{date, updated};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
 const MOST_BYTES: usize = 1 << 20;
@@ -123,10 +126,19 @@ fn set_other(
             config.description = s.value().clone();
             return Some(Ok(()));
         }
-        ("name" | "description", _) => {
+        ("identified.date", Value::String(s)) => {
+            config.identified.get_or_insert(Identified::NONE).date = s.value().clone();
+            return Some(Ok(()));
+        }
+        ("name" | "description" | "identified.date", _) => {
             return Some(Err(place.message(&format!("{} must be text", entry.path))));
         }
         _ => {}
+    }
+    if let Some(path) = entry.path.strip_prefix("identified.") {
+        let keys = identified_keys();
+        let key = keys.iter().find(|k| k.path == path)?;
+        return Some(set(key, config.identified.get_or_insert(Identified::NONE), entry, place));
     }
     if let Some(key) = RIG_KEYS.iter().find(|k| k.path == entry.path) {
         return Some(set(key, config, entry, place));
@@ -170,8 +182,10 @@ fn unknown(file: &str, text: &str, entry: &Entry<'_>) -> String {
 fn known_paths() -> Vec<String> {
     let halves =
         ["model", "truth"].map(|half| model_keys().into_iter().map(move |k| format!("{half}.{}", k.path)));
-    let own = RIG_KEYS.iter().map(|k| k.path.to_owned()).chain(["name".to_owned(), "description".to_owned()]);
-    halves.into_iter().flatten().chain(own).collect()
+    let found = identified_keys().into_iter().map(|k| format!("identified.{}", k.path));
+    let texts = ["name", "description", "identified.date"].map(str::to_owned);
+    let own = RIG_KEYS.iter().map(|k| k.path.to_owned()).chain(texts);
+    halves.into_iter().flatten().chain(found).chain(own).collect()
 }
 
 fn set<T>(key: &Key<T>, target: &mut T, entry: &Entry<'_>, place: &Mark<'_>) -> Result<(), String> {
@@ -231,6 +245,10 @@ pub(crate) fn write(config: &RigConfig) -> String {
     let differs = |key: &Key<Model>| shown(key, &mut config.model.clone()) != shown(key, &mut truth.clone());
     let different: Vec<_> = models.iter().copied().filter(differs).collect();
     section(&mut text, "truth", &different, &mut truth);
+    if let Some(identified) = &mut config.identified {
+        text += &format!("\n[identified]\ndate = {}\n", quoted(&identified.date));
+        section(&mut text, "identified", &identified_keys(), identified);
+    }
     section(&mut text, "", &RIG_KEYS, &mut config);
     text
 }

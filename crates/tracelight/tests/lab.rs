@@ -280,3 +280,82 @@ fn what_makes_no_sense_is_refused_in_a_sentence() {
         assert!(message.contains(words), "{arguments:?}: {message}");
     }
 }
+
+#[test]
+fn what_the_routine_identifies_goes_to_a_rig_file_that_other_commands_take() {
+    let dir = folder("lab-identify");
+    let [out, again] = ["routine", "record"].map(|name| dir.join(name).to_str().unwrap().to_owned());
+    let found = lab(&["identify", "--rig", "worn", "--out", &out]);
+    for joint in ["pan", "tilt"] {
+        let fit = &found[joint];
+        assert_eq!(fit["taken"], true);
+        let (before, after) = (&fit["residual_counts"]["before"], &fit["residual_counts"]["after"]);
+        assert!(after.as_f64().unwrap() < 0.2 * before.as_f64().unwrap(), "{joint}: {before} {after}");
+        // the preset's break-away friction is 1.3 times Coulomb friction
+        let on_top = fit["found"]["break_away_nm"].as_f64().unwrap();
+        near(&fit["found"]["coulomb_pos_nm"], on_top / 0.3, 0.1 * on_top / 0.3);
+    }
+    let rig = format!("{out}/rig.toml");
+    let text = std::fs::read_to_string(&rig).unwrap();
+    assert!(text.contains("[identified]") && text.contains("[truth.wear]"), "{text}");
+    // the record says the same, and the rig file loads
+    let record = format!("{out}/record.csv");
+    let same = lab(&["identify", &record, "--rig", "worn", "--out", &again]);
+    let (one, other) = (&found["tilt"]["found"], &same["tilt"]["found"]);
+    near(&one["torque_nm_per_v"], other["torque_nm_per_v"].as_f64().unwrap(), 1e-4);
+    let rms = |rig: &str| {
+        let drawn = run(&["trace", "../../examples/star.png", "--rig", rig, "--out", &again, "--json"]);
+        let summary: Value = serde_json::from_slice(&drawn.stdout).unwrap();
+        summary["tracking"]["rms_mm"].as_f64().unwrap()
+    };
+    let (told, untold) = (rms(&rig), rms("worn"));
+    assert!(told < 0.8 * untold, "{told} {untold}");
+}
+
+#[test]
+fn a_rig_file_of_ones_own_changes_only_with_save_and_keeps_its_comments() {
+    let dir = folder("lab-identify-save");
+    let [rig, out] = ["my.toml", "out"].map(|name| dir.join(name).to_str().unwrap().to_owned());
+    let text = "# mine\n[model.pan.motor]\ntorque_per_volt = \"0.0774Nm/V\" # as the data sheet says\n\
+                [truth.pan.motor]\ntorque_per_volt = \"0.0619Nm/V\"\n";
+    std::fs::write(&rig, text).unwrap();
+    lab(&["identify", "--rig", &rig, "--out", &out]);
+    assert_eq!(std::fs::read_to_string(&rig).unwrap(), text, "without --save it stays");
+    let found = lab(&["identify", "--rig", &rig, "--out", &out, "--save"]);
+    near(&found["pan"]["found"]["torque_nm_per_v"], 0.0619, 0.0013);
+    let saved = std::fs::read_to_string(&rig).unwrap();
+    for kept in ["# mine", "# as the data sheet says", "torque_per_volt = \"0.0619Nm/V\"", "[identified"] {
+        assert!(saved.contains(kept), "{kept} is not in\n{saved}");
+    }
+    let preset = run(&["lab", "identify", "--save", "--out", &out]);
+    assert_eq!(preset.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&preset.stderr).contains("a rig file of your own"));
+}
+
+#[test]
+fn a_record_that_is_none_is_refused_with_its_line() {
+    let dir = folder("lab-identify-record");
+    let [record, out] = ["bad.csv", "out"].map(|name| dir.join(name).to_str().unwrap().to_owned());
+    let refused = |text: &str| {
+        std::fs::write(&record, text).unwrap();
+        let output = run(&["lab", "identify", &record, "--out", &out]);
+        (output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (status, message) = refused("t_s,pan_count\n0,0\n");
+    assert!(status == 2 && message.contains("no column tilt_count"), "{message}");
+    let (status, message) = refused("t_s,pan_count,tilt_count,pan_v,tilt_v\n0,0,0,0,0\n0.5,0,0,0,0\n");
+    assert!(status == 2 && message.contains("bad.csv:3:"), "{message}");
+    let (status, message) = refused("t_s,pan_count,tilt_count,pan_v,tilt_v\n0,0,0,0,0\n");
+    assert!(status == 1 && message.contains("longer record"), "{message}");
+}
+
+#[test]
+fn heads_that_are_identified_between_laps_draw_better_each_time() {
+    let rms = |laps: &str| {
+        let figures = lab(&["montecarlo", "--plants", "8", "--laps", laps]);
+        assert_eq!(figures["finished"], 8);
+        figures["max_mm"]["worst"].as_f64().unwrap()
+    };
+    let (first, third) = (rms("1"), rms("3"));
+    assert!(third < 0.5 * first, "{first} {third}");
+}

@@ -44,7 +44,9 @@ pub(crate) fn feedforward(
             Feedforward::Model => Learned::default(),
             Feedforward::Learned => estimates[j].learned,
         };
-        let friction = config.axes[j].friction.with_excess(learned.friction_at(rate[j]));
+        let axis = &config.axes[j];
+        let excess_nm = axis.quirks.excess_nm(&learned, ahead[j].position_rad, rate[j]);
+        let friction = axis.friction.with_excess(excess_nm);
         let more = terms.own_inertia()[j] * learned.inertia_share * ahead[j].acceleration_rad_s2;
         inertial[j] + more + terms.bias_nm[j] + friction.feedforward(rate[j], FRICTION_FADE_RAD_S)
             - learned.load_nm

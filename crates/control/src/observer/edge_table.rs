@@ -16,9 +16,9 @@ pub(super) struct EdgeTable {
 }
 
 impl EdgeTable {
-    /// Nothing is known but how far they may be off, counts.
-    pub(super) const fn unknown(deviation_counts: f32) -> Self {
-        Self { offset_counts: [0.0; PHASES], variance: [deviation_counts * deviation_counts; PHASES] }
+    /// They are about there, counts, and may be off by that deviation.
+    pub(super) const fn about(offset_counts: [f32; PHASES], deviation_counts: f32) -> Self {
+        Self { offset_counts, variance: [deviation_counts * deviation_counts; PHASES] }
     }
 
     /// Where an edge lies, counts from its place, and the variance of that, counts². `edge` numbers the count above it.

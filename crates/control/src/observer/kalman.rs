@@ -6,11 +6,6 @@ use super::{Effort, Estimate};
 use crate::AxisConfig;
 use crate::limit::within;
 
-/// Speed at which the excess of break-away friction has fallen to a quarter, rad/s. Of the order of what geared
-/// joints show. Of 200 heads on a circle, whose excess falls to 1/e at such a speed, 95 are within 0.088 mm rms; at half the
-/// speed 0.082 mm, at twice 0.105 mm.
-const BREAK_AWAY_SPEED_RAD_S: f32 = 0.02;
-
 /// How far a joint may be learned to differ from its model, shares of its Coulomb friction and of its inertia.
 const LEAST_FRICTION: f32 = -0.6;
 const MOST_FRICTION: f32 = 1.5;
@@ -29,21 +24,6 @@ pub struct Learned {
     pub break_away_nm: f32,
     /// Inertia beyond the model's, as a share of it.
     pub inertia_share: f32,
-}
-
-impl Learned {
-    /// Friction beyond the model's at a speed, N m.
-    pub(crate) fn friction_at(&self, velocity_rad_s: f32) -> f32 {
-        self.friction_nm + break_away_share(velocity_rad_s) * self.break_away_nm
-    }
-}
-
-/// Share of the break-away excess that is left at a speed. Stribeck's curve is as often drawn with a rational as with an
-/// exponential fall; this one costs two multiplications and a division.
-fn break_away_share(velocity_rad_s: f32) -> f32 {
-    let ratio = velocity_rad_s / BREAK_AWAY_SPEED_RAD_S;
-    let fall = 1.0 / (1.0 + ratio * ratio);
-    fall * fall
 }
 
 /// How far the filter trusts model and encoder. Shares are of [`AxisConfig::unknown_nm`].
@@ -158,8 +138,8 @@ impl Kalman {
             velocity_rad_s: 0.0,
             acceleration_rad_s2: 0.0,
             since_edge_s: 0.0,
-            edges: EdgeTable::unknown(tuning.edge_noise_counts),
-            learned: Learned::default(),
+            edges: EdgeTable::about(axis.quirks.edges_counts, tuning.edge_noise_counts),
+            learned: Learned { break_away_nm: axis.quirks.break_away_nm, ..Learned::default() },
             covariance,
         }
     }
@@ -174,7 +154,8 @@ impl Kalman {
         let before = self.velocity_rad_s;
         let inertia = effort.inertia_kg_m2 * (1.0 + self.learned.inertia_share);
         let gain = TICK_S / inertia;
-        let friction = axis.friction.with_excess(self.learned.friction_at(before));
+        let angle = self.count as f32 * axis.count_rad + self.offset_rad;
+        let friction = axis.friction.with_excess(axis.quirks.excess_nm(&self.learned, angle, before));
         let drive = effort.torque_nm - effort.bias_nm + self.learned.load_nm;
         let momentum = inertia * before + TICK_S * drive;
         let after = friction.resolve(momentum, inertia, TICK_S);
@@ -185,7 +166,7 @@ impl Kalman {
             1.0,
             gain,
             against,
-            against * break_away_share(before),
+            against * axis.quirks.break_away_share(before),
             (before - after) / (1.0 + self.learned.inertia_share),
         ];
         self.since_edge_s += TICK_S;

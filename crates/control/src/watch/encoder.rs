@@ -168,7 +168,7 @@ impl Expectation {
         let most = if way == self.way { shown } else { 0.0 };
         let (rate_rad_s, load_nm) = (within(estimate.velocity_rad_s, most), estimate.learned.load_nm);
         let holding_nm = axis.unknown_nm
-            + estimate.learned.friction_at(0.0).max(0.0)
+            + (estimate.learned.friction_nm + estimate.learned.break_away_nm).max(0.0)
             + LOAD_DEVIATIONS * estimate.torque_deviation_nm;
         *self = Self { rate_rad_s, travel_rad: 0.0, load_nm, holding_nm, way, since: 0.0 };
     }

@@ -57,6 +57,14 @@ const MESSAGES: &[(&str, &str)] = &[
         "The speed asked for with --speed is reached nowhere on the drawing. The message names the best possible.",
     ),
     (
+        "record",
+        "A record to identify a head from is no table of consecutive control ticks. It has the columns t_s, pan_count, tilt_count, pan_v, tilt_v, a row a millisecond, as trace.csv does; the message names the line.",
+    ),
+    (
+        "identify",
+        "A joint moved too little to tell what it is made of. Give a longer record, of motion to and fro, or none: then the rig moves by itself.",
+    ),
+    (
         "rig-file",
         "A rig file is wrong. The message shows file, line and value, what is allowed and what to do.",
     ),

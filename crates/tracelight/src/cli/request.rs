@@ -26,7 +26,7 @@ pub(crate) struct TraceArgs {
     pub(crate) driving: DrivingArgs,
     #[command(flatten)]
     pub(crate) law: LawArgs,
-    /// Draw it that many times, each from power-up; the figures are the last lap's
+    /// Draw it that many times, each from power-up, the head identified between them; the figures are the last lap's
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) laps: u32,
     /// What differs from head to head is drawn from this seed

@@ -2,7 +2,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use tracelight_rig::{Darkness, DarknessSet};
+use tracelight_rig::{Darkness, DarknessSet, TICK_F64_S};
 
 use super::sample::{Sample, samples};
 use super::words::phase_word;
@@ -11,11 +11,12 @@ use super::{Job, OutputError};
 /// Columns of `trace.csv`; `lap` follows where there were several.
 const HEADER: &str = "t_s,x_m,y_m,laser,pan_rad,tilt_rad,pan_set_rad,tilt_set_rad,pan_count,tilt_count,pan_v,tilt_v,\
                       gate,plan_x_m,plan_y_m,error_mm,phase,dark,pan_est_rad,tilt_est_rad,plan_tick,pan_est_rad_s,tilt_est_rad_s,\
-                      pan_est_rad_s2,tilt_est_rad_s2";
+                      pan_est_rad_s2,tilt_est_rad_s2,pan_edge_ms,tilt_edge_ms";
 
 /// Writes one row a control tick, laps after each other.
 ///
-/// Decimals are fixed (0.1 µm, 0.1 µrad, 0.1 mV), so equal runs give equal bytes. Where the beam misses the plane,
+/// `pan_edge_ms`: how long before the tick the joint's last edge came, if one came in the tick before and was stamped.
+/// Decimals are fixed (0.1 µm, 0.1 µrad, 0.1 mV, 1 ns), so equal runs give equal bytes. Where the beam misses the plane,
 /// `x_m`, `y_m` and `error_mm` are empty.
 pub(super) fn write(path: &Path, job: &Job<'_>) -> Result<(), OutputError> {
     let file = File::create(path).map_err(OutputError::at(path))?;
@@ -96,6 +97,10 @@ fn row(line: &mut Vec<u8>, sample: &Sample<'_>) {
     push_fixed(line, telemetry.velocity_rad_s.tilt.into(), 5);
     push_fixed(line, telemetry.acceleration_rad_s2.pan.into(), 3);
     push_fixed(line, telemetry.acceleration_rad_s2.tilt.into(), 3);
+    for measured in [telemetry.measured.pan, telemetry.measured.tilt] {
+        let age_ms = measured.edge_age_ticks.map(|ticks| f64::from(ticks) * TICK_F64_S * 1e3);
+        push_optional(line, age_ms, 6);
+    }
 }
 
 fn push_word(line: &mut Vec<u8>, word: &str) {
@@ -211,7 +216,7 @@ mod tests {
         let text = text(&fixture.job());
         let mut lines = text.lines();
         let columns = lines.next().unwrap().split(',').count();
-        assert_eq!(columns, 25);
+        assert_eq!(columns, 27);
         let rows: Vec<_> = lines.collect();
         assert_eq!(rows.len(), fixture.run.ticks.len());
         assert!(rows.iter().all(|row| row.split(',').count() == columns));

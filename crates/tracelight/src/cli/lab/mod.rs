@@ -1,5 +1,6 @@
 //! The control engineer's bench, one file a subcommand.
 
+mod identify;
 mod montecarlo;
 mod moves;
 mod profile;
@@ -17,7 +18,7 @@ use crate::failure::Failure;
 use crate::stop::Stop;
 use crate::units::Unit;
 
-/// The control engineer's bench: profiles, moves, step responses, many heads at once
+/// The control engineer's bench: profiles, moves, step responses, identification, many heads at once
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab profile --distance 180deg -o profiles.svg")]
 pub(crate) struct LabArgs {
@@ -31,6 +32,7 @@ enum LabAction {
     Move(moves::MoveArgs),
     Step(step::StepArgs),
     Velocity(velocity::VelocityArgs),
+    Identify(identify::IdentifyArgs),
     #[command(name = "montecarlo")]
     MonteCarlo(montecarlo::MonteCarloArgs),
 }
@@ -42,6 +44,7 @@ impl LabArgs {
             LabAction::Move(args) => args.voice(),
             LabAction::Step(args) => args.voice,
             LabAction::Velocity(args) => args.voice,
+            LabAction::Identify(args) => args.voice,
             LabAction::MonteCarlo(args) => args.voice,
         }
     }
@@ -53,6 +56,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Move(args) => moves::run(args, stop),
         LabAction::Step(args) => step::run(args),
         LabAction::Velocity(args) => velocity::run(args, stop),
+        LabAction::Identify(args) => identify::run(args, stop),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
 }

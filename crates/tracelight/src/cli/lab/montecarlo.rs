@@ -4,9 +4,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
-use tracelight_lab::Quantiles;
-use tracelight_rig::Fault;
-use tracelight_sim::{SimulatedRig, Spread, Tracking, score};
+use tracelight_lab::{Quantiles, identify};
+use tracelight_rig::{Fault, Telemetry};
+use tracelight_sim::{RigConfig, SimulatedRig, Spread, Tracking, score};
 use tracelight_trajectory::Plan;
 
 use super::shape::ShapeArgs;
@@ -30,6 +30,9 @@ pub(crate) struct MonteCarloArgs {
     plants: u32,
     #[command(flatten)]
     shape: ShapeArgs,
+    /// Laps each head draws, identified between them; the figures are the last lap's
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
+    laps: u32,
     /// Seed of the first head; the next have the seeds after it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..u64::MAX / 2))]
     seed: u64,
@@ -72,7 +75,7 @@ fn run_all(args: &MonteCarloArgs, driving: &Driving, plan: &Plan, stop: &Stop) -
             if stop.is_wanted() {
                 return;
             }
-            let trial = trial(driving, plan, args.seed + number as u64);
+            let trial = trial(driving, plan, args.laps, args.seed + number as u64);
             let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             done.push((number, trial));
             progress.at(done.len() as u64);
@@ -85,10 +88,21 @@ fn run_all(args: &MonteCarloArgs, driving: &Driving, plan: &Plan, stop: &Stop) -
     done.into_iter().map(|(_, trial)| trial).collect()
 }
 
-fn trial(driving: &Driving, plan: &Plan, seed: u64) -> Trial {
-    let rig = Spread::USUAL.draw(&driving.rig, seed);
-    let mut simulated = SimulatedRig::new(&rig, driving.pose, seed);
-    let run = tracelight_sim::run(&mut simulated, plan, false, |_, _| ControlFlow::Continue(()));
+fn trial(driving: &Driving, plan: &Plan, laps: u32, seed: u64) -> Trial {
+    let head = Spread::USUAL.draw(&driving.rig, seed);
+    let draw = |rig: &RigConfig| {
+        let mut simulated = SimulatedRig::new(rig, driving.pose, seed);
+        tracelight_sim::run(&mut simulated, plan, false, |_, _| ControlFlow::Continue(()))
+    };
+    let mut run = draw(&head);
+    let mut records: Vec<Vec<Telemetry>> = Vec::new();
+    for _ in 1..laps {
+        records.push(run.ticks.iter().map(|tick| tick.telemetry).collect());
+        let slices: Vec<&[Telemetry]> = records.iter().map(Vec::as_slice).collect();
+        // a head that shows too little goes on as it is believed to be
+        let rig = identify(&head, &slices).map_or_else(|_| head.clone(), |found| found.rig);
+        run = draw(&rig);
+    }
     Trial {
         finished: run.is_done(),
         fault: run.fault(),
@@ -137,8 +151,9 @@ fn failure(trials: &[Trial]) -> Option<Failure> {
 fn table(args: &MonteCarloArgs, driving: &Driving, trials: &[Trial]) -> String {
     let law = driving.rig.control.law;
     let mut text = format!(
-        "{} on {} heads like {}, law {}: {} finished, {} left the stroke and came back\n\n{:28} {:>8} {:>8} {:>8}",
+        "{}{} on {} heads like {}, law {}: {} finished, {} left the stroke and came back\n\n{:28} {:>8} {:>8} {:>8}",
         args.shape.shape,
+        if args.laps > 1 { format!(", lap {},", args.laps) } else { String::new() },
         trials.len(),
         driving.rig.name,
         law.name(),

@@ -1,0 +1,207 @@
+//! Linear least squares over stretches of motion.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::equations::{Equations, MECHANICS, PHASES, RIPPLE_COS, RIPPLE_SIN};
+use super::stretch::{Row, Stretch};
+
+/// All unknowns: the mechanical ones and where the edges lie.
+const UNKNOWNS: usize = MECHANICS + PHASES;
+
+type Line = SVector<f64, UNKNOWNS>;
+
+/// Deviation of an edge's place before anything was seen, counts.
+const EDGE_DEVIATION_COUNTS: f64 = 0.1;
+/// Deviation of what is left of an edge, counts.
+const NOISE_COUNTS: f64 = 0.05;
+/// What is left of neighbouring edges is alike where friction changes along the way: a stretch is worth so many at most.
+const WORTH_EDGES: f64 = 8.0;
+/// Stretches that are worse than so many times the middle one are none of this equation's: the joint stuck, somebody pushed.
+const OUTLIER: f64 = 4.0;
+
+/// The most likely equations after what is believed and what was seen (Gaussian prior and noise), found twice: stretches
+/// that do not fit the first are left out of the second.
+pub(super) fn fit(believed: &Equations, stretches: &[&Stretch]) -> Equations {
+    let first = Normal::of(believed, stretches).with_prior(believed).equations(believed);
+    let left: Vec<f64> = stretches.iter().map(|s| stretch_counts(&first, s)).collect();
+    let bound = OUTLIER * median(&left);
+    let kept: Vec<&Stretch> =
+        stretches.iter().zip(&left).filter(|(_, left)| **left <= bound).map(|(s, _)| *s).collect();
+    Normal::of(believed, &kept).with_prior(believed).equations(believed)
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
+}
+
+/// How well each of some ripples explains what the rest leaves: by how much less the sum of squares is with it, for every number
+/// of periods.
+pub(super) fn ripple_gains(believed: &Equations, stretches: &[&Stretch], periods: &[f64]) -> Vec<f64> {
+    let plain = Normal::of(&believed.rippling(0.0), stretches);
+    periods
+        .iter()
+        .map(|&n| {
+            let mut normal = plain.clone();
+            stretches.iter().for_each(|stretch| normal.put_ripple(stretch, n));
+            normal.with_prior(&believed.rippling(n)).gain()
+        })
+        .collect()
+}
+
+/// Normal equations of the change of what is believed.
+#[derive(Clone)]
+struct Normal {
+    matrix: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+    right: Line,
+    /// Every line with its value and weight, in the order of the stretches.
+    lines: Vec<(Line, f64, f64)>,
+    used: usize,
+}
+
+impl Normal {
+    fn of(believed: &Equations, stretches: &[&Stretch]) -> Self {
+        let mut normal = Self { matrix: SMatrix::zeros(), right: Line::zeros(), lines: Vec::new(), used: 0 };
+        for stretch in stretches {
+            normal.put(believed, stretch);
+        }
+        normal
+    }
+
+    fn put(&mut self, believed: &Equations, stretch: &Stretch) {
+        let free = Free::of(stretch);
+        let worth = (WORTH_EDGES / stretch.rows.len() as f64).min(1.0);
+        for (row, (line, value)) in stretch.rows.iter().zip(free.lines(stretch, believed)) {
+            let noise = (NOISE_COUNTS * stretch.count_rad).hypot(row.blur_rad);
+            let weight = worth / (noise * noise);
+            self.matrix.ger(weight, &line, &line, 1.0);
+            self.right.axpy(weight * value, &line, 1.0);
+            self.lines.push((line, value, weight));
+        }
+    }
+
+    /// Puts the columns of a ripple in place of empty ones; stretches come in their order.
+    fn put_ripple(&mut self, stretch: &Stretch, periods: f64) {
+        let free = Free::of(stretch);
+        let columns = stretch.ripple(periods);
+        let column = |k: usize| free.leave_of(&stretch.rows, &columns[k]);
+        let (sines, cosines) = (column(0), column(1));
+        for (sin, cos) in sines.into_iter().zip(cosines) {
+            let Some((line, value, weight)) = self.lines.get_mut(self.used) else { return };
+            self.used += 1;
+            (line[RIPPLE_SIN], line[RIPPLE_COS]) = (sin, cos);
+            for (place, entry) in [(RIPPLE_SIN, sin), (RIPPLE_COS, cos)] {
+                self.right[place] += *weight * *value * entry;
+                for k in 0..UNKNOWNS {
+                    let product = *weight * entry * line[k];
+                    self.matrix[(place, k)] += product;
+                    if k != RIPPLE_SIN && k != RIPPLE_COS {
+                        self.matrix[(k, place)] += product;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes the unknowns for as uncertain as they are believed to be.
+    fn with_prior(mut self, believed: &Equations) -> Self {
+        // what a joint has none of stays so
+        const NONE: f64 = 1e-9;
+        for k in 0..UNKNOWNS {
+            let deviation = believed.deviations.get(k).map_or(EDGE_DEVIATION_COUNTS, |d| d.max(NONE));
+            self.matrix[(k, k)] += 1.0 / (deviation * deviation);
+        }
+        self
+    }
+
+    /// The most likely change. The diagonal spans many orders of magnitude and is balanced first.
+    fn change(&self) -> Line {
+        let scale = self.matrix.diagonal().map(|d| 1.0 / d.sqrt());
+        let scaled: SMatrix<f64, UNKNOWNS, UNKNOWNS> =
+            SMatrix::from_fn(|i, j| self.matrix[(i, j)] * scale[i] * scale[j]);
+        let solution = scaled.cholesky().map(|c| c.solve(&self.right.component_mul(&scale)));
+        solution.map_or_else(Line::zeros, |s| s.component_mul(&scale))
+    }
+
+    /// By how much the weighted sum of squares falls.
+    fn gain(&self) -> f64 {
+        self.right.dot(&self.change())
+    }
+
+    fn equations(&self, believed: &Equations) -> Equations {
+        let change = self.change();
+        let mut theta = believed.theta;
+        theta.iter_mut().zip(change.iter()).for_each(|(value, change)| *value += change);
+        let mut edges = believed.edges_counts;
+        edges.iter_mut().zip(change.iter().skip(MECHANICS)).for_each(|(value, change)| *value += change);
+        // what is common to all four is a turn of the whole disc
+        let mean = edges.iter().sum::<f64>() / PHASES as f64;
+        believed.with(theta, edges.map(|edge| edge - mean))
+    }
+}
+
+/// What position and speed at a stretch's start, which are free, leave of any quantity over it.
+struct Free {
+    mean_s: f64,
+    spread: f64,
+}
+
+impl Free {
+    fn of(stretch: &Stretch) -> Self {
+        let count = stretch.rows.len() as f64;
+        let mean_s = stretch.rows.iter().map(|row| row.time_s).sum::<f64>() / count;
+        let spread = stretch.rows.iter().map(|row| (row.time_s - mean_s).powi(2)).sum::<f64>();
+        Self { mean_s, spread }
+    }
+
+    /// Takes the best straight line over time out of a quantity.
+    fn leave_of(&self, rows: &[Row], values: &[f64]) -> Vec<f64> {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let since = |row: &Row| row.time_s - self.mean_s;
+        let slope = rows.iter().zip(values).map(|(r, v)| v * since(r)).sum::<f64>() / self.spread.max(1e-12);
+        rows.iter().zip(values).map(|(r, v)| v - mean - slope * since(r)).collect()
+    }
+
+    fn leave(&self, stretch: &Stretch, quantity: impl Fn(&Row) -> f64) -> Vec<f64> {
+        self.leave_of(&stretch.rows, &stretch.rows.iter().map(quantity).collect::<Vec<_>>())
+    }
+
+    /// Lines of the least squares for the change of what is believed: coefficients of the unknowns, and what is to be
+    /// explained, rad.
+    fn lines(&self, stretch: &Stretch, believed: &Equations) -> Vec<(Line, f64)> {
+        let count_rad = stretch.count_rad;
+        let value = self.leave(stretch, |row| off_rad(believed, row, count_rad));
+        let columns: Vec<Vec<f64>> =
+            (0..UNKNOWNS).map(|k| self.leave(stretch, |row| column(row, k, count_rad))).collect();
+        let line = |i: usize| Line::from_fn(|k, _| columns[k][i]);
+        value.iter().enumerate().map(|(i, &value)| (line(i), value)).collect()
+    }
+}
+
+/// Where the edge lies beyond where the equations put the joint when it came, but for position and speed at the start, rad.
+fn off_rad(equations: &Equations, row: &Row, count_rad: f64) -> f64 {
+    let moved: f64 = equations.theta.iter().zip(&row.columns).map(|(theta, column)| theta * column).sum();
+    row.angle_rad + equations.edges_counts[row.phase] * count_rad - moved
+}
+
+/// How an unknown changes what is to be explained.
+fn column(row: &Row, unknown: usize, count_rad: f64) -> f64 {
+    match unknown.checked_sub(MECHANICS) {
+        None => row.columns[unknown],
+        Some(phase) if phase == row.phase => -count_rad,
+        Some(_) => 0.0,
+    }
+}
+
+/// How far equations are off on a stretch, root mean square, counts.
+fn stretch_counts(equations: &Equations, stretch: &Stretch) -> f64 {
+    let left = Free::of(stretch).leave(stretch, |row| off_rad(equations, row, stretch.count_rad));
+    (left.iter().map(|value| value * value).sum::<f64>() / left.len() as f64).sqrt() / stretch.count_rad
+}
+
+/// The same over many, each stretch alike.
+pub(super) fn residual_counts(equations: &Equations, stretches: &[&Stretch]) -> f64 {
+    let squares: f64 = stretches.iter().map(|s| stretch_counts(equations, s).powi(2)).sum();
+    (squares / stretches.len().max(1) as f64).sqrt()
+}
