@@ -56,6 +56,17 @@ pub struct Quirks {
     pub edges_counts: [f32; 4],
     /// How Coulomb friction changes along the way.
     pub ripple: Ripple,
+    /// What its cables do.
+    pub cable: Cable,
+}
+
+/// Cables that hang on a joint: `load_nm` − `spring_nm_per_rad` q acts on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cable {
+    /// N m at zero.
+    pub load_nm: f32,
+    /// N m/rad.
+    pub spring_nm_per_rad: f32,
 }
 
 /// Friction that ripples over a turn of a joint, as gears make it: `sin_nm` sin(nq) + `cos_nm` cos(nq) on top of the Coulomb
@@ -78,6 +89,7 @@ impl Quirks {
         break_away_rad_s: 0.02,
         edges_counts: [0.0; 4],
         ripple: Ripple { periods: 0.0, sin_nm: 0.0, cos_nm: 0.0 },
+        cable: Cable { load_nm: 0.0, spring_nm_per_rad: 0.0 },
     };
 
     /// Share of the break-away excess that is left at a speed. Stribeck's curve exp(−x²) as (1 + x²/8)⁻⁸, which is within
@@ -94,6 +106,13 @@ impl Quirks {
         self.ripple.friction_nm(angle_rad)
             + learned.friction_nm
             + self.break_away_share(velocity_rad_s) * learned.break_away_nm
+    }
+}
+
+impl Cable {
+    /// What acts at an angle, N m.
+    pub(crate) fn torque_nm(&self, angle_rad: f32) -> f32 {
+        self.load_nm - self.spring_nm_per_rad * angle_rad
     }
 }
 

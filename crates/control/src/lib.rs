@@ -28,7 +28,7 @@ mod servo;
 mod supervisor;
 mod watch;
 
-pub use config::{AxisConfig, Config, Quirks, Ripple};
+pub use config::{AxisConfig, Cable, Config, Quirks, Ripple};
 pub use controller::{Controller, State};
 pub use law::{Biquad, Feedback, Feedforward, LawConfig, LeadLag, Pid, StateFeedback};
 pub use model::{FrictionModel, HeadModel};

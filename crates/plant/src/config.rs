@@ -44,6 +44,25 @@ pub struct Wear {
     pub backlash_rad: f64,
     /// Largest relative error of an amplifier's gain; drawn from the seed.
     pub gain_spread: f64,
+    /// With how many Hz what a joint carries swings on its belt; zero for belts that do not give.
+    pub belt_resonance_hz: f64,
+    /// How that is damped, as a share of critical damping.
+    pub belt_damping: f64,
+    /// Whether encoders sit on the motors' side of the belts and read the rotors; else they read the joints.
+    pub encoders_at_motors: bool,
+    /// By how much an encoder's disc sits beside its axis: amplitude of what it reads wrong over a turn, counts; drawn from the
+    /// seed is in which direction.
+    pub eccentricity_counts: f64,
+    /// Time constant with which an amplifier's current follows its command, s.
+    pub current_lag_s: f64,
+    /// Share by which the supply ripples, with twice the mains frequency, and every volt's torque with it.
+    pub supply_ripple: f64,
+    /// Spring of the cables that hang on each joint, N m/rad; drawn from the seed is where they do not pull.
+    pub cable_nm_per_rad: f64,
+    /// How far a control tick may come early or late, s.
+    pub jitter_s: f64,
+    /// Share of edges the counter misses.
+    pub lost_counts: f64,
 }
 
 impl Wear {
@@ -55,6 +74,15 @@ impl Wear {
         edge_error_counts: 0.0,
         backlash_rad: 0.0,
         gain_spread: 0.0,
+        belt_resonance_hz: 0.0,
+        belt_damping: 0.03,
+        encoders_at_motors: true,
+        eccentricity_counts: 0.0,
+        current_lag_s: 0.0,
+        supply_ripple: 0.0,
+        cable_nm_per_rad: 0.0,
+        jitter_s: 0.0,
+        lost_counts: 0.0,
     };
 }
 
@@ -78,8 +106,10 @@ pub struct PlantConfig {
 impl PlantConfig {
     /// The equations of motion ready to be stepped; `ripple_phase_rad` places the friction ripple of each joint.
     pub fn stepper(&self, ripple_phase_rad: PanTilt<f64>) -> Stepper {
-        let friction =
-            PanTilt::from_fn(|j| WornFriction::new(self.friction[j], &self.wear, ripple_phase_rad[j]));
-        Stepper::new(self.bodies.lumped(), friction)
+        Stepper::new(self.bodies.lumped(), self.friction(ripple_phase_rad))
+    }
+
+    pub(crate) fn friction(&self, ripple_phase_rad: PanTilt<f64>) -> PanTilt<WornFriction> {
+        PanTilt::from_fn(|j| WornFriction::new(self.friction[j], &self.wear, ripple_phase_rad[j]))
     }
 }

@@ -10,7 +10,14 @@ pub(crate) struct Encoder {
     count_rad: f64,
     edge_stamps: bool,
     edge_error_counts: [f64; PHASES],
+    /// The disc's axis beside the joint's: amplitude in counts, and the angle at which it reads right.
+    eccentricity: (f64, f64),
+    /// Edges in a row it misses one of, at the mean.
+    loses_one_in: f64,
+    dice: oorandom::Rand32,
     count: i32,
+    /// Edges it missed, upwards less downwards.
+    missed: i32,
     edge_age_ticks: Option<f32>,
 }
 
@@ -23,7 +30,44 @@ impl Encoder {
         angle_rad: f64,
     ) -> Self {
         let count = (angle_rad / count_rad + 0.5).floor() as i32;
-        Self { count_rad, edge_stamps, edge_error_counts, count, edge_age_ticks: None }
+        Self {
+            count_rad,
+            edge_stamps,
+            edge_error_counts,
+            eccentricity: (0.0, angle_rad),
+            loses_one_in: f64::INFINITY,
+            dice: oorandom::Rand32::new(0),
+            count,
+            missed: 0,
+            edge_age_ticks: None,
+        }
+    }
+
+    /// The same with a disc beside its axis, by that many counts in a direction, reading right where it is homed.
+    pub(crate) fn eccentric(mut self, counts: f64, direction_rad: f64) -> Self {
+        self.eccentricity = (counts, direction_rad);
+        self
+    }
+
+    /// The same with a counter that misses that share of all edges.
+    pub(crate) fn missing(mut self, share: f64, seed: u64) -> Self {
+        self.loses_one_in = 1.0 / share;
+        self.dice = oorandom::Rand32::new(seed);
+        self
+    }
+
+    /// What the disc makes of an angle, rad.
+    fn on_disc(&self, angle_rad: f64) -> f64 {
+        let (counts, direction) = self.eccentricity;
+        if counts == 0.0 {
+            return angle_rad;
+        }
+        angle_rad + counts * self.count_rad * ((angle_rad + direction).sin() - direction.sin())
+    }
+
+    /// Whether the counter misses an edge.
+    fn misses(&mut self) -> bool {
+        self.loses_one_in.is_finite() && f64::from(self.dice.rand_float()) * self.loses_one_in < 1.0
     }
 
     /// Angle of the edge below count `k`, rad.
@@ -42,6 +86,7 @@ impl Encoder {
     #[inline]
     pub(crate) fn follow(&mut self, from_rad: f64, to_rad: f64, end_age_ticks: f64, length_ticks: f64) {
         const MOST_COUNTS: f64 = 1e3;
+        let (from_rad, to_rad) = (self.on_disc(from_rad), self.on_disc(to_rad));
         let way = (to_rad - from_rad).abs();
         if !way.is_finite() || way > MOST_COUNTS * self.count_rad {
             // no joint does that: equations gone wrong are not followed edge by edge
@@ -50,11 +95,13 @@ impl Encoder {
         }
         while to_rad >= self.lower_edge_rad(self.count + 1) {
             self.count += 1;
+            self.missed += i32::from(self.misses());
             self.stamp(self.lower_edge_rad(self.count), from_rad, to_rad, end_age_ticks, length_ticks);
         }
         while to_rad < self.lower_edge_rad(self.count) {
             self.stamp(self.lower_edge_rad(self.count), from_rad, to_rad, end_age_ticks, length_ticks);
             self.count -= 1;
+            self.missed -= i32::from(self.misses());
         }
     }
 
@@ -67,7 +114,7 @@ impl Encoder {
     }
 
     pub(crate) fn measurement(&self) -> Measurement {
-        Measurement { count: self.count, edge_age_ticks: self.edge_age_ticks }
+        Measurement { count: self.count - self.missed, edge_age_ticks: self.edge_age_ticks }
     }
 }
 

@@ -4,6 +4,7 @@
 //! nonlinear equations of motion with friction that truly sticks, quantizes what the encoders see, switches the
 //! laser through a relay and knows where the beam really is. It never sees the controller.
 
+mod belt;
 mod config;
 mod encoder;
 mod friction;

@@ -1,21 +1,28 @@
 use tracelight_rig::{Actuation, Head, Joint, PanTilt, Sensed, TICK_F64_S};
 
+use crate::belt::Belted;
 use crate::encoder::Encoder;
 use crate::light::{Relay, play};
-use crate::{JointState, PlantConfig, Stepper};
+use crate::{JointState, PlantConfig, Stepper, Wear};
 
 /// Plant substeps in a tick. Measured on a traced polygon: four times as many change the rms and the largest
 /// error by less than 0.02 % on the preset `report` and by 0.02 % on `worn`.
 const SUBSTEPS: u32 = 10;
+/// Twice the mains frequency: what a rectifier leaves of it.
+const SUPPLY_HZ: f64 = 100.0;
+/// How far from straight ahead cables may hang at rest, rad.
+const CABLE_REST_RAD: f64 = 0.3;
 
 /// A simulated head: [`Head`] on the controller's side, the truth on the other.
 #[derive(Clone, Debug)]
 pub struct Plant {
     // what it is
-    stepper: Stepper,
+    mechanism: Mechanism,
     torque_nm_per_v: PanTilt<f64>,
     limit_v: PanTilt<f64>,
-    backlash_rad: f64,
+    wear: Wear,
+    /// Where cables do not pull, rad.
+    cable_rest_rad: PanTilt<f64>,
     // where it is
     state: JointState,
     beam_rad: PanTilt<f64>,
@@ -23,6 +30,19 @@ pub struct Plant {
     relay: Relay,
     push_nm: PanTilt<f64>,
     supply_left: f64,
+    /// What the motors give, N m: it follows the command.
+    current_nm: PanTilt<f64>,
+    time_s: f64,
+    /// How late the present tick began, s.
+    late_s: f64,
+    dice: Dice,
+}
+
+/// What turns: joints that are one with their rotors, or hang on belts.
+#[derive(Clone, Copy, Debug)]
+enum Mechanism {
+    Rigid(Stepper),
+    Belted { belted: Belted, encoders_at_motors: bool },
 }
 
 impl Plant {
@@ -39,17 +59,30 @@ impl Plant {
             Encoder::new(count_rad, config.encoder.edge_stamps, table, rest[j])
         });
         let gain = |j: Joint| config.motors[j].torque_nm_per_v * (1.0 + wear.gain_spread * dice.signed());
+        let torque_nm_per_v = PanTilt::from_fn(gain);
+        // what is drawn from here on was not there once: the same seeds give the same heads as then
+        let cable_rest_rad = PanTilt::from_fn(|_| CABLE_REST_RAD * dice.signed());
+        let encoders = PanTilt::from_fn(|j: Joint| {
+            let direction = std::f64::consts::PI * dice.signed();
+            let worn = encoders[j].eccentric(wear.eccentricity_counts, direction);
+            worn.missing(wear.lost_counts, seed.wrapping_add(j as u64))
+        });
         Self {
-            stepper: config.stepper(ripple_phase),
-            torque_nm_per_v: PanTilt::from_fn(gain),
+            mechanism: Mechanism::new(config, ripple_phase, rest),
+            torque_nm_per_v,
             limit_v: config.motors.map(|m| m.limit_v),
-            backlash_rad: wear.backlash_rad,
+            wear: *wear,
+            cable_rest_rad,
             state: JointState { angle_rad: rest, rate_rad_s: PanTilt::default() },
             beam_rad: rest,
             encoders,
             relay: Relay::new(config.relay),
             push_nm: PanTilt::default(),
             supply_left: 1.0,
+            current_nm: PanTilt::default(),
+            time_s: 0.0,
+            late_s: 0.0,
+            dice,
         }
     }
 
@@ -88,38 +121,105 @@ impl Plant {
         self.supply_left = left;
     }
 
-    fn substep(&mut self, torque_nm: PanTilt<f64>, number: u32) {
+    /// A part of a tick that lasts `tick_s`.
+    fn substep(&mut self, asked_nm: PanTilt<f64>, tick_s: f64, number: u32) {
         const LENGTH: f64 = 1.0 / SUBSTEPS as f64;
+        let (length_s, ticks) = (LENGTH * tick_s, tick_s / TICK_F64_S);
         let from = self.state.angle_rad;
-        self.stepper.step(&mut self.state, torque_nm, LENGTH * TICK_F64_S);
+        self.follow_command(asked_nm, length_s);
+        let pull = self.wear.cable_nm_per_rad;
+        let others = PanTilt::from_fn(|j| self.push_nm[j] - pull * (from[j] - self.cable_rest_rad[j]));
+        let carried = self.mechanism.step(&mut self.state, self.current_nm, others, length_s);
         let to = self.state.angle_rad;
         let end_age = 1.0 - f64::from(number + 1) * LENGTH;
         for joint in Joint::BOTH {
-            self.encoders[joint].follow(from[joint], to[joint], end_age, LENGTH);
-            self.beam_rad[joint] = play(self.beam_rad[joint], to[joint], self.backlash_rad);
+            self.encoders[joint].follow(from[joint], to[joint], end_age * ticks, LENGTH * ticks);
+            self.beam_rad[joint] = play(self.beam_rad[joint], carried[joint], self.wear.backlash_rad);
+        }
+        self.time_s += length_s;
+    }
+
+    /// Torque of the motors: what is asked for, as much of it as the supply has, once the current is there.
+    fn follow_command(&mut self, asked_nm: PanTilt<f64>, length_s: f64) {
+        let ripple = self.wear.supply_ripple * (std::f64::consts::TAU * SUPPLY_HZ * self.time_s).sin();
+        let supply = self.supply_left * (1.0 + ripple);
+        let there = asked_nm.map(|asked| supply * asked);
+        let lag_s = self.wear.current_lag_s;
+        if lag_s == 0.0 {
+            self.current_nm = there;
+            return;
+        }
+        let share = 1.0 - (-length_s / lag_s).exp();
+        for joint in Joint::BOTH {
+            self.current_nm[joint] += share * (there[joint] - self.current_nm[joint]);
+        }
+    }
+
+    /// How long this tick lasts, s: ticks come early or late, each by itself.
+    fn tick_s(&mut self) -> f64 {
+        if self.wear.jitter_s == 0.0 {
+            return TICK_F64_S;
+        }
+        let before = std::mem::replace(&mut self.late_s, self.wear.jitter_s * self.dice.signed());
+        TICK_F64_S + self.late_s - before
+    }
+}
+
+impl Mechanism {
+    fn new(config: &PlantConfig, ripple_phase_rad: PanTilt<f64>, rest_rad: PanTilt<f64>) -> Self {
+        let wear = &config.wear;
+        if wear.belt_resonance_hz == 0.0 {
+            return Self::Rigid(config.stepper(ripple_phase_rad));
+        }
+        let belt = (wear.belt_resonance_hz, wear.belt_damping);
+        let (lumped, rotors) = (config.bodies.lumped(), config.bodies.rotor_kg_m2);
+        let belted = Belted::new(lumped, rotors, config.friction(ripple_phase_rad), belt, rest_rad);
+        Self::Belted { belted, encoders_at_motors: wear.encoders_at_motors }
+    }
+
+    /// Steps what the encoders see; where the joints are, which carry the beam, rad.
+    fn step(
+        &mut self,
+        seen: &mut JointState,
+        motor_nm: PanTilt<f64>,
+        others_nm: PanTilt<f64>,
+        step_s: f64,
+    ) -> PanTilt<f64> {
+        match self {
+            Self::Rigid(stepper) => {
+                let all = PanTilt::from_fn(|j| motor_nm[j] + others_nm[j]);
+                stepper.step(seen, all, step_s);
+                seen.angle_rad
+            }
+            Self::Belted { belted, encoders_at_motors } => {
+                belted.step(motor_nm, others_nm, step_s);
+                *seen = if *encoders_at_motors { belted.rotors() } else { *belted.joints() };
+                belted.joints().angle_rad
+            }
         }
     }
 }
 
 impl Head for Plant {
     fn exchange(&mut self, actuation: &Actuation) -> Sensed {
-        let torque = PanTilt::from_fn(|j| {
+        let asked = PanTilt::from_fn(|j| {
             let limit = self.limit_v[j];
-            let volts = f64::from(actuation.command_v[j]).clamp(-limit, limit);
-            volts * self.supply_left * self.torque_nm_per_v[j] + self.push_nm[j]
+            f64::from(actuation.command_v[j]).clamp(-limit, limit) * self.torque_nm_per_v[j]
         });
         for joint in Joint::BOTH {
             self.encoders[joint].begin_tick();
         }
+        let lasts_s = self.tick_s();
         for number in 0..SUBSTEPS {
-            self.substep(torque, number);
-            self.relay.drive(actuation.gate, TICK_F64_S / f64::from(SUBSTEPS));
+            self.substep(asked, lasts_s, number);
+            self.relay.drive(actuation.gate, lasts_s / f64::from(SUBSTEPS));
         }
         Sensed { encoders: self.encoders.map(|e| e.measurement()), laser_on: Some(self.relay.is_closed()) }
     }
 }
 
 /// Seeded draws.
+#[derive(Clone, Debug)]
 struct Dice(oorandom::Rand64);
 
 impl Dice {
@@ -132,7 +232,7 @@ impl Dice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{EncoderConfig, RelayConfig, Wear};
+    use crate::{EncoderConfig, RelayConfig};
     use tracelight_dynamics::{Friction, HeadBodies, Motor};
 
     fn config() -> PlantConfig {

@@ -51,7 +51,7 @@ impl Stepper {
 }
 
 /// One joint's line of the complementarity problem, all times h.
-struct Row {
+pub(crate) struct Row {
     pos: f64,
     neg: f64,
     inverse_pos: f64,
@@ -60,7 +60,13 @@ struct Row {
 
 impl Row {
     #[inline]
-    fn new(friction: &WornFriction, angle_rad: f64, rate_rad_s: f64, inertia: f64, h: f64) -> Self {
+    pub(crate) fn new(
+        friction: &WornFriction,
+        angle_rad: f64,
+        rate_rad_s: f64,
+        inertia: f64,
+        h: f64,
+    ) -> Self {
         let Levels { pos_nm, neg_nm } = friction.levels(angle_rad, rate_rad_s);
         Self {
             pos: h * pos_nm,
@@ -72,7 +78,7 @@ impl Row {
 
     /// The new speed for a momentum `b`: past either Coulomb level it slides, between them it sticks.
     #[inline]
-    fn resolve(&self, b: f64) -> f64 {
+    pub(crate) fn resolve(&self, b: f64) -> f64 {
         if b > self.pos {
             (b - self.pos) * self.inverse_pos
         } else if b < self.neg {

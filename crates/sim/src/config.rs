@@ -64,6 +64,17 @@ pub struct Quirks {
     pub edges_counts: [f64; 4],
     /// How Coulomb friction changes along the way.
     pub ripple: Ripple,
+    /// What its cables do.
+    pub cable: Cable,
+}
+
+/// Cables that hang on a joint: `load_nm` − `spring_nm_per_rad` q acts on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cable {
+    /// N m at zero.
+    pub load_nm: f64,
+    /// N m/rad.
+    pub spring_nm_per_rad: f64,
 }
 
 impl Identified {
@@ -89,6 +100,7 @@ impl Quirks {
         break_away_rad_s: 0.02,
         edges_counts: [0.0; 4],
         ripple: Ripple { periods: 0.0, sin_nm: 0.0, cos_nm: 0.0 },
+        cable: Cable { load_nm: 0.0, spring_nm_per_rad: 0.0 },
     };
 }
 

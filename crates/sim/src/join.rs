@@ -1,7 +1,7 @@
 //! What each room is told of a rig.
 
 use tracelight_aim::HeadPose;
-use tracelight_control::{AxisConfig, Config, FrictionModel, HeadModel, MotorRating, Quirks, Ripple};
+use tracelight_control::{AxisConfig, Cable, Config, FrictionModel, HeadModel, MotorRating, Quirks, Ripple};
 use tracelight_dynamics::{Friction, Lumped};
 use tracelight_plant::PlantConfig;
 use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
@@ -90,6 +90,10 @@ impl RigConfig {
                 periods: found.ripple.periods as f32,
                 sin_nm: found.ripple.sin_nm as f32,
                 cos_nm: found.ripple.cos_nm as f32,
+            },
+            cable: Cable {
+                load_nm: found.cable.load_nm as f32,
+                spring_nm_per_rad: found.cable.spring_nm_per_rad as f32,
             },
         }
     }

@@ -18,7 +18,9 @@ mod step;
 mod trouble;
 
 pub use bench::BenchTick;
-pub use config::{ControlSettings, Identified, Model, MotionSettings, Quirks, RigConfig, Ripple, Truth};
+pub use config::{
+    Cable, ControlSettings, Identified, Model, MotionSettings, Quirks, RigConfig, Ripple, Truth,
+};
 pub use laws::{LawName, ObserverName};
 pub use replay::replay;
 pub use run::{Feeder, Run, SimulatedRig, Tick, run, run_segments};

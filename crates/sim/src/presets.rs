@@ -65,18 +65,38 @@ impl RigConfig {
     pub fn worn() -> Self {
         const ARCMINUTE_RAD: f64 = PI / 180.0 / 60.0;
         let wear = Wear {
+            // greased plain bearings and gearheads break away at 1.2 to 1.5 times what they slide at, from some mrad/s on
             stribeck_ratio: 1.3,
             stribeck_speed_rad_s: 0.02,
+            // teeth that were ground for a smooth run
             friction_ripple: 0.1,
+            // a quarter of what data sheets of optical encoders allow between their two lines
             edge_error_counts: 0.1,
+            // a good gearhead behind a tight belt
             backlash_rad: ARCMINUTE_RAD,
+            // amplifiers without a shunt; the original rig's pan gave a fifth less than its data sheet
             gain_spread: 0.1,
+            // what hangs on a joint is light, and a belt of some 50 N m/rad is soft: it swings slowly, and nothing damps it
+            belt_resonance_hz: 25.0,
+            belt_damping: 0.03,
+            encoders_at_motors: true,
+            // a disc of 20 mm that sits 1.5 µm beside its axis
+            eccentricity_counts: 0.1,
+            // an inductance of 1 mH a resistance of 1 ohm
+            current_lag_s: 1e-3,
+            // an unregulated supply under load
+            supply_ripple: 0.05,
+            // two wires and a plug: 9 mN m at the edge of the picture
+            cable_nm_per_rad: 0.02,
+            // a tick that waits for another interrupt
+            jitter_s: 50e-6,
+            lost_counts: 1e-6,
         };
         let new = Self::report();
         Self {
             name: "worn".into(),
             description:
-                "the same rig with sticking friction, backlash, uneven encoder edges and drifted amplifiers"
+                "the same rig with all that wears: sticking, play, soft belts, uneven edges, weak supply, cables"
                     .into(),
             truth: Truth { wear, ..new.truth },
             ..new

@@ -190,7 +190,8 @@ fn check(case: &Case) {
     assert!(worst.missing_ticks <= 1 && worst.doubled_ticks == 0, "{}: {worst:?}", case.name);
     assert!(worst.overshoot_mm <= COUNT_MM, "{}: {worst:?}", case.name);
     assert!(faults.len() <= case.faults, "{}: {faults:?}", case.name);
-    assert!(faults.iter().all(|&fault| fault == Fault::EncoderDead), "{}: {faults:?}", case.name);
+    let alike = [Fault::EncoderDead, Fault::EncoderNoisy];
+    assert!(faults.iter().all(|fault| alike.contains(fault)), "{}: {faults:?}", case.name);
 }
 
 fn push(rig: &mut SimulatedRig, torque_nm: f64, way: PanTilt<f64>) {
@@ -249,4 +250,31 @@ fn what_no_motor_can_hold_is_dark_as_soon() {
         let (worst, _) = all(&case);
         assert!(worst.furthest_mm <= case.furthest_mm && worst.doubled_ticks == 0, "{name}: {worst:?}");
     }
+}
+
+/// A count too many or too few is less than a watch can see. What is drawn from then on lies beside by a count; what was
+/// learned of the edges belongs to others now, and until it is learned anew most heads shake, and wait in the dark.
+#[test]
+fn a_lost_count_shifts_the_drawing_and_stops_nothing() {
+    let rig = RigConfig::report();
+    let plan = plan_of(&rig, circle(0.25));
+    let (mut furthest_mm, mut held) = (0.0f64, 0);
+    for seed in 0..60 {
+        let (at, joint) = (1200 + 60 * seed as u32, if seed % 2 == 0 { Joint::Pan } else { Joint::Tilt });
+        let by = if seed % 4 < 2 { 1 } else { -1 };
+        let mut simulated = SimulatedRig::new(&Spread::USUAL.draw(&rig, seed), POSE, seed);
+        let ran = run(&mut simulated, &plan, false, |rig, tick| {
+            if tick.telemetry.tick == at {
+                rig.suffer(Trouble::EncoderJump(joint, by));
+            }
+            ControlFlow::Continue(())
+        });
+        assert_eq!(ran.ticks.last().unwrap().telemetry.phase, Phase::Done, "seed {seed}");
+        held += usize::from(ran.ticks.len() > plan.points.len());
+        furthest_mm = ran.ticks.iter().filter(|t| t.light).map(off_mm).fold(furthest_mm, f64::max);
+    }
+    println!(
+        "a lost count: light at most {furthest_mm:.2} mm off, {held} of 60 left their stroke and came back"
+    );
+    assert!(furthest_mm <= 3.0 + COUNT_MM, "{furthest_mm} mm");
 }

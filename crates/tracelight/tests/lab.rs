@@ -304,7 +304,7 @@ fn what_the_routine_identifies_goes_to_a_rig_file_that_other_commands_take() {
     let (one, other) = (&found["tilt"]["found"], &same["tilt"]["found"]);
     near(&one["torque_nm_per_v"], other["torque_nm_per_v"].as_f64().unwrap(), 1e-4);
     let rms = |rig: &str| {
-        let drawn = run(&["trace", "../../examples/star.png", "--rig", rig, "--out", &again, "--json"]);
+        let drawn = run(&["trace", "examples/star.png", "--rig", rig, "--out", &again, "--json"]);
         let summary: Value = serde_json::from_slice(&drawn.stdout).unwrap();
         summary["tracking"]["rms_mm"].as_f64().unwrap()
     };

@@ -50,5 +50,6 @@ pub(crate) fn feedforward(
         let more = terms.own_inertia()[j] * learned.inertia_share * ahead[j].acceleration_rad_s2;
         inertial[j] + more + terms.bias_nm[j] + friction.feedforward(rate[j], FRICTION_FADE_RAD_S)
             - learned.load_nm
+            - axis.quirks.cable.torque_nm(ahead[j].position_rad)
     })
 }

@@ -113,6 +113,8 @@ pub(super) struct Kalman {
     acceleration_rad_s2: f32,
     since_edge_s: f32,
     edges: EdgeTable,
+    /// Edges of late that came where they should not.
+    surprises: f32,
     learned: Learned,
     covariance: Covariance,
 }
@@ -139,6 +141,7 @@ impl Kalman {
             acceleration_rad_s2: 0.0,
             since_edge_s: 0.0,
             edges: EdgeTable::about(axis.quirks.edges_counts, tuning.edge_noise_counts),
+            surprises: 0.0,
             learned: Learned { break_away_nm: axis.quirks.break_away_nm, ..Learned::default() },
             covariance,
         }
@@ -156,7 +159,8 @@ impl Kalman {
         let gain = TICK_S / inertia;
         let angle = self.count as f32 * axis.count_rad + self.offset_rad;
         let friction = axis.friction.with_excess(axis.quirks.excess_nm(&self.learned, angle, before));
-        let drive = effort.torque_nm - effort.bias_nm + self.learned.load_nm;
+        let pull = axis.quirks.cable.torque_nm(angle) + self.learned.load_nm;
+        let drive = effort.torque_nm - effort.bias_nm + pull;
         let momentum = inertia * before + TICK_S * drive;
         let after = friction.resolve(momentum, inertia, TICK_S);
         // whether it slides or sticks, this is the way it goes or would go
@@ -236,9 +240,26 @@ impl Kalman {
             let all = (self.covariance.variance_of_place(age_s) + variance) / (width * width);
             self.edges.learn(number, innovation / width, all);
         }
+        self.doubt_edges(surprised);
         self.homed = true;
         self.since_edge_s = age_s;
         self.observe(axis, innovation, (age_s, variance), pushed);
+    }
+
+    /// Who pushes surprises some edges; a count that was lost makes every edge one of another kind than it is taken for, and
+    /// surprises for ever. Then nothing is known of where edges lie any more.
+    fn doubt_edges(&mut self, surprised: bool) {
+        /// An edge counts for that share of the one after it,
+        const FADES: f32 = 0.9;
+        /// so that this is reached when some ten of the last fifteen surprise.
+        const LOST: f32 = 6.5;
+        /// How far misplaced an edge may be, deviations of one of which nothing is known.
+        const ANYWHERE: f32 = 2.0;
+        self.surprises = FADES * self.surprises + if surprised { 1.0 } else { 0.0 };
+        if self.surprises > LOST {
+            self.surprises = 0.0;
+            self.edges = EdgeTable::about([0.0; 4], ANYWHERE * self.tuning.edge_noise_counts);
+        }
     }
 
     /// Whether an edge came so early or late that only somebody who pushes explains it; a load is then suspected that

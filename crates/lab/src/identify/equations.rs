@@ -2,10 +2,10 @@
 
 use tracelight_dynamics::Lumped;
 use tracelight_rig::{Joint, Telemetry};
-use tracelight_sim::{Identified, Quirks, RigConfig, Ripple};
+use tracelight_sim::{Cable, Identified, Quirks, RigConfig, Ripple};
 
 /// Mechanical unknowns: θ of [`acts`], in that order.
-pub(super) const MECHANICS: usize = 10;
+pub(super) const MECHANICS: usize = 12;
 /// Kinds of edges of a quadrature encoder.
 pub(super) const PHASES: usize = 4;
 
@@ -20,6 +20,8 @@ const GRAVITY_C: usize = 6;
 const GRAVITY_S: usize = 7;
 pub(super) const RIPPLE_SIN: usize = 8;
 pub(super) const RIPPLE_COS: usize = 9;
+const LOAD: usize = 10;
+const SPRING: usize = 11;
 
 /// How well a torque per volt, an inertia and a weight are known before anything was seen, as shares. Counts and volts tell
 /// only what they are to each other; what their products leave open is shared out by these. An amplifier's
@@ -31,7 +33,8 @@ const WEIGHT_DEVIATION: f64 = 0.05;
 /// One joint's equation of motion; everything over its inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Equations {
-    /// rad/s² a volt, 1/s each way, rad/s² each way, rad/s² at standstill, rad/s² of gravity with cos and sin of tilt.
+    /// rad/s² a volt, 1/s each way, rad/s² each way, rad/s² at standstill, rad/s² of gravity
+    /// with cos and sin of tilt, of a ripple with sin and cos, of cables at zero and a radian.
     pub(super) theta: [f64; MECHANICS],
     /// How far each kind of edge lies beyond its place, counts.
     pub(super) edges_counts: [f64; PHASES],
@@ -105,6 +108,8 @@ impl Surroundings {
             share * sin,
             -share * way * ripples * ripple_sin,
             -share * way * ripples * ripple_cos,
+            share,
+            -share * angle_rad,
         ];
         (columns, known)
     }
@@ -141,12 +146,17 @@ impl Equations {
             weight(lumped.gravity_s),
             quirks.ripple.sin_nm / inertia,
             quirks.ripple.cos_nm / inertia,
+            quirks.cable.load_nm / inertia,
+            quirks.cable.spring_nm_per_rad / inertia,
         ];
         let coulomb = theta[COULOMB_POS].max(theta[COULOMB_NEG]).max(0.01 * theta[GAIN] * 10.0);
         let gravity = 0.1 * theta[GRAVITY_C].hypot(theta[GRAVITY_S]);
         let viscous = theta[VISCOUS_POS].max(theta[VISCOUS_NEG]).max(0.02);
         let part = 0.4 * coulomb;
-        let deviations = [0.3 * theta[GAIN], viscous, viscous, part, part, 0.0, gravity, gravity, 0.0, 0.0];
+        // cables that pull harder than a part of friction are seen to
+        let cable = 0.5 * coulomb;
+        let deviations =
+            [0.3 * theta[GAIN], viscous, viscous, part, part, 0.0, gravity, gravity, 0.0, 0.0, cable, cable];
         let edges_counts = quirks.edges_counts;
         let break_away_rad_s = quirks.break_away_rad_s;
         Self { theta, edges_counts, periods: 0.0, break_away_rad_s, deviations, inertia_kg_m2: inertia }
@@ -201,7 +211,7 @@ impl Equations {
         let ripple = -part(RIPPLE_SIN) - part(RIPPLE_COS);
         let share = -columns[COULOMB_POS];
         Balance {
-            drive: known + part(GAIN) + part(GRAVITY_C) + part(GRAVITY_S),
+            drive: known + [GAIN, GRAVITY_C, GRAVITY_S, LOAD, SPRING].map(part).iter().sum::<f64>(),
             pos: share * theta[COULOMB_POS] + ripple,
             neg: share * theta[COULOMB_NEG] + ripple,
         }
@@ -245,6 +255,7 @@ impl Equations {
             break_away_rad_s: self.break_away_rad_s,
             edges_counts: self.edges_counts,
             ripple: Ripple { periods: self.periods, sin_nm: theta[RIPPLE_SIN], cos_nm: theta[RIPPLE_COS] },
+            cable: Cable { load_nm: theta[LOAD], spring_nm_per_rad: theta[SPRING] },
         };
     }
 

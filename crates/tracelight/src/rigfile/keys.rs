@@ -48,6 +48,8 @@ const MASS: &[Unit] = &[("kg", 1.0), ("g", 1e-3)];
 const INERTIA: &[Unit] = &[("kgm2", 1.0), ("gcm2", 1e-7)];
 const GRAVITY: &[Unit] = &[("m/s2", 1.0)];
 const TORQUE: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
+const FREQUENCIES: &[Unit] = &[("Hz", 1.0)];
+const STIFFNESS: &[Unit] = &[("Nm/rad", 1.0), ("mNm/rad", 1e-3)];
 const VISCOUS: &[Unit] = &[("Nms/rad", 1.0), ("mNms/rad", 1e-3)];
 const GAIN: &[Unit] = &[("Nm/V", 1.0), ("mNm/V", 1e-3)];
 const VOLTAGE: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
@@ -210,7 +212,7 @@ pub(super) fn model_keys() -> Vec<Key<Model>> {
 }
 
 /// Keys of `[truth.wear]`, `[control]` and `[motion]`.
-pub(super) const RIG_KEYS: [Key<RigConfig>; 24] = [
+pub(super) const RIG_KEYS: [Key<RigConfig>; 33] = [
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),
@@ -236,6 +238,57 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 24] = [
     }),
     real("truth.wear.gain_spread", PURE, (0.0, 0.9), "largest relative error of an amplifier's gain", |r| {
         &mut r.truth.wear.gain_spread
+    }),
+    real(
+        "truth.wear.belt_resonance",
+        FREQUENCIES,
+        (0.0, 1e3),
+        "how often what a joint carries swings on its belt; 0 for belts that do not give",
+        |r| &mut r.truth.wear.belt_resonance_hz,
+    ),
+    real("truth.wear.belt_damping", PURE, (0.0, 2.0), "share of critical damping of that", |r| {
+        &mut r.truth.wear.belt_damping
+    }),
+    Key {
+        path: "truth.wear.encoders_at_motors",
+        units: PURE,
+        bounds: (0.0, 1.0),
+        meaning: "whether encoders sit on the motors' side of the belts; else on the joints",
+        slot: Slot::Flag(|r| &mut r.truth.wear.encoders_at_motors),
+    },
+    real(
+        "truth.wear.eccentricity",
+        PURE,
+        (0.0, 100.0),
+        "what an encoder reads wrong over a turn because its disc sits beside its axis, counts",
+        |r| &mut r.truth.wear.eccentricity_counts,
+    ),
+    real(
+        "truth.wear.current_lag",
+        TIMES,
+        (0.0, 0.1),
+        "time constant with which an amplifier's current follows its command",
+        |r| &mut r.truth.wear.current_lag_s,
+    ),
+    real(
+        "truth.wear.supply_ripple",
+        PURE,
+        (0.0, 0.9),
+        "share by which the supply, and every volt's torque, ripples with 100 Hz",
+        |r| &mut r.truth.wear.supply_ripple,
+    ),
+    real(
+        "truth.wear.cable",
+        STIFFNESS,
+        (0.0, 10.0),
+        "spring of the cables on each joint; where they do not pull is drawn from the seed",
+        |r| &mut r.truth.wear.cable_nm_per_rad,
+    ),
+    real("truth.wear.jitter", TIMES, (0.0, 2e-4), "how far a control tick comes early or late", |r| {
+        &mut r.truth.wear.jitter_s
+    }),
+    real("truth.wear.lost_counts", PURE, (0.0, 0.1), "share of edges the counter misses", |r| {
+        &mut r.truth.wear.lost_counts
     }),
     choice(
         "control.law",
@@ -372,6 +425,16 @@ macro_rules! found {
             ),
             real(concat!($name, ".ripple_cos"), TORQUE, (-100.0, 100.0), "with the cosine", |i| {
                 &mut i.quirks.$joint.ripple.cos_nm
+            }),
+            real(
+                concat!($name, ".cable_load"),
+                TORQUE,
+                (-100.0, 100.0),
+                "what its cables do at zero, besides",
+                |i| &mut i.quirks.$joint.cable.load_nm,
+            ),
+            real(concat!($name, ".cable_spring"), STIFFNESS, (-100.0, 100.0), "and against its angle", |i| {
+                &mut i.quirks.$joint.cable.spring_nm_per_rad
             }),
             real(
                 concat!($name, ".edge_0"),

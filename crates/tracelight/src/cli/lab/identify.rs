@@ -125,7 +125,7 @@ fn write(
 type Value = fn(&RigConfig, Joint) -> f64;
 
 /// Name in JSON, where it is plain SI; words for the table; by how much it is multiplied there.
-const FIGURES: [(&str, &str, f64, Value); 16] = [
+const FIGURES: [(&str, &str, f64, Value); 18] = [
     ("torque_nm_per_v", "torque per volt, mNm", 1e3, |r, j| r.model.motors[j].torque_nm_per_v),
     ("inertia_kg_m2", "inertia, g m²", 1e3, |r, j| {
         let mass = r.model.bodies.lumped().mass(0.0);
@@ -144,6 +144,10 @@ const FIGURES: [(&str, &str, f64, Value); 16] = [
     ("ripple_periods", "  times a turn", 1.0, |r, j| r.quirks_of(j).ripple.periods),
     ("gravity_level_nm", "weight, beam level, mNm", 1e3, |r, j| weight(r, j).0),
     ("gravity_upright_nm", "weight, beam upright, mNm", 1e3, |r, j| weight(r, j).1),
+    ("cable_load_nm", "cables at zero, mNm", 1e3, |r, j| r.quirks_of(j).cable.load_nm),
+    ("cable_spring_nm_per_rad", "  against the angle, mNm/rad", 1e3, |r, j| {
+        r.quirks_of(j).cable.spring_nm_per_rad
+    }),
     ("edge_0_counts", "edges 0, 4, 8 … off, 1/1000 count", 1e3, |r, j| r.quirks_of(j).edges_counts[0]),
     ("edge_1_counts", "edges 1, 5, 9 …", 1e3, |r, j| r.quirks_of(j).edges_counts[1]),
     ("edge_2_counts", "edges 2, 6, 10 …", 1e3, |r, j| r.quirks_of(j).edges_counts[2]),
