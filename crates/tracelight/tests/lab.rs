@@ -182,6 +182,11 @@ fn check_page(name: &str, commands: usize) {
 }
 
 #[test]
+fn the_page_on_identification_shows_what_its_commands_print() {
+    check_page("identify.md", 2);
+}
+
+#[test]
 fn the_page_on_moves_shows_what_its_commands_print() {
     check_page("moves.md", 5);
 }
