@@ -129,7 +129,7 @@ fn efforts(config: &Config, at: &PanTilt<Estimate>, torque_nm: PanTilt<f32>) -> 
     let coupling = PanTilt::new(terms.m12 * acceleration.tilt, terms.m12 * acceleration.pan);
     PanTilt::from_fn(|j| Effort {
         torque_nm: torque_nm[j],
-        bias_nm: terms.bias_nm[j] + coupling[j],
+        bias_nm: terms.bias_nm[j] + coupling[j] - config.axes[j].quirks.cable.torque_nm(at[j].position_rad),
         inertia_kg_m2: terms.own_inertia()[j],
     })
 }

@@ -47,7 +47,7 @@ enum Mechanism {
 
 impl Plant {
     /// A head at rest, homed to within one count of straight ahead. What differs from head to head (where in that
-    /// count it rests, phases of ripple, edge table, gains within their spread) is drawn from `seed`.
+    /// count it rests, phases of ripple, edge table, gains within their spread, how discs and cables sit) is drawn from `seed`.
     pub fn new(config: &PlantConfig, seed: u64) -> Self {
         let mut dice = Dice(oorandom::Rand64::new(u128::from(seed)));
         let wear = &config.wear;
@@ -65,7 +65,7 @@ impl Plant {
         let encoders = PanTilt::from_fn(|j: Joint| {
             let direction = std::f64::consts::PI * dice.signed();
             let worn = encoders[j].eccentric(wear.eccentricity_counts, direction);
-            worn.missing(wear.lost_counts, seed.wrapping_add(j as u64))
+            worn.missing(wear.lost_counts, seed.wrapping_mul(2).wrapping_add(j as u64))
         });
         Self {
             mechanism: Mechanism::new(config, ripple_phase, rest),
@@ -91,7 +91,7 @@ impl Plant {
         self.state.angle_rad
     }
 
-    /// True rates of the joints, rad/s.
+    /// True rates of what the encoders sit on, rad/s.
     pub const fn rate_rad_s(&self) -> PanTilt<f64> {
         self.state.rate_rad_s
     }

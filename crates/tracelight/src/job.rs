@@ -124,43 +124,63 @@ fn run_laps(
     let plan = &prepared.schedule.plan;
     let meta = LogMeta { picture_path: &args.picture, settings, seed: args.seed };
     let mut laps: Vec<Run> = Vec::new();
-    let mut learned = prepared.driving.rig.clone();
-    let mut notes = Vec::new();
+    let mut learned = Learned { rig: prepared.driving.rig.clone(), taken: false, notes: Vec::new() };
     let mut log = LogWriter::open(&dir.join("run.mcap"), &meta)?;
     while laps.len() < args.laps as usize && !stop.is_wanted() {
         progress.stage("run", plan.points.len() as u64);
         if !laps.is_empty() {
-            (learned, notes) = learn(&prepared.driving.rig, &laps);
+            progress.stage("identify", 1);
+            learned = learn(&prepared.driving.rig, &laps);
         }
-        let rig = SimulatedRig::new(&learned, prepared.driving.pose, args.seed);
+        let rig = SimulatedRig::new(&learned.rig, prepared.driving.pose, args.seed);
         laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
     }
     log.finish()?;
     let last = laps.pop().unwrap_or_default();
-    notes.iter().for_each(|note| progress.say(&format!("note: {note}")));
-    let identified = learned.identified.is_some().then_some(learned);
-    Ok(Laps { earlier: laps, last, identified, notes, run_ms: began.elapsed().as_secs_f64() * 1e3 })
+    learned.notes.iter().for_each(|note| progress.say(&format!("note: {note}")));
+    let identified = learned.taken.then_some(learned.rig);
+    Ok(Laps {
+        earlier: laps,
+        last,
+        identified,
+        notes: learned.notes,
+        run_ms: began.elapsed().as_secs_f64() * 1e3,
+    })
 }
 
-/// A rig with what its laps so far tell of it; what they tell is said.
-fn learn(rig: &RigConfig, laps: &[Run]) -> (RigConfig, Vec<String>) {
+/// What the laps so far tell of a rig.
+struct Learned {
+    rig: RigConfig,
+    /// Some of it was better than what was believed.
+    taken: bool,
+    notes: Vec<String>,
+}
+
+/// Laps that a head is identified from: what these do not tell, more of them do not.
+const LAPS_TO_LEARN_FROM: usize = 3;
+
+fn learn(rig: &RigConfig, laps: &[Run]) -> Learned {
+    let last = &laps[laps.len().saturating_sub(LAPS_TO_LEARN_FROM)..];
     let records: Vec<Vec<Telemetry>> =
-        laps.iter().map(|lap| lap.ticks.iter().map(|tick| tick.telemetry).collect()).collect();
+        last.iter().map(|lap| lap.ticks.iter().map(|tick| tick.telemetry).collect()).collect();
     let slices: Vec<&[Telemetry]> = records.iter().map(Vec::as_slice).collect();
-    match identify(rig, &slices) {
-        Ok(found) => {
-            let notes = Joint::BOTH.map(|j| {
-                let fit = &found.joints[j];
-                let verdict = if fit.taken { "" } else { ", no better: what was believed is kept" };
-                format!(
-                    "{j} identified from the laps before: edges off the model by {:.3} counts rms, before {:.3}{verdict}",
-                    fit.after_counts, fit.before_counts
-                )
-            });
-            (found.rig, notes.to_vec())
+    let found = match identify(rig, &slices) {
+        Ok(found) => found,
+        Err(error) => {
+            let notes = vec![format!("nothing identified between laps: {error}")];
+            return Learned { rig: rig.clone(), taken: false, notes };
         }
-        Err(error) => (rig.clone(), vec![format!("nothing identified between laps: {error}")]),
-    }
+    };
+    let notes = Joint::BOTH.map(|j| {
+        let fit = &found.joints[j];
+        let verdict = if fit.taken { "" } else { ", no better: what was believed is kept" };
+        format!(
+            "{j} identified from the laps before: edges off the model by {:.3} counts rms, before {:.3}{verdict}",
+            fit.after_counts, fit.before_counts
+        )
+    });
+    let taken = Joint::BOTH.iter().any(|&j| found.joints[j].taken);
+    Learned { rig: found.rig, taken, notes: notes.to_vec() }
 }
 
 /// Ticks the head is watched after the user stopped it: longer than any relay of a rig file takes to open.
@@ -212,7 +232,7 @@ fn write(
     let strokes = placed.svg(drawing);
     let path = dir.join("strokes.svg");
     std::fs::write(&path, strokes).map_err(|e| cannot_write(&path, &e))?;
-    write_rig(dir, laps)?;
+    write_rig(args, dir, laps)?;
     let notes: Vec<String> = prepared.notes.iter().chain(&laps.notes).cloned().collect();
     let tracking: Tracking = score(&schedule.plan, &laps.last, schedule.plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
@@ -252,9 +272,12 @@ fn write(
 }
 
 /// Writes `rig.toml`, the rig as its laps identified it; where they did not, one that an earlier job left under this name is
-/// removed.
-fn write_rig(dir: &Path, laps: &Laps) -> Result<(), Failure> {
+/// removed. A rig file that the job was given stays as it is.
+fn write_rig(args: &TraceArgs, dir: &Path, laps: &Laps) -> Result<(), Failure> {
     let path = dir.join("rig.toml");
+    if rigfile::is_same(&path.to_string_lossy(), &args.driving.rig) {
+        return Ok(());
+    }
     let Some(rig) = &laps.identified else {
         return match std::fs::remove_file(&path) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(cannot_write(&path, &e)),

@@ -13,6 +13,8 @@ use crate::picture::read_bytes;
 
 /// Most ticks of a record: half an hour.
 const MOST_TICKS: usize = 1_800_000;
+/// Most that an amplifier takes, V: as in rig files.
+const MOST_V: f64 = 1e3;
 /// Two rows are a tick apart to this much, s.
 const SAME_S: f64 = 1e-5;
 
@@ -120,12 +122,19 @@ fn telemetry(columns: &Columns, row: &Row<'_>, count_rad: f64) -> Result<Telemet
     let mut command_v = PanTilt::default();
     for j in Joint::BOTH {
         let count = row.whole(columns.count[j])?;
-        let age = row.optional(columns.edge[j])?.map(|ms| (1e-3 * ms / TICK_F64_S) as f32);
-        if age.is_some_and(|age| !(0.0..1.0).contains(&age)) {
-            return Err(format!(":{}: an edge is less than {} ms old", row.line, 1e3 * TICK_F64_S));
+        let age = row.optional(columns.edge[j])?.map(|ms| 1e-3 * ms / TICK_F64_S);
+        if let Some(age) = age.filter(|age| !(0.0..=1.0 + SAME_S).contains(age)) {
+            let (at, most) = (1e3 * TICK_F64_S * age, 1e3 * TICK_F64_S);
+            return Err(format!(":{}: an edge {at} ms before its tick; it must be 0 to {most} ms", row.line));
         }
-        told.measured[j] = Measurement { count, edge_age_ticks: age };
-        command_v[j] = row.number(columns.volts[j])? as f32;
+        // what is all but a tick old may be written as one
+        let edge_age_ticks = age.map(|age| (age as f32).min(1.0 - f32::EPSILON));
+        told.measured[j] = Measurement { count, edge_age_ticks };
+        let volts = row.number(columns.volts[j])?;
+        if volts.abs() > MOST_V {
+            return Err(format!(":{}: {volts} V is more than the {MOST_V} V of any amplifier", row.line));
+        }
+        command_v[j] = volts as f32;
         let [angle, rate, acceleration] = columns.estimate[j];
         let angle_rad = row.optional(angle)?.unwrap_or(f64::from(count) * count_rad) as f32;
         told.position_rad[j] = angle_rad;

@@ -19,7 +19,7 @@ use crate::picture::read_bytes;
 use crate::units;
 use caret::Mark;
 use keys::{Choice, Key, RIG_KEYS, Slot, identified_keys, model_keys};
-pub(crate) use save::{date, updated};
+pub(crate) use save::{date, is_same, save};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
 const MOST_BYTES: usize = 1 << 20;
@@ -85,7 +85,36 @@ pub(crate) fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
             return Err(format!("{file}: [{half}] {trouble}"));
         }
     }
+    if let Some(trouble) = impossible_belts(&config) {
+        return Err(format!("{file}: [truth.wear] {trouble}"));
+    }
     Ok(config)
+}
+
+/// Belts that cannot be stepped.
+fn impossible_belts(config: &RigConfig) -> Option<String> {
+    const LEAST_KG_M2: f64 = 1e-9;
+    const FASTEST: f64 = 1.5e3; // 1/s: what is damped faster than in some steps of 0.1 ms explodes
+    let wear = &config.truth.wear;
+    let (bodies, resonance) = (&config.truth.model.bodies, wear.belt_resonance_hz);
+    if resonance == 0.0 {
+        return None;
+    }
+    let (mass, rotors) = (bodies.lumped().mass(0.0), bodies.rotor_kg_m2);
+    let least = rotors.pan.min(rotors.tilt).min(mass.m11 - rotors.pan).min(mass.m22 - rotors.tilt);
+    if least < LEAST_KG_M2 {
+        return Some(format!(
+            "belt_resonance: a belt needs inertia on both sides, {LEAST_KG_M2:e} kgm2 at least, and has {least:e} kgm2: check \
+             rotor_inertia and bodies of [truth], or set it to 0Hz"
+        ));
+    }
+    let rate = std::f64::consts::TAU * resonance * (1.0 + 2.0 * wear.belt_damping);
+    (rate > FASTEST).then(|| {
+        let most = FASTEST / (std::f64::consts::TAU * (1.0 + 2.0 * wear.belt_damping));
+        format!(
+            "belt_resonance: with that belt_damping at most {most:.0}Hz can be simulated, not {resonance}Hz"
+        )
+    })
 }
 
 /// What no head can be, however sound each number is by itself.
@@ -336,6 +365,15 @@ mod tests {
         let massless = format!("[truth.tilt]\nrotor_inertia = \"0kgm2\"\n[truth.tilt.body]\n{none}");
         assert!(error(&massless).contains("[truth] the inertia at a joint"), "{}", error(&massless));
         assert!(error("[truth.tilt.body]\ninertia_yz = \"10kgm2\"\n").contains("coupling"));
+    }
+
+    #[test]
+    fn belts_that_cannot_be_simulated_are_refused() {
+        let belt = "[truth.wear]\nbelt_resonance = ";
+        assert!(parse("my.toml", &format!("{belt}\"60Hz\"\n")).is_ok());
+        assert!(error(&format!("{belt}\"900Hz\"\nbelt_damping = 2.0\n")).contains("at most 48Hz"));
+        let none = format!("{belt}\"25Hz\"\n[truth.pan]\nrotor_inertia = \"0kgm2\"\n");
+        assert!(error(&none).contains("inertia on both sides"), "{}", error(&none));
     }
 
     #[test]

@@ -159,8 +159,7 @@ impl Kalman {
         let gain = TICK_S / inertia;
         let angle = self.count as f32 * axis.count_rad + self.offset_rad;
         let friction = axis.friction.with_excess(axis.quirks.excess_nm(&self.learned, angle, before));
-        let pull = axis.quirks.cable.torque_nm(angle) + self.learned.load_nm;
-        let drive = effort.torque_nm - effort.bias_nm + pull;
+        let drive = effort.torque_nm - effort.bias_nm + self.learned.load_nm;
         let momentum = inertia * before + TICK_S * drive;
         let after = friction.resolve(momentum, inertia, TICK_S);
         // whether it slides or sticks, this is the way it goes or would go

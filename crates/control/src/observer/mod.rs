@@ -78,7 +78,7 @@ impl Estimate {
 pub struct Effort {
     /// Torque of the motor, N m.
     pub torque_nm: f32,
-    /// Torque that gravity, Coriolis and the other joint's acceleration ask for, N m.
+    /// Torque that gravity, Coriolis, the other joint's acceleration and cables ask for, N m.
     pub bias_nm: f32,
     /// Inertia the joint feels, kg m².
     pub inertia_kg_m2: f32,

@@ -10,6 +10,8 @@ const BREAK_AWAY_MARGIN: f32 = 1.6;
 /// Standard deviations of what load and friction were taken for that must be overcome besides: who pushed a moment ago may
 /// push otherwise now.
 const LOAD_DEVIATIONS: f32 = 2.0;
+/// but never more than this share of the motor's torque, or a line that is cut after a push would not be missed.
+const MOST_HOLDING: f32 = 0.6;
 /// Predicted motion without any edge that makes an encoder doubtful, counts,
 const DOUBT_COUNTS: f32 = 4.0;
 /// and how long it may be so before it is taken for dead, ticks: somebody who holds the head looks the same.
@@ -167,9 +169,10 @@ impl Expectation {
         let way = moved.signum();
         let most = if way == self.way { shown } else { 0.0 };
         let (rate_rad_s, load_nm) = (within(estimate.velocity_rad_s, most), estimate.learned.load_nm);
-        let holding_nm = axis.unknown_nm
+        let unknown = axis.unknown_nm
             + (estimate.learned.friction_nm + estimate.learned.break_away_nm).max(0.0)
             + LOAD_DEVIATIONS * estimate.torque_deviation_nm;
+        let holding_nm = unknown.min(MOST_HOLDING * axis.torque_nm_per_v * axis.limit_v);
         *self = Self { rate_rad_s, travel_rad: 0.0, load_nm, holding_nm, way, since: 0.0 };
     }
 

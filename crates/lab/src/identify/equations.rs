@@ -223,7 +223,9 @@ impl Equations {
         // friction a little below nothing is nothing; much below is no friction
         let coulomb = self.theta[COULOMB_POS].min(self.theta[COULOMB_NEG]);
         let least = -0.1 * self.deviations[COULOMB_POS];
-        finite && self.theta[GAIN] > 0.0 && coulomb > least
+        // an edge beyond half a count is the next one
+        let placed = self.edges_counts.iter().all(|edge| edge.abs() < 0.5);
+        finite && placed && self.theta[GAIN] > 0.0 && coulomb > least
     }
 
     /// Writes into a rig's model what these equations say of it, and into what is identified what its model has no word for.

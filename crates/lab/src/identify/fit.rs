@@ -200,8 +200,10 @@ fn stretch_counts(equations: &Equations, stretch: &Stretch) -> f64 {
     (left.iter().map(|value| value * value).sum::<f64>() / left.len() as f64).sqrt() / stretch.count_rad
 }
 
-/// The same over many, each stretch alike.
+/// The same over many, each stretch alike, but for the worst tenth: in one somebody may have pushed.
 pub(super) fn residual_counts(equations: &Equations, stretches: &[&Stretch]) -> f64 {
-    let squares: f64 = stretches.iter().map(|s| stretch_counts(equations, s).powi(2)).sum();
-    (squares / stretches.len().max(1) as f64).sqrt()
+    let mut squares: Vec<f64> = stretches.iter().map(|s| stretch_counts(equations, s).powi(2)).collect();
+    squares.sort_by(f64::total_cmp);
+    squares.truncate(squares.len() - squares.len() / 10);
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }

@@ -9,9 +9,9 @@
 //! with the amplifier's volts u exactly known. Integrated twice from the start of a stretch of motion it says where the joint
 //! was at every edge the encoder counted: position and speed at the start, and a sum of terms that are linear in θ. So one
 //! linear least squares over all stretches, with two free numbers a stretch, gives θ and, because every edge of a kind
-//! is as far beside its place, the edges' places too. Nothing is differentiated. (Identification by the integrated
-//! equation: Gautier, Janot & Vandanjon, *A new closed-loop output error method*, IEEE Trans. Control Systems Technology 21,
-//! 2013, §II; free initial states a stretch: multiple shooting, Bock 1983.)
+//! is as far beside its place, the edges' places too. Nothing is differentiated. (Identification by the integrated equation:
+//! Young, *Parameter estimation for continuous-time models: a survey*, Automatica 17, 1981; a state of its own for every
+//! stretch: Bock's multiple shooting, 1983.)
 //!
 //! Counts and volts alone tell ratios: twice the inertia, friction and weight with twice the torque per volt move alike.
 //! `Equations::tell` says how that is settled.
@@ -55,9 +55,10 @@ pub struct JointFit {
     pub stretches: usize,
     /// Edges in them.
     pub edges: usize,
-    /// How far the model that was believed is off on stretches that judge, root mean square, counts.
+    /// How far the model that was believed is off on the stretches that judge, root mean square of the better nine tenths of
+    /// them, counts.
     pub before_counts: f64,
-    /// How far the one that was found is.
+    /// How far one is that the others teach.
     pub after_counts: f64,
     /// The found one is the better one, and was taken.
     pub taken: bool,
@@ -91,14 +92,18 @@ pub enum IdentifyError {
 /// what is believed already keeps it.
 pub fn identify(rig: &RigConfig, records: &[&[Telemetry]]) -> Result<Identification, IdentifyError> {
     let found = PanTilt::new(joint(rig, records, Joint::Pan)?, joint(rig, records, Joint::Tilt)?);
+    let mut joints = found.map(|(_, fit)| fit);
     let mut changed = rig.clone();
-    for j in Joint::BOTH {
-        let (equations, fit) = &found[j];
-        if fit.taken {
-            equations.tell(&mut changed, j, fit.after_counts);
+    // tilt first: where its body's weight sits is part of what pan turns
+    for j in [Joint::Tilt, Joint::Pan] {
+        let mut told = changed.clone();
+        found[j].0.tell(&mut told, j, joints[j].after_counts);
+        joints[j].taken &= told.model.bodies.rotor_kg_m2[j] >= 0.0;
+        if joints[j].taken {
+            changed = told;
         }
     }
-    Ok(Identification { rig: changed, joints: found.map(|(_, fit)| fit) })
+    Ok(Identification { rig: changed, joints })
 }
 
 /// One joint's equations as they fit best, and whether they are better than those that are believed.
@@ -108,23 +113,17 @@ fn joint(
     joint: Joint,
 ) -> Result<(Equations, JointFit), IdentifyError> {
     let believed = Equations::of(rig, joint);
-    let cut = |equations: &Equations| -> Vec<Stretch> {
-        records.iter().flat_map(|record| stretches(rig, record, joint, equations)).collect()
-    };
-    let stands: Vec<Stand<'_>> = records.iter().flat_map(|record| stands(record, joint)).collect();
-    let seen = cut(&believed);
+    let taken_from = Seen { rig, records, joint };
+    let seen = taken_from.cut(&believed);
     if seen.len() < FEWEST_STRETCHES {
         return Err(IdentifyError::TooLittleMotion { joint, found: seen.len() });
     }
     let before_counts = residual_counts(&believed, &part(&seen, true));
-    let (rippling, after_counts) = rippled(&believed, &seen);
-    // all stretches know more than those that taught, and each round knows better where edges lie and what breaks away
-    let mut last = fit(&rippling, &part(&seen, false));
-    for _ in 0..ROUNDS {
-        let seen = cut(&last);
-        last = fit(&rippling.breaking_away(&last), &seen.iter().collect::<Vec<_>>());
-        last = broken_away(rig, joint, &last, &stands);
-    }
+    let rippling = rippled(&believed, &taken_from.cut(&believed.rippling(0.0)));
+    // those that teach are judged by the others; then all of them teach
+    let taught = taken_from.taught(&rippling, |seen| part(seen, false));
+    let after_counts = residual_counts(&taught, &part(&taken_from.cut(&taught), true));
+    let last = taken_from.taught(&rippling, |seen| seen.iter().collect());
     let found = JointFit {
         stretches: seen.len(),
         edges: seen.iter().map(|s| s.rows.len()).sum(),
@@ -135,9 +134,36 @@ fn joint(
     Ok((last, found))
 }
 
-/// What is believed, with the ripple of friction that most of the stretches show, if those that judge agree; and how
-/// far off what these teach is there, counts.
-fn rippled(believed: &Equations, seen: &[Stretch]) -> (Equations, f64) {
+/// What was seen of one joint.
+struct Seen<'a> {
+    rig: &'a RigConfig,
+    records: &'a [&'a [Telemetry]],
+    joint: Joint,
+}
+
+impl Seen<'_> {
+    /// Its stretches, with the way between edges where these equations have them.
+    fn cut(&self, equations: &Equations) -> Vec<Stretch> {
+        let records = self.records.iter();
+        records.flat_map(|record| stretches(self.rig, record, self.joint, equations)).collect()
+    }
+
+    /// Equations that some of the stretches teach: each round knows better where edges lie and what breaks away.
+    fn taught(&self, believed: &Equations, some: impl Fn(&[Stretch]) -> Vec<&Stretch>) -> Equations {
+        let stands: Vec<Stand<'_>> =
+            self.records.iter().flat_map(|record| stands(record, self.joint)).collect();
+        let mut last = fit(believed, &some(&self.cut(believed)));
+        for _ in 0..ROUNDS {
+            last = fit(&believed.breaking_away(&last), &some(&self.cut(&last)));
+            last = broken_away(self.rig, self.joint, &last, &stands);
+        }
+        last
+    }
+}
+
+/// What is believed, with the ripple of friction that most of the stretches show, if those that judge agree. The stretches
+/// are cut without one.
+fn rippled(believed: &Equations, seen: &[Stretch]) -> Equations {
     let teachers = part(seen, false);
     let most = |periods: Vec<f64>| {
         let gains = ripple_gains(believed, &teachers, &periods);
@@ -154,7 +180,7 @@ fn rippled(believed: &Equations, seen: &[Stretch]) -> (Equations, f64) {
         (believed, residual_counts(&taught, &part(&seen, true)))
     };
     let (plain, rippling) = (judged(0.0), judged(periods));
-    if rippling.1 < RIPPLE_WORTH * plain.1 - LEAST_COUNTS { rippling } else { plain }
+    if rippling.1 < RIPPLE_WORTH * plain.1 - LEAST_COUNTS { rippling.0 } else { plain.0 }
 }
 
 /// The stretches that judge, or those that teach.

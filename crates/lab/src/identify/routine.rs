@@ -35,7 +35,7 @@ const PARTS: [Swings; 4] = [
     Swings { pan: 5.0, tilt: 4.0, share: 0.15, lasts_s: 14.0 },
 ];
 
-/// Dark motion, 36 s or longer where motors are weak, from which [`identify`](super::identify) tells what a head is made of:
+/// Dark motion, 40 s or longer where motors are weak, from which [`identify`](super::identify) tells what a head is made of:
 /// segments for a rig that rests at zero.
 pub fn routine(rig: &RigConfig) -> Vec<Segment> {
     let mut segments = Vec::new();

@@ -69,6 +69,9 @@ impl Stretch {
     /// The same with friction that ripples so many times a turn among the unknowns.
     pub(super) fn rippling(&self, periods: f64) -> Self {
         let mut changed = self.clone();
+        if periods == 0.0 {
+            return changed;
+        }
         let [sines, cosines] = self.ripple(periods);
         for ((row, sin), cos) in changed.rows.iter_mut().zip(sines).zip(cosines) {
             (row.columns[RIPPLE_SIN], row.columns[RIPPLE_COS]) = (sin, cos);
@@ -237,7 +240,7 @@ impl Path<'_> {
     /// rad/s, over the whole piece.
     fn mean_rate(&self) -> f64 {
         let (first, last) = (&self.edges[0], &self.edges[self.edges.len() - 1]);
-        let counts = f64::from(last.number - first.number).abs();
+        let counts = (f64::from(last.number) - f64::from(first.number)).abs();
         counts * self.count_rad / (last.time_s - first.time_s).max(TICK_F64_S)
     }
 }

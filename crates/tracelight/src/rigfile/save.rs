@@ -3,12 +3,33 @@
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 use tracelight_sim::RigConfig;
 
+use crate::failure::Failure;
+
 use super::keys::{Key, Slot, identified_keys, model_keys};
 use super::shown;
 
+/// Writes a rig's model and what was identified of it into the rig file it came from, whole or not at all.
+pub(crate) fn save(path: &str, old: &RigConfig, new: &RigConfig) -> Result<(), Failure> {
+    let wrong = |e: String| Failure::usage("rig-file", format!("{path} cannot be saved: {e}"));
+    let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
+    let saved = updated(&text, old, new).map_err(wrong)?;
+    super::parse(path, &saved)
+        .map_err(|e| wrong(format!("what was found is no head that a rig file takes: {e}")))?;
+    let fresh = format!("{path}.new");
+    crate::cli::write_file(&fresh, &saved)?;
+    std::fs::rename(&fresh, path)
+        .map_err(|e| Failure::failed("cannot-write", format!("cannot write {path}: {e}")))
+}
+
+/// Whether two paths lead to one file that exists.
+pub(crate) fn is_same(one: &str, other: &str) -> bool {
+    let real = |path: &str| std::fs::canonicalize(path).ok();
+    real(one).is_some_and(|one| Some(one) == real(other))
+}
+
 /// The text of a rig file with another rig's model and what was identified of it. What is simulated stays what it was:
 /// keys of `[model]` that change are written into `[truth]` with their old value where they do not stand there.
-pub(crate) fn updated(text: &str, old: &RigConfig, new: &RigConfig) -> Result<String, String> {
+fn updated(text: &str, old: &RigConfig, new: &RigConfig) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|e| format!("not valid TOML: {e}"))?;
     let root = document.as_table_mut();
     for key in model_keys() {

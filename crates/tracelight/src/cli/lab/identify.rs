@@ -47,6 +47,9 @@ pub(crate) struct IdentifyArgs {
     pub(super) voice: Voice,
 }
 
+/// Least swing that tells anything: twenty counts of the original rig.
+const LEAST_SWING_RAD: f64 = 0.05;
+
 pub(crate) fn run(args: &IdentifyArgs, stop: &Stop) -> Result<Answer, Failure> {
     let mut rig = rigfile::load(&args.rig)?;
     if args.save && RigConfig::preset(&args.rig).is_some() {
@@ -58,7 +61,9 @@ pub(crate) fn run(args: &IdentifyArgs, stop: &Stop) -> Result<Answer, Failure> {
     let ticks: usize = records.iter().map(Vec::len).sum();
     let slices: Vec<&[Telemetry]> = records.iter().map(Vec::as_slice).collect();
     let mut found = identify(&rig, &slices).map_err(|e| Failure::failed("identify", e))?;
-    rigfile::date(&mut found.rig);
+    if Joint::BOTH.iter().any(|&j| found.joints[j].taken) {
+        rigfile::date(&mut found.rig);
+    }
     write(args, &rig, &found, &records)?;
     Ok(Answer::new(table(args, &rig, &found, ticks), json(&rig, &found)))
 }
@@ -74,6 +79,18 @@ fn read(args: &IdentifyArgs, rig: &RigConfig) -> Result<Vec<Vec<Telemetry>>, Fai
 
 /// The routine on the simulated rig, dark.
 fn moved(args: &IdentifyArgs, rig: &RigConfig, stop: &Stop) -> Result<Vec<Telemetry>, Failure> {
+    let narrow = Joint::BOTH.into_iter().find(|&j| {
+        let (lower, upper) = rig.model.geometry.range_rad[j];
+        upper.min(-lower) < LEAST_SWING_RAD
+    });
+    if let Some(joint) = narrow {
+        let (lower, upper) = rig.model.geometry.range_rad[joint];
+        let message = format!(
+            "{joint} may turn from {lower} to {upper} rad, and has to swing {LEAST_SWING_RAD} rad to either side of zero to be \
+             identified; give a record of a motion it can make"
+        );
+        return Err(Failure::failed("identify", message));
+    }
     let segments = routine(rig);
     let progress = Progress::new(args.voice.quiet);
     progress.stage("moves", segments.last().map_or(0, |s| u64::from(s.end_tick())));
@@ -101,24 +118,25 @@ fn write(
     found: &Identification,
     records: &[Vec<Telemetry>],
 ) -> Result<(), Failure> {
-    let cannot = |path: &str, e: std::io::Error| {
-        Failure::failed("cannot-write", format!("cannot write {path}: {e}; choose another with --out"))
-    };
     let dir = args.out.display().to_string();
-    std::fs::create_dir_all(&args.out).map_err(|e| cannot(&dir, e))?;
+    let cannot =
+        |e| Failure::failed("cannot-write", format!("cannot write {dir}: {e}; choose another with --out"));
+    std::fs::create_dir_all(&args.out).map_err(cannot)?;
     let path = |name: &str| args.out.join(name).display().to_string();
     if let ([], [record]) = (args.records.as_slice(), records) {
         write_file(&path("record.csv"), &record::write(record))?;
     }
-    write_file(&path("rig.toml"), &rigfile::write(&found.rig))?;
+    let own = rigfile::is_same(&path("rig.toml"), &args.rig);
     if args.save {
-        let text = std::fs::read_to_string(&args.rig)
-            .map_err(|e| Failure::usage("rig-file", format!("cannot read {} again: {e}", args.rig)))?;
-        let saved = rigfile::updated(&text, rig, &found.rig);
-        let saved = saved.map_err(|e| Failure::usage("rig-file", format!("{}: {e}", args.rig)))?;
-        write_file(&args.rig, &saved)?;
+        rigfile::save(&args.rig, rig, &found.rig)?;
+    } else if own {
+        let message = format!(
+            "{} is the rig file itself: it changes only with --save; choose another folder with --out",
+            path("rig.toml")
+        );
+        return Err(Failure::usage("usage", message));
     }
-    Ok(())
+    if own { Ok(()) } else { write_file(&path("rig.toml"), &rigfile::write(&found.rig)) }
 }
 
 /// A figure of a joint.

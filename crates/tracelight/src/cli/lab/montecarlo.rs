@@ -88,6 +88,9 @@ fn run_all(args: &MonteCarloArgs, driving: &Driving, plan: &Plan, stop: &Stop) -
     done.into_iter().map(|(_, trial)| trial).collect()
 }
 
+/// Laps that a head is identified from, the last before the one to come.
+const LAPS_TO_LEARN_FROM: usize = 3;
+
 fn trial(driving: &Driving, plan: &Plan, laps: u32, seed: u64) -> Trial {
     let head = Spread::USUAL.draw(&driving.rig, seed);
     let draw = |rig: &RigConfig| {
@@ -98,6 +101,9 @@ fn trial(driving: &Driving, plan: &Plan, laps: u32, seed: u64) -> Trial {
     let mut records: Vec<Vec<Telemetry>> = Vec::new();
     for _ in 1..laps {
         records.push(run.ticks.iter().map(|tick| tick.telemetry).collect());
+        if records.len() > LAPS_TO_LEARN_FROM {
+            records.remove(0);
+        }
         let slices: Vec<&[Telemetry]> = records.iter().map(Vec::as_slice).collect();
         // a head that shows too little goes on as it is believed to be
         let rig = identify(&head, &slices).map_or_else(|_| head.clone(), |found| found.rig);
