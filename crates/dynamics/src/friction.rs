@@ -25,6 +25,11 @@ impl Friction {
         }
     }
 
+    /// The larger of the two Coulomb levels, N m.
+    pub const fn coulomb_nm(&self) -> f64 {
+        self.coulomb_pos_nm.max(-self.coulomb_neg_nm)
+    }
+
     /// Torque that a motion at `rate_rad_s` costs, N m; zero at rest, where friction takes any value between the two
     /// intercepts.
     pub fn torque(&self, rate_rad_s: f64) -> f64 {

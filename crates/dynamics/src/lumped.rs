@@ -35,6 +35,11 @@ pub struct MassMatrix {
 }
 
 impl MassMatrix {
+    /// Each joint's own inertia, kg m².
+    pub const fn own_inertia(&self) -> PanTilt<f64> {
+        PanTilt::new(self.m11, self.m22)
+    }
+
     /// M·a.
     pub fn times(&self, a: PanTilt<f64>) -> PanTilt<f64> {
         PanTilt::new(self.m11 * a.pan + self.m12 * a.tilt, self.m12 * a.pan + self.m22 * a.tilt)

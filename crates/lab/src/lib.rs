@@ -7,7 +7,7 @@ mod statistics;
 mod step;
 mod velocity;
 
-pub use identify::{Identification, IdentifyError, JointFit, identify, routine};
+pub use identify::{Identification, IdentifyError, JointFit, LAPS_WORTH, identify, routine};
 pub use statistics::Quantiles;
 pub use step::StepFigures;
 pub use velocity::{Peaks, VelocityError, highest, peaks, peaks_seen, velocity_error};

@@ -18,16 +18,12 @@ use tracelight_rig::{Joint, Telemetry};
 use tracelight_sim::{Model, RigConfig, Run, SimulatedRig, Spread, Tracking, run, run_segments, score};
 use tracelight_trajectory::Plan;
 
-fn telemetry(run: &Run) -> Vec<Telemetry> {
-    run.ticks.iter().map(|tick| tick.telemetry).collect()
-}
-
 /// The routine on a head, dark.
 fn moved(rig: &RigConfig, seed: u64) -> Vec<Telemetry> {
     let mut simulated = SimulatedRig::new(rig, POSE, seed);
     let run = run_segments(&mut simulated, &routine(rig), true, |_, _| ControlFlow::Continue(()));
     assert!(run.is_done() && run.ticks.iter().all(|tick| !tick.light), "seed {seed}: {:?}", run.fault());
-    telemetry(&run)
+    run.telemetry()
 }
 
 fn draw(rig: &RigConfig, plan: &Plan, seed: u64) -> (Run, Tracking) {
@@ -38,17 +34,12 @@ fn draw(rig: &RigConfig, plan: &Plan, seed: u64) -> (Run, Tracking) {
     (run, tracking)
 }
 
-fn inertia(model: &Model, joint: Joint) -> f64 {
-    let mass = model.bodies.lumped().mass(0.0);
-    if joint == Joint::Pan { mass.m11 } else { mass.m22 }
-}
-
 /// Something of a joint.
 type Value = fn(&Model, Joint) -> f64;
 
 /// How far a ratio to inertia is off, as a share.
 fn off(found: &Model, truth: &Model, joint: Joint, value: Value) -> f64 {
-    let ratio = |model: &Model| value(model, joint) / inertia(model, joint);
+    let ratio = |model: &Model| value(model, joint) / model.own_inertia_kg_m2()[joint];
     (ratio(found) / ratio(truth) - 1.0).abs()
 }
 
@@ -101,9 +92,8 @@ fn laps(rig: &RigConfig, laps: usize) -> (f64, f64) {
         let head = Spread::USUAL.draw(rig, seed);
         let (mut told, mut records) = (head.clone(), Vec::new());
         for _ in 1..laps {
-            records.push(telemetry(&draw(&told, &plan, seed).0));
-            let slices: Vec<&[Telemetry]> = records.iter().map(Vec::as_slice).collect();
-            told = identify(&head, &slices).unwrap().rig;
+            records.push(draw(&told, &plan, seed).0.telemetry());
+            told = identify(&head, &records).unwrap().rig;
         }
         let tracking = draw(&told, &plan, seed).1;
         (tracking.rms_mm, tracking.max_mm)
@@ -203,10 +193,10 @@ fn a_fit_to_what_no_head_does_is_refused_and_nothing_is_lost() {
 fn a_line_is_too_little_to_identify_from_and_says_so() {
     let rig = RigConfig::report();
     let (run, _) = draw(&rig, &plan_of(&rig, line(0.0)), 0);
-    let error = identify(&rig, &[&telemetry(&run)]).unwrap_err();
+    let error = identify(&rig, &[&run.telemetry()]).unwrap_err();
     assert!(matches!(error, IdentifyError::TooLittleMotion { .. }), "{error}");
     assert!(error.to_string().contains("longer record"), "{error}");
-    assert!(identify(&rig, &[]).is_err() && identify(&rig, &[&[]]).is_err());
+    assert!(identify::<Vec<Telemetry>>(&rig, &[]).is_err() && identify(&rig, &[Vec::new()]).is_err());
 }
 
 #[test]

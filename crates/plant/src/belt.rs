@@ -38,8 +38,7 @@ impl Belted {
             m22: lumped.m22 - rotor_kg_m2.tilt,
             ..lumped
         };
-        let mass = carried.mass(0.0);
-        let swings = PanTilt::new(mass.m11, mass.m22);
+        let swings = carried.mass(0.0).own_inertia();
         let rate = std::f64::consts::TAU * resonance_hz;
         let reduced = |j: Joint| swings[j] * rotor_kg_m2[j] / (swings[j] + rotor_kg_m2[j]);
         let stiffness = PanTilt::from_fn(|j| reduced(j) * rate * rate);

@@ -12,8 +12,8 @@ pub(crate) struct Encoder {
     edge_error_counts: [f64; PHASES],
     /// The disc's axis beside the joint's: amplitude in counts, and the angle at which it reads right.
     eccentricity: (f64, f64),
-    /// Edges in a row it misses one of, at the mean.
-    loses_one_in: f64,
+    /// Share of edges the counter misses.
+    lost_share: f64,
     dice: oorandom::Rand32,
     count: i32,
     /// Edges it missed, upwards less downwards.
@@ -35,7 +35,7 @@ impl Encoder {
             edge_stamps,
             edge_error_counts,
             eccentricity: (0.0, angle_rad),
-            loses_one_in: f64::INFINITY,
+            lost_share: 0.0,
             dice: oorandom::Rand32::new(0),
             count,
             missed: 0,
@@ -51,7 +51,7 @@ impl Encoder {
 
     /// The same with a counter that misses that share of all edges.
     pub(crate) fn missing(mut self, share: f64, seed: u64) -> Self {
-        self.loses_one_in = 1.0 / share;
+        self.lost_share = share;
         self.dice = oorandom::Rand32::new(seed);
         self
     }
@@ -67,7 +67,7 @@ impl Encoder {
 
     /// Whether the counter misses an edge.
     fn misses(&mut self) -> bool {
-        self.loses_one_in.is_finite() && f64::from(self.dice.rand_float()) * self.loses_one_in < 1.0
+        self.lost_share > 0.0 && f64::from(self.dice.rand_float()) < self.lost_share
     }
 
     /// Angle of the edge below count `k`, rad.

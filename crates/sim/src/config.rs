@@ -41,6 +41,22 @@ pub struct Model {
     pub geometry: HeadGeometry,
 }
 
+/// By how much of a motor's torque a model is wrong at least.
+const LEAST_UNKNOWN_SHARE: f64 = 0.01;
+
+impl Model {
+    /// What each joint feels at rest straight ahead, kg m².
+    pub fn own_inertia_kg_m2(&self) -> PanTilt<f64> {
+        self.bodies.lumped().mass(0.0).own_inertia()
+    }
+
+    /// Torque by which the model of a joint may be wrong, N m: its Coulomb friction, where it has any to speak of.
+    pub fn unknown_nm(&self, joint: Joint) -> f64 {
+        let least_nm = LEAST_UNKNOWN_SHARE * self.motors[joint].torque_limit_nm();
+        self.friction[joint].coulomb_nm().max(least_nm)
+    }
+}
+
 /// What was identified of a head besides its model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identified {

@@ -10,9 +10,6 @@ use tracelight_trajectory::Machine;
 use crate::RigConfig;
 use crate::laws::INTERVAL_TICKS;
 
-/// By how much of a motor's torque a model is wrong at least.
-const LEAST_UNKNOWN_SHARE: f64 = 0.01;
-
 /// How far past the end of its range a joint may be before that is a fault, counts.
 const RANGE_MARGIN_COUNTS: f64 = 3.0;
 
@@ -52,19 +49,13 @@ impl RigConfig {
         let (lower, upper) = self.model.geometry.range_rad[joint];
         let margin = RANGE_MARGIN_COUNTS * self.model.encoder.count_rad();
         let control = &self.control;
-        let mass = self.model.bodies.lumped().mass(0.0);
-        let inertia = match joint {
-            Joint::Pan => mass.m11,
-            Joint::Tilt => mass.m22,
-        };
-        let Friction { coulomb_pos_nm, coulomb_neg_nm, .. } = self.model.friction[joint];
-        let coulomb_nm = coulomb_pos_nm.max(-coulomb_neg_nm);
+        let inertia = self.model.own_inertia_kg_m2()[joint];
         AxisConfig {
             torque_nm_per_v: motor.torque_nm_per_v as f32,
             limit_v: motor.limit_v as f32,
             count_rad: self.model.encoder.count_rad() as f32,
             friction: friction_model(&self.model.friction[joint]),
-            unknown_nm: coulomb_nm.max(LEAST_UNKNOWN_SHARE * motor.torque_limit_nm()) as f32,
+            unknown_nm: self.model.unknown_nm(joint) as f32,
             quirks: self.quirks(joint),
             observer: control.observer_in_use().config(INTERVAL_TICKS),
             law: control.law.config(joint, control.bandwidth_rad_s[joint], inertia),

@@ -29,12 +29,11 @@ impl LinearHead {
         const STEP_RAD: f64 = 1e-4;
         let truth = &rig.truth.model;
         let lumped = truth.bodies.lumped();
-        let mass = lumped.mass(pose_rad.tilt);
         let gravity = |tilt: f64| lumped.gravity(tilt).tilt;
         let slope =
             (gravity(pose_rad.tilt + STEP_RAD) - gravity(pose_rad.tilt - STEP_RAD)) / (2.0 * STEP_RAD);
         Self {
-            inertia_kg_m2: PanTilt::new(mass.m11, mass.m22),
+            inertia_kg_m2: lumped.mass(pose_rad.tilt).own_inertia(),
             viscous: truth.friction.map(|f| 0.5 * (f.viscous_pos + f.viscous_neg)),
             stiffness: PanTilt::new(0.0, slope),
             torque_nm_per_v: truth.motors.map(|m| m.torque_nm_per_v),

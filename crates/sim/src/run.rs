@@ -49,6 +49,11 @@ impl Run {
         self.ticks.last().is_some_and(|tick| tick.telemetry.phase == Phase::Done)
     }
 
+    /// The controller's side of it.
+    pub fn telemetry(&self) -> Vec<Telemetry> {
+        self.ticks.iter().map(|tick| tick.telemetry).collect()
+    }
+
     /// The fault it ended with, if any.
     pub fn fault(&self) -> Option<Fault> {
         self.ticks.last().and_then(|tick| tick.telemetry.fault)

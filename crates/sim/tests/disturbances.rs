@@ -14,7 +14,7 @@ mod shapes;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use shapes::{POSE, circle, plan_of, star};
+use shapes::{POSE, circle, lit_ticks, off_mm, plan_of, star};
 use tracelight_rig::{Fault, Joint, PanTilt, Phase};
 use tracelight_sim::{RigConfig, SimulatedRig, Spread, Tick, Trouble, run};
 use tracelight_trajectory::Plan;
@@ -78,13 +78,9 @@ impl Outcome {
     }
 }
 
-fn off_mm(tick: &Tick) -> f64 {
-    1e3 * tick.spot.unwrap().distance(tick.asked.unwrap())
-}
-
 fn drawn(plan: &Plan, seed: u64) -> (u32, Drawn) {
     let mut dice = oorandom::Rand64::new(u128::from(seed));
-    let lit: Vec<usize> = (0..plan.points.len()).filter(|&i| plan.points[i].lit).collect();
+    let lit = lit_ticks(plan);
     let when = lit[dice.rand_range(0..lit.len() as u64 * 3 / 4) as usize] as u32;
     let (sin, cos) = (TAU * dice.rand_float()).sin_cos();
     let way = PanTilt::new(cos, sin);

@@ -13,7 +13,7 @@ mod shapes;
 
 use std::ops::ControlFlow;
 
-use shapes::{POSE, circle, plan_of};
+use shapes::{POSE, circle, lit_ticks, off_mm, plan_of};
 use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, Rig, Segment};
 use tracelight_sim::{RigConfig, SimulatedRig, Tick, Trouble, run};
 use tracelight_trajectory::Plan;
@@ -63,14 +63,10 @@ fn after_a_switch(ticks: &[Tick], _: Joint, when: usize) -> usize {
     when + ticks[when..].iter().position(|t| gate(t) != gate(&ticks[when])).unwrap_or(0)
 }
 
-fn off_mm(tick: &Tick) -> f64 {
-    1e3 * tick.spot.unwrap().distance(tick.asked.unwrap())
-}
-
 /// A lit moment of the first half of a plan and a joint, drawn from a seed.
 fn moment(plan: &Plan, seed: u64) -> (u32, Joint) {
     let mut dice = oorandom::Rand64::new(u128::from(seed));
-    let lit: Vec<usize> = (0..plan.points.len()).filter(|&i| plan.points[i].lit).collect();
+    let lit = lit_ticks(plan);
     let when = lit[dice.rand_range(0..lit.len() as u64 / 2) as usize] as u32;
     (when, if seed.is_multiple_of(2) { Joint::Pan } else { Joint::Tilt })
 }

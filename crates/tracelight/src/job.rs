@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use tracelight_lab::identify;
-use tracelight_rig::{Command, Joint, PanTilt, Rig, Telemetry};
+use tracelight_lab::{LAPS_WORTH, identify};
+use tracelight_rig::{Command, Joint, PanTilt, Rig};
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Tracking, score};
 use tracelight_trajectory::Plan;
 
@@ -127,11 +127,11 @@ fn run_laps(
     let mut learned = Learned { rig: prepared.driving.rig.clone(), taken: false, notes: Vec::new() };
     let mut log = LogWriter::open(&dir.join("run.mcap"), &meta)?;
     while laps.len() < args.laps as usize && !stop.is_wanted() {
-        progress.stage("run", plan.points.len() as u64);
         if !laps.is_empty() {
             progress.stage("identify", 1);
             learned = learn(&prepared.driving.rig, &laps);
         }
+        progress.stage("run", plan.points.len() as u64);
         let rig = SimulatedRig::new(&learned.rig, prepared.driving.pose, args.seed);
         laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
     }
@@ -156,15 +156,9 @@ struct Learned {
     notes: Vec<String>,
 }
 
-/// Laps that a head is identified from: what these do not tell, more of them do not.
-const LAPS_TO_LEARN_FROM: usize = 3;
-
 fn learn(rig: &RigConfig, laps: &[Run]) -> Learned {
-    let last = &laps[laps.len().saturating_sub(LAPS_TO_LEARN_FROM)..];
-    let records: Vec<Vec<Telemetry>> =
-        last.iter().map(|lap| lap.ticks.iter().map(|tick| tick.telemetry).collect()).collect();
-    let slices: Vec<&[Telemetry]> = records.iter().map(Vec::as_slice).collect();
-    let found = match identify(rig, &slices) {
+    let last = &laps[laps.len().saturating_sub(LAPS_WORTH)..];
+    let found = match identify(rig, &last.iter().map(Run::telemetry).collect::<Vec<_>>()) {
         Ok(found) => found,
         Err(error) => {
             let notes = vec![format!("nothing identified between laps: {error}")];
@@ -279,10 +273,7 @@ fn write_rig(args: &TraceArgs, dir: &Path, laps: &Laps) -> Result<(), Failure> {
         return Ok(());
     }
     let Some(rig) = &laps.identified else {
-        return match std::fs::remove_file(&path) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(cannot_write(&path, &e)),
-            _ => Ok(()),
-        };
+        return output::forget(&path).map_err(|e| cannot_write(&path, &e));
     };
     let mut rig = rig.clone();
     rigfile::date(&mut rig);

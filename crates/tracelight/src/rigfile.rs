@@ -91,9 +91,11 @@ pub(crate) fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
     Ok(config)
 }
 
+/// Least inertia that can be stepped, kg m².
+const LEAST_KG_M2: f64 = 1e-9;
+
 /// Belts that cannot be stepped.
 fn impossible_belts(config: &RigConfig) -> Option<String> {
-    const LEAST_KG_M2: f64 = 1e-9;
     const FASTEST: f64 = 1.5e3; // 1/s: what is damped faster than in some steps of 0.1 ms explodes
     let wear = &config.truth.wear;
     let (bodies, resonance) = (&config.truth.model.bodies, wear.belt_resonance_hz);
@@ -119,7 +121,6 @@ fn impossible_belts(config: &RigConfig) -> Option<String> {
 
 /// What no head can be, however sound each number is by itself.
 fn impossible(model: &Model) -> Option<String> {
-    const LEAST_KG_M2: f64 = 1e-9;
     const STRONGEST_COUPLING: f64 = 0.5; // of M11 and M22: the plant resolves friction joint by joint
     let lumped = model.bodies.lumped();
     for degrees in -180..=180 {

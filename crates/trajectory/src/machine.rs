@@ -168,11 +168,7 @@ impl Machine {
 
     /// Inertia a joint feels, kg m².
     pub(crate) fn own_inertia(&self, joint: Joint, tilt_rad: f64) -> f64 {
-        let mass = self.lumped.mass(tilt_rad);
-        match joint {
-            Joint::Pan => mass.m11,
-            Joint::Tilt => mass.m22,
-        }
+        self.lumped.mass(tilt_rad).own_inertia()[joint]
     }
 
     /// How far each joint may stray for the spot to stay within `tolerance_m`, rad: semi-axes of an ellipse of joint

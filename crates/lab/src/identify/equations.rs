@@ -4,6 +4,8 @@ use tracelight_dynamics::Lumped;
 use tracelight_rig::{Joint, Telemetry};
 use tracelight_sim::{Cable, Identified, Quirks, RigConfig, Ripple};
 
+use super::stretch::Edge;
+
 /// Mechanical unknowns: θ of [`acts`], in that order.
 pub(super) const MECHANICS: usize = 12;
 /// Kinds of edges of a quadrature encoder.
@@ -29,6 +31,10 @@ const SPRING: usize = 11;
 const GAIN_DEVIATION: f64 = 0.2;
 const INERTIA_DEVIATION: f64 = 0.05;
 const WEIGHT_DEVIATION: f64 = 0.05;
+
+/// How far Coulomb friction, and its ripple, may be from what is believed before anything was seen, as shares of it.
+const FRICTION_SHARE: f64 = 0.4;
+const RIPPLE_SHARE: f64 = 0.1;
 
 /// One joint's equation of motion; everything over its inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,18 +67,17 @@ pub(super) struct Balance {
 pub(super) struct Surroundings {
     lumped: Lumped,
     joint: Joint,
-    periods: f64,
     break_away_rad_s: f64,
 }
 
 impl Surroundings {
     pub(super) fn of(rig: &RigConfig, joint: Joint, equations: &Equations) -> Self {
-        let &Equations { periods, break_away_rad_s, .. } = equations;
-        Self { lumped: rig.model.bodies.lumped(), joint, periods, break_away_rad_s }
+        Self { lumped: rig.model.bodies.lumped(), joint, break_away_rad_s: equations.break_away_rad_s }
     }
 
     /// What a unit of each unknown does to the joint at an angle and a rate in a tick, and what is known without them; rad/s².
-    /// Where the inertia is not what it is straight ahead, torques do more or less.
+    /// Where the inertia is not what it is straight ahead, torques do more or less. A ripple is friction's affair, whose number of
+    /// periods is not asked here.
     pub(super) fn acts(
         &self,
         told: &Telemetry,
@@ -95,8 +100,6 @@ impl Surroundings {
         let share = ahead / inertia;
         let way = rate_rad_s.signum();
         let pick = |yes: bool, value: f64| if yes { share * value } else { 0.0 };
-        let ripples = if self.periods > 0.0 { 1.0 } else { 0.0 };
-        let (ripple_sin, ripple_cos) = (self.periods * angle_rad).sin_cos();
         let columns = [
             share * f64::from(told.actuation.command_v[joint]),
             pick(way > 0.0, -rate_rad_s),
@@ -106,8 +109,8 @@ impl Surroundings {
             -share * way * stribeck(rate_rad_s / self.break_away_rad_s),
             share * cos,
             share * sin,
-            -share * way * ripples * ripple_sin,
-            -share * way * ripples * ripple_cos,
+            0.0,
+            0.0,
             share,
             -share * angle_rad,
         ];
@@ -130,7 +133,7 @@ impl Equations {
     /// As a rig believes them.
     pub(super) fn of(rig: &RigConfig, joint: Joint) -> Self {
         let lumped = rig.model.bodies.lumped();
-        let inertia = inertia_kg_m2(rig, joint);
+        let inertia = rig.model.own_inertia_kg_m2()[joint];
         let friction = rig.model.friction[joint];
         let quirks = rig.quirks_of(joint);
         let weighs = joint == Joint::Tilt;
@@ -149,10 +152,10 @@ impl Equations {
             quirks.cable.load_nm / inertia,
             quirks.cable.spring_nm_per_rad / inertia,
         ];
-        let coulomb = theta[COULOMB_POS].max(theta[COULOMB_NEG]).max(0.01 * theta[GAIN] * 10.0);
+        let coulomb = rig.model.unknown_nm(joint) / inertia;
         let gravity = 0.1 * theta[GRAVITY_C].hypot(theta[GRAVITY_S]);
         let viscous = theta[VISCOUS_POS].max(theta[VISCOUS_NEG]).max(0.02);
-        let part = 0.4 * coulomb;
+        let part = FRICTION_SHARE * coulomb;
         // cables that pull harder than a part of friction are seen to
         let cable = 0.5 * coulomb;
         let deviations =
@@ -167,7 +170,8 @@ impl Equations {
     pub(super) fn rippling(&self, periods: f64) -> Self {
         let mut changed = *self;
         changed.periods = periods;
-        let part = if periods > 0.0 { 0.1 * self.deviations[COULOMB_POS] / 0.4 } else { 0.0 };
+        let part =
+            if periods > 0.0 { RIPPLE_SHARE * self.deviations[COULOMB_POS] / FRICTION_SHARE } else { 0.0 };
         (changed.deviations[RIPPLE_SIN], changed.deviations[RIPPLE_COS]) = (part, part);
         if periods != self.periods {
             (changed.theta[RIPPLE_SIN], changed.theta[RIPPLE_COS]) = (0.0, 0.0);
@@ -204,17 +208,24 @@ impl Equations {
 
     /// What balances in a tick, where the joint was taken to be.
     pub(super) fn balance(&self, at: &Surroundings, told: &Telemetry) -> Balance {
+        let angle_rad = f64::from(told.position_rad[at.joint]);
         // as if it turned positively, to have friction's share
-        let (columns, known) = at.acts(told, (f64::from(told.position_rad[at.joint]), 1.0));
+        let (columns, known) = at.acts(told, (angle_rad, 1.0));
         let theta = &self.theta;
         let part = |k: usize| theta[k] * columns[k];
-        let ripple = -part(RIPPLE_SIN) - part(RIPPLE_COS);
         let share = -columns[COULOMB_POS];
+        let (sin, cos) = (self.periods * angle_rad).sin_cos();
+        let ripple = share * (theta[RIPPLE_SIN] * sin + theta[RIPPLE_COS] * cos);
         Balance {
             drive: known + [GAIN, GRAVITY_C, GRAVITY_S, LOAD, SPRING].map(part).iter().sum::<f64>(),
             pos: share * theta[COULOMB_POS] + ripple,
             neg: share * theta[COULOMB_NEG] + ripple,
         }
+    }
+
+    /// Where an edge lies, rad.
+    pub(super) fn place_rad(&self, edge: &Edge, count_rad: f64) -> f64 {
+        (edge.ideal_counts() + self.edges_counts[edge.phase()]) * count_rad
     }
 
     /// Whether a head can be so.
@@ -248,8 +259,8 @@ impl Equations {
             (centre[0], centre[2]) = (theta[GRAVITY_C] / weight, theta[GRAVITY_S] / weight);
         }
         // bodies keep theirs: the rotor has nearly all of it
-        let missing = inertia - inertia_kg_m2(rig, joint);
-        rig.model.bodies.rotor_kg_m2[joint] += missing;
+        let missing = inertia - model.own_inertia_kg_m2()[joint];
+        model.bodies.rotor_kg_m2[joint] += missing;
         let known = rig.identified.get_or_insert(Identified::NONE);
         known.residual_counts[joint] = residual_counts;
         known.quirks[joint] = Quirks {
@@ -276,14 +287,5 @@ impl Equations {
             sum += precision(WEIGHT_DEVIATION);
         }
         (-pull / sum).exp()
-    }
-}
-
-/// What a joint feels at rest straight ahead, as believed.
-fn inertia_kg_m2(rig: &RigConfig, joint: Joint) -> f64 {
-    let mass = rig.model.bodies.lumped().mass(0.0);
-    match joint {
-        Joint::Pan => mass.m11,
-        Joint::Tilt => mass.m22,
     }
 }

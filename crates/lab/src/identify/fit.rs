@@ -22,12 +22,12 @@ const OUTLIER: f64 = 4.0;
 /// The most likely equations after what is believed and what was seen (Gaussian prior and noise), found twice: stretches
 /// that do not fit the first are left out of the second.
 pub(super) fn fit(believed: &Equations, stretches: &[&Stretch]) -> Equations {
-    let first = Normal::of(believed, stretches).with_prior(believed).equations(believed);
+    let first = Normal::of(&weighed(believed, stretches)).with_prior(believed).equations(believed);
     let left: Vec<f64> = stretches.iter().map(|s| stretch_counts(&first, s)).collect();
     let bound = OUTLIER * median(&left);
     let kept: Vec<&Stretch> =
         stretches.iter().zip(&left).filter(|(_, left)| **left <= bound).map(|(s, _)| *s).collect();
-    Normal::of(believed, &kept).with_prior(believed).equations(believed)
+    Normal::of(&weighed(believed, &kept)).with_prior(believed).equations(believed)
 }
 
 fn median(values: &[f64]) -> f64 {
@@ -39,66 +39,73 @@ fn median(values: &[f64]) -> f64 {
 /// How well each of some ripples explains what the rest leaves: by how much less the sum of squares is with it, for every number
 /// of periods.
 pub(super) fn ripple_gains(believed: &Equations, stretches: &[&Stretch], periods: &[f64]) -> Vec<f64> {
-    let plain = Normal::of(&believed.rippling(0.0), stretches);
-    periods
-        .iter()
-        .map(|&n| {
-            let mut normal = plain.clone();
-            stretches.iter().for_each(|stretch| normal.put_ripple(stretch, n));
-            normal.with_prior(&believed.rippling(n)).gain()
-        })
-        .collect()
+    let lines = weighed(&believed.rippling(0.0), stretches);
+    let plain = Normal::of(&lines);
+    let gain = |&n: &f64| {
+        let mut normal = plain;
+        let columns = stretches.iter().flat_map(|stretch| {
+            let free = Free::of(stretch);
+            let [sines, cosines] = stretch.ripple(n).map(|column| free.leave_of(&stretch.rows, &column));
+            sines.into_iter().zip(cosines)
+        });
+        lines.iter().zip(columns).for_each(|(line, ripple)| normal.put_ripple(line, ripple));
+        normal.with_prior(&believed.rippling(n)).gain()
+    };
+    periods.iter().map(gain).collect()
+}
+
+/// A line of the least squares.
+struct Weighed {
+    /// Coefficients of the unknowns.
+    line: Line,
+    /// What is to be explained, rad.
+    value: f64,
+    /// One over its variance, rad⁻².
+    weight: f64,
+}
+
+/// All lines of some stretches for the change of what is believed.
+fn weighed(believed: &Equations, stretches: &[&Stretch]) -> Vec<Weighed> {
+    let of_one = |stretch: &&Stretch| {
+        let worth = (WORTH_EDGES / stretch.rows.len() as f64).min(1.0);
+        let lines = Free::of(stretch).lines(stretch, believed);
+        let weigh = |(row, (line, value)): (&Row, (Line, f64))| {
+            let noise = (NOISE_COUNTS * stretch.count_rad).hypot(row.blur_rad);
+            Weighed { line, value, weight: worth / (noise * noise) }
+        };
+        stretch.rows.iter().zip(lines).map(weigh).collect::<Vec<_>>()
+    };
+    stretches.iter().flat_map(of_one).collect()
 }
 
 /// Normal equations of the change of what is believed.
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 struct Normal {
     matrix: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
     right: Line,
-    /// Every line with its value and weight, in the order of the stretches.
-    lines: Vec<(Line, f64, f64)>,
-    used: usize,
 }
 
 impl Normal {
-    fn of(believed: &Equations, stretches: &[&Stretch]) -> Self {
-        let mut normal = Self { matrix: SMatrix::zeros(), right: Line::zeros(), lines: Vec::new(), used: 0 };
-        for stretch in stretches {
-            normal.put(believed, stretch);
+    fn of(lines: &[Weighed]) -> Self {
+        let mut normal = Self { matrix: SMatrix::zeros(), right: Line::zeros() };
+        for Weighed { line, value, weight } in lines {
+            normal.matrix.ger(*weight, line, line, 1.0);
+            normal.right.axpy(weight * value, line, 1.0);
         }
         normal
     }
 
-    fn put(&mut self, believed: &Equations, stretch: &Stretch) {
-        let free = Free::of(stretch);
-        let worth = (WORTH_EDGES / stretch.rows.len() as f64).min(1.0);
-        for (row, (line, value)) in stretch.rows.iter().zip(free.lines(stretch, believed)) {
-            let noise = (NOISE_COUNTS * stretch.count_rad).hypot(row.blur_rad);
-            let weight = worth / (noise * noise);
-            self.matrix.ger(weight, &line, &line, 1.0);
-            self.right.axpy(weight * value, &line, 1.0);
-            self.lines.push((line, value, weight));
-        }
-    }
-
-    /// Puts the columns of a ripple in place of empty ones; stretches come in their order.
-    fn put_ripple(&mut self, stretch: &Stretch, periods: f64) {
-        let free = Free::of(stretch);
-        let columns = stretch.ripple(periods);
-        let column = |k: usize| free.leave_of(&stretch.rows, &columns[k]);
-        let (sines, cosines) = (column(0), column(1));
-        for (sin, cos) in sines.into_iter().zip(cosines) {
-            let Some((line, value, weight)) = self.lines.get_mut(self.used) else { return };
-            self.used += 1;
-            (line[RIPPLE_SIN], line[RIPPLE_COS]) = (sin, cos);
-            for (place, entry) in [(RIPPLE_SIN, sin), (RIPPLE_COS, cos)] {
-                self.right[place] += *weight * *value * entry;
-                for k in 0..UNKNOWNS {
-                    let product = *weight * entry * line[k];
-                    self.matrix[(place, k)] += product;
-                    if k != RIPPLE_SIN && k != RIPPLE_COS {
-                        self.matrix[(k, place)] += product;
-                    }
+    /// Adds what a ripple's sine and cosine do on a line that has none.
+    fn put_ripple(&mut self, on: &Weighed, (sin, cos): (f64, f64)) {
+        let mut line = on.line;
+        (line[RIPPLE_SIN], line[RIPPLE_COS]) = (sin, cos);
+        for (place, entry) in [(RIPPLE_SIN, sin), (RIPPLE_COS, cos)] {
+            self.right[place] += on.weight * on.value * entry;
+            for k in 0..UNKNOWNS {
+                let product = on.weight * entry * line[k];
+                self.matrix[(place, k)] += product;
+                if k != RIPPLE_SIN && k != RIPPLE_COS {
+                    self.matrix[(k, place)] += product;
                 }
             }
         }

@@ -48,6 +48,9 @@ const FEWEST_STRETCHES: usize = 9;
 /// A fit must leave at most this share of what the present model leaves.
 const BETTER: f64 = 0.98;
 
+/// Laps that are worth keeping to identify a head from: what the last of them do not tell, more do not.
+pub const LAPS_WORTH: usize = 3;
+
 /// One joint's identification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointFit {
@@ -90,7 +93,11 @@ pub enum IdentifyError {
 
 /// Identifies a rig from what it did: each record holds consecutive ticks from power-up on. A joint whose fit is worse than
 /// what is believed already keeps it.
-pub fn identify(rig: &RigConfig, records: &[&[Telemetry]]) -> Result<Identification, IdentifyError> {
+pub fn identify<R: AsRef<[Telemetry]>>(
+    rig: &RigConfig,
+    records: &[R],
+) -> Result<Identification, IdentifyError> {
+    let records: &[&[Telemetry]] = &records.iter().map(AsRef::as_ref).collect::<Vec<_>>();
     let found = PanTilt::new(joint(rig, records, Joint::Pan)?, joint(rig, records, Joint::Tilt)?);
     let mut joints = found.map(|(_, fit)| fit);
     let mut changed = rig.clone();
@@ -114,19 +121,19 @@ fn joint(
 ) -> Result<(Equations, JointFit), IdentifyError> {
     let believed = Equations::of(rig, joint);
     let taken_from = Seen { rig, records, joint };
-    let seen = taken_from.cut(&believed);
-    if seen.len() < FEWEST_STRETCHES {
-        return Err(IdentifyError::TooLittleMotion { joint, found: seen.len() });
+    let plain = taken_from.cut(&believed.rippling(0.0));
+    if plain.len() < FEWEST_STRETCHES {
+        return Err(IdentifyError::TooLittleMotion { joint, found: plain.len() });
     }
-    let before_counts = residual_counts(&believed, &part(&seen, true));
-    let rippling = rippled(&believed, &taken_from.cut(&believed.rippling(0.0)));
+    let before_counts = residual_counts(&believed, &part(&rippling(&plain, believed.periods), true));
+    let believed = rippled(&believed, &plain);
     // those that teach are judged by the others; then all of them teach
-    let taught = taken_from.taught(&rippling, |seen| part(seen, false));
+    let taught = taken_from.taught(&believed, |seen| part(seen, false));
     let after_counts = residual_counts(&taught, &part(&taken_from.cut(&taught), true));
-    let last = taken_from.taught(&rippling, |seen| seen.iter().collect());
+    let last = taken_from.taught(&believed, |seen| seen.iter().collect());
     let found = JointFit {
-        stretches: seen.len(),
-        edges: seen.iter().map(|s| s.rows.len()).sum(),
+        stretches: plain.len(),
+        edges: plain.iter().map(|s| s.rows.len()).sum(),
         before_counts,
         after_counts,
         taken: after_counts <= BETTER * before_counts && last.is_possible(),
@@ -142,10 +149,11 @@ struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// Its stretches, with the way between edges where these equations have them.
+    /// Its stretches, with edges where these equations have them, and their ripple among the unknowns.
     fn cut(&self, equations: &Equations) -> Vec<Stretch> {
         let records = self.records.iter();
-        records.flat_map(|record| stretches(self.rig, record, self.joint, equations)).collect()
+        let plain = records.flat_map(|record| stretches(self.rig, record, self.joint, equations));
+        rippling(&plain.collect::<Vec<_>>(), equations.periods)
     }
 
     /// Equations that some of the stretches teach: each round knows better where edges lie and what breaks away.
@@ -175,12 +183,17 @@ fn rippled(believed: &Equations, seen: &[Stretch]) -> Equations {
     let periods = most((-reach..=reach).map(|k| coarse + f64::from(k)).collect());
     let judged = |periods: f64| {
         let believed = believed.rippling(periods);
-        let seen: Vec<Stretch> = seen.iter().map(|s| s.rippling(periods)).collect();
+        let seen = rippling(seen, periods);
         let taught = fit(&believed, &part(&seen, false));
         (believed, residual_counts(&taught, &part(&seen, true)))
     };
-    let (plain, rippling) = (judged(0.0), judged(periods));
-    if rippling.1 < RIPPLE_WORTH * plain.1 - LEAST_COUNTS { rippling.0 } else { plain.0 }
+    let ((without, left), (with, less)) = (judged(0.0), judged(periods));
+    if less < RIPPLE_WORTH * left - LEAST_COUNTS { with } else { without }
+}
+
+/// Stretches with a ripple of so many periods a turn among the unknowns.
+fn rippling(plain: &[Stretch], periods: f64) -> Vec<Stretch> {
+    plain.iter().map(|stretch| stretch.rippling(periods)).collect()
 }
 
 /// The stretches that judge, or those that teach.

@@ -76,10 +76,10 @@ impl Swings {
     fn stretch(&self, rig: &RigConfig) -> f64 {
         let joint = |j: Joint| {
             let rate = TAU * self.times(j) / self.lasts_s;
-            let (widest, axis) = (self.widest_rad(rig, j), Possible::of(&rig.model, j));
+            let widest = self.widest_rad(rig, j);
             let speed = rate * widest / (SPEED_SHARE * rig.motion.speed_limit_rad_s[j]);
             // the envelope adds to it: half as much again at most
-            let acceleration = 1.5 * rate * rate * widest / (TORQUE_SHARE * axis.acceleration_rad_s2);
+            let acceleration = 1.5 * rate * rate * widest / (TORQUE_SHARE * possible_rad_s2(&rig.model, j));
             speed.max(acceleration.sqrt())
         };
         joint(Joint::Pan).max(joint(Joint::Tilt)).max(1.0)
@@ -118,24 +118,15 @@ fn quintic(from: (f64, f64, f64), to: (f64, f64, f64), n: f64) -> [f64; 6] {
     [x, v, 0.5 * a, c3, c4, c5]
 }
 
-/// What a motor can do besides holding friction and weight.
-struct Possible {
-    acceleration_rad_s2: f64,
-}
-
-impl Possible {
-    fn of(model: &Model, joint: Joint) -> Self {
-        let lumped = model.bodies.lumped();
-        let mass = lumped.mass(0.0);
-        let (inertia, weight) = match joint {
-            Joint::Pan => (mass.m11, 0.0),
-            Joint::Tilt => (mass.m22, lumped.gravity_c.hypot(lumped.gravity_s)),
-        };
-        let friction = model.friction[joint];
-        let held = weight + friction.coulomb_pos_nm.max(-friction.coulomb_neg_nm);
-        let left = model.motors[joint].torque_limit_nm() - held;
-        Self { acceleration_rad_s2: (left / inertia).max(0.1) }
-    }
+/// What a motor can do besides holding friction and weight, rad/s².
+fn possible_rad_s2(model: &Model, joint: Joint) -> f64 {
+    let lumped = model.bodies.lumped();
+    let weight = match joint {
+        Joint::Pan => 0.0,
+        Joint::Tilt => lumped.gravity_c.hypot(lumped.gravity_s),
+    };
+    let left = model.motors[joint].torque_limit_nm() - weight - model.friction[joint].coulomb_nm();
+    (left / model.own_inertia_kg_m2()[joint]).max(0.1)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use tracelight_rig::{Joint, TICK_F64_S, Telemetry};
 use tracelight_sim::{Quirks, RigConfig};
 
 use super::equations::{Balance, Equations, Surroundings, stribeck};
-use super::stretch::{Edge, edges, phase, slides};
+use super::stretch::{Edge, edges, slides};
 
 /// Edges before the gap that tell angle and speed.
 const BEFORE: usize = 6;
@@ -104,8 +104,7 @@ struct Pass<'a> {
 
 impl<'a> Pass<'a> {
     fn of(stand: &'a Stand<'a>, equations: &Equations, at: &Surroundings, count_rad: f64) -> Self {
-        let place =
-            |edge: &Edge| (f64::from(edge.number) - 0.5 + equations.edges_counts[phase(edge)]) * count_rad;
+        let place = |edge: &Edge| equations.place_rad(edge, count_rad);
         let tick = |edge: &Edge| (edge.time_s / TICK_F64_S).max(0.0) as usize;
         let (first, last) = (tick(&stand.before[0]), tick(&stand.after[AFTER - 1]));
         let ticks = stand.record.get(first..=last).unwrap_or_default();

@@ -27,6 +27,18 @@ pub(super) struct Edge {
     pub(super) blur_s: f64,
 }
 
+impl Edge {
+    /// Which kind of edge it is.
+    pub(super) const fn phase(&self) -> usize {
+        self.number.rem_euclid(PHASES as i32) as usize
+    }
+
+    /// Where it lies on a perfect disc, counts.
+    pub(super) fn ideal_counts(&self) -> f64 {
+        f64::from(self.number) - 0.5
+    }
+}
+
 /// One edge of a stretch as a line of the least squares: where the joint was, less what is known, is position and speed
 /// at the start plus Σ θₖ `columns[k]`.
 #[derive(Clone, Copy, Debug)]
@@ -82,23 +94,19 @@ impl Stretch {
     /// What friction of sin(nq) and of cos(nq) moved the joint by until each edge.
     pub(super) fn ripple(&self, periods: f64) -> [Vec<f64>; 2] {
         let mut columns = [vec![0.0], vec![0.0]];
-        let (mut once, mut twice) = ([0.0; 2], [0.0; 2]);
+        let mut integrals = Integrals::NONE;
         for step in &self.steps {
             let (sin, cos) = (periods * step.angle_rad).sin_cos();
-            for (k, part) in [sin, cos].into_iter().enumerate() {
-                let act = part * step.friction;
-                twice[k] += step.time_s * (once[k] + 0.5 * step.time_s * act);
-                once[k] += step.time_s * act;
-                if step.to_edge {
-                    columns[k].push(twice[k]);
-                }
+            integrals.advance(&[sin * step.friction, cos * step.friction], step.time_s);
+            if step.to_edge {
+                columns.iter_mut().zip(integrals.twice).for_each(|(column, moved)| column.push(moved));
             }
         }
         columns
     }
 }
 
-/// Cuts a record into stretches of one joint.
+/// Cuts a record into stretches of one joint, without a ripple of friction among the unknowns.
 pub(super) fn stretches(
     rig: &RigConfig,
     record: &[Telemetry],
@@ -160,15 +168,20 @@ struct Path<'a> {
     count_rad: f64,
 }
 
-/// Sums over time: the first and the second integral of what acts, for the mechanical unknowns and for what is known.
-#[derive(Clone, Copy, Default)]
-struct Integrals {
-    once: [f64; MECHANICS + 1],
-    twice: [f64; MECHANICS + 1],
+/// Sums over time: the first and the second integral of N things that act.
+#[derive(Clone, Copy)]
+struct Integrals<const N: usize> {
+    once: [f64; N],
+    twice: [f64; N],
 }
 
-impl Integrals {
-    fn advance(&mut self, acts: &[f64; MECHANICS + 1], time_s: f64) {
+/// The mechanical unknowns, and what is known.
+const ACTS: usize = MECHANICS + 1;
+
+impl<const N: usize> Integrals<N> {
+    const NONE: Self = Self { once: [0.0; N], twice: [0.0; N] };
+
+    fn advance(&mut self, acts: &[f64; N], time_s: f64) {
         for (k, act) in acts.iter().enumerate() {
             self.twice[k] += time_s * (self.once[k] + 0.5 * time_s * act);
             self.once[k] += time_s * act;
@@ -177,16 +190,11 @@ impl Integrals {
 }
 
 impl Path<'_> {
-    /// Where an edge lies, as far as is known, rad.
-    fn place_rad(&self, edge: &Edge) -> f64 {
-        (f64::from(edge.number) - 0.5 + self.believed.edges_counts[phase(edge)]) * self.count_rad
-    }
-
     fn stretch(&self) -> Stretch {
         let start_s = self.edges[0].time_s;
         let mut rows = Vec::with_capacity(self.edges.len());
         let mut steps = Vec::new();
-        let mut integrals = Integrals::default();
+        let mut integrals = Integrals::NONE;
         rows.push(self.row(&self.edges[0], &integrals, start_s));
         for pair in self.edges.windows(2) {
             self.pass(&pair[0], &pair[1], &mut integrals, &mut steps);
@@ -196,8 +204,9 @@ impl Path<'_> {
     }
 
     /// From one edge to the next, tick by tick, on the straight way between them.
-    fn pass(&self, from: &Edge, to: &Edge, integrals: &mut Integrals, steps: &mut Vec<Step>) {
-        let (from_rad, to_rad) = (self.place_rad(from), self.place_rad(to));
+    fn pass(&self, from: &Edge, to: &Edge, integrals: &mut Integrals<ACTS>, steps: &mut Vec<Step>) {
+        let (from_rad, to_rad) =
+            (self.believed.place_rad(from, self.count_rad), self.believed.place_rad(to, self.count_rad));
         let rate = (to_rad - from_rad) / (to.time_s - from.time_s).max(1e-9);
         let mut now = from.time_s;
         loop {
@@ -216,23 +225,23 @@ impl Path<'_> {
     }
 
     /// What acts in a tick, a unit of each unknown, and what is known of it; rad/s².
-    fn acts(&self, tick: usize, angle_rad: f64, rate_rad_s: f64) -> [f64; MECHANICS + 1] {
-        let Some(told) = self.record.get(tick) else { return [0.0; MECHANICS + 1] };
+    fn acts(&self, tick: usize, angle_rad: f64, rate_rad_s: f64) -> [f64; ACTS] {
+        let Some(told) = self.record.get(tick) else { return [0.0; ACTS] };
         let (columns, known) = self.surroundings.acts(told, (angle_rad, rate_rad_s));
-        let mut acts = [known; MECHANICS + 1];
+        let mut acts = [known; ACTS];
         acts[..MECHANICS].copy_from_slice(&columns);
         acts
     }
 
-    fn row(&self, edge: &Edge, integrals: &Integrals, start_s: f64) -> Row {
+    fn row(&self, edge: &Edge, integrals: &Integrals<ACTS>, start_s: f64) -> Row {
         let mut columns = [0.0; MECHANICS];
         columns.copy_from_slice(&integrals.twice[..MECHANICS]);
         let rate = self.mean_rate();
         Row {
             time_s: edge.time_s - start_s,
-            angle_rad: (f64::from(edge.number) - 0.5) * self.count_rad - integrals.twice[MECHANICS],
+            angle_rad: edge.ideal_counts() * self.count_rad - integrals.twice[MECHANICS],
             columns,
-            phase: phase(edge),
+            phase: edge.phase(),
             blur_rad: rate * edge.blur_s / 12f64.sqrt(),
         }
     }
@@ -243,8 +252,4 @@ impl Path<'_> {
         let counts = (f64::from(last.number) - f64::from(first.number)).abs();
         counts * self.count_rad / (last.time_s - first.time_s).max(TICK_F64_S)
     }
-}
-
-pub(super) fn phase(edge: &Edge) -> usize {
-    edge.number.rem_euclid(PHASES as i32) as usize
 }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use tracelight_aim::HeadPose;
-use tracelight_sim::{RigConfig, Run, SimulatedRig, Tracking, run, score};
+use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Tracking, run, score};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
 use tracelight_trajectory::{DarkMove, LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
 
@@ -57,4 +57,14 @@ pub(crate) fn trace(config: &RigConfig, path: Path, seed: u64) -> (Plan, Run, Tr
     let run = run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(()));
     let tracking = score(&plan, &run, SPEED_M_S);
     (plan, run, tracking)
+}
+
+/// The plan's ticks that are to be lit.
+pub(crate) fn lit_ticks(plan: &Plan) -> Vec<usize> {
+    (0..plan.points.len()).filter(|&i| plan.points[i].lit).collect()
+}
+
+/// How far the true spot is from where its setpoint would put it, mm.
+pub(crate) fn off_mm(tick: &Tick) -> f64 {
+    1e3 * tick.spot.unwrap().distance(tick.asked.unwrap())
 }

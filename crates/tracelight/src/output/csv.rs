@@ -33,10 +33,7 @@ const AFTER_FAULT: usize = 100;
 /// earlier job left under this name is removed.
 pub(super) fn write_fault(path: &Path, job: &Job<'_>) -> Result<(), OutputError> {
     let Some(at) = job.run.ticks.iter().position(|tick| tick.telemetry.fault.is_some()) else {
-        return match std::fs::remove_file(path) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(OutputError::at(path)(e)),
-            _ => Ok(()),
-        };
+        return super::forget(path).map_err(OutputError::at(path));
     };
     let from = at.saturating_sub(BEFORE_FAULT);
     let mut text = format!("{HEADER}\n").into_bytes();

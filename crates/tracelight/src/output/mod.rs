@@ -235,3 +235,11 @@ fn both(
         }
     })
 }
+
+/// Removes a result that an earlier job may have left and this one has none of.
+pub(crate) fn forget(path: &Path) -> std::io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
+    }
+}

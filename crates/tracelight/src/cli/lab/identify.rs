@@ -59,8 +59,7 @@ pub(crate) fn run(args: &IdentifyArgs, stop: &Stop) -> Result<Answer, Failure> {
     args.law.apply(&mut rig);
     let records = if args.records.is_empty() { vec![moved(args, &rig, stop)?] } else { read(args, &rig)? };
     let ticks: usize = records.iter().map(Vec::len).sum();
-    let slices: Vec<&[Telemetry]> = records.iter().map(Vec::as_slice).collect();
-    let mut found = identify(&rig, &slices).map_err(|e| Failure::failed("identify", e))?;
+    let mut found = identify(&rig, &records).map_err(|e| Failure::failed("identify", e))?;
     if Joint::BOTH.iter().any(|&j| found.joints[j].taken) {
         rigfile::date(&mut found.rig);
     }
@@ -109,7 +108,7 @@ fn moved(args: &IdentifyArgs, rig: &RigConfig, stop: &Stop) -> Result<Vec<Teleme
         );
         return Err(Failure::failed("unfinished", message));
     }
-    Ok(run.ticks.iter().map(|tick| tick.telemetry).collect())
+    Ok(run.telemetry())
 }
 
 fn write(
@@ -145,10 +144,7 @@ type Value = fn(&RigConfig, Joint) -> f64;
 /// Name in JSON, where it is plain SI; words for the table; by how much it is multiplied there.
 const FIGURES: [(&str, &str, f64, Value); 18] = [
     ("torque_nm_per_v", "torque per volt, mNm", 1e3, |r, j| r.model.motors[j].torque_nm_per_v),
-    ("inertia_kg_m2", "inertia, g m²", 1e3, |r, j| {
-        let mass = r.model.bodies.lumped().mass(0.0);
-        if j == Joint::Pan { mass.m11 } else { mass.m22 }
-    }),
+    ("inertia_kg_m2", "inertia, g m²", 1e3, |r, j| r.model.own_inertia_kg_m2()[j]),
     ("viscous_pos", "viscous +, mNms/rad", 1e3, |r, j| r.model.friction[j].viscous_pos),
     ("viscous_neg", "viscous −, mNms/rad", 1e3, |r, j| r.model.friction[j].viscous_neg),
     ("coulomb_pos_nm", "Coulomb +, mNm", 1e3, |r, j| r.model.friction[j].coulomb_pos_nm),

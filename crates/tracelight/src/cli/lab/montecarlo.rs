@@ -4,7 +4,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
-use tracelight_lab::{Quantiles, identify};
+use tracelight_lab::{LAPS_WORTH, Quantiles, identify};
 use tracelight_rig::{Fault, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, Spread, Tracking, score};
 use tracelight_trajectory::Plan;
@@ -88,9 +88,6 @@ fn run_all(args: &MonteCarloArgs, driving: &Driving, plan: &Plan, stop: &Stop) -
     done.into_iter().map(|(_, trial)| trial).collect()
 }
 
-/// Laps that a head is identified from, the last before the one to come.
-const LAPS_TO_LEARN_FROM: usize = 3;
-
 fn trial(driving: &Driving, plan: &Plan, laps: u32, seed: u64) -> Trial {
     let head = Spread::USUAL.draw(&driving.rig, seed);
     let draw = |rig: &RigConfig| {
@@ -100,13 +97,12 @@ fn trial(driving: &Driving, plan: &Plan, laps: u32, seed: u64) -> Trial {
     let mut run = draw(&head);
     let mut records: Vec<Vec<Telemetry>> = Vec::new();
     for _ in 1..laps {
-        records.push(run.ticks.iter().map(|tick| tick.telemetry).collect());
-        if records.len() > LAPS_TO_LEARN_FROM {
+        records.push(run.telemetry());
+        if records.len() > LAPS_WORTH {
             records.remove(0);
         }
-        let slices: Vec<&[Telemetry]> = records.iter().map(Vec::as_slice).collect();
         // a head that shows too little goes on as it is believed to be
-        let rig = identify(&head, &slices).map_or_else(|_| head.clone(), |found| found.rig);
+        let rig = identify(&head, &records).map_or_else(|_| head.clone(), |found| found.rig);
         run = draw(&rig);
     }
     Trial {
