@@ -1,5 +1,5 @@
 use tracelight_control::{
-    AxisConfig, Config, Feedback, Feedforward, FrictionModel, HeadModel, KalmanTuning, LawConfig,
+    AxisConfig, Config, Creep, Feedback, Feedforward, FrictionModel, HeadModel, KalmanTuning, LawConfig,
     MotorRating, ObserverConfig, Quirks, StateFeedback,
 };
 use tracelight_rig::{JointLimits, PanTilt};
@@ -42,6 +42,7 @@ fn axis(torque_nm_per_v: f32, range_rad: f32, friction: (f32, f32, f32, f32)) ->
         quirks: Quirks::NONE,
         observer: ObserverConfig::Kalman(KalmanTuning::LEARNING),
         law: LawConfig { feedback: Feedback::State(state), feedforward: Feedforward::Learned },
+        creep: Some(Creep { below_rad_s: 0.02, turn_s: 0.02, hop_rad: 9e-5, acceleration_rad_s2: 5.0 }),
         rating: MotorRating { continuous_share: 0.7, heating_s: 60.0 },
         limits: JointLimits { lower_rad: -range_rad, upper_rad: range_rad, speed_rad_s: 24.0 },
     }

@@ -1,6 +1,6 @@
 use tracelight_rig::{JointLimits, PanTilt};
 
-use crate::{FrictionModel, HeadModel, LawConfig, Learned, MotorRating, ObserverConfig};
+use crate::{Creep, FrictionModel, HeadModel, LawConfig, Learned, MotorRating, ObserverConfig};
 
 /// Everything the controller is told before it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +39,8 @@ pub struct AxisConfig {
     pub observer: ObserverConfig,
     /// How they become torque.
     pub law: LawConfig,
+    /// How it follows a plan slower than friction lets go; `None`: as any other.
+    pub creep: Option<Creep>,
     /// How much the motor may be driven.
     pub rating: MotorRating,
     /// What the joint may do.

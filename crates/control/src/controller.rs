@@ -1,5 +1,6 @@
 use tracelight_rig::{Actuation, Command, Fault, Joint, PanTilt, Phase, Segment, Sensed, Telemetry};
 
+use crate::creep::Pace;
 use crate::player::{Played, Player};
 use crate::return_path::ReturnPath;
 use crate::servo::{Reference, Servo};
@@ -23,6 +24,7 @@ pub struct State {
     player: Player,
     supervisor: Supervisor,
     way_back: Option<ReturnPath>,
+    paces: PanTilt<Pace>,
 }
 
 impl State {
@@ -49,6 +51,7 @@ impl Controller {
             player: Player::resting_at(servo.position_rad()),
             supervisor: Supervisor::default(),
             way_back: None,
+            paces: PanTilt::default(),
         }
     }
 
@@ -188,8 +191,9 @@ impl Controller {
         };
         if !stands {
             state.way_back = None;
-            return Reference { now: played.setpoint, ahead: played.ahead };
+            return self.along(state, played);
         }
+        state.paces = PanTilt::default();
         let position_rad = state.servo.position_rad();
         let kept = state.way_back.filter(|w| !w.is_lost(&self.config, position_rad));
         let mut way = kept.unwrap_or_else(|| {
@@ -199,6 +203,19 @@ impl Controller {
         let now = way.tick(&self.config, &played.setpoint);
         state.way_back = Some(way);
         Reference { now, ahead: now }
+    }
+
+    /// Along the plan, from rest to rest where that is slower than friction lets go.
+    fn along(&self, state: &mut State, played: &Played) -> Reference {
+        let mut reference = Reference { now: played.setpoint, ahead: played.ahead };
+        for j in Joint::BOTH {
+            if let Some(creep) = &self.config.axes[j].creep {
+                let planned = (&played.setpoint[j], &played.ahead[j]);
+                let (now, ahead) = state.paces[j].tick(creep, &state.servo.estimates()[j], planned);
+                (reference.now[j], reference.ahead[j]) = (now, ahead);
+            }
+        }
+        reference
     }
 }
 

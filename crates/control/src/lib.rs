@@ -18,6 +18,7 @@
 
 mod config;
 mod controller;
+mod creep;
 mod law;
 mod limit;
 mod model;
@@ -30,6 +31,7 @@ mod watch;
 
 pub use config::{AxisConfig, Cable, Config, Quirks, Ripple};
 pub use controller::{Controller, State};
+pub use creep::Creep;
 pub use law::{Biquad, Feedback, Feedforward, LawConfig, LeadLag, Pid, StateFeedback};
 pub use model::{FrictionModel, HeadModel};
 pub use observer::{

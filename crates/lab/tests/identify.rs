@@ -20,7 +20,7 @@ use tracelight_trajectory::Plan;
 
 /// The routine on a head, dark.
 fn moved(rig: &RigConfig, seed: u64) -> Vec<Telemetry> {
-    let mut simulated = SimulatedRig::new(rig, POSE, seed);
+    let mut simulated = SimulatedRig::new(&rig.following(), POSE, seed);
     let run = run_segments(&mut simulated, &routine(rig), true, |_, _| ControlFlow::Continue(()));
     assert!(run.is_done() && run.ticks.iter().all(|tick| !tick.light), "seed {seed}: {:?}", run.fault());
     run.telemetry()

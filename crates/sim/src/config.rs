@@ -107,6 +107,11 @@ impl RigConfig {
     pub fn quirks_of(&self, joint: Joint) -> Quirks {
         self.identified.as_ref().map_or(Quirks::NONE, |identified| identified.quirks[joint])
     }
+
+    /// The same rig without hops: for motion that is looked at for its own sake.
+    pub fn following(&self) -> Self {
+        Self { control: ControlSettings { hops: false, ..self.control }, ..self.clone() }
+    }
 }
 
 impl Quirks {
@@ -148,6 +153,8 @@ pub struct ControlSettings {
     pub law: LawName,
     /// From counts to position and velocity; none is the one the law is meant for.
     pub observer: Option<ObserverName>,
+    /// Whether a joint hops where its plan is slower than friction lets go; only law [`LawName::State`] can.
+    pub hops: bool,
     /// Bandwidth of each loop, rad/s: how far its closed-loop poles lie from the origin. The 2006 report's laws have
     /// their own.
     pub bandwidth_rad_s: PanTilt<f64>,

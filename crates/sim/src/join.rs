@@ -1,17 +1,31 @@
 //! What each room is told of a rig.
 
 use tracelight_aim::HeadPose;
-use tracelight_control::{AxisConfig, Cable, Config, FrictionModel, HeadModel, MotorRating, Quirks, Ripple};
+use tracelight_control::{
+    AxisConfig, Cable, Config, Creep, FrictionModel, HeadModel, MotorRating, Quirks, Ripple,
+};
 use tracelight_dynamics::{Friction, Lumped};
 use tracelight_plant::PlantConfig;
 use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
 use tracelight_trajectory::Machine;
 
-use crate::RigConfig;
 use crate::laws::INTERVAL_TICKS;
+use crate::{LawName, ObserverName, RigConfig};
 
 /// How far past the end of its range a joint may be before that is a fault, counts.
 const RANGE_MARGIN_COUNTS: f64 = 3.0;
+
+/// A joint hops where fewer edges pass than that, counts/s: in the time from one to the next, 77 ms, one that is slower than its
+/// friction lets go would stall.
+const CREEP_COUNTS_S: f64 = 13.0;
+/// A reversal that lasts longer, s, either way, is hopped through;
+const TURN_S: f32 = 0.02;
+/// where the head was identified it is followed for longer than that by what is known of friction.
+const KNOWN_TURN_S: f32 = 0.08;
+/// Length of a hop, counts. Half of it is what a joint is off at least; 0.04 to 0.1 are alike on heads that differ.
+const HOP_COUNTS: f64 = 0.06;
+/// What of a motor's torque a hop takes; gravity, friction and a weak supply need the rest.
+const HOP_TORQUE_SHARE: f64 = 0.6;
 
 impl RigConfig {
     /// What the planner believes, for a head standing at `pose`.
@@ -59,6 +73,7 @@ impl RigConfig {
             quirks: self.quirks(joint),
             observer: control.observer_in_use().config(INTERVAL_TICKS),
             law: control.law.config(joint, control.bandwidth_rad_s[joint], inertia),
+            creep: self.creep(joint),
             rating: MotorRating {
                 continuous_share: control.motor_continuous as f32,
                 heating_s: control.motor_heating_s as f32,
@@ -69,6 +84,24 @@ impl RigConfig {
                 speed_rad_s: self.motion.speed_limit_rad_s[joint] as f32,
             },
         }
+    }
+
+    /// Only for a law that knows friction, and with an observer that knows when a joint rests.
+    fn creep(&self, joint: Joint) -> Option<Creep> {
+        let control = &self.control;
+        let can = control.law == LawName::State && control.observer_in_use() == ObserverName::Kalman;
+        if !(can && control.hops) {
+            return None;
+        }
+        let motor = &self.model.motors[joint];
+        let most_rad_s2 = motor.torque_nm_per_v * motor.limit_v / self.model.own_inertia_kg_m2()[joint];
+        let count_rad = self.model.encoder.count_rad();
+        Some(Creep {
+            below_rad_s: (CREEP_COUNTS_S * count_rad) as f32,
+            turn_s: if self.identified.is_some() { KNOWN_TURN_S } else { TURN_S },
+            hop_rad: (HOP_COUNTS * count_rad) as f32,
+            acceleration_rad_s2: (HOP_TORQUE_SHARE * most_rad_s2) as f32,
+        })
     }
 
     fn quirks(&self, joint: Joint) -> Quirks {

@@ -42,6 +42,7 @@ impl RigConfig {
             control: ControlSettings {
                 law: LawName::State,
                 observer: None,
+                hops: true,
                 bandwidth_rad_s: PanTilt::new(120.0, 120.0),
                 tolerance_m: 3e-3,
                 hold_limit_s: 3.0,

@@ -199,7 +199,7 @@ fn push(rig: &mut SimulatedRig, torque_nm: f64, way: PanTilt<f64>) {
 fn a_push_is_waited_for_and_the_stroke_goes_on() {
     let act: Disturbance =
         |rig, _, drawn| push(rig, if drawn.goes_on { 0.1 + 0.5 * drawn.strength } else { 0.0 }, drawn.way);
-    check(&Case { name: "push", act, over: |ticks| ticks, furthest_mm: 4.5, faults: 8 });
+    check(&Case { name: "push", act, over: |ticks| ticks, furthest_mm: 4.5, faults: 6 });
 }
 
 /// For a second, with 2 to 40 Hz.

@@ -43,7 +43,7 @@ fn report(edge_stamps: bool) -> RigConfig {
 
 #[test]
 fn a_circle_on_sixty_heads_is_a_fraction_of_a_count_off_in_its_first_lap() {
-    for (edge_stamps, most_rms, most_max) in [(true, 0.06, 0.5), (false, 0.1, 0.6)] {
+    for (edge_stamps, most_rms, most_max) in [(true, 0.045, 0.3), (false, 0.09, 0.4)] {
         let (rms, max) = sixty(&report(edge_stamps), circle(0.25));
         println!("edge stamps {edge_stamps}: median {rms:.3} mm rms, 95 % within {max:.3} mm");
         assert!(rms <= most_rms && max <= most_max, "{edge_stamps}: {rms} {max} mm");
@@ -51,15 +51,28 @@ fn a_circle_on_sixty_heads_is_a_fraction_of_a_count_off_in_its_first_lap() {
 }
 
 #[test]
-fn a_level_line_on_a_head_as_believed_is_within_a_third_of_a_count() {
+fn a_level_line_on_a_head_as_believed_is_within_a_tenth_of_a_count() {
     let rig = report(true);
     let plan = plan_of(&rig, line(0.15));
     for seed in 0..40 {
         let mut simulated = SimulatedRig::new(&rig, POSE, seed);
         let ran = run(&mut simulated, &plan, false, |_, _| ControlFlow::Continue(()));
         let tracking = score(&plan, &ran, SPEED_M_S);
-        assert!(tracking.max_mm <= 0.47, "seed {seed}: {tracking:?}");
+        assert!(tracking.max_mm <= 0.1, "seed {seed}: {tracking:?}");
     }
+}
+
+/// Tilt creeps on them: it goes in hops, and would stall unseen if it did not.
+#[test]
+fn level_lines_on_sixty_heads_are_within_a_fifth_of_a_count() {
+    let hops = report(true);
+    for height in [0.05, 0.15, 0.3] {
+        let (rms, max) = sixty(&hops, line(height));
+        println!("level line at {height} m: median {rms:.3} mm rms, 95 % within {max:.3} mm");
+        assert!(rms <= 0.06 && max <= 0.25, "{height} m: {rms} {max} mm");
+    }
+    let (_, max) = sixty(&hops.following(), line(0.15));
+    assert!(max > 0.8, "without hops: {max} mm");
 }
 
 /// The pan amplifier of the original rig gave 0.08 A/V with its motor turning and 0.1 A/V without.

@@ -64,8 +64,8 @@ fn every_example_is_drawn_true_to_the_picture() {
             precision * 100.0,
             length_ratio
         );
-        let good = figure(&summary, "rms_mm") <= 0.06
-            && figure(&summary, "max_mm") <= 0.4
+        let good = figure(&summary, "rms_mm") <= 0.04
+            && figure(&summary, "max_mm") <= 0.25
             && figure(&summary, "overshoot_percent") <= 0.5
             && figure(&summary, "final_error_mm") <= 0.1
             && rms <= 0.6e-3

@@ -1,6 +1,6 @@
 use tracelight_rig::{Measurement, TICK_S};
 
-use super::covariance::{BREAK_AWAY, Covariance, FRICTION, INERTIA, LOAD, POSITION, Row, VELOCITY};
+use super::covariance::{BREAK_AWAY, Covariance, FRICTION, INERTIA, LOAD, POSITION, Row, STATES, VELOCITY};
 use super::edge_table::EdgeTable;
 use super::{Effort, Estimate};
 use crate::AxisConfig;
@@ -154,6 +154,12 @@ impl Kalman {
 
     /// One step of the equation of motion, by the same time stepping as an exact plant would use.
     fn predict(&mut self, axis: &AxisConfig, effort: &Effort) {
+        /// How sure it has to be that a joint stays at rest, standard deviations.
+        const SURE: f32 = 2.0;
+        /// One surprise fades to that over seven edges.
+        const CALM: f32 = 0.5;
+        /// The velocity of a joint that is held depends on nothing.
+        const HELD: Row = [0.0; STATES];
         let before = self.velocity_rad_s;
         let inertia = effort.inertia_kg_m2 * (1.0 + self.learned.inertia_share);
         let gain = TICK_S / inertia;
@@ -162,7 +168,13 @@ impl Kalman {
         let drive = effort.torque_nm - effort.bias_nm + self.learned.load_nm;
         let momentum = inertia * before + TICK_S * drive;
         let after = friction.resolve(momentum, inertia, TICK_S);
-        // whether it slides or sticks, this is the way it goes or would go
+        // at rest, nobody pushed of late, and whatever is not known of the torques does not break it away
+        let doubt = SURE * TICK_S * self.covariance.deviation_of_torque();
+        let held = before == 0.0
+            && self.surprises < CALM
+            && friction.resolve(momentum + doubt, inertia, TICK_S) == 0.0
+            && friction.resolve(momentum - doubt, inertia, TICK_S) == 0.0;
+        // whether it slides or is about to, this is the way it goes or would go
         let against = if momentum < 0.0 { gain } else { -gain };
         let row = [
             0.0,
@@ -176,7 +188,7 @@ impl Kalman {
         self.offset_rad += 0.5 * TICK_S * (before + after);
         self.acceleration_rad_s2 = (after - before) / TICK_S;
         self.velocity_rad_s = after;
-        self.covariance.predict(&row);
+        self.covariance.predict(if held { &HELD } else { &row });
         self.disturb(axis.unknown_nm);
     }
 

@@ -36,7 +36,7 @@ const PARTS: [Swings; 4] = [
 ];
 
 /// Dark motion, 40 s or longer where motors are weak, from which [`identify`](super::identify) tells what a head is made of:
-/// segments for a rig that rests at zero.
+/// segments for a rig that rests at zero and is [following](RigConfig::following): one that hops does not show how it breaks away.
 pub fn routine(rig: &RigConfig) -> Vec<Segment> {
     let mut segments = Vec::new();
     let mut start_tick = 0;

@@ -212,7 +212,7 @@ pub(super) fn model_keys() -> Vec<Key<Model>> {
 }
 
 /// Keys of `[truth.wear]`, `[control]` and `[motion]`.
-pub(super) const RIG_KEYS: [Key<RigConfig>; 33] = [
+pub(super) const RIG_KEYS: [Key<RigConfig>; 34] = [
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),
@@ -306,6 +306,15 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 33] = [
             names: || std::iter::once("own").chain(ObserverName::ALL.map(ObserverName::name)).collect(),
             get: |r| r.control.observer.map_or("own", ObserverName::name),
             set: |r, name| r.control.observer = ObserverName::named(name),
+        },
+    ),
+    choice(
+        "control.creep",
+        "how law state goes where a plan is slower than friction lets go: in hops, or following it",
+        Choice {
+            names: || vec!["hop", "follow"],
+            get: |r| if r.control.hops { "hop" } else { "follow" },
+            set: |r, name| r.control.hops = name == "hop",
         },
     ),
     real(

@@ -94,7 +94,7 @@ fn moved(args: &IdentifyArgs, rig: &RigConfig, stop: &Stop) -> Result<Vec<Teleme
     let progress = Progress::new(args.voice.quiet);
     progress.stage("moves", segments.last().map_or(0, |s| u64::from(s.end_tick())));
     let pose = tracelight_aim::HeadPose::square_on(DEFAULT_DISTANCE_M);
-    let mut simulated = SimulatedRig::new(rig, pose, args.seed);
+    let mut simulated = SimulatedRig::new(&rig.following(), pose, args.seed);
     let run = run_segments(&mut simulated, &segments, true, |_, tick| {
         progress.at(u64::from(tick.telemetry.tick));
         if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

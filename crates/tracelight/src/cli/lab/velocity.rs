@@ -93,7 +93,8 @@ pub(crate) fn run(args: &VelocityArgs, stop: &Stop) -> Result<Answer, Failure> {
 
 fn draw(args: &VelocityArgs, driving: &Driving) -> Result<Run, Failure> {
     let plan = args.shape.plan(driving)?;
-    let mut rig = SimulatedRig::new(&driving.rig, driving.pose, args.seed);
+    // hops would be all that is seen of a slow motion
+    let mut rig = SimulatedRig::new(&driving.rig.following(), driving.pose, args.seed);
     let run = tracelight_sim::run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(()));
     if run.is_done() {
         return Ok(run);
