@@ -125,6 +125,7 @@ impl Controller {
             position_rad: estimates.map(|estimate| estimate.position_rad),
             velocity_rad_s: estimates.map(|estimate| estimate.velocity_rad_s),
             acceleration_rad_s2: estimates.map(|estimate| estimate.acceleration_rad_s2),
+            lost_counts: estimates.map(|estimate| estimate.lost_counts),
             actuation: Actuation { command_v, gate },
             darkness,
             phase: state.supervisor.phase,

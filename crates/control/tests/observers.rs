@@ -129,6 +129,36 @@ fn acceleration_is_found_too() {
     }
 }
 
+/// A count that the encoder loses or makes up while its joint slides is put back; one that is pushed is believed.
+#[test]
+fn a_lost_count_is_put_back_and_a_push_is_not() {
+    let observer = ObserverConfig::Kalman(KalmanTuning::LEARNING);
+    for (wrong, at) in [(1, 700), (-1, 703), (1, 706), (-1, 709)] {
+        let axis = axis(observer);
+        let mut state = Observer::begin(&axis, &Measurement::default(), 1e-3);
+        for k in 0..1200 {
+            let t = (f64::from(k) + 1.0) * TICK_S;
+            let mut measured = measure(start_and_cruise, t, true);
+            measured.count += if k >= at { wrong } else { 0 };
+            let effort = Effort {
+                torque_nm: (INERTIA * push(t - 0.5 * TICK_S)) as f32,
+                inertia_kg_m2: INERTIA as f32,
+                ..Effort::default()
+            };
+            state.tick(&axis, &effort, &measured);
+            let estimate = state.estimate(&axis);
+            let off_counts = (f64::from(estimate.position_rad) - start_and_cruise(t)) / COUNT_RAD;
+            if k > at + 20 {
+                assert_eq!(estimate.lost_counts, -wrong, "{wrong} at {at}, tick {k}");
+                assert!(off_counts.abs() < 0.1, "{wrong} at {at}, tick {k}: {off_counts} counts");
+            }
+        }
+    }
+    let pushed = |t: f64| start_and_cruise(t) + if t < 0.7 { 0.0 } else { 4.0 * (t - 0.7) * (t - 0.7) };
+    let seen = observe(observer, (pushed, push), true, 900);
+    assert!(seen.iter().all(|estimate| estimate.lost_counts == 0));
+}
+
 /// A head with more friction and inertia than is believed: what is learned says how much.
 #[test]
 fn what_differs_from_the_model_is_learned() {

@@ -45,6 +45,8 @@ pub struct Telemetry {
     pub velocity_rad_s: PanTilt<f32>,
     /// How fast it believes that changes, rad/s².
     pub acceleration_rad_s2: PanTilt<f32>,
+    /// Counts that the encoders lost, less those they made up, as far as the observer noticed: it put them back.
+    pub lost_counts: PanTilt<i32>,
     /// What is done about it until the next tick.
     pub actuation: Actuation,
     /// Why the gate is shut; empty when it is open.

@@ -210,7 +210,7 @@ fn a_shaken_head_is_waited_for_and_the_stroke_goes_on() {
         let swing = (TAU * hz * f64::from(tick.telemetry.tick) * 1e-3).sin();
         push(rig, if drawn.goes_on { 0.2 * swing } else { 0.0 }, drawn.way);
     };
-    check(&Case { name: "shaken", act, over: |_| 1000, furthest_mm: 3.5, faults: 2 });
+    check(&Case { name: "shaken", act, over: |_| 1000, furthest_mm: 3.5, faults: 4 });
 }
 
 /// A spring towards straight ahead that is hooked on for two seconds.
@@ -242,35 +242,41 @@ fn what_no_motor_can_hold_is_dark_as_soon() {
         rig.suffer(Trouble::SupplySag(if drawn.goes_on { 0.6 * drawn.strength } else { 1.0 }));
     };
     for (name, act) in [("strong push", pushed), ("no supply", starved)] {
-        let case = Case { name, act, over: |ticks| 5 * ticks, furthest_mm: 5.0, faults: 200 };
+        let case = Case { name, act, over: |ticks| 5 * ticks, furthest_mm: 5.5, faults: 200 };
         let (worst, _) = all(&case);
         assert!(worst.furthest_mm <= case.furthest_mm && worst.doubled_ticks == 0, "{name}: {worst:?}");
     }
 }
 
-/// A count too many or too few is less than a watch can see. What is drawn from then on lies beside by a count; what was
-/// learned of the edges belongs to others now, and until it is learned anew most heads shake, and wait in the dark.
+/// A count too many or too few is less than a watch can see, but the edges after it come a whole count beside: it is put back, in
+/// the dark. Where a joint turns round it may look like a push; what is drawn from then on lies beside by a count.
 #[test]
-fn a_lost_count_shifts_the_drawing_and_stops_nothing() {
+fn a_lost_count_is_put_back() {
     let rig = RigConfig::report();
     let plan = plan_of(&rig, circle(0.25));
-    let (mut furthest_mm, mut held) = (0.0f64, 0);
+    let (mut furthest_mm, mut put_back, mut soon) = (0.0f64, 0, 0);
     for seed in 0..60 {
         let (at, joint) = (1200 + 60 * seed as u32, if seed % 2 == 0 { Joint::Pan } else { Joint::Tilt });
         let by = if seed % 4 < 2 { 1 } else { -1 };
         let mut simulated = SimulatedRig::new(&Spread::USUAL.draw(&rig, seed), POSE, seed);
+        let mut noticed = None;
         let ran = run(&mut simulated, &plan, false, |rig, tick| {
             if tick.telemetry.tick == at {
                 rig.suffer(Trouble::EncoderJump(joint, by));
             }
+            if noticed.is_none() && rig.estimates()[joint].lost_counts == -by {
+                noticed = Some(tick.telemetry.tick - at);
+            }
             ControlFlow::Continue(())
         });
         assert_eq!(ran.ticks.last().unwrap().telemetry.phase, Phase::Done, "seed {seed}");
-        held += usize::from(ran.ticks.len() > plan.points.len());
+        put_back += usize::from(simulated.estimates()[joint].lost_counts == -by);
+        soon += usize::from(noticed.is_some_and(|ticks| ticks <= 20));
         furthest_mm = ran.ticks.iter().filter(|t| t.light).map(off_mm).fold(furthest_mm, f64::max);
     }
     println!(
-        "a lost count: light at most {furthest_mm:.2} mm off, {held} of 60 left their stroke and came back"
+        "a lost count: light at most {furthest_mm:.2} mm off, put back in {put_back} of 60, in {soon} within 20 ms"
     );
     assert!(furthest_mm <= 3.0 + COUNT_MM, "{furthest_mm} mm");
+    assert!(put_back >= 50 && soon >= 40, "{put_back} {soon}");
 }

@@ -17,7 +17,7 @@ pub(super) const INERTIA: usize = 5;
 pub(super) type Row = [f32; STATES];
 
 /// What is further off than three standard deviations is a surprise.
-const DEVIATIONS_SQUARED: f32 = 9.0;
+pub(super) const DEVIATIONS_SQUARED: f32 = 9.0;
 
 /// Symmetric covariance of the estimated quantities.
 #[derive(Clone, Copy, Debug, Default)]
@@ -61,11 +61,6 @@ impl Covariance {
     /// Adds process noise to one quantity.
     pub(super) fn disturb(&mut self, quantity: usize, variance: f32) {
         self.0[quantity][quantity] += variance;
-    }
-
-    /// Whether an innovation is beyond three standard deviations.
-    pub(super) fn is_surprised(&self, innovation: f32, age_s: f32, variance: f32) -> bool {
-        innovation * innovation > DEVIATIONS_SQUARED * (self.variance_of_place(age_s) + variance)
     }
 
     /// Makes room for a surprise: an innovation beyond three standard deviations says that something happens which

@@ -1,6 +1,8 @@
-use tracelight_rig::{Measurement, TICK_S};
+use tracelight_rig::TICK_S;
 
-use super::covariance::{BREAK_AWAY, Covariance, FRICTION, INERTIA, LOAD, POSITION, Row, STATES, VELOCITY};
+use super::covariance::{
+    BREAK_AWAY, Covariance, DEVIATIONS_SQUARED, FRICTION, INERTIA, LOAD, POSITION, Row, STATES, VELOCITY,
+};
 use super::edge_table::EdgeTable;
 use super::{Effort, Estimate};
 use crate::AxisConfig;
@@ -113,7 +115,7 @@ pub(super) struct Kalman {
     acceleration_rad_s2: f32,
     since_edge_s: f32,
     edges: EdgeTable,
-    /// Edges of late that came where they should not.
+    /// Edges of late that came where they should not; where it began is one.
     surprises: f32,
     learned: Learned,
     covariance: Covariance,
@@ -141,23 +143,16 @@ impl Kalman {
             acceleration_rad_s2: 0.0,
             since_edge_s: 0.0,
             edges: EdgeTable::about(axis.quirks.edges_counts, tuning.edge_noise_counts),
-            surprises: 0.0,
+            surprises: 1.0,
             learned: Learned { break_away_nm: axis.quirks.break_away_nm, ..Learned::default() },
             covariance,
         }
     }
 
-    pub(super) fn tick(&mut self, axis: &AxisConfig, effort: &Effort, measured: &Measurement) {
-        self.predict(axis, effort);
-        self.correct(axis, effort.inertia_kg_m2, measured);
-    }
-
     /// One step of the equation of motion, by the same time stepping as an exact plant would use.
-    fn predict(&mut self, axis: &AxisConfig, effort: &Effort) {
+    pub(super) fn predict(&mut self, axis: &AxisConfig, effort: &Effort) {
         /// How sure it has to be that a joint stays at rest, standard deviations.
         const SURE: f32 = 2.0;
-        /// One surprise fades to that over seven edges.
-        const CALM: f32 = 0.5;
         /// The velocity of a joint that is held depends on nothing.
         const HELD: Row = [0.0; STATES];
         let before = self.velocity_rad_s;
@@ -171,7 +166,7 @@ impl Kalman {
         // at rest, nobody pushed of late, and whatever is not known of the torques does not break it away
         let doubt = SURE * TICK_S * self.covariance.deviation_of_torque();
         let held = before == 0.0
-            && self.surprises < CALM
+            && self.is_calm()
             && friction.resolve(momentum + doubt, inertia, TICK_S) == 0.0
             && friction.resolve(momentum - doubt, inertia, TICK_S) == 0.0;
         // whether it slides or is about to, this is the way it goes or would go
@@ -208,26 +203,48 @@ impl Kalman {
         }
     }
 
-    fn correct(&mut self, axis: &AxisConfig, inertia_kg_m2: f32, measured: &Measurement) {
+    /// Takes the joint to be on that count; where it is stays. Counts it passed.
+    pub(super) fn recount(&mut self, axis: &AxisConfig, count: i32) -> i32 {
+        let moved = count.wrapping_sub(self.count);
+        self.count = count;
+        self.offset_rad -= moved as f32 * axis.count_rad;
+        moved
+    }
+
+    /// Takes `moved` edges, the last of them so long ago, or that none came. How well that fits what was expected.
+    pub(super) fn correct(
+        &mut self,
+        axis: &AxisConfig,
+        inertia_kg_m2: f32,
+        moved: i32,
+        age_ticks: Option<f32>,
+    ) -> Fit {
         let width = axis.count_rad;
-        let moved = measured.count.wrapping_sub(self.count);
-        self.count = measured.count;
-        self.offset_rad -= moved as f32 * width;
-        if moved != 0 {
-            self.see_edge(axis, inertia_kg_m2, moved, measured.edge_age_ticks);
-        }
+        let edge = if moved == 0 { None } else { Some(self.see_edge(axis, inertia_kg_m2, moved, age_ticks)) };
         let inside = within(self.offset_rad, 0.5 * width);
         let tuning = &self.tuning;
+        let mut overdue = None;
         if !self.homed {
             // it began anywhere in its count: that it has not left it says nothing of the model
             self.offset_rad = inside;
         } else if (self.offset_rad - inside).abs() > tuning.bound_slack_counts * width {
             let noise = tuning.bound_noise_counts * width;
-            self.observe(axis, self.innovation(inside, 0.0), (0.0, noise * noise), false);
+            let innovation = self.innovation(inside, 0.0);
+            let slack = tuning.bound_slack_counts * width;
+            overdue =
+                Some(Misfit::of(innovation, self.covariance.variance_of_place(0.0) + slack * slack, width));
+            self.observe(axis, innovation, (0.0, noise * noise), false);
         }
+        Fit { edge, overdue }
     }
 
-    fn see_edge(&mut self, axis: &AxisConfig, inertia_kg_m2: f32, moved: i32, age_ticks: Option<f32>) {
+    fn see_edge(
+        &mut self,
+        axis: &AxisConfig,
+        inertia_kg_m2: f32,
+        moved: i32,
+        age_ticks: Option<f32>,
+    ) -> Misfit {
         let width = axis.count_rad;
         // the last edge crossed is the one on the side it came from
         let (number, side) = if moved > 0 { (self.count, -0.5) } else { (self.count.wrapping_add(1), 0.5) };
@@ -244,9 +261,12 @@ impl Kalman {
         let variance = placed * width * width + blur * blur / 12.0;
         let innovation = self.innovation(edge, age_s);
         // the first edge says where in its count the joint began, nothing else
-        let surprised = self.covariance.is_surprised(innovation, age_s, variance);
+        let misfit = Misfit::of(innovation, self.covariance.variance_of_place(age_s) + variance, width);
+        let surprised = misfit.is_surprise();
         let early_rad = innovation.abs() - blur.abs();
-        let pushed = self.homed && surprised && self.is_pushed(axis, inertia_kg_m2, early_rad);
+        let load_nm = self.explaining_nm(inertia_kg_m2, early_rad);
+        let misfit = Misfit { load_nm, ..misfit };
+        let pushed = self.homed && surprised && self.is_pushed(axis, load_nm, early_rad);
         if self.homed && !surprised {
             let all = (self.covariance.variance_of_place(age_s) + variance) / (width * width);
             self.edges.learn(number, innovation / width, all);
@@ -255,6 +275,19 @@ impl Kalman {
         self.homed = true;
         self.since_edge_s = age_s;
         self.observe(axis, innovation, (age_s, variance), pushed);
+        misfit
+    }
+
+    /// Whether it knows where the joint is, and nothing surprised it of late.
+    pub(super) fn is_calm(&self) -> bool {
+        /// One surprise fades to that over seven edges.
+        const CALM: f32 = 0.5;
+        self.homed && self.surprises < CALM
+    }
+
+    /// The count the joint is taken to be on.
+    pub(super) const fn count(&self) -> i32 {
+        self.count
     }
 
     /// Who pushes surprises some edges; a count that was lost makes every edge one of another kind than it is taken for, and
@@ -275,21 +308,25 @@ impl Kalman {
 
     /// Whether an edge came so early or late that only somebody who pushes explains it; a load is then suspected that
     /// makes such a difference in the time since the last edge.
-    fn is_pushed(&mut self, axis: &AxisConfig, inertia_kg_m2: f32, early_rad: f32) -> bool {
+    fn is_pushed(&mut self, axis: &AxisConfig, load_nm: f32, early_rad: f32) -> bool {
         /// Counts that neither friction nor two misplaced edges are off from one edge to the next.
         const PUSHED_COUNTS: f32 = 0.4;
-        /// Shortest time a load is reckoned over, s: what is faster is a blow.
-        const SHORTEST_S: f32 = 0.005;
         /// Shares of Coulomb friction that break-away and ripple of a worn head stay well under.
         const PUSHED_SHARE: f32 = 3.0;
-        let time = self.since_edge_s.max(SHORTEST_S);
-        let load_nm = 2.0 * early_rad * inertia_kg_m2 / (time * time);
         let far = early_rad > PUSHED_COUNTS * axis.count_rad;
         let pushed = far && load_nm > PUSHED_SHARE * axis.unknown_nm;
         if pushed {
             self.covariance.suspect_load(within(load_nm, axis.torque_nm_per_v * axis.limit_v));
         }
         pushed
+    }
+
+    /// What would have to push since the last edge for this one to come so early or late, N m.
+    fn explaining_nm(&self, inertia_kg_m2: f32, early_rad: f32) -> f32 {
+        /// Shortest time a load is reckoned over, s: what is faster is a blow.
+        const SHORTEST_S: f32 = 0.005;
+        let time = self.since_edge_s.max(SHORTEST_S);
+        2.0 * early_rad.max(0.0) * inertia_kg_m2 / (time * time)
     }
 
     /// How far ahead of the estimate the joint was `age_s` ago, if it was there, rad.
@@ -314,8 +351,49 @@ impl Kalman {
             velocity_rad_s: self.velocity_rad_s,
             acceleration_rad_s2: self.acceleration_rad_s2,
             learned: self.learned,
+            lost_counts: 0,
+            is_doubtful: false,
             torque_deviation_nm: self.covariance.deviation_of_torque(),
         }
+    }
+}
+
+/// How what an encoder says fits what was expected.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fit {
+    /// The edge that came,
+    pub(super) edge: Option<Misfit>,
+    /// and the one that should have come and did not.
+    pub(super) overdue: Option<Misfit>,
+}
+
+/// How far something is off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Misfit {
+    /// Of the joint ahead of where it was expected, counts.
+    pub(super) counts: f32,
+    /// Square of that in standard deviations (the normalized innovation squared).
+    pub(super) squared: f32,
+    /// Variance it was expected with, counts².
+    pub(super) variance: f32,
+    /// What would have to push for it to be true, N m.
+    pub(super) load_nm: f32,
+}
+
+impl Misfit {
+    fn of(innovation: f32, variance: f32, width: f32) -> Self {
+        let square = width * width;
+        Self {
+            counts: innovation / width,
+            squared: innovation * innovation / variance,
+            variance: variance / square,
+            load_nm: 0.0,
+        }
+    }
+
+    /// Beyond three standard deviations.
+    pub(super) fn is_surprise(&self) -> bool {
+        self.squared > DEVIATIONS_SQUARED
     }
 }
 

@@ -17,6 +17,7 @@ mod edge_table;
 mod edge_times;
 mod kalman;
 mod past;
+mod recount;
 mod tracking_loop;
 
 use tracelight_rig::Measurement;
@@ -27,7 +28,7 @@ pub use kalman::{KalmanTuning, Learned, Unknown};
 
 use differences::Differences;
 use edge_times::EdgeTimes;
-use kalman::Kalman;
+use recount::Recount;
 use tracking_loop::TrackingLoop;
 
 /// Longest interval of [`ObserverConfig::Differences`] and [`ObserverConfig::EdgeTimes`], ticks.
@@ -59,11 +60,20 @@ pub struct Estimate {
     pub acceleration_rad_s2: f32,
     /// What the model does not know of this head; nothing for observers that have no model.
     pub learned: Learned,
+    /// Counts that its encoder lost, less those it made up, as far as that was noticed: they are put back.
+    pub lost_counts: i32,
+    /// The last edge was so far off that the next ones have to tell what happened.
+    pub is_doubtful: bool,
     /// How far off what is taken for load and friction together may be: a standard deviation, N m.
     pub torque_deviation_nm: f32,
 }
 
 impl Estimate {
+    /// The count a joint is on whose encoder reads that.
+    pub(crate) const fn count(&self, measured: &Measurement) -> i32 {
+        measured.count.wrapping_add(self.lost_counts)
+    }
+
     /// Whether every number of it is one.
     pub(crate) fn is_finite(&self) -> bool {
         let Learned { load_nm, friction_nm, break_away_nm, inertia_share } = self.learned;
@@ -94,7 +104,7 @@ enum Kind {
     Differences(Differences),
     EdgeTimes(EdgeTimes),
     TrackingLoop(TrackingLoop),
-    Kalman(Kalman),
+    Kalman(Recount),
 }
 
 impl Observer {
@@ -110,7 +120,7 @@ impl Observer {
             ObserverConfig::TrackingLoop(bandwidth) => {
                 Kind::TrackingLoop(TrackingLoop::at_rest(count, bandwidth))
             }
-            ObserverConfig::Kalman(tuning) => Kind::Kalman(Kalman::begin(axis, count, speed_rad_s, tuning)),
+            ObserverConfig::Kalman(tuning) => Kind::Kalman(Recount::begin(axis, count, speed_rad_s, tuning)),
         })
     }
 
@@ -130,7 +140,7 @@ impl Observer {
             Kind::Differences(observer) => observer.estimate(axis.count_rad),
             Kind::EdgeTimes(observer) => observer.estimate(axis.count_rad),
             Kind::TrackingLoop(observer) => observer.estimate(axis.count_rad),
-            Kind::Kalman(observer) => observer.estimate(axis.count_rad),
+            Kind::Kalman(observer) => observer.estimate(axis),
         }
     }
 }

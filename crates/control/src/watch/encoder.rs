@@ -80,7 +80,7 @@ impl EncoderWatch {
         let moved = measured.count.wrapping_sub(self.count);
         self.count = measured.count;
         let before = core::mem::replace(&mut self.believed, *estimate);
-        let surprise = surprise_counts(axis, &before, measured.count);
+        let surprise = surprise_counts(axis, &before, before.count(measured));
         if surprise > JUMP_COUNTS {
             return Some(Fault::EncoderJumped);
         }
@@ -124,7 +124,7 @@ impl EncoderWatch {
         let loaded = load_nm.abs() > SLIP_LOAD * axis.torque_nm_per_v * axis.limit_v;
         // what turns by less than its joint seems to be braked
         let braked = load_nm * estimate.velocity_rad_s < -SLIP_RAD_S * load_nm.abs();
-        self.is_strange = heavy || loaded;
+        self.is_strange = heavy || loaded || estimate.is_doubtful;
         if heavy || (loaded && braked) {
             self.slipping_ticks = self.slipping_ticks.saturating_add(1);
         } else if !loaded {

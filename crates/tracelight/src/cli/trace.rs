@@ -39,6 +39,13 @@ fn text(s: &Summary) -> String {
         ),
         false => "\nerror:  none to measure, nothing was lit".to_owned(),
     };
+    let lost = s.run.lost_counts;
+    if (lost.pan, lost.tilt) != (0, 0) {
+        text += &format!(
+            "\nlost:   the encoders, pan {} and tilt {} counts, all put back; look at their cables",
+            lost.pan, lost.tilt
+        );
+    }
     match s.laser.faults.len() {
         0 => {}
         1 => text += "\ndark:   once where light was planned; the report says when and why",

@@ -77,6 +77,14 @@ pub(crate) struct PlanFigures {
 pub(crate) struct RunFigures {
     pub(crate) duration_s: f64,
     pub(crate) finished: bool,
+    pub(crate) lost_counts: JointCounts,
+}
+
+/// One figure a joint.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct JointCounts {
+    pub(crate) pan: i32,
+    pub(crate) tilt: i32,
 }
 
 /// See [`Summary::tracking`] and [`tracelight_sim::Tracking`].
@@ -175,9 +183,11 @@ fn picture(job: &Job<'_>) -> PictureFigures {
 
 impl RunFigures {
     fn of(run: &Run) -> Self {
+        let lost = run.ticks.last().map(|tick| tick.telemetry.lost_counts).unwrap_or_default();
         Self {
             duration_s: round(run.ticks.len().saturating_sub(1) as f64 * TICK_F64_S),
             finished: run.is_done(),
+            lost_counts: JointCounts { pan: lost.pan, tilt: lost.tilt },
         }
     }
 }

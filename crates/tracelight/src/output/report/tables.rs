@@ -47,6 +47,7 @@ pub(super) fn subtitle(job: &Job<'_>) -> String {
 /// Every figure of the summary, grouped.
 pub(super) fn figures(job: &Job<'_>, f: &Summary) -> String {
     let share = |x: f64| number(x * 100.0, 3);
+    let lost = f.run.lost_counts;
     let groups = [
         ("Picture and target", picture_rows(job, f)),
         ("Quality of the picture", job.quality.map(quality_rows).unwrap_or_default()),
@@ -72,6 +73,7 @@ pub(super) fn figures(job: &Job<'_>, f: &Summary) -> String {
                 row("speed of the lit spot", number(f.tracking.lit_speed_m_s, 4), "m/s"),
                 row("lit time at the set speed ± 2 %", share(f.tracking.at_speed_share), "%"),
                 row("light left the head for", number(f.laser.lit_s, 4), "s"),
+                row("counts lost and put back, pan, tilt", format!("{}, {}", lost.pan, lost.tilt), ""),
             ],
         ),
         (

@@ -1,0 +1,214 @@
+use tracelight_rig::Measurement;
+
+use super::kalman::{Fit, Kalman};
+use super::{Effort, Estimate, KalmanTuning};
+use crate::AxisConfig;
+
+/// [`Kalman`] filters that notice when their encoder lost a count or made one up, and put it back.
+///
+/// A wrong count looks like nothing else: the joint seems to jump by up to a whole count, and goes on as fast as before. Whoever
+/// pushes it changes its speed. So when an edge does not come in time, or comes far too early, a rival filter begins that takes
+/// the count to be wrong, and for some edges both see the same. What is believed is what the likelier one says (a test of two hypotheses
+/// by their likelihoods; Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and Navigation*, §11.6).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Recount {
+    believed: Hypothesis,
+    contest: Option<Contest>,
+}
+
+/// A filter that takes so many counts to be lost.
+#[derive(Clone, Copy, Debug)]
+struct Hypothesis {
+    filter: Kalman,
+    lost: i32,
+    /// By how much an edge has been overdue since the last one, squares of standard deviations.
+    overdue: f32,
+}
+
+/// Two that see the same.
+#[derive(Clone, Copy, Debug)]
+struct Contest {
+    rival: Hypothesis,
+    /// It was believed, and may win that back.
+    was_believed: bool,
+    ticks: u32,
+    edges: u32,
+    /// Twice the logarithm of the odds in the rival's favour.
+    evidence: f32,
+    /// What would have had to push the believed one at most, N m.
+    load_nm: f32,
+    /// How far an edge was off the rival at most, counts.
+    off_counts: f32,
+    /// Something was beyond three standard deviations of the rival.
+    is_surprised: bool,
+}
+
+impl Recount {
+    pub(super) fn begin(axis: &AxisConfig, count: i32, speed_rad_s: f32, tuning: KalmanTuning) -> Self {
+        let filter = Kalman::begin(axis, count, speed_rad_s, tuning);
+        Self { believed: Hypothesis { filter, lost: 0, overdue: 0.0 }, contest: None }
+    }
+
+    pub(super) fn tick(&mut self, axis: &AxisConfig, effort: &Effort, measured: &Measurement) {
+        let moved = self.believed.predict(axis, effort, measured);
+        let before = self.believed;
+        let (fit, cost) = self.believed.correct(axis, effort, moved, measured);
+        let contest = match self.contest {
+            Some(mut contest) => {
+                let moved = contest.rival.predict(axis, effort, measured);
+                Some((contest, moved))
+            }
+            None => before.rival(axis, &fit, moved).map(|(rival, moved)| (Contest::of(rival), moved)),
+        };
+        self.contest = contest.and_then(|(mut contest, moved)| {
+            let (fits, less) = contest.rival.correct(axis, effort, moved, measured);
+            contest.weigh(&fit, &fits, cost - less);
+            let decided = contest.is_open() && contest.is_won(axis);
+            if decided {
+                core::mem::swap(&mut self.believed, &mut contest.rival);
+                contest =
+                    Contest { was_believed: true, evidence: -contest.evidence, ..Contest::of(contest.rival) };
+            }
+            contest.is_open().then_some(contest)
+        });
+    }
+
+    pub(super) fn estimate(&self, axis: &AxisConfig) -> Estimate {
+        let is_doubtful = self.contest.is_some_and(|contest| contest.was_believed);
+        Estimate {
+            lost_counts: self.believed.lost,
+            is_doubtful,
+            ..self.believed.filter.estimate(axis.count_rad)
+        }
+    }
+}
+
+impl Contest {
+    /// Evidence that outweighs how rare a wrong count is: what five standard deviations are worth.
+    const ENOUGH: f32 = 25.0;
+    /// Edges that have to fit where it may have been a push.
+    const FEW: u32 = 3;
+
+    fn of(rival: Hypothesis) -> Self {
+        Self {
+            rival,
+            was_believed: false,
+            ticks: 0,
+            edges: 0,
+            evidence: 0.0,
+            off_counts: 0.0,
+            load_nm: 0.0,
+            is_surprised: false,
+        }
+    }
+
+    /// Takes how a tick fitted the believed one and the rival, and how much more it cost the former.
+    fn weigh(&mut self, fit: &Fit, fits: &Fit, cost: f32) {
+        /// What is off by less may be a misplaced edge, counts.
+        const FAR: f32 = 0.4;
+        self.ticks = self.ticks.saturating_add(1);
+        self.evidence += cost;
+        self.edges += u32::from(fits.edge.is_some());
+        if let Some(edge) = fit.edge.filter(|edge| edge.is_surprise() && edge.counts.abs() > FAR) {
+            self.load_nm = self.load_nm.max(edge.load_nm);
+        }
+        self.is_surprised |= fits.edge.or(fits.overdue).is_some_and(|misfit| misfit.is_surprise());
+        if let Some(edge) = fits.edge {
+            self.off_counts = self.off_counts.max(edge.counts.abs());
+        }
+    }
+
+    /// Whether the rival is the likelier one, whatever may have happened.
+    fn is_won(&self, axis: &AxisConfig) -> bool {
+        /// Nobody who pushes does as much times what a motor can;
+        const STRONGER: f32 = 2.0;
+        /// and who does this much times that moves a joint elsewhere
+        const FIRM: f32 = 0.25;
+        /// than this close, counts, to where it would be by itself at edge after edge.
+        const CLOSE: f32 = 0.2;
+        let most_nm = axis.torque_nm_per_v * axis.limit_v;
+        let fits = |edges, evidence, share| {
+            self.edges >= edges
+                && self.evidence > evidence
+                && self.load_nm > share * most_nm
+                && self.off_counts < CLOSE
+        };
+        if self.was_believed {
+            return self.evidence > Self::ENOUGH;
+        }
+        fits(0, Self::ENOUGH, STRONGER) || fits(Self::FEW, 2.0 * Self::ENOUGH, FIRM)
+    }
+
+    fn is_open(&self) -> bool {
+        /// Edges after which a rival has lost, however close it is.
+        const MANY: u32 = 12;
+        /// Ticks after which what was believed has lost: a joint may come to rest meanwhile.
+        const SOON: u32 = 50;
+        if self.was_believed {
+            self.edges < Self::FEW && self.ticks < SOON
+        } else {
+            !self.is_surprised && self.evidence > -Self::ENOUGH && self.edges < MANY
+        }
+    }
+}
+
+impl Hypothesis {
+    /// A tick passes; edges that it sees in it.
+    fn predict(&mut self, axis: &AxisConfig, effort: &Effort, measured: &Measurement) -> i32 {
+        self.filter.predict(axis, effort);
+        self.filter.recount(axis, measured.count.wrapping_add(self.lost))
+    }
+
+    /// Takes them; how that fitted, and minus twice the logarithm of its likelihood.
+    fn correct(
+        &mut self,
+        axis: &AxisConfig,
+        effort: &Effort,
+        moved: i32,
+        measured: &Measurement,
+    ) -> (Fit, f32) {
+        /// One edge says no more than that.
+        const MOST: f32 = 100.0;
+        let fit = self.filter.correct(axis, effort.inertia_kg_m2, moved, measured.edge_age_ticks);
+        let mut cost = 0.0;
+        if let Some(edge) = fit.edge {
+            cost += edge.squared.min(MOST) + libm::logf(edge.variance);
+            self.overdue = 0.0;
+        }
+        if let Some(overdue) = fit.overdue {
+            // what is overdue for many ticks is so once
+            let most = overdue.squared.min(MOST).max(self.overdue);
+            cost += most - self.overdue;
+            self.overdue = most;
+        }
+        (fit, cost)
+    }
+
+    /// One that explains what did not fit this one, as it was before it saw so many edges, and the edges that truly came.
+    fn rival(&self, axis: &AxisConfig, fit: &Fit, moved: i32) -> Option<(Self, i32)> {
+        /// What is off a whole count by more than this many standard deviations squared is not off by a whole count.
+        const WHOLE: f32 = 9.0;
+        if !self.filter.is_calm() {
+            return None;
+        }
+        let (by, moved) = match (fit.edge, fit.overdue) {
+            (Some(edge), _) if edge.is_surprise() => {
+                let early = edge.counts * moved as f32 > 0.0;
+                let beside = edge.counts.abs() - 1.0;
+                if early && beside * beside > WHOLE * edge.variance {
+                    // it came from nowhere, or one of them did
+                    (-moved.signum(), moved - moved.signum())
+                } else {
+                    (if edge.counts > 0.0 { -1 } else { 1 }, moved)
+                }
+            }
+            // it came, and was not counted
+            (None, Some(overdue)) => (if overdue.counts > 0.0 { -1 } else { 1 }, 0),
+            _ => return None,
+        };
+        let mut rival = *self;
+        rival.lost = rival.lost.wrapping_add(by);
+        let _ = rival.filter.recount(axis, self.filter.count().wrapping_add(by));
+        Some((rival, moved))
+    }
+}
