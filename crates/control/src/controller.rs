@@ -83,7 +83,7 @@ impl Controller {
         if state.supervisor.fault.is_some() {
             if state.supervisor.blind {
                 // what was believed is not worth keeping
-                state.servo = Servo::anew(&self.config, &state.sensed.encoders);
+                state.servo = state.servo.anew(&self.config, &state.sensed.encoders);
             }
             state.watch.rearm(&state.sensed, state.servo.estimates());
             // from wherever it fell to, gently

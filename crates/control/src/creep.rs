@@ -67,7 +67,7 @@ impl Pace {
 impl Creep {
     /// What is this much faster is not slow any more.
     const FASTER: f32 = 1.25;
-    /// A plan that takes longer than this for half a hop, s, is not gone ahead of by as much.
+    /// A plan so slow that it takes longer than this for half a hop, s, is gone ahead of by as much as it goes in that time.
     const LEAD_S: f32 = 0.06;
 
     fn begins(&self, now: &Setpoint) -> bool {
@@ -87,10 +87,9 @@ impl Creep {
         lag.abs() >= if forward { 0.5 * self.hop_rad } else { self.hop_rad }
     }
 
-    /// The shortest from where the joint is to half a hop ahead of where the plan then is.
+    /// The shortest from where the joint is to half a hop ahead of where the plan then is, or as far towards it as a hop reaches.
     fn hop(&self, estimate: &Estimate, now: &Setpoint) -> Hop {
         const SHORTEST: u16 = 2;
-        // far enough for all that a stroke may be off
         const LONGEST: u16 = 28;
         let half = 0.5 * self.hop_rad;
         let lead = within(Self::LEAD_S * now.velocity_rad_s, half);
@@ -98,8 +97,13 @@ impl Creep {
         loop {
             let target = after(now, f32::from(2 * half_ticks) * TICK_S).position_rad + lead;
             let hop = Hop::new(estimate, target, half_ticks);
-            if half_ticks == LONGEST || hop.most_rad_s2() <= self.acceleration_rad_s2 {
+            if hop.most_rad_s2() <= self.acceleration_rad_s2 {
                 return hop;
+            }
+            if half_ticks == LONGEST {
+                let half_s = f32::from(half_ticks) * TICK_S;
+                let way = within(target - estimate.position_rad, half_s * half_s * self.acceleration_rad_s2);
+                return Hop::new(estimate, estimate.position_rad + way, half_ticks);
             }
             half_ticks += 1;
         }

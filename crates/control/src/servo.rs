@@ -36,16 +36,17 @@ pub struct Reference {
 impl Servo {
     /// Of a head at rest whose encoders read `measured`.
     pub fn at_rest(config: &Config, measured: &PanTilt<Measurement>) -> Self {
-        Self::begin(config, measured, STILL_RAD_S)
+        Self::begin(config, |j| Observer::begin(&config.axes[j], &measured[j], STILL_RAD_S))
     }
 
-    /// Of a head nobody knows how fast it turns.
-    pub(crate) fn anew(config: &Config, measured: &PanTilt<Measurement>) -> Self {
-        Self::begin(config, measured, ANY_RAD_S)
+    /// Of the same head, of which all but the counts that were put back is to be forgotten.
+    pub(crate) fn anew(&self, config: &Config, measured: &PanTilt<Measurement>) -> Self {
+        let lost = |j: Joint| self.estimates[j].lost_counts;
+        Self::begin(config, |j| Observer::anew(&config.axes[j], &measured[j], lost(j), ANY_RAD_S))
     }
 
-    fn begin(config: &Config, measured: &PanTilt<Measurement>, speed_rad_s: f32) -> Self {
-        let observers = PanTilt::from_fn(|j| Observer::begin(&config.axes[j], &measured[j], speed_rad_s));
+    fn begin(config: &Config, observer: impl FnMut(Joint) -> Observer) -> Self {
+        let observers = PanTilt::from_fn(observer);
         let estimates = PanTilt::from_fn(|j| observers[j].estimate(&config.axes[j]));
         let torque_nm = PanTilt::default();
         let efforts = efforts(config, &estimates, torque_nm);

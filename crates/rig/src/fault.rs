@@ -112,8 +112,8 @@ pub enum Darkness {
     Stale = 6,
     /// A [`Fault`] is latched.
     Faulted = 7,
-    /// An encoder has shown no edge where its joint should have passed several, or does not fit what its motor does: it may
-    /// be dead or slip, or somebody holds the head.
+    /// An encoder has shown no edge where its joint should have passed several, or does not fit what its motor does, or a count
+    /// was put back a moment ago: it may be dead or slip or lose counts, or somebody holds the head.
     Doubtful = 8,
 }
 

@@ -45,7 +45,8 @@ pub struct Telemetry {
     pub velocity_rad_s: PanTilt<f32>,
     /// How fast it believes that changes, rad/s².
     pub acceleration_rad_s2: PanTilt<f32>,
-    /// Counts that the encoders lost, less those they made up, as far as the observer noticed: it put them back.
+    /// Counts that are to be added to what the encoders read, because they lost some or made some up, as far as the
+    /// observer noticed.
     pub lost_counts: PanTilt<i32>,
     /// What is done about it until the next tick.
     pub actuation: Actuation,

@@ -153,7 +153,8 @@ pub struct ControlSettings {
     pub law: LawName,
     /// From counts to position and velocity; none is the one the law is meant for.
     pub observer: Option<ObserverName>,
-    /// Whether a joint hops where its plan is slower than friction lets go; only law [`LawName::State`] can.
+    /// Whether a joint hops where its plan is slower than friction lets go; only law [`LawName::State`] with observer
+    /// [`ObserverName::Kalman`] can.
     pub hops: bool,
     /// Bandwidth of each loop, rad/s: how far its closed-loop poles lie from the origin. The 2006 report's laws have
     /// their own.

@@ -22,7 +22,8 @@ const CREEP_COUNTS_S: f64 = 13.0;
 const TURN_S: f32 = 0.02;
 /// where the head was identified it is followed for longer than that by what is known of friction.
 const KNOWN_TURN_S: f32 = 0.08;
-/// Length of a hop, counts. Half of it is what a joint is off at least; 0.04 to 0.1 are alike on heads that differ.
+/// Length of a hop, counts: half of it is what a joint that creeps is off, all of it what one that rests may be. 0.04 to 0.1 are alike
+/// on heads that differ.
 const HOP_COUNTS: f64 = 0.06;
 /// What of a motor's torque a hop takes; gravity, friction and a weak supply need the rest.
 const HOP_TORQUE_SHARE: f64 = 0.6;

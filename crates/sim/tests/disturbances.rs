@@ -64,6 +64,8 @@ struct Outcome {
     doubled_ticks: usize,
     /// Past the stroke on the way back, once it is let go, mm on the target.
     overshoot_mm: f64,
+    /// Runs at whose end a count was put back that was never lost.
+    miscounted: usize,
 }
 
 impl Outcome {
@@ -74,6 +76,7 @@ impl Outcome {
             missing_ticks: self.missing_ticks.max(other.missing_ticks),
             doubled_ticks: self.doubled_ticks.max(other.doubled_ticks),
             overshoot_mm: self.overshoot_mm.max(other.overshoot_mm),
+            miscounted: self.miscounted + other.miscounted,
         }
     }
 }
@@ -153,6 +156,7 @@ fn outcome(plan: &Plan, ticks: &[Tick], let_go: u32) -> Outcome {
         missing_ticks,
         doubled_ticks,
         overshoot_mm: overshoot_mm(ticks, let_go),
+        miscounted: usize::from(ticks.last().is_some_and(|t| t.telemetry.lost_counts != PanTilt::default())),
     }
 }
 
@@ -185,6 +189,7 @@ fn check(case: &Case) {
     // the clock gets under way with a twelfth of a tick while the relay closes
     assert!(worst.missing_ticks <= 1 && worst.doubled_ticks == 0, "{}: {worst:?}", case.name);
     assert!(worst.overshoot_mm <= COUNT_MM, "{}: {worst:?}", case.name);
+    assert!(worst.miscounted <= 1, "{}: {worst:?}", case.name);
     assert!(faults.len() <= case.faults, "{}: {faults:?}", case.name);
     let alike = [Fault::EncoderDead, Fault::EncoderNoisy];
     assert!(faults.iter().all(|fault| alike.contains(fault)), "{}: {faults:?}", case.name);
@@ -210,7 +215,7 @@ fn a_shaken_head_is_waited_for_and_the_stroke_goes_on() {
         let swing = (TAU * hz * f64::from(tick.telemetry.tick) * 1e-3).sin();
         push(rig, if drawn.goes_on { 0.2 * swing } else { 0.0 }, drawn.way);
     };
-    check(&Case { name: "shaken", act, over: |_| 1000, furthest_mm: 3.5, faults: 4 });
+    check(&Case { name: "shaken", act, over: |_| 1000, furthest_mm: 3.5, faults: 2 });
 }
 
 /// A spring towards straight ahead that is hooked on for two seconds.
@@ -242,7 +247,7 @@ fn what_no_motor_can_hold_is_dark_as_soon() {
         rig.suffer(Trouble::SupplySag(if drawn.goes_on { 0.6 * drawn.strength } else { 1.0 }));
     };
     for (name, act) in [("strong push", pushed), ("no supply", starved)] {
-        let case = Case { name, act, over: |ticks| 5 * ticks, furthest_mm: 5.5, faults: 200 };
+        let case = Case { name, act, over: |ticks| 5 * ticks, furthest_mm: 5.0, faults: 200 };
         let (worst, _) = all(&case);
         assert!(worst.furthest_mm <= case.furthest_mm && worst.doubled_ticks == 0, "{name}: {worst:?}");
     }
@@ -252,13 +257,29 @@ fn what_no_motor_can_hold_is_dark_as_soon() {
 /// the dark. Where a joint turns round it may look like a push; what is drawn from then on lies beside by a count.
 #[test]
 fn a_lost_count_is_put_back() {
-    let rig = RigConfig::report();
-    let plan = plan_of(&rig, circle(0.25));
+    for (edge_stamps, most, most_soon) in [(true, 50, 40), (false, 48, 36)] {
+        let mut rig = RigConfig::report();
+        rig.model.encoder.edge_stamps = edge_stamps;
+        rig.truth.model.encoder.edge_stamps = edge_stamps;
+        let (put_back, soon, furthest_mm) = lost_counts(&rig);
+        println!(
+            "a lost count, stamps {edge_stamps}: light at most {furthest_mm:.2} mm off, put back in {put_back} of 60, in {soon} \
+             within 20 ms"
+        );
+        assert!(furthest_mm <= 3.0 + COUNT_MM, "{furthest_mm} mm");
+        assert!(put_back >= most && soon >= most_soon, "{put_back} {soon}");
+    }
+}
+
+/// Of 60 circles with a count too many or too few somewhere: how many were put right, how many of them within 20 ms, and how far
+/// off its point light was, mm.
+fn lost_counts(rig: &RigConfig) -> (usize, usize, f64) {
+    let plan = plan_of(rig, circle(0.25));
     let (mut furthest_mm, mut put_back, mut soon) = (0.0f64, 0, 0);
     for seed in 0..60 {
         let (at, joint) = (1200 + 60 * seed as u32, if seed % 2 == 0 { Joint::Pan } else { Joint::Tilt });
         let by = if seed % 4 < 2 { 1 } else { -1 };
-        let mut simulated = SimulatedRig::new(&Spread::USUAL.draw(&rig, seed), POSE, seed);
+        let mut simulated = SimulatedRig::new(&Spread::USUAL.draw(rig, seed), POSE, seed);
         let mut noticed = None;
         let ran = run(&mut simulated, &plan, false, |rig, tick| {
             if tick.telemetry.tick == at {
@@ -274,9 +295,5 @@ fn a_lost_count_is_put_back() {
         soon += usize::from(noticed.is_some_and(|ticks| ticks <= 20));
         furthest_mm = ran.ticks.iter().filter(|t| t.light).map(off_mm).fold(furthest_mm, f64::max);
     }
-    println!(
-        "a lost count: light at most {furthest_mm:.2} mm off, put back in {put_back} of 60, in {soon} within 20 ms"
-    );
-    assert!(furthest_mm <= 3.0 + COUNT_MM, "{furthest_mm} mm");
-    assert!(put_back >= 50 && soon >= 40, "{put_back} {soon}");
+    (put_back, soon, furthest_mm)
 }

@@ -2,7 +2,7 @@
 //!
 //! `trace.csv` is one. Columns are found by their names: `t_s`, `pan_count`, `tilt_count`, `pan_v`, `tilt_v` must be there;
 //! `pan_edge_ms` (how long before the tick the last edge came), `pan_est_rad`, `pan_est_rad_s`, `pan_est_rad_s2`, the same of
-//! tilt, and `lap` may be.
+//! tilt, `pan_lost` (counts to be added, because the encoder lost some) and `lap` may be.
 
 use std::fmt::Write;
 
@@ -30,6 +30,7 @@ struct Columns {
     count: PanTilt<usize>,
     volts: PanTilt<usize>,
     edge: PanTilt<Option<usize>>,
+    lost: PanTilt<Option<usize>>,
     /// Angle, speed, acceleration.
     estimate: PanTilt<[Option<usize>; 3]>,
     lap: Option<usize>,
@@ -51,6 +52,7 @@ impl Columns {
             count: both("count")?,
             volts: both("v")?,
             edge: PanTilt::from_fn(|j| find(&name(j, "edge_ms"))),
+            lost: PanTilt::from_fn(|j| find(&name(j, "lost"))),
             estimate: PanTilt::from_fn(|j| {
                 ["est_rad", "est_rad_s", "est_rad_s2"].map(|what| find(&name(j, what)))
             }),
@@ -130,6 +132,7 @@ fn telemetry(columns: &Columns, row: &Row<'_>, count_rad: f64) -> Result<Telemet
         // what is all but a tick old may be written as one
         let edge_age_ticks = age.map(|age| (age as f32).min(1.0 - f32::EPSILON));
         told.measured[j] = Measurement { count, edge_age_ticks };
+        told.lost_counts[j] = columns.lost[j].map_or(Ok(0), |column| row.whole(column))?;
         let volts = row.number(columns.volts[j])?;
         if volts.abs() > MOST_V {
             return Err(format!(":{}: {volts} V is more than the {MOST_V} V of any amplifier", row.line));
@@ -153,7 +156,7 @@ fn telemetry(columns: &Columns, row: &Row<'_>, count_rad: f64) -> Result<Telemet
 pub(crate) fn write(record: &[Telemetry]) -> String {
     let mut text = String::from(
         "t_s,pan_count,tilt_count,pan_v,tilt_v,pan_edge_ms,tilt_edge_ms,pan_est_rad,tilt_est_rad,pan_est_rad_s,tilt_est_rad_s,\
-         pan_est_rad_s2,tilt_est_rad_s2\n",
+         pan_est_rad_s2,tilt_est_rad_s2,pan_lost,tilt_lost\n",
     );
     let edge = |measured: Measurement| {
         measured
@@ -165,7 +168,7 @@ pub(crate) fn write(record: &[Telemetry]) -> String {
         // writing to a String cannot fail
         let _ = writeln!(
             text,
-            "{:.3},{},{},{:.5},{:.5},{},{},{:.7},{:.7},{:.5},{:.5},{:.3},{:.3}",
+            "{:.3},{},{},{:.5},{:.5},{},{},{:.7},{:.7},{:.5},{:.5},{:.3},{:.3},{},{}",
             number as f64 * TICK_F64_S,
             seen.pan.count,
             seen.tilt.count,
@@ -179,6 +182,8 @@ pub(crate) fn write(record: &[Telemetry]) -> String {
             told.velocity_rad_s.tilt,
             told.acceleration_rad_s2.pan,
             told.acceleration_rad_s2.tilt,
+            told.lost_counts.pan,
+            told.lost_counts.tilt,
         );
     }
     text
@@ -197,6 +202,7 @@ mod tests {
         let mut told = Telemetry::default();
         told.measured.pan = Measurement { count: -7, edge_age_ticks: Some(0.25) };
         told.actuation.command_v.tilt = -1.25;
+        told.lost_counts.pan = 2;
         let laps = parse(write(&[Telemetry::default(), told]).as_bytes(), 1e-3).unwrap();
         assert_eq!(laps.len(), 1);
         assert_eq!(laps[0][1].measured, told.measured);

@@ -8,6 +8,9 @@ use super::{Effort, Estimate};
 use crate::AxisConfig;
 use crate::limit::within;
 
+/// Surprises that a filter begins with: what it knows is to be tried at some edges first.
+const BEGUN: f32 = 1.0;
+
 /// How far a joint may be learned to differ from its model, shares of its Coulomb friction and of its inertia.
 const LEAST_FRICTION: f32 = -0.6;
 const MOST_FRICTION: f32 = 1.5;
@@ -115,7 +118,7 @@ pub(super) struct Kalman {
     acceleration_rad_s2: f32,
     since_edge_s: f32,
     edges: EdgeTable,
-    /// Edges of late that came where they should not; where it began is one.
+    /// Edges of late that came where they should not; to begin counts for [`BEGUN`].
     surprises: f32,
     learned: Learned,
     covariance: Covariance,
@@ -143,7 +146,7 @@ impl Kalman {
             acceleration_rad_s2: 0.0,
             since_edge_s: 0.0,
             edges: EdgeTable::about(axis.quirks.edges_counts, tuning.edge_noise_counts),
-            surprises: 1.0,
+            surprises: BEGUN,
             learned: Learned { break_away_nm: axis.quirks.break_away_nm, ..Learned::default() },
             covariance,
         }
@@ -163,7 +166,7 @@ impl Kalman {
         let drive = effort.torque_nm - effort.bias_nm + self.learned.load_nm;
         let momentum = inertia * before + TICK_S * drive;
         let after = friction.resolve(momentum, inertia, TICK_S);
-        // at rest, nobody pushed of late, and whatever is not known of the torques does not break it away
+        // at rest, nothing surprised the last edges, and whatever is not known of the torques does not break it away
         let doubt = SURE * TICK_S * self.covariance.deviation_of_torque();
         let held = before == 0.0
             && self.is_calm()
@@ -204,11 +207,16 @@ impl Kalman {
     }
 
     /// Takes the joint to be on that count; where it is stays. Counts it passed.
-    pub(super) fn recount(&mut self, axis: &AxisConfig, count: i32) -> i32 {
+    pub(super) fn take_count(&mut self, axis: &AxisConfig, count: i32) -> i32 {
         let moved = count.wrapping_sub(self.count);
         self.count = count;
         self.offset_rad -= moved as f32 * axis.count_rad;
         moved
+    }
+
+    /// Calls the count it is on otherwise.
+    pub(super) const fn renumber(&mut self, count: i32) {
+        self.count = count;
     }
 
     /// Takes `moved` edges, the last of them so long ago, or that none came. How well that fits what was expected.
@@ -285,6 +293,11 @@ impl Kalman {
         self.homed && self.surprises < CALM
     }
 
+    /// How fast the joint is taken to turn, rad/s.
+    pub(super) const fn velocity_rad_s(&self) -> f32 {
+        self.velocity_rad_s
+    }
+
     /// The count the joint is taken to be on.
     pub(super) const fn count(&self) -> i32 {
         self.count
@@ -301,7 +314,7 @@ impl Kalman {
         const ANYWHERE: f32 = 2.0;
         self.surprises = FADES * self.surprises + if surprised { 1.0 } else { 0.0 };
         if self.surprises > LOST {
-            self.surprises = 0.0;
+            self.surprises = BEGUN;
             self.edges = EdgeTable::about([0.0; 4], ANYWHERE * self.tuning.edge_noise_counts);
         }
     }

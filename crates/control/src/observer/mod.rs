@@ -60,9 +60,9 @@ pub struct Estimate {
     pub acceleration_rad_s2: f32,
     /// What the model does not know of this head; nothing for observers that have no model.
     pub learned: Learned,
-    /// Counts that its encoder lost, less those it made up, as far as that was noticed: they are put back.
+    /// Counts that are to be added to what its encoder reads, because it lost some or made some up, as far as that was noticed.
     pub lost_counts: i32,
-    /// The last edge was so far off that the next ones have to tell what happened.
+    /// Counts were put back a moment ago, and the next edges have to tell whether rightly.
     pub is_doubtful: bool,
     /// How far off what is taken for load and friction together may be: a standard deviation, N m.
     pub torque_deviation_nm: f32,
@@ -122,6 +122,19 @@ impl Observer {
             }
             ObserverConfig::Kalman(tuning) => Kind::Kalman(Recount::begin(axis, count, speed_rad_s, tuning)),
         })
+    }
+
+    /// Of a joint nobody knows how fast it turns, whose encoder is known to be off by so many counts.
+    pub(crate) fn anew(
+        axis: &AxisConfig,
+        measured: &Measurement,
+        lost_counts: i32,
+        speed_rad_s: f32,
+    ) -> Self {
+        match Self::begin(axis, measured, speed_rad_s).0 {
+            Kind::Kalman(observer) => Self(Kind::Kalman(observer.with_lost(lost_counts))),
+            other => Self(other),
+        }
     }
 
     /// One tick: what acted on the joint, and what its encoder reads at the tick's end.

@@ -1,15 +1,16 @@
 use tracelight_rig::Measurement;
 
-use super::kalman::{Fit, Kalman};
+use super::kalman::{Fit, Kalman, Misfit};
 use super::{Effort, Estimate, KalmanTuning};
 use crate::AxisConfig;
 
 /// [`Kalman`] filters that notice when their encoder lost a count or made one up, and put it back.
 ///
 /// A wrong count looks like nothing else: the joint seems to jump by up to a whole count, and goes on as fast as before. Whoever
-/// pushes it changes its speed. So when an edge does not come in time, or comes far too early, a rival filter begins that takes
-/// the count to be wrong, and for some edges both see the same. What is believed is what the likelier one says (a test of two hypotheses
-/// by their likelihoods; Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and Navigation*, §11.6).
+/// pushes it changes its speed. So when an edge surprises, or is overdue, a rival filter begins that takes the count to be wrong, and
+/// for some edges both see the same. The rival is believed when it is much likelier (a test of two hypotheses by their
+/// likelihoods; Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and Navigation*, §11.6), and either nobody
+/// could have pushed as hard as the other one needs, or some edges in a row came just where it expected them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recount {
     believed: Hypothesis,
@@ -49,6 +50,14 @@ impl Recount {
         Self { believed: Hypothesis { filter, lost: 0, overdue: 0.0 }, contest: None }
     }
 
+    /// The same, of an encoder that has lost so many counts.
+    pub(super) fn with_lost(mut self, lost_counts: i32) -> Self {
+        let Hypothesis { filter, lost, .. } = &mut self.believed;
+        filter.renumber(filter.count().wrapping_add(lost_counts.wrapping_sub(*lost)));
+        *lost = lost_counts;
+        self
+    }
+
     pub(super) fn tick(&mut self, axis: &AxisConfig, effort: &Effort, measured: &Measurement) {
         let moved = self.believed.predict(axis, effort, measured);
         let before = self.believed;
@@ -61,13 +70,13 @@ impl Recount {
             None => before.rival(axis, &fit, moved).map(|(rival, moved)| (Contest::of(rival), moved)),
         };
         self.contest = contest.and_then(|(mut contest, moved)| {
-            let (fits, less) = contest.rival.correct(axis, effort, moved, measured);
-            contest.weigh(&fit, &fits, cost - less);
+            let (rival_fit, less) = contest.rival.correct(axis, effort, moved, measured);
+            contest.weigh(&fit, &rival_fit, cost - less);
             let decided = contest.is_open() && contest.is_won(axis);
             if decided {
                 core::mem::swap(&mut self.believed, &mut contest.rival);
-                contest =
-                    Contest { was_believed: true, evidence: -contest.evidence, ..Contest::of(contest.rival) };
+                // what is won back is not contested again
+                return (!contest.was_believed).then(|| contest.turned());
             }
             contest.is_open().then_some(contest)
         });
@@ -102,32 +111,37 @@ impl Contest {
         }
     }
 
+    /// With what was believed as the rival.
+    fn turned(self) -> Self {
+        Self { was_believed: true, evidence: -self.evidence, ..Self::of(self.rival) }
+    }
+
     /// Takes how a tick fitted the believed one and the rival, and how much more it cost the former.
-    fn weigh(&mut self, fit: &Fit, fits: &Fit, cost: f32) {
+    fn weigh(&mut self, fit: &Fit, rival_fit: &Fit, cost: f32) {
         /// What is off by less may be a misplaced edge, counts.
         const FAR: f32 = 0.4;
         self.ticks = self.ticks.saturating_add(1);
         self.evidence += cost;
-        self.edges += u32::from(fits.edge.is_some());
+        self.edges += u32::from(rival_fit.edge.is_some());
         if let Some(edge) = fit.edge.filter(|edge| edge.is_surprise() && edge.counts.abs() > FAR) {
             self.load_nm = self.load_nm.max(edge.load_nm);
         }
-        self.is_surprised |= fits.edge.or(fits.overdue).is_some_and(|misfit| misfit.is_surprise());
-        if let Some(edge) = fits.edge {
+        self.is_surprised |= [rival_fit.edge, rival_fit.overdue].iter().flatten().any(Misfit::is_surprise);
+        if let Some(edge) = rival_fit.edge {
             self.off_counts = self.off_counts.max(edge.counts.abs());
         }
     }
 
-    /// Whether the rival is the likelier one, whatever may have happened.
+    /// Whether the rival is to be believed from now on.
     fn is_won(&self, axis: &AxisConfig) -> bool {
-        /// Nobody who pushes does as much times what a motor can;
-        const STRONGER: f32 = 2.0;
-        /// and who does this much times that moves a joint elsewhere
+        /// Nobody pushes with so many times what a motor can.
+        const STRONGER: f32 = 3.0;
+        /// A push of this share of it is not so weak that a joint would go on as before.
         const FIRM: f32 = 0.25;
-        /// than this close, counts, to where it would be by itself at edge after edge.
+        /// Edges of a joint that was pushed are not all this close to where the rival expects them, counts.
         const CLOSE: f32 = 0.2;
         let most_nm = axis.torque_nm_per_v * axis.limit_v;
-        let fits = |edges, evidence, share| {
+        let enough = |edges, evidence, share| {
             self.edges >= edges
                 && self.evidence > evidence
                 && self.load_nm > share * most_nm
@@ -136,18 +150,20 @@ impl Contest {
         if self.was_believed {
             return self.evidence > Self::ENOUGH;
         }
-        fits(0, Self::ENOUGH, STRONGER) || fits(Self::FEW, 2.0 * Self::ENOUGH, FIRM)
+        enough(0, Self::ENOUGH, STRONGER) || enough(Self::FEW, 2.0 * Self::ENOUGH, FIRM)
     }
 
     fn is_open(&self) -> bool {
         /// Edges after which a rival has lost, however close it is.
         const MANY: u32 = 12;
-        /// Ticks after which what was believed has lost: a joint may come to rest meanwhile.
+        /// Ticks after which what was believed has lost: a joint may come to rest meanwhile, and light waits.
         const SOON: u32 = 50;
+        /// Ticks after which a rival has lost.
+        const LATE: u32 = 500;
         if self.was_believed {
             self.edges < Self::FEW && self.ticks < SOON
         } else {
-            !self.is_surprised && self.evidence > -Self::ENOUGH && self.edges < MANY
+            !self.is_surprised && self.evidence > -Self::ENOUGH && self.edges < MANY && self.ticks < LATE
         }
     }
 }
@@ -156,7 +172,7 @@ impl Hypothesis {
     /// A tick passes; edges that it sees in it.
     fn predict(&mut self, axis: &AxisConfig, effort: &Effort, measured: &Measurement) -> i32 {
         self.filter.predict(axis, effort);
-        self.filter.recount(axis, measured.count.wrapping_add(self.lost))
+        self.filter.take_count(axis, measured.count.wrapping_add(self.lost))
     }
 
     /// Takes them; how that fitted, and minus twice the logarithm of its likelihood.
@@ -186,11 +202,15 @@ impl Hypothesis {
 
     /// One that explains what did not fit this one, as it was before it saw so many edges, and the edges that truly came.
     fn rival(&self, axis: &AxisConfig, fit: &Fit, moved: i32) -> Option<(Self, i32)> {
+        /// A joint slower than this, counts/s, may just have stalled.
+        const SLOW_COUNTS_S: f32 = 20.0;
         /// What is off a whole count by more than this many standard deviations squared is not off by a whole count.
         const WHOLE: f32 = 9.0;
-        if !self.filter.is_calm() {
+        let creeps = self.filter.velocity_rad_s().abs() < SLOW_COUNTS_S * axis.count_rad;
+        if creeps || !self.filter.is_calm() {
             return None;
         }
+        let mut rival = *self;
         let (by, moved) = match (fit.edge, fit.overdue) {
             (Some(edge), _) if edge.is_surprise() => {
                 let early = edge.counts * moved as f32 > 0.0;
@@ -203,12 +223,14 @@ impl Hypothesis {
                 }
             }
             // it came, and was not counted
-            (None, Some(overdue)) => (if overdue.counts > 0.0 { -1 } else { 1 }, 0),
+            (None, Some(overdue)) => {
+                rival.overdue = 0.0;
+                (if overdue.counts > 0.0 { -1 } else { 1 }, 0)
+            }
             _ => return None,
         };
-        let mut rival = *self;
         rival.lost = rival.lost.wrapping_add(by);
-        let _ = rival.filter.recount(axis, self.filter.count().wrapping_add(by));
+        let _ = rival.filter.take_count(axis, self.filter.count().wrapping_add(by));
         Some((rival, moved))
     }
 }

@@ -41,6 +41,10 @@ const SLIP_RAD_S: f32 = 0.02;
 /// one in which it is leant on counts for neither.
 const SLIP_TICKS: u32 = 150;
 
+/// Counts put back that make an encoder a bad one, each forgotten by a share of a 5000th a tick: three within some seconds.
+const BAD_COUNTS: f32 = 2.5;
+const BAD_FADES: f32 = 1.0 / 5000.0;
+
 /// Watch on one encoder: what a following-error limit alone never sees.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EncoderWatch {
@@ -48,6 +52,8 @@ pub(super) struct EncoderWatch {
     believed: Estimate,
     expected: Expectation,
     surprises: f32,
+    /// Counts put back of late.
+    put_back: f32,
     /// Speed believed beyond what was counted, rad.
     gap_rad: f32,
     is_strange: bool,
@@ -62,6 +68,7 @@ impl EncoderWatch {
             believed: *estimate,
             expected: Expectation::default(),
             surprises: 0.0,
+            put_back: 0.0,
             gap_rad: 0.0,
             is_strange: false,
             slipping_ticks: 0,
@@ -87,7 +94,9 @@ impl EncoderWatch {
         let back = moved.signum() * self.expected.way < 0;
         self.surprises -= NOISE_FADES * self.surprises;
         self.surprises += if back && surprise > SURPRISE_COUNTS { surprise } else { 0.0 };
-        if self.surprises > NOISE_COUNTS {
+        let put_back = estimate.lost_counts.wrapping_sub(before.lost_counts).unsigned_abs();
+        self.put_back += put_back as f32 - BAD_FADES * self.put_back;
+        if self.surprises > NOISE_COUNTS || self.put_back > BAD_COUNTS {
             return Some(Fault::EncoderNoisy);
         }
         self.doubt(axis, effort, estimate, moved);

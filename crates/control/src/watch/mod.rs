@@ -3,7 +3,7 @@
 //! | fault | seen when |
 //! |---|---|
 //! | encoder jumped | in the tick: over one and a half counts beside the count the joint is expected on |
-//! | encoder noisy | surprises of three counts together within some 50 ticks |
+//! | encoder noisy | surprises of three counts together within some 50 ticks, or three lost counts within some seconds |
 //! | encoder dead | four counts of motion predicted, none counted, whether or not the last load still acts: dark at once, a fault 20 ticks later |
 //! | encoder slipping | a load of 30 % of the motor's torque, or 57 % more or less inertia than there is: dark at once, a fault after 150 ticks in which it seems braked |
 //! | estimate diverged | six counts between speed believed and counted, over some 20 ticks |

@@ -149,9 +149,10 @@ pub(super) fn edges(record: &[Telemetry], joint: Joint) -> Vec<Edge> {
         let moved = now.count.wrapping_sub(before);
         let part = 1.0 / f64::from(moved.unsigned_abs().max(1));
         let (age, blur) = now.edge_age_ticks.map_or((0.5 * part, part), |age| (f64::from(age), 0.0));
+        let count = now.count.wrapping_add(pair[1].lost_counts[joint]);
         (moved != 0).then(|| Edge {
             time_s: ((tick + 1) as f64 - age) * TICK_F64_S,
-            number: if moved > 0 { now.count } else { now.count.wrapping_add(1) },
+            number: if moved > 0 { count } else { count.wrapping_add(1) },
             way: f64::from(moved.signum()),
             blur_s: blur * TICK_F64_S,
         })

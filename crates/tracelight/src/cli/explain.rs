@@ -134,7 +134,9 @@ const fn what_to_do(reason: Darkness) -> &'static str {
         Darkness::Stale => {
             "Nothing before the first and after the last stroke. Within a job the host was too slow."
         }
-        Darkness::Doubtful => "See whether somebody holds the head; if not, an encoder is going dead.",
+        Darkness::Doubtful => {
+            "See whether somebody holds the head; if not, an encoder is going dead or loses counts: look at its cable and its disc."
+        }
         Darkness::Faulted => "Look up the fault's own code.",
     }
 }

@@ -42,7 +42,7 @@ fn text(s: &Summary) -> String {
     let lost = s.run.lost_counts;
     if (lost.pan, lost.tilt) != (0, 0) {
         text += &format!(
-            "\nlost:   the encoders, pan {} and tilt {} counts, all put back; look at their cables",
+            "\nlost:   counts, noticed and put back: pan {:+} and tilt {:+} are added to what the encoders read; look at their cables",
             lost.pan, lost.tilt
         );
     }

@@ -11,11 +11,12 @@ use super::{Job, OutputError};
 /// Columns of `trace.csv`; `lap` follows where there were several.
 const HEADER: &str = "t_s,x_m,y_m,laser,pan_rad,tilt_rad,pan_set_rad,tilt_set_rad,pan_count,tilt_count,pan_v,tilt_v,\
                       gate,plan_x_m,plan_y_m,error_mm,phase,dark,pan_est_rad,tilt_est_rad,plan_tick,pan_est_rad_s,tilt_est_rad_s,\
-                      pan_est_rad_s2,tilt_est_rad_s2,pan_edge_ms,tilt_edge_ms";
+                      pan_est_rad_s2,tilt_est_rad_s2,pan_edge_ms,tilt_edge_ms,pan_lost,tilt_lost";
 
 /// Writes one row a control tick, laps after each other.
 ///
 /// `pan_edge_ms`: how long before the tick the joint's last edge came, if one came in the tick before and was stamped.
+/// `pan_lost`: counts that are to be added to `pan_count`, because its encoder lost some.
 /// Decimals are fixed (0.1 µm, 0.1 µrad, 0.1 mV, 1 ns), so equal runs give equal bytes. Where the beam misses the plane,
 /// `x_m`, `y_m` and `error_mm` are empty.
 pub(super) fn write(path: &Path, job: &Job<'_>) -> Result<(), OutputError> {
@@ -98,6 +99,8 @@ fn row(line: &mut Vec<u8>, sample: &Sample<'_>) {
         let age_ms = measured.edge_age_ticks.map(|ticks| f64::from(ticks) * TICK_F64_S * 1e3);
         push_optional(line, age_ms, 6);
     }
+    push_integer(line, telemetry.lost_counts.pan.into());
+    push_integer(line, telemetry.lost_counts.tilt.into());
 }
 
 fn push_word(line: &mut Vec<u8>, word: &str) {

@@ -61,7 +61,7 @@ pub(crate) const fn darkness_words(reason: Darkness) -> &'static str {
         Darkness::Planned => "The plan wants no light here.",
         Darkness::Disarmed => "Nobody armed the rig.",
         Darkness::Doubtful => {
-            "An encoder showed no edge where its joint should have passed several, or does not fit what its motor does."
+            "An encoder showed no edge where its joint should have passed several, does not fit what its motor does, or lost a count."
         }
         Darkness::FollowingError => "A joint was further from its setpoint than the stroke allows.",
         Darkness::SpotError => "Both joints together put the spot too far from its stroke.",

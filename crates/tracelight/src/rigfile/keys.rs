@@ -310,7 +310,7 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 34] = [
     ),
     choice(
         "control.creep",
-        "how law state goes where a plan is slower than friction lets go: in hops, or following it",
+        "how law state with its own observer goes where a plan is slower than friction lets go: in hops, or following it",
         Choice {
             names: || vec!["hop", "follow"],
             get: |r| if r.control.hops { "hop" } else { "follow" },

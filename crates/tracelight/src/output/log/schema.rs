@@ -33,6 +33,7 @@ pub(super) const TRACELIGHT: ProtoFile = ProtoFile {
                 ("following_error_rad", Kind::Double),
                 ("command_v", Kind::Double),
                 ("estimate_rad_s2", Kind::Double),
+                ("lost_counts", Kind::SInt32),
             ],
             choice: None,
         },
@@ -141,6 +142,7 @@ fn joint_state(out: &mut Encoder, tick: &Tick, seen: &Telemetry, joint: Joint) {
     out.double(8, f64::from(set.position_rad) - f64::from(seen.position_rad[joint]));
     out.double(9, seen.actuation.command_v[joint].into());
     out.double(10, seen.acceleration_rad_s2[joint].into());
+    out.signed(11, seen.lost_counts[joint]);
 }
 
 /// `tracelight.Spot`: where the beam met the target.

@@ -73,7 +73,7 @@ pub(super) fn figures(job: &Job<'_>, f: &Summary) -> String {
                 row("speed of the lit spot", number(f.tracking.lit_speed_m_s, 4), "m/s"),
                 row("lit time at the set speed ± 2 %", share(f.tracking.at_speed_share), "%"),
                 row("light left the head for", number(f.laser.lit_s, 4), "s"),
-                row("counts lost and put back, pan, tilt", format!("{}, {}", lost.pan, lost.tilt), ""),
+                row("lost counts put back, pan, tilt", format!("{}, {}", lost.pan, lost.tilt), ""),
             ],
         ),
         (
