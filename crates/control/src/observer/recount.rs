@@ -203,7 +203,7 @@ impl Hypothesis {
     /// One that explains what did not fit this one, as it was before it saw so many edges, and the edges that truly came.
     fn rival(&self, axis: &AxisConfig, fit: &Fit, moved: i32) -> Option<(Self, i32)> {
         /// A joint slower than this, counts/s, may just have stalled.
-        const SLOW_COUNTS_S: f32 = 20.0;
+        const SLOW_COUNTS_S: f32 = 30.0;
         /// What is off a whole count by more than this many standard deviations squared is not off by a whole count.
         const WHOLE: f32 = 9.0;
         let creeps = self.filter.velocity_rad_s().abs() < SLOW_COUNTS_S * axis.count_rad;
