@@ -216,7 +216,7 @@ mod tests {
         let text = text(&fixture.job());
         let mut lines = text.lines();
         let columns = lines.next().unwrap().split(',').count();
-        assert_eq!(columns, 27);
+        assert_eq!(columns, 29);
         let rows: Vec<_> = lines.collect();
         assert_eq!(rows.len(), fixture.run.ticks.len());
         assert!(rows.iter().all(|row| row.split(',').count() == columns));
