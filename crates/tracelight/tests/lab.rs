@@ -286,6 +286,22 @@ fn what_makes_no_sense_is_refused_in_a_sentence() {
     }
 }
 
+/// The rig file `text` with both set to zero.
+fn without_play_and_soft_belts(text: &str) -> String {
+    let zero = |line: &str| match line.split_once(" = ") {
+        Some(("backlash", _)) => "backlash = \"0rad\"".to_owned(),
+        Some(("belt_resonance", _)) => "belt_resonance = \"0Hz\"".to_owned(),
+        _ => line.to_owned(),
+    };
+    let lines: Vec<String> = text.lines().map(zero).collect();
+    assert_eq!(
+        lines.iter().filter(|line| line.ends_with("\"0rad\"") || line.ends_with("\"0Hz\"")).count(),
+        2,
+        "{text}"
+    );
+    lines.join("\n")
+}
+
 #[test]
 fn what_the_routine_identifies_goes_to_a_rig_file_that_other_commands_take() {
     let dir = folder("lab-identify");
@@ -308,14 +324,26 @@ fn what_the_routine_identifies_goes_to_a_rig_file_that_other_commands_take() {
     let same = lab(&["identify", &record, "--rig", "worn", "--out", &again]);
     let (one, other) = (&found["tilt"]["found"], &same["tilt"]["found"]);
     near(&one["torque_nm_per_v"], other["torque_nm_per_v"].as_f64().unwrap(), 1e-4);
-    let rms = |rig: &str| {
-        let drawn = run(&["trace", "examples/star.png", "--rig", rig, "--out", &again, "--json"]);
+    // On the wall play and soft belts, which no encoder sees, are nearly all of the error: without them the file is what
+    // makes the head draw better.
+    let rms = |name: &str, text: &str| {
+        let file = dir.join(name);
+        std::fs::write(&file, without_play_and_soft_belts(text)).unwrap();
+        let drawn = run(&[
+            "trace",
+            "examples/handwriting.png",
+            "--rig",
+            file.to_str().unwrap(),
+            "--out",
+            &again,
+            "--json",
+        ]);
         let summary: Value = serde_json::from_slice(&drawn.stdout).unwrap();
         summary["tracking"]["rms_mm"].as_f64().unwrap()
     };
-    let (told, untold) = (rms(&rig), rms("worn"));
-    // nearly all of it is play and belts, beyond the encoder
-    assert!(told < untold, "{told} {untold}");
+    let preset = String::from_utf8(run(&["rigs", "show", "worn"]).stdout).unwrap();
+    let (told, untold) = (rms("told.toml", &text), rms("untold.toml", &preset));
+    assert!(told < 0.9 * untold, "{told} {untold}");
 }
 
 #[test]
