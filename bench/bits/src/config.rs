@@ -19,8 +19,8 @@ pub fn report() -> Config {
             gravity_s: 0.0091803325,
         },
         axes: PanTilt::new(
-            axis(0.061910957, 3.1461947, (0.0009, 0.0009, 0.0406, -0.0385)),
-            axis(0.0773887, 1.6626648, (0.0019, 0.0017, 0.0584, -0.0569)),
+            axis(0.061910957, 3.1461947, 4.877562, (0.0009, 0.0009, 0.0406, -0.0385)),
+            axis(0.0773887, 1.6626648, 6.188736, (0.0019, 0.0017, 0.0584, -0.0569)),
         ),
         hold_limit_ticks: 3000,
         laser_on_ticks: 5,
@@ -29,8 +29,13 @@ pub fn report() -> Config {
     }
 }
 
-/// A joint, by its torque per volt, its range either way and its friction.
-fn axis(torque_nm_per_v: f32, range_rad: f32, friction: (f32, f32, f32, f32)) -> AxisConfig {
+/// A joint, by its torque per volt, its range either way, the acceleration of its hops and its friction.
+fn axis(
+    torque_nm_per_v: f32,
+    range_rad: f32,
+    acceleration_rad_s2: f32,
+    friction: (f32, f32, f32, f32),
+) -> AxisConfig {
     let (viscous_pos, viscous_neg, coulomb_pos_nm, coulomb_neg_nm) = friction;
     let state = StateFeedback { bandwidth_rad_s: 120.0, damping: 0.8 };
     AxisConfig {
@@ -42,7 +47,12 @@ fn axis(torque_nm_per_v: f32, range_rad: f32, friction: (f32, f32, f32, f32)) ->
         quirks: Quirks::NONE,
         observer: ObserverConfig::Kalman(KalmanTuning::LEARNING),
         law: LawConfig { feedback: Feedback::State(state), feedforward: Feedforward::Learned },
-        creep: Some(Creep { below_rad_s: 0.02, turn_s: 0.02, hop_rad: 9e-5, acceleration_rad_s2: 5.0 }),
+        creep: Some(Creep {
+            below_rad_s: 0.01994175,
+            turn_s: 0.02,
+            hop_rad: 9.203885e-5,
+            acceleration_rad_s2,
+        }),
         rating: MotorRating { continuous_share: 0.7, heating_s: 60.0 },
         limits: JointLimits { lower_rad: -range_rad, upper_rad: range_rad, speed_rad_s: 24.0 },
     }

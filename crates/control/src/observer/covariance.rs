@@ -16,6 +16,14 @@ pub(super) const INERTIA: usize = 5;
 /// One number a quantity.
 pub(super) type Row = [f32; STATES];
 
+fn dot(a: &Row, b: &Row) -> f32 {
+    let mut sum = 0.0;
+    for i in 0..STATES {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
 /// What is further off than three standard deviations is a surprise.
 pub(super) const DEVIATIONS_SQUARED: f32 = 9.0;
 
@@ -33,9 +41,10 @@ impl Covariance {
         covariance
     }
 
-    /// P ← F P Fᵀ, where the new velocity depends on everything by `velocity_row`, the position advances by the mean of
-    /// old and new velocity, and the rest stays.
-    pub(super) fn predict(&mut self, velocity_row: &Row) {
+    /// P ← F P Fᵀ + Q, where the new velocity depends on everything by `velocity_row`, the position advances by the mean of
+    /// old and new velocity, and the rest stays; Q is diagonal.
+    #[inline]
+    pub(super) fn predict(&mut self, velocity_row: &Row, noise: &Row) {
         let p = &mut self.0;
         let mut velocity = [0.0; STATES];
         for (entry, line) in velocity_row.iter().zip(p.iter()) {
@@ -47,8 +56,7 @@ impl Covariance {
         for (i, sum) in position.iter_mut().enumerate() {
             *sum = p[POSITION][i] + 0.5 * TICK_S * (p[VELOCITY][i] + velocity[i]);
         }
-        let on_velocity = |row: &Row| row.iter().zip(velocity_row).map(|(a, b)| a * b).sum::<f32>();
-        let (vv, pv) = (on_velocity(&velocity), on_velocity(&position));
+        let (vv, pv) = (dot(&velocity, velocity_row), dot(&position, velocity_row));
         let pp = position[POSITION] + 0.5 * TICK_S * (position[VELOCITY] + pv);
         (velocity[POSITION], velocity[VELOCITY]) = (pv, vv);
         (position[POSITION], position[VELOCITY]) = (pp, pv);
@@ -56,11 +64,9 @@ impl Covariance {
             (line[POSITION], line[VELOCITY]) = (position[i], velocity[i]);
         }
         (p[POSITION], p[VELOCITY]) = (position, velocity);
-    }
-
-    /// Adds process noise to one quantity.
-    pub(super) fn disturb(&mut self, quantity: usize, variance: f32) {
-        self.0[quantity][quantity] += variance;
+        for (i, variance) in noise.iter().enumerate() {
+            p[i][i] += variance;
+        }
     }
 
     /// Makes room for a surprise: an innovation beyond three standard deviations says that something happens which

@@ -167,11 +167,11 @@ impl Kalman {
         let momentum = inertia * before + TICK_S * drive;
         let after = friction.resolve(momentum, inertia, TICK_S);
         // at rest, nothing surprised the last edges, and whatever is not known of the torques does not break it away
-        let doubt = SURE * TICK_S * self.covariance.deviation_of_torque();
-        let held = before == 0.0
-            && self.is_calm()
-            && friction.resolve(momentum + doubt, inertia, TICK_S) == 0.0
-            && friction.resolve(momentum - doubt, inertia, TICK_S) == 0.0;
+        let held = before == 0.0 && after == 0.0 && self.is_calm() && {
+            let doubt = SURE * TICK_S * self.covariance.deviation_of_torque();
+            friction.resolve(momentum + doubt, inertia, TICK_S) == 0.0
+                && friction.resolve(momentum - doubt, inertia, TICK_S) == 0.0
+        };
         // whether it slides or is about to, this is the way it goes or would go
         let against = if momentum < 0.0 { gain } else { -gain };
         let row = [
@@ -186,24 +186,22 @@ impl Kalman {
         self.offset_rad += 0.5 * TICK_S * (before + after);
         self.acceleration_rad_s2 = (after - before) / TICK_S;
         self.velocity_rad_s = after;
-        self.covariance.predict(if held { &HELD } else { &row });
-        self.disturb(axis.unknown_nm);
+        self.covariance.predict(if held { &HELD } else { &row }, &self.noise(axis.unknown_nm));
     }
 
-    fn disturb(&mut self, unknown_nm: f32) {
+    /// What a tick adds to the variances.
+    fn noise(&self, unknown_nm: f32) -> Row {
         let tuning = &self.tuning;
         let level = unknown_nm * unknown_nm;
         let way = TICK_S * self.velocity_rad_s.abs();
-        let noise = [
-            (VELOCITY, TICK_S * tuning.acceleration_noise),
-            (LOAD, TICK_S * tuning.load.drift * level),
-            (FRICTION, (TICK_S * tuning.friction.drift + way * tuning.friction_change) * level),
-            (BREAK_AWAY, TICK_S * tuning.break_away.drift * level),
-            (INERTIA, TICK_S * tuning.inertia.drift),
-        ];
-        for (quantity, variance) in noise {
-            self.covariance.disturb(quantity, variance);
-        }
+        [
+            0.0,
+            TICK_S * tuning.acceleration_noise,
+            TICK_S * tuning.load.drift * level,
+            (TICK_S * tuning.friction.drift + way * tuning.friction_change) * level,
+            TICK_S * tuning.break_away.drift * level,
+            TICK_S * tuning.inertia.drift,
+        ]
     }
 
     /// Takes the joint to be on that count; where it is stays. Counts it passed.
@@ -291,6 +289,11 @@ impl Kalman {
         /// One surprise fades to that over seven edges.
         const CALM: f32 = 0.5;
         self.homed && self.surprises < CALM
+    }
+
+    /// Whether it takes the joint to be within the count it is on.
+    pub(super) fn is_in_its_count(&self, axis: &AxisConfig) -> bool {
+        self.offset_rad.abs() <= 0.5 * axis.count_rad
     }
 
     /// How fast the joint is taken to turn, rad/s.

@@ -60,26 +60,31 @@ impl Recount {
 
     pub(super) fn tick(&mut self, axis: &AxisConfig, effort: &Effort, measured: &Measurement) {
         let moved = self.believed.predict(axis, effort, measured);
-        let before = self.believed;
+        let before =
+            (self.contest.is_none() && self.believed.may_surprise(axis, moved)).then_some(self.believed);
         let (fit, cost) = self.believed.correct(axis, effort, moved, measured);
-        let contest = match self.contest {
-            Some(mut contest) => {
-                let moved = contest.rival.predict(axis, effort, measured);
-                Some((contest, moved))
-            }
-            None => before.rival(axis, &fit, moved).map(|(rival, moved)| (Contest::of(rival), moved)),
+        let moved = if let Some(contest) = &mut self.contest {
+            contest.rival.predict(axis, effort, measured)
+        } else {
+            let Some((rival, moved)) = before.and_then(|before| before.rival(axis, &fit, moved)) else {
+                return;
+            };
+            self.contest = Some(Contest::of(rival));
+            moved
         };
-        self.contest = contest.and_then(|(mut contest, moved)| {
-            let (rival_fit, less) = contest.rival.correct(axis, effort, moved, measured);
-            contest.weigh(&fit, &rival_fit, cost - less);
-            let decided = contest.is_open() && contest.is_won(axis);
-            if decided {
-                core::mem::swap(&mut self.believed, &mut contest.rival);
-                // what is won back is not contested again
-                return (!contest.was_believed).then(|| contest.turned());
-            }
-            contest.is_open().then_some(contest)
-        });
+        let Some(contest) = &mut self.contest else { return };
+        let (rival_fit, less) = contest.rival.correct(axis, effort, moved, measured);
+        contest.weigh(&fit, &rival_fit, cost - less);
+        let decided = contest.is_open() && contest.is_won(axis);
+        if decided {
+            core::mem::swap(&mut self.believed, &mut contest.rival);
+        }
+        // what is won back is not contested again
+        if decided && !contest.was_believed {
+            contest.turn();
+        } else if decided || !contest.is_open() {
+            self.contest = None;
+        }
     }
 
     pub(super) fn estimate(&self, axis: &AxisConfig) -> Estimate {
@@ -111,9 +116,9 @@ impl Contest {
         }
     }
 
-    /// With what was believed as the rival.
-    fn turned(self) -> Self {
-        Self { was_believed: true, evidence: -self.evidence, ..Self::of(self.rival) }
+    /// What was believed is the rival now.
+    fn turn(&mut self) {
+        *self = Self { was_believed: true, evidence: -self.evidence, ..Self::of(self.rival) };
     }
 
     /// Takes how a tick fitted the believed one and the rival, and how much more it cost the former.
@@ -200,16 +205,19 @@ impl Hypothesis {
         (fit, cost)
     }
 
-    /// One that explains what did not fit this one, as it was before it saw so many edges, and the edges that truly came.
-    fn rival(&self, axis: &AxisConfig, fit: &Fit, moved: i32) -> Option<(Self, i32)> {
+    /// Whether what it then sees may be a wrong count: it is known where the joint is, on it goes, and it is not where it was.
+    fn may_surprise(&self, axis: &AxisConfig, moved: i32) -> bool {
         /// A joint slower than this, counts/s, may just have stalled.
         const SLOW_COUNTS_S: f32 = 30.0;
+        let leaves = moved != 0 || !self.filter.is_in_its_count(axis);
+        let creeps = self.filter.velocity_rad_s().abs() < SLOW_COUNTS_S * axis.count_rad;
+        leaves && !creeps && self.filter.is_calm()
+    }
+
+    /// One that explains what did not fit this one, as it was before it saw so many edges, and the edges that truly came.
+    fn rival(&self, axis: &AxisConfig, fit: &Fit, moved: i32) -> Option<(Self, i32)> {
         /// What is off a whole count by more than this many standard deviations squared is not off by a whole count.
         const WHOLE: f32 = 9.0;
-        let creeps = self.filter.velocity_rad_s().abs() < SLOW_COUNTS_S * axis.count_rad;
-        if creeps || !self.filter.is_calm() {
-            return None;
-        }
         let mut rival = *self;
         let (by, moved) = match (fit.edge, fit.overdue) {
             (Some(edge), _) if edge.is_surprise() => {
