@@ -1,6 +1,6 @@
 use tracelight_rig::TICK_F64_S;
 use tracelight_stroke::{Point, Vec2};
-use tracelight_trajectory::{LegEnd, Plan};
+use tracelight_trajectory::{LegEnd, Plan, PlanPoint};
 
 use crate::{Run, Tick};
 
@@ -43,7 +43,9 @@ const MM: f64 = 1e3;
 pub fn score(plan: &Plan, run: &Run, set_speed_m_s: f64) -> Tracking {
     let lit: Vec<&Tick> = run.ticks.iter().filter(|t| t.light).collect();
     let (rms_mm, max_mm) = rms_and_max(lit.iter().filter_map(|t| Some(t.spot?.distance(t.asked?))));
-    let (off_stroke_rms_mm, off_stroke_max_mm) = rms_and_max(lit.iter().filter_map(|t| off_stroke(plan, t)));
+    let strokes = Strokes::of(plan);
+    let (off_stroke_rms_mm, off_stroke_max_mm) =
+        rms_and_max(lit.iter().filter_map(|t| strokes.off_stroke(t.spot?, t.telemetry.plan_tick as usize)));
     let speeds = lit_speeds(run);
     let at_speed = speeds.iter().filter(|&&v| (v / set_speed_m_s - 1.0).abs() <= AT_SPEED).count();
     Tracking {
@@ -70,21 +72,57 @@ fn mean(values: &[f64]) -> f64 {
     (values.iter().sum::<f64>() + 0.0) / (values.len() as f64).max(1.0)
 }
 
-/// Distance of a lit spot from the stroke it is on, m.
-fn off_stroke(plan: &Plan, tick: &Tick) -> Option<f64> {
-    let spot = tick.spot?;
-    let at = (tick.telemetry.plan_tick as usize).min(plan.points.len().checked_sub(1)?);
-    let window = &plan.points[at.saturating_sub(NEAR_TICKS)..(at + NEAR_TICKS).min(plan.points.len())];
-    // light on the way between strokes is off whichever stroke is nearest
-    let stroke = plan.points[at].stroke;
-    let on_it = |i: usize| {
-        let (from, to) = (window[i].stroke, window[i + 1].stroke);
-        from.is_some() && from == to && (stroke.is_none() || stroke == from)
-    };
-    let near = (0..window.len().saturating_sub(1)).filter(|&i| on_it(i));
-    let distances = near.map(|i| to_segment(spot, window[i].spot, window[i + 1].spot));
-    let nearest = distances.fold(f64::INFINITY, f64::min);
-    nearest.is_finite().then_some(nearest)
+/// A plan's points with the way to each of them, from the first.
+struct Strokes<'a> {
+    points: &'a [PlanPoint],
+    way_m: Vec<f64>,
+}
+
+impl<'a> Strokes<'a> {
+    fn of(plan: &'a Plan) -> Self {
+        let steps = plan.points.windows(2).map(|pair| pair[0].spot.distance(pair[1].spot));
+        let way_m = std::iter::once(0.0).chain(steps.scan(0.0, |way, step| {
+            *way += step;
+            Some(*way)
+        }));
+        Self { points: &plan.points, way_m: way_m.collect() }
+    }
+
+    /// Distance of a spot that is lit in that tick of the plan from the stroke it is on, m.
+    fn off_stroke(&self, spot: Point, plan_tick: usize) -> Option<f64> {
+        let last = self.points.len().checked_sub(1)?;
+        let at = plan_tick.min(last);
+        // light on the way between strokes is off whichever stroke is nearest
+        let stroke = self.points[at].stroke;
+        let far_m = |i: usize| {
+            let (from, to) = (&self.points[i], &self.points[i + 1]);
+            let on_one = from.stroke.is_some() && from.stroke == to.stroke;
+            (on_one && (stroke.is_none() || stroke == from.stroke))
+                .then(|| to_segment(spot, from.spot, to.spot))
+        };
+        // Outwards from where it should be, either way. What is so far from one step of the plan is no nearer to those that
+        // end within the difference to the nearest: they are passed over.
+        let mut nearest = f64::INFINITY;
+        let mut passed = f64::NEG_INFINITY;
+        for i in at..last.min(at + NEAR_TICKS - 1) {
+            if self.way_m[i + 1] > passed
+                && let Some(far) = far_m(i)
+            {
+                nearest = nearest.min(far);
+                passed = self.way_m[i + 1] + (far - nearest);
+            }
+        }
+        passed = f64::INFINITY;
+        for i in (at.saturating_sub(NEAR_TICKS)..at).rev() {
+            if self.way_m[i] < passed
+                && let Some(far) = far_m(i)
+            {
+                nearest = nearest.min(far);
+                passed = self.way_m[i] - (far - nearest);
+            }
+        }
+        nearest.is_finite().then_some(nearest)
+    }
 }
 
 fn to_segment(p: Point, a: Point, b: Point) -> f64 {
@@ -122,4 +160,49 @@ fn final_error_mm(plan: &Plan, run: &Run) -> f64 {
     let Some(last) = plan.points.last() else { return 0.0 };
     let rest = run.ticks.iter().rev().take(REST_TICKS).filter_map(|t| t.spot);
     mean(&rest.map(|s| s.distance(last.spot) * MM).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use tracelight_rig::PanTilt;
+
+    use super::*;
+
+    /// A stroke that turns back on itself with a rest, a dark way, and another stroke.
+    fn plan() -> Plan {
+        let points = (0..900).map(|tick| {
+            let t = f64::from(tick);
+            let (x, y) =
+                (300.0 - (t.min(500.0) - 300.0).abs() + 0.2 * (t - 600.0).max(0.0), 30.0 * (0.02 * t).sin());
+            let stroke = if (0..550).contains(&tick) { Some(0) } else { (tick > 650).then_some(1) };
+            PlanPoint {
+                spot: Point::new(1e-3 * x, 1e-3 * y),
+                joints: PanTilt::default(),
+                torque_fraction: PanTilt::default(),
+                limit: None,
+                lit: stroke.is_some(),
+                stroke,
+            }
+        });
+        Plan { points: points.collect(), ..Plan::default() }
+    }
+
+    #[test]
+    fn passing_over_what_cannot_be_nearest_finds_the_nearest() {
+        let plan = plan();
+        let strokes = Strokes::of(&plan);
+        for tick in 0..1000_usize {
+            let at = tick.min(899);
+            let aside = Vec2::new(1e-3 * (tick as f64).sin(), 3e-3 * (0.3 * tick as f64).cos());
+            let spot = plan.points[at].spot + aside;
+            let stroke = plan.points[at].stroke;
+            let near = (at.saturating_sub(NEAR_TICKS)..899.min(at + NEAR_TICKS - 1)).filter(|&i| {
+                let (from, to) = (plan.points[i].stroke, plan.points[i + 1].stroke);
+                from.is_some() && from == to && (stroke.is_none() || stroke == from)
+            });
+            let each = near.map(|i| to_segment(spot, plan.points[i].spot, plan.points[i + 1].spot));
+            let nearest = each.fold(f64::INFINITY, f64::min);
+            assert_eq!(strokes.off_stroke(spot, tick).unwrap_or(f64::INFINITY), nearest, "{tick}");
+        }
+    }
 }
