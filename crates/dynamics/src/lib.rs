@@ -18,5 +18,5 @@ mod sets;
 
 pub use body::{Body, HeadBodies, Inertia};
 pub use friction::Friction;
-pub use lumped::{Lumped, MassMatrix};
+pub use lumped::{BiasSlopes, Lumped, MassMatrix};
 pub use motor::Motor;

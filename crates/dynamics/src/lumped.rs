@@ -34,6 +34,17 @@ pub struct MassMatrix {
     pub m22: f64,
 }
 
+/// What the torques of [`Lumped::bias`] change by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BiasSlopes {
+    /// A radian of tilt, N m/rad.
+    pub by_tilt: PanTilt<f64>,
+    /// A rad/s of pan, N m s/rad.
+    pub by_pan_rate: PanTilt<f64>,
+    /// A rad/s of tilt, N m s/rad.
+    pub by_tilt_rate: PanTilt<f64>,
+}
+
 impl MassMatrix {
     /// Each joint's own inertia, kg m².
     pub const fn own_inertia(&self) -> PanTilt<f64> {
@@ -104,6 +115,26 @@ impl Lumped {
         self.bias(tilt_rad, PanTilt::new(0.0, 0.0))
     }
 
+    /// How C + G changes with tilt and with the rates, N m/rad and N m s/rad: the derivatives of [`bias`](Self::bias) on paper.
+    pub fn bias_slopes(&self, tilt_rad: f64, rate_rad_s: PanTilt<f64>) -> BiasSlopes {
+        let (s, c) = tilt_rad.sin_cos();
+        let (w1, w2) = (rate_rad_s.pan, rate_rad_s.tilt);
+        let (twice_sin, twice_cos) = (2.0 * s * c, c * c - s * s);
+        // M₁₁′, M₁₂′ and how they go on
+        let d11 = twice_sin * (self.m11_ss - self.m11_cc) + twice_cos * self.m11_sc;
+        let d12 = c * self.m12_s - s * self.m12_c;
+        let dd11 = 2.0 * twice_cos * (self.m11_ss - self.m11_cc) - 2.0 * twice_sin * self.m11_sc;
+        let dd12 = -s * self.m12_s - c * self.m12_c;
+        BiasSlopes {
+            by_tilt: PanTilt::new(
+                dd11 * w1 * w2 + dd12 * w2 * w2,
+                -0.5 * dd11 * w1 * w1 + self.gravity_c * s - self.gravity_s * c,
+            ),
+            by_pan_rate: PanTilt::new(d11 * w2, -d11 * w1),
+            by_tilt_rate: PanTilt::new(d11 * w1 + 2.0 * d12 * w2, 0.0),
+        }
+    }
+
     /// Torque that makes the head move as asked, without friction: M q̈ + C + G, N m.
     pub fn inverse(
         &self,
@@ -114,5 +145,32 @@ impl Lumped {
         let (mass, bias) = self.mass_and_bias(tilt_rad, rate_rad_s);
         let inertial = mass.times(acceleration_rad_s2);
         PanTilt::new(inertial.pan + bias.pan, inertial.tilt + bias.tilt)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::HeadBodies;
+
+    #[test]
+    fn slopes_are_those_of_the_torques() {
+        const STEP: f64 = 1e-6;
+        let lumped = HeadBodies::set_b().lumped();
+        for (tilt, w1, w2) in [(0.3, 2.0, -1.5), (-1.2, 0.0, 0.0), (0.46, -3.0, 4.0)] {
+            let bias = |tilt: f64, w1: f64, w2: f64| lumped.bias(tilt, PanTilt::new(w1, w2));
+            let slope = |up: PanTilt<f64>, down: PanTilt<f64>| {
+                PanTilt::new((up.pan - down.pan) / (2.0 * STEP), (up.tilt - down.tilt) / (2.0 * STEP))
+            };
+            let slopes = lumped.bias_slopes(tilt, PanTilt::new(w1, w2));
+            for (paper, numbers) in [
+                (slopes.by_tilt, slope(bias(tilt + STEP, w1, w2), bias(tilt - STEP, w1, w2))),
+                (slopes.by_pan_rate, slope(bias(tilt, w1 + STEP, w2), bias(tilt, w1 - STEP, w2))),
+                (slopes.by_tilt_rate, slope(bias(tilt, w1, w2 + STEP), bias(tilt, w1, w2 - STEP))),
+            ] {
+                let off = (paper.pan - numbers.pan).abs().max((paper.tilt - numbers.tilt).abs());
+                assert!(off < 1e-9, "{tilt} {w1} {w2}: {paper:?} {numbers:?}");
+            }
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! The control engineer's bench, one file a subcommand.
 
+mod head;
 mod identify;
+mod linearize;
 mod montecarlo;
 mod moves;
 mod profile;
@@ -33,6 +35,7 @@ enum LabAction {
     Step(step::StepArgs),
     Velocity(velocity::VelocityArgs),
     Identify(identify::IdentifyArgs),
+    Linearize(linearize::LinearizeArgs),
     #[command(name = "montecarlo")]
     MonteCarlo(montecarlo::MonteCarloArgs),
 }
@@ -45,6 +48,7 @@ impl LabArgs {
             LabAction::Step(args) => args.voice,
             LabAction::Velocity(args) => args.voice,
             LabAction::Identify(args) => args.voice,
+            LabAction::Linearize(args) => args.voice,
             LabAction::MonteCarlo(args) => args.voice,
         }
     }
@@ -57,6 +61,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Step(args) => step::run(args),
         LabAction::Velocity(args) => velocity::run(args, stop),
         LabAction::Identify(args) => identify::run(args, stop),
+        LabAction::Linearize(args) => linearize::run(args),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
 }

@@ -1,0 +1,50 @@
+use thiserror::Error;
+
+/// Why there is no such system, or no such figure of it.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum LinearError {
+    /// A denominator is zero.
+    #[error("a denominator is zero")]
+    NoDenominator,
+    /// More zeros than poles: it would have to know what comes.
+    #[error("{zeros} zeros and {poles} poles: what has more zeros than poles has no {what}")]
+    Improper {
+        /// Number of zeros.
+        zeros: usize,
+        /// Number of poles.
+        poles: usize,
+        /// What was asked for.
+        what: &'static str,
+    },
+    /// A coefficient is no number, or became none on the way.
+    #[error("a coefficient is infinite or no number")]
+    NotFinite,
+    /// Roots that are not real come in pairs.
+    #[error(
+        "{0} has no conjugate beside it; a system with real coefficients has its complex poles and zeros in pairs"
+    )]
+    Unpaired(String),
+    /// Systems of different sampling do not go together.
+    #[error("{0} and {1} do not go together: sample the one, or choose the same period")]
+    Sampling(String, String),
+    /// A period, frequency or other number that has to be positive is not.
+    #[error("{name} is {value}; it has to be more than zero{below}")]
+    Range {
+        /// What it is.
+        name: &'static str,
+        /// What it was.
+        value: f64,
+        /// And less than what, if anything.
+        below: String,
+    },
+    /// Matrices that do not fit together.
+    #[error("{0}")]
+    Shape(&'static str),
+    /// Feedback leaves nothing: 1 + G H is zero.
+    #[error("1 + G H is zero: that feedback leaves nothing defined")]
+    AlgebraicLoop,
+    /// An iteration did not end where it should.
+    #[error("an iteration did not converge")]
+    NotConverged,
+}

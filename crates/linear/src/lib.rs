@@ -1,0 +1,42 @@
+//! Linear systems: polynomials, transfer functions, state space, their poles, margins and responses.
+//!
+//! It knows nothing of heads and their joints: numbers in, numbers out. Everything here ends: iterations are bounded, and what they
+//! reached is said.
+
+mod cascade;
+mod discretize;
+mod eigen;
+mod error;
+mod formula;
+mod frequency;
+mod locus;
+mod margins;
+mod notation;
+mod polynomial;
+mod response;
+mod roots;
+mod state_space;
+mod time;
+mod transfer;
+mod zpk;
+
+/// A complex number.
+pub type Complex = nalgebra::Complex<f64>;
+
+/// A matrix of any size.
+pub type Matrix = nalgebra::DMatrix<f64>;
+
+pub use discretize::Discretization;
+pub use eigen::eigenvalues;
+pub use error::LinearError;
+pub use formula::{FormulaError, Names};
+pub use frequency::{FrequencyResponse, decibels, logspace};
+pub use locus::{Asymptotes, Breakaway, RootLocus};
+pub use margins::{GainMargin, Margins, ModulusMargin, PhaseMargin};
+pub use polynomial::Polynomial;
+pub use response::{Mode, Response, StepInfo};
+pub use roots::Root;
+pub use state_space::StateSpace;
+pub use time::Time;
+pub use transfer::TransferFunction;
+pub use zpk::Zpk;

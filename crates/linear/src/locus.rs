@@ -1,0 +1,306 @@
+use crate::roots::correction;
+use crate::{Complex, Polynomial, Time, TransferFunction};
+
+/// Where the poles of a closed loop go as the gain of its open loop rises.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RootLocus {
+    /// Factors on the open loop, rising.
+    pub gains: Vec<f64>,
+    /// For each gain the closed loop's poles, each at the place in the list where it was at the gain before.
+    pub poles: Vec<Vec<Complex>>,
+}
+
+/// Where branches of a root locus meet and part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Breakaway {
+    /// The double pole.
+    pub pole: Complex,
+    /// Gain that makes it.
+    pub gain: f64,
+}
+
+/// Where branches go as the gain rises without end: from one point in directions that share out the turn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asymptotes {
+    /// The point on the real axis.
+    pub centre: f64,
+    /// Directions, rad.
+    pub angles_rad: Vec<f64>,
+}
+
+impl TransferFunction {
+    /// Poles of 1 + k G for each of these gains, which rise: each gain's poles are looked for from those before, all at once
+    /// (Aberth's iteration).
+    pub fn root_locus(&self, gains: Vec<f64>) -> RootLocus {
+        let Some(&first) = gains.first() else { return RootLocus::default() };
+        let mut poles: Vec<Vec<Complex>> = Vec::with_capacity(gains.len());
+        let mut last = self.closed_at(first).root_values();
+        let mut follower = Follower::new(self);
+        for &gain in &gains {
+            let followed = if poles.is_empty() { None } else { follower.follow(gain, &last) };
+            let next = followed.unwrap_or_else(|| nearest(&last, self.closed_at(gain).root_values()));
+            last.clone_from(&next);
+            poles.push(next);
+        }
+        RootLocus { gains, poles }
+    }
+
+    /// Denominator of the closed loop with that gain.
+    pub fn closed_at(&self, gain: f64) -> Polynomial {
+        self.denominator() + &self.numerator().scaled(gain)
+    }
+
+    /// Gains that show every branch from its pole to its zero or far out: evenly on a logarithmic scale, and closer where poles
+    /// move far or meet. `count` at least.
+    pub fn locus_gains(&self, count: usize) -> Vec<f64> {
+        let (low, high) = self.gain_range();
+        let mut gains = crate::logspace((low, high), count.max(2));
+        for Breakaway { gain, .. } in self.breakaways() {
+            // branches leave a double pole as roots do: by the square root of the gain
+            let around =
+                (-12..=12).map(|n: i32| gain * (1.0 + f64::from(n.signum()) * 4.0_f64.powi(n.abs() - 13)));
+            gains.extend(around.filter(|g| (low..=high).contains(g)));
+        }
+        gains.push(0.0);
+        gains.sort_by(f64::total_cmp);
+        gains.dedup();
+        gains
+    }
+
+    /// From where nothing has moved yet to where all is about where it goes.
+    fn gain_range(&self) -> (f64, f64) {
+        let sizes = |p: &Polynomial| {
+            p.coefficients().iter().map(|c| c.abs()).filter(|c| *c > 0.0).collect::<Vec<_>>()
+        };
+        let (below, above) = (sizes(self.denominator()), sizes(self.numerator()));
+        let most = |values: &[f64]| values.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let least = |values: &[f64]| values.iter().fold(f64::INFINITY, |a, b| a.min(*b));
+        if above.is_empty() {
+            return (1e-3, 1e3);
+        }
+        let crossing = self.margins().gain.iter().map(|m| m.factor).fold(0.0, f64::max);
+        let high = (1e2 * most(&below) / most(&above)).max(10.0 * crossing).max(1e2);
+        let low = (1e-3 * least(&below) / most(&above)).min(1e-3 * high).max(1e-9 * high);
+        (low, high)
+    }
+
+    /// Double poles at gains above 0: roots of N D′ − N′ D that are poles of the closed loop for a real gain.
+    pub fn breakaways(&self) -> Vec<Breakaway> {
+        let (above, below) = (self.numerator(), self.denominator());
+        let meeting = &(above * &below.derivative()) - &(&above.derivative() * below);
+        let place = |pole: Complex| {
+            let gain = -below.at(pole) / above.at(pole);
+            let real = gain.im.abs() < 1e-6 * gain.re.abs();
+            (real && gain.re > 0.0 && gain.re.is_finite()).then_some(Breakaway { pole, gain: gain.re })
+        };
+        let mut found: Vec<Breakaway> = meeting.root_values().into_iter().filter_map(place).collect();
+        found.sort_by(|a, b| a.gain.total_cmp(&b.gain));
+        found
+    }
+
+    /// Where the branches without a zero go; none if there are none.
+    pub fn asymptotes(&self) -> Option<Asymptotes> {
+        let excess = usize::try_from(self.relative_degree()).ok().filter(|n| *n > 0)?;
+        let (above, below) = (self.numerator(), self.denominator());
+        if above.is_zero() {
+            return None;
+        }
+        let sum = |p: &Polynomial| -p.coefficient(p.degree().wrapping_sub(1)) / p.leading();
+        let zeros = if above.degree() == 0 { 0.0 } else { sum(above) };
+        let centre = (sum(below) - zeros) / excess as f64;
+        let first = if above.leading() > 0.0 { 1 } else { 0 };
+        let angle = |k: usize| std::f64::consts::PI * (2 * k + first) as f64 / excess as f64;
+        Some(Asymptotes { centre, angles_rad: (0..excess).map(angle).collect() })
+    }
+
+    /// Gains at which the closed loop just oscillates, and at which frequency, rad/s.
+    pub fn oscillating_gains(&self) -> Vec<(f64, f64)> {
+        self.margins().gain.into_iter().map(|margin| (margin.factor, margin.rad_s)).collect()
+    }
+}
+
+impl RootLocus {
+    /// The largest of these gains at which every pole is at least so damped and so far from the edge of stability, if any:
+    /// damping 0 to 1, decay in 1/s.
+    pub fn largest_gain(&self, damping: f64, decay: f64, time: Time) -> Option<f64> {
+        let calm = |pole: &Complex| {
+            let s = time.continuous(*pole);
+            -s.re >= decay && -s.re >= damping * s.norm() * (1.0 - 1e-12)
+        };
+        let all = self.gains.iter().zip(&self.poles).rev();
+        all.into_iter().find(|(_, poles)| poles.iter().all(calm)).map(|(gain, _)| *gain)
+    }
+}
+
+/// Poles from gain to gain.
+struct Follower {
+    below: Vec<f64>,
+    above: Vec<f64>,
+    coefficients: Vec<f64>,
+}
+
+impl Follower {
+    fn new(open: &TransferFunction) -> Self {
+        let size = open.denominator().coefficients().len().max(open.numerator().coefficients().len());
+        let padded = |p: &Polynomial| (0..size).rev().map(|power| p.coefficient(power)).collect::<Vec<_>>();
+        Self {
+            below: padded(open.denominator()),
+            above: padded(open.numerator()),
+            coefficients: vec![0.0; size],
+        }
+    }
+
+    /// The poles at a gain, near those at another; none if they are not found in some rounds.
+    fn follow(&mut self, gain: f64, last: &[Complex]) -> Option<Vec<Complex>> {
+        /// Some four are usual.
+        const MOST_ROUNDS: usize = 30;
+        /// What is this much beside its place can leave the real axis, and another at the same place.
+        const ASIDE: f64 = 2e-7;
+        for ((c, below), above) in self.coefficients.iter_mut().zip(&self.below).zip(&self.above) {
+            *c = below + gain * above;
+        }
+        if self.coefficients[0] == 0.0 || last.len() + 1 != self.coefficients.len() {
+            return None;
+        }
+        // what is this near is there
+        let middle =
+            (self.coefficients[last.len()] / self.coefficients[0]).abs().powf(2.0 / last.len() as f64);
+        let most = last.iter().map(Complex::norm_sqr).fold(middle, f64::max);
+        let near = |place: Complex| 1e-26 * (place.norm_sqr() + 1e-30 * most);
+        let aside = |i: usize| Complex::from_polar(ASIDE, 0.7 + 2.4 * i as f64);
+        let mut places: Vec<Complex> =
+            (0..).zip(last).map(|(i, pole)| pole + aside(i) * (pole.norm() + 1e-9 * most.sqrt())).collect();
+        for _ in 0..MOST_ROUNDS {
+            let mut moving = false;
+            for i in 0..places.len() {
+                let place = places[i];
+                let step = correction(self.newton(place), repulsion(&places, i));
+                if !step.is_finite() {
+                    return None;
+                }
+                places[i] -= step;
+                moving |= step.norm_sqr() > near(place);
+            }
+            if !moving {
+                places.iter_mut().for_each(|place| *place = tidied(*place, most));
+                return Some(places);
+            }
+        }
+        None
+    }
+
+    fn newton(&self, at: Complex) -> Complex {
+        let start = (Complex::ZERO, Complex::ZERO);
+        let fold = |(value, slope): (Complex, Complex), &c: &f64| (value * at + c, slope * at + value);
+        let (value, slope) = self.coefficients.iter().fold(start, fold);
+        if value == Complex::ZERO { value } else { value / slope }
+    }
+}
+
+/// Without what rounding alone puts beside the real axis, or beside zero where the largest is that large.
+fn tidied(place: Complex, most: f64) -> Complex {
+    if place.norm_sqr() < 1e-36 * most {
+        Complex::ZERO
+    } else if place.im.abs() < 1e-12 * place.re.abs() {
+        Complex::new(place.re, 0.0)
+    } else {
+        place
+    }
+}
+
+/// Σ 1 / (zᵢ − zⱼ) over the others, for places whose squares do not overflow.
+fn repulsion(places: &[Complex], i: usize) -> Complex {
+    let here = places[i];
+    let mut sum = Complex::ZERO;
+    for there in places {
+        let apart = here - there;
+        let square = apart.norm_sqr();
+        if square > 0.0 {
+            sum += apart.conj() / square;
+        }
+    }
+    sum
+}
+
+/// The same poles, each where the nearest was.
+fn nearest(last: &[Complex], mut poles: Vec<Complex>) -> Vec<Complex> {
+    let mut placed = Vec::with_capacity(poles.len());
+    for before in last {
+        let apart = |pole: &Complex| (pole - before).norm_sqr();
+        let Some(at) = (0..poles.len()).min_by(|&a, &b| apart(&poles[a]).total_cmp(&apart(&poles[b]))) else {
+            break;
+        };
+        placed.push(poles.swap_remove(at));
+    }
+    placed.extend(poles);
+    placed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> TransferFunction {
+        TransferFunction::parse(text, Time::Continuous).unwrap()
+    }
+
+    const K11_G11: &str = "281 (s+32.9)(s+97.8)/((s+250)(s+177)) 13.16/(s(s+0.1316))";
+
+    #[test]
+    fn every_pole_of_a_locus_is_one_and_moves_a_little_from_gain_to_gain() {
+        for text in
+            [K11_G11, "1/(s(s+1)(s+2))", "(s+3)/(s^2 (s+10))", "(s^2+4)/((s+1)^4)", "1/s^3", "-1/(s+1)^2"]
+        {
+            let open = parse(text);
+            let locus = open.root_locus(open.locus_gains(400));
+            for (gain, poles) in locus.gains.iter().zip(&locus.poles) {
+                let closed = open.closed_at(*gain);
+                assert_eq!(poles.len(), closed.degree());
+                for pole in poles {
+                    let terms = closed.coefficients().iter().fold(0.0, |sum, c| sum * pole.norm() + c.abs());
+                    assert!(closed.at(*pole).norm() <= 1e-12 * terms, "{text}: {gain} {pole}");
+                }
+                let sum: Complex = poles.iter().sum();
+                let size: f64 = poles.iter().map(|p| p.norm()).sum();
+                assert!(
+                    (sum.re + closed.coefficient(closed.degree() - 1) / closed.leading()).abs()
+                        <= 1e-6 * size,
+                    "{text}: {gain}"
+                );
+            }
+            let far = locus.poles.last().unwrap().iter().map(|p| p.norm()).fold(1.0, f64::max);
+            for pair in locus.poles.windows(2).skip(1) {
+                let moved = pair[0].iter().zip(&pair[1]).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+                assert!(moved < 0.1 * far, "{text}: {moved} of {far}");
+            }
+        }
+    }
+
+    #[test]
+    fn branches_part_and_oscillate_where_the_textbook_says() {
+        let open = parse("1/(s(s+1)(s+2))");
+        let apart = open.breakaways();
+        assert_eq!(apart.len(), 1);
+        assert!(
+            (apart[0].pole.re + 0.42265).abs() < 1e-5 && (apart[0].gain - 0.3849).abs() < 1e-4,
+            "{apart:?}"
+        );
+        let swinging = open.oscillating_gains();
+        assert!((swinging[0].0 - 6.0).abs() < 1e-12 && (swinging[0].1 - 2.0_f64.sqrt()).abs() < 1e-12);
+        let far = open.asymptotes().unwrap();
+        assert!((far.centre + 1.0).abs() < 1e-15);
+        let angles: Vec<f64> = far.angles_rad.iter().map(|a| a.to_degrees()).collect();
+        assert!(angles.iter().zip([60.0, 180.0, 300.0]).all(|(a, b)| (a - b).abs() < 1e-12), "{angles:?}");
+        assert_eq!(parse("(s+1)/(s+2)").asymptotes(), None);
+    }
+
+    #[test]
+    fn a_gain_is_chosen_by_the_damping_it_leaves() {
+        let open = parse("1/(s(s+2))");
+        let locus = open.root_locus(crate::logspace((0.01, 100.0), 4001));
+        // s² + 2 s + k: damping 1/√k
+        let gain = locus.largest_gain(0.5, 0.0, Time::Continuous).unwrap();
+        assert!((gain - 4.0).abs() < 0.01, "{gain}");
+        assert_eq!(locus.largest_gain(0.0, 5.0, Time::Continuous), None);
+    }
+}

@@ -1,0 +1,230 @@
+use super::start::polygon;
+use crate::Complex;
+
+/// A polynomial that can be looked at on any scale: no value on the way leaves the range of `f64`.
+pub(super) struct Scaled {
+    degree: usize,
+    scales: Vec<Scale>,
+}
+
+/// p(2ᵉ y), divided by the largest of its coefficients: what vanishes then does not matter where |y| is about 1.
+struct Scale {
+    exponent: i32,
+    /// Highest power first.
+    coefficients: Vec<f64>,
+    /// Lowest power first.
+    reversed: Vec<f64>,
+}
+
+/// A step towards a root.
+pub(super) struct Step {
+    /// p / p′.
+    pub(super) newton: Complex,
+    /// Whether the value is no more than what rounding makes of zero.
+    pub(super) is_settled: bool,
+}
+
+/// What a polynomial is at a place.
+struct Value {
+    value: Complex,
+    derivative: Complex,
+    /// Σ |cᵢ| |z|ⁱ: rounding is a share of it.
+    size: f64,
+}
+
+impl Scale {
+    fn new(parts: &[(f64, i32)], exponent: i32) -> Self {
+        let degree = parts.len() - 1;
+        let power = |i: usize| parts[i].1 + exponent * (degree - i) as i32;
+        let most = (0..=degree).filter(|&i| parts[i].0 != 0.0).map(power).max().unwrap_or(0);
+        let coefficients: Vec<f64> = (0..=degree).map(|i| join(parts[i].0, power(i) - most)).collect();
+        let reversed = coefficients.iter().rev().copied().collect();
+        Self { exponent, coefficients, reversed }
+    }
+}
+
+impl Scaled {
+    /// First and last coefficient are not zero.
+    pub(super) fn new(coefficients: &[f64]) -> Self {
+        /// Scales this close are one, powers of two.
+        const CLOSE: i32 = 8;
+        let parts: Vec<(f64, i32)> = coefficients.iter().map(|&c| split(c)).collect();
+        let mut exponents: Vec<i32> =
+            polygon(coefficients).iter().map(|edge| edge.radius_log2.round() as i32).collect();
+        exponents.dedup_by(|next, kept| (*next - *kept).abs() <= CLOSE);
+        let scales = exponents.iter().map(|&exponent| Scale::new(&parts, exponent)).collect();
+        Self { degree: coefficients.len() - 1, scales }
+    }
+
+    pub(super) const fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Coefficients on the scale of a place, highest power first, and the place on that scale.
+    pub(super) fn near(&self, place: Complex) -> (&[f64], Complex) {
+        let (scale, place) = self.scale(place);
+        (&scale.coefficients, place)
+    }
+
+    fn scale(&self, place: Complex) -> (&Scale, Complex) {
+        // there is one at least: a polynomial with roots has a polygon
+        let mut scale = &self.scales[0];
+        if self.scales.len() > 1 {
+            let exponent = split(place.re.abs().max(place.im.abs())).1;
+            let nearest = self.scales.iter().min_by_key(|scale| (scale.exponent - exponent).abs());
+            scale = nearest.unwrap_or(scale);
+        }
+        (scale, times_power(place, -scale.exponent))
+    }
+
+    /// p / p′, the value, and the sum of the values of its terms. Outside a scale's unit circle it is the reversed polynomial at
+    /// 1/y that is looked at, which nothing makes overflow.
+    fn newton(&self, place: Complex, value: impl Fn(&[f64], Complex) -> Value) -> (Complex, Complex, f64) {
+        let (scale, place) = self.scale(place);
+        let (newton, value, size) = if place.norm_sqr() <= 1.0 {
+            let Value { value, derivative, size } = value(&scale.coefficients, place);
+            (value / derivative, value, size)
+        } else {
+            let at = place.inv();
+            let Value { value, derivative, size } = value(&scale.reversed, at);
+            (value / (at * (value * self.degree as f64 - at * derivative)), value, size)
+        };
+        (times_power(newton, scale.exponent), value, size)
+    }
+
+    /// With plain values.
+    pub(super) fn step(&self, place: Complex) -> Step {
+        let (newton, value, size) = self.newton(place, plain);
+        let rounding = 4.0 * self.degree as f64 * f64::EPSILON * size;
+        Step { newton, is_settled: value.norm() <= rounding }
+    }
+
+    /// With values in twice the digits.
+    pub(super) fn accurate_step(&self, place: Complex) -> Step {
+        let (newton, value, size) = self.newton(place, compensated);
+        Step { newton, is_settled: value.norm() <= self.compensated_rounding(size) }
+    }
+
+    /// |p| at a place, or |p / zⁿ| outside the unit circle, with all that rounding may hide.
+    pub(super) fn residual(&self, place: Complex) -> f64 {
+        let (_, value, size) = self.newton(place, compensated);
+        value.norm() * (1.0 + f64::EPSILON) + self.compensated_rounding(size)
+    }
+
+    /// Graillat & Langlois's bound, for complex places.
+    fn compensated_rounding(&self, size: f64) -> f64 {
+        let unit = 8.0 * self.degree as f64 * f64::EPSILON;
+        unit * unit * size
+    }
+}
+
+fn plain(coefficients: &[f64], at: Complex) -> Value {
+    let norm = at.norm();
+    let start = Value { value: Complex::ZERO, derivative: Complex::ZERO, size: 0.0 };
+    coefficients.iter().fold(start, |sum, &c| Value {
+        derivative: sum.derivative * at + sum.value,
+        value: sum.value * at + c,
+        size: sum.size * norm + c.abs(),
+    })
+}
+
+/// Horner's scheme that also sums what each rounding lost (Graillat & Langlois, *Compensated Horner scheme in complex floating
+/// point arithmetic*, 2008).
+fn compensated(coefficients: &[f64], at: Complex) -> Value {
+    let Value { mut value, derivative, size } = plain(&[], at);
+    let (mut derivative, mut size, mut lost) = (derivative, size, Complex::ZERO);
+    let norm = at.norm();
+    for &c in coefficients {
+        derivative = derivative * at + value;
+        size = size * norm + c.abs();
+        let (rr, rr_lost) = product(value.re, at.re);
+        let (ii, ii_lost) = product(value.im, at.im);
+        let (ri, ri_lost) = product(value.re, at.im);
+        let (ir, ir_lost) = product(value.im, at.re);
+        let (difference, difference_lost) = sum(rr, -ii);
+        let (re, re_lost) = sum(difference, c);
+        let (im, im_lost) = sum(ri, ir);
+        value = Complex::new(re, im);
+        lost = lost * at
+            + Complex::new(rr_lost - ii_lost + difference_lost + re_lost, ri_lost + ir_lost + im_lost);
+    }
+    Value { value: value + lost, derivative, size }
+}
+
+/// a + b and what rounding lost of it (Knuth).
+fn sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
+/// a · b and what rounding lost of it (Dekker, Veltkamp).
+fn product(a: f64, b: f64) -> (f64, f64) {
+    let halves = |x: f64| {
+        const SPLIT: f64 = 134_217_729.0; // 2²⁷ + 1
+        let high = SPLIT * x - (SPLIT * x - x);
+        (high, x - high)
+    };
+    let product = a * b;
+    let ((ah, al), (bh, bl)) = (halves(a), halves(b));
+    (product, ((ah * bh - product) + ah * bl + al * bh) + al * bl)
+}
+
+/// A complex number times a power of two.
+fn times_power(value: Complex, exponent: i32) -> Complex {
+    if exponent.abs() < 1000 {
+        return value * f64::from_bits(((1023 + exponent) as u64) << 52);
+    }
+    let by = |part: f64| {
+        let (mantissa, own) = split(part);
+        join(mantissa, own + exponent)
+    };
+    Complex::new(by(value.re), by(value.im))
+}
+
+/// Mantissa in ±[½, 1) and power of two; zero is 0 · 2⁰.
+pub(super) fn split(value: f64) -> (f64, i32) {
+    /// Two to the power of 64 makes a normal number of any other.
+    const NORMAL: f64 = 18_446_744_073_709_551_616.0;
+    if value == 0.0 || !value.is_finite() {
+        return (value, 0);
+    }
+    let (normal, less) = if value.abs() < f64::MIN_POSITIVE { (value * NORMAL, 64) } else { (value, 0) };
+    let bits = normal.to_bits();
+    let exponent = ((bits >> 52) & 0x7ff) as i32 - 1022;
+    (f64::from_bits((bits & !(0x7ff << 52)) | (1022 << 52)), exponent - less)
+}
+
+/// mantissa · 2^exponent, rounded once; beyond the range zero or infinity.
+pub(super) fn join(mantissa: f64, exponent: i32) -> f64 {
+    let half = exponent.clamp(-2200, 2200) / 2;
+    let power = |e: i32| 2.0_f64.powi(e);
+    let quarter = |e: i32| power(e / 2) * power(e - e / 2);
+    mantissa * quarter(half) * quarter(exponent.clamp(-2200, 2200) - half)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_split_and_joined_exactly() {
+        for value in [1.0, -3.7e300, 5e-324, 1e-310, -f64::MIN_POSITIVE, f64::MAX, 0.0] {
+            let (mantissa, exponent) = split(value);
+            assert!(value == 0.0 || (0.5..1.0).contains(&mantissa.abs()), "{value}");
+            assert_eq!(join(mantissa, exponent), value);
+        }
+        assert_eq!(join(0.5, 5000), f64::INFINITY);
+        assert_eq!(join(0.5, -5000), 0.0);
+    }
+
+    #[test]
+    fn a_compensated_value_has_all_its_digits() {
+        // (z − 1)⁸ a little beside 1: plain values are noise there
+        let coefficients = [1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0];
+        let at = Complex::new(1.0 + 1e-3, 0.0);
+        let truth = (at.re - 1.0).powi(8);
+        let value = compensated(&coefficients, at).value.re;
+        assert!((value - truth).abs() < 1e-6 * truth, "{value:e} {truth:e}");
+    }
+}

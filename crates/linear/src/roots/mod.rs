@@ -1,0 +1,130 @@
+//! Roots of a polynomial, all at once, in bounded time.
+
+mod disc;
+mod evaluate;
+mod start;
+
+use crate::{Complex, Polynomial};
+use disc::disc;
+use evaluate::{Scaled, Step};
+use start::starts;
+
+/// One root, and how far off it may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Root {
+    /// Where it is.
+    pub value: Complex,
+    /// A disc of that radius about it holds a true root of the polynomial whose coefficients are exactly these; where discs
+    /// overlap, as many true roots as it is about (Pellet's theorem). Infinite where the coefficients are no numbers.
+    pub radius: f64,
+}
+
+/// Rounds of the iteration; from good starts it takes some ten, multiple roots some forty.
+const MOST_ROUNDS: usize = 120;
+
+impl Polynomial {
+    /// All roots, conjugate pairs exactly so, the smallest first; none of constants.
+    ///
+    /// Ehrlich and Aberth's iteration, a Newton step for each root away from all others (Aberth, *Iteration methods for finding
+    /// all zeros of a polynomial simultaneously*, Math. Comp. 27, 1973), from starts on the Newton polygon (Bini, *Numerical
+    /// computation of polynomial zeros by means of Aberth's method*, Numer. Algorithms 13, 1996); at last with values in twice
+    /// the digits (Graillat & Langlois's compensated Horner scheme). It ends after a number of rounds, whatever it is given.
+    pub fn roots(&self) -> Vec<Root> {
+        if !self.is_finite() {
+            let nowhere = Root { value: Complex::new(f64::NAN, f64::NAN), radius: f64::INFINITY };
+            return vec![nowhere; self.degree()];
+        }
+        let zeros = self.coefficients().iter().rev().take_while(|&&c| c == 0.0).count().min(self.degree());
+        let rest = &self.coefficients()[..self.coefficients().len() - zeros];
+        let mut roots = vec![Root { value: Complex::ZERO, radius: 0.0 }; zeros];
+        if rest.len() > 1 {
+            let scaled = Scaled::new(rest);
+            let mut places = starts(rest);
+            approach(&scaled, &mut places, Scaled::step);
+            approach(&scaled, &mut places, Scaled::accurate_step);
+            let found = places.iter().map(|&place| Root { value: place, radius: disc(&scaled, place) });
+            roots.extend(mirrored(found.collect()));
+        }
+        roots
+    }
+
+    /// Where its roots are, without bounds.
+    pub fn root_values(&self) -> Vec<Complex> {
+        self.roots().into_iter().map(|root| root.value).collect()
+    }
+}
+
+/// Moves each place towards its root until rounding says that it is there.
+fn approach(scaled: &Scaled, places: &mut [Complex], step: fn(&Scaled, Complex) -> Step) {
+    let mut settled = vec![false; places.len()];
+    for _ in 0..MOST_ROUNDS {
+        for i in 0..places.len() {
+            if settled[i] {
+                continue;
+            }
+            let place = places[i];
+            let Step { newton, is_settled } = step(scaled, place);
+            let moved = correction(newton, repulsion(places, i));
+            if moved.is_finite() {
+                places[i] -= moved;
+            }
+            settled[i] = is_settled || moved.norm() <= f64::EPSILON * place.norm();
+        }
+        if settled.iter().all(|&done| done) {
+            return;
+        }
+    }
+}
+
+/// Aberth's correction of Newton's step.
+pub(crate) fn correction(newton: Complex, repulsion: Complex) -> Complex {
+    newton / (1.0 - newton * repulsion)
+}
+
+/// Σ 1 / (zᵢ − zⱼ) over the others; those at the very same place push nowhere.
+fn repulsion(places: &[Complex], i: usize) -> Complex {
+    let here = places[i];
+    let away = |there: &Complex| {
+        let apart = here - there;
+        // squares of what is far apart would overflow
+        let size = apart.re.abs().max(apart.im.abs());
+        (apart / size).inv() / size
+    };
+    let others = places.iter().enumerate().filter(|&(j, there)| j != i && *there != here);
+    others.map(|(_, there)| away(there)).sum()
+}
+
+/// Roots of real coefficients: real ones, and pairs that mirror each other; the smallest first. Those that mirror each other best
+/// become pairs, or are their own mirrors.
+fn mirrored(roots: Vec<Root>) -> Vec<Root> {
+    let ways = |i: usize| (i..roots.len()).map(move |j| (i, j));
+    let apart = |(i, j): (usize, usize)| (roots[i].value - roots[j].value.conj()).norm();
+    // a root that is alone in a disc that reaches the real axis is real
+    let alone = |i: usize| {
+        let apart = |j: usize| (roots[i].value - roots[j].value).norm();
+        (0..roots.len()).all(|j| j == i || apart(j) > roots[i].radius + roots[j].radius)
+    };
+    let real: Vec<bool> =
+        (0..roots.len()).map(|i| roots[i].value.im.abs() <= roots[i].radius && alone(i)).collect();
+    let cost = |(i, j): (usize, usize)| if i == j && real[i] { 0.0 } else { apart((i, j)) };
+    let mut pairs: Vec<(usize, usize)> = (0..roots.len()).flat_map(ways).collect();
+    pairs.sort_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+    let mut taken = vec![false; roots.len()];
+    let mut done = Vec::with_capacity(roots.len());
+    for (i, j) in pairs {
+        if taken[i] || taken[j] {
+            continue;
+        }
+        (taken[i], taken[j]) = (true, true);
+        let value = 0.5 * (roots[i].value + roots[j].value.conj());
+        let radius = roots[i].radius.max(roots[j].radius) + 0.5 * cost((i, j));
+        let upper = Complex::new(value.re, value.im.abs());
+        done.push(Root { value: upper, radius });
+        if i != j {
+            done.push(Root { value: upper.conj(), radius });
+        }
+    }
+    // stable: pairs stay together
+    done.sort_by(|a, b| a.value.norm().total_cmp(&b.value.norm()));
+    done
+}

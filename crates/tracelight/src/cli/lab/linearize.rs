@@ -1,0 +1,129 @@
+use std::fmt::Write;
+
+use clap::Args;
+use serde_json::json;
+use tracelight_lab::Linearization;
+use tracelight_linear::{Complex, LinearError, Matrix, TransferFunction};
+use tracelight_rig::{Joint, PanTilt};
+
+use super::head::{Head, HeadArgs};
+use crate::cli::{Answer, Voice};
+use crate::failure::Failure;
+
+/// The head near a pose as a linear system: state space, transfer functions G11 and G22 from torque to angle, poles
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight lab linearize --keep-cancellations\n\n\
+                  Without flags it is the 2006 report's own linearization. Coulomb friction has no linear form and is left out. \
+                  G11 and G22 go into other commands as they are: tracelight lab bode \"K11 G11\".")]
+pub(crate) struct LinearizeArgs {
+    #[command(flatten)]
+    head: HeadArgs,
+    #[command(flatten)]
+    pub(super) voice: Voice,
+}
+
+/// A joint's transfer function and what was left out of it.
+struct Own {
+    transfer: TransferFunction,
+    cancelled: Vec<Complex>,
+}
+
+pub(crate) fn run(args: &LinearizeArgs) -> Result<Answer, Failure> {
+    let head = args.head.head()?;
+    let linear = head.linearize()?;
+    let own = |joint| own(&linear, joint, args.head.keep_cancellations);
+    let failed = |e: LinearError| Failure::failed("no-linear-model", e);
+    let both = PanTilt::new(own(Joint::Pan).map_err(failed)?, own(Joint::Tilt).map_err(failed)?);
+    Ok(Answer::new(text(&head, &linear, &both), json(&head, &linear, &both)))
+}
+
+fn own(linear: &Linearization, joint: Joint, keep: bool) -> Result<Own, LinearError> {
+    if keep {
+        return Ok(Own { transfer: linear.transfer(joint)?, cancelled: Vec::new() });
+    }
+    let (transfer, cancelled) = linear.own_transfer(joint)?;
+    Ok(Own { transfer, cancelled })
+}
+
+fn text(head: &Head, linear: &Linearization, both: &PanTilt<Own>) -> String {
+    let holding = &linear.holding_nm;
+    let mut text = format!(
+        "{}\n{}; {:.4} and {:.4} N m keep it so\n",
+        head.name,
+        head.place(),
+        holding.pan + 0.0,
+        holding.tilt
+    );
+    for (name, joint) in [("G11", Joint::Pan), ("G22", Joint::Tilt)] {
+        let Own { transfer, cancelled } = &both[joint];
+        // writing to a String cannot fail
+        let _ = write!(
+            text,
+            "\n{name}, {joint} angle over {joint} torque, rad/(N m)\n    {transfer}\n    = {}\n",
+            transfer.zpk()
+        );
+        if !cancelled.is_empty() {
+            let places: Vec<String> = cancelled.iter().filter(|z| z.im >= 0.0).map(|z| place(*z)).collect();
+            let _ = writeln!(text, "    cancelled: {} (kept with --keep-cancellations)", places.join(", "));
+        }
+    }
+    text += "\npole, 1/s                    natural, rad/s   damping\n";
+    let poles = linear.system.poles().unwrap_or_default();
+    for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
+        let natural = pole.norm();
+        let damping =
+            if natural > 0.0 { format!("{:9.4}", -pole.re / natural) } else { "        –".to_owned() };
+        let _ = writeln!(text, "{:28} {natural:14.5} {damping}", place(*pole));
+    }
+    let _ = write!(
+        text,
+        "\nx = (pan, tilt, pan rate, tilt rate), u = (pan torque, tilt torque), y = (pan, tilt)\n\nA =\n{}\nB =\n{}",
+        matrix(linear.system.a()),
+        matrix(linear.system.b())
+    );
+    text.trim_end().to_owned()
+}
+
+/// A root and its conjugate.
+fn place(root: Complex) -> String {
+    let re = format!("{:.5}", root.re + 0.0).replace('-', "−");
+    if root.im == 0.0 { re } else { format!("{re} ± {:.5}j", root.im) }
+}
+
+fn matrix(matrix: &Matrix) -> String {
+    matrix.row_iter().fold(String::new(), |mut text, row| {
+        for entry in row.iter() {
+            let _ = write!(text, " {:12.6}", entry + 0.0);
+        }
+        text + "\n"
+    })
+}
+
+fn json(head: &Head, linear: &Linearization, both: &PanTilt<Own>) -> String {
+    let pair = |z: &Complex| json!([z.re, z.im]);
+    let own = |Own { transfer, cancelled }: &Own| {
+        json!({
+            "num": transfer.numerator().coefficients(),
+            "den": transfer.denominator().coefficients(),
+            "cancelled": cancelled.iter().map(pair).collect::<Vec<_>>(),
+        })
+    };
+    let rows =
+        |m: &Matrix| m.row_iter().map(|row| row.iter().copied().collect::<Vec<f64>>()).collect::<Vec<_>>();
+    let system = &linear.system;
+    json!({
+        "head": head.name,
+        "pan_rad": head.pan_rad,
+        "tilt_rad": head.operation.tilt_rad,
+        "rates_rad_s": [head.operation.rate_rad_s.pan, head.operation.rate_rad_s.tilt],
+        "holding_nm": [linear.holding_nm.pan, linear.holding_nm.tilt],
+        "G11": own(&both.pan),
+        "G22": own(&both.tilt),
+        "poles": system.poles().unwrap_or_default().iter().map(pair).collect::<Vec<_>>(),
+        "A": rows(system.a()),
+        "B": rows(system.b()),
+        "C": rows(system.c()),
+        "D": rows(system.d()),
+    })
+    .to_string()
+}
