@@ -112,12 +112,30 @@ impl LawName {
 /// Of the pair of closed-loop poles: a step of the load overshoots by 1.5 %.
 const DAMPING: f32 = 0.8;
 
-/// K11 = 281 (s + 32.9)(s + 97.8) / ((s + 250)(s + 177)), K22 = 144 (s + 31.5)(s + 33.4) / ((s + 194)(s + 83.5)).
+/// A compensator as the 2006 report prints it: gain (s + z₁)(s + z₂) / ((s + p₁)(s + p₂)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compensator {
+    /// What stands before it.
+    pub gain: f64,
+    /// z₁ and z₂, rad/s.
+    pub zeros: [f64; 2],
+    /// p₁ and p₂, rad/s.
+    pub poles: [f64; 2],
+}
+
+impl Compensator {
+    /// K11 = 281 (s + 32.9)(s + 97.8) / ((s + 250)(s + 177)) of pan, K22 = 144 (s + 31.5)(s + 33.4) / ((s + 194)(s + 83.5)) of
+    /// tilt, N m/rad.
+    pub const fn of_the_report(joint: Joint) -> Self {
+        match joint {
+            Joint::Pan => Self { gain: 281.0, zeros: [32.9, 97.8], poles: [250.0, 177.0] },
+            Joint::Tilt => Self { gain: 144.0, zeros: [31.5, 33.4], poles: [194.0, 83.5] },
+        }
+    }
+}
+
 fn report(joint: Joint, format: Format) -> LeadLag {
-    let (gain, zeros, poles) = match joint {
-        Joint::Pan => (281.0, [32.9, 97.8], [250.0, 177.0]),
-        Joint::Tilt => (144.0, [31.5, 33.4], [194.0, 83.5]),
-    };
+    let Compensator { gain, zeros, poles } = Compensator::of_the_report(joint);
     LeadLagDesign::report(gain, zeros, poles, format).discretize()
 }
 

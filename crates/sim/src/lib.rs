@@ -21,7 +21,7 @@ pub use bench::BenchTick;
 pub use config::{
     Cable, ControlSettings, Identified, Model, MotionSettings, Quirks, RigConfig, Ripple, Truth,
 };
-pub use laws::{LawName, ObserverName};
+pub use laws::{Compensator, LawName, ObserverName};
 pub use replay::replay;
 pub use run::{Feeder, Run, SimulatedRig, Tick, run, run_segments};
 pub use score::{Tracking, score};

@@ -77,6 +77,19 @@ const MESSAGES: &[(&str, &str)] = &[
         "Some pictures of a batch failed, the others are done. The table says why each of them did; the same command again goes on with those that are left.",
     ),
     ("internal", "The program made a mistake on a picture. Please report it, with the picture."),
+    (
+        "bad-formula",
+        "A transfer function could not be read; the message points at the place. `tracelight lab bode --help` says how it is written.",
+    ),
+    (
+        "no-such-system",
+        "A system cannot be had that way: one that has more zeros than poles, or that is already sampled, or a loop that closes on nothing.",
+    ),
+    ("no-such-gain", "No gain does what was asked. Ask for less damping, or change the loop."),
+    (
+        "no-linear-model",
+        "A head could not be linearized: its masses or its friction are no numbers that move. Check the rig file.",
+    ),
     ("cannot-write", "A result could not be written. Check the folder, its permissions and the free space."),
     ("usage", "The command line is wrong. `tracelight --help` shows what there is."),
     (

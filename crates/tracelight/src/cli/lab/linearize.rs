@@ -7,6 +7,7 @@ use tracelight_linear::{Complex, LinearError, Matrix, TransferFunction};
 use tracelight_rig::{Joint, PanTilt};
 
 use super::head::{Head, HeadArgs};
+use super::systems::four;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 
@@ -48,20 +49,20 @@ fn own(linear: &Linearization, joint: Joint, keep: bool) -> Result<Own, LinearEr
 fn text(head: &Head, linear: &Linearization, both: &PanTilt<Own>) -> String {
     let holding = &linear.holding_nm;
     let mut text = format!(
-        "{}\n{}; {:.4} and {:.4} N m keep it so\n",
+        "{}\n{}; {} and {} N m keep it so\n",
         head.name,
         head.place(),
-        holding.pan + 0.0,
-        holding.tilt
+        four(holding.pan),
+        four(holding.tilt)
     );
     for (name, joint) in [("G11", Joint::Pan), ("G22", Joint::Tilt)] {
         let Own { transfer, cancelled } = &both[joint];
         // writing to a String cannot fail
-        let _ = write!(
-            text,
-            "\n{name}, {joint} angle over {joint} torque, rad/(N m)\n    {transfer}\n    = {}\n",
-            transfer.zpk()
-        );
+        let _ = writeln!(text, "\n{name}, {joint} angle over {joint} torque, rad/(N m)\n    {transfer}");
+        let factors = transfer.zpk().to_string();
+        if factors != transfer.to_string() {
+            let _ = writeln!(text, "    = {factors}");
+        }
         if !cancelled.is_empty() {
             let places: Vec<String> = cancelled.iter().filter(|z| z.im >= 0.0).map(|z| place(*z)).collect();
             let _ = writeln!(text, "    cancelled: {} (kept with --keep-cancellations)", places.join(", "));

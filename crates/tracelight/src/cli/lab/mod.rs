@@ -1,13 +1,17 @@
 //! The control engineer's bench, one file a subcommand.
 
+mod bode;
 mod head;
 mod identify;
 mod linearize;
+mod locus;
 mod montecarlo;
 mod moves;
+mod nyquist;
 mod profile;
 mod shape;
 mod step;
+mod systems;
 mod velocity;
 
 use clap::{Args, Subcommand};
@@ -20,7 +24,7 @@ use crate::failure::Failure;
 use crate::stop::Stop;
 use crate::units::Unit;
 
-/// The control engineer's bench: profiles, moves, step responses, identification, many heads at once
+/// The control engineer's bench: profiles, moves, steps, identification, linear models, Bode, Nyquist and locus, many heads at once
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab profile --distance 180deg -o profiles.svg")]
 pub(crate) struct LabArgs {
@@ -36,6 +40,11 @@ enum LabAction {
     Velocity(velocity::VelocityArgs),
     Identify(identify::IdentifyArgs),
     Linearize(linearize::LinearizeArgs),
+    Locus(locus::LocusArgs),
+    Bode(bode::BodeArgs),
+    Nyquist(nyquist::NyquistArgs),
+    Nichols(nyquist::NicholsArgs),
+    Pzmap(locus::PzmapArgs),
     #[command(name = "montecarlo")]
     MonteCarlo(montecarlo::MonteCarloArgs),
 }
@@ -49,6 +58,11 @@ impl LabArgs {
             LabAction::Velocity(args) => args.voice,
             LabAction::Identify(args) => args.voice,
             LabAction::Linearize(args) => args.voice,
+            LabAction::Locus(args) => args.voice,
+            LabAction::Bode(args) => args.voice,
+            LabAction::Nyquist(args) => args.voice,
+            LabAction::Nichols(args) => args.voice,
+            LabAction::Pzmap(args) => args.voice,
             LabAction::MonteCarlo(args) => args.voice,
         }
     }
@@ -62,6 +76,11 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Velocity(args) => velocity::run(args, stop),
         LabAction::Identify(args) => identify::run(args, stop),
         LabAction::Linearize(args) => linearize::run(args),
+        LabAction::Locus(args) => locus::run(args),
+        LabAction::Bode(args) => bode::run(args),
+        LabAction::Nyquist(args) => nyquist::run(args),
+        LabAction::Nichols(args) => nyquist::run_nichols(args),
+        LabAction::Pzmap(args) => locus::run_pzmap(args),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
 }

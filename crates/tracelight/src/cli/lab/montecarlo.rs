@@ -11,7 +11,7 @@ use tracelight_trajectory::Plan;
 
 use super::shape::ShapeArgs;
 use super::{OutFile, out_file, why_unfinished, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
+use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::driving::Driving;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
@@ -226,9 +226,11 @@ fn figure(args: &MonteCarloArgs, trials: &[Trial]) -> Result<String, Failure> {
             curves: vec![sorted(Colour::Blue, FIGURES[1].2), sorted(Colour::Vermilion, FIGURES[0].2)],
             levels: vec![0.0],
             scale: Scale::Free,
+            ..Panel::default()
         }],
         columns: 1,
         panel: (680, 380),
+        theme: Theme::Light,
     };
     figure.svg().map_err(|e| Failure::failed("internal", e))
 }

@@ -5,7 +5,7 @@ use tracelight_rig::TICK_F64_S;
 use tracelight_trajectory::{MoveLimits, MovePoint, Peaks, Profile, Ramps};
 
 use super::{OutFile, colour, out_file, within, write_all};
-use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale};
+use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::shapes::{ProfileName, ramps};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
@@ -175,6 +175,7 @@ fn figure(args: &ProfileArgs, chosen: &[(ProfileName, Profile)]) -> Result<Strin
         curves: chosen.iter().map(|(name, profile)| curve(*name, profile, value)).collect(),
         levels: Vec::new(),
         scale: Scale::Free,
+        ..Panel::default()
     };
     let key = |(name, profile): &(ProfileName, Profile)| Key {
         colour: colour(*name),
@@ -194,6 +195,7 @@ fn figure(args: &ProfileArgs, chosen: &[(ProfileName, Profile)]) -> Result<Strin
         ],
         columns: 1,
         panel: (680, 230),
+        theme: Theme::Light,
     };
     figure.svg().map_err(|e| Failure::failed("internal", e))
 }

@@ -6,7 +6,7 @@ use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{BenchTick, LawName, ObserverName, RigConfig, StepResponse, step_response};
 
 use super::{OutFile, out_file, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
+use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};
@@ -223,6 +223,7 @@ fn figure(args: &StepArgs, entries: &[Entry]) -> Result<String, Failure> {
         curves,
         levels,
         scale: Scale::Free,
+        ..Panel::default()
     };
     let angle = |tick: &BenchTick| tick.angle_rad[joint].to_degrees();
     let volts = |tick: &BenchTick| f64::from(tick.command_v[joint]);
@@ -249,6 +250,7 @@ fn figure(args: &StepArgs, entries: &[Entry]) -> Result<String, Failure> {
         ],
         columns: 1,
         panel: (760, 300),
+        theme: Theme::Light,
     };
     figure.svg().map_err(|e| Failure::failed("internal", e))
 }

@@ -8,7 +8,7 @@ use tracelight_sim::{LONGEST_INTERVAL_TICKS, ObserverName, Run, SimulatedRig};
 
 use super::shape::ShapeArgs;
 use super::{OutFile, out_file, why_unfinished, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
+use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::driving::{Driving, positive_speed};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
@@ -256,6 +256,7 @@ impl Found<'_> {
             panels: panels.collect(),
             columns: 2,
             panel: (520, 260),
+            theme: Theme::Light,
         };
         figure.svg().map_err(|e| Failure::failed("internal", e))
     }
@@ -277,6 +278,7 @@ impl Found<'_> {
             curves,
             levels: Vec::new(),
             scale: Scale::Log,
+            ..Panel::default()
         }
     }
 }

@@ -6,7 +6,7 @@ use tracelight_trajectory::CoursePoint;
 
 use super::super::colour;
 use super::{Bench, Entry, OnRig, failure};
-use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale};
+use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::failure::Failure;
 
 /// Points of a plotted curve.
@@ -44,6 +44,7 @@ pub(super) fn figure(bench: &Bench<'_>) -> Result<String, Failure> {
         panels: panels(bench, &moves),
         columns: 3,
         panel: (400, 260),
+        theme: Theme::Light,
     };
     figure.svg().map_err(|e| Failure::failed("internal", e))
 }
@@ -60,6 +61,7 @@ fn panels(bench: &Bench<'_>, moves: &[Plotted<'_>]) -> Vec<Panel> {
         curves,
         levels: Vec::new(),
         scale: Scale::Free,
+        ..Panel::default()
     };
     let each = |values: &[(Pen, &Value<'_>)]| {
         moves.iter().flat_map(|m| values.iter().map(|&(pen, value)| m.curve(pen, value))).collect::<Vec<_>>()
@@ -130,6 +132,7 @@ fn path(moves: &[Plotted<'_>]) -> Panel {
         curves: lines.chain(dots).collect(),
         levels: Vec::new(),
         scale: Scale::Even,
+        ..Panel::default()
     }
 }
 

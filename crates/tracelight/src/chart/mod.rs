@@ -1,0 +1,484 @@
+//! Figures of curves as SVG: panels in a grid under one title and one legend.
+
+mod linear;
+mod range;
+
+use plotters::chart::ChartContext;
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::{Ranged, ValueFormatter};
+use plotters::prelude::{
+    Cartesian2d, ChartBuilder, Circle, DashedLineSeries, DrawingArea, EmptyElement, IntoDrawingArea,
+    IntoFont, IntoLogRange, LineSeries, PathElement, RGBColor, SVGBackend, Text,
+};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, TextStyle};
+
+use linear::Linear;
+use range::{Range, inside};
+
+/// A page of panels.
+pub(crate) struct Figure {
+    pub(crate) title: String,
+    /// What each colour stands for.
+    pub(crate) legend: Vec<Key>,
+    /// Row by row.
+    pub(crate) panels: Vec<Panel>,
+    /// Panels beside each other.
+    pub(crate) columns: usize,
+    /// Size of a panel, pixels.
+    pub(crate) panel: (i32, i32),
+    pub(crate) theme: Theme,
+}
+
+/// Light or dark ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Theme {
+    #[default]
+    Light,
+    Dark,
+}
+
+/// An entry of the legend.
+pub(crate) struct Key {
+    pub(crate) colour: Colour,
+    pub(crate) name: String,
+}
+
+/// One diagram.
+#[derive(Default)]
+pub(crate) struct Panel {
+    pub(crate) x_title: String,
+    pub(crate) y_title: String,
+    pub(crate) curves: Vec<Curve>,
+    /// Values of y that are marked by a line.
+    pub(crate) levels: Vec<f64>,
+    pub(crate) scale: Scale,
+    /// Faint lines behind the curves, and what is written at their ends.
+    pub(crate) guides: Vec<Guide>,
+    /// Single places.
+    pub(crate) marks: Vec<Mark>,
+    /// What is shown: from and to on x, and on y; otherwise all there is.
+    pub(crate) view: Option<[(f64, f64); 2]>,
+    /// Distance of the lines across, where it should be another than the usual.
+    pub(crate) y_step: Option<f64>,
+}
+
+/// A line of a grid that is not straight.
+pub(crate) struct Guide {
+    pub(crate) points: Vec<(f64, f64)>,
+    /// At the last of its points that is shown; empty for none.
+    pub(crate) label: String,
+}
+
+/// A single place.
+pub(crate) struct Mark {
+    pub(crate) colour: Colour,
+    pub(crate) sign: Sign,
+    pub(crate) at: (f64, f64),
+}
+
+/// What a place is marked with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sign {
+    /// A pole.
+    Cross,
+    /// A zero.
+    Ring,
+    Dot,
+}
+
+/// How values become places.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Scale {
+    /// Each axis as its values need.
+    #[default]
+    Free,
+    /// A unit is as long on both axes.
+    Even,
+    /// Both axes logarithmic; what is not positive is not drawn.
+    Log,
+    /// Only x logarithmic.
+    LogX,
+}
+
+/// One line of a diagram.
+pub(crate) struct Curve {
+    pub(crate) colour: Colour,
+    pub(crate) pen: Pen,
+    /// NaN lifts the pen.
+    pub(crate) points: Vec<(f64, f64)>,
+}
+
+/// How a curve is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pen {
+    Solid,
+    Dashed,
+    /// Points, not joined.
+    Dots,
+}
+
+/// Colours that people who see red and green alike can tell apart (Okabe and Ito, "Color universal design", 2008).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Colour {
+    Vermilion,
+    Blue,
+    Green,
+    Purple,
+    Orange,
+    Sky,
+    Black,
+}
+
+impl Colour {
+    const fn rgb(self, theme: Theme) -> RGBColor {
+        if matches!(theme, Theme::Dark) {
+            return self.on_dark();
+        }
+        match self {
+            Colour::Vermilion => RGBColor(213, 94, 0),
+            Colour::Blue => RGBColor(0, 114, 178),
+            Colour::Green => RGBColor(0, 158, 115),
+            Colour::Purple => RGBColor(204, 121, 167),
+            Colour::Orange => RGBColor(230, 159, 0),
+            Colour::Sky => RGBColor(86, 180, 233),
+            Colour::Black => RGBColor(20, 20, 20),
+        }
+    }
+
+    /// The same, lighter where they would be too dark.
+    const fn on_dark(self) -> RGBColor {
+        match self {
+            Colour::Vermilion => RGBColor(240, 120, 50),
+            Colour::Blue => RGBColor(70, 160, 230),
+            Colour::Green => RGBColor(40, 190, 140),
+            Colour::Purple => RGBColor(220, 140, 185),
+            Colour::Orange => RGBColor(240, 180, 40),
+            Colour::Sky => RGBColor(120, 200, 245),
+            Colour::Black => RGBColor(235, 235, 235),
+        }
+    }
+}
+
+impl Theme {
+    const fn ground(self) -> RGBColor {
+        match self {
+            Self::Light => RGBColor(255, 255, 255),
+            Self::Dark => RGBColor(24, 26, 31),
+        }
+    }
+
+    const fn ink(self) -> RGBColor {
+        match self {
+            Self::Light => RGBColor(51, 51, 51),
+            Self::Dark => RGBColor(215, 215, 215),
+        }
+    }
+
+    /// Of lines that only help.
+    const fn faint(self) -> RGBColor {
+        match self {
+            Self::Light => RGBColor(225, 225, 225),
+            Self::Dark => RGBColor(58, 61, 68),
+        }
+    }
+
+    /// Of lines between those.
+    const fn fainter(self) -> RGBColor {
+        match self {
+            Self::Light => RGBColor(242, 242, 242),
+            Self::Dark => RGBColor(38, 41, 47),
+        }
+    }
+
+    /// Of what is written at those.
+    const fn dim(self) -> RGBColor {
+        match self {
+            Self::Light => RGBColor(140, 140, 140),
+            Self::Dark => RGBColor(140, 145, 152),
+        }
+    }
+}
+
+/// The backend rounds to whole units: so many of them make a pixel.
+const FINE: i32 = 8;
+/// What is above all panels, pixels.
+const TITLE: i32 = 40;
+const LEGEND_ROW: i32 = 22;
+/// The least room for an entry of the legend, and for each of its letters.
+const KEY_WIDTH: i32 = 200;
+const LETTER_WIDTH: i32 = 8;
+
+/// Nothing goes wrong in drawing into a text; the backend's interface says it might.
+type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+type Chart<'a, X, Y> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>;
+
+impl Figure {
+    /// The figure as an SVG file.
+    pub(crate) fn svg(&self) -> Result<String, Box<dyn std::error::Error>> {
+        let columns = self.columns.clamp(1, self.panels.len().max(1));
+        let rows = self.panels.len().div_ceil(columns).max(1);
+        let width = self.panel.0 * columns as i32;
+        let longest = self.legend.iter().map(|key| key.name.chars().count() as i32).max().unwrap_or(0);
+        let key_width = KEY_WIDTH.max(50 + LETTER_WIDTH * longest);
+        let keys_a_row = (width / key_width).max(1);
+        let legend_rows = (self.legend.len() as i32 + keys_a_row - 1) / keys_a_row;
+        let head = TITLE + LEGEND_ROW * legend_rows;
+        let height = head + self.panel.1 * rows as i32;
+        let mut text = String::new();
+        {
+            let size = ((FINE * width) as u32, (FINE * height) as u32);
+            let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
+            root.fill(&self.theme.ground())?;
+            let (top, rest) = root.split_vertically(FINE * head);
+            self.head(&top, keys_a_row, key_width)?;
+            for (panel, area) in self.panels.iter().zip(rest.split_evenly((rows, columns))) {
+                panel.draw(&area, self.panel, self.theme)?;
+            }
+            root.present()?;
+        }
+        let fine = format!(r#"width="{}" height="{}""#, FINE * width, FINE * height);
+        Ok(text.replacen(&fine, &format!(r#"width="{width}" height="{height}""#), 1))
+    }
+
+    fn head(&self, area: &Area<'_>, keys_a_row: i32, key_width: i32) -> Drawn {
+        let title = lettering(17, self.theme.ink()).pos(Pos::new(HPos::Left, VPos::Center));
+        area.draw(&Text::new(self.title.as_str(), (FINE * 12, FINE * 20), title))?;
+        for (i, key) in (0..).zip(&self.legend) {
+            let (x, y) = (12 + key_width * (i % keys_a_row), TITLE + LEGEND_ROW * (i / keys_a_row));
+            let line = [(FINE * x, FINE * y), (FINE * (x + 22), FINE * y)];
+            area.draw(&PathElement::new(line, key.colour.rgb(self.theme).stroke_width(2 * FINE as u32)))?;
+            let name = lettering(14, self.theme.ink()).pos(Pos::new(HPos::Left, VPos::Center));
+            area.draw(&Text::new(key.name.as_str(), (FINE * (x + 30), FINE * y), name))?;
+        }
+        Ok(())
+    }
+}
+
+fn lettering<'a>(pixels: i32, colour: RGBColor) -> TextStyle<'a> {
+    ("sans-serif", FINE * pixels).into_font().color(&colour)
+}
+
+impl Curve {
+    fn draw<X, Y>(&self, chart: &mut Chart<'_, X, Y>, (x, y): (Range, Range), theme: Theme) -> Drawn
+    where
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        let style = self.colour.rgb(theme).stroke_width((3 * FINE / 2) as u32);
+        let dot = |&at: &(f64, f64)| EmptyElement::at(at) + Circle::new((0, 0), FINE * 2, style.filled());
+        if self.pen == Pen::Dots {
+            let shown = |p: &&(f64, f64)| x.holds(p.0) && y.holds(p.1);
+            chart.draw_series(self.points.iter().filter(shown).map(dot))?;
+            return Ok(());
+        }
+        for run in inside(&self.points, x, y) {
+            let run = run.into_iter();
+            if self.pen == Pen::Dashed {
+                chart.draw_series(DashedLineSeries::new(run, FINE * 5, FINE * 3, style))?;
+            } else {
+                chart.draw_series(LineSeries::new(run, style))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Panel {
+    fn draw(&self, area: &Area<'_>, size: (i32, i32), theme: Theme) -> Drawn {
+        let (x, y) = self.ranges(size);
+        let mut chart = ChartBuilder::on(area);
+        chart
+            .margin(FINE * 8)
+            .margin_right(FINE * 20)
+            .x_label_area_size(FINE * 40)
+            .y_label_area_size(FINE * 64);
+        let shown = (x, y);
+        let (across, up) = (x.low..x.high, Linear::new(y, self.y_step));
+        match self.scale {
+            Scale::Log => {
+                let up = (y.low..y.high).log_scale();
+                self.fill(chart.build_cartesian_2d(across.log_scale(), up)?, shown, theme)
+            }
+            Scale::LogX => self.fill(chart.build_cartesian_2d(across.log_scale(), up)?, shown, theme),
+            Scale::Free | Scale::Even => self.fill(chart.build_cartesian_2d(across, up)?, shown, theme),
+        }
+    }
+
+    fn fill<X, Y>(&self, mut chart: Chart<'_, X, Y>, shown: (Range, Range), theme: Theme) -> Drawn
+    where
+        X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+        Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    {
+        let (ink, faint) = (theme.ink(), theme.faint());
+        chart
+            .configure_mesh()
+            .x_labels(6)
+            .y_labels(if self.y_step.is_some() { 12 } else { 6 })
+            .x_max_light_lines(if self.scale == Scale::LogX { 9 } else { 0 })
+            .y_max_light_lines(0)
+            .bold_line_style(faint.stroke_width(FINE as u32))
+            .light_line_style(theme.fainter().stroke_width(FINE as u32))
+            .axis_style(ink.stroke_width(FINE as u32))
+            .label_style(lettering(13, ink))
+            .axis_desc_style(lettering(14, ink))
+            .x_label_formatter(&|v| label(*v))
+            .y_label_formatter(&|v| label(*v))
+            .set_all_tick_mark_size(FINE * 4)
+            .x_desc(self.x_title.as_str())
+            .y_desc(self.y_title.as_str())
+            .draw()?;
+        for guide in &self.guides {
+            guide.draw(&mut chart, shown, theme)?;
+        }
+        let (x, y) = shown;
+        for &level in self.levels.iter().filter(|level| y.holds(**level)) {
+            let line = [(x.low, level), (x.high, level)];
+            let dashes = DashedLineSeries::new(line, FINE * 6, FINE * 4, ink.stroke_width(FINE as u32));
+            chart.draw_series(dashes)?;
+        }
+        for curve in &self.curves {
+            curve.draw(&mut chart, shown, theme)?;
+        }
+        let marks = self.marks.iter().filter(|mark| x.holds(mark.at.0) && y.holds(mark.at.1));
+        for mark in marks {
+            mark.draw(&mut chart, theme)?;
+        }
+        Ok(())
+    }
+
+    fn ranges(&self, size: (i32, i32)) -> (Range, Range) {
+        if let Some([x, y]) = self.view {
+            return (Range { low: x.0, high: x.1 }, Range { low: y.0, high: y.1 });
+        }
+        let (log_x, log_y) = (matches!(self.scale, Scale::Log | Scale::LogX), self.scale == Scale::Log);
+        let shown = move |p: &&(f64, f64)| (!log_x || p.0 > 0.0) && (!log_y || p.1 > 0.0);
+        let marks = self.marks.iter().map(|mark| &mark.at);
+        let points = || self.curves.iter().flat_map(|curve| &curve.points).chain(marks.clone()).filter(shown);
+        let mut x = Range::of(points().map(|p| p.0));
+        let mut y = Range::of(points().map(|p| p.1).chain(self.levels.iter().copied()));
+        if self.scale == Scale::Log {
+            (x, y) = (x.decades(), y.decades());
+        } else if self.scale == Scale::Even {
+            // what is left of a panel for its curves
+            let (width, height) = (f64::from(size.0 - 90), f64::from(size.1 - 54));
+            let unit = f64::max(x.span() / width, y.span() / height);
+            x.widen(unit * width);
+            y.widen(unit * height);
+        } else if self.y_step.is_none() {
+            y.widen(1.08 * y.span());
+        }
+        if self.scale == Scale::LogX {
+            x = Range { low: x.low, high: x.high.max(1.01 * x.low) };
+        }
+        if let Some(step) = self.y_step {
+            y = Range { low: (y.low / step).floor() * step, high: (y.high / step).ceil() * step };
+        }
+        (x, y)
+    }
+}
+
+impl Guide {
+    fn draw<X, Y>(&self, chart: &mut Chart<'_, X, Y>, (x, y): (Range, Range), theme: Theme) -> Drawn
+    where
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        let runs = inside(&self.points, x, y);
+        let end = runs.last().and_then(|run| run.last()).copied();
+        for run in runs {
+            chart.draw_series(LineSeries::new(run, theme.faint().stroke_width(FINE as u32)))?;
+        }
+        if let Some(end) = end.filter(|_| !self.label.is_empty()) {
+            // inwards from the edge it leaves at
+            let across = if end.0 > 0.5 * (x.low + x.high) { HPos::Right } else { HPos::Left };
+            let along = if end.1 > 0.5 * (y.low + y.high) { VPos::Top } else { VPos::Bottom };
+            let style = lettering(11, theme.dim()).pos(Pos::new(across, along));
+            chart.draw_series(std::iter::once(Text::new(self.label.clone(), end, style)))?;
+        }
+        Ok(())
+    }
+}
+
+impl Mark {
+    fn draw<X, Y>(&self, chart: &mut Chart<'_, X, Y>, theme: Theme) -> Drawn
+    where
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        const SIZE: i32 = 5;
+        let style = self.colour.rgb(theme).stroke_width((2 * FINE) as u32);
+        let here = || EmptyElement::at(self.at);
+        let arm = |way: i32| {
+            PathElement::new([(-SIZE * FINE, -way * SIZE * FINE), (SIZE * FINE, way * SIZE * FINE)], style)
+        };
+        match self.sign {
+            Sign::Cross => {
+                chart.draw_series(std::iter::once(here() + arm(1) + arm(-1)))?;
+            }
+            Sign::Ring => {
+                let ring = Circle::new((0, 0), SIZE * FINE, style);
+                chart.draw_series(std::iter::once(here() + ring))?;
+            }
+            Sign::Dot => {
+                let dot = Circle::new((0, 0), (SIZE - 1) * FINE, style.filled());
+                chart.draw_series(std::iter::once(here() + dot))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A label without idle zeros, and with a true minus sign.
+fn label(value: f64) -> String {
+    let text = format!("{value:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if matches!(text, "-0" | "0") { "0".to_owned() } else { text.replace('-', "−") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel(points: Vec<(f64, f64)>) -> Panel {
+        let curve = Curve { colour: Colour::Blue, pen: Pen::Solid, points };
+        Panel {
+            x_title: "t, s".into(),
+            y_title: "<v>".into(),
+            curves: vec![curve],
+            levels: vec![],
+            ..Panel::default()
+        }
+    }
+
+    fn svg(panels: Vec<Panel>) -> String {
+        let legend = vec![Key { colour: Colour::Blue, name: "a & b".into() }];
+        Figure { title: "A title".into(), legend, panels, columns: 2, panel: (400, 250), theme: Theme::Light }
+            .svg()
+            .unwrap()
+    }
+
+    #[test]
+    fn a_figure_is_one_svg_with_its_words_escaped() {
+        let svg = svg(vec![panel(vec![(0.0, 0.0), (1.0, 2.0)]), panel(vec![(0.0, 1.0), (1.0, 1.0)])]);
+        assert!(svg.starts_with("<svg width=\"800\""), "{}", &svg[..80]);
+        assert!(svg.contains("a &amp; b") && svg.contains("&lt;v&gt;") && svg.trim_end().ends_with("</svg>"));
+    }
+
+    #[test]
+    fn nothing_and_nonsense_are_drawn_too() {
+        for points in [vec![], vec![(0.0, f64::NAN)], vec![(1.0, 1.0); 3], vec![(0.0, 1e300), (1.0, -1e300)]]
+        {
+            assert!(svg(vec![panel(points)]).contains("</svg>"));
+        }
+    }
+
+    #[test]
+    fn labels_have_no_idle_zeros() {
+        let labels = [0.1 + 0.2, -0.25, -1e-9, 2000.0].map(label);
+        assert_eq!(labels, ["0.3", "−0.25", "0", "2000"]);
+    }
+}
