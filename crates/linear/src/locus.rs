@@ -1,4 +1,3 @@
-use crate::roots::correction;
 use crate::{Complex, Polynomial, Time, TransferFunction};
 
 /// Where the poles of a closed loop go as the gain of its open loop rises.
@@ -152,29 +151,37 @@ impl Follower {
 
     /// The poles at a gain, near those at another; none if they are not found in some rounds.
     fn follow(&mut self, gain: f64, last: &[Complex]) -> Option<Vec<Complex>> {
-        /// Some four are usual.
-        const MOST_ROUNDS: usize = 30;
-        /// What is this much beside its place can leave the real axis, and another at the same place.
-        const ASIDE: f64 = 2e-7;
+        /// Some three are usual. Where real poles have become a pair none suffice: real places stay real.
+        const MOST_ROUNDS: usize = 12;
         for ((c, below), above) in self.coefficients.iter_mut().zip(&self.below).zip(&self.above) {
             *c = below + gain * above;
         }
         if self.coefficients[0] == 0.0 || last.len() + 1 != self.coefficients.len() {
             return None;
         }
-        // what is this near is there
+        // a step of 1e-10 leaves at most its square
         let middle =
             (self.coefficients[last.len()] / self.coefficients[0]).abs().powf(2.0 / last.len() as f64);
         let most = last.iter().map(Complex::norm_sqr).fold(middle, f64::max);
-        let near = |place: Complex| 1e-26 * (place.norm_sqr() + 1e-30 * most);
-        let aside = |i: usize| Complex::from_polar(ASIDE, 0.7 + 2.4 * i as f64);
-        let mut places: Vec<Complex> =
-            (0..).zip(last).map(|(i, pole)| pole + aside(i) * (pole.norm() + 1e-9 * most.sqrt())).collect();
+        let near = |place: Complex| 1e-20 * (place.norm_sqr() + 1e-30 * most);
+        // two at one place push each other nowhere
+        let close = |i: usize| {
+            last[..i].iter().any(|other| (last[i] - other).norm_sqr() < 1e-16 * last[i].norm_sqr())
+        };
+        if (0..last.len()).any(close) {
+            return None;
+        }
+        let mut places = last.to_vec();
         for _ in 0..MOST_ROUNDS {
             let mut moving = false;
             for i in 0..places.len() {
                 let place = places[i];
-                let step = correction(self.newton(place), repulsion(&places, i));
+                let (value, slope) = self.value(place);
+                // Newton's step v / v′ away from the others: with one division
+                let step = value / (slope - value * repulsion(&places, i));
+                if value == Complex::ZERO {
+                    continue;
+                }
                 if !step.is_finite() {
                     return None;
                 }
@@ -189,11 +196,11 @@ impl Follower {
         None
     }
 
-    fn newton(&self, at: Complex) -> Complex {
+    /// Value and derivative of the closed loop's denominator.
+    fn value(&self, at: Complex) -> (Complex, Complex) {
         let start = (Complex::ZERO, Complex::ZERO);
         let fold = |(value, slope): (Complex, Complex), &c: &f64| (value * at + c, slope * at + value);
-        let (value, slope) = self.coefficients.iter().fold(start, fold);
-        if value == Complex::ZERO { value } else { value / slope }
+        self.coefficients.iter().fold(start, fold)
     }
 }
 
@@ -216,7 +223,7 @@ fn repulsion(places: &[Complex], i: usize) -> Complex {
         let apart = here - there;
         let square = apart.norm_sqr();
         if square > 0.0 {
-            sum += apart.conj() / square;
+            sum += apart.conj() * square.recip();
         }
     }
     sum

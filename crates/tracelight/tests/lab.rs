@@ -285,6 +285,17 @@ fn linear_systems_are_plotted_and_tabled() {
             );
         }
     }
+    // nothing, a number, a loop whose highest powers cancel for one gain, poles on the edge
+    for strange in ["0", "5", "s", "-s/(s+1)", "1/(s^2+1)^3", "(s+1)^60", "1/s^4 - 1/s^4"] {
+        for command in ["bode", "nyquist", "nichols", "locus", "pzmap"] {
+            let formula = format!("0+{strange}");
+            assert!(
+                lab(&[command, &formula, "-o", &svg, "-o", &csv, "--gain", "1"]
+                    [..if command == "locus" { 8 } else { 6 }])["systems"]
+                    .is_array()
+            );
+        }
+    }
     let locus = lab(&["locus", "1/(s(s+1)(s+2))"]);
     near(&locus["systems"][0]["oscillating"][0]["gain"], 6.0, 1e-9);
     near(&locus["systems"][0]["breakaways"][0]["gain"], 0.3849, 1e-4);
@@ -373,6 +384,8 @@ fn what_makes_no_sense_is_refused_in_a_sentence() {
         ("nyquist 1/z", 2, "how far apart"),
         ("locus 1/(s-1)^2 --damping 0.5", 1, "no gain"),
         ("locus 1/s --damping 2", 2, "between 0 and 1"),
+        ("locus 1/s --gain nan", 2, "no factor"),
+        ("pzmap 1/s --reach 0", 2, "between 1e-9"),
         ("pzmap 1/s --closed --sample 0ms", 2, "no time"),
         ("pzmap -1+1 -o x.svg", 2, "--"),
         ("linearize --at 3deg", 2, "no pair"),

@@ -19,8 +19,8 @@ pub struct Root {
     pub radius: f64,
 }
 
-/// Rounds of the iteration; from good starts it takes some ten, multiple roots some forty.
-const MOST_ROUNDS: usize = 120;
+/// Rounds of the iteration; from good starts it takes some ten, double roots some thirty.
+const MOST_ROUNDS: usize = 80;
 
 impl Polynomial {
     /// All roots, conjugate pairs exactly so, the smallest first; none of constants.
@@ -77,7 +77,7 @@ fn approach(scaled: &Scaled, places: &mut [Complex], step: fn(&Scaled, Complex) 
 }
 
 /// Aberth's correction of Newton's step.
-pub(crate) fn correction(newton: Complex, repulsion: Complex) -> Complex {
+fn correction(newton: Complex, repulsion: Complex) -> Complex {
     newton / (1.0 - newton * repulsion)
 }
 

@@ -375,7 +375,11 @@ impl Panel {
             x = Range { low: x.low, high: x.high.max(1.01 * x.low) };
         }
         if let Some(step) = self.y_step {
-            y = Range { low: (y.low / step).floor() * step, high: (y.high / step).ceil() * step };
+            // rounding beside a multiple is no reason for another
+            y = Range {
+                low: (y.low / step + 1e-6).floor() * step,
+                high: (y.high / step - 1e-6).ceil() * step,
+            };
         }
         (x, y)
     }

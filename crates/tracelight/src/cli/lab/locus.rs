@@ -21,13 +21,13 @@ pub(crate) struct LocusArgs {
     #[command(flatten)]
     systems: SystemArgs,
     /// Factor on the open loop whose closed poles are marked
-    #[arg(long, value_name = "FACTOR", conflicts_with = "damping")]
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, conflicts_with = "damping", value_parser = finite)]
     gain: Option<f64>,
     /// Find the largest factor that leaves every closed pole at least so damped, 0 to 1
     #[arg(long, value_name = "DAMPING", value_parser = damping)]
     damping: Option<f64>,
     /// How many gains at least
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     points: u32,
     #[command(flatten)]
     view: ViewArgs,
@@ -57,8 +57,22 @@ pub(crate) struct PzmapArgs {
 #[derive(Args, Debug)]
 struct ViewArgs {
     /// Show so far from zero, in 1/s (of samples: the z-plane is shown whole) [default: all poles and zeros]
-    #[arg(long, value_name = "REACH")]
+    #[arg(long, value_name = "REACH", value_parser = positive)]
     reach: Option<f64>,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (1e-9..=1e9).contains(&value) => Ok(value),
+        _ => Err(format!("{text} is no number between 1e-9 and 1e9")),
+    }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("{text} is no factor")),
+    }
 }
 
 fn damping(text: &str) -> Result<f64, String> {
@@ -204,7 +218,10 @@ fn figure(args: &LocusArgs, entries: &[Entry]) -> Result<String, Failure> {
         let colour = entry.named.colour;
         let branches = entry.locus.poles.first().map_or(0, Vec::len);
         for branch in 0..branches {
-            let points = entry.locus.poles.iter().map(|poles| (poles[branch].re, poles[branch].im));
+            // where the highest powers cancel, a branch is infinitely far away
+            let place =
+                |poles: &Vec<Complex>| poles.get(branch).map_or((f64::NAN, f64::NAN), |z| (z.re, z.im));
+            let points = entry.locus.poles.iter().map(place);
             panel.curves.push(Curve { colour, pen: Pen::Solid, points: points.collect() });
         }
         panel.marks.extend(signs(&entry.named));

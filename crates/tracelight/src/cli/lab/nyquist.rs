@@ -104,8 +104,9 @@ fn text(entries: &[Entry]) -> String {
         let _ = match entry.closed_unstable {
             Some(closed) => writeln!(
                 text,
-                "    growing poles: {open} open, {closed} closed: it turns {} times clockwise round −1\n",
-                closed as i64 - open as i64
+                "    growing poles: {open} open, {closed} closed: it turns {} times {}clockwise round −1\n",
+                closed.abs_diff(open),
+                if closed < open { "counter" } else { "" }
             ),
             None => writeln!(text, "    growing poles: {open} open; closed it is not defined\n"),
         };
