@@ -37,7 +37,7 @@ impl TransferFunction {
     fn held(&self, period_s: f64, time: Time) -> Result<Self, LinearError> {
         let system = self.zpk().cascade("zero-order hold")?;
         let order = system.order();
-        let poles: Vec<Complex> = self.poles().iter().map(|pole| (pole * period_s).exp()).collect();
+        let poles = mapped(&self.poles(), period_s)?;
         let denominator = Polynomial::from_roots(1.0, &poles);
         // the numerator is what makes the first samples of the impulse response right
         let impulse = system.impulse_samples(period_s, order + 1)?;
@@ -56,8 +56,7 @@ impl TransferFunction {
                 what: "matched samples",
             });
         }
-        let map = |roots: &[Complex]| roots.iter().map(|root| (root * period_s).exp()).collect::<Vec<_>>();
-        let (mut there, poles_there) = (map(&zeros), map(&poles));
+        let (mut there, poles_there) = (mapped(&zeros, period_s)?, mapped(&poles, period_s)?);
         there.resize(poles.len().saturating_sub(1).max(zeros.len()), Complex::new(-1.0, 0.0));
         // where nothing changes, s and (z − 1)/T are alike: factors of either are left out
         let rest = |roots: &[Complex], at: Complex| {
@@ -71,6 +70,12 @@ impl TransferFunction {
         let gain = self.numerator().leading() * (here / ours).re * slope;
         Self::new(Polynomial::from_roots(gain, &there), Polynomial::from_roots(1.0, &poles_there), time)
     }
+}
+
+/// e^(sT) of each; what grows beyond all numbers from sample to sample has none.
+fn mapped(roots: &[Complex], period_s: f64) -> Result<Vec<Complex>, LinearError> {
+    let mapped: Vec<Complex> = roots.iter().map(|root| (root * period_s).exp()).collect();
+    if mapped.iter().all(|root| root.is_finite()) { Ok(mapped) } else { Err(LinearError::NotFinite) }
 }
 
 impl StateSpace {
@@ -252,6 +257,9 @@ mod tests {
         assert!(g.sampled(0.1, Discretization::Matched).is_err());
         assert!(g.sampled(0.0, Discretization::Tustin(None)).is_err());
         assert!(g.sampled(f64::NAN, Discretization::Tustin(None)).is_err());
+        for how in [Discretization::ZeroOrderHold, Discretization::Matched] {
+            assert_eq!(parse("0/(s-1)").sampled(1000.0, how), Err(LinearError::NotFinite));
+        }
         let sampled = parse("1/(s+1)").sampled(0.1, Discretization::ZeroOrderHold).unwrap();
         assert!(sampled.sampled(0.1, Discretization::ZeroOrderHold).is_err());
     }

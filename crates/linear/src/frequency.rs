@@ -104,7 +104,7 @@ pub fn decibels(factor: f64) -> f64 {
 
 /// So many frequencies, evenly on a logarithmic scale, both ends included; rad/s.
 pub fn logspace((from, to): (f64, f64), count: usize) -> Vec<f64> {
-    let (low, span) = (from.ln(), (to / from).ln());
+    let (low, span) = (from.ln(), to.ln() - from.ln());
     let last = count.saturating_sub(1).max(1) as f64;
     (0..count).map(|i| (low + span * i as f64 / last).exp()).collect()
 }

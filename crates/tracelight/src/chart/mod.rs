@@ -290,6 +290,8 @@ impl Curve {
 impl Panel {
     fn draw(&self, area: &Area<'_>, size: (i32, i32), theme: Theme) -> Drawn {
         let (x, y) = self.ranges(size);
+        let (x, y) =
+            (x.sane(matches!(self.scale, Scale::Log | Scale::LogX)), y.sane(self.scale == Scale::Log));
         let mut chart = ChartBuilder::on(area);
         chart
             .margin(FINE * 8)
@@ -380,6 +382,9 @@ impl Panel {
                 low: (y.low / step + 1e-6).floor() * step,
                 high: (y.high / step - 1e-6).ceil() * step,
             };
+            if y.high <= y.low {
+                y = Range { low: y.low - step, high: y.low + step };
+            }
         }
         (x, y)
     }

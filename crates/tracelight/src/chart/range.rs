@@ -25,6 +25,20 @@ impl Range {
         Self { low: 0.8 * self.low, high: 1.25 * self.high }
     }
 
+    /// One whose lines can be counted: no further than `f64` reaches from one end to the other.
+    pub(super) fn sane(self, log: bool) -> Self {
+        const FURTHEST: f64 = 1e300;
+        let finite = |value: f64, otherwise: f64| {
+            if value.is_nan() { otherwise } else { value.clamp(-FURTHEST, FURTHEST) }
+        };
+        let (low, high) = (finite(self.low, 0.0), finite(self.high, 1.0));
+        if log {
+            let low = low.max(1.0 / FURTHEST);
+            return Self { low, high: high.clamp(1.01 * low, low.max(1.0 / FURTHEST) * FURTHEST) };
+        }
+        if high > low { Self { low, high } } else { Self { low: low - 0.5, high: low + 0.5 } }
+    }
+
     /// Whether it is shown.
     pub(super) fn holds(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)

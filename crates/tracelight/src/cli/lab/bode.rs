@@ -251,7 +251,12 @@ pub(super) fn summary(name: &str, margins: &Margins) -> String {
 /// Lines from the levels to the curves where the margins are.
 fn mark(entry: &Entry, magnitude: &mut Panel, phase: &mut Panel) {
     let colour = entry.named.colour;
+    let rad_s = &entry.response.rad_s;
+    let band = rad_s.first().copied().unwrap_or(0.0)..=rad_s.last().copied().unwrap_or(0.0);
     let line = |panel: &mut Panel, rad_s: f64, from: f64, to: f64| {
+        if !band.contains(&rad_s) {
+            return;
+        }
         panel.curves.push(Curve { colour, pen: Pen::Dashed, points: vec![(rad_s, from), (rad_s, to)] });
         panel.marks.push(Mark { colour, sign: Sign::Dot, at: (rad_s, to) });
     };
