@@ -1,7 +1,7 @@
 """Random systems and what is true of them, to sixty digits: `python goldens.py COUNT > ../../../crates/linear/tests/goldens/systems.jsonl`.
 
 Needs mpmath, numpy, scipy, control, slycot. Of each system: coefficients (exactly these numbers), poles, zeros, margins, samples by
-Tustin's rule and by a zero-order hold, the answer to a step. What control and scipy say of the same is compared with it; how often
+Tustin's rule, by a zero-order hold and with matched poles and zeros, the answer to a step. What control and scipy say of the same is compared with it; how often
 and by how much they are off goes to standard error.
 """
 
@@ -160,6 +160,24 @@ def held(num, den, poles, period):
     return above, below
 
 
+def matched_samples(num, zeros, poles, period):
+    """Franklin, Powell & Workman: roots by e^(sT), zeros at infinity but one to -1, the same where nothing changes."""
+    t = mpf(period)
+    there = [mp.exp(z * t) for z in zeros] + [mpc(-1)] * (max(len(poles) - 1, len(zeros)) - len(zeros))
+    gain = mpf(num[0])
+    for z in zeros:
+        gain *= 1 / t if z == 0 else z / mp.expm1(z * t)
+    for p in poles:
+        gain /= 1 / t if p == 0 else p / mp.expm1(p * t)
+    gain /= mpf(2) ** (len(there) - len(zeros))
+    above, below = [gain], [mpc(1)]
+    for z in there:
+        above = mul(above, [mpc(1), -z])
+    for p in poles:
+        below = mul(below, [mpc(1), -mp.exp(p * t)])
+    return [mp.re(c) for c in above], [mp.re(c) for c in below]
+
+
 def step(num, den, poles, times):
     """By partial fractions of G/s; the poles are simple, at 0 at most double with that of the step."""
     n = list(num)
@@ -277,6 +295,7 @@ def main():
         times = [first * k for k in range(1, 6)]
         tustin_num, tustin_den = tustin([mpf(c) for c in num], [mpf(c) for c in den], period)
         hold_num, hold_den = held([mpf(c) for c in num], [mpf(c) for c in den], poles, period)
+        matched_num, matched_den = matched_samples(num, zeros, poles, period)
         true = {
             "num": num,
             "den": den,
@@ -285,6 +304,7 @@ def main():
             "zeros": [pair(z) for z in zeros],
             "tustin": {"num": [short(c) for c in tustin_num], "den": [short(c) for c in tustin_den]},
             "hold": {"num": [short(c) for c in hold_num], "den": [short(c) for c in hold_den]},
+            "matched": {"num": [short(c) for c in matched_num], "den": [short(c) for c in matched_den]},
             "phase": [[short(w), short(p)] for w, p in phase],
             "gain": [[short(w), short(k)] for w, k in gain],
             "modulus": short(modulus),

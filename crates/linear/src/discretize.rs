@@ -58,16 +58,20 @@ impl TransferFunction {
         }
         let (mut there, poles_there) = (mapped(&zeros, period_s)?, mapped(&poles, period_s)?);
         there.resize(poles.len().saturating_sub(1).max(zeros.len()), Complex::new(-1.0, 0.0));
-        // where nothing changes, s and (z − 1)/T are alike: factors of either are left out
-        let rest = |roots: &[Complex], at: Complex| {
-            roots.iter().filter(|root| **root != at).map(|root| at - root).product::<Complex>()
+        // where nothing changes, s and (z − 1)/T are alike: what a factor s − root is there over what z − e^(root T) is
+        let ratio = |root: &Complex| match *root {
+            Complex::ZERO => Complex::from(1.0 / period_s),
+            root => root / less_one(root * period_s),
         };
-        let integrators =
-            |roots: &[Complex]| roots.iter().filter(|root| **root == Complex::ZERO).count() as i32;
-        let here = rest(&zeros, Complex::ZERO) / rest(&poles, Complex::ZERO);
-        let ours = rest(&there, Complex::ONE) / rest(&poles_there, Complex::ONE);
-        let slope = period_s.powi(integrators(&poles) - integrators(&zeros));
-        let gain = self.numerator().leading() * (here / ours).re * slope;
+        let ratios = |roots: &[Complex]| roots.iter().map(ratio).collect::<Vec<_>>();
+        // one of a zero for one of a pole, so that no product leaves the range of numbers
+        let (above, below) = (ratios(&zeros), ratios(&poles));
+        let added = (there.len() - zeros.len()) as i32;
+        let pairs = (0..above.len().max(below.len())).map(|i| {
+            let of = |ratios: &[Complex]| ratios.get(i).copied().unwrap_or(Complex::ONE);
+            of(&above) / of(&below)
+        });
+        let gain = self.numerator().leading() * pairs.product::<Complex>().re / 2.0_f64.powi(added);
         Self::new(Polynomial::from_roots(gain, &there), Polynomial::from_roots(1.0, &poles_there), time)
     }
 }
@@ -76,6 +80,12 @@ impl TransferFunction {
 fn mapped(roots: &[Complex], period_s: f64) -> Result<Vec<Complex>, LinearError> {
     let mapped: Vec<Complex> = roots.iter().map(|root| (root * period_s).exp()).collect();
     if mapped.iter().all(|root| root.is_finite()) { Ok(mapped) } else { Err(LinearError::NotFinite) }
+}
+
+/// e^z − 1, to all digits where z is small.
+fn less_one(z: Complex) -> Complex {
+    let half = (0.5 * z.im).sin();
+    Complex::new(z.re.exp_m1() * z.im.cos() - 2.0 * half * half, z.re.exp() * z.im.sin())
 }
 
 impl StateSpace {

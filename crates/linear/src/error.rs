@@ -41,8 +41,10 @@ pub enum LinearError {
     /// Matrices that do not fit together.
     #[error("{0}")]
     Shape(&'static str),
-    /// Feedback leaves nothing: 1 + G H is zero.
-    #[error("1 + G H is zero: that feedback leaves nothing defined")]
+    /// Feedback without an answer: 1 + G H is zero everywhere, or where s (or z) is infinite.
+    #[error(
+        "1 + G H is zero, everywhere or at infinite frequency: that loop answers at once and without bounds; break it by a delay or a pole"
+    )]
     AlgebraicLoop,
     /// An iteration did not end where it should.
     #[error("an iteration did not converge")]

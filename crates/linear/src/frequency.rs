@@ -1,6 +1,5 @@
-use std::f64::consts::{PI, TAU};
-
-use crate::{Complex, Time, TransferFunction};
+use crate::turns::Turns;
+use crate::{Complex, Polynomial, Time, TransferFunction};
 
 /// What a system makes of sines: amplified by the absolute value, shifted by the argument.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,42 +16,19 @@ impl TransferFunction {
     /// At each of these frequencies, rad/s.
     pub fn frequency_response(&self, rad_s: Vec<f64>) -> FrequencyResponse {
         let values: Vec<Complex> = rad_s.iter().map(|&w| self.at(self.time().at_frequency(w))).collect();
-        let first = rad_s.first().map_or(0.0, |&w| self.phase(w));
-        let mut phases_rad = Vec::with_capacity(values.len());
-        let mut last = first;
-        for value in &values {
-            let turned = value.arg() - last;
-            last += turned - TAU * (turned / TAU).round();
-            phases_rad.push(last);
-        }
+        let phases_rad = Turns::of(self).phases(&rad_s, &values);
         FrequencyResponse { rad_s, values, phases_rad }
     }
 
     /// Phase at a frequency, rad, as the sum of what each zero and pole turns: a double integrator has −π, not π.
     pub fn phase(&self, rad_s: f64) -> f64 {
-        let time = self.time();
-        let at = time.at_frequency(rad_s);
-        // seen from the place where nothing changes, so that what is stable turns by less than half a turn
-        let turned = |root: &Complex| match time {
-            Time::Continuous if root.re > 0.0 => (root - at).arg(),
-            Time::Sampled(_) if root.norm_sqr() > 1.0 => (root - at).arg(),
-            _ => (at - root).arg(),
-        };
-        let negative = |root: &&Complex| match time {
-            Time::Continuous => root.re > 0.0,
-            Time::Sampled(_) => root.norm_sqr() > 1.0 && root.re > 0.0,
-        };
-        let (zeros, poles) = (self.zeros(), self.poles());
-        let swaps = zeros.iter().chain(&poles).filter(negative).count();
-        let sign = if swaps % 2 == 1 { -self.numerator().leading() } else { self.numerator().leading() };
-        let own = if sign < 0.0 { -PI } else { 0.0 };
-        own + zeros.iter().map(turned).sum::<f64>() - poles.iter().map(turned).sum::<f64>()
+        Turns::of(self).phase(rad_s, self.at(self.time().at_frequency(rad_s)))
     }
 
     /// Slope of ln G over the frequency: its real part is that of ln |G|, its imaginary part that of the phase, s.
     pub(crate) fn logarithmic_slope(&self, rad_s: f64) -> Complex {
         let at = self.time().at_frequency(rad_s);
-        let share = |p: &crate::Polynomial| p.derivative().at(at) / p.at(at);
+        let share = |p: &Polynomial| p.derivative().at(at) / p.at(at);
         let by_variable = share(self.numerator()) - share(self.denominator());
         by_variable
             * match self.time() {
@@ -111,6 +87,8 @@ pub fn logspace((from, to): (f64, f64), count: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     fn parse(text: &str) -> TransferFunction {
@@ -127,7 +105,13 @@ mod tests {
             ("(1-s)/(1+s)", 1e-6, 0.0),
             ("(1-s)/(1+s)", 1e6, -180.0),
             ("1/(s-1)", 1e-6, -180.0),
-            ("1/(s^2+0.01s+1)^2", 10.0, -360.0),
+            ("1/(s^2+0.01s+1)^2", 10.0, -359.9),
+            ("1/(s^2+0.0001s+1)^2", 10.0, -360.0),
+            ("1/(s^2+1)", 0.9, 0.0),
+            ("1/(s^2+1)", 1.1, -180.0),
+            ("(s^2+1)/(s^2+4)", 1.5, 180.0),
+            ("1/(s+1)^30", 1e6, -2700.0),
+            ("1e-90/(s+1e9)^10", 1e13, -899.94),
         ] {
             let g = parse(text);
             assert!((g.phase(at).to_degrees() - degrees).abs() < 0.2, "{text}: {}", g.phase(at).to_degrees());
@@ -136,6 +120,23 @@ mod tests {
                 (Complex::from_polar(value.norm(), g.phase(at)) - value).norm() < 1e-9 * value.norm(),
                 "{text}"
             );
+        }
+    }
+
+    /// Resonances narrower than the grid turn the phase all the same.
+    #[test]
+    fn a_response_has_the_phase_of_each_of_its_frequencies() {
+        for text in [
+            "1/(s^2+1e-7 s+1)^2",
+            "(s^2+1e-9s+1.001)^2/(s^2+1e-9s+1)^3",
+            "(s^2-1e-9s+1.001)^3/((s^2+1e-9s+1)^3 (s-3))",
+            "(s-1)^9/(s+1)^9",
+        ] {
+            let g = parse(text);
+            let response = g.frequency_response(logspace((0.01, 100.0), 333));
+            for (w, phase) in response.rad_s.iter().zip(&response.phases_rad) {
+                assert!((g.phase(*w) - phase).abs() < 1e-9, "{text}: {w} {phase} {}", g.phase(*w));
+            }
         }
     }
 
@@ -148,6 +149,39 @@ mod tests {
         let slope =
             response.magnitudes_db().last().unwrap() - response.magnitudes_db().nth(399 - 66).unwrap();
         assert!((slope + 99.2).abs() < 1.0, "{slope}");
+    }
+
+    /// From a place to the next there is no jump, whatever poles and zeros are inside, outside, left or right of the unit circle, and the
+    /// phase is that of the value.
+    #[test]
+    fn a_sampled_response_turns_without_jumps() {
+        let time = Time::Sampled(1e-3);
+        for text in [
+            "(z+1.5)/(z^2-1.9z+0.95)",
+            "(z+0.8)(z-1.2)/((z-0.9)(z^2+0.5z+0.9))",
+            "(z^2+2.2z+1.5)/((z+0.3)^4)",
+            "1/((z-0.5)^7)",
+            "(z-2)(z-3)/(z^2-3z+4)",
+        ] {
+            let g = TransferFunction::parse(text, time).unwrap();
+            let even: Vec<f64> = (0..=4000).map(|k| PI * 1e3 * (f64::from(k) + 0.5) / 4001.0).collect();
+            let response = g.frequency_response(even);
+            for (phase, value) in response.phases_rad.iter().zip(&response.values) {
+                assert!(
+                    (Complex::from_polar(value.norm(), *phase) - value).norm() < 1e-9 * value.norm(),
+                    "{text}"
+                );
+            }
+            let jump =
+                response.phases_rad.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+            assert!(jump < 0.1, "{text}: {jump}");
+        }
+        let begins = |text: &str| TransferFunction::parse(text, time).unwrap().phase(1e-3).to_degrees();
+        for (text, degrees) in
+            [("(z+1.5)/(z-0.5)", 0.0), ("1/(z-1)^2", -180.0), ("1/(z-1.5)", -180.0), ("(z-1)/(z+3)", 90.0)]
+        {
+            assert!((begins(text) - degrees).abs() < 0.01, "{text}: {}", begins(text));
+        }
     }
 
     #[test]

@@ -3,7 +3,9 @@
 //! It knows nothing of heads and their joints: numbers in, numbers out. Everything here ends: iterations are bounded, and what they
 //! reached is said.
 
+mod binary;
 mod cascade;
+mod damped;
 mod discretize;
 mod eigen;
 mod error;
@@ -15,9 +17,11 @@ mod notation;
 mod polynomial;
 mod response;
 mod roots;
+mod stability;
 mod state_space;
 mod time;
 mod transfer;
+mod turns;
 mod zpk;
 
 /// A complex number.
@@ -26,6 +30,7 @@ pub type Complex = nalgebra::Complex<f64>;
 /// A matrix of any size.
 pub type Matrix = nalgebra::DMatrix<f64>;
 
+pub use damped::DampedGains;
 pub use discretize::Discretization;
 pub use eigen::eigenvalues;
 pub use error::LinearError;
@@ -33,9 +38,11 @@ pub use formula::{FormulaError, Names};
 pub use frequency::{FrequencyResponse, decibels, logspace};
 pub use locus::{Asymptotes, Breakaway, RootLocus};
 pub use margins::{GainMargin, Margins, ModulusMargin, PhaseMargin};
+pub use notation::four_digits;
 pub use polynomial::Polynomial;
 pub use response::{Mode, Response, StepInfo};
 pub use roots::Root;
+pub use stability::Stability;
 pub use state_space::StateSpace;
 pub use time::Time;
 pub use transfer::TransferFunction;

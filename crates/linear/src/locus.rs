@@ -1,11 +1,12 @@
-use crate::{Complex, Polynomial, Time, TransferFunction};
+use crate::{Complex, Polynomial, Root, TransferFunction};
 
 /// Where the poles of a closed loop go as the gain of its open loop rises.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RootLocus {
     /// Factors on the open loop, rising.
     pub gains: Vec<f64>,
-    /// For each gain the closed loop's poles, each at the place in the list where it was at the gain before.
+    /// For each gain the closed loop's poles, each at the place in the list where it was at the gain before; as many for each, no
+    /// numbers where the branch is infinitely far away.
     pub poles: Vec<Vec<Complex>>,
 }
 
@@ -37,10 +38,17 @@ impl TransferFunction {
         let mut follower = Follower::new(self);
         for &gain in &gains {
             let followed = if poles.is_empty() { None } else { follower.follow(gain, &last) };
-            let next = followed.unwrap_or_else(|| nearest(&last, self.closed_at(gain).root_values()));
+            let next = followed.unwrap_or_else(|| {
+                let closed = self.closed_at(gain);
+                // with more digits, or all anew
+                let near = closed.roots_near(&last).filter(|_| !poles.is_empty());
+                near.unwrap_or_else(|| nearest(&last, closed.root_values()))
+            });
             last.clone_from(&next);
             poles.push(next);
         }
+        let branches = poles.iter().map(Vec::len).max().unwrap_or(0);
+        poles.iter_mut().for_each(|poles| poles.resize(branches, Complex::new(f64::NAN, f64::NAN)));
         RootLocus { gains, poles }
     }
 
@@ -68,18 +76,24 @@ impl TransferFunction {
 
     /// From where nothing has moved yet to where all is about where it goes.
     fn gain_range(&self) -> (f64, f64) {
+        let (above, below) = (self.numerator(), self.denominator());
         let sizes = |p: &Polynomial| {
             p.coefficients().iter().map(|c| c.abs()).filter(|c| *c > 0.0).collect::<Vec<_>>()
         };
-        let (below, above) = (sizes(self.denominator()), sizes(self.numerator()));
+        let (small, large) = (sizes(below), sizes(above));
         let most = |values: &[f64]| values.iter().fold(0.0_f64, |a, b| a.max(*b));
         let least = |values: &[f64]| values.iter().fold(f64::INFINITY, |a, b| a.min(*b));
-        if above.is_empty() {
+        if large.is_empty() {
             return (1e-3, 1e3);
         }
         let crossing = self.margins().gain.iter().map(|m| m.factor).fold(0.0, f64::max);
-        let high = (1e2 * most(&below) / most(&above)).max(10.0 * crossing).max(1e2);
-        let low = (1e-3 * least(&below) / most(&above)).min(1e-3 * high).max(1e-9 * high);
+        let meeting = self.breakaways().last().map_or(0.0, |b| b.gain);
+        // the gain that brings a branch as far beyond all poles and zeros
+        let reach = 10.0 * self.poles().into_iter().chain(self.zeros()).map(|z| z.norm()).fold(0.0, f64::max);
+        let out = if self.relative_degree() > 0 { below.value(reach) / above.value(reach) } else { 0.0 };
+        let high = [1e2 * most(&small) / most(&large), 10.0 * crossing, 10.0 * meeting, out.abs(), 1e2];
+        let high = high.into_iter().filter(|gain| gain.is_finite()).fold(0.0, f64::max).min(1e300);
+        let low = (1e-3 * least(&small) / most(&large)).min(1e-3 * high).max(1e-12 * high);
         (low, high)
     }
 
@@ -87,12 +101,18 @@ impl TransferFunction {
     pub fn breakaways(&self) -> Vec<Breakaway> {
         let (above, below) = (self.numerator(), self.denominator());
         let meeting = &(above * &below.derivative()) - &(&above.derivative() * below);
-        let place = |pole: Complex| {
+        let ends: Vec<Root> = below.roots().into_iter().chain(above.roots()).collect();
+        let place = |meeting: Root| {
+            let pole = meeting.value;
+            // at a double pole or zero of the open loop branches begin or end
+            if ends.iter().any(|end| (end.value - pole).norm() <= end.radius + meeting.radius) {
+                return None;
+            }
             let gain = -below.at(pole) / above.at(pole);
             let real = gain.im.abs() < 1e-6 * gain.re.abs();
             (real && gain.re > 0.0 && gain.re.is_finite()).then_some(Breakaway { pole, gain: gain.re })
         };
-        let mut found: Vec<Breakaway> = meeting.root_values().into_iter().filter_map(place).collect();
+        let mut found: Vec<Breakaway> = meeting.roots().into_iter().filter_map(place).collect();
         found.sort_by(|a, b| a.gain.total_cmp(&b.gain));
         found
     }
@@ -115,19 +135,6 @@ impl TransferFunction {
     /// Gains at which the closed loop just oscillates, and at which frequency, rad/s.
     pub fn oscillating_gains(&self) -> Vec<(f64, f64)> {
         self.margins().gain.into_iter().map(|margin| (margin.factor, margin.rad_s)).collect()
-    }
-}
-
-impl RootLocus {
-    /// The largest of these gains at which every pole is at least so damped and so far from the edge of stability, if any:
-    /// damping 0 to 1, decay in 1/s.
-    pub fn largest_gain(&self, damping: f64, decay: f64, time: Time) -> Option<f64> {
-        let calm = |pole: &Complex| {
-            let s = time.continuous(*pole);
-            -s.re >= decay && -s.re >= damping * s.norm() * (1.0 - 1e-12)
-        };
-        let all = self.gains.iter().zip(&self.poles).rev();
-        all.into_iter().find(|(_, poles)| poles.iter().all(calm)).map(|(gain, _)| *gain)
     }
 }
 
@@ -246,6 +253,7 @@ fn nearest(last: &[Complex], mut poles: Vec<Complex>) -> Vec<Complex> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Time;
 
     fn parse(text: &str) -> TransferFunction {
         TransferFunction::parse(text, Time::Continuous).unwrap()
@@ -302,12 +310,25 @@ mod tests {
     }
 
     #[test]
-    fn a_gain_is_chosen_by_the_damping_it_leaves() {
-        let open = parse("1/(s(s+2))");
-        let locus = open.root_locus(crate::logspace((0.01, 100.0), 4001));
-        // s² + 2 s + k: damping 1/√k
-        let gain = locus.largest_gain(0.5, 0.0, Time::Continuous).unwrap();
-        assert!((gain - 4.0).abs() < 0.01, "{gain}");
-        assert_eq!(locus.largest_gain(0.0, 5.0, Time::Continuous), None);
+    fn branches_that_come_from_infinity_have_their_place() {
+        let open = parse("s^2/(s+1)");
+        let locus = open.root_locus(open.locus_gains(50));
+        assert!(locus.poles.iter().all(|poles| poles.len() == 2));
+        assert!(locus.poles[0][1].re.is_nan() && locus.poles[1].iter().all(|pole| pole.is_finite()));
+    }
+
+    #[test]
+    fn a_pole_of_many_is_no_breakaway_and_its_branches_are_followed_in_time() {
+        assert_eq!(parse("1/(s+1)^3").breakaways(), []);
+        assert_eq!(parse("(s+1)^9").breakaways(), []);
+        let open = parse("1/(s+1)^60");
+        let locus = open.root_locus(open.locus_gains(200));
+        // at gain k they stand about −1 on a circle of radius k^(1/60), as closely as rounding lets
+        let last = locus.poles.last().unwrap();
+        let radius = locus.gains.last().unwrap().powf(1.0 / 60.0);
+        assert!(
+            last.iter().all(|pole| ((pole + 1.0).norm() / radius - 1.0).abs() < 0.5),
+            "{last:?} {radius}"
+        );
     }
 }

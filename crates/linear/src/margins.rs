@@ -1,5 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
+use crate::binary::{join, split};
 use crate::{Complex, Polynomial, Time, TransferFunction};
 
 /// How far an open loop is from oscillating once it is closed by negative feedback.
@@ -11,6 +12,10 @@ pub struct Margins {
     pub phase: Vec<PhaseMargin>,
     /// Where it comes closest to −1.
     pub modulus: Option<ModulusMargin>,
+    /// The loop's value is real at every frequency: [`gain`](Self::gain) has the ends alone.
+    pub is_always_real: bool,
+    /// The loop's gain is 1 at every frequency: none of them stands out.
+    pub is_always_one: bool,
 }
 
 /// See [`Margins::gain`].
@@ -65,50 +70,68 @@ impl TransferFunction {
     /// Crossings are roots of polynomials, none is missed between grid points: squares of absolute values are polynomials
     /// in ω², of samples in tan² ωT/2. Each is then refined on the transfer function itself.
     pub fn margins(&self) -> Margins {
-        Margins { gain: self.gain_margins(), phase: self.phase_margins(), modulus: self.modulus_margin() }
+        let along = Along::of(self);
+        Margins {
+            gain: self.gain_margins(&along),
+            phase: self.phase_margins(&along),
+            modulus: self.modulus_margin(&along),
+            is_always_real: along.is_always_real(),
+            is_always_one: along.is_always_one(),
+        }
     }
 
     /// Frequencies at which the absolute value is 1, rad/s, rising.
     pub(crate) fn gain_crossings(&self) -> Vec<f64> {
-        let (above, below) = self.along();
-        let crossings = self.frequencies(&(&square(&above) - &square(&below)));
+        self.gain_crossings_along(&Along::of(self))
+    }
+
+    fn gain_crossings_along(&self, along: &Along) -> Vec<f64> {
+        if along.is_always_one() {
+            return Vec::new();
+        }
+        let crossings = along.frequencies(&(&square(&along.above) - &square(&along.below)));
         crossings.into_iter().map(|w| self.refined(w, |value| value.norm().ln(), |slope| slope.re)).collect()
     }
 
-    fn phase_margins(&self) -> Vec<PhaseMargin> {
+    /// The value at a frequency, where it rests from its gain there.
+    fn value(&self, rad_s: f64) -> Complex {
+        if rad_s == 0.0 { self.dc_gain().into() } else { self.at(self.time().at_frequency(rad_s)) }
+    }
+
+    fn phase_margins(&self, along: &Along) -> Vec<PhaseMargin> {
         let margin = |rad_s: f64| {
             let phase_rad = (-self.at(self.time().at_frequency(rad_s))).arg();
             let late = if phase_rad < 0.0 { phase_rad + TAU } else { phase_rad };
             PhaseMargin { rad_s, phase_rad, delay_s: late / rad_s }
         };
-        self.gain_crossings().into_iter().filter(|w| *w > 0.0).map(margin).collect()
+        self.gain_crossings_along(along).into_iter().filter(|w| *w > 0.0).map(margin).collect()
     }
 
-    fn gain_margins(&self) -> Vec<GainMargin> {
+    fn gain_margins(&self, along: &Along) -> Vec<GainMargin> {
         // the ends, where every value is real, and the real values between
         let most = self.time().nyquist_rad_s();
         let ends = [0.0, most].into_iter().filter(|w| w.is_finite());
-        let (above, below) = self.along();
-        let between = self.frequencies(&across(&above, &below)).into_iter();
+        let across = across(&along.above, &along.below);
+        let between =
+            if along.is_always_real() { Vec::new() } else { along.frequencies(&across) }.into_iter();
         let refined = between.map(|w| self.refined(w, |value| (-value).arg(), |slope| slope.im));
         let mut all: Vec<f64> = ends.chain(refined).collect();
         all.sort_by(f64::total_cmp);
         all.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * *b);
         let margin = |rad_s: f64| {
-            let value = self.at(self.time().at_frequency(rad_s));
+            let value = self.value(rad_s);
             let negative = value.is_finite() && value.re < 0.0 && value.im.abs() < 1e-6 * value.re.abs();
             negative.then(|| GainMargin { rad_s, factor: -1.0 / value.re })
         };
         all.into_iter().filter_map(margin).collect()
     }
 
-    fn modulus_margin(&self) -> Option<ModulusMargin> {
-        let (above, below) = self.along();
-        let (above, below) = (square(&(&above + &below)), square(&below));
+    fn modulus_margin(&self, along: &Along) -> Option<ModulusMargin> {
+        let (above, below) = (square(&(&along.above + &along.below)), square(&along.below));
         let flat = &(&above.derivative() * &below) - &(&above * &below.derivative());
-        let distance = |rad_s: f64| (1.0 + self.at(self.time().at_frequency(rad_s))).norm();
+        let distance = |rad_s: f64| (1.0 + self.value(rad_s)).norm();
         let mut places: Vec<(f64, f64)> =
-            self.frequencies(&flat).into_iter().map(|w| (w, distance(w))).collect();
+            along.frequencies(&flat).into_iter().map(|w| (w, distance(w))).collect();
         places.push((0.0, distance(0.0)));
         match self.time().nyquist_rad_s() {
             most if most.is_finite() => places.push((most, distance(most))),
@@ -120,33 +143,9 @@ impl TransferFunction {
         }
         let finite = places.into_iter().filter(|(_, distance)| distance.is_finite());
         let nearest = finite.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(ModulusMargin { rad_s: nearest.0, distance: nearest.1 })
-    }
-
-    /// Numerator and denominator as polynomials of jν that rises along the frequencies: ω, or tan ωT/2 of samples, where
-    /// z = (1 + jν)/(1 − jν).
-    fn along(&self) -> (Polynomial, Polynomial) {
-        let (above, below) = (self.numerator(), self.denominator());
-        match self.time() {
-            Time::Continuous => (above.clone(), below.clone()),
-            Time::Sampled(_) => {
-                let (plus, minus) = (Polynomial::new([1.0, 1.0]), Polynomial::new([-1.0, 1.0]));
-                let power = above.degree().max(below.degree());
-                (above.substituted(&plus, &minus, power), below.substituted(&plus, &minus, power))
-            }
-        }
-    }
-
-    /// Frequencies, rad/s, rising, between the ends, at which a polynomial in ν² is zero.
-    fn frequencies(&self, polynomial: &Polynomial) -> Vec<f64> {
-        let real = polynomial.roots().into_iter().filter(|root| root.value.im == 0.0 && root.value.re > 0.0);
-        let along = real.map(|root| root.value.re.sqrt());
-        let mut found: Vec<f64> = match self.time() {
-            Time::Continuous => along.collect(),
-            Time::Sampled(period_s) => along.map(|v| 2.0 * v.atan() / period_s).collect(),
-        };
-        found.sort_by(f64::total_cmp);
-        found
+        // less is what rounding makes of nothing
+        let distance = if nearest.1 < 8.0 * f64::EPSILON { 0.0 } else { nearest.1 };
+        Some(ModulusMargin { rad_s: nearest.0, distance })
     }
 
     /// A crossing made exact by Newton's iteration on the transfer function.
@@ -162,6 +161,88 @@ impl TransferFunction {
         }
         best
     }
+}
+
+/// Numerator and denominator as polynomials of jν that rises along the frequencies: ω, or tan ωT/2 of samples, where
+/// z = (1 + jν)/(1 − jν); in a unit of ν, and times a common factor, that keep their squares and fourth powers numbers.
+struct Along {
+    above: Polynomial,
+    below: Polynomial,
+    /// Its unit of ν, a power of two.
+    unit: i32,
+    time: Time,
+}
+
+impl Along {
+    fn of(system: &TransferFunction) -> Self {
+        let time = system.time();
+        let (above, below) = (system.numerator(), system.denominator());
+        let (above, below) = match time {
+            Time::Continuous => (above.clone(), below.clone()),
+            Time::Sampled(_) => {
+                let (plus, minus) = (Polynomial::new([1.0, 1.0]), Polynomial::new([-1.0, 1.0]));
+                let power = above.degree().max(below.degree());
+                (above.substituted(&plus, &minus, power), below.substituted(&plus, &minus, power))
+            }
+        };
+        let unit = middle_exponent([&above, &below]);
+        let exponents = |p: &Polynomial| {
+            let each = p.coefficients().iter().rev().zip(0..).filter(|(c, _)| **c != 0.0);
+            each.map(|(c, power)| split(*c).1 + unit * power).max()
+        };
+        let most = exponents(&above).max(exponents(&below)).unwrap_or(0);
+        let scaled = |p: &Polynomial| {
+            let parts = p.coefficients().iter().rev().zip(0..).map(|(c, power)| (split(*c), unit * power));
+            let low_first = parts.map(|((mantissa, own), more)| join(mantissa, own + more - most));
+            Polynomial::new(low_first.collect::<Vec<_>>().into_iter().rev().collect::<Vec<_>>())
+        };
+        Self { above: scaled(&above), below: scaled(&below), unit, time }
+    }
+
+    /// Frequencies, rad/s, rising, between the ends, at which a polynomial in ν² is zero.
+    fn frequencies(&self, polynomial: &Polynomial) -> Vec<f64> {
+        let real = polynomial.roots().into_iter().filter(|root| root.value.im == 0.0 && root.value.re > 0.0);
+        let along = real.map(|root| join(root.value.re.sqrt(), self.unit));
+        let mut found: Vec<f64> = match self.time {
+            Time::Continuous => along.collect(),
+            Time::Sampled(period_s) => along.map(|v| 2.0 * v.atan() / period_s).collect(),
+        };
+        found.sort_by(f64::total_cmp);
+        found
+    }
+
+    fn is_always_real(&self) -> bool {
+        let ((pe, po), (qe, qo)) = (halves(&self.above), halves(&self.below));
+        are_same(&(&po * &qe), &(&pe * &qo))
+    }
+
+    fn is_always_one(&self) -> bool {
+        are_same(&square(&self.above), &square(&self.below))
+    }
+}
+
+/// What power of two the roots of some polynomials are about, those at 0 left out.
+fn middle_exponent<const N: usize>(polynomials: [&Polynomial; N]) -> i32 {
+    let mut product = 0;
+    let mut count = 0;
+    for p in polynomials {
+        let coefficients = p.coefficients();
+        let last = coefficients.iter().rposition(|&c| c != 0.0).unwrap_or(0);
+        if last > 0 {
+            product += split(coefficients[last]).1 - split(coefficients[0]).1;
+            count += last as i32;
+        }
+    }
+    if count > 0 { product / count } else { 0 }
+}
+
+/// Whether two polynomials are the same but for some roundings of each coefficient.
+fn are_same(a: &Polynomial, b: &Polynomial) -> bool {
+    let size = a.coefficients().len().max(b.coefficients().len());
+    (0..size).all(|power| {
+        let (a, b) = (a.coefficient(power), b.coefficient(power));
+        (a - b).abs() <= 8.0 * size as f64 * f64::EPSILON * a.abs().max(b.abs())
+    })
 }
 
 /// p(jω) = e(ω²) + jω o(ω²).
@@ -239,6 +320,41 @@ mod tests {
         let factor = here.least_gain().unwrap().factor / there.least_gain().unwrap().factor;
         assert!((1.0..1.01).contains(&factor), "{factor}");
         assert!((here.modulus.unwrap().distance - there.modulus.unwrap().distance).abs() < 1e-3);
+    }
+
+    #[test]
+    fn margins_of_loops_far_from_one() {
+        // ten poles in one place: the phase is −180° where each turns by 18°
+        let margins = parse("2e90/(s+1e9)^10").margins();
+        let gain = margins.least_gain().unwrap();
+        assert!((gain.rad_s / 1e9 - (PI / 10.0).tan()).abs() < 1e-9, "{gain:?}");
+        let crossing = margins.least_phase().unwrap().rad_s;
+        assert!((crossing / 1e9 - (2.0_f64.powf(0.2) - 1.0).sqrt()).abs() < 1e-9, "{crossing}");
+        for by in [1e-90, 1e-60, 1e60, 1e90] {
+            let there = parse(&format!("({by:e})^3/(s(s+{by:e})(s+2*{by:e}))")).margins();
+            let factor = there.least_gain().unwrap().factor;
+            assert!((factor - 6.0).abs() < 1e-9, "{by:e}: {factor}");
+        }
+    }
+
+    #[test]
+    fn what_is_real_or_one_everywhere_is_said_to_be() {
+        let allpass = parse("(1-s)(s^2-s+7)/((1+s)(s^2+s+7))").margins();
+        assert!(allpass.is_always_one && !allpass.is_always_real && allpass.phase.is_empty());
+        let swing = parse("3/(s^2+1)").margins();
+        assert!(swing.is_always_real && !swing.is_always_one && swing.gain.is_empty());
+        let constant = parse("-2").margins();
+        assert!(constant.is_always_real && constant.least_gain().unwrap().factor == 0.5);
+        let usual = parse("1/(s+1)").margins();
+        assert!(!usual.is_always_real && !usual.is_always_one);
+    }
+
+    /// At rest an integrator amplifies without bounds, sampled or not.
+    #[test]
+    fn a_sampled_integrator_has_no_gain_margin_at_rest() {
+        let open = parse("(0-281) (s+33)(s+98)/((s+250)(s+177)) 13.16/(s(s+0.1316))");
+        let sampled = open.sampled(1e-3, Discretization::ZeroOrderHold).unwrap();
+        assert!(sampled.margins().gain.iter().all(|m| m.rad_s > 0.0), "{:?}", sampled.margins());
     }
 
     #[test]

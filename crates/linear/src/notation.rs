@@ -13,7 +13,7 @@ pub(crate) fn polynomial(polynomial: &Polynomial, variable: &str) -> String {
             (false, true) => " − ",
             (false, false) => " + ",
         };
-        let (number, power) = (number(c.abs()), power(variable, degree - i));
+        let (number, power) = (four_digits(c.abs()), power(variable, degree - i));
         text += &match (number.as_str(), power.as_str()) {
             (_, "") => number,
             ("1", _) => power,
@@ -24,7 +24,7 @@ pub(crate) fn polynomial(polynomial: &Polynomial, variable: &str) -> String {
 }
 
 /// Four digits, without idle zeros.
-pub(crate) fn number(value: f64) -> String {
+pub fn four_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
@@ -69,6 +69,6 @@ mod tests {
         assert_eq!(text(&[1.0, 0.13331, 0.78215]), "s² + 0.1333 s + 0.7822");
         assert_eq!(text(&[-1.0, 0.0, 1.5e-9]), "−s² + 1.5e-9");
         assert_eq!(text(&[]), "0");
-        assert_eq!([0.0, 100.0, 1e7, -0.5].map(number), ["0", "100", "1e7", "-0.5"]);
+        assert_eq!([0.0, 100.0, 1e7, -0.5].map(four_digits), ["0", "100", "1e7", "-0.5"]);
     }
 }

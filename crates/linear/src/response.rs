@@ -18,10 +18,10 @@ pub struct StepInfo {
     pub rise_s: Option<f64>,
     /// Last moment at which it is not within a band about its final value, s; none if that is the end.
     pub settle_s: Option<f64>,
-    /// Furthest excursion beyond the final value, % of it.
-    pub overshoot_percent: f64,
+    /// Furthest excursion beyond the final value, % of it; none where that is 0, or infinite.
+    pub overshoot_percent: Option<f64>,
     /// Furthest excursion the other way, % of the final value.
-    pub undershoot_percent: f64,
+    pub undershoot_percent: Option<f64>,
     /// Largest distance from zero, and when, s.
     pub peak: (f64, f64),
 }
@@ -161,8 +161,9 @@ impl Response {
     pub fn step_info(&self, final_value: Option<f64>, band: f64) -> StepInfo {
         let last = self.values.last().copied().unwrap_or_default();
         let goal = final_value.unwrap_or(last);
+        let is_share = goal != 0.0 && goal.is_finite();
         let share = |value: &f64| value / goal;
-        let first = |level: f64| self.crossing(|value| share(&value) - level);
+        let first = |level: f64| is_share.then(|| self.crossing(|value| share(&value) - level)).flatten();
         let within = |value: f64| goal.is_finite() && (value - goal).abs() <= band * goal.abs();
         let outside = self.values.iter().rposition(|&value| !within(value));
         let settled = outside.map_or(0, |place| place + 1);
@@ -179,8 +180,8 @@ impl Response {
             final_value: goal,
             rise_s: first(0.9).zip(first(0.1)).map(|(high, low)| high - low),
             settle_s: (settled < self.values.len()).then_some(settled as f64 * self.step_s),
-            overshoot_percent: 100.0 * (most - 1.0).max(0.0),
-            undershoot_percent: 100.0 * (-least).max(0.0),
+            overshoot_percent: is_share.then(|| 100.0 * (most - 1.0).max(0.0)),
+            undershoot_percent: is_share.then(|| 100.0 * (-least).max(0.0)),
             peak: (peak.1, peak.0 as f64 * self.step_s),
         }
     }
@@ -205,19 +206,20 @@ pub struct Mode {
     pub damping: f64,
 }
 
+impl Mode {
+    /// Of a pole. What is over at once, as a pole at z = 0, has an infinite frequency; what stays, at 0, none.
+    pub fn of(pole: Complex, time: Time) -> Self {
+        let s = time.continuous(pole);
+        let natural_rad_s = s.norm();
+        let oscillates = natural_rad_s > 0.0 && natural_rad_s.is_finite();
+        Self { pole, natural_rad_s, damping: if oscillates { -s.re / natural_rad_s } else { 1.0 } }
+    }
+}
+
 impl TransferFunction {
     /// Natural frequency and damping of each pole.
     pub fn modes(&self) -> Vec<Mode> {
-        let mode = |pole: Complex| {
-            let s = self.time().continuous(pole);
-            let natural_rad_s = s.norm();
-            Mode {
-                pole,
-                natural_rad_s,
-                damping: if natural_rad_s == 0.0 { 1.0 } else { -s.re / natural_rad_s },
-            }
-        };
-        self.poles().into_iter().map(mode).collect()
+        self.poles().into_iter().map(|pole| Mode::of(pole, self.time())).collect()
     }
 }
 
@@ -242,7 +244,7 @@ mod tests {
         }
         let info = response.step_info(Some(g.dc_gain()), 0.02);
         let expected = 100.0 * (-std::f64::consts::PI * zeta / (1.0 - zeta * zeta).sqrt()).exp();
-        assert!((info.overshoot_percent - expected).abs() < 1e-2, "{info:?}");
+        assert!((info.overshoot_percent.unwrap() - expected).abs() < 1e-2, "{info:?}");
         assert!((info.peak.1 - std::f64::consts::PI / damped).abs() < 1e-3, "{info:?}");
         assert!(
             (info.rise_s.unwrap() - 0.0819).abs() < 1e-3 && (info.settle_s.unwrap() - 0.403).abs() < 3e-3,
@@ -260,6 +262,8 @@ mod tests {
         assert!((lead.values[0] - 1.0).abs() < 1e-15 && (lead.values[99] - 2.0).abs() < 1e-8);
         assert!(parse("s").step_response(0.1, 3).is_err() && parse("1/s").step_response(0.0, 3).is_err());
         assert_eq!(parse("3").step_response(0.1, 2).unwrap().values, [3.0, 3.0]);
+        let over = parse("s/(s+1)^2").step_response(0.01, 4000).unwrap().step_info(Some(0.0), 0.02);
+        assert_eq!((over.overshoot_percent, over.rise_s), (None, None));
     }
 
     #[test]

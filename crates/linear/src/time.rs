@@ -34,14 +34,6 @@ impl Time {
         }
     }
 
-    /// Whether what belongs to that pole dies out.
-    pub fn is_stable(self, pole: Complex) -> bool {
-        match self {
-            Self::Continuous => pole.re < 0.0,
-            Self::Sampled(_) => pole.norm_sqr() < 1.0,
-        }
-    }
-
     /// The pole in continuous time that does the same between samples, and itself in continuous time: ln z / T.
     pub fn continuous(self, pole: Complex) -> Complex {
         match self {

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use crate::notation::{number, quadratic};
+use crate::notation::{four_digits, quadratic};
 use crate::polynomial::are_paired;
 use crate::{Complex, LinearError, Polynomial, Time, TransferFunction};
 
@@ -80,10 +80,10 @@ impl Zpk {
     pub fn time_constants(&self) -> String {
         let factor = |root: &Complex| match (root.re, root.im) {
             (0.0, 0.0) => self.time.variable().to_owned(),
-            (re, 0.0) => format!("(1 {} s/{})", if re > 0.0 { '−' } else { '+' }, number(re.abs())),
+            (re, 0.0) => format!("(1 {} s/{})", if re > 0.0 { '−' } else { '+' }, four_digits(re.abs())),
             (re, _) => {
                 let natural = root.norm();
-                format!("(1 + 2·{}·s/{n} + (s/{n})²)", number(-re / natural), n = number(natural))
+                format!("(1 + 2·{}·s/{n} + (s/{n})²)", four_digits(-re / natural), n = four_digits(natural))
             }
         };
         quotient(self.time_constant_gain(), &self.zeros, &self.poles, &factor)
@@ -102,8 +102,8 @@ fn quotient(gain: f64, zeros: &[Complex], poles: &[Complex], factor: &dyn Fn(&Co
     let (above, below) = (factors(zeros), factors(poles));
     let top = match (gain, above.is_empty()) {
         (1.0, false) => above.concat(),
-        (_, true) => number(gain),
-        _ => format!("{} {}", number(gain), above.concat()),
+        (_, true) => four_digits(gain),
+        _ => format!("{} {}", four_digits(gain), above.concat()),
     };
     match &below[..] {
         [] => top,
@@ -118,7 +118,9 @@ impl fmt::Display for Zpk {
         let variable = self.time.variable();
         let factor = |root: &Complex| match (root.re, root.im) {
             (0.0, 0.0) => variable.to_owned(),
-            (re, 0.0) => format!("({variable} {} {})", if re > 0.0 { '−' } else { '+' }, number(re.abs())),
+            (re, 0.0) => {
+                format!("({variable} {} {})", if re > 0.0 { '−' } else { '+' }, four_digits(re.abs()))
+            }
             (re, _) => quadratic(variable, -2.0 * re, root.norm_sqr()),
         };
         f.write_str(&quotient(self.gain, &self.zeros, &self.poles, &factor))

@@ -14,6 +14,7 @@ struct Golden {
     zeros: Vec<[f64; 2]>,
     tustin: Sampled,
     hold: Sampled,
+    matched: Sampled,
     /// Frequency and phase margin, rad.
     phase: Vec<[f64; 2]>,
     /// Frequency and factor.
@@ -75,7 +76,7 @@ fn poles_and_zeros_are_true_to_ten_digits_and_within_their_bounds() {
 }
 
 #[test]
-fn samples_by_tustins_rule_and_by_a_hold_have_true_coefficients() {
+fn samples_by_tustins_rule_by_a_hold_and_matched_have_true_coefficients() {
     let check = |line: usize, what: &str, ours: &Polynomial, truth: &[f64]| {
         let size = truth.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
         for (power, truth) in truth.iter().rev().enumerate() {
@@ -88,9 +89,11 @@ fn samples_by_tustins_rule_and_by_a_hold_have_true_coefficients() {
     };
     for (line, golden) in goldens() {
         let sampled = |how| golden.system().sampled(golden.period, how).unwrap();
-        for (how, truth) in
-            [(Discretization::Tustin(None), &golden.tustin), (Discretization::ZeroOrderHold, &golden.hold)]
-        {
+        for (how, truth) in [
+            (Discretization::Tustin(None), &golden.tustin),
+            (Discretization::ZeroOrderHold, &golden.hold),
+            (Discretization::Matched, &golden.matched),
+        ] {
             let ours = sampled(how);
             check(line, &format!("{how:?}, above"), ours.numerator(), &truth.num);
             check(line, &format!("{how:?}, below"), ours.denominator(), &truth.den);

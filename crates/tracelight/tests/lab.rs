@@ -7,18 +7,7 @@ mod support;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use serde_json::Value;
-use support::{folder, run};
-
-fn lab(arguments: &[&str]) -> Value {
-    let output = run(&[&["lab"], arguments, &["--json"]].concat());
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn near(value: &Value, wanted: f64, tolerance: f64) {
-    let number = value.as_f64().unwrap();
-    assert!((number - wanted).abs() <= tolerance, "{number}, not {wanted}");
-}
+use support::{folder, lab, near, run};
 
 /// The report's half turn by one profile.
 fn half_turn(profile: &str) -> Value {
@@ -287,7 +276,7 @@ fn what_makes_no_sense_is_refused_in_a_sentence() {
         ("bode 1/s --from 10rad/s --to 1rad/s", 2, "not below"),
         ("bode 1/s --from 10Hz", 2, "rad/s"),
         ("nyquist 1/z", 2, "how far apart"),
-        ("locus 1/(s-1)^2 --damping 0.5", 1, "no gain"),
+        ("locus 1/(s-1)^2 --damping 0.5", 1, "no factor leaves"),
         ("locus 1/s --damping 2", 2, "between 0 and 1"),
         ("locus 1/s --gain nan", 2, "no factor"),
         ("pzmap 1/s --reach 0", 2, "between 1e-9"),

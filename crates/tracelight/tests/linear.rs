@@ -4,19 +4,8 @@
 
 mod support;
 
-use serde_json::Value;
-use support::{folder, run};
-
-fn lab(arguments: &[&str]) -> Value {
-    let output = run(&[&["lab"], arguments, &["--json"]].concat());
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn near(value: &Value, wanted: f64, tolerance: f64) {
-    let number = value.as_f64().unwrap();
-    assert!((number - wanted).abs() <= tolerance, "{number}, not {wanted}");
-}
+use serde_json::{Value, json};
+use support::{folder, lab, near, run};
 
 /// To the last digit the report printed.
 fn printed_as(value: &Value, digits: &[f64], places: &[i32]) {
@@ -113,4 +102,48 @@ fn linear_systems_are_plotted_and_tabled() {
     let locus = lab(&["locus", "1/(s(s+1)(s+2))"]);
     near(&locus["systems"][0]["oscillating"][0]["gain"], 6.0, 1e-9);
     near(&locus["systems"][0]["breakaways"][0]["gain"], 0.3849, 1e-4);
+}
+
+#[test]
+fn a_loop_at_the_edge_or_without_an_answer_is_said_to_be() {
+    let bode = lab(&["bode", "1/(s(s+1))", "1/s^2", "(s+2)/(s+1)*(0-1)", "1/(s-2)^2"]);
+    let said: Vec<&Value> =
+        bode["systems"].as_array().unwrap().iter().map(|s| &s["closed_stability"]).collect();
+    assert_eq!(said, [&json!("stable"), &json!("marginal"), &Value::Null, &json!("growing")]);
+    let sampled = lab(&["bode", "K11*G11", "--sample", "1ms"]);
+    let system = &sampled["systems"][0];
+    assert_eq!((&system["stability"], &system["dc_gain"]), (&json!("marginal"), &Value::Null));
+    assert_eq!(system["name"], "K11*G11, sampled every 1 ms by a hold");
+    assert_eq!(system["closed_stability"], "stable");
+    // what is 1 or real at every frequency has no margin, for another reason
+    for (system, words) in [("(2-s)/(2+s)", "1 at every frequency"), ("3/(s^2+1)", "real at every frequency")]
+    {
+        let text = String::from_utf8(run(&["lab", "bode", system]).stdout).unwrap();
+        assert!(text.contains(words), "{text}");
+    }
+}
+
+#[test]
+fn a_locus_ends_at_the_damping_that_is_asked_for() {
+    let locus = lab(&["locus", "1/(s(s+1000))", "--damping", "0.7", "--points", "20"]);
+    near(&locus["systems"][0]["gain"], 250_000.0 / 0.49, 1e-3);
+    let many = run(&["lab", "locus", "1/(s+1)", "--damping", "0.7"]);
+    assert!(String::from_utf8_lossy(&many.stderr).contains("every factor above 0"));
+    // branches that come from infinity have their columns
+    let dir = folder("locus-from-infinity");
+    let csv = dir.join("locus.csv");
+    lab(&["locus", "s^2/(s+1)", "-o", csv.to_str().unwrap()]);
+    let text = std::fs::read_to_string(csv).unwrap();
+    assert!(text.lines().all(|line| line.split(',').count() == 5), "{text}");
+    let huge = run(&["lab", "locus", "1/(s+1)^60", "--points", "100000"]);
+    assert!(String::from_utf8_lossy(&huge.stderr).contains("16666 is the most"));
+}
+
+#[test]
+fn a_bound_moves_the_other_if_that_is_not_typed() {
+    let bode = lab(&["bode", "1/s", "--from", "100rad/s", "--points", "2"]);
+    near(&bode["rad_s"][0], 100.0, 1e-9);
+    near(&bode["rad_s"][1], 1e4, 1e-6);
+    let refused = run(&["lab", "bode", "1/s", "--from", "100rad/s", "--to", "10rad/s"]);
+    assert!(!refused.status.success());
 }

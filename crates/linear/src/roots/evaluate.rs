@@ -1,5 +1,6 @@
 use super::start::polygon;
 use crate::Complex;
+use crate::binary::{join, split, times_power};
 
 /// A polynomial that can be looked at on any scale: no value on the way leaves the range of `f64`.
 pub(super) struct Scaled {
@@ -111,6 +112,12 @@ impl Scaled {
         value.norm() * (1.0 + f64::EPSILON) + self.compensated_rounding(size)
     }
 
+    /// Whether the value is no more than rounding of each coefficient could make it.
+    pub(super) fn may_vanish_at(&self, place: Complex) -> bool {
+        let (_, value, size) = self.newton(place, compensated);
+        value.norm() <= 2.0 * (self.degree + 1) as f64 * f64::EPSILON * size
+    }
+
     /// Graillat & Langlois's bound, for complex places.
     fn compensated_rounding(&self, size: f64) -> f64 {
         let unit = 8.0 * self.degree as f64 * f64::EPSILON;
@@ -170,53 +177,9 @@ fn product(a: f64, b: f64) -> (f64, f64) {
     (product, ((ah * bh - product) + ah * bl + al * bh) + al * bl)
 }
 
-/// A complex number times a power of two.
-fn times_power(value: Complex, exponent: i32) -> Complex {
-    if exponent.abs() < 1000 {
-        return value * f64::from_bits(((1023 + exponent) as u64) << 52);
-    }
-    let by = |part: f64| {
-        let (mantissa, own) = split(part);
-        join(mantissa, own + exponent)
-    };
-    Complex::new(by(value.re), by(value.im))
-}
-
-/// Mantissa in ±[½, 1) and power of two; zero is 0 · 2⁰.
-pub(super) fn split(value: f64) -> (f64, i32) {
-    /// Two to the power of 64 makes a normal number of any other.
-    const NORMAL: f64 = 18_446_744_073_709_551_616.0;
-    if value == 0.0 || !value.is_finite() {
-        return (value, 0);
-    }
-    let (normal, less) = if value.abs() < f64::MIN_POSITIVE { (value * NORMAL, 64) } else { (value, 0) };
-    let bits = normal.to_bits();
-    let exponent = ((bits >> 52) & 0x7ff) as i32 - 1022;
-    (f64::from_bits((bits & !(0x7ff << 52)) | (1022 << 52)), exponent - less)
-}
-
-/// mantissa · 2^exponent, rounded once; beyond the range zero or infinity.
-pub(super) fn join(mantissa: f64, exponent: i32) -> f64 {
-    let half = exponent.clamp(-2200, 2200) / 2;
-    let power = |e: i32| 2.0_f64.powi(e);
-    let quarter = |e: i32| power(e / 2) * power(e - e / 2);
-    mantissa * quarter(half) * quarter(exponent.clamp(-2200, 2200) - half)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_split_and_joined_exactly() {
-        for value in [1.0, -3.7e300, 5e-324, 1e-310, -f64::MIN_POSITIVE, f64::MAX, 0.0] {
-            let (mantissa, exponent) = split(value);
-            assert!(value == 0.0 || (0.5..1.0).contains(&mantissa.abs()), "{value}");
-            assert_eq!(join(mantissa, exponent), value);
-        }
-        assert_eq!(join(0.5, 5000), f64::INFINITY);
-        assert_eq!(join(0.5, -5000), 0.0);
-    }
 
     #[test]
     fn a_compensated_value_has_all_its_digits() {

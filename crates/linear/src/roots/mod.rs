@@ -31,7 +31,8 @@ impl Polynomial {
     /// the digits (Graillat & Langlois's compensated Horner scheme). It ends after a number of rounds, whatever it is given.
     pub fn roots(&self) -> Vec<Root> {
         if !self.is_finite() {
-            let nowhere = Root { value: Complex::new(f64::NAN, f64::NAN), radius: f64::INFINITY };
+            let value = Complex::new(f64::NAN, f64::NAN);
+            let nowhere = Root { value, radius: f64::INFINITY };
             return vec![nowhere; self.degree()];
         }
         let zeros = self.coefficients().iter().rev().take_while(|&&c| c == 0.0).count().min(self.degree());
@@ -48,14 +49,35 @@ impl Polynomial {
         roots
     }
 
+    /// Roots found from places near them, in their order; none of coefficients that are no numbers, or if two places are one.
+    pub(crate) fn roots_near(&self, places: &[Complex]) -> Option<Vec<Complex>> {
+        let apart = |i: usize| places[..i].iter().all(|other| *other != places[i]);
+        let fits = self.is_finite() && self.constant() != 0.0 && places.len() == self.degree();
+        if !(fits && !places.is_empty() && (0..places.len()).all(apart)) {
+            return None;
+        }
+        let scaled = Scaled::new(self.coefficients());
+        let mut places = places.to_vec();
+        approach(&scaled, &mut places, Scaled::accurate_step).then_some(places)
+    }
+
+    /// Whether it may be zero there if each coefficient is off by some roundings, as those that were computed are.
+    pub(crate) fn may_vanish_at(&self, place: Complex) -> bool {
+        let constant = self.constant();
+        if !self.is_finite() || place == Complex::ZERO || constant == 0.0 {
+            return !self.is_finite() || self.is_zero() || (place == Complex::ZERO && constant == 0.0);
+        }
+        self.degree() > 0 && Scaled::new(self.coefficients()).may_vanish_at(place)
+    }
+
     /// Where its roots are, without bounds.
     pub fn root_values(&self) -> Vec<Complex> {
         self.roots().into_iter().map(|root| root.value).collect()
     }
 }
 
-/// Moves each place towards its root until rounding says that it is there.
-fn approach(scaled: &Scaled, places: &mut [Complex], step: fn(&Scaled, Complex) -> Step) {
+/// Moves each place towards its root until rounding says that it is there; whether all are.
+fn approach(scaled: &Scaled, places: &mut [Complex], step: fn(&Scaled, Complex) -> Step) -> bool {
     let mut settled = vec![false; places.len()];
     for _ in 0..MOST_ROUNDS {
         for i in 0..places.len() {
@@ -71,9 +93,10 @@ fn approach(scaled: &Scaled, places: &mut [Complex], step: fn(&Scaled, Complex) 
             settled[i] = is_settled || moved.norm() <= f64::EPSILON * place.norm();
         }
         if settled.iter().all(|&done| done) {
-            return;
+            return true;
         }
     }
+    false
 }
 
 /// Aberth's correction of Newton's step.

@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
-use super::evaluate::{join, split};
 use crate::Complex;
+use crate::binary::{join, split};
 
 /// An edge of the Newton polygon: so many roots are about so far from zero.
 pub(super) struct Edge {

@@ -85,7 +85,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "no-such-system",
         "A system cannot be had that way: one that has more zeros than poles, or that is already sampled, or a loop that closes on nothing.",
     ),
-    ("no-such-gain", "No gain does what was asked. Ask for less damping, or change the loop."),
+    (
+        "no-such-gain",
+        "No gain does what was asked, or all large ones do. Ask for another damping, give a --gain, or change the loop.",
+    ),
     (
         "no-linear-model",
         "A head could not be linearized: its masses or its friction are no numbers that move. Check the rig file.",

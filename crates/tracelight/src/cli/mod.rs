@@ -72,6 +72,11 @@ impl Answer {
     pub(crate) fn new(text: impl Into<String>, json: impl Into<String>) -> Self {
         Self { text: text.into(), json: json.into(), failure: None }
     }
+
+    /// The one that will be printed; the other is not made.
+    pub(crate) fn either(voice: Voice, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Self {
+        if voice.json { Self::new("", json()) } else { Self::new(text(), "") }
+    }
 }
 
 /// Runs the program on the process's arguments.

@@ -33,6 +33,17 @@ pub(crate) fn run(arguments: &[&str]) -> Output {
 }
 
 /// Runs `trace … --out DIR --json` and returns its summary.
+pub(crate) fn lab(arguments: &[&str]) -> Value {
+    let output = run(&[&["lab"], arguments, &["--json"]].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+pub(crate) fn near(value: &Value, wanted: f64, tolerance: f64) {
+    let number = value.as_f64().unwrap();
+    assert!((number - wanted).abs() <= tolerance, "{number}, not {wanted}");
+}
+
 pub(crate) fn trace(arguments: &[&str], out: &Path) -> Value {
     let output = program().arg("trace").args(arguments).arg("--json").arg("--out").arg(out).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -2,9 +2,9 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_linear::{FrequencyResponse, Margins, TransferFunction, decibels, logspace};
+use tracelight_linear::{FrequencyResponse, Margins, Stability, TransferFunction, decibels, logspace};
 
-use super::systems::{Named, SystemArgs, four, pairs};
+use super::systems::{Named, SystemArgs, bounded, four, pairs};
 use super::{OutFile, out_file, write_all};
 use crate::chart::{Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign};
 use crate::cli::{Answer, Voice};
@@ -18,19 +18,26 @@ use crate::units::{ANGULAR_SPEEDS, parse};
                   curve; the plot marks them.")]
 pub(crate) struct BodeArgs {
     #[command(flatten)]
-    systems: SystemArgs,
+    pub(super) over: FrequencyArgs,
+}
+
+/// Systems over frequencies, and where that goes.
+#[derive(Args, Debug)]
+pub(super) struct FrequencyArgs {
+    #[command(flatten)]
+    pub(super) systems: SystemArgs,
     #[command(flatten)]
     band: BandArgs,
     /// Plot into an SVG, or write a row a frequency to a CSV; may be given again
     #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
-    out: Vec<OutFile>,
+    pub(super) out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,
 }
 
 /// Which frequencies.
 #[derive(Args, Debug)]
-pub(super) struct BandArgs {
+struct BandArgs {
     /// From this frequency [default: a decade below the slowest pole or zero]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
     from: Option<f64>,
@@ -47,16 +54,27 @@ fn frequency(text: &str) -> Result<f64, String> {
     if rad_s > 0.0 { Ok(rad_s) } else { Err(format!("{text} is not above zero")) }
 }
 
-impl BandArgs {
-    /// Frequencies for all systems together, rad/s.
-    pub(super) fn frequencies(&self, systems: &[Named]) -> Result<Vec<f64>, Failure> {
-        let bands = systems.iter().map(|named| named.system.band());
-        let own = bands.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((0.1, 10.0));
-        let (from, to) = (self.from.unwrap_or(own.0), self.to.unwrap_or(own.1));
+impl FrequencyArgs {
+    /// All systems, and frequencies for them together, rad/s.
+    pub(super) fn read(&self) -> Result<(Vec<Named>, Vec<f64>), Failure> {
+        let systems = self.systems.systems()?;
+        bounded(self.band.points, systems.len())?;
+        let (low, high) = systems
+            .iter()
+            .map(|named| named.system.band())
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+            .unwrap_or((0.1, 10.0));
+        // a bound that is typed moves the other, if that is not typed
+        let (from, to) = match (self.band.from, self.band.to) {
+            (Some(from), Some(to)) => (from, to),
+            (Some(from), None) => (from, high.max(100.0 * from)),
+            (None, Some(to)) => (low.min(to / 100.0), to),
+            (None, None) => (low, high),
+        };
         if from >= to {
             return Err(Failure::usage("usage", format!("--from {from} rad/s is not below --to {to} rad/s")));
         }
-        Ok(logspace((from, to), self.points as usize))
+        Ok((systems, logspace((from, to), self.band.points as usize)))
     }
 }
 
@@ -65,32 +83,38 @@ struct Entry {
     named: Named,
     response: FrequencyResponse,
     margins: Margins,
-    /// Whether its closed loop is stable.
-    closes: bool,
+    /// What its closed loop does; none where that is not defined.
+    closed: Option<Stability>,
 }
 
 pub(crate) fn run(args: &BodeArgs) -> Result<Answer, Failure> {
-    let systems = args.systems.systems()?;
-    let rad_s = args.band.frequencies(&systems)?;
+    let (systems, rad_s) = args.over.read()?;
     let entry = |named: Named| Entry {
         response: named.system.frequency_response(rad_s.clone()),
         margins: named.system.margins(),
-        closes: named.system.closed().is_ok_and(|closed| closed.is_stable()),
+        closed: named.system.closed().ok().map(|closed| closed.stability()),
         named,
     };
     let entries: Vec<Entry> = systems.into_iter().map(entry).collect();
-    write_all(&args.out, || figure(args, &entries), || Ok(csv(&entries)))?;
-    Ok(Answer::new(text(&entries), json(&entries)))
+    write_all(&args.over.out, || figure(args, &entries), || Ok(csv(&entries)))?;
+    Ok(Answer::either(args.over.voice, || text(&entries), || json(&entries)))
 }
 
 fn text(entries: &[Entry]) -> String {
     let mut text = String::new();
-    for Entry { named, margins, closes, .. } in entries {
+    for Entry { named, margins, closed, .. } in entries {
         // writing to a String cannot fail
         let _ = writeln!(text, "{} = {}", named.name, named.system);
         let _ = writeln!(text, "{}", margin_lines(margins));
-        let closed = if *closes { "stable" } else { "not stable" };
-        let _ = writeln!(text, "    closed by negative feedback it is {closed}\n");
+        let closed = match closed {
+            Some(Stability::Stable) => "is stable",
+            Some(Stability::Marginal) => {
+                "is at the edge of stability, or nearer to it than rounding lets tell"
+            }
+            Some(Stability::Growing) => "is not stable",
+            None => "is not defined: 1 + G is zero at infinite frequency",
+        };
+        let _ = writeln!(text, "    closed by negative feedback it {closed}\n");
     }
     text.trim_end().to_owned()
 }
@@ -105,11 +129,17 @@ pub(super) fn margin_lines(margins: &Margins) -> String {
             four(margin.factor),
             four(margin.rad_s)
         ),
+        None if margins.is_always_real => {
+            "    gain margin     none: it is real at every frequency".to_owned()
+        }
         None => "    gain margin     none: it is nowhere real and negative".to_owned(),
     });
     lines.push(match margins.least_phase() {
         Some(margin) => {
             format!("    phase margin    {}° at {} rad/s", four(margin.degrees()), four(margin.rad_s))
+        }
+        None if margins.is_always_one => {
+            "    phase margin    none: its gain is 1 at every frequency".to_owned()
         }
         None => "    phase margin    none: its gain is nowhere 1".to_owned(),
     });
@@ -159,15 +189,25 @@ pub(super) fn system_json(name: &str, system: &TransferFunction) -> Value {
         "zeros": pairs(&system.zeros()),
         "poles": pairs(&system.poles()),
         "dc_gain": gain.is_finite().then_some(gain),
-        "stable": system.is_stable(),
+        "stable": system.stability() == Stability::Stable,
+        "stability": stability_name(system.stability()),
     })
+}
+
+const fn stability_name(stability: Stability) -> &'static str {
+    match stability {
+        Stability::Stable => "stable",
+        Stability::Marginal => "marginal",
+        Stability::Growing => "growing",
+    }
 }
 
 fn json(entries: &[Entry]) -> String {
     let one = |entry: &Entry| {
         let mut object = system_json(&entry.named.name, &entry.named.system);
         object["margins"] = margins_json(&entry.margins);
-        object["closed_stable"] = entry.closes.into();
+        object["closed_stable"] = entry.closed.map(|closed| closed == Stability::Stable).into();
+        object["closed_stability"] = entry.closed.map(stability_name).into();
         object["bandwidth_rad_s"] = entry.named.system.bandwidth().into();
         object["magnitude_db"] = entry.response.magnitudes_db().collect();
         object["phase_deg"] = entry.response.phases_deg().collect();
@@ -235,7 +275,7 @@ fn figure(args: &BodeArgs, entries: &[Entry]) -> Result<String, Failure> {
         panels: vec![magnitude, phase],
         columns: 1,
         panel: (820, 300),
-        theme: args.systems.theme(),
+        theme: args.over.systems.theme(),
     };
     figure.svg().map_err(|e| Failure::failed("internal", e))
 }

@@ -3,11 +3,11 @@ use std::fmt::Write;
 use clap::Args;
 use serde_json::json;
 use tracelight_lab::Linearization;
-use tracelight_linear::{Complex, LinearError, Matrix, TransferFunction};
+use tracelight_linear::{Complex, LinearError, Matrix, Time, TransferFunction};
 use tracelight_rig::{Joint, PanTilt};
 
 use super::head::{Head, HeadArgs};
-use super::systems::four;
+use super::systems::{four, place, pole_lines};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 
@@ -68,14 +68,7 @@ fn text(head: &Head, linear: &Linearization, both: &PanTilt<Own>) -> String {
             let _ = writeln!(text, "    cancelled: {} (kept with --keep-cancellations)", places.join(", "));
         }
     }
-    text += "\npole, 1/s                    natural, rad/s   damping\n";
-    let poles = linear.system.poles().unwrap_or_default();
-    for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
-        let natural = pole.norm();
-        let damping =
-            if natural > 0.0 { format!("{:9.4}", -pole.re / natural) } else { "        –".to_owned() };
-        let _ = writeln!(text, "{:28} {natural:14.5} {damping}", place(*pole));
-    }
+    let _ = write!(text, "\n{}", pole_lines(&linear.system.poles().unwrap_or_default(), Time::Continuous));
     let _ = write!(
         text,
         "\nx = (pan, tilt, pan rate, tilt rate), u = (pan torque, tilt torque), y = (pan, tilt)\n\nA =\n{}\nB =\n{}",
@@ -83,12 +76,6 @@ fn text(head: &Head, linear: &Linearization, both: &PanTilt<Own>) -> String {
         matrix(linear.system.b())
     );
     text.trim_end().to_owned()
-}
-
-/// A root and its conjugate.
-fn place(root: Complex) -> String {
-    let re = format!("{:.5}", root.re + 0.0).replace('-', "−");
-    if root.im == 0.0 { re } else { format!("{re} ± {:.5}j", root.im) }
 }
 
 fn matrix(matrix: &Matrix) -> String {

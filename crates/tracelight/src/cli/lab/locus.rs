@@ -3,14 +3,15 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::json;
-use tracelight_linear::{Complex, RootLocus, Time, TransferFunction};
+use tracelight_linear::{Complex, DampedGains, Mode, RootLocus, Time, TransferFunction};
 
 use super::bode::system_json;
-use super::systems::{Named, SystemArgs, four, pairs};
+use super::systems::{Named, SystemArgs, bounded, four, pairs, place, pole_lines};
 use super::{OutFile, out_file, write_all};
 use crate::chart::{Curve, Figure, Guide, Key, Mark, Panel, Pen, Scale, Sign};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
+use crate::stop::Stop;
 
 /// Where the poles of the closed loop go as the open loop's gain rises; which gain makes it as damped as asked
 #[derive(Args, Debug)]
@@ -19,7 +20,7 @@ use crate::failure::Failure;
                   --gain, or with the one --damping finds.")]
 pub(crate) struct LocusArgs {
     #[command(flatten)]
-    systems: SystemArgs,
+    pub(super) plane: PlaneArgs,
     /// Factor on the open loop whose closed poles are marked
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, conflicts_with = "damping", value_parser = finite)]
     gain: Option<f64>,
@@ -29,13 +30,6 @@ pub(crate) struct LocusArgs {
     /// How many gains at least
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     points: u32,
-    #[command(flatten)]
-    view: ViewArgs,
-    /// Plot into an SVG, or write a row a gain to a CSV (the first system); may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
-    out: Vec<OutFile>,
-    #[command(flatten)]
-    pub(super) voice: Voice,
 }
 
 /// Poles and zeros in the complex plane, natural frequency and damping of each
@@ -43,22 +37,22 @@ pub(crate) struct LocusArgs {
 #[command(after_help = "Example: tracelight lab pzmap \"K11 G11\" --closed -o poles.svg")]
 pub(crate) struct PzmapArgs {
     #[command(flatten)]
-    systems: SystemArgs,
+    pub(super) plane: PlaneArgs,
+}
+
+/// Systems in the complex plane, and where that goes.
+#[derive(Args, Debug)]
+pub(super) struct PlaneArgs {
     #[command(flatten)]
-    view: ViewArgs,
-    /// Plot into an SVG, or write a row a pole or zero to a CSV; may be given again
+    systems: SystemArgs,
+    /// Show so far from zero, in 1/s (of samples: of z) [default: all poles and zeros, and the unit circle]
+    #[arg(long, value_name = "REACH", value_parser = positive)]
+    reach: Option<f64>,
+    /// Plot into an SVG, or write a row a gain (the first system), or a pole or zero, to a CSV; may be given again
     #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,
-}
-
-/// What part of the plane is shown.
-#[derive(Args, Debug)]
-struct ViewArgs {
-    /// Show so far from zero, in 1/s (of samples: the z-plane is shown whole) [default: all poles and zeros]
-    #[arg(long, value_name = "REACH", value_parser = positive)]
-    reach: Option<f64>,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -91,28 +85,44 @@ struct Entry {
     closed: Vec<Complex>,
 }
 
-pub(crate) fn run(args: &LocusArgs) -> Result<Answer, Failure> {
-    let entries: Vec<Entry> =
-        args.systems.systems()?.into_iter().map(|named| entry(args, named)).collect::<Result<_, _>>()?;
-    write_all(&args.out, || figure(args, &entries), || Ok(csv(&entries)))?;
-    Ok(Answer::new(text(args, &entries), json(&entries)))
+pub(crate) fn run(args: &LocusArgs, stop: &Stop) -> Result<Answer, Failure> {
+    let systems = args.plane.systems.systems()?;
+    let order = |named: &Named| named.system.denominator().degree().max(named.system.numerator().degree());
+    bounded(args.points, systems.iter().map(order).sum())?;
+    let mut entries = Vec::new();
+    for named in systems {
+        stop.check()?;
+        entries.push(entry(args, named)?);
+    }
+    write_all(&args.plane.out, || figure(args, &entries), || Ok(csv(&entries)))?;
+    Ok(Answer::either(args.plane.voice, || text(args, &entries), || json(&entries)))
 }
 
 fn entry(args: &LocusArgs, named: Named) -> Result<Entry, Failure> {
-    let locus = named.system.root_locus(named.system.locus_gains(args.points as usize));
     let gain = match (args.gain, args.damping) {
         (Some(gain), _) => gain,
-        (None, Some(damping)) => locus.largest_gain(damping, 0.0, named.system.time()).ok_or_else(|| {
-            let message = format!(
-                "{}: no gain leaves every closed pole with a damping of {damping} or more",
-                named.name
-            );
-            Failure::failed("no-such-gain", message)
-        })?,
+        (None, Some(damping)) => damped_gain(&named, damping)?,
         (None, None) => 1.0,
     };
+    let locus = named.system.root_locus(named.system.locus_gains(args.points as usize));
     let closed = named.system.closed_at(gain).root_values();
     Ok(Entry { named, locus, gain, closed })
+}
+
+fn damped_gain(named: &Named, damping: f64) -> Result<f64, Failure> {
+    let name = &named.name;
+    let message = match named.system.damped_gains(damping) {
+        DampedGains::UpTo(gain) => return Ok(gain),
+        DampedGains::None => {
+            format!("{name}: no factor leaves every closed pole with a damping of {damping}")
+        }
+        DampedGains::Beyond(from) => format!(
+            "{name}: every factor above {} leaves every closed pole with a damping of {damping}, so there is no largest; choose one \
+             with --gain",
+            four(from)
+        ),
+    };
+    Err(Failure::failed("no-such-gain", message))
 }
 
 fn text(args: &LocusArgs, entries: &[Entry]) -> String {
@@ -156,25 +166,6 @@ fn text(args: &LocusArgs, entries: &[Entry]) -> String {
     text.trim_end().to_owned()
 }
 
-/// A pole and its mirror.
-fn place(pole: Complex) -> String {
-    if pole.im == 0.0 { four(pole.re) } else { format!("{} ± {}j", four(pole.re), four(pole.im.abs())) }
-}
-
-fn pole_lines(poles: &[Complex], time: Time) -> String {
-    let mut text = format!("    {:28} {:>16} {:>10}\n", "pole", "natural, rad/s", "damping");
-    for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
-        let s = time.continuous(*pole);
-        let damping = if s.norm() > 0.0 {
-            format!("{:.4}", -s.re / s.norm()).replace('-', "−")
-        } else {
-            "–".to_owned()
-        };
-        let _ = writeln!(text, "    {:28} {:>16} {damping:>10}", place(*pole), four(s.norm()));
-    }
-    text
-}
-
 fn json(entries: &[Entry]) -> String {
     let one = |entry: &Entry| {
         let system = &entry.named.system;
@@ -204,7 +195,11 @@ fn csv(entries: &[Entry]) -> String {
     for (gain, poles) in locus.gains.iter().zip(&locus.poles) {
         let _ = write!(text, "\n{gain:.9e}");
         for pole in poles {
-            let _ = write!(text, ",{:.9e},{:.9e}", pole.re, pole.im);
+            // no number where a branch is infinitely far away
+            let _ = match pole.re.is_finite() {
+                true => write!(text, ",{:.9e},{:.9e}", pole.re, pole.im),
+                false => write!(text, ",,"),
+            };
         }
     }
     text + "\n"
@@ -213,15 +208,12 @@ fn csv(entries: &[Entry]) -> String {
 const SIZE: (i32, i32) = (820, 640);
 
 fn figure(args: &LocusArgs, entries: &[Entry]) -> Result<String, Failure> {
-    let mut panel = plane(entries.iter().map(|e| (&e.named.system, &e.closed[..])), args.view.reach);
+    let mut panel = plane(entries.iter().map(|e| (&e.named.system, &e.closed[..])), args.plane.reach);
     for entry in entries {
         let colour = entry.named.colour;
         let branches = entry.locus.poles.first().map_or(0, Vec::len);
         for branch in 0..branches {
-            // where the highest powers cancel, a branch is infinitely far away
-            let place =
-                |poles: &Vec<Complex>| poles.get(branch).map_or((f64::NAN, f64::NAN), |z| (z.re, z.im));
-            let points = entry.locus.poles.iter().map(place);
+            let points = entry.locus.poles.iter().map(|poles| (poles[branch].re, poles[branch].im));
             panel.curves.push(Curve { colour, pen: Pen::Solid, points: points.collect() });
         }
         panel.marks.extend(signs(&entry.named));
@@ -231,7 +223,7 @@ fn figure(args: &LocusArgs, entries: &[Entry]) -> Result<String, Failure> {
         colour: e.named.colour,
         name: format!("{}, dots: gain times {}", e.named.name, four(e.gain)),
     };
-    draw("Root locus", entries.iter().map(key).collect(), panel, args.systems.theme())
+    draw("Root locus", entries.iter().map(key).collect(), panel, args.plane.systems.theme())
 }
 
 fn draw(title: &str, legend: Vec<Key>, panel: Panel, theme: crate::chart::Theme) -> Result<String, Failure> {
@@ -256,10 +248,15 @@ fn plane<'a>(
     for (system, closed) in systems {
         time = system.time();
         let all = system.poles().into_iter().chain(system.zeros()).chain(closed.iter().copied());
-        most = most.max(all.map(|z| z.norm()).fold(0.0, f64::max));
+        most = most.max(all.map(|z| z.norm()).filter(|size| size.is_finite()).fold(0.0, f64::max));
     }
     let sampled = time != Time::Continuous;
-    let up = if sampled { 1.2 } else { reach.unwrap_or(1.25 * most.max(1e-9)) };
+    let all = match (sampled, most) {
+        (true, most) => 1.2 * most.max(1.0),
+        (false, 0.0) => 1.0,
+        (false, most) => 1.25 * most,
+    };
+    let up = reach.unwrap_or(all);
     let across = up * f64::from(SIZE.0 - 90) / f64::from(SIZE.1 - 54);
     // what is stable has the larger part
     let (left, right) = if sampled { (-across, across) } else { (-1.6 * across, 0.4 * across) };
@@ -323,17 +320,25 @@ fn sampled_grid(period_s: f64) -> Vec<Guide> {
 }
 
 pub(crate) fn run_pzmap(args: &PzmapArgs) -> Result<Answer, Failure> {
-    let systems = args.systems.systems()?;
+    let systems = args.plane.systems.systems()?;
     let plot = || {
-        let mut panel = plane(systems.iter().map(|named| (&named.system, &[][..])), args.view.reach);
+        let mut panel = plane(systems.iter().map(|named| (&named.system, &[][..])), args.plane.reach);
         systems.iter().for_each(|named| panel.marks.extend(signs(named)));
         let legend =
             systems.iter().map(|named| Key { colour: named.colour, name: named.name.clone() }).collect();
-        draw("Poles (crosses) and zeros (rings)", legend, panel, args.systems.theme())
+        draw("Poles (crosses) and zeros (rings)", legend, panel, args.plane.systems.theme())
     };
-    write_all(&args.out, plot, || Ok(pzmap_csv(&systems)))?;
+    write_all(&args.plane.out, plot, || Ok(pzmap_csv(&systems)))?;
+    let json = || {
+        let all: Vec<_> = systems.iter().map(|named| system_json(&named.name, &named.system)).collect();
+        json!({ "systems": all }).to_string()
+    };
+    Ok(Answer::either(args.plane.voice, || pzmap_text(&systems), json))
+}
+
+fn pzmap_text(systems: &[Named]) -> String {
     let mut text = String::new();
-    for Named { name, system, .. } in &systems {
+    for Named { name, system, .. } in systems {
         let zeros: Vec<String> = system.zeros().iter().filter(|z| z.im >= 0.0).map(|z| place(*z)).collect();
         // writing to a String cannot fail
         let _ = writeln!(text, "{name} = {}\n    = {}", system.zpk(), system);
@@ -344,8 +349,7 @@ pub(crate) fn run_pzmap(args: &PzmapArgs) -> Result<Answer, Failure> {
         );
         let _ = writeln!(text, "{}", pole_lines(&system.poles(), system.time()));
     }
-    let all: Vec<_> = systems.iter().map(|named| system_json(&named.name, &named.system)).collect();
-    Ok(Answer::new(text.trim_end(), json!({ "systems": all }).to_string()))
+    text.trim_end().to_owned()
 }
 
 fn pzmap_csv(systems: &[Named]) -> String {
@@ -353,9 +357,9 @@ fn pzmap_csv(systems: &[Named]) -> String {
     for (number, named) in (1..).zip(systems) {
         let all = named.system.poles().into_iter().map(|z| ("pole", z));
         for (kind, z) in all.chain(named.system.zeros().into_iter().map(|z| ("zero", z))) {
-            let s = named.system.time().continuous(z);
-            let damping = if s.norm() > 0.0 { -s.re / s.norm() } else { 1.0 };
-            let _ = writeln!(text, "{number},{kind},{:.9e},{:.9e},{:.9e},{damping:.9}", z.re, z.im, s.norm());
+            let Mode { natural_rad_s, damping, .. } = Mode::of(z, named.system.time());
+            let _ =
+                writeln!(text, "{number},{kind},{:.9e},{:.9e},{natural_rad_s:.9e},{damping:.9}", z.re, z.im);
         }
     }
     text

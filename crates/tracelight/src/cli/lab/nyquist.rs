@@ -3,13 +3,13 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::json;
-use tracelight_linear::{Complex, Margins, TransferFunction, decibels};
+use tracelight_linear::{Complex, Margins, decibels};
 
-use super::bode::{BandArgs, margin_lines, margins_json, summary, system_json};
-use super::systems::{Named, SystemArgs};
-use super::{OutFile, out_file, write_all};
+use super::bode::{FrequencyArgs, margin_lines, margins_json, summary, system_json};
+use super::systems::Named;
+use super::write_all;
 use crate::chart::{Colour, Curve, Figure, Guide, Key, Mark, Panel, Pen, Scale, Sign};
-use crate::cli::{Answer, Voice};
+use crate::cli::Answer;
 use crate::failure::Failure;
 
 /// The open loop's values over all frequencies in the complex plane, how often they turn round −1, and what is left of stability
@@ -17,14 +17,7 @@ use crate::failure::Failure;
 #[command(after_help = "Example: tracelight lab nyquist \"K11 G11\" -o nyquist.svg")]
 pub(crate) struct NyquistArgs {
     #[command(flatten)]
-    systems: SystemArgs,
-    #[command(flatten)]
-    band: BandArgs,
-    /// Plot into an SVG, or write a row a frequency to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
-    out: Vec<OutFile>,
-    #[command(flatten)]
-    pub(super) voice: Voice,
+    pub(super) over: FrequencyArgs,
 }
 
 /// Amplification over phase of the open loop, with lines of what it is closed
@@ -32,14 +25,7 @@ pub(crate) struct NyquistArgs {
 #[command(after_help = "Example: tracelight lab nichols \"K11 G11\" -o nichols.svg")]
 pub(crate) struct NicholsArgs {
     #[command(flatten)]
-    systems: SystemArgs,
-    #[command(flatten)]
-    band: BandArgs,
-    /// Plot into an SVG, or write a row a frequency to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
-    out: Vec<OutFile>,
-    #[command(flatten)]
-    pub(super) voice: Voice,
+    pub(super) over: FrequencyArgs,
 }
 
 /// A loop and what is known of it.
@@ -57,41 +43,33 @@ struct Entry {
 impl Entry {
     fn of(named: Named, rad_s: &[f64]) -> Self {
         let response = named.system.frequency_response(rad_s.to_vec());
-        let growing = |system: &TransferFunction| {
-            let grows = |pole: &Complex| match system.time() {
-                tracelight_linear::Time::Continuous => pole.re > 0.0,
-                tracelight_linear::Time::Sampled(_) => pole.norm_sqr() > 1.0,
-            };
-            system.poles().iter().filter(|pole| grows(pole)).count()
-        };
         Self {
             rad_s: response.rad_s.clone(),
             phases_deg: response.phases_deg().collect(),
             values: response.values,
             margins: named.system.margins(),
-            open_unstable: growing(&named.system),
-            closed_unstable: named.system.closed().ok().map(|closed| growing(&closed)),
+            open_unstable: named.system.growing_poles(),
+            closed_unstable: named.system.closed().ok().map(|closed| closed.growing_poles()),
             named,
         }
     }
 }
 
-fn entries(systems: &SystemArgs, band: &BandArgs) -> Result<Vec<Entry>, Failure> {
-    let systems = systems.systems()?;
-    let rad_s = band.frequencies(&systems)?;
+fn entries(args: &FrequencyArgs) -> Result<Vec<Entry>, Failure> {
+    let (systems, rad_s) = args.read()?;
     Ok(systems.into_iter().map(|named| Entry::of(named, &rad_s)).collect())
 }
 
 pub(crate) fn run(args: &NyquistArgs) -> Result<Answer, Failure> {
-    let entries = entries(&args.systems, &args.band)?;
-    write_all(&args.out, || nyquist(args, &entries), || Ok(csv(&entries)))?;
-    Ok(Answer::new(text(&entries), json(&entries)))
+    let entries = entries(&args.over)?;
+    write_all(&args.over.out, || nyquist(args, &entries), || Ok(csv(&entries)))?;
+    Ok(Answer::either(args.over.voice, || text(&entries), || json(&entries)))
 }
 
 pub(crate) fn run_nichols(args: &NicholsArgs) -> Result<Answer, Failure> {
-    let entries = entries(&args.systems, &args.band)?;
-    write_all(&args.out, || nichols(args, &entries), || Ok(csv(&entries)))?;
-    Ok(Answer::new(text(&entries), json(&entries)))
+    let entries = entries(&args.over)?;
+    write_all(&args.over.out, || nichols(args, &entries), || Ok(csv(&entries)))?;
+    Ok(Answer::either(args.over.voice, || text(&entries), || json(&entries)))
 }
 
 fn text(entries: &[Entry]) -> String {
@@ -183,7 +161,7 @@ fn nyquist(args: &NyquistArgs, entries: &[Entry]) -> Result<String, Failure> {
         entries,
         panel,
         SIZE,
-        args.systems.theme(),
+        args.over.systems.theme(),
     )
 }
 
@@ -255,7 +233,7 @@ fn nichols(args: &NicholsArgs, entries: &[Entry]) -> Result<String, Failure> {
         entries,
         panel,
         (820, 600),
-        args.systems.theme(),
+        args.over.systems.theme(),
     )
 }
 

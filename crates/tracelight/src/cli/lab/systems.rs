@@ -1,5 +1,7 @@
+use std::fmt::Write;
+
 use clap::{Args, ValueEnum};
-use tracelight_linear::{Complex, Discretization, Time, TransferFunction, Zpk};
+use tracelight_linear::{Complex, Discretization, Mode, Time, TransferFunction, Zpk, four_digits};
 use tracelight_rig::Joint;
 use tracelight_sim::Compensator;
 
@@ -21,13 +23,13 @@ pub(crate) struct SystemArgs {
     /// The systems are of samples so far apart, their variable is z
     #[arg(long, value_name = "TIME", value_parser = period, conflicts_with = "sample")]
     period: Option<f64>,
-    /// Sample the systems first, so often
+    /// Sample each system, so often
     #[arg(long, value_name = "TIME", value_parser = period)]
     sample: Option<f64>,
     /// How they are sampled
     #[arg(long, value_enum, default_value = "hold", requires = "sample")]
     method: Method,
-    /// Close each by negative feedback of its output first
+    /// Close each by negative feedback of its output, after it is sampled
     #[arg(long)]
     closed: bool,
     /// Light lines on dark ground
@@ -54,6 +56,14 @@ impl Method {
             Self::Matched => Discretization::Matched,
         }
     }
+
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Hold => "a hold",
+            Self::Tustin => "Tustin's rule",
+            Self::Matched => "matching",
+        }
+    }
 }
 
 fn period(text: &str) -> Result<f64, String> {
@@ -63,7 +73,7 @@ fn period(text: &str) -> Result<f64, String> {
 
 /// A system and what it is called.
 pub(super) struct Named {
-    /// As typed.
+    /// As typed, and what was made of it.
     pub(super) name: String,
     pub(super) system: TransferFunction,
     pub(super) colour: Colour,
@@ -112,14 +122,28 @@ impl SystemArgs {
         let mut system = TransferFunction::parse_with(name, time, known)
             .map_err(|e| Failure::usage("bad-formula", format!("{e}\n  {name}\n  {}^", " ".repeat(e.at))))?;
         let failed = |e| Failure::failed("no-such-system", format!("{name}: {e}"));
+        let mut whole = name.to_owned();
         if let Some(period_s) = self.sample {
             system = system.sampled(period_s, self.method.discretization()).map_err(failed)?;
+            whole += &format!(", sampled every {} ms by {}", four(1e3 * period_s), self.method.words());
         }
         if self.closed {
             system = system.closed().map_err(failed)?;
+            whole += ", closed";
         }
-        Ok(Named { name: name.to_owned(), system, colour })
+        Ok(Named { name: whole, system, colour })
     }
+}
+
+/// Refuses what would take more memory than a plot is worth: so many numbers in all.
+pub(super) fn bounded(points: u32, others: usize) -> Result<(), Failure> {
+    const MOST: usize = 1_000_000;
+    let most = MOST / others.max(1);
+    if points as usize <= most {
+        return Ok(());
+    }
+    let message = format!("--points {points} would make more than {MOST} numbers; here {most} is the most");
+    Err(Failure::usage("usage", message))
 }
 
 /// The report's compensator of a joint, in one of its readings.
@@ -136,20 +160,27 @@ fn compensator(joint: Joint, time_constants: bool) -> Option<TransferFunction> {
 
 /// A number for people: four digits, without idle zeros.
 pub(super) fn four(value: f64) -> String {
-    if value.is_infinite() {
-        return "∞".to_owned();
+    if value.is_infinite() { "∞".to_owned() } else { four_digits(value).replace('-', "−") }
+}
+
+/// A pole or zero and its mirror, for people.
+pub(super) fn place(root: Complex) -> String {
+    if root.im == 0.0 { four(root.re) } else { format!("{} ± {}j", four(root.re), four(root.im.abs())) }
+}
+
+/// Poles for people: a line each, with natural frequency and damping.
+pub(super) fn pole_lines(poles: &[Complex], time: Time) -> String {
+    let mut text = format!("    {:28} {:>16} {:>10}\n", "pole", "natural, rad/s", "damping");
+    for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
+        let Mode { natural_rad_s, damping, .. } = Mode::of(*pole, time);
+        let damping = match natural_rad_s {
+            0.0 => "–".to_owned(),
+            _ => format!("{damping:.4}").replace('-', "−"),
+        };
+        // writing to a String cannot fail
+        let _ = writeln!(text, "    {:28} {:>16} {damping:>10}", place(*pole), four(natural_rad_s));
     }
-    let exponent = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
-    let text = if (-5..7).contains(&exponent) {
-        format!("{value:.*}", (3 - exponent).max(0) as usize)
-    } else {
-        format!("{value:.3e}")
-    };
-    let (mantissa, power) =
-        text.split_once('e').map_or((&text[..], String::new()), |(m, p)| (m, format!("e{p}")));
-    let mantissa =
-        if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
-    format!("{mantissa}{power}").replace('-', "−")
+    text
 }
 
 /// A complex number for scripts.
