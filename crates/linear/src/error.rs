@@ -46,6 +46,17 @@ pub enum LinearError {
         "1 + G H is zero, everywhere or at infinite frequency: that loop answers at once and without bounds; break it by a delay or a pole"
     )]
     AlgebraicLoop,
+    /// A weight that has to be positive, and symmetric, is not.
+    #[error("{0} is not symmetric and positive")]
+    NotPositive(&'static str),
+    /// Nothing settles that system: a mode at or beyond the edge of stability is not moved by any input, or not seen, or costs nothing.
+    #[error(
+        "nothing brings that system to rest: a mode that does not die out by itself is not moved by the input, not seen, or costs nothing"
+    )]
+    NoRegulator,
+    /// What is wished for cannot be had.
+    #[error("{0}")]
+    Wish(String),
     /// An iteration did not end where it should.
     #[error("an iteration did not converge")]
     NotConverged,

@@ -6,6 +6,7 @@
 mod binary;
 mod cascade;
 mod damped;
+mod design;
 mod discretize;
 mod eigen;
 mod error;
@@ -31,6 +32,7 @@ pub type Complex = nalgebra::Complex<f64>;
 pub type Matrix = nalgebra::DMatrix<f64>;
 
 pub use damped::DampedGains;
+pub use design::{Estimator, LeadLagWish, Pid, PidWish, Regulator};
 pub use discretize::Discretization;
 pub use eigen::eigenvalues;
 pub use error::LinearError;

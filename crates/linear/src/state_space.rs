@@ -206,7 +206,7 @@ fn turn_to_last(row: &Matrix) -> Matrix {
 }
 
 /// Matrices side by side, rows of them below each other.
-fn stack(rows: &[&[&Matrix]]) -> Matrix {
+pub(crate) fn stack(rows: &[&[&Matrix]]) -> Matrix {
     let height = rows.iter().map(|row| row[0].nrows()).sum();
     let width = rows[0].iter().map(|part| part.ncols()).sum();
     let mut all = Matrix::zeros(height, width);

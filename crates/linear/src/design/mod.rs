@@ -1,0 +1,11 @@
+//! Controllers from wishes.
+
+mod lead_lag;
+mod pid;
+mod place;
+mod regulator;
+mod riccati;
+
+pub use lead_lag::LeadLagWish;
+pub use pid::{Pid, PidWish};
+pub use regulator::{Estimator, Regulator};

@@ -1,0 +1,208 @@
+use std::f64::consts::PI;
+
+use crate::stability::Stability;
+use crate::time::positive;
+use crate::{Complex, LinearError, Polynomial, Time, TransferFunction};
+
+/// A PID: kp + ki/s + kd s / (1 + s/f).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pid {
+    /// Proportional.
+    pub kp: f64,
+    /// Integral, 1/s.
+    pub ki: f64,
+    /// Derivative, s.
+    pub kd: f64,
+    /// Where the derivative ends, f, rad/s.
+    pub filter_rad_s: f64,
+}
+
+/// What a PID is to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PidWish {
+    /// Where the loop's gain is 1, rad/s; none: where the integral can be largest.
+    pub crossover_rad_s: Option<f64>,
+    /// Its phase margin there, rad.
+    pub phase_margin_rad: f64,
+    /// The least distance of the loop from −1: one over the largest sensitivity.
+    pub modulus: f64,
+    /// How many times the crossover the derivative ends at.
+    pub filter: f64,
+}
+
+impl Pid {
+    /// As a transfer function; without poles and zeros that cancel each other where a gain is 0.
+    pub fn transfer(&self) -> TransferFunction {
+        let Self { kp, ki, kd, filter_rad_s: f } = *self;
+        let (above, below) = match (ki == 0.0, kd == 0.0) {
+            (true, true) => (vec![kp], vec![1.0]),
+            (false, true) => (vec![kp, ki], vec![1.0, 0.0]),
+            (true, false) => (vec![kp + kd * f, kp * f], vec![1.0, f]),
+            (false, false) => (vec![kp + kd * f, kp * f + ki, ki * f], vec![1.0, f, 0.0]),
+        };
+        let gain = TransferFunction::gain(kp, Time::Continuous);
+        TransferFunction::new(Polynomial::new(above), Polynomial::new(below), Time::Continuous)
+            .unwrap_or(gain)
+    }
+}
+
+impl TransferFunction {
+    /// The PID with the largest integral gain, which rejects a load best, of those that give the open loop that crossover and phase
+    /// margin exactly and keep it that far from −1 (the criterion of Åström & Hägglund, *Advanced PID Control*, 2006, §6.8, with the
+    /// phase margin given).
+    pub fn pid(&self, wish: PidWish) -> Result<Pid, LinearError> {
+        self.time().with(Time::Continuous)?;
+        let PidWish { phase_margin_rad, modulus, filter, .. } = wish;
+        positive("the filter's ratio", filter)?;
+        if !(0.0..PI).contains(&phase_margin_rad) || !(0.0..1.0).contains(&modulus) {
+            let message = "a phase margin is between 0 and 180°, a modulus margin between 0 and 1";
+            return Err(LinearError::Wish(message.into()));
+        }
+        // the circle of that modulus margin about −1 lies where the phase margin is this at least
+        if modulus > 2.0 * (0.5 * phase_margin_rad).sin() {
+            return Err(LinearError::Wish(format!(
+                "a phase margin of {:.1}° leaves a modulus margin of {:.3} at most: ask for more of the one or less of the other",
+                phase_margin_rad.to_degrees(),
+                2.0 * (0.5 * phase_margin_rad).sin()
+            )));
+        }
+        match wish.crossover_rad_s {
+            Some(w) => self.pid_at(positive("the crossover, rad/s,", w)?, &wish).ok_or_else(|| {
+                LinearError::Wish(format!(
+                    "no PID gives a crossover of {w} rad/s, {:.1}° of phase margin there, and a modulus margin of {modulus}: ask for another \
+                     crossover or for less margin",
+                    phase_margin_rad.to_degrees()
+                ))
+            }),
+            None => self.best_pid(&wish),
+        }
+    }
+
+    /// Of the crossovers the one whose integral gain is largest.
+    fn best_pid(&self, wish: &PidWish) -> Result<Pid, LinearError> {
+        const CROSSOVERS: usize = 80;
+        let (low, high) = self.band();
+        let crossovers = crate::logspace((low, high), CROSSOVERS);
+        let all: Vec<Option<Pid>> = crossovers.iter().map(|&w| self.pid_at(w, wish)).collect();
+        let ki = |i: usize| all[i].map_or(f64::NEG_INFINITY, |pid| pid.ki);
+        let best = (0..CROSSOVERS).max_by(|&a, &b| ki(a).total_cmp(&ki(b))).filter(|&i| all[i].is_some());
+        let Some(best) = best else {
+            return Err(LinearError::Wish(
+                "no PID gives that phase and that modulus margin at any crossover: ask for less margin"
+                    .into(),
+            ));
+        };
+        if best + 1 == CROSSOVERS {
+            return Err(LinearError::Wish(format!(
+                "the faster the better, up to {high} rad/s and beyond: nothing in the system bounds the crossover; choose one"
+            )));
+        }
+        // between the neighbours, by golden section
+        let (mut from, mut to) = (crossovers[best.saturating_sub(1)].ln(), crossovers[best + 1].ln());
+        let mut found = all[best];
+        for _ in 0..24 {
+            let at = |share: f64| self.pid_at((from + share * (to - from)).exp(), wish);
+            let (one, other) = (at(0.382), at(0.618));
+            let ki = |pid: &Option<Pid>| pid.map_or(f64::NEG_INFINITY, |pid| pid.ki);
+            if ki(&one) > ki(&other) {
+                to = from + 0.618 * (to - from)
+            } else {
+                from += 0.382 * (to - from)
+            }
+            for pid in [one, other] {
+                if ki(&pid) > ki(&found) {
+                    found = pid;
+                }
+            }
+        }
+        found.ok_or(LinearError::NotConverged)
+    }
+
+    /// With that crossover and phase margin, and the most integral that leaves the modulus margin.
+    fn pid_at(&self, w: f64, wish: &PidWish) -> Option<Pid> {
+        /// Shares of the controller's size at the crossover that the integral has: a step of 8 %.
+        const STEPS: i32 = 100;
+        let share = |k: i32| if k == STEPS { 0.0 } else { 5.0 * 0.92_f64.powi(k) };
+        let ok = |share: f64| self.pid_with(w, share, wish).filter(|pid| self.is_calm(pid, wish));
+        let first = (0..=STEPS).find(|&k| ok(share(k)).is_some())?;
+        let (mut good, mut bad) = (share(first), share((first - 1).max(0)));
+        for _ in 0..if first == 0 { 0 } else { 20 } {
+            let middle = 0.5 * (good + bad);
+            if ok(middle).is_some() { good = middle } else { bad = middle }
+        }
+        ok(good)
+    }
+
+    /// The controller's value at the crossover is given: with that share of it as the integral the two other gains follow.
+    fn pid_with(&self, w: f64, share: f64, wish: &PidWish) -> Option<Pid> {
+        let value = -Complex::from_polar(1.0, wish.phase_margin_rad) / self.at(Complex::new(0.0, w));
+        let f = wish.filter * w;
+        let of_derivative = Complex::new(w, f) * (w * f / (w * w + f * f));
+        let ki = share * w * value.norm();
+        let kd = (value.im + ki / w) / of_derivative.im;
+        let kp = value.re - kd * of_derivative.re;
+        // less than rounding is none
+        let kd = if kd.abs() * w < 1e-12 * value.norm() { 0.0 } else { kd };
+        let makes_sense = kp >= 0.0 && kd >= 0.0 && (kp + ki + kd).is_finite() && value.norm() > 0.0;
+        makes_sense.then_some(Pid { kp, ki, kd, filter_rad_s: f })
+    }
+
+    /// Whether the loop is stable, keeps its distance from −1, and the phase margin is not less anywhere else.
+    fn is_calm(&self, pid: &Pid, wish: &PidWish) -> bool {
+        let Ok(open) = self.series(&pid.transfer()) else { return false };
+        let margins = open.margins();
+        let far = margins.modulus.is_some_and(|m| m.distance >= wish.modulus);
+        let late = margins.least_phase().is_some_and(|m| m.phase_rad.abs() >= wish.phase_margin_rad - 1e-6);
+        far && late && open.closed().is_ok_and(|closed| closed.stability() == Stability::Stable)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> TransferFunction {
+        TransferFunction::parse(text, Time::Continuous).unwrap()
+    }
+
+    fn wish(crossover_rad_s: Option<f64>) -> PidWish {
+        PidWish { crossover_rad_s, phase_margin_rad: 55_f64.to_radians(), modulus: 0.6, filter: 10.0 }
+    }
+
+    #[test]
+    fn crossover_and_margins_are_as_wished() {
+        for (text, w) in
+            [("13.16/(s(s+0.1316))", 60.0), ("13.33/(s^2+0.1333s+0.7822)", 30.0), ("1/(s+1)^3", 0.8)]
+        {
+            let plant = parse(text);
+            let pid = plant.pid(wish(Some(w))).unwrap();
+            let margins = plant.series(&pid.transfer()).unwrap().margins();
+            let phase = margins.least_phase().unwrap();
+            assert!(
+                (phase.rad_s / w - 1.0).abs() < 1e-9 && (phase.degrees() - 55.0).abs() < 1e-6,
+                "{margins:?}"
+            );
+            // the integral is the largest: the circle is touched
+            assert!((margins.modulus.unwrap().distance - 0.6).abs() < 1e-4, "{text} {pid:?} {margins:?}");
+        }
+    }
+
+    #[test]
+    fn the_best_crossover_has_no_better_neighbour() {
+        let plant = parse("1/(s+1)^4");
+        let best = plant.pid(wish(None)).unwrap();
+        for w in crate::logspace((0.05, 5.0), 60) {
+            if let Ok(other) = plant.pid(wish(Some(w))) {
+                assert!(other.ki <= best.ki * 1.001, "{w}: {other:?} {best:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_had_is_refused() {
+        assert!(parse("1/(s(s+1))").pid(wish(None)).is_err_and(|e| e.to_string().contains("choose one")));
+        assert!(parse("1/(s+1)^4").pid(wish(Some(50.0))).is_err());
+        let much = PidWish { modulus: 0.95, ..wish(None) };
+        assert!(parse("1/(s+1)").pid(much).is_err_and(|e| e.to_string().contains("at most")));
+    }
+}

@@ -1,0 +1,165 @@
+use crate::eigen::{balanced, eigenvalues};
+use crate::{LinearError, Matrix, Time};
+
+/// Halvings of the error's exponent: each doubles the digits, and poles a million apart need some twenty.
+const MOST_DOUBLINGS: usize = 60;
+
+/// States beyond which a solution is not refined: Lyapunov's equation is solved as one of n² unknowns.
+const MOST_REFINED: usize = 24;
+
+/// What the best cost is, xᵀ X x, and what it needs: ẋ = A x + B u with cost ∫ xᵀ Q x + uᵀ R u, or a sum over samples.
+pub(super) struct Riccati<'a> {
+    pub(super) a: &'a Matrix,
+    pub(super) b: &'a Matrix,
+    pub(super) q: &'a Matrix,
+    pub(super) r: &'a Matrix,
+    pub(super) time: Time,
+}
+
+impl Riccati<'_> {
+    /// X and the gain of u = −K x.
+    ///
+    /// By a structure-preserving doubling algorithm (Chu, Fan & Lin, *A structure-preserving doubling algorithm for continuous-time
+    /// algebraic Riccati equations*, Linear Algebra Appl. 396, 2005; of samples Chu, Fan, Lin & Wang, Int. J. Control 77, 2004),
+    /// then by Newton's iteration (Kleinman 1968), on balanced states.
+    pub(super) fn solve(&self) -> Result<(Matrix, Matrix), LinearError> {
+        let (a, scales) = balanced(self.a.clone());
+        let n = a.nrows();
+        let scaled = |m: &Matrix, power: i32| {
+            let mut m = m.clone();
+            for (i, scale) in scales.iter().enumerate() {
+                m.row_mut(i).iter_mut().for_each(|entry| *entry *= scale.powi(power));
+            }
+            m
+        };
+        // x = D y: B by D⁻¹, Q by D from both sides
+        let b = scaled(self.b, -1);
+        let q = scaled(&scaled(self.q, 1).transpose(), 1);
+        // cost in a unit that makes both sides about as large
+        let r_inverse = self.r.clone().cholesky().ok_or(LinearError::NotPositive("R"))?.inverse();
+        let g = &b * &r_inverse * b.transpose();
+        let unit = match (q.norm() / g.norm()).sqrt() {
+            unit if unit.is_finite() && unit > 0.0 => unit.log2().round().exp2(),
+            _ => 1.0,
+        };
+        let (q, r) = (q / unit, self.r / unit);
+        let inner = Riccati { a: &a, b: &b, q: &q, r: &r, time: self.time };
+        let mut x = match self.time {
+            Time::Continuous => continuous(&a, &(g * unit), &q)?,
+            Time::Sampled(_) => doubled(a.clone(), g * unit, q.clone())?,
+        };
+        if n <= MOST_REFINED {
+            x = inner.refined(x);
+        }
+        let gain = inner.gain(&x)?;
+        let back = scaled(&scaled(&x, -1).transpose(), -1) * unit;
+        Ok((0.5 * (&back + back.transpose()), scaled(&gain.transpose(), -1).transpose()))
+    }
+
+    fn gain(&self, x: &Matrix) -> Result<Matrix, LinearError> {
+        let singular = LinearError::NotPositive("R + BᵀXB");
+        match self.time {
+            Time::Continuous => {
+                let r = self.r.clone().cholesky().ok_or(LinearError::NotPositive("R"))?;
+                Ok(r.solve(&(self.b.transpose() * x)))
+            }
+            Time::Sampled(_) => {
+                let r = (self.r + self.b.transpose() * x * self.b).cholesky().ok_or(singular)?;
+                Ok(r.solve(&(self.b.transpose() * x * self.a)))
+            }
+        }
+    }
+
+    /// What is left of the equation.
+    fn residual(&self, x: &Matrix, gain: &Matrix) -> f64 {
+        let closed = self.a - self.b * gain;
+        let cost = self.q + gain.transpose() * self.r * gain;
+        match self.time {
+            Time::Continuous => (closed.transpose() * x + x * closed + cost).norm(),
+            Time::Sampled(_) => (closed.transpose() * x * closed + cost - x).norm(),
+        }
+    }
+
+    /// Newton's iteration as long as it makes the residual smaller.
+    fn refined(&self, mut x: Matrix) -> Matrix {
+        const MOST_STEPS: usize = 4;
+        let Ok(mut gain) = self.gain(&x) else { return x };
+        let mut left = self.residual(&x, &gain);
+        for _ in 0..MOST_STEPS {
+            let closed = self.a - self.b * &gain;
+            let cost = self.q + gain.transpose() * self.r * &gain;
+            let Some(next) = lyapunov(&closed, &cost, self.time) else { break };
+            let Ok(next_gain) = self.gain(&next) else { break };
+            let next_left = self.residual(&next, &next_gain);
+            if next_left.is_nan() || next_left >= left {
+                break;
+            }
+            (x, gain, left) = (next, next_gain, next_left);
+        }
+        x
+    }
+}
+
+/// Continuous time to samples by Cayley's transform s = γ (z + 1)/(z − 1), which leaves X as it is.
+fn continuous(a: &Matrix, g: &Matrix, q: &Matrix) -> Result<Matrix, LinearError> {
+    let n = a.nrows();
+    // the middle of the closed loop's poles: of the Hamiltonian's eigenvalues those to the left
+    let mut hamiltonian = Matrix::zeros(2 * n, 2 * n);
+    hamiltonian.view_mut((0, 0), (n, n)).copy_from(a);
+    hamiltonian.view_mut((0, n), (n, n)).copy_from(&-g);
+    hamiltonian.view_mut((n, 0), (n, n)).copy_from(&-q);
+    hamiltonian.view_mut((n, n), (n, n)).copy_from(&-a.transpose());
+    let sizes: Vec<f64> = eigenvalues(&hamiltonian)?.iter().map(|z| z.norm()).filter(|s| *s > 0.0).collect();
+    let (least, most) =
+        (sizes.iter().copied().fold(f64::INFINITY, f64::min), sizes.iter().copied().fold(0.0, f64::max));
+    let middle = if most > 0.0 { (least * most).sqrt() } else { 1.0 };
+    // an eigenvalue of A at γ would be divided by; others are taken
+    let rates = [1.0, 1.31, 0.73, 2.3, 0.41].map(|factor| factor * middle);
+    let found = rates.into_iter().find_map(|rate| {
+        let shifted = (a - Matrix::identity(n, n) * rate).try_inverse()?;
+        let inner = (a.transpose() - Matrix::identity(n, n) * rate + q * &shifted * g).try_inverse()?;
+        let start = Matrix::identity(n, n) + inner.transpose() * (2.0 * rate);
+        let g = &shifted * g * &inner * (2.0 * rate);
+        let q = &inner * q * &shifted * (2.0 * rate);
+        doubled(start, g, q).ok()
+    });
+    found.ok_or(LinearError::NoRegulator)
+}
+
+/// The limit of H: A ← A (1 + G H)⁻¹ A, G ← G + A (1 + G H)⁻¹ G Aᵀ, H ← H + Aᵀ H (1 + G H)⁻¹ A.
+fn doubled(mut a: Matrix, mut g: Matrix, mut h: Matrix) -> Result<Matrix, LinearError> {
+    let n = a.nrows();
+    for _ in 0..MOST_DOUBLINGS {
+        let inner = (Matrix::identity(n, n) + &g * &h).lu();
+        let through = inner.solve(&a).ok_or(LinearError::NoRegulator)?;
+        let across = inner.solve(&g).ok_or(LinearError::NoRegulator)?;
+        let more = a.transpose() * &h * &through;
+        g += &a * across * a.transpose();
+        h += &more;
+        // they are symmetric but for rounding
+        g = 0.5 * (&g + g.transpose());
+        h = 0.5 * (&h + h.transpose());
+        a = &a * through;
+        if !h.iter().chain(a.iter()).all(|entry| entry.is_finite()) {
+            return Err(LinearError::NoRegulator);
+        }
+        if more.norm() <= f64::EPSILON * h.norm() {
+            return Ok(h);
+        }
+    }
+    Err(LinearError::NoRegulator)
+}
+
+/// X of AᵀX + XA + Q = 0, or of AᵀXA − X + Q = 0 of samples, as n² linear equations; none if a sum (a product) of two poles is 0 (1).
+fn lyapunov(a: &Matrix, q: &Matrix, time: Time) -> Option<Matrix> {
+    let n = a.nrows();
+    let one = Matrix::identity(n, n);
+    let across = a.transpose();
+    let whole = match time {
+        Time::Continuous => one.kronecker(&across) + across.kronecker(&one),
+        Time::Sampled(_) => across.kronecker(&across) - Matrix::identity(n * n, n * n),
+    };
+    let right = Matrix::from_column_slice(n * n, 1, (-q).as_slice());
+    let x = Matrix::from_column_slice(n, n, whole.lu().solve(&right)?.as_slice());
+    Some(0.5 * (&x + x.transpose()))
+}
