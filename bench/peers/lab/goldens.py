@@ -323,4 +323,5 @@ def main():
         print(f"  {what:16} more than 1e-8: {np.sum(errors > 1e-8):5}  median {np.median(errors):.1e}  worst {np.max(errors):.1e}", file=sys.stderr)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -20,6 +20,7 @@ pan = 281 * (s + 32.9) * (s + 97.8) / ((s + 250) * (s + 177)) * control.tf(
 )
 tilt = 144 * (s + 31.5) * (s + 33.4) / ((s + 194) * (s + 83.5)) * control.tf([13.33], [1, 0.1333, 0.7822])
 closed = control.feedback(pan, 1)
+plant = control.tf2ss(tilt)
 gains, frequencies, times = np.logspace(-3, 1, 1000), np.logspace(-2, 3, 1000), np.linspace(0, 3, 3001)
 
 
@@ -42,6 +43,9 @@ theirs = {
     "poles": lambda: pan.poles(),
     "feedback": lambda: control.feedback(pan, 1),
     "Tustin": lambda: control.sample_system(pan, 1e-3, "tustin"),
+    "LQR, 4 states": lambda: control.lqr(plant, np.eye(4), np.eye(1)),
+    "pole placement, 4 states": lambda: control.place(plant.A, plant.B, [-10, -20, -30, -40]),
+    "H∞ norm": lambda: control.system_norm(closed, np.inf),
     "zero-order hold": lambda: control.sample_system(pan, 1e-3, "zoh"),
     "roots of (x + 1)⁴⁰": lambda: np.roots(poly([-1.0] * 40)),
     "roots of Wilkinson's of order 20": lambda: np.roots(poly(range(1, 21))),

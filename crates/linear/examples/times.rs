@@ -2,21 +2,25 @@
 
 #![allow(clippy::print_stdout, reason = "it prints what it measured")]
 
+use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
-use tracelight_linear::{Discretization, FormulaError, Polynomial, Time, TransferFunction, logspace};
+use tracelight_linear::{Complex, Discretization, Matrix, Polynomial, Time, TransferFunction, logspace};
 
 /// The report's pan loop, nothing cancelled.
 const K11_G11: &str = "281 (s+32.9)(s+97.8)/((s+250)(s+177)) (13.16 s^2 + 1.754 s + 10.29)/(s^4 + 0.2649 s^3 + 0.7997 s^2 + 0.1029 s)";
 const K22_G22: &str = "144 (s+31.5)(s+33.4)/((s+194)(s+83.5)) 13.33/(s^2 + 0.1333 s + 0.7822)";
 
-fn main() -> Result<(), FormulaError> {
+fn main() -> Result<(), Box<dyn Error>> {
     let [pan, tilt] = [K11_G11, K22_G22].map(|text| TransferFunction::parse(text, Time::Continuous));
     let (pan, tilt) = (pan?, tilt?);
     let closed = pan.closed().unwrap_or_else(|_| pan.clone());
     let gains = logspace((1e-3, 10.0), 1000);
     let frequencies = logspace((1e-2, 1e3), 1000);
+    let plant = tilt.state_space()?;
+    let (one, weight) = (Matrix::identity(1, 1), Matrix::identity(4, 4));
+    let places: Vec<Complex> = [-10.0, -20.0, -30.0, -40.0].map(|re| Complex::new(re, 0.0)).to_vec();
     let mut lines = vec![
         median("root locus, 1000 gains", || pan.root_locus(black_box(gains.clone()))),
         median("frequency response, 1000 points", || pan.frequency_response(black_box(frequencies.clone()))),
@@ -26,6 +30,9 @@ fn main() -> Result<(), FormulaError> {
         median("poles", || black_box(&pan).poles()),
         median("feedback", || black_box(&pan).closed()),
         median("Tustin", || black_box(&pan).sampled(1e-3, Discretization::Tustin(None))),
+        median("LQR, 4 states", || black_box(&plant).lqr(&weight, &one)),
+        median("pole placement, 4 states", || black_box(&plant).place(&places)),
+        median("H∞ norm", || black_box(&closed).peak()),
         median("zero-order hold", || black_box(&pan).sampled(1e-3, Discretization::ZeroOrderHold)),
     ];
     for (name, polynomial) in hostile() {

@@ -9,6 +9,12 @@ struct Section {
 }
 
 impl Zpk {
+    /// In state space, as a chain of sections of order one and two: of systems whose poles are far apart, or many, it keeps digits that
+    /// [`TransferFunction::state_space`](crate::TransferFunction::state_space) loses. Not possible with more zeros than poles.
+    pub fn state_space(&self) -> Result<StateSpace, LinearError> {
+        self.cascade("state space")
+    }
+
     /// State space as a chain of sections of order one and two, whose states stay apart as the poles do: a companion matrix mixes
     /// fast and slow ones, and loses the slow ones' digits. `what` is asked for it.
     pub(crate) fn cascade(&self, what: &'static str) -> Result<StateSpace, LinearError> {

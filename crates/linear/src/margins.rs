@@ -94,7 +94,7 @@ impl TransferFunction {
     }
 
     /// The value at a frequency, where it rests from its gain there.
-    fn value(&self, rad_s: f64) -> Complex {
+    pub(crate) fn value(&self, rad_s: f64) -> Complex {
         if rad_s == 0.0 { self.dc_gain().into() } else { self.at(self.time().at_frequency(rad_s)) }
     }
 
@@ -165,16 +165,16 @@ impl TransferFunction {
 
 /// Numerator and denominator as polynomials of jν that rises along the frequencies: ω, or tan ωT/2 of samples, where
 /// z = (1 + jν)/(1 − jν); in a unit of ν, and times a common factor, that keep their squares and fourth powers numbers.
-struct Along {
-    above: Polynomial,
-    below: Polynomial,
+pub(crate) struct Along {
+    pub(crate) above: Polynomial,
+    pub(crate) below: Polynomial,
     /// Its unit of ν, a power of two.
     unit: i32,
     time: Time,
 }
 
 impl Along {
-    fn of(system: &TransferFunction) -> Self {
+    pub(crate) fn of(system: &TransferFunction) -> Self {
         let time = system.time();
         let (above, below) = (system.numerator(), system.denominator());
         let (above, below) = match time {
@@ -200,7 +200,7 @@ impl Along {
     }
 
     /// Frequencies, rad/s, rising, between the ends, at which a polynomial in ν² is zero.
-    fn frequencies(&self, polynomial: &Polynomial) -> Vec<f64> {
+    pub(crate) fn frequencies(&self, polynomial: &Polynomial) -> Vec<f64> {
         let real = polynomial.roots().into_iter().filter(|root| root.value.im == 0.0 && root.value.re > 0.0);
         let along = real.map(|root| join(root.value.re.sqrt(), self.unit));
         let mut found: Vec<f64> = match self.time {
@@ -257,7 +257,7 @@ fn halves(p: &Polynomial) -> (Polynomial, Polynomial) {
 }
 
 /// |p(jν)|² as a polynomial in ν².
-fn square(p: &Polynomial) -> Polynomial {
+pub(crate) fn square(p: &Polynomial) -> Polynomial {
     let (even, odd) = halves(p);
     &(&even * &even) + &(&odd * &odd).shifted(1)
 }

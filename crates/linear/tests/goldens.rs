@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, in its helpers too")]
 
 use serde::Deserialize;
-use tracelight_linear::{Complex, Discretization, Polynomial, Root, Time, TransferFunction};
+use tracelight_linear::{Complex, Discretization, Matrix, Polynomial, Root, Time, TransferFunction};
 
 #[derive(Deserialize)]
 struct Golden {
@@ -136,4 +136,46 @@ fn steps_are_answered_truly() {
         }
     }
     assert!(worse.len() <= 1, "{worse:?}");
+}
+
+/// Coefficients of the polynomial with the closed loop's poles, highest power first.
+#[derive(Deserialize)]
+struct Regulated {
+    continuous: Vec<f64>,
+    /// Of samples, in z − 1: a thousandth apart they would be one in z.
+    sampled: Vec<f64>,
+}
+
+/// Regulators whose output costs what their input does, in continuous time and of samples. Truth is a spectral factor
+/// (`bench/peers/lab/lqr_goldens.py`): no equation of Riccati is solved for it. Ten of two thousand, of order 7 to 12 with poles decades apart,
+/// have fewer digits; LAPACK's solver has as few of those in continuous time.
+#[test]
+fn regulators_have_true_poles() {
+    let text = include_str!("goldens/lqr.jsonl");
+    let all: Vec<Regulated> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(all.len(), 1000);
+    let one = Matrix::identity(1, 1);
+    let mut worse = Vec::new();
+    for ((line, golden), truth) in goldens().into_iter().zip(all) {
+        let plant = golden.system().state_space().unwrap();
+        let sampled = plant.sampled(golden.period, Discretization::ZeroOrderHold).unwrap();
+        for (plant, truth, edge) in [(&plant, &truth.continuous, 0.0), (&sampled, &truth.sampled, 1.0)] {
+            let poles = plant.lqr_of_outputs(&one, &one).unwrap().poles;
+            let poles: Vec<Complex> = poles.into_iter().map(|pole| pole - edge).collect();
+            let ours = Polynomial::from_roots(1.0, &poles);
+            // in the unit of the poles' mean size coefficients are alike
+            let n = poles.len();
+            let mean = truth[n].abs().powf(1.0 / n as f64);
+            let unit = |power: usize| mean.powi((n - power) as i32);
+            let size = (0..=n).map(|k| truth[n - k].abs() / unit(k)).fold(0.0, f64::max);
+            let off =
+                (0..=n).map(|k| (ours.coefficient(k) - truth[n - k]).abs() / unit(k)).fold(0.0, f64::max);
+            let off = off / size;
+            assert!(off <= 1e-5, "line {line}: {off:e}");
+            if off > CLOSE {
+                worse.push((line, edge, n, off));
+            }
+        }
+    }
+    assert!(worse.len() <= 10, "{worse:?}");
 }

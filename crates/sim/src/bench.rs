@@ -1,6 +1,6 @@
-use tracelight_control::{Config, Estimate, Reference, Servo};
+use tracelight_control::{Config, Estimate, LawConfig, Reference, Servo};
 use tracelight_plant::Plant;
-use tracelight_rig::{Actuation, Head, Measurement, PanTilt, Setpoint};
+use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, Setpoint};
 
 use crate::RigConfig;
 use crate::linear::LinearHead;
@@ -61,6 +61,12 @@ impl<H: Truth> Bench<H> {
     fn new(config: Config, head: H) -> Self {
         let measured = PanTilt::default();
         Self { servo: Servo::at_rest(&config, &measured), config, head, measured, begun: false }
+    }
+
+    /// With another law for one joint.
+    pub(crate) fn driven_by(mut self, joint: Joint, law: LawConfig) -> Self {
+        self.config.axes[joint].law = law;
+        Self::new(self.config, self.head)
     }
 
     /// One tick.

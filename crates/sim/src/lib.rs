@@ -4,6 +4,7 @@
 //! crate reads no clock, starts no thread and draws nothing that its seed does not decide.
 
 mod bench;
+mod compensator;
 mod config;
 mod join;
 mod laws;
@@ -18,6 +19,7 @@ mod step;
 mod trouble;
 
 pub use bench::BenchTick;
+pub use compensator::CompensatorLaw;
 pub use config::{
     Cable, ControlSettings, Identified, Model, MotionSettings, Quirks, RigConfig, Ripple, Truth,
 };
@@ -26,6 +28,6 @@ pub use replay::replay;
 pub use run::{Feeder, Run, SimulatedRig, Tick, run, run_segments};
 pub use score::{Tracking, score};
 pub use spread::Spread;
-pub use step::{StepResponse, step_response};
+pub use step::{StepResponse, step_response, step_response_by};
 pub use tracelight_control::LONGEST_INTERVAL_TICKS;
 pub use trouble::Trouble;

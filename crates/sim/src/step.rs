@@ -3,8 +3,9 @@ use tracelight_control::Reference;
 use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_F64_S, TICK_S};
 use tracelight_trajectory::{JointMotion, rest_to_rest};
 
-use crate::RigConfig;
 use crate::bench::{Bench, BenchTick, Truth};
+use crate::compensator::CompensatorLaw;
+use crate::{LawName, ObserverName, RigConfig};
 
 /// What a joint does when it is sent somewhere else, for [`StepResponse::LENGTH_S`].
 #[derive(Clone, Debug)]
@@ -30,6 +31,26 @@ pub fn step_response(rig: &RigConfig, joint: Joint, to_rad: f64, seed: u64) -> O
     Some(StepResponse {
         nonlinear: follow(Bench::nonlinear(rig, seed), &references),
         linear: follow(Bench::linear(rig, to), &references),
+    })
+}
+
+/// The same with another law for that joint: a jump, and positions as they are counted.
+pub fn step_response_by(
+    rig: &RigConfig,
+    joint: Joint,
+    law: &CompensatorLaw,
+    to_rad: f64,
+    seed: u64,
+) -> Option<StepResponse> {
+    let mut rig = rig.clone();
+    (rig.control.law, rig.control.observer) = (LawName::LeadLag, Some(ObserverName::Counts));
+    let mut to = PanTilt::default();
+    to[joint] = to_rad;
+    let references = jump(&rig, to)?;
+    let law = law.config();
+    Some(StepResponse {
+        nonlinear: follow(Bench::nonlinear(&rig, seed).driven_by(joint, law), &references),
+        linear: follow(Bench::linear(&rig, to).driven_by(joint, law), &references),
     })
 }
 

@@ -147,3 +147,80 @@ fn a_bound_moves_the_other_if_that_is_not_typed() {
     let refused = run(&["lab", "bode", "1/s", "--from", "100rad/s", "--to", "10rad/s"]);
     assert!(!refused.status.success());
 }
+
+#[test]
+fn a_controller_is_designed_and_meets_its_wishes() {
+    let margin = |design: &Value| design["margins"]["phase"].clone();
+    let lead = lab(&[
+        "design",
+        "lead-lag",
+        "G11",
+        "--crossover",
+        "60rad/s",
+        "--phase-margin",
+        "55deg",
+        "--lag",
+        "10",
+    ]);
+    near(&margin(&lead)["rad_s"], 60.0, 1e-9);
+    near(&margin(&lead)["deg"], 55.0, 1e-9);
+    let pid = lab(&["design", "pid", "G22", "--crossover", "40rad/s", "--modulus", "0.7"]);
+    near(&margin(&pid)["deg"], 55.0, 1e-6);
+    assert!(pid["margins"]["modulus"]["distance"].as_f64().unwrap() >= 0.7 - 1e-9, "{pid}");
+    let placed = lab(&["design", "place", "G11", "--poles=-40+30j,-20", "--estimator", "-200,-210"]);
+    let poles: Vec<f64> =
+        placed["closed_poles"].as_array().unwrap().iter().map(|p| p[0].as_f64().unwrap()).collect();
+    for (pole, wanted) in poles.iter().zip([-20.0, -40.0, -40.0, -200.0, -210.0]) {
+        assert!((pole - wanted).abs() < 1e-4, "{poles:?}");
+    }
+    let sampled = lab(&["design", "lqg", "G11", "--sample", "1ms", "--integral", "1e-4"]);
+    assert_eq!(sampled["closed_stable"], true);
+    // the printed formula is the controller
+    let text = lead["controller"]["text"].as_str().unwrap();
+    let again = lab(&["bode", &format!("({text}) G11")]);
+    near(&again["systems"][0]["margins"]["phase"]["deg"], 55.0, 0.1);
+}
+
+/// The head as it is beside the head linearized, in one table.
+#[test]
+fn a_designed_controller_drives_a_rig() {
+    let dir = folder("design-trial");
+    let (svg, csv) = (dir.join("loop.svg"), dir.join("loop.csv"));
+    let wish =
+        ["design", "lead-lag", "G11", "--crossover", "30rad/s", "--phase-margin", "60deg", "--try", "pan"];
+    let design = lab(&[&wish[..], &["-o", svg.to_str().unwrap(), "-o", csv.to_str().unwrap()]].concat());
+    let trial = &design["trial"];
+    // sampled at 1 kHz it is the loop on paper
+    let (paper, linear) = (&design["step"]["overshoot_percent"], &trial["linear"]["overshoot_percent"]);
+    near(linear, paper.as_f64().unwrap(), 1.5);
+    // friction takes of the overshoot, and leaves an error
+    assert!(trial["overshoot_percent"].as_f64() < linear.as_f64(), "{trial}");
+    assert!(trial["final_error_mm"].as_f64().unwrap() > 0.0 && design["closed_stable"] == true);
+    let drawn = std::fs::read_to_string(svg).unwrap();
+    assert!(drawn.contains("command, V") && drawn.contains("pan of rig report"), "{drawn}");
+    assert_eq!(std::fs::read_to_string(csv).unwrap().lines().count(), 2002);
+}
+
+#[test]
+fn what_cannot_be_designed_is_refused_in_a_sentence() {
+    for (arguments, words) in [
+        ("pid 1/s --modulus 0.95", "at most"),
+        ("pid 1/(s(s+1))", "choose one"),
+        ("lead-lag 1/(s+1)^6 --crossover 10rad/s --phase-margin 60deg", "of phase are missing"),
+        ("place G11 --poles=-1", "give as many"),
+        ("place G11 --poles=-1,x", "is no pole"),
+        ("place G11 --poles=-1,2e+3j", "is no pole"),
+        ("lqg 1/s --noise 0", "noise's size"),
+        ("lqg (s-1)/((s-1)(s+2))", "brings that system to rest"),
+        ("lqg s", "more zeros than poles"),
+        ("place 1/(s+1)^4 --poles=-3,-4,-5,-6,-7 --try pan", "does not fit"),
+        ("lead-lag G11 --sample 1ms --crossover 10rad/s --phase-margin 60deg", "samples every"),
+        ("pid G11 --crossover 10rad/s --to 3deg", "--try"),
+    ] {
+        let arguments: Vec<&str> = ["lab", "design"].into_iter().chain(arguments.split(' ')).collect();
+        let output = run(&arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(matches!(output.status.code(), Some(1 | 2)), "{arguments:?}: {message}");
+        assert!(message.contains(words), "{arguments:?}: {message}");
+    }
+}

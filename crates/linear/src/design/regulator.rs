@@ -40,6 +40,28 @@ impl StateSpace {
         Ok(Regulator { gain, cost, poles })
     }
 
+    /// The regulator that makes ∫ yᵀ W y + uᵀ R u least: outputs cost instead of states. W is symmetric and not negative, of as many rows as
+    /// outputs.
+    pub fn lqr_of_outputs(&self, w: &Matrix, r: &Matrix) -> Result<Regulator, LinearError> {
+        let (inputs, outputs) = (self.b().ncols(), self.c().nrows());
+        if w.shape() != (outputs, outputs) || r.shape() != (inputs, inputs) {
+            return Err(LinearError::Shape(
+                "W has as many rows and columns as there are outputs, R as inputs",
+            ));
+        }
+        let (w, r) = (weight(w, "W")?, weight(r, "R")?);
+        let (c, d) = (self.c(), self.d());
+        // y = C x + D u costs xᵀ S u, too: u = v − R⁻¹ Sᵀ x costs without
+        let r = &r + d.transpose() * &w * d;
+        let across = c.transpose() * &w * d;
+        let before = r.clone().cholesky().ok_or(LinearError::NotPositive("R"))?.solve(&across.transpose());
+        let plant =
+            Self::new(self.a() - self.b() * &before, self.b().clone(), c.clone(), d.clone(), self.time())?;
+        let q = c.transpose() * &w * c - across * &before;
+        let inner = plant.lqr(&(0.5 * (&q + q.transpose())), &r)?;
+        Ok(Regulator { gain: inner.gain + before, ..inner })
+    }
+
     /// The estimator whose error varies least, if every state is pushed by white noise of that intensity, n × n, and outputs show
     /// another beside what they are, outputs × outputs (Kalman and Bucy; of samples Kalman, covariances of both).
     pub fn kalman(&self, pushed: &Matrix, seen: &Matrix) -> Result<Estimator, LinearError> {
@@ -112,7 +134,7 @@ fn weight(m: &Matrix, name: &'static str) -> Result<Matrix, LinearError> {
     if !m.iter().all(|entry| entry.is_finite()) {
         return Err(LinearError::NotFinite);
     }
-    if off > 1e-9 * m.norm() || m.diagonal().iter().any(|entry| *entry < 0.0) {
+    if off > 1e-9 * m.norm() || m.diagonal().iter().any(|entry| *entry < -1e-12 * m.norm()) {
         return Err(LinearError::NotPositive(name));
     }
     Ok(0.5 * (m + m.transpose()))

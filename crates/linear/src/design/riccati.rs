@@ -1,5 +1,5 @@
 use crate::eigen::{balanced, eigenvalues};
-use crate::{LinearError, Matrix, Time};
+use crate::{Complex, LinearError, Matrix, StateSpace, Time};
 
 /// Halvings of the error's exponent: each doubles the digits, and poles a million apart need some twenty.
 const MOST_DOUBLINGS: usize = 60;
@@ -23,37 +23,38 @@ impl Riccati<'_> {
     /// algebraic Riccati equations*, Linear Algebra Appl. 396, 2005; of samples Chu, Fan, Lin & Wang, Int. J. Control 77, 2004),
     /// then by Newton's iteration (Kleinman 1968), on balanced states.
     pub(super) fn solve(&self) -> Result<(Matrix, Matrix), LinearError> {
-        let (a, scales) = balanced(self.a.clone());
-        let n = a.nrows();
-        let scaled = |m: &Matrix, power: i32| {
+        let r_inverse = self.r.clone().cholesky().ok_or(LinearError::NotPositive("R"))?.inverse();
+        let scales = scales(self.a, &(self.b * &r_inverse * self.b.transpose()), self.q);
+        // x = D y
+        let rows = |m: &Matrix, power: i32| {
             let mut m = m.clone();
             for (i, scale) in scales.iter().enumerate() {
                 m.row_mut(i).iter_mut().for_each(|entry| *entry *= scale.powi(power));
             }
             m
         };
-        // x = D y: B by D⁻¹, Q by D from both sides
-        let b = scaled(self.b, -1);
-        let q = scaled(&scaled(self.q, 1).transpose(), 1);
-        // cost in a unit that makes both sides about as large
-        let r_inverse = self.r.clone().cholesky().ok_or(LinearError::NotPositive("R"))?.inverse();
+        let columns = |m: &Matrix, power: i32| rows(&m.transpose(), power).transpose();
+        let a = columns(&rows(self.a, -1), 1);
+        let (b, q) = (rows(self.b, -1), columns(&rows(self.q, 1), 1));
         let g = &b * &r_inverse * b.transpose();
-        let unit = match (q.norm() / g.norm()).sqrt() {
-            unit if unit.is_finite() && unit > 0.0 => unit.log2().round().exp2(),
-            _ => 1.0,
+        let inner = Riccati { a: &a, b: &b, q: &q, r: self.r, time: self.time };
+        let doubled = match self.time {
+            Time::Continuous => continuous(&a, &g, &q),
+            Time::Sampled(_) => doubled(a.clone(), g, q.clone()),
         };
-        let (q, r) = (q / unit, self.r / unit);
-        let inner = Riccati { a: &a, b: &b, q: &q, r: &r, time: self.time };
-        let mut x = match self.time {
-            Time::Continuous => continuous(&a, &(g * unit), &q)?,
-            Time::Sampled(_) => doubled(a.clone(), g * unit, q.clone())?,
+        let is_small = a.nrows() <= MOST_REFINED;
+        let refined = doubled.and_then(|x| {
+            let x = if is_small { inner.refined(x) } else { x };
+            inner.gain(&x).map(|gain| (x, gain))
+        });
+        let (x, gain) = match refined {
+            Ok((x, gain)) if inner.settles(&gain) => (x, gain),
+            // what grows fast beside what is slow leaves doubling no digits
+            _ if is_small => inner.approached()?,
+            _ => return Err(LinearError::NoRegulator),
         };
-        if n <= MOST_REFINED {
-            x = inner.refined(x);
-        }
-        let gain = inner.gain(&x)?;
-        let back = scaled(&scaled(&x, -1).transpose(), -1) * unit;
-        Ok((0.5 * (&back + back.transpose()), scaled(&gain.transpose(), -1).transpose()))
+        let back = columns(&rows(&x, -1), -1);
+        Ok((0.5 * (&back + back.transpose()), columns(&gain, -1)))
     }
 
     fn gain(&self, x: &Matrix) -> Result<Matrix, LinearError> {
@@ -68,6 +69,50 @@ impl Riccati<'_> {
                 Ok(r.solve(&(self.b.transpose() * x * self.a)))
             }
         }
+    }
+
+    /// Whether all that is fed back so dies out.
+    fn settles(&self, gain: &Matrix) -> bool {
+        let poles = eigenvalues(&(self.a - self.b * gain)).unwrap_or_default();
+        let is_stable = |pole: &Complex| match self.time {
+            Time::Continuous => pole.re < 0.0,
+            Time::Sampled(_) => pole.norm() < 1.0,
+        };
+        poles.len() == self.a.nrows() && poles.iter().all(is_stable)
+    }
+
+    /// By Newton's iteration alone, from a feedback that mirrors each pole that does not die out; it converges from any that settles
+    /// the system (Kleinman, *On an iterative technique for Riccati equation computations*, IEEE Trans. Autom. Control 13, 1968; of
+    /// samples Hewer 1971).
+    fn approached(&self) -> Result<(Matrix, Matrix), LinearError> {
+        const MOST_STEPS: usize = 80;
+        let n = self.a.nrows();
+        let (c, d) = (Matrix::zeros(1, n), Matrix::zeros(1, self.b.ncols()));
+        let plant = StateSpace::new(self.a.clone(), self.b.clone(), c, d, self.time)?;
+        let poles = eigenvalues(self.a)?;
+        let size = poles.iter().map(|pole| pole.norm()).fold(f64::MIN_POSITIVE, f64::max);
+        let mirrored = |pole: &Complex| match self.time {
+            // those at the edge a little inside
+            Time::Continuous => Complex::new(-pole.re.abs().max(1e-3 * size), pole.im),
+            Time::Sampled(_) if pole.norm() > 0.999 => pole / pole.norm() * (1.0 / pole.norm()).min(0.999),
+            Time::Sampled(_) => *pole,
+        };
+        let mut gain = plant.place(&poles.iter().map(mirrored).collect::<Vec<_>>())?;
+        let mut last = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            let closed = self.a - self.b * &gain;
+            let cost = self.q + gain.transpose() * self.r * &gain;
+            let x = lyapunov(&closed, &cost, self.time).ok_or(LinearError::NoRegulator)?;
+            let next = self.gain(&x)?;
+            let moved = (&next - &gain).norm();
+            gain = next;
+            // it comes ever closer, until rounding moves it
+            if moved <= 4.0 * f64::EPSILON * gain.norm() || (moved < 1e-6 * gain.norm() && moved >= last) {
+                return if self.settles(&gain) { Ok((x, gain)) } else { Err(LinearError::NoRegulator) };
+            }
+            last = moved;
+        }
+        Err(LinearError::NotConverged)
     }
 
     /// What is left of the equation.
@@ -98,6 +143,21 @@ impl Riccati<'_> {
         }
         x
     }
+}
+
+/// Units of the states, powers of two, in which A is balanced, and what moves them is about as large as what they cost.
+fn scales(a: &Matrix, g: &Matrix, q: &Matrix) -> Vec<f64> {
+    let (_, mut scales) = balanced(a.clone());
+    let size = |m: &Matrix, power: i32| {
+        let entry = |(i, j): (usize, usize)| m[(i, j)] * (scales[i] * scales[j]).powi(power);
+        let all = (0..a.nrows()).flat_map(|i| (0..a.nrows()).map(move |j| (i, j)));
+        all.map(|at| entry(at).powi(2)).sum::<f64>().sqrt()
+    };
+    let unit = (size(g, -1) / size(q, 1)).powf(0.25).log2().round().exp2();
+    if unit.is_finite() && unit > 0.0 {
+        scales.iter_mut().for_each(|scale| *scale *= unit);
+    }
+    scales
 }
 
 /// Continuous time to samples by Cayley's transform s = γ (z + 1)/(z − 1), which leaves X as it is.

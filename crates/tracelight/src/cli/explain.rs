@@ -86,6 +86,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "A system cannot be had that way: one that has more zeros than poles, or that is already sampled, or a loop that closes on nothing.",
     ),
     (
+        "no-such-design",
+        "No controller of that kind does what was asked of that system. Ask for less margin or another crossover, or use another method.",
+    ),
+    (
         "no-such-gain",
         "No gain does what was asked, or all large ones do. Ask for another damping, give a --gain, or change the loop.",
     ),

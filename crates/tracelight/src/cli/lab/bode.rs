@@ -49,7 +49,7 @@ struct BandArgs {
     points: u32,
 }
 
-fn frequency(text: &str) -> Result<f64, String> {
+pub(super) fn frequency(text: &str) -> Result<f64, String> {
     let rad_s = parse(text, ANGULAR_SPEEDS).map_err(|e| e.to_string())?;
     if rad_s > 0.0 { Ok(rad_s) } else { Err(format!("{text} is not above zero")) }
 }

@@ -18,7 +18,7 @@ pub(crate) struct HeadArgs {
     /// Masses, viscous friction (the mean of both directions) and gravity of what is believed of a rig: a preset's name or a rig
     /// file, instead of a set
     #[arg(long, value_name = "RIG.toml|PRESET")]
-    rig: Option<String>,
+    pub(super) rig: Option<String>,
     /// Where it stands [default: 26.565deg,26.565deg, half the report's range of motion]
     #[arg(long, value_name = "PAN,TILT", allow_hyphen_values = true)]
     at: Option<Pair<Angle>>,

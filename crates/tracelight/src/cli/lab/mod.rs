@@ -1,6 +1,7 @@
 //! The control engineer's bench, one file a subcommand.
 
 mod bode;
+mod design;
 mod head;
 mod identify;
 mod linearize;
@@ -12,6 +13,7 @@ mod profile;
 mod shape;
 mod step;
 mod systems;
+mod trial;
 mod velocity;
 
 use clap::{Args, Subcommand};
@@ -24,7 +26,7 @@ use crate::failure::Failure;
 use crate::stop::Stop;
 use crate::units::Unit;
 
-/// The control engineer's bench: profiles, moves, steps, identification, linear models, Bode, Nyquist and locus, many heads at once
+/// The control engineer's bench: profiles, moves, steps, identification, linear models, Bode, Nyquist and locus, controllers designed, many heads at once
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab profile --distance 180deg -o profiles.svg")]
 pub(crate) struct LabArgs {
@@ -45,6 +47,7 @@ enum LabAction {
     Nyquist(nyquist::NyquistArgs),
     Nichols(nyquist::NicholsArgs),
     Pzmap(locus::PzmapArgs),
+    Design(design::DesignArgs),
     #[command(name = "montecarlo")]
     MonteCarlo(montecarlo::MonteCarloArgs),
 }
@@ -63,6 +66,7 @@ impl LabArgs {
             LabAction::Nyquist(args) => args.over.voice,
             LabAction::Nichols(args) => args.over.voice,
             LabAction::Pzmap(args) => args.plane.voice,
+            LabAction::Design(args) => args.voice(),
             LabAction::MonteCarlo(args) => args.voice,
         }
     }
@@ -81,6 +85,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Nyquist(args) => nyquist::run(args),
         LabAction::Nichols(args) => nyquist::run_nichols(args),
         LabAction::Pzmap(args) => locus::run_pzmap(args),
+        LabAction::Design(args) => design::run(args),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
 }

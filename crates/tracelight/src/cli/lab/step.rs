@@ -66,7 +66,7 @@ impl Axis {
     }
 }
 
-fn step(text: &str) -> Result<Angle, String> {
+pub(super) fn step(text: &str) -> Result<Angle, String> {
     // less than a count of the original rig shows nothing but where in its count the joint was
     const LEAST_RAD: f64 = 1.5e-3;
     let angle: Angle = text.parse().map_err(|e| format!("{e}"))?;
@@ -102,18 +102,9 @@ fn respond(args: &StepArgs, rig: &RigConfig, law: LawName) -> Result<Entry, Fail
     let mut rig = rig.clone();
     choose(&mut rig, law, args.observer);
     let joint = args.axis.joint();
-    let response = step_response(&rig, joint, args.to.0, args.seed).ok_or_else(|| {
-        let message = format!(
-            "{joint} cannot be sent to {:.4} rad: that is out of its range, or its motor is too weak to hold or move it; see \
-             `tracelight rigs show`",
-            args.to.0
-        );
-        Failure::failed("unreachable", message)
-    })?;
-    let figures = |ticks: &[BenchTick]| {
-        let angles: Vec<f64> = ticks.iter().map(|tick| tick.angle_rad[joint]).collect();
-        StepFigures::of(&angles, args.to.0, TICK_F64_S)
-    };
+    let response =
+        step_response(&rig, joint, args.to.0, args.seed).ok_or_else(|| unreachable(joint, args.to))?;
+    let figures = |ticks: &[BenchTick]| figures(ticks, joint, args.to);
     let (nonlinear, linear) = (figures(&response.nonlinear), figures(&response.linear));
     Ok(Entry { law, response, nonlinear, linear })
 }
@@ -123,30 +114,61 @@ fn error_mm(figures: &StepFigures) -> f64 {
 }
 
 fn table(args: &StepArgs, rig: &RigConfig, entries: &[Entry]) -> String {
-    let mut text = format!(
-        "{} from rest at 0 to {:.4} rad ({:.2}°) on rig {}; settled: within 2 %\n\n\
-         law         overshoot, %  settles, s  final error, mm  counts    linear: overshoot, %  settles, s",
-        args.axis.joint(),
-        args.to.0,
-        args.to.0.to_degrees(),
-        rig.name
-    );
+    let mut text = heading(rig, args.axis.joint(), args.to);
     for entry in entries {
-        let (is, linear) = (&entry.nonlinear, &entry.linear);
-        // writing to a String cannot fail
-        let _ = write!(
-            text,
-            "\n{:10} {:13.2} {:>11} {:16.3} {:7.2} {:22.2} {:>11}",
-            entry.law.name(),
-            is.overshoot_percent,
-            seconds(is.settle_s),
-            error_mm(is),
-            is.final_error / rig.truth.model.encoder.count_rad(),
-            linear.overshoot_percent,
-            seconds(linear.settle_s),
-        );
+        text += &row(entry.law.name(), &entry.nonlinear, &entry.linear, rig);
     }
     text + "\n\nmm on a target 3 ft away."
+}
+
+/// What is above the rows.
+pub(super) fn heading(rig: &RigConfig, joint: Joint, to: Angle) -> String {
+    format!(
+        "{joint} from rest at 0 to {:.4} rad ({:.2}°) on rig {}; settled: within 2 %\n\n\
+         law         overshoot, %  settles, s  final error, mm  counts    linear: overshoot, %  settles, s",
+        to.0,
+        to.0.to_degrees(),
+        rig.name
+    )
+}
+
+/// A law's row: the head as it is, and linearized.
+pub(super) fn row(law: &str, is: &StepFigures, linear: &StepFigures, rig: &RigConfig) -> String {
+    format!(
+        "\n{law:10} {:13.2} {:>11} {:16.3} {:7.2} {:22.2} {:>11}",
+        is.overshoot_percent,
+        seconds(is.settle_s),
+        error_mm(is),
+        is.final_error / rig.truth.model.encoder.count_rad(),
+        linear.overshoot_percent,
+        seconds(linear.settle_s),
+    )
+}
+
+/// What a response is like.
+pub(super) fn figures(ticks: &[BenchTick], joint: Joint, to: Angle) -> StepFigures {
+    let angles: Vec<f64> = ticks.iter().map(|tick| tick.angle_rad[joint]).collect();
+    StepFigures::of(&angles, to.0, TICK_F64_S)
+}
+
+/// Why there is no response.
+pub(super) fn unreachable(joint: Joint, to: Angle) -> Failure {
+    let message = format!(
+        "{joint} cannot be sent to {:.4} rad: that is out of its range, or its motor is too weak to hold or move it; see \
+         `tracelight rigs show`",
+        to.0
+    );
+    Failure::failed("unreachable", message)
+}
+
+/// Figures for scripts.
+pub(super) fn figures_json(figures: &StepFigures, rig: &RigConfig) -> serde_json::Value {
+    serde_json::json!({
+        "overshoot_percent": figures.overshoot_percent,
+        "settle_s": figures.settle_s,
+        "final_error_mm": error_mm(figures),
+        "final_error_counts": figures.final_error / rig.truth.model.encoder.count_rad(),
+    })
 }
 
 fn seconds(settle_s: Option<f64>) -> String {
@@ -154,14 +176,7 @@ fn seconds(settle_s: Option<f64>) -> String {
 }
 
 fn json(args: &StepArgs, rig: &RigConfig, entries: &[Entry]) -> String {
-    let of = |figures: &StepFigures| {
-        serde_json::json!({
-            "overshoot_percent": figures.overshoot_percent,
-            "settle_s": figures.settle_s,
-            "final_error_mm": error_mm(figures),
-            "final_error_counts": figures.final_error / rig.truth.model.encoder.count_rad(),
-        })
-    };
+    let of = |figures: &StepFigures| figures_json(figures, rig);
     let whole = |entry: &Entry| {
         let mut object = of(&entry.nonlinear);
         object["law"] = entry.law.name().into();

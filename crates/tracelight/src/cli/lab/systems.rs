@@ -1,7 +1,10 @@
 use std::fmt::Write;
 
 use clap::{Args, ValueEnum};
-use tracelight_linear::{Complex, Discretization, Mode, Time, TransferFunction, Zpk, four_digits};
+use tracelight_lab::Linearization;
+use tracelight_linear::{
+    Complex, Discretization, LinearError, Mode, Time, TransferFunction, Zpk, four_digits,
+};
 use tracelight_rig::Joint;
 use tracelight_sim::Compensator;
 
@@ -19,22 +22,43 @@ pub(crate) struct SystemArgs {
     #[arg(value_name = "SYSTEM", required = true)]
     systems: Vec<String>,
     #[command(flatten)]
-    head: HeadArgs,
-    /// The systems are of samples so far apart, their variable is z
-    #[arg(long, value_name = "TIME", value_parser = period, conflicts_with = "sample")]
-    period: Option<f64>,
-    /// Sample each system, so often
-    #[arg(long, value_name = "TIME", value_parser = period)]
-    sample: Option<f64>,
-    /// How they are sampled
-    #[arg(long, value_enum, default_value = "hold", requires = "sample")]
-    method: Method,
+    how: HowArgs,
     /// Close each by negative feedback of its output, after it is sampled
     #[arg(long)]
     closed: bool,
     /// Light lines on dark ground
     #[arg(long)]
     dark: bool,
+}
+
+/// One system.
+#[derive(Args, Debug)]
+pub(super) struct OneSystemArgs {
+    /// The system, a formula: numbers, s, + − * / ^, brackets; what stands side by side is multiplied. G11 and G22 are the head linearized
+    /// (see `tracelight lab linearize`)
+    #[arg(value_name = "SYSTEM")]
+    system: String,
+    #[command(flatten)]
+    how: HowArgs,
+    /// Light lines on dark ground
+    #[arg(long)]
+    dark: bool,
+}
+
+/// What a formula's names and its variable are.
+#[derive(Args, Debug)]
+struct HowArgs {
+    #[command(flatten)]
+    head: HeadArgs,
+    /// The formula is of samples so far apart, its variable is z
+    #[arg(long, value_name = "TIME", value_parser = period, conflicts_with = "sample")]
+    period: Option<f64>,
+    /// Sample it, so often
+    #[arg(long, value_name = "TIME", value_parser = period)]
+    sample: Option<f64>,
+    /// How it is sampled
+    #[arg(long, value_enum, default_value = "hold", requires = "sample")]
+    method: Method,
 }
 
 /// A way to sample.
@@ -88,50 +112,85 @@ impl SystemArgs {
     pub(super) fn systems(&self) -> Result<Vec<Named>, Failure> {
         const COLOURS: [Colour; 6] =
             [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple, Colour::Orange, Colour::Sky];
-        let linear = self.head.head()?.linearize()?;
-        let keep = self.head.keep_cancellations;
-        let known = |name: &str| match name {
-            "G11" | "G22" => {
-                let joint = if name == "G11" { Joint::Pan } else { Joint::Tilt };
-                let own =
-                    if keep { linear.transfer(joint) } else { linear.own_transfer(joint).map(|own| own.0) };
-                own.ok()
+        let reader = self.how.reader()?;
+        let colours = COLOURS.into_iter().cycle();
+        let all = self.systems.iter().zip(colours);
+        all.map(|(text, colour)| {
+            let (mut name, mut system) = reader.read(text)?;
+            if self.closed {
+                system = system.closed().map_err(|e| no_such_system(text, &e))?;
+                name += ", closed";
             }
+            Ok(Named { name, system, colour })
+        })
+        .collect()
+    }
+}
+
+impl OneSystemArgs {
+    pub(super) const fn theme(&self) -> Theme {
+        if self.dark { Theme::Dark } else { Theme::Light }
+    }
+
+    /// The rig whose masses are linearized, if one is named.
+    pub(super) fn rig(&self) -> Option<&str> {
+        self.how.head.rig.as_deref()
+    }
+
+    /// Its name and what it is.
+    pub(super) fn system(&self) -> Result<(String, TransferFunction), Failure> {
+        self.how.reader()?.read(&self.system)
+    }
+}
+
+fn no_such_system(text: &str, error: &LinearError) -> Failure {
+    Failure::failed("no-such-system", format!("{text}: {error}"))
+}
+
+/// What formulas are read with.
+struct Reader<'a> {
+    how: &'a HowArgs,
+    head: Linearization,
+}
+
+impl HowArgs {
+    fn reader(&self) -> Result<Reader<'_>, Failure> {
+        Ok(Reader { how: self, head: self.head.head()?.linearize()? })
+    }
+}
+
+impl Reader<'_> {
+    /// The system that a formula names.
+    fn named(&self, name: &str) -> Option<TransferFunction> {
+        let keep = self.how.head.keep_cancellations;
+        let own = |joint: Joint| match keep {
+            true => self.head.transfer(joint).ok(),
+            false => self.head.own_transfer(joint).ok().map(|own| own.0),
+        };
+        match name {
+            "G11" => own(Joint::Pan),
+            "G22" => own(Joint::Tilt),
             "K11" => compensator(Joint::Pan, false),
             "K22" => compensator(Joint::Tilt, false),
             "K11t" => compensator(Joint::Pan, true),
             "K22t" => compensator(Joint::Tilt, true),
             _ => None,
-        };
-        let time = self.period.map_or(Time::Continuous, Time::Sampled);
-        let colours = COLOURS.into_iter().cycle();
-        self.systems
-            .iter()
-            .zip(colours)
-            .map(|(name, colour)| self.system(name, colour, time, &known))
-            .collect()
+        }
     }
 
-    fn system(
-        &self,
-        name: &str,
-        colour: Colour,
-        time: Time,
-        known: &tracelight_linear::Names<'_>,
-    ) -> Result<Named, Failure> {
-        let mut system = TransferFunction::parse_with(name, time, known)
-            .map_err(|e| Failure::usage("bad-formula", format!("{e}\n  {name}\n  {}^", " ".repeat(e.at))))?;
-        let failed = |e| Failure::failed("no-such-system", format!("{name}: {e}"));
-        let mut whole = name.to_owned();
-        if let Some(period_s) = self.sample {
-            system = system.sampled(period_s, self.method.discretization()).map_err(failed)?;
-            whole += &format!(", sampled every {} ms by {}", four(1e3 * period_s), self.method.words());
+    /// What a formula is, and what was made of it.
+    fn read(&self, text: &str) -> Result<(String, TransferFunction), Failure> {
+        let time = self.how.period.map_or(Time::Continuous, Time::Sampled);
+        let mut system = TransferFunction::parse_with(text, time, &|name| self.named(name))
+            .map_err(|e| Failure::usage("bad-formula", format!("{e}\n  {text}\n  {}^", " ".repeat(e.at))))?;
+        let mut name = text.to_owned();
+        if let Some(period_s) = self.how.sample {
+            let method = self.how.method;
+            system =
+                system.sampled(period_s, method.discretization()).map_err(|e| no_such_system(text, &e))?;
+            name += &format!(", sampled every {} ms by {}", four(1e3 * period_s), method.words());
         }
-        if self.closed {
-            system = system.closed().map_err(failed)?;
-            whole += ", closed";
-        }
-        Ok(Named { name: whole, system, colour })
+        Ok((name, system))
     }
 }
 

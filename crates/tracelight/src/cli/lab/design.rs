@@ -1,0 +1,399 @@
+use std::fmt::Write;
+
+use clap::{Args, Subcommand};
+use serde_json::json;
+use tracelight_linear::{
+    Complex, LeadLagWish, LinearError, LqgWish, Margins, PidWish, Response, Stability, StepInfo, Time,
+    TransferFunction, Zpk,
+};
+
+use super::bode::{frequency, margin_lines, margins_json, system_json};
+use super::step::{Axis, step};
+use super::systems::{OneSystemArgs, four, pairs, pole_lines};
+use super::trial::Trial;
+use super::{OutFile, out_file, write_all};
+use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
+use crate::cli::{Answer, Voice};
+use crate::failure::Failure;
+use crate::units::Angle;
+
+/// A controller from wishes, and the loop it makes: margins, step, poles
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example: tracelight lab design pid G11 --crossover 60rad/s --phase-margin 55deg -o loop.svg\n\n\
+                  The controller acts on the error: from what is measured, subtracted from what is wished, to the system's input. Its formula \
+                  can be pasted into lab bode, locus, pzmap.\n\n\
+                  On a rig (--try) motors have a limit, joints stick, and a controller that integrates winds up while a motor is at its limit: \
+                  small jumps show friction, large ones the limit."
+)]
+pub(crate) struct DesignArgs {
+    #[command(subcommand)]
+    method: MethodArgs,
+}
+
+#[derive(Subcommand, Debug)]
+enum MethodArgs {
+    LeadLag(LeadLagArgs),
+    Pid(PidArgs),
+    Lqg(LqgArgs),
+    Place(PlaceArgs),
+}
+
+/// As many leads as the phase margin asks for, and a lag
+#[derive(Args, Debug)]
+struct LeadLagArgs {
+    #[command(flatten)]
+    loops: LoopArgs,
+    /// Where the loop's gain is 1
+    #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
+    crossover: f64,
+    /// Phase margin there
+    #[arg(long, value_name = "ANGLE")]
+    phase_margin: Angle,
+    /// How many times more it amplifies what hardly changes
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    lag: f64,
+}
+
+/// The PID with the largest integral gain that keeps the margins
+#[derive(Args, Debug)]
+struct PidArgs {
+    #[command(flatten)]
+    loops: LoopArgs,
+    /// Where the loop's gain is 1 [default: where the integral can be largest]
+    #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
+    crossover: Option<f64>,
+    /// Phase margin there
+    #[arg(long, value_name = "ANGLE", default_value = "55deg")]
+    phase_margin: Angle,
+    /// Least distance of the loop from −1: one over the largest sensitivity
+    #[arg(long, value_name = "DISTANCE", default_value_t = 0.6)]
+    modulus: f64,
+    /// How many times the crossover the derivative ends at
+    #[arg(long, value_name = "FACTOR", default_value_t = 10.0)]
+    filter: f64,
+}
+
+/// State feedback that costs least, the state estimated by a Kalman filter
+#[derive(Args, Debug)]
+struct LqgArgs {
+    #[command(flatten)]
+    loops: LoopArgs,
+    /// An error of the output so large costs as much as …
+    #[arg(long, value_name = "SIZE", default_value_t = 0.001)]
+    output: f64,
+    /// … an input so large
+    #[arg(long, value_name = "SIZE", default_value_t = 1.0)]
+    input: f64,
+    /// … or an integral of the output so large; given, nothing constant leaves an error
+    #[arg(long, value_name = "SIZE")]
+    integral: Option<f64>,
+    /// The estimator takes the input to be disturbed by so much …
+    #[arg(long, value_name = "SIZE", default_value_t = 1.0)]
+    disturbance: f64,
+    /// … and the output to be noisy by so much
+    #[arg(long, value_name = "SIZE", default_value_t = 0.0001)]
+    noise: f64,
+}
+
+/// State feedback and an estimator with these poles
+#[derive(Args, Debug)]
+struct PlaceArgs {
+    #[command(flatten)]
+    loops: LoopArgs,
+    /// Poles of the regulator, such as -30,-40+20j; a complex one stands for its pair. As many as the system has, or one more: then it
+    /// integrates
+    #[arg(long, value_name = "POLES", allow_hyphen_values = true, value_parser = poles)]
+    poles: Poles,
+    /// Poles of the estimator, as many as the system has [default: those of the regulator, four times as fast]
+    #[arg(long, value_name = "POLES", allow_hyphen_values = true, value_parser = poles)]
+    estimator: Option<Poles>,
+}
+
+/// The system, and where results go.
+#[derive(Args, Debug)]
+pub(super) struct LoopArgs {
+    #[command(flatten)]
+    system: OneSystemArgs,
+    /// Drive this joint of a simulated rig by it, too, from a jump of its setpoint: the head as it is beside the head linearized. The
+    /// rig is that of --rig, or report
+    #[arg(long = "try", value_name = "JOINT", value_enum)]
+    tried: Option<Axis>,
+    /// How far it jumps
+    #[arg(long, value_name = "ANGLE", default_value = "1deg", allow_hyphen_values = true, requires = "tried", value_parser = step)]
+    to: Angle,
+    /// Seed of what differs from head to head
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "tried")]
+    seed: u64,
+    /// Plot step and input into an SVG, or write them to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    out: Vec<OutFile>,
+    #[command(flatten)]
+    pub(super) voice: Voice,
+}
+
+#[derive(Clone, Debug)]
+struct Poles(Vec<Complex>);
+
+fn poles(text: &str) -> Result<Poles, String> {
+    let mut all = Vec::new();
+    for part in text.split(',') {
+        let part = part.trim().replace('−', "-");
+        let wrong = || format!("{part} is no pole; write -30, or -40+20j for a pair");
+        let pole = match part.strip_suffix('j') {
+            None => Complex::new(part.parse().map_err(|_| wrong())?, 0.0),
+            Some(pair) => {
+                // the sign that is not at the beginning, and not an exponent's
+                let sign = |(i, c): &(usize, char)| {
+                    *i > 0 && matches!(c, '+' | '-' | '±') && !pair[..*i].ends_with(['e', 'E'])
+                };
+                let (at, c) = pair.char_indices().rfind(sign).ok_or_else(wrong)?;
+                let number = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());
+                Complex::new(number(&pair[..at])?, number(&pair[at + c.len_utf8()..])?.abs())
+            }
+        };
+        if !(pole.re.is_finite() && pole.im.is_finite()) {
+            return Err(wrong());
+        }
+        all.push(pole);
+        if pole.im != 0.0 {
+            all.push(pole.conj());
+        }
+    }
+    Ok(Poles(all))
+}
+
+/// What was designed, and what it does.
+struct Design {
+    name: String,
+    plant: TransferFunction,
+    controller: Zpk,
+    /// The controller in its own figures.
+    remark: String,
+    closed: TransferFunction,
+    margins: Margins,
+    /// What comes out, and what the controller puts in, after a step of what is wished.
+    step: Response,
+    input: Response,
+    info: StepInfo,
+    trial: Option<Trial>,
+}
+
+impl DesignArgs {
+    pub(super) const fn voice(&self) -> Voice {
+        self.loops().voice
+    }
+
+    const fn loops(&self) -> &LoopArgs {
+        match &self.method {
+            MethodArgs::LeadLag(args) => &args.loops,
+            MethodArgs::Pid(args) => &args.loops,
+            MethodArgs::Lqg(args) => &args.loops,
+            MethodArgs::Place(args) => &args.loops,
+        }
+    }
+}
+
+pub(crate) fn run(args: &DesignArgs) -> Result<Answer, Failure> {
+    let loops = args.loops();
+    let (name, plant) = loops.system.system()?;
+    let failed = |e: LinearError| Failure::failed("no-such-design", format!("{name}: {e}"));
+    let (controller, remark) = controller(&args.method, &plant).map_err(failed)?;
+    let trial = loops
+        .tried
+        .map(|axis| Trial::of(loops.system.rig(), axis.joint(), (loops.to, loops.seed), &controller))
+        .transpose()?;
+    let design = Design { trial, ..Design::of(name.clone(), plant, controller, remark).map_err(failed)? };
+    write_all(&loops.out, || figure(loops, &design), || Ok(csv(&design)))?;
+    Ok(Answer::either(loops.voice, || text(&design), || json(&design)))
+}
+
+fn controller(method: &MethodArgs, plant: &TransferFunction) -> Result<(Zpk, String), LinearError> {
+    match method {
+        MethodArgs::LeadLag(args) => {
+            let wish = LeadLagWish {
+                crossover_rad_s: args.crossover,
+                phase_margin_rad: args.phase_margin.0,
+                lag: args.lag,
+            };
+            Ok((plant.lead_lag(wish)?, String::new()))
+        }
+        MethodArgs::Pid(args) => {
+            let pid = plant.pid(PidWish {
+                crossover_rad_s: args.crossover,
+                phase_margin_rad: args.phase_margin.0,
+                modulus: args.modulus,
+                filter: args.filter,
+            })?;
+            let remark = format!(
+                "kp = {}, ki = {} 1/s, kd = {} s, derivative up to {} rad/s",
+                four(pid.kp),
+                four(pid.ki),
+                four(pid.kd),
+                four(pid.filter_rad_s)
+            );
+            Ok((pid.transfer().zpk(), remark))
+        }
+        MethodArgs::Lqg(args) => {
+            let wish = LqgWish {
+                output: args.output,
+                input: args.input,
+                integral: args.integral,
+                disturbance: args.disturbance,
+                noise: args.noise,
+            };
+            Ok((plant.lqg(&wish)?, String::new()))
+        }
+        MethodArgs::Place(args) => {
+            let faster =
+                || args.poles.0.iter().take(plant.denominator().degree()).map(|pole| 4.0 * pole).collect();
+            let estimator = args.estimator.as_ref().map_or_else(faster, |poles| poles.0.clone());
+            Ok((plant.placed(&args.poles.0, &estimator)?, String::new()))
+        }
+    }
+}
+
+impl Design {
+    fn of(
+        name: String,
+        plant: TransferFunction,
+        controller: Zpk,
+        remark: String,
+    ) -> Result<Self, LinearError> {
+        /// Rows of a step.
+        const ROWS: usize = 2000;
+        /// Within this share of the goal it is settled.
+        const BAND: f64 = 0.02;
+        let k = controller.transfer();
+        let open = k.series(&plant)?;
+        let closed = open.closed()?;
+        let to_input = k.feedback(&plant)?;
+        let step_s = match plant.time() {
+            Time::Sampled(period_s) => period_s,
+            Time::Continuous => horizon_s(&closed) / ROWS as f64,
+        };
+        let step = closed.step_response(step_s, ROWS + 1)?;
+        // what a derivative without an end puts in is an impulse: it has no step
+        let input = to_input.step_response(step_s, ROWS + 1).unwrap_or_default();
+        let info = step.step_info(Some(closed.dc_gain()), BAND);
+        let margins = open.margins();
+        Ok(Self { name, plant, controller, remark, closed, margins, step, input, info, trial: None })
+    }
+}
+
+/// How long the slowest that moves the output takes to die out, s.
+fn horizon_s(closed: &TransferFunction) -> f64 {
+    let (shown, _) = closed.minimal(1e-3);
+    let slowest =
+        shown.poles().iter().map(|pole| -pole.re).filter(|rate| *rate > 0.0).fold(f64::INFINITY, f64::min);
+    let fastest = shown.poles().iter().map(|pole| pole.norm()).fold(1e-3, f64::max);
+    // what is three decades slower than the rest is not waited for
+    if slowest.is_finite() { (5.0 / slowest).min(2e3 / fastest * 5.0) } else { 5.0 }
+}
+
+fn text(design: &Design) -> String {
+    let Design { name, plant, controller, remark, closed, margins, info, .. } = design;
+    let mut text = format!("{name} = {plant}\n\nK = {controller}\n");
+    if !remark.is_empty() {
+        text += &format!("    {remark}\n");
+    }
+    let ways = |seconds: Option<f64>| seconds.map_or("never".to_owned(), |s| format!("{} s", four(s)));
+    let percent = |value: Option<f64>| value.map_or("–".to_owned(), |p| format!("{} %", four(p)));
+    // writing to a String cannot fail
+    let _ = writeln!(text, "\nthe loop\n{}", margin_lines(margins));
+    let _ = writeln!(
+        text,
+        "\na step comes to {}, overshoots by {}, rises in {}, is within 2 % after {}",
+        four(info.final_value),
+        percent(info.overshoot_percent),
+        ways(info.rise_s),
+        ways(info.settle_s)
+    );
+    let largest = design.input.values.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+    let _ = writeln!(text, "for a step of 1 the input is {} at most", four(largest));
+    let stable = closed.stability() == Stability::Stable;
+    let _ = write!(
+        text,
+        "\nclosed it is {}\n{}",
+        if stable { "stable" } else { "NOT stable" },
+        pole_lines(&closed.poles(), closed.time())
+    );
+    if let Some(trial) = &design.trial {
+        text += &format!("\n{}", trial.text());
+    }
+    text.trim_end().to_owned()
+}
+
+fn json(design: &Design) -> String {
+    let info = &design.info;
+    let zpk = &design.controller;
+    json!({
+        "system": system_json(&design.name, &design.plant),
+        "controller": {
+            "text": zpk.to_string(),
+            "gain": zpk.gain(),
+            "zeros": pairs(zpk.zeros()),
+            "poles": pairs(zpk.poles()),
+            "num": zpk.transfer().numerator().coefficients(),
+            "den": zpk.transfer().denominator().coefficients(),
+        },
+        "margins": margins_json(&design.margins),
+        "closed_poles": pairs(&design.closed.poles()),
+        "closed_stable": design.closed.stability() == Stability::Stable,
+        "bandwidth_rad_s": design.closed.bandwidth(),
+        "sensitivity": design.margins.modulus.map(|m| 1.0 / m.distance).filter(|s| s.is_finite()),
+        "complementary_sensitivity": design.closed.peak().map(|peak| peak.gain),
+        "step": {
+            "final": info.final_value,
+            "overshoot_percent": info.overshoot_percent,
+            "rise_s": info.rise_s,
+            "settle_s": info.settle_s,
+        },
+        "trial": design.trial.as_ref().map(Trial::json),
+        "input_peak": design.input.values.iter().fold(0.0_f64, |most, u| most.max(u.abs())),
+    })
+    .to_string()
+}
+
+fn csv(design: &Design) -> String {
+    let mut text = String::from("t_s,output,input\n");
+    for (row, output) in design.step.values.iter().enumerate() {
+        let input = design.input.values.get(row).map_or(String::new(), |u| format!("{u:.9e}"));
+        let _ = writeln!(text, "{:.9e},{output:.9e},{input}", row as f64 * design.step.step_s);
+    }
+    text
+}
+
+fn figure(args: &LoopArgs, design: &Design) -> Result<String, Failure> {
+    let curve = |response: &Response| Curve {
+        colour: Colour::Blue,
+        pen: Pen::Solid,
+        points: (0..).zip(&response.values).map(|(k, y)| (f64::from(k) * response.step_s, *y)).collect(),
+    };
+    let panel = |title: &str, levels: Vec<f64>, response: &Response| Panel {
+        x_title: "time, s".into(),
+        y_title: title.into(),
+        curves: vec![curve(response)],
+        levels,
+        scale: Scale::Free,
+        ..Panel::default()
+    };
+    let phase =
+        design.margins.least_phase().map_or(String::new(), |m| format!(", {}° of phase", four(m.degrees())));
+    let modulus = design.margins.modulus.map_or(String::new(), |m| format!(", modulus {}", four(m.distance)));
+    let mut panels = vec![panel("output", vec![1.0], &design.step), panel("input", vec![0.0], &design.input)];
+    let mut legend = vec![Key { colour: Colour::Blue, name: format!("a step of 1{phase}{modulus}") }];
+    if let Some(trial) = &design.trial {
+        panels.extend(trial.panels());
+        legend.push(Key { colour: Colour::Vermilion, name: trial.name() });
+    }
+    let figure = Figure {
+        title: format!("{} with K = {}", design.name, design.controller),
+        legend,
+        columns: if panels.len() > 2 { 2 } else { 1 },
+        panel: if panels.len() > 2 { (560, 280) } else { (820, 280) },
+        panels,
+        theme: args.system.theme(),
+    };
+    figure.svg().map_err(|e| Failure::failed("internal", e))
+}
