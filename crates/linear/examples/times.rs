@@ -32,7 +32,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         median("Tustin", || black_box(&pan).sampled(1e-3, Discretization::Tustin(None))),
         median("LQR, 4 states", || black_box(&plant).lqr(&weight, &one)),
         median("pole placement, 4 states", || black_box(&plant).place(&places)),
-        median("H∞ norm", || black_box(&closed).peak()),
         median("zero-order hold", || black_box(&pan).sampled(1e-3, Discretization::ZeroOrderHold)),
     ];
     for (name, polynomial) in hostile() {

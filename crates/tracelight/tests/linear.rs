@@ -224,3 +224,30 @@ fn what_cannot_be_designed_is_refused_in_a_sentence() {
         assert!(message.contains(words), "{arguments:?}: {message}");
     }
 }
+
+/// The same plot as pixels, 144 to the inch, its words drawn whatever fonts there are.
+#[test]
+fn a_plot_is_written_as_pixels() {
+    let dir = folder("plot-pixels");
+    let (svg, png, dark) = (dir.join("b.svg"), dir.join("b.png"), dir.join("d.png"));
+    lab(&["bode", "K11*G11", "K11t*G11", "-o", svg.to_str().unwrap(), "-o", png.to_str().unwrap()]);
+    lab(&["bode", "K11*G11", "--dark", "-o", dark.to_str().unwrap()]);
+    let drawn = std::fs::read_to_string(svg).unwrap();
+    let length = |name: &str| {
+        let at = drawn.find(&format!("{name}=\"")).unwrap() + name.len() + 2;
+        drawn[at..].split('"').next().unwrap().parse::<u32>().unwrap()
+    };
+    let image = image::open(png).unwrap().to_luma8();
+    assert_eq!(image.dimensions(), (length("width") * 3 / 2, length("height") * 3 / 2));
+    let share = |image: &image::GrayImage, dark: bool| {
+        // the title's row, left
+        let inked = (0..400).flat_map(|x| (0..48).map(move |y| (x, y))).filter(|&(x, y)| {
+            let grey = image.get_pixel(x, y)[0];
+            if dark { grey > 128 } else { grey < 128 }
+        });
+        inked.count() as f64 / (400.0 * 48.0)
+    };
+    assert!((0.02..0.3).contains(&share(&image, false)), "{}", share(&image, false));
+    let night = image::open(dark).unwrap().to_luma8();
+    assert!((0.02..0.3).contains(&share(&night, true)), "{}", share(&night, true));
+}

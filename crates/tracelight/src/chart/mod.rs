@@ -1,6 +1,7 @@
-//! Figures of curves as SVG: panels in a grid under one title and one legend.
+//! Figures of curves as SVG, and that as PNG: panels in a grid under one title and one legend.
 
 mod linear;
+mod pixels;
 mod range;
 
 use plotters::chart::ChartContext;
@@ -14,6 +15,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, TextStyle};
 
 use linear::Linear;
+pub(crate) use pixels::pixels;
 use range::{Range, inside};
 
 /// A page of panels.

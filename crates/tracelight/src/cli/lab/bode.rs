@@ -28,8 +28,8 @@ pub(super) struct FrequencyArgs {
     pub(super) systems: SystemArgs,
     #[command(flatten)]
     band: BandArgs,
-    /// Plot into an SVG, or write a row a frequency to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    /// Plot into an SVG or PNG, or write a row a frequency to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     pub(super) out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,

@@ -125,8 +125,8 @@ pub(super) struct LoopArgs {
     /// Seed of what differs from head to head
     #[arg(long, value_name = "N", default_value_t = 0, requires = "tried")]
     seed: u64,
-    /// Plot step and input into an SVG, or write them to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    /// Plot step and input into an SVG or PNG, or write them to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,

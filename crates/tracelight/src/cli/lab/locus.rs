@@ -48,8 +48,8 @@ pub(super) struct PlaneArgs {
     /// Show so far from zero, in 1/s (of samples: of z) [default: all poles and zeros, and the unit circle]
     #[arg(long, value_name = "REACH", value_parser = positive)]
     reach: Option<f64>,
-    /// Plot into an SVG, or write a row a gain (the first system), or a pole or zero, to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    /// Plot into an SVG or PNG, or write a row a gain (the first system), or a pole or zero, to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,

@@ -19,7 +19,7 @@ mod velocity;
 use clap::{Args, Subcommand};
 use tracelight_rig::Fault;
 
-use crate::chart::Colour;
+use crate::chart::{self, Colour};
 use crate::cli::shapes::ProfileName;
 use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
@@ -100,6 +100,8 @@ struct OutFile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum OutKind {
     Plot,
+    /// The plot as pixels.
+    Pixels,
     Table,
 }
 
@@ -107,8 +109,9 @@ fn out_file(text: &str) -> Result<OutFile, String> {
     let ending = text.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     let kind = match ending.as_deref() {
         Some("svg") => OutKind::Plot,
+        Some("png") => OutKind::Pixels,
         Some("csv") => OutKind::Table,
-        _ => return Err(format!("{text} ends in neither .svg (a plot) nor .csv (a table)")),
+        _ => return Err(format!("{text} ends in none of .svg, .png (a plot) and .csv (a table)")),
     };
     Ok(OutFile { path: text.into(), kind })
 }
@@ -120,11 +123,12 @@ fn write_all(
     table: impl Fn() -> Result<String, Failure>,
 ) -> Result<(), Failure> {
     files.iter().try_for_each(|file| {
-        let text = match file.kind {
-            OutKind::Plot => plot()?,
-            OutKind::Table => table()?,
+        let bytes = match file.kind {
+            OutKind::Plot => plot()?.into_bytes(),
+            OutKind::Pixels => chart::pixels(&plot()?).map_err(|e| Failure::failed("internal", e))?,
+            OutKind::Table => table()?.into_bytes(),
         };
-        write_file(&file.path, &text)
+        write_file(&file.path, bytes)
     })
 }
 

@@ -36,8 +36,8 @@ pub(crate) struct MonteCarloArgs {
     /// Seed of the first head; the next have the seeds after it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..u64::MAX / 2))]
     seed: u64,
-    /// Plot the heads' errors, sorted, into an SVG, or write a row a head to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    /// Plot the heads' errors, sorted, into an SVG or PNG, or write a row a head to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,

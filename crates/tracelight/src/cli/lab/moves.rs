@@ -108,8 +108,8 @@ struct PaceArgs {
     /// Seed of what differs from head to head
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Plot the moves into an SVG, or write one, a row a millisecond, to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    /// Plot the moves into an SVG or PNG, or write one, a row a millisecond, to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
     voice: Voice,

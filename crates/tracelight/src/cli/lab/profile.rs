@@ -37,8 +37,8 @@ pub(crate) struct ProfileArgs {
     /// Which to plot, the first of them in the CSV and first in --json
     #[arg(long, value_enum, value_delimiter = ',', default_value = "trapezoid,s-curve")]
     profile: Vec<ProfileName>,
-    /// Plot angle, speed and acceleration into an SVG, or write them, a row a millisecond, to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    /// Plot angle, speed and acceleration into an SVG or PNG, or write them, a row a millisecond, to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,

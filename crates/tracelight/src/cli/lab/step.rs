@@ -41,8 +41,8 @@ pub(crate) struct StepArgs {
     /// Seed of what differs from head to head
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Plot the responses into an SVG, or write the first, a row a millisecond, to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    /// Plot the responses into an SVG or PNG, or write the first, a row a millisecond, to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,

@@ -34,8 +34,8 @@ pub(crate) struct VelocityArgs {
     /// Seed of what differs from head to head
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Plot the errors over interval and speed into an SVG, or write a row each to a CSV; may be given again
-    #[arg(short, long, value_name = "FILE.svg|FILE.csv", value_parser = out_file)]
+    /// Plot the errors over interval and speed into an SVG or PNG, or write a row each to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,
