@@ -251,3 +251,49 @@ fn a_plot_is_written_as_pixels() {
     let night = image::open(dark).unwrap().to_luma8();
     assert!((0.02..0.3).contains(&share(&night, true)), "{}", share(&night, true));
 }
+
+#[test]
+fn systems_on_paper_answer_as_the_textbook_says() {
+    let steps = lab(&["response", "K11 G11", "K11t G11", "--closed", "--duration", "1s"]);
+    near(&steps["systems"][0]["overshoot_percent"], 49.4, 0.05);
+    near(&steps["systems"][1]["overshoot_percent"], 12.6, 0.05);
+    // 1 − e⁻ᵗ, its slope, its integral
+    let one = |input: &str, points: &str| {
+        let answer = lab(&["response", "1/(s+1)", "--input", input, "--duration", "3s", "--points", points]);
+        answer["systems"][0]["values"].as_array().unwrap().last().unwrap().as_f64().unwrap()
+    };
+    let decayed = (-3.0_f64).exp();
+    for (input, wanted) in [("step", 1.0 - decayed), ("impulse", decayed), ("ramp", 2.0 + decayed)] {
+        assert!((one(input, "7") - wanted).abs() < 1e-12, "{input}");
+    }
+    let sampled =
+        lab(&["response", "1/(z-0.5)", "--period", "0.1s", "--input", "impulse", "--duration", "0.5s"]);
+    assert_eq!(sampled["systems"][0]["values"], json!([0.0, 1.0, 0.5, 0.25, 0.125, 0.0625]));
+    let ramp = lab(&["response", "z/(z-1)", "--period", "0.1s", "--input", "ramp", "--duration", "0.25s"]);
+    near(&ramp["systems"][0]["values"][2], 0.3, 1e-12);
+    let dir = folder("responses");
+    let (png, csv) = (dir.join("r.png"), dir.join("r.csv"));
+    lab(&[
+        "response",
+        "1/(s+1)",
+        "K11 G11",
+        "--points",
+        "50",
+        "-o",
+        png.to_str().unwrap(),
+        "-o",
+        csv.to_str().unwrap(),
+    ]);
+    assert!(image::open(png).unwrap().width() == 1230);
+    let text = std::fs::read_to_string(csv).unwrap();
+    assert!(text.starts_with("t_s_1,output_1,t_s_2,output_2\n") && text.lines().count() == 51, "{text}");
+    for (arguments, words) in [
+        (["s", "--input", "step"], "more zeros than poles"),
+        (["1/(s+1)", "--duration", "0s"], "not above zero"),
+        (["1/s", "--points", "1"], "2..=100000"),
+    ] {
+        let refused = run(&[&["lab", "response"], &arguments[..]].concat());
+        let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(!refused.status.success() && message.contains(words), "{message}");
+    }
+}

@@ -10,6 +10,7 @@ mod montecarlo;
 mod moves;
 mod nyquist;
 mod profile;
+mod response;
 mod shape;
 mod step;
 mod systems;
@@ -47,6 +48,7 @@ enum LabAction {
     Nyquist(nyquist::NyquistArgs),
     Nichols(nyquist::NicholsArgs),
     Pzmap(locus::PzmapArgs),
+    Response(response::ResponseArgs),
     Design(design::DesignArgs),
     #[command(name = "montecarlo")]
     MonteCarlo(montecarlo::MonteCarloArgs),
@@ -66,6 +68,7 @@ impl LabArgs {
             LabAction::Nyquist(args) => args.over.voice,
             LabAction::Nichols(args) => args.over.voice,
             LabAction::Pzmap(args) => args.plane.voice,
+            LabAction::Response(args) => args.voice,
             LabAction::Design(args) => args.voice(),
             LabAction::MonteCarlo(args) => args.voice,
         }
@@ -85,6 +88,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Nyquist(args) => nyquist::run(args),
         LabAction::Nichols(args) => nyquist::run_nichols(args),
         LabAction::Pzmap(args) => locus::run_pzmap(args),
+        LabAction::Response(args) => response::run(args),
         LabAction::Design(args) => design::run(args),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
