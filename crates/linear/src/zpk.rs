@@ -102,8 +102,8 @@ fn quotient(gain: f64, zeros: &[Complex], poles: &[Complex], factor: &dyn Fn(&Co
     let (above, below) = (factors(zeros), factors(poles));
     let top = match (gain, above.is_empty()) {
         (1.0, false) => above.concat(),
-        (_, true) => four_digits(gain),
-        _ => format!("{} {}", four_digits(gain), above.concat()),
+        (_, true) => four_digits(gain).replace('-', "−"),
+        _ => format!("{} {}", four_digits(gain).replace('-', "−"), above.concat()),
     };
     match &below[..] {
         [] => top,

@@ -144,6 +144,8 @@ fn a_bound_moves_the_other_if_that_is_not_typed() {
     let bode = lab(&["bode", "1/s", "--from", "100rad/s", "--points", "2"]);
     near(&bode["rad_s"][0], 100.0, 1e-9);
     near(&bode["rad_s"][1], 1e4, 1e-6);
+    let sampled = lab(&["bode", "0.1/(z-0.9)", "--period", "1ms", "--from", "100rad/s", "--points", "2"]);
+    near(&sampled["rad_s"][1], std::f64::consts::PI * 1e3, 1e-6);
     let refused = run(&["lab", "bode", "1/s", "--from", "100rad/s", "--to", "10rad/s"]);
     assert!(!refused.status.success());
 }
@@ -173,6 +175,14 @@ fn a_controller_is_designed_and_meets_its_wishes() {
     for (pole, wanted) in poles.iter().zip([-20.0, -40.0, -40.0, -200.0, -210.0]) {
         assert!((pole - wanted).abs() < 1e-4, "{poles:?}");
     }
+    // an estimator nobody asked for is faster, in z as in s
+    let own = lab(&["design", "place", "G11", "--sample", "1ms", "--poles", "0.95,0.96"]);
+    assert_eq!((&own["closed_stable"], own["closed_poles"].as_array().unwrap().len()), (&json!(true), 4));
+    let own = lab(&["design", "place", "G11", "--poles=-15,-40+30j"]);
+    near(&own["closed_poles"][4][0], -160.0, 1e-3);
+    // wished to grow, it does
+    let grows = lab(&["design", "place", "G11", "--poles", "30,40"]);
+    assert_eq!((&grows["closed_stability"], &grows["step"]), (&json!("growing"), &Value::Null));
     let sampled = lab(&["design", "lqg", "G11", "--sample", "1ms", "--integral", "1e-4"]);
     assert_eq!(sampled["closed_stable"], true);
     // the printed formula is the controller
@@ -214,7 +224,12 @@ fn what_cannot_be_designed_is_refused_in_a_sentence() {
         ("lqg (s-1)/((s-1)(s+2))", "brings that system to rest"),
         ("lqg s", "more zeros than poles"),
         ("place 1/(s+1)^4 --poles=-3,-4,-5,-6,-7 --try pan", "does not fit"),
-        ("lead-lag G11 --sample 1ms --crossover 10rad/s --phase-margin 60deg", "samples every"),
+        ("lead-lag G11 --sample 1ms --crossover 10rad/s --phase-margin 60deg", "continuous time"),
+        ("pid 1/(s+1)^60", "order 24"),
+        ("place G11 --poles=-1e300,-1e300", "no pole"),
+        ("lqg 5", "no states"),
+        ("lqg 1/(s-1)^12", "digits"),
+        ("place G11 --poles=-40+30j,-50+2j --estimator=-1,-2", "give as many"),
         ("pid G11 --crossover 10rad/s --to 3deg", "--try"),
     ] {
         let arguments: Vec<&str> = ["lab", "design"].into_iter().chain(arguments.split(' ')).collect();

@@ -1,5 +1,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::in_continuous_time;
+use crate::notation::four_digits;
+use crate::stability::Stability;
 use crate::time::positive;
 use crate::{Complex, LinearError, Time, TransferFunction, Zpk};
 
@@ -22,9 +25,30 @@ const MOST_LEADS: usize = 3;
 
 impl TransferFunction {
     /// The compensator K that gives the open loop K G that crossover and that phase margin, both exactly: as many equal leads about the
-    /// crossover as its phase asks for, and a lag a decade below. Without a lead, the margin may be more than was wished.
+    /// crossover as its phase asks for, and a lag a decade below. Where no lead is needed, the margin is more than was wished. Where no
+    /// positive gain closes a stable loop, a negative one may.
     pub fn lead_lag(&self, wish: LeadLagWish) -> Result<Zpk, LinearError> {
-        self.time().with(Time::Continuous)?;
+        let settles = |k: &Zpk| {
+            let closed = k.transfer().series(self).and_then(|open| open.closed());
+            closed.is_ok_and(|closed| closed.stability() == Stability::Stable)
+        };
+        let why = match self.positive_lead_lag(wish) {
+            Ok(k) if settles(&k) => return Ok(k),
+            Ok(_) => LinearError::Wish(
+                "the loop would not be stable: at that crossover leads alone do not settle that system"
+                    .into(),
+            ),
+            Err(why) => why,
+        };
+        let turned =
+            self.scaled(-1.0).positive_lead_lag(wish).ok().and_then(|k| {
+                Zpk::new(-k.gain(), k.zeros().to_vec(), k.poles().to_vec(), Time::Continuous).ok()
+            });
+        turned.filter(settles).ok_or(why)
+    }
+
+    fn positive_lead_lag(&self, wish: LeadLagWish) -> Result<Zpk, LinearError> {
+        in_continuous_time(self.time(), "a lead-lag compensator")?;
         let w = positive("the crossover, rad/s,", wish.crossover_rad_s)?;
         if !(0.0..PI).contains(&wish.phase_margin_rad) {
             return Err(LinearError::Wish("a phase margin is between 0 and 180°".into()));
@@ -43,7 +67,8 @@ impl TransferFunction {
         let leads = (missing / MOST_LEAD_RAD).ceil().max(0.0);
         if leads > MOST_LEADS as f64 || leads.is_nan() {
             return Err(LinearError::Wish(format!(
-                "at {w} rad/s {:.1}° of phase are missing; {MOST_LEADS} leads give {:.0}° at most: ask for a lower crossover or a smaller phase margin",
+                "at {} rad/s {:.1}° of phase are missing; {MOST_LEADS} leads give {:.0}° at most: ask for a lower crossover or a smaller phase margin",
+                four_digits(w),
                 missing.to_degrees(),
                 (MOST_LEADS as f64 * MOST_LEAD_RAD).to_degrees()
             )));
@@ -59,7 +84,10 @@ impl TransferFunction {
         let shape = Zpk::new(1.0, zeros.clone(), poles.clone(), Time::Continuous)?.transfer();
         let gain = 1.0 / (shape.at(Complex::new(0.0, w)) * self.at(Complex::new(0.0, w))).norm();
         if !(gain.is_finite() && gain > 0.0) {
-            return Err(LinearError::Wish(format!("the system has a pole or a zero at {w} rad/s itself")));
+            return Err(LinearError::Wish(format!(
+                "at {} rad/s the system's gain is no number, or none",
+                four_digits(w)
+            )));
         }
         Zpk::new(gain, zeros, poles, Time::Continuous)
     }
@@ -92,6 +120,10 @@ mod tests {
         let plant = TransferFunction::parse("1/(s+1)^6", Time::Continuous).unwrap();
         let wish = LeadLagWish { crossover_rad_s: 10.0, phase_margin_rad: 1.0, lag: 1.0 };
         assert!(matches!(plant.lead_lag(wish), Err(LinearError::Wish(_))));
+        assert!(TransferFunction::parse("s^3", Time::Continuous).unwrap().lead_lag(wish).is_err());
+        let down = TransferFunction::parse("-1/(s+1)", Time::Continuous).unwrap();
+        let k = down.lead_lag(LeadLagWish { crossover_rad_s: 5.0, ..wish }).unwrap();
+        assert!(k.gain() < 0.0 && k.poles().is_empty(), "{k}");
         let easy = plant.lead_lag(LeadLagWish { crossover_rad_s: 0.1, ..wish }).unwrap();
         assert!(easy.poles().is_empty());
     }

@@ -1,6 +1,6 @@
 use crate::state_space::stack;
 use crate::time::positive;
-use crate::{Complex, LinearError, Matrix, StateSpace, TransferFunction, Zpk};
+use crate::{Complex, LinearError, Matrix, Polynomial, StateSpace, TransferFunction, Zpk};
 
 /// What a regulator with an estimated state is to weigh against what (LQG). Each is a size: that much of the one is as bad as that much of
 /// the other.
@@ -31,6 +31,9 @@ impl TransferFunction {
             positive(name, size)?;
         }
         let plant = self.state_space()?;
+        if plant.order() == 0 {
+            return Err(LinearError::Wish("it has no states: there is nothing to estimate".into()));
+        }
         let one = |size: f64| Matrix::from_element(1, 1, size);
         let input = one(wish.input.powi(-2));
         let regulator = match wish.integral {
@@ -43,7 +46,8 @@ impl TransferFunction {
         };
         let pushed = plant.b() * plant.b().transpose() * wish.disturbance.powi(2);
         let estimator = plant.kalman(&pushed, &one(wish.noise.powi(2)))?;
-        estimated(&plant, &regulator.gain, &estimator.gain)
+        let controller = estimated(&plant, &regulator.gain, &estimator.gain)?;
+        self.checked(controller, regulator.poles.into_iter().chain(estimator.poles))
     }
 
     /// The controller that puts the closed loop's poles there: the plant's state estimated, the estimate's error dying out by the poles
@@ -59,8 +63,32 @@ impl TransferFunction {
             plant.d().transpose(),
             plant.time(),
         )?;
-        let estimator = dual.place(estimator)?.transpose();
-        estimated(&plant, &gain, &estimator)
+        let errors = dual.place(estimator)?.transpose();
+        let controller = estimated(&plant, &gain, &errors)?;
+        self.checked(controller, poles.iter().chain(estimator).copied())
+    }
+
+    /// The controller, if it closes the loop with these poles: those of regulator and estimator, whatever rounding did on the way.
+    fn checked(&self, controller: Zpk, poles: impl Iterator<Item = Complex>) -> Result<Zpk, LinearError> {
+        let poles: Vec<Complex> = poles.collect();
+        let wanted = Polynomial::from_roots(1.0, &poles);
+        let closed = controller.transfer().series(self)?.closed()?;
+        // as coefficients in the unit of the poles' mean size: repeated poles scatter; of samples in z − 1
+        let edge = self.time().at_rest();
+        let n = poles.len() as f64;
+        let size =
+            (poles.iter().map(|z| (z - edge).norm().max(f64::MIN_POSITIVE).ln()).sum::<f64>() / n).exp();
+        let shift = Polynomial::new([size, edge.re]);
+        let [is, should] =
+            [closed.denominator(), &wanted].map(|p| p.substituted(&shift, &Polynomial::one(), p.degree()));
+        let most = should.coefficients().iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let off = (&is - &should).coefficients().iter().fold(0.0_f64, |most, c| most.max(c.abs())) / most;
+        if closed.denominator().degree() == poles.len() && off < 1e-4 {
+            return Ok(controller);
+        }
+        Err(LinearError::Wish(format!(
+            "the closed loop's poles are off by {off:.0e} of their polynomial: too few digits for a system of that order, or for weights so far apart"
+        )))
     }
 }
 

@@ -1,5 +1,7 @@
 use std::f64::consts::PI;
 
+use super::in_continuous_time;
+use crate::notation::four_digits;
 use crate::stability::Stability;
 use crate::time::positive;
 use crate::{Complex, LinearError, Polynomial, Time, TransferFunction};
@@ -50,8 +52,18 @@ impl TransferFunction {
     /// The PID with the largest integral gain, which rejects a load best, of those that give the open loop that crossover and phase
     /// margin exactly, keep it that far from −1 and have real zeros (the criterion of Åström & Hägglund, *Advanced PID Control*, 2006, §6.8, with the
     /// phase margin given).
+    ///
+    /// Where no positive gains do, all of them may be negative.
     pub fn pid(&self, wish: PidWish) -> Result<Pid, LinearError> {
-        self.time().with(Time::Continuous)?;
+        let negative = || {
+            let Pid { kp, ki, kd, filter_rad_s } = self.scaled(-1.0).positive_pid(wish).ok()?;
+            Some(Pid { kp: -kp, ki: -ki, kd: -kd, filter_rad_s })
+        };
+        self.positive_pid(wish).or_else(|why| negative().ok_or(why))
+    }
+
+    fn positive_pid(&self, wish: PidWish) -> Result<Pid, LinearError> {
+        in_continuous_time(self.time(), "a PID")?;
         let PidWish { phase_margin_rad, modulus, filter, .. } = wish;
         positive("the filter's ratio", filter)?;
         if !(0.0..PI).contains(&phase_margin_rad) || !(0.0..1.0).contains(&modulus) {
@@ -69,8 +81,9 @@ impl TransferFunction {
         match wish.crossover_rad_s {
             Some(w) => self.pid_at(positive("the crossover, rad/s,", w)?, &wish).ok_or_else(|| {
                 LinearError::Wish(format!(
-                    "no PID gives a crossover of {w} rad/s, {:.1}° of phase margin there, and a modulus margin of {modulus}: ask for another \
+                    "no PID gives a crossover of {} rad/s, {:.1}° of phase margin there, and a modulus margin of {modulus}: ask for another \
                      crossover or for less margin",
+                    four_digits(w),
                     phase_margin_rad.to_degrees()
                 ))
             }),
@@ -94,7 +107,8 @@ impl TransferFunction {
         };
         if best + 1 == CROSSOVERS {
             return Err(LinearError::Wish(format!(
-                "the faster the better, up to {high} rad/s and beyond: nothing in the system bounds the crossover; choose one"
+                "the faster the better, up to {} rad/s and beyond: nothing in the system bounds the crossover; choose one",
+                four_digits(high)
             )));
         }
         // between the neighbours, by golden section
@@ -143,8 +157,8 @@ impl TransferFunction {
         let kp = value.re - kd * of_derivative.re;
         // less than rounding is none
         let kd = if kd.abs() * w < 1e-12 * value.norm() { 0.0 } else { kd };
-        // zeros that swing, Ti below 4 Td, would leave poles that do
-        let is_calm = kp * kp >= 4.0 * ki * kd;
+        // zeros that swing would leave poles that do
+        let is_calm = (kp * f + ki).powi(2) >= 4.0 * ki * f * (kp + kd * f);
         let makes_sense =
             is_calm && kp >= 0.0 && kd >= 0.0 && (kp + ki + kd).is_finite() && value.norm() > 0.0;
         makes_sense.then_some(Pid { kp, ki, kd, filter_rad_s: f })
@@ -187,8 +201,10 @@ mod tests {
             );
             // the integral is the largest: the circle is touched, or the zeros are about to swing
             let touches = (margins.modulus.unwrap().distance - 0.6).abs() < 1e-4;
-            let is_double = (pid.kp * pid.kp / (4.0 * pid.ki * pid.kd) - 1.0).abs() < 1e-4;
+            let zeros = pid.transfer().zeros();
+            let is_double = (zeros[0] / zeros[1] - 1.0).norm() < 1e-2;
             assert!(touches || is_double, "{text} {pid:?} {margins:?}");
+            assert!(zeros.iter().all(|zero| zero.im == 0.0), "{text}: {zeros:?}");
         }
     }
 
@@ -207,6 +223,9 @@ mod tests {
     fn what_cannot_be_had_is_refused() {
         assert!(parse("1/(s(s+1))").pid(wish(None)).is_err_and(|e| e.to_string().contains("choose one")));
         assert!(parse("1/(s+1)^4").pid(wish(Some(50.0))).is_err());
+        let (up, down) =
+            (parse("1/(s+1)^3").pid(wish(None)).unwrap(), parse("-1/(s+1)^3").pid(wish(None)).unwrap());
+        assert_eq!((up.kp, up.ki, up.kd), (-down.kp, -down.ki, -down.kd));
         let much = PidWish { modulus: 0.95, ..wish(None) };
         assert!(parse("1/(s+1)").pid(much).is_err_and(|e| e.to_string().contains("at most")));
     }

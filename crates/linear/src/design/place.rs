@@ -18,15 +18,23 @@ impl StateSpace {
         if n == 0 {
             return Ok(Matrix::zeros(self.b().ncols(), 0));
         }
+        if n > MOST_STATES {
+            return Err(LinearError::Wish(format!("{n} states: poles of {MOST_STATES} at most are placed")));
+        }
         let wanted = blocks(poles);
         let mut best: Option<(f64, Matrix)> = None;
-        for attempt in 0..ATTEMPTS {
+        // with one input there is but one feedback
+        for attempt in 0..if self.b().ncols() == 1 { 1 } else { ATTEMPTS } {
             let Some((condition, gain)) = self.placed(&wanted, attempt) else { continue };
             if best.as_ref().is_none_or(|(least, _)| condition < *least) {
                 best = Some((condition, gain));
             }
         }
-        let (condition, gain) = best.ok_or(LinearError::NoRegulator)?;
+        let (condition, gain) = best.ok_or_else(|| {
+            LinearError::Wish(
+                "the poles cannot be put there: the input does not move all states, or they are too far apart for the digits there are".into(),
+            )
+        })?;
         self.check_placed(poles, &gain, condition)?;
         Ok(gain)
     }
@@ -51,6 +59,9 @@ impl StateSpace {
             let scale = x.column(j).norm();
             x.column_mut(j).iter_mut().for_each(|entry| *entry /= scale);
             g.column_mut(j).iter_mut().for_each(|entry| *entry /= scale);
+        }
+        if !x.iter().chain(g.iter()).all(|entry| entry.is_finite()) {
+            return None;
         }
         let values = x.clone().svd(false, false).singular_values;
         let condition = values.max() / values.min();
@@ -77,7 +88,10 @@ impl StateSpace {
     }
 }
 
-/// Ways that are tried; the first already does where there is one input.
+/// States beyond which n² equations are too many.
+const MOST_STATES: usize = 24;
+
+/// Ways that are tried with more inputs than one.
 const ATTEMPTS: usize = 8;
 
 /// Evenly spread in −1 … 1, without a generator: multiples of the golden section.
@@ -94,6 +108,8 @@ fn blocks(poles: &[Complex]) -> Matrix {
     sorted.sort_by(|a, b| (a.im, a.re).partial_cmp(&(b.im, b.re)).unwrap_or(std::cmp::Ordering::Equal));
     let size = poles.iter().map(|z| z.norm()).fold(f64::MIN_POSITIVE, f64::max);
     let (mut at, mut before): (usize, Option<Complex>) = (0, None);
+    // a real one and a pair are no chain, however near
+    let alike = |a: Complex, b: Complex| (a.im == 0.0) == (b.im == 0.0) && (a - b).norm() < 1e-3 * size;
     for pole in sorted {
         let wide = if pole.im == 0.0 { 1 } else { 2 };
         for i in 0..wide {
@@ -102,7 +118,7 @@ fn blocks(poles: &[Complex]) -> Matrix {
         if wide == 2 {
             (f[(at, at + 1)], f[(at + 1, at)]) = (pole.im, -pole.im);
         }
-        if before.is_some_and(|before| (before - pole).norm() < 1e-3 * size) {
+        if before.is_some_and(|before| alike(before, pole)) {
             for i in 0..wide {
                 f[(at + i - wide, at + i)] = size;
             }
@@ -140,6 +156,11 @@ mod tests {
         let pair = [Complex::new(-1.0, 2.0), Complex::new(-1.0, -2.0)];
         let gain = plant.place(&pair).unwrap();
         assert!((gain[(0, 0)] - 2.5).abs() < 1e-12 && (gain[(0, 1)] - 1.0).abs() < 1e-12, "{gain}");
+        // a real pole beside a pair
+        let three = system("1/(s(s+1)(s+2))");
+        let beside = [Complex::new(-40.0, 0.0), Complex::new(-40.0, 0.01), Complex::new(-40.0, -0.01)];
+        assert!(three.place(&beside).is_ok());
+        assert!(plant.place(&real(&[-1e300, -1e300])).is_err());
         let gain = plant.place(&real(&[0.0, -4.0])).unwrap();
         assert!(gain[(0, 0)].abs() < 1e-12 && (gain[(0, 1)] - 2.0).abs() < 1e-12, "{gain}");
         assert!(plant.place(&pair[..1]).is_err() && plant.place(&[pair[0], pair[0]]).is_err());

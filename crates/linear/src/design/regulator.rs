@@ -137,7 +137,9 @@ fn weight(m: &Matrix, name: &'static str) -> Result<Matrix, LinearError> {
     if off > 1e-9 * m.norm() || m.diagonal().iter().any(|entry| *entry < -1e-12 * m.norm()) {
         return Err(LinearError::NotPositive(name));
     }
-    Ok(0.5 * (m + m.transpose()))
+    let m = 0.5 * (m + m.transpose());
+    let least = crate::eigenvalues(&m)?.iter().map(|z| z.re).fold(0.0, f64::min);
+    if least < -1e-9 * m.norm() { Err(LinearError::NotPositive(name)) } else { Ok(m) }
 }
 
 #[cfg(test)]
@@ -232,6 +234,8 @@ mod tests {
         assert_eq!(plant.lqr(&two, &one), Err(LinearError::NoRegulator));
         // an integrator that costs nothing
         assert!(chain().lqr(&Matrix::zeros(2, 2), &one).is_err());
+        let saddle = Matrix::from_row_slice(2, 2, &[1.0, 10.0, 10.0, 1.0]);
+        assert_eq!(chain().lqr(&saddle, &one), Err(LinearError::NotPositive("Q")));
         assert!(chain().lqr(&two, &-&one).is_err() && chain().lqr(&one, &one).is_err());
         assert!(chain().lqr(&(&two * f64::NAN), &one).is_err());
     }

@@ -23,6 +23,9 @@ impl Riccati<'_> {
     /// algebraic Riccati equations*, Linear Algebra Appl. 396, 2005; of samples Chu, Fan, Lin & Wang, Int. J. Control 77, 2004),
     /// then by Newton's iteration (Kleinman 1968), on balanced states.
     pub(super) fn solve(&self) -> Result<(Matrix, Matrix), LinearError> {
+        if self.a.nrows() == 0 {
+            return Ok((Matrix::zeros(0, 0), Matrix::zeros(self.b.ncols(), 0)));
+        }
         let r_inverse = self.r.clone().cholesky().ok_or(LinearError::NotPositive("R"))?.inverse();
         let scales = scales(self.a, &(self.b * &r_inverse * self.b.transpose()), self.q);
         // x = D y
@@ -97,7 +100,8 @@ impl Riccati<'_> {
             Time::Sampled(_) if pole.norm() > 0.999 => pole / pole.norm() * (1.0 / pole.norm()).min(0.999),
             Time::Sampled(_) => *pole,
         };
-        let mut gain = plant.place(&poles.iter().map(mirrored).collect::<Vec<_>>())?;
+        let mirrored: Vec<Complex> = poles.iter().map(mirrored).collect();
+        let mut gain = plant.place(&mirrored).map_err(|_| LinearError::NoRegulator)?;
         let mut last = f64::INFINITY;
         for _ in 0..MOST_STEPS {
             let closed = self.a - self.b * &gain;

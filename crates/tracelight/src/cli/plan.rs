@@ -65,10 +65,10 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| progress.say(&format!("note: {n}")));
     if let Some(path) = &args.out {
-        write_file(path, &csv(&schedule.plan))?;
+        write_file(path, csv(&schedule.plan))?;
     }
     if let Some(path) = &args.preview {
-        write_file(path, &preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
+        write_file(path, preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
     }
     let timing = serde_json::json!({ "vision": sketch.vision_ms, "plan": plan_ms });
     let shortest = args.order_by == OrderBy::Distance || driving.request.lit_speed == LitSpeed::Stops;

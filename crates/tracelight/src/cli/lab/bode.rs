@@ -67,7 +67,11 @@ impl FrequencyArgs {
         // a bound that is typed moves the other, if that is not typed
         let (from, to) = match (self.band.from, self.band.to) {
             (Some(from), Some(to)) => (from, to),
-            (Some(from), None) => (from, high.max(100.0 * from)),
+            (Some(from), None) => {
+                let end =
+                    systems.iter().map(|n| n.system.time().nyquist_rad_s()).fold(f64::INFINITY, f64::min);
+                (from, high.max(100.0 * from).min(end))
+            }
             (None, Some(to)) => (low.min(to / 100.0), to),
             (None, None) => (low, high),
         };
@@ -194,7 +198,7 @@ pub(super) fn system_json(name: &str, system: &TransferFunction) -> Value {
     })
 }
 
-const fn stability_name(stability: Stability) -> &'static str {
+pub(super) const fn stability_name(stability: Stability) -> &'static str {
     match stability {
         Stability::Stable => "stable",
         Stability::Marginal => "marginal",

@@ -7,7 +7,8 @@ use tracelight_linear::{
     TransferFunction, Zpk,
 };
 
-use super::bode::{frequency, margin_lines, margins_json, system_json};
+use super::bode::{frequency, margin_lines, margins_json, stability_name, system_json};
+use super::poles::{Poles, poles};
 use super::step::{Axis, step};
 use super::systems::{OneSystemArgs, four, pairs, pole_lines};
 use super::trial::Trial;
@@ -17,12 +18,15 @@ use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::units::Angle;
 
+/// Order beyond which digits run out, and time.
+const MOST_ORDER: usize = 24;
+
 /// A controller from wishes, and the loop it makes: margins, step, poles
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: tracelight lab design pid G11 --crossover 60rad/s --phase-margin 55deg -o loop.svg\n\n\
                   The controller acts on the error: from what is measured, subtracted from what is wished, to the system's input. Its formula \
-                  can be pasted into lab bode, locus, pzmap.\n\n\
+                  can be pasted into lab bode, locus, pzmap (of samples four digits are too few for that: --json has all).\n\n\
                   On a rig (--try) motors have a limit, joints stick, and a controller that integrates winds up while a motor is at its limit: \
                   small jumps show friction, large ones the limit."
 )]
@@ -101,7 +105,7 @@ struct LqgArgs {
 struct PlaceArgs {
     #[command(flatten)]
     loops: LoopArgs,
-    /// Poles of the regulator, such as -30,-40+20j; a complex one stands for its pair. As many as the system has, or one more: then it
+    /// Poles of the regulator, such as -30,-40+20j, of samples in z; a complex one stands for its pair. As many as the system has, or one more: then it
     /// integrates
     #[arg(long, value_name = "POLES", allow_hyphen_values = true, value_parser = poles)]
     poles: Poles,
@@ -132,37 +136,6 @@ pub(super) struct LoopArgs {
     pub(super) voice: Voice,
 }
 
-#[derive(Clone, Debug)]
-struct Poles(Vec<Complex>);
-
-fn poles(text: &str) -> Result<Poles, String> {
-    let mut all = Vec::new();
-    for part in text.split(',') {
-        let part = part.trim().replace('−', "-");
-        let wrong = || format!("{part} is no pole; write -30, or -40+20j for a pair");
-        let pole = match part.strip_suffix('j') {
-            None => Complex::new(part.parse().map_err(|_| wrong())?, 0.0),
-            Some(pair) => {
-                // the sign that is not at the beginning, and not an exponent's
-                let sign = |(i, c): &(usize, char)| {
-                    *i > 0 && matches!(c, '+' | '-' | '±') && !pair[..*i].ends_with(['e', 'E'])
-                };
-                let (at, c) = pair.char_indices().rfind(sign).ok_or_else(wrong)?;
-                let number = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());
-                Complex::new(number(&pair[..at])?, number(&pair[at + c.len_utf8()..])?.abs())
-            }
-        };
-        if !(pole.re.is_finite() && pole.im.is_finite()) {
-            return Err(wrong());
-        }
-        all.push(pole);
-        if pole.im != 0.0 {
-            all.push(pole.conj());
-        }
-    }
-    Ok(Poles(all))
-}
-
 /// What was designed, and what it does.
 struct Design {
     name: String,
@@ -175,7 +148,11 @@ struct Design {
     /// What comes out, and what the controller puts in, after a step of what is wished.
     step: Response,
     input: Response,
-    info: StepInfo,
+    /// The largest of the input.
+    peak: f64,
+    stability: Stability,
+    /// Of what settles.
+    info: Option<StepInfo>,
     trial: Option<Trial>,
 }
 
@@ -197,6 +174,13 @@ impl DesignArgs {
 pub(crate) fn run(args: &DesignArgs) -> Result<Answer, Failure> {
     let loops = args.loops();
     let (name, plant) = loops.system.system()?;
+    let order = plant.denominator().degree().max(plant.numerator().degree());
+    if order > MOST_ORDER {
+        let message = format!(
+            "{name} is of order {order}; controllers are designed for systems up to order {MOST_ORDER}"
+        );
+        return Err(Failure::failed("no-such-design", message));
+    }
     let failed = |e: LinearError| Failure::failed("no-such-design", format!("{name}: {e}"));
     let (controller, remark) = controller(&args.method, &plant).map_err(failed)?;
     let trial = loops
@@ -245,12 +229,34 @@ fn controller(method: &MethodArgs, plant: &TransferFunction) -> Result<(Zpk, Str
             Ok((plant.lqg(&wish)?, String::new()))
         }
         MethodArgs::Place(args) => {
-            let faster =
-                || args.poles.0.iter().take(plant.denominator().degree()).map(|pole| 4.0 * pole).collect();
-            let estimator = args.estimator.as_ref().map_or_else(faster, |poles| poles.0.clone());
+            let own = || faster(&args.poles.0, plant);
+            let estimator = args.estimator.as_ref().map_or_else(own, |poles| poles.0.clone());
             Ok((plant.placed(&args.poles.0, &estimator)?, String::new()))
         }
     }
+}
+
+/// As many poles as the system has, four times as fast as these.
+fn faster(poles: &[Complex], plant: &TransferFunction) -> Vec<Complex> {
+    let mut poles = poles.to_vec();
+    if poles.len() > plant.denominator().degree() {
+        // the integral's is not estimated: a real pole less, or one for a pair
+        match poles.iter().position(|pole| pole.im == 0.0) {
+            Some(real) => drop(poles.remove(real)),
+            None => {
+                let size = match plant.time() {
+                    Time::Continuous => -poles[0].norm(),
+                    Time::Sampled(_) => poles[0].norm(),
+                };
+                poles.splice(..2, [Complex::new(size, 0.0)]);
+            }
+        }
+    }
+    let four_times = |pole: &Complex| match plant.time() {
+        Time::Continuous => 4.0 * pole,
+        Time::Sampled(_) => pole * pole * pole * pole,
+    };
+    poles.iter().map(four_times).collect()
 }
 
 impl Design {
@@ -260,35 +266,97 @@ impl Design {
         controller: Zpk,
         remark: String,
     ) -> Result<Self, LinearError> {
-        /// Rows of a step.
-        const ROWS: usize = 2000;
-        /// Within this share of the goal it is settled.
-        const BAND: f64 = 0.02;
         let k = controller.transfer();
         let open = k.series(&plant)?;
         let closed = open.closed()?;
         let to_input = k.feedback(&plant)?;
-        let step_s = match plant.time() {
-            Time::Sampled(period_s) => period_s,
-            Time::Continuous => horizon_s(&closed) / ROWS as f64,
-        };
-        let step = closed.step_response(step_s, ROWS + 1)?;
+        let stability = closed.stability();
+        let (step, info) = settled_step(&closed, stability)?;
         // what a derivative without an end puts in is an impulse: it has no step
-        let input = to_input.step_response(step_s, ROWS + 1).unwrap_or_default();
-        let info = step.step_info(Some(closed.dc_gain()), BAND);
+        let input = to_input.step_response(step.step_s, step.values.len()).unwrap_or_default();
+        // its peak may be over long before the output has settled
+        let mut peak = largest(&input);
+        if let Time::Continuous = plant.time() {
+            for shorter in (1..=20).map(|k| step.step_s * 0.5_f64.powi(k)) {
+                peak =
+                    peak.max(to_input.step_response(shorter, step.values.len()).map_or(0.0, |u| largest(&u)));
+            }
+        }
+        let [step, input] = [step, input].map(shown);
         let margins = open.margins();
-        Ok(Self { name, plant, controller, remark, closed, margins, step, input, info, trial: None })
+        Ok(Self {
+            name,
+            plant,
+            controller,
+            remark,
+            closed,
+            margins,
+            step,
+            input,
+            peak,
+            stability,
+            info,
+            trial: None,
+        })
     }
 }
 
-/// How long the slowest that moves the output takes to die out, s.
-fn horizon_s(closed: &TransferFunction) -> f64 {
-    let (shown, _) = closed.minimal(1e-3);
-    let slowest =
-        shown.poles().iter().map(|pole| -pole.re).filter(|rate| *rate > 0.0).fold(f64::INFINITY, f64::min);
-    let fastest = shown.poles().iter().map(|pole| pole.norm()).fold(1e-3, f64::max);
-    // what is three decades slower than the rest is not waited for
-    if slowest.is_finite() { (5.0 / slowest).min(2e3 / fastest * 5.0) } else { 5.0 }
+/// A step, watched until it has settled; what it is judged by, if it does.
+fn settled_step(
+    closed: &TransferFunction,
+    stability: Stability,
+) -> Result<(Response, Option<StepInfo>), LinearError> {
+    /// Rows of a step in continuous time, and most samples.
+    const ROWS: usize = 2000;
+    const MOST_SAMPLES: f64 = 60_000.0;
+    /// Within this share of the goal it is settled.
+    const BAND: f64 = 0.02;
+    /// Times the watch is doubled.
+    const DOUBLINGS: i32 = 20;
+    let sizes = closed.poles().into_iter().map(|pole| closed.time().continuous(pole));
+    let rates = sizes.filter(|s| s.re.is_finite() && s.norm() > 1e-9).map(|s| s.re.abs().max(0.1 * s.norm()));
+    // begun with the fastest
+    let fastest = rates.fold(0.0, f64::max);
+    let begun_s = if fastest > 0.0 { 3.0 / fastest } else { 1.0 };
+    let watch = |duration_s: f64| match closed.time() {
+        Time::Continuous => closed.step_response(duration_s / ROWS as f64, ROWS + 1),
+        Time::Sampled(period_s) => {
+            closed.step_response(period_s, (duration_s / period_s).clamp(20.0, MOST_SAMPLES) as usize + 1)
+        }
+    };
+    let mut last = None;
+    for doubling in 0..=DOUBLINGS {
+        let step = watch(begun_s * 2.0_f64.powi(doubling))?;
+        if stability != Stability::Stable {
+            last = Some((step, None));
+            if doubling >= 2 {
+                break;
+            }
+            continue;
+        }
+        let info = step.step_info(Some(closed.dc_gain()), BAND);
+        let end_s = step.step_s * (step.values.len() - 1) as f64;
+        // some rest after it shows that it is one
+        let is_over = info.settle_s.is_some_and(|settle_s| settle_s < 0.6 * end_s);
+        last = Some((step, Some(info)));
+        if is_over {
+            break;
+        }
+    }
+    last.ok_or(LinearError::NotConverged)
+}
+
+fn largest(response: &Response) -> f64 {
+    response.values.iter().fold(0.0_f64, |most, y| most.max(y.abs()))
+}
+
+/// As far as a plot has room: what grows ends where it is a million.
+fn shown(mut response: Response) -> Response {
+    let end =
+        response.values.iter().position(|y| y.is_nan() || y.abs() >= 1e6).unwrap_or(response.values.len());
+    response.values.truncate(end.max(2));
+    response.values.iter_mut().for_each(|y| *y = if y.is_finite() { *y } else { 0.0 });
+    response
 }
 
 fn text(design: &Design) -> String {
@@ -301,23 +369,29 @@ fn text(design: &Design) -> String {
     let percent = |value: Option<f64>| value.map_or("–".to_owned(), |p| format!("{} %", four(p)));
     // writing to a String cannot fail
     let _ = writeln!(text, "\nthe loop\n{}", margin_lines(margins));
-    let _ = writeln!(
-        text,
-        "\na step comes to {}, overshoots by {}, rises in {}, is within 2 % after {}",
-        four(info.final_value),
-        percent(info.overshoot_percent),
-        ways(info.rise_s),
-        ways(info.settle_s)
-    );
-    let largest = design.input.values.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
-    let _ = writeln!(text, "for a step of 1 the input is {} at most", four(largest));
-    let stable = closed.stability() == Stability::Stable;
-    let _ = write!(
-        text,
-        "\nclosed it is {}\n{}",
-        if stable { "stable" } else { "NOT stable" },
-        pole_lines(&closed.poles(), closed.time())
-    );
+    if let Some(info) = info {
+        let _ = writeln!(
+            text,
+            "\na step comes to {}, overshoots by {}, rises in {}, is within 2 % after {}\nfor a step of 1 the input is {} at most",
+            four(info.final_value),
+            percent(info.overshoot_percent),
+            ways(info.rise_s),
+            info.settle_s.map_or_else(
+                || format!(
+                    "more than the {} s watched",
+                    four(design.step.step_s * design.step.values.len() as f64)
+                ),
+                |s| format!("{} s", four(s))
+            ),
+            four(design.peak)
+        );
+    }
+    let closed_is = match design.stability {
+        Stability::Stable => "stable",
+        Stability::Marginal => "at the edge of stability, or nearer to it than rounding lets tell",
+        Stability::Growing => "NOT stable: it grows",
+    };
+    let _ = write!(text, "\nclosed it is {closed_is}\n{}", pole_lines(&closed.poles(), closed.time()));
     if let Some(trial) = &design.trial {
         text += &format!("\n{}", trial.text());
     }
@@ -325,7 +399,9 @@ fn text(design: &Design) -> String {
 }
 
 fn json(design: &Design) -> String {
-    let info = &design.info;
+    let info = design.info;
+    let stable = design.stability == Stability::Stable;
+    let modulus = design.margins.modulus.filter(|_| stable);
     let zpk = &design.controller;
     json!({
         "system": system_json(&design.name, &design.plant),
@@ -339,18 +415,19 @@ fn json(design: &Design) -> String {
         },
         "margins": margins_json(&design.margins),
         "closed_poles": pairs(&design.closed.poles()),
-        "closed_stable": design.closed.stability() == Stability::Stable,
-        "bandwidth_rad_s": design.closed.bandwidth(),
-        "sensitivity": design.margins.modulus.map(|m| 1.0 / m.distance).filter(|s| s.is_finite()),
+        "closed_stable": stable,
+        "closed_stability": stability_name(design.stability),
+        "bandwidth_rad_s": stable.then(|| design.closed.bandwidth()).flatten(),
+        "sensitivity": modulus.map(|m| 1.0 / m.distance).filter(|s| s.is_finite()),
         "complementary_sensitivity": design.closed.peak().map(|peak| peak.gain),
-        "step": {
+        "step": info.map(|info| json!({
             "final": info.final_value,
             "overshoot_percent": info.overshoot_percent,
             "rise_s": info.rise_s,
             "settle_s": info.settle_s,
-        },
+        })),
         "trial": design.trial.as_ref().map(Trial::json),
-        "input_peak": design.input.values.iter().fold(0.0_f64, |most, u| most.max(u.abs())),
+        "input_peak": stable.then_some(design.peak),
     })
     .to_string()
 }
@@ -388,7 +465,10 @@ fn figure(args: &LoopArgs, design: &Design) -> Result<String, Failure> {
         legend.push(Key { colour: Colour::Vermilion, name: trial.name() });
     }
     let figure = Figure {
-        title: format!("{} with K = {}", design.name, design.controller),
+        title: match design.controller.to_string() {
+            text if text.chars().count() <= 70 => format!("{} with K = {text}", design.name),
+            _ => format!("{} with a K of order {}", design.name, design.controller.poles().len()),
+        },
         legend,
         columns: if panels.len() > 2 { 2 } else { 1 },
         panel: if panels.len() > 2 { (560, 280) } else { (820, 280) },

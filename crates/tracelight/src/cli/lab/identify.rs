@@ -123,7 +123,7 @@ fn write(
     std::fs::create_dir_all(&args.out).map_err(cannot)?;
     let path = |name: &str| args.out.join(name).display().to_string();
     if let ([], [record]) = (args.records.as_slice(), records) {
-        write_file(&path("record.csv"), &record::write(record))?;
+        write_file(&path("record.csv"), record::write(record))?;
     }
     let own = rigfile::is_same(&path("rig.toml"), &args.rig);
     if args.save {
@@ -135,7 +135,7 @@ fn write(
         );
         return Err(Failure::usage("usage", message));
     }
-    if own { Ok(()) } else { write_file(&path("rig.toml"), &rigfile::write(&found.rig)) }
+    if own { Ok(()) } else { write_file(&path("rig.toml"), rigfile::write(&found.rig)) }
 }
 
 /// A figure of a joint.

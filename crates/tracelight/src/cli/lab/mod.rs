@@ -9,6 +9,7 @@ mod locus;
 mod montecarlo;
 mod moves;
 mod nyquist;
+mod poles;
 mod profile;
 mod response;
 mod shape;

@@ -135,12 +135,12 @@ fn text(args: &ResponseArgs, entries: &[Entry]) -> String {
         if let Some(info) = info {
             let _ = writeln!(
                 text,
-                "    comes to {}, overshoots by {}, undershoots by {}, rises in {}, is within 2 % after {}",
+                "    comes to {}, overshoots by {}, undershoots by {}, rises in {}, is within 2 % {}",
                 if info.final_value.is_nan() { "no value".to_owned() } else { four(info.final_value) },
                 percent(info.overshoot_percent),
                 percent(info.undershoot_percent),
                 ways(info.rise_s),
-                ways(info.settle_s)
+                info.settle_s.map_or("at no time shown".to_owned(), |s| format!("after {} s", four(s)))
             );
         }
         let (at_s, most) = peak(response);
