@@ -34,8 +34,11 @@ impl StateSpace {
                 "Q has as many rows and columns as there are states, R as inputs",
             ));
         }
-        let (q, r) = (weight(q, "Q")?, weight(r, "R")?);
-        let (cost, gain) = Riccati { a: self.a(), b: self.b(), q: &q, r: &r, time: self.time() }.solve()?;
+        self.regulator(&weight(q, "Q")?, &weight(r, "R")?)
+    }
+
+    fn regulator(&self, q: &Matrix, r: &Matrix) -> Result<Regulator, LinearError> {
+        let (cost, gain) = Riccati { a: self.a(), b: self.b(), q, r, time: self.time() }.solve()?;
         let poles = self.stable_poles(&(self.a() - self.b() * &gain))?;
         Ok(Regulator { gain, cost, poles })
     }
@@ -58,7 +61,8 @@ impl StateSpace {
         let plant =
             Self::new(self.a() - self.b() * &before, self.b().clone(), c.clone(), d.clone(), self.time())?;
         let q = c.transpose() * &w * c - across * &before;
-        let inner = plant.lqr(&(0.5 * (&q + q.transpose())), &r)?;
+        // not negative but for rounding: W is not
+        let inner = plant.regulator(&(0.5 * (&q + q.transpose())), &r)?;
         Ok(Regulator { gain: inner.gain + before, ..inner })
     }
 
