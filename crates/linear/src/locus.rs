@@ -60,9 +60,10 @@ impl TransferFunction {
     /// Gains that show every branch from its pole to its zero or far out: evenly on a logarithmic scale, and closer where poles
     /// move far or meet. `count` at least.
     pub fn locus_gains(&self, count: usize) -> Vec<f64> {
-        let (low, high) = self.gain_range();
+        let breakaways = self.breakaways();
+        let (low, high) = self.gain_range(&breakaways);
         let mut gains = crate::logspace((low, high), count.max(2));
-        for Breakaway { gain, .. } in self.breakaways() {
+        for Breakaway { gain, .. } in breakaways {
             // branches leave a double pole as roots do: by the square root of the gain
             let around =
                 (-12..=12).map(|n: i32| gain * (1.0 + f64::from(n.signum()) * 4.0_f64.powi(n.abs() - 13)));
@@ -75,7 +76,7 @@ impl TransferFunction {
     }
 
     /// From where nothing has moved yet to where all is about where it goes.
-    fn gain_range(&self) -> (f64, f64) {
+    fn gain_range(&self, breakaways: &[Breakaway]) -> (f64, f64) {
         let (above, below) = (self.numerator(), self.denominator());
         let sizes = |p: &Polynomial| {
             p.coefficients().iter().map(|c| c.abs()).filter(|c| *c > 0.0).collect::<Vec<_>>()
@@ -87,7 +88,7 @@ impl TransferFunction {
             return (1e-3, 1e3);
         }
         let crossing = self.margins().gain.iter().map(|m| m.factor).fold(0.0, f64::max);
-        let meeting = self.breakaways().last().map_or(0.0, |b| b.gain);
+        let meeting = breakaways.last().map_or(0.0, |b| b.gain);
         // the gain that brings a branch as far beyond all poles and zeros
         let reach = 10.0 * self.poles().into_iter().chain(self.zeros()).map(|z| z.norm()).fold(0.0, f64::max);
         let out = if self.relative_degree() > 0 { below.value(reach) / above.value(reach) } else { 0.0 };

@@ -169,21 +169,22 @@ impl Response {
         let settled = outside.map_or(0, |place| place + 1);
         let most = self.values.iter().map(share).fold(0.0, f64::max);
         let least = self.values.iter().map(share).fold(0.0, f64::min);
-        let peak =
-            (0..).zip(&self.values).fold(
-                (0, 0.0_f64),
-                |best: (usize, f64), (i, v): (usize, &f64)| {
-                    if v.abs() > best.1.abs() { (i, *v) } else { best }
-                },
-            );
         StepInfo {
             final_value: goal,
             rise_s: first(0.9).zip(first(0.1)).map(|(high, low)| high - low),
             settle_s: (settled < self.values.len()).then_some(settled as f64 * self.step_s),
             overshoot_percent: is_share.then(|| 100.0 * (most - 1.0).max(0.0)),
             undershoot_percent: is_share.then(|| 100.0 * (-least).max(0.0)),
-            peak: (peak.1, peak.0 as f64 * self.step_s),
+            peak: self.peak(),
         }
+    }
+
+    /// Largest distance from zero, with its sign, and when, s.
+    pub fn peak(&self) -> (f64, f64) {
+        let larger =
+            |best: (f64, usize), (i, &v): (usize, &f64)| if v.abs() > best.0.abs() { (v, i) } else { best };
+        let (value, place) = self.values.iter().enumerate().fold((0.0, 0), larger);
+        (value, place as f64 * self.step_s)
     }
 
     /// When a function of the value first becomes positive, s, between two values as a line would.

@@ -18,6 +18,11 @@ impl TransferFunction {
         of_each.map(|(_, stability)| stability).max().unwrap_or(Stability::Stable)
     }
 
+    /// Whether it is stable once it is closed by negative feedback of its output.
+    pub fn closes_stable(&self) -> bool {
+        self.closed().is_ok_and(|closed| closed.stability() == Stability::Stable)
+    }
+
     /// How many poles grow.
     pub fn growing_poles(&self) -> usize {
         let of_each = stabilities(self.denominator(), self.time()).into_iter();

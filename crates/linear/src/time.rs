@@ -50,6 +50,15 @@ impl Time {
         }
     }
 
+    /// How an integral goes on: what is kept of it, and what it takes of what it integrates; its slope in continuous time, of samples the
+    /// next one.
+    pub(crate) const fn integral(self) -> (f64, f64) {
+        match self {
+            Self::Continuous => (0.0, 1.0),
+            Self::Sampled(period_s) => (1.0, period_s),
+        }
+    }
+
     /// The letter its variable has.
     pub const fn variable(self) -> &'static str {
         match self {

@@ -2,7 +2,6 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::in_continuous_time;
 use crate::notation::four_digits;
-use crate::stability::Stability;
 use crate::time::positive;
 use crate::{Complex, LinearError, Time, TransferFunction, Zpk};
 
@@ -28,10 +27,7 @@ impl TransferFunction {
     /// crossover as its phase asks for, and a lag a decade below. Where no lead is needed, the margin is more than was wished. Where no
     /// positive gain closes a stable loop, a negative one may.
     pub fn lead_lag(&self, wish: LeadLagWish) -> Result<Zpk, LinearError> {
-        let settles = |k: &Zpk| {
-            let closed = k.transfer().series(self).and_then(|open| open.closed());
-            closed.is_ok_and(|closed| closed.stability() == Stability::Stable)
-        };
+        let settles = |k: &Zpk| k.transfer().series(self).is_ok_and(|open| open.closes_stable());
         let why = match self.positive_lead_lag(wish) {
             Ok(k) if settles(&k) => return Ok(k),
             Ok(_) => LinearError::Wish(

@@ -96,17 +96,14 @@ impl TransferFunction {
 fn estimated(plant: &StateSpace, gain: &Matrix, estimator: &Matrix) -> Result<Zpk, LinearError> {
     let n = plant.order();
     let states = gain.columns(0, n).into_owned();
+    let inner = plant.compensator(&states, estimator)?;
     if gain.ncols() == n {
-        return plant.compensator(&states, estimator)?.transfer(0, 0);
+        return inner.transfer(0, 0);
     }
     let integral = gain.columns(n, 1).into_owned();
-    let inner = plant.compensator(&states, estimator)?;
     // what the integral does to the plant is told to the estimate
     let told = (estimator * plant.d() - plant.b()) * &integral;
-    let (kept, step) = match plant.time() {
-        crate::Time::Continuous => (0.0, 1.0),
-        crate::Time::Sampled(period_s) => (1.0, period_s),
-    };
+    let (kept, step) = plant.time().integral();
     let a = stack(&[&[inner.a(), &told], &[&Matrix::zeros(1, n), &Matrix::from_element(1, 1, kept)]]);
     let b = stack(&[&[inner.b()], &[&Matrix::from_element(1, 1, step)]]);
     let c = stack(&[&[&states, &integral]]);

@@ -2,7 +2,6 @@ use std::f64::consts::PI;
 
 use super::in_continuous_time;
 use crate::notation::four_digits;
-use crate::stability::Stability;
 use crate::time::positive;
 use crate::{Complex, LinearError, Polynomial, Time, TransferFunction};
 
@@ -170,7 +169,7 @@ impl TransferFunction {
         let margins = open.margins();
         let far = margins.modulus.is_some_and(|m| m.distance >= wish.modulus);
         let late = margins.least_phase().is_some_and(|m| m.phase_rad.abs() >= wish.phase_margin_rad - 1e-6);
-        far && late && open.closed().is_ok_and(|closed| closed.stability() == Stability::Stable)
+        far && late && open.closes_stable()
     }
 }
 

@@ -98,10 +98,7 @@ impl StateSpace {
     /// The same with the integral of each output as another state, of samples their sum times the period: the last ones.
     pub fn with_integrals(&self) -> Result<Self, LinearError> {
         let (n, outputs, inputs) = (self.order(), self.c().nrows(), self.b().ncols());
-        let (kept, step) = match self.time() {
-            Time::Continuous => (0.0, 1.0),
-            Time::Sampled(period_s) => (1.0, period_s),
-        };
+        let (kept, step) = self.time().integral();
         let a = stack(&[
             &[self.a(), &Matrix::zeros(n, outputs)],
             &[&(self.c() * step), &(Matrix::identity(outputs, outputs) * kept)],

@@ -61,14 +61,14 @@ impl Riccati<'_> {
     }
 
     fn gain(&self, x: &Matrix) -> Result<Matrix, LinearError> {
-        let singular = LinearError::NotPositive("R + BᵀXB");
         match self.time {
             Time::Continuous => {
                 let r = self.r.clone().cholesky().ok_or(LinearError::NotPositive("R"))?;
                 Ok(r.solve(&(self.b.transpose() * x)))
             }
             Time::Sampled(_) => {
-                let r = (self.r + self.b.transpose() * x * self.b).cholesky().ok_or(singular)?;
+                let r = self.r + self.b.transpose() * x * self.b;
+                let r = r.cholesky().ok_or(LinearError::NotPositive("R + BᵀXB"))?;
                 Ok(r.solve(&(self.b.transpose() * x * self.a)))
             }
         }
@@ -104,10 +104,7 @@ impl Riccati<'_> {
         let mut gain = plant.place(&mirrored).map_err(|_| LinearError::NoRegulator)?;
         let mut last = f64::INFINITY;
         for _ in 0..MOST_STEPS {
-            let closed = self.a - self.b * &gain;
-            let cost = self.q + gain.transpose() * self.r * &gain;
-            let x = lyapunov(&closed, &cost, self.time).ok_or(LinearError::NoRegulator)?;
-            let next = self.gain(&x)?;
+            let (x, next) = self.newton(&gain)?;
             let moved = (&next - &gain).norm();
             gain = next;
             // it comes ever closer, until rounding moves it
@@ -119,10 +116,22 @@ impl Riccati<'_> {
         Err(LinearError::NotConverged)
     }
 
+    /// What is fed back so, and what it costs.
+    fn closed(&self, gain: &Matrix) -> (Matrix, Matrix) {
+        (self.a - self.b * gain, self.q + gain.transpose() * self.r * gain)
+    }
+
+    /// A step of Newton's iteration: what a feedback costs, and the feedback that is best for that.
+    fn newton(&self, gain: &Matrix) -> Result<(Matrix, Matrix), LinearError> {
+        let (closed, cost) = self.closed(gain);
+        let x = lyapunov(&closed, &cost, self.time).ok_or(LinearError::NoRegulator)?;
+        let next = self.gain(&x)?;
+        Ok((x, next))
+    }
+
     /// What is left of the equation.
     fn residual(&self, x: &Matrix, gain: &Matrix) -> f64 {
-        let closed = self.a - self.b * gain;
-        let cost = self.q + gain.transpose() * self.r * gain;
+        let (closed, cost) = self.closed(gain);
         match self.time {
             Time::Continuous => (closed.transpose() * x + x * closed + cost).norm(),
             Time::Sampled(_) => (closed.transpose() * x * closed + cost - x).norm(),
@@ -135,10 +144,7 @@ impl Riccati<'_> {
         let Ok(mut gain) = self.gain(&x) else { return x };
         let mut left = self.residual(&x, &gain);
         for _ in 0..MOST_STEPS {
-            let closed = self.a - self.b * &gain;
-            let cost = self.q + gain.transpose() * self.r * &gain;
-            let Some(next) = lyapunov(&closed, &cost, self.time) else { break };
-            let Ok(next_gain) = self.gain(&next) else { break };
+            let Ok((next, next_gain)) = self.newton(&gain) else { break };
             let next_left = self.residual(&next, &next_gain);
             if next_left.is_nan() || next_left >= left {
                 break;

@@ -34,7 +34,7 @@ impl Range {
         let (low, high) = (finite(self.low, 0.0), finite(self.high, 1.0));
         if log {
             let low = low.max(1.0 / FURTHEST);
-            return Self { low, high: high.clamp(1.01 * low, low.max(1.0 / FURTHEST) * FURTHEST) };
+            return Self { low, high: high.clamp(1.01 * low, low * FURTHEST) };
         }
         if high > low { Self { low, high } } else { Self { low: low - 0.5, high: low + 0.5 } }
     }

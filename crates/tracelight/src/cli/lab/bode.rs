@@ -5,11 +5,11 @@ use serde_json::{Value, json};
 use tracelight_linear::{FrequencyResponse, Margins, Stability, TransferFunction, decibels, logspace};
 
 use super::systems::{Named, SystemArgs, bounded, four, pairs};
-use super::{OutFile, out_file, write_all};
+use super::{OutFile, above_zero, out_file, write_all};
 use crate::chart::{Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
-use crate::units::{ANGULAR_SPEEDS, parse};
+use crate::units::ANGULAR_SPEEDS;
 
 /// Amplification and phase over frequency, gain, phase, delay and modulus margins
 #[derive(Args, Debug)]
@@ -50,8 +50,7 @@ struct BandArgs {
 }
 
 pub(super) fn frequency(text: &str) -> Result<f64, String> {
-    let rad_s = parse(text, ANGULAR_SPEEDS).map_err(|e| e.to_string())?;
-    if rad_s > 0.0 { Ok(rad_s) } else { Err(format!("{text} is not above zero")) }
+    above_zero(text, ANGULAR_SPEEDS)
 }
 
 impl FrequencyArgs {
@@ -185,7 +184,7 @@ pub(super) fn margins_json(margins: &Margins) -> Value {
 
 /// A system for scripts.
 pub(super) fn system_json(name: &str, system: &TransferFunction) -> Value {
-    let gain = system.dc_gain();
+    let (gain, stability) = (system.dc_gain(), system.stability());
     json!({
         "name": name,
         "num": system.numerator().coefficients(),
@@ -193,8 +192,8 @@ pub(super) fn system_json(name: &str, system: &TransferFunction) -> Value {
         "zeros": pairs(&system.zeros()),
         "poles": pairs(&system.poles()),
         "dc_gain": gain.is_finite().then_some(gain),
-        "stable": system.stability() == Stability::Stable,
-        "stability": stability_name(system.stability()),
+        "stable": stability == Stability::Stable,
+        "stability": stability_name(stability),
     })
 }
 

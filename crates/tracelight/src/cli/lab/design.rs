@@ -10,10 +10,10 @@ use tracelight_linear::{
 use super::bode::{frequency, margin_lines, margins_json, stability_name, system_json};
 use super::poles::{Poles, poles};
 use super::step::{Axis, step};
-use super::systems::{OneSystemArgs, four, pairs, pole_lines};
+use super::systems::{OneSystemArgs, four, pairs, percent, pole_lines, seconds};
 use super::trial::Trial;
-use super::{OutFile, out_file, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale};
+use super::{OutFile, out_file, over_time, write_all};
+use crate::chart::{Colour, Curve, Figure, Key, Pen};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::units::Angle;
@@ -275,11 +275,12 @@ impl Design {
         // what a derivative without an end puts in is an impulse: it has no step
         let input = to_input.step_response(step.step_s, step.values.len()).unwrap_or_default();
         // its peak may be over long before the output has settled
-        let mut peak = largest(&input);
+        let mut peak = input.peak().0.abs();
         if let Time::Continuous = plant.time() {
             for shorter in (1..=20).map(|k| step.step_s * 0.5_f64.powi(k)) {
-                peak =
-                    peak.max(to_input.step_response(shorter, step.values.len()).map_or(0.0, |u| largest(&u)));
+                peak = peak.max(
+                    to_input.step_response(shorter, step.values.len()).map_or(0.0, |u| u.peak().0.abs()),
+                );
             }
         }
         let [step, input] = [step, input].map(shown);
@@ -324,30 +325,21 @@ fn settled_step(
             closed.step_response(period_s, (duration_s / period_s).clamp(20.0, MOST_SAMPLES) as usize + 1)
         }
     };
-    let mut last = None;
-    for doubling in 0..=DOUBLINGS {
+    if stability != Stability::Stable {
+        return Ok((watch(4.0 * begun_s)?, None));
+    }
+    let mut doubling = 0;
+    loop {
         let step = watch(begun_s * 2.0_f64.powi(doubling))?;
-        if stability != Stability::Stable {
-            last = Some((step, None));
-            if doubling >= 2 {
-                break;
-            }
-            continue;
-        }
         let info = step.step_info(Some(closed.dc_gain()), BAND);
         let end_s = step.step_s * (step.values.len() - 1) as f64;
         // some rest after it shows that it is one
         let is_over = info.settle_s.is_some_and(|settle_s| settle_s < 0.6 * end_s);
-        last = Some((step, Some(info)));
-        if is_over {
-            break;
+        if is_over || doubling == DOUBLINGS {
+            return Ok((step, Some(info)));
         }
+        doubling += 1;
     }
-    last.ok_or(LinearError::NotConverged)
-}
-
-fn largest(response: &Response) -> f64 {
-    response.values.iter().fold(0.0_f64, |most, y| most.max(y.abs()))
 }
 
 /// As far as a plot has room: what grows ends where it is a million.
@@ -365,8 +357,6 @@ fn text(design: &Design) -> String {
     if !remark.is_empty() {
         text += &format!("    {remark}\n");
     }
-    let ways = |seconds: Option<f64>| seconds.map_or("never".to_owned(), |s| format!("{} s", four(s)));
-    let percent = |value: Option<f64>| value.map_or("–".to_owned(), |p| format!("{} %", four(p)));
     // writing to a String cannot fail
     let _ = writeln!(text, "\nthe loop\n{}", margin_lines(margins));
     if let Some(info) = info {
@@ -375,7 +365,7 @@ fn text(design: &Design) -> String {
             "\na step comes to {}, overshoots by {}, rises in {}, is within 2 % after {}\nfor a step of 1 the input is {} at most",
             four(info.final_value),
             percent(info.overshoot_percent),
-            ways(info.rise_s),
+            seconds(info.rise_s),
             info.settle_s.map_or_else(
                 || format!(
                     "more than the {} s watched",
@@ -447,18 +437,12 @@ fn figure(args: &LoopArgs, design: &Design) -> Result<String, Failure> {
         pen: Pen::Solid,
         points: (0..).zip(&response.values).map(|(k, y)| (f64::from(k) * response.step_s, *y)).collect(),
     };
-    let panel = |title: &str, levels: Vec<f64>, response: &Response| Panel {
-        x_title: "time, s".into(),
-        y_title: title.into(),
-        curves: vec![curve(response)],
-        levels,
-        scale: Scale::Free,
-        ..Panel::default()
-    };
+    let panel =
+        |title: &str, level: f64, response: &Response| over_time(title, vec![level], vec![curve(response)]);
     let phase =
         design.margins.least_phase().map_or(String::new(), |m| format!(", {}° of phase", four(m.degrees())));
     let modulus = design.margins.modulus.map_or(String::new(), |m| format!(", modulus {}", four(m.distance)));
-    let mut panels = vec![panel("output", vec![1.0], &design.step), panel("input", vec![0.0], &design.input)];
+    let mut panels = vec![panel("output", 1.0, &design.step), panel("input", 0.0, &design.input)];
     let mut legend = vec![Key { colour: Colour::Blue, name: format!("a step of 1{phase}{modulus}") }];
     if let Some(trial) = &design.trial {
         panels.extend(trial.panels());

@@ -21,12 +21,12 @@ mod velocity;
 use clap::{Args, Subcommand};
 use tracelight_rig::Fault;
 
-use crate::chart::{self, Colour};
+use crate::chart::{self, Colour, Curve, Panel, Scale};
 use crate::cli::shapes::ProfileName;
 use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
 use crate::stop::Stop;
-use crate::units::Unit;
+use crate::units::{Unit, parse};
 
 /// The control engineer's bench: profiles, moves, steps, identification, linear models, Bode, Nyquist and locus, controllers designed, many heads at once
 #[derive(Args, Debug)]
@@ -135,6 +135,24 @@ fn write_all(
         };
         write_file(&file.path, bytes)
     })
+}
+
+/// A value with its unit, in SI, that is more than none.
+fn above_zero(text: &str, units: &'static [Unit]) -> Result<f64, String> {
+    let value = parse(text, units).map_err(|e| e.to_string())?;
+    if value > 0.0 { Ok(value) } else { Err(format!("{text} is not above zero")) }
+}
+
+/// A panel of curves over time.
+fn over_time(title: impl Into<String>, levels: Vec<f64>, curves: Vec<Curve>) -> Panel {
+    Panel {
+        x_title: "time, s".into(),
+        y_title: title.into(),
+        curves,
+        levels,
+        scale: Scale::Free,
+        ..Panel::default()
+    }
 }
 
 /// Why a run is not done, given the fault it ended with.

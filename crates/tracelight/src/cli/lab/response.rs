@@ -4,12 +4,12 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use tracelight_linear::{LinearError, Polynomial, Response, StepInfo, Time, TransferFunction};
 
-use super::systems::{Named, SystemArgs, bounded, four};
-use super::{OutFile, out_file, write_all};
-use crate::chart::{Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign};
+use super::systems::{Named, SystemArgs, bounded, four, percent, seconds};
+use super::{OutFile, above_zero, out_file, over_time, write_all};
+use crate::chart::{Curve, Figure, Key, Mark, Panel, Pen, Sign};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
-use crate::units::{TIMES, parse};
+use crate::units::TIMES;
 
 /// What transfer functions answer to a step, an impulse or a ramp: overshoot, rise, settling
 #[derive(Args, Debug)]
@@ -46,8 +46,7 @@ enum Input {
 }
 
 fn duration(text: &str) -> Result<f64, String> {
-    let duration_s = parse(text, TIMES).map_err(|e| e.to_string())?;
-    if duration_s > 0.0 { Ok(duration_s) } else { Err(format!("{text} is not above zero")) }
+    above_zero(text, TIMES)
 }
 
 /// A system and its answer.
@@ -118,20 +117,11 @@ fn answer(
     }
 }
 
-/// The largest value, either way, and when.
-fn peak(response: &Response) -> (f64, f64) {
-    let times = (0..).map(|k| f64::from(k) * response.step_s);
-    let largest = |best: (f64, f64), (t, y): (f64, &f64)| if y.abs() > best.1.abs() { (t, *y) } else { best };
-    times.zip(&response.values).fold((0.0, 0.0), largest)
-}
-
 fn text(args: &ResponseArgs, entries: &[Entry]) -> String {
     let mut text = String::new();
     for Entry { named, response, info } in entries {
         // writing to a String cannot fail
         let _ = writeln!(text, "{} = {}", named.name, named.system);
-        let ways = |seconds: Option<f64>| seconds.map_or("never".to_owned(), |s| format!("{} s", four(s)));
-        let percent = |value: Option<f64>| value.map_or("–".to_owned(), |p| format!("{} %", four(p)));
         if let Some(info) = info {
             let _ = writeln!(
                 text,
@@ -139,11 +129,11 @@ fn text(args: &ResponseArgs, entries: &[Entry]) -> String {
                 if info.final_value.is_nan() { "no value".to_owned() } else { four(info.final_value) },
                 percent(info.overshoot_percent),
                 percent(info.undershoot_percent),
-                ways(info.rise_s),
+                seconds(info.rise_s),
                 info.settle_s.map_or("at no time shown".to_owned(), |s| format!("after {} s", four(s)))
             );
         }
-        let (at_s, most) = peak(response);
+        let (most, at_s) = response.peak();
         let last = response.values.last().copied().unwrap_or_default();
         let end_s = response.step_s * (response.values.len().saturating_sub(1)) as f64;
         let _ = writeln!(
@@ -181,8 +171,8 @@ fn json(entries: &[Entry]) -> String {
             "undershoot_percent": info.and_then(|info| info.undershoot_percent),
             "rise_s": info.and_then(|info| info.rise_s),
             "settle_s": info.and_then(|info| info.settle_s),
-            "peak": peak(response).1,
-            "peak_s": peak(response).0,
+            "peak": response.peak().0,
+            "peak_s": response.peak().1,
         })
     };
     json!({"systems": entries.iter().map(one).collect::<Vec<_>>()}).to_string()
@@ -245,13 +235,8 @@ fn figure(args: &ResponseArgs, entries: &[Entry]) -> Result<String, Failure> {
         },
         legend: entries.iter().map(key).collect(),
         panels: vec![Panel {
-            x_title: "time, s".into(),
-            y_title: "output".into(),
-            curves: entries.iter().map(curve).collect(),
             marks: entries.iter().filter_map(settled).collect(),
-            levels,
-            scale: Scale::Free,
-            ..Panel::default()
+            ..over_time("output", levels, entries.iter().map(curve).collect())
         }],
         columns: 1,
         panel: (820, 420),

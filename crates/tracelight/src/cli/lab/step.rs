@@ -5,8 +5,8 @@ use tracelight_lab::StepFigures;
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{BenchTick, LawName, ObserverName, RigConfig, StepResponse, step_response};
 
-use super::{OutFile, out_file, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
+use super::{OutFile, out_file, over_time, write_all};
+use crate::chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};
@@ -212,6 +212,17 @@ fn csv(args: &StepArgs, entry: &Entry) -> String {
     text
 }
 
+/// Something of each tick, over time.
+pub(super) fn curve(
+    colour: Colour,
+    ticks: &[BenchTick],
+    pen: Pen,
+    value: &dyn Fn(&BenchTick) -> f64,
+) -> Curve {
+    let points = ticks.iter().enumerate().map(|(k, tick)| (k as f64 * TICK_F64_S, value(tick)));
+    Curve { colour, pen, points: points.collect() }
+}
+
 /// The colour of a law in every plot.
 const fn colour(law: LawName) -> Colour {
     match law {
@@ -227,26 +238,16 @@ const fn colour(law: LawName) -> Colour {
 
 fn figure(args: &StepArgs, entries: &[Entry]) -> Result<String, Failure> {
     let joint = args.axis.joint();
-    let curve = |entry: &Entry, ticks: &[BenchTick], pen: Pen, value: &dyn Fn(&BenchTick) -> f64| Curve {
-        colour: colour(entry.law),
-        pen,
-        points: ticks.iter().enumerate().map(|(k, tick)| (k as f64 * TICK_F64_S, value(tick))).collect(),
-    };
-    let panel = |title: &str, levels: Vec<f64>, curves: Vec<Curve>| Panel {
-        x_title: "time, s".into(),
-        y_title: title.into(),
-        curves,
-        levels,
-        scale: Scale::Free,
-        ..Panel::default()
-    };
     let angle = |tick: &BenchTick| tick.angle_rad[joint].to_degrees();
     let volts = |tick: &BenchTick| f64::from(tick.command_v[joint]);
     let of_head = |value: &dyn Fn(&BenchTick) -> f64| {
-        entries.iter().map(|e| curve(e, &e.response.nonlinear, Pen::Solid, value)).collect::<Vec<_>>()
+        entries
+            .iter()
+            .map(|e| curve(colour(e.law), &e.response.nonlinear, Pen::Solid, value))
+            .collect::<Vec<_>>()
     };
     let mut angles = of_head(&angle);
-    angles.extend(entries.iter().map(|e| curve(e, &e.response.linear, Pen::Dashed, &angle)));
+    angles.extend(entries.iter().map(|e| curve(colour(e.law), &e.response.linear, Pen::Dashed, &angle)));
     let figure = Figure {
         title: format!(
             "{joint} sent to {:.2}°: the head (solid), linearized (dashed)",
@@ -260,8 +261,8 @@ fn figure(args: &StepArgs, entries: &[Entry]) -> Result<String, Failure> {
             })
             .collect(),
         panels: vec![
-            panel("angle, °", vec![args.to.0.to_degrees()], angles),
-            panel("command, V", Vec::new(), of_head(&volts)),
+            over_time("angle, °", vec![args.to.0.to_degrees()], angles),
+            over_time("command, V", Vec::new(), of_head(&volts)),
         ],
         columns: 1,
         panel: (760, 300),

@@ -222,6 +222,16 @@ pub(super) fn four(value: f64) -> String {
     if value.is_infinite() { "∞".to_owned() } else { four_digits(value).replace('-', "−") }
 }
 
+/// A time, for people.
+pub(super) fn seconds(seconds: Option<f64>) -> String {
+    seconds.map_or("never".to_owned(), |s| format!("{} s", four(s)))
+}
+
+/// A share, for people.
+pub(super) fn percent(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |p| format!("{} %", four(p)))
+}
+
 /// A pole or zero and its mirror, for people.
 pub(super) fn place(root: Complex) -> String {
     if root.im == 0.0 { four(root.re) } else { format!("{} ± {}j", four(root.re), four(root.im.abs())) }

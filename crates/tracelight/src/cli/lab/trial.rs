@@ -1,11 +1,12 @@
 use serde_json::Value;
 use tracelight_lab::StepFigures;
 use tracelight_linear::Zpk;
-use tracelight_rig::{Joint, TICK_F64_S};
+use tracelight_rig::Joint;
 use tracelight_sim::{BenchTick, CompensatorLaw, RigConfig, StepResponse, step_response_by};
 
-use super::step::{figures, figures_json, heading, row, unreachable};
-use crate::chart::{Colour, Curve, Panel, Pen, Scale};
+use super::over_time;
+use super::step::{curve, figures, figures_json, heading, row, unreachable};
+use crate::chart::{Colour, Panel, Pen};
 use crate::failure::Failure;
 use crate::rigfile;
 use crate::units::Angle;
@@ -42,29 +43,17 @@ impl Trial {
 
     /// Angles, the head as it is and linearized, and what its motor is told.
     pub(super) fn panels(&self) -> [Panel; 2] {
-        let curve = |ticks: &[BenchTick], pen: Pen, value: &dyn Fn(&BenchTick) -> f64| Curve {
-            colour: Colour::Vermilion,
-            pen,
-            points: ticks.iter().enumerate().map(|(k, tick)| (k as f64 * TICK_F64_S, value(tick))).collect(),
-        };
         let angle = |tick: &BenchTick| tick.angle_rad[self.joint].to_degrees();
         let volts = |tick: &BenchTick| f64::from(tick.command_v[self.joint]);
-        let panel = |title: String, levels: Vec<f64>, curves: Vec<Curve>| Panel {
-            x_title: "time, s".into(),
-            y_title: title,
-            curves,
-            levels,
-            scale: Scale::Free,
-            ..Panel::default()
-        };
+        let curve = |ticks, pen, value| curve(Colour::Vermilion, ticks, pen, value);
         let angles = vec![
             curve(&self.response.nonlinear, Pen::Solid, &angle),
             curve(&self.response.linear, Pen::Dashed, &angle),
         ];
         let commands = vec![curve(&self.response.nonlinear, Pen::Solid, &volts)];
         [
-            panel(format!("{} on the rig, °", self.joint), vec![self.to.0.to_degrees()], angles),
-            panel("command, V".into(), Vec::new(), commands),
+            over_time(format!("{} on the rig, °", self.joint), vec![self.to.0.to_degrees()], angles),
+            over_time("command, V", Vec::new(), commands),
         ]
     }
 
