@@ -2,12 +2,17 @@
 //!
 //! No file is read and no thread started here; what is measured comes as a record of a run, simulated or real.
 
+mod friction;
 mod identify;
 mod linearize;
 mod statistics;
 mod step;
 mod velocity;
 
+pub use friction::{
+    Believed, Curves, CurvesSide, FrictionError, Line, Part, Protocol, Sample, Shuttle, Steady, SteadyPoint,
+    Travel, Trial, Uncertain, curves, free_trial, steady, steady_of,
+};
 pub use identify::{Identification, IdentifyError, JointFit, LAPS_WORTH, identify, routine};
 pub use linearize::{Linearization, Operation};
 pub use statistics::Quantiles;

@@ -50,6 +50,22 @@ impl Model {
         self.bodies.lumped().mass(0.0).own_inertia()
     }
 
+    /// Makes it another, kg m²: bodies keep theirs, the rotor has nearly all of it.
+    pub fn set_own_inertia(&mut self, joint: Joint, inertia_kg_m2: f64) {
+        let missing = inertia_kg_m2 - self.own_inertia_kg_m2()[joint];
+        self.bodies.rotor_kg_m2[joint] += missing;
+    }
+
+    /// Moves what tilt carries so that gravity turns it by so much with the beam level, and upright, N m. A head without mass has no
+    /// weight to move.
+    pub fn set_weight(&mut self, [level_nm, upright_nm]: [f64; 2]) {
+        let weight = self.bodies.tilt_body.mass_kg * self.bodies.gravity_m_s2;
+        if weight > 0.0 {
+            let centre = &mut self.bodies.tilt_body.centre_m;
+            (centre[0], centre[2]) = (level_nm / weight, upright_nm / weight);
+        }
+    }
+
     /// Torque by which the model of a joint may be wrong, N m: its Coulomb friction, where it has any to speak of.
     pub fn unknown_nm(&self, joint: Joint) -> f64 {
         let least_nm = LEAST_UNKNOWN_SHARE * self.motors[joint].torque_limit_nm();

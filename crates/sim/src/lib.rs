@@ -3,6 +3,7 @@
 //! Plant and controller meet here, and only through the seams of [`tracelight_rig`]. Same inputs, same bytes: the
 //! crate reads no clock, starts no thread and draws nothing that its seed does not decide.
 
+mod alone;
 mod bench;
 mod compensator;
 mod config;
@@ -18,6 +19,7 @@ mod spread;
 mod step;
 mod trouble;
 
+pub use alone::{Mounting, head_alone};
 pub use bench::BenchTick;
 pub use compensator::CompensatorLaw;
 pub use config::{

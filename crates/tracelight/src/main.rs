@@ -4,6 +4,7 @@ mod batch;
 mod chart;
 mod cli;
 mod failure;
+mod fan;
 mod job;
 mod output;
 mod picture;

@@ -14,7 +14,7 @@ use crate::picture::read_bytes;
 /// Most ticks of a record: half an hour.
 const MOST_TICKS: usize = 1_800_000;
 /// Most that an amplifier takes, V: as in rig files.
-const MOST_V: f64 = 1e3;
+pub(crate) const MOST_V: f64 = 1e3;
 /// Two rows are a tick apart to this much, s.
 const SAME_S: f64 = 1e-5;
 
@@ -62,23 +62,23 @@ impl Columns {
 }
 
 /// One row, with what can be wrong with it.
-struct Row<'a> {
-    fields: &'a csv::ByteRecord,
-    line: u64,
+pub(crate) struct Row<'a> {
+    pub(crate) fields: &'a csv::ByteRecord,
+    pub(crate) line: u64,
 }
 
 impl Row<'_> {
-    fn text(&self, column: usize) -> &str {
+    pub(crate) fn text(&self, column: usize) -> &str {
         std::str::from_utf8(self.fields.get(column).unwrap_or_default()).unwrap_or("not text").trim()
     }
 
-    fn number(&self, column: usize) -> Result<f64, String> {
+    pub(crate) fn number(&self, column: usize) -> Result<f64, String> {
         let text = self.text(column);
         let number: Option<f64> = text.parse().ok().filter(|value: &f64| value.is_finite());
         number.ok_or_else(|| format!(":{}: {text:?} in column {} is no number", self.line, column + 1))
     }
 
-    fn whole(&self, column: usize) -> Result<i32, String> {
+    pub(crate) fn whole(&self, column: usize) -> Result<i32, String> {
         let text = self.text(column);
         text.parse().map_err(|_| format!(":{}: {text:?} in column {} is no count", self.line, column + 1))
     }

@@ -171,6 +171,11 @@ fn check_page(name: &str, commands: usize) {
 }
 
 #[test]
+fn the_page_on_friction_shows_what_its_commands_print() {
+    check_page("friction.md", 3);
+}
+
+#[test]
 fn the_page_on_identification_shows_what_its_commands_print() {
     check_page("identify.md", 2);
 }

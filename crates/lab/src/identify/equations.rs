@@ -253,14 +253,10 @@ impl Equations {
         friction.viscous_neg = theta[VISCOUS_NEG].max(0.0);
         friction.coulomb_pos_nm = theta[COULOMB_POS].max(0.0);
         friction.coulomb_neg_nm = -theta[COULOMB_NEG].max(0.0);
-        let weight = model.bodies.tilt_body.mass_kg * model.bodies.gravity_m_s2;
-        if joint == Joint::Tilt && weight > 0.0 {
-            let centre = &mut model.bodies.tilt_body.centre_m;
-            (centre[0], centre[2]) = (theta[GRAVITY_C] / weight, theta[GRAVITY_S] / weight);
+        if joint == Joint::Tilt {
+            model.set_weight([theta[GRAVITY_C], theta[GRAVITY_S]]);
         }
-        // bodies keep theirs: the rotor has nearly all of it
-        let missing = inertia - model.own_inertia_kg_m2()[joint];
-        model.bodies.rotor_kg_m2[joint] += missing;
+        model.set_own_inertia(joint, inertia);
         let known = rig.identified.get_or_insert(Identified::NONE);
         known.residual_counts[joint] = residual_counts;
         known.quirks[joint] = Quirks {

@@ -65,6 +65,14 @@ const MESSAGES: &[(&str, &str)] = &[
         "A joint moved too little to tell what it is made of. Give a longer record, of motion to and fro, or none: then the rig moves by itself.",
     ),
     (
+        "friction-log",
+        "A log to tell friction from is no table of axis,volt,time_s,count or of axis,torque_nm,velocity_rad_s, axis being pan or tilt; the message names the line.",
+    ),
+    (
+        "friction",
+        "A joint turned too little to tell its friction. Give more volts or more time, another --axis, or a --fixture in which gravity does not hold it.",
+    ),
+    (
         "rig-file",
         "A rig file is wrong. The message shows file, line and value, what is allowed and what to do.",
     ),

@@ -7,7 +7,7 @@ use tracelight_lab::{Identification, JointFit, identify, routine};
 use tracelight_rig::{Joint, TICK_F64_S, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, run_segments};
 
-use super::why_unfinished;
+use super::{rig_out, why_unfinished};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::LawArgs;
 use crate::cli::{Answer, Voice, write_file};
@@ -52,10 +52,7 @@ const LEAST_SWING_RAD: f64 = 0.05;
 
 pub(crate) fn run(args: &IdentifyArgs, stop: &Stop) -> Result<Answer, Failure> {
     let mut rig = rigfile::load(&args.rig)?;
-    if args.save && RigConfig::preset(&args.rig).is_some() {
-        let message = format!("--save needs a rig file of your own; {} comes with the program", args.rig);
-        return Err(Failure::usage("usage", message));
-    }
+    rig_out::may_save(&args.rig, args.save)?;
     args.law.apply(&mut rig);
     let records = if args.records.is_empty() { vec![moved(args, &rig, stop)?] } else { read(args, &rig)? };
     let ticks: usize = records.iter().map(Vec::len).sum();
@@ -63,8 +60,8 @@ pub(crate) fn run(args: &IdentifyArgs, stop: &Stop) -> Result<Answer, Failure> {
     if Joint::BOTH.iter().any(|&j| found.joints[j].taken) {
         rigfile::date(&mut found.rig);
     }
-    write(args, &rig, &found, &records)?;
-    Ok(Answer::new(table(args, &rig, &found, ticks), json(&rig, &found)))
+    let written = write(args, &rig, &found, &records)?;
+    Ok(Answer::new(table(&rig, &found, ticks) + &written, json(&rig, &found)))
 }
 
 fn read(args: &IdentifyArgs, rig: &RigConfig) -> Result<Vec<Vec<Telemetry>>, Failure> {
@@ -116,7 +113,7 @@ fn write(
     rig: &RigConfig,
     found: &Identification,
     records: &[Vec<Telemetry>],
-) -> Result<(), Failure> {
+) -> Result<String, Failure> {
     let dir = args.out.display().to_string();
     let cannot =
         |e| Failure::failed("cannot-write", format!("cannot write {dir}: {e}; choose another with --out"));
@@ -125,17 +122,7 @@ fn write(
     if let ([], [record]) = (args.records.as_slice(), records) {
         write_file(&path("record.csv"), record::write(record))?;
     }
-    let own = rigfile::is_same(&path("rig.toml"), &args.rig);
-    if args.save {
-        rigfile::save(&args.rig, rig, &found.rig)?;
-    } else if own {
-        let message = format!(
-            "{} is the rig file itself: it changes only with --save; choose another folder with --out",
-            path("rig.toml")
-        );
-        return Err(Failure::usage("usage", message));
-    }
-    if own { Ok(()) } else { write_file(&path("rig.toml"), rigfile::write(&found.rig)) }
+    rig_out::write(&args.out, &args.rig, args.save, (rig, &found.rig))
 }
 
 /// A figure of a joint.
@@ -174,7 +161,7 @@ fn weight(rig: &RigConfig, joint: Joint) -> (f64, f64) {
     if joint == Joint::Pan { (0.0, 0.0) } else { (lumped.gravity_c, lumped.gravity_s) }
 }
 
-fn table(args: &IdentifyArgs, rig: &RigConfig, found: &Identification, ticks: usize) -> String {
+fn table(rig: &RigConfig, found: &Identification, ticks: usize) -> String {
     let JointFit { stretches, edges, .. } = found.joints.pan;
     let tilt = found.joints.tilt;
     let mut text = format!(
@@ -215,10 +202,6 @@ fn table(args: &IdentifyArgs, rig: &RigConfig, found: &Identification, ticks: us
     for j in Joint::BOTH.into_iter().filter(|&j| !found.joints[j].taken) {
         let _ =
             write!(text, "\n{j}: what was found explains its motion no better; what was believed is kept");
-    }
-    let _ = write!(text, "\nrig: {}", args.out.join("rig.toml").display());
-    if args.save {
-        let _ = write!(text, ", and in {}", args.rig);
     }
     text
 }

@@ -2,8 +2,11 @@
 
 mod bode;
 mod design;
+mod friction;
+mod gravity;
 mod head;
 mod identify;
+mod inertia;
 mod linearize;
 mod locus;
 mod montecarlo;
@@ -12,6 +15,7 @@ mod nyquist;
 mod poles;
 mod profile;
 mod response;
+mod rig_out;
 mod shape;
 mod step;
 mod systems;
@@ -28,7 +32,7 @@ use crate::failure::Failure;
 use crate::stop::Stop;
 use crate::units::{Unit, parse};
 
-/// The control engineer's bench: profiles, moves, steps, identification, linear models, Bode, Nyquist and locus, controllers designed, many heads at once
+/// The control engineer's bench: profiles, moves, steps, friction and all else a head is made of, linear models, Bode, Nyquist and locus, controllers designed, many heads at once
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab profile --distance 180deg -o profiles.svg")]
 pub(crate) struct LabArgs {
@@ -43,6 +47,9 @@ enum LabAction {
     Step(step::StepArgs),
     Velocity(velocity::VelocityArgs),
     Identify(identify::IdentifyArgs),
+    Friction(friction::FrictionArgs),
+    Inertia(inertia::InertiaArgs),
+    Gravity(gravity::GravityArgs),
     Linearize(linearize::LinearizeArgs),
     Locus(locus::LocusArgs),
     Bode(bode::BodeArgs),
@@ -63,6 +70,9 @@ impl LabArgs {
             LabAction::Step(args) => args.voice,
             LabAction::Velocity(args) => args.voice,
             LabAction::Identify(args) => args.voice,
+            LabAction::Friction(args) => args.voice,
+            LabAction::Inertia(args) => args.voice,
+            LabAction::Gravity(args) => args.voice,
             LabAction::Linearize(args) => args.voice,
             LabAction::Locus(args) => args.plane.voice,
             LabAction::Bode(args) => args.over.voice,
@@ -83,6 +93,9 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Step(args) => step::run(args),
         LabAction::Velocity(args) => velocity::run(args, stop),
         LabAction::Identify(args) => identify::run(args, stop),
+        LabAction::Friction(args) => friction::run(args, stop),
+        LabAction::Inertia(args) => inertia::run(args, stop),
+        LabAction::Gravity(args) => gravity::run(args, stop),
         LabAction::Linearize(args) => linearize::run(args),
         LabAction::Locus(args) => locus::run(args, stop),
         LabAction::Bode(args) => bode::run(args),

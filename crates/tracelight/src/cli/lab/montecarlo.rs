@@ -1,7 +1,5 @@
 use std::fmt::Write;
 use std::ops::ControlFlow;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
 use tracelight_lab::{LAPS_WORTH, Quantiles, identify};
@@ -15,6 +13,7 @@ use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::driving::Driving;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
+use crate::fan::on_all_cores;
 use crate::progress::Progress;
 use crate::stop::Stop;
 
@@ -67,25 +66,8 @@ pub(crate) fn run(args: &MonteCarloArgs, stop: &Stop) -> Result<Answer, Failure>
 fn run_all(args: &MonteCarloArgs, driving: &Driving, plan: &Plan, stop: &Stop) -> Vec<Trial> {
     let progress = Progress::new(args.voice.quiet);
     progress.stage("heads", u64::from(args.plants));
-    let next = AtomicUsize::new(0);
-    let count = args.plants as usize;
-    let done: Mutex<Vec<(usize, Trial)>> = Mutex::new(Vec::with_capacity(count));
-    let work = || {
-        while let Some(number) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&n| n < count) {
-            if stop.is_wanted() {
-                return;
-            }
-            let trial = trial(driving, plan, args.laps, args.seed + number as u64);
-            let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            done.push((number, trial));
-            progress.at(done.len() as u64);
-        }
-    };
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| (0..cores).for_each(|_| drop(scope.spawn(work))));
-    let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    done.sort_by_key(|(number, _)| *number);
-    done.into_iter().map(|(_, trial)| trial).collect()
+    let work = |number: usize| trial(driving, plan, args.laps, args.seed + number as u64);
+    on_all_cores(args.plants as usize, &progress, stop, work)
 }
 
 fn trial(driving: &Driving, plan: &Plan, laps: u32, seed: u64) -> Trial {

@@ -1,0 +1,166 @@
+//! What a joint did under voltages, as a table: `axis,volt,time_s,count`, or torques and steady speeds, `axis,torque_nm,velocity_rad_s`.
+
+use std::fmt::Write;
+
+use tracelight_lab::{Sample, SteadyPoint, Trial};
+use tracelight_rig::{Joint, PanTilt};
+
+use crate::failure::Failure;
+use crate::picture::read_bytes;
+use crate::record::{MOST_V, Row};
+
+/// Most rows: ten hours of a sample each 10 ms.
+const MOST_ROWS: usize = 3_600_000;
+/// A longer time between two rows is a new trial, s.
+const LONGEST_GAP_S: f64 = 1.0;
+
+/// What a log has of each joint.
+#[derive(Default)]
+pub(super) struct Log {
+    pub(super) trials: PanTilt<Vec<Trial>>,
+    pub(super) points: PanTilt<Vec<SteadyPoint>>,
+}
+
+/// Which columns hold what.
+enum Columns {
+    Counted { volt: usize, time_s: usize, count: usize },
+    Measured { torque_nm: usize, rate_rad_s: usize },
+}
+
+impl Log {
+    /// Reads one more file.
+    pub(super) fn read(&mut self, path: &str) -> Result<(), Failure> {
+        let bytes = read_bytes(path)?;
+        self.parse(&bytes).map_err(|what| Failure::usage("friction-log", format!("{path}{what}")))
+    }
+
+    fn parse(&mut self, bytes: &[u8]) -> Result<(), String> {
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(bytes);
+        let header = reader.byte_headers().map_err(|e| format!(": {e}"))?.clone();
+        let find = |name: &str| header.iter().position(|field| field.trim_ascii() == name.as_bytes());
+        let all = (find("volt"), find("time_s"), find("count"), find("torque_nm"), find("velocity_rad_s"));
+        let columns = match all {
+            (Some(volt), Some(time_s), Some(count), ..) => Columns::Counted { volt, time_s, count },
+            (.., Some(torque_nm), Some(rate_rad_s)) => Columns::Measured { torque_nm, rate_rad_s },
+            _ => {
+                return Err(
+                    ": its columns must be axis,volt,time_s,count or axis,torque_nm,velocity_rad_s".into()
+                );
+            }
+        };
+        let axis = find("axis").ok_or(": it has no column axis, with pan or tilt in each row")?;
+        let mut fields = csv::ByteRecord::new();
+        let (mut rows, mut last) = (0, None);
+        while reader.read_byte_record(&mut fields).map_err(|e| format!(": {e}"))? {
+            let line = fields.position().map_or(0, csv::Position::line);
+            rows += 1;
+            if rows > MOST_ROWS {
+                return Err(format!(":{line}: a log has at most {MOST_ROWS} rows; give a part of it"));
+            }
+            let row = Row { fields: &fields, line };
+            let joint = match row.text(axis) {
+                "pan" => Joint::Pan,
+                "tilt" => Joint::Tilt,
+                other => return Err(format!(":{line}: axis {other:?} is neither pan nor tilt")),
+            };
+            match columns {
+                Columns::Counted { volt, time_s, count } => {
+                    let (volts, count) = (row.number(volt)?, row.whole(count)?);
+                    if volts.abs() > MOST_V {
+                        return Err(format!(
+                            ":{line}: {volts} V is more than the {MOST_V} V of any amplifier"
+                        ));
+                    }
+                    let sample = Sample { time_s: row.number(time_s)?, volts, count };
+                    self.put(joint, sample, last == Some(joint));
+                }
+                Columns::Measured { torque_nm, rate_rad_s } => self.points[joint].push(SteadyPoint {
+                    volts: None,
+                    torque_nm: row.number(torque_nm)?,
+                    rate_rad_s: row.number(rate_rad_s)?,
+                }),
+            }
+            last = Some(joint);
+        }
+        for trials in [&mut self.trials.pan, &mut self.trials.tilt] {
+            trials.retain(|trial| trial.samples.len() > 1);
+        }
+        Ok(())
+    }
+
+    /// Puts a sample to the trial it follows, or begins one.
+    fn put(&mut self, joint: Joint, sample: Sample, goes_on: bool) {
+        let trials = &mut self.trials[joint];
+        let last = trials.last_mut().filter(|_| goes_on);
+        match last {
+            Some(trial) if trial.samples.last().is_some_and(|before| follows(before, &sample)) => {
+                trial.samples.push(sample);
+            }
+            _ => trials.push(Trial { joint, samples: vec![sample] }),
+        }
+    }
+}
+
+fn follows(before: &Sample, sample: &Sample) -> bool {
+    sample.time_s > before.time_s && sample.time_s - before.time_s < LONGEST_GAP_S
+}
+
+/// The table of some trials.
+pub(super) fn write<'a>(trials: impl Iterator<Item = &'a Trial>) -> String {
+    let mut text = String::from("axis,volt,time_s,count\n");
+    for trial in trials {
+        for sample in &trial.samples {
+            // writing to a String cannot fail
+            let _ =
+                writeln!(text, "{},{:.6},{:.3},{}", trial.joint, sample.volts, sample.time_s, sample.count);
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(text: &str) -> Result<Log, String> {
+        let mut log = Log::default();
+        log.parse(text.as_bytes()).map(|()| log)
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let sample = |k: i32| Sample { time_s: 0.01 * f64::from(k), volts: 0.75, count: k * k };
+        let trial = |joint| Trial { joint, samples: (0..5).map(sample).collect() };
+        let all = [trial(Joint::Pan), trial(Joint::Pan), trial(Joint::Tilt)];
+        let log = parsed(&write(all.iter())).unwrap();
+        assert_eq!(log.trials.pan, all[..2]);
+        assert_eq!(log.trials.tilt, all[2..]);
+    }
+
+    #[test]
+    fn time_that_goes_back_or_stops_begins_a_trial() {
+        let head = "axis,volt,time_s,count\n";
+        let text =
+            format!("{head}pan,1,0,0\npan,1,0.1,4\npan,-1,0,0\npan,-1,0.1,-4\npan,-1,5,0\npan,-1,5.1,-4\n");
+        assert_eq!(parsed(&text).unwrap().trials.pan.len(), 3);
+    }
+
+    #[test]
+    fn measured_torques_are_points() {
+        let log = parsed("axis,torque_nm,velocity_rad_s\ntilt,0.06,1\n").unwrap();
+        assert_eq!(log.points.tilt.len(), 1);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        let error = |text: &str| parsed(text).err().unwrap();
+        assert!(error("axis,volt\n").contains("axis,torque_nm,velocity_rad_s"));
+        assert!(error("volt,time_s,count\n").contains("no column axis"));
+        assert!(error("axis,volt,time_s,count\nyaw,1,0,0\n").contains(":2: axis \"yaw\""));
+        assert!(
+            error("axis,volt,time_s,count\npan,1,0,0.5\n").contains(":2: \"0.5\" in column 4 is no count")
+        );
+        assert!(error("axis,volt,time_s,count\npan,1e9,0,0\n").contains("any amplifier"));
+        assert!(error("axis,torque_nm,velocity_rad_s\npan,inf,0\n").contains("no number"));
+    }
+}

@@ -1,0 +1,41 @@
+//! What was identified, as a rig file.
+
+use std::path::Path;
+
+use tracelight_sim::RigConfig;
+
+use crate::cli::write_file;
+use crate::failure::Failure;
+use crate::rigfile;
+
+/// Refuses to write into what comes with the program.
+pub(super) fn may_save(rig: &str, save: bool) -> Result<(), Failure> {
+    if save && RigConfig::preset(rig).is_some() {
+        let message = format!("--save needs a rig file of your own; {rig} comes with the program");
+        return Err(Failure::usage("usage", message));
+    }
+    Ok(())
+}
+
+/// Writes the better rig into a folder, and into the rig file itself where that was asked; says where it is.
+pub(super) fn write(
+    out: &Path,
+    rig: &str,
+    save: bool,
+    (before, after): (&RigConfig, &RigConfig),
+) -> Result<String, Failure> {
+    let path = out.join("rig.toml").display().to_string();
+    let own = rigfile::is_same(&path, rig);
+    if save {
+        rigfile::save(rig, before, after)?;
+    } else if own {
+        let message = format!(
+            "{path} is the rig file itself: it changes only with --save; choose another folder with --out"
+        );
+        return Err(Failure::usage("usage", message));
+    }
+    if !own {
+        write_file(&path, rigfile::write(after))?;
+    }
+    Ok(format!("\n\nrig: {path}{}", if save { format!(", and in {rig}") } else { String::new() }))
+}
