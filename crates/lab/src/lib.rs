@@ -7,6 +7,7 @@ mod identify;
 mod linearize;
 mod statistics;
 mod step;
+mod tune;
 mod velocity;
 
 pub use friction::{
@@ -17,4 +18,5 @@ pub use identify::{Identification, IdentifyError, JointFit, LAPS_WORTH, identify
 pub use linearize::{Linearization, Operation};
 pub use statistics::Quantiles;
 pub use step::StepFigures;
+pub use tune::{Demand, Setting, around, coarse};
 pub use velocity::{Peaks, VelocityError, highest, peaks, peaks_seen, velocity_error};

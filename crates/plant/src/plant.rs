@@ -1,4 +1,4 @@
-use tracelight_rig::{Actuation, Head, Joint, PanTilt, Sensed, TICK_F64_S};
+use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, Sensed, TICK_F64_S};
 
 use crate::belt::Belted;
 use crate::encoder::Encoder;
@@ -49,10 +49,15 @@ impl Plant {
     /// A head at rest, homed to within one count of straight ahead. What differs from head to head (where in that
     /// count it rests, phases of ripple, edge table, gains within their spread, how discs and cables sit) is drawn from `seed`.
     pub fn new(config: &PlantConfig, seed: u64) -> Self {
+        Self::resting_at(config, PanTilt::default(), seed)
+    }
+
+    /// The same at rest elsewhere, within one count of these angles, rad.
+    pub fn resting_at(config: &PlantConfig, angle_rad: PanTilt<f64>, seed: u64) -> Self {
         let mut dice = Dice(oorandom::Rand64::new(u128::from(seed)));
         let wear = &config.wear;
         let count_rad = config.encoder.count_rad();
-        let rest = PanTilt::from_fn(|_| 0.5 * count_rad * dice.signed());
+        let rest = PanTilt::from_fn(|j| angle_rad[j] + 0.5 * count_rad * dice.signed());
         let ripple_phase = PanTilt::from_fn(|_| std::f64::consts::PI * dice.signed());
         let encoders = PanTilt::from_fn(|j| {
             let table = [0; 4].map(|_| wear.edge_error_counts * dice.signed());
@@ -84,6 +89,11 @@ impl Plant {
             late_s: 0.0,
             dice,
         }
+    }
+
+    /// What the encoders read, before anything moves.
+    pub fn measured(&self) -> PanTilt<Measurement> {
+        self.encoders.map(|encoder| encoder.measurement())
     }
 
     /// True joint angles at the encoders, rad.

@@ -45,7 +45,14 @@ impl Truth for Plant {
 impl Bench<Plant> {
     /// The rig's head as it truly is, at rest at zero.
     pub(crate) fn nonlinear(rig: &RigConfig, seed: u64) -> Self {
-        Self::new(rig.control_config(), Plant::new(&rig.plant_config(), seed))
+        Self::nonlinear_at(rig, PanTilt::default(), seed)
+    }
+
+    /// The same at rest elsewhere.
+    pub(crate) fn nonlinear_at(rig: &RigConfig, angle_rad: PanTilt<f64>, seed: u64) -> Self {
+        let plant = Plant::resting_at(&rig.plant_config(), angle_rad, seed);
+        let measured = plant.measured();
+        Self::new(rig.control_config(), plant, measured)
     }
 }
 
@@ -53,20 +60,19 @@ impl Bench<LinearHead> {
     /// The same head linearized at rest at `pose_rad`, with an ideal encoder and amplifier; the law is told so.
     pub(crate) fn linear(rig: &RigConfig, pose_rad: PanTilt<f64>) -> Self {
         let head = LinearHead::new(rig, pose_rad);
-        Self::new(head.control_config(rig), head)
+        Self::new(head.control_config(rig), head, PanTilt::default())
     }
 }
 
 impl<H: Truth> Bench<H> {
-    fn new(config: Config, head: H) -> Self {
-        let measured = PanTilt::default();
+    fn new(config: Config, head: H, measured: PanTilt<Measurement>) -> Self {
         Self { servo: Servo::at_rest(&config, &measured), config, head, measured, begun: false }
     }
 
     /// With another law for one joint.
     pub(crate) fn driven_by(mut self, joint: Joint, law: LawConfig) -> Self {
         self.config.axes[joint].law = law;
-        Self::new(self.config, self.head)
+        Self::new(self.config, self.head, self.measured)
     }
 
     /// One tick.

@@ -4,9 +4,11 @@
 //! crate reads no clock, starts no thread and draws nothing that its seed does not decide.
 
 mod alone;
+mod array;
 mod bench;
 mod compensator;
 mod config;
+mod diagram;
 mod join;
 mod laws;
 mod lead_lag;
@@ -20,16 +22,18 @@ mod step;
 mod trouble;
 
 pub use alone::{Mounting, head_alone};
+pub use array::{ArrayError, Between, MotionArray};
 pub use bench::BenchTick;
 pub use compensator::CompensatorLaw;
 pub use config::{
     Cable, ControlSettings, Identified, Model, MotionSettings, Quirks, RigConfig, Ripple, Truth,
 };
+pub use diagram::{Diagram, ScopeTick};
 pub use laws::{Compensator, LawName, ObserverName};
 pub use replay::replay;
 pub use run::{Feeder, Run, SimulatedRig, Tick, run, run_segments};
 pub use score::{Tracking, score};
 pub use spread::Spread;
-pub use step::{StepResponse, step_response, step_response_by};
+pub use step::{StepResponse, follow_array, step_response, step_response_by};
 pub use tracelight_control::LONGEST_INTERVAL_TICKS;
 pub use trouble::Trouble;

@@ -5,7 +5,7 @@ use tracelight_trajectory::{JointMotion, rest_to_rest};
 
 use crate::bench::{Bench, BenchTick, Truth};
 use crate::compensator::CompensatorLaw;
-use crate::{LawName, ObserverName, RigConfig};
+use crate::{LawName, MotionArray, ObserverName, RigConfig};
 
 /// What a joint does when it is sent somewhere else, for [`StepResponse::LENGTH_S`].
 #[derive(Clone, Debug)]
@@ -52,6 +52,18 @@ pub fn step_response_by(
         nonlinear: follow(Bench::nonlinear(&rig, seed).driven_by(joint, law), &references),
         linear: follow(Bench::linear(&rig, to).driven_by(joint, law), &references),
     })
+}
+
+/// Follows an array with the rig's law from rest where it begins, and stays at its end for `rest_s`; a tick each.
+pub fn follow_array(rig: &RigConfig, array: &MotionArray, rest_s: f64, seed: u64) -> Vec<BenchTick> {
+    let ticks = ((array.length_s() + rest_s) / TICK_F64_S).round() as usize;
+    let mut bench = Bench::nonlinear_at(rig, array.start_rad(), seed);
+    let at = |time_s: f64| array.at(time_s).map(|motion| setpoint(&motion));
+    let reference = |tick: usize| {
+        let time_s = tick as f64 * TICK_F64_S;
+        Reference { now: at(time_s), ahead: at(time_s + 0.5 * TICK_F64_S) }
+    };
+    (0..=ticks).map(|tick| bench.step(&reference(tick))).collect()
 }
 
 fn follow<H: Truth>(mut bench: Bench<H>, references: &[Reference]) -> Vec<BenchTick> {

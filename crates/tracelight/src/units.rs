@@ -70,6 +70,8 @@ pub(crate) const TIMES: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 /// See [`LENGTHS`].
 pub(crate) const VOLTAGES: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
 /// See [`LENGTHS`].
+pub(crate) const TORQUES: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
+/// See [`LENGTHS`].
 pub(crate) const ANGULAR_SPEEDS: &[Unit] = &[("rad/s", 1.0), ("deg/s", DEG)];
 /// See [`LENGTHS`].
 pub(crate) const ANGULAR_ACCELERATIONS: &[Unit] = &[("rad/s2", 1.0), ("deg/s2", DEG)];

@@ -191,6 +191,11 @@ fn the_page_on_moves_shows_what_its_commands_print() {
 }
 
 #[test]
+fn the_page_on_simulation_shows_what_its_commands_print() {
+    check_page("simulate.md", 5);
+}
+
+#[test]
 fn the_page_on_tracking_shows_what_its_commands_print() {
     check_page("tracking.md", 6);
 }

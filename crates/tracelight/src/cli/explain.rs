@@ -65,6 +65,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "A joint moved too little to tell what it is made of. Give a longer record, of motion to and fro, or none: then the rig moves by itself.",
     ),
     (
+        "motion-array",
+        "A motion to simulate is no table of t,pan,tilt: seconds that rise, and angles within the joints' range; the message names the line.",
+    ),
+    (
         "friction-log",
         "A log to tell friction from is no table of axis,volt,time_s,count or of axis,torque_nm,velocity_rad_s, axis being pan or tilt; the message names the line.",
     ),

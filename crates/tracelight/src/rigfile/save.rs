@@ -1,14 +1,14 @@
-//! Writes what was identified into a user's own rig file: only what changed, comments kept.
+//! Writes what was identified or tuned into a user's own rig file: only what changed, comments kept.
 
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 use tracelight_sim::RigConfig;
 
 use crate::failure::Failure;
 
-use super::keys::{Key, Slot, identified_keys, model_keys};
+use super::keys::{Key, RIG_KEYS, Slot, identified_keys, model_keys};
 use super::shown;
 
-/// Writes a rig's model and what was identified of it into the rig file it came from, whole or not at all.
+/// Writes a rig's model, what was identified of it and how it is driven into the rig file it came from, whole or not at all.
 pub(crate) fn save(path: &str, old: &RigConfig, new: &RigConfig) -> Result<(), Failure> {
     let wrong = |e: String| Failure::usage("rig-file", format!("{path} cannot be saved: {e}"));
     let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
@@ -27,7 +27,7 @@ pub(crate) fn is_same(one: &str, other: &str) -> bool {
     real(one).is_some_and(|one| Some(one) == real(other))
 }
 
-/// The text of a rig file with another rig's model and what was identified of it. What is simulated stays what it was:
+/// The text of a rig file with another rig's model, what was identified of it and how it is driven. What is simulated stays what it was:
 /// keys of `[model]` that change are written into `[truth]` with their old value where they do not stand there.
 fn updated(text: &str, old: &RigConfig, new: &RigConfig) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|e| format!("not valid TOML: {e}"))?;
@@ -42,6 +42,12 @@ fn updated(text: &str, old: &RigConfig, new: &RigConfig) -> Result<String, Strin
             put(root, &truth, &shown(&key, &mut old.truth.model.clone()))?;
         }
         put(root, &format!("model.{}", key.path), &after)?;
+    }
+    for key in RIG_KEYS.iter().filter(|key| !key.path.starts_with("truth.")) {
+        let (before, after) = (shown(key, &mut old.clone()), shown(key, &mut new.clone()));
+        if before != after {
+            put(root, key.path, &after)?;
+        }
     }
     if let Some(found) = &new.identified {
         put(root, "identified.date", &Value::from(found.date.as_str()).to_string())?;

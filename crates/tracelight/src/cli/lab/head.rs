@@ -32,13 +32,23 @@ pub(crate) struct HeadArgs {
 
 /// One of the report's parameter sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Set {
+pub(super) enum Set {
     /// The model file's
     #[value(name = "A")]
     A,
     /// The simulation's start file's
     #[value(name = "B")]
     B,
+}
+
+impl Set {
+    /// What it says of the bodies.
+    pub(super) const fn bodies(self) -> HeadBodies {
+        match self {
+            Self::A => HeadBodies::set_a(),
+            Self::B => HeadBodies::set_b(),
+        }
+    }
 }
 
 /// One value for pan, one for tilt.
@@ -80,8 +90,8 @@ impl HeadArgs {
             }
             None => {
                 let (name, bodies) = match self.set {
-                    None | Some(Set::A) => ("parameter set A", HeadBodies::set_a()),
-                    Some(Set::B) => ("parameter set B", HeadBodies::set_b()),
+                    None | Some(Set::A) => ("parameter set A", Set::A.bodies()),
+                    Some(Set::B) => ("parameter set B", Set::B.bodies()),
                 };
                 // what the report's own helper had
                 (name.to_owned(), HeadBodies { gravity_m_s2: 9.8, ..bodies }, PanTilt::new(0.01, 0.01))

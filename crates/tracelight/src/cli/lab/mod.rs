@@ -17,9 +17,11 @@ mod profile;
 mod response;
 mod rig_out;
 mod shape;
+mod simulate;
 mod step;
 mod systems;
 mod trial;
+mod tune;
 mod velocity;
 
 use clap::{Args, Subcommand};
@@ -45,6 +47,7 @@ enum LabAction {
     Profile(profile::ProfileArgs),
     Move(moves::MoveArgs),
     Step(step::StepArgs),
+    Simulate(Box<simulate::SimulateArgs>),
     Velocity(velocity::VelocityArgs),
     Identify(identify::IdentifyArgs),
     Friction(friction::FrictionArgs),
@@ -58,6 +61,7 @@ enum LabAction {
     Pzmap(locus::PzmapArgs),
     Response(response::ResponseArgs),
     Design(design::DesignArgs),
+    Tune(Box<tune::TuneArgs>),
     #[command(name = "montecarlo")]
     MonteCarlo(montecarlo::MonteCarloArgs),
 }
@@ -68,6 +72,7 @@ impl LabArgs {
             LabAction::Profile(args) => args.voice,
             LabAction::Move(args) => args.voice(),
             LabAction::Step(args) => args.voice,
+            LabAction::Simulate(args) => args.voice,
             LabAction::Velocity(args) => args.voice,
             LabAction::Identify(args) => args.voice,
             LabAction::Friction(args) => args.voice,
@@ -81,6 +86,7 @@ impl LabArgs {
             LabAction::Pzmap(args) => args.plane.voice,
             LabAction::Response(args) => args.voice,
             LabAction::Design(args) => args.voice(),
+            LabAction::Tune(args) => args.voice,
             LabAction::MonteCarlo(args) => args.voice,
         }
     }
@@ -91,6 +97,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Profile(args) => profile::run(args),
         LabAction::Move(args) => moves::run(args, stop),
         LabAction::Step(args) => step::run(args),
+        LabAction::Simulate(args) => simulate::run(args),
         LabAction::Velocity(args) => velocity::run(args, stop),
         LabAction::Identify(args) => identify::run(args, stop),
         LabAction::Friction(args) => friction::run(args, stop),
@@ -104,6 +111,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Pzmap(args) => locus::run_pzmap(args),
         LabAction::Response(args) => response::run(args),
         LabAction::Design(args) => design::run(args),
+        LabAction::Tune(args) => tune::run(args, stop),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
 }

@@ -32,7 +32,7 @@ pub(super) struct ShapeArgs {
     driving: DrivingArgs,
 }
 
-fn switch(text: &str) -> Result<bool, String> {
+pub(super) fn switch(text: &str) -> Result<bool, String> {
     match text {
         "on" => Ok(true),
         "off" => Ok(false),
@@ -41,6 +41,11 @@ fn switch(text: &str) -> Result<bool, String> {
 }
 
 impl ShapeArgs {
+    /// The rig as it was named.
+    pub(super) fn rig(&self) -> &str {
+        &self.driving.rig
+    }
+
     /// The rig and what is asked of it.
     pub(super) fn resolve(&self) -> Result<Driving, Failure> {
         let mut driving = self.driving.resolve()?;

@@ -3,7 +3,7 @@ use std::fmt::Write;
 use clap::{Args, ValueEnum};
 use tracelight_lab::Linearization;
 use tracelight_linear::{
-    Complex, Discretization, LinearError, Mode, Time, TransferFunction, Zpk, four_digits,
+    Complex, Discretization, FormulaError, LinearError, Mode, Names, Time, TransferFunction, Zpk, four_digits,
 };
 use tracelight_rig::Joint;
 use tracelight_sim::Compensator;
@@ -147,6 +147,28 @@ fn no_such_system(text: &str, error: &LinearError) -> Failure {
     Failure::failed("no-such-system", format!("{text}: {error}"))
 }
 
+/// A controller in continuous time: a formula, in which K11, K22, K11t and K22t are the report's.
+pub(super) fn controller(text: &str) -> Result<Zpk, Failure> {
+    Ok(parsed(text, Time::Continuous, &the_reports)?.zpk())
+}
+
+/// A formula read; what is wrong with it is pointed at.
+fn parsed(text: &str, time: Time, named: &Names<'_>) -> Result<TransferFunction, Failure> {
+    let pointed = |e: FormulaError| format!("{e}\n  {text}\n  {}^", " ".repeat(e.at));
+    TransferFunction::parse_with(text, time, named).map_err(|e| Failure::usage("bad-formula", pointed(e)))
+}
+
+/// The report's compensators by name.
+fn the_reports(name: &str) -> Option<TransferFunction> {
+    match name {
+        "K11" => compensator(Joint::Pan, false),
+        "K22" => compensator(Joint::Tilt, false),
+        "K11t" => compensator(Joint::Pan, true),
+        "K22t" => compensator(Joint::Tilt, true),
+        _ => None,
+    }
+}
+
 /// What formulas are read with.
 struct Reader<'a> {
     how: &'a HowArgs,
@@ -170,19 +192,14 @@ impl Reader<'_> {
         match name {
             "G11" => own(Joint::Pan),
             "G22" => own(Joint::Tilt),
-            "K11" => compensator(Joint::Pan, false),
-            "K22" => compensator(Joint::Tilt, false),
-            "K11t" => compensator(Joint::Pan, true),
-            "K22t" => compensator(Joint::Tilt, true),
-            _ => None,
+            _ => the_reports(name),
         }
     }
 
     /// What a formula is, and what was made of it.
     fn read(&self, text: &str) -> Result<(String, TransferFunction), Failure> {
         let time = self.how.period.map_or(Time::Continuous, Time::Sampled);
-        let mut system = TransferFunction::parse_with(text, time, &|name| self.named(name))
-            .map_err(|e| Failure::usage("bad-formula", format!("{e}\n  {text}\n  {}^", " ".repeat(e.at))))?;
+        let mut system = parsed(text, time, &|name| self.named(name))?;
         let mut name = text.to_owned();
         if let Some(period_s) = self.how.sample {
             let method = self.how.method;
