@@ -85,18 +85,32 @@ pub(crate) fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return refuse(&error),
     };
-    let stop = Stop::listen();
-    let (voice, result) = match cli.command {
-        Command::Trace(args) => (args.voice, trace::run(&args, &stop)),
-        Command::Strokes(args) => (args.voice, strokes::run(&args, &stop)),
-        Command::Plan(args) => (args.voice, plan::run(&args, &stop)),
-        Command::Calibrate(args) => (args.voice(), calibrate::run(&args)),
-        Command::Lab(args) => (args.voice(), lab::run(&args, &stop)),
-        Command::Rigs(args) => (args.voice, rigs::run(&args)),
-        Command::Explain(args) => (args.voice, explain::run(&args)),
-        Command::Completions(args) => (args.voice, Ok(completions::run::<Cli>(&args))),
-    };
+    let (voice, result) = perform(&cli.command, &Stop::listen());
     finish(voice, result)
+}
+
+fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
+    match command {
+        Command::Trace(args) => (args.voice, trace::run(args, stop)),
+        Command::Strokes(args) => (args.voice, strokes::run(args, stop)),
+        Command::Plan(args) => (args.voice, plan::run(args, stop)),
+        Command::Calibrate(args) => (args.voice(), calibrate::run(args)),
+        Command::Lab(args) => (args.voice(), lab::run(args, stop)),
+        Command::Rigs(args) => (args.voice, rigs::run(args)),
+        Command::Explain(args) => (args.voice, explain::run(args)),
+        Command::Completions(args) => (args.voice, Ok(completions::run::<Cli>(args))),
+    }
+}
+
+/// Does what a command line says, in this process, and returns what would be printed.
+pub(crate) fn answer(arguments: &[&str], stop: &Stop) -> Result<Answer, Failure> {
+    let all = std::iter::once("tracelight").chain(arguments.iter().copied());
+    let cli = Cli::try_parse_from(all).map_err(|e| Failure::failed("internal", e))?;
+    let answer = perform(&cli.command, stop).1?;
+    match answer.failure {
+        Some(failure) => Err(failure),
+        None => Ok(answer),
+    }
 }
 
 fn finish(voice: Voice, result: Result<Answer, Failure>) -> ExitCode {

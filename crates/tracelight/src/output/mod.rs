@@ -37,6 +37,7 @@ pub(crate) use events::{Event, events};
 pub(crate) use log::{LogMeta, LogWriter};
 pub(crate) use preview::{ColourBy, preview};
 pub(crate) use raster::Raster;
+pub(crate) use report::html;
 pub(crate) use sample::planned;
 pub(crate) use summary::{PlanFigures, StrokeFigures, Summary};
 pub(crate) use words::{counted, darkness_words, fault_words};

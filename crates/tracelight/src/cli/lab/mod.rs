@@ -14,6 +14,7 @@ mod moves;
 mod nyquist;
 mod poles;
 mod profile;
+mod reproduce;
 mod response;
 mod rig_out;
 mod shape;
@@ -62,6 +63,7 @@ enum LabAction {
     Response(response::ResponseArgs),
     Design(design::DesignArgs),
     Tune(Box<tune::TuneArgs>),
+    Reproduce(reproduce::ReproduceArgs),
     #[command(name = "montecarlo")]
     MonteCarlo(montecarlo::MonteCarloArgs),
 }
@@ -87,6 +89,7 @@ impl LabArgs {
             LabAction::Response(args) => args.voice,
             LabAction::Design(args) => args.voice(),
             LabAction::Tune(args) => args.voice,
+            LabAction::Reproduce(args) => args.voice,
             LabAction::MonteCarlo(args) => args.voice,
         }
     }
@@ -112,6 +115,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Response(args) => response::run(args),
         LabAction::Design(args) => design::run(args),
         LabAction::Tune(args) => tune::run(args, stop),
+        LabAction::Reproduce(args) => reproduce::run(args, stop),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
 }

@@ -1,5 +1,5 @@
 /// A text made safe for element content and quoted attributes.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -17,7 +17,7 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// A number with about `digits` significant digits, for people: no exponent, a true minus sign.
-pub(super) fn number(value: f64, digits: usize) -> String {
+pub(crate) fn number(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
@@ -30,7 +30,7 @@ pub(super) fn number(value: f64, digits: usize) -> String {
 }
 
 /// A file inside the page.
-pub(super) fn data_uri(media_type: &str, bytes: &[u8]) -> String {
+pub(crate) fn data_uri(media_type: &str, bytes: &[u8]) -> String {
     format!("data:{media_type};base64,{}", base64(bytes))
 }
 

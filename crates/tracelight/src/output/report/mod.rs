@@ -6,7 +6,7 @@
 mod axis;
 mod curve;
 mod diagrams;
-mod html;
+pub(crate) mod html;
 mod map;
 mod plot;
 mod tables;
