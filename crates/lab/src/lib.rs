@@ -2,6 +2,7 @@
 //!
 //! No file is read and no thread started here; what is measured comes as a record of a run, simulated or real.
 
+mod frequency;
 mod friction;
 mod identify;
 mod linearize;
@@ -10,6 +11,7 @@ mod step;
 mod tune;
 mod velocity;
 
+pub use frequency::{Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response};
 pub use friction::{
     Believed, Curves, CurvesSide, FrictionError, Line, Part, Protocol, Sample, Shuttle, Steady, SteadyPoint,
     Travel, Trial, Uncertain, curves, free_trial, steady, steady_of,

@@ -185,3 +185,57 @@ fn cables_are_told_from_friction() {
         assert!(((pos - neg) / width - 1.0).abs() < 0.01, "{joint}: {pos} {neg}");
     }
 }
+
+/// What is said to hold in 95 of 100 cases does in nine of ten at least, be there many trials or few.
+#[test]
+fn intervals_have_the_truth_in_them() {
+    let rig = RigConfig::report();
+    let (mut hits, mut all) = (0, 0);
+    for joint in Joint::BOTH {
+        let believed = believed(&rig, joint, Mounting::Fixture);
+        let friction = &rig.truth.model.friction[joint];
+        for (step_v, hold_s) in (0..24).map(|k| (0.02 + 0.005 * f64::from(k % 12), 5.0 + 0.7 * f64::from(k)))
+        {
+            let volts = (0..=(1.0 / step_v) as i32)
+                .flat_map(|k| [1.0, -1.0].map(|way| way * (1.0 - step_v * f64::from(k))));
+            // those that turn it, and some that do not
+            let volts: Vec<f64> = volts.filter(|v| v.abs() > 0.5).collect();
+            let protocol = Protocol { volts, ..protocol(hold_s) };
+            let trial = |&volts: &f64| {
+                let mut head = head_alone(&rig, joint, Mounting::Fixture, (10.0 * hold_s) as u64);
+                free_trial(&mut head, joint, &protocol, volts)
+            };
+            let trials: Vec<Trial> = protocol.volts.iter().map(trial).collect();
+            let found = curves(joint, &trials.iter().collect::<Vec<_>>(), &believed).unwrap();
+            let [pos, neg] = [found.pos, found.neg].map(Option::unwrap);
+            for (value, truth) in [
+                (pos.viscous, friction.viscous_pos),
+                (neg.viscous, friction.viscous_neg),
+                (pos.coulomb_nm, friction.coulomb_pos_nm),
+                (neg.coulomb_nm, friction.coulomb_neg_nm),
+                (found.inertia_kg_m2.unwrap(), rig.model.own_inertia_kg_m2()[joint]),
+            ] {
+                all += 1;
+                hits += u32::from((value.value - truth).abs() <= value.within);
+            }
+        }
+    }
+    assert!(f64::from(hits) > 0.9 * f64::from(all), "{hits} of {all}");
+}
+
+#[test]
+fn what_no_joint_can_be_is_refused() {
+    let rig = RigConfig::report();
+    let mut trials = in_a_fixture(&rig, Joint::Pan, 10.0);
+    let believed = believed(&rig, Joint::Pan, Mounting::Fixture);
+    for sample in trials.iter_mut().flat_map(|trial| &mut trial.samples) {
+        sample.count = -sample.count;
+    }
+    let turned: Vec<&Trial> = trials.iter().collect();
+    assert!(matches!(curves(Joint::Pan, &turned, &believed), Err(FrictionError::Impossible { .. })));
+    for sample in trials.iter_mut().flat_map(|trial| &mut trial.samples) {
+        sample.volts = 0.0;
+    }
+    let idle: Vec<&Trial> = trials.iter().collect();
+    assert!(matches!(curves(Joint::Pan, &idle, &believed), Err(FrictionError::Alike { .. })));
+}

@@ -27,7 +27,7 @@ pub enum ArrayError {
     #[error("a motion has two rows at least")]
     TooShort,
     /// Time stands or goes back.
-    #[error("row {row}: its time, {time_s} s, does not come after the row before")]
+    #[error("row {row}: its time, {time_s} s, does not come after the row before, by a microsecond at least")]
     NotAfter {
         /// Counted from 1.
         row: usize,
@@ -42,6 +42,9 @@ pub enum ArrayError {
     },
 }
 
+/// Rows are apart by so much at least, s.
+const CLOSEST_S: f64 = 0.999e-6;
+
 impl MotionArray {
     /// From times, s, and angles, rad; the first row is the start, at whatever time.
     pub fn new(rows: &[(f64, PanTilt<f64>)], between: Between) -> Result<Self, ArrayError> {
@@ -52,7 +55,7 @@ impl MotionArray {
             if ![*time_s, angles.pan, angles.tilt].iter().all(|value| value.is_finite()) {
                 return Err(ArrayError::NoNumber { row: number + 1 });
             }
-            if number > 0 && *time_s <= rows[number - 1].0 {
+            if number > 0 && *time_s < rows[number - 1].0 + CLOSEST_S {
                 return Err(ArrayError::NotAfter { row: number + 1, time_s: *time_s });
             }
         }
@@ -65,13 +68,15 @@ impl MotionArray {
         Ok(Self { times_s, angles_rad, bends })
     }
 
-    /// A random one: from rest at zero, within `reach_rad` of it, a new place every second, and back.
+    /// A random one: from rest at zero, within `reach_rad` of it, a new place every second, or four of them at least, and back.
     pub fn random(seed: u64, length_s: f64, reach_rad: PanTilt<f64>) -> Result<Self, ArrayError> {
         let mut dice = oorandom::Rand64::new(u128::from(seed));
-        let places = (length_s.max(1.0)).round() as usize;
+        let places = (length_s.round() as usize).max(4);
+        // where there is less time from place to place, they are nearer, so that accelerations stay what they are
+        let nearer = (length_s / places as f64).powi(2).min(1.0);
         let rows: Vec<_> = (0..=places)
             .map(|place| {
-                let mut signed = |reach: f64| reach * (2.0 * dice.rand_float() - 1.0);
+                let mut signed = |reach: f64| nearer * reach * (2.0 * dice.rand_float() - 1.0);
                 let drawn = PanTilt::new(signed(reach_rad.pan), signed(reach_rad.tilt));
                 let at_end = place == 0 || place == places;
                 (length_s * place as f64 / places as f64, if at_end { PanTilt::default() } else { drawn })

@@ -134,7 +134,7 @@ mod tests {
     /// A jump of a hundredth of a radian, too small for anything but the linear model to matter.
     fn jump() -> MotionArray {
         let to = PanTilt::new(0.01, 0.0);
-        MotionArray::new(&[(0.0, PanTilt::default()), (1e-9, to), (1.0, to)], Between::Lines).unwrap()
+        MotionArray::new(&[(0.0, PanTilt::default()), (1e-6, to), (1.0, to)], Between::Lines).unwrap()
     }
 
     #[test]

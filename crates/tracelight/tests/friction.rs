@@ -71,6 +71,29 @@ fn on_its_feet_a_head_tells_friction_and_weight_within_its_range() {
 }
 
 #[test]
+fn a_frequency_response_coheres_where_a_count_does_not_hide_it() {
+    let dir = folder("lab-frequency");
+    let [csv, svg] = ["response.csv", "response.svg"].map(|name| dir.join(name).to_str().unwrap().to_owned());
+    let found = lab(&["frequency", "--axis", "tilt", "--speed=-8rad/s", "-o", &csv, "-o", &svg]);
+    assert_eq!(found["one_way"], true);
+    let points = found["points"].as_array().unwrap();
+    assert!(points.len() > 35);
+    let value = |point: &Value, name: &str| point[name].as_f64().unwrap();
+    for point in points.iter().filter(|point| value(point, "coherence") > 0.99) {
+        let ratio = value(point, "magnitude") / value(point, "model_magnitude");
+        assert!((ratio - 1.0).abs() < 0.002 + 4.0 * value(point, "deviation"), "{point}");
+    }
+    assert!(value(&found, "coherent_to_rad_s") > 50.0, "{found}");
+    assert!(value(points.last().unwrap(), "coherence") < 0.7, "two thousandths of a count");
+    assert_eq!(std::fs::read_to_string(csv).unwrap().lines().count(), points.len() + 1);
+    let plot = std::fs::read_to_string(svg).unwrap();
+    assert!(plot.contains("coherence") && plot.contains("phase, °"));
+    let refused = run(&["lab", "frequency", "--from", "0.1rad/s"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("--from"));
+}
+
+#[test]
 fn measured_torques_are_a_line_a_direction() {
     let dir = folder("lab-friction-measured");
     let log = dir.join("log.csv");

@@ -32,7 +32,6 @@ fn the_book_has_every_figure_and_the_reports_numbers_beside_ours() {
         ("trapezoid: duration", 5e-4),
         ("S-curve: highest speed", 5e-4),
         ("scale, level", 2e-3),
-        ("count of the encoder", 1e-3),
     ] {
         let mut found = 0;
         for (report, ours) in facts(&book, name) {

@@ -12,7 +12,7 @@ use super::{Believed, FrictionError, Trial, Uncertain};
 pub struct Curves {
     /// kg m²; `None` where speeds hardly change, so that only what is believed of it is known.
     pub inertia_kg_m2: Option<Uncertain>,
-    /// Turning forwards; `None` where it did so in fewer than two trials.
+    /// Turning forwards; `None` where it did so in fewer than three trials.
     pub pos: Option<CurvesSide>,
     /// Backwards.
     pub neg: Option<CurvesSide>,
@@ -55,7 +55,7 @@ const LONGEST_S: f64 = 4.0;
 /// Length of the stretches whose torques are shown, s.
 const SHOWN_S: f64 = 1.0;
 /// Fewest trials with motion in a direction.
-const LEAST_TRIALS: usize = 2;
+const LEAST_TRIALS: usize = 3;
 /// Least squares over all pieces of all trials of one joint: second integrals of torque, so that nothing is differentiated, with
 /// place and speed at the start of each piece free. Intervals from how trials differ (Liang & Zeger, *Biometrika* 73, 1986, eq. 2): what
 /// is left within one is alike.
@@ -88,7 +88,15 @@ pub fn curves(joint: Joint, trials: &[&Trial], believed: &Believed) -> Result<Cu
             _ => true,
         })
         .collect();
+    // without any voltage there is nothing to hold friction against
+    if used.iter().all(|piece| piece.rows.iter().all(|row| row.motor == 0.0)) {
+        return Err(FrictionError::Alike { joint });
+    }
     let fit = fit(&used, unknowns, believed).ok_or(FrictionError::Alike { joint })?;
+    if let Some(inertia) = fit.value(INERTIA).filter(|inertia| inertia.value.is_nan() || inertia.value <= 0.0)
+    {
+        return Err(FrictionError::Impossible { joint, inertia_kg_m2: inertia.value });
+    }
     let side = |s: usize| {
         let (viscous, coulomb_nm) = (fit.value(VISCOUS[s])?, fit.value(COULOMB[s])?);
         Some(CurvesSide { viscous, coulomb_nm })

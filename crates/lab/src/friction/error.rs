@@ -6,7 +6,7 @@ pub enum FrictionError {
     /// The joint did not turn, or hardly.
     #[error(
         "{joint} turned in {turned} of {trials} trials, and at least {least} in one direction are needed, each above {speed_rad_s} \
-         rad/s for {time_s} s: give more volts"
+         rad/s for {time_s} s: give more volts, in smaller steps"
     )]
     TooFew {
         /// Which.
@@ -21,6 +21,17 @@ pub enum FrictionError {
         speed_rad_s: f64,
         /// For so long.
         time_s: f64,
+    },
+    /// No joint has such an inertia.
+    #[error(
+        "{joint}: its inertia would be {inertia_kg_m2:e} kg m², which no joint has: its volts and counts may have opposite signs, or the \
+         rig file's torque per volt is wrong"
+    )]
+    Impossible {
+        /// Which.
+        joint: Joint,
+        /// kg m².
+        inertia_kg_m2: f64,
     },
     /// What was seen does not tell inertia, friction and weight apart.
     #[error(

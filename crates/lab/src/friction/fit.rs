@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::line::student;
-use super::pieces::{GRAVITY, INERTIA, Piece, Row, UNKNOWNS, trials_of};
+use super::pieces::{COULOMB, GRAVITY, INERTIA, Piece, Row, UNKNOWNS, VISCOUS, trials_of};
 use super::{Believed, Uncertain};
 
 /// Deviation of what is believed of friction and weight, in torques of a volt: wide enough to matter only for what motion does not
@@ -31,15 +31,13 @@ impl Fit {
 /// tell the rest apart.
 pub(super) fn fit(pieces: &[&Piece], unknowns: Vec<usize>, believed: &Believed) -> Option<Fit> {
     let all = Equations::new(pieces, unknowns, believed);
-    let (matrix, right) = all.normal();
-    let told = inverse(&matrix).is_some_and(|inverse| 1.0 > TOLD * all.counting(pieces) * inverse[(0, 0)]);
-    if told {
-        return all.solve(matrix, right);
+    let (_, normal) = all.normal(false);
+    let counting = TOLD * all.counting(pieces);
+    if inverse(&normal.matrix).is_some_and(|inverse| 1.0 > counting * inverse[(0, 0)]) {
+        return all.solve();
     }
     let rest = all.unknowns.into_iter().filter(|&k| k != INERTIA).collect();
-    let rest = Equations::new(pieces, rest, believed);
-    let (matrix, right) = rest.normal();
-    rest.solve(matrix, right)
+    Equations::new(pieces, rest, believed).solve()
 }
 
 /// A row a sample: what is asked, and what is taken as known.
@@ -75,23 +73,38 @@ impl<'a> Equations<'a> {
         self.count_variance() * pieces.iter().map(free).sum::<f64>()
     }
 
-    /// Normal equations, with what is believed.
-    fn normal(&self) -> (DMatrix<f64>, DVector<f64>) {
+    /// Normal equations of each trial, and of all with what is believed. The column of the inertia is counted, and counting makes it larger
+    /// than it is: that is taken out again where it is asked (Fuller, *Measurement Error Models*, 1987, eq. 2.2.10).
+    fn normal(&self, without_counting: bool) -> (Vec<Normal>, Normal) {
         let asked = self.unknowns.len();
-        let (mut matrix, mut right) = (DMatrix::zeros(asked, asked), DVector::zeros(asked));
-        for row in self.pieces.iter().flat_map(|piece| &piece.rows) {
-            let terms = self.terms(row);
-            matrix.ger(1.0, &terms, &terms, 1.0);
-            right.axpy(row.less(&self.known), &terms, 1.0);
+        let trials = self.pieces.iter().map(|piece| piece.trial + 1).max().unwrap_or(0);
+        let mut each = vec![Normal::zeros(asked); trials];
+        let counted = without_counting && self.unknowns.first() == Some(&INERTIA);
+        for piece in self.pieces {
+            let normal = &mut each[piece.trial];
+            for row in &piece.rows {
+                let terms = self.terms(row);
+                normal.matrix.ger(1.0, &terms, &terms, 1.0);
+                normal.right.axpy(row.less(&self.known), &terms, 1.0);
+            }
+            if counted {
+                normal.matrix[(0, 0)] -= self.counting(&[*piece]);
+            }
         }
-        let noise = self.believed.inertia_kg_m2 * self.believed.inertia_kg_m2 * self.count_variance();
+        let mut all = Normal::zeros(asked);
         for (place, &unknown) in self.unknowns.iter().enumerate().filter(|(_, k)| **k != INERTIA) {
             let deviation = TORQUE_SHARE * self.believed.torque_nm_per_v;
-            let weight = noise / (deviation * deviation);
-            matrix[(place, place)] += weight;
-            right[place] += weight * self.prior(unknown);
+            let weight = self.noise() / (deviation * deviation);
+            all.matrix[(place, place)] += weight;
+            all.right[place] += weight * self.prior(unknown);
         }
-        (matrix, right)
+        each.iter().for_each(|one| all.add(one, 1.0));
+        (each, all)
+    }
+
+    /// Variance that counting leaves in a row, (N m s²)².
+    fn noise(&self) -> f64 {
+        self.believed.inertia_kg_m2 * self.believed.inertia_kg_m2 * self.count_variance()
     }
 
     /// What is believed of friction and weight before anything was seen.
@@ -100,41 +113,65 @@ impl<'a> Equations<'a> {
         place.zip(self.believed.gravity_nm).map_or(0.0, |(place, gravity)| gravity[place])
     }
 
-    /// The column of the inertia is counted, and counting makes it larger than it is: that is taken out again (Fuller, *Measurement Error
-    /// Models*, 1987, eq. 2.2.10). Intervals from how trials differ (Liang & Zeger, *Biometrika* 73, 1986, eq. 2): what is left within one is
-    /// alike.
-    fn solve(self, mut matrix: DMatrix<f64>, right: DVector<f64>) -> Option<Fit> {
-        let counted = self.unknowns.first() == Some(&INERTIA);
-        if counted {
-            matrix[(0, 0)] -= self.counting(self.pieces);
-        }
-        let inverse = inverse(&matrix)?;
-        let values = &inverse * &right;
-        let clusters = trials_of(self.pieces.iter().copied());
-        let last = self.pieces.iter().map(|piece| piece.trial).max()?;
-        let mut pulls: Vec<DVector<f64>> = vec![DVector::zeros(values.len()); last + 1];
-        let (mut left, mut total) = (0.0, 0.0);
-        for piece in self.pieces {
-            for row in &piece.rows {
-                let terms = self.terms(row);
-                let motor = row.less(&self.known);
-                let off = motor - terms.dot(&values);
-                pulls[piece.trial].axpy(off, &terms, 1.0);
-                left += off * off;
-                total += motor * motor;
-            }
-            if counted {
-                pulls[piece.trial][0] += self.counting(&[*piece]) * values[0];
+    /// Intervals from how much the answer changes without each trial (the jackknife over clusters: MacKinnon, Nielsen & Webb, *J. Appl.
+    /// Econometrics* 38, 2023, eq. 13): what is left within a trial is alike. Less than what counting leaves they are not. A direction's
+    /// friction is told by the trials that turned that way alone.
+    fn solve(self) -> Option<Fit> {
+        let (each, all) = self.normal(true);
+        let inverse = inverse(&all.matrix)?;
+        let values = &inverse * &all.right;
+        let turned: Vec<&Normal> = each.iter().filter(|one| one.matrix.norm() > 0.0).collect();
+        let count = turned.len() as f64;
+        let mut variance = inverse.diagonal() * self.noise();
+        for one in &turned {
+            let mut rest = all.clone();
+            rest.add(one, -1.0);
+            let moved = rest.solved().map(|without| without - &values);
+            for place in 0..values.len() {
+                let by = moved.as_ref().map_or(f64::INFINITY, |moved| moved[place]);
+                variance[place] += (count - 1.0) / count * by * by;
             }
         }
-        let degrees = clusters.saturating_sub(1).max(1) as f64;
-        let mut between = DMatrix::zeros(values.len(), values.len());
-        pulls.iter().for_each(|pull| between.ger(1.0, pull, pull, 1.0));
-        let covariance = &inverse * between * &inverse * (clusters as f64 / degrees);
-        let t = student(degrees);
-        let within = covariance.diagonal().map(|variance| t * variance.max(0.0).sqrt());
+        let within = DVector::from_fn(values.len(), |place, _| {
+            let t = student(self.told_by(self.unknowns[place]) as f64 - 1.0);
+            t * variance[place].max(0.0).sqrt()
+        });
+        let rows = self.pieces.iter().flat_map(|piece| &piece.rows);
+        let (left, total) = rows.fold((0.0, 0.0), |(left, total), row| {
+            let motor = row.less(&self.known);
+            let off = motor - self.terms(row).dot(&values);
+            (left + off * off, total + motor * motor)
+        });
         let r2 = if total > 0.0 { 1.0 - left / total } else { 1.0 };
         Some(Fit { unknowns: self.unknowns, values, within, r2 })
+    }
+
+    /// How many trials tell an unknown.
+    fn told_by(&self, unknown: usize) -> usize {
+        let side = VISCOUS.iter().chain(&COULOMB).position(|&k| k == unknown).map(|place| place % 2);
+        trials_of(self.pieces.iter().copied().filter(|piece| side.is_none_or(|side| piece.side == side)))
+    }
+}
+
+/// Normal equations.
+#[derive(Clone)]
+struct Normal {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+impl Normal {
+    fn zeros(asked: usize) -> Self {
+        Self { matrix: DMatrix::zeros(asked, asked), right: DVector::zeros(asked) }
+    }
+
+    fn add(&mut self, other: &Self, times: f64) {
+        self.matrix += &other.matrix * times;
+        self.right.axpy(times, &other.right, 1.0);
+    }
+
+    fn solved(&self) -> Option<DVector<f64>> {
+        Some(inverse(&self.matrix)? * &self.right)
     }
 }
 

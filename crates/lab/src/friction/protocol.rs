@@ -44,7 +44,7 @@ const LONGEST_BRAKE_TICKS: usize = 20_000;
 
 /// One voltage on a joint that may turn as far as it likes, from rest: a pulse, then the hold.
 pub fn free_trial(head: &mut impl Head, joint: Joint, protocol: &Protocol, volts: f64) -> Trial {
-    let mut drive = Drive::new(head, joint);
+    let mut drive = Drive::new(head, joint, f64::INFINITY);
     let ticks = |time_s: f64| (time_s / TICK_F64_S).round() as usize;
     let pulse = ticks(protocol.pulse_s);
     let pulse_v = protocol.pulse_v.copysign(volts);
@@ -76,7 +76,7 @@ impl Shuttle<'_> {
         joint: Joint,
         mut watch: impl FnMut(usize) -> ControlFlow<()>,
     ) -> Vec<Trial> {
-        let mut drive = Drive::new(head, joint);
+        let mut drive = Drive::new(head, joint, self.limit_v);
         let mut trials = Vec::new();
         for (number, volts) in to_and_fro(&self.protocol.volts).into_iter().enumerate() {
             self.run(&mut drive, volts);
@@ -102,6 +102,8 @@ fn to_and_fro(volts: &[f64]) -> Vec<f64> {
 struct Drive<'a, H> {
     head: &'a mut H,
     joint: Joint,
+    /// The amplifier gives no more, V.
+    limit_v: f64,
     /// Counts of the last ticks, oldest first; of one turn of [`SPEED_TICKS`].
     counts: Vec<i32>,
     ticks: usize,
@@ -112,11 +114,11 @@ struct Drive<'a, H> {
 }
 
 impl<'a, H: Head> Drive<'a, H> {
-    fn new(head: &'a mut H, joint: Joint) -> Self {
+    fn new(head: &'a mut H, joint: Joint, limit_v: f64) -> Self {
         // nothing is driven before its count is known
         let count = head.exchange(&Actuation::default()).encoders[joint].count;
         let counts = vec![count; SPEED_TICKS + 1];
-        Self { head, joint, counts, ticks: 0, sum_v: 0.0, samples: Vec::new(), still: 0 }
+        Self { head, joint, limit_v, counts, ticks: 0, sum_v: 0.0, samples: Vec::new(), still: 0 }
     }
 
     fn count(&self) -> i32 {
@@ -129,6 +131,7 @@ impl<'a, H: Head> Drive<'a, H> {
     }
 
     fn tick(&mut self, volts: f64) {
+        let volts = volts.clamp(-self.limit_v, self.limit_v);
         if self.ticks.is_multiple_of(EVERY_TICKS) {
             self.close_sample();
             let time_s = self.ticks as f64 * TICK_F64_S;

@@ -15,9 +15,11 @@ pub(crate) fn save(path: &str, old: &RigConfig, new: &RigConfig) -> Result<(), F
     let saved = updated(&text, old, new).map_err(wrong)?;
     super::parse(path, &saved)
         .map_err(|e| wrong(format!("what was found is no head that a rig file takes: {e}")))?;
-    let fresh = format!("{path}.new");
+    // what a link leads to is changed, not the link
+    let real = std::fs::canonicalize(path).map_err(|e| wrong(e.to_string()))?;
+    let fresh = format!("{}.{}.new", real.display(), std::process::id());
     crate::cli::write_file(&fresh, &saved)?;
-    std::fs::rename(&fresh, path)
+    std::fs::rename(&fresh, &real)
         .map_err(|e| Failure::failed("cannot-write", format!("cannot write {path}: {e}")))
 }
 

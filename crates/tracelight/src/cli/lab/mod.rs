@@ -2,6 +2,7 @@
 
 mod bode;
 mod design;
+mod frequency;
 mod friction;
 mod gravity;
 mod head;
@@ -54,6 +55,7 @@ enum LabAction {
     Friction(friction::FrictionArgs),
     Inertia(inertia::InertiaArgs),
     Gravity(gravity::GravityArgs),
+    Frequency(frequency::FrequencyTrialArgs),
     Linearize(linearize::LinearizeArgs),
     Locus(locus::LocusArgs),
     Bode(bode::BodeArgs),
@@ -80,6 +82,7 @@ impl LabArgs {
             LabAction::Friction(args) => args.voice,
             LabAction::Inertia(args) => args.voice,
             LabAction::Gravity(args) => args.voice,
+            LabAction::Frequency(args) => args.voice,
             LabAction::Linearize(args) => args.voice,
             LabAction::Locus(args) => args.plane.voice,
             LabAction::Bode(args) => args.over.voice,
@@ -106,6 +109,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Friction(args) => friction::run(args, stop),
         LabAction::Inertia(args) => inertia::run(args, stop),
         LabAction::Gravity(args) => gravity::run(args, stop),
+        LabAction::Frequency(args) => frequency::run(args),
         LabAction::Linearize(args) => linearize::run(args),
         LabAction::Locus(args) => locus::run(args, stop),
         LabAction::Bode(args) => bode::run(args),

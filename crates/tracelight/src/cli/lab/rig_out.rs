@@ -26,6 +26,12 @@ pub(super) fn write(
 ) -> Result<String, Failure> {
     let path = out.join("rig.toml").display().to_string();
     let own = rigfile::is_same(&path, rig);
+    let text = rigfile::write(after);
+    if let Err(wrong) = rigfile::parse("what was found", &text) {
+        let message =
+            format!("what was found is no head that a rig file takes, so nothing is written: {wrong}");
+        return Err(Failure::failed("identify", message));
+    }
     if save {
         rigfile::save(rig, before, after)?;
     } else if own {
@@ -35,7 +41,7 @@ pub(super) fn write(
         return Err(Failure::usage("usage", message));
     }
     if !own {
-        write_file(&path, rigfile::write(after))?;
+        write_file(&path, text)?;
     }
     Ok(format!("\n\nrig: {path}{}", if save { format!(", and in {rig}") } else { String::new() }))
 }

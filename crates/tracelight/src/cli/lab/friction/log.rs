@@ -12,7 +12,7 @@ use crate::record::{MOST_V, Row};
 /// Most rows: ten hours of a sample each 10 ms.
 const MOST_ROWS: usize = 3_600_000;
 /// A longer time between two rows is a new trial, s.
-const LONGEST_GAP_S: f64 = 1.0;
+const LONGEST_GAP_S: f64 = 10.0;
 
 /// What a log has of each joint.
 #[derive(Default)]
@@ -50,7 +50,7 @@ impl Log {
         };
         let axis = find("axis").ok_or(": it has no column axis, with pan or tilt in each row")?;
         let mut fields = csv::ByteRecord::new();
-        let (mut rows, mut last) = (0, None);
+        let mut rows = 0;
         while reader.read_byte_record(&mut fields).map_err(|e| format!(": {e}"))? {
             let line = fields.position().map_or(0, csv::Position::line);
             rows += 1;
@@ -72,7 +72,7 @@ impl Log {
                         ));
                     }
                     let sample = Sample { time_s: row.number(time_s)?, volts, count };
-                    self.put(joint, sample, last == Some(joint));
+                    self.put(joint, sample);
                 }
                 Columns::Measured { torque_nm, rate_rad_s } => self.points[joint].push(SteadyPoint {
                     volts: None,
@@ -80,7 +80,6 @@ impl Log {
                     rate_rad_s: row.number(rate_rad_s)?,
                 }),
             }
-            last = Some(joint);
         }
         for trials in [&mut self.trials.pan, &mut self.trials.tilt] {
             trials.retain(|trial| trial.samples.len() > 1);
@@ -88,21 +87,18 @@ impl Log {
         Ok(())
     }
 
-    /// Puts a sample to the trial it follows, or begins one.
-    fn put(&mut self, joint: Joint, sample: Sample, goes_on: bool) {
+    /// Puts a sample to the joint's trial that it follows, or begins one. Of rows at one time the first counts.
+    fn put(&mut self, joint: Joint, sample: Sample) {
         let trials = &mut self.trials[joint];
-        let last = trials.last_mut().filter(|_| goes_on);
-        match last {
-            Some(trial) if trial.samples.last().is_some_and(|before| follows(before, &sample)) => {
+        let before = trials.last().and_then(|trial| trial.samples.last()).map(|before| before.time_s);
+        match (trials.last_mut(), before) {
+            (Some(_), Some(before_s)) if sample.time_s == before_s => {}
+            (Some(trial), Some(before_s)) if (0.0..LONGEST_GAP_S).contains(&(sample.time_s - before_s)) => {
                 trial.samples.push(sample);
             }
             _ => trials.push(Trial { joint, samples: vec![sample] }),
         }
     }
-}
-
-fn follows(before: &Sample, sample: &Sample) -> bool {
-    sample.time_s > before.time_s && sample.time_s - before.time_s < LONGEST_GAP_S
 }
 
 /// The table of some trials.
@@ -141,8 +137,16 @@ mod tests {
     fn time_that_goes_back_or_stops_begins_a_trial() {
         let head = "axis,volt,time_s,count\n";
         let text =
-            format!("{head}pan,1,0,0\npan,1,0.1,4\npan,-1,0,0\npan,-1,0.1,-4\npan,-1,5,0\npan,-1,5.1,-4\n");
+            format!("{head}pan,1,0,0\npan,1,0.1,4\npan,-1,0,0\npan,-1,0.1,-4\npan,-1,50,0\npan,-1,50.1,-4\n");
         assert_eq!(parsed(&text).unwrap().trials.pan.len(), 3);
+    }
+
+    #[test]
+    fn rows_of_both_joints_may_take_turns_and_times_may_be_rounded() {
+        let text = "axis,volt,time_s,count\npan,1,0,0\ntilt,1,0,0\npan,1,0.001,1\ntilt,1,0.001,1\npan,1,0.001,2\npan,1,0.002,2\n";
+        let log = parsed(text).unwrap();
+        assert_eq!((log.trials.pan.len(), log.trials.tilt.len()), (1, 1));
+        assert_eq!((log.trials.pan[0].samples.len(), log.trials.tilt[0].samples.len()), (3, 2));
     }
 
     #[test]

@@ -7,9 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_lab::{
-    Curves, CurvesSide, Line, Steady, SteadyPoint, Trial, Uncertain, curves, steady, steady_of,
-};
+use tracelight_lab::{Curves, CurvesSide, Line, Steady, SteadyPoint, Uncertain, curves, steady, steady_of};
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 
@@ -92,6 +90,13 @@ fn found(subject: Subject, holds: bool) -> Result<Found, Failure> {
 impl Subject {
     /// What the whole of its motion tells.
     pub(super) fn curves(&self) -> Result<Curves, Failure> {
+        if self.trials.is_empty() {
+            let message = format!(
+                "{}: torques and speeds do not tell this: give motion, axis,volt,time_s,count",
+                self.joint
+            );
+            return Err(Failure::failed("friction", message));
+        }
         let trials: Vec<_> = self.trials.iter().collect();
         curves(self.joint, &trials, &self.believed).map_err(|e| Failure::failed("friction", e))
     }
@@ -164,8 +169,11 @@ impl Found {
 pub(super) fn milli(value: Option<Uncertain>) -> String {
     value.map_or("–".to_owned(), |u| {
         // two digits of how well it is known
-        let digits = (1.0 - (1e3 * u.within).log10().floor()).clamp(0.0, 6.0);
-        let digits = if u.within > 0.0 && u.within.is_finite() { digits as usize } else { 4 };
+        let digits = (1.0 - (1e3 * u.within).log10().floor()).clamp(0.0, 9.0);
+        if !u.within.is_finite() {
+            return format!("{:.4} ± ?", 1e3 * u.value);
+        }
+        let digits = if u.within > 0.0 { digits as usize } else { 4 };
         format!("{:.digits$} ± {:.digits$}", 1e3 * u.value, 1e3 * u.within)
     })
 }
@@ -180,6 +188,7 @@ fn text(args: &FrictionArgs, rig: &RigConfig, found: &[Found]) -> String {
             let _ = write!(text, "\n{} of {trials} trials turned it.", curves.trials);
             text += &verdict(one).map_or(String::new(), |verdict| format!(" {verdict}"));
             text += &against_gravity(rig, one);
+            text += &below_nothing(one);
         }
     }
     text + "\n\n± has the true value in 95 of 100 cases, if the model is right."
@@ -240,24 +249,34 @@ fn table(rig: &RigConfig, one: &Found) -> String {
     "\n\n".to_owned() + &rows.iter().map(|row| line(row).trim_end().to_owned()).collect::<Vec<_>>().join("\n")
 }
 
-/// Whether the last speeds were steady.
+/// By how much lines through the last speeds are too steep, and why.
 fn verdict(one: &Found) -> Option<String> {
-    const STEADY: f64 = 3.0; // time constants: 5 % are left
-    if one.steady.points.is_empty() {
-        return None;
-    }
+    const AS_GOOD: f64 = 1.05;
+    let of = |sides: [Option<Side>; 2]| sides.map(|side| side.map(|side| side.viscous.value));
+    let pairs = of(one.as_the_report()).into_iter().zip(of(one.sides()));
+    let steep = pairs.filter_map(|(last, whole)| Some(last? / whole?)).find(|steep| steep.is_finite())?;
     let constant_s = one.time_constant_s()?;
-    let longest_s = one.subject.trials.iter().map(Trial::length_s).fold(0.0, f64::max);
     let said =
         format!("Within J/Fv = {constant_s:.0} s a speed comes to all but 1/e of what a voltage allows");
-    if longest_s >= STEADY * constant_s {
-        return Some(format!("{said}:\nafter {longest_s:.0} s it is steady."));
+    if (1.0 / AS_GOOD..AS_GOOD).contains(&steep) {
+        return Some(format!("{said}: the last speeds\nare as good as steady."));
     }
-    let steep = 1.0 / (1.0 - (-longest_s / constant_s).exp());
     Some(format!(
-        "{said}:\nafter {longest_s:.0} s it is far from steady, and a line through the last speeds, straight as it is, \
-         1/(1 − e^(−{longest_s:.0}/{constant_s:.0})) = {steep:.1}\ntimes too steep."
+        "{said}: the last speeds\nare not steady, and a line through them, straight as it is, is {steep:.1} times too steep."
     ))
+}
+
+/// What is found below nothing and cannot be written so.
+fn below_nothing(one: &Found) -> String {
+    let [pos, neg] = one.sides();
+    let viscous = [pos, neg].into_iter().flatten().any(|side| side.viscous.value < 0.0);
+    let coulomb = pos.is_some_and(|side| side.coulomb_nm.value < 0.0)
+        || neg.is_some_and(|side| side.coulomb_nm.value > 0.0);
+    if viscous || coulomb {
+        "\nFriction that drives is none: rig.toml has 0 for it.".to_owned()
+    } else {
+        String::new()
+    }
 }
 
 /// What the highest voltage can do against weight, where the head stands on its feet.

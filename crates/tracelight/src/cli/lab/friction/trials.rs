@@ -58,8 +58,8 @@ pub(in crate::cli::lab) struct TrialArgs {
 const LONGEST_S: f64 = 3600.0;
 /// Most voltages.
 const MOST_VOLTAGES: f64 = 1000.0;
-/// Longest that all trials of a joint may take, s: two days of the head's time, minutes of ours.
-const LONGEST_ALL_S: f64 = 172_800.0;
+/// Longest that all trials of a joint may take, s: five hours of the head's time, half of what a log may have.
+const LONGEST_ALL_S: f64 = 18_000.0;
 
 fn voltage(text: &str) -> Result<f64, String> {
     above_zero(text, VOLTAGES)
@@ -103,8 +103,17 @@ impl TrialArgs {
             subject.points = std::mem::take(&mut log.points[subject.joint]);
         }
         asked.retain(|subject| !subject.trials.is_empty() || !subject.points.is_empty());
+        let logs = self.logs.join(", ");
         if asked.is_empty() {
-            let message = format!("{} has no rows of the joint that is asked for", self.logs.join(", "));
+            let message = format!(
+                "{logs}: no trial of two rows or more, and no torque, of the joint that is asked for"
+            );
+            return Err(Failure::usage("friction-log", message));
+        }
+        if let Some(both) =
+            asked.iter().find(|subject| !subject.trials.is_empty() && !subject.points.is_empty())
+        {
+            let message = format!("{logs}: {} has motion and measured torques; give one kind", both.joint);
             return Err(Failure::usage("friction-log", message));
         }
         Ok(asked)
@@ -142,6 +151,17 @@ impl TrialArgs {
         let strongest = self.most.max(self.pulse);
         if strongest > limit_v {
             let message = format!("{strongest} V is more than the {limit_v} V of the amplifier");
+            return Err(Failure::usage("usage", message));
+        }
+        if steps < 1.0 {
+            let message = format!("--step, {} V, is above --most, {} V", self.step, self.most);
+            return Err(Failure::usage("usage", message));
+        }
+        if self.hold < 2.0 * self.pulse_time {
+            let message = format!(
+                "--hold must be twice --pulse-time at least, {} s, or what is seen is the pulse",
+                2.0 * self.pulse_time
+            );
             return Err(Failure::usage("usage", message));
         }
         let count = 2.0 * steps + 1.0;
@@ -211,7 +231,7 @@ impl TrialArgs {
             self.hold,
             self.pulse_time,
             self.pulse,
-            most = self.most,
+            most = (self.most / self.step + 1e-9).floor() * self.step,
         )
     }
 

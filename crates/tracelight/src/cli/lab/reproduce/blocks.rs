@@ -25,17 +25,17 @@ const DOWN: i32 = 118;
 const EDGE: i32 = 16;
 
 /// The diagram as SVG, in the page's own colours.
-pub(super) fn svg(blocks: &[Block], arrows: &[Arrow]) -> String {
+pub(super) fn svg(name: &str, blocks: &[Block], arrows: &[Arrow]) -> String {
     let columns = blocks.iter().map(|b| b.at.0).max().unwrap_or(0);
     let rows = blocks.iter().map(|b| b.at.1).max().unwrap_or(0);
     let (width, height) = (columns * ACROSS + WIDTH + 2 * EDGE, rows * DOWN + HEIGHT + 2 * EDGE);
     let mut text = format!(
         "<svg class=\"blocks\" viewBox=\"0 0 {width} {height}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\">\
-         <defs><marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"8\" markerHeight=\"8\" orient=\"auto\">\
+         <defs><marker id=\"tip-{name}\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"8\" markerHeight=\"8\" orient=\"auto\">\
          <path d=\"M0 0L8 4L0 8Z\"/></marker></defs>"
     );
     for arrow in arrows {
-        text += &line(&blocks[arrow.from], &blocks[arrow.to], arrow.what);
+        text += &line(&blocks[arrow.from], &blocks[arrow.to], arrow.what, name);
     }
     for block in blocks {
         let (x, y) = corner(block);
@@ -60,7 +60,7 @@ fn corner(block: &Block) -> (i32, i32) {
 }
 
 /// From the side of a box to the next one's: across, or down and across.
-fn line(from: &Block, to: &Block, what: &str) -> String {
+fn line(from: &Block, to: &Block, what: &str, name: &str) -> String {
     let ((fx, fy), (tx, ty)) = (corner(from), corner(to));
     let (across, down) = ((tx - fx).signum(), (ty - fy).signum());
     let path;
@@ -79,7 +79,7 @@ fn line(from: &Block, to: &Block, what: &str) -> String {
     }
     let anchor = if down != 0 && across == 0 { " class=\"beside\"" } else { "" };
     format!(
-        "<path d=\"{path}\" class=\"arrow\" marker-end=\"url(#tip)\"/><text x=\"{}\" y=\"{}\"{anchor}>{}</text>",
+        "<path d=\"{path}\" class=\"arrow\" marker-end=\"url(#tip-{name})\"/><text x=\"{}\" y=\"{}\"{anchor}>{}</text>",
         label.0,
         label.1,
         escaped(what)

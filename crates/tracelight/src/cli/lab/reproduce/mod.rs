@@ -106,7 +106,7 @@ pub(crate) fn run(args: &ReproduceArgs, stop: &Stop) -> Result<Answer, Failure> 
     write_file(&index, page::page(&chapters, &done))?;
     let compared = page::all_compared(&chapters, &done);
     let text = || {
-        let numbers = compared.iter().filter(|c| c.report.is_some()).count();
+        let numbers = compared.iter().filter(|(.., c)| c.report.is_some()).count();
         format!("{index}: {} figures, {numbers} numbers of the report beside ours", runs.len())
     };
     Ok(Answer::either(args.voice, text, || json(&index, &compared)))
@@ -152,7 +152,12 @@ impl Fact {
     }
 }
 
-fn json(index: &str, compared: &[Compared]) -> String {
-    let one = |c: &Compared| json!({"what": c.what, "report": c.report, "ours": c.ours, "unit": c.unit, "why": c.why});
+fn json(index: &str, compared: &[(String, String, Compared)]) -> String {
+    let one = |(figure, command, c): &(String, String, Compared)| {
+        json!({
+            "figure": figure, "command": command, "what": c.what,
+            "report": c.report, "ours": c.ours, "unit": c.unit, "why": c.why,
+        })
+    };
     json!({"page": index, "facts": compared.iter().map(one).collect::<Vec<_>>()}).to_string()
 }

@@ -36,21 +36,34 @@ pub(super) fn page(chapters: &[Chapter], done: &[(Value, Option<String>)]) -> St
     )
 }
 
-/// Every number that is compared, in order.
-pub(super) fn all_compared(chapters: &[Chapter], done: &[(Value, Option<String>)]) -> Vec<Compared> {
+/// Every number that is compared, in order, with its figure and its command.
+pub(super) fn all_compared(
+    chapters: &[Chapter],
+    done: &[(Value, Option<String>)],
+) -> Vec<(String, String, Compared)> {
     let mut done = done.iter();
     let mut all = Vec::new();
-    for part in chapters.iter().flat_map(|chapter| &chapter.parts) {
-        match part {
-            Part::Run(run) => {
-                all.extend(
-                    done.next()
-                        .into_iter()
-                        .flat_map(|(answer, _)| run.facts.iter().map(|f| f.compared(answer))),
-                );
+    for chapter in chapters {
+        for part in &chapter.parts {
+            match part {
+                Part::Run(run) => {
+                    let answer = done.next();
+                    let one = |(fact, answer): (&super::Fact, &Value)| {
+                        (run.caption.clone(), command_of(run), fact.compared(answer))
+                    };
+                    all.extend(
+                        answer
+                            .into_iter()
+                            .flat_map(|(answer, _)| run.facts.iter().map(move |f| one((f, answer)))),
+                    );
+                }
+                Part::Facts(facts) => {
+                    all.extend(
+                        facts.iter().map(|fact| (chapter.title.to_owned(), String::new(), fact.again())),
+                    );
+                }
+                Part::Text(_) | Part::Drawing(..) => {}
             }
-            Part::Facts(facts) => all.extend(facts.iter().map(Compared::again)),
-            Part::Text(_) | Part::Drawing(..) => {}
         }
     }
     all
@@ -62,8 +75,15 @@ fn shown(run: &Run, answer: &Value, svg: Option<&str>) -> String {
     let facts: Vec<Compared> = run.facts.iter().map(|fact| fact.compared(answer)).collect();
     let facts = if facts.is_empty() { String::new() } else { table(&facts) };
     // a figure is part of the page: what stands before its root element is of files
-    let inner = svg.map_or(String::new(), |svg| svg[svg.find("<svg").unwrap_or(0)..].to_owned());
+    let inner = svg.map_or(String::new(), |svg| {
+        svg[svg.find("<svg").unwrap_or(0)..].replace(" id=\"stroke-", " data-id=\"stroke-")
+    });
     figure(&run.caption, Some(&command), &inner) + &facts
+}
+
+/// As it is typed.
+fn command_of(run: &Run) -> String {
+    format!("tracelight {}", run.arguments.iter().map(|a| quoted(a)).collect::<Vec<_>>().join(" "))
 }
 
 fn figure(caption: &str, command: Option<&str>, svg: &str) -> String {
@@ -75,7 +95,11 @@ fn figure(caption: &str, command: Option<&str>, svg: &str) -> String {
 /// An argument as a shell takes it.
 fn quoted(argument: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+".contains(c);
-    if argument.chars().all(plain) { argument.to_owned() } else { format!("'{argument}'") }
+    if argument.chars().all(plain) {
+        argument.to_owned()
+    } else {
+        format!("'{}'", argument.replace('\'', "'\\''"))
+    }
 }
 
 /// The report's number, ours, by how much they differ, why; ours alone where the report has none.
@@ -157,5 +181,6 @@ mod tests {
     fn a_command_can_be_pasted() {
         assert_eq!(quoted("K11 G11"), "'K11 G11'");
         assert_eq!(quoted("--out"), "--out");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
     }
 }

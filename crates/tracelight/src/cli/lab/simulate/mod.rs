@@ -31,7 +31,7 @@ use crate::units::{TIMES, TORQUES};
                   the array does.\n\n\
                   A law is the rig's controller as it would be flashed, every millisecond. A --controller is a transfer function for each \
                   joint, from error, rad, to torque, N m, in continuous time, as in the report's block diagram; K11, K22 and K11t, K22t \
-                  are the report's own. --quantizer off lets it see angles as they are (a law: a million counts a turn), --hold off at \
+                  are the report's own; the head is then new, without a rig's wear. --quantizer off lets it see angles as they are (a law: a million counts a turn), --hold off at \
                   once, not every millisecond.")]
 pub(crate) struct SimulateArgs {
     /// Where the joints are to be: a row each t,pan,tilt
@@ -96,7 +96,9 @@ fn time(text: &str) -> Result<f64, String> {
 }
 
 fn torque(text: &str) -> Result<f64, String> {
-    above_zero(text, TORQUES)
+    const MOST_NM: f64 = 1e6;
+    let torque_nm = above_zero(text, TORQUES)?;
+    if torque_nm <= MOST_NM { Ok(torque_nm) } else { Err(format!("{text} is more than {MOST_NM} Nm")) }
 }
 
 /// Counts a turn of an encoder that hides nothing.
@@ -184,7 +186,8 @@ fn entries(args: &SimulateArgs, rig: &RigConfig, array: &MotionArray) -> Result<
         let controllers = PanTilt::new(controller(pan)?, controller(tilt)?);
         let by = PanTilt::new(pan.clone(), tilt.clone());
         runs.push((by, by_controllers(args, rig, array, controllers)?));
-    } else if !args.hold {
+    }
+    if !args.hold && (runs.is_empty() || !args.law.is_empty()) {
         let message = "--hold off is for a --controller: a law is a program that runs every millisecond";
         return Err(Failure::usage("usage", message));
     }
@@ -199,6 +202,13 @@ fn entries(args: &SimulateArgs, rig: &RigConfig, array: &MotionArray) -> Result<
         let figures = PanTilt::from_fn(|j| figures(args, rig, &ticks, j));
         Entry { by, colour, ticks, figures }
     };
+    let sound = |tick: &ScopeTick| {
+        Joint::BOTH.iter().all(|&j| tick.angle_rad[j].is_finite() && tick.torque_nm[j].is_finite())
+    };
+    if let Some((by, _)) = runs.iter().find(|(_, ticks)| !ticks.iter().all(sound)) {
+        let message = format!("{}: the angles grow beyond all numbers: less gain, or a lower --cap", by.pan);
+        return Err(Failure::failed("no-such-design", message));
+    }
     Ok(runs.into_iter().zip(COLOURS.into_iter().cycle()).map(entry).collect())
 }
 
@@ -290,7 +300,11 @@ fn text(args: &SimulateArgs, rig: &RigConfig, array: &MotionArray, entries: &[En
             );
         }
     }
-    text + "\n\nA mrad is 0.91 mm on a target 3 ft away."
+    text += "\n\nA mrad is 0.91 mm on a target 3 ft away.";
+    if !args.controller.is_empty() && rig.truth.wear != tracelight_plant::Wear::NONE {
+        text += " The --controller drives a new head: wear is left out.";
+    }
+    text
 }
 
 fn json(args: &SimulateArgs, array: &MotionArray, entries: &[Entry]) -> String {

@@ -1,6 +1,6 @@
 //! A motion as a table: `t,pan,tilt`.
 
-use tracelight_rig::{Joint, PanTilt};
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, MotionArray};
 
 use crate::failure::Failure;
@@ -12,6 +12,8 @@ const MOST_ROWS: usize = 1_000_000;
 /// and longest motion, s.
 pub(super) const LONGEST_S: f64 = 600.0;
 
+/// Rows are apart by so much at least, s.
+const CLOSEST_S: f64 = 0.999e-6;
 /// What rounding may add to an angle at the end of a range, rad.
 const ROUNDED_RAD: f64 = 1e-6;
 
@@ -93,8 +95,10 @@ fn parse(bytes: &[u8], between: Between, range_rad: PanTilt<(f64, f64)>) -> Resu
             }
         }
         let (begun_s, before_s) = (rows.first().map_or(time_s, |r| r.0), rows.last().map(|r| r.0));
-        if before_s.is_some_and(|before| time_s <= before) {
-            return Err(format!(":{line}: its time, {time_s} s, does not come after the row before"));
+        if before_s.is_some_and(|before| time_s < before + CLOSEST_S) {
+            return Err(format!(
+                ":{line}: its time, {time_s} s, does not come after the row before, by a microsecond at least"
+            ));
         }
         if rows.len() >= MOST_ROWS || time_s - begun_s > LONGEST_S {
             return Err(format!(
@@ -103,7 +107,27 @@ fn parse(bytes: &[u8], between: Between, range_rad: PanTilt<(f64, f64)>) -> Resu
         }
         rows.push((time_s, angle_rad));
     }
-    MotionArray::new(&rows, between).map_err(|e| format!(": {e}"))
+    let array = MotionArray::new(&rows, between).map_err(|e| format!(": {e}"))?;
+    stays_within(&array, range_rad).map(|()| array)
+}
+
+/// What goes between the rows may leave the range though no row does.
+fn stays_within(array: &MotionArray, range_rad: PanTilt<(f64, f64)>) -> Result<(), String> {
+    const BEYOND_RAD: f64 = 0.01;
+    for tick in 0..=(array.length_s() / TICK_F64_S).ceil() as usize {
+        let time_s = tick as f64 * TICK_F64_S;
+        let at = array.at(time_s);
+        for joint in Joint::BOTH {
+            let (angle, (lower, upper)) = (at[joint].position_rad, range_rad[joint]);
+            if !(lower - BEYOND_RAD..=upper + BEYOND_RAD).contains(&angle) {
+                return Err(format!(
+                    ": {time_s:.3} s from its start, between two rows, the spline takes {joint} to {angle:.3} rad, out of its range, {lower:.4} to \
+                     {upper:.4} rad; give more rows, or --between lines"
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -68,9 +68,9 @@ impl Book<'_> {
     }
 
     pub(super) fn laser(&self) -> Chapter {
-        let fact = |what: &str, report: f64, ours: f64, unit: &'static str, why: &str| Compared {
+        let fact = |what: &str, ours: f64, unit: &'static str, why: &str| Compared {
             what: what.into(),
-            report: Some(report),
+            report: None,
             ours: Some(ours),
             unit,
             why: why.into(),
@@ -85,30 +85,21 @@ impl Book<'_> {
                       and each lit stroke is run up to and out of, so that the light is where it should be when it comes.",
                 ),
                 Part::Facts(vec![
-                    fact(
-                        "count of the encoder",
-                        1.534,
-                        MILLI * preset.encoder.count_rad(),
-                        "mrad",
-                        "2π/4096",
-                    ),
+                    fact("count of the encoder", MILLI * preset.encoder.count_rad(), "mrad", "2π/4096"),
                     fact(
                         "the same on the target at 3 ft",
-                        1.40,
                         MILLI * 0.9144 * preset.encoder.count_rad(),
                         "mm",
                         "the light is held to a thirtieth of it",
                     ),
                     fact(
                         "torque a volt at tilt",
-                        0.077389,
                         preset.motors.tilt.torque_nm_per_v,
                         "N m/V",
                         "0.1 A/V × 0.0432 N m/A × 6.3 × 2.8435",
                     ),
                     fact(
                         "torque a volt at pan",
-                        0.0619,
                         preset.motors.pan.torque_nm_per_v,
                         "N m/V",
                         "its amplifier gave 0.08 A/V with the motor turning",

@@ -4,60 +4,6 @@ use crate::cli::lab::reproduce::{Chapter, Part, Run};
 
 impl Book<'_> {
     pub(super) fn model(&self) -> Chapter {
-        let simulation = svg(
-            &[
-                Block { at: (0, 0), name: "array", what: "t, pan, tilt" },
-                Block { at: (1, 0), name: "controller", what: "PD, K, or a law" },
-                Block { at: (2, 0), name: "cap", what: "500 N m, or the rig's" },
-                Block { at: (3, 0), name: "pan-tilt dynamics", what: "figure 6" },
-                Block { at: (2, 1), name: "quantizer", what: "2π/4096" },
-                Block { at: (1, 1), name: "hold", what: "1 ms" },
-            ],
-            &[
-                Arrow { from: 0, to: 1, what: "desired" },
-                Arrow { from: 1, to: 2, what: "N m" },
-                Arrow { from: 2, to: 3, what: "τ" },
-                Arrow { from: 3, to: 4, what: "angles" },
-                Arrow { from: 4, to: 5, what: "counts" },
-                Arrow { from: 5, to: 1, what: "error" },
-            ],
-        );
-        let dynamics = svg(
-            &[
-                Block { at: (0, 0), name: "τ", what: "of the motors" },
-                Block { at: (1, 0), name: "M(q)⁻¹", what: "of τ − C − G − F" },
-                Block { at: (2, 0), name: "∫", what: "speeds" },
-                Block { at: (3, 0), name: "∫", what: "angles" },
-                Block { at: (0, 1), name: "gravity G(q)", what: "on tilt alone" },
-                Block { at: (1, 1), name: "Coriolis C(q, q̇)", what: "M changes with tilt" },
-                Block { at: (2, 1), name: "friction F(q̇)", what: "figure 7" },
-            ],
-            &[
-                Arrow { from: 0, to: 1, what: "" },
-                Arrow { from: 1, to: 2, what: "q̈" },
-                Arrow { from: 2, to: 3, what: "q̇" },
-                Arrow { from: 2, to: 6, what: "q̇" },
-                Arrow { from: 6, to: 5, what: "" },
-                Arrow { from: 4, to: 5, what: "" },
-                Arrow { from: 5, to: 1, what: "taken away" },
-            ],
-        );
-        let friction = svg(
-            &[
-                Block { at: (0, 0), name: "speed", what: "" },
-                Block { at: (1, 0), name: "which way", what: "forwards, back, none" },
-                Block { at: (2, 0), name: "sliding", what: "sign (Fv |ω| + Fc)" },
-                Block { at: (2, 1), name: "sticking", what: "whatever holds, to Fc" },
-                Block { at: (3, 0), name: "F", what: "torque" },
-            ],
-            &[
-                Arrow { from: 0, to: 1, what: "ω" },
-                Arrow { from: 1, to: 2, what: "turns" },
-                Arrow { from: 1, to: 3, what: "rests" },
-                Arrow { from: 2, to: 4, what: "" },
-                Arrow { from: 3, to: 4, what: "" },
-            ],
-        );
         Chapter {
             title: "2.4 The simulation's diagrams",
             parts: vec![
@@ -65,12 +11,12 @@ impl Book<'_> {
                     "The report's block diagrams, drawn from what stands here in their place. Its friction is a sign of the speed; ours holds a joint at \
                       rest with whatever it takes up to the Coulomb level, so that what sticks does not creep.",
                 ),
-                Part::Drawing("Figure 5: pan-tilt nonlinear simulation (lab simulate)".into(), simulation),
+                Part::Drawing("Figure 5: pan-tilt nonlinear simulation (lab simulate)".into(), simulation()),
                 Part::Drawing(
                     "Figure 6: pan-tilt system dynamics (crates/dynamics, crates/plant)".into(),
-                    dynamics,
+                    dynamics(),
                 ),
-                Part::Drawing("Figure 7: friction subsystem (crates/plant)".into(), friction),
+                Part::Drawing("Figure 7: friction subsystem (crates/plant)".into(), friction()),
             ],
         }
     }
@@ -165,14 +111,14 @@ impl Book<'_> {
             .drawn(self, &format!("step-{joint}.svg"))
             .scaled(
                 "overshoot, as typeset",
-                0.0,
+                None,
                 "/systems/0/overshoot_percent",
                 percent,
                 "the goal was none",
             )
             .scaled(
                 "overshoot, time constants",
-                0.0,
+                None,
                 "/systems/1/overshoot_percent",
                 percent,
                 "by zeros of the closed loop",
@@ -193,25 +139,94 @@ impl Book<'_> {
             .drawn(self, &format!("rig-step-{joint}.svg"))
             .scaled(
                 "overshoot, as typeset",
-                0.0,
+                None,
                 "/laws/0/overshoot_percent",
                 percent,
                 "the motor's limit, friction, weight on tilt",
             )
             .scaled(
                 "overshoot, time constants",
-                0.0,
+                None,
                 "/laws/1/overshoot_percent",
                 percent,
                 "from limit to limit: a count is several N m",
             )
             .scaled(
                 "overshoot, ours",
-                0.0,
+                None,
                 "/laws/2/overshoot_percent",
                 percent,
-                "a reference within the motors' reach, and feedforward",
+                "the goal was none: a reference within the motors' reach, and feedforward",
             )
-            .scaled("error at rest, ours", 0.0, "/laws/2/final_error_mm", (1.0, "mm"), "at 3 ft")
+            .scaled("error at rest, ours", None, "/laws/2/final_error_mm", (1.0, "mm"), "at 3 ft")
     }
+}
+
+/// The loop: array, controller, cap, head, quantizer, hold.
+fn simulation() -> String {
+    svg(
+        "simulation",
+        &[
+            Block { at: (0, 0), name: "array", what: "t, pan, tilt" },
+            Block { at: (1, 0), name: "controller", what: "of desired − seen" },
+            Block { at: (2, 0), name: "cap", what: "500 N m, or the rig's" },
+            Block { at: (3, 0), name: "pan-tilt dynamics", what: "figure 6" },
+            Block { at: (2, 1), name: "quantizer", what: "2π/4096" },
+            Block { at: (1, 1), name: "hold", what: "1 ms" },
+        ],
+        &[
+            Arrow { from: 0, to: 1, what: "desired" },
+            Arrow { from: 1, to: 2, what: "N m" },
+            Arrow { from: 2, to: 3, what: "τ" },
+            Arrow { from: 3, to: 4, what: "angles" },
+            Arrow { from: 4, to: 5, what: "counts" },
+            Arrow { from: 5, to: 1, what: "as seen" },
+        ],
+    )
+}
+
+/// The head: motors, mass matrix, two integrators, what is taken away.
+fn dynamics() -> String {
+    svg(
+        "dynamics",
+        &[
+            Block { at: (0, 0), name: "τ", what: "of the motors" },
+            Block { at: (1, 0), name: "M(q)⁻¹", what: "of τ − C − G − F" },
+            Block { at: (2, 0), name: "∫", what: "speeds" },
+            Block { at: (3, 0), name: "∫", what: "angles" },
+            Block { at: (0, 1), name: "gravity G(q)", what: "on tilt alone" },
+            Block { at: (1, 1), name: "Coriolis C(q, q̇)", what: "M changes with tilt" },
+            Block { at: (2, 1), name: "friction F(q̇)", what: "figure 7" },
+        ],
+        &[
+            Arrow { from: 0, to: 1, what: "" },
+            Arrow { from: 1, to: 2, what: "q̈" },
+            Arrow { from: 2, to: 3, what: "q̇" },
+            Arrow { from: 2, to: 6, what: "q̇" },
+            Arrow { from: 6, to: 5, what: "" },
+            Arrow { from: 4, to: 5, what: "" },
+            Arrow { from: 5, to: 1, what: "taken away" },
+        ],
+    )
+}
+
+/// Friction: sliding or sticking.
+fn friction() -> String {
+    svg(
+        "friction",
+        &[
+            Block { at: (0, 0), name: "speed", what: "" },
+            Block { at: (1, 0), name: "which way", what: "forwards, back, none" },
+            Block { at: (2, 0), name: "sliding", what: "sign (Fv |ω| + Fc)" },
+            Block { at: (2, 1), name: "sticking", what: "whatever holds, to Fc" },
+            Block { at: (3, 0), name: "F", what: "torque" },
+        ],
+        &[
+            Arrow { from: 0, to: 1, what: "ω" },
+            Arrow { from: 1, to: 2, what: "turns" },
+            Arrow { from: 1, to: 3, what: "rests" },
+            Arrow { from: 2, to: 4, what: "" },
+            Arrow { from: 3, to: 4, what: "" },
+        ],
+    )
 }
