@@ -239,3 +239,18 @@ fn what_no_joint_can_be_is_refused() {
     let idle: Vec<&Trial> = trials.iter().collect();
     assert!(matches!(curves(Joint::Pan, &idle, &believed), Err(FrictionError::Alike { .. })));
 }
+
+#[test]
+fn times_that_hardly_differ_and_holds_of_two_samples_are_borne() {
+    let sample = |time_s: f64, count: i32| tracelight_lab::Sample { time_s, volts: 1.0, count };
+    let odd = [
+        Trial { joint: Joint::Pan, samples: vec![sample(0.0, 0), sample(1e-300, 5)] },
+        Trial { joint: Joint::Pan, samples: vec![sample(0.0, 0), sample(1.0, 700)] },
+    ];
+    let odd: Vec<&Trial> = odd.iter().collect();
+    assert_eq!(odd[0].speeds(1.5e-3, 0.1).len(), 2);
+    let found = steady(&odd, 0.08, 1.5e-3);
+    assert!((found.points.last().unwrap().rate_rad_s - 1.05).abs() < 1e-9, "{found:?}");
+    let believed = believed(&RigConfig::report(), Joint::Pan, Mounting::Fixture);
+    assert!(curves(Joint::Pan, &odd, &believed).is_err());
+}

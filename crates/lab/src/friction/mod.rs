@@ -89,6 +89,6 @@ impl Trial {
     /// Samples to either side that make up a time.
     fn reach(&self, over_s: f64) -> usize {
         let step_s = self.length_s() / (self.samples.len() - 1) as f64;
-        ((0.5 * over_s / step_s).round() as usize).max(1)
+        ((0.5 * over_s / step_s).round() as usize).clamp(1, self.samples.len())
     }
 }

@@ -11,6 +11,8 @@ use crate::record::{MOST_V, Row};
 
 /// Most rows: ten hours of a sample each 10 ms.
 const MOST_ROWS: usize = 3_600_000;
+/// Most trials of a joint.
+const MOST_TRIALS: usize = 10_000;
 /// A longer time between two rows is a new trial, s.
 const LONGEST_GAP_S: f64 = 10.0;
 
@@ -73,6 +75,11 @@ impl Log {
                     }
                     let sample = Sample { time_s: row.number(time_s)?, volts, count };
                     self.put(joint, sample);
+                    if self.trials[joint].len() > MOST_TRIALS {
+                        return Err(format!(
+                            ":{line}: {joint} has more than {MOST_TRIALS} trials: a time that goes back, or stands still for {LONGEST_GAP_S} s, begins one"
+                        ));
+                    }
                 }
                 Columns::Measured { torque_nm, rate_rad_s } => self.points[joint].push(SteadyPoint {
                     volts: None,
@@ -165,6 +172,8 @@ mod tests {
             error("axis,volt,time_s,count\npan,1,0,0.5\n").contains(":2: \"0.5\" in column 4 is no count")
         );
         assert!(error("axis,volt,time_s,count\npan,1e9,0,0\n").contains("any amplifier"));
+        let backwards: String = (0..20_001).map(|k| format!("pan,1,{},0\n", -k)).collect();
+        assert!(error(&format!("axis,volt,time_s,count\n{backwards}")).contains("trials"));
         assert!(error("axis,torque_nm,velocity_rad_s\npan,inf,0\n").contains("no number"));
     }
 }
