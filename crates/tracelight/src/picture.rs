@@ -56,7 +56,7 @@ pub(crate) fn read_bytes(path: &str) -> Result<Vec<u8>, Failure> {
     } else {
         let file = std::fs::File::open(path).map_err(unreadable)?;
         if file.metadata().map_err(unreadable)?.is_dir() {
-            return Err(Failure::usage("unreadable", format!("{path} is a folder; give a picture in it")));
+            return Err(Failure::usage("unreadable", format!("{path} is a folder; give a file in it")));
         }
         file.take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
     }
@@ -68,7 +68,10 @@ pub(crate) fn read_bytes(path: &str) -> Result<Vec<u8>, Failure> {
         ));
     }
     if bytes.is_empty() {
-        return Err(Failure::usage("empty-file", format!("{path} is empty; give a picture or a drawing")));
+        return Err(Failure::usage(
+            "empty-file",
+            format!("{path} is empty; give a file with something in it"),
+        ));
     }
     Ok(bytes)
 }
