@@ -13,7 +13,7 @@ mod velocity;
 
 pub use frequency::{Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response};
 pub use friction::{
-    Believed, Curves, CurvesSide, FrictionError, Line, Part, Protocol, Sample, Shuttle, Steady, SteadyPoint,
+    Believed, Curves, FrictionError, Line, Part, Protocol, Sample, Shuttle, Side, Steady, SteadyPoint,
     Travel, Trial, Uncertain, curves, free_trial, steady, steady_of,
 };
 pub use identify::{Identification, IdentifyError, JointFit, LAPS_WORTH, identify, routine};

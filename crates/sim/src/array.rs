@@ -42,10 +42,10 @@ pub enum ArrayError {
     },
 }
 
-/// Rows are apart by so much at least, s.
-const CLOSEST_S: f64 = 0.999e-6;
-
 impl MotionArray {
+    /// Rows are apart by so much at least, s: a microsecond, less what rounding takes.
+    pub const CLOSEST_S: f64 = 0.999e-6;
+
     /// From times, s, and angles, rad; the first row is the start, at whatever time.
     pub fn new(rows: &[(f64, PanTilt<f64>)], between: Between) -> Result<Self, ArrayError> {
         let Some(&(begun_s, _)) = rows.first().filter(|_| rows.len() > 1) else {
@@ -55,7 +55,7 @@ impl MotionArray {
             if ![*time_s, angles.pan, angles.tilt].iter().all(|value| value.is_finite()) {
                 return Err(ArrayError::NoNumber { row: number + 1 });
             }
-            if number > 0 && *time_s < rows[number - 1].0 + CLOSEST_S {
+            if number > 0 && *time_s < rows[number - 1].0 + Self::CLOSEST_S {
                 return Err(ArrayError::NotAfter { row: number + 1, time_s: *time_s });
             }
         }

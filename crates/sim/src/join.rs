@@ -5,12 +5,12 @@ use tracelight_control::{
     AxisConfig, Cable, Config, Creep, FrictionModel, HeadModel, MotorRating, Quirks, Ripple,
 };
 use tracelight_dynamics::{Friction, Lumped};
-use tracelight_plant::PlantConfig;
+use tracelight_plant::{PlantConfig, Wear};
 use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
 use tracelight_trajectory::Machine;
 
 use crate::laws::INTERVAL_TICKS;
-use crate::{LawName, ObserverName, RigConfig};
+use crate::{LawName, Model, ObserverName, RigConfig};
 
 /// How far past the end of its range a joint may be before that is a fault, counts.
 const RANGE_MARGIN_COUNTS: f64 = 3.0;
@@ -125,14 +125,20 @@ impl RigConfig {
 
     /// What the simulated plant is.
     pub fn plant_config(&self) -> PlantConfig {
-        let truth = &self.truth.model;
+        self.truth.model.plant_config(self.truth.wear)
+    }
+}
+
+impl Model {
+    /// A plant that is so, with that wear.
+    pub(crate) const fn plant_config(&self, wear: Wear) -> PlantConfig {
         PlantConfig {
-            bodies: truth.bodies,
-            friction: truth.friction,
-            motors: truth.motors,
-            encoder: truth.encoder,
-            relay: truth.relay,
-            wear: self.truth.wear,
+            bodies: self.bodies,
+            friction: self.friction,
+            motors: self.motors,
+            encoder: self.encoder,
+            relay: self.relay,
+            wear,
         }
     }
 }

@@ -5,7 +5,7 @@ use super::pieces::{
     COULOMB, GRAVITY, INERTIA, LEAST_RAD_S, Piece, Row, SHORTEST_S, SPRING, UNKNOWNS, VISCOUS, pieces,
     trials_of,
 };
-use super::{Believed, FrictionError, Trial, Uncertain};
+use super::{Believed, FrictionError, Side, Trial, Uncertain};
 
 /// A joint's friction, inertia and weight from whole curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,9 +13,9 @@ pub struct Curves {
     /// kg m²; `None` where speeds hardly change, so that only what is believed of it is known.
     pub inertia_kg_m2: Option<Uncertain>,
     /// Turning forwards; `None` where it did so in fewer than three trials.
-    pub pos: Option<CurvesSide>,
+    pub pos: Option<Side>,
     /// Backwards.
-    pub neg: Option<CurvesSide>,
+    pub neg: Option<Side>,
     /// With cos and sin of the angle, N m; `None` where it was not asked.
     pub gravity_nm: Option<[Uncertain; 2]>,
     /// What cables pull back, N m/rad; `None` where it was not asked. What they pull at zero looks like Coulomb friction.
@@ -39,15 +39,6 @@ pub struct Part {
     pub friction_nm: f64,
     /// Left for weight and cables: what holds them, N m.
     pub weight_nm: f64,
-}
-
-/// Friction in one direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurvesSide {
-    /// N m s/rad.
-    pub viscous: Uncertain,
-    /// N m, negative backwards.
-    pub coulomb_nm: Uncertain,
 }
 
 /// Longest piece, s: what the equation leaves out adds up twice over a longer one.
@@ -99,7 +90,7 @@ pub fn curves(joint: Joint, trials: &[&Trial], believed: &Believed) -> Result<Cu
     }
     let side = |s: usize| {
         let (viscous, coulomb_nm) = (fit.value(VISCOUS[s])?, fit.value(COULOMB[s])?);
-        Some(CurvesSide { viscous, coulomb_nm })
+        Some(Side { viscous, coulomb_nm })
     };
     let gravity = fit.value(GRAVITY[0]).zip(fit.value(GRAVITY[1]));
     let mut found = Curves {

@@ -31,13 +31,15 @@ impl Fit {
 /// tell the rest apart.
 pub(super) fn fit(pieces: &[&Piece], unknowns: Vec<usize>, believed: &Believed) -> Option<Fit> {
     let all = Equations::new(pieces, unknowns, believed);
-    let (_, normal) = all.normal(false);
+    let (each, sum) = all.normal();
     let counting = TOLD * all.counting(pieces);
-    if inverse(&normal.matrix).is_some_and(|inverse| 1.0 > counting * inverse[(0, 0)]) {
-        return all.solve();
+    if inverse(&sum.matrix).is_some_and(|inverse| 1.0 > counting * inverse[(0, 0)]) {
+        return all.solve(each, sum);
     }
     let rest = all.unknowns.into_iter().filter(|&k| k != INERTIA).collect();
-    Equations::new(pieces, rest, believed).solve()
+    let rest = Equations::new(pieces, rest, believed);
+    let (each, sum) = rest.normal();
+    rest.solve(each, sum)
 }
 
 /// A row a sample: what is asked, and what is taken as known.
@@ -73,22 +75,17 @@ impl<'a> Equations<'a> {
         self.count_variance() * pieces.iter().map(free).sum::<f64>()
     }
 
-    /// Normal equations of each trial, and of all with what is believed. The column of the inertia is counted, and counting makes it larger
-    /// than it is: that is taken out again where it is asked (Fuller, *Measurement Error Models*, 1987, eq. 2.2.10).
-    fn normal(&self, without_counting: bool) -> (Vec<Normal>, Normal) {
+    /// Normal equations of each trial, and of all with what is believed.
+    fn normal(&self) -> (Vec<Normal>, Normal) {
         let asked = self.unknowns.len();
         let trials = self.pieces.iter().map(|piece| piece.trial + 1).max().unwrap_or(0);
         let mut each = vec![Normal::zeros(asked); trials];
-        let counted = without_counting && self.unknowns.first() == Some(&INERTIA);
         for piece in self.pieces {
             let normal = &mut each[piece.trial];
             for row in &piece.rows {
                 let terms = self.terms(row);
                 normal.matrix.ger(1.0, &terms, &terms, 1.0);
                 normal.right.axpy(row.less(&self.known), &terms, 1.0);
-            }
-            if counted {
-                normal.matrix[(0, 0)] -= self.counting(&[*piece]);
             }
         }
         let mut all = Normal::zeros(asked);
@@ -116,8 +113,17 @@ impl<'a> Equations<'a> {
     /// Intervals from how much the answer changes without each trial (the jackknife over clusters: MacKinnon, Nielsen & Webb, *J. Appl.
     /// Econometrics* 38, 2023, eq. 13): what is left within a trial is alike. Less than what counting leaves they are not. A direction's
     /// friction is told by the trials that turned that way alone.
-    fn solve(self) -> Option<Fit> {
-        let (each, all) = self.normal(true);
+    ///
+    /// The column of the inertia is counted, and counting makes it larger than it is: that is taken out again (Fuller, *Measurement Error
+    /// Models*, 1987, eq. 2.2.10).
+    fn solve(self, mut each: Vec<Normal>, mut all: Normal) -> Option<Fit> {
+        if self.unknowns.first() == Some(&INERTIA) {
+            for piece in self.pieces {
+                let counted = self.counting(&[*piece]);
+                each[piece.trial].matrix[(0, 0)] -= counted;
+                all.matrix[(0, 0)] -= counted;
+            }
+        }
         let inverse = inverse(&all.matrix)?;
         let values = &inverse * &all.right;
         let turned: Vec<&Normal> = each.iter().filter(|one| one.matrix.norm() > 0.0).collect();

@@ -9,6 +9,15 @@ pub struct Uncertain {
     pub within: f64,
 }
 
+/// Friction in one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// N m s/rad.
+    pub viscous: Uncertain,
+    /// N m, negative backwards.
+    pub coulomb_nm: Uncertain,
+}
+
 /// A straight line through points: `coulomb_nm` + `viscous` ω.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
@@ -28,6 +37,11 @@ pub(super) fn student(degrees: f64) -> f64 {
 }
 
 impl Line {
+    /// The friction it says.
+    pub const fn side(&self) -> Side {
+        Side { viscous: self.viscous, coulomb_nm: self.coulomb_nm }
+    }
+
     /// The line of least squares through (speed, torque); `None` of fewer than three points, or of one speed. Draper & Smith, *Applied
     /// Regression Analysis*, 3rd ed., §1.4.
     pub fn through(points: &[(f64, f64)]) -> Option<Self> {

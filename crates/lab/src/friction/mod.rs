@@ -20,9 +20,9 @@ mod steady;
 
 use tracelight_rig::Joint;
 
-pub use curves::{Curves, CurvesSide, Part, curves};
+pub use curves::{Curves, Part, curves};
 pub use error::FrictionError;
-pub use line::{Line, Uncertain};
+pub use line::{Line, Side, Uncertain};
 pub use protocol::{Protocol, Shuttle, Travel, free_trial};
 pub use steady::{Steady, SteadyPoint, steady, steady_of};
 

@@ -1,5 +1,6 @@
 //! Figures of curves as SVG, and that as PNG: panels in a grid under one title and one legend.
 
+mod colour;
 mod linear;
 mod pixels;
 mod range;
@@ -14,6 +15,7 @@ use plotters::prelude::{
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, TextStyle};
 
+pub(crate) use colour::Colour;
 use linear::Linear;
 pub(crate) use pixels::pixels;
 use range::{Range, inside};
@@ -44,6 +46,12 @@ pub(crate) enum Theme {
 pub(crate) struct Key {
     pub(crate) colour: Colour,
     pub(crate) name: String,
+}
+
+impl Key {
+    pub(crate) fn new(colour: Colour, name: impl Into<String>) -> Self {
+        Self { colour, name: name.into() }
+    }
 }
 
 /// One diagram.
@@ -118,48 +126,6 @@ pub(crate) enum Pen {
     Dashed,
     /// Points, not joined.
     Dots,
-}
-
-/// Colours that people who see red and green alike can tell apart (Okabe and Ito, "Color universal design", 2008).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Colour {
-    Vermilion,
-    Blue,
-    Green,
-    Purple,
-    Orange,
-    Sky,
-    Black,
-}
-
-impl Colour {
-    const fn rgb(self, theme: Theme) -> RGBColor {
-        if matches!(theme, Theme::Dark) {
-            return self.on_dark();
-        }
-        match self {
-            Colour::Vermilion => RGBColor(213, 94, 0),
-            Colour::Blue => RGBColor(0, 114, 178),
-            Colour::Green => RGBColor(0, 158, 115),
-            Colour::Purple => RGBColor(204, 121, 167),
-            Colour::Orange => RGBColor(230, 159, 0),
-            Colour::Sky => RGBColor(86, 180, 233),
-            Colour::Black => RGBColor(20, 20, 20),
-        }
-    }
-
-    /// The same, lighter where they would be too dark.
-    const fn on_dark(self) -> RGBColor {
-        match self {
-            Colour::Vermilion => RGBColor(240, 120, 50),
-            Colour::Blue => RGBColor(70, 160, 230),
-            Colour::Green => RGBColor(40, 190, 140),
-            Colour::Purple => RGBColor(220, 140, 185),
-            Colour::Orange => RGBColor(240, 180, 40),
-            Colour::Sky => RGBColor(120, 200, 245),
-            Colour::Black => RGBColor(235, 235, 235),
-        }
-    }
 }
 
 impl Theme {

@@ -9,12 +9,12 @@ use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{Mounting, RigConfig, head_alone};
 
 use super::step::Axis;
-use super::{OutFile, above_zero, out_file, write_all};
+use super::{OutFile, above_zero, out_file, voltage, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::rigfile;
-use crate::units::{ANGULAR_SPEEDS, TIMES, VOLTAGES};
+use crate::units::{ANGULAR_SPEEDS, TIMES};
 
 /// Measure a joint's frequency response with many sines at once, its coherence, and hold it against the model
 #[derive(Args, Debug)]
@@ -70,10 +70,6 @@ fn frequency(text: &str) -> Result<f64, String> {
     } else {
         Err(format!("{text} is more than {MOST_RAD_S} rad/s, which a tick a millisecond can carry"))
     }
-}
-
-fn voltage(text: &str) -> Result<f64, String> {
-    above_zero(text, VOLTAGES)
 }
 
 fn speed(text: &str) -> Result<f64, String> {
@@ -300,10 +296,12 @@ fn figure(args: &FrequencyTrialArgs, rig: &RigConfig, found: &Found) -> Result<S
             vec![Curve { colour: Colour::Blue, ..line(&coherence).remove(0) }],
         ),
     ];
-    let key = |colour, name: &str| Key { colour, name: name.into() };
     let figure = Figure {
         title: format!("{} of rig {}, turning with {} rad/s", args.axis.joint(), rig.name, args.speed),
-        legend: vec![key(Colour::Blue, "dots: measured"), key(Colour::Black, "dashed: the rig file's model")],
+        legend: vec![
+            Key::new(Colour::Blue, "dots: measured"),
+            Key::new(Colour::Black, "dashed: the rig file's model"),
+        ],
         panels,
         columns: 1,
         panel: (820, 250),

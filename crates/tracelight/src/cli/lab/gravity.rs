@@ -6,8 +6,8 @@ use tracelight_lab::{Curves, Uncertain};
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 
-use super::friction::milli;
 use super::friction::trials::{Subject, TrialArgs};
+use super::friction::{HOW_SURE, milli};
 use super::rig_out;
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use crate::cli::{Answer, Voice, write_file};
@@ -75,7 +75,7 @@ fn text(args: &GravityArgs, rig: &RigConfig, subject: &Subject, weight: &Weight)
         + &row("weight, beam level, mNm", Some(weight.nm[0]), believed[0])
         + &row("weight, beam upright, mNm", Some(weight.nm[1]), believed[1])
         + &row("cables, mNm/rad", weight.spring_nm_per_rad, spring)
-        + "\n\n± has the true value in 95 of 100 cases, if the model is right."
+        + HOW_SURE
 }
 
 fn json(subject: &Subject, weight: &Weight) -> String {
@@ -112,12 +112,11 @@ fn figure(rig: &RigConfig, subject: &Subject, curves: &Curves, weight: &Weight) 
     };
     let believed = held(subject.believed.gravity_nm.unwrap_or_default(), 0.0);
     let found = held(weight.nm.map(|u| u.value), spring);
-    let key = |colour, name: &str| Key { colour, name: name.into() };
     let figure = Figure {
         title: format!("What holds tilt of rig {} against its weight", rig.name),
         legend: vec![
-            key(Colour::Blue, "found (dots: a second each, less friction and what speeds it up)"),
-            key(Colour::Black, "dashed: the rig file has"),
+            Key::new(Colour::Blue, "found (dots: a second each, less friction and what speeds it up)"),
+            Key::new(Colour::Black, "dashed: the rig file has"),
         ],
         panels: vec![Panel {
             x_title: "tilt, ° (positive: the beam down)".into(),

@@ -7,7 +7,7 @@ use tracelight_lab::{Identification, JointFit, identify, routine};
 use tracelight_rig::{Joint, TICK_F64_S, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, run_segments};
 
-use super::{rig_out, why_unfinished};
+use super::{make_folder, rig_out, why_unfinished};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::LawArgs;
 use crate::cli::{Answer, Voice, write_file};
@@ -114,10 +114,7 @@ fn write(
     found: &Identification,
     records: &[Vec<Telemetry>],
 ) -> Result<String, Failure> {
-    let dir = args.out.display().to_string();
-    let cannot =
-        |e| Failure::failed("cannot-write", format!("cannot write {dir}: {e}; choose another with --out"));
-    std::fs::create_dir_all(&args.out).map_err(cannot)?;
+    make_folder(&args.out, "--out")?;
     let path = |name: &str| args.out.join(name).display().to_string();
     if let ([], [record]) = (args.records.as_slice(), records) {
         write_file(&path("record.csv"), record::write(record))?;

@@ -7,8 +7,8 @@ use tracelight_lab::{Curves, Uncertain};
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 
-use super::friction::milli;
 use super::friction::trials::{Subject, TrialArgs};
+use super::friction::{HOW_SURE, milli};
 use super::rig_out;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
@@ -76,7 +76,7 @@ fn text(args: &InertiaArgs, rig: &RigConfig, told: &[(&Subject, Uncertain)]) -> 
             1e3 * rotor
         );
     }
-    text + "\n\n± has the true value in 95 of 100 cases, if the model is right."
+    text + HOW_SURE
 }
 
 fn json(told: &[(&Subject, Uncertain)]) -> String {

@@ -26,6 +26,8 @@ mod trial;
 mod tune;
 mod velocity;
 
+use std::path::Path;
+
 use clap::{Args, Subcommand};
 use tracelight_rig::Fault;
 
@@ -34,7 +36,7 @@ use crate::cli::shapes::ProfileName;
 use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
 use crate::stop::Stop;
-use crate::units::{Unit, parse};
+use crate::units::{Unit, VOLTAGES, parse};
 
 /// The control engineer's bench: profiles, moves, steps, friction and all else a head is made of, linear models, Bode, Nyquist and locus, controllers designed, many heads at once
 #[derive(Args, Debug)]
@@ -170,6 +172,18 @@ fn write_all(
 fn above_zero(text: &str, units: &'static [Unit]) -> Result<f64, String> {
     let value = parse(text, units).map_err(|e| e.to_string())?;
     if value > 0.0 { Ok(value) } else { Err(format!("{text} is not above zero")) }
+}
+
+fn voltage(text: &str) -> Result<f64, String> {
+    above_zero(text, VOLTAGES)
+}
+
+/// Makes the folder that a flag names.
+fn make_folder(folder: &Path, flag: &str) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|e| {
+        let message = format!("cannot write {}: {e}; choose another with {flag}", folder.display());
+        Failure::failed("cannot-write", message)
+    })
 }
 
 /// A panel of curves over time.

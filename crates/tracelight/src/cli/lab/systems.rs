@@ -110,11 +110,8 @@ impl SystemArgs {
 
     /// All systems, as they are to be plotted.
     pub(super) fn systems(&self) -> Result<Vec<Named>, Failure> {
-        const COLOURS: [Colour; 6] =
-            [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple, Colour::Orange, Colour::Sky];
         let reader = self.how.reader()?;
-        let colours = COLOURS.into_iter().cycle();
-        let all = self.systems.iter().zip(colours);
+        let all = self.systems.iter().zip(Colour::in_turn());
         all.map(|(text, colour)| {
             let (mut name, mut system) = reader.read(text)?;
             if self.closed {

@@ -9,7 +9,7 @@ use tracelight_sim::{LawName, RigConfig, SimulatedRig, Spread, score};
 use tracelight_trajectory::Plan;
 
 use super::shape::ShapeArgs;
-use super::{above_zero, rig_out};
+use super::{above_zero, make_folder, rig_out};
 use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use crate::cli::driving::Driving;
 use crate::cli::laws::law;
@@ -134,12 +134,7 @@ pub(crate) fn run(args: &TuneArgs, stop: &Stop) -> Result<Answer, Failure> {
     tried.sort_by(|a, b| a.setting.bandwidth_rad_s.pan.total_cmp(&b.setting.bandwidth_rad_s.pan));
     let picked = best(&tried).ok_or_else(|| nothing_bears(args))?;
     let better = picked.setting.apply(&driving.rig);
-    std::fs::create_dir_all(&args.out).map_err(|e| {
-        Failure::failed(
-            "cannot-write",
-            format!("cannot write {}: {e}; choose another with --out", args.out.display()),
-        )
-    })?;
+    make_folder(&args.out, "--out")?;
     write_file(
         &args.out.join("tune.svg").display().to_string(),
         figure(args, &driving.rig, &tried, picked)?,
@@ -301,9 +296,7 @@ fn json(tried: &[Tried], (had, picked): (&Tried, &Tried)) -> String {
 
 /// Errors over the bandwidth.
 fn figure(args: &TuneArgs, rig: &RigConfig, tried: &[Tried], picked: &Tried) -> Result<String, Failure> {
-    const COLOURS: [Colour; 6] =
-        [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple, Colour::Orange, Colour::Sky];
-    let colours = COLOURS.into_iter().cycle();
+    let colours = Colour::in_turn();
     let of_law = |law: LawName| tried.iter().filter(move |t| t.setting.law == law && is_even(&t.setting));
     let curves = args.laws.iter().zip(colours.clone()).map(|(&law, colour)| {
         // a gap where the demand is not borne

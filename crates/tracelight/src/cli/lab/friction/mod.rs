@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_lab::{Curves, CurvesSide, Line, Steady, SteadyPoint, Uncertain, curves, steady, steady_of};
+use tracelight_lab::{Curves, Line, Side, Steady, SteadyPoint, Uncertain, curves, steady, steady_of};
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 
@@ -102,37 +102,18 @@ impl Subject {
     }
 }
 
-/// A direction's friction, whatever it was told from.
-#[derive(Clone, Copy)]
-struct Side {
-    viscous: Uncertain,
-    coulomb_nm: Uncertain,
-}
-
-impl From<CurvesSide> for Side {
-    fn from(side: CurvesSide) -> Self {
-        Self { viscous: side.viscous, coulomb_nm: side.coulomb_nm }
-    }
-}
-
-impl From<Line> for Side {
-    fn from(line: Line) -> Self {
-        Self { viscous: line.viscous, coulomb_nm: line.coulomb_nm }
-    }
-}
-
 impl Found {
     /// The best that is known, forwards and backwards.
     fn sides(&self) -> [Option<Side>; 2] {
         match &self.curves {
-            Some(curves) => [curves.pos.map(Side::from), curves.neg.map(Side::from)],
+            Some(curves) => [curves.pos, curves.neg],
             None => self.as_the_report(),
         }
     }
 
     /// Lines through the last speeds.
     fn as_the_report(&self) -> [Option<Side>; 2] {
-        [self.steady.pos.map(Side::from), self.steady.neg.map(Side::from)]
+        [self.steady.pos, self.steady.neg].map(|line| line.map(|line| line.side()))
     }
 
     /// Share that is explained.
@@ -165,6 +146,9 @@ impl Found {
     }
 }
 
+/// What the intervals of a table mean.
+pub(super) const HOW_SURE: &str = "\n\n± has the true value in 95 of 100 cases, if the model is right.";
+
 /// A value and its interval, times a thousand.
 pub(super) fn milli(value: Option<Uncertain>) -> String {
     value.map_or("–".to_owned(), |u| {
@@ -191,7 +175,7 @@ fn text(args: &FrictionArgs, rig: &RigConfig, found: &[Found]) -> String {
             text += &below_nothing(one);
         }
     }
-    text + "\n\n± has the true value in 95 of 100 cases, if the model is right."
+    text + HOW_SURE
 }
 
 /// A joint's figures: a column for each way they were told.

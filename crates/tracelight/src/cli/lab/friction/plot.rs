@@ -1,7 +1,7 @@
-use tracelight_lab::{Trial, Uncertain};
+use tracelight_lab::{Side, Trial, Uncertain};
 use tracelight_sim::RigConfig;
 
-use super::{Found, Side};
+use super::Found;
 use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Sign, Theme};
 use crate::cli::lab::over_time;
 use crate::failure::Failure;
@@ -18,15 +18,15 @@ pub(super) fn figure(rig: &RigConfig, found: &[Found]) -> Result<String, Failure
         speeds.into_iter().chain([torques(one)])
     });
     let panels: Vec<Panel> = panels.collect();
-    let key = |colour, name: &str| Key { colour, name: name.into() };
     let with_motion = found.iter().any(|one| one.curves.is_some());
     let mut legend = Vec::new();
     if with_motion {
-        legend.push(key(Colour::Blue, "forwards; dots: a second each, less what speeds it up and weighs"));
-        legend.push(key(Colour::Vermilion, "backwards"));
+        legend
+            .push(Key::new(Colour::Blue, "forwards; dots: a second each, less what speeds it up and weighs"));
+        legend.push(Key::new(Colour::Vermilion, "backwards"));
     }
     if found.iter().any(|one| !one.steady.points.is_empty()) {
-        legend.push(key(
+        legend.push(Key::new(
             Colour::Black,
             "crosses: the last speed of each voltage, as the report did, and its lines",
         ));

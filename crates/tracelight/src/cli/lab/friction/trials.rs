@@ -1,7 +1,7 @@
 //! Joints under voltages: on the simulated head, or from a log.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::Path;
 
 use clap::Args;
 use tracelight_lab::{Believed, Protocol, Shuttle, SteadyPoint, Travel, Trial, free_trial};
@@ -9,15 +9,15 @@ use tracelight_rig::Joint;
 use tracelight_sim::{Mounting, RigConfig, head_alone};
 
 use super::log::{self, Log};
-use crate::cli::lab::above_zero;
 use crate::cli::lab::step::Axis;
+use crate::cli::lab::{above_zero, make_folder, voltage};
 use crate::cli::write_file;
 use crate::failure::Failure;
 use crate::fan::on_all_cores;
 use crate::progress::Progress;
 use crate::rigfile;
 use crate::stop::Stop;
-use crate::units::{TIMES, VOLTAGES};
+use crate::units::TIMES;
 
 /// What joints are put through.
 #[derive(Args, Clone, Debug)]
@@ -60,10 +60,6 @@ const LONGEST_S: f64 = 3600.0;
 const MOST_VOLTAGES: f64 = 1000.0;
 /// Longest that all trials of a joint may take, s: five hours of the head's time, half of what a log may have.
 const LONGEST_ALL_S: f64 = 18_000.0;
-
-fn voltage(text: &str) -> Result<f64, String> {
-    above_zero(text, VOLTAGES)
-}
 
 fn time(text: &str) -> Result<f64, String> {
     let time_s = above_zero(text, TIMES)?;
@@ -236,14 +232,8 @@ impl TrialArgs {
     }
 
     /// Writes log.csv into a folder, if the head was tried.
-    pub(in crate::cli::lab) fn write_log(&self, out: &PathBuf, subjects: &[Subject]) -> Result<(), Failure> {
-        let cannot = |e| {
-            Failure::failed(
-                "cannot-write",
-                format!("cannot write {}: {e}; choose another with --out", out.display()),
-            )
-        };
-        std::fs::create_dir_all(out).map_err(cannot)?;
+    pub(in crate::cli::lab) fn write_log(&self, out: &Path, subjects: &[Subject]) -> Result<(), Failure> {
+        make_folder(out, "--out")?;
         if self.logs.is_empty() {
             let all = subjects.iter().flat_map(|subject| &subject.trials);
             write_file(&out.join("log.csv").display().to_string(), log::write(all))?;

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::make_folder;
 use crate::cli::{Answer, Voice, answer, write_file};
 use crate::failure::Failure;
 use crate::fan::on_all_cores;
@@ -73,6 +74,7 @@ struct Fact {
 }
 
 /// A number of the report beside ours.
+#[derive(Clone)]
 struct Compared {
     what: String,
     report: Option<f64>,
@@ -85,14 +87,8 @@ struct Compared {
 type Done = Result<(Value, Option<String>), Failure>;
 
 pub(crate) fn run(args: &ReproduceArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let cannot = |e: std::io::Error| {
-        Failure::failed(
-            "cannot-write",
-            format!("cannot write {}: {e}; choose another with -o", args.out.display()),
-        )
-    };
     for folder in ["figures", "arrays", "pictures", "friction"] {
-        std::fs::create_dir_all(args.out.join(folder)).map_err(cannot)?;
+        make_folder(&args.out.join(folder), "-o")?;
     }
     arrays::write(&args.out)?;
     let chapters = chapters::chapters(&args.out);

@@ -59,7 +59,7 @@ pub(super) fn all_compared(
                 }
                 Part::Facts(facts) => {
                     all.extend(
-                        facts.iter().map(|fact| (chapter.title.to_owned(), String::new(), fact.again())),
+                        facts.iter().map(|fact| (chapter.title.to_owned(), String::new(), fact.clone())),
                     );
                 }
                 Part::Text(_) | Part::Drawing(..) => {}
@@ -147,12 +147,6 @@ fn digits(value: f64) -> String {
     let text = format!("{value:.after$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     text.replace('-', "−")
-}
-
-impl Compared {
-    fn again(&self) -> Self {
-        Self { what: self.what.clone(), why: self.why.clone(), ..*self }
-    }
 }
 
 #[cfg(test)]

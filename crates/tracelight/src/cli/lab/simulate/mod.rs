@@ -179,8 +179,6 @@ fn array(args: &SimulateArgs, rig: &RigConfig) -> Result<MotionArray, Failure> {
 }
 
 fn entries(args: &SimulateArgs, rig: &RigConfig, array: &MotionArray) -> Result<Vec<Entry>, Failure> {
-    const COLOURS: [Colour; 6] =
-        [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Purple, Colour::Orange, Colour::Sky];
     let mut runs = Vec::new();
     if let [pan, tilt] = args.controller.as_slice() {
         let controllers = PanTilt::new(controller(pan)?, controller(tilt)?);
@@ -209,7 +207,7 @@ fn entries(args: &SimulateArgs, rig: &RigConfig, array: &MotionArray) -> Result<
         let message = format!("{}: the angles grow beyond all numbers: less gain, or a lower --cap", by.pan);
         return Err(Failure::failed("no-such-design", message));
     }
-    Ok(runs.into_iter().zip(COLOURS.into_iter().cycle()).map(entry).collect())
+    Ok(runs.into_iter().zip(Colour::in_turn()).map(entry).collect())
 }
 
 fn by_law(args: &SimulateArgs, rig: &RigConfig, array: &MotionArray) -> Vec<ScopeTick> {

@@ -12,8 +12,6 @@ const MOST_ROWS: usize = 1_000_000;
 /// and longest motion, s.
 pub(super) const LONGEST_S: f64 = 600.0;
 
-/// Rows are apart by so much at least, s.
-const CLOSEST_S: f64 = 0.999e-6;
 /// What rounding may add to an angle at the end of a range, rad.
 const ROUNDED_RAD: f64 = 1e-6;
 
@@ -95,7 +93,7 @@ fn parse(bytes: &[u8], between: Between, range_rad: PanTilt<(f64, f64)>) -> Resu
             }
         }
         let (begun_s, before_s) = (rows.first().map_or(time_s, |r| r.0), rows.last().map(|r| r.0));
-        if before_s.is_some_and(|before| time_s < before + CLOSEST_S) {
+        if before_s.is_some_and(|before| time_s < before + MotionArray::CLOSEST_S) {
             return Err(format!(
                 ":{line}: its time, {time_s} s, does not come after the row before, by a microsecond at least"
             ));
