@@ -5,6 +5,7 @@
 mod frequency;
 mod friction;
 mod identify;
+mod lesson;
 mod linearize;
 mod statistics;
 mod step;
@@ -17,6 +18,7 @@ pub use friction::{
     Travel, Trial, Uncertain, curves, free_trial, steady, steady_of,
 };
 pub use identify::{Identification, IdentifyError, JointFit, LAPS_WORTH, identify, routine};
+pub use lesson::{Ask, Check, Experiment, Graded, Lesson, Quantity};
 pub use linearize::{Linearization, Operation};
 pub use statistics::Quantiles;
 pub use step::StepFigures;

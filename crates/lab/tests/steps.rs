@@ -65,7 +65,8 @@ fn steps_do_not_overshoot_and_leave_no_error_on_any_head() {
             for (_, rig) in &corners {
                 for seed in 0..5 {
                     let to_rad = degrees.to_radians();
-                    let response = step_response(rig, joint, to_rad, seed).unwrap();
+                    let response =
+                        step_response(rig, joint, to_rad, rig.control.law.reference(), seed).unwrap();
                     let step = figures(&response.nonlinear, joint, to_rad);
                     over = over.max(step.overshoot_percent);
                     settle = settle.max(step.settle_s.unwrap());
@@ -96,7 +97,7 @@ fn the_reports_laws_overshoot_as_they_did() {
         let mut rig = RigConfig::report();
         rig.control.law = law;
         let to_rad = 15_f64.to_radians();
-        let response = step_response(&rig, joint, to_rad, 0).unwrap();
+        let response = step_response(&rig, joint, to_rad, rig.control.law.reference(), 0).unwrap();
         let over = figures(&response.nonlinear, joint, to_rad).overshoot_percent;
         assert!((least..=most).contains(&over), "{} {joint}: {over} %", law.name());
     }
@@ -111,7 +112,7 @@ fn the_linear_loops_are_those_of_other_tools() {
             let mut rig = RigConfig::report();
             rig.control.law = law;
             let to = 26.565_f64.to_radians();
-            let response = step_response(&rig, joint, to, 0).unwrap();
+            let response = step_response(&rig, joint, to, rig.control.law.reference(), 0).unwrap();
             let over = figures(&response.linear, joint, to).overshoot_percent;
             println!("{} {joint}: {over:.2} %, {expected} % in continuous time", law.name());
             assert!((expected..expected + 3.0).contains(&over), "{} {joint}: {over} %", law.name());

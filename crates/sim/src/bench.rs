@@ -54,6 +54,11 @@ impl Bench<Plant> {
         let measured = plant.measured();
         Self::new(rig.control_config(), plant, measured)
     }
+
+    /// What somebody pushes the joints with from now on, N m.
+    pub(crate) fn push(&mut self, torque_nm: PanTilt<f64>) {
+        self.head.push(torque_nm);
+    }
 }
 
 impl Bench<LinearHead> {

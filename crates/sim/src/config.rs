@@ -3,7 +3,7 @@ use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
 use tracelight_rig::{Joint, PanTilt};
 
-use crate::{LawName, ObserverName};
+use crate::{HandTuned, LawName, ObserverName};
 
 /// A rig, whole: what we believe it is, what it really is (in simulation), and how it is to be driven.
 #[derive(Clone, Debug, PartialEq)]
@@ -169,6 +169,10 @@ pub struct ControlSettings {
     pub law: LawName,
     /// From counts to position and velocity; none is the one the law is meant for.
     pub observer: Option<ObserverName>,
+    /// Time over which those observers look that have one, s; the others' corner is its reciprocal.
+    pub observer_interval_s: f64,
+    /// What law [`LawName::HandTuned`] is.
+    pub hand_tuned: PanTilt<HandTuned>,
     /// Whether a joint hops where its plan is slower than friction lets go; only law [`LawName::State`] with observer
     /// [`ObserverName::Kalman`] can.
     pub hops: bool,

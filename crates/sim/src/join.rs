@@ -9,7 +9,6 @@ use tracelight_plant::{PlantConfig, Wear};
 use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
 use tracelight_trajectory::Machine;
 
-use crate::laws::INTERVAL_TICKS;
 use crate::{LawName, Model, ObserverName, RigConfig};
 
 /// How far past the end of its range a joint may be before that is a fault, counts.
@@ -72,8 +71,8 @@ impl RigConfig {
             friction: friction_model(&self.model.friction[joint]),
             unknown_nm: self.model.unknown_nm(joint) as f32,
             quirks: self.quirks(joint),
-            observer: control.observer_in_use().config(INTERVAL_TICKS),
-            law: control.law.config(joint, control.bandwidth_rad_s[joint], inertia),
+            observer: control.observer_in_use().config(ticks(control.observer_interval_s).max(1) as usize),
+            law: control.law_config(joint, inertia),
             creep: self.creep(joint),
             rating: MotorRating {
                 continuous_share: control.motor_continuous as f32,

@@ -6,6 +6,7 @@ use tracelight_control::{
 use tracelight_rig::Joint;
 
 use crate::lead_lag::{Format, LeadLagDesign};
+use crate::{ControlSettings, StepReference};
 
 /// A law that a rig can be driven by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,6 +17,8 @@ pub enum LawName {
     PidFeedforward,
     /// PID and gravity.
     Pid,
+    /// PID with gains somebody set by hand: [`HandTuned`].
+    HandTuned,
     /// A lead for the phase, a lag for the static error, and gravity.
     LeadLag,
     /// The 2006 report's K11 and K22, its figures read as poles and zeros, as they are typeset.
@@ -28,10 +31,11 @@ pub enum LawName {
 
 impl LawName {
     /// Every law, the best first.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::State,
         Self::PidFeedforward,
         Self::Pid,
+        Self::HandTuned,
         Self::LeadLag,
         Self::ReportZpk,
         Self::ReportTimeConstants,
@@ -44,6 +48,7 @@ impl LawName {
             Self::State => "state",
             Self::PidFeedforward => "pid-ff",
             Self::Pid => "pid",
+            Self::HandTuned => "hand-tuned",
             Self::LeadLag => "lead-lag",
             Self::ReportZpk => "report-zpk",
             Self::ReportTimeConstants => "report-tc",
@@ -61,14 +66,18 @@ impl LawName {
         match self {
             Self::State => ObserverName::Kalman,
             Self::PidFeedforward => ObserverName::KalmanModel,
-            Self::Pid | Self::LeadLag => ObserverName::TrackingLoop,
+            Self::Pid | Self::HandTuned | Self::LeadLag => ObserverName::TrackingLoop,
             Self::ReportZpk | Self::ReportTimeConstants | Self::ReportPd => ObserverName::Counts,
         }
     }
 
-    /// Whether its reference is shaped: a step is then a move as fast as the motors can, otherwise a jump.
-    pub const fn shapes_reference(self) -> bool {
-        matches!(self, Self::State | Self::PidFeedforward)
+    /// How it is told to go somewhere else.
+    pub const fn reference(self) -> StepReference {
+        if matches!(self, Self::State | Self::PidFeedforward) {
+            StepReference::Move
+        } else {
+            StepReference::Jump
+        }
     }
 
     /// Share of a rig's bandwidth that it is given: an observer that knows nothing of the head lags behind it, and leaves
@@ -79,33 +88,82 @@ impl LawName {
             Self::PidFeedforward => 0.5,
             Self::Pid | Self::LeadLag => 1.0 / 6.0,
             // these have their own
-            Self::ReportZpk | Self::ReportTimeConstants | Self::ReportPd => 1.0,
+            Self::HandTuned | Self::ReportZpk | Self::ReportTimeConstants | Self::ReportPd => 1.0,
         }
     }
+}
 
-    /// The law of one joint with that inertia, kg m²; `bandwidth_rad_s` is for those that are not the report's.
-    pub fn config(self, joint: Joint, bandwidth_rad_s: f64, inertia_kg_m2: f64) -> LawConfig {
-        let bandwidth_rad_s = self.bandwidth_share() * bandwidth_rad_s;
+impl ControlSettings {
+    /// The law of one joint that has that inertia, kg m².
+    pub fn law_config(&self, joint: Joint, inertia_kg_m2: f64) -> LawConfig {
+        let bandwidth_rad_s = self.law.bandwidth_share() * self.bandwidth_rad_s[joint];
         let (bandwidth, inertia) = (bandwidth_rad_s as f32, inertia_kg_m2 as f32);
         let pid = Feedback::Pid(Pid::triple_pole(bandwidth, inertia));
-        let (feedback, feedforward) = match self {
-            Self::State => (
+        let (feedback, feedforward) = match self.law {
+            LawName::State => (
                 Feedback::State(StateFeedback { bandwidth_rad_s: bandwidth, damping: DAMPING }),
                 Feedforward::Learned,
             ),
-            Self::PidFeedforward => (pid, Feedforward::Model),
-            Self::Pid => (pid, Feedforward::Gravity),
-            Self::LeadLag => (
+            LawName::PidFeedforward => (pid, Feedforward::Model),
+            LawName::Pid => (pid, Feedforward::Gravity),
+            LawName::HandTuned => {
+                let by_hand = &self.hand_tuned[joint];
+                (Feedback::Pid(by_hand.pid()), by_hand.feedforward)
+            }
+            LawName::LeadLag => (
                 Feedback::LeadLag(LeadLagDesign::for_inertia(bandwidth_rad_s, inertia_kg_m2).discretize()),
                 Feedforward::Gravity,
             ),
-            Self::ReportZpk => (Feedback::LeadLag(report(joint, Format::Zpk)), Feedforward::None),
-            Self::ReportTimeConstants => {
+            LawName::ReportZpk => (Feedback::LeadLag(report(joint, Format::Zpk)), Feedforward::None),
+            LawName::ReportTimeConstants => {
                 (Feedback::LeadLag(report(joint, Format::TimeConstants)), Feedforward::None)
             }
-            Self::ReportPd => (Feedback::Pid(report_pd(joint)), Feedforward::None),
+            LawName::ReportPd => (Feedback::Pid(report_pd(joint)), Feedforward::None),
         };
         LawConfig { feedback, feedforward }
+    }
+}
+
+/// A PID of one joint with gains that somebody set by hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandTuned {
+    /// Proportional, N m/rad.
+    pub kp: f64,
+    /// Integral, N m/(rad·s).
+    pub ki: f64,
+    /// Derivative, N m·s/rad.
+    pub kd: f64,
+    /// Share of the setpoint that the proportional part sees, 0 to 1,
+    pub position_weight: f64,
+    /// and of its velocity that the derivative part sees.
+    pub velocity_weight: f64,
+    /// Whether the integrator rests while the amplifier is at its limit and the error would drive it further.
+    pub anti_windup: bool,
+    /// What the model adds.
+    pub feedforward: Feedforward,
+}
+
+impl HandTuned {
+    /// What to begin with: on the original rig it arrives within 2 mm, and hardly overshoots.
+    pub const FIRST: Self = Self {
+        kp: 40.0,
+        ki: 0.0,
+        kd: 5.0,
+        position_weight: 1.0,
+        velocity_weight: 1.0,
+        anti_windup: true,
+        feedforward: Feedforward::Gravity,
+    };
+
+    const fn pid(&self) -> Pid {
+        Pid {
+            ki: self.ki as f32,
+            kd: self.kd as f32,
+            position_weight: self.position_weight as f32,
+            velocity_weight: self.velocity_weight as f32,
+            anti_windup: self.anti_windup,
+            ..Pid::proportional(self.kp as f32)
+        }
     }
 }
 
@@ -211,6 +269,3 @@ impl ObserverName {
         }
     }
 }
-
-/// Interval of observers that have one, ticks: a tracking loop of 200 rad/s.
-pub(crate) const INTERVAL_TICKS: usize = 5;

@@ -29,11 +29,13 @@ pub use config::{
     Cable, ControlSettings, Identified, Model, MotionSettings, Quirks, RigConfig, Ripple, Truth,
 };
 pub use diagram::{Diagram, ScopeTick};
-pub use laws::{Compensator, LawName, ObserverName};
+pub use laws::{Compensator, HandTuned, LawName, ObserverName};
 pub use replay::replay;
 pub use run::{Feeder, Run, SimulatedRig, Tick, run, run_segments};
 pub use score::{Tracking, score};
 pub use spread::Spread;
-pub use step::{StepResponse, follow_array, step_response, step_response_by};
-pub use tracelight_control::LONGEST_INTERVAL_TICKS;
+pub use step::{
+    Push, StepReference, StepResponse, follow_array, push_response, step_response, step_response_by,
+};
+pub use tracelight_control::{Feedforward, LONGEST_INTERVAL_TICKS};
 pub use trouble::Trouble;

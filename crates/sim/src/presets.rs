@@ -7,8 +7,8 @@ use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
 use tracelight_rig::PanTilt;
 
-use crate::LawName;
 use crate::config::{ControlSettings, Model, MotionSettings, RigConfig, Truth};
+use crate::{HandTuned, LawName};
 
 /// Motor torque constant × gearhead × belt, N m at the joint per A.
 const JOINT_TORQUE_NM_PER_A: f64 = 0.0432 * 6.3 * 2.8435;
@@ -42,6 +42,8 @@ impl RigConfig {
             control: ControlSettings {
                 law: LawName::State,
                 observer: None,
+                observer_interval_s: 5e-3,
+                hand_tuned: PanTilt::new(HandTuned::FIRST, HandTuned::FIRST),
                 hops: true,
                 bandwidth_rad_s: PanTilt::new(120.0, 120.0),
                 tolerance_m: 3e-3,

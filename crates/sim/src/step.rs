@@ -21,13 +21,30 @@ impl StepResponse {
     pub const LENGTH_S: f64 = 3.0;
 }
 
-/// Sends one joint from rest at zero to `to_rad`, the other is held at zero. A law that shapes its reference gets the
-/// fastest move within the rig's limits, the others a jump. `None` if the motors are too weak for the move, or it ends out
-/// of the joint's range.
-pub fn step_response(rig: &RigConfig, joint: Joint, to_rad: f64, seed: u64) -> Option<StepResponse> {
+/// How a joint is told to go somewhere else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepReference {
+    /// The setpoint is there at once.
+    Jump,
+    /// It goes there as fast as the rig's limits allow.
+    Move,
+}
+
+/// Sends one joint from rest at zero to `to_rad`, the other is held at zero. `None` if the motors are too weak for a move, or
+/// it ends out of the joint's range.
+pub fn step_response(
+    rig: &RigConfig,
+    joint: Joint,
+    to_rad: f64,
+    reference: StepReference,
+    seed: u64,
+) -> Option<StepResponse> {
     let mut to = PanTilt::default();
     to[joint] = to_rad;
-    let references = if rig.control.law.shapes_reference() { shaped(rig, to)? } else { jump(rig, to)? };
+    let references = match reference {
+        StepReference::Jump => jump(rig, to)?,
+        StepReference::Move => shaped(rig, to)?,
+    };
     Some(StepResponse {
         nonlinear: follow(Bench::nonlinear(rig, seed), &references),
         linear: follow(Bench::linear(rig, to), &references),
@@ -64,6 +81,34 @@ pub fn follow_array(rig: &RigConfig, array: &MotionArray, rest_s: f64, seed: u64
         Reference { now: at(time_s), ahead: at(time_s + 0.5 * TICK_F64_S) }
     };
     (0..=ticks).map(|tick| bench.step(&reference(tick))).collect()
+}
+
+/// A push at a joint: N m from one moment to another, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// N m.
+    pub torque_nm: f64,
+    /// From when,
+    pub from_s: f64,
+    /// until when, s.
+    pub until_s: f64,
+}
+
+/// What the rig's law does for [`StepResponse::LENGTH_S`] at rest at zero about a push at one joint.
+pub fn push_response(rig: &RigConfig, joint: Joint, push: &Push, seed: u64) -> Vec<BenchTick> {
+    let mut bench = Bench::nonlinear(rig, seed);
+    let still = PanTilt::default();
+    let reference = Reference { now: still, ahead: still };
+    let tick = |number: usize| {
+        let time_s = number as f64 * TICK_F64_S;
+        let mut torque_nm = PanTilt::default();
+        if (push.from_s..push.until_s).contains(&time_s) {
+            torque_nm[joint] = push.torque_nm;
+        }
+        bench.push(torque_nm);
+        bench.step(&reference)
+    };
+    (0..ticks()).map(tick).collect()
 }
 
 fn follow<H: Truth>(mut bench: Bench<H>, references: &[Reference]) -> Vec<BenchTick> {

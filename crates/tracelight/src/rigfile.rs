@@ -5,6 +5,7 @@
 //! the values of the preset `report`.
 
 mod caret;
+mod driving;
 mod keys;
 mod save;
 
@@ -18,7 +19,9 @@ use crate::failure::Failure;
 use crate::picture::read_bytes;
 use crate::units;
 use caret::Mark;
-use keys::{Choice, Key, RIG_KEYS, Slot, identified_keys, model_keys};
+use driving::rig_keys;
+pub(crate) use driving::{FEEDFORWARDS, HIGHEST_GAIN};
+use keys::{Choice, Key, Slot, identified_keys, model_keys};
 pub(crate) use save::{date, is_same, save};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
@@ -170,7 +173,7 @@ fn set_other(
         let key = keys.iter().find(|k| k.path == path)?;
         return Some(set(key, config.identified.get_or_insert(Identified::NONE), entry, place));
     }
-    if let Some(key) = RIG_KEYS.iter().find(|k| k.path == entry.path) {
+    if let Some(key) = rig_keys().iter().find(|k| k.path == entry.path) {
         return Some(set(key, config, entry, place));
     }
     let path = entry.path.strip_prefix("truth.")?;
@@ -214,7 +217,7 @@ fn known_paths() -> Vec<String> {
         ["model", "truth"].map(|half| model_keys().into_iter().map(move |k| format!("{half}.{}", k.path)));
     let found = identified_keys().into_iter().map(|k| format!("identified.{}", k.path));
     let texts = ["name", "description", "identified.date"].map(str::to_owned);
-    let own = RIG_KEYS.iter().map(|k| k.path.to_owned()).chain(texts);
+    let own = rig_keys().into_iter().map(|k| k.path.to_owned()).chain(texts);
     halves.into_iter().flatten().chain(found).chain(own).collect()
 }
 
@@ -279,7 +282,7 @@ pub(crate) fn write(config: &RigConfig) -> String {
         text += &format!("\n[identified]\ndate = {}\n", quoted(&identified.date));
         section(&mut text, "identified", &identified_keys(), identified);
     }
-    section(&mut text, "", &RIG_KEYS, &mut config);
+    section(&mut text, "", &rig_keys(), &mut config);
     text
 }
 

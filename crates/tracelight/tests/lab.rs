@@ -181,6 +181,14 @@ fn the_page_on_identification_shows_what_its_commands_print() {
 }
 
 #[test]
+fn the_lessons_show_what_their_commands_print() {
+    check_page("lessons/README.md", 1);
+    for (number, commands) in [(1, 2), (2, 3), (3, 2), (4, 3), (5, 3), (7, 2), (8, 3)] {
+        check_page(&format!("lessons/{number}.md"), commands);
+    }
+}
+
+#[test]
 fn the_page_on_linear_models_shows_what_its_commands_print() {
     check_page("linear.md", 4);
 }

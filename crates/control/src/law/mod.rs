@@ -77,8 +77,8 @@ impl Feedback {
 
     /// Anti-windup: told how much more was asked for than the amplifier gives.
     pub(crate) fn settle(&self, state: &mut LawState, input: &LawInput<'_>, excess_v: f32) {
-        if let Feedback::Pid(_) = self {
-            state.pid.integrate(input.error_rad(), excess_v);
+        if let Feedback::Pid(pid) = self {
+            pid.integrate(&mut state.pid, input.error_rad(), excess_v);
         }
     }
 }

@@ -17,6 +17,8 @@ pub struct Pid {
     pub velocity_weight: f32,
     /// Corner of the derivative's low-pass, rad/s; infinite for none.
     pub filter_rad_s: f32,
+    /// Whether the integrator rests while its axis is saturated and its error would drive it further.
+    pub anti_windup: bool,
 }
 
 impl Pid {
@@ -29,7 +31,15 @@ impl Pid {
 
     /// Nothing but a proportional part.
     pub const fn proportional(kp: f32) -> Self {
-        Self { kp, ki: 0.0, kd: 0.0, position_weight: 1.0, velocity_weight: 1.0, filter_rad_s: f32::INFINITY }
+        Self {
+            kp,
+            ki: 0.0,
+            kd: 0.0,
+            position_weight: 1.0,
+            velocity_weight: 1.0,
+            filter_rad_s: f32::INFINITY,
+            anti_windup: true,
+        }
     }
 
     pub(super) fn torque_nm(&self, state: &mut PidState, input: &LawInput<'_>) -> f32 {
@@ -41,6 +51,13 @@ impl Pid {
         state.derivative += share * (derivative - state.derivative);
         self.kp * proportional + self.ki * state.integral + self.kd * state.derivative
     }
+
+    /// Told how much more was asked for than the amplifier gives.
+    pub(super) fn integrate(&self, state: &mut PidState, error_rad: f32, excess_v: f32) {
+        if excess_v * error_rad <= 0.0 || !self.anti_windup {
+            state.integral += error_rad * TICK_S;
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,13 +66,4 @@ pub(super) struct PidState {
     integral: f32,
     /// Smoothed, rad/s.
     derivative: f32,
-}
-
-impl PidState {
-    /// The integrator rests while its axis is saturated and its error would drive it further.
-    pub(super) fn integrate(&mut self, error_rad: f32, excess_v: f32) {
-        if excess_v * error_rad <= 0.0 {
-            self.integral += error_rad * TICK_S;
-        }
-    }
 }

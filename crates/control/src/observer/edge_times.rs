@@ -62,7 +62,7 @@ impl EdgeTimes {
         let gained = 0.5 * edge.halves.wrapping_sub(base.halves) as f32;
         let time = base.age_ticks + self.interval as f32 - edge.age_ticks;
         let rate = if time > 1e-3 { gained / time } else { self.rates.ago(0) };
-        within(rate, 1.0 / edge.age_ticks.max(1e-3))
+        within(rate, 1.0 / edge.age_ticks.max(1e-9))
     }
 
     pub(super) fn estimate(&self, count_rad: f32) -> Estimate {

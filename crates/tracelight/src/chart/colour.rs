@@ -12,6 +12,7 @@ pub(crate) enum Colour {
     Orange,
     Sky,
     Black,
+    Grey,
 }
 
 impl Colour {
@@ -32,6 +33,7 @@ impl Colour {
             Colour::Orange => RGBColor(230, 159, 0),
             Colour::Sky => RGBColor(86, 180, 233),
             Colour::Black => RGBColor(20, 20, 20),
+            Colour::Grey => RGBColor(125, 125, 125),
         }
     }
 
@@ -45,6 +47,7 @@ impl Colour {
             Colour::Orange => RGBColor(240, 180, 40),
             Colour::Sky => RGBColor(120, 200, 245),
             Colour::Black => RGBColor(235, 235, 235),
+            Colour::Grey => RGBColor(150, 150, 150),
         }
     }
 }

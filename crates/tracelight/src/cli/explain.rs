@@ -65,6 +65,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "A joint moved too little to tell what it is made of. Give a longer record, of motion to and fro, or none: then the rig moves by itself.",
     ),
     (
+        "not-yet",
+        "An answer to a lesson's question was simulated, and some of its figures are not what they must be. The table names each with what helps; `tracelight lab lesson NUMBER` has the text, and -o mine.svg draws what your answer does.",
+    ),
+    (
         "motion-array",
         "A motion to simulate is no table of t,pan,tilt: seconds that rise, and angles within the joints' range; the message names the line.",
     ),

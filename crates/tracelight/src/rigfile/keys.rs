@@ -43,20 +43,20 @@ pub(super) struct Key<T: 'static> {
     pub(super) slot: Slot<T>,
 }
 
-const PURE: &[Unit] = &[];
+pub(super) const PURE: &[Unit] = &[];
 const MASS: &[Unit] = &[("kg", 1.0), ("g", 1e-3)];
 const INERTIA: &[Unit] = &[("kgm2", 1.0), ("gcm2", 1e-7)];
 const GRAVITY: &[Unit] = &[("m/s2", 1.0)];
 const TORQUE: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
 const FREQUENCIES: &[Unit] = &[("Hz", 1.0)];
-const STIFFNESS: &[Unit] = &[("Nm/rad", 1.0), ("mNm/rad", 1e-3)];
-const VISCOUS: &[Unit] = &[("Nms/rad", 1.0), ("mNms/rad", 1e-3)];
+pub(super) const STIFFNESS: &[Unit] = &[("Nm/rad", 1.0), ("mNm/rad", 1e-3)];
+pub(super) const VISCOUS: &[Unit] = &[("Nms/rad", 1.0), ("mNms/rad", 1e-3)];
 const GAIN: &[Unit] = &[("Nm/V", 1.0), ("mNm/V", 1e-3)];
 const VOLTAGE: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
 
 type Real = fn(&mut Model) -> &mut f64;
 
-const fn real<T>(
+pub(super) const fn real<T>(
     path: &'static str,
     units: &'static [Unit],
     bounds: (f64, f64),
@@ -66,7 +66,15 @@ const fn real<T>(
     Key { path, units, bounds, meaning, slot: Slot::Real(field) }
 }
 
-const fn choice<T>(path: &'static str, meaning: &'static str, choice: Choice<T>) -> Key<T> {
+pub(super) const fn flag<T>(
+    path: &'static str,
+    meaning: &'static str,
+    field: fn(&mut T) -> &mut bool,
+) -> Key<T> {
+    Key { path, units: PURE, bounds: (0.0, 0.0), meaning, slot: Slot::Flag(field) }
+}
+
+pub(super) const fn choice<T>(path: &'static str, meaning: &'static str, choice: Choice<T>) -> Key<T> {
     Key { path, units: PURE, bounds: (0.0, 0.0), meaning, slot: Slot::Choice(choice) }
 }
 
@@ -212,7 +220,7 @@ pub(super) fn model_keys() -> Vec<Key<Model>> {
 }
 
 /// Keys of `[truth.wear]`, `[control]` and `[motion]`.
-pub(super) const RIG_KEYS: [Key<RigConfig>; 34] = [
+pub(super) const RIG_KEYS: [Key<RigConfig>; 35] = [
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),
@@ -307,6 +315,13 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 34] = [
             get: |r| r.control.observer.map_or("own", ObserverName::name),
             set: |r, name| r.control.observer = ObserverName::named(name),
         },
+    ),
+    real(
+        "control.observer_interval",
+        TIMES,
+        (1e-3, 0.064),
+        "how long observers look back that have such a time, to whole milliseconds; 1 over it is the corner of the others",
+        |r| &mut r.control.observer_interval_s,
     ),
     choice(
         "control.creep",

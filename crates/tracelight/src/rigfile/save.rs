@@ -5,7 +5,8 @@ use tracelight_sim::RigConfig;
 
 use crate::failure::Failure;
 
-use super::keys::{Key, RIG_KEYS, Slot, identified_keys, model_keys};
+use super::driving::rig_keys;
+use super::keys::{Key, Slot, identified_keys, model_keys};
 use super::shown;
 
 /// Writes a rig's model, what was identified of it and how it is driven into the rig file it came from, whole or not at all.
@@ -45,7 +46,7 @@ fn updated(text: &str, old: &RigConfig, new: &RigConfig) -> Result<String, Strin
         }
         put(root, &format!("model.{}", key.path), &after)?;
     }
-    for key in RIG_KEYS.iter().filter(|key| !key.path.starts_with("truth.")) {
+    for key in rig_keys().iter().filter(|key| !key.path.starts_with("truth.")) {
         let (before, after) = (shown(key, &mut old.clone()), shown(key, &mut new.clone()));
         if before != after {
             put(root, key.path, &after)?;

@@ -1,6 +1,7 @@
 //! The control engineer's bench, one file a subcommand.
 
 mod bode;
+mod by_hand;
 mod design;
 mod frequency;
 mod friction;
@@ -8,6 +9,7 @@ mod gravity;
 mod head;
 mod identify;
 mod inertia;
+mod lesson;
 mod linearize;
 mod locus;
 mod montecarlo;
@@ -68,6 +70,7 @@ enum LabAction {
     Design(design::DesignArgs),
     Tune(Box<tune::TuneArgs>),
     Reproduce(reproduce::ReproduceArgs),
+    Lesson(lesson::LessonArgs),
     #[command(name = "montecarlo")]
     MonteCarlo(montecarlo::MonteCarloArgs),
 }
@@ -95,6 +98,7 @@ impl LabArgs {
             LabAction::Design(args) => args.voice(),
             LabAction::Tune(args) => args.voice,
             LabAction::Reproduce(args) => args.voice,
+            LabAction::Lesson(args) => args.voice,
             LabAction::MonteCarlo(args) => args.voice,
         }
     }
@@ -122,6 +126,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Design(args) => design::run(args),
         LabAction::Tune(args) => tune::run(args, stop),
         LabAction::Reproduce(args) => reproduce::run(args, stop),
+        LabAction::Lesson(args) => lesson::run(args),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
     }
 }

@@ -3,8 +3,11 @@ use std::fmt::Write;
 use clap::{Args, ValueEnum};
 use tracelight_lab::StepFigures;
 use tracelight_rig::{Joint, TICK_F64_S};
-use tracelight_sim::{BenchTick, LawName, ObserverName, RigConfig, StepResponse, step_response};
+use tracelight_sim::{
+    BenchTick, LawName, ObserverName, RigConfig, StepReference, StepResponse, step_response,
+};
 
+use super::by_hand::ByHandArgs;
 use super::{OutFile, out_file, over_time, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
@@ -17,9 +20,10 @@ use crate::units::Angle;
 /// Send one joint from rest at zero to an angle: overshoot, settling, what stays, on the head as it is and linearized
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Example: tracelight lab step --axis tilt --to 15deg --law state,report-zpk -o steps.svg\n\n\
+    after_help = "Example: tracelight lab step --axis tilt --to 15deg --law state,report-zpk -o steps.svg\n\
+                  Example: tracelight lab step --gains kp=20,kd=1.5 -o mine.svg\n\n\
                   state and pid-ff shape their reference: they are given a move as fast as the rig's limits allow; the other \
-                  laws a jump. The linear response is of the joint by itself, linearized where the step ends, without \
+                  laws a jump, unless --reference says which. The linear response is of the joint by itself, linearized where the step ends, without \
                   Coulomb friction, quantizer and amplifier's limit."
 )]
 pub(crate) struct StepArgs {
@@ -35,6 +39,11 @@ pub(crate) struct StepArgs {
     /// How counts become position and speed [default: as each law is meant]
     #[arg(long, value_name = "OBSERVER", value_parser = observer())]
     observer: Option<ObserverName>,
+    /// How the joint is told [default: as each law is meant]
+    #[arg(long, value_enum)]
+    reference: Option<Told>,
+    #[command(flatten)]
+    by_hand: ByHandArgs,
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     rig: String,
@@ -46,6 +55,15 @@ pub(crate) struct StepArgs {
     out: Vec<OutFile>,
     #[command(flatten)]
     pub(super) voice: Voice,
+}
+
+/// How a joint is told to go somewhere else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Told {
+    /// The setpoint is there at once
+    Jump,
+    /// It goes there as fast as the rig's limits allow
+    Move,
 }
 
 /// A joint on the command line.
@@ -86,9 +104,11 @@ struct Entry {
 }
 
 pub(crate) fn run(args: &StepArgs) -> Result<Answer, Failure> {
-    let rig = rigfile::load(&args.rig)?;
-    let own = [rig.control.law];
-    let laws = if args.law.is_empty() { &own[..] } else { &args.law };
+    let mut rig = rigfile::load(&args.rig)?;
+    let mut laws = args.by_hand.apply(&mut rig, &[args.axis.joint()], &args.law)?;
+    if laws.is_empty() {
+        laws.push(rig.control.law);
+    }
     let entries =
         laws.iter().map(|&law| respond(args, &rig, law)).collect::<Result<Vec<Entry>, Failure>>()?;
     let Some(first) = entries.first() else {
@@ -102,8 +122,13 @@ fn respond(args: &StepArgs, rig: &RigConfig, law: LawName) -> Result<Entry, Fail
     let mut rig = rig.clone();
     choose(&mut rig, law, args.observer);
     let joint = args.axis.joint();
-    let response =
-        step_response(&rig, joint, args.to.0, args.seed).ok_or_else(|| unreachable(joint, args.to))?;
+    let reference = match args.reference {
+        Some(Told::Jump) => StepReference::Jump,
+        Some(Told::Move) => StepReference::Move,
+        None => law.reference(),
+    };
+    let response = step_response(&rig, joint, args.to.0, reference, args.seed)
+        .ok_or_else(|| unreachable(joint, args.to))?;
     let figures = |ticks: &[BenchTick]| figures(ticks, joint, args.to);
     let (nonlinear, linear) = (figures(&response.nonlinear), figures(&response.linear));
     Ok(Entry { law, response, nonlinear, linear })
@@ -229,6 +254,7 @@ const fn colour(law: LawName) -> Colour {
         LawName::State => Colour::Blue,
         LawName::PidFeedforward => Colour::Green,
         LawName::Pid => Colour::Sky,
+        LawName::HandTuned => Colour::Grey,
         LawName::LeadLag => Colour::Purple,
         LawName::ReportZpk => Colour::Vermilion,
         LawName::ReportTimeConstants => Colour::Orange,

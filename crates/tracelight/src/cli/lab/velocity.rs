@@ -42,7 +42,7 @@ pub(crate) struct VelocityArgs {
 }
 
 /// An interval in ticks.
-fn interval(text: &str) -> Result<usize, String> {
+pub(super) fn interval(text: &str) -> Result<usize, String> {
     let time_s = units::parse(text, TIMES).map_err(|e| e.to_string())?;
     let ticks = (time_s / TICK_F64_S).round();
     if (ticks * TICK_F64_S - time_s).abs() < 1e-9 && (1.0..=LONGEST_INTERVAL_TICKS as f64).contains(&ticks) {

@@ -10,6 +10,7 @@ use tracelight_sim::{
     Between, Diagram, LawName, MotionArray, ObserverName, RigConfig, ScopeTick, follow_array,
 };
 
+use super::by_hand::ByHandArgs;
 use super::head::Set;
 use super::shape::switch;
 use super::systems::controller;
@@ -49,6 +50,8 @@ pub(crate) struct SimulateArgs {
     /// How counts become position and speed [default: as each law is meant]
     #[arg(long, value_name = "OBSERVER", value_parser = observer())]
     observer: Option<ObserverName>,
+    #[command(flatten)]
+    by_hand: ByHandArgs,
     /// Transfer functions to follow it by, for pan and for tilt
     #[arg(long, num_args = 2, value_names = ["PAN", "TILT"], allow_hyphen_values = true)]
     controller: Vec<String>,
@@ -135,9 +138,10 @@ struct Figures {
 }
 
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
-    let rig = rig(args)?;
+    let mut rig = rig(args)?;
+    let laws = args.by_hand.apply(&mut rig, &Joint::BOTH, &args.law)?;
     let array = array(args, &rig)?;
-    let entries = entries(args, &rig, &array)?;
+    let entries = entries(args, &rig, &laws, &array)?;
     write_all(&args.out, || figure(args, &rig, &array, &entries), || Ok(csv(&entries)))?;
     Ok(Answer::either(args.voice, || text(args, &rig, &array, &entries), || json(args, &array, &entries)))
 }
@@ -178,19 +182,24 @@ fn array(args: &SimulateArgs, rig: &RigConfig) -> Result<MotionArray, Failure> {
     rows::read(path, between, range_rad)
 }
 
-fn entries(args: &SimulateArgs, rig: &RigConfig, array: &MotionArray) -> Result<Vec<Entry>, Failure> {
+fn entries(
+    args: &SimulateArgs,
+    rig: &RigConfig,
+    laws: &[LawName],
+    array: &MotionArray,
+) -> Result<Vec<Entry>, Failure> {
     let mut runs = Vec::new();
     if let [pan, tilt] = args.controller.as_slice() {
         let controllers = PanTilt::new(controller(pan)?, controller(tilt)?);
         let by = PanTilt::new(pan.clone(), tilt.clone());
         runs.push((by, by_controllers(args, rig, array, controllers)?));
     }
-    if !args.hold && (runs.is_empty() || !args.law.is_empty()) {
+    if !args.hold && (runs.is_empty() || !laws.is_empty()) {
         let message = "--hold off is for a --controller: a law is a program that runs every millisecond";
         return Err(Failure::usage("usage", message));
     }
     let own = [rig.control.law];
-    let named = if args.law.is_empty() && runs.is_empty() { &own[..] } else { &args.law };
+    let named = if laws.is_empty() && runs.is_empty() { &own[..] } else { laws };
     for &law in named {
         let mut rig = rig.clone();
         choose(&mut rig, law, args.observer);
