@@ -7,6 +7,7 @@ mod friction;
 mod identify;
 mod lesson;
 mod linearize;
+mod relay;
 mod statistics;
 mod step;
 mod tune;
@@ -20,6 +21,7 @@ pub use friction::{
 pub use identify::{Identification, IdentifyError, JointFit, LAPS_WORTH, identify, routine};
 pub use lesson::{Ask, Check, Experiment, Graded, Lesson, Quantity};
 pub use linearize::{Linearization, Operation};
+pub use relay::{Degrees, Relay, RelayError, RelayPid, Swing, swing};
 pub use statistics::Quantiles;
 pub use step::StepFigures;
 pub use tune::{Demand, Setting, around, coarse};

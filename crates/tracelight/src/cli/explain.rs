@@ -65,6 +65,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "A joint moved too little to tell what it is made of. Give a longer record, of motion to and fro, or none: then the rig moves by itself.",
     ),
     (
+        "relay",
+        "A relay did not swing a joint evenly, so nothing is tuned from it. The message says why, and which of --level and --hysteresis helps.",
+    ),
+    (
         "not-yet",
         "An answer to a lesson's question was simulated, and some of its figures are not what they must be. The table names each with what helps; `tracelight lab lesson NUMBER` has the text, and -o mine.svg draws what your answer does.",
     ),

@@ -17,6 +17,7 @@ mod moves;
 mod nyquist;
 mod poles;
 mod profile;
+mod relay;
 mod reproduce;
 mod response;
 mod rig_out;
@@ -69,6 +70,7 @@ enum LabAction {
     Response(response::ResponseArgs),
     Design(design::DesignArgs),
     Tune(Box<tune::TuneArgs>),
+    Relay(relay::RelayArgs),
     Reproduce(reproduce::ReproduceArgs),
     Lesson(lesson::LessonArgs),
     #[command(name = "montecarlo")]
@@ -97,6 +99,7 @@ impl LabArgs {
             LabAction::Response(args) => args.voice,
             LabAction::Design(args) => args.voice(),
             LabAction::Tune(args) => args.voice,
+            LabAction::Relay(args) => args.voice,
             LabAction::Reproduce(args) => args.voice,
             LabAction::Lesson(args) => args.voice,
             LabAction::MonteCarlo(args) => args.voice,
@@ -125,6 +128,7 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Response(args) => response::run(args),
         LabAction::Design(args) => design::run(args),
         LabAction::Tune(args) => tune::run(args, stop),
+        LabAction::Relay(args) => relay::run(args),
         LabAction::Reproduce(args) => reproduce::run(args, stop),
         LabAction::Lesson(args) => lesson::run(args),
         LabAction::MonteCarlo(args) => montecarlo::run(args, stop),
