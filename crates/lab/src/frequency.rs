@@ -11,8 +11,8 @@ pub struct Multisine {
     period_ticks: usize,
     /// How many periods each sine has in it, rising.
     harmonics: Vec<usize>,
-    /// Of each sine, V.
-    amplitude_v: f64,
+    /// Amplitude and phase of each sine, V.
+    sines_v: Vec<Complex>,
 }
 
 /// A joint turning one way under a steady voltage and a multisine: friction that does not change sides is a constant, and what is left
@@ -36,8 +36,10 @@ pub struct Excitation {
 /// What was seen of an excited joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excited {
-    /// What the encoder counted before each tick of the watched periods, rad.
+    /// What the encoder counted before each tick of the watched periods, rad,
     pub angles_rad: Vec<f64>,
+    /// and what the amplifier got in it, V.
+    pub volts: Vec<f64>,
     /// It never stood and never turned back: friction was a constant.
     pub one_way: bool,
 }
@@ -69,8 +71,35 @@ impl Multisine {
         let whole = |rad_s: f64| ((rad_s * period_s / TAU).round() as usize).clamp(1, most);
         let mut harmonics: Vec<usize> = logspace(range_rad_s, count).into_iter().map(whole).collect();
         harmonics.dedup();
-        let amplitude_v = amplitude_v / (harmonics.len() as f64).sqrt();
-        Self { period_ticks, harmonics, amplitude_v }
+        let each_v = amplitude_v / (harmonics.len() as f64).sqrt();
+        // such that they are not all at their top at once (Schroeder, *IEEE Trans. Inf. Theory* 16, 1970)
+        let phase = |number: usize| -PI * (number * (number + 1)) as f64 / harmonics.len() as f64;
+        let sines_v = (0..harmonics.len()).map(|number| Complex::from_polar(each_v, phase(number))).collect();
+        Self { period_ticks, harmonics, sines_v }
+    }
+
+    /// What a record of volts, a tick each, has of sines with whole periods in `period_ticks`: all that are not small beside the largest, up to
+    /// four ticks a period; `None` if it is shorter than two periods, or steady.
+    pub fn in_record(period_ticks: usize, volts: &[f64]) -> Option<Self> {
+        /// Share of the largest below which a sine is none.
+        const SMALL: f64 = 0.02;
+        if period_ticks < 4 || volts.len() < 2 * period_ticks {
+            return None;
+        }
+        let count = (volts.len() / period_ticks) as f64;
+        let mean =
+            |tick: usize| volts.chunks_exact(period_ticks).map(|period| period[tick]).sum::<f64>() / count;
+        let period: Vec<f64> = (0..period_ticks).map(mean).collect();
+        let all = Self { period_ticks, harmonics: (1..=period_ticks / 4).collect(), sines_v: Vec::new() };
+        let sines_v = amplitudes(&all, &period);
+        let largest = sines_v.iter().map(|sine| sine.norm()).fold(0.0, f64::max);
+        // what rounding leaves of a steady voltage is none
+        let rounding = 1e-9 * period.iter().map(|v| v.abs()).fold(0.0, f64::max);
+        let least = (SMALL * largest).max(rounding).max(f64::MIN_POSITIVE);
+        let (harmonics, sines_v) =
+            all.harmonics.into_iter().zip(sines_v).filter(|(_, sine)| sine.norm() >= least).unzip();
+        let found = Self { period_ticks, harmonics, sines_v };
+        (!found.harmonics.is_empty()).then_some(found)
     }
 
     /// Its frequencies, rad/s.
@@ -84,17 +113,12 @@ impl Multisine {
         self.period_ticks
     }
 
-    /// Phase of the sine of that number: such that they are not all at their top at once (Schroeder, *IEEE Trans. Inf. Theory* 16, 1970).
-    fn phase(&self, number: usize) -> f64 {
-        -PI * (number * (number + 1)) as f64 / self.harmonics.len() as f64
-    }
-
     /// A period of it, V.
-    fn volts(&self) -> Vec<f64> {
+    pub fn volts(&self) -> Vec<f64> {
         let at = |tick: usize| {
             let turn = TAU * tick as f64 / self.period_ticks as f64;
-            let sine = |(number, &k): (usize, &usize)| (k as f64 * turn + self.phase(number)).cos();
-            self.amplitude_v * self.harmonics.iter().enumerate().map(sine).sum::<f64>()
+            let sine = |(&k, volts): (&usize, &Complex)| volts.norm() * (k as f64 * turn + volts.arg()).cos();
+            self.harmonics.iter().zip(&self.sines_v).map(sine).sum::<f64>()
         };
         (0..self.period_ticks).map(at).collect()
     }
@@ -122,12 +146,14 @@ pub fn excite(head: &mut impl Head, joint: Joint, multisine: &Multisine, how: &E
     }
     let period = multisine.volts();
     let mut angles_rad = Vec::with_capacity(how.watched * period.len());
+    let mut given_v = Vec::with_capacity(how.watched * period.len());
     let (mut one_way, mut since) = (true, 0.0);
     for number in 0..how.settling + how.watched {
         for (k, volts) in period.iter().enumerate() {
             let (angle_rad, step_rad) = tick(how.bias_v + volts);
             if number >= how.settling {
                 angles_rad.push(angle_rad);
+                given_v.push(how.bias_v + volts);
             }
             since += step_rad * how.bias_v.signum();
             if k % OVER_TICKS == OVER_TICKS - 1 {
@@ -136,7 +162,7 @@ pub fn excite(head: &mut impl Head, joint: Joint, multisine: &Multisine, how: &E
             }
         }
     }
-    Excited { angles_rad, one_way }
+    Excited { angles_rad, volts: given_v, one_way }
 }
 
 /// What each sine of a voltage does to the angle, from whole periods. In each the sines are told from a polynomial over time, by which the
@@ -150,7 +176,7 @@ pub fn frequency_response(multisine: &Multisine, angles_rad: &[f64]) -> Vec<Freq
     let point = |(number, rad_s): (usize, f64)| {
         let mean = periods.iter().map(|period| period[number]).sum::<Complex>() / count;
         let power = periods.iter().map(|period| period[number].norm_sqr()).sum::<f64>() / count;
-        let volts = Complex::from_polar(multisine.amplitude_v, multisine.phase(number));
+        let volts = multisine.sines_v[number];
         let coherence = if power > 0.0 { mean.norm_sqr() / power } else { 0.0 };
         let left = (1.0 / coherence - 1.0).max(0.0) / (count - 1.0).max(1.0);
         FrequencyPoint { rad_s, response: mean / volts, coherence, deviation: left.sqrt() }
@@ -256,6 +282,17 @@ mod tests {
         for (found, wanted) in found.iter().zip(&wanted) {
             assert!((found - wanted).norm() < 1e-9, "{found} {wanted}");
         }
+    }
+
+    #[test]
+    fn sines_are_found_in_a_record_of_their_volts() {
+        let made = Multisine::new((TAU * 0.5, TAU * 40.0), 12, 2.0, 1.0);
+        let record: Vec<f64> = made.volts().repeat(3).iter().map(|v| v + 0.7).collect();
+        let found = Multisine::in_record(2000, &record).unwrap();
+        assert_eq!(found.harmonics, made.harmonics);
+        assert!(found.sines_v.iter().zip(&made.sines_v).all(|(a, b)| (a - b).norm() < 1e-9));
+        assert_eq!(Multisine::in_record(2000, &record[..3999]), None);
+        assert_eq!(Multisine::in_record(2000, &[1.0; 6000]), None);
     }
 
     #[test]

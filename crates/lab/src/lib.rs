@@ -2,25 +2,33 @@
 //!
 //! No file is read and no thread started here; what is measured comes as a record of a run, simulated or real.
 
+mod amplifier;
+mod backlash;
+mod encoder;
 mod frequency;
 mod friction;
 mod identify;
 mod lesson;
 mod linearize;
+mod regression;
 mod relay;
 mod statistics;
 mod step;
 mod tune;
 mod velocity;
 
+pub use amplifier::{Amplifier, CurrentPoint, amplifier};
+pub use backlash::{Backlash, SpotPoint, backlash};
+pub use encoder::{EdgeTime, EncoderTable, Lost, Spin, encoder_table, spin};
 pub use frequency::{Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response};
 pub use friction::{
     Believed, Curves, FrictionError, Line, Part, Protocol, Sample, Shuttle, Side, Steady, SteadyPoint,
-    Travel, Trial, Uncertain, curves, free_trial, steady, steady_of,
+    Travel, Trial, curves, free_trial, steady, steady_of,
 };
 pub use identify::{Identification, IdentifyError, JointFit, LAPS_WORTH, identify, routine};
 pub use lesson::{Ask, Check, Experiment, Graded, Lesson, Quantity};
 pub use linearize::{Linearization, Operation};
+pub use regression::Uncertain;
 pub use relay::{Degrees, Relay, RelayError, RelayPid, Swing, swing};
 pub use statistics::Quantiles;
 pub use step::StepFigures;

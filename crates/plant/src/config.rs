@@ -55,6 +55,8 @@ pub struct Wear {
     pub eccentricity_counts: f64,
     /// Time constant with which an amplifier's current follows its command, s.
     pub current_lag_s: f64,
+    /// How much less torque a motor has for each rad/s at its joint, because its own voltage works against the amplifier, N m s/rad.
+    pub back_emf_nm_s_per_rad: f64,
     /// Share by which the supply ripples, with twice the mains frequency, and every volt's torque with it.
     pub supply_ripple: f64,
     /// Spring of the cables that hang on each joint, N m/rad; drawn from the seed is where they do not pull.
@@ -79,6 +81,7 @@ impl Wear {
         encoders_at_motors: true,
         eccentricity_counts: 0.0,
         current_lag_s: 0.0,
+        back_emf_nm_s_per_rad: 0.0,
         supply_ripple: 0.0,
         cable_nm_per_rad: 0.0,
         jitter_s: 0.0,

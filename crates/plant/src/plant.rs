@@ -121,6 +121,11 @@ impl Plant {
         self.relay.stick();
     }
 
+    /// What the motors' currents make at the joints now, N m.
+    pub const fn motor_nm(&self) -> PanTilt<f64> {
+        self.current_nm
+    }
+
     /// Somebody leans on the head: torque at the joints from now on, N m.
     pub fn push(&mut self, torque_nm: PanTilt<f64>) {
         self.push_nm = torque_nm;
@@ -153,7 +158,8 @@ impl Plant {
     fn follow_command(&mut self, asked_nm: PanTilt<f64>, length_s: f64) {
         let ripple = self.wear.supply_ripple * (std::f64::consts::TAU * SUPPLY_HZ * self.time_s).sin();
         let supply = self.supply_left * (1.0 + ripple);
-        let there = asked_nm.map(|asked| supply * asked);
+        let own = self.state.rate_rad_s.map(|rate| self.wear.back_emf_nm_s_per_rad * rate);
+        let there = PanTilt::from_fn(|j| supply * asked_nm[j] - own[j]);
         let lag_s = self.wear.current_lag_s;
         if lag_s == 0.0 {
             self.current_nm = there;

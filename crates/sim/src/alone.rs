@@ -1,6 +1,6 @@
 use tracelight_dynamics::Friction;
 use tracelight_plant::Plant;
-use tracelight_rig::{Head, Joint};
+use tracelight_rig::{Actuation, Head, Joint};
 
 use crate::RigConfig;
 
@@ -20,6 +20,10 @@ const CLAMP_NM: f64 = 1e6;
 /// A rig's simulated head without its controller: one joint free, the other clamped straight ahead. `seed` draws what differs from
 /// head to head.
 pub fn head_alone(rig: &RigConfig, tested: Joint, mounting: Mounting, seed: u64) -> impl Head + use<> {
+    plant_alone(rig, tested, mounting, seed)
+}
+
+fn plant_alone(rig: &RigConfig, tested: Joint, mounting: Mounting, seed: u64) -> Plant {
     let mut config = rig.plant_config();
     if mounting == Mounting::Fixture {
         config.bodies.gravity_m_s2 = 0.0;
@@ -33,9 +37,48 @@ pub fn head_alone(rig: &RigConfig, tested: Joint, mounting: Mounting, seed: u64)
     Plant::new(&config, seed)
 }
 
+/// A joint under a voltage at some moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorReading {
+    /// V.
+    pub volts: f64,
+    /// What the motor's current makes at the joint, mean over the last [`READ_TICKS`], N m.
+    pub motor_nm: f64,
+    /// Counts it went meanwhile.
+    pub counts: i32,
+}
+
+/// Ticks between two readings.
+pub const READ_TICKS: usize = 100;
+
+/// Holds each voltage for so many readings, one after the other, and reads the motor's current as well.
+pub fn motor_readings(
+    rig: &RigConfig,
+    tested: Joint,
+    mounting: Mounting,
+    volts: &[f64],
+    (readings, seed): (usize, u64),
+) -> Vec<MotorReading> {
+    let mut plant = plant_alone(rig, tested, mounting, seed);
+    let mut before = plant.measured()[tested].count;
+    let mut read = |volts: f64| {
+        let mut actuation = Actuation::default();
+        actuation.command_v[tested] = volts as f32;
+        let mut sum_nm = 0.0;
+        for _ in 0..READ_TICKS {
+            plant.exchange(&actuation);
+            sum_nm += plant.motor_nm()[tested];
+        }
+        let after = plant.measured()[tested].count;
+        let counts = after.wrapping_sub(std::mem::replace(&mut before, after));
+        MotorReading { volts, motor_nm: sum_nm / READ_TICKS as f64, counts }
+    };
+    volts.iter().flat_map(|&volts| vec![volts; readings]).map(&mut read).collect()
+}
+
 #[cfg(test)]
 mod tests {
-    use tracelight_rig::{Actuation, PanTilt};
+    use tracelight_rig::PanTilt;
 
     use super::*;
 

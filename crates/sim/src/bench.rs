@@ -20,8 +20,10 @@ pub(crate) struct Bench<H> {
 pub struct BenchTick {
     /// Where the joints should be.
     pub setpoint: PanTilt<Setpoint>,
-    /// Where they truly are, rad.
+    /// Where they truly are, rad,
     pub angle_rad: PanTilt<f64>,
+    /// and where the beam points that they carry, rad.
+    pub beam_rad: PanTilt<f64>,
     /// What the encoders read.
     pub measured: PanTilt<Measurement>,
     /// What is believed.
@@ -34,11 +36,20 @@ pub struct BenchTick {
 pub(crate) trait Truth: Head {
     /// Joint angles, rad.
     fn angle_rad(&self) -> PanTilt<f64>;
+
+    /// What the beam makes of them, rad.
+    fn beam_rad(&self) -> PanTilt<f64> {
+        self.angle_rad()
+    }
 }
 
 impl Truth for Plant {
     fn angle_rad(&self) -> PanTilt<f64> {
         Plant::angle_rad(self)
+    }
+
+    fn beam_rad(&self) -> PanTilt<f64> {
+        Plant::beam_rad(self)
     }
 }
 
@@ -86,11 +97,11 @@ impl<H: Truth> Bench<H> {
             self.servo.observe(&self.config, &self.measured);
         }
         self.begun = true;
-        let angle_rad = self.head.angle_rad();
+        let (angle_rad, beam_rad) = (self.head.angle_rad(), self.head.beam_rad());
         let estimates = *self.servo.estimates();
         let command_v = self.servo.drive(&self.config, reference);
         let measured = self.measured;
         self.measured = self.head.exchange(&Actuation { command_v, gate: false }).encoders;
-        BenchTick { setpoint: reference.now, angle_rad, measured, estimates, command_v }
+        BenchTick { setpoint: reference.now, angle_rad, beam_rad, measured, estimates, command_v }
     }
 }

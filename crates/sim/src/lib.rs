@@ -21,7 +21,7 @@ mod spread;
 mod step;
 mod trouble;
 
-pub use alone::{Mounting, head_alone};
+pub use alone::{MotorReading, Mounting, READ_TICKS, head_alone, motor_readings};
 pub use array::{ArrayError, Between, MotionArray};
 pub use bench::BenchTick;
 pub use compensator::CompensatorLaw;

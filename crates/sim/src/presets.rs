@@ -87,6 +87,8 @@ impl RigConfig {
             eccentricity_counts: 0.1,
             // an inductance of 1 mH a resistance of 1 ohm
             current_lag_s: 1e-3,
+            // inside what was identified as viscous friction
+            back_emf_nm_s_per_rad: 0.0,
             // an unregulated supply under load
             supply_ripple: 0.05,
             // two wires and a plug: 9 mN m at the edge of the picture

@@ -16,6 +16,7 @@ mod schedule;
 mod settings;
 mod sketch;
 mod stop;
+mod table;
 mod units;
 
 use std::process::ExitCode;

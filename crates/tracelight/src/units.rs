@@ -70,6 +70,10 @@ pub(crate) const TIMES: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 /// See [`LENGTHS`].
 pub(crate) const VOLTAGES: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
 /// See [`LENGTHS`].
+pub(crate) const CURRENTS: &[Unit] = &[("A", 1.0), ("mA", 1e-3)];
+/// See [`LENGTHS`].
+pub(crate) const TORQUE_CONSTANTS: &[Unit] = &[("Nm/A", 1.0), ("mNm/A", 1e-3)];
+/// See [`LENGTHS`].
 pub(crate) const TORQUES: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
 /// See [`LENGTHS`].
 pub(crate) const ANGULAR_SPEEDS: &[Unit] = &[("rad/s", 1.0), ("deg/s", DEG)];

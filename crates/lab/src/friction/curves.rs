@@ -5,7 +5,8 @@ use super::pieces::{
     COULOMB, GRAVITY, INERTIA, LEAST_RAD_S, Piece, Row, SHORTEST_S, SPRING, UNKNOWNS, VISCOUS, pieces,
     trials_of,
 };
-use super::{Believed, FrictionError, Side, Trial, Uncertain};
+use super::{Believed, FrictionError, Side, Trial};
+use crate::regression::Uncertain;
 
 /// A joint's friction, inertia and weight from whole curves.
 #[derive(Clone, Debug, PartialEq)]

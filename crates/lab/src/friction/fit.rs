@@ -1,8 +1,8 @@
 use nalgebra::{DMatrix, DVector};
 
-use super::line::student;
+use super::Believed;
 use super::pieces::{COULOMB, GRAVITY, INERTIA, Piece, Row, UNKNOWNS, VISCOUS, trials_of};
-use super::{Believed, Uncertain};
+use crate::regression::{Uncertain, student};
 
 /// Deviation of what is believed of friction and weight, in torques of a volt: wide enough to matter only for what motion does not
 /// tell.

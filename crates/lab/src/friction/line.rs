@@ -1,13 +1,4 @@
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
-/// A value and how well it is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Uncertain {
-    /// The most likely one.
-    pub value: f64,
-    /// Half the width of the interval that has the true one in 95 of 100 cases.
-    pub within: f64,
-}
+use crate::regression::{Uncertain, student};
 
 /// Friction in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,11 +20,6 @@ pub struct Line {
     pub r2: f64,
     /// Points it was laid through.
     pub points: usize,
-}
-
-/// What Student's t is below in 97.5 of 100 cases.
-pub(super) fn student(degrees: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, degrees.max(1.0)).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
 }
 
 impl Line {

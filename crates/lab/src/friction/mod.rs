@@ -22,7 +22,7 @@ use tracelight_rig::Joint;
 
 pub use curves::{Curves, Part, curves};
 pub use error::FrictionError;
-pub use line::{Line, Side, Uncertain};
+pub use line::{Line, Side};
 pub use protocol::{Protocol, Shuttle, Travel, free_trial};
 pub use steady::{Steady, SteadyPoint, steady, steady_of};
 

@@ -65,6 +65,28 @@ const MESSAGES: &[(&str, &str)] = &[
         "A joint moved too little to tell what it is made of. Give a longer record, of motion to and fro, or none: then the rig moves by itself.",
     ),
     (
+        "amplifier-log",
+        "A log of currents is no table of axis,volt,ampere and perhaps velocity_rad_s, axis being pan or tilt; the message names the line.",
+    ),
+    ("amplifier", "Readings of a current tell no amplifier. Give three at least, at different voltages."),
+    (
+        "backlash-log",
+        "A log of where the spot rests is no table of axis,count,way,spot_m, axis being pan or tilt, way 1 or -1; the message names the line.",
+    ),
+    (
+        "backlash",
+        "Readings of where the spot rests tell no play. Give four at least, of places that were come to from both sides, in turns.",
+    ),
+    (
+        "encoder-log",
+        "A log of edges is no table of axis,time_s,count, axis being pan or tilt; the message names the line.",
+    ),
+    ("encoder", "A joint passed too few edges one way to tell where they lie. Turn it further."),
+    (
+        "frequency-log",
+        "A log to tell a frequency response from is no table of axis,time_s,volt,count, a row a millisecond, of two periods at least; the message names the line.",
+    ),
+    (
         "relay",
         "A relay did not swing a joint evenly, so nothing is tuned from it. The message says why, and which of --level and --hysteresis helps.",
     ),

@@ -220,7 +220,7 @@ pub(super) fn model_keys() -> Vec<Key<Model>> {
 }
 
 /// Keys of `[truth.wear]`, `[control]` and `[motion]`.
-pub(super) const RIG_KEYS: [Key<RigConfig>; 35] = [
+pub(super) const RIG_KEYS: [Key<RigConfig>; 36] = [
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),
@@ -270,6 +270,13 @@ pub(super) const RIG_KEYS: [Key<RigConfig>; 35] = [
         (0.0, 100.0),
         "what an encoder reads wrong over a turn because its disc sits beside its axis, counts",
         |r| &mut r.truth.wear.eccentricity_counts,
+    ),
+    real(
+        "truth.wear.back_emf",
+        VISCOUS,
+        (0.0, 10.0),
+        "how much less torque a motor has for each rad/s, by its own voltage",
+        |r| &mut r.truth.wear.back_emf_nm_s_per_rad,
     ),
     real(
         "truth.wear.current_lag",

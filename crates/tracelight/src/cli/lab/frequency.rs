@@ -2,7 +2,7 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::json;
-use tracelight_lab::{Excitation, FrequencyPoint, Multisine, excite, frequency_response};
+use tracelight_lab::{Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response};
 use tracelight_linear::{Discretization, FrequencyResponse, LinearError, TransferFunction, decibels};
 use tracelight_linear::{Polynomial, Time};
 use tracelight_rig::{Joint, TICK_F64_S};
@@ -11,10 +11,11 @@ use tracelight_sim::{Mounting, RigConfig, head_alone};
 use super::step::Axis;
 use super::{OutFile, above_zero, out_file, voltage, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
-use crate::cli::{Answer, Voice};
+use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
-use crate::rigfile;
+use crate::record::MOST_V;
 use crate::units::{ANGULAR_SPEEDS, TIMES};
+use crate::{rigfile, table};
 
 /// Measure a joint's frequency response with many sines at once, its coherence, and hold it against the model
 #[derive(Args, Debug)]
@@ -23,8 +24,14 @@ use crate::units::{ANGULAR_SPEEDS, TIMES};
                   sides is a constant, and what is left of the joint is linear. On top come sines, whole periods of each in a period of all, at \
                   phases that keep their sum low. What the voltage does to the angle is told from the drift by which the joint \
                   turns meanwhile; coherence, from how periods differ, says how much of it is so. The model is the rig file's inertia, friction and torque \
-                  per volt, sampled behind a hold as the counts are.")]
+                  per volt, sampled behind a hold as the counts are.\n\n\
+                  A real head is measured by --volts: a period of the sines on top of the steady voltage, to be played again and again while the \
+                  head turns; its log, axis,time_s,volt,count, a row a millisecond from when it turns evenly, is then given here, with the same --period. Any \
+                  volts that repeat with the period do.")]
 pub(crate) struct FrequencyTrialArgs {
+    /// Log of what a head did: axis,time_s,volt,count; given none, the simulated head is tried
+    #[arg(value_name = "LOG.csv")]
+    log: Option<String>,
     /// Which joint
     #[arg(long, value_enum, default_value = "pan")]
     axis: Axis,
@@ -55,6 +62,12 @@ pub(crate) struct FrequencyTrialArgs {
     /// Seed of what differs from head to head
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
+    /// Write a period of the volts, t_s,volt, to be played to a head
+    #[arg(long, value_name = "FILE.csv")]
+    volts: Option<String>,
+    /// Write what the simulated head did, as a log
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "log")]
+    record: Option<String>,
     /// Plot amplification, phase and coherence into an SVG or PNG, or write them to a CSV; may be given again
     #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
@@ -100,6 +113,17 @@ struct Found {
 }
 
 pub(crate) fn run(args: &FrequencyTrialArgs) -> Result<Answer, Failure> {
+    let rig = rigfile::load(&args.rig)?;
+    let found = match &args.log {
+        Some(path) => logged(args, &rig, path)?,
+        None => measure(args, &rig)?,
+    };
+    write_all(&args.out, || figure(args, &rig, &found), || Ok(csv(&found)))?;
+    Ok(Answer::either(args.voice, || text(args, &rig, &found), || json(args, &found)))
+}
+
+/// Sines that fit into the period.
+fn check_range(args: &FrequencyTrialArgs) -> Result<(), Failure> {
     if args.from >= args.to {
         return Err(Failure::usage("usage", "--from must be below --to"));
     }
@@ -109,13 +133,11 @@ pub(crate) fn run(args: &FrequencyTrialArgs) -> Result<Answer, Failure> {
             format!("--from must be {least:.3} rad/s at least: one turn in a --period of {} s", args.period);
         return Err(Failure::usage("usage", message));
     }
-    let rig = rigfile::load(&args.rig)?;
-    let found = measure(args, &rig)?;
-    write_all(&args.out, || figure(args, &rig, &found), || Ok(csv(&found)))?;
-    Ok(Answer::either(args.voice, || text(args, &rig, &found), || json(args, &found)))
+    Ok(())
 }
 
 fn measure(args: &FrequencyTrialArgs, rig: &RigConfig) -> Result<Found, Failure> {
+    check_range(args)?;
     let joint = args.axis.joint();
     let motor = rig.model.motors[joint];
     let bias_v = motor.volts_for(rig.model.friction[joint].torque(args.speed));
@@ -139,15 +161,95 @@ fn measure(args: &FrequencyTrialArgs, rig: &RigConfig) -> Result<Found, Failure>
         watched: args.periods as usize,
     };
     let mut head = head_alone(rig, joint, Mounting::Fixture, args.seed);
+    if let Some(path) = &args.volts {
+        write_file(path, played(&multisine, bias_v))?;
+    }
     let seen = excite(&mut head, joint, &multisine, &how);
-    let model = model(rig, joint, args.speed)
+    if let Some(path) = &args.record {
+        write_file(path, log(joint, &seen, how.count_rad))?;
+    }
+    found(args, rig, &multisine, (&seen, bias_v))
+}
+
+fn found(
+    args: &FrequencyTrialArgs,
+    rig: &RigConfig,
+    multisine: &Multisine,
+    (seen, bias_v): (&Excited, f64),
+) -> Result<Found, Failure> {
+    let model = model(rig, args.axis.joint(), args.speed.copysign(bias_v))
         .map_err(|e| Failure::failed("no-linear-model", format!("rig {}: {e}", rig.name)))?;
     Ok(Found {
-        points: frequency_response(&multisine, &seen.angles_rad),
+        points: frequency_response(multisine, &seen.angles_rad),
         model: model.frequency_response(multisine.rad_s().collect()),
         bias_v,
         one_way: seen.one_way,
     })
+}
+
+/// A period of volts.
+fn played(multisine: &Multisine, bias_v: f64) -> String {
+    let mut text = String::from("t_s,volt\n");
+    for (number, volts) in multisine.volts().iter().enumerate() {
+        // writing to a String cannot fail
+        let _ = writeln!(text, "{:.3},{:.6}", number as f64 * TICK_F64_S, bias_v + volts);
+    }
+    text
+}
+
+/// What was seen, as a log.
+fn log(joint: Joint, seen: &Excited, count_rad: f64) -> String {
+    let mut text = String::from("axis,time_s,volt,count\n");
+    for (number, (angle_rad, volts)) in seen.angles_rad.iter().zip(&seen.volts).enumerate() {
+        let count = (angle_rad / count_rad).round();
+        let _ = writeln!(text, "{joint},{:.3},{volts:.6},{count}", number as f64 * TICK_F64_S);
+    }
+    text
+}
+
+/// What a log says.
+fn logged(args: &FrequencyTrialArgs, rig: &RigConfig, path: &str) -> Result<Found, Failure> {
+    const CODE: &str = "frequency-log";
+    let joint = args.axis.joint();
+    let count_rad = rig.model.encoder.count_rad();
+    let mut seen = Excited { angles_rad: Vec::new(), volts: Vec::new(), one_way: true };
+    let mut last_s = None;
+    table::read(
+        path,
+        CODE,
+        |names| names.all(["axis", "time_s", "volt", "count"]),
+        |&[axis, time, volt, count], row| {
+            let time_s = row.number(time)?;
+            if row.joint(axis)? != joint {
+                return Ok(());
+            }
+            if let Some(before) = last_s.replace(time_s)
+                && (time_s - before - TICK_F64_S).abs() > 0.01 * TICK_F64_S
+            {
+                let (line, apart) = (row.line, 1e3 * (time_s - before));
+                return Err(format!(
+                    ":{line}: {time_s} s comes {apart:.4} ms after the row before; rows must be 1 ms apart"
+                ));
+            }
+            seen.volts.push(row.up_to(volt, MOST_V, "any amplifier takes, V")?);
+            seen.angles_rad.push(f64::from(row.whole(count)?) * count_rad);
+            Ok(())
+        },
+    )?;
+    let period_ticks = (args.period / TICK_F64_S).round() as usize;
+    let multisine = Multisine::in_record(period_ticks, &seen.volts).ok_or_else(|| {
+        let message = format!(
+            "{path}: {} rows of {joint} hold no two periods of {} s of volts that change: give a longer log, or its own --period",
+            seen.volts.len(),
+            args.period
+        );
+        Failure::usage(CODE, message)
+    })?;
+    let bias_v = seen.volts.iter().sum::<f64>() / seen.volts.len() as f64;
+    // over a twentieth of a second, as the simulated head is watched
+    let turned = seen.angles_rad.windows(51).step_by(50).map(|span| span[50] - span[0]);
+    seen.one_way = turned.into_iter().all(|rad| rad * bias_v > 0.0);
+    found(args, rig, &multisine, (&seen, bias_v))
 }
 
 /// From volts to the angle, as counts see it.
@@ -174,18 +276,25 @@ impl Found {
     }
 }
 
+/// What was done.
+fn in_words(args: &FrequencyTrialArgs, rig: &RigConfig, found: &Found) -> String {
+    let (joint, sines) = (args.axis.joint(), found.points.len());
+    match &args.log {
+        Some(path) => format!(
+            "{joint} by {path}, on rig {}: {sines} sines that repeat each {} s, about {:.3} V",
+            rig.name, args.period, found.bias_v
+        ),
+        None => format!(
+            "{joint} of rig {} in a fixture, turning with {} rad/s under {:.3} V, {sines} sines together like one of {} V, {} periods of {} s",
+            rig.name, args.speed, found.bias_v, args.amplitude, args.periods, args.period
+        ),
+    }
+}
+
 fn text(args: &FrequencyTrialArgs, rig: &RigConfig, found: &Found) -> String {
     let mut text = format!(
-        "{} of rig {} in a fixture, turning with {} rad/s under {:.3} V, {} sines together like one of {} V, {} periods of {} s\n\n\
-         {:>10} {:>14} {:>10} {:>12} {:>10} {:>11} {:>12}",
-        args.axis.joint(),
-        rig.name,
-        args.speed,
-        found.bias_v,
-        found.points.len(),
-        args.amplitude,
-        args.periods,
-        args.period,
+        "{}\n\n{:>10} {:>14} {:>10} {:>12} {:>10} {:>11} {:>12}",
+        in_words(args, rig, found),
         "rad/s",
         "amplified, dB",
         "model, dB",
@@ -297,7 +406,7 @@ fn figure(args: &FrequencyTrialArgs, rig: &RigConfig, found: &Found) -> Result<S
         ),
     ];
     let figure = Figure {
-        title: format!("{} of rig {}, turning with {} rad/s", args.axis.joint(), rig.name, args.speed),
+        title: format!("Frequency response of {}, rig {}", args.axis.joint(), rig.name),
         legend: vec![
             Key::new(Colour::Blue, "dots: measured"),
             Key::new(Colour::Black, "dashed: the rig file's model"),

@@ -1,8 +1,11 @@
 //! The control engineer's bench, one file a subcommand.
 
+mod amplifier;
+mod backlash;
 mod bode;
 mod by_hand;
 mod design;
+mod encoder;
 mod frequency;
 mod friction;
 mod gravity;
@@ -60,6 +63,9 @@ enum LabAction {
     Friction(friction::FrictionArgs),
     Inertia(inertia::InertiaArgs),
     Gravity(gravity::GravityArgs),
+    Amplifier(amplifier::AmplifierArgs),
+    Backlash(backlash::BacklashArgs),
+    Encoder(encoder::EncoderArgs),
     Frequency(frequency::FrequencyTrialArgs),
     Linearize(linearize::LinearizeArgs),
     Locus(locus::LocusArgs),
@@ -89,6 +95,9 @@ impl LabArgs {
             LabAction::Friction(args) => args.voice,
             LabAction::Inertia(args) => args.voice,
             LabAction::Gravity(args) => args.voice,
+            LabAction::Amplifier(args) => args.voice,
+            LabAction::Backlash(args) => args.voice,
+            LabAction::Encoder(args) => args.voice,
             LabAction::Frequency(args) => args.voice,
             LabAction::Linearize(args) => args.voice,
             LabAction::Locus(args) => args.plane.voice,
@@ -118,6 +127,9 @@ pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
         LabAction::Friction(args) => friction::run(args, stop),
         LabAction::Inertia(args) => inertia::run(args, stop),
         LabAction::Gravity(args) => gravity::run(args, stop),
+        LabAction::Amplifier(args) => amplifier::run(args),
+        LabAction::Backlash(args) => backlash::run(args),
+        LabAction::Encoder(args) => encoder::run(args),
         LabAction::Frequency(args) => frequency::run(args),
         LabAction::Linearize(args) => linearize::run(args),
         LabAction::Locus(args) => locus::run(args, stop),

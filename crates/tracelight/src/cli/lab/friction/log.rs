@@ -8,9 +8,8 @@ use tracelight_rig::{Joint, PanTilt};
 use crate::failure::Failure;
 use crate::picture::read_bytes;
 use crate::record::{MOST_V, Row};
+use crate::table::{self, Names};
 
-/// Most rows: ten hours of a sample each 10 ms.
-const MOST_ROWS: usize = 3_600_000;
 /// Most trials of a joint.
 const MOST_TRIALS: usize = 10_000;
 /// A longer time between two rows is a new trial, s.
@@ -29,6 +28,23 @@ enum Columns {
     Measured { torque_nm: usize, rate_rad_s: usize },
 }
 
+/// Where the axis and the rest is.
+fn columns(names: &Names) -> Result<(usize, Columns), String> {
+    let find = |name: &str| names.find(name);
+    let all = (find("volt"), find("time_s"), find("count"), find("torque_nm"), find("velocity_rad_s"));
+    let columns = match all {
+        (Some(volt), Some(time_s), Some(count), ..) => Columns::Counted { volt, time_s, count },
+        (.., Some(torque_nm), Some(rate_rad_s)) => Columns::Measured { torque_nm, rate_rad_s },
+        _ => {
+            return Err(
+                ": its columns must be axis,volt,time_s,count or axis,torque_nm,velocity_rad_s".into()
+            );
+        }
+    };
+    let axis = find("axis").ok_or(": it has no column axis, with pan or tilt in each row")?;
+    Ok((axis, columns))
+}
+
 impl Log {
     /// Reads one more file.
     pub(super) fn read(&mut self, path: &str) -> Result<(), Failure> {
@@ -37,59 +53,31 @@ impl Log {
     }
 
     fn parse(&mut self, bytes: &[u8]) -> Result<(), String> {
-        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(bytes);
-        let header = reader.byte_headers().map_err(|e| format!(": {e}"))?.clone();
-        let find = |name: &str| header.iter().position(|field| field.trim_ascii() == name.as_bytes());
-        let all = (find("volt"), find("time_s"), find("count"), find("torque_nm"), find("velocity_rad_s"));
-        let columns = match all {
-            (Some(volt), Some(time_s), Some(count), ..) => Columns::Counted { volt, time_s, count },
-            (.., Some(torque_nm), Some(rate_rad_s)) => Columns::Measured { torque_nm, rate_rad_s },
-            _ => {
-                return Err(
-                    ": its columns must be axis,volt,time_s,count or axis,torque_nm,velocity_rad_s".into()
-                );
-            }
-        };
-        let axis = find("axis").ok_or(": it has no column axis, with pan or tilt in each row")?;
-        let mut fields = csv::ByteRecord::new();
-        let mut rows = 0;
-        while reader.read_byte_record(&mut fields).map_err(|e| format!(": {e}"))? {
-            let line = fields.position().map_or(0, csv::Position::line);
-            rows += 1;
-            if rows > MOST_ROWS {
-                return Err(format!(":{line}: a log has at most {MOST_ROWS} rows; give a part of it"));
-            }
-            let row = Row { fields: &fields, line };
-            let joint = match row.text(axis) {
-                "pan" => Joint::Pan,
-                "tilt" => Joint::Tilt,
-                other => return Err(format!(":{line}: axis {other:?} is neither pan nor tilt")),
-            };
-            match columns {
-                Columns::Counted { volt, time_s, count } => {
-                    let (volts, count) = (row.number(volt)?, row.whole(count)?);
-                    if volts.abs() > MOST_V {
-                        return Err(format!(
-                            ":{line}: {volts} V is more than the {MOST_V} V of any amplifier"
-                        ));
-                    }
-                    let sample = Sample { time_s: row.number(time_s)?, volts, count };
-                    self.put(joint, sample);
-                    if self.trials[joint].len() > MOST_TRIALS {
-                        return Err(format!(
-                            ":{line}: {joint} has more than {MOST_TRIALS} trials: a time that goes back, or stands still for {LONGEST_GAP_S} s, begins one"
-                        ));
-                    }
-                }
-                Columns::Measured { torque_nm, rate_rad_s } => self.points[joint].push(SteadyPoint {
-                    volts: None,
-                    torque_nm: row.number(torque_nm)?,
-                    rate_rad_s: row.number(rate_rad_s)?,
-                }),
-            }
-        }
+        table::parse(bytes, columns, |(axis, columns), row| self.take(*axis, columns, row))?;
         for trials in [&mut self.trials.pan, &mut self.trials.tilt] {
             trials.retain(|trial| trial.samples.len() > 1);
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, axis: usize, columns: &Columns, row: &Row<'_>) -> Result<(), String> {
+        let (joint, line) = (row.joint(axis)?, row.line);
+        match *columns {
+            Columns::Counted { volt, time_s, count } => {
+                let volts = row.up_to(volt, MOST_V, "any amplifier takes, V")?;
+                let sample = Sample { time_s: row.number(time_s)?, volts, count: row.whole(count)? };
+                self.put(joint, sample);
+                if self.trials[joint].len() > MOST_TRIALS {
+                    return Err(format!(
+                        ":{line}: {joint} has more than {MOST_TRIALS} trials: a time that goes back, or stands still for {LONGEST_GAP_S} s, begins one"
+                    ));
+                }
+            }
+            Columns::Measured { torque_nm, rate_rad_s } => self.points[joint].push(SteadyPoint {
+                volts: None,
+                torque_nm: row.number(torque_nm)?,
+                rate_rad_s: row.number(rate_rad_s)?,
+            }),
         }
         Ok(())
     }

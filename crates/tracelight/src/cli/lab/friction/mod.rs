@@ -153,7 +153,7 @@ pub(super) const HOW_SURE: &str = "\n\n± has the true value in 95 of 100 cases,
 pub(super) fn milli(value: Option<Uncertain>) -> String {
     value.map_or("–".to_owned(), |u| {
         // two digits of how well it is known
-        let digits = (1.0 - (1e3 * u.within).log10().floor()).clamp(0.0, 9.0);
+        let digits = (1.0 - (1e3 * u.within).log10().floor()).clamp(0.0, 6.0);
         if !u.within.is_finite() {
             return format!("{:.4} ± ?", 1e3 * u.value);
         }
