@@ -40,23 +40,35 @@ pub fn backlash(points: &[SpotPoint], distance_m: f64) -> Option<Backlash> {
     let times: Vec<f64> = (0..points.len()).map(|k| k as f64 / last).collect();
     let pooled = regression(&[vec![1.0; points.len()], sides.clone(), times.clone()], &beyond)?;
     let &[zero_rad, play_rad, slip_rad] = pooled.factors.as_slice() else { return None };
-    if let Some(found) = within_places(points, &[sides, times], &beyond) {
-        return Some(Backlash { zero_rad, ..found });
+    let columns = [sides, times];
+    // what is apart by more is another place, rad
+    const PLACE_RAD: f64 = 8e-3;
+    if let Some(found) = within_places(points, &columns, &beyond, PLACE_RAD) {
+        // of a place between two counts half the readings are a count beside the others, slipped or not: play is told from one count
+        let counts = within_places(points, &columns, &beyond, 0.0);
+        let better = counts.filter(|counts| counts.play_rad.within < found.play_rad.within);
+        let (play_rad, left_rad) =
+            better.map_or((found.play_rad, found.left_rad), |counts| (counts.play_rad, counts.left_rad));
+        return Some(Backlash { zero_rad, play_rad, left_rad, ..found });
     }
     let mean = beyond.iter().sum::<f64>() / beyond.len() as f64;
     let beside_rad = beyond.iter().map(|value| Some(value - mean)).collect();
     Some(Backlash { play_rad, zero_rad, slip_rad, left_rad: pooled.left, beside_rad })
 }
 
-/// Play, slip and what is left from readings that are compared only with others of the same place (Frisch and Waugh: the means of
-/// each place are taken out of everything), the beam's lead left out; `None` where too few were come to from both sides.
-fn within_places(points: &[SpotPoint], columns: &[Vec<f64>; 2], beyond: &[f64]) -> Option<Backlash> {
+/// Play, slip and what is left from readings that are compared only with others of the same place, within `place_rad` of each other (Frisch
+/// and Waugh: the means of each place are taken out of everything), the beam's lead left out; `None` where too few were come to from both
+/// sides.
+fn within_places(
+    points: &[SpotPoint],
+    columns: &[Vec<f64>; 2],
+    beyond: &[f64],
+    place_rad: f64,
+) -> Option<Backlash> {
     const LEAST: usize = 8;
-    /// Places are further apart, rad.
-    const APART_RAD: f64 = 8e-3;
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| points[a].angle_rad.total_cmp(&points[b].angle_rad));
-    let near = |a: &usize, b: &usize| points[*b].angle_rad - points[*a].angle_rad <= APART_RAD;
+    let near = |a: &usize, b: &usize| points[*b].angle_rad - points[*a].angle_rad <= place_rad;
     let both = |group: &&[usize]| {
         let way = |sign: f64| group.iter().any(|&k| points[k].way * sign > 0.0);
         way(1.0) && way(-1.0)

@@ -199,6 +199,11 @@ fn the_page_on_moves_shows_what_its_commands_print() {
 }
 
 #[test]
+fn the_page_on_parts_shows_what_its_commands_print() {
+    check_page("parts.md", 4);
+}
+
+#[test]
 fn the_page_on_simulation_shows_what_its_commands_print() {
     check_page("simulate.md", 5);
 }

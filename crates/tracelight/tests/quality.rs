@@ -127,3 +127,29 @@ fn a_batch_is_traced_again_when_its_threshold_changes() {
     assert!(said(&[]).contains("0 traced, 2 kept"));
     assert!(said(&["--threshold", "40"]).contains("2 traced, 0 kept"));
 }
+
+#[test]
+fn a_pictures_way_to_ink_can_be_looked_at() {
+    let dir = support::folder("stages");
+    let shown = dir.join("stages.svg");
+    let path = shown.to_str().unwrap();
+    let output = support::run(&["strokes", "examples/house.png", "--stages", path]);
+    assert!(output.status.success());
+    let svg = std::fs::read_to_string(&shown).unwrap();
+    assert_eq!(svg.matches("<image ").count(), 3, "grey, evened out, ink");
+    assert!(svg.contains("house.png: from grey to ink") && svg.contains("darkness; ink from "));
+    let drawing = dir.join("line.svg").to_str().unwrap().to_owned();
+    std::fs::write(
+        &drawing,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9mm\" height=\"9mm\" viewBox=\"0 0 9 9\"><path d=\"M1 1L8 8\"/></svg>",
+    )
+    .unwrap();
+    for (pictures, what) in [
+        (&[drawing.as_str()][..], "has strokes already"),
+        (&["examples/house.png", "examples/star.png"][..], "--stages is of one picture"),
+    ] {
+        let output = support::run(&[&["strokes", "--stages", path], pictures].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && said.contains(what), "{said}");
+    }
+}

@@ -4,17 +4,18 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, json};
+use tracelight_vision::Stages;
 
 use crate::batch::figures::Figures;
 use crate::batch::pictures::{self, Picture, stands_for_several};
 use crate::batch::{self, Batch, Finding, Out, places};
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::cli::{Answer, Voice};
+use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
-use crate::output::counted;
 use crate::output::drawing::{self, FORMATS};
-use crate::picture;
+use crate::output::{self, counted};
+use crate::picture::{self, Source};
 use crate::progress::Progress;
 use crate::quality::QualityFigures;
 use crate::sketch::{Sketch, place, sketch};
@@ -40,6 +41,9 @@ pub(crate) struct StrokesArgs {
     /// Format of the files in a folder
     #[arg(long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(FORMATS))]
     format: Option<String>,
+    /// Show in an SVG how the picture becomes ink: grey, light evened out, histogram and threshold, ink; of one picture
+    #[arg(long, value_name = "FILE.svg")]
+    stages: Option<PathBuf>,
     #[command(flatten)]
     tracing: TracingArgs,
     /// Also the pictures in the folders of a folder
@@ -60,6 +64,9 @@ pub(crate) struct StrokesArgs {
 pub(crate) fn run(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
     match args.pictures.as_slice() {
         [only] if !stands_for_several(only) => single(args, only),
+        _ if args.stages.is_some() => {
+            Err(Failure::usage("usage", "--stages is of one picture: give only that"))
+        }
         _ => many(args, stop),
     }
 }
@@ -132,6 +139,7 @@ fn made_with(args: &StrokesArgs) -> String {
         placement,
         format: _,
         pictures: _,
+        stages: _,
         out: _,
         recursive: _,
         jobs: _,
@@ -144,7 +152,11 @@ fn made_with(args: &StrokesArgs) -> String {
 }
 
 fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding, Failure> {
-    let mut sketch = sketch(picture, picture::read(picture)?, &args.tracing, &args.placement)?;
+    let source = picture::read(picture)?;
+    if let Some(path) = &args.stages {
+        write_file(&path.display().to_string(), stages(picture, &source, &args.tracing)?)?;
+    }
+    let mut sketch = sketch(picture, source, &args.tracing, &args.placement)?;
     sketch.picture = None; // its colours are not needed, and large
     let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let json = (args.voice.json || path.is_some_and(is_json)).then(|| pixel_json(&sketch));
@@ -158,6 +170,19 @@ fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding
         json: json.filter(|_| args.voice.json),
         vision_ms: sketch.vision_ms,
     })
+}
+
+/// How a picture becomes ink.
+fn stages(picture: &str, source: &Source, tracing: &TracingArgs) -> Result<String, Failure> {
+    let Source::Pixels(pixels) = source else {
+        let message = format!("--stages: {picture} has strokes already, and no ink to be found");
+        return Err(Failure::usage("usage", message));
+    };
+    let stages = Stages::of(&pixels.grey, tracing.threshold.0)
+        .map_err(|e| Failure::failed("no-strokes-found", format!("{picture}: {e}")))?;
+    let name =
+        Path::new(picture).file_name().map_or_else(|| picture.to_owned(), |n| n.to_string_lossy().into());
+    output::stages::figure(&name, &pixels.grey, &stages)
 }
 
 fn pixel_json(sketch: &Sketch) -> String {

@@ -21,6 +21,7 @@ mod preview;
 mod raster;
 mod report;
 mod sample;
+pub(crate) mod stages;
 mod summary;
 mod words;
 

@@ -179,8 +179,8 @@ fn text(args: &AmplifierArgs, rig: &RigConfig, found: &[Found]) -> String {
         // writing to a String cannot fail
         let _ = write!(text, "\n\n{:32} {:>22} {:>17}", joint.name(), "found", "the rig file has");
         for (what, found, had) in rows {
-            let had = had.map_or(String::new(), |had| format!("{had:.4}"));
-            let _ = write!(text, "\n{what:32} {found:>22} {had:>17}");
+            let had = had.map_or(String::new(), |had| format!(" {had:>17.4}"));
+            let _ = write!(text, "\n{what:32} {found:>22}{had}");
         }
         let _ = write!(
             text,

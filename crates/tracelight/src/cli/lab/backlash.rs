@@ -222,7 +222,9 @@ fn text(args: &BacklashArgs, rig: &RigConfig, found: &[Found]) -> String {
             ("further at the end", backlash.slip_rad),
         ];
         for (what, rad) in rows {
-            let cell = |scale: f64| format!("{:.3} ± {:.3}", scale * rad.value, scale * rad.within);
+            // what rounds to none has no sign
+            let shown = |value: f64| (1e3 * value).round() / 1e3 + 0.0;
+            let cell = |scale: f64| format!("{:.3} ± {:.3}", shown(scale * rad.value), scale * rad.within);
             let _ = write!(
                 text,
                 "\n{what:24} {:>18} {:>18} {:>18}",

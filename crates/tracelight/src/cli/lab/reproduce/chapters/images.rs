@@ -1,4 +1,4 @@
-use super::{Book, MILLI, command, text};
+use super::{Book, MILLI, Run, command, text};
 use crate::cli::lab::reproduce::{Chapter, Compared, Part, arrays};
 
 impl Book<'_> {
@@ -53,8 +53,13 @@ impl Book<'_> {
                      Ours finds lines, shapes, corners and crossings between pixels.",
                 ),
                 Part::Run(ruler),
+                text(
+                    "A histogram says whether a picture has enough contrast, else another is taken; a threshold takes away what is not ink. Here the threshold is where ink \
+                     and paper lie furthest apart (Otsu), once uneven light is taken out, and a picture that is refused is refused with the figure that failed and its bound.",
+                ),
+                Part::Run(self.stages(&ring)),
                 strokes(
-                    "Figures 24 to 27: the report's tracer on a circle of 320 × 240 px",
+                    "Figures 26 and 27: the first pixel, then from point to point, on the same circle",
                     &ring,
                     &sweep,
                     "swept-ring.svg",
@@ -65,6 +70,18 @@ impl Book<'_> {
                 strokes("As it is traced here", &star, &[], "traced-star.svg"),
             ],
         }
+    }
+
+    /// A picture becomes ink.
+    fn stages(&self, picture: &str) -> Run {
+        let mut stages = command(
+            "Figures 24 to 27, the first steps they wire up: grey, histogram and threshold, ink, on a circle of 320 × 240 px",
+            &["strokes", picture],
+        );
+        let shown = self.path("figures", "stages.svg");
+        stages.arguments.extend(["--stages".to_owned(), shown.clone()]);
+        stages.figure = Some(shown.into());
+        stages
     }
 
     pub(super) fn laser(&self) -> Chapter {

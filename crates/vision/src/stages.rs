@@ -1,0 +1,64 @@
+use crate::ink::Ink;
+use crate::{Grey, VisionError};
+
+/// What an image is on its way to strokes.
+#[derive(Clone, Debug)]
+pub struct Stages {
+    /// Of both planes, px: the image's, or less where it is so large that pixels are averaged.
+    pub width: usize,
+    /// The same.
+    pub height: usize,
+    /// Row by row: how dark each pixel is beside its paper, the light evened out; 0 is paper, 255 total darkness. Of light ink on dark
+    /// paper, how light.
+    pub darkness: Vec<u8>,
+    /// What is darker is ink.
+    pub threshold: u8,
+    /// Row by row: what is taken for ink. More than the threshold says where there is a second, paler ink; less where the paper is ruled.
+    pub ink: Vec<bool>,
+}
+
+impl Stages {
+    /// Of an image; `threshold_percent` is the darkness from which on it is ink, % of its paper's brightness, `None`: found.
+    ///
+    /// # Errors
+    /// As [`trace`](crate::trace): an image without ink.
+    pub fn of(image: &Grey, threshold_percent: Option<f64>) -> Result<Self, VisionError> {
+        let ink = Ink::of(image, threshold_percent)?;
+        let mask = ink.mask();
+        let (width, height) = (ink.darkness.width, ink.darkness.height);
+        let at = |i: usize| mask.get((i % width) as isize, (i / width) as isize);
+        Ok(Self {
+            width,
+            height,
+            ink: (0..width * height).map(at).collect(),
+            threshold: ink.threshold,
+            darkness: ink.darkness.values,
+        })
+    }
+
+    /// How many pixels there are of each darkness.
+    pub fn histogram(&self) -> [usize; 256] {
+        let mut counts = [0; 256];
+        self.darkness.iter().for_each(|&level| counts[usize::from(level)] += 1);
+        counts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stages_of_a_line_are_its_own() {
+        let line = |x: usize, y: usize| y == 20 && (10..50).contains(&x) || y == 21 && (10..50).contains(&x);
+        let levels = (0..60 * 40).map(|i| if line(i % 60, i / 60) { 40 } else { 220 }).collect();
+        let stages = Stages::of(&Grey::new(60, 40, levels).unwrap(), None).unwrap();
+        assert_eq!((stages.width, stages.height), (60, 40));
+        let counts = stages.histogram();
+        assert_eq!(counts.iter().sum::<usize>(), 60 * 40);
+        assert_eq!(stages.ink.iter().filter(|ink| **ink).count(), 80);
+        assert!((0..60 * 40).all(|i| stages.ink[i] == line(i % 60, i / 60)));
+        let over: usize = counts[usize::from(stages.threshold) + 1..].iter().sum();
+        assert_eq!(over, 80, "threshold {}", stages.threshold);
+    }
+}
