@@ -46,9 +46,8 @@ pub fn backlash(points: &[SpotPoint], distance_m: f64) -> Option<Backlash> {
     if let Some(found) = within_places(points, &columns, &beyond, PLACE_RAD) {
         // of a place between two counts half the readings are a count beside the others, slipped or not: play is told from one count
         let counts = within_places(points, &columns, &beyond, 0.0);
-        let better = counts.filter(|counts| counts.play_rad.within < found.play_rad.within);
         let (play_rad, left_rad) =
-            better.map_or((found.play_rad, found.left_rad), |counts| (counts.play_rad, counts.left_rad));
+            counts.map_or((found.play_rad, found.left_rad), |counts| (counts.play_rad, counts.left_rad));
         return Some(Backlash { zero_rad, play_rad, left_rad, ..found });
     }
     let mean = beyond.iter().sum::<f64>() / beyond.len() as f64;
@@ -134,13 +133,14 @@ mod tests {
             .iter()
             .zip(0..)
             .map(|(p, k)| SpotPoint {
-                angle_rad: p.angle_rad + 0.1 * f64::from(k),
-                spot_m: -distance * ((-p.spot_m / distance).atan() + 0.1 * f64::from(k)).tan(),
+                angle_rad: p.angle_rad + 0.012 * f64::from(k),
+                spot_m: -distance * ((-p.spot_m / distance).atan() + 0.012 * f64::from(k)).tan(),
                 ..*p
             })
             .collect();
         let pooled = backlash(&counted, distance).unwrap();
-        assert!((pooled.play_rad.value - play).abs() < 1.5 * pooled.play_rad.within, "{pooled:?}");
+        assert!((pooled.play_rad.value - play).abs() < 1.5 * pooled.play_rad.within, "{:?}", pooled.play_rad);
+        assert!(pooled.play_rad.within < 4e-4, "{:?}", pooled.play_rad);
         let one_side: Vec<SpotPoint> = points.iter().filter(|p| p.way > 0.0).copied().collect();
         assert_eq!(backlash(&one_side, distance), None);
     }

@@ -104,20 +104,20 @@ pub fn spin(head: &mut impl Head, joint: Joint, how: &Spin) -> Vec<EdgeTime> {
 }
 
 /// What edges say of their encoder: of a joint that turned evenly, once or to and fro, each run one way. `None` of too few edges.
-/// A smooth motion is laid through the edges about each edge; it lies beside it by where the edge is not in its place.
+/// A smooth motion is laid through the edges about each edge; it lies beside it by where the edge is not in its place. All runs are of one
+/// counter, in order: what it lost in one is missing in all that follow. `None` as well of times that do not rise, and of a kind of edge that is
+/// never seen.
 pub fn encoder_table(runs: &[Vec<EdgeTime>], count_rad: f64) -> Option<EncoderTable> {
-    let mut lost = Vec::new();
-    let mut runs: Vec<Run> = runs.iter().filter_map(|edges| Run::new(edges, &mut lost)).collect();
-    if runs.is_empty() {
-        return None;
-    }
+    let (mut lost, mut missing) = (Vec::new(), 0);
+    let mut runs: Vec<Run> =
+        runs.iter().filter_map(|edges| Run::new(edges, &mut missing, &mut lost)).collect();
     // the motion is laid through edges that lie beside their places: again, with what was found
     let mut table = [0.0; PHASES];
     for _ in 0..3 {
         runs.iter_mut().for_each(|run| run.judge(&table));
-        table = kinds(&runs).map(|kind| kind.value);
+        table = kinds(&runs)?.map(|kind| kind.value);
     }
-    let kinds_counts = kinds(&runs);
+    let kinds_counts = kinds(&runs)?;
     let left = runs.iter().flat_map(|run| run.beside.iter().map(|(k, beside)| beside - table[run.kind(*k)]));
     let (count, squares) = left.fold((0.0, 0.0), |(n, sum), v| (n + 1.0, sum + v * v));
     Some(EncoderTable {
@@ -137,24 +137,74 @@ struct Run {
 }
 
 impl Run {
-    /// Counts that were lost are put back, so that edges keep their kinds.
-    fn new(edges: &[EdgeTime], lost: &mut Vec<Lost>) -> Option<Self> {
-        if edges.len() < LEAST_EDGES {
+    /// Counts that were lost are put back, so that edges keep their kinds; `missing` are those that runs before have lost. `None` of too few
+    /// edges, or of times that do not rise.
+    fn new(edges: &[EdgeTime], missing: &mut i32, lost: &mut Vec<Lost>) -> Option<Self> {
+        /// One loss may hide another beside it.
+        const PASSES: usize = 4;
+        let rising = edges.windows(2).all(|pair| pair[0].time_s < pair[1].time_s);
+        if edges.len() < LEAST_EDGES || !rising {
             return None;
         }
-        let way = (edges[edges.len() - 1].edge - edges[0].edge).signum();
-        let mut edges = edges.to_vec();
-        let clear = clear(&edges);
-        for k in REACH..edges.len() - REACH {
-            let jump = jump(&edges, k);
-            if jump.abs() < clear {
+        let way = (edges[edges.len() - 1].edge.wrapping_sub(edges[0].edge)).signum();
+        let edges = edges.iter().map(|e| EdgeTime { edge: e.edge.wrapping_add(*missing), ..*e }).collect();
+        let mut run = Self { edges, beside: Vec::new() };
+        let mut table = [0.0; PHASES];
+        for _ in 0..PASSES {
+            let jumps = run.jumps(&table);
+            let (mut more, mut next) = (0_i32, jumps.iter().peekable());
+            for (k, edge) in run.edges.iter_mut().enumerate() {
+                if let Some((_, counts)) = next.next_if(|(at, _)| *at == k) {
+                    more += counts;
+                    lost.push(Lost { time_s: edge.time_s, count: edge.edge, counts: counts * way });
+                }
+                edge.edge = edge.edge.wrapping_add(more);
+            }
+            *missing += more;
+            // what lies beside its place hides what is lost
+            run.judge(&table);
+            table = kinds(std::slice::from_ref(&run)).map_or(table, |kinds| kinds.map(|kind| kind.value));
+        }
+        Some(run)
+    }
+
+    /// Where counts are missing, and how many: where the motions before and after an edge are furthest apart, by more than times that are
+    /// not exact put them.
+    fn jumps(&self, table: &[f64; PHASES]) -> Vec<(usize, i32)> {
+        const LEAST: f64 = 0.5;
+        const DEVIATIONS: f64 = 8.0;
+        let all: Vec<f64> = (REACH..self.edges.len() - REACH).map(|k| self.jump(k, table)).collect();
+        let mut sizes: Vec<f64> = all.iter().map(|jump| jump.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        // half of what is normally distributed lies within 0.674 deviations
+        let deviation = sizes.get(sizes.len() / 2).map_or(0.0, |median| median / 0.674);
+        let clear = LEAST.max(DEVIATIONS * deviation);
+        let mut found = Vec::new();
+        let mut k = 0;
+        while k < all.len() {
+            if all[k].abs() < clear {
+                k += 1;
                 continue;
             }
-            let (here, missing) = (edges[k], jump.round() as i32);
-            lost.push(Lost { time_s: here.time_s, count: here.edge, counts: missing * way });
-            edges[k..].iter_mut().for_each(|edge| edge.edge += missing);
+            // it is in the window from here on
+            let end = (k + SIDE).min(all.len());
+            let at = (k..end).max_by(|&a, &b| all[a].abs().total_cmp(&all[b].abs())).unwrap_or(k);
+            found.push((at + REACH, all[at].round() as i32));
+            k = at + SIDE;
         }
-        Some(Self { edges, beside: Vec::new() })
+        found
+    }
+
+    /// How many counts are missing from edge k on, by the motions before and after it.
+    fn jump(&self, k: usize, table: &[f64; PHASES]) -> f64 {
+        let edges = &self.edges;
+        let middle_s = 0.5 * (edges[k - 1].time_s + edges[k].time_s);
+        let base = edges[k - 1].edge;
+        let at = |range: std::ops::Range<usize>| {
+            let place = |i: usize| f64::from(edges[i].edge.wrapping_sub(base)) + table[self.kind(i)];
+            parabola(range.map(|i| (edges[i].time_s - middle_s, place(i))))
+        };
+        at(k - SIDE..k).zip(at(k..k + SIDE)).map_or(0.0, |(before, after)| before - after)
     }
 
     fn kind(&self, number: usize) -> usize {
@@ -175,27 +225,8 @@ impl Run {
     }
 }
 
-/// What a jump must be at least to be lost counts and not edges beside their places, or times that are not exact.
-fn clear(edges: &[EdgeTime]) -> f64 {
-    const LEAST: f64 = 0.7;
-    const DEVIATIONS: f64 = 8.0;
-    let mut jumps: Vec<f64> = (REACH..edges.len() - REACH).map(|k| jump(edges, k).abs()).collect();
-    jumps.sort_by(f64::total_cmp);
-    // half of what is normally distributed lies within 0.674 deviations
-    let deviation = jumps.get(jumps.len() / 2).map_or(0.0, |median| median / 0.674);
-    LEAST.max(DEVIATIONS * deviation)
-}
-
-/// How many counts are missing from edge k on, by the motions before and after it.
-fn jump(edges: &[EdgeTime], k: usize) -> f64 {
-    const SIDE: usize = 12;
-    let middle_s = 0.5 * (edges[k - 1].time_s + edges[k].time_s);
-    let base = edges[k - 1].edge;
-    let at = |range: std::ops::Range<usize>| {
-        parabola(edges[range].iter().map(|e| (e.time_s - middle_s, f64::from(e.edge.wrapping_sub(base)))))
-    };
-    at(k - SIDE..k).zip(at(k..k + SIDE)).map_or(0.0, |(before, after)| before - after)
-}
+/// Edges on either side by which a jump is seen.
+const SIDE: usize = 12;
 
 /// Where the parabola of least squares through these points is at zero; `None` if they tell none.
 fn parabola(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
@@ -214,8 +245,9 @@ fn parabola(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     at.is_finite().then_some(at)
 }
 
-/// The mean of each kind, and how well it is known: edges are independent of each other by more than their reach.
-fn kinds(runs: &[Run]) -> [Uncertain; PHASES] {
+/// The mean of each kind, and how well it is known; `None` if one is hardly seen.
+fn kinds(runs: &[Run]) -> Option<[Uncertain; PHASES]> {
+    const LEAST: f64 = 8.0;
     let mut sums = [(0.0, 0.0, 0.0); PHASES];
     for run in runs {
         for (k, beside) in &run.beside {
@@ -223,14 +255,16 @@ fn kinds(runs: &[Run]) -> [Uncertain; PHASES] {
             (*count, *sum, *squares) = (*count + 1.0, *sum + beside, *squares + beside * beside);
         }
     }
+    if sums.iter().any(|(count, ..)| *count < LEAST) {
+        return None;
+    }
     let each = sums.map(|(count, sum, squares)| {
-        let count = f64::max(count, 1.0);
         let mean = sum / count;
         let variance = (squares / count - mean * mean).max(0.0);
         Uncertain { value: mean, within: 1.96 * (variance / count).sqrt() }
     });
     let mean = each.iter().map(|kind| kind.value).sum::<f64>() / PHASES as f64;
-    each.map(|kind| Uncertain { value: kind.value - mean, ..kind })
+    Some(each.map(|kind| Uncertain { value: kind.value - mean, ..kind }))
 }
 
 /// What repeats with a turn: runs of both ways count alike, so that what friction does over a turn, which turns round with the way,
@@ -285,8 +319,19 @@ mod tests {
 
     /// Edges of a joint that slows down a little, of a known encoder, each jittered by a hundredth of a count.
     fn made(table: [f64; 4], eccentric: f64, direction: f64, way: f64, lost_at: &[usize]) -> Vec<EdgeTime> {
+        later(table, (eccentric, direction), way, lost_at, 0)
+    }
+
+    /// The same of a counter that has lost some before.
+    fn later(
+        table: [f64; 4],
+        (eccentric, direction): (f64, f64),
+        way: f64,
+        lost_at: &[usize],
+        before: i32,
+    ) -> Vec<EdgeTime> {
         let mut dice = oorandom::Rand64::new(7);
-        let mut missing = 0;
+        let mut missing = before;
         (0..20_000)
             .map(|number: usize| {
                 let edge = (way * number as f64 * 3.0) as i32;
@@ -300,8 +345,8 @@ mod tests {
                 let way_rad = angle * way;
                 // 10 rad/s t − 0.02 t²
                 let time_s = (10.0 - (100.0 - 0.08 * way_rad).sqrt()) / 0.04;
-                missing += i32::from(lost_at.contains(&number));
-                EdgeTime { time_s, edge: edge - missing * way as i32 }
+                missing += way as i32 * i32::from(lost_at.contains(&number));
+                EdgeTime { time_s, edge: edge - missing }
             })
             .collect()
     }
@@ -309,7 +354,8 @@ mod tests {
     #[test]
     fn a_known_encoder_is_found() {
         let table = [0.08, -0.05, 0.02, -0.05];
-        let runs = [made(table, 0.3, 1.0, 1.0, &[5000, 12_345]), made(table, 0.3, 1.0, -1.0, &[])];
+        // the way back begins with the two counts that are missing
+        let runs = [made(table, 0.3, 1.0, 1.0, &[5000, 12_345]), later(table, (0.3, 1.0), -1.0, &[], 2)];
         let found = encoder_table(&runs, COUNT_RAD).unwrap();
         for (kind, wanted) in found.kinds_counts.iter().zip(table) {
             assert!((kind.value - wanted).abs() < 1e-3, "{kind:?} {wanted}");
@@ -334,6 +380,29 @@ mod tests {
         assert!(found.kinds_counts.iter().all(|kind| kind.value.abs() < 1e-3) && found.lost.is_empty());
         assert!(found.eccentricity.unwrap().0.value < 2e-3);
         assert_eq!(encoder_table(&[made([0.0; 4], 0.0, 0.0, 1.0, &[])[..100].to_vec()], COUNT_RAD), None);
+        let still = [EdgeTime { time_s: 0.0, edge: 1 }; 400].to_vec();
+        assert_eq!(encoder_table(&[still], COUNT_RAD), None, "times that do not rise");
+        let halved =
+            made([0.0; 4], 0.0, 0.0, 1.0, &[]).into_iter().filter(|edge| edge.edge % 2 == 0).collect();
+        assert_eq!(encoder_table(&[halved], COUNT_RAD), None, "two kinds are never seen");
+    }
+
+    #[test]
+    fn counts_lost_beside_each_other_are_found() {
+        let table = [0.08, -0.05, 0.02, -0.05];
+        for lost_at in [&[5000, 5001, 5002][..], &[5000, 5040], &[3000, 9000, 9001]] {
+            let found = encoder_table(&[made(table, 0.0, 0.0, 1.0, lost_at)], COUNT_RAD).unwrap();
+            assert_eq!(
+                found.lost.iter().map(|l| l.counts).sum::<i32>() as usize,
+                lost_at.len(),
+                "{:?} {:?}",
+                found.lost,
+                found.left_counts
+            );
+            for (kind, wanted) in found.kinds_counts.iter().zip(table) {
+                assert!((kind.value - wanted).abs() < 2e-3, "{lost_at:?}: {kind:?} {wanted}");
+            }
+        }
     }
 
     /// The simulated head's own encoder, worn: the same whichever way and however fast it is looked at.

@@ -62,6 +62,8 @@ pub enum RelayError {
     Ran(Joint, Degrees),
     /// It swung, but each time otherwise.
     Uneven(Joint, f64),
+    /// What holds it and the relay together are more than its amplifier gives.
+    Limit(Joint),
     /// No PID of that form has that margin.
     Margin(f64),
 }
@@ -90,6 +92,10 @@ impl fmt::Display for RelayError {
                 f,
                 "{joint} does not settle to one swing: its last periods differ by {:.0} %; give the relay more --hysteresis, or more volts",
                 100.0 * share
+            ),
+            Self::Limit(joint) => write!(
+                f,
+                "what holds {joint} and the relay together are more than its amplifier gives; give the relay fewer volts"
             ),
             Self::Margin(degrees) => write!(
                 f,
@@ -167,7 +173,10 @@ fn half(
     (way, hold_v): (f64, f64),
     record: &mut Record,
 ) -> Result<(usize, f64), RelayError> {
-    let volts = (hold_v + way * relay.level_v).clamp(-relay.limit_v, relay.limit_v);
+    let volts = hold_v + way * relay.level_v;
+    if volts.abs() > relay.limit_v {
+        return Err(RelayError::Limit(joint));
+    }
     let mut actuation = Actuation::default();
     actuation.command_v[joint] = volts as f32;
     let mut furthest_rad = 0.0_f64;
@@ -317,7 +326,9 @@ mod tests {
         let of =
             |relay: &Relay| swing(&mut head_alone(&rig, Joint::Pan, Mounting::Fixture, 0), Joint::Pan, relay);
         assert_eq!(of(&weak).map(|s| s.period_s), Err(RelayError::Stood(Joint::Pan)));
-        let wild = Relay { level_v: 10.0, hysteresis_rad: 0.1, ..weak };
+        let strong = Relay { level_v: 12.0, ..weak };
+        assert_eq!(of(&strong).map(|s| s.period_s), Err(RelayError::Limit(Joint::Pan)));
+        let wild = Relay { level_v: 9.0, hysteresis_rad: 0.1, limit_v: 99.0, ..weak };
         assert!(matches!(of(&wild), Err(RelayError::Ran(..))));
     }
 

@@ -44,6 +44,7 @@ impl TransferFunction {
                 let near = closed.roots_near(&last).filter(|_| !poles.is_empty());
                 near.unwrap_or_else(|| nearest(&last, closed.root_values()))
             });
+            follower.remember(gain, &last, &next);
             last.clone_from(&next);
             poles.push(next);
         }
@@ -144,6 +145,10 @@ struct Follower {
     below: Vec<f64>,
     above: Vec<f64>,
     coefficients: Vec<f64>,
+    /// How far each pole went last, and over which factor of the gain, as a logarithm.
+    moved: Option<(Vec<Complex>, f64)>,
+    /// Logarithm of the last gain.
+    at: f64,
 }
 
 impl Follower {
@@ -154,7 +159,37 @@ impl Follower {
             below: padded(open.denominator()),
             above: padded(open.numerator()),
             coefficients: vec![0.0; size],
+            moved: None,
+            at: f64::NAN,
         }
+    }
+
+    /// Where poles will be that go on as they went: of three steps there one is saved. Not where one would come near another.
+    fn ahead(&self, last: &[Complex], by: f64) -> Option<Vec<Complex>> {
+        /// Share of the distance to another that a pole may go.
+        const NEAR: f64 = 0.1;
+        let (moved, over) = self.moved.as_ref()?;
+        let share = by / over;
+        if !(share.is_finite() && 0.0 < share && share < 2.0) || moved.len() != last.len() {
+            return None;
+        }
+        let step = |i: usize| share * moved[i];
+        let free = |i: usize| {
+            let far = step(i).norm_sqr();
+            last.iter()
+                .enumerate()
+                .all(|(j, other)| j == i || far <= NEAR * NEAR * (last[i] - other).norm_sqr())
+        };
+        (0..last.len()).all(free).then(|| last.iter().enumerate().map(|(i, place)| place + step(i)).collect())
+    }
+
+    /// Remembers where poles went.
+    fn remember(&mut self, gain: f64, last: &[Complex], next: &[Complex]) {
+        let at = gain.ln();
+        let by = at - self.at;
+        self.moved = (last.len() == next.len() && by.is_finite())
+            .then(|| (next.iter().zip(last).map(|(next, last)| next - last).collect(), by));
+        self.at = at;
     }
 
     /// The poles at a gain, near those at another; none if they are not found in some rounds.
@@ -179,7 +214,7 @@ impl Follower {
         if (0..last.len()).any(close) {
             return None;
         }
-        let mut places = last.to_vec();
+        let mut places = self.ahead(last, gain.ln() - self.at).unwrap_or_else(|| last.to_vec());
         for _ in 0..MOST_ROUNDS {
             let mut moving = false;
             for i in 0..places.len() {

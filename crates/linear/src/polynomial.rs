@@ -69,6 +69,11 @@ impl Polynomial {
 
     /// Value at a complex place.
     pub fn at(&self, at: Complex) -> Complex {
+        if at.re == 0.0 {
+            // on the imaginary axis half of each product is none
+            let step = |sum: Complex, &c: &f64| Complex::new(c - sum.im * at.im, sum.re * at.im);
+            return self.0.iter().fold(Complex::ZERO, step);
+        }
         self.0.iter().fold(Complex::ZERO, |sum, &c| sum * at + c)
     }
 

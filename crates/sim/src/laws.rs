@@ -144,7 +144,7 @@ pub struct HandTuned {
 }
 
 impl HandTuned {
-    /// What to begin with: on the original rig it arrives within 2 mm, and hardly overshoots.
+    /// What to begin with: on the original rig it arrives within 2 mm; 40° overshoot by 7 % on pan and 13 % on tilt.
     pub const FIRST: Self = Self {
         kp: 40.0,
         ki: 0.0,

@@ -104,7 +104,7 @@ fn what_is_no_answer_is_said_and_nothing_is_written() {
     assert!(!std::path::Path::new(&csv).exists());
 }
 
-/// The seventh lesson as its text says: write its head, identify it, answer with what was found.
+/// The seventh lesson much as its text says, with fewer voltages: write its head, identify it, answer with what was found.
 #[test]
 fn the_heavy_head_is_identified_and_answered() {
     let dir = folder("lesson-heavy");

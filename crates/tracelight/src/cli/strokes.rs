@@ -42,7 +42,7 @@ pub(crate) struct StrokesArgs {
     #[arg(long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(FORMATS))]
     format: Option<String>,
     /// Show in an SVG how the picture becomes ink: grey, light evened out, histogram and threshold, ink; of one picture
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     stages: Option<PathBuf>,
     #[command(flatten)]
     tracing: TracingArgs,
@@ -59,6 +59,11 @@ pub(crate) struct StrokesArgs {
     placement: PlacementArgs,
     #[command(flatten)]
     pub(crate) voice: Voice,
+}
+
+fn svg_file(text: &str) -> Result<PathBuf, String> {
+    let is_svg = text.to_ascii_lowercase().ends_with(".svg");
+    if is_svg { Ok(text.into()) } else { Err(format!("{text} does not end in .svg")) }
 }
 
 pub(crate) fn run(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
@@ -154,6 +159,11 @@ fn made_with(args: &StrokesArgs) -> String {
 fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding, Failure> {
     let source = picture::read(picture)?;
     if let Some(path) = &args.stages {
+        if path.as_path() == Path::new(picture) || args.out.as_deref() == Some(path) {
+            let message =
+                format!("--stages {} is the picture or --out: give it a name of its own", path.display());
+            return Err(Failure::usage("usage", message));
+        }
         write_file(&path.display().to_string(), stages(picture, &source, &args.tracing)?)?;
     }
     let mut sketch = sketch(picture, source, &args.tracing, &args.placement)?;

@@ -1,4 +1,4 @@
-//! Keys of a rig that are not of its head.
+//! Keys of law hand-tuned, and all keys that are not of a head.
 
 use tracelight_sim::{Feedforward, RigConfig};
 

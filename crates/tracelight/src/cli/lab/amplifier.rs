@@ -124,8 +124,8 @@ fn tried(args: &AmplifierArgs, rig: &RigConfig) -> PanTilt<Vec<CurrentPoint>> {
             amperes: (reading.motor_nm / args.torque_per_ampere / args.ammeter).round() * args.ammeter,
             rate_rad_s: Some(f64::from(reading.counts) * count_rad / (READ_TICKS as f64 * TICK_F64_S)),
         };
-        // while the voltage turns round, the mean speed is not that of the reading
-        seen.chunks(READINGS).flat_map(|held| held.iter().skip(1)).map(read).collect()
+        // each second: readings beside each other are rounded alike, and tell no more than one of them
+        seen.chunks(READINGS).flat_map(|held| held.iter().skip(4).step_by(10)).map(read).collect()
     })
 }
 
@@ -150,6 +150,17 @@ fn logged(args: &AmplifierArgs) -> Result<PanTilt<Vec<CurrentPoint>>, Failure> {
                 Ok(())
             },
         )?;
+    }
+    for joint in Joint::BOTH {
+        let blind = points[joint].iter().filter(|point| point.rate_rad_s.is_none()).count();
+        if blind > 0 && blind < points[joint].len() {
+            let message = format!(
+                "{}: {blind} of {} readings of {joint} have no velocity_rad_s: give it in each, or leave the column out",
+                args.logs.join(", "),
+                points[joint].len()
+            );
+            return Err(Failure::usage("amplifier-log", message));
+        }
     }
     Ok(points)
 }

@@ -6,12 +6,13 @@ use clap::Args;
 use serde_json::{Value, json};
 use tracelight_lab::{Backlash, SpotPoint, Uncertain, backlash};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
-use tracelight_sim::{Between, MotionArray, RigConfig, follow_array};
+use tracelight_sim::{Between, LawName, MotionArray, RigConfig, follow_array};
 
 use super::friction::HOW_SURE;
 use super::step::Axis;
 use super::{above_zero, make_folder};
 use crate::chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
+use crate::cli::laws::choose;
 use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
 use crate::units::{LENGTHS, Length};
@@ -24,7 +25,8 @@ use crate::{rigfile, table};
                   A joint goes to the same places from below and from above, the other one straight ahead, and each time it rests the spot is read \
                   off a ruler on the target. A log has a row each reading, in order: axis,count,way,spot_m: the encoder's count, 1 or -1 for where it \
                   came from (turning positively or negatively), and where the spot is, x for pan, y for tilt, as this program counts them (right \
-                  and up). Given no log, the simulated head is tried. The folder gets backlash.svg, and readings.csv, if the head was tried.")]
+                  and up). A joint must rest at its place to a small part of a count, from either side: what stops short looks like play. Given no log, the \
+                  simulated head is tried, by law state. The folder gets backlash.svg, and readings.csv, if the head was tried.")]
 pub(crate) struct BacklashArgs {
     /// Logs of readings: axis,count,way,spot_m
     #[arg(value_name = "LOG.csv")]
@@ -116,8 +118,12 @@ fn point(reading: &Reading, count_rad: f64) -> SpotPoint {
     }
 }
 
-/// Readings of the simulated head, driven by its own law.
+/// Readings of the simulated head, driven by the law that rests where it should: what rests a little before it, from either side, looks
+/// like play.
 fn tried(args: &BacklashArgs, rig: &RigConfig, joint: Joint) -> Vec<Reading> {
+    let mut rig = rig.clone();
+    choose(&mut rig, LawName::State, None);
+    let rig = &rig;
     const PLACES: i32 = 9;
     const REACH_RAD: f64 = 0.3;
     /// How far off it goes before it comes from that side, rad.
@@ -128,7 +134,12 @@ fn tried(args: &BacklashArgs, rig: &RigConfig, joint: Joint) -> Vec<Reading> {
     let reach = REACH_RAD.min(0.8 * upper).min(-0.8 * lower).max(0.0);
     let places = (0..PLACES).map(|k| reach * f64::from(2 * k - PLACES + 1) / f64::from(PLACES - 1));
     let visits = places.flat_map(|place| [(place, 1), (place, -1)]);
-    let visits: Vec<(f64, i32)> = (0..args.cycles).flat_map(|_| visits.clone()).collect();
+    // two counts further each time, so that the ruler's marks lie elsewhere
+    let shifted = |cycle: u32| {
+        let by = f64::from(2 * (cycle % 3)) * rig.model.encoder.count_rad();
+        visits.clone().map(move |(place, way)| (place + by, way))
+    };
+    let visits: Vec<(f64, i32)> = (0..args.cycles).flat_map(shifted).collect();
     let mut rows = vec![(0.0, 0.0)];
     let mut rests = Vec::new();
     for &(place, way) in &visits {
@@ -252,7 +263,11 @@ fn shortened(value: f64) -> String {
 
 fn verdict(backlash: &Backlash) -> String {
     let sure = |u: Uncertain| u.value.abs() > u.within;
-    let play = if sure(backlash.play_rad) { "" } else { " No play that these readings could tell." };
+    let play = if backlash.play_rad.value > backlash.play_rad.within {
+        ""
+    } else {
+        " No play that these readings could tell."
+    };
     let slip = if sure(backlash.slip_rad) {
         " The encoder slips, or loses counts: its disc, its set-screw, its cable."
     } else {

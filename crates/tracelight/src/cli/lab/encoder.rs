@@ -13,6 +13,7 @@ use super::step::Axis;
 use crate::chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
 use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
+use crate::output::counted;
 use crate::units::{ANGULAR_SPEEDS, parse};
 use crate::{rigfile, table};
 
@@ -80,7 +81,7 @@ pub(crate) fn run(args: &EncoderArgs) -> Result<Answer, Failure> {
         let table = encoder_table(&runs, count_rad).ok_or_else(|| {
             let most = runs.iter().map(Vec::len).max().unwrap_or_default();
             let message = format!(
-                "{joint}: the longest run one way has {most} edges, and 192 are needed: turn it further"
+                "{joint}: the longest run one way has {most} edges; 192 are needed, at times that rise, of all four kinds: turn it further"
             );
             Failure::failed("encoder", message)
         })?;
@@ -103,9 +104,12 @@ fn tried(args: &EncoderArgs, rig: &RigConfig, joint: Joint) -> Vec<Vec<EdgeTime>
     let motor = rig.model.motors[joint];
     let mut head = head_alone(rig, joint, Mounting::Fixture, args.seed);
     let mut turn = |rate_rad_s: f64| {
+        let hold_v = motor.volts_for(rig.model.friction[joint].torque(rate_rad_s));
+        // gently, where it is to turn slowly
+        let start_v = (2.0 + rate_rad_s.abs()) * hold_v.abs().max(0.01 * motor.limit_v);
         let how = Spin {
-            start_v: 0.5 * motor.limit_v.copysign(rate_rad_s),
-            hold_v: motor.volts_for(rig.model.friction[joint].torque(rate_rad_s)),
+            start_v: start_v.min(0.5 * motor.limit_v).copysign(rate_rad_s),
+            hold_v,
             rate_rad_s,
             count_rad: rig.model.encoder.count_rad(),
             turns: f64::from(args.turns),
@@ -163,8 +167,10 @@ fn text(args: &EncoderArgs, rig: &RigConfig, found: &[Found]) -> String {
     let mut text = if args.logs.is_empty() {
         let stamps = if rig.model.encoder.edge_stamps { "" } else { ", edges not stamped" };
         format!(
-            "rig {}, in a fixture, {} turns each way at {} rad/s{stamps}",
-            rig.name, args.turns, args.speed
+            "rig {}, in a fixture, {} each way at about {} rad/s{stamps}",
+            rig.name,
+            counted(args.turns as usize, "turn"),
+            args.speed
         )
     } else {
         format!("{}, on rig {}", args.logs.join(", "), rig.name)
@@ -174,7 +180,11 @@ fn text(args: &EncoderArgs, rig: &RigConfig, found: &[Found]) -> String {
         let _ = write!(text, "\n\n{:44} {:>18}", joint.name(), "found, counts");
         for (kind, edge) in table.kinds_counts.iter().enumerate() {
             let what = format!("edges below counts {kind}, {}, {} … lie beyond", kind + 4, kind + 8);
-            let _ = write!(text, "\n{what:44} {:>18}", format!("{:.4} ± {:.4}", edge.value, edge.within));
+            let _ = write!(
+                text,
+                "\n{what:44} {:>18}",
+                format!("{:.4} ± {:.4}", unsigned_zero(edge.value), edge.within)
+            );
         }
         match table.eccentricity {
             Some((amplitude, at_rad)) => {
@@ -188,6 +198,11 @@ fn text(args: &EncoderArgs, rig: &RigConfig, found: &[Found]) -> String {
         text += &lost(table);
     }
     text + HOW_SURE
+}
+
+/// What rounds to none has no sign.
+fn unsigned_zero(value: f64) -> f64 {
+    (1e4 * value).round() / 1e4 + 0.0
 }
 
 fn lost(table: &EncoderTable) -> String {

@@ -63,7 +63,7 @@ pub(crate) struct FrequencyTrialArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Write a period of the volts, t_s,volt, to be played to a head
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "log")]
     volts: Option<String>,
     /// Write what the simulated head did, as a log
     #[arg(long, value_name = "FILE.csv", conflicts_with = "log")]
@@ -237,6 +237,11 @@ fn logged(args: &FrequencyTrialArgs, rig: &RigConfig, path: &str) -> Result<Foun
         },
     )?;
     let period_ticks = (args.period / TICK_F64_S).round() as usize;
+    const LONGEST_TICKS: usize = 20_000; // its sines are told one by one
+    if period_ticks > LONGEST_TICKS {
+        let message = format!("a log's --period may have {} s at most", LONGEST_TICKS as f64 * TICK_F64_S);
+        return Err(Failure::usage("usage", message));
+    }
     let multisine = Multisine::in_record(period_ticks, &seen.volts).ok_or_else(|| {
         let message = format!(
             "{path}: {} rows of {joint} hold no two periods of {} s of volts that change: give a longer log, or its own --period",
@@ -319,7 +324,7 @@ fn text(args: &FrequencyTrialArgs, rig: &RigConfig, found: &Found) -> String {
     }
     let to = found.coherent_to().map_or("nowhere".to_owned(), |rad_s| format!("to {rad_s:.1} rad/s"));
     text += &format!(
-        "\n\nThe angle follows the voltage {to} (coherence 0.9); above, a count hides it: more --amplitude, or more --periods."
+        "\n\nThe angle follows the voltage {to} (coherence 0.9); above, a count hides it: more volts, or more periods."
     );
     if !found.one_way {
         text += "\nIt stood or turned back on the way, so friction was no constant: more --speed, or less --amplitude.";

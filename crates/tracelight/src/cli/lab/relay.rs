@@ -14,7 +14,7 @@ use super::bode::frequency;
 use super::step::{Axis, curve, figures, figures_json, heading, row, step, unreachable};
 use super::{OutFile, out_file, over_time, rig_out, voltage, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Pen, Theme};
-use crate::cli::laws::{choose, observer};
+use crate::cli::laws::observer;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::rigfile;
@@ -26,7 +26,8 @@ use crate::units::Angle;
                   Example: tracelight lab relay --axis pan --rig my-rig.toml --save\n\n\
                   In place of a controller a relay: so many volts one way until the joint is a little beyond its middle, then as many the other way. \
                   Amplitude and period of the swing are a point of the joint's frequency response; the PID takes that point to the phase margin, \
-                  and crosses 1 there. Fewer volts swing slower, less hysteresis faster, and tune so; --crossover tunes faster than it swings. Gravity is found out meanwhile. \
+                  and crosses 1 there. Fewer volts swing slower, less hysteresis faster, and tune so; --crossover tunes faster than it swings. Friction damps a small \
+                  swing, and the PID counts on that: the linearized head, which has none, overshoots more. Gravity is found out meanwhile. \
                   The gains are those of law hand-tuned: --save writes them and the law into a rig file, comments kept.")]
 pub(crate) struct RelayArgs {
     /// Which joint
@@ -106,7 +107,9 @@ pub(crate) fn run(args: &RelayArgs) -> Result<Answer, Failure> {
         .pid(&relay, torque_nm_per_v, args.crossover, (args.phase_margin.0, args.integral))
         .map_err(|e| Failure::failed("relay", e))?;
     let mut better = rig.clone();
-    choose(&mut better, LawName::HandTuned, args.observer);
+    // an observer that the rig's file names stays
+    better.control.law = LawName::HandTuned;
+    better.control.observer = args.observer.or(rig.control.observer);
     let by_hand = &mut better.control.hand_tuned[joint];
     *by_hand = HandTuned { kp: pid.kp, ki: pid.ki, kd: pid.kd, ..*by_hand };
     let response = step_response(&better, joint, args.to.0, StepReference::Jump, args.seed)
@@ -161,7 +164,7 @@ fn text(args: &RelayArgs, rig: &RigConfig, tuned: &Tuned) -> String {
          swings by ±{:.3}° in {:.4} s, periods and amplitudes within {:.1} %\n\
          at {:.2} rad/s it answers {:.2} dB and {:.1}°, rad per N m,\n\
          like {:.5} kg m² with {:.4} N m of Coulomb friction\n\n\
-         gains for a phase margin of {:.1}° at {:.2} rad/s: kp = {:.4} N m/rad, ki = {:.4} N m/(rad s), kd = {:.4} N m s/rad\n\n",
+         gains for a phase margin of {:.1}° at {:.2} rad/s, as it answers at this amplitude: kp = {:.4} N m/rad, ki = {:.4} N m/(rad s), kd = {:.4} N m s/rad\n\n",
         rig.name,
         swing.hold_v - relay.level_v,
         swing.hold_v + relay.level_v,
@@ -185,7 +188,12 @@ fn text(args: &RelayArgs, rig: &RigConfig, tuned: &Tuned) -> String {
     text += "\n\nmm on a target 3 ft away.";
     if args.save {
         // writing to a String cannot fail
-        let _ = write!(text, " Law and gains are in {}.", args.rig);
+        let other = if joint == Joint::Pan { Joint::Tilt } else { Joint::Pan };
+        let _ = write!(
+            text,
+            " {} has law hand-tuned now, for both joints, and {joint}'s gains; {other}'s are those of control.hand_tuned.{other}: tune them as well.",
+            args.rig
+        );
     }
     text
 }

@@ -17,6 +17,18 @@ pub(super) const fn markdown(number: usize) -> &'static str {
     }
 }
 
+/// A line with the words of its links alone.
+fn unlinked(line: &str) -> String {
+    let mut text = line.to_owned();
+    while let Some((before, rest)) = text.split_once('[')
+        && let Some((words, rest)) = rest.split_once("](")
+        && let Some((_, after)) = rest.split_once(')')
+    {
+        text = format!("{before}{words}{after}");
+    }
+    text
+}
+
 /// The same for a terminal: without pictures, fences and marks.
 pub(super) fn plain(lesson: &Lesson) -> String {
     let mut lines: Vec<String> = Vec::new();
@@ -34,7 +46,7 @@ pub(super) fn plain(lesson: &Lesson) -> String {
             lines.push(title.to_owned());
             lines.push("=".repeat(title.chars().count()));
         } else {
-            lines.push(line.replace("**", ""));
+            lines.push(unlinked(line).replace("**", ""));
         }
     }
     lines.join("\n")
