@@ -130,10 +130,10 @@ fn a_batch_is_traced_again_when_its_threshold_changes() {
 
 #[test]
 fn a_pictures_way_to_ink_can_be_looked_at() {
-    let dir = support::folder("stages");
+    let dir = folder("stages");
     let shown = dir.join("stages.svg");
     let path = shown.to_str().unwrap();
-    let output = support::run(&["strokes", "examples/house.png", "--stages", path]);
+    let output = run(&["strokes", "examples/house.png", "--stages", path]);
     assert!(output.status.success());
     let svg = std::fs::read_to_string(&shown).unwrap();
     assert_eq!(svg.matches("<image ").count(), 3, "grey, evened out, ink");
@@ -148,7 +148,7 @@ fn a_pictures_way_to_ink_can_be_looked_at() {
         (&[drawing.as_str()][..], "has strokes already"),
         (&["examples/house.png", "examples/star.png"][..], "--stages is of one picture"),
     ] {
-        let output = support::run(&[&["strokes", "--stages", path], pictures].concat());
+        let output = run(&[&["strokes", "--stages", path], pictures].concat());
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.code() == Some(2) && said.contains(what), "{said}");
     }
