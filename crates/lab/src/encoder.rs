@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use tracelight_rig::{Actuation, Head, Joint, TICK_F64_S};
 
 use crate::regression::{Uncertain, regression};
+use crate::start::come_to_speed;
 
 /// An edge, and when it was crossed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,9 +67,6 @@ const LEAST_EDGES: usize = 8 * REACH;
 
 /// Spins a joint that may turn on and on, and notes every tick's last edge.
 pub fn spin(head: &mut impl Head, joint: Joint, how: &Spin) -> Vec<EdgeTime> {
-    /// Longest time to come to speed, ticks.
-    const LONGEST_START: usize = 60_000;
-    const OVER_TICKS: usize = 50;
     let mut last: Option<i32> = None;
     let mut tick = |volts: f64| {
         let mut actuation = Actuation::default();
@@ -78,15 +76,8 @@ pub fn spin(head: &mut impl Head, joint: Joint, how: &Spin) -> Vec<EdgeTime> {
         last = Some(seen.count);
         (moved, seen)
     };
-    let wanted = how.rate_rad_s.abs() * OVER_TICKS as f64 * TICK_F64_S / how.count_rad;
-    let mut started = 0;
-    while started < LONGEST_START {
-        let turned: i32 = (0..OVER_TICKS).map(|_| tick(how.start_v).0).sum();
-        started += OVER_TICKS;
-        if f64::from(turned) * how.rate_rad_s.signum() >= wanted {
-            break;
-        }
-    }
+    let way = how.count_rad * how.rate_rad_s.signum();
+    come_to_speed(|| way * f64::from(tick(how.start_v).0), how.rate_rad_s);
     let ticks = (how.turns * TAU / how.rate_rad_s.abs() / TICK_F64_S).ceil() as usize;
     let mut edges = Vec::new();
     for number in 0..ticks {

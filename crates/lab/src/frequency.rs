@@ -4,6 +4,8 @@ use nalgebra::{DMatrix, DVector};
 use tracelight_linear::{Complex, logspace};
 use tracelight_rig::{Actuation, Head, Joint, TICK_F64_S};
 
+use crate::start::{OVER_TICKS, come_to_speed};
+
 /// Sines added up, whole periods of each in a period of all.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Multisine {
@@ -57,8 +59,6 @@ pub struct FrequencyPoint {
     pub deviation: f64,
 }
 
-/// Longest time to come to speed, ticks.
-const LONGEST_START_TICKS: usize = 60_000;
 /// Powers of time that are told from the sines in each period: where it was, how fast, and how that changed.
 const POWERS: usize = 4;
 
@@ -133,17 +133,7 @@ pub fn excite(head: &mut impl Head, joint: Joint, multisine: &Multisine, how: &E
         let before = std::mem::replace(&mut count, head.exchange(&actuation).encoders[joint].count);
         (f64::from(before) * how.count_rad, f64::from(count - before) * how.count_rad)
     };
-    // over a twentieth of a second a count is a thirtieth of a rad/s
-    const OVER_TICKS: usize = 50;
-    let wanted_rad = how.rate_rad_s.abs() * OVER_TICKS as f64 * TICK_F64_S;
-    let mut started = 0;
-    while started < LONGEST_START_TICKS {
-        let turned: f64 = (0..OVER_TICKS).map(|_| tick(how.start_v).1).sum();
-        started += OVER_TICKS;
-        if turned.abs() >= wanted_rad {
-            break;
-        }
-    }
+    come_to_speed(|| tick(how.start_v).1 * how.start_v.signum(), how.rate_rad_s);
     let period = multisine.volts();
     let mut angles_rad = Vec::with_capacity(how.watched * period.len());
     let mut given_v = Vec::with_capacity(how.watched * period.len());

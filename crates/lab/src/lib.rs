@@ -12,6 +12,7 @@ mod lesson;
 mod linearize;
 mod regression;
 mod relay;
+mod start;
 mod statistics;
 mod step;
 mod tune;

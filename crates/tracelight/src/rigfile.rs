@@ -5,7 +5,7 @@
 //! the values of the preset `report`.
 
 mod caret;
-mod driving;
+mod hand_tuned;
 mod keys;
 mod save;
 
@@ -19,8 +19,8 @@ use crate::failure::Failure;
 use crate::picture::read_bytes;
 use crate::units;
 use caret::Mark;
-use driving::rig_keys;
-pub(crate) use driving::{FEEDFORWARDS, HIGHEST_GAIN};
+use hand_tuned::rig_keys;
+pub(crate) use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
 use keys::{Choice, Key, Slot, identified_keys, model_keys};
 pub(crate) use save::{date, is_same, save};
 

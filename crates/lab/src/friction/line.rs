@@ -1,4 +1,4 @@
-use crate::regression::{Uncertain, student};
+use crate::regression::{Uncertain, regression};
 
 /// Friction in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,35 +28,12 @@ impl Line {
         Side { viscous: self.viscous, coulomb_nm: self.coulomb_nm }
     }
 
-    /// The line of least squares through (speed, torque); `None` of fewer than three points, or of one speed. Draper & Smith, *Applied
-    /// Regression Analysis*, 3rd ed., §1.4.
+    /// The line of least squares through (speed, torque); `None` of fewer than three points, or of one speed.
     pub fn through(points: &[(f64, f64)]) -> Option<Self> {
-        let count = points.len() as f64;
-        if points.len() < 3 {
-            return None;
-        }
-        let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
-        let (rate, torque) = (mean(&|p| p.0), mean(&|p| p.1));
-        let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
-            points.iter().map(|p| of(p.0 - rate, p.1 - torque)).sum()
-        };
-        let (spread, along, total) = (sum(&|w, _| w * w), sum(&|w, t| w * t), sum(&|_, t| t * t));
-        if spread <= 1e-18 * count * (1.0 + rate * rate) {
-            return None;
-        }
-        let slope = along / spread;
-        let left = sum(&|w, t| (t - slope * w).powi(2));
-        let variance = left / (count - 2.0);
-        let t = student(count - 2.0);
-        Some(Self {
-            viscous: Uncertain { value: slope, within: t * (variance / spread).sqrt() },
-            coulomb_nm: Uncertain {
-                value: torque - slope * rate,
-                within: t * (variance * (1.0 / count + rate * rate / spread)).sqrt(),
-            },
-            r2: if total > 0.0 { 1.0 - left / total } else { 1.0 },
-            points: points.len(),
-        })
+        let (rates, torques): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+        let found = regression(&[vec![1.0; points.len()], rates], &torques)?;
+        let &[coulomb_nm, viscous] = found.factors.as_slice() else { return None };
+        Some(Self { viscous, coulomb_nm, r2: found.r2, points: points.len() })
     }
 }
 

@@ -5,7 +5,7 @@ use tracelight_sim::RigConfig;
 
 use crate::failure::Failure;
 
-use super::driving::rig_keys;
+use super::hand_tuned::rig_keys;
 use super::keys::{Key, Slot, identified_keys, model_keys};
 use super::shown;
 

@@ -2,16 +2,17 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 use tracelight_lab::{Amplifier, CurrentPoint, Uncertain, amplifier};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{MotorReading, Mounting, READ_TICKS, RigConfig, motor_readings};
 
 use super::friction::{HOW_SURE, milli};
+use super::parts::{self, by_joint, leave, tell_each};
 use super::step::Axis;
-use super::{above_zero, make_folder, rig_out, voltage};
+use super::{above_zero, rig_out, voltage};
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::record::MOST_V;
 use crate::units::{CURRENTS, TORQUE_CONSTANTS};
@@ -66,42 +67,33 @@ fn current(text: &str) -> Result<f64, String> {
 }
 
 /// A joint's readings and what they say.
-struct Found {
-    joint: Joint,
-    points: Vec<CurrentPoint>,
-    amplifier: Amplifier,
-}
+type Found = parts::Found<CurrentPoint, Amplifier>;
 
 pub(crate) fn run(args: &AmplifierArgs) -> Result<Answer, Failure> {
     let rig = rigfile::load(&args.rig)?;
     rig_out::may_save(&args.rig, args.save)?;
     let readings = if args.logs.is_empty() { tried(args, &rig) } else { logged(args)? };
-    let mut found = Vec::new();
-    for joint in Joint::BOTH.into_iter().filter(|joint| args.axis.is_none_or(|axis| axis.joint() == *joint)) {
-        let points = readings[joint].clone();
-        if points.is_empty() {
-            continue;
-        }
-        let amplifier = amplifier(&points).ok_or_else(|| {
+    let tell = |joint: Joint, points: &[CurrentPoint]| {
+        amplifier(points).ok_or_else(|| {
             let count = points.len();
             let message = format!(
                 "{joint}: {count} readings tell no amplifier; give three at least, at different volts"
             );
             Failure::failed("amplifier", message)
-        })?;
-        found.push(Found { joint, points, amplifier });
-    }
-    if found.is_empty() {
+        })
+    };
+    let nothing = || {
         let message = format!("{}: no reading of the joint that is asked for", args.logs.join(", "));
-        return Err(Failure::usage("amplifier-log", message));
-    }
-    make_folder(&args.out, "--out")?;
+        Failure::usage("amplifier-log", message)
+    };
+    let found = tell_each(args.axis, readings, tell, nothing)?;
+    let mut files = vec![("amplifier.svg", figure(&rig, &found)?)];
     if args.logs.is_empty() {
-        write_file(&args.out.join("readings.csv").display().to_string(), csv(&found))?;
+        files.push(("readings.csv", csv(&found)));
     }
-    write_file(&args.out.join("amplifier.svg").display().to_string(), figure(&rig, &found)?)?;
+    leave(&args.out, &files)?;
     let mut better = rig.clone();
-    for Found { joint, amplifier, .. } in &found {
+    for Found { joint, told: amplifier, .. } in &found {
         better.model.motors[*joint].torque_nm_per_v = amplifier.gain.value * args.torque_per_ampere;
     }
     let written = rig_out::write(&args.out, &args.rig, args.save, (&rig, &better))?;
@@ -176,7 +168,7 @@ fn text(args: &AmplifierArgs, rig: &RigConfig, found: &[Found]) -> String {
     } else {
         format!("{}, on rig {}", args.logs.join(", "), rig.name)
     };
-    for Found { joint, amplifier, .. } in found {
+    for Found { joint, told: amplifier, .. } in found {
         let had = rig.model.motors[*joint].torque_nm_per_v;
         let torque = args.torque_per_ampere;
         let scaled = |u: Uncertain| Uncertain { value: torque * u.value, within: torque * u.within };
@@ -210,7 +202,7 @@ fn text(args: &AmplifierArgs, rig: &RigConfig, found: &[Found]) -> String {
 }
 
 fn json(args: &AmplifierArgs, found: &[Found]) -> String {
-    let one = |Found { joint, amplifier, .. }: &Found| {
+    let one = |Found { joint, told: amplifier, .. }: &Found| {
         let object = json!({
             "a_per_v": amplifier.gain.value,
             "back_emf_a_s_per_rad": amplifier.back_emf.map(|u| u.value),
@@ -225,14 +217,14 @@ fn json(args: &AmplifierArgs, found: &[Found]) -> String {
                 "offset_a": amplifier.offset.within,
             },
         });
-        (joint.name().to_owned(), object)
+        (*joint, object)
     };
-    Value::Object(found.iter().map(one).collect()).to_string()
+    by_joint(found.iter().map(one))
 }
 
 fn csv(found: &[Found]) -> String {
     let mut text = String::from("axis,volt,ampere,velocity_rad_s\n");
-    for Found { joint, points, .. } in found {
+    for Found { joint, seen: points, .. } in found {
         for point in points {
             let rate = point.rate_rad_s.unwrap_or_default();
             let _ = writeln!(text, "{joint},{:.4},{:.6},{rate:.5}", point.volts, point.amperes);
@@ -244,7 +236,7 @@ fn csv(found: &[Found]) -> String {
 /// Amperes over volts: as read, and with the motor's own voltage given back.
 fn figure(rig: &RigConfig, found: &[Found]) -> Result<String, Failure> {
     const MILLI: f64 = 1e3;
-    let panel = |Found { joint, points, amplifier }: &Found| {
+    let panel = |Found { joint, seen: points, told: amplifier }: &Found| {
         let dots =
             |of: &dyn Fn(&CurrentPoint) -> f64| points.iter().map(|p| (p.volts, MILLI * of(p))).collect();
         let back = amplifier.back_emf.map_or(0.0, |u| u.value);

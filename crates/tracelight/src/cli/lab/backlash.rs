@@ -3,17 +3,18 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 use tracelight_lab::{Backlash, SpotPoint, Uncertain, backlash};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, LawName, MotionArray, RigConfig, follow_array};
 
+use super::above_zero;
 use super::friction::HOW_SURE;
+use super::parts::{self, by_joint, leave, rounded, tell_each};
 use super::step::Axis;
-use super::{above_zero, make_folder};
 use crate::chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
 use crate::cli::laws::choose;
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::units::{LENGTHS, Length};
 use crate::{rigfile, table};
@@ -68,11 +69,7 @@ struct Reading {
     spot_m: f64,
 }
 
-struct Found {
-    joint: Joint,
-    readings: Vec<Reading>,
-    backlash: Backlash,
-}
+type Found = parts::Found<Reading, Backlash>;
 
 pub(crate) fn run(args: &BacklashArgs) -> Result<Answer, Failure> {
     let rig = rigfile::load(&args.rig)?;
@@ -82,31 +79,26 @@ pub(crate) fn run(args: &BacklashArgs) -> Result<Answer, Failure> {
     let readings =
         if args.logs.is_empty() { PanTilt::from_fn(|joint| tried(args, &rig, joint)) } else { logged(args)? };
     let count_rad = rig.model.encoder.count_rad();
-    let mut found = Vec::new();
-    for joint in Joint::BOTH.into_iter().filter(|joint| args.axis.is_none_or(|axis| axis.joint() == *joint)) {
-        let readings = readings[joint].clone();
-        if readings.is_empty() {
-            continue;
-        }
+    let tell = |joint: Joint, readings: &[Reading]| {
         let points: Vec<SpotPoint> = readings.iter().map(|r| point(r, count_rad)).collect();
-        let backlash = backlash(&points, args.distance.0).ok_or_else(|| {
+        backlash(&points, args.distance.0).ok_or_else(|| {
             let count = points.len();
             let message = format!(
                 "{joint}: {count} readings tell no play; give four at least, from both sides, in turns"
             );
             Failure::failed("backlash", message)
-        })?;
-        found.push(Found { joint, readings, backlash });
-    }
-    if found.is_empty() {
+        })
+    };
+    let nothing = || {
         let message = format!("{}: no reading of the joint that is asked for", args.logs.join(", "));
-        return Err(Failure::usage("backlash-log", message));
-    }
-    make_folder(&args.out, "--out")?;
+        Failure::usage("backlash-log", message)
+    };
+    let found = tell_each(args.axis, readings, tell, nothing)?;
+    let mut files = vec![("backlash.svg", figure(args, &rig, &found)?)];
     if args.logs.is_empty() {
-        write_file(&args.out.join("readings.csv").display().to_string(), csv(&found))?;
+        files.push(("readings.csv", csv(&found)));
     }
-    write_file(&args.out.join("backlash.svg").display().to_string(), figure(args, &rig, &found)?)?;
+    leave(&args.out, &files)?;
     Ok(Answer::either(args.voice, || text(args, &rig, &found), || json(args, &rig, &found)))
 }
 
@@ -217,7 +209,7 @@ fn text(args: &BacklashArgs, rig: &RigConfig, found: &[Found]) -> String {
     } else {
         format!("{}, on rig {}", args.logs.join(", "), rig.name)
     };
-    for Found { joint, backlash, readings } in found {
+    for Found { joint, told: backlash, seen: readings } in found {
         // writing to a String cannot fail
         let _ = write!(
             text,
@@ -233,9 +225,7 @@ fn text(args: &BacklashArgs, rig: &RigConfig, found: &[Found]) -> String {
             ("further at the end", backlash.slip_rad),
         ];
         for (what, rad) in rows {
-            // what rounds to none has no sign
-            let shown = |value: f64| (1e3 * value).round() / 1e3 + 0.0;
-            let cell = |scale: f64| format!("{:.3} ± {:.3}", shown(scale * rad.value), scale * rad.within);
+            let cell = |scale: f64| format!("{} ± {:.3}", rounded(scale * rad.value, 3), scale * rad.within);
             let _ = write!(
                 text,
                 "\n{what:24} {:>18} {:>18} {:>18}",
@@ -278,7 +268,7 @@ fn verdict(backlash: &Backlash) -> String {
 
 fn json(args: &BacklashArgs, rig: &RigConfig, found: &[Found]) -> String {
     let count_rad = rig.model.encoder.count_rad();
-    let one = |Found { joint, backlash, readings }: &Found| {
+    let one = |Found { joint, told: backlash, seen: readings }: &Found| {
         let object = json!({
             "play_rad": backlash.play_rad.value,
             "play_mm": 1e3 * args.distance.0 * backlash.play_rad.value,
@@ -294,14 +284,14 @@ fn json(args: &BacklashArgs, rig: &RigConfig, found: &[Found]) -> String {
                 "slip_rad": backlash.slip_rad.within,
             },
         });
-        (joint.name().to_owned(), object)
+        (*joint, object)
     };
-    Value::Object(found.iter().map(one).collect()).to_string()
+    by_joint(found.iter().map(one))
 }
 
 fn csv(found: &[Found]) -> String {
     let mut text = String::from("axis,count,way,spot_m\n");
-    for Found { joint, readings, .. } in found {
+    for Found { joint, seen: readings, .. } in found {
         for reading in readings {
             let _ = writeln!(text, "{joint},{},{},{:.6}", reading.count, reading.way, reading.spot_m);
         }
@@ -311,7 +301,7 @@ fn csv(found: &[Found]) -> String {
 
 /// How far the beam is ahead of the encoder, reading by reading, from the mean of each place.
 fn figure(args: &BacklashArgs, rig: &RigConfig, found: &[Found]) -> Result<String, Failure> {
-    let panel = |Found { joint, readings, backlash }: &Found| {
+    let panel = |Found { joint, seen: readings, told: backlash }: &Found| {
         let mark = |(number, (reading, beside)): (usize, (&Reading, &Option<f64>))| {
             let colour = if reading.way > 0 { Colour::Blue } else { Colour::Vermilion };
             let at = (number as f64 + 1.0, 1e3 * args.distance.0 * (*beside)?);

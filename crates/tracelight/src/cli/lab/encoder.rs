@@ -2,16 +2,16 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 use tracelight_lab::{EdgeTime, EncoderTable, Spin, encoder_table, spin};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_sim::{Mounting, RigConfig, head_alone};
 
 use super::friction::HOW_SURE;
-use super::make_folder;
+use super::parts::{self, by_joint, leave, rounded, tell_each};
 use super::step::Axis;
 use crate::chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
 use crate::output::counted;
 use crate::units::{ANGULAR_SPEEDS, parse};
@@ -61,41 +61,32 @@ fn speed(text: &str) -> Result<f64, String> {
     }
 }
 
-struct Found {
-    joint: Joint,
-    runs: Vec<Vec<EdgeTime>>,
-    table: EncoderTable,
-}
+type Found = parts::Found<Vec<EdgeTime>, EncoderTable>;
 
 pub(crate) fn run(args: &EncoderArgs) -> Result<Answer, Failure> {
     let rig = rigfile::load(&args.rig)?;
-    let mut runs =
+    let runs =
         if args.logs.is_empty() { PanTilt::from_fn(|joint| tried(args, &rig, joint)) } else { logged(args)? };
     let count_rad = rig.model.encoder.count_rad();
-    let mut found = Vec::new();
-    for joint in Joint::BOTH.into_iter().filter(|joint| args.axis.is_none_or(|axis| axis.joint() == *joint)) {
-        let runs = std::mem::take(&mut runs[joint]);
-        if runs.iter().all(Vec::is_empty) {
-            continue;
-        }
-        let table = encoder_table(&runs, count_rad).ok_or_else(|| {
+    let tell = |joint: Joint, runs: &[Vec<EdgeTime>]| {
+        encoder_table(runs, count_rad).ok_or_else(|| {
             let most = runs.iter().map(Vec::len).max().unwrap_or_default();
             let message = format!(
                 "{joint}: the longest run one way has {most} edges; 192 are needed, at times that rise, of all four kinds: turn it further"
             );
             Failure::failed("encoder", message)
-        })?;
-        found.push(Found { joint, runs, table });
-    }
-    if found.is_empty() {
+        })
+    };
+    let nothing = || {
         let message = format!("{}: no edge of the joint that is asked for", args.logs.join(", "));
-        return Err(Failure::usage("encoder-log", message));
-    }
-    make_folder(&args.out, "--out")?;
+        Failure::usage("encoder-log", message)
+    };
+    let found = tell_each(args.axis, runs, tell, nothing)?;
+    let mut files = vec![("encoder.svg", figure(&rig, &found)?)];
     if args.logs.is_empty() {
-        write_file(&args.out.join("edges.csv").display().to_string(), csv(&found))?;
+        files.push(("edges.csv", csv(&found)));
     }
-    write_file(&args.out.join("encoder.svg").display().to_string(), figure(&rig, &found)?)?;
+    leave(&args.out, &files)?;
     Ok(Answer::either(args.voice, || text(args, &rig, &found), || json(&found)))
 }
 
@@ -160,6 +151,9 @@ fn logged(args: &EncoderArgs) -> Result<PanTilt<Vec<Vec<EdgeTime>>>, Failure> {
             },
         )?;
     }
+    for joint in Joint::BOTH {
+        runs[joint].retain(|run| !run.is_empty());
+    }
     Ok(runs)
 }
 
@@ -175,7 +169,7 @@ fn text(args: &EncoderArgs, rig: &RigConfig, found: &[Found]) -> String {
     } else {
         format!("{}, on rig {}", args.logs.join(", "), rig.name)
     };
-    for Found { joint, table, .. } in found {
+    for Found { joint, told: table, .. } in found {
         // writing to a String cannot fail
         let _ = write!(text, "\n\n{:44} {:>18}", joint.name(), "found, counts");
         for (kind, edge) in table.kinds_counts.iter().enumerate() {
@@ -183,7 +177,7 @@ fn text(args: &EncoderArgs, rig: &RigConfig, found: &[Found]) -> String {
             let _ = write!(
                 text,
                 "\n{what:44} {:>18}",
-                format!("{:.4} ± {:.4}", unsigned_zero(edge.value), edge.within)
+                format!("{} ± {:.4}", rounded(edge.value, 4), edge.within)
             );
         }
         match table.eccentricity {
@@ -198,11 +192,6 @@ fn text(args: &EncoderArgs, rig: &RigConfig, found: &[Found]) -> String {
         text += &lost(table);
     }
     text + HOW_SURE
-}
-
-/// What rounds to none has no sign.
-fn unsigned_zero(value: f64) -> f64 {
-    (1e4 * value).round() / 1e4 + 0.0
 }
 
 fn lost(table: &EncoderTable) -> String {
@@ -221,7 +210,7 @@ fn lost(table: &EncoderTable) -> String {
 }
 
 fn json(found: &[Found]) -> String {
-    let one = |Found { joint, table, .. }: &Found| {
+    let one = |Found { joint, told: table, .. }: &Found| {
         let lost = |lost: &tracelight_lab::Lost| json!({"t_s": lost.time_s, "count": lost.count, "counts": lost.counts});
         let object = json!({
             "edges": table.edges,
@@ -235,14 +224,14 @@ fn json(found: &[Found]) -> String {
                 "eccentricity_counts": table.eccentricity.map(|(u, _)| u.within),
             },
         });
-        (joint.name().to_owned(), object)
+        (*joint, object)
     };
-    Value::Object(found.iter().map(one).collect()).to_string()
+    by_joint(found.iter().map(one))
 }
 
 fn csv(found: &[Found]) -> String {
     let mut text = String::from("axis,time_s,count\n");
-    for Found { joint, runs, .. } in found {
+    for Found { joint, seen: runs, .. } in found {
         for run in runs {
             let up = run.first().zip(run.last()).is_some_and(|(first, last)| last.edge >= first.edge);
             for edge in run {
@@ -256,7 +245,7 @@ fn csv(found: &[Found]) -> String {
 
 /// What each kind lies beyond its place.
 fn figure(rig: &RigConfig, found: &[Found]) -> Result<String, Failure> {
-    let panel = |Found { joint, table, .. }: &Found| {
+    let panel = |Found { joint, told: table, .. }: &Found| {
         let marks = table.kinds_counts.iter().enumerate().flat_map(|(kind, edge)| {
             let at = |value: f64, sign| Mark { colour: Colour::Blue, sign, at: (kind as f64, value) };
             [

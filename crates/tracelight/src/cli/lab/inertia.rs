@@ -2,13 +2,13 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 use tracelight_lab::{Curves, Uncertain};
-use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 
 use super::friction::trials::{Subject, TrialArgs};
 use super::friction::{HOW_SURE, milli};
+use super::parts::by_joint;
 use super::rig_out;
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
@@ -86,7 +86,7 @@ fn json(told: &[(&Subject, Uncertain)]) -> String {
             "within": inertia.within,
             "believed_kg_m2": subject.believed.inertia_kg_m2,
         });
-        (Joint::name(subject.joint).to_owned(), object)
+        (subject.joint, object)
     };
-    Value::Object(told.iter().map(one).collect()).to_string()
+    by_joint(told.iter().map(one))
 }

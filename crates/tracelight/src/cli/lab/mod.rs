@@ -18,6 +18,7 @@ mod locus;
 mod montecarlo;
 mod moves;
 mod nyquist;
+mod parts;
 mod poles;
 mod profile;
 mod relay;

@@ -11,6 +11,7 @@ use tracelight_lab::{Curves, Line, Side, Steady, SteadyPoint, Uncertain, curves,
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 
+use super::parts::by_joint;
 use super::rig_out;
 use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
@@ -278,8 +279,7 @@ fn against_gravity(rig: &RigConfig, one: &Found) -> String {
 }
 
 fn json(found: &[Found]) -> String {
-    let object = found.iter().map(|one| (one.subject.joint.name().to_owned(), joint_json(one)));
-    Value::Object(object.collect()).to_string()
+    by_joint(found.iter().map(|one| (one.subject.joint, joint_json(one))))
 }
 
 fn joint_json(one: &Found) -> Value {

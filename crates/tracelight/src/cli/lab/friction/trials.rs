@@ -9,6 +9,7 @@ use tracelight_rig::Joint;
 use tracelight_sim::{Mounting, RigConfig, head_alone};
 
 use super::log::{self, Log};
+use crate::cli::lab::parts::joints;
 use crate::cli::lab::step::Axis;
 use crate::cli::lab::{above_zero, make_folder, voltage};
 use crate::cli::write_file;
@@ -83,7 +84,7 @@ impl TrialArgs {
         quiet: bool,
         stop: &Stop,
     ) -> Result<Vec<Subject>, Failure> {
-        let mut asked: Vec<Subject> = self.joints().map(|joint| self.subject(rig, joint)).collect();
+        let mut asked: Vec<Subject> = joints(self.axis).map(|joint| self.subject(rig, joint)).collect();
         if self.logs.is_empty() {
             let progress = Progress::new(quiet);
             for subject in &mut asked {
@@ -117,16 +118,11 @@ impl TrialArgs {
 
     /// The same of one joint, if no other was asked for.
     pub(in crate::cli::lab) fn only(&self, joint: Joint) -> Result<Self, Failure> {
-        if !self.joints().any(|asked| asked == joint) {
+        if !joints(self.axis).any(|asked| asked == joint) {
             return Err(Failure::usage("usage", format!("this is of {joint} alone: leave --axis out")));
         }
         let axis = if joint == Joint::Pan { Axis::Pan } else { Axis::Tilt };
         Ok(Self { axis: Some(axis), ..self.clone() })
-    }
-
-    fn joints(&self) -> impl Iterator<Item = Joint> + use<> {
-        let only = self.axis.map(Axis::joint);
-        Joint::BOTH.into_iter().filter(move |&joint| only.is_none_or(|only| only == joint))
     }
 
     fn subject(&self, rig: &RigConfig, joint: Joint) -> Subject {
