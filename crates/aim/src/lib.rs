@@ -7,13 +7,27 @@
 //! | head | x along the beam at zero, y left, z up; origin where the axes cross |
 //! | joint | pan about z, tilt about the pan-carried y, rad; positive tilt turns the beam down |
 //!
+//! | camera | x right, y down, z ahead; origin where the light passes |
+//!
 //! Every conversion between two of them is done here and nowhere else. The crate knows no images and no time.
 
+mod board;
+mod camera;
+mod dual;
 mod head;
+mod homography;
 mod jet;
+mod least_squares;
+mod lens;
 mod placement;
 mod pose;
+mod survey;
 
+pub use board::Board;
+pub use camera::{Camera, CameraPose, Uncertain};
 pub use head::{AimError, HeadGeometry, JointPath, SpotMotion};
+pub use homography::Homography;
+pub use lens::Lens;
 pub use placement::{Placement, SizeRequest};
 pub use pose::HeadPose;
+pub use survey::{LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyError, SurveyedCamera, survey};

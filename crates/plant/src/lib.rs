@@ -5,6 +5,7 @@
 //! laser through a relay and knows where the beam really is. It never sees the controller.
 
 mod belt;
+mod camera;
 mod config;
 mod encoder;
 mod friction;
@@ -12,6 +13,7 @@ mod light;
 mod plant;
 mod step;
 
+pub use camera::{CameraConfig, Image, Lamp, Laser, Poster, Sensor, SimulatedCamera, SpotSample, Wall};
 pub use config::{EncoderConfig, PlantConfig, RelayConfig, Wear};
 pub use plant::Plant;
 pub use step::{JointState, Stepper};

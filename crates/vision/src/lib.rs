@@ -18,11 +18,13 @@
 //! | `missed` | ink that no stroke follows |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
+//! | `fiducial` | printed square markers and which they are |
 
 mod bridge;
 mod centreline;
 mod distance;
 mod error;
+mod fiducial;
 mod follow;
 mod gap;
 mod graph;
@@ -53,6 +55,7 @@ mod thin;
 mod trace;
 
 pub use error::VisionError;
+pub use fiducial::{TAG_COUNT, Tag, TagPlace, find_tags, tag_cells};
 pub use grey::Grey;
 pub use marks::{Marks, find_two_marks};
 pub use quality::{Figure, Quality, Verdict};

@@ -94,12 +94,18 @@ fn full_level(dark: &Plane<u8>, region: &Region) -> f64 {
 
 /// An edge between an ink pixel and a paper pixel.
 #[derive(Clone, Copy, Debug)]
-struct Edge {
+pub(crate) struct Edge {
     ink: (isize, isize),
     paper: (isize, isize),
 }
 
 impl Edge {
+    /// Between its two pixels.
+    pub(crate) fn middle(&self) -> Point {
+        let between = |ink: isize, paper: isize| (ink + paper) as f64 / 2.0 + 0.5;
+        Point::new(between(self.ink.0, self.paper.0), between(self.ink.1, self.paper.1))
+    }
+
     /// Where the shape's edge crosses the line through the two pixels' centres; `None` where it runs along that
     /// line and a neighbouring edge knows better.
     ///
@@ -144,7 +150,7 @@ fn covered(rising: bool, share: impl Fn(isize) -> f64) -> f64 {
 
 /// The edges of a border in order, ink on the right, from the left edge of ink pixel (x, y) upwards until there
 /// again (crack following: Rosenfeld, "Connectivity in digital pictures", 1970). Ink joined at corners stays joined.
-fn border(mask: &Mask, x: isize, y: isize, walked: &mut Mask) -> Vec<Edge> {
+pub(crate) fn border(mask: &Mask, x: isize, y: isize, walked: &mut Mask) -> Vec<Edge> {
     const UP: usize = 3;
     let ink = |p: (isize, isize)| mask.get(p.0, p.1);
     let start = ((x, y), UP);

@@ -1,0 +1,45 @@
+"""The images that `tracelight-bench-eyes fine N FOLDER` leaves, by OpenCV: markers found, corners, and the wall by a homography through
+corners whose places on the wall it is told, with and without the lens.  python peers.py FOLDER"""
+import csv, glob, sys, time
+import cv2, numpy as np
+
+cv2.setNumThreads(1)
+folder = sys.argv[1]
+dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
+for name, refine in [("none", cv2.aruco.CORNER_REFINE_NONE), ("subpix", cv2.aruco.CORNER_REFINE_SUBPIX),
+                     ("contour", cv2.aruco.CORNER_REFINE_CONTOUR), ("apriltag", cv2.aruco.CORNER_REFINE_APRILTAG)]:
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.cornerRefinementMethod = refine
+    detector = cv2.aruco.ArucoDetector(dictionary, parameters)
+    found = there = wrong = 0
+    square, count, times, rms, worst = 0.0, 0, [], [], []
+    for path in sorted(glob.glob(f"{folder}/*.png")):
+        truth = {}
+        for row in csv.DictReader(open(path[:-3] + "csv")):
+            truth.setdefault(int(row["id"]), []).append([float(row[k]) for k in ("x_m", "y_m", "u_px", "v_px")])
+        grey = cv2.cvtColor(cv2.imread(path), cv2.COLOR_BGR2GRAY)
+        started = time.perf_counter()
+        corners, ids, _ = detector.detectMarkers(grey)
+        times.append(1e3 * (time.perf_counter() - started))
+        there += len(truth)
+        on_wall, seen = [], []
+        for quad, number in zip(corners, [] if ids is None else np.ravel(ids)):
+            # its first pixel's centre is (0, 0), and its markers stand upside down beside the family's
+            quad = np.roll(quad[0] + 0.5, 2, axis=0)
+            own = np.array(truth.get(int(number), [[9e9] * 4] * 4))
+            if np.abs(quad[0] - own[0, 2:]).max() > 5:
+                wrong += 1
+                continue
+            found += 1
+            square, count = square + ((quad - own[:, 2:]) ** 2).sum(), count + 4
+            on_wall.extend(own[:, :2]); seen.extend(quad)
+        plane, _ = cv2.findHomography(np.array(seen), np.array(on_wall))
+        x, y = np.meshgrid(np.arange(-13, 14) * 0.0254, np.arange(-7, 8) * 0.0254)
+        everything = np.array([row for rows in truth.values() for row in rows])
+        # places between the true corners: carried by the true corners' own map and lens is what nobody but the simulation has; the
+        # corners themselves stand for the field
+        told = cv2.perspectiveTransform(everything[None, :, 2:], plane)[0]
+        off = 1e3 * np.hypot(*(told - everything[:, :2]).T)
+        rms.append(np.sqrt((off ** 2).mean())); worst.append(off.max())
+    print(f"{name:9} {found} of {there} found, {wrong} wrong, corners rms {np.sqrt(square / max(count, 1)):.3f} px, "
+          f"{np.median(times):.1f} ms; wall by homography, lens left out: rms {np.median(rms):.2f}, max {np.median(worst):.2f} mm")

@@ -1,0 +1,257 @@
+use nalgebra::SMatrix;
+use tracelight_stroke::{Point, Vec2};
+
+use super::{LensBelief, SeenTag, SurveyError, across};
+use crate::board::Board;
+use crate::camera::{CAMERA_PARAMETERS, CameraPose, POSE_PARAMETERS};
+use crate::dual::Dual;
+use crate::homography::Homography;
+use crate::least_squares::{Normal, Problem};
+use crate::lens::{LENS_PARAMETERS, distorted};
+
+/// A place where a marker's black meets white, on its page and in an image.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sighting {
+    pub(super) view: usize,
+    pub(super) page: usize,
+    /// As meant, page frame, m.
+    pub(super) at: Point,
+    /// Where it is seen, px.
+    pub(super) pixel: Point,
+    /// Across the boundary in the image, into the black, a unit long.
+    pub(super) normal: Vec2,
+    /// How far it scatters along that, px.
+    pub(super) deviation_px: f64,
+    /// How much of black's spread is along that: 1 on a boundary, 0 of a corner.
+    pub(super) spreads: f64,
+}
+
+/// Everything that is seen.
+#[derive(Clone, Debug)]
+pub(super) struct All {
+    /// Board and number of each page, in order.
+    pub(super) pages: Vec<(usize, u16)>,
+    pub(super) views: usize,
+    pub(super) places: Vec<Sighting>,
+    /// Corners for a start: view, page, on the page, in the image.
+    pub(super) corners: Vec<(usize, usize, Point, Point)>,
+}
+
+/// Least deviation of a place, px: what 8 bits of brightness leave.
+const LEAST_DEVIATION_PX: f64 = 0.02;
+
+/// Lays what is seen of every marker beside what is printed. Ids that are twice in an image are left out, both of them.
+pub(super) fn sightings(boards: &[Board], views: &[Vec<SeenTag>]) -> Result<All, SurveyError> {
+    let find = |id: u16| {
+        let on = boards.iter().enumerate().find_map(|(k, board)| Some((k, board.find(id)?)));
+        on.map(|(board, (page, number))| ((board, page), number))
+    };
+    let mut pages: Vec<(usize, u16)> =
+        views.iter().flatten().filter_map(|tag| find(tag.id)).map(|(page, _)| page).collect();
+    pages.sort_unstable();
+    pages.dedup();
+    let mut all = All { pages, views: views.len(), places: Vec::new(), corners: Vec::new() };
+    for (view, tags) in views.iter().enumerate() {
+        let before = all.corners.len();
+        for tag in tags {
+            let twice = tags.iter().filter(|other| other.id == tag.id).count() > 1;
+            let Some((page, number)) = find(tag.id).filter(|_| !twice) else { continue };
+            let (Some(board), Ok(place)) = (boards.get(page.0), all.pages.binary_search(&page)) else {
+                continue;
+            };
+            all.add(view, place, &board.corners(number), tag);
+        }
+        if all.corners.len() == before {
+            return Err(SurveyError::NoMarkers { view: view + 1 });
+        }
+    }
+    Ok(all)
+}
+
+impl All {
+    fn add(&mut self, view: usize, page: usize, printed: &[Point; 4], tag: &SeenTag) {
+        let pairs: [(Point, Point); 4] = std::array::from_fn(|k| (printed[k], tag.corners[k]));
+        let Some(map) = Homography::through(&pairs, 1.0) else { return };
+        self.corners.extend(pairs.map(|(at, pixel)| (view, page, at, pixel)));
+        for seen in &tag.places {
+            let (right, down) = (printed[1] - printed[0], printed[3] - printed[0]);
+            let at = printed[0] + right * seen.on_tag.x + down * seen.on_tag.y;
+            let (along, behind) = if seen.upright { (down, right) } else { (right, down) };
+            let directions = map.carry(at, along).zip(map.carry(at, behind));
+            let Some((along, behind)) = directions.filter(|(along, _)| along.hypot() > 0.0) else { continue };
+            let normal = across(along / along.hypot());
+            let into_black = (normal.dot(behind) > 0.0) == seen.black_behind;
+            self.places.push(Sighting {
+                view,
+                page,
+                at,
+                pixel: seen.at,
+                normal: if into_black { normal } else { -normal },
+                deviation_px: tag.deviation_px.max(LEAST_DEVIATION_PX),
+                spreads: 1.0,
+            });
+        }
+    }
+}
+
+/// A page's place on the plane.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) turn_rad: f64,
+}
+
+/// Everything a survey looks for.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub(super) lens: [f64; LENS_PARAMETERS],
+    pub(super) spread_px: f64,
+    pub(super) pages: Vec<Place>,
+    pub(super) poses: Vec<CameraPose>,
+}
+
+const PAGE_PARAMETERS: usize = 3;
+/// Where black's spread stands among the parameters,
+const SPREAD_AT: usize = LENS_PARAMETERS;
+/// and how far it may be, px: ink that runs, and a camera whose curve is not that of most, move all edges of a blurred image.
+const SPREAD_DEVIATION_PX: f64 = 0.3;
+
+impl State {
+    /// Where a page's parameters begin; the first page is the frame and has none.
+    pub(super) fn page_at(&self, page: usize) -> Option<usize> {
+        page.checked_sub(1).map(|k| SPREAD_AT + 1 + PAGE_PARAMETERS * k)
+    }
+
+    /// Where a pose's parameters begin.
+    pub(super) fn pose_at(&self, view: usize) -> usize {
+        SPREAD_AT + 1 + PAGE_PARAMETERS * (self.pages.len() - 1) + POSE_PARAMETERS * view
+    }
+
+    fn parameters(&self) -> usize {
+        self.pose_at(self.poses.len())
+    }
+}
+
+/// What is seen, and what is believed of the lens.
+pub(super) struct Bundle<'a> {
+    pub(super) belief: &'a LensBelief,
+    pub(super) sightings: &'a [Sighting],
+    /// How many times as far as told places scatter.
+    pub(super) scale: f64,
+}
+
+/// Pose, lens, spread, page.
+const LOCAL: usize = CAMERA_PARAMETERS + 1 + PAGE_PARAMETERS;
+
+impl Bundle<'_> {
+    /// Distance of a place from where it should be seen, across it, px, with its derivatives; `None` behind the camera.
+    fn off(state: &State, seen: &Sighting) -> Option<Dual<LOCAL>> {
+        let step = std::array::from_fn(|k| Dual::parameter(0.0, k));
+        let lens = std::array::from_fn(|k| Dual::parameter(state.lens[k], POSE_PARAMETERS + k));
+        let spread = Dual::parameter(state.spread_px, CAMERA_PARAMETERS);
+        let place = state.pages[seen.page];
+        let page = |k: usize, v: f64| Dual::<LOCAL>::parameter(v, CAMERA_PARAMETERS + 1 + k);
+        let constant = |v: f64| <Dual<LOCAL> as crate::jet::Scalar>::constant(v);
+        let (s, c) = crate::jet::Scalar::sin_cos(page(2, place.turn_rad));
+        let (x, y) = (constant(seen.at.x), constant(seen.at.y));
+        let on_target = [c * x - s * y + page(0, place.x), s * x + c * y + page(1, place.y), constant(0.0)];
+        let [x, y, z] = state.poses[seen.view].seen(step, on_target);
+        if z.value <= 1e-6 {
+            return None;
+        }
+        let [u, v] = distorted(lens, [x / z, y / z]);
+        Some(
+            (constant(seen.pixel.x) - u) * constant(seen.normal.x)
+                + (constant(seen.pixel.y) - v) * constant(seen.normal.y)
+                + spread * constant(seen.spreads),
+        )
+    }
+
+    /// Which of all parameters the local ones are; the first page's are none.
+    fn numbers(state: &State, seen: &Sighting) -> [Option<usize>; LOCAL] {
+        let pose = state.pose_at(seen.view);
+        let page = state.page_at(seen.page);
+        std::array::from_fn(|k| match k {
+            k if k < POSE_PARAMETERS => Some(pose + k),
+            k if k < CAMERA_PARAMETERS => Some(k - POSE_PARAMETERS),
+            CAMERA_PARAMETERS => Some(SPREAD_AT),
+            k => page.map(|page| page + k - CAMERA_PARAMETERS - 1),
+        })
+    }
+
+    /// How many times as far as they are told to scatter places are off: by their median, which a few that are far off do not move.
+    pub(super) fn scatter(&self, state: &State) -> f64 {
+        let off = |seen: &Sighting| Some(Self::off(state, seen)?.value.abs() / seen.deviation_px);
+        let mut all: Vec<f64> = self.sightings.iter().filter_map(off).collect();
+        let middle = all.len() / 2;
+        if all.is_empty() {
+            return 1.0;
+        }
+        // half of a normal distribution lies within 0.6745 deviations
+        *all.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745
+    }
+
+    /// Root of the mean squared distance; what is beyond three times that counts as three times.
+    pub(super) fn rms_px(&self, state: &State) -> f64 {
+        let bound = 3.0 * self.scale;
+        let off = |seen: &Sighting| {
+            let off = Self::off(state, seen)?.value;
+            Some(off.abs().min(bound * seen.deviation_px).powi(2))
+        };
+        let all: Vec<f64> = self.sightings.iter().filter_map(off).collect();
+        (all.iter().sum::<f64>() / all.len().max(1) as f64).sqrt()
+    }
+
+    fn believe(&self, state: &State, normal: &mut Normal) -> Option<()> {
+        let information: SMatrix<f64, LENS_PARAMETERS, LENS_PARAMETERS> =
+            self.belief.covariance.cholesky()?.inverse();
+        // Cholesky's rows are measurements that do not depend on each other
+        let rows = information.cholesky()?.l().transpose();
+        let off = SMatrix::<f64, LENS_PARAMETERS, 1>::from(self.belief.lens.parameters())
+            - SMatrix::from(state.lens);
+        let told = rows * off;
+        for i in 0..LENS_PARAMETERS {
+            normal.add_belief(told[i], (i..LENS_PARAMETERS).map(|k| (k, rows[(i, k)])));
+        }
+        normal.add_belief(
+            -state.spread_px / SPREAD_DEVIATION_PX,
+            std::iter::once((SPREAD_AT, 1.0 / SPREAD_DEVIATION_PX)),
+        );
+        Some(())
+    }
+}
+
+impl Problem for Bundle<'_> {
+    type State = State;
+
+    fn normal(&self, state: &State) -> Option<Normal> {
+        let mut normal = Normal::zero(state.parameters());
+        for seen in self.sightings {
+            let off = Self::off(state, seen)?;
+            let numbers = Self::numbers(state, seen);
+            let deviation = self.scale * seen.deviation_px;
+            // what is told rises as the distance falls
+            let by = numbers.iter().zip(&off.by).filter_map(|(number, d)| Some(((*number)?, -d / deviation)));
+            normal.add(off.value / deviation, by);
+        }
+        self.believe(state, &mut normal)?;
+        Some(normal)
+    }
+
+    fn stepped(&self, state: &State, step: &[f64]) -> State {
+        let mut next = state.clone();
+        next.lens.iter_mut().zip(step).for_each(|(v, d)| *v += d);
+        next.spread_px += step[SPREAD_AT];
+        for (page, place) in next.pages.iter_mut().enumerate() {
+            let Some(at) = state.page_at(page) else { continue };
+            (place.x, place.y) = (place.x + step[at], place.y + step[at + 1]);
+            place.turn_rad += step[at + 2];
+        }
+        for (view, pose) in next.poses.iter_mut().enumerate() {
+            let at = state.pose_at(view);
+            *pose = pose.stepped(std::array::from_fn(|k| step[at + k]));
+        }
+        next
+    }
+}

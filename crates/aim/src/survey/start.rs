@@ -1,0 +1,146 @@
+//! Where a survey starts: poses from homographies, by several guesses of the focal length.
+
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use tracelight_stroke::{Point, Vec2};
+
+use super::residual::{All, Bundle, Place, Sighting, State};
+use super::{LensBelief, SurveyError};
+use crate::camera::{Camera, CameraPose};
+use crate::homography::Homography;
+use crate::least_squares::solve;
+use crate::lens::Lens;
+
+/// Focal lengths that are tried, as multiples of the likeliest, where that is not known.
+const GUESSES: [f64; 3] = [1.0, 0.65, 1.5];
+/// Share of its focal length from which on a lens's is known.
+const KNOWN: f64 = 0.1;
+/// How well corners are known, px.
+const CORNER_PX: f64 = 0.3;
+
+/// A state near the best: the one that fits the corners best of those that several guesses lead to.
+pub(super) fn start(belief: &LensBelief, all: &All) -> Result<State, SurveyError> {
+    let corners = as_sightings(all);
+    let known = belief.covariance[(0, 0)].sqrt() < KNOWN * belief.lens.focal_px[0];
+    let guesses = if known { &GUESSES[..1] } else { &GUESSES[..] };
+    let bundle = Bundle { belief, sightings: &corners, scale: 1.0 };
+    let mut best: Option<(f64, State)> = None;
+    for factor in guesses {
+        let lens = Lens { focal_px: belief.lens.focal_px.map(|f| f * factor), ..belief.lens };
+        let rough = chained(&lens, all)?;
+        for state in [mirrored(&rough), rough] {
+            // coarse first: from a wrong focal length all corners are far off
+            let loose = Bundle { scale: bundle.scatter(&state).max(1.0), ..bundle };
+            let Some((state, _)) = solve(&loose, state, 30) else { continue };
+            let Some((state, normal)) = solve(&bundle, state, 60) else { continue };
+            if best.as_ref().is_none_or(|(cost, _)| normal.cost < *cost) {
+                best = Some((normal.cost, state));
+            }
+        }
+    }
+    best.map(|(_, state)| state).ok_or(SurveyError::NoFit { tags: all.corners.len() / 4 })
+}
+
+/// Corners as places, each across and down.
+fn as_sightings(all: &All) -> Vec<Sighting> {
+    let both = |&(view, page, at, pixel): &(usize, usize, Point, Point)| {
+        [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0)].map(|normal| Sighting {
+            view,
+            page,
+            at,
+            pixel,
+            normal,
+            deviation_px: CORNER_PX,
+            spreads: 0.0,
+        })
+    };
+    all.corners.iter().flat_map(both).collect()
+}
+
+/// Poses and pages one after the other, from the first page on, with what is known of the lens.
+fn chained(lens: &Lens, all: &All) -> Result<State, SurveyError> {
+    let mut pages: Vec<Option<Place>> = vec![None; all.pages.len()];
+    pages[0] = Some(Place::default());
+    let mut poses: Vec<Option<CameraPose>> = vec![None; all.views];
+    loop {
+        let known = (pages.iter().flatten().count(), poses.iter().flatten().count());
+        for (view, found) in poses.iter_mut().enumerate() {
+            *found = found.or_else(|| pose(lens, all, &pages, view));
+            let Some(pose) = *found else { continue };
+            let camera = Camera { lens: *lens, pose };
+            for (page, found) in pages.iter_mut().enumerate() {
+                *found = found.or_else(|| place(&camera, all, view, page));
+            }
+        }
+        if known == (pages.iter().flatten().count(), poses.iter().flatten().count()) {
+            break;
+        }
+    }
+    let apart =
+        pages.iter().position(Option::is_none).map(|page| SurveyError::Apart { page: all.pages[page].1 + 1 });
+    if let Some(error) = apart {
+        return Err(error);
+    }
+    let poses: Option<Vec<CameraPose>> = poses.into_iter().collect();
+    let poses = poses.ok_or(SurveyError::NoFit { tags: all.corners.len() / 4 })?;
+    Ok(State { lens: lens.parameters(), spread_px: 0.0, pages: pages.into_iter().flatten().collect(), poses })
+}
+
+/// The pose from which the pages whose places are known are seen as they are.
+fn pose(lens: &Lens, all: &All, pages: &[Option<Place>], view: usize) -> Option<CameraPose> {
+    let pair = |&(seen_in, page, at, pixel): &(usize, usize, Point, Point)| {
+        let place = pages[page].filter(|_| seen_in == view)?;
+        let [x, y] = lens.direction(pixel)?;
+        Some((place.apply(at), Point::new(x, y)))
+    };
+    let pairs: Vec<(Point, Point)> = all.corners.iter().filter_map(pair).collect();
+    let map = Homography::through(&pairs, CORNER_PX / lens.focal_px[0])?;
+    // columns: the plane's x and y as the camera has them, and its origin, all by one factor (Zhang 2000, §3.1)
+    let matrix = map.matrix();
+    let (x, y, origin) = (matrix.column(0), matrix.column(1), matrix.column(2));
+    let factor = (x.norm() * y.norm()).sqrt().copysign(origin.z);
+    let (x, y) = (x / factor, y / factor);
+    let near = Matrix3::from_columns(&[x, y, x.cross(&y)]);
+    let svd = near.svd(true, true);
+    let rotation = Rotation3::from_matrix_unchecked(svd.u? * svd.v_t?);
+    (rotation.matrix().determinant() > 0.0).then(|| CameraPose { rotation, translation_m: origin / factor })
+}
+
+impl Place {
+    fn apply(&self, at: Point) -> Point {
+        let (s, c) = self.turn_rad.sin_cos();
+        Point::new(c * at.x - s * at.y + self.x, s * at.x + c * at.y + self.y)
+    }
+}
+
+/// Where a page lies that a camera sees: its corners carried back, and the turn and move that fit them best.
+fn place(camera: &Camera, all: &All, view: usize, page: usize) -> Option<Place> {
+    let here = all.corners.iter().filter(|corner| corner.0 == view && corner.1 == page);
+    let pairs: Option<Vec<(Vec2, Vec2)>> =
+        here.map(|&(_, _, at, pixel)| Some((at.to_vec2(), camera.target(pixel)?.to_vec2()))).collect();
+    let pairs = pairs.filter(|pairs| !pairs.is_empty())?;
+    let n = pairs.len() as f64;
+    let mean = |of: fn(&(Vec2, Vec2)) -> Vec2| pairs.iter().map(of).sum::<Vec2>() / n;
+    let (from, to) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let (sine, cosine) = pairs.iter().fold((0.0, 0.0), |(sine, cosine), (a, b)| {
+        let (a, b) = (*a - from, *b - to);
+        (sine + a.cross(b), cosine + a.dot(b))
+    });
+    let turned = Place { x: 0.0, y: 0.0, turn_rad: sine.atan2(cosine) };
+    let by = to - turned.apply(from.to_point()).to_vec2();
+    Some(Place { x: by.x, y: by.y, ..turned })
+}
+
+/// The same seen by poses that lean the other way: a small plane is seen nearly alike from both (Oberkampf, DeMenthon & Davis, *Iterative
+/// pose estimation using coplanar feature points*, 1996).
+fn mirrored(state: &State) -> State {
+    let mirror = |pose: &CameraPose| {
+        let (normal, sight) = (pose.rotation * Vector3::z(), pose.translation_m.normalize());
+        let turn = Unit::try_new(normal.cross(&sight), 1e-6).map_or_else(Rotation3::identity, |axis| {
+            // the plane's normal comes towards the camera
+            let lean = (-normal.dot(&sight)).clamp(-1.0, 1.0).acos();
+            Rotation3::from_axis_angle(&axis, -2.0 * lean)
+        });
+        CameraPose { rotation: turn * pose.rotation, ..*pose }
+    };
+    State { poses: state.poses.iter().map(mirror).collect(), ..state.clone() }
+}

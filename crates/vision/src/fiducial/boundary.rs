@@ -1,0 +1,417 @@
+//! Where black meets white in a marker whose cells are known, placed on the grey levels.
+//!
+//! Across the middle of each boundary between a black cell and a white one the light is what the cells about it are, blurred; how far
+//! the boundary is off from where it is thought to be is what fits the light there best, together with its brightness, its contrast
+//! and, for all boundaries together, the blur. Nothing is lost where cells are hardly wider than the blur.
+
+use tracelight_stroke::{Point, Vec2};
+
+use super::TagPlace;
+use super::square::{Off, SIDE, Square};
+use crate::plane::Plane;
+
+/// Samples across a boundary.
+const SAMPLES: usize = 11;
+/// Furthest of them, px,
+const REACH_PX: f64 = 2.5;
+/// but no further than so many cells.
+const REACH_CELLS: f64 = 1.25;
+/// Transitions between cells that reach into the samples, either way.
+const NEAR: isize = 2;
+const TRANSITIONS: usize = 2 * NEAR as usize + 1;
+/// What blur is thought to be at first: standard deviation, px,
+const FIRST_BLUR_PX: f64 = 1.0;
+/// least and most that it can be told to be.
+const BLUR_PX: (f64, f64) = (0.4, 4.0);
+/// How far off a boundary can be placed, px.
+const FURTHEST_PX: f64 = 1.5;
+/// Least contrast of a boundary, as a share of the brightest there can be.
+const LEAST_CONTRAST: f64 = 0.004;
+/// Fewest boundaries that place a marker.
+const FEWEST: usize = 24;
+
+/// What is looked up rather than worked out each time.
+pub(super) struct Tables {
+    /// Light from levels: cameras store it to a power of about 1/2.2, and halfway up a blurred edge in levels is not where the edge is.
+    light: [f32; 256],
+    /// The normal distribution, in steps of 1/[`STEPS`] of a deviation from −[`TAILS`] on, and its density.
+    below: [f32; 2 * TAILS * STEPS + 1],
+    bell: [f32; 2 * TAILS * STEPS + 1],
+}
+
+const STEPS: usize = 64;
+const TAILS: usize = 5;
+
+impl Tables {
+    pub(super) fn new() -> Self {
+        let deviations = |k: usize| k as f64 / STEPS as f64 - TAILS as f64;
+        let density = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
+        let bell = std::array::from_fn(|k| density(deviations(k)) as f32);
+        let mut below = [0.0; 2 * TAILS * STEPS + 1];
+        let mut sum = 0.0;
+        for (k, v) in below.iter_mut().enumerate().skip(1) {
+            // Simpson's rule over each step
+            let (a, b) = (deviations(k - 1), deviations(k));
+            sum += (density(a) + 4.0 * density(f64::midpoint(a, b)) + density(b)) / (6.0 * STEPS as f64);
+            *v = sum as f32;
+        }
+        let light = std::array::from_fn(|k| (k as f32 / 255.0).powf(2.2));
+        Self { light, below, bell }
+    }
+
+    /// The normal distribution at `z` deviations, and its density.
+    fn normal(&self, z: f32) -> (f32, f32) {
+        let place = ((z + TAILS as f32) * STEPS as f32).clamp(0.0, (2 * TAILS * STEPS) as f32 - 0.5);
+        let (k, share) = (place as usize, place.fract());
+        let between = |table: &[f32]| table[k] + (table[k + 1] - table[k]) * share;
+        (between(&self.below), between(&self.bell))
+    }
+}
+
+/// The light of a part of an image.
+struct Part {
+    left: usize,
+    top: usize,
+    width: usize,
+    height: usize,
+    values: Vec<f32>,
+}
+
+impl Part {
+    /// About a square and what is looked at beside it.
+    fn about(plane: &Plane<u8>, tables: &Tables, corners: &[Point; 4]) -> Self {
+        const MARGIN: f64 = 2.0 * FURTHEST_PX + REACH_PX + 2.0;
+        let range = |of: fn(&Point) -> f64, size: usize| {
+            let least = corners.iter().map(of).fold(f64::MAX, f64::min) - MARGIN;
+            let most = corners.iter().map(of).fold(f64::MIN, f64::max) + MARGIN;
+            let place = |v: f64| v.clamp(0.0, size as f64) as usize;
+            (place(least), place(most.ceil()))
+        };
+        let ((left, right), (top, bottom)) = (range(|p| p.x, plane.width), range(|p| p.y, plane.height));
+        let rows = (top..bottom).flat_map(|y| &plane.row(y)[left..right]);
+        let values = rows.map(|&v| tables.light[usize::from(v)]).collect();
+        Self { left, top, width: right - left, height: bottom - top, values }
+    }
+
+    /// Light at equal steps from a place on, bilinear; `None` where a step leads out of the part.
+    fn along(&self, from: Point, step: Vec2, light: &mut [f32]) -> Option<()> {
+        let (mut x, mut y) = (from.x - 0.5 - self.left as f64, from.y - 0.5 - self.top as f64);
+        let (dx, dy) = (step.x * (light.len() - 1) as f64, step.y * (light.len() - 1) as f64);
+        let inside = |v: f64, size: usize| v >= 0.0 && v < size as f64 - 1.001;
+        if !(inside(x, self.width)
+            && inside(y, self.height)
+            && inside(x + dx, self.width)
+            && inside(y + dy, self.height))
+        {
+            return None;
+        }
+        for v in light {
+            let (column, row) = (x as usize, y as usize);
+            let (fx, fy) = ((x - column as f64) as f32, (y - row as f64) as f32);
+            let mix = |row: usize| match self
+                .values
+                .get(row * self.width + column..row * self.width + column + 2)
+            {
+                Some(&[a, b]) => a + (b - a) * fx,
+                _ => 0.0,
+            };
+            let (above, below) = (mix(row), mix(row + 1));
+            *v = above + (below - above) * fy;
+            (x, y) = (x + step.x, y + step.y);
+        }
+        Some(())
+    }
+}
+
+/// A marker's cells: black or white, with what lies about them.
+pub(super) struct Cells([[bool; SIDE]; SIDE]);
+
+impl Cells {
+    pub(super) const fn new(black: [[bool; SIDE]; SIDE]) -> Self {
+        Self(black)
+    }
+
+    /// 1 is white; about the marker there is white.
+    fn white(&self, column: isize, row: isize) -> f32 {
+        let inside = |v: isize| usize::try_from(v).ok().filter(|v| *v < SIDE);
+        match (inside(column), inside(row)) {
+            (Some(column), Some(row)) if self.0[row][column] => 0.0,
+            _ => 1.0,
+        }
+    }
+}
+
+/// A boundary between two cells: behind cell `before` along its axis, in a column or row.
+#[derive(Clone, Copy)]
+struct Boundary {
+    upright: bool,
+    before: isize,
+    lane: isize,
+}
+
+impl Boundary {
+    /// White of the cell that is `k` behind the boundary, `aside` lanes beside it.
+    fn white(&self, cells: &Cells, k: isize, aside: isize) -> f32 {
+        let (along, across) = (self.before + k, self.lane + aside);
+        if self.upright { cells.white(along, across) } else { cells.white(across, along) }
+    }
+
+    /// Its middle, in cells.
+    fn middle(&self) -> Point {
+        let (on, lane) = ((self.before + 1) as f64, self.lane as f64 + 0.5);
+        if self.upright { Point::new(on, lane) } else { Point::new(lane, on) }
+    }
+}
+
+/// Boundaries between black and white: those of the border, or all.
+fn boundaries(cells: &Cells, all: bool) -> impl Iterator<Item = Boundary> + '_ {
+    let side = SIDE as isize;
+    let of_line = move |before: isize| all || before < 0 || before + 1 == side;
+    let both = [true, false].into_iter().flat_map(move |upright| {
+        let lines = (-1..side).filter(move |&before| of_line(before));
+        lines.flat_map(move |before| (0..side).map(move |lane| Boundary { upright, before, lane }))
+    });
+    both.filter(|b| b.white(cells, 0, 0) != b.white(cells, 1, 0))
+}
+
+/// A marker placed: its square, its boundaries, and their scatter, px.
+pub(super) struct Placed {
+    pub(super) square: Square,
+    pub(super) places: Vec<TagPlace>,
+    pub(super) deviation_px: f64,
+}
+
+/// Places a marker that is thought to be at `square`, to a pixel or so.
+pub(super) fn placed(plane: &Plane<u8>, tables: &Tables, cells: &Cells, square: &Square) -> Option<Placed> {
+    let part = Part::about(plane, tables, &square.corners()?);
+    let mut view = View { part, tables, cells, square: *square, blur_px: FIRST_BLUR_PX };
+    for _ in 0..2 {
+        let found = view.look(false)?;
+        let wider = found.iter().map(|f| f.wider_px).sum::<f64>() / found.len() as f64;
+        let near = (0.5 * view.blur_px, 2.0 * view.blur_px);
+        view.blur_px = (view.blur_px + wider).clamp(near.0, near.1).clamp(BLUR_PX.0, BLUR_PX.1);
+        view.square = view.square.moved(&offs(&found))?;
+    }
+    let found = view.look(true)?;
+    let square = view.square.moved(&offs(&found))?;
+    let mut squares = 0.0;
+    let mut places = Vec::with_capacity(found.len());
+    for f in &found {
+        let Found { cell, upright, black_behind, .. } = *f;
+        let at = view.square.at(cell.x, cell.y)? + f.normal * f.off_px;
+        squares += (at - square.at(cell.x, cell.y)?).dot(f.normal).powi(2);
+        places.push(TagPlace { cell, upright, black_behind, at });
+    }
+    // eight of them it takes to place the square
+    let deviation_px = (squares / (found.len() - 8) as f64).sqrt();
+    Some(Placed { square, places, deviation_px })
+}
+
+fn offs(found: &[Found]) -> Vec<Off> {
+    found.iter().map(|f| (f.cell, f.off_px, f.normal)).collect()
+}
+
+/// What the light across a boundary says.
+struct Found {
+    cell: Point,
+    upright: bool,
+    black_behind: bool,
+    off_px: f64,
+    normal: Vec2,
+    /// How much wider the blur is than thought, px.
+    wider_px: f64,
+}
+
+/// A marker in an image, where it is thought to be.
+struct View<'a> {
+    part: Part,
+    tables: &'a Tables,
+    cells: &'a Cells,
+    square: Square,
+    blur_px: f64,
+}
+
+impl View<'_> {
+    /// Looks across the boundaries of the border, or all.
+    fn look(&self, all: bool) -> Option<Vec<Found>> {
+        let mut profiles: [Option<Profile>; 2 * (SIDE + 1)] = [None; 2 * (SIDE + 1)];
+        let mut found = Vec::with_capacity(96);
+        for boundary in boundaries(self.cells, all) {
+            let number = usize::from(boundary.upright) * (SIDE + 1) + (boundary.before + 1) as usize;
+            let profile = match &profiles[number] {
+                Some(profile) => profile,
+                None => profiles[number].insert(Profile::of(self, &boundary)?),
+            };
+            found.extend(profile.across(self, &boundary, all));
+        }
+        (found.len() >= FEWEST).then_some(found)
+    }
+}
+
+/// Values at the samples; what is beyond them is nothing.
+type Row = [f32; 12];
+
+/// What a boundary's samples get from each transition near it: of a whole row or column of boundaries, which are much alike.
+#[derive(Clone, Copy)]
+struct Profile {
+    /// From a sample to the next, px.
+    step_px: f64,
+    /// Share of light from behind each transition.
+    behind: [Row; TRANSITIONS],
+    /// How that of the boundary itself falls if it moves, 1/px, and if the blur widens.
+    moved: Row,
+    widened: Row,
+    /// Share of the samples' light that comes from the lane itself; half of what is left from either side.
+    own: f32,
+}
+
+impl Profile {
+    fn of(view: &View, boundary: &Boundary) -> Option<Self> {
+        // in the middle lane
+        let middle = Boundary { lane: SIDE as isize / 2, ..*boundary }.middle();
+        let (_, across, down) = view.square.with_slopes(middle.x, middle.y)?;
+        let (along, lane) = if boundary.upright { (across, down) } else { (down, across) };
+        let cell_px = along.cross(lane).abs() / lane.hypot();
+        if !(cell_px > 0.5 && lane.hypot() > 0.5) {
+            return None;
+        }
+        let step_px = REACH_PX.min(REACH_CELLS * cell_px) / (SAMPLES / 2) as f64;
+        let mut profile = Self {
+            step_px,
+            behind: [[0.0; 12]; TRANSITIONS],
+            moved: [0.0; 12],
+            widened: [0.0; 12],
+            own: 2.0 * view.tables.normal((0.5 * lane.hypot() / view.blur_px) as f32).0 - 1.0,
+        };
+        for j in 0..SAMPLES {
+            let place = (j as f64 - (SAMPLES / 2) as f64) * step_px;
+            for k in 0..TRANSITIONS {
+                let far = ((place - (k as f64 - NEAR as f64) * cell_px) / view.blur_px) as f32;
+                let (below, bell) = view.tables.normal(far);
+                profile.behind[k][j] = below;
+                if k == NEAR as usize {
+                    profile.moved[j] = -bell / view.blur_px as f32;
+                    profile.widened[j] = profile.moved[j] * far;
+                }
+            }
+        }
+        Some(profile)
+    }
+
+    /// Looks across one of its boundaries, and how wide the blur is, unless that is known; `None` where nothing is seen.
+    fn across(&self, view: &View, boundary: &Boundary, blur_known: bool) -> Option<Found> {
+        let cell = boundary.middle();
+        let (at, across, down) = view.square.with_slopes(cell.x, cell.y)?;
+        let (along, lane) = if boundary.upright { (across, down) } else { (down, across) };
+        let normal = Vec2::new(-lane.y, lane.x) / lane.hypot();
+        let normal = if normal.dot(along) < 0.0 { -normal } else { normal };
+        let mut light: Row = [0.0; 12];
+        let reach = self.step_px * (SAMPLES / 2) as f64;
+        view.part.along(at - normal * reach, normal * self.step_px, &mut light[..SAMPLES])?;
+        let (model, own) = self.model(view.cells, boundary);
+        let [moved, widened] = [self.moved, self.widened].map(|row| row.map(|v| own * v));
+        let fit = Fit::of(&light, &model, &moved, &widened);
+        let (contrast, off, wider) = if blur_known { fit.of_two()? } else { fit.of_three()? };
+        let off_px = off / contrast;
+        (contrast > LEAST_CONTRAST && off_px.abs() < FURTHEST_PX).then(|| Found {
+            cell,
+            upright: boundary.upright,
+            black_behind: boundary.white(view.cells, 1, 0) == 0.0,
+            off_px,
+            normal,
+            wider_px: (wider / contrast).clamp(-1.0, 1.0),
+        })
+    }
+
+    /// The light at the samples if black is 0 and white 1, and how much of it the boundary itself makes.
+    fn model(&self, cells: &Cells, boundary: &Boundary) -> (Row, f32) {
+        let aside = 0.5 * (1.0 - self.own);
+        let white = |k: isize| {
+            self.own * boundary.white(cells, k, 0)
+                + aside * (boundary.white(cells, k, -1) + boundary.white(cells, k, 1))
+        };
+        let mut model = ONES.map(|one| one * white(-NEAR));
+        let mut own = 0.0;
+        for (k, behind) in (-NEAR..=NEAR).zip(&self.behind) {
+            let step = white(k + 1) - white(k);
+            model.iter_mut().zip(behind).for_each(|(v, b)| *v += step * b);
+            own = if k == 0 { step } else { own };
+        }
+        (model, own)
+    }
+}
+
+/// One at every sample.
+const ONES: Row = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0];
+
+/// Light as a brightness and shares of two or three rows: what is left of their products without the means.
+struct Fit {
+    /// Of the model, of its motion and of its widening with themselves and each other,
+    products: [[f64; 3]; 3],
+    /// and with the light.
+    light: [f64; 3],
+}
+
+impl Fit {
+    fn of(light: &Row, model: &Row, moved: &Row, widened: &Row) -> Self {
+        let rows = [model, moved, widened];
+        let sums = rows.map(|row| dot(&ONES, row));
+        let left =
+            |a: &Row, b: &Row, sum_a: f32, sum_b: f32| f64::from(dot(a, b) - sum_a * sum_b / SAMPLES as f32);
+        let sum = dot(&ONES, light);
+        Self {
+            products: std::array::from_fn(|i| {
+                std::array::from_fn(|j| left(rows[i], rows[j], sums[i], sums[j]))
+            }),
+            light: std::array::from_fn(|i| left(rows[i], light, sums[i], sum)),
+        }
+    }
+
+    /// Shares of the model and of its motion; `None` where they look alike.
+    fn of_two(&self) -> Option<(f64, f64, f64)> {
+        let ([[aa, ab, _], [_, bb, _], _], [a, b, _]) = (self.products, self.light);
+        let det = aa * bb - ab * ab;
+        (det > 1e-6 * aa * bb).then(|| ((a * bb - b * ab) / det, (b * aa - a * ab) / det, 0.0))
+    }
+
+    /// Shares of the model, of its motion and of its widening.
+    fn of_three(&self) -> Option<(f64, f64, f64)> {
+        let [a, b, c] = [0, 1, 2].map(|i| Vector::from(self.products[i]));
+        let light = Vector::from(self.light);
+        let det = a.dot(b.cross(c));
+        let size = a.0[0] * b.0[1] * c.0[2];
+        (det > 1e-6 * size)
+            .then(|| (light.dot(b.cross(c)) / det, a.dot(light.cross(c)) / det, a.dot(b.cross(light)) / det))
+    }
+}
+
+/// Three numbers.
+#[derive(Clone, Copy)]
+struct Vector([f64; 3]);
+
+impl From<[f64; 3]> for Vector {
+    fn from(v: [f64; 3]) -> Self {
+        Self(v)
+    }
+}
+
+impl Vector {
+    fn dot(self, Self(o): Self) -> f64 {
+        let Self([x, y, z]) = self;
+        x * o[0] + y * o[1] + z * o[2]
+    }
+
+    fn cross(self, Self(o): Self) -> Self {
+        let Self([x, y, z]) = self;
+        Self([y * o[2] - z * o[1], z * o[0] - x * o[2], x * o[1] - y * o[0]])
+    }
+}
+
+/// Sum of the products, four lanes at a time.
+fn dot(a: &Row, b: &Row) -> f32 {
+    let mut sums = [0f32; 4];
+    for (a, b) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
+        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
+    }
+    (sums[0] + sums[2]) + (sums[1] + sums[3])
+}
