@@ -12,7 +12,7 @@ for name, refine in [("none", cv2.aruco.CORNER_REFINE_NONE), ("subpix", cv2.aruc
     parameters.cornerRefinementMethod = refine
     detector = cv2.aruco.ArucoDetector(dictionary, parameters)
     found = there = wrong = 0
-    square, count, times, rms, worst = 0.0, 0, [], [], []
+    offs, times, rms, worst = [], [], [], []
     for path in sorted(glob.glob(f"{folder}/*.png")):
         truth = {}
         for row in csv.DictReader(open(path[:-3] + "csv")):
@@ -31,7 +31,7 @@ for name, refine in [("none", cv2.aruco.CORNER_REFINE_NONE), ("subpix", cv2.aruc
                 wrong += 1
                 continue
             found += 1
-            square, count = square + ((quad - own[:, 2:]) ** 2).sum(), count + 4
+            offs.extend(quad - own[:, 2:])
             on_wall.extend(own[:, :2]); seen.extend(quad)
         plane, _ = cv2.findHomography(np.array(seen), np.array(on_wall))
         x, y = np.meshgrid(np.arange(-13, 14) * 0.0254, np.arange(-7, 8) * 0.0254)
@@ -41,5 +41,8 @@ for name, refine in [("none", cv2.aruco.CORNER_REFINE_NONE), ("subpix", cv2.aruc
         told = cv2.perspectiveTransform(everything[None, :, 2:], plane)[0]
         off = 1e3 * np.hypot(*(told - everything[:, :2]).T)
         rms.append(np.sqrt((off ** 2).mean())); worst.append(off.max())
-    print(f"{name:9} {found} of {there} found, {wrong} wrong, corners rms {np.sqrt(square / max(count, 1)):.3f} px, "
+    offs = np.array(offs)
+    shift = offs.mean(axis=0)
+    square = ((offs - shift) ** 2).sum(axis=1).mean()
+    print(f"{name:9} {found} of {there} found, {wrong} wrong, corners rms {np.sqrt(square):.3f} px about a shift of {shift[0]:.2f}, {shift[1]:.2f}, "
           f"{np.median(times):.1f} ms; wall by homography, lens left out: rms {np.median(rms):.2f}, max {np.median(worst):.2f} mm")

@@ -89,7 +89,7 @@ pub struct PlacedPage {
 pub enum SurveyError {
     /// An image without markers.
     #[error(
-        "image {view} shows no marker of a board: print one (`tracelight calibrate board`), have all of it in sight, sharp and lit"
+        "image {view} shows no marker of a board: print one (`tracelight calibrate sheet`), have all of it in sight, sharp and lit"
     )]
     NoMarkers {
         /// Which, from 1.
@@ -158,14 +158,11 @@ impl SurveyedCamera {
         rows * self.covariance * rows.transpose()
     }
 
-    /// How far the target is likely to be off, root of the mean over an image's middle nine tenths, m; `None` if part of that shows no target.
-    pub fn wall_deviation_m(&self) -> Option<f64> {
-        let [width, height] = self.camera.lens.size_px.map(|n| n as f64);
-        let place = |k: usize| 0.05 + 0.1 * k as f64;
-        let all = (0..100).map(|i| Point::new(width * place(i % 10), height * place(i / 10)));
-        let squares: Option<Vec<f64>> =
-            all.map(|pixel| Some(self.target(pixel, &Matrix2::zeros())?.covariance.trace())).collect();
-        squares.map(|squares| (squares.iter().sum::<f64>() / 100.0).sqrt())
+    /// How far the target is likely to be off at these pixels, root of the mean square, m; `None` if one of them shows no target.
+    pub fn wall_deviation_m(&self, pixels: &[Point]) -> Option<f64> {
+        let square = |pixel: &Point| Some(self.target(*pixel, &Matrix2::zeros())?.covariance.trace());
+        let squares: Option<Vec<f64>> = pixels.iter().map(square).collect();
+        squares.map(|squares| (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
     }
 }
 

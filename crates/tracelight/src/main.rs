@@ -1,6 +1,7 @@
 //! Tracelight: give it a picture, and a pan/tilt laser head draws it on the wall, to scale.
 
 mod batch;
+mod camera_file;
 mod chart;
 mod cli;
 mod failure;

@@ -22,7 +22,7 @@ use caret::Mark;
 use hand_tuned::rig_keys;
 pub(crate) use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
 use keys::{Choice, Key, Slot, identified_keys, model_keys};
-pub(crate) use save::{date, is_same, save};
+pub(crate) use save::{date, is_same, save, today};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
 const MOST_BYTES: usize = 1 << 20;

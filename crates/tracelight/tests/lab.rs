@@ -176,6 +176,11 @@ fn the_page_on_friction_shows_what_its_commands_print() {
 }
 
 #[test]
+fn the_page_on_cameras_shows_what_its_commands_print() {
+    check_page("camera.md", 1);
+}
+
+#[test]
 fn the_page_on_identification_shows_what_its_commands_print() {
     check_page("identify.md", 2);
 }

@@ -111,6 +111,18 @@ const MESSAGES: &[(&str, &str)] = &[
         "A rig file is wrong. The message shows file, line and value, what is allowed and what to do.",
     ),
     (
+        "camera-image",
+        "Images of one camera have different sizes, or another than the lens file's. A lens holds for one size: take all images with the same setting.",
+    ),
+    (
+        "camera-not-found",
+        "The printed markers of an image tell no camera. The message says why: none in sight, pages that no image links, or pages that do not lie on one plane.",
+    ),
+    (
+        "camera-file",
+        "A camera file is not one, or holds numbers that no camera has. Write it again with `tracelight calibrate`.",
+    ),
+    (
         "marks-not-found",
         "A ruler picture does not show two marks. Use two dark tapes across a light ruler, or the reverse.",
     ),

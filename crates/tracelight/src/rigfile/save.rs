@@ -73,8 +73,13 @@ fn rounded<T>(key: &Key<T>, from: &mut T) -> String {
 /// Says that a rig was identified today.
 pub(crate) fn date(rig: &mut RigConfig) {
     if let Some(identified) = &mut rig.identified {
-        identified.date = jiff::Timestamp::now().strftime("%Y-%m-%d").to_string();
+        identified.date = today();
     }
+}
+
+/// The day, as 2026-11-23.
+pub(crate) fn today() -> String {
+    jiff::Timestamp::now().strftime("%Y-%m-%d").to_string()
 }
 
 /// Whether a key stands in a file.

@@ -7,8 +7,10 @@ use super::square::{SIDE, Square};
 use crate::plane::Plane;
 use crate::solve::linear;
 
-/// Cells that may be wrong: the family parts up to five; with two, a patch that is no marker passes once in forty thousand times.
+/// Cells that may be wrong, if they are unclear: the family tells up to five, and what is no marker has clear ones.
 const MOST_WRONG: u32 = 2;
+/// Share of the way from halfway to white, or to black, within which a cell is unclear.
+const UNCLEAR: f64 = 0.5;
 /// Cells of the border and of the white about it that may be wrong.
 const MOST_WRONG_ABOUT: usize = 3;
 
@@ -46,25 +48,28 @@ pub(super) fn read(plane: &Plane<u8>, square: &Square) -> Option<Read> {
     {
         return None;
     }
-    let mut code = 0;
+    let (mut code, mut unclear) = (0, 0);
     for row in 1..7 {
         for column in 1..7 {
-            let white = cell(column, row)? > threshold(column as f64 + 0.5, row as f64 + 0.5);
-            code = code << 1 | u64::from(white);
+            let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
+            let above = cell(column, row)? - threshold(x, y);
+            code = code << 1 | u64::from(above > 0.0);
+            unclear = unclear << 1 | u64::from(above.abs() < UNCLEAR * (bright.at(x, y) - threshold(x, y)));
         }
     }
-    look_up(code)
+    look_up(code, unclear)
 }
 
-/// The id of a code as it is seen, and how it is turned.
-fn look_up(code: u64) -> Option<Read> {
-    let mut turned = code;
+/// The id of a code as it is seen, and how it is turned; what is wrong must be among what is unclear.
+fn look_up(code: u64, unclear: u64) -> Option<Read> {
+    let (mut code, mut unclear) = (code, unclear);
     for turns in 0..4 {
-        let wrong = |&known: &u64| (known ^ turned).count_ones();
+        let wrong = |&known: &u64| (known ^ code).count_ones();
         if let Some(id) = CODES.iter().position(|known| wrong(known) <= MOST_WRONG) {
-            return Some(Read { id: id as u16, turns, wrong: wrong(&CODES[id]) as u8 });
+            let put_right = (CODES[id] ^ code) & !unclear == 0;
+            return put_right.then(|| Read { id: id as u16, turns, wrong: wrong(&CODES[id]) as u8 });
         }
-        turned = quarter_turn(turned);
+        (code, unclear) = (quarter_turn(code), quarter_turn(unclear));
     }
     None
 }
@@ -145,9 +150,16 @@ mod tests {
     }
 
     #[test]
-    fn two_wrong_cells_are_put_right_and_three_are_not() {
-        let read = look_up(CODES[100] ^ 0b1001).unwrap();
+    fn two_wrong_cells_are_put_right_if_they_are_unclear_and_three_are_not() {
+        let code = CODES[100] ^ 0b1001;
+        let read = look_up(code, 0b1001).unwrap();
         assert_eq!((read.id, read.turns, read.wrong), (100, 0, 2));
-        assert!(look_up(CODES[100] ^ 0b1011).is_none());
+        assert!(look_up(code, 0b0001).is_none());
+        assert!(look_up(CODES[100] ^ 0b1011, 0b1111).is_none());
+        let turned = look_up(
+            quarter_turn(quarter_turn(quarter_turn(code))),
+            quarter_turn(quarter_turn(quarter_turn(0b1001))),
+        );
+        assert_eq!(turned.map(|read| (read.id, read.turns)), Some((100, 1)));
     }
 }

@@ -1,4 +1,4 @@
-use clap::{Args, Subcommand};
+use clap::Args;
 
 use crate::cli::placing::positive_length;
 use crate::cli::{Answer, Voice};
@@ -6,33 +6,13 @@ use crate::failure::Failure;
 use crate::picture::{self, Source};
 use crate::units::{Length, Offset};
 
-/// Find out what a camera's pixels mean on the target
-#[derive(Args, Debug)]
-pub(crate) struct CalibrateArgs {
-    #[command(subcommand)]
-    action: CalibrateAction,
-}
-
-impl CalibrateArgs {
-    pub(crate) const fn voice(&self) -> Voice {
-        match &self.action {
-            CalibrateAction::Ruler(args) => args.voice,
-        }
-    }
-}
-
-#[derive(Subcommand, Debug)]
-enum CalibrateAction {
-    Ruler(RulerArgs),
-}
-
 /// Scale from two pictures of a ruler with two marks: once upright, once level
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: tracelight calibrate ruler examples/ruler-upright.png examples/ruler-level.png --marks 4in \
                   --wish 3ft,3ft"
 )]
-struct RulerArgs {
+pub(super) struct RulerArgs {
     /// Picture of the upright ruler
     upright: String,
     /// Picture of the level ruler
@@ -47,7 +27,7 @@ struct RulerArgs {
     #[arg(long, value_name = "WIDTH,HEIGHT", allow_hyphen_values = true, value_parser = field)]
     wish: Option<Offset>,
     #[command(flatten)]
-    voice: Voice,
+    pub(super) voice: Voice,
 }
 
 /// What two ruler pictures say.
@@ -62,13 +42,9 @@ struct Scale {
     wish_distance_m: Option<f64>,
 }
 
-pub(crate) fn run(args: &CalibrateArgs) -> Result<Answer, Failure> {
-    match &args.action {
-        CalibrateAction::Ruler(args) => {
-            let scale = measure(args)?;
-            Ok(Answer::new(text(args, &scale), json(args, &scale)))
-        }
-    }
+pub(super) fn run(args: &RulerArgs) -> Result<Answer, Failure> {
+    let scale = measure(args)?;
+    Ok(Answer::new(text(args, &scale), json(args, &scale)))
 }
 
 fn measure(args: &RulerArgs) -> Result<Scale, Failure> {
@@ -125,7 +101,7 @@ fn text(args: &RulerArgs, scale: &Scale) -> String {
             100.0 * skew
         );
     }
-    text + "\nA ruler sees neither a turned camera nor a bent lens: square it up by hand."
+    text + "\nA ruler sees neither a turned camera nor a bent lens: square it up by hand, or let `tracelight calibrate markers` see both."
 }
 
 fn json(args: &RulerArgs, scale: &Scale) -> String {

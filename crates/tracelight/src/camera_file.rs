@@ -1,0 +1,189 @@
+//! What is known of a camera, as a file: its lens and, in front of a wall, its pose, with what they hold for.
+
+use nalgebra::SMatrix;
+use serde::{Deserialize, Serialize};
+use toml_edit::{Array, Item};
+use tracelight_aim::{Lens, LensBelief, Survey, SurveyedCamera};
+use tracelight_stroke::Point;
+
+use crate::failure::Failure;
+use crate::picture::read_bytes;
+
+/// Largest camera file, bytes: twenty times what is written.
+const MOST_BYTES: usize = 1 << 18;
+
+/// A camera file.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CameraFile {
+    /// Day it was found, as 2026-11-23.
+    date: String,
+    lens: LensTable,
+    /// Where the camera stands; none of a lens alone.
+    pose: Option<PoseTable>,
+    score: ScoreTable,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LensTable {
+    size_px: [usize; 2],
+    focal_px: [f64; 2],
+    centre_px: [f64; 2],
+    /// k1, k2, k3.
+    radial: [f64; 3],
+    /// p1, p2.
+    tangential: [f64; 2],
+    /// Covariance of focal_px, centre_px, k1, k2, p1, p2, k3, row by row.
+    covariance: Vec<Vec<f64>>,
+}
+
+/// camera_from_target.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PoseTable {
+    turn_rad: [f64; 3],
+    translation_m: [f64; 3],
+    /// Covariance of a turn about the camera's axes, rad, of the translation, m, and of the lens as above, row by row.
+    covariance: Vec<Vec<f64>>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ScoreTable {
+    /// What a point of the wall is likely to be off, root of the mean square: between the pages, and all over the image.
+    between_pages_mm: Option<f64>,
+    image_mm: Option<f64>,
+    /// How far places on the markers are off from where they should be seen.
+    rms_px: f64,
+    /// How many there were.
+    places: usize,
+    /// Pages that were seen, from 1, and how much larger than meant they were printed.
+    pages: Vec<u16>,
+    print_scale: f64,
+}
+
+/// What points of the wall are likely to be off, root of the mean square.
+#[derive(Clone, Copy)]
+pub(crate) struct Wall {
+    /// Between the middles of the pages, or on the one there is.
+    pub(crate) between_m: Option<f64>,
+    /// All over the image, but for a twentieth at its borders; `None` if it shows more than the wall.
+    pub(crate) image_m: Option<f64>,
+}
+
+impl Wall {
+    pub(crate) fn of(survey: &Survey, camera: &SurveyedCamera) -> Self {
+        let [width, height] = camera.camera.lens.size_px.map(|n| n as f64);
+        let place = |k: usize| 0.05 + 0.1 * k as f64;
+        let all: Vec<Point> =
+            (0..100).map(|i| Point::new(width * place(i % 10), height * place(i / 10))).collect();
+        let middles = || survey.pages.iter().map(|page| page.middle);
+        let ways = middles()
+            .flat_map(|a| middles().flat_map(move |b| [0.0, 0.25, 0.5].map(|share| a.lerp(b, share))));
+        let between: Vec<Point> = ways.filter_map(|at| camera.camera.pixel(at)).collect();
+        Self { between_m: camera.wall_deviation_m(&between), image_m: camera.wall_deviation_m(&all) }
+    }
+}
+
+impl CameraFile {
+    /// Of a survey, with the camera of one of its images, or of its lens alone.
+    pub(crate) fn of(survey: &Survey, camera: Option<(&SurveyedCamera, Wall)>, print_scale: f64) -> Self {
+        let lens = &survey.belief.lens;
+        let pose = |camera: &SurveyedCamera| PoseTable {
+            turn_rad: camera.camera.pose.turn_rad(),
+            translation_m: camera.camera.pose.translation_m(),
+            covariance: rows(&camera.covariance),
+        };
+        Self {
+            date: crate::rigfile::today(),
+            lens: LensTable {
+                size_px: lens.size_px,
+                focal_px: lens.focal_px,
+                centre_px: [lens.centre_px.x, lens.centre_px.y],
+                radial: lens.radial,
+                tangential: lens.tangential,
+                covariance: rows(&survey.belief.covariance),
+            },
+            pose: camera.map(|(camera, _)| pose(camera)),
+            score: ScoreTable {
+                between_pages_mm: camera.and_then(|(_, wall)| wall.between_m).map(|m| 1e3 * m),
+                image_mm: camera.and_then(|(_, wall)| wall.image_m).map(|m| 1e3 * m),
+                rms_px: survey.rms_px,
+                places: survey.places,
+                pages: survey.pages.iter().map(|page| page.page + 1).collect(),
+                print_scale,
+            },
+        }
+    }
+
+    /// What the file says of the lens.
+    fn lens(&self) -> Result<LensBelief, String> {
+        let table = &self.lens;
+        let lens = Lens {
+            size_px: table.size_px,
+            focal_px: table.focal_px,
+            centre_px: Point::new(table.centre_px[0], table.centre_px[1]),
+            radial: table.radial,
+            tangential: table.tangential,
+        };
+        if lens.size_px.iter().any(|n| !(8..=100_000).contains(n)) {
+            return Err(format!(
+                "lens.size_px is {:?}; an image has 8 to 100000 px either way",
+                lens.size_px
+            ));
+        }
+        if lens.focal_px.iter().any(|f| !(1.0..1e7).contains(f)) {
+            return Err(format!("lens.focal_px is {:?}; a focal length is 1 to 1e7 px", lens.focal_px));
+        }
+        let covariance = square::<9>(&table.covariance).filter(|c| c.cholesky().is_some());
+        let covariance = covariance
+            .ok_or("lens.covariance is no covariance: nine rows of nine numbers, positive definite")?;
+        Ok(LensBelief { lens, covariance })
+    }
+}
+
+fn rows<const N: usize>(matrix: &SMatrix<f64, N, N>) -> Vec<Vec<f64>> {
+    (0..N).map(|i| (0..N).map(|k| matrix[(i, k)]).collect()).collect()
+}
+
+fn square<const N: usize>(rows: &[Vec<f64>]) -> Option<SMatrix<f64, N, N>> {
+    let whole = rows.len() == N && rows.iter().all(|row| row.len() == N && row.iter().all(|v| v.is_finite()));
+    whole.then(|| SMatrix::from_fn(|i, k| rows[i][k]))
+}
+
+/// A camera as a file.
+pub(crate) fn write(file: &CameraFile) -> Result<String, Failure> {
+    let mut document = toml_edit::ser::to_document(file).map_err(|e| Failure::failed("internal", e))?;
+    for (_, item) in document.iter_mut() {
+        if let Some(table) = item.as_inline_table() {
+            *item = Item::Table(table.clone().into_table());
+        }
+        // a row of a covariance a line
+        for row in
+            item.get_mut("covariance").and_then(Item::as_array_mut).into_iter().flat_map(Array::iter_mut)
+        {
+            row.decor_mut().set_prefix("\n  ");
+        }
+    }
+    Ok(format!(
+        "# Tracelight: a camera. Lengths in m, angles in rad, pixels from the upper left corner of the image.\n\n{document}"
+    ))
+}
+
+/// The lens of a camera file.
+pub(crate) fn read(path: &str) -> Result<LensBelief, Failure> {
+    let wrong = |what: String| Failure::usage("camera-file", format!("{path}: {what}"));
+    let bytes = read_bytes(path)?;
+    if bytes.len() > MOST_BYTES {
+        return Err(wrong(format!(
+            "{} bytes are no camera file, which has at most {MOST_BYTES}",
+            bytes.len()
+        )));
+    }
+    let text =
+        String::from_utf8(bytes).map_err(|_| wrong("not text; give a camera file (.toml)".to_owned()))?;
+    let file: CameraFile = toml_edit::de::from_str(&text)
+        .map_err(|e| wrong(format!("no camera file: {}", e.to_string().trim_end())))?;
+    file.lens().map_err(wrong)
+}

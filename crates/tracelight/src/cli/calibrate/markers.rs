@@ -1,0 +1,253 @@
+use clap::Args;
+use serde_json::{Value, json};
+use tracelight_aim::{Board, LensBelief, SeenPlace, SeenTag, Survey, SurveyedCamera, survey};
+use tracelight_stroke::Point;
+use tracelight_vision::{Tag, TagPlace, find_tags};
+
+use crate::camera_file::{self, CameraFile, Wall};
+use crate::cli::placing::positive_length;
+use crate::cli::{Answer, Voice, write_file};
+use crate::failure::Failure;
+use crate::output::BAR_M;
+use crate::picture::{self, Source};
+use crate::units::Length;
+
+/// The camera in front of the wall, from an image of printed markers on it: lens, pose, scale
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight calibrate markers wall.jpg -o camera.toml\n\n\
+                  `tracelight calibrate sheet` prints the pages. Stick them on the wall near the corners of where you will draw, take an image that shows them \
+                  all, sharp and not glared at, and leave the camera where it is. Perspective and the lens's distortion are found from that one image; \
+                  a lens that was calibrated before (--lens) makes it surer, above all with one page. The target's frame is that of the first page: \
+                  origin in the middle of its markers, x to its right. What is likely to be off is told in mm.")]
+pub(super) struct MarkersArgs {
+    /// Image of the wall with the pages on it
+    image: String,
+    /// Lens that was calibrated before: a file that `calibrate lens` or `calibrate markers` has written
+    #[arg(long, value_name = "FILE.toml")]
+    lens: Option<String>,
+    /// How long the bar at a page's foot is as printed, if not 150 mm
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
+    bar: Option<Length>,
+    /// File for what is found
+    #[arg(short, long, value_name = "FILE.toml", default_value = "camera.toml")]
+    output: String,
+    #[command(flatten)]
+    pub(super) voice: Voice,
+}
+
+/// A camera's lens, from images of printed markers from several sides
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example: tracelight calibrate lens left.jpg right.jpg above.jpg below.jpg near.jpg -o lens.toml\n\n\
+                  `tracelight calibrate sheet` prints the pages. Leave them where they are and take at least three images from several sides, the pages \
+                  large and out in the corners, too; zoom and focus as they will be. The first is as good as any."
+)]
+pub(super) struct LensArgs {
+    /// Images of the same pages
+    #[arg(required = true, num_args = 1..)]
+    images: Vec<String>,
+    /// How long the bar at a page's foot is as printed, if not 150 mm
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
+    bar: Option<Length>,
+    /// File for what is found
+    #[arg(short, long, value_name = "FILE.toml", default_value = "lens.toml")]
+    output: String,
+    #[command(flatten)]
+    pub(super) voice: Voice,
+}
+
+/// Fewest images that tell a lens.
+const FEWEST_IMAGES: usize = 3;
+/// A lens is known if its focal length is, to this share.
+const KNOWN_FOCAL: f64 = 0.005;
+
+pub(super) fn run(args: &MarkersArgs) -> Result<Answer, Failure> {
+    let known = args.lens.as_deref().map(camera_file::read).transpose()?;
+    let paths = std::slice::from_ref(&args.image);
+    let seen = Seen::of(paths, args.bar.as_ref(), known.as_ref())?;
+    let camera =
+        seen.survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
+    let wall = Wall::of(&seen.survey, &camera);
+    let file = CameraFile::of(&seen.survey, Some((&camera, wall)), seen.scale);
+    write_file(&args.output, camera_file::write(&file)?)?;
+    let text = format!(
+        "{}\n{}\n{}\n{}",
+        seen.lens_text(),
+        stands(&camera),
+        seen.markers_text(),
+        wall_text(&wall, &camera, &args.output)
+    );
+    let mut object = seen.json();
+    object["pose"] = json!({
+        "turn_rad": camera.camera.pose.turn_rad(),
+        "translation_m": camera.camera.pose.translation_m(),
+        "place_m": camera.camera.pose.place_m(),
+    });
+    object["wall_mm"] = json!({"between_pages": mm(wall.between_m), "image": mm(wall.image_m)});
+    Ok(Answer::new(text, object.to_string()))
+}
+
+pub(super) fn lens(args: &LensArgs) -> Result<Answer, Failure> {
+    if args.images.len() < FEWEST_IMAGES {
+        let message = format!(
+            "{} images tell no lens: take at least {FEWEST_IMAGES}, from several sides",
+            args.images.len()
+        );
+        return Err(Failure::usage("usage", message));
+    }
+    let seen = Seen::of(&args.images, args.bar.as_ref(), None)?;
+    let file = CameraFile::of(&seen.survey, None, seen.scale);
+    write_file(&args.output, camera_file::write(&file)?)?;
+    let belief = &seen.survey.belief;
+    let share = belief.covariance[(0, 0)].sqrt() / belief.lens.focal_px[0];
+    let sure = if share > KNOWN_FOCAL {
+        format!(
+            "\nwarning: the focal length is known to {:.1} % only; add images from further to the side, from above and below",
+            100.0 * share
+        )
+    } else {
+        String::new()
+    };
+    let text = format!("{}\n{}\nleft:     {}{sure}", seen.lens_text(), seen.markers_text(), args.output);
+    Ok(Answer::new(text, seen.json().to_string()))
+}
+
+/// What images show, and what that tells.
+struct Seen {
+    survey: Survey,
+    markers: usize,
+    /// How much larger than meant the pages are printed.
+    scale: f64,
+}
+
+impl Seen {
+    fn of(paths: &[String], bar: Option<&Length>, known: Option<&LensBelief>) -> Result<Self, Failure> {
+        let scale = bar.map_or(1.0, |bar| bar.0 / BAR_M);
+        if !(0.5..=2.0).contains(&scale) {
+            let message =
+                format!("--bar is {:.1} mm; as meant it is {:.0} mm", 1e3 * scale * BAR_M, 1e3 * BAR_M);
+            return Err(Failure::usage("usage", message));
+        }
+        let mut views = Vec::new();
+        let mut size: Option<(usize, usize)> = known.map(|known| known.lens.size_px.into());
+        for path in paths {
+            let (tags, own) = found(path)?;
+            let wanted = *size.get_or_insert(own);
+            if own != wanted {
+                let message = format!(
+                    "{path} has {} × {} px, not {} × {} as the others",
+                    own.0, own.1, wanted.0, wanted.1
+                );
+                return Err(Failure::usage("camera-image", message));
+            }
+            views.push(tags);
+        }
+        let (width, height) = size.unwrap_or_default();
+        let belief = known.copied().unwrap_or_else(|| LensBelief::unknown(width, height));
+        let boards = Board::ALL.map(|board| board.scaled(scale));
+        let markers = views.iter().map(Vec::len).sum();
+        let survey = survey(&belief, &boards, &views)
+            .map_err(|e| Failure::failed("camera-not-found", format!("{}: {e}", paths.join(", "))))?;
+        Ok(Self { survey, markers, scale })
+    }
+
+    fn lens_text(&self) -> String {
+        let (lens, covariance) = (&self.survey.belief.lens, &self.survey.belief.covariance);
+        let wide = 2.0 * (lens.size_px[0] as f64 / 2.0 / lens.focal_px[0]).atan().to_degrees();
+        let sure = |k: usize| 2.0 * covariance[(k, k)].sqrt();
+        format!(
+            "lens:     {} × {} px, focal length {:.1} ± {:.1} px ({wide:.0}° wide), centre ({:.1}, {:.1}) px, k1 {:.4} ± {:.4}, k2 {:.4} ± {:.4}",
+            lens.size_px[0],
+            lens.size_px[1],
+            lens.focal_px[0],
+            sure(0),
+            lens.centre_px.x,
+            lens.centre_px.y,
+            lens.radial[0],
+            sure(4),
+            lens.radial[1],
+            sure(5)
+        )
+    }
+
+    fn markers_text(&self) -> String {
+        let pages: Vec<String> = self.survey.pages.iter().map(|page| (page.page + 1).to_string()).collect();
+        let s = if pages.len() == 1 { "" } else { "s" };
+        format!(
+            "markers:  {} on page{s} {}, {} places, {:.3} px off, rms",
+            self.markers,
+            pages.join(", "),
+            self.survey.places,
+            self.survey.rms_px
+        )
+    }
+
+    fn json(&self) -> Value {
+        let lens = &self.survey.belief.lens;
+        let page = |page: &tracelight_aim::PlacedPage| json!({"page": page.page + 1, "middle_m": [page.middle.x, page.middle.y], "turn_rad": page.turn_rad});
+        json!({
+            "lens": {
+                "size_px": lens.size_px,
+                "focal_px": lens.focal_px,
+                "centre_px": [lens.centre_px.x, lens.centre_px.y],
+                "radial": lens.radial,
+                "tangential": lens.tangential,
+            },
+            "pages": self.survey.pages.iter().map(page).collect::<Vec<_>>(),
+            "markers": self.markers,
+            "places": self.survey.places,
+            "rms_px": self.survey.rms_px,
+        })
+    }
+}
+
+/// Markers of an image, and its size.
+fn found(path: &str) -> Result<(Vec<SeenTag>, (usize, usize)), Failure> {
+    let Source::Pixels(pixels) = picture::read(path)? else {
+        let message = format!("{path} is a drawing; give an image that a camera took");
+        return Err(Failure::usage("not-a-picture", message));
+    };
+    let size = (pixels.grey.width(), pixels.grey.height());
+    Ok((find_tags(&pixels.grey).iter().map(seen).collect(), size))
+}
+
+/// A marker in cells as one in sides.
+fn seen(tag: &Tag) -> SeenTag {
+    let place = |place: &TagPlace| SeenPlace {
+        on_tag: (place.cell.to_vec2() / 8.0).to_point(),
+        upright: place.upright,
+        black_behind: place.black_behind,
+        at: place.at,
+    };
+    let places = tag.places.iter().map(place).collect();
+    SeenTag { id: tag.id, corners: tag.corners, places, deviation_px: tag.deviation_px }
+}
+
+fn stands(camera: &SurveyedCamera) -> String {
+    let [x, y, z] = camera.camera.pose.place_m();
+    let sideways =
+        |v: f64, more: &str, less: &str| format!("{:.3} m {}", v.abs(), if v < 0.0 { less } else { more });
+    format!(
+        "stands:   {z:.3} m before the wall, {} and {} the middle of the first page",
+        sideways(x, "right of", "left of"),
+        sideways(y, "above", "below")
+    )
+}
+
+fn mm(m: Option<f64>) -> Option<f64> {
+    m.map(|m| 1e3 * m)
+}
+
+/// How well the wall is known, and where that is written.
+fn wall_text(wall: &Wall, camera: &SurveyedCamera, output: &str) -> String {
+    let [width, height] = camera.camera.lens.size_px.map(|n| n as f64);
+    let scale = camera.camera.target(Point::new(width / 2.0, height / 2.0));
+    let scale = scale.and_then(|at| camera.camera.pixels_per_metre(at)).map_or_else(String::new, |[x, y]| {
+        format!("; {:.2} px/mm in the middle of the image", 1e-3 * x.cross(y).abs().sqrt())
+    });
+    let off = |m: Option<f64>| m.map_or_else(|| "unknown".to_owned(), |m| format!("{:.2} mm", 1e3 * m));
+    let (between, image) = (off(wall.between_m), off(wall.image_m));
+    format!(
+        "wall:     a point of it is likely to be off by {between} rms between the pages, {image} all over the image{scale}\nleft:     {output}"
+    )
+}

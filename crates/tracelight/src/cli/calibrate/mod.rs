@@ -1,0 +1,43 @@
+mod markers;
+mod ruler;
+mod sheet;
+
+use clap::{Args, Subcommand};
+
+use crate::cli::{Answer, Voice};
+use crate::failure::Failure;
+
+/// Find out what a camera's pixels mean on the target
+#[derive(Args, Debug)]
+pub(crate) struct CalibrateArgs {
+    #[command(subcommand)]
+    action: CalibrateAction,
+}
+
+impl CalibrateArgs {
+    pub(crate) const fn voice(&self) -> Voice {
+        match &self.action {
+            CalibrateAction::Lens(args) => args.voice,
+            CalibrateAction::Markers(args) => args.voice,
+            CalibrateAction::Ruler(args) => args.voice,
+            CalibrateAction::Sheet(args) => args.voice,
+        }
+    }
+}
+
+#[derive(Subcommand, Debug)]
+enum CalibrateAction {
+    Sheet(sheet::SheetArgs),
+    Markers(markers::MarkersArgs),
+    Lens(markers::LensArgs),
+    Ruler(ruler::RulerArgs),
+}
+
+pub(crate) fn run(args: &CalibrateArgs) -> Result<Answer, Failure> {
+    match &args.action {
+        CalibrateAction::Lens(args) => markers::lens(args),
+        CalibrateAction::Markers(args) => markers::run(args),
+        CalibrateAction::Ruler(args) => ruler::run(args),
+        CalibrateAction::Sheet(args) => sheet::run(args),
+    }
+}
