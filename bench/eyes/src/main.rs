@@ -4,11 +4,13 @@
 mod markers;
 mod none;
 mod scene;
+mod spot;
 
 use tracelight_aim::Board;
 
 const HOW: &str = "tracelight-bench-eyes fine|coarse [SEEDS [FOLDER]]   markers and the wall after a survey of four pages; leaves the images\n\
                    tracelight-bench-eyes time                           how long markers take to be found\n\
+                   tracelight-bench-eyes spot [SEEDS]                     the laser's spot at rest\n\
                    tracelight-bench-eyes none [FRAMES]                  how often a marker is found where there is none";
 
 fn main() {
@@ -20,6 +22,7 @@ fn main() {
         "fine" => markers::score(&Board::FINE, count.unwrap_or(50), folder.as_deref()),
         "coarse" => markers::score(&Board::COARSE, count.unwrap_or(50), folder.as_deref()),
         "time" => markers::time(),
+        "spot" => spot::score(count.unwrap_or(20)),
         "none" => none::count(count.unwrap_or(10_000)),
         _ => println!("{HOW}"),
     }

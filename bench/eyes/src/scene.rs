@@ -1,7 +1,7 @@
 use std::fmt::Write;
 
 use tracelight_aim::{Board, Camera, CameraPose, Lens};
-use tracelight_plant::{CameraConfig, Image, Lamp, Poster, SimulatedCamera, Wall};
+use tracelight_plant::{CameraConfig, Image, Lamp, Laser, Poster, SimulatedCamera, Wall};
 use tracelight_stroke::{Affine, Point, Vec2};
 use tracelight_vision::tag_cells;
 
@@ -81,7 +81,18 @@ impl Scene {
         camera.expose(0.0, EXPOSURE * self.config.sensor.reference_s, &[])
     }
 
-    /// The wall from the first page's image.
+    /// The camera, with a laser of that speckle.
+    pub(crate) fn eye(&self, seed: u64, speckle: f64) -> SimulatedCamera {
+        let laser = Laser { speckle, ..self.config.laser };
+        SimulatedCamera::new(&CameraConfig { laser, ..self.config }, &self.camera, &self.wall, seed)
+    }
+
+    /// Whether a lamp's reflection fills pixels there, whatever else is.
+    pub(crate) fn is_under_lamp(&self, at: Point) -> bool {
+        self.config.lamp.is_some_and(|lamp| at.distance(lamp.at) < 3.0 * lamp.size_px)
+    }
+
+    /// The wall from the first page's frame.
     pub(crate) fn wall_from_page(&self) -> Affine {
         self.pages[0]
     }

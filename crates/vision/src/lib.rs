@@ -19,6 +19,7 @@
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
 //! | `fiducial` | printed square markers and which they are |
+//! | `spot` | the laser's spot, by an image with it and one without |
 
 mod bridge;
 mod centreline;
@@ -49,6 +50,7 @@ mod ridge;
 mod shadow;
 mod sharpness;
 mod solve;
+mod spot;
 mod stages;
 mod sweep;
 mod thin;
@@ -59,5 +61,6 @@ pub use fiducial::{TAG_COUNT, Tag, TagPlace, find_tags, tag_cells};
 pub use grey::Grey;
 pub use marks::{Marks, find_two_marks};
 pub use quality::{Figure, Quality, Verdict};
+pub use spot::{Spot, SpotLost, SpotWindow, find_spot};
 pub use stages::Stages;
 pub use trace::{Mode, Options, Traced, trace};

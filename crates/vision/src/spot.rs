@@ -1,0 +1,454 @@
+//! The laser's spot: what is brighter where it is on than where it is off.
+//!
+//! Of the difference of two images a window about where the spot is awaited is looked at, in light: lamps and the drawing are in both and
+//! fall away. A round spot is placed by the bell of light that fits best, over what was not full; a streak, which a moving spot leaves, by the
+//! middle of its light, where the spot was in the middle of the exposure.
+
+use tracelight_stroke::{Point, Vec2};
+
+use crate::Grey;
+use crate::plane::Plane;
+use crate::solve::linear;
+
+/// Where a spot is looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotWindow {
+    /// Its middle, px.
+    pub centre: Point,
+    /// Half of its side, px.
+    pub half_px: usize,
+}
+
+/// A spot that was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// Its middle, pixel frame.
+    pub at: Point,
+    /// Standard deviation of either coordinate by what the fit leaves over, px.
+    pub deviation_px: f64,
+    /// Standard deviation of its light across, px: of a streak, beside it.
+    pub radius_px: f64,
+    /// From one end of its streak to the other, px; next to nothing of a spot at rest. Which end came first one image does not tell.
+    pub streak: Vec2,
+    /// Light in its middle above its surroundings, as a share of the brightest there can be; more than 1 of one that is clipped.
+    pub brightness: f64,
+    /// Pixels of it that were full.
+    pub clipped: usize,
+}
+
+/// Why no spot is found.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SpotLost {
+    /// The images are not of one size.
+    #[error("images of {} × {} and of {} × {} px can not be held against each other", .lit.0, .lit.1, .dark.0, .dark.1)]
+    Sizes {
+        /// Width and height of the image with the spot.
+        lit: (usize, usize),
+        /// Of the one without.
+        dark: (usize, usize),
+    },
+    /// Too little of the window is in the image.
+    #[error("the spot is awaited at ({:.0}, {:.0}) px, out of the camera's sight", .0.x, .0.y)]
+    OutOfSight(Point),
+    /// Nothing stands out.
+    #[error(
+        "no spot: the brightest change is {change:.2} % of full light, and {least:.2} % stand out from the noise; more light or a longer exposure helps"
+    )]
+    Dim {
+        /// The brightest change, %.
+        change: f64,
+        /// What would stand out, %.
+        least: f64,
+    },
+    /// It reaches beyond the window.
+    #[error("the spot at ({:.1}, {:.1}) px reaches beyond where it is looked for; look in a larger window", .0.x, .0.y)]
+    Cut(Point),
+}
+
+/// By how many deviations of the noise a spot stands out.
+const STANDS_OUT: f64 = 6.0;
+/// Level from which on a pixel may be full.
+const FULL: u8 = 250;
+/// Share of its brightest light down to which light is the spot's.
+const LEAST_SHARE: f64 = 0.2;
+/// How many times as long as wide a streak is.
+const LONG: f64 = 1.5;
+/// Fewest pixels of a window.
+const FEWEST: usize = 25;
+/// Most steps of the fit: three or four, and some more where a spot is clipped.
+const STEPS: usize = 20;
+/// What the middle of light on pixels is off by, as a share of its width, however little noise there is.
+const UNEVEN: f64 = 0.03;
+
+/// Finds the spot in a window.
+///
+/// # Errors
+/// See [`SpotLost`].
+pub fn find_spot(lit: &Grey, dark: &Grey, window: &SpotWindow) -> Result<Spot, SpotLost> {
+    let size = |image: &Grey| (image.width(), image.height());
+    if size(lit) != size(dark) {
+        return Err(SpotLost::Sizes { lit: size(lit), dark: size(dark) });
+    }
+    let change = Change::of(&lit.plane, &dark.plane, window).ok_or(SpotLost::OutOfSight(window.centre))?;
+    let noise = change.noise();
+    let (peak, most) = change.peak();
+    // a mean of nine is a third as noisy; and eight bits are never better than a tenth of a level
+    let least = STANDS_OUT * (noise / 3.0).max(1e-4);
+    if most < least {
+        return Err(SpotLost::Dim { change: 100.0 * most, least: 100.0 * least });
+    }
+    let patch = change.patch(peak, (LEAST_SHARE * most).max(2.0 * noise / 3.0));
+    if patch.touches_border {
+        return Err(SpotLost::Cut(change.place(peak)));
+    }
+    let bell = Bell::rough(&change, &patch);
+    let streak = bell.streak();
+    if streak != Vec2::ZERO {
+        return Ok(bell.spot(&change, streak, noise));
+    }
+    let fitted = bell.fitted(&change, noise);
+    Ok(fitted.unwrap_or_else(|| bell.spot(&change, Vec2::ZERO, noise)))
+}
+
+/// What became brighter, in light, in a part of an image.
+struct Change {
+    left: usize,
+    top: usize,
+    light: Plane<f32>,
+    /// Pixels that say nothing: full, in either image.
+    full: Vec<bool>,
+}
+
+impl Change {
+    fn of(lit: &Plane<u8>, dark: &Plane<u8>, window: &SpotWindow) -> Option<Self> {
+        if !(window.centre.x.is_finite() && window.centre.y.is_finite()) {
+            return None;
+        }
+        let range = |at: f64, size: usize| {
+            let low = (at - window.half_px as f64).clamp(0.0, size as f64) as usize;
+            (low, (at + window.half_px as f64 + 1.0).clamp(0.0, size as f64) as usize)
+        };
+        let ((left, right), (top, bottom)) =
+            (range(window.centre.x, lit.width), range(window.centre.y, lit.height));
+        let (width, height) = (right - left, bottom - top);
+        if width.min(height) < 5 || width * height < FEWEST {
+            return None;
+        }
+        let curve: [f32; 256] = std::array::from_fn(|v| (v as f32 / 255.0).powf(2.2));
+        let both =
+            || (top..bottom).flat_map(|y| lit.row(y)[left..right].iter().zip(&dark.row(y)[left..right]));
+        let values = both().map(|(&a, &b)| curve[usize::from(a)] - curve[usize::from(b)]).collect();
+        let full = both().map(|(&a, &b)| a >= FULL || b >= FULL).collect();
+        Some(Self { left, top, light: Plane { width, height, values }, full })
+    }
+
+    /// A cell's middle in the pixel frame.
+    fn place(&self, cell: usize) -> Point {
+        let (x, y) = (cell % self.light.width, cell / self.light.width);
+        Point::new((self.left + x) as f64 + 0.5, (self.top + y) as f64 + 0.5)
+    }
+
+    /// Standard deviation of the noise of a pixel: by the median of what changed either way, which a spot's few pixels do not move.
+    fn noise(&self) -> f64 {
+        let mut sizes: Vec<f32> = self.light.values.iter().map(|v| v.abs()).collect();
+        let middle = sizes.len() / 2;
+        f64::from(*sizes.select_nth_unstable_by(middle, f32::total_cmp).1) / 0.6745
+    }
+
+    /// The cell with the brightest mean of nine, and that.
+    fn peak(&self) -> (usize, f64) {
+        let (width, height) = (self.light.width, self.light.height);
+        let mut best = (width + 1, f64::MIN);
+        for y in 1..height - 1 {
+            let rows = [y - 1, y, y + 1].map(|y| self.light.row(y));
+            for x in 1..width - 1 {
+                let mean = rows.iter().map(|row| row[x - 1] + row[x] + row[x + 1]).sum::<f32>() / 9.0;
+                if f64::from(mean) > best.1 {
+                    best = (y * width + x, f64::from(mean));
+                }
+            }
+        }
+        best
+    }
+
+    /// The cells about one that hang together and are brighter than that, with one more around.
+    fn patch(&self, from: usize, least: f64) -> Patch {
+        let (width, height) = (self.light.width, self.light.height);
+        let mut seen = vec![false; width * height];
+        let (mut cells, mut next) = (Vec::new(), vec![from]);
+        seen[from] = true;
+        let mut touches_border = false;
+        while let Some(cell) = next.pop() {
+            cells.push(cell);
+            let (x, y) = (cell % width, cell / width);
+            let bright = f64::from(self.light.values[cell]) >= least || self.full[cell];
+            if !bright && cell != from {
+                continue;
+            }
+            touches_border |= x == 0 || y == 0 || x + 1 == width || y + 1 == height;
+            for (dx, dy) in [(0, 1), (1, 0), (1, 2), (2, 1), (0, 0), (2, 0), (0, 2), (2, 2)] {
+                let (Some(x), Some(y)) = ((x + dx).checked_sub(1), (y + dy).checked_sub(1)) else { continue };
+                if x < width && y < height && !std::mem::replace(&mut seen[y * width + x], true) {
+                    next.push(y * width + x);
+                }
+            }
+        }
+        Patch { cells, touches_border }
+    }
+}
+
+/// Cells that hang together.
+struct Patch {
+    cells: Vec<usize>,
+    touches_border: bool,
+}
+
+/// A bell of light: brightness · exp(−½ dᵀ S⁻¹ d) on a floor.
+#[derive(Clone, Copy, Debug)]
+struct Bell {
+    at: Point,
+    brightness: f64,
+    floor: f64,
+    /// Covariance of its light: across, across by down, down, px².
+    spread: [f64; 3],
+    clipped: usize,
+}
+
+impl Bell {
+    /// By the moments of a patch.
+    fn rough(change: &Change, patch: &Patch) -> Self {
+        let (mut mass, mut moment, mut brightness) = (0.0, Vec2::ZERO, 0.0_f64);
+        let weight = |cell: usize| f64::from(change.light.values[cell]).max(0.0);
+        for &cell in &patch.cells {
+            mass += weight(cell);
+            moment += change.place(cell).to_vec2() * weight(cell);
+            brightness = brightness.max(weight(cell));
+        }
+        let at = (moment / mass.max(1e-12)).to_point();
+        let mut spread = [0.0; 3];
+        for &cell in &patch.cells {
+            let (off, share) = (change.place(cell) - at, weight(cell) / mass.max(1e-12));
+            let terms = [off.x * off.x, off.x * off.y, off.y * off.y];
+            spread.iter_mut().zip(terms).for_each(|(sum, term)| *sum += share * term);
+        }
+        let clipped = patch.cells.iter().filter(|&&cell| change.full[cell]).count();
+        // no spot is narrower than its pixel
+        let spread = [spread[0].max(0.1), spread[1], spread[2].max(0.1)];
+        Self { at, brightness, floor: 0.0, spread, clipped }
+    }
+
+    /// Variances along and across its long axis, and that axis.
+    fn axes(&self) -> (f64, f64, Vec2) {
+        let [a, b, c] = self.spread;
+        let (middle, half) = (0.5 * (a + c), 0.5 * (a - c).hypot(2.0 * b));
+        (middle + half, (middle - half).max(0.05), Vec2::from_angle(0.5 * (2.0 * b).atan2(a - c)))
+    }
+
+    /// From one end of a streak to the other; nothing of a round spot. Even light on a length has a twelfth of its square as variance.
+    fn streak(&self) -> Vec2 {
+        let (long, wide, along) = self.axes();
+        if long > LONG * LONG * wide { along * (12.0 * (long - wide)).sqrt() } else { Vec2::ZERO }
+    }
+
+    /// As it stands, by its light's middle.
+    fn spot(&self, change: &Change, streak: Vec2, noise: f64) -> Spot {
+        let (long, wide, _) = self.axes();
+        let cells = std::f64::consts::TAU * (long * wide).sqrt() * 2.0;
+        let mass = (self.brightness * cells / 2.0).max(1e-12);
+        Spot {
+            at: self.at,
+            deviation_px: (noise * (cells * long).sqrt() / mass)
+                .max(UNEVEN * wide.sqrt())
+                .min(change.light.width as f64),
+            radius_px: wide.sqrt(),
+            streak,
+            brightness: self.brightness,
+            clipped: self.clipped,
+        }
+    }
+
+    /// The bell that fits best over what is not full: Gauss and Newton's method, each pixel by its noise, of which the light has a share
+    /// (speckle, shot noise). `None` if it is lost.
+    fn fitted(&self, change: &Change, noise: f64) -> Option<Spot> {
+        let mut bell = *self;
+        let mut left = None;
+        for _ in 0..STEPS {
+            let (next, fit) = bell.nearer(change, noise)?;
+            let (_, wide, _) = next.axes();
+            if !(next.at.distance(self.at) < 3.0 && wide < 400.0 && next.brightness > 0.0) {
+                return None;
+            }
+            let moved = next.at.distance(bell.at);
+            (bell, left) = (next, Some(fit));
+            if moved < 1e-4 {
+                break;
+            }
+        }
+        let (long, wide, _) = bell.axes();
+        Some(Spot {
+            at: bell.at,
+            deviation_px: left?,
+            radius_px: (long * wide).sqrt().sqrt(),
+            streak: Vec2::ZERO,
+            brightness: bell.brightness,
+            clipped: bell.clipped,
+        })
+    }
+
+    /// A step, and the standard deviation of the place as what is left over tells it.
+    fn nearer(&self, change: &Change, noise: f64) -> Option<(Self, f64)> {
+        /// Share of the light that is noise of its own.
+        const OWN: f64 = 0.1;
+        let [a, b, c] = self.spread;
+        let det = a * c - b * b;
+        let (ia, ib, ic) = (c / det, -b / det, a / det);
+        let (long, _, _) = self.axes();
+        let reach = 3.5 * long.sqrt() + 1.0;
+        let (width, height) = (change.light.width, change.light.height);
+        let range = |at: f64, first: usize, size: usize| {
+            let low = (at - reach - first as f64).max(0.0) as usize;
+            low.min(size)..((at + reach - first as f64).max(0.0).ceil() as usize).min(size)
+        };
+        let (mut rows, mut squares, mut count) = ([[0.0; 8]; 7], 0.0, 0.0);
+        for y in range(self.at.y, change.top, height) {
+            for x in range(self.at.x, change.left, width) {
+                let cell = y * width + x;
+                let off = change.place(cell) - self.at;
+                let (u, v) = (ia * off.x + ib * off.y, ib * off.x + ic * off.y);
+                let bell = (-0.5 * (u * off.x + v * off.y)).exp();
+                let light = self.brightness * bell;
+                let told = light + self.floor;
+                // what is full is at least that bright, and says no more
+                if change.full[cell] {
+                    continue;
+                }
+                let weight = 1.0 / (noise * noise + (OWN * light).powi(2) + 1e-9).sqrt();
+                let residual = (f64::from(change.light.values[cell]) - told) * weight;
+                let by = [
+                    light * u,
+                    light * v,
+                    bell,
+                    1.0,
+                    0.5 * light * u * u,
+                    light * u * v,
+                    0.5 * light * v * v,
+                ];
+                let terms: [f64; 8] = std::array::from_fn(|k| by.get(k).map_or(residual, |d| d * weight));
+                for (row, factor) in rows.iter_mut().zip(terms) {
+                    row.iter_mut().zip(terms).for_each(|(sum, term)| *sum += factor * term);
+                }
+                (squares, count) = (squares + residual * residual, count + 1.0);
+            }
+        }
+        if count < 12.0 {
+            return None;
+        }
+        let step = linear(rows)?;
+        // variance of the place, as if the other parameters were known: they hardly share with it in a round spot
+        let variance = squares / (count - 7.0) * 0.5 * (1.0 / rows[0][0] + 1.0 / rows[1][1]);
+        // of a spot that is clipped the first guess is far too dim and wide: by half at most in a step
+        let near = |old: f64, by: f64| (old + by).clamp(old / 1.6, 1.6 * old);
+        let next = Self {
+            at: self.at + Vec2::new(step[0].clamp(-1.0, 1.0), step[1].clamp(-1.0, 1.0)),
+            brightness: near(self.brightness, step[2]),
+            floor: self.floor + step[3],
+            spread: [near(a, step[4]).max(0.05), b + step[5], near(c, step[6]).max(0.05)],
+            clipped: self.clipped,
+        };
+        let whole = next.spread[0] * next.spread[2] > next.spread[1] * next.spread[1];
+        whole.then_some((next, variance.sqrt()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: usize = 160;
+
+    /// A wall with a lamp's reflection and a drawing on it, and light added to it, in levels.
+    fn image(added: impl Fn(Point) -> f64, noise: f64, seed: u128) -> Grey {
+        let mut dice = oorandom::Rand64::new(seed);
+        let level = |i: usize| {
+            let at = Point::new((i % SIZE) as f64 + 0.5, (i / SIZE) as f64 + 0.5);
+            let lamp = 2.0 * (-0.5 * at.distance_squared(Point::new(40.0, 40.0)) / 100.0).exp();
+            let line = if (at.y - 90.0).abs() < 2.0 { 0.3 } else { 1.0 };
+            let wall = 0.1 * line * (0.5 + at.x / SIZE as f64);
+            let mut normal = || (0..12).map(|_| dice.rand_float()).sum::<f64>() - 6.0;
+            (255.0 * (wall + lamp + added(at)).min(1.0).powf(1.0 / 2.2) + noise * normal())
+                .round()
+                .clamp(0.0, 255.0) as u8
+        };
+        Grey::new(SIZE, SIZE, (0..SIZE * SIZE).map(level).collect()).unwrap()
+    }
+
+    fn round(at: Point, brightness: f64, radius_px: f64) -> impl Fn(Point) -> f64 {
+        move |p| brightness * (-0.5 * p.distance_squared(at) / (radius_px * radius_px)).exp()
+    }
+
+    fn window(at: Point) -> SpotWindow {
+        SpotWindow { centre: at + Vec2::new(6.0, -9.0), half_px: 32 }
+    }
+
+    #[test]
+    fn a_round_spot_is_found_to_a_few_hundredths_of_a_pixel() {
+        let dark = image(|_| 0.0, 1.0, 1);
+        for (brightness, bound_px, clipped) in [(0.5, 0.03, false), (0.05, 0.2, false), (4.0, 0.06, true)] {
+            for seed in 0..20 {
+                let at = Point::new(100.0 + 0.13 * seed as f64, 89.0 - 0.21 * seed as f64);
+                let lit = image(round(at, brightness, 2.0), 1.0, 100 + seed);
+                let spot = find_spot(&lit, &dark, &window(at)).unwrap();
+                assert!(
+                    spot.at.distance(at) < bound_px,
+                    "{brightness}: {} is {} px off",
+                    spot.at,
+                    spot.at.distance(at)
+                );
+                assert!((spot.radius_px / 2.0 - 1.0).abs() < 0.2 && spot.streak == Vec2::ZERO, "{spot:?}");
+                assert_eq!(spot.clipped > 0, clipped);
+                assert!(
+                    spot.deviation_px > 0.2 * spot.at.distance(at) && spot.deviation_px < bound_px,
+                    "{spot:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_streak_is_found_by_its_middle_and_how_it_lies() {
+        let (from, to) = (Point::new(84.0, 70.0), Point::new(100.0, 82.0));
+        let streak = move |p: Point| {
+            (0..60).map(|k| round(from.lerp(to, (f64::from(k) + 0.5) / 60.0), 0.02, 1.5)(p)).sum::<f64>()
+        };
+        let spot =
+            find_spot(&image(streak, 1.0, 5), &image(|_| 0.0, 1.0, 6), &window(from.midpoint(to))).unwrap();
+        assert!(spot.at.distance(from.midpoint(to)) < 0.2, "{spot:?}");
+        let along = if spot.streak.x < 0.0 { -spot.streak } else { spot.streak };
+        assert!((along - (to - from)).hypot() < 2.0, "{along}");
+    }
+
+    #[test]
+    fn a_spot_that_is_not_there_is_lost_and_why() {
+        let (dark, again) = (image(|_| 0.0, 2.0, 1), image(|_| 0.0, 2.0, 2));
+        let at = Point::new(100.0, 70.0);
+        assert!(matches!(find_spot(&again, &dark, &window(at)), Err(SpotLost::Dim { .. })));
+        // under the lamp all pixels are full
+        let under = image(round(Point::new(40.0, 40.0), 1.0, 2.0), 2.0, 3);
+        assert!(matches!(
+            find_spot(&under, &dark, &SpotWindow { centre: Point::new(40.0, 40.0), half_px: 6 }),
+            Err(SpotLost::Dim { .. })
+        ));
+        let lit = image(round(at, 0.5, 2.0), 2.0, 3);
+        let beside = SpotWindow { centre: at + Vec2::new(31.0, 0.0), half_px: 30 };
+        assert!(matches!(find_spot(&lit, &dark, &beside), Err(SpotLost::Cut(_))));
+        for centre in [Point::new(-200.0, 3.0), Point::new(f64::NAN, 3.0), Point::new(1e300, 3.0)] {
+            let window = SpotWindow { centre, half_px: 20 };
+            assert!(matches!(find_spot(&lit, &dark, &window), Err(SpotLost::OutOfSight(_))));
+        }
+        let small = Grey::new(16, 16, vec![0; 256]).unwrap();
+        assert!(matches!(find_spot(&lit, &small, &window(at)), Err(SpotLost::Sizes { .. })));
+        assert!(
+            find_spot(&small, &small, &SpotWindow { centre: Point::new(8.0, 8.0), half_px: 400 }).is_err()
+        );
+    }
+}
