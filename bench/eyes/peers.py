@@ -1,5 +1,5 @@
 """The images that `tracelight-bench-eyes fine N FOLDER` leaves, by OpenCV: markers found, corners, and the wall by a homography through
-corners whose places on the wall it is told, with and without the lens.  python peers.py FOLDER"""
+corners whose places on the wall it is told, the lens left out.  python peers.py FOLDER"""
 import csv, glob, sys, time
 import cv2, numpy as np
 
@@ -34,10 +34,7 @@ for name, refine in [("none", cv2.aruco.CORNER_REFINE_NONE), ("subpix", cv2.aruc
             offs.extend(quad - own[:, 2:])
             on_wall.extend(own[:, :2]); seen.extend(quad)
         plane, _ = cv2.findHomography(np.array(seen), np.array(on_wall))
-        x, y = np.meshgrid(np.arange(-13, 14) * 0.0254, np.arange(-7, 8) * 0.0254)
         everything = np.array([row for rows in truth.values() for row in rows])
-        # places between the true corners: carried by the true corners' own map and lens is what nobody but the simulation has; the
-        # corners themselves stand for the field
         told = cv2.perspectiveTransform(everything[None, :, 2:], plane)[0]
         off = 1e3 * np.hypot(*(told - everything[:, :2]).T)
         rms.append(np.sqrt((off ** 2).mean())); worst.append(off.max())

@@ -43,6 +43,9 @@ pub(crate) fn score(board: &Board, seeds: u64, folder: Option<&str>) {
         let started = Instant::now();
         match survey(&belief, &[*board], &[seen]) {
             Ok(surveyed) => {
+                if !surveyed.doubts.is_empty() {
+                    println!("seed {seed}: {:?}", surveyed.doubts);
+                }
                 tally.survey_ms.push(started.elapsed().as_secs_f64() * 1e3);
                 tally.measure(&scene, &surveyed);
             }

@@ -30,4 +30,6 @@ pub use homography::Homography;
 pub use lens::Lens;
 pub use placement::{Placement, SizeRequest};
 pub use pose::HeadPose;
-pub use survey::{LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyError, SurveyedCamera, survey};
+pub use survey::{
+    Doubt, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyError, SurveyedCamera, survey,
+};

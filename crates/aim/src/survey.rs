@@ -6,6 +6,8 @@
 
 mod residual;
 mod start;
+#[cfg(test)]
+mod tests;
 
 use nalgebra::{DMatrix, Matrix2, SMatrix};
 use tracelight_stroke::{Point, Vec2};
@@ -14,7 +16,7 @@ use crate::board::Board;
 use crate::camera::{CAMERA_PARAMETERS, Camera, CameraPose, POSE_PARAMETERS, Uncertain};
 use crate::least_squares::{Normal, solve};
 use crate::lens::{LENS_PARAMETERS, Lens};
-use residual::{Bundle, State, sightings};
+use residual::{Bundle, HEIGHT_DEVIATION_M, LARGER_DEVIATION, State, sightings};
 
 /// A marker as an image has it, px.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,6 +84,23 @@ pub struct PlacedPage {
     pub middle: Point,
     /// By how much it is turned anticlockwise, rad.
     pub turn_rad: f64,
+    /// How far it seems to be in front of the plane, m.
+    pub height_m: f64,
+    /// By what share it seems to be printed larger than the first page.
+    pub larger: f64,
+}
+
+/// What does not look as it should: the wall may be further off than told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Doubt {
+    /// A page that does not lie flat on the plane: which of [`Survey::pages`], and how far it seems to be in front of it, m.
+    Loose(usize, f64),
+    /// A page printed at another scale than the first: which, and by what share larger.
+    Scaled(usize, f64),
+    /// Places are that many times as far off as they scatter on a marker by itself.
+    Misfit(f64),
+    /// The lens is that many deviations from what was believed of it.
+    Lens(f64),
 }
 
 /// Why cameras can not be found.
@@ -94,6 +113,16 @@ pub enum SurveyError {
     NoMarkers {
         /// Which, from 1.
         view: usize,
+    },
+    /// A page that is there twice.
+    #[error(
+        "image {view} shows page {page} twice: every page has markers of its own and is printed once; print others (--first) or cover one"
+    )]
+    Twice {
+        /// Which, from 1.
+        view: usize,
+        /// Number of the page, from 1.
+        page: u16,
     },
     /// Pages that no image links.
     #[error("page {page} is in no image together with the other pages: take one that shows both")]
@@ -124,6 +153,8 @@ pub struct Survey {
     pub rms_px: f64,
     /// Number of places that were told apart.
     pub places: usize,
+    /// What does not look as it should.
+    pub doubts: Vec<Doubt>,
     /// Covariance of each image's pose with the lens.
     covariances: Vec<SMatrix<f64, CAMERA_PARAMETERS, CAMERA_PARAMETERS>>,
 }
@@ -195,15 +226,36 @@ pub fn survey(belief: &LensBelief, boards: &[Board], views: &[Vec<SeenTag>]) -> 
     }
     let covariance = normal.covariance().ok_or(SurveyError::NoFit { tags })?;
     let rms_px = bundle.rms_px(&state);
-    // a tenth of a marker's cell, where a wrong fit has whole cells
+    // no wall is known to a millimetre by such
     if rms_px > MOST_RMS_PX {
         return Err(SurveyError::NoFit { tags });
     }
-    Ok(told(belief, &all, &state, &covariance, rms_px))
+    let survey = told(belief, &all, &state, &covariance, rms_px);
+    Ok(Survey { doubts: doubts(&bundle, &state), ..survey })
 }
 
 /// Furthest that places may be off from where they should be seen, root of the mean square, px.
-const MOST_RMS_PX: f64 = 3.0;
+const MOST_RMS_PX: f64 = 1.5;
+/// From how many deviations on something is doubtful.
+const DOUBTFUL: f64 = 3.0;
+const LOOSE: f64 = 1.5;
+
+fn doubts(bundle: &Bundle, state: &State) -> Vec<Doubt> {
+    let mut doubts = Vec::new();
+    for (page, place) in state.pages.iter().enumerate() {
+        // most of what a page is off by, an unknown lens takes upon itself
+        if place.height_m.abs() > LOOSE * HEIGHT_DEVIATION_M {
+            doubts.push(Doubt::Loose(page, place.height_m));
+        }
+        if place.larger.abs() > LOOSE * LARGER_DEVIATION {
+            doubts.push(Doubt::Scaled(page, place.larger));
+        }
+    }
+    let (scatter, surprise) = (bundle.scatter(state), bundle.surprise(state));
+    doubts.extend((scatter > DOUBTFUL).then_some(Doubt::Misfit(scatter)));
+    doubts.extend((surprise > DOUBTFUL).then_some(Doubt::Lens(surprise)));
+    doubts
+}
 
 fn told(
     belief: &LensBelief,
@@ -223,6 +275,8 @@ fn told(
         page,
         middle: Point::new(placed.x, placed.y),
         turn_rad: placed.turn_rad,
+        height_m: placed.height_m,
+        larger: placed.larger,
     });
     Survey {
         belief: LensBelief {
@@ -234,6 +288,7 @@ fn told(
         spread_px: state.spread_px,
         rms_px,
         places: all.places.len(),
+        doubts: Vec::new(),
         covariances: (0..state.poses.len()).map(of_view).collect(),
     }
 }
@@ -241,159 +296,4 @@ fn told(
 /// A direction across another.
 fn across(v: Vec2) -> Vec2 {
     Vec2::new(-v.y, v.x)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// What a camera sees of pages that lie so, to a deviation.
-    fn seen(
-        camera: &Camera,
-        board: &Board,
-        pages: &[(u16, Point, f64)],
-        deviation_px: f64,
-        dice: &mut oorandom::Rand64,
-    ) -> Vec<SeenTag> {
-        let mut normal = || (0..12).map(|_| dice.rand_float()).sum::<f64>() - 6.0;
-        let mut all = Vec::new();
-        for &(page, middle, turn_rad) in pages {
-            let (s, c) = f64::sin_cos(turn_rad);
-            let pixel = |p: Point| {
-                camera.pixel(Point::new(c * p.x - s * p.y + middle.x, s * p.x + c * p.y + middle.y)).unwrap()
-            };
-            for number in 0..board.tags() {
-                let printed = board.corners(number);
-                let (right, down) = (printed[1] - printed[0], printed[3] - printed[0]);
-                let place = |k: usize| {
-                    // the four sides of the border
-                    let (side, along) = (k / 8, (k % 8) as f64 / 8.0 + 0.0625);
-                    let on_tag = [(along, 0.0), (1.0, along), (along, 1.0), (0.0, along)]
-                        .map(|(x, y)| Point::new(x, y))[side];
-                    let upright = side % 2 == 1;
-                    let at = |p: Point| pixel(printed[0] + right * p.x + down * p.y);
-                    let step = if upright { Vec2::new(0.0, 1e-4) } else { Vec2::new(1e-4, 0.0) };
-                    let along = at(on_tag + step) - at(on_tag - step);
-                    let off = across(along / along.hypot()) * (deviation_px * normal());
-                    SeenPlace { on_tag, upright, black_behind: side == 0 || side == 3, at: at(on_tag) + off }
-                };
-                let places = (0..32).map(place).collect();
-                all.push(SeenTag {
-                    id: board.id(page, number),
-                    corners: printed.map(pixel),
-                    places,
-                    deviation_px,
-                });
-            }
-        }
-        all
-    }
-
-    fn webcam() -> Lens {
-        Lens {
-            radial: [-0.1, 0.01, 0.0],
-            centre_px: Point::new(652.0, 351.0),
-            ..Lens::ideal(1280, 720, 1000.0)
-        }
-    }
-
-    fn corners() -> Vec<(u16, Point, f64)> {
-        vec![
-            (0, Point::ORIGIN, 0.0),
-            (1, Point::new(0.72, 0.03), 1.5),
-            (2, Point::new(0.70, -0.35), -0.1),
-            (5, Point::new(-0.04, -0.31), 0.05),
-        ]
-    }
-
-    fn looking(x: f64, y: f64) -> CameraPose {
-        CameraPose::looking_at([x, y, 1.2], [0.35, -0.17, 0.0]).unwrap()
-    }
-
-    #[test]
-    fn a_camera_and_where_pages_lie_are_found_and_how_well_is_known() {
-        let (runs, deviation_px) = (30, 0.1);
-        let (mut squares, mut ratio) = (0.0, 0.0);
-        for seed in 0..runs {
-            let mut dice = oorandom::Rand64::new(seed);
-            let camera = Camera { lens: webcam(), pose: looking(dice.rand_float() - 0.1, -0.3) };
-            let tags = seen(&camera, &Board::FINE, &corners(), deviation_px, &mut dice);
-            let found = survey(&LensBelief::unknown(1280, 720), &Board::ALL, &[tags]).unwrap();
-            assert!((found.rms_px / deviation_px - 1.0).abs() < 0.1, "{}", found.rms_px);
-            let placed = found.pages[3];
-            assert_eq!((placed.board, placed.page), (0, 5));
-            assert!(
-                placed.middle.distance(Point::new(-0.04, -0.31)) < 3e-4
-                    && (placed.turn_rad - 0.05).abs() < 2e-3
-            );
-            let told = found.camera(0).unwrap();
-            for k in 0..9 {
-                let on_wall = Point::new(0.35 * f64::from(k % 3), -0.16 * f64::from(k / 3));
-                let got = told.target(camera.pixel(on_wall).unwrap(), &Matrix2::zeros()).unwrap();
-                squares += (got.at - on_wall).hypot2() / (9.0 * runs as f64);
-                ratio += (got.at - on_wall).hypot2() / got.covariance.trace() / (9.0 * runs as f64);
-            }
-        }
-        assert!(squares.sqrt() < 1e-4, "{} m", squares.sqrt());
-        assert!((0.6..1.6).contains(&ratio), "errors are {ratio} times as large as told, squared");
-    }
-
-    #[test]
-    fn several_views_tell_the_lens() {
-        let mut dice = oorandom::Rand64::new(7);
-        let poses = [(0.35, -0.17), (-0.6, 0.2), (1.2, 0.3), (0.4, -1.0), (0.2, 0.8)];
-        let views: Vec<Vec<SeenTag>> = poses
-            .iter()
-            .map(|&(x, y)| {
-                let camera = Camera { lens: webcam(), pose: looking(x, y) };
-                seen(&camera, &Board::FINE, &corners(), 0.1, &mut dice)
-            })
-            .collect();
-        let found = survey(&LensBelief::unknown(1280, 720), &Board::ALL, &views).unwrap();
-        let lens = found.belief.lens;
-        let deviation = |k: usize| found.belief.covariance[(k, k)].sqrt();
-        assert!((lens.focal_px[0] - 1000.0).abs() < 4.0 * deviation(0) && deviation(0) < 1.0);
-        assert!((lens.radial[0] + 0.1).abs() < 4.0 * deviation(4) && deviation(4) < 5e-3);
-        assert!(lens.centre_px.distance(webcam().centre_px) < 1.0);
-        // with the lens known, one view of one page is enough to see the whole wall as it is
-        let camera = Camera { lens: webcam(), pose: looking(0.1, -0.6) };
-        let one = seen(&camera, &Board::FINE, &corners()[..1], 0.1, &mut dice);
-        let known = survey(&found.belief, &Board::ALL, &[one]).unwrap().camera(0).unwrap();
-        let far = Point::new(0.7, -0.3);
-        let off = known.camera.target(camera.pixel(far).unwrap()).unwrap().distance(far);
-        assert!(off < 1.5e-3, "{off} m");
-    }
-
-    #[test]
-    fn what_can_not_be_surveyed_says_why() {
-        let mut dice = oorandom::Rand64::new(1);
-        let camera = Camera { lens: webcam(), pose: looking(0.3, 0.0) };
-        let view = |pages: &[(u16, Point, f64)], dice: &mut _| seen(&camera, &Board::FINE, pages, 0.1, dice);
-        let belief = LensBelief::unknown(1280, 720);
-        let check = |views: &[Vec<SeenTag>], error: SurveyError| {
-            assert_eq!(survey(&belief, &Board::ALL, views).unwrap_err(), error);
-        };
-        let (first, last) = (view(&corners()[..1], &mut dice), view(&corners()[3..], &mut dice));
-        check(&[first.clone(), vec![]], SurveyError::NoMarkers { view: 2 });
-        check(&[first, last], SurveyError::Apart { page: 6 });
-        check(&[], SurveyError::NoMarkers { view: 1 });
-        // pages that change places between two images
-        let mut swapped = corners();
-        (swapped[1].1, swapped[2].1) = (swapped[2].1, swapped[1].1);
-        let views = [view(&corners(), &mut dice), view(&swapped, &mut dice)];
-        assert!(matches!(survey(&belief, &Board::ALL, &views), Err(SurveyError::NoFit { .. })));
-    }
-
-    #[test]
-    fn a_marker_that_was_moved_counts_little() {
-        let mut dice = oorandom::Rand64::new(2);
-        let camera = Camera { lens: webcam(), pose: looking(0.5, -0.3) };
-        let mut tags = seen(&camera, &Board::FINE, &corners(), 0.1, &mut dice);
-        for place in &mut tags[7].places {
-            place.at += Vec2::new(4.0, -3.0);
-        }
-        let found = survey(&LensBelief::unknown(1280, 720), &Board::ALL, &[tags]).unwrap().camera(0).unwrap();
-        let on_wall = Point::new(0.3, -0.2);
-        assert!(found.camera.target(camera.pixel(on_wall).unwrap()).unwrap().distance(on_wall) < 3e-4);
-    }
 }

@@ -136,7 +136,27 @@ impl CameraFile {
         if lens.focal_px.iter().any(|f| !(1.0..1e7).contains(f)) {
             return Err(format!("lens.focal_px is {:?}; a focal length is 1 to 1e7 px", lens.focal_px));
         }
-        let covariance = square::<9>(&table.covariance).filter(|c| c.cholesky().is_some());
+        let [fx, fy] = lens.focal_px;
+        if !(0.5..=2.0).contains(&(fx / fy)) {
+            return Err(format!(
+                "lens.focal_px is {:?}; pixels are at most twice as long as wide",
+                lens.focal_px
+            ));
+        }
+        let inside = |v: f64, size: usize| (-(size as f64)..=2.0 * size as f64).contains(&v);
+        if !(inside(lens.centre_px.x, lens.size_px[0]) && inside(lens.centre_px.y, lens.size_px[1])) {
+            return Err(format!("lens.centre_px is {:?}; it lies in the image or near it", table.centre_px));
+        }
+        if lens.radial.iter().chain(&lens.tangential).any(|k| !(-10.0..=10.0).contains(k)) {
+            return Err(format!(
+                "lens.radial {:?} and lens.tangential {:?} are -10 to 10",
+                lens.radial, lens.tangential
+            ));
+        }
+        let covariance = square::<9>(&table.covariance).filter(|c| {
+            let usual = |v: &f64| (1e-20..1e14).contains(v);
+            c.diagonal().iter().all(usual) && c.cholesky().is_some()
+        });
         let covariance = covariance
             .ok_or("lens.covariance is no covariance: nine rows of nine numbers, positive definite")?;
         Ok(LensBelief { lens, covariance })

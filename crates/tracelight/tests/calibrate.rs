@@ -174,6 +174,20 @@ fn a_lens_found_from_several_sides_makes_one_page_enough() {
     let known = calibrate(&["markers", &image, "--lens", lens_file, "-o", out.to_str().unwrap()]);
     let off = off_m(&known, &truth, 2, 1.0);
     assert!(off < 6e-4, "{} mm", 1e3 * off);
+    // somebody zoomed since: it is seen
+    let zoomed = dir.join("zoomed.toml");
+    let text = std::fs::read_to_string(lens_file).unwrap();
+    let line = text.lines().find(|line| line.starts_with("focal_px")).unwrap();
+    std::fs::write(&zoomed, text.replace(line, "focal_px = [1150.0, 1150.0]")).unwrap();
+    let image = taken(&dir, "four.png", &truth, &all, 10);
+    let doubtful =
+        calibrate(&["markers", &image, "--lens", zoomed.to_str().unwrap(), "-o", out.to_str().unwrap()]);
+    assert!(
+        doubtful["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains("zoomed")),
+        "{}",
+        doubtful["warnings"]
+    );
+    assert_eq!(known["warnings"].as_array().unwrap().len(), 0, "{}", known["warnings"]);
     // a lens of another size of image
     let small = dir.join("small.toml");
     std::fs::write(&small, std::fs::read_to_string(lens_file).unwrap().replace("[1280, 720]", "[640, 480]"))
@@ -210,10 +224,19 @@ fn what_is_no_calibration_says_why() {
         2,
         "lens.covariance",
     );
+    let known = lens.replace("[0.0, 1.0]", "[500.0, 500.0]");
+    for (from, to, what) in [
+        ("centre_px = [1.0, 1.0]", "centre_px = [nan, 1.0]", "lens.centre_px"),
+        ("radial = [0.0, 0.0, 0.0]", "radial = [inf, 0.0, 0.0]", "lens.radial"),
+        ("tangential = [0.0, 0.0]", "tangential = [1e300, 0.0]", "lens.tangential"),
+        ("focal_px = [500.0, 500.0]", "focal_px = [500.0, 5.0]", "twice as long"),
+    ] {
+        check(&["markers", star, "--lens", &file("d.toml", &known.replace(from, to))], 2, what);
+    }
     let out = dir.join("page");
     let name = |extension: &str| format!("{}.{extension}", out.display());
     check(&["sheet", "-o", &name("png")], 2, ".pdf or .svg");
     check(&["sheet", "-o", &name("svg"), "--pages", "2"], 2, "an SVG holds one page");
-    check(&["sheet", "-o", &name("pdf"), "--first", "24"], 2, "page 27");
+    check(&["sheet", "-o", &name("pdf"), "--first", "24", "--pages", "4"], 2, "page 27");
     check(&["sheet", "-o", &name("pdf"), "--first", "26", "--pages", "1"], 2, "1 to 24");
 }

@@ -61,14 +61,39 @@ pub(super) fn sightings(boards: &[Board], views: &[Vec<SeenTag>]) -> Result<All,
             };
             all.add(view, place, &board.corners(number), tag);
         }
+        let doubled = doubled(tags, &find);
+        if let Some((_, page)) = doubled {
+            return Err(SurveyError::Twice { view: view + 1, page: page + 1 });
+        }
         if all.corners.len() == before {
             return Err(SurveyError::NoMarkers { view: view + 1 });
         }
     }
+    all.forget_unseen();
     Ok(all)
 }
 
+/// A page of which half the markers that are seen are there twice: somebody has printed it twice.
+fn doubled(tags: &[SeenTag], find: &impl Fn(u16) -> Option<((usize, u16), u16)>) -> Option<(usize, u16)> {
+    let page = |tag: &SeenTag| find(tag.id).map(|(page, _)| page);
+    let twice = |tag: &&SeenTag| tags.iter().filter(|other| other.id == tag.id).count() > 1;
+    tags.iter().filter_map(page).find(|&own| {
+        let here = || tags.iter().filter(move |tag| page(tag) == Some(own));
+        here().count() > 2 && 2 * here().filter(twice).count() >= here().count()
+    })
+}
+
 impl All {
+    /// Leaves out pages of which nothing can be used.
+    fn forget_unseen(&mut self) {
+        let seen = |page: usize| self.corners.iter().any(|corner| corner.1 == page);
+        let kept: Vec<usize> = (0..self.pages.len()).filter(|&page| seen(page)).collect();
+        let number = |page: usize| kept.iter().position(|&k| k == page).unwrap_or_default();
+        self.pages = kept.iter().map(|&k| self.pages[k]).collect();
+        self.corners.iter_mut().for_each(|corner| corner.1 = number(corner.1));
+        self.places.iter_mut().for_each(|place| place.page = number(place.page));
+    }
+
     fn add(&mut self, view: usize, page: usize, printed: &[Point; 4], tag: &SeenTag) {
         let pairs: [(Point, Point); 4] = std::array::from_fn(|k| (printed[k], tag.corners[k]));
         let Some(map) = Homography::through(&pairs, 1.0) else { return };
@@ -100,6 +125,9 @@ pub(super) struct Place {
     pub(super) x: f64,
     pub(super) y: f64,
     pub(super) turn_rad: f64,
+    /// How far it is in front of the plane, m, and by what share it is printed larger than the first.
+    pub(super) height_m: f64,
+    pub(super) larger: f64,
 }
 
 /// Everything a survey looks for.
@@ -111,7 +139,10 @@ pub(super) struct State {
     pub(super) poses: Vec<CameraPose>,
 }
 
-const PAGE_PARAMETERS: usize = 3;
+const PAGE_PARAMETERS: usize = 5;
+/// What pages are off by of which nobody says anything, m and as a share: paper that is taped to a wall, and a printer's second page.
+pub(super) const HEIGHT_DEVIATION_M: f64 = 2e-4;
+pub(super) const LARGER_DEVIATION: f64 = 2e-4;
 /// Where black's spread stands among the parameters,
 const SPREAD_AT: usize = LENS_PARAMETERS;
 /// and how far it may be, px: ink that runs, and a camera whose curve is not that of most, move all edges of a blurred image.
@@ -154,8 +185,10 @@ impl Bundle<'_> {
         let page = |k: usize, v: f64| Dual::<LOCAL>::parameter(v, CAMERA_PARAMETERS + 1 + k);
         let constant = |v: f64| <Dual<LOCAL> as crate::jet::Scalar>::constant(v);
         let (s, c) = crate::jet::Scalar::sin_cos(page(2, place.turn_rad));
-        let (x, y) = (constant(seen.at.x), constant(seen.at.y));
-        let on_target = [c * x - s * y + page(0, place.x), s * x + c * y + page(1, place.y), constant(0.0)];
+        let larger = constant(1.0) + page(4, place.larger);
+        let (x, y) = (constant(seen.at.x) * larger, constant(seen.at.y) * larger);
+        let height = page(3, place.height_m);
+        let on_target = [c * x - s * y + page(0, place.x), s * x + c * y + page(1, place.y), height];
         let [x, y, z] = state.poses[seen.view].seen(step, on_target);
         if z.value <= 1e-6 {
             return None;
@@ -218,7 +251,23 @@ impl Bundle<'_> {
             -state.spread_px / SPREAD_DEVIATION_PX,
             std::iter::once((SPREAD_AT, 1.0 / SPREAD_DEVIATION_PX)),
         );
+        for (page, place) in state.pages.iter().enumerate() {
+            let Some(at) = state.page_at(page) else { continue };
+            for (k, value, deviation) in
+                [(3, place.height_m, HEIGHT_DEVIATION_M), (4, place.larger, LARGER_DEVIATION)]
+            {
+                normal.add_belief(-value / deviation, std::iter::once((at + k, 1.0 / deviation)));
+            }
+        }
         Some(())
+    }
+
+    /// By how many deviations the lens is not what was believed: the largest, of parameters that do not depend on each other.
+    pub(super) fn surprise(&self, state: &State) -> f64 {
+        let off = SMatrix::<f64, LENS_PARAMETERS, 1>::from(self.belief.lens.parameters())
+            - SMatrix::from(state.lens);
+        let lower = self.belief.covariance.cholesky().map(|c| c.l());
+        lower.and_then(|lower| lower.solve_lower_triangular(&off)).map_or(f64::INFINITY, |told| told.amax())
     }
 }
 
@@ -247,6 +296,7 @@ impl Problem for Bundle<'_> {
             let Some(at) = state.page_at(page) else { continue };
             (place.x, place.y) = (place.x + step[at], place.y + step[at + 1]);
             place.turn_rad += step[at + 2];
+            (place.height_m, place.larger) = (place.height_m + step[at + 3], place.larger + step[at + 4]);
         }
         for (view, pose) in next.poses.iter_mut().enumerate() {
             let at = state.pose_at(view);

@@ -19,6 +19,7 @@ const CORNER_PX: f64 = 0.3;
 
 /// A state near the best: the one that fits the corners best of those that several guesses lead to.
 pub(super) fn start(belief: &LensBelief, all: &All) -> Result<State, SurveyError> {
+    linked(all)?;
     let corners = as_sightings(all);
     let known = belief.covariance[(0, 0)].sqrt() < KNOWN * belief.lens.focal_px[0];
     let guesses = if known { &GUESSES[..1] } else { &GUESSES[..] };
@@ -26,7 +27,8 @@ pub(super) fn start(belief: &LensBelief, all: &All) -> Result<State, SurveyError
     let mut best: Option<(f64, State)> = None;
     for factor in guesses {
         let lens = Lens { focal_px: belief.lens.focal_px.map(|f| f * factor), ..belief.lens };
-        let rough = chained(&lens, all)?;
+        // from a wrong focal length a page may seem to lie where the wall is not
+        let Some(rough) = chained(&lens, all) else { continue };
         for state in [mirrored(&rough), rough] {
             // coarse first: from a wrong focal length all corners are far off
             let loose = Bundle { scale: bundle.scatter(&state).max(1.0), ..bundle };
@@ -56,8 +58,26 @@ fn as_sightings(all: &All) -> Vec<Sighting> {
     all.corners.iter().flat_map(both).collect()
 }
 
+/// Whether images link all pages and are linked by them.
+fn linked(all: &All) -> Result<(), SurveyError> {
+    let mut pages = vec![false; all.pages.len()];
+    pages[0] = true;
+    for _ in 0..all.views {
+        for view in 0..all.views {
+            let here = || all.corners.iter().filter(move |corner| corner.0 == view).map(|corner| corner.1);
+            if here().any(|page| pages[page]) {
+                here().for_each(|page| pages[page] = true);
+            }
+        }
+    }
+    match pages.iter().position(|linked| !linked) {
+        Some(page) => Err(SurveyError::Apart { page: all.pages[page].1 + 1 }),
+        None => Ok(()),
+    }
+}
+
 /// Poses and pages one after the other, from the first page on, with what is known of the lens.
-fn chained(lens: &Lens, all: &All) -> Result<State, SurveyError> {
+fn chained(lens: &Lens, all: &All) -> Option<State> {
     let mut pages: Vec<Option<Place>> = vec![None; all.pages.len()];
     pages[0] = Some(Place::default());
     let mut poses: Vec<Option<CameraPose>> = vec![None; all.views];
@@ -75,14 +95,9 @@ fn chained(lens: &Lens, all: &All) -> Result<State, SurveyError> {
             break;
         }
     }
-    let apart =
-        pages.iter().position(Option::is_none).map(|page| SurveyError::Apart { page: all.pages[page].1 + 1 });
-    if let Some(error) = apart {
-        return Err(error);
-    }
-    let poses: Option<Vec<CameraPose>> = poses.into_iter().collect();
-    let poses = poses.ok_or(SurveyError::NoFit { tags: all.corners.len() / 4 })?;
-    Ok(State { lens: lens.parameters(), spread_px: 0.0, pages: pages.into_iter().flatten().collect(), poses })
+    let (poses, pages): (Option<Vec<CameraPose>>, Option<Vec<Place>>) =
+        (poses.into_iter().collect(), pages.into_iter().collect());
+    Some(State { lens: lens.parameters(), spread_px: 0.0, pages: pages?, poses: poses? })
 }
 
 /// The pose from which the pages whose places are known are seen as they are.
@@ -97,7 +112,10 @@ fn pose(lens: &Lens, all: &All, pages: &[Option<Place>], view: usize) -> Option<
     // columns: the plane's x and y as the camera has them, and its origin, all by one factor (Zhang 2000, §3.1)
     let matrix = map.matrix();
     let (x, y, origin) = (matrix.column(0), matrix.column(1), matrix.column(2));
-    let factor = (x.norm() * y.norm()).sqrt().copysign(origin.z);
+    // what is seen lies ahead; the plane's origin may not
+    let seen = pairs.iter().map(|(at, _)| at.to_vec2()).sum::<Vec2>() / pairs.len() as f64;
+    let ahead = matrix[(2, 0)] * seen.x + matrix[(2, 1)] * seen.y + matrix[(2, 2)];
+    let factor = (x.norm() * y.norm()).sqrt().copysign(ahead);
     let (x, y) = (x / factor, y / factor);
     let near = Matrix3::from_columns(&[x, y, x.cross(&y)]);
     let svd = near.svd(true, true);
@@ -125,7 +143,7 @@ fn place(camera: &Camera, all: &All, view: usize, page: usize) -> Option<Place> 
         let (a, b) = (*a - from, *b - to);
         (sine + a.cross(b), cosine + a.dot(b))
     });
-    let turned = Place { x: 0.0, y: 0.0, turn_rad: sine.atan2(cosine) };
+    let turned = Place { turn_rad: sine.atan2(cosine), ..Place::default() };
     let by = to - turned.apply(from.to_point()).to_vec2();
     Some(Place { x: by.x, y: by.y, ..turned })
 }

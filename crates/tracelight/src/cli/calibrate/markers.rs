@@ -1,6 +1,8 @@
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_aim::{Board, LensBelief, SeenPlace, SeenTag, Survey, SurveyedCamera, survey};
+use tracelight_aim::{
+    Board, Doubt, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyedCamera, survey,
+};
 use tracelight_stroke::Point;
 use tracelight_vision::{Tag, TagPlace, find_tags};
 
@@ -76,7 +78,7 @@ pub(super) fn run(args: &MarkersArgs) -> Result<Answer, Failure> {
         stands(&camera),
         seen.markers_text(),
         wall_text(&wall, &camera, &args.output)
-    );
+    ) + &seen.warnings_text();
     let mut object = seen.json();
     object["pose"] = json!({
         "turn_rad": camera.camera.pose.turn_rad(),
@@ -108,7 +110,9 @@ pub(super) fn lens(args: &LensArgs) -> Result<Answer, Failure> {
     } else {
         String::new()
     };
-    let text = format!("{}\n{}\nleft:     {}{sure}", seen.lens_text(), seen.markers_text(), args.output);
+    let doubts = seen.warnings_text();
+    let text =
+        format!("{}\n{}\nfile:     {}{sure}{doubts}", seen.lens_text(), seen.markers_text(), args.output);
     Ok(Answer::new(text, seen.json().to_string()))
 }
 
@@ -171,10 +175,10 @@ impl Seen {
     }
 
     fn markers_text(&self) -> String {
-        let pages: Vec<String> = self.survey.pages.iter().map(|page| (page.page + 1).to_string()).collect();
+        let pages: Vec<String> = self.survey.pages.iter().map(page_name).collect();
         let s = if pages.len() == 1 { "" } else { "s" };
         format!(
-            "markers:  {} on page{s} {}, {} places, {:.3} px off, rms",
+            "markers:  {} on page{s} {}; {} places where black meets white, {:.3} px off, rms",
             self.markers,
             pages.join(", "),
             self.survey.places,
@@ -182,9 +186,45 @@ impl Seen {
         )
     }
 
+    /// What does not look as it should, in words.
+    fn warnings(&self) -> Vec<String> {
+        let page = |page: usize| self.survey.pages.get(page).map_or_else(String::new, page_name);
+        let words = |doubt: &Doubt| match *doubt {
+            Doubt::Loose(number, m) => format!(
+                "page {} seems to lie {:.1} mm {} the plane of the others: stick it flat on the wall",
+                page(number),
+                1e3 * m.abs(),
+                if m > 0.0 { "in front of" } else { "behind" }
+            ),
+            Doubt::Scaled(number, share) => format!(
+                "page {} seems to be printed {:.2} % {} than page {}: print all of them alike, and measure their bars",
+                page(number),
+                100.0 * share.abs(),
+                if share > 0.0 { "larger" } else { "smaller" },
+                page(0)
+            ),
+            Doubt::Misfit(times) => format!(
+                "markers are {times:.1} times as far from where they should be seen as they scatter: is a page loose, or has the lens been zoomed since it was calibrated?"
+            ),
+            Doubt::Lens(times) => format!(
+                "the lens is {times:.1} deviations from what was known of it: has it been zoomed since, or does a page not lie on the wall?"
+            ),
+        };
+        self.survey.doubts.iter().map(words).collect()
+    }
+
+    fn warnings_text(&self) -> String {
+        let warnings = self.warnings();
+        if warnings.is_empty() {
+            return String::new();
+        }
+        let lines = warnings.iter().map(|warning| format!("\nwarning:  {warning}"));
+        lines.collect::<String>() + "\n          the wall may be further off than told"
+    }
+
     fn json(&self) -> Value {
         let lens = &self.survey.belief.lens;
-        let page = |page: &tracelight_aim::PlacedPage| json!({"page": page.page + 1, "middle_m": [page.middle.x, page.middle.y], "turn_rad": page.turn_rad});
+        let page = |page: &PlacedPage| json!({"page": page.page + 1, "middle_m": [page.middle.x, page.middle.y], "turn_rad": page.turn_rad});
         json!({
             "lens": {
                 "size_px": lens.size_px,
@@ -197,8 +237,18 @@ impl Seen {
             "markers": self.markers,
             "places": self.survey.places,
             "rms_px": self.survey.rms_px,
+            "warnings": self.warnings(),
         })
     }
+}
+
+/// Names of the boards.
+const BOARDS: [&str; 2] = ["fine", "coarse"];
+
+/// A page's number; of a coarse board it says so.
+fn page_name(page: &PlacedPage) -> String {
+    let number = page.page + 1;
+    if page.board == 0 { number.to_string() } else { format!("{number} ({})", BOARDS[1]) }
 }
 
 /// Markers of an image, and its size.
@@ -228,7 +278,7 @@ fn stands(camera: &SurveyedCamera) -> String {
     let sideways =
         |v: f64, more: &str, less: &str| format!("{:.3} m {}", v.abs(), if v < 0.0 { less } else { more });
     format!(
-        "stands:   {z:.3} m before the wall, {} and {} the middle of the first page",
+        "stands:   {z:.3} m before the wall, {} and {} the middle of the first page, as that is printed",
         sideways(x, "right of", "left of"),
         sideways(y, "above", "below")
     )
@@ -248,6 +298,6 @@ fn wall_text(wall: &Wall, camera: &SurveyedCamera, output: &str) -> String {
     let off = |m: Option<f64>| m.map_or_else(|| "unknown".to_owned(), |m| format!("{:.2} mm", 1e3 * m));
     let (between, image) = (off(wall.between_m), off(wall.image_m));
     format!(
-        "wall:     a point of it is likely to be off by {between} rms between the pages, {image} all over the image{scale}\nleft:     {output}"
+        "wall:     a point of it is likely to be off by {between} rms between the pages, {image} all over the image{scale}\nfile:     {output}"
     )
 }

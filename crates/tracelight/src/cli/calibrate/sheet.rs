@@ -22,7 +22,7 @@ pub(super) struct SheetArgs {
     /// fine: 20 markers of 40 mm a page; coarse: 4 of 84 mm, for cameras of few pixels or far away
     #[arg(long, value_enum, default_value_t = BoardName::Fine)]
     board: BoardName,
-    /// How many pages
+    /// How many pages [default: 4, or 1 as SVG]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=26))]
     pages: Option<u16>,
     /// The first of them
@@ -63,7 +63,8 @@ pub(super) fn run(args: &SheetArgs) -> Result<Answer, Failure> {
     if !is_svg && !extension.eq_ignore_ascii_case("pdf") {
         return Err(Failure::usage("usage", format!("{}: a page is written as .pdf or .svg", args.output)));
     }
-    let pages = args.pages.unwrap_or(if is_svg { 1 } else { 4 });
+    let left = (board.pages + 1).saturating_sub(args.first).max(1);
+    let pages = args.pages.unwrap_or(if is_svg { 1 } else { left.min(4) });
     let last = args.first + pages - 1;
     if last > board.pages {
         let message = format!("page {last} does not exist: the board has pages 1 to {}", board.pages);
