@@ -36,7 +36,7 @@ fn image(dice: &mut Dice) -> Grey {
     Grey::new(WIDTH, HEIGHT, levels).expect("an image")
 }
 
-/// A black image on white about random cells.
+/// A black frame on white about random cells.
 fn square(levels: &mut [u8], dice: &mut Dice) {
     let cell = dice.between(2.0, 9.0) as usize;
     let (x, y) = (dice.between(0.0, 1180.0) as usize, dice.between(0.0, 620.0) as usize);

@@ -65,8 +65,8 @@ pub(crate) trait Problem {
     fn stepped(&self, state: &Self::State, step: &[f64]) -> Self::State;
 }
 
-/// The state that fits best, from one nearby: Levenberg–Marquardt with Nielsen's damping (Madsen, Nielsen & Tingleff, *Methods for
-/// non-linear least squares problems*, 2004, algorithm 3.16). `None` if it is lost.
+/// The state that fits best, from one nearby: Levenberg and Marquardt's method, each parameter damped by its own size (Marquardt 1963; damping
+/// that grows ever faster after Madsen, Nielsen & Tingleff, *Methods for non-linear least squares problems*, 2004, §3.2). `None` if it is lost.
 pub(crate) fn solve<P: Problem>(
     problem: &P,
     from: P::State,

@@ -6,7 +6,6 @@
 //! | target | metres on the plane drawn on; origin at the picture's centre, x right, y up, z towards the head |
 //! | head | x along the beam at zero, y left, z up; origin where the axes cross |
 //! | joint | pan about z, tilt about the pan-carried y, rad; positive tilt turns the beam down |
-//!
 //! | camera | x right, y down, z ahead; origin where the light passes |
 //!
 //! Every conversion between two of them is done here and nowhere else. The crate knows no images and no time.

@@ -54,14 +54,14 @@ pub struct CameraConfig {
     pub laser: Laser,
     /// Sensor and electronics.
     pub sensor: Sensor,
-    /// From a image to the next, s.
+    /// From an image to the next, s.
     pub period_s: f64,
-    /// Least and most that a image takes from the end of its reading to the host, s.
+    /// Least and most that an image takes from the end of its reading to the host, s.
     pub delay_s: [f64; 2],
 }
 
 impl CameraConfig {
-    /// A webcam of usual make: rolling shutter, one colour a pixel, a fifth of a pixel out of focus.
+    /// A webcam of usual make: rolling shutter, one colour a pixel, a little out of focus.
     pub fn webcam() -> Self {
         Self {
             blur_px: 0.8,

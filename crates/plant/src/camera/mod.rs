@@ -54,7 +54,7 @@ impl Image {
 pub struct SimulatedCamera {
     config: CameraConfig,
     camera: Camera,
-    /// What each pixel's row and column gets from the wall in a second, full scale of the reference exposure a reference exposure.
+    /// What each pixel gets from the wall in a reference exposure: one is a pixel that is full.
     scene: Vec<[f32; 3]>,
     electrons: Electrons,
     number: u64,
@@ -88,7 +88,7 @@ impl SimulatedCamera {
         &self.camera
     }
 
-    /// A image whose first row is exposed from `start_s` on, each row for `exposure_s`. `spots` is where the beam met the wall from then
+    /// An image whose first row is exposed from `start_s` on, each row for `exposure_s`. `spots` is where the beam met the wall from then
     /// until the last row's end, in time order; what was before and after is dark.
     pub fn expose(&mut self, start_s: f64, exposure_s: f64, spots: &[SpotSample]) -> Image {
         let [width, height] = self.camera.lens.size_px;
@@ -134,7 +134,7 @@ mod tests {
         Wall { plain: [0.0; 3], posters: vec![] }
     }
 
-    /// Where the red light of a image is, and how much there is.
+    /// Where the red light of an image is, and how much there is.
     fn centroid(image: &Image) -> (Point, f64) {
         let (mut sum, mut moment) = (0.0, Vec2::ZERO);
         for (i, pixel) in image.rgb.chunks_exact(3).enumerate() {
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_seed_gives_the_same_frames() {
+    fn the_same_seed_gives_the_same_images() {
         let images = |seed: u64| {
             let wall = Wall { plain: [0.5; 3], posters: vec![] };
             let mut eye = SimulatedCamera::new(&CameraConfig::webcam(), &camera(), &wall, seed);

@@ -8,7 +8,7 @@ pub(super) struct Electrons {
     normal: Vec<f32>,
 }
 
-/// Quantiles that are kept: a step beyond the outermost is rarer than any pixel of a image.
+/// Quantiles that are kept: a step beyond the outermost is rarer than any pixel of an image.
 const QUANTILES: usize = 1 << 14;
 /// Steps of the curve from light to levels.
 const CURVE: usize = 1 << 12;

@@ -21,7 +21,7 @@ const REACH: f64 = 4.0;
 /// Most pieces between two samples: a spot that crosses the image in a tick.
 const MOST_PIECES: f64 = 4000.0;
 
-/// A image while it is exposed.
+/// An image while it is exposed.
 pub(super) struct Exposure<'a> {
     pub(super) config: &'a CameraConfig,
     pub(super) camera: &'a Camera,
@@ -120,7 +120,7 @@ struct Piece {
     length_s: f64,
 }
 
-/// Speckle of a pixel in a image: between ±√3, evenly, of deviation one.
+/// Speckle of a pixel in an image: between ±√3, evenly, of deviation one.
 fn grain(column: usize, row: usize, image: u64) -> f64 {
     // SplitMix64 (Steele, Lea & Flood 2014)
     let mut z = (column as u64) << 40 ^ (row as u64) << 20 ^ image.wrapping_mul(0x9e37_79b9_7f4a_7c15);
