@@ -137,13 +137,8 @@ impl Camera {
 
     /// Derivatives of a pixel by the point of the target that is seen there, px/m: columns by x and y.
     pub fn pixels_per_metre(&self, on_target: Point) -> Option<[Vec2; 2]> {
-        use crate::dual::Dual;
-        self.pixel(on_target)?;
-        let zero = Dual::<2>::constant(0.0);
-        let place = [Dual::parameter(on_target.x, 0), Dual::parameter(on_target.y, 1), zero];
-        let [x, y, z] = self.pose.seen([zero; POSE_PARAMETERS], place);
-        let [u, v] = distorted(self.lens.parameters().map(Dual::constant), [x / z, y / z]);
-        Some([Vec2::new(u.by[0], v.by[0]), Vec2::new(u.by[1], v.by[1])])
+        let (_, by_point, _) = self.derivatives(on_target)?;
+        Some([0, 1].map(|k| Vec2::new(by_point[(0, k)], by_point[(1, k)])))
     }
 
     /// Whether a pixel is within the image.

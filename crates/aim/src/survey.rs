@@ -16,7 +16,7 @@ use crate::board::Board;
 use crate::camera::{CAMERA_PARAMETERS, Camera, CameraPose, POSE_PARAMETERS, Uncertain};
 use crate::least_squares::{Normal, solve};
 use crate::lens::{LENS_PARAMETERS, Lens};
-use residual::{Bundle, HEIGHT_DEVIATION_M, LARGER_DEVIATION, State, sightings};
+use residual::{All, Bundle, HEIGHT_DEVIATION_M, LARGER_DEVIATION, State, sightings};
 
 /// A marker as an image has it, px.
 #[derive(Clone, Debug, PartialEq)]
@@ -205,7 +205,7 @@ impl Survey {
     }
 }
 
-/// Finds the cameras of images of one lens, and where the pages in them lie on their common plane. Sheets are as printed.
+/// Finds the cameras of images of one lens, and where the pages in them lie on their common plane. Boards are as printed.
 ///
 /// # Errors
 /// See [`SurveyError`].
@@ -230,8 +230,7 @@ pub fn survey(belief: &LensBelief, boards: &[Board], views: &[Vec<SeenTag>]) -> 
     if rms_px > MOST_RMS_PX {
         return Err(SurveyError::NoFit { tags });
     }
-    let survey = told(belief, &all, &state, &covariance, rms_px);
-    Ok(Survey { doubts: doubts(&bundle, &state), ..survey })
+    Ok(told(&bundle, &all, &state, &covariance, rms_px))
 }
 
 /// Furthest that places may be off from where they should be seen, root of the mean square, px.
@@ -257,13 +256,7 @@ fn doubts(bundle: &Bundle, state: &State) -> Vec<Doubt> {
     doubts
 }
 
-fn told(
-    belief: &LensBelief,
-    all: &residual::All,
-    state: &State,
-    covariance: &DMatrix<f64>,
-    rms_px: f64,
-) -> Survey {
+fn told(bundle: &Bundle, all: &All, state: &State, covariance: &DMatrix<f64>, rms_px: f64) -> Survey {
     let of_view = |view: usize| {
         let number = |k: usize| {
             if k < POSE_PARAMETERS { state.pose_at(view) + k } else { k - POSE_PARAMETERS }
@@ -280,7 +273,7 @@ fn told(
     });
     Survey {
         belief: LensBelief {
-            lens: belief.lens.with(state.lens),
+            lens: bundle.belief.lens.with(state.lens),
             covariance: SMatrix::from_fn(|i, j| covariance[(i, j)]),
         },
         poses: state.poses.clone(),
@@ -288,7 +281,7 @@ fn told(
         spread_px: state.spread_px,
         rms_px,
         places: all.places.len(),
-        doubts: Vec::new(),
+        doubts: doubts(bundle, state),
         covariances: (0..state.poses.len()).map(of_view).collect(),
     }
 }

@@ -16,6 +16,11 @@ pub struct Grey {
     pub(crate) plane: Plane<u8>,
 }
 
+/// Light of each level, as a share of the brightest: cameras store it to a power of about 1/2.2.
+pub(crate) fn light_of_levels() -> [f32; 256] {
+    std::array::from_fn(|level| (level as f32 / 255.0).powf(2.2))
+}
+
 impl Grey {
     /// From `width · height` levels, row by row from the top left.
     ///

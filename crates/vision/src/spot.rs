@@ -7,6 +7,7 @@
 use tracelight_stroke::{Point, Vec2};
 
 use crate::Grey;
+use crate::grey::light_of_levels;
 use crate::plane::Plane;
 use crate::solve::linear;
 
@@ -134,7 +135,7 @@ impl Change {
         if width.min(height) < 5 || width * height < FEWEST {
             return None;
         }
-        let curve: [f32; 256] = std::array::from_fn(|v| (v as f32 / 255.0).powf(2.2));
+        let curve = light_of_levels();
         let both =
             || (top..bottom).flat_map(|y| lit.row(y)[left..right].iter().zip(&dark.row(y)[left..right]));
         let values = both().map(|(&a, &b)| curve[usize::from(a)] - curve[usize::from(b)]).collect();

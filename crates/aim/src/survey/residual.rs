@@ -1,4 +1,4 @@
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 use tracelight_stroke::{Point, Vec2};
 
 use super::{LensBelief, SeenTag, SurveyError, across};
@@ -54,8 +54,7 @@ pub(super) fn sightings(boards: &[Board], views: &[Vec<SeenTag>]) -> Result<All,
     for (view, tags) in views.iter().enumerate() {
         let before = all.corners.len();
         for tag in tags {
-            let twice = tags.iter().filter(|other| other.id == tag.id).count() > 1;
-            let Some((page, number)) = find(tag.id).filter(|_| !twice) else { continue };
+            let Some((page, number)) = find(tag.id).filter(|_| !is_twice(tags, tag)) else { continue };
             let (Some(board), Ok(place)) = (boards.get(page.0), all.pages.binary_search(&page)) else {
                 continue;
             };
@@ -73,13 +72,17 @@ pub(super) fn sightings(boards: &[Board], views: &[Vec<SeenTag>]) -> Result<All,
     Ok(all)
 }
 
+/// Whether a marker's id is in an image more than once.
+fn is_twice(tags: &[SeenTag], tag: &SeenTag) -> bool {
+    tags.iter().filter(|other| other.id == tag.id).count() > 1
+}
+
 /// A page of which half the markers that are seen are there twice: somebody has printed it twice.
 fn doubled(tags: &[SeenTag], find: &impl Fn(u16) -> Option<((usize, u16), u16)>) -> Option<(usize, u16)> {
     let page = |tag: &SeenTag| find(tag.id).map(|(page, _)| page);
-    let twice = |tag: &&SeenTag| tags.iter().filter(|other| other.id == tag.id).count() > 1;
     tags.iter().filter_map(page).find(|&own| {
         let here = || tags.iter().filter(move |tag| page(tag) == Some(own));
-        here().count() > 2 && 2 * here().filter(twice).count() >= here().count()
+        here().count() > 2 && 2 * here().filter(|tag| is_twice(tags, tag)).count() >= here().count()
     })
 }
 
@@ -237,15 +240,9 @@ impl Bundle<'_> {
     }
 
     fn believe(&self, state: &State, normal: &mut Normal) -> Option<()> {
-        let information: SMatrix<f64, LENS_PARAMETERS, LENS_PARAMETERS> =
-            self.belief.covariance.cholesky()?.inverse();
-        // Cholesky's rows are measurements that do not depend on each other
-        let rows = information.cholesky()?.l().transpose();
-        let off = SMatrix::<f64, LENS_PARAMETERS, 1>::from(self.belief.lens.parameters())
-            - SMatrix::from(state.lens);
-        let told = rows * off;
+        let (told, rows) = self.lens_off(state)?;
         for i in 0..LENS_PARAMETERS {
-            normal.add_belief(told[i], (i..LENS_PARAMETERS).map(|k| (k, rows[(i, k)])));
+            normal.add_belief(told[i], (0..=i).map(|k| (k, rows[(i, k)])));
         }
         normal.add_belief(
             -state.spread_px / SPREAD_DEVIATION_PX,
@@ -262,14 +259,21 @@ impl Bundle<'_> {
         Some(())
     }
 
+    /// What was believed of the lens less what it is, as measurements of one deviation each that do not depend on each other, and what each
+    /// of them makes of the parameters: the inverse of the covariance's lower triangle.
+    fn lens_off(&self, state: &State) -> Option<(SVector<f64, LENS_PARAMETERS>, LensMatrix)> {
+        let rows = self.belief.covariance.cholesky()?.l().try_inverse()?;
+        let off = SVector::from(self.belief.lens.parameters()) - SVector::from(state.lens);
+        Some((rows * off, rows))
+    }
+
     /// By how many deviations the lens is not what was believed: the largest, of parameters that do not depend on each other.
     pub(super) fn surprise(&self, state: &State) -> f64 {
-        let off = SMatrix::<f64, LENS_PARAMETERS, 1>::from(self.belief.lens.parameters())
-            - SMatrix::from(state.lens);
-        let lower = self.belief.covariance.cholesky().map(|c| c.l());
-        lower.and_then(|lower| lower.solve_lower_triangular(&off)).map_or(f64::INFINITY, |told| told.amax())
+        self.lens_off(state).map_or(f64::INFINITY, |(told, _)| told.amax())
     }
 }
+
+type LensMatrix = SMatrix<f64, LENS_PARAMETERS, LENS_PARAMETERS>;
 
 impl Problem for Bundle<'_> {
     type State = State;

@@ -8,7 +8,9 @@ use tracelight_stroke::{Point, Vec2};
 
 use super::TagPlace;
 use super::square::{Off, SIDE, Square};
+use crate::grey::light_of_levels;
 use crate::plane::Plane;
+use crate::solve::linear;
 
 /// Samples across a boundary.
 const SAMPLES: usize = 11;
@@ -32,7 +34,7 @@ const FEWEST: usize = 24;
 
 /// What is looked up rather than worked out each time.
 pub(super) struct Tables {
-    /// Light from levels: cameras store it to a power of about 1/2.2, and halfway up a blurred edge in levels is not where the edge is.
+    /// Light from levels: halfway up a blurred edge in levels is not where the edge is.
     light: [f32; 256],
     /// The normal distribution, in steps of 1/[`STEPS`] of a deviation from −[`TAILS`] on, and its density.
     below: [f32; 2 * TAILS * STEPS + 1],
@@ -55,8 +57,7 @@ impl Tables {
             sum += (density(a) + 4.0 * density(f64::midpoint(a, b)) + density(b)) / (6.0 * STEPS as f64);
             *v = sum as f32;
         }
-        let light = std::array::from_fn(|k| (k as f32 / 255.0).powf(2.2));
-        Self { light, below, bell }
+        Self { light: light_of_levels(), below, bell }
     }
 
     /// The normal distribution at `z` deviations, and its density.
@@ -369,41 +370,14 @@ impl Fit {
 
     /// Shares of the model and of its motion; `None` where they look alike.
     fn of_two(&self) -> Option<(f64, f64, f64)> {
-        let ([[aa, ab, _], [_, bb, _], _], [a, b, _]) = (self.products, self.light);
-        let det = aa * bb - ab * ab;
-        (det > 1e-6 * aa * bb).then(|| ((a * bb - b * ab) / det, (b * aa - a * ab) / det, 0.0))
+        let row = |i: usize| [self.products[i][0], self.products[i][1], self.light[i]];
+        linear([row(0), row(1)]).map(|[model, moved]| (model, moved, 0.0))
     }
 
     /// Shares of the model, of its motion and of its widening.
     fn of_three(&self) -> Option<(f64, f64, f64)> {
-        let [a, b, c] = [0, 1, 2].map(|i| Vector::from(self.products[i]));
-        let light = Vector::from(self.light);
-        let det = a.dot(b.cross(c));
-        let size = a.0[0] * b.0[1] * c.0[2];
-        (det > 1e-6 * size)
-            .then(|| (light.dot(b.cross(c)) / det, a.dot(light.cross(c)) / det, a.dot(b.cross(light)) / det))
-    }
-}
-
-/// Three numbers.
-#[derive(Clone, Copy)]
-struct Vector([f64; 3]);
-
-impl From<[f64; 3]> for Vector {
-    fn from(v: [f64; 3]) -> Self {
-        Self(v)
-    }
-}
-
-impl Vector {
-    fn dot(self, Self(o): Self) -> f64 {
-        let Self([x, y, z]) = self;
-        x * o[0] + y * o[1] + z * o[2]
-    }
-
-    fn cross(self, Self(o): Self) -> Self {
-        let Self([x, y, z]) = self;
-        Self([y * o[2] - z * o[1], z * o[0] - x * o[2], x * o[1] - y * o[0]])
+        let row = |i: usize| [self.products[i][0], self.products[i][1], self.products[i][2], self.light[i]];
+        linear([row(0), row(1), row(2)]).map(|[model, moved, widened]| (model, moved, widened))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Dark from light, each place by what is about it.
 
-use crate::ink::word_over;
+use crate::ink::word_of;
 use crate::mask::Mask;
 use crate::plane::Plane;
 
@@ -45,7 +45,7 @@ fn darker_row(levels: &[u8], thresholds: &[u8], words: &mut [u64]) {
     for (word, (levels, thresholds)) in words.iter_mut().zip(levels.chunks(64).zip(thresholds.chunks(64))) {
         below.fill(0);
         below.iter_mut().zip(levels.iter().zip(thresholds)).for_each(|(b, (&v, &t))| *b = u8::from(v < t));
-        *word = word_over(&below, 0);
+        *word = word_of(&below);
     }
 }
 
@@ -88,16 +88,15 @@ fn least_range(low: &Plane<u8>, high: &Plane<u8>) -> u8 {
 /// Each value with its eight neighbours, as one.
 fn spread(plane: &Plane<u8>, best: impl Fn(u8, u8) -> u8 + Copy) -> Plane<u8> {
     let three = |row: &[u8], into: &mut [u8]| {
-        let (first, last) = (0, row.len() - 1);
         for (x, v) in into.iter_mut().enumerate() {
-            *v = best(best(row[x.max(first + 1) - 1], row[x]), row[(x + 1).min(last)]);
+            *v = best(best(row[x.saturating_sub(1)], row[x]), row[(x + 1).min(row.len() - 1)]);
         }
     };
     let mut across = Plane::filled(plane.width, plane.height, 0);
     (0..plane.height).for_each(|y| three(plane.row(y), across.row_mut(y)));
     let mut all = across.clone();
     for y in 0..plane.height {
-        for other in [y.max(1) - 1, (y + 1).min(plane.height - 1)] {
+        for other in [y.saturating_sub(1), (y + 1).min(plane.height - 1)] {
             all.row_mut(y).iter_mut().zip(across.row(other)).for_each(|(v, &o)| *v = best(*v, o));
         }
     }

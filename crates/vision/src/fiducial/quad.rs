@@ -37,7 +37,7 @@ pub(super) fn of(mask: &Mask, patch: &Region, walked: &mut Mask) -> Option<[Poin
 }
 
 /// Four of something, or none.
-pub(super) fn try_sides<T: std::fmt::Debug>(mut of: impl FnMut(usize) -> Option<T>) -> Option<[T; 4]> {
+fn try_sides<T: std::fmt::Debug>(mut of: impl FnMut(usize) -> Option<T>) -> Option<[T; 4]> {
     (0..4).map(&mut of).collect::<Option<Vec<T>>>()?.try_into().ok()
 }
 
@@ -81,9 +81,9 @@ fn furthest(points: &[Point]) -> Option<[usize; 4]> {
 
 /// A straight side.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Side {
-    pub(super) on: Point,
-    pub(super) along: Vec2,
+struct Side {
+    on: Point,
+    along: Vec2,
 }
 
 impl Side {
@@ -102,7 +102,7 @@ impl Side {
     }
 
     /// The line of least squared distances, the way the points go, and the root of their mean.
-    pub(super) fn fit(points: &[Point]) -> Option<(Self, f64)> {
+    fn fit(points: &[Point]) -> Option<(Self, f64)> {
         let n = points.len() as f64;
         let mean = points.iter().map(|p| p.to_vec2()).sum::<Vec2>() / n;
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
@@ -118,7 +118,7 @@ impl Side {
     }
 
     /// Where two cross.
-    pub(super) fn meet(&self, other: &Self) -> Option<Point> {
+    fn meet(&self, other: &Self) -> Option<Point> {
         let sine = self.along.cross(other.along);
         // seen flatter than 10° no corner is known
         (sine.abs() > 0.17).then(|| self.on + self.along * ((other.on - self.on).cross(other.along) / sine))
