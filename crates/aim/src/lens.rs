@@ -40,7 +40,8 @@ impl Lens {
     /// Where a direction (x, y, 1) comes to lie, px; `None` beyond where distortion turns back.
     pub fn pixel(&self, [x, y]: [f64; 2]) -> Option<Point> {
         let [u, v] = distorted(self.parameters(), [x, y]);
-        (x * x + y * y <= self.furthest().powi(2)).then(|| Point::new(u, v))
+        let size = x.hypot(y);
+        (self.within(size) == size).then(|| Point::new(u, v))
     }
 
     /// The direction (x, y, 1) that comes to lie at a pixel; `None` where there is none.
@@ -49,11 +50,11 @@ impl Lens {
     pub fn direction(&self, pixel: Point) -> Option<[f64; 2]> {
         let [fx, fy] = self.focal_px;
         let wanted = [(pixel.x - self.centre_px.x) / fx, (pixel.y - self.centre_px.y) / fy];
-        let furthest = self.furthest();
         let within = |[x, y]: [f64; 2]| {
             let r = x.hypot(y);
+            let most = self.within(r);
             // from beyond where distortion turns back, Newton's method would find the wrong branch
-            let share = if r > furthest { furthest / r } else { 1.0 };
+            let share = if r > most { most / r } else { 1.0 };
             [x * share, y * share]
         };
         let mut at = within(wanted);
@@ -82,21 +83,17 @@ impl Lens {
         ([u.value, v.value], [u.by, v.by])
     }
 
-    /// Size of direction up to which a larger one lies further out, at most 80° off the axis.
-    fn furthest(&self) -> f64 {
+    /// A size of direction, or the one from which on larger ones lie no further out, if that is less; at most 80° off the axis.
+    fn within(&self, size: f64) -> f64 {
         const MOST: f64 = 5.67;
+        const STEP: f64 = MOST / 400.0;
         let [k1, k2, k3] = self.radial;
         let slope = |r2: f64| 1.0 + r2 * (3.0 * k1 + r2 * (5.0 * k2 + r2 * 7.0 * k3));
         // the slope's first zero: it is a cubic in r², so that steps of a hundredth of what matters miss none that lasts
-        let steps = (1..=400).map(|i| MOST * f64::from(i) / 400.0);
-        let mut last = 0.0;
-        for r in steps {
-            if slope(r * r) <= 0.0 {
-                return last;
-            }
-            last = r;
-        }
-        MOST
+        let size = size.min(MOST);
+        let steps = (size / STEP) as usize;
+        let turned = (1..=steps).map(|i| STEP * i as f64).find(|r| slope(r * r) <= 0.0);
+        turned.map_or(size, |r| r - STEP)
     }
 
     /// As the surveys count them.

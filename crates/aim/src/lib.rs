@@ -10,6 +10,7 @@
 //!
 //! Every conversion between two of them is done here and nowhere else. The crate knows no images and no time.
 
+mod align;
 mod board;
 mod camera;
 mod dual;
@@ -22,6 +23,7 @@ mod placement;
 mod pose;
 mod survey;
 
+pub use align::{AlignError, Aligned, Alignment, AlignmentBelief, SeenSpot, align};
 pub use board::Board;
 pub use camera::{Camera, CameraPose, Uncertain};
 pub use head::{AimError, HeadGeometry, JointPath, SpotMotion};

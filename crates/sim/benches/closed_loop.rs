@@ -10,7 +10,7 @@ use tracelight_aim::HeadPose;
 use tracelight_control::Controller;
 use tracelight_plant::JointState;
 use tracelight_rig::{Command, PanTilt, Rig, Sensed};
-use tracelight_sim::{RigConfig, SimulatedRig};
+use tracelight_sim::{RigConfig, Simulated, SimulatedRig};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
 use tracelight_trajectory::{DarkMove, LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
 

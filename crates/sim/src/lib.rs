@@ -15,6 +15,7 @@ mod lead_lag;
 mod linear;
 mod presets;
 mod replay;
+mod room;
 mod run;
 mod score;
 mod spread;
@@ -31,7 +32,8 @@ pub use config::{
 pub use diagram::{Diagram, ScopeTick};
 pub use laws::{Compensator, HandTuned, LawName, ObserverName};
 pub use replay::replay;
-pub use run::{Feeder, Run, SimulatedRig, Tick, run, run_segments};
+pub use room::Room;
+pub use run::{Feeder, Run, Simulated, SimulatedRig, Tick, run, run_segments};
 pub use score::{Tracking, score};
 pub use spread::Spread;
 pub use step::{

@@ -62,7 +62,7 @@ impl Run {
 
 /// A controller with a simulated head, in this process.
 ///
-/// [`Rig`] on the host's side; the truth is on [`step`](Self::step).
+/// [`Rig`] on the host's side; the truth is on [`Simulated::step`].
 #[derive(Clone, Debug)]
 pub struct SimulatedRig {
     controller: Controller,
@@ -73,6 +73,7 @@ pub struct SimulatedRig {
     model: HeadGeometry,
     truth: HeadGeometry,
     pose: HeadPose,
+    true_pose: HeadPose,
     /// Ticks beyond a plan after which a run is given up.
     patience_ticks: usize,
 }
@@ -92,19 +93,26 @@ impl SimulatedRig {
             model: config.model.geometry,
             truth: config.truth.model.geometry,
             pose,
+            true_pose: pose,
             patience_ticks: PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize,
         }
     }
 
-    /// One tick of the closed loop, with the truth.
-    pub fn step(&mut self) -> Tick {
+    /// The same, truly standing elsewhere than is believed.
+    #[must_use]
+    pub const fn standing(mut self, true_pose: HeadPose) -> Self {
+        self.true_pose = true_pose;
+        self
+    }
+
+    fn tick(&mut self) -> Tick {
         let telemetry = self.controller.tick(&mut self.state, &self.sensed);
         let asked = telemetry.setpoint.map(|s| f64::from(s.position_rad));
         let tick = Tick {
             telemetry,
             angle_rad: self.plant.angle_rad(),
             rate_rad_s: self.plant.rate_rad_s(),
-            spot: self.truth.spot(&self.pose, self.plant.beam_rad()),
+            spot: self.truth.spot(&self.true_pose, self.plant.beam_rad()),
             asked: self.model.spot(&self.pose, asked),
             light: self.plant.light(),
         };
@@ -131,6 +139,25 @@ impl SimulatedRig {
             Trouble::StampGarbled(j) => self.lines[j].garbled = true,
             Trouble::LaserStuck => self.plant.stick_laser(),
         }
+    }
+}
+
+/// A rig of which more is known than its controller tells.
+pub trait Simulated: Rig {
+    /// One tick of the closed loop, with the truth.
+    fn step(&mut self) -> Tick;
+
+    /// Ticks beyond a plan after which a run is given up.
+    fn patience_ticks(&self) -> usize;
+}
+
+impl Simulated for SimulatedRig {
+    fn step(&mut self) -> Tick {
+        self.tick()
+    }
+
+    fn patience_ticks(&self) -> usize {
+        self.patience_ticks
     }
 }
 
@@ -174,28 +201,28 @@ impl<'a> Feeder<'a> {
 }
 
 /// Runs a plan on a simulated rig from power-up to rest. `watch` sees every tick as it happens and may stop the run.
-pub fn run(
-    rig: &mut SimulatedRig,
+pub fn run<R: Simulated>(
+    rig: &mut R,
     plan: &Plan,
     dry: bool,
-    watch: impl FnMut(&mut SimulatedRig, &Tick) -> ControlFlow<()>,
+    watch: impl FnMut(&mut R, &Tick) -> ControlFlow<()>,
 ) -> Run {
     run_segments(rig, &plan.segments, dry, watch)
 }
 
 /// The same for segments that come from no plan.
-pub fn run_segments(
-    rig: &mut SimulatedRig,
+pub fn run_segments<R: Simulated>(
+    rig: &mut R,
     segments: &[Segment],
     dry: bool,
-    mut watch: impl FnMut(&mut SimulatedRig, &Tick) -> ControlFlow<()>,
+    mut watch: impl FnMut(&mut R, &Tick) -> ControlFlow<()>,
 ) -> Run {
     let mut feeder = Feeder::new(segments, dry);
     let planned = segments.last().map_or(0, |segment| segment.end_tick() as usize + 1);
     let mut ticks = Vec::with_capacity(planned);
     let mut aftermath = AFTERMATH_TICKS;
     let armed = rig.send(Command::Arm).is_ok();
-    while armed && ticks.len() < planned + rig.patience_ticks {
+    while armed && ticks.len() < planned + rig.patience_ticks() {
         let alive = rig.send(Command::KeepAlive).is_ok();
         debug_assert!(alive, "only segments wait");
         feeder.feed(rig);

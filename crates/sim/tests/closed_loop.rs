@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 use shapes::{POSE, SPEED_M_S, circle, line, lit_ticks, off_mm, plan_at, plan_of, star, trace};
 use tracelight_rig::{Fault, Joint, PanTilt, Phase};
-use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Trouble, run};
+use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, run};
 use tracelight_stroke::Point;
 use tracelight_trajectory::{LitSpeed, Plan};
 

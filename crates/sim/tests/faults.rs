@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 
 use shapes::{POSE, circle, lit_ticks, off_mm, plan_of};
 use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, Rig, Segment};
-use tracelight_sim::{RigConfig, SimulatedRig, Tick, Trouble, run};
+use tracelight_sim::{RigConfig, Simulated, SimulatedRig, Tick, Trouble, run};
 use tracelight_trajectory::Plan;
 
 const MOMENTS: u64 = 100;

@@ -1,6 +1,8 @@
 use std::fmt::Display;
 use std::process::ExitCode;
 
+use tracelight_rig::Fault;
+
 /// How a command that did not succeed ends the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Status {
@@ -52,6 +54,16 @@ impl Failure {
             code: "interrupted",
             message: "interrupted: the laser is dark, the log is closed".into(),
         }
+    }
+
+    /// The rig latched a fault.
+    pub(crate) fn fault(fault: Fault) -> Self {
+        let message = format!(
+            "the laser darkened and the run stopped: {} ({})",
+            fault.code(),
+            crate::output::fault_words(fault)
+        );
+        Self { status: Status::Fault, code: fault.code(), message }
     }
 
     /// The process's exit status.

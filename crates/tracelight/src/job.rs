@@ -11,7 +11,7 @@ use tracelight_trajectory::Plan;
 
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
-use crate::failure::{Failure, Status};
+use crate::failure::Failure;
 use crate::output::{self, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing};
 use crate::picture;
 use crate::progress::Progress;
@@ -283,12 +283,7 @@ fn write_rig(args: &TraceArgs, dir: &Path, laps: &Laps) -> Result<(), Failure> {
 /// Whether the last lap ended as it should.
 fn ending(run: &Run, stop: &Stop) -> Option<Failure> {
     if let Some(fault) = run.fault() {
-        let message = format!(
-            "the laser darkened and the run stopped: {} ({})",
-            fault.code(),
-            output::fault_words(fault)
-        );
-        return Some(Failure { status: Status::Fault, code: fault.code(), message });
+        return Some(Failure::fault(fault));
     }
     if stop.is_wanted() {
         return Some(Failure::interrupted());

@@ -82,4 +82,11 @@ impl CameraConfig {
             delay_s: [0.03, 0.13],
         }
     }
+
+    /// The report's camera: a USB one of 2006, with few pixels, large and noisy.
+    pub fn report() -> Self {
+        let webcam = Self::webcam();
+        let sensor = Sensor { full_well: 20_000.0, read_noise: 30.0, ..webcam.sensor };
+        Self { blur_px: 0.6, light: [1.0, 0.7], sensor, ..webcam }
+    }
 }

@@ -30,12 +30,15 @@ impl Electrons {
         let curve: Vec<u8> = (0..=CURVE)
             .map(|k| (255.0 * (k as f64 / CURVE as f64).powf(sensor.gamma)).round() as u8)
             .collect();
-        let level = |share: f32| curve[(share.clamp(0.0, 1.0) * CURVE as f32).round() as usize];
+        // what is cast rounds down
+        let level = |share: f32| curve[(share.clamp(0.0, 1.0) * CURVE as f32 + 0.5) as usize];
         if sensor.bayer {
-            let mosaic: Vec<f32> =
-                light.iter().enumerate().map(|(i, pixel)| pixel[colour(i % width, i / width)]).collect();
+            let mut mosaic = Vec::with_capacity(width * height);
+            for (y, row) in light.chunks_exact(width).enumerate() {
+                mosaic.extend(row.iter().enumerate().map(|(x, pixel)| pixel[colour(x, y)]));
+            }
             let noisy = self.noisy(sensor, mosaic);
-            return demosaiced(&noisy, width, height).iter().flatten().map(|&v| level(v)).collect();
+            return demosaiced(&noisy, width, height, level);
         }
         let all = self.noisy(sensor, light.iter().flatten().copied().collect());
         all.iter().map(|&v| level(v)).collect()
@@ -61,37 +64,37 @@ const fn colour(x: usize, y: usize) -> usize {
     x % 2 + y % 2
 }
 
-/// All colours of each pixel: those it does not see are the means of neighbours that do.
-fn demosaiced(mosaic: &[f32], width: usize, height: usize) -> Vec<[f32; 3]> {
-    let mirror = |v: isize, n: usize| {
-        let n = n as isize;
-        (if v < 0 {
-            -v
-        } else if v >= n {
-            2 * n - 2 - v
-        } else {
-            v
-        }) as usize
-    };
-    let mut all = Vec::with_capacity(mosaic.len());
+/// All colours of each pixel, in levels: those it does not see are the means of neighbours that do.
+fn demosaiced(mosaic: &[f32], width: usize, height: usize, level: impl Fn(f32) -> u8) -> Vec<u8> {
+    let mut all = Vec::with_capacity(3 * mosaic.len());
     for y in 0..height {
-        let rows = [-1, 0, 1].map(|d| &mosaic[mirror(y as isize + d, height) * width..][..width]);
+        let [above, own, below] = [mirrored(y, height, true), y, mirrored(y, height, false)]
+            .map(|row| &mosaic[row * width..][..width]);
         for x in 0..width {
-            let columns = [mirror(x as isize - 1, width), x, mirror(x as isize + 1, width)];
-            let at = |row: usize, column: usize| rows[row][columns[column]];
-            let own = at(1, 1);
-            let beside = 0.5 * (at(1, 0) + at(1, 2));
-            let above = 0.5 * (at(0, 1) + at(2, 1));
-            let corners = 0.25 * (at(0, 0) + at(0, 2) + at(2, 0) + at(2, 2));
-            all.push(match (x % 2, y % 2) {
-                (0, 0) => [own, 0.5 * (beside + above), corners],
-                (1, 1) => [corners, 0.5 * (beside + above), own],
-                (1, 0) => [beside, own, above],
-                _ => [above, own, beside],
-            });
+            let (left, right) = (mirrored(x, width, true), mirrored(x, width, false));
+            let beside = 0.5 * (own[left] + own[right]);
+            let upright = 0.5 * (above[x] + below[x]);
+            let corners = 0.25 * (above[left] + above[right] + below[left] + below[right]);
+            let colours = match (x % 2, y % 2) {
+                (0, 0) => [own[x], 0.5 * (beside + upright), corners],
+                (1, 1) => [corners, 0.5 * (beside + upright), own[x]],
+                (1, 0) => [beside, own[x], upright],
+                _ => [upright, own[x], beside],
+            };
+            all.extend(colours.map(&level));
         }
     }
     all
+}
+
+/// The place before or after one; beyond the border its mirror image.
+const fn mirrored(at: usize, size: usize, before: bool) -> usize {
+    match (before, at) {
+        (true, 0) => 1,
+        (true, _) => at - 1,
+        (false, _) if at + 1 == size => size - 2,
+        (false, _) => at + 1,
+    }
 }
 
 /// The normal distribution's quantile: Newton's method on its distribution, from a logistic one's.
@@ -130,14 +133,12 @@ mod tests {
     }
 
     #[test]
-    fn a_grey_wall_is_grey_through_the_mosaic_but_for_its_borders() {
-        for found in demosaiced(&vec![0.3; 12 * 8], 12, 8) {
-            assert!(found.iter().all(|v| (v - 0.3).abs() < 1e-6));
-        }
-        // a red one stays red
+    fn a_grey_wall_is_grey_through_the_mosaic_and_a_red_one_red() {
+        let level = |v: f32| (100.0 * v + 0.5) as u8;
+        assert!(demosaiced(&[0.3; 12 * 8], 12, 8, level).iter().all(|&v| v == 30));
         let mosaic: Vec<f32> = (0..96).map(|i| f32::from(u8::from(colour(i % 12, i / 12) == 0))).collect();
-        for found in demosaiced(&mosaic, 12, 8) {
-            assert_eq!(found, [1.0, 0.0, 0.0]);
+        for found in demosaiced(&mosaic, 12, 8, level).chunks_exact(3) {
+            assert_eq!(found, [100, 0, 0]);
         }
     }
 

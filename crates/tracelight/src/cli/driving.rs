@@ -85,6 +85,12 @@ pub(crate) struct Driving {
 }
 
 impl Driving {
+    /// The head stands elsewhere than was told.
+    pub(crate) fn stand(&mut self, pose: HeadPose) {
+        self.pose = pose;
+        self.machine = self.rig.machine(pose);
+    }
+
     /// What the user should know about a plan: wishes the motors do not fulfil, and a speed it never reaches.
     pub(crate) fn remarks(&self, plan: &Plan) -> Vec<String> {
         let wishes = self.machine.impossible_wishes(WORKING_TILT_RAD);

@@ -5,6 +5,7 @@ pub(crate) mod choosing;
 mod completions;
 pub(crate) mod driving;
 mod explain;
+pub(crate) mod eyes;
 mod lab;
 pub(crate) mod laws;
 pub(crate) mod placing;
@@ -94,7 +95,7 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Trace(args) => (args.voice, trace::run(args, stop)),
         Command::Strokes(args) => (args.voice, strokes::run(args, stop)),
         Command::Plan(args) => (args.voice, plan::run(args, stop)),
-        Command::Calibrate(args) => (args.voice(), calibrate::run(args)),
+        Command::Calibrate(args) => (args.voice(), calibrate::run(args, stop)),
         Command::Lab(args) => (args.voice(), lab::run(args, stop)),
         Command::Rigs(args) => (args.voice, rigs::run(args)),
         Command::Explain(args) => (args.voice, explain::run(args)),

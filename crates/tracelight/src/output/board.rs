@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 use tracelight_aim::Board;
+use tracelight_stroke::Point;
 use tracelight_vision::tag_cells;
 
 /// Length of the bar by which a print is checked, m.
@@ -19,6 +20,11 @@ pub(crate) struct Paper {
 impl Paper {
     pub(crate) const A4: Self = Self { width_mm: 210.0, height_mm: 297.0 };
     pub(crate) const LETTER: Self = Self { width_mm: 215.9, height_mm: 279.4 };
+
+    /// Width and height, m.
+    pub(crate) const fn size_m(&self) -> (f64, f64) {
+        (1e-3 * self.width_mm, 1e-3 * self.height_mm)
+    }
 }
 
 /// From the paper's upper edge to the markers, mm: printers leave 5 mm, and white must be about markers.
@@ -122,6 +128,41 @@ pub(crate) fn page_svg(board: &Board, page: u16, paper: Paper) -> String {
         _ = writeln!(svg, "<text x=\"{left:.2}\" y=\"{base:.2}\" font-size=\"{size}\">{text}</text>");
     }
     svg + "</svg>\n"
+}
+
+/// A page as grey levels, pixels of `pixel_m` a side: how many there are in a row, row by row from the upper left, and where the middle of
+/// its markers is, px. Text is left out.
+pub(crate) fn page_raster(board: &Board, page: u16, paper: Paper, pixel_m: f64) -> (usize, Vec<u8>, Point) {
+    /// Light that paper and ink throw back, shares.
+    const PAPER: f64 = 0.9;
+    const INK: f64 = 0.05;
+    let page = Page::of(board, page, paper);
+    let pixel_mm = 1e3 * pixel_m;
+    let count = |mm: f64| (mm / pixel_mm).round() as usize;
+    let (width, height) = (count(paper.width_mm), count(paper.height_mm));
+    let mut ink = vec![0.0_f64; width * height];
+    for Fill { patches, black } in &page.fills {
+        for patch in patches {
+            // how much of each row and each column it covers
+            let covers = |from_mm: f64, length_mm: f64, n: usize| {
+                let (from, to) = (from_mm / pixel_mm, (from_mm + length_mm) / pixel_mm);
+                let cells = (from.max(0.0) as usize)..(to.ceil().max(0.0) as usize).min(n);
+                cells.map(move |i| (i, (to.min(i as f64 + 1.0) - from.max(i as f64)).max(0.0)))
+            };
+            for (y, down) in covers(patch.top, patch.height, height) {
+                for (x, across) in covers(patch.left, patch.width, width) {
+                    ink[y * width + x] += if *black { across * down } else { -across * down };
+                }
+            }
+        }
+    }
+    let level = |ink: f64| {
+        let light = PAPER + (INK - PAPER) * ink.clamp(0.0, 1.0);
+        (255.0 * light.powf(1.0 / 2.2)).round() as u8
+    };
+    let rows_mm = 1e3 * (f64::from(board.rows - 1) * board.pitch_m + board.tag_m);
+    let middle = Point::new(paper.width_mm / 2.0 / pixel_mm, (TOP_MM + rows_mm / 2.0) / pixel_mm);
+    (width, ink.into_iter().map(level).collect(), middle)
 }
 
 /// Points of a printer a millimetre.

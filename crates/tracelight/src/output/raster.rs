@@ -35,6 +35,11 @@ impl Raster {
         self.height
     }
 
+    /// Its bytes, three a pixel.
+    pub(crate) fn rgb(&self) -> &[u8] {
+        &self.rgb
+    }
+
     /// The pixel at column `x`, row `y`, both clamped into the picture.
     pub(super) fn pixel(&self, x: i64, y: i64) -> [u8; 3] {
         let x = x.clamp(0, i64::from(self.width) - 1) as usize;
@@ -88,7 +93,7 @@ impl Raster {
     }
 
     /// The picture as a JPEG file of `quality` 1 to 100.
-    pub(super) fn jpeg(&self, quality: u8) -> Result<Vec<u8>, ImageError> {
+    pub(crate) fn jpeg(&self, quality: u8) -> Result<Vec<u8>, ImageError> {
         let mut bytes = Vec::new();
         let encoder = JpegEncoder::new_with_quality(&mut bytes, quality);
         encoder.write_image(&self.rgb, self.width, self.height, ExtendedColorType::Rgb8)?;

@@ -180,7 +180,7 @@ macro_rules! drive {
 }
 
 /// What belongs to no joint.
-const WHOLE: [Key<Model>; 8] = [
+const WHOLE: [Key<Model>; 11] = [
     real("gravity", GRAVITY, (0.0, 30.0), "along −z", (|m| &mut m.bodies.gravity_m_s2) as Real),
     Key {
         path: "encoder.counts_per_rev",
@@ -207,6 +207,19 @@ const WHOLE: [Key<Model>; 8] = [
     ),
     real("laser.left", LENGTHS, (-0.5, 0.5), "the same, to the left", |m| &mut m.geometry.laser_offset_m[1]),
     real("laser.up", LENGTHS, (-0.5, 0.5), "the same, upwards", |m| &mut m.geometry.laser_offset_m[2]),
+    real("laser.points_left", ANGLES, (-0.2, 0.2), "how far the beam points left of straight ahead", |m| {
+        &mut m.geometry.beam_off_rad[0]
+    }),
+    real("laser.points_down", ANGLES, (-0.2, 0.2), "the same, downwards", |m| {
+        &mut m.geometry.beam_off_rad[1]
+    }),
+    real(
+        "axis_skew",
+        ANGLES,
+        (-0.2, 0.2),
+        "how much higher the tilt axis's left end is than square to pan's",
+        |m| &mut m.geometry.axis_skew_rad,
+    ),
 ];
 
 /// Keys of `[model]` and of `[truth]`.

@@ -20,7 +20,7 @@ pub(crate) fn machine() -> Machine {
         jerk_limit_rad_s3: PanTilt::new(f64::INFINITY, f64::INFINITY),
         geometry: HeadGeometry {
             laser_offset_m: [0.02, 0.005, 0.01],
-            range_rad: PanTilt::new((-3.1, 3.1), (-1.6, 1.6)),
+            ..HeadGeometry::centred(PanTilt::new((-3.1, 3.1), (-1.6, 1.6)))
         },
         pose: HeadPose::square_on(0.9144),
         relay_on_ticks: 5,

@@ -1,14 +1,12 @@
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_aim::{
-    Board, Doubt, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyedCamera, survey,
-};
+use tracelight_aim::{Board, Doubt, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
 use tracelight_stroke::Point;
-use tracelight_vision::{Tag, TagPlace, find_tags};
 
 use crate::camera_file::{self, CameraFile, Wall};
 use crate::cli::placing::positive_length;
 use crate::cli::{Answer, Voice, write_file};
+use crate::eye::wall::markers;
 use crate::failure::Failure;
 use crate::output::BAR_M;
 use crate::picture::{self, Source};
@@ -258,19 +256,7 @@ fn found(path: &str) -> Result<(Vec<SeenTag>, (usize, usize)), Failure> {
         return Err(Failure::usage("not-a-picture", message));
     };
     let size = (pixels.grey.width(), pixels.grey.height());
-    Ok((find_tags(&pixels.grey).iter().map(seen).collect(), size))
-}
-
-/// A marker in cells as one in sides.
-fn seen(tag: &Tag) -> SeenTag {
-    let place = |place: &TagPlace| SeenPlace {
-        on_tag: (place.cell.to_vec2() / 8.0).to_point(),
-        upright: place.upright,
-        black_behind: place.black_behind,
-        at: place.at,
-    };
-    let places = tag.places.iter().map(place).collect();
-    SeenTag { id: tag.id, corners: tag.corners, places, deviation_px: tag.deviation_px }
+    Ok((markers(&pixels.grey), size))
 }
 
 fn stands(camera: &SurveyedCamera) -> String {

@@ -1,3 +1,4 @@
+mod head;
 mod markers;
 mod ruler;
 mod sheet;
@@ -6,6 +7,7 @@ use clap::{Args, Subcommand};
 
 use crate::cli::{Answer, Voice};
 use crate::failure::Failure;
+use crate::stop::Stop;
 
 /// Find out what a camera's pixels mean on the target
 #[derive(Args, Debug)]
@@ -17,6 +19,7 @@ pub(crate) struct CalibrateArgs {
 impl CalibrateArgs {
     pub(crate) const fn voice(&self) -> Voice {
         match &self.action {
+            CalibrateAction::Head(args) => args.voice,
             CalibrateAction::Lens(args) => args.voice,
             CalibrateAction::Markers(args) => args.voice,
             CalibrateAction::Ruler(args) => args.voice,
@@ -28,13 +31,15 @@ impl CalibrateArgs {
 #[derive(Subcommand, Debug)]
 enum CalibrateAction {
     Sheet(sheet::SheetArgs),
+    Head(Box<head::HeadArgs>),
     Markers(markers::MarkersArgs),
     Lens(markers::LensArgs),
     Ruler(ruler::RulerArgs),
 }
 
-pub(crate) fn run(args: &CalibrateArgs) -> Result<Answer, Failure> {
+pub(crate) fn run(args: &CalibrateArgs, stop: &Stop) -> Result<Answer, Failure> {
     match &args.action {
+        CalibrateAction::Head(args) => head::run(args, stop),
         CalibrateAction::Lens(args) => markers::lens(args),
         CalibrateAction::Markers(args) => markers::run(args),
         CalibrateAction::Ruler(args) => ruler::run(args),

@@ -1,0 +1,128 @@
+use std::ops::ControlFlow;
+
+use clap::Args;
+use serde_json::json;
+use tracelight_aim::HeadPose;
+use tracelight_rig::PanTilt;
+use tracelight_stroke::Point;
+
+use crate::cli::driving::DrivingArgs;
+use crate::cli::eyes::EyeArgs;
+use crate::cli::placing::PlacementArgs;
+use crate::cli::{Answer, Voice, write_file};
+use crate::eye::head::{FoundHead, find_head, in_front};
+use crate::eye::room::{Furnished, RoomRequest};
+use crate::eye::wall::{SeenWall, see_wall};
+use crate::failure::Failure;
+use crate::head_file::{self, HeadFile};
+use crate::progress::Progress;
+use crate::stop::Stop;
+
+/// Where the head stands and points, from dots that it draws and a camera sees
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight calibrate head --camera sim -o head.toml\n\n\
+                  Put the head up by eye in front of the middle of the wall, pages of markers on the wall in the camera's sight. The laser draws 25 dots, small circles; \
+                  the camera sees where they are, and pose, laser offset, axes, encoder zeroes and how late images come are those that fit them best. \
+                  With --camera sim the room is simulated: head and camera stand millimetres and degrees from where they should, and how far the result truly is off is told.")]
+pub(super) struct HeadArgs {
+    #[command(flatten)]
+    eye: EyeArgs,
+    #[command(flatten)]
+    placement: PlacementArgs,
+    #[command(flatten)]
+    driving: DrivingArgs,
+    /// File for what is found
+    #[arg(short, long, value_name = "FILE.toml", default_value = "head.toml")]
+    output: String,
+    /// What a simulated room is like is drawn from this seed
+    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
+    seed: u64,
+    #[command(flatten)]
+    pub(super) voice: Voice,
+}
+
+pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
+    let progress = Progress::new(args.voice.quiet);
+    let mut driving = args.driving.resolve()?;
+    let request = RoomRequest {
+        picture: args.eye.picture()?,
+        placement: &args.placement,
+        eye: args.eye.sim_camera,
+        seed: args.seed,
+    };
+    progress.stage("wall", 1);
+    let room = Furnished::new(&request, &driving)?;
+    let mut rig = room.with_rig(&driving);
+    let wall = see_wall(&mut rig, args.eye.lens()?.as_ref())?;
+    stop.check()?;
+    driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
+    progress.stage("dots", 1);
+    let mut tick = |_: u32| if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let found = find_head(&mut rig, &wall.camera.camera, &driving, &mut tick)?;
+    stop.check()?;
+    let page =
+        wall.survey.pages.first().ok_or_else(|| Failure::failed("internal", "a survey without a page"))?;
+    write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, page))?)?;
+    let pose = found.aligned.alignment.pose;
+    let truth = room.true_error_m(page, &found.aligned.alignment.geometry, &pose);
+    Ok(Answer::new(text(&wall, &found, truth, &args.output), json(&found, truth).to_string()))
+}
+
+fn text(wall: &SeenWall, found: &FoundHead, truth: Option<(f64, f64)>, output: &str) -> String {
+    let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = found.aligned.alignment.pose;
+    let built = &found.aligned.alignment.geometry;
+    let [_, left, up] = built.laser_offset_m.map(|m| 1e3 * m);
+    let middle = wall.camera.camera.lens.size_px.map(|n| n as f64 / 2.0);
+    let likely = wall.camera.camera.target(Point::new(middle[0], middle[1])).and_then(|at| {
+        let angle = built.angles(&found.aligned.alignment.pose, at).ok()?;
+        found.aligned.deviation_m(angle)
+    });
+    let likely = likely
+        .map_or_else(String::new, |m| format!("; in the middle the spot is known to {:.2} mm", 1e3 * m));
+    let simulated = truth.map_or_else(String::new, |(rms, most)| {
+        format!("\ntruth:    the spot is off by {:.3} mm rms, {:.3} mm at most over the picture (known because the room is simulated)", 1e3 * rms, 1e3 * most)
+    });
+    format!(
+        "wall:     {} markers, {:.3} px off, rms\n\
+         stands:   {distance_m:.4} m before the wall, ({right_m:.4}, {up_m:.4}) m from the middle of the first page; turned {:.2}° left, {:.2}° down, {:.2}° about itself\n\
+         built:    the beam leaves {left:.1} mm left of and {up:.1} mm above the axes, points {:.2}° left and {:.2}° down; the axes are {:.2}° from square\n\
+         images:   taken {:.1} ms later than stamped, the last row {:.1} ms later still\n\
+         dots:     {}, seen in {} images, in {} not; {:.3} mm off, rms{likely}{simulated}\n\
+         file:     {output}",
+        wall.markers,
+        wall.survey.rms_px,
+        yaw_rad.to_degrees(),
+        pitch_rad.to_degrees(),
+        roll_rad.to_degrees(),
+        built.beam_off_rad[0].to_degrees(),
+        built.beam_off_rad[1].to_degrees(),
+        built.axis_skew_rad.to_degrees(),
+        1e3 * found.timing.late_s,
+        1e3 * found.timing.readout_s,
+        found.dots,
+        found.aligned.spots,
+        found.lost,
+        1e3 * found.aligned.rms_m,
+    )
+}
+
+fn json(found: &FoundHead, truth: Option<(f64, f64)>) -> serde_json::Value {
+    let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = found.aligned.alignment.pose;
+    let built = &found.aligned.alignment.geometry;
+    let at_zero = found.aligned.deviation_m(PanTilt::default()).map(|m| 1e3 * m);
+    let mut object = json!({
+        "pose": {"distance_m": distance_m, "right_m": right_m, "up_m": up_m, "yaw_rad": yaw_rad, "pitch_rad": pitch_rad, "roll_rad": roll_rad},
+        "built": {"laser_offset_m": built.laser_offset_m, "beam_off_rad": built.beam_off_rad, "axis_skew_rad": built.axis_skew_rad},
+        "images": {"late_s": found.timing.late_s, "readout_s": found.timing.readout_s, "exposure_s": found.exposure_s},
+        "dots": found.dots,
+        "spots": found.aligned.spots,
+        "outliers": found.aligned.outliers,
+        "lost": found.lost,
+        "rms_mm": 1e3 * found.aligned.rms_m,
+        "straight_ahead_mm": at_zero,
+    });
+    if let Some((rms, most)) = truth {
+        object["truth_mm"] = json!({"rms": 1e3 * rms, "max": 1e3 * most});
+    }
+    object
+}

@@ -1,0 +1,146 @@
+//! The head found from dots that it draws and a camera sees.
+//!
+//! A dot is a circle of a few millimetres, drawn slowly: at rest an encoder says no more than between which two of its edges a joint is.
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, align};
+use tracelight_sim::{Simulated, run_segments};
+use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, Vec2};
+use tracelight_trajectory::{Plan, PlanRequest, plan};
+
+use super::Eye;
+use super::spots::{History, SpotWatch, Timing};
+use super::wall::take;
+use crate::cli::driving::Driving;
+use crate::failure::Failure;
+
+/// Radius of a dot, m: three and a half counts of the report's encoders at 3 ft.
+const DOT_M: f64 = 0.005;
+/// Speed at which it is drawn, m/s.
+const DOT_SPEED_M_S: f64 = 0.1;
+/// Dots across, and as many down.
+const ACROSS: usize = 5;
+/// Share of the image, from its border, in which none are drawn.
+const BORDER: f64 = 0.08;
+/// A first guess of an exposure in which the spot is not full, s.
+const SPOT_EXPOSURE_S: f64 = 2e-3;
+/// Ticks after a job in which its last images arrive.
+const AFTERMATH_TICKS: u32 = 300;
+/// How often lateness is estimated anew: each time what is left is a tenth or less.
+const ROUNDS: usize = 4;
+
+/// A head that was found.
+pub(crate) struct FoundHead {
+    pub(crate) aligned: Aligned,
+    pub(crate) timing: Timing,
+    /// Exposure in which the spot is not full, s.
+    pub(crate) exposure_s: f64,
+    /// Dots that were drawn.
+    pub(crate) dots: usize,
+    /// Images in which the spot was looked for in vain.
+    pub(crate) lost: usize,
+}
+
+/// Places for the dots: evenly over what the camera sees, as far as the head reaches.
+pub(crate) fn dots(camera: &Camera, driving: &Driving) -> Vec<Point> {
+    let [width, height] = camera.lens.size_px.map(|n| n as f64);
+    let place = |k: usize| BORDER + (1.0 - 2.0 * BORDER) * k as f64 / (ACROSS - 1) as f64;
+    let at = |row: usize, k: usize| {
+        // each other row back
+        let column = if row.is_multiple_of(2) { k } else { ACROSS - 1 - k };
+        Point::new(width * place(column), height * place(row))
+    };
+    let all = (0..ACROSS * ACROSS).map(|k| at(k / ACROSS, k % ACROSS));
+    let reached = |at: &Point| {
+        let edges =
+            [Vec2::new(DOT_M, 0.0), Vec2::new(-DOT_M, 0.0), Vec2::new(0.0, DOT_M), Vec2::new(0.0, -DOT_M)];
+        edges.iter().all(|edge| driving.machine.angles(*at + *edge).is_ok())
+    };
+    all.filter_map(|pixel| camera.target(pixel)).filter(reached).collect()
+}
+
+/// The plan that draws dots in their order.
+fn plan_of(dots: &[Point], driving: &Driving) -> Result<Plan, Failure> {
+    let circle = |at: &Point| {
+        let mut path = Path::new(*at + Vec2::new(DOT_M, 0.0));
+        (0..2).for_each(|_| path.push(Element::Arc { centre: *at, sweep: PI }));
+        path.close();
+        Stroke::new(path)
+    };
+    let drawing = Drawing { strokes: dots.iter().map(circle).collect() };
+    let request = PlanRequest { speed_m_s: DOT_SPEED_M_S, ..driving.request };
+    Ok(plan(&drawing, &driving.machine, &request)?)
+}
+
+/// Has the head draw dots, watches them, and finds the head. The rig is fresh from power-up; afterwards it rests in the dark at the last dot.
+pub(crate) fn find_head<R: Simulated + Eye>(
+    rig: &mut R,
+    camera: &Camera,
+    driving: &Driving,
+    tick: &mut dyn FnMut(u32) -> ControlFlow<()>,
+) -> Result<FoundHead, Failure> {
+    let places = dots(camera, driving);
+    let plan = plan_of(&places, driving)?;
+    let belief = AlignmentBelief::by_eye(driving.machine.geometry, driving.pose);
+    let mut watch = SpotWatch::new(*camera, SPOT_EXPOSURE_S);
+    // an image without the spot, to begin with
+    take(rig, watch.exposure_s)?;
+    let mut history = History::default();
+    let run = run_segments(rig, &plan.segments, false, |rig, now| {
+        history.push(&now.telemetry);
+        look(rig, &mut watch, &history, &belief.alignment);
+        tick(now.telemetry.plan_tick)
+    });
+    for _ in 0..AFTERMATH_TICKS {
+        history.push(&rig.step().telemetry);
+        look(rig, &mut watch, &history, &belief.alignment);
+    }
+    if let Some(fault) = run.fault() {
+        return Err(Failure::fault(fault));
+    }
+    let aligned = aligned(&belief, &mut watch, &history).map_err(|e| not_found(&e, &watch, places.len()))?;
+    Ok(FoundHead {
+        aligned,
+        timing: watch.timing,
+        exposure_s: watch.exposure_s,
+        dots: places.len(),
+        lost: watch.lost,
+    })
+}
+
+fn look<R: Eye>(rig: &mut R, watch: &mut SpotWatch, history: &History, head: &Alignment) {
+    while let Some(shot) = rig.shot() {
+        watch.see(&shot, history, head);
+        rig.expose(watch.exposure_s);
+    }
+}
+
+fn aligned(
+    belief: &AlignmentBelief,
+    watch: &mut SpotWatch,
+    history: &History,
+) -> Result<Aligned, AlignError> {
+    let mut found = align(belief, &watch.spots(history))?;
+    for _ in 1..ROUNDS {
+        watch.timing.late_s += found.alignment.late_s;
+        watch.timing.readout_s += found.alignment.readout_s;
+        found = align(belief, &watch.spots(history))?;
+    }
+    Ok(found)
+}
+
+fn not_found(error: &AlignError, watch: &SpotWatch, dots: usize) -> Failure {
+    let why = watch.last_lost.map_or_else(String::new, |why| {
+        format!("; {} times it was looked for in vain, last: {why}", watch.lost)
+    });
+    Failure::failed("head-not-found", format!("of {dots} dots: {error}{why}"))
+}
+
+/// Where a head probably stands that was put up in front of the middle of what the camera shows: square-on, as far away as told.
+pub(crate) fn in_front(camera: &Camera, distance_m: f64) -> HeadPose {
+    let [width, height] = camera.lens.size_px.map(|n| n as f64);
+    let middle = camera.target(Point::new(width / 2.0, height / 2.0)).unwrap_or(Point::ORIGIN);
+    HeadPose { right_m: middle.x, up_m: middle.y, ..HeadPose::square_on(distance_m) }
+}

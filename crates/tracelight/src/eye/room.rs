@@ -1,0 +1,298 @@
+//! A simulated head and camera in front of a simulated wall, with a picture and pages of markers on it.
+//!
+//! Nothing is where it was said to be: the head stands and points a few millimetres and degrees off, the camera is turned, its lens is
+//! like no other, the pages hang askew. What the seed draws, nobody is told.
+
+use clap::ValueEnum;
+use tracelight_aim::{
+    Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens, PlacedPage, Placement, SizeRequest,
+};
+use tracelight_plant::{CameraConfig, Poster, SimulatedCamera, Wall};
+use tracelight_sim::{Room, SimulatedRig};
+use tracelight_stroke::{Affine, Point, Vec2};
+
+use super::{Eye, Shot};
+use crate::cli::driving::Driving;
+use crate::cli::placing::PlacementArgs;
+use crate::failure::Failure;
+use crate::output::{Paper, page_raster};
+use crate::picture::{self, Source};
+
+/// Which camera is simulated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SimulatedEye {
+    /// 1280 × 720 px, as far away as it takes to see all
+    #[default]
+    Webcam,
+    /// The 2006 report's: 320 × 240 px, 3 ft away
+    Report,
+}
+
+/// What is asked of a simulated room.
+pub(crate) struct RoomRequest<'a> {
+    /// A picture on the wall.
+    pub(crate) picture: Option<&'a str>,
+    pub(crate) placement: &'a PlacementArgs,
+    pub(crate) eye: SimulatedEye,
+    pub(crate) seed: u64,
+}
+
+/// A room, and the truth about it, for scoring.
+pub(crate) struct Furnished {
+    /// The wall as the camera sees it. A rig can be put before it as often as one likes.
+    eye: SimulatedCamera,
+    /// How the head is truly built,
+    geometry: HeadGeometry,
+    /// and where it stands, wall frame.
+    pose: HeadPose,
+    /// The wall's frame, whose origin is the picture's centre, from that of each page.
+    wall_from_pages: Vec<Affine>,
+    /// Where on the wall there may be something to draw: the picture's size, m.
+    size_m: (f64, f64),
+    /// The picture's own pixels on the wall.
+    pub(crate) wall_from_picture: Option<Affine>,
+    seed: u64,
+}
+
+/// Wall and paper, as shares of the light that falls on them.
+const PLAIN: [f32; 3] = [0.62, 0.61, 0.59];
+/// Pixels of a printed page, m.
+const PRINT_M: f64 = 0.25e-3;
+/// Between the picture and a page, m.
+const GAP_M: f64 = 0.02;
+/// How far off the mounting is that somebody did by eye: 5 mm and 2°.
+const OFF_M: f64 = 0.005;
+const OFF_RAD: f64 = 0.035;
+/// Width of a picture that is asked for in no size, m: 24 in; and in front of the report's camera, which sees less, 8 in.
+const WIDTHS_M: [f64; 2] = [0.6096, 0.2032];
+
+impl Furnished {
+    /// Hangs picture and pages, puts up camera and head.
+    pub(crate) fn new(request: &RoomRequest<'_>, driving: &Driving) -> Result<Self, Failure> {
+        let mut dice = Dice(oorandom::Rand64::new(u128::from(request.seed)));
+        let hung = request.picture.map(|path| hang(path, request)).transpose()?;
+        let bare = (WIDTHS_M[request.eye as usize], 0.7 * WIDTHS_M[request.eye as usize]);
+        let size_m = hung.as_ref().map_or(bare, |hung| hung.size_m);
+        let (board, pages) = pages(request.eye, size_m, &mut dice);
+        let mut posters = Vec::new();
+        for (number, place) in pages.iter().enumerate() {
+            posters.push(page(&board, number as u16, *place)?);
+        }
+        let wall_from_picture = hung.as_ref().map(|hung| hung.wall_from_picture);
+        let mut all: Vec<Poster> = hung.map(|hung| hung.poster).into_iter().collect();
+        all.append(&mut posters);
+        let camera = camera(request.eye, &pages, &mut dice)?;
+        let config = match request.eye {
+            SimulatedEye::Webcam => CameraConfig::webcam(),
+            SimulatedEye::Report => CameraConfig::report(),
+        };
+        let eye = SimulatedCamera::new(&config, &camera, &Wall { plain: PLAIN, posters: all }, request.seed);
+        let (geometry, pose) = mounted(driving, &mut dice);
+        Ok(Self {
+            eye,
+            geometry,
+            pose,
+            wall_from_pages: pages,
+            size_m,
+            wall_from_picture,
+            seed: request.seed,
+        })
+    }
+
+    /// The room with a rig just powered up, its controller told what `driving` believes.
+    pub(crate) fn with_rig(&self, driving: &Driving) -> Room {
+        let mut rig = driving.rig.clone();
+        rig.truth.model.geometry = self.geometry;
+        let rig = SimulatedRig::new(&rig, driving.pose, self.seed).standing(self.pose);
+        Room::new(rig, self.eye.clone(), self.seed)
+    }
+
+    /// The wall's frame from that of a page.
+    pub(crate) fn wall_from(&self, page: &PlacedPage) -> Option<Affine> {
+        self.wall_from_pages.get(usize::from(page.page)).copied()
+    }
+
+    /// Root mean square and most of how far the spot truly is from where a head so believed, in a page's frame, would put it, over the
+    /// picture's place, m.
+    pub(crate) fn true_error_m(
+        &self,
+        page: &PlacedPage,
+        geometry: &HeadGeometry,
+        pose: &HeadPose,
+    ) -> Option<(f64, f64)> {
+        const STEPS: i32 = 10;
+        let page_from_wall = self.wall_from(page)?.inverse();
+        let (mut sum, mut most, mut count) = (0.0, 0.0_f64, 0.0);
+        for k in 0..=STEPS * STEPS {
+            let share = |k: i32| f64::from(k) / f64::from(STEPS) - 0.5;
+            let on_wall =
+                Point::new(self.size_m.0 * share(k % (STEPS + 1)), self.size_m.1 * share(k / (STEPS + 1)));
+            let angle = geometry.angles(pose, page_from_wall * on_wall).ok()?;
+            let off = self.geometry.spot(&self.pose, angle)?.distance(on_wall);
+            (sum, most, count) = (sum + off * off, most.max(off), count + 1.0);
+        }
+        Some(((sum / count).sqrt(), most))
+    }
+}
+
+/// Draws from a seed.
+struct Dice(oorandom::Rand64);
+
+impl Dice {
+    /// Between − and + `size`.
+    fn within(&mut self, size: f64) -> f64 {
+        size * (2.0 * self.0.rand_float() - 1.0)
+    }
+}
+
+/// A picture on the wall.
+struct Hung {
+    poster: Poster,
+    size_m: (f64, f64),
+    wall_from_picture: Affine,
+}
+
+fn hang(path: &str, request: &RoomRequest<'_>) -> Result<Hung, Failure> {
+    let Source::Pixels(pixels) = picture::read(path)? else {
+        let message = format!(
+            "{path} is a drawing; a simulated wall wants a picture with pixels: PNG, JPEG, WebP, BMP, GIF, PNM or TIFF"
+        );
+        return Err(Failure::usage("not-a-picture", message));
+    };
+    let (width, height) = (pixels.colour.width() as usize, pixels.colour.height() as usize);
+    let args = request.placement;
+    let size = match (args.width, args.height) {
+        (Some(width), _) => SizeRequest::Width(width.0),
+        (None, Some(height)) => SizeRequest::Height(height.0),
+        (None, None) => SizeRequest::Width(WIDTHS_M[request.eye as usize]),
+    };
+    let upright = Placement::new(size, width as f64, height as f64);
+    let placed = Placement {
+        offset_m: args.offset.map_or(Vec2::ZERO, |o| (o.0.0, o.1.0).into()),
+        rotation_rad: args.rotate.map_or(0.0, |a| a.0),
+        flip: args.flip,
+        ..upright
+    };
+    let wall_from_picture = placed.target_from_pixel(width as f64);
+    let painted = painted(pixels.colour.rgb());
+    let poster = Poster::new(width, &painted, wall_from_picture)
+        .ok_or_else(|| Failure::failed("internal", "a picture that can not be hung"))?;
+    Ok(Hung { poster, size_m: (placed.width_m, placed.height_m), wall_from_picture })
+}
+
+/// A picture painted on the wall: its white is the wall's.
+fn painted(rgb: &[u8]) -> Vec<[u8; 3]> {
+    let on_wall: [[u8; 256]; 3] = PLAIN.map(|plain| {
+        std::array::from_fn(|level| {
+            let light = (level as f32 / 255.0).powf(2.2) * plain;
+            (255.0 * light.powf(1.0 / 2.2)).round() as u8
+        })
+    });
+    rgb.chunks_exact(3).map(|p| std::array::from_fn(|c| on_wall[c][usize::from(p[c])])).collect()
+}
+
+/// Which board hangs there, and where its pages' middles are: two on either side, or one where there is no height for two.
+fn pages(eye: SimulatedEye, (width, height): (f64, f64), dice: &mut Dice) -> (Board, Vec<Affine>) {
+    let board = if eye == SimulatedEye::Webcam { Board::FINE } else { Board::COARSE };
+    let (page_width, page_height) = Paper::A4.size_m();
+    let x = width / 2.0 + GAP_M + page_width / 2.0;
+    let y = if eye == SimulatedEye::Webcam {
+        ((height - page_height) / 2.0).max((page_height + GAP_M) / 2.0)
+    } else {
+        0.0
+    };
+    let corners: &[(f64, f64)] =
+        if y > 0.0 { &[(-x, y), (x, y), (x, -y), (-x, -y)] } else { &[(-x, 0.0), (x, 0.0)] };
+    let place = |&(x, y): &(f64, f64)| {
+        let lean = Affine::rotate(dice.within(0.025));
+        lean.then_translate(Vec2::new(
+            x * (1.0 + 0.01 * (1.0 + dice.within(1.0))),
+            y * (1.0 + 0.01 * (1.0 + dice.within(1.0))),
+        ))
+    };
+    (board, corners.iter().map(place).collect())
+}
+
+fn page(board: &Board, number: u16, place: Affine) -> Result<Poster, Failure> {
+    let (width, levels, middle) = page_raster(board, number, Paper::A4, PRINT_M);
+    let rgb: Vec<[u8; 3]> = levels.iter().map(|&v| [v; 3]).collect();
+    let page_from_pixel = Affine::translate(-middle.to_vec2()).then_scale_non_uniform(PRINT_M, -PRINT_M);
+    Poster::new(width, &rgb, place * page_from_pixel)
+        .ok_or_else(|| Failure::failed("internal", "a page without paper"))
+}
+
+/// A camera that sees the pages: a webcam from as far away as it takes, from a side.
+fn camera(eye: SimulatedEye, pages: &[Affine], dice: &mut Dice) -> Result<Camera, Failure> {
+    let (size, focal, pan_rad) = match eye {
+        SimulatedEye::Webcam => ((1280, 720), 1000.0, dice.within(0.35)),
+        SimulatedEye::Report => ((320, 240), 432.0, dice.within(0.05)),
+    };
+    let (width, height) = (size.0 as f64, size.1 as f64);
+    let lens = Lens {
+        centre_px: Point::new(
+            width / 2.0 + dice.within(0.012 * width),
+            height / 2.0 + dice.within(0.012 * width),
+        ),
+        radial: [-0.1, 0.0, 0.0],
+        ..Lens::ideal(size.0, size.1, focal * (1.0 + dice.within(0.02)))
+    };
+    let (tilt_rad, roll_rad) = (dice.within(0.1), dice.within(0.03));
+    let from = |distance_m: f64| {
+        let at = [
+            distance_m * pan_rad.sin() * tilt_rad.cos(),
+            distance_m * tilt_rad.sin(),
+            distance_m * pan_rad.cos() * tilt_rad.cos(),
+        ];
+        let pose = CameraPose::looking_at(at, [0.0; 3])?.moved([0.0, 0.0, roll_rad], [0.0; 3]);
+        Some(Camera { lens, pose })
+    };
+    let sees_all = |camera: &Camera| {
+        let reach = Vec2::new(0.095, 0.125);
+        pages.iter().all(|page| {
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            corners.iter().all(|&(x, y)| {
+                let corner = *page * Point::new(x * reach.x, y * reach.y);
+                camera.pixel(corner).is_some_and(|pixel| camera.is_in_sight(pixel))
+            })
+        })
+    };
+    // the report's stands 3 ft away
+    let distances = match eye {
+        SimulatedEye::Webcam => (0..60).map(|k| 0.5 * 1.05_f64.powi(k)).collect(),
+        SimulatedEye::Report => vec![0.9144],
+    };
+    let found = distances.into_iter().filter_map(from).find(sees_all);
+    let beyond = "the simulated camera does not see all of the wall that is wanted; make the picture smaller (--width)";
+    found.ok_or_else(|| Failure::failed("beyond-sight", beyond))
+}
+
+/// How the head truly is: off in each of its numbers, as somebody's who put it together and up by eye.
+fn mounted(driving: &Driving, dice: &mut Dice) -> (HeadGeometry, HeadPose) {
+    let mut geometry = driving.rig.truth.model.geometry;
+    geometry.laser_offset_m.iter_mut().for_each(|offset| *offset += dice.within(OFF_M));
+    geometry.beam_off_rad.iter_mut().for_each(|off| *off += dice.within(OFF_RAD / 4.0));
+    geometry.axis_skew_rad += dice.within(OFF_RAD / 8.0);
+    let pose = HeadPose {
+        distance_m: driving.pose.distance_m + dice.within(OFF_M),
+        right_m: dice.within(OFF_M),
+        up_m: dice.within(OFF_M),
+        yaw_rad: dice.within(OFF_RAD),
+        pitch_rad: dice.within(OFF_RAD),
+        roll_rad: dice.within(OFF_RAD),
+    };
+    (geometry, pose)
+}
+
+impl Eye for Room {
+    fn expose(&mut self, exposure_s: f64) {
+        Room::expose(self, exposure_s);
+    }
+
+    fn longest_s(&self) -> f64 {
+        self.eye_config().period_s
+    }
+
+    fn shot(&mut self) -> Option<Shot> {
+        self.image().map(|image| Shot::from(image).through_jpeg())
+    }
+}

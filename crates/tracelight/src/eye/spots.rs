@@ -1,0 +1,259 @@
+//! The laser's spot in shots, held against what the encoders said when they were taken.
+
+use tracelight_aim::{Alignment, Camera, SeenSpot};
+use tracelight_rig::{PanTilt, TICK_F64_S, Telemetry};
+use tracelight_stroke::Point;
+use tracelight_vision::{Grey, SpotLost, SpotWindow, find_spot};
+
+use super::Shot;
+
+/// What the joints did and whether the laser was driven, tick by tick.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct History {
+    ticks: Vec<(PanTilt<f64>, bool)>,
+    /// The tick of the first.
+    first: u32,
+}
+
+/// Whether light left the head throughout a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Light {
+    /// All the time.
+    Lit,
+    /// At no time.
+    Dark,
+    /// Now and then, or nobody knows.
+    Mixed,
+}
+
+/// After a change of the gate nobody knows for so long whether there is light, s: longer than any relay takes.
+const SWITCHES_S: f64 = 0.012;
+
+impl History {
+    /// One more tick; they come in order.
+    pub(crate) fn push(&mut self, telemetry: &Telemetry) {
+        if self.ticks.is_empty() {
+            self.first = telemetry.tick;
+        }
+        self.ticks.push((telemetry.position_rad.map(f64::from), telemetry.actuation.gate));
+    }
+
+    fn between(&self, from_s: f64, until_s: f64) -> Option<&[(PanTilt<f64>, bool)]> {
+        let place = |time_s: f64| time_s / TICK_F64_S - f64::from(self.first);
+        let (from, until) = (place(from_s).floor(), place(until_s).ceil());
+        let inside = from >= 0.0 && until < self.ticks.len() as f64 && until >= from;
+        inside.then(|| &self.ticks[from as usize..=until as usize])
+    }
+
+    /// Whether there was light from one time to another.
+    pub(crate) fn light(&self, from_s: f64, until_s: f64) -> Light {
+        let Some(ticks) = self.between(from_s - SWITCHES_S, until_s) else { return Light::Mixed };
+        let lit = ticks.iter().filter(|(_, gate)| *gate).count();
+        match lit {
+            0 => Light::Dark,
+            all if all == ticks.len() => Light::Lit,
+            _ => Light::Mixed,
+        }
+    }
+
+    /// Where the joints were at a time, rad, between ticks evenly.
+    fn at(&self, time_s: f64) -> Option<PanTilt<f64>> {
+        let place = time_s / TICK_F64_S - f64::from(self.first);
+        let before = place.floor();
+        if before < 0.0 || before as usize + 1 >= self.ticks.len() {
+            return None;
+        }
+        let (share, before) = (place - before, before as usize);
+        let (a, b) = (self.ticks[before].0, self.ticks[before + 1].0);
+        Some(PanTilt::from_fn(|j| a[j] + share * (b[j] - a[j])))
+    }
+
+    /// Where the joints were in the mean from one time to another, rad, and how fast they were, rad/s.
+    fn mean(&self, from_s: f64, until_s: f64) -> Option<(PanTilt<f64>, PanTilt<f64>)> {
+        const PIECES: usize = 16;
+        let length_s = until_s - from_s;
+        let mut sum = PanTilt::new(0.0, 0.0);
+        for k in 0..PIECES {
+            let at = self.at(from_s + length_s * (k as f64 + 0.5) / PIECES as f64)?;
+            sum = PanTilt::from_fn(|j| sum[j] + at[j] / PIECES as f64);
+        }
+        // over 4 ms at least: the encoders' opinion of a speed is rough
+        let about_s = (0.5 * length_s).max(2e-3);
+        let middle_s = 0.5 * (from_s + until_s);
+        let (a, b) = (self.at(middle_s - about_s)?, self.at(middle_s + about_s)?);
+        Some((sum, PanTilt::from_fn(|j| (b[j] - a[j]) / (2.0 * about_s))))
+    }
+}
+
+/// How a camera's stamps relate to the rig's ticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Timing {
+    /// By how much later than stamped an image is taken, s.
+    pub(crate) late_s: f64,
+    /// How much later its last row is than its first, s.
+    pub(crate) readout_s: f64,
+}
+
+impl Timing {
+    /// Of a usual webcam that nobody has looked at.
+    pub(crate) const USUAL: Self = Self { late_s: 0.0, readout_s: 0.02 };
+    /// How far off that may be, s.
+    const UNSURE_S: f64 = 0.03;
+
+    /// When a row is exposed: from and until.
+    fn row_s(&self, shot: &Stamp, down: f64) -> (f64, f64) {
+        let from_s = shot.stamp_s + self.late_s + down * self.readout_s;
+        (from_s, from_s + shot.exposure_s)
+    }
+}
+
+/// When an image was taken, as it is stamped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stamp {
+    stamp_s: f64,
+    exposure_s: f64,
+}
+
+/// A spot in an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sighting {
+    when: Stamp,
+    /// How far down the image: 0 in the first row, 1 in the last.
+    down: f64,
+    /// Where on the target, m.
+    at: Point,
+    /// Standard deviation of either coordinate, m.
+    deviation_m: f64,
+}
+
+impl Sighting {
+    /// The same with where the encoders had the joints then; `None` if they were not watched then.
+    pub(crate) fn spot(&self, history: &History, timing: &Timing) -> Option<SeenSpot> {
+        let (from_s, until_s) = timing.row_s(&self.when, self.down);
+        let (angle_rad, rate_rad_s) = history.mean(from_s, until_s)?;
+        Some(SeenSpot { angle_rad, rate_rad_s, down: self.down, at: self.at, deviation_m: self.deviation_m })
+    }
+}
+
+/// Looks for the spot in one shot after the other.
+pub(crate) struct SpotWatch {
+    camera: Camera,
+    pub(crate) timing: Timing,
+    /// The latest image without a spot, and how long it was exposed.
+    dark: Option<(Grey, f64)>,
+    /// How far from where it was believed the last spot was seen, px.
+    last_off_px: Option<tracelight_stroke::Vec2>,
+    /// How long the next images should be exposed, s.
+    pub(crate) exposure_s: f64,
+    pub(crate) sightings: Vec<Sighting>,
+    /// Shots in which a spot was awaited and not found, and why the last one was not.
+    pub(crate) lost: usize,
+    pub(crate) last_lost: Option<SpotLost>,
+}
+
+/// What was made of a shot.
+pub(crate) enum Made {
+    /// It shows no spot, and none was awaited.
+    Dark,
+    /// The laser was switched while it was taken, or nothing is there to compare it with.
+    Unused,
+    /// The spot.
+    Seen(Sighting),
+    /// It should show one.
+    Lost,
+}
+
+/// What speckle and one pixel in four that sees red leave a spot uncertain by, px.
+const LEAST_DEVIATION_PX: f64 = 0.1;
+/// Half of the side of the window in which a spot is looked for: where the last one told where, and before.
+const NEAR_PX: usize = 40;
+const FAR_PX: usize = 200;
+
+impl SpotWatch {
+    /// For a camera, with a first guess of a short exposure, s.
+    pub(crate) const fn new(camera: Camera, exposure_s: f64) -> Self {
+        Self {
+            camera,
+            timing: Timing::USUAL,
+            dark: None,
+            last_off_px: None,
+            exposure_s,
+            sightings: Vec::new(),
+            lost: 0,
+            last_lost: None,
+        }
+    }
+
+    /// Looks at a shot. `head` is what is believed of where the beam goes.
+    pub(crate) fn see(&mut self, shot: &Shot, history: &History, head: &Alignment) -> Made {
+        let when = Stamp { stamp_s: shot.stamp_s, exposure_s: shot.exposure_s };
+        let (from_s, _) = self.timing.row_s(&when, 0.0);
+        let (_, until_s) = self.timing.row_s(&when, 1.0);
+        let Ok(red) = shot.red() else { return Made::Unused };
+        match history.light(from_s - Timing::UNSURE_S, until_s + Timing::UNSURE_S) {
+            Light::Mixed => Made::Unused,
+            Light::Dark => {
+                self.dark = Some((red, shot.exposure_s));
+                Made::Dark
+            }
+            Light::Lit => self.look(&red, when, history, head),
+        }
+    }
+
+    fn look(&mut self, red: &Grey, when: Stamp, history: &History, head: &Alignment) -> Made {
+        let Some((dark, exposure_s)) = &self.dark else { return Made::Unused };
+        if (exposure_s - when.exposure_s).abs() > 0.01 * when.exposure_s {
+            return Made::Unused;
+        }
+        let Some(awaited) = self.awaited(when, history, head) else { return Made::Unused };
+        let window = match self.last_off_px {
+            Some(off) => SpotWindow { centre: awaited + off, half_px: NEAR_PX },
+            None => SpotWindow { centre: awaited, half_px: FAR_PX },
+        };
+        let spot = match find_spot(red, dark, &window) {
+            Ok(spot) => spot,
+            Err(why) => {
+                if matches!(why, SpotLost::Dim { .. }) {
+                    self.exposure_s *= 1.2;
+                }
+                self.last_off_px = None;
+                (self.lost, self.last_lost) = (self.lost + 1, Some(why));
+                return Made::Lost;
+            }
+        };
+        if spot.clipped > 0 {
+            self.exposure_s *= 0.7;
+        }
+        self.last_off_px = Some(spot.at - awaited);
+        let Some((at, scale)) = self.camera.target(spot.at).and_then(|at| {
+            let [x, y] = self.camera.pixels_per_metre(at)?;
+            Some((at, x.cross(y).abs().sqrt()))
+        }) else {
+            return Made::Unused;
+        };
+        let deviation_m = spot.deviation_px.hypot(LEAST_DEVIATION_PX) / scale;
+        let sighting = Sighting { when, down: spot.at.y / red.height() as f64, at, deviation_m };
+        self.sightings.push(sighting);
+        Made::Seen(sighting)
+    }
+
+    /// Where the spot should be in an image, px.
+    fn awaited(&self, when: Stamp, history: &History, head: &Alignment) -> Option<Point> {
+        let mut down = 0.5;
+        let mut at = None;
+        // which row it is on tells when that was exposed
+        for _ in 0..3 {
+            let (from_s, until_s) = self.timing.row_s(&when, down);
+            let angle = history.at(0.5 * (from_s + until_s))?;
+            let pixel = self.camera.pixel(head.geometry.spot(&head.pose, angle)?)?;
+            down = (pixel.y / self.camera.lens.size_px[1] as f64).clamp(0.0, 1.0);
+            at = Some(pixel);
+        }
+        at
+    }
+
+    /// The spots seen so far with where the encoders had the joints.
+    pub(crate) fn spots(&self, history: &History) -> Vec<SeenSpot> {
+        self.sightings.iter().filter_map(|sighting| sighting.spot(history, &self.timing)).collect()
+    }
+}
