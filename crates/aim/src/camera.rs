@@ -1,5 +1,5 @@
 use nalgebra::{Matrix2, Matrix3, Rotation3, Vector3};
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::{Affine, Point, Vec2};
 
 use crate::jet::Scalar;
 use crate::lens::{LENS_PARAMETERS, Lens, distorted};
@@ -45,6 +45,14 @@ impl CameraPose {
     /// Where the camera is, target frame, m.
     pub fn place_m(&self) -> [f64; 3] {
         (-(self.rotation.inverse() * self.translation_m)).into()
+    }
+
+    /// The same in another frame on the same plane, of which `frame_from_target` is a turn and a shift.
+    #[must_use]
+    pub fn in_frame(&self, frame_from_target: Affine) -> Self {
+        let [a, b, _, _, x, y] = frame_from_target.as_coeffs();
+        let rotation = self.rotation * Rotation3::from_axis_angle(&Vector3::z_axis(), -b.atan2(a));
+        Self { rotation, translation_m: self.translation_m - rotation * Vector3::new(x, y, 0.0) }
     }
 
     /// Turned about the camera's own axes by rad, then moved along them by m.
@@ -230,6 +238,15 @@ mod tests {
             let slope = (moved(h) - moved(-h)) / (2.0 * h);
             let off = (slope - Vec2::new(by_camera[0][k], by_camera[1][k])).hypot();
             assert!(off < 1e-4 * (1.0 + slope.hypot()), "{k}: {off}");
+        }
+    }
+
+    #[test]
+    fn in_another_frame_a_place_is_seen_at_the_same_pixel() {
+        let frame = Affine::rotate(0.7).then_translate(Vec2::new(0.3, -0.1));
+        let moved = Camera { pose: skew().pose.in_frame(frame), ..skew() };
+        for at in [Point::ORIGIN, Point::new(0.2, -0.1)] {
+            assert!(skew().pixel(at).unwrap().distance(moved.pixel(frame * at).unwrap()) < 1e-9);
         }
     }
 

@@ -1,3 +1,5 @@
+use tracelight_stroke::{Affine, Point};
+
 /// Where the head stands in front of the target: target_from_head.
 ///
 /// With the three angles zero the head is square-on: its +x (the beam at zero) meets the target at right angles.
@@ -23,6 +25,27 @@ impl HeadPose {
         Self { distance_m, right_m: 0.0, up_m: 0.0, yaw_rad: 0.0, pitch_rad: 0.0, roll_rad: 0.0 }
     }
 
+    /// The same in another frame on the same plane, of which `frame_from_target` is a turn and a shift.
+    #[must_use]
+    pub fn in_frame(&self, frame_from_target: Affine) -> Self {
+        let [a, b, _, _, _, _] = frame_from_target.as_coeffs();
+        let (sin, cos) = b.atan2(a).sin_cos();
+        let [x, y, z] = self.rotation();
+        let turned = |k: usize| (cos * x[k] - sin * y[k], sin * x[k] + cos * y[k]);
+        // by the square-on exchange of axes back to Rz(yaw) Ry(pitch) Rx(roll), whose first column and last row have the angles
+        let (right, up) = turned(0);
+        let last = [1, 2].map(|k| turned(k).1);
+        let foot = frame_from_target * Point::new(self.right_m, self.up_m);
+        Self {
+            distance_m: self.distance_m,
+            right_m: foot.x,
+            up_m: foot.y,
+            yaw_rad: (-right).atan2(-z[0]),
+            pitch_rad: -up.clamp(-1.0, 1.0).asin(),
+            roll_rad: last[0].atan2(last[1]),
+        }
+    }
+
     /// Rotation part of target_from_head, by rows: the square-on exchange of axes (x_t = −y_h, y_t = z_h,
     /// z_t = −x_h) after Rz(yaw) Ry(pitch) Rx(roll).
     pub(crate) fn rotation(&self) -> [[f64; 3]; 3] {
@@ -38,5 +61,37 @@ impl HeadPose {
     /// Translation part of target_from_head: the head's origin in the target frame, m.
     pub(crate) const fn translation(&self) -> [f64; 3] {
         [self.right_m, self.up_m, self.distance_m]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::HeadGeometry;
+    use tracelight_rig::PanTilt;
+    use tracelight_stroke::Vec2;
+
+    #[test]
+    fn in_another_frame_the_spot_is_at_the_same_place() {
+        let pose = HeadPose {
+            distance_m: 1.1,
+            right_m: 0.1,
+            up_m: -0.05,
+            yaw_rad: 0.2,
+            pitch_rad: -0.1,
+            roll_rad: 0.3,
+        };
+        let head = HeadGeometry {
+            laser_offset_m: [0.02, 0.01, -0.03],
+            ..HeadGeometry::centred(PanTilt::new((-2.0, 2.0), (-1.5, 1.5)))
+        };
+        for turn_rad in [0.0, 0.3, -1.6, 3.0] {
+            let frame = Affine::rotate(turn_rad).then_translate(Vec2::new(0.4, -0.2));
+            let moved = pose.in_frame(frame);
+            for angle in [PanTilt::new(0.0, 0.0), PanTilt::new(0.3, -0.2), PanTilt::new(-0.4, 0.25)] {
+                let [a, b] = [frame * head.spot(&pose, angle).unwrap(), head.spot(&moved, angle).unwrap()];
+                assert!(a.distance(b) < 1e-12, "{turn_rad}: {a} {b}");
+            }
+        }
     }
 }

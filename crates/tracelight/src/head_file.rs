@@ -5,7 +5,6 @@ use tracelight_aim::{Alignment, HeadGeometry, HeadPose, PlacedPage};
 
 use crate::cli::driving::Driving;
 use crate::eye::head::FoundHead;
-use crate::eye::spots::Timing;
 use crate::failure::Failure;
 use crate::picture::read_bytes;
 
@@ -77,8 +76,6 @@ const BOARDS: [&str; 2] = ["fine", "coarse"];
 pub(crate) struct KnownHead {
     pub(crate) geometry: HeadGeometry,
     pub(crate) pose: HeadPose,
-    pub(crate) timing: Timing,
-    pub(crate) exposure_s: f64,
 }
 
 impl HeadFile {
@@ -119,4 +116,72 @@ pub(crate) fn write(file: &HeadFile) -> Result<String, Failure> {
     Ok(format!(
         "# Tracelight: a head in front of a wall. Lengths in m, angles in rad, times in s.\n\n{document}"
     ))
+}
+
+/// The head of a file, for a rig that is built as told otherwise.
+pub(crate) fn read(path: &str, driving: &Driving) -> Result<KnownHead, Failure> {
+    let wrong = |what: String| Failure::usage("head-file", format!("{path}: {what}"));
+    let bytes = read_bytes(path)?;
+    if bytes.len() > MOST_BYTES {
+        return Err(wrong(format!("{} bytes are no head file, which has at most {MOST_BYTES}", bytes.len())));
+    }
+    let text =
+        String::from_utf8(bytes).map_err(|_| wrong("not text; give a head file (.toml)".to_owned()))?;
+    let file: HeadFile = toml_edit::de::from_str(&text)
+        .map_err(|e| wrong(format!("no head file: {}", e.to_string().trim_end())))?;
+    if file.rig != driving.rig.name {
+        return Err(wrong(format!(
+            "it is of the rig {}, and this is {}: calibrate its head",
+            file.rig, driving.rig.name
+        )));
+    }
+    file.check().map_err(wrong)?;
+    Ok(file.known(&driving.rig.model.geometry))
+}
+
+impl HeadFile {
+    /// Refuses numbers that no head has.
+    fn check(&self) -> Result<(), String> {
+        let PoseTable { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = &self.pose;
+        let BuiltTable {
+            laser_offset_m: [forward, left, up],
+            beam_off_rad: [points_left, points_down],
+            axis_skew_rad,
+        } = &self.built;
+        let ImagesTable { late_s, readout_s, exposure_s } = &self.images;
+        let fields = [
+            ("pose.distance_m", distance_m, 0.01, 1e3),
+            ("pose.right_m", right_m, -1e3, 1e3),
+            ("pose.up_m", up_m, -1e3, 1e3),
+            ("pose.yaw_rad", yaw_rad, -3.2, 3.2),
+            ("pose.pitch_rad", pitch_rad, -1.6, 1.6),
+            ("pose.roll_rad", roll_rad, -3.2, 3.2),
+            ("built.laser_offset_m, forward", forward, -0.5, 0.5),
+            ("built.laser_offset_m, left", left, -0.5, 0.5),
+            ("built.laser_offset_m, up", up, -0.5, 0.5),
+            ("built.beam_off_rad, left", points_left, -0.5, 0.5),
+            ("built.beam_off_rad, down", points_down, -0.5, 0.5),
+            ("built.axis_skew_rad", axis_skew_rad, -0.5, 0.5),
+            ("images.late_s", late_s, -1.0, 1.0),
+            ("images.readout_s", readout_s, -1.0, 1.0),
+            ("images.exposure_s", exposure_s, 1e-6, 10.0),
+        ];
+        for (name, &value, least, most) in fields {
+            if !(least..=most).contains(&value) {
+                return Err(format!(
+                    "{name} is {value}, which is not between {least} and {most}; calibrate the head again"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn known(&self, told: &HeadGeometry) -> KnownHead {
+        let PoseTable { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = self.pose;
+        let BuiltTable { laser_offset_m, beam_off_rad, axis_skew_rad } = self.built;
+        KnownHead {
+            geometry: HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, range_rad: told.range_rad },
+            pose: HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
+        }
+    }
 }

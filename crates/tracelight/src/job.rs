@@ -1,5 +1,7 @@
 //! One job from picture to results: the stages in their order.
 
+mod seen;
+
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -20,6 +22,7 @@ use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::settings;
 use crate::sketch::{Placed, Sketch, place, sketch};
 use crate::stop::Stop;
+use seen::Seen;
 
 /// A job that ran to an end, its own or another.
 pub(crate) struct Outcome {
@@ -39,6 +42,8 @@ struct Prepared {
     /// Remarks for the user.
     notes: Vec<String>,
     plan_ms: f64,
+    /// What a camera saw.
+    seen: Option<Seen>,
 }
 
 /// Every lap that was run.
@@ -56,7 +61,7 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     let progress = Progress::new(args.voice.quiet);
     let prepared = prepare(args, &progress, stop)?;
     check_laps(args.laps, &prepared.schedule.plan)?;
-    let dir = args.out.clone().unwrap_or_else(|| default_dir(&args.picture));
+    let dir = args.out.clone().unwrap_or_else(|| default_dir(args.name()));
     std::fs::create_dir_all(&dir).map_err(|e| cannot_write(&dir, &e))?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
     let laps = run_laps(args, &prepared, &dir, &settings, (&progress, stop))?;
@@ -67,25 +72,49 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
 }
 
 fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepared, Failure> {
+    if args.eye.camera.is_some() {
+        return seen::prepare(args, progress, stop);
+    }
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
     progress.stage("strokes", 1);
-    let sketch = sketch(&args.picture, picture::read(&args.picture)?, &args.tracing, &args.placement)?;
+    let sketch = sketch(args.name(), picture::read(args.name())?, &args.tracing, &args.placement)?;
     stop.check()?;
-    progress.stage("plan", 1);
     let placed = place(&sketch, &args.placement);
+    planned(sketch, placed, driving, None, (progress, stop))
+}
+
+/// A drawing on the target, in order and in time.
+fn planned(
+    sketch: Sketch,
+    placed: Placed,
+    driving: Driving,
+    seen: Option<Seen>,
+    (progress, stop): (&Progress, &Stop),
+) -> Result<Prepared, Failure> {
+    progress.stage("plan", 1);
     let began = Instant::now();
     let schedule = schedule(&placed, &driving, OrderBy::default(), OrderEffort::default())?;
     let plan_ms = began.elapsed().as_secs_f64() * 1e3;
     stop.check()?;
     let notes: Vec<String> = sketch.notes().into_iter().chain(driving.remarks(&schedule.plan)).collect();
     notes.iter().for_each(|n| progress.say(&format!("note: {n}")));
-    Ok(Prepared { sketch, placed, driving, schedule, notes, plan_ms })
+    Ok(Prepared { sketch, placed, driving, schedule, notes, plan_ms, seen })
+}
+
+impl Prepared {
+    /// The head just powered up, believed to be this.
+    fn rig(&self, believed: &RigConfig, seed: u64) -> SimulatedRig {
+        match &self.seen {
+            Some(seen) => seen.room.rig(believed, self.driving.pose),
+            None => SimulatedRig::new(believed, self.driving.pose, seed),
+        }
+    }
 }
 
 /// `out/<the picture's stem>/`.
 fn default_dir(picture: &str) -> PathBuf {
-    let stem = Path::new(picture).file_stem().filter(|_| picture != "-");
+    let stem = Path::new(picture).file_stem().filter(|_| !["-", "sim", "sim:"].contains(&picture));
     Path::new("out").join(stem.unwrap_or_else(|| "picture".as_ref()))
 }
 
@@ -122,7 +151,7 @@ fn run_laps(
 ) -> Result<Laps, Failure> {
     let began = Instant::now();
     let plan = &prepared.schedule.plan;
-    let meta = LogMeta { picture_path: &args.picture, settings, seed: args.seed };
+    let meta = LogMeta { picture_path: args.name(), settings, seed: args.seed };
     let mut laps: Vec<Run> = Vec::new();
     let mut learned = Learned { rig: prepared.driving.rig.clone(), taken: false, notes: Vec::new() };
     let mut log = LogWriter::open(&dir.join("run.mcap"), &meta)?;
@@ -132,7 +161,7 @@ fn run_laps(
             learned = learn(&prepared.driving.rig, &laps);
         }
         progress.stage("run", plan.points.len() as u64);
-        let rig = SimulatedRig::new(&learned.rig, prepared.driving.pose, args.seed);
+        let rig = prepared.rig(&learned.rig, args.seed);
         laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
     }
     log.finish()?;
@@ -231,7 +260,7 @@ fn write(
     let tracking: Tracking = score(&schedule.plan, &laps.last, schedule.plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
     let job = Job {
-        picture_path: &args.picture,
+        picture_path: args.name(),
         picture: sketch
             .picture
             .as_ref()
@@ -261,6 +290,7 @@ fn write(
         },
         seed: args.seed,
         dry_run: args.dry_run,
+        eye: prepared.seen.as_ref().map(|seen| seen.after(args, &laps.last)).transpose()?,
     };
     Ok(output::write_all(dir, &job)?)
 }

@@ -7,6 +7,7 @@ use tracelight_formats::{Reading, svg};
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 use tracelight_vision::{Quality, VisionError};
 
+use crate::cli::choosing::ChoiceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::failure::Failure;
@@ -86,6 +87,18 @@ pub(crate) struct Placed {
 }
 
 impl Placed {
+    /// A drawing in target metres, of a sheet of that size in units of its own.
+    pub(crate) fn of(drawing: Drawing, (width, height): (f64, f64), target_from_sheet: Affine) -> Self {
+        let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
+        let unit_m = target_from_sheet.determinant().abs().sqrt();
+        Self {
+            drawing,
+            size_m: (width * unit_m, height * unit_m),
+            target_from_sheet,
+            corners_m: corners.map(|(u, v)| target_from_sheet * Point::new(u, v)),
+        }
+    }
+
     /// Its strokes as an SVG of true size.
     pub(crate) fn svg(&self, drawing: &Drawing) -> String {
         let Page { drawing, width_m, height_m } = self.page(drawing);
@@ -113,17 +126,29 @@ pub(crate) fn sketch(
     tracing: &TracingArgs,
     placement: &PlacementArgs,
 ) -> Result<Sketch, Failure> {
+    let scale = |size: (f64, f64), true_width_m: Option<f64>| metres_per_unit(size, true_width_m, placement);
+    sketch_at(name, source, tracing, &placement.choice, &scale)
+}
+
+/// The same of a sheet whose unit is so long on the target, by its size and its true width.
+pub(crate) fn sketch_at(
+    name: &str,
+    source: Source,
+    tracing: &TracingArgs,
+    choice: &ChoiceArgs,
+    metres_per_unit: &dyn Fn((f64, f64), Option<f64>) -> f64,
+) -> Result<Sketch, Failure> {
     let began = Instant::now();
     let mut sketch = match source {
         Source::Strokes(reading) => taken(reading),
-        Source::Pixels(pixels) => traced(name, pixels, tracing, placement)?,
+        Source::Pixels(pixels) => traced(name, pixels, tracing, metres_per_unit)?,
     };
-    sketch.drawing = placement.choice.of(name, sketch.drawing)?;
+    sketch.drawing = choice.of(name, sketch.drawing)?;
     let refused = |why: &str| Err(Failure::failed("no-strokes-found", format!("{name}: {why}")));
     if sketch.drawing.strokes.is_empty() {
         return refused("it has no strokes; give a picture with at least one line");
     }
-    let least = tracing.min_length.in_units(metres_per_unit(sketch.size, sketch.true_width_m, placement));
+    let least = tracing.min_length.in_units(metres_per_unit(sketch.size, sketch.true_width_m));
     if least > 0.0 {
         // a thousandth of the length asked for is as good as all of it
         sketch.drawing.strokes.retain(|stroke| stroke.path.length(1e-3 * least) >= least);
@@ -155,10 +180,10 @@ fn traced(
     name: &str,
     pixels: Pixels,
     tracing: &TracingArgs,
-    placement: &PlacementArgs,
+    metres_per_unit: &dyn Fn((f64, f64), Option<f64>) -> f64,
 ) -> Result<Sketch, Failure> {
     let size = (f64::from(pixels.colour.width()), f64::from(pixels.colour.height()));
-    let options = tracing.options(metres_per_unit(size, None, placement));
+    let options = tracing.options(metres_per_unit(size, None));
     let refused = |e: VisionError| match e {
         VisionError::Option { .. } => Failure::usage("usage", format!("{name}: {e}")),
         _ => Failure::failed("no-strokes-found", format!("{name}: {e}")),
@@ -198,12 +223,9 @@ pub(crate) fn place(sketch: &Sketch, args: &PlacementArgs) -> Placed {
         flip: args.flip,
         ..upright
     };
-    let target_from_sheet = placement.target_from_pixel(width);
-    let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
+    let drawing = placement.place(&sketch.drawing, width);
     Placed {
-        drawing: placement.place(&sketch.drawing, width),
         size_m: (placement.width_m, placement.height_m),
-        target_from_sheet,
-        corners_m: corners.map(|(u, v)| target_from_sheet * Point::new(u, v)),
+        ..Placed::of(drawing, sketch.size, placement.target_from_pixel(width))
     }
 }

@@ -23,6 +23,7 @@
 
 mod bridge;
 mod centreline;
+mod contrast;
 mod distance;
 mod error;
 mod fiducial;
@@ -56,6 +57,7 @@ mod sweep;
 mod thin;
 mod trace;
 
+pub use contrast::stands_out;
 pub use error::VisionError;
 pub use fiducial::{TAG_COUNT, Tag, TagPlace, find_tags, tag_cells};
 pub use grey::Grey;

@@ -48,7 +48,7 @@ fn kinks(traced: &Traced) -> Vec<f64> {
 
 fn check(name: &str, strokes: usize) {
     let traced = trace(&picture(name), &Options::default()).unwrap();
-    let Comparison { rms, max, coverage, precision, length_ratio } =
+    let Comparison { rms, max, coverage, precision, length_ratio, .. } =
         compare_polylines(&lines(&traced), &truth(name), 2.0).unwrap();
     let found = traced.strokes.strokes.len();
     let elements: usize = traced.strokes.strokes.iter().map(|s| s.path.elements().len()).sum();

@@ -11,8 +11,8 @@ use crate::failure::Failure;
 #[derive(Args, Clone, Debug)]
 pub(crate) struct EyeArgs {
     /// Camera: sim:PICTURE is a simulated one in front of a simulated wall with PICTURE on it, sim one without
-    #[arg(long, value_name = "SOURCE", default_value = "sim")]
-    pub(crate) camera: String,
+    #[arg(long, value_name = "SOURCE")]
+    pub(crate) camera: Option<String>,
     /// Which camera is simulated
     #[arg(long, value_enum, default_value_t)]
     pub(crate) sim_camera: SimulatedEye,
@@ -24,9 +24,9 @@ pub(crate) struct EyeArgs {
 impl EyeArgs {
     /// The picture on the simulated wall, if there is one.
     pub(crate) fn picture(&self) -> Result<Option<&str>, Failure> {
-        match self.camera.as_str() {
-            "sim" => Ok(None),
-            source => {
+        match self.camera.as_deref() {
+            None | Some("sim") => Ok(None),
+            Some(source) => {
                 source.strip_prefix("sim:").filter(|path| !path.is_empty()).map(Some).ok_or_else(|| {
                     let message =
                         format!("--camera {source} is no camera that is known; give sim, or sim:PICTURE");

@@ -7,17 +7,28 @@ use tracelight_vision::Mode;
 
 use crate::cli::Voice;
 use crate::cli::driving::DrivingArgs;
+use crate::cli::eyes::EyeArgs;
 use crate::cli::laws::LawArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 
 /// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
 #[derive(Args, Debug)]
-#[command(after_help = "Example: tracelight trace examples/house.png --width 24in --speed 1ft/s --open")]
+#[command(after_help = "Example: tracelight trace examples/house.png --width 24in --speed 1ft/s --open\n\
+                  What a camera sees: tracelight trace --camera sim:examples/house.png")]
 pub(crate) struct TraceArgs {
     /// PNG, JPEG, WebP, BMP, GIF, PNM, TIFF; or SVG, DXF, JSON, CSV with strokes to be taken as they are; - is
     /// standard input
-    pub(crate) picture: String,
+    #[arg(required_unless_present = "camera", conflicts_with = "camera")]
+    picture: Option<String>,
+    #[command(flatten)]
+    pub(crate) eye: EyeArgs,
+    /// The head as `calibrate head` has found it; without it the laser draws dots first, and the camera finds it
+    #[arg(long, value_name = "FILE.toml", requires = "camera")]
+    pub(crate) head: Option<String>,
+    /// Most images of the camera that are refused, because they show no markers or no figure, before it is given up
+    #[arg(long, value_name = "N", default_value_t = 5, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) retakes: u32,
     #[command(flatten)]
     pub(crate) tracing: TracingArgs,
     #[command(flatten)]
@@ -43,6 +54,13 @@ pub(crate) struct TraceArgs {
     pub(crate) open: bool,
     #[command(flatten)]
     pub(crate) voice: Voice,
+}
+
+impl TraceArgs {
+    /// The picture's name, or the camera's.
+    pub(crate) fn name(&self) -> &str {
+        self.picture.as_deref().or(self.eye.camera.as_deref()).unwrap_or_default()
+    }
 }
 
 /// How pixels become strokes.

@@ -2,7 +2,7 @@ use crate::cli::Answer;
 use crate::cli::request::TraceArgs;
 use crate::failure::Failure;
 use crate::job::{self, Outcome};
-use crate::output::{Summary, counted};
+use crate::output::{EyeFigures, Summary, counted};
 use crate::stop::Stop;
 
 pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
@@ -39,6 +39,9 @@ fn text(s: &Summary) -> String {
         ),
         false => "\nerror:  none to measure, nothing was lit".to_owned(),
     };
+    if let Some(eye) = &s.camera {
+        text += &seen_text(eye);
+    }
     let lost = s.run.lost_counts;
     if (lost.pan, lost.tilt) != (0, 0) {
         text += &format!(
@@ -50,6 +53,25 @@ fn text(s: &Summary) -> String {
         0 => {}
         1 => text += "\ndark:   once where light was planned; the report says when and why",
         n => text += &format!("\ndark:   {n} times where light was planned; the report says when and why"),
+    }
+    text
+}
+
+fn seen_text(eye: &EyeFigures) -> String {
+    let mut text = format!("\ncamera: {} markers, {:.3} px off, rms", eye.markers, eye.markers_rms_px);
+    if let Some(head) = &eye.head {
+        text += &format!(
+            "; head found from {} dots in {} images, {:.3} mm off, rms",
+            head.dots, head.spots, head.rms_mm
+        );
+    }
+    if let Some(figure) = &eye.figure_mm {
+        text += &format!(
+            "\nfigure: the light is {:.3} mm from it, rms, 99 % within {:.3} mm, on {:.1} % of it (known because the room is simulated)",
+            figure.rms,
+            figure.p99,
+            100.0 * figure.covered_share
+        );
     }
     text
 }

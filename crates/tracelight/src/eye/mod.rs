@@ -6,16 +6,19 @@
 //! | [`Eye`] | where shots come from |
 //! | [`room`] | a simulated head and camera in front of a simulated wall |
 //! | [`wall`] | the camera found from markers in sight |
+//! | [`figure`] | the figure on the wall, as strokes |
 //! | [`spots`] | the laser's spot in shots, held against what the encoders said |
 //! | [`head`] | the head found from spots |
 
+pub(crate) mod figure;
 pub(crate) mod head;
+mod pages;
 pub(crate) mod room;
 mod shot;
 pub(crate) mod spots;
 pub(crate) mod wall;
 
-pub(crate) use shot::Shot;
+pub(crate) use shot::{Shot, grey};
 
 /// Something that takes images of the wall, by the clock of the rig's ticks.
 pub(crate) trait Eye {

@@ -5,10 +5,10 @@
 
 use clap::ValueEnum;
 use tracelight_aim::{
-    Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens, PlacedPage, Placement, SizeRequest,
+    Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens, Placement, SizeRequest, Survey,
 };
 use tracelight_plant::{CameraConfig, Poster, SimulatedCamera, Wall};
-use tracelight_sim::{Room, SimulatedRig};
+use tracelight_sim::{RigConfig, Room, SimulatedRig};
 use tracelight_stroke::{Affine, Point, Vec2};
 
 use super::{Eye, Shot};
@@ -37,19 +37,18 @@ pub(crate) struct RoomRequest<'a> {
     pub(crate) seed: u64,
 }
 
-/// A room, and the truth about it, for scoring.
+/// A room, and the truth about it, for scoring. All of it is in the frame of page 1, the wall's, as markers tell it.
 pub(crate) struct Furnished {
-    /// The wall as the camera sees it. A rig can be put before it as often as one likes.
     eye: SimulatedCamera,
     /// How the head is truly built,
     geometry: HeadGeometry,
-    /// and where it stands, wall frame.
+    /// and where it stands.
     pose: HeadPose,
-    /// The wall's frame, whose origin is the picture's centre, from that of each page.
-    wall_from_pages: Vec<Affine>,
-    /// Where on the wall there may be something to draw: the picture's size, m.
+    /// The wall's frame from one whose origin is the picture's centre.
+    wall_from_centre: Affine,
+    /// The picture's size, m.
     size_m: (f64, f64),
-    /// The picture's own pixels on the wall.
+    /// The wall's frame from the picture's pixels, if there is one.
     pub(crate) wall_from_picture: Option<Affine>,
     seed: u64,
 }
@@ -73,62 +72,64 @@ impl Furnished {
         let hung = request.picture.map(|path| hang(path, request)).transpose()?;
         let bare = (WIDTHS_M[request.eye as usize], 0.7 * WIDTHS_M[request.eye as usize]);
         let size_m = hung.as_ref().map_or(bare, |hung| hung.size_m);
-        let (board, pages) = pages(request.eye, size_m, &mut dice);
-        let mut posters = Vec::new();
-        for (number, place) in pages.iter().enumerate() {
-            posters.push(page(&board, number as u16, *place)?);
+        let (board, hung_pages) = pages(request.eye, size_m, &mut dice);
+        let wall_from_centre = hung_pages[0].inverse();
+        let mut posters: Vec<Poster> = hung.iter().filter_map(|hung| hung.poster(wall_from_centre)).collect();
+        for (number, place) in hung_pages.iter().enumerate() {
+            posters.push(page(&board, number as u16, wall_from_centre * *place)?);
         }
-        let wall_from_picture = hung.as_ref().map(|hung| hung.wall_from_picture);
-        let mut all: Vec<Poster> = hung.map(|hung| hung.poster).into_iter().collect();
-        all.append(&mut posters);
-        let camera = camera(request.eye, &pages, &mut dice)?;
+        let mut camera = camera(request.eye, &hung_pages, &mut dice)?;
+        camera.pose = camera.pose.in_frame(wall_from_centre);
         let config = match request.eye {
             SimulatedEye::Webcam => CameraConfig::webcam(),
             SimulatedEye::Report => CameraConfig::report(),
         };
-        let eye = SimulatedCamera::new(&config, &camera, &Wall { plain: PLAIN, posters: all }, request.seed);
+        let eye = SimulatedCamera::new(&config, &camera, &Wall { plain: PLAIN, posters }, request.seed);
         let (geometry, pose) = mounted(driving, &mut dice);
         Ok(Self {
             eye,
             geometry,
-            pose,
-            wall_from_pages: pages,
+            pose: pose.in_frame(wall_from_centre),
+            wall_from_centre,
             size_m,
-            wall_from_picture,
+            wall_from_picture: hung.map(|hung| wall_from_centre * hung.centre_from_picture),
             seed: request.seed,
         })
     }
 
-    /// The room with a rig just powered up, its controller told what `driving` believes.
-    pub(crate) fn with_rig(&self, driving: &Driving) -> Room {
-        let mut rig = driving.rig.clone();
+    /// A rig as it truly is, just powered up, that is believed to be this.
+    pub(crate) fn rig(&self, believed: &RigConfig, pose: HeadPose) -> SimulatedRig {
+        let mut rig = believed.clone();
         rig.truth.model.geometry = self.geometry;
-        let rig = SimulatedRig::new(&rig, driving.pose, self.seed).standing(self.pose);
-        Room::new(rig, self.eye.clone(), self.seed)
+        SimulatedRig::new(&rig, pose, self.seed).standing(self.pose)
     }
 
-    /// The wall's frame from that of a page.
-    pub(crate) fn wall_from(&self, page: &PlacedPage) -> Option<Affine> {
-        self.wall_from_pages.get(usize::from(page.page)).copied()
+    /// The same with the camera.
+    pub(crate) fn watched(&self, believed: &RigConfig, pose: HeadPose) -> Room {
+        Room::new(self.rig(believed, pose), self.eye.clone(), self.seed)
     }
 
-    /// Root mean square and most of how far the spot truly is from where a head so believed, in a page's frame, would put it, over the
-    /// picture's place, m.
-    pub(crate) fn true_error_m(
-        &self,
-        page: &PlacedPage,
-        geometry: &HeadGeometry,
-        pose: &HeadPose,
-    ) -> Option<(f64, f64)> {
-        const STEPS: i32 = 10;
-        let page_from_wall = self.wall_from(page)?.inverse();
+    /// Refuses a survey in the frame of another page than the room is in.
+    pub(crate) fn check_frame(survey: &Survey) -> Result<(), Failure> {
+        match survey.pages.first() {
+            Some(page) if page.page == 0 => Ok(()),
+            _ => Err(Failure::failed(
+                "camera-not-found",
+                "the simulated camera does not see page 1, in whose frame its room is",
+            )),
+        }
+    }
+
+    /// Root mean square and most of how far the spot truly is from where a head so believed would put it, over the picture's place, m.
+    pub(crate) fn true_error_m(&self, geometry: &HeadGeometry, pose: &HeadPose) -> Option<(f64, f64)> {
+        const STEPS: usize = 10;
         let (mut sum, mut most, mut count) = (0.0, 0.0_f64, 0.0);
-        for k in 0..=STEPS * STEPS {
-            let share = |k: i32| f64::from(k) / f64::from(STEPS) - 0.5;
-            let on_wall =
-                Point::new(self.size_m.0 * share(k % (STEPS + 1)), self.size_m.1 * share(k / (STEPS + 1)));
-            let angle = geometry.angles(pose, page_from_wall * on_wall).ok()?;
-            let off = self.geometry.spot(&self.pose, angle)?.distance(on_wall);
+        for k in 0..(STEPS + 1) * (STEPS + 1) {
+            let share = |k: usize| k as f64 / STEPS as f64 - 0.5;
+            let (across, down) = (share(k % (STEPS + 1)), share(k / (STEPS + 1)));
+            let asked = self.wall_from_centre * Point::new(self.size_m.0 * across, self.size_m.1 * down);
+            let angle = geometry.angles(pose, asked).ok()?;
+            let off = self.geometry.spot(&self.pose, angle)?.distance(asked);
             (sum, most, count) = (sum + off * off, most.max(off), count + 1.0);
         }
         Some(((sum / count).sqrt(), most))
@@ -145,11 +146,18 @@ impl Dice {
     }
 }
 
-/// A picture on the wall.
+/// A picture to be hung.
 struct Hung {
-    poster: Poster,
+    width: usize,
+    painted: Vec<[u8; 3]>,
     size_m: (f64, f64),
-    wall_from_picture: Affine,
+    centre_from_picture: Affine,
+}
+
+impl Hung {
+    fn poster(&self, wall_from_centre: Affine) -> Option<Poster> {
+        Poster::new(self.width, &self.painted, wall_from_centre * self.centre_from_picture)
+    }
 }
 
 fn hang(path: &str, request: &RoomRequest<'_>) -> Result<Hung, Failure> {
@@ -173,11 +181,12 @@ fn hang(path: &str, request: &RoomRequest<'_>) -> Result<Hung, Failure> {
         flip: args.flip,
         ..upright
     };
-    let wall_from_picture = placed.target_from_pixel(width as f64);
-    let painted = painted(pixels.colour.rgb());
-    let poster = Poster::new(width, &painted, wall_from_picture)
-        .ok_or_else(|| Failure::failed("internal", "a picture that can not be hung"))?;
-    Ok(Hung { poster, size_m: (placed.width_m, placed.height_m), wall_from_picture })
+    Ok(Hung {
+        width,
+        painted: painted(pixels.colour.rgb()),
+        size_m: (placed.width_m, placed.height_m),
+        centre_from_picture: placed.target_from_pixel(width as f64),
+    })
 }
 
 /// A picture painted on the wall: its white is the wall's.
@@ -293,6 +302,6 @@ impl Eye for Room {
     }
 
     fn shot(&mut self) -> Option<Shot> {
-        self.image().map(|image| Shot::from(image).through_jpeg())
+        self.image().map(Shot::from)
     }
 }

@@ -139,8 +139,8 @@ impl Sighting {
 pub(crate) struct SpotWatch {
     camera: Camera,
     pub(crate) timing: Timing,
-    /// The latest image without a spot, and how long it was exposed.
-    dark: Option<(Grey, f64)>,
+    /// The latest image without a spot.
+    dark: Option<Dark>,
     /// How far from where it was believed the last spot was seen, px.
     last_off_px: Option<tracelight_stroke::Vec2>,
     /// How long the next images should be exposed, s.
@@ -151,6 +151,23 @@ pub(crate) struct SpotWatch {
     pub(crate) last_lost: Option<SpotLost>,
 }
 
+/// An image without a spot, decoded once it is needed.
+enum Dark {
+    Shot(Shot),
+    Red(Grey, f64),
+}
+
+impl Dark {
+    /// Its red, if it was exposed so long.
+    fn red(&mut self, exposure_s: f64) -> Option<&Grey> {
+        if let Self::Shot(shot) = self {
+            *self = Self::Red(shot.red().ok()?, shot.exposure_s);
+        }
+        let Self::Red(red, own_s) = self else { return None };
+        ((*own_s - exposure_s).abs() <= 0.01 * exposure_s).then_some(red)
+    }
+}
+
 /// What was made of a shot.
 pub(crate) enum Made {
     /// It shows no spot, and none was awaited.
@@ -158,7 +175,7 @@ pub(crate) enum Made {
     /// The laser was switched while it was taken, or nothing is there to compare it with.
     Unused,
     /// The spot.
-    Seen(Sighting),
+    Seen,
     /// It should show one.
     Lost,
 }
@@ -189,28 +206,27 @@ impl SpotWatch {
         let when = Stamp { stamp_s: shot.stamp_s, exposure_s: shot.exposure_s };
         let (from_s, _) = self.timing.row_s(&when, 0.0);
         let (_, until_s) = self.timing.row_s(&when, 1.0);
-        let Ok(red) = shot.red() else { return Made::Unused };
         match history.light(from_s - Timing::UNSURE_S, until_s + Timing::UNSURE_S) {
             Light::Mixed => Made::Unused,
             Light::Dark => {
-                self.dark = Some((red, shot.exposure_s));
+                self.dark = Some(Dark::Shot(shot.clone()));
                 Made::Dark
             }
-            Light::Lit => self.look(&red, when, history, head),
+            Light::Lit => self.look(shot, when, history, head),
         }
     }
 
-    fn look(&mut self, red: &Grey, when: Stamp, history: &History, head: &Alignment) -> Made {
-        let Some((dark, exposure_s)) = &self.dark else { return Made::Unused };
-        if (exposure_s - when.exposure_s).abs() > 0.01 * when.exposure_s {
-            return Made::Unused;
-        }
+    fn look(&mut self, shot: &Shot, when: Stamp, history: &History, head: &Alignment) -> Made {
         let Some(awaited) = self.awaited(when, history, head) else { return Made::Unused };
+        let Some(dark) = self.dark.as_mut().and_then(|dark| dark.red(when.exposure_s)) else {
+            return Made::Unused;
+        };
+        let Ok(red) = shot.red() else { return Made::Unused };
         let window = match self.last_off_px {
             Some(off) => SpotWindow { centre: awaited + off, half_px: NEAR_PX },
             None => SpotWindow { centre: awaited, half_px: FAR_PX },
         };
-        let spot = match find_spot(red, dark, &window) {
+        let spot = match find_spot(&red, dark, &window) {
             Ok(spot) => spot,
             Err(why) => {
                 if matches!(why, SpotLost::Dim { .. }) {
@@ -234,7 +250,7 @@ impl SpotWatch {
         let deviation_m = spot.deviation_px.hypot(LEAST_DEVIATION_PX) / scale;
         let sighting = Sighting { when, down: spot.at.y / red.height() as f64, at, deviation_m };
         self.sightings.push(sighting);
-        Made::Seen(sighting)
+        Made::Seen
     }
 
     /// Where the spot should be in an image, px.

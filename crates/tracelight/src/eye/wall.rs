@@ -4,8 +4,9 @@ use tracelight_aim::{Board, LensBelief, SeenPlace, SeenTag, Survey, SurveyedCame
 use tracelight_sim::Simulated;
 use tracelight_vision::{Grey, Tag, TagPlace, find_tags};
 
-use super::{Eye, Shot};
+use super::{Eye, Shot, grey};
 use crate::failure::Failure;
+use crate::output::Raster;
 
 /// A wall with markers on it as one image shows it.
 pub(crate) struct SeenWall {
@@ -13,7 +14,7 @@ pub(crate) struct SeenWall {
     pub(crate) camera: SurveyedCamera,
     pub(crate) markers: usize,
     /// The image.
-    pub(crate) shot: Shot,
+    pub(crate) pixels: Raster,
 }
 
 /// Longest that an image is waited for, ticks: the slowest cameras there are send one a second.
@@ -25,20 +26,23 @@ const BRIGHTEST: f64 = 0.99;
 /// Most images that are taken until one is well exposed.
 const MOST_SHOTS: usize = 10;
 
-/// Takes an image of the wall that is neither too dark nor too bright, and finds the camera from the markers it shows.
-pub(crate) fn see_wall<R: Simulated + Eye>(
-    rig: &mut R,
-    lens: Option<&LensBelief>,
-) -> Result<SeenWall, Failure> {
-    let shot = well_exposed(rig)?;
-    let grey = shot.grey().map_err(|e| Failure::failed("camera-image", e))?;
-    let tags = markers(&grey);
+/// Finds the camera from the markers that an image shows.
+pub(crate) fn see_wall(pixels: Raster, lens: Option<&LensBelief>) -> Result<SeenWall, Failure> {
+    let tags = markers(&grey(&pixels)?);
     let count = tags.len();
-    let belief = lens.copied().unwrap_or_else(|| LensBelief::unknown(shot.width, shot.height));
+    let size = (pixels.width() as usize, pixels.height() as usize);
+    let belief = lens.copied().unwrap_or_else(|| LensBelief::unknown(size.0, size.1));
+    if belief.lens.size_px != [size.0, size.1] {
+        let message = format!(
+            "the camera's image has {} × {} px, the lens that is known {:?}",
+            size.0, size.1, belief.lens.size_px
+        );
+        return Err(Failure::usage("camera-image", message));
+    }
     let survey = survey(&belief, &Board::ALL, &[tags])
         .map_err(|e| Failure::failed("camera-not-found", format!("the camera's image of the wall: {e}")))?;
     let camera = survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
-    Ok(SeenWall { survey, camera, markers: count, shot })
+    Ok(SeenWall { survey, camera, markers: count, pixels })
 }
 
 /// Markers of an image.
@@ -78,16 +82,16 @@ pub(crate) fn take<R: Simulated + Eye>(rig: &mut R, exposure_s: f64) -> Result<S
 }
 
 /// An image that is neither too dark nor too bright; as bright as the camera can, where there is little light.
-pub(crate) fn well_exposed<R: Simulated + Eye>(rig: &mut R) -> Result<Shot, Failure> {
+pub(crate) fn well_exposed<R: Simulated + Eye>(rig: &mut R) -> Result<Raster, Failure> {
     let longest_s = rig.longest_s();
     let mut exposure_s = 0.5 * longest_s;
     for _ in 0..MOST_SHOTS {
-        let shot = take(rig, exposure_s)?;
-        let brightest = brightest(&shot);
+        let pixels = take(rig, exposure_s)?.pixels()?;
+        let brightest = brightest(&pixels);
         if (WELL_EXPOSED[0]..=WELL_EXPOSED[1]).contains(&brightest)
             || (brightest < WELL_EXPOSED[0] && exposure_s >= longest_s)
         {
-            return Ok(shot);
+            return Ok(pixels);
         }
         let light = |level: u8| (f64::from(level) / 255.0).powf(2.2);
         let wanted = light(WELL_EXPOSED[0] / 2 + WELL_EXPOSED[1] / 2);
@@ -102,12 +106,12 @@ pub(crate) fn well_exposed<R: Simulated + Eye>(rig: &mut R) -> Result<Shot, Fail
 }
 
 /// The level that a hundredth of the pixels exceed.
-fn brightest(shot: &Shot) -> u8 {
+fn brightest(pixels: &Raster) -> u8 {
     let mut counts = [0_usize; 256];
-    for pixel in shot.rgb.chunks_exact(3) {
+    for pixel in pixels.rgb().chunks_exact(3) {
         counts[usize::from(pixel[0].max(pixel[1]).max(pixel[2]))] += 1;
     }
-    let wanted = BRIGHTEST * (shot.width * shot.height) as f64;
+    let wanted = BRIGHTEST * f64::from(pixels.width()) * f64::from(pixels.height());
     let mut below = 0;
     for (level, count) in (0..=u8::MAX).zip(counts) {
         below += count;

@@ -67,7 +67,7 @@ impl Page {
     fn of(board: &Board, page: u16, paper: Paper) -> Self {
         let (mut black, mut white) = (Vec::new(), Vec::new());
         let cell = 1e3 * board.tag_m / 8.0;
-        let rows = f64::from(board.rows - 1) * 1e3 * board.pitch_m + 1e3 * board.tag_m;
+        let rows = rows_mm(board);
         for number in 0..board.tags() {
             let corner = board.corners(number)[0];
             let (left, top) = (paper.width_mm / 2.0 + 1e3 * corner.x, TOP_MM + rows / 2.0 - 1e3 * corner.y);
@@ -160,9 +160,22 @@ pub(crate) fn page_raster(board: &Board, page: u16, paper: Paper, pixel_m: f64) 
         let light = PAPER + (INK - PAPER) * ink.clamp(0.0, 1.0);
         (255.0 * light.powf(1.0 / 2.2)).round() as u8
     };
-    let rows_mm = 1e3 * (f64::from(board.rows - 1) * board.pitch_m + board.tag_m);
-    let middle = Point::new(paper.width_mm / 2.0 / pixel_mm, (TOP_MM + rows_mm / 2.0) / pixel_mm);
+    let middle = Point::new(paper.width_mm / 2.0 / pixel_mm, (TOP_MM + rows_mm(board) / 2.0) / pixel_mm);
     (width, ink.into_iter().map(level).collect(), middle)
+}
+
+/// How far paper reaches from the middle of a board's markers, m: left and right, below and above; on the largest of several papers.
+pub(crate) fn printed_m(board: &Board, papers: &[Paper]) -> ([f64; 2], [f64; 2]) {
+    let largest = |of: fn(&Paper) -> f64| papers.iter().map(of).fold(0.0, f64::max);
+    let half_mm = 0.5 * largest(|paper| paper.width_mm);
+    let above_mm = TOP_MM + 0.5 * rows_mm(board);
+    let below_mm = largest(|paper| paper.height_mm) - above_mm;
+    ([-1e-3 * half_mm, 1e-3 * half_mm], [-1e-3 * below_mm, 1e-3 * above_mm])
+}
+
+/// From the upper edge of a board's markers to the lower, mm.
+fn rows_mm(board: &Board) -> f64 {
+    1e3 * (f64::from(board.rows - 1) * board.pitch_m + board.tag_m)
 }
 
 /// Points of a printer a millimetre.

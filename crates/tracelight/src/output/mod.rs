@@ -35,14 +35,14 @@ use tracelight_stroke::{Affine, Drawing, Point};
 use tracelight_trajectory::Plan;
 use tracelight_vision::Quality;
 
-pub(crate) use board::{BAR_M, Paper, page_pdf, page_raster, page_svg};
+pub(crate) use board::{BAR_M, Paper, page_pdf, page_raster, page_svg, printed_m};
 pub(crate) use events::{Event, events};
 pub(crate) use log::{LogMeta, LogWriter};
 pub(crate) use preview::{ColourBy, preview};
 pub(crate) use raster::Raster;
 pub(crate) use report::html;
 pub(crate) use sample::planned;
-pub(crate) use summary::{PlanFigures, StrokeFigures, Summary};
+pub(crate) use summary::{EyeFigures, FigureMatch, HeadFigures, PlanFigures, StrokeFigures, Summary};
 pub(crate) use words::{counted, darkness_words, fault_words};
 
 /// A finished (or stopped) job, as the outputs see it.
@@ -73,6 +73,8 @@ pub(crate) struct Job<'a> {
     pub(crate) torque_limit_nm: PanTilt<f64>,
     /// Distance from the stroke at which the laser darkens, mm.
     pub(crate) tolerance_mm: f64,
+    /// What a camera saw, if one looked.
+    pub(crate) eye: Option<EyeFigures>,
     /// What the job was asked to do, in the order to show it.
     pub(crate) settings: &'a [Setting],
     /// Remarks and warnings of the stages before.

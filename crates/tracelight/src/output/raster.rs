@@ -1,6 +1,7 @@
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use png::{BitDepth, ColorType, Compression, Filter};
+use tracelight_stroke::Point;
 
 /// An RGB picture, eight bits a channel, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +47,20 @@ impl Raster {
         let y = y.clamp(0, i64::from(self.height) - 1) as usize;
         let at = (y * self.width as usize + x) * 3;
         [self.rgb[at], self.rgb[at + 1], self.rgb[at + 2]]
+    }
+
+    /// The colour at a place, pixel frame, between pixels evenly.
+    pub(crate) fn between(&self, at: Point) -> [u8; 3] {
+        let (x, y) = (at.x - 0.5, at.y - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        let (fx, fy) = (x - left, y - top);
+        let pixel = |dx: i64, dy: i64| self.pixel(left as i64 + dx, top as i64 + dy);
+        let (a, b, c, d) = (pixel(0, 0), pixel(1, 0), pixel(0, 1), pixel(1, 1));
+        std::array::from_fn(|k| {
+            let of = |p: [u8; 3]| f64::from(p[k]);
+            let (upper, lower) = (of(a) + fx * (of(b) - of(a)), of(c) + fx * (of(d) - of(c)));
+            (upper + fy * (lower - upper)).round() as u8
+        })
     }
 
     /// The picture made to fit a square of `side` pixels by averaging; one that fits already stays as it is.

@@ -29,6 +29,9 @@ pub(crate) struct Summary {
     pub(crate) tracking: TrackingFigures,
     /// Light and what kept it away.
     pub(crate) laser: LaserFigures,
+    /// What a camera saw; not there where none looked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) camera: Option<EyeFigures>,
     /// Wall-clock time of the stages, ms.
     pub(crate) timing_ms: TimingFigures,
     /// Seed of the run.
@@ -43,6 +46,44 @@ pub(crate) struct PictureFigures {
     pub(crate) path: String,
     pub(crate) width_px: Option<u32>,
     pub(crate) height_px: Option<u32>,
+}
+
+/// See [`Summary::camera`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct EyeFigures {
+    /// Which camera.
+    pub(crate) source: String,
+    /// Markers it saw, and how far from where they should be.
+    pub(crate) markers: usize,
+    pub(crate) markers_rms_px: f64,
+    /// Images that were refused.
+    pub(crate) refused_images: u32,
+    /// The head as dots told it; `null` where it was known before.
+    pub(crate) head: Option<HeadFigures>,
+    /// How far the lit trace truly is from the figure on the wall; `null` where nobody knows.
+    pub(crate) figure_mm: Option<FigureMatch>,
+}
+
+/// See [`EyeFigures::head`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct HeadFigures {
+    /// Dots that were drawn, and images in which they were seen.
+    pub(crate) dots: usize,
+    pub(crate) spots: usize,
+    /// How far they are from where the head as found has them.
+    pub(crate) rms_mm: f64,
+    /// How far off the spot is likely to be with both joints at zero.
+    pub(crate) straight_ahead_mm: Option<f64>,
+}
+
+/// See [`EyeFigures::figure_mm`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct FigureMatch {
+    pub(crate) rms: f64,
+    pub(crate) p99: f64,
+    pub(crate) max: f64,
+    /// Share of the figure that was lit.
+    pub(crate) covered_share: f64,
 }
 
 /// See [`Summary::target`].
@@ -144,6 +185,7 @@ impl Summary {
                 lit_s: round(lit_s(job.run)),
                 faults: events(job.run).iter().map(FaultFigures::new).collect(),
             },
+            camera: job.eye.clone(),
             timing_ms: TimingFigures {
                 vision: job.timing.vision_ms,
                 plan: job.timing.plan_ms,

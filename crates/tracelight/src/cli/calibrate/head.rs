@@ -12,7 +12,7 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::{Answer, Voice, write_file};
 use crate::eye::head::{FoundHead, find_head, in_front};
 use crate::eye::room::{Furnished, RoomRequest};
-use crate::eye::wall::{SeenWall, see_wall};
+use crate::eye::wall::{SeenWall, see_wall, well_exposed};
 use crate::failure::Failure;
 use crate::head_file::{self, HeadFile};
 use crate::progress::Progress;
@@ -52,8 +52,9 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     };
     progress.stage("wall", 1);
     let room = Furnished::new(&request, &driving)?;
-    let mut rig = room.with_rig(&driving);
-    let wall = see_wall(&mut rig, args.eye.lens()?.as_ref())?;
+    let mut rig = room.watched(&driving.rig, driving.pose);
+    let wall = see_wall(well_exposed(&mut rig)?, args.eye.lens()?.as_ref())?;
+    Furnished::check_frame(&wall.survey)?;
     stop.check()?;
     driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
     progress.stage("dots", 1);
@@ -64,7 +65,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         wall.survey.pages.first().ok_or_else(|| Failure::failed("internal", "a survey without a page"))?;
     write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, page))?)?;
     let pose = found.aligned.alignment.pose;
-    let truth = room.true_error_m(page, &found.aligned.alignment.geometry, &pose);
+    let truth = room.true_error_m(&found.aligned.alignment.geometry, &pose);
     Ok(Answer::new(text(&wall, &found, truth, &args.output), json(&found, truth).to_string()))
 }
 

@@ -1,0 +1,191 @@
+//! The figure on the wall, as strokes in the wall's frame: traced where the camera sees it, not where it lies in a file.
+
+use tracelight_aim::Camera;
+use tracelight_sim::Simulated;
+use tracelight_stroke::{Affine, Drawing, FitOptions, Path, Point, Stroke, Vec2, fit};
+use tracelight_vision::{Grey, stands_out};
+
+use super::pages::without_pages;
+use super::wall::{SeenWall, see_wall, well_exposed};
+use super::{Eye, grey};
+use crate::cli::choosing::ChoiceArgs;
+use crate::cli::eyes::EyeArgs;
+use crate::cli::tracing::TracingArgs;
+use crate::failure::{Failure, Status};
+use crate::output::Raster;
+use crate::picture::{Pixels, Source};
+use crate::progress::Progress;
+use crate::sketch::{Placed, Sketch, sketch_at};
+
+/// A figure that was found.
+pub(crate) struct SeenFigure {
+    pub(crate) wall: SeenWall,
+    /// Its picture seen square-on, and its strokes there.
+    pub(crate) sketch: Sketch,
+    pub(crate) placed: Placed,
+    /// Images that were refused before.
+    pub(crate) retaken: u32,
+}
+
+/// How a figure is looked for.
+pub(crate) struct FigureRequest<'a> {
+    pub(crate) eye: &'a EyeArgs,
+    pub(crate) tracing: &'a TracingArgs,
+    pub(crate) choice: &'a ChoiceArgs,
+    /// Most images that are refused before it is given up.
+    pub(crate) most_refused: u32,
+}
+
+/// Takes images until one shows markers and a figure.
+pub(crate) fn see_figure<R: Simulated + Eye>(
+    rig: &mut R,
+    request: &FigureRequest<'_>,
+    progress: &Progress,
+) -> Result<SeenFigure, Failure> {
+    let lens = request.eye.lens()?;
+    let mut retaken = 0;
+    loop {
+        let pixels = well_exposed(rig)?;
+        let histogram = histogram(&grey(&pixels)?);
+        let seen = see_wall(pixels, lens.as_ref()).and_then(|wall| figure(wall, request));
+        let why = match seen {
+            Ok(seen) => return Ok(SeenFigure { retaken, ..seen }),
+            // another image would not help
+            Err(failure) if failure.status != Status::Failed => return Err(failure),
+            Err(failure) => failure,
+        };
+        let shown = format!("{}; its brightness, dark to light: {histogram}", why.message);
+        if retaken >= request.most_refused {
+            let message = format!("{} images of the wall were refused, the last: {shown}", retaken + 1);
+            return Err(Failure { message, ..why });
+        }
+        retaken += 1;
+        progress.say(&format!("note: image {retaken} is refused: {shown}; another is taken"));
+    }
+}
+
+/// Columns of a histogram that is printed.
+const COLUMNS: usize = 32;
+
+/// How many pixels there are of each brightness, as a line of blocks; their heights go by the root, or paper would be all one sees.
+fn histogram(grey: &Grey) -> String {
+    const BLOCKS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    let mut counts = [0_u32; COLUMNS];
+    grey.levels().iter().for_each(|&level| counts[usize::from(level) * COLUMNS / 256] += 1);
+    let most = f64::from(counts.iter().copied().max().unwrap_or(0).max(1));
+    let block = |count: &u32| BLOCKS[(8.0 * (f64::from(*count) / most).sqrt()).ceil() as usize];
+    format!("|{}|", counts.iter().map(block).collect::<String>())
+}
+
+fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Failure> {
+    let camera = wall.camera.camera;
+    let scale_m = metres_per_pixel(&camera).ok_or_else(|| {
+        Failure::failed("camera-not-found", "the middle of the camera's image shows no wall")
+    })?;
+    let blank = without_pages(&wall.pixels, &wall);
+    let levels = grey(&blank)?;
+    let pixels = Pixels { grey: levels.clone(), colour: blank };
+    let seen =
+        sketch_at("the camera's image", Source::Pixels(pixels), request.tracing, request.choice, &|_, _| {
+            scale_m
+        })?;
+    let light_on_dark = seen.quality.as_ref().is_some_and(|quality| quality.light_on_dark);
+    let ink = ink_only(&seen.drawing, &levels, light_on_dark);
+    let drawing = on_wall(&ink, &camera, scale_m);
+    if drawing.strokes.is_empty() {
+        return Err(Failure::failed("no-strokes-found", "what the camera's image shows is not on the wall"));
+    }
+    let (raster, wall_from_sheet) = square_on(&drawing, &wall.pixels, &camera, scale_m)
+        .ok_or_else(|| Failure::failed("no-strokes-found", "the figure has no size"))?;
+    let size = (f64::from(raster.width()), f64::from(raster.height()));
+    let sketch = Sketch {
+        drawing: drawing.transformed(wall_from_sheet.inverse()),
+        size,
+        picture: Some(raster),
+        ..seen
+    };
+    let placed = Placed::of(drawing, size, wall_from_sheet);
+    Ok(SeenFigure { wall, sketch, placed, retaken: 0 })
+}
+
+/// Length on the wall of a pixel in the middle of the image, m.
+fn metres_per_pixel(camera: &Camera) -> Option<f64> {
+    let [width, height] = camera.lens.size_px.map(|n| n as f64);
+    let [x, y] = camera.pixels_per_metre(camera.target(Point::new(width / 2.0, height / 2.0))?)?;
+    Some(1.0 / x.cross(y).abs().sqrt())
+}
+
+/// What stands out less than this share of what stands out most is no ink: edges of paper, shadows.
+const LEAST_SHARE: f64 = 0.25;
+
+/// Strokes that are ink: a wall has edges of paper and of shadows, too.
+fn ink_only(drawing: &Drawing, levels: &Grey, light_on_dark: bool) -> Drawing {
+    let contrasts: Vec<f64> =
+        drawing.strokes.iter().map(|stroke| stands_out(levels, stroke, light_on_dark)).collect();
+    let most = contrasts.iter().copied().fold(0.0, f64::max);
+    let kept =
+        drawing.strokes.iter().zip(&contrasts).filter(|(_, contrast)| **contrast >= LEAST_SHARE * most);
+    Drawing { strokes: kept.map(|(stroke, _)| stroke.clone()).collect() }
+}
+
+/// Spacing of the points that carry a stroke from image to wall, px.
+const SPACING_PX: f64 = 1.5;
+/// How far from those points a stroke may be, px: what tracing leaves to chance.
+const OFF_PX: f64 = 0.15;
+
+/// Strokes in pixels on the wall: a lens makes bends of straight lines, and perspective what is no arc of an arc.
+fn on_wall(drawing: &Drawing, camera: &Camera, scale_m: f64) -> Drawing {
+    let options = FitOptions { reach: OFF_PX * scale_m, ..FitOptions::new(OFF_PX * scale_m) };
+    let moved = |stroke: &Stroke| {
+        let points = sampled(&stroke.path);
+        let points: Option<Vec<Point>> = points.into_iter().map(|pixel| camera.target(pixel)).collect();
+        let path = fit(&points?, stroke.path.is_closed(), &options)?;
+        Some(Stroke { pen: stroke.pen.map(|pen| pen * scale_m), ..stroke.along(path) })
+    };
+    Drawing { strokes: drawing.strokes.iter().filter_map(moved).collect() }
+}
+
+/// Points of a path, its corners among them.
+fn sampled(path: &Path) -> Vec<Point> {
+    let mut points = vec![path.start()];
+    for piece in path.pieces() {
+        let count = (piece.length(0.1) / SPACING_PX).ceil().max(1.0) as usize;
+        points.extend((1..=count).map(|k| piece.at(k as f64 / count as f64)));
+    }
+    if path.is_closed() {
+        points.pop();
+    }
+    points
+}
+
+/// Longest side of the picture that is shown, px, and the rim about the figure, as a share of its size.
+const SHOWN_PX: f64 = 1600.0;
+const RIM: f64 = 0.08;
+
+/// What the wall about a drawing looks like from straight ahead, and where its pixels are on the wall.
+fn square_on(drawing: &Drawing, pixels: &Raster, camera: &Camera, scale_m: f64) -> Option<(Raster, Affine)> {
+    let points = drawing.strokes.iter().flat_map(|stroke| stroke.path.flatten(0.1 * scale_m));
+    let (mut low, mut high) = (Vec2::new(f64::MAX, f64::MAX), Vec2::new(f64::MIN, f64::MIN));
+    for p in points {
+        (low, high) =
+            (Vec2::new(low.x.min(p.x), low.y.min(p.y)), Vec2::new(high.x.max(p.x), high.y.max(p.y)));
+    }
+    let size = high - low;
+    let longest = size.x.max(size.y) * (1.0 + 2.0 * RIM);
+    let pixel_m = scale_m.max(longest / SHOWN_PX);
+    let rim = RIM * size.x.max(size.y);
+    let count = |length: f64| ((length + 2.0 * rim) / pixel_m).ceil().max(1.0);
+    let (width, height) = (count(size.x), count(size.y));
+    if !(width * height).is_finite() || width.max(height) > 4.0 * SHOWN_PX {
+        return None;
+    }
+    let corner = Vec2::new(low.x - rim, high.y + rim);
+    let wall_from_sheet = Affine::scale_non_uniform(pixel_m, -pixel_m).then_translate(corner);
+    let mut rgb = Vec::with_capacity(3 * (width * height) as usize);
+    for k in 0..(width * height) as usize {
+        let at = Point::new((k % width as usize) as f64 + 0.5, (k / width as usize) as f64 + 0.5);
+        let seen = camera.pixel(wall_from_sheet * at).filter(|pixel| camera.is_in_sight(*pixel));
+        rgb.extend(seen.map_or([255; 3], |pixel| pixels.between(pixel)));
+    }
+    Some((Raster::new(width as u32, height as u32, rgb)?, wall_from_sheet))
+}

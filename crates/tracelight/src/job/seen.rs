@@ -1,0 +1,122 @@
+//! What a camera adds to a job: the figure is traced where it is seen, and the head is found from dots before it draws.
+
+use std::ops::ControlFlow;
+
+use tracelight_rig::PanTilt;
+use tracelight_sim::Run;
+use tracelight_stroke::{Comparison, Point, compare};
+
+use super::Prepared;
+use crate::cli::driving::Driving;
+use crate::cli::request::TraceArgs;
+use crate::cli::tracing::TracingArgs;
+use crate::eye::figure::{FigureRequest, SeenFigure, see_figure};
+use crate::eye::head::{find_head, in_front};
+use crate::eye::room::{Furnished, RoomRequest};
+use crate::failure::Failure;
+use crate::head_file;
+use crate::output::{EyeFigures, FigureMatch, HeadFigures};
+use crate::picture;
+use crate::progress::Progress;
+use crate::sketch::sketch;
+use crate::stop::Stop;
+
+/// What was seen before a run.
+pub(super) struct Seen {
+    pub(super) room: Furnished,
+    pub(super) figures: EyeFigures,
+}
+
+/// Looks at the wall, has the head draw dots unless it is known, and plans the figure.
+pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepared, Failure> {
+    let mut driving = args.driving.resolve()?;
+    args.law.apply(&mut driving.rig);
+    let picture = args.eye.picture()?;
+    let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
+    progress.stage("wall", 1);
+    let request =
+        RoomRequest { picture, placement: &args.placement, eye: args.eye.sim_camera, seed: args.seed };
+    let room = Furnished::new(&request, &driving)?;
+    let mut rig = room.watched(&driving.rig, driving.pose);
+    let wanted = FigureRequest {
+        eye: &args.eye,
+        tracing: &args.tracing,
+        choice: &args.placement.choice,
+        most_refused: args.retakes,
+    };
+    let SeenFigure { wall, sketch, placed, retaken } = see_figure(&mut rig, &wanted, progress)?;
+    Furnished::check_frame(&wall.survey)?;
+    stop.check()?;
+    let camera = wall.camera.camera;
+    let head = match known {
+        Some(known) => {
+            believe(&mut driving, known.geometry, known.pose);
+            None
+        }
+        None => {
+            progress.stage("dots", 1);
+            driving.stand(in_front(&camera, driving.pose.distance_m));
+            let mut tick =
+                |_: u32| if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+            let found = find_head(&mut rig, &camera, &driving, &mut tick)?;
+            let alignment = found.aligned.alignment;
+            believe(&mut driving, alignment.geometry, alignment.pose);
+            Some(HeadFigures {
+                dots: found.dots,
+                spots: found.aligned.spots,
+                rms_mm: 1e3 * found.aligned.rms_m,
+                straight_ahead_mm: found.aligned.deviation_m(PanTilt::default()).map(|m| 1e3 * m),
+            })
+        }
+    };
+    stop.check()?;
+    let figures = EyeFigures {
+        source: args.name().to_owned(),
+        markers: wall.markers,
+        markers_rms_px: wall.survey.rms_px,
+        refused_images: retaken,
+        head,
+        figure_mm: None,
+    };
+    super::planned(sketch, placed, driving, Some(Seen { room, figures }), (progress, stop))
+}
+
+fn believe(driving: &mut Driving, geometry: tracelight_aim::HeadGeometry, pose: tracelight_aim::HeadPose) {
+    driving.rig.model.geometry = geometry;
+    driving.stand(pose);
+}
+
+/// How far from the true figure a lit trace counts as beside it, m: what users of it see.
+const BESIDE_M: f64 = 1.5e-3;
+
+impl Seen {
+    /// What a run adds: how far the lit trace truly is from the figure, which a simulated room knows.
+    pub(super) fn after(&self, args: &TraceArgs, run: &Run) -> Result<EyeFigures, Failure> {
+        let mut figures = self.figures.clone();
+        let (Some(path), Some(wall_from_picture)) = (args.eye.picture()?, self.room.wall_from_picture) else {
+            return Ok(figures);
+        };
+        let truth = sketch(path, picture::read(path)?, &TracingArgs::default(), &args.placement)?;
+        let found = compare(&lit(run), &truth.drawing.transformed(wall_from_picture), BESIDE_M);
+        figures.figure_mm = found.map(|Comparison { rms, p99, max, coverage, .. }| FigureMatch {
+            rms: 1e3 * rms,
+            p99: 1e3 * p99,
+            max: 1e3 * max,
+            covered_share: coverage,
+        });
+        Ok(figures)
+    }
+}
+
+/// Where there was light, tick by tick.
+fn lit(run: &Run) -> Vec<Vec<Point>> {
+    let mut lines: Vec<Vec<Point>> = vec![Vec::new()];
+    for tick in &run.ticks {
+        match (tick.light, tick.spot) {
+            (true, Some(spot)) => lines.iter_mut().last().into_iter().for_each(|line| line.push(spot)),
+            _ if lines.last().is_some_and(|line| !line.is_empty()) => lines.push(Vec::new()),
+            _ => {}
+        }
+    }
+    lines
+}
