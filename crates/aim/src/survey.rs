@@ -10,7 +10,7 @@ mod start;
 mod tests;
 
 use nalgebra::{DMatrix, Matrix2, SMatrix};
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::{Affine, Point, Vec2};
 
 use crate::board::Board;
 use crate::camera::{CAMERA_PARAMETERS, Camera, CameraPose, POSE_PARAMETERS, Uncertain};
@@ -182,6 +182,18 @@ impl SurveyedCamera {
     pub fn pixel(&self, on_target: Point) -> Option<Uncertain> {
         let (at, _, by) = self.camera.derivatives(on_target)?;
         Some(Uncertain { at, covariance: self.pixels(&by) })
+    }
+
+    /// The same in another frame on the same plane, of which `frame_from_target` is a turn and a shift.
+    #[must_use]
+    pub fn in_frame(&self, frame_from_target: Affine) -> Self {
+        let pose = self.camera.pose.in_frame(frame_from_target);
+        // the translation in the other frame is t − R s, so that a turn by w changes it by dt − w × R s
+        let shift = self.camera.pose.translation_m - pose.translation_m;
+        let mut by_own = SMatrix::<f64, CAMERA_PARAMETERS, CAMERA_PARAMETERS>::identity();
+        by_own.fixed_view_mut::<3, 3>(3, 0).copy_from(&shift.cross_matrix());
+        let covariance = by_own * self.covariance * by_own.transpose();
+        Self { camera: Camera { pose, ..self.camera }, covariance }
     }
 
     fn pixels(&self, by: &[[f64; CAMERA_PARAMETERS]; 2]) -> Matrix2<f64> {

@@ -3,8 +3,8 @@
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 use toml_edit::{Array, Item};
-use tracelight_aim::{Lens, LensBelief, Survey, SurveyedCamera};
-use tracelight_stroke::Point;
+use tracelight_aim::{Camera, CameraPose, Lens, LensBelief, PlacedPage, Survey, SurveyedCamera};
+use tracelight_stroke::{Affine, Point};
 
 use crate::failure::Failure;
 use crate::picture::read_bytes;
@@ -22,7 +22,25 @@ pub(crate) struct CameraFile {
     /// Where the camera stands; none of a lens alone.
     pose: Option<PoseTable>,
     score: ScoreTable,
+    /// Pages that were seen, where the pose is in the frame of the first.
+    pages: Vec<PageTable>,
 }
+
+/// Where a page lies on the wall.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PageTable {
+    /// fine or coarse.
+    board: String,
+    /// From 1.
+    page: u16,
+    /// Where the middle of its markers is, and by how much it is turned anticlockwise.
+    middle_m: [f64; 2],
+    turn_rad: f64,
+}
+
+/// Names of the boards, in the order of `Board::ALL`.
+pub(crate) const BOARDS: [&str; 2] = ["fine", "coarse"];
 
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -58,8 +76,7 @@ struct ScoreTable {
     rms_px: f64,
     /// How many there were.
     places: usize,
-    /// Pages that were seen, from 1, and how much larger than meant they were printed.
-    pages: Vec<u16>,
+    /// How much larger than meant the pages were printed.
     print_scale: f64,
 }
 
@@ -111,9 +128,9 @@ impl CameraFile {
                 image_mm: camera.and_then(|(_, wall)| wall.image_m).map(|m| 1e3 * m),
                 rms_px: survey.rms_px,
                 places: survey.places,
-                pages: survey.pages.iter().map(|page| page.page + 1).collect(),
                 print_scale,
             },
+            pages: survey.pages.iter().map(PageTable::of).collect(),
         }
     }
 
@@ -163,6 +180,32 @@ impl CameraFile {
     }
 }
 
+impl PageTable {
+    fn of(page: &PlacedPage) -> Self {
+        let PlacedPage { board, page, middle, turn_rad, .. } = *page;
+        let board = BOARDS.get(board).copied().unwrap_or_default().to_owned();
+        Self { board, page: page + 1, middle_m: [middle.x, middle.y], turn_rad }
+    }
+}
+
+impl PoseTable {
+    /// The camera that stands there.
+    fn camera(&self, lens: &LensBelief) -> Result<SurveyedCamera, String> {
+        let within = |values: &[f64], most: f64| values.iter().all(|v| v.abs() <= most);
+        if !(within(&self.turn_rad, 7.0) && within(&self.translation_m, 1e3)) {
+            return Err(format!(
+                "pose: no camera stands at {:?} m, turned by {:?} rad; calibrate it again",
+                self.translation_m, self.turn_rad
+            ));
+        }
+        let covariance = square::<15>(&self.covariance).filter(|c| c.cholesky().is_some());
+        let covariance = covariance
+            .ok_or("pose.covariance is no covariance: fifteen rows of fifteen numbers, positive definite")?;
+        let pose = CameraPose::new(self.turn_rad, self.translation_m);
+        Ok(SurveyedCamera { camera: Camera { lens: lens.lens, pose }, covariance })
+    }
+}
+
 fn rows<const N: usize>(matrix: &SMatrix<f64, N, N>) -> Vec<Vec<f64>> {
     (0..N).map(|i| (0..N).map(|k| matrix[(i, k)]).collect()).collect()
 }
@@ -191,8 +234,39 @@ pub(crate) fn write(file: &CameraFile) -> Result<String, Failure> {
     ))
 }
 
+/// What is known of a camera before it looks.
+#[derive(Clone, Debug)]
+pub(crate) struct KnownCamera {
+    pub(crate) lens: LensBelief,
+    /// Where it stood; none of a lens alone.
+    pub(crate) stood: Option<Stood>,
+}
+
+/// Where a camera stood.
+#[derive(Clone, Debug)]
+pub(crate) struct Stood {
+    pub(crate) camera: SurveyedCamera,
+    /// On which day.
+    pub(crate) date: String,
+    /// Pages that hung there then: board, number and the wall's frame from theirs.
+    pages: Vec<(usize, u16, Affine)>,
+}
+
+impl Stood {
+    /// The wall's frame from that of a page, if that hung there.
+    pub(crate) fn wall_from(&self, page: &PlacedPage) -> Option<Affine> {
+        let own = self.pages.iter().find(|(board, number, _)| (*board, *number) == (page.board, page.page));
+        own.map(|(_, _, wall_from_page)| *wall_from_page)
+    }
+}
+
 /// The lens of a camera file.
 pub(crate) fn read(path: &str) -> Result<LensBelief, Failure> {
+    Ok(read_whole(path)?.lens)
+}
+
+/// All of a camera file.
+pub(crate) fn read_whole(path: &str) -> Result<KnownCamera, Failure> {
     let wrong = |what: String| Failure::usage("camera-file", format!("{path}: {what}"));
     let bytes = read_bytes(path)?;
     if bytes.len() > MOST_BYTES {
@@ -205,5 +279,18 @@ pub(crate) fn read(path: &str) -> Result<LensBelief, Failure> {
         String::from_utf8(bytes).map_err(|_| wrong("not text; give a camera file (.toml)".to_owned()))?;
     let file: CameraFile = toml_edit::de::from_str(&text)
         .map_err(|e| wrong(format!("no camera file: {}", e.to_string().trim_end())))?;
-    file.lens().map_err(wrong)
+    let lens = file.lens().map_err(wrong)?;
+    let camera = file.pose.as_ref().map(|pose| pose.camera(&lens)).transpose().map_err(wrong)?;
+    let page = |table: &PageTable| {
+        let board = BOARDS.iter().position(|name| *name == table.board)?;
+        let place = Affine::rotate(table.turn_rad)
+            .then_translate(Point::new(table.middle_m[0], table.middle_m[1]).to_vec2());
+        Some((board, table.page.checked_sub(1)?, place))
+    };
+    let pages: Option<Vec<_>> = file.pages.iter().map(page).collect();
+    let pages = pages.ok_or_else(|| {
+        wrong("pages: a page is of the board fine or coarse, and counted from 1".to_owned())
+    })?;
+    let stood = camera.map(|camera| Stood { camera, date: file.date.clone(), pages });
+    Ok(KnownCamera { lens, stood })
 }

@@ -1,7 +1,7 @@
 //! What is known of a head in front of a wall, as a file.
 
 use serde::{Deserialize, Serialize};
-use tracelight_aim::{Alignment, HeadGeometry, HeadPose, PlacedPage};
+use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
 
 use crate::cli::driving::Driving;
 use crate::eye::head::FoundHead;
@@ -19,9 +19,6 @@ pub(crate) struct HeadFile {
     date: String,
     /// Name of the rig.
     rig: String,
-    /// The page whose frame the wall's is: fine or coarse, from 1.
-    board: String,
-    page: u16,
     pose: PoseTable,
     built: BuiltTable,
     images: ImagesTable,
@@ -69,9 +66,6 @@ struct ScoreTable {
     outliers: usize,
 }
 
-/// Names of the boards.
-const BOARDS: [&str; 2] = ["fine", "coarse"];
-
 /// What a head file tells.
 pub(crate) struct KnownHead {
     pub(crate) geometry: HeadGeometry,
@@ -79,16 +73,14 @@ pub(crate) struct KnownHead {
 }
 
 impl HeadFile {
-    /// Of a head found in the frame of a page.
-    pub(crate) fn of(found: &FoundHead, driving: &Driving, page: &PlacedPage) -> Self {
+    /// Of a head that was found.
+    pub(crate) fn of(found: &FoundHead, driving: &Driving) -> Self {
         let Alignment { geometry, pose, .. } = found.aligned.alignment;
         let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = pose;
         let HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, .. } = geometry;
         Self {
             date: crate::rigfile::today(),
             rig: driving.rig.name.clone(),
-            board: BOARDS[page.board.min(1)].to_owned(),
-            page: page.page + 1,
             pose: PoseTable { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
             built: BuiltTable { laser_offset_m, beam_off_rad, axis_skew_rad },
             images: ImagesTable {

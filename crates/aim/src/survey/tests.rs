@@ -231,3 +231,18 @@ fn a_marker_that_was_moved_counts_little() {
     let on_wall = Point::new(0.3, -0.2);
     assert!(found.camera.target(camera.pixel(on_wall).unwrap()).unwrap().distance(on_wall) < 3e-4);
 }
+
+#[test]
+fn in_another_frame_a_place_is_as_uncertain() {
+    let camera = Camera { lens: webcam(), pose: looking(0.1, -0.3) };
+    let mut dice = oorandom::Rand64::new(4);
+    let tags = seen(&camera, &Board::FINE, &corners(), 0.1, &mut dice);
+    let found = survey(&LensBelief::unknown(1280, 720), &Board::ALL, &[tags]).unwrap().camera(0).unwrap();
+    let frame = Affine::rotate(0.4).then_translate(Vec2::new(-0.5, 0.8));
+    let moved = found.in_frame(frame);
+    for pixel in [(100.0, 80.0), (640.0, 360.0), (1200.0, 700.0)].map(Point::from) {
+        let [a, b] = [found, moved].map(|camera| camera.target(pixel, &Matrix2::zeros()).unwrap());
+        assert!((frame * a.at).distance(b.at) < 1e-9);
+        assert!((a.deviation() / b.deviation() - 1.0).abs() < 1e-6, "{} {}", a.deviation(), b.deviation());
+    }
+}

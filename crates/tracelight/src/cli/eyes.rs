@@ -1,9 +1,8 @@
 //! Which camera looks.
 
 use clap::Args;
-use tracelight_aim::LensBelief;
 
-use crate::camera_file;
+use crate::camera_file::{self, KnownCamera};
 use crate::eye::room::SimulatedEye;
 use crate::failure::Failure;
 
@@ -16,28 +15,40 @@ pub(crate) struct EyeArgs {
     /// Which camera is simulated
     #[arg(long, value_enum, default_value_t)]
     pub(crate) sim_camera: SimulatedEye,
-    /// The camera's lens, if it was calibrated before: a file that `calibrate lens` or `calibrate markers` has written
+    /// What is known of the camera: a file that `calibrate markers` or `calibrate lens` has written. Where no markers are in sight, the
+    /// camera is believed to stand where it stood
     #[arg(long, value_name = "FILE.toml")]
-    lens: Option<String>,
+    calibration: Option<String>,
 }
 
 impl EyeArgs {
     /// The picture on the simulated wall, if there is one.
     pub(crate) fn picture(&self) -> Result<Option<&str>, Failure> {
-        match self.camera.as_deref() {
-            None | Some("sim") => Ok(None),
-            Some(source) => {
-                source.strip_prefix("sim:").filter(|path| !path.is_empty()).map(Some).ok_or_else(|| {
-                    let message =
-                        format!("--camera {source} is no camera that is known; give sim, or sim:PICTURE");
-                    Failure::usage("usage", message)
-                })
-            }
-        }
+        picture(self.camera.as_deref())
     }
 
-    /// What is known of its lens.
-    pub(crate) fn lens(&self) -> Result<Option<LensBelief>, Failure> {
-        self.lens.as_deref().map(camera_file::read).transpose()
+    /// Whether pages of markers hang on a simulated wall: the report's camera does not see them and a picture at once, and they are taken
+    /// down once it is calibrated.
+    pub(crate) fn has_pages(&self) -> bool {
+        self.sim_camera == SimulatedEye::Webcam || self.calibration.is_none()
+    }
+
+    /// What is known of it.
+    pub(crate) fn known(&self) -> Result<Option<KnownCamera>, Failure> {
+        self.calibration.as_deref().map(camera_file::read_whole).transpose()
+    }
+}
+
+/// The picture on the wall in front of a simulated camera, if there is one.
+pub(crate) fn picture(source: Option<&str>) -> Result<Option<&str>, Failure> {
+    match source {
+        None | Some("sim") => Ok(None),
+        Some(source) => {
+            source.strip_prefix("sim:").filter(|path| !path.is_empty()).map(Some).ok_or_else(|| {
+                let message =
+                    format!("--camera {source} is no camera that is known; give sim, or sim:PICTURE");
+                Failure::usage("usage", message)
+            })
+        }
     }
 }

@@ -58,7 +58,10 @@ fn text(s: &Summary) -> String {
 }
 
 fn seen_text(eye: &EyeFigures) -> String {
-    let mut text = format!("\ncamera: {} markers, {:.3} px off, rms", eye.markers, eye.markers_rms_px);
+    let mut text = match eye.markers_rms_px {
+        Some(px) => format!("\ncamera: {} markers, {px:.3} px off, rms", eye.markers),
+        None => "\ncamera: believed to stand where it was calibrated, no markers are in sight".to_owned(),
+    };
     if let Some(head) = &eye.head {
         text += &format!(
             "; head found from {} dots in {} images, {:.3} mm off, rms",

@@ -1,8 +1,10 @@
 //! The figure on the wall, as strokes in the wall's frame: traced where the camera sees it, not where it lies in a file.
 
+use std::f64::consts::PI;
+
 use tracelight_aim::Camera;
 use tracelight_sim::Simulated;
-use tracelight_stroke::{Affine, Drawing, FitOptions, Path, Point, Stroke, Vec2, fit};
+use tracelight_stroke::{Affine, Drawing, FitOptions, Path, Piece, Point, Stroke, Vec2, fit};
 use tracelight_vision::{Grey, stands_out};
 
 use super::pages::without_pages;
@@ -42,12 +44,12 @@ pub(crate) fn see_figure<R: Simulated + Eye>(
     request: &FigureRequest<'_>,
     progress: &Progress,
 ) -> Result<SeenFigure, Failure> {
-    let lens = request.eye.lens()?;
+    let known = request.eye.known()?;
     let mut retaken = 0;
     loop {
         let pixels = well_exposed(rig)?;
         let histogram = histogram(&grey(&pixels)?);
-        let seen = see_wall(pixels, lens.as_ref()).and_then(|wall| figure(wall, request));
+        let seen = see_wall(pixels, known.as_ref()).and_then(|wall| figure(wall, request));
         let why = match seen {
             Ok(seen) => return Ok(SeenFigure { retaken, ..seen }),
             // another image would not help
@@ -133,29 +135,64 @@ const SPACING_PX: f64 = 1.5;
 /// How far from those points a stroke may be, px: what tracing leaves to chance.
 const OFF_PX: f64 = 0.15;
 
+/// Change of direction from which on a stroke has a corner that stays sharp, rad.
+const CORNER_RAD: f64 = 0.35;
+
 /// Strokes in pixels on the wall: a lens makes bends of straight lines, and perspective what is no arc of an arc.
 fn on_wall(drawing: &Drawing, camera: &Camera, scale_m: f64) -> Drawing {
-    let options = FitOptions { reach: OFF_PX * scale_m, ..FitOptions::new(OFF_PX * scale_m) };
+    let options = FitOptions { corner_rad: PI, reach: 0.0, ..FitOptions::new(OFF_PX * scale_m) };
     let moved = |stroke: &Stroke| {
-        let points = sampled(&stroke.path);
-        let points: Option<Vec<Point>> = points.into_iter().map(|pixel| camera.target(pixel)).collect();
-        let path = fit(&points?, stroke.path.is_closed(), &options)?;
+        let path = carried(&stroke.path, camera, &options)?;
         Some(Stroke { pen: stroke.pen.map(|pen| pen * scale_m), ..stroke.along(path) })
     };
     Drawing { strokes: drawing.strokes.iter().filter_map(moved).collect() }
 }
 
-/// Points of a path, its corners among them.
-fn sampled(path: &Path) -> Vec<Point> {
-    let mut points = vec![path.start()];
-    for piece in path.pieces() {
-        let count = (piece.length(0.1) / SPACING_PX).ceil().max(1.0) as usize;
-        points.extend((1..=count).map(|k| piece.at(k as f64 / count as f64)));
+/// A path in pixels on the wall, every stretch between corners by itself; `None` if some of it shows no wall.
+fn carried(path: &Path, camera: &Camera, options: &FitOptions) -> Option<Path> {
+    let mut stretches = stretches(path);
+    let wall =
+        |pixels: &[Point]| pixels.iter().map(|pixel| camera.target(*pixel)).collect::<Option<Vec<Point>>>();
+    if let ([only], true) = (stretches.as_mut_slice(), path.is_closed()) {
+        if !has_corner(path.pieces().last()?, path.pieces().next()?) {
+            only.pop();
+            return fit(&wall(only)?, true, options);
+        }
+    }
+    let mut carried = Path::new(camera.target(path.start())?);
+    for stretch in &stretches {
+        // one that is too short for a curve is a line
+        match fit(&wall(stretch)?, false, options) {
+            Some(part) => part.elements().iter().for_each(|element| carried.push(*element)),
+            None => carried.line_to(camera.target(*stretch.last()?)?),
+        }
     }
     if path.is_closed() {
-        points.pop();
+        carried.close();
     }
-    points
+    Some(carried)
+}
+
+/// Points of a path, in stretches from corner to corner.
+fn stretches(path: &Path) -> Vec<Vec<Point>> {
+    let mut all = vec![vec![path.start()]];
+    let mut before: Option<Piece> = None;
+    for piece in path.pieces() {
+        if before.is_some_and(|before| has_corner(before, piece)) {
+            all.push(vec![piece.from]);
+        }
+        let count = (piece.length(0.1) / SPACING_PX).ceil().max(1.0) as usize;
+        let points = (1..=count).map(|k| piece.at(k as f64 / count as f64));
+        all.iter_mut().last().into_iter().for_each(|stretch| stretch.extend(points.clone()));
+        before = Some(piece);
+    }
+    all
+}
+
+/// Whether one piece goes on in another direction than the one before ends in.
+fn has_corner(before: Piece, after: Piece) -> bool {
+    let (a, b) = (before.end_tangent(), after.start_tangent());
+    a.cross(b).atan2(a.dot(b)).abs() > CORNER_RAD
 }
 
 /// Longest side of the picture that is shown, px, and the rim about the figure, as a share of its size.
@@ -188,4 +225,53 @@ fn square_on(drawing: &Drawing, pixels: &Raster, camera: &Camera, scale_m: f64) 
         rgb.extend(seen.map_or([255; 3], |pixel| pixels.between(pixel)));
     }
     Some((Raster::new(width as u32, height as u32, rgb)?, wall_from_sheet))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_aim::{CameraPose, Lens};
+    use tracelight_stroke::Element;
+
+    fn camera() -> Camera {
+        let pose = CameraPose::looking_at([0.3, -0.2, 1.1], [0.0; 3]).unwrap();
+        Camera { lens: Lens { radial: [-0.1, 0.0, 0.0], ..Lens::ideal(1280, 720, 1000.0) }, pose }
+    }
+
+    fn check(path: Path, corners: usize) {
+        let camera = camera();
+        let scale_m = metres_per_pixel(&camera).unwrap();
+        let seen = Drawing { strokes: vec![Stroke { pen: Some(4.0), ..Stroke::new(path.clone()) }] };
+        let on_wall = on_wall(&seen, &camera, scale_m);
+        let stroke = &on_wall.strokes[0];
+        assert!((stroke.pen.unwrap() - 4.0 * scale_m).abs() < 1e-12);
+        assert_eq!(stroke.path.is_closed(), path.is_closed());
+        let drawn = vec![stroke.path.flatten(1e-6).into_iter().map(|p| camera.pixel(p).unwrap()).collect()];
+        let off = tracelight_stroke::compare(&drawn, &seen, 0.5).unwrap();
+        assert!(off.max < 0.3 && off.coverage == 1.0, "{off:?}");
+        let pieces: Vec<Piece> = stroke.path.pieces().collect();
+        let sharp = (1..pieces.len()).filter(|&k| has_corner(pieces[k - 1], pieces[k])).count();
+        assert_eq!(sharp, corners);
+    }
+
+    #[test]
+    fn strokes_lie_on_the_wall_where_they_are_seen_and_keep_their_corners() {
+        let points = [(300.0, 200.0), (900.0, 210.0), (880.0, 500.0), (320.0, 480.0)].map(Point::from);
+        // the seam of a closed one is a corner, too, between the last piece and the first
+        check(Path::polyline(&points, true).unwrap(), 3);
+        check(Path::polyline(&points, false).unwrap(), 2);
+        let mut circle = Path::new(Point::new(700.0, 300.0));
+        (0..2).for_each(|_| circle.push(Element::Arc { centre: Point::new(600.0, 300.0), sweep: PI }));
+        circle.close();
+        check(circle, 0);
+    }
+
+    #[test]
+    fn a_histogram_shows_where_the_pixels_are() {
+        let levels = (0..64 * 64).map(|i| if i % 4 == 0 { 10 } else { 200 }).collect();
+        let line = histogram(&Grey::new(64, 64, levels).unwrap());
+        let columns: Vec<char> = line.chars().collect();
+        assert_eq!(columns.len(), COLUMNS + 2);
+        assert_eq!((columns[1 + 1], columns[1 + 25], columns[1 + 10]), ('▅', '█', ' '));
+    }
 }

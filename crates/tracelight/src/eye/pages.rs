@@ -13,7 +13,7 @@ const EDGE_M: f64 = 0.008;
 pub(super) fn without_pages(pixels: &Raster, wall: &SeenWall) -> Raster {
     let (width, height) = (pixels.width() as usize, pixels.height() as usize);
     let mut known = vec![true; width * height];
-    for page in &wall.survey.pages {
+    for page in &wall.pages {
         let Some(corners) = corners(page, &wall.camera.camera) else { continue };
         for (y, row) in known.chunks_exact_mut(width).enumerate() {
             let Some((left, right)) = crossed(&corners, y as f64 + 0.5) else { continue };

@@ -3,16 +3,15 @@
 //! Nothing is where it was said to be: the head stands and points a few millimetres and degrees off, the camera is turned, its lens is
 //! like no other, the pages hang askew. What the seed draws, nobody is told.
 
+use std::f64::consts::PI;
+
 use clap::ValueEnum;
-use tracelight_aim::{
-    Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens, Placement, SizeRequest, Survey,
-};
+use tracelight_aim::{Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens, Placement, SizeRequest};
 use tracelight_plant::{CameraConfig, Poster, SimulatedCamera, Wall};
 use tracelight_sim::{RigConfig, Room, SimulatedRig};
 use tracelight_stroke::{Affine, Point, Vec2};
 
 use super::{Eye, Shot};
-use crate::cli::driving::Driving;
 use crate::cli::placing::PlacementArgs;
 use crate::failure::Failure;
 use crate::output::{Paper, page_raster};
@@ -34,6 +33,8 @@ pub(crate) struct RoomRequest<'a> {
     pub(crate) picture: Option<&'a str>,
     pub(crate) placement: &'a PlacementArgs,
     pub(crate) eye: SimulatedEye,
+    /// Whether pages of markers hang there.
+    pub(crate) pages: bool,
     pub(crate) seed: u64,
 }
 
@@ -62,20 +63,22 @@ const GAP_M: f64 = 0.02;
 /// How far off the mounting is that somebody did by eye: 5 mm and 2°.
 const OFF_M: f64 = 0.005;
 const OFF_RAD: f64 = 0.035;
-/// Width of a picture that is asked for in no size, m: 24 in; and in front of the report's camera, which sees less, 8 in.
-const WIDTHS_M: [f64; 2] = [0.6096, 0.2032];
+/// Width of a picture that is asked for in no size, m: 24 in.
+const WIDTH_M: f64 = 0.6096;
+/// Where pages hang for the report's camera, which sees little more than a picture: right and up, m.
+const REPORT_PAGES_M: (f64, f64) = (0.19, 0.115);
 
 impl Furnished {
-    /// Hangs picture and pages, puts up camera and head.
-    pub(crate) fn new(request: &RoomRequest<'_>, driving: &Driving) -> Result<Self, Failure> {
+    /// Hangs picture and pages, puts up camera and head: a rig in front of the picture's middle, as far away as is told.
+    pub(crate) fn new(request: &RoomRequest<'_>, rig: &RigConfig, pose: HeadPose) -> Result<Self, Failure> {
         let mut dice = Dice(oorandom::Rand64::new(u128::from(request.seed)));
         let hung = request.picture.map(|path| hang(path, request)).transpose()?;
-        let bare = (WIDTHS_M[request.eye as usize], 0.7 * WIDTHS_M[request.eye as usize]);
+        let bare = (WIDTH_M, 0.7 * WIDTH_M);
         let size_m = hung.as_ref().map_or(bare, |hung| hung.size_m);
         let (board, hung_pages) = pages(request.eye, size_m, &mut dice);
         let wall_from_centre = hung_pages[0].inverse();
         let mut posters: Vec<Poster> = hung.iter().filter_map(|hung| hung.poster(wall_from_centre)).collect();
-        for (number, place) in hung_pages.iter().enumerate() {
+        for (number, place) in hung_pages.iter().enumerate().filter(|_| request.pages) {
             posters.push(page(&board, number as u16, wall_from_centre * *place)?);
         }
         let mut camera = camera(request.eye, &hung_pages, &mut dice)?;
@@ -85,7 +88,7 @@ impl Furnished {
             SimulatedEye::Report => CameraConfig::report(),
         };
         let eye = SimulatedCamera::new(&config, &camera, &Wall { plain: PLAIN, posters }, request.seed);
-        let (geometry, pose) = mounted(driving, &mut dice);
+        let (geometry, pose) = mounted(rig, pose, &mut dice);
         Ok(Self {
             eye,
             geometry,
@@ -107,17 +110,6 @@ impl Furnished {
     /// The same with the camera.
     pub(crate) fn watched(&self, believed: &RigConfig, pose: HeadPose) -> Room {
         Room::new(self.rig(believed, pose), self.eye.clone(), self.seed)
-    }
-
-    /// Refuses a survey in the frame of another page than the room is in.
-    pub(crate) fn check_frame(survey: &Survey) -> Result<(), Failure> {
-        match survey.pages.first() {
-            Some(page) if page.page == 0 => Ok(()),
-            _ => Err(Failure::failed(
-                "camera-not-found",
-                "the simulated camera does not see page 1, in whose frame its room is",
-            )),
-        }
     }
 
     /// Root mean square and most of how far the spot truly is from where a head so believed would put it, over the picture's place, m.
@@ -172,7 +164,7 @@ fn hang(path: &str, request: &RoomRequest<'_>) -> Result<Hung, Failure> {
     let size = match (args.width, args.height) {
         (Some(width), _) => SizeRequest::Width(width.0),
         (None, Some(height)) => SizeRequest::Height(height.0),
-        (None, None) => SizeRequest::Width(WIDTHS_M[request.eye as usize]),
+        (None, None) => SizeRequest::Width(WIDTH_M),
     };
     let upright = Placement::new(size, width as f64, height as f64);
     let placed = Placement {
@@ -200,26 +192,24 @@ fn painted(rgb: &[u8]) -> Vec<[u8; 3]> {
     rgb.chunks_exact(3).map(|p| std::array::from_fn(|c| on_wall[c][usize::from(p[c])])).collect()
 }
 
-/// Which board hangs there, and where its pages' middles are: two on either side, or one where there is no height for two.
+/// Which board hangs there, and where its pages' middles are: beside the picture, two on either side; for the report's camera where the
+/// picture will be, the upper two upside down, so that what is out of its sight is their feet.
 fn pages(eye: SimulatedEye, (width, height): (f64, f64), dice: &mut Dice) -> (Board, Vec<Affine>) {
-    let board = if eye == SimulatedEye::Webcam { Board::FINE } else { Board::COARSE };
     let (page_width, page_height) = Paper::A4.size_m();
-    let x = width / 2.0 + GAP_M + page_width / 2.0;
-    let y = if eye == SimulatedEye::Webcam {
-        ((height - page_height) / 2.0).max((page_height + GAP_M) / 2.0)
-    } else {
-        0.0
+    let (board, x, y) = match eye {
+        SimulatedEye::Webcam => {
+            let up = ((height - page_height) / 2.0).max((page_height + GAP_M) / 2.0);
+            (Board::FINE, width / 2.0 + GAP_M + page_width / 2.0, up)
+        }
+        SimulatedEye::Report => (Board::COARSE, REPORT_PAGES_M.0, REPORT_PAGES_M.1),
     };
-    let corners: &[(f64, f64)] =
-        if y > 0.0 { &[(-x, y), (x, y), (x, -y), (-x, -y)] } else { &[(-x, 0.0), (x, 0.0)] };
-    let place = |&(x, y): &(f64, f64)| {
-        let lean = Affine::rotate(dice.within(0.025));
-        lean.then_translate(Vec2::new(
-            x * (1.0 + 0.01 * (1.0 + dice.within(1.0))),
-            y * (1.0 + 0.01 * (1.0 + dice.within(1.0))),
-        ))
+    let upper = if eye == SimulatedEye::Report { PI } else { 0.0 };
+    let mut place = |x: f64, y: f64, turn_rad: f64| {
+        let lean = Affine::rotate(turn_rad + dice.within(0.025));
+        let mut further = || 1.0 + 0.01 * (1.0 + dice.within(1.0));
+        lean.then_translate(Vec2::new(x * further(), y * further()))
     };
-    (board, corners.iter().map(place).collect())
+    (board, vec![place(-x, -y, 0.0), place(x, -y, 0.0), place(x, y, upper), place(-x, y, upper)])
 }
 
 fn page(board: &Board, number: u16, place: Affine) -> Result<Poster, Failure> {
@@ -256,7 +246,8 @@ fn camera(eye: SimulatedEye, pages: &[Affine], dice: &mut Dice) -> Result<Camera
         Some(Camera { lens, pose })
     };
     let sees_all = |camera: &Camera| {
-        let reach = Vec2::new(0.095, 0.125);
+        // markers and the white about them
+        let reach = if eye == SimulatedEye::Webcam { Vec2::new(0.095, 0.125) } else { Vec2::new(0.1, 0.1) };
         pages.iter().all(|page| {
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
             corners.iter().all(|&(x, y)| {
@@ -276,13 +267,13 @@ fn camera(eye: SimulatedEye, pages: &[Affine], dice: &mut Dice) -> Result<Camera
 }
 
 /// How the head truly is: off in each of its numbers, as somebody's who put it together and up by eye.
-fn mounted(driving: &Driving, dice: &mut Dice) -> (HeadGeometry, HeadPose) {
-    let mut geometry = driving.rig.truth.model.geometry;
+fn mounted(rig: &RigConfig, told: HeadPose, dice: &mut Dice) -> (HeadGeometry, HeadPose) {
+    let mut geometry = rig.truth.model.geometry;
     geometry.laser_offset_m.iter_mut().for_each(|offset| *offset += dice.within(OFF_M));
     geometry.beam_off_rad.iter_mut().for_each(|off| *off += dice.within(OFF_RAD / 4.0));
     geometry.axis_skew_rad += dice.within(OFF_RAD / 8.0);
     let pose = HeadPose {
-        distance_m: driving.pose.distance_m + dice.within(OFF_M),
+        distance_m: told.distance_m + dice.within(OFF_M),
         right_m: dice.within(OFF_M),
         up_m: dice.within(OFF_M),
         yaw_rad: dice.within(OFF_RAD),

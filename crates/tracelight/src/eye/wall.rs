@@ -1,21 +1,46 @@
 //! The camera found from markers in sight.
 
-use tracelight_aim::{Board, LensBelief, SeenPlace, SeenTag, Survey, SurveyedCamera, survey};
+use tracelight_aim::{
+    Board, Camera, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyedCamera, survey,
+};
 use tracelight_sim::Simulated;
+use tracelight_stroke::{Affine, Point};
 use tracelight_vision::{Grey, Tag, TagPlace, find_tags};
 
 use super::{Eye, Shot, grey};
+use crate::camera_file::{KnownCamera, Stood};
 use crate::failure::Failure;
 use crate::output::Raster;
 
-/// A wall with markers on it as one image shows it.
+/// A wall as one image shows it.
 pub(crate) struct SeenWall {
-    pub(crate) survey: Survey,
     pub(crate) camera: SurveyedCamera,
+    /// Pages that are in sight, in the wall's frame: that of the first page when the camera was calibrated, or of the first in sight.
+    pub(crate) pages: Vec<PlacedPage>,
     pub(crate) markers: usize,
+    /// How far markers are off from where they should be seen; `None` where none are in sight, and the camera is believed to stand where
+    /// it stood.
+    pub(crate) rms_px: Option<f64>,
+    /// What became of where the camera stood, in words.
+    pub(crate) stale: Option<String>,
     /// The image.
     pub(crate) pixels: Raster,
 }
+
+impl SeenWall {
+    /// By what it is known.
+    pub(crate) fn words(&self) -> String {
+        match self.rms_px {
+            Some(px) => format!("{} markers, {px:.3} px off, rms", self.markers),
+            None => {
+                "no markers are in sight: the camera is believed to stand where it was calibrated".to_owned()
+            }
+        }
+    }
+}
+
+/// By how many pixels a camera may seem to have moved that did not.
+const MOVED_PX: f64 = 1.0;
 
 /// Longest that an image is waited for, ticks: the slowest cameras there are send one a second.
 const PATIENCE_TICKS: u32 = 3000;
@@ -26,12 +51,12 @@ const BRIGHTEST: f64 = 0.99;
 /// Most images that are taken until one is well exposed.
 const MOST_SHOTS: usize = 10;
 
-/// Finds the camera from the markers that an image shows.
-pub(crate) fn see_wall(pixels: Raster, lens: Option<&LensBelief>) -> Result<SeenWall, Failure> {
+/// Finds the camera from the markers that an image shows; where it shows none, the camera stands where it stood.
+pub(crate) fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<SeenWall, Failure> {
     let tags = markers(&grey(&pixels)?);
-    let count = tags.len();
+    let markers = tags.len();
     let size = (pixels.width() as usize, pixels.height() as usize);
-    let belief = lens.copied().unwrap_or_else(|| LensBelief::unknown(size.0, size.1));
+    let belief = known.map_or_else(|| LensBelief::unknown(size.0, size.1), |known| known.lens);
     if belief.lens.size_px != [size.0, size.1] {
         let message = format!(
             "the camera's image has {} × {} px, the lens that is known {:?}",
@@ -39,10 +64,74 @@ pub(crate) fn see_wall(pixels: Raster, lens: Option<&LensBelief>) -> Result<Seen
         );
         return Err(Failure::usage("camera-image", message));
     }
+    let stood = known.and_then(|known| known.stood.as_ref());
+    if let (true, Some(stood)) = (tags.is_empty(), stood) {
+        return Ok(SeenWall {
+            camera: stood.camera,
+            pages: Vec::new(),
+            markers,
+            rms_px: None,
+            stale: None,
+            pixels,
+        });
+    }
     let survey = survey(&belief, &Board::ALL, &[tags])
         .map_err(|e| Failure::failed("camera-not-found", format!("the camera's image of the wall: {e}")))?;
-    let camera = survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
-    Ok(SeenWall { survey, camera, markers: count, pixels })
+    let found = survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
+    let (wall_from_first, stale) = held_against(&survey, &found, stood);
+    let turn_rad = wall_from_first.as_coeffs()[1].atan2(wall_from_first.as_coeffs()[0]);
+    let placed = |page: &PlacedPage| PlacedPage {
+        middle: wall_from_first * page.middle,
+        turn_rad: page.turn_rad + turn_rad,
+        ..*page
+    };
+    Ok(SeenWall {
+        camera: found.in_frame(wall_from_first),
+        pages: survey.pages.iter().map(placed).collect(),
+        markers,
+        rms_px: Some(survey.rms_px),
+        stale,
+        pixels,
+    })
+}
+
+/// The wall's frame from that of a survey's first page, and what became of where the camera stood.
+fn held_against(survey: &Survey, found: &SurveyedCamera, stood: Option<&Stood>) -> (Affine, Option<String>) {
+    let Some((stood, first)) = stood.zip(survey.pages.first()) else { return (Affine::IDENTITY, None) };
+    let Some(wall_from_first) = stood.wall_from(first) else {
+        let why = format!(
+            "page {} did not hang there on {}, when the camera was calibrated: the wall's frame is now that page's",
+            first.page + 1,
+            stood.date
+        );
+        return (Affine::IDENTITY, Some(why));
+    };
+    let moved_px = moved_px(&stood.camera.camera, &found.in_frame(wall_from_first).camera);
+    let stale = match moved_px {
+        Some(px) if px <= MOVED_PX => None,
+        Some(px) => Some(format!(
+            "the camera moved {px:.1} px since {}, when it was calibrated: it was found anew",
+            stood.date
+        )),
+        None => Some(format!(
+            "the camera looks elsewhere since {}, when it was calibrated: it was found anew",
+            stood.date
+        )),
+    };
+    (wall_from_first, stale)
+}
+
+/// By how much places of the wall moved in the image from one camera to another, root of the mean square, px.
+fn moved_px(from: &Camera, to: &Camera) -> Option<f64> {
+    const PLACES: usize = 5;
+    let [width, height] = from.lens.size_px.map(|n| n as f64);
+    let place = |k: usize| (k as f64 + 0.5) / PLACES as f64;
+    let mut sum = 0.0;
+    for k in 0..PLACES * PLACES {
+        let pixel = Point::new(width * place(k % PLACES), height * place(k / PLACES));
+        sum += to.pixel(from.target(pixel)?)?.distance_squared(pixel);
+    }
+    Some((sum / (PLACES * PLACES) as f64).sqrt())
 }
 
 /// Markers of an image.

@@ -12,7 +12,7 @@ use crate::cli::request::TraceArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::eye::figure::{FigureRequest, SeenFigure, see_figure};
 use crate::eye::head::{find_head, in_front};
-use crate::eye::room::{Furnished, RoomRequest};
+use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::failure::Failure;
 use crate::head_file;
 use crate::output::{EyeFigures, FigureMatch, HeadFigures};
@@ -34,9 +34,19 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     let picture = args.eye.picture()?;
     let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
     progress.stage("wall", 1);
-    let request =
-        RoomRequest { picture, placement: &args.placement, eye: args.eye.sim_camera, seed: args.seed };
-    let room = Furnished::new(&request, &driving)?;
+    if args.eye.sim_camera == SimulatedEye::Report && args.eye.has_pages() {
+        let message = "the report's camera does not see picture and pages at once: calibrate it first (tracelight calibrate markers \
+                       --camera sim --sim-camera report -o camera.toml), then give --calibration camera.toml";
+        return Err(Failure::usage("usage", message));
+    }
+    let request = RoomRequest {
+        picture,
+        placement: &args.placement,
+        eye: args.eye.sim_camera,
+        pages: args.eye.has_pages(),
+        seed: args.seed,
+    };
+    let room = Furnished::new(&request, &driving.rig, driving.pose)?;
     let mut rig = room.watched(&driving.rig, driving.pose);
     let wanted = FigureRequest {
         eye: &args.eye,
@@ -45,7 +55,7 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         most_refused: args.retakes,
     };
     let SeenFigure { wall, sketch, placed, retaken } = see_figure(&mut rig, &wanted, progress)?;
-    Furnished::check_frame(&wall.survey)?;
+    wall.stale.iter().for_each(|stale| progress.say(&format!("note: {stale}")));
     stop.check()?;
     let camera = wall.camera.camera;
     let head = match known {
@@ -73,7 +83,7 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     let figures = EyeFigures {
         source: args.name().to_owned(),
         markers: wall.markers,
-        markers_rms_px: wall.survey.rms_px,
+        markers_rms_px: wall.rms_px,
         refused_images: retaken,
         head,
         figure_mm: None,

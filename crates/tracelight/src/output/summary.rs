@@ -53,9 +53,9 @@ pub(crate) struct PictureFigures {
 pub(crate) struct EyeFigures {
     /// Which camera.
     pub(crate) source: String,
-    /// Markers it saw, and how far from where they should be.
+    /// Markers it saw, and how far from where they should be; `null` where there were none and it was believed to stand where it stood.
     pub(crate) markers: usize,
-    pub(crate) markers_rms_px: f64,
+    pub(crate) markers_rms_px: Option<f64>,
     /// Images that were refused.
     pub(crate) refused_images: u32,
     /// The head as dots told it; `null` where it was known before.

@@ -48,22 +48,21 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         picture: args.eye.picture()?,
         placement: &args.placement,
         eye: args.eye.sim_camera,
+        pages: args.eye.has_pages(),
         seed: args.seed,
     };
     progress.stage("wall", 1);
-    let room = Furnished::new(&request, &driving)?;
+    let room = Furnished::new(&request, &driving.rig, driving.pose)?;
     let mut rig = room.watched(&driving.rig, driving.pose);
-    let wall = see_wall(well_exposed(&mut rig)?, args.eye.lens()?.as_ref())?;
-    Furnished::check_frame(&wall.survey)?;
+    let wall = see_wall(well_exposed(&mut rig)?, args.eye.known()?.as_ref())?;
+    wall.stale.iter().for_each(|stale| progress.say(&format!("note: {stale}")));
     stop.check()?;
     driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
     progress.stage("dots", 1);
     let mut tick = |_: u32| if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let found = find_head(&mut rig, &wall.camera.camera, &driving, &mut tick)?;
     stop.check()?;
-    let page =
-        wall.survey.pages.first().ok_or_else(|| Failure::failed("internal", "a survey without a page"))?;
-    write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, page))?)?;
+    write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving))?)?;
     let pose = found.aligned.alignment.pose;
     let truth = room.true_error_m(&found.aligned.alignment.geometry, &pose);
     Ok(Answer::new(text(&wall, &found, truth, &args.output), json(&found, truth).to_string()))
@@ -84,14 +83,13 @@ fn text(wall: &SeenWall, found: &FoundHead, truth: Option<(f64, f64)>, output: &
         format!("\ntruth:    the spot is off by {:.3} mm rms, {:.3} mm at most over the picture (known because the room is simulated)", 1e3 * rms, 1e3 * most)
     });
     format!(
-        "wall:     {} markers, {:.3} px off, rms\n\
+        "wall:     {}\n\
          stands:   {distance_m:.4} m before the wall, ({right_m:.4}, {up_m:.4}) m from the middle of the first page; turned {:.2}° left, {:.2}° down, {:.2}° about itself\n\
          built:    the beam leaves {left:.1} mm left of and {up:.1} mm above the axes, points {:.2}° left and {:.2}° down; the axes are {:.2}° from square\n\
          images:   taken {:.1} ms later than stamped, the last row {:.1} ms later still\n\
          dots:     {}, seen in {} images, in {} not; {:.3} mm off, rms{likely}{simulated}\n\
          file:     {output}",
-        wall.markers,
-        wall.survey.rms_px,
+        wall.words(),
         yaw_rad.to_degrees(),
         pitch_rad.to_degrees(),
         roll_rad.to_degrees(),

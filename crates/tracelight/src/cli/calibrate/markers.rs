@@ -1,12 +1,20 @@
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_aim::{Board, Doubt, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
+use tracelight_aim::{
+    Board, Doubt, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey,
+};
+use tracelight_sim::RigConfig;
 use tracelight_stroke::Point;
+use tracelight_vision::Grey;
 
-use crate::camera_file::{self, CameraFile, Wall};
-use crate::cli::placing::positive_length;
+use crate::camera_file::{self, BOARDS, CameraFile, Wall};
+use crate::cli::driving::DEFAULT_DISTANCE_M;
+use crate::cli::eyes;
+use crate::cli::placing::{PlacementArgs, positive_length};
 use crate::cli::{Answer, Voice, write_file};
-use crate::eye::wall::markers;
+use crate::eye::grey;
+use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
+use crate::eye::wall::{markers, well_exposed};
 use crate::failure::Failure;
 use crate::output::BAR_M;
 use crate::picture::{self, Source};
@@ -21,7 +29,17 @@ use crate::units::Length;
                   origin in the middle of its markers, x to its right. What is likely to be off is told in mm.")]
 pub(super) struct MarkersArgs {
     /// Image of the wall with the pages on it
-    image: String,
+    #[arg(required_unless_present = "camera", conflicts_with = "camera")]
+    image: Option<String>,
+    /// Take the image with a camera: sim is a simulated one
+    #[arg(long, value_name = "SOURCE")]
+    camera: Option<String>,
+    /// Which camera is simulated
+    #[arg(long, value_enum, default_value_t, requires = "camera")]
+    sim_camera: SimulatedEye,
+    /// What a simulated room is like is drawn from this seed
+    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true, requires = "camera")]
+    seed: u64,
     /// Lens that was calibrated before: a file that `calibrate lens` or `calibrate markers` has written
     #[arg(long, value_name = "FILE.toml")]
     lens: Option<String>,
@@ -63,8 +81,10 @@ const KNOWN_FOCAL: f64 = 0.005;
 
 pub(super) fn run(args: &MarkersArgs) -> Result<Answer, Failure> {
     let known = args.lens.as_deref().map(camera_file::read).transpose()?;
-    let paths = std::slice::from_ref(&args.image);
-    let seen = Seen::of(paths, args.bar.as_ref(), known.as_ref())?;
+    let seen = match (&args.image, &args.camera) {
+        (Some(path), _) => Seen::of(vec![found(path)?], args.bar.as_ref(), known.as_ref())?,
+        (None, source) => Seen::of(vec![taken(args, source.as_deref())?], args.bar.as_ref(), known.as_ref())?,
+    };
     let camera =
         seen.survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
     let wall = Wall::of(&seen.survey, &camera);
@@ -95,7 +115,8 @@ pub(super) fn lens(args: &LensArgs) -> Result<Answer, Failure> {
         );
         return Err(Failure::usage("usage", message));
     }
-    let seen = Seen::of(&args.images, args.bar.as_ref(), None)?;
+    let views: Result<Vec<View>, Failure> = args.images.iter().map(|path| found(path)).collect();
+    let seen = Seen::of(views?, args.bar.as_ref(), None)?;
     let file = CameraFile::of(&seen.survey, None, seen.scale);
     write_file(&args.output, camera_file::write(&file)?)?;
     let belief = &seen.survey.belief;
@@ -123,33 +144,32 @@ struct Seen {
 }
 
 impl Seen {
-    fn of(paths: &[String], bar: Option<&Length>, known: Option<&LensBelief>) -> Result<Self, Failure> {
+    fn of(views: Vec<View>, bar: Option<&Length>, known: Option<&LensBelief>) -> Result<Self, Failure> {
         let scale = bar.map_or(1.0, |bar| bar.0 / BAR_M);
         if !(0.5..=2.0).contains(&scale) {
             let message =
                 format!("--bar is {:.1} mm; as meant it is {:.0} mm", 1e3 * scale * BAR_M, 1e3 * BAR_M);
             return Err(Failure::usage("usage", message));
         }
-        let mut views = Vec::new();
         let mut size: Option<(usize, usize)> = known.map(|known| known.lens.size_px.into());
-        for path in paths {
-            let (tags, own) = found(path)?;
-            let wanted = *size.get_or_insert(own);
-            if own != wanted {
+        for View { name, size: own, .. } in &views {
+            let wanted = *size.get_or_insert(*own);
+            if *own != wanted {
                 let message = format!(
-                    "{path} has {} × {} px, not {} × {} as the others",
+                    "{name} has {} × {} px, not {} × {} as the others",
                     own.0, own.1, wanted.0, wanted.1
                 );
                 return Err(Failure::usage("camera-image", message));
             }
-            views.push(tags);
         }
+        let names = views.iter().map(|view| view.name.as_str()).collect::<Vec<_>>().join(", ");
+        let views: Vec<Vec<SeenTag>> = views.into_iter().map(|view| view.tags).collect();
         let (width, height) = size.unwrap_or_default();
         let belief = known.copied().unwrap_or_else(|| LensBelief::unknown(width, height));
         let boards = Board::ALL.map(|board| board.scaled(scale));
         let markers = views.iter().map(Vec::len).sum();
         let survey = survey(&belief, &boards, &views)
-            .map_err(|e| Failure::failed("camera-not-found", format!("{}: {e}", paths.join(", "))))?;
+            .map_err(|e| Failure::failed("camera-not-found", format!("{names}: {e}")))?;
         Ok(Self { survey, markers, scale })
     }
 
@@ -240,9 +260,6 @@ impl Seen {
     }
 }
 
-/// Names of the boards.
-const BOARDS: [&str; 2] = ["fine", "coarse"];
-
 /// A page's number; of a coarse board it says so.
 fn page_name(page: &PlacedPage) -> String {
     let number = page.page + 1;
@@ -250,13 +267,36 @@ fn page_name(page: &PlacedPage) -> String {
 }
 
 /// Markers of an image, and its size.
-fn found(path: &str) -> Result<(Vec<SeenTag>, (usize, usize)), Failure> {
+struct View {
+    name: String,
+    tags: Vec<SeenTag>,
+    size: (usize, usize),
+}
+
+impl View {
+    fn of(name: &str, grey: &Grey) -> Self {
+        Self { name: name.to_owned(), tags: markers(grey), size: (grey.width(), grey.height()) }
+    }
+}
+
+fn found(path: &str) -> Result<View, Failure> {
     let Source::Pixels(pixels) = picture::read(path)? else {
         let message = format!("{path} is a drawing; give an image that a camera took");
         return Err(Failure::usage("not-a-picture", message));
     };
-    let size = (pixels.grey.width(), pixels.grey.height());
-    Ok((markers(&pixels.grey), size))
+    Ok(View::of(path, &pixels.grey))
+}
+
+/// An image of a camera.
+fn taken(args: &MarkersArgs, source: Option<&str>) -> Result<View, Failure> {
+    let picture = eyes::picture(source)?;
+    let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));
+    let placement = PlacementArgs::default();
+    let request =
+        RoomRequest { picture, placement: &placement, eye: args.sim_camera, pages: true, seed: args.seed };
+    let room = Furnished::new(&request, &rig, pose)?;
+    let pixels = well_exposed(&mut room.watched(&rig, pose))?;
+    Ok(View::of(source.unwrap_or_default(), &grey(&pixels)?))
 }
 
 fn stands(camera: &SurveyedCamera) -> String {
