@@ -23,6 +23,7 @@ pub(crate) struct CameraFile {
     pose: Option<PoseTable>,
     score: ScoreTable,
     /// Pages that were seen, where the pose is in the frame of the first.
+    #[serde(default)]
     pages: Vec<PageTable>,
 }
 

@@ -14,7 +14,9 @@ use tracelight_trajectory::Plan;
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::failure::Failure;
-use crate::output::{self, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing};
+use crate::output::{
+    self, EyeFigures, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing,
+};
 use crate::picture;
 use crate::progress::Progress;
 use crate::rigfile;
@@ -255,8 +257,14 @@ fn write(
     let strokes = placed.svg(drawing);
     let path = dir.join("strokes.svg");
     std::fs::write(&path, strokes).map_err(|e| cannot_write(&path, &e))?;
+    if let Some(seen) = &prepared.seen {
+        let path = dir.join("camera.jpg");
+        output::write_jpeg(&path, &seen.image)?;
+    }
     write_rig(args, dir, laps)?;
-    let notes: Vec<String> = prepared.notes.iter().chain(&laps.notes).cloned().collect();
+    let eye = prepared.seen.as_ref().map(|seen| seen.after(args, &laps.last)).transpose()?;
+    let seen = eye.iter().flat_map(EyeFigures::words);
+    let notes: Vec<String> = prepared.notes.iter().chain(&laps.notes).cloned().chain(seen).collect();
     let tracking: Tracking = score(&schedule.plan, &laps.last, schedule.plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
     let job = Job {
@@ -290,7 +298,7 @@ fn write(
         },
         seed: args.seed,
         dry_run: args.dry_run,
-        eye: prepared.seen.as_ref().map(|seen| seen.after(args, &laps.last)).transpose()?,
+        eye,
     };
     Ok(output::write_all(dir, &job)?)
 }

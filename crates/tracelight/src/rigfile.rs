@@ -5,6 +5,7 @@
 //! the values of the preset `report`.
 
 mod caret;
+mod found;
 mod hand_tuned;
 mod keys;
 mod save;
@@ -19,9 +20,10 @@ use crate::failure::Failure;
 use crate::picture::read_bytes;
 use crate::units;
 use caret::Mark;
+use found::identified_keys;
 use hand_tuned::rig_keys;
 pub(crate) use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
-use keys::{Choice, Key, Slot, identified_keys, model_keys};
+use keys::{Choice, Key, Slot, model_keys};
 pub(crate) use save::{date, is_same, save, today};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.

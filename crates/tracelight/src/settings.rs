@@ -10,7 +10,7 @@ use tracelight_sim::RigConfig;
 pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Setting> {
     let mm = |m: f64| format!("{:.1} mm", m * 1e3);
     let rows = [
-        ("picture", args.name().to_owned()),
+        (if args.eye.camera.is_some() { "camera" } else { "picture" }, args.name().to_owned()),
         ("size", format!("{} × {}", mm(placed.size_m.0), mm(placed.size_m.1))),
         ("offset", args.placement.offset.map_or("none".into(), |o| format!("{}, {}", o.0, o.1))),
         ("rotate", args.placement.rotate.map_or("none".into(), |a| a.to_string())),

@@ -217,7 +217,7 @@ fn what_is_no_calibration_says_why() {
     check(&["lens", star, star], 2, "at least 3");
     check(&["markers", star, "--lens", &file("a.toml", "[lens]\nsize_px = 3\n")], 2, "no camera file");
     let lens = "date = \"2026-01-01\"\n[lens]\nsize_px = [640, 480]\nfocal_px = [0.0, 1.0]\ncentre_px = [1.0, 1.0]\nradial = [0.0, 0.0, 0.0]\n\
-                tangential = [0.0, 0.0]\ncovariance = []\n[score]\nrms_px = 0.1\nplaces = 3\npages = [1]\nprint_scale = 1.0\n";
+                tangential = [0.0, 0.0]\ncovariance = []\n[score]\nrms_px = 0.1\nplaces = 3\nprint_scale = 1.0\n";
     check(&["markers", star, "--lens", &file("b.toml", lens)], 2, "lens.focal_px");
     check(
         &["markers", star, "--lens", &file("c.toml", &lens.replace("[0.0, 1.0]", "[500.0, 500.0]"))],
@@ -233,6 +233,28 @@ fn what_is_no_calibration_says_why() {
     ] {
         check(&["markers", star, "--lens", &file("d.toml", &known.replace(from, to))], 2, what);
     }
+    // a pose without its covariance, and a page of no board
+    let pose =
+        "[pose]\nturn_rad = [0.0, 0.0, 9.0]\ntranslation_m = [0.0, 0.0, 1.0]\ncovariance = []\n[score]";
+    let sure = (0..9).map(|i| {
+        format!("[{}]", (0..9).map(|k| if i == k { "1.0" } else { "0.0" }).collect::<Vec<_>>().join(", "))
+    });
+    let sure =
+        known.replace("covariance = []", &format!("covariance = [{}]", sure.collect::<Vec<_>>().join(", ")));
+    let posed = sure.replace("[score]", pose);
+    check(&["markers", star, "--lens", &file("e.toml", &posed)], 2, "pose: no camera stands at");
+    check(
+        &["markers", star, "--lens", &file("f.toml", &posed.replace("9.0]", "1.0]"))],
+        2,
+        "pose.covariance",
+    );
+    let page = "\n[[pages]]\nboard = \"large\"\npage = 1\nmiddle_m = [0.0, 0.0]\nturn_rad = 0.0\n";
+    check(
+        &["markers", star, "--lens", &file("g.toml", &(sure.clone() + page))],
+        2,
+        "a page is of the board fine or coarse",
+    );
+
     let out = dir.join("page");
     let name = |extension: &str| format!("{}.{extension}", out.display());
     check(&["sheet", "-o", &name("png")], 2, ".pdf or .svg");

@@ -1,4 +1,4 @@
-use tracelight_stroke::{Point, Stroke, StrokeKind};
+use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
 
 use crate::Grey;
 
@@ -12,7 +12,7 @@ const LESS: f64 = 0.25;
 /// By how much the ink along a stroke stands out from what is beside it, on *both* sides of a pen's line, in levels: but for a quarter of
 /// its length at least so much. The edge of a sheet of paper or of a shadow stands out from one side only, and a patch that is cut out of
 /// a gentle slope of light for part of its outline only: of such there is next to nothing left.
-pub fn stands_out(grey: &Grey, stroke: &Stroke, light_on_dark: bool) -> f64 {
+pub(crate) fn stands_out(grey: &Grey, stroke: &Stroke, light_on_dark: bool) -> f64 {
     let sign = if light_on_dark { -1.0 } else { 1.0 };
     let half = 0.5 * stroke.pen.unwrap_or(0.0);
     let mut found = Vec::new();
@@ -28,7 +28,7 @@ pub fn stands_out(grey: &Grey, stroke: &Stroke, light_on_dark: bool) -> f64 {
             if length == 0.0 {
                 continue;
             }
-            let across = tracelight_stroke::Vec2::new(-ahead.y, ahead.x) / length;
+            let across = Vec2::new(-ahead.y, ahead.x) / length;
             let level = |off: f64| between(grey, at + across * off);
             found.push(match stroke.kind {
                 StrokeKind::Centreline => {

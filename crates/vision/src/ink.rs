@@ -37,8 +37,12 @@ pub(crate) struct Ink {
 
 impl Ink {
     /// Finds the ink of an image and refuses one that has none. `threshold_percent` is the darkness from which on it
-    /// is ink, % of the paper's brightness; without it, it is found.
-    pub(crate) fn of(image: &Grey, threshold_percent: Option<f64>) -> Result<Self, VisionError> {
+    /// is ink, % of the paper's brightness; without it, it is found. Paper may have hard edges, of `sheets` or of shadows.
+    pub(crate) fn of(
+        image: &Grey,
+        threshold_percent: Option<f64>,
+        sheets: bool,
+    ) -> Result<Self, VisionError> {
         let reduction = image.reduction();
         let mut plane =
             if reduction > 1 { Cow::Owned(image.reduced(reduction)) } else { Cow::Borrowed(&image.plane) };
@@ -48,7 +52,7 @@ impl Ink {
             plane.to_mut().values.iter_mut().for_each(|v| *v = 255 - *v);
             raw_levels.reverse();
         }
-        let paper = Paper::of(&plane);
+        let paper = Paper::of(&plane, sheets);
         let mut darkness = paper.darkness(&plane);
         let noise_levels = noise(&darkness, SAMPLED);
         let is_noisy = noise_levels > SMOOTHED_FROM;
@@ -345,28 +349,34 @@ mod tests {
     #[test]
     fn polarity_is_found_without_being_told() {
         let line = |x: usize, y: usize| (x + y) % 60 < 5 && (20..100).contains(&y);
-        let dark = Ink::of(&image(|x, y| if line(x, y) { 40 } else { 220 }), None).unwrap();
-        let light = Ink::of(&image(|x, y| if line(x, y) { 220 } else { 40 }), None).unwrap();
+        let dark = Ink::of(&image(|x, y| if line(x, y) { 40 } else { 220 }), None, false).unwrap();
+        let light = Ink::of(&image(|x, y| if line(x, y) { 220 } else { 40 }), None, false).unwrap();
         assert!(!dark.quality.light_on_dark && light.quality.light_on_dark);
         let filled = |x: usize, y: usize| (x as f64 - 80.0).hypot(y as f64 - 60.0) < 55.0;
         assert!(
-            !Ink::of(&image(|x, y| if filled(x, y) { 30 } else { 230 }), None).unwrap().quality.light_on_dark
+            !Ink::of(&image(|x, y| if filled(x, y) { 30 } else { 230 }), None, false)
+                .unwrap()
+                .quality
+                .light_on_dark
         );
         assert!(
-            Ink::of(&image(|x, y| if filled(x, y) { 230 } else { 30 }), None).unwrap().quality.light_on_dark
+            Ink::of(&image(|x, y| if filled(x, y) { 230 } else { 30 }), None, false)
+                .unwrap()
+                .quality
+                .light_on_dark
         );
     }
 
     #[test]
     fn pictures_without_a_drawing_are_refused_with_the_figure_that_failed() {
         for level in [0, 128, 255] {
-            let error = Ink::of(&image(|_, _| level), None).unwrap_err();
+            let error = Ink::of(&image(|_, _| level), None, false).unwrap_err();
             assert!(matches!(error, VisionError::NoContrast { contrast, .. } if contrast < 1.0), "{error}");
         }
-        let faint = Ink::of(&image(|x, y| 127 + ((x + y) % 2) as u8), None).unwrap_err();
+        let faint = Ink::of(&image(|x, y| 127 + ((x + y) % 2) as u8), None, false).unwrap_err();
         assert!(matches!(faint, VisionError::NoContrast { .. }), "{faint}");
         for strength in [255.0, 80.0] {
-            let noise = Ink::of(&image(|x, y| (strength * noise_at(x, y)) as u8), None).unwrap_err();
+            let noise = Ink::of(&image(|x, y| (strength * noise_at(x, y)) as u8), None, false).unwrap_err();
             assert!(matches!(noise, VisionError::Noise { .. }), "{noise}");
         }
     }
@@ -400,7 +410,7 @@ mod tests {
             let pen = if (60..65).contains(&x) && y > 20 { 60.0 } else { 0.0 };
             (200.0 - pen + 20.0 * (noise_at(x, y) - 0.5)) as u8
         };
-        let ink = Ink::of(&image(level), None).unwrap();
+        let ink = Ink::of(&image(level), None, false).unwrap();
         let mask = ink.mask();
         assert!((60..65).all(|x| mask.get(x, 60)));
         assert!(ink.quality.ink_percent < 4.0, "{:?}", ink.quality);

@@ -57,7 +57,6 @@ mod sweep;
 mod thin;
 mod trace;
 
-pub use contrast::stands_out;
 pub use error::VisionError;
 pub use fiducial::{TAG_COUNT, Tag, TagPlace, find_tags, tag_cells};
 pub use grey::Grey;

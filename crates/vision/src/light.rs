@@ -38,8 +38,8 @@ pub(crate) struct Paper {
 }
 
 impl Paper {
-    /// Of an image with light paper.
-    pub(crate) fn of(image: &Plane<u8>) -> Self {
+    /// Of an image with light paper. It may have hard edges if `sheets` lie in it, or if it looks as if shadows had.
+    pub(crate) fn of(image: &Plane<u8>, sheets: bool) -> Self {
         let tile = (image.width.min(image.height) / TILES).max(LEAST_TILE);
         let bright = tile_levels(image, tile);
         let surface = Surface::over(&bright);
@@ -51,8 +51,8 @@ impl Paper {
         let levels =
             even.values.iter().zip(surface.on(&even)).map(|(r, s)| (r * s).clamp(DIMMEST, 255.0)).collect();
         let levels = Plane { values: levels, ..even };
-        let shaded =
-            shadow::is_cast(&bright).then(|| shaded(image, tile, &surface.on(&bright).collect::<Vec<_>>()));
+        let has_edges = sheets || shadow::is_cast(&bright);
+        let shaded = has_edges.then(|| shaded(image, tile, &surface.on(&bright).collect::<Vec<_>>()));
         Self { tile, levels, shaded }
     }
 
@@ -310,7 +310,7 @@ mod tests {
             (paper(x) * if ink(x, y) { 0.12 } else { 1.0 }) as u8
         };
         let image = Plane { width: 640, height: 480, values: (0..640 * 480).map(level).collect() };
-        let dark = Paper::of(&image).darkness(&image);
+        let dark = Paper::of(&image, false).darkness(&image);
         let (mut palest, mut darkest) = (255, 0);
         for (i, &d) in dark.values.iter().enumerate() {
             match ink(i % 640, i / 640) {

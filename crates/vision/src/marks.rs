@@ -46,7 +46,7 @@ impl Marks {
 /// # Errors
 /// When the picture has no contrast, there are not two such patches, or they lie on a slant.
 pub fn find_two_marks(image: &Grey) -> Result<Marks, VisionError> {
-    let ink = Ink::of(image, None)?;
+    let ink = Ink::of(image, None, false)?;
     // the ruler itself may be what the threshold parts from the wall: then the tapes are what is darker still
     let darker = Split::of(&darker_half(&ink)).threshold;
     let mut most = 0;

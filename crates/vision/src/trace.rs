@@ -1,6 +1,7 @@
 use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 
 use crate::centreline::{self, Row};
+use crate::contrast::stands_out;
 use crate::ink::Ink;
 use crate::inside::inside;
 use crate::mask::Mask;
@@ -51,6 +52,8 @@ pub struct Options {
     pub despeckle_px2: Option<f64>,
     /// Strokes shorter than this are dropped, px.
     pub min_length_px: f64,
+    /// Whether sheets of paper lie or hang in the image: their edges are none of the drawing's.
+    pub sheets: bool,
 }
 
 impl Default for Options {
@@ -62,6 +65,7 @@ impl Default for Options {
             threshold_percent: None,
             despeckle_px2: None,
             min_length_px: 0.0,
+            sheets: false,
         }
     }
 }
@@ -120,7 +124,7 @@ pub struct Traced {
 /// out of its bounds, or leaves nothing.
 pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
     options.check()?;
-    let ink = Ink::of(image, options.threshold_percent)?;
+    let ink = Ink::of(image, options.threshold_percent, options.sheets)?;
     let mut mask = ink.mask();
     let regions = drawn(&mut mask, least_patch(&ink, options))?;
     let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
@@ -138,7 +142,11 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
     let (width, height) = (mask.width as f64, mask.height as f64);
     let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
     let scale = Affine::scale(ink.reduction as f64);
-    let strokes = long_enough(Drawing { strokes }.transformed(scale), options.min_length_px)?;
+    let mut strokes = Drawing { strokes }.transformed(scale);
+    if options.sheets {
+        strokes = ink_only(&strokes, image, ink.quality.light_on_dark);
+    }
+    let strokes = long_enough(strokes, options.min_length_px)?;
     Ok(Traced {
         width_px: image.width(),
         height_px: image.height(),
@@ -147,6 +155,18 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
         strokes,
         missed_ink,
     })
+}
+
+/// What stands out less than this share of what stands out most is an edge of paper or of a shadow: a pencil beside a pen keeps more.
+const LEAST_CONTRAST: f64 = 0.25;
+
+/// Strokes that are ink.
+fn ink_only(drawing: &Drawing, image: &Grey, light_on_dark: bool) -> Drawing {
+    let contrast = |stroke: &Stroke| stands_out(image, stroke, light_on_dark);
+    let contrasts: Vec<f64> = drawing.strokes.iter().map(contrast).collect();
+    let least = LEAST_CONTRAST * contrasts.iter().copied().fold(0.0, f64::max);
+    let kept = drawing.strokes.iter().zip(&contrasts).filter(|(_, contrast)| **contrast >= least);
+    Drawing { strokes: kept.map(|(stroke, _)| stroke.clone()).collect() }
 }
 
 /// Chords that measure a length or a pen's share of it stay this close to their path, px.

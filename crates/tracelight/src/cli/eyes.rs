@@ -7,7 +7,7 @@ use crate::eye::room::SimulatedEye;
 use crate::failure::Failure;
 
 /// Which camera looks at the wall.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 pub(crate) struct EyeArgs {
     /// Camera: sim:PICTURE is a simulated one in front of a simulated wall with PICTURE on it, sim one without
     #[arg(long, value_name = "SOURCE")]

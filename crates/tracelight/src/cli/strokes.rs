@@ -188,7 +188,7 @@ fn stages(picture: &str, source: &Source, tracing: &TracingArgs) -> Result<Strin
         let message = format!("--stages: {picture} has strokes already, and no ink to be found");
         return Err(Failure::usage("usage", message));
     };
-    let stages = Stages::of(&pixels.grey, tracing.threshold.0)
+    let stages = Stages::of(&pixels.grey, tracing.threshold.0, tracing.sheets)
         .map_err(|e| Failure::failed("no-strokes-found", format!("{picture}: {e}")))?;
     let name =
         Path::new(picture).file_name().map_or_else(|| picture.to_owned(), |n| n.to_string_lossy().into());

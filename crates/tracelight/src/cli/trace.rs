@@ -39,9 +39,7 @@ fn text(s: &Summary) -> String {
         ),
         false => "\nerror:  none to measure, nothing was lit".to_owned(),
     };
-    if let Some(eye) = &s.camera {
-        text += &seen_text(eye);
-    }
+    s.camera.iter().flat_map(EyeFigures::words).for_each(|line| text += &format!("\n{line}"));
     let lost = s.run.lost_counts;
     if (lost.pan, lost.tilt) != (0, 0) {
         text += &format!(
@@ -53,28 +51,6 @@ fn text(s: &Summary) -> String {
         0 => {}
         1 => text += "\ndark:   once where light was planned; the report says when and why",
         n => text += &format!("\ndark:   {n} times where light was planned; the report says when and why"),
-    }
-    text
-}
-
-fn seen_text(eye: &EyeFigures) -> String {
-    let mut text = match eye.markers_rms_px {
-        Some(px) => format!("\ncamera: {} markers, {px:.3} px off, rms", eye.markers),
-        None => "\ncamera: believed to stand where it was calibrated, no markers are in sight".to_owned(),
-    };
-    if let Some(head) = &eye.head {
-        text += &format!(
-            "; head found from {} dots in {} images, {:.3} mm off, rms",
-            head.dots, head.spots, head.rms_mm
-        );
-    }
-    if let Some(figure) = &eye.figure_mm {
-        text += &format!(
-            "\nfigure: the light is {:.3} mm from it, rms, 99 % within {:.3} mm, on {:.1} % of it (known because the room is simulated)",
-            figure.rms,
-            figure.p99,
-            100.0 * figure.covered_share
-        );
     }
     text
 }

@@ -30,6 +30,9 @@ pub(crate) struct TracingArgs {
     /// Change of direction from which on a break is a corner and stays sharp
     #[arg(long, value_name = "ANGLE", default_value = "25deg", allow_hyphen_values = true, value_parser = corner_angle)]
     pub(crate) corner_angle: Angle,
+    /// Sheets of paper lie or hang in the picture, as in a photograph of a wall or a table: their edges are no lines
+    #[arg(long)]
+    pub(crate) sheets: bool,
 }
 
 impl Default for TracingArgs {
@@ -42,6 +45,7 @@ impl Default for TracingArgs {
             min_length: LeastLength::Pixels(0.0),
             tolerance: Pixels(0.35),
             corner_angle: Angle(25_f64.to_radians()),
+            sheets: false,
         }
     }
 }
@@ -83,6 +87,7 @@ impl TracingArgs {
             threshold_percent: self.threshold.0,
             despeckle_px2: self.despeckle.0,
             min_length_px: self.min_length.in_units(metres_per_px),
+            sheets: self.sheets,
         }
     }
 

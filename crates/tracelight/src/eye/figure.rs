@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use tracelight_aim::Camera;
 use tracelight_sim::Simulated;
 use tracelight_stroke::{Affine, Drawing, FitOptions, Path, Piece, Point, Stroke, Vec2, fit};
-use tracelight_vision::{Grey, stands_out};
+use tracelight_vision::Grey;
 
 use super::pages::without_pages;
 use super::wall::{SeenWall, see_wall, well_exposed};
@@ -85,15 +85,12 @@ fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Fai
         Failure::failed("camera-not-found", "the middle of the camera's image shows no wall")
     })?;
     let blank = without_pages(&wall.pixels, &wall);
-    let levels = grey(&blank)?;
-    let pixels = Pixels { grey: levels.clone(), colour: blank };
+    let pixels = Pixels { grey: grey(&blank)?, colour: blank };
+    // a figure is as often on a sheet on the wall as on the wall itself
+    let tracing = TracingArgs { sheets: true, ..request.tracing.clone() };
     let seen =
-        sketch_at("the camera's image", Source::Pixels(pixels), request.tracing, request.choice, &|_, _| {
-            scale_m
-        })?;
-    let light_on_dark = seen.quality.as_ref().is_some_and(|quality| quality.light_on_dark);
-    let ink = ink_only(&seen.drawing, &levels, light_on_dark);
-    let drawing = on_wall(&ink, &camera, scale_m);
+        sketch_at("the camera's image", Source::Pixels(pixels), &tracing, request.choice, &|_, _| scale_m)?;
+    let drawing = on_wall(&seen.drawing, &camera, scale_m);
     if drawing.strokes.is_empty() {
         return Err(Failure::failed("no-strokes-found", "what the camera's image shows is not on the wall"));
     }
@@ -115,19 +112,6 @@ fn metres_per_pixel(camera: &Camera) -> Option<f64> {
     let [width, height] = camera.lens.size_px.map(|n| n as f64);
     let [x, y] = camera.pixels_per_metre(camera.target(Point::new(width / 2.0, height / 2.0))?)?;
     Some(1.0 / x.cross(y).abs().sqrt())
-}
-
-/// What stands out less than this share of what stands out most is no ink: edges of paper, shadows.
-const LEAST_SHARE: f64 = 0.25;
-
-/// Strokes that are ink: a wall has edges of paper and of shadows, too.
-fn ink_only(drawing: &Drawing, levels: &Grey, light_on_dark: bool) -> Drawing {
-    let contrasts: Vec<f64> =
-        drawing.strokes.iter().map(|stroke| stands_out(levels, stroke, light_on_dark)).collect();
-    let most = contrasts.iter().copied().fold(0.0, f64::max);
-    let kept =
-        drawing.strokes.iter().zip(&contrasts).filter(|(_, contrast)| **contrast >= LEAST_SHARE * most);
-    Drawing { strokes: kept.map(|(stroke, _)| stroke.clone()).collect() }
 }
 
 /// Spacing of the points that carry a stroke from image to wall, px.
@@ -153,11 +137,10 @@ fn carried(path: &Path, camera: &Camera, options: &FitOptions) -> Option<Path> {
     let mut stretches = stretches(path);
     let wall =
         |pixels: &[Point]| pixels.iter().map(|pixel| camera.target(*pixel)).collect::<Option<Vec<Point>>>();
-    if let ([only], true) = (stretches.as_mut_slice(), path.is_closed()) {
-        if !has_corner(path.pieces().last()?, path.pieces().next()?) {
-            only.pop();
-            return fit(&wall(only)?, true, options);
-        }
+    let is_smooth = path.is_closed() && !has_corner(path.pieces().last()?, path.pieces().next()?);
+    if let ([only], true) = (stretches.as_mut_slice(), is_smooth) {
+        only.pop();
+        return fit(&wall(only)?, true, options);
     }
     let mut carried = Path::new(camera.target(path.start())?);
     for stretch in &stretches {
@@ -230,7 +213,12 @@ fn square_on(drawing: &Drawing, pixels: &Raster, camera: &Camera, scale_m: f64) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tracelight_aim::{CameraPose, Lens};
+    use crate::cli::placing::PlacementArgs;
+    use crate::eye::Shot;
+    use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
+    use tracelight_aim::{CameraPose, HeadPose, Lens};
+    use tracelight_rig::{Command, Rig, Telemetry};
+    use tracelight_sim::{RigConfig, Room, Tick};
     use tracelight_stroke::Element;
 
     fn camera() -> Camera {
@@ -264,6 +252,80 @@ mod tests {
         (0..2).for_each(|_| circle.push(Element::Arc { centre: Point::new(600.0, 300.0), sweep: PI }));
         circle.close();
         check(circle, 0);
+    }
+
+    /// A room whose camera's lens is covered for so many images.
+    struct Covered {
+        room: Room,
+        images: u32,
+    }
+
+    impl Rig for Covered {
+        fn send(&mut self, command: Command) -> Result<(), Command> {
+            self.room.send(command)
+        }
+
+        fn next(&mut self) -> Option<Telemetry> {
+            self.room.next()
+        }
+    }
+
+    impl Simulated for Covered {
+        fn step(&mut self) -> Tick {
+            self.room.step()
+        }
+
+        fn patience_ticks(&self) -> usize {
+            self.room.patience_ticks()
+        }
+    }
+
+    impl Eye for Covered {
+        fn expose(&mut self, exposure_s: f64) {
+            Eye::expose(&mut self.room, exposure_s);
+        }
+
+        fn longest_s(&self) -> f64 {
+            self.room.longest_s()
+        }
+
+        fn shot(&mut self) -> Option<Shot> {
+            let shot = self.room.shot()?;
+            let is_covered = self.images > 0;
+            self.images = self.images.saturating_sub(1);
+            Some(if is_covered { shot.covered() } else { shot })
+        }
+    }
+
+    fn covered(images: u32) -> Covered {
+        let (rig, pose) = (RigConfig::report(), HeadPose::square_on(0.9144));
+        let placement = PlacementArgs::default();
+        let picture = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/house.png");
+        let request = RoomRequest {
+            picture: Some(picture),
+            placement: &placement,
+            eye: SimulatedEye::Webcam,
+            pages: true,
+            seed: 2,
+        };
+        Covered { room: Furnished::new(&request, &rig, pose).unwrap().watched(&rig, pose), images }
+    }
+
+    #[test]
+    fn bad_images_are_refused_and_taken_again_so_often_and_no_more() {
+        let eye = EyeArgs::default();
+        let (tracing, placement, progress) =
+            (TracingArgs::default(), PlacementArgs::default(), Progress::new(true));
+        let request =
+            FigureRequest { eye: &eye, tracing: &tracing, choice: &placement.choice, most_refused: 3 };
+        // of several covered ones some are only taken to find how long to expose, some were under way
+        let found = see_figure(&mut covered(12), &request, &progress).unwrap();
+        assert!((1..=3).contains(&found.retaken), "{}", found.retaken);
+        assert_eq!(found.sketch.drawing.strokes.len(), 28);
+        let failure = see_figure(&mut covered(1000), &request, &progress).err().unwrap();
+        assert_eq!((failure.status, failure.code), (Status::Failed, "camera-not-found"));
+        assert!(failure.message.starts_with("4 images of the wall were refused"), "{}", failure.message);
+        assert!(failure.message.contains("dark to light: |█"), "{}", failure.message);
     }
 
     #[test]

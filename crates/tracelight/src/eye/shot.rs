@@ -47,6 +47,14 @@ impl Shot {
             .ok_or_else(|| broken("it has no pixels".to_owned()))
     }
 
+    /// The same of a camera whose lens is covered.
+    #[cfg(test)]
+    pub(crate) fn covered(mut self) -> Self {
+        let Sent::Simulated(rgb) = &mut self.sent;
+        rgb.fill(3);
+        self
+    }
+
     /// Its red, where a red laser is.
     pub(crate) fn red(&self) -> Result<Grey, Failure> {
         let red = self.pixels()?.rgb().iter().copied().step_by(3).collect();

@@ -15,7 +15,7 @@ use crate::eye::head::{find_head, in_front};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::failure::Failure;
 use crate::head_file;
-use crate::output::{EyeFigures, FigureMatch, HeadFigures};
+use crate::output::{EyeFigures, FigureMatch, HeadFigures, Raster};
 use crate::picture;
 use crate::progress::Progress;
 use crate::sketch::sketch;
@@ -25,6 +25,8 @@ use crate::stop::Stop;
 pub(super) struct Seen {
     pub(super) room: Furnished,
     pub(super) figures: EyeFigures,
+    /// The image in which the figure was found.
+    pub(super) image: Raster,
 }
 
 /// Looks at the wall, has the head draw dots unless it is known, and plans the figure.
@@ -71,7 +73,10 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
             let found = find_head(&mut rig, &camera, &driving, &mut tick)?;
             let alignment = found.aligned.alignment;
             believe(&mut driving, alignment.geometry, alignment.pose);
+            let truth = room.true_error_m(&alignment.geometry, &alignment.pose);
             Some(HeadFigures {
+                truth_rms_mm: truth.map(|(rms, _)| 1e3 * rms),
+                truth_max_mm: truth.map(|(_, most)| 1e3 * most),
                 dots: found.dots,
                 spots: found.aligned.spots,
                 rms_mm: 1e3 * found.aligned.rms_m,
@@ -88,7 +93,13 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         head,
         figure_mm: None,
     };
-    super::planned(sketch, placed, driving, Some(Seen { room, figures }), (progress, stop))
+    super::planned(
+        sketch,
+        placed,
+        driving,
+        Some(Seen { room, figures, image: wall.pixels }),
+        (progress, stop),
+    )
 }
 
 fn believe(driving: &mut Driving, geometry: tracelight_aim::HeadGeometry, pose: tracelight_aim::HeadPose) {

@@ -8,6 +8,7 @@
 //! | `trace.csv`, `fault.csv` | [`csv`] |
 //! | `run.mcap` | [`LogWriter`], tick by tick while the run goes on |
 //! | `trace.png` | [`painting`] |
+//! | `camera.jpg` | [`write_jpeg`], where a camera looked |
 //! | `report.html` | [`report`] |
 
 mod board;
@@ -94,6 +95,13 @@ pub(crate) struct Picture<'a> {
     pub(crate) raster: &'a Raster,
     /// From pixels (x right, y down, corner at the origin) to target metres.
     pub(crate) target_from_pixel: Affine,
+}
+
+/// Writes what a camera saw.
+pub(crate) fn write_jpeg(path: &Path, image: &Raster) -> Result<(), OutputError> {
+    const QUALITY: u8 = 90;
+    let reason = |e: image::ImageError| OutputError::Encode { path: path.to_owned(), reason: e.to_string() };
+    std::fs::write(path, image.jpeg(QUALITY).map_err(reason)?).map_err(OutputError::at(path))
 }
 
 /// The plane drawn on.

@@ -64,6 +64,31 @@ pub(crate) struct EyeFigures {
     pub(crate) figure_mm: Option<FigureMatch>,
 }
 
+impl EyeFigures {
+    /// What was seen, a line each.
+    pub(crate) fn words(&self) -> Vec<String> {
+        let mut camera = match self.markers_rms_px {
+            Some(px) => format!("camera: {} markers, {px:.3} px off, rms", self.markers),
+            None => "camera: believed to stand where it was calibrated, no markers are in sight".to_owned(),
+        };
+        if let Some(head) = &self.head {
+            camera += &format!(
+                "; head found from {} dots in {} images, {:.3} mm off, rms",
+                head.dots, head.spots, head.rms_mm
+            );
+        }
+        let figure = self.figure_mm.as_ref().map(|figure| {
+            format!(
+                "figure: the light is {:.3} mm from it, rms, 99 % within {:.3} mm, on {:.1} % of it (known because the room is simulated)",
+                figure.rms,
+                figure.p99,
+                100.0 * figure.covered_share
+            )
+        });
+        [camera].into_iter().chain(figure).collect()
+    }
+}
+
 /// See [`EyeFigures::head`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct HeadFigures {
@@ -74,6 +99,9 @@ pub(crate) struct HeadFigures {
     pub(crate) rms_mm: f64,
     /// How far off the spot is likely to be with both joints at zero.
     pub(crate) straight_ahead_mm: Option<f64>,
+    /// How far off it truly is over the picture's place, root of the mean square and at most; `null` where nobody knows.
+    pub(crate) truth_rms_mm: Option<f64>,
+    pub(crate) truth_max_mm: Option<f64>,
 }
 
 /// See [`EyeFigures::figure_mm`].

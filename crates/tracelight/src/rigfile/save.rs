@@ -5,8 +5,9 @@ use tracelight_sim::RigConfig;
 
 use crate::failure::Failure;
 
+use super::found::identified_keys;
 use super::hand_tuned::rig_keys;
-use super::keys::{Key, Slot, identified_keys, model_keys};
+use super::keys::{Key, Slot, model_keys};
 use super::shown;
 
 /// Writes a rig's model, what was identified of it and how it is driven into the rig file it came from, whole or not at all.
