@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use tracelight_stroke::Point;
-use tracelight_vision::{Grey, Mode, Options, Traced, find_two_marks, trace};
+use tracelight_vision::{Grey, Mode, Options, TAG_COUNT, Traced, find_tags, find_two_marks, trace};
 
 use crate::bytes::Bytes;
 use crate::sound::check_path;
@@ -28,13 +28,16 @@ pub fn check(data: &[u8]) {
         corner_rad: bytes.one_of(&CORNERS_RAD),
         ..Options::default()
     };
-    let levels = match bytes.byte() % 3 {
+    let style = bytes.byte();
+    let options = Options { sheets: style >= 128, ..options };
+    let levels = match style % 3 {
         0 => raw(bytes.rest(), width * height),
         1 => bits(bytes.rest(), width * height),
         _ => pens(bytes, width, height),
     };
     let Ok(image) = Grey::new(width, height, levels) else { return };
     let _ = find_two_marks(&image);
+    check_tags(&image);
     let found = trace(&image, &options);
     if let Ok(traced) = &found {
         check_traced(traced, width, height);
@@ -42,6 +45,15 @@ pub fn check(data: &[u8]) {
     // every run is slow under a sanitizer: one in eight is repeated
     if data.len().is_multiple_of(8) {
         assert_eq!(found, trace(&image, &options), "a second run differs");
+    }
+}
+
+/// Markers are found where they are in sight, and nowhere else.
+fn check_tags(image: &Grey) {
+    for tag in find_tags(image) {
+        assert!(tag.id < TAG_COUNT, "id {}", tag.id);
+        assert!(tag.corners.iter().all(|corner| corner.x.is_finite() && corner.y.is_finite()), "{:?}", tag.corners);
+        assert!(tag.deviation_px > 0.0 && tag.deviation_px.is_finite(), "{}", tag.deviation_px);
     }
 }
 

@@ -1,5 +1,7 @@
 //! What is known of a camera, as a file: its lens and, in front of a wall, its pose, with what they hold for.
 
+use std::fmt;
+
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 use toml_edit::{Array, Item};
@@ -41,7 +43,7 @@ struct PageTable {
 }
 
 /// Names of the boards, in the order of `Board::ALL`.
-pub(crate) const BOARDS: [&str; 2] = ["fine", "coarse"];
+const BOARDS: [&str; 2] = ["fine", "coarse"];
 
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -235,10 +237,36 @@ pub(crate) fn write(file: &CameraFile) -> Result<String, Failure> {
     ))
 }
 
+/// A page of a board, as people call it: page 3, or of a coarse board page 3 (coarse).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PageName {
+    /// Number of the board in `Board::ALL`.
+    board: usize,
+    /// From 0.
+    page: u16,
+}
+
+impl PageName {
+    pub(crate) const fn of(page: &PlacedPage) -> Self {
+        Self { board: page.board, page: page.page }
+    }
+}
+
+impl fmt::Display for PageName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match BOARDS.get(self.board) {
+            Some(board) if self.board > 0 => write!(f, "{} ({board})", self.page + 1),
+            _ => write!(f, "{}", self.page + 1),
+        }
+    }
+}
+
 /// What is known of a camera before it looks.
 #[derive(Clone, Debug)]
 pub(crate) struct KnownCamera {
     pub(crate) lens: LensBelief,
+    /// How much larger than meant the pages were printed.
+    pub(crate) print_scale: f64,
     /// Where it stood; none of a lens alone.
     pub(crate) stood: Option<Stood>,
 }
@@ -249,15 +277,19 @@ pub(crate) struct Stood {
     pub(crate) camera: SurveyedCamera,
     /// On which day.
     pub(crate) date: String,
-    /// Pages that hung there then: board, number and the wall's frame from theirs.
-    pages: Vec<(usize, u16, Affine)>,
+    /// Pages that hung there then, and the wall's frame from theirs; the wall's is that of the first.
+    pages: Vec<(PageName, Affine)>,
 }
 
 impl Stood {
     /// The wall's frame from that of a page, if that hung there.
-    pub(crate) fn wall_from(&self, page: &PlacedPage) -> Option<Affine> {
-        let own = self.pages.iter().find(|(board, number, _)| (*board, *number) == (page.board, page.page));
-        own.map(|(_, _, wall_from_page)| *wall_from_page)
+    pub(crate) fn wall_from(&self, page: PageName) -> Option<Affine> {
+        self.pages.iter().find(|(name, _)| *name == page).map(|(_, wall_from_page)| *wall_from_page)
+    }
+
+    /// The page whose frame is the wall's.
+    pub(crate) fn frame(&self) -> Option<PageName> {
+        self.pages.first().map(|(name, _)| *name)
     }
 }
 
@@ -286,12 +318,18 @@ pub(crate) fn read_whole(path: &str) -> Result<KnownCamera, Failure> {
         let board = BOARDS.iter().position(|name| *name == table.board)?;
         let place = Affine::rotate(table.turn_rad)
             .then_translate(Point::new(table.middle_m[0], table.middle_m[1]).to_vec2());
-        Some((board, table.page.checked_sub(1)?, place))
+        Some((PageName { board, page: table.page.checked_sub(1)? }, place))
     };
     let pages: Option<Vec<_>> = file.pages.iter().map(page).collect();
     let pages = pages.ok_or_else(|| {
         wrong("pages: a page is of the board fine or coarse, and counted from 1".to_owned())
     })?;
     let stood = camera.map(|camera| Stood { camera, date: file.date.clone(), pages });
-    Ok(KnownCamera { lens, stood })
+    let print_scale = file.score.print_scale;
+    if !(0.5..=2.0).contains(&print_scale) {
+        return Err(wrong(format!(
+            "score.print_scale is {print_scale}; pages are printed 0.5 to 2 times as large as meant"
+        )));
+    }
+    Ok(KnownCamera { lens, print_scale, stood })
 }

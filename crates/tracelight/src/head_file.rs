@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
 
+use crate::camera_file::PageName;
 use crate::cli::driving::Driving;
 use crate::eye::head::FoundHead;
 use crate::failure::Failure;
@@ -19,6 +20,8 @@ pub(crate) struct HeadFile {
     date: String,
     /// Name of the rig.
     rig: String,
+    /// The page whose frame the wall's is; empty where nobody knows.
+    page: String,
     pose: PoseTable,
     built: BuiltTable,
     images: ImagesTable,
@@ -66,21 +69,29 @@ struct ScoreTable {
     outliers: usize,
 }
 
+fn named(frame: Option<PageName>) -> String {
+    frame.map_or_else(String::new, |page| page.to_string())
+}
+
 /// What a head file tells.
+#[derive(Clone, Debug)]
 pub(crate) struct KnownHead {
+    path: String,
+    page: String,
     pub(crate) geometry: HeadGeometry,
     pub(crate) pose: HeadPose,
 }
 
 impl HeadFile {
     /// Of a head that was found.
-    pub(crate) fn of(found: &FoundHead, driving: &Driving) -> Self {
+    pub(crate) fn of(found: &FoundHead, driving: &Driving, frame: Option<PageName>) -> Self {
         let Alignment { geometry, pose, .. } = found.aligned.alignment;
         let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = pose;
         let HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, .. } = geometry;
         Self {
             date: crate::rigfile::today(),
             rig: driving.rig.name.clone(),
+            page: named(frame),
             pose: PoseTable { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
             built: BuiltTable { laser_offset_m, beam_off_rad, axis_skew_rad },
             images: ImagesTable {
@@ -128,7 +139,7 @@ pub(crate) fn read(path: &str, driving: &Driving) -> Result<KnownHead, Failure> 
         )));
     }
     file.check().map_err(wrong)?;
-    Ok(file.known(&driving.rig.model.geometry))
+    Ok(file.known(path, &driving.rig.model.geometry))
 }
 
 impl HeadFile {
@@ -168,12 +179,29 @@ impl HeadFile {
         Ok(())
     }
 
-    fn known(&self, told: &HeadGeometry) -> KnownHead {
+    fn known(&self, path: &str, told: &HeadGeometry) -> KnownHead {
         let PoseTable { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = self.pose;
         let BuiltTable { laser_offset_m, beam_off_rad, axis_skew_rad } = self.built;
         KnownHead {
             geometry: HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, range_rad: told.range_rad },
             pose: HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
+            path: path.to_owned(),
+            page: self.page.clone(),
         }
+    }
+}
+
+impl KnownHead {
+    /// Refuses a wall whose frame is that of another page.
+    pub(crate) fn check_frame(&self, frame: Option<PageName>) -> Result<(), Failure> {
+        let wall = named(frame);
+        if wall == self.page {
+            return Ok(());
+        }
+        let message = format!(
+            "{}: the head was found in the frame of page {}, and the wall's is that of page {wall}: calibrate it again",
+            self.path, self.page
+        );
+        Err(Failure::usage("head-file", message))
     }
 }

@@ -94,7 +94,7 @@ fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Fai
     if drawing.strokes.is_empty() {
         return Err(Failure::failed("no-strokes-found", "what the camera's image shows is not on the wall"));
     }
-    let (raster, wall_from_sheet) = square_on(&drawing, &wall.pixels, &camera, scale_m)
+    let (raster, wall_from_sheet, extent) = square_on(&drawing, &wall.pixels, &camera, scale_m)
         .ok_or_else(|| Failure::failed("no-strokes-found", "the figure has no size"))?;
     let size = (f64::from(raster.width()), f64::from(raster.height()));
     let sketch = Sketch {
@@ -103,7 +103,8 @@ fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Fai
         picture: Some(raster),
         ..seen
     };
-    let placed = Placed::of(drawing, size, wall_from_sheet);
+    let mut placed = Placed::of(drawing, size, wall_from_sheet);
+    placed.size_m = extent;
     Ok(SeenFigure { wall, sketch, placed, retaken: 0 })
 }
 
@@ -182,8 +183,13 @@ fn has_corner(before: Piece, after: Piece) -> bool {
 const SHOWN_PX: f64 = 1600.0;
 const RIM: f64 = 0.08;
 
-/// What the wall about a drawing looks like from straight ahead, and where its pixels are on the wall.
-fn square_on(drawing: &Drawing, pixels: &Raster, camera: &Camera, scale_m: f64) -> Option<(Raster, Affine)> {
+/// What the wall about a drawing looks like from straight ahead, where its pixels are on the wall, and how wide and high the drawing is, m.
+fn square_on(
+    drawing: &Drawing,
+    pixels: &Raster,
+    camera: &Camera,
+    scale_m: f64,
+) -> Option<(Raster, Affine, (f64, f64))> {
     let points = drawing.strokes.iter().flat_map(|stroke| stroke.path.flatten(0.1 * scale_m));
     let (mut low, mut high) = (Vec2::new(f64::MAX, f64::MAX), Vec2::new(f64::MIN, f64::MIN));
     for p in points {
@@ -207,7 +213,7 @@ fn square_on(drawing: &Drawing, pixels: &Raster, camera: &Camera, scale_m: f64) 
         let seen = camera.pixel(wall_from_sheet * at).filter(|pixel| camera.is_in_sight(*pixel));
         rgb.extend(seen.map_or([255; 3], |pixel| pixels.between(pixel)));
     }
-    Some((Raster::new(width as u32, height as u32, rgb)?, wall_from_sheet))
+    Some((Raster::new(width as u32, height as u32, rgb)?, wall_from_sheet, (size.x, size.y)))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, align};
+use tracelight_rig::Command;
 use tracelight_sim::{Simulated, run_segments};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
@@ -15,6 +16,8 @@ use super::spots::{History, SpotWatch, Timing};
 use super::wall::take;
 use crate::cli::driving::Driving;
 use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::stop::Stop;
 
 /// Radius of a dot, m: three and a half counts of the report's encoders at 3 ft.
 const DOT_M: f64 = 0.005;
@@ -79,11 +82,12 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     rig: &mut R,
     camera: &Camera,
     driving: &Driving,
-    tick: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    (progress, stop): (&Progress, &Stop),
 ) -> Result<FoundHead, Failure> {
     let places = dots(camera, driving);
     let plan = plan_of(&places, driving)?;
     let belief = AlignmentBelief::by_eye(driving.machine.geometry, driving.pose);
+    progress.stage("dots", plan.points.len() as u64);
     let mut watch = SpotWatch::new(*camera, SPOT_EXPOSURE_S);
     // an image without the spot, to begin with
     take(rig, watch.exposure_s)?;
@@ -91,12 +95,16 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     let run = run_segments(rig, &plan.segments, false, |rig, now| {
         history.push(&now.telemetry);
         look(rig, &mut watch, &history, &belief.alignment);
-        tick(now.telemetry.plan_tick)
+        progress.at(u64::from(now.telemetry.plan_tick));
+        if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
+    // dark, whether it came to its end or not
+    let _ = rig.send(Command::Disarm);
     for _ in 0..AFTERMATH_TICKS {
         history.push(&rig.step().telemetry);
         look(rig, &mut watch, &history, &belief.alignment);
     }
+    stop.check()?;
     if let Some(fault) = run.fault() {
         return Err(Failure::fault(fault));
     }

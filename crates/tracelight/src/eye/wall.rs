@@ -8,13 +8,15 @@ use tracelight_stroke::{Affine, Point};
 use tracelight_vision::{Grey, Tag, TagPlace, find_tags};
 
 use super::{Eye, Shot, grey};
-use crate::camera_file::{KnownCamera, Stood};
+use crate::camera_file::{KnownCamera, PageName, Stood};
 use crate::failure::Failure;
 use crate::output::Raster;
 
 /// A wall as one image shows it.
 pub(crate) struct SeenWall {
     pub(crate) camera: SurveyedCamera,
+    /// The page whose frame is the wall's; `None` where nobody wrote that down.
+    pub(crate) frame: Option<PageName>,
     /// Pages that are in sight, in the wall's frame: that of the first page when the camera was calibrated, or of the first in sight.
     pub(crate) pages: Vec<PlacedPage>,
     pub(crate) markers: usize,
@@ -68,6 +70,7 @@ pub(crate) fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<Se
     if let (true, Some(stood)) = (tags.is_empty(), stood) {
         return Ok(SeenWall {
             camera: stood.camera,
+            frame: stood.frame(),
             pages: Vec::new(),
             markers,
             rms_px: None,
@@ -75,10 +78,11 @@ pub(crate) fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<Se
             pixels,
         });
     }
-    let survey = survey(&belief, &Board::ALL, &[tags])
+    let scale = known.map_or(1.0, |known| known.print_scale);
+    let survey = survey(&belief, &Board::ALL.map(|board| board.scaled(scale)), &[tags])
         .map_err(|e| Failure::failed("camera-not-found", format!("the camera's image of the wall: {e}")))?;
     let found = survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
-    let (wall_from_first, stale) = held_against(&survey, &found, stood);
+    let (frame, wall_from_first, stale) = held_against(&survey, &found, stood);
     let turn_rad = wall_from_first.as_coeffs()[1].atan2(wall_from_first.as_coeffs()[0]);
     let placed = |page: &PlacedPage| PlacedPage {
         middle: wall_from_first * page.middle,
@@ -87,6 +91,7 @@ pub(crate) fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<Se
     };
     Ok(SeenWall {
         camera: found.in_frame(wall_from_first),
+        frame,
         pages: survey.pages.iter().map(placed).collect(),
         markers,
         rms_px: Some(survey.rms_px),
@@ -95,16 +100,20 @@ pub(crate) fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<Se
     })
 }
 
-/// The wall's frame from that of a survey's first page, and what became of where the camera stood.
-fn held_against(survey: &Survey, found: &SurveyedCamera, stood: Option<&Stood>) -> (Affine, Option<String>) {
-    let Some((stood, first)) = stood.zip(survey.pages.first()) else { return (Affine::IDENTITY, None) };
-    let Some(wall_from_first) = stood.wall_from(first) else {
+/// The page whose frame is the wall's, that frame from that of a survey's first page, and what became of where the camera stood.
+fn held_against(
+    survey: &Survey,
+    found: &SurveyedCamera,
+    stood: Option<&Stood>,
+) -> (Option<PageName>, Affine, Option<String>) {
+    let first = survey.pages.first().map(PageName::of);
+    let Some((stood, name)) = stood.zip(first) else { return (first, Affine::IDENTITY, None) };
+    let Some(wall_from_first) = stood.wall_from(name) else {
         let why = format!(
-            "page {} did not hang there on {}, when the camera was calibrated: the wall's frame is now that page's",
-            first.page + 1,
+            "page {name} did not hang there on {}, when the camera was calibrated: the wall's frame is now that page's",
             stood.date
         );
-        return (Affine::IDENTITY, Some(why));
+        return (first, Affine::IDENTITY, Some(why));
     };
     let moved_px = moved_px(&stood.camera.camera, &found.in_frame(wall_from_first).camera);
     let stale = match moved_px {
@@ -118,7 +127,7 @@ fn held_against(survey: &Survey, found: &SurveyedCamera, stood: Option<&Stood>) 
             stood.date
         )),
     };
-    (wall_from_first, stale)
+    (stood.frame(), wall_from_first, stale)
 }
 
 /// By how much places of the wall moved in the image from one camera to another, root of the mean square, px.

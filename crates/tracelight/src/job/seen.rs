@@ -1,9 +1,8 @@
 //! What a camera adds to a job: the figure is traced where it is seen, and the head is found from dots before it draws.
 
-use std::ops::ControlFlow;
-
+use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
 use tracelight_rig::PanTilt;
-use tracelight_sim::Run;
+use tracelight_sim::{Room, Run};
 use tracelight_stroke::{Comparison, Point, compare};
 
 use super::Prepared;
@@ -13,6 +12,7 @@ use crate::cli::tracing::TracingArgs;
 use crate::eye::figure::{FigureRequest, SeenFigure, see_figure};
 use crate::eye::head::{find_head, in_front};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
+use crate::eye::wall::SeenWall;
 use crate::failure::Failure;
 use crate::head_file;
 use crate::output::{EyeFigures, FigureMatch, HeadFigures, Raster};
@@ -33,22 +33,13 @@ pub(super) struct Seen {
 pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
-    let picture = args.eye.picture()?;
     let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
-    progress.stage("wall", 1);
-    if args.eye.sim_camera == SimulatedEye::Report && args.eye.has_pages() {
-        let message = "the report's camera does not see picture and pages at once: calibrate it first (tracelight calibrate markers \
-                       --camera sim --sim-camera report -o camera.toml), then give --calibration camera.toml";
+    if args.dry_run && known.is_none() {
+        let message = "a dry run draws no dots to find the head by: give --head (tracelight calibrate head -o head.toml)";
         return Err(Failure::usage("usage", message));
     }
-    let request = RoomRequest {
-        picture,
-        placement: &args.placement,
-        eye: args.eye.sim_camera,
-        pages: args.eye.has_pages(),
-        seed: args.seed,
-    };
-    let room = Furnished::new(&request, &driving.rig, driving.pose)?;
+    progress.stage("wall", 1);
+    let room = furnished(args, &driving)?;
     let mut rig = room.watched(&driving.rig, driving.pose);
     let wanted = FigureRequest {
         eye: &args.eye,
@@ -59,32 +50,14 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     let SeenFigure { wall, sketch, placed, retaken } = see_figure(&mut rig, &wanted, progress)?;
     wall.stale.iter().for_each(|stale| progress.say(&format!("note: {stale}")));
     stop.check()?;
-    let camera = wall.camera.camera;
     let head = match known {
         Some(known) => {
+            known.check_frame(wall.frame)?;
             believe(&mut driving, known.geometry, known.pose);
             None
         }
-        None => {
-            progress.stage("dots", 1);
-            driving.stand(in_front(&camera, driving.pose.distance_m));
-            let mut tick =
-                |_: u32| if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-            let found = find_head(&mut rig, &camera, &driving, &mut tick)?;
-            let alignment = found.aligned.alignment;
-            believe(&mut driving, alignment.geometry, alignment.pose);
-            let truth = room.true_error_m(&alignment.geometry, &alignment.pose);
-            Some(HeadFigures {
-                truth_rms_mm: truth.map(|(rms, _)| 1e3 * rms),
-                truth_max_mm: truth.map(|(_, most)| 1e3 * most),
-                dots: found.dots,
-                spots: found.aligned.spots,
-                rms_mm: 1e3 * found.aligned.rms_m,
-                straight_ahead_mm: found.aligned.deviation_m(PanTilt::default()).map(|m| 1e3 * m),
-            })
-        }
+        None => Some(found_head(&mut rig, &room, &wall, &mut driving, (progress, stop))?),
     };
-    stop.check()?;
     let figures = EyeFigures {
         source: args.name().to_owned(),
         markers: wall.markers,
@@ -93,16 +66,51 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         head,
         figure_mm: None,
     };
-    super::planned(
-        sketch,
-        placed,
-        driving,
-        Some(Seen { room, figures, image: wall.pixels }),
-        (progress, stop),
-    )
+    let seen = Seen { room, figures, image: wall.pixels };
+    super::planned(sketch, placed, driving, Some(seen), (progress, stop))
 }
 
-fn believe(driving: &mut Driving, geometry: tracelight_aim::HeadGeometry, pose: tracelight_aim::HeadPose) {
+fn furnished(args: &TraceArgs, driving: &Driving) -> Result<Furnished, Failure> {
+    if args.eye.sim_camera == SimulatedEye::Report && args.eye.has_pages() {
+        let message = "the report's camera does not see picture and pages at once: calibrate it first (tracelight calibrate markers \
+                       --camera sim --sim-camera report -o camera.toml), then give --calibration camera.toml";
+        return Err(Failure::usage("usage", message));
+    }
+    let request = RoomRequest {
+        picture: args.eye.picture()?,
+        placement: &args.placement,
+        eye: args.eye.sim_camera,
+        pages: args.eye.has_pages(),
+        seed: args.seed,
+    };
+    Furnished::new(&request, &driving.rig, driving.pose)
+}
+
+/// The head found from dots; from then on it is believed.
+fn found_head(
+    rig: &mut Room,
+    room: &Furnished,
+    wall: &SeenWall,
+    driving: &mut Driving,
+    watched: (&Progress, &Stop),
+) -> Result<HeadFigures, Failure> {
+    let camera = wall.camera.camera;
+    driving.stand(in_front(&camera, driving.pose.distance_m));
+    let found = find_head(rig, &camera, driving, watched)?;
+    let Alignment { geometry, pose, .. } = found.aligned.alignment;
+    believe(driving, geometry, pose);
+    let truth = room.true_error_m(&geometry, &pose);
+    Ok(HeadFigures {
+        dots: found.dots,
+        spots: found.aligned.spots,
+        rms_mm: 1e3 * found.aligned.rms_m,
+        straight_ahead_mm: found.aligned.deviation_m(PanTilt::default()).map(|m| 1e3 * m),
+        truth_rms_mm: truth.map(|(rms, _)| 1e3 * rms),
+        truth_max_mm: truth.map(|(_, most)| 1e3 * most),
+    })
+}
+
+fn believe(driving: &mut Driving, geometry: HeadGeometry, pose: HeadPose) {
     driving.rig.model.geometry = geometry;
     driving.stand(pose);
 }

@@ -1,5 +1,3 @@
-use std::ops::ControlFlow;
-
 use clap::Args;
 use serde_json::json;
 use tracelight_aim::HeadPose;
@@ -58,11 +56,9 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     wall.stale.iter().for_each(|stale| progress.say(&format!("note: {stale}")));
     stop.check()?;
     driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
-    progress.stage("dots", 1);
-    let mut tick = |_: u32| if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-    let found = find_head(&mut rig, &wall.camera.camera, &driving, &mut tick)?;
+    let found = find_head(&mut rig, &wall.camera.camera, &driving, (&progress, stop))?;
     stop.check()?;
-    write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving))?)?;
+    write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, wall.frame))?)?;
     let pose = found.aligned.alignment.pose;
     let truth = room.true_error_m(&found.aligned.alignment.geometry, &pose);
     Ok(Answer::new(text(&wall, &found, truth, &args.output), json(&found, truth).to_string()))

@@ -7,7 +7,7 @@ use tracelight_sim::RigConfig;
 use tracelight_stroke::Point;
 use tracelight_vision::Grey;
 
-use crate::camera_file::{self, BOARDS, CameraFile, Wall};
+use crate::camera_file::{self, CameraFile, PageName, Wall};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::eyes;
 use crate::cli::placing::{PlacementArgs, positive_length};
@@ -193,7 +193,8 @@ impl Seen {
     }
 
     fn markers_text(&self) -> String {
-        let pages: Vec<String> = self.survey.pages.iter().map(page_name).collect();
+        let pages: Vec<String> =
+            self.survey.pages.iter().map(|page| PageName::of(page).to_string()).collect();
         let s = if pages.len() == 1 { "" } else { "s" };
         format!(
             "markers:  {} on page{s} {}; {} places where black meets white, {:.3} px off, rms",
@@ -206,7 +207,9 @@ impl Seen {
 
     /// What does not look as it should, in words.
     fn warnings(&self) -> Vec<String> {
-        let page = |page: usize| self.survey.pages.get(page).map_or_else(String::new, page_name);
+        let page = |page: usize| {
+            self.survey.pages.get(page).map_or_else(String::new, |page| PageName::of(page).to_string())
+        };
         let words = |doubt: &Doubt| match *doubt {
             Doubt::Loose(number, m) => format!(
                 "page {} seems to lie {:.1} mm {} the plane of the others: stick it flat on the wall",
@@ -258,12 +261,6 @@ impl Seen {
             "warnings": self.warnings(),
         })
     }
-}
-
-/// A page's number; of a coarse board it says so.
-fn page_name(page: &PlacedPage) -> String {
-    let number = page.page + 1;
-    if page.board == 0 { number.to_string() } else { format!("{number} ({})", BOARDS[1]) }
 }
 
 /// Markers of an image, and its size.
