@@ -107,8 +107,8 @@ fn planned(
 impl Prepared {
     /// The head just powered up, believed to be this.
     fn rig(&self, believed: &RigConfig, seed: u64) -> SimulatedRig {
-        match &self.seen {
-            Some(seen) => seen.room.rig(believed, self.driving.pose),
+        match self.seen.as_ref().and_then(|seen| seen.room.as_ref()) {
+            Some(room) => room.rig(believed, self.driving.pose),
             None => SimulatedRig::new(believed, self.driving.pose, seed),
         }
     }
@@ -116,7 +116,7 @@ impl Prepared {
 
 /// `out/<the picture's stem>/`.
 fn default_dir(picture: &str) -> PathBuf {
-    let stem = Path::new(picture).file_stem().filter(|_| !["-", "sim", "sim:"].contains(&picture));
+    let stem = Path::new(picture).file_stem().filter(|_| !["-", "sim"].contains(&picture));
     Path::new("out").join(stem.unwrap_or_else(|| "picture".as_ref()))
 }
 

@@ -3,6 +3,8 @@
 
 mod support;
 
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
 use std::process::Output;
 
 use serde_json::Value;
@@ -91,6 +93,130 @@ fn the_reports_camera_is_calibrated_first_and_a_known_head_draws_no_dots() {
     assert!(String::from_utf8_lossy(&other.stderr).contains("it is of the rig report, and this is worn"));
 }
 
+/// An image that a camera took: the one of the page on cameras.
+fn house() -> Vec<u8> {
+    std::fs::read(support::root().join("docs/camera/house.jpg")).unwrap()
+}
+
+/// What a camera on the net sends: a stream, its parts with their lengths or without, or an image each time.
+#[derive(Clone, Copy)]
+enum Sends {
+    Stream {
+        lengths: bool,
+    },
+    Image,
+    /// The head of a stream, and then nothing.
+    Nothing,
+    Page,
+}
+
+/// A camera on the net; its address.
+fn camera(sends: Sends) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    std::thread::spawn(move || {
+        for connection in listener.incoming() {
+            std::thread::spawn(move || serve(connection.unwrap(), sends));
+        }
+    });
+    format!("http://{address}/video")
+}
+
+/// Answers one request; whoever asked may go before the end.
+fn serve(mut to: TcpStream, sends: Sends) -> std::io::Result<()> {
+    let mut request = [0; 4096];
+    let _ = to.read(&mut request)?;
+    let image = house();
+    let stream = "HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=--cut\r\n\r\n";
+    match sends {
+        Sends::Page => {
+            to.write_all(b"HTTP/1.1 200 OK\r\nContent-Type: text/html\r\nContent-Length: 2\r\n\r\nhi")
+        }
+        Sends::Image => {
+            write!(
+                to,
+                "HTTP/1.1 200 OK\r\nContent-Type: image/jpeg\r\nContent-Length: {}\r\n\r\n",
+                image.len()
+            )?;
+            to.write_all(&image)
+        }
+        Sends::Nothing => {
+            to.write_all(stream.as_bytes())?;
+            std::thread::sleep(std::time::Duration::from_secs(30));
+            Ok(())
+        }
+        Sends::Stream { lengths } => {
+            to.write_all(stream.as_bytes())?;
+            loop {
+                let length =
+                    if lengths { format!("Content-Length: {}\r\n", image.len()) } else { String::new() };
+                write!(to, "--cut\r\nContent-Type: image/jpeg\r\n{length}\r\n")?;
+                to.write_all(&image)?;
+                to.write_all(b"\r\n")?;
+                std::thread::sleep(std::time::Duration::from_millis(33));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_camera_on_the_net_is_looked_through() {
+    let dir = folder("camera-net");
+    let [out, file] = ["out", "camera.toml"].map(|name| dir.join(name).to_str().unwrap().to_owned());
+    for sends in [Sends::Stream { lengths: true }, Sends::Stream { lengths: false }, Sends::Image] {
+        let found = json(&run(&["calibrate", "markers", "--camera", &camera(sends), "-o", &file, "--json"]));
+        assert_eq!(found["markers"], 80);
+    }
+    let url = camera(Sends::Stream { lengths: true });
+    let traced = run(&["trace", "--camera", &url, "--calibration", &file, "--out", &out, "--json"]);
+    let said = String::from_utf8_lossy(&traced.stderr).into_owned();
+    assert!(said.contains("it is taken to stand 0.914 m in front of the middle"), "{said}");
+    assert!(!said.contains("moved"), "{said}");
+    let summary = json(&traced);
+    assert_eq!((&summary["strokes"]["count"], &summary["camera"]["head"]), (&28.into(), &Value::Null));
+    assert_eq!(summary["camera"]["figure_mm"], Value::Null, "nobody knows");
+    // 21.7 in of the poster's 24
+    check_at_most(&summary, "/target/width_m", 0.555);
+}
+
+#[test]
+fn a_camera_on_the_net_that_sends_nothing_of_use_is_named() {
+    for (url, what) in [
+        (camera(Sends::Nothing), "no image for 5 s"),
+        (camera(Sends::Page), "it sends text/html"),
+        ("http://127.0.0.1:9/video".to_owned(), "127.0.0.1:9/video: "),
+    ] {
+        let output = run(&["calibrate", "markers", "--camera", &url, "-o", "target/tmp/none.toml"]);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{message}");
+        assert!(message.contains(what) && message.contains(&url), "{message}");
+    }
+}
+
+#[test]
+fn bad_images_of_a_folder_are_passed_over_so_often_and_no_more() {
+    let dir = folder("camera-folder");
+    let [images, out] = ["images", "out"].map(|name| dir.join(name).to_str().unwrap().to_owned());
+    std::fs::create_dir_all(&images).unwrap();
+    let grey = image::RgbImage::from_pixel(1280, 720, image::Rgb([90; 3]));
+    grey.save(dir.join("images/1.png")).unwrap();
+    grey.save(dir.join("images/2.png")).unwrap();
+    std::fs::write(dir.join("images/3.jpg"), house()).unwrap();
+    let traced = run(&["trace", "--camera", &images, "--out", &out, "--json"]);
+    let said = String::from_utf8_lossy(&traced.stderr).into_owned();
+    assert!(said.contains("image 2 is refused") && said.contains("dark to light: |"), "{said}");
+    assert_eq!(json(&traced)["camera"]["refused_images"], 2);
+    let refused = run(&["trace", "--camera", &images, "--out", &out, "--retakes", "1"]);
+    assert_eq!(refused.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(said.contains("2 images of the wall were refused"), "{said}");
+    std::fs::remove_file(dir.join("images/3.jpg")).unwrap();
+    let none = run(&["trace", "--camera", &images, "--out", &out]);
+    assert_eq!(none.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&none.stderr).into_owned();
+    assert!(said.contains("shows no marker"), "says why, not only that there is no more: {said}");
+}
+
 #[test]
 fn a_source_that_is_no_camera_is_refused() {
     for args in [
@@ -101,6 +227,8 @@ fn a_source_that_is_no_camera_is_refused() {
         &["trace", "picture.png", "--head", "head.toml"],
         &["calibrate", "markers"],
         &["calibrate", "head", "--camera", "/dev/nothing"],
+        &["calibrate", "head", "--camera", "docs/camera/house.jpg"],
+        &["trace", "--camera", "https://127.0.0.1/video"],
     ] {
         let output = run(args);
         assert_eq!(output.status.code(), Some(2), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));

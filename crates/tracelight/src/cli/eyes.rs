@@ -4,12 +4,14 @@ use clap::Args;
 
 use crate::camera_file::{self, KnownCamera};
 use crate::eye::room::SimulatedEye;
+use crate::eye::source::Source;
 use crate::failure::Failure;
 
 /// Which camera looks at the wall.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct EyeArgs {
-    /// Camera: sim:PICTURE is a simulated one in front of a simulated wall with PICTURE on it, sim one without
+    /// Camera: sim:PICTURE is a simulated one in front of a simulated wall with PICTURE on it; http://… one on the net, that sends a stream
+    /// (MJPEG) or an image each time; or an image or a folder of them
     #[arg(long, value_name = "SOURCE")]
     pub(crate) camera: Option<String>,
     /// Which camera is simulated
@@ -22,9 +24,9 @@ pub(crate) struct EyeArgs {
 }
 
 impl EyeArgs {
-    /// The picture on the simulated wall, if there is one.
-    pub(crate) fn picture(&self) -> Result<Option<&str>, Failure> {
-        picture(self.camera.as_deref())
+    /// The camera; a simulated one if none is named.
+    pub(crate) fn source(&self) -> Result<Source<'_>, Failure> {
+        Source::of(self.camera.as_deref().unwrap_or("sim"))
     }
 
     /// Whether pages of markers hang on a simulated wall: the report's camera does not see them and a picture at once, and they are taken
@@ -36,19 +38,5 @@ impl EyeArgs {
     /// What is known of it.
     pub(crate) fn known(&self) -> Result<Option<KnownCamera>, Failure> {
         self.calibration.as_deref().map(camera_file::read_whole).transpose()
-    }
-}
-
-/// The picture on the wall in front of a simulated camera, if there is one.
-pub(crate) fn picture(source: Option<&str>) -> Result<Option<&str>, Failure> {
-    match source {
-        None | Some("sim") => Ok(None),
-        Some(source) => {
-            source.strip_prefix("sim:").filter(|path| !path.is_empty()).map(Some).ok_or_else(|| {
-                let message =
-                    format!("--camera {source} is no camera that is known; give sim, or sim:PICTURE");
-                Failure::usage("usage", message)
-            })
-        }
     }
 }

@@ -3,13 +3,12 @@
 use std::f64::consts::PI;
 
 use tracelight_aim::Camera;
-use tracelight_sim::Simulated;
 use tracelight_stroke::{Affine, Drawing, FitOptions, Path, Piece, Point, Stroke, Vec2, fit};
 use tracelight_vision::Grey;
 
 use super::pages::without_pages;
 use super::wall::{SeenWall, see_wall, well_exposed};
-use super::{Eye, grey};
+use super::{Looks, grey};
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::tracing::TracingArgs;
@@ -39,15 +38,17 @@ pub(crate) struct FigureRequest<'a> {
 }
 
 /// Takes images until one shows markers and a figure.
-pub(crate) fn see_figure<R: Simulated + Eye>(
-    rig: &mut R,
+pub(crate) fn see_figure(
+    eye: &mut dyn Looks,
     request: &FigureRequest<'_>,
     progress: &Progress,
 ) -> Result<SeenFigure, Failure> {
     let known = request.eye.known()?;
     let mut retaken = 0;
+    let mut last: Option<Failure> = None;
     loop {
-        let pixels = well_exposed(rig)?;
+        // why the last image was refused says more than that there is no other
+        let pixels = well_exposed(eye).map_err(|none| last.take().unwrap_or(none))?;
         let histogram = histogram(&grey(&pixels)?);
         let seen = see_wall(pixels, known.as_ref()).and_then(|wall| figure(wall, request));
         let why = match seen {
@@ -63,6 +64,7 @@ pub(crate) fn see_figure<R: Simulated + Eye>(
         }
         retaken += 1;
         progress.say(&format!("note: image {retaken} is refused: {shown}; another is taken"));
+        last = Some(why);
     }
 }
 
@@ -220,11 +222,11 @@ fn square_on(
 mod tests {
     use super::*;
     use crate::cli::placing::PlacementArgs;
-    use crate::eye::Shot;
     use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
+    use crate::eye::{Eye, Shot};
     use tracelight_aim::{CameraPose, HeadPose, Lens};
     use tracelight_rig::{Command, Rig, Telemetry};
-    use tracelight_sim::{RigConfig, Room, Tick};
+    use tracelight_sim::{RigConfig, Room, Simulated, Tick};
     use tracelight_stroke::Element;
 
     fn camera() -> Camera {

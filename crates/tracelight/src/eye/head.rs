@@ -11,9 +11,8 @@ use tracelight_sim::{Simulated, run_segments};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
 
-use super::Eye;
 use super::spots::{History, SpotWatch, Timing};
-use super::wall::take;
+use super::{Eye, Looks};
 use crate::cli::driving::Driving;
 use crate::failure::Failure;
 use crate::progress::Progress;
@@ -90,7 +89,7 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     progress.stage("dots", plan.points.len() as u64);
     let mut watch = SpotWatch::new(*camera, SPOT_EXPOSURE_S);
     // an image without the spot, to begin with
-    take(rig, watch.exposure_s)?;
+    rig.take(watch.exposure_s)?;
     let mut history = History::default();
     let run = run_segments(rig, &plan.segments, false, |rig, now| {
         history.push(&now.telemetry);

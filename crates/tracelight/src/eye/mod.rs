@@ -3,7 +3,8 @@
 //! | part | what |
 //! |---|---|
 //! | [`Shot`] | an image, and when it was taken |
-//! | [`Eye`] | where shots come from |
+//! | [`Looks`] | what takes a shot when told: [`source`] files and cameras on the net, [`room`] a simulated one |
+//! | [`Eye`] | what sends shots by itself while a rig runs |
 //! | [`room`] | a simulated head and camera in front of a simulated wall |
 //! | [`wall`] | the camera found from markers in sight |
 //! | [`figure`] | the figure on the wall, as strokes |
@@ -15,10 +16,25 @@ pub(crate) mod head;
 mod pages;
 pub(crate) mod room;
 mod shot;
+pub(crate) mod source;
 pub(crate) mod spots;
+mod stream;
 pub(crate) mod wall;
 
+use tracelight_sim::Simulated;
+
+use crate::failure::Failure;
+
 pub(crate) use shot::{Shot, grey};
+
+/// Something that takes an image when told.
+pub(crate) trait Looks {
+    /// The next image, each row of it exposed so long, s, if the camera can be told.
+    fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure>;
+
+    /// Longest that a row can be exposed, s; `None` of a camera that exposes as it likes.
+    fn longest(&self) -> Option<f64>;
+}
 
 /// Something that takes images of the wall, by the clock of the rig's ticks.
 pub(crate) trait Eye {
@@ -30,4 +46,34 @@ pub(crate) trait Eye {
 
     /// The oldest image that is there and was not asked for yet.
     fn shot(&mut self) -> Option<Shot>;
+}
+
+/// Longest that an image is waited for, ticks: the slowest cameras there are send one a second.
+const PATIENCE_TICKS: u32 = 3000;
+
+/// A rig that rests in the dark meanwhile.
+impl<R: Simulated + Eye> Looks for R {
+    fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure> {
+        self.expose(exposure_s);
+        for _ in 0..PATIENCE_TICKS {
+            self.step();
+            while let Some(shot) = self.shot() {
+                // those taken before it was told are exposed otherwise
+                if (shot.exposure_s - exposure_s).abs() <= 0.01 * exposure_s {
+                    return Ok(shot);
+                }
+            }
+        }
+        let waited_s = f64::from(PATIENCE_TICKS) * tracelight_rig::TICK_F64_S;
+        Err(Failure::failed(
+            "no-image",
+            format!(
+                "the camera sent no image for {waited_s:.0} s: is it plugged in, and used by nobody else?"
+            ),
+        ))
+    }
+
+    fn longest(&self) -> Option<f64> {
+        Some(self.longest_s())
+    }
 }

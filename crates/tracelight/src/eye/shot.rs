@@ -1,17 +1,13 @@
-use std::io::Cursor;
-
-use image::ImageFormat;
 use tracelight_plant::Image;
 use tracelight_vision::Grey;
 
 use crate::failure::Failure;
 use crate::output::Raster;
+use crate::picture::{self, Source};
 
 /// An image, and when it was taken by the clock of the rig's ticks. What a camera sent is decoded when somebody looks.
 #[derive(Clone, Debug)]
 pub(crate) struct Shot {
-    pub(crate) width: usize,
-    pub(crate) height: usize,
     sent: Sent,
     /// When its first row began to be exposed, as its stamp says, s.
     pub(crate) stamp_s: f64,
@@ -22,43 +18,52 @@ pub(crate) struct Shot {
 /// What a camera sends.
 #[derive(Clone, Debug)]
 enum Sent {
-    /// Red, green and blue of each pixel, row by row from the upper left, that a simulated camera has yet to compress.
-    Simulated(Vec<u8>),
+    /// Pixels that a simulated camera has yet to compress.
+    Simulated(Raster),
+    /// An image file, and where it came from.
+    Encoded { from: String, bytes: Vec<u8> },
+    /// Nothing that has pixels.
+    Nothing,
 }
 
 /// Quality of what cameras send as JPEG.
 const QUALITY: u8 = 92;
 
 impl Shot {
-    /// Red, green and blue of each pixel, row by row from the upper left.
+    /// An image file that was there at a time, s; how long it was exposed nobody knows.
+    pub(crate) fn encoded(from: &str, bytes: Vec<u8>, stamp_s: f64) -> Self {
+        Self { sent: Sent::Encoded { from: from.to_owned(), bytes }, stamp_s, exposure_s: 0.0 }
+    }
+
+    /// Its pixels.
     pub(crate) fn pixels(&self) -> Result<Raster, Failure> {
-        let broken =
-            |why: String| Failure::failed("camera-image", format!("the camera sent a broken image: {why}"));
-        let Sent::Simulated(rgb) = &self.sent;
-        let raw = Raster::new(self.width as u32, self.height as u32, rgb.clone());
-        let bytes = raw
-            .ok_or_else(|| broken("it has no pixels".to_owned()))?
-            .jpeg(QUALITY)
-            .map_err(|e| broken(e.to_string()))?;
-        let image = image::load(Cursor::new(bytes), ImageFormat::Jpeg)
-            .map_err(|e| broken(e.to_string()))?
-            .into_rgb8();
-        Raster::new(image.width(), image.height(), image.into_raw())
-            .ok_or_else(|| broken("it has no pixels".to_owned()))
+        match &self.sent {
+            Sent::Simulated(raster) => {
+                let bytes = raster.jpeg(QUALITY).map_err(|e| Failure::failed("camera-image", e))?;
+                decoded("the camera's image", &bytes)
+            }
+            Sent::Encoded { from, bytes } => decoded(from, bytes),
+            Sent::Nothing => Err(Failure::failed("camera-image", "the camera's image has no pixels")),
+        }
     }
 
     /// The same of a camera whose lens is covered.
     #[cfg(test)]
     pub(crate) fn covered(mut self) -> Self {
-        let Sent::Simulated(rgb) = &mut self.sent;
-        rgb.fill(3);
+        if let Sent::Simulated(raster) = &self.sent {
+            let dark = vec![3; raster.rgb().len()];
+            self.sent =
+                Raster::new(raster.width(), raster.height(), dark).map_or(Sent::Nothing, Sent::Simulated);
+        }
         self
     }
 
     /// Its red, where a red laser is.
     pub(crate) fn red(&self) -> Result<Grey, Failure> {
-        let red = self.pixels()?.rgb().iter().copied().step_by(3).collect();
-        Grey::new(self.width, self.height, red).map_err(|e| Failure::failed("camera-image", e))
+        let pixels = self.pixels()?;
+        let red = pixels.rgb().iter().copied().step_by(3).collect();
+        Grey::new(pixels.width() as usize, pixels.height() as usize, red)
+            .map_err(|e| Failure::failed("camera-image", e))
     }
 }
 
@@ -74,6 +79,17 @@ pub(crate) fn grey(raster: &Raster) -> Result<Grey, Failure> {
 impl From<Image> for Shot {
     fn from(image: Image) -> Self {
         let Image { width, height, rgb, start_s, exposure_s, .. } = image;
-        Self { width, height, sent: Sent::Simulated(rgb), stamp_s: start_s, exposure_s }
+        let sent = Raster::new(width as u32, height as u32, rgb).map_or(Sent::Nothing, Sent::Simulated);
+        Self { sent, stamp_s: start_s, exposure_s }
+    }
+}
+
+fn decoded(from: &str, bytes: &[u8]) -> Result<Raster, Failure> {
+    match picture::decode(from, bytes)? {
+        Source::Pixels(pixels) => Ok(pixels.colour),
+        Source::Strokes(_) => Err(Failure::usage(
+            "not-a-picture",
+            format!("{from} is a drawing; give an image that a camera took"),
+        )),
     }
 }

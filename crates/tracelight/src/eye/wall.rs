@@ -3,11 +3,10 @@
 use tracelight_aim::{
     Board, Camera, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyedCamera, survey,
 };
-use tracelight_sim::Simulated;
 use tracelight_stroke::{Affine, Point};
 use tracelight_vision::{Grey, Tag, TagPlace, find_tags};
 
-use super::{Eye, Shot, grey};
+use super::{Looks, grey};
 use crate::camera_file::{KnownCamera, PageName, Stood};
 use crate::failure::Failure;
 use crate::output::Raster;
@@ -44,8 +43,6 @@ impl SeenWall {
 /// By how many pixels a camera may seem to have moved that did not.
 const MOVED_PX: f64 = 1.0;
 
-/// Longest that an image is waited for, ticks: the slowest cameras there are send one a second.
-const PATIENCE_TICKS: u32 = 3000;
 /// Levels between which the brightest hundredth of a well exposed image lies.
 const WELL_EXPOSED: [u8; 2] = [190, 245];
 /// Share of the pixels that are as bright or less.
@@ -160,31 +157,13 @@ fn seen(tag: &Tag) -> SeenTag {
     SeenTag { id: tag.id, corners: tag.corners, places, deviation_px: tag.deviation_px }
 }
 
-/// The next image whose rows are exposed so long; the head rests in the dark.
-pub(crate) fn take<R: Simulated + Eye>(rig: &mut R, exposure_s: f64) -> Result<Shot, Failure> {
-    rig.expose(exposure_s);
-    for _ in 0..PATIENCE_TICKS {
-        rig.step();
-        while let Some(shot) = rig.shot() {
-            // those taken before it was told are exposed otherwise
-            if (shot.exposure_s - exposure_s).abs() <= 0.01 * exposure_s {
-                return Ok(shot);
-            }
-        }
-    }
-    let waited_s = f64::from(PATIENCE_TICKS) * tracelight_rig::TICK_F64_S;
-    Err(Failure::failed(
-        "no-image",
-        format!("the camera sent no image for {waited_s:.0} s: is it plugged in, and used by nobody else?"),
-    ))
-}
-
-/// An image that is neither too dark nor too bright; as bright as the camera can, where there is little light.
-pub(crate) fn well_exposed<R: Simulated + Eye>(rig: &mut R) -> Result<Raster, Failure> {
-    let longest_s = rig.longest_s();
+/// An image that is neither too dark nor too bright; as bright as the camera can, where there is little light; the next, of a camera that
+/// exposes as it likes.
+pub(crate) fn well_exposed(eye: &mut dyn Looks) -> Result<Raster, Failure> {
+    let Some(longest_s) = eye.longest() else { return eye.take(0.0)?.pixels() };
     let mut exposure_s = 0.5 * longest_s;
     for _ in 0..MOST_SHOTS {
-        let pixels = take(rig, exposure_s)?.pixels()?;
+        let pixels = eye.take(exposure_s)?.pixels()?;
         let brightest = brightest(&pixels);
         if (WELL_EXPOSED[0]..=WELL_EXPOSED[1]).contains(&brightest)
             || (brightest < WELL_EXPOSED[0] && exposure_s >= longest_s)

@@ -9,9 +9,11 @@ use super::Prepared;
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::cli::tracing::TracingArgs;
+use crate::eye::Looks;
 use crate::eye::figure::{FigureRequest, SeenFigure, see_figure};
 use crate::eye::head::{find_head, in_front};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
+use crate::eye::source::Source;
 use crate::eye::wall::SeenWall;
 use crate::failure::Failure;
 use crate::head_file;
@@ -23,7 +25,8 @@ use crate::stop::Stop;
 
 /// What was seen before a run.
 pub(super) struct Seen {
-    pub(super) room: Furnished,
+    /// The room, if it is simulated.
+    pub(super) room: Option<Furnished>,
     pub(super) figures: EyeFigures,
     /// The image in which the figure was found.
     pub(super) image: Raster,
@@ -34,29 +37,43 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
     let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
-    if args.dry_run && known.is_none() {
+    if args.dry_run && known.is_none() && matches!(args.eye.source()?, Source::Simulated(_)) {
         let message = "a dry run draws no dots to find the head by: give --head (tracelight calibrate head -o head.toml)";
         return Err(Failure::usage("usage", message));
     }
     progress.stage("wall", 1);
     let room = furnished(args, &driving)?;
-    let mut rig = room.watched(&driving.rig, driving.pose);
+    let mut rig = room.as_ref().map(|room| room.watched(&driving.rig, driving.pose));
+    let mut camera = args.eye.source()?.open()?;
     let wanted = FigureRequest {
         eye: &args.eye,
         tracing: &args.tracing,
         choice: &args.placement.choice,
         most_refused: args.retakes,
     };
-    let SeenFigure { wall, sketch, placed, retaken } = see_figure(&mut rig, &wanted, progress)?;
+    let looks: Option<&mut dyn Looks> = match (&mut rig, &mut camera) {
+        (Some(rig), _) => Some(rig),
+        (None, camera) => camera.as_mut().map(|camera| &mut **camera as &mut dyn Looks),
+    };
+    let looks = looks.ok_or_else(|| Failure::failed("internal", "nothing that looks"))?;
+    let SeenFigure { wall, sketch, placed, retaken } = see_figure(looks, &wanted, progress)?;
     wall.stale.iter().for_each(|stale| progress.say(&format!("note: {stale}")));
     stop.check()?;
-    let head = match known {
-        Some(known) => {
+    let head = match (known, &mut rig, &room) {
+        (Some(known), _, _) => {
             known.check_frame(wall.frame)?;
             believe(&mut driving, known.geometry, known.pose);
             None
         }
-        None => Some(found_head(&mut rig, &room, &wall, &mut driving, (progress, stop))?),
+        (None, Some(rig), Some(room)) => Some(found_head(rig, room, &wall, &mut driving, (progress, stop))?),
+        (None, _, _) => {
+            driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
+            progress.say(&format!(
+                "note: the simulated head is not where the camera is: it is taken to stand {:.3} m in front of the middle of the image, square-on",
+                driving.pose.distance_m
+            ));
+            None
+        }
     };
     let figures = EyeFigures {
         source: args.name().to_owned(),
@@ -70,20 +87,22 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     super::planned(sketch, placed, driving, Some(seen), (progress, stop))
 }
 
-fn furnished(args: &TraceArgs, driving: &Driving) -> Result<Furnished, Failure> {
+/// The room, if it is simulated.
+fn furnished(args: &TraceArgs, driving: &Driving) -> Result<Option<Furnished>, Failure> {
+    let Source::Simulated(picture) = args.eye.source()? else { return Ok(None) };
     if args.eye.sim_camera == SimulatedEye::Report && args.eye.has_pages() {
         let message = "the report's camera does not see picture and pages at once: calibrate it first (tracelight calibrate markers \
                        --camera sim --sim-camera report -o camera.toml), then give --calibration camera.toml";
         return Err(Failure::usage("usage", message));
     }
     let request = RoomRequest {
-        picture: args.eye.picture()?,
+        picture,
         placement: &args.placement,
         eye: args.eye.sim_camera,
         pages: args.eye.has_pages(),
         seed: args.seed,
     };
-    Furnished::new(&request, &driving.rig, driving.pose)
+    Furnished::new(&request, &driving.rig, driving.pose).map(Some)
 }
 
 /// The head found from dots; from then on it is believed.
@@ -122,7 +141,8 @@ impl Seen {
     /// What a run adds: how far the lit trace truly is from the figure, which a simulated room knows.
     pub(super) fn after(&self, args: &TraceArgs, run: &Run) -> Result<EyeFigures, Failure> {
         let mut figures = self.figures.clone();
-        let (Some(path), Some(wall_from_picture)) = (args.eye.picture()?, self.room.wall_from_picture) else {
+        let hung = self.room.as_ref().and_then(|room| room.wall_from_picture);
+        let (Source::Simulated(Some(path)), Some(wall_from_picture)) = (args.eye.source()?, hung) else {
             return Ok(figures);
         };
         let truth = sketch(path, picture::read(path)?, &TracingArgs::default(), &args.placement)?;

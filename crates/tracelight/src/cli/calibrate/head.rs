@@ -10,6 +10,7 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::{Answer, Voice, write_file};
 use crate::eye::head::{FoundHead, find_head, in_front};
 use crate::eye::room::{Furnished, RoomRequest};
+use crate::eye::source::Source;
 use crate::eye::wall::{SeenWall, see_wall, well_exposed};
 use crate::failure::Failure;
 use crate::head_file::{self, HeadFile};
@@ -42,8 +43,12 @@ pub(super) struct HeadArgs {
 pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     let progress = Progress::new(args.voice.quiet);
     let mut driving = args.driving.resolve()?;
+    let Source::Simulated(picture) = args.eye.source()? else {
+        let message = "no head can be driven yet but simulated ones, and they draw in simulated rooms: give --camera sim or sim:PICTURE";
+        return Err(Failure::usage("usage", message));
+    };
     let request = RoomRequest {
-        picture: args.eye.picture()?,
+        picture,
         placement: &args.placement,
         eye: args.eye.sim_camera,
         pages: args.eye.has_pages(),

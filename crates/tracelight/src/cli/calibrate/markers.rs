@@ -9,12 +9,11 @@ use tracelight_vision::Grey;
 
 use crate::camera_file::{self, CameraFile, PageName, Wall};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
-use crate::cli::eyes;
 use crate::cli::placing::{PlacementArgs, positive_length};
 use crate::cli::{Answer, Voice, write_file};
-use crate::eye::grey;
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::wall::{markers, well_exposed};
+use crate::eye::{self, grey};
 use crate::failure::Failure;
 use crate::output::BAR_M;
 use crate::picture::{self, Source};
@@ -31,7 +30,7 @@ pub(super) struct MarkersArgs {
     /// Image of the wall with the pages on it
     #[arg(required_unless_present = "camera", conflicts_with = "camera")]
     image: Option<String>,
-    /// Take the image with a camera: sim is a simulated one
+    /// Take the image with a camera: sim is a simulated one, http://… one on the net
     #[arg(long, value_name = "SOURCE")]
     camera: Option<String>,
     /// Which camera is simulated
@@ -83,7 +82,10 @@ pub(super) fn run(args: &MarkersArgs) -> Result<Answer, Failure> {
     let known = args.lens.as_deref().map(camera_file::read).transpose()?;
     let seen = match (&args.image, &args.camera) {
         (Some(path), _) => Seen::of(vec![found(path)?], args.bar.as_ref(), known.as_ref())?,
-        (None, source) => Seen::of(vec![taken(args, source.as_deref())?], args.bar.as_ref(), known.as_ref())?,
+        (None, source) => {
+            let name = source.as_deref().unwrap_or("sim");
+            Seen::of(vec![taken(args, name)?], args.bar.as_ref(), known.as_ref())?
+        }
     };
     let camera =
         seen.survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
@@ -285,15 +287,20 @@ fn found(path: &str) -> Result<View, Failure> {
 }
 
 /// An image of a camera.
-fn taken(args: &MarkersArgs, source: Option<&str>) -> Result<View, Failure> {
-    let picture = eyes::picture(source)?;
-    let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));
-    let placement = PlacementArgs::default();
-    let request =
-        RoomRequest { picture, placement: &placement, eye: args.sim_camera, pages: true, seed: args.seed };
-    let room = Furnished::new(&request, &rig, pose)?;
-    let pixels = well_exposed(&mut room.watched(&rig, pose))?;
-    Ok(View::of(source.unwrap_or_default(), &grey(&pixels)?))
+fn taken(args: &MarkersArgs, name: &str) -> Result<View, Failure> {
+    let source = eye::source::Source::of(name)?;
+    let pixels = match (source.open()?, source) {
+        (Some(mut camera), _) => well_exposed(&mut *camera)?,
+        (None, eye::source::Source::Simulated(picture)) => {
+            let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));
+            let placement = PlacementArgs::default();
+            let (eye, seed) = (args.sim_camera, args.seed);
+            let request = RoomRequest { picture, placement: &placement, eye, pages: true, seed };
+            well_exposed(&mut Furnished::new(&request, &rig, pose)?.watched(&rig, pose))?
+        }
+        (None, _) => return Err(Failure::failed("internal", "a camera that is none")),
+    };
+    Ok(View::of(name, &grey(&pixels)?))
 }
 
 fn stands(camera: &SurveyedCamera) -> String {
