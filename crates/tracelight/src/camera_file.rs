@@ -30,9 +30,9 @@ pub(crate) struct CameraFile {
 }
 
 /// Where a page lies on the wall.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct PageTable {
+pub(crate) struct PageTable {
     /// fine or coarse.
     board: String,
     /// From 1.
@@ -184,10 +184,38 @@ impl CameraFile {
 }
 
 impl PageTable {
-    fn of(page: &PlacedPage) -> Self {
+    pub(crate) fn of(page: &PlacedPage) -> Self {
         let PlacedPage { board, page, middle, turn_rad, .. } = *page;
         let board = BOARDS.get(board).copied().unwrap_or_default().to_owned();
         Self { board, page: page + 1, middle_m: [middle.x, middle.y], turn_rad }
+    }
+
+    /// How far from where the file has it a page hangs, m; `None` if it is another.
+    pub(crate) fn off_m(&self, page: &PlacedPage) -> Option<f64> {
+        let own = Self::of(page);
+        let [x, y] = [0, 1].map(|k| own.middle_m[k] - self.middle_m[k]);
+        ((own.board, own.page) == (self.board.clone(), self.page)).then(|| x.hypot(y))
+    }
+
+    /// The page's name and the wall's frame from its own; why there is no such page, otherwise.
+    fn placed(&self) -> Result<(PageName, Affine), String> {
+        let board = BOARDS.iter().position(|name| *name == self.board);
+        let wrong = || {
+            format!(
+                "pages: a page is of the board fine or coarse, and counted from 1, not {} {}",
+                self.board, self.page
+            )
+        };
+        let name =
+            PageName { board: board.ok_or_else(wrong)?, page: self.page.checked_sub(1).ok_or_else(wrong)? };
+        let [x, y] = self.middle_m;
+        if !([x, y].iter().all(|v| v.abs() <= 1e3) && self.turn_rad.abs() <= 10.0) {
+            return Err(format!(
+                "pages: no page hangs at ({x}, {y}) m, turned by {} rad; calibrate the camera again",
+                self.turn_rad
+            ));
+        }
+        Ok((name, Affine::rotate(self.turn_rad).then_translate(Point::new(x, y).to_vec2())))
     }
 }
 
@@ -314,16 +342,19 @@ pub(crate) fn read_whole(path: &str) -> Result<KnownCamera, Failure> {
         .map_err(|e| wrong(format!("no camera file: {}", e.to_string().trim_end())))?;
     let lens = file.lens().map_err(wrong)?;
     let camera = file.pose.as_ref().map(|pose| pose.camera(&lens)).transpose().map_err(wrong)?;
-    let page = |table: &PageTable| {
-        let board = BOARDS.iter().position(|name| *name == table.board)?;
-        let place = Affine::rotate(table.turn_rad)
-            .then_translate(Point::new(table.middle_m[0], table.middle_m[1]).to_vec2());
-        Some((PageName { board, page: table.page.checked_sub(1)? }, place))
-    };
-    let pages: Option<Vec<_>> = file.pages.iter().map(page).collect();
-    let pages = pages.ok_or_else(|| {
-        wrong("pages: a page is of the board fine or coarse, and counted from 1".to_owned())
-    })?;
+    let pages: Result<Vec<_>, String> = file.pages.iter().map(PageTable::placed).collect();
+    let pages = pages.map_err(wrong)?;
+    if let Some((name, _)) = pages
+        .iter()
+        .enumerate()
+        .find(|(k, (name, _))| pages[..*k].iter().any(|p| p.0 == *name))
+        .map(|(_, p)| p)
+    {
+        return Err(wrong(format!("pages: page {name} is there twice")));
+    }
+    if file.date.len() > 40 || file.date.chars().any(char::is_control) {
+        return Err(wrong("date: is none, such as 2026-11-23".to_owned()));
+    }
     let stood = camera.map(|camera| Stood { camera, date: file.date.clone(), pages });
     let print_scale = file.score.print_scale;
     if !(0.5..=2.0).contains(&print_scale) {

@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
 
-use crate::camera_file::PageName;
+use crate::camera_file::{PageName, PageTable};
 use crate::cli::driving::Driving;
 use crate::eye::head::FoundHead;
+use crate::eye::wall::SeenWall;
 use crate::failure::Failure;
 use crate::picture::read_bytes;
 
@@ -26,6 +27,9 @@ pub(crate) struct HeadFile {
     built: BuiltTable,
     images: ImagesTable,
     score: ScoreTable,
+    /// Pages that were in sight then, where they hung.
+    #[serde(default)]
+    pages: Vec<PageTable>,
 }
 
 /// target_from_head.
@@ -78,20 +82,21 @@ fn named(frame: Option<PageName>) -> String {
 pub(crate) struct KnownHead {
     path: String,
     page: String,
+    pages: Vec<PageTable>,
     pub(crate) geometry: HeadGeometry,
     pub(crate) pose: HeadPose,
 }
 
 impl HeadFile {
     /// Of a head that was found.
-    pub(crate) fn of(found: &FoundHead, driving: &Driving, frame: Option<PageName>) -> Self {
+    pub(crate) fn of(found: &FoundHead, driving: &Driving, wall: &SeenWall) -> Self {
         let Alignment { geometry, pose, .. } = found.aligned.alignment;
         let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = pose;
         let HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, .. } = geometry;
         Self {
             date: crate::rigfile::today(),
             rig: driving.rig.name.clone(),
-            page: named(frame),
+            page: named(wall.frame),
             pose: PoseTable { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
             built: BuiltTable { laser_offset_m, beam_off_rad, axis_skew_rad },
             images: ImagesTable {
@@ -104,6 +109,7 @@ impl HeadFile {
                 spots: found.aligned.spots,
                 outliers: found.aligned.outliers,
             },
+            pages: wall.pages.iter().map(PageTable::of).collect(),
         }
     }
 }
@@ -187,21 +193,36 @@ impl HeadFile {
             pose: HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
             path: path.to_owned(),
             page: self.page.clone(),
+            pages: self.pages.clone(),
         }
     }
 }
 
 impl KnownHead {
-    /// Refuses a wall whose frame is that of another page.
-    pub(crate) fn check_frame(&self, frame: Option<PageName>) -> Result<(), Failure> {
-        let wall = named(frame);
-        if wall == self.page {
-            return Ok(());
+    /// Refuses a wall whose frame is that of another page, or on which pages hang elsewhere: then its frame is not where it was.
+    pub(crate) fn check_wall(&self, wall: &SeenWall) -> Result<(), Failure> {
+        let again = |why: String| {
+            Failure::usage("head-file", format!("{}: {why}: calibrate the head again", self.path))
+        };
+        let frame = named(wall.frame);
+        if frame != self.page {
+            return Err(again(format!(
+                "the head was found in the frame of page {}, and the wall's is that of page {frame}",
+                self.page
+            )));
         }
-        let message = format!(
-            "{}: the head was found in the frame of page {}, and the wall's is that of page {wall}: calibrate it again",
-            self.path, self.page
-        );
-        Err(Failure::usage("head-file", message))
+        for page in &wall.pages {
+            let off_m = self.pages.iter().find_map(|own| own.off_m(page)).unwrap_or(0.0);
+            if off_m > ELSEWHERE_M {
+                let (name, mm) = (PageName::of(page), 1e3 * off_m);
+                return Err(again(format!(
+                    "page {name} hangs {mm:.1} mm from where it hung when the head was found"
+                )));
+            }
+        }
+        Ok(())
     }
 }
+
+/// How far a page may seem to hang from where it did that was not moved, m: what one image leaves open.
+const ELSEWHERE_M: f64 = 2e-3;

@@ -63,7 +63,7 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     let progress = Progress::new(args.voice.quiet);
     let prepared = prepare(args, &progress, stop)?;
     check_laps(args.laps, &prepared.schedule.plan)?;
-    let dir = args.out.clone().unwrap_or_else(|| default_dir(args.name()));
+    let dir = args.out.clone().unwrap_or_else(|| default_dir(args));
     std::fs::create_dir_all(&dir).map_err(|e| cannot_write(&dir, &e))?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
     let laps = run_laps(args, &prepared, &dir, &settings, (&progress, stop))?;
@@ -114,10 +114,14 @@ impl Prepared {
     }
 }
 
-/// `out/<the picture's stem>/`.
-fn default_dir(picture: &str) -> PathBuf {
-    let stem = Path::new(picture).file_stem().filter(|_| !["-", "sim"].contains(&picture));
-    Path::new("out").join(stem.unwrap_or_else(|| "picture".as_ref()))
+/// `out/<the picture's stem>/`; `out/<stem>-camera/` of what a camera sees.
+fn default_dir(args: &TraceArgs) -> PathBuf {
+    let name = args.name();
+    let picture = name.strip_prefix("sim:").unwrap_or(name);
+    let stem =
+        Path::new(picture).file_stem().filter(|_| picture != "-").unwrap_or_else(|| "picture".as_ref());
+    let seen = if args.eye.camera.is_some() { "-camera" } else { "" };
+    Path::new("out").join(format!("{}{seen}", stem.to_string_lossy()))
 }
 
 fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
@@ -257,12 +261,13 @@ fn write(
     let strokes = placed.svg(drawing);
     let path = dir.join("strokes.svg");
     std::fs::write(&path, strokes).map_err(|e| cannot_write(&path, &e))?;
-    if let Some(seen) = &prepared.seen {
-        let path = dir.join("camera.jpg");
-        output::write_jpeg(&path, &seen.image)?;
+    let path = dir.join("camera.jpg");
+    match &prepared.seen {
+        Some(seen) => output::write_jpeg(&path, &seen.image)?,
+        None => output::forget(&path).map_err(|e| cannot_write(&path, &e))?,
     }
     write_rig(args, dir, laps)?;
-    let eye = prepared.seen.as_ref().map(|seen| seen.after(args, &laps.last)).transpose()?;
+    let eye = prepared.seen.as_ref().map(|seen| seen.after(&laps.last));
     let seen = eye.iter().flat_map(EyeFigures::words);
     let notes: Vec<String> = prepared.notes.iter().chain(&laps.notes).cloned().chain(seen).collect();
     let tracking: Tracking = score(&schedule.plan, &laps.last, schedule.plan.set_speed_m_s);

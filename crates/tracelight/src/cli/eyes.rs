@@ -15,24 +15,26 @@ pub(crate) struct EyeArgs {
     #[arg(long, value_name = "SOURCE")]
     pub(crate) camera: Option<String>,
     /// Which camera is simulated
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, value_enum, default_value_t, requires = "camera")]
     pub(crate) sim_camera: SimulatedEye,
     /// What is known of the camera: a file that `calibrate markers` or `calibrate lens` has written. Where no markers are in sight, the
     /// camera is believed to stand where it stood
-    #[arg(long, value_name = "FILE.toml")]
-    calibration: Option<String>,
+    #[arg(long, value_name = "FILE.toml", requires = "camera")]
+    pub(crate) calibration: Option<String>,
 }
 
 impl EyeArgs {
-    /// The camera; a simulated one if none is named.
+    /// The camera.
     pub(crate) fn source(&self) -> Result<Source<'_>, Failure> {
-        Source::of(self.camera.as_deref().unwrap_or("sim"))
+        let missing = "which camera? --camera sim is a simulated one, --camera http://… one on the net";
+        Source::of(self.camera.as_deref().ok_or_else(|| Failure::usage("usage", missing))?)
     }
 
     /// Whether pages of markers hang on a simulated wall: the report's camera does not see them and a picture at once, and they are taken
     /// down once it is calibrated.
-    pub(crate) fn has_pages(&self) -> bool {
-        self.sim_camera == SimulatedEye::Webcam || self.calibration.is_none()
+    pub(crate) fn has_pages(&self) -> Result<bool, Failure> {
+        let stood = self.known()?.is_some_and(|known| known.stood.is_some());
+        Ok(self.sim_camera == SimulatedEye::Webcam || !stood)
     }
 
     /// What is known of it.

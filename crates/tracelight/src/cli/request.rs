@@ -26,8 +26,8 @@ pub(crate) struct TraceArgs {
     /// The head as `calibrate head` has found it; without it the laser draws dots first, and the camera finds it
     #[arg(long, value_name = "FILE.toml", requires = "camera")]
     pub(crate) head: Option<String>,
-    /// Most images of the camera that are refused, because they show no markers or no figure, before it is given up
-    #[arg(long, value_name = "N", default_value_t = 5, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    /// Most further images of the camera that are taken where one shows no markers or no figure
+    #[arg(long, value_name = "N", default_value_t = 5, requires = "camera", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) retakes: u32,
     #[command(flatten)]
     pub(crate) tracing: TracingArgs,
@@ -57,6 +57,20 @@ pub(crate) struct TraceArgs {
 }
 
 impl TraceArgs {
+    /// What of a camera was set, flag and value; nothing without one.
+    pub(crate) fn seen_settings(&self) -> Vec<(&'static str, String)> {
+        if self.eye.camera.is_none() {
+            return Vec::new();
+        }
+        let file = |file: Option<&String>| file.cloned().unwrap_or_else(|| "none".to_owned());
+        vec![
+            ("simulated camera", format!("{:?}", self.eye.sim_camera).to_lowercase()),
+            ("calibration", file(self.eye.calibration.as_ref())),
+            ("head", file(self.head.as_ref())),
+            ("retakes", self.retakes.to_string()),
+        ]
+    }
+
     /// The picture's name, or the camera's.
     pub(crate) fn name(&self) -> &str {
         self.picture.as_deref().or(self.eye.camera.as_deref()).unwrap_or_default()

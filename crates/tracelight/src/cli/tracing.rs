@@ -105,6 +105,7 @@ impl TracingArgs {
             ("shortest stroke", least),
             ("tolerance of the tracing", format!("{} px", self.tolerance.0)),
             ("corners from", format!("{:.1}°", self.corner_angle.0.to_degrees())),
+            ("edges of paper", if self.sheets { "left out" } else { "traced" }.to_owned()),
         ]
     }
 }

@@ -12,11 +12,12 @@ use super::{Looks, grey};
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::failure::{Failure, Status};
+use crate::failure::Failure;
 use crate::output::Raster;
 use crate::picture::{Pixels, Source};
 use crate::progress::Progress;
 use crate::sketch::{Placed, Sketch, sketch_at};
+use crate::stop::Stop;
 
 /// A figure that was found.
 pub(crate) struct SeenFigure {
@@ -41,12 +42,13 @@ pub(crate) struct FigureRequest<'a> {
 pub(crate) fn see_figure(
     eye: &mut dyn Looks,
     request: &FigureRequest<'_>,
-    progress: &Progress,
+    (progress, stop): (&Progress, &Stop),
 ) -> Result<SeenFigure, Failure> {
     let known = request.eye.known()?;
     let mut retaken = 0;
     let mut last: Option<Failure> = None;
     loop {
+        stop.check()?;
         // why the last image was refused says more than that there is no other
         let pixels = well_exposed(eye).map_err(|none| last.take().unwrap_or(none))?;
         let histogram = histogram(&grey(&pixels)?);
@@ -54,12 +56,17 @@ pub(crate) fn see_figure(
         let why = match seen {
             Ok(seen) => return Ok(SeenFigure { retaken, ..seen }),
             // another image would not help
-            Err(failure) if failure.status != Status::Failed => return Err(failure),
+            Err(failure) if !["camera-not-found", "no-strokes-found"].contains(&failure.code) => {
+                return Err(failure);
+            }
             Err(failure) => failure,
         };
         let shown = format!("{}; its brightness, dark to light: {histogram}", why.message);
         if retaken >= request.most_refused {
-            let message = format!("{} images of the wall were refused, the last: {shown}", retaken + 1);
+            let message = match retaken {
+                0 => format!("the image of the wall is refused: {shown}"),
+                _ => format!("{} images of the wall were refused, the last: {shown}", retaken + 1),
+            };
             return Err(Failure { message, ..why });
         }
         retaken += 1;
@@ -90,9 +97,14 @@ fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Fai
     let pixels = Pixels { grey: grey(&blank)?, colour: blank };
     // a figure is as often on a sheet on the wall as on the wall itself
     let tracing = TracingArgs { sheets: true, ..request.tracing.clone() };
-    let seen =
+    let mut seen =
         sketch_at("the camera's image", Source::Pixels(pixels), &tracing, request.choice, &|_, _| scale_m)?;
     let drawing = on_wall(&seen.drawing, &camera, scale_m);
+    let lost = seen.drawing.strokes.len() - drawing.strokes.len();
+    if lost > 0 {
+        seen.remarks
+            .push(format!("{lost} strokes of the image are not drawn: some of them is beyond the wall"));
+    }
     if drawing.strokes.is_empty() {
         return Err(Failure::failed("no-strokes-found", "what the camera's image shows is not on the wall"));
     }
@@ -224,6 +236,7 @@ mod tests {
     use crate::cli::placing::PlacementArgs;
     use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
     use crate::eye::{Eye, Shot};
+    use crate::failure::Status;
     use tracelight_aim::{CameraPose, HeadPose, Lens};
     use tracelight_rig::{Command, Rig, Telemetry};
     use tracelight_sim::{RigConfig, Room, Simulated, Tick};
@@ -321,16 +334,16 @@ mod tests {
 
     #[test]
     fn bad_images_are_refused_and_taken_again_so_often_and_no_more() {
-        let eye = EyeArgs::default();
+        let (eye, stop) = (EyeArgs::default(), Stop::default());
         let (tracing, placement, progress) =
             (TracingArgs::default(), PlacementArgs::default(), Progress::new(true));
         let request =
             FigureRequest { eye: &eye, tracing: &tracing, choice: &placement.choice, most_refused: 3 };
         // of several covered ones some are only taken to find how long to expose, some were under way
-        let found = see_figure(&mut covered(12), &request, &progress).unwrap();
+        let found = see_figure(&mut covered(12), &request, (&progress, &stop)).unwrap();
         assert!((1..=3).contains(&found.retaken), "{}", found.retaken);
         assert_eq!(found.sketch.drawing.strokes.len(), 28);
-        let failure = see_figure(&mut covered(1000), &request, &progress).err().unwrap();
+        let failure = see_figure(&mut covered(1000), &request, (&progress, &stop)).err().unwrap();
         assert_eq!((failure.status, failure.code), (Status::Failed, "camera-not-found"));
         assert!(failure.message.starts_with("4 images of the wall were refused"), "{}", failure.message);
         assert!(failure.message.contains("dark to light: |█"), "{}", failure.message);

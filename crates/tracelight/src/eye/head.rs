@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, align};
 use tracelight_rig::Command;
 use tracelight_sim::{Simulated, run_segments};
-use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, Vec2};
+use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
 
 use super::spots::{History, SpotWatch, Timing};
@@ -88,9 +88,9 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     let belief = AlignmentBelief::by_eye(driving.machine.geometry, driving.pose);
     progress.stage("dots", plan.points.len() as u64);
     let mut watch = SpotWatch::new(*camera, SPOT_EXPOSURE_S);
-    // an image without the spot, to begin with
-    rig.take(watch.exposure_s)?;
-    let mut history = History::default();
+    watch.begin(rig.take(watch.exposure_s)?);
+    let relay = driving.rig.model.relay;
+    let mut history = History::new(relay.on_s.max(relay.off_s));
     let run = run_segments(rig, &plan.segments, false, |rig, now| {
         history.push(&now.telemetry);
         look(rig, &mut watch, &history, &belief.alignment);
@@ -107,6 +107,11 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     if let Some(fault) = run.fault() {
         return Err(Failure::fault(fault));
     }
+    if !run.is_done() {
+        let message =
+            "the head left its dots again and again, and the run was given up; step nearer (--distance)";
+        return Err(Failure::failed("unfinished", message));
+    }
     let aligned = aligned(&belief, &mut watch, &history).map_err(|e| not_found(&e, &watch, places.len()))?;
     Ok(FoundHead {
         aligned,
@@ -120,6 +125,7 @@ pub(crate) fn find_head<R: Simulated + Eye>(
 fn look<R: Eye>(rig: &mut R, watch: &mut SpotWatch, history: &History, head: &Alignment) {
     while let Some(shot) = rig.shot() {
         watch.see(&shot, history, head);
+        watch.exposure_s = watch.exposure_s.min(rig.longest_s());
         rig.expose(watch.exposure_s);
     }
 }
@@ -145,9 +151,37 @@ fn not_found(error: &AlignError, watch: &SpotWatch, dots: usize) -> Failure {
     Failure::failed("head-not-found", format!("of {dots} dots: {error}{why}"))
 }
 
-/// Where a head probably stands that was put up in front of the middle of what the camera shows: square-on, as far away as told.
+/// Where a head probably stands that was put up in front of the middle of what the camera shows: square-on, as far away as told, and as
+/// upright as the camera, however the page hangs whose frame is the wall's.
 pub(crate) fn in_front(camera: &Camera, distance_m: f64) -> HeadPose {
     let [width, height] = camera.lens.size_px.map(|n| n as f64);
-    let middle = camera.target(Point::new(width / 2.0, height / 2.0)).unwrap_or(Point::ORIGIN);
-    HeadPose { right_m: middle.x, up_m: middle.y, ..HeadPose::square_on(distance_m) }
+    let on_wall = |down: f64| camera.target(Point::new(width / 2.0, height * down));
+    let (Some(middle), Some(above)) = (on_wall(0.5), on_wall(0.45)) else {
+        return HeadPose::square_on(distance_m);
+    };
+    let up = above - middle;
+    let upright = Affine::rotate((-up.x).atan2(up.y)).then_translate(middle.to_vec2());
+    HeadPose::square_on(distance_m).in_frame(upright)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_aim::{CameraPose, Lens};
+
+    #[test]
+    fn a_head_is_taken_to_be_upright_however_the_page_hangs() {
+        let pose = CameraPose::looking_at([0.3, 0.2, 1.2], [0.1, 0.0, 0.0]).unwrap();
+        let camera = Camera { lens: Lens::ideal(1280, 720, 1000.0), pose };
+        let upright = in_front(&camera, 0.9);
+        assert!(upright.roll_rad.abs() < 0.06 && (upright.right_m - 0.1).abs() < 1e-9, "{upright:?}");
+        for turn_rad in [0.5, 1.6, 3.1, -2.0] {
+            let frame = Affine::rotate(turn_rad).then_translate(Vec2::new(0.3, -0.4));
+            let turned = in_front(&Camera { pose: camera.pose.in_frame(frame), ..camera }, 0.9);
+            let wanted = upright.in_frame(frame);
+            assert!((turned.right_m - wanted.right_m).hypot(turned.up_m - wanted.up_m) < 1e-9);
+            let off = (turned.roll_rad - wanted.roll_rad).rem_euclid(2.0 * PI);
+            assert!(off.min(2.0 * PI - off) < 1e-9, "{turned:?} {wanted:?}");
+        }
+    }
 }

@@ -7,6 +7,7 @@
 //! | [`Eye`] | what sends shots by itself while a rig runs |
 //! | [`room`] | a simulated head and camera in front of a simulated wall |
 //! | [`wall`] | the camera found from markers in sight |
+//! | [`pages`] | those pages taken off the image |
 //! | [`figure`] | the figure on the wall, as strokes |
 //! | [`spots`] | the laser's spot in shots, held against what the encoders said |
 //! | [`head`] | the head found from spots |

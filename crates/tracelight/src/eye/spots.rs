@@ -8,8 +8,10 @@ use tracelight_vision::{Grey, SpotLost, SpotWindow, find_spot};
 use super::Shot;
 
 /// What the joints did and whether the laser was driven, tick by tick.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct History {
+    /// After a change of the gate nobody knows for so long whether there is light, s.
+    switches_s: f64,
     ticks: Vec<(PanTilt<f64>, bool)>,
     /// The tick of the first.
     first: u32,
@@ -26,10 +28,15 @@ pub(crate) enum Light {
     Mixed,
 }
 
-/// After a change of the gate nobody knows for so long whether there is light, s: longer than any relay takes.
-const SWITCHES_S: f64 = 0.012;
+/// How much longer than is believed of a relay it may take, s.
+const SLACK_S: f64 = 0.005;
 
 impl History {
+    /// Of a laser whose relay takes so long, s.
+    pub(crate) const fn new(relay_s: f64) -> Self {
+        Self { switches_s: relay_s + SLACK_S, ticks: Vec::new(), first: 0 }
+    }
+
     /// One more tick; they come in order.
     pub(crate) fn push(&mut self, telemetry: &Telemetry) {
         if self.ticks.is_empty() {
@@ -47,7 +54,7 @@ impl History {
 
     /// Whether there was light from one time to another.
     pub(crate) fn light(&self, from_s: f64, until_s: f64) -> Light {
-        let Some(ticks) = self.between(from_s - SWITCHES_S, until_s) else { return Light::Mixed };
+        let Some(ticks) = self.between(from_s - self.switches_s, until_s) else { return Light::Mixed };
         let lit = ticks.iter().filter(|(_, gate)| *gate).count();
         match lit {
             0 => Light::Dark,
@@ -168,18 +175,6 @@ impl Dark {
     }
 }
 
-/// What was made of a shot.
-pub(crate) enum Made {
-    /// It shows no spot, and none was awaited.
-    Dark,
-    /// The laser was switched while it was taken, or nothing is there to compare it with.
-    Unused,
-    /// The spot.
-    Seen,
-    /// It should show one.
-    Lost,
-}
-
 /// What speckle and one pixel in four that sees red leave a spot uncertain by, px.
 const LEAST_DEVIATION_PX: f64 = 0.1;
 /// Half of the side of the window in which a spot is looked for: where the last one told where, and before.
@@ -201,27 +196,29 @@ impl SpotWatch {
         }
     }
 
+    /// Begins with a shot without the spot.
+    pub(crate) fn begin(&mut self, dark: Shot) {
+        self.dark = Some(Dark::Shot(dark));
+    }
+
     /// Looks at a shot. `head` is what is believed of where the beam goes.
-    pub(crate) fn see(&mut self, shot: &Shot, history: &History, head: &Alignment) -> Made {
+    pub(crate) fn see(&mut self, shot: &Shot, history: &History, head: &Alignment) {
         let when = Stamp { stamp_s: shot.stamp_s, exposure_s: shot.exposure_s };
         let (from_s, _) = self.timing.row_s(&when, 0.0);
         let (_, until_s) = self.timing.row_s(&when, 1.0);
         match history.light(from_s - Timing::UNSURE_S, until_s + Timing::UNSURE_S) {
-            Light::Mixed => Made::Unused,
-            Light::Dark => {
-                self.dark = Some(Dark::Shot(shot.clone()));
-                Made::Dark
-            }
+            Light::Mixed => {}
+            Light::Dark => self.dark = Some(Dark::Shot(shot.clone())),
             Light::Lit => self.look(shot, when, history, head),
         }
     }
 
-    fn look(&mut self, shot: &Shot, when: Stamp, history: &History, head: &Alignment) -> Made {
-        let Some(awaited) = self.awaited(when, history, head) else { return Made::Unused };
+    fn look(&mut self, shot: &Shot, when: Stamp, history: &History, head: &Alignment) {
+        let Some(awaited) = self.awaited(when, history, head) else { return };
         let Some(dark) = self.dark.as_mut().and_then(|dark| dark.red(when.exposure_s)) else {
-            return Made::Unused;
+            return;
         };
-        let Ok(red) = shot.red() else { return Made::Unused };
+        let Ok(red) = shot.red() else { return };
         let window = match self.last_off_px {
             Some(off) => SpotWindow { centre: awaited + off, half_px: NEAR_PX },
             None => SpotWindow { centre: awaited, half_px: FAR_PX },
@@ -234,7 +231,7 @@ impl SpotWatch {
                 }
                 self.last_off_px = None;
                 (self.lost, self.last_lost) = (self.lost + 1, Some(why));
-                return Made::Lost;
+                return;
             }
         };
         if spot.clipped > 0 {
@@ -245,12 +242,11 @@ impl SpotWatch {
             let [x, y] = self.camera.pixels_per_metre(at)?;
             Some((at, x.cross(y).abs().sqrt()))
         }) else {
-            return Made::Unused;
+            return;
         };
         let deviation_m = spot.deviation_px.hypot(LEAST_DEVIATION_PX) / scale;
         let sighting = Sighting { when, down: spot.at.y / red.height() as f64, at, deviation_m };
         self.sightings.push(sighting);
-        Made::Seen
     }
 
     /// Where the spot should be in an image, px.

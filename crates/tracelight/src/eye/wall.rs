@@ -1,7 +1,7 @@
 //! The camera found from markers in sight.
 
 use tracelight_aim::{
-    Board, Camera, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyedCamera, survey,
+    Board, Camera, Doubt, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyedCamera, survey,
 };
 use tracelight_stroke::{Affine, Point};
 use tracelight_vision::{Grey, Tag, TagPlace, find_tags};
@@ -22,8 +22,8 @@ pub(crate) struct SeenWall {
     /// How far markers are off from where they should be seen; `None` where none are in sight, and the camera is believed to stand where
     /// it stood.
     pub(crate) rms_px: Option<f64>,
-    /// What became of where the camera stood, in words.
-    pub(crate) stale: Option<String>,
+    /// What does not look as it should, and what became of where the camera stood, in words.
+    pub(crate) remarks: Vec<String>,
     /// The image.
     pub(crate) pixels: Raster,
 }
@@ -71,7 +71,7 @@ pub(crate) fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<Se
             pages: Vec::new(),
             markers,
             rms_px: None,
-            stale: None,
+            remarks: Vec::new(),
             pixels,
         });
     }
@@ -92,7 +92,7 @@ pub(crate) fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<Se
         pages: survey.pages.iter().map(placed).collect(),
         markers,
         rms_px: Some(survey.rms_px),
-        stale,
+        remarks: doubts(&survey).into_iter().chain(stale).collect(),
         pixels,
     })
 }
@@ -104,10 +104,16 @@ fn held_against(
     stood: Option<&Stood>,
 ) -> (Option<PageName>, Affine, Option<String>) {
     let first = survey.pages.first().map(PageName::of);
-    let Some((stood, name)) = stood.zip(first) else { return (first, Affine::IDENTITY, None) };
-    let Some(wall_from_first) = stood.wall_from(name) else {
+    let Some(stood) = stood else { return (first, Affine::IDENTITY, None) };
+    // by any page that hung there then
+    let known = survey.pages.iter().find_map(|page| {
+        let first_from_page = Affine::rotate(page.turn_rad).then_translate(page.middle.to_vec2());
+        Some(stood.wall_from(PageName::of(page))? * first_from_page.inverse())
+    });
+    let Some(wall_from_first) = known else {
+        let name = first.map_or_else(String::new, |page| page.to_string());
         let why = format!(
-            "page {name} did not hang there on {}, when the camera was calibrated: the wall's frame is now that page's",
+            "no page in sight hung there on {}, when the camera was calibrated: the wall's frame is now that of page {name}",
             stood.date
         );
         return (first, Affine::IDENTITY, Some(why));
@@ -116,7 +122,7 @@ fn held_against(
     let stale = match moved_px {
         Some(px) if px <= MOVED_PX => None,
         Some(px) => Some(format!(
-            "the camera moved {px:.1} px since {}, when it was calibrated: it was found anew",
+            "the camera moved {px:.1} px since {}, when it was calibrated, or the page did: it was found anew",
             stood.date
         )),
         None => Some(format!(
@@ -197,4 +203,32 @@ fn brightest(pixels: &Raster) -> u8 {
         }
     }
     u8::MAX
+}
+
+/// What does not look as it should, in words.
+pub(crate) fn doubts(survey: &Survey) -> Vec<String> {
+    let page =
+        |page: usize| survey.pages.get(page).map_or_else(String::new, |page| PageName::of(page).to_string());
+    let words = |doubt: &Doubt| match *doubt {
+        Doubt::Loose(number, m) => format!(
+            "page {} seems to lie {:.1} mm {} the plane of the others: stick it flat on the wall",
+            page(number),
+            1e3 * m.abs(),
+            if m > 0.0 { "in front of" } else { "behind" }
+        ),
+        Doubt::Scaled(number, share) => format!(
+            "page {} seems to be printed {:.2} % {} than page {}: print all of them alike, and measure their bars",
+            page(number),
+            100.0 * share.abs(),
+            if share > 0.0 { "larger" } else { "smaller" },
+            page(0)
+        ),
+        Doubt::Misfit(times) => format!(
+            "markers are {times:.1} times as far from where they should be seen as they scatter: is a page loose, or has the lens been zoomed since it was calibrated?"
+        ),
+        Doubt::Lens(times) => format!(
+            "the lens is {times:.1} deviations from what was known of it: has it been zoomed since, or does a page not lie on the wall?"
+        ),
+    };
+    survey.doubts.iter().map(words).collect()
 }

@@ -3,12 +3,11 @@
 use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
 use tracelight_rig::PanTilt;
 use tracelight_sim::{Room, Run};
-use tracelight_stroke::{Comparison, Point, compare};
+use tracelight_stroke::{Comparison, Drawing, Point, compare};
 
 use super::Prepared;
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
-use crate::cli::tracing::TracingArgs;
 use crate::eye::Looks;
 use crate::eye::figure::{FigureRequest, SeenFigure, see_figure};
 use crate::eye::head::{find_head, in_front};
@@ -30,6 +29,8 @@ pub(super) struct Seen {
     pub(super) figures: EyeFigures,
     /// The image in which the figure was found.
     pub(super) image: Raster,
+    /// The true figure on the wall, which a simulated room knows.
+    truth: Option<Drawing>,
 }
 
 /// Looks at the wall, has the head draw dots unless it is known, and plans the figure.
@@ -38,7 +39,7 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     args.law.apply(&mut driving.rig);
     let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
     if args.dry_run && known.is_none() && matches!(args.eye.source()?, Source::Simulated(_)) {
-        let message = "a dry run draws no dots to find the head by: give --head (tracelight calibrate head -o head.toml)";
+        let message = "a dry run draws no dots to find the head by: give --head (tracelight calibrate head --camera … -o head.toml)";
         return Err(Failure::usage("usage", message));
     }
     progress.stage("wall", 1);
@@ -56,12 +57,12 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         (None, camera) => camera.as_mut().map(|camera| &mut **camera as &mut dyn Looks),
     };
     let looks = looks.ok_or_else(|| Failure::failed("internal", "nothing that looks"))?;
-    let SeenFigure { wall, sketch, placed, retaken } = see_figure(looks, &wanted, progress)?;
-    wall.stale.iter().for_each(|stale| progress.say(&format!("note: {stale}")));
+    let SeenFigure { wall, sketch, placed, retaken } = see_figure(looks, &wanted, (progress, stop))?;
+    wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
     stop.check()?;
     let head = match (known, &mut rig, &room) {
         (Some(known), _, _) => {
-            known.check_frame(wall.frame)?;
+            known.check_wall(&wall)?;
             believe(&mut driving, known.geometry, known.pose);
             None
         }
@@ -83,23 +84,27 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         head,
         figure_mm: None,
     };
-    let seen = Seen { room, figures, image: wall.pixels };
+    let truth = truth(args, room.as_ref(), progress)?;
+    let seen = Seen { room, figures, image: wall.pixels, truth };
     super::planned(sketch, placed, driving, Some(seen), (progress, stop))
 }
 
 /// The room, if it is simulated.
 fn furnished(args: &TraceArgs, driving: &Driving) -> Result<Option<Furnished>, Failure> {
     let Source::Simulated(picture) = args.eye.source()? else { return Ok(None) };
-    if args.eye.sim_camera == SimulatedEye::Report && args.eye.has_pages() {
-        let message = "the report's camera does not see picture and pages at once: calibrate it first (tracelight calibrate markers \
-                       --camera sim --sim-camera report -o camera.toml), then give --calibration camera.toml";
+    if args.eye.sim_camera == SimulatedEye::Report && args.eye.has_pages()? {
+        let message = format!(
+            "the report's camera does not see picture and pages at once: calibrate it first (tracelight calibrate markers --camera sim \
+             --sim-camera report --seed {} -o camera.toml), then give --calibration camera.toml",
+            args.seed
+        );
         return Err(Failure::usage("usage", message));
     }
     let request = RoomRequest {
         picture,
         placement: &args.placement,
         eye: args.eye.sim_camera,
-        pages: args.eye.has_pages(),
+        pages: args.eye.has_pages()?,
         seed: args.seed,
     };
     Furnished::new(&request, &driving.rig, driving.pose).map(Some)
@@ -137,23 +142,36 @@ fn believe(driving: &mut Driving, geometry: HeadGeometry, pose: HeadPose) {
 /// How far from the true figure a lit trace counts as beside it, m: what users of it see.
 const BESIDE_M: f64 = 1.5e-3;
 
+/// The figure of a simulated room as its picture's file has it, traced as asked; `None` where there is none, or it can not be told.
+fn truth(
+    args: &TraceArgs,
+    room: Option<&Furnished>,
+    progress: &Progress,
+) -> Result<Option<Drawing>, Failure> {
+    let hung = room.and_then(|room| room.wall_from_picture);
+    let (Source::Simulated(Some(path)), Some(wall_from_picture)) = (args.eye.source()?, hung) else {
+        return Ok(None);
+    };
+    match sketch(path, picture::read(path)?, &args.tracing, &args.placement) {
+        Ok(truth) => Ok(Some(truth.drawing.transformed(wall_from_picture))),
+        Err(why) => {
+            progress.say(&format!("note: how far the light is from the figure is not told: {}", why.message));
+            Ok(None)
+        }
+    }
+}
+
 impl Seen {
-    /// What a run adds: how far the lit trace truly is from the figure, which a simulated room knows.
-    pub(super) fn after(&self, args: &TraceArgs, run: &Run) -> Result<EyeFigures, Failure> {
-        let mut figures = self.figures.clone();
-        let hung = self.room.as_ref().and_then(|room| room.wall_from_picture);
-        let (Source::Simulated(Some(path)), Some(wall_from_picture)) = (args.eye.source()?, hung) else {
-            return Ok(figures);
-        };
-        let truth = sketch(path, picture::read(path)?, &TracingArgs::default(), &args.placement)?;
-        let found = compare(&lit(run), &truth.drawing.transformed(wall_from_picture), BESIDE_M);
-        figures.figure_mm = found.map(|Comparison { rms, p99, max, coverage, .. }| FigureMatch {
+    /// What a run adds: how far the lit trace truly is from the figure.
+    pub(super) fn after(&self, run: &Run) -> EyeFigures {
+        let found = self.truth.as_ref().and_then(|truth| compare(&lit(run), truth, BESIDE_M));
+        let figure_mm = found.map(|Comparison { rms, p99, max, coverage, .. }| FigureMatch {
             rms: 1e3 * rms,
             p99: 1e3 * p99,
             max: 1e3 * max,
             covered_share: coverage,
         });
-        Ok(figures)
+        EyeFigures { figure_mm, ..self.figures.clone() }
     }
 }
 

@@ -51,19 +51,19 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         picture,
         placement: &args.placement,
         eye: args.eye.sim_camera,
-        pages: args.eye.has_pages(),
+        pages: args.eye.has_pages()?,
         seed: args.seed,
     };
     progress.stage("wall", 1);
     let room = Furnished::new(&request, &driving.rig, driving.pose)?;
     let mut rig = room.watched(&driving.rig, driving.pose);
     let wall = see_wall(well_exposed(&mut rig)?, args.eye.known()?.as_ref())?;
-    wall.stale.iter().for_each(|stale| progress.say(&format!("note: {stale}")));
+    wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
     stop.check()?;
     driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
     let found = find_head(&mut rig, &wall.camera.camera, &driving, (&progress, stop))?;
     stop.check()?;
-    write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, wall.frame))?)?;
+    write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, &wall))?)?;
     let pose = found.aligned.alignment.pose;
     let truth = room.true_error_m(&found.aligned.alignment.geometry, &pose);
     Ok(Answer::new(text(&wall, &found, truth, &args.output), json(&found, truth).to_string()))
@@ -85,25 +85,36 @@ fn text(wall: &SeenWall, found: &FoundHead, truth: Option<(f64, f64)>, output: &
     });
     format!(
         "wall:     {}\n\
-         stands:   {distance_m:.4} m before the wall, ({right_m:.4}, {up_m:.4}) m from the middle of the first page; turned {:.2}° left, {:.2}° down, {:.2}° about itself\n\
-         built:    the beam leaves {left:.1} mm left of and {up:.1} mm above the axes, points {:.2}° left and {:.2}° down; the axes are {:.2}° from square\n\
-         images:   taken {:.1} ms later than stamped, the last row {:.1} ms later still\n\
+         stands:   {distance_m:.4} m before the wall, ({right_m:.4}, {up_m:.4}) m from the middle of the first page; turned {}, {}, {:+.2}° about the beam\n\
+         built:    the beam leaves {} of and {} the axes, points {} and {}; the axes are {:+.2}° from square\n\
+         images:   taken {} than stamped, the last row {:.1} ms later still\n\
          dots:     {}, seen in {} images, in {} not; {:.3} mm off, rms{likely}{simulated}\n\
          file:     {output}",
         wall.words(),
-        yaw_rad.to_degrees(),
-        pitch_rad.to_degrees(),
+        degrees(yaw_rad, "left", "right"),
+        degrees(pitch_rad, "down", "up"),
         roll_rad.to_degrees(),
-        built.beam_off_rad[0].to_degrees(),
-        built.beam_off_rad[1].to_degrees(),
+        toward(left, 1, " mm", "left", "right"),
+        toward(up, 1, " mm", "above", "below"),
+        degrees(built.beam_off_rad[0], "left", "right"),
+        degrees(built.beam_off_rad[1], "down", "up"),
         built.axis_skew_rad.to_degrees(),
-        1e3 * found.timing.late_s,
+        toward(1e3 * found.timing.late_s, 1, " ms", "later", "earlier"),
         1e3 * found.timing.readout_s,
         found.dots,
         found.aligned.spots,
         found.lost,
         1e3 * found.aligned.rms_m,
     )
+}
+
+/// A signed number as one without a sign, and which way it goes.
+fn toward(value: f64, decimals: usize, unit: &str, more: &str, less: &str) -> String {
+    format!("{:.decimals$}{unit} {}", value.abs(), if value < 0.0 { less } else { more })
+}
+
+fn degrees(angle_rad: f64, more: &str, less: &str) -> String {
+    toward(angle_rad.to_degrees(), 2, "°", more, less)
 }
 
 fn json(found: &FoundHead, truth: Option<(f64, f64)>) -> serde_json::Value {

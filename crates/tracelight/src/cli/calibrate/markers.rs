@@ -1,8 +1,6 @@
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_aim::{
-    Board, Doubt, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey,
-};
+use tracelight_aim::{Board, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
 use tracelight_sim::RigConfig;
 use tracelight_stroke::Point;
 use tracelight_vision::Grey;
@@ -12,7 +10,7 @@ use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::placing::{PlacementArgs, positive_length};
 use crate::cli::{Answer, Voice, write_file};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
-use crate::eye::wall::{markers, well_exposed};
+use crate::eye::wall::{doubts, markers, well_exposed};
 use crate::eye::{self, grey};
 use crate::failure::Failure;
 use crate::output::BAR_M;
@@ -207,37 +205,8 @@ impl Seen {
         )
     }
 
-    /// What does not look as it should, in words.
-    fn warnings(&self) -> Vec<String> {
-        let page = |page: usize| {
-            self.survey.pages.get(page).map_or_else(String::new, |page| PageName::of(page).to_string())
-        };
-        let words = |doubt: &Doubt| match *doubt {
-            Doubt::Loose(number, m) => format!(
-                "page {} seems to lie {:.1} mm {} the plane of the others: stick it flat on the wall",
-                page(number),
-                1e3 * m.abs(),
-                if m > 0.0 { "in front of" } else { "behind" }
-            ),
-            Doubt::Scaled(number, share) => format!(
-                "page {} seems to be printed {:.2} % {} than page {}: print all of them alike, and measure their bars",
-                page(number),
-                100.0 * share.abs(),
-                if share > 0.0 { "larger" } else { "smaller" },
-                page(0)
-            ),
-            Doubt::Misfit(times) => format!(
-                "markers are {times:.1} times as far from where they should be seen as they scatter: is a page loose, or has the lens been zoomed since it was calibrated?"
-            ),
-            Doubt::Lens(times) => format!(
-                "the lens is {times:.1} deviations from what was known of it: has it been zoomed since, or does a page not lie on the wall?"
-            ),
-        };
-        self.survey.doubts.iter().map(words).collect()
-    }
-
     fn warnings_text(&self) -> String {
-        let warnings = self.warnings();
+        let warnings = doubts(&self.survey);
         if warnings.is_empty() {
             return String::new();
         }
@@ -260,7 +229,7 @@ impl Seen {
             "markers": self.markers,
             "places": self.survey.places,
             "rms_px": self.survey.rms_px,
-            "warnings": self.warnings(),
+            "warnings": doubts(&self.survey),
         })
     }
 }
