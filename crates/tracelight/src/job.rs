@@ -74,6 +74,7 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
 }
 
 fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepared, Failure> {
+    args.check_camera()?;
     if args.eye.camera.is_some() {
         return seen::prepare(args, progress, stop);
     }

@@ -11,6 +11,8 @@ use crate::cli::eyes::EyeArgs;
 use crate::cli::laws::LawArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
+use crate::eye::room::SimulatedEye;
+use crate::failure::Failure;
 
 /// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
 #[derive(Args, Debug)]
@@ -57,6 +59,21 @@ pub(crate) struct TraceArgs {
 }
 
 impl TraceArgs {
+    /// Refuses what only a camera has use for without one: of a flag whose camera conflicts with the picture the parser asks no camera.
+    pub(crate) fn check_camera(&self) -> Result<(), Failure> {
+        let flags = [
+            ("--head", self.head.is_some()),
+            ("--calibration", self.eye.calibration.is_some()),
+            ("--sim-camera", self.eye.sim_camera != SimulatedEye::default()),
+        ];
+        match flags.iter().find(|(_, is_set)| *is_set && self.eye.camera.is_none()) {
+            Some((flag, _)) => {
+                Err(Failure::usage("usage", format!("{flag} is for what a camera sees: give --camera")))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// What of a camera was set, flag and value; nothing without one.
     pub(crate) fn seen_settings(&self) -> Vec<(&'static str, String)> {
         if self.eye.camera.is_none() {
