@@ -35,8 +35,18 @@ def room(camera, seed):
     return summary.get("camera") or summary
 
 
+def figure(found, name):
+    """How far the light is from the figure; None where the room does not tell."""
+    told = found["figure_mm"]
+    if told is None:
+        return None
+    return 100 * (1 - told["covered_share"]) if name == "missed" else told[name]
+
+
 def line(name, values):
     values = [v for v in values if v is not None]
+    if not values:
+        return print(f"{name}: none")
     print(f"{name}: median {statistics.median(values):.3f}, worst {max(values):.3f} ({len(values)} rooms)")
 
 
@@ -46,8 +56,8 @@ for camera in ("webcam", "report"):
     bad = [(seed, found["error"]) for seed, found in enumerate(rooms, 1) if "error" in found]
     good = [found for found in rooms if "error" not in found]
     print(f"{camera}: {len(good)} of {SEEDS} rooms traced", *bad, sep="\n  ")
-    line("  light beside the figure, rms, mm", [found["figure_mm"]["rms"] for found in good])
-    line("  99 % of it within, mm", [found["figure_mm"]["p99"] for found in good])
-    line("  of the figure not lit, %", [100 * (1 - found["figure_mm"]["covered_share"]) for found in good])
+    line("  light beside the figure, rms, mm", [figure(found, "rms") for found in good])
+    line("  99 % of it within, mm", [figure(found, "p99") for found in good])
+    line("  of the figure not lit, %", [figure(found, "missed") for found in good])
     line("  spot beside where the head is believed to put it, rms, mm", [found["head"]["truth_rms_mm"] for found in good])
     line("  the same, largest, mm", [found["head"]["truth_max_mm"] for found in good])

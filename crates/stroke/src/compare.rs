@@ -145,6 +145,15 @@ mod tests {
     }
 
     #[test]
+    fn one_sample_in_a_hundred_may_be_further_off_than_p99() {
+        // a tenth off along 99 parts of the way, one off along 1; and one more part of it
+        let truth = [line(&[(0., 0.), (100., 0.)])];
+        let drawn = |far: f64| [line(&[(0., 0.1), (100. - far, 0.1)]), line(&[(100. - far, 1.), (100., 1.)])];
+        check(compare_polylines(&drawn(0.9), &truth, 0.01).unwrap().p99, 0.1, 1e-9);
+        check(compare_polylines(&drawn(1.1), &truth, 0.01).unwrap().p99, 1.0, 1e-9);
+    }
+
+    #[test]
     fn half_a_line_covers_half_and_strays_nowhere() {
         let found = compare_polylines(&[line(&[(0., 0.), (0.5, 0.)])], &[line(&[(0., 0.), (1., 0.)])], 0.01);
         let found = found.unwrap();

@@ -139,13 +139,10 @@ fn read_all(mut body: impl BufRead, boundary: &str, latest: &Latest) {
 
 /// The next part of a stream (RFC 2046, §5.1), by its length where that is told, up to the next boundary where it is not.
 fn read_part(body: &mut impl BufRead, boundary: &str) -> Result<Vec<u8>, String> {
+    // any number of dashes goes before it, two at least
     let is_boundary = |line: &[u8]| {
-        let line = line.strip_prefix(b"--").unwrap_or(line);
-        line.trim_ascii_end()
-            .trim_ascii_start()
-            .strip_prefix(b"--")
-            .unwrap_or(line)
-            .starts_with(boundary.as_bytes())
+        let dashes = line.iter().take_while(|byte| **byte == b'-').count();
+        dashes >= 2 && line[dashes..].starts_with(boundary.as_bytes())
     };
     let mut length = None;
     // a boundary may have been read at the end of the part before: then headers come at once
