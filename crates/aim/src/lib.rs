@@ -8,7 +8,7 @@
 //! | joint | pan about z, tilt about the pan-carried y, rad; positive tilt turns the beam down |
 //! | camera | x right, y down, z ahead; origin where the light passes |
 //!
-//! Every conversion between two of them is done here and nowhere else. The crate knows no images and no time.
+//! Every conversion between two of them is done here and nowhere else. The crate knows no images and no clock.
 
 mod align;
 mod board;
@@ -22,6 +22,7 @@ mod lens;
 mod placement;
 mod pose;
 mod survey;
+mod trim;
 
 pub use align::{AlignError, Aligned, Alignment, AlignmentBelief, SeenSpot, align};
 pub use board::Board;
@@ -34,3 +35,4 @@ pub use pose::HeadPose;
 pub use survey::{
     Doubt, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyError, SurveyedCamera, survey,
 };
+pub use trim::{Correction, Surprise, Trim, TrimBelief};

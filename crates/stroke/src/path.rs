@@ -181,6 +181,23 @@ impl Path {
         Self::of(start, elements, true)
     }
 
+    /// What is left of it from an arc length on, which on cubics is found to `tolerance`; open, and `None` if nothing is.
+    pub fn after(&self, length: f64, tolerance: f64) -> Option<Self> {
+        let mut left: Option<Self> = None;
+        let mut before = 0.0;
+        for piece in self.pieces() {
+            let own = piece.length(tolerance);
+            let skipped = (length - before).max(0.0);
+            before += own;
+            if skipped + tolerance >= own {
+                continue;
+            }
+            let piece = if skipped > 0.0 { piece.part(skipped, own, tolerance) } else { piece };
+            left.get_or_insert_with(|| Self::new(piece.from)).push(piece.element);
+        }
+        left
+    }
+
     /// The path moved by a similarity (rotation, uniform scale, reflection, shift).
     pub fn transformed(&self, similarity: Affine) -> Self {
         let turn = similarity.determinant().signum();
@@ -398,5 +415,20 @@ mod tests {
         assert_eq!(moved.start(), Point::new(1.0, 1.0));
         assert_eq!(moved.end(), moved.start());
         assert!((moved.length(1e-9) - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_left_of_a_path_has_the_length_that_is_left() {
+        let mut path = Path::new(Point::new(0.0, 0.0));
+        path.line_to(Point::new(3.0, 0.0));
+        path.push(Element::Arc { centre: Point::new(3.0, 1.0), sweep: PI });
+        path.close();
+        let whole = path.length(1e-9);
+        for from in [0.0, 1.0, 3.0, 4.5, whole - 0.5] {
+            let left = path.after(from, 1e-9).unwrap();
+            assert!((left.length(1e-9) - (whole - from)).abs() < 1e-6, "{from}");
+            assert!(!left.is_closed() && left.pieces().last().unwrap().end().distance(path.start()) < 1e-9);
+        }
+        assert!(path.after(whole, 1e-9).is_none());
     }
 }
