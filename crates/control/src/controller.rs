@@ -64,6 +64,12 @@ impl Controller {
                 state.supervisor.disarm();
                 state.player.hold();
             }
+            Command::Point(ticks) => state.supervisor.point(u32::from(ticks)),
+            Command::Abandon => {
+                state.supervisor.disarm();
+                state.player.abandon();
+                state.way_back = Some(ReturnPath::from(state.servo.estimates()));
+            }
             Command::KeepAlive => state.watch.hear(),
             Command::Finish => state.player.finish(),
             Command::Append(_) if !state.player.has_room() => return Err(command),

@@ -105,6 +105,11 @@ impl Player {
         }
     }
 
+    /// Forgets what is queued; from now on the joints are to rest at zero.
+    pub(crate) fn abandon(&mut self) {
+        *self = Self { finished: true, ..Self::resting_at(PanTilt::default()) };
+    }
+
     /// Whether the plan's clock has left its start.
     pub(crate) fn has_begun(&self) -> bool {
         self.tick > 0 || self.fraction > 0.0

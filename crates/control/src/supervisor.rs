@@ -26,6 +26,8 @@ pub(crate) struct Supervisor {
     /// Since the last hold.
     calm_ticks: u32,
     settled_ticks: u32,
+    /// For how long a dot is still wanted while it is disarmed.
+    pointing_ticks: u32,
 }
 
 /// What the supervisor judges a tick by.
@@ -87,7 +89,13 @@ impl Supervisor {
     pub(crate) fn disarm(&mut self) {
         if self.phase != Phase::Faulted {
             self.phase = Phase::Dark;
+            self.pointing_ticks = 0;
         }
+    }
+
+    /// A dot is wanted from now on, where the plan's clock stands.
+    pub(crate) fn point(&mut self, ticks: u32) {
+        self.pointing_ticks = if self.phase == Phase::Dark { ticks } else { 0 };
     }
 
     /// One tick: moves between phases and says what the clock does.
@@ -95,6 +103,7 @@ impl Supervisor {
         if out_of_range(config, at.position_rad) && self.phase != Phase::Dark {
             self.trip(Fault::LimitReached);
         }
+        self.pointing_ticks = self.pointing_ticks.saturating_sub(1);
         match self.phase {
             // a job that was disarmed on its way goes on only from where it stopped, a new one from where it begins
             Phase::Armed if at.segment.is_some() && (at.begun || strayed(at)) => self.begin_hold(),
@@ -140,13 +149,14 @@ impl Supervisor {
     /// Every reason against light in this tick. The gate is open only if there is none.
     pub(crate) fn darkness(&self, config: &Config, at: &Situation<'_>) -> DarknessSet {
         let mut reasons = DarknessSet::default();
+        let points = self.phase == Phase::Dark && self.pointing_ticks > 0 && at.begun && is_still(at);
         let planned = at.segment.is_some_and(|s| s.gate);
-        reasons.insert_if(!planned, Darkness::Planned);
-        reasons.insert_if(self.phase == Phase::Dark, Darkness::Disarmed);
+        reasons.insert_if(!planned && !points, Darkness::Planned);
+        reasons.insert_if(self.phase == Phase::Dark && !points, Darkness::Disarmed);
         reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);
         reasons.insert_if(strayed(at), Darkness::SpotError);
         reasons.insert_if(at.doubtful, Darkness::Doubtful);
-        reasons.insert_if(self.phase == Phase::Holding || !at.light_due, Darkness::Holding);
+        reasons.insert_if(self.phase == Phase::Holding || !(at.light_due || points), Darkness::Holding);
         let asked = at.setpoint.map(|s| s.position_rad);
         reasons.insert_if(out_of_range(config, asked), Darkness::OutOfBounds);
         let idle = matches!(self.phase, Phase::Armed | Phase::Done);
@@ -193,7 +203,10 @@ fn exceeds(value: f32, bound: f32) -> bool {
     value > bound || value.is_nan() || bound.is_nan()
 }
 
+fn is_still(at: &Situation<'_>) -> bool {
+    at.rate_rad_s.pan.abs().max(at.rate_rad_s.tilt.abs()) < RETURN_RATE_RAD_S
+}
+
 fn returned(at: &Situation<'_>) -> bool {
-    let still = at.rate_rad_s.pan.abs().max(at.rate_rad_s.tilt.abs()) < RETURN_RATE_RAD_S;
-    still && !at.doubtful && spot_error(at) < RETURN_SHARE
+    is_still(at) && !at.doubtful && spot_error(at) < RETURN_SHARE
 }

@@ -68,6 +68,12 @@ pub enum Command {
     /// Forbid light and stop the plan's clock; the head is held where that stands. Armed again, the job goes on from
     /// there; after its end, a new one may begin at tick 0.
     Disarm,
+    /// Let light out for so many ticks while nobody is armed, where a job was stopped on its way and the head rests: a dot, for whoever
+    /// looks where it truly is. Whatever forbids light on a stroke forbids it here.
+    Point(u16),
+    /// Forget the job: forbid light, go back to where both joints are at zero, and be ready for a new one that begins there at
+    /// tick 0. A fault stays; arm first.
+    Abandon,
     /// Append a segment; it must start where and when the one before it ends.
     Append(Segment),
     /// The host is there. Who has said so once must go on saying it: silence is a fault.
