@@ -13,7 +13,9 @@ mod light;
 mod plant;
 mod step;
 
-pub use camera::{CameraConfig, Image, Lamp, Laser, Poster, Sensor, SimulatedCamera, SpotSample, Wall};
+pub use camera::{
+    CameraConfig, Exposed, Image, Lamp, Laser, Part, Poster, Sensor, SimulatedCamera, SpotSample, Wall,
+};
 pub use config::{EncoderConfig, PlantConfig, RelayConfig, Wear};
 pub use plant::Plant;
 pub use step::{JointState, Stepper};

@@ -32,7 +32,7 @@ pub use config::{
 pub use diagram::{Diagram, ScopeTick};
 pub use laws::{Compensator, HandTuned, LawName, ObserverName};
 pub use replay::replay;
-pub use room::Room;
+pub use room::{Room, Taken};
 pub use run::{Feeder, Run, Simulated, SimulatedRig, Tick, run, run_segments};
 pub use score::{Tracking, score};
 pub use spread::Spread;
@@ -40,4 +40,4 @@ pub use step::{
     Push, StepReference, StepResponse, follow_array, push_response, step_response, step_response_by,
 };
 pub use tracelight_control::{Feedforward, LONGEST_INTERVAL_TICKS};
-pub use trouble::Trouble;
+pub use trouble::{EyeTrouble, Trouble};

@@ -3,12 +3,13 @@ use std::ops::ControlFlow;
 use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_control::{Controller, Estimate, State};
 use tracelight_plant::Plant;
-use tracelight_rig::{Command, Fault, Head, PanTilt, Phase, Rig, Segment, Sensed, Telemetry};
+use tracelight_rig::{Command, Fault, Head, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S, Telemetry};
 use tracelight_stroke::Point;
 use tracelight_trajectory::Plan;
 
 use crate::RigConfig;
-use crate::trouble::{Line, Trouble};
+use crate::config::Model;
+use crate::trouble::{Bump, Line, Trouble};
 
 /// Ticks a run goes on after a fault, so that the log shows what followed: 0.2 s.
 const AFTERMATH_TICKS: u32 = 200;
@@ -74,6 +75,13 @@ pub struct SimulatedRig {
     truth: HeadGeometry,
     pose: HeadPose,
     true_pose: HeadPose,
+    /// What each joint feels when what it stands on is sped up, kg m²: what it carries. Its rotor turns about an axis of its own, and of
+    /// what that is worth at the joint only the gears' share acts.
+    inertia_kg_m2: PanTilt<f64>,
+    bump: Option<Bump>,
+    /// Share by which the beam turns further than the counts say, and how much more each tick.
+    stretch: f64,
+    stretch_per_tick: f64,
     /// Ticks beyond a plan after which a run is given up.
     patience_ticks: usize,
 }
@@ -94,6 +102,10 @@ impl SimulatedRig {
             truth: config.truth.model.geometry,
             pose,
             true_pose: pose,
+            inertia_kg_m2: carried_kg_m2(&config.truth.model),
+            bump: None,
+            stretch: 0.0,
+            stretch_per_tick: 0.0,
             patience_ticks: PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize,
         }
     }
@@ -106,13 +118,14 @@ impl SimulatedRig {
     }
 
     fn tick(&mut self) -> Tick {
+        self.age();
         let telemetry = self.controller.tick(&mut self.state, &self.sensed);
         let asked = telemetry.setpoint.map(|s| f64::from(s.position_rad));
         let tick = Tick {
             telemetry,
             angle_rad: self.plant.angle_rad(),
             rate_rad_s: self.plant.rate_rad_s(),
-            spot: self.truth.spot(&self.true_pose, self.plant.beam_rad()),
+            spot: self.truth.spot(&self.true_pose, self.plant.beam_rad().map(|q| q * (1.0 + self.stretch))),
             asked: self.model.spot(&self.pose, asked),
             light: self.plant.light(),
         };
@@ -120,6 +133,17 @@ impl SimulatedRig {
         let encoders = PanTilt::from_fn(|j| self.lines[j].carry(seen.encoders[j]));
         self.sensed = Sensed { encoders, ..seen };
         tick
+    }
+
+    /// What goes on going wrong.
+    fn age(&mut self) {
+        self.stretch += self.stretch_per_tick;
+        let Some(bump) = &mut self.bump else { return };
+        let sped_up = bump.tick(&mut self.true_pose);
+        // a joint's own inertia stays behind
+        let felt = sped_up.unwrap_or_default();
+        self.plant.push(PanTilt::from_fn(|j| -self.inertia_kg_m2[j] * felt[j]));
+        self.bump = self.bump.filter(|_| sped_up.is_some());
     }
 
     /// What the controller believes of the joints.
@@ -138,8 +162,16 @@ impl SimulatedRig {
             Trouble::EncoderSlip(j, share) => self.lines[j].slip(share),
             Trouble::StampGarbled(j) => self.lines[j].garbled = true,
             Trouble::LaserStuck => self.plant.stick_laser(),
+            Trouble::Bump(by_rad) => self.bump = Some(Bump::new(by_rad)),
+            Trouble::Drift(share_per_s) => self.stretch_per_tick = share_per_s * TICK_F64_S,
         }
     }
+}
+
+/// Inertia of what joints carry, without their rotors, kg m².
+fn carried_kg_m2(model: &Model) -> PanTilt<f64> {
+    let own = model.own_inertia_kg_m2();
+    PanTilt::from_fn(|j| own[j] - model.bodies.rotor_kg_m2[j])
 }
 
 /// A rig of which more is known than its controller tells.

@@ -309,6 +309,20 @@ pub(crate) struct Stood {
     pages: Vec<(PageName, Affine)>,
 }
 
+impl KnownCamera {
+    /// Of a camera that was found in front of these pages a moment ago.
+    pub(crate) fn standing(camera: &SurveyedCamera, pages: &[PlacedPage], print_scale: f64) -> Self {
+        let covariance = camera.covariance.fixed_view::<9, 9>(6, 6).into_owned();
+        let place = |page: &PlacedPage| {
+            let wall_from_page = Affine::rotate(page.turn_rad).then_translate(page.middle.to_vec2());
+            (PageName::of(page), wall_from_page)
+        };
+        let pages = pages.iter().map(place).collect();
+        let stood = Stood { camera: *camera, date: crate::rigfile::today(), pages };
+        Self { lens: LensBelief { lens: camera.camera.lens, covariance }, print_scale, stood: Some(stood) }
+    }
+}
+
 impl Stood {
     /// The wall's frame from that of a page, if that hung there.
     pub(crate) fn wall_from(&self, page: PageName) -> Option<Affine> {

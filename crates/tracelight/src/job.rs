@@ -1,6 +1,9 @@
 //! One job from picture to results: the stages in their order.
 
+mod recovery;
+mod remainder;
 mod seen;
+mod watched;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -13,6 +16,7 @@ use tracelight_trajectory::Plan;
 
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
+use crate::eye::room::Furnished;
 use crate::failure::Failure;
 use crate::output::{
     self, EyeFigures, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing,
@@ -25,6 +29,7 @@ use crate::settings;
 use crate::sketch::{Placed, Sketch, place, sketch};
 use crate::stop::Stop;
 use seen::Seen;
+use watched::{WatchedJob, WatchedRun, run_watched};
 
 /// A job that ran to an end, its own or another.
 pub(crate) struct Outcome {
@@ -54,6 +59,8 @@ struct Laps {
     last: Run,
     /// The rig as it was identified between laps, if it was.
     identified: Option<RigConfig>,
+    /// What a camera saw of the last one, and the plan that it came to.
+    watched: Option<WatchedRun>,
     notes: Vec<String>,
     run_ms: f64,
 }
@@ -69,7 +76,8 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     let laps = run_laps(args, &prepared, &dir, &settings, (&progress, stop))?;
     progress.stage("report", 1);
     let summary = write(args, &prepared, &laps, &dir, &settings)?;
-    let failure = ending(&laps.last, stop);
+    let watched = laps.watched.and_then(|watched| watched.failure);
+    let failure = ending(&laps.last, stop).filter(|_| watched.is_none()).or(watched);
     Ok(Outcome { summary, dir, failure })
 }
 
@@ -106,12 +114,9 @@ fn planned(
 }
 
 impl Prepared {
-    /// The head just powered up, believed to be this.
-    fn rig(&self, believed: &RigConfig, seed: u64) -> SimulatedRig {
-        match self.seen.as_ref().and_then(|seen| seen.room.as_ref()) {
-            Some(room) => room.rig(believed, self.driving.pose),
-            None => SimulatedRig::new(believed, self.driving.pose, seed),
-        }
+    /// The simulated room that a camera looks at while the laser draws.
+    fn watched(&self) -> Option<(&Seen, &Furnished)> {
+        self.seen.as_ref().and_then(|seen| Some((seen, seen.room.as_ref()?)))
     }
 }
 
@@ -162,13 +167,32 @@ fn run_laps(
     let mut laps: Vec<Run> = Vec::new();
     let mut learned = Learned { rig: prepared.driving.rig.clone(), taken: false, notes: Vec::new() };
     let mut log = LogWriter::open(&dir.join("run.mcap"), &meta)?;
+    let mut watched = None;
     while laps.len() < args.laps as usize && !stop.is_wanted() {
         if !laps.is_empty() {
             progress.stage("identify", 1);
             learned = learn(&prepared.driving.rig, &laps);
         }
         progress.stage("run", plan.points.len() as u64);
-        let rig = prepared.rig(&learned.rig, args.seed);
+        if let Some((seen, room)) = prepared.watched() {
+            let mut driving = prepared.driving.clone();
+            driving.rig = learned.rig.clone();
+            let job = WatchedJob {
+                plan,
+                drawing: &prepared.schedule.ordered.drawing,
+                driving: &driving,
+                seen,
+                troubles: &args.follow.sim_trouble,
+                dry: args.dry_run,
+                open: args.follow.open_loop,
+            };
+            let room = room.watched(&learned.rig, prepared.driving.pose);
+            let mut done = run_watched(&job, room, &mut log, (progress, stop))?;
+            laps.push(std::mem::take(&mut done.run));
+            watched = Some(done);
+            continue;
+        }
+        let rig = SimulatedRig::new(&learned.rig, prepared.driving.pose, args.seed);
         laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
     }
     log.finish()?;
@@ -179,6 +203,7 @@ fn run_laps(
         earlier: laps,
         last,
         identified,
+        watched,
         notes: learned.notes,
         run_ms: began.elapsed().as_secs_f64() * 1e3,
     })
@@ -268,10 +293,12 @@ fn write(
         None => output::forget(&path).map_err(|e| cannot_write(&path, &e))?,
     }
     write_rig(args, dir, laps)?;
-    let eye = prepared.seen.as_ref().map(|seen| seen.after(&laps.last));
+    let follow = laps.watched.as_ref().map(|watched| watched.figures.clone());
+    let eye = prepared.seen.as_ref().map(|seen| seen.after(&laps.last, follow));
+    let plan = laps.watched.as_ref().map_or(&schedule.plan, |watched| &watched.plan);
     let seen = eye.iter().flat_map(EyeFigures::words);
     let notes: Vec<String> = prepared.notes.iter().chain(&laps.notes).cloned().chain(seen).collect();
-    let tracking: Tracking = score(&schedule.plan, &laps.last, schedule.plan.set_speed_m_s);
+    let tracking: Tracking = score(plan, &laps.last, plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
     let job = Job {
         picture_path: args.name(),
@@ -286,11 +313,11 @@ fn write(
             distance_m: driving.pose.distance_m,
         },
         drawing,
-        plan: &schedule.plan,
+        plan,
         run: &laps.last,
         earlier_laps: &laps.earlier,
         tracking,
-        set_speed_m_s: schedule.plan.set_speed_m_s,
+        set_speed_m_s: plan.set_speed_m_s,
         command_limit_v: motors.map(|m| m.limit_v),
         torque_limit_nm: PanTilt::new(motors.pan.torque_limit_nm(), motors.tilt.torque_limit_nm()),
         tolerance_mm: driving.request.tolerance_m * 1e3,
@@ -305,6 +332,7 @@ fn write(
         seed: args.seed,
         dry_run: args.dry_run,
         eye,
+        seen: laps.watched.as_ref().map(|watched| &watched.seen),
     };
     Ok(output::write_all(dir, &job)?)
 }

@@ -10,6 +10,11 @@ use std::process::Output;
 use serde_json::Value;
 use support::{folder, run};
 
+/// The folder that a test was given before, with what is in it.
+fn folder_of(name: &str) -> std::path::PathBuf {
+    std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
 const HOUSE: &str = concat!("sim:", env!("CARGO_MANIFEST_DIR"), "/../../examples/house.png");
 
 fn json(output: &Output) -> Value {
@@ -91,6 +96,100 @@ fn the_reports_camera_is_calibrated_first_and_a_known_head_draws_no_dots() {
     );
     assert_eq!(other.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&other.stderr).contains("it is of the rig report, and this is worn"));
+}
+
+/// A trace of the house in room 7, with more flags; its summary, and what was said.
+fn traced(name: &str, more: &[&str]) -> (Value, String) {
+    let dir = folder(name);
+    let out = dir.join("out").to_str().unwrap().to_owned();
+    let mut args = vec!["trace", "--camera", HOUSE, "--seed", "7", "--out", &out, "--json"];
+    args.extend(more);
+    let output = run(&args);
+    for file in ["seen.csv", "seen.jpg", "report.html"] {
+        assert!(dir.join("out").join(file).exists(), "{file}");
+    }
+    (json(&output), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn what_drifts_is_trimmed_through_the_camera() {
+    let drift = ["--rig", "worn", "--sim-trouble", "drift=0.5@0"];
+    let (closed, _) = traced("camera-drift", &drift);
+    let (open, _) = traced("camera-drift-open", &[&drift[..], &["--open-loop"]].concat());
+    check_at_most(&closed, "/camera/figure_mm/rms", 0.35);
+    let rms = |summary: &Value| summary["camera"]["figure_mm"]["rms"].as_f64().unwrap();
+    assert!(rms(&open) > 1.7 * rms(&closed), "{} {}", rms(&open), rms(&closed));
+    check_at_most(&closed, "/camera/follow/off_mm/rms", 0.4);
+    let scale = closed["camera"]["follow"]["trim"]["pan_scale_percent"].as_f64().unwrap();
+    assert!((0.3..0.6).contains(&scale), "{scale}");
+    assert_eq!(
+        (&closed["camera"]["follow"]["closed"], &open["camera"]["follow"]["closed"]),
+        (&true.into(), &false.into())
+    );
+}
+
+#[test]
+fn an_encoder_that_slips_and_a_camera_that_is_bumped_are_found_again_and_no_light_goes_astray() {
+    for (trouble, why) in [
+        ("pan-slip=20@6", "fault encoder-jumped: the head was found anew by 9 dots, its spot had moved by 2"),
+        (
+            "tilt-slip=-20@6",
+            "fault encoder-jumped: the head was found anew by 9 dots, its spot had moved by 2",
+        ),
+        ("camera-bump=5@6", "the camera moved 5"),
+    ] {
+        let (found, said) = traced(&format!("camera-{}", &trouble[..8]), &["--sim-trouble", trouble]);
+        assert!(said.contains(why), "{trouble}: {said}");
+        assert_eq!(found["camera"]["follow"]["recoveries"].as_array().unwrap().len(), 1, "{trouble}");
+        check_at_most(&found, "/tracking/off_stroke_max_mm", 3.0);
+        check_at_most(&found, "/camera/figure_mm/rms", 0.5);
+        assert!(found["camera"]["figure_mm"]["covered_share"].as_f64().unwrap() > 0.99, "{trouble}: {found}");
+        assert_eq!(found["run"]["finished"], true);
+    }
+}
+
+#[test]
+fn a_head_that_is_bumped_is_dark_within_a_fifth_of_a_second_and_draws_on() {
+    let (found, said) = traced("camera-head-bump", &["--sim-trouble", "head-bump=1@6"]);
+    assert!(said.contains("the head was found anew by 9 dots, its spot had moved by 16"), "{said}");
+    assert!(found["camera"]["figure_mm"]["covered_share"].as_f64().unwrap() > 0.99, "{found}");
+    check_at_most(&found, "/camera/figure_mm/p99", 1.5);
+    let table = std::fs::read_to_string(folder_of("camera-head-bump").join("out/trace.csv")).unwrap();
+    let wrong = table.lines().skip(1).filter(|row| {
+        let cells: Vec<&str> = row.split(',').collect();
+        cells[3] == "1" && cells[15].parse::<f64>().is_ok_and(|mm| mm > 3.0)
+    });
+    let ticks = wrong.count();
+    assert!((1..200).contains(&ticks), "{ticks}");
+}
+
+#[test]
+fn a_camera_that_fails_does_no_harm_and_is_told() {
+    for (trouble, why) in [
+        ("camera-unplugged@4", "sends no images any more"),
+        ("camera-frozen@4", "the same image again and again"),
+        ("camera-black@4", "sees nothing any more"),
+        ("camera-stamps=0.1@4", "stamps can not be true"),
+        ("camera-slow=5@0", ""),
+    ] {
+        let (found, said) = traced("camera-fails", &["--sim-trouble", trouble]);
+        assert!(said.contains(why), "{trouble}: {said}");
+        assert_eq!(found["run"]["finished"], true, "{trouble}");
+        check_at_most(&found, "/tracking/off_stroke_max_mm", 1.0);
+        check_at_most(&found, "/camera/figure_mm/rms", 0.5);
+    }
+}
+
+#[test]
+fn troubles_are_for_simulated_rooms_and_what_is_wrong_with_them_is_told() {
+    let wrong = run(&["trace", "--camera", HOUSE, "--sim-trouble", "quake@3"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("nobody knows \"quake\""));
+    let none = run(&["trace", "../../examples/house.png", "--sim-trouble", "pan-slip=20@3"]);
+    assert_eq!(none.status.code(), Some(2));
+    let real = run(&["trace", "--camera", "http://127.0.0.1:9/", "--sim-trouble", "pan-slip=20@3"]);
+    assert_eq!(real.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&real.stderr).contains("simulated"), "{real:?}");
 }
 
 /// An image that a camera took: the one of the page on cameras.

@@ -6,13 +6,15 @@ mod sensor;
 mod spot;
 mod wall;
 
+use std::sync::Arc;
+
 use tracelight_aim::Camera;
 
 pub use config::{CameraConfig, Lamp, Laser, Sensor};
 pub use spot::SpotSample;
 pub use wall::{Poster, Wall};
 
-use sensor::Electrons;
+use sensor::{Electrons, Mosaic};
 use spot::Exposure;
 
 /// What a camera gives.
@@ -49,11 +51,53 @@ impl Image {
     }
 }
 
+/// What fell on a sensor while an image was taken: all that tells it, before anybody looks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exposed {
+    /// Number of the image since the camera began.
+    pub number: u64,
+    /// When its first row began to be exposed, s, by the clock of the rig.
+    pub start_s: f64,
+    /// How long each row was.
+    pub exposure_s: f64,
+    /// Where the beam met the wall from then until the last row's end, in time order; what was before and after is dark.
+    pub spots: Vec<SpotSample>,
+}
+
+/// A rectangle of an image's pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Its first column and row.
+    pub left: usize,
+    /// See `left`.
+    pub top: usize,
+    /// Columns and rows it has.
+    pub width: usize,
+    /// See `width`.
+    pub height: usize,
+}
+
+impl Part {
+    /// All of an image.
+    pub const fn whole([width, height]: [usize; 2]) -> Self {
+        Self { left: 0, top: 0, width, height }
+    }
+
+    /// The same with one more pixel around, as far as the image goes.
+    fn wider(&self, [width, height]: [usize; 2]) -> Self {
+        let (left, top) = (self.left.saturating_sub(1), self.top.saturating_sub(1));
+        let right = (self.left + self.width + 1).min(width);
+        let bottom = (self.top + self.height + 1).min(height);
+        Self { left, top, width: right - left, height: bottom - top }
+    }
+}
+
 /// A camera in front of a wall.
 #[derive(Clone, Debug)]
 pub struct SimulatedCamera {
     config: CameraConfig,
     camera: Camera,
+    wall: Arc<Wall>,
     /// What each pixel gets from the wall in a reference exposure: one is a pixel that is full.
     scene: Vec<[f32; 3]>,
     electrons: Electrons,
@@ -66,16 +110,17 @@ impl SimulatedCamera {
         Self {
             config: *config,
             camera: *camera,
+            wall: Arc::new(wall.clone()),
             scene: wall.seen(config, camera),
             electrons: Electrons::new(seed),
             number: 0,
         }
     }
 
-    /// Somebody moves it, or what it looks at.
-    pub fn look(&mut self, camera: &Camera, wall: &Wall) {
+    /// Somebody moves it.
+    pub fn stand(&mut self, camera: &Camera) {
         self.camera = *camera;
-        self.scene = wall.seen(&self.config, camera);
+        self.scene = self.wall.seen(&self.config, camera);
     }
 
     /// What it is made of.
@@ -88,19 +133,30 @@ impl SimulatedCamera {
         &self.camera
     }
 
-    /// An image whose first row is exposed from `start_s` on, each row for `exposure_s`. `spots` is where the beam met the wall from then
-    /// until the last row's end, in time order; what was before and after is dark.
+    /// The next image, whose first row is exposed from `start_s` on, each row for `exposure_s`; see [`Exposed::spots`].
     pub fn expose(&mut self, start_s: f64, exposure_s: f64, spots: &[SpotSample]) -> Image {
-        let [width, height] = self.camera.lens.size_px;
-        let sensor = &self.config.sensor;
-        let mut light = self.scene.clone();
-        let share = (exposure_s / sensor.reference_s) as f32;
-        light.iter_mut().flatten().for_each(|v| *v *= share);
-        let (config, camera, image) = (&self.config, &self.camera, self.number);
-        Exposure { config, camera, start_s, exposure_s, image }.add(&mut light, spots);
-        let rgb = self.electrons.read(sensor, &light, width, height);
-        let number = self.number;
+        let exposed = Exposed { number: self.number, start_s, exposure_s, spots: spots.to_vec() };
         self.number += 1;
+        self.develop(&exposed, &Part::whole(self.camera.lens.size_px))
+    }
+
+    /// A part of an image, pixel for pixel as it is in the whole; none of what lies beyond the image.
+    pub fn develop(&self, exposed: &Exposed, part: &Part) -> Image {
+        let size = self.camera.lens.size_px;
+        let (left, top) = (part.left.min(size[0]), part.top.min(size[1]));
+        let (width, height) = (part.width.min(size[0] - left), part.height.min(size[1] - top));
+        let part = Part { left, top, width, height };
+        let wide = part.wider(size);
+        let sensor = &self.config.sensor;
+        let share = (exposed.exposure_s / sensor.reference_s) as f32;
+        let rows = self.scene.chunks_exact(size[0]).skip(wide.top).take(wide.height);
+        let mut light: Vec<[f32; 3]> = Vec::with_capacity(wide.width * wide.height);
+        rows.for_each(|row| {
+            light.extend(row[wide.left..][..wide.width].iter().map(|v| v.map(|v| v * share)))
+        });
+        Exposure { config: &self.config, camera: &self.camera, exposed }.add(&mut light, &wide);
+        let rgb = self.electrons.read(sensor, &light, &Mosaic { size, wide, part, number: exposed.number });
+        let Exposed { number, start_s, exposure_s, .. } = *exposed;
         Image { width, height, rgb, number, start_s, exposure_s }
     }
 
@@ -210,6 +266,33 @@ mod tests {
         // a square's centroid is nearly its middle's image: perspective moves it by a tenth of a pixel here
         assert!(seen.distance(camera().pixel(middle.to_point()).unwrap()) < 0.15, "{seen}");
         assert!(Poster::new(7, &pixels[..20], place).is_none());
+    }
+
+    #[test]
+    fn a_part_is_as_it_is_in_the_whole() {
+        let wall = Wall { plain: [0.5, 0.3, 0.2], posters: vec![] };
+        let eye = SimulatedCamera::new(&CameraConfig::webcam(), &camera(), &wall, 1);
+        let at = Point::new(0.02, -0.01);
+        let exposed = Exposed { number: 7, start_s: 0.0, exposure_s: 5e-3, spots: rest(at, 1.0).to_vec() };
+        let whole = eye.develop(&exposed, &Part::whole([320, 240]));
+        let spot = camera().pixel(at).unwrap();
+        let about = Part { left: spot.x as usize - 15, top: spot.y as usize - 9, width: 31, height: 20 };
+        for part in [
+            about,
+            Part { left: 0, top: 0, width: 5, height: 3 },
+            Part { left: 313, top: 238, width: 99, height: 99 },
+        ] {
+            let image = eye.develop(&exposed, &part);
+            assert_eq!(
+                (image.width, image.height),
+                (part.width.min(320 - part.left), part.height.min(240 - part.top))
+            );
+            for (y, row) in image.rgb.chunks_exact(3 * image.width).enumerate() {
+                let first = 3 * ((part.top + y) * 320 + part.left);
+                assert_eq!(row, &whole.rgb[first..first + row.len()], "{part:?} row {y}");
+            }
+        }
+        assert!(eye.develop(&exposed, &Part { left: 400, ..about }).rgb.is_empty());
     }
 
     #[test]

@@ -2,6 +2,7 @@ use tracelight_aim::Camera;
 use tracelight_stroke::{Point, Vec2};
 
 use super::config::CameraConfig;
+use super::{Exposed, Part};
 
 /// Where the beam meets the wall at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,16 +26,13 @@ const MOST_PIECES: f64 = 4000.0;
 pub(super) struct Exposure<'a> {
     pub(super) config: &'a CameraConfig,
     pub(super) camera: &'a Camera,
-    pub(super) start_s: f64,
-    pub(super) exposure_s: f64,
-    /// Its number: each has its own speckle.
-    pub(super) image: u64,
+    pub(super) exposed: &'a Exposed,
 }
 
 impl Exposure<'_> {
-    /// Adds what the spot leaves on each row while it is open.
-    pub(super) fn add(&self, light: &mut [[f32; 3]], spots: &[SpotSample]) {
-        for pair in spots.windows(2) {
+    /// Adds what the spot leaves on each row while it is open, in a part of the image.
+    pub(super) fn add(&self, light: &mut [[f32; 3]], part: &Part) {
+        for pair in self.exposed.spots.windows(2) {
             let &[from, to] = pair else { continue };
             if !from.light || to.time_s <= from.time_s {
                 continue;
@@ -45,34 +43,34 @@ impl Exposure<'_> {
             let length_s = (to.time_s - from.time_s) / pieces;
             for k in 0..pieces as usize {
                 let at = a.lerp(b, (k as f64 + 0.5) / pieces);
-                let from_s = from.time_s + k as f64 * length_s - self.start_s;
-                self.draw(light, &Piece { at, from_s, length_s }, &shape);
+                let from_s = from.time_s + k as f64 * length_s - self.exposed.start_s;
+                self.draw((&mut *light, part), &Piece { at, from_s, length_s }, &shape);
             }
         }
     }
 
-    fn draw(&self, light: &mut [[f32; 3]], piece: &Piece, shape: &Shape) {
-        let [width, height] = self.camera.lens.size_px;
+    fn draw(&self, (light, part): (&mut [[f32; 3]], &Part), piece: &Piece, shape: &Shape) {
+        let height = self.camera.lens.size_px[1];
         let (sensor, laser) = (&self.config.sensor, &self.config.laser);
-        let range = |at: f64, reach: f64, n: usize| {
-            let low = (at - reach).floor().clamp(0.0, n as f64) as usize;
-            low..(at + reach).ceil().clamp(0.0, n as f64) as usize
+        let range = |at: f64, reach: f64, first: usize, n: usize| {
+            let within = |v: f64| v.clamp(first as f64, (first + n) as f64) as usize;
+            within((at - reach).floor())..within((at + reach).ceil())
         };
-        for row in range(piece.at.y, shape.reach.y, height) {
+        for row in range(piece.at.y, shape.reach.y, part.top, part.height) {
             let row_s = sensor.readout_s * row as f64 / height as f64;
-            let until_s = (piece.from_s + piece.length_s).min(row_s + self.exposure_s);
+            let until_s = (piece.from_s + piece.length_s).min(row_s + self.exposed.exposure_s);
             let open_s = until_s - piece.from_s.max(row_s);
             if open_s <= 0.0 {
                 continue;
             }
             let share = shape.middle * open_s / sensor.reference_s;
-            for column in range(piece.at.x, shape.reach.x, width) {
+            for column in range(piece.at.x, shape.reach.x, part.left, part.width) {
                 let off = Point::new(column as f64 + 0.5, row as f64 + 0.5) - piece.at;
                 let [a, b, c] = shape.inverse;
                 let square = a * off.x * off.x + 2.0 * b * off.x * off.y + c * off.y * off.y;
-                let grain = 1.0 + laser.speckle * grain(column, row, self.image);
+                let grain = 1.0 + laser.speckle * grain(column, row, self.exposed.number);
                 let here = share * (-0.5 * square).exp() * grain.max(0.0);
-                let pixel = &mut light[row * width + column];
+                let pixel = &mut light[(row - part.top) * part.width + column - part.left];
                 pixel.iter_mut().zip(laser.brightness).for_each(|(v, own)| *v += (own * here) as f32);
             }
         }
@@ -122,10 +120,17 @@ struct Piece {
 
 /// Speckle of a pixel in an image: between ±√3, evenly, of deviation one.
 fn grain(column: usize, row: usize, image: u64) -> f64 {
-    // SplitMix64 (Steele, Lea & Flood 2014)
-    let mut z = (column as u64) << 40 ^ (row as u64) << 20 ^ image.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let bits = mixed((column as u64) << 40 ^ (row as u64) << 20 ^ image.wrapping_mul(GOLDEN));
+    let even = bits as f64 / u64::MAX as f64;
+    (2.0 * even - 1.0) * 3.0_f64.sqrt()
+}
+
+/// 2⁶⁴ by the golden ratio: numbers that follow each other are far apart.
+pub(super) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// Bits that look drawn: the finalizer of SplitMix64 (Steele, Lea & Flood, *Fast splittable pseudorandom number generators*, 2014, fig. 16).
+pub(super) const fn mixed(mut z: u64) -> u64 {
     z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    let even = (z ^ z >> 31) as f64 / u64::MAX as f64;
-    (2.0 * even - 1.0) * 3.0_f64.sqrt()
+    z ^ z >> 31
 }

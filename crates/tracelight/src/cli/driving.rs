@@ -1,5 +1,5 @@
 use clap::{Args, ValueEnum};
-use tracelight_aim::HeadPose;
+use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_sim::RigConfig;
 use tracelight_trajectory::{AccelerationDemand, LitSpeed, Machine, Plan, PlanRequest};
 
@@ -73,6 +73,7 @@ impl LitSpeedName {
 }
 
 /// What the arguments mean: a rig, where it stands, what is asked of it.
+#[derive(Clone)]
 pub(crate) struct Driving {
     pub(crate) rig: RigConfig,
     pub(crate) pose: HeadPose,
@@ -89,6 +90,12 @@ impl Driving {
     pub(crate) fn stand(&mut self, pose: HeadPose) {
         self.pose = pose;
         self.machine = self.rig.machine(pose);
+    }
+
+    /// The head is built otherwise than was told, and stands elsewhere.
+    pub(crate) fn believe(&mut self, geometry: HeadGeometry, pose: HeadPose) {
+        self.rig.model.geometry = geometry;
+        self.stand(pose);
     }
 
     /// What the user should know about a plan: wishes the motors do not fulfil, and a speed it never reaches.

@@ -119,6 +119,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "The printed markers of an image tell no camera. The message says why: none in sight, pages that no image links, or pages that do not lie on one plane.",
     ),
     (
+        "spot-off",
+        "While it drew the spot was seen elsewhere than it should be, and why could not be told or mended: the laser is dark. Keep camera and head still, hang pages of markers where the camera sees them, and draw again.",
+    ),
+    (
         "camera-file",
         "A camera file is not one, or holds numbers that no camera has. Write it again with `tracelight calibrate`.",
     ),

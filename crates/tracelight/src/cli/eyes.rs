@@ -5,6 +5,7 @@ use clap::Args;
 use crate::camera_file::{self, KnownCamera};
 use crate::eye::room::SimulatedEye;
 use crate::eye::source::Source;
+use crate::eye::trouble::TroubleAt;
 use crate::failure::Failure;
 
 /// Which camera looks at the wall.
@@ -21,6 +22,19 @@ pub(crate) struct EyeArgs {
     /// camera is believed to stand where it stood
     #[arg(long, value_name = "FILE.toml", requires = "camera")]
     pub(crate) calibration: Option<String>,
+}
+
+/// How a camera follows the spot while it draws.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct FollowArgs {
+    /// What the camera sees while the laser draws is told, but nothing is trimmed for it
+    #[arg(long, requires = "camera")]
+    pub(crate) open_loop: bool,
+    /// Lets something go wrong in a simulated room, to see what is made of it: pan-slip=20@5 is an encoder that slips by 20 counts 5 s
+    /// after drawing began; also tilt-slip=COUNTS, head-bump=DEGREES, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen,
+    /// camera-black, camera-slow=FPS, camera-stamps=SECONDS. May be given more than once
+    #[arg(long, value_name = "TROUBLE", requires = "camera")]
+    pub(crate) sim_trouble: Vec<TroubleAt>,
 }
 
 impl EyeArgs {

@@ -7,11 +7,12 @@ use tracelight_vision::Mode;
 
 use crate::cli::Voice;
 use crate::cli::driving::DrivingArgs;
-use crate::cli::eyes::EyeArgs;
+use crate::cli::eyes::{EyeArgs, FollowArgs};
 use crate::cli::laws::LawArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::eye::room::SimulatedEye;
+use crate::eye::source::Source;
 use crate::failure::Failure;
 
 /// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
@@ -31,6 +32,8 @@ pub(crate) struct TraceArgs {
     /// Most further images of the camera that are taken where one shows no markers or no figure
     #[arg(long, value_name = "N", default_value_t = 5, requires = "camera", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) retakes: u32,
+    #[command(flatten)]
+    pub(crate) follow: FollowArgs,
     #[command(flatten)]
     pub(crate) tracing: TracingArgs,
     #[command(flatten)]
@@ -64,8 +67,17 @@ impl TraceArgs {
         let flags = [
             ("--head", self.head.is_some()),
             ("--calibration", self.eye.calibration.is_some()),
+            ("--open-loop", self.follow.open_loop),
+            ("--sim-trouble", !self.follow.sim_trouble.is_empty()),
             ("--sim-camera", self.eye.sim_camera != SimulatedEye::default()),
         ];
+        if !self.follow.sim_trouble.is_empty()
+            && self.eye.camera.is_some()
+            && !matches!(self.eye.source()?, Source::Simulated(_))
+        {
+            let message = "--sim-trouble is for what a simulated camera sees: give --camera sim:PICTURE";
+            return Err(Failure::usage("usage", message));
+        }
         match flags.iter().find(|(_, is_set)| *is_set && self.eye.camera.is_none()) {
             Some((flag, _)) => {
                 Err(Failure::usage("usage", format!("{flag} is for what a camera sees: give --camera")))
@@ -85,6 +97,7 @@ impl TraceArgs {
             ("calibration", file(self.eye.calibration.as_ref())),
             ("head", file(self.head.as_ref())),
             ("retakes", self.retakes.to_string()),
+            ("loop through the camera", if self.follow.open_loop { "open" } else { "closed" }.to_owned()),
         ]
     }
 

@@ -22,12 +22,13 @@ use crate::stop::Stop;
 const DOT_M: f64 = 0.005;
 /// Speed at which it is drawn, m/s.
 const DOT_SPEED_M_S: f64 = 0.1;
-/// Dots across, and as many down.
+/// Dots across, and as many down: of a head of which nothing is known, and of one that moved.
 const ACROSS: usize = 5;
+const ACROSS_AGAIN: usize = 3;
 /// Share of the image, from its border, in which none are drawn.
 const BORDER: f64 = 0.08;
 /// A first guess of an exposure in which the spot is not full, s.
-const SPOT_EXPOSURE_S: f64 = 2e-3;
+pub(crate) const SPOT_EXPOSURE_S: f64 = 2e-3;
 /// Ticks after a job in which its last images arrive.
 const AFTERMATH_TICKS: u32 = 300;
 /// How often lateness is estimated anew: each time what is left is a tenth or less.
@@ -45,16 +46,55 @@ pub(crate) struct FoundHead {
     pub(crate) lost: usize,
 }
 
+/// What is known before dots are drawn.
+pub(crate) struct DotsRequest {
+    belief: AlignmentBelief,
+    timing: Timing,
+    /// A first guess of an exposure in which the spot is not full, s.
+    exposure_s: f64,
+    /// Dots across, and as many down.
+    across: usize,
+}
+
+impl DotsRequest {
+    /// Of a head that somebody put up by eye, and a camera whose stamps nobody knows.
+    pub(crate) const fn first(driving: &Driving) -> Self {
+        Self {
+            belief: AlignmentBelief::by_eye(driving.machine.geometry, driving.pose),
+            timing: Timing::USUAL,
+            exposure_s: SPOT_EXPOSURE_S,
+            across: ACROSS,
+        }
+    }
+
+    /// Of a head that stood and was built so until it was bumped or an encoder slipped, by a few degrees; the camera's stamps are known.
+    pub(crate) const fn again(driving: &Driving, timing: Timing, exposure_s: f64) -> Self {
+        let first = AlignmentBelief::by_eye(driving.machine.geometry, driving.pose);
+        // where the beam points is also where the tilt encoder's zero is
+        let belief = AlignmentBelief {
+            place_m: 0.01,
+            turn_rad: 0.05,
+            offset_m: 2e-4,
+            beam_rad: 0.03,
+            skew_rad: 1e-3,
+            late_s: 2e-3,
+            readout_s: 2e-3,
+            ..first
+        };
+        Self { belief, timing, exposure_s, across: ACROSS_AGAIN }
+    }
+}
+
 /// Places for the dots: evenly over what the camera sees, as far as the head reaches.
-pub(crate) fn dots(camera: &Camera, driving: &Driving) -> Vec<Point> {
+fn dots(camera: &Camera, driving: &Driving, across: usize) -> Vec<Point> {
     let [width, height] = camera.lens.size_px.map(|n| n as f64);
-    let place = |k: usize| BORDER + (1.0 - 2.0 * BORDER) * k as f64 / (ACROSS - 1) as f64;
+    let place = |k: usize| BORDER + (1.0 - 2.0 * BORDER) * k as f64 / (across - 1) as f64;
     let at = |row: usize, k: usize| {
         // each other row back
-        let column = if row.is_multiple_of(2) { k } else { ACROSS - 1 - k };
+        let column = if row.is_multiple_of(2) { k } else { across - 1 - k };
         Point::new(width * place(column), height * place(row))
     };
-    let all = (0..ACROSS * ACROSS).map(|k| at(k / ACROSS, k % ACROSS));
+    let all = (0..across * across).map(|k| at(k / across, k % across));
     let reached = |at: &Point| {
         let edges =
             [Vec2::new(DOT_M, 0.0), Vec2::new(-DOT_M, 0.0), Vec2::new(0.0, DOT_M), Vec2::new(0.0, -DOT_M)];
@@ -76,18 +116,21 @@ fn plan_of(dots: &[Point], driving: &Driving) -> Result<Plan, Failure> {
     Ok(plan(&drawing, &driving.machine, &request)?)
 }
 
-/// Has the head draw dots, watches them, and finds the head. The rig is fresh from power-up; afterwards it rests in the dark at the last dot.
+/// Has the head draw dots, watches them, and finds the head. The rig rests at zero in the dark; afterwards it rests
+/// in the dark at the last dot.
 pub(crate) fn find_head<R: Simulated + Eye>(
     rig: &mut R,
     camera: &Camera,
     driving: &Driving,
+    request: &DotsRequest,
     (progress, stop): (&Progress, &Stop),
 ) -> Result<FoundHead, Failure> {
-    let places = dots(camera, driving);
+    let belief = &request.belief;
+    let places = dots(camera, driving, request.across);
     let plan = plan_of(&places, driving)?;
-    let belief = AlignmentBelief::by_eye(driving.machine.geometry, driving.pose);
     progress.stage("dots", plan.points.len() as u64);
-    let mut watch = SpotWatch::new(*camera, SPOT_EXPOSURE_S);
+    let mut watch = SpotWatch::new(*camera, request.exposure_s);
+    watch.timing = request.timing;
     watch.begin(rig.take(watch.exposure_s)?);
     let relay = driving.rig.model.relay;
     let mut history = History::new(relay.on_s.max(relay.off_s));
@@ -100,6 +143,7 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     // dark, whether it came to its end or not
     let _ = rig.send(Command::Disarm);
     for _ in 0..AFTERMATH_TICKS {
+        let _ = rig.send(Command::KeepAlive);
         history.push(&rig.step().telemetry);
         look(rig, &mut watch, &history, &belief.alignment);
     }
@@ -112,10 +156,10 @@ pub(crate) fn find_head<R: Simulated + Eye>(
             "the head left its dots again and again, and the run was given up; step nearer (--distance)";
         return Err(Failure::failed("unfinished", message));
     }
-    let aligned = aligned(&belief, &mut watch, &history).map_err(|e| not_found(&e, &watch, places.len()))?;
+    let aligned = aligned(belief, &mut watch, &history).map_err(|e| not_found(&e, &watch, places.len()))?;
     Ok(FoundHead {
         aligned,
-        timing: watch.timing,
+        timing: Timing { unsure_s: Timing::FOUND_S, ..watch.timing },
         exposure_s: watch.exposure_s,
         dots: places.len(),
         lost: watch.lost,
@@ -124,7 +168,7 @@ pub(crate) fn find_head<R: Simulated + Eye>(
 
 fn look<R: Eye>(rig: &mut R, watch: &mut SpotWatch, history: &History, head: &Alignment) {
     while let Some(shot) = rig.shot() {
-        watch.see(&shot, history, head);
+        let _ = watch.see(&shot, history, head);
         watch.exposure_s = watch.exposure_s.min(rig.longest_s());
         rig.expose(watch.exposure_s);
     }

@@ -11,17 +11,26 @@
 //! | [`figure`] | the figure on the wall, as strokes |
 //! | [`spots`] | the laser's spot in shots, held against what the encoders said |
 //! | [`head`] | the head found from spots |
+//! | [`follow`] | the spot followed while a rig draws: what is off slowly, and suddenly |
+//! | [`painted`] | what was seen of it, as a picture |
+//! | [`feed`] | segments sent with what is slowly off taken off them |
+//! | [`trouble`] | what goes wrong in a simulated room |
 
+pub(crate) mod feed;
 pub(crate) mod figure;
+pub(crate) mod follow;
 pub(crate) mod head;
 mod pages;
+pub(crate) mod painted;
 pub(crate) mod room;
 mod shot;
 pub(crate) mod source;
 pub(crate) mod spots;
 mod stream;
+pub(crate) mod trouble;
 pub(crate) mod wall;
 
+use tracelight_rig::Command;
 use tracelight_sim::Simulated;
 
 use crate::failure::Failure;
@@ -57,6 +66,8 @@ impl<R: Simulated + Eye> Looks for R {
     fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure> {
         self.expose(exposure_s);
         for _ in 0..PATIENCE_TICKS {
+            // a host that was heard once must go on
+            let _ = self.send(Command::KeepAlive);
             self.step();
             while let Some(shot) = self.shot() {
                 // those taken before it was told are exposed otherwise

@@ -293,6 +293,6 @@ impl Eye for Room {
     }
 
     fn shot(&mut self) -> Option<Shot> {
-        self.image().map(Shot::from)
+        self.taken().map(Shot::from)
     }
 }

@@ -3,9 +3,10 @@
 use tracelight_aim::{Alignment, Camera, SeenSpot};
 use tracelight_rig::{PanTilt, TICK_F64_S, Telemetry};
 use tracelight_stroke::Point;
-use tracelight_vision::{Grey, SpotLost, SpotWindow, find_spot};
+use tracelight_vision::{Spot, SpotLost, SpotWindow, find_spot};
 
 use super::Shot;
+use super::painted::Painted;
 
 /// What the joints did and whether the laser was driven, tick by tick.
 #[derive(Clone, Debug)]
@@ -99,13 +100,15 @@ pub(crate) struct Timing {
     pub(crate) late_s: f64,
     /// How much later its last row is than its first, s.
     pub(crate) readout_s: f64,
+    /// How far off all that may be, s.
+    pub(crate) unsure_s: f64,
 }
 
 impl Timing {
     /// Of a usual webcam that nobody has looked at.
-    pub(crate) const USUAL: Self = Self { late_s: 0.0, readout_s: 0.02 };
-    /// How far off that may be, s.
-    const UNSURE_S: f64 = 0.03;
+    pub(crate) const USUAL: Self = Self { late_s: 0.0, readout_s: 0.02, unsure_s: 0.03 };
+    /// How far off it may be once it was found from dots, s.
+    pub(crate) const FOUND_S: f64 = 0.003;
 
     /// When a row is exposed: from and until.
     fn row_s(&self, shot: &Stamp, down: f64) -> (f64, f64) {
@@ -134,6 +137,11 @@ pub(crate) struct Sighting {
 }
 
 impl Sighting {
+    /// When it was, as it is believed: from and until, s.
+    pub(crate) fn time_s(&self, timing: &Timing) -> (f64, f64) {
+        timing.row_s(&self.when, self.down)
+    }
+
     /// The same with where the encoders had the joints then; `None` if they were not watched then.
     pub(crate) fn spot(&self, history: &History, timing: &Timing) -> Option<SeenSpot> {
         let (from_s, until_s) = timing.row_s(&self.when, self.down);
@@ -142,41 +150,41 @@ impl Sighting {
     }
 }
 
+/// What a shot told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Sight {
+    /// Nothing: no spot was to be seen, or nobody knows.
+    Nothing,
+    /// Where the spot was.
+    Seen(Sighting),
+    /// The spot was to be seen, and was not.
+    Lost(SpotLost),
+}
+
 /// Looks for the spot in one shot after the other.
 pub(crate) struct SpotWatch {
     camera: Camera,
     pub(crate) timing: Timing,
     /// The latest image without a spot.
-    dark: Option<Dark>,
+    dark: Option<Shot>,
     /// How far from where it was believed the last spot was seen, px.
     last_off_px: Option<tracelight_stroke::Vec2>,
+    /// How bright spots are of late, as a share of the brightest there can be.
+    usual: Option<f64>,
     /// How long the next images should be exposed, s.
     pub(crate) exposure_s: f64,
     pub(crate) sightings: Vec<Sighting>,
     /// Shots in which a spot was awaited and not found, and why the last one was not.
     pub(crate) lost: usize,
     pub(crate) last_lost: Option<SpotLost>,
-}
-
-/// An image without a spot, decoded once it is needed.
-enum Dark {
-    Shot(Shot),
-    Red(Grey, f64),
-}
-
-impl Dark {
-    /// Its red, if it was exposed so long.
-    fn red(&mut self, exposure_s: f64) -> Option<&Grey> {
-        if let Self::Shot(shot) = self {
-            *self = Self::Red(shot.red().ok()?, shot.exposure_s);
-        }
-        let Self::Red(red, own_s) = self else { return None };
-        ((*own_s - exposure_s).abs() <= 0.01 * exposure_s).then_some(red)
-    }
+    /// What was seen, as a picture, if one is wanted.
+    pub(crate) painted: Option<Painted>,
 }
 
 /// What speckle and one pixel in four that sees red leave a spot uncertain by, px.
 const LEAST_DEVIATION_PX: f64 = 0.1;
+/// What is less than this share as bright as spots were of late is noise: of a covered lens, say.
+const LEAST_OF_USUAL: f64 = 0.1;
 /// Half of the side of the window in which a spot is looked for: where the last one told where, and before.
 const NEAR_PX: usize = 40;
 const FAR_PX: usize = 200;
@@ -189,64 +197,94 @@ impl SpotWatch {
             timing: Timing::USUAL,
             dark: None,
             last_off_px: None,
+            usual: None,
             exposure_s,
             sightings: Vec::new(),
             lost: 0,
             last_lost: None,
+            painted: None,
         }
     }
 
     /// Begins with a shot without the spot.
     pub(crate) fn begin(&mut self, dark: Shot) {
-        self.dark = Some(Dark::Shot(dark));
+        self.dark = Some(dark);
     }
 
     /// Looks at a shot. `head` is what is believed of where the beam goes.
-    pub(crate) fn see(&mut self, shot: &Shot, history: &History, head: &Alignment) {
+    pub(crate) fn see(&mut self, shot: &Shot, history: &History, head: &Alignment) -> Sight {
         let when = Stamp { stamp_s: shot.stamp_s, exposure_s: shot.exposure_s };
-        let (from_s, _) = self.timing.row_s(&when, 0.0);
-        let (_, until_s) = self.timing.row_s(&when, 1.0);
-        match history.light(from_s - Timing::UNSURE_S, until_s + Timing::UNSURE_S) {
-            Light::Mixed => {}
-            Light::Dark => self.dark = Some(Dark::Shot(shot.clone())),
-            Light::Lit => self.look(shot, when, history, head),
+        let unsure_s = self.timing.unsure_s;
+        let light = |from: f64, until: f64| {
+            let (from_s, _) = self.timing.row_s(&when, from);
+            let (_, until_s) = self.timing.row_s(&when, until);
+            history.light(from_s - unsure_s, until_s + unsure_s)
+        };
+        if light(0.0, 1.0) == Light::Dark {
+            self.dark = Some(shot.clone());
+            return Sight::Nothing;
         }
-    }
-
-    fn look(&mut self, shot: &Shot, when: Stamp, history: &History, head: &Alignment) {
-        let Some(awaited) = self.awaited(when, history, head) else { return };
-        let Some(dark) = self.dark.as_mut().and_then(|dark| dark.red(when.exposure_s)) else {
-            return;
-        };
-        let Ok(red) = shot.red() else { return };
-        let window = match self.last_off_px {
-            Some(off) => SpotWindow { centre: awaited + off, half_px: NEAR_PX },
-            None => SpotWindow { centre: awaited, half_px: FAR_PX },
-        };
-        let spot = match find_spot(&red, dark, &window) {
-            Ok(spot) => spot,
-            Err(why) => {
+        let Some(awaited) = self.awaited(when, history, head) else { return Sight::Nothing };
+        let down = self.down(awaited);
+        if light(down, down) != Light::Lit {
+            return Sight::Nothing;
+        }
+        match self.look(shot, when, awaited) {
+            Some(Ok(sighting)) => {
+                self.sightings.push(sighting);
+                Sight::Seen(sighting)
+            }
+            Some(Err(why)) => {
                 if matches!(why, SpotLost::Dim { .. }) {
                     self.exposure_s *= 1.2;
                 }
                 self.last_off_px = None;
                 (self.lost, self.last_lost) = (self.lost + 1, Some(why));
-                return;
+                Sight::Lost(why)
             }
+            None => Sight::Nothing,
+        }
+    }
+
+    /// How far down the image a place is.
+    fn down(&self, at: Point) -> f64 {
+        (at.y / self.camera.lens.size_px[1] as f64).clamp(0.0, 1.0)
+    }
+
+    /// The spot near where it is awaited; `None` if there is no image to hold that against, or it shows no wall there.
+    fn look(&mut self, shot: &Shot, when: Stamp, awaited: Point) -> Option<Result<Sighting, SpotLost>> {
+        let same = |dark: &&Shot| (dark.exposure_s - when.exposure_s).abs() <= 0.01 * when.exposure_s;
+        let dark = self.dark.as_ref().filter(same)?;
+        let (centre, half_px) = match self.last_off_px {
+            Some(off) => (awaited + off, NEAR_PX),
+            None => (awaited, FAR_PX),
         };
+        let window = SpotWindow { centre, half_px };
+        let Ok((lit, begins)) = shot.red_near(&window) else {
+            return Some(Err(SpotLost::OutOfSight(centre)));
+        };
+        let (dark, _) = dark.red_near(&window).ok()?;
+        let spot = match find_spot(&lit, &dark, &SpotWindow { centre: centre - begins, ..window }) {
+            Ok(spot) => Spot { at: spot.at + begins, ..spot },
+            Err(SpotLost::OutOfSight(at)) => return Some(Err(SpotLost::OutOfSight(at + begins))),
+            Err(why) => return Some(Err(why)),
+        };
+        let least = self.usual.map_or(0.0, |usual| LEAST_OF_USUAL * usual);
+        if spot.brightness < least {
+            return Some(Err(SpotLost::Dim { change: 100.0 * spot.brightness, least: 100.0 * least }));
+        }
+        self.usual = Some(self.usual.map_or(spot.brightness, |usual| 0.8 * usual + 0.2 * spot.brightness));
         if spot.clipped > 0 {
             self.exposure_s *= 0.7;
         }
         self.last_off_px = Some(spot.at - awaited);
-        let Some((at, scale)) = self.camera.target(spot.at).and_then(|at| {
-            let [x, y] = self.camera.pixels_per_metre(at)?;
-            Some((at, x.cross(y).abs().sqrt()))
-        }) else {
-            return;
-        };
-        let deviation_m = spot.deviation_px.hypot(LEAST_DEVIATION_PX) / scale;
-        let sighting = Sighting { when, down: spot.at.y / red.height() as f64, at, deviation_m };
-        self.sightings.push(sighting);
+        if let Some(painted) = &mut self.painted {
+            painted.add(&lit, &dark, begins, &self.camera);
+        }
+        let at = self.camera.target(spot.at)?;
+        let [x, y] = self.camera.pixels_per_metre(at)?;
+        let deviation_m = spot.deviation_px.hypot(LEAST_DEVIATION_PX) / x.cross(y).abs().sqrt();
+        Some(Ok(Sighting { when, down: self.down(spot.at), at, deviation_m }))
     }
 
     /// Where the spot should be in an image, px.
@@ -258,7 +296,7 @@ impl SpotWatch {
             let (from_s, until_s) = self.timing.row_s(&when, down);
             let angle = history.at(0.5 * (from_s + until_s))?;
             let pixel = self.camera.pixel(head.geometry.spot(&head.pose, angle)?)?;
-            down = (pixel.y / self.camera.lens.size_px[1] as f64).clamp(0.0, 1.0);
+            down = self.down(pixel);
             at = Some(pixel);
         }
         at

@@ -41,7 +41,7 @@ impl SeenWall {
 }
 
 /// By how many pixels a camera may seem to have moved that did not.
-const MOVED_PX: f64 = 1.0;
+pub(crate) const MOVED_PX: f64 = 1.0;
 
 /// Levels between which the brightest hundredth of a well exposed image lies.
 const WELL_EXPOSED: [u8; 2] = [190, 245];
@@ -134,7 +134,7 @@ fn held_against(
 }
 
 /// By how much places of the wall moved in the image from one camera to another, root of the mean square, px.
-fn moved_px(from: &Camera, to: &Camera) -> Option<f64> {
+pub(crate) fn moved_px(from: &Camera, to: &Camera) -> Option<f64> {
     const PLACES: usize = 5;
     let [width, height] = from.lens.size_px.map(|n| n as f64);
     let place = |k: usize| (k as f64 + 0.5) / PLACES as f64;

@@ -1,22 +1,24 @@
 //! What a camera adds to a job: the figure is traced where it is seen, and the head is found from dots before it draws.
 
-use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
+use tracelight_aim::{Alignment, Camera, TrimBelief};
 use tracelight_rig::PanTilt;
 use tracelight_sim::{Room, Run};
 use tracelight_stroke::{Comparison, Drawing, Point, compare};
 
 use super::Prepared;
+use crate::camera_file::KnownCamera;
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::eye::Looks;
 use crate::eye::figure::{FigureRequest, SeenFigure, see_figure};
-use crate::eye::head::{find_head, in_front};
+use crate::eye::follow::Followed;
+use crate::eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_front};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::source::Source;
-use crate::eye::wall::SeenWall;
+use crate::eye::spots::Timing;
 use crate::failure::Failure;
 use crate::head_file;
-use crate::output::{EyeFigures, FigureMatch, HeadFigures, Raster};
+use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, Raster};
 use crate::picture;
 use crate::progress::Progress;
 use crate::sketch::sketch;
@@ -29,6 +31,10 @@ pub(super) struct Seen {
     pub(super) figures: EyeFigures,
     /// The image in which the figure was found.
     pub(super) image: Raster,
+    /// What the camera is known by, should it have to be found again.
+    pub(super) wall: KnownCamera,
+    /// What is known when the camera begins to follow the spot.
+    pub(super) followed: Followed,
     /// The true figure on the wall, which a simulated room knows.
     truth: Option<Drawing>,
 }
@@ -60,13 +66,19 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     let SeenFigure { wall, sketch, placed, retaken } = see_figure(looks, &wanted, (progress, stop))?;
     wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
     stop.check()?;
+    let camera = wall.camera.camera;
+    let (mut timing, mut exposure_s, mut belief) = (Timing::USUAL, SPOT_EXPOSURE_S, TrimBelief::KNOWN);
     let head = match (known, &mut rig, &room) {
         (Some(known), _, _) => {
             known.check_wall(&wall)?;
-            believe(&mut driving, known.geometry, known.pose);
+            driving.believe(known.geometry, known.pose);
             None
         }
-        (None, Some(rig), Some(room)) => Some(found_head(rig, room, &wall, &mut driving, (progress, stop))?),
+        (None, Some(rig), Some(room)) => {
+            let (found, figures) = found_head(rig, room, &camera, &mut driving, (progress, stop))?;
+            (timing, exposure_s, belief) = (found.timing, found.exposure_s, TrimBelief::FOUND);
+            Some(figures)
+        }
         (None, _, _) => {
             driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
             progress.say(&format!(
@@ -82,10 +94,17 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         markers_rms_px: wall.rms_px,
         refused_images: retaken,
         head,
+        follow: None,
         figure_mm: None,
     };
+    let head =
+        Alignment { geometry: driving.machine.geometry, pose: driving.pose, late_s: 0.0, readout_s: 0.0 };
+    let count_rad = driving.rig.model.encoder.count_rad();
+    let followed = Followed { camera, head, timing, exposure_s, belief, count_rad };
+    let print_scale = args.eye.known()?.map_or(1.0, |known| known.print_scale);
+    let known = KnownCamera::standing(&wall.camera, &wall.pages, print_scale);
     let truth = truth(args, room.as_ref(), progress)?;
-    let seen = Seen { room, figures, image: wall.pixels, truth };
+    let seen = Seen { room, figures, image: wall.pixels, wall: known, followed, truth };
     super::planned(sketch, placed, driving, Some(seen), (progress, stop))
 }
 
@@ -114,29 +133,24 @@ fn furnished(args: &TraceArgs, driving: &Driving) -> Result<Option<Furnished>, F
 fn found_head(
     rig: &mut Room,
     room: &Furnished,
-    wall: &SeenWall,
+    camera: &Camera,
     driving: &mut Driving,
     watched: (&Progress, &Stop),
-) -> Result<HeadFigures, Failure> {
-    let camera = wall.camera.camera;
-    driving.stand(in_front(&camera, driving.pose.distance_m));
-    let found = find_head(rig, &camera, driving, watched)?;
+) -> Result<(FoundHead, HeadFigures), Failure> {
+    driving.stand(in_front(camera, driving.pose.distance_m));
+    let found = find_head(rig, camera, driving, &DotsRequest::first(driving), watched)?;
     let Alignment { geometry, pose, .. } = found.aligned.alignment;
-    believe(driving, geometry, pose);
+    driving.believe(geometry, pose);
     let truth = room.true_error_m(&geometry, &pose);
-    Ok(HeadFigures {
+    let figures = HeadFigures {
         dots: found.dots,
         spots: found.aligned.spots,
         rms_mm: 1e3 * found.aligned.rms_m,
         straight_ahead_mm: found.aligned.deviation_m(PanTilt::default()).map(|m| 1e3 * m),
         truth_rms_mm: truth.map(|(rms, _)| 1e3 * rms),
         truth_max_mm: truth.map(|(_, most)| 1e3 * most),
-    })
-}
-
-fn believe(driving: &mut Driving, geometry: HeadGeometry, pose: HeadPose) {
-    driving.rig.model.geometry = geometry;
-    driving.stand(pose);
+    };
+    Ok((found, figures))
 }
 
 /// How far from the true figure a lit trace counts as beside it, m: what users of it see.
@@ -163,7 +177,7 @@ fn truth(
 
 impl Seen {
     /// What a run adds: how far the lit trace truly is from the figure.
-    pub(super) fn after(&self, run: &Run) -> EyeFigures {
+    pub(super) fn after(&self, run: &Run, follow: Option<FollowFigures>) -> EyeFigures {
         let found = self.truth.as_ref().and_then(|truth| compare(&lit(run), truth, BESIDE_M));
         let figure_mm = found.map(|Comparison { rms, p99, max, coverage, .. }| FigureMatch {
             rms: 1e3 * rms,
@@ -171,7 +185,7 @@ impl Seen {
             max: 1e3 * max,
             covered_share: coverage,
         });
-        EyeFigures { figure_mm, ..self.figures.clone() }
+        EyeFigures { figure_mm, follow, ..self.figures.clone() }
     }
 }
 

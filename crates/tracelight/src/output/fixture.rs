@@ -46,6 +46,7 @@ impl Fixture {
             torque_limit_nm: PanTilt::new(0.619, 0.774),
             tolerance_mm: 3.0,
             eye: None,
+            seen: None,
             settings: &self.settings,
             notes: &self.notes,
             timing: Timing { vision_ms: 31.4, plan_ms: 120.2, run_ms: 88.8, report_ms: 0.0 },

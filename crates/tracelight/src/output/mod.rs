@@ -9,6 +9,7 @@
 //! | `run.mcap` | [`LogWriter`], tick by tick while the run goes on |
 //! | `trace.png` | [`painting`] |
 //! | `camera.jpg` | [`write_jpeg`], where a camera looked |
+//! | `seen.csv`, `seen.jpg` | [`seen`], where it followed the spot |
 //! | `report.html` | [`report`] |
 
 mod board;
@@ -23,6 +24,7 @@ mod preview;
 mod raster;
 mod report;
 mod sample;
+mod seen;
 pub(crate) mod stages;
 mod summary;
 mod words;
@@ -43,7 +45,11 @@ pub(crate) use preview::{ColourBy, preview};
 pub(crate) use raster::Raster;
 pub(crate) use report::html;
 pub(crate) use sample::planned;
-pub(crate) use summary::{EyeFigures, FigureMatch, HeadFigures, PlanFigures, StrokeFigures, Summary};
+pub(crate) use seen::{SeenLight, SeenMark};
+pub(crate) use summary::{
+    EyeFigures, FigureMatch, FollowFigures, HeadFigures, PlanFigures, RecoveryFigures, SeenOff,
+    StrokeFigures, Summary, TrimFigures,
+};
 pub(crate) use words::{counted, darkness_words, fault_words};
 
 /// A finished (or stopped) job, as the outputs see it.
@@ -76,6 +82,8 @@ pub(crate) struct Job<'a> {
     pub(crate) tolerance_mm: f64,
     /// What a camera saw, if one looked.
     pub(crate) eye: Option<EyeFigures>,
+    /// What it saw of the spot while it drew, if it did.
+    pub(crate) seen: Option<&'a SeenLight>,
     /// What the job was asked to do, in the order to show it.
     pub(crate) settings: &'a [Setting],
     /// Remarks and warnings of the stages before.
@@ -220,6 +228,7 @@ pub(crate) fn write_all(dir: &Path, job: &Job<'_>) -> Result<Summary, OutputErro
     std::fs::create_dir_all(dir).map_err(OutputError::at(dir))?;
     let table = || {
         csv::write_fault(&dir.join("fault.csv"), job)?;
+        seen::write(dir, job)?;
         csv::write(&dir.join("trace.csv"), job)
     };
     let pictures = || {

@@ -60,6 +60,8 @@ pub(crate) struct EyeFigures {
     pub(crate) refused_images: u32,
     /// The head as dots told it; `null` where it was known before.
     pub(crate) head: Option<HeadFigures>,
+    /// What was seen of the spot while it drew; `null` where nobody looked.
+    pub(crate) follow: Option<FollowFigures>,
     /// How far the lit trace truly is from the figure on the wall; `null` where nobody knows.
     pub(crate) figure_mm: Option<FigureMatch>,
 }
@@ -85,7 +87,81 @@ impl EyeFigures {
                 100.0 * figure.covered_share
             )
         });
-        [camera].into_iter().chain(figure).collect()
+        let follow = self.follow.iter().flat_map(FollowFigures::words);
+        [camera].into_iter().chain(follow).chain(figure).collect()
+    }
+}
+
+/// See [`EyeFigures::follow`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct FollowFigures {
+    /// Whether what was off was trimmed.
+    pub(crate) closed: bool,
+    /// Images in which the spot was seen, and in which it was not where it should have been.
+    pub(crate) spots: usize,
+    pub(crate) lost_images: usize,
+    /// How far it was seen from where it was asked to be; `null` if it was not seen.
+    pub(crate) off_mm: Option<SeenOff>,
+    /// What was trimmed in the end.
+    pub(crate) trim: TrimFigures,
+    /// Dots by which a head that was jolted was looked after.
+    pub(crate) checks: usize,
+    /// What was suddenly off, and found again.
+    pub(crate) recoveries: Vec<RecoveryFigures>,
+    /// What was said on the way.
+    pub(crate) remarks: Vec<String>,
+}
+
+/// See [`FollowFigures::off_mm`]; by the camera alone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct SeenOff {
+    pub(crate) rms: f64,
+    pub(crate) p99: f64,
+    pub(crate) max: f64,
+}
+
+impl SeenOff {
+    /// Of distances, mm.
+    pub(crate) fn of(mut mm: Vec<f64>) -> Option<Self> {
+        mm.sort_by(f64::total_cmp);
+        let max = *mm.last()?;
+        let p99 = mm[((mm.len() - 1) as f64 * 0.99).round() as usize];
+        let rms = (mm.iter().map(|v| v * v).sum::<f64>() / mm.len() as f64).sqrt();
+        Some(Self { rms, p99, max })
+    }
+}
+
+/// See [`FollowFigures::trim`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct TrimFigures {
+    pub(crate) pan_mrad: f64,
+    pub(crate) tilt_mrad: f64,
+    pub(crate) pan_scale_percent: f64,
+    pub(crate) tilt_scale_percent: f64,
+}
+
+/// See [`FollowFigures::recoveries`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct RecoveryFigures {
+    /// Since power-up.
+    pub(crate) t_s: f64,
+    pub(crate) what: String,
+    /// Dots that were drawn.
+    pub(crate) dots: usize,
+    pub(crate) lasted_s: f64,
+}
+
+impl FollowFigures {
+    pub(super) fn words(&self) -> Vec<String> {
+        let seen = match &self.off_mm {
+            Some(SeenOff { rms, p99, max }) => format!(
+                "spot: seen in {} images {rms:.3} mm from where it was asked to be, rms, 99 % within {p99:.3} mm, {max:.3} mm at most{}",
+                self.spots,
+                if self.closed { "" } else { "; the loop was open" }
+            ),
+            None => "spot: never seen while it drew".to_owned(),
+        };
+        std::iter::once(seen).chain(self.remarks.iter().cloned()).collect()
     }
 }
 

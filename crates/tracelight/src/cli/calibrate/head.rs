@@ -8,7 +8,7 @@ use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::{Answer, Voice, write_file};
-use crate::eye::head::{FoundHead, find_head, in_front};
+use crate::eye::head::{DotsRequest, FoundHead, find_head, in_front};
 use crate::eye::room::{Furnished, RoomRequest};
 use crate::eye::source::Source;
 use crate::eye::wall::{SeenWall, see_wall, well_exposed};
@@ -61,7 +61,8 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
     stop.check()?;
     driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
-    let found = find_head(&mut rig, &wall.camera.camera, &driving, (&progress, stop))?;
+    let found =
+        find_head(&mut rig, &wall.camera.camera, &driving, &DotsRequest::first(&driving), (&progress, stop))?;
     stop.check()?;
     write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, &wall))?)?;
     let pose = found.aligned.alignment.pose;

@@ -9,7 +9,7 @@ use crate::output::sample::{Sample, samples};
 use crate::output::{Job, OutputError};
 
 /// Steps of the error's colours; the style sheet has a class for each.
-const COLOURS: usize = 8;
+pub(super) const COLOURS: usize = 8;
 /// The longer side of the map in its own units; a tenth of one is kept.
 const SIDE: f64 = 1000.0;
 /// Ways shorter than this many units are joined: a third of a pixel on a large screen.
@@ -50,15 +50,15 @@ pub(super) fn frame(job: &Job<'_>) -> Affine {
 }
 
 /// The map's sizes and frame.
-struct Place {
+pub(super) struct Place {
     map_from_target: Affine,
-    units_per_m: f64,
-    width: f64,
-    height: f64,
+    pub(super) units_per_m: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
 }
 
 impl Place {
-    fn new(job: &Job<'_>) -> Self {
+    pub(super) fn new(job: &Job<'_>) -> Self {
         let (low, high) = job.bounds();
         let size = high - low;
         let air = 0.04 * size.x.max(size.y);
@@ -69,12 +69,12 @@ impl Place {
         Self { map_from_target, units_per_m, width: tenth(width), height: tenth(height) }
     }
 
-    fn at(&self, target: Point) -> Point {
+    pub(super) fn at(&self, target: Point) -> Point {
         self.map_from_target * target
     }
 
     /// Whether a point is near enough to be drawn at all.
-    fn shows(&self, p: Point) -> bool {
+    pub(super) fn shows(&self, p: Point) -> bool {
         (-SIDE..2.0 * SIDE).contains(&p.x) && (-SIDE..2.0 * SIDE).contains(&p.y)
     }
 }
@@ -142,7 +142,7 @@ fn push(data: &mut String, letter: char, at: Point) {
 }
 
 /// The picture itself, faint, or its strokes where there are no pixels.
-fn picture(job: &Job<'_>, place: &Place) -> Result<String, OutputError> {
+pub(super) fn picture(job: &Job<'_>, place: &Place) -> Result<String, OutputError> {
     const LONGEST_PX: u32 = 1100;
     const QUALITY: u8 = 82;
     let Some(picture) = job.picture else { return Ok(strokes(job, place)) };
@@ -182,7 +182,7 @@ fn numbers(job: &Job<'_>, place: &Place) -> String {
 }
 
 /// A scale bar of a round length.
-fn bar(place: &Place) -> String {
+pub(super) fn bar(place: &Place) -> String {
     let length_mm = round_step(place.width / place.units_per_m * 1e3 * 0.1);
     let share = length_mm / 1e3 * place.units_per_m / place.width * 100.0;
     let text = if length_mm >= 1000.0 {
@@ -195,7 +195,7 @@ fn bar(place: &Place) -> String {
     format!(r#"<div class="bar" style="width:{share:.2}%"><span>{text}</span></div>"#)
 }
 
-fn swatches() -> String {
+pub(super) fn swatches() -> String {
     (0..COLOURS).map(|i| format!(r#"<i class="e{i}"></i>"#)).collect()
 }
 

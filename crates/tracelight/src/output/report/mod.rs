@@ -9,6 +9,7 @@ mod diagrams;
 pub(crate) mod html;
 mod map;
 mod plot;
+mod seen;
 mod tables;
 
 use std::fmt::Write;
@@ -52,6 +53,7 @@ fn page(job: &Job<'_>, figures: &Summary, painting: &Raster) -> Result<String, O
         tiles = tables::tiles(job, figures),
         happenings = tables::happenings(job),
         map = map::map(job)?,
+        seen = seen::section(job)?,
         diagrams = diagrams::diagrams(job),
         schedule = diagrams::schedule(job),
         figures = tables::figures(job, figures),

@@ -1,0 +1,229 @@
+//! What becomes of a run when something is suddenly off: it is dark, somebody looks, and the head is found again.
+
+use tracelight_aim::{Alignment, HeadGeometry, HeadPose, TrimBelief};
+use tracelight_rig::{Command, PanTilt, Rig, TICK_F64_S, Telemetry};
+use tracelight_stroke::{Drawing, Stroke};
+use tracelight_trajectory::{Plan, plan};
+
+use super::watched::{REST_TICKS, Watched};
+use crate::camera_file::KnownCamera;
+use crate::eye::follow::{Blind, Followed, Follower, Suspicion};
+use crate::eye::head::{DotsRequest, find_head};
+use crate::eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
+use crate::eye::{Eye, Looks, Shot};
+use crate::failure::Failure;
+use crate::output::RecoveryFigures;
+
+/// Most times that a job is begun anew after something was suddenly off.
+pub(super) const MOST_RECOVERIES: usize = 6;
+/// Most ticks that a head needs to go back to zero, and what counts as there.
+const HOME_TICKS: u32 = 8000;
+const HOME_RAD: f64 = 2e-3;
+const HOME_RAD_S: f64 = 5e-3;
+/// A head that seems to have moved by less, mm, stands where it stood.
+const STOOD_MM: f64 = 0.7;
+/// How long a dot is lit, ticks: as long as an image takes, and one after the other comes besides.
+const DOT_TICKS: u16 = 60;
+const LONGEST_DOT_TICKS: f64 = 3000.0;
+
+impl Watched<'_> {
+    /// What a jolt came to: the head is darkened, and one dot tells where it points. Nothing if that is where it should be, or nobody sees.
+    pub(super) fn dotted(&mut self, suspicion: Suspicion) -> Option<Suspicion> {
+        let Suspicion::Jolt(_) = suspicion else { return Some(suspicion) };
+        if self.follower.blind().is_some() || self.job.dry {
+            return None;
+        }
+        let _ = self.room.send(Command::Disarm);
+        self.rest(REST_TICKS);
+        let before = self.follower.marks.len();
+        let images = (2.0 * self.follower.period_s() / TICK_F64_S).min(LONGEST_DOT_TICKS);
+        let dot_ticks = DOT_TICKS + images as u16;
+        let _ = self.room.send(Command::Point(dot_ticks));
+        let mut off = None;
+        self.dots = true;
+        for _ in 0..u32::from(dot_ticks) + REST_TICKS {
+            off = off.or(self.step(None).1);
+        }
+        self.dots = false;
+        self.figures.checks += 1;
+        // a dot's image is of no stroke
+        let seen = self.follower.marks.split_off(before.min(self.follower.marks.len()));
+        off.or(seen.is_empty().then_some(suspicion))
+    }
+
+    /// Darkens, and looks what became of the camera. Why the head must be found again, if the camera stands where it stood.
+    pub(super) fn look_into(&mut self, suspicion: Suspicion) -> Result<Option<String>, Failure> {
+        let began_s = self.now_s();
+        let Some(wall) = self.wall_now(suspicion)? else { return Ok(None) };
+        if self.figures.recoveries.len() >= MOST_RECOVERIES {
+            let times = MOST_RECOVERIES + 1;
+            let message = format!(
+                "{}, and that for the {times}th time: is something loose?",
+                self.suspected(suspicion)
+            );
+            return Err(dark(&message));
+        }
+        let stood = self.wall.stood.as_ref().map(|stood| stood.camera.camera);
+        let moved = match stood.and_then(|stood| moved_px(&stood, &wall.camera.camera)) {
+            Some(px) if px <= MOVED_PX => return Ok(Some(self.suspected(suspicion))),
+            Some(px) => format!("moved {px:.1} px"),
+            None => "looks elsewhere".to_owned(),
+        };
+        self.follower.look_from(wall.camera.camera);
+        self.wall = KnownCamera::standing(&wall.camera, &wall.pages, self.wall.print_scale);
+        // an image without the spot, as it sees now
+        self.rest(REST_TICKS);
+        self.recovered(began_s, format!("the camera {moved}; it was found anew"), 0);
+        Ok(None)
+    }
+
+    /// The wall as the camera sees it now, in the dark; nothing if it is blind, and the job goes on without it.
+    fn wall_now(&mut self, suspicion: Suspicion) -> Result<Option<SeenWall>, Failure> {
+        let _ = self.room.send(Command::Disarm);
+        self.rest(REST_TICKS);
+        let wall = well_exposed(self).and_then(|pixels| see_wall(pixels, Some(&self.wall)));
+        if self.follower.blind() == Some(Blind::Stamps) {
+            return Ok(None);
+        }
+        let had_markers = self.job.seen.figures.markers > 0;
+        let why = match wall {
+            Ok(wall) if wall.rms_px.is_some() => return Ok(Some(wall)),
+            Ok(_) if !had_markers => {
+                "whether camera or head moved nobody can tell without markers in sight: hang pages where the camera sees them \
+                 (tracelight calibrate sheet), or keep both still"
+                    .to_owned()
+            }
+            Ok(_) => "the camera sees no markers any more".to_owned(),
+            Err(why) => why.message,
+        };
+        match suspicion {
+            // what it sees not may be its own fault
+            Suspicion::Lost(_) | Suspicion::Jolt(_) if had_markers => {
+                self.follower.cover();
+                self.tell_blindness();
+                Ok(None)
+            }
+            _ => Err(dark(&format!("{}; {why}", self.suspected(suspicion)))),
+        }
+    }
+
+    fn suspected(&self, suspicion: Suspicion) -> String {
+        match suspicion {
+            Suspicion::Off(m) => format!("the spot was {:.1} mm from where it should be", 1e3 * m),
+            Suspicion::Lost(why) => format!("the spot was not seen: {why}"),
+            Suspicion::Jolt(rad) => {
+                format!("the head was jolted by {:.2} mrad, and its spot is not to be seen", 1e3 * rad)
+            }
+        }
+    }
+
+    /// Time since power-up, s.
+    pub(super) fn now_s(&self) -> f64 {
+        self.run.ticks.last().map_or(0.0, |tick| f64::from(tick.telemetry.tick) * TICK_F64_S)
+    }
+
+    fn recovered(&mut self, t_s: f64, what: String, dots: usize) {
+        let lasted_s = self.now_s() - t_s;
+        self.remark(what.clone());
+        self.figures.recoveries.push(RecoveryFigures { t_s, what, dots, lasted_s });
+    }
+
+    /// Goes home in the dark, has the head draw a few dots, and plans what is left with the head as it is now.
+    pub(super) fn found_again(
+        &mut self,
+        (why, seen_off): &(String, bool),
+        left: &Drawing,
+    ) -> Result<Plan, Failure> {
+        let began_s = self.now_s();
+        self.rest(REST_TICKS);
+        self.home()?;
+        let (timing, exposure_s) = (self.follower.watch.timing, self.follower.watch.exposure_s);
+        let camera = self.wall.stood.as_ref().map_or(self.job.seen.followed.camera, |s| s.camera.camera);
+        let request = DotsRequest::again(&self.driving, timing, exposure_s);
+        let found = find_head(&mut self.room, &camera, &self.driving, &request, (self.progress, self.stop));
+        let found = found.map_err(|e| Failure { message: format!("{why}; {}", e.message), ..e })?;
+        let Alignment { geometry, pose, .. } = found.aligned.alignment;
+        let moved = self.moved_mm(left, &geometry, &pose);
+        self.driving.believe(geometry, pose);
+        let relay = self.driving.rig.model.relay;
+        let head = Alignment { late_s: 0.0, readout_s: 0.0, ..found.aligned.alignment };
+        let followed = Followed {
+            camera,
+            head,
+            timing: found.timing,
+            exposure_s: found.exposure_s,
+            belief: TrimBelief::FOUND,
+            count_rad: self.job.seen.followed.count_rad,
+        };
+        let marks = std::mem::take(&mut self.follower.marks);
+        let painted = self.follower.watch.painted.take();
+        self.follower = Follower::new(&followed, relay.on_s.max(relay.off_s), painted);
+        self.follower.marks = marks;
+        self.home()?;
+        if moved < STOOD_MM && *seen_off {
+            self.follower.distrust_stamps();
+        }
+        let what = format!(
+            "{why}: the head was found anew by {} dots, its spot had moved by {moved:.1} mm",
+            found.dots
+        );
+        self.recovered(began_s, what, found.dots);
+        Ok(plan(left, &self.driving.machine, &self.driving.request)?)
+    }
+
+    /// By how much the spot had moved on what is left, in the mean, mm.
+    fn moved_mm(&self, left: &Drawing, geometry: &HeadGeometry, pose: &HeadPose) -> f64 {
+        let own = &self.driving;
+        let off = |stroke: &Stroke| {
+            let at = stroke.path.start();
+            let angle = own.machine.geometry.angles(&own.pose, at).ok()?;
+            geometry.spot(pose, angle).map(|now| now.distance(at))
+        };
+        let all: Vec<f64> = left.strokes.iter().filter_map(off).collect();
+        1e3 * all.iter().sum::<f64>() / all.len().max(1) as f64
+    }
+
+    /// Forgets the job and goes back to zero in the dark.
+    fn home(&mut self) -> Result<(), Failure> {
+        let _ = self.room.send(Command::Arm);
+        let _ = self.room.send(Command::Abandon);
+        for _ in 0..HOME_TICKS {
+            let (tick, _) = self.step(None);
+            let Telemetry { position_rad, velocity_rad_s, fault, .. } = tick.telemetry;
+            if let Some(fault) = fault {
+                return Err(Failure::fault(fault));
+            }
+            let near = |v: PanTilt<f32>, most: f64| f64::from(v.pan.abs().max(v.tilt.abs())) < most;
+            if near(position_rad, HOME_RAD) && near(velocity_rad_s, HOME_RAD_S) {
+                return Ok(());
+            }
+            self.stop.check()?;
+        }
+        Err(Failure::failed("unfinished", "the head did not come back to zero: is something in its way?"))
+    }
+}
+
+/// Longest that an image is waited for, ticks.
+const PATIENCE_TICKS: u32 = 3000;
+
+impl Looks for Watched<'_> {
+    fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure> {
+        self.follower.want(exposure_s.min(self.room.longest_s()));
+        for _ in 0..PATIENCE_TICKS {
+            self.step(None);
+            if let Some(shot) = self.follower.taken() {
+                return Ok(shot);
+            }
+        }
+        Err(Failure::failed("no-image", "the camera sends no image any more: is it still plugged in?"))
+    }
+
+    fn longest(&self) -> Option<f64> {
+        Some(self.room.longest_s())
+    }
+}
+
+/// What can not be mended.
+fn dark(why: &str) -> Failure {
+    Failure::failed("spot-off", format!("{why}; the laser is dark"))
+}

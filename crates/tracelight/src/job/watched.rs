@@ -1,0 +1,304 @@
+//! A run that a camera follows: what is slowly off is trimmed under way; what is suddenly off ends the light, is looked into, and the job goes
+//! on from where the light was last seen to be right.
+
+use tracelight_aim::Correction;
+use tracelight_rig::{Command, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
+use tracelight_sim::{Room, Run, Simulated, Tick};
+use tracelight_stroke::Drawing;
+use tracelight_trajectory::Plan;
+
+use super::log_tick;
+use super::recovery::MOST_RECOVERIES;
+use super::remainder::{join, left};
+use super::seen::Seen;
+use crate::camera_file::KnownCamera;
+use crate::cli::driving::Driving;
+use crate::eye::feed::TrimmedFeeder;
+use crate::eye::follow::{Blind, Follower, Suspicion};
+use crate::eye::painted::Painted;
+use crate::eye::trouble::TroubleAt;
+use crate::failure::Failure;
+use crate::output::{FollowFigures, LogWriter, OutputError, SeenLight, SeenMark, SeenOff, TrimFigures};
+use crate::progress::Progress;
+use crate::stop::Stop;
+
+/// What is to be run.
+pub(super) struct WatchedJob<'a> {
+    pub(super) plan: &'a Plan,
+    /// The strokes it draws, in its order.
+    pub(super) drawing: &'a Drawing,
+    pub(super) driving: &'a Driving,
+    pub(super) seen: &'a Seen,
+    pub(super) troubles: &'a [TroubleAt],
+    /// The gate is held dark.
+    pub(super) dry: bool,
+    /// What is off is seen, but not trimmed.
+    pub(super) open: bool,
+}
+
+/// What came of it.
+pub(super) struct WatchedRun {
+    pub(super) run: Run,
+    /// What was run in the end: the plan as far as it was followed, and those that took its place.
+    pub(super) plan: Plan,
+    pub(super) figures: FollowFigures,
+    pub(super) seen: SeenLight,
+    /// Why it ended before its time, if neither the rig nor the user ended it.
+    pub(super) failure: Option<Failure>,
+}
+
+/// Ticks the head is watched after a fault or Ctrl-C, so that the log shows what followed.
+const AFTERMATH_TICKS: u32 = 200;
+/// Ticks in which a head comes to rest in the dark, and images that show its light have arrived.
+pub(super) const REST_TICKS: u32 = 300;
+/// Why a stretch of a run ended.
+enum Ended {
+    Done,
+    Fault(Fault),
+    Suspect(Suspicion),
+    Stopped,
+    GivenUp,
+}
+
+/// A run under way.
+pub(super) struct Watched<'a> {
+    pub(super) job: &'a WatchedJob<'a>,
+    pub(super) room: Room,
+    pub(super) follower: Follower,
+    pub(super) driving: Driving,
+    pub(super) wall: KnownCamera,
+    pub(super) run: Run,
+    /// All that is planned, one after the other.
+    pub(super) joined: Plan,
+    /// Where in it the plan that is followed now begins, and where its clock stands.
+    pub(super) base: u32,
+    pub(super) plan_tick: u32,
+    pub(super) troubles: Vec<TroubleAt>,
+    pub(super) blind: Option<Blind>,
+    /// A dot is drawn.
+    pub(super) dots: bool,
+    pub(super) figures: FollowFigures,
+    pub(super) log: &'a mut LogWriter,
+    pub(super) failed: Option<OutputError>,
+    pub(super) progress: &'a Progress,
+    pub(super) stop: &'a Stop,
+}
+
+/// Runs a plan, watched.
+pub(super) fn run_watched(
+    job: &WatchedJob<'_>,
+    room: Room,
+    log: &mut LogWriter,
+    (progress, stop): (&Progress, &Stop),
+) -> Result<WatchedRun, Failure> {
+    let relay = job.driving.rig.model.relay;
+    let painted = Painted::new(&job.seen.image, job.seen.followed.camera);
+    let mut watched = Watched {
+        job,
+        room,
+        follower: Follower::new(&job.seen.followed, relay.on_s.max(relay.off_s), Some(painted)),
+        driving: job.driving.clone(),
+        wall: job.seen.wall.clone(),
+        run: Run::default(),
+        joined: job.plan.clone(),
+        base: 0,
+        plan_tick: 0,
+        troubles: job.troubles.to_vec(),
+        blind: None,
+        dots: false,
+        figures: FollowFigures { closed: !job.open, ..FollowFigures::default() },
+        log,
+        failed: None,
+        progress,
+        stop,
+    };
+    // what was drawn until then is told whatever became of it
+    let failure = watched.all(job.plan.clone(), job.drawing.clone()).err();
+    let _ = watched.room.send(Command::Disarm);
+    watched.failed.take().map_or(Ok(()), Err)?;
+    watched.tell();
+    let Watched { run, joined, figures, follower, .. } = watched;
+    let painting = follower.watch.painted.as_ref().and_then(Painted::picture);
+    let seen = SeenLight { marks: follower.marks, painting };
+    Ok(WatchedRun { run, plan: joined, figures, seen, failure })
+}
+
+impl Watched<'_> {
+    /// Runs a drawing, and what is left of it whenever something was suddenly off.
+    fn all(&mut self, mut plan: Plan, mut drawing: Drawing) -> Result<(), Failure> {
+        loop {
+            let Some(why) = self.one(&plan)? else { return Ok(()) };
+            let left = left(&plan, &drawing, self.rewound());
+            let Some((first, left)) = left else { return Ok(()) };
+            let next = self.found_again(&why, &left)?;
+            self.base = join(&mut self.joined, self.plan_tick, &next, first);
+            self.plan_tick = self.base;
+            (plan, drawing) = (next, left);
+        }
+    }
+
+    /// Follows a plan to its end, or to where the head is to be found again: then why, and whether a camera saw that.
+    fn one(&mut self, plan: &Plan) -> Result<Option<(String, bool)>, Failure> {
+        let mut feeder = TrimmedFeeder::new(&plan.segments, self.job.dry);
+        loop {
+            let suspicion = match self.follow(&mut feeder, plan) {
+                Ended::Fault(fault) if may_be_found_again(fault) && self.can_recover() => {
+                    return Ok(Some((format!("fault {}", fault.code()), false)));
+                }
+                Ended::Fault(_) => {
+                    self.rest(AFTERMATH_TICKS);
+                    return Ok(None);
+                }
+                Ended::Done | Ended::Stopped | Ended::GivenUp => return Ok(None),
+                Ended::Suspect(suspicion) => suspicion,
+            };
+            let Some(suspicion) = self.dotted(suspicion) else { continue };
+            if let Some(why) = self.look_into(suspicion)? {
+                return Ok(Some((why, matches!(suspicion, Suspicion::Off(_)))));
+            }
+        }
+    }
+
+    fn can_recover(&self) -> bool {
+        let blind = self.follower.blind().is_some();
+        !blind && !self.job.open && self.figures.recoveries.len() < MOST_RECOVERIES
+    }
+
+    /// Where the present plan's clock stood when the light was last seen to be right; where it begins, if it never was.
+    fn rewound(&self) -> u32 {
+        let good = self.follower.good_plan_tick().filter(|tick| *tick >= self.base);
+        good.map_or(0, |tick| tick - self.base).min(self.plan_tick - self.base)
+    }
+
+    /// Arms the rig and feeds it until something happens.
+    fn follow(&mut self, feeder: &mut TrimmedFeeder<'_>, plan: &Plan) -> Ended {
+        if let Some(fault) = self.run.ticks.last().and_then(|tick| tick.telemetry.fault) {
+            return Ended::Fault(fault);
+        }
+        let most = plan.points.len() + self.room.patience_ticks();
+        let _ = self.room.send(Command::Arm);
+        // what is armed anew on its way begins with a hold
+        let mut was_held = true;
+        for _ in 0..most {
+            let wanted = if self.job.open { Correction::default() } else { self.follower.correction() };
+            feeder.feed(&mut self.room, self.plan_tick - self.base, &wanted);
+            let (tick, suspicion) = self.step(Some(feeder));
+            if self.failed.is_some() || self.stop.is_wanted() {
+                let _ = self.room.send(Command::Disarm);
+                self.rest(AFTERMATH_TICKS);
+                return Ended::Stopped;
+            }
+            if let Some(fault) = tick.telemetry.fault {
+                return Ended::Fault(fault);
+            }
+            if tick.telemetry.phase == Phase::Done {
+                return Ended::Done;
+            }
+            let held = (tick.telemetry.phase == Phase::Holding && !was_held).then(|| held(&tick.telemetry));
+            was_held = tick.telemetry.phase == Phase::Holding;
+            if let Some(suspicion) = suspicion.or(held).filter(|_| !self.job.open) {
+                return Ended::Suspect(suspicion);
+            }
+        }
+        Ended::GivenUp
+    }
+
+    /// One tick, watched and kept.
+    pub(super) fn step(&mut self, feeder: Option<&TrimmedFeeder<'_>>) -> (Tick, Option<Suspicion>) {
+        let _ = self.room.send(Command::KeepAlive);
+        let mut tick = self.room.step();
+        self.ask(&mut tick, feeder);
+        self.strike(&tick);
+        let suspicion = self.follower.tick(&mut self.room, &tick);
+        self.tell_blindness();
+        if let Err(error) = log_tick(self.log, &self.joined, &tick) {
+            self.failed = self.failed.take().or(Some(error));
+        }
+        if tick.telemetry.tick.is_multiple_of(256) {
+            self.progress.at(u64::from(tick.telemetry.plan_tick));
+        }
+        // a dot is not the drawing's
+        let keeps = !self.dots || !tick.light;
+        if keeps {
+            self.run.ticks.push(tick);
+        }
+        (tick, suspicion)
+    }
+
+    /// Where the plan wanted the spot, before it was trimmed, and where in all that is planned its clock stands.
+    fn ask(&mut self, tick: &mut Tick, feeder: Option<&TrimmedFeeder<'_>>) {
+        let Telemetry { plan_tick, setpoint, .. } = &mut tick.telemetry;
+        let angle = match feeder {
+            Some(feeder) => {
+                self.plan_tick = self.base + *plan_tick;
+                feeder.untrimmed(*plan_tick, setpoint)
+            }
+            None => self.follower.correction().apply(setpoint.map(|s| f64::from(s.position_rad))),
+        };
+        tick.asked = self.driving.machine.geometry.spot(&self.driving.pose, angle);
+        *plan_tick = self.plan_tick;
+    }
+
+    /// Lets happen what is to go wrong now.
+    fn strike(&mut self, tick: &Tick) {
+        let now_s = f64::from(tick.telemetry.plan_tick) * TICK_F64_S;
+        let left_s = self.joined.duration_s() - now_s;
+        let Self { troubles, room, .. } = self;
+        troubles.retain(|trouble| !trouble.strike(room, (now_s, left_s), tick.light));
+    }
+
+    /// The figures of what was seen.
+    fn tell(&mut self) {
+        let off: Vec<f64> = self.follower.marks.iter().map(SeenMark::off_mm).collect();
+        let Correction { offset_rad, scale } = self.follower.correction();
+        let figures = &mut self.figures;
+        figures.spots = off.len();
+        figures.lost_images = self.follower.watch.lost;
+        figures.off_mm = SeenOff::of(off);
+        figures.trim = TrimFigures {
+            pan_mrad: 1e3 * offset_rad.pan,
+            tilt_mrad: 1e3 * offset_rad.tilt,
+            pan_scale_percent: 100.0 * scale.pan,
+            tilt_scale_percent: 100.0 * scale.tilt,
+        };
+    }
+
+    pub(super) fn tell_blindness(&mut self) {
+        let blind = self.follower.blind();
+        if blind == std::mem::replace(&mut self.blind, blind) {
+            return;
+        }
+        let remark = match blind {
+            Some(why) => format!("{}; the job goes on by its encoders", why.words()),
+            None => "the camera sees again".to_owned(),
+        };
+        self.remark(remark);
+    }
+
+    pub(super) fn remark(&mut self, remark: String) {
+        let remark = format!("after {:.1} s: {remark}", self.now_s());
+        self.progress.say(&format!("note: {remark}"));
+        self.figures.remarks.push(remark);
+    }
+
+    /// So many ticks in which nothing new is sent.
+    pub(super) fn rest(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.step(None);
+        }
+    }
+}
+
+/// Whether a fault is one after which a head only needs to be found again.
+const fn may_be_found_again(fault: Fault) -> bool {
+    matches!(
+        fault,
+        Fault::EncoderJumped | Fault::EncoderSlipping | Fault::EncoderNoisy | Fault::EstimateDiverged
+    )
+}
+
+/// How far the joints of a head that is held are off.
+fn held(telemetry: &Telemetry) -> Suspicion {
+    let off = PanTilt::from_fn(|j| telemetry.setpoint[j].position_rad - telemetry.position_rad[j]);
+    Suspicion::Jolt(f64::from(off.pan.abs().max(off.tilt.abs())))
+}
