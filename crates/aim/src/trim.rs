@@ -39,19 +39,28 @@ pub struct TrimBelief {
     pub late_s: f64,
     /// Of how much later their last row is, s.
     pub readout_s: f64,
+    /// Of either coordinate of a spot for reasons that no estimate will ever know, m: speckle, a lens that is not quite what is believed of it.
+    pub own_m: f64,
 }
 
 impl TrimBelief {
-    /// Of a head that was just found.
-    pub const FOUND: Self = Self { offset_rad: 3e-4, scale: 1e-3, late_s: 2e-3, readout_s: 2e-3 };
-    /// Of one that was found another day, in front of a camera whose stamps nobody knows.
-    pub const KNOWN: Self = Self { offset_rad: 1e-3, scale: 2e-3, late_s: 2e-2, readout_s: 1e-2 };
+    /// Of a head that was just found from spots that scatter by so much, m, root mean square of their distance.
+    pub fn found(scatter_m: f64) -> Self {
+        let own_m = LEAST_OWN_M.max(scatter_m / std::f64::consts::SQRT_2);
+        Self { offset_rad: 3e-4, scale: 1e-3, late_s: 2e-3, readout_s: 2e-3, own_m }
+    }
+
+    /// Of one that was found another day, in front of a camera whose stamps nobody knows, and whose pixels have so many metres on the wall.
+    pub fn known(pixel_m: f64) -> Self {
+        let own_m = LEAST_OWN_M.max(0.15 * pixel_m);
+        Self { offset_rad: 1e-3, scale: 2e-3, late_s: 2e-2, readout_s: 1e-2, own_m }
+    }
 }
 
 /// By how much, in √(1 s), what is estimated wanders: what grows warm turns by a milliradian in some tens of seconds.
 const WANDERS: [f64; STATES] = [1.5e-4, 1.5e-4, 4e-4, 4e-4, 1e-4, 0.0];
-/// How far a spot is seen from where it is for reasons that no estimate will ever know, m: speckle, uneven discs, play.
-const OWN_M: f64 = 1.5e-4;
+/// Least of [`TrimBelief::own_m`]: uneven discs, play.
+const LEAST_OWN_M: f64 = 1.5e-4;
 /// By how much an image's stamp trembles, s.
 const STAMP_S: f64 = 1e-3;
 /// Over so long an encoder's edges tell where a joint is between them, s: who passes one in that time is known to a share of a count.
@@ -66,6 +75,7 @@ const EDGES_S: f64 = 0.02;
 pub struct Trim {
     head: Alignment,
     count_rad: f64,
+    own_m: f64,
     state: SVector<f64, STATES>,
     covariance: SMatrix<f64, STATES, STATES>,
 }
@@ -89,9 +99,15 @@ struct Seen {
 impl Trim {
     /// Of a head that was found so, whose encoders have counts of that width, rad.
     pub fn new(head: Alignment, belief: &TrimBelief, count_rad: f64) -> Self {
-        let TrimBelief { offset_rad: o, scale: s, late_s, readout_s } = *belief;
+        let TrimBelief { offset_rad: o, scale: s, late_s, readout_s, own_m } = *belief;
         let variances = SVector::from([o, o, s, s, late_s, readout_s].map(|d| d * d));
-        Self { head, count_rad, state: SVector::zeros(), covariance: SMatrix::from_diagonal(&variances) }
+        Self {
+            head,
+            count_rad,
+            own_m,
+            state: SVector::zeros(),
+            covariance: SMatrix::from_diagonal(&variances),
+        }
     }
 
     /// So many seconds pass.
@@ -160,7 +176,7 @@ impl Trim {
         for (k, column) in columns.into_iter().enumerate() {
             (by[(0, k)], by[(1, k)]) = (column.x, column.y);
         }
-        let own = spot.deviation_m.powi(2) + OWN_M * OWN_M;
+        let own = spot.deviation_m.powi(2) + self.own_m * self.own_m;
         let along = moves * STAMP_S;
         let mut noise = SMatrix::<f64, 2, 2>::identity() * own;
         for along in
@@ -203,7 +219,7 @@ mod tests {
     #[test]
     fn offsets_scales_and_lateness_are_told_apart() {
         let truth = Correction { offset_rad: PanTilt::new(8e-4, -5e-4), scale: PanTilt::new(-1e-3, 2e-3) };
-        let mut trim = Trim::new(head(), &TrimBelief::KNOWN, 1.5e-3);
+        let mut trim = Trim::new(head(), &TrimBelief::known(1e-3), 1.5e-3);
         for k in 0..300 {
             trim.age(1.0 / 15.0);
             trim.learn(&spot(f64::from(k) / 15.0, &truth, 0.012));
@@ -219,7 +235,7 @@ mod tests {
     #[test]
     fn a_scale_that_drifts_is_followed() {
         // half a percent in half a minute, seen 15 times a second
-        let mut trim = Trim::new(head(), &TrimBelief::FOUND, 1.5e-3);
+        let mut trim = Trim::new(head(), &TrimBelief::found(1e-4), 1.5e-3);
         let mut most = 0.0_f64;
         for k in 0..450 {
             let time_s = f64::from(k) / 15.0;
@@ -238,7 +254,7 @@ mod tests {
 
     #[test]
     fn a_bump_surprises_and_a_stamp_that_trembles_does_not() {
-        let mut trim = Trim::new(head(), &TrimBelief::FOUND, 1.5e-3);
+        let mut trim = Trim::new(head(), &TrimBelief::found(1e-4), 1.5e-3);
         let none = Correction::default();
         for k in 0..100 {
             trim.age(1.0 / 15.0);

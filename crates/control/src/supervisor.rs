@@ -151,7 +151,7 @@ impl Supervisor {
         let mut reasons = DarknessSet::default();
         let points = self.phase == Phase::Dark && self.pointing_ticks > 0 && at.begun && is_still(at);
         let planned = at.segment.is_some_and(|s| s.gate);
-        reasons.insert_if(!planned && !points, Darkness::Planned);
+        reasons.insert_if(!planned, Darkness::Planned);
         reasons.insert_if(self.phase == Phase::Dark && !points, Darkness::Disarmed);
         reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);
         reasons.insert_if(strayed(at), Darkness::SpotError);

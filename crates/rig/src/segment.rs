@@ -63,13 +63,13 @@ fn evaluate(c: &[f32; 6], n: f32) -> Setpoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Allow light. Without it every gate stays shut. After a fault it is forgotten, the head goes back to where its job
-    /// stopped, and on from there. Counts are believed as they are: after a fault of an encoder the head must be homed first.
+    /// stopped, and on from there. Counts are believed as they are: after a fault of an encoder the head must be homed, or found again, before anything is drawn.
     Arm,
     /// Forbid light and stop the plan's clock; the head is held where that stands. Armed again, the job goes on from
     /// there; after its end, a new one may begin at tick 0.
     Disarm,
-    /// Let light out for so many ticks while nobody is armed, where a job was stopped on its way and the head rests: a dot, for whoever
-    /// looks where it truly is. Whatever forbids light on a stroke forbids it here.
+    /// Let light out for so many ticks while nobody is armed, where a job was stopped on a lit stroke and the head rests: a dot, for whoever
+    /// looks where it truly is. Whatever else forbids light on a stroke forbids it here.
     Point(u16),
     /// Forget the job: forbid light, go back to where both joints are at zero, and be ready for a new one that begins there at
     /// tick 0. A fault stays; arm first.

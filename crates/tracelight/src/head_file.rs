@@ -6,6 +6,7 @@ use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
 use crate::camera_file::{PageName, PageTable};
 use crate::cli::driving::Driving;
 use crate::eye::head::FoundHead;
+use crate::eye::spots::Timing;
 use crate::eye::wall::SeenWall;
 use crate::failure::Failure;
 use crate::picture::read_bytes;
@@ -85,6 +86,9 @@ pub(crate) struct KnownHead {
     pages: Vec<PageTable>,
     pub(crate) geometry: HeadGeometry,
     pub(crate) pose: HeadPose,
+    /// How its camera's stamps related to the rig's ticks, and how long rows were exposed then, s.
+    pub(crate) timing: Timing,
+    pub(crate) exposure_s: f64,
 }
 
 impl HeadFile {
@@ -191,6 +195,12 @@ impl HeadFile {
         KnownHead {
             geometry: HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, range_rad: told.range_rad },
             pose: HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
+            timing: Timing {
+                late_s: self.images.late_s,
+                readout_s: self.images.readout_s,
+                unsure_s: Timing::USUAL.unsure_s,
+            },
+            exposure_s: self.images.exposure_s,
             path: path.to_owned(),
             page: self.page.clone(),
             pages: self.pages.clone(),

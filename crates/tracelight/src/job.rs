@@ -189,7 +189,11 @@ fn run_laps(
             let room = room.watched(&learned.rig, prepared.driving.pose);
             let mut done = run_watched(&job, room, &mut log, (progress, stop))?;
             laps.push(std::mem::take(&mut done.run));
+            let is_over = done.failure.is_some();
             watched = Some(done);
+            if is_over {
+                break;
+            }
             continue;
         }
         let rig = SimulatedRig::new(&learned.rig, prepared.driving.pose, args.seed);
@@ -218,8 +222,11 @@ struct Learned {
 }
 
 fn learn(rig: &RigConfig, laps: &[Run]) -> Learned {
-    let last = &laps[laps.len().saturating_sub(LAPS_WORTH)..];
-    let found = match identify(rig, &last.iter().map(Run::telemetry).collect::<Vec<_>>()) {
+    // a lap in which the head was found again has a gap
+    let whole =
+        laps.iter().map(Run::telemetry).filter(|lap| lap.windows(2).all(|t| t[1].tick == t[0].tick + 1));
+    let whole: Vec<_> = whole.collect();
+    let found = match identify(rig, &whole[whole.len().saturating_sub(LAPS_WORTH)..]) {
         Ok(found) => found,
         Err(error) => {
             let notes = vec![format!("nothing identified between laps: {error}")];

@@ -177,7 +177,7 @@ fn the_page_on_friction_shows_what_its_commands_print() {
 
 #[test]
 fn the_page_on_cameras_shows_what_its_commands_print() {
-    check_page("camera.md", 1);
+    check_page("camera.md", 2);
 }
 
 #[test]

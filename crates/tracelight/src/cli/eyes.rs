@@ -27,12 +27,13 @@ pub(crate) struct EyeArgs {
 /// How a camera follows the spot while it draws.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct FollowArgs {
-    /// What the camera sees while the laser draws is told, but nothing is trimmed for it
+    /// What the camera sees while the laser draws is told, but nothing is made of it: nothing is trimmed, and a head that was bumped is not
+    /// found again
     #[arg(long, requires = "camera")]
     pub(crate) open_loop: bool,
     /// Lets something go wrong in a simulated room, to see what is made of it: pan-slip=20@5 is an encoder that slips by 20 counts 5 s
     /// after drawing began; also tilt-slip=COUNTS, head-bump=DEGREES, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen,
-    /// camera-black, camera-slow=FPS, camera-stamps=SECONDS. May be given more than once
+    /// camera-black, camera-slow=IMAGES_A_SECOND, camera-stamps=SECONDS. May be given more than once
     #[arg(long, value_name = "TROUBLE", requires = "camera")]
     pub(crate) sim_trouble: Vec<TroubleAt>,
 }

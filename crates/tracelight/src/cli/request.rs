@@ -71,11 +71,9 @@ impl TraceArgs {
             ("--sim-trouble", !self.follow.sim_trouble.is_empty()),
             ("--sim-camera", self.eye.sim_camera != SimulatedEye::default()),
         ];
-        if !self.follow.sim_trouble.is_empty()
-            && self.eye.camera.is_some()
-            && !matches!(self.eye.source()?, Source::Simulated(_))
-        {
-            let message = "--sim-trouble is for what a simulated camera sees: give --camera sim:PICTURE";
+        let follows = self.follow.open_loop || !self.follow.sim_trouble.is_empty();
+        if follows && self.eye.camera.is_some() && !self.is_simulated() {
+            let message = "--open-loop and --sim-trouble are for simulated rooms, as no real head is driven yet: give --camera sim:PICTURE";
             return Err(Failure::usage("usage", message));
         }
         match flags.iter().find(|(_, is_set)| *is_set && self.eye.camera.is_none()) {
@@ -97,8 +95,20 @@ impl TraceArgs {
             ("calibration", file(self.eye.calibration.as_ref())),
             ("head", file(self.head.as_ref())),
             ("retakes", self.retakes.to_string()),
-            ("loop through the camera", if self.follow.open_loop { "open" } else { "closed" }.to_owned()),
+            ("loop through the camera", self.loop_words().to_owned()),
         ]
+    }
+
+    fn is_simulated(&self) -> bool {
+        self.eye.source().is_ok_and(|source| matches!(source, Source::Simulated(_)))
+    }
+
+    fn loop_words(&self) -> &'static str {
+        match (self.is_simulated(), self.follow.open_loop) {
+            (false, _) => "none",
+            (true, true) => "open",
+            (true, false) => "closed",
+        }
     }
 
     /// The picture's name, or the camera's.

@@ -44,6 +44,8 @@ pub(crate) enum Blind {
     Frozen,
     /// Their stamps can not be true.
     Stamps,
+    /// They were not taken when their stamps say.
+    Untimely,
     /// Nothing is on them.
     Covered,
 }
@@ -53,8 +55,15 @@ impl Blind {
         match self {
             Self::NoImages => "the camera sends no images any more: is it still plugged in?",
             Self::Frozen => "the camera sends the same image again and again: it is frozen",
-            Self::Stamps => "the camera's stamps can not be true: they go back, or lie ahead",
-            Self::Covered => "the camera sees nothing any more: is its lens covered, or the light off?",
+            Self::Stamps => {
+                "the camera's stamps can not be true: they go back, lie ahead, or are more than 0.5 s old"
+            }
+            Self::Untimely => {
+                "the camera's images were not taken when their stamps say: the head stands where it stood, and its spot seems elsewhere"
+            }
+            Self::Covered => {
+                "the camera sees nothing any more: is its lens covered or turned away, or the light off?"
+            }
         }
     }
 }
@@ -66,7 +75,7 @@ const SUSPECT_DEVIATIONS: f64 = 6.0;
 /// Images in a row without the spot that are suspect, and over how long at least, s.
 const LOST_IMAGES: u32 = 3;
 const LOST_S: f64 = 0.06;
-/// Longest without an image, s: five of a slow camera.
+/// Longest without an image, s, or three times as long as it took before.
 const SILENCE_S: f64 = 1.0;
 /// Longest that an image is on its way, s.
 const LATEST_S: f64 = 0.5;
@@ -151,6 +160,11 @@ impl Follower {
         self.wanted_s = Some(exposure_s);
     }
 
+    /// It is not awaited any more.
+    pub(crate) const fn want_no_more(&mut self) {
+        self.wanted_s = None;
+    }
+
     /// That image, once it is there.
     pub(crate) fn taken(&mut self) -> Option<Shot> {
         let taken = self.taken.take();
@@ -162,7 +176,7 @@ impl Follower {
 
     /// The head stands where it stood though the spot was seen elsewhere: images were not taken when their stamps say.
     pub(crate) const fn distrust_stamps(&mut self) {
-        self.blind = Some(Blind::Stamps);
+        self.blind = Some(Blind::Untimely);
     }
 
     /// What joints are beyond their encoders.
@@ -206,7 +220,7 @@ impl Follower {
         let mut suspicion = self.jolted(&tick.telemetry);
         while let Some(shot) = rig.shot() {
             let can_be_true = self.can_be_true(&shot);
-            self.watch.exposure_s = self.watch.exposure_s.min(rig.longest_s());
+            self.watch.bound(rig.longest_s());
             match self.wanted_s {
                 Some(wanted_s) if (shot.exposure_s - wanted_s).abs() <= 0.01 * wanted_s => {
                     self.taken = Some(shot);
@@ -217,7 +231,7 @@ impl Follower {
             }
             rig.expose(self.wanted_s.unwrap_or(self.watch.exposure_s));
         }
-        if self.now_s - self.heard_s > SILENCE_S && self.blind.is_none() {
+        if self.now_s - self.heard_s > SILENCE_S.max(3.0 * self.period_s) && self.blind.is_none() {
             self.blind = Some(Blind::NoImages);
         }
         suspicion
@@ -248,7 +262,7 @@ impl Follower {
     fn remember(&mut self, telemetry: &Telemetry, asked: Option<Point>) {
         self.now_s = f64::from(telemetry.tick) * TICK_F64_S;
         if self.asked.is_empty() {
-            (self.first_tick, self.heard_s) = (telemetry.tick, self.now_s);
+            (self.first_tick, self.heard_s, self.aged_s) = (telemetry.tick, self.now_s, self.now_s);
         }
         self.history.push(telemetry);
         self.asked.push((asked, telemetry.plan_tick));
@@ -268,7 +282,10 @@ impl Follower {
         }
         (self.last, self.heard_s) = (Some((shot.clone(), same)), self.now_s);
         // whose clock was wrong once is not believed again
-        if self.blind == Some(Blind::Stamps) || !(in_time && is_later) {
+        if matches!(self.blind, Some(Blind::Stamps | Blind::Untimely)) {
+            return false;
+        }
+        if !(in_time && is_later) {
             self.blind = Some(Blind::Stamps);
         } else if same >= SAME_IMAGES {
             self.blind = Some(Blind::Frozen);

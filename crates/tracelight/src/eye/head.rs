@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, align};
 use tracelight_rig::Command;
-use tracelight_sim::{Simulated, run_segments};
+use tracelight_sim::{Simulated, Tick, run_segments};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
 
@@ -25,6 +25,8 @@ const DOT_SPEED_M_S: f64 = 0.1;
 /// Dots across, and as many down: of a head of which nothing is known, and of one that moved.
 const ACROSS: usize = 5;
 const ACROSS_AGAIN: usize = 3;
+/// Images of dots of a head that moved in which nothing is seen: it points elsewhere.
+const IN_VAIN: usize = 6;
 /// Share of the image, from its border, in which none are drawn.
 const BORDER: f64 = 0.08;
 /// A first guess of an exposure in which the spot is not full, s.
@@ -54,6 +56,8 @@ pub(crate) struct DotsRequest {
     exposure_s: f64,
     /// Dots across, and as many down.
     across: usize,
+    /// After so many images in which the spot was looked for and never once seen it is given up.
+    most_in_vain: usize,
 }
 
 impl DotsRequest {
@@ -64,6 +68,7 @@ impl DotsRequest {
             timing: Timing::USUAL,
             exposure_s: SPOT_EXPOSURE_S,
             across: ACROSS,
+            most_in_vain: usize::MAX,
         }
     }
 
@@ -81,7 +86,7 @@ impl DotsRequest {
             readout_s: 2e-3,
             ..first
         };
-        Self { belief, timing, exposure_s, across: ACROSS_AGAIN }
+        Self { belief, timing, exposure_s, across: ACROSS_AGAIN, most_in_vain: IN_VAIN }
     }
 }
 
@@ -116,7 +121,7 @@ fn plan_of(dots: &[Point], driving: &Driving) -> Result<Plan, Failure> {
     Ok(plan(&drawing, &driving.machine, &request)?)
 }
 
-/// Has the head draw dots, watches them, and finds the head. The rig rests at zero in the dark; afterwards it rests
+/// Has the head draw dots, watches them, and finds the head; whoever keeps its ticks is given each of them. The rig rests at zero in the dark; afterwards it rests
 /// in the dark at the last dot.
 pub(crate) fn find_head<R: Simulated + Eye>(
     rig: &mut R,
@@ -124,6 +129,7 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     driving: &Driving,
     request: &DotsRequest,
     (progress, stop): (&Progress, &Stop),
+    keep: &mut dyn FnMut(&Tick),
 ) -> Result<FoundHead, Failure> {
     let belief = &request.belief;
     let places = dots(camera, driving, request.across);
@@ -134,22 +140,32 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     watch.begin(rig.take(watch.exposure_s)?);
     let relay = driving.rig.model.relay;
     let mut history = History::new(relay.on_s.max(relay.off_s));
+    let mut in_vain = false;
     let run = run_segments(rig, &plan.segments, false, |rig, now| {
+        keep(now);
         history.push(&now.telemetry);
         look(rig, &mut watch, &history, &belief.alignment);
         progress.at(u64::from(now.telemetry.plan_tick));
-        if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        in_vain = watch.sightings.is_empty() && watch.lost > request.most_in_vain;
+        if in_vain || stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     // dark, whether it came to its end or not
     let _ = rig.send(Command::Disarm);
     for _ in 0..AFTERMATH_TICKS {
         let _ = rig.send(Command::KeepAlive);
-        history.push(&rig.step().telemetry);
+        let tick = rig.step();
+        keep(&tick);
+        history.push(&tick.telemetry);
         look(rig, &mut watch, &history, &belief.alignment);
     }
     stop.check()?;
     if let Some(fault) = run.fault() {
         return Err(Failure::fault(fault));
+    }
+    if in_vain {
+        let message =
+            format!("in {} images of its dots no spot is to be seen: it points elsewhere", watch.lost);
+        return Err(Failure::failed("head-not-found", message));
     }
     if !run.is_done() {
         let message =
@@ -169,7 +185,7 @@ pub(crate) fn find_head<R: Simulated + Eye>(
 fn look<R: Eye>(rig: &mut R, watch: &mut SpotWatch, history: &History, head: &Alignment) {
     while let Some(shot) = rig.shot() {
         let _ = watch.see(&shot, history, head);
-        watch.exposure_s = watch.exposure_s.min(rig.longest_s());
+        watch.bound(rig.longest_s());
         rig.expose(watch.exposure_s);
     }
 }

@@ -171,8 +171,10 @@ pub(crate) struct SpotWatch {
     last_off_px: Option<tracelight_stroke::Vec2>,
     /// How bright spots are of late, as a share of the brightest there can be.
     usual: Option<f64>,
-    /// How long the next images should be exposed, s.
+    /// How long the next images should be exposed, s,
     pub(crate) exposure_s: f64,
+    /// and how long once there is an image without the spot to hold them against.
+    wished_s: f64,
     pub(crate) sightings: Vec<Sighting>,
     /// Shots in which a spot was awaited and not found, and why the last one was not.
     pub(crate) lost: usize,
@@ -199,11 +201,18 @@ impl SpotWatch {
             last_off_px: None,
             usual: None,
             exposure_s,
+            wished_s: exposure_s,
             sightings: Vec::new(),
             lost: 0,
             last_lost: None,
             painted: None,
         }
+    }
+
+    /// No exposure is longer than this, s.
+    pub(crate) const fn bound(&mut self, longest_s: f64) {
+        self.wished_s = self.wished_s.min(longest_s);
+        self.exposure_s = self.exposure_s.min(longest_s);
     }
 
     /// Begins with a shot without the spot.
@@ -222,6 +231,7 @@ impl SpotWatch {
         };
         if light(0.0, 1.0) == Light::Dark {
             self.dark = Some(shot.clone());
+            self.exposure_s = self.wished_s;
             return Sight::Nothing;
         }
         let Some(awaited) = self.awaited(when, history, head) else { return Sight::Nothing };
@@ -236,7 +246,7 @@ impl SpotWatch {
             }
             Some(Err(why)) => {
                 if matches!(why, SpotLost::Dim { .. }) {
-                    self.exposure_s *= 1.2;
+                    self.wished_s *= 1.2;
                 }
                 self.last_off_px = None;
                 (self.lost, self.last_lost) = (self.lost + 1, Some(why));
@@ -254,7 +264,11 @@ impl SpotWatch {
     /// The spot near where it is awaited; `None` if there is no image to hold that against, or it shows no wall there.
     fn look(&mut self, shot: &Shot, when: Stamp, awaited: Point) -> Option<Result<Sighting, SpotLost>> {
         let same = |dark: &&Shot| (dark.exposure_s - when.exposure_s).abs() <= 0.01 * when.exposure_s;
-        let dark = self.dark.as_ref().filter(same)?;
+        let Some(dark) = self.dark.as_ref().filter(same) else {
+            // it was lit again before another exposure was there in the dark
+            self.exposure_s = self.dark.as_ref().map_or(self.exposure_s, |dark| dark.exposure_s);
+            return None;
+        };
         let (centre, half_px) = match self.last_off_px {
             Some(off) => (awaited + off, NEAR_PX),
             None => (awaited, FAR_PX),
@@ -275,7 +289,7 @@ impl SpotWatch {
         }
         self.usual = Some(self.usual.map_or(spot.brightness, |usual| 0.8 * usual + 0.2 * spot.brightness));
         if spot.clipped > 0 {
-            self.exposure_s *= 0.7;
+            self.wished_s = 0.7 * when.exposure_s;
         }
         self.last_off_px = Some(spot.at - awaited);
         if let Some(painted) = &mut self.painted {

@@ -1,5 +1,6 @@
 //! What goes wrong in a simulated room, and when: to see what is made of it.
 
+use std::fmt;
 use std::str::FromStr;
 
 use tracelight_rig::{Joint, PanTilt};
@@ -32,7 +33,7 @@ const BUMP_SHARES: [f64; 2] = [0.8, 0.6];
 const LONGEST_S: f64 = 1800.0;
 
 const KINDS: &str = "pan-slip=COUNTS, tilt-slip=COUNTS, head-bump=DEGREES, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen, \
-                     camera-black, camera-slow=FPS, camera-stamps=SECONDS";
+                     camera-black, camera-slow=IMAGES_A_SECOND, camera-stamps=SECONDS";
 
 impl FromStr for TroubleAt {
     type Err = String;
@@ -70,6 +71,24 @@ impl FromStr for TroubleAt {
             return Err(wrong(format!("{name} takes no value")));
         }
         Ok(Self { what, after_s: after_s.max(0.0) })
+    }
+}
+
+impl fmt::Display for TroubleAt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = match self.what {
+            What::Slip(Joint::Pan, _) => "pan-slip",
+            What::Slip(Joint::Tilt, _) => "tilt-slip",
+            What::HeadBump(_) => "head-bump",
+            What::Drift(_) => "drift",
+            What::Eye(EyeTrouble::Bump(_)) => "camera-bump",
+            What::Eye(EyeTrouble::Unplugged) => "camera-unplugged",
+            What::Eye(EyeTrouble::Frozen) => "camera-frozen",
+            What::Eye(EyeTrouble::Black) => "camera-black",
+            What::Eye(EyeTrouble::Slow(_)) => "camera-slow",
+            What::Eye(EyeTrouble::Stamps(_)) => "camera-stamps",
+        };
+        write!(f, "{name}@{}", self.after_s)
     }
 }
 

@@ -2,10 +2,12 @@
 
 use tracelight_aim::{Alignment, HeadGeometry, HeadPose, TrimBelief};
 use tracelight_rig::{Command, PanTilt, Rig, TICK_F64_S, Telemetry};
+use tracelight_sim::Tick;
 use tracelight_stroke::{Drawing, Stroke};
 use tracelight_trajectory::{Plan, plan};
 
-use super::watched::{REST_TICKS, Watched};
+use super::log_tick;
+use super::watched::{REST_TICKS, Watched, Why};
 use crate::camera_file::KnownCamera;
 use crate::eye::follow::{Blind, Followed, Follower, Suspicion};
 use crate::eye::head::{DotsRequest, find_head};
@@ -22,6 +24,8 @@ const HOME_RAD: f64 = 2e-3;
 const HOME_RAD_S: f64 = 5e-3;
 /// A head that seems to have moved by less, mm, stands where it stood.
 const STOOD_MM: f64 = 0.7;
+/// Most dots by which jolts are looked after.
+const MOST_CHECKS: usize = 50;
 /// How long a dot is lit, ticks: as long as an image takes, and one after the other comes besides.
 const DOT_TICKS: u16 = 60;
 const LONGEST_DOT_TICKS: f64 = 3000.0;
@@ -30,7 +34,10 @@ impl Watched<'_> {
     /// What a jolt came to: the head is darkened, and one dot tells where it points. Nothing if that is where it should be, or nobody sees.
     pub(super) fn dotted(&mut self, suspicion: Suspicion) -> Option<Suspicion> {
         let Suspicion::Jolt(_) = suspicion else { return Some(suspicion) };
-        if self.follower.blind().is_some() || self.job.dry {
+        let is_lit = self.joined.points.get(self.plan_tick as usize).is_some_and(|point| point.lit);
+        let is_blind = self.follower.blind().is_some();
+        // somebody who leans on it all day is the interlock's to judge
+        if is_blind || !is_lit || self.job.dry || self.figures.checks >= MOST_CHECKS {
             return None;
         }
         let _ = self.room.send(Command::Disarm);
@@ -38,11 +45,18 @@ impl Watched<'_> {
         let before = self.follower.marks.len();
         let images = (2.0 * self.follower.period_s() / TICK_F64_S).min(LONGEST_DOT_TICKS);
         let dot_ticks = DOT_TICKS + images as u16;
+        if self.is_over() {
+            return None;
+        }
         let _ = self.room.send(Command::Point(dot_ticks));
         let mut off = None;
         self.dots = true;
         for _ in 0..u32::from(dot_ticks) + REST_TICKS {
             off = off.or(self.step(None).1);
+            if self.is_over() {
+                let _ = self.room.send(Command::Disarm);
+                break;
+            }
         }
         self.dots = false;
         self.figures.checks += 1;
@@ -69,6 +83,7 @@ impl Watched<'_> {
             Some(px) => format!("moved {px:.1} px"),
             None => "looks elsewhere".to_owned(),
         };
+        self.figures.lost_images += self.follower.watch.lost;
         self.follower.look_from(wall.camera.camera);
         self.wall = KnownCamera::standing(&wall.camera, &wall.pages, self.wall.print_scale);
         // an image without the spot, as it sees now
@@ -124,23 +139,33 @@ impl Watched<'_> {
 
     fn recovered(&mut self, t_s: f64, what: String, dots: usize) {
         let lasted_s = self.now_s() - t_s;
-        self.remark(what.clone());
+        self.remark_of(t_s, &what);
         self.figures.recoveries.push(RecoveryFigures { t_s, what, dots, lasted_s });
     }
 
     /// Goes home in the dark, has the head draw a few dots, and plans what is left with the head as it is now.
     pub(super) fn found_again(
         &mut self,
-        (why, seen_off): &(String, bool),
+        Why { words: why, seen_off }: &Why,
         left: &Drawing,
     ) -> Result<Plan, Failure> {
+        self.stop.check()?;
         let began_s = self.now_s();
         self.rest(REST_TICKS);
         self.home()?;
         let (timing, exposure_s) = (self.follower.watch.timing, self.follower.watch.exposure_s);
         let camera = self.wall.stood.as_ref().map_or(self.job.seen.followed.camera, |s| s.camera.camera);
         let request = DotsRequest::again(&self.driving, timing, exposure_s);
-        let found = find_head(&mut self.room, &camera, &self.driving, &request, (self.progress, self.stop));
+        let Self { room, log, joined, failed, plan_tick, .. } = self;
+        let mut keep = |tick: &Tick| {
+            let mut tick = *tick;
+            tick.telemetry.plan_tick = *plan_tick;
+            if let Err(error) = log_tick(log, joined, &tick) {
+                *failed = failed.take().or(Some(error));
+            }
+        };
+        let watched = (self.progress, self.stop);
+        let found = find_head(room, &camera, &self.driving, &request, watched, &mut keep);
         let found = found.map_err(|e| Failure { message: format!("{why}; {}", e.message), ..e })?;
         let Alignment { geometry, pose, .. } = found.aligned.alignment;
         let moved = self.moved_mm(left, &geometry, &pose);
@@ -152,11 +177,12 @@ impl Watched<'_> {
             head,
             timing: found.timing,
             exposure_s: found.exposure_s,
-            belief: TrimBelief::FOUND,
+            belief: TrimBelief::found(found.aligned.rms_m),
             count_rad: self.job.seen.followed.count_rad,
         };
         let marks = std::mem::take(&mut self.follower.marks);
         let painted = self.follower.watch.painted.take();
+        self.figures.lost_images += self.follower.watch.lost;
         self.follower = Follower::new(&followed, relay.on_s.max(relay.off_s), painted);
         self.follower.marks = marks;
         self.home()?;
@@ -199,7 +225,11 @@ impl Watched<'_> {
             }
             self.stop.check()?;
         }
-        Err(Failure::failed("unfinished", "the head did not come back to zero: is something in its way?"))
+        let message = format!(
+            "the head did not come within {HOME_RAD} rad of zero in {:.0} s: is something in its way?",
+            f64::from(HOME_TICKS) * TICK_F64_S
+        );
+        Err(Failure::failed("unfinished", message))
     }
 }
 
@@ -209,12 +239,15 @@ const PATIENCE_TICKS: u32 = 3000;
 impl Looks for Watched<'_> {
     fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure> {
         self.follower.want(exposure_s.min(self.room.longest_s()));
+        self.room.expose(exposure_s);
         for _ in 0..PATIENCE_TICKS {
             self.step(None);
             if let Some(shot) = self.follower.taken() {
                 return Ok(shot);
             }
+            self.stop.check()?;
         }
+        self.follower.want_no_more();
         Err(Failure::failed("no-image", "the camera sends no image any more: is it still plugged in?"))
     }
 

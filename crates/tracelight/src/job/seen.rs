@@ -10,7 +10,7 @@ use crate::camera_file::KnownCamera;
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::eye::Looks;
-use crate::eye::figure::{FigureRequest, SeenFigure, see_figure};
+use crate::eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_figure};
 use crate::eye::follow::Followed;
 use crate::eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_front};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
@@ -67,16 +67,19 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
     stop.check()?;
     let camera = wall.camera.camera;
-    let (mut timing, mut exposure_s, mut belief) = (Timing::USUAL, SPOT_EXPOSURE_S, TrimBelief::KNOWN);
+    let (mut timing, mut exposure_s, mut belief) =
+        (Timing::USUAL, SPOT_EXPOSURE_S, TrimBelief::known(metres_per_pixel(&camera).unwrap_or_default()));
     let head = match (known, &mut rig, &room) {
         (Some(known), _, _) => {
             known.check_wall(&wall)?;
             driving.believe(known.geometry, known.pose);
+            (timing, exposure_s) = (known.timing, known.exposure_s);
             None
         }
         (None, Some(rig), Some(room)) => {
             let (found, figures) = found_head(rig, room, &camera, &mut driving, (progress, stop))?;
-            (timing, exposure_s, belief) = (found.timing, found.exposure_s, TrimBelief::FOUND);
+            (timing, exposure_s, belief) =
+                (found.timing, found.exposure_s, TrimBelief::found(found.aligned.rms_m));
             Some(figures)
         }
         (None, _, _) => {
@@ -138,7 +141,7 @@ fn found_head(
     watched: (&Progress, &Stop),
 ) -> Result<(FoundHead, HeadFigures), Failure> {
     driving.stand(in_front(camera, driving.pose.distance_m));
-    let found = find_head(rig, camera, driving, &DotsRequest::first(driving), watched)?;
+    let found = find_head(rig, camera, driving, &DotsRequest::first(driving), watched, &mut |_| {})?;
     let Alignment { geometry, pose, .. } = found.aligned.alignment;
     driving.believe(geometry, pose);
     let truth = room.true_error_m(&geometry, &pose);

@@ -51,6 +51,9 @@ pub(super) struct WatchedRun {
 const AFTERMATH_TICKS: u32 = 200;
 /// Ticks in which a head comes to rest in the dark, and images that show its light have arrived.
 pub(super) const REST_TICKS: u32 = 300;
+/// Furthest that an encoder may have jumped for its head to be looked for by dots, rad: what is further off draws them who knows where.
+const MOST_JUMP_RAD: f64 = 0.06;
+
 /// Why a stretch of a run ended.
 enum Ended {
     Done,
@@ -58,6 +61,13 @@ enum Ended {
     Suspect(Suspicion),
     Stopped,
     GivenUp,
+}
+
+/// Why a head must be found again.
+pub(super) struct Why {
+    pub(super) words: String,
+    /// A camera saw its spot elsewhere.
+    pub(super) seen_off: bool,
 }
 
 /// A run under way.
@@ -126,24 +136,26 @@ pub(super) fn run_watched(
 impl Watched<'_> {
     /// Runs a drawing, and what is left of it whenever something was suddenly off.
     fn all(&mut self, mut plan: Plan, mut drawing: Drawing) -> Result<(), Failure> {
+        let mut strokes = 0;
         loop {
-            let Some(why) = self.one(&plan)? else { return Ok(()) };
-            let left = left(&plan, &drawing, self.rewound());
-            let Some((first, left)) = left else { return Ok(()) };
+            let Some((why, first, left)) = self.one(&plan, &drawing)? else { return Ok(()) };
             let next = self.found_again(&why, &left)?;
-            self.base = join(&mut self.joined, self.plan_tick, &next, first);
+            strokes += first;
+            self.base = join(&mut self.joined, self.plan_tick, &next, strokes);
             self.plan_tick = self.base;
+            self.progress.stage("run", self.joined.points.len() as u64);
             (plan, drawing) = (next, left);
         }
     }
 
-    /// Follows a plan to its end, or to where the head is to be found again: then why, and whether a camera saw that.
-    fn one(&mut self, plan: &Plan) -> Result<Option<(String, bool)>, Failure> {
+    /// Follows a plan to its end, or to where the head is to be found again: then why, and what is left with the number of its first stroke.
+    fn one(&mut self, plan: &Plan, drawing: &Drawing) -> Result<Option<(Why, u32, Drawing)>, Failure> {
         let mut feeder = TrimmedFeeder::new(&plan.segments, self.job.dry);
         loop {
             let suspicion = match self.follow(&mut feeder, plan) {
                 Ended::Fault(fault) if may_be_found_again(fault) && self.can_recover() => {
-                    return Ok(Some((format!("fault {}", fault.code()), false)));
+                    let why = Why { words: format!("fault {}", fault.code()), seen_off: false };
+                    return Ok(left(plan, drawing, self.rewound()).map(|(first, left)| (why, first, left)));
                 }
                 Ended::Fault(_) => {
                     self.rest(AFTERMATH_TICKS);
@@ -153,15 +165,36 @@ impl Watched<'_> {
                 Ended::Suspect(suspicion) => suspicion,
             };
             let Some(suspicion) = self.dotted(suspicion) else { continue };
-            if let Some(why) = self.look_into(suspicion)? {
-                return Ok(Some((why, matches!(suspicion, Suspicion::Off(_)))));
+            let Some(words) = self.look_into(suspicion)? else { continue };
+            // what was all but finished is finished
+            if let Some((first, left)) = left(plan, drawing, self.rewound()) {
+                let why = Why { words, seen_off: matches!(suspicion, Suspicion::Off(_)) };
+                return Ok(Some((why, first, left)));
             }
         }
     }
 
     fn can_recover(&self) -> bool {
-        let blind = self.follower.blind().is_some();
-        !blind && !self.job.open && self.figures.recoveries.len() < MOST_RECOVERIES
+        let may_look = self.follower.blind().is_none() && !self.job.open && !self.job.dry;
+        may_look && self.figures.recoveries.len() < MOST_RECOVERIES && self.jumped_rad() < MOST_JUMP_RAD
+    }
+
+    /// How far an encoder was from where its joint was believed a tick before, when the fault came, rad.
+    fn jumped_rad(&self) -> f64 {
+        let count_rad = self.driving.rig.model.encoder.count_rad();
+        let ticks = &self.run.ticks;
+        let Some(sound) = ticks.iter().rposition(|tick| tick.telemetry.fault.is_none()) else { return 0.0 };
+        let (before, now) = (&ticks[sound].telemetry, &ticks[(sound + 1).min(ticks.len() - 1)].telemetry);
+        let off = PanTilt::from_fn(|j| {
+            let count = now.measured[j].count.wrapping_add(now.lost_counts[j]);
+            f64::from(count) * count_rad - f64::from(before.position_rad[j])
+        });
+        off.pan.abs().max(off.tilt.abs())
+    }
+
+    /// Whether the user, or a log that can not be written, ends the run.
+    pub(super) fn is_over(&self) -> bool {
+        self.stop.is_wanted() || self.failed.is_some()
     }
 
     /// Where the present plan's clock stood when the light was last seen to be right; where it begins, if it never was.
@@ -175,6 +208,10 @@ impl Watched<'_> {
         if let Some(fault) = self.run.ticks.last().and_then(|tick| tick.telemetry.fault) {
             return Ended::Fault(fault);
         }
+        if self.is_over() {
+            let _ = self.room.send(Command::Disarm);
+            return Ended::Stopped;
+        }
         let most = plan.points.len() + self.room.patience_ticks();
         let _ = self.room.send(Command::Arm);
         // what is armed anew on its way begins with a hold
@@ -183,7 +220,7 @@ impl Watched<'_> {
             let wanted = if self.job.open { Correction::default() } else { self.follower.correction() };
             feeder.feed(&mut self.room, self.plan_tick - self.base, &wanted);
             let (tick, suspicion) = self.step(Some(feeder));
-            if self.failed.is_some() || self.stop.is_wanted() {
+            if self.is_over() {
                 let _ = self.room.send(Command::Disarm);
                 self.rest(AFTERMATH_TICKS);
                 return Ended::Stopped;
@@ -249,11 +286,14 @@ impl Watched<'_> {
 
     /// The figures of what was seen.
     fn tell(&mut self) {
+        for trouble in std::mem::take(&mut self.troubles) {
+            self.remark(format!("{trouble} did not happen: the job was over, or nothing was lit"));
+        }
         let off: Vec<f64> = self.follower.marks.iter().map(SeenMark::off_mm).collect();
         let Correction { offset_rad, scale } = self.follower.correction();
         let figures = &mut self.figures;
         figures.spots = off.len();
-        figures.lost_images = self.follower.watch.lost;
+        figures.lost_images += self.follower.watch.lost;
         figures.off_mm = SeenOff::of(off);
         figures.trim = TrimFigures {
             pan_mrad: 1e3 * offset_rad.pan,
@@ -276,7 +316,12 @@ impl Watched<'_> {
     }
 
     pub(super) fn remark(&mut self, remark: String) {
-        let remark = format!("after {:.1} s: {remark}", self.now_s());
+        self.remark_of(self.now_s(), &remark);
+    }
+
+    /// The same of something that was then, s.
+    pub(super) fn remark_of(&mut self, t_s: f64, remark: &str) {
+        let remark = format!("after {t_s:.1} s: {remark}");
         self.progress.say(&format!("note: {remark}"));
         self.figures.remarks.push(remark);
     }
@@ -293,7 +338,11 @@ impl Watched<'_> {
 const fn may_be_found_again(fault: Fault) -> bool {
     matches!(
         fault,
-        Fault::EncoderJumped | Fault::EncoderSlipping | Fault::EncoderNoisy | Fault::EstimateDiverged
+        Fault::EncoderJumped
+            | Fault::EncoderSlipping
+            | Fault::EncoderNoisy
+            | Fault::EncoderDead
+            | Fault::EstimateDiverged
     )
 }
 

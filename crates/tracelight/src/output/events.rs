@@ -94,6 +94,10 @@ pub(crate) fn events(run: &Run) -> Vec<Event> {
         }
     }
     found.extend(watch.open());
+    // a fault after which the head was found again did not stop the run
+    let stopped = run.fault().is_some();
+    let last = found.len().saturating_sub(1);
+    found.iter_mut().enumerate().for_each(|(i, event)| event.stops &= stopped && i == last);
     found
 }
 

@@ -61,8 +61,14 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
     stop.check()?;
     driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
-    let found =
-        find_head(&mut rig, &wall.camera.camera, &driving, &DotsRequest::first(&driving), (&progress, stop))?;
+    let found = find_head(
+        &mut rig,
+        &wall.camera.camera,
+        &driving,
+        &DotsRequest::first(&driving),
+        (&progress, stop),
+        &mut |_| {},
+    )?;
     stop.check()?;
     write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, &wall))?)?;
     let pose = found.aligned.alignment.pose;
