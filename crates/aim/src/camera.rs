@@ -149,6 +149,12 @@ impl Camera {
         Some([0, 1].map(|k| Vec2::new(by_point[(0, k)], by_point[(1, k)])))
     }
 
+    /// How large the target is seen at a point of it, px/m: the root of by how much areas are.
+    pub fn scale(&self, on_target: Point) -> Option<f64> {
+        let [x, y] = self.pixels_per_metre(on_target)?;
+        Some(x.cross(y).abs().sqrt())
+    }
+
     /// Whether a pixel is within the image.
     pub fn is_in_sight(&self, pixel: Point) -> bool {
         let [width, height] = self.lens.size_px.map(|n| n as f64);

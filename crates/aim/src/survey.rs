@@ -90,6 +90,13 @@ pub struct PlacedPage {
     pub larger: f64,
 }
 
+impl PlacedPage {
+    /// The target's frame from the page's own: its middle, x to its right, y up as printed.
+    pub fn place(&self) -> Affine {
+        Affine::rotate(self.turn_rad).then_translate(self.middle.to_vec2())
+    }
+}
+
 /// What does not look as it should: the wall may be further off than told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Doubt {

@@ -8,6 +8,7 @@ use toml_edit::{Array, Item};
 use tracelight_aim::{Camera, CameraPose, Lens, LensBelief, PlacedPage, Survey, SurveyedCamera};
 use tracelight_stroke::{Affine, Point};
 
+use crate::eye::wall::SeenWall;
 use crate::failure::Failure;
 use crate::picture::read_bytes;
 
@@ -310,15 +311,12 @@ pub(crate) struct Stood {
 }
 
 impl KnownCamera {
-    /// Of a camera that was found in front of these pages a moment ago.
-    pub(crate) fn standing(camera: &SurveyedCamera, pages: &[PlacedPage], print_scale: f64) -> Self {
+    /// Of a camera that was found a moment ago.
+    pub(crate) fn standing(wall: &SeenWall) -> Self {
+        let SeenWall { camera, print_scale, .. } = *wall;
         let covariance = camera.covariance.fixed_view::<9, 9>(6, 6).into_owned();
-        let place = |page: &PlacedPage| {
-            let wall_from_page = Affine::rotate(page.turn_rad).then_translate(page.middle.to_vec2());
-            (PageName::of(page), wall_from_page)
-        };
-        let pages = pages.iter().map(place).collect();
-        let stood = Stood { camera: *camera, date: crate::rigfile::today(), pages };
+        let pages = wall.pages.iter().map(|page| (PageName::of(page), page.place())).collect();
+        let stood = Stood { camera, date: crate::rigfile::today(), pages };
         Self { lens: LensBelief { lens: camera.camera.lens, covariance }, print_scale, stood: Some(stood) }
     }
 }

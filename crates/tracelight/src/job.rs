@@ -174,30 +174,18 @@ fn run_laps(
             learned = learn(&prepared.driving.rig, &laps);
         }
         progress.stage("run", plan.points.len() as u64);
-        if let Some((seen, room)) = prepared.watched() {
-            let mut driving = prepared.driving.clone();
-            driving.rig = learned.rig.clone();
-            let job = WatchedJob {
-                plan,
-                drawing: &prepared.schedule.ordered.drawing,
-                driving: &driving,
-                seen,
-                troubles: &args.follow.sim_trouble,
-                dry: args.dry_run,
-                open: args.follow.open_loop,
-            };
-            let room = room.watched(&learned.rig, prepared.driving.pose);
-            let mut done = run_watched(&job, room, &mut log, (progress, stop))?;
-            laps.push(std::mem::take(&mut done.run));
-            let is_over = done.failure.is_some();
-            watched = Some(done);
-            if is_over {
-                break;
-            }
+        let Some(looks) = prepared.watched() else {
+            let rig = SimulatedRig::new(&learned.rig, prepared.driving.pose, args.seed);
+            laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
             continue;
+        };
+        let mut done = watched_lap(args, prepared, looks, &learned.rig, &mut log, (progress, stop))?;
+        laps.push(std::mem::take(&mut done.run));
+        let is_over = done.failure.is_some();
+        watched = Some(done);
+        if is_over {
+            break;
         }
-        let rig = SimulatedRig::new(&learned.rig, prepared.driving.pose, args.seed);
-        laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
     }
     log.finish()?;
     let last = laps.pop().unwrap_or_default();
@@ -213,6 +201,29 @@ fn run_laps(
     })
 }
 
+/// One lap that a camera follows, of a rig that is believed to be this.
+fn watched_lap(
+    args: &TraceArgs,
+    prepared: &Prepared,
+    (seen, room): (&Seen, &Furnished),
+    believed: &RigConfig,
+    log: &mut LogWriter,
+    watched: (&Progress, &Stop),
+) -> Result<WatchedRun, Failure> {
+    let mut driving = prepared.driving.clone();
+    driving.rig = believed.clone();
+    let job = WatchedJob {
+        plan: &prepared.schedule.plan,
+        drawing: &prepared.schedule.ordered.drawing,
+        driving: &driving,
+        seen,
+        troubles: &args.follow.sim_trouble,
+        dry: args.dry_run,
+        open: args.follow.open_loop,
+    };
+    run_watched(&job, room.watched(believed, driving.pose), log, watched)
+}
+
 /// What the laps so far tell of a rig.
 struct Learned {
     rig: RigConfig,
@@ -223,10 +234,11 @@ struct Learned {
 
 fn learn(rig: &RigConfig, laps: &[Run]) -> Learned {
     // a lap in which the head was found again has a gap
-    let whole =
-        laps.iter().map(Run::telemetry).filter(|lap| lap.windows(2).all(|t| t[1].tick == t[0].tick + 1));
-    let whole: Vec<_> = whole.collect();
-    let found = match identify(rig, &whole[whole.len().saturating_sub(LAPS_WORTH)..]) {
+    let is_whole = |lap: &&Run| lap.ticks.windows(2).all(|t| t[1].telemetry.tick == t[0].telemetry.tick + 1);
+    let last = laps.iter().rev().filter(is_whole).take(LAPS_WORTH);
+    let mut last: Vec<_> = last.map(Run::telemetry).collect();
+    last.reverse();
+    let found = match identify(rig, &last) {
         Ok(found) => found,
         Err(error) => {
             let notes = vec![format!("nothing identified between laps: {error}")];

@@ -1,9 +1,7 @@
 use tracelight_rig::{Joint, PanTilt, Segment};
 
 use crate::Machine;
-use crate::plan::{JointMotion, PlanPoint};
-use crate::retime::{Along, hermite};
-use tracelight_rig::TICK_F64_S;
+use crate::plan::PlanPoint;
 
 /// Longest segment, ticks: short enough that a stroke's shape and the tolerance hardly change within.
 const LONGEST: usize = 32;
@@ -53,7 +51,7 @@ fn longest(points: &[PlanPoint], gates: &[bool], start: usize) -> (usize, PanTil
     let mut length = LONGEST.min(same_gate).min(points.len() - 1 - start).max(1);
     loop {
         let fit = PanTilt::from_fn(|j| {
-            in_ticks(&points[start].joints[j], &points[start + length].joints[j], length as f64)
+            points[start].joints[j].quintic_to(&points[start + length].joints[j], length as f64)
         });
         if length == 1 || keeps_to(&points[start..=start + length], &fit) {
             return (length, fit);
@@ -69,14 +67,4 @@ fn keeps_to(points: &[PlanPoint], fit: &PanTilt<[f64; 6]>) -> bool {
             (at - p.joints[j].position_rad).abs() <= DEVIATION_RAD
         })
     })
-}
-
-/// The quintic through position, speed and acceleration at both ends, `n` ticks apart, coefficients per tickⁱ.
-fn in_ticks(from: &JointMotion, to: &JointMotion, n: f64) -> [f64; 6] {
-    let per_tick = |m: &JointMotion| Along {
-        s: m.position_rad,
-        v: m.velocity_rad_s * TICK_F64_S,
-        a: m.acceleration_rad_s2 * TICK_F64_S * TICK_F64_S,
-    };
-    hermite(per_tick(from), per_tick(to), n)
 }

@@ -1,7 +1,7 @@
 use tracelight_rig::{PanTilt, Segment, TICK_F64_S};
 use tracelight_stroke::{Point, Vec2};
 
-use crate::retime::Binding;
+use crate::retime::{Along, Binding, hermite};
 
 /// Angle, speed and acceleration of one joint, in `f64`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,6 +18,16 @@ impl JointMotion {
     /// Standing still.
     pub fn at_rest(position_rad: f64) -> Self {
         Self { position_rad, ..Self::default() }
+    }
+
+    /// The quintic through position, speed and acceleration here and there, so many ticks later; coefficients per tickⁱ.
+    pub fn quintic_to(&self, there: &Self, ticks: f64) -> [f64; 6] {
+        let per_tick = |m: &Self| Along {
+            s: m.position_rad,
+            v: m.velocity_rad_s * TICK_F64_S,
+            a: m.acceleration_rad_s2 * TICK_F64_S * TICK_F64_S,
+        };
+        hermite(per_tick(self), per_tick(there), ticks)
     }
 }
 

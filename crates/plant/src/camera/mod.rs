@@ -112,7 +112,7 @@ impl SimulatedCamera {
             camera: *camera,
             wall: Arc::new(wall.clone()),
             scene: wall.seen(config, camera),
-            electrons: Electrons::new(seed),
+            electrons: Electrons::new(seed, config.sensor.gamma),
             number: 0,
         }
     }

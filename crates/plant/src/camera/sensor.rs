@@ -10,6 +10,8 @@ pub(super) struct Electrons {
     seed: u64,
     /// Normally distributed: quantiles at equal steps of probability.
     normal: Arc<[f32]>,
+    /// Levels at equal steps of light.
+    curve: Arc<[u8]>,
 }
 
 /// Which pixels of which image are read.
@@ -31,18 +33,17 @@ const QUANTILES: usize = 1 << 14;
 const CURVE: usize = 1 << 12;
 
 impl Electrons {
-    pub(super) fn new(seed: u64) -> Self {
+    /// `gamma` is the exponent from light to levels.
+    pub(super) fn new(seed: u64, gamma: f64) -> Self {
         let at = |k: usize| quantile((k as f64 + 0.5) / QUANTILES as f64) as f32;
-        Self { seed, normal: (0..QUANTILES).map(at).collect() }
+        let level = |k: usize| (255.0 * (k as f64 / CURVE as f64).powf(gamma)).round() as u8;
+        Self { seed, normal: (0..QUANTILES).map(at).collect(), curve: (0..=CURVE).map(level).collect() }
     }
 
     /// Levels of a picture in light, full scale one.
     pub(super) fn read(&self, sensor: &Sensor, light: &[[f32; 3]], mosaic: &Mosaic) -> Vec<u8> {
-        let curve: Vec<u8> = (0..=CURVE)
-            .map(|k| (255.0 * (k as f64 / CURVE as f64).powf(sensor.gamma)).round() as u8)
-            .collect();
         // what is cast rounds down
-        let level = |share: f32| curve[(share.clamp(0.0, 1.0) * CURVE as f32 + 0.5) as usize];
+        let level = |share: f32| self.curve[(share.clamp(0.0, 1.0) * CURVE as f32 + 0.5) as usize];
         let Mosaic { wide, part, .. } = mosaic;
         let places =
             (0..wide.height).flat_map(|y| (0..wide.width).map(move |x| (wide.left + x, wide.top + y)));
@@ -156,7 +157,7 @@ mod tests {
             bayer: false,
         };
         let mut read = vec![0.4; 100_000];
-        Electrons::new(1).spoil(&sensor, &mut read, (0, &whole(400, 250)));
+        Electrons::new(1, 1.0).spoil(&sensor, &mut read, (0, &whole(400, 250)));
         let mean = read.iter().sum::<f32>() / 1e5;
         let variance = read.iter().map(|v| (v - mean).powi(2)).sum::<f32>() / 1e5;
         assert!((mean - 0.4).abs() < 5e-4);

@@ -5,6 +5,7 @@
 
 use tracelight_aim::Correction;
 use tracelight_rig::{Command, Joint, PanTilt, Rig, Segment, Setpoint, TICK_F64_S};
+use tracelight_trajectory::JointMotion;
 
 /// How far ahead of the plan's clock segments are sent, ticks: a host may be held up for so long.
 const AHEAD_TICKS: u32 = 250;
@@ -85,7 +86,7 @@ fn nearer(from: &Correction, wanted: &Correction, time_s: f64) -> Correction {
 }
 
 /// What is to be taken off a joint along a segment, rad per tickⁱ: the quintic that has angle, speed and acceleration of what is off at either
-/// end (Hermite's interpolation; as in Craig, *Introduction to Robotics*, §7.3).
+/// end.
 fn between(segment: &Segment, joint: Joint, (from, to): (&Correction, &Correction)) -> [f64; 6] {
     if *from == Correction::default() && *to == Correction::default() {
         return [0.0; 6];
@@ -93,24 +94,13 @@ fn between(segment: &Segment, joint: Joint, (from, to): (&Correction, &Correctio
     let n = f64::from(segment.ticks);
     let end = |at: f64, trim: &Correction| {
         let Setpoint { position_rad, velocity_rad_s, acceleration_rad_s2 } = segment.sample(at as f32)[joint];
-        [
-            trim.at(joint, f64::from(position_rad)),
-            trim.scale[joint] * f64::from(velocity_rad_s) * TICK_F64_S,
-            trim.scale[joint] * f64::from(acceleration_rad_s2) * TICK_F64_S * TICK_F64_S,
-        ]
+        JointMotion {
+            position_rad: trim.at(joint, f64::from(position_rad)),
+            velocity_rad_s: trim.scale[joint] * f64::from(velocity_rad_s),
+            acceleration_rad_s2: trim.scale[joint] * f64::from(acceleration_rad_s2),
+        }
     };
-    let ([p, v, a], [q, w, b]) = (end(0.0, from), end(n, to));
-    let way = q - p - v * n - 0.5 * a * n * n;
-    let faster = (w - v - a * n) * n;
-    let bent = (b - a) * n * n;
-    [
-        p,
-        v,
-        0.5 * a,
-        (10.0 * way - 4.0 * faster + 0.5 * bent) / n.powi(3),
-        (-15.0 * way + 7.0 * faster - bent) / n.powi(4),
-        (6.0 * way - 3.0 * faster + 0.5 * bent) / n.powi(5),
-    ]
+    end(0.0, from).quintic_to(&end(n, to), n)
 }
 
 #[cfg(test)]
@@ -139,20 +129,12 @@ mod tests {
         (0..40_u32)
             .map(|k| {
                 let at = |tick: u32| 2e-3 * f64::from(tick);
-                let (from, to) = (at(50 * k), at(50 * (k + 1)));
-                let end = |t: f64| [0.3 * t.sin(), 0.3 * 2e-3 * t.cos(), -0.3 * 4e-6 * t.sin()];
-                let ([p, v, a], [q, w, b], n) = (end(from), end(to), 50.0_f64);
-                let (way, faster, bent) =
-                    (q - p - v * n - 0.5 * a * n * n, (w - v - a * n) * n, (b - a) * n * n);
-                let c = [
-                    p,
-                    v,
-                    0.5 * a,
-                    (10.0 * way - 4.0 * faster + 0.5 * bent) / n.powi(3),
-                    (-15.0 * way + 7.0 * faster - bent) / n.powi(4),
-                    (6.0 * way - 3.0 * faster + 0.5 * bent) / n.powi(5),
-                ]
-                .map(|v| v as f32);
+                let end = |t: f64| JointMotion {
+                    position_rad: 0.3 * t.sin(),
+                    velocity_rad_s: 0.3 * 2.0 * t.cos(),
+                    acceleration_rad_s2: -0.3 * 4.0 * t.sin(),
+                };
+                let c = end(at(50 * k)).quintic_to(&end(at(50 * (k + 1))), 50.0).map(|v| v as f32);
                 Segment {
                     start_tick: 50 * k,
                     ticks: 50,

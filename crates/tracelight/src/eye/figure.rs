@@ -125,8 +125,7 @@ fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Fai
 /// Length on the wall of a pixel in the middle of the image, m.
 pub(crate) fn metres_per_pixel(camera: &Camera) -> Option<f64> {
     let [width, height] = camera.lens.size_px.map(|n| n as f64);
-    let [x, y] = camera.pixels_per_metre(camera.target(Point::new(width / 2.0, height / 2.0))?)?;
-    Some(1.0 / x.cross(y).abs().sqrt())
+    Some(1.0 / camera.scale(camera.target(Point::new(width / 2.0, height / 2.0))?)?)
 }
 
 /// Spacing of the points that carry a stroke from image to wall, px.

@@ -1,6 +1,7 @@
 //! A camera that follows the spot while it draws: what is slowly off is estimated, what is suddenly off is told.
 
 use tracelight_aim::{Alignment, Camera, Correction, Trim, TrimBelief};
+use tracelight_plant::RelayConfig;
 use tracelight_rig::{PanTilt, Phase, TICK_F64_S, Telemetry};
 use tracelight_sim::Tick;
 use tracelight_stroke::Point;
@@ -22,6 +23,8 @@ pub(crate) struct Followed {
     pub(crate) belief: TrimBelief,
     /// Width of an encoder's count, rad.
     pub(crate) count_rad: f64,
+    /// The laser's.
+    pub(crate) relay: RelayConfig,
 }
 
 /// What does not look as it should.
@@ -91,6 +94,12 @@ const LATE_FADES: f64 = 1e-2;
 /// and only after so many ticks of light is it known.
 const WATCHED_TICKS: u32 = 1000;
 
+/// How far the joint that is further off is from its setpoint, rad.
+pub(crate) fn strayed_rad(telemetry: &Telemetry) -> f64 {
+    let off = PanTilt::from_fn(|j| telemetry.setpoint[j].position_rad - telemetry.position_rad[j]);
+    f64::from(off.pan.abs().max(off.tilt.abs()))
+}
+
 /// Follows the spot.
 pub(crate) struct Follower {
     pub(crate) watch: SpotWatch,
@@ -126,13 +135,13 @@ pub(crate) struct Follower {
 }
 
 impl Follower {
-    /// Begins with a rig at rest in the dark, whose laser's relay takes so long, s. What is seen is painted there.
-    pub(crate) fn new(followed: &Followed, relay_s: f64, painted: Option<Painted>) -> Self {
+    /// Begins with a rig at rest in the dark. What is seen is painted there.
+    pub(crate) fn new(followed: &Followed, painted: Option<Painted>) -> Self {
         let mut watch = SpotWatch::new(followed.camera, followed.exposure_s);
         (watch.timing, watch.painted) = (followed.timing, painted);
         Self {
             watch,
-            history: History::new(relay_s),
+            history: History::new(&followed.relay),
             head: followed.head,
             trim: Trim::new(followed.head, &followed.belief, followed.count_rad),
             aged_s: 0.0,
@@ -174,9 +183,9 @@ impl Follower {
         taken
     }
 
-    /// The head stands where it stood though the spot was seen elsewhere: images were not taken when their stamps say.
-    pub(crate) const fn distrust_stamps(&mut self) {
-        self.blind = Some(Blind::Untimely);
+    /// What its images would tell is not waited for.
+    pub(crate) const fn distrust(&mut self, why: Blind) {
+        self.blind = Some(why);
     }
 
     /// What joints are beyond their encoders.
@@ -209,11 +218,6 @@ impl Follower {
         self.lost = 0;
     }
 
-    /// Nothing is to be seen: what it would tell is not waited for.
-    pub(crate) const fn cover(&mut self) {
-        self.blind = Some(Blind::Covered);
-    }
-
     /// One tick that was watched, with where the spot was asked to be; what is suspect, if anything is.
     pub(crate) fn tick<R: Eye>(&mut self, rig: &mut R, tick: &Tick) -> Option<Suspicion> {
         self.remember(&tick.telemetry, tick.asked);
@@ -222,7 +226,7 @@ impl Follower {
             let can_be_true = self.can_be_true(&shot);
             self.watch.bound(rig.longest_s());
             match self.wanted_s {
-                Some(wanted_s) if (shot.exposure_s - wanted_s).abs() <= 0.01 * wanted_s => {
+                Some(wanted_s) if shot.is_exposed(wanted_s) => {
                     self.taken = Some(shot);
                 }
                 Some(_) => {}
@@ -242,11 +246,10 @@ impl Follower {
         if telemetry.phase != Phase::Tracing {
             return None;
         }
-        let off = PanTilt::from_fn(|j| telemetry.setpoint[j].position_rad - telemetry.position_rad[j]);
-        let off_rad = f64::from(off.pan.abs().max(off.tilt.abs()));
         if !telemetry.actuation.gate {
             return None;
         }
+        let off_rad = strayed_rad(telemetry);
         let known = self.watched_ticks > WATCHED_TICKS;
         let is_jolt = known && off_rad > JOLT_RAD + JOLT_TIMES * self.strayed_rad;
         self.now_strayed_rad = self.now_strayed_rad.max(off_rad);

@@ -5,13 +5,13 @@
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, align};
+use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, SeenSpot, align};
 use tracelight_rig::Command;
 use tracelight_sim::{Simulated, Tick, run_segments};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
 
-use super::spots::{History, SpotWatch, Timing};
+use super::spots::{History, Sight, Sighting, SpotWatch, Timing};
 use super::{Eye, Looks};
 use crate::cli::driving::Driving;
 use crate::failure::Failure;
@@ -138,15 +138,15 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     let mut watch = SpotWatch::new(*camera, request.exposure_s);
     watch.timing = request.timing;
     watch.begin(rig.take(watch.exposure_s)?);
-    let relay = driving.rig.model.relay;
-    let mut history = History::new(relay.on_s.max(relay.off_s));
+    let mut history = History::new(&driving.rig.model.relay);
+    let mut sightings = Vec::new();
     let mut in_vain = false;
     let run = run_segments(rig, &plan.segments, false, |rig, now| {
         keep(now);
         history.push(&now.telemetry);
-        look(rig, &mut watch, &history, &belief.alignment);
+        look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
         progress.at(u64::from(now.telemetry.plan_tick));
-        in_vain = watch.sightings.is_empty() && watch.lost > request.most_in_vain;
+        in_vain = sightings.is_empty() && watch.lost > request.most_in_vain;
         if in_vain || stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     // dark, whether it came to its end or not
@@ -156,7 +156,7 @@ pub(crate) fn find_head<R: Simulated + Eye>(
         let tick = rig.step();
         keep(&tick);
         history.push(&tick.telemetry);
-        look(rig, &mut watch, &history, &belief.alignment);
+        look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
     }
     stop.check()?;
     if let Some(fault) = run.fault() {
@@ -172,7 +172,8 @@ pub(crate) fn find_head<R: Simulated + Eye>(
             "the head left its dots again and again, and the run was given up; step nearer (--distance)";
         return Err(Failure::failed("unfinished", message));
     }
-    let aligned = aligned(belief, &mut watch, &history).map_err(|e| not_found(&e, &watch, places.len()))?;
+    let aligned = aligned(belief, &mut watch.timing, &sightings, &history)
+        .map_err(|e| not_found(&e, &watch, places.len()))?;
     Ok(FoundHead {
         aligned,
         timing: Timing { unsure_s: Timing::FOUND_S, ..watch.timing },
@@ -182,9 +183,17 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     })
 }
 
-fn look<R: Eye>(rig: &mut R, watch: &mut SpotWatch, history: &History, head: &Alignment) {
+fn look<R: Eye>(
+    rig: &mut R,
+    watch: &mut SpotWatch,
+    history: &History,
+    head: &Alignment,
+    sightings: &mut Vec<Sighting>,
+) {
     while let Some(shot) = rig.shot() {
-        let _ = watch.see(&shot, history, head);
+        if let Sight::Seen(sighting) = watch.see(&shot, history, head) {
+            sightings.push(sighting);
+        }
         watch.bound(rig.longest_s());
         rig.expose(watch.exposure_s);
     }
@@ -192,14 +201,18 @@ fn look<R: Eye>(rig: &mut R, watch: &mut SpotWatch, history: &History, head: &Al
 
 fn aligned(
     belief: &AlignmentBelief,
-    watch: &mut SpotWatch,
+    timing: &mut Timing,
+    sightings: &[Sighting],
     history: &History,
 ) -> Result<Aligned, AlignError> {
-    let mut found = align(belief, &watch.spots(history))?;
+    let spots = |timing: &Timing| -> Vec<SeenSpot> {
+        sightings.iter().filter_map(|sighting| sighting.spot(history, timing)).collect()
+    };
+    let mut found = align(belief, &spots(timing))?;
     for _ in 1..ROUNDS {
-        watch.timing.late_s += found.alignment.late_s;
-        watch.timing.readout_s += found.alignment.readout_s;
-        found = align(belief, &watch.spots(history))?;
+        timing.late_s += found.alignment.late_s;
+        timing.readout_s += found.alignment.readout_s;
+        found = align(belief, &spots(timing))?;
     }
     Ok(found)
 }

@@ -59,7 +59,7 @@ pub(crate) trait Eye {
 }
 
 /// Longest that an image is waited for, ticks: the slowest cameras there are send one a second.
-const PATIENCE_TICKS: u32 = 3000;
+pub(crate) const PATIENCE_TICKS: u32 = 3000;
 
 /// A rig that rests in the dark meanwhile.
 impl<R: Simulated + Eye> Looks for R {
@@ -71,7 +71,7 @@ impl<R: Simulated + Eye> Looks for R {
             self.step();
             while let Some(shot) = self.shot() {
                 // those taken before it was told are exposed otherwise
-                if (shot.exposure_s - exposure_s).abs() <= 0.01 * exposure_s {
+                if shot.is_exposed(exposure_s) {
                     return Ok(shot);
                 }
             }

@@ -1,7 +1,7 @@
 //! Pages of markers taken off an image of a wall: what is about them is carried on smoothly where they are.
 
 use tracelight_aim::{Board, Camera, PlacedPage};
-use tracelight_stroke::{Affine, Point};
+use tracelight_stroke::Point;
 
 use super::wall::SeenWall;
 use crate::output::{Paper, Raster, printed_m};
@@ -33,7 +33,7 @@ pub(super) fn without_pages(pixels: &Raster, wall: &SeenWall) -> Raster {
 /// Where the corners of a page's paper are seen, px.
 fn corners(page: &PlacedPage, camera: &Camera) -> Option<[Point; 4]> {
     let board = Board::ALL.get(page.board)?;
-    let place = Affine::rotate(page.turn_rad).then_translate(page.middle.to_vec2());
+    let place = page.place();
     let ([left, right], [below, above]) = printed_m(board, &[Paper::A4, Paper::LETTER]);
     let corner = |x: f64, y: f64| camera.pixel(place * Point::new(x, y));
     Some([

@@ -101,7 +101,7 @@ impl Furnished {
     }
 
     /// A rig as it truly is, just powered up, that is believed to be this.
-    pub(crate) fn rig(&self, believed: &RigConfig, pose: HeadPose) -> SimulatedRig {
+    fn rig(&self, believed: &RigConfig, pose: HeadPose) -> SimulatedRig {
         let mut rig = believed.clone();
         rig.truth.model.geometry = self.geometry;
         SimulatedRig::new(&rig, pose, self.seed).standing(self.pose)

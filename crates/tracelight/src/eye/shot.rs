@@ -60,6 +60,11 @@ impl Shot {
         self
     }
 
+    /// Whether each row was exposed so long, s, to a hundredth of it.
+    pub(crate) fn is_exposed(&self, exposure_s: f64) -> bool {
+        (self.exposure_s - exposure_s).abs() <= 0.01 * exposure_s
+    }
+
     /// Whether it shows to the byte what another does: no two images of a camera that looks do, for their noise.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         match (&self.sent, &other.sent) {

@@ -1,6 +1,7 @@
 //! The laser's spot in shots, held against what the encoders said when they were taken.
 
 use tracelight_aim::{Alignment, Camera, SeenSpot};
+use tracelight_plant::RelayConfig;
 use tracelight_rig::{PanTilt, TICK_F64_S, Telemetry};
 use tracelight_stroke::Point;
 use tracelight_vision::{Spot, SpotLost, SpotWindow, find_spot};
@@ -33,9 +34,9 @@ pub(crate) enum Light {
 const SLACK_S: f64 = 0.005;
 
 impl History {
-    /// Of a laser whose relay takes so long, s.
-    pub(crate) const fn new(relay_s: f64) -> Self {
-        Self { switches_s: relay_s + SLACK_S, ticks: Vec::new(), first: 0 }
+    /// Of a laser with that relay.
+    pub(crate) const fn new(relay: &RelayConfig) -> Self {
+        Self { switches_s: relay.on_s.max(relay.off_s) + SLACK_S, ticks: Vec::new(), first: 0 }
     }
 
     /// One more tick; they come in order.
@@ -175,7 +176,6 @@ pub(crate) struct SpotWatch {
     pub(crate) exposure_s: f64,
     /// and how long once there is an image without the spot to hold them against.
     wished_s: f64,
-    pub(crate) sightings: Vec<Sighting>,
     /// Shots in which a spot was awaited and not found, and why the last one was not.
     pub(crate) lost: usize,
     pub(crate) last_lost: Option<SpotLost>,
@@ -202,7 +202,6 @@ impl SpotWatch {
             usual: None,
             exposure_s,
             wished_s: exposure_s,
-            sightings: Vec::new(),
             lost: 0,
             last_lost: None,
             painted: None,
@@ -240,10 +239,7 @@ impl SpotWatch {
             return Sight::Nothing;
         }
         match self.look(shot, when, awaited) {
-            Some(Ok(sighting)) => {
-                self.sightings.push(sighting);
-                Sight::Seen(sighting)
-            }
+            Some(Ok(sighting)) => Sight::Seen(sighting),
             Some(Err(why)) => {
                 if matches!(why, SpotLost::Dim { .. }) {
                     self.wished_s *= 1.2;
@@ -263,8 +259,7 @@ impl SpotWatch {
 
     /// The spot near where it is awaited; `None` if there is no image to hold that against, or it shows no wall there.
     fn look(&mut self, shot: &Shot, when: Stamp, awaited: Point) -> Option<Result<Sighting, SpotLost>> {
-        let same = |dark: &&Shot| (dark.exposure_s - when.exposure_s).abs() <= 0.01 * when.exposure_s;
-        let Some(dark) = self.dark.as_ref().filter(same) else {
+        let Some(dark) = self.dark.as_ref().filter(|dark| dark.is_exposed(when.exposure_s)) else {
             // it was lit again before another exposure was there in the dark
             self.exposure_s = self.dark.as_ref().map_or(self.exposure_s, |dark| dark.exposure_s);
             return None;
@@ -296,8 +291,7 @@ impl SpotWatch {
             painted.add(&lit, &dark, begins, &self.camera);
         }
         let at = self.camera.target(spot.at)?;
-        let [x, y] = self.camera.pixels_per_metre(at)?;
-        let deviation_m = spot.deviation_px.hypot(LEAST_DEVIATION_PX) / x.cross(y).abs().sqrt();
+        let deviation_m = spot.deviation_px.hypot(LEAST_DEVIATION_PX) / self.camera.scale(at)?;
         Some(Ok(Sighting { when, down: self.down(spot.at), at, deviation_m }))
     }
 
@@ -314,10 +308,5 @@ impl SpotWatch {
             at = Some(pixel);
         }
         at
-    }
-
-    /// The spots seen so far with where the encoders had the joints.
-    pub(crate) fn spots(&self, history: &History) -> Vec<SeenSpot> {
-        self.sightings.iter().filter_map(|sighting| sighting.spot(history, &self.timing)).collect()
     }
 }

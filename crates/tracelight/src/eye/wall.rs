@@ -19,6 +19,8 @@ pub(crate) struct SeenWall {
     /// Pages that are in sight, in the wall's frame: that of the first page when the camera was calibrated, or of the first in sight.
     pub(crate) pages: Vec<PlacedPage>,
     pub(crate) markers: usize,
+    /// How much larger than meant they were printed, as somebody measured.
+    pub(crate) print_scale: f64,
     /// How far markers are off from where they should be seen; `None` where none are in sight, and the camera is believed to stand where
     /// it stood.
     pub(crate) rms_px: Option<f64>,
@@ -64,19 +66,20 @@ pub(crate) fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<Se
         return Err(Failure::usage("camera-image", message));
     }
     let stood = known.and_then(|known| known.stood.as_ref());
+    let print_scale = known.map_or(1.0, |known| known.print_scale);
     if let (true, Some(stood)) = (tags.is_empty(), stood) {
         return Ok(SeenWall {
             camera: stood.camera,
             frame: stood.frame(),
             pages: Vec::new(),
             markers,
+            print_scale,
             rms_px: None,
             remarks: Vec::new(),
             pixels,
         });
     }
-    let scale = known.map_or(1.0, |known| known.print_scale);
-    let survey = survey(&belief, &Board::ALL.map(|board| board.scaled(scale)), &[tags])
+    let survey = survey(&belief, &Board::ALL.map(|board| board.scaled(print_scale)), &[tags])
         .map_err(|e| Failure::failed("camera-not-found", format!("the camera's image of the wall: {e}")))?;
     let found = survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
     let (frame, wall_from_first, stale) = held_against(&survey, &found, stood);
@@ -91,6 +94,7 @@ pub(crate) fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<Se
         frame,
         pages: survey.pages.iter().map(placed).collect(),
         markers,
+        print_scale,
         rms_px: Some(survey.rms_px),
         remarks: doubts(&survey).into_iter().chain(stale).collect(),
         pixels,
@@ -107,7 +111,7 @@ fn held_against(
     let Some(stood) = stood else { return (first, Affine::IDENTITY, None) };
     // by any page that hung there then
     let known = survey.pages.iter().find_map(|page| {
-        let first_from_page = Affine::rotate(page.turn_rad).then_translate(page.middle.to_vec2());
+        let first_from_page = page.place();
         Some(stood.wall_from(PageName::of(page))? * first_from_page.inverse())
     });
     let Some(wall_from_first) = known else {

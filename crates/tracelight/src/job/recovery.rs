@@ -12,7 +12,7 @@ use crate::camera_file::KnownCamera;
 use crate::eye::follow::{Blind, Followed, Follower, Suspicion};
 use crate::eye::head::{DotsRequest, find_head};
 use crate::eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
-use crate::eye::{Eye, Looks, Shot};
+use crate::eye::{Eye, Looks, PATIENCE_TICKS, Shot};
 use crate::failure::Failure;
 use crate::output::RecoveryFigures;
 
@@ -85,7 +85,7 @@ impl Watched<'_> {
         };
         self.figures.lost_images += self.follower.watch.lost;
         self.follower.look_from(wall.camera.camera);
-        self.wall = KnownCamera::standing(&wall.camera, &wall.pages, self.wall.print_scale);
+        self.wall = KnownCamera::standing(&wall);
         // an image without the spot, as it sees now
         self.rest(REST_TICKS);
         self.recovered(began_s, format!("the camera {moved}; it was found anew"), 0);
@@ -114,7 +114,7 @@ impl Watched<'_> {
         match suspicion {
             // what it sees not may be its own fault
             Suspicion::Lost(_) | Suspicion::Jolt(_) if had_markers => {
-                self.follower.cover();
+                self.follower.distrust(Blind::Covered);
                 self.tell_blindness();
                 Ok(None)
             }
@@ -170,7 +170,6 @@ impl Watched<'_> {
         let Alignment { geometry, pose, .. } = found.aligned.alignment;
         let moved = self.moved_mm(left, &geometry, &pose);
         self.driving.believe(geometry, pose);
-        let relay = self.driving.rig.model.relay;
         let head = Alignment { late_s: 0.0, readout_s: 0.0, ..found.aligned.alignment };
         let followed = Followed {
             camera,
@@ -178,16 +177,16 @@ impl Watched<'_> {
             timing: found.timing,
             exposure_s: found.exposure_s,
             belief: TrimBelief::found(found.aligned.rms_m),
-            count_rad: self.job.seen.followed.count_rad,
+            ..self.job.seen.followed.clone()
         };
         let marks = std::mem::take(&mut self.follower.marks);
         let painted = self.follower.watch.painted.take();
         self.figures.lost_images += self.follower.watch.lost;
-        self.follower = Follower::new(&followed, relay.on_s.max(relay.off_s), painted);
+        self.follower = Follower::new(&followed, painted);
         self.follower.marks = marks;
         self.home()?;
         if moved < STOOD_MM && *seen_off {
-            self.follower.distrust_stamps();
+            self.follower.distrust(Blind::Untimely);
         }
         let what = format!(
             "{why}: the head was found anew by {} dots, its spot had moved by {moved:.1} mm",
@@ -232,9 +231,6 @@ impl Watched<'_> {
         Err(Failure::failed("unfinished", message))
     }
 }
-
-/// Longest that an image is waited for, ticks.
-const PATIENCE_TICKS: u32 = 3000;
 
 impl Looks for Watched<'_> {
     fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure> {

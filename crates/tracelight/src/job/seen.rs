@@ -103,9 +103,9 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     let head =
         Alignment { geometry: driving.machine.geometry, pose: driving.pose, late_s: 0.0, readout_s: 0.0 };
     let count_rad = driving.rig.model.encoder.count_rad();
-    let followed = Followed { camera, head, timing, exposure_s, belief, count_rad };
-    let print_scale = args.eye.known()?.map_or(1.0, |known| known.print_scale);
-    let known = KnownCamera::standing(&wall.camera, &wall.pages, print_scale);
+    let followed =
+        Followed { camera, head, timing, exposure_s, belief, count_rad, relay: driving.rig.model.relay };
+    let known = KnownCamera::standing(&wall);
     let truth = truth(args, room.as_ref(), progress)?;
     let seen = Seen { room, figures, image: wall.pixels, wall: known, followed, truth };
     super::planned(sketch, placed, driving, Some(seen), (progress, stop))

@@ -14,7 +14,7 @@ use super::seen::Seen;
 use crate::camera_file::KnownCamera;
 use crate::cli::driving::Driving;
 use crate::eye::feed::TrimmedFeeder;
-use crate::eye::follow::{Blind, Follower, Suspicion};
+use crate::eye::follow::{Blind, Follower, Suspicion, strayed_rad};
 use crate::eye::painted::Painted;
 use crate::eye::trouble::TroubleAt;
 use crate::failure::Failure;
@@ -101,12 +101,11 @@ pub(super) fn run_watched(
     log: &mut LogWriter,
     (progress, stop): (&Progress, &Stop),
 ) -> Result<WatchedRun, Failure> {
-    let relay = job.driving.rig.model.relay;
     let painted = Painted::new(&job.seen.image, job.seen.followed.camera);
     let mut watched = Watched {
         job,
         room,
-        follower: Follower::new(&job.seen.followed, relay.on_s.max(relay.off_s), Some(painted)),
+        follower: Follower::new(&job.seen.followed, Some(painted)),
         driving: job.driving.clone(),
         wall: job.seen.wall.clone(),
         run: Run::default(),
@@ -231,7 +230,8 @@ impl Watched<'_> {
             if tick.telemetry.phase == Phase::Done {
                 return Ended::Done;
             }
-            let held = (tick.telemetry.phase == Phase::Holding && !was_held).then(|| held(&tick.telemetry));
+            let held = (tick.telemetry.phase == Phase::Holding && !was_held)
+                .then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
             was_held = tick.telemetry.phase == Phase::Holding;
             if let Some(suspicion) = suspicion.or(held).filter(|_| !self.job.open) {
                 return Ended::Suspect(suspicion);
@@ -344,10 +344,4 @@ const fn may_be_found_again(fault: Fault) -> bool {
             | Fault::EncoderDead
             | Fault::EstimateDiverged
     )
-}
-
-/// How far the joints of a head that is held are off.
-fn held(telemetry: &Telemetry) -> Suspicion {
-    let off = PanTilt::from_fn(|j| telemetry.setpoint[j].position_rad - telemetry.position_rad[j]);
-    Suspicion::Jolt(f64::from(off.pan.abs().max(off.tilt.abs())))
 }

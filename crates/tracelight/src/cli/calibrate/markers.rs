@@ -291,9 +291,9 @@ fn mm(m: Option<f64>) -> Option<f64> {
 fn wall_text(wall: &Wall, camera: &SurveyedCamera, output: &str) -> String {
     let [width, height] = camera.camera.lens.size_px.map(|n| n as f64);
     let scale = camera.camera.target(Point::new(width / 2.0, height / 2.0));
-    let scale = scale.and_then(|at| camera.camera.pixels_per_metre(at)).map_or_else(String::new, |[x, y]| {
-        format!("; {:.2} px/mm in the middle of the image", 1e-3 * x.cross(y).abs().sqrt())
-    });
+    let scale = scale
+        .and_then(|at| camera.camera.scale(at))
+        .map_or_else(String::new, |scale| format!("; {:.2} px/mm in the middle of the image", 1e-3 * scale));
     let off = |m: Option<f64>| m.map_or_else(|| "unknown".to_owned(), |m| format!("{:.2} mm", 1e3 * m));
     let (between, image) = (off(wall.between_m), off(wall.image_m));
     format!(

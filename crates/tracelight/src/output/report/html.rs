@@ -1,3 +1,5 @@
+use crate::output::{OutputError, Raster};
+
 /// A text made safe for element content and quoted attributes.
 pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -32,6 +34,17 @@ pub(crate) fn number(value: f64, digits: usize) -> String {
 /// A file inside the page.
 pub(crate) fn data_uri(media_type: &str, bytes: &[u8]) -> String {
     format!("data:{media_type};base64,{}", base64(bytes))
+}
+
+/// A picture inside the page, its longer side and quality at most so much. `of` is the file that is named if it can not be.
+pub(super) fn jpeg_uri(
+    raster: &Raster,
+    (longest_px, quality): (u32, u8),
+    of: &str,
+) -> Result<String, OutputError> {
+    let jpeg = raster.shrunk(longest_px).jpeg(quality);
+    let jpeg = jpeg.map_err(|e| OutputError::Encode { path: of.into(), reason: e.to_string() })?;
+    Ok(data_uri("image/jpeg", &jpeg))
 }
 
 /// Base 64 of RFC 4648 §4.

@@ -4,7 +4,7 @@ use tracelight_stroke::{Affine, Point};
 
 use super::axis::{Axis, round_step};
 use super::curve::tenth;
-use super::html::{data_uri, escaped, number};
+use super::html::{escaped, jpeg_uri, number};
 use crate::output::sample::{Sample, samples};
 use crate::output::{Job, OutputError};
 
@@ -27,9 +27,7 @@ pub(super) fn map(job: &Job<'_>) -> Result<String, OutputError> {
     drawn.follow(samples());
     let mut layers = picture(job, &place)?;
     let _ = write!(layers, r#"<path class="travel" d="{}"/>"#, drawn.travel);
-    for (bin, data) in drawn.bins.iter().enumerate().filter(|(_, data)| !data.is_empty()) {
-        let _ = write!(layers, r#"<path class="trace e{bin}" d="{data}"/>"#);
-    }
+    layers += &coloured(&drawn.bins);
     Ok(format!(
         include_str!("map.html"),
         width = place.width,
@@ -42,6 +40,17 @@ pub(super) fn map(job: &Job<'_>) -> Result<String, OutputError> {
         top = number(scale, 3),
         name = escaped(&job.title()),
     ))
+}
+
+/// Path data as paths, each in its error's colour.
+pub(super) fn coloured(bins: &[String; COLOURS]) -> String {
+    let drawn = bins.iter().enumerate().filter(|(_, data)| !data.is_empty());
+    drawn.map(|(bin, data)| format!(r#"<path class="trace e{bin}" d="{data}"/>"#)).collect()
+}
+
+/// The colour of an error, of those up to a scale.
+pub(super) fn bin_of(error_mm: f64, scale_mm: f64) -> usize {
+    ((error_mm / scale_mm * COLOURS as f64) as usize).min(COLOURS - 1)
 }
 
 /// From target metres to the map's units, y down.
@@ -128,7 +137,7 @@ impl Trace<'_> {
             push(&mut self.travel, 'L', at);
             return Pen { at, bin: None, worst_mm: 0.0 };
         }
-        let bin = ((worst_mm / self.scale * COLOURS as f64) as usize).min(COLOURS - 1);
+        let bin = bin_of(worst_mm, self.scale);
         if before.bin != Some(bin) {
             push(&mut self.bins[bin], 'M', before.at);
         }
@@ -146,15 +155,11 @@ pub(super) fn picture(job: &Job<'_>, place: &Place) -> Result<String, OutputErro
     const LONGEST_PX: u32 = 1100;
     const QUALITY: u8 = 82;
     let Some(picture) = job.picture else { return Ok(strokes(job, place)) };
-    let shrunk = picture.raster.shrunk(LONGEST_PX);
-    let jpeg = shrunk
-        .jpeg(QUALITY)
-        .map_err(|e| OutputError::Encode { path: job.picture_path.into(), reason: e.to_string() })?;
+    let jpeg = jpeg_uri(picture.raster, (LONGEST_PX, QUALITY), job.picture_path)?;
     let (w, h) = (f64::from(picture.raster.width()), f64::from(picture.raster.height()));
     let [a, b, c, d, e, f] = (place.map_from_target * picture.target_from_pixel).as_coeffs();
     Ok(format!(
-        r#"<image class="picture" width="{w}" height="{h}" preserveAspectRatio="none" transform="matrix({a} {b} {c} {d} {e} {f})" href="{}"/>"#,
-        data_uri("image/jpeg", &jpeg)
+        r#"<image class="picture" width="{w}" height="{h}" preserveAspectRatio="none" transform="matrix({a} {b} {c} {d} {e} {f})" href="{jpeg}"/>"#
     ))
 }
 

@@ -15,7 +15,7 @@ mod tables;
 use std::fmt::Write;
 use std::path::Path;
 
-use self::html::{data_uri, escaped};
+use self::html::{escaped, jpeg_uri};
 use super::sample::samples;
 use super::{Job, OutputError, Raster, Summary};
 
@@ -33,10 +33,7 @@ pub(super) fn write(
 fn page(job: &Job<'_>, figures: &Summary, painting: &Raster) -> Result<String, OutputError> {
     const PAINTING_PX: u32 = 1400;
     const QUALITY: u8 = 84;
-    let jpeg = painting
-        .shrunk(PAINTING_PX)
-        .jpeg(QUALITY)
-        .map_err(|e| OutputError::Encode { path: "report.html".into(), reason: e.to_string() })?;
+    let jpeg = jpeg_uri(painting, (PAINTING_PX, QUALITY), "report.html")?;
     let (class, verdict) = tables::verdict(job);
     Ok(format!(
         include_str!("page.html"),
@@ -47,7 +44,7 @@ fn page(job: &Job<'_>, figures: &Summary, painting: &Raster) -> Result<String, O
         subtitle = tables::subtitle(job),
         class = class,
         verdict = escaped(&verdict),
-        painting = data_uri("image/jpeg", &jpeg),
+        painting = jpeg,
         painting_width = painting.width(),
         painting_height = painting.height(),
         tiles = tables::tiles(job, figures),

@@ -1,8 +1,8 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
-use super::html::{data_uri, escaped, number};
-use super::map::{COLOURS, Place, bar, picture, swatches};
+use super::html::{escaped, jpeg_uri, number};
+use super::map::{COLOURS, Place, bar, bin_of, coloured, picture, swatches};
 use crate::output::{Job, OutputError, SeenLight};
 
 /// What a camera saw while the laser drew, as a section of its own; nothing where none looked.
@@ -25,23 +25,15 @@ fn painting(seen: &SeenLight) -> Result<String, OutputError> {
     const LONGEST_PX: u32 = 1400;
     const QUALITY: u8 = 84;
     let Some(raster) = &seen.painting else { return Ok(String::new()) };
-    let shown = raster.shrunk(LONGEST_PX);
-    let jpeg = shrunk_jpeg(&shown, QUALITY)?;
     Ok(format!(
         "<figure><figcaption><h3>The spot in the camera's images</h3><p class=\"legend\">one piece of light an image, {} of them, on the image in \
          which the figure was found</p></figcaption><img class=\"painting\" src=\"{}\" width=\"{}\" height=\"{}\" alt=\"The wall as the camera saw \
          it, with the spot of every image on it\"></figure>",
         seen.marks.len(),
-        data_uri("image/jpeg", &jpeg),
-        shown.width(),
-        shown.height(),
+        jpeg_uri(raster, (LONGEST_PX, QUALITY), "report.html")?,
+        raster.width(),
+        raster.height(),
     ))
-}
-
-fn shrunk_jpeg(raster: &crate::output::Raster, quality: u8) -> Result<Vec<u8>, OutputError> {
-    let encode =
-        |e: image::ImageError| OutputError::Encode { path: "report.html".into(), reason: e.to_string() };
-    raster.jpeg(quality).map_err(encode)
 }
 
 /// Where it was seen against where it was asked to be: arrows, many times as long as the errors, coloured by them.
@@ -59,13 +51,16 @@ fn marks(job: &Job<'_>, seen: &SeenLight) -> Result<String, OutputError> {
         if !(place.shows(from) && place.shows(to)) {
             continue;
         }
-        let bin = ((mark.off_mm() / scale * COLOURS as f64) as usize).min(COLOURS - 1);
-        let _ = write!(bins[bin], "M{:.1} {:.1}L{:.1} {:.1}", from.x, from.y, to.x, to.y);
+        let _ = write!(
+            bins[bin_of(mark.off_mm(), scale)],
+            "M{:.1} {:.1}L{:.1} {:.1}",
+            from.x,
+            from.y,
+            to.x,
+            to.y
+        );
     }
-    let mut layers = picture(job, &place)?;
-    for (bin, data) in bins.iter().enumerate().filter(|(_, data)| !data.is_empty()) {
-        let _ = write!(layers, r#"<path class="trace e{bin}" d="{data}"/>"#);
-    }
+    let layers = picture(job, &place)? + &coloured(&bins);
     Ok(format!(
         include_str!("seen.html"),
         width = place.width,
