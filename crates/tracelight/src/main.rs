@@ -13,6 +13,7 @@ mod output;
 mod picture;
 mod progress;
 mod quality;
+mod quiet;
 mod record;
 mod rigfile;
 mod schedule;

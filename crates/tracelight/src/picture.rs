@@ -1,11 +1,8 @@
 //! Bytes of a picture file to something that can be traced.
 
-use std::cell::Cell;
 use std::fmt::Display;
 use std::io::{Cursor, Read};
-use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::path::Path;
-use std::sync::Once;
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
 use tracelight_formats::{FormatError, Reading, Sheet, csv, dxf, json, svg};
@@ -14,6 +11,7 @@ use tracelight_vision::Grey;
 
 use crate::failure::Failure;
 use crate::output::Raster;
+use crate::quiet::unless_it_panics;
 
 /// Largest picture, pixels: 100 megapixels.
 const MOST_PIXELS: u64 = 100_000_000;
@@ -151,7 +149,8 @@ fn is_dxf(bytes: &[u8], head: &str) -> bool {
 }
 
 fn image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
-    decoded_quietly(|| decode_image(path, bytes))
+    // the decoder for JPEG panics on some broken files (zune-image's issue 362)
+    unless_it_panics(|| decode_image(path, bytes))
         .unwrap_or_else(|| Err(broken(path, "its decoder gave up on it")))
 }
 
@@ -196,30 +195,6 @@ fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
         image.apply_orientation(orientation);
     }
     pixels(path, image)
-}
-
-thread_local! {
-    /// Whether a decoder is at work on this thread.
-    static DECODING: Cell<bool> = const { Cell::new(false) };
-}
-
-/// What a decoder answers; `None` where it panics, which the one for JPEG does on some broken files (zune-image's issue
-/// 362). It works on nothing but the bytes it was given, so nothing is left half changed, and the user need not read where
-/// in it that was.
-fn decoded_quietly<T>(decode: impl FnOnce() -> T) -> Option<T> {
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let told = take_hook();
-        set_hook(Box::new(move |panic| {
-            if !DECODING.get() {
-                told(panic);
-            }
-        }));
-    });
-    DECODING.set(true);
-    let answer = catch_unwind(AssertUnwindSafe(decode));
-    DECODING.set(false);
-    answer.ok()
 }
 
 /// What a decoder says, cut off where it goes on to repeat the file.

@@ -270,7 +270,7 @@ fn explain_knows_every_code_it_lists() {
 #[test]
 fn completions_and_help_are_there() {
     assert!(stdout(&run(&["completions", "bash"])).contains("tracelight"));
-    for command in ["trace", "strokes", "plan", "calibrate", "rigs", "explain", "completions"] {
+    for command in ["trace", "strokes", "plan", "calibrate", "doctor", "rigs", "explain", "completions"] {
         assert!(run(&[command, "--help"]).status.success(), "{command}");
     }
 }

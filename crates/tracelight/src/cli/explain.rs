@@ -115,6 +115,14 @@ const MESSAGES: &[(&str, &str)] = &[
         "Images of one camera have different sizes, or another than the lens file's. A lens holds for one size: take all images with the same setting.",
     ),
     (
+        "no-camera",
+        "A camera cannot be used. The message says why: none is plugged in there, you may not use it, another program does, or it sends nothing that is understood. `tracelight doctor` lists what is there.",
+    ),
+    (
+        "no-image",
+        "A camera sends no image, or only broken ones. The message says which; look at its plug, cable and switch, and whether another program uses it.",
+    ),
+    (
         "camera-not-found",
         "The printed markers of an image tell no camera. The message says why: none in sight, pages that no image links, or pages that do not lie on one plane.",
     ),

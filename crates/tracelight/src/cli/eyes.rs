@@ -1,8 +1,11 @@
 //! Which camera looks.
 
+use std::str::FromStr;
+
 use clap::Args;
 
 use crate::camera_file::{self, KnownCamera};
+use crate::eye::Looks;
 use crate::eye::room::SimulatedEye;
 use crate::eye::source::Source;
 use crate::eye::trouble::TroubleAt;
@@ -11,10 +14,13 @@ use crate::failure::Failure;
 /// Which camera looks at the wall.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct EyeArgs {
-    /// Camera: sim:PICTURE is a simulated one in front of a simulated wall with PICTURE on it; http://… one on the net, that sends a stream
-    /// (MJPEG) or an image each time; or an image or a folder of them
+    /// Camera: sim:PICTURE is a simulated one in front of a simulated wall with PICTURE on it; /dev/video0 one that is plugged in (`tracelight
+    /// doctor` lists them); http://… one on the net, that sends a stream (MJPEG) or an image each time; or an image or a folder of them
     #[arg(long, value_name = "SOURCE")]
     pub(crate) camera: Option<String>,
+    /// Columns and rows of the images of a camera that is plugged in: those it was calibrated for, or else about 1280x720
+    #[arg(long, value_name = "WxH", requires = "camera")]
+    pub(crate) camera_size: Option<ImageSize>,
     /// Which camera is simulated
     #[arg(long, value_enum, default_value_t, requires = "camera")]
     pub(crate) sim_camera: SimulatedEye,
@@ -38,10 +44,35 @@ pub(crate) struct FollowArgs {
     pub(crate) sim_trouble: Vec<TroubleAt>,
 }
 
+/// Columns and rows of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ImageSize(pub(crate) [usize; 2]);
+
+impl FromStr for ImageSize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.parse().ok().filter(|n| (1..=100_000).contains(n));
+        let pair = text.trim_end_matches("px").split_once(['x', '×']);
+        pair.and_then(|(width, height)| Some(Self([number(width)?, number(height)?]))).ok_or_else(|| {
+            format!(
+                "{text} is no size of an image; write columns x rows, such as 1280x720, 1 to 100000 of either"
+            )
+        })
+    }
+}
+
 impl EyeArgs {
+    /// The camera, sending images; `None` of a simulated one.
+    pub(crate) fn open(&self) -> Result<Option<Box<dyn Looks>>, Failure> {
+        let known = || Ok::<_, Failure>(self.known()?.map(|known| known.lens.lens.size_px));
+        let size = self.camera_size.map_or_else(known, |size| Ok(Some(size.0)))?;
+        self.source()?.open(size)
+    }
+
     /// The camera.
     pub(crate) fn source(&self) -> Result<Source<'_>, Failure> {
-        let missing = "which camera? --camera sim is a simulated one, --camera http://… one on the net";
+        let missing = "which camera? --camera sim is a simulated one, --camera /dev/video0 one that is plugged in, --camera http://… one on the net";
         Source::of(self.camera.as_deref().ok_or_else(|| Failure::usage("usage", missing))?)
     }
 
@@ -55,5 +86,19 @@ impl EyeArgs {
     /// What is known of it.
     pub(crate) fn known(&self) -> Result<Option<KnownCamera>, Failure> {
         self.calibration.as_deref().map(camera_file::read_whole).transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_size_is_columns_and_rows() {
+        assert_eq!("1280x720".parse(), Ok(ImageSize([1280, 720])));
+        assert_eq!("320×240px".parse(), Ok(ImageSize([320, 240])));
+        for wrong in ["", "1280", "x", "0x5", "1280x", "12.5x3", "1x2x3", "99999999999999999999x1", "-1x5"] {
+            assert!(wrong.parse::<ImageSize>().unwrap_err().contains("such as 1280x720"), "{wrong}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 mod calibrate;
 pub(crate) mod choosing;
 mod completions;
+mod doctor;
 pub(crate) mod driving;
 mod explain;
 pub(crate) mod eyes;
@@ -45,6 +46,7 @@ enum Command {
     Plan(Box<plan::PlanArgs>),
     Calibrate(calibrate::CalibrateArgs),
     Lab(lab::LabArgs),
+    Doctor(doctor::DoctorArgs),
     Rigs(rigs::RigsArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
@@ -97,6 +99,7 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Plan(args) => (args.voice, plan::run(args, stop)),
         Command::Calibrate(args) => (args.voice(), calibrate::run(args, stop)),
         Command::Lab(args) => (args.voice(), lab::run(args, stop)),
+        Command::Doctor(args) => (args.voice, doctor::run(args, stop)),
         Command::Rigs(args) => (args.voice, rigs::run(args)),
         Command::Explain(args) => (args.voice, explain::run(args)),
         Command::Completions(args) => (args.voice, Ok(completions::run::<Cli>(args))),

@@ -79,7 +79,7 @@ pub(crate) fn see_figure(
 const COLUMNS: usize = 32;
 
 /// How many pixels there are of each brightness, as a line of blocks; their heights go by the root, or paper would be all one sees.
-fn histogram(grey: &Grey) -> String {
+pub(crate) fn histogram(grey: &Grey) -> String {
     const BLOCKS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let mut counts = [0_u32; COLUMNS];
     grey.levels().iter().for_each(|&level| counts[usize::from(level) * COLUMNS / 256] += 1);

@@ -3,7 +3,8 @@
 //! | part | what |
 //! |---|---|
 //! | [`Shot`] | an image, and when it was taken |
-//! | [`Looks`] | what takes a shot when told: [`source`] files and cameras on the net, [`room`] a simulated one |
+//! | [`about`] | what a camera says of itself |
+//! | [`Looks`] | what takes a shot when told: [`source`] files and cameras on the net, [`device`] one that is plugged in, [`room`] a simulated one |
 //! | [`Eye`] | what sends shots by itself while a rig runs |
 //! | [`room`] | a simulated head and camera in front of a simulated wall |
 //! | [`wall`] | the camera found from markers in sight |
@@ -16,10 +17,15 @@
 //! | [`feed`] | segments sent with what is slowly off taken off them |
 //! | [`trouble`] | what goes wrong in a simulated room |
 
+pub(crate) mod about;
+mod coding;
+#[cfg(target_os = "linux")]
+mod device;
 pub(crate) mod feed;
 pub(crate) mod figure;
 pub(crate) mod follow;
 pub(crate) mod head;
+mod latest;
 mod pages;
 pub(crate) mod painted;
 pub(crate) mod room;
@@ -34,6 +40,7 @@ use tracelight_rig::Command;
 use tracelight_sim::Simulated;
 
 use crate::failure::Failure;
+use about::About;
 
 pub(crate) use shot::{Shot, grey};
 
@@ -44,6 +51,16 @@ pub(crate) trait Looks {
 
     /// Longest that a row can be exposed, s; `None` of a camera that exposes as it likes.
     fn longest(&self) -> Option<f64>;
+
+    /// What it says of itself, and how its images came.
+    fn about(&self) -> About {
+        About::default()
+    }
+
+    /// Makes its images brighter at the same exposure from the next on, if it can.
+    fn brighten(&mut self) -> bool {
+        false
+    }
 }
 
 /// Something that takes images of the wall, by the clock of the rig's ticks.

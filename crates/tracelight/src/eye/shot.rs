@@ -3,6 +3,7 @@ use tracelight_sim::Taken;
 use tracelight_stroke::{Point, Vec2};
 use tracelight_vision::{Grey, SpotWindow};
 
+use super::coding::{Coding, Layout, with_tables};
 use crate::failure::Failure;
 use crate::output::Raster;
 use crate::picture::{self, Source};
@@ -24,6 +25,8 @@ enum Sent {
     Simulated(Box<Taken>),
     /// An image file, and where it came from.
     Encoded { from: String, bytes: Vec<u8> },
+    /// What a camera that is plugged in sent, and which.
+    Coded { from: String, layout: Layout, bytes: Vec<u8> },
     /// Pixels.
     #[cfg(test)]
     Pixels(Raster),
@@ -38,11 +41,23 @@ impl Shot {
         Self { sent: Sent::Encoded { from: from.to_owned(), bytes }, stamp_s, exposure_s: 0.0 }
     }
 
+    /// What a camera that is plugged in sent: when its first row began to be exposed, and how long each was (0 where nobody knows), s.
+    #[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "such cameras are read on Linux only"))]
+    pub(super) fn sent(from: &str, layout: Layout, bytes: Vec<u8>, [stamp_s, exposure_s]: [f64; 2]) -> Self {
+        Self { sent: Sent::Coded { from: from.to_owned(), layout, bytes }, stamp_s, exposure_s }
+    }
+
     /// Its pixels.
     pub(crate) fn pixels(&self) -> Result<Raster, Failure> {
         match &self.sent {
             Sent::Simulated(taken) => compressed(taken.image()),
             Sent::Encoded { from, bytes } => decoded(from, bytes),
+            Sent::Coded { from, layout, bytes } if layout.coding() == Coding::Jpeg => {
+                decoded(from, &with_tables(bytes))
+            }
+            Sent::Coded { from, layout, bytes } => layout
+                .pixels(bytes)
+                .ok_or_else(|| Failure::failed("camera-image", format!("{from} sent half an image"))),
             #[cfg(test)]
             Sent::Pixels(raster) => Ok(raster.clone()),
         }
@@ -69,7 +84,8 @@ impl Shot {
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         match (&self.sent, &other.sent) {
             (Sent::Simulated(one), Sent::Simulated(other)) => one.shows_same(other),
-            (Sent::Encoded { bytes: one, .. }, Sent::Encoded { bytes: other, .. }) => one == other,
+            (Sent::Encoded { bytes: one, .. }, Sent::Encoded { bytes: other, .. })
+            | (Sent::Coded { bytes: one, .. }, Sent::Coded { bytes: other, .. }) => one == other,
             _ => false,
         }
     }

@@ -1,6 +1,7 @@
 //! Where images come from that are not simulated: files, one after the other, and cameras on the net.
 
 use std::collections::VecDeque;
+use std::path::PathBuf;
 
 use super::stream::Stream;
 use super::{Looks, Shot};
@@ -15,6 +16,8 @@ pub(crate) enum Source<'a> {
     Simulated(Option<&'a str>),
     /// `http://…`: a stream of images, or one each time it is asked.
     Net(&'a str),
+    /// `/dev/…`: one that is plugged in.
+    Device(&'a str),
     /// A file or a folder of them.
     Files(&'a str),
 }
@@ -23,8 +26,7 @@ impl<'a> Source<'a> {
     /// What `--camera` says.
     pub(crate) fn of(text: &'a str) -> Result<Self, Failure> {
         let wrong = |what: &str| {
-            let known =
-                "sim:PICTURE (simulated), http://… (a camera on the net), or an image or a folder of them";
+            let known = "sim:PICTURE (simulated), /dev/video0 (one that is plugged in), http://… (one on the net), or an image or a folder of them";
             Failure::usage("usage", format!("--camera {text} {what}; give {known}"))
         };
         match text.strip_prefix("sim") {
@@ -39,6 +41,9 @@ impl<'a> Source<'a> {
         if text.starts_with("http://") {
             return Ok(Self::Net(text));
         }
+        if text.starts_with("/dev/") {
+            return Ok(Self::Device(text));
+        }
         if std::path::Path::new(text).exists() {
             Ok(Self::Files(text))
         } else {
@@ -46,14 +51,40 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Opens it, unless it is simulated.
-    pub(crate) fn open(self) -> Result<Option<Box<dyn Looks>>, Failure> {
+    /// Opens it, unless it is simulated; one that is plugged in sends images of so many columns and rows, if that is asked for.
+    pub(crate) fn open(self, size_px: Option<[usize; 2]>) -> Result<Option<Box<dyn Looks>>, Failure> {
         Ok(match self {
             Self::Simulated(_) => None,
+            Self::Device(path) => Some(plugged(path, size_px)?),
             Self::Net(url) => Some(Box::new(Stream::open(url)?)),
             Self::Files(path) => Some(Box::new(Files::open(path)?)),
         })
     }
+}
+
+/// Video devices that are plugged in; not all of them send images.
+pub(crate) fn devices() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir("/dev").into_iter().flatten().flatten();
+    let number = |path: &PathBuf| path.to_str()?.strip_prefix("/dev/video")?.parse::<u32>().ok();
+    let mut all: Vec<(u32, PathBuf)> =
+        entries.map(|entry| entry.path()).filter_map(|path| Some((number(&path)?, path))).collect();
+    all.sort();
+    all.into_iter().map(|(_, path)| path).collect()
+}
+
+/// A camera that is plugged in.
+#[cfg(target_os = "linux")]
+fn plugged(path: &str, size_px: Option<[usize; 2]>) -> Result<Box<dyn Looks>, Failure> {
+    Ok(Box::new(super::device::Plugged::open(path, size_px)?))
+}
+
+/// A camera that is plugged in.
+#[cfg(not(target_os = "linux"))]
+fn plugged(path: &str, _: Option<[usize; 2]>) -> Result<Box<dyn Looks>, Failure> {
+    let message = format!(
+        "the camera {path}: cameras that are plugged in are read on Linux only; have a program send its images by http://"
+    );
+    Err(Failure::failed("no-camera", message))
 }
 
 /// Images that were taken before, in the order of their names.
@@ -106,6 +137,7 @@ mod tests {
             Source::of(env!("CARGO_MANIFEST_DIR")).unwrap(),
             Source::Files(env!("CARGO_MANIFEST_DIR"))
         );
+        assert_eq!(Source::of("/dev/video7").unwrap(), Source::Device("/dev/video7"));
         for wrong in ["sim:", "simulated", "https://a/b", "/nowhere/at/all"] {
             assert!(Source::of(wrong).unwrap_err().message.contains("give sim:PICTURE"), "{wrong}");
         }

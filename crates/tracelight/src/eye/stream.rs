@@ -1,11 +1,12 @@
 //! Images over HTTP: MJPEG streams (`multipart/x-mixed-replace`, as IP cameras, mjpg-streamer and phones send) and single images.
 
 use std::io::{BufRead, BufReader, Read};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use ureq::Agent;
 
+use super::latest::Latest;
 use super::{Looks, Shot};
 use crate::failure::Failure;
 
@@ -22,35 +23,8 @@ pub(super) struct Stream {
     url: String,
     agent: Agent,
     /// What a stream brought last; `None` of a camera that sends one image each time it is asked.
-    latest: Option<Arc<Latest>>,
+    latest: Option<Arc<Latest<Vec<u8>>>>,
     opened: Instant,
-}
-
-/// What was read last, by a thread of its own: who comes late gets the newest and not what piled up.
-#[derive(Default)]
-struct Latest {
-    slot: Mutex<Slot>,
-    changed: Condvar,
-}
-
-#[derive(Default)]
-struct Slot {
-    /// How many images there were.
-    count: u64,
-    image: Vec<u8>,
-    /// Why no more will come.
-    ended: Option<String>,
-}
-
-impl Latest {
-    fn slot(&self) -> MutexGuard<'_, Slot> {
-        self.slot.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn change(&self, change: impl FnOnce(&mut Slot)) {
-        change(&mut self.slot());
-        self.changed.notify_all();
-    }
 }
 
 impl Stream {
@@ -96,17 +70,7 @@ impl Looks for Stream {
                 body.take(MOST_BYTES).read_to_end(&mut bytes).map_err(|e| self.failed(&e.to_string()))?;
                 bytes
             }
-            Some(latest) => {
-                let before = latest.slot().count;
-                let fresh = |slot: &mut Slot| slot.count == before && slot.ended.is_none();
-                let waited = latest.changed.wait_timeout_while(latest.slot(), PATIENCE, fresh);
-                let slot = &waited.unwrap_or_else(PoisonError::into_inner).0;
-                match &slot.ended {
-                    _ if slot.count > before => slot.image.clone(),
-                    Some(why) => return Err(self.failed(why)),
-                    None => return Err(self.failed(&format!("no image for {} s", PATIENCE.as_secs()))),
-                }
-            }
+            Some(latest) => latest.next(PATIENCE).map_err(|why| self.failed(&why))?,
         };
         Ok(Shot::encoded(&self.url, bytes, self.opened.elapsed().as_secs_f64()))
     }
@@ -125,14 +89,11 @@ fn boundary_of(kind: &str) -> Option<String> {
     (!boundary.is_empty()).then(|| boundary.to_owned())
 }
 
-fn read_all(mut body: impl BufRead, boundary: &str, latest: &Latest) {
+fn read_all(mut body: impl BufRead, boundary: &str, latest: &Latest<Vec<u8>>) {
     loop {
         match read_part(&mut body, boundary) {
-            Ok(image) => latest.change(|slot| {
-                slot.count += 1;
-                slot.image = image;
-            }),
-            Err(why) => return latest.change(|slot| slot.ended = Some(why)),
+            Ok(image) => latest.put(image),
+            Err(why) => return latest.end(why),
         }
     }
 }

@@ -172,19 +172,31 @@ fn seen(tag: &Tag) -> SeenTag {
 pub(crate) fn well_exposed(eye: &mut dyn Looks) -> Result<Raster, Failure> {
     let Some(longest_s) = eye.longest() else { return eye.take(0.0)?.pixels() };
     let mut exposure_s = 0.5 * longest_s;
+    // the longest that was too dark, and the shortest that was too bright
+    let (mut dark_s, mut bright_s) = (0.0, f64::INFINITY);
     for _ in 0..MOST_SHOTS {
         let pixels = eye.take(exposure_s)?.pixels()?;
         let brightest = brightest(&pixels);
-        if (WELL_EXPOSED[0]..=WELL_EXPOSED[1]).contains(&brightest)
-            || (brightest < WELL_EXPOSED[0] && exposure_s >= longest_s)
-        {
+        if (WELL_EXPOSED[0]..=WELL_EXPOSED[1]).contains(&brightest) {
             return Ok(pixels);
         }
+        let is_dark = brightest < WELL_EXPOSED[0];
+        if is_dark && exposure_s >= longest_s {
+            if eye.brighten() {
+                continue;
+            }
+            return Ok(pixels);
+        }
+        let bound = if is_dark { &mut dark_s } else { &mut bright_s };
+        *bound = exposure_s;
         let light = |level: u8| (f64::from(level) / 255.0).powf(2.2);
         let wanted = light(WELL_EXPOSED[0] / 2 + WELL_EXPOSED[1] / 2);
         // how much too bright one is that is full, it does not tell
-        let factor = if brightest > WELL_EXPOSED[1] { 0.5 } else { wanted / light(brightest.max(1)) };
-        exposure_s = (exposure_s * factor.clamp(0.1, 10.0)).min(longest_s);
+        let factor = if is_dark { wanted / light(brightest.max(1)) } else { 0.5 };
+        let guess_s = (exposure_s * factor.clamp(0.1, 10.0)).min(longest_s);
+        // not every camera's levels go by that power of the light
+        let is_new = dark_s < guess_s && guess_s < bright_s;
+        exposure_s = if is_new { guess_s } else { (dark_s * bright_s).sqrt() };
     }
     let message = format!(
         "of {MOST_SHOTS} images none is well exposed: is a lamp in sight that is switched, or flickers?"

@@ -51,7 +51,7 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     progress.stage("wall", 1);
     let room = furnished(args, &driving)?;
     let mut rig = room.as_ref().map(|room| room.watched(&driving.rig, driving.pose));
-    let mut camera = args.eye.source()?.open()?;
+    let mut camera = args.eye.open()?;
     let wanted = FigureRequest {
         eye: &args.eye,
         tracing: &args.tracing,

@@ -7,6 +7,7 @@ use tracelight_vision::Grey;
 
 use crate::camera_file::{self, CameraFile, PageName, Wall};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
+use crate::cli::eyes::ImageSize;
 use crate::cli::placing::{PlacementArgs, positive_length};
 use crate::cli::{Answer, Voice, write_file};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
@@ -28,9 +29,12 @@ pub(super) struct MarkersArgs {
     /// Image of the wall with the pages on it
     #[arg(required_unless_present = "camera", conflicts_with = "camera")]
     image: Option<String>,
-    /// Take the image with a camera: sim is a simulated one, http://… one on the net
+    /// Take the image with a camera: sim is a simulated one, /dev/video0 one that is plugged in, http://… one on the net
     #[arg(long, value_name = "SOURCE")]
     camera: Option<String>,
+    /// Columns and rows of the images of a camera that is plugged in: those of the lens that is given, or else about 1280x720
+    #[arg(long, value_name = "WxH", requires = "camera")]
+    camera_size: Option<ImageSize>,
     /// Which camera is simulated
     #[arg(long, value_enum, default_value_t, requires = "camera")]
     sim_camera: SimulatedEye,
@@ -82,7 +86,7 @@ pub(super) fn run(args: &MarkersArgs) -> Result<Answer, Failure> {
         (Some(path), _) => Seen::of(vec![found(path)?], args.bar.as_ref(), known.as_ref())?,
         (None, source) => {
             let name = source.as_deref().unwrap_or("sim");
-            Seen::of(vec![taken(args, name)?], args.bar.as_ref(), known.as_ref())?
+            Seen::of(vec![taken(args, name, known.as_ref())?], args.bar.as_ref(), known.as_ref())?
         }
     };
     let camera =
@@ -256,9 +260,10 @@ fn found(path: &str) -> Result<View, Failure> {
 }
 
 /// An image of a camera.
-fn taken(args: &MarkersArgs, name: &str) -> Result<View, Failure> {
+fn taken(args: &MarkersArgs, name: &str, known: Option<&LensBelief>) -> Result<View, Failure> {
     let source = eye::source::Source::of(name)?;
-    let pixels = match (source.open()?, source) {
+    let size = args.camera_size.map(|size| size.0).or_else(|| known.map(|known| known.lens.size_px));
+    let pixels = match (source.open(size)?, source) {
         (Some(mut camera), _) => well_exposed(&mut *camera)?,
         (None, eye::source::Source::Simulated(picture)) => {
             let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));

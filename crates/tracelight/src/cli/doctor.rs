@@ -1,0 +1,256 @@
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use serde_json::{Value, json};
+use tracelight_sim::RigConfig;
+
+use crate::cli::eyes::ImageSize;
+use crate::cli::{Answer, Voice};
+use crate::eye::about::About;
+use crate::eye::figure::histogram;
+use crate::eye::source::{Source, devices};
+use crate::eye::wall::{markers, well_exposed};
+use crate::eye::{Looks, grey};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::stop::Stop;
+
+/// Look at what is plugged in: cameras, what they can, how fast and how late their images come
+#[derive(Args, Debug)]
+#[command(after_help = "Examples: tracelight doctor\n          \
+                  tracelight doctor --camera /dev/video2 --camera-size 640x480\n          \
+                  tracelight doctor --camera http://192.168.1.20:8080/video\n\n\
+                  Each camera is used for about three seconds. What is changed of it, exposure and gain, is put back.")]
+pub(crate) struct DoctorArgs {
+    /// Look at this camera only: /dev/video0, or http://… one on the net. Without it, at all that are plugged in
+    #[arg(long, value_name = "SOURCE")]
+    camera: Option<String>,
+    /// Columns and rows of its images; without it about 1280x720
+    #[arg(long, value_name = "WxH")]
+    camera_size: Option<ImageSize>,
+    #[command(flatten)]
+    pub(crate) voice: Voice,
+}
+
+/// How long images are counted, s.
+const WATCHED_S: f64 = 2.0;
+/// Fewest images a second that follow a spot well: at a foot a second it goes 15 mm from one to the next.
+const FEW_HZ: f64 = 20.0;
+/// Latency beyond which something holds images back, s: webcams take 30 to 130 ms.
+const LATE_S: f64 = 0.2;
+/// Share of images that may be lost.
+const LOST_SHARE: f64 = 0.02;
+
+pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
+    let progress = Progress::new(args.voice.quiet);
+    let names: Vec<String> = match &args.camera {
+        Some(name) => vec![name.clone()],
+        None => devices().iter().map(|path| path.display().to_string()).collect(),
+    };
+    progress.stage("cameras", names.len() as u64);
+    let mut cameras = Vec::new();
+    for (step, name) in (0..).zip(names) {
+        stop.check()?;
+        progress.at(step);
+        let seen = look_at(&name, args.camera_size.map(|size| size.0));
+        cameras.push((name, seen));
+    }
+    let presets = RigConfig::presets();
+    let rigs: Vec<&str> = presets.iter().map(|rig| rig.name.as_str()).collect();
+    let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let version = env!("CARGO_PKG_VERSION");
+    let told = cameras.iter().map(|(name, seen)| camera_text(name, seen));
+    let none = "cameras:  none is plugged in; one on the net is looked at with --camera http://…";
+    let text = [
+        format!("program:  tracelight {version} for {os} on {arch}, {cores} cores"),
+        format!("rigs:     {}, simulated; none can be plugged in yet", rigs.join(", ")),
+    ]
+    .into_iter()
+    .chain(cameras.is_empty().then(|| none.to_owned()))
+    .chain(told)
+    .collect::<Vec<_>>()
+    .join("\n");
+    let all: Vec<Value> = cameras.iter().map(|(name, seen)| camera_json(name, seen)).collect();
+    let json = json!({
+        "version": version, "os": os, "arch": arch, "cores": cores, "rigs": rigs, "cameras": all,
+    });
+    let asked = args.camera.as_ref().and_then(|_| cameras.into_iter().next());
+    let failure = asked.and_then(|(_, seen)| seen.err());
+    match failure {
+        Some(failure) if failure.code == "usage" => Err(failure),
+        failure => Ok(Answer { failure, ..Answer::new(text, json.to_string()) }),
+    }
+}
+
+/// A camera that was looked at.
+struct SeenCamera {
+    about: About,
+    size_px: [usize; 2],
+    /// Images a second.
+    rate_hz: Option<f64>,
+    /// How many pixels there are of each brightness, as a line of blocks.
+    brightness: String,
+    /// Markers in its last image.
+    markers: usize,
+}
+
+fn look_at(name: &str, size_px: Option<[usize; 2]>) -> Result<SeenCamera, Failure> {
+    let camera = match Source::of(name)? {
+        source @ (Source::Device(_) | Source::Net(_)) => source.open(size_px)?,
+        _ => None,
+    };
+    let Some(mut camera) = camera else {
+        let message = format!("{name} is no camera that can be looked after; give /dev/video0 or http://…");
+        return Err(Failure::usage("usage", message));
+    };
+    let taken_hz = watched(&mut *camera)?;
+    let pixels = well_exposed(&mut *camera)?;
+    let about = camera.about();
+    let grey = grey(&pixels)?;
+    Ok(SeenCamera {
+        rate_hz: about.rhythm.rate_hz().or(taken_hz),
+        about,
+        size_px: [pixels.width() as usize, pixels.height() as usize],
+        brightness: histogram(&grey),
+        markers: markers(&grey).len(),
+    })
+}
+
+/// Takes images for some time; how many a second they are.
+fn watched(camera: &mut dyn Looks) -> Result<Option<f64>, Failure> {
+    let exposure_s = 0.5 * camera.longest().unwrap_or(0.0);
+    camera.take(exposure_s)?;
+    let begun = Instant::now();
+    let mut taken = 0;
+    while begun.elapsed() < Duration::from_secs_f64(WATCHED_S) {
+        camera.take(exposure_s)?;
+        taken += 1;
+    }
+    Ok((taken > 0).then(|| f64::from(taken) / begun.elapsed().as_secs_f64()))
+}
+
+impl SeenCamera {
+    /// What is not as it should be, and what to do.
+    fn remarks(&self) -> Vec<String> {
+        let rhythm = &self.about.rhythm;
+        let sent = f64::from((rhythm.images + rhythm.lost + rhythm.broken).max(1));
+        let mut remarks = Vec::new();
+        if let Some(rate) = self.rate_hz.filter(|rate| *rate < FEW_HZ) {
+            remarks.push(format!("{rate:.1} images a second follow a spot badly: a smaller --camera-size, or more light, may bring more"));
+        }
+        if f64::from(rhythm.lost) / sent > LOST_SHARE {
+            remarks.push("images are lost on their way: plug it in by itself, not through a hub, or take a smaller --camera-size".to_owned());
+        }
+        if rhythm.broken > 0 {
+            remarks.push("images come in part: is its cable bad?".to_owned());
+        }
+        if let Some([_, median, _]) = rhythm.latency_s().filter(|late| late[1] > LATE_S) {
+            remarks.push(format!(
+                "its images come {:.0} ms late: what is suddenly off is seen so much later",
+                1e3 * median
+            ));
+        }
+        if rhythm.images > 0 && !rhythm.is_stamped {
+            remarks.push("its driver does not stamp images with when they were taken: that is reckoned from when they come".to_owned());
+        }
+        if self.about.driver.is_some() && self.about.exposure_s.is_none() {
+            remarks.push(
+                "it exposes as it likes: a spot in its images is often clipped, and less exact".to_owned(),
+            );
+        }
+        if self.about.focuses {
+            remarks.push(
+                "it focuses by itself, which changes what its lens was calibrated for: switch that off"
+                    .to_owned(),
+            );
+        }
+        remarks
+    }
+}
+
+fn camera_text(name: &str, seen: &Result<SeenCamera, Failure>) -> String {
+    let seen = match seen {
+        Ok(seen) => seen,
+        Err(failure) => {
+            let why = failure.message.trim_start_matches(&format!("the camera {name}: "));
+            return format!("camera:   {name}: {why}");
+        }
+    };
+    let About { name: called, driver, modes, mode, exposure_s, gain, rhythm, .. } = &seen.about;
+    let called = called.as_ref().map_or_else(String::new, |called| format!(", {called}"));
+    let driver = driver.as_ref().map_or_else(String::new, |driver| format!(" ({driver})"));
+    let mut lines = vec![format!("camera:   {name}{called}{driver}")];
+    lines.extend(by_coding(modes).iter().map(|modes| format!("  can:      {modes}")));
+    let [width, height] = seen.size_px;
+    let sends = mode.clone().unwrap_or_else(|| format!("{width}x{height}"));
+    let rate = seen.rate_hz.map_or_else(String::new, |rate| format!(", {rate:.1} a second measured"));
+    let whole = match (rhythm.images, rhythm.lost, rhythm.broken) {
+        (0, _, _) => String::new(),
+        (images, lost, broken) => format!("; of {} {lost} lost, {broken} broken", images + lost + broken),
+    };
+    lines.push(format!("  sends:    {sends}{rate}{whole}"));
+    if let Some([least, median, most]) = rhythm.latency_s().map(|late| late.map(|late| 1e3 * late)) {
+        lines.push(format!(
+            "  latency:  {median:.0} ms from the beginning of an exposure until its image is here, median; {least:.0} to {most:.0} ms"
+        ));
+    }
+    if let Some([least, most]) = exposure_s.map(|exposure| exposure.map(|exposure| 1e3 * exposure)) {
+        let gain = gain
+            .map_or_else(String::new, |[least, now, most]| format!("; gain {least} to {most}, now {now}"));
+        lines.push(format!("  exposure: {least:.1} to {most:.1} ms, as it is told{gain}"));
+    }
+    let markers = match seen.markers {
+        0 => "no markers in sight".to_owned(),
+        1 => "1 marker in sight".to_owned(),
+        n => format!("{n} markers in sight"),
+    };
+    lines.push(format!("  image:    brightness, dark to light: {}; {markers}", seen.brightness));
+    lines.extend(seen.remarks().iter().map(|remark| format!("  note:     {remark}")));
+    lines.join("\n")
+}
+
+/// Modes, a line for each coding.
+fn by_coding(modes: &[String]) -> Vec<String> {
+    let parts = |mode: &str| mode.split_once(' ').map(|(coding, rest)| (coding.to_owned(), rest.to_owned()));
+    let mut lines: Vec<(String, String)> = Vec::new();
+    for (coding, rest) in modes.iter().filter_map(|mode| parts(mode)) {
+        match lines.last_mut().filter(|line| line.0 == coding) {
+            Some(line) => line.1.push_str(&format!(", {rest}")),
+            None => lines.push((coding, rest)),
+        }
+    }
+    lines.iter().map(|(coding, rest)| format!("{coding} {rest}")).collect()
+}
+
+fn camera_json(name: &str, seen: &Result<SeenCamera, Failure>) -> Value {
+    let seen = match seen {
+        Ok(seen) => seen,
+        Err(failure) => {
+            return json!({"source": name, "error": {"code": failure.code, "message": failure.message}});
+        }
+    };
+    let About { name: called, driver, modes, mode, exposure_s, gain, focuses, rhythm } = &seen.about;
+    let ms = |s: f64| 1e3 * s;
+    let latency = rhythm.latency_s().map(|late| late.map(ms));
+    json!({
+        "source": name,
+        "name": called,
+        "driver": driver,
+        "modes": modes,
+        "mode": mode,
+        "width_px": seen.size_px[0],
+        "height_px": seen.size_px[1],
+        "rate_hz": seen.rate_hz,
+        "images": rhythm.images,
+        "lost": rhythm.lost,
+        "broken": rhythm.broken,
+        "stamped": rhythm.is_stamped,
+        "latency_ms": latency.map(|[least, median, most]| json!({"least": least, "median": median, "most": most})),
+        "exposure_ms": exposure_s.map(|exposure| exposure.map(ms)),
+        "gain": gain.map(|[least, now, most]| json!({"least": least, "now": now, "most": most})),
+        "focuses": focuses,
+        "markers": seen.markers,
+        "remarks": seen.remarks(),
+    })
+}
