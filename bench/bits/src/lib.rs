@@ -38,7 +38,7 @@ pub fn run(ticks: u32) -> Outcome {
     let controller = Controller::new(report());
     let mut head = Head::default();
     let mut sensed = head.sensed();
-    let mut state = controller.start(&sensed);
+    let mut state = controller.start_homed(&sensed);
     let mut strokes = Strokes::default();
     let mut fnv = Fnv::default();
     let (mut lit_ticks, mut held_ticks, mut fault) = (0, 0, None);

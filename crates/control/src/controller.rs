@@ -1,4 +1,6 @@
-use tracelight_rig::{Actuation, Command, Fault, Joint, PanTilt, Phase, Segment, Sensed, Telemetry};
+use tracelight_rig::{
+    Actuation, Command, Fault, Joint, Measurement, PanTilt, Phase, Segment, Sensed, Telemetry,
+};
 
 use crate::creep::Pace;
 use crate::player::{Played, Player};
@@ -25,6 +27,8 @@ pub struct State {
     supervisor: Supervisor,
     way_back: Option<ReturnPath>,
     paces: PanTilt<Pace>,
+    /// What is added to what the encoders read, since the head was homed.
+    home: PanTilt<i32>,
 }
 
 impl State {
@@ -40,7 +44,14 @@ impl Controller {
         Self { config }
     }
 
-    /// State of a head at rest that reports `sensed`: dark, disarmed, held where it is.
+    /// State of a head at rest whose encoders are known to count from zero: homed, dark, disarmed, held where it is.
+    pub fn start_homed(&self, sensed: &Sensed) -> State {
+        let mut state = self.start(sensed);
+        state.supervisor.home();
+        state
+    }
+
+    /// State of a head at rest that was just powered up and reports `sensed`: unhomed, dark, disarmed, held where it is.
     pub fn start(&self, sensed: &Sensed) -> State {
         let servo = Servo::at_rest(&self.config, &sensed.encoders);
         State {
@@ -52,10 +63,11 @@ impl Controller {
             supervisor: Supervisor::default(),
             way_back: None,
             paces: PanTilt::default(),
+            home: PanTilt::default(),
         }
     }
 
-    /// Takes a command, or gives it back when the queue is full. A segment that does not join the last one is taken
+    /// Takes a command, or gives it back when the queue is full, or when a head is to be homed that is armed. A segment that does not join the last one is taken
     /// and latches a fault.
     pub fn accept(&self, state: &mut State, command: Command) -> Result<(), Command> {
         match command {
@@ -65,6 +77,8 @@ impl Controller {
                 state.player.hold();
             }
             Command::Point(ticks) => state.supervisor.point(u32::from(ticks)),
+            Command::Home(_) if state.supervisor.phase != Phase::Dark => return Err(command),
+            Command::Home(counts) => self.home(state, counts),
             Command::Abandon => {
                 state.supervisor.disarm();
                 state.player.abandon();
@@ -101,6 +115,21 @@ impl Controller {
         state.supervisor.arm();
     }
 
+    /// Reads encoders from these counts from now on; what was believed before is of other angles.
+    fn home(&self, state: &mut State, counts: PanTilt<i32>) {
+        for j in Joint::BOTH {
+            let measured = &mut state.sensed.encoders[j];
+            state.home[j] = state.home[j].wrapping_add(counts[j].wrapping_sub(measured.count));
+            measured.count = counts[j];
+        }
+        state.servo = Servo::at_rest(&self.config, &state.sensed.encoders);
+        state.watch.rearm(&state.sensed, state.servo.estimates());
+        state.player = Player::resting_at(state.servo.position_rad());
+        state.way_back = None;
+        state.paces = PanTilt::default();
+        state.supervisor.home();
+    }
+
     /// Whether both ends of a segment lie within the joints' limits.
     fn in_range(&self, segment: &Segment) -> bool {
         [0.0, f32::from(segment.ticks)].into_iter().all(|n| {
@@ -112,6 +141,7 @@ impl Controller {
     /// One tick. `sensed` is what the head reports at its start; the returned telemetry carries what to do until its
     /// end. The first tick after [`start`](Self::start) takes the same.
     pub fn tick(&self, state: &mut State, sensed: &Sensed) -> Telemetry {
+        let sensed = &from_home(sensed, &state.home);
         self.observe(state, sensed);
         let played = state.player.play();
         let estimates = *state.servo.estimates();
@@ -224,6 +254,15 @@ impl Controller {
         }
         reference
     }
+}
+
+/// What is sensed, with counts from where the head was homed.
+fn from_home(sensed: &Sensed, home: &PanTilt<i32>) -> Sensed {
+    let encoders = PanTilt::from_fn(|j| Measurement {
+        count: sensed.encoders[j].count.wrapping_add(home[j]),
+        ..sensed.encoders[j]
+    });
+    Sensed { encoders, ..*sensed }
 }
 
 fn run_clock(player: &mut Player, clock: Clock) {

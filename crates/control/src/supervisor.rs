@@ -10,6 +10,8 @@ const RETURN_RATE_RAD_S: f32 = 0.02;
 const RETURN_TICKS: u32 = 60;
 /// Ticks without a hold after which the next one is another.
 const CALM_TICKS: u32 = 500;
+/// Longest dot of a head of which nobody knows where it points, ticks: a second.
+const UNHOMED_DOT_TICKS: u32 = 1000;
 /// Distance in tolerances at which a head is lost on its way in the dark, too.
 const LOST_TOLERANCES: f32 = 10.0;
 
@@ -20,6 +22,8 @@ pub(crate) struct Supervisor {
     pub(crate) fault: Option<Fault>,
     /// A fault, the first or a later one, left nothing to control the motors by.
     pub(crate) blind: bool,
+    /// The encoders know where the joints are.
+    pub(crate) homed: bool,
     /// The fault stood in a telemetry: whoever arms can have seen it.
     told: bool,
     held_ticks: u32,
@@ -82,7 +86,7 @@ impl Supervisor {
     /// Allows light; a fault is forgotten.
     pub(crate) fn arm(&mut self) {
         if matches!(self.phase, Phase::Dark | Phase::Done | Phase::Faulted) {
-            *self = Self { phase: Phase::Armed, ..Self::default() };
+            *self = Self { phase: Phase::Armed, homed: self.homed, ..Self::default() };
         }
     }
 
@@ -93,9 +97,16 @@ impl Supervisor {
         }
     }
 
-    /// A dot is wanted from now on, where the plan's clock stands.
+    /// A dot is wanted from now on, where the plan's clock stands; of an unhomed head anywhere.
     pub(crate) fn point(&mut self, ticks: u32) {
-        self.pointing_ticks = if self.phase == Phase::Dark { ticks } else { 0 };
+        let most = if self.homed { u32::MAX } else { UNHOMED_DOT_TICKS };
+        self.pointing_ticks = if self.phase == Phase::Dark { ticks.min(most) } else { 0 };
+    }
+
+    /// The encoders know from now on where the joints are, which rest, without a job.
+    pub(crate) fn home(&mut self) {
+        self.homed = true;
+        self.pointing_ticks = 0;
     }
 
     /// One tick: moves between phases and says what the clock does.
@@ -149,9 +160,13 @@ impl Supervisor {
     /// Every reason against light in this tick. The gate is open only if there is none.
     pub(crate) fn darkness(&self, config: &Config, at: &Situation<'_>) -> DarknessSet {
         let mut reasons = DarknessSet::default();
-        let points = self.phase == Phase::Dark && self.pointing_ticks > 0 && at.begun && is_still(at);
+        let waits = self.phase == Phase::Dark && self.pointing_ticks > 0 && is_still(at);
+        let points = waits && (at.begun || !self.homed);
+        // no plan knows where that falls
+        let seeks = points && !self.homed;
         let planned = at.segment.is_some_and(|s| s.gate);
-        reasons.insert_if(!planned, Darkness::Planned);
+        reasons.insert_if(!planned && !seeks, Darkness::Planned);
+        reasons.insert_if(!self.homed && !seeks, Darkness::Unhomed);
         reasons.insert_if(self.phase == Phase::Dark && !points, Darkness::Disarmed);
         reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);
         reasons.insert_if(strayed(at), Darkness::SpotError);
@@ -160,7 +175,8 @@ impl Supervisor {
         let asked = at.setpoint.map(|s| s.position_rad);
         reasons.insert_if(out_of_range(config, asked), Darkness::OutOfBounds);
         let idle = matches!(self.phase, Phase::Armed | Phase::Done);
-        reasons.insert_if(idle || at.starved || at.segment.is_none(), Darkness::Stale);
+        let stale = idle || at.starved || at.segment.is_none();
+        reasons.insert_if(stale && !seeks, Darkness::Stale);
         reasons.insert_if(self.fault.is_some(), Darkness::Faulted);
         reasons
     }

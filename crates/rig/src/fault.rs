@@ -115,11 +115,13 @@ pub enum Darkness {
     /// An encoder has shown no edge where its joint should have passed several, or does not fit what its motor does, or a count
     /// was put back a moment ago: it may be dead or slip or lose counts, or somebody holds the head.
     Doubtful = 8,
+    /// The rig was powered up and not told since where its joints stand: nobody knows where light would fall.
+    Unhomed = 9,
 }
 
 impl Darkness {
     /// Every reason, in bit order.
-    pub const ALL: [Darkness; 9] = [
+    pub const ALL: [Darkness; 10] = [
         Darkness::Planned,
         Darkness::Disarmed,
         Darkness::FollowingError,
@@ -129,6 +131,7 @@ impl Darkness {
         Darkness::Stale,
         Darkness::Faulted,
         Darkness::Doubtful,
+        Darkness::Unhomed,
     ];
 
     /// Stable code for logs and `explain`.
@@ -143,6 +146,7 @@ impl Darkness {
             Darkness::Stale => "stale",
             Darkness::Faulted => "faulted",
             Darkness::Doubtful => "doubtful",
+            Darkness::Unhomed => "unhomed",
         }
     }
 }

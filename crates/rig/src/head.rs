@@ -3,7 +3,7 @@ use crate::{Command, PanTilt, Telemetry};
 /// What one encoder says at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measurement {
-    /// Signed count since homing; count 0 is centred on angle zero.
+    /// Signed count: of a head, since power-up; told by a rig that was homed, count 0 is centred on angle zero.
     pub count: i32,
     /// Age of the last edge, ticks before this measurement, in `[0, 1)`; `None` when no edge came in the last
     /// tick or where the hardware does not stamp edges.
@@ -45,7 +45,7 @@ pub trait Head {
 /// The host's seam: a controller with its head, behind a wire or in this process.
 ///
 /// Implementations MUST
-/// - start dark and disarmed;
+/// - start dark, disarmed and unhomed ([`Command::Home`]);
 /// - refuse a command they cannot hold by returning it, and lose none they accepted;
 /// - deliver one [`Telemetry`] for every tick, in order, none twice;
 /// - darken within one tick of the host's disappearance becoming known.

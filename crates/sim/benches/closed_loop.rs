@@ -62,7 +62,7 @@ fn control_tick(bencher: Bencher<'_, '_>) {
     let heard = |encoders| Sensed { encoders, laser_on: None };
     let sensed: Vec<_> = (0..1000).map(|_| heard(rig.step().telemetry.measured)).collect();
     bencher.counter(ItemsCount::new(sensed.len())).bench(|| {
-        let mut state = controller.start(&sensed[0]);
+        let mut state = controller.start_homed(&sensed[0]);
         controller.accept(&mut state, Command::Arm).ok();
         for &segment in plan.segments.iter().take(60) {
             controller.accept(&mut state, Command::Append(segment)).ok();

@@ -3,7 +3,9 @@ use std::ops::ControlFlow;
 use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_control::{Controller, Estimate, State};
 use tracelight_plant::Plant;
-use tracelight_rig::{Command, Fault, Head, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S, Telemetry};
+use tracelight_rig::{
+    Command, Fault, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S, Telemetry,
+};
 use tracelight_stroke::Point;
 use tracelight_trajectory::Plan;
 
@@ -93,7 +95,7 @@ impl SimulatedRig {
         let plant = Plant::new(&config.plant_config(), seed);
         let sensed = Sensed::default(); // homed: count 0 on both
         Self {
-            state: controller.start(&sensed),
+            state: controller.start_homed(&sensed),
             controller,
             plant,
             sensed,
@@ -108,6 +110,18 @@ impl SimulatedRig {
             stretch_per_tick: 0.0,
             patience_ticks: PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize,
         }
+    }
+
+    /// A rig that was just powered up where somebody left it: at rest within a count of these angles, rad, its encoders at zero there.
+    pub fn unhomed(config: &RigConfig, pose: HeadPose, angle_rad: PanTilt<f64>, seed: u64) -> Self {
+        let mut rig = Self::new(config, pose, seed);
+        rig.plant = Plant::resting_at(&config.plant_config(), angle_rad, seed);
+        let found = rig.plant.measured();
+        for j in Joint::BOTH {
+            rig.lines[j].off = found[j].count.wrapping_neg();
+        }
+        rig.state = rig.controller.start(&rig.sensed);
+        rig
     }
 
     /// The same, truly standing elsewhere than is believed.

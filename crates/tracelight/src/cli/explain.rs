@@ -119,6 +119,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "A camera cannot be used. The message says why: none is plugged in there, you may not use it, another program does, or it sends nothing that is understood. `tracelight doctor` lists what is there.",
     ),
     (
+        "not-a-camera",
+        "A video device sends no images: webcams often have a second one for what else they know, and processors have some for coding. `tracelight doctor` lists those that are cameras.",
+    ),
+    (
         "no-image",
         "A camera sends no image, or only broken ones. The message says which; look at its plug, cable and switch, and whether another program uses it.",
     ),
@@ -222,6 +226,9 @@ const fn what_to_do(reason: Darkness) -> &'static str {
         }
         Darkness::Doubtful => {
             "See whether somebody holds the head; if not, an encoder is going dead or loses counts: look at its cable and its disc."
+        }
+        Darkness::Unhomed => {
+            "Encoders count from where they are powered up. Tell the head where it stands: tracelight calibrate head --home."
         }
         Darkness::Faulted => "Look up the fault's own code.",
     }

@@ -63,6 +63,9 @@ pub(crate) const fn darkness_words(reason: Darkness) -> &'static str {
         Darkness::Doubtful => {
             "An encoder showed no edge where its joint should have passed several, does not fit what its motor does, or lost a count."
         }
+        Darkness::Unhomed => {
+            "The rig was powered up and not homed since: nobody knew where light would fall."
+        }
         Darkness::FollowingError => "A joint was further from its setpoint than the stroke allows.",
         Darkness::SpotError => "Both joints together put the spot too far from its stroke.",
         Darkness::Holding => "The plan waited until the head was back on its stroke.",

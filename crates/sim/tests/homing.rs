@@ -1,0 +1,109 @@
+//! A head that was just powered up: nobody knows where it points, and it stays dark but for dots until it was told.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+#[path = "shapes/mod.rs"]
+#[expect(dead_code, reason = "shared with other tests, which use the rest")]
+mod shapes;
+
+use shapes::{POSE, circle, plan_of};
+use tracelight_rig::{Command, Darkness, Joint, PanTilt, Phase, Rig};
+use tracelight_sim::{RigConfig, Simulated, SimulatedRig, Tick, run_segments};
+
+/// Poses that heads were left in, rad.
+fn poses() -> Vec<PanTilt<f64>> {
+    let mut dice = oorandom::Rand64::new(7);
+    let mut angle = |most: f64| most * (2.0 * dice.rand_float() - 1.0);
+    (0..20).map(|_| PanTilt::new(angle(0.9), angle(0.6))).collect()
+}
+
+fn unhomed(config: &RigConfig, angle_rad: PanTilt<f64>) -> SimulatedRig {
+    SimulatedRig::unhomed(config, POSE, angle_rad, 3)
+}
+
+fn ticks(rig: &mut SimulatedRig, count: u32) -> Vec<Tick> {
+    (0..count).map(|_| rig.step()).collect()
+}
+
+/// The counts that its encoders would read if they knew where zero is.
+fn true_counts(config: &RigConfig, at: &Tick) -> PanTilt<i32> {
+    let count_rad = config.truth.model.encoder.count_rad();
+    at.angle_rad.map(|angle| (angle / count_rad + 0.5).floor() as i32)
+}
+
+#[test]
+fn a_head_is_held_where_it_was_left_and_draws_nothing() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, circle(0.2));
+    for pose in poses() {
+        let mut rig = unhomed(&config, pose);
+        let first = ticks(&mut rig, 500);
+        let (begun, held) = (first[0].angle_rad, first[499].angle_rad);
+        assert!(Joint::BOTH.iter().all(|&j| (held[j] - begun[j]).abs() < 4e-3), "{pose:?} {held:?}");
+        assert_eq!(first[0].telemetry.measured.map(|m| m.count), PanTilt::new(0, 0));
+        // its encoders are at zero, wherever that is: a job could begin
+        let run = run_segments(&mut rig, &plan.segments, false, |_, _| std::ops::ControlFlow::Continue(()));
+        assert!(run.is_done(), "{pose:?} {:?}", run.fault());
+        assert!(run.ticks.iter().all(|t| !t.light && t.telemetry.darkness.contains(Darkness::Unhomed)));
+    }
+}
+
+#[test]
+fn a_dot_of_a_second_is_lit_wherever_it_rests_and_none_while_it_moves() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, circle(0.2));
+    let mut rig = unhomed(&config, PanTilt::new(-0.4, 0.3));
+    assert!(ticks(&mut rig, 300).iter().all(|t| !t.light));
+    rig.send(Command::Point(60_000)).unwrap();
+    let dot = ticks(&mut rig, 3000);
+    let lit: Vec<&Tick> = dot.iter().filter(|t| t.light).collect();
+    assert!((990..=1010).contains(&lit.len()), "{}", lit.len());
+    let (first, last) = (lit[0].spot.unwrap(), lit[lit.len() - 1].spot.unwrap());
+    assert!(first.distance(last) < 2e-3, "{first} {last}");
+    // armed it moves, and lights nothing
+    rig.send(Command::Arm).unwrap();
+    rig.send(Command::Point(1000)).unwrap();
+    let run = run_segments(&mut rig, &plan.segments, false, |rig, _| {
+        rig.send(Command::Point(1000)).unwrap();
+        std::ops::ControlFlow::Continue(())
+    });
+    assert!(run.is_done() && run.ticks.iter().all(|t| !t.light));
+}
+
+#[test]
+fn a_head_that_was_told_where_it_stands_draws_as_one_that_always_knew() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, circle(0.2));
+    for pose in poses() {
+        let mut rig = unhomed(&config, pose);
+        let last = *ticks(&mut rig, 300).last().unwrap();
+        rig.send(Command::Home(true_counts(&config, &last))).unwrap();
+        rig.send(Command::Abandon).unwrap();
+        let home = *ticks(&mut rig, 3000).last().unwrap();
+        assert!(Joint::BOTH.iter().all(|&j| home.angle_rad[j].abs() < 2e-3), "{pose:?} {:?}", home.angle_rad);
+        assert_eq!(home.telemetry.fault, None);
+        let run = run_segments(&mut rig, &plan.segments, false, |_, _| std::ops::ControlFlow::Continue(()));
+        assert!(run.is_done(), "{pose:?} {:?}", run.fault());
+        let lit: Vec<&Tick> = run.ticks.iter().filter(|t| t.light).collect();
+        let off = lit.iter().map(|t| t.spot.unwrap().distance(t.asked.unwrap())).fold(0.0, f64::max);
+        assert!(lit.len() > 1000 && off < 1.5e-3, "{pose:?} {off}");
+    }
+}
+
+#[test]
+fn an_armed_head_is_not_homed_and_counts_go_on_from_where_it_was() {
+    let config = RigConfig::report();
+    let mut rig = unhomed(&config, PanTilt::new(0.2, -0.1));
+    ticks(&mut rig, 100);
+    rig.send(Command::Arm).unwrap();
+    let home = Command::Home(PanTilt::new(100, -50));
+    assert_eq!(rig.send(home), Err(home));
+    rig.send(Command::Disarm).unwrap();
+    rig.send(home).unwrap();
+    let now = rig.step().telemetry;
+    assert_eq!((now.phase, now.measured.map(|m| m.count)), (Phase::Dark, PanTilt::new(100, -50)));
+    assert!(!now.darkness.contains(Darkness::Unhomed) && now.darkness.contains(Darkness::Disarmed));
+    // once more, by a count
+    rig.send(Command::Home(PanTilt::new(101, -50))).unwrap();
+    assert_eq!(rig.step().telemetry.measured.map(|m| m.count), PanTilt::new(101, -50));
+}
