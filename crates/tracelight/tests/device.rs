@@ -5,8 +5,9 @@
 mod support;
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
+use std::time::Duration;
 
 use image::RgbImage;
 use serde_json::Value;
@@ -55,11 +56,16 @@ impl Camera {
         Self { log: images.join("log"), images }
     }
 
-    fn run(&self, like: &str, arguments: &[&str]) -> Output {
+    /// The program, with the camera plugged in.
+    fn program(&self, like: &str) -> Command {
         let mut program = program();
         program.env("LD_PRELOAD", driver()).env("FAKE_CAMERA", like);
         program.env("FAKE_CAMERA_IMAGES", &self.images).env("FAKE_CAMERA_LOG", &self.log);
-        program.args(arguments).output().unwrap()
+        program
+    }
+
+    fn run(&self, like: &str, arguments: &[&str]) -> Output {
+        self.program(like).args(arguments).output().unwrap()
     }
 
     fn json(&self, like: &str, arguments: &[&str]) -> Value {
@@ -125,8 +131,8 @@ fn the_doctor_tells_what_a_camera_can_and_leaves_it_as_it_was() {
         assert_eq!(found["name"], "A camera that is not there");
         assert_eq!(found["driver"], "fake");
         assert_eq!(found["modes"], serde_json::json!(["MJPG 1280x720 30/s", "GREY 1280x720 30/s"]));
-        assert_eq!(found["mode"], "GREY 1280x720 30/s", "not compressed, where that is as fast");
-        assert_eq!(found["stamped"], true);
+        assert_eq!(found["mode"], "MJPG 1280x720 30/s", "in colour");
+        assert_eq!(found["stamped"], "beginning");
         assert_eq!(found["broken"], 0);
         assert_eq!(found["exposure_ms"], serde_json::json!([0.1, 500.0]));
         assert_eq!(found["gain"]["most"], 192);
@@ -140,6 +146,7 @@ fn the_doctor_tells_what_a_camera_can_and_leaves_it_as_it_was() {
         let mut last = std::collections::BTreeMap::new();
         last.extend(camera.settings());
         let is = |name: &str| last.get(name).copied();
+        assert_eq!(is("refused"), None, "{like} {last:?}");
         assert_eq!(is("Auto Exposure"), Some(3), "{like} {last:?}");
         assert_eq!(is("Exposure Time, Absolute"), Some(157), "{like} {last:?}");
         assert_eq!(is("Exposure, Dynamic Framerate"), Some(1), "{like} {last:?}");
@@ -147,7 +154,7 @@ fn the_doctor_tells_what_a_camera_can_and_leaves_it_as_it_was() {
     }
     let text =
         String::from_utf8(camera.run("auto=1,stamps=0", &["doctor", "--camera", CAMERA]).stdout).unwrap();
-    for part in ["exposes as it likes", "does not stamp", "focuses by itself", "80 markers in sight"] {
+    for part in ["exposes as it likes", "does not stamp images", "focuses by itself", "80 markers in sight"] {
         assert!(text.contains(part), "{part}: {text}");
     }
 }
@@ -158,7 +165,8 @@ fn a_camera_that_fails_is_told_of_by_why() {
     for (like, code, part) in [
         ("denied=1", "no-camera", "usermod"),
         ("busy=1", "no-camera", "another program"),
-        ("meta=1", "no-camera", "sends no images"),
+        ("narrow=1", "no-image", "bus has no room"),
+        ("meta=1", "not-a-camera", "sends no images"),
         ("width=640", "no-camera", "sends no images of 1280x720 px, but 640x720"),
         ("stall=5", "no-image", "no image for 5 s"),
         ("unplug=5", "no-image", "unplugged"),
@@ -195,6 +203,46 @@ fn every_coding_shows_the_same_wall() {
         let off = place.iter().zip(&places[0].1).map(|(is, other)| (is - other).abs()).fold(0.0, f64::max);
         assert!(off < 0.5e-3 && place.len() == 8, "{coding}: {off} {places:?}");
     }
+}
+
+#[test]
+fn an_image_without_an_end_is_one_where_none_ever_has_one() {
+    let camera = Camera::new("device-endless", &["MJPG"], "docs/camera/wall.jpg");
+    let file = camera.images.join("camera.toml").to_str().unwrap().to_owned();
+    let found = camera.json("endless=1", &["calibrate", "markers", "--camera", CAMERA, "-o", &file]);
+    assert_eq!(found["markers"], 80);
+}
+
+#[test]
+fn where_there_is_too_much_light_for_any_exposure_the_darkest_image_is_taken() {
+    let camera = Camera::new("device-bright", &["GREY"], "docs/camera/wall.jpg");
+    let found = camera.json("light=300", &["doctor", "--camera", CAMERA]);
+    assert_eq!(found["cameras"][0]["source"], CAMERA);
+    let least = camera.settings().into_iter().filter(|(name, _)| name.starts_with("Exposure Time"));
+    assert_eq!(least.map(|(_, value)| value).min(), Some(1));
+}
+
+#[test]
+fn a_stop_in_the_middle_leaves_the_camera_as_it_was() {
+    let camera = Camera::new("device-stop", &["MJPG"], "docs/camera/wall.jpg");
+    let mut running = camera.program("rate=30");
+    running.args(["doctor", "--camera", CAMERA]).stderr(Stdio::null()).stdout(Stdio::null());
+    let mut running = running.spawn().unwrap();
+    // once it was told something
+    while !camera.log.exists() || camera.settings().len() < 3 {
+        assert!(running.try_wait().unwrap().is_none(), "ended by itself");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let killed = Command::new("kill").args(["-INT", &running.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    assert_eq!(running.wait().unwrap().code(), Some(130));
+    let settings = camera.settings();
+    let last = |name: &str| settings.iter().rfind(|(is, _)| is == name).map(|(_, value)| *value);
+    assert_eq!(
+        (last("Auto Exposure"), last("Exposure Time, Absolute")),
+        (Some(3), Some(157)),
+        "{settings:?}"
+    );
 }
 
 #[test]

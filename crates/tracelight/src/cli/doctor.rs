@@ -6,7 +6,7 @@ use tracelight_sim::RigConfig;
 
 use crate::cli::eyes::ImageSize;
 use crate::cli::{Answer, Voice};
-use crate::eye::about::About;
+use crate::eye::about::{About, Stamps};
 use crate::eye::figure::histogram;
 use crate::eye::source::{Source, devices};
 use crate::eye::wall::{markers, well_exposed};
@@ -38,7 +38,7 @@ const WATCHED_S: f64 = 2.0;
 const FEW_HZ: f64 = 20.0;
 /// Latency beyond which something holds images back, s: webcams take 30 to 130 ms.
 const LATE_S: f64 = 0.2;
-/// Share of images that may be lost.
+/// Share of images that may be lost or broken.
 const LOST_SHARE: f64 = 0.02;
 
 pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
@@ -52,16 +52,26 @@ pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
     for (step, name) in (0..).zip(names) {
         stop.check()?;
         progress.at(step);
-        let seen = look_at(&name, args.camera_size.map(|size| size.0));
-        cameras.push((name, seen));
+        let seen = look_at(&name, args.camera_size.map(|size| size.0), stop);
+        // a second device of a camera is no news
+        let is_other = seen.as_ref().is_err_and(|failure| failure.code == "not-a-camera");
+        if args.camera.is_some() || !is_other {
+            cameras.push((name, seen));
+        }
     }
+    stop.check()?;
     let presets = RigConfig::presets();
     let rigs: Vec<&str> = presets.iter().map(|rig| rig.name.as_str()).collect();
     let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let version = env!("CARGO_PKG_VERSION");
     let told = cameras.iter().map(|(name, seen)| camera_text(name, seen));
-    let none = "cameras:  none is plugged in; one on the net is looked at with --camera http://…";
+    let none = match os {
+        "linux" => "cameras:  none is plugged in; one on the net is looked at with --camera http://…",
+        _ => {
+            "cameras:  those that are plugged in are read on Linux only; one on the net is looked at with --camera http://…"
+        }
+    };
     let text = [
         format!("program:  tracelight {version} for {os} on {arch}, {cores} cores"),
         format!("rigs:     {}, simulated; none can be plugged in yet", rigs.join(", ")),
@@ -95,17 +105,17 @@ struct SeenCamera {
     markers: usize,
 }
 
-fn look_at(name: &str, size_px: Option<[usize; 2]>) -> Result<SeenCamera, Failure> {
+fn look_at(name: &str, size_px: Option<[usize; 2]>, stop: &Stop) -> Result<SeenCamera, Failure> {
     let camera = match Source::of(name)? {
         source @ (Source::Device(_) | Source::Net(_)) => source.open(size_px)?,
         _ => None,
     };
     let Some(mut camera) = camera else {
-        let message = format!("{name} is no camera that can be looked after; give /dev/video0 or http://…");
+        let message = format!("{name} is no camera that can be looked at; give /dev/video0 or http://…");
         return Err(Failure::usage("usage", message));
     };
-    let taken_hz = watched(&mut *camera)?;
-    let pixels = well_exposed(&mut *camera)?;
+    let taken_hz = watched(&mut *camera, stop)?;
+    let pixels = well_exposed(&mut *camera, stop)?;
     let about = camera.about();
     let grey = grey(&pixels)?;
     Ok(SeenCamera {
@@ -118,12 +128,13 @@ fn look_at(name: &str, size_px: Option<[usize; 2]>) -> Result<SeenCamera, Failur
 }
 
 /// Takes images for some time; how many a second they are.
-fn watched(camera: &mut dyn Looks) -> Result<Option<f64>, Failure> {
+fn watched(camera: &mut dyn Looks, stop: &Stop) -> Result<Option<f64>, Failure> {
     let exposure_s = 0.5 * camera.longest().unwrap_or(0.0);
     camera.take(exposure_s)?;
     let begun = Instant::now();
     let mut taken = 0;
     while begun.elapsed() < Duration::from_secs_f64(WATCHED_S) {
+        stop.check()?;
         camera.take(exposure_s)?;
         taken += 1;
     }
@@ -142,17 +153,23 @@ impl SeenCamera {
         if f64::from(rhythm.lost) / sent > LOST_SHARE {
             remarks.push("images are lost on their way: plug it in by itself, not through a hub, or take a smaller --camera-size".to_owned());
         }
-        if rhythm.broken > 0 {
+        if f64::from(rhythm.broken) / sent > LOST_SHARE {
             remarks.push("images come in part: is its cable bad?".to_owned());
         }
         if let Some([_, median, _]) = rhythm.latency_s().filter(|late| late[1] > LATE_S) {
             remarks.push(format!(
-                "its images come {:.0} ms late: what is suddenly off is seen so much later",
+                "its images take {:.0} ms to come: what is suddenly off is seen so much later",
                 1e3 * median
             ));
         }
-        if rhythm.images > 0 && !rhythm.is_stamped {
-            remarks.push("its driver does not stamp images with when they were taken: that is reckoned from when they come".to_owned());
+        match rhythm.stamps {
+            Stamps::None if rhythm.images > 0 => remarks.push(
+                "its driver does not stamp images: when they were taken is reckoned from when they are there".to_owned(),
+            ),
+            Stamps::End => remarks.push(
+                "its driver stamps images when all of them is there: when they were taken is reckoned from that".to_owned(),
+            ),
+            Stamps::None | Stamps::Beginning => {}
         }
         if self.about.driver.is_some() && self.about.exposure_s.is_none() {
             remarks.push(
@@ -161,7 +178,7 @@ impl SeenCamera {
         }
         if self.about.focuses {
             remarks.push(
-                "it focuses by itself, which changes what its lens was calibrated for: switch that off"
+                "it focuses by itself, which changes what its lens was calibrated for: switch that off (v4l2-ctl -c focus_automatic_continuous=0)"
                     .to_owned(),
             );
         }
@@ -173,7 +190,8 @@ fn camera_text(name: &str, seen: &Result<SeenCamera, Failure>) -> String {
     let seen = match seen {
         Ok(seen) => seen,
         Err(failure) => {
-            let why = failure.message.trim_start_matches(&format!("the camera {name}: "));
+            let [plugged, net] = ["the camera", "the camera at"].map(|begin| format!("{begin} {name}: "));
+            let why = failure.message.trim_start_matches(&plugged).trim_start_matches(&net);
             return format!("camera:   {name}: {why}");
         }
     };
@@ -187,12 +205,12 @@ fn camera_text(name: &str, seen: &Result<SeenCamera, Failure>) -> String {
     let rate = seen.rate_hz.map_or_else(String::new, |rate| format!(", {rate:.1} a second measured"));
     let whole = match (rhythm.images, rhythm.lost, rhythm.broken) {
         (0, _, _) => String::new(),
-        (images, lost, broken) => format!("; of {} {lost} lost, {broken} broken", images + lost + broken),
+        (images, lost, broken) => format!("; {images} images, {lost} lost, {broken} broken"),
     };
     lines.push(format!("  sends:    {sends}{rate}{whole}"));
     if let Some([least, median, most]) = rhythm.latency_s().map(|late| late.map(|late| 1e3 * late)) {
         lines.push(format!(
-            "  latency:  {median:.0} ms from the beginning of an exposure until its image is here, median; {least:.0} to {most:.0} ms"
+            "  latency:  {median:.0} ms from when an image is stamped until it is here, median; {least:.0} to {most:.0} ms"
         ));
     }
     if let Some([least, most]) = exposure_s.map(|exposure| exposure.map(|exposure| 1e3 * exposure)) {
@@ -245,7 +263,11 @@ fn camera_json(name: &str, seen: &Result<SeenCamera, Failure>) -> Value {
         "images": rhythm.images,
         "lost": rhythm.lost,
         "broken": rhythm.broken,
-        "stamped": rhythm.is_stamped,
+        "stamped": match rhythm.stamps {
+            Stamps::Beginning => Some("beginning"),
+            Stamps::End => Some("end"),
+            Stamps::None => None,
+        },
         "latency_ms": latency.map(|[least, median, most]| json!({"least": least, "median": median, "most": most})),
         "exposure_ms": exposure_s.map(|exposure| exposure.map(ms)),
         "gain": gain.map(|[least, now, most]| json!({"least": least, "now": now, "most": most})),

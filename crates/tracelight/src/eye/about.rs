@@ -28,12 +28,23 @@ pub(crate) struct Rhythm {
     pub(crate) lost: u32,
     /// Those that came in part.
     pub(crate) broken: u32,
-    /// When the first and the last began to be exposed, s.
+    /// Stamps of the first and the last, s.
     pub(crate) between_s: Option<[f64; 2]>,
-    /// From the beginning of an exposure to its image's arrival, s.
+    /// From an image's stamp until all of it was there, s.
     pub(crate) late_s: Vec<f64>,
-    /// Whether images are stamped with when they began to be exposed; else that is reckoned from when they came.
-    pub(crate) is_stamped: bool,
+    pub(crate) stamps: Stamps,
+}
+
+/// What images are stamped with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Stamps {
+    /// When they began to arrive; some drivers mean, to be exposed.
+    Beginning,
+    /// When all of them had arrived.
+    End,
+    /// Nothing: when they began to arrive is reckoned from when they were there.
+    #[default]
+    None,
 }
 
 impl Rhythm {
@@ -44,12 +55,12 @@ impl Rhythm {
         (last > first && sent > 0.0).then(|| sent / (last - first))
     }
 
-    /// Least, median and greatest latency, s; `None` where it is not known.
+    /// Least, median and greatest time from an image's stamp until it is there, s; `None` where images have none.
     pub(crate) fn latency_s(&self) -> Option<[f64; 3]> {
         let mut late_s = self.late_s.clone();
         late_s.sort_by(f64::total_cmp);
         let (first, last) = (late_s.first()?, late_s.last()?);
-        self.is_stamped.then_some([*first, late_s[late_s.len() / 2], *last])
+        (self.stamps == Stamps::Beginning).then_some([*first, late_s[late_s.len() / 2], *last])
     }
 }
 
@@ -65,11 +76,11 @@ mod tests {
             broken: 1,
             between_s: Some([10.0, 11.0]),
             late_s: vec![0.07, 0.05, 0.06],
-            is_stamped: true,
+            stamps: Stamps::Beginning,
         };
         assert_eq!(rhythm.rate_hz(), Some(30.0));
         assert_eq!(rhythm.latency_s(), Some([0.05, 0.06, 0.07]));
-        assert_eq!(Rhythm { is_stamped: false, ..rhythm }.latency_s(), None);
+        assert_eq!(Rhythm { stamps: Stamps::None, ..rhythm }.latency_s(), None);
         let none = Rhythm::default();
         assert_eq!((none.rate_hz(), none.latency_s()), (None, None));
     }

@@ -90,12 +90,14 @@ impl Layout {
     /// Whether bytes may be a whole image: a camera whose cable is bad sends half ones.
     pub(crate) fn is_whole(&self, bytes: &[u8]) -> bool {
         match self.coding {
-            // padding may follow its end
-            Coding::Jpeg => {
-                bytes.starts_with(&[0xff, 0xd8]) && bytes.windows(2).any(|two| two == [0xff, 0xd9])
-            }
+            Coding::Jpeg => begins(bytes) && ends(bytes),
             _ => bytes.len() >= self.bytes(),
         }
+    }
+
+    /// Whether it may be a JPEG file but for its end, which some cameras never send.
+    pub(crate) fn is_endless(&self, bytes: &[u8]) -> bool {
+        self.coding == Coding::Jpeg && begins(bytes) && !ends(bytes)
     }
 
     /// Fewest bytes of an image.
@@ -160,20 +162,46 @@ impl Layout {
     }
 }
 
-/// A JPEG file that says with which tables it was compressed. Many webcams leave them out, and mean the usual ones (ITU-T T.81, annex K.3), as
-/// the JPEG of AVI files does; that it is such a one, a segment tells the decoder.
-pub(crate) fn with_tables(bytes: &[u8]) -> Cow<'_, [u8]> {
+/// Whether bytes begin as a JPEG file does.
+fn begins(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0xff, 0xd8]) && last(bytes, 0xda).is_some()
+}
+
+/// Whether a JPEG file has an end, which padding may follow; one of a thumbnail in it, before its own lines, is another's.
+fn ends(bytes: &[u8]) -> bool {
+    last(bytes, 0xd9) > last(bytes, 0xda)
+}
+
+fn last(bytes: &[u8], mark: u8) -> Option<usize> {
+    bytes.windows(2).rposition(|two| two == [0xff, mark])
+}
+
+/// What a camera sends as a JPEG file that every decoder reads. Many leave out the tables by which it was compressed, and mean the usual ones (ITU-T T.81,
+/// annex K.3), as the JPEG of AVI files does: that it is such a one, a segment tells the decoder. Some leave out the end.
+pub(crate) fn as_file(bytes: &[u8]) -> Cow<'_, [u8]> {
     const AS_IN_AVI: [u8; 18] = [0xff, 0xe0, 0, 16, b'A', b'V', b'I', b'1', 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+    let tables: &[u8] = if has_tables(bytes) { &[] } else { &AS_IN_AVI };
+    let end: &[u8] = if ends(bytes) { &[] } else { &[0xff, 0xd9] };
+    match bytes {
+        [a, b, rest @ ..] if !tables.is_empty() || !end.is_empty() => {
+            Cow::Owned([&[*a, *b], tables, rest, end].concat())
+        }
+        _ => Cow::Borrowed(bytes),
+    }
+}
+
+/// Whether a JPEG file says by which tables it was compressed, or is none.
+fn has_tables(bytes: &[u8]) -> bool {
     let mut at = 2;
     // segments: a mark of two bytes, a length of two that counts itself
     while let Some([0xff, mark, high, low]) = bytes.get(at..at + 4) {
         match mark {
-            0xc4 => return Cow::Borrowed(bytes),
-            0xda => return Cow::Owned([&bytes[..2], &AS_IN_AVI, &bytes[2..]].concat()),
+            0xc4 => return true,
+            0xda => return false,
             _ => at += 2 + usize::from(u16::from_be_bytes([*high, *low])),
         }
     }
-    Cow::Borrowed(bytes)
+    true
 }
 
 #[cfg(test)]
@@ -232,9 +260,15 @@ mod tests {
             }
         }
         let jpeg = layout(b"MJPG", [4, 4], 0);
-        assert!(jpeg.is_whole(&[0xff, 0xd8, 1, 0xff, 0xd9, 0, 0]));
-        for cut in [&[][..], &[0xff, 0xd8, 1, 2], &[1, 0xff, 0xd9]] {
-            assert!(!jpeg.is_whole(cut), "{cut:?}");
+        assert!(jpeg.is_whole(&[0xff, 0xd8, 0xff, 0xda, 1, 0xff, 0xd9, 0, 0]));
+        // the second has the end of a thumbnail only
+        for (cut, endless) in [
+            (&[0xff, 0xd8, 1, 2][..], false),
+            (&[0xff, 0xd8, 0xff, 0xd9, 0xff, 0xda, 1], true),
+            (&[1, 0xff, 0xd9], false),
+            (&[], false),
+        ] {
+            assert!(!jpeg.is_whole(cut) && jpeg.is_endless(cut) == endless, "{cut:?}");
         }
         assert_eq!(Coding::named(*b"H264"), None);
         assert_eq!(Layout::new(Coding::Yuyv, [3, 2], 0, false), None);

@@ -50,7 +50,7 @@ pub(crate) fn see_figure(
     loop {
         stop.check()?;
         // why the last image was refused says more than that there is no other
-        let pixels = well_exposed(eye).map_err(|none| last.take().unwrap_or(none))?;
+        let pixels = well_exposed(eye, stop).map_err(|none| last.take().unwrap_or(none))?;
         let histogram = histogram(&grey(&pixels)?);
         let seen = see_wall(pixels, known.as_ref()).and_then(|wall| figure(wall, request));
         let why = match seen {

@@ -3,7 +3,7 @@ use tracelight_sim::Taken;
 use tracelight_stroke::{Point, Vec2};
 use tracelight_vision::{Grey, SpotWindow};
 
-use super::coding::{Coding, Layout, with_tables};
+use super::coding::{Coding, Layout, as_file};
 use crate::failure::Failure;
 use crate::output::Raster;
 use crate::picture::{self, Source};
@@ -53,7 +53,9 @@ impl Shot {
             Sent::Simulated(taken) => compressed(taken.image()),
             Sent::Encoded { from, bytes } => decoded(from, bytes),
             Sent::Coded { from, layout, bytes } if layout.coding() == Coding::Jpeg => {
-                decoded(from, &with_tables(bytes))
+                let spoilt =
+                    |e: Failure| Failure::failed("camera-image", format!("a spoilt image: {}", e.message));
+                decoded(from, &as_file(bytes)).map_err(spoilt)
             }
             Sent::Coded { from, layout, bytes } => layout
                 .pixels(bytes)

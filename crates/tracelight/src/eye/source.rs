@@ -41,7 +41,7 @@ impl<'a> Source<'a> {
         if text.starts_with("http://") {
             return Ok(Self::Net(text));
         }
-        if text.starts_with("/dev/") {
+        if is_device(text) {
             return Ok(Self::Device(text));
         }
         if std::path::Path::new(text).exists() {
@@ -60,6 +60,16 @@ impl<'a> Source<'a> {
             Self::Files(path) => Some(Box::new(Files::open(path)?)),
         })
     }
+}
+
+/// Whether a name is that of a video device, be it plugged in or not.
+fn is_device(name: &str) -> bool {
+    #[cfg(unix)]
+    if let Ok(about) = std::fs::metadata(name) {
+        use std::os::unix::fs::FileTypeExt;
+        return about.file_type().is_char_device();
+    }
+    ["/dev/video", "/dev/v4l/"].iter().any(|begin| name.starts_with(begin))
 }
 
 /// Video devices that are plugged in; not all of them send images.

@@ -10,6 +10,7 @@ use super::{Looks, grey};
 use crate::camera_file::{KnownCamera, PageName, Stood};
 use crate::failure::Failure;
 use crate::output::Raster;
+use crate::stop::Stop;
 
 /// A wall as one image shows it.
 pub(crate) struct SeenWall {
@@ -167,41 +168,74 @@ fn seen(tag: &Tag) -> SeenTag {
     SeenTag { id: tag.id, corners: tag.corners, places, deviation_px: tag.deviation_px }
 }
 
-/// An image that is neither too dark nor too bright; as bright as the camera can, where there is little light; the next, of a camera that
-/// exposes as it likes.
-pub(crate) fn well_exposed(eye: &mut dyn Looks) -> Result<Raster, Failure> {
-    let Some(longest_s) = eye.longest() else { return eye.take(0.0)?.pixels() };
+/// An image that is neither too dark nor too bright, or as nearly so as the camera can; the next, of a camera that exposes as it likes.
+pub(crate) fn well_exposed(eye: &mut dyn Looks, stop: &Stop) -> Result<Raster, Failure> {
+    let Some(longest_s) = eye.longest() else { return readable(eye, 0.0, stop).map(|taken| taken.0) };
     let mut exposure_s = 0.5 * longest_s;
     // the longest that was too dark, and the shortest that was too bright
     let (mut dark_s, mut bright_s) = (0.0, f64::INFINITY);
-    for _ in 0..MOST_SHOTS {
-        let pixels = eye.take(exposure_s)?.pixels()?;
-        let brightest = brightest(&pixels);
-        if (WELL_EXPOSED[0]..=WELL_EXPOSED[1]).contains(&brightest) {
-            return Ok(pixels);
+    let (pixels, mut exposed_s) = readable(eye, exposure_s, stop)?;
+    let mut best = (brightest(&pixels), pixels);
+    let mut brightest_now = best.0;
+    for _ in 1..MOST_SHOTS {
+        if (WELL_EXPOSED[0]..=WELL_EXPOSED[1]).contains(&brightest_now) {
+            break;
         }
-        let is_dark = brightest < WELL_EXPOSED[0];
-        if is_dark && exposure_s >= longest_s {
-            if eye.brighten() {
-                continue;
+        let is_dark = brightest_now < WELL_EXPOSED[0];
+        if is_dark && exposed_s >= 0.99 * longest_s {
+            if !eye.brighten() {
+                break;
             }
-            return Ok(pixels);
+            // what was too dark is so no more
+            (dark_s, bright_s) = (0.0, f64::INFINITY);
+        } else if exposed_s == dark_s || exposed_s == bright_s {
+            // there is none between
+            break;
+        } else {
+            let bound = if is_dark { &mut dark_s } else { &mut bright_s };
+            *bound = exposed_s;
+            exposure_s = next_s(exposed_s, brightest_now, [dark_s, bright_s]).min(longest_s);
         }
-        let bound = if is_dark { &mut dark_s } else { &mut bright_s };
-        *bound = exposure_s;
-        let light = |level: u8| (f64::from(level) / 255.0).powf(2.2);
-        let wanted = light(WELL_EXPOSED[0] / 2 + WELL_EXPOSED[1] / 2);
-        // how much too bright one is that is full, it does not tell
-        let factor = if is_dark { wanted / light(brightest.max(1)) } else { 0.5 };
-        let guess_s = (exposure_s * factor.clamp(0.1, 10.0)).min(longest_s);
-        // not every camera's levels go by that power of the light
-        let is_new = dark_s < guess_s && guess_s < bright_s;
-        exposure_s = if is_new { guess_s } else { (dark_s * bright_s).sqrt() };
+        let taken = readable(eye, exposure_s, stop)?;
+        (exposed_s, brightest_now) = (taken.1, brightest(&taken.0));
+        if worth(brightest_now) > worth(best.0) {
+            best = (brightest_now, taken.0);
+        }
     }
-    let message = format!(
-        "of {MOST_SHOTS} images none is well exposed: is a lamp in sight that is switched, or flickers?"
-    );
-    Err(Failure::failed("no-image", message))
+    Ok(best.1)
+}
+
+/// The next exposure that is tried after one that was too dark or too bright, s.
+fn next_s(exposed_s: f64, brightest: u8, [dark_s, bright_s]: [f64; 2]) -> f64 {
+    let light = |level: u8| (f64::from(level) / 255.0).powf(2.2);
+    let wanted = light(WELL_EXPOSED[0] / 2 + WELL_EXPOSED[1] / 2);
+    // how much too bright one is that is full, it does not tell
+    let factor = if brightest < WELL_EXPOSED[0] { wanted / light(brightest.max(1)) } else { 0.5 };
+    let guess_s = exposed_s * factor.clamp(0.1, 10.0);
+    // not every camera's levels go by that power of the light
+    if dark_s < guess_s && guess_s < bright_s { guess_s } else { (dark_s * bright_s).sqrt() }
+}
+
+/// How good an image is whose brightest hundredth is that bright: the brighter the better, but for one that is full.
+fn worth(brightest: u8) -> i32 {
+    let level = i32::from(brightest);
+    if brightest > WELL_EXPOSED[1] { -level } else { level }
+}
+
+/// The next image that can be decoded, and how long it was exposed, s.
+fn readable(eye: &mut dyn Looks, exposure_s: f64, stop: &Stop) -> Result<(Raster, f64), Failure> {
+    const MOST_SPOILT: usize = 5;
+    let mut spoilt = 0;
+    loop {
+        stop.check()?;
+        let shot = eye.take(exposure_s)?;
+        match shot.pixels() {
+            Ok(pixels) if shot.exposure_s > 0.0 => return Ok((pixels, shot.exposure_s)),
+            Ok(pixels) => return Ok((pixels, exposure_s)),
+            Err(failure) if failure.code != "camera-image" || spoilt == MOST_SPOILT => return Err(failure),
+            Err(_) => spoilt += 1,
+        }
+    }
 }
 
 /// The level that a hundredth of the pixels exceed.

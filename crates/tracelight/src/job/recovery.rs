@@ -96,7 +96,9 @@ impl Watched<'_> {
     fn wall_now(&mut self, suspicion: Suspicion) -> Result<Option<SeenWall>, Failure> {
         let _ = self.room.send(Command::Disarm);
         self.rest(REST_TICKS);
-        let wall = well_exposed(self).and_then(|pixels| see_wall(pixels, Some(&self.wall)));
+        let stop = self.stop.clone();
+        let wall = well_exposed(self, &stop).and_then(|pixels| see_wall(pixels, Some(&self.wall)));
+        stop.check()?;
         if self.follower.blind() == Some(Blind::Stamps) {
             return Ok(None);
         }

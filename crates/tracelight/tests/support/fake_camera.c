@@ -30,6 +30,11 @@ static int width, height, is_streaming, queued[BUFFERS];
 static double begun; /* when images began to come, s */
 static long next;    /* number of the next image */
 
+/* What light an image gets is settled when it begins; what was told later is for those that come after. */
+struct told { double since, light; };
+static struct told past[1000];
+static int pasts;
+
 struct control {
     unsigned id, kind;
     const char *name;
@@ -128,12 +133,21 @@ static int get_format(struct v4l2_format *f)
     return 0;
 }
 
-/* An image as it is exposed: one of 10 ms and gain 64 is as it is on the wall. */
-static size_t expose(unsigned char *to, size_t bytes)
+/* By how much an image is brighter than the wall: one of 10 ms at gain 64 is not. */
+static double light(void)
 {
     struct control *gain = &controls[0], *automatic = &controls[1], *exposure = &controls[2];
-    double light = automatic->value == V4L2_EXPOSURE_MANUAL ? exposure->value / 100.0 * (gain->value + 1) / 65.0 : 1.0;
-    light *= told("light", 1.0);
+    return automatic->value == V4L2_EXPOSURE_MANUAL ? exposure->value / 100.0 * (gain->value + 1) / 65.0 : 1.0;
+}
+
+/* An image as it was exposed, one and a half images before it began to arrive. */
+static size_t expose(unsigned char *to, size_t bytes, double began)
+{
+    double light = told("light", 1.0);
+    int k = pasts - 1;
+    while (k > 0 && past[k].since > began - 1.5 / rate())
+        k--;
+    light *= pasts ? past[k].light : 1.0;
     memcpy(to, image, bytes);
     unsigned step = coding == V4L2_PIX_FMT_YUYV ? 2 : 1;
     if (coding != V4L2_PIX_FMT_MJPEG)
@@ -164,7 +178,9 @@ static int dequeue(struct v4l2_buffer *b)
     int every = told("broken", 0);
     int is_broken = every && next % every == every - 1;
     b->index = found;
-    b->bytesused = expose(room + (size_t)found * ROOM, is_broken ? image_bytes / 2 : image_bytes);
+    b->bytesused = expose(room + (size_t)found * ROOM, is_broken ? image_bytes / 2 : image_bytes, began);
+    if (told("endless", 0))
+        b->bytesused -= 2;
     b->flags = V4L2_BUF_FLAG_DONE | (is_broken ? V4L2_BUF_FLAG_ERROR : 0);
     b->flags |= told("stamps", 1) ? V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_SOE : 0;
     b->field = V4L2_FIELD_NONE;
@@ -200,18 +216,32 @@ static int query(struct v4l2_query_ext_ctrl *q)
     return 0;
 }
 
+static void log_told(const char *name, int value)
+{
+    const char *path = getenv("FAKE_CAMERA_LOG");
+    FILE *log = path ? fopen(path, "a") : NULL;
+    if (log) {
+        fprintf(log, "%s=%d\n", name, value);
+        fclose(log);
+    }
+}
+
 static int set_control(struct v4l2_ext_control *e)
 {
     struct control *c = control(e->id);
-    const char *path = getenv("FAKE_CAMERA_LOG");
     if (!c)
         return fails(EINVAL);
-    c->value = e->value < c->least ? c->least : e->value > c->most ? c->most : e->value;
-    FILE *log = path ? fopen(path, "a") : NULL;
-    if (log) {
-        fprintf(log, "%s=%d\n", c->name, c->value);
-        fclose(log);
-    }
+    if (c->id == V4L2_CID_EXPOSURE_ABSOLUTE && controls[1].value != V4L2_EXPOSURE_MANUAL)
+        return log_told("refused", e->value), fails(EACCES);
+    static int busy;
+    if (busy++ % 3 == 0)
+        return fails(EBUSY); /* for a moment, with what it was told before */
+    /* as drivers of webcams do, without signs */
+    unsigned value = e->value, least = c->least, most = c->most;
+    c->value = value < least ? least : value > most ? most : value;
+    if (pasts < 1000)
+        past[pasts++] = (struct told){now(), light()};
+    log_told(c->name, c->value);
     return 0;
 }
 
@@ -260,11 +290,16 @@ static int answer(unsigned long request, void *argument)
     }
     case VIDIOC_QBUF: {
         static int order;
-        queued[((struct v4l2_buffer *)argument)->index] = ++order;
-        return 0;
+        int *slot = &queued[((struct v4l2_buffer *)argument)->index];
+        return *slot ? fails(EINVAL) : (*slot = ++order, 0);
     }
     case VIDIOC_DQBUF: return dequeue(argument);
-    case VIDIOC_STREAMON: begun = now(), is_streaming = 1; return 0;
+    case VIDIOC_STREAMON:
+        if (told("narrow", 0))
+            return fails(ENOSPC);
+        usleep(200000); /* webcams take their time */
+        begun = now(), is_streaming = 1;
+        return 0;
     case VIDIOC_STREAMOFF: is_streaming = 0; return is_gone() ? fails(ENODEV) : 0;
     case VIDIOC_QUERY_EXT_CTRL: return query(argument);
     case VIDIOC_QUERYMENU: return ((struct v4l2_querymenu *)argument)->index % 2 ? 0 : fails(EINVAL);

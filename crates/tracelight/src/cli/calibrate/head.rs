@@ -57,7 +57,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     progress.stage("wall", 1);
     let room = Furnished::new(&request, &driving.rig, driving.pose)?;
     let mut rig = room.watched(&driving.rig, driving.pose);
-    let wall = see_wall(well_exposed(&mut rig)?, args.eye.known()?.as_ref())?;
+    let wall = see_wall(well_exposed(&mut rig, stop)?, args.eye.known()?.as_ref())?;
     wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
     stop.check()?;
     driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));

@@ -16,6 +16,7 @@ use crate::eye::{self, grey};
 use crate::failure::Failure;
 use crate::output::BAR_M;
 use crate::picture::{self, Source};
+use crate::stop::Stop;
 use crate::units::Length;
 
 /// The camera in front of the wall, from an image of printed markers on it: lens, pose, scale
@@ -80,13 +81,13 @@ const FEWEST_IMAGES: usize = 3;
 /// A lens is known if its focal length is, to this share.
 const KNOWN_FOCAL: f64 = 0.005;
 
-pub(super) fn run(args: &MarkersArgs) -> Result<Answer, Failure> {
+pub(super) fn run(args: &MarkersArgs, stop: &Stop) -> Result<Answer, Failure> {
     let known = args.lens.as_deref().map(camera_file::read).transpose()?;
     let seen = match (&args.image, &args.camera) {
         (Some(path), _) => Seen::of(vec![found(path)?], args.bar.as_ref(), known.as_ref())?,
         (None, source) => {
             let name = source.as_deref().unwrap_or("sim");
-            Seen::of(vec![taken(args, name, known.as_ref())?], args.bar.as_ref(), known.as_ref())?
+            Seen::of(vec![taken(args, name, known.as_ref(), stop)?], args.bar.as_ref(), known.as_ref())?
         }
     };
     let camera =
@@ -260,17 +261,17 @@ fn found(path: &str) -> Result<View, Failure> {
 }
 
 /// An image of a camera.
-fn taken(args: &MarkersArgs, name: &str, known: Option<&LensBelief>) -> Result<View, Failure> {
+fn taken(args: &MarkersArgs, name: &str, known: Option<&LensBelief>, stop: &Stop) -> Result<View, Failure> {
     let source = eye::source::Source::of(name)?;
     let size = args.camera_size.map(|size| size.0).or_else(|| known.map(|known| known.lens.size_px));
     let pixels = match (source.open(size)?, source) {
-        (Some(mut camera), _) => well_exposed(&mut *camera)?,
+        (Some(mut camera), _) => well_exposed(&mut *camera, stop)?,
         (None, eye::source::Source::Simulated(picture)) => {
             let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));
             let placement = PlacementArgs::default();
             let (eye, seed) = (args.sim_camera, args.seed);
             let request = RoomRequest { picture, placement: &placement, eye, pages: true, seed };
-            well_exposed(&mut Furnished::new(&request, &rig, pose)?.watched(&rig, pose))?
+            well_exposed(&mut Furnished::new(&request, &rig, pose)?.watched(&rig, pose), stop)?
         }
         (None, _) => return Err(Failure::failed("internal", "a camera that is none")),
     };

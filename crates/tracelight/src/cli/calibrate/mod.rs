@@ -41,7 +41,7 @@ pub(crate) fn run(args: &CalibrateArgs, stop: &Stop) -> Result<Answer, Failure> 
     match &args.action {
         CalibrateAction::Head(args) => head::run(args, stop),
         CalibrateAction::Lens(args) => markers::lens(args),
-        CalibrateAction::Markers(args) => markers::run(args),
+        CalibrateAction::Markers(args) => markers::run(args, stop),
         CalibrateAction::Ruler(args) => ruler::run(args),
         CalibrateAction::Sheet(args) => sheet::run(args),
     }

@@ -1,4 +1,5 @@
 use std::io;
+use std::time::Duration;
 
 use moq_v4l::Device;
 use moq_v4l::control::{Control, Value};
@@ -24,10 +25,13 @@ const BY_HAND: i64 = 1;
 const EXPOSURE_S: f64 = 1e-4;
 /// Steps in which a camera's gain is raised from where it was found to its most.
 const GAIN_STEPS: i64 = 4;
+/// How often a camera that is busy with what it was told before is told again, and after how long.
+const TRIES: usize = 6;
+const TRY_AGAIN: Duration = Duration::from_millis(40);
 
 /// Least and most of a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Range {
+struct Range {
     least: i64,
     most: i64,
 }
@@ -37,7 +41,9 @@ pub(super) struct Controls {
     device: Device,
     /// What it can be exposed for, in its units; `None` of a camera that exposes as it likes.
     exposure: Option<Range>,
-    /// The same of its gain.
+    /// The exposure it was told last.
+    told: Option<i64>,
+    /// What its gain may be.
     gain: Option<Range>,
     /// How much the gain is raised at once.
     gain_step: i64,
@@ -46,13 +52,17 @@ pub(super) struct Controls {
 }
 
 impl Controls {
-    /// Has a camera expose as it is told from now on, if it can.
+    /// Has a camera expose as it is told from now on, if it can. Its images come already: some forget what they were told before.
     pub(super) fn take_over(device: Device) -> Self {
-        let mut controls = Self { device, exposure: None, gain: None, gain_step: 0, changed: Vec::new() };
-        let had_hand = controls.set(id::EXPOSURE_AUTO, BY_HAND);
+        let mut controls =
+            Self { device, exposure: None, told: None, gain: None, gain_step: 0, changed: Vec::new() };
         // a camera without an automatic has no such control, and takes exposures all the same
-        let exposes = had_hand.is_ok() || controls.value(id::EXPOSURE_AUTO).is_none();
-        if exposes && let Some(range) = controls.range(id::EXPOSURE_ABSOLUTE) {
+        let is_by_hand = match controls.read(id::EXPOSURE_AUTO) {
+            Ok(None) => true,
+            Ok(Some(_)) => controls.set(id::EXPOSURE_AUTO, BY_HAND).is_ok(),
+            Err(_) => false,
+        };
+        if is_by_hand && let Some(range) = controls.range(id::EXPOSURE_ABSOLUTE) {
             controls.exposure = Some(range);
             // both are of the automatic, which may know neither
             for (control, off) in [(id::EXPOSURE_AUTO_PRIORITY, 0), (id::AUTOGAIN, 0)] {
@@ -86,18 +96,19 @@ impl Controls {
         self.value(id::FOCUS_AUTO).is_some_and(|value| value != 0)
     }
 
-    /// Exposes for so long from some image on, s; returns how long really, and whether that is another than before. `None` of a camera
+    /// Exposes for so long from some image on, s; returns how long really, and whether it was told otherwise before. `None` of a camera
     /// that exposes as it likes.
-    pub(super) fn expose(&mut self, exposure_s: f64) -> Option<io::Result<(f64, bool)>> {
+    pub(super) fn expose(&mut self, exposure_s: f64) -> Option<(f64, bool)> {
         let range = self.exposure?;
         let wanted = ((exposure_s / EXPOSURE_S).round() as i64).clamp(range.least, range.most);
-        let before = self.value(id::EXPOSURE_ABSOLUTE);
-        if before == Some(wanted) {
-            return Some(Ok((wanted as f64 * EXPOSURE_S, false)));
+        let is_new = self.told != Some(wanted);
+        if is_new {
+            // one that can not take it goes on as before, and says so
+            drop(self.set(id::EXPOSURE_ABSOLUTE, wanted));
+            self.told = Some(wanted);
         }
-        let set = self.set(id::EXPOSURE_ABSOLUTE, wanted);
-        let after = self.value(id::EXPOSURE_ABSOLUTE).unwrap_or(wanted);
-        Some(set.map(|()| (after as f64 * EXPOSURE_S, before != Some(after))))
+        let is = self.value(id::EXPOSURE_ABSOLUTE).unwrap_or(wanted);
+        Some((is as f64 * EXPOSURE_S, is_new))
     }
 
     /// Raises the gain, if it can be.
@@ -114,20 +125,41 @@ impl Controls {
         if before == Some(value) {
             return Ok(());
         }
-        self.device.set_control(Control { id: control, value: Value::Integer(value) })?;
+        self.tell(control, value)?;
         if let (Some(before), false) = (before, self.changed.iter().any(|(id, _)| *id == control)) {
             self.changed.push((control, before));
         }
         Ok(())
     }
 
-    /// What a control is; `None` of one that is not there.
-    fn value(&self, control: u32) -> Option<i64> {
-        match unless_it_panics(|| self.device.control(control))?.ok()?.value {
-            Value::Integer(value) => Some(value),
-            Value::Boolean(value) => Some(i64::from(value)),
-            _ => None,
+    /// Tells a camera, more than once where it is busy.
+    fn tell(&self, control: u32, value: i64) -> io::Result<()> {
+        let mut tries = 1;
+        loop {
+            let control = Control { id: control, value: Value::Integer(value) };
+            match self.device.set_control(control) {
+                Err(error) if tries < TRIES && may_pass(&error) => std::thread::sleep(TRY_AGAIN),
+                result => return result,
+            }
+            tries += 1;
         }
+    }
+
+    /// What a control is; `None` of one that is not there.
+    fn read(&self, control: u32) -> io::Result<Option<i64>> {
+        let unknown = || Err(io::Error::other("its driver says what nobody knows"));
+        match unless_it_panics(|| self.device.control(control)).unwrap_or_else(unknown) {
+            Ok(Control { value: Value::Integer(value), .. }) => Ok(Some(value)),
+            Ok(Control { value: Value::Boolean(value), .. }) => Ok(Some(i64::from(value))),
+            Ok(_) => Ok(None),
+            Err(error) if error.kind() == io::ErrorKind::InvalidInput => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// What a control is, if that can be read.
+    fn value(&self, control: u32) -> Option<i64> {
+        self.read(control).ok().flatten()
     }
 
     /// What a control may be.
@@ -136,12 +168,12 @@ impl Controls {
         let all = unless_it_panics(|| self.device.query_controls()).and_then(Result::ok);
         if let Some(all) = all {
             let known = all.iter().find(|known| known.id == control)?;
-            return (known.minimum < known.maximum)
-                .then_some(Range { least: known.minimum, most: known.maximum });
+            let range = Range { least: known.minimum, most: known.maximum };
+            return (range.least < range.most).then_some(range);
         }
-        // then the ends are tried: what lies beyond them is set to them
+        // then the ends are tried: what lies beyond them is set to them. None below 0: drivers reckon without signs
         let before = self.value(control)?;
-        let [least, most] = [i64::from(i32::MIN), i64::from(i32::MAX)].map(|end| {
+        let [least, most] = [0, i64::from(i32::MAX)].map(|end| {
             drop(self.set(control, end));
             self.value(control)
         });
@@ -155,7 +187,7 @@ impl Controls {
         // in the opposite order: an exposure cannot be set any more once it is automatic
         for (control, value) in std::mem::take(&mut self.changed).into_iter().rev() {
             // a camera that is gone needs nothing put back
-            drop(self.device.set_control(Control { id: control, value: Value::Integer(value) }));
+            drop(self.tell(control, value));
         }
     }
 }
@@ -164,4 +196,12 @@ impl Drop for Controls {
     fn drop(&mut self) {
         self.put_back();
     }
+}
+
+/// Whether a camera may take in a moment what it refuses now: it is busy, or not yet in the state it was told to be in.
+fn may_pass(error: &io::Error) -> bool {
+    /// `EIO`
+    const IO: i32 = 5;
+    matches!(error.kind(), io::ErrorKind::ResourceBusy | io::ErrorKind::PermissionDenied)
+        || error.raw_os_error() == Some(IO)
 }

@@ -5,17 +5,18 @@
 //! | [`mode`] | what a camera can send, and which of it is taken |
 //! | [`controls`] | exposure and gain |
 //! | [`reader`] | images, read by a thread |
+//! | [`why`] | a camera cannot be used |
 
 mod controls;
 mod mode;
 mod reader;
 
+mod why;
+
 use std::io;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use moq_v4l::buffer::Type;
-use moq_v4l::capability::Flags as Can;
+use moq_v4l::capability::{Capabilities, Flags as Can};
 use moq_v4l::format::{Colorspace, Quantization};
 use moq_v4l::frameinterval::{FrameInterval, FrameIntervalEnum};
 use moq_v4l::framesize::FrameSizeEnum;
@@ -24,10 +25,8 @@ use moq_v4l::video::Capture;
 use moq_v4l::video::capture::Parameters;
 use moq_v4l::{Device, Format, FourCC, Fraction};
 
-use super::about::{About, Rhythm};
+use super::about::About;
 use super::coding::{Coding, Layout};
-use super::latest::Latest;
-use super::source::devices;
 use super::{Looks, Shot};
 use crate::failure::Failure;
 use crate::quiet::unless_it_panics;
@@ -39,21 +38,26 @@ use reader::{PATIENCE, Reader, now_s};
 pub(crate) struct Plugged {
     path: String,
     /// What its maker calls it, and its driver.
-    name: String,
-    driver: String,
+    name: Option<String>,
+    driver: Option<String>,
     /// What it can send.
     modes: Vec<Mode>,
     /// What it sends.
     mode: Mode,
+    layout: Layout,
+    /// From one image to the next, s.
+    interval_s: f64,
     controls: Controls,
-    reader: Arc<Reader>,
+    reader: Reader,
     opened_s: f64,
-    /// Images whose exposure began earlier are exposed otherwise.
+    /// Images up to this number are exposed otherwise than it was told last.
+    settled_at: u64,
+    /// Images that began to arrive earlier are, too, s.
     settled_s: f64,
 }
 
-/// How many images go by until one is exposed as it was told: two are on their way, or half exposed.
-const SETTLING_IMAGES: f64 = 3.0;
+/// How many images come until one is exposed as it was told: some are on their way, or half exposed.
+const SETTLING_IMAGES: u64 = 4;
 /// How long a camera that exposes as it likes takes to find how, s.
 const WARMING_S: f64 = 1.0;
 /// Images that a driver may have in hand.
@@ -65,46 +69,46 @@ impl Plugged {
     /// Has a camera send images, columns and rows as wanted.
     pub(crate) fn open(path: &str, size_px: Option<[usize; 2]>) -> Result<Self, Failure> {
         let failed = |why: &str| Failure::failed("no-camera", format!("the camera {path}: {why}"));
-        let told = |error: io::Error| failed(&words(path, &error));
-        let device = Device::with_path(path).map_err(told)?;
+        let told = |error: io::Error| failed(&why::not_opened(path, &error));
         let unknown = || failed("its driver says what nobody knows");
-        let about = unless_it_panics(|| device.query_caps()).ok_or_else(unknown)?.map_err(told)?;
-        if !about.capabilities.contains(Can::VIDEO_CAPTURE | Can::STREAMING) {
-            return Err(failed("it sends no images; a camera often has a second device that does"));
+        let device = Device::with_path(path).map_err(told)?;
+        // the library panics at names that are cut in the middle of a letter; what such a camera can, its modes tell
+        let about = unless_it_panics(|| device.query_caps()).transpose().map_err(told)?;
+        let sends = |about: &Capabilities| about.capabilities.contains(Can::VIDEO_CAPTURE | Can::STREAMING);
+        if !about.as_ref().is_none_or(sends) {
+            let message = format!(
+                "the camera {path}: it sends no images; a camera often has two devices, and the other does"
+            );
+            return Err(Failure::failed("not-a-camera", message));
         }
         let modes = modes(&device, size_px);
         let mode = chosen(&modes, size_px).ok_or_else(|| failed(&none_fits(&modes, size_px)))?;
-        let layout = unless_it_panics(|| set(&device, &mode)).ok_or_else(unknown)?.map_err(told)?;
-        let layout = layout.ok_or_else(|| failed(&format!("it does not send {mode} when told to")))?;
+        let set = unless_it_panics(|| set(&device, &mode)).ok_or_else(unknown)?.map_err(told)?;
+        let (layout, rate_hz) =
+            set.ok_or_else(|| failed(&format!("it does not send {mode} when told to")))?;
         let stream = unless_it_panics(|| Stream::with_buffers(&device, Type::VideoCapture, BUFFERS));
         let stream = stream.ok_or_else(unknown)?.map_err(told)?;
-        let reader = Arc::new(Reader {
-            layout,
-            interval_s: 1.0 / mode.rate_hz.unwrap_or(USUAL_HZ),
-            latest: Latest::default(),
-            rhythm: Mutex::default(),
-            is_over: AtomicBool::new(false),
-        });
+        let interval_s = 1.0 / rate_hz.unwrap_or(USUAL_HZ);
+        let reader = Reader::begin(stream, layout, interval_s);
+        reader.next().map_err(|why| Failure::failed("no-image", format!("the camera {path}: {why}")))?;
         let controls = Controls::take_over(device);
-        let reads = Arc::clone(&reader);
-        std::thread::spawn(move || reads.read_all(stream));
         let opened_s = now_s();
-        let settles = if controls.exposure_s().is_some() { 0.0 } else { WARMING_S };
+        let warms_s = if controls.exposure_s().is_some() { 0.0 } else { WARMING_S };
+        let (name, driver) = about.map(|about| (about.card, about.driver)).unzip();
         Ok(Self {
             path: path.to_owned(),
-            name: about.card,
-            driver: about.driver,
+            name,
+            driver,
             modes,
-            mode,
+            mode: Mode { rate_hz, ..mode },
+            layout,
+            interval_s,
             controls,
             reader,
             opened_s,
-            settled_s: opened_s + settles,
+            settled_at: 0,
+            settled_s: opened_s + warms_s,
         })
-    }
-
-    fn rhythm(&self) -> Rhythm {
-        self.reader.rhythm.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     fn failed(&self, why: &str) -> Failure {
@@ -114,29 +118,21 @@ impl Plugged {
 
 impl Looks for Plugged {
     fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure> {
-        let told_s = now_s();
         let mut exposed_s = 0.0;
-        self.settled_s = self.settled_s.max(told_s);
-        match self.controls.expose(exposure_s) {
-            Some(Ok((is, has_changed))) => {
-                exposed_s = is;
-                if has_changed {
-                    self.settled_s = told_s + SETTLING_IMAGES * self.reader.interval_s;
-                }
+        if let Some((is_s, is_new)) = self.controls.expose(exposure_s) {
+            exposed_s = is_s;
+            if is_new {
+                self.settled_at = self.reader.count() + SETTLING_IMAGES;
             }
-            Some(Err(error)) => return Err(self.failed(&format!("it cannot be exposed as told: {error}"))),
-            None => {}
         }
-        while now_s() < self.settled_s + PATIENCE.as_secs_f64() {
-            let image = self.reader.latest.next(PATIENCE).map_err(|why| match self.rhythm() {
-                Rhythm { images: 0, broken, .. } if broken > 0 => {
-                    self.failed(&format!("{broken} images came, none of them whole: is its cable bad?"))
-                }
-                _ => self.failed(&why),
-            })?;
-            if image.began_s >= self.settled_s {
-                let (from, stamp_s) = (self.path.as_str(), image.began_s - self.opened_s);
-                return Ok(Shot::sent(from, self.reader.layout, image.bytes, [stamp_s, exposed_s]));
+        // what begins to arrive within an interval was exposed before, in part
+        self.settled_s = self.settled_s.max(now_s() + self.interval_s);
+        let until_s = self.settled_s + SETTLING_IMAGES as f64 * self.interval_s + PATIENCE.as_secs_f64();
+        while now_s() < until_s {
+            let image = self.reader.next().map_err(|why| self.failed(&why))?;
+            if image.stamp_s >= self.settled_s && image.number > self.settled_at {
+                let stamp_s = image.stamp_s - self.opened_s;
+                return Ok(Shot::sent(&self.path, self.layout, image.bytes, [stamp_s, exposed_s]));
             }
         }
         Err(self.failed("the images it sends were taken long ago: is the machine overloaded?"))
@@ -144,34 +140,28 @@ impl Looks for Plugged {
 
     fn longest(&self) -> Option<f64> {
         // longer, and images would be fewer
-        Some(self.controls.exposure_s()?[1].min(self.reader.interval_s))
+        Some(self.controls.exposure_s()?[1].min(self.interval_s))
     }
 
     fn brighten(&mut self) -> bool {
-        let has_changed = self.controls.brighten();
-        if has_changed {
-            self.settled_s = now_s() + SETTLING_IMAGES * self.reader.interval_s;
+        let is_brighter = self.controls.brighten();
+        if is_brighter {
+            self.settled_at = self.reader.count() + SETTLING_IMAGES;
         }
-        has_changed
+        is_brighter
     }
 
     fn about(&self) -> About {
         About {
-            name: Some(self.name.clone()),
-            driver: Some(self.driver.clone()),
+            name: self.name.clone(),
+            driver: self.driver.clone(),
             modes: self.modes.iter().map(Mode::to_string).collect(),
             mode: Some(self.mode.to_string()),
             exposure_s: self.controls.exposure_s(),
             gain: self.controls.gain(),
             focuses: self.controls.focuses(),
-            rhythm: self.rhythm(),
+            rhythm: self.reader.rhythm(),
         }
-    }
-}
-
-impl Drop for Plugged {
-    fn drop(&mut self) {
-        self.reader.is_over.store(true, Ordering::SeqCst);
     }
 }
 
@@ -234,30 +224,36 @@ fn rate_hz(device: &Device, name: FourCC, [width, height]: [usize; 2]) -> Option
     rates.map(|f| f64::from(f.denominator) / f64::from(f.numerator)).max_by(f64::total_cmp)
 }
 
-/// Has a camera send a mode; what its images are like then, if it does.
-fn set(device: &Device, mode: &Mode) -> io::Result<Option<Layout>> {
+/// Has a camera send a mode; what its images are like then, if it does, and how many it sends a second, if it says.
+fn set(device: &Device, mode: &Mode) -> io::Result<Option<(Layout, Option<f64>)>> {
     let [width, height] = mode.size_px.map(|n| n as u32);
     let format = device.set_format(&Format::new(width, height, FourCC::new(&mode.name)))?;
+    let mut rate_hz = mode.rate_hz;
     if let Some(rate) = mode.rate_hz {
         // in thousandths, as television's rates want; a camera that has one rate only need not know of rates
         let interval = Fraction::new(1000, (1000.0 * rate).round() as u32);
-        drop(device.set_params(&Parameters::new(interval)));
+        if let Ok(granted) = device.set_params(&Parameters::new(interval))
+            && let Fraction { numerator: 1.., denominator: 1.. } = granted.interval
+        {
+            rate_hz = Some(f64::from(granted.interval.denominator) / f64::from(granted.interval.numerator));
+        }
     }
     let full_range = match (format.quantization, format.colorspace) {
-        (Quantization::FullRange, _) => true,
-        (Quantization::Default, Colorspace::JPEG) => true,
+        (Quantization::FullRange, _) | (Quantization::Default, Colorspace::JPEG) => true,
         (Quantization::Default | Quantization::LimitedRange, _) => false,
     };
     let size = [format.width as usize, format.height as usize];
     let is_so = format.fourcc.repr == mode.name && size == mode.size_px;
-    Ok(Layout::new(mode.coding, size, format.stride as usize, full_range).filter(|_| is_so))
+    let layout = Layout::new(mode.coding, size, format.stride as usize, full_range).filter(|_| is_so);
+    Ok(layout.map(|layout| (layout, rate_hz)))
 }
 
 /// Why a camera has no mode that fits.
 fn none_fits(modes: &[Mode], size_px: Option<[usize; 2]>) -> String {
-    let mut sizes: Vec<String> =
-        modes.iter().map(|mode| format!("{}x{}", mode.size_px[0], mode.size_px[1])).collect();
+    let mut sizes: Vec<[usize; 2]> = modes.iter().map(|mode| mode.size_px).collect();
+    sizes.sort_unstable();
     sizes.dedup();
+    let sizes: Vec<String> = sizes.iter().map(|[width, height]| format!("{width}x{height}")).collect();
     match size_px {
         Some([width, height]) if !sizes.is_empty() => {
             format!("it sends no images of {width}x{height} px, but {}", sizes.join(", "))
@@ -265,27 +261,5 @@ fn none_fits(modes: &[Mode], size_px: Option<[usize; 2]>) -> String {
         _ => {
             "it sends nothing that is understood (MJPG, YUYV, UYVY, NV12, YU12, GREY, RGB3, BGR3)".to_owned()
         }
-    }
-}
-
-/// Why a camera cannot be used, in words.
-fn words(path: &str, error: &io::Error) -> String {
-    match error.kind() {
-        io::ErrorKind::NotFound => {
-            let all: Vec<String> = devices().iter().map(|path| path.display().to_string()).collect();
-            let there = if all.is_empty() {
-                "there is none".to_owned()
-            } else {
-                format!("there is {}", all.join(", "))
-            };
-            format!("no such device ({there}): is it plugged in? `tracelight doctor` lists what is there")
-        }
-        io::ErrorKind::PermissionDenied => {
-            format!(
-                "you may not use it: add yourself to the group that owns it (sudo usermod -aG video $USER; ls -l {path}) and log in again"
-            )
-        }
-        io::ErrorKind::ResourceBusy => "another program uses it: close that first".to_owned(),
-        _ => error.to_string(),
     }
 }

@@ -36,7 +36,7 @@ const FLUENT_HZ: f64 = 24.0;
 const SLOWEST_HZ: f64 = 9.0;
 
 /// The mode that is used, of those a camera has: of a size, if one is wanted, else the largest up to the usual size that is not slow, or
-/// the next above. Uncompressed where that is fluent: JPEG blurs a spot.
+/// the next above. In colour, for inks and a laser have some, and uncompressed where that is fluent: JPEG blurs a spot.
 pub(super) fn chosen(modes: &[Mode], size_px: Option<[usize; 2]>) -> Option<Mode> {
     let rate = |mode: &Mode| mode.rate_hz.unwrap_or(FLUENT_HZ);
     let pixels = |mode: &Mode| mode.size_px[0] * mode.size_px[1];
@@ -53,10 +53,11 @@ pub(super) fn chosen(modes: &[Mode], size_px: Option<[usize; 2]>) -> Option<Mode
     let worth = |mode: &&&Mode| {
         let is_fluent = rate(mode) >= FLUENT_HZ;
         let is_plain = mode.coding != Coding::Jpeg;
-        (is_fluent, is_fluent && is_plain, rate(mode))
+        (mode.coding != Coding::Grey, is_fluent, is_fluent && is_plain, rate(mode))
     };
     of_size
         .iter()
+        .rev()
         .max_by(|a, b| worth(a).partial_cmp(&worth(b)).unwrap_or(std::cmp::Ordering::Equal))
         .map(|mode| **mode)
 }
@@ -94,6 +95,8 @@ mod tests {
     fn what_is_too_slow_or_too_large_is_taken_where_there_is_nothing_else() {
         let slow = [mode(b"YUYV", [1280, 720], 5.0), mode(b"YUYV", [320, 240], 15.0)];
         assert_eq!(chosen(&slow, None).unwrap().size_px, [320, 240]);
+        let colourful = [mode(b"GREY", [640, 480], 30.0), mode(b"MJPG", [640, 480], 15.0)];
+        assert_eq!(chosen(&colourful, None).unwrap().to_string(), "MJPG 640x480 15/s");
         let large = [mode(b"GREY", [3840, 2160], 15.0), mode(b"GREY", [1920, 1080], 7.5)];
         assert_eq!(chosen(&large, None).unwrap().to_string(), "GREY 1920x1080 7.5/s");
         assert_eq!(chosen(&[], None), None);
