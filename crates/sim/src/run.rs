@@ -124,6 +124,11 @@ impl SimulatedRig {
         rig
     }
 
+    /// What has to be added to what its encoders read for counts that mean true angles.
+    pub fn true_counts(&self) -> PanTilt<i32> {
+        PanTilt::from_fn(|j| self.lines[j].off.wrapping_neg())
+    }
+
     /// The same, truly standing elsewhere than is believed.
     #[must_use]
     pub const fn standing(mut self, true_pose: HeadPose) -> Self {

@@ -16,7 +16,8 @@ use tracelight_trajectory::Plan;
 
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
-use crate::eye::room::Furnished;
+use crate::eye::homing::check_homed;
+use crate::eye::room::{Furnished, left};
 use crate::failure::Failure;
 use crate::output::{
     self, EyeFigures, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing,
@@ -175,7 +176,12 @@ fn run_laps(
         }
         progress.stage("run", plan.points.len() as u64);
         let Some(looks) = prepared.watched() else {
-            let rig = SimulatedRig::new(&learned.rig, prepared.driving.pose, args.seed);
+            let (rig, pose) = (&learned.rig, prepared.driving.pose);
+            let rig = if args.sim_unhomed {
+                SimulatedRig::unhomed(rig, pose, left(rig, args.seed), args.seed)
+            } else {
+                SimulatedRig::new(rig, pose, args.seed)
+            };
             laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
             continue;
         };
@@ -268,11 +274,15 @@ fn run_lap(
     log: &mut LogWriter,
     (progress, stop): (&Progress, &Stop),
 ) -> Result<Run, Failure> {
-    let mut failed: Option<OutputError> = None;
+    let mut failed: Option<Failure> = None;
     let mut goodbye = 0;
     let run = tracelight_sim::run(&mut rig, plan, dry, |rig, tick| {
+        if let Err(unhomed) = check_homed(&tick.telemetry) {
+            failed = Some(unhomed);
+            return ControlFlow::Break(());
+        }
         if let Err(error) = log_tick(log, plan, tick) {
-            failed = Some(error);
+            failed = Some(error.into());
             return ControlFlow::Break(());
         }
         let number = tick.telemetry.tick;
@@ -287,7 +297,7 @@ fn run_lap(
         goodbye += 1;
         if goodbye > GOODBYE_TICKS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    failed.map_or(Ok(run), |error| Err(error.into()))
+    failed.map_or(Ok(run), Err)
 }
 
 fn log_tick(log: &mut LogWriter, plan: &Plan, tick: &Tick) -> Result<(), OutputError> {

@@ -336,3 +336,54 @@ fn a_source_that_is_no_camera_is_refused() {
         assert_eq!(output.status.code(), Some(2), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
     }
 }
+
+#[test]
+fn a_head_that_was_just_powered_up_is_homed_within_a_millimetre_wherever_it_points() {
+    let dir = folder("camera-home");
+    let [head, out] = ["head.toml", "out"].map(|name| dir.join(name).to_str().unwrap().to_owned());
+    // neither is left looking where the camera does
+    for seed in ["1", "2"] {
+        let found = json(&run(&[
+            "calibrate",
+            "head",
+            "--camera",
+            "sim",
+            "--home",
+            "--seed",
+            seed,
+            "-o",
+            &head,
+            "--json",
+        ]));
+        let off = |found: &Value, j: usize| found["homed"]["truth_mm"][j].as_f64().unwrap().abs();
+        assert!(off(&found, 0) < 1.0 && off(&found, 1) < 1.0, "{seed}: {}", found["homed"]);
+        assert!(found["homed"]["sought"].as_u64().unwrap() > 1, "{}", found["homed"]);
+        check_at_most(&found, "/rms_mm", 0.3);
+        // a head that is known is homed so that what is known of it holds again
+        json(&run(&["calibrate", "head", "--camera", "sim", "--seed", seed, "-o", &head, "--json"]));
+        let again = json(&run(&[
+            "calibrate",
+            "head",
+            "--camera",
+            "sim",
+            "--home",
+            "--head",
+            &head,
+            "--seed",
+            seed,
+            "--json",
+        ]));
+        assert!(off(&again, 0) < 1.0 && off(&again, 1) < 1.0, "{seed}: {again}");
+    }
+    let unhomed = |more: &[&str]| {
+        let all = [&["trace", "--sim-unhomed", "--seed", "2", "--out", &out, "--json"], more].concat();
+        let output = run(&all);
+        assert_eq!(output.status.code(), Some(1), "{more:?}");
+        let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(answer["error"]["code"], "unhomed", "{more:?} {answer}");
+        assert!(answer["error"]["message"].as_str().unwrap().contains("calibrate head --home"), "{answer}");
+    };
+    unhomed(&[HOUSE.strip_prefix("sim:").unwrap()]);
+    unhomed(&["--camera", HOUSE]);
+    unhomed(&["--camera", HOUSE, "--head", &head]);
+}

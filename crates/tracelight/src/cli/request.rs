@@ -48,6 +48,9 @@ pub(crate) struct TraceArgs {
     /// What differs from head to head is drawn from this seed
     #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
     pub(crate) seed: u64,
+    /// The simulated head was just powered up and nobody homed it: to see that nothing is drawn then
+    #[arg(long)]
+    pub(crate) sim_unhomed: bool,
     /// Folder for the results [default: out/<the picture's name>/]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

@@ -11,6 +11,7 @@ use tracelight_sim::{Simulated, Tick, run_segments};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
 
+use super::homing::check_homed;
 use super::spots::{History, Sight, Sighting, SpotWatch, Timing};
 use super::{Eye, Looks};
 use crate::cli::driving::Driving;
@@ -72,6 +73,11 @@ impl DotsRequest {
         }
     }
 
+    /// Of a head that was homed by one dot: to tell where zero is.
+    pub(crate) const fn few(driving: &Driving) -> Self {
+        Self { across: ACROSS_AGAIN, ..Self::first(driving) }
+    }
+
     /// Of a head that stood and was built so until it was bumped or an encoder slipped, by a few degrees; the camera's stamps are known.
     pub(crate) const fn again(driving: &Driving, timing: Timing, exposure_s: f64) -> Self {
         let first = AlignmentBelief::by_eye(driving.machine.geometry, driving.pose);
@@ -121,6 +127,21 @@ fn plan_of(dots: &[Point], driving: &Driving) -> Result<Plan, Failure> {
     Ok(plan(&drawing, &driving.machine, &request)?)
 }
 
+/// Dots that were drawn and watched.
+pub(crate) struct SeenDots {
+    watch: SpotWatch,
+    history: History,
+    sightings: Vec<Sighting>,
+    dots: usize,
+}
+
+impl SeenDots {
+    /// Where they were seen, and where the encoders had the joints then.
+    pub(crate) fn spots(&self) -> Vec<SeenSpot> {
+        spots(&self.sightings, &self.history, &self.watch.timing)
+    }
+}
+
 /// Has the head draw dots, watches them, and finds the head; whoever keeps its ticks is given each of them. The rig rests at zero in the dark; afterwards it rests
 /// in the dark at the last dot.
 pub(crate) fn find_head<R: Simulated + Eye>(
@@ -128,9 +149,30 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     camera: &Camera,
     driving: &Driving,
     request: &DotsRequest,
-    (progress, stop): (&Progress, &Stop),
+    watched: (&Progress, &Stop),
     keep: &mut dyn FnMut(&Tick),
 ) -> Result<FoundHead, Failure> {
+    let mut seen = see_dots(rig, camera, driving, request, watched, keep)?;
+    let aligned = aligned(&request.belief, &mut seen.watch.timing, &seen.sightings, &seen.history)
+        .map_err(|e| not_found(&e, &seen.watch, seen.dots))?;
+    Ok(FoundHead {
+        aligned,
+        timing: Timing { unsure_s: Timing::FOUND_S, ..seen.watch.timing },
+        exposure_s: seen.watch.exposure_s,
+        dots: seen.dots,
+        lost: seen.watch.lost,
+    })
+}
+
+/// Has the head draw dots, and watches them. The rig is as for [`find_head`].
+pub(crate) fn see_dots<R: Simulated + Eye>(
+    rig: &mut R,
+    camera: &Camera,
+    driving: &Driving,
+    request: &DotsRequest,
+    (progress, stop): (&Progress, &Stop),
+    keep: &mut dyn FnMut(&Tick),
+) -> Result<SeenDots, Failure> {
     let belief = &request.belief;
     let places = dots(camera, driving, request.across);
     let plan = plan_of(&places, driving)?;
@@ -140,14 +182,19 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     watch.begin(rig.take(watch.exposure_s)?);
     let mut history = History::new(&driving.rig.model.relay);
     let mut sightings = Vec::new();
-    let mut in_vain = false;
+    let (mut in_vain, mut homed) = (false, Ok(()));
     let run = run_segments(rig, &plan.segments, false, |rig, now| {
         keep(now);
         history.push(&now.telemetry);
         look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
         progress.at(u64::from(now.telemetry.plan_tick));
         in_vain = sightings.is_empty() && watch.lost > request.most_in_vain;
-        if in_vain || stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        homed = check_homed(&now.telemetry);
+        if in_vain || homed.is_err() || stop.is_wanted() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     });
     // dark, whether it came to its end or not
     let _ = rig.send(Command::Disarm);
@@ -162,6 +209,7 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     if let Some(fault) = run.fault() {
         return Err(Failure::fault(fault));
     }
+    homed?;
     if in_vain {
         let message =
             format!("in {} images of its dots no spot is to be seen: it points elsewhere", watch.lost);
@@ -172,15 +220,7 @@ pub(crate) fn find_head<R: Simulated + Eye>(
             "the head left its dots again and again, and the run was given up; step nearer (--distance)";
         return Err(Failure::failed("unfinished", message));
     }
-    let aligned = aligned(belief, &mut watch.timing, &sightings, &history)
-        .map_err(|e| not_found(&e, &watch, places.len()))?;
-    Ok(FoundHead {
-        aligned,
-        timing: Timing { unsure_s: Timing::FOUND_S, ..watch.timing },
-        exposure_s: watch.exposure_s,
-        dots: places.len(),
-        lost: watch.lost,
-    })
+    Ok(SeenDots { watch, history, sightings, dots: places.len() })
 }
 
 fn look<R: Eye>(
@@ -199,20 +239,21 @@ fn look<R: Eye>(
     }
 }
 
+fn spots(sightings: &[Sighting], history: &History, timing: &Timing) -> Vec<SeenSpot> {
+    sightings.iter().filter_map(|sighting| sighting.spot(history, timing)).collect()
+}
+
 fn aligned(
     belief: &AlignmentBelief,
     timing: &mut Timing,
     sightings: &[Sighting],
     history: &History,
 ) -> Result<Aligned, AlignError> {
-    let spots = |timing: &Timing| -> Vec<SeenSpot> {
-        sightings.iter().filter_map(|sighting| sighting.spot(history, timing)).collect()
-    };
-    let mut found = align(belief, &spots(timing))?;
+    let mut found = align(belief, &spots(sightings, history, timing))?;
     for _ in 1..ROUNDS {
         timing.late_s += found.alignment.late_s;
         timing.readout_s += found.alignment.readout_s;
-        found = align(belief, &spots(timing))?;
+        found = align(belief, &spots(sightings, history, timing))?;
     }
     Ok(found)
 }

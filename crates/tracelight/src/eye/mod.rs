@@ -12,6 +12,7 @@
 //! | [`figure`] | the figure on the wall, as strokes |
 //! | [`spots`] | the laser's spot in shots, held against what the encoders said |
 //! | [`head`] | the head found from spots |
+//! | [`homing`] | a head that was just powered up finds where it points |
 //! | [`follow`] | the spot followed while a rig draws: what is off slowly, and suddenly |
 //! | [`painted`] | what was seen of it, as a picture |
 //! | [`feed`] | segments sent with what is slowly off taken off them |
@@ -25,6 +26,7 @@ pub(crate) mod feed;
 pub(crate) mod figure;
 pub(crate) mod follow;
 pub(crate) mod head;
+pub(crate) mod homing;
 mod latest;
 mod pages;
 pub(crate) mod painted;

@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use clap::ValueEnum;
 use tracelight_aim::{Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens, Placement, SizeRequest};
 use tracelight_plant::{CameraConfig, Poster, SimulatedCamera, Wall};
+use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Room, SimulatedRig};
 use tracelight_stroke::{Affine, Point, Vec2};
 
@@ -100,16 +101,34 @@ impl Furnished {
         })
     }
 
-    /// A rig as it truly is, just powered up, that is believed to be this.
-    fn rig(&self, believed: &RigConfig, pose: HeadPose) -> SimulatedRig {
+    /// A rig as it truly is that is believed to be this; homed, or just powered up wherever somebody left it.
+    fn rig(&self, believed: &RigConfig, pose: HeadPose, homed: bool) -> SimulatedRig {
         let mut rig = believed.clone();
         rig.truth.model.geometry = self.geometry;
-        SimulatedRig::new(&rig, pose, self.seed).standing(self.pose)
+        let rig = if homed {
+            SimulatedRig::new(&rig, pose, self.seed)
+        } else {
+            SimulatedRig::unhomed(&rig, pose, left(&rig, self.seed), self.seed)
+        };
+        rig.standing(self.pose)
     }
 
     /// The same with the camera.
     pub(crate) fn watched(&self, believed: &RigConfig, pose: HeadPose) -> Room {
-        Room::new(self.rig(believed, pose), self.eye.clone(), self.seed)
+        Room::new(self.rig(believed, pose, true), self.eye.clone(), self.seed)
+    }
+
+    /// The same of a rig that was just powered up, its head wherever somebody left it.
+    pub(crate) fn powered_up(&self, believed: &RigConfig, pose: HeadPose) -> Room {
+        Room::new(self.rig(believed, pose, false), self.eye.clone(), self.seed)
+    }
+
+    /// How far a head's zero truly is from where it was to be, m on the wall: of one whose joints are truly further by so much than their encoders say, rad; against
+    /// where a known head has it, or where one faces the wall.
+    pub(crate) fn zero_error_m(&self, off_rad: PanTilt<f64>, is_known: bool) -> PanTilt<f64> {
+        let [left, down] = self.geometry.beam_off_rad;
+        let faces = PanTilt::new(self.pose.yaw_rad + left, down);
+        PanTilt::from_fn(|j| self.pose.distance_m * (off_rad[j] + if is_known { 0.0 } else { faces[j] }))
     }
 
     /// Root mean square and most of how far the spot truly is from where a head so believed would put it, over the picture's place, m.
@@ -126,6 +145,16 @@ impl Furnished {
         }
         Some(((sum / count).sqrt(), most))
     }
+}
+
+/// Where a head was left: anywhere in four fifths of its joints' ranges, and in front of it, rad.
+pub(crate) fn left(rig: &RigConfig, seed: u64) -> PanTilt<f64> {
+    const MOST_RAD: f64 = 1.0;
+    let mut dice = Dice(oorandom::Rand64::new(u128::from(seed) << 64 | 1));
+    rig.model.geometry.range_rad.map(|(lower, upper)| {
+        let reach = (0.4 * (upper - lower)).min(MOST_RAD);
+        0.5 * (lower + upper) + dice.within(reach)
+    })
 }
 
 /// Draws from a seed.

@@ -2,7 +2,7 @@
 
 use tracelight_aim::{Alignment, Camera, TrimBelief};
 use tracelight_rig::PanTilt;
-use tracelight_sim::{Room, Run};
+use tracelight_sim::{Room, Run, Simulated};
 use tracelight_stroke::{Comparison, Drawing, Point, compare};
 
 use super::Prepared;
@@ -13,11 +13,13 @@ use crate::eye::Looks;
 use crate::eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_figure};
 use crate::eye::follow::Followed;
 use crate::eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_front};
+use crate::eye::homing::check_homed;
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::source::Source;
 use crate::eye::spots::Timing;
+use crate::eye::wall::SeenWall;
 use crate::failure::Failure;
-use crate::head_file;
+use crate::head_file::{self, KnownHead};
 use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, Raster};
 use crate::picture;
 use crate::progress::Progress;
@@ -50,7 +52,10 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     }
     progress.stage("wall", 1);
     let room = furnished(args, &driving)?;
-    let mut rig = room.as_ref().map(|room| room.watched(&driving.rig, driving.pose));
+    let mut rig = room.as_ref().map(|room| {
+        let put_up = if args.sim_unhomed { Furnished::powered_up } else { Furnished::watched };
+        put_up(room, &driving.rig, driving.pose)
+    });
     let mut camera = args.eye.open()?;
     let wanted = FigureRequest {
         eye: &args.eye,
@@ -70,9 +75,8 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     let (mut timing, mut exposure_s, mut belief) =
         (Timing::USUAL, SPOT_EXPOSURE_S, TrimBelief::known(metres_per_pixel(&camera).unwrap_or_default()));
     let head = match (known, &mut rig, &room) {
-        (Some(known), _, _) => {
-            known.check_wall(&wall)?;
-            driving.believe(known.geometry, known.pose);
+        (Some(known), rig, _) => {
+            believe(&known, &wall, rig.as_mut(), &mut driving)?;
             (timing, exposure_s) = (known.timing, known.exposure_s);
             None
         }
@@ -109,6 +113,18 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     let truth = truth(args, room.as_ref(), progress)?;
     let seen = Seen { room, figures, image: wall.pixels, wall: known, followed, truth };
     super::planned(sketch, placed, driving, Some(seen), (progress, stop))
+}
+
+/// A head that was found before is believed to stand and to be built so, if its rig knows where it is, and the wall is where it was.
+fn believe(
+    known: &KnownHead,
+    wall: &SeenWall,
+    rig: Option<&mut Room>,
+    driving: &mut Driving,
+) -> Result<(), Failure> {
+    known.check_wall(wall)?;
+    driving.believe(known.geometry, known.pose);
+    rig.map_or(Ok(()), |rig| check_homed(&rig.step().telemetry))
 }
 
 /// The room, if it is simulated.

@@ -9,6 +9,7 @@ use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::{Answer, Voice, write_file};
 use crate::eye::head::{DotsRequest, FoundHead, find_head, in_front};
+use crate::eye::homing::{Homed, home_head};
 use crate::eye::room::{Furnished, RoomRequest};
 use crate::eye::source::Source;
 use crate::eye::wall::{SeenWall, see_wall, well_exposed};
@@ -30,6 +31,13 @@ pub(super) struct HeadArgs {
     placement: PlacementArgs,
     #[command(flatten)]
     driving: DrivingArgs,
+    /// The head was just powered up, or lost count: find out where it points first. It goes round in the dark and lights a dot of a third of a second here and there,
+    /// wherever that falls, until the camera sees one: keep eyes away. A simulated head is then powered up wherever somebody left it
+    #[arg(long)]
+    home: bool,
+    /// Home a head that was found before, by a file that this command has written, so that the file holds again; nothing is found anew and nothing is written
+    #[arg(long, value_name = "FILE.toml", requires = "home", conflicts_with = "output")]
+    head: Option<String>,
     /// File for what is found
     #[arg(short, long, value_name = "FILE.toml", default_value = "head.toml")]
     output: String,
@@ -55,25 +63,76 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         seed: args.seed,
     };
     progress.stage("wall", 1);
+    let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
     let room = Furnished::new(&request, &driving.rig, driving.pose)?;
-    let mut rig = room.watched(&driving.rig, driving.pose);
+    let mut rig = if args.home {
+        room.powered_up(&driving.rig, driving.pose)
+    } else {
+        room.watched(&driving.rig, driving.pose)
+    };
     let wall = see_wall(well_exposed(&mut rig, stop)?, args.eye.known()?.as_ref())?;
     wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
     stop.check()?;
-    driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
-    let found = find_head(
-        &mut rig,
-        &wall.camera.camera,
-        &driving,
-        &DotsRequest::first(&driving),
-        (&progress, stop),
-        &mut |_| {},
-    )?;
+    let camera = wall.camera.camera;
+    match &known {
+        Some(known) => {
+            known.check_wall(&wall)?;
+            driving.believe(known.geometry, known.pose);
+        }
+        None => driving.stand(in_front(&camera, driving.pose.distance_m)),
+    }
+    let watched = (&progress, stop);
+    let homed = if args.home {
+        let homed = home_head(&mut rig, &camera, &driving, known.is_some(), watched)?;
+        let count_rad = driving.rig.model.encoder.count_rad();
+        let truly = rig.rig().true_counts();
+        let off_rad = PanTilt::from_fn(|j| count_rad * f64::from(truly[j] - homed.counts[j]));
+        Some((homed, room.zero_error_m(off_rad, known.is_some())))
+    } else {
+        None
+    };
+    if known.is_some() {
+        let text = format!("wall:     {}{}", wall.words(), homed_text(homed.as_ref()));
+        return Ok(Answer::new(text, with_homed(json!({}), homed.as_ref()).to_string()));
+    }
+    let found = find_head(&mut rig, &camera, &driving, &DotsRequest::first(&driving), watched, &mut |_| {})?;
     stop.check()?;
     write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, &wall))?)?;
     let pose = found.aligned.alignment.pose;
-    let truth = room.true_error_m(&found.aligned.alignment.geometry, &pose);
-    Ok(Answer::new(text(&wall, &found, truth, &args.output), json(&found, truth).to_string()))
+    // a joint that is homed a count off is as if the head stood turned by it
+    let truth = if args.home { None } else { room.true_error_m(&found.aligned.alignment.geometry, &pose) };
+    let text = text(&wall, &found, truth, &args.output) + &homed_text(homed.as_ref());
+    Ok(Answer::new(text, with_homed(json(&found, truth), homed.as_ref()).to_string()))
+}
+
+/// What became of homing, and by how much zero truly is off, m.
+type HomedTruly = (Homed, PanTilt<f64>);
+
+fn homed_text(homed: Option<&HomedTruly>) -> String {
+    let Some((homed, off_m)) = homed else { return String::new() };
+    let dots = match homed.sought {
+        1 => "the first dot was in sight".to_owned(),
+        n => format!("dot {n} was in sight"),
+    };
+    format!(
+        "\nhomed:    {dots}; zero is {:+} and {:+} counts from where it was powered up, pan and tilt\n\
+         truth:    zero is off by {:.2} mm on the wall in pan, {:.2} mm in tilt (known because the room is simulated)",
+        -homed.counts.pan,
+        -homed.counts.tilt,
+        1e3 * off_m.pan.abs(),
+        1e3 * off_m.tilt.abs(),
+    )
+}
+
+fn with_homed(mut object: serde_json::Value, homed: Option<&HomedTruly>) -> serde_json::Value {
+    if let Some((homed, off_m)) = homed {
+        object["homed"] = json!({
+            "sought": homed.sought,
+            "counts": [homed.counts.pan, homed.counts.tilt],
+            "truth_mm": [1e3 * off_m.pan, 1e3 * off_m.tilt],
+        });
+    }
+    object
 }
 
 fn text(wall: &SeenWall, found: &FoundHead, truth: Option<(f64, f64)>, output: &str) -> String {
