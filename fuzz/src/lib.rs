@@ -20,4 +20,6 @@ pub mod trace;
 mod bytes;
 mod failure;
 mod output;
+#[path = "../../crates/tracelight/src/quiet.rs"]
+mod quiet;
 mod sound;

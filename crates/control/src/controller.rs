@@ -6,7 +6,7 @@ use crate::creep::Pace;
 use crate::player::{Played, Player};
 use crate::return_path::ReturnPath;
 use crate::servo::{Reference, Servo};
-use crate::supervisor::{Clock, Situation, Supervisor};
+use crate::supervisor::{Clock, Situation, Supervisor, rests};
 use crate::watch::Watch;
 use crate::{Config, Estimate};
 
@@ -67,7 +67,8 @@ impl Controller {
         }
     }
 
-    /// Takes a command, or gives it back when the queue is full, or when a head is to be homed that is armed. A segment that does not join the last one is taken
+    /// Takes a command, or gives it back when the queue is full, or when a head is to be homed that is armed, moves, or can
+    /// not be there. A segment that does not join the last one is taken
     /// and latches a fault.
     pub fn accept(&self, state: &mut State, command: Command) -> Result<(), Command> {
         match command {
@@ -77,8 +78,12 @@ impl Controller {
                 state.player.hold();
             }
             Command::Point(ticks) => state.supervisor.point(u32::from(ticks)),
-            Command::Home(_) if state.supervisor.phase != Phase::Dark => return Err(command),
+            Command::Home(counts) if !self.may_home(state, counts) => return Err(command),
             Command::Home(counts) => self.home(state, counts),
+            Command::Unhome => {
+                state.supervisor.unhome();
+                state.player.hold();
+            }
             Command::Abandon => {
                 state.supervisor.disarm();
                 state.player.abandon();
@@ -113,6 +118,19 @@ impl Controller {
             state.player.reopen();
         }
         state.supervisor.arm();
+    }
+
+    /// Whether the joints rest, unarmed, and may be at these counts.
+    fn may_home(&self, state: &State, counts: PanTilt<i32>) -> bool {
+        /// Who tells where a head stands may be so far off, rad.
+        const MARGIN_RAD: f32 = 0.2;
+        let is_possible = |j: Joint| {
+            let (axis, at) = (&self.config.axes[j], counts[j] as f32 * self.config.axes[j].count_rad);
+            (axis.limits.lower_rad - MARGIN_RAD..=axis.limits.upper_rad + MARGIN_RAD).contains(&at)
+        };
+        state.supervisor.phase == Phase::Dark
+            && rests(state.servo.estimates().map(|estimate| estimate.velocity_rad_s))
+            && Joint::BOTH.into_iter().all(is_possible)
     }
 
     /// Reads encoders from these counts from now on; what was believed before is of other angles.

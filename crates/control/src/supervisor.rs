@@ -12,6 +12,8 @@ const RETURN_TICKS: u32 = 60;
 const CALM_TICKS: u32 = 500;
 /// Longest dot of a head of which nobody knows where it points, ticks: a second.
 const UNHOMED_DOT_TICKS: u32 = 1000;
+/// and how long it is dark before another.
+const UNHOMED_REST_TICKS: u32 = 100;
 /// Distance in tolerances at which a head is lost on its way in the dark, too.
 const LOST_TOLERANCES: f32 = 10.0;
 
@@ -32,6 +34,8 @@ pub(crate) struct Supervisor {
     settled_ticks: u32,
     /// For how long a dot is still wanted while it is disarmed.
     pointing_ticks: u32,
+    /// Since the last dot.
+    dotless_ticks: u32,
 }
 
 /// What the supervisor judges a tick by.
@@ -99,13 +103,26 @@ impl Supervisor {
 
     /// A dot is wanted from now on, where the plan's clock stands; of an unhomed head anywhere.
     pub(crate) fn point(&mut self, ticks: u32) {
-        let most = if self.homed { u32::MAX } else { UNHOMED_DOT_TICKS };
-        self.pointing_ticks = if self.phase == Phase::Dark { ticks.min(most) } else { 0 };
+        if self.phase != Phase::Dark {
+            self.pointing_ticks = 0;
+        } else if self.homed {
+            self.pointing_ticks = ticks;
+        } else if self.pointing_ticks == 0 && self.dotless_ticks >= UNHOMED_REST_TICKS {
+            // a host that asks again and again does not get light that stays
+            self.pointing_ticks = ticks.min(UNHOMED_DOT_TICKS);
+        }
     }
 
     /// The encoders know from now on where the joints are, which rest, without a job.
     pub(crate) fn home(&mut self) {
         self.homed = true;
+        self.pointing_ticks = 0;
+    }
+
+    /// Nobody knows any more where the joints are.
+    pub(crate) fn unhome(&mut self) {
+        self.disarm();
+        self.homed = false;
         self.pointing_ticks = 0;
     }
 
@@ -115,6 +132,7 @@ impl Supervisor {
             self.trip(Fault::LimitReached);
         }
         self.pointing_ticks = self.pointing_ticks.saturating_sub(1);
+        self.dotless_ticks = if self.pointing_ticks > 0 { 0 } else { self.dotless_ticks.saturating_add(1) };
         match self.phase {
             // a job that was disarmed on its way goes on only from where it stopped, a new one from where it begins
             Phase::Armed if at.segment.is_some() && (at.begun || strayed(at)) => self.begin_hold(),
@@ -220,7 +238,12 @@ fn exceeds(value: f32, bound: f32) -> bool {
 }
 
 fn is_still(at: &Situation<'_>) -> bool {
-    at.rate_rad_s.pan.abs().max(at.rate_rad_s.tilt.abs()) < RETURN_RATE_RAD_S
+    rests(at.rate_rad_s)
+}
+
+/// Whether joints of these speeds are as good as at rest.
+pub(crate) fn rests(rate_rad_s: PanTilt<f32>) -> bool {
+    rate_rad_s.pan.abs().max(rate_rad_s.tilt.abs()) < RETURN_RATE_RAD_S
 }
 
 fn returned(at: &Situation<'_>) -> bool {

@@ -60,7 +60,17 @@ fn a_dot_of_a_second_is_lit_wherever_it_rests_and_none_while_it_moves() {
     assert!((990..=1010).contains(&lit.len()), "{}", lit.len());
     let (first, last) = (lit[0].spot.unwrap(), lit[lit.len() - 1].spot.unwrap());
     assert!(first.distance(last) < 2e-3, "{first} {last}");
+    // somebody who asks in every tick gets no more
+    let again: Vec<Tick> = (0..5000)
+        .map(|_| {
+            rig.send(Command::Point(60_000)).unwrap();
+            rig.step()
+        })
+        .collect();
+    let longest = again.split(|t| !t.light).map(<[Tick]>::len).max().unwrap();
+    assert!((990..=1010).contains(&longest), "{longest}");
     // armed it moves, and lights nothing
+    ticks(&mut rig, 1100);
     rig.send(Command::Arm).unwrap();
     rig.send(Command::Point(1000)).unwrap();
     let run = run_segments(&mut rig, &plan.segments, false, |rig, _| {
@@ -106,4 +116,14 @@ fn an_armed_head_is_not_homed_and_counts_go_on_from_where_it_was() {
     // once more, by a count
     rig.send(Command::Home(PanTilt::new(101, -50))).unwrap();
     assert_eq!(rig.step().telemetry.measured.map(|m| m.count), PanTilt::new(101, -50));
+    // where no joint can be it is not, and on its way it is nowhere
+    for absurd in [PanTilt::new(i32::MAX, 0), PanTilt::new(0, i32::MIN), PanTilt::new(0, 2000)] {
+        assert_eq!(rig.send(Command::Home(absurd)), Err(Command::Home(absurd)));
+    }
+    rig.send(Command::Abandon).unwrap();
+    let moving = ticks(&mut rig, 100).last().unwrap().rate_rad_s;
+    assert!(moving.pan.abs().max(moving.tilt.abs()) > 0.05, "{moving:?}");
+    assert_eq!(rig.send(home), Err(home));
+    rig.send(Command::Unhome).unwrap();
+    assert!(rig.step().telemetry.darkness.contains(Darkness::Unhomed));
 }

@@ -135,6 +135,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "While it drew the spot was seen elsewhere than it should be, and why could not be told or mended: the laser is dark. Keep camera and head still, hang pages of markers where the camera sees them, and draw again.",
     ),
     (
+        "head-not-found",
+        "The dots that a head drew, or lit here and there, do not tell where it stands. The message says what was seen of them. See that the laser is on, that the camera's view of the wall is free and holds markers, and that the head faces the wall.",
+    ),
+    (
         "camera-file",
         "A camera file is not one, or holds numbers that no camera has. Write it again with `tracelight calibrate`.",
     ),
@@ -228,7 +232,7 @@ const fn what_to_do(reason: Darkness) -> &'static str {
             "See whether somebody holds the head; if not, an encoder is going dead or loses counts: look at its cable and its disc."
         }
         Darkness::Unhomed => {
-            "Encoders count from where they are powered up. Tell the head where it stands: tracelight calibrate head --home."
+            "Encoders count from where they are powered up. Have a camera find where it stands: tracelight calibrate head --home --camera …"
         }
         Darkness::Faulted => "Look up the fault's own code.",
     }

@@ -3,7 +3,7 @@
 //! Encoders that count from where they were powered up know angles from there and no others. One dot in sight tells both joints' angles as well as it is known
 //! how the head stands; dots all over the wall tell them to a fraction of a count.
 
-use tracelight_aim::{Alignment, Camera, HeadGeometry};
+use tracelight_aim::{Alignment, Camera, HeadGeometry, HeadPose};
 use tracelight_rig::{Command, Darkness, Joint, PanTilt, Phase, Segment, TICK_F64_S, Telemetry};
 use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
@@ -37,7 +37,9 @@ const STRAY_RAD: f32 = 0.05;
 /// How long a dot is lit, ticks: a camera that sends ten images a second sees it whole.
 const DOT_TICKS: u16 = 350;
 /// How long its image is waited for, ticks.
-const WAIT_TICKS: u32 = 800;
+const WAIT_TICKS: u32 = 600;
+/// Images of a dot in which it is looked for.
+const LIT_IMAGES: usize = 3;
 /// How long a joint rests after a motion until a dot is lit, ticks.
 const REST_TICKS: u32 = 150;
 /// Longest that a head takes to go to zero, ticks.
@@ -46,7 +48,9 @@ const HOMEWARD_TICKS: u32 = 15_000;
 const THERE_RAD: f32 = 3e-3;
 const STILL_RAD_S: f32 = 0.01;
 /// Fewest spots by which a known head is homed.
-const FEWEST_SPOTS: usize = 20;
+const FEWEST_SPOTS: usize = 12;
+/// Half of its dots tell of zeros that are no further apart, counts.
+const MOST_APART_COUNTS: f64 = 0.75;
 /// How far apart two images of one dot may show it, px.
 const SAME_PX: f64 = 3.0;
 
@@ -62,20 +66,24 @@ pub(crate) fn home_head<R: Simulated + Eye>(
     let history = History::new(&driving.rig.model.relay);
     let mut homing = Homing { rig, camera, driving, stop, history, counts: PanTilt::default() };
     progress.stage("homing", 1);
-    let (sought, true_rad) = homing.seek()?;
-    homing.tell(true_rad)?;
-    let watched = (progress, stop);
-    let off_rad = if is_known {
-        off_rad(homing.rig, camera, driving, watched)?
-    } else {
-        let all = DotsRequest::first(driving);
-        let found = find_head(homing.rig, camera, driving, &all, watched, &mut |_| {})?.aligned.alignment;
-        let [left, down] = found.geometry.beam_off_rad;
-        PanTilt::new(found.pose.yaw_rad + left, down)
-    };
-    let now = homing.rest(1)?;
-    homing.tell(PanTilt::from_fn(|j| homing.count_rad() * f64::from(now.measured[j].count) + off_rad[j]))?;
-    Ok(Homed { sought, counts: homing.counts })
+    let homed = homing.home(is_known, (progress, stop));
+    // dark whatever became of it; and a guess is not to be drawn by
+    let _ = homing.rig.send(Command::Disarm);
+    if homed.is_err() {
+        let _ = homing.rig.send(Command::Unhome);
+    }
+    for _ in 0..REST_TICKS {
+        let _ = homing.rig.send(Command::KeepAlive);
+        homing.rig.step();
+    }
+    homed
+}
+
+/// By which angles a head is turned from where it should be to have zero, rad: pan from where its beam goes straight at the wall, tilt from where it is square to the pan axis.
+pub(crate) fn turned_rad(geometry: &HeadGeometry, pose: &HeadPose) -> Option<PanTilt<f64>> {
+    let beam = HeadGeometry { laser_offset_m: [0.0; 3], ..anywhere(geometry) };
+    let straight = beam.angles(pose, Point::new(pose.right_m, pose.up_m)).ok()?;
+    Some(PanTilt::new(-straight.pan, geometry.beam_off_rad[1]))
 }
 
 /// By how much a known head's joints are truly further than its encoders say, rad: what most dots say.
@@ -106,12 +114,21 @@ fn off_rad<R: Simulated + Eye>(
         );
         return Err(Failure::failed("head-not-found", message));
     }
-    let median = |j: Joint| {
-        let mut values: Vec<f64> = off.iter().map(|off| off[j]).collect();
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
-    };
-    Ok(PanTilt::from_fn(median))
+    let middle = PanTilt::from_fn(|j| median(off.iter().map(|off| off[j])));
+    // of a head that stands as is believed all dots say the same
+    let apart_rad = PanTilt::from_fn(|j| median(off.iter().map(|off| (off[j] - middle[j]).abs())));
+    let count_rad = driving.rig.model.encoder.count_rad();
+    if apart_rad.pan.max(apart_rad.tilt) > MOST_APART_COUNTS * count_rad {
+        let message = "the head stands elsewhere than where it was found: its dots tell of different zeros; find it anew (calibrate head --home without --head)";
+        return Err(Failure::failed("head-not-found", message));
+    }
+    Ok(middle)
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
 }
 
 /// The same head with joints that go anywhere in front of it: where one stands that was left, its range does not tell.
@@ -133,6 +150,24 @@ struct Homing<'a, R> {
 }
 
 impl<R: Simulated + Eye> Homing<'_, R> {
+    fn home(&mut self, is_known: bool, watched: (&Progress, &Stop)) -> Result<Homed, Failure> {
+        let (sought, true_rad) = self.seek()?;
+        self.tell(true_rad)?;
+        let off_rad = if is_known {
+            off_rad(self.rig, self.camera, self.driving, watched)?
+        } else {
+            let all = DotsRequest::first(self.driving);
+            let found = find_head(self.rig, self.camera, self.driving, &all, watched, &mut |_| {})?;
+            let Alignment { geometry, pose, .. } = found.aligned.alignment;
+            turned_rad(&geometry, &pose).ok_or_else(|| {
+                Failure::failed("head-not-found", "the head as its dots tell does not face the wall: turn it by hand so that it does, and home it again")
+            })?
+        };
+        let now = self.rest(1)?;
+        self.tell(PanTilt::from_fn(|j| self.count_rad() * f64::from(now.measured[j].count) + off_rad[j]))?;
+        Ok(Homed { sought, counts: self.counts })
+    }
+
     fn count_rad(&self) -> f64 {
         self.driving.rig.model.encoder.count_rad()
     }
@@ -140,7 +175,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
     /// Lights dots further and further off until one is seen. How many there were, and the joints' true angles at the last, rad.
     fn seek(&mut self) -> Result<(usize, PanTilt<f64>), Failure> {
         // before anything is remembered: while an image is waited for, nobody watches the ticks
-        let dark = self.dark()?;
+        let change = self.change()?;
         let range = self.driving.machine.geometry.range_rad;
         let mut at = PanTilt::new(0.0, 0.0);
         let places = places(self.stride_rad(), range);
@@ -148,7 +183,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         for (number, place) in (1..).zip(places) {
             self.go(at, place)?;
             at = place;
-            if let Some(spot) = self.dot(&dark)? {
+            if let Some(spot) = self.dot(change)? {
                 let geometry = anywhere(&self.driving.machine.geometry);
                 let on_wall = self.camera.target(spot);
                 let truly = on_wall.and_then(|on_wall| geometry.angles(&self.driving.pose, on_wall).ok());
@@ -163,15 +198,16 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         Err(Failure::failed("head-not-found", message))
     }
 
-    /// The wall without light, and by how much two images of it differ.
-    fn dark(&mut self) -> Result<Dark, Failure> {
+    /// By how much the wall seems to change by itself, from one image to the next.
+    fn change(&mut self) -> Result<f64, Failure> {
         const IMAGES: usize = 4;
-        let mut dark = Dark { image: self.rig.take(SPOT_EXPOSURE_S)?.red()?, change: 0.0 };
+        let dark = Dark { image: self.rig.take(SPOT_EXPOSURE_S)?.red()?, change: 0.0 };
+        let mut change = 0.0_f64;
         for _ in 1..IMAGES {
-            let other = self.rig.take(SPOT_EXPOSURE_S)?.red()?;
-            dark.change = dark.change.max(dark.brightest(&other));
+            self.stop.check()?;
+            change = change.max(dark.brightest(&self.rig.take(SPOT_EXPOSURE_S)?.red()?));
         }
-        Ok(dark)
+        Ok(change)
     }
 
     /// From one place to the next, so that one of them falls into what the camera sees, rad.
@@ -222,22 +258,36 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         self.rest(REST_TICKS).map(|_| ())
     }
 
-    /// Lights a dot where the head rests; where the camera sees it, px.
-    fn dot(&mut self, dark: &Dark) -> Result<Option<Point>, Failure> {
-        while self.rig.shot().is_some() {}
+    /// Lights a dot where the head rests; where the camera sees it, px. What does not go out with it is none.
+    fn dot(&mut self, change: f64) -> Result<Option<Point>, Failure> {
+        let Some(image) = self.image(Light::Dark)? else {
+            return Err(Failure::failed(
+                "no-image",
+                "the camera sends no images any more: is it plugged in?",
+            ));
+        };
+        let dark = Dark { image, change };
         let _ = self.rig.send(Command::Point(DOT_TICKS));
-        let mut seen: Option<Point> = None;
+        let mut seen: Vec<Point> = Vec::new();
+        for _ in 0..LIT_IMAGES {
+            let lit = self.image(Light::Lit)?;
+            seen.extend(lit.and_then(|lit| dark.spot(&lit)));
+        }
+        let &[.., before, now] = seen.as_slice() else { return Ok(None) };
+        let after = self.image(Light::Dark)?.and_then(|after| dark.spot(&after));
+        let is_gone = after.is_none_or(|after| after.distance(now) > SAME_PX);
+        Ok((is_gone && before.distance(now) < SAME_PX).then_some(now))
+    }
+
+    /// The next image that was taken all in light, or all in the dark; `None` if none comes.
+    fn image(&mut self, wanted: Light) -> Result<Option<Grey>, Failure> {
         for _ in 0..WAIT_TICKS {
             self.step()?;
             while let Some(shot) = self.rig.shot() {
-                if !self.is_lit(&shot) {
-                    continue;
-                }
-                let spot = dark.spot(&shot.red()?);
-                match (seen, spot) {
-                    (Some(before), Some(now)) if before.distance(now) < SAME_PX => return Ok(Some(now)),
-                    (None, None) => return self.rest(WAIT_TICKS).map(|_| None),
-                    _ => seen = spot,
+                if self.light(&shot) == wanted
+                    && let Ok(image) = shot.red()
+                {
+                    return Ok(Some(image));
                 }
             }
         }
@@ -245,12 +295,15 @@ impl<R: Simulated + Eye> Homing<'_, R> {
     }
 
     /// Whether the laser was on while an image was taken.
-    fn is_lit(&self, shot: &Shot) -> bool {
+    fn light(&self, shot: &Shot) -> Light {
         let Timing { late_s, readout_s, unsure_s } = Timing::USUAL;
         let from_s = shot.stamp_s + late_s;
         let until_s = from_s + shot.exposure_s + readout_s;
-        shot.is_exposed(SPOT_EXPOSURE_S)
-            && self.history.light(from_s - unsure_s, until_s + unsure_s) == Light::Lit
+        if shot.is_exposed(SPOT_EXPOSURE_S) {
+            self.history.light(from_s - unsure_s, until_s + unsure_s)
+        } else {
+            Light::Mixed
+        }
     }
 
     /// Tells the rig at which angles its joints rest, rad, and lets them go to zero.
@@ -262,7 +315,8 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         });
         let counts = PanTilt::from_fn(|j| now.measured[j].count + by[j]);
         if self.rig.send(Command::Home(counts)).is_err() {
-            return Err(Failure::failed("unhomed", "the rig takes no home: it is armed, or moves"));
+            let message = "the rig does not take where its joints are: they move, or they cannot be there; let it come to rest, and home it again";
+            return Err(Failure::failed("unfinished", message));
         }
         self.counts = PanTilt::from_fn(|j| self.counts[j] + by[j]);
         let _ = self.rig.send(Command::Abandon);
@@ -393,12 +447,12 @@ mod tests {
         let ring = |place: &PanTilt<f64>| (place.pan / 0.25).abs().max((place.tilt / 0.2).abs()).round();
         assert!(all.windows(2).all(|pair| ring(&pair[0]) <= ring(&pair[1])));
         assert_eq!(all[0], PanTilt::new(0.0, 0.0));
-        // every place of the range is within a stride of one
-        for pan in -36..=36 {
-            for tilt in -18..=28 {
+        // every place as far as half a stride beyond the outermost is within half a stride of one
+        for pan in -35..=35 {
+            for tilt in -20..=28 {
                 let at = PanTilt::new(f64::from(pan) * 0.025, f64::from(tilt) * 0.025);
                 let near = |place: &PanTilt<f64>| {
-                    (place.pan - at.pan).abs() <= 0.25 && (place.tilt - at.tilt).abs() <= 0.2
+                    (place.pan - at.pan).abs() <= 0.1251 && (place.tilt - at.tilt).abs() <= 0.1001
                 };
                 assert!(all.iter().any(near), "{at:?}");
             }

@@ -12,6 +12,7 @@ use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Room, SimulatedRig};
 use tracelight_stroke::{Affine, Point, Vec2};
 
+use super::homing::turned_rad;
 use super::{Eye, Shot};
 use crate::cli::placing::PlacementArgs;
 use crate::failure::Failure;
@@ -126,9 +127,8 @@ impl Furnished {
     /// How far a head's zero truly is from where it was to be, m on the wall: of one whose joints are truly further by so much than their encoders say, rad; against
     /// where a known head has it, or where one faces the wall.
     pub(crate) fn zero_error_m(&self, off_rad: PanTilt<f64>, is_known: bool) -> PanTilt<f64> {
-        let [left, down] = self.geometry.beam_off_rad;
-        let faces = PanTilt::new(self.pose.yaw_rad + left, down);
-        PanTilt::from_fn(|j| self.pose.distance_m * (off_rad[j] + if is_known { 0.0 } else { faces[j] }))
+        let turned = turned_rad(&self.geometry, &self.pose).filter(|_| !is_known).unwrap_or_default();
+        PanTilt::from_fn(|j| self.pose.distance_m * (off_rad[j] + turned[j]))
     }
 
     /// Root mean square and most of how far the spot truly is from where a head so believed would put it, over the picture's place, m.
