@@ -6,9 +6,12 @@
 #[expect(dead_code, reason = "shared with other tests, which use the rest")]
 mod shapes;
 
+use std::ops::ControlFlow;
+
 use shapes::{POSE, circle, plan_of};
 use tracelight_rig::{Command, Darkness, Joint, PanTilt, Phase, Rig};
-use tracelight_sim::{RigConfig, Simulated, SimulatedRig, Tick, run_segments};
+use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, run_segments};
+use tracelight_trajectory::Plan;
 
 /// Poses that heads were left in, rad.
 fn poses() -> Vec<PanTilt<f64>> {
@@ -23,6 +26,10 @@ fn unhomed(config: &RigConfig, angle_rad: PanTilt<f64>) -> SimulatedRig {
 
 fn ticks(rig: &mut SimulatedRig, count: u32) -> Vec<Tick> {
     (0..count).map(|_| rig.step()).collect()
+}
+
+fn drawn(rig: &mut SimulatedRig, plan: &Plan) -> Run {
+    run_segments(rig, &plan.segments, false, |_, _| ControlFlow::Continue(()))
 }
 
 /// The counts that its encoders would read if they knew where zero is.
@@ -42,7 +49,7 @@ fn a_head_is_held_where_it_was_left_and_draws_nothing() {
         assert!(Joint::BOTH.iter().all(|&j| (held[j] - begun[j]).abs() < 4e-3), "{pose:?} {held:?}");
         assert_eq!(first[0].telemetry.measured.map(|m| m.count), PanTilt::new(0, 0));
         // its encoders are at zero, wherever that is: a job could begin
-        let run = run_segments(&mut rig, &plan.segments, false, |_, _| std::ops::ControlFlow::Continue(()));
+        let run = drawn(&mut rig, &plan);
         assert!(run.is_done(), "{pose:?} {:?}", run.fault());
         assert!(run.ticks.iter().all(|t| !t.light && t.telemetry.darkness.contains(Darkness::Unhomed)));
     }
@@ -75,7 +82,7 @@ fn a_dot_of_a_second_is_lit_wherever_it_rests_and_none_while_it_moves() {
     rig.send(Command::Point(1000)).unwrap();
     let run = run_segments(&mut rig, &plan.segments, false, |rig, _| {
         rig.send(Command::Point(1000)).unwrap();
-        std::ops::ControlFlow::Continue(())
+        ControlFlow::Continue(())
     });
     assert!(run.is_done() && run.ticks.iter().all(|t| !t.light));
 }
@@ -92,7 +99,7 @@ fn a_head_that_was_told_where_it_stands_draws_as_one_that_always_knew() {
         let home = *ticks(&mut rig, 3000).last().unwrap();
         assert!(Joint::BOTH.iter().all(|&j| home.angle_rad[j].abs() < 2e-3), "{pose:?} {:?}", home.angle_rad);
         assert_eq!(home.telemetry.fault, None);
-        let run = run_segments(&mut rig, &plan.segments, false, |_, _| std::ops::ControlFlow::Continue(()));
+        let run = drawn(&mut rig, &plan);
         assert!(run.is_done(), "{pose:?} {:?}", run.fault());
         let lit: Vec<&Tick> = run.ticks.iter().filter(|t| t.light).collect();
         let off = lit.iter().map(|t| t.spot.unwrap().distance(t.asked.unwrap())).fold(0.0, f64::max);

@@ -176,12 +176,8 @@ fn run_laps(
         }
         progress.stage("run", plan.points.len() as u64);
         let Some(looks) = prepared.watched() else {
-            let (rig, pose) = (&learned.rig, prepared.driving.pose);
-            let rig = if args.sim_unhomed {
-                SimulatedRig::unhomed(rig, pose, left(rig, args.seed), args.seed)
-            } else {
-                SimulatedRig::new(rig, pose, args.seed)
-            };
+            let put_up = if args.sim_unhomed { left } else { SimulatedRig::new };
+            let rig = put_up(&learned.rig, prepared.driving.pose, args.seed);
             laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
             continue;
         };

@@ -209,7 +209,7 @@ fn brief(error: &impl Display) -> String {
 
 /// Whether the last scan of a JPEG ends: decoders fill what is missing with grey. Within a scan 0xFF is followed by 0,
 /// so neither marker can be picture data; a thumbnail's stand before the picture's (ITU-T T.81, §B.1.1.3).
-fn jpeg_is_whole(bytes: &[u8]) -> bool {
+pub(crate) fn jpeg_is_whole(bytes: &[u8]) -> bool {
     let last = |marker: u8| bytes.windows(2).rposition(|w| w == [0xFF, marker]);
     let (start_of_scan, end_of_image) = (last(0xDA), last(0xD9));
     start_of_scan.is_none() || end_of_image > start_of_scan

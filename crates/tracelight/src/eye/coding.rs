@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 
 use crate::output::Raster;
+use crate::picture::jpeg_is_whole;
 
 /// How an image's bytes mean pixels; named by four characters, as in Video4Linux and UVC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,14 +91,14 @@ impl Layout {
     /// Whether bytes may be a whole image: a camera whose cable is bad sends half ones.
     pub(crate) fn is_whole(&self, bytes: &[u8]) -> bool {
         match self.coding {
-            Coding::Jpeg => begins(bytes) && ends(bytes),
+            Coding::Jpeg => begins(bytes) && jpeg_is_whole(bytes),
             _ => bytes.len() >= self.bytes(),
         }
     }
 
     /// Whether it may be a JPEG file but for its end, which some cameras never send.
     pub(crate) fn is_endless(&self, bytes: &[u8]) -> bool {
-        self.coding == Coding::Jpeg && begins(bytes) && !ends(bytes)
+        self.coding == Coding::Jpeg && begins(bytes) && !jpeg_is_whole(bytes)
     }
 
     /// Fewest bytes of an image.
@@ -162,18 +163,9 @@ impl Layout {
     }
 }
 
-/// Whether bytes begin as a JPEG file does.
+/// Whether bytes begin as a JPEG file does, as far as its lines.
 fn begins(bytes: &[u8]) -> bool {
-    bytes.starts_with(&[0xff, 0xd8]) && last(bytes, 0xda).is_some()
-}
-
-/// Whether a JPEG file has an end, which padding may follow; one of a thumbnail in it, before its own lines, is another's.
-fn ends(bytes: &[u8]) -> bool {
-    last(bytes, 0xd9) > last(bytes, 0xda)
-}
-
-fn last(bytes: &[u8], mark: u8) -> Option<usize> {
-    bytes.windows(2).rposition(|two| two == [0xff, mark])
+    bytes.starts_with(&[0xff, 0xd8]) && bytes.windows(2).any(|two| two == [0xff, 0xda])
 }
 
 /// What a camera sends as a JPEG file that every decoder reads. Many leave out the tables by which it was compressed, and mean the usual ones (ITU-T T.81,
@@ -181,7 +173,7 @@ fn last(bytes: &[u8], mark: u8) -> Option<usize> {
 pub(crate) fn as_file(bytes: &[u8]) -> Cow<'_, [u8]> {
     const AS_IN_AVI: [u8; 18] = [0xff, 0xe0, 0, 16, b'A', b'V', b'I', b'1', 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
     let tables: &[u8] = if has_tables(bytes) { &[] } else { &AS_IN_AVI };
-    let end: &[u8] = if ends(bytes) { &[] } else { &[0xff, 0xd9] };
+    let end: &[u8] = if jpeg_is_whole(bytes) { &[] } else { &[0xff, 0xd9] };
     match bytes {
         [a, b, rest @ ..] if !tables.is_empty() || !end.is_empty() => {
             Cow::Owned([&[*a, *b], tables, rest, end].concat())

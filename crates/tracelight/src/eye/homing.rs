@@ -4,6 +4,7 @@
 //! how the head stands; dots all over the wall tell them to a fraction of a count.
 
 use tracelight_aim::{Alignment, Camera, HeadGeometry, HeadPose};
+use tracelight_lab::Quantiles;
 use tracelight_rig::{Command, Darkness, Joint, PanTilt, Phase, Segment, TICK_F64_S, Telemetry};
 use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
@@ -11,8 +12,8 @@ use tracelight_trajectory::JointMotion;
 use tracelight_vision::{Grey, SpotLost, SpotWindow, find_spot};
 
 use super::head::{DotsRequest, SPOT_EXPOSURE_S, find_head, see_dots};
-use super::spots::{History, Light, Timing};
-use super::{Eye, Looks, Shot};
+use super::spots::{History, Light, Timing, WHOLE};
+use super::{Eye, Looks};
 use crate::cli::driving::Driving;
 use crate::failure::Failure;
 use crate::progress::Progress;
@@ -93,17 +94,12 @@ fn off_rad<R: Simulated + Eye>(
     driving: &Driving,
     watched: (&Progress, &Stop),
 ) -> Result<PanTilt<f64>, Failure> {
-    let head = Alignment {
-        geometry: anywhere(&driving.machine.geometry),
-        pose: driving.pose,
-        late_s: 0.0,
-        readout_s: 0.0,
-    };
+    let geometry = anywhere(&driving.machine.geometry);
     let spots = see_dots(rig, camera, driving, &DotsRequest::few(driving), watched, &mut |_| {})?.spots();
     let off: Vec<PanTilt<f64>> = spots
         .iter()
         .filter_map(|spot| {
-            let truly = head.geometry.angles(&head.pose, spot.at).ok()?;
+            let truly = geometry.angles(&driving.pose, spot.at).ok()?;
             Some(PanTilt::from_fn(|j| truly[j] - spot.angle_rad[j]))
         })
         .collect();
@@ -114,21 +110,16 @@ fn off_rad<R: Simulated + Eye>(
         );
         return Err(Failure::failed("head-not-found", message));
     }
-    let middle = PanTilt::from_fn(|j| median(off.iter().map(|off| off[j])));
+    let middle = PanTilt::from_fn(|j| Quantiles::of(off.iter().map(|off| off[j])).median);
     // of a head that stands as is believed all dots say the same
-    let apart_rad = PanTilt::from_fn(|j| median(off.iter().map(|off| (off[j] - middle[j]).abs())));
+    let apart_rad =
+        PanTilt::from_fn(|j| Quantiles::of(off.iter().map(|off| (off[j] - middle[j]).abs())).median);
     let count_rad = driving.rig.model.encoder.count_rad();
     if apart_rad.pan.max(apart_rad.tilt) > MOST_APART_COUNTS * count_rad {
         let message = "the head stands elsewhere than where it was found: its dots tell of different zeros; find it anew (calibrate head --home without --head)";
         return Err(Failure::failed("head-not-found", message));
     }
     Ok(middle)
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or_default()
 }
 
 /// The same head with joints that go anywhere in front of it: where one stands that was left, its range does not tell.
@@ -284,7 +275,8 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         for _ in 0..WAIT_TICKS {
             self.step()?;
             while let Some(shot) = self.rig.shot() {
-                if self.light(&shot) == wanted
+                if shot.is_exposed(SPOT_EXPOSURE_S)
+                    && Timing::USUAL.light(&self.history, &shot, WHOLE) == wanted
                     && let Ok(image) = shot.red()
                 {
                     return Ok(Some(image));
@@ -292,18 +284,6 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             }
         }
         Ok(None)
-    }
-
-    /// Whether the laser was on while an image was taken.
-    fn light(&self, shot: &Shot) -> Light {
-        let Timing { late_s, readout_s, unsure_s } = Timing::USUAL;
-        let from_s = shot.stamp_s + late_s;
-        let until_s = from_s + shot.exposure_s + readout_s;
-        if shot.is_exposed(SPOT_EXPOSURE_S) {
-            self.history.light(from_s - unsure_s, until_s + unsure_s)
-        } else {
-            Light::Mixed
-        }
     }
 
     /// Tells the rig at which angles its joints rest, rad, and lets them go to zero.

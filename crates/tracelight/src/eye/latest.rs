@@ -1,6 +1,9 @@
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+/// Longest that an image, or an answer, of a camera is waited for.
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
+
 /// What a camera sent last, put there by a thread of its own: who comes late gets the newest and not what piled up.
 pub(super) struct Latest<T> {
     slot: Mutex<Slot<T>>,

@@ -106,12 +106,8 @@ impl Furnished {
     fn rig(&self, believed: &RigConfig, pose: HeadPose, homed: bool) -> SimulatedRig {
         let mut rig = believed.clone();
         rig.truth.model.geometry = self.geometry;
-        let rig = if homed {
-            SimulatedRig::new(&rig, pose, self.seed)
-        } else {
-            SimulatedRig::unhomed(&rig, pose, left(&rig, self.seed), self.seed)
-        };
-        rig.standing(self.pose)
+        let put_up = if homed { SimulatedRig::new } else { left };
+        put_up(&rig, pose, self.seed).standing(self.pose)
     }
 
     /// The same with the camera.
@@ -147,14 +143,15 @@ impl Furnished {
     }
 }
 
-/// Where a head was left: anywhere in four fifths of its joints' ranges, and in front of it, rad.
-pub(crate) fn left(rig: &RigConfig, seed: u64) -> PanTilt<f64> {
+/// A rig that was just powered up, its head left anywhere in four fifths of its joints' ranges, and in front of it.
+pub(crate) fn left(rig: &RigConfig, pose: HeadPose, seed: u64) -> SimulatedRig {
     const MOST_RAD: f64 = 1.0;
     let mut dice = Dice(oorandom::Rand64::new(u128::from(seed) << 64 | 1));
-    rig.model.geometry.range_rad.map(|(lower, upper)| {
+    let angle_rad = rig.model.geometry.range_rad.map(|(lower, upper)| {
         let reach = (0.4 * (upper - lower)).min(MOST_RAD);
         0.5 * (lower + upper) + dice.within(reach)
-    })
+    });
+    SimulatedRig::unhomed(rig, pose, angle_rad, seed)
 }
 
 /// Draws from a seed.

@@ -111,12 +111,23 @@ impl Timing {
     /// How far off it may be once it was found from dots, s.
     pub(crate) const FOUND_S: f64 = 0.003;
 
+    /// Whether there was light while rows of an image were exposed, from one down it to another; surely, as far as times are known.
+    pub(crate) fn light(&self, history: &History, shot: &Shot, [from, until]: [f64; 2]) -> Light {
+        let when = Stamp { stamp_s: shot.stamp_s, exposure_s: shot.exposure_s };
+        let (from_s, _) = self.row_s(&when, from);
+        let (_, until_s) = self.row_s(&when, until);
+        history.light(from_s - self.unsure_s, until_s + self.unsure_s)
+    }
+
     /// When a row is exposed: from and until.
     fn row_s(&self, shot: &Stamp, down: f64) -> (f64, f64) {
         let from_s = shot.stamp_s + self.late_s + down * self.readout_s;
         (from_s, from_s + shot.exposure_s)
     }
 }
+
+/// All rows of an image.
+pub(crate) const WHOLE: [f64; 2] = [0.0, 1.0];
 
 /// When an image was taken, as it is stamped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -222,20 +233,14 @@ impl SpotWatch {
     /// Looks at a shot. `head` is what is believed of where the beam goes.
     pub(crate) fn see(&mut self, shot: &Shot, history: &History, head: &Alignment) -> Sight {
         let when = Stamp { stamp_s: shot.stamp_s, exposure_s: shot.exposure_s };
-        let unsure_s = self.timing.unsure_s;
-        let light = |from: f64, until: f64| {
-            let (from_s, _) = self.timing.row_s(&when, from);
-            let (_, until_s) = self.timing.row_s(&when, until);
-            history.light(from_s - unsure_s, until_s + unsure_s)
-        };
-        if light(0.0, 1.0) == Light::Dark {
+        if self.timing.light(history, shot, WHOLE) == Light::Dark {
             self.dark = Some(shot.clone());
             self.exposure_s = self.wished_s;
             return Sight::Nothing;
         }
         let Some(awaited) = self.awaited(when, history, head) else { return Sight::Nothing };
         let down = self.down(awaited);
-        if light(down, down) != Light::Lit {
+        if self.timing.light(history, shot, [down; 2]) != Light::Lit {
             return Sight::Nothing;
         }
         match self.look(shot, when, awaited) {

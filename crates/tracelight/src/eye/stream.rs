@@ -2,16 +2,14 @@
 
 use std::io::{BufRead, BufReader, Read};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use ureq::Agent;
 
-use super::latest::Latest;
+use super::latest::{Latest, PATIENCE};
 use super::{Looks, Shot};
 use crate::failure::Failure;
 
-/// Longest that a connection or an image is waited for.
-const PATIENCE: Duration = Duration::from_secs(5);
 /// Largest image that is taken, bytes: a hundred megapixels as JPEG.
 const MOST_BYTES: u64 = 64_000_000;
 /// Longest line of a header, bytes, and most lines.

@@ -329,28 +329,16 @@ static int open_fake(void)
 
 #define NEXT(name) (__typeof__(&name))dlsym(RTLD_NEXT, #name)
 
-static int opens(const char *path, int flags, mode_t mode)
-{
-    return strcmp(path, DEVICE) ? (NEXT(open))(path, flags, mode) : open_fake();
-}
-
 int open(const char *path, int flags, ...)
 {
     va_list more;
     va_start(more, flags);
     mode_t mode = va_arg(more, mode_t);
     va_end(more);
-    return opens(path, flags, mode);
+    return strcmp(path, DEVICE) ? (NEXT(open))(path, flags, mode) : open_fake();
 }
 
-int open64(const char *path, int flags, ...)
-{
-    va_list more;
-    va_start(more, flags);
-    mode_t mode = va_arg(more, mode_t);
-    va_end(more);
-    return opens(path, flags, mode);
-}
+int open64(const char *path, int flags, ...) __attribute__((alias("open")));
 
 long syscall(long number, ...)
 {

@@ -2,9 +2,9 @@ use std::io;
 use std::time::Duration;
 
 use moq_v4l::Device;
-use moq_v4l::control::{Control, Value};
+use moq_v4l::control::{Control, Description, Value};
 
-use crate::quiet::unless_it_panics;
+use super::why::calmly;
 
 /// Identifiers of controls (Linux, `v4l2-controls.h`).
 mod id {
@@ -62,15 +62,17 @@ impl Controls {
             Ok(Some(_)) => controls.set(id::EXPOSURE_AUTO, BY_HAND).is_ok(),
             Err(_) => false,
         };
-        if is_by_hand && let Some(range) = controls.range(id::EXPOSURE_ABSOLUTE) {
+        let listed = controls.listed();
+        let listed = listed.as_deref();
+        if is_by_hand && let Some(range) = controls.range(id::EXPOSURE_ABSOLUTE, listed) {
             controls.exposure = Some(range);
             // both are of the automatic, which may know neither
             for (control, off) in [(id::EXPOSURE_AUTO_PRIORITY, 0), (id::AUTOGAIN, 0)] {
-                if controls.value(control).is_some_and(|value| value != off) {
+                if controls.value(control).is_some() {
                     drop(controls.set(control, off));
                 }
             }
-            controls.gain = controls.range(id::GAIN);
+            controls.gain = controls.range(id::GAIN, listed);
             if let (Some(range), Some(gain)) = (controls.gain, controls.value(id::GAIN)) {
                 controls.gain_step = ((range.most - gain) / GAIN_STEPS).max(1);
             }
@@ -147,8 +149,7 @@ impl Controls {
 
     /// What a control is; `None` of one that is not there.
     fn read(&self, control: u32) -> io::Result<Option<i64>> {
-        let unknown = || Err(io::Error::other("its driver says what nobody knows"));
-        match unless_it_panics(|| self.device.control(control)).unwrap_or_else(unknown) {
+        match calmly(|| self.device.control(control)) {
             Ok(Control { value: Value::Integer(value), .. }) => Ok(Some(value)),
             Ok(Control { value: Value::Boolean(value), .. }) => Ok(Some(i64::from(value))),
             Ok(_) => Ok(None),
@@ -162,11 +163,14 @@ impl Controls {
         self.read(control).ok().flatten()
     }
 
+    /// All controls; `None` where one is of a kind that is younger than the library, which panics at it.
+    fn listed(&self) -> Option<Vec<Description>> {
+        calmly(|| self.device.query_controls()).ok()
+    }
+
     /// What a control may be.
-    fn range(&mut self, control: u32) -> Option<Range> {
-        // the library panics at kinds of controls that are younger than it
-        let all = unless_it_panics(|| self.device.query_controls()).and_then(Result::ok);
-        if let Some(all) = all {
+    fn range(&mut self, control: u32, listed: Option<&[Description]>) -> Option<Range> {
+        if let Some(all) = listed {
             let known = all.iter().find(|known| known.id == control)?;
             let range = Range { least: known.minimum, most: known.maximum };
             return (range.least < range.most).then_some(range);

@@ -10,7 +10,6 @@
 mod controls;
 mod mode;
 mod reader;
-
 mod why;
 
 use std::io;
@@ -27,12 +26,14 @@ use moq_v4l::{Device, Format, FourCC, Fraction};
 
 use super::about::About;
 use super::coding::{Coding, Layout};
+use super::latest::PATIENCE;
 use super::{Looks, Shot};
 use crate::failure::Failure;
 use crate::quiet::unless_it_panics;
 use controls::Controls;
 use mode::{Mode, chosen};
-use reader::{PATIENCE, Reader, now_s};
+use reader::{Reader, now_s};
+use why::calmly;
 
 /// A camera that is plugged in, sending images.
 pub(crate) struct Plugged {
@@ -70,7 +71,6 @@ impl Plugged {
     pub(crate) fn open(path: &str, size_px: Option<[usize; 2]>) -> Result<Self, Failure> {
         let failed = |why: &str| Failure::failed("no-camera", format!("the camera {path}: {why}"));
         let told = |error: io::Error| failed(&why::not_opened(path, &error));
-        let unknown = || failed("its driver says what nobody knows");
         let device = Device::with_path(path).map_err(told)?;
         // the library panics at names that are cut in the middle of a letter; what such a camera can, its modes tell
         let about = unless_it_panics(|| device.query_caps()).transpose().map_err(told)?;
@@ -83,11 +83,10 @@ impl Plugged {
         }
         let modes = modes(&device, size_px);
         let mode = chosen(&modes, size_px).ok_or_else(|| failed(&none_fits(&modes, size_px)))?;
-        let set = unless_it_panics(|| set(&device, &mode)).ok_or_else(unknown)?.map_err(told)?;
+        let set = calmly(|| set(&device, &mode)).map_err(told)?;
         let (layout, rate_hz) =
             set.ok_or_else(|| failed(&format!("it does not send {mode} when told to")))?;
-        let stream = unless_it_panics(|| Stream::with_buffers(&device, Type::VideoCapture, BUFFERS));
-        let stream = stream.ok_or_else(unknown)?.map_err(told)?;
+        let stream = calmly(|| Stream::with_buffers(&device, Type::VideoCapture, BUFFERS)).map_err(told)?;
         let interval_s = 1.0 / rate_hz.unwrap_or(USUAL_HZ);
         let reader = Reader::begin(stream, layout, interval_s);
         reader.next().map_err(|why| Failure::failed("no-image", format!("the camera {path}: {why}")))?;
@@ -111,6 +110,11 @@ impl Plugged {
         })
     }
 
+    /// It was told something; those that are on their way are exposed otherwise.
+    fn was_told(&mut self) {
+        self.settled_at = self.reader.count() + SETTLING_IMAGES;
+    }
+
     fn failed(&self, why: &str) -> Failure {
         Failure::failed("no-image", format!("the camera {}: {why}", self.path))
     }
@@ -122,7 +126,7 @@ impl Looks for Plugged {
         if let Some((is_s, is_new)) = self.controls.expose(exposure_s) {
             exposed_s = is_s;
             if is_new {
-                self.settled_at = self.reader.count() + SETTLING_IMAGES;
+                self.was_told();
             }
         }
         // what begins to arrive within an interval was exposed before, in part
@@ -146,7 +150,7 @@ impl Looks for Plugged {
     fn brighten(&mut self) -> bool {
         let is_brighter = self.controls.brighten();
         if is_brighter {
-            self.settled_at = self.reader.count() + SETTLING_IMAGES;
+            self.was_told();
         }
         is_brighter
     }
@@ -168,7 +172,7 @@ impl Looks for Plugged {
 /// What a camera can send that is understood; at a size that is wanted, and at usual ones, of one that sends any.
 fn modes(device: &Device, size_px: Option<[usize; 2]>) -> Vec<Mode> {
     let mut modes = Vec::new();
-    let formats = unless_it_panics(|| device.enum_formats()).and_then(Result::ok).unwrap_or_default();
+    let formats = calmly(|| device.enum_formats()).unwrap_or_default();
     let known = |name: FourCC| Some((name, Coding::named(name.repr)?));
     for (name, coding) in formats.into_iter().filter_map(|format| known(format.fourcc)) {
         for size_px in sizes(device, name, size_px) {
@@ -176,7 +180,7 @@ fn modes(device: &Device, size_px: Option<[usize; 2]>) -> Vec<Mode> {
         }
     }
     if modes.is_empty()
-        && let Some(Ok(now)) = unless_it_panics(|| device.format())
+        && let Ok(now) = calmly(|| device.format())
         && let Some((name, coding)) = known(now.fourcc)
     {
         // a driver that lists nothing
@@ -190,7 +194,7 @@ fn modes(device: &Device, size_px: Option<[usize; 2]>) -> Vec<Mode> {
 fn sizes(device: &Device, name: FourCC, wanted: Option<[usize; 2]>) -> Vec<[usize; 2]> {
     const USUAL: [[usize; 2]; 6] =
         [[320, 240], [640, 480], [800, 600], [1280, 720], [1280, 960], [1920, 1080]];
-    let found = unless_it_panics(|| device.enum_framesizes(name)).and_then(Result::ok).unwrap_or_default();
+    let found = calmly(|| device.enum_framesizes(name)).unwrap_or_default();
     let mut sizes = Vec::new();
     for size in found {
         match size.size {
@@ -215,7 +219,7 @@ fn sizes(device: &Device, name: FourCC, wanted: Option<[usize; 2]>) -> Vec<[usiz
 /// Images a second at most.
 fn rate_hz(device: &Device, name: FourCC, [width, height]: [usize; 2]) -> Option<f64> {
     let (width, height) = (u32::try_from(width).ok()?, u32::try_from(height).ok()?);
-    let found = unless_it_panics(|| device.enum_frameintervals(name, width, height))?.ok()?;
+    let found = calmly(|| device.enum_frameintervals(name, width, height)).ok()?;
     let shortest = |interval: &FrameInterval| match &interval.interval {
         FrameIntervalEnum::Discrete(interval) => *interval,
         FrameIntervalEnum::Stepwise(steps) => steps.min,

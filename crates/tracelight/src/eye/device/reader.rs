@@ -13,7 +13,7 @@ use nix::time::{ClockId, clock_gettime};
 use super::why;
 use crate::eye::about::{Rhythm, Stamps};
 use crate::eye::coding::Layout;
-use crate::eye::latest::Latest;
+use crate::eye::latest::{Latest, PATIENCE};
 use crate::quiet::unless_it_panics;
 
 /// An image that a camera sent.
@@ -28,8 +28,6 @@ pub(super) struct Received {
 
 /// Ages of images that are kept.
 const MOST_AGES: usize = 1000;
-/// Longest that an image is waited for.
-pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 /// How long one is waited for until it is asked whether any is still wanted, ms.
 const GLANCE_MS: i32 = 100;
 /// How long the end of a stream is waited for.
@@ -120,9 +118,7 @@ impl Shared {
         let _ = SigSet::all().thread_block();
         stream.set_timeout(PATIENCE);
         let mut so_far = SoFar { endless: Some(0), ..SoFar::default() };
-        let ended = unless_it_panics(|| self.read_on(&mut stream, &mut so_far))
-            .unwrap_or_else(|| Err(io::Error::other("its driver says what nobody knows")));
-        let Err(error) = ended else {
+        let Err(error) = why::calmly(|| self.read_on(&mut stream, &mut so_far)) else {
             let _ = unless_it_panics(|| drop(stream));
             return;
         };

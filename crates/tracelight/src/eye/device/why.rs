@@ -2,8 +2,9 @@
 
 use std::io;
 
-use super::reader::PATIENCE;
+use crate::eye::latest::PATIENCE;
 use crate::eye::source::devices;
+use crate::quiet::unless_it_panics;
 
 const EIO: i32 = 5;
 const ENXIO: i32 = 6;
@@ -12,6 +13,11 @@ const ENOTTY: i32 = 25;
 const ENOSPC: i32 = 28;
 const EPIPE: i32 = 32;
 const EPROTO: i32 = 71;
+
+/// What a driver answers, where the library panics at what it does not know of.
+pub(super) fn calmly<T>(ask: impl FnOnce() -> io::Result<T>) -> io::Result<T> {
+    unless_it_panics(ask).unwrap_or_else(|| Err(io::Error::other("its driver says what nobody knows")))
+}
 
 /// Whether the camera is no longer there.
 pub(super) fn is_gone(error: &io::Error) -> bool {
