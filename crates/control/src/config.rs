@@ -19,6 +19,20 @@ pub struct Config {
     pub host_silence_ticks: u32,
 }
 
+impl Config {
+    /// What the joints may do, by what their encoders count. One that counts from where it was left does not know where its range ends: only how wide that is.
+    pub(crate) fn limits(&self, homed: bool) -> PanTilt<JointLimits> {
+        let known = self.axes.map(|axis| axis.limits);
+        if homed {
+            return known;
+        }
+        known.map(|limits| {
+            let width_rad = limits.upper_rad - limits.lower_rad;
+            JointLimits { lower_rad: -width_rad, upper_rad: width_rad, ..limits }
+        })
+    }
+}
+
 /// One axis: motor, encoder, friction, observer, law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisConfig {

@@ -93,7 +93,7 @@ impl Controller {
             Command::Finish => state.player.finish(),
             Command::Append(_) if !state.player.has_room() => return Err(command),
             Command::Append(segment) => {
-                if !self.in_range(&segment) || !state.player.append(segment) {
+                if !self.in_range(&segment, state.supervisor.homed) || !state.player.append(segment) {
                     state.supervisor.trip(Fault::SetpointInvalid);
                 }
             }
@@ -148,11 +148,12 @@ impl Controller {
         state.supervisor.home();
     }
 
-    /// Whether both ends of a segment lie within the joints' limits.
-    fn in_range(&self, segment: &Segment) -> bool {
+    /// Whether both ends of a segment lie where the joints may be.
+    fn in_range(&self, segment: &Segment, homed: bool) -> bool {
+        let may_be = self.config.limits(homed);
         [0.0, f32::from(segment.ticks)].into_iter().all(|n| {
             let at = segment.sample(n);
-            Joint::BOTH.iter().all(|&j| self.config.axes[j].limits.contains(at[j].position_rad))
+            Joint::BOTH.iter().all(|&j| may_be[j].contains(at[j].position_rad))
         })
     }
 
@@ -182,6 +183,7 @@ impl Controller {
             lost_counts: estimates.map(|estimate| estimate.lost_counts),
             actuation: Actuation { command_v, gate },
             darkness,
+            homed: state.supervisor.homed,
             phase: state.supervisor.phase,
             fault: state.supervisor.fault,
         };

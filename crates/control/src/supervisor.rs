@@ -128,7 +128,7 @@ impl Supervisor {
 
     /// One tick: moves between phases and says what the clock does.
     pub(crate) fn tick(&mut self, config: &Config, at: &Situation<'_>) -> Clock {
-        if out_of_range(config, at.position_rad) && self.phase != Phase::Dark {
+        if self.out_of_range(config, at.position_rad) && self.phase != Phase::Dark {
             self.trip(Fault::LimitReached);
         }
         self.pointing_ticks = self.pointing_ticks.saturating_sub(1);
@@ -191,17 +191,18 @@ impl Supervisor {
         reasons.insert_if(at.doubtful, Darkness::Doubtful);
         reasons.insert_if(self.phase == Phase::Holding || !(at.light_due || points), Darkness::Holding);
         let asked = at.setpoint.map(|s| s.position_rad);
-        reasons.insert_if(out_of_range(config, asked), Darkness::OutOfBounds);
+        reasons.insert_if(self.out_of_range(config, asked), Darkness::OutOfBounds);
         let idle = matches!(self.phase, Phase::Armed | Phase::Done);
         let stale = idle || at.starved || at.segment.is_none();
         reasons.insert_if(stale && !seeks, Darkness::Stale);
         reasons.insert_if(self.fault.is_some(), Darkness::Faulted);
         reasons
     }
-}
 
-fn out_of_range(config: &Config, position_rad: PanTilt<f32>) -> bool {
-    Joint::BOTH.iter().any(|&j| !config.axes[j].limits.contains(position_rad[j]))
+    fn out_of_range(&self, config: &Config, position_rad: PanTilt<f32>) -> bool {
+        let may_be = config.limits(self.homed);
+        Joint::BOTH.iter().any(|&j| !may_be[j].contains(position_rad[j]))
+    }
 }
 
 fn tolerance(at: &Situation<'_>) -> Option<PanTilt<f32>> {

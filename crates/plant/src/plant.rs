@@ -10,6 +10,10 @@ use crate::{JointState, PlantConfig, Stepper, Wear};
 const SUBSTEPS: u32 = 10;
 /// Twice the mains frequency: what a rectifier leaves of it.
 const SUPPLY_HZ: f64 = 100.0;
+/// How stiff a stop is: with how many rad/s a joint would swing on it,
+const STOP_RAD_S: f64 = 400.0;
+/// and how that is damped, as a share of critical damping.
+const STOP_DAMPING: f64 = 0.3;
 /// How far from straight ahead cables may hang at rest, rad.
 const CABLE_REST_RAD: f64 = 0.3;
 
@@ -29,6 +33,8 @@ pub struct Plant {
     encoders: PanTilt<Encoder>,
     relay: Relay,
     push_nm: PanTilt<f64>,
+    /// What the joints come up against either way, if anything is there.
+    stops: Option<PanTilt<Stops>>,
     supply_left: f64,
     /// What the motors give, N m: it follows the command.
     current_nm: PanTilt<f64>,
@@ -36,6 +42,27 @@ pub struct Plant {
     /// How late the present tick began, s.
     late_s: f64,
     dice: Dice,
+}
+
+/// Where a joint ends: a stiff spring either way, with a damper that only pushes.
+#[derive(Clone, Copy, Debug)]
+struct Stops {
+    at_rad: (f64, f64),
+    inertia_kg_m2: f64,
+}
+
+impl Stops {
+    /// On a joint at an angle with a speed, N m.
+    fn torque_nm(&self, angle_rad: f64, rate_rad_s: f64) -> f64 {
+        let (lower, upper) = self.at_rad;
+        let into_rad = angle_rad - angle_rad.clamp(lower, upper);
+        if into_rad == 0.0 {
+            return 0.0;
+        }
+        let spring = STOP_RAD_S * STOP_RAD_S * into_rad;
+        let back = -self.inertia_kg_m2 * (spring + 2.0 * STOP_DAMPING * STOP_RAD_S * rate_rad_s);
+        if into_rad > 0.0 { back.min(0.0) } else { back.max(0.0) }
+    }
 }
 
 /// What turns: joints that are one with their rotors, or hang on belts.
@@ -83,12 +110,22 @@ impl Plant {
             encoders,
             relay: Relay::new(config.relay),
             push_nm: PanTilt::default(),
+            stops: None,
             supply_left: 1.0,
             current_nm: PanTilt::default(),
             time_s: 0.0,
             late_s: 0.0,
             dice,
         }
+    }
+
+    /// The same with joints that end at stops, lower and upper, rad.
+    #[must_use]
+    pub fn between_stops(mut self, config: &PlantConfig, stops_rad: PanTilt<(f64, f64)>) -> Self {
+        let inertia_kg_m2 = config.bodies.lumped().mass(0.0).own_inertia();
+        let stops = |j: Joint| Stops { at_rad: stops_rad[j], inertia_kg_m2: inertia_kg_m2[j] };
+        self.stops = Some(PanTilt::from_fn(stops));
+        self
     }
 
     /// What the encoders read, before anything moves.
@@ -143,7 +180,10 @@ impl Plant {
         let from = self.state.angle_rad;
         self.follow_command(asked_nm, length_s);
         let pull = self.wear.cable_nm_per_rad;
-        let others = PanTilt::from_fn(|j| self.push_nm[j] - pull * (from[j] - self.cable_rest_rad[j]));
+        let stopped =
+            |j: Joint| self.stops.map_or(0.0, |stops| stops[j].torque_nm(from[j], self.state.rate_rad_s[j]));
+        let others =
+            PanTilt::from_fn(|j| self.push_nm[j] - pull * (from[j] - self.cable_rest_rad[j]) + stopped(j));
         let carried = self.mechanism.step(&mut self.state, self.current_nm, others, length_s);
         let to = self.state.angle_rad;
         let end_age = 1.0 - f64::from(number + 1) * LENGTH;
@@ -288,6 +328,24 @@ mod tests {
         };
         assert_eq!(end(1), end(1));
         assert_ne!(end(1), end(2));
+    }
+
+    #[test]
+    fn a_joint_ends_at_its_stops_and_comes_off_them_as_it_went() {
+        let mut plant =
+            Plant::new(&config(), 0).between_stops(&config(), PanTilt::new((-0.3, 0.4), (-1.0, 1.0)));
+        drive(&mut plant, 10.0, 2000);
+        let pressed = plant.angle_rad().pan;
+        assert!((0.4..0.401).contains(&pressed) && plant.rate_rad_s().pan.abs() < 1e-6, "{pressed}");
+        drive(&mut plant, -10.0, 2000);
+        let pressed = plant.angle_rad().pan;
+        assert!((-0.301..-0.3).contains(&pressed), "{pressed}");
+        // between them they are not there
+        let (mut free, mut bound) = (Plant::new(&config(), 1), Plant::new(&config(), 1));
+        bound = bound.between_stops(&config(), PanTilt::new((-9.0, 9.0), (-9.0, 9.0)));
+        drive(&mut free, 3.0, 300);
+        drive(&mut bound, 3.0, 300);
+        assert_eq!(free.angle_rad(), bound.angle_rad());
     }
 
     #[test]

@@ -52,6 +52,8 @@ pub struct Telemetry {
     pub actuation: Actuation,
     /// Why the gate is shut; empty when it is open.
     pub darkness: DarknessSet,
+    /// The rig was told where its joints stand ([`Command::Home`](crate::Command::Home)), and did not lose power since.
+    pub homed: bool,
     /// Supervisor's state.
     pub phase: Phase,
     /// The latched fault, if any.

@@ -19,6 +19,9 @@ const AFTERMATH_TICKS: u32 = 200;
 /// Ticks a run may take beyond its plan and its longest hold before it is given up.
 const PATIENCE_TICKS: usize = 60_000;
 
+/// How far beyond its range a joint comes up against its stop, rad.
+const STOP_RAD: f64 = 0.0175;
+
 /// What is known of one tick after it happened: what the controller saw, and where the light really was.
 ///
 /// In simulation `angle_rad`, `rate_rad_s`, `spot` and `light` are the plant's truth; on a real head they are the encoders'
@@ -112,16 +115,37 @@ impl SimulatedRig {
         }
     }
 
-    /// A rig that was just powered up where somebody left it: at rest within a count of these angles, rad, its encoders at zero there.
+    /// A rig that was homed not quite: it rests where its encoders read zero, and so many counts are to be added to what they read for true angles.
+    pub fn homed_beside(config: &RigConfig, pose: HeadPose, counts: PanTilt<i32>, seed: u64) -> Self {
+        let mut rig = Self::new(config, pose, seed);
+        let count_rad = config.truth.model.encoder.count_rad();
+        let angle_rad = counts.map(|count| f64::from(count) * count_rad);
+        rig.plant = Plant::resting_at(&config.plant_config(), angle_rad, seed);
+        for j in Joint::BOTH {
+            rig.lines[j].off = counts[j].wrapping_neg();
+        }
+        rig
+    }
+
+    /// A rig that was just powered up where somebody left it: at rest within a count of these angles, rad, its encoders at zero there. Its joints
+    /// end at stops, a degree beyond their ranges.
     pub fn unhomed(config: &RigConfig, pose: HeadPose, angle_rad: PanTilt<f64>, seed: u64) -> Self {
         let mut rig = Self::new(config, pose, seed);
-        rig.plant = Plant::resting_at(&config.plant_config(), angle_rad, seed);
-        let found = rig.plant.measured();
-        for j in Joint::BOTH {
-            rig.lines[j].off = found[j].count.wrapping_neg();
-        }
-        rig.state = rig.controller.start(&rig.sensed);
+        let plant = config.plant_config();
+        let stops_rad = rig.truth.range_rad.map(|(lower, upper)| (lower - STOP_RAD, upper + STOP_RAD));
+        rig.plant = Plant::resting_at(&plant, angle_rad, seed).between_stops(&plant, stops_rad);
+        rig.power_up();
         rig
+    }
+
+    /// Encoders that count from where the joints are now, and a controller that knows nothing.
+    fn power_up(&mut self) {
+        let found = self.plant.measured();
+        for j in Joint::BOTH {
+            self.lines[j].off = found[j].count.wrapping_neg();
+            self.sensed.encoders[j].count = 0;
+        }
+        self.state = self.controller.start(&self.sensed);
     }
 
     /// What has to be added to what its encoders read for counts that mean true angles.
@@ -182,6 +206,7 @@ impl SimulatedRig {
             Trouble::StampGarbled(j) => self.lines[j].garbled = true,
             Trouble::LaserStuck => self.plant.stick_laser(),
             Trouble::Bump(by_rad) => self.bump = Some(Bump::new(by_rad)),
+            Trouble::PowerLoss => self.power_up(),
             Trouble::Drift(share_per_s) => self.stretch_per_tick = share_per_s * TICK_F64_S,
         }
     }

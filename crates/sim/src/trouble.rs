@@ -22,6 +22,8 @@ pub enum Trouble {
     LaserStuck,
     /// Somebody bumps into what the head stands on, which turns by so much about pan's and tilt's axes, rad, and stays so.
     Bump(PanTilt<f64>),
+    /// The controller loses power for a moment: it begins anew, its encoders at zero where the joints are now.
+    PowerLoss,
     /// A belt's wheels grow warm: each second the beam turns by that share more for the same counts.
     Drift(f64),
 }

@@ -9,8 +9,8 @@ mod shapes;
 use std::ops::ControlFlow;
 
 use shapes::{POSE, circle, plan_of};
-use tracelight_rig::{Command, Darkness, Joint, PanTilt, Phase, Rig};
-use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, run_segments};
+use tracelight_rig::{Command, Darkness, Fault, Joint, PanTilt, Phase, Rig, Segment};
+use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, run_segments};
 use tracelight_trajectory::Plan;
 
 /// Poses that heads were left in, rad.
@@ -133,4 +133,57 @@ fn an_armed_head_is_not_homed_and_counts_go_on_from_where_it_was() {
     assert_eq!(rig.send(home), Err(home));
     rig.send(Command::Unhome).unwrap();
     assert!(rig.step().telemetry.darkness.contains(Darkness::Unhomed));
+}
+
+#[test]
+fn an_unhomed_head_goes_as_far_round_as_its_range_is_wide_and_ends_at_its_stops() {
+    let mut config = RigConfig::report();
+    let range = PanTilt::new((-0.4, 1.2), (-0.9, 0.9));
+    (config.model.geometry.range_rad, config.truth.model.geometry.range_rad) = (range, range);
+    let sent = |to_rad: f32| {
+        let mut rig = unhomed(&config, PanTilt::new(1.0, 0.0));
+        let pan = [0.0, 0.0, 0.0, 10.0 * to_rad / 8e9, -15.0 * to_rad / 16e12, 6.0 * to_rad / 32e15];
+        let segment = Segment {
+            start_tick: 0,
+            ticks: 2000,
+            coefficients: PanTilt::new(pan, [0.0; 6]),
+            tolerance_rad: PanTilt::new(0.05, 0.05),
+            gate: false,
+        };
+        run_segments(&mut rig, &[segment], false, |_, _| ControlFlow::Continue(()))
+    };
+    // from 1.0 to -0.3 rad: by its counts further than its range goes
+    let free = sent(-1.3);
+    assert!(free.is_done(), "{:?}", free.fault());
+    assert!((free.ticks.last().unwrap().angle_rad.pan + 0.3).abs() < 3e-3);
+    // to 1.4 rad, where none can be
+    let stopped = sent(0.4);
+    let furthest = stopped.ticks.iter().map(|t| t.angle_rad.pan).fold(0.0, f64::max);
+    assert!(stopped.fault().is_some() && (1.2..1.24).contains(&furthest), "{:?} {furthest}", stopped.fault());
+    // wider than its range it is not asked to
+    assert_eq!(sent(-1.7).fault(), Some(Fault::SetpointInvalid));
+}
+
+#[test]
+fn a_rig_that_loses_power_while_it_draws_is_dark_and_says_that_it_is_not_homed() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, circle(0.2));
+    let mut rig = SimulatedRig::new(&config, POSE, 3);
+    let mut lit_before = 0;
+    let run = run_segments(&mut rig, &plan.segments, false, |rig, tick| {
+        lit_before += usize::from(tick.light && tick.telemetry.homed);
+        if lit_before == 200 {
+            rig.suffer(Trouble::PowerLoss);
+            lit_before += 1;
+        }
+        ControlFlow::Continue(())
+    });
+    let lost = run.ticks.iter().position(|t| !t.telemetry.homed).unwrap();
+    let (before, after) = run.ticks.split_at(lost);
+    assert!(before.iter().all(|t| t.telemetry.homed));
+    assert!(after.iter().all(|t| !t.telemetry.homed && !t.telemetry.actuation.gate));
+    assert_eq!((after[0].telemetry.tick, after[0].telemetry.measured.pan.count), (0, 0));
+    // the relay opens as late as ever, while the head goes on for a moment
+    let dark_after = after.iter().rposition(|t| t.light).map_or(0, |last| last + 1);
+    assert!(dark_after < 20 && after.len() > 100, "{dark_after} of {}", after.len());
 }

@@ -16,7 +16,7 @@ use tracelight_trajectory::Plan;
 
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
-use crate::eye::homing::check_homed;
+use crate::eye::homing::{check_homed, lost_power};
 use crate::eye::room::{Furnished, left};
 use crate::failure::Failure;
 use crate::output::{
@@ -62,6 +62,8 @@ struct Laps {
     identified: Option<RigConfig>,
     /// What a camera saw of the last one, and the plan that it came to.
     watched: Option<WatchedRun>,
+    /// Why the last one ended before its time, if neither the rig's fault nor the user ended it.
+    failure: Option<Failure>,
     notes: Vec<String>,
     run_ms: f64,
 }
@@ -77,8 +79,7 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     let laps = run_laps(args, &prepared, &dir, &settings, (&progress, stop))?;
     progress.stage("report", 1);
     let summary = write(args, &prepared, &laps, &dir, &settings)?;
-    let watched = laps.watched.and_then(|watched| watched.failure);
-    let failure = ending(&laps.last, stop).filter(|_| watched.is_none()).or(watched);
+    let failure = laps.failure.or_else(|| ending(&laps.last, stop));
     Ok(Outcome { summary, dir, failure })
 }
 
@@ -168,26 +169,25 @@ fn run_laps(
     let mut laps: Vec<Run> = Vec::new();
     let mut learned = Learned { rig: prepared.driving.rig.clone(), taken: false, notes: Vec::new() };
     let mut log = LogWriter::open(&dir.join("run.mcap"), &meta)?;
-    let mut watched = None;
-    while laps.len() < args.laps as usize && !stop.is_wanted() {
+    let (mut watched, mut failure) = (None, None);
+    while laps.len() < args.laps as usize && !stop.is_wanted() && failure.is_none() {
         if !laps.is_empty() {
             progress.stage("identify", 1);
             learned = learn(&prepared.driving.rig, &laps);
         }
         progress.stage("run", plan.points.len() as u64);
         let Some(looks) = prepared.watched() else {
-            let put_up = if args.sim_unhomed { left } else { SimulatedRig::new };
+            let put_up = if args.is_powered_up() { left } else { SimulatedRig::new };
             let rig = put_up(&learned.rig, prepared.driving.pose, args.seed);
-            laps.push(run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?);
+            let (lap, why) = run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?;
+            laps.push(lap);
+            failure = why;
             continue;
         };
         let mut done = watched_lap(args, prepared, looks, &learned.rig, &mut log, (progress, stop))?;
         laps.push(std::mem::take(&mut done.run));
-        let is_over = done.failure.is_some();
+        failure = done.failure.take();
         watched = Some(done);
-        if is_over {
-            break;
-        }
     }
     log.finish()?;
     let last = laps.pop().unwrap_or_default();
@@ -198,6 +198,7 @@ fn run_laps(
         last,
         identified,
         watched,
+        failure,
         notes: learned.notes,
         run_ms: began.elapsed().as_secs_f64() * 1e3,
     })
@@ -262,21 +263,25 @@ fn learn(rig: &RigConfig, laps: &[Run]) -> Learned {
 /// Ticks the head is watched after the user stopped it: longer than any relay of a rig file takes to open.
 const GOODBYE_TICKS: u32 = 80;
 
-/// One lap, every tick in the log as it happens. Ctrl-C darkens first and then ends the lap.
+/// One lap, every tick in the log as it happens, and why it ended if its rig lost power. Ctrl-C darkens first and then ends the lap.
 fn run_lap(
     mut rig: SimulatedRig,
     plan: &Plan,
     dry: bool,
     log: &mut LogWriter,
     (progress, stop): (&Progress, &Stop),
-) -> Result<Run, Failure> {
+) -> Result<(Run, Option<Failure>), Failure> {
     let mut failed: Option<Failure> = None;
-    let mut goodbye = 0;
-    let run = tracelight_sim::run(&mut rig, plan, dry, |rig, tick| {
+    let (mut goodbye, mut begun, mut unpowered) = (0, false, None);
+    let mut run = tracelight_sim::run(&mut rig, plan, dry, |rig, tick| {
         if let Err(unhomed) = check_homed(&tick.telemetry) {
-            failed = Some(unhomed);
+            match begun {
+                true => unpowered = Some(lost_power()),
+                false => failed = Some(unhomed),
+            }
             return ControlFlow::Break(());
         }
+        begun = true;
         if let Err(error) = log_tick(log, plan, tick) {
             failed = Some(error.into());
             return ControlFlow::Break(());
@@ -293,7 +298,9 @@ fn run_lap(
         goodbye += 1;
         if goodbye > GOODBYE_TICKS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    failed.map_or(Ok(run), Err)
+    // that tick's clock is another
+    run.ticks.retain(|tick| tick.telemetry.homed);
+    failed.map_or(Ok((run, unpowered)), Err)
 }
 
 fn log_tick(log: &mut LogWriter, plan: &Plan, tick: &Tick) -> Result<(), OutputError> {

@@ -5,10 +5,9 @@ mod support;
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
-use std::process::Output;
 
 use serde_json::Value;
-use support::{folder, run};
+use support::{check_at_most, folder, json, run};
 
 /// The folder that a test was given before, with what is in it.
 fn folder_of(name: &str) -> std::path::PathBuf {
@@ -16,19 +15,6 @@ fn folder_of(name: &str) -> std::path::PathBuf {
 }
 
 const HOUSE: &str = concat!("sim:", env!("CARGO_MANIFEST_DIR"), "/../../examples/house.png");
-
-fn json(output: &Output) -> Value {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn check_at_most(object: &Value, path: &str, most: f64) {
-    let value = object.pointer(path).and_then(Value::as_f64);
-    assert!(
-        value.is_some_and(|value| (0.0..=most).contains(&value)),
-        "{path}: {value:?}, at most {most}; {object}"
-    );
-}
 
 #[test]
 fn a_webcam_finds_the_head_and_the_figure_and_the_light_is_on_it() {
@@ -317,6 +303,23 @@ fn bad_images_of_a_folder_are_passed_over_so_often_and_no_more() {
 }
 
 #[test]
+fn a_film_is_gone_through_image_by_image() {
+    let dir = folder("camera-film");
+    let [film, out] = ["wall.avi", "out"].map(|name| dir.join(name).to_str().unwrap().to_owned());
+    let mut grey = Vec::new();
+    let mut encoder = image::codecs::jpeg::JpegEncoder::new(&mut grey);
+    encoder.encode_image(&image::RgbImage::from_pixel(1280, 720, image::Rgb([90; 3]))).unwrap();
+    let chunks = [&grey, &grey, &house()].map(|image| [b"00dc\x10\x20\x30\x00", &image[..]].concat());
+    std::fs::write(&film, [b"RIFF\x00\x00\x00\x00AVI LIST".to_vec(), chunks.concat()].concat()).unwrap();
+    let traced = run(&["trace", "--camera", &film, "--out", &out, "--json"]);
+    assert_eq!(json(&traced)["camera"]["refused_images"], 2);
+    let refused = run(&["trace", "--camera", &film, "--out", &out, "--retakes", "1"]);
+    assert_eq!(refused.status.code(), Some(1));
+    let marked = run(&["calibrate", "markers", &film, "-o", dir.join("camera.toml").to_str().unwrap()]);
+    assert!(!marked.status.success(), "an image is wanted there");
+}
+
+#[test]
 fn a_source_that_is_no_camera_is_refused() {
     for args in [
         &["trace"][..],
@@ -335,55 +338,4 @@ fn a_source_that_is_no_camera_is_refused() {
         let output = run(args);
         assert_eq!(output.status.code(), Some(2), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
     }
-}
-
-#[test]
-fn a_head_that_was_just_powered_up_is_homed_within_a_millimetre_wherever_it_points() {
-    let dir = folder("camera-home");
-    let [head, out] = ["head.toml", "out"].map(|name| dir.join(name).to_str().unwrap().to_owned());
-    // neither is left looking where the camera does
-    for seed in ["1", "2"] {
-        let found = json(&run(&[
-            "calibrate",
-            "head",
-            "--camera",
-            "sim",
-            "--home",
-            "--seed",
-            seed,
-            "-o",
-            &head,
-            "--json",
-        ]));
-        let off = |found: &Value, j: usize| found["homed"]["truth_mm"][j].as_f64().unwrap().abs();
-        assert!(off(&found, 0) < 1.0 && off(&found, 1) < 1.0, "{seed}: {}", found["homed"]);
-        assert!(found["homed"]["sought"].as_u64().unwrap() > 1, "{}", found["homed"]);
-        check_at_most(&found, "/rms_mm", 0.3);
-        // a head that is known is homed so that what is known of it holds again
-        json(&run(&["calibrate", "head", "--camera", "sim", "--seed", seed, "-o", &head, "--json"]));
-        let again = json(&run(&[
-            "calibrate",
-            "head",
-            "--camera",
-            "sim",
-            "--home",
-            "--head",
-            &head,
-            "--seed",
-            seed,
-            "--json",
-        ]));
-        assert!(off(&again, 0) < 1.0 && off(&again, 1) < 1.0, "{seed}: {again}");
-    }
-    let unhomed = |more: &[&str]| {
-        let all = [&["trace", "--sim-unhomed", "--seed", "2", "--out", &out, "--json"], more].concat();
-        let output = run(&all);
-        assert_eq!(output.status.code(), Some(1), "{more:?}");
-        let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
-        assert_eq!(answer["error"]["code"], "unhomed", "{more:?} {answer}");
-        assert!(answer["error"]["message"].as_str().unwrap().contains("calibrate head --home"), "{answer}");
-    };
-    unhomed(&[HOUSE.strip_prefix("sim:").unwrap()]);
-    unhomed(&["--camera", HOUSE]);
-    unhomed(&["--camera", HOUSE, "--head", &head]);
 }

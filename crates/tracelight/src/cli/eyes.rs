@@ -15,7 +15,8 @@ use crate::failure::Failure;
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct EyeArgs {
     /// Camera: sim:PICTURE is a simulated one in front of a simulated wall with PICTURE on it; /dev/video0 one that is plugged in (`tracelight
-    /// doctor` lists them); http://… one on the net, that sends a stream (MJPEG) or an image each time; or an image or a folder of them
+    /// doctor` lists them); http://… one on the net, that sends a stream (MJPEG) or an image each time; or an image, a folder of them, or a film of them (Motion JPEG: .mjpeg,
+    /// .avi, .mkv, .mov)
     #[arg(long, value_name = "SOURCE")]
     pub(crate) camera: Option<String>,
     /// Columns and rows of the images of a camera that is plugged in: those it was calibrated for, or else about 1280x720
@@ -38,7 +39,7 @@ pub(crate) struct FollowArgs {
     #[arg(long, requires = "camera")]
     pub(crate) open_loop: bool,
     /// Lets something go wrong in a simulated room, to see what is made of it: pan-slip=20@5 is an encoder that slips by 20 counts 5 s
-    /// after drawing began; also tilt-slip=COUNTS, head-bump=DEGREES, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen,
+    /// after drawing began; also tilt-slip=COUNTS, head-bump=DEGREES, power-loss, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen,
     /// camera-black, camera-slow=IMAGES_A_SECOND, camera-stamps=SECONDS. May be given more than once
     #[arg(long, value_name = "TROUBLE", requires = "camera")]
     pub(crate) sim_trouble: Vec<TroubleAt>,

@@ -29,6 +29,10 @@ pub(crate) struct TraceArgs {
     /// The head as `calibrate head` has found it; without it the laser draws dots first, and the camera finds it
     #[arg(long, value_name = "FILE.toml", requires = "camera")]
     pub(crate) head: Option<String>,
+    /// The head was just powered up, or lost count: it finds out where it points before it draws, by dots that the camera sees, as with `calibrate head --home`. They may fall
+    /// anywhere: keep eyes away. A simulated head is then powered up wherever somebody left it
+    #[arg(long, requires = "camera", conflicts_with = "dry_run")]
+    pub(crate) home: bool,
     /// Most further images of the camera that are taken where one shows no markers or no figure
     #[arg(long, value_name = "N", default_value_t = 5, requires = "camera", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) retakes: u32,
@@ -69,14 +73,15 @@ impl TraceArgs {
     pub(crate) fn check_camera(&self) -> Result<(), Failure> {
         let flags = [
             ("--head", self.head.is_some()),
+            ("--home", self.home),
             ("--calibration", self.eye.calibration.is_some()),
             ("--open-loop", self.follow.open_loop),
             ("--sim-trouble", !self.follow.sim_trouble.is_empty()),
             ("--sim-camera", self.eye.sim_camera != SimulatedEye::default()),
         ];
-        let follows = self.follow.open_loop || !self.follow.sim_trouble.is_empty();
+        let follows = self.follow.open_loop || !self.follow.sim_trouble.is_empty() || self.home;
         if follows && self.eye.camera.is_some() && !self.is_simulated() {
-            let message = "--open-loop and --sim-trouble are for simulated rooms, as no real head is driven yet: give --camera sim:PICTURE";
+            let message = "--home, --open-loop and --sim-trouble are for simulated rooms, as no real head is driven yet: give --camera sim:PICTURE";
             return Err(Failure::usage("usage", message));
         }
         match flags.iter().find(|(_, is_set)| *is_set && self.eye.camera.is_none()) {
@@ -97,9 +102,15 @@ impl TraceArgs {
             ("simulated camera", format!("{:?}", self.eye.sim_camera).to_lowercase()),
             ("calibration", file(self.eye.calibration.as_ref())),
             ("head", file(self.head.as_ref())),
+            ("homed first", if self.home { "yes" } else { "no" }.to_owned()),
             ("retakes", self.retakes.to_string()),
             ("loop through the camera", self.loop_words().to_owned()),
         ]
+    }
+
+    /// Whether a simulated head was just powered up.
+    pub(crate) const fn is_powered_up(&self) -> bool {
+        self.sim_unhomed || self.home
     }
 
     fn is_simulated(&self) -> bool {

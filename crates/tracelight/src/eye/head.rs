@@ -73,9 +73,9 @@ impl DotsRequest {
         }
     }
 
-    /// Of a head that was homed by one dot: to tell where zero is.
-    pub(crate) const fn few(driving: &Driving) -> Self {
-        Self { across: ACROSS_AGAIN, ..Self::first(driving) }
+    /// Of a known head that was homed by one dot: to tell where zero is.
+    pub(crate) const fn few(driving: &Driving, timing: Timing, exposure_s: f64) -> Self {
+        Self { across: ACROSS_AGAIN, timing, exposure_s, ..Self::first(driving) }
     }
 
     /// Of a head that stood and was built so until it was bumped or an encoder slipped, by a few degrees; the camera's stamps are known.

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`Shot`] | an image, and when it was taken |
 //! | [`about`] | what a camera says of itself |
-//! | [`Looks`] | what takes a shot when told: [`source`] files and cameras on the net, [`device`] one that is plugged in, [`room`] a simulated one |
+//! | [`Looks`] | what takes a shot when told: [`source`] files, [`film`] files of many images, [`stream`] cameras on the net, [`device`] one that is plugged in, [`room`] a simulated one |
 //! | [`Eye`] | what sends shots by itself while a rig runs |
 //! | [`room`] | a simulated head and camera in front of a simulated wall |
 //! | [`wall`] | the camera found from markers in sight |
@@ -24,6 +24,7 @@ mod coding;
 mod device;
 pub(crate) mod feed;
 pub(crate) mod figure;
+mod film;
 pub(crate) mod follow;
 pub(crate) mod head;
 pub(crate) mod homing;

@@ -12,7 +12,7 @@ use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Room, SimulatedRig};
 use tracelight_stroke::{Affine, Point, Vec2};
 
-use super::homing::turned_rad;
+use super::homing::{Homed, turned_rad};
 use super::{Eye, Shot};
 use crate::cli::placing::PlacementArgs;
 use crate::failure::Failure;
@@ -53,6 +53,9 @@ pub(crate) struct Furnished {
     size_m: (f64, f64),
     /// The wall's frame from the picture's pixels, if there is one.
     pub(crate) wall_from_picture: Option<Affine>,
+    /// What is to be added to what its homed head's encoders read for true angles, counts.
+    beside: PanTilt<i32>,
+    count_rad: f64,
     seed: u64,
 }
 
@@ -98,6 +101,8 @@ impl Furnished {
             wall_from_centre,
             size_m,
             wall_from_picture: hung.map(|hung| wall_from_centre * hung.centre_from_picture),
+            beside: PanTilt::default(),
+            count_rad: rig.truth.model.encoder.count_rad(),
             seed: request.seed,
         })
     }
@@ -106,8 +111,17 @@ impl Furnished {
     fn rig(&self, believed: &RigConfig, pose: HeadPose, homed: bool) -> SimulatedRig {
         let mut rig = believed.clone();
         rig.truth.model.geometry = self.geometry;
-        let put_up = if homed { SimulatedRig::new } else { left };
-        put_up(&rig, pose, self.seed).standing(self.pose)
+        let rig = match homed {
+            true => SimulatedRig::homed_beside(&rig, pose, self.beside, self.seed),
+            false => left(&rig, pose, self.seed),
+        };
+        rig.standing(self.pose)
+    }
+
+    /// A rig of this room was homed: whoever puts it up anew homed has it as it is then.
+    pub(crate) fn homed(&mut self, rig: &mut Room, homed: &Homed) {
+        let truly = rig.rig().true_counts();
+        self.beside = PanTilt::from_fn(|j| truly[j] - homed.counts[j]);
     }
 
     /// The same with the camera.
@@ -120,22 +134,29 @@ impl Furnished {
         Room::new(self.rig(believed, pose, false), self.eye.clone(), self.seed)
     }
 
-    /// How far a head's zero truly is from where it was to be, m on the wall: of one whose joints are truly further by so much than their encoders say, rad; against
-    /// where a known head has it, or where one faces the wall.
-    pub(crate) fn zero_error_m(&self, off_rad: PanTilt<f64>, is_known: bool) -> PanTilt<f64> {
+    /// By how much the joints of its homed head are truly further than their encoders say, rad.
+    fn beside_rad(&self) -> PanTilt<f64> {
+        self.beside.map(|counts| self.count_rad * f64::from(counts))
+    }
+
+    /// How far the zero of its homed head truly is from where it was to be, m on the wall: where a known head has it, or where one faces the wall.
+    pub(crate) fn zero_error_m(&self, is_known: bool) -> PanTilt<f64> {
         let turned = turned_rad(&self.geometry, &self.pose).filter(|_| !is_known).unwrap_or_default();
-        PanTilt::from_fn(|j| self.pose.distance_m * (off_rad[j] + turned[j]))
+        let beside_rad = self.beside_rad();
+        PanTilt::from_fn(|j| self.pose.distance_m * (beside_rad[j] + turned[j]))
     }
 
     /// Root mean square and most of how far the spot truly is from where a head so believed would put it, over the picture's place, m.
     pub(crate) fn true_error_m(&self, geometry: &HeadGeometry, pose: &HeadPose) -> Option<(f64, f64)> {
         const STEPS: usize = 10;
+        let beside_rad = self.beside_rad();
         let (mut sum, mut most, mut count) = (0.0, 0.0_f64, 0.0);
         for k in 0..(STEPS + 1) * (STEPS + 1) {
             let share = |k: usize| k as f64 / STEPS as f64 - 0.5;
             let (across, down) = (share(k % (STEPS + 1)), share(k / (STEPS + 1)));
             let asked = self.wall_from_centre * Point::new(self.size_m.0 * across, self.size_m.1 * down);
-            let angle = geometry.angles(pose, asked).ok()?;
+            let told = geometry.angles(pose, asked).ok()?;
+            let angle = PanTilt::from_fn(|j| told[j] + beside_rad[j]);
             let off = self.geometry.spot(&self.pose, angle)?.distance(asked);
             (sum, most, count) = (sum + off * off, most.max(off), count + 1.0);
         }

@@ -1,8 +1,9 @@
-//! Where images come from that are not simulated: files, one after the other, and cameras on the net.
+//! Where images come from that are not simulated: files and films, one image after the other, and cameras.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
 
+use super::film::{self, Film};
 use super::stream::Stream;
 use super::{Looks, Shot};
 use crate::batch::pictures;
@@ -18,7 +19,9 @@ pub(crate) enum Source<'a> {
     Net(&'a str),
     /// `/dev/…`: one that is plugged in.
     Device(&'a str),
-    /// A file or a folder of them.
+    /// A file of many images.
+    Film(&'a str),
+    /// An image, or a folder of them.
     Files(&'a str),
 }
 
@@ -26,7 +29,7 @@ impl<'a> Source<'a> {
     /// What `--camera` says.
     pub(crate) fn of(text: &'a str) -> Result<Self, Failure> {
         let wrong = |what: &str| {
-            let known = "sim:PICTURE (simulated), /dev/video0 (one that is plugged in), http://… (one on the net), or an image or a folder of them";
+            let known = "sim:PICTURE (simulated), /dev/video0 (one that is plugged in), http://… (one on the net), or an image, a folder of them, or a film of them (Motion JPEG)";
             Failure::usage("usage", format!("--camera {text} {what}; give {known}"))
         };
         match text.strip_prefix("sim") {
@@ -44,10 +47,11 @@ impl<'a> Source<'a> {
         if is_device(text) {
             return Ok(Self::Device(text));
         }
-        if std::path::Path::new(text).exists() {
-            Ok(Self::Files(text))
-        } else {
-            Err(wrong("is no camera that is known, and no file"))
+        let path = std::path::Path::new(text);
+        match path.exists() {
+            true if film::is_film(text) && !path.is_dir() => Ok(Self::Film(text)),
+            true => Ok(Self::Files(text)),
+            false => Err(wrong("is no camera that is known, and no file")),
         }
     }
 
@@ -57,6 +61,7 @@ impl<'a> Source<'a> {
             Self::Simulated(_) => None,
             Self::Device(path) => Some(plugged(path, size_px)?),
             Self::Net(url) => Some(Box::new(Stream::open(url)?)),
+            Self::Film(path) => Some(Box::new(Film::open(path)?)),
             Self::Files(path) => Some(Box::new(Files::open(path)?)),
         })
     }

@@ -13,6 +13,8 @@ enum What {
     Slip(Joint, i32),
     /// The head is bumped into, rad.
     HeadBump(f64),
+    /// The rig loses power.
+    PowerLoss,
     /// The beam turns further, by that share when the job ends.
     Drift(f64),
     /// Something with the camera.
@@ -32,7 +34,7 @@ const BUMP_SHARES: [f64; 2] = [0.8, 0.6];
 /// Longest that is waited, s: as long as a job can be.
 const LONGEST_S: f64 = 1800.0;
 
-const KINDS: &str = "pan-slip=COUNTS, tilt-slip=COUNTS, head-bump=DEGREES, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen, \
+const KINDS: &str = "pan-slip=COUNTS, tilt-slip=COUNTS, head-bump=DEGREES, power-loss, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen, \
                      camera-black, camera-slow=IMAGES_A_SECOND, camera-stamps=SECONDS";
 
 impl FromStr for TroubleAt {
@@ -56,6 +58,7 @@ impl FromStr for TroubleAt {
             "pan-slip" => counts(Joint::Pan)?,
             "tilt-slip" => counts(Joint::Tilt)?,
             "head-bump" => What::HeadBump(number(value, 45.0)?.to_radians()),
+            "power-loss" => What::PowerLoss,
             "drift" => What::Drift(0.01 * number(value, 10.0)?),
             "camera-bump" => What::Eye(EyeTrouble::Bump(number(value, 1000.0)?)),
             "camera-unplugged" => What::Eye(EyeTrouble::Unplugged),
@@ -65,8 +68,10 @@ impl FromStr for TroubleAt {
             "camera-stamps" => What::Eye(EyeTrouble::Stamps(within(0.0, 10.0)?)),
             other => return Err(wrong(format!("nobody knows {other:?}"))),
         };
-        let takes_none =
-            matches!(what, What::Eye(EyeTrouble::Unplugged | EyeTrouble::Frozen | EyeTrouble::Black));
+        let takes_none = matches!(
+            what,
+            What::PowerLoss | What::Eye(EyeTrouble::Unplugged | EyeTrouble::Frozen | EyeTrouble::Black)
+        );
         if takes_none && !value.is_empty() {
             return Err(wrong(format!("{name} takes no value")));
         }
@@ -80,6 +85,7 @@ impl fmt::Display for TroubleAt {
             What::Slip(Joint::Pan, _) => "pan-slip",
             What::Slip(Joint::Tilt, _) => "tilt-slip",
             What::HeadBump(_) => "head-bump",
+            What::PowerLoss => "power-loss",
             What::Drift(_) => "drift",
             What::Eye(EyeTrouble::Bump(_)) => "camera-bump",
             What::Eye(EyeTrouble::Unplugged) => "camera-unplugged",
@@ -95,7 +101,7 @@ impl fmt::Display for TroubleAt {
 impl TroubleAt {
     /// Lets it happen if it is time; whether it did. `left_s` is how long the job goes on.
     pub(crate) fn strike(&self, room: &mut Room, (now_s, left_s): (f64, f64), lit: bool) -> bool {
-        let of_head = matches!(self.what, What::Slip(..) | What::HeadBump(_));
+        let of_head = matches!(self.what, What::Slip(..) | What::HeadBump(_) | What::PowerLoss);
         if now_s < self.after_s || (of_head && !lit) {
             return false;
         }
@@ -105,6 +111,7 @@ impl TroubleAt {
                 let [pan, tilt] = BUMP_SHARES.map(|share| share * rad);
                 room.rig().suffer(Trouble::Bump(PanTilt::new(pan, tilt)));
             }
+            What::PowerLoss => room.rig().suffer(Trouble::PowerLoss),
             What::Drift(share) => room.rig().suffer(Trouble::Drift(share / left_s.max(1.0))),
             What::Eye(trouble) => room.suffer(trouble),
         }

@@ -158,9 +158,13 @@ impl Watched<'_> {
         let (timing, exposure_s) = (self.follower.watch.timing, self.follower.watch.exposure_s);
         let camera = self.wall.stood.as_ref().map_or(self.job.seen.followed.camera, |s| s.camera.camera);
         let request = DotsRequest::again(&self.driving, timing, exposure_s);
-        let Self { room, log, joined, failed, plan_tick, .. } = self;
+        let Self { room, log, joined, failed, plan_tick, unpowered, .. } = self;
         let mut keep = |tick: &Tick| {
             let mut tick = *tick;
+            *unpowered |= !tick.telemetry.homed;
+            if *unpowered {
+                return;
+            }
             tick.telemetry.plan_tick = *plan_tick;
             if let Err(error) = log_tick(log, joined, &tick) {
                 *failed = failed.take().or(Some(error));

@@ -13,14 +13,13 @@ use crate::eye::Looks;
 use crate::eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_figure};
 use crate::eye::follow::Followed;
 use crate::eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_front};
-use crate::eye::homing::check_homed;
+use crate::eye::homing::{check_homed, home_head};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::source::Source;
 use crate::eye::spots::Timing;
-use crate::eye::wall::SeenWall;
 use crate::failure::Failure;
 use crate::head_file::{self, KnownHead};
-use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, Raster};
+use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures, Raster};
 use crate::picture;
 use crate::progress::Progress;
 use crate::sketch::sketch;
@@ -51,10 +50,9 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         return Err(Failure::usage("usage", message));
     }
     progress.stage("wall", 1);
-    let room = furnished(args, &driving)?;
-    let mut rig = room.as_ref().map(|room| {
-        let put_up = if args.sim_unhomed { Furnished::powered_up } else { Furnished::watched };
-        put_up(room, &driving.rig, driving.pose)
+    let mut simulated = furnished(args, &driving)?.map(|room| {
+        let put_up = if args.is_powered_up() { Furnished::powered_up } else { Furnished::watched };
+        (put_up(&room, &driving.rig, driving.pose), room)
     });
     let mut camera = args.eye.open()?;
     let wanted = FigureRequest {
@@ -63,8 +61,8 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         choice: &args.placement.choice,
         most_refused: args.retakes,
     };
-    let looks: Option<&mut dyn Looks> = match (&mut rig, &mut camera) {
-        (Some(rig), _) => Some(rig),
+    let looks: Option<&mut dyn Looks> = match (&mut simulated, &mut camera) {
+        (Some((rig, _)), _) => Some(rig),
         (None, camera) => camera.as_mut().map(|camera| &mut **camera as &mut dyn Looks),
     };
     let looks = looks.ok_or_else(|| Failure::failed("internal", "nothing that looks"))?;
@@ -72,27 +70,23 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
     stop.check()?;
     let camera = wall.camera.camera;
-    let (mut timing, mut exposure_s, mut belief) =
-        (Timing::USUAL, SPOT_EXPOSURE_S, TrimBelief::known(metres_per_pixel(&camera).unwrap_or_default()));
-    let head = match (known, &mut rig, &room) {
-        (Some(known), rig, _) => {
-            believe(&known, &wall, rig.as_mut(), &mut driving)?;
-            (timing, exposure_s) = (known.timing, known.exposure_s);
-            None
+    match &known {
+        Some(known) => {
+            known.check_wall(&wall)?;
+            driving.believe(known.geometry, known.pose);
         }
-        (None, Some(rig), Some(room)) => {
-            let (found, figures) = found_head(rig, room, &camera, &mut driving, (progress, stop))?;
-            (timing, exposure_s, belief) =
-                (found.timing, found.exposure_s, TrimBelief::found(found.aligned.rms_m));
-            Some(figures)
-        }
-        (None, _, _) => {
-            driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m));
-            progress.say(&format!(
-                "note: the simulated head is not where the camera is: it is taken to stand {:.3} m in front of the middle of the image, square-on",
-                driving.pose.distance_m
-            ));
-            None
+        None => driving.stand(in_front(&camera, driving.pose.distance_m)),
+    }
+    let head = match &mut simulated {
+        Some(scene) => head_of(args, scene, &camera, &mut driving, known, (progress, stop))?,
+        None => {
+            if known.is_none() {
+                progress.say(&format!(
+                    "note: the simulated head is not where the camera is: it is taken to stand {:.3} m in front of the middle of the image, square-on",
+                    driving.pose.distance_m
+                ));
+            }
+            HeadSeen::believed(known.as_ref(), &camera)
         }
     };
     let figures = EyeFigures {
@@ -100,31 +94,79 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         markers: wall.markers,
         markers_rms_px: wall.rms_px,
         refused_images: retaken,
-        head,
+        homed: head.homed,
+        head: head.figures.clone(),
         follow: None,
         figure_mm: None,
     };
-    let head =
-        Alignment { geometry: driving.machine.geometry, pose: driving.pose, late_s: 0.0, readout_s: 0.0 };
-    let count_rad = driving.rig.model.encoder.count_rad();
-    let followed =
-        Followed { camera, head, timing, exposure_s, belief, count_rad, relay: driving.rig.model.relay };
+    let followed = head.followed(camera, &driving);
     let known = KnownCamera::standing(&wall);
+    let room = simulated.map(|(_, room)| room);
     let truth = truth(args, room.as_ref(), progress)?;
     let seen = Seen { room, figures, image: wall.pixels, wall: known, followed, truth };
     super::planned(sketch, placed, driving, Some(seen), (progress, stop))
 }
 
-/// A head that was found before is believed to stand and to be built so, if its rig knows where it is, and the wall is where it was.
-fn believe(
-    known: &KnownHead,
-    wall: &SeenWall,
-    rig: Option<&mut Room>,
+/// What is known of a head and of when its images are taken.
+struct HeadSeen {
+    timing: Timing,
+    exposure_s: f64,
+    belief: TrimBelief,
+    homed: Option<HomedFigures>,
+    figures: Option<HeadFigures>,
+}
+
+impl HeadSeen {
+    /// Of one that was found before, or that nobody looked at.
+    fn believed(known: Option<&KnownHead>, camera: &Camera) -> Self {
+        Self {
+            timing: known.map_or(Timing::USUAL, |known| known.timing),
+            exposure_s: known.map_or(SPOT_EXPOSURE_S, |known| known.exposure_s),
+            belief: TrimBelief::known(metres_per_pixel(camera).unwrap_or_default()),
+            homed: None,
+            figures: None,
+        }
+    }
+
+    fn followed(&self, camera: Camera, driving: &Driving) -> Followed {
+        let head =
+            Alignment { geometry: driving.machine.geometry, pose: driving.pose, late_s: 0.0, readout_s: 0.0 };
+        let Self { timing, exposure_s, belief, .. } = *self;
+        let count_rad = driving.rig.model.encoder.count_rad();
+        Followed { camera, head, timing, exposure_s, belief, count_rad, relay: driving.rig.model.relay }
+    }
+}
+
+/// The head of a simulated room: homed if that is asked for, and found from dots unless it was before; from then on it is believed.
+fn head_of(
+    args: &TraceArgs,
+    (rig, room): &mut (Room, Furnished),
+    camera: &Camera,
     driving: &mut Driving,
-) -> Result<(), Failure> {
-    known.check_wall(wall)?;
-    driving.believe(known.geometry, known.pose);
-    rig.map_or(Ok(()), |rig| check_homed(&rig.step().telemetry))
+    known: Option<KnownHead>,
+    watched: (&Progress, &Stop),
+) -> Result<HeadSeen, Failure> {
+    let believed = HeadSeen::believed(known.as_ref(), camera);
+    let homed = if args.home {
+        let images = known.as_ref().map(|known| (known.timing, known.exposure_s));
+        let homed = home_head(rig, camera, driving, images, watched)?;
+        room.homed(rig, &homed);
+        Some(homed.figures())
+    } else {
+        None
+    };
+    if known.is_some() {
+        check_homed(&rig.step().telemetry)?;
+        return Ok(HeadSeen { homed, ..believed });
+    }
+    let (found, figures) = found_head(rig, room, camera, driving, watched)?;
+    Ok(HeadSeen {
+        timing: found.timing,
+        exposure_s: found.exposure_s,
+        belief: TrimBelief::found(found.aligned.rms_m),
+        homed,
+        figures: Some(figures),
+    })
 }
 
 /// The room, if it is simulated.
@@ -156,7 +198,6 @@ fn found_head(
     driving: &mut Driving,
     watched: (&Progress, &Stop),
 ) -> Result<(FoundHead, HeadFigures), Failure> {
-    driving.stand(in_front(camera, driving.pose.distance_m));
     let found = find_head(rig, camera, driving, &DotsRequest::first(driving), watched, &mut |_| {})?;
     let Alignment { geometry, pose, .. } = found.aligned.alignment;
     driving.believe(geometry, pose);

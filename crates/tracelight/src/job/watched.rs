@@ -15,6 +15,7 @@ use crate::camera_file::KnownCamera;
 use crate::cli::driving::Driving;
 use crate::eye::feed::TrimmedFeeder;
 use crate::eye::follow::{Blind, Follower, Suspicion, strayed_rad};
+use crate::eye::homing::lost_power;
 use crate::eye::painted::Painted;
 use crate::eye::trouble::TroubleAt;
 use crate::failure::Failure;
@@ -90,6 +91,8 @@ pub(super) struct Watched<'a> {
     pub(super) figures: FollowFigures,
     pub(super) log: &'a mut LogWriter,
     pub(super) failed: Option<OutputError>,
+    /// The rig is not homed any more.
+    pub(super) unpowered: bool,
     pub(super) progress: &'a Progress,
     pub(super) stop: &'a Stop,
 }
@@ -118,11 +121,13 @@ pub(super) fn run_watched(
         figures: FollowFigures { closed: !job.open, ..FollowFigures::default() },
         log,
         failed: None,
+        unpowered: false,
         progress,
         stop,
     };
     // what was drawn until then is told whatever became of it
     let failure = watched.all(job.plan.clone(), job.drawing.clone()).err();
+    let failure = if watched.unpowered { Some(lost_power()) } else { failure };
     let _ = watched.room.send(Command::Disarm);
     watched.failed.take().map_or(Ok(()), Err)?;
     watched.tell();
@@ -191,9 +196,9 @@ impl Watched<'_> {
         off.pan.abs().max(off.tilt.abs())
     }
 
-    /// Whether the user, or a log that can not be written, ends the run.
+    /// Whether the user, a log that can not be written, or a rig without power ends the run.
     pub(super) fn is_over(&self) -> bool {
-        self.stop.is_wanted() || self.failed.is_some()
+        self.stop.is_wanted() || self.failed.is_some() || self.unpowered
     }
 
     /// Where the present plan's clock stood when the light was last seen to be right; where it begins, if it never was.
@@ -244,6 +249,11 @@ impl Watched<'_> {
     pub(super) fn step(&mut self, feeder: Option<&TrimmedFeeder<'_>>) -> (Tick, Option<Suspicion>) {
         let _ = self.room.send(Command::KeepAlive);
         let mut tick = self.room.step();
+        // its ticks, counts and clock are others from then on
+        self.unpowered |= !tick.telemetry.homed;
+        if self.unpowered {
+            return (tick, None);
+        }
         self.ask(&mut tick, feeder);
         self.strike(&tick);
         let suspicion = self.follower.tick(&mut self.room, &tick);

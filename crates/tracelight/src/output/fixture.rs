@@ -225,6 +225,7 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
             gate: planned.lit,
         },
         darkness,
+        homed: true,
         phase: Phase::Tracing,
         fault: None,
     };

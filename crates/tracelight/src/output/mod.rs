@@ -47,7 +47,7 @@ pub(crate) use report::html;
 pub(crate) use sample::planned;
 pub(crate) use seen::{SeenLight, SeenMark};
 pub(crate) use summary::{
-    EyeFigures, FigureMatch, FollowFigures, HeadFigures, PlanFigures, RecoveryFigures, SeenOff,
+    EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures, PlanFigures, RecoveryFigures, SeenOff,
     StrokeFigures, Summary, TrimFigures,
 };
 pub(crate) use words::{counted, darkness_words, fault_words};

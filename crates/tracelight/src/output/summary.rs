@@ -58,6 +58,8 @@ pub(crate) struct EyeFigures {
     pub(crate) markers_rms_px: Option<f64>,
     /// Images that were refused.
     pub(crate) refused_images: u32,
+    /// How a head that was just powered up was homed; `null` where it was homed before.
+    pub(crate) homed: Option<HomedFigures>,
     /// The head as dots told it; `null` where it was known before.
     pub(crate) head: Option<HeadFigures>,
     /// What was seen of the spot while it drew; `null` where nobody looked.
@@ -79,6 +81,7 @@ impl EyeFigures {
                 head.dots, head.spots, head.rms_mm
             );
         }
+        let homed = self.homed.map(|homed| format!("homed: {}", homed.words()));
         let figure = self.figure_mm.as_ref().map(|figure| {
             format!(
                 "figure: the light is {:.3} mm from it, rms, 99 % within {:.3} mm, on {:.1} % of it (known because the room is simulated)",
@@ -88,7 +91,7 @@ impl EyeFigures {
             )
         });
         let follow = self.follow.iter().flat_map(FollowFigures::words);
-        [camera].into_iter().chain(follow).chain(figure).collect()
+        [camera].into_iter().chain(homed).chain(follow).chain(figure).collect()
     }
 }
 
@@ -162,6 +165,30 @@ impl FollowFigures {
             None => "spot: never seen while it drew".to_owned(),
         };
         std::iter::once(seen).chain(self.remarks.iter().cloned()).collect()
+    }
+}
+
+/// See [`EyeFigures::homed`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct HomedFigures {
+    /// Dots that were lit until one was seen.
+    pub(crate) sought: usize,
+    /// Where zero is, from where it was powered up, counts.
+    pub(crate) pan_counts: i32,
+    pub(crate) tilt_counts: i32,
+}
+
+impl HomedFigures {
+    /// How it was homed, in words.
+    pub(crate) fn words(&self) -> String {
+        let dots = match self.sought {
+            1 => "the first dot was in sight".to_owned(),
+            n => format!("dot {n} was in sight"),
+        };
+        format!(
+            "{dots}; zero is {:+} and {:+} counts from where it was powered up, pan and tilt",
+            self.pan_counts, self.tilt_counts
+        )
     }
 }
 

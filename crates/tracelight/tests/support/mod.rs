@@ -32,6 +32,21 @@ pub(crate) fn run(arguments: &[&str]) -> Output {
     program().args(arguments).output().unwrap()
 }
 
+/// The object that a command that went well answered with.
+pub(crate) fn json(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// A number of an object, by its path, is neither missing nor larger.
+pub(crate) fn check_at_most(object: &Value, path: &str, most: f64) {
+    let value = object.pointer(path).and_then(Value::as_f64);
+    assert!(
+        value.is_some_and(|value| (0.0..=most).contains(&value)),
+        "{path}: {value:?}, at most {most}; {object}"
+    );
+}
+
 /// Runs `trace … --out DIR --json` and returns its summary.
 pub(crate) fn lab(arguments: &[&str]) -> Value {
     let output = run(&[&["lab"], arguments, &["--json"]].concat());

@@ -64,7 +64,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     };
     progress.stage("wall", 1);
     let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
-    let room = Furnished::new(&request, &driving.rig, driving.pose)?;
+    let mut room = Furnished::new(&request, &driving.rig, driving.pose)?;
     let mut rig = if args.home {
         room.powered_up(&driving.rig, driving.pose)
     } else {
@@ -83,11 +83,10 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     }
     let watched = (&progress, stop);
     let homed = if args.home {
-        let homed = home_head(&mut rig, &camera, &driving, known.is_some(), watched)?;
-        let count_rad = driving.rig.model.encoder.count_rad();
-        let truly = rig.rig().true_counts();
-        let off_rad = PanTilt::from_fn(|j| count_rad * f64::from(truly[j] - homed.counts[j]));
-        Some((homed, room.zero_error_m(off_rad, known.is_some())))
+        let images = known.as_ref().map(|known| (known.timing, known.exposure_s));
+        let homed = home_head(&mut rig, &camera, &driving, images, watched)?;
+        room.homed(&mut rig, &homed);
+        Some((homed, room.zero_error_m(known.is_some())))
     } else {
         None
     };
@@ -99,8 +98,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     stop.check()?;
     write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, &wall))?)?;
     let pose = found.aligned.alignment.pose;
-    // a joint that is homed a count off is as if the head stood turned by it
-    let truth = if args.home { None } else { room.true_error_m(&found.aligned.alignment.geometry, &pose) };
+    let truth = room.true_error_m(&found.aligned.alignment.geometry, &pose);
     let text = text(&wall, &found, truth, &args.output) + &homed_text(homed.as_ref());
     Ok(Answer::new(text, with_homed(json(&found, truth), homed.as_ref()).to_string()))
 }
@@ -110,15 +108,10 @@ type HomedTruly = (Homed, PanTilt<f64>);
 
 fn homed_text(homed: Option<&HomedTruly>) -> String {
     let Some((homed, off_m)) = homed else { return String::new() };
-    let dots = match homed.sought {
-        1 => "the first dot was in sight".to_owned(),
-        n => format!("dot {n} was in sight"),
-    };
     format!(
-        "\nhomed:    {dots}; zero is {:+} and {:+} counts from where it was powered up, pan and tilt\n\
+        "\nhomed:    {}\n\
          truth:    zero is off by {:.2} mm on the wall in pan, {:.2} mm in tilt (known because the room is simulated)",
-        -homed.counts.pan,
-        -homed.counts.tilt,
+        homed.figures().words(),
         1e3 * off_m.pan.abs(),
         1e3 * off_m.tilt.abs(),
     )
