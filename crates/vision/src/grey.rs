@@ -1,3 +1,5 @@
+use std::sync::LazyLock;
+
 use crate::VisionError;
 use crate::plane::Plane;
 
@@ -17,8 +19,10 @@ pub struct Grey {
 }
 
 /// Light of each level, as a share of the brightest: cameras store it to a power of about 1/2.2.
-pub(crate) fn light_of_levels() -> [f32; 256] {
-    std::array::from_fn(|level| (level as f32 / 255.0).powf(2.2))
+pub(crate) fn light_of_levels() -> &'static [f32; 256] {
+    static LIGHT: LazyLock<[f32; 256]> =
+        LazyLock::new(|| std::array::from_fn(|level| (level as f32 / 255.0).powf(2.2)));
+    &LIGHT
 }
 
 impl Grey {

@@ -4,6 +4,8 @@
 //! fall away. A round spot is placed by the bell of light that fits best, over what was not full; a streak, which a moving spot leaves, by the
 //! middle of its light, where the spot was in the middle of the exposure.
 
+use std::ops::Range;
+
 use tracelight_stroke::{Point, Vec2};
 
 use crate::Grey;
@@ -78,6 +80,12 @@ const LONG: f64 = 1.5;
 const FEWEST: usize = 25;
 /// Most steps of the fit: three or four, and some more where a spot is clipped.
 const STEPS: usize = 20;
+/// A step so short, px, is the last: the next would be much shorter.
+const NEAR_PX: f64 = 1e-3;
+/// How far beyond a spot pixels are smoothed, px: the fit may make it some wider, and moves it.
+const SMOOTHED_PX: f64 = 2.0;
+/// By how many times what is left over where pixels were smoothed is smaller than what they are off.
+const SMOOTHED_SHARES: f64 = 2.0;
 /// What the middle of light on pixels is off by, as a share of its width, however little noise there is.
 const UNEVEN: f64 = 0.03;
 
@@ -107,8 +115,21 @@ pub fn find_spot(lit: &Grey, dark: &Grey, window: &SpotWindow) -> Result<Spot, S
     if streak != Vec2::ZERO {
         return Ok(bell.spot(&change, streak, noise));
     }
-    let fitted = bell.fitted(&change, noise);
+    // beside a full pixel, the spot's or a lamp's, there is nothing to smooth with
+    let fitted = match bell.is_near_full(&change) {
+        false => bell.fitted(&change.smoothed(&bell), noise, SMOOTHED_SHARES).map(Spot::as_unsmoothed),
+        true => bell.fitted(&change, noise, 1.0),
+    };
     Ok(fitted.unwrap_or_else(|| bell.spot(&change, Vec2::ZERO, noise)))
+}
+
+impl Spot {
+    /// Of one whose pixels were smoothed ([`Change::smoothed`]), which adds half a pixel to its variances and spreads its light.
+    fn as_unsmoothed(self) -> Self {
+        let smooth = self.radius_px * self.radius_px;
+        let own = (smooth - 0.5).max(0.1);
+        Self { radius_px: own.sqrt(), brightness: self.brightness * smooth / own, ..self }
+    }
 }
 
 /// What became brighter, in light, in a part of an image.
@@ -136,10 +157,13 @@ impl Change {
             return None;
         }
         let curve = light_of_levels();
-        let both =
-            || (top..bottom).flat_map(|y| lit.row(y)[left..right].iter().zip(&dark.row(y)[left..right]));
-        let values = both().map(|(&a, &b)| curve[usize::from(a)] - curve[usize::from(b)]).collect();
-        let full = both().map(|(&a, &b)| a >= FULL || b >= FULL).collect();
+        let mut values = Vec::with_capacity(width * height);
+        let mut full = Vec::with_capacity(width * height);
+        for y in top..bottom {
+            let both = || lit.row(y)[left..right].iter().zip(&dark.row(y)[left..right]);
+            values.extend(both().map(|(&a, &b)| curve[usize::from(a)] - curve[usize::from(b)]));
+            full.extend(both().map(|(&a, &b)| a >= FULL || b >= FULL));
+        }
         Some(Self { left, top, light: Plane { width, height, values }, full })
     }
 
@@ -159,17 +183,45 @@ impl Change {
     /// The cell with the brightest mean of nine, and that.
     fn peak(&self) -> (usize, f64) {
         let (width, height) = (self.light.width, self.light.height);
-        let mut best = (width + 1, f64::MIN);
+        let mut best = (width + 1, f32::MIN);
+        let mut three = vec![0.0; width];
         for y in 1..height - 1 {
-            let rows = [y - 1, y, y + 1].map(|y| self.light.row(y));
-            for x in 1..width - 1 {
-                let mean = rows.iter().map(|row| row[x - 1] + row[x] + row[x + 1]).sum::<f32>() / 9.0;
-                if f64::from(mean) > best.1 {
-                    best = (y * width + x, f64::from(mean));
-                }
+            let [above, own, below] = [y - 1, y, y + 1].map(|y| self.light.row(y));
+            let columns = above.iter().zip(own).zip(below);
+            three.iter_mut().zip(columns).for_each(|(sum, ((a, b), c))| *sum = a + b + c);
+            let nine = || three.windows(3).map(|three| three[0] + three[1] + three[2]);
+            let most = nine().fold(f32::MIN, |most, nine| if nine > most { nine } else { most });
+            if most > best.1 {
+                let x = nine().position(|nine| nine == most).unwrap_or_default();
+                best = (y * width + x + 1, most);
             }
         }
-        best
+        (best.0, f64::from(best.1 / 9.0))
+    }
+
+    /// What is about a bell, each pixel's light by its neighbours' too: 1 2 1 across, and down. A sensor that sees one colour a pixel fills in red between the pixels that saw it, by
+    /// the mean of two; that pattern, of two pixels, is taken away, and what is left of the spot is a bell again.
+    fn smoothed(&self, about: &Bell) -> Self {
+        let (columns, rows) = about.reach(self, SMOOTHED_PX);
+        let (width, height) = (columns.len(), rows.len());
+        let mut across = Vec::with_capacity(width * height);
+        for y in rows.clone() {
+            let row = &self.light.row(y)[columns.clone()];
+            let beside = |k: usize, by: usize| row[(k + by).saturating_sub(1).min(width - 1)];
+            across.extend((0..width).map(|k| 0.25 * (beside(k, 0) + beside(k, 2)) + 0.5 * row[k]));
+        }
+        let mut values = Vec::with_capacity(width * height);
+        for k in 0..height {
+            let row = |by: usize| &across[(k + by).saturating_sub(1).min(height - 1) * width..][..width];
+            let three = row(0).iter().zip(row(1)).zip(row(2));
+            values.extend(three.map(|((above, own), below)| 0.25 * (above + below) + 0.5 * own));
+        }
+        Self {
+            left: self.left + columns.start,
+            top: self.top + rows.start,
+            light: Plane { width, height, values },
+            full: vec![false; width * height],
+        }
     }
 
     /// The cells about one that hang together and are brighter than that, with one more around.
@@ -270,7 +322,8 @@ impl Bell {
 
     /// The bell that fits best over what is not full: Gauss and Newton's method, each pixel by its noise, of which the light has a share
     /// (speckle, shot noise). `None` if it is lost.
-    fn fitted(&self, change: &Change, noise: f64) -> Option<Spot> {
+    /// `shares` says by how many times what is left over is smaller than it would be of pixels each by itself.
+    fn fitted(&self, change: &Change, noise: f64, shares: f64) -> Option<Spot> {
         let mut bell = *self;
         let mut left = None;
         for _ in 0..STEPS {
@@ -281,19 +334,39 @@ impl Bell {
             }
             let moved = next.at.distance(bell.at);
             (bell, left) = (next, Some(fit));
-            if moved < 1e-4 {
+            if moved < NEAR_PX {
                 break;
             }
         }
         let (long, wide, _) = bell.axes();
         Some(Spot {
             at: bell.at,
-            deviation_px: left?,
+            deviation_px: shares * left?,
             radius_px: (long * wide).sqrt().sqrt(),
             streak: Vec2::ZERO,
             brightness: bell.brightness,
             clipped: bell.clipped,
         })
+    }
+
+    /// Columns and rows of what was changed on which its light is, and some more around, px.
+    fn reach(&self, change: &Change, more_px: f64) -> (Range<usize>, Range<usize>) {
+        let (long, _, _) = self.axes();
+        let reach = 3.5 * long.sqrt() + 1.0 + more_px;
+        let range = |at: f64, first: usize, size: usize| {
+            let low = (at - reach - first as f64).max(0.0) as usize;
+            low.min(size)..((at + reach - first as f64).max(0.0).ceil() as usize).min(size)
+        };
+        let Plane { width, height, .. } = change.light;
+        (range(self.at.x, change.left, width), range(self.at.y, change.top, height))
+    }
+
+    /// Whether a pixel is full that its light, smoothed, would reach.
+    fn is_near_full(&self, change: &Change) -> bool {
+        let (columns, rows) = self.reach(change, SMOOTHED_PX + 1.0);
+        let width = change.light.width;
+        let mut cells = rows.flat_map(|y| columns.clone().map(move |x| y * width + x));
+        cells.any(|cell| change.full[cell])
     }
 
     /// A step, and the standard deviation of the place as what is left over tells it.
@@ -303,17 +376,11 @@ impl Bell {
         let [a, b, c] = self.spread;
         let det = a * c - b * b;
         let (ia, ib, ic) = (c / det, -b / det, a / det);
-        let (long, _, _) = self.axes();
-        let reach = 3.5 * long.sqrt() + 1.0;
-        let (width, height) = (change.light.width, change.light.height);
-        let range = |at: f64, first: usize, size: usize| {
-            let low = (at - reach - first as f64).max(0.0) as usize;
-            low.min(size)..((at + reach - first as f64).max(0.0).ceil() as usize).min(size)
-        };
-        let (mut rows, mut squares, mut count) = ([[0.0; 8]; 7], 0.0, 0.0);
-        for y in range(self.at.y, change.top, height) {
-            for x in range(self.at.x, change.left, width) {
-                let cell = y * width + x;
+        let (columns, rows) = self.reach(change, 0.0);
+        let (mut normal, mut squares, mut count) = ([[0.0; 8]; 7], 0.0, 0.0);
+        for y in rows {
+            for x in columns.clone() {
+                let cell = y * change.light.width + x;
                 let off = change.place(cell) - self.at;
                 let (u, v) = (ia * off.x + ib * off.y, ib * off.x + ic * off.y);
                 let bell = (-0.5 * (u * off.x + v * off.y)).exp();
@@ -323,9 +390,10 @@ impl Bell {
                 if change.full[cell] {
                     continue;
                 }
-                let weight = 1.0 / (noise * noise + (OWN * light).powi(2) + 1e-9).sqrt();
-                let residual = (f64::from(change.light.values[cell]) - told) * weight;
-                let by = [
+                let own = OWN * light;
+                let weight = 1.0 / (noise * noise + own * own + 1e-9);
+                let residual = f64::from(change.light.values[cell]) - told;
+                let terms = [
                     light * u,
                     light * v,
                     bell,
@@ -333,20 +401,25 @@ impl Bell {
                     0.5 * light * u * u,
                     light * u * v,
                     0.5 * light * v * v,
+                    residual,
                 ];
-                let terms: [f64; 8] = std::array::from_fn(|k| by.get(k).map_or(residual, |d| d * weight));
-                for (row, factor) in rows.iter_mut().zip(terms) {
-                    row.iter_mut().zip(terms).for_each(|(sum, term)| *sum += factor * term);
+                for (k, row) in normal.iter_mut().enumerate() {
+                    let factor = weight * terms[k];
+                    row[k..].iter_mut().zip(&terms[k..]).for_each(|(sum, term)| *sum += factor * term);
                 }
-                (squares, count) = (squares + residual * residual, count + 1.0);
+                (squares, count) = (squares + weight * residual * residual, count + 1.0);
             }
         }
         if count < 12.0 {
             return None;
         }
-        let step = linear(rows)?;
+        for k in 1..normal.len() {
+            let (above, row) = normal.split_at_mut(k);
+            above.iter().enumerate().for_each(|(j, above)| row[0][j] = above[k]);
+        }
+        let step = linear(normal)?;
         // variance of the place, as if the other parameters were known: they hardly share with it in a round spot
-        let variance = squares / (count - 7.0) * 0.5 * (1.0 / rows[0][0] + 1.0 / rows[1][1]);
+        let variance = squares / (count - 7.0) * 0.5 * (1.0 / normal[0][0] + 1.0 / normal[1][1]);
         // of a spot that is clipped the first guess is far too dim and wide: by half at most in a step
         let near = |old: f64, by: f64| (old + by).clamp(old / 1.6, 1.6 * old);
         let next = Self {

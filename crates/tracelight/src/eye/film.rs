@@ -14,6 +14,8 @@ use crate::failure::Failure;
 const MOST_BYTES: usize = 64_000_000;
 /// What is read at once, bytes.
 const CHUNK: usize = 1 << 20;
+/// Most beginnings of images without an end behind which another is looked for.
+const MOST_ENDLESS: usize = 64;
 /// Images a second, as far as anybody knows.
 const A_SECOND: f64 = 30.0;
 /// What names of films end in.
@@ -71,7 +73,10 @@ impl<R: Read> Looks for Film<R> {
         let Some(bytes) = next.map_err(|e| unread(&self.path, &e))? else {
             return Err(Failure::failed(
                 "no-image",
-                format!("the film {} has no image after its {}", self.path, self.taken),
+                format!(
+                    "the film {0} has no image of Motion JPEG after its {1}; where it shows more, make one of them (ffmpeg -i {0} -c:v mjpeg -q:v 2 film.avi)",
+                    self.path, self.taken
+                ),
             ));
         };
         self.taken += 1;
@@ -91,11 +96,13 @@ struct Images<R> {
     /// Read and not yet looked at, or not to its end.
     bytes: VecDeque<u8>,
     ended: bool,
+    /// Beginnings of images without an end, after all was read.
+    endless: usize,
 }
 
 impl<R: Read> Images<R> {
     const fn new(from: R) -> Self {
-        Self { from, bytes: VecDeque::new(), ended: false }
+        Self { from, bytes: VecDeque::new(), ended: false, endless: 0 }
     }
 
     /// The next image; nothing after the last.
@@ -109,9 +116,14 @@ impl<R: Read> Images<R> {
                 Found::Nothing { until } => {
                     self.bytes.drain(..until);
                 }
-                // what is larger is no image
+                // what is larger is no image, nor is what never ends
                 Found::Begun { at } if self.bytes.len() - at > MOST_BYTES => {
+                    self.bytes.drain(..at + MOST_BYTES);
+                    continue;
+                }
+                Found::Begun { at } if self.ended && self.endless < MOST_ENDLESS => {
                     self.bytes.drain(..at + 2);
+                    self.endless += 1;
                     continue;
                 }
                 Found::Begun { at } => {
@@ -251,6 +263,9 @@ mod tests {
         let broken = &own[..own.len() - 40];
         assert_eq!(all(&[broken, &small].concat(), 4096), std::slice::from_ref(&small));
         assert_eq!(all(broken, 4096), Vec::<Vec<u8>>::new());
+        // a segment that would reach beyond the end, and an image after it
+        let beyond = [&[0xff, 0xd8, 0xff, 0xe0, 0xff, 0xff][..], &small].concat();
+        assert_eq!(all(&beyond, 4096), std::slice::from_ref(&small));
         assert_eq!(all(&[&[0xff, 0xd8, 0xff, 0xe0, 0, 1][..], &small].concat(), 4096), [small]);
     }
 

@@ -177,7 +177,7 @@ pub(crate) fn see_dots<R: Simulated + Eye>(
     let places = dots(camera, driving, request.across);
     let plan = plan_of(&places, driving)?;
     progress.stage("dots", plan.points.len() as u64);
-    let mut watch = SpotWatch::new(*camera, request.exposure_s);
+    let mut watch = SpotWatch::new(*camera, request.exposure_s.min(rig.longest_s()));
     watch.timing = request.timing;
     watch.begin(rig.take(watch.exposure_s)?);
     let mut history = History::new(&driving.rig.model.relay);
@@ -202,6 +202,10 @@ pub(crate) fn see_dots<R: Simulated + Eye>(
         let _ = rig.send(Command::KeepAlive);
         let tick = rig.step();
         keep(&tick);
+        homed = homed.and_then(|()| check_homed(&tick.telemetry));
+        if homed.is_err() {
+            break;
+        }
         history.push(&tick.telemetry);
         look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
     }

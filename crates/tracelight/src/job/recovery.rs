@@ -11,6 +11,7 @@ use super::watched::{REST_TICKS, Watched, Why};
 use crate::camera_file::KnownCamera;
 use crate::eye::follow::{Blind, Followed, Follower, Suspicion};
 use crate::eye::head::{DotsRequest, find_head};
+use crate::eye::homing::lost_power;
 use crate::eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
 use crate::eye::{Eye, Looks, PATIENCE_TICKS, Shot};
 use crate::failure::Failure;
@@ -99,7 +100,7 @@ impl Watched<'_> {
         let stop = self.stop.clone();
         let wall = well_exposed(self, &stop).and_then(|pixels| see_wall(pixels, Some(&self.wall)));
         stop.check()?;
-        if self.follower.blind() == Some(Blind::Stamps) {
+        if self.is_over() || self.follower.blind() == Some(Blind::Stamps) {
             return Ok(None);
         }
         let had_markers = self.job.seen.figures.markers > 0;
@@ -220,6 +221,9 @@ impl Watched<'_> {
         let _ = self.room.send(Command::Abandon);
         for _ in 0..HOME_TICKS {
             let (tick, _) = self.step(None);
+            if self.unpowered {
+                return Err(lost_power());
+            }
             let Telemetry { position_rad, velocity_rad_s, fault, .. } = tick.telemetry;
             if let Some(fault) = fault {
                 return Err(Failure::fault(fault));
@@ -244,6 +248,9 @@ impl Looks for Watched<'_> {
         self.room.expose(exposure_s);
         for _ in 0..PATIENCE_TICKS {
             self.step(None);
+            if self.unpowered {
+                return Err(lost_power());
+            }
             if let Some(shot) = self.follower.taken() {
                 return Ok(shot);
             }

@@ -250,7 +250,7 @@ impl Watched<'_> {
         let _ = self.room.send(Command::KeepAlive);
         let mut tick = self.room.step();
         // its ticks, counts and clock are others from then on
-        self.unpowered |= !tick.telemetry.homed;
+        self.see_power(&tick.telemetry);
         if self.unpowered {
             return (tick, None);
         }
@@ -270,6 +270,13 @@ impl Watched<'_> {
             self.run.ticks.push(tick);
         }
         (tick, suspicion)
+    }
+
+    /// Tells of a rig that lost power since it drew.
+    pub(super) fn see_power(&mut self, now: &Telemetry) {
+        if !now.homed && !std::mem::replace(&mut self.unpowered, true) {
+            self.remark("the rig lost power: it is dark, and does not know where its head points; light that was still on its way out is not in these figures".to_owned());
+        }
     }
 
     /// Where the plan wanted the spot, before it was trimmed, and where in all that is planned its clock stands.

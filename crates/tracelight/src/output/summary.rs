@@ -7,6 +7,7 @@ use tracelight_stroke::Drawing;
 use tracelight_trajectory::Plan;
 
 use super::sample::lit_s;
+use super::words::counted;
 use super::{Event, Job, OutputError, events};
 use crate::quality::QualityFigures;
 
@@ -173,6 +174,8 @@ impl FollowFigures {
 pub(crate) struct HomedFigures {
     /// Dots that were lit until one was seen.
     pub(crate) sought: usize,
+    /// How often something was in a joint's way meanwhile.
+    pub(crate) stops: usize,
     /// Where zero is, from where it was powered up, counts.
     pub(crate) pan_counts: i32,
     pub(crate) tilt_counts: i32,
@@ -185,8 +188,12 @@ impl HomedFigures {
             1 => "the first dot was in sight".to_owned(),
             n => format!("dot {n} was in sight"),
         };
+        let stops = match self.stops {
+            0 => String::new(),
+            n => format!(", something was in its way {}", counted(n, "time")),
+        };
         format!(
-            "{dots}; zero is {:+} and {:+} counts from where it was powered up, pan and tilt",
+            "{dots}{stops}; zero is {:+} and {:+} counts from where it was powered up, pan and tilt",
             self.pan_counts, self.tilt_counts
         )
     }

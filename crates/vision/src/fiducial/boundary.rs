@@ -35,7 +35,7 @@ const FEWEST: usize = 24;
 /// What is looked up rather than worked out each time.
 pub(super) struct Tables {
     /// Light from levels: halfway up a blurred edge in levels is not where the edge is.
-    light: [f32; 256],
+    light: &'static [f32; 256],
     /// The normal distribution, in steps of 1/[`STEPS`] of a deviation from −[`TAILS`] on, and its density.
     below: [f32; 2 * TAILS * STEPS + 1],
     bell: [f32; 2 * TAILS * STEPS + 1],

@@ -121,6 +121,7 @@ fn with_homed(mut object: serde_json::Value, homed: Option<&HomedTruly>) -> serd
     if let Some((homed, off_m)) = homed {
         object["homed"] = json!({
             "sought": homed.sought,
+            "stops": homed.stops,
             "counts": [homed.counts.pan, homed.counts.tilt],
             "truth_mm": [1e3 * off_m.pan, 1e3 * off_m.tilt],
         });

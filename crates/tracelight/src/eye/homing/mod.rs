@@ -33,6 +33,8 @@ use crate::stop::Stop;
 pub(crate) struct Homed {
     /// Dots that were lit until one was seen.
     pub(crate) sought: usize,
+    /// How often something was in a joint's way.
+    pub(crate) stops: usize,
     /// What its encoders read where they read 0 before.
     pub(crate) counts: PanTilt<i32>,
 }
@@ -41,7 +43,7 @@ impl Homed {
     /// The same as figures.
     pub(crate) fn figures(&self) -> HomedFigures {
         let PanTilt { pan, tilt } = self.counts.map(|count| -count);
-        HomedFigures { sought: self.sought, pan_counts: pan, tilt_counts: tilt }
+        HomedFigures { sought: self.sought, stops: self.stops, pan_counts: pan, tilt_counts: tilt }
     }
 }
 
@@ -62,7 +64,12 @@ pub(crate) fn home_head<R: Simulated + Eye>(
     known: Option<(Timing, f64)>,
     (progress, stop): (&Progress, &Stop),
 ) -> Result<Homed, Failure> {
-    let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
+    // an unhomed rig goes no further from where it was powered up than its joints' ranges are wide
+    let free_rad = driving.machine.geometry.range_rad.map(|(lower, upper)| {
+        let width_rad = (upper - lower - travel::BEFORE_STOP_RAD).max(0.0);
+        (-width_rad, width_rad)
+    });
+    let exposure_s = known.map_or(SPOT_EXPOSURE_S, |(_, exposure_s)| exposure_s).min(rig.longest_s());
     let mut homing = Homing {
         rig,
         camera,
@@ -71,9 +78,9 @@ pub(crate) fn home_head<R: Simulated + Eye>(
         stop,
         history: History::new(&driving.rig.model.relay),
         timing: known.map_or(Timing::USUAL, |(timing, _)| timing),
-        exposure_s: known.map_or(SPOT_EXPOSURE_S, |(_, exposure_s)| exposure_s),
+        exposure_s,
         counts: PanTilt::default(),
-        free_rad: PanTilt::new(everywhere, everywhere),
+        free_rad,
         stops: 0,
     };
     progress.stage("homing", 1);
@@ -153,7 +160,7 @@ struct Homing<'a, R> {
     exposure_s: f64,
     /// What was added to what its encoders read, until now.
     counts: PanTilt<i32>,
-    /// How far the joints turn from where they were powered up until something is in their way, as far as is known, rad.
+    /// How far the joints may turn from where they were powered up: as wide as their ranges are, or until something is in their way, rad.
     free_rad: PanTilt<(f64, f64)>,
     /// How often something was.
     stops: usize,
@@ -176,7 +183,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         };
         let now = self.rest(1)?;
         self.tell(PanTilt::from_fn(|j| self.count_rad() * f64::from(now.measured[j].count) + off_rad[j]))?;
-        Ok(Homed { sought, counts: self.counts })
+        Ok(Homed { sought, stops: self.stops, counts: self.counts })
     }
 
     fn count_rad(&self) -> f64 {
@@ -203,8 +210,9 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             }
         }
         let message = format!(
-            "the camera saw none of {} dots: is the laser on, and is the wall that the camera sees within the head's reach? Turn the head by hand so that it faces the wall, and home it again",
-            tried.len()
+            "the camera saw none of {} dots{}: is the laser on, and is the wall that the camera sees within the head's reach? Turn the head by hand so that it faces the wall, and home it again",
+            tried.len(),
+            if self.stops > 0 { ", and something was in the head's way" } else { "" },
         );
         Err(Failure::failed("head-not-found", message))
     }
@@ -222,7 +230,8 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             return Err(Failure::failed("unfinished", message));
         }
         self.counts = PanTilt::from_fn(|j| self.counts[j] + by[j]);
-        self.zero("the head does not come to where it was told zero is: is something in its way?")
+        self.zero("the head does not come to where it was told zero is: is something in its way?")?;
+        check_homed(&self.rest(1)?)
     }
 }
 

@@ -16,9 +16,11 @@ const STRAY_RAD: f32 = 0.05;
 /// Most times that a joint comes up against something: it has two stops.
 const MOST_STOPS: usize = 8;
 /// How far before a stop a joint turns back, rad.
-const BEFORE_STOP_RAD: f64 = 0.03;
+pub(super) const BEFORE_STOP_RAD: f64 = 0.03;
 /// Of how many strides on either joint a place is no other than one that was tried.
 const SAME_STRIDES: f64 = 0.25;
+/// How long a joint swings that came up against something, ticks.
+const SWING_TICKS: u32 = 300;
 /// Longest that a head takes to go to zero, ticks.
 const HOMEWARD_TICKS: u32 = 15_000;
 /// How near to it is there, rad, and how slow at rest, rad/s.
@@ -53,7 +55,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
                         *at = to;
                         None
                     }
-                    Ok(Some(fault)) => Some(self.turn_back(j, there[j] - at[j], fault)),
+                    Ok(Some(fault)) => Some(self.turn_back(j, there[j] - at[j], tried, fault)),
                     Err(failure) => Some(Err(failure)),
                 }
             });
@@ -65,24 +67,38 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         }
     }
 
-    /// Something was in a joint's way, as the fault shows: goes back to where it was powered up, and goes no further that way.
-    fn turn_back(&mut self, joint: Joint, way_rad: f64, fault: Fault) -> Result<(), Failure> {
+    /// Something was in a joint's way, as the fault shows: goes back to where it was powered up, and goes no further that way, unless it was there before.
+    fn turn_back(
+        &mut self,
+        joint: Joint,
+        way_rad: f64,
+        tried: &[PanTilt<f64>],
+        fault: Fault,
+    ) -> Result<(), Failure> {
         self.stops += 1;
         if self.stops > MOST_STOPS || !may_be_a_stop(fault) {
             return Err(Failure::fault(fault));
         }
-        let there = self.tick()?;
-        let end_rad = self.count_rad() * f64::from(there.measured[joint].count);
-        let (lower, upper) = &mut self.free_rad[joint];
-        if way_rad < 0.0 {
-            *lower = (end_rad + BEFORE_STOP_RAD).min(0.0);
-        } else {
-            *upper = (end_rad - BEFORE_STOP_RAD).max(0.0);
+        // it may still go on, and swings back
+        let mut end_rad = f64::NEG_INFINITY;
+        for _ in 0..SWING_TICKS {
+            let count = self.tick()?.measured[joint].count;
+            end_rad = end_rad.max(way_rad.signum() * self.count_rad() * f64::from(count));
         }
-        self.progress.say(&format!(
-            "note: something is in the way of {joint} {:.0}° from where it was powered up: it goes no further that way",
-            end_rad.abs().to_degrees()
-        ));
+        let beyond = |place: &PanTilt<f64>| way_rad.signum() * place[joint] > end_rad;
+        if !tried.iter().any(beyond) {
+            let (lower, upper) = &mut self.free_rad[joint];
+            let free_rad = (end_rad - BEFORE_STOP_RAD).max(0.0);
+            if way_rad < 0.0 {
+                *lower = -free_rad
+            } else {
+                *upper = free_rad
+            }
+            self.progress.say(&format!(
+                "note: something is in the way of {joint} {:.0}° from where it was powered up: it goes no further that way",
+                end_rad.max(0.0).to_degrees()
+            ));
+        }
         let _ = self.rig.send(Command::Arm);
         self.zero("the head does not come back from where something was in its way: is it free?")
     }
@@ -179,6 +195,7 @@ const fn may_be_a_stop(fault: Fault) -> bool {
         Fault::EncoderJumped
             | Fault::EncoderDead
             | Fault::EncoderSlipping
+            | Fault::EncoderNoisy
             | Fault::EstimateDiverged
             | Fault::HoldTimedOut
             | Fault::AmplifierSaturated
