@@ -4,14 +4,16 @@
 //! fall away. A round spot is placed by the bell of light that fits best, over what was not full; a streak, which a moving spot leaves, by the
 //! middle of its light, where the spot was in the middle of the exposure.
 
+mod change;
+
 use std::ops::Range;
 
 use tracelight_stroke::{Point, Vec2};
 
 use crate::Grey;
-use crate::grey::light_of_levels;
 use crate::plane::Plane;
 use crate::solve::linear;
+use change::{Change, Patch};
 
 /// Where a spot is looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,20 +72,14 @@ pub enum SpotLost {
 
 /// By how many deviations of the noise a spot stands out.
 const STANDS_OUT: f64 = 6.0;
-/// Level from which on a pixel may be full.
-const FULL: u8 = 250;
 /// Share of its brightest light down to which light is the spot's.
 const LEAST_SHARE: f64 = 0.2;
 /// How many times as long as wide a streak is.
 const LONG: f64 = 1.5;
-/// Fewest pixels of a window.
-const FEWEST: usize = 25;
 /// Most steps of the fit: three or four, and some more where a spot is clipped.
 const STEPS: usize = 20;
 /// A step so short, px, is the last: the next would be much shorter.
 const NEAR_PX: f64 = 1e-3;
-/// How far beyond a spot pixels are smoothed, px: the fit may make it some wider, and moves it.
-const SMOOTHED_PX: f64 = 2.0;
 /// By how many times what is left over where pixels were smoothed is smaller than what they are off.
 const SMOOTHED_SHARES: f64 = 2.0;
 /// What the middle of light on pixels is off by, as a share of its width, however little noise there is.
@@ -130,130 +126,6 @@ impl Spot {
         let own = (smooth - 0.5).max(0.1);
         Self { radius_px: own.sqrt(), brightness: self.brightness * smooth / own, ..self }
     }
-}
-
-/// What became brighter, in light, in a part of an image.
-struct Change {
-    left: usize,
-    top: usize,
-    light: Plane<f32>,
-    /// Pixels that say nothing: full, in either image.
-    full: Vec<bool>,
-}
-
-impl Change {
-    fn of(lit: &Plane<u8>, dark: &Plane<u8>, window: &SpotWindow) -> Option<Self> {
-        if !(window.centre.x.is_finite() && window.centre.y.is_finite()) {
-            return None;
-        }
-        let range = |at: f64, size: usize| {
-            let low = (at - window.half_px as f64).clamp(0.0, size as f64) as usize;
-            (low, (at + window.half_px as f64 + 1.0).clamp(0.0, size as f64) as usize)
-        };
-        let ((left, right), (top, bottom)) =
-            (range(window.centre.x, lit.width), range(window.centre.y, lit.height));
-        let (width, height) = (right - left, bottom - top);
-        if width.min(height) < 5 || width * height < FEWEST {
-            return None;
-        }
-        let curve = light_of_levels();
-        let mut values = Vec::with_capacity(width * height);
-        let mut full = Vec::with_capacity(width * height);
-        for y in top..bottom {
-            let both = || lit.row(y)[left..right].iter().zip(&dark.row(y)[left..right]);
-            values.extend(both().map(|(&a, &b)| curve[usize::from(a)] - curve[usize::from(b)]));
-            full.extend(both().map(|(&a, &b)| a >= FULL || b >= FULL));
-        }
-        Some(Self { left, top, light: Plane { width, height, values }, full })
-    }
-
-    /// A cell's middle in the pixel frame.
-    fn place(&self, cell: usize) -> Point {
-        let (x, y) = (cell % self.light.width, cell / self.light.width);
-        Point::new((self.left + x) as f64 + 0.5, (self.top + y) as f64 + 0.5)
-    }
-
-    /// Standard deviation of the noise of a pixel: by the median of what changed either way, which a spot's few pixels do not move.
-    fn noise(&self) -> f64 {
-        let mut sizes: Vec<f32> = self.light.values.iter().map(|v| v.abs()).collect();
-        let middle = sizes.len() / 2;
-        f64::from(*sizes.select_nth_unstable_by(middle, f32::total_cmp).1) / 0.6745
-    }
-
-    /// The cell with the brightest mean of nine, and that.
-    fn peak(&self) -> (usize, f64) {
-        let (width, height) = (self.light.width, self.light.height);
-        let mut best = (width + 1, f32::MIN);
-        let mut three = vec![0.0; width];
-        for y in 1..height - 1 {
-            let [above, own, below] = [y - 1, y, y + 1].map(|y| self.light.row(y));
-            let columns = above.iter().zip(own).zip(below);
-            three.iter_mut().zip(columns).for_each(|(sum, ((a, b), c))| *sum = a + b + c);
-            let nine = || three.windows(3).map(|three| three[0] + three[1] + three[2]);
-            let most = nine().fold(f32::MIN, |most, nine| if nine > most { nine } else { most });
-            if most > best.1 {
-                let x = nine().position(|nine| nine == most).unwrap_or_default();
-                best = (y * width + x + 1, most);
-            }
-        }
-        (best.0, f64::from(best.1 / 9.0))
-    }
-
-    /// What is about a bell, each pixel's light by its neighbours' too: 1 2 1 across, and down. A sensor that sees one colour a pixel fills in red between the pixels that saw it, by
-    /// the mean of two; that pattern, of two pixels, is taken away, and what is left of the spot is a bell again.
-    fn smoothed(&self, about: &Bell) -> Self {
-        let (columns, rows) = about.reach(self, SMOOTHED_PX);
-        let (width, height) = (columns.len(), rows.len());
-        let mut across = Vec::with_capacity(width * height);
-        for y in rows.clone() {
-            let row = &self.light.row(y)[columns.clone()];
-            let beside = |k: usize, by: usize| row[(k + by).saturating_sub(1).min(width - 1)];
-            across.extend((0..width).map(|k| 0.25 * (beside(k, 0) + beside(k, 2)) + 0.5 * row[k]));
-        }
-        let mut values = Vec::with_capacity(width * height);
-        for k in 0..height {
-            let row = |by: usize| &across[(k + by).saturating_sub(1).min(height - 1) * width..][..width];
-            let three = row(0).iter().zip(row(1)).zip(row(2));
-            values.extend(three.map(|((above, own), below)| 0.25 * (above + below) + 0.5 * own));
-        }
-        Self {
-            left: self.left + columns.start,
-            top: self.top + rows.start,
-            light: Plane { width, height, values },
-            full: vec![false; width * height],
-        }
-    }
-
-    /// The cells about one that hang together and are brighter than that, with one more around.
-    fn patch(&self, from: usize, least: f64) -> Patch {
-        let (width, height) = (self.light.width, self.light.height);
-        let mut seen = vec![false; width * height];
-        let (mut cells, mut next) = (Vec::new(), vec![from]);
-        seen[from] = true;
-        let mut touches_border = false;
-        while let Some(cell) = next.pop() {
-            cells.push(cell);
-            let (x, y) = (cell % width, cell / width);
-            let bright = f64::from(self.light.values[cell]) >= least || self.full[cell];
-            if !bright && cell != from {
-                continue;
-            }
-            touches_border |= x == 0 || y == 0 || x + 1 == width || y + 1 == height;
-            for (dx, dy) in [(0, 1), (1, 0), (1, 2), (2, 1), (0, 0), (2, 0), (0, 2), (2, 2)] {
-                let (Some(x), Some(y)) = ((x + dx).checked_sub(1), (y + dy).checked_sub(1)) else { continue };
-                if x < width && y < height && !std::mem::replace(&mut seen[y * width + x], true) {
-                    next.push(y * width + x);
-                }
-            }
-        }
-        Patch { cells, touches_border }
-    }
-}
-
-/// Cells that hang together.
-struct Patch {
-    cells: Vec<usize>,
-    touches_border: bool,
 }
 
 /// A bell of light: brightness · exp(−½ dᵀ S⁻¹ d) on a floor.
@@ -363,7 +235,7 @@ impl Bell {
 
     /// Whether a pixel is full that its light, smoothed, would reach.
     fn is_near_full(&self, change: &Change) -> bool {
-        let (columns, rows) = self.reach(change, SMOOTHED_PX + 1.0);
+        let (columns, rows) = self.reach(change, change::SMOOTHED_PX + 1.0);
         let width = change.light.width;
         let mut cells = rows.flat_map(|y| columns.clone().map(move |x| y * width + x));
         cells.any(|cell| change.full[cell])
