@@ -1,4 +1,4 @@
-use tracelight_rig::{JointLimits, PanTilt};
+use tracelight_rig::{Joint, JointLimits, PanTilt};
 
 use crate::{Creep, FrictionModel, HeadModel, LawConfig, Learned, MotorRating, ObserverConfig};
 
@@ -20,15 +20,14 @@ pub struct Config {
 }
 
 impl Config {
-    /// What the joints may do, by what their encoders count. One that counts from where it was left does not know where its range ends: only how wide that is.
-    pub(crate) fn limits(&self, homed: bool) -> PanTilt<JointLimits> {
-        let known = self.axes.map(|axis| axis.limits);
-        if homed {
-            return known;
-        }
-        known.map(|limits| {
-            let width_rad = limits.upper_rad - limits.lower_rad;
-            JointLimits { lower_rad: -width_rad, upper_rad: width_rad, ..limits }
+    /// Whether joints may be there, by what their encoders count. Those that count from where they were left do not know where their ranges end: only how wide they are.
+    pub(crate) fn may_be_at(&self, position_rad: PanTilt<f32>, homed: bool) -> bool {
+        Joint::BOTH.iter().all(|&j| {
+            let limits = &self.axes[j].limits;
+            match homed {
+                true => limits.contains(position_rad[j]),
+                false => position_rad[j].abs() <= limits.upper_rad - limits.lower_rad,
+            }
         })
     }
 }

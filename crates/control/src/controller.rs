@@ -150,10 +150,9 @@ impl Controller {
 
     /// Whether both ends of a segment lie where the joints may be.
     fn in_range(&self, segment: &Segment, homed: bool) -> bool {
-        let may_be = self.config.limits(homed);
         [0.0, f32::from(segment.ticks)].into_iter().all(|n| {
             let at = segment.sample(n);
-            Joint::BOTH.iter().all(|&j| may_be[j].contains(at[j].position_rad))
+            self.config.may_be_at(at.map(|setpoint| setpoint.position_rad), homed)
         })
     }
 

@@ -1,4 +1,4 @@
-use tracelight_rig::{Darkness, DarknessSet, Fault, Joint, PanTilt, Phase, Segment, Setpoint};
+use tracelight_rig::{Darkness, DarknessSet, Fault, PanTilt, Phase, Segment, Setpoint};
 
 use crate::Config;
 
@@ -128,7 +128,7 @@ impl Supervisor {
 
     /// One tick: moves between phases and says what the clock does.
     pub(crate) fn tick(&mut self, config: &Config, at: &Situation<'_>) -> Clock {
-        if self.out_of_range(config, at.position_rad) && self.phase != Phase::Dark {
+        if !config.may_be_at(at.position_rad, self.homed) && self.phase != Phase::Dark {
             self.trip(Fault::LimitReached);
         }
         self.pointing_ticks = self.pointing_ticks.saturating_sub(1);
@@ -191,17 +191,12 @@ impl Supervisor {
         reasons.insert_if(at.doubtful, Darkness::Doubtful);
         reasons.insert_if(self.phase == Phase::Holding || !(at.light_due || points), Darkness::Holding);
         let asked = at.setpoint.map(|s| s.position_rad);
-        reasons.insert_if(self.out_of_range(config, asked), Darkness::OutOfBounds);
+        reasons.insert_if(!config.may_be_at(asked, self.homed), Darkness::OutOfBounds);
         let idle = matches!(self.phase, Phase::Armed | Phase::Done);
         let stale = idle || at.starved || at.segment.is_none();
         reasons.insert_if(stale && !seeks, Darkness::Stale);
         reasons.insert_if(self.fault.is_some(), Darkness::Faulted);
         reasons
-    }
-
-    fn out_of_range(&self, config: &Config, position_rad: PanTilt<f32>) -> bool {
-        let may_be = config.limits(self.homed);
-        Joint::BOTH.iter().any(|&j| !may_be[j].contains(position_rad[j]))
     }
 }
 

@@ -94,8 +94,36 @@ pub struct SimulatedRig {
 impl SimulatedRig {
     /// A rig at rest straight ahead, dark, in front of the target. `seed` draws what differs from head to head.
     pub fn new(config: &RigConfig, pose: HeadPose, seed: u64) -> Self {
+        Self::homed_beside(config, pose, PanTilt::default(), seed)
+    }
+
+    /// A rig that was homed not quite: it rests where its encoders read zero, and so many counts are to be added to what they read for true angles.
+    pub fn homed_beside(config: &RigConfig, pose: HeadPose, counts: PanTilt<i32>, seed: u64) -> Self {
+        let count_rad = config.truth.model.encoder.count_rad();
+        let angle_rad = counts.map(|count| f64::from(count) * count_rad);
+        let plant = Plant::resting_at(&config.plant_config(), angle_rad, seed);
+        let mut rig = Self::of(config, pose, plant, seed);
+        for j in Joint::BOTH {
+            rig.lines[j].off = counts[j].wrapping_neg();
+        }
+        rig
+    }
+
+    /// A rig that was just powered up where somebody left it: at rest within a count of these angles, rad, its encoders at zero there. Its joints
+    /// end at stops, a degree beyond their ranges.
+    pub fn unhomed(config: &RigConfig, pose: HeadPose, angle_rad: PanTilt<f64>, seed: u64) -> Self {
+        let plant = config.plant_config();
+        let range_rad = config.truth.model.geometry.range_rad;
+        let stops_rad = range_rad.map(|(lower, upper)| (lower - STOP_RAD, upper + STOP_RAD));
+        let plant = Plant::resting_at(&plant, angle_rad, seed).between_stops(&plant, stops_rad);
+        let mut rig = Self::of(config, pose, plant, seed);
+        rig.power_up();
+        rig
+    }
+
+    /// A rig with this plant, homed, its encoders read as they are.
+    fn of(config: &RigConfig, pose: HeadPose, plant: Plant, seed: u64) -> Self {
         let controller = Controller::new(config.control_config());
-        let plant = Plant::new(&config.plant_config(), seed);
         let sensed = Sensed::default(); // homed: count 0 on both
         Self {
             state: controller.start_homed(&sensed),
@@ -113,29 +141,6 @@ impl SimulatedRig {
             stretch_per_tick: 0.0,
             patience_ticks: PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize,
         }
-    }
-
-    /// A rig that was homed not quite: it rests where its encoders read zero, and so many counts are to be added to what they read for true angles.
-    pub fn homed_beside(config: &RigConfig, pose: HeadPose, counts: PanTilt<i32>, seed: u64) -> Self {
-        let mut rig = Self::new(config, pose, seed);
-        let count_rad = config.truth.model.encoder.count_rad();
-        let angle_rad = counts.map(|count| f64::from(count) * count_rad);
-        rig.plant = Plant::resting_at(&config.plant_config(), angle_rad, seed);
-        for j in Joint::BOTH {
-            rig.lines[j].off = counts[j].wrapping_neg();
-        }
-        rig
-    }
-
-    /// A rig that was just powered up where somebody left it: at rest within a count of these angles, rad, its encoders at zero there. Its joints
-    /// end at stops, a degree beyond their ranges.
-    pub fn unhomed(config: &RigConfig, pose: HeadPose, angle_rad: PanTilt<f64>, seed: u64) -> Self {
-        let mut rig = Self::new(config, pose, seed);
-        let plant = config.plant_config();
-        let stops_rad = rig.truth.range_rad.map(|(lower, upper)| (lower - STOP_RAD, upper + STOP_RAD));
-        rig.plant = Plant::resting_at(&plant, angle_rad, seed).between_stops(&plant, stops_rad);
-        rig.power_up();
-        rig
     }
 
     /// Encoders that count from where the joints are now, and a controller that knows nothing.

@@ -91,6 +91,13 @@ pub(crate) struct KnownHead {
     pub(crate) exposure_s: f64,
 }
 
+impl KnownHead {
+    /// How its camera's stamps related to the rig's ticks, and how long rows were exposed, s.
+    pub(crate) const fn images(&self) -> (Timing, f64) {
+        (self.timing, self.exposure_s)
+    }
+}
+
 impl HeadFile {
     /// Of a head that was found.
     pub(crate) fn of(found: &FoundHead, driving: &Driving, wall: &SeenWall) -> Self {

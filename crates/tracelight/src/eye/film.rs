@@ -1,17 +1,14 @@
 //! Films: files in which one JPEG image follows the other (Motion JPEG), whatever is between them. So webcams' own images are kept, in AVI, Matroska, QuickTime
 //! or one after the other by themselves; what a container knows besides is not asked.
 
-use std::collections::VecDeque;
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
 
 use super::coding::as_file;
-use super::{Looks, Shot};
+use super::{Looks, MOST_IMAGE_BYTES, Shot};
 use crate::failure::Failure;
 
-/// Largest image that is taken, bytes: a hundred megapixels as JPEG.
-const MOST_BYTES: usize = 64_000_000;
 /// What is read at once, bytes.
 const CHUNK: usize = 1 << 20;
 /// Most beginnings of images without an end behind which another is looked for.
@@ -94,7 +91,7 @@ impl<R: Read> Looks for Film<R> {
 struct Images<R> {
     from: R,
     /// Read and not yet looked at, or not to its end.
-    bytes: VecDeque<u8>,
+    bytes: Vec<u8>,
     ended: bool,
     /// Beginnings of images without an end, after all was read.
     endless: usize,
@@ -102,13 +99,13 @@ struct Images<R> {
 
 impl<R: Read> Images<R> {
     const fn new(from: R) -> Self {
-        Self { from, bytes: VecDeque::new(), ended: false, endless: 0 }
+        Self { from, bytes: Vec::new(), ended: false, endless: 0 }
     }
 
     /// The next image; nothing after the last.
     fn next(&mut self) -> std::io::Result<Option<Vec<u8>>> {
         loop {
-            match jpeg_in(self.bytes.make_contiguous()) {
+            match jpeg_in(&self.bytes) {
                 Found::Image(Range { start, end }) => {
                     self.bytes.drain(..start);
                     return Ok(Some(self.bytes.drain(..end - start).collect()));
@@ -117,8 +114,8 @@ impl<R: Read> Images<R> {
                     self.bytes.drain(..until);
                 }
                 // what is larger is no image, nor is what never ends
-                Found::Begun { at } if self.bytes.len() - at > MOST_BYTES => {
-                    self.bytes.drain(..at + MOST_BYTES);
+                Found::Begun { at } if self.bytes.len() - at > MOST_IMAGE_BYTES => {
+                    self.bytes.drain(..at + MOST_IMAGE_BYTES);
                     continue;
                 }
                 Found::Begun { at } if self.ended && self.endless < MOST_ENDLESS => {
@@ -140,10 +137,8 @@ impl<R: Read> Images<R> {
     /// Reads as much as there is already, so that what is looked at anew each time is not much more than what is read.
     fn read(&mut self) -> std::io::Result<()> {
         let wanted = CHUNK.max(self.bytes.len()) as u64;
-        let mut more = Vec::new();
-        let read = self.from.by_ref().take(wanted).read_to_end(&mut more)?;
+        let read = self.from.by_ref().take(wanted).read_to_end(&mut self.bytes)?;
         self.ended = read == 0;
-        self.bytes.extend(more);
         Ok(())
     }
 }
@@ -218,6 +213,7 @@ fn end_of_scan(bytes: &[u8], from: usize) -> Option<usize> {
 mod tests {
     use super::*;
     use crate::output::Raster;
+    use std::collections::VecDeque;
 
     fn jpeg(width: u32, seed: u8) -> Vec<u8> {
         let levels = (0..3 * width * 8).map(|k| (k as u8).wrapping_mul(37).wrapping_add(seed)).collect();

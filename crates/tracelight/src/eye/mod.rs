@@ -78,6 +78,9 @@ pub(crate) trait Eye {
     fn shot(&mut self) -> Option<Shot>;
 }
 
+/// Largest image that is taken, bytes: a hundred megapixels as JPEG.
+const MOST_IMAGE_BYTES: usize = 64_000_000;
+
 /// Longest that an image is waited for, ticks: the slowest cameras there are send one a second.
 pub(crate) const PATIENCE_TICKS: u32 = 3000;
 

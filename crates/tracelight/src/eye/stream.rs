@@ -7,11 +7,11 @@ use std::time::Instant;
 use ureq::Agent;
 
 use super::latest::{Latest, PATIENCE};
-use super::{Looks, Shot};
+use super::{Looks, MOST_IMAGE_BYTES, Shot};
 use crate::failure::Failure;
 
-/// Largest image that is taken, bytes: a hundred megapixels as JPEG.
-const MOST_BYTES: u64 = 64_000_000;
+/// Largest image that is taken, bytes.
+const MOST_BYTES: u64 = MOST_IMAGE_BYTES as u64;
 /// Longest line of a header, bytes, and most lines.
 const MOST_LINE: u64 = 8192;
 const MOST_LINES: usize = 100;

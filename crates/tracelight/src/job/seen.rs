@@ -119,9 +119,10 @@ struct HeadSeen {
 impl HeadSeen {
     /// Of one that was found before, or that nobody looked at.
     fn believed(known: Option<&KnownHead>, camera: &Camera) -> Self {
+        let (timing, exposure_s) = known.map_or((Timing::USUAL, SPOT_EXPOSURE_S), KnownHead::images);
         Self {
-            timing: known.map_or(Timing::USUAL, |known| known.timing),
-            exposure_s: known.map_or(SPOT_EXPOSURE_S, |known| known.exposure_s),
+            timing,
+            exposure_s,
             belief: TrimBelief::known(metres_per_pixel(camera).unwrap_or_default()),
             homed: None,
             figures: None,
@@ -148,8 +149,7 @@ fn head_of(
 ) -> Result<HeadSeen, Failure> {
     let believed = HeadSeen::believed(known.as_ref(), camera);
     let homed = if args.home {
-        let images = known.as_ref().map(|known| (known.timing, known.exposure_s));
-        let homed = home_head(rig, camera, driving, images, watched)?;
+        let homed = home_head(rig, camera, driving, known.as_ref().map(KnownHead::images), watched)?;
         room.homed(rig, &homed);
         Some(homed.figures())
     } else {

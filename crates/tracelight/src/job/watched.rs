@@ -127,8 +127,8 @@ pub(super) fn run_watched(
     };
     // what was drawn until then is told whatever became of it
     let failure = watched.all(job.plan.clone(), job.drawing.clone()).err();
-    let failure = if watched.unpowered { Some(lost_power()) } else { failure };
     let _ = watched.room.send(Command::Disarm);
+    let failure = watched.power_lost().or(failure);
     watched.failed.take().map_or(Ok(()), Err)?;
     watched.tell();
     let Watched { run, joined, figures, follower, .. } = watched;
@@ -250,7 +250,7 @@ impl Watched<'_> {
         let _ = self.room.send(Command::KeepAlive);
         let mut tick = self.room.step();
         // its ticks, counts and clock are others from then on
-        self.see_power(&tick.telemetry);
+        self.unpowered |= !tick.telemetry.homed;
         if self.unpowered {
             return (tick, None);
         }
@@ -273,10 +273,11 @@ impl Watched<'_> {
     }
 
     /// Tells of a rig that lost power since it drew.
-    pub(super) fn see_power(&mut self, now: &Telemetry) {
-        if !now.homed && !std::mem::replace(&mut self.unpowered, true) {
+    fn power_lost(&mut self) -> Option<Failure> {
+        self.unpowered.then(|| {
             self.remark("the rig lost power: it is dark, and does not know where its head points; light that was still on its way out is not in these figures".to_owned());
-        }
+            lost_power()
+        })
     }
 
     /// Where the plan wanted the spot, before it was trimmed, and where in all that is planned its clock stands.

@@ -14,7 +14,7 @@ use crate::eye::room::{Furnished, RoomRequest};
 use crate::eye::source::Source;
 use crate::eye::wall::{SeenWall, see_wall, well_exposed};
 use crate::failure::Failure;
-use crate::head_file::{self, HeadFile};
+use crate::head_file::{self, HeadFile, KnownHead};
 use crate::progress::Progress;
 use crate::stop::Stop;
 
@@ -83,7 +83,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     }
     let watched = (&progress, stop);
     let homed = if args.home {
-        let images = known.as_ref().map(|known| (known.timing, known.exposure_s));
+        let images = known.as_ref().map(KnownHead::images);
         let homed = home_head(&mut rig, &camera, &driving, images, watched)?;
         room.homed(&mut rig, &homed);
         Some((homed, room.zero_error_m(known.is_some())))

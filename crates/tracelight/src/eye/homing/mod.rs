@@ -69,7 +69,8 @@ pub(crate) fn home_head<R: Simulated + Eye>(
         let width_rad = (upper - lower - travel::BEFORE_STOP_RAD).max(0.0);
         (-width_rad, width_rad)
     });
-    let exposure_s = known.map_or(SPOT_EXPOSURE_S, |(_, exposure_s)| exposure_s).min(rig.longest_s());
+    let (timing, exposure_s) = known.unwrap_or((Timing::USUAL, SPOT_EXPOSURE_S));
+    let exposure_s = exposure_s.min(rig.longest_s());
     let mut homing = Homing {
         rig,
         camera,
@@ -77,14 +78,14 @@ pub(crate) fn home_head<R: Simulated + Eye>(
         progress,
         stop,
         history: History::new(&driving.rig.model.relay),
-        timing: known.map_or(Timing::USUAL, |(timing, _)| timing),
+        timing,
         exposure_s,
         counts: PanTilt::default(),
         free_rad,
         stops: 0,
     };
     progress.stage("homing", 1);
-    let homed = homing.home(known, (progress, stop));
+    let homed = homing.home(known.is_some(), (progress, stop));
     // dark whatever became of it; and a guess is not to be drawn by
     let _ = homing.rig.send(Command::Disarm);
     if homed.is_err() {
@@ -167,11 +168,11 @@ struct Homing<'a, R> {
 }
 
 impl<R: Simulated + Eye> Homing<'_, R> {
-    fn home(&mut self, known: Option<(Timing, f64)>, watched: (&Progress, &Stop)) -> Result<Homed, Failure> {
+    fn home(&mut self, is_known: bool, watched: (&Progress, &Stop)) -> Result<Homed, Failure> {
         let (sought, true_rad) = self.seek()?;
         self.tell(true_rad)?;
-        let off_rad = if let Some((timing, exposure_s)) = known {
-            let few = DotsRequest::few(self.driving, timing, exposure_s);
+        let off_rad = if is_known {
+            let few = DotsRequest::few(self.driving, self.timing, self.exposure_s);
             off_rad(self.rig, self.camera, self.driving, &few, watched)?
         } else {
             let all = DotsRequest::first(self.driving);
