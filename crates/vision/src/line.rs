@@ -174,6 +174,13 @@ fn gap(dark: &Plane<u8>, before: &[Point], after: &[Point]) -> Vec<Point> {
 /// Points that tell the pen's width near an end.
 const NEAR_END: usize = 40;
 
+/// A line that is an even number of pixels wide has its skeleton beside its middle: half its width is up to so much less than that of
+/// one with a pixel more.
+const PARITY_PX: f64 = 1.0;
+
+/// Ink that is equally wide over so many points runs into no junction.
+const STEADY: usize = 8;
+
 /// The points of a branch away from its nodes' discs of ink and from its free ends, as a range of indices.
 fn trusted(graph: &Graph, branch: &Branch, radius: f64) -> (usize, usize) {
     let n = branch.points.len();
@@ -188,7 +195,10 @@ fn trusted(graph: &Graph, branch: &Branch, radius: f64) -> (usize, usize) {
             Some(node) => {
                 let node = graph.nodes[node];
                 let away = branch.points[index(*k)].distance(node.at);
-                away > 1.1 * node.radius + 0.5 && branch.radii[index(*k)] <= 1.1 * usual + 0.3
+                let here = branch.radii[index(*k)];
+                let steady = || (*k..n.min(k + STEADY)).all(|k| (branch.radii[index(k)] - here).abs() < 0.5);
+                away > 1.1 * node.radius + 0.5
+                    && (here <= 1.1 * usual + 0.3 || here <= usual + PARITY_PX && steady())
             }
         };
         // never more than 45 % from either end: something of a short branch must stay
@@ -196,4 +206,28 @@ fn trusted(graph: &Graph, branch: &Branch, radius: f64) -> (usize, usize) {
         (0..most).find(ok).unwrap_or(most)
     };
     (clear(0), (n - clear(1)).max(clear(0) + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::Node;
+
+    /// From where on a branch of such radii, which leaves a node, is taken for a line.
+    fn begins(radii: Vec<f64>) -> usize {
+        let points = (1..=radii.len()).map(|k| Point::new(k as f64, 0.0)).collect();
+        let branch = Branch { points, radii, nodes: [Some(0), None], ring: false };
+        let node = Node { at: Point::new(0.0, 0.0), radius: 3.1 };
+        let graph = Graph { nodes: vec![node], branches: vec![branch] };
+        trusted(&graph, &graph.branches[0], 1.7).0
+    }
+
+    #[test]
+    fn a_line_a_pixel_wider_at_one_end_is_a_line_there_and_one_that_runs_into_another_is_none() {
+        // half the window of a pen's line round a corner is four pixels wide, not five
+        let wider = [vec![2.5; 28], vec![1.7; 40]].concat();
+        assert_eq!(begins(wider), 3);
+        let runs_out = (0..68).map(|k| (3.1 - 0.08 * f64::from(k)).max(1.7)).collect();
+        assert!(begins(runs_out) > 8);
+    }
 }
