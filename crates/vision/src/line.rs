@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn a_line_a_pixel_wider_at_one_end_is_a_line_there_and_one_that_runs_into_another_is_none() {
-        // half the window of a pen's line round a corner is four pixels wide, not five
+        // five pixels wide up to a corner, four behind it
         let wider = [vec![2.5; 28], vec![1.7; 40]].concat();
         assert_eq!(begins(wider), 3);
         let runs_out = (0..68).map(|k| (3.1 - 0.08 * f64::from(k)).max(1.7)).collect();
