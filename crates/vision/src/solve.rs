@@ -21,6 +21,28 @@ pub(crate) fn linear<const N: usize, const M: usize>(mut rows: [[f64; M]; N]) ->
     Some(solution)
 }
 
+/// Solves n linear equations whose coefficients are a symmetric, positive definite matrix, as those of least squares are, by Cholesky's
+/// method without roots: no pivots. `None` where they are dependent.
+pub(crate) fn symmetric<const N: usize>(mut rows: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
+    for k in 0..N {
+        let pivot = rows[k][k];
+        if pivot.is_nan() || pivot <= 1e-12 {
+            return None;
+        }
+        let chosen = rows[k];
+        for i in k + 1..N {
+            let share = rows[i][k] / pivot;
+            (k + 1..N).for_each(|j| rows[i][j] -= share * chosen[j]);
+            right[i] -= share * right[k];
+        }
+    }
+    for k in (0..N).rev() {
+        let known: f64 = (k + 1..N).map(|j| rows[k][j] * right[j]).sum();
+        right[k] = (right[k] - known) / rows[k][k];
+    }
+    Some(right)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -29,5 +51,15 @@ mod tests {
     fn two_equations_have_their_solution() {
         assert_eq!(linear([[0.0, 2.0, 4.0], [1.0, 1.0, 5.0]]), Some([3.0, 2.0]));
         assert_eq!(linear([[1.0, 2.0, 4.0], [2.0, 4.0, 5.0]]), None);
+    }
+
+    #[test]
+    fn symmetric_equations_have_their_solution() {
+        let rows = [[4.0, 2.0, 1.0], [2.0, 3.0, 0.5], [1.0, 0.5, 2.0]];
+        let solution = symmetric(rows, [11.0, 9.5, 8.0]).unwrap();
+        let right = rows.map(|row| row.iter().zip(solution).map(|(c, s)| c * s).sum::<f64>());
+        assert!(right.iter().zip([11.0, 9.5, 8.0]).all(|(a, b)| (a - b).abs() < 1e-12), "{right:?}");
+        assert_eq!(symmetric([[1.0, 2.0], [2.0, 4.0]], [1.0, 1.0]), None);
+        assert_eq!(symmetric([[f64::NAN]], [1.0]), None);
     }
 }

@@ -10,7 +10,7 @@ use super::TagPlace;
 use super::square::{Off, SIDE, Square};
 use crate::grey::light_of_levels;
 use crate::plane::Plane;
-use crate::solve::linear;
+use crate::solve::symmetric;
 
 /// Samples across a boundary.
 const SAMPLES: usize = 11;
@@ -60,12 +60,21 @@ impl Tables {
         Self { light: light_of_levels(), below, bell }
     }
 
-    /// The normal distribution at `z` deviations, and its density.
-    fn normal(&self, z: f32) -> (f32, f32) {
+    /// The normal distribution at `z` deviations.
+    fn normal(&self, z: f32) -> f32 {
+        Self::between(&self.below, z)
+    }
+
+    /// Its density.
+    fn density(&self, z: f32) -> f32 {
+        Self::between(&self.bell, z)
+    }
+
+    fn between(table: &[f32; 2 * TAILS * STEPS + 1], z: f32) -> f32 {
         let place = ((z + TAILS as f32) * STEPS as f32).clamp(0.0, (2 * TAILS * STEPS) as f32 - 0.5);
-        let (k, share) = (place as usize, place.fract());
-        let between = |table: &[f32]| table[k] + (table[k + 1] - table[k]) * share;
-        (between(&self.below), between(&self.bell))
+        let k = place as i32;
+        let (low, high) = (table[k as usize], table[k as usize + 1]);
+        low + (high - low) * (place - k as f32)
     }
 }
 
@@ -96,7 +105,7 @@ impl Part {
 
     /// Light at equal steps from a place on, bilinear; `None` where a step leads out of the part.
     fn along(&self, from: Point, step: Vec2, light: &mut [f32]) -> Option<()> {
-        let (mut x, mut y) = (from.x - 0.5 - self.left as f64, from.y - 0.5 - self.top as f64);
+        let (x, y) = (from.x - 0.5 - self.left as f64, from.y - 0.5 - self.top as f64);
         let (dx, dy) = (step.x * (light.len() - 1) as f64, step.y * (light.len() - 1) as f64);
         let inside = |v: f64, size: usize| v >= 0.0 && v < size as f64 - 1.001;
         if !(inside(x, self.width)
@@ -106,19 +115,19 @@ impl Part {
         {
             return None;
         }
+        // 16 bits behind the point for the way: whole numbers are cut at the pixel sooner than broken ones
+        let fixed = |v: f64| (v * 65536.0) as i32;
+        let ((mut x, mut y), (dx, dy)) = ((fixed(x), fixed(y)), (fixed(step.x), fixed(step.y)));
+        let share = |v: i32| (v & 0xffff) as f32 * (1.0 / 65536.0);
         for v in light {
-            let (column, row) = (x as usize, y as usize);
-            let (fx, fy) = ((x - column as f64) as f32, (y - row as f64) as f32);
-            let mix = |row: usize| match self
-                .values
-                .get(row * self.width + column..row * self.width + column + 2)
-            {
-                Some(&[a, b]) => a + (b - a) * fx,
+            let first = (y >> 16) as usize * self.width + (x >> 16) as usize;
+            let mix = |first: usize| match self.values.get(first..first + 2) {
+                Some(&[a, b]) => a + (b - a) * share(x),
                 _ => 0.0,
             };
-            let (above, below) = (mix(row), mix(row + 1));
-            *v = above + (below - above) * fy;
-            (x, y) = (x + step.x, y + step.y);
+            let (above, below) = (mix(first), mix(first + self.width));
+            *v = above + (below - above) * share(y);
+            (x, y) = (x + dx, y + dy);
         }
         Some(())
     }
@@ -282,16 +291,15 @@ impl Profile {
             behind: [[0.0; 12]; TRANSITIONS],
             moved: [0.0; 12],
             widened: [0.0; 12],
-            own: 2.0 * view.tables.normal((0.5 * lane.hypot() / view.blur_px) as f32).0 - 1.0,
+            own: 2.0 * view.tables.normal((0.5 * lane.hypot() / view.blur_px) as f32) - 1.0,
         };
         for j in 0..SAMPLES {
             let place = (j as f64 - (SAMPLES / 2) as f64) * step_px;
             for k in 0..TRANSITIONS {
                 let far = ((place - (k as f64 - NEAR as f64) * cell_px) / view.blur_px) as f32;
-                let (below, bell) = view.tables.normal(far);
-                profile.behind[k][j] = below;
+                profile.behind[k][j] = view.tables.normal(far);
                 if k == NEAR as usize {
-                    profile.moved[j] = -bell / view.blur_px as f32;
+                    profile.moved[j] = -view.tables.density(far) / view.blur_px as f32;
                     profile.widened[j] = profile.moved[j] * far;
                 }
             }
@@ -311,8 +319,12 @@ impl Profile {
         view.part.along(at - normal * reach, normal * self.step_px, &mut light[..SAMPLES])?;
         let (model, own) = self.model(view.cells, boundary);
         let [moved, widened] = [self.moved, self.widened].map(|row| row.map(|v| own * v));
-        let fit = Fit::of(&light, &model, &moved, &widened);
-        let (contrast, off, wider) = if blur_known { fit.of_two()? } else { fit.of_three()? };
+        let (contrast, off, wider) = if blur_known {
+            let [model, moved] = shares(&light, [&model, &moved])?;
+            (model, moved, 0.0)
+        } else {
+            shares(&light, [&model, &moved, &widened])?.into()
+        };
         let off_px = off / contrast;
         (contrast > LEAST_CONTRAST && off_px.abs() < FURTHEST_PX).then(|| Found {
             cell,
@@ -345,43 +357,25 @@ impl Profile {
 /// One at every sample.
 const ONES: Row = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0];
 
-/// Light as a brightness and shares of two or three rows: what is left of their products without the means.
-struct Fit {
-    /// Of the model, of its motion and of its widening with themselves and each other,
-    products: [[f64; 3]; 3],
-    /// and with the light.
-    light: [f64; 3],
-}
-
-impl Fit {
-    fn of(light: &Row, model: &Row, moved: &Row, widened: &Row) -> Self {
-        let rows = [model, moved, widened];
-        let sums = rows.map(|row| dot(&ONES, row));
-        let left =
-            |a: &Row, b: &Row, sum_a: f32, sum_b: f32| f64::from(dot(a, b) - sum_a * sum_b / SAMPLES as f32);
-        let sum = dot(&ONES, light);
-        Self {
-            products: std::array::from_fn(|i| {
-                std::array::from_fn(|j| left(rows[i], rows[j], sums[i], sums[j]))
-            }),
-            light: std::array::from_fn(|i| left(rows[i], light, sums[i], sum)),
+/// Light as a brightness and shares of rows, by least squares: the shares. `None` where the rows look alike.
+fn shares<const N: usize>(light: &Row, rows: [&Row; N]) -> Option<[f64; N]> {
+    let sums = rows.map(|row| dot(&ONES, row));
+    let sum = dot(&ONES, light);
+    // what is left of the products without the means
+    let left =
+        |a: &Row, b: &Row, sum_a: f32, sum_b: f32| f64::from(dot(a, b) - sum_a * sum_b / SAMPLES as f32);
+    let mut products = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..=i {
+            products[i][j] = left(rows[i], rows[j], sums[i], sums[j]);
+            products[j][i] = products[i][j];
         }
     }
-
-    /// Shares of the model and of its motion; `None` where they look alike.
-    fn of_two(&self) -> Option<(f64, f64, f64)> {
-        let row = |i: usize| [self.products[i][0], self.products[i][1], self.light[i]];
-        linear([row(0), row(1)]).map(|[model, moved]| (model, moved, 0.0))
-    }
-
-    /// Shares of the model, of its motion and of its widening.
-    fn of_three(&self) -> Option<(f64, f64, f64)> {
-        let row = |i: usize| [self.products[i][0], self.products[i][1], self.products[i][2], self.light[i]];
-        linear([row(0), row(1), row(2)]).map(|[model, moved, widened]| (model, moved, widened))
-    }
+    symmetric(products, std::array::from_fn(|i| left(rows[i], light, sums[i], sum)))
 }
 
 /// Sum of the products, four lanes at a time.
+#[inline]
 fn dot(a: &Row, b: &Row) -> f32 {
     let mut sums = [0f32; 4];
     for (a, b) in a.chunks_exact(4).zip(b.chunks_exact(4)) {

@@ -83,12 +83,13 @@ fn quarter_turn(code: u64) -> u64 {
 
 /// Mean level of the inner half of a cell.
 fn mean(plane: &Plane<u8>, square: &Square, column: isize, row: isize) -> Option<f64> {
-    let mut sum = 0.0;
-    for k in 0..9 {
-        let (x, y) = (0.25 * f64::from(k % 3 + 1), 0.25 * f64::from(k / 3 + 1));
-        sum += plane.at(square.at(column as f64 + x, row as f64 + y)?);
+    let (middle, across, down) = square.with_slopes(column as f64 + 0.5, row as f64 + 0.5)?;
+    let (across, down) = (0.25 * across, 0.25 * down);
+    let mut levels = [0.0; 9];
+    for (three, k) in levels.chunks_exact_mut(3).zip([-1.0, 0.0, 1.0]) {
+        plane.along(middle - across + k * down, across, three);
     }
-    Some(sum / 9.0)
+    Some(f64::from(levels.iter().sum::<f32>()) / 9.0)
 }
 
 /// Levels that rise evenly: a plane over the cells.
