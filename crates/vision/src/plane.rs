@@ -46,6 +46,34 @@ impl<T: Copy + Default> Plane<T> {
     pub(crate) fn clamp(&self, p: Point) -> Point {
         Point::new(p.x.clamp(0.0, self.width as f64), p.y.clamp(0.0, self.height as f64))
     }
+
+    /// Equal steps from a place on: of each, the number of the pixel up left of it, and how far it is from that one's centre to the next's,
+    /// across and down, in 65536ths. `None` where a step has no pixels' centres on all sides, and on a plane longer than [`LONGEST`].
+    pub(crate) fn steps(
+        &self,
+        from: Point,
+        step: Vec2,
+        count: usize,
+    ) -> Option<impl Iterator<Item = (usize, i32, i32)> + use<T>> {
+        let to = from + step * count.saturating_sub(1) as f64;
+        let inside = |p: Point| {
+            (0.5..self.width as f64 - 0.501).contains(&p.x)
+                && (0.5..self.height as f64 - 0.501).contains(&p.y)
+        };
+        if !(inside(from) && inside(to)) || self.width.max(self.height) > LONGEST {
+            return None;
+        }
+        // whole numbers are cut at the pixel sooner than broken ones
+        let fixed = |v: f64| (v * 65536.0) as i32;
+        let ((mut x, mut y), (dx, dy)) =
+            ((fixed(from.x - 0.5), fixed(from.y - 0.5)), (fixed(step.x), fixed(step.y)));
+        let width = self.width;
+        Some((0..count).map(move |_| {
+            let at = ((y >> 16) as usize * width + (x >> 16) as usize, x & 0xffff, y & 0xffff);
+            (x, y) = (x + dx, y + dy);
+            at
+        }))
+    }
 }
 
 /// Longest side on which places have 16 bits behind the point and fit into 32, px.
@@ -69,28 +97,19 @@ impl Plane<u8> {
 
     /// Values at equal steps from a place on, as [`Self::at`] gives them but for its last digits.
     pub(crate) fn along(&self, from: Point, step: Vec2, values: &mut [f32]) {
-        let to = from + step * (values.len() - 1) as f64;
-        let inside = |p: Point| {
-            (0.5..self.width as f64 - 0.51).contains(&p.x) && (0.5..self.height as f64 - 0.51).contains(&p.y)
-        };
-        if !(inside(from) && inside(to)) || self.width.max(self.height) > LONGEST {
+        let Some(steps) = self.steps(from, step, values.len()) else {
             values.iter_mut().enumerate().for_each(|(k, v)| *v = self.at(from + step * k as f64) as f32);
             return;
-        }
-        // 16 bits behind the point for the way, 8 of them for the mixture
-        let fixed = |v: f64| (v * 65536.0) as i32;
-        let (mut x, mut y) = (fixed(from.x - 0.5), fixed(from.y - 0.5));
-        let (dx, dy) = (fixed(step.x), fixed(step.y));
-        for value in values {
-            let first = (y >> 16) as usize * self.width + (x >> 16) as usize;
-            let (fx, fy) = (x >> 8 & 0xff, y >> 8 & 0xff);
+        };
+        for (value, (first, x, y)) in values.iter_mut().zip(steps) {
+            // 8 bits are enough for the mixture
+            let (fx, fy) = (x >> 8, y >> 8);
             let mix = |first: usize| match self.values.get(first..first + 2) {
                 Some(&[a, b]) => i32::from(a) * 256 + (i32::from(b) - i32::from(a)) * fx,
                 _ => 0,
             };
             let (above, below) = (mix(first), mix(first + self.width));
             *value = (above * 256 + (below - above) * fy) as f32 * (1.0 / 65536.0);
-            (x, y) = (x + dx, y + dy);
         }
     }
 }

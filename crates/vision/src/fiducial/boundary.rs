@@ -80,11 +80,9 @@ impl Tables {
 
 /// The light of a part of an image.
 struct Part {
-    left: usize,
-    top: usize,
-    width: usize,
-    height: usize,
-    values: Vec<f32>,
+    /// Its upper left, px.
+    corner: Vec2,
+    light: Plane<f32>,
 }
 
 impl Part {
@@ -100,34 +98,21 @@ impl Part {
         let ((left, right), (top, bottom)) = (range(|p| p.x, plane.width), range(|p| p.y, plane.height));
         let rows = (top..bottom).flat_map(|y| &plane.row(y)[left..right]);
         let values = rows.map(|&v| tables.light[usize::from(v)]).collect();
-        Self { left, top, width: right - left, height: bottom - top, values }
+        let corner = Vec2::new(left as f64, top as f64);
+        Self { corner, light: Plane { width: right - left, height: bottom - top, values } }
     }
 
     /// Light at equal steps from a place on, bilinear; `None` where a step leads out of the part.
     fn along(&self, from: Point, step: Vec2, light: &mut [f32]) -> Option<()> {
-        let (x, y) = (from.x - 0.5 - self.left as f64, from.y - 0.5 - self.top as f64);
-        let (dx, dy) = (step.x * (light.len() - 1) as f64, step.y * (light.len() - 1) as f64);
-        let inside = |v: f64, size: usize| v >= 0.0 && v < size as f64 - 1.001;
-        if !(inside(x, self.width)
-            && inside(y, self.height)
-            && inside(x + dx, self.width)
-            && inside(y + dy, self.height))
-        {
-            return None;
-        }
-        // 16 bits behind the point for the way: whole numbers are cut at the pixel sooner than broken ones
-        let fixed = |v: f64| (v * 65536.0) as i32;
-        let ((mut x, mut y), (dx, dy)) = ((fixed(x), fixed(y)), (fixed(step.x), fixed(step.y)));
-        let share = |v: i32| (v & 0xffff) as f32 * (1.0 / 65536.0);
-        for v in light {
-            let first = (y >> 16) as usize * self.width + (x >> 16) as usize;
-            let mix = |first: usize| match self.values.get(first..first + 2) {
+        let steps = self.light.steps(from - self.corner, step, light.len())?;
+        let share = |v: i32| v as f32 * (1.0 / 65536.0);
+        for (v, (first, x, y)) in light.iter_mut().zip(steps) {
+            let mix = |first: usize| match self.light.values.get(first..first + 2) {
                 Some(&[a, b]) => a + (b - a) * share(x),
                 _ => 0.0,
             };
-            let (above, below) = (mix(first), mix(first + self.width));
+            let (above, below) = (mix(first), mix(first + self.light.width));
             *v = above + (below - above) * share(y);
-            (x, y) = (x + dx, y + dy);
         }
         Some(())
     }
