@@ -46,6 +46,11 @@ impl Normal {
     }
 }
 
+/// Nearer than that many deviations to the best, a state counts as the best.
+const SETTLED: f64 = 1e-4;
+/// Damping up to which a step is about what it would be without.
+const HARDLY_DAMPED: f64 = 1e-3;
+
 /// From how many deviations on a measurement counts less.
 const SOFT: f64 = 3.0;
 
@@ -78,21 +83,20 @@ pub(crate) fn solve<P: Problem>(
     for _ in 0..most_steps {
         let mut damped = normal.matrix.clone();
         (0..damped.nrows()).for_each(|k| damped[(k, k)] *= 1.0 + damping);
-        let tried = damped.cholesky().and_then(|lower| {
-            let step = lower.solve(&normal.gradient);
+        let step = damped.cholesky().map(|lower| lower.solve(&normal.gradient));
+        let near = |step: &DVector<f64>| step.dot(&normal.gradient) <= SETTLED * SETTLED;
+        if damping <= HARDLY_DAMPED && step.as_ref().is_some_and(near) {
+            break;
+        }
+        let tried = step.and_then(|step| {
             let next = problem.stepped(&state, step.as_slice());
             let found = problem.normal(&next)?;
             (found.cost.is_finite() && found.cost <= normal.cost).then_some((next, found))
         });
         match tried {
-            Some((next, found)) => {
-                let gained = normal.cost - found.cost;
-                let done = gained <= 1e-10 * normal.cost;
-                (state, normal) = (next, found);
+            Some(better) => {
+                (state, normal) = better;
                 (damping, growth) = ((damping / 10.0).max(1e-12), 2.0);
-                if done {
-                    break;
-                }
             }
             None => {
                 damping *= growth;

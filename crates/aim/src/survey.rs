@@ -8,6 +8,7 @@ mod residual;
 mod start;
 #[cfg(test)]
 mod tests;
+mod valley;
 
 use nalgebra::{DMatrix, Matrix2, SMatrix};
 use tracelight_stroke::{Affine, Point, Vec2};
@@ -17,6 +18,7 @@ use crate::camera::{CAMERA_PARAMETERS, Camera, CameraPose, POSE_PARAMETERS, Unce
 use crate::least_squares::{Normal, solve};
 use crate::lens::{LENS_PARAMETERS, Lens};
 use residual::{All, Bundle, HEIGHT_DEVIATION_M, LARGER_DEVIATION, State, sightings};
+use valley::Slopes;
 
 /// A marker as an image has it, px.
 #[derive(Clone, Debug, PartialEq)]
@@ -163,8 +165,10 @@ pub struct Survey {
     /// What does not look as it should.
     pub doubts: Vec<Doubt>,
     /// Covariance of each image's pose with the lens.
-    covariances: Vec<SMatrix<f64, CAMERA_PARAMETERS, CAMERA_PARAMETERS>>,
+    covariances: Vec<Covariance>,
 }
+
+type Covariance = SMatrix<f64, CAMERA_PARAMETERS, CAMERA_PARAMETERS>;
 
 /// A camera with what is not known of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -241,7 +245,7 @@ pub fn survey(belief: &LensBelief, boards: &[Board], views: &[Vec<SeenTag>]) -> 
     // scattered as they are seen to be, and again when they fit
     for _ in 0..3 {
         bundle.scale = bundle.scatter(&state).max(1.0);
-        (state, normal) = solve(&bundle, state, 60).ok_or(SurveyError::NoFit { tags })?;
+        (state, normal) = solve(&bundle, state, MOST_STEPS).ok_or(SurveyError::NoFit { tags })?;
     }
     let covariance = normal.covariance().ok_or(SurveyError::NoFit { tags })?;
     let rms_px = bundle.rms_px(&state);
@@ -252,6 +256,8 @@ pub fn survey(belief: &LensBelief, boards: &[Board], views: &[Vec<SeenTag>]) -> 
     Ok(told(&bundle, &all, &state, &covariance, rms_px))
 }
 
+/// Most steps of one fit; a usual one takes ten.
+const MOST_STEPS: usize = 200;
 /// Furthest that places may be off from where they should be seen, root of the mean square, px.
 const MOST_RMS_PX: f64 = 1.5;
 /// From how many deviations on something is doubtful.
@@ -280,8 +286,11 @@ fn told(bundle: &Bundle, all: &All, state: &State, covariance: &DMatrix<f64>, rm
         let number = |k: usize| {
             if k < POSE_PARAMETERS { state.pose_at(view) + k } else { k - POSE_PARAMETERS }
         };
-        SMatrix::from_fn(|i, j| covariance[(number(i), number(j))])
+        let own = SMatrix::from_fn(|i, j| covariance[(number(i), number(j))]);
+        let slopes = Slopes::of(&state.poses[view], &state.lens).matrix();
+        slopes * own * slopes.transpose()
     };
+    let covariances: Vec<Covariance> = (0..state.poses.len()).map(of_view).collect();
     let pages = all.pages.iter().zip(&state.pages).map(|(&(board, page), placed)| PlacedPage {
         board,
         page,
@@ -293,7 +302,10 @@ fn told(bundle: &Bundle, all: &All, state: &State, covariance: &DMatrix<f64>, rm
     Survey {
         belief: LensBelief {
             lens: bundle.belief.lens.with(state.lens),
-            covariance: SMatrix::from_fn(|i, j| covariance[(i, j)]),
+            // the lens is the same in all of them
+            covariance: covariances[0]
+                .fixed_view::<LENS_PARAMETERS, LENS_PARAMETERS>(POSE_PARAMETERS, POSE_PARAMETERS)
+                .into(),
         },
         poses: state.poses.clone(),
         pages: pages.collect(),
@@ -301,7 +313,7 @@ fn told(bundle: &Bundle, all: &All, state: &State, covariance: &DMatrix<f64>, rm
         rms_px,
         places: all.places.len(),
         doubts: doubts(bundle, state),
-        covariances: (0..state.poses.len()).map(of_view).collect(),
+        covariances,
     }
 }
 

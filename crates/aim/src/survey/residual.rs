@@ -1,6 +1,7 @@
 use nalgebra::{SMatrix, SVector};
 use tracelight_stroke::{Point, Vec2};
 
+use super::valley::{Slopes, lens_by_coordinates, stepped_lens, stepped_pose};
 use super::{LensBelief, SeenTag, SurveyError, across};
 use crate::board::Board;
 use crate::camera::{CAMERA_PARAMETERS, CameraPose, POSE_PARAMETERS};
@@ -241,8 +242,9 @@ impl Bundle<'_> {
 
     fn believe(&self, state: &State, normal: &mut Normal) -> Option<()> {
         let (told, rows) = self.lens_off(state)?;
+        let rows = rows * lens_by_coordinates(&state.lens);
         for i in 0..LENS_PARAMETERS {
-            normal.add_belief(told[i], (0..=i).map(|k| (k, rows[(i, k)])));
+            normal.add_belief(told[i], (0..LENS_PARAMETERS).map(|k| (k, rows[(i, k)])));
         }
         normal.add_belief(
             -state.spread_px / SPREAD_DEVIATION_PX,
@@ -260,10 +262,17 @@ impl Bundle<'_> {
     }
 
     /// What was believed of the lens less what it is, as measurements of one deviation each that do not depend on each other, and what each
-    /// of them makes of the parameters: the inverse of the covariance's lower triangle.
+    /// of them makes of the parameters: the inverse of the covariance's lower triangle. Of focal lengths it is the logarithm: none is below
+    /// zero, and twice as long is as far off as half.
     fn lens_off(&self, state: &State) -> Option<(SVector<f64, LENS_PARAMETERS>, LensMatrix)> {
-        let rows = self.belief.covariance.cholesky()?.l().try_inverse()?;
-        let off = SVector::from(self.belief.lens.parameters()) - SVector::from(state.lens);
+        let likely = self.belief.lens.parameters();
+        let unit = |k: usize| if k < 2 { likely[k] } else { 1.0 };
+        let covariance = LensMatrix::from_fn(|i, j| self.belief.covariance[(i, j)] / (unit(i) * unit(j)));
+        let rows = covariance.cholesky()?.l().try_inverse()?;
+        let off = SVector::from_fn(|k, _| match k {
+            0 | 1 => (likely[k] / state.lens[k]).ln(),
+            k => likely[k] - state.lens[k],
+        });
         Some((rows * off, rows))
     }
 
@@ -280,12 +289,14 @@ impl Problem for Bundle<'_> {
 
     fn normal(&self, state: &State) -> Option<Normal> {
         let mut normal = Normal::zero(state.parameters());
+        let slopes: Vec<Slopes> = state.poses.iter().map(|pose| Slopes::of(pose, &state.lens)).collect();
         for seen in self.sightings {
             let off = Self::off(state, seen)?;
             let numbers = Self::numbers(state, seen);
             let deviation = self.scale * seen.deviation_px;
             // what is told rises as the distance falls
-            let by = numbers.iter().zip(&off.by).filter_map(|(number, d)| Some(((*number)?, -d / deviation)));
+            let by = slopes[seen.view].carry(&off.by);
+            let by = numbers.iter().zip(&by).filter_map(|(number, d)| Some(((*number)?, -d / deviation)));
             normal.add(off.value / deviation, by);
         }
         self.believe(state, &mut normal)?;
@@ -294,7 +305,7 @@ impl Problem for Bundle<'_> {
 
     fn stepped(&self, state: &State, step: &[f64]) -> State {
         let mut next = state.clone();
-        next.lens.iter_mut().zip(step).for_each(|(v, d)| *v += d);
+        next.lens = stepped_lens(&state.lens, step);
         next.spread_px += step[SPREAD_AT];
         for (page, place) in next.pages.iter_mut().enumerate() {
             let Some(at) = state.page_at(page) else { continue };
@@ -304,7 +315,7 @@ impl Problem for Bundle<'_> {
         }
         for (view, pose) in next.poses.iter_mut().enumerate() {
             let at = state.pose_at(view);
-            *pose = pose.stepped(std::array::from_fn(|k| step[at + k]));
+            *pose = stepped_pose(pose, std::array::from_fn(|k| step[at + k]), step);
         }
         next
     }

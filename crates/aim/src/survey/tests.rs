@@ -87,6 +87,27 @@ fn a_camera_and_where_pages_lie_are_found_and_how_well_is_known() {
 }
 
 #[test]
+fn straight_ahead_the_focal_length_stays_open_and_the_wall_is_found() {
+    let runs = 10;
+    let mut chi2 = 0.0;
+    for seed in 0..runs {
+        let mut dice = oorandom::Rand64::new(seed);
+        let camera = Camera { lens: webcam(), pose: looking(0.35 + 0.03 * dice.rand_float(), -0.19) };
+        let tags = seen(&camera, &Board::FINE, &corners(), 0.05, &mut dice);
+        let found = survey(&LensBelief::unknown(1280, 720), &Board::ALL, &[tags]).unwrap();
+        let focal = found.belief.lens.focal_px[0];
+        let deviation = found.belief.covariance[(0, 0)].sqrt() / focal;
+        assert!(deviation > 0.05, "{focal} ± {deviation}");
+        chi2 += ((focal / 1000.0).ln() / deviation).powi(2) / runs as f64;
+        for on_wall in [(0.1, -0.1), (0.6, -0.3)].map(Point::from) {
+            let got = found.camera(0).unwrap().camera.target(camera.pixel(on_wall).unwrap()).unwrap();
+            assert!(got.distance(on_wall) < 3e-4, "{} m", got.distance(on_wall));
+        }
+    }
+    assert!(chi2 < 2.0, "focal lengths are {} times as far off as told", chi2.sqrt());
+}
+
+#[test]
 fn several_views_tell_the_lens() {
     let mut dice = oorandom::Rand64::new(7);
     let poses = [(0.35, -0.17), (-0.6, 0.2), (1.2, 0.3), (0.4, -1.0), (0.2, 0.8)];
