@@ -102,8 +102,11 @@ pub struct Wall {
     pub posters: Vec<Poster>,
 }
 
-/// Samples across a pixel, and as many down.
-const ACROSS: usize = 4;
+/// Parts of a pixel, across and down: the lens blurs them before the pixel takes their mean. Blurred after, a sharp edge within a pixel
+/// would look askew, and be found up to 0.02 px nearer to the pixel's border than it is.
+const PARTS: usize = 2;
+/// Samples across a part, and as many down.
+const ACROSS: usize = 2;
 
 impl Wall {
     fn at(&self, place: Point, over_m: f64) -> [f32; 3] {
@@ -118,13 +121,18 @@ impl Wall {
             camera.target(Point::new(column as f64, row as f64))
         };
         let corners: Vec<Option<Point>> = (0..(width + 1) * (height + 1)).map(corner).collect();
-        let mut seen = Vec::with_capacity(width * height);
+        let mut parts = Light::dark(PARTS * width, PARTS * height);
         for i in 0..width * height {
-            let first = i / width * (width + 1) + i % width;
+            let (column, row) = (i % width, i / width);
+            let first = row * (width + 1) + column;
             let about = [first, first + 1, first + width + 1, first + width + 2].map(|k| corners[k]);
-            seen.push(self.pixel(about));
+            for k in 0..PARTS * PARTS {
+                let (right, down) = (k % PARTS, k / PARTS);
+                let at = (PARTS * row + down) * PARTS * width + PARTS * column + right;
+                parts.values[at] = self.part(about, [right, down]);
+            }
         }
-        blur(&mut seen, width, height, config.blur_px);
+        let mut seen = parts.through_lens(config.blur_px).values;
         for (i, pixel) in seen.iter_mut().enumerate() {
             let at = Point::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
             let (light, lamp) = light_at(config, at, width as f64, height as f64);
@@ -133,14 +141,14 @@ impl Wall {
         seen
     }
 
-    /// The mean over a pixel of which the four corners lie on the wall so.
-    fn pixel(&self, corners: [Option<Point>; 4]) -> [f32; 3] {
+    /// The mean over a part of a pixel of which the four corners lie on the wall so.
+    fn part(&self, corners: [Option<Point>; 4], part: [usize; 2]) -> [f32; 3] {
         let [Some(a), Some(b), Some(c), Some(d)] = corners else { return self.plain };
-        let over_m = a.distance(d).max(b.distance(c)) / ACROSS as f64;
+        let over_m = a.distance(d).max(b.distance(c)) / (PARTS * ACROSS) as f64;
         let mut sum = [0.0; 3];
         for k in 0..ACROSS * ACROSS {
-            let share = |k: usize| (k as f64 + 0.5) / ACROSS as f64;
-            let (x, y) = (share(k % ACROSS), share(k / ACROSS));
+            let share = |part: usize, k: usize| ((ACROSS * part + k) as f64 + 0.5) / (PARTS * ACROSS) as f64;
+            let (x, y) = (share(part[0], k % ACROSS), share(part[1], k / ACROSS));
             let found = self.at(a.lerp(b, x).lerp(c.lerp(d, x), y), over_m);
             sum.iter_mut().zip(found).for_each(|(s, v)| *s += v);
         }
@@ -161,30 +169,92 @@ fn light_at(config: &CameraConfig, at: Point, width: f64, height: f64) -> (f32, 
     ((side * (1.0 - config.vignetting * corner * corner)) as f32, lamp as f32)
 }
 
-/// Gaussian blur, a row and a column at a time.
-fn blur(image: &mut [[f32; 3]], width: usize, height: usize, deviation_px: f64) {
-    if deviation_px <= 0.0 {
-        return;
+/// Red, green and blue light on a grid, row by row.
+struct Light {
+    width: usize,
+    height: usize,
+    values: Vec<[f32; 3]>,
+}
+
+impl Light {
+    fn dark(width: usize, height: usize) -> Self {
+        Self { width, height, values: vec![[0.0; 3]; width * height] }
     }
-    let reach = (4.0 * deviation_px).ceil() as isize;
-    let weight = |k: isize| (-0.5 * (k as f64 / deviation_px).powi(2)).exp() as f32;
-    let total: f32 = (-reach..=reach).map(weight).sum();
-    let kernel: Vec<f32> = (-reach..=reach).map(|k| weight(k) / total).collect();
-    let pass =
-        |from: &[[f32; 3]], step: isize, last: isize, place: &dyn Fn(usize) -> isize| -> Vec<[f32; 3]> {
-            let of = |i: usize| {
-                let at = place(i);
-                let mut sum = [0.0; 3];
-                for (k, weight) in (-reach..=reach).zip(&kernel) {
-                    let other = (at + k).clamp(0, last) - at;
-                    let value = from[(i as isize + other * step) as usize];
-                    sum.iter_mut().zip(value).for_each(|(s, v)| *s += weight * v);
-                }
-                sum
+
+    /// Of pixels, from their parts: blurred by a bell, and the mean of each pixel's, a row and a column at a time.
+    fn through_lens(&self, deviation_px: f64) -> Self {
+        let weights = weights(deviation_px);
+        let mut across = Self::dark(self.width / PARTS, self.height);
+        for i in 0..across.values.len() {
+            let (x, row) = (i % across.width, &self.values[i / across.width * self.width..][..self.width]);
+            for (k, weight) in weights.iter().enumerate() {
+                add(&mut across.values[i], row[beside(x, k, &weights, self.width)], *weight);
+            }
+        }
+        let mut both = Self::dark(across.width, self.height / PARTS);
+        for (y, row) in both.values.chunks_exact_mut(across.width).enumerate() {
+            for (k, weight) in weights.iter().enumerate() {
+                let other = &across.values[beside(y, k, &weights, self.height) * across.width..];
+                row.iter_mut().zip(other).for_each(|(sum, value)| add(sum, *value, *weight));
+            }
+        }
+        both
+    }
+}
+
+fn add(sum: &mut [f32; 3], value: [f32; 3], weight: f32) {
+    sum.iter_mut().zip(value).for_each(|(s, v)| *s += weight * v);
+}
+
+/// How much a pixel gets of each part about it: of as many before its first as behind its last.
+fn weights(deviation_px: f64) -> Vec<f32> {
+    let deviation = PARTS as f64 * deviation_px;
+    let reach = (4.0 * deviation).ceil() as isize;
+    let bell = |k: isize| if k == 0 { 1.0 } else { (-0.5 * (k as f64 / deviation).powi(2)).exp() };
+    let total: f64 = (-reach..=reach).map(bell).sum();
+    let last = PARTS as isize - 1;
+    let weight = |k: isize| {
+        let of_parts = (0..=last).filter(|part| (k - part).abs() <= reach).map(|part| bell(k - part));
+        (of_parts.sum::<f64>() / (total * PARTS as f64)) as f32
+    };
+    (-reach..=last + reach).map(weight).collect()
+}
+
+/// Which part of a row or column a pixel's weight `k` is for; the outermost go on outside.
+fn beside(pixel: usize, k: usize, weights: &[f32], count: usize) -> usize {
+    let before = (weights.len() - PARTS) / 2;
+    (PARTS * pixel + k).saturating_sub(before).min(count - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_aim::{CameraPose, Lens};
+    use tracelight_stroke::Vec2;
+
+    #[test]
+    fn a_sharp_edge_looks_even_wherever_in_a_pixel_it_lies() {
+        let lens = Lens::ideal(64, 16, 100.0);
+        let camera = Camera { lens, pose: CameraPose::looking_at([0.0, 0.0, 1.0], [0.0; 3]).unwrap() };
+        let usual = CameraConfig::webcam();
+        let config = CameraConfig { vignetting: 0.0, light: [1.0, 1.0], ..usual };
+        for k in 0..16 {
+            // white from there on; a pixel is 10 mm
+            let edge = 32.0 + f64::from(k) / 16.0;
+            let left = camera.target(Point::new(edge, 8.0)).unwrap();
+            let place = Affine::scale(1e-3).then_translate(left.to_vec2() - Vec2::new(0.0, 0.5));
+            let white = Poster::new(1000, &[[255; 3]; 1_000_000], place).unwrap();
+            let seen = Wall { plain: [0.0; 3], posters: vec![white] }.seen(&config, &camera);
+            let row = &seen[8 * 64..][22..44];
+            let steps = row.windows(2).zip(23..).map(|(v, x)| (f64::from(v[1][0] - v[0][0]), f64::from(x)));
+            let moment = |power: i32, about: f64| -> f64 {
+                steps.clone().map(|(step, x)| step * (x - about).powi(power)).sum()
             };
-            (0..from.len()).map(of).collect()
-        };
-    let across = pass(image, 1, width as isize - 1, &|i| (i % width) as isize);
-    let both = pass(&across, width as isize, height as isize - 1, &|i| (i / width) as isize);
-    image.copy_from_slice(&both);
+            let mean = moment(1, 0.0);
+            // four samples a pixel tell places of so sharp an edge to an eighth
+            assert!((moment(0, 0.0) - 1.0).abs() < 1e-3 && (mean - edge).abs() < 0.13, "{edge}: {mean}");
+            // if pixels were blurred after they had taken their mean: up to 0.096
+            assert!(moment(3, mean).abs() < 0.02, "{edge}: {}", moment(3, mean));
+        }
+    }
 }
