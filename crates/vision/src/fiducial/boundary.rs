@@ -4,6 +4,8 @@
 //! the boundary is off from where it is thought to be is what fits the light there best, together with its brightness, its contrast
 //! and, for all boundaries together, the blur. Nothing is lost where cells are hardly wider than the blur.
 
+use std::sync::LazyLock;
+
 use tracelight_stroke::{Point, Vec2};
 
 use super::TagPlace;
@@ -14,9 +16,7 @@ use crate::solve::symmetric;
 
 /// Samples across a boundary.
 const SAMPLES: usize = 11;
-/// Furthest of them, px,
-const REACH_PX: f64 = 2.5;
-/// but no further than so many cells.
+/// Furthest of them, in cells.
 const REACH_CELLS: f64 = 1.25;
 /// Transitions between cells that reach into the samples, either way.
 const NEAR: isize = 2;
@@ -45,7 +45,12 @@ const STEPS: usize = 64;
 const TAILS: usize = 5;
 
 impl Tables {
-    pub(super) fn new() -> Self {
+    pub(super) fn get() -> &'static Self {
+        static TABLES: LazyLock<Tables> = LazyLock::new(Tables::new);
+        &TABLES
+    }
+
+    fn new() -> Self {
         let deviations = |k: usize| k as f64 / STEPS as f64 - TAILS as f64;
         let density = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
         let bell = std::array::from_fn(|k| density(deviations(k)) as f32);
@@ -78,6 +83,37 @@ impl Tables {
     }
 }
 
+/// How closely a marker is looked at.
+#[derive(Clone, Copy)]
+struct Closeness {
+    /// How many times its light is smoothed. What a sensor of one colour a pixel fills in goes away by it, which is different from pixel to
+    /// pixel, and what is left bends so little from pixel to pixel that a straight line between them is true.
+    smoothings: usize,
+    /// Furthest sample across a boundary, px.
+    reach_px: f64,
+}
+
+impl Closeness {
+    /// Of a marker by the side of its smallest cells, px. The smallest have no sharpness to spare: with all smoothed once, corners of eighty
+    /// markers down to 19 px a side are found to 0.055 px, with none 0.053, so 0.048. Large ones have room for more: looked at as those of
+    /// middle size are, four pages of four put the wall 0.039 mm off, so 0.026.
+    const fn for_cells(side_px: f64) -> Self {
+        let (smoothings, reach_px) = match side_px {
+            ..3.0 => (0, 2.5),
+            ..6.0 => (1, 2.5),
+            _ => (2, MOST_REACH_PX),
+        };
+        Self { smoothings, reach_px }
+    }
+
+    fn of(corners: &[Point; 4]) -> Self {
+        let sides = (0..4).map(|k| corners[k].distance(corners[(k + 1) % 4]));
+        Self::for_cells(sides.fold(f64::MAX, f64::min) / SIDE as f64)
+    }
+}
+
+const MOST_REACH_PX: f64 = 3.5;
+
 /// The light of a part of an image.
 struct Part {
     /// Its upper left, px.
@@ -87,8 +123,8 @@ struct Part {
 
 impl Part {
     /// About a square and what is looked at beside it.
-    fn about(plane: &Plane<u8>, tables: &Tables, corners: &[Point; 4]) -> Self {
-        const MARGIN: f64 = 2.0 * FURTHEST_PX + REACH_PX + 2.0;
+    fn about(plane: &Plane<u8>, tables: &Tables, corners: &[Point; 4], smoothings: usize) -> Self {
+        const MARGIN: f64 = 2.0 * FURTHEST_PX + MOST_REACH_PX + 2.0;
         let range = |of: fn(&Point) -> f64, size: usize| {
             let least = corners.iter().map(of).fold(f64::MAX, f64::min) - MARGIN;
             let most = corners.iter().map(of).fold(f64::MIN, f64::max) + MARGIN;
@@ -96,10 +132,14 @@ impl Part {
             (place(least), place(most.ceil()))
         };
         let ((left, right), (top, bottom)) = (range(|p| p.x, plane.width), range(|p| p.y, plane.height));
-        let rows = (top..bottom).flat_map(|y| &plane.row(y)[left..right]);
-        let values = rows.map(|&v| tables.light[usize::from(v)]).collect();
+        let mut values = Vec::with_capacity((right - left) * (bottom - top));
+        for y in top..bottom {
+            values.extend(plane.row(y)[left..right].iter().map(|&v| tables.light[usize::from(v)]));
+        }
+        let mut light = Plane { width: right - left, height: bottom - top, values };
+        (0..smoothings).for_each(|_| smooth(&mut light));
         let corner = Vec2::new(left as f64, top as f64);
-        Self { corner, light: Plane { width: right - left, height: bottom - top, values } }
+        Self { corner, light }
     }
 
     /// Light at equal steps from a place on, bilinear; `None` where a step leads out of the part.
@@ -115,6 +155,28 @@ impl Part {
             *v = above + (below - above) * share(y);
         }
         Some(())
+    }
+}
+
+/// Each value with its neighbours by 1 2 1, across and down; the border's stay.
+fn smooth(light: &mut Plane<f32>) {
+    let width = light.width;
+    for row in light.values.chunks_exact_mut(width.max(1)) {
+        let mut before = row.first().copied().unwrap_or(0.0);
+        for x in 1..width.saturating_sub(1) {
+            let own = row[x];
+            row[x] = 0.25 * (before + row[x + 1]) + 0.5 * own;
+            before = own;
+        }
+    }
+    let mut before = light.values.get(..width).unwrap_or(&[]).to_vec();
+    for y in 1..light.height.saturating_sub(1) {
+        let (own, below) = light.values[y * width..][..2 * width].split_at_mut(width);
+        for ((own, before), below) in own.iter_mut().zip(&mut before).zip(below) {
+            let smooth = 0.25 * (*before + *below) + 0.5 * *own;
+            *before = *own;
+            *own = smooth;
+        }
     }
 }
 
@@ -178,8 +240,10 @@ pub(super) struct Placed {
 
 /// Places a marker that is thought to be at `square`, to a pixel or so.
 pub(super) fn placed(plane: &Plane<u8>, tables: &Tables, cells: &Cells, square: &Square) -> Option<Placed> {
-    let part = Part::about(plane, tables, &square.corners()?);
-    let mut view = View { part, tables, cells, square: *square, blur_px: FIRST_BLUR_PX };
+    let corners = square.corners()?;
+    let Closeness { smoothings, reach_px } = Closeness::of(&corners);
+    let part = Part::about(plane, tables, &corners, smoothings);
+    let mut view = View { part, tables, cells, square: *square, blur_px: FIRST_BLUR_PX, reach_px };
     for _ in 0..2 {
         let found = view.look(false)?;
         let wider = found.iter().map(|f| f.wider_px).sum::<f64>() / found.len() as f64;
@@ -224,6 +288,8 @@ struct View<'a> {
     cells: &'a Cells,
     square: Square,
     blur_px: f64,
+    /// Furthest sample across a boundary.
+    reach_px: f64,
 }
 
 impl View<'_> {
@@ -266,17 +332,18 @@ impl Profile {
         let middle = Boundary { lane: SIDE as isize / 2, ..*boundary }.middle();
         let (_, across, down) = view.square.with_slopes(middle.x, middle.y)?;
         let (along, lane) = if boundary.upright { (across, down) } else { (down, across) };
-        let cell_px = along.cross(lane).abs() / lane.hypot();
-        if !(cell_px > 0.5 && lane.hypot() > 0.5) {
+        let lane_px = lane.hypot();
+        let cell_px = along.cross(lane).abs() / lane_px;
+        if !(cell_px > 0.5 && lane_px > 0.5) {
             return None;
         }
-        let step_px = REACH_PX.min(REACH_CELLS * cell_px) / (SAMPLES / 2) as f64;
+        let step_px = view.reach_px.min(REACH_CELLS * cell_px) / (SAMPLES / 2) as f64;
         let mut profile = Self {
             step_px,
             behind: [[0.0; 12]; TRANSITIONS],
             moved: [0.0; 12],
             widened: [0.0; 12],
-            own: 2.0 * view.tables.normal((0.5 * lane.hypot() / view.blur_px) as f32) - 1.0,
+            own: 2.0 * view.tables.normal((0.5 * lane_px / view.blur_px) as f32) - 1.0,
         };
         for j in 0..SAMPLES {
             let place = (j as f64 - (SAMPLES / 2) as f64) * step_px;
@@ -297,7 +364,7 @@ impl Profile {
         let cell = boundary.middle();
         let (at, across, down) = view.square.with_slopes(cell.x, cell.y)?;
         let (along, lane) = if boundary.upright { (across, down) } else { (down, across) };
-        let normal = Vec2::new(-lane.y, lane.x) / lane.hypot();
+        let normal = Vec2::new(-lane.y, lane.x) / lane.hypot2().sqrt();
         let normal = if normal.dot(along) < 0.0 { -normal } else { normal };
         let mut light: Row = [0.0; 12];
         let reach = self.step_px * (SAMPLES / 2) as f64;
