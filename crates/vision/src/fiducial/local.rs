@@ -88,9 +88,9 @@ fn least_range(low: &Plane<u8>, high: &Plane<u8>) -> u8 {
 /// Each value with its eight neighbours, as one.
 fn spread(plane: &Plane<u8>, best: impl Fn(u8, u8) -> u8 + Copy) -> Plane<u8> {
     let three = |row: &[u8], into: &mut [u8]| {
-        for (x, v) in into.iter_mut().enumerate() {
-            *v = best(best(row[x.saturating_sub(1)], row[x]), row[(x + 1).min(row.len() - 1)]);
-        }
+        into.copy_from_slice(row);
+        into.iter_mut().zip(&row[1..]).for_each(|(v, &after)| *v = best(*v, after));
+        into[1..].iter_mut().zip(row).for_each(|(v, &before)| *v = best(*v, before));
     };
     let mut across = Plane::filled(plane.width, plane.height, 0);
     (0..plane.height).for_each(|y| three(plane.row(y), across.row_mut(y)));

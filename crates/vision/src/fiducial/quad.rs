@@ -49,7 +49,7 @@ fn furthest(points: &[Point]) -> Option<[usize; 4]> {
     let stride = points.len().div_ceil(LOOKED_AT);
     let few: Vec<Point> = points.iter().copied().step_by(stride).collect();
     let most = |of: &dyn Fn(Point) -> f64| {
-        let best = few.iter().enumerate().max_by(|a, b| of(*a.1).total_cmp(&of(*b.1)));
+        let best = few.iter().map(|p| of(*p)).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         best.map(|(i, _)| i)
     };
     let from = *few.first()?;

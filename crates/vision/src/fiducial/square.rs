@@ -39,9 +39,10 @@ impl Square {
         if w < 1e-3 {
             return None;
         }
-        let (u, v) = ((a * x + b * y + c) / w, (d * x + e * y + f) / w);
-        let across = Vec2::new((a - u * g) / w, (d - v * g) / w);
-        let down = Vec2::new((b - u * h) / w, (e - v * h) / w);
+        let one = 1.0 / w;
+        let (u, v) = ((a * x + b * y + c) * one, (d * x + e * y + f) * one);
+        let across = Vec2::new((a - u * g) * one, (d - v * g) * one);
+        let down = Vec2::new((b - u * h) * one, (e - v * h) * one);
         Some((Point::new(u, v), across, down))
     }
 
