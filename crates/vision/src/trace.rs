@@ -219,7 +219,7 @@ fn least_patch(ink: &Ink, options: &Options) -> usize {
 
 /// The regions of at least so many pixels, their pinholes filled.
 fn drawn(mask: &mut Mask, least_px: usize) -> Result<Vec<Region>, VisionError> {
-    pinholes(mask, LEAST_PX).iter().for_each(|hole| hole.fill_into(mask));
+    pinholes(mask, LEAST_HOLE_PX).iter().for_each(|hole| hole.fill_into(mask));
     let (found, dust): (Vec<Region>, Vec<Region>) =
         regions(mask).into_iter().partition(|r| r.area() >= least_px);
     dust.iter().for_each(|speck| speck.erase_from(mask));
@@ -230,7 +230,10 @@ fn drawn(mask: &mut Mask, least_px: usize) -> Result<Vec<Region>, VisionError> {
     Ok(found)
 }
 
-/// Fewer pixels than this were never drawn, nor left out, on purpose.
+/// Fewer pixels of paper than this were never left out on purpose.
+const LEAST_HOLE_PX: usize = 3;
+
+/// Fewer pixels of ink than this were never drawn on purpose.
 const LEAST_PX: usize = 6;
 
 /// The outlines of some shapes, which are all the ink of `filled`; `mask` is all there is.

@@ -129,6 +129,21 @@ fn the_stick_of_a_lollipop_tells_the_pen_where_it_is_the_only_line() {
 }
 
 #[test]
+fn the_smallest_ring_is_a_line_about_its_hole() {
+    // its hole has three to five pixels
+    for (radius, centre) in [(2.5, (160.0, 120.0)), (2.6, (160.5, 120.5)), (2.6, (160.3, 120.2))] {
+        let truth = [ring(centre, (radius, radius)), vec![Point::new(60.0, 60.0), Point::new(250.0, 80.0)]];
+        let mut canvas = Canvas::new(320, 240);
+        truth.iter().for_each(|line| canvas.pen(line, 2.6));
+        let (found, comparison) = traced(&canvas, 320, 30.0, &truth);
+        let is_line = |s: &tracelight_stroke::Stroke| s.kind == StrokeKind::Centreline;
+        assert!(found.strokes.strokes.iter().all(is_line), "radius {radius}");
+        assert_eq!(found.strokes.strokes.len(), 2, "radius {radius}");
+        assert!(comparison.rms < 0.3 && comparison.coverage > 0.99, "radius {radius}: {comparison:?}");
+    }
+}
+
+#[test]
 fn a_small_star_keeps_its_points() {
     for (points, radii) in [(6, (15.0, 26.0)), (6, (17.0, 30.0)), (8, (20.0, 32.0))] {
         let truth = [star((160.0, 120.0), radii, points)];
