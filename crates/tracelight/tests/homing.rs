@@ -58,6 +58,19 @@ fn stops_in_its_way_are_gone_round() {
     check_homed(&homed("9", &more));
 }
 
+/// In this room tilt is sent 3° beyond its stop once, which is as far as it may stray: it pushes, and shows it, when its way is over.
+#[test]
+fn a_stop_just_before_the_end_of_a_way_is_gone_round() {
+    let dir = folder("home-end");
+    let head = dir.join("head.toml").to_str().unwrap().to_owned();
+    let room = ["--sim-camera", "report"];
+    let args = ["calibrate", "head", "--camera", "sim", "--seed", "15", "-o", &head, "--json"];
+    json(&run(&[&args[..], &room].concat()));
+    let found = homed("15", &[&room[..], &["--head", &head]].concat());
+    assert_eq!(found["homed"]["stops"], 1, "{}", found["homed"]);
+    check_homed(&found);
+}
+
 #[test]
 fn a_head_is_homed_before_it_draws_what_a_camera_sees() {
     let dir = folder("home-trace");

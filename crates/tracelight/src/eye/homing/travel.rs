@@ -60,7 +60,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
                 }
             });
             match stopped {
-                None => return self.rest(REST_TICKS).map(|_| Some(there)),
+                None => return Ok(Some(there)),
                 Some(turned) => turned?,
             }
             *at = PanTilt::new(0.0, 0.0);
@@ -103,7 +103,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         self.zero("the head does not come back from where something was in its way: is it free?")
     }
 
-    /// Moves in the dark from rest to rest, by its encoders; the fault that ended it, if one did.
+    /// Moves in the dark from rest to rest, by its encoders, and rests; the fault that ended it, if one did.
     fn go(&mut self, from: PanTilt<f64>, to: PanTilt<f64>) -> Result<Option<Fault>, Failure> {
         let far = (to.pan - from.pan).abs().max((to.tilt - from.tilt).abs());
         if far == 0.0 {
@@ -129,11 +129,22 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             }
             if now.phase == Phase::Done {
                 let _ = self.rig.send(Command::Disarm);
-                return Ok(None);
+                return self.fault_at_rest();
             }
         }
         let message = "the head does not come where it is sent: is something in its way?";
         Err(Failure::failed("unfinished", message))
+    }
+
+    /// Rests; the fault that shows meanwhile: what is in a joint's way just before its end shows when it pushes there.
+    fn fault_at_rest(&mut self) -> Result<Option<Fault>, Failure> {
+        for _ in 0..REST_TICKS {
+            let now = self.tick()?;
+            if now.fault.is_some() {
+                return Ok(now.fault);
+            }
+        }
+        Ok(None)
     }
 
     /// Forgets what was to be done, and goes to where both encoders read zero; what it is told if it does not come there.
