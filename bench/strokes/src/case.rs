@@ -7,7 +7,7 @@ use tracelight_stroke::Drawing;
 
 use crate::look::Look;
 use crate::warp::Warp;
-use crate::{Degradation, Figure, Ink, Kind, Page, Picture, Random};
+use crate::{Degradation, Figure, Ink, Kind, Page, Picture, Random, Set, desk};
 
 /// Furthest a page is seen aside, degrees.
 const MOST_TILT_DEG: f64 = 5.0;
@@ -33,21 +33,43 @@ impl Size {
         (Self { width: 3840, height: 2160 }, 4),
     ];
 
+    /// The sizes of the world: also stamps of a web page, and what a phone takes.
+    pub const OF_THE_WORLD: [(Self, usize); 9] = [
+        (Self { width: 70, height: 70 }, 3),
+        (Self { width: 96, height: 96 }, 3),
+        (Self { width: 160, height: 120 }, 4),
+        (Self { width: 320, height: 240 }, 24),
+        (Self { width: 640, height: 480 }, 30),
+        (Self { width: 1280, height: 720 }, 22),
+        (Self { width: 1920, height: 1080 }, 9),
+        (Self { width: 3840, height: 2160 }, 3),
+        (Self { width: 4000, height: 3000 }, 2),
+    ];
+
+    /// The sizes of a set's pictures, and how often each comes.
+    pub const fn of(set: Set) -> &'static [(Self, usize)] {
+        match set {
+            Set::Plain => &Self::USUAL,
+            Set::World => &Self::OF_THE_WORLD,
+        }
+    }
+
     /// What a drawn line may be off and still be the true one, px: 2, and more where the picture has over 720 rows.
     pub fn tolerance_px(self) -> f64 {
         (self.height as f64 / 360.0).max(2.0)
     }
 
-    fn usual(random: &mut Random) -> Self {
-        let sum = Self::USUAL.iter().map(|(_, weight)| weight).sum::<usize>();
+    fn usual(set: Set, random: &mut Random) -> Self {
+        let sizes = Self::of(set);
+        let sum = sizes.iter().map(|(_, weight)| weight).sum::<usize>();
         let mut left = random.whole(0, sum - 1);
-        for (size, weight) in Self::USUAL {
+        for &(size, weight) in sizes {
             if left < weight {
                 return size;
             }
             left -= weight;
         }
-        Self::USUAL[0].0
+        sizes[0].0
     }
 }
 
@@ -85,6 +107,8 @@ pub struct Case {
 /// What may be asked of cases.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
+    /// Of this set; a kind that is wanted brings its own.
+    pub set: Set,
     /// Only this kind.
     pub kind: Option<Kind>,
     /// Only this degradation.
@@ -96,14 +120,15 @@ pub struct Wanted {
 impl Case {
     /// `count` cases: kinds in turn, degradations in turn within each, sizes by their weights.
     pub fn series(seed: u64, count: usize, wanted: &Wanted) -> Vec<Self> {
-        let kinds = wanted.kind.map_or_else(|| Kind::all().to_vec(), |k| vec![k]);
-        let degradations = wanted.degradation.map_or_else(|| Degradation::all().to_vec(), |d| vec![d]);
+        let set = wanted.kind.map_or(wanted.set, Kind::set);
+        let kinds = wanted.kind.map_or_else(|| Kind::of(set).to_vec(), |k| vec![k]);
+        let degradations = wanted.degradation.map_or_else(|| Degradation::of(set).to_vec(), |d| vec![d]);
         let case = |i: usize| {
             let seed = mixed(seed, i as u64);
             Self {
                 kind: kinds[i % kinds.len()],
                 degradation: degradations[i / kinds.len() % degradations.len()],
-                size: wanted.size.unwrap_or_else(|| Size::usual(&mut Random::new(seed))),
+                size: wanted.size.unwrap_or_else(|| Size::usual(set, &mut Random::new(seed))),
                 seed,
             }
         };
@@ -112,8 +137,22 @@ impl Case {
 
     /// The page, before anything is done to it.
     pub fn page(&self) -> Page {
-        let roomy = if self.degradation.is_tilted() { ROOMY } else { 1.0 };
+        let roomy = match self.laid() {
+            Some(warp) => 1.0 / warp.least_scale(self.size),
+            None if self.is_tilted() => ROOMY,
+            None => 1.0,
+        };
         Page::draw(&mut Random::new(self.seed ^ 1), self.kind, self.size, roomy)
+    }
+
+    /// How a sheet on a table lies.
+    fn laid(&self) -> Option<Warp> {
+        (self.kind == Kind::Table).then(|| desk::lay(&mut Random::new(self.seed ^ 3), self.size))
+    }
+
+    /// A frame along the border would leave the picture.
+    fn is_tilted(&self) -> bool {
+        self.degradation.is_tilted() && self.kind != Kind::Frame
     }
 
     /// The picture with its truth.
@@ -122,7 +161,12 @@ impl Case {
         let random = &mut Random::new(self.seed ^ 2);
         let look = Look::of(self.degradation, random, self.size, &page);
         let tilt = random.between(2.0, MOST_TILT_DEG).to_radians() * random.sign();
-        let warp = self.degradation.is_tilted().then(|| Warp::new(self.size, random.angle(), tilt));
+        let tilted = self.is_tilted().then(|| Warp::new(self.size, random.angle(), tilt));
+        let warp = self.laid().or(tilted);
+        let look = match self.kind.set() {
+            Set::Plain => look,
+            Set::World => look.of_kind(random, (self.kind, self.size), &page, warp.as_ref()),
+        };
         let ink: Vec<Vec<&Ink>> = page.figures.iter().flat_map(Figure::by_stroke).collect();
         let strokes: Vec<_> = page.figures.iter().flat_map(|f| f.strokes.clone()).collect();
         Picture {

@@ -1,5 +1,7 @@
 use tracelight_stroke::{Affine, Path, Stroke, StrokeKind};
 
+use crate::Touch;
+
 /// How a pen's line ends and turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Nib {
@@ -36,6 +38,17 @@ pub enum Ink {
     },
     /// The inside of closed paths; a path inside another one is a hole.
     Fill(Vec<Path>),
+    /// A line whose width or darkness changes along it.
+    Touches(Vec<Touch>),
+    /// A closed path filled with a felt pen, to and fro.
+    Scribble {
+        /// Its edge.
+        outline: Path,
+        /// The ways to and fro; what they reach beyond the edge is not drawn.
+        ways: Vec<Path>,
+        /// The pen's width, px.
+        pen: f64,
+    },
 }
 
 /// Ink, and the strokes that a hand would draw it with.
@@ -70,6 +83,11 @@ impl Figure {
         Self { strokes: outlines.iter().map(stroke).collect(), ink: vec![Ink::Fill(outlines)] }
     }
 
+    /// One stroke, seen as this ink.
+    pub(crate) fn stroke(path: Path, pen: f64, ink: impl IntoIterator<Item = Ink>) -> Self {
+        Self { strokes: vec![pen_stroke(path, pen)], ink: ink.into_iter().collect() }
+    }
+
     /// The ink, what certainly belongs to one stroke together.
     pub(crate) fn by_stroke(&self) -> Vec<Vec<&Ink>> {
         match self.ink.len() == self.strokes.len() {
@@ -85,17 +103,33 @@ impl Figure {
         self
     }
 
+    /// Width of the thinnest line, at its thinnest place, px; none if there is none.
+    pub(crate) fn thinnest(&self) -> Option<f64> {
+        let width = |ink: &Ink| match ink {
+            Ink::Line { pen, .. } => Some(*pen),
+            Ink::Touches(touches) => touches.iter().map(|t| 2.0 * t.radius).reduce(f64::min),
+            Ink::Fill(_) | Ink::Scribble { .. } => None,
+        };
+        self.ink.iter().filter_map(width).reduce(f64::min)
+    }
+
     /// Moved by a similarity that keeps lengths.
     pub(crate) fn moved(&self, by: Affine) -> Self {
         let stroke = |s: &Stroke| s.along(s.path.transformed(by));
         let ink = |i: &Ink| match i {
             Ink::Line { path, pen, nib } => Ink::Line { path: path.transformed(by), pen: *pen, nib: *nib },
             Ink::Fill(paths) => Ink::Fill(paths.iter().map(|p| p.transformed(by)).collect()),
+            Ink::Touches(touches) => Ink::Touches(touches.iter().map(|t| t.moved(by)).collect()),
+            Ink::Scribble { outline, ways, pen } => Ink::Scribble {
+                outline: outline.transformed(by),
+                ways: ways.iter().map(|w| w.transformed(by)).collect(),
+                pen: *pen,
+            },
         };
         Self { strokes: self.strokes.iter().map(stroke).collect(), ink: self.ink.iter().map(ink).collect() }
     }
 }
 
-fn pen_stroke(path: Path, pen: f64) -> Stroke {
+pub(crate) fn pen_stroke(path: Path, pen: f64) -> Stroke {
     Stroke { pen: Some(pen), ..Stroke::new(path) }
 }

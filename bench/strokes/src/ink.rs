@@ -7,7 +7,9 @@
 use tracelight_stroke::{Path, Point, Vec2};
 
 use crate::page::crossings;
-use crate::{Ink, Nib, warp::Warp};
+use crate::plane::Plane;
+use crate::warp::Warp;
+use crate::{Ink, Nib, Touch};
 
 /// Curves are followed to this, px.
 const TOLERANCE_PX: f64 = 0.004;
@@ -15,39 +17,6 @@ const TOLERANCE_PX: f64 = 0.004;
 const LONGEST_PX: f64 = 48.0;
 /// A sharper corner than this has no mitre: it would be longer than 4 pens (as SVG's default has it).
 const MITRE_LIMIT: f64 = 4.0;
-
-/// Values of pixels, row by row.
-pub(crate) struct Plane {
-    pub(crate) width: usize,
-    pub(crate) height: usize,
-    pub(crate) values: Vec<f32>,
-}
-
-impl Plane {
-    pub(crate) fn filled(width: usize, height: usize, value: f32) -> Self {
-        Self { width, height, values: vec![value; width * height] }
-    }
-
-    /// Calls `each` with the value of each pixel whose centre may be within `reach` of the box of two points.
-    fn around(&mut self, a: Point, b: Point, reach: f64, mut each: impl FnMut(Point, &mut f32)) {
-        let range = |a: f64, b: f64, size: usize| {
-            let low = (a.min(b) - reach - 0.5).floor().max(0.0) as usize;
-            low..((a.max(b) + reach + 0.5).ceil().max(0.0) as usize).min(size)
-        };
-        let columns = range(a.x, b.x, self.width);
-        for y in range(a.y, b.y, self.height) {
-            let row = &mut self.values[y * self.width..][..self.width];
-            for x in columns.clone() {
-                each(Point::new(x as f64 + 0.5, y as f64 + 0.5), &mut row[x]);
-            }
-        }
-    }
-
-    /// Makes each value no less than the other plane's.
-    pub(crate) fn at_least(&mut self, other: &Self) {
-        self.values.iter_mut().zip(&other.values).for_each(|(v, o)| *v = v.max(*o));
-    }
-}
 
 /// Puts ink on a plane of coverage, as the camera sees it.
 pub(crate) fn draw(plane: &mut Plane, ink: &Ink, warp: Option<&Warp>) {
@@ -64,7 +33,45 @@ pub(crate) fn draw(plane: &mut Plane, ink: &Ink, warp: Option<&Warp>) {
             }
         }
         Ink::Fill(paths) => fill(plane, &paths.iter().map(seen).collect::<Vec<_>>()),
+        Ink::Touches(touches) => touches.iter().for_each(|t| touch(plane, t, warp)),
+        Ink::Scribble { outline, ways, pen } => {
+            let lines = || ways.iter().chain([outline]);
+            let line = |path| Ink::Line { path, pen: *pen, nib: Nib::Round };
+            scribble(plane, &seen(outline), lines().map(|path| line(path.clone())), warp);
+        }
     }
+}
+
+fn touch(plane: &mut Plane, touch: &Touch, warp: Option<&Warp>) {
+    let seen = |p: Point| warp.map_or(p, |w| w.point(p));
+    let radius = touch.radius * warp.map_or(1.0, |w| w.scale(touch.at));
+    let (a, b) = (seen(touch.at - touch.reach), seen(touch.at + touch.reach));
+    let way = b - a;
+    let norm = 1.0 / way.hypot2().max(1e-12);
+    plane.around(a, b, radius, |p, value| {
+        let share = ((p - a).dot(way) * norm).clamp(0.0, 1.0);
+        let covered = touch.dark as f32 * coverage(radius - p.distance(a + way * share));
+        *value = value.max(covered);
+    });
+}
+
+/// Share of the darkness where a felt pen goes once; where it goes again, all of it.
+const FELT_ONCE: f32 = 0.8;
+
+/// Lines drawn one over the other, as far as they lie inside an outline.
+fn scribble(plane: &mut Plane, outline: &[Point], lines: impl Iterator<Item = Ink>, warp: Option<&Warp>) {
+    let empty = || Plane::filled(plane.width, plane.height, 0.0);
+    let (mut inside, mut inked) = (empty(), empty());
+    fill(&mut inside, &[outline.to_vec()]);
+    for line in lines {
+        let mut own = empty();
+        draw(&mut own, &line, warp);
+        inked.values.iter_mut().zip(&own.values).for_each(|(v, o)| {
+            *v = (*v + (1.0 - *v) * FELT_ONCE * o).min(1.0);
+        });
+    }
+    let drawn = inked.values.iter().zip(&inside.values).map(|(inked, inside)| inked.min(*inside));
+    plane.values.iter_mut().zip(drawn).for_each(|(v, d)| *v = v.max(d));
 }
 
 /// A spot of ink, for dust.

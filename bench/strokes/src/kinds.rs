@@ -2,16 +2,44 @@
 //! who places it asks [`rules`](crate::rules) and draws another one if so.
 
 mod crossing;
+mod felt;
 mod filled;
+mod frame;
+mod hair;
+mod hairpin;
+mod hatched;
 mod junction;
 mod looped;
 mod parallel;
 mod plain;
+mod retouched;
+mod shallow;
+mod spot;
+mod swelling;
 mod tangent;
+mod writing;
 
 use clap::ValueEnum;
 
-use crate::{Figure, Hand, Random};
+pub(crate) use frame::frame;
+
+use crate::{Figure, Hand, Random, Set};
+
+/// Kinds of the plain set that are all lines, without gaps.
+const LINES: [Kind; 9] = [
+    Kind::Lines,
+    Kind::Polylines,
+    Kind::Arcs,
+    Kind::Splines,
+    Kind::Closed,
+    Kind::Crossings,
+    Kind::Junctions,
+    Kind::Tangents,
+    Kind::Loops,
+];
+/// What is drawn large with a thick pen.
+const THICK: [Kind; 6] =
+    [Kind::Polylines, Kind::Arcs, Kind::Splines, Kind::Closed, Kind::Closed, Kind::Tangents];
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
@@ -42,28 +70,66 @@ pub enum Kind {
     Gaps,
     /// A page of everything.
     Mixed,
+    /// Lines that swell with pressure.
+    Swell,
+    /// Brushes: lines that taper to their ends.
+    Brush,
+    /// Broad nibs: the width depends on the direction.
+    Nib,
+    /// Lines that pale along the way.
+    Fading,
+    /// A pencil on grain, its pressure changing.
+    Graphite,
+    /// Felt pen: thick, darker where it goes twice, areas filled to and fro.
+    Felt,
+    /// Lines gone over again, in full or in part, and rings whose ends overlap.
+    Retouched,
+    /// Lines side by side that stay lines.
+    Hatching,
+    /// Writing of 6 to 30 px beside a large figure.
+    Writing,
+    /// Dashes, rings, ticks and crosses of 5 to 14 px beside a large figure.
+    Marks,
+    /// V and U turns whose wedge closes before the turn, leaves, a third line between two.
+    Hairpin,
+    /// Tufts and strands of tapering lines.
+    Hair,
+    /// Crossings at 3 to 15°, curves that touch and run together for a while.
+    Shallow,
+    /// Small filled shapes: ovals, crescents, drops, suns with rays, faces.
+    Spots,
+    /// A frame along the picture's border, whole or half cut off by it.
+    Frame,
+    /// One figure in a thick pen.
+    Thick,
+    /// Ruled paper of any darkness.
+    Ruled,
+    /// Squared paper of any darkness.
+    Squared,
+    /// Dotted paper of any darkness.
+    Dotted,
+    /// A sheet on a table, seen aside, with shadows, a finger, another sheet.
+    Table,
 }
 
 impl Kind {
-    /// All of them.
-    pub fn all() -> &'static [Self] {
-        Self::value_variants()
+    /// Those of a set.
+    pub fn of(set: Set) -> &'static [Self] {
+        let (plain, world) = Self::value_variants().split_at(Self::Mixed as usize + 1);
+        match set {
+            Set::Plain => plain,
+            Set::World => world,
+        }
+    }
+
+    /// The set that it is of.
+    pub fn set(self) -> Set {
+        if self <= Self::Mixed { Set::Plain } else { Set::World }
     }
 
     /// As it is typed.
     pub fn name(self) -> String {
         self.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default()
-    }
-
-    /// Figures of a page, fewest and most.
-    pub(crate) fn figures(self) -> (usize, usize) {
-        match self {
-            Kind::Lines | Kind::Arcs => (1, 10),
-            Kind::Polylines | Kind::Splines | Kind::Closed | Kind::Gaps => (1, 7),
-            Kind::Crossings | Kind::Junctions | Kind::Tangents | Kind::Loops | Kind::Filled => (1, 5),
-            Kind::Parallels => (1, 3),
-            Kind::Mixed => (5, 16),
-        }
     }
 
     /// One figure about the origin. It may break the rules; who places it asks.
@@ -82,8 +148,26 @@ impl Kind {
             Kind::Filled => filled::figure(random, hand),
             Kind::Gaps => plain::gapped(random, hand),
             Kind::Mixed => {
-                let last = Self::all().len() - 2;
-                Self::all()[random.whole(0, last)].figure(random, hand)
+                let plain = Self::of(Set::Plain);
+                plain[random.whole(0, plain.len() - 2)].figure(random, hand)
+            }
+            Kind::Swell => swelling::swell(random, hand),
+            Kind::Brush => swelling::brush(random, hand),
+            Kind::Nib => swelling::nib(random, hand),
+            Kind::Fading => swelling::fading(random, hand),
+            Kind::Graphite => swelling::pencil(random, hand),
+            Kind::Felt => felt::figure(random, hand),
+            Kind::Retouched => retouched::figure(random, hand),
+            Kind::Hatching => hatched::figure(random, hand),
+            Kind::Writing => writing::words(random, hand),
+            Kind::Marks => writing::marks(random, hand),
+            Kind::Hairpin => hairpin::figure(random, hand),
+            Kind::Hair => hair::figure(random, hand),
+            Kind::Shallow => shallow::figure(random, hand),
+            Kind::Spots => spot::figure(random, hand),
+            Kind::Thick => Self::figure(random.pick(&THICK), random, hand),
+            Kind::Frame | Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => {
+                Self::figure(random.pick(&LINES), random, hand)
             }
         }
     }

@@ -1,71 +1,19 @@
 //! How a drawing looks to a camera: levels of paper and ink, light, and what spoils a picture.
 
-use clap::ValueEnum;
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::{Point, Stroke};
 
-use crate::ink::{Plane, dot, draw};
+use crate::desk::Desk;
+use crate::grain::Grain;
+use crate::ink::{dot, draw};
+use crate::light::{Light, one_sided, shadow};
+use crate::medium::Medium;
+use crate::paper::Paper;
 use crate::picture::through_jpeg;
+use crate::plane::{Plane, blur};
 use crate::random::Normal;
 use crate::shapes::line;
 use crate::warp::Warp;
-use crate::{Ink, Nib, Page, Random, Size};
-
-/// What is done to a clean picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
-pub enum Degradation {
-    /// Nothing.
-    Clean,
-    /// Light from one side, 1 falling to 0.35.
-    Light,
-    /// A shadow with a hard edge, 0.5 to 0.7 of the light.
-    Shadow,
-    /// Corners darker, down to 0.45.
-    Vignette,
-    /// Out of focus, up to 0.8 px per 240 rows.
-    Blur,
-    /// Noise up to σ 6 levels.
-    Noise,
-    /// Noise of σ 10.
-    Noise10,
-    /// Single pixels black or white, 0.06 %.
-    Speckle,
-    /// JPEG of quality 55 to 85.
-    Jpeg,
-    /// Coloured ink on coloured paper.
-    Tint,
-    /// Light ink on dark paper.
-    Inverted,
-    /// Faint pencil: contrast 20 to 30 %.
-    Pencil,
-    /// Ruled paper, its rules at 15 to 30 % of the ink's contrast.
-    Ruled,
-    /// A few specks of 1 to 3 px.
-    Dust,
-    /// Seen up to 5° aside.
-    Perspective,
-    /// Light from one side, blur, noise of σ 6, speckle.
-    Webcam,
-    /// Shadow, perspective, JPEG, noise.
-    Photo,
-    /// A pen and a pencil on one sheet: some figures at 30 to 60 % of the others' contrast; noise.
-    Inks,
-}
-
-impl Degradation {
-    /// All of them.
-    pub fn all() -> &'static [Self] {
-        Self::value_variants()
-    }
-
-    /// As it is typed.
-    pub fn name(self) -> String {
-        self.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default()
-    }
-
-    pub(crate) fn is_tilted(self) -> bool {
-        matches!(self, Self::Perspective | Self::Photo)
-    }
-}
+use crate::{Degradation, Ink, Kind, Nib, Page, Random, Size};
 
 /// Share of pixels that speckle hits.
 const SPECKS: f64 = 0.0006;
@@ -90,25 +38,11 @@ pub(crate) struct Look {
     dust: usize,
     /// What the second ink has of the first one's darkness.
     second: Option<f64>,
-}
-
-/// The share of the light that arrives at a place.
-#[derive(Clone, Copy)]
-enum Light {
-    Even,
-    /// From a lamp near a corner: (x, y) as shares of the picture.
-    Lamp(f64, f64),
-    /// Linear, from 1 to 0.35 along a direction.
-    Slope(f64),
-    /// Behind an edge through a point (shares) with a normal (rad), this share arrives; soft over so many px.
-    Shadow {
-        through: (f64, f64),
-        normal: f64,
-        left: f64,
-        soft: f64,
-    },
-    /// Down by this much in the corners.
-    Vignette(f64),
+    medium: Medium,
+    /// The paper's own grain, and how many levels it is deep.
+    tooth: Option<(Grain, f64)>,
+    printed: Option<Paper>,
+    desk: Option<Desk>,
 }
 
 impl Look {
@@ -124,6 +58,10 @@ impl Look {
             rules: None,
             dust: 0,
             second: None,
+            medium: Medium::Pen,
+            tooth: None,
+            printed: None,
+            desk: None,
         }
     }
 
@@ -169,6 +107,59 @@ impl Look {
         }
     }
 
+    /// The same, with the pen, the paper and the table that a kind of the world has.
+    pub(crate) fn of_kind(
+        self,
+        random: &mut Random,
+        (kind, size): (Kind, Size),
+        page: &Page,
+        warp: Option<&Warp>,
+    ) -> Self {
+        match kind {
+            Kind::Graphite => self.pencilled(random, size),
+            Kind::Retouched if random.chance(0.4) => self.pencilled(random, size),
+            Kind::Felt => self.felt(random),
+            Kind::Ruled | Kind::Squared | Kind::Dotted => {
+                let strokes: Vec<Stroke> = page.figures.iter().flat_map(|f| f.strokes.clone()).collect();
+                Self { printed: Paper::under(random, kind, size, &strokes, page.pen), ..self }
+            }
+            Kind::Table => self.on_a_table(random, size, page, warp),
+            _ => self,
+        }
+    }
+
+    /// A pencil on paper with a grain: 15 to 60 % contrast.
+    fn pencilled(self, random: &mut Random, size: Size) -> Self {
+        let paper = random.between(200.0, 245.0);
+        let ink = paper * (1.0 - random.between(0.2, 0.65));
+        let grain = Grain::new(random.bits(), (2.0, 2.0));
+        Self {
+            paper: [paper; 3],
+            ink: [ink; 3],
+            medium: Medium::graphite(random, size),
+            tooth: Some((grain, random.between(2.0, 8.0))),
+            noise: self.noise.min(2.0),
+            specks: 0.0,
+            ..self
+        }
+    }
+
+    fn felt(self, random: &mut Random) -> Self {
+        let paper = random.between(190.0, 250.0);
+        let ink = random.between(0.0, 70.0);
+        Self { paper: [paper; 3], ink: [ink; 3], medium: Medium::Felt(random.between(0.6, 0.9)), ..self }
+    }
+
+    fn on_a_table(self, random: &mut Random, size: Size, page: &Page, warp: Option<&Warp>) -> Self {
+        let Some(warp) = warp else { return self };
+        let paper = random.between(170.0, 245.0);
+        let seen = page.figures.iter().flat_map(|f| &f.strokes).map(|s| warp.path(&s.path));
+        let points: Vec<Point> = seen.flat_map(|p| p.flatten(0.5)).collect();
+        let light = if random.chance(0.5) { shadow(random) } else { self.light };
+        let desk = Some(Desk::around(random, size, paper, (warp, &points)));
+        Self { paper: [paper; 3], ink: [random.between(0.0, 0.4) * paper; 3], light, desk, ..self }
+    }
+
     /// The grey levels of a picture with this ink on it.
     pub(crate) fn levels(
         &self,
@@ -187,7 +178,17 @@ impl Look {
         if self.rules.is_some() {
             rules(random, size).iter().for_each(|ink| draw(&mut ruled, ink, warp));
         }
+        if let Some(paper) = &self.printed {
+            let mut printed = Plane::filled(width, height, 0.0);
+            paper.ink().iter().for_each(|ink| draw(&mut printed, ink, warp));
+            printed.values.iter_mut().for_each(|v| *v *= paper.dark as f32);
+            covered.at_least(&printed);
+        }
         let mut seen = self.composed(&covered, &ruled);
+        self.textured(&mut seen);
+        if let (Some(desk), Some(warp)) = (&self.desk, warp) {
+            desk.cover(&mut seen, warp);
+        }
         self.lit(&mut seen);
         blur(&mut seen, self.blur_px);
         self.spoil(random, &mut seen);
@@ -200,6 +201,9 @@ impl Look {
 
     /// How much of the first ink's darkness each pixel has from the ink, what one stroke is of together.
     fn covered(&self, random: &mut Random, size: Size, ink: &[Vec<&Ink>], warp: Option<&Warp>) -> Plane {
+        if !matches!(self.medium, Medium::Pen) {
+            return self.medium.covered(size, ink, warp);
+        }
         let mut inks = [(); 2].map(|()| Plane::filled(size.width, size.height, 0.0));
         // by turns and not by chance: a picture with two strokes has both inks
         let first = self.second.map_or(0, |_| random.whole(0, 1));
@@ -232,6 +236,14 @@ impl Look {
         Plane { values, ..*covered }
     }
 
+    fn textured(&self, seen: &mut Plane) {
+        let Some((grain, depth)) = self.tooth else { return };
+        for (i, value) in seen.values.iter_mut().enumerate() {
+            let (x, y) = ((i % seen.width) as f64, (i / seen.width) as f64);
+            *value += (depth * (grain.at(x, y) - 0.5)) as f32;
+        }
+    }
+
     fn lit(&self, seen: &mut Plane) {
         if matches!(self.light, Light::Even) {
             return;
@@ -256,46 +268,6 @@ impl Look {
             let at = random.whole(0, seen.values.len() - 1);
             seen.values[at] = random.pick(&[0.0, 255.0]);
         }
-    }
-}
-
-impl Light {
-    fn at(self, x: f64, y: f64, width: f64, height: f64) -> f64 {
-        let (u, v) = (x / width, y / height);
-        match self {
-            Light::Even => 1.0,
-            Light::Lamp(lx, ly) => {
-                0.35 + 0.65 * (1.0 - (u - lx).powi(2) - ((v - ly) / 1.15).powi(2)).clamp(0.0, 1.0)
-            }
-            Light::Slope(way) => {
-                let (sin, cos) = way.sin_cos();
-                let along = ((u - 0.5) * cos + (v - 0.5) * sin) / (cos.abs() + sin.abs());
-                1.0 - 0.65 * (along + 0.5)
-            }
-            Light::Shadow { through, normal, left, soft } => {
-                let from = Vec2::new(x - through.0 * width, y - through.1 * height);
-                let into = (from.dot(Vec2::from_angle(normal)) / soft + 0.5).clamp(0.0, 1.0);
-                1.0 - (1.0 - left) * into
-            }
-            Light::Vignette(depth) => 1.0 - depth * 2.0 * ((u - 0.5).powi(2) + (v - 0.5).powi(2)),
-        }
-    }
-}
-
-fn one_sided(random: &mut Random) -> Light {
-    if random.chance(0.5) {
-        return Light::Slope(random.angle());
-    }
-    Light::Lamp(random.pick(&[0.15, 0.85]), random.pick(&[0.1, 0.9]))
-}
-
-fn shadow(random: &mut Random) -> Light {
-    let through = (random.between(0.25, 0.75), random.between(0.25, 0.75));
-    Light::Shadow {
-        through,
-        normal: random.angle(),
-        left: random.between(0.5, 0.7),
-        soft: random.between(1.0, 3.0),
     }
 }
 
@@ -339,36 +311,4 @@ fn rules(random: &mut Random, size: Size) -> Vec<Ink> {
         rules.extend(upright.map(|x| ink(Point::new(x, -9.0), Point::new(x, height + 9.0))));
     }
     rules
-}
-
-/// Gaussian, σ in px, cut at 3.5 σ.
-fn blur(plane: &mut Plane, sigma: f64) {
-    if sigma <= 0.0 {
-        return;
-    }
-    let reach = (3.5 * sigma).ceil() as usize;
-    let weight = |i: usize| (-0.5 * ((i as f64 - reach as f64) / sigma).powi(2)).exp();
-    let weights: Vec<f64> = (0..=2 * reach).map(weight).collect();
-    let sum: f64 = weights.iter().sum();
-    let weights: Vec<f32> = weights.iter().map(|w| (w / sum) as f32).collect();
-    let (width, height) = (plane.width, plane.height);
-    let mut padded = vec![0.0; width + 2 * reach];
-    for row in plane.values.chunks_exact_mut(width) {
-        padded[..reach].fill(row[0]);
-        padded[reach..reach + width].copy_from_slice(row);
-        padded[reach + width..].fill(row[width - 1]);
-        let seen = padded.windows(weights.len());
-        row.iter_mut()
-            .zip(seen)
-            .for_each(|(v, around)| *v = around.iter().zip(&weights).map(|(a, w)| a * w).sum());
-    }
-    let mut out = vec![0.0_f32; width * height];
-    for (y, row) in out.chunks_exact_mut(width).enumerate() {
-        for (k, weight) in weights.iter().enumerate() {
-            let from = (y + k).saturating_sub(reach).min(height - 1);
-            let other = &plane.values[from * width..][..width];
-            row.iter_mut().zip(other).for_each(|(v, o)| *v += weight * o);
-        }
-    }
-    plane.values = out;
 }

@@ -13,7 +13,7 @@ use thiserror::Error;
 use tracelight_bench_strokes::case::Wanted;
 use tracelight_bench_strokes::table::{self, Judged};
 use tracelight_bench_strokes::verdict::judge;
-use tracelight_bench_strokes::{Case, Degradation, Kind, Picture, Size, nine, show};
+use tracelight_bench_strokes::{Case, Degradation, Kind, Picture, Set, Size, nine, show};
 use tracelight_formats::{FormatError, Sheet, json};
 use tracelight_stroke::{Drawing, Score, score};
 use tracelight_vision::{Grey, Mode, Options, VisionError, trace};
@@ -99,6 +99,9 @@ struct Series {
     /// How many
     #[arg(long, default_value_t = 60)]
     count: usize,
+    /// Of which kinds
+    #[arg(long, default_value = "plain")]
+    set: Set,
     /// Only this size, such as 640x480
     #[arg(long)]
     size: Option<Size>,
@@ -112,7 +115,7 @@ struct Series {
 
 impl Series {
     fn cases(&self) -> Vec<Case> {
-        let wanted = Wanted { kind: self.kind, degradation: self.degrade, size: self.size };
+        let wanted = Wanted { set: self.set, kind: self.kind, degradation: self.degrade, size: self.size };
         Case::series(self.seed, self.count, &wanted)
     }
 }

@@ -1,22 +1,15 @@
 use tracelight_stroke::{Affine, Point, Vec2};
 
-use crate::{Figure, Hand, Ink, Kind, Nib, Random, Size, rules};
+use crate::habit::Habit;
+use crate::kinds::frame;
+use crate::rules::broken_within;
+use crate::{Figure, Hand, Ink, Kind, Nib, Random, Set, Size};
 
-/// Width of the thinnest pen on 240 rows, px. It grows with the root of the rows: a better camera sees the same pens, and
-/// finer ones.
-const THINNEST_PEN_PX: f64 = 1.8;
-/// The thickest pen is this share of the rows.
-const THICKEST_PEN: f64 = 1.0 / 50.0;
-/// Least paper between lines, px.
-const LEAST_PAPER_PX: f64 = 3.0;
 /// Paper between figures, in pens and in px.
 const CLEAR_PENS: f64 = 2.5;
 const CLEAR_PX: f64 = 6.0;
 /// Paper at the border, as a share of the rows.
 const MARGIN: f64 = 0.04;
-/// A page of one kind, and a page of everything, have up to this many strokes.
-const MOST_STROKES: usize = 15;
-const MOST_STROKES_MIXED: usize = 40;
 /// Figures drawn, and places tried, for each that ends on the page.
 const FIGURES_TRIED: usize = 12;
 const PLACES_TRIED: usize = 12;
@@ -36,36 +29,50 @@ pub struct Page {
 impl Page {
     /// A page of a kind. Lengths that the rules bound from below are kept `roomy` times as large.
     pub fn draw(random: &mut Random, kind: Kind, size: Size, roomy: f64) -> Self {
-        let rows = size.height as f64;
-        let paper = LEAST_PAPER_PX * roomy;
-        let thinnest = THINNEST_PEN_PX * (rows / 240.0).sqrt() * roomy;
-        for _ in 0..PAGES_TRIED {
-            let pen = random.log_between(thinnest, rows * THICKEST_PEN);
-            let figures = figures(random, kind, size, (pen, paper));
-            if !figures.is_empty() {
-                return Self { figures, pen, paper };
-            }
-        }
         // a straight line always fits
-        Self::draw(random, Kind::Lines, size, roomy)
+        Self::of(random, kind, size, roomy).unwrap_or_else(|| Self::draw(random, Kind::Lines, size, roomy))
+    }
+
+    /// The same, or none if no pen was found with which a figure of this kind fits.
+    pub fn of(random: &mut Random, kind: Kind, size: Size, roomy: f64) -> Option<Self> {
+        let habit = Habit::of(kind);
+        let paper = habit.paper_px * roomy;
+        (0..PAGES_TRIED).find_map(|_| {
+            let pen = habit.pen(random, size, roomy);
+            let figures = figures(random, (kind, &habit), size, (pen, paper));
+            if figures.is_empty() {
+                return None;
+            }
+            let thinnest = figures.iter().filter_map(Figure::thinnest).fold(pen, f64::min);
+            Some(Self { figures, pen: if kind.set() == Set::Plain { pen } else { thinnest }, paper })
+        })
     }
 }
 
-fn figures(random: &mut Random, kind: Kind, size: Size, (pen, paper): (f64, f64)) -> Vec<Figure> {
-    let (fewest, most) = kind.figures();
+fn figures(
+    random: &mut Random,
+    (kind, habit): (Kind, &Habit),
+    size: Size,
+    (pen, paper): (f64, f64),
+) -> Vec<Figure> {
+    let (fewest, most) = habit.figures;
     let wanted = random.whole(fewest, most);
-    let nib = if random.chance(0.15) { Nib::Sharp } else { Nib::Round };
-    let most_strokes = if kind == Kind::Mixed { MOST_STROKES_MIXED } else { MOST_STROKES };
-    let mut sheet = Sheet::new(size, pen);
+    let sharp = random.chance(0.15) && kind.set() == Set::Plain;
+    let nib = if sharp { Nib::Sharp } else { Nib::Round };
+    let mut sheet = Sheet::new(size, pen, MARGIN * size.height as f64 + habit.margin_pens * pen);
     let (mut placed, mut strokes) = (Vec::new(), 0);
     for _ in 0..wanted {
-        let found = one(random, kind, size, Hand { pen, nib, paper, size: 0.0 }, (wanted, &mut sheet));
-        let found = found.filter(|f| strokes + f.strokes.len() <= most_strokes);
+        let hand = Hand { pen, nib, paper, size: 0.0 };
+        let found = one(random, (kind, habit), size, hand, (wanted, &mut sheet));
+        let found = found.filter(|f| strokes + f.strokes.len() <= habit.strokes);
         if let Some(figure) = found {
             strokes += figure.strokes.len();
             sheet.occupy(&figure);
             placed.push(figure);
         }
+    }
+    if kind == Kind::Frame && !placed.is_empty() {
+        placed.push(frame(random, size, pen));
     }
     placed
 }
@@ -73,18 +80,21 @@ fn figures(random: &mut Random, kind: Kind, size: Size, (pen, paper): (f64, f64)
 /// A figure that keeps the rules, where there is room for it.
 fn one(
     random: &mut Random,
-    kind: Kind,
+    (kind, habit): (Kind, &Habit),
     size: Size,
     hand: Hand,
     (wanted, sheet): (usize, &mut Sheet),
 ) -> Option<Figure> {
     let rows = size.height as f64;
-    let largest = 0.42 / (wanted as f64).powf(0.3);
+    let largest = habit.half.1 / (wanted as f64).powf(0.3);
     for _ in 0..FIGURES_TRIED {
-        let half = (rows * random.log_between(0.08, largest.max(0.1))).max(6.0 * hand.pen);
-        let figure = kind.figure(random, &Hand { size: half, ..hand });
-        let figure = figure.moved(Affine::rotate(random.angle()));
-        if rules::broken(&figure, hand.pen, hand.paper).is_some() {
+        let half = rows * random.log_between(habit.half.0, largest.max(habit.half.0 + 0.02));
+        let hand = Hand { size: half.max(habit.half_pens * hand.pen), ..hand };
+        let figure = kind.figure(random, &hand);
+        let turn = random.angle();
+        let figure = figure.moved(Affine::rotate(habit.turn(turn)));
+        let (pen, bounds) = habit.bounds(&figure, &hand);
+        if broken_within(&figure, (pen, hand.paper), &bounds).is_some() {
             continue;
         }
         let place = (0..PLACES_TRIED).find_map(|_| sheet.place(random, &figure));
@@ -99,22 +109,23 @@ fn one(
 struct Sheet {
     size: Size,
     pen: f64,
+    margin: f64,
     cell: f64,
     columns: usize,
     taken: Vec<bool>,
 }
 
 impl Sheet {
-    fn new(size: Size, pen: f64) -> Self {
+    fn new(size: Size, pen: f64, margin: f64) -> Self {
         let cell = (size.height as f64 / 240.0).max(1.0);
         let count = |px: usize| (px as f64 / cell).ceil() as usize + 1;
         let columns = count(size.width);
-        Self { size, pen, cell, columns, taken: vec![false; columns * count(size.height)] }
+        Self { size, pen, margin, cell, columns, taken: vec![false; columns * count(size.height)] }
     }
 
     /// The figure somewhere within the margins and clear of the others, or not.
     fn place(&self, random: &mut Random, figure: &Figure) -> Option<Figure> {
-        let margin = MARGIN * self.size.height as f64 + 0.5 * self.pen;
+        let margin = self.margin + 0.5 * self.pen;
         let (low, high) = bounds(figure);
         let room = Vec2::new(self.size.width as f64, self.size.height as f64) - (high - low);
         let room = room - Vec2::new(2.0 * margin, 2.0 * margin);
@@ -138,6 +149,10 @@ impl Sheet {
                 Ink::Fill(paths) => {
                     paths.first().into_iter().for_each(|p| self.within(&p.flatten(0.1), &mut cells))
                 }
+                Ink::Touches(touches) => {
+                    self.along(&touches.iter().map(|t| t.at).collect::<Vec<_>>(), &mut cells);
+                }
+                Ink::Scribble { outline, .. } => self.within(&outline.flatten(0.1), &mut cells),
             }
         }
         cells.sort_unstable();

@@ -52,8 +52,52 @@ pub enum Broken {
     Short(f64),
 }
 
+/// How far the rules go for a kind of figures.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    /// Least angle between lines and within corners, degrees.
+    pub angle_deg: f64,
+    /// Distance between nodes, pens.
+    pub node_pens: f64,
+    /// Radius of curves, pens.
+    pub radius_pens: f64,
+    /// Length of strokes, pens and px.
+    pub shortest: (f64, f64),
+    /// What an end points at, pens.
+    pub ahead_pens: f64,
+    /// Whether lines that run alongside are too near.
+    pub alongside: bool,
+}
+
+impl Bounds {
+    /// For plain drawings.
+    pub const USUAL: Self = Self {
+        angle_deg: LEAST_ANGLE_DEG,
+        node_pens: LEAST_NODE_PENS,
+        radius_pens: LEAST_RADIUS_PENS,
+        shortest: (SHORTEST_PENS, SHORTEST_PX),
+        ahead_pens: AHEAD_PENS,
+        alongside: true,
+    };
+    /// For writing and marks: letters are small for their pen.
+    pub const SMALL: Self =
+        Self { node_pens: 1.5, radius_pens: 1.0, shortest: (2.5, 4.0), ahead_pens: 1.5, ..Self::USUAL };
+    /// For hairpins, hair and shallow crossings, which are made of what the usual bounds forbid.
+    pub const SHARP: Self =
+        Self { angle_deg: 0.0, node_pens: 0.0, radius_pens: 0.0, alongside: false, ..Self::USUAL };
+    /// For hatching, whose lines end where others lie.
+    pub const HATCHED: Self = Self { node_pens: 2.8, ahead_pens: 1.5, ..Self::USUAL };
+    /// For small filled shapes.
+    pub const FILLED: Self = Self { shortest: (6.0, 12.0), ..Self::SHARP };
+}
+
 /// The first rule that a figure breaks, if any, for this pen and least paper between lines, px.
 pub fn broken(figure: &Figure, pen: f64, paper: f64) -> Option<Broken> {
+    broken_within(figure, (pen, paper), &Bounds::USUAL)
+}
+
+/// [`broken`] with a kind's own bounds.
+pub fn broken_within(figure: &Figure, (pen, paper): (f64, f64), bounds: &Bounds) -> Option<Broken> {
     let spacing = (0.4 * pen).max(0.8);
     let chains: Vec<_> = figure.strokes.iter().map(|s| Chain::of(&s.path, spacing)).collect();
     let near = Near::of(&chains, (pen + paper).max(2.0 * spacing));
@@ -63,24 +107,27 @@ pub fn broken(figure: &Figure, pen: f64, paper: f64) -> Option<Broken> {
             chains
                 .iter()
                 .map(|c| c.length)
-                .find(|&l| l < SHORTEST_PX.max(SHORTEST_PENS * pen))
+                .find(|&l| l < bounds.shortest.1.max(bounds.shortest.0 * pen))
                 .map(Broken::Short)
         },
-        &|| chains.iter().find_map(|c| c.tight(LEAST_RADIUS_PENS * pen)).map(Broken::Radius),
+        &|| chains.iter().find_map(|c| c.tight(bounds.radius_pens * pen)).map(Broken::Radius),
         &|| {
             nodes
                 .sharpest
-                .filter(|&a| a < LEAST_ANGLE_DEG.to_radians())
+                .filter(|&a| a < bounds.angle_deg.to_radians())
                 .map(|a| Broken::Angle(a.to_degrees()))
         },
-        &|| nodes.odd_corner().map(Broken::Corner),
-        &|| nodes.too_near(LEAST_NODE_PENS * pen).map(Broken::Nodes),
-        &|| alongside(&chains, &near, &nodes, pen + paper).map(Broken::Alongside),
+        &|| nodes.odd_corner(bounds.angle_deg).map(Broken::Corner),
+        &|| nodes.too_near(bounds.node_pens * pen).map(Broken::Nodes),
+        &|| {
+            let near = alongside(&chains, &near, &nodes, pen + paper);
+            near.filter(|_| bounds.alongside).map(Broken::Alongside)
+        },
     ];
     checks
         .iter()
         .find_map(|check| check())
-        .or_else(|| ahead(&chains, &nodes, AHEAD_PENS * pen).map(Broken::Ahead))
+        .or_else(|| ahead(&chains, &nodes, bounds.ahead_pens * pen).map(Broken::Ahead))
 }
 
 /// A stroke as points, evenly enough.
@@ -271,12 +318,12 @@ impl Nodes {
     }
 
     /// A corner whose inner angle is out of bounds. At a junction a slight bend is none.
-    fn odd_corner(&self) -> Option<f64> {
+    fn odd_corner(&self, least_deg: f64) -> Option<f64> {
         let odd = |&(at, turn): &(Point, f64)| {
             let inner = (PI - turn).to_degrees();
             let joint = self.joints.iter().any(|j| j.distance(at) < SAME_PX);
             let slight = joint && turn.to_degrees() <= WIDEST_BEND_DEG + 0.1;
-            (!(LEAST_ANGLE_DEG..=WIDEST_CORNER_DEG).contains(&inner) && !slight).then_some(inner)
+            (!(least_deg..=WIDEST_CORNER_DEG).contains(&inner) && !slight).then_some(inner)
         };
         self.corners.iter().find_map(odd)
     }

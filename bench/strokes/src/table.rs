@@ -1,16 +1,17 @@
 //! Many verdicts in a table.
 
 use crate::verdict::Verdict;
-use crate::{Case, Degradation, Kind, Size};
+use crate::{Case, Degradation};
 
 /// A case and what became of it.
 pub type Judged = (Case, Verdict);
 
 /// Heads of the columns of [`row`].
-pub const HEAD: &str = "| | pictures | exact | ±2 | matched | right | rms median | rms p95 | missed | false | doubled | length | refused |
-|---|---|---|---|---|---|---|---|---|---|---|---|---|";
+pub const HEAD: &str = "| | pictures | exact | ±2 | matched | right | rms median | rms p95 | missed | false | doubled | length | refused | flying px | as outline |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 
-/// One row: how the pictures of a group fared. Shares in %, rms in px; a refused picture is wrong and misses all its ink.
+/// One row: how the pictures of a group fared. Shares in %, rms in px; a refused picture is wrong and misses all its
+/// ink. Flying light is px a picture.
 pub fn row(name: &str, group: &[&Judged]) -> String {
     let n = group.len().max(1) as f64;
     let share =
@@ -24,7 +25,7 @@ pub fn row(name: &str, group: &[&Judged]) -> String {
     let mut lengths: Vec<f64> = scores().map(|s| s.length_ratio).collect();
     lengths.sort_by(f64::total_cmp);
     format!(
-        "| {name} | {} | {:.1} | {:.1} | {:.1} | {:.1} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.3} | {:.1} |",
+        "| {name} | {} | {:.1} | {:.1} | {:.1} | {:.1} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {:.3} | {:.1} | {:.1} | {:.1} |",
         group.len(),
         share(&|v| v.surplus() == 0),
         share(&|v| v.surplus().abs() <= 2 && v.refused.is_none()),
@@ -37,6 +38,8 @@ pub fn row(name: &str, group: &[&Judged]) -> String {
         mean(&|v| 100.0 * v.score.map_or(0.0, |s| s.doubled)),
         quantile(&lengths, 0.5),
         share(&|v| v.refused.is_some()),
+        mean(&|v| v.astray.flying_px),
+        mean(&|v| 100.0 * v.astray.outlined),
     )
 }
 
@@ -54,26 +57,31 @@ pub fn tables(judged: &[Judged]) -> String {
             lines.push(row(&name, &group));
         }
     };
-    Kind::all().iter().for_each(|&k| add(k.name(), &|c| c.kind == k));
-    Degradation::all().iter().for_each(|&d| add(d.name(), &|c| c.degradation == d));
-    let mut sizes: Vec<Size> = judged.iter().map(|(c, _)| c.size).collect();
-    sizes.sort_unstable();
-    sizes.dedup();
-    sizes.iter().for_each(|&s| add(s.to_string(), &|c| c.size == s));
+    seen(judged, |c| c.kind).iter().for_each(|&k| add(k.name(), &|c| c.kind == k));
+    seen(judged, |c| c.degradation).iter().for_each(|&d| add(d.name(), &|c| c.degradation == d));
+    seen(judged, |c| c.size).iter().for_each(|&s| add(s.to_string(), &|c| c.size == s));
     lines.push(String::new());
     lines.push(matrix(judged));
     lines.join("\n")
 }
 
+/// What the cases have of something, each once, in order.
+fn seen<T: Ord>(judged: &[Judged], of: impl Fn(&Case) -> T) -> Vec<T> {
+    let mut all: Vec<T> = judged.iter().map(|(case, _)| of(case)).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
 /// Share of pictures with exactly the true number of strokes, %, kinds down and degradations across.
 fn matrix(judged: &[Judged]) -> String {
-    let across = Degradation::all();
+    let across: Vec<Degradation> = seen(judged, |c| c.degradation);
     let names: Vec<_> = across.iter().map(|d| d.name()).collect();
     let mut lines = vec![
         format!("| exact, % | {} |", names.join(" | ")),
         format!("|---{}|", "|---".repeat(across.len())),
     ];
-    for &kind in Kind::all() {
+    for kind in seen(judged, |c| c.kind) {
         let cell = |&d: &Degradation| {
             let group = judged.iter().filter(|(c, _)| c.kind == kind && c.degradation == d);
             let exact: Vec<bool> = group.map(|(_, v)| v.surplus() == 0).collect();
@@ -89,7 +97,7 @@ fn matrix(judged: &[Judged]) -> String {
 /// A line for each picture, comma-separated, with a head.
 pub fn csv(judged: &[Judged]) -> String {
     let head = "case,kind,degradation,width,height,truth,drawn,matched,rms_px,max_px,missed,stray,doubled,length_ratio,\
-                trace_ms,refused\n";
+                trace_ms,flying_px,outlined,refused\n";
     let line = |(case, v): &Judged| {
         let figures = v.score.map_or_else(
             || ",,,,,,".to_owned(),
@@ -101,7 +109,7 @@ pub fn csv(judged: &[Judged]) -> String {
             },
         );
         format!(
-            "{case},{},{},{},{},{},{},{figures},{:.2},\"{}\"\n",
+            "{case},{},{},{},{},{},{},{figures},{:.2},{:.1},{:.4},\"{}\"\n",
             case.kind.name(),
             case.degradation.name(),
             case.size.width,
@@ -109,6 +117,8 @@ pub fn csv(judged: &[Judged]) -> String {
             v.truth,
             v.found.strokes.len(),
             1e3 * v.took.as_secs_f64(),
+            v.astray.flying_px,
+            v.astray.outlined,
             v.refused.as_deref().unwrap_or("").replace('"', "'"),
         )
     };

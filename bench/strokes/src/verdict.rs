@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use tracelight_stroke::{Drawing, Score, score};
+use tracelight_stroke::{Drawing, Score, Stroke, StrokeKind, compare, score};
 use tracelight_vision::{Grey, Options, trace};
 
 use crate::Picture;
@@ -16,10 +16,51 @@ pub struct Verdict {
     pub found: Drawing,
     /// Its score; none if nothing was found.
     pub score: Option<Score>,
+    /// Light where none should be.
+    pub astray: Astray,
     /// Why it was refused.
     pub refused: Option<String>,
     /// What tracing took.
     pub took: Duration,
+}
+
+/// Light that no true stroke asks for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Astray {
+    /// Drawn length further than 8 px from all true ink, px.
+    pub flying_px: f64,
+    /// Share of the drawn length that follows the edge of what is truly a line.
+    pub outlined: f64,
+}
+
+/// Light further than this from all ink flies, px.
+const FLYING_PX: f64 = 8.0;
+
+impl Astray {
+    /// Of what was found, for a tolerance in px.
+    pub fn of(found: &Drawing, truth: &Drawing, tolerance_px: f64) -> Self {
+        let length = found.length(1e-2);
+        let half_pen = 0.5 * truth.strokes.iter().filter_map(|s| s.pen).fold(0.0, f64::max);
+        let of_kind =
+            |kind| Drawing { strokes: truth.strokes.iter().filter(|s| s.kind == kind).cloned().collect() };
+        let (lines, edges) = (of_kind(StrokeKind::Centreline), of_kind(StrokeKind::Outline));
+        let outlined = |stroke: &Stroke| {
+            let by_lines = near(std::slice::from_ref(stroke), &lines, tolerance_px + half_pen);
+            let by_edges = near(std::slice::from_ref(stroke), &edges, tolerance_px);
+            if by_lines > by_edges { by_lines * stroke.path.length(1e-2) } else { 0.0 }
+        };
+        let outlines = found.strokes.iter().filter(|s| s.kind == StrokeKind::Outline);
+        Self {
+            flying_px: length * (1.0 - near(&found.strokes, truth, FLYING_PX + half_pen)),
+            outlined: outlines.map(outlined).sum::<f64>() / length.max(1.0),
+        }
+    }
+}
+
+/// Share of the strokes' length that lies this near to the truth.
+fn near(strokes: &[Stroke], truth: &Drawing, within_px: f64) -> f64 {
+    let lines: Vec<_> = strokes.iter().map(|s| s.path.flatten(1e-2)).collect();
+    compare(&lines, truth, within_px).map_or(0.0, |found| found.precision)
 }
 
 /// Traces a picture and scores the strokes at a tolerance in px.
@@ -31,7 +72,8 @@ pub fn judge(picture: &Picture, tolerance_px: f64) -> Verdict {
     let refused = traced.as_ref().err().map(ToString::to_string);
     let found = traced.map(|t| t.strokes).unwrap_or_default();
     let score = score(&found, &picture.truth, tolerance_px);
-    Verdict { truth: picture.truth.strokes.len(), found, score, refused, took }
+    let astray = Astray::of(&found, &picture.truth, tolerance_px);
+    Verdict { truth: picture.truth.strokes.len(), found, score, astray, refused, took }
 }
 
 impl Verdict {

@@ -1,4 +1,4 @@
-use tracelight_stroke::{Affine, Drawing, Path, Point, Stroke};
+use tracelight_stroke::{Affine, Drawing, Path, Point, Rect, Stroke, Vec2};
 
 use crate::Size;
 
@@ -17,22 +17,67 @@ pub(crate) struct Warp {
     axis: (f64, f64),
     tilt: f64,
     distance: f64,
+    /// How much smaller the page is shown.
+    shrink: f64,
+    /// The page's own turn, rad, and how far it lies from the picture's middle.
+    turn: f64,
+    shift: Vec2,
 }
 
 impl Warp {
     pub(crate) fn new(size: Size, axis_rad: f64, tilt_rad: f64) -> Self {
         let centre = Point::new(0.5 * size.width as f64, 0.5 * size.height as f64);
         let (sin, cos) = axis_rad.sin_cos();
-        Self { centre, axis: (cos, sin), tilt: tilt_rad, distance: CAMERA_WIDTHS * size.width as f64 }
+        Self {
+            centre,
+            axis: (cos, sin),
+            tilt: tilt_rad,
+            distance: CAMERA_WIDTHS * size.width as f64,
+            shrink: SHRINK,
+            turn: 0.0,
+            shift: Vec2::ZERO,
+        }
+    }
+
+    /// The same, but the page is turned and fitted into a box of the picture: as large as the box allows.
+    pub(crate) fn fitted(self, size: Size, turn_rad: f64, within: Rect) -> Self {
+        let whole = Self { shrink: 1.0, turn: turn_rad, ..self };
+        let seen = |warp: &Self| {
+            let (w, h) = (size.width as f64, size.height as f64);
+            let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)];
+            corners
+                .map(|c| warp.point(c.into()))
+                .into_iter()
+                .fold(Rect::from_points(warp.point(self.centre), warp.point(self.centre)), |bounds, p| {
+                    bounds.union_pt(p)
+                })
+        };
+        let full = seen(&whole);
+        let shrink = (within.width() / full.width()).min(within.height() / full.height());
+        let fitted = Self { shrink, ..whole };
+        Self { shift: within.center() - seen(&fitted).center(), ..fitted }
+    }
+
+    /// The least scale at which any of the page is seen.
+    pub(crate) fn least_scale(&self, size: Size) -> f64 {
+        let (w, h) = (size.width as f64, size.height as f64);
+        let corners = [(0.0, 0.0), (w, 0.0), (w, h), (0.0, h)];
+        corners.map(|c| self.scale(c.into())).into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// Where a point of the page is seen.
     pub(crate) fn point(&self, p: Point) -> Point {
         let ((c, s), from) = (self.axis, p - self.centre);
+        let ((oc, os), shift) = (self.seen_axis(), self.shift);
         let (along, aside) = (c * from.x + s * from.y, c * from.y - s * from.x);
-        let seen = SHRINK * self.distance / (self.distance + aside * self.tilt.sin());
+        let seen = self.shrink * self.distance / (self.distance + aside * self.tilt.sin());
         let aside = aside * self.tilt.cos();
-        self.centre + tracelight_stroke::Vec2::new(c * along - s * aside, s * along + c * aside) * seen
+        self.centre + Vec2::new(oc * along - os * aside, os * along + oc * aside) * seen + shift
+    }
+
+    fn seen_axis(&self) -> (f64, f64) {
+        let (sin, cos) = self.turn.sin_cos();
+        (self.axis.0 * cos - self.axis.1 * sin, self.axis.1 * cos + self.axis.0 * sin)
     }
 
     /// How much larger things are seen at a point of the page.

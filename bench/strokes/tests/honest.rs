@@ -2,13 +2,15 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
 
 use tracelight_bench_strokes::case::Wanted;
-use tracelight_bench_strokes::{Case, Degradation, Figure, Kind, Page, Picture, Random, Size, nine, rules};
+use tracelight_bench_strokes::{
+    Case, Degradation, Figure, Kind, Page, Picture, Random, Set, Size, nine, rules,
+};
 use tracelight_stroke::{Drawing, Point, StrokeKind, Vec2, compare_polylines, score};
 
 const SMALL: Size = Size { width: 320, height: 240 };
 
 fn series(count: usize, kind: Option<Kind>, degradation: Degradation) -> Vec<Case> {
-    let wanted = Wanted { kind, degradation: Some(degradation), size: Some(SMALL) };
+    let wanted = Wanted { kind, degradation: Some(degradation), size: Some(SMALL), ..Wanted::default() };
     Case::series(3, count, &wanted)
 }
 
@@ -88,7 +90,7 @@ fn outlines_run_along_edges() {
 #[test]
 fn pages_keep_the_rules_over_200_seeds() {
     for seed in 0..200 {
-        let kind = Kind::all()[seed % Kind::all().len()];
+        let kind = Kind::of(Set::Plain)[seed % Kind::of(Set::Plain).len()];
         let page = Page::draw(&mut Random::new(seed as u128), kind, SMALL, 1.0);
         let strokes = page.figures.iter().flat_map(|f| f.strokes.clone()).collect();
         let whole = Figure { strokes, ink: vec![] };
@@ -99,7 +101,7 @@ fn pages_keep_the_rules_over_200_seeds() {
 
 #[test]
 fn every_kind_of_figure_gets_onto_a_page() {
-    for &kind in Kind::all() {
+    for &kind in Kind::of(Set::Plain) {
         let pages = (0..12).map(|seed| Page::draw(&mut Random::new(seed), kind, SMALL, 1.0));
         let figures: usize = pages.map(|p| p.figures.len()).sum();
         assert!(figures >= 18, "{kind:?}: {figures} figures on 12 pages");
@@ -125,7 +127,7 @@ fn degradations_change_what_they_say() {
     let levels =
         |d| Case { degradation: d, ..series(1, Some(Kind::Lines), Degradation::Clean)[0] }.draw().levels;
     let clean = levels(Degradation::Clean);
-    for &degradation in Degradation::all().iter().filter(|&&d| d != Degradation::Clean) {
+    for &degradation in Degradation::of(Set::Plain).iter().filter(|&&d| d != Degradation::Clean) {
         assert_ne!(levels(degradation), clean, "{degradation:?}");
     }
     let mean = |levels: &[u8]| levels.iter().map(|&l| f64::from(l)).sum::<f64>() / levels.len() as f64;

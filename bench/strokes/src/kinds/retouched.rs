@@ -1,0 +1,102 @@
+use std::f64::consts::{PI, TAU};
+
+use tracelight_stroke::{Path, Point, Vec2};
+
+use super::plain;
+use crate::shapes::{circle, ellipse, polyline};
+use crate::{Figure, Hand, Ink, Random};
+
+/// The page's pen is what both lines are across together: each has this share.
+const OWN_PEN: f64 = 0.5;
+/// Most from middle to middle, in the line's own pens.
+const MOST_APART_PENS: f64 = 1.2;
+/// Points along a line.
+const STEPS: usize = 400;
+
+/// One line gone over again, or a ring whose ends overlap.
+pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
+    let variants = [plain::straight, plain::bent, plain::free, ring];
+    let whole = random.pick(&variants)(random, hand).strokes.remove(0).path;
+    let pen = OWN_PEN * hand.pen;
+    let apart = pen * random.between(0.5, MOST_APART_PENS);
+    if whole.is_closed() && random.chance(0.6) {
+        return overlapping(random, (&whole, pen), apart);
+    }
+    let places = Places::along(&whole);
+    // both all along, the second on a part, or the first up to a place and the second from before it
+    let (from, to) = match random.whole(0, 2) {
+        0 => (0.0, 1.0),
+        1 => (random.between(0.0, 0.3), random.between(0.6, 1.0)),
+        _ => (random.between(0.2, 0.5), random.between(0.6, 0.8)),
+    };
+    let both = (from, to);
+    let (turns, phase) = (random.between(0.5, 2.5), random.angle());
+    let apart = |share: f64| {
+        // a hand that goes over a line meets it again and again
+        let window = if both == (0.0, 1.0) { 1.0 } else { bump((share - from) / (to - from)) };
+        apart * window * (TAU * turns * share + phase).sin()
+    };
+    let ends = if random.chance(0.5) { [(0.0, 1.0), both] } else { [(0.0, both.1), (both.0, 1.0)] };
+    let lines = [1.0, -1.0].into_iter().zip(ends).map(|(side, (from, to))| {
+        let closed = whole.is_closed() && to - from > 0.999;
+        Ink::Line { path: places.beside(from, to, |s| 0.5 * side * apart(s), closed), pen, nib: hand.nib }
+    });
+    Figure::stroke(whole.clone(), pen, lines.collect::<Vec<_>>())
+}
+
+fn ring(random: &mut Random, hand: &Hand) -> Figure {
+    let path = match random.whole(0, 2) {
+        0 => circle(Point::ORIGIN, hand.size * random.between(0.5, 1.0)),
+        1 => ellipse(hand.size, hand.size * random.between(0.6, 0.9)),
+        _ => plain::blob(random, hand.size),
+    };
+    Figure::lines(hand, [path])
+}
+
+/// A closed line that goes on beyond its start for 10 to 60°, leaves itself there and comes back.
+fn overlapping(random: &mut Random, (whole, pen): (&Path, f64), apart: f64) -> Figure {
+    let places = Places::along(whole);
+    let beyond = random.between(10.0, 60.0) / 360.0;
+    let aside = |share: f64| 0.5 * apart * bump(share / beyond);
+    let first = places.beside(0.0, 1.0, |s| if s < beyond { -aside(s) } else { 0.0 }, false);
+    let again = places.beside(0.0, beyond, aside, false);
+    let line = |path| Ink::Line { path, pen, nib: crate::Nib::Round };
+    Figure::stroke(whole.clone(), pen, [line(first), line(again)])
+}
+
+/// From none to 1 and back to none, smoothly; none outside [0, 1].
+fn bump(share: f64) -> f64 {
+    (PI * share.clamp(0.0, 1.0)).sin().powi(2)
+}
+
+/// Points and normals at even steps along a path.
+struct Places(Vec<(Point, Vec2)>);
+
+impl Places {
+    fn along(path: &Path) -> Self {
+        let points = path.flatten(0.005);
+        let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+        let step = length / STEPS as f64;
+        let (mut places, mut walked) = (Vec::new(), 0.0);
+        for pair in points.windows(2) {
+            let piece = pair[0].distance(pair[1]);
+            let way = (pair[1] - pair[0]) / piece.max(1e-12);
+            while places.len() as f64 * step <= walked + piece {
+                let at = pair[0] + way * (places.len() as f64 * step - walked);
+                places.push((at, Vec2::new(-way.y, way.x)));
+            }
+            walked += piece;
+        }
+        Self(places)
+    }
+
+    /// The part from one share of the length to another, moved aside.
+    fn beside(&self, from: f64, to: f64, aside: impl Fn(f64) -> f64, closed: bool) -> Path {
+        let last = self.0.len() - 1;
+        let index = |share: f64| (share * last as f64).round() as usize;
+        let at = |i: usize| self.0[i].0 + self.0[i].1 * aside(i as f64 / last as f64);
+        let points: Vec<_> = (index(from)..=index(to)).map(at).collect();
+        let kept = points.len() - usize::from(closed);
+        polyline(&points[..kept], closed)
+    }
+}

@@ -1,0 +1,64 @@
+//! How ink sits on paper.
+
+use crate::grain::Grain;
+use crate::ink::draw;
+use crate::plane::{Plane, blur};
+use crate::warp::Warp;
+use crate::{Ink, Random, Size};
+
+/// Graphite's edge is soft, σ in px.
+const SOFT_PX: f64 = 0.6;
+/// How far graphite reaches down into the grain: pressed fully it fills all, by half about a half.
+const DEPTH: f64 = 0.85;
+/// From bare to covered graphite rises over so much of the grain's height.
+const RISE: f64 = 0.45;
+
+/// What the lines are of.
+#[derive(Clone, Copy)]
+pub(crate) enum Medium {
+    /// Ink: twice is as dark as once.
+    Pen,
+    /// A pencil on grain.
+    Graphite(Grain),
+    /// A felt pen: this share of the light is taken where it goes once, more where it goes again.
+    Felt(f64),
+}
+
+impl Medium {
+    pub(crate) fn graphite(random: &mut Random, size: Size) -> Self {
+        // paper's grain is some tenths of a millimetre: finer than the pixels of small pictures, coarser in large ones
+        let cell = random.between(1.0, 2.0) * (size.height as f64 / 720.0).clamp(1.0, 3.0);
+        Self::Graphite(Grain::new(random.bits(), (cell, cell)))
+    }
+
+    /// Share of the ink's darkness that each pixel has; what is of one stroke is given together.
+    pub(crate) fn covered(self, size: Size, ink: &[Vec<&Ink>], warp: Option<&Warp>) -> Plane {
+        let empty = || Plane::filled(size.width, size.height, 0.0);
+        let mut covered = empty();
+        let Self::Felt(once) = self else {
+            ink.iter().flatten().for_each(|ink| draw(&mut covered, ink, warp));
+            if let Self::Graphite(grain) = self {
+                blur(&mut covered, SOFT_PX);
+                rub(&mut covered, grain);
+            }
+            return covered;
+        };
+        for stroke in ink {
+            let mut own = empty();
+            stroke.iter().for_each(|ink| draw(&mut own, ink, warp));
+            // Beer and Lambert: each pass takes the same share of what light is left
+            covered.values.iter_mut().zip(&own.values).for_each(|(v, o)| *v += (1.0 - *v) * once as f32 * o);
+        }
+        covered
+    }
+}
+
+/// Leaves graphite on the grain's heights.
+fn rub(covered: &mut Plane, grain: Grain) {
+    for (i, value) in covered.values.iter_mut().enumerate().filter(|(_, v)| **v > 0.01) {
+        let height = grain.at((i % covered.width) as f64, (i / covered.width) as f64);
+        let pressed = f64::from(*value);
+        let share = ((pressed - DEPTH * height) / RISE + 0.5).clamp(0.0, 1.0);
+        *value = (share * (0.4 + 0.6 * pressed)) as f32;
+    }
+}
