@@ -25,7 +25,7 @@ import real_tracers
 
 ROOT = Path(__file__).resolve().parents[2]
 KINDS = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".webp", ".pgm", ".ppm"}
-SHARES = ("false", "missed", "outlines")
+SIZES = (real_sheet.PANEL, real_sheet.WITHIN)
 FIGURES = ("strokes", "false", "missed", "light", "flying", "outlines", "seconds")
 
 
@@ -59,7 +59,7 @@ def look(name, file, options):
         looked.said = "not read: " + traceback.format_exc(limit=0).strip().splitlines()[-1]
         return looked
     looked.unsure, looked.pen = ink.unsure, ink.pen
-    looked.panels["picture"] = real_sheet.panel(image, [2 * s for s in real_sheet.PANEL])[0]
+    looked.panels["picture"] = [real_sheet.panel(image, size)[0] for size in SIZES]
     strokes, seconds, looked.said = real_tracers.ours(options.program, file, options.flags.split())
     judge(looked, "ours", image, ink, strokes, seconds, looked.said)
     for peer in options.peers:
@@ -70,14 +70,12 @@ def look(name, file, options):
 
 
 def judge(looked, tracer, image, ink, strokes, seconds, said):
-    """Puts a tracer's score and overlay in place."""
-    size = [2 * s for s in real_sheet.PANEL]
-    if strokes is None:
-        looked.scores[tracer], looked.panels[tracer] = said, real_sheet.overlay(image, [], None, size)
-        return
-    score = real_score.scored(strokes, ink, seconds)
-    looked.scores[tracer], looked.panels[tracer] = score, real_sheet.overlay(image, strokes, score, size)
-    score.missed_at, score.flying_parts = None, []  # large, and drawn already
+    """Puts a tracer's score and overlays in place."""
+    score = None if strokes is None else real_score.scored(strokes, ink, seconds)
+    looked.scores[tracer] = said if score is None else score
+    looked.panels[tracer] = [real_sheet.overlay(image, strokes or [], score, size) for size in SIZES]
+    if score:
+        score.missed_at, score.flying_parts = None, []  # large, and drawn already
 
 
 # --- words -------------------------------------------------------------------------------------------------------------
@@ -90,7 +88,7 @@ def told(score):
     light = "   – " if score.light != score.light else f"×{score.light:4.2f}"
     return (
         f"strokes {score.strokes:4} false {score.false:6.2%} missed {score.missed:6.2%} light {light} "
-        f"flying {score.flying:5.0f} px outlines {score.outlines:4.0%} {score.seconds:5.1f} s"
+        f"flying {score.flying:5.0f} px outlines {score.outlines:4.0%} {score.seconds:6.2f} s"
     )
 
 
@@ -150,12 +148,12 @@ def write_sheets(all_looked, tracers, grades, heads, options):
         old.unlink()
     shown = [looked for looked in all_looked if looked.scores]
     mark = lambda looked: graded(latest.get(looked.name), options.version)
-    line = lambda looked, tracer: f"{verdict(looked.scores[tracer])} · {short(looked.scores[tracer])}"
-    ours = [[(looked.panels["ours"], f"{line(looked, 'ours')}\n{looked.name} · {mark(looked)}")] for looked in shown]
+    line = lambda looked, tracer: f"{verdict(looked.scores[tracer])}\n{short(looked.scores[tracer])}"
+    ours = [[(looked.panels["ours"][1], f"{line(looked, 'ours')}\n{looked.name} - {mark(looked)}")] for looked in shown]
     real_sheet.pages(ours, options.out, "look", 3, 4)
     columns = ["picture", *tracers]
-    text = lambda looked, column: f"{looked.name}\n{mark(looked)}" if column == "picture" else f"{line(looked, column)}\n{column}"
-    rows = [[(looked.panels[c], text(looked, c)) for c in columns] for looked in shown]
+    text = lambda looked, c: f"{looked.name}\n{mark(looked)}" if c == "picture" else f"{line(looked, c)}\n{c}"
+    rows = [[(looked.panels[c][1], text(looked, c)) for c in columns] for looked in shown]
     real_sheet.pages(rows, options.out, "beside", len(columns), 4)
     sections = [section(looked, columns, mark(looked)) for looked in shown]
     (options.out / "sheet.html").write_text(real_sheet.page("Strokes of real pictures", heads, sections), encoding="utf-8")
@@ -165,14 +163,14 @@ def short(score):
     """A score in few words."""
     if isinstance(score, str):
         return score[:60]
-    light = "–" if score.light != score.light else f"×{score.light:.2f}"
-    return f"{score.strokes} strokes, false {score.false:.1%}, missed {score.missed:.1%}, {light}, outlines {score.outlines:.0%}"
+    light = "none" if score.light != score.light else f"{score.light:.2f}"
+    return f"{score.strokes} strokes, false {score.false:.1%}, missed {score.missed:.1%}, light {light}, outlines {score.outlines:.0%}"
 
 
 def section(looked, columns, mark):
     scores = looked.scores
-    figures = [(looked.panels["picture"], "picture", f"pen {looked.pen:.1f} px, unsure {looked.unsure:.0%}")]
-    figures += [(looked.panels[c], c, f"{verdict(scores[c])} · {short(scores[c])}") for c in columns[1:]]
+    figures = [(looked.panels["picture"][0], "picture", f"pen {looked.pen:.1f} px, unsure {looked.unsure:.0%}")]
+    figures += [(looked.panels[c][0], c, f"{verdict(scores[c])} · {short(scores[c])}") for c in columns[1:]]
     return real_sheet.section(f"{looked.name} · {mark}", verdict(scores["ours"]), passes(scores["ours"]), looked.said, figures)
 
 

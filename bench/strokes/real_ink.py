@@ -21,6 +21,9 @@ LEAST_DARKNESS = 0.06  # of the paper: below it lie the paper's own grain and th
 PALE = 0.5  # of the dark ink's threshold: as pale as ink joined with it may be, and still be sure
 RIM = 0.5  # of the strongest ink around: where a line's edge is
 SHAPE = 3.0  # pens: ink wider than this is a shape, which is drawn round its edge
+SHAPE_SIDE = 1 / 12  # of the shorter side: so is ink wider than this, whatever the pen
+LONG = 4  # of its own widths: ink so long is a line, however thick
+RULES, RULE = 6, 0.5  # so many lines, each over so much of the page, are ruled paper
 DIAGONAL = np.array([0.948, 1.340])  # px for a straight and a diagonal step, without bias (Kulpa 1977)
 
 
@@ -61,7 +64,7 @@ def found(image):
     table = table_of(darkness)
     darkness[table] = 0
     sure, maybe = views(darkness)
-    return described(sure, maybe)
+    return described(sure & ~rules_of(maybe), maybe)
 
 
 def reduced(grey, side=PAPER_SIDE):
@@ -73,7 +76,7 @@ def reduced(grey, side=PAPER_SIDE):
 
 def light_ink(grey):
     """Whether ink is lighter than its ground: what stands out from its surroundings is then mostly lighter than they are."""
-    small = reduced(grey)
+    small = reduced(grey, PAPER_SIDE // 2)
     window = max(3, max(small.shape) // 8)
     off = np.clip(small, 1, None) - np.clip(ndimage.median_filter(small, window), 1, None)
     return np.sum(off**3) > 0 and np.median(small) < 160
@@ -120,7 +123,30 @@ def views(darkness):
     core = (smooth > np.clip(rim, PALE * split, 0.6)) & maybe
     sure = apply_hysteresis_threshold(np.where(core, smooth, 0), PALE * split, split)
     pen = 2 * usual(sure)
-    return without_specks(sure, max(4, 0.5 * pen * pen)), maybe | sure
+    return without_grain(without_specks(sure, max(4, 0.5 * pen * pen)), smooth, 2 * pen * pen), maybe | sure
+
+
+def rules_of(maybe):
+    """Printed rules, level or upright: at least `RULES` long straight ones on one page. Unsure: no one need draw them."""
+    found = np.zeros(maybe.shape, bool)
+    for turned in (False, True):
+        mask = maybe.T if turned else maybe
+        w = mask.shape[1]
+        # a rule on a slant, one pixel down in some tens, is long still when it is thickened
+        level = ndimage.binary_dilation(mask, np.ones((3, 1)))
+        level = eroded(eroded(level, w // 30), w // 30, grow=True)
+        labels, _ = ndimage.label(ndimage.binary_dilation(level, np.ones((3, w // 60 * 2 + 1))))
+        long = [n for n, (_, x) in enumerate(ndimage.find_objects(labels), 1) if x.stop - x.start > RULE * w]
+        if len(long) >= RULES:
+            rules = np.isin(labels, long) & ndimage.binary_dilation(level, np.ones((3, 3)))
+            found |= rules.T if turned else rules
+    return found
+
+
+def eroded(mask, length, grow=False):
+    """A mask eroded (or grown) along its rows."""
+    extreme = ndimage.maximum_filter1d if grow else ndimage.minimum_filter1d
+    return extreme(mask.view(np.uint8), max(3, length), axis=1).astype(bool)
 
 
 def noise_of(darkness):
@@ -137,6 +163,17 @@ def without_specks(mask, least):
     return large[labels]
 
 
+def without_grain(mask, darkness, small):
+    """The mask without patches of fewer pixels than `small` that are nowhere as dark as ink usually is: grain, not dots."""
+    if not mask.any():
+        return mask
+    labels, count = ndimage.label(mask, np.ones((3, 3)))
+    darkest = ndimage.maximum(darkness, labels, np.arange(count + 1))
+    kept = (np.bincount(labels.ravel(), minlength=count + 1) >= small) | (darkest >= np.median(darkness[mask]))
+    kept[0] = False
+    return kept[labels]
+
+
 def usual(mask):
     """Half the usual width of a mask's lines, px."""
     if not mask.any():
@@ -149,8 +186,9 @@ def described(sure, maybe):
     """All that the score needs to know of the masks."""
     pen = 2 * usual(sure)
     deep = ndimage.distance_transform_edt(np.pad(sure, 1))[1:-1, 1:-1]
-    shapes = grown(deep > max(SHAPE / 2 * pen, 4), deep) & sure
+    wide = deep > max(4, min(SHAPE / 2 * pen, SHAPE_SIDE / 2 * min(sure.shape)))
     thin = skeletonize(~without_specks(~sure, max(2, pen * pen / 4)))
+    shapes = stout(grown(wide, deep) & sure, thin, deep)
     both = skeletonize(maybe)
     near = ndimage.distance_transform_edt(~sure)
     unsure = np.mean(near[both] > 2.5) if both.any() else 0.0
@@ -164,6 +202,14 @@ def grown(seeds, deep):
         return seeds
     away, (rows, columns) = ndimage.distance_transform_edt(~seeds, return_indices=True)
     return away <= deep[rows, columns] + 1
+
+
+def stout(shapes, skeleton, deep):
+    """Shapes less those that are thick lines: longer than `LONG` of their own widths."""
+    labels, count = ndimage.label(shapes, np.ones((3, 3)))
+    each = np.arange(1, count + 1)
+    length, half = ndimage.sum(skeleton, labels, each), ndimage.maximum(deep, labels, each)
+    return np.isin(labels, each[np.asarray(length) <= LONG * 2 * np.asarray(half)]) if count else shapes
 
 
 def length_of(skeleton):

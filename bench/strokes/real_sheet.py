@@ -8,9 +8,13 @@ import io
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-PANEL = (480, 400)  # px: a picture in the HTML is at most so large, and twice that when it is clicked
+import real_score
+
+PANEL = (960, 800)  # px: a picture in the HTML is at most so large
 CELL = (460, 380)  # px: on a PNG page
-TEXT = 34  # px under a cell
+WITHIN = (CELL[0] - 6, CELL[1] - 6)  # px: the picture in its cell
+TEXT = 54  # px under a cell: three lines
+TINT = (120, 170, 255)  # of what outlines enclose
 RED, ORANGE = (230, 0, 0), (255, 140, 0)
 
 
@@ -26,16 +30,22 @@ def overlay(image, strokes, score, size):
     at their start, missed ink orange, flying stretches red and thick. Drawn twice as large and reduced, which smooths it."""
     under, scale = panel(image, (size[0] * 2, size[1] * 2))
     shown = Image.blend(under, Image.new("RGB", under.size, "white"), 0.62)
-    shown = tinted(shown, strokes, scale)
-    if score and score.missed_at is not None and score.missed_at.any():
-        at = Image.fromarray((score.missed_at * 255).astype(np.uint8)).resize(under.size, Image.BOX)
-        shown.paste(ORANGE, mask=at.point(lambda v: min(255, 3 * v)))
+    tinted(shown, real_score.within(strokes, (image.height, image.width)), TINT, 110)
+    if score and score.missed_at is not None:
+        tinted(shown, score.missed_at, ORANGE, 255)
     draw = ImageDraw.Draw(shown)
     for number, stroke in enumerate(strokes):
-        one(draw, stroke, colour(number), scale)
+        one(draw, stroke, colour(number), scale, ring=7 if len(strokes) < 80 else 4)
     for part in score.flying_parts if score else []:
         draw.line([tuple(p) for p in part * scale], fill=RED, width=9, joint="curve")
     return shown.resize((max(1, shown.width // 2), max(1, shown.height // 2)), Image.BOX)
+
+
+def tinted(image, mask, ink, most):
+    """Colours the image where the mask is, with at most `most` of 255; a single pixel of a large picture shows still."""
+    if mask.any():
+        at = Image.fromarray((mask * 255).astype(np.uint8)).resize(image.size, Image.BOX)
+        image.paste(ink, mask=at.point(lambda v: min(most, 3 * v)))
 
 
 def colour(number):
@@ -43,27 +53,17 @@ def colour(number):
     return tuple(int(255 * c) for c in colorsys.hsv_to_rgb(0.15 + 0.8 * (number * 0.381966 % 1), 1, 0.75))
 
 
-def tinted(image, strokes, scale):
-    """The picture with the inside of outlines tinted."""
-    layer = Image.new("RGBA", image.size)
-    draw = ImageDraw.Draw(layer)
-    for number, stroke in enumerate(strokes):
-        if stroke.outline and len(stroke.points) > 2:
-            draw.polygon([tuple(p) for p in stroke.points * scale], fill=(*colour(number), 50))
-    return Image.alpha_composite(image.convert("RGBA"), layer).convert("RGB")
-
-
-def one(draw, stroke, ink, scale):
+def one(draw, stroke, ink, scale, ring):
     """One stroke, its ends and, of an outline, its start."""
     points = np.vstack([stroke.points, stroke.points[:1]]) if stroke.closed else stroke.points
     points = [tuple(p) for p in points * scale]
     if len(points) > 1:
-        draw.line(points, fill=ink, width=4, joint="curve")
+        draw.line(points, fill=ink, width=4 if ring > 4 else 3, joint="curve")
     for x, y in [] if stroke.closed else [points[0], points[-1]]:
-        draw.ellipse((x - 7, y - 7, x + 7, y + 7), outline=ink, width=2)
+        draw.ellipse((x - ring, y - ring, x + ring, y + ring), outline=ink, width=2)
     if stroke.outline:
         x, y = points[0]
-        draw.rectangle((x - 6, y - 6, x + 6, y + 6), fill=ink)
+        draw.rectangle((x - ring, y - ring, x + ring, y + ring), fill=ink)
 
 
 # --- PNG pages ---------------------------------------------------------------------------------------------------------
@@ -84,13 +84,12 @@ def pages(rows, folder, name, columns, lines):
 
 
 def written(page, image, text, x, y):
-    """A cell with two lines of text under it."""
-    small, _ = panel(image, (CELL[0] - 6, CELL[1] - 6))
-    page.paste(small, (x + (CELL[0] - small.width) // 2, y + (CELL[1] - small.height) // 2))
+    """A cell with three lines of text under it."""
+    page.paste(image, (x + (CELL[0] - image.width) // 2, y + (CELL[1] - image.height) // 2))
     draw = ImageDraw.Draw(page)
     font = ImageFont.load_default(13)
-    for line, words in enumerate(text.split("\n")[:2]):
-        draw.text((x + 6, y + CELL[1] + 16 * line), words[:72], fill=RED if words.startswith("MISS") else "black", font=font)
+    for line, words in enumerate(text.split("\n")[:3]):
+        draw.text((x + 6, y + CELL[1] + 16 * line), words[:68], fill=RED if words.startswith("MISS") else "black", font=font)
     draw.rectangle((x, y, x + CELL[0] - 1, y + CELL[1] + TEXT - 1), outline=(190, 190, 190))
 
 
