@@ -64,7 +64,7 @@ def look(name, file, options):
     judge(looked, "ours", image, ink, strokes, seconds, looked.said)
     for peer in options.peers:
         scratch = options.out / f"mask-{os.getpid()}.png"
-        judge(looked, peer, image, ink, *real_tracers.peer(peer, ink.sure, scratch))
+        judge(looked, peer, image, ink, *real_tracers.peer(peer, ink.flat, scratch))
         scratch.unlink(missing_ok=True)
     return looked
 

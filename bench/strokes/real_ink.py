@@ -31,12 +31,13 @@ DIAGONAL = np.array([0.948, 1.340])  # px for a straight and a diagonal step, wi
 class Ink:
     """Masks of one picture, rows × columns.
 
-    `sure`: ink. `maybe`: ink or unsure. `reach`: half the ink's width, px, as the distance to paper. `shapes`: where it is
+    `sure`: ink. `flat`: that with printed rules, as a plain threshold would have it. `maybe`: ink or unsure. `reach`: half the ink's width, px, as the distance to paper. `shapes`: where it is
     too wide for a line. `skeleton`: its middle, without shapes. `pen`: its usual width, px. `unsure`: share of all skeleton
     that is not sure.
     """
 
     sure: np.ndarray
+    flat: np.ndarray
     maybe: np.ndarray
     reach: np.ndarray
     shapes: np.ndarray
@@ -64,7 +65,7 @@ def found(image):
     table = table_of(darkness)
     darkness[table] = 0
     sure, maybe = views(darkness)
-    return described(sure & ~rules_of(maybe), maybe)
+    return described(sure, maybe, rules_of(maybe))
 
 
 def reduced(grey, side=PAPER_SIDE):
@@ -182,18 +183,26 @@ def usual(mask):
     return float(np.median(deep[skeletonize(mask)]))
 
 
-def described(sure, maybe):
+def described(flat, maybe, rules):
     """All that the score needs to know of the masks."""
+    sure = flat & ~rules
     pen = 2 * usual(sure)
     deep = ndimage.distance_transform_edt(np.pad(sure, 1))[1:-1, 1:-1]
     wide = deep > max(4, min(SHAPE / 2 * pen, SHAPE_SIDE / 2 * min(sure.shape)))
     thin = skeletonize(~without_specks(~sure, max(2, pen * pen / 4)))
-    shapes = stout(grown(wide, deep) & sure, thin, deep)
+    shapes = whole(stout(grown(wide, deep) & sure, thin, deep), sure)
     both = skeletonize(maybe)
     near = ndimage.distance_transform_edt(~sure)
     unsure = np.mean(near[both] > 2.5) if both.any() else 0.0
     reach = ndimage.distance_transform_edt(np.pad(maybe, 1))[1:-1, 1:-1]
-    return Ink(sure, maybe, reach, shapes, thin & ~shapes, pen, float(unsure))
+    return Ink(sure, flat, maybe, reach, shapes, thin & ~shapes, pen, float(unsure))
+
+
+def whole(shapes, sure):
+    """Shapes with all of the patch in which they lie, where they are most of it: a horse's legs belong to its body."""
+    labels, count = ndimage.label(sure, np.ones((3, 3)))
+    share = np.bincount(labels[shapes], minlength=count + 1) / np.maximum(1, np.bincount(labels.ravel()))
+    return shapes | (sure & (share > 0.5)[labels])
 
 
 def grown(seeds, deep):
