@@ -11,6 +11,8 @@ use crate::{Ink, Random, Size};
 
 /// The table differs from the sheet by this many levels at least.
 const LEAST_STEP: f64 = 25.0;
+/// This share is not photographed on a table, but scanned: square, with a dark rim.
+const SCANNED: f64 = 0.2;
 /// Places tried for a finger.
 const TRIED: usize = 16;
 
@@ -48,9 +50,12 @@ struct Finger {
 /// How a sheet lies before the camera.
 pub(crate) fn lay(random: &mut Random, size: Size) -> Warp {
     let (w, h) = (size.width as f64, size.height as f64);
-    let tilt = random.between(0.0, 20.0).to_radians() * random.sign();
-    let turn = random.between(-12.0, 12.0).to_radians();
-    let share = random.between(0.68, 0.99);
+    let scanned = random.chance(SCANNED);
+    // furthest aside and most turned, degrees, and least share of the picture's sides
+    let (aside, turned, least) = if scanned { (0.1, 1.5, 0.92) } else { (20.0, 12.0, 0.68) };
+    let tilt = random.between(0.0, aside).to_radians() * random.sign();
+    let turn = random.between(-turned, turned).to_radians();
+    let share = random.between(least, 0.99);
     let corner = Point::new(random.between(0.0, (1.0 - share) * w), random.between(0.0, (1.0 - share) * h));
     let within = Rect::from_origin_size(corner, (share * w, share * h));
     Warp::new(size, random.angle(), tilt).fitted(size, turn, within)
@@ -65,6 +70,9 @@ impl Desk {
         (warp, ink): (&Warp, &[Point]),
     ) -> Self {
         let rows = size.height as f64;
+        if warp.is_square_on() {
+            return Self::of_a_scanner(random, size, paper);
+        }
         Self {
             sheet: sheet(random, size),
             below: random
@@ -78,6 +86,13 @@ impl Desk {
             ),
             finger: random.chance(0.4).then(|| Finger::beside(random, size, warp, ink)).flatten(),
         }
+    }
+
+    /// A scanner's lid: dark, even, no shadow.
+    fn of_a_scanner(random: &mut Random, size: Size, paper: f64) -> Self {
+        let level = random.between(0.0, 0.35 * paper);
+        let table = Table { level, depth: 0.0, weave: None, edge: None, ..Table::any(random, size, paper) };
+        Self { sheet: sheet(random, size), below: None, table, shade: (Vec2::ZERO, 1.0, 0.0), finger: None }
     }
 
     /// Covers what is beside the sheet, and what a finger hides.

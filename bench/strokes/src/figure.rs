@@ -105,12 +105,20 @@ impl Figure {
 
     /// Width of the thinnest line, at its thinnest place, px; none if there is none.
     pub(crate) fn thinnest(&self) -> Option<f64> {
-        let width = |ink: &Ink| match ink {
-            Ink::Line { pen, .. } => Some(*pen),
-            Ink::Touches(touches) => touches.iter().map(|t| 2.0 * t.radius).reduce(f64::min),
-            Ink::Fill(_) | Ink::Scribble { .. } => None,
+        self.widths().reduce(f64::min)
+    }
+
+    /// Widths of the lines, px, along those that swell too; a broad nib's is the least and the most that it draws.
+    pub(crate) fn widths(&self) -> impl Iterator<Item = f64> + '_ {
+        let widths = |ink: &Ink| match ink {
+            Ink::Line { pen, .. } | Ink::Scribble { pen, .. } => vec![*pen],
+            Ink::Touches(touches) => {
+                let both = |t: &Touch| [2.0 * t.radius, 2.0 * (t.radius + t.reach.hypot())];
+                touches.iter().flat_map(both).collect()
+            }
+            Ink::Fill(_) => vec![],
         };
-        self.ink.iter().filter_map(width).reduce(f64::min)
+        self.ink.iter().flat_map(widths)
     }
 
     /// Moved by a similarity that keeps lengths.

@@ -1,3 +1,5 @@
+use std::f64::consts::PI;
+
 use tracelight_stroke::StrokeKind;
 
 use crate::rules::Bounds;
@@ -36,7 +38,18 @@ pub(crate) struct Habit {
     pub(crate) half_pens: f64,
     /// Pens kept free along the border, beside the usual margin.
     pub(crate) margin_pens: f64,
-    upright: bool,
+    turned: Turned,
+}
+
+/// Which way figures lie.
+#[derive(Clone, Copy)]
+enum Turned {
+    /// Any.
+    Freely,
+    /// As people write, leaning a little.
+    Upright,
+    /// Half of them each.
+    Either,
 }
 
 impl Habit {
@@ -50,7 +63,7 @@ impl Habit {
             half: (0.08, 0.42),
             half_pens: 6.0,
             margin_pens: 0.0,
-            upright: false,
+            turned: Turned::Freely,
         };
         match kind {
             Kind::Lines | Kind::Arcs => Self { figures: (1, 10), ..usual },
@@ -64,21 +77,23 @@ impl Habit {
             Kind::Felt => Self { figures: (1, 4), pens: (1.8, 2.4), ..usual },
             Kind::Retouched => Self { pens: (1.8, 1.6), ..usual },
             Kind::Hatching => Self { figures: (1, 3), strokes: MOST_STROKES_MIXED, paper_px: 1.5, ..usual },
-            Kind::Writing => Self { figures: (2, 9), paper_px: 1.2, ..usual }.written(),
+            Kind::Writing => Self { figures: (2, 12), paper_px: 1.2, ..usual }.written(),
             Kind::Marks => Self { figures: (6, 24), paper_px: 1.5, ..usual }.written(),
             Kind::Hairpin | Kind::Shallow => Self { half: (0.15, 0.45), half_pens: 10.0, ..usual },
             Kind::Hair => Self { figures: (1, 4), strokes: MOST_STROKES_MIXED, half: (0.12, 0.4), ..usual },
             Kind::Spots => Self { figures: (1, 7), strokes: MOST_STROKES_MIXED, ..usual },
-            Kind::Frame => Self { margin_pens: 5.0, upright: true, ..usual },
+            Kind::Frame => Self { margin_pens: 5.0, turned: Turned::Upright, ..usual },
             Kind::Thick => {
-                Self { figures: (1, 1), pens: (1.2, 5.0), half: (0.28, 0.44), half_pens: 0.0, ..usual }
+                Self { figures: (1, 1), pens: (1.6, 5.5), half: (0.28, 0.44), half_pens: 0.0, ..usual }
             }
-            Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => Self { figures: (1, 6), ..usual },
+            Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => {
+                Self { figures: (1, 6), turned: Turned::Either, ..usual }
+            }
         }
     }
 
     fn written(self) -> Self {
-        Self { strokes: MOST_STROKES_WRITTEN, upright: true, ..self }
+        Self { strokes: MOST_STROKES_WRITTEN, turned: Turned::Upright, ..self }
     }
 
     /// A pen for a page, px. Lengths are kept `roomy` times as large.
@@ -95,14 +110,22 @@ impl Habit {
 
     /// How far a figure is turned, of a turn by chance, rad.
     pub(crate) fn turn(&self, chance: f64) -> f64 {
-        if self.upright { (chance - std::f64::consts::PI) * LEAN } else { chance }
+        match self.turned {
+            Turned::Upright => (chance - PI) * LEAN,
+            Turned::Either if chance < PI => (2.0 * chance - PI) * LEAN,
+            Turned::Freely | Turned::Either => chance,
+        }
     }
 
     /// Pen and bounds by which a figure is judged.
     pub(crate) fn bounds(&self, figure: &Figure, hand: &Hand) -> (f64, Bounds) {
         let pen = figure.thinnest().unwrap_or(hand.pen);
         match self.kind {
-            Kind::Writing | Kind::Marks if pen < 0.99 * hand.pen => (pen, Bounds::SMALL),
+            Kind::Writing | Kind::Marks | Kind::Ruled | Kind::Squared | Kind::Dotted
+                if pen < 0.99 * hand.pen =>
+            {
+                (pen, Bounds::SMALL)
+            }
             Kind::Hairpin | Kind::Hair | Kind::Shallow => (hand.pen, Bounds::SHARP),
             Kind::Hatching => (hand.pen, Bounds::HATCHED),
             Kind::Spots => (hand.pen, Bounds::FILLED),

@@ -1,6 +1,7 @@
 //! The kinds of figures. Each is drawn about the origin, about `hand.size` to either side, and may break the rules:
 //! who places it asks [`rules`](crate::rules) and draws another one if so.
 
+mod connected;
 mod crossing;
 mod felt;
 mod filled;
@@ -165,10 +166,17 @@ impl Kind {
             Kind::Hair => hair::figure(random, hand),
             Kind::Shallow => shallow::figure(random, hand),
             Kind::Spots => spot::figure(random, hand),
-            Kind::Thick => Self::figure(random.pick(&THICK), random, hand),
-            Kind::Frame | Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => {
-                Self::figure(random.pick(&LINES), random, hand)
-            }
+            Kind::Thick => random.pick(&THICK).figure(random, hand),
+            Kind::Ruled | Kind::Squared | Kind::Dotted if random.chance(0.25) => writing::words(random, hand),
+            Kind::Frame | Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => lines(random, hand),
         }
     }
+}
+
+/// Lines without gaps, of a plain kind or a drawing of one piece.
+fn lines(random: &mut Random, hand: &Hand) -> Figure {
+    if random.chance(0.5) {
+        return connected::figure(random, hand);
+    }
+    random.pick(&LINES).figure(random, hand)
 }

@@ -47,6 +47,11 @@ impl Page {
             Some(Self { figures, pen: if kind.set() == Set::Plain { pen } else { thinnest }, paper })
         })
     }
+
+    /// Width of its widest line, px; none if there are only shapes.
+    pub fn widest(&self) -> Option<f64> {
+        self.figures.iter().flat_map(Figure::widths).reduce(f64::max)
+    }
 }
 
 fn figures(

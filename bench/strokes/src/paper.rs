@@ -138,3 +138,36 @@ impl Paper {
         (turned(rule) && near(v / self.pitch - self.phase.1)) || (turned(across) && by_upright)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Page;
+
+    #[test]
+    fn nearly_every_page_finds_a_paper_whose_rules_it_does_not_follow() {
+        let size = Size { width: 640, height: 480 };
+        for pattern in [Kind::Ruled, Kind::Squared] {
+            let found = (0..60).filter(|&seed| {
+                let page = Page::draw(&mut Random::new(seed), pattern, size, 1.0);
+                let strokes: Vec<Stroke> = page.figures.iter().flat_map(|f| f.strokes.clone()).collect();
+                Paper::under(&mut Random::new(seed), pattern, size, &strokes, page.pen).is_some()
+            });
+            let count = found.count();
+            assert!(count >= 56, "{pattern:?}: {count} of 60");
+        }
+    }
+
+    #[test]
+    fn a_line_on_a_rule_follows_it_and_one_between_rules_does_not() {
+        let size = Size { width: 640, height: 480 };
+        let paper =
+            Paper { bend: 0.0, margin: None, ..Paper::any(&mut Random::new(3), Kind::Squared, size, 2.0) };
+        let along = |v: f64| {
+            let points = [paper.point(-90.0, v), paper.point(90.0, v)];
+            paper.is_followed(&[Stroke::new(polyline(&points, false))], 2.0)
+        };
+        assert!(along(paper.phase.1 * paper.pitch));
+        assert!(!along((paper.phase.1 + 0.5) * paper.pitch));
+    }
+}

@@ -16,7 +16,8 @@ pub fn row(name: &str, group: &[&Judged]) -> String {
     let n = group.len().max(1) as f64;
     let share =
         |test: &dyn Fn(&Verdict) -> bool| 100.0 * group.iter().filter(|(_, v)| test(v)).count() as f64 / n;
-    let mean = |of: &dyn Fn(&Verdict) -> f64| group.iter().map(|(_, v)| of(v)).sum::<f64>() / n;
+    // summed from zero: the sum of no floats is −0
+    let mean = |of: &dyn Fn(&Verdict) -> f64| group.iter().fold(0.0, |sum, (_, v)| sum + of(v)) / n;
     let scores = || group.iter().filter_map(|(_, v)| v.score);
     let mut rms: Vec<f64> = scores().map(|s| s.rms).collect();
     rms.sort_by(f64::total_cmp);

@@ -52,7 +52,7 @@ impl Astray {
         let outlines = found.strokes.iter().filter(|s| s.kind == StrokeKind::Outline);
         Self {
             flying_px: length * (1.0 - near(&found.strokes, truth, FLYING_PX + half_pen)),
-            outlined: outlines.map(outlined).sum::<f64>() / length.max(1.0),
+            outlined: outlines.map(outlined).fold(0.0, |sum, l| sum + l) / length.max(1.0),
         }
     }
 }
@@ -88,5 +88,44 @@ impl Verdict {
         self.score.map_or(2.0 * truth + 2.0, |s| {
             (truth - s.matched as f64) + self.surplus().unsigned_abs() as f64 + s.missed + s.stray
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_stroke::{Path, Point};
+
+    fn drawing(lines: &[(&[(f64, f64)], StrokeKind)]) -> Drawing {
+        let stroke = |&(points, kind): &(&[(f64, f64)], StrokeKind)| {
+            let points: Vec<Point> = points.iter().map(|&p| p.into()).collect();
+            Some(Stroke { kind, pen: Some(4.0), ..Stroke::new(Path::polyline(&points, false)?) })
+        };
+        Drawing { strokes: lines.iter().filter_map(stroke).collect() }
+    }
+
+    #[test]
+    fn light_beyond_8_px_of_the_ink_flies() {
+        let truth = drawing(&[(&[(0., 0.), (100., 0.)], StrokeKind::Centreline)]);
+        let found = drawing(&[(&[(0., 1.), (100., 1.), (100., 60.)], StrokeKind::Centreline)]);
+        let astray = Astray::of(&found, &truth, 2.0);
+        // of 60 px upward, the pen's half and 8 px are near
+        assert!((astray.flying_px - 50.0).abs() < 1.5, "{astray:?}");
+        assert!(Astray::of(&truth, &truth, 2.0).flying_px < 1e-9);
+    }
+
+    #[test]
+    fn a_line_drawn_as_its_edges_is_told() {
+        let truth = drawing(&[
+            (&[(0., 0.), (100., 0.)], StrokeKind::Centreline),
+            (&[(0., 50.), (100., 50.)], StrokeKind::Outline),
+        ]);
+        let edges: [(&[(f64, f64)], StrokeKind); 2] = [
+            (&[(0., -2.), (100., -2.), (100., 2.), (0., 2.)], StrokeKind::Outline),
+            (&[(0., 50.), (100., 50.)], StrokeKind::Outline),
+        ];
+        let outlined = Astray::of(&drawing(&edges), &truth, 2.0).outlined;
+        assert!((outlined - 204.0 / 304.0).abs() < 0.01, "{outlined}");
+        assert!(Astray::of(&truth, &truth, 2.0).outlined < 1e-9);
     }
 }

@@ -6,6 +6,8 @@ use crate::Size;
 const CAMERA_WIDTHS: f64 = 1.2;
 /// The page is shown a little smaller, so that its near edge stays in the picture.
 const SHRINK: f64 = 0.97;
+/// Less of a tilt is none, rad.
+const SQUARE_ON_RAD: f64 = 2e-3;
 /// Truth that was straight, an arc or a cubic is followed to this, px.
 const TOLERANCE_PX: f64 = 0.004;
 
@@ -56,6 +58,11 @@ impl Warp {
         let shrink = (within.width() / full.width()).min(within.height() / full.height());
         let fitted = Self { shrink, ..whole };
         Self { shift: within.center() - seen(&fitted).center(), ..fitted }
+    }
+
+    /// Whether the page is seen from straight above.
+    pub(crate) fn is_square_on(&self) -> bool {
+        self.tilt.abs() < SQUARE_ON_RAD
     }
 
     /// The least scale at which any of the page is seen.

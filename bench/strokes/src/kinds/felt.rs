@@ -4,7 +4,7 @@ use tracelight_stroke::{Path, Point, Stroke, StrokeKind, Vec2};
 
 use super::plain::{blob, closed_path};
 use crate::shapes::{line, polar, polyline, spline};
-use crate::{Figure, Hand, Ink, Kind, Random};
+use crate::{Figure, Hand, Ink, Random};
 
 /// A filled area is at least so many pens across.
 const LEAST_PENS: f64 = 3.5;
@@ -14,7 +14,7 @@ const PITCH_PENS: (f64, f64) = (0.75, 1.25);
 /// Thick lines across each other, areas filled to and fro, and lines that leave them.
 pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
     match random.whole(0, 9) {
-        0..=4 => Kind::figure(random.pick(&super::LINES), random, hand),
+        0..=4 => super::lines(random, hand),
         5 => area(random, hand, closed_path),
         6 => area(random, hand, blob),
         7 => limbs(random, hand),

@@ -11,14 +11,44 @@ const LEAST_PX: f64 = 0.9;
 
 /// Tapering lines close beside each other.
 pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
-    match random.whole(0, 2) {
+    match random.whole(0, 3) {
         0 => tuft(random, hand, None),
         1 => {
             let scalp = random.between(1.0, 2.5);
             tuft(random, hand, Some(scalp))
         }
+        2 => wisps(random, hand),
         _ => lock(random, hand),
     }
+}
+
+/// Strands from one place in much the same direction, across each other; no end lies near another strand.
+fn wisps(random: &mut Random, hand: &Hand) -> Figure {
+    let clear = 1.5 * (hand.pen + hand.paper);
+    let mut paths: Vec<Path> = Vec::new();
+    for _ in 0..random.whole(4, 10) {
+        let root = Point::new(-hand.size, hand.size * random.between(-0.3, 0.3));
+        let way = random.between(-0.25, 0.25);
+        let path = strand(root, way, (hand.size * random.between(1.2, 2.0), random.between(-0.5, 0.5)));
+        let ends_clear = |one: &Path, other: &Path| {
+            let points = other.flatten(0.05);
+            [one.start(), one.end()].iter().all(|&end| beside(&points, end) > clear)
+        };
+        if paths.iter().all(|other| ends_clear(&path, other) && ends_clear(other, &path)) {
+            paths.push(path);
+        }
+    }
+    paths.into_iter().fold(Figure::default(), |figure, path| figure.and(tapered(hand, path, true)))
+}
+
+/// Distance of a point from a line.
+fn beside(points: &[Point], at: Point) -> f64 {
+    let off = |pair: &[Point]| {
+        let way = pair[1] - pair[0];
+        let share = ((at - pair[0]).dot(way) / way.hypot2().max(1e-12)).clamp(0.0, 1.0);
+        at.distance(pair[0] + way * share)
+    };
+    points.windows(2).map(off).fold(f64::INFINITY, f64::min)
 }
 
 /// Strands from a row of roots, which may lie on a line of their own (an arc of so many rad), fanned out.

@@ -2,13 +2,17 @@ use std::f64::consts::{PI, TAU};
 
 use tracelight_stroke::{Path, Vec2};
 
+use super::writing;
 use crate::touch::{Along, Touch, profile, touches};
-use crate::{Figure, Hand, Ink, Kind, Random};
+use crate::{Figure, Hand, Ink, Random};
 
 /// The page's pen is the widest place: 2.5 times the pen that swells from 0.3 times on.
 const LEAST_SWELL: f64 = 0.3 / 2.5;
 /// No line is thinner, px.
 const LEAST_PX: f64 = 0.9;
+
+/// This share of the figures is a word, as large as the pen needs it.
+const LETTERS: f64 = 0.2;
 
 /// Lines that swell with pressure.
 pub(super) fn swell(random: &mut Random, hand: &Hand) -> Figure {
@@ -48,7 +52,7 @@ pub(super) fn nib(random: &mut Random, hand: &Hand) -> Figure {
 /// A marker that runs dry: dark to a fifth, or pale in the middle.
 pub(super) fn fading(random: &mut Random, hand: &Hand) -> Figure {
     each_line(random, hand, |random, path| {
-        let least = random.between(0.2, 0.5);
+        let least = random.between(0.22, 0.5);
         let waves = waves(random, path.is_closed());
         let to_the_end = random.chance(0.5) && !path.is_closed();
         let dark =
@@ -60,12 +64,12 @@ pub(super) fn fading(random: &mut Random, hand: &Hand) -> Figure {
 /// A pencil: the pressure changes along the line, and a little of its width with it.
 pub(super) fn pencil(random: &mut Random, hand: &Hand) -> Figure {
     each_line(random, hand, |random, path| {
-        let least = random.between(0.45, 0.8);
+        let least = random.between(0.5, 0.8);
         let waves = waves(random, path.is_closed());
         let lifted = random.chance(0.4) && !path.is_closed();
         let pressure = move |share: f64| {
             let lift = if lifted { (6.0 * (1.0 - share)).min(1.0) } else { 1.0 };
-            (least + (1.0 - least) * waves(share)) * (0.6 + 0.4 * lift)
+            (least + (1.0 - least) * waves(share)) * (0.7 + 0.3 * lift)
         };
         touches(path, |along| {
             let pressed = pressure(along.share);
@@ -80,7 +84,7 @@ fn each_line(
     hand: &Hand,
     mut drawn: impl FnMut(&mut Random, &Path) -> Vec<Touch>,
 ) -> Figure {
-    let plain = Kind::figure(random.pick(&super::LINES), random, hand);
+    let plain = if random.chance(LETTERS) { writing::word(random, hand) } else { super::lines(random, hand) };
     let mut figure = Figure::default();
     for stroke in plain.strokes {
         let touches = drawn(random, &stroke.path);

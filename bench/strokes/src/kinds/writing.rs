@@ -25,16 +25,31 @@ pub(super) fn words(random: &mut Random, hand: &Hand) -> Figure {
     }
     let height = random.log_between(HEIGHT_PX.0, HEIGHT_PX.1);
     let small = small(random, hand, height);
-    let letters = random.whole(1, 7);
+    let rows = if random.chance(0.3) { random.whole(2, 4) } else { 1 };
+    let row = |i: usize| {
+        let down = Affine::translate((0.0, 1.9 * height * i as f64));
+        row(random, &small, height).into_iter().map(move |p| p.transformed(down))
+    };
+    Figure::lines(&small, (0..rows).flat_map(row).collect::<Vec<_>>())
+}
+
+/// A word in the page's pen.
+pub(super) fn word(random: &mut Random, hand: &Hand) -> Figure {
+    let height = random.between(10.0, 15.0) * hand.pen;
+    Figure::lines(hand, row(random, hand, height))
+}
+
+/// Letters side by side, their feet at zero.
+fn row(random: &mut Random, hand: &Hand, height: f64) -> Vec<Path> {
     let mut x = 0.0;
     let mut paths = Vec::new();
-    for _ in 0..letters {
+    for _ in 0..random.whole(1, 7) {
         let wide = height * random.between(0.5, 0.75);
-        let drawn = letter(random, (wide, height), height > TALL_PENS * small.pen);
+        let drawn = letter(random, (wide, height), height > TALL_PENS * hand.pen);
         paths.extend(drawn.into_iter().map(|p| p.transformed(Affine::translate((x, 0.0)))));
-        x += wide + small.pen + (2.5 * small.pen).max(2.5) * random.between(1.0, 1.4);
+        x += wide + hand.pen + (2.5 * hand.pen).max(2.5) * random.between(1.0, 1.4);
     }
-    Figure::lines(&small, paths)
+    paths
 }
 
 /// A dash, a ring, a tick, a cross or a plus; now and then a large figure.
