@@ -116,8 +116,8 @@ impl Look {
         warp: Option<&Warp>,
     ) -> Self {
         match kind {
-            Kind::Graphite => self.pencilled(random, size),
-            Kind::Retouched if random.chance(0.4) => self.pencilled(random, size),
+            Kind::Graphite => self.pencilled(random, page.pen),
+            Kind::Retouched if random.chance(0.4) => self.pencilled(random, page.pen),
             Kind::Felt => self.felt(random),
             Kind::Ruled | Kind::Squared | Kind::Dotted => {
                 let strokes: Vec<Stroke> = page.figures.iter().flat_map(|f| f.strokes.clone()).collect();
@@ -129,14 +129,14 @@ impl Look {
     }
 
     /// A pencil on paper with a grain: pressed fully 30 to 65 % contrast, on the grain and lightly pressed down to 15 %.
-    fn pencilled(self, random: &mut Random, size: Size) -> Self {
+    fn pencilled(self, random: &mut Random, pen: f64) -> Self {
         let paper = random.between(200.0, 245.0);
         let ink = paper * (1.0 - random.between(0.3, 0.65));
         let grain = Grain::new(random.bits(), (2.0, 2.0));
         Self {
             paper: [paper; 3],
             ink: [ink; 3],
-            medium: Medium::graphite(random, size),
+            medium: Medium::graphite(random, pen),
             tooth: Some((grain, random.between(2.0, 8.0))),
             noise: self.noise.min(2.0),
             specks: 0.0,

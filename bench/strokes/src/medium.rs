@@ -8,8 +8,13 @@ use crate::{Ink, Random, Size};
 
 /// Graphite's edge is soft, σ in px.
 const SOFT_PX: f64 = 0.6;
-/// How far graphite reaches down into the grain: pressed fully it fills all, by half about a half.
+/// How deep the grain is for a pencil: pressed fully it fills all, by half about a half. Where a line is few pixels wide
+/// its grain is finer than they are and shows less.
 const DEPTH: f64 = 0.85;
+const DEEP_FROM_PX: f64 = 5.0;
+/// Size of the grain, in pens, and px at least and most.
+const GRAIN_PENS: (f64, f64) = (0.3, 0.6);
+const GRAIN_PX: (f64, f64) = (1.0, 4.0);
 /// From bare to covered graphite rises over so much of the grain's height.
 const RISE: f64 = 0.45;
 
@@ -18,17 +23,18 @@ const RISE: f64 = 0.45;
 pub(crate) enum Medium {
     /// Ink: twice is as dark as once.
     Pen,
-    /// A pencil on grain.
-    Graphite(Grain),
+    /// A pencil on grain of a depth.
+    Graphite(Grain, f64),
     /// A felt pen: this share of the light is taken where it goes once, more where it goes again.
     Felt(f64),
 }
 
 impl Medium {
-    pub(crate) fn graphite(random: &mut Random, size: Size) -> Self {
-        // paper's grain is some tenths of a millimetre: finer than the pixels of small pictures, coarser in large ones
-        let cell = random.between(1.0, 2.0) * (size.height as f64 / 720.0).clamp(1.0, 3.0);
-        Self::Graphite(Grain::new(random.bits(), (cell, cell)))
+    /// A pencil of so many px.
+    pub(crate) fn graphite(random: &mut Random, pen: f64) -> Self {
+        let cell = (pen * random.between(GRAIN_PENS.0, GRAIN_PENS.1)).clamp(GRAIN_PX.0, GRAIN_PX.1);
+        let depth = DEPTH * (0.5 + 0.5 * (pen / DEEP_FROM_PX).min(1.0));
+        Self::Graphite(Grain::new(random.bits(), (cell, cell)), depth)
     }
 
     /// Share of the ink's darkness that each pixel has; what is of one stroke is given together.
@@ -37,9 +43,9 @@ impl Medium {
         let mut covered = empty();
         let Self::Felt(once) = self else {
             ink.iter().flatten().for_each(|ink| draw(&mut covered, ink, warp));
-            if let Self::Graphite(grain) = self {
+            if let Self::Graphite(grain, depth) = self {
                 blur(&mut covered, SOFT_PX);
-                rub(&mut covered, grain);
+                rub(&mut covered, grain, depth);
             }
             return covered;
         };
@@ -54,11 +60,11 @@ impl Medium {
 }
 
 /// Leaves graphite on the grain's heights.
-fn rub(covered: &mut Plane, grain: Grain) {
+fn rub(covered: &mut Plane, grain: Grain, depth: f64) {
     for (i, value) in covered.values.iter_mut().enumerate().filter(|(_, v)| **v > 0.01) {
         let height = grain.at((i % covered.width) as f64, (i / covered.width) as f64);
         let pressed = f64::from(*value);
-        let share = ((pressed - DEPTH * height) / RISE + 0.5).clamp(0.0, 1.0);
+        let share = ((pressed - depth * height) / RISE + 0.5).clamp(0.0, 1.0);
         *value = (share * (0.4 + 0.6 * pressed)) as f32;
     }
 }

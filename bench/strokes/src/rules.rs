@@ -84,10 +84,10 @@ impl Bounds {
         Self { node_pens: 1.5, radius_pens: 1.0, shortest: (2.5, 4.0), ahead_pens: 1.5, ..Self::USUAL };
     /// For hairpins, hair and shallow crossings, which are made of what the usual bounds forbid.
     pub const SHARP: Self =
-        Self { angle_deg: 0.0, node_pens: 0.0, radius_pens: 0.0, alongside: false, ..Self::USUAL };
+        Self { angle_deg: 2.9, node_pens: 0.0, radius_pens: 0.0, alongside: false, ..Self::USUAL };
     /// For hatching, whose lines end where others lie.
     pub const HATCHED: Self = Self { node_pens: 2.8, ahead_pens: 1.5, ..Self::USUAL };
-    /// For small filled shapes.
+    /// For small filled shapes, whose tips are as sharp as they like.
     pub const FILLED: Self = Self { shortest: (6.0, 12.0), ..Self::SHARP };
 }
 

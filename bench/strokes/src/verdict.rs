@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use tracelight_stroke::{Drawing, Score, Stroke, StrokeKind, compare, score};
+use tracelight_stroke::{Drawing, Point, Score, Stroke, StrokeKind, compare, score};
 use tracelight_vision::{Grey, Options, trace};
 
 use crate::Picture;
+use crate::page::crossings;
 
 /// One picture's result.
 #[derive(Clone, Debug)]
@@ -51,10 +52,36 @@ impl Astray {
         };
         let outlines = found.strokes.iter().filter(|s| s.kind == StrokeKind::Outline);
         Self {
-            flying_px: length * (1.0 - near(&found.strokes, truth, FLYING_PX + half_pen)),
+            flying_px: flying(&beside_areas(found, &edges), truth, FLYING_PX + half_pen),
             outlined: outlines.map(outlined).fold(0.0, |sum, l| sum + l) / length.max(1.0),
         }
     }
+}
+
+/// What was found, without what lies inside filled areas: that is ink.
+fn beside_areas(found: &Drawing, edges: &Drawing) -> Vec<Vec<Point>> {
+    let lines = found.strokes.iter().map(|s| s.path.flatten(1e-2));
+    let areas: Vec<_> = edges.strokes.iter().map(|s| s.path.flatten(1e-2)).collect();
+    if areas.is_empty() {
+        return lines.collect();
+    }
+    let inside = |at: Point| {
+        let crossed = areas.iter().flat_map(|a| crossings(a, at.y)).filter(|&x| x < at.x).count();
+        !crossed.is_multiple_of(2)
+    };
+    let steps = |pair: &[Point]| {
+        let count = pair[0].distance(pair[1]).ceil().max(1.0);
+        let at = move |i: usize, pair: &[Point]| pair[0].lerp(pair[1], i as f64 / count);
+        (0..count as usize).map(|i| vec![at(i, pair), at(i + 1, pair)]).collect::<Vec<_>>()
+    };
+    let pieces = lines.flat_map(|line| line.windows(2).flat_map(steps).collect::<Vec<_>>());
+    pieces.filter(|piece| !inside(piece[0].midpoint(piece[1]))).collect()
+}
+
+/// Length of lines that is further from the truth, px.
+fn flying(lines: &[Vec<Point>], truth: &Drawing, within_px: f64) -> f64 {
+    let length: f64 = lines.iter().flat_map(|l| l.windows(2)).map(|w| w[0].distance(w[1])).sum();
+    compare(lines, truth, within_px).map_or(0.0, |found| length * (1.0 - found.precision))
 }
 
 /// Share of the strokes' length that lies this near to the truth.
@@ -94,7 +121,7 @@ impl Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tracelight_stroke::{Path, Point};
+    use tracelight_stroke::Path;
 
     fn drawing(lines: &[(&[(f64, f64)], StrokeKind)]) -> Drawing {
         let stroke = |&(points, kind): &(&[(f64, f64)], StrokeKind)| {
@@ -127,5 +154,14 @@ mod tests {
         let outlined = Astray::of(&drawing(&edges), &truth, 2.0).outlined;
         assert!((outlined - 204.0 / 304.0).abs() < 0.01, "{outlined}");
         assert!(Astray::of(&truth, &truth, 2.0).outlined < 1e-9);
+    }
+    #[test]
+    fn light_inside_a_filled_area_does_not_fly() {
+        let square = [(0., 0.), (100., 0.), (100., 100.), (0., 100.), (0., 0.)];
+        let truth = drawing(&[(&square, StrokeKind::Outline)]);
+        let found = drawing(&[(&[(50., 50.), (50., 300.)], StrokeKind::Centreline)]);
+        let astray = Astray::of(&found, &truth, 2.0);
+        // 50 of 250 px lie inside, 8 px and half a pen beyond the edge are near
+        assert!((astray.flying_px - 190.0).abs() < 1.5, "{astray:?}");
     }
 }

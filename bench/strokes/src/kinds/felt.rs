@@ -24,7 +24,8 @@ pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
 }
 
 fn area(random: &mut Random, hand: &Hand, shape: impl Fn(&mut Random, f64) -> Path) -> Figure {
-    let size = (0.6 * hand.size).max(LEAST_PENS * hand.pen);
+    // the least circle and the inside of the thinnest star are a third of this
+    let size = (0.6 * hand.size).max(1.7 * LEAST_PENS * hand.pen);
     let outline = shape(random, size);
     scribbled(random, hand, outline)
 }

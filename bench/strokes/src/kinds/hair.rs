@@ -6,6 +6,8 @@ use crate::shapes::{arc, line, polar, spline};
 use crate::touch::{Touch, profile, touches};
 use crate::{Figure, Hand, Ink, Random};
 
+/// Wisps that share ink for longer, in pens, are nobody's to tell apart.
+const LONGEST_SHARED_PENS: f64 = 12.0;
 /// No hair is thinner, px.
 const LEAST_PX: f64 = 0.9;
 
@@ -30,11 +32,15 @@ fn wisps(random: &mut Random, hand: &Hand) -> Figure {
         let root = Point::new(-hand.size, hand.size * random.between(-0.3, 0.3));
         let way = random.between(-0.25, 0.25);
         let path = strand(root, way, (hand.size * random.between(1.2, 2.0), random.between(-0.5, 0.5)));
-        let ends_clear = |one: &Path, other: &Path| {
+        let is_clear = |one: &Path, other: &Path| {
             let points = other.flatten(0.05);
-            [one.start(), one.end()].iter().all(|&end| beside(&points, end) > clear)
+            let ends = [one.start(), one.end()].iter().all(|&end| beside(&points, end) > clear);
+            let shared = touches(one, |along| dot(along.at, 0.5 * hand.pen));
+            let near = shared.iter().filter(|t| beside(&points, t.at) < hand.pen).count();
+            let step = one.length(1e-3) / shared.len() as f64;
+            ends && near as f64 * step < LONGEST_SHARED_PENS * hand.pen
         };
-        if paths.iter().all(|other| ends_clear(&path, other) && ends_clear(other, &path)) {
+        if paths.iter().all(|other| is_clear(&path, other) && is_clear(other, &path)) {
             paths.push(path);
         }
     }
@@ -104,11 +110,10 @@ fn tapered(hand: &Hand, path: Path, both: bool) -> Figure {
     let least = (0.3 * hand.pen).max(LEAST_PX).min(hand.pen);
     let shape = move |share: f64| if both { (PI * share).sin() } else { 1.0 - share * share };
     let width = profile(shape, (least, hand.pen), path.length(1e-3));
-    let drawn = touches(&path, |along| Touch {
-        at: along.at,
-        reach: Vec2::ZERO,
-        radius: 0.5 * width(along.share),
-        dark: 1.0,
-    });
+    let drawn = touches(&path, |along| dot(along.at, 0.5 * width(along.share)));
     Figure::stroke(path, 0.7 * hand.pen, [Ink::Touches(drawn)])
+}
+
+fn dot(at: Point, radius: f64) -> Touch {
+    Touch { at, reach: Vec2::ZERO, radius, dark: 1.0 }
 }

@@ -49,9 +49,13 @@ pub(super) fn nib(random: &mut Random, hand: &Hand) -> Figure {
     each_line(random, hand, |_, path| touches(path, |along| Touch { at: along.at, reach, radius, dark: 1.0 }))
 }
 
-/// A marker that runs dry: dark to a fifth, or pale in the middle.
+/// A marker that runs dry: dark to a fifth, or pale in the middle; and lines that are pale all along.
 pub(super) fn fading(random: &mut Random, hand: &Hand) -> Figure {
     each_line(random, hand, |random, path| {
+        if random.chance(0.25) {
+            let dark = random.between(0.3, 0.6);
+            return touches(path, |along| disc(along, hand.pen, dark));
+        }
         let least = random.between(0.22, 0.5);
         let waves = waves(random, path.is_closed());
         let to_the_end = random.chance(0.5) && !path.is_closed();
@@ -64,7 +68,7 @@ pub(super) fn fading(random: &mut Random, hand: &Hand) -> Figure {
 /// A pencil: the pressure changes along the line, and a little of its width with it.
 pub(super) fn pencil(random: &mut Random, hand: &Hand) -> Figure {
     each_line(random, hand, |random, path| {
-        let least = random.between(0.5, 0.8);
+        let least = random.between(0.55, 0.8);
         let waves = waves(random, path.is_closed());
         let lifted = random.chance(0.4) && !path.is_closed();
         let pressure = move |share: f64| {
