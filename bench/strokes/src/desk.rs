@@ -166,10 +166,10 @@ fn outside(corners: &[Point; 4], at: Point) -> f64 {
 impl Table {
     fn any(random: &mut Random, size: Size, paper: f64) -> Self {
         let rows = size.height as f64;
-        let darker = random.chance(0.8);
+        let darker = random.chance(0.75) || paper > 255.0 - 1.2 * LEAST_STEP;
         let level = match darker {
             true => random.between(25.0, paper - 2.0 * LEAST_STEP),
-            false => random.between((paper + LEAST_STEP).min(250.0), 255.0),
+            false => random.between(paper + LEAST_STEP, 255.0),
         };
         let wood = random.chance(0.5);
         let fine = (rows / 60.0).max(2.0) * random.between(0.4, 1.2);

@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use tracelight_stroke::StrokeKind;
 
-use crate::rules::Bounds;
+use crate::bounds::Bounds;
 use crate::{Figure, Hand, Kind, Random, Set, Size};
 
 /// Width of the thinnest pen on 240 rows, px. It grows with the root of the rows: a better camera sees the same pens, and

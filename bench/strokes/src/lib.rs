@@ -10,7 +10,7 @@
 //! | [`case`] | kind × degradation × size × seed to a picture with its truth |
 //! | `kinds`, `shapes` | the figures, each in its own frame |
 //! | `page`, `habit` | figures placed clear of each other, as is usual for their kind |
-//! | [`rules`] | what is drawn only if a hand could decide it |
+//! | [`rules`], [`bounds`] | what is drawn only if a hand could decide it |
 //! | `warp` | the page seen a little from the side |
 //! | `ink`, `touch`, `plane` | area coverage of pen lines, swelling lines and filled shapes |
 //! | `medium`, `grain` | ink, graphite on grain, felt pen |
@@ -20,6 +20,7 @@
 //! | [`mod@show`] | a picture with truth and strokes on it, to look at |
 //! | [`verdict`], [`table`] | one picture's score; many in a table |
 
+pub mod bounds;
 pub mod case;
 mod degradation;
 mod desk;

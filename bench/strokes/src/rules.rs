@@ -9,23 +9,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use tracelight_stroke::{Path, Point, Vec2};
 
 use crate::Figure;
+use crate::bounds::{Bounds, WIDEST_CORNER_DEG};
 
-/// Least angle between lines that cross or meet, and within a corner, degrees.
-pub const LEAST_ANGLE_DEG: f64 = 30.0;
-/// Widest corner, degrees: a wider one may be a curve.
-pub const WIDEST_CORNER_DEG: f64 = 150.0;
-/// Two nodes are at least this many pens apart.
-pub const LEAST_NODE_PENS: f64 = 4.0;
-/// Least radius of a curve, in pens.
-pub const LEAST_RADIUS_PENS: f64 = 2.0;
-/// Shortest stroke, in pens.
-pub const SHORTEST_PENS: f64 = 8.0;
-/// Shortest stroke, px.
-pub const SHORTEST_PX: f64 = 12.0;
 /// The through stroke of a Y bends by up to this, degrees.
 const WIDEST_BEND_DEG: f64 = 40.0;
-/// What an end points at is further away than this, in pens: nearer may be a gap.
-const AHEAD_PENS: f64 = 3.0;
 /// A smaller change of direction is none, rad.
 const SMOOTH_RAD: f64 = 0.05;
 /// Points this near are one, px.
@@ -50,45 +37,6 @@ pub enum Broken {
     Ahead(f64),
     /// A stroke of so many px.
     Short(f64),
-}
-
-/// How far the rules go for a kind of figures.
-#[derive(Clone, Copy, Debug)]
-pub struct Bounds {
-    /// Least angle between lines and within corners, degrees.
-    pub angle_deg: f64,
-    /// Distance between nodes, pens.
-    pub node_pens: f64,
-    /// Radius of curves, pens.
-    pub radius_pens: f64,
-    /// Length of strokes, pens and px.
-    pub shortest: (f64, f64),
-    /// What an end points at, pens.
-    pub ahead_pens: f64,
-    /// Whether lines that run alongside are too near.
-    pub alongside: bool,
-}
-
-impl Bounds {
-    /// For plain drawings.
-    pub const USUAL: Self = Self {
-        angle_deg: LEAST_ANGLE_DEG,
-        node_pens: LEAST_NODE_PENS,
-        radius_pens: LEAST_RADIUS_PENS,
-        shortest: (SHORTEST_PENS, SHORTEST_PX),
-        ahead_pens: AHEAD_PENS,
-        alongside: true,
-    };
-    /// For writing and marks: letters are small for their pen.
-    pub const SMALL: Self =
-        Self { node_pens: 1.5, radius_pens: 1.0, shortest: (2.5, 4.0), ahead_pens: 1.5, ..Self::USUAL };
-    /// For hairpins, hair and shallow crossings, which are made of what the usual bounds forbid.
-    pub const SHARP: Self =
-        Self { angle_deg: 2.9, node_pens: 0.0, radius_pens: 0.0, alongside: false, ..Self::USUAL };
-    /// For hatching, whose lines end where others lie.
-    pub const HATCHED: Self = Self { node_pens: 2.8, ahead_pens: 1.5, ..Self::USUAL };
-    /// For small filled shapes, whose tips are as sharp as they like.
-    pub const FILLED: Self = Self { shortest: (6.0, 12.0), ..Self::SHARP };
 }
 
 /// The first rule that a figure breaks, if any, for this pen and least paper between lines, px.

@@ -57,7 +57,7 @@ fn sun(random: &mut Random, hand: &Hand) -> Figure {
     let inner = radius + hand.pen + hand.paper * random.between(1.0, 2.5);
     let most = (TAU * inner / (1.4 * (hand.pen + hand.paper))) as usize;
     let rays = random.whole(6, 14).min(most);
-    let length = (hand.size - inner).max(7.0 * hand.pen).max(12.5);
+    let length = (hand.size - inner).max(8.0 * hand.pen).max(12.5);
     let ray = |i: usize| {
         let way = TAU * i as f64 / rays as f64;
         line(polar(Point::ORIGIN, way, inner), polar(Point::ORIGIN, way, inner + length))
