@@ -11,6 +11,7 @@
 //! | `light`, `ink` | even light, polarity, threshold |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
 //! | `region`, `distance` | connected patches of ink; distance to the paper |
+//! | `reading`, `parts` | what is a line by its own width; lines and shapes parted |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
@@ -46,6 +47,7 @@ mod plane;
 mod polarity;
 mod prune;
 mod quality;
+mod reading;
 mod region;
 mod ridge;
 mod shadow;

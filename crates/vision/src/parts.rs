@@ -1,22 +1,30 @@
 //! Pen lines or filled shapes: each part of the ink by its own width.
 //!
-//! Where ink is much wider than the pen it was filled, and its outline is meant; where it is as wide as the pen all
-//! along, its middle is. A patch can hold both: the stick of a lollipop is a line that ends on the disc's outline.
+//! Where ink is much wider than the lines it hangs together with it was filled, and its outline is meant; what is long
+//! for its own width is a line, and its middle is meant. A patch can hold both: a drawing of lines with hair filled in,
+//! a disc with a stick that ends on its outline.
 
 use crate::graph::{Graph, Skeleton};
 use crate::mask::Mask;
 use crate::prune;
+use crate::reading::{Reading, pen_of};
 use crate::region::{Region, regions};
 use crate::ridge::median;
 use crate::thin;
 
 /// No pen's lines, nor two of them where they cross, hold an upright square of this share of the picture's shorter
-/// side.
+/// side: what does was filled with something else than the picture's second ink.
 pub(crate) const SOLID_SHARE: usize = 16;
 
+/// Two lines where they cross at right angles hold a disc of 1.4 of their width, and one more px for blur.
+const CROSSED_PENS: f64 = 1.6;
 /// An octagon this many pens wide fits in no crossing of lines: where three cross at 60°, a disc of two pens fits, and
 /// blur and noise fill corners.
 const BULK_PENS: f64 = 3.0;
+/// The same where more than one octagon fits side by side.
+const WIDE_PENS: f64 = 2.2;
+/// In a drawing of lines, what holds this much more than one octagon, as a share of its area, was filled.
+const FILLED: f64 = 1.6;
 
 /// Pixels by which a shape is larger than the octagons in it, and the share of their width: a disc just wider than them
 /// leaves that much.
@@ -43,21 +51,73 @@ impl Parts {
 
     /// Each part by its width.
     pub(crate) fn of(mask: &Mask, patches: Vec<Region>, keep_dust: bool) -> Self {
-        let side = mask.width.min(mask.height) / SOLID_SHARE;
-        let solid = mask.clone().eroded(side);
-        let (bulky, thin): (Vec<Region>, Vec<Region>) =
-            patches.into_iter().partition(|region| region.cells(&solid).next().is_some());
-        let thin = graphs(&mask.clone().without(&mask_of(mask, &bulky)), thin);
-        let pen = pen_width(thin.iter().map(|(_, graph)| graph));
-        let thin = if keep_dust { thin } else { without_dust(mask, &bulky, thin, pen) };
-        let pen = if pen > 0.0 { pen } else { stick_width(thin.iter().map(|(_, graph)| graph)) };
-        let (lines, wide): (Vec<_>, Vec<_>) =
-            thin.into_iter().partition(|(_, graph)| graph.is_pure_line(pen));
-        let mut sorter = Sorter { pen, lines, shape_mask: Mask::empty(mask.width, mask.height) };
-        sorter.sort(bulky, wide, 2 * side);
+        let mut patches: Vec<Patch> = graphs(mask, patches).into_iter().map(Patch::new).collect();
+        let pen = usual_pen(&patches);
+        let pens = Pens::of(&patches);
+        patches.iter_mut().for_each(|patch| patch.reading.is_drawn |= pens.drew(patch));
+        let patches = if keep_dust { patches } else { without_dust(mask, patches, pen) };
+        let mut sorter = Sorter { pen, lines: Vec::new(), shape_mask: Mask::empty(mask.width, mask.height) };
+        sorter.sort(patches);
         let Sorter { lines, shape_mask, .. } = sorter;
         Self { lines, shapes: regions(&shape_mask), shape_mask }
     }
+}
+
+/// A patch of ink with its skeleton and what that says of it.
+struct Patch {
+    region: Region,
+    graph: Graph,
+    reading: Reading,
+}
+
+impl Patch {
+    fn new((region, graph): (Region, Graph)) -> Self {
+        let reading = Reading::of(&graph, region.area());
+        Self { region, graph, reading }
+    }
+
+    /// Whether no part of it is wider than two lines of its own pen or the picture's where they cross.
+    fn is_pure_line(&self, pen: f64) -> bool {
+        self.reading.widest <= CROSSED_PENS * pen.max(self.reading.pen()) + 1.0
+    }
+}
+
+/// The widths of the lines that are certainly lines, from the narrowest, px.
+struct Pens(Vec<f64>);
+
+impl Pens {
+    fn of(patches: &[Patch]) -> Self {
+        let drawn = patches.iter().filter(|patch| patch.reading.is_drawn);
+        let mut pens: Vec<f64> =
+            drawn.flat_map(|patch| patch.reading.lines.iter().map(|l| l.width)).collect();
+        pens.sort_unstable_by(f64::total_cmp);
+        Self(pens)
+    }
+
+    /// Whether one of them drew a patch that by itself might as well be a shape: a fat letter beside others.
+    fn drew(&self, patch: &Patch) -> bool {
+        let Reading { usual, widest, long, .. } = patch.reading;
+        let from = self.0.partition_point(|&pen| pen < usual / SAME_PEN);
+        let pen = self.0.get(from).filter(|&&pen| pen <= usual * SAME_PEN);
+        long >= LONG_LETTER && pen.is_some_and(|pen| widest <= CROSSED_PENS * pen + 1.0)
+    }
+}
+
+/// A fat pen's letter is so many times as long as wide.
+const LONG_LETTER: f64 = 2.4;
+/// Two widths of one pen differ less than this, as a ratio.
+const SAME_PEN: f64 = 1.25;
+
+/// The usual width of all lines, px; 0 if there are none. Those of drawings, and only where there are no drawings a
+/// shape's sticks.
+fn usual_pen(patches: &[Patch]) -> f64 {
+    let drawn = patches.iter().filter(|patch| patch.is_pure_line(0.0) || patch.reading.is_drawn);
+    let mut lines: Vec<_> = drawn.flat_map(|patch| patch.reading.lines.iter().copied()).collect();
+    lines.sort_by(|a, b| a.width.total_cmp(&b.width));
+    if lines.is_empty() {
+        return patches.iter().filter_map(|patch| patch.reading.stick_pen()).fold(0.0, f64::max);
+    }
+    pen_of(&lines)
 }
 
 impl Region {
@@ -80,18 +140,17 @@ const BELONGS_PENS: f64 = 4.0;
 const LEAST_DOT_PENS: f64 = 0.4;
 
 /// Without the specks that lie by themselves.
-fn without_dust(mask: &Mask, bulky: &[Region], thin: Vec<(Region, Graph)>, pen: f64) -> Vec<(Region, Graph)> {
+fn without_dust(mask: &Mask, patches: Vec<Patch>, pen: f64) -> Vec<Patch> {
     let speck = |region: &Region| (region.area() as f64) < SPECK_PX.max(SPECK_PENS * pen * pen);
-    let drawn = thin.iter().map(|(region, _)| region).filter(|r| !speck(r)).chain(bulky);
-    let drawn = mask_of(mask, drawn);
+    let drawn = mask_of(mask, patches.iter().map(|patch| &patch.region).filter(|r| !speck(r)));
     // a picture of nothing but specks means them
     if drawn.is_empty() {
-        return thin;
+        return patches;
     }
     let reach = (BELONGS_PENS * pen).max(SPECK_PX) as usize;
     let dot =
         |region: &Region| region.area() as f64 >= LEAST_DOT_PENS * pen * pen && region.is_near(&drawn, reach);
-    thin.into_iter().filter(|(region, _)| !speck(region) || dot(region)).collect()
+    patches.into_iter().filter(|patch| !speck(&patch.region) || dot(&patch.region)).collect()
 }
 
 /// Parts the patches that may hold both kinds.
@@ -103,38 +162,80 @@ struct Sorter {
 }
 
 impl Sorter {
-    /// `bulky` patches are wider than any pen somewhere, `wide` ones wider than a line of the pen.
-    ///
-    /// Where the pen is known, octagons that fit into none of its lines tell shapes from lines. Where it is not,
-    /// octagons of half a patch's own width or more do: each patch is parted by the first that fits, from the widest on.
-    fn sort(&mut self, bulky: Vec<Region>, wide: Vec<(Region, Graph)>, widest: usize) {
-        let mut left: Vec<(Region, Option<Graph>)> = bulky.into_iter().map(|region| (region, None)).collect();
-        left.extend(wide.into_iter().map(|(region, graph)| (region, Some(graph))));
-        let known = (BULK_PENS * self.pen + 2.0).ceil() as usize;
-        let mut width = if self.pen > 0.0 { known } else { widest };
-        while !left.is_empty() {
-            let mask = mask_of(&self.shape_mask, left.iter().map(|(region, _)| region));
-            let inner = mask.clone().opened(width.max(LEAST_BULK));
-            let (fits, rest): (Vec<_>, Vec<_>) =
-                left.into_iter().partition(|(region, _)| region.cells(&inner).next().is_some());
-            let rim = RIM_PX + width / RIM_SHARE;
-            self.split(mask_of(&mask, fits.iter().map(|(region, _)| region)), inner.dilated_by(rim));
-            left = rest;
-            if self.pen > 0.0 || width <= LEAST_BULK {
-                break;
+    fn sort(&mut self, patches: Vec<Patch>) {
+        let mut drawn: Vec<Patch> = Vec::new();
+        let mut filled: Vec<Patch> = Vec::new();
+        for patch in patches {
+            if patch.is_pure_line(self.pen) {
+                self.lines.push((patch.region, patch.graph));
+            } else if patch.reading.is_drawn {
+                drawn.push(patch);
+            } else {
+                filled.push(patch);
             }
-            width /= 2;
         }
-        for (region, graph) in left {
-            match graph {
-                Some(graph) if !graph.is_shape(self.pen) => self.lines.push((region, graph)),
-                _ => region.fill_into(&mut self.shape_mask),
+        for (pen, alike) in by_pen(drawn, |patch| patch.reading.wide_pen()) {
+            self.sort_drawn(alike, pen);
+        }
+        let usual = self.pen;
+        for (pen, alike) in by_pen(filled, |patch| patch.reading.stick_pen().unwrap_or(usual)) {
+            self.sort_filled(alike, pen);
+        }
+    }
+
+    /// Drawings of lines of about one pen: what is filled in them is wider than lines that cross, somewhere much wider, and
+    /// no line itself.
+    fn sort_drawn(&mut self, group: Vec<Patch>, pen: f64) {
+        let width = ((CROSSED_PENS * pen + 2.0).ceil() as usize).max(LEAST_BULK);
+        let mask = mask_of(&self.shape_mask, group.iter().map(|patch| &patch.region));
+        let mut inner = mask.opened(width);
+        let least = WIDE_PENS * pen + 2.0;
+        let cores = regions(&inner);
+        for core in graphs(&inner, cores).into_iter().map(Patch::new) {
+            let small = (core.region.area() as f64) < FILLED * least * least;
+            if core.reading.widest < least || small || core.reading.is_drawn {
+                core.region.erase_from(&mut inner);
             }
+        }
+        self.part(group, inner, width, |piece, _| piece.reading.is_drawn || !piece.reading.lines.is_empty());
+    }
+
+    /// Filled shapes, which may have sticks of about one pen.
+    fn sort_filled(&mut self, group: Vec<Patch>, pen: f64) {
+        let blob = WIDE_PENS * self.pen + 1.0;
+        let is_whole = |p: &Patch| pen == 0.0 || (p.reading.lines.is_empty() && p.reading.widest > blob);
+        let (whole, mixed): (Vec<_>, Vec<_>) = group.into_iter().partition(is_whole);
+        whole.iter().for_each(|patch| patch.region.fill_into(&mut self.shape_mask));
+        if mixed.is_empty() {
+            return;
+        }
+        let width = ((BULK_PENS * pen + 2.0).ceil() as usize).max(LEAST_BULK);
+        let inner = mask_of(&self.shape_mask, mixed.iter().map(|patch| &patch.region)).opened(width);
+        self.part(mixed, inner, width, |piece, beside| {
+            let is_line = piece.is_pure_line(pen) && piece.graph.is_line_beside(pen);
+            is_line && piece.region.leads_away(beside, &piece.graph)
+        });
+    }
+
+    /// Parts the patches that hold octagons of this width, which are `inner`; the others are lines.
+    fn part(
+        &mut self,
+        group: Vec<Patch>,
+        inner: Mask,
+        width: usize,
+        is_line: impl Fn(&Patch, &Mask) -> bool,
+    ) {
+        let (fits, rest): (Vec<_>, Vec<_>) =
+            group.into_iter().partition(|patch| patch.region.cells(&inner).next().is_some());
+        self.lines.extend(rest.into_iter().map(|patch| (patch.region, patch.graph)));
+        if !fits.is_empty() {
+            let mixed = mask_of(&self.shape_mask, fits.iter().map(|patch| &patch.region));
+            self.split(mixed, inner.dilated_by(RIM_PX + width / RIM_SHARE), is_line);
         }
     }
 
     /// Lines that lead away from what octagons and their rims cover, and the shapes without them.
-    fn split(&mut self, mixed: Mask, covered: Mask) {
+    fn split(&mut self, mixed: Mask, covered: Mask, is_line: impl Fn(&Patch, &Mask) -> bool) {
         let bulk = covered.and(&mixed);
         let mut rest = mixed.clone().without(&bulk);
         let beside = bulk.clone().dilated_by(2);
@@ -147,14 +248,29 @@ impl Sorter {
             corner.fill_into(&mut self.shape_mask);
             corner.erase_from(&mut rest);
         }
-        for (piece, graph) in graphs(&rest, long) {
-            match graph.is_line_beside(self.pen) && piece.leads_away(&beside, &graph) {
-                true => self.lines.push((piece, graph)),
-                false => piece.fill_into(&mut self.shape_mask),
+        for piece in graphs(&rest, long).into_iter().map(Patch::new) {
+            match is_line(&piece, &beside) {
+                true => self.lines.push((piece.region, piece.graph)),
+                false => piece.region.fill_into(&mut self.shape_mask),
             }
         }
     }
 }
+
+/// Patches of nearly the same pen together, which is the widest of them: a whole mask is opened for each pen.
+fn by_pen(mut left: Vec<Patch>, pen: impl Fn(&Patch) -> f64) -> Vec<(f64, Vec<Patch>)> {
+    left.sort_by(|a, b| pen(a).total_cmp(&pen(b)));
+    let mut groups = Vec::new();
+    while let Some(first) = left.first() {
+        let most = ALIKE * pen(first) + 0.5;
+        let rest = left.split_off(left.partition_point(|patch| pen(patch) <= most));
+        groups.push((left.last().map_or(0.0, &pen), std::mem::replace(&mut left, rest)));
+    }
+    groups
+}
+
+/// Pens that differ by less than this, as a ratio, are taken together.
+const ALIKE: f64 = 1.2;
 
 /// The squares of 8, 16, 32 … px that fit into a mask, by their upper left corners: thinning what holds a large one
 /// takes long and shows no line.
@@ -202,18 +318,6 @@ fn graphs(mask: &Mask, regions: Vec<Region>) -> Vec<(Region, Graph)> {
     regions.into_iter().map(read).collect()
 }
 
-/// The median width along all lines of the picture, px; 0 if there are none.
-fn pen_width<'a>(graphs: impl Iterator<Item = &'a Graph>) -> f64 {
-    let lines = graphs.filter(|graph| !graph.is_uneven() && !graph.is_blob());
-    2.0 * median(&lines.flat_map(Graph::radii).collect::<Vec<_>>())
-}
-
-/// The median width of lines that lead to shapes, px; 0 if there are none.
-fn stick_width<'a>(graphs: impl Iterator<Item = &'a Graph>) -> f64 {
-    let sticks = graphs.filter(|graph| graph.is_uneven());
-    2.0 * median(&sticks.flat_map(Graph::narrow_radii).collect::<Vec<_>>())
-}
-
 /// What this share of sorted values, %, are under; 0 of none.
 fn at_share(sorted: &[f64], share: usize) -> f64 {
     sorted.get(sorted.len() * share / 100).copied().unwrap_or(0.0)
@@ -227,39 +331,13 @@ impl Graph {
         radii
     }
 
-    fn length(&self) -> f64 {
+    /// The length of all branches, px.
+    pub(crate) fn length(&self) -> f64 {
         self.branches.iter().map(|b| b.length()).sum()
     }
 
-    /// Whether the ink's width varies along its skeleton as no pen's does: it runs out towards a shape's corners.
-    fn is_uneven(&self) -> bool {
-        let radii = self.radii();
-        let at = |share| at_share(&radii, share);
-        at(90) > 1.5 * at(50) + 0.7
-    }
-
-    /// Whether the ink is hardly longer than wide, or goes round holes that are smaller than it is wide.
-    fn is_blob(&self) -> bool {
-        let width = |share| 2.0 * at_share(&self.radii(), share);
-        let least = match self.rounds() {
-            0 => 2.5 * 2.0 * self.widest(),
-            // squares whose holes are as wide as their sides; of more, each shares two of its sides with others
-            rounds @ 1..=2 => 8.0 * rounds as f64 * width(75),
-            rounds => 4.0 * (rounds + 1) as f64 * width(50),
-        };
-        self.length() < least
-    }
-
-    /// The half widths of the part that is about as narrow as the narrowest quarter, if that is long enough for a line.
-    fn narrow_radii(&self) -> Vec<f64> {
-        let mut radii = self.radii();
-        let narrow = at_share(&radii, 25);
-        radii.retain(|r| (0.8 * narrow..=1.25 * narrow + 0.5).contains(r));
-        if radii.len() as f64 > 8.0 * narrow { radii } else { Vec::new() }
-    }
-
     /// How many ways round there are in a connected graph (its first Betti number).
-    fn rounds(&self) -> usize {
+    pub(crate) fn rounds(&self) -> usize {
         let rings = self.branches.iter().filter(|b| b.ring).count();
         // free ends are nodes of their own; some nodes have lost their branches
         let free = self.branches.iter().flat_map(|b| b.nodes).filter(Option::is_none).count() - 2 * rings;
@@ -267,19 +345,14 @@ impl Graph {
         (self.branches.len() + usize::from(rings == 0)).saturating_sub(nodes + free)
     }
 
-    fn widest(&self) -> f64 {
+    /// Half of the width where it is widest, px.
+    pub(crate) fn widest(&self) -> f64 {
         self.branches.iter().flat_map(|b| b.radii.iter().copied()).fold(0.0, f64::max)
     }
 
-    /// Whether no part of it is wider than two lines of the pen where they cross.
-    fn is_pure_line(&self, pen: f64) -> bool {
-        2.0 * self.widest() <= 1.6 * pen + 1.0
-    }
-
-    /// Whether this was filled and not drawn with a pen of width `pen` (0: no line is known in this picture).
-    fn is_shape(&self, pen: f64) -> bool {
-        let wide = pen > 0.0 && 2.0 * at_share(&self.radii(), 50) > 2.2 * pen;
-        2.0 * self.widest() > 1.6 * pen && (wide || self.is_uneven() || self.is_blob())
+    /// What this share of its half widths, %, are under, px.
+    pub(crate) fn radius_under(&self, share: usize) -> f64 {
+        at_share(&self.radii(), share)
     }
 
     /// Whether a piece next to a shape is a line: as wide at both ends, and long for its width; the less so, the more its

@@ -208,13 +208,16 @@ fn usual_pen(drawing: &Drawing) -> Option<f64> {
     pens.iter().find(reached).map(|&(pen, _)| pen)
 }
 
-/// Pixels a patch must have: a speck of a 120th of the picture's height either way is dust, and one of fewer than 6 px
-/// always; or as many as asked for.
+/// Pixels a patch must have: six, or as many as asked for. Where no pen is looked for that could tell dust, a speck of a
+/// 120th of the picture's shorter side either way is dust too.
 fn least_patch(ink: &Ink, options: &Options) -> usize {
-    let side = ink.darkness.width.min(ink.darkness.height) / 120;
     let averaged = (ink.reduction * ink.reduction) as f64;
     let asked = options.despeckle_px2.map(|area| (area / averaged).ceil() as usize);
-    asked.unwrap_or((side * side).max(LEAST_PX))
+    let side = ink.darkness.width.min(ink.darkness.height) / 120;
+    asked.unwrap_or(match options.mode {
+        Mode::Auto | Mode::Centreline => LEAST_PX,
+        Mode::Outline | Mode::Sweep => (side * side).max(LEAST_PX),
+    })
 }
 
 /// The regions of at least so many pixels, their pinholes filled.
