@@ -4,14 +4,14 @@ use std::time::Instant;
 
 use tracelight_aim::{Placement, SizeRequest};
 use tracelight_formats::{Reading, svg};
-use tracelight_stroke::{Affine, Drawing, Point, Vec2};
-use tracelight_vision::{Quality, VisionError};
+use tracelight_stroke::{Affine, Drawing, Point, Stroke, StrokeKind, Vec2};
+use tracelight_vision::{Quality, Traced, VisionError};
 
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::failure::Failure;
-use crate::output::Raster;
+use crate::output::{Raster, counted};
 use crate::picture::{Pixels, Source};
 
 /// Width of a picture that says nothing of its size, m: 24 in.
@@ -54,15 +54,51 @@ impl Sketch {
 /// Share of the ink that may be missed without a word: what blots at junctions and ends make of a clean drawing.
 const MISSED_SILENTLY: f64 = 0.01;
 
-fn doubt(missed_ink: f64) -> Option<String> {
-    (missed_ink > MISSED_SILENTLY).then(|| {
+/// Shorter ways over paper that were cut are not spoken of, px: a corner cut off between two hairs.
+const CUT_SILENTLY_PX: f64 = 8.0;
+
+/// Of strokes of both kinds less than this share of the length as outlines is not spoken of.
+const OUTLINED_SILENTLY: f64 = 0.05;
+
+/// What of a picture is in no stroke, or drawn round its edge, and what to do about it.
+fn doubts(traced: &Traced) -> Vec<String> {
+    let Traced { missed_ink, left_out, .. } = traced;
+    let missed = (*missed_ink > MISSED_SILENTLY).then(|| {
         format!(
-            "{:.1} % of the ink lies on no stroke: lines that run together, or ink of uneven width. Compare the \
-             strokes with the picture; --mode outline follows the edge of all ink",
+            "{:.1} % of the ink of its lines lies on no stroke, where lines run together or are of uneven width: \
+             compare the strokes with the picture (-o FILE.svg)",
             100.0 * missed_ink
+        )
+    });
+    let specks = (left_out.specks > 0).then(|| {
+        format!(
+            "{} of up to {} px² {} taken for dust: --despeckle 0 keeps them",
+            counted(left_out.specks, "speck"),
+            left_out.largest_speck_px2,
+            if left_out.specks == 1 { "was" } else { "were" }
+        )
+    });
+    let cut = (left_out.over_paper_px > CUT_SILENTLY_PX)
+        .then(|| format!("{:.0} px of strokes led over paper and were cut out", left_out.over_paper_px));
+    missed.into_iter().chain(outlined(&traced.strokes)).chain(specks).chain(cut).collect()
+}
+
+/// How much of a drawing of lines is drawn round its edge.
+fn outlined(drawing: &Drawing) -> Option<String> {
+    let length = |stroke: &Stroke| stroke.path.length(CHORDS_PX);
+    let all: f64 = drawing.strokes.iter().map(length).sum();
+    let outlines = drawing.strokes.iter().filter(|stroke| stroke.kind == StrokeKind::Outline);
+    let share = outlines.map(length).sum::<f64>() / all;
+    (OUTLINED_SILENTLY..1.0).contains(&share).then(|| {
+        format!(
+            "{:.0} % of the light goes round filled shapes: --mode centreline draws their middle instead",
+            100.0 * share
         )
     })
 }
+
+/// Chords that measure a share of the light stay this close to their path, px.
+const CHORDS_PX: f64 = 0.1;
 
 /// Strokes on a page of their own, for a file.
 pub(crate) struct Page {
@@ -192,10 +228,10 @@ fn traced(
     Ok(Sketch {
         size,
         true_width_m: None,
+        remarks: doubts(&traced),
         drawing: traced.strokes,
         picture: Some(pixels.colour),
         mode: options.mode.name(),
-        remarks: doubt(traced.missed_ink).into_iter().collect(),
         quality: Some(traced.quality),
         missed_ink: Some(traced.missed_ink),
         vision_ms: 0.0,

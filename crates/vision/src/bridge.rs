@@ -57,6 +57,12 @@ impl Tip {
         self.curve.map_or((self.at + self.along * ahead, self.along), on)
     }
 
+    /// Whether all is ink from this tip to a place so far ahead.
+    pub(crate) fn is_inked_to(&self, dark: &Plane<u8>, ahead: f64) -> bool {
+        let steps = ahead.max(0.0).ceil() as usize;
+        (1..=steps).all(|k| is_inked(dark, self.at, self.beyond((k as f64).min(ahead)).0))
+    }
+
     /// How far ahead of this tip and of another their curves meet; `None` where they run side by side.
     fn meets(&self, other: &Tip) -> Option<(f64, f64)> {
         let (mut s, mut t) = (0.0, 0.0);
@@ -105,8 +111,8 @@ impl Tip {
         // lines an angle θ apart meet |over|/θ ahead; nearly parallel ones nowhere in particular
         let far = over.hypot() / LEAST_CROSS + 4.0;
         let ahead = |s: f64| (-1.0..far).contains(&s);
-        let inked = |s: f64| is_inked(dark, self.at, self.beyond(s).0);
-        let corner = self.meets(other).filter(|&(s, t)| ahead(s) && ahead(t) && inked(s));
+        let inked = |s: f64, t: f64| self.is_inked_to(dark, s) && other.is_inked_to(dark, t);
+        let corner = self.meets(other).filter(|&(s, t)| ahead(s) && ahead(t) && inked(s, t));
         match corner.filter(|_| self.turn(other).abs() >= CORNER_RAD) {
             Some((s, t)) => {
                 let corner = self.beyond(s).0;
@@ -145,8 +151,17 @@ pub(crate) fn scatter_px(points: &[Point]) -> f64 {
     median(&points.windows(4).map(third_sq).collect::<Vec<_>>()).sqrt() / TIMES
 }
 
+/// How far a line of some width leads from its end towards a place: all the way if that is ink, or to half its width from
+/// where the ink ends.
+pub(crate) fn inked_towards(dark: &Plane<u8>, line: Point, place: Point, width: f64) -> Point {
+    let steps = line.distance(place).ceil().max(1.0);
+    let at = |k: f64| line.lerp(place, k / steps);
+    let inked = (1..=steps as usize).take_while(|&k| is_inked(dark, line, at(k as f64))).count() as f64;
+    if inked == steps { place } else { at((inked - 0.5 * width * steps / line.distance(place)).max(0.0)) }
+}
+
 /// Whether a place is at least a third as dark as one on the line.
-pub(crate) fn is_inked(dark: &Plane<u8>, line: Point, place: Point) -> bool {
+fn is_inked(dark: &Plane<u8>, line: Point, place: Point) -> bool {
     3.0 * dark.at(place) >= dark.at(line)
 }
 

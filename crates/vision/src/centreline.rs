@@ -13,7 +13,7 @@ use crate::region::Region;
 use crate::ridge::median;
 
 /// A row of points to be fitted, and the pen that drew it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
     pub(crate) points: Vec<Point>,
     pub(crate) closed: bool,

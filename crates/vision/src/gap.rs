@@ -17,6 +17,11 @@ const BEND: f64 = 0.56;
 /// Two ends of one line differ less than this in the width of their pen, as a ratio.
 const LIKE: f64 = 1.6;
 
+/// The most paper that a line may cross: what is bridged, less the pen's two halves, and the ink's edge on either side, px.
+pub(crate) fn widest_paper(width: f64) -> f64 {
+    (WIDEST_PENS - 1.0) * width + LEAST_PX + 2.0
+}
+
 /// A free end of a row.
 struct End {
     row: usize,

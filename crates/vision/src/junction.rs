@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use tracelight_stroke::Point;
 
-use crate::bridge::{Tip, is_inked, meeting};
+use crate::bridge::{Tip, inked_towards, meeting};
 use crate::graph::{Graph, Node};
 use crate::line::Line;
 use crate::plane::Plane;
@@ -157,7 +157,7 @@ impl Junctions {
             return;
         }
         let tips: Vec<Tip> = left.iter().map(|p| p.tip).collect();
-        let middle = meeting(&tips).filter(|&p| is_inked(dark, tips[0].at, p));
+        let middle = meeting(&tips);
         let first = self.joints.len();
         for most in [THROUGH, BACK] {
             while let Some((i, j)) = straightest(&left, most) {
@@ -169,8 +169,12 @@ impl Junctions {
             }
         }
         for port in left {
-            let stop = self.joints[first..].iter().find_map(|joint| hit(&port, joint, lines));
-            self.ends.push((port, stop.or(middle).unwrap_or(port.tip.at)));
+            let hits = self.joints[first..].iter().filter_map(|joint| hit(&port, joint, lines));
+            let stop =
+                hits.chain(middle).min_by(|a, b| a.distance(port.tip.at).total_cmp(&b.distance(port.tip.at)));
+            let width = lines[port.line].width;
+            self.ends
+                .push((port, stop.map_or(port.tip.at, |stop| inked_towards(dark, port.tip.at, stop, width))));
         }
     }
 }

@@ -16,7 +16,7 @@
 //! | `ridge`, `line`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
 //! | `follow` | points to paths |
-//! | `missed` | ink that no stroke follows |
+//! | `missed`, `on_ink` | ink that no stroke follows; strokes that follow no ink |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
 //! | `fiducial` | printed square markers and which they are |
@@ -40,6 +40,7 @@ mod line;
 mod marks;
 mod mask;
 mod missed;
+mod on_ink;
 mod outline;
 mod paler;
 mod parts;
@@ -66,4 +67,4 @@ pub use marks::{Marks, find_two_marks};
 pub use quality::{Figure, Quality, Verdict};
 pub use spot::{Spot, SpotLost, SpotWindow, find_spot};
 pub use stages::Stages;
-pub use trace::{Mode, Options, Traced, trace};
+pub use trace::{LeftOut, Mode, Options, Traced, trace};

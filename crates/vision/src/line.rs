@@ -64,7 +64,7 @@ impl Line {
     fn reach_out(&mut self, dark: &Plane<u8>, shapes: &Mask, end: usize) {
         let tip = self.tip(end);
         let reach = 4.0 * self.width + 4.0;
-        let ahead = match shape_ahead(shapes, &tip, reach) {
+        let ahead = match shape_ahead(shapes, &tip, reach).filter(|&ahead| tip.is_inked_to(dark, ahead)) {
             Some(ahead) => ahead,
             None => {
                 let Some(ahead) = ridge::pen_end(dark, |s| tip.beyond(s).0, self.width, reach) else {

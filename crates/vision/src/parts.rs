@@ -40,13 +40,16 @@ pub(crate) struct Parts {
     pub(crate) shapes: Vec<Region>,
     /// The ink of all shapes.
     pub(crate) shape_mask: Mask,
+    /// What was taken for dust and is neither.
+    pub(crate) dust: Vec<Region>,
 }
 
 impl Parts {
     /// Every patch as lines.
     pub(crate) fn all_lines(mask: &Mask, regions: Vec<Region>) -> Self {
         let lines = graphs(mask, regions);
-        Self { lines, shapes: Vec::new(), shape_mask: Mask::empty(mask.width, mask.height) }
+        let shape_mask = Mask::empty(mask.width, mask.height);
+        Self { lines, shapes: Vec::new(), shape_mask, dust: Vec::new() }
     }
 
     /// Each part by its width.
@@ -55,11 +58,11 @@ impl Parts {
         let pen = usual_pen(&patches);
         let pens = Pens::of(&patches);
         patches.iter_mut().for_each(|patch| patch.reading.is_drawn |= pens.drew(patch));
-        let patches = if keep_dust { patches } else { without_dust(mask, patches, pen) };
+        let (patches, dust) = if keep_dust { (patches, Vec::new()) } else { dusted(mask, patches, pen) };
         let mut sorter = Sorter { pen, lines: Vec::new(), shape_mask: Mask::empty(mask.width, mask.height) };
         sorter.sort(patches);
         let Sorter { lines, shape_mask, .. } = sorter;
-        Self { lines, shapes: regions(&shape_mask), shape_mask }
+        Self { lines, shapes: regions(&shape_mask), shape_mask, dust }
     }
 }
 
@@ -139,18 +142,20 @@ const SPECK_PENS: f64 = 0.6;
 const BELONGS_PENS: f64 = 4.0;
 const LEAST_DOT_PENS: f64 = 0.4;
 
-/// Without the specks that lie by themselves.
-fn without_dust(mask: &Mask, patches: Vec<Patch>, pen: f64) -> Vec<Patch> {
+/// The patches without the specks that lie by themselves, and those.
+fn dusted(mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<Patch>, Vec<Region>) {
     let speck = |region: &Region| (region.area() as f64) < SPECK_PX.max(SPECK_PENS * pen * pen);
     let drawn = mask_of(mask, patches.iter().map(|patch| &patch.region).filter(|r| !speck(r)));
     // a picture of nothing but specks means them
     if drawn.is_empty() {
-        return patches;
+        return (patches, Vec::new());
     }
     let reach = (BELONGS_PENS * pen).max(SPECK_PX) as usize;
     let dot =
         |region: &Region| region.area() as f64 >= LEAST_DOT_PENS * pen * pen && region.is_near(&drawn, reach);
-    patches.into_iter().filter(|patch| !speck(&patch.region) || dot(&patch.region)).collect()
+    let (kept, dust): (Vec<_>, Vec<_>) =
+        patches.into_iter().partition(|patch| !speck(&patch.region) || dot(&patch.region));
+    (kept, dust.into_iter().map(|patch| patch.region).collect())
 }
 
 /// Parts the patches that may hold both kinds.

@@ -8,7 +8,7 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{self, Region, pinholes, regions};
-use crate::{Grey, Quality, VisionError, gap, missed, sweep};
+use crate::{Grey, Quality, VisionError, gap, missed, on_ink, sweep};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -115,6 +115,19 @@ pub struct Traced {
     pub quality: Quality,
     /// Share of the pen lines' ink that lies further from every stroke than the pen reaches: lost, or run together.
     pub missed_ink: f64,
+    /// What was left out on purpose.
+    pub left_out: LeftOut,
+}
+
+/// What of an image's ink, and of the ways between it, is in no stroke on purpose.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LeftOut {
+    /// Patches of six pixels or more that were taken for dust: smaller than the pen, and by themselves.
+    pub specks: usize,
+    /// The largest of them, px².
+    pub largest_speck_px2: usize,
+    /// Length of the ways over paper that were cut out of strokes, px.
+    pub over_paper_px: f64,
 }
 
 /// Finds the strokes of an image.
@@ -128,12 +141,13 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
     let mut mask = ink.mask();
     let regions = drawn(&mut mask, least_patch(&ink, options))?;
     let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
-    let (strokes, missed_ink) = match options.mode {
+    let only = |strokes: Vec<Stroke>| Found { strokes, missed_ink: 0.0, left_out: LeftOut::default() };
+    let Found { strokes, missed_ink, left_out } = match options.mode {
         Mode::Sweep => {
             let area = regions.iter().map(Region::area).sum();
-            (vec![sweep::stroke(&mask, area)?], 0.0)
+            only(vec![sweep::stroke(&mask, area)?])
         }
-        Mode::Outline => (outlines(&ink, &mask, &mask, &regions, options), 0.0),
+        Mode::Outline => only(outlines(&ink, &mask, &mask, &regions, options)),
         Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, &mask, regions, options),
     };
     if strokes.is_empty() {
@@ -154,7 +168,26 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
         quality: Quality { pen_px: usual_pen(&strokes), ..ink.quality },
         strokes,
         missed_ink,
+        left_out: left_out.enlarged(ink.reduction),
     })
+}
+
+/// Strokes in px of the ink's plane, and what is in none.
+struct Found {
+    strokes: Vec<Stroke>,
+    missed_ink: f64,
+    left_out: LeftOut,
+}
+
+impl LeftOut {
+    /// In px of an image of which so many either way were averaged into one.
+    fn enlarged(self, by: usize) -> Self {
+        Self {
+            largest_speck_px2: self.largest_speck_px2 * by * by,
+            over_paper_px: self.over_paper_px * by as f64,
+            ..self
+        }
+    }
 }
 
 /// What stands out less than this share of what stands out most is an edge of paper or of a shadow: a pencil beside a pen keeps more.
@@ -245,8 +278,7 @@ fn outlines(ink: &Ink, filled: &Mask, mask: &Mask, shapes: &[Region], options: &
     shapes.iter().flat_map(|shape| outliner.strokes(shape, options)).collect()
 }
 
-/// The strokes, and the share of the lines' ink that they miss.
-fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Options) -> (Vec<Stroke>, f64) {
+fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Options) -> Found {
     let dark = &ink.darkness;
     let parts = match options.mode {
         Mode::Centreline => Parts::all_lines(mask, regions),
@@ -258,7 +290,8 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
         .iter()
         .flat_map(|(region, graph)| centreline::rows(dark, &parts.shape_mask, region, graph))
         .collect();
-    strokes.extend(gap::bridged(rows).iter().filter_map(|row| centreline::stroke(dark, row, options)));
+    let (rows, over_paper_px) = on_ink::only(mask, gap::bridged(rows));
+    strokes.extend(rows.iter().filter_map(|row| centreline::stroke(dark, row, options)));
     let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
     let counts = missed::counts(mask, &lined, &strokes);
     let (mut missed, mut all) = (0, 0);
@@ -274,7 +307,12 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
     if !lost_ink.is_empty() {
         strokes.extend(outlines(ink, &lost_ink, mask, &region::regions(&lost_ink), options));
     }
-    (strokes, missed as f64 / (all as f64).max(1.0))
+    let left_out = LeftOut {
+        specks: parts.dust.len(),
+        largest_speck_px2: parts.dust.iter().map(Region::area).max().unwrap_or(0),
+        over_paper_px,
+    };
+    Found { strokes, missed_ink: missed as f64 / (all as f64).max(1.0), left_out }
 }
 
 /// A patch whose lines leave out more than this share of it is none of lines.
