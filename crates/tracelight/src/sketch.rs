@@ -5,7 +5,7 @@ use std::time::Instant;
 use tracelight_aim::{Placement, SizeRequest};
 use tracelight_formats::{Reading, svg};
 use tracelight_stroke::{Affine, Drawing, Point, Stroke, StrokeKind, Vec2};
-use tracelight_vision::{Quality, Traced, VisionError};
+use tracelight_vision::{Comb, Quality, Traced, VisionError};
 
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::placing::PlacementArgs;
@@ -62,7 +62,7 @@ const OUTLINED_SILENTLY: f64 = 0.05;
 
 /// What of a picture is in no stroke, or drawn round its edge, and what to do about it.
 fn doubts(traced: &Traced) -> Vec<String> {
-    let Traced { missed_ink, left_out, .. } = traced;
+    let Traced { missed_ink, left_out, rules, .. } = traced;
     let missed = (*missed_ink > MISSED_SILENTLY).then(|| {
         format!(
             "{:.1} % of the ink of its lines lies on no stroke, where lines run together or are of uneven width: \
@@ -80,7 +80,14 @@ fn doubts(traced: &Traced) -> Vec<String> {
     });
     let cut = (left_out.over_paper_px > CUT_SILENTLY_PX)
         .then(|| format!("{:.0} px of strokes led over paper and were cut out", left_out.over_paper_px));
-    missed.into_iter().chain(outlined(&traced.strokes)).chain(specks).chain(cut).collect()
+    let ruled = rules.iter().flat_map(|rules| &rules.combs).map(ruled);
+    ruled.chain(missed).chain(outlined(&traced.strokes)).chain(specks).chain(cut).collect()
+}
+
+/// That a comb of rules was taken out.
+fn ruled(comb: &Comb) -> String {
+    let way = if comb.upright { "upright" } else { "level" };
+    format!("{} {way} rules of the paper, {:.0} px apart, were left out", comb.count, comb.spacing_px)
 }
 
 /// How much of a drawing of lines is drawn round its edge.

@@ -2,21 +2,20 @@
 
 use std::borrow::Cow;
 
+use crate::comb::{self, Rules};
 use crate::light::{Paper, percentile};
 use crate::mask::Mask;
 use crate::paler::with_paler;
 use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
 use crate::quality::clipped_percent;
-use crate::region::any_spans;
 use crate::sharpness::{self, Step};
 use crate::{Grey, Quality, VisionError};
 
 /// Noise from which on the picture is smoothed, levels.
 const SMOOTHED_FROM: f64 = 2.5;
-
-/// What is fainter than this share of the strongest ink is not ink: ruled paper's lines have up to a third of it.
-const RULES: f64 = 0.42;
+/// What is left of it then: the root of the sum of the squares of the binomial mean's weights.
+const SMOOTHED: f64 = 3.0 / 8.0;
 
 /// An image with its light and polarity evened out.
 #[derive(Clone, Debug)]
@@ -25,8 +24,8 @@ pub(crate) struct Ink {
     pub(crate) darkness: Plane<u8>,
     /// Ink is darker than this.
     pub(crate) threshold: u8,
-    /// Ruled paper's lines are paler than this.
-    above_rules: u8,
+    /// The paper's rules, which are no longer there.
+    pub(crate) rules: Option<Rules>,
     /// How much darker the ink is than the paper, levels; `None` where all that is paler is paper: the threshold was
     /// given, or there are shadows.
     strength: Option<f64>,
@@ -59,15 +58,20 @@ impl Ink {
         if is_noisy {
             darkness = smoothed(&darkness);
         }
-        let levels = sampled_histogram(&darkness);
+        let mut levels = sampled_histogram(&darkness);
+        let blur = if is_noisy { SMOOTHED } else { 1.0 };
+        let rules = comb::without_rules(&darkness, blur * noise_levels, strongest(&levels));
+        let rules = rules.map(|(plain, rules)| {
+            levels = sampled_histogram(&plain);
+            darkness = plain;
+            rules
+        });
         let split = match threshold_percent {
             Some(percent) => Split::at(&levels, (2.55 * percent).round() as u8),
             None => Split::of(&levels),
         };
         let strongest = strongest(&levels);
         split.check(threshold_percent, strongest)?;
-        // whoever sets a threshold means it: rules over it are ink
-        let above_rules = if threshold_percent.is_some() { 0 } else { (RULES * strongest) as u8 };
         let (dimmest, brightest) = paper.range();
         let quality = Quality {
             contrast_percent: (split.ink - split.paper) / 2.55,
@@ -83,16 +87,12 @@ impl Ink {
         quality.gate(threshold_percent.is_some())?;
         let is_alone = threshold_percent.is_some() || paper.has_shadows();
         let strength = (!is_alone).then_some(split.ink - split.paper);
-        Ok(Self { darkness, threshold: split.threshold, above_rules, strength, reduction, quality })
+        Ok(Self { darkness, threshold: split.threshold, rules, strength, reduction, quality })
     }
 
-    /// Where there is ink. Where some of it leads from border to border, the paper is ruled perhaps: then only what is
-    /// darker than rules. Elsewhere there may be a second, paler ink.
+    /// Where there is ink; there may be a second, paler one.
     pub(crate) fn mask(&self) -> Mask {
         let mask = over(&self.darkness, self.threshold);
-        if self.above_rules > self.threshold && any_spans(&mask) {
-            return over(&self.darkness, self.above_rules);
-        }
         match self.strength {
             Some(strength) => with_paler(&self.darkness, mask, strength, self.edge_px()),
             None => mask,
@@ -262,7 +262,7 @@ impl Split {
     fn edge_px(&self, darkness: &Plane<u8>, noise: f64, smoothed: bool) -> Option<f64> {
         // the binomial mean of 3 px has a variance of 1/2; a Gaussian's integral rises from 10 to 90 % in 2.563 σ
         const ADDED_SQ: f64 = 2.563 * 2.563 * 0.5;
-        let noise = if smoothed { 3.0 / 8.0 * noise } else { noise };
+        let noise = if smoothed { SMOOTHED * noise } else { noise };
         // two deviations: what differs by less is as likely to be noise
         let step = Step {
             threshold: self.threshold,

@@ -9,6 +9,7 @@
 //! | module | what |
 //! |---|---|
 //! | `light`, `ink` | even light, polarity, threshold |
+//! | `comb` | the rules of ruled and squared paper, taken out from under the ink |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
 //! | `region`, `distance` | connected patches of ink; distance to the paper |
 //! | `reading`, `parts` | what is a line by its own width; lines and shapes parted |
@@ -24,6 +25,7 @@
 
 mod bridge;
 mod centreline;
+mod comb;
 mod contrast;
 mod distance;
 mod error;
@@ -60,6 +62,7 @@ mod sweep;
 mod thin;
 mod trace;
 
+pub use comb::{Comb, Rules};
 pub use error::VisionError;
 pub use fiducial::{TAG_COUNT, Tag, TagPlace, find_tags, tag_cells};
 pub use grey::Grey;

@@ -8,12 +8,12 @@ pub struct Stages {
     pub width: usize,
     /// The same.
     pub height: usize,
-    /// Row by row: how dark each pixel is beside its paper, the light evened out; 0 is paper, 255 total darkness. Of light ink on dark
+    /// Row by row: how dark each pixel is beside its paper, the light evened out and the paper's rules taken out; 0 is paper, 255 total darkness. Of light ink on dark
     /// paper, how light.
     pub darkness: Vec<u8>,
     /// What is darker is ink.
     pub threshold: u8,
-    /// Row by row: what is taken for ink. More than the threshold says where there is a second, paler ink; less where the paper is ruled.
+    /// Row by row: what is taken for ink. More than the threshold says where there is a second, paler ink.
     pub ink: Vec<bool>,
 }
 

@@ -1,6 +1,7 @@
 use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 
 use crate::centreline::{self, Row};
+use crate::comb::Rules;
 use crate::contrast::stands_out;
 use crate::ink::Ink;
 use crate::inside::inside;
@@ -117,6 +118,8 @@ pub struct Traced {
     pub missed_ink: f64,
     /// What was left out on purpose.
     pub left_out: LeftOut,
+    /// Rules of ruled or squared paper, which are none of the strokes.
+    pub rules: Option<Rules>,
 }
 
 /// What of an image's ink, and of the ways between it, is in no stroke on purpose.
@@ -169,6 +172,7 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
         strokes,
         missed_ink,
         left_out: left_out.enlarged(ink.reduction),
+        rules: ink.rules.map(|rules| rules.scaled(ink.reduction as f64)),
     })
 }
 

@@ -1,0 +1,317 @@
+//! Which of the lines that cross a page are its rules: equally spaced, alike, all over it, from border to border.
+
+use super::Comb;
+use super::strips::{Peak, Strips};
+use super::track::Track;
+use crate::solve;
+
+/// Fewest rules.
+pub(super) const FEWEST: usize = 5;
+/// Share of the page that they cover across.
+const COVERED: f64 = 0.6;
+/// Share of the rules between the first and the last that may be missing.
+const MISSING: f64 = 0.25;
+/// Share of the rules that reach either border.
+const REACHING: f64 = 0.7;
+/// Squares are as wide as high to this share.
+const SQUARE: f64 = 0.03;
+/// A rule is where it is expected to a share of the spacing, or so many px.
+const NEAR: f64 = 0.13;
+const NEAR_PX: f64 = 1.5;
+/// Printed rules are equally spaced to a share of the spacing, or so many px (rms): what a hand draws is not.
+const EVEN: f64 = 0.025;
+const EVEN_PX: f64 = 0.6;
+/// And they are straight to so much, along their own smooth course.
+const STRAIGHT: f64 = 0.035;
+const STRAIGHT_PX: f64 = 0.7;
+/// Share of the strips in which a rule whose place is known must be seen.
+const SEEN: f64 = 0.45;
+/// The middle of a rule that the picture's border cuts is this near to it, px: half of a wide rule.
+pub(super) const CUT_PX: f64 = 4.0;
+/// Rules differ in contrast from their fellows by no more than this, as a ratio: each fifth may be printed darker.
+const ALIKE: f64 = 2.6;
+
+/// One rule: where it crosses each strip.
+#[derive(Clone, Debug)]
+pub(super) struct Rule {
+    /// px across, from the first pixel's centre; one a strip.
+    pub(super) at: Vec<f64>,
+}
+
+/// Rules of one direction.
+#[derive(Clone, Debug)]
+pub(super) struct Family {
+    pub(super) rules: Vec<Rule>,
+    /// Those that the picture's border cuts, all along or somewhere on their way.
+    pub(super) cut: Vec<Rule>,
+    pub(super) spacing: f64,
+    /// Tangent of the angle by which they are turned from the plane's sides.
+    pub(super) slope: f64,
+}
+
+impl Family {
+    /// Whether a line that is there halfway along is one of the rules.
+    pub(super) fn has(&self, middle: f64) -> bool {
+        let near = (0.05 * self.spacing).max(2.0);
+        self.rules.iter().any(|rule| (rule.at[rule.at.len() / 2] - middle).abs() <= near)
+    }
+
+    /// What is told of it; on the plane it is level.
+    pub(super) fn told(&self, width_px: f64) -> Comb {
+        let turned = self.slope.atan();
+        let spacing_px = self.spacing * turned.cos();
+        Comb { count: self.rules.len(), spacing_px, width_px, upright: false, turned_rad: -turned }
+    }
+}
+
+/// Where rules may end: at the border, or at a line that itself leads from border to border across them; or anywhere, where those
+/// across them with this spacing are rules.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Ends<'a> {
+    At(&'a [f64]),
+    Squared(f64),
+}
+
+/// The family of rules among some tracks, if there is one.
+pub(super) fn family(strips: &Strips, tracks: &[Track], ends: Ends<'_>) -> Option<Family> {
+    let chain = longest_chain(strips, tracks)?;
+    let law = Law::of(strips, tracks, &chain)?;
+
+    if !law.is_even(strips, tracks, &chain) {
+        return None;
+    }
+    let mut contrasts: Vec<f64> = chain.iter().map(|link| tracks[link.track].contrast()).collect();
+    contrasts.sort_unstable_by(f64::total_cmp);
+    let contrast = contrasts[contrasts.len() / 2];
+    let found = law.seen(strips, contrast);
+    let (first, last) = (found.first()?.0, found.last()?.0);
+    let between = (last - first + 1) as usize;
+    let is_all_over = (between as f64) * law.spacing >= COVERED * strips.breadth as f64;
+    let is_whole = found.len() >= FEWEST && (between - found.len()) as f64 <= MISSING * between as f64;
+    let reach = match ends {
+        Ends::At(lines) => reach(strips, &found, lines),
+        Ends::Squared(spacing) => (law.spacing / spacing - 1.0).abs() < SQUARE,
+    };
+
+    if !(is_all_over && is_whole && reach) {
+        return None;
+    }
+    let rules = found.iter().map(|(index, seen)| law.rule(strips, *index, seen)).collect();
+    let most = (strips.breadth as f64 / law.spacing) as i32 + 2;
+    let beyond = (first - most..first).chain(last + 1..=last + most);
+    let cut = beyond.filter(|&index| law.is_cut(strips, index));
+    let cut = cut.map(|index| law.rule(strips, index, &vec![None; strips.strips.len()])).collect();
+    Some(Family { rules, cut, spacing: law.spacing, slope: law.slope() })
+}
+
+/// Whether most rules lead from one border to the other, or to one of some lines across them that is near it.
+fn reach(strips: &Strips, found: &[(i32, Vec<Option<Peak>>)], lines: &[f64]) -> bool {
+    let all = &strips.strips;
+    let is_reached = |k: usize| {
+        let reaching = found.iter().filter(|(_, seen)| seen[k].is_some()).count();
+        reaching as f64 >= REACHING * found.len() as f64
+    };
+    // the strips just within such a line
+    let right_of = |line: &f64| all.partition_point(|strip| strip.at <= *line);
+    let starts = lines.iter().map(right_of).filter(|k| *k < all.len() / 4);
+    let left_of = |line: &f64| all.partition_point(|strip| strip.at < *line).checked_sub(1);
+    let ends = lines.iter().filter_map(left_of).filter(|k| *k >= all.len() - all.len() / 4);
+    starts.chain([0]).any(is_reached) && ends.chain([all.len() - 1]).any(is_reached)
+}
+
+/// A track and which rule it is.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    index: i32,
+    track: usize,
+}
+
+/// The most tracks that follow each other at equal distances, in the page's middle.
+fn longest_chain(strips: &Strips, tracks: &[Track]) -> Option<Vec<Link>> {
+    let places: Vec<(f64, usize)> = tracks.iter().enumerate().map(|(k, t)| (t.middle(strips), k)).collect();
+    let chains = (0..places.len()).filter_map(|k| {
+        // the other side of the paper may shine through: rules look alike
+        let contrast = tracks[places[k].1].contrast();
+        let is_alike = |p: &&(f64, usize)| ratio(tracks[p.1].contrast(), contrast) < ALIKE;
+        let mut alike: Vec<(f64, usize)> = places.iter().filter(is_alike).copied().collect();
+        alike.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let from = alike.iter().position(|p| p.1 == places[k].1)?;
+        let spacing = alike.get(from + 1)?.0 - alike[from].0;
+        (spacing >= LEAST_SPACING).then(|| chain(&alike, from, spacing))
+    });
+    let whole = |chain: &Vec<Link>| {
+        let span = (chain[chain.len() - 1].index - chain[0].index + 1) as f64;
+        chain.len() >= FEWEST.min(4) && (span - chain.len() as f64) <= 0.5 * span
+    };
+    chains.filter(whole).max_by_key(Vec::len)
+}
+
+/// How many times the larger of two is the smaller.
+fn ratio(a: f64, b: f64) -> f64 {
+    (a / b).max(b / a)
+}
+
+/// Least distance of two rules, px.
+const LEAST_SPACING: f64 = 6.0;
+
+/// From one track on, both ways, those at a distance that changes slowly.
+fn chain(places: &[(f64, usize)], from: usize, spacing: f64) -> Vec<Link> {
+    let mut links = vec![Link { index: 0, track: places[from].1 }];
+    for way in [1.0, -1.0] {
+        let (mut at, mut spacing, mut index) = (places[from].0, spacing, 0);
+        'on: loop {
+            for skipped in 1..=3 {
+                let expected = at + way * f64::from(skipped) * spacing;
+                let near = |p: &&(f64, usize)| (p.0 - expected).abs();
+                let Some(next) = places.iter().min_by(|a, b| near(a).total_cmp(&near(b))) else { break 'on };
+                if near(&next) <= (NEAR * spacing).max(NEAR_PX) {
+                    spacing += 0.3 * ((next.0 - at) * way / f64::from(skipped) - spacing);
+                    (at, index) = (next.0, index + way as i32 * skipped);
+                    links.push(Link { index, track: next.1 });
+                    continue 'on;
+                }
+            }
+            break;
+        }
+    }
+    links.sort_unstable_by_key(|link| link.index);
+    links.dedup_by_key(|link| link.index);
+    links
+}
+
+/// Terms of the law: up to the square of a rule's number, and the cube of the way along it.
+const TERMS: usize = 12;
+
+/// Where each rule is: smooth in its number and along it, for a page lies bent or is seen at a slant.
+struct Law {
+    terms: [f64; TERMS],
+    /// Rules that were used to find it, the middle one and half their number.
+    about: (f64, f64),
+    length: f64,
+    spacing: f64,
+}
+
+impl Law {
+    fn of(strips: &Strips, tracks: &[Track], chain: &[Link]) -> Option<Self> {
+        let (first, last) = (f64::from(chain.first()?.index), f64::from(chain.last()?.index));
+        let about = (0.5 * (first + last), (0.5 * (last - first)).max(1.0));
+        let mut law = Self { terms: [0.0; TERMS], about, length: strips.length as f64, spacing: 0.0 };
+        let mut most_off = f64::MAX;
+        for _ in 0..3 {
+            let (mut normal, mut right) = ([[0.0; TERMS]; TERMS], [0.0; TERMS]);
+            for (index, x, peak) in points(strips, tracks, chain) {
+                if (peak.at - law.at(index, x)).abs() > most_off {
+                    continue;
+                }
+                let basis = law.basis(index, x);
+                for (k, row) in normal.iter_mut().enumerate() {
+                    row.iter_mut().zip(basis).for_each(|(cell, b)| *cell += basis[k] * b);
+                    right[k] += basis[k] * peak.at;
+                }
+            }
+            (0..TERMS).for_each(|k| normal[k][k] += 1e-6);
+            law.terms = solve::symmetric(normal, right)?;
+            let middle = 0.5 * law.length;
+            law.spacing = (law.at(last, middle) - law.at(first, middle)) / (last - first);
+            most_off = (0.1 * law.spacing).max(NEAR_PX);
+        }
+        (law.spacing >= LEAST_SPACING).then_some(law)
+    }
+
+    fn basis(&self, index: f64, x: f64) -> [f64; TERMS] {
+        let (i, u) = ((index - self.about.0) / self.about.1, 2.0 * x / self.length - 1.0);
+        std::array::from_fn(|k| i.powi(k as i32 / 4) * u.powi(k as i32 % 4))
+    }
+
+    fn at(&self, index: f64, x: f64) -> f64 {
+        self.basis(index, x).iter().zip(self.terms).map(|(b, t)| b * t).sum()
+    }
+
+    fn slope(&self) -> f64 {
+        (self.at(self.about.0, self.length) - self.at(self.about.0, 0.0)) / self.length
+    }
+
+    /// Whether the tracks keep to the law as print does.
+    fn is_even(&self, strips: &Strips, tracks: &[Track], chain: &[Link]) -> bool {
+        let (mut between, mut along) = (0.0, 0.0);
+        for link in chain {
+            let off = |(_, x, peak): (f64, f64, Peak)| peak.at - self.at(f64::from(link.index), x);
+            let mut offs: Vec<f64> = points(strips, tracks, &[*link]).map(off).collect();
+            offs.sort_unstable_by(f64::total_cmp);
+            let middle = offs[offs.len() / 2];
+            between += middle * middle;
+            // half of them lie within the quartiles: writing on a rule moves some
+            let quartiles = 0.5 * (offs[offs.len() * 3 / 4] - offs[offs.len() / 4]);
+            along += (1.48 * quartiles).powi(2);
+        }
+        let rms = |sum: f64| (sum / chain.len() as f64).sqrt();
+        rms(between) <= (EVEN * self.spacing).max(EVEN_PX)
+            && rms(along) <= (STRAIGHT * self.spacing).max(STRAIGHT_PX)
+    }
+
+    /// The rules that are seen, also those that no track followed, by number, with where.
+    fn seen(&self, strips: &Strips, contrast: f64) -> Vec<(i32, Vec<Option<Peak>>)> {
+        let mut found = Vec::new();
+        let middle = self.about.0.round() as i32;
+        let most = (strips.breadth as f64 / self.spacing) as i32 + 2;
+        for index in middle - most..=middle + most {
+            let points = self.points_on(strips, f64::from(index), contrast);
+            let within = strips.strips.iter().filter(|strip| {
+                (1.0..strips.breadth as f64 - 2.0).contains(&self.at(f64::from(index), strip.at))
+            });
+            let (within, seen) = (within.count(), points.iter().flatten().count());
+            if within >= 4 && seen as f64 >= SEEN * within as f64 && 2 * within > strips.strips.len() {
+                found.push((index, points));
+            }
+        }
+        found
+    }
+
+    /// Whether some of a rule lies in the picture, or on its border, which cuts it.
+    fn is_cut(&self, strips: &Strips, index: i32) -> bool {
+        let inside = -CUT_PX..strips.breadth as f64 - 1.0 + CUT_PX;
+        strips.strips.iter().any(|strip| inside.contains(&self.at(f64::from(index), strip.at)))
+    }
+
+    /// In each strip the line nearest to where a rule must be.
+    fn points_on(&self, strips: &Strips, index: f64, contrast: f64) -> Vec<Option<Peak>> {
+        let reach = (NEAR * self.spacing).max(NEAR_PX);
+        let nearest = |strip: &super::strips::Strip| {
+            let expected = self.at(index, strip.at);
+            let off = |peak: &&Peak| (peak.at - expected).abs();
+            let alike = |peak: &&Peak| ratio(peak.contrast, contrast) < ALIKE;
+            let near = strip.peaks.iter().filter(|p| off(p) <= reach).filter(alike);
+            near.min_by(|a, b| off(a).total_cmp(&off(b))).copied()
+        };
+        strips.strips.iter().map(nearest).collect()
+    }
+
+    /// A rule's course: the law, and by how much the strips nearby are off it.
+    fn rule(&self, strips: &Strips, index: i32, seen: &[Option<Peak>]) -> Rule {
+        let law: Vec<f64> = strips.strips.iter().map(|strip| self.at(f64::from(index), strip.at)).collect();
+        let off: Vec<Option<f64>> = seen.iter().zip(&law).map(|(p, at)| p.map(|p| p.at - at)).collect();
+        let near = |k: usize| {
+            let reach = (2..off.len()).find(|&r| {
+                off[k.saturating_sub(r)..(k + r + 1).min(off.len())].iter().flatten().count() >= 3
+            });
+            let r = reach.unwrap_or(off.len());
+            let mut near: Vec<f64> =
+                off[k.saturating_sub(r)..(k + r + 1).min(off.len())].iter().flatten().copied().collect();
+            near.sort_unstable_by(f64::total_cmp);
+            near.get(near.len() / 2).copied().unwrap_or(0.0)
+        };
+        Rule { at: (0..law.len()).map(|k| law[k] + near(k)).collect() }
+    }
+}
+
+/// Number, place along and line of all that some tracks passed.
+fn points<'a>(
+    strips: &'a Strips,
+    tracks: &'a [Track],
+    chain: &'a [Link],
+) -> impl Iterator<Item = (f64, f64, Peak)> + 'a {
+    chain.iter().flat_map(move |link| {
+        let known = tracks[link.track].points.iter().zip(&strips.strips);
+        known.filter_map(move |(p, s)| p.map(|p| (f64::from(link.index), s.at, p)))
+    })
+}

@@ -1,0 +1,159 @@
+//! Thin lines followed from strip to strip, right across the page.
+
+use super::strips::{Peak, Strip, Strips};
+use crate::solve;
+
+/// Steepest rule: 6.5°, as its tangent.
+const STEEPEST: f64 = 0.114;
+/// A line's place is known to this, px, and its bend to so much per px.
+const PLACE: f64 = 1.2;
+const BEND: f64 = 0.02;
+/// As many of its last points tell where a line goes on.
+const REMEMBERED: usize = 8;
+/// A line's contrast varies by no more than this, as a ratio: where it is more, something lies on it.
+const STEADY: f64 = 2.2;
+/// Share of the strips in which a line must be seen.
+const SEEN: f64 = 0.6;
+/// And one that leads from border to border.
+const WHOLE: f64 = 0.8;
+/// Half of what is printed straight is within this, px.
+const STRAIGHT_PX: f64 = 0.6;
+
+/// A line that runs across most of the page.
+#[derive(Clone, Debug)]
+pub(super) struct Track {
+    /// Where it crosses each strip; `None` where it is not seen.
+    pub(super) points: Vec<Option<Peak>>,
+}
+
+impl Track {
+    /// Strips in which it is seen.
+    pub(super) fn seen(&self) -> usize {
+        self.points.iter().flatten().count()
+    }
+
+    /// Its usual contrast.
+    pub(super) fn contrast(&self) -> f64 {
+        let mut contrasts: Vec<f64> = self.points.iter().flatten().map(|peak| peak.contrast).collect();
+        contrasts.sort_unstable_by(f64::total_cmp);
+        contrasts.get(contrasts.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// Where it is halfway across the page.
+    pub(super) fn middle(&self, strips: &Strips) -> f64 {
+        let (mean, slope) = fitted(&self.places(strips));
+        mean.1 + slope * (0.5 * strips.length as f64 - mean.0)
+    }
+
+    /// Whether it leads from border to border, and as straight as print.
+    pub(super) fn is_whole(&self, strips: &Strips) -> bool {
+        let ends = [self.points.first(), self.points.last()];
+        let reaches = ends.iter().all(|end| matches!(end, Some(Some(_))));
+        let smoothed = self.smoothed(strips);
+        let mut off: Vec<f64> =
+            self.points.iter().zip(smoothed).filter_map(|(p, s)| p.map(|p| (p.at - s).abs())).collect();
+        off.sort_unstable_by(f64::total_cmp);
+        reaches && self.seen() as f64 >= WHOLE * self.points.len() as f64 && off[off.len() / 2] < STRAIGHT_PX
+    }
+
+    /// Its course by strip, as a parabola.
+    pub(super) fn smoothed(&self, strips: &Strips) -> Vec<f64> {
+        let unit = |x: f64| 2.0 * x / strips.length as f64 - 1.0;
+        let (mut normal, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+        for (x, y) in self.places(strips) {
+            let basis = [1.0, unit(x), unit(x).powi(2)];
+            for (k, row) in normal.iter_mut().enumerate() {
+                row.iter_mut().zip(basis).for_each(|(cell, b)| *cell += basis[k] * b);
+                right[k] += basis[k] * y;
+            }
+        }
+        let [c, b, a] = solve::symmetric(normal, right).unwrap_or([0.0; 3]);
+        strips.strips.iter().map(|strip| c + (b + a * unit(strip.at)) * unit(strip.at)).collect()
+    }
+
+    /// Where it is seen, along and across.
+    pub(super) fn places(&self, strips: &Strips) -> Vec<(f64, f64)> {
+        self.points.iter().zip(&strips.strips).filter_map(|(p, s)| p.map(|p| (s.at, p.at))).collect()
+    }
+
+    /// Value and slope of the line through its last points before a place.
+    fn course(&self, strips: &[Strip]) -> Option<(f64, f64, usize)> {
+        let known = self.points.iter().zip(strips).filter_map(|(p, s)| p.map(|p| (s.at, p.at)));
+        let known: Vec<(f64, f64)> = known.collect();
+        let last = &known[known.len().saturating_sub(REMEMBERED)..];
+        let &(x, y) = last.last()?;
+        if last.len() < 3 {
+            return Some((y, 0.0, last.len()));
+        }
+        let (middle, slope) = fitted(last);
+        Some((middle.1 + slope * (x - middle.0), slope, last.len()))
+    }
+}
+
+/// The mean place, and the slope, of the line nearest to some points.
+pub(super) fn fitted(points: &[(f64, f64)]) -> ((f64, f64), f64) {
+    let n = points.len().max(1) as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
+    let (square, product) =
+        points.iter().fold((0.0, 0.0), |(s, p), q| (s + (q.0 - x).powi(2), p + (q.0 - x) * (q.1 - y)));
+    ((x, y), if square > 0.0 { product / square } else { 0.0 })
+}
+
+/// The lines that are seen in most strips.
+pub(super) fn tracks(strips: &Strips) -> Vec<Track> {
+    let count = strips.strips.len();
+    let least = (SEEN * count as f64) as usize;
+    let mut tracks: Vec<Track> = Vec::new();
+    for (number, strip) in strips.strips.iter().enumerate() {
+        let taken = matched(&tracks, &strips.strips, number);
+        let mut is_free = vec![true; strip.peaks.len()];
+        for (track, found) in tracks.iter_mut().zip(&taken) {
+            if let Some(k) = *found {
+                is_free[k] = false;
+            }
+            track.points.push(found.map(|k| strip.peaks[k]));
+        }
+        // those that can no longer be seen in enough strips
+        tracks.retain(|track| track.seen() + count - track.points.len() >= least);
+        if count - number >= least {
+            let free = strip.peaks.iter().zip(is_free).filter(|(_, free)| *free);
+            tracks.extend(free.map(|(&peak, _)| {
+                let mut points = vec![None; number];
+                points.push(Some(peak));
+                Track { points }
+            }));
+        }
+    }
+    tracks
+}
+
+/// Which of a strip's lines continues each track: the nearest to where it leads.
+fn matched(tracks: &[Track], strips: &[Strip], number: usize) -> Vec<Option<usize>> {
+    let strip = &strips[number];
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (t, track) in tracks.iter().enumerate() {
+        let Some((y, slope, known)) = track.course(strips) else { continue };
+        let last = track.points.iter().rposition(Option::is_some).unwrap_or(0);
+        let ahead = strip.at - strips[last].at;
+        let (expected, contrast) = (y + slope * ahead, track.contrast());
+        let reach = PLACE + ahead * if known < 3 { STEEPEST } else { BEND };
+        let first = strip.peaks.partition_point(|peak| peak.at < expected - reach);
+        for (k, peak) in strip.peaks.iter().enumerate().skip(first) {
+            if peak.at > expected + reach {
+                break;
+            }
+            let ratio = peak.contrast / contrast;
+            if (1.0 / STEADY..STEADY).contains(&ratio) {
+                pairs.push(((peak.at - expected).abs() / reach, t, k));
+            }
+        }
+    }
+    pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut found, mut is_taken) = (vec![None; tracks.len()], vec![false; strip.peaks.len()]);
+    for (_, t, k) in pairs {
+        if found[t].is_none() && !is_taken[k] {
+            (found[t], is_taken[k]) = (Some(k), true);
+        }
+    }
+    found
+}

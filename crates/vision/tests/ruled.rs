@@ -1,0 +1,123 @@
+//! Ruled and squared paper: its rules are none of the drawing, whatever their darkness, and what is drawn over them
+//! stays whole. A drawing's own parallel lines stay.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+use std::f64::consts::TAU;
+
+#[path = "support/raster.rs"]
+#[allow(dead_code, reason = "each test draws with some of it")]
+mod raster;
+
+use raster::Canvas;
+use tracelight_stroke::{Point, Vec2, compare_polylines};
+use tracelight_vision::{Grey, Options, Traced, trace};
+
+const WIDTH: usize = 640;
+const HEIGHT: usize = 480;
+
+/// A sheet of rules: how far apart and how wide they are, px, and the tangent of their turn.
+struct Paper {
+    spacing: f64,
+    width: f64,
+    turn: f64,
+    squared: bool,
+}
+
+impl Paper {
+    /// From border to border, and beyond.
+    fn rules(&self) -> Vec<Vec<Point>> {
+        let (w, h) = (WIDTH as f64, HEIGHT as f64);
+        let count = |length: f64| (length / self.spacing) as i32 + 3;
+        let at = |k: i32| (f64::from(k) - 1.4) * self.spacing;
+        let level = (0..count(h))
+            .map(|k| vec![Point::new(-9.0, at(k)), Point::new(w + 9.0, at(k) + self.turn * (w + 18.0))]);
+        let upright = (0..count(w) * i32::from(self.squared))
+            .map(|k| vec![Point::new(at(k), -9.0), Point::new(at(k) - self.turn * (h + 18.0), h + 9.0)]);
+        level.chain(upright).collect()
+    }
+}
+
+/// A circle, a bow across several rules and a slanted line.
+fn figure() -> Vec<Vec<Point>> {
+    let round = |centre: Point, radius: f64, from: f64, sweep: f64| -> Vec<Point> {
+        (0..=160).map(|k| centre + Vec2::from_angle(from + sweep * f64::from(k) / 160.0) * radius).collect()
+    };
+    let line = vec![Point::new(420.0, 60.0), Point::new(560.0, 410.0)];
+    vec![
+        round(Point::new(180.0, 170.0), 95.3, 0.0, TAU),
+        round(Point::new(230.0, 300.0), 110.7, 0.4, 1.9),
+        line,
+    ]
+}
+
+/// What is found of pen lines of level 40 over rules of some level, and of noise a little.
+fn traced(paper: &Paper, level: f64, figure: &[Vec<Point>]) -> Traced {
+    let (mut rules, mut ink) = (Canvas::new(WIDTH, HEIGHT), Canvas::new(WIDTH, HEIGHT));
+    paper.rules().iter().for_each(|rule| rules.pen(rule, paper.width));
+    figure.iter().for_each(|line| ink.pen(line, 4.0));
+    let pixel = |(k, (rule, ink)): (usize, (f64, f64))| {
+        let noise = ((k * 7919 + k / 640 * 104_729) % 7) as f64 - 3.0;
+        let under = 240.0 - (240.0 - level) * rule;
+        (under + (40.0_f64.min(under) - under) * ink + noise).clamp(0.0, 255.0) as u8
+    };
+    let levels = rules.shares().zip(ink.shares()).enumerate().map(pixel).collect();
+    trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap()
+}
+
+#[test]
+fn rules_of_any_darkness_are_no_strokes_and_what_crosses_them_is_whole() {
+    let papers = [
+        Paper { spacing: 24.0, width: 1.6, turn: 0.0, squared: false },
+        Paper { spacing: 31.0, width: 2.4, turn: 0.02, squared: false },
+        Paper { spacing: 22.0, width: 1.5, turn: 0.013, squared: true },
+    ];
+    for paper in &papers {
+        for level in [190.0, 140.0, 90.0, 45.0] {
+            let found = traced(paper, level, &figure());
+            let drawn: Vec<_> = found.strokes.strokes.iter().map(|s| s.path.flatten(0.02)).collect();
+            let comparison = compare_polylines(&drawn, &figure(), 2.0).unwrap();
+            let which = format!("{} px apart, level {level}: {comparison:?}", paper.spacing);
+            assert!(comparison.coverage > 0.985, "{which}");
+            assert!(comparison.precision > 0.985, "{which}");
+            let combs = found.rules.map_or(0, |rules| rules.combs.len());
+            assert_eq!(combs, if paper.squared { 2 } else { 1 }, "{which}");
+        }
+    }
+}
+
+#[test]
+fn what_is_told_of_the_rules_is_so() {
+    let paper = Paper { spacing: 31.0, width: 2.4, turn: 0.02, squared: false };
+    let comb = traced(&paper, 120.0, &figure()).rules.unwrap().combs[0];
+    let spacing = paper.spacing * paper.turn.atan().cos();
+    assert!((comb.spacing_px - spacing).abs() < 0.1, "{comb:?}");
+    assert!((comb.turned_rad + paper.turn.atan()).abs() < 1e-3 && !comb.upright, "{comb:?}");
+    assert!((14..=17).contains(&comb.count), "{comb:?}");
+}
+
+#[test]
+fn a_drawings_own_parallel_lines_stay() {
+    let none = Paper { spacing: 1e4, width: 0.0, turn: 0.0, squared: false };
+    let line = |from: (f64, f64), to: (f64, f64)| vec![Point::from(from), Point::from(to)];
+    let hatching =
+        (0..9).map(|k| line((120.0 + 20.0 * f64::from(k), 90.0), (60.0 + 20.0 * f64::from(k), 390.0)));
+    let ladder =
+        (0..12).map(|k| line((400.0, 60.0 + 30.0 * f64::from(k)), (560.0, 60.0 + 30.0 * f64::from(k))));
+    // a grid that is the drawing: it stops short of the border
+    let grid = (0..9).flat_map(|k| {
+        let at = f64::from(k);
+        [
+            line((24.0, 30.0 + 52.0 * at), (616.0, 30.0 + 52.0 * at)),
+            line((24.0 + 74.0 * at, 30.0), (24.0 + 74.0 * at, 446.0)),
+        ]
+    });
+    let drawings: [Vec<Vec<Point>>; 3] = [hatching.collect(), ladder.collect(), grid.collect()];
+    for lines in drawings {
+        let found = traced(&none, 240.0, &lines);
+        assert_eq!(found.rules, None);
+        let drawn: Vec<_> = found.strokes.strokes.iter().map(|s| s.path.flatten(0.02)).collect();
+        let comparison = compare_polylines(&drawn, &lines, 2.0).unwrap();
+        assert!(comparison.coverage > 0.99 && comparison.precision > 0.99, "{comparison:?}");
+    }
+}
