@@ -107,25 +107,25 @@ impl Tip {
     /// Points about 1 px apart from this tip to another, without the two: a smooth curve, or a corner where their
     /// lines meet, if there is ink. A corner within 1.5 px of one of the points `near` is put there.
     pub(crate) fn bridge(&self, other: &Tip, dark: &Plane<u8>, near: &[Point]) -> Vec<Point> {
+        self.corner(other, dark, near).unwrap_or_else(|| self.smoothly_to(other))
+    }
+
+    /// The same over a corner; `None` where the lines run on into each other, or meet nowhere on ink.
+    pub(crate) fn corner(&self, other: &Tip, dark: &Plane<u8>, near: &[Point]) -> Option<Vec<Point>> {
         let over = other.at - self.at;
         // lines an angle θ apart meet |over|/θ ahead; nearly parallel ones nowhere in particular
         let far = over.hypot() / LEAST_CROSS + 4.0;
         let ahead = |s: f64| (-1.0..far).contains(&s);
         let inked = |s: f64, t: f64| self.is_inked_to(dark, s) && other.is_inked_to(dark, t);
         let corner = self.meets(other).filter(|&(s, t)| ahead(s) && ahead(t) && inked(s, t));
-        match corner.filter(|_| self.turn(other).abs() >= CORNER_RAD) {
-            Some((s, t)) => {
-                let corner = self.beyond(s).0;
-                let nearest =
-                    near.iter().copied().min_by(|p, q| p.distance(corner).total_cmp(&q.distance(corner)));
-                let corner = nearest.filter(|p| p.distance(corner) < 1.5).unwrap_or(corner);
-                let steps = |length: f64| 1..=(length - 0.5).max(0.0) as usize;
-                let out = steps(s).map(|k| self.beyond(k as f64).0);
-                let back = steps(t).rev().map(|k| other.beyond(k as f64).0);
-                out.chain([corner]).chain(back).collect()
-            }
-            None => self.smoothly_to(other),
-        }
+        let (s, t) = corner.filter(|_| self.turn(other).abs() >= CORNER_RAD)?;
+        let corner = self.beyond(s).0;
+        let nearest = near.iter().copied().min_by(|p, q| p.distance(corner).total_cmp(&q.distance(corner)));
+        let corner = nearest.filter(|p| p.distance(corner) < 1.5).unwrap_or(corner);
+        let steps = |length: f64| 1..=(length - 0.5).max(0.0) as usize;
+        let out = steps(s).map(|k| self.beyond(k as f64).0);
+        let back = steps(t).rev().map(|k| other.beyond(k as f64).0);
+        Some(out.chain([corner]).chain(back).collect())
     }
 
     /// Points about 1 px apart on a smooth curve from this tip to another, without the two.

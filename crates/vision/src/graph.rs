@@ -18,6 +18,21 @@ pub(crate) struct Branch {
     pub(crate) nodes: [Option<usize>; 2],
     /// Whether it returns to its own first point.
     pub(crate) ring: bool,
+    /// Where it turns back on itself at a place that the skeleton does not show.
+    pub(crate) turns: Vec<Turn>,
+}
+
+/// The turn of a hairpin: both sides run together up to it, and the skeleton forks where their ink parts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Turn {
+    /// The branch's point at the fork.
+    pub(crate) index: usize,
+    /// How far about the fork the sides' ink is one, px.
+    pub(crate) reach: f64,
+    /// Where the pen turned.
+    pub(crate) at: Point,
+    /// Whether its sides meet nowhere in particular.
+    pub(crate) acute: bool,
 }
 
 impl Branch {
@@ -31,11 +46,15 @@ impl Branch {
         self.points.reverse();
         self.radii.reverse();
         self.nodes.reverse();
+        let last = self.points.len().saturating_sub(1);
+        self.turns.iter_mut().for_each(|turn| turn.index = last - turn.index);
+        self.turns.reverse();
         self
     }
 
     /// The ring of a branch whose ends both are at `node`.
     fn closed_at(mut self, node: Node) -> Self {
+        self.turns.extend(node.turn(self.points.len()));
         self.points.push(node.at);
         self.radii.push(node.radius);
         Self { nodes: [None; 2], ring: true, ..self }
@@ -43,6 +62,9 @@ impl Branch {
 
     /// This branch, which ends at `node`, and `tail`, which begins there.
     fn joined_at(mut self, node: Node, tail: Self) -> Self {
+        let after = self.points.len() + 1;
+        self.turns.extend(node.turn(self.points.len()));
+        self.turns.extend(tail.turns.iter().map(|turn| Turn { index: turn.index + after, ..*turn }));
         self.points.push(node.at);
         self.radii.push(node.radius);
         self.points.extend(tail.points);
@@ -57,6 +79,15 @@ pub(crate) struct Node {
     pub(crate) at: Point,
     /// Distance to the paper's edge, px.
     pub(crate) radius: f64,
+    /// Where the pen turned back, if two sides of a hairpin part here, and whether they meet nowhere in particular.
+    pub(crate) turn: Option<(Point, bool)>,
+}
+
+impl Node {
+    /// The turn of a branch that passes here with one of its points.
+    fn turn(&self, index: usize) -> Option<Turn> {
+        self.turn.map(|(at, acute)| Turn { index, reach: 1.1 * self.radius + 0.5, at, acute })
+    }
 }
 
 /// Branches and nodes of one patch of ink.
@@ -234,7 +265,7 @@ impl Reader<'_, '_> {
             let middle =
                 cluster.iter().map(|&i| self.centre(i).to_vec2()).sum::<Vec2>() / cluster.len() as f64;
             let radius = cluster.iter().map(|&i| self.radius(i)).fold(0.0, f64::max);
-            self.graph.nodes.push(Node { at: middle.to_point(), radius });
+            self.graph.nodes.push(Node { at: middle.to_point(), radius, turn: None });
         }
         self.node_of.sort_unstable();
     }
@@ -290,6 +321,7 @@ impl Reader<'_, '_> {
             radii: self.radii(&chain),
             nodes: [from, end],
             ring: false,
+            turns: Vec::new(),
         });
     }
 }

@@ -58,7 +58,7 @@ pub(crate) fn clusters(graph: &Graph, bars: &[usize]) -> (Vec<usize>, Vec<bool>)
     let pen = graph.pen_radius();
     let is_bridge = |branch: &crate::graph::Branch| {
         let [Some(a), Some(b)] = branch.nodes else { return false };
-        let Node { radius, at } = graph.nodes[a];
+        let Node { radius, at, .. } = graph.nodes[a];
         let reach = radius + graph.nodes[b].radius + pen;
         // a way round between the same two nodes is no bridge, however near they are
         at.distance(graph.nodes[b].at) <= reach && branch.length() <= 1.3 * reach

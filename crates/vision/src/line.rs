@@ -3,7 +3,7 @@
 use tracelight_stroke::{Parabola, Point, Vec2, polyline_length};
 
 use crate::bridge::{Tip, scatter_px};
-use crate::graph::{Branch, Graph};
+use crate::graph::{Branch, Graph, Turn};
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::ridge::{self, Ridge, median};
@@ -28,9 +28,10 @@ impl Line {
     pub(crate) fn of(dark: &Plane<u8>, shapes: &Mask, graph: &Graph, branch: &Branch) -> Self {
         let radius = median(&branch.radii).max(0.5);
         let (from, to) = if branch.ring { (0, branch.points.len()) } else { trusted(graph, branch, radius) };
-        let ridge = ridge::centred(dark, &branch.points[from..to], radius, branch.ring);
-        let width = ridge.width;
-        let mut points = bridged(dark, &ridge, branch.ring);
+        let (mut points, width) = match branch.turns.is_empty() {
+            true => centred(dark, &branch.points[from..to], radius, branch.ring),
+            false => turning(dark, branch, (from, to), radius),
+        };
         (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
         let n = branch.points.len();
         match branch.nodes {
@@ -148,6 +149,74 @@ fn shape_ahead(shapes: &Mask, tip: &Tip, reach: f64) -> Option<f64> {
     (0..(reach / STEP) as usize).map(|k| k as f64 * STEP).find(inside)
 }
 
+/// Points on the middle of a line along a row of pixels, and the line's width.
+fn centred(dark: &Plane<u8>, pixels: &[Point], radius: f64, ring: bool) -> (Vec<Point>, f64) {
+    let ridge = ridge::centred(dark, pixels, radius, ring);
+    (bridged(dark, &ridge, ring), ridge.width)
+}
+
+/// The same of a branch that turns back on itself: side by side, and out to each turn and back between them.
+fn turning(dark: &Plane<u8>, branch: &Branch, (from, to): (usize, usize), radius: f64) -> (Vec<Point>, f64) {
+    let mut pixels = branch.points[from..to].to_vec();
+    let inside = branch.turns.iter().filter(|turn| (from..to).contains(&turn.index));
+    let mut turns: Vec<Turn> = inside.map(|turn| Turn { index: turn.index - from, ..*turn }).collect();
+    if let (true, Some(&first)) = (branch.ring, turns.first()) {
+        // a ring begins behind its first turn, and returns to it last
+        pixels.rotate_left(first.index);
+        turns.iter_mut().for_each(|turn| turn.index -= first.index);
+        turns.rotate_left(1);
+        turns.iter_mut().filter(|turn| turn.index == 0).for_each(|turn| turn.index = pixels.len() - 1);
+    }
+    let (mut sides, mut widths, mut start) = (Vec::new(), Vec::new(), 0);
+    let mut before: Option<Turn> = turns.last().copied().filter(|_| branch.ring);
+    for turn in turns.iter().copied().map(Some).chain((!branch.ring).then_some(None)) {
+        let end = turn.map_or(pixels.len(), |turn| turn.index + 1);
+        let away = |p: &Point, turn: Option<Turn>, fork: usize| {
+            turn.is_none_or(|turn| p.distance(pixels[fork]) > turn.reach)
+        };
+        let clear = |p: &&Point| away(p, before, start) && away(p, turn, end - 1);
+        let side: Vec<Point> = pixels[start..end].iter().filter(clear).copied().collect();
+        let (side, width) = match side.is_empty() {
+            true => (side, 2.0 * radius),
+            false => centred(dark, &side, radius, false),
+        };
+        sides.push(side);
+        widths.push(width);
+        (before, start) = (turn, end.min(pixels.len() - 1));
+    }
+    let mut points = Vec::new();
+    for (k, side) in sides.iter().enumerate() {
+        points.extend(side);
+        if let Some(turn) = turns.get(k) {
+            points.extend(round(dark, side, *turn, &sides[(k + 1) % sides.len()]));
+        }
+    }
+    (filled_in(&points, branch.ring), median(&widths))
+}
+
+/// The way round a turn from one side to the next: over the corner where they meet, if they do somewhere.
+fn round(dark: &Plane<u8>, side: &[Point], turn: Turn, next: &[Point]) -> Vec<Point> {
+    let corner = || Tip::of(side, 1)?.corner(&Tip::of(next, 0)?, dark, &[]);
+    let corner = if turn.acute { None } else { corner() };
+    corner.unwrap_or_else(|| vec![turn.at])
+}
+
+/// With points about 1 px apart between those that are further apart than a few.
+fn filled_in(points: &[Point], ring: bool) -> Vec<Point> {
+    const APART_PX: f64 = 1.5;
+    let mut filled = Vec::with_capacity(points.len());
+    for (k, &point) in points.iter().enumerate() {
+        filled.push(point);
+        let next = if ring { points.get((k + 1) % points.len()) } else { points.get(k + 1) };
+        let far = next.map_or(0.0, |next| next.distance(point));
+        if let (true, Some(next)) = (far > APART_PX, next) {
+            let steps = far.round() as usize;
+            filled.extend((1..steps).map(|i| point.lerp(*next, i as f64 / steps as f64)));
+        }
+    }
+    filled
+}
+
 /// The stretches in one row, the gaps between them bridged.
 fn bridged(dark: &Plane<u8>, ridge: &Ridge, ring: bool) -> Vec<Point> {
     let mut row: Vec<Point> = Vec::new();
@@ -216,8 +285,8 @@ mod tests {
     /// From where on a branch of such radii, which leaves a node, is taken for a line.
     fn begins(radii: Vec<f64>) -> usize {
         let points = (1..=radii.len()).map(|k| Point::new(k as f64, 0.0)).collect();
-        let branch = Branch { points, radii, nodes: [Some(0), None], ring: false };
-        let node = Node { at: Point::new(0.0, 0.0), radius: 3.1 };
+        let branch = Branch { points, radii, nodes: [Some(0), None], ring: false, turns: Vec::new() };
+        let node = Node { at: Point::new(0.0, 0.0), radius: 3.1, turn: None };
         let graph = Graph { nodes: vec![node], branches: vec![branch] };
         trusted(&graph, &graph.branches[0], 1.7).0
     }

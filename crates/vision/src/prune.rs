@@ -1,4 +1,7 @@
-//! Branches that the pen's outline made and not the pen.
+//! Branches that the pen's outline made and not the pen: bumps, and the points of corners.
+//!
+//! A spur between two lines is where both run together, up to the corner's point or the hairpin's turn, or it is a third
+//! line. A point goes; where the turn of a hairpin is, the two sides are told.
 
 use tracelight_stroke::{Point, Vec2};
 
@@ -24,6 +27,7 @@ pub(crate) fn prune(graph: &mut Graph) {
             return;
         }
         spurs.sort_unstable_by(|a, b| b.cmp(a));
+        spurs.iter().for_each(|&i| keep_turn(graph, i, pen));
         spurs.into_iter().for_each(|i| drop(graph.branches.swap_remove(i)));
     }
 }
@@ -61,17 +65,72 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
     // between curved sides the point is longer, but it thins out all along
     let tapers = median(&graph.branches[end.0].radii) < 0.85 * pen;
     let most = if tapers { 7.0 * pen } else { 0.0 };
-    // near an acute corner the two skeletons lean together, far from it they may have bent: either may tell
-    [(0, 10), (12, 36)].into_iter().any(|window| {
+    // either may tell
+    WINDOWS.into_iter().any(|window| {
         let others = ends.iter().filter(|&&e| e != end).map(|&e| leaving(graph, e, node.at, window));
         let others: Vec<Vec2> = others.collect();
         let back = -(others[0] + others[1]);
         let s = (0.5 * others[0].cross(others[1]).atan2(others[0].dot(others[1])).abs()).sin();
         let length = (pen + 0.5) * ((1.0 - s) / (s * (1.0 + s)).max(0.05) + 1.0 / s.max(0.1));
-        let midway = out.dot(back) > 0.9 * out.hypot() * back.hypot();
+        let midway = out.dot(back) > 0.9 * out.hypot() * back.hypot() && !is_bent(&graph.branches[end.0]);
         s < MITRED && midway && out.hypot() < (1.25 * length + 2.5).max(most)
     })
 }
+
+/// Whether a branch bends more than skeletons of points do.
+fn is_bent(branch: &Branch) -> bool {
+    let [first, .., last] = branch.points[..] else { return false };
+    branch.length() > BENT * first.distance(last) + 4.0
+}
+
+/// Skeletons go from pixel to pixel, up to 8 % longer than what they follow.
+const BENT: f64 = 1.15;
+
+/// Keeps where the pen turned, if a spur that goes leads there. Lines that meet at less than a mitre is drawn for meet nowhere
+/// in particular.
+fn keep_turn(graph: &mut Graph, spur: usize, pen: f64) {
+    let branch = &graph.branches[spur];
+    let end = usize::from(branch.nodes[0].is_none());
+    let Some((node, tip, radius)) = free_end(graph, (spur, end)) else { return };
+    let Some(number) = branch.nodes[end] else { return };
+    let n = branch.points.len();
+    let back = if end == 0 { n.saturating_sub(LEADING) } else { LEADING.min(n) - 1 };
+    let from = if n >= LEADING { branch.points[back] } else { node.at };
+    let along = (tip - from) / (tip - from).hypot().max(1e-9);
+    let turn = tip + along * (radius - pen);
+    // what blur and the node's own disc cover needs no turn
+    let far = along.dot(turn - node.at) > TURN_PENS * pen + 1.0;
+    let ends = &graph.ends_at_nodes()[number];
+    let acute = WINDOWS.into_iter().any(|window| half_angle_sine(graph, ends, (spur, end), window) < ACUTE);
+    if far {
+        graph.nodes[number].turn = Some((turn, acute));
+    }
+}
+
+/// Sine of half the angle between the two other branches at a spur's node.
+fn half_angle_sine(
+    graph: &Graph,
+    ends: &[(usize, usize)],
+    spur: (usize, usize),
+    window: (usize, usize),
+) -> f64 {
+    let Some(node) = graph.branches[spur.0].nodes[spur.1].map(|n| graph.nodes[n].at) else { return 1.0 };
+    let others: Vec<Vec2> =
+        ends.iter().filter(|&&e| e != spur).map(|&e| leaving(graph, e, node, window)).collect();
+    let [a, b] = others[..] else { return 1.0 };
+    (0.5 * a.cross(b).atan2(a.dot(b)).abs()).sin()
+}
+
+/// Near an acute corner the two skeletons lean together, far from it they may have bent: points of them, from and to.
+const WINDOWS: [(usize, usize); 2] = [(0, 10), (12, 36)];
+
+/// Sine of half the least angle of a mitre: sharper corners are cut off (SVG's limit of 4).
+const ACUTE: f64 = 0.25;
+
+/// Points of a spur that tell where it leads.
+const LEADING: usize = 6;
+/// A turn is this far from its fork, half pen widths: nearer ones are corners, whose sides tell where they meet.
+const TURN_PENS: f64 = 3.0;
 
 /// Whether a branch is as wide as the pen beyond the ink of its node, and stays so: a line's. Over a corner's point the
 /// two sides' ink is one, wider than the pen, and runs out.
@@ -104,11 +163,11 @@ mod tests {
     fn branch(length: i32, direction: (f64, f64), radius: f64, nodes: [Option<usize>; 2]) -> Branch {
         let at = |i: i32| Point::new(50.0 + f64::from(i) * direction.0, 50.0 + f64::from(i) * direction.1);
         let points: Vec<Point> = (1..=length).map(at).collect();
-        Branch { radii: vec![radius; points.len()], points, nodes, ring: false }
+        Branch { radii: vec![radius; points.len()], points, nodes, ring: false, turns: Vec::new() }
     }
 
     fn pruned(branches: Vec<Branch>) -> Graph {
-        let node = Node { at: Point::new(50.0, 50.0), radius: 3.0 };
+        let node = Node { at: Point::new(50.0, 50.0), radius: 3.0, turn: None };
         let mut graph = Graph { nodes: vec![node], branches };
         prune(&mut graph);
         graph

@@ -200,7 +200,7 @@ mod tests {
     fn of(radii: Vec<f64>) -> Reading {
         let points: Vec<Point> = (0..radii.len()).map(|k| Point::new(k as f64, 0.0)).collect();
         let area = radii.iter().map(|r| 2.0 * r).sum::<f64>() as usize;
-        let branch = Branch { points, radii, nodes: [None; 2], ring: false };
+        let branch = Branch { points, radii, nodes: [None; 2], ring: false, turns: Vec::new() };
         Reading::of(&Graph { nodes: Vec::new(), branches: vec![branch] }, area)
     }
 
