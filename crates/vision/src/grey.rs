@@ -62,23 +62,6 @@ impl Grey {
         let most = (w.min(h) / LEAST_SIDE).max(1);
         (1..=most).find(|k| (w / k) * (h / k) <= MOST_PIXELS).unwrap_or(most)
     }
-
-    /// Means of `k` × `k` pixels; what does not fill a block at the right and lower border is left out.
-    pub(crate) fn reduced(&self, k: usize) -> Plane<u8> {
-        let (width, height) = (self.width() / k, self.height() / k);
-        let mut plane = Plane::filled(width, height, 0);
-        let mut sums = vec![0u32; width];
-        for y in 0..height {
-            sums.fill(0);
-            for row in (y * k..(y + 1) * k).map(|y| self.plane.row(y)) {
-                let blocks = sums.iter_mut().zip(row.chunks_exact(k));
-                blocks.for_each(|(sum, block)| *sum += block.iter().map(|&v| u32::from(v)).sum::<u32>());
-            }
-            let area = (k * k) as u32;
-            plane.row_mut(y).iter_mut().zip(&sums).for_each(|(v, sum)| *v = ((sum + area / 2) / area) as u8);
-        }
-        plane
-    }
 }
 
 #[cfg(test)]
@@ -97,7 +80,7 @@ mod tests {
     #[test]
     fn a_vast_image_is_averaged_down() {
         let grey = Grey::new(30, 20, (0..600).map(|i| (i % 30 / 3 * 10) as u8).collect()).unwrap();
-        let small = grey.reduced(3);
+        let small = grey.plane.reduced(3);
         assert_eq!((small.width, small.height), (10, 6));
         assert_eq!(small.row(5), [0, 10, 20, 30, 40, 50, 60, 70, 80, 90]);
         assert_eq!(grey.reduction(), 1);

@@ -10,7 +10,7 @@ use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
 use crate::quality::clipped_percent;
 use crate::sharpness::{self, Step};
-use crate::{Grey, Quality, VisionError};
+use crate::{Page, Quality, VisionError};
 
 /// Noise from which on the picture is smoothed, levels.
 const SMOOTHED_FROM: f64 = 2.5;
@@ -38,25 +38,36 @@ impl Ink {
     /// Finds the ink of an image and refuses one that has none. `threshold_percent` is the darkness from which on it
     /// is ink, % of the paper's brightness; without it, it is found. Paper may have hard edges, of `sheets` or of shadows.
     pub(crate) fn of(
-        image: &Grey,
+        page: &Page<'_>,
         threshold_percent: Option<f64>,
         sheets: bool,
     ) -> Result<Self, VisionError> {
+        let image = &*page.picture;
         let reduction = image.reduction();
-        let mut plane =
-            if reduction > 1 { Cow::Owned(image.reduced(reduction)) } else { Cow::Borrowed(&image.plane) };
+        let reduced = |plane| match reduction {
+            1 => Cow::Borrowed(plane),
+            _ => Cow::Owned(Plane::reduced(plane, reduction)),
+        };
+        let mut plane = reduced(page.beside.as_ref().map_or(&image.plane, |beside| &beside.papered));
+        // a shadow on the sheet goes on beside it
+        let mut seen = page.beside.as_ref().map(|_| reduced(&image.plane));
         let mut raw_levels = sampled_histogram(&plane);
         let light_on_dark = is_light_on_dark(&plane, &raw_levels);
         if light_on_dark {
-            plane.to_mut().values.iter_mut().for_each(|v| *v = 255 - *v);
+            for plane in [Some(&mut plane), seen.as_mut()].into_iter().flatten() {
+                plane.to_mut().values.iter_mut().for_each(|v| *v = 255 - *v);
+            }
             raw_levels.reverse();
         }
-        let paper = Paper::of(&plane, sheets);
+        let paper = Paper::of(&plane, seen.as_deref().unwrap_or(&plane), sheets);
         let mut darkness = paper.darkness(&plane);
         let noise_levels = noise(&darkness, SAMPLED);
         let is_noisy = noise_levels > SMOOTHED_FROM;
         if is_noisy {
             darkness = smoothed(&darkness);
+        }
+        if let Some(beside) = &page.beside {
+            without(&mut darkness, &beside.mask, reduction);
         }
         let mut levels = sampled_histogram(&darkness);
         let blur = if is_noisy { SMOOTHED } else { 1.0 };
@@ -102,6 +113,18 @@ impl Ink {
     /// How wide the ink's edges are, px of [`Self::darkness`]; `None` where too few could be measured.
     pub(crate) fn edge_px(&self) -> Option<f64> {
         self.quality.edge_px.map(|px| px / self.reduction as f64)
+    }
+}
+
+/// Paper where there is nothing of a sheet, by its mask before so many pixels were averaged into one.
+fn without(darkness: &mut Plane<u8>, beside: &Mask, reduction: usize) {
+    let middle = |k: usize| (k * reduction + reduction / 2) as isize;
+    for y in 0..darkness.height {
+        for (x, level) in darkness.row_mut(y).iter_mut().enumerate() {
+            if beside.get(middle(x), middle(y)) {
+                *level = 0;
+            }
+        }
     }
 }
 
@@ -333,6 +356,7 @@ pub(crate) fn smoothed(plane: &Plane<u8>) -> Plane<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Grey;
 
     fn image(level: impl Fn(usize, usize) -> u8) -> Grey {
         Grey::new(160, 120, (0..160 * 120).map(|i| level(i % 160, i / 160)).collect()).unwrap()
@@ -349,18 +373,20 @@ mod tests {
     #[test]
     fn polarity_is_found_without_being_told() {
         let line = |x: usize, y: usize| (x + y) % 60 < 5 && (20..100).contains(&y);
-        let dark = Ink::of(&image(|x, y| if line(x, y) { 40 } else { 220 }), None, false).unwrap();
-        let light = Ink::of(&image(|x, y| if line(x, y) { 220 } else { 40 }), None, false).unwrap();
+        let dark =
+            Ink::of(&Page::whole(&image(|x, y| if line(x, y) { 40 } else { 220 })), None, false).unwrap();
+        let light =
+            Ink::of(&Page::whole(&image(|x, y| if line(x, y) { 220 } else { 40 })), None, false).unwrap();
         assert!(!dark.quality.light_on_dark && light.quality.light_on_dark);
         let filled = |x: usize, y: usize| (x as f64 - 80.0).hypot(y as f64 - 60.0) < 55.0;
         assert!(
-            !Ink::of(&image(|x, y| if filled(x, y) { 30 } else { 230 }), None, false)
+            !Ink::of(&Page::whole(&image(|x, y| if filled(x, y) { 30 } else { 230 })), None, false)
                 .unwrap()
                 .quality
                 .light_on_dark
         );
         assert!(
-            Ink::of(&image(|x, y| if filled(x, y) { 230 } else { 30 }), None, false)
+            Ink::of(&Page::whole(&image(|x, y| if filled(x, y) { 230 } else { 30 })), None, false)
                 .unwrap()
                 .quality
                 .light_on_dark
@@ -370,13 +396,14 @@ mod tests {
     #[test]
     fn pictures_without_a_drawing_are_refused_with_the_figure_that_failed() {
         for level in [0, 128, 255] {
-            let error = Ink::of(&image(|_, _| level), None, false).unwrap_err();
+            let error = Ink::of(&Page::whole(&image(|_, _| level)), None, false).unwrap_err();
             assert!(matches!(error, VisionError::NoContrast { contrast, .. } if contrast < 1.0), "{error}");
         }
-        let faint = Ink::of(&image(|x, y| 127 + ((x + y) % 2) as u8), None, false).unwrap_err();
+        let faint = Ink::of(&Page::whole(&image(|x, y| 127 + ((x + y) % 2) as u8)), None, false).unwrap_err();
         assert!(matches!(faint, VisionError::NoContrast { .. }), "{faint}");
         for strength in [255.0, 80.0] {
-            let noise = Ink::of(&image(|x, y| (strength * noise_at(x, y)) as u8), None, false).unwrap_err();
+            let noise = Ink::of(&Page::whole(&image(|x, y| (strength * noise_at(x, y)) as u8)), None, false)
+                .unwrap_err();
             assert!(matches!(noise, VisionError::Noise { .. }), "{noise}");
         }
     }
@@ -410,7 +437,7 @@ mod tests {
             let pen = if (60..65).contains(&x) && y > 20 { 60.0 } else { 0.0 };
             (200.0 - pen + 20.0 * (noise_at(x, y) - 0.5)) as u8
         };
-        let ink = Ink::of(&image(level), None, false).unwrap();
+        let ink = Ink::of(&Page::whole(&image(level)), None, false).unwrap();
         let mask = ink.mask();
         assert!((60..65).all(|x| mask.get(x, 60)));
         assert!(ink.quality.ink_percent < 4.0, "{:?}", ink.quality);

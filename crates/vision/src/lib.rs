@@ -8,6 +8,7 @@
 //!
 //! | module | what |
 //! |---|---|
+//! | `sheet` | the sheet of paper in a photograph or a scan, by itself |
 //! | `light`, `ink` | even light, polarity, threshold |
 //! | `comb` | the rules of ruled and squared paper, taken out from under the ink |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
@@ -55,6 +56,7 @@ mod region;
 mod ridge;
 mod shadow;
 mod sharpness;
+mod sheet;
 mod solve;
 mod spot;
 mod stages;
@@ -68,6 +70,7 @@ pub use fiducial::{TAG_COUNT, Tag, TagPlace, find_tags, tag_cells};
 pub use grey::Grey;
 pub use marks::{Marks, find_two_marks};
 pub use quality::{Figure, Quality, Verdict};
+pub use sheet::{Page, Sheet};
 pub use spot::{Spot, SpotLost, SpotWindow, find_spot};
 pub use stages::Stages;
 pub use trace::{LeftOut, Mode, Options, Traced, trace};

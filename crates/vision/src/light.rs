@@ -38,8 +38,9 @@ pub(crate) struct Paper {
 }
 
 impl Paper {
-    /// Of an image with light paper. It may have hard edges if `sheets` lie in it, or if it looks as if shadows had.
-    pub(crate) fn of(image: &Plane<u8>, sheets: bool) -> Self {
+    /// Of an image with light paper, of which beside a sheet more may be `seen` than paper. It may have hard edges if `sheets`
+    /// lie in it, or if it looks as if shadows had.
+    pub(crate) fn of(image: &Plane<u8>, seen: &Plane<u8>, sheets: bool) -> Self {
         let tile = (image.width.min(image.height) / TILES).max(LEAST_TILE);
         let bright = tile_levels(image, tile);
         let surface = Surface::over(&bright);
@@ -52,7 +53,7 @@ impl Paper {
             even.values.iter().zip(surface.on(&even)).map(|(r, s)| (r * s).clamp(DIMMEST, 255.0)).collect();
         let levels = Plane { values: levels, ..even };
         let has_edges = sheets || shadow::is_cast(&bright);
-        let shaded = has_edges.then(|| shaded(image, tile, &surface.on(&bright).collect::<Vec<_>>()));
+        let shaded = has_edges.then(|| shaded(seen, tile, &surface.on(&bright).collect::<Vec<_>>()));
         Self { tile, levels, shaded }
     }
 
@@ -310,7 +311,7 @@ mod tests {
             (paper(x) * if ink(x, y) { 0.12 } else { 1.0 }) as u8
         };
         let image = Plane { width: 640, height: 480, values: (0..640 * 480).map(level).collect() };
-        let dark = Paper::of(&image, false).darkness(&image);
+        let dark = Paper::of(&image, &image, false).darkness(&image);
         let (mut palest, mut darkest) = (255, 0);
         for (i, &d) in dark.values.iter().enumerate() {
             match ink(i % 640, i / 640) {

@@ -5,7 +5,7 @@ use tracelight_stroke::{Point, Vec2};
 use crate::ink::{Ink, Split, histogram, over};
 use crate::plane::Plane;
 use crate::region::{Region, regions};
-use crate::{Grey, VisionError};
+use crate::{Grey, Page, VisionError};
 
 /// Most the line through the marks may be off upright or level, degrees: at 3° the scale is 0.14 % off already, but
 /// which of the two it is stays clear up to here.
@@ -46,7 +46,7 @@ impl Marks {
 /// # Errors
 /// When the picture has no contrast, there are not two such patches, or they lie on a slant.
 pub fn find_two_marks(image: &Grey) -> Result<Marks, VisionError> {
-    let ink = Ink::of(image, None, false)?;
+    let ink = Ink::of(&Page::whole(image), None, false)?;
     // the ruler itself may be what the threshold parts from the wall: then the tapes are what is darker still
     let darker = Split::of(&darker_half(&ink)).threshold;
     let mut most = 0;

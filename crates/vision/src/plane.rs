@@ -36,6 +36,23 @@ impl<T: Copy + Default> Plane<T> {
         }
     }
 
+    /// Rows as columns, in squares that fit into the cache.
+    pub(crate) fn transposed(&self) -> Self {
+        const SQUARE: usize = 32;
+        let (w, h) = (self.width, self.height);
+        let mut out = Self::filled(h, w, T::default());
+        for top in (0..h).step_by(SQUARE) {
+            for left in (0..w).step_by(SQUARE) {
+                for y in top..(top + SQUARE).min(h) {
+                    for x in left..(left + SQUARE).min(w) {
+                        out.values[x * h + y] = self.values[y * w + x];
+                    }
+                }
+            }
+        }
+        out
+    }
+
     /// Whether the value with this number is one of the outermost.
     pub(crate) fn is_at_border(&self, i: usize) -> bool {
         let (x, y) = (i % self.width, i / self.width);
@@ -80,6 +97,23 @@ impl<T: Copy + Default> Plane<T> {
 const LONGEST: usize = 1 << 15;
 
 impl Plane<u8> {
+    /// Means of `k` × `k` pixels; what does not fill a block at the right and lower border is left out.
+    pub(crate) fn reduced(&self, k: usize) -> Self {
+        let (width, height) = (self.width / k, self.height / k);
+        let mut plane = Self::filled(width, height, 0);
+        let mut sums = vec![0u32; width];
+        for y in 0..height {
+            sums.fill(0);
+            for row in (y * k..(y + 1) * k).map(|y| self.row(y)) {
+                let blocks = sums.iter_mut().zip(row.chunks_exact(k));
+                blocks.for_each(|(sum, block)| *sum += block.iter().map(|&v| u32::from(v)).sum::<u32>());
+            }
+            let area = (k * k) as u32;
+            plane.row_mut(y).iter_mut().zip(&sums).for_each(|(v, sum)| *v = ((sum + area / 2) / area) as u8);
+        }
+        plane
+    }
+
     /// Between the four nearest pixels' centres, bilinear; the border's values go on outside.
     pub(crate) fn at(&self, p: Point) -> f64 {
         let along = |v: f64, n: usize| {

@@ -22,7 +22,8 @@ pub(crate) fn is_cast(bright: &Plane<f64>) -> bool {
 
 /// Mean brightness of each patch of paper.
 fn patches(bright: &Plane<f64>) -> Vec<f64> {
-    let mut seen = vec![false; bright.values.len()];
+    // a shadow's edge that runs along a row of tiles makes them all shades between two papers: none of them leads across
+    let mut seen: Vec<bool> = (0..bright.values.len()).map(|i| is_steep(bright, i)).collect();
     let mut found = Vec::new();
     for start in 0..seen.len() {
         if !seen[start] {
@@ -34,6 +35,17 @@ fn patches(bright: &Plane<f64>) -> Vec<f64> {
         }
     }
     found
+}
+
+/// Whether the tiles on two opposite sides of one differ more than one paper's do from a tile to the next but one.
+fn is_steep(bright: &Plane<f64>, i: usize) -> bool {
+    let (x, y) = (i % bright.width, i / bright.width);
+    let differ = |a: usize, b: usize| {
+        let (a, b) = (bright.values[a], bright.values[b]);
+        a.min(b) < SAME * SAME * a.max(b)
+    };
+    let across = x > 0 && x + 1 < bright.width && differ(i - 1, i + 1);
+    across || y > 0 && y + 1 < bright.height && differ(i - bright.width, i + bright.width)
 }
 
 /// The tiles that can be reached from one over neighbours whose brightness differs by no more than the ratio `same`.
@@ -143,24 +155,7 @@ fn along_columns(plane: Plane<u8>, reach: usize, most: fn(u8, u8) -> u8) -> Plan
 }
 
 fn along_rows(plane: Plane<u8>, reach: usize, most: fn(u8, u8) -> u8) -> Plane<u8> {
-    transposed(&along_columns(transposed(&plane), reach, most))
-}
-
-/// Rows as columns, in squares that fit into the cache.
-fn transposed(plane: &Plane<u8>) -> Plane<u8> {
-    const SQUARE: usize = 32;
-    let (w, h) = (plane.width, plane.height);
-    let mut out = Plane::filled(h, w, 0);
-    for top in (0..h).step_by(SQUARE) {
-        for left in (0..w).step_by(SQUARE) {
-            for y in top..(top + SQUARE).min(h) {
-                for x in left..(left + SQUARE).min(w) {
-                    out.values[x * h + y] = plane.values[y * w + x];
-                }
-            }
-        }
-    }
-    out
+    along_columns(plane.transposed(), reach, most).transposed()
 }
 
 #[cfg(test)]
@@ -212,5 +207,12 @@ mod tests {
             235.0
         })));
         assert!(!is_cast(&tiles(&|x, _| if x < 9 { 40.0 } else { 235.0 })));
+        // an edge within a row of tiles, a little slanted
+        let slanted = |x: usize| 140.0 + 95.0 * (x as f64 / 31.0);
+        assert!(is_cast(&tiles(&|x, y| match y {
+            ..12 => 140.0,
+            12 => slanted(x),
+            _ => 235.0,
+        })));
     }
 }

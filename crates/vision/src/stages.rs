@@ -1,5 +1,5 @@
 use crate::ink::Ink;
-use crate::{Grey, VisionError};
+use crate::{Page, VisionError};
 
 /// What an image is on its way to strokes.
 #[derive(Clone, Debug)]
@@ -18,13 +18,13 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// Of an image; `threshold_percent` is the darkness from which on it is ink, % of its paper's brightness, `None`: found;
+    /// Of a page; `threshold_percent` is the darkness from which on it is ink, % of its paper's brightness, `None`: found;
     /// whether `sheets` of paper lie in it.
     ///
     /// # Errors
     /// As [`trace`](crate::trace): an image without ink.
-    pub fn of(image: &Grey, threshold_percent: Option<f64>, sheets: bool) -> Result<Self, VisionError> {
-        let ink = Ink::of(image, threshold_percent, sheets)?;
+    pub fn of(page: &Page<'_>, threshold_percent: Option<f64>, sheets: bool) -> Result<Self, VisionError> {
+        let ink = Ink::of(page, threshold_percent, sheets)?;
         let mask = ink.mask();
         let (width, height) = (ink.darkness.width, ink.darkness.height);
         let at = |i: usize| mask.get((i % width) as isize, (i / width) as isize);
@@ -48,12 +48,13 @@ impl Stages {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Grey;
 
     #[test]
     fn stages_of_a_line_are_its_own() {
         let line = |x: usize, y: usize| y == 20 && (10..50).contains(&x) || y == 21 && (10..50).contains(&x);
         let levels = (0..60 * 40).map(|i| if line(i % 60, i / 60) { 40 } else { 220 }).collect();
-        let stages = Stages::of(&Grey::new(60, 40, levels).unwrap(), None, false).unwrap();
+        let stages = Stages::of(&Page::whole(&Grey::new(60, 40, levels).unwrap()), None, false).unwrap();
         assert_eq!((stages.width, stages.height), (60, 40));
         let counts = stages.histogram();
         assert_eq!(counts.iter().sum::<usize>(), 60 * 40);

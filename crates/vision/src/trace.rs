@@ -9,7 +9,7 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{self, Region, pinholes, regions};
-use crate::{Grey, Quality, VisionError, gap, missed, on_ink, sweep};
+use crate::{Grey, Page, Quality, Sheet, VisionError, gap, missed, on_ink, sweep};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -55,6 +55,8 @@ pub struct Options {
     pub min_length_px: f64,
     /// Whether sheets of paper lie or hang in the image: their edges are none of the drawing's.
     pub sheets: bool,
+    /// Whether all of the image is drawing, even where it shows a sheet of paper with something beside it.
+    pub whole: bool,
 }
 
 impl Default for Options {
@@ -67,6 +69,7 @@ impl Default for Options {
             despeckle_px2: None,
             min_length_px: 0.0,
             sheets: false,
+            whole: false,
         }
     }
 }
@@ -120,6 +123,8 @@ pub struct Traced {
     pub left_out: LeftOut,
     /// Rules of ruled or squared paper, which are none of the strokes.
     pub rules: Option<Rules>,
+    /// The sheet of paper that the strokes lie on, where there is something beside it.
+    pub sheet: Option<Sheet>,
 }
 
 /// What of an image's ink, and of the ways between it, is in no stroke on purpose.
@@ -140,7 +145,8 @@ pub struct LeftOut {
 /// out of its bounds, or leaves nothing.
 pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
     options.check()?;
-    let ink = Ink::of(image, options.threshold_percent, options.sheets)?;
+    let page = if options.whole { Page::whole(image) } else { Page::of(image) };
+    let ink = Ink::of(&page, options.threshold_percent, options.sheets)?;
     let mut mask = ink.mask();
     let regions = drawn(&mut mask, least_patch(&ink, options))?;
     let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
@@ -161,8 +167,10 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
     let scale = Affine::scale(ink.reduction as f64);
     let mut strokes = Drawing { strokes }.transformed(scale);
     if options.sheets {
-        strokes = ink_only(&strokes, image, ink.quality.light_on_dark);
+        strokes = ink_only(&strokes, &page.picture, ink.quality.light_on_dark);
     }
+    let (right, down) = page.origin;
+    let strokes = strokes.transformed(Affine::translate((right as f64, down as f64)));
     let strokes = long_enough(strokes, options.min_length_px)?;
     Ok(Traced {
         width_px: image.width(),
@@ -173,6 +181,7 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
         missed_ink,
         left_out: left_out.enlarged(ink.reduction),
         rules: ink.rules.map(|rules| rules.scaled(ink.reduction as f64)),
+        sheet: page.sheet,
     })
 }
 

@@ -1,0 +1,383 @@
+//! Which sides, with the picture's borders, make the sheet.
+
+use tracelight_stroke::{Point, Vec2};
+
+use super::sides::{self, Side};
+use super::{Small, steps};
+use crate::plane::Plane;
+
+/// Least of a side that is seen; a finger, a shadow or another sheet hides the rest.
+const LEAST_SEEN: f64 = 0.5;
+/// A side is at least this share of the picture's.
+const LEAST_SIDE: f64 = 0.2;
+/// Least share of the picture that is sheet.
+const LEAST_AREA: f64 = 0.12;
+/// The same where it is darker than what lies beside it.
+const LEAST_AREA_IN_LIGHT: f64 = 0.25;
+/// A corner is at least this far from straight and from folded, as a sine.
+const LEAST_SINE: f64 = 0.6;
+/// Paper is so even from one side of the sheet to another, as a ratio: in a shadow it keeps this much.
+const EVEN: std::ops::Range<f64> = 0.42..2.4;
+/// The same of a sheet that is darker than what lies beside it: else it may be a filled shape.
+const EVEN_IN_DARK: std::ops::Range<f64> = 0.75..1.33;
+/// A darker sheet has at least this share of the brightness beside it: less is ink.
+const LEAST_SHADE: f64 = 0.5;
+/// Of the blocks beside a sheet most have less than this share of the fine contrast of those on it; else there is
+/// drawing on both sides. Sheets seen on two sides only, and those darker than what lies beside them, are believed only
+/// then; others if there is nothing better, on a table of wood.
+const CALMER: f64 = 0.4;
+/// Share of the blocks that are below what counts as their contrast.
+const MOST_BLOCKS: f64 = 0.97;
+/// Pixels of such a block, either way.
+const BLOCK: usize = 8;
+/// Levels differ from this share on.
+const STEP: f64 = 0.06;
+/// Least share of the sides along which paper ends for good: a finger and another sheet below hide the rest.
+const LEAST_FIRM: f64 = 0.6;
+/// Of a sheet seen on three sides.
+const LEAST_FIRM_OF_THREE: f64 = 0.7;
+/// Of a sheet seen on two sides or one.
+const LEAST_FIRM_OF_TWO: f64 = 0.85;
+/// What a shadow on the paper lets through of the light: a step of that size on a single side may be its edge.
+const SHADE: std::ops::Range<f64> = 0.42..0.88;
+/// Most of as bright beside the sheet, as a share of the sheet: other sheets.
+const MOST_OUTSIDE: f64 = 0.4;
+/// A calm table beside it does not make a sheet likelier than one of which more is seen by this factor.
+const RIVAL: f64 = 0.75;
+/// So many of the likeliest are looked at.
+const LOOKED_AT: usize = 24;
+/// A level is the paper's again within this share.
+const SAME: f64 = 0.1;
+/// A side so near to the picture's border all along is none, px.
+const AT_BORDER: f64 = 2.5;
+/// Levels beside a side are taken so far from it, px.
+const BESIDE: f64 = 4.0;
+
+/// A sheet in the small picture.
+#[derive(Clone, Debug)]
+pub(super) struct Quad {
+    /// Left, top, right, bottom; `None` where it runs out of the picture.
+    pub(super) sides: [Option<Side>; 4],
+    /// Upper left, upper right, lower right, lower left, px.
+    pub(super) corners: [Point; 4],
+    /// Whether it is brighter than what lies beside it.
+    pub(super) is_brighter: bool,
+}
+
+/// Of left, top, right and bottom: its number.
+pub(super) const SIDES: [usize; 4] = [0, 1, 2, 3];
+
+impl Quad {
+    /// All of a picture.
+    pub(super) fn all(plane: &Plane<u8>) -> Self {
+        Self { sides: Default::default(), corners: corners(plane, [None; 4]), is_brighter: true }
+    }
+
+    /// The ends of a side, clockwise.
+    pub(super) const fn ends(&self, side: usize) -> (Point, Point) {
+        ends(&self.corners, side)
+    }
+
+    /// The way into the sheet, square to a side.
+    pub(super) fn inward(&self, side: usize) -> Vec2 {
+        let (from, to) = self.ends(side);
+        let way = (to - from) / from.distance(to).max(1e-9);
+        Vec2::new(-way.y, way.x)
+    }
+
+    /// How far inside a point lies, px; negative outside.
+    pub(super) fn depths(&self) -> impl Fn(Point) -> f64 + use<> {
+        let sides = SIDES.map(|side| (self.ends(side).0, self.inward(side)));
+        move |at| sides.iter().map(|(from, inward)| (at - *from).dot(*inward)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn seen(&self) -> usize {
+        self.sides.iter().flatten().count()
+    }
+}
+
+/// The sheet with most of its sides seen.
+pub(super) fn best(small: &Small) -> Option<Quad> {
+    let plane = &small.levels;
+    let across = plane.transposed();
+    let (rows, columns) = (steps::of_rows(plane), steps::of_rows(&across));
+    let kinds =
+        |rises: bool| (sides::of(&rows, plane.width, rises), sides::of(&columns, plane.height, rises));
+    let (rising, falling) = (kinds(true), kinds(false));
+    // of a sheet that is brighter than what lies beside it, left, top, right and bottom
+    let brighter: [&[Side]; 4] = [&rising.0, &rising.1, &falling.0, &falling.1];
+    let darker: [&[Side]; 4] = [&falling.0, &falling.1, &rising.0, &rising.1];
+    if brighter.iter().all(|sides| sides.is_empty()) {
+        return None;
+    }
+    let mut found: Vec<(f64, Quad)> = Vec::new();
+    for (sides, is_brighter) in [(brighter, true), (darker, false)] {
+        let mut likely = candidates(plane, sides, is_brighter);
+        likely.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.extend(likely.into_iter().take(LOOKED_AT).map(|(score, numbers)| {
+            let chosen = picked(sides, numbers);
+            let corners = corners(plane, chosen);
+            (score, Quad { sides: chosen.map(|side| side.cloned()), corners, is_brighter })
+        }));
+    }
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let calm = Calm::of(plane);
+    let mut instead: Option<(f64, Quad)> = None;
+    for (score, quad) in found.into_iter().take(LOOKED_AT) {
+        match calm.judged(&quad) {
+            Some(true) => {
+                let is_clear = instead.as_ref().is_none_or(|(most, _)| score > RIVAL * most);
+                return Some(instead.map(|(_, quad)| quad).filter(|_| !is_clear).unwrap_or(quad));
+            }
+            Some(false) if instead.is_none() && quad.is_brighter && quad.seen() > 2 => {
+                instead = Some((score, quad));
+            }
+            _ => {}
+        }
+    }
+    instead.map(|(_, quad)| quad)
+}
+
+/// Four sides by their numbers among those of their kind, and how much of them is seen.
+type Likely = (f64, [Option<usize>; 4]);
+
+/// All that the sides may make.
+fn candidates(plane: &Plane<u8>, sides: [&[Side]; 4], is_brighter: bool) -> Vec<Likely> {
+    let all = sides.map(|sides| (0..sides.len()).map(Some).chain([None]));
+    let mut found = Vec::new();
+    for left in all[0].clone() {
+        for right in all[2].clone() {
+            for top in all[1].clone() {
+                for bottom in all[3].clone() {
+                    let numbers = [left, top, right, bottom];
+                    let chosen = picked(sides, numbers);
+                    found.extend(score(plane, chosen, is_brighter).map(|score| (score, numbers)));
+                }
+            }
+        }
+    }
+    found
+}
+
+fn picked<'a>(sides: [&'a [Side]; 4], numbers: [Option<usize>; 4]) -> [Option<&'a Side>; 4] {
+    std::array::from_fn(|k| numbers[k].and_then(|n| sides[k].get(n)))
+}
+
+/// Where the picture ends on the left, at the top, on the right and at the bottom.
+const fn borders(plane: &Plane<u8>) -> [f64; 4] {
+    [0.0, 0.0, plane.width as f64, plane.height as f64]
+}
+
+/// Where sides and the picture's borders meet: upper left, upper right, lower right, lower left.
+fn corners(plane: &Plane<u8>, sides: [Option<&Side>; 4]) -> [Point; 4] {
+    let border = borders(plane);
+    let line = |k: usize| sides[k].map_or((border[k], 0.0), |side| (side.at, side.slope));
+    // x = a + b y meets y = c + d x
+    let meet = |upright: usize, level: usize| {
+        let ((a, b), (c, d)) = (line(upright), line(level));
+        let x = (a + b * c) / (1.0 - b * d);
+        Point::new(x, c + d * x)
+    };
+    [meet(0, 1), meet(2, 1), meet(2, 3), meet(0, 3)]
+}
+
+/// How much of the sides is seen, less what is not, px; `None` where they are no sheet's.
+fn score(plane: &Plane<u8>, sides: [Option<&Side>; 4], is_brighter: bool) -> Option<f64> {
+    let corners = corners(plane, sides);
+    let is_upright = corners[0].x < corners[1].x && corners[0].y < corners[3].y;
+    let least_area = if is_brighter { LEAST_AREA } else { LEAST_AREA_IN_LIGHT };
+    let pixels = (plane.width * plane.height) as f64;
+    if !is_upright || !is_convex(&corners) || area(&corners) < least_area * pixels {
+        return None;
+    }
+    let border = borders(plane);
+    let mut score = 0.0;
+    for (k, side) in sides.iter().enumerate() {
+        let Some(side) = side else { continue };
+        let (from, to) = ends(&corners, k);
+        let ([a, b], most) =
+            if k % 2 == 0 { ([from.y, to.y], plane.height) } else { ([from.x, to.x], plane.width) };
+        let [first, last] = [a.min(b), a.max(b)].map(|end| end.round().clamp(0.0, most as f64) as usize);
+        // a line along the border, or what is left over there
+        let off = |p: Point| (if k % 2 == 0 { p.x } else { p.y } - border[k]).abs();
+        if off(from).max(off(to)) < AT_BORDER {
+            return None;
+        }
+        let (all, seen) = (last - first, side.seen(first..last));
+        if (seen as f64) < LEAST_SEEN * all as f64 || (all as f64) < LEAST_SIDE * most as f64 {
+            return None;
+        }
+        // a shadow's edge, or the table's, goes on behind the corners
+        let beyond = side.seen(0..most) - seen;
+        score += seen as f64 - 1.5 * (all - seen) as f64 - beyond as f64;
+    }
+    (score > 0.0).then_some(score)
+}
+
+/// The ends of a side, clockwise.
+const fn ends(corners: &[Point; 4], side: usize) -> (Point, Point) {
+    let [upper_left, upper_right, lower_right, lower_left] = *corners;
+    match side {
+        0 => (lower_left, upper_left),
+        1 => (upper_left, upper_right),
+        2 => (upper_right, lower_right),
+        _ => (lower_right, lower_left),
+    }
+}
+
+fn area(corners: &[Point; 4]) -> f64 {
+    let doubled = |k: usize| corners[k].to_vec2().cross(corners[(k + 1) % 4].to_vec2());
+    0.5 * (0..4).map(doubled).sum::<f64>()
+}
+
+/// Whether they turn one way, none of them nearly straight or folded.
+fn is_convex(corners: &[Point; 4]) -> bool {
+    (0..4).all(|k| {
+        let [a, b, c] = [k, k + 1, k + 2].map(|k| corners[k % 4]);
+        let (one, next) = (b - a, c - b);
+        one.cross(next) > LEAST_SINE * one.hypot() * next.hypot() && one.hypot() > 1.0
+    })
+}
+
+/// The small picture, and what it is without lines.
+struct Calm {
+    calm: Plane<u8>,
+    /// The middle of each block, its level without lines there, and how far its pixels differ from what they are without
+    /// lines, where they differ most.
+    blocks: Vec<(Point, u8, f64)>,
+}
+
+/// What is seen along the sides of a quadrilateral.
+struct Evidence {
+    /// Usual level just inside each side.
+    inner: [Option<f64>; 4],
+    /// Usual level just outside.
+    beyond: f64,
+    /// Share of the sides at which the level differs on both sides, and does not come back further out.
+    firm: f64,
+}
+
+impl Calm {
+    fn of(picture: &Plane<u8>) -> Self {
+        let calm = steps::without_lines(picture);
+        let mut blocks = Vec::new();
+        for top in (0..calm.height).step_by(BLOCK) {
+            for left in (0..calm.width).step_by(BLOCK) {
+                let (bottom, right) = ((top + BLOCK).min(calm.height), (left + BLOCK).min(calm.width));
+                let row = |y: usize| {
+                    let pixels = picture.row(y)[left..right].iter().zip(&calm.row(y)[left..right]);
+                    pixels.map(|(level, calm)| f64::from(level.abs_diff(*calm)))
+                };
+                let at = Point::new(0.5 * (left + right) as f64, 0.5 * (top + bottom) as f64);
+                let level = calm.row((top + bottom) / 2)[(left + right) / 2];
+                let fine = strong((top..bottom).flat_map(row).collect(), 0.9);
+                blocks.extend(fine.map(|fine| (at, level, fine)));
+            }
+        }
+        Self { calm, blocks }
+    }
+
+    /// Whether a quadrilateral may be a sheet, and whether there is far less to be seen beside it than on it.
+    fn judged(&self, quad: &Quad) -> Option<bool> {
+        let Evidence { inner, beyond, firm } = self.beside(quad)?;
+        let paper = middle(inner.iter().flatten().copied().collect())?;
+        let is_even = inner.iter().flatten().all(|level| EVEN.contains(&(level / paper)));
+        let is_ink = !quad.is_brighter && paper < LEAST_SHADE * beyond;
+        let least_firm = match quad.seen() {
+            4 => LEAST_FIRM,
+            3 => LEAST_FIRM_OF_THREE,
+            _ => LEAST_FIRM_OF_TWO,
+        };
+        let may_be_shadow = quad.seen() < 2 && SHADE.contains(&(beyond.min(paper) / beyond.max(paper)));
+        let is_sheet =
+            is_even && !may_be_shadow && !is_ink && firm >= least_firm && self.is_paper(quad, paper);
+        is_sheet.then(|| self.is_calmer_outside(quad, paper))
+    }
+
+    /// What is seen along its sides; `None` where all of them are at the picture's border.
+    fn beside(&self, quad: &Quad) -> Option<Evidence> {
+        let mut inner: [Option<f64>; 4] = Default::default();
+        let (mut outer, mut firm) = (Vec::new(), 0);
+        for (k, side) in quad.sides.iter().enumerate() {
+            if side.is_none() {
+                continue;
+            }
+            let (from, to) = quad.ends(k);
+            let inward = quad.inward(k);
+            let mut levels = Vec::new();
+            for i in 1..40 {
+                let at = from.lerp(to, f64::from(i) / 40.0);
+                let (inside, outside) = (at + inward * BESIDE, at - inward * BESIDE);
+                let (Some(paper), Some(beside)) = (self.level(inside), self.level(outside)) else { continue };
+                levels.push(paper);
+                outer.push(beside);
+                let differs =
+                    (paper > beside) == quad.is_brighter && (paper - beside).abs() > STEP * paper.max(beside);
+                firm += usize::from(differs && !self.comes_back(outside, -inward, paper));
+            }
+            inner[k] = middle(levels);
+        }
+        let firm = firm as f64 / outer.len().max(1) as f64;
+        Some(Evidence { inner, beyond: middle(outer)?, firm })
+    }
+
+    /// Whether on a way the level is the paper's again.
+    fn comes_back(&self, from: Point, way: Vec2, paper: f64) -> bool {
+        let on = (0..60).map(|k| self.level(from + way * (2.0 * f64::from(k))));
+        on.map_while(|level| level).any(|level| (level - paper).abs() < SAME * paper)
+    }
+
+    /// Whether most of what it holds is paper, and hardly any of what it does not.
+    fn is_paper(&self, quad: &Quad, paper: f64) -> bool {
+        let like_paper = if quad.is_brighter { EVEN } else { EVEN_IN_DARK };
+        let (mut inside, mut like, mut like_outside) = (0_usize, 0_usize, 0_usize);
+        let depth = quad.depths();
+        for (at, level, _) in &self.blocks {
+            let ratio = f64::from(*level) / paper;
+            match depth(*at) > 0.0 {
+                true => {
+                    inside += 1;
+                    like += usize::from(like_paper.contains(&ratio));
+                }
+                false => like_outside += usize::from((ratio - 1.0).abs() < SAME),
+            }
+        }
+        2 * like > inside && (like_outside as f64) < MOST_OUTSIDE * inside as f64
+    }
+
+    /// Whether there is far less to be seen beside the sheet than on it, block by block.
+    fn is_calmer_outside(&self, quad: &Quad, paper: f64) -> bool {
+        let (mut inside, mut outside) = (Vec::new(), Vec::new());
+        let depth = quad.depths();
+        for (at, _, fine) in &self.blocks {
+            match depth(*at) {
+                depth if depth > BLOCK as f64 => inside.push(*fine),
+                depth if depth < -(BLOCK as f64) => outside.push(*fine),
+                _ => {}
+            }
+        }
+        // a corner of the table is no drawing
+        match (strong(inside, MOST_BLOCKS), strong(outside, MOST_BLOCKS)) {
+            (Some(inside), Some(outside)) => outside < CALMER * inside.max(STEP * paper),
+            _ => true,
+        }
+    }
+
+    fn level(&self, at: Point) -> Option<f64> {
+        let inside =
+            (0.0..self.calm.width as f64).contains(&at.x) && (0.0..self.calm.height as f64).contains(&at.y);
+        inside.then(|| f64::from(self.calm.row(at.y as usize)[at.x as usize]))
+    }
+}
+
+/// What a share of some values stays below; `None` of fewer than ten.
+fn strong(mut values: Vec<f64>, share: f64) -> Option<f64> {
+    let at = (share * values.len() as f64) as usize;
+    (values.len() >= 10).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
+/// The median.
+pub(super) fn middle(mut values: Vec<f64>) -> Option<f64> {
+    let at = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
+}

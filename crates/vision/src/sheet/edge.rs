@@ -1,0 +1,241 @@
+//! A sheet's sides where the full picture has their steps.
+
+use tracelight_stroke::{Point, Vec2};
+
+use super::choice::{Quad, SIDES, middle};
+use super::{Sheet, Small, rim};
+use crate::plane::Plane;
+
+/// Places along a side at which its step is looked for.
+const PLACES: usize = 96;
+/// A step counts from this share of the usual one on.
+const LEAST_SHARE: f64 = 0.4;
+/// Fewer places than this leave a side where the small picture has it.
+const LEAST_PLACES: usize = 12;
+/// So many neighbouring places tell where a bent side goes.
+const WINDOW: usize = 9;
+/// A side is straight whose steps are off a straight line by less, px of the full picture and of the small one.
+const STRAIGHT_PX: f64 = 1.5;
+const STRAIGHT_SMALL: f64 = 0.3;
+/// A step is over where levels are the paper's within this share of it, at most of the places.
+const OVER: f64 = 0.06;
+const MOST_OVER: f64 = 0.75;
+/// Less than this share of the picture beside a sheet is a line along its border.
+const LEAST_BESIDE: f64 = 0.004;
+
+/// A side in the full picture.
+struct Line {
+    from: Point,
+    to: Point,
+    /// How far inside the line its step is, share of the way and px; none of a straight one.
+    bent: Vec<(f64, f64)>,
+    /// How far inside the step it is over, px.
+    blur: f64,
+}
+
+impl Line {
+    fn inward(&self) -> Vec2 {
+        let way = (self.to - self.from) / self.from.distance(self.to).max(1e-9);
+        Vec2::new(-way.y, way.x)
+    }
+}
+
+/// The sheet, from where the small picture has it, and how far inside its edge that is over, px.
+pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<(Sheet, f64)> {
+    let by = small.by as f64;
+    let lines = SIDES.map(|side| line(plane, by, quad, side));
+    let mut corners = [Point::ORIGIN; 4];
+    for side in SIDES {
+        corners[side] = meet(&lines[side], &lines[(side + 1) % 4])?;
+    }
+    // where sides are bent, their ends are not where the straight ones meet
+    let shift = |line: &Line, end: Option<&(f64, f64)>| line.inward() * end.map_or(0.0, |end| end.1);
+    for side in SIDES {
+        let (before, after) = (&lines[side], &lines[(side + 1) % 4]);
+        corners[side] += shift(before, before.bent.last()) + shift(after, after.bent.first());
+    }
+    let mut outline = Vec::new();
+    for side in SIDES {
+        // the side that begins at this corner
+        let (line, from, to) = (&lines[(side + 1) % 4], corners[side], corners[(side + 1) % 4]);
+        outline.push(from);
+        let ends = |k: Option<&(f64, f64)>| k.map_or(0.0, |end| end.1);
+        let (first, last) = (ends(line.bent.first()), ends(line.bent.last()));
+        let inner = line.bent.iter().filter(|(share, _)| (0.02..0.98).contains(share));
+        outline.extend(inner.map(|&(share, off)| {
+            from.lerp(to, share) + line.inward() * (off - first - (last - first) * share)
+        }));
+    }
+    let (width, height) = (plane.width as f64, plane.height as f64);
+    let is_inside = |c: &Point| (-2.0..width + 2.0).contains(&c.x) && (-2.0..height + 2.0).contains(&c.y);
+    let is_whole = quad.sides.iter().all(Option::is_some) && corners.iter().all(is_inside);
+    let outline = within(outline, width, height);
+    let beside = 1.0 - area(&outline) / (width * height);
+    let blur = lines.iter().map(|line| line.blur).fold(0.0, f64::max);
+    let corners = is_whole.then_some(corners);
+    (beside > LEAST_BESIDE && outline.len() > 2).then_some((Sheet { outline, corners, beside }, blur))
+}
+
+/// Where two lines meet.
+fn meet(a: &Line, b: &Line) -> Option<Point> {
+    let (along, other) = (a.to - a.from, b.to - b.from);
+    let across = along.cross(other);
+    let at = a.from + along * ((b.from - a.from).cross(other) / across);
+    at.is_finite().then_some(at)
+}
+
+fn line(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize) -> Line {
+    let (from, to) = quad.ends(side);
+    let scaled = |p: Point| Point::new(p.x * by, p.y * by);
+    let mut line = Line { from: scaled(from), to: scaled(to), bent: Vec::new(), blur: 0.0 };
+    if quad.sides[side].is_none() {
+        // what was averaged may leave some px of the picture over at its right and lower border
+        let (width, height) = (plane.width as f64, plane.height as f64);
+        let on_border = |p: Point| match side {
+            2 => Point::new(width, p.y),
+            3 => Point::new(p.x, height),
+            _ => p,
+        };
+        (line.from, line.to) = (on_border(line.from), on_border(line.to));
+        if let Some((first, last)) = rim::strip(plane, line.from, line.to) {
+            let inward = line.inward();
+            (line.from, line.to) = (line.from + inward * first, line.to + inward * last);
+        }
+        return line;
+    }
+    let (steps, blur) = steps(plane, by, &line, quad.is_brighter);
+    line.blur = blur;
+    if steps.len() < LEAST_PLACES {
+        return line;
+    }
+    let (first, last) = straight(&steps);
+    let inward = line.inward();
+    (line.from, line.to) = (line.from + inward * first, line.to + inward * last);
+    let off: Vec<(f64, f64)> = steps.iter().map(|&(s, off)| (s, off - first - (last - first) * s)).collect();
+    let running: Vec<(f64, f64)> = off
+        .windows(WINDOW)
+        .filter_map(|near| Some((near[WINDOW / 2].0, middle(near.iter().map(|n| n.1).collect())?)))
+        .collect();
+    // the median of nine leaves half of what steps stray by
+    let furthest = running.iter().map(|r| r.1.abs()).fold(0.0, f64::max);
+    let strays = off.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs()).collect();
+    if furthest > STRAIGHT_PX.max(STRAIGHT_SMALL * by).max(2.0 * middle(strays).unwrap_or(0.0)) {
+        line.bent = running;
+    }
+    line
+}
+
+/// Where along a line, as a share, the step is, and how far inside of the line, px; and how far inside the step it is over.
+fn steps(plane: &Plane<u8>, by: f64, line: &Line, is_brighter: bool) -> (Vec<(f64, f64)>, f64) {
+    let reach = (2.5 * by + 3.0).ceil();
+    let beside = by.max(2.0) as usize;
+    let (inward, along) = (line.inward(), (line.to - line.from) / line.from.distance(line.to));
+    let count = 2 * reach as usize + 1;
+    let mut levels = vec![0.0; count];
+    let mut sums = vec![0.0; count];
+    let (mut found, mut over) = (Vec::new(), Vec::new());
+    for k in 0..PLACES {
+        let share = (k as f64 + 0.5) / PLACES as f64;
+        let at = line.from.lerp(line.to, share);
+        let inside = (0.0..plane.width as f64).contains(&at.x) && (0.0..plane.height as f64).contains(&at.y);
+        if !inside {
+            continue;
+        }
+        sums.fill(0.0);
+        for aside in [-1.0, 0.0, 1.0] {
+            let from = at + along * (aside * (0.5 * by).max(1.0)) - inward * reach;
+            plane.along(from, inward, &mut levels);
+            sums.iter_mut().zip(&levels).for_each(|(sum, level)| *sum += level / 3.0);
+        }
+        if let Some((off, step)) = step(&sums, beside, is_brighter) {
+            found.push((share, off - reach, step));
+            over.push(blur(&sums, off, step));
+        }
+    }
+    let usual = middle(found.iter().map(|f| f.2).collect()).unwrap_or(0.0);
+    let counted = found.iter().filter(|f| f.2 > LEAST_SHARE * usual);
+    let steps = counted.map(|&(share, off, _)| (share, off)).collect();
+    over.sort_by(f64::total_cmp);
+    // at some places a line of the drawing begins there
+    let blur = over.get((MOST_OVER * over.len() as f64) as usize).copied().unwrap_or(0.0);
+    (steps, blur)
+}
+
+/// How far inside a step levels are as far in, px.
+fn blur(levels: &[f32], at: f64, step: f64) -> f64 {
+    let innermost = &levels[levels.len() * 3 / 4..];
+    let paper = f64::from(innermost.iter().sum::<f32>()) / innermost.len() as f64;
+    let first = at.ceil() as usize;
+    let is_paper = |level: &f32| (f64::from(*level) - paper).abs() < OVER * step;
+    let over = levels[first.min(levels.len())..].iter().position(is_paper);
+    over.map_or(levels.len() as f64 - at, |over| (first + over) as f64 - at)
+}
+
+/// Where levels rise (or fall) most, and by how much.
+fn step(levels: &[f32], beside: usize, rises: bool) -> Option<(f64, f64)> {
+    let sign = if rises { 1.0 } else { -1.0 };
+    let mean = |range: std::ops::Range<usize>| {
+        let n = range.len() as f32;
+        levels[range].iter().sum::<f32>() / n
+    };
+    let last = levels.len() - beside;
+    let rise = |k: usize| f64::from(sign * (mean(k..k + beside) - mean(k - beside..k)));
+    let best = (beside..=last).max_by(|&a, &b| rise(a).total_cmp(&rise(b)))?;
+    let size = rise(best);
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for k in best - beside..(best + beside - 1).min(levels.len() - 1) {
+        let here = f64::from((sign * (levels[k + 1] - levels[k])).max(0.0));
+        (sum, weight) = (sum + here * (k as f64 + 0.5), weight + here);
+    }
+    (size > 0.0 && weight > 0.0).then(|| (sum / weight, size))
+}
+
+/// How far inside, at a line's beginning and at its end, the straight line lies that most steps are on: least squares
+/// whose weights are the less the further off a step is (Beaton & Tukey, 1974).
+pub(super) fn straight(steps: &[(f64, f64)]) -> (f64, f64) {
+    let level = middle(steps.iter().map(|s| s.1).collect()).unwrap_or(0.0);
+    let (mut first, mut last) = (level, level);
+    for _ in 0..8 {
+        let off = |&(s, off): &(f64, f64)| off - first - (last - first) * s;
+        let spread = 4.0 * middle(steps.iter().map(|s| off(s).abs()).collect()).unwrap_or(0.0).max(0.25);
+        let (mut n, mut ss, mut so, mut sso, mut sss) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for step in steps {
+            let near = (1.0 - (off(step) / spread).powi(2)).max(0.0).powi(2);
+            let (s, o) = *step;
+            (n, ss, so, sso, sss) =
+                (n + near, ss + near * s, so + near * o, sso + near * s * o, sss + near * s * s);
+        }
+        let spread = n * sss - ss * ss;
+        if spread <= 1e-9 {
+            break;
+        }
+        let slope = (n * sso - ss * so) / spread;
+        first = (so - slope * ss) / n;
+        last = first + slope;
+    }
+    (first, last)
+}
+
+/// What of a polygon lies in the picture (Sutherland & Hodgman, "Reentrant polygon clipping", 1974).
+fn within(polygon: Vec<Point>, width: f64, height: f64) -> Vec<Point> {
+    let sides: [&dyn Fn(Point) -> f64; 4] = [&|p| p.x, &|p| p.y, &|p| width - p.x, &|p| height - p.y];
+    sides.iter().fold(polygon, |polygon, depth| {
+        let mut kept = Vec::with_capacity(polygon.len() + 2);
+        for (k, &here) in polygon.iter().enumerate() {
+            let before = polygon[(k + polygon.len() - 1) % polygon.len()];
+            let (a, b) = (depth(before), depth(here));
+            if (a < 0.0) != (b < 0.0) {
+                kept.push(before.lerp(here, a / (a - b)));
+            }
+            if b >= 0.0 {
+                kept.push(here);
+            }
+        }
+        kept
+    })
+}
+
+fn area(polygon: &[Point]) -> f64 {
+    let doubled = |(k, a): (usize, &Point)| a.to_vec2().cross(polygon[(k + 1) % polygon.len()].to_vec2());
+    0.5 * polygon.iter().enumerate().map(doubled).sum::<f64>()
+}

@@ -1,0 +1,121 @@
+//! The sheet of paper that was photographed or scanned, and what lies beside it.
+//!
+//! Its border is a long step of brightness that is seen from one side only: a line comes back behind it, a table does
+//! not. On the picture averaged down to some 180 rows, medians over five pixels take lines out (`steps`); what steps
+//! are left are gathered into straight sides (`sides`); of these and the picture's own borders the quadrilateral with
+//! most of its sides seen is chosen (`choice`) and moved on to the full picture's steps (`edge`). Where it runs out of the
+//! picture a narrow wedge of the table may be left along the border (`rim`). All beside it, with what reaches in from
+//! there, is given its paper's brightness (`alone`).
+
+mod alone;
+mod choice;
+mod edge;
+mod rim;
+mod sides;
+mod steps;
+
+use std::borrow::Cow;
+
+use tracelight_stroke::Point;
+
+use crate::Grey;
+use crate::mask::Mask;
+use crate::plane::Plane;
+use alone::alone;
+use choice::Quad;
+
+/// A sheet of paper in a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// Where its paper ends, clockwise from the upper left, px; where it runs out of the picture, the picture's border.
+    /// A bent side has more points than its ends.
+    pub outline: Vec<Point>,
+    /// Its corners, clockwise from the upper left, px, where all four of its sides are in the picture.
+    pub corners: Option<[Point; 4]>,
+    /// Share of the picture that lies beside it.
+    pub beside: f64,
+}
+
+/// What of a picture is looked at.
+#[derive(Clone, Debug)]
+pub struct Page<'a> {
+    /// The picture, or the part of it that holds its sheet.
+    pub picture: Cow<'a, Grey>,
+    /// Where the first pixel of that part lies in the whole, px to the right and down.
+    pub origin: (usize, usize),
+    /// The sheet; `None` where all of the picture is one, or none is seen.
+    pub sheet: Option<Sheet>,
+    pub(crate) beside: Option<Beside>,
+}
+
+/// What of a page's picture is not its sheet's.
+#[derive(Clone, Debug)]
+pub(crate) struct Beside {
+    pub(crate) mask: Mask,
+    /// The picture with paper in its place.
+    pub(crate) papered: Plane<u8>,
+}
+
+impl<'a> Page<'a> {
+    /// All of a picture.
+    pub const fn whole(image: &'a Grey) -> Self {
+        Self { picture: Cow::Borrowed(image), origin: (0, 0), sheet: None, beside: None }
+    }
+
+    /// The sheet in a picture, if there is one, else all of it.
+    pub fn of(image: &'a Grey) -> Self {
+        let found = Small::of(&image.plane).and_then(|small| {
+            let found = Found::of(&image.plane, &small)?;
+            Some((alone(&image.plane, &small, &found), found.sheet))
+        });
+        found.map_or(Self::whole(image), |(alone, sheet)| Self {
+            picture: Cow::Owned(Grey { plane: alone.plane }),
+            origin: alone.origin,
+            sheet: Some(sheet),
+            beside: Some(alone.beside),
+        })
+    }
+}
+
+/// A sheet, and what is known of it at a smaller scale.
+struct Found {
+    sheet: Sheet,
+    quad: Quad,
+    /// How far inside its edge that is over.
+    blur_px: f64,
+}
+
+impl Found {
+    fn of(plane: &Plane<u8>, small: &Small) -> Option<Self> {
+        let quad = choice::best(small).unwrap_or_else(|| Quad::all(&small.levels));
+        let (sheet, blur_px) = edge::sheet(plane, small, &quad)?;
+        Some(Self { sheet, quad, blur_px })
+    }
+}
+
+/// About so many rows, or columns, tell where a sheet lies.
+const SIDE: usize = 180;
+/// And at most so many the other way.
+const LONGER: usize = 600;
+/// With fewer pixels a side a picture shows a figure, hardly its surroundings.
+const LEAST_SIDE: usize = 64;
+
+/// A picture averaged down.
+struct Small {
+    /// Pixels of the picture in one, either way.
+    by: usize,
+    levels: Plane<u8>,
+}
+
+impl Small {
+    /// `None` of a picture that is too small to show more than a figure.
+    fn of(plane: &Plane<u8>) -> Option<Self> {
+        let side = plane.width.min(plane.height);
+        if side < LEAST_SIDE {
+            return None;
+        }
+        let longer = plane.width.max(plane.height);
+        let by = (side / SIDE).max(longer / LONGER).max(1);
+        Some(Self { by, levels: plane.reduced(by) })
+    }
+}
