@@ -21,6 +21,7 @@ mod least_squares;
 mod lens;
 mod placement;
 mod pose;
+mod rectangle;
 mod survey;
 mod trim;
 
@@ -32,6 +33,7 @@ pub use homography::Homography;
 pub use lens::Lens;
 pub use placement::{Placement, SizeRequest};
 pub use pose::HeadPose;
+pub use rectangle::proportions;
 pub use survey::{
     Doubt, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyError, SurveyedCamera, survey,
 };

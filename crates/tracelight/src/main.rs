@@ -2,6 +2,7 @@
 
 mod batch;
 mod camera_file;
+mod carried;
 mod chart;
 mod cli;
 mod eye;
@@ -10,6 +11,7 @@ mod fan;
 mod head_file;
 mod job;
 mod output;
+mod paper;
 mod picture;
 mod progress;
 mod quality;

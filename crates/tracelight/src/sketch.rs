@@ -12,6 +12,7 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::failure::Failure;
 use crate::output::{Raster, counted};
+use crate::paper::{self, PaperSeen};
 use crate::picture::{Pixels, Source};
 
 /// Width of a picture that says nothing of its size, m: 24 in.
@@ -23,6 +24,8 @@ pub(crate) struct Sketch {
     pub(crate) drawing: Drawing,
     /// The sheet's size in that unit.
     pub(crate) size: (f64, f64),
+    /// The sheet of paper in the picture, where there is something beside it.
+    pub(crate) paper: Option<PaperSeen>,
     /// The sheet's true width, m, where the file says it.
     pub(crate) true_width_m: Option<f64>,
     /// The picture, for display.
@@ -40,6 +43,14 @@ pub(crate) struct Sketch {
 }
 
 impl Sketch {
+    /// The strokes in the picture's pixels, x right, y down, and its size.
+    pub(crate) fn in_picture(&self) -> (&Drawing, (f64, f64)) {
+        match &self.paper {
+            Some(PaperSeen { picture_px, slanted: Some(slanted), .. }) => (slanted, *picture_px),
+            _ => (&self.drawing, self.size),
+        }
+    }
+
     /// All that the user should know of it.
     pub(crate) fn notes(&self) -> Vec<String> {
         let weak = self.quality.iter().flat_map(Quality::remarks);
@@ -183,10 +194,9 @@ pub(crate) fn sketch_at(
 ) -> Result<Sketch, Failure> {
     let began = Instant::now();
     let mut sketch = match source {
-        Source::Strokes(reading) => taken(reading),
-        Source::Pixels(pixels) => traced(name, pixels, tracing, metres_per_unit)?,
+        Source::Strokes(reading) => taken(name, reading, choice)?,
+        Source::Pixels(pixels) => traced(name, pixels, tracing, choice, metres_per_unit)?,
     };
-    sketch.drawing = choice.of(name, sketch.drawing)?;
     let refused = |why: &str| Err(Failure::failed("no-strokes-found", format!("{name}: {why}")));
     if sketch.drawing.strokes.is_empty() {
         return refused("it has no strokes; give a picture with at least one line");
@@ -204,40 +214,57 @@ pub(crate) fn sketch_at(
 }
 
 /// Strokes as they are.
-fn taken(Reading { sheet, remarks }: Reading) -> Sketch {
-    Sketch {
+fn taken(name: &str, Reading { sheet, remarks }: Reading, choice: &ChoiceArgs) -> Result<Sketch, Failure> {
+    Ok(Sketch {
         size: (sheet.width, sheet.height),
         true_width_m: sheet.metres_per_unit.map(|m| m * sheet.width),
-        drawing: sheet.drawing,
+        drawing: choice.of(name, sheet.drawing)?,
+        paper: None,
         picture: None,
         mode: "strokes",
         remarks,
         quality: None,
         missed_ink: None,
         vision_ms: 0.0,
-    }
+    })
 }
 
-/// Pixels traced.
+/// Pixels traced; on a sheet that was laid square, there.
 fn traced(
     name: &str,
     pixels: Pixels,
     tracing: &TracingArgs,
+    choice: &ChoiceArgs,
     metres_per_unit: &dyn Fn((f64, f64), Option<f64>) -> f64,
 ) -> Result<Sketch, Failure> {
-    let size = (f64::from(pixels.colour.width()), f64::from(pixels.colour.height()));
-    let options = tracing.options(metres_per_unit(size, None));
+    let picture_px = (f64::from(pixels.colour.width()), f64::from(pixels.colour.height()));
+    let page = paper::page(name, &pixels.grey, tracing)?;
+    let straight = paper::straight(name, &page, tracing)?;
+    let size = straight.as_ref().map_or(picture_px, |straight| straight.size_px);
+    let true_width_m = match &straight {
+        Some(straight) => straight.width_m,
+        None => tracing.paper.map(|paper| paper.lying_m(size.0 / size.1).0),
+    };
+    let options = tracing.options(metres_per_unit(size, true_width_m));
     let refused = |e: VisionError| match e {
         VisionError::Option { .. } => Failure::usage("usage", format!("{name}: {e}")),
         _ => Failure::failed("no-strokes-found", format!("{name}: {e}")),
     };
-    let traced = tracelight_vision::trace(&pixels.grey, &options).map_err(refused)?;
+    let traced = tracelight_vision::trace_page(&page, &options).map_err(refused)?;
+    let laid = page.sheet.as_ref().map(|sheet| paper::remark(sheet, straight.as_ref()));
+    let remarks = laid.into_iter().chain(doubts(&traced)).collect();
+    let drawing = choice.of(name, traced.strokes)?;
+    let (drawing, slanted, picture) = match &straight {
+        Some(straight) => (straight.drawing(&drawing), Some(drawing), straight.picture(&pixels.colour)),
+        None => (drawing, None, pixels.colour.clone()),
+    };
     Ok(Sketch {
         size,
-        true_width_m: None,
-        remarks: doubts(&traced),
-        drawing: traced.strokes,
-        picture: Some(pixels.colour),
+        true_width_m,
+        remarks,
+        drawing,
+        paper: page.sheet.map(|sheet| PaperSeen { sheet, picture_px, slanted }),
+        picture: Some(picture),
         mode: options.mode.name(),
         quality: Some(traced.quality),
         missed_ink: Some(traced.missed_ink),

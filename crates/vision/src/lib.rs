@@ -1,8 +1,8 @@
 //! A picture in, strokes out.
 //!
 //! [`trace`] takes a [`Grey`] image and gives the strokes that draw it, in the pixel frame: x right, y down, the
-//! image spans [0, width] × [0, height], the first pixel's centre is (0.5, 0.5). The way: even out the light and
-//! the polarity, cut ink from paper (`ink`), part it into regions, then follow the middle of pen lines (thinning, a
+//! image spans [0, width] × [0, height], the first pixel's centre is (0.5, 0.5). The way: find the sheet of paper
+//! ([`Page`]), even out the light and the polarity, cut ink from paper (`ink`), part it into regions, then follow the middle of pen lines (thinning, a
 //! graph, junctions resolved, points moved on to the grey levels' ridge) and the edges of filled shapes. Nothing
 //! here knows metres, angles, files or cameras; the host decodes.
 //!
@@ -73,4 +73,4 @@ pub use quality::{Figure, Quality, Verdict};
 pub use sheet::{Page, Sheet};
 pub use spot::{Spot, SpotLost, SpotWindow, find_spot};
 pub use stages::Stages;
-pub use trace::{LeftOut, Mode, Options, Traced, trace};
+pub use trace::{LeftOut, Mode, Options, Traced, trace, trace_page};

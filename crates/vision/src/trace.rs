@@ -9,7 +9,7 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{self, Region, pinholes, regions};
-use crate::{Grey, Page, Quality, Sheet, VisionError, gap, missed, on_ink, sweep};
+use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, sweep};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -55,8 +55,6 @@ pub struct Options {
     pub min_length_px: f64,
     /// Whether sheets of paper lie or hang in the image: their edges are none of the drawing's.
     pub sheets: bool,
-    /// Whether all of the image is drawing, even where it shows a sheet of paper with something beside it.
-    pub whole: bool,
 }
 
 impl Default for Options {
@@ -69,7 +67,6 @@ impl Default for Options {
             despeckle_px2: None,
             min_length_px: 0.0,
             sheets: false,
-            whole: false,
         }
     }
 }
@@ -123,8 +120,6 @@ pub struct Traced {
     pub left_out: LeftOut,
     /// Rules of ruled or squared paper, which are none of the strokes.
     pub rules: Option<Rules>,
-    /// The sheet of paper that the strokes lie on, where there is something beside it.
-    pub sheet: Option<Sheet>,
 }
 
 /// What of an image's ink, and of the ways between it, is in no stroke on purpose.
@@ -138,15 +133,22 @@ pub struct LeftOut {
     pub over_paper_px: f64,
 }
 
-/// Finds the strokes of an image.
+/// Finds the strokes of an image: of the sheet of paper in it, if it shows one with something beside it.
 ///
 /// # Errors
-/// When the image has no ink, no contrast, nothing but noise, or (sweep) is no single closed figure; when an option is
-/// out of its bounds, or leaves nothing.
+/// As [`trace_page`].
 pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
+    trace_page(&Page::of(image), options)
+}
+
+/// Finds the strokes of a page, in the pixel frame of the whole image.
+///
+/// # Errors
+/// When the page has no ink, no contrast, nothing but noise, or (sweep) is no single closed figure; when an option is
+/// out of its bounds, or leaves nothing.
+pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionError> {
     options.check()?;
-    let page = if options.whole { Page::whole(image) } else { Page::of(image) };
-    let ink = Ink::of(&page, options.threshold_percent, options.sheets)?;
+    let ink = Ink::of(page, options.threshold_percent, options.sheets)?;
     let mut mask = ink.mask();
     let regions = drawn(&mut mask, least_patch(&ink, options))?;
     let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
@@ -173,15 +175,14 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
     let strokes = strokes.transformed(Affine::translate((right as f64, down as f64)));
     let strokes = long_enough(strokes, options.min_length_px)?;
     Ok(Traced {
-        width_px: image.width(),
-        height_px: image.height(),
+        width_px: page.size.0,
+        height_px: page.size.1,
         mode: options.mode,
         quality: Quality { pen_px: usual_pen(&strokes), ..ink.quality },
         strokes,
         missed_ink,
         left_out: left_out.enlarged(ink.reduction),
         rules: ink.rules.map(|rules| rules.scaled(ink.reduction as f64)),
-        sheet: page.sheet,
     })
 }
 

@@ -4,6 +4,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, json};
+use tracelight_stroke::Point;
 use tracelight_vision::Stages;
 
 use crate::batch::figures::Figures;
@@ -15,6 +16,7 @@ use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
 use crate::output::drawing::{self, FORMATS};
 use crate::output::{self, counted};
+use crate::paper::{PaperSeen, page};
 use crate::picture::{self, Source};
 use crate::progress::Progress;
 use crate::quality::QualityFigures;
@@ -188,27 +190,41 @@ fn stages(picture: &str, source: &Source, tracing: &TracingArgs) -> Result<Strin
         let message = format!("--stages: {picture} has strokes already, and no ink to be found");
         return Err(Failure::usage("usage", message));
     };
-    let stages = Stages::of(&pixels.grey, tracing.threshold.0, tracing.sheets)
+    let page = page(picture, &pixels.grey, tracing)?;
+    let stages = Stages::of(&page, tracing.threshold.0, tracing.sheets)
         .map_err(|e| Failure::failed("no-strokes-found", format!("{picture}: {e}")))?;
     let name =
         Path::new(picture).file_name().map_or_else(|| picture.to_owned(), |n| n.to_string_lossy().into());
-    output::stages::figure(&name, &pixels.grey, &stages)
+    output::stages::figure(&name, &page.picture, &stages)
 }
 
+/// Pixels, to a hundredth.
+fn round(px: f64) -> f64 {
+    (100.0 * px).round() / 100.0
+}
+
+/// Strokes in the picture's pixels.
 fn pixel_json(sketch: &Sketch) -> String {
-    let sheet = Sheet {
-        width: sketch.size.0,
-        height: sketch.size.1,
-        metres_per_unit: None,
-        drawing: sketch.drawing.clone(),
-    };
+    let (drawing, (width, height)) = sketch.in_picture();
+    let sheet = Sheet { width, height, metres_per_unit: None, drawing: drawing.clone() };
     let text = json::write(&Traced { sheet, mode: sketch.mode.to_owned() }, POINTS_TOLERANCE_PX);
     let quality = sketch.quality.as_ref().map(QualityFigures::of);
     let quality = quality.and_then(|figures| serde_json::to_string(&figures).ok());
-    match (quality, text.strip_suffix('}')) {
-        (Some(quality), Some(object)) => format!("{object},\"quality\":{quality}}}"),
-        _ => text,
-    }
+    let points = |points: &[Point]| points.iter().map(|p| [round(p.x), round(p.y)]).collect::<Vec<_>>();
+    let paper = sketch.paper.as_ref().map(|PaperSeen { sheet, slanted, .. }| {
+        serde_json::json!({
+            "outline": points(&sheet.outline),
+            "corners": sheet.corners.as_ref().map(|corners| points(corners)),
+            "beside": round(sheet.beside),
+            "laid_square": slanted.is_some(),
+        })
+    });
+    let Some(object) = text.strip_suffix('}') else { return text };
+    let mut all = object.to_owned();
+    all.extend(paper.map(|paper| format!(",\"sheet\":{paper}")));
+    all.extend(quality.map(|quality| format!(",\"quality\":{quality}")));
+    all.push('}');
+    all
 }
 
 fn is_folder(path: &Path) -> bool {

@@ -3,9 +3,11 @@
 use std::ops::RangeInclusive;
 
 use clap::Args;
+use tracelight_stroke::Point;
 use tracelight_vision::Options;
 
 use crate::cli::request::ModeName;
+use crate::paper::{Paper, clockwise};
 use crate::units::{self, Angle, LENGTHS, PIXELS};
 
 /// How pixels become strokes. Without a flag, what the picture itself says.
@@ -33,6 +35,28 @@ pub(crate) struct TracingArgs {
     /// Sheets of paper lie or hang in the picture, as in a photograph of a wall or a table: their edges are no lines
     #[arg(long)]
     pub(crate) sheets: bool,
+    /// All of the picture is drawing, even beside a sheet of paper that is seen in it
+    #[arg(long)]
+    pub(crate) whole: bool,
+    /// Lay a sheet of paper that was photographed at a slant square, by its corners: those that are found, or four that are
+    /// given, in the picture's pixels from its upper left, such as "52,19 583,6 599,368 100,447"; off leaves it as it is
+    #[arg(long, value_name = "auto|off|X,Y …", default_value = "auto", allow_hyphen_values = true, value_parser = straighten)]
+    pub(crate) straighten: Straighten,
+    /// The sheet's size, for a drawing to scale: its true width is what is drawn unless --width or --height says otherwise
+    #[arg(long, value_enum, value_name = "SIZE")]
+    pub(crate) paper: Option<Paper>,
+}
+
+/// How a sheet that was photographed at a slant is laid square.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Straighten {
+    /// By its corners, where all four are found.
+    #[default]
+    Auto,
+    /// Not at all.
+    Off,
+    /// By these, clockwise from the upper left, px.
+    By([Point; 4]),
 }
 
 impl Default for TracingArgs {
@@ -46,6 +70,9 @@ impl Default for TracingArgs {
             tolerance: Pixels(0.35),
             corner_angle: Angle(25_f64.to_radians()),
             sheets: false,
+            whole: false,
+            straighten: Straighten::Auto,
+            paper: None,
         }
     }
 }
@@ -105,9 +132,31 @@ impl TracingArgs {
             ("shortest stroke", least),
             ("tolerance of the tracing", format!("{} px", self.tolerance.0)),
             ("corners from", format!("{:.1}°", self.corner_angle.0.to_degrees())),
+            ("what is looked at", if self.whole { "all of the picture" } else { "its sheet" }.to_owned()),
             ("edges of paper", if self.sheets { "left out" } else { "traced" }.to_owned()),
         ]
     }
+}
+
+fn straighten(text: &str) -> Result<Straighten, String> {
+    match text.trim() {
+        word if word.eq_ignore_ascii_case("auto") => return Ok(Straighten::Auto),
+        word if word.eq_ignore_ascii_case("off") => return Ok(Straighten::Off),
+        _ => {}
+    }
+    let parts =
+        text.split(|c: char| c == ',' || c == ';' || c.is_whitespace()).filter(|part| !part.is_empty());
+    let numbers: Vec<f64> = parts
+        .map(|part| part.parse().ok().filter(|v: &f64| v.is_finite()).ok_or(part))
+        .collect::<Result<_, _>>()
+        .map_err(|part| format!("{part} is no number of pixels; give auto, off, or \"X,Y X,Y X,Y X,Y\""))?;
+    let [a, b, c, d, e, f, g, h] = numbers[..] else {
+        return Err(format!(
+            "{} numbers are not four corners; give \"X,Y X,Y X,Y X,Y\", in pixels",
+            numbers.len()
+        ));
+    };
+    Ok(Straighten::By(clockwise([(a, b), (c, d), (e, f), (g, h)].map(Point::from))))
 }
 
 fn threshold(text: &str) -> Result<OrAuto, String> {
@@ -190,6 +239,11 @@ mod tests {
         assert!(tolerance("11px").unwrap_err().contains("between 0.05 and 10 px"));
         assert!(least_length("5").unwrap_err().contains("8px"));
         assert!(least_length("nanpx").is_err() && threshold("nan").is_err() && despeckle("inf").is_err());
+        let corners = [(10.0, 20.0), (600.0, 30.0), (590.0, 420.0), (15.0, 400.0)].map(Point::from);
+        assert_eq!(straighten("590,420 10,20 15,400 600,30"), Ok(Straighten::By(corners)));
+        assert_eq!(straighten("OFF"), Ok(Straighten::Off));
+        assert!(straighten("1,2 3,4").unwrap_err().contains("4 numbers are not four corners"));
+        assert!(straighten("1,2 3,4 5,x 7,8").unwrap_err().contains("x is no number"));
         for (angle, ok) in
             [("5deg", true), ("90deg", true), ("4.9deg", false), ("91deg", false), ("30", false)]
         {

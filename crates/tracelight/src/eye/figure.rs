@@ -1,14 +1,13 @@
 //! The figure on the wall, as strokes in the wall's frame: traced where the camera sees it, not where it lies in a file.
 
-use std::f64::consts::PI;
-
 use tracelight_aim::Camera;
-use tracelight_stroke::{Affine, Drawing, FitOptions, Path, Piece, Point, Stroke, Vec2, fit};
+use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 use tracelight_vision::Grey;
 
 use super::pages::without_pages;
 use super::wall::{SeenWall, see_wall, well_exposed};
 use super::{Looks, grey};
+use crate::carried::carried;
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::tracing::TracingArgs;
@@ -96,7 +95,7 @@ fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Fai
     let blank = without_pages(&wall.pixels, &wall);
     let pixels = Pixels { grey: grey(&blank)?, colour: blank };
     // a figure is as often on a sheet on the wall as on the wall itself
-    let tracing = TracingArgs { sheets: true, ..request.tracing.clone() };
+    let tracing = TracingArgs { sheets: true, whole: true, ..request.tracing.clone() };
     let mut seen =
         sketch_at("the camera's image", Source::Pixels(pixels), &tracing, request.choice, &|_, _| scale_m)?;
     let drawing = on_wall(&seen.drawing, &camera, scale_m);
@@ -128,68 +127,9 @@ pub(crate) fn metres_per_pixel(camera: &Camera) -> Option<f64> {
     Some(1.0 / camera.scale(camera.target(Point::new(width / 2.0, height / 2.0))?)?)
 }
 
-/// Spacing of the points that carry a stroke from image to wall, px.
-const SPACING_PX: f64 = 1.5;
-/// How far from those points a stroke may be, px: what tracing leaves to chance.
-const OFF_PX: f64 = 0.15;
-
-/// Change of direction from which on a stroke has a corner that stays sharp, rad.
-const CORNER_RAD: f64 = 0.35;
-
 /// Strokes in pixels on the wall: a lens makes bends of straight lines, and perspective what is no arc of an arc.
 fn on_wall(drawing: &Drawing, camera: &Camera, scale_m: f64) -> Drawing {
-    let options = FitOptions { corner_rad: PI, reach: 0.0, ..FitOptions::new(OFF_PX * scale_m) };
-    let moved = |stroke: &Stroke| {
-        let path = carried(&stroke.path, camera, &options)?;
-        Some(Stroke { pen: stroke.pen.map(|pen| pen * scale_m), ..stroke.along(path) })
-    };
-    Drawing { strokes: drawing.strokes.iter().filter_map(moved).collect() }
-}
-
-/// A path in pixels on the wall, every stretch between corners by itself; `None` if some of it shows no wall.
-fn carried(path: &Path, camera: &Camera, options: &FitOptions) -> Option<Path> {
-    let mut stretches = stretches(path);
-    let wall =
-        |pixels: &[Point]| pixels.iter().map(|pixel| camera.target(*pixel)).collect::<Option<Vec<Point>>>();
-    let is_smooth = path.is_closed() && !has_corner(path.pieces().last()?, path.pieces().next()?);
-    if let ([only], true) = (stretches.as_mut_slice(), is_smooth) {
-        only.pop();
-        return fit(&wall(only)?, true, options);
-    }
-    let mut carried = Path::new(camera.target(path.start())?);
-    for stretch in &stretches {
-        // one that is too short for a curve is a line
-        match fit(&wall(stretch)?, false, options) {
-            Some(part) => part.elements().iter().for_each(|element| carried.push(*element)),
-            None => carried.line_to(camera.target(*stretch.last()?)?),
-        }
-    }
-    if path.is_closed() {
-        carried.close();
-    }
-    Some(carried)
-}
-
-/// Points of a path, in stretches from corner to corner.
-fn stretches(path: &Path) -> Vec<Vec<Point>> {
-    let mut all = vec![vec![path.start()]];
-    let mut before: Option<Piece> = None;
-    for piece in path.pieces() {
-        if before.is_some_and(|before| has_corner(before, piece)) {
-            all.push(vec![piece.from]);
-        }
-        let count = (piece.length(0.1) / SPACING_PX).ceil().max(1.0) as usize;
-        let points = (1..=count).map(|k| piece.at(k as f64 / count as f64));
-        all.iter_mut().last().into_iter().for_each(|stretch| stretch.extend(points.clone()));
-        before = Some(piece);
-    }
-    all
-}
-
-/// Whether one piece goes on in another direction than the one before ends in.
-fn has_corner(before: Piece, after: Piece) -> bool {
-    let (a, b) = (before.end_tangent(), after.start_tangent());
-    a.cross(b).atan2(a.dot(b)).abs() > CORNER_RAD
+    carried(drawing, scale_m, &|pixel| camera.target(pixel))
 }
 
 /// Longest side of the picture that is shown, px, and the rim about the figure, as a share of its size.
@@ -236,10 +176,13 @@ mod tests {
     use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
     use crate::eye::{Eye, Shot};
     use crate::failure::Status;
+    use std::f64::consts::PI;
     use tracelight_aim::{CameraPose, HeadPose, Lens};
     use tracelight_rig::{Command, Rig, Telemetry};
     use tracelight_sim::{RigConfig, Room, Simulated, Tick};
-    use tracelight_stroke::Element;
+    use tracelight_stroke::{Element, Path, Piece, Stroke};
+
+    use crate::carried::has_corner;
 
     fn camera() -> Camera {
         let pose = CameraPose::looking_at([0.3, -0.2, 1.1], [0.0; 3]).unwrap();

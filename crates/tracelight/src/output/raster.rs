@@ -19,7 +19,7 @@ impl Raster {
     }
 
     /// A picture whose rows are made by `row(y, bytes)`, rows shared out among the processor's cores.
-    pub(super) fn from_rows(width: u32, height: u32, row: impl Fn(u32, &mut [u8]) + Sync) -> Self {
+    pub(crate) fn from_rows(width: u32, height: u32, row: impl Fn(u32, &mut [u8]) + Sync) -> Self {
         let stride = width.max(1) as usize * 3;
         let mut rgb = vec![0; stride * height.max(1) as usize];
         super::painting::share_rows(&mut rgb, stride, |y, bytes| row(y as u32, bytes));

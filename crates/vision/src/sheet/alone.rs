@@ -26,6 +26,8 @@ const NEAR: f64 = 4.0;
 const LEAST_HIDDEN: usize = 4;
 /// Most of a sheet that something covers.
 const MOST_COVERED: f64 = 0.15;
+/// And most of what covers it in squares of its width at the sheet's edge: a finger is some three times as long as wide.
+const MOST_SQUARES: f64 = 6.0;
 /// So far beyond what covers it the sheet is in its shadow, px.
 const LEAST_WIDER: usize = 3;
 const MOST_WIDER: usize = 8;
@@ -304,7 +306,8 @@ fn cover(calm: &Plane<u8>, depths: &[f64], stretch: &Stretch) -> Vec<usize> {
     }
     // what takes up much of the sheet is a shadow on it
     let sheet = depths.iter().filter(|depth| **depth > 0.0).count();
-    if (patch.len() as f64) < MOST_COVERED * sheet as f64 { patch } else { Vec::new() }
+    let most = (MOST_COVERED * sheet as f64).min(MOST_SQUARES * (stretch.inside.len() as f64).powi(2));
+    if (patch.len() as f64) < most { patch } else { Vec::new() }
 }
 
 /// With all so near, px.

@@ -18,8 +18,8 @@ const LEAST_AREA_IN_LIGHT: f64 = 0.25;
 const LEAST_SINE: f64 = 0.6;
 /// Paper is so even from one side of the sheet to another, as a ratio: in a shadow it keeps this much.
 const EVEN: std::ops::Range<f64> = 0.42..2.4;
-/// The same of a sheet that is darker than what lies beside it: else it may be a filled shape.
-const EVEN_IN_DARK: std::ops::Range<f64> = 0.75..1.33;
+/// The same of a sheet that is darker than what lies beside it and not seen on all sides: else it may be a filled shape.
+const EVEN_IN_LIGHT: std::ops::Range<f64> = 0.75..1.33;
 /// A darker sheet has at least this share of the brightness beside it: less is ink.
 const LEAST_SHADE: f64 = 0.5;
 /// Of the blocks beside a sheet most have less than this share of the fine contrast of those on it; else there is
@@ -36,7 +36,7 @@ const STEP: f64 = 0.06;
 const LEAST_FIRM: f64 = 0.6;
 /// Of a sheet seen on three sides.
 const LEAST_FIRM_OF_THREE: f64 = 0.7;
-/// Of a sheet seen on two sides or one.
+/// Of a sheet seen on two sides or one, and of one that is darker than what lies beside it.
 const LEAST_FIRM_OF_TWO: f64 = 0.85;
 /// What a shadow on the paper lets through of the light: a step of that size on a single side may be its edge.
 const SHADE: std::ops::Range<f64> = 0.42..0.88;
@@ -71,6 +71,15 @@ impl Quad {
     /// All of a picture.
     pub(super) fn all(plane: &Plane<u8>) -> Self {
         Self { sides: Default::default(), corners: corners(plane, [None; 4]), is_brighter: true }
+    }
+
+    /// Between corners that someone gives; `None` where they are no quadrilateral.
+    pub(super) fn between(corners: [Point; 4]) -> Option<Self> {
+        let turns = |k: usize| {
+            let [a, b, c] = [k, k + 1, k + 2].map(|k| corners[k % 4]);
+            (b - a).cross(c - b) > 0.0
+        };
+        (0..4).all(turns).then(|| Self { sides: Default::default(), corners, is_brighter: true })
     }
 
     /// The ends of a side, clockwise.
@@ -284,8 +293,8 @@ impl Calm {
         let is_even = inner.iter().flatten().all(|level| EVEN.contains(&(level / paper)));
         let is_ink = !quad.is_brighter && paper < LEAST_SHADE * beyond;
         let least_firm = match quad.seen() {
-            4 => LEAST_FIRM,
-            3 => LEAST_FIRM_OF_THREE,
+            4 if quad.is_brighter => LEAST_FIRM,
+            3 if quad.is_brighter => LEAST_FIRM_OF_THREE,
             _ => LEAST_FIRM_OF_TWO,
         };
         let may_be_shadow = quad.seen() < 2 && SHADE.contains(&(beyond.min(paper) / beyond.max(paper)));
@@ -329,7 +338,7 @@ impl Calm {
 
     /// Whether most of what it holds is paper, and hardly any of what it does not.
     fn is_paper(&self, quad: &Quad, paper: f64) -> bool {
-        let like_paper = if quad.is_brighter { EVEN } else { EVEN_IN_DARK };
+        let like_paper = if quad.is_brighter || quad.seen() == 4 { EVEN } else { EVEN_IN_LIGHT };
         let (mut inside, mut like, mut like_outside) = (0_usize, 0_usize, 0_usize);
         let depth = quad.depths();
         for (at, level, _) in &self.blocks {

@@ -17,6 +17,8 @@ const WINDOW: usize = 9;
 /// A side is straight whose steps are off a straight line by less, px of the full picture and of the small one.
 const STRAIGHT_PX: f64 = 1.5;
 const STRAIGHT_SMALL: f64 = 0.3;
+/// A smaller sheet holds no drawing, px².
+const LEAST_PX2: f64 = 64.0 * 64.0;
 /// A step is over where levels are the paper's within this share of it, at most of the places.
 const OVER: f64 = 0.06;
 const MOST_OVER: f64 = 0.75;
@@ -74,6 +76,18 @@ pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<(Sh
     let blur = lines.iter().map(|line| line.blur).fold(0.0, f64::max);
     let corners = is_whole.then_some(corners);
     (beside > LEAST_BESIDE && outline.len() > 2).then_some((Sheet { outline, corners, beside }, blur))
+}
+
+/// The sheet between corners that someone gives; `None` where hardly any of it is in the picture.
+pub(super) fn between(plane: &Plane<u8>, corners: [Point; 4]) -> Option<Sheet> {
+    let (width, height) = (plane.width as f64, plane.height as f64);
+    let outline = within(corners.to_vec(), width, height);
+    let area = if outline.len() > 2 { area(&outline) } else { 0.0 };
+    (area > LEAST_PX2).then(|| Sheet {
+        outline,
+        corners: Some(corners),
+        beside: 1.0 - area / (width * height),
+    })
 }
 
 /// Where two lines meet.

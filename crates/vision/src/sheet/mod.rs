@@ -21,7 +21,7 @@ use tracelight_stroke::Point;
 use crate::Grey;
 use crate::mask::Mask;
 use crate::plane::Plane;
-use alone::alone;
+use alone::{Alone, alone};
 use choice::Quad;
 
 /// A sheet of paper in a picture.
@@ -41,6 +41,8 @@ pub struct Sheet {
 pub struct Page<'a> {
     /// The picture, or the part of it that holds its sheet.
     pub picture: Cow<'a, Grey>,
+    /// Of the whole picture, px.
+    pub size: (usize, usize),
     /// Where the first pixel of that part lies in the whole, px to the right and down.
     pub origin: (usize, usize),
     /// The sheet; `None` where all of the picture is one, or none is seen.
@@ -59,7 +61,8 @@ pub(crate) struct Beside {
 impl<'a> Page<'a> {
     /// All of a picture.
     pub const fn whole(image: &'a Grey) -> Self {
-        Self { picture: Cow::Borrowed(image), origin: (0, 0), sheet: None, beside: None }
+        let size = (image.width(), image.height());
+        Self { picture: Cow::Borrowed(image), size, origin: (0, 0), sheet: None, beside: None }
     }
 
     /// The sheet in a picture, if there is one, else all of it.
@@ -68,12 +71,27 @@ impl<'a> Page<'a> {
             let found = Found::of(&image.plane, &small)?;
             Some((alone(&image.plane, &small, &found), found.sheet))
         });
-        found.map_or(Self::whole(image), |(alone, sheet)| Self {
+        found.map_or(Self::whole(image), |(alone, sheet)| Self::cut(image, alone, sheet))
+    }
+
+    /// What of a picture lies within four corners, clockwise from the upper left, px; `None` where they are no
+    /// quadrilateral of some size in it.
+    pub fn within(image: &'a Grey, corners: [Point; 4]) -> Option<Self> {
+        let side = image.width().min(image.height());
+        let small = Small::by(&image.plane, (side / SIDE).max(1));
+        let found = Found::within(&image.plane, &small, corners)?;
+        let alone = alone(&image.plane, &small, &found);
+        Some(Self::cut(image, alone, found.sheet))
+    }
+
+    fn cut(image: &Grey, alone: Alone, sheet: Sheet) -> Self {
+        Self {
             picture: Cow::Owned(Grey { plane: alone.plane }),
+            size: (image.width(), image.height()),
             origin: alone.origin,
             sheet: Some(sheet),
             beside: Some(alone.beside),
-        })
+        }
     }
 }
 
@@ -90,6 +108,14 @@ impl Found {
         let quad = choice::best(small).unwrap_or_else(|| Quad::all(&small.levels));
         let (sheet, blur_px) = edge::sheet(plane, small, &quad)?;
         Some(Self { sheet, quad, blur_px })
+    }
+
+    /// What someone says to be one.
+    fn within(plane: &Plane<u8>, small: &Small, corners: [Point; 4]) -> Option<Self> {
+        let by = small.by as f64;
+        let quad = Quad::between(corners.map(|c| Point::new(c.x / by, c.y / by)))?;
+        let sheet = edge::between(plane, corners)?;
+        Some(Self { sheet, quad, blur_px: 0.0 })
     }
 }
 
@@ -111,11 +137,11 @@ impl Small {
     /// `None` of a picture that is too small to show more than a figure.
     fn of(plane: &Plane<u8>) -> Option<Self> {
         let side = plane.width.min(plane.height);
-        if side < LEAST_SIDE {
-            return None;
-        }
         let longer = plane.width.max(plane.height);
-        let by = (side / SIDE).max(longer / LONGER).max(1);
-        Some(Self { by, levels: plane.reduced(by) })
+        (side >= LEAST_SIDE).then(|| Self::by(plane, (side / SIDE).max(longer / LONGER).max(1)))
+    }
+
+    fn by(plane: &Plane<u8>, by: usize) -> Self {
+        Self { by, levels: plane.reduced(by) }
     }
 }

@@ -1,0 +1,206 @@
+//! A sheet of paper on a table: its corners are found, what lies beside it and over it is none of the drawing, and
+//! none of the drawing is lost. A shadow, a frame and a filled shape are no sheets.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+use std::f64::consts::TAU;
+
+#[path = "support/raster.rs"]
+#[allow(dead_code, reason = "each test draws with some of it")]
+mod raster;
+
+use raster::Canvas;
+use tracelight_stroke::{Point, Vec2, compare_polylines};
+use tracelight_vision::{Grey, Options, Page, Traced, trace, trace_page};
+
+/// Numbers that look like chance (Marsaglia, "Xorshift RNGs", 2003).
+struct Chance(u64);
+
+impl Chance {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        low + (high - low) * (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A sheet with a figure on it, photographed on a table.
+struct Photograph {
+    size: (usize, usize),
+    corners: [Point; 4],
+    figure: Vec<Vec<Point>>,
+    pen: f64,
+    paper: f64,
+    table: f64,
+    /// How much darker one half of the picture is, and how its edge runs.
+    shadow: Option<(f64, f64, f64)>,
+    /// A finger's two ends.
+    finger: Option<(Point, Point)>,
+}
+
+impl Photograph {
+    fn any(chance: &mut Chance) -> Self {
+        let size = [(640, 480), (960, 720), (480, 640)][chance.between(0.0, 2.999) as usize];
+        let (w, h) = (size.0 as f64, size.1 as f64);
+        let corner = |x: f64, y: f64, chance: &mut Chance| {
+            Point::new((x + chance.between(-0.05, 0.05)) * w, (y + chance.between(-0.05, 0.05)) * h)
+        };
+        let corners =
+            [(0.16, 0.14), (0.85, 0.15), (0.86, 0.86), (0.15, 0.85)].map(|(x, y)| corner(x, y, chance));
+        let side = w.min(h);
+        let pen = (0.008 * side * chance.between(0.7, 1.6)).max(2.5);
+        let is_bright = chance.between(0.0, 1.0) < 0.2;
+        let paper = chance.between(190.0, if is_bright { 215.0 } else { 240.0 });
+        let table = if is_bright { 255.0 } else { chance.between(30.0, 0.7 * paper) };
+        let turn = chance.between(0.0, TAU);
+        let middle = Point::new(0.5 * w, 0.5 * h);
+        let round = |at: Vec2, radius: f64, sweep: f64| -> Vec<Point> {
+            let on = |k: i32| middle + at + Vec2::from_angle(turn + sweep * f64::from(k) / 120.0) * radius;
+            (0..=120).map(on).collect()
+        };
+        let figure = vec![
+            round(Vec2::new(-0.13 * side, 0.02 * side), 0.12 * side, TAU),
+            round(Vec2::new(0.15 * side, -0.05 * side), 0.1 * side, 2.2),
+            vec![middle + Vec2::new(-0.2 * side, 0.22 * side), middle + Vec2::new(0.25 * side, 0.2 * side)],
+        ];
+        let shadow = (chance.between(0.0, 1.0) < 0.4)
+            .then(|| (chance.between(0.5, 0.75), chance.between(0.0, TAU), chance.between(-0.15, 0.15) * h));
+        let across = chance.between(0.3, 0.7);
+        let finger = (chance.between(0.0, 1.0) < 0.4).then(|| {
+            (
+                Point::new(across * w, h + 20.0),
+                Point::new(across * w, corners[2].y.min(corners[3].y) - 0.03 * h),
+            )
+        });
+        // a table as bright as paper shows no finger's end, and needs none
+        Self { size, corners, figure, pen, paper, table, shadow, finger: finger.filter(|_| table < 200.0) }
+    }
+
+    fn taken(&self, chance: &mut Chance) -> Grey {
+        let (width, height) = self.size;
+        let mut sheet = Canvas::new(width, height);
+        sheet.fill(&[self.corners.to_vec()]);
+        let mut ink = Canvas::new(width, height);
+        self.figure.iter().for_each(|line| ink.pen(line, self.pen));
+        let mut finger = Canvas::new(width, height);
+        self.finger.iter().for_each(|(from, tip)| finger.pen(&[*from, *tip], 0.07 * height as f64));
+        let [sheet, ink, finger] = [sheet, ink, finger].map(|drawn| drawn.shares().collect::<Vec<f64>>());
+        let mut level = |k: usize| {
+            let at = Point::new((k % width) as f64 + 0.5, (k / width) as f64 + 0.5);
+            let paper = self.paper * (1.0 - 0.85 * ink[k]);
+            let seen = self.table + (paper - self.table) * sheet[k];
+            let seen = seen + (0.6 * self.paper - seen) * finger[k];
+            let light = self.shadow.map_or(1.0, |(light, turn, off)| {
+                let from_edge = (at - Point::new(0.5 * width as f64, 0.5 * height as f64))
+                    .dot(Vec2::from_angle(turn))
+                    - off;
+                light + (1.0 - light) * (from_edge + 0.5).clamp(0.0, 1.0)
+            });
+            (seen * light + chance.between(-3.0, 3.0)).clamp(0.0, 255.0) as u8
+        };
+        Grey::new(width, height, (0..width * height).map(&mut level).collect()).unwrap()
+    }
+}
+
+/// What is wrong with what was found of a photograph.
+fn fault(photograph: &Photograph, image: &Grey) -> Option<String> {
+    let page = Page::of(image);
+    let Some(corners) = page.sheet.as_ref().and_then(|sheet| sheet.corners) else {
+        return Some(format!("no sheet with four corners: {:?}", page.sheet));
+    };
+    let off = corners.iter().zip(&photograph.corners).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    if off > 2.0 {
+        return Some(format!("a corner is {off:.1} px off"));
+    }
+    let traced = match trace_page(&page, &Options::default()) {
+        Ok(traced) => traced,
+        Err(error) => return Some(error.to_string()),
+    };
+    let drawn: Vec<Vec<Point>> =
+        traced.strokes.strokes.iter().map(|stroke| stroke.path.flatten(0.05)).collect();
+    let off = compare_polylines(&drawn, &photograph.figure, 2.0).unwrap();
+    (off.max > 2.5 || off.coverage < 0.995).then(|| {
+        format!("a stroke is {:.1} px off the figure, {:.3} of which is drawn", off.max, off.coverage)
+    })
+}
+
+#[test]
+fn two_hundred_photographs_of_sheets_give_their_figures_and_nothing_else() {
+    let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
+    let mut faults = Vec::new();
+    for k in 0..200 {
+        let photograph = Photograph::any(&mut chance);
+        let image = photograph.taken(&mut chance);
+        faults.extend(fault(&photograph, &image).map(|fault| format!("photograph {k}: {fault}")));
+    }
+    assert!(faults.is_empty(), "{} of 200:\n{}", faults.len(), faults.join("\n"));
+}
+
+/// A picture of 640 × 480 by the level of each place.
+fn picture(level: impl Fn(f64, f64) -> f64) -> Grey {
+    let at = |k: usize| level((k % 640) as f64 + 0.5, (k / 640) as f64 + 0.5) as u8;
+    Grey::new(640, 480, (0..640 * 480).map(at).collect()).unwrap()
+}
+
+fn is_ring(x: f64, y: f64) -> bool {
+    ((x - 250.0).hypot(y - 240.0) - 90.0).abs() < 2.0
+}
+
+#[test]
+fn what_is_no_sheet_is_traced_as_it_was() {
+    let ink = |x: f64, y: f64| if is_ring(x, y) { 30.0 } else { 230.0 };
+    let is_whole = |name: &str, level: &dyn Fn(f64, f64) -> f64| {
+        let image = picture(level);
+        let page = Page::of(&image);
+        assert_eq!(page.sheet, None, "{name}");
+    };
+    is_whole("paper alone", &|x, y| ink(x, y));
+    is_whole("a shadow's edge", &|x, y| ink(x, y) * if x + 0.4 * y > 330.0 { 0.6 } else { 1.0 });
+    let frame = |x: f64, y: f64, wide: f64| {
+        let near = (x - 320.0).abs().max((y - 240.0).abs() + 80.0);
+        (280.0..280.0 + wide).contains(&near)
+    };
+    for wide in [3.0, 8.0, 16.0] {
+        is_whole("a frame about it", &|x, y| if frame(x, y, wide) { 30.0 } else { ink(x, y) });
+    }
+    is_whole("a frame along the border", &|x, y| {
+        if !(5.0..635.0).contains(&x) || !(5.0..475.0).contains(&y) { 30.0 } else { ink(x, y) }
+    });
+    is_whole("a filled shape", &|x, y| {
+        if (380.0..600.0).contains(&x) && (80.0..400.0).contains(&y) { 40.0 } else { ink(x, y) }
+    });
+    is_whole("ground below", &|x, y| if y > 400.0 + 20.0 * (0.02 * x).sin() { 40.0 } else { ink(x, y) });
+}
+
+#[test]
+fn a_scan_that_lies_a_little_askew_has_no_rim() {
+    let level = |x: f64, y: f64| {
+        if y > 470.0 + 0.015 * x {
+            25.0
+        } else if is_ring(x, y) {
+            30.0
+        } else {
+            235.0
+        }
+    };
+    let found = trace(&picture(level), &Options::default()).unwrap();
+    assert_eq!(found.strokes.strokes.len(), 1);
+    assert!(found.strokes.strokes[0].path.is_closed());
+}
+
+#[test]
+fn corners_that_are_given_bound_what_is_traced() {
+    let image = picture(|x, y| if is_ring(x, y) || (x - 560.0).abs() < 2.0 { 30.0 } else { 230.0 });
+    let corners = [(120.0, 110.0), (420.0, 120.0), (410.0, 380.0), (110.0, 370.0)].map(Point::from);
+    let page = Page::within(&image, corners).unwrap();
+    let found = trace_page(&page, &Options::default()).unwrap();
+    assert_eq!(found.strokes.strokes.len(), 1);
+    assert_eq!((found.width_px, found.height_px), (640, 480));
+    let at = found.strokes.strokes[0].path.start();
+    assert!((at.distance(Point::new(250.0, 240.0)) - 90.0).abs() < 0.5, "{at:?}");
+    // folded over, and next to nothing
+    let [a, b, c, d] = corners;
+    assert!(Page::within(&image, [a, c, b, d]).is_none());
+    assert!(Page::within(&image, [a, b, c, d].map(|p| Point::new(0.1 * p.x, 0.1 * p.y))).is_none());
+}
