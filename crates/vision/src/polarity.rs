@@ -32,7 +32,8 @@ const MOST_INK: f64 = 0.6;
 ///
 /// Along rows and columns, what is thin and darker than both its neighbours is counted against what is thin and
 /// lighter: lines are thin, and there is one more of them than of the gaps between. The edges of shapes, of shadows and
-/// of the paper itself are neither. Where that says nothing, the picture's border is paper.
+/// of the paper itself are neither. Where that says nothing, the picture is paper along its border, inside of what may be
+/// a line there.
 pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256]) -> bool {
     let range = |share: f64| (percentile(levels, share), percentile(levels, 1.0 - share));
     let (low, high) = match range(DUST) {
@@ -40,10 +41,11 @@ pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256]) -> bool {
         range => range,
     };
     let least = NOISE * noise(image, SAMPLED / 2);
-    let runs = Runs::of(image, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
+    let thin = (image.width.min(image.height) / THIN).max(4);
+    let runs = Runs::of(image, thin, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
     // light multiplies: a shadow on paper is nearer to its brightest than to its ink as a ratio
     let middle = (low.max(10.0) * high).sqrt();
-    let light_border = border_level(image).max(10.0) >= middle;
+    let light_border = border_level(image, thin).max(10.0) >= middle;
     if !runs.are_sure() {
         return !light_border;
     }
@@ -67,9 +69,8 @@ struct Runs {
 }
 
 impl Runs {
-    fn of(image: &Plane<u8>, step: u8) -> Self {
+    fn of(image: &Plane<u8>, thin: usize, step: u8) -> Self {
         let mut runs = Self::default();
-        let thin = (image.width.min(image.height) / THIN).max(4);
         let every = (image.values.len() / SAMPLED).max(1);
         for y in ((every / 2).min(image.height / 2)..image.height).step_by(every) {
             runs.along(image.row(y), step, thin);
@@ -157,12 +158,13 @@ impl Way {
     }
 }
 
-/// Median level of the outermost pixels.
-fn border_level(image: &Plane<u8>) -> f64 {
+/// Median level of the pixels so far inside the border: a line along it is thinner.
+fn border_level(image: &Plane<u8>, inside: usize) -> f64 {
     let mut border = [0u32; 256];
-    let last = image.height - 1;
-    let ends = image.row(0).iter().chain(image.row(last));
-    let sides = (0..image.height).flat_map(|y| [&image.row(y)[0], &image.row(y)[image.width - 1]]);
+    let inside = inside.min((image.width.min(image.height) - 1) / 2);
+    let (right, last) = (image.width - 1 - inside, image.height - 1 - inside);
+    let ends = image.row(inside)[inside..=right].iter().chain(&image.row(last)[inside..=right]);
+    let sides = (inside..=last).flat_map(|y| [&image.row(y)[inside], &image.row(y)[right]]);
     ends.chain(sides).for_each(|&v| border[usize::from(v)] += 1);
     percentile(&border, 0.5)
 }

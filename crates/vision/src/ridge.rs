@@ -240,6 +240,9 @@ impl Cut {
     }
 }
 
+/// A line leads along the picture's border whose normal has at least this share in the border's.
+const ALONG_BORDER: f64 = 0.9;
+
 /// The darkness across a line, sample by sample.
 struct Profile {
     values: [f32; 2 * MOST_HALF + 1],
@@ -250,7 +253,17 @@ impl Profile {
     fn across(dark: &Plane<u8>, at: Point, normal: Vec2, cut: Cut) -> Self {
         let Cut { step, half, .. } = cut;
         let mut values = [0.0; 2 * MOST_HALF + 1];
-        dark.along(at - normal * (half as f64 * step), normal * step, &mut values[..=2 * half]);
+        let from = at - normal * (half as f64 * step);
+        dark.along(from, normal * step, &mut values[..=2 * half]);
+        // of a line along the picture's border nothing is seen behind it; one that leads over it goes on there
+        let beyond =
+            |v: f64, most: usize, way: f64| way.abs() > ALONG_BORDER && !(0.0..=most as f64).contains(&v);
+        for (k, value) in values[..=2 * half].iter_mut().enumerate() {
+            let place = from + normal * (k as f64 * step);
+            if beyond(place.x, dark.width, normal.x) || beyond(place.y, dark.height, normal.y) {
+                *value = 0.0;
+            }
+        }
         Self { values, half }
     }
 

@@ -50,6 +50,11 @@ const LOOKED_AT: usize = 24;
 const SAME: f64 = 0.1;
 /// A side so near to the picture's border all along is none, px.
 const AT_BORDER: f64 = 2.5;
+/// A line along the picture's border is narrower than this share of its shorter side, and as wide everywhere within so
+/// many px, and as a share.
+const FRAME: f64 = 0.05;
+const SAME_WIDTH_PX: f64 = 1.0;
+const SAME_WIDTH: f64 = 0.15;
 /// Levels beside a side are taken so far from it, px.
 const BESIDE: f64 = 4.0;
 
@@ -298,9 +303,28 @@ impl Calm {
             _ => LEAST_FIRM_OF_TWO,
         };
         let may_be_shadow = quad.seen() < 2 && SHADE.contains(&(beyond.min(paper) / beyond.max(paper)));
-        let is_sheet =
-            is_even && !may_be_shadow && !is_ink && firm >= least_firm && self.is_paper(quad, paper);
+        let is_sheet = is_even
+            && !may_be_shadow
+            && !self.is_framed(quad)
+            && !is_ink
+            && firm >= least_firm
+            && self.is_paper(quad, paper);
         is_sheet.then(|| self.is_calmer_outside(quad, paper))
+    }
+
+    /// Whether there is nothing beside it but a line along the picture's border, as wide everywhere.
+    fn is_framed(&self, quad: &Quad) -> bool {
+        let border = borders(&self.calm);
+        let off = |side: usize| {
+            let (from, to) = quad.ends(side);
+            [from, to].map(|p| (if side % 2 == 0 { p.x } else { p.y } - border[side]).abs())
+        };
+        let seen = SIDES.into_iter().filter(|&side| quad.sides[side].is_some());
+        let widths: Vec<f64> = seen.flat_map(off).collect();
+        let least = widths.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = widths.iter().copied().fold(0.0, f64::max);
+        let shorter = self.calm.width.min(self.calm.height) as f64;
+        most < FRAME * shorter && most - least < SAME_WIDTH_PX + SAME_WIDTH * most
     }
 
     /// What is seen along its sides; `None` where all of them are at the picture's border.

@@ -1,0 +1,37 @@
+//! Lines along the picture's own border are lines: the middle of what is seen of them is drawn.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+use tracelight_vision::{Grey, Options, trace};
+
+/// A picture of 420 × 320 px by what is ink.
+fn picture(is_ink: impl Fn(usize, usize) -> bool) -> Grey {
+    let level = |i: usize| if is_ink(i % 420, i / 420) { 0 } else { 255 };
+    Grey::new(420, 320, (0..420 * 320).map(level).collect()).unwrap()
+}
+
+#[test]
+fn a_frame_along_the_border_is_one_closed_line() {
+    let frame = |x: usize, y: usize| x.min(419 - x).min(y.min(319 - y)) < 3;
+    let ring = |x: usize, y: usize| ((x as f64 - 200.0).hypot(y as f64 - 160.0) - 90.0).abs() < 1.5;
+    let found = trace(&picture(|x, y| frame(x, y) || ring(x, y)), &Options::default()).unwrap();
+    assert!(!found.quality.light_on_dark);
+    assert_eq!(found.strokes.strokes.len(), 2);
+    assert!(found.strokes.strokes.iter().all(|stroke| stroke.path.is_closed()));
+    let points = found.strokes.strokes.iter().flat_map(|stroke| stroke.path.flatten(0.05));
+    let outer = points.fold((400.0_f64, 300.0_f64, 0.0_f64, 0.0_f64), |(left, top, right, bottom), p| {
+        (left.min(p.x), top.min(p.y), right.max(p.x), bottom.max(p.y))
+    });
+    for (side, middle) in [(outer.0, 1.5), (outer.1, 1.5), (outer.2, 418.5), (outer.3, 318.5)] {
+        assert!((side - middle).abs() < 0.35, "{side}, not {middle}");
+    }
+}
+
+#[test]
+fn three_lines_along_the_border_are_no_dark_picture() {
+    let lines = |x: usize, y: usize| (y < 3 || x < 3 || x > 416) && y < 300;
+    let found = trace(&picture(lines), &Options::default()).unwrap();
+    assert!(!found.quality.light_on_dark);
+    assert_eq!(found.strokes.strokes.len(), 1);
+    assert!(!found.strokes.strokes[0].path.is_closed());
+}
