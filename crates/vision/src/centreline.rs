@@ -41,7 +41,8 @@ pub(crate) fn rows(dark: &Plane<u8>, shapes: &Mask, region: &Region, graph: &Gra
     }
     let mut found = strung_together(&lines, &junctions.joints);
     if found.len() > 1 {
-        found.retain(|row| !is_stub(row));
+        let pen = pen_of(&found);
+        found.retain(|row| !is_stub(row, pen));
     }
     // a knot of nothing but junctions is a blot
     if found.is_empty() { vec![dot(dark, region)] } else { found }
@@ -121,8 +122,19 @@ const BARE_RADII: f64 = 1.2;
 /// A row is at least so long, in pen widths, beside others of its patch: what is shorter is the bump of a blot.
 const LEAST_ROW_PENS: f64 = 0.5;
 
-fn is_stub(row: &Row) -> bool {
-    !row.closed && polyline_length(&row.points) < LEAST_ROW_PENS * row.width
+/// What is so much thinner than the pen of the others, and no longer than it is wide, is what was left at a line's edge.
+const THIN_ROW: f64 = 0.6;
+
+fn is_stub(row: &Row, pen: f64) -> bool {
+    let length = polyline_length(&row.points);
+    let is_left = row.width < THIN_ROW * pen && length < pen;
+    !row.closed && (is_left || length < LEAST_ROW_PENS * row.width)
+}
+
+/// The width of the longest row, px.
+fn pen_of(rows: &[Row]) -> f64 {
+    let longest = rows.iter().map(|row| (polyline_length(&row.points), row.width));
+    longest.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |longest| longest.1)
 }
 
 /// The stroke along a row.

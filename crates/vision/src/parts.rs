@@ -138,23 +138,32 @@ impl Region {
 /// squared.
 const SPECK_PX: f64 = 10.0;
 const SPECK_PENS: f64 = 0.6;
+/// What is narrower than this share of the pen, and no longer than so many of its widths, is a speck whatever it covers.
+const HAIR_PENS: f64 = 0.6;
+const HAIR_LONG: f64 = 1.6;
 /// A speck this near to a line, pen widths, and not much smaller than the pen, squared, belongs to it: the dot of an i.
 const BELONGS_PENS: f64 = 4.0;
 const LEAST_DOT_PENS: f64 = 0.4;
 
 /// The patches without the specks that lie by themselves, and those.
 fn dusted(mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<Patch>, Vec<Region>) {
-    let speck = |region: &Region| (region.area() as f64) < SPECK_PX.max(SPECK_PENS * pen * pen);
-    let drawn = mask_of(mask, patches.iter().map(|patch| &patch.region).filter(|r| !speck(r)));
+    let speck = |patch: &Patch| {
+        let (width, height) = patch.region.extent();
+        let is_hair = patch.reading.widest < HAIR_PENS * pen && (width.max(height) as f64) < HAIR_LONG * pen;
+        is_hair || (patch.region.area() as f64) < SPECK_PX.max(SPECK_PENS * pen * pen)
+    };
+    let drawn = mask_of(mask, patches.iter().filter(|patch| !speck(patch)).map(|patch| &patch.region));
     // a picture of nothing but specks means them
     if drawn.is_empty() {
         return (patches, Vec::new());
     }
     let reach = (BELONGS_PENS * pen).max(SPECK_PX) as usize;
-    let dot =
-        |region: &Region| region.area() as f64 >= LEAST_DOT_PENS * pen * pen && region.is_near(&drawn, reach);
-    let (kept, dust): (Vec<_>, Vec<_>) =
-        patches.into_iter().partition(|patch| !speck(&patch.region) || dot(&patch.region));
+    let dot = |patch: &Patch| {
+        let is_round = patch.reading.widest >= HAIR_PENS * pen;
+        let is_large = patch.region.area() as f64 >= LEAST_DOT_PENS * pen * pen;
+        is_round && is_large && patch.region.is_near(&drawn, reach)
+    };
+    let (kept, dust): (Vec<_>, Vec<_>) = patches.into_iter().partition(|patch| !speck(patch) || dot(patch));
     (kept, dust.into_iter().map(|patch| patch.region).collect())
 }
 
