@@ -4,6 +4,7 @@ use tracelight_stroke::{Point, Vec2};
 
 use crate::bridge::Tip;
 use crate::centreline::Row;
+use crate::plane::Plane;
 use crate::ridge::median;
 
 /// Widest gap, from where the pen was lifted to where it was put down, pen widths: one of paper and the pen's two
@@ -14,6 +15,10 @@ const LEAST_PX: f64 = 1.5;
 /// Lines that go on into each other bend less than this over the gap, rad (32°): 2 pens of a curve of the smallest
 /// radius, 2 pens, would be 57°, but then its two sides lean as much.
 const BEND: f64 = 0.56;
+/// The same over what is not bare paper: there the ends' directions may be off, as their ink fades.
+const BEND_OF_PALE: f64 = 1.2;
+/// The ink of a line that fades keeps this share of the ends' darkness.
+const PALE: f64 = 0.6;
 /// Two ends of one line differ less than this in the width of their pen, as a ratio.
 const LIKE: f64 = 1.6;
 
@@ -31,9 +36,9 @@ struct End {
 }
 
 /// The rows with those joined that go on into each other over a gap, the straightest first.
-pub(crate) fn bridged(mut rows: Vec<Row>) -> Vec<Row> {
+pub(crate) fn bridged(dark: &Plane<u8>, mut rows: Vec<Row>) -> Vec<Row> {
     orient_dots(&mut rows);
-    let mut pairs = pairs(&rows);
+    let mut pairs = pairs(dark, &rows);
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut chains = Chains::new(rows);
     for (_, a, b) in pairs {
@@ -46,7 +51,7 @@ pub(crate) fn bridged(mut rows: Vec<Row>) -> Vec<Row> {
 type Place = (usize, usize);
 
 /// Pairs of ends that may be one line, with how much it would bend there, rad.
-fn pairs(rows: &[Row]) -> Vec<(f64, Place, Place)> {
+fn pairs(dark: &Plane<u8>, rows: &[Row]) -> Vec<(f64, Place, Place)> {
     let ends = ends(rows);
     let usual = median(&rows.iter().map(|row| row.width).collect::<Vec<_>>());
     let widest = |a: &End, b: &End| WIDEST_PENS * a.width.max(b.width).max(0.8 * usual) + LEAST_PX;
@@ -63,7 +68,7 @@ fn pairs(rows: &[Row]) -> Vec<(f64, Place, Place)> {
                 break;
             }
             if a.tip.at.distance(b.tip.at) <= widest(a, b) && (a.row, a.end) != (b.row, b.end) {
-                found.extend(fit(a, b).map(|bend| (bend, (a.row, a.end), (b.row, b.end))));
+                found.extend(fit(dark, a, b).map(|bend| (bend, (a.row, a.end), (b.row, b.end))));
             }
         }
     }
@@ -127,10 +132,20 @@ fn ends_where(rows: &[Row], wanted: impl Fn(usize, &Row) -> bool) -> Vec<End> {
 }
 
 /// How much the line would bend from one end to the other, rad; `None` if it is not one line.
-fn fit(a: &End, b: &End) -> Option<f64> {
+fn fit(dark: &Plane<u8>, a: &End, b: &End) -> Option<f64> {
     let like = a.width.max(b.width) <= LIKE * a.width.min(b.width) + 1.0;
     let bend = a.tip.bend(&b.tip);
-    (like && bend < BEND).then_some(bend)
+    let most = || if is_pale(dark, a, b) { BEND_OF_PALE } else { BEND };
+    (like && (bend < BEND || bend < most())).then_some(bend)
+}
+
+/// Whether the paper between two ends is nearly as dark as they are: the line fades there, and goes on.
+fn is_pale(dark: &Plane<u8>, a: &End, b: &End) -> bool {
+    let (from, to) = (a.tip.at, b.tip.at);
+    let steps = (2.0 * from.distance(to)).ceil().max(2.0);
+    let along = |k: f64| dark.at(from.lerp(to, k / steps));
+    let ends = along(0.0).min(along(steps));
+    (1..steps as usize).all(|k| along(k as f64) > PALE * ends)
 }
 
 /// Rows strung together end to end.

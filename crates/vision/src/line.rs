@@ -68,10 +68,11 @@ impl Line {
         let ahead = match shape_ahead(shapes, &tip, reach).filter(|&ahead| tip.is_inked_to(dark, ahead)) {
             Some(ahead) => ahead,
             None => {
+                self.free[end] = true;
+                // where the ink goes on paler there is no end to be moved to
                 let Some(ahead) = ridge::pen_end(dark, |s| tip.beyond(s).0, self.width, reach) else {
                     return;
                 };
-                self.free[end] = true;
                 ahead
             }
         };

@@ -304,7 +304,7 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
         .iter()
         .flat_map(|(region, graph)| centreline::rows(dark, &parts.shape_mask, region, graph))
         .collect();
-    let (rows, over_paper_px) = on_ink::only(mask, gap::bridged(rows));
+    let (rows, over_paper_px) = on_ink::only(mask, gap::bridged(dark, rows));
     strokes.extend(rows.iter().filter_map(|row| centreline::stroke(dark, row, options)));
     let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
     let counts = missed::counts(mask, &lined, &strokes);
