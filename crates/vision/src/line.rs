@@ -153,7 +153,43 @@ fn shape_ahead(shapes: &Mask, tip: &Tip, reach: f64) -> Option<f64> {
 /// Points on the middle of a line along a row of pixels, and the line's width.
 fn centred(dark: &Plane<u8>, pixels: &[Point], radius: f64, ring: bool) -> (Vec<Point>, f64) {
     let ridge = ridge::centred(dark, pixels, radius, ring);
-    (bridged(dark, &ridge, ring), ridge.width)
+    let mut points = bridged(dark, &ridge, ring);
+    if !ring {
+        let least = LOST_PENS * ridge.width + LOST_PX;
+        points.reverse();
+        points.extend(lost(pixels.iter().rev(), points.last(), least));
+        points.reverse();
+        points.extend(lost(pixels.iter(), points.last(), least));
+    }
+    (points, ridge.width)
+}
+
+/// So much of a row of pixels may be without a cross-section at an end, in pens and px: the ink of a junction.
+const LOST_PENS: f64 = 1.0;
+const LOST_PX: f64 = 2.0;
+
+/// The pixels from where the middle of a line can be seen last to their end, if that is further than `least`: the middle of
+/// a jagged hair has no cross-section for long.
+fn lost<'a>(
+    pixels: impl DoubleEndedIterator<Item = &'a Point> + ExactSizeIterator,
+    last: Option<&Point>,
+    least: f64,
+) -> Vec<Point> {
+    let Some(&last) = last else { return Vec::new() };
+    let pixels: Vec<Point> = pixels.copied().collect();
+    let nearest = (0..pixels.len()).min_by(|&a, &b| {
+        let off = |k: usize| pixels[k].distance_squared(last);
+        off(a).total_cmp(&off(b))
+    });
+    let rest = &pixels[nearest.unwrap_or(0)..];
+    if polyline_length(rest) <= least {
+        return Vec::new();
+    }
+    // the mean of five pixels is off the steps of their grid
+    rest.windows(5)
+        .step_by(2)
+        .map(|five| five.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2() / 5.0).to_point())
+        .collect()
 }
 
 /// The same of a branch that turns back on itself: side by side, and out to each turn and back between them.
