@@ -29,7 +29,7 @@ fn a_frame_along_the_border_is_one_closed_line() {
 
 #[test]
 fn three_lines_along_the_border_are_no_dark_picture() {
-    let lines = |x: usize, y: usize| (y < 3 || x < 3 || x > 416) && y < 300;
+    let lines = |x: usize, y: usize| (y < 3 || !(3..=416).contains(&x)) && y < 300;
     let found = trace(&picture(lines), &Options::default()).unwrap();
     assert!(!found.quality.light_on_dark);
     assert_eq!(found.strokes.strokes.len(), 1);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use tracelight_stroke::Point;
 
-use super::choice::{Quad, SIDES, middle};
+use super::choice::{Quad, SIDES, is_upright, middle};
 use super::{Beside, Found, Small};
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -55,9 +55,9 @@ pub(super) fn alone(plane: &Plane<u8>, small: &Small, found: &Found) -> Alone {
     let mut papered = part.clone();
     let mut mask = Mask::empty(part.width, part.height);
     let inside = inside(outline, (plane.width, plane.height), rim.ceil() as usize);
-    for y in top..bottom {
+    for (y, inside) in inside.iter().enumerate().take(bottom).skip(top) {
         let row = papered.row_mut(y - top);
-        let Range { start: from, end: to } = inside[y].clone();
+        let Range { start: from, end: to } = inside.clone();
         let (from, to) = if from < to { (from - left, to - left) } else { (right - left, right - left) };
         let mut parts = vec![0..from, to..right - left];
         parts.extend(
@@ -154,7 +154,7 @@ fn paper(calm: &Plane<u8>, is_seen: impl Fn(usize) -> bool) -> Plane<u8> {
     let tiles = tiles(calm, &is_seen);
     let mut out = calm.clone();
     let mut filled = vec![false; calm.height];
-    for y in 0..calm.height {
+    for (y, filled) in filled.iter_mut().enumerate() {
         let known: Vec<usize> = (0..calm.width).filter(|x| is_seen(y * calm.width + x)).collect();
         let usual = |x: usize| tiles.row(y / TILE)[x / TILE];
         // of some at the edge of what is seen the one most like paper: a filled shape may reach up to it
@@ -163,7 +163,7 @@ fn paper(calm: &Plane<u8>, is_seen: impl Fn(usize) -> bool) -> Plane<u8> {
             near.iter().min_by_key(like).map(|&x| f64::from(calm.row(y)[x]))
         };
         let (Some(&first), Some(&last)) = (known.first(), known.last()) else { continue };
-        filled[y] = true;
+        *filled = true;
         let ends =
             (paper(&known[..known.len().min(AT_EDGE)]), paper(&known[known.len().saturating_sub(AT_EDGE)..]));
         let row = out.row_mut(y);
@@ -173,8 +173,8 @@ fn paper(calm: &Plane<u8>, is_seen: impl Fn(usize) -> bool) -> Plane<u8> {
             let before = paper(&known[(k + 1).saturating_sub(AT_EDGE)..=k]).unwrap_or(255.0);
             let after = paper(&known[k + 1..(k + 1 + AT_EDGE).min(known.len())]).unwrap_or(255.0);
             let length = (gap[1] - gap[0]) as f64;
-            for x in gap[0] + 1..gap[1] {
-                row[x] = (before + (after - before) * (x - gap[0]) as f64 / length) as u8;
+            for (k, level) in row[gap[0] + 1..gap[1]].iter_mut().enumerate() {
+                *level = (before + (after - before) * (k + 1) as f64 / length) as u8;
             }
         }
     }
@@ -225,7 +225,7 @@ fn hidden(quad: &Quad, side: usize) -> Vec<Range<usize>> {
     let places = from.distance(to) as usize;
     let is_hidden = |k: usize| {
         let at = from.lerp(to, k as f64 / places as f64);
-        !seen.is_seen_near(if side % 2 == 0 { at.y } else { at.x }.max(0.0) as usize)
+        !seen.is_seen_near(if is_upright(side) { at.y } else { at.x }.max(0.0) as usize)
     };
     let mut stretches: Vec<Range<usize>> = Vec::new();
     for k in (0..places).filter(|&k| is_hidden(k)) {

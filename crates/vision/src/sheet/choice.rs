@@ -72,6 +72,11 @@ pub(super) struct Quad {
 /// Of left, top, right and bottom: its number.
 pub(super) const SIDES: [usize; 4] = [0, 1, 2, 3];
 
+/// Whether a side is the left or the right one.
+pub(super) const fn is_upright(side: usize) -> bool {
+    matches!(side, 0 | 2)
+}
+
 impl Quad {
     /// All of a picture.
     pub(super) fn all(plane: &Plane<u8>) -> Self {
@@ -173,7 +178,7 @@ fn candidates(plane: &Plane<u8>, sides: [&[Side]; 4], is_brighter: bool) -> Vec<
     found
 }
 
-fn picked<'a>(sides: [&'a [Side]; 4], numbers: [Option<usize>; 4]) -> [Option<&'a Side>; 4] {
+fn picked(sides: [&[Side]; 4], numbers: [Option<usize>; 4]) -> [Option<&Side>; 4] {
     std::array::from_fn(|k| numbers[k].and_then(|n| sides[k].get(n)))
 }
 
@@ -198,10 +203,10 @@ fn corners(plane: &Plane<u8>, sides: [Option<&Side>; 4]) -> [Point; 4] {
 /// How much of the sides is seen, less what is not, px; `None` where they are no sheet's.
 fn score(plane: &Plane<u8>, sides: [Option<&Side>; 4], is_brighter: bool) -> Option<f64> {
     let corners = corners(plane, sides);
-    let is_upright = corners[0].x < corners[1].x && corners[0].y < corners[3].y;
+    let lies_right = corners[0].x < corners[1].x && corners[0].y < corners[3].y;
     let least_area = if is_brighter { LEAST_AREA } else { LEAST_AREA_IN_LIGHT };
     let pixels = (plane.width * plane.height) as f64;
-    if !is_upright || !is_convex(&corners) || area(&corners) < least_area * pixels {
+    if !lies_right || !is_convex(&corners) || area(&corners) < least_area * pixels {
         return None;
     }
     let border = borders(plane);
@@ -210,10 +215,10 @@ fn score(plane: &Plane<u8>, sides: [Option<&Side>; 4], is_brighter: bool) -> Opt
         let Some(side) = side else { continue };
         let (from, to) = ends(&corners, k);
         let ([a, b], most) =
-            if k % 2 == 0 { ([from.y, to.y], plane.height) } else { ([from.x, to.x], plane.width) };
+            if is_upright(k) { ([from.y, to.y], plane.height) } else { ([from.x, to.x], plane.width) };
         let [first, last] = [a.min(b), a.max(b)].map(|end| end.round().clamp(0.0, most as f64) as usize);
         // a line along the border, or what is left over there
-        let off = |p: Point| (if k % 2 == 0 { p.x } else { p.y } - border[k]).abs();
+        let off = |p: Point| (if is_upright(k) { p.x } else { p.y } - border[k]).abs();
         if off(from).max(off(to)) < AT_BORDER {
             return None;
         }
@@ -317,7 +322,7 @@ impl Calm {
         let border = borders(&self.calm);
         let off = |side: usize| {
             let (from, to) = quad.ends(side);
-            [from, to].map(|p| (if side % 2 == 0 { p.x } else { p.y } - border[side]).abs())
+            [from, to].map(|p| (if is_upright(side) { p.x } else { p.y } - border[side]).abs())
         };
         let seen = SIDES.into_iter().filter(|&side| quad.sides[side].is_some());
         let widths: Vec<f64> = seen.flat_map(off).collect();
