@@ -154,7 +154,7 @@ fn shape_ahead(shapes: &Mask, tip: &Tip, reach: f64) -> Option<f64> {
 fn centred(dark: &Plane<u8>, pixels: &[Point], radius: f64, ring: bool) -> (Vec<Point>, f64) {
     let ridge = ridge::centred(dark, pixels, radius, ring);
     let mut points = bridged(dark, &ridge, ring);
-    if !ring {
+    if !ring && ridge.width < HAIR_PX {
         let least = LOST_PENS * ridge.width + LOST_PX;
         points.reverse();
         points.extend(lost(pixels.iter().rev(), points.last(), least));
@@ -164,6 +164,8 @@ fn centred(dark: &Plane<u8>, pixels: &[Point], radius: f64, ring: bool) -> (Vec<
     (points, ridge.width)
 }
 
+/// A line narrower than this is a hair, px.
+const HAIR_PX: f64 = 2.5;
 /// So much of a row of pixels may be without a cross-section at an end, in pens and px: the ink of a junction.
 const LOST_PENS: f64 = 1.0;
 const LOST_PX: f64 = 2.0;
@@ -177,7 +179,8 @@ fn lost<'a>(
 ) -> Vec<Point> {
     let Some(&last) = last else { return Vec::new() };
     let pixels: Vec<Point> = pixels.copied().collect();
-    let nearest = (0..pixels.len()).min_by(|&a, &b| {
+    // a line that goes round ends beside its beginning
+    let nearest = (pixels.len() / 2..pixels.len()).min_by(|&a, &b| {
         let off = |k: usize| pixels[k].distance_squared(last);
         off(a).total_cmp(&off(b))
     });

@@ -11,7 +11,7 @@ mod raster;
 
 use raster::Canvas;
 use tracelight_stroke::{Point, Vec2, compare_polylines};
-use tracelight_vision::{Grey, Options, Page, Traced, trace, trace_page};
+use tracelight_vision::{Grey, Options, Page, trace, trace_page};
 
 /// Numbers that look like chance (Marsaglia, "Xorshift RNGs", 2003).
 struct Chance(u64);
