@@ -94,7 +94,7 @@ fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepare
     let sketch = sketch(args.name(), picture::read(args.name())?, &args.tracing, &args.placement)?;
     stop.check()?;
     let placed = place(&sketch, &args.placement);
-    planned(sketch, placed, driving, None, (progress, stop))
+    planned(sketch.shown(), placed, driving, None, (progress, stop))
 }
 
 /// A drawing on the target, in order and in time.

@@ -10,9 +10,35 @@ use crate::cli::tracing::{Straighten, TracingArgs};
 use crate::failure::Failure;
 use crate::output::Raster;
 
+/// What is drawn or printed on, upright, mm.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Paper {
+    pub(crate) width_mm: f64,
+    pub(crate) height_mm: f64,
+}
+
+impl Paper {
+    pub(crate) const A5: Self = Self { width_mm: 148.0, height_mm: 210.0 };
+    pub(crate) const A4: Self = Self { width_mm: 210.0, height_mm: 297.0 };
+    pub(crate) const A3: Self = Self { width_mm: 297.0, height_mm: 420.0 };
+    pub(crate) const LETTER: Self = Self { width_mm: 215.9, height_mm: 279.4 };
+    pub(crate) const LEGAL: Self = Self { width_mm: 215.9, height_mm: 355.6 };
+
+    /// Width and height, m.
+    pub(crate) const fn size_m(&self) -> (f64, f64) {
+        (1e-3 * self.width_mm, 1e-3 * self.height_mm)
+    }
+
+    /// Width and height, m, if it lies upright or across, whichever is nearer to such proportions.
+    fn lying_m(&self, ratio: f64) -> (f64, f64) {
+        let (width, height) = self.size_m();
+        if ratio < 1.0 { (width, height) } else { (height, width) }
+    }
+}
+
 /// Sizes of paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Paper {
+pub(crate) enum PaperName {
     /// 148 × 210 mm
     A5,
     /// 210 × 297 mm
@@ -25,23 +51,17 @@ pub(crate) enum Paper {
     Legal,
 }
 
-impl Paper {
-    /// Its shorter and its longer side, m.
-    const fn sides_m(self) -> (f64, f64) {
-        const INCH: f64 = 0.0254;
-        match self {
-            Self::A5 => (0.148, 0.210),
-            Self::A4 => (0.210, 0.297),
-            Self::A3 => (0.297, 0.420),
-            Self::Letter => (8.5 * INCH, 11.0 * INCH),
-            Self::Legal => (8.5 * INCH, 14.0 * INCH),
-        }
-    }
-
-    /// Width and height, m, of a sheet that lies upright or across, whichever is nearer to such proportions.
+impl PaperName {
+    /// Width and height, m, if it lies upright or across, whichever is nearer to such proportions.
     pub(crate) fn lying_m(self, ratio: f64) -> (f64, f64) {
-        let (short, long) = self.sides_m();
-        if ratio < 1.0 { (short, long) } else { (long, short) }
+        let paper = match self {
+            Self::A5 => Paper::A5,
+            Self::A4 => Paper::A4,
+            Self::A3 => Paper::A3,
+            Self::Letter => Paper::LETTER,
+            Self::Legal => Paper::LEGAL,
+        };
+        paper.lying_m(ratio)
     }
 }
 
@@ -62,7 +82,7 @@ const MOST_PX: f64 = 16_384.0;
 impl Straight {
     /// Of a sheet's corners in a picture of that size, clockwise from the upper left, px; `None` where they are no
     /// rectangle's seen at a slant.
-    pub(crate) fn of(corners: [Point; 4], picture: (f64, f64), paper: Option<Paper>) -> Option<Self> {
+    pub(crate) fn of(corners: [Point; 4], picture: (f64, f64), paper: Option<PaperName>) -> Option<Self> {
         let seen = proportions(corners, picture)?;
         let size_m = paper.map(|paper| paper.lying_m(seen));
         let ratio = size_m.map_or(seen, |(width, height)| width / height);
@@ -106,6 +126,8 @@ pub(crate) struct PaperSeen {
     pub(crate) sheet: Sheet,
     /// The picture's size, px.
     pub(crate) picture_px: (f64, f64),
+    /// How it is laid square, where it is.
+    pub(crate) straight: Option<Straight>,
     /// The strokes in the picture, px, where the sketch's own are those of the sheet laid square.
     pub(crate) slanted: Option<Drawing>,
 }
@@ -211,7 +233,7 @@ mod tests {
     #[test]
     fn a_sheet_of_known_paper_is_as_wide_as_that() {
         let corners = [(100.0, 100.0), (310.0, 110.0), (320.0, 400.0), (95.0, 395.0)].map(Point::from);
-        let straight = Straight::of(corners, (640.0, 480.0), Some(Paper::A4)).unwrap();
+        let straight = Straight::of(corners, (640.0, 480.0), Some(PaperName::A4)).unwrap();
         assert_eq!(straight.width_m, Some(0.21));
         let (width, height) = straight.size_px;
         assert!((width / height - 210.0 / 297.0).abs() < 2e-3, "{width} × {height}");

@@ -28,7 +28,7 @@ pub(crate) struct Sketch {
     pub(crate) paper: Option<PaperSeen>,
     /// The sheet's true width, m, where the file says it.
     pub(crate) true_width_m: Option<f64>,
-    /// The picture, for display.
+    /// The picture as it was read, for display: see [`Self::shown`].
     pub(crate) picture: Option<Raster>,
     /// How it was traced.
     pub(crate) mode: &'static str,
@@ -49,6 +49,24 @@ impl Sketch {
             Some(PaperSeen { picture_px, slanted: Some(slanted), .. }) => (slanted, *picture_px),
             _ => (&self.drawing, self.size),
         }
+    }
+
+    /// Takes the strokes from the picture to its sheet seen from straight ahead.
+    fn lay_square(&mut self) {
+        if let Some(PaperSeen { straight: Some(straight), slanted, .. }) = &mut self.paper {
+            let drawing = straight.drawing(&self.drawing);
+            *slanted = Some(std::mem::replace(&mut self.drawing, drawing));
+        }
+    }
+
+    /// With the picture as its strokes lie on it: of a sheet that is laid square, from straight ahead. That takes longer than all else,
+    /// so that only who shows the picture asks for it.
+    pub(crate) fn shown(mut self) -> Self {
+        let straight = self.paper.as_ref().and_then(|paper| paper.straight.as_ref());
+        if let (Some(straight), Some(picture)) = (straight, &self.picture) {
+            self.picture = Some(straight.picture(picture));
+        }
+        self
     }
 
     /// All that the user should know of it.
@@ -194,9 +212,11 @@ pub(crate) fn sketch_at(
 ) -> Result<Sketch, Failure> {
     let began = Instant::now();
     let mut sketch = match source {
-        Source::Strokes(reading) => taken(name, reading, choice)?,
-        Source::Pixels(pixels) => traced(name, pixels, tracing, choice, metres_per_unit)?,
+        Source::Strokes(reading) => taken(reading),
+        Source::Pixels(pixels) => traced(name, pixels, tracing, metres_per_unit)?,
     };
+    sketch.drawing = choice.of(name, sketch.drawing)?;
+    sketch.lay_square();
     let refused = |why: &str| Err(Failure::failed("no-strokes-found", format!("{name}: {why}")));
     if sketch.drawing.strokes.is_empty() {
         return refused("it has no strokes; give a picture with at least one line");
@@ -214,11 +234,11 @@ pub(crate) fn sketch_at(
 }
 
 /// Strokes as they are.
-fn taken(name: &str, Reading { sheet, remarks }: Reading, choice: &ChoiceArgs) -> Result<Sketch, Failure> {
-    Ok(Sketch {
+fn taken(Reading { sheet, remarks }: Reading) -> Sketch {
+    Sketch {
         size: (sheet.width, sheet.height),
         true_width_m: sheet.metres_per_unit.map(|m| m * sheet.width),
-        drawing: choice.of(name, sheet.drawing)?,
+        drawing: sheet.drawing,
         paper: None,
         picture: None,
         mode: "strokes",
@@ -226,19 +246,18 @@ fn taken(name: &str, Reading { sheet, remarks }: Reading, choice: &ChoiceArgs) -
         quality: None,
         missed_ink: None,
         vision_ms: 0.0,
-    })
+    }
 }
 
-/// Pixels traced; on a sheet that was laid square, there.
+/// Pixels traced, where they are in the picture; the size is that of the sheet laid square, where it is.
 fn traced(
     name: &str,
-    pixels: Pixels,
+    Pixels { colour, grey }: Pixels,
     tracing: &TracingArgs,
-    choice: &ChoiceArgs,
     metres_per_unit: &dyn Fn((f64, f64), Option<f64>) -> f64,
 ) -> Result<Sketch, Failure> {
-    let picture_px = (f64::from(pixels.colour.width()), f64::from(pixels.colour.height()));
-    let page = paper::page(name, &pixels.grey, tracing)?;
+    let picture_px = (f64::from(colour.width()), f64::from(colour.height()));
+    let page = paper::page(name, &grey, tracing)?;
     let straight = paper::straight(name, &page, tracing)?;
     let size = straight.as_ref().map_or(picture_px, |straight| straight.size_px);
     let true_width_m = match &straight {
@@ -253,18 +272,13 @@ fn traced(
     let traced = tracelight_vision::trace_page(&page, &options).map_err(refused)?;
     let laid = page.sheet.as_ref().map(|sheet| paper::remark(sheet, straight.as_ref()));
     let remarks = laid.into_iter().chain(doubts(&traced)).collect();
-    let drawing = choice.of(name, traced.strokes)?;
-    let (drawing, slanted, picture) = match &straight {
-        Some(straight) => (straight.drawing(&drawing), Some(drawing), straight.picture(&pixels.colour)),
-        None => (drawing, None, pixels.colour.clone()),
-    };
     Ok(Sketch {
         size,
         true_width_m,
         remarks,
-        drawing,
-        paper: page.sheet.map(|sheet| PaperSeen { sheet, picture_px, slanted }),
-        picture: Some(picture),
+        drawing: traced.strokes,
+        paper: page.sheet.map(|sheet| PaperSeen { sheet, picture_px, straight, slanted: None }),
+        picture: Some(colour),
         mode: options.mode.name(),
         quality: Some(traced.quality),
         missed_ink: Some(traced.missed_ink),

@@ -155,11 +155,13 @@ fn centred(dark: &Plane<u8>, pixels: &[Point], radius: f64, ring: bool) -> (Vec<
     let ridge = ridge::centred(dark, pixels, radius, ring);
     let mut points = bridged(dark, &ridge, ring);
     if !ring && ridge.width < HAIR_PX {
-        let least = LOST_PENS * ridge.width + LOST_PX;
-        points.reverse();
-        points.extend(lost(pixels.iter().rev(), points.last(), least));
-        points.reverse();
-        points.extend(lost(pixels.iter(), points.last(), least));
+        let mut pixels = pixels.to_vec();
+        // first what is lost at the beginning, then at the end
+        for _ in 0..2 {
+            points.reverse();
+            pixels.reverse();
+            points.extend(lost(&pixels, points.last(), LOST_PENS * ridge.width + LOST_PX));
+        }
     }
     (points, ridge.width)
 }
@@ -172,13 +174,8 @@ const LOST_PX: f64 = 2.0;
 
 /// The pixels from where the middle of a line can be seen last to their end, if that is further than `least`: the middle of
 /// a jagged hair has no cross-section for long.
-fn lost<'a>(
-    pixels: impl DoubleEndedIterator<Item = &'a Point> + ExactSizeIterator,
-    last: Option<&Point>,
-    least: f64,
-) -> Vec<Point> {
+fn lost(pixels: &[Point], last: Option<&Point>, least: f64) -> Vec<Point> {
     let Some(&last) = last else { return Vec::new() };
-    let pixels: Vec<Point> = pixels.copied().collect();
     // a line that goes round ends beside its beginning
     let nearest = (pixels.len() / 2..pixels.len()).min_by(|&a, &b| {
         let off = |k: usize| pixels[k].distance_squared(last);

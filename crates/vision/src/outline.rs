@@ -178,8 +178,8 @@ pub(crate) fn border(mask: &Mask, x: isize, y: isize, walked: &mut Mask) -> Vec<
     }
 }
 
-/// Signed area of a polygon.
-fn area(points: &[Point]) -> f64 {
+/// Signed area of a polygon: positive if it is clockwise as seen.
+pub(crate) fn area(points: &[Point]) -> f64 {
     let next = points.iter().skip(1).chain(points.first());
     0.5 * points.iter().zip(next).map(|(a, b)| a.to_vec2().cross(b.to_vec2())).sum::<f64>()
 }

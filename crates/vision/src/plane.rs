@@ -59,6 +59,36 @@ impl<T: Copy + Default> Plane<T> {
         x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
     }
 
+    /// Whether a place is within the image.
+    pub(crate) fn holds(&self, p: Point) -> bool {
+        (0.0..self.width as f64).contains(&p.x) && (0.0..self.height as f64).contains(&p.y)
+    }
+
+    /// Adds to a patch of values, by their numbers, all that it reaches from neighbour to neighbour, row by row and column by column; `joins`
+    /// says whether the first leads to the second. What is `seen` already is not reached; the patch is part of it.
+    pub(crate) fn flood(
+        &self,
+        patch: &mut Vec<usize>,
+        seen: &mut [bool],
+        joins: impl Fn(usize, usize) -> bool,
+    ) {
+        let mut next = 0;
+        while let Some(&i) = patch.get(next) {
+            let (x, y) = ((i % self.width) as isize, (i / self.width) as isize);
+            for (x, y) in [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)] {
+                let inside = (0..self.width as isize).contains(&x) && (0..self.height as isize).contains(&y);
+                if inside {
+                    let k = y as usize * self.width + x as usize;
+                    if !seen[k] && joins(i, k) {
+                        seen[k] = true;
+                        patch.push(k);
+                    }
+                }
+            }
+            next += 1;
+        }
+    }
+
     /// The nearest place within the image.
     pub(crate) fn clamp(&self, p: Point) -> Point {
         Point::new(p.x.clamp(0.0, self.width as f64), p.y.clamp(0.0, self.height as f64))

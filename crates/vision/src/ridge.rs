@@ -90,7 +90,7 @@ fn place(dark: &Plane<u8>, index: usize, at: Point, normal: Vec2, cut: Cut) -> O
 
 /// The median width; `None` of no places.
 fn usual_width(places: &[Place]) -> Option<f64> {
-    (!places.is_empty()).then(|| median(&places.iter().map(|p| p.width).collect::<Vec<_>>()))
+    middle(places.iter().map(|p| p.width).collect())
 }
 
 /// Those as wide as the line usually is thereabouts.
@@ -197,9 +197,13 @@ fn rows(places: &[Place], stride: usize) -> impl Iterator<Item = &[Place]> {
 
 /// The middle value; 0 of none.
 pub(crate) fn median(values: &[f64]) -> f64 {
-    let mut values = values.to_vec();
+    middle(values.to_vec()).unwrap_or(0.0)
+}
+
+/// The middle value; `None` of none.
+pub(crate) fn middle(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// Unit normal of a row of points at one of them, from means of up to `reach` points either side.
@@ -258,11 +262,13 @@ impl Profile {
         // of a line along the picture's border nothing is seen behind it; one that leads over it goes on there
         let beyond =
             |v: f64, most: usize, way: f64| way.abs() > ALONG_BORDER && !(0.0..=most as f64).contains(&v);
-        for (k, value) in values[..=2 * half].iter_mut().enumerate() {
-            let place = from + normal * (k as f64 * step);
-            if beyond(place.x, dark.width, normal.x) || beyond(place.y, dark.height, normal.y) {
-                *value = 0.0;
-            }
+        let is_beyond =
+            |place: Point| beyond(place.x, dark.width, normal.x) || beyond(place.y, dark.height, normal.y);
+        let place = |k: usize| from + normal * (k as f64 * step);
+        // a cut leaves the picture at its ends first
+        if is_beyond(place(0)) || is_beyond(place(2 * half)) {
+            let cut = values[..=2 * half].iter_mut().enumerate();
+            cut.filter(|(k, _)| is_beyond(place(*k))).for_each(|(_, value)| *value = 0.0);
         }
         Self { values, half }
     }

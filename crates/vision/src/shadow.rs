@@ -52,22 +52,10 @@ fn is_steep(bright: &Plane<f64>, i: usize) -> bool {
 pub(crate) fn flooded(bright: &Plane<f64>, start: usize, same: f64, seen: &mut [bool]) -> Vec<usize> {
     let mut patch = vec![start];
     seen[start] = true;
-    let mut next = 0;
-    while let Some(&i) = patch.get(next) {
-        let (x, y) = ((i % bright.width) as isize, (i / bright.width) as isize);
-        for (x, y) in [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)] {
-            let inside = (0..bright.width as isize).contains(&x) && (0..bright.height as isize).contains(&y);
-            if inside {
-                let k = y as usize * bright.width + x as usize;
-                let (a, b) = (bright.values[i], bright.values[k]);
-                if !seen[k] && a.min(b) > same * a.max(b) {
-                    seen[k] = true;
-                    patch.push(k);
-                }
-            }
-        }
-        next += 1;
-    }
+    bright.flood(&mut patch, seen, |i, k| {
+        let (a, b) = (bright.values[i], bright.values[k]);
+        a.min(b) > same * a.max(b)
+    });
     patch
 }
 

@@ -7,7 +7,7 @@ use tracelight_stroke::Point;
 use tracelight_vision::Options;
 
 use crate::cli::request::ModeName;
-use crate::paper::{Paper, clockwise};
+use crate::paper::{PaperName, clockwise};
 use crate::units::{self, Angle, LENGTHS, PIXELS};
 
 /// How pixels become strokes. Without a flag, what the picture itself says.
@@ -44,7 +44,7 @@ pub(crate) struct TracingArgs {
     pub(crate) straighten: Straighten,
     /// The sheet's size, for a drawing to scale: its true width is what is drawn unless --width or --height says otherwise
     #[arg(long, value_enum, value_name = "SIZE")]
-    pub(crate) paper: Option<Paper>,
+    pub(crate) paper: Option<PaperName>,
 }
 
 /// How a sheet that was photographed at a slant is laid square.

@@ -4,7 +4,8 @@ use tracelight_aim::{Board, Camera, PlacedPage};
 use tracelight_stroke::Point;
 
 use super::wall::SeenWall;
-use crate::output::{Paper, Raster, printed_m};
+use crate::output::{Raster, printed_m};
+use crate::paper::Paper;
 
 /// How far a page is taken to reach beyond its paper, m: paper casts shadows.
 const EDGE_M: f64 = 0.008;

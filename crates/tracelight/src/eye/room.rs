@@ -16,7 +16,8 @@ use super::homing::{Homed, turned_rad};
 use super::{Eye, Shot};
 use crate::cli::placing::PlacementArgs;
 use crate::failure::Failure;
-use crate::output::{Paper, page_raster};
+use crate::output::page_raster;
+use crate::paper::Paper;
 use crate::picture::{self, Source};
 
 /// Which camera is simulated.

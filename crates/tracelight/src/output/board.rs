@@ -7,25 +7,10 @@ use tracelight_aim::Board;
 use tracelight_stroke::Point;
 use tracelight_vision::tag_cells;
 
+use crate::paper::Paper;
+
 /// Length of the bar by which a print is checked, m.
 pub(crate) const BAR_M: f64 = 0.150;
-
-/// What a page is printed on, mm.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Paper {
-    width_mm: f64,
-    height_mm: f64,
-}
-
-impl Paper {
-    pub(crate) const A4: Self = Self { width_mm: 210.0, height_mm: 297.0 };
-    pub(crate) const LETTER: Self = Self { width_mm: 215.9, height_mm: 279.4 };
-
-    /// Width and height, m.
-    pub(crate) const fn size_m(&self) -> (f64, f64) {
-        (1e-3 * self.width_mm, 1e-3 * self.height_mm)
-    }
-}
 
 /// From the paper's upper edge to the markers, mm: printers leave 5 mm, and white must be about markers.
 const TOP_MM: f64 = 13.0;

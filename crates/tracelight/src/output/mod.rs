@@ -38,7 +38,7 @@ use tracelight_stroke::{Affine, Drawing, Point};
 use tracelight_trajectory::Plan;
 use tracelight_vision::Quality;
 
-pub(crate) use board::{BAR_M, Paper, page_pdf, page_raster, page_svg, printed_m};
+pub(crate) use board::{BAR_M, page_pdf, page_raster, page_svg, printed_m};
 pub(crate) use events::{Event, events};
 pub(crate) use log::{LogMeta, LogWriter};
 pub(crate) use preview::{ColourBy, preview};

@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use tracelight_stroke::Point;
 
-use super::choice::{Quad, SIDES, is_upright, middle};
+use super::choice::{Quad, SIDES, is_upright};
 use super::{Beside, Found, Small};
 use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::ridge::middle;
 
 /// So far inside a sheet's edge its shadow ends: share of the picture's shorter side, and px beyond its blur.
 const RIM: f64 = 0.005;
@@ -117,13 +118,13 @@ struct Over {
 
 impl Over {
     fn of(small: &Small, found: &Found) -> Self {
-        let calm = super::steps::without_lines(&small.levels);
+        let calm = small.calm();
         let quad = &found.quad;
         let depth = quad.depths();
         let at = |i: usize| Point::new((i % calm.width) as f64 + 0.5, (i / calm.width) as f64 + 0.5);
         let depths: Vec<f64> = (0..calm.values.len()).map(|i| depth(at(i))).collect();
-        let covered = covered(&calm, quad, &depths);
-        let paper = paper(&calm, |i| depths[i] > EDGE && !covered.values[i]);
+        let covered = covered(calm, quad, &depths);
+        let paper = paper(calm, |i| depths[i] > EDGE && !covered.values[i]);
         Self { by: small.by, covered, paper }
     }
 
@@ -269,8 +270,7 @@ impl Stretch {
 
     /// Whether a level is nearer to what lies there than to the paper.
     fn holds(&self, level: f64) -> bool {
-        let (a, b) = ((level - self.level).abs(), (level - self.paper).abs());
-        a < b
+        (level - self.level).abs() < (level - self.paper).abs()
     }
 }
 
@@ -280,9 +280,11 @@ fn cover(calm: &Plane<u8>, depths: &[f64], stretch: &Stretch) -> Vec<usize> {
         return Vec::new();
     }
     let holds = |i: usize| depths[i] > 0.0 && stretch.holds(f64::from(calm.values[i]));
-    let inside =
-        |at: &&Point| (0.0..calm.width as f64).contains(&at.x) && (0.0..calm.height as f64).contains(&at.y);
-    let places = stretch.inside.iter().filter(inside).map(|at| at.y as usize * calm.width + at.x as usize);
+    let places = stretch
+        .inside
+        .iter()
+        .filter(|at| calm.holds(**at))
+        .map(|at| at.y as usize * calm.width + at.x as usize);
     let mut patch: Vec<usize> = Vec::new();
     let mut seen = vec![false; calm.values.len()];
     for i in places {
@@ -291,19 +293,7 @@ fn cover(calm: &Plane<u8>, depths: &[f64], stretch: &Stretch) -> Vec<usize> {
             patch.push(i);
         }
     }
-    let mut next = 0;
-    while let Some(&i) = patch.get(next) {
-        next += 1;
-        let (x, y) = (i % calm.width, i / calm.width);
-        let near = [(x > 0, i.wrapping_sub(1)), (x + 1 < calm.width, i + 1)];
-        let rows = [(y > 0, i.wrapping_sub(calm.width)), (y + 1 < calm.height, i + calm.width)];
-        for (_, k) in near.into_iter().chain(rows).filter(|(is_there, _)| *is_there) {
-            if !seen[k] && holds(k) {
-                seen[k] = true;
-                patch.push(k);
-            }
-        }
-    }
+    calm.flood(&mut patch, &mut seen, |_, k| holds(k));
     // what takes up much of the sheet is a shadow on it
     let sheet = depths.iter().filter(|depth| **depth > 0.0).count();
     let most = (MOST_COVERED * sheet as f64).min(MOST_SQUARES * (stretch.inside.len() as f64).powi(2));

@@ -3,8 +3,10 @@
 use tracelight_stroke::{Point, Vec2};
 
 use super::sides::{self, Side};
-use super::{Small, steps};
+use super::{Small, inward, steps};
+use crate::outline::area;
 use crate::plane::Plane;
+use crate::ridge::middle;
 
 /// Least of a side that is seen; a finger, a shadow or another sheet hides the rest.
 const LEAST_SEEN: f64 = 0.5;
@@ -100,8 +102,7 @@ impl Quad {
     /// The way into the sheet, square to a side.
     pub(super) fn inward(&self, side: usize) -> Vec2 {
         let (from, to) = self.ends(side);
-        let way = (to - from) / from.distance(to).max(1e-9);
-        Vec2::new(-way.y, way.x)
+        inward(from, to)
     }
 
     /// How far inside a point lies, px; negative outside.
@@ -140,7 +141,7 @@ pub(super) fn best(small: &Small) -> Option<Quad> {
         }));
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let calm = Calm::of(plane);
+    let calm = Calm::of(small);
     let mut instead: Option<(f64, Quad)> = None;
     for (score, quad) in found.into_iter().take(LOOKED_AT) {
         match calm.judged(&quad) {
@@ -209,7 +210,6 @@ fn score(plane: &Plane<u8>, sides: [Option<&Side>; 4], is_brighter: bool) -> Opt
     if !lies_right || !is_convex(&corners) || area(&corners) < least_area * pixels {
         return None;
     }
-    let border = borders(plane);
     let mut score = 0.0;
     for (k, side) in sides.iter().enumerate() {
         let Some(side) = side else { continue };
@@ -218,8 +218,8 @@ fn score(plane: &Plane<u8>, sides: [Option<&Side>; 4], is_brighter: bool) -> Opt
             if is_upright(k) { ([from.y, to.y], plane.height) } else { ([from.x, to.x], plane.width) };
         let [first, last] = [a.min(b), a.max(b)].map(|end| end.round().clamp(0.0, most as f64) as usize);
         // a line along the border, or what is left over there
-        let off = |p: Point| (if is_upright(k) { p.x } else { p.y } - border[k]).abs();
-        if off(from).max(off(to)) < AT_BORDER {
+        let [a, b] = off_border(plane, &corners, k);
+        if a.max(b) < AT_BORDER {
             return None;
         }
         let (all, seen) = (last - first, side.seen(first..last));
@@ -244,9 +244,11 @@ const fn ends(corners: &[Point; 4], side: usize) -> (Point, Point) {
     }
 }
 
-fn area(corners: &[Point; 4]) -> f64 {
-    let doubled = |k: usize| corners[k].to_vec2().cross(corners[(k + 1) % 4].to_vec2());
-    0.5 * (0..4).map(doubled).sum::<f64>()
+/// How far the two ends of a side are from the picture's border on that side, px.
+fn off_border(plane: &Plane<u8>, corners: &[Point; 4], side: usize) -> [f64; 2] {
+    let (from, to) = ends(corners, side);
+    let border = borders(plane)[side];
+    [from, to].map(|p| (if is_upright(side) { p.x } else { p.y } - border).abs())
 }
 
 /// Whether they turn one way, none of them nearly straight or folded.
@@ -259,8 +261,8 @@ fn is_convex(corners: &[Point; 4]) -> bool {
 }
 
 /// The small picture, and what it is without lines.
-struct Calm {
-    calm: Plane<u8>,
+struct Calm<'a> {
+    calm: &'a Plane<u8>,
     /// The middle of each block, its level without lines there, and how far its pixels differ from what they are without
     /// lines, where they differ most.
     blocks: Vec<(Point, u8, f64)>,
@@ -276,9 +278,9 @@ struct Evidence {
     firm: f64,
 }
 
-impl Calm {
-    fn of(picture: &Plane<u8>) -> Self {
-        let calm = steps::without_lines(picture);
+impl<'a> Calm<'a> {
+    fn of(small: &'a Small) -> Self {
+        let (picture, calm) = (&small.levels, small.calm());
         let mut blocks = Vec::new();
         for top in (0..calm.height).step_by(BLOCK) {
             for left in (0..calm.width).step_by(BLOCK) {
@@ -319,13 +321,8 @@ impl Calm {
 
     /// Whether there is nothing beside it but a line along the picture's border, as wide everywhere.
     fn is_framed(&self, quad: &Quad) -> bool {
-        let border = borders(&self.calm);
-        let off = |side: usize| {
-            let (from, to) = quad.ends(side);
-            [from, to].map(|p| (if is_upright(side) { p.x } else { p.y } - border[side]).abs())
-        };
         let seen = SIDES.into_iter().filter(|&side| quad.sides[side].is_some());
-        let widths: Vec<f64> = seen.flat_map(off).collect();
+        let widths: Vec<f64> = seen.flat_map(|side| off_border(self.calm, &quad.corners, side)).collect();
         let least = widths.iter().copied().fold(f64::INFINITY, f64::min);
         let most = widths.iter().copied().fold(0.0, f64::max);
         let shorter = self.calm.width.min(self.calm.height) as f64;
@@ -402,9 +399,7 @@ impl Calm {
     }
 
     fn level(&self, at: Point) -> Option<f64> {
-        let inside =
-            (0.0..self.calm.width as f64).contains(&at.x) && (0.0..self.calm.height as f64).contains(&at.y);
-        inside.then(|| f64::from(self.calm.row(at.y as usize)[at.x as usize]))
+        self.calm.holds(at).then(|| f64::from(self.calm.row(at.y as usize)[at.x as usize]))
     }
 }
 
@@ -412,10 +407,4 @@ impl Calm {
 fn strong(mut values: Vec<f64>, share: f64) -> Option<f64> {
     let at = (share * values.len() as f64) as usize;
     (values.len() >= 10).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
-}
-
-/// The median.
-pub(super) fn middle(mut values: Vec<f64>) -> Option<f64> {
-    let at = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
 }

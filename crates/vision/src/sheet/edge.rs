@@ -2,9 +2,11 @@
 
 use tracelight_stroke::{Point, Vec2};
 
-use super::choice::{Quad, SIDES, middle};
-use super::{Sheet, Small, rim};
+use super::choice::{Quad, SIDES};
+use super::{Sheet, Small, inward, rim};
+use crate::outline::area;
 use crate::plane::Plane;
+use crate::ridge::middle;
 
 /// Places along a side at which its step is looked for.
 const PLACES: usize = 96;
@@ -37,8 +39,7 @@ struct Line {
 
 impl Line {
     fn inward(&self) -> Vec2 {
-        let way = (self.to - self.from) / self.from.distance(self.to).max(1e-9);
-        Vec2::new(-way.y, way.x)
+        inward(self.from, self.to)
     }
 }
 
@@ -151,8 +152,7 @@ fn steps(plane: &Plane<u8>, by: f64, line: &Line, is_brighter: bool) -> (Vec<(f6
     for k in 0..PLACES {
         let share = (k as f64 + 0.5) / PLACES as f64;
         let at = line.from.lerp(line.to, share);
-        let inside = (0.0..plane.width as f64).contains(&at.x) && (0.0..plane.height as f64).contains(&at.y);
-        if !inside {
+        if !plane.holds(at) {
             continue;
         }
         sums.fill(0.0);
@@ -247,9 +247,4 @@ fn within(polygon: Vec<Point>, width: f64, height: f64) -> Vec<Point> {
         }
         kept
     })
-}
-
-fn area(polygon: &[Point]) -> f64 {
-    let doubled = |(k, a): (usize, &Point)| a.to_vec2().cross(polygon[(k + 1) % polygon.len()].to_vec2());
-    0.5 * polygon.iter().enumerate().map(doubled).sum::<f64>()
 }

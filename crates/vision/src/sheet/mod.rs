@@ -15,8 +15,9 @@ mod sides;
 mod steps;
 
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
-use tracelight_stroke::Point;
+use tracelight_stroke::{Point, Vec2};
 
 use crate::Grey;
 use crate::mask::Mask;
@@ -119,6 +120,12 @@ impl Found {
     }
 }
 
+/// The way into what lies on the right of the way from one place to another, square to that: clockwise round a sheet, into it.
+fn inward(from: Point, to: Point) -> Vec2 {
+    let way = (to - from) / from.distance(to).max(1e-9);
+    Vec2::new(-way.y, way.x)
+}
+
 /// About so many rows, or columns, tell where a sheet lies.
 const SIDE: usize = 180;
 /// And at most so many the other way.
@@ -131,6 +138,8 @@ struct Small {
     /// Pixels of the picture in one, either way.
     by: usize,
     levels: Plane<u8>,
+    /// The same without lines; most pictures are known to show no sheet before it is asked for.
+    calm: OnceCell<Plane<u8>>,
 }
 
 impl Small {
@@ -142,6 +151,11 @@ impl Small {
     }
 
     fn by(plane: &Plane<u8>, by: usize) -> Self {
-        Self { by, levels: plane.reduced(by) }
+        Self { by, levels: plane.reduced(by), calm: OnceCell::new() }
+    }
+
+    /// Without its lines.
+    fn calm(&self) -> &Plane<u8> {
+        self.calm.get_or_init(|| steps::without_lines(&self.levels))
     }
 }

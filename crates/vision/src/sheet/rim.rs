@@ -4,9 +4,10 @@
 
 use tracelight_stroke::Point;
 
-use super::choice::middle;
 use super::edge::straight;
+use super::inward;
 use crate::plane::Plane;
+use crate::ridge::middle;
 
 /// Places along a border that are looked at.
 const PLACES: usize = 96;
@@ -30,8 +31,7 @@ const STRAIGHT_PX: f64 = 1.0;
 
 /// How far inside the border, from one end of it to the other, the paper begins; `None` where there is nothing beside it.
 pub(super) fn strip(plane: &Plane<u8>, from: Point, to: Point) -> Option<(f64, f64)> {
-    let along = (to - from) / from.distance(to).max(1e-9);
-    let inward = tracelight_stroke::Vec2::new(-along.y, along.x);
+    let inward = inward(from, to);
     let across = if inward.x.abs() > inward.y.abs() { plane.width } else { plane.height };
     let reach = ((WIDEST * across as f64) as usize).max(LEAST_REACH);
     let mut levels = vec![0.0_f32; 2 * reach];

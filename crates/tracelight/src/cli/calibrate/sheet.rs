@@ -4,7 +4,8 @@ use tracelight_aim::Board;
 
 use crate::cli::{Answer, Voice, write_file};
 use crate::failure::Failure;
-use crate::output::{BAR_M, Paper, page_pdf, page_svg};
+use crate::output::{BAR_M, page_pdf, page_svg};
+use crate::paper::Paper;
 
 /// Pages of printed markers, to be stuck on the wall where a camera sees them
 #[derive(Args, Debug)]
