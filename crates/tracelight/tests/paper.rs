@@ -25,8 +25,8 @@ fn on_sheet(x: f64, y: f64) -> (f64, f64) {
     (ray.0 * along, ray.1 * along / cosine)
 }
 
-/// An A4 sheet with a ring of 60 mm radius, on a dark table.
-fn photograph(name: &str) -> PathBuf {
+/// An A4 sheet with a ring of 60 mm radius, drawn by a pen so wide, m, on a dark table.
+fn photograph(name: &str, pen: f64) -> PathBuf {
     let path = folder(name).join("photo.png");
     let level = |x: u32, y: u32| {
         // the mean of nine places in the pixel
@@ -34,7 +34,7 @@ fn photograph(name: &str) -> PathBuf {
             (f64::from(x) + (f64::from(k % 3) + 0.5) / 3.0, f64::from(y) + (f64::from(k / 3) + 0.5) / 3.0)
         });
         let levels = places.map(|(x, y)| match on_sheet(x, y) {
-            (u, v) if (u.hypot(v) - 0.06).abs() < 0.0008 => 40.0,
+            (u, v) if (u.hypot(v) - 0.06).abs() < 0.5 * pen => 40.0,
             (u, v) if u.abs() < 0.105 && v.abs() < 0.1485 => 220.0,
             _ => 70.0,
         });
@@ -64,7 +64,7 @@ fn extents(picture: &Path, flags: &[&str]) -> (f64, f64) {
 
 #[test]
 fn a_sheet_of_known_size_gives_its_drawing_to_scale() {
-    let picture = photograph("paper_scale");
+    let picture = photograph("paper_scale", 1.6e-3);
     let (width, height) = extents(&picture, &["--paper", "a4"]);
     for side in [width, height] {
         assert!((side - 0.12).abs() < 4e-4, "{width} × {height} m");
@@ -79,7 +79,7 @@ fn a_sheet_of_known_size_gives_its_drawing_to_scale() {
 
 #[test]
 fn strokes_in_pixels_stay_where_they_are_in_the_picture() {
-    let picture = photograph("paper_pixels");
+    let picture = photograph("paper_pixels", 1.6e-3);
     let output = run(&["strokes", &text(&picture), "--json"]);
     assert!(String::from_utf8_lossy(&output.stderr).contains("only the sheet of paper is traced"));
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -102,8 +102,21 @@ fn strokes_in_pixels_stay_where_they_are_in_the_picture() {
 }
 
 #[test]
+fn a_photograph_on_a_simulated_wall_is_held_against_what_hangs_there() {
+    let picture = photograph("paper_hung", 5e-3);
+    let source = format!("sim:{}", text(&picture));
+    let out = picture.with_file_name("run");
+    let output = run(&["trace", "--camera", &source, "--out", &text(&out), "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let figure = &summary["camera"]["figure_mm"];
+    assert!(figure["rms"].as_f64().is_some_and(|rms| rms < 0.5), "{figure}");
+    assert!(figure["covered_share"].as_f64().is_some_and(|share| share > 0.95), "{figure}");
+}
+
+#[test]
 fn corners_and_papers_that_do_not_fit_are_refused_with_what_would() {
-    let picture = text(&photograph("paper_refused"));
+    let picture = text(&photograph("paper_refused", 1.6e-3));
     let refused = |flags: &[&str], status: i32, wanted: &str| {
         let output = run(&[&["strokes", &picture], flags].concat());
         let said = String::from_utf8_lossy(&output.stderr);

@@ -227,7 +227,8 @@ fn truth(
         return Ok(None);
     };
     match sketch(path, picture::read(path)?, &args.tracing, &args.placement) {
-        Ok(truth) => Ok(Some(truth.drawing.transformed(wall_from_picture))),
+        // as it hangs: a sheet in it is not laid square there
+        Ok(truth) => Ok(Some(truth.in_picture().0.transformed(wall_from_picture))),
         Err(why) => {
             progress.say(&format!("note: how far the light is from the figure is not told: {}", why.message));
             Ok(None)
