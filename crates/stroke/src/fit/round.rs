@@ -48,10 +48,10 @@ pub(super) fn bows(row: &[Point], range: RangeInclusive<usize>, rms: f64, tips: 
         cuts = without(tips);
     }
     let bow = |w: &[usize]| {
-        let chord = points[w[0]].distance_squared(points[w[1]]);
+        // half the way round: the chord of the whole may be short, for it may end near where it begins
+        let half = points[w[0]].distance_squared(points[w[0].midpoint(w[1])]);
         let circle = roundness.circle(w[0], w[1]).map(|(circle, _)| circle);
-        let circle = circle
-            .filter(|c| chord > 8.0 * c.radius.abs() * STRAIGHT * rms || chord > 3.0 * c.radius.powi(2));
+        let circle = circle.filter(|c| half > 2.0 * c.radius.abs() * STRAIGHT * rms);
         Bow { first: start + w[0], last: start + w[1], circle }
     };
     let bows: Vec<Bow> = cuts.windows(2).map(bow).collect();

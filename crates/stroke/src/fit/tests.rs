@@ -88,6 +88,18 @@ fn a_circle_is_two_arcs() {
 }
 
 #[test]
+fn a_ring_that_stays_open_goes_all_the_way_round() {
+    for gap in [0.5, 2.0, 6.0, 40.0] {
+        let ring = curve(|t| (100.0 * t.cos(), 100.0 * t.sin()), 0.0, TAU - gap / 100.0);
+        for seed in 1..10 {
+            let path = fit(&drawn(&ring, 0.1, seed), false, &options()).unwrap();
+            let length = path.length(1e-6);
+            assert!((length - (200.0 * PI - gap)).abs() < 0.7, "gap {gap}, seed {seed}: {length} long");
+        }
+    }
+}
+
+#[test]
 fn smooth_curves_have_no_kinks_and_no_peaks_of_curvature() {
     type Curve = (&'static str, bool, f64, Vec<Point>);
     let curves: Vec<Curve> = vec![
