@@ -29,7 +29,7 @@ impl Line {
         let radius = median(&branch.radii).max(0.5);
         let (from, to) = if branch.ring { (0, branch.points.len()) } else { trusted(graph, branch, radius) };
         let (mut points, width) = match branch.turns.is_empty() {
-            true => centred(dark, &branch.points[from..to], radius, branch.ring),
+            true => centred(dark, (&branch.points[from..to], &branch.radii[from..to]), radius, branch.ring),
             false => turning(dark, branch, (from, to), radius),
         };
         (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
@@ -150,39 +150,43 @@ fn shape_ahead(shapes: &Mask, tip: &Tip, reach: f64) -> Option<f64> {
     (0..(reach / STEP) as usize).map(|k| k as f64 * STEP).find(inside)
 }
 
-/// Points on the middle of a line along a row of pixels, and the line's width.
-fn centred(dark: &Plane<u8>, pixels: &[Point], radius: f64, ring: bool) -> (Vec<Point>, f64) {
-    let ridge = ridge::centred(dark, pixels, radius, ring);
+/// Points on the middle of a line along a row of pixels, of which each is known with the half width of its ink; and the
+/// line's width.
+fn centred(dark: &Plane<u8>, pixels: (&[Point], &[f64]), radius: f64, ring: bool) -> (Vec<Point>, f64) {
+    let ridge = ridge::centred(dark, pixels.0, radius, ring);
     let mut points = bridged(dark, &ridge, ring);
-    if !ring && ridge.width < HAIR_PX {
-        let mut pixels = pixels.to_vec();
+    if !ring {
+        let mut pixels: Vec<(Point, f64)> =
+            std::iter::zip(pixels.0, pixels.1).map(|(&p, &r)| (p, r)).collect();
         // first what is lost at the beginning, then at the end
         for _ in 0..2 {
             points.reverse();
             pixels.reverse();
-            points.extend(lost(&pixels, points.last(), LOST_PENS * ridge.width + LOST_PX));
+            points.extend(lost(&pixels, points.last(), ridge.width));
         }
     }
     (points, ridge.width)
 }
 
-/// A line narrower than this is a hair, px.
-const HAIR_PX: f64 = 2.5;
+/// Ink that is this much wider than its line is a blot's or a junction's.
+const BLOT: f64 = 1.3;
 /// So much of a row of pixels may be without a cross-section at an end, in pens and px: the ink of a junction.
 const LOST_PENS: f64 = 1.0;
 const LOST_PX: f64 = 2.0;
 
-/// The pixels from where the middle of a line can be seen last to their end, if that is further than `least`: the middle of
-/// a jagged hair has no cross-section for long.
-fn lost(pixels: &[Point], last: Option<&Point>, least: f64) -> Vec<Point> {
+/// The pixels from where the middle of a line so wide can be seen last to their end, if that is further than a junction's
+/// ink reaches: the middle of a jagged line has no cross-section for long.
+fn lost(pixels: &[(Point, f64)], last: Option<&Point>, width: f64) -> Vec<Point> {
     let Some(&last) = last else { return Vec::new() };
     // a line that goes round ends beside its beginning
     let nearest = (pixels.len() / 2..pixels.len()).min_by(|&a, &b| {
-        let off = |k: usize| pixels[k].distance_squared(last);
+        let off = |k: usize| pixels[k].0.distance_squared(last);
         off(a).total_cmp(&off(b))
     });
     let rest = &pixels[nearest.unwrap_or(0)..];
-    if polyline_length(rest) <= least {
+    let as_wide = |(_, radius): &(Point, f64)| 2.0 * radius <= BLOT * width + 1.0;
+    let rest: Vec<Point> = rest.iter().copied().take_while(as_wide).map(|(at, _)| at).collect();
+    if polyline_length(&rest) <= LOST_PENS * width + LOST_PX {
         return Vec::new();
     }
     // the mean of five pixels is off the steps of their grid
@@ -194,12 +198,13 @@ fn lost(pixels: &[Point], last: Option<&Point>, least: f64) -> Vec<Point> {
 
 /// The same of a branch that turns back on itself: side by side, and out to each turn and back between them.
 fn turning(dark: &Plane<u8>, branch: &Branch, (from, to): (usize, usize), radius: f64) -> (Vec<Point>, f64) {
-    let mut pixels = branch.points[from..to].to_vec();
+    let (mut pixels, mut radii) = (branch.points[from..to].to_vec(), branch.radii[from..to].to_vec());
     let inside = branch.turns.iter().filter(|turn| (from..to).contains(&turn.index));
     let mut turns: Vec<Turn> = inside.map(|turn| Turn { index: turn.index - from, ..*turn }).collect();
     if let (true, Some(&first)) = (branch.ring, turns.first()) {
         // a ring begins behind its first turn, and returns to it last
         pixels.rotate_left(first.index);
+        radii.rotate_left(first.index);
         turns.iter_mut().for_each(|turn| turn.index -= first.index);
         turns.rotate_left(1);
         turns.iter_mut().filter(|turn| turn.index == 0).for_each(|turn| turn.index = pixels.len() - 1);
@@ -211,11 +216,12 @@ fn turning(dark: &Plane<u8>, branch: &Branch, (from, to): (usize, usize), radius
         let away = |p: &Point, turn: Option<Turn>, fork: usize| {
             turn.is_none_or(|turn| p.distance(pixels[fork]) > turn.reach)
         };
-        let clear = |p: &&Point| away(p, before, start) && away(p, turn, end - 1);
-        let side: Vec<Point> = pixels[start..end].iter().filter(clear).copied().collect();
+        let clear = |k: &usize| away(&pixels[*k], before, start) && away(&pixels[*k], turn, end - 1);
+        let (side, wide): (Vec<Point>, Vec<f64>) =
+            (start..end).filter(clear).map(|k| (pixels[k], radii[k])).unzip();
         let (side, width) = match side.is_empty() {
             true => (side, 2.0 * radius),
-            false => centred(dark, &side, radius, false),
+            false => centred(dark, (&side, &wide), radius, false),
         };
         sides.push(side);
         widths.push(width);
