@@ -18,6 +18,7 @@
 //! | `ridge`, `line`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
 //! | `follow` | points to paths |
+//! | `rest` | a second look at the ink that no line follows |
 //! | `missed`, `on_ink` | ink that no stroke follows; strokes that follow no ink |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
@@ -53,6 +54,7 @@ mod prune;
 mod quality;
 mod reading;
 mod region;
+mod rest;
 mod ridge;
 mod shadow;
 mod sharpness;

@@ -153,7 +153,7 @@ fn shape_ahead(shapes: &Mask, tip: &Tip, reach: f64) -> Option<f64> {
 /// Points on the middle of a line along a row of pixels, of which each is known with the half width of its ink; and the
 /// line's width.
 fn centred(dark: &Plane<u8>, pixels: (&[Point], &[f64]), radius: f64, ring: bool) -> (Vec<Point>, f64) {
-    let ridge = ridge::centred(dark, pixels.0, radius, ring);
+    let ridge = ridge::centred(dark, pixels, radius, ring);
     let mut points = bridged(dark, &ridge, ring);
     if !ring {
         let mut pixels: Vec<(Point, f64)> =
@@ -184,7 +184,8 @@ fn lost(pixels: &[(Point, f64)], last: Option<&Point>, width: f64) -> Vec<Point>
         off(a).total_cmp(&off(b))
     });
     let rest = &pixels[nearest.unwrap_or(0)..];
-    let as_wide = |(_, radius): &(Point, f64)| 2.0 * radius <= BLOT * width + 1.0;
+    let here = rest.first().map_or(0.0, |(_, radius)| 2.0 * radius);
+    let as_wide = |(_, radius): &(Point, f64)| 2.0 * radius <= BLOT * width.max(here) + 1.0;
     let rest: Vec<Point> = rest.iter().copied().take_while(as_wide).map(|(at, _)| at).collect();
     if polyline_length(&rest) <= LOST_PENS * width + LOST_PX {
         return Vec::new();

@@ -20,7 +20,7 @@ pub(crate) fn counts(ink: &Mask, regions: &[&Region], strokes: &[Stroke]) -> Vec
     let usual = median(&strokes.iter().filter_map(|s| s.pen).collect::<Vec<_>>());
     let mut painted = Mask::empty(ink.width, ink.height);
     for stroke in strokes {
-        let near = (NEAR_PENS * stroke.pen.unwrap_or(0.0).max(usual)).max(LEAST_PX);
+        let near = reach(stroke.pen.unwrap_or(0.0), usual);
         let flat = FLAT_PX.max(FLAT_SHARE * near);
         stroke.path.flatten(flat).windows(2).for_each(|w| paint(&mut painted, w[0], w[1], near));
     }
@@ -28,8 +28,21 @@ pub(crate) fn counts(ink: &Mask, regions: &[&Region], strokes: &[Stroke]) -> Vec
     regions.iter().map(count).collect()
 }
 
+/// How far ink may lie from a line of its pen's width, px, where a pen is `usual`.
+pub(crate) fn reach(width: f64, usual: f64) -> f64 {
+    (NEAR_PENS * width.max(usual)).max(LEAST_PX)
+}
+
+/// A patch whose lines leave out more than this share of it is none of lines.
+const LOST: f64 = 0.6;
+
+/// Whether a patch of so many pixels, of which so many are followed by no line, is none of lines.
+pub(crate) fn is_none_of_lines(missed: usize, area: usize) -> bool {
+    missed as f64 > LOST * area as f64
+}
+
 /// Paints all pixels whose centres are within `radius` of the line from `a` to `b`, row by row.
-fn paint(mask: &mut Mask, a: Point, b: Point, radius: f64) {
+pub(crate) fn paint(mask: &mut Mask, a: Point, b: Point, radius: f64) {
     let rows = |y: f64, last: usize| (y.max(0.0) as usize).min(last);
     let last = mask.height - 1;
     let (top, low) = (a.y.min(b.y) - radius, a.y.max(b.y) + radius);

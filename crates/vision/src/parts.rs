@@ -321,7 +321,7 @@ fn mask_of<'a>(like: &Mask, regions: impl IntoIterator<Item = &'a Region>) -> Ma
 }
 
 /// The regions, which are all the ink of `mask`, with their skeletons' graphs.
-fn graphs(mask: &Mask, regions: Vec<Region>) -> Vec<(Region, Graph)> {
+pub(crate) fn graphs(mask: &Mask, regions: Vec<Region>) -> Vec<(Region, Graph)> {
     let mut skeleton = Skeleton::new(mask, thin::thinned(mask.clone()));
     let read = |region: Region| {
         let cells = skeleton.cells_of(&region);

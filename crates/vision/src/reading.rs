@@ -43,12 +43,7 @@ pub(crate) struct Reach {
 impl Reach {
     /// Those of a branch.
     fn all(graph: &Graph, branch: &Branch) -> Vec<Self> {
-        let clear = |i: &usize| {
-            let at = branch.points[*i];
-            branch.nodes.iter().flatten().all(|&n| at.distance(graph.nodes[n].at) > graph.nodes[n].radius)
-        };
-        let steady: Vec<usize> =
-            (0..branch.points.len()).filter(clear).filter(|&i| slope(branch, i) <= STEADY).collect();
+        let steady: Vec<usize> = clear(graph, branch).filter(|&i| is_steady(branch, i)).collect();
         let loops = branch.nodes[0].is_some() && branch.nodes[0] == branch.nodes[1];
         let whole = steady.len() + ROUGH > branch.points.len();
         let ring = loops || (branch.ring && whole);
@@ -85,6 +80,29 @@ fn ends_suddenly(graph: &Graph, branch: &Branch, (first, last): (usize, usize), 
     };
     let after = Some(last + beyond).filter(|&i| i < branch.points.len());
     suddenly(0, first.checked_sub(beyond)) && suddenly(1, after)
+}
+
+/// The points of a branch away from the ink of its nodes, by number.
+fn clear<'a>(graph: &'a Graph, branch: &'a Branch) -> impl Iterator<Item = usize> + 'a {
+    let clear = |i: &usize| {
+        let at = branch.points[*i];
+        branch.nodes.iter().flatten().all(|&n| at.distance(graph.nodes[n].at) > graph.nodes[n].radius)
+    };
+    (0..branch.points.len()).filter(clear)
+}
+
+/// Whether a branch's width changes slowly about one of its points.
+fn is_steady(branch: &Branch, i: usize) -> bool {
+    slope(branch, i) <= STEADY
+}
+
+/// Whether the width of all branches changes quickly over most of their length, as along the middle of a triangle.
+fn tapers_all_along(graph: &Graph) -> bool {
+    let mut counts = [0, 0];
+    for branch in &graph.branches {
+        clear(graph, branch).for_each(|i| counts[usize::from(is_steady(branch, i))] += 1);
+    }
+    counts[1] < counts[0]
 }
 
 /// By how much a branch's width changes about one of its points, over the length there.
@@ -134,7 +152,7 @@ impl Reading {
         lines.sort_by(|a, b| a.width.total_cmp(&b.width));
         let together: f64 = lines.iter().map(|line| line.length).sum();
         let is_drawn = together >= MANY_WIDTHS * widest
-            || DRAWN.iter().any(|&(least, most)| long >= least && bulky <= most);
+            || DRAWN.iter().any(|&(least, most)| long >= least && bulky <= most) && !tapers_all_along(graph);
         Self { lines, widest, long, usual, is_drawn }
     }
 

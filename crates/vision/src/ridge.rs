@@ -34,6 +34,8 @@ struct Place {
 
 /// Places either side with whose median width a place's is compared: a pen's width changes slowly.
 const LOCAL: usize = 15;
+/// The same at the ends of a line that swells.
+const LEAST_LOCAL: usize = 4;
 
 /// More places than this left out in a row are a gap: the line cannot be seen there.
 const GAP: usize = 2;
@@ -50,24 +52,29 @@ pub(crate) struct Ridge {
 }
 
 /// Moves points on to the middle of their line, one for every third of its width; those whose cross-section is not
-/// that of one line are left out. `radius` is about half the line's width. A ring's first stretch may go on after its
-/// last.
-pub(crate) fn centred(dark: &Plane<u8>, points: &[Point], radius: f64, ring: bool) -> Ridge {
+/// that of one line are left out. `radius` is about half the line's width, `radii` are the half widths of the ink at the
+/// points. A ring's first stretch may go on after its last.
+pub(crate) fn centred(
+    dark: &Plane<u8>,
+    (points, radii): (&[Point], &[f64]),
+    radius: f64,
+    ring: bool,
+) -> Ridge {
     let stride = spacing(2.0 * radius);
     // first across the pixels' own row, then across what became of it: the pixels lead round corners and wobble
-    let cut = Cut::of(radius);
+    let cuts = Cuts::of(radius, radii);
     let first: Vec<Place> = (0..points.len())
         .step_by(stride)
-        .filter_map(|i| place(dark, i, points[i], normal(points, i, 5, ring)?, cut))
+        .filter_map(|i| place(dark, i, points[i], normal(points, i, 5, ring)?, cuts.at(i)))
         .collect();
     let width = usual_width(&first).unwrap_or(2.0 * radius);
-    let first = of_usual_width(&first);
+    let first = of_usual_width(&first, cuts.swell());
     let row: Vec<Point> = first.iter().map(|p| p.at).collect();
-    let cut = Cut::of(0.5 * width);
-    let again = |i: usize| place(dark, first[i].index, row[i], normal(&row, i, 3, ring)?, cut);
+    let cuts = Cuts::of(0.5 * width, &first.iter().map(|p| 0.5 * p.width).collect::<Vec<_>>());
+    let again = |i: usize| place(dark, first[i].index, row[i], normal(&row, i, 3, ring)?, cuts.at(i));
     let second: Vec<Place> = (0..row.len()).filter_map(again).collect();
     let width = usual_width(&second).unwrap_or(width);
-    let mut places = without_lone(of_usual_width(&second), stride);
+    let mut places = without_lone(of_usual_width(&second, cuts.swell()), stride);
     if !ring && add_lost(dark, points, Cut::of(0.5 * width), &mut places) {
         places = without_lone(places, stride);
     }
@@ -93,13 +100,16 @@ fn usual_width(places: &[Place]) -> Option<f64> {
     middle(places.iter().map(|p| p.width).collect())
 }
 
-/// Those as wide as the line usually is thereabouts.
-fn of_usual_width(places: &[Place]) -> Vec<Place> {
+/// Those as wide as the line usually is thereabouts. Where it swells, as many places either side are compared, down to a few
+/// at its ends: it is wider behind than ahead.
+fn of_usual_width(places: &[Place], swells: bool) -> Vec<Place> {
     let mut kept = Vec::with_capacity(places.len());
     let mut near = Vec::with_capacity(2 * LOCAL + 3);
     // three places at a time: the median of 31 moves by less than the bound in between
     for (i, three) in places.chunks(3).enumerate() {
-        let range = (3 * i).saturating_sub(LOCAL)..(3 * i + LOCAL + 1).min(places.len());
+        let (before, after) = (3 * i, places.len() - 1 - 3 * i);
+        let reach = if swells { before.min(after).clamp(LEAST_LOCAL, LOCAL) } else { LOCAL };
+        let range = before.saturating_sub(reach)..(before + reach + 1).min(places.len());
         let widths = places[range.clone()].iter().map(|p| p.width);
         let (least, most) = widths.fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
         // then none is further than that from a median of them
@@ -241,6 +251,41 @@ impl Cut {
     fn of(radius: f64) -> Self {
         let step = STEP.max(radius / 5.0);
         Self { radius, step, half: (((radius + BEYOND) / step).ceil() as usize).min(MOST_HALF) }
+    }
+}
+
+/// The cuts along a line, which may swell and taper.
+struct Cuts {
+    usual: Cut,
+    /// Half widths, px, of every so many places; none where the line is about as wide all along.
+    local: Vec<f64>,
+}
+
+/// The half widths of so many places go into one.
+const CUT_PLACES: usize = 16;
+/// A line swells whose half width is, over so many places, so much more or less than elsewhere, as a ratio and px: pixels and
+/// blots change it by less.
+const SWELLS: f64 = 1.3;
+const SWELLS_PX: f64 = 1.0;
+
+impl Cuts {
+    fn of(radius: f64, radii: &[f64]) -> Self {
+        let local: Vec<f64> = radii.chunks(CUT_PLACES).map(median).collect();
+        let swells = |r: &f64| {
+            let (less, more) = (r.min(radius), r.max(radius));
+            more > SWELLS * less && more - less > SWELLS_PX
+        };
+        let local = if local.iter().any(swells) { local } else { Vec::new() };
+        Self { usual: Cut::of(radius), local }
+    }
+
+    /// Whether the line swells or tapers.
+    fn swell(&self) -> bool {
+        !self.local.is_empty()
+    }
+
+    fn at(&self, place: usize) -> Cut {
+        self.local.get(place / CUT_PLACES).map_or(self.usual, |&radius| Cut::of(radius.max(0.5)))
     }
 }
 

@@ -9,7 +9,7 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{self, Region, pinholes, regions};
-use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, sweep};
+use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, sweep};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -304,15 +304,16 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
         .iter()
         .flat_map(|(region, graph)| centreline::rows(dark, &parts.shape_mask, region, graph))
         .collect();
+    let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
+    let rows = rest::with_rest(dark, &lined, rows);
     let (rows, over_paper_px) = on_ink::only(mask, gap::bridged(dark, rows));
     strokes.extend(rows.iter().filter_map(|row| centreline::stroke(dark, row, options)));
-    let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
     let counts = missed::counts(mask, &lined, &strokes);
     let (mut missed, mut all) = (0, 0);
     let mut lost_ink = Mask::empty(mask.width, mask.height);
     for (region, (area, lost)) in lined.iter().zip(counts) {
         all += area;
-        match lost as f64 > LOST * area as f64 {
+        match missed::is_none_of_lines(lost, area) {
             true => region.fill_into(&mut lost_ink),
             false => missed += lost,
         }
@@ -328,6 +329,3 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
     };
     Found { strokes, missed_ink: missed as f64 / (all as f64).max(1.0), left_out }
 }
-
-/// A patch whose lines leave out more than this share of it is none of lines.
-const LOST: f64 = 0.6;
