@@ -153,3 +153,30 @@ fn a_pictures_way_to_ink_can_be_looked_at() {
         assert!(output.status.code() == Some(2) && said.contains(what), "{said}");
     }
 }
+
+#[test]
+fn a_photograph_is_refused_and_traced_by_force() {
+    // a dark tree before hills and a bright sky
+    let path = folder("a_photograph").join("photograph.png");
+    let level = |x: f64, y: f64| {
+        let hill = 120.0 + 30.0 * (x / 40.0).sin() + 12.0 * (x / 13.0).cos();
+        let tree = (x - 90.0).hypot(1.3 * (y - 90.0)) < 45.0 + 6.0 * (x / 5.0).sin() * (y / 7.0).cos();
+        match (tree, y > hill) {
+            (true, _) => 30.0 + 25.0 * (x / 9.0).sin() * (y / 11.0).sin(),
+            (_, true) => 150.0 - 0.5 * (y - hill) + 35.0 * (x / 17.0).sin() * (y / 9.0).cos(),
+            _ => 235.0 - 0.25 * y,
+        }
+    };
+    let colour = |x: u32, y: u32| {
+        let grey = level(f64::from(x), f64::from(y)) as u8;
+        Rgba([grey, grey, grey, 255])
+    };
+    RgbaImage::from_fn(320, 240, colour).save(&path).unwrap();
+    let name = text(&path);
+    let refused = run(&["strokes", &name]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    assert!(said.contains("neither paper nor ink") && said.contains("--force"), "{said}");
+    let strokes = json(&["strokes", &name, "--force"])["strokes"].as_array().map_or(0, Vec::len);
+    assert!(strokes > 0);
+}

@@ -48,6 +48,20 @@ pub enum VisionError {
         /// Its bound.
         least: f64,
     },
+    /// No ink on paper, as drawings are.
+    #[error(
+        "this looks like a photograph or a screenshot, not like a drawing: {tone_percent:.1} % of it is neither paper nor \
+         ink and may be up to {most_percent:.1} % (where {outlined_percent:.0} % of the light goes round shapes): crop it to \
+         the drawing, or --force traces it all the same"
+    )]
+    NoDrawing {
+        /// Share of the picture that is neither paper nor ink nor the edge between them, %.
+        tone_percent: f64,
+        /// Its bound.
+        most_percent: f64,
+        /// Share of the strokes' length that goes round shapes, %.
+        outlined_percent: f64,
+    },
     /// At the threshold that was set all is ink, or nothing is.
     #[error(
         "--threshold {threshold:.1} % parts no ink from the paper: the strongest ink is {darkest:.1} % darker than it; set \

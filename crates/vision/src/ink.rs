@@ -93,6 +93,7 @@ impl Ink {
             edge_px: split.edge_px(&darkness, noise_levels, is_noisy).map(|px| px * reduction as f64),
             clipped_percent: clipped_percent(&raw_levels, split.share),
             pen_px: None,
+            tone_percent: None,
             light_on_dark,
         };
         quality.gate(threshold_percent.is_some())?;

@@ -12,6 +12,7 @@
 //! | `light`, `ink` | even light, polarity, threshold |
 //! | `comb` | the rules of ruled and squared paper, taken out from under the ink |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
+//! | `tone` | whether it is a drawing at all |
 //! | `region`, `distance` | connected patches of ink; distance to the paper |
 //! | `reading`, `parts` | what is a line by its own width; lines and shapes parted |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
@@ -64,6 +65,7 @@ mod spot;
 mod stages;
 mod sweep;
 mod thin;
+mod tone;
 mod trace;
 
 pub use comb::{Comb, Rules};

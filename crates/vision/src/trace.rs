@@ -9,7 +9,7 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{self, Region, pinholes, regions};
-use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, sweep};
+use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, sweep, tone};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -55,6 +55,8 @@ pub struct Options {
     pub min_length_px: f64,
     /// Whether sheets of paper lie or hang in the image: their edges are none of the drawing's.
     pub sheets: bool,
+    /// Whether an image is traced that looks like no drawing.
+    pub force: bool,
 }
 
 impl Default for Options {
@@ -67,6 +69,7 @@ impl Default for Options {
             despeckle_px2: None,
             min_length_px: 0.0,
             sheets: false,
+            force: false,
         }
     }
 }
@@ -84,6 +87,13 @@ impl Options {
     pub const DESPECKLE_PX2: (f64, f64) = (0.0, 12e6);
     /// Bounds of [`Self::min_length_px`]: a hundred times round the largest image.
     pub const MIN_LENGTH_PX: (f64, f64) = (0.0, 1e6);
+
+    /// Whether an image is refused that looks like no drawing: who says what is ink, that paper lies in it, or that shapes are
+    /// meant has seen it.
+    fn judges(&self) -> bool {
+        let told = self.force || self.sheets || self.threshold_percent.is_some();
+        !told && matches!(self.mode, Mode::Auto | Mode::Centreline)
+    }
 
     fn check(&self) -> Result<(), VisionError> {
         let set = [
@@ -144,12 +154,13 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
 /// Finds the strokes of a page, in the pixel frame of the whole image.
 ///
 /// # Errors
-/// When the page has no ink, no contrast, nothing but noise, or (sweep) is no single closed figure; when an option is
+/// When the page has no ink, no contrast, nothing but noise, looks like no drawing, or (sweep) is no single closed figure; when an option is
 /// out of its bounds, or leaves nothing.
 pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionError> {
     options.check()?;
     let ink = Ink::of(page, options.threshold_percent, options.sheets)?;
     let mut mask = ink.mask();
+    let tone_percent = options.judges().then(|| ink.tone_percent(&mask));
     let regions = drawn(&mut mask, least_patch(&ink, options))?;
     let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
     let only = |strokes: Vec<Stroke>| Found { strokes, missed_ink: 0.0, left_out: LeftOut::default() };
@@ -166,8 +177,9 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
     }
     let (width, height) = (mask.width as f64, mask.height as f64);
     let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
-    let scale = Affine::scale(ink.reduction as f64);
-    let mut strokes = Drawing { strokes }.transformed(scale);
+    let strokes = Drawing { strokes };
+    tone_percent.map_or(Ok(()), |percent| tone::check(percent, &strokes))?;
+    let mut strokes = strokes.transformed(Affine::scale(ink.reduction as f64));
     if options.sheets {
         strokes = ink_only(&strokes, &page.picture, ink.quality.light_on_dark);
     }
@@ -178,7 +190,7 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
         width_px: page.size.0,
         height_px: page.size.1,
         mode: options.mode,
-        quality: Quality { pen_px: usual_pen(&strokes), ..ink.quality },
+        quality: Quality { pen_px: usual_pen(&strokes), tone_percent, ..ink.quality },
         strokes,
         missed_ink,
         left_out: left_out.enlarged(ink.reduction),

@@ -28,7 +28,7 @@ const MESSAGES: &[(&str, &str)] = &[
     ("too-large", "A picture has more pixels or bytes than are traced (100 megapixels). Scale it down."),
     (
         "no-strokes-found",
-        "A picture was read, but has nothing to draw: no ink, no contrast, or only noise; or what was set by --threshold, --despeckle or --min-length leaves nothing. The message names the figure that failed and its bound.",
+        "A picture was read, but has nothing to draw: no ink, no contrast, or only noise; or it looks like a photograph or a screenshot, not like a drawing (--force traces it all the same); or what was set by --threshold, --despeckle or --min-length leaves nothing. The message names the figure that failed and its bound.",
     ),
     (
         "usable",

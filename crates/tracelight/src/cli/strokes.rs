@@ -55,7 +55,7 @@ pub(crate) struct StrokesArgs {
     #[arg(short, long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Trace also pictures whose strokes are in the folder already
-    #[arg(long, visible_alias = "force")]
+    #[arg(long)]
     again: bool,
     #[command(flatten)]
     placement: PlacementArgs,

@@ -45,6 +45,9 @@ pub(crate) struct TracingArgs {
     /// The sheet's size, for a drawing to scale: its true width is what is drawn unless --width or --height says otherwise
     #[arg(long, value_enum, value_name = "SIZE")]
     pub(crate) paper: Option<PaperName>,
+    /// Trace also a photograph or a screenshot that looks like no drawing
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// How a sheet that was photographed at a slant is laid square.
@@ -73,6 +76,7 @@ impl Default for TracingArgs {
             whole: false,
             straighten: Straighten::Auto,
             paper: None,
+            force: false,
         }
     }
 }
@@ -115,6 +119,7 @@ impl TracingArgs {
             despeckle_px2: self.despeckle.0,
             min_length_px: self.min_length.in_units(metres_per_px),
             sheets: self.sheets,
+            force: self.force,
         }
     }
 

@@ -105,6 +105,7 @@ const fn quality() -> Quality {
         ink_percent: 3.1,
         edge_px: Some(6.2),
         clipped_percent: 0.0,
+        tone_percent: Some(0.0),
         pen_px: Some(4.1),
         light_on_dark: false,
     }
