@@ -8,6 +8,7 @@ use crate::graph::Graph;
 use crate::junction::{self, Joint, Junctions};
 use crate::line::Line;
 use crate::mask::Mask;
+use crate::near::Near;
 use crate::plane::Plane;
 use crate::region::Region;
 use crate::ridge::median;
@@ -78,41 +79,12 @@ impl Drawn {
         let pen = graph.pen_radius();
         let mut followed = self.junctions.ways();
         followed.extend(self.lines.iter().flat_map(|line| &line.points));
-        let followed = Near::of(followed, BARE_RADII * pen + 0.5);
+        let followed = Near::of(followed.into_iter().map(|p| (p, ())), BARE_RADII * pen + 0.5);
         let bare = |&branch: &usize| {
             let points = graph.branches[branch].points.iter();
-            points.filter(|&&p| !followed.any(p)).count() as f64
+            points.filter(|&&p| followed.around(p).next().is_none()).count() as f64
         };
         self.bridges.iter().copied().filter(|branch| bare(branch) >= (0.5 * pen).max(2.0)).collect()
-    }
-}
-
-/// Points by square cells as wide as the reach they are asked for.
-struct Near {
-    reach: f64,
-    /// Sorted by cell.
-    points: Vec<((i32, i32), Point)>,
-}
-
-impl Near {
-    fn of(points: Vec<Point>, reach: f64) -> Self {
-        let mut points: Vec<_> = points.into_iter().map(|p| (Self::cell(p, reach), p)).collect();
-        points.sort_unstable_by_key(|(cell, _)| *cell);
-        Self { reach, points }
-    }
-
-    fn cell(p: Point, reach: f64) -> (i32, i32) {
-        ((p.y / reach).floor() as i32, (p.x / reach).floor() as i32)
-    }
-
-    /// Whether one of the points is within reach of `p`.
-    fn any(&self, p: Point) -> bool {
-        let (row, column) = Self::cell(p, self.reach);
-        (row - 1..=row + 1).any(|row| {
-            let from = self.points.partition_point(|(cell, _)| *cell < (row, column - 1));
-            let mut near = self.points[from..].iter().take_while(|(cell, _)| *cell <= (row, column + 1));
-            near.any(|(_, q)| q.distance(p) <= self.reach)
-        })
     }
 }
 

@@ -18,6 +18,7 @@
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
+//! | `near` | which of many points are near a place |
 //! | `follow` | points to paths |
 //! | `rest` | a second look at the ink that no line follows |
 //! | `missed`, `on_ink` | ink that no stroke follows; strokes that follow no ink |
@@ -45,6 +46,7 @@ mod line;
 mod marks;
 mod mask;
 mod missed;
+mod near;
 mod on_ink;
 mod outline;
 mod paler;

@@ -11,6 +11,7 @@ use crate::centreline::{self, Row};
 use crate::distance::to_paper;
 use crate::mask::Mask;
 use crate::missed;
+use crate::near::Near;
 use crate::parts::graphs;
 use crate::plane::Plane;
 use crate::region::{Region, regions};
@@ -65,7 +66,8 @@ pub(crate) fn with_rest(dark: &Plane<u8>, patches: &[&Region], mut rows: Vec<Row
         let is_lost = |p: &Point| lost.get(p.x.floor() as isize, p.y.floor() as isize);
         row.points.iter().any(is_lost) && polyline_length(&row.points) >= SHORT_PENS * row.width
     };
-    let found: Vec<Row> = found.map(|row| tied(dark, &ink, row, &rows)).filter(leads_away).collect();
+    let others = Others::of(&ink, &rows);
+    let found: Vec<Row> = found.map(|row| tied(dark, row, &others)).filter(leads_away).collect();
     rows.extend(found);
     rows
 }
@@ -84,36 +86,55 @@ fn radius(ink: &Mask, at: Point) -> f64 {
     }
 }
 
+/// The points of some rows, by place.
+struct Others<'a> {
+    ink: &'a Mask,
+    rows: &'a [Row],
+    /// Which row each is of, and whether that ends free there.
+    points: Near<(usize, bool)>,
+}
+
+impl<'a> Others<'a> {
+    fn of(ink: &'a Mask, rows: &'a [Row]) -> Self {
+        let widest = rows.iter().map(|row| row.width).fold(1.0, f64::max);
+        let points = rows.iter().enumerate().flat_map(|(number, row)| {
+            let last = row.points.len() - 1;
+            let ends = move |k: usize| !row.closed && (k == 0 && row.free[0] || k == last && row.free[1]);
+            row.points.iter().enumerate().map(move |(k, &p)| (p, (number, ends(k))))
+        });
+        Self { ink, rows, points: Near::of(points, TIED_PENS * widest) }
+    }
+
+    /// The point nearest to the end of a row of some width whose ink that end touches, and whether it is a free end.
+    fn nearest(&self, at: Point, width: f64) -> Option<(Point, bool)> {
+        let touches = |&(p, &(number, _)): &(Point, &(usize, bool))| {
+            let (away, other) = (p.distance(at), &self.rows[number]);
+            away <= TIED_PENS * other.width.max(width) && away <= own_reach(self.ink, other, p) + width
+        };
+        let touched = self.points.around(at).filter(touches);
+        let nearest = touched.min_by(|a, b| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)));
+        nearest.map(|(p, &(_, is_end))| (p, is_end))
+    }
+}
+
 /// A row whose free ends are carried on to the others beside it, if there is ink all the way. Where another ends as well, both
 /// may go on into each other.
-fn tied(dark: &Plane<u8>, ink: &Mask, mut row: Row, others: &[Row]) -> Row {
+fn tied(dark: &Plane<u8>, mut row: Row, others: &Others<'_>) -> Row {
     if row.closed {
         return row;
     }
+    let place = |end: usize| row.points[end * (row.points.len() - 1)];
     let tie = |end: usize| {
-        let at = row.points[end * (row.points.len() - 1)];
-        let near = others.iter().flat_map(|other| {
-            let (pens, width) = (other.width.max(row.width), row.width);
-            let is_near = move |p: Point| {
-                let away = p.distance(at);
-                away <= TIED_PENS * pens && away <= own_reach(ink, other, p) + width
-            };
-            let last = other.points.len() - 1;
-            let is_end =
-                move |k: usize| !other.closed && (k == 0 && other.free[0] || k == last && other.free[1]);
-            let points = other.points.iter().enumerate().map(move |(k, p)| (*p, is_end(k)));
-            points.filter(move |(p, _)| is_near(*p))
-        });
-        let nearest = near.min_by(|a, b| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)));
-        nearest.filter(|&(stop, _)| inked_towards(dark, at, stop, row.width) == stop)
+        let nearest = others.nearest(place(end), row.width);
+        nearest.filter(|&(stop, _)| inked_towards(dark, place(end), stop, row.width) == stop)
     };
     let mut ties = [tie(0), tie(1)];
     // a stub leads away from one place, not there and back
     if let [Some((first, _)), Some((last, _))] = ties
         && first.distance(last) < SHORT_PENS * row.width
     {
-        let away = |end: usize, stop: Point| row.points[end * (row.points.len() - 1)].distance(stop);
-        ties[usize::from(away(0, first) < away(1, last))] = None;
+        let is_first = place(0).distance(first) < place(1).distance(last);
+        ties[usize::from(is_first)] = None;
     }
     for (end, tie) in ties.into_iter().enumerate() {
         if let Some((stop, is_end)) = tie {
