@@ -114,7 +114,7 @@ const LEAST_PEN_PX: f64 = 2.0;
 /// | blur | up to 0.7 pens | – | blur that hides the pen's own width gives 1.69 σ / 2.51 σ = 0.67; exact 97 % at 0.61, 88 % at 0.70, 69 % at 0.77 |
 /// | clipped | up to 10 % | – | pictures with up to 8 % trace as others do; more is a third of the picture's side |
 /// | pen | from 1.8 px | – | exact 94 % at 2.2, 85 % at 1.7, 83 % at 1.5 |
-/// | tone | up to 0.3 % | by how much of the light goes round shapes | 3 % of 384 drawings that others made have more, and 84 % of 626 photographs and screenshots, or are refused |
+/// | tone | up to 0.3 % | by how much of the light goes round shapes | 3 % of 384 drawings that others made have more, and 81 % of 626 photographs and screenshots, or are refused |
 const BOUNDS: [Bounds; 9] = [
     Bounds {
         figure: Figure::Contrast,
