@@ -69,6 +69,17 @@ impl Drawing {
         self.strokes.iter().map(|s| s.path.length(tolerance)).sum()
     }
 
+    /// Share of that length that goes round shapes, 0 to 1; 0 of no strokes.
+    pub fn outlined(&self, tolerance: f64) -> f64 {
+        let (mut outlines, mut all) = (0.0, 0.0);
+        for stroke in &self.strokes {
+            let length = stroke.path.length(tolerance);
+            all += length;
+            outlines += if stroke.kind == StrokeKind::Outline { length } else { 0.0 };
+        }
+        if all > 0.0 { outlines / all } else { 0.0 }
+    }
+
     /// Sum of the straight travels between the strokes, from `start` on.
     pub fn travel(&self, start: Point) -> f64 {
         let mut at = start;
@@ -95,6 +106,19 @@ impl Drawing {
 mod tests {
     use super::*;
     use crate::{OrderOptions, order};
+
+    #[test]
+    fn what_goes_round_shapes_is_a_share_of_the_length() {
+        let line = |to: f64, kind: StrokeKind| {
+            let path = Path::polyline(&[Point::new(0.0, 0.0), Point::new(to, 0.0)], false).unwrap();
+            Stroke { kind, ..Stroke::new(path) }
+        };
+        let strokes = vec![line(3.0, StrokeKind::Centreline), line(1.0, StrokeKind::Outline)];
+        assert_eq!(Drawing { strokes: strokes.clone() }.outlined(1e-3), 0.25);
+        let lines = Drawing { strokes: strokes[..1].to_vec() };
+        assert!(lines.outlined(1e-3).is_sign_positive() && lines.outlined(1e-3) == 0.0);
+        assert_eq!(Drawing::default().outlined(1e-3), 0.0);
+    }
 
     #[test]
     fn layer_and_colour_stay_with_a_stroke() {

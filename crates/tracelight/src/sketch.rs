@@ -121,10 +121,7 @@ fn ruled(comb: &Comb) -> String {
 
 /// How much of a drawing of lines is drawn round its edge.
 fn outlined(drawing: &Drawing) -> Option<String> {
-    let length = |stroke: &Stroke| stroke.path.length(CHORDS_PX);
-    let all: f64 = drawing.strokes.iter().map(length).sum();
-    let outlines = drawing.strokes.iter().filter(|stroke| stroke.kind == StrokeKind::Outline);
-    let share = outlines.map(length).sum::<f64>() / all;
+    let share = drawing.outlined(CHORDS_PX);
     (OUTLINED_SILENTLY..1.0).contains(&share).then(|| {
         format!(
             "{:.0} % of the light goes round filled shapes: --mode centreline draws their middle instead",

@@ -2,6 +2,9 @@
 
 use crate::mask::{Cell, Mask};
 
+/// Half widths beyond this are all one: no pen has them, px.
+pub(crate) const WIDEST_RADIUS: f64 = 400.0;
+
 /// Distance from an ink pixel's centre to the nearest paper pixel's centre, px, exact up to `most`; `most` where
 /// there is none nearer. Beyond the image is paper.
 ///

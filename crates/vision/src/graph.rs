@@ -2,7 +2,7 @@
 
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
-use crate::distance::to_paper;
+use crate::distance::{WIDEST_RADIUS, to_paper};
 use crate::mask::{Cell, Mask, Neighbours};
 use crate::region::Region;
 use crate::ridge::median;
@@ -118,8 +118,6 @@ impl<'a> Skeleton<'a> {
     }
 }
 
-/// Half widths beyond this are all one: no pen has them, px.
-const WIDEST_RADIUS: f64 = 400.0;
 /// Radii are measured this share of one apart.
 const APART: f64 = 3.0;
 

@@ -99,6 +99,10 @@ struct Bounds {
 /// A pen thinner than this is as wide as a pixel's blur, so that edges are compared with this much.
 const LEAST_PEN_PX: f64 = 2.0;
 
+/// Of [`Figure::Clipped`] and of [`Figure::Tone`], up to here it is good, %.
+pub(crate) const GOOD_CLIPPED_PERCENT: f64 = 10.0;
+pub(crate) const GOOD_TONE_PERCENT: f64 = 0.3;
+
 /// What is good, what is weak, what is refused.
 ///
 /// Measured on 72 clean drawings of 640 × 480 px from `bench/strokes` (all kinds but filled shapes), spoilt step by
@@ -167,7 +171,7 @@ const BOUNDS: [Bounds; 9] = [
     Bounds {
         figure: Figure::Clipped,
         bad: Bad::Above,
-        good: 10.0,
+        good: GOOD_CLIPPED_PERCENT,
         refused: None,
         words: ("burnt or black spots cover", " %"),
         advice: "expose for the paper, and avoid reflections",
@@ -183,7 +187,7 @@ const BOUNDS: [Bounds; 9] = [
     Bounds {
         figure: Figure::Tone,
         bad: Bad::Above,
-        good: 0.3,
+        good: GOOD_TONE_PERCENT,
         refused: None,
         words: ("what is neither paper nor ink covers", " %"),
         advice: "is this a photograph, or more than a drawing? Crop it to the drawing",

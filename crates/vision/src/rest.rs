@@ -8,7 +8,7 @@ use tracelight_stroke::{Point, polyline_length};
 
 use crate::bridge::inked_towards;
 use crate::centreline::{self, Row};
-use crate::distance::to_paper;
+use crate::distance::{WIDEST_RADIUS, to_paper};
 use crate::mask::Mask;
 use crate::missed;
 use crate::near::Near;
@@ -20,8 +20,6 @@ use crate::ridge::median;
 /// A row's own ink reaches so far from it, in half widths of its ink there, or of its pen, and px of blur.
 const OWN_RADII: f64 = 1.2;
 const OWN_PX: f64 = 0.5;
-/// Half widths beyond this are all one: no pen has them, px.
-const WIDEST_RADIUS: f64 = 400.0;
 /// What is thinner than this share of the pen is the edge of a row's ink.
 const SLIVER_PENS: f64 = 0.5;
 /// What covers less of what no row follows than this share of the pen squared is a blot's.

@@ -4,27 +4,25 @@
 //! photograph of something else has all the shades between, and what is cut out of it by a threshold has no lines but
 //! outlines. Neither says it alone: a sheet of notes has a shadow, a silhouette has nothing but an outline.
 
-use tracelight_stroke::{Drawing, Stroke, StrokeKind};
+use tracelight_stroke::Drawing;
 
 use crate::VisionError;
 use crate::ink::{Ink, histogram, sampled_blocks};
 use crate::light::percentile;
 use crate::mask::Mask;
 use crate::paler::clear;
+use crate::quality::{GOOD_CLIPPED_PERCENT, GOOD_TONE_PERCENT};
 
-/// Most of a drawing of lines that may be neither paper nor ink, %, and of one of shapes alone. Of 384 drawings of 25
+/// Most of a drawing of lines that may be neither paper nor ink, %; what is good is never refused. Of 384 drawings of 25
 /// collections (scans, photographs of paper and whiteboards, clip art) one has more, and of 25 photographs of paper with a table
 /// or a finger beside it four; of 626 photographs and screenshots of other things 452 have, or are refused for other reasons.
 const MOST_OF_LINES: f64 = 2.5;
-const LEAST_BOUND: f64 = 0.3;
 /// How quickly the bound falls with the share of the light that goes round shapes.
 const FALL: f64 = 2.0;
 /// Paper is less dark than this share of the ink, and than so many deviations of the picture's noise, as far as that is noise.
 const PAPER_SHARE: f64 = 0.2;
 const DEVIATIONS: f64 = 3.0;
 const MOST_NOISE: f64 = 8.0;
-/// Where burnt or black spots cover more than this, %, paper and ink are not all there is of a drawing either.
-const MOST_CLIPPED: f64 = 10.0;
 /// Chords this close to a path measure its length, px.
 const CHORDS_PX: f64 = 0.5;
 /// Most pixels that are looked at.
@@ -34,7 +32,8 @@ impl Ink {
     /// Share of the picture that is neither paper nor ink, nor the edge between the two, nor thin, %; `mask` is what is ink. 0 where
     /// spots are burnt.
     pub(crate) fn tone_percent(&self, mask: &Mask) -> f64 {
-        if self.quality.clipped_percent > MOST_CLIPPED {
+        // under such spots paper and ink are not all there is of a drawing either
+        if self.quality.clipped_percent > GOOD_CLIPPED_PERCENT {
             return 0.0;
         }
         let reach = self.edge_px().unwrap_or(1.0).clamp(1.0, 8.0).ceil() as usize + 1;
@@ -57,11 +56,8 @@ impl Ink {
 
 /// Refuses what is no drawing: of which too much is neither paper nor ink.
 pub(crate) fn check(tone_percent: f64, strokes: &Drawing) -> Result<(), VisionError> {
-    let length = |stroke: &Stroke| stroke.path.length(CHORDS_PX);
-    let all: f64 = strokes.strokes.iter().map(length).sum();
-    let outlines = strokes.strokes.iter().filter(|stroke| stroke.kind == StrokeKind::Outline);
-    let outlined = outlines.map(length).sum::<f64>() / all.max(1e-9);
-    let most_percent = (MOST_OF_LINES * (-FALL * outlined).exp()).max(LEAST_BOUND);
+    let outlined = strokes.outlined(CHORDS_PX);
+    let most_percent = (MOST_OF_LINES * (-FALL * outlined).exp()).max(GOOD_TONE_PERCENT);
     match tone_percent > most_percent {
         true => {
             Err(VisionError::NoDrawing { tone_percent, most_percent, outlined_percent: 100.0 * outlined })

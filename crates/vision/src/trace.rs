@@ -154,8 +154,8 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
 /// Finds the strokes of a page, in the pixel frame of the whole image.
 ///
 /// # Errors
-/// When the page has no ink, no contrast, nothing but noise, looks like no drawing, or (sweep) is no single closed figure; when an option is
-/// out of its bounds, or leaves nothing.
+/// When the page has no ink, no contrast, nothing but noise, looks like no drawing, or (sweep) is no single closed
+/// figure; when an option is out of its bounds, or leaves nothing.
 pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionError> {
     options.check()?;
     let ink = Ink::of(page, options.threshold_percent, options.sheets)?;
