@@ -105,7 +105,6 @@ impl Mask {
     }
 
     /// Number of ink pixels.
-    #[cfg(test)]
     pub(crate) fn count(&self) -> usize {
         self.words.iter().map(|w| w.count_ones() as usize).sum()
     }

@@ -41,13 +41,15 @@ pub(crate) fn with_rest(dark: &Plane<u8>, patches: &[&Region], mut rows: Vec<Row
             patch.fill_into(&mut ink);
         }
     }
-    if ink.is_empty() {
+    let seeds = ink.clone().without(&near);
+    let least = LEAST_PENS * pen * pen;
+    if (seeds.count() as f64) < least.max(1.0) {
         return rows;
     }
     let own = painted(dark, &rows, |row, at| own_reach(&ink, row, at));
-    let lost = ink.clone().without(&near).without(&own);
+    let lost = seeds.without(&own);
     let rest = ink.clone().without(&own).opened(((SLIVER_PENS * pen) as usize).max(2));
-    let is_left = |region: &Region| region.cells(&lost).count() as f64 >= LEAST_PENS * pen * pen;
+    let is_left = |region: &Region| region.cells(&lost).count() as f64 >= least;
     let left: Vec<Region> = regions(&rest).into_iter().filter(is_left).collect();
     if left.is_empty() {
         return rows;
