@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use tracelight_aim::{Placement, SizeRequest};
 use tracelight_formats::{Reading, svg};
-use tracelight_stroke::{Affine, Drawing, Point, Stroke, StrokeKind, Vec2};
+use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 use tracelight_vision::{Comb, Quality, Traced, VisionError};
 
 use crate::cli::choosing::ChoiceArgs;
