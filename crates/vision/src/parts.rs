@@ -4,8 +4,11 @@
 //! for its own width is a line, and its middle is meant. A patch can hold both: a drawing of lines with hair filled in,
 //! a disc with a stick that ends on its outline.
 
+use std::cell::OnceCell;
+
 use crate::graph::{Graph, Skeleton};
 use crate::mask::Mask;
+use crate::plane::Plane;
 use crate::prune;
 use crate::reading::{Reading, pen_of};
 use crate::region::{Region, regions};
@@ -53,12 +56,13 @@ impl Parts {
     }
 
     /// Each part by its width.
-    pub(crate) fn of(mask: &Mask, patches: Vec<Region>, keep_dust: bool) -> Self {
+    pub(crate) fn of(dark: &Plane<u8>, mask: &Mask, patches: Vec<Region>, keep_dust: bool) -> Self {
         let mut patches: Vec<Patch> = graphs(mask, patches).into_iter().map(Patch::new).collect();
         let pen = usual_pen(&patches);
         let pens = Pens::of(&patches);
         patches.iter_mut().for_each(|patch| patch.reading.is_drawn |= pens.drew(patch));
-        let (patches, dust) = if keep_dust { (patches, Vec::new()) } else { dusted(mask, patches, pen) };
+        let (patches, dust) =
+            if keep_dust { (patches, Vec::new()) } else { dusted(dark, mask, patches, pen) };
         let mut sorter = Sorter { pen, lines: Vec::new(), shape_mask: Mask::empty(mask.width, mask.height) };
         sorter.sort(patches);
         let Sorter { lines, shape_mask, .. } = sorter;
@@ -144,9 +148,24 @@ const HAIR_LONG: f64 = 1.6;
 /// A speck this near to a line, pen widths, and not much smaller than the pen, squared, belongs to it: the dot of an i.
 const BELONGS_PENS: f64 = 4.0;
 const LEAST_DOT_PENS: f64 = 0.4;
+/// Narrow ones are believed only where half of their pixels have this share of the darkness of half of the lines': hairs
+/// and grit are paler, an eye is drawn with the same pen.
+const AS_DARK: f64 = 0.75;
+
+/// The level that half of some pixels reach.
+fn middle_level(dark: &Plane<u8>, places: impl Iterator<Item = (usize, usize)>) -> u8 {
+    let mut counts = [0_usize; 256];
+    places.for_each(|(x, y)| counts[usize::from(dark.row(y)[x])] += 1);
+    let mut left = counts.iter().sum::<usize>().div_ceil(2);
+    let reached = |level: &u8| {
+        left = left.saturating_sub(counts[usize::from(*level)]);
+        left == 0
+    };
+    (0..=255).rev().find(reached).unwrap_or(0)
+}
 
 /// The patches without the specks that lie by themselves, and those.
-fn dusted(mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<Patch>, Vec<Region>) {
+fn dusted(dark: &Plane<u8>, mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<Patch>, Vec<Region>) {
     let speck = |patch: &Patch| {
         let (width, height) = patch.region.extent();
         let is_hair = patch.reading.widest < HAIR_PENS * pen && (width.max(height) as f64) < HAIR_LONG * pen;
@@ -158,10 +177,15 @@ fn dusted(mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<Patch>, Vec<Region
         return (patches, Vec::new());
     }
     let reach = (BELONGS_PENS * pen).max(SPECK_PX) as usize;
+    let usual = OnceCell::new();
+    let is_dark = |region: &Region| {
+        let drawn = usual.get_or_init(|| middle_level(dark, drawn.cells().map(|cell| drawn.place(cell))));
+        f64::from(middle_level(dark, region.places())) >= AS_DARK * f64::from(*drawn)
+    };
     let dot = |patch: &Patch| {
-        let is_round = patch.reading.widest >= HAIR_PENS * pen;
         let is_large = patch.region.area() as f64 >= LEAST_DOT_PENS * pen * pen;
-        is_round && is_large && patch.region.is_near(&drawn, reach)
+        let is_round = patch.reading.widest >= HAIR_PENS * pen;
+        is_large && patch.region.is_near(&drawn, reach) && (is_round || is_dark(&patch.region))
     };
     let (kept, dust): (Vec<_>, Vec<_>) = patches.into_iter().partition(|patch| !speck(patch) || dot(patch));
     (kept, dust.into_iter().map(|patch| patch.region).collect())

@@ -308,7 +308,7 @@ fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Opti
     let dark = &ink.darkness;
     let parts = match options.mode {
         Mode::Centreline => Parts::all_lines(mask, regions),
-        _ => Parts::of(mask, regions, options.despeckle_px2.is_some()),
+        _ => Parts::of(dark, mask, regions, options.despeckle_px2.is_some()),
     };
     let mut strokes = outlines(ink, &parts.shape_mask, mask, &parts.shapes, options);
     let rows: Vec<Row> = parts

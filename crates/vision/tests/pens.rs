@@ -50,3 +50,35 @@ fn a_line_that_swells_is_followed_from_end_to_end() {
         assert!(comparison.coverage > 0.985 && comparison.rms < 0.4, "pen {number}: {comparison:?}");
     }
 }
+
+/// A face's ring with two eyes, which are longer than wide and narrower than the pen, and with grit as large but paler.
+#[test]
+fn an_eye_narrower_than_the_pen_is_drawn_and_grit_is_not() {
+    let (pen, width) = (14.0, 600);
+    let ring: Vec<Point> =
+        (0..=180).map(|k| f64::from(k).to_radians() * 2.0).map(|a| ring_at(a, 110.0)).collect();
+    let eye = |x: f64| vec![Point::new(x, 190.0), Point::new(x, 200.0)];
+    for narrow in [0.5, 0.55] {
+        let mut canvas = Canvas::new(width, 440);
+        canvas.pen(&ring, pen);
+        [270.0, 330.0].into_iter().for_each(|x| canvas.pen(&eye(x), narrow * pen));
+        let mut grit = Canvas::new(width, 440);
+        [280.0, 310.0]
+            .into_iter()
+            .for_each(|x| grit.pen(&[Point::new(x, 260.0), Point::new(x, 270.0)], narrow * pen));
+        let drawn = canvas.shares().zip(grit.shares());
+        let levels: Vec<u8> = drawn.map(|(ink, grit)| (245.0 - 215.0 * ink - 130.0 * grit) as u8).collect();
+        let found = trace(&Grey::new(width, 440, levels).unwrap(), &Options::default()).unwrap();
+        assert_eq!(found.strokes.strokes.len(), 3, "eyes of {narrow} pens");
+        assert_eq!(found.left_out.specks, 2, "eyes of {narrow} pens");
+        let eyes = found.strokes.strokes.iter().filter(|s| !s.path.is_closed());
+        eyes.for_each(|eye| {
+            let end = eye.path.end();
+            assert!((180.0..210.0).contains(&end.y), "an eye ends at {end}");
+        });
+    }
+}
+
+fn ring_at(angle: f64, radius: f64) -> Point {
+    Point::new(300.0 + radius * angle.cos(), 220.0 + radius * angle.sin())
+}
