@@ -131,15 +131,16 @@ impl Plane<u8> {
     pub(crate) fn reduced(&self, k: usize) -> Self {
         let (width, height) = (self.width / k, self.height / k);
         let mut plane = Self::filled(width, height, 0);
-        let mut sums = vec![0u32; width];
+        let area = (k * k) as u32;
+        let mut columns = vec![0u32; width * k];
         for y in 0..height {
-            sums.fill(0);
+            // column by column first, many at once
+            columns.fill(0);
             for row in (y * k..(y + 1) * k).map(|y| self.row(y)) {
-                let blocks = sums.iter_mut().zip(row.chunks_exact(k));
-                blocks.for_each(|(sum, block)| *sum += block.iter().map(|&v| u32::from(v)).sum::<u32>());
+                columns.iter_mut().zip(row).for_each(|(sum, &v)| *sum += u32::from(v));
             }
-            let area = (k * k) as u32;
-            plane.row_mut(y).iter_mut().zip(&sums).for_each(|(v, sum)| *v = ((sum + area / 2) / area) as u8);
+            let sums = columns.chunks_exact(k).map(|block| block.iter().sum::<u32>());
+            plane.row_mut(y).iter_mut().zip(sums).for_each(|(v, sum)| *v = ((sum + area / 2) / area) as u8);
         }
         plane
     }

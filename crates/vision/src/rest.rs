@@ -26,6 +26,9 @@ const SLIVER_PENS: f64 = 0.5;
 const LEAST_PENS: f64 = 0.5;
 /// What is shorter than this, in its own pens, from the row that it touches to its end, is a blot's.
 const SHORT_PENS: f64 = 1.5;
+/// A row is painted from point to point as far apart as this share of the reach at least: round the tightest bend that moves
+/// its edge by a hundredth of it.
+const STRIDE: f64 = 0.3;
 /// From further off, pens, nothing is carried on to a row, however wide its ink is there.
 const TIED_PENS: f64 = 5.0;
 
@@ -151,9 +154,17 @@ fn painted(like: &Plane<u8>, rows: &[Row], reach: impl Fn(&Row, Point) -> f64) -
     let mut mask = Mask::empty(like.width, like.height);
     for row in rows {
         let first: Option<&Point> = row.points.first().filter(|_| row.closed || row.points.len() == 1);
-        let points: Vec<(Point, f64)> =
-            row.points.iter().chain(first).map(|&at| (at, reach(row, at))).collect();
-        points.windows(2).for_each(|w| missed::paint(&mut mask, w[0].0, w[1].0, w[0].1.max(w[1].1)));
+        let mut points = row.points.iter().chain(first).map(|&at| (at, reach(row, at))).peekable();
+        let Some(mut from) = points.next() else { continue };
+        while let Some(at) = points.next() {
+            // of points that are close for their reach some are enough
+            let is_close = at.1 == from.1 && at.0.distance(from.0) < STRIDE * at.1;
+            if is_close && points.peek().is_some_and(|next| next.1 == at.1) {
+                continue;
+            }
+            missed::paint(&mut mask, from.0, at.0, from.1.max(at.1));
+            from = at;
+        }
     }
     mask
 }

@@ -26,7 +26,7 @@ const MOST_NOISE: f64 = 8.0;
 /// Chords this close to a path measure its length, px.
 const CHORDS_PX: f64 = 0.5;
 /// Most pixels that are looked at.
-const SAMPLED: usize = 250_000;
+const SAMPLED: usize = 100_000;
 
 impl Ink {
     /// Share of the picture that is neither paper nor ink, nor the edge between the two, nor thin, %; `mask` is what is ink. 0 where
@@ -45,9 +45,9 @@ impl Ink {
         let levels = histogram(clear_eights());
         let strength = 2.55 * self.quality.contrast_percent;
         let noise = DEVIATIONS * self.quality.noise_levels.min(MOST_NOISE);
-        let most = percentile(&levels, 0.5) + (PAPER_SHARE * strength).max(noise);
+        let most = (percentile(&levels, 0.5) + (PAPER_SHARE * strength).max(noise)) as u8;
         // four in a row: the dots of dotted paper, or a pale line, are no tone
-        let is_tone = |four: &&[u8]| four.iter().all(|&level| f64::from(level) > most);
+        let is_tone = |four: &&[u8]| four.iter().all(|&level| level > most);
         let fours = clear_eights().flat_map(|eight| eight.chunks(4));
         let tones: usize = fours.filter(is_tone).map(<[u8]>::len).sum();
         100.0 * tones as f64 / all.max(1) as f64

@@ -119,9 +119,11 @@ fn least_of(mut values: Vec<f32>, count: usize) -> Vec<f32> {
     let mut covered = 1;
     while covered < count {
         let step = covered.min(count - covered);
-        for i in 0..values.len() - step {
-            values[i] = values[i].min(values[i + step]);
-        }
+        // into new ones, many at once; the last few have nothing behind them
+        let mut least: Vec<f32> =
+            values.iter().zip(&values[step..]).map(|(&a, &b)| if b < a { b } else { a }).collect();
+        least.extend_from_slice(&values[values.len() - step..]);
+        values = least;
         covered += step;
     }
     values

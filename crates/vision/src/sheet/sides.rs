@@ -36,13 +36,13 @@ impl Side {
 
 /// The sides along steps of one kind, the longest first; rows are `width` px long.
 pub(super) fn of(rows: &[Vec<Step>], width: usize, rises: bool) -> Vec<Side> {
-    let mut points = in_chains(rows, rises);
+    let mut points: Vec<Voter> = in_chains(rows, rises).iter().flat_map(|chain| voters(chain)).collect();
     let least = (LEAST_SEEN * rows.len() as f64).max(8.0);
     if (points.len() as f64) < least {
         return Vec::new();
     }
     let mut votes = Votes::new(width, rows.len());
-    points.iter().for_each(|point| votes.add(*point, 1));
+    points.iter().for_each(|point| votes.add(point, 1));
     let mut sides = Vec::new();
     while sides.len() < MOST && points.len() as f64 >= least {
         let (count, line) = votes.strongest();
@@ -53,7 +53,7 @@ pub(super) fn of(rows: &[Vec<Step>], width: usize, rises: bool) -> Vec<Side> {
         if (side.seen(0..rows.len()) as f64) < least {
             break;
         }
-        on.iter().for_each(|point| votes.add(*point, -1));
+        on.iter().for_each(|point| votes.add(point, -1));
         sides.push(side);
         points = rest;
     }
@@ -61,7 +61,7 @@ pub(super) fn of(rows: &[Vec<Step>], width: usize, rises: bool) -> Vec<Side> {
 }
 
 /// Steps of one kind that go on from row to row, as places; what is shorter is no side.
-fn in_chains(rows: &[Vec<Step>], rises: bool) -> Vec<(f64, f64)> {
+fn in_chains(rows: &[Vec<Step>], rises: bool) -> Vec<Vec<(f64, f64)>> {
     /// From row to row a step moves by less, px.
     const NEXT: f32 = 2.2;
     /// Rows in a chain.
@@ -85,7 +85,29 @@ fn in_chains(rows: &[Vec<Step>], rises: bool) -> Vec<(f64, f64)> {
         }
         open = [here, std::mem::take(&mut open[0])];
     }
-    chains.into_iter().filter(|chain| chain.len() >= LEAST).flatten().collect()
+    chains.retain(|chain| chain.len() >= LEAST);
+    chains
+}
+
+/// A step, and between which slopes the lines are that it may lie on.
+#[derive(Clone, Copy, Debug)]
+struct Voter {
+    at: (f64, f64),
+    slopes: (f64, f64),
+}
+
+/// The steps of a chain: with those before and behind it each lies on lines about as steep as they are.
+fn voters(chain: &[(f64, f64)]) -> impl Iterator<Item = Voter> {
+    /// Steps that are taken together.
+    const TOGETHER: usize = 16;
+    let pieces = chain.len().div_ceil(TOGETHER);
+    let piece = move |k: usize| &chain[k * chain.len() / pieces..(k + 1) * chain.len() / pieces];
+    (0..pieces).map(piece).flat_map(|piece| {
+        let (first, last) = (piece[0], piece[piece.len() - 1]);
+        let rows = (last.1 - first.1).max(1.0);
+        let (slope, reach) = ((last.0 - first.0) / rows, 4.0 * NEAR / rows);
+        piece.iter().map(move |&at| Voter { at, slopes: (slope - reach, slope + reach) })
+    })
 }
 
 /// How many steps lie on each line (Hough, "Method and means for recognizing complex patterns", 1962).
@@ -112,12 +134,15 @@ impl Votes {
         STEEPEST * (2.0 * number as f64 / (self.slopes - 1) as f64 - 1.0)
     }
 
-    fn add(&mut self, (x, y): (f64, f64), vote: i16) {
+    fn add(&mut self, voter: &Voter, vote: i16) {
+        let (x, y) = voter.at;
+        let number = |slope: f64| 0.5 * (slope / STEEPEST + 1.0) * (self.slopes - 1) as f64;
+        let first = number(voter.slopes.0).floor().max(0.0) as usize;
+        let last = (number(voter.slopes.1).ceil().max(0.0) as usize).min(self.slopes - 1);
         let from_middle = ((y - self.middle) / Self::CELL) as f32;
-        let (first, last) = (self.slope(0) as f32, self.slope(self.slopes - 1) as f32);
-        let step = -(last - first) / (self.slopes - 1) as f32 * from_middle;
-        let mut at = (x / Self::CELL) as f32 - first * from_middle;
-        for counts in self.counts.chunks_exact_mut(self.cells) {
+        let step = -(self.slope(1) - self.slope(0)) as f32 * from_middle;
+        let mut at = (x / Self::CELL) as f32 - self.slope(first) as f32 * from_middle;
+        for counts in self.counts.chunks_exact_mut(self.cells).take(last + 1).skip(first) {
             // what lies before the first cell is cut to −0, and must not count as in it
             if let Some(count) = counts.get_mut(at as usize).filter(|_| at >= 0.0) {
                 *count += vote;
@@ -143,16 +168,13 @@ impl Votes {
     }
 }
 
-/// Steps, as places.
-type Places = Vec<(f64, f64)>;
-
 /// The side on a line, moved on to its steps, these, and the others.
-fn taken(points: &[(f64, f64)], line: (f64, f64), rows: usize) -> (Side, Places, Places) {
+fn taken(points: &[Voter], line: (f64, f64), rows: usize) -> (Side, Vec<Voter>, Vec<Voter>) {
     let (mut at, mut slope) = line;
     for near in [2.0 * NEAR, NEAR] {
-        let on = points.iter().filter(|(x, y)| (x - at - slope * y).abs() < near);
+        let on = points.iter().map(|point| point.at).filter(|(x, y)| (x - at - slope * y).abs() < near);
         let (mut n, mut sx, mut sy, mut sxy, mut syy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for &(x, y) in on {
+        for (x, y) in on {
             (n, sx, sy, sxy, syy) = (n + 1.0, sx + x, sy + y, sxy + x * y, syy + y * y);
         }
         let spread = n * syy - sy * sy;
@@ -161,9 +183,10 @@ fn taken(points: &[(f64, f64)], line: (f64, f64), rows: usize) -> (Side, Places,
             at = (sx - slope * sy) / n;
         }
     }
-    let (on, rest): (Places, Places) = points.iter().partition(|(x, y)| (x - at - slope * y).abs() < NEAR);
+    let is_on = |point: &Voter| (point.at.0 - at - slope * point.at.1).abs() < NEAR;
+    let (on, rest): (Vec<Voter>, Vec<Voter>) = points.iter().partition(|point| is_on(point));
     let mut has = vec![0_u32; rows + 1];
-    on.iter().for_each(|&(_, y)| has[y as usize + 1] = 1);
+    on.iter().for_each(|point| has[point.at.1 as usize + 1] = 1);
     (1..=rows).for_each(|y| has[y] += has[y - 1]);
     (Side { at, slope, seen: has }, on, rest)
 }
