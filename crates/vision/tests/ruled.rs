@@ -17,11 +17,14 @@ const WIDTH: usize = 640;
 const HEIGHT: usize = 480;
 
 /// A sheet of rules: how far apart and how wide they are, px, and the tangent of their turn.
+#[derive(Clone, Copy)]
 struct Paper {
     spacing: f64,
     width: f64,
     turn: f64,
     squared: bool,
+    /// Where a rule leads across the others, px from the left at the top.
+    margin: Option<f64>,
 }
 
 impl Paper {
@@ -34,7 +37,10 @@ impl Paper {
             .map(|k| vec![Point::new(-9.0, at(k)), Point::new(w + 9.0, at(k) + self.turn * (w + 18.0))]);
         let upright = (0..count(w) * i32::from(self.squared))
             .map(|k| vec![Point::new(at(k), -9.0), Point::new(at(k) - self.turn * (h + 18.0), h + 9.0)]);
-        level.chain(upright).collect()
+        let margin = self
+            .margin
+            .map(|at| vec![Point::new(at, -9.0), Point::new(at - self.turn * (h + 18.0), h + 9.0)]);
+        level.chain(upright).chain(margin).collect()
     }
 }
 
@@ -68,9 +74,12 @@ fn traced(paper: &Paper, level: f64, figure: &[Vec<Point>]) -> Traced {
 #[test]
 fn rules_of_any_darkness_are_no_strokes_and_what_crosses_them_is_whole() {
     let papers = [
-        Paper { spacing: 24.0, width: 1.6, turn: 0.0, squared: false },
-        Paper { spacing: 31.0, width: 2.4, turn: 0.02, squared: false },
-        Paper { spacing: 22.0, width: 1.5, turn: 0.013, squared: true },
+        Paper { spacing: 24.0, width: 1.6, turn: 0.0, squared: false, margin: None },
+        Paper { spacing: 31.0, width: 2.4, turn: 0.02, squared: false, margin: None },
+        Paper { spacing: 22.0, width: 1.5, turn: 0.013, squared: true, margin: None },
+        // sharp rules, steps of pixels at every fifth column; a margin whose upper end lies under a rule
+        Paper { spacing: 43.0, width: 1.2, turn: 0.05, squared: true, margin: None },
+        Paper { spacing: 33.0, width: 3.0, turn: 0.02, squared: false, margin: Some(52.0) },
     ];
     for paper in &papers {
         for level in [190.0, 140.0, 90.0, 45.0] {
@@ -88,7 +97,7 @@ fn rules_of_any_darkness_are_no_strokes_and_what_crosses_them_is_whole() {
 
 #[test]
 fn what_is_told_of_the_rules_is_so() {
-    let paper = Paper { spacing: 31.0, width: 2.4, turn: 0.02, squared: false };
+    let paper = Paper { spacing: 31.0, width: 2.4, turn: 0.02, squared: false, margin: None };
     let comb = traced(&paper, 120.0, &figure()).rules.unwrap().combs[0];
     let spacing = paper.spacing * paper.turn.atan().cos();
     assert!((comb.spacing_px - spacing).abs() < 0.1, "{comb:?}");
@@ -98,7 +107,7 @@ fn what_is_told_of_the_rules_is_so() {
 
 #[test]
 fn a_drawings_own_parallel_lines_stay() {
-    let none = Paper { spacing: 1e4, width: 0.0, turn: 0.0, squared: false };
+    let none = Paper { spacing: 1e4, width: 0.0, turn: 0.0, squared: false, margin: None };
     let line = |from: (f64, f64), to: (f64, f64)| vec![Point::from(from), Point::from(to)];
     let hatching =
         (0..9).map(|k| line((120.0 + 20.0 * f64::from(k), 90.0), (60.0 + 20.0 * f64::from(k), 390.0)));
@@ -119,5 +128,32 @@ fn a_drawings_own_parallel_lines_stay() {
         let drawn: Vec<_> = found.strokes.strokes.iter().map(|s| s.path.flatten(0.02)).collect();
         let comparison = compare_polylines(&drawn, &lines, 2.0).unwrap();
         assert!(comparison.coverage > 0.99 && comparison.precision > 0.99, "{comparison:?}");
+    }
+}
+
+/// Dots on a lattice are the paper's, also those that lie near lines.
+#[test]
+fn the_dots_of_dotted_paper_are_no_strokes() {
+    for spacing in [24.0, 40.0] {
+        let mut canvas = Canvas::new(WIDTH, HEIGHT);
+        let count = |length: usize| (length as f64 / spacing) as i32;
+        for (k, l) in (0..count(HEIGHT)).flat_map(|k| (0..count(WIDTH)).map(move |l| (k, l))) {
+            let at = Point::new((f64::from(l) + 0.61) * spacing, (f64::from(k) + 0.42) * spacing);
+            canvas.pen(&[at, at], 3.0);
+        }
+        // between the dots
+        let figure: Vec<Vec<Point>> = [4.1, 7.1]
+            .map(|k| {
+                vec![
+                    Point::new(1.1 * spacing, (k + 0.8) * spacing),
+                    Point::new(11.1 * spacing, (k + 0.8) * spacing),
+                ]
+            })
+            .to_vec();
+        figure.iter().for_each(|line| canvas.pen(line, 4.0));
+        let levels = canvas.shares().map(|share| (240.0 - 200.0 * share) as u8).collect();
+        let found = trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap();
+        assert_eq!(found.strokes.strokes.len(), 2, "{spacing} px apart");
+        assert!(found.left_out.specks > 100, "{spacing} px apart");
     }
 }

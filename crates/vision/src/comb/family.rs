@@ -52,8 +52,13 @@ pub(super) struct Family {
 impl Family {
     /// Whether a line that is there halfway along is one of the rules.
     pub(super) fn has(&self, middle: f64) -> bool {
+        self.rules.first().is_some_and(|rule| self.has_at(rule.at.len() / 2, middle))
+    }
+
+    /// Whether a line that crosses a strip there is one of the rules.
+    pub(super) fn has_at(&self, strip: usize, at: f64) -> bool {
         let near = (0.05 * self.spacing).max(2.0);
-        self.rules.iter().any(|rule| (rule.at[rule.at.len() / 2] - middle).abs() <= near)
+        self.rules.iter().any(|rule| (rule.at[strip] - at).abs() <= near)
     }
 
     /// What is told of it; on the plane it is level.

@@ -18,6 +18,7 @@ use template::Template;
 use track::{Track, tracks};
 use wipe::{Levels, wipe};
 
+use crate::mask::Mask;
 use crate::plane::Plane;
 
 /// Rules of paper that were taken out of an image.
@@ -56,8 +57,12 @@ pub struct Comb {
 /// Most families of rules in one direction.
 const MOST_FAMILIES: usize = 3;
 
+/// Widest rule, as a share of the side across it and at least, px.
+const WIDEST_SHARE: usize = 40;
+const LEAST_WIDEST: usize = 6;
+
 /// Shortest side of a picture in which rules are looked for, px.
-const LEAST_SIDE: usize = 96;
+const LEAST_SIDE: usize = 56;
 
 /// A plane of darkness without the rules of its paper, and which they were. `noise` is its pixels' deviation, `strongest` how dark the
 /// strongest ink is. `None` where the paper is plain.
@@ -72,12 +77,28 @@ pub(crate) fn without_rules(dark: &Plane<u8>, noise: f64, strongest: f64) -> Opt
     let [level, upright] = sides.map(Side::of);
     let [level_rules, upright_rules] = families(&level, &upright)?;
     let levels = Levels { noise: noise as f32, ink: strongest as f32 };
+    let mut turned = dark.transposed();
+    let across = upright.printed(&turned, &upright_rules);
     let mut plane = dark.clone();
-    let mut combs = level.taken_out(&mut plane, &level_rules, levels);
-    let mut turned = transposed(&plane);
-    let over = upright.taken_out(&mut turned, &upright_rules, levels);
-    combs.extend(over.into_iter().map(|comb| Comb { upright: true, turned_rad: -comb.turned_rad, ..comb }));
-    (!combs.is_empty()).then(|| (transposed(&turned), Rules { combs }))
+    let along = level.printed(&plane, &level_rules);
+    // where those of the other direction lie
+    let under_upright = across.covered(dark.width, dark.height);
+    let under_level = along.covered(dark.height, dark.width);
+    along.take_off(&mut plane, Some(&under_upright), levels);
+    turned = plane.transposed();
+    across.take_off(&mut turned, None, levels);
+    plane = turned.transposed();
+    // margins and the like: without the rules that cross them they are seen all along, but where they lie under one
+    let bare = Strips::of_level(&plane, noise).with(&level.strips_beside(&level_rules));
+    Side::of(bare).whole_lines_off(&mut plane, &under_upright, levels);
+    let bare = Strips::of_upright(&plane, noise).with(&upright.strips_beside(&upright_rules));
+    turned = plane.transposed();
+    Side::of(bare).whole_lines_off(&mut turned, &under_level, levels);
+    plane = turned.transposed();
+    let mut combs = along.combs;
+    let turn = |comb: Comb| Comb { upright: true, turned_rad: -comb.turned_rad, ..comb };
+    combs.extend(across.combs.into_iter().map(turn));
+    (!combs.is_empty()).then_some((plane, Rules { combs }))
 }
 
 /// The rules of either direction; `None` where there are none at all.
@@ -105,14 +126,10 @@ impl Side {
         Self { strips, tracks }
     }
 
-    /// The lines that lead from border to border.
-    fn whole(&self) -> impl Iterator<Item = &Track> {
-        self.tracks.iter().filter(|track| track.is_whole(&self.strips))
-    }
-
-    /// Where they are.
+    /// Where the lines are that lead from border to border.
     fn margins(&self) -> Vec<f64> {
-        self.whole().map(|track| track.middle(&self.strips)).collect()
+        let whole = self.tracks.iter().filter(|track| track.is_whole(&self.strips, |_, _| false));
+        whole.map(|track| track.middle(&self.strips)).collect()
     }
 
     /// Rules of this direction: those of the page, and those of its back that shine through.
@@ -129,36 +146,109 @@ impl Side {
         found
     }
 
-    /// Takes rules off a plane on which they are level, and the other lines from border to border, as margins have them.
-    fn taken_out(&self, plane: &mut Plane<u8>, families: &[Family], levels: Levels) -> Vec<Comb> {
-        let at: Vec<f64> = self.strips.strips.iter().map(|strip| strip.at).collect();
-        let widest = (plane.height / 40).max(6);
-        let take = |plane: &mut Plane<u8>, rule: &[f64], reach: usize| {
-            let centre = courses(&at, rule, plane.width);
-            let template = Template::of(plane, &centre, reach)?;
-            wipe(plane, &centre, &template, levels);
-            Some(template)
-        };
-        let mut combs = Vec::new();
+    /// The rules of some families as they are printed on a plane on which they are level.
+    fn printed(&self, plane: &Plane<u8>, families: &[Family]) -> Printed {
+        let mut printed = Printed { rules: Vec::new(), cut: Vec::new(), combs: Vec::new() };
         for family in families {
-            let reach = ((0.45 * family.spacing) as usize).clamp(3, widest);
-            let mut templates: Vec<Template> =
-                family.rules.iter().filter_map(|rule| take(plane, &rule.at, reach)).collect();
-            templates.sort_by(|a, b| a.width().total_cmp(&b.width()));
-            let Some(usual) = templates.get(templates.len() / 2) else { continue };
-            combs.push(family.told(usual.width()));
-            for rule in &family.cut {
-                // too little of it is seen to know it by itself
-                let centre = courses(&at, &rule.at, plane.width);
-                wipe(plane, &centre, usual, levels);
-                continue_over(plane, &centre, usual.width());
+            let reach = ((0.45 * family.spacing) as usize).clamp(3, widest(plane));
+            let course = |at: &[f64]| self.course(at, plane.width);
+            let rules: Vec<Rule> =
+                family.rules.iter().filter_map(|rule| Rule::of(plane, course(&rule.at), reach)).collect();
+            let mut by_width: Vec<&Template> = rules.iter().map(|rule| &rule.template).collect();
+            by_width.sort_by(|a, b| a.width().total_cmp(&b.width()));
+            let Some(&usual) = by_width.get(by_width.len() / 2) else { continue };
+            printed.combs.push(family.told(usual.width()));
+            // too little of it is seen to know it by itself
+            let cut = |at: &[f64]| Rule { centre: course(at), template: usual.clone() };
+            printed.cut.extend(family.cut.iter().map(|rule| cut(&rule.at)));
+            printed.rules.extend(rules);
+        }
+        printed
+    }
+
+    /// What crosses the strips beside some families of rules.
+    fn strips_beside(&self, families: &[Family]) -> Strips {
+        self.strips.clone().without(|strip, at| families.iter().any(|family| family.has_at(strip, at)))
+    }
+
+    /// By column, between where it crosses the strips.
+    fn course(&self, at: &[f64], width: usize) -> Vec<f32> {
+        let strips: Vec<f64> = self.strips.strips.iter().map(|strip| strip.at).collect();
+        courses(&strips, at, width)
+    }
+
+    /// Takes the lines from border to border off a plane on which they are level; what is `covered` there was under rules across them.
+    fn whole_lines_off(&self, plane: &mut Plane<u8>, covered: &Mask, levels: Levels) {
+        let reach = widest(plane);
+        let half = strips::wide(plane.width) as isize / 2;
+        let is_blind = |along: f64, at: f64| {
+            let (x, y) = (along.round() as isize, at.round() as isize);
+            (x - half..=x + half).any(|x| covered.get(x, y))
+        };
+        for track in self.tracks.iter().filter(|track| track.is_whole(&self.strips, is_blind)) {
+            let course = self.course(&track.smoothed(&self.strips), plane.width);
+            if let Some(rule) = Rule::of(plane, course, reach) {
+                wipe(plane, &rule.centre, &rule.template, None, levels);
             }
         }
-        let is_new = |track: &&Track| !families.iter().any(|f| f.has(track.middle(&self.strips)));
-        self.whole().filter(is_new).for_each(|track| {
-            take(plane, &track.smoothed(&self.strips), widest);
-        });
-        combs
+    }
+}
+
+/// How far a level rule's darkness may reach, px.
+fn widest(plane: &Plane<u8>) -> usize {
+    (plane.height / WIDEST_SHARE).max(LEAST_WIDEST)
+}
+
+/// One rule as it is printed.
+struct Rule {
+    /// Its middle by column.
+    centre: Vec<f32>,
+    template: Template,
+}
+
+impl Rule {
+    /// About `course`, looked at up to `reach` px away; `None` where there is none.
+    fn of(plane: &Plane<u8>, course: Vec<f32>, reach: usize) -> Option<Self> {
+        let centre = Template::of(plane, &course, reach)?.centred(plane, &course);
+        let template = Template::of(plane, &centre, reach)?;
+        Some(Self { centre, template })
+    }
+}
+
+/// All rules of one direction as they are printed, level.
+struct Printed {
+    rules: Vec<Rule>,
+    /// Those that the border cuts.
+    cut: Vec<Rule>,
+    combs: Vec<Comb>,
+}
+
+impl Printed {
+    /// What they cover of a plane on which they are upright.
+    fn covered(&self, width: usize, height: usize) -> Mask {
+        let mut mask = Mask::empty(width, height);
+        for rule in self.rules.iter().chain(&self.cut) {
+            for (y, &at) in rule.centre.iter().enumerate().take(height) {
+                let column = |x: f32| x.clamp(0.0, width as f32) as usize;
+                let (from, to) =
+                    (column(at - rule.template.before - 1.0), column(at + rule.template.behind + 2.0));
+                if to > from {
+                    mask.fill(y, from, to);
+                }
+            }
+        }
+        mask
+    }
+
+    /// Takes them off a plane; what is `covered` there by rules across them is not drawn.
+    fn take_off(&self, plane: &mut Plane<u8>, covered: Option<&Mask>, levels: Levels) {
+        for rule in &self.rules {
+            wipe(plane, &rule.centre, &rule.template, covered, levels);
+        }
+        for rule in &self.cut {
+            wipe(plane, &rule.centre, &rule.template, covered, levels);
+            continue_over(plane, &rule.centre, rule.template.width());
+        }
     }
 }
 
@@ -177,32 +267,24 @@ fn continue_over(plane: &mut Plane<u8>, centre: &[f32], width: f64) {
     }
 }
 
-/// Between places where it is known, and beyond them, by column.
+/// Between places where it is known, by column; beyond them as the nearest few lead.
 fn courses(at: &[f64], values: &[f64], width: usize) -> Vec<f32> {
+    /// Two places beside each other would tell a course from too near.
+    const FEW: usize = 4;
+    let last = at.len() - 1;
     let mut k = 0;
     let value = |x: usize| {
         let x = x as f64;
         while k + 2 < at.len() && x > at[k + 1] {
             k += 1;
         }
-        let share = (x - at[k]) / (at[k + 1] - at[k]);
-        (values[k] + (values[k + 1] - values[k]) * share) as f32
+        let (from, to, known) = match x {
+            x if x < at[0] => (0, FEW.min(last), 0),
+            x if x > at[last] => (last.saturating_sub(FEW), last, last),
+            _ => (k, k + 1, k),
+        };
+        let slope = (values[to] - values[from]) / (at[to] - at[from]);
+        (values[known] + slope * (x - at[known])) as f32
     };
     (0..width).map(value).collect()
-}
-
-/// Rows and columns exchanged.
-fn transposed(plane: &Plane<u8>) -> Plane<u8> {
-    const BLOCK: usize = 32;
-    let mut out = Plane::filled(plane.height, plane.width, 0);
-    for top in (0..plane.height).step_by(BLOCK) {
-        for left in (0..plane.width).step_by(BLOCK) {
-            for y in top..(top + BLOCK).min(plane.height) {
-                for x in left..(left + BLOCK).min(plane.width) {
-                    out.values[x * plane.height + y] = plane.values[y * plane.width + x];
-                }
-            }
-        }
-    }
-    out
 }

@@ -8,8 +8,10 @@ pub(super) struct Run {
     pub(super) right: f32,
     /// Its most darkness.
     pub(super) peak: f32,
-    /// By how much it moves to the right a row down.
+    /// By how much it moves to the right a row towards the rule.
     pub(super) slope: f32,
+    /// By how much it gets narrower a row towards the rule, as a bow that touches it does.
+    pub(super) narrows: f32,
 }
 
 /// A width differs from another by no more than this, as a ratio, and so many px, where both are of one stroke.
@@ -17,6 +19,8 @@ const AS_WIDE: f32 = 1.6;
 const AS_WIDE_PX: f32 = 1.5;
 /// Steepest course along a row that can be told, px a row: 9° from the row.
 const FLATTEST: f32 = 6.5;
+/// Stretches of two rows hang together if they are no further apart, px.
+const TOUCHING_PX: f32 = 1.5;
 
 impl Run {
     pub(super) fn middle(&self) -> f32 {
@@ -48,6 +52,17 @@ impl Run {
         if let Some(run) = nearest {
             self.slope = (self.middle() - run.middle()) / apart;
         }
+        let beside = far.iter().filter(|run| gap(run) <= reach.min(TOUCHING_PX));
+        let (left, right) =
+            beside.fold((self.left, self.right), |(l, r), run| (l.min(run.left), r.max(run.right)));
+        let wider = (right - left - self.width() - (self.slope * apart).abs()).max(0.0);
+        self.narrows = wider / apart;
+    }
+
+    /// What is left of it so many rows further on, in the rule; the other way round where that is nothing.
+    pub(super) fn carried(&self, rows: f32) -> Run {
+        let (moved, narrower) = (self.slope * rows, 0.5 * self.narrows * rows);
+        Run { left: self.left + moved + narrower, right: self.right + moved - narrower, ..self.clone() }
     }
 }
 
@@ -86,7 +101,7 @@ fn split(row: &[f32], stretch: std::ops::Range<usize>, paper: f32, found: &mut V
         };
         let left = first as f32 - edge(first, first.checked_sub(1).and_then(|k| row.get(k)));
         let right = last as f32 + edge(last, row.get(last + 1));
-        found.push(Run { left, right, peak, slope: 0.0 });
+        found.push(Run { left, right, peak, slope: 0.0, narrows: 0.0 });
         x += len;
     }
 }
@@ -123,7 +138,7 @@ pub(super) fn pairs(upper: &[Run], lower: &[Run], height: impl Fn(f32) -> f32) -
 /// How far two stretches are from where each leads the other, as a share of what is allowed.
 fn misfit(above: &Run, below: &Run, height: f32) -> f32 {
     let down = above.shifted(above.slope * height);
-    let up = below.shifted(-below.slope * height);
+    let up = below.shifted(below.slope * height);
     // a narrow one may meet a wide one anywhere
     let off = |moved: &Run, other: &Run| {
         let free = 0.5 * (moved.width() - other.width()).abs();

@@ -15,6 +15,9 @@ const LEAST_WIDEST: usize = 5;
 const LEAST_CONTRAST: f64 = 4.0;
 const DEVIATIONS: f64 = 6.0;
 
+/// Lines of one strip nearer than this are one, px.
+const SAME_PX: f64 = 3.0;
+
 /// A thin dark line where it crosses a strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Peak {
@@ -87,6 +90,35 @@ impl Strips {
         Self { length, breadth, strips }
     }
 
+    /// With the lines that cross the same strips elsewhere, of two in one place the stronger: where rules were taken off, a line
+    /// across them may be gone as well.
+    pub(super) fn with(mut self, others: &Self) -> Self {
+        for (strip, others) in self.strips.iter_mut().zip(&others.strips) {
+            let mut all: Vec<Peak> = strip.peaks.iter().chain(&others.peaks).copied().collect();
+            all.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
+            strip.peaks.clear();
+            for peak in all {
+                match strip.peaks.last_mut() {
+                    Some(last) if peak.at - last.at < SAME_PX => {
+                        if peak.contrast > last.contrast {
+                            *last = peak;
+                        }
+                    }
+                    _ => strip.peaks.push(peak),
+                }
+            }
+        }
+        self
+    }
+
+    /// Without the lines for which this says so; by strip and place.
+    pub(super) fn without(mut self, is_one: impl Fn(usize, f64) -> bool) -> Self {
+        for (number, strip) in self.strips.iter_mut().enumerate() {
+            strip.peaks.retain(|peak| !is_one(number, peak.at));
+        }
+        self
+    }
+
     /// Whether most strips are crossed by at least so many lines.
     pub(super) fn are_crossed_by(&self, count: usize) -> bool {
         let crossed = self.strips.iter().filter(|strip| strip.peaks.len() >= count).count();
@@ -97,11 +129,16 @@ impl Strips {
 /// As many levels of a byte have room in a sum of two.
 const MOST_SUMMED: usize = 256;
 
+/// Of so many pixels along a rule how many are in one strip.
+pub(super) fn wide(length: usize) -> usize {
+    ((WIDTH * length as f64) as usize).clamp(3, MOST_SUMMED)
+}
+
 /// From where to where each strip reaches.
 fn ranges(length: usize) -> Vec<(usize, usize)> {
-    let wide = ((WIDTH * length as f64) as usize).clamp(3, MOST_SUMMED);
+    let wide = wide(length);
     let inset = (INSET * length as f64) as usize;
-    let inner = |k: usize| (2 * k + 1) * length / (2 * INNER) - wide / 2;
+    let inner = |k: usize| ((2 * k + 1) * length / (2 * INNER)).saturating_sub(wide / 2).min(length - wide);
     let from = std::iter::once(inset).chain((0..INNER).map(inner)).chain([length - inset - wide]);
     from.map(|from| (from, from + wide)).collect()
 }

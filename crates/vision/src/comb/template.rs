@@ -16,6 +16,10 @@ const STRETCHES: usize = 32;
 /// A rule is printed as dark as this along its way, as shares of its usual darkness.
 const LEAST_SHARE: f32 = 0.4;
 const MOST_SHARE: f32 = 1.35;
+/// A rule is looked at for its middle where it is darker than this share of its most.
+const CORE: f32 = 0.15;
+/// A rule's middle is known this well from where it crosses strips, px.
+const MOST_OFF: f32 = 1.0;
 
 /// A rule's darkness by the distance from its middle.
 #[derive(Clone, Debug)]
@@ -109,11 +113,7 @@ impl Template {
 
     /// By how much it is darker or paler than the template in a column.
     pub(super) fn share(&self, x: usize, width: usize) -> f32 {
-        let place = ((x as f32 + 0.5) / width as f32 * STRETCHES as f32 - 0.5)
-            .clamp(0.0, (self.shares.len() - 1) as f32);
-        let (low, part) = (place as usize, place.fract());
-        let high = (low + 1).min(self.shares.len() - 1);
-        self.shares[low] * (1.0 - part) + self.shares[high] * part
+        between(&self.shares, x, width)
     }
 
     fn shares_along(&self, dark: &Plane<u8>, centre: &[f32]) -> Vec<f32> {
@@ -142,6 +142,38 @@ impl Template {
         (0..STRETCHES).map(steadied).collect()
     }
 
+    /// The rule's middle by column as its own levels tell it, stretch by stretch: between strips it may lie a part of a pixel beside
+    /// `centre`, and of a rule as narrow as that a third would be left.
+    pub(super) fn centred(&self, dark: &Plane<u8>, centre: &[f32]) -> Vec<f32> {
+        // the foot of a wide rule is the paper's own shading as well
+        let foot = CORE * self.most;
+        let is_core = |v: &f32| *v > foot;
+        let core = self.levels.iter().position(is_core).zip(self.levels.iter().rposition(is_core));
+        let Some((first, last)) = core else { return centre.to_vec() };
+        let at = |bin: usize| bin as f32 / BINS - self.reach;
+        let core = (first..=last).map(|bin| (at(bin), (self.levels[bin] - foot).max(0.0)));
+        let Some((middle, mass)) = centroid(core) else { return centre.to_vec() };
+        let mass = mass / BINS;
+        let off = |x: usize| {
+            let rows = (centre[x] + at(first) - MOST_OFF).ceil().max(0.0) as usize
+                ..((centre[x] + at(last) + MOST_OFF).floor().max(0.0) as usize + 1).min(dark.height);
+            let over = |y: usize| (f32::from(dark.row(y)[x]) - self.paper - foot).max(0.0);
+            let (at, seen) = centroid(rows.map(|y| (y as f32 - centre[x], over(y))))?;
+            // what is much darker than the rule has ink on it
+            (LEAST_SHARE..MOST_SHARE).contains(&(seen / mass)).then_some(at - middle)
+        };
+        let usual = |k: usize| {
+            let mut offs: Vec<f32> =
+                (k * dark.width / STRETCHES..(k + 1) * dark.width / STRETCHES).filter_map(off).collect();
+            offs.sort_unstable_by(f32::total_cmp);
+            // a few columns may be all under ink
+            let is_known = STRETCHES * offs.len() > dark.width / 4;
+            if is_known { offs[offs.len() / 2].clamp(-MOST_OFF, MOST_OFF) } else { 0.0 }
+        };
+        let offs: Vec<f32> = (0..STRETCHES).map(usual).collect();
+        centre.iter().enumerate().map(|(x, &at)| at + between(&offs, x, centre.len())).collect()
+    }
+
     /// From what is paler than expected: what is darker may be ink.
     fn deviation_along(&self, dark: &Plane<u8>, centre: &[f32], every: usize) -> f32 {
         let mut below: Vec<f32> = Vec::new();
@@ -159,6 +191,20 @@ impl Template {
     }
 }
 
+/// Between the middles of stretches, in a column.
+fn between(stretches: &[f32], x: usize, width: usize) -> f32 {
+    let last = stretches.len() - 1;
+    let place = ((x as f32 + 0.5) / width as f32 * stretches.len() as f32 - 0.5).clamp(0.0, last as f32);
+    let (low, part) = (place as usize, place.fract());
+    stretches[low] * (1.0 - part) + stretches[(low + 1).min(last)] * part
+}
+
+/// The mean place of some weights, and their sum; `None` where that is nothing.
+fn centroid(weights: impl Iterator<Item = (f32, f32)>) -> Option<(f32, f32)> {
+    let (sum, moment) = weights.fold((0.0, 0.0), |(sum, moment), (at, w)| (sum + w, moment + at * w));
+    (sum > 0.0).then(|| (moment / sum, sum))
+}
+
 /// The level below which a share of some is; `None` where they are too few.
 fn quantile(mut levels: Vec<u8>, least: usize) -> Option<f32> {
     if levels.len() <= least {
@@ -168,16 +214,18 @@ fn quantile(mut levels: Vec<u8>, least: usize) -> Option<f32> {
     Some(f32::from(*levels.select_nth_unstable(at).1))
 }
 
-/// Bins without a level between those with one, straight.
-fn bridged(bins: &[Option<f32>]) -> Vec<f32> {
-    let at = |i: usize| {
-        let before = (0..=i).rev().find_map(|k| bins[k].map(|v| (k, v)));
-        let behind = (i..bins.len()).find_map(|k| bins[k].map(|v| (k, v)));
-        match (before, behind) {
-            (Some((a, u)), Some((b, v))) if b > a => u + (v - u) * (i - a) as f32 / (b - a) as f32,
-            (Some((_, v)), _) | (_, Some((_, v))) => v,
-            _ => 0.0,
-        }
-    };
-    (0..bins.len()).map(at).collect()
+/// Places without a level between those with one, straight; 0 where there is none at all.
+pub(super) fn bridged(levels: &[Option<f32>]) -> Vec<f32> {
+    let mut out: Vec<f32> = Vec::with_capacity(levels.len());
+    let mut last: Option<f32> = None;
+    for (i, level) in levels.iter().enumerate() {
+        let Some(level) = *level else { continue };
+        // from the last one that is known, which the first has before it all along
+        let (from, first) = (out.len(), last.unwrap_or(level));
+        let steps = (i + 1 - from) as f32;
+        out.extend((from..=i).map(|k| first + (level - first) * (k + 1 - from) as f32 / steps));
+        last = Some(level);
+    }
+    out.resize(levels.len(), last.unwrap_or(0.0));
+    out
 }

@@ -45,15 +45,20 @@ impl Track {
         mean.1 + slope * (0.5 * strips.length as f64 - mean.0)
     }
 
-    /// Whether it leads from border to border, and as straight as print.
-    pub(super) fn is_whole(&self, strips: &Strips) -> bool {
-        let ends = [self.points.first(), self.points.last()];
-        let reaches = ends.iter().all(|end| matches!(end, Some(Some(_))));
+    /// Whether it leads from border to border, and as straight as print; in strips that are blind there, by places along and across,
+    /// it need not be seen.
+    pub(super) fn is_whole(&self, strips: &Strips, is_blind: impl Fn(f64, f64) -> bool) -> bool {
         let smoothed = self.smoothed(strips);
+        let places = self.points.iter().zip(&strips.strips).zip(&smoothed);
+        let sees = |((point, strip), at): &((&Option<Peak>, &Strip), &f64)| {
+            point.is_some() || !is_blind(strip.at, **at)
+        };
+        let seeing: Vec<Option<Peak>> = places.filter(sees).map(|((point, _), _)| *point).collect();
+        let reaches = [seeing.first(), seeing.last()].iter().all(|end| matches!(end, Some(Some(_))));
         let mut off: Vec<f64> =
             self.points.iter().zip(smoothed).filter_map(|(p, s)| p.map(|p| (p.at - s).abs())).collect();
         off.sort_unstable_by(f64::total_cmp);
-        reaches && self.seen() as f64 >= WHOLE * self.points.len() as f64 && off[off.len() / 2] < STRAIGHT_PX
+        reaches && self.seen() as f64 >= WHOLE * seeing.len() as f64 && off[off.len() / 2] < STRAIGHT_PX
     }
 
     /// Its course by strip, as a parabola.

@@ -5,7 +5,8 @@
 //! and its cross-section is carried from the one to the other.
 
 use super::runs::{Run, pairs, runs};
-use super::template::Template;
+use super::template::{Template, bridged};
+use crate::mask::Mask;
 use crate::plane::Plane;
 
 /// Levels by which ink differs at least from what it lies on.
@@ -29,9 +30,16 @@ pub(super) struct Levels {
     pub(super) ink: f32,
 }
 
-/// Takes a rule off; `centre` is its middle by column.
-pub(super) fn wipe(dark: &mut Plane<u8>, centre: &[f32], template: &Template, levels: Levels) {
-    let band = Band::of(dark, centre, template, levels);
+/// Takes a rule off; `centre` is its middle by column. What lies beside it under what is `covered`, by rules across it, is as it is
+/// on both sides of that.
+pub(super) fn wipe(
+    dark: &mut Plane<u8>,
+    centre: &[f32],
+    template: &Template,
+    covered: Option<&Mask>,
+    levels: Levels,
+) {
+    let band = Band::of(dark, centre, template, covered, levels);
     let filled = band.filled();
     band.write(dark, &filled);
 }
@@ -54,7 +62,13 @@ struct Band<'a> {
 }
 
 impl<'a> Band<'a> {
-    fn of(dark: &Plane<u8>, centre: &'a [f32], template: &'a Template, levels: Levels) -> Self {
+    fn of(
+        dark: &Plane<u8>,
+        centre: &'a [f32],
+        template: &'a Template,
+        covered: Option<&Mask>,
+        levels: Levels,
+    ) -> Self {
         let rows: Vec<(isize, isize)> = centre
             .iter()
             .map(|c| ((c - template.before).ceil() as isize - 1, (c + template.behind).floor() as isize + 1))
@@ -64,9 +78,11 @@ impl<'a> Band<'a> {
             let level = |(x, r): (usize, &(isize, isize))| {
                 let y = pick(r) + off;
                 let inside = (0..dark.height as isize).contains(&y);
-                if inside { f32::from(dark.row(y as usize)[x]) } else { template.paper }
+                let is_covered = covered.is_some_and(|mask| mask.get(x as isize, y));
+                (!is_covered)
+                    .then(|| if inside { f32::from(dark.row(y as usize)[x]) } else { template.paper })
             };
-            rows.iter().enumerate().map(level).collect()
+            bridged(&rows.iter().enumerate().map(level).collect::<Vec<_>>())
         };
         let (above, below) = (row(|r| r.0, 0), row(|r| r.1, 0));
         let margin = LEAST_LEVELS.max(DEVIATIONS * levels.noise);
@@ -111,8 +127,9 @@ impl<'a> Band<'a> {
         let (from, to) = match (upper, lower) {
             (Some(a), Some(b)) if a.is_as_wide_as(b) => (a.clone(), b.clone()),
             (Some(a), Some(b)) if a.width() < b.width() => (a.clone(), a.shifted(a.slope * height)),
-            (Some(_), Some(b)) | (None, Some(b)) => (b.shifted(b.slope * height), b.clone()),
-            (Some(a), None) => (a.clone(), a.shifted(a.slope * height)),
+            (Some(_), Some(b)) => (b.shifted(b.slope * height), b.clone()),
+            (Some(a), None) => (a.clone(), a.carried(height)),
+            (None, Some(b)) => (b.carried(height), b.clone()),
             (None, None) => return,
         };
         let reads = |run: Option<&Run>, row: &[f32], along: f32| {
@@ -129,7 +146,7 @@ impl<'a> Band<'a> {
                     (from.left + (to.left - from.left) * f, from.right + (to.right - from.right) * f);
                 let along = (x as f32 - left) / (right - left).max(0.5);
                 let beyond = (left - x as f32).max(x as f32 - right);
-                if !is_in || beyond > 1.5 {
+                if !is_in || beyond > 1.5 || left > right {
                     continue;
                 }
                 let level = match (reads(upper, &self.above, along), reads(lower, &self.below, along)) {
