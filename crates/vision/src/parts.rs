@@ -148,6 +148,10 @@ const HAIR_LONG: f64 = 1.6;
 /// A speck this near to a line, pen widths, and not much smaller than the pen, squared, belongs to it: the dot of an i.
 const BELONGS_PENS: f64 = 4.0;
 const LEAST_DOT_PENS: f64 = 0.4;
+/// Unless at least so many, and this many times those near lines, lie far from all that are as large but for this ratio.
+const FEWEST_STREWN: usize = 12;
+const STREWN: usize = 2;
+const STREWN_ALIKE: f64 = 1.6;
 /// Narrow ones are believed only where half of their pixels have this share of the darkness of half of the lines': hairs
 /// and grit are paler, an eye is drawn with the same pen.
 const AS_DARK: f64 = 0.75;
@@ -185,10 +189,41 @@ fn dusted(dark: &Plane<u8>, mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<
     let dot = |patch: &Patch| {
         let is_large = patch.region.area() as f64 >= LEAST_DOT_PENS * pen * pen;
         let is_round = patch.reading.widest >= HAIR_PENS * pen;
-        is_large && patch.region.is_near(&drawn, reach) && (is_round || is_dark(&patch.region))
+        is_large && (is_round || is_dark(&patch.region))
     };
-    let (kept, dust): (Vec<_>, Vec<_>) = patches.into_iter().partition(|patch| !speck(patch) || dot(patch));
+    let is_near = |patch: &Patch| patch.region.is_near(&drawn, reach);
+    let (near, far): (Vec<&Patch>, Vec<&Patch>) =
+        patches.iter().filter(|patch| speck(patch)).partition(|patch| is_near(patch));
+    let strewn = Strewn { near: areas(&near), far: areas(&far) };
+    let belongs = |patch: &Patch| dot(patch) && is_near(patch) && !strewn.has(patch.region.area());
+    let (kept, dust): (Vec<_>, Vec<_>) =
+        patches.into_iter().partition(|patch| !speck(patch) || belongs(patch));
     (kept, dust.into_iter().map(|patch| patch.region).collect())
+}
+
+/// The areas of patches, from the least, px².
+fn areas(patches: &[&Patch]) -> Vec<usize> {
+    let mut areas: Vec<usize> = patches.iter().map(|patch| patch.region.area()).collect();
+    areas.sort_unstable();
+    areas
+}
+
+/// The areas of the specks near lines and far from all, from the least.
+struct Strewn {
+    near: Vec<usize>,
+    far: Vec<usize>,
+}
+
+impl Strewn {
+    /// Whether specks about as large lie all over, with lines beside them or not: the dots of dotted paper.
+    fn has(&self, area: usize) -> bool {
+        let alike = |areas: &[usize]| {
+            let under = |bound: f64| areas.partition_point(|&other| (other as f64) < bound);
+            under(STREWN_ALIKE * area as f64) - under(area as f64 / STREWN_ALIKE)
+        };
+        let (near, far) = (alike(&self.near), alike(&self.far));
+        far >= FEWEST_STREWN && far >= STREWN * near
+    }
 }
 
 /// Parts the patches that may hold both kinds.
