@@ -33,6 +33,7 @@ mod comb;
 mod contrast;
 mod distance;
 mod error;
+mod felt;
 mod fiducial;
 mod follow;
 mod gap;

@@ -6,6 +6,7 @@
 
 use std::cell::OnceCell;
 
+use crate::felt;
 use crate::graph::{Graph, Skeleton};
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -37,6 +38,8 @@ const RIM_SHARE: usize = 12;
 /// The ink in two kinds of parts.
 #[derive(Debug)]
 pub(crate) struct Parts {
+    /// All of it: that of the picture, and the slits that a felt pen left in what it filled.
+    pub(crate) ink: Mask,
     /// Patches of lines, each with its skeleton's graph.
     pub(crate) lines: Vec<(Region, Graph)>,
     /// Filled shapes.
@@ -49,24 +52,30 @@ pub(crate) struct Parts {
 
 impl Parts {
     /// Every patch as lines.
-    pub(crate) fn all_lines(mask: &Mask, regions: Vec<Region>) -> Self {
-        let lines = graphs(mask, regions);
-        let shape_mask = Mask::empty(mask.width, mask.height);
-        Self { lines, shapes: Vec::new(), shape_mask, dust: Vec::new() }
+    pub(crate) fn all_lines(ink: Mask, regions: Vec<Region>) -> Self {
+        let lines = graphs(&ink, regions);
+        let shape_mask = Mask::empty(ink.width, ink.height);
+        Self { ink, lines, shapes: Vec::new(), shape_mask, dust: Vec::new() }
     }
 
     /// Each part by its width.
-    pub(crate) fn of(dark: &Plane<u8>, mask: &Mask, patches: Vec<Region>, keep_dust: bool) -> Self {
-        let mut patches: Vec<Patch> = graphs(mask, patches).into_iter().map(Patch::new).collect();
-        let pen = usual_pen(&patches);
+    pub(crate) fn of(dark: &Plane<u8>, mut ink: Mask, patches: Vec<Region>, keep_dust: bool) -> Self {
+        let read = |ink: &Mask, patches| graphs(ink, patches).into_iter().map(Patch::new).collect();
+        let mut patches: Vec<Patch> = read(&ink, patches);
+        let mut pen = usual_pen(&patches);
+        if let Some(filled) = felt::filled(&ink, pen) {
+            ink = filled;
+            patches = read(&ink, regions(&ink));
+            pen = usual_pen(&patches);
+        }
         let pens = Pens::of(&patches);
         patches.iter_mut().for_each(|patch| patch.reading.is_drawn |= pens.drew(patch));
         let (patches, dust) =
-            if keep_dust { (patches, Vec::new()) } else { dusted(dark, mask, patches, pen) };
-        let mut sorter = Sorter { pen, lines: Vec::new(), shape_mask: Mask::empty(mask.width, mask.height) };
+            if keep_dust { (patches, Vec::new()) } else { dusted(dark, &ink, patches, pen) };
+        let mut sorter = Sorter { pen, lines: Vec::new(), shape_mask: Mask::empty(ink.width, ink.height) };
         sorter.sort(patches);
         let Sorter { lines, shape_mask, .. } = sorter;
-        Self { lines, shapes: regions(&shape_mask), shape_mask, dust }
+        Self { ink, lines, shapes: regions(&shape_mask), shape_mask, dust }
     }
 }
 

@@ -170,12 +170,12 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
             only(vec![sweep::stroke(&mask, area)?])
         }
         Mode::Outline => only(outlines(&ink, &mask, &mask, &regions, options)),
-        Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, &mask, regions, options),
+        Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, mask, regions, options),
     };
+    let (width, height) = (ink.darkness.width as f64, ink.darkness.height as f64);
     if strokes.is_empty() {
         return Err(VisionError::NoInk { largest_px, least_px: largest_px + 1 });
     }
-    let (width, height) = (mask.width as f64, mask.height as f64);
     let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
     let strokes = Drawing { strokes };
     tone_percent.map_or(Ok(()), |percent| tone::check(percent, &strokes))?;
@@ -304,12 +304,13 @@ fn outlines(ink: &Ink, filled: &Mask, mask: &Mask, shapes: &[Region], options: &
     shapes.iter().flat_map(|shape| outliner.strokes(shape, options)).collect()
 }
 
-fn lines_and_shapes(ink: &Ink, mask: &Mask, regions: Vec<Region>, options: &Options) -> Found {
+fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Options) -> Found {
     let dark = &ink.darkness;
     let parts = match options.mode {
         Mode::Centreline => Parts::all_lines(mask, regions),
         _ => Parts::of(dark, mask, regions, options.despeckle_px2.is_some()),
     };
+    let mask = &parts.ink;
     let mut strokes = outlines(ink, &parts.shape_mask, mask, &parts.shapes, options);
     let rows: Vec<Row> = parts
         .lines

@@ -7,7 +7,7 @@
 mod raster;
 
 use raster::Canvas;
-use tracelight_stroke::{Comparison, Point, compare_polylines};
+use tracelight_stroke::{Comparison, Point, StrokeKind, Vec2, compare_polylines};
 use tracelight_vision::{Grey, Options, Traced, trace};
 
 /// What is found of dark ink on white paper, and how it compares with what was drawn.
@@ -81,4 +81,40 @@ fn an_eye_narrower_than_the_pen_is_drawn_and_grit_is_not() {
 
 fn ring_at(angle: f64, radius: f64) -> Point {
     Point::new(300.0 + radius * angle.cos(), 220.0 + radius * angle.sin())
+}
+
+/// The ways of a pen to and fro in a disc of 80 px, so many pens from middle to middle, slanted.
+fn scribbled(canvas: &mut Canvas, centre: Point, pen: f64, pitch_pens: f64) {
+    let radius = 80.0_f64;
+    let (way, aside) = (Vec2::from_angle(0.4), Vec2::from_angle(0.4).turn_90());
+    let ways = (2.0 * radius / (pitch_pens * pen)) as i32 + 1;
+    for k in 0..ways {
+        let middle = -radius + (f64::from(k) + 0.5) * pitch_pens * pen;
+        let across: Vec<f64> = (0..=24).map(|i| middle + pen * (f64::from(i) / 24.0 - 0.5)).collect();
+        let edge =
+            |v: f64, side: f64| centre + aside * v + way * (side * (radius * radius - v * v).max(0.0).sqrt());
+        let there = across.iter().map(|&v| edge(v, 1.0));
+        let back = across.iter().rev().map(|&v| edge(v, -1.0));
+        canvas.fill(&[there.chain(back).collect()]);
+    }
+}
+
+#[test]
+fn an_area_that_a_felt_pen_filled_is_one_shape_and_hatching_is_lines() {
+    let pen = 12.0;
+    let line = vec![Point::new(380.0, 60.0), Point::new(560.0, 380.0)];
+    for pitch in [0.9, 1.1, 1.25] {
+        let mut canvas = Canvas::new(600, 440);
+        scribbled(&mut canvas, Point::new(190.0, 220.0), pen, pitch);
+        canvas.pen(&line, pen);
+        let (found, _) = traced(&canvas, 600, std::slice::from_ref(&line));
+        let outlines = found.strokes.strokes.iter().filter(|s| s.kind == StrokeKind::Outline).count();
+        assert_eq!((found.strokes.strokes.len(), outlines), (2, 1), "{pitch} pens apart");
+    }
+    let mut canvas = Canvas::new(600, 440);
+    scribbled(&mut canvas, Point::new(190.0, 220.0), 6.0, 2.0);
+    canvas.pen(&line, 6.0);
+    let (found, _) = traced(&canvas, 600, std::slice::from_ref(&line));
+    let lines = found.strokes.strokes.iter().filter(|s| s.kind == StrokeKind::Centreline).count();
+    assert!(lines >= 12 && lines == found.strokes.strokes.len(), "{lines} lines");
 }

@@ -1,0 +1,46 @@
+//! What a broad pen filled to and fro: areas of ways side by side with slits of paper between them.
+//!
+//! Each way is a line by its width, and nobody means them. Where ways lie so close that less than half a pen's width of paper
+//! shows between them, and many of them do, the area is what was drawn: its slits are ink. Hatching leaves more paper than that.
+
+use crate::mask::Mask;
+use crate::region::regions;
+
+/// Widest slit, pen widths; of slanted ones half as much more.
+const SLIT_PENS: f64 = 0.5;
+/// Of a narrower pen, px, a single pixel of paper may be what parts two lines.
+const LEAST_PX: f64 = 4.0;
+/// Such an area holds a regular octagon of so many pens: four ways at least lie beside each other.
+const ACROSS_PENS: f64 = 4.5;
+/// So much of it is ink, and so much at least is slits.
+const INK_SHARE: f64 = 0.76;
+const LEAST_SLITS: f64 = 0.04;
+/// An area goes beyond the octagons in it by so many pens.
+const RIM_PENS: f64 = 0.5;
+
+/// The ink with the slits of such areas; `None` where there are none. `pen` is the usual width of its lines, px; 0 where that is not
+/// known.
+pub(crate) fn filled(ink: &Mask, pen: f64) -> Option<Mask> {
+    if pen < LEAST_PX {
+        return None;
+    }
+    let slit = (SLIT_PENS * pen).round() as usize;
+    let mut closed = ink.clone().dilated(slit + 1).eroded(slit + 1);
+    closed.add(ink);
+    if closed.count() == ink.count() {
+        return None;
+    }
+    let mut areas = closed.clone().opened((ACROSS_PENS * pen).ceil() as usize);
+    for area in regions(&areas) {
+        let share = area.cells(ink).count() as f64 / area.area() as f64;
+        if !(INK_SHARE..1.0 - LEAST_SLITS).contains(&share) {
+            area.erase_from(&mut areas);
+        }
+    }
+    if areas.is_empty() {
+        return None;
+    }
+    let mut filled = areas.dilated_by((RIM_PENS * pen).ceil() as usize).and(&closed);
+    filled.add(ink);
+    Some(filled)
+}
