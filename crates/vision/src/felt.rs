@@ -4,7 +4,7 @@
 //! shows between them, and many of them do, the area is what was drawn: its slits are ink. Hatching leaves more paper than that.
 
 use crate::mask::Mask;
-use crate::region::regions;
+use crate::region::{Region, regions};
 
 /// Widest slit, pen widths; of slanted ones half as much more.
 const SLIT_PENS: f64 = 0.5;
@@ -15,6 +15,8 @@ const ACROSS_PENS: f64 = 4.5;
 /// So much of it is ink, and so much at least is slits.
 const INK_SHARE: f64 = 0.76;
 const LEAST_SLITS: f64 = 0.04;
+/// A hand that goes to and fro meets its last way here and there: this share of the ink hangs together. Lines side by side do not.
+const TOGETHER: f64 = 0.5;
 /// An area goes beyond the octagons in it by so many pens.
 const RIM_PENS: f64 = 0.5;
 
@@ -31,9 +33,12 @@ pub(crate) fn filled(ink: &Mask, pen: f64) -> Option<Mask> {
         return None;
     }
     let mut areas = closed.clone().opened((ACROSS_PENS * pen).ceil() as usize);
-    for area in regions(&areas) {
-        let share = area.cells(ink).count() as f64 / area.area() as f64;
-        if !(INK_SHARE..1.0 - LEAST_SLITS).contains(&share) {
+    let found = regions(&areas);
+    let inked = Inked::of(&found, regions(&areas.clone().and(ink)));
+    for (area, (all, largest)) in found.iter().zip(inked.0) {
+        let share = all as f64 / area.area() as f64;
+        let is_one = largest as f64 >= TOGETHER * all as f64;
+        if !(is_one && (INK_SHARE..1.0 - LEAST_SLITS).contains(&share)) {
             area.erase_from(&mut areas);
         }
     }
@@ -43,4 +48,29 @@ pub(crate) fn filled(ink: &Mask, pen: f64) -> Option<Mask> {
     let mut filled = areas.dilated_by((RIM_PENS * pen).ceil() as usize).and(&closed);
     filled.add(ink);
     Some(filled)
+}
+
+/// Of each area the pixels of ink in it, and those of the largest piece that hangs together there.
+struct Inked(Vec<(usize, usize)>);
+
+impl Inked {
+    /// `pieces` are all the ink of the areas.
+    fn of(areas: &[Region], pieces: Vec<Region>) -> Self {
+        let numbered = areas.iter().enumerate();
+        let mut runs: Vec<(u32, u32, usize)> =
+            numbered.flat_map(|(k, area)| area.runs.iter().map(move |run| (run.y, run.from, k))).collect();
+        runs.sort_unstable();
+        let mut inked = vec![(0, 0); areas.len()];
+        for piece in pieces {
+            let Some(first) = piece.runs.first() else { continue };
+            // the run that it begins in
+            let behind = runs.partition_point(|&(y, from, _)| (y, from) <= (first.y, first.from));
+            if let Some(&(.., area)) = behind.checked_sub(1).and_then(|k| runs.get(k)) {
+                let (all, largest): &mut (usize, usize) = &mut inked[area];
+                *all += piece.area();
+                *largest = (*largest).max(piece.area());
+            }
+        }
+        Self(inked)
+    }
 }

@@ -22,6 +22,8 @@ const LEAST_INK: f64 = 1e-4;
 /// A line is at least this long, px, and this share of the picture's rows.
 const LEAST_PX: usize = 12;
 const LEAST_ROWS: usize = 40;
+/// A line that leaves the picture has less of its length on the border than this; what lies along it there is the end of the light.
+const ALONG_BORDER: f64 = 0.3;
 /// An edge's foot is this many of its widths from 10 to 90 % away from where it is cut.
 const FOOT: f64 = 0.9;
 /// Most pixels that are looked at.
@@ -73,11 +75,14 @@ pub(crate) fn clear(levels: &[u8], near: u64) -> impl Iterator<Item = &[u8]> {
     eights.filter(|(_, near)| *near == 0).map(|(levels, _)| levels)
 }
 
-/// Whether a patch is long enough for a line, and no shadow that falls into the picture.
+/// Whether a patch is long enough for a line, and neither a shadow that falls into the picture nor what fades towards its border.
 fn is_drawn(region: &Region, solid: &Mask) -> bool {
     let (width, height) = region.extent();
-    let is_shadow = || region.cells(solid).next().is_some() && region.is_at_border(solid);
-    width.max(height) >= LEAST_PX.max(solid.height / LEAST_ROWS) && !is_shadow()
+    let length = width.max(height);
+    let at_border = region.at_border_px(solid);
+    let is_shadow = || at_border > 0 && region.cells(solid).next().is_some();
+    let fades = at_border as f64 > ALONG_BORDER * length as f64;
+    length >= LEAST_PX.max(solid.height / LEAST_ROWS) && !fades && !is_shadow()
 }
 
 #[cfg(test)]

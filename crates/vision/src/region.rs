@@ -57,12 +57,13 @@ impl Region {
         rows || columns
     }
 
-    /// Whether it touches a border of its image.
-    pub(crate) fn is_at_border(&self, mask: &Mask) -> bool {
-        let at_border = |run: &Run| {
-            run.y == 0 || run.y as usize + 1 == mask.height || run.from == 0 || run.to as usize == mask.width
+    /// How many of its pixels are its image's outermost.
+    pub(crate) fn at_border_px(&self, mask: &Mask) -> usize {
+        let at_border = |run: &Run| match run.y == 0 || run.y as usize + 1 == mask.height {
+            true => run.length(),
+            false => usize::from(run.from == 0) + usize::from(run.to as usize == mask.width),
         };
-        self.runs.iter().any(at_border)
+        self.runs.iter().map(at_border).sum()
     }
 
     /// Whether there is ink of `mask` at most `reach` px beyond its bounding box.

@@ -84,7 +84,7 @@ fn ring_at(angle: f64, radius: f64) -> Point {
 }
 
 /// The ways of a pen to and fro in a disc of 80 px, so many pens from middle to middle, slanted.
-fn scribbled(canvas: &mut Canvas, centre: Point, pen: f64, pitch_pens: f64) {
+fn scribbled(canvas: &mut Canvas, centre: Point, pen: f64, pitch_pens: f64, joined: bool) {
     let radius = 80.0_f64;
     let (way, aside) = (Vec2::from_angle(0.4), Vec2::from_angle(0.4).turn_90());
     let ways = (2.0 * radius / (pitch_pens * pen)) as i32 + 1;
@@ -96,6 +96,11 @@ fn scribbled(canvas: &mut Canvas, centre: Point, pen: f64, pitch_pens: f64) {
         let there = across.iter().map(|&v| edge(v, 1.0));
         let back = across.iter().rev().map(|&v| edge(v, -1.0));
         canvas.fill(&[there.chain(back).collect()]);
+        // where the hand turns it meets the last way
+        if joined && k > 0 {
+            let side = if k % 2 == 0 { 0.8 } else { -0.8 };
+            canvas.pen(&[edge(middle - pitch_pens * pen, side), edge(middle, side)], 0.6 * pen);
+        }
     }
 }
 
@@ -105,16 +110,18 @@ fn an_area_that_a_felt_pen_filled_is_one_shape_and_hatching_is_lines() {
     let line = vec![Point::new(380.0, 60.0), Point::new(560.0, 380.0)];
     for pitch in [0.9, 1.1, 1.25] {
         let mut canvas = Canvas::new(600, 440);
-        scribbled(&mut canvas, Point::new(190.0, 220.0), pen, pitch);
+        scribbled(&mut canvas, Point::new(190.0, 220.0), pen, pitch, true);
         canvas.pen(&line, pen);
         let (found, _) = traced(&canvas, 600, std::slice::from_ref(&line));
         let outlines = found.strokes.strokes.iter().filter(|s| s.kind == StrokeKind::Outline).count();
         assert_eq!((found.strokes.strokes.len(), outlines), (2, 1), "{pitch} pens apart");
     }
-    let mut canvas = Canvas::new(600, 440);
-    scribbled(&mut canvas, Point::new(190.0, 220.0), 6.0, 2.0);
-    canvas.pen(&line, 6.0);
-    let (found, _) = traced(&canvas, 600, std::slice::from_ref(&line));
-    let lines = found.strokes.strokes.iter().filter(|s| s.kind == StrokeKind::Centreline).count();
-    assert!(lines >= 12 && lines == found.strokes.strokes.len(), "{lines} lines");
+    for (pen, pitch) in [(6.0, 2.0), (9.0, 1.4)] {
+        let mut canvas = Canvas::new(600, 440);
+        scribbled(&mut canvas, Point::new(190.0, 220.0), pen, pitch, false);
+        canvas.pen(&line, pen);
+        let (found, _) = traced(&canvas, 600, std::slice::from_ref(&line));
+        let lines = found.strokes.strokes.iter().filter(|s| s.kind == StrokeKind::Centreline).count();
+        assert!(lines >= 12 && lines == found.strokes.strokes.len(), "{lines} lines, {pitch} pens apart");
+    }
 }

@@ -20,7 +20,7 @@ const NARROWEST: f64 = 0.25;
 /// Corners of a patch with four straight sides, clockwise as seen, to about half a pixel.
 pub(super) fn of(mask: &Mask, patch: &Region, walked: &mut Mask) -> Option<[Point; 4]> {
     let (width, height) = patch.extent();
-    if (width.min(height) as f64) < LEAST_SIDE_PX || patch.is_at_border(mask) {
+    if (width.min(height) as f64) < LEAST_SIDE_PX || patch.at_border_px(mask) > 0 {
         return None;
     }
     // a ring as thin as the border of a marker has 7/16 of its square; turned by 45°, its box has twice the area
