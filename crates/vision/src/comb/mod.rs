@@ -18,7 +18,6 @@ use template::Template;
 use track::{Track, tracks};
 use wipe::{Levels, wipe};
 
-use crate::mask::Mask;
 use crate::plane::Plane;
 
 /// Rules of paper that were taken out of an image.
@@ -82,8 +81,8 @@ pub(crate) fn without_rules(dark: &Plane<u8>, noise: f64, strongest: f64) -> Opt
     let mut plane = dark.clone();
     let along = level.printed(&plane, &level_rules);
     // where those of the other direction lie
-    let under_upright = across.covered(dark.width, dark.height);
-    let under_level = along.covered(dark.height, dark.width);
+    let under_upright = across.across(dark.width, dark.height);
+    let under_level = along.across(dark.height, dark.width);
     along.take_off(&mut plane, Some(&under_upright), levels);
     turned = plane.transposed();
     across.take_off(&mut turned, None, levels);
@@ -177,13 +176,13 @@ impl Side {
         courses(&strips, at, width)
     }
 
-    /// Takes the lines from border to border off a plane on which they are level; what is `covered` there was under rules across them.
-    fn whole_lines_off(&self, plane: &mut Plane<u8>, covered: &Mask, levels: Levels) {
+    /// Takes the lines from border to border off a plane on which they are level; where there were rules `across` them it may not be seen.
+    fn whole_lines_off(&self, plane: &mut Plane<u8>, across: &Plane<u8>, levels: Levels) {
         let reach = widest(plane);
         let half = strips::wide(plane.width) as isize / 2;
         let is_blind = |along: f64, at: f64| {
             let (x, y) = (along.round() as isize, at.round() as isize);
-            (x - half..=x + half).any(|x| covered.get(x, y))
+            (x - half..=x + half).any(|x| across.get(x, y) > 0)
         };
         for track in self.tracks.iter().filter(|track| track.is_whole(&self.strips, is_blind)) {
             let course = self.course(&track.smoothed(&self.strips), plane.width);
@@ -224,29 +223,31 @@ struct Printed {
 }
 
 impl Printed {
-    /// What they cover of a plane on which they are upright.
-    fn covered(&self, width: usize, height: usize) -> Mask {
-        let mut mask = Mask::empty(width, height);
+    /// How dark they are on a plane on which they are upright, over the paper's darkness; 0 beside them.
+    fn across(&self, width: usize, height: usize) -> Plane<u8> {
+        let mut plane = Plane::filled(width, height, 0);
         for rule in self.rules.iter().chain(&self.cut) {
-            for (y, &at) in rule.centre.iter().enumerate().take(height) {
+            let Rule { centre, template } = rule;
+            for (y, &at) in centre.iter().enumerate().take(height) {
                 let column = |x: f32| x.clamp(0.0, width as f32) as usize;
-                let (from, to) =
-                    (column(at - rule.template.before - 1.0), column(at + rule.template.behind + 2.0));
-                if to > from {
-                    mask.fill(y, from, to);
+                let share = template.share(y, centre.len());
+                for x in column(at - template.before - 1.0)..column(at + template.behind + 2.0) {
+                    let level = (share * template.at(x as f32 - at)).clamp(1.0, 255.0) as u8;
+                    let cell = &mut plane.row_mut(y)[x];
+                    *cell = level.max(*cell);
                 }
             }
         }
-        mask
+        plane
     }
 
-    /// Takes them off a plane; what is `covered` there by rules across them is not drawn.
-    fn take_off(&self, plane: &mut Plane<u8>, covered: Option<&Mask>, levels: Levels) {
+    /// Takes them off a plane; what is there of rules `across` them is not drawn.
+    fn take_off(&self, plane: &mut Plane<u8>, across: Option<&Plane<u8>>, levels: Levels) {
         for rule in &self.rules {
-            wipe(plane, &rule.centre, &rule.template, covered, levels);
+            wipe(plane, &rule.centre, &rule.template, across, levels);
         }
         for rule in &self.cut {
-            wipe(plane, &rule.centre, &rule.template, covered, levels);
+            wipe(plane, &rule.centre, &rule.template, across, levels);
             continue_over(plane, &rule.centre, rule.template.width());
         }
     }

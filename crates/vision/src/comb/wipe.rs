@@ -6,7 +6,6 @@
 
 use super::runs::{Run, pairs, runs};
 use super::template::{Template, bridged};
-use crate::mask::Mask;
 use crate::plane::Plane;
 
 /// Levels by which ink differs at least from what it lies on.
@@ -30,16 +29,23 @@ pub(super) struct Levels {
     pub(super) ink: f32,
 }
 
-/// Takes a rule off; `centre` is its middle by column. What lies beside it under what is `covered`, by rules across it, is as it is
-/// on both sides of that.
+impl Levels {
+    /// By how much ink for sure is darker than a rule, on paper of some darkness.
+    fn sure(&self, pixel: &Pixel, paper: f32) -> f32 {
+        SURE * (self.ink - paper - pixel.rule)
+    }
+}
+
+/// Takes a rule off; `centre` is its middle by column. What lies beside it where there are rules `across` it, as dark as these over
+/// the paper, is as it is on both sides of them.
 pub(super) fn wipe(
     dark: &mut Plane<u8>,
     centre: &[f32],
     template: &Template,
-    covered: Option<&Mask>,
+    across: Option<&Plane<u8>>,
     levels: Levels,
 ) {
-    let band = Band::of(dark, centre, template, covered, levels);
+    let band = Band::of(dark, centre, template, across, levels);
     let filled = band.filled();
     band.write(dark, &filled);
 }
@@ -66,7 +72,7 @@ impl<'a> Band<'a> {
         dark: &Plane<u8>,
         centre: &'a [f32],
         template: &'a Template,
-        covered: Option<&Mask>,
+        across: Option<&Plane<u8>>,
         levels: Levels,
     ) -> Self {
         let rows: Vec<(isize, isize)> = centre
@@ -74,18 +80,20 @@ impl<'a> Band<'a> {
             .map(|c| ((c - template.before).ceil() as isize - 1, (c + template.behind).floor() as isize + 1))
             .collect();
         let depth = rows.iter().map(|r| (r.1 - r.0 - 1).max(0)).max().unwrap_or(0) as usize;
+        let margin = LEAST_LEVELS.max(DEVIATIONS * levels.noise);
         let row = |pick: fn(&(isize, isize)) -> isize, off: isize| -> Vec<f32> {
             let level = |(x, r): (usize, &(isize, isize))| {
                 let y = pick(r) + off;
                 let inside = (0..dark.height as isize).contains(&y);
-                let is_covered = covered.is_some_and(|mask| mask.get(x as isize, y));
-                (!is_covered)
-                    .then(|| if inside { f32::from(dark.row(y as usize)[x]) } else { template.paper })
+                let level = if inside { f32::from(dark.row(y as usize)[x]) } else { template.paper };
+                let rule = across.map_or(0, |rules| rules.get(x as isize, y));
+                let rule = Pixel { seen: level - template.paper, rule: f32::from(rule) };
+                (rule.rule == 0.0 || rule.seen > rule.rule + margin.max(levels.sure(&rule, template.paper)))
+                    .then_some(level)
             };
             bridged(&rows.iter().enumerate().map(level).collect::<Vec<_>>())
         };
         let (above, below) = (row(|r| r.0, 0), row(|r| r.1, 0));
-        let margin = LEAST_LEVELS.max(DEVIATIONS * levels.noise);
         let sloped = |near: &[f32], far: &[f32]| {
             let far = runs(far, template.paper, margin);
             let mut near = runs(near, template.paper, margin);
@@ -206,7 +214,7 @@ impl<'a> Band<'a> {
 
     /// By how much it is darker where there is ink on it for sure.
     fn sure(&self, pixel: &Pixel) -> f32 {
-        self.spread(pixel).max(SURE * (self.levels.ink - self.template.paper - pixel.rule))
+        self.spread(pixel).max(self.levels.sure(pixel, self.template.paper))
     }
 
     /// The ink in a pixel; `near` is how dark ink is there, `drawn` what is carried through.
