@@ -12,9 +12,11 @@ const SLIT_PENS: f64 = 0.5;
 const LEAST_PX: f64 = 4.0;
 /// Such an area holds a regular octagon of so many pens: four ways at least lie beside each other.
 const ACROSS_PENS: f64 = 4.5;
-/// So much of it is ink, and so much at least is slits.
+/// So much of it is ink, and so much at least is slits; what is larger than a square of so many pens may have a single slit, with
+/// ink all round.
 const INK_SHARE: f64 = 0.76;
 const LEAST_SLITS: f64 = 0.04;
+const BROAD_PENS: f64 = 6.5;
 /// A hand that goes to and fro meets its last way here and there: this share of the ink hangs together. Lines side by side do not.
 const TOGETHER: f64 = 0.5;
 /// An area goes beyond the octagons in it by so many pens.
@@ -32,22 +34,35 @@ pub(crate) fn filled(ink: &Mask, pen: f64) -> Option<Mask> {
     if closed.count() == ink.count() {
         return None;
     }
+    let slits = closed.clone().without(ink);
     let mut areas = closed.clone().opened((ACROSS_PENS * pen).ceil() as usize);
+    let mut broad = areas.clone();
     let found = regions(&areas);
     let inked = Inked::of(&found, regions(&areas.clone().and(ink)));
     for (area, (all, largest)) in found.iter().zip(inked.0) {
         let share = all as f64 / area.area() as f64;
-        let is_one = largest as f64 >= TOGETHER * all as f64;
-        if !(is_one && (INK_SHARE..1.0 - LEAST_SLITS).contains(&share)) {
+        let is_filled = largest as f64 >= TOGETHER * all as f64 && share >= INK_SHARE;
+        if !is_filled || share > 1.0 - LEAST_SLITS {
             area.erase_from(&mut areas);
         }
-    }
-    if areas.is_empty() {
-        return None;
+        if !is_filled || (area.area() as f64) < (BROAD_PENS * pen).powi(2) {
+            area.erase_from(&mut broad);
+        }
     }
     let mut filled = areas.dilated_by((RIM_PENS * pen).ceil() as usize).and(&closed);
+    let single = regions(&slits);
+    let is_left = |slit: &&Region| slit.cells(&broad).next().is_some() && is_enclosed(slit, &closed);
+    single.iter().filter(is_left).for_each(|slit| slit.fill_into(&mut filled));
     filled.add(ink);
-    Some(filled)
+    (filled.count() > ink.count()).then_some(filled)
+}
+
+/// Whether a slit has nothing but ink round it: `closed` is all ink and all slits.
+fn is_enclosed(slit: &Region, closed: &Mask) -> bool {
+    slit.runs.iter().all(|run| {
+        let (y, from, to) = (run.y as isize, run.from as isize, run.to as isize);
+        (y - 1..=y + 1).all(|y| (from - 1..=to).all(|x| closed.get(x, y)))
+    })
 }
 
 /// Of each area the pixels of ink in it, and those of the largest piece that hangs together there.

@@ -116,6 +116,18 @@ fn an_area_that_a_felt_pen_filled_is_one_shape_and_hatching_is_lines() {
         let outlines = found.strokes.strokes.iter().filter(|s| s.kind == StrokeKind::Outline).count();
         assert_eq!((found.strokes.strokes.len(), outlines), (2, 1), "{pitch} pens apart");
     }
+    // a single slit, with ink all round
+    let mut canvas = Canvas::new(600, 440);
+    let ring = |radius: f64| {
+        (0..90)
+            .map(|k| Point::new(190.0, 220.0) + Vec2::from_angle(f64::from(k) * 4_f64.to_radians()) * radius)
+            .collect::<Vec<_>>()
+    };
+    let slit = [(150.0, 218.0), (230.0, 218.0), (230.0, 222.0), (150.0, 222.0)].map(Point::from).to_vec();
+    canvas.fill(&[ring(80.0), slit]);
+    canvas.pen(&line, pen);
+    let (found, _) = traced(&canvas, 600, std::slice::from_ref(&line));
+    assert_eq!(found.strokes.strokes.len(), 2, "a slit");
     for (pen, pitch) in [(6.0, 2.0), (9.0, 1.4)] {
         let mut canvas = Canvas::new(600, 440);
         scribbled(&mut canvas, Point::new(190.0, 220.0), pen, pitch, false);

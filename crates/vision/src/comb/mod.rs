@@ -81,8 +81,8 @@ pub(crate) fn without_rules(dark: &Plane<u8>, noise: f64, strongest: f64) -> Opt
     let mut plane = dark.clone();
     let along = level.printed(&plane, &level_rules);
     // where those of the other direction lie
-    let under_upright = across.across(dark.width, dark.height);
-    let under_level = along.across(dark.height, dark.width);
+    let under_upright = across.upright_on(dark.width, dark.height);
+    let under_level = along.upright_on(dark.height, dark.width);
     along.take_off(&mut plane, Some(&under_upright), levels);
     turned = plane.transposed();
     across.take_off(&mut turned, None, levels);
@@ -224,7 +224,7 @@ struct Printed {
 
 impl Printed {
     /// How dark they are on a plane on which they are upright, over the paper's darkness; 0 beside them.
-    fn across(&self, width: usize, height: usize) -> Plane<u8> {
+    fn upright_on(&self, width: usize, height: usize) -> Plane<u8> {
         let mut plane = Plane::filled(width, height, 0);
         for rule in self.rules.iter().chain(&self.cut) {
             let Rule { centre, template } = rule;
