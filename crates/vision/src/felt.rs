@@ -31,11 +31,14 @@ pub(crate) fn filled(ink: &Mask, pen: f64) -> Option<Mask> {
     let slit = (SLIT_PENS * pen).round() as usize;
     let mut closed = ink.clone().dilated(slit + 1).eroded(slit + 1);
     closed.add(ink);
-    if closed.count() == ink.count() {
+    let slits = closed.clone().without(ink);
+    if slits.is_empty() {
         return None;
     }
-    let slits = closed.clone().without(ink);
     let mut areas = closed.clone().opened((ACROSS_PENS * pen).ceil() as usize);
+    if areas.is_empty() {
+        return None;
+    }
     let mut broad = areas.clone();
     let found = regions(&areas);
     let inked = Inked::of(&found, regions(&areas.clone().and(ink)));
@@ -50,9 +53,10 @@ pub(crate) fn filled(ink: &Mask, pen: f64) -> Option<Mask> {
         }
     }
     let mut filled = areas.dilated_by((RIM_PENS * pen).ceil() as usize).and(&closed);
-    let single = regions(&slits);
-    let is_left = |slit: &&Region| slit.cells(&broad).next().is_some() && is_enclosed(slit, &closed);
-    single.iter().filter(is_left).for_each(|slit| slit.fill_into(&mut filled));
+    if !broad.is_empty() {
+        let is_single = |slit: &&Region| slit.cells(&broad).next().is_some() && is_enclosed(slit, &closed);
+        regions(&slits).iter().filter(is_single).for_each(|slit| slit.fill_into(&mut filled));
+    }
     filled.add(ink);
     (filled.count() > ink.count()).then_some(filled)
 }

@@ -17,7 +17,6 @@ const WIDTH: usize = 640;
 const HEIGHT: usize = 480;
 
 /// A sheet of rules: how far apart and how wide they are, px, and the tangent of their turn.
-#[derive(Clone, Copy)]
 struct Paper {
     spacing: f64,
     width: f64,

@@ -56,9 +56,9 @@ pub struct Comb {
 /// Most families of rules in one direction.
 const MOST_FAMILIES: usize = 3;
 
-/// Widest rule, as a share of the side across it and at least, px.
-const WIDEST_SHARE: usize = 40;
-const LEAST_WIDEST: usize = 6;
+/// How far a rule's darkness may reach from its middle, as a share of the side across it and at least, px.
+const REACH_SHARE: usize = 40;
+const LEAST_REACH: usize = 6;
 
 /// Shortest side of a picture in which rules are looked for, px.
 const LEAST_SIDE: usize = 56;
@@ -149,7 +149,7 @@ impl Side {
     fn printed(&self, plane: &Plane<u8>, families: &[Family]) -> Printed {
         let mut printed = Printed { rules: Vec::new(), cut: Vec::new(), combs: Vec::new() };
         for family in families {
-            let reach = ((0.45 * family.spacing) as usize).clamp(3, widest(plane));
+            let reach = ((0.45 * family.spacing) as usize).clamp(3, most_reach(plane));
             let course = |at: &[f64]| self.course(at, plane.width);
             let rules: Vec<Rule> =
                 family.rules.iter().filter_map(|rule| Rule::of(plane, course(&rule.at), reach)).collect();
@@ -178,7 +178,7 @@ impl Side {
 
     /// Takes the lines from border to border off a plane on which they are level; where there were rules `across` them it may not be seen.
     fn whole_lines_off(&self, plane: &mut Plane<u8>, across: &Plane<u8>, levels: Levels) {
-        let reach = widest(plane);
+        let reach = most_reach(plane);
         let half = strips::wide(plane.width) as isize / 2;
         let is_blind = |along: f64, at: f64| {
             let (x, y) = (along.round() as isize, at.round() as isize);
@@ -194,8 +194,8 @@ impl Side {
 }
 
 /// How far a level rule's darkness may reach, px.
-fn widest(plane: &Plane<u8>) -> usize {
-    (plane.height / WIDEST_SHARE).max(LEAST_WIDEST)
+fn most_reach(plane: &Plane<u8>) -> usize {
+    (plane.height / REACH_SHARE).max(LEAST_REACH)
 }
 
 /// One rule as it is printed.
@@ -208,7 +208,7 @@ struct Rule {
 impl Rule {
     /// About `course`, looked at up to `reach` px away; `None` where there is none.
     fn of(plane: &Plane<u8>, course: Vec<f32>, reach: usize) -> Option<Self> {
-        let centre = Template::of(plane, &course, reach)?.centred(plane, &course);
+        let centre = Template::profile(plane, &course, reach)?.centred(plane, &course);
         let template = Template::of(plane, &centre, reach)?;
         Some(Self { centre, template })
     }

@@ -43,7 +43,15 @@ pub(super) struct Template {
 impl Template {
     /// Of a rule whose middle is `centre` by column, looked at up to `reach` px away. `None` where there is none.
     pub(super) fn of(dark: &Plane<u8>, centre: &[f32], reach: usize) -> Option<Self> {
-        let every = (dark.width / SAMPLED).max(1);
+        let mut template = Self::profile(dark, centre, reach)?;
+        template.shares = template.shares_along(dark, centre);
+        template.deviation = template.deviation_along(dark, centre);
+        Some(template)
+    }
+
+    /// The same across it only: as dark all along, without a deviation.
+    pub(super) fn profile(dark: &Plane<u8>, centre: &[f32], reach: usize) -> Option<Self> {
+        let every = sampled_every(dark);
         let mut bins: Vec<Vec<u8>> = vec![Vec::new(); 2 * reach * BINS as usize + 1];
         for x in (0..dark.width).step_by(every) {
             let middle = centre[x].round() as isize;
@@ -68,13 +76,11 @@ impl Template {
             reach,
             before: 0.0,
             behind: 0.0,
-            shares: Vec::new(),
+            shares: vec![1.0],
             deviation: 0.0,
             most: 0.0,
         };
         template.measure()?;
-        template.shares = template.shares_along(dark, centre);
-        template.deviation = template.deviation_along(dark, centre, every);
         Some(template)
     }
 
@@ -175,9 +181,9 @@ impl Template {
     }
 
     /// From what is paler than expected: what is darker may be ink.
-    fn deviation_along(&self, dark: &Plane<u8>, centre: &[f32], every: usize) -> f32 {
+    fn deviation_along(&self, dark: &Plane<u8>, centre: &[f32]) -> f32 {
         let mut below: Vec<f32> = Vec::new();
-        for x in (0..dark.width).step_by(every) {
+        for x in (0..dark.width).step_by(sampled_every(dark)) {
             let y = centre[x].round();
             if (0.0..dark.height as f32).contains(&y) {
                 let expected = self.paper + self.share(x, dark.width) * self.at(y - centre[x]);
@@ -189,6 +195,11 @@ impl Template {
         // of a normal distribution half is within 0.6745 deviations
         below.get(below.len() / 2).copied().unwrap_or(0.0) / 0.6745
     }
+}
+
+/// Columns from one that is looked at to the next.
+fn sampled_every(dark: &Plane<u8>) -> usize {
+    (dark.width / SAMPLED).max(1)
 }
 
 /// Between the middles of stretches, in a column.
