@@ -268,24 +268,33 @@ fn continue_over(plane: &mut Plane<u8>, centre: &[f32], width: f64) {
     }
 }
 
-/// Between places where it is known, by column; beyond them as the nearest few lead.
+/// Between places where it is known, by column, and beyond them: straight from one to the next, or as the nearest few lead, bent as
+/// the places about it are.
 fn courses(at: &[f64], values: &[f64], width: usize) -> Vec<f32> {
-    /// Two places beside each other would tell a course from too near.
+    /// Two places beside each other would tell a course, or a bend, from too near.
     const FEW: usize = 4;
     let last = at.len() - 1;
+    let slope = |from: usize, to: usize| (values[to] - values[from]) / (at[to] - at[from]);
+    // half the second derivative: the difference of two slopes over the way between their middles
+    let bends = |k: usize| {
+        let (first, end) = (k.saturating_sub(FEW), (k + FEW).min(last));
+        let middle = (first + end) / 2;
+        (slope(middle, end) - slope(first, middle)) / (at[end] - at[first])
+    };
+    let bends: Vec<f64> = (0..=last).map(bends).collect();
     let mut k = 0;
     let value = |x: usize| {
         let x = x as f64;
         while k + 2 < at.len() && x > at[k + 1] {
             k += 1;
         }
-        let (from, to, known) = match x {
-            x if x < at[0] => (0, FEW.min(last), 0),
-            x if x > at[last] => (last.saturating_sub(FEW), last, last),
-            _ => (k, k + 1, k),
+        let (from, to) = match x {
+            x if x < at[0] => (0, FEW.min(last)),
+            x if x > at[last] => (last, last.saturating_sub(FEW)),
+            _ => (k, k + 1),
         };
-        let slope = (values[to] - values[from]) / (at[to] - at[from]);
-        (values[known] + slope * (x - at[known])) as f32
+        let straight = values[from] + slope(from, to) * (x - at[from]);
+        (straight + bends[from] * (x - at[from]) * (x - at[to])) as f32
     };
     (0..width).map(value).collect()
 }

@@ -10,6 +10,9 @@ const PLACE: f64 = 1.2;
 const BEND: f64 = 0.02;
 /// As many of its last points tell where a line goes on.
 const REMEMBERED: usize = 8;
+/// A page bends its rules usually by this share of their length, and a peak is known to so much, px.
+const SAG: f64 = 0.02;
+const PEAK_PX: f64 = 0.5;
 /// A line's contrast varies by no more than this, as a ratio: where it is more, something lies on it.
 const STEADY: f64 = 2.2;
 /// Share of the strips in which a line must be seen.
@@ -41,8 +44,7 @@ impl Track {
 
     /// Where it is halfway across the page.
     pub(super) fn middle(&self, strips: &Strips) -> f64 {
-        let (mean, slope) = fitted(&self.places(strips));
-        mean.1 + slope * (0.5 * strips.length as f64 - mean.0)
+        self.parabola(strips)[0]
     }
 
     /// Whether it leads from border to border, and as straight as print; in strips that are blind there, by places along and across,
@@ -63,17 +65,15 @@ impl Track {
 
     /// Its course by strip, as a parabola.
     pub(super) fn smoothed(&self, strips: &Strips) -> Vec<f64> {
-        let unit = |x: f64| 2.0 * x / strips.length as f64 - 1.0;
-        let (mut normal, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
-        for (x, y) in self.places(strips) {
-            let basis = [1.0, unit(x), unit(x).powi(2)];
-            for (k, row) in normal.iter_mut().enumerate() {
-                row.iter_mut().zip(basis).for_each(|(cell, b)| *cell += basis[k] * b);
-                right[k] += basis[k] * y;
-            }
-        }
-        let [c, b, a] = solve::symmetric(normal, right).unwrap_or([0.0; 3]);
-        strips.strips.iter().map(|strip| c + (b + a * unit(strip.at)) * unit(strip.at)).collect()
+        let [c, b, a] = self.parabola(strips);
+        let at = |x: f64| c + (b + a * unit(x, strips)) * unit(x, strips);
+        strips.strips.iter().map(|strip| at(strip.at)).collect()
+    }
+
+    /// The parabola nearest to it, of the way along the page from -1 to 1: its middle, its slope and its bend.
+    fn parabola(&self, strips: &Strips) -> [f64; 3] {
+        let places = self.places(strips).into_iter().map(|(x, y)| (unit(x, strips), y));
+        nearest(places, 0.0).unwrap_or([0.0; 3])
     }
 
     /// Where it is seen, along and across.
@@ -81,27 +81,43 @@ impl Track {
         self.points.iter().zip(&strips.strips).filter_map(|(p, s)| p.map(|p| (s.at, p.at))).collect()
     }
 
-    /// Value and slope of the line through its last points before a place.
-    fn course(&self, strips: &[Strip]) -> Option<(f64, f64, usize)> {
-        let known = self.points.iter().zip(strips).filter_map(|(p, s)| p.map(|p| (s.at, p.at)));
+    /// Where it would cross at a place beyond its last points, and how many tell so: along the parabola through them, which
+    /// bends no more than they say for sure.
+    fn course(&self, strips: &Strips, at: f64) -> Option<(f64, usize)> {
+        let places = self.points.iter().zip(&strips.strips).rev();
+        let known = places.filter_map(|(p, s)| p.map(|p| (s.at, p.at))).take(REMEMBERED);
         let known: Vec<(f64, f64)> = known.collect();
-        let last = &known[known.len().saturating_sub(REMEMBERED)..];
-        let &(x, y) = last.last()?;
-        if last.len() < 3 {
-            return Some((y, 0.0, last.len()));
+        let &(x, y) = known.first()?;
+        if known.len() < 3 {
+            return Some((y, known.len()));
         }
-        let (middle, slope) = fitted(last);
-        Some((middle.1 + slope * (x - middle.0), slope, last.len()))
+        let unit = 0.5 * strips.length as f64;
+        let places = known.iter().map(|&(px, py)| ((px - x) / unit, py - y));
+        // of half the length the square term is the sag
+        let stiffness = (PEAK_PX / (SAG * strips.length as f64)).powi(2);
+        let [c, b, a] = nearest(places, stiffness)?;
+        let u = (at - x) / unit;
+        Some((y + c + (b + a * u) * u, known.len()))
     }
 }
 
-/// The mean place, and the slope, of the line nearest to some points.
-pub(super) fn fitted(points: &[(f64, f64)]) -> ((f64, f64), f64) {
-    let n = points.len().max(1) as f64;
-    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
-    let (square, product) =
-        points.iter().fold((0.0, 0.0), |(s, p), q| (s + (q.0 - x).powi(2), p + (q.0 - x) * (q.1 - y)));
-    ((x, y), if square > 0.0 { product / square } else { 0.0 })
+/// How far a place along the page is from its middle, in halves of its length.
+fn unit(along: f64, strips: &Strips) -> f64 {
+    2.0 * along / strips.length as f64 - 1.0
+}
+
+/// The parabola c + b·u + a·u² nearest to some points, as \[c, b, a\]: by least squares, of which a² by `stiffness` is one.
+fn nearest(points: impl Iterator<Item = (f64, f64)>, stiffness: f64) -> Option<[f64; 3]> {
+    let (mut normal, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    for (u, y) in points {
+        let basis = [1.0, u, u * u];
+        for (k, row) in normal.iter_mut().enumerate() {
+            row.iter_mut().zip(basis).for_each(|(cell, b)| *cell += basis[k] * b);
+            right[k] += basis[k] * y;
+        }
+    }
+    normal[2][2] += stiffness;
+    solve::symmetric(normal, right)
 }
 
 /// The lines that are seen in most strips.
@@ -110,7 +126,7 @@ pub(super) fn tracks(strips: &Strips) -> Vec<Track> {
     let least = (SEEN * count as f64) as usize;
     let mut tracks: Vec<Track> = Vec::new();
     for (number, strip) in strips.strips.iter().enumerate() {
-        let taken = matched(&tracks, &strips.strips, number);
+        let taken = matched(&tracks, strips, number);
         let mut is_free = vec![true; strip.peaks.len()];
         for (track, found) in tracks.iter_mut().zip(&taken) {
             if let Some(k) = *found {
@@ -133,14 +149,14 @@ pub(super) fn tracks(strips: &Strips) -> Vec<Track> {
 }
 
 /// Which of a strip's lines continues each track: the nearest to where it leads.
-fn matched(tracks: &[Track], strips: &[Strip], number: usize) -> Vec<Option<usize>> {
-    let strip = &strips[number];
+fn matched(tracks: &[Track], strips: &Strips, number: usize) -> Vec<Option<usize>> {
+    let strip = &strips.strips[number];
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for (t, track) in tracks.iter().enumerate() {
-        let Some((y, slope, known)) = track.course(strips) else { continue };
+        let Some((expected, known)) = track.course(strips, strip.at) else { continue };
         let last = track.points.iter().rposition(Option::is_some).unwrap_or(0);
-        let ahead = strip.at - strips[last].at;
-        let (expected, contrast) = (y + slope * ahead, track.contrast());
+        let ahead = strip.at - strips.strips[last].at;
+        let contrast = track.contrast();
         let reach = PLACE + ahead * if known < 3 { STEEPEST } else { BEND };
         let first = strip.peaks.partition_point(|peak| peak.at < expected - reach);
         for (k, peak) in strip.peaks.iter().enumerate().skip(first) {
