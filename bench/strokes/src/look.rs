@@ -24,6 +24,8 @@ const BLUR_OF_PEN: f64 = 0.45;
 const BLUR_OF_PAPER: f64 = 0.27;
 /// Least difference of the levels of tinted ink and paper.
 const LEAST_TINT: f64 = 90.0;
+/// This share of the sheets on tables is ruled or squared.
+const RULED_ON_A_TABLE: f64 = 0.3;
 
 /// Everything about how a picture looks, decided.
 pub(crate) struct Look {
@@ -157,7 +159,14 @@ impl Look {
         let points: Vec<Point> = seen.flat_map(|p| p.flatten(0.5)).collect();
         let light = if random.chance(0.5) { shadow(random) } else { self.light };
         let desk = Some(Desk::around(random, size, paper, (warp, &points)));
-        Self { paper: [paper; 3], ink: [random.between(0.0, 0.4) * paper; 3], light, desk, ..self }
+        let ink = [random.between(0.0, 0.4) * paper; 3];
+        let pattern = if random.chance(0.5) { Kind::Ruled } else { Kind::Squared };
+        let strokes = || -> Vec<Stroke> { page.figures.iter().flat_map(|f| f.strokes.clone()).collect() };
+        let printed = random
+            .chance(RULED_ON_A_TABLE)
+            .then(|| Paper::under(random, pattern, size, &strokes(), page.pen))
+            .flatten();
+        Self { paper: [paper; 3], ink, light, desk, printed, ..self }
     }
 
     /// The grey levels of a picture with this ink on it.

@@ -13,6 +13,9 @@ const COVERED: f64 = 0.6;
 const MISSING: f64 = 0.25;
 /// Share of the rules that reach either border.
 const REACHING: f64 = 0.7;
+/// Of a sheet on a table they need not be seen in this many strips next to its edges, which are known roughly, where they are many.
+const SHORT: usize = 5;
+const MANY: usize = 8;
 /// Squares are as wide as high to this share.
 const SQUARE: f64 = 0.03;
 /// A rule is where it is expected to a share of the spacing, or so many px.
@@ -91,10 +94,10 @@ pub(super) fn family(strips: &Strips, tracks: &[Track], ends: Ends<'_>) -> Optio
     let found = law.seen(strips, contrast);
     let (first, last) = (found.first()?.0, found.last()?.0);
     let between = (last - first + 1) as usize;
-    let is_all_over = (between as f64) * law.spacing >= COVERED * strips.breadth as f64;
+    let is_all_over = (between as f64) * law.spacing >= COVERED * breadth(strips);
     let is_whole = found.len() >= FEWEST && (between - found.len()) as f64 <= MISSING * between as f64;
     let reach = match ends {
-        Ends::At(lines) => reach(strips, &found, lines),
+        Ends::At(lines) => law.reach(strips, &found, lines),
         Ends::Squared(spacing) => (law.spacing / spacing - 1.0).abs() < SQUARE,
     };
 
@@ -109,19 +112,10 @@ pub(super) fn family(strips: &Strips, tracks: &[Track], ends: Ends<'_>) -> Optio
     Some(Family { rules, cut, spacing: law.spacing, slope: law.slope() })
 }
 
-/// Whether most rules lead from one border to the other, or to one of some lines across them that is near it.
-fn reach(strips: &Strips, found: &[(i32, Vec<Option<Peak>>)], lines: &[f64]) -> bool {
-    let all = &strips.strips;
-    let is_reached = |k: usize| {
-        let reaching = found.iter().filter(|(_, seen)| seen[k].is_some()).count();
-        reaching as f64 >= REACHING * found.len() as f64
-    };
-    // the strips just within such a line
-    let right_of = |line: &f64| all.partition_point(|strip| strip.at <= *line);
-    let starts = lines.iter().map(right_of).filter(|k| *k < all.len() / 4);
-    let left_of = |line: &f64| all.partition_point(|strip| strip.at < *line).checked_sub(1);
-    let ends = lines.iter().filter_map(left_of).filter(|k| *k >= all.len() - all.len() / 4);
-    starts.chain([0]).any(is_reached) && ends.chain([all.len() - 1]).any(is_reached)
+/// How much paper there is across the rules, halfway along, px.
+fn breadth(strips: &Strips) -> f64 {
+    let (first, last) = strips.strips[strips.strips.len() / 2].sheet;
+    last + 1.0 - first
 }
 
 /// A track and which rule it is.
@@ -148,7 +142,9 @@ fn longest_chain(strips: &Strips, tracks: &[Track]) -> Option<Vec<Link>> {
         let span = (chain[chain.len() - 1].index - chain[0].index + 1) as f64;
         chain.len() >= FEWEST.min(4) && (span - chain.len() as f64) <= 0.5 * span
     };
-    chains.filter(whole).max_by_key(Vec::len)
+    // a line midway between two rules makes each second one of another comb missing
+    let missing = |chain: &Vec<Link>| (chain[chain.len() - 1].index - chain[0].index + 1) as usize - chain.len();
+    chains.filter(whole).max_by_key(|chain| chain.len() as isize - missing(chain) as isize)
 }
 
 /// How many times the larger of two is the smaller.
@@ -262,7 +258,8 @@ impl Law {
         for index in middle - most..=middle + most {
             let points = self.points_on(strips, f64::from(index), contrast);
             let within = strips.strips.iter().filter(|strip| {
-                (1.0..strips.breadth as f64 - 2.0).contains(&self.at(f64::from(index), strip.at))
+                let at = self.at(f64::from(index), strip.at);
+                strip.has(at - 1.0) && strip.has(at + 1.0)
             });
             let (within, seen) = (within.count(), points.iter().flatten().count());
             if within >= 4 && seen as f64 >= SEEN * within as f64 && 2 * within > strips.strips.len() {
@@ -272,10 +269,36 @@ impl Law {
         found
     }
 
+    /// Whether most rules lead from one border of the sheet to the other, or to one of some lines across them that is near it.
+    fn reach(&self, strips: &Strips, found: &[(i32, Vec<Option<Peak>>)], lines: &[f64]) -> bool {
+        let all = &strips.strips;
+        let most = |reaching: usize| reaching as f64 >= REACHING * found.len() as f64;
+        let is_reached = |k: usize| most(found.iter().filter(|(_, seen)| seen[k].is_some()).count());
+        // by rule: where the sheet is turned in the picture, each has its own ends
+        let short = if strips.is_cut_out && found.len() >= MANY { SHORT } else { 1 };
+        let is_seen = |seen: &[Option<Peak>], k: usize| seen[k].is_some();
+        let is_within = |index: i32, k: usize| all[k].has(self.at(f64::from(index), all[k].at));
+        let starts = found.iter().filter(|(index, seen)| {
+            (0..all.len()).filter(|&k| is_within(*index, k)).take(short).any(|k| is_seen(seen, k))
+        });
+        let ends = found.iter().filter(|(index, seen)| {
+            (0..all.len()).rev().filter(|&k| is_within(*index, k)).take(short).any(|k| is_seen(seen, k))
+        });
+        let (is_started, is_ended) = (most(starts.count()), most(ends.count()));
+        // the strips just within such a line
+        let right_of = |line: &f64| all.partition_point(|strip| strip.at <= *line);
+        let mut firsts = lines.iter().map(right_of).filter(|k| *k < all.len() / 4);
+        let left_of = |line: &f64| all.partition_point(|strip| strip.at < *line).checked_sub(1);
+        let mut lasts = lines.iter().filter_map(left_of).filter(|k| *k >= all.len() - all.len() / 4);
+        (is_started || firsts.any(is_reached)) && (is_ended || lasts.any(is_reached))
+    }
+
     /// Whether some of a rule lies in the picture, or on its border, which cuts it.
     fn is_cut(&self, strips: &Strips, index: i32) -> bool {
-        let inside = -CUT_PX..strips.breadth as f64 - 1.0 + CUT_PX;
-        strips.strips.iter().any(|strip| inside.contains(&self.at(f64::from(index), strip.at)))
+        strips.strips.iter().any(|strip| {
+            let at = self.at(f64::from(index), strip.at);
+            strip.sheet.0 - CUT_PX <= at && at <= strip.sheet.1 + CUT_PX
+        })
     }
 
     /// In each strip the line nearest to where a rule must be.

@@ -6,6 +6,7 @@
 //! like, `wipe` takes it off and leaves what is drawn over it.
 
 mod family;
+mod paper;
 mod runs;
 mod strips;
 mod template;
@@ -13,6 +14,8 @@ mod track;
 mod wipe;
 
 use family::{Ends, Family};
+pub(crate) use paper::Lie;
+use paper::Paper;
 use strips::Strips;
 use template::Template;
 use track::{Track, tracks};
@@ -65,15 +68,22 @@ const LEAST_SIDE: usize = 56;
 
 /// A plane of darkness without the rules of its paper, and which they were. `noise` is its pixels' deviation, `strongest` how dark the
 /// strongest ink is. `None` where the paper is plain.
-pub(crate) fn without_rules(dark: &Plane<u8>, noise: f64, strongest: f64) -> Option<(Plane<u8>, Rules)> {
+pub(crate) fn without_rules(
+    dark: &Plane<u8>,
+    noise: f64,
+    strongest: f64,
+    lie: Lie<'_>,
+) -> Option<(Plane<u8>, Rules)> {
     if dark.width.min(dark.height) < LEAST_SIDE {
         return None;
     }
-    let sides = [Strips::of_level(dark, noise), Strips::of_upright(dark, noise)];
+    let papers = [Paper::level(lie), Paper::upright(lie)];
+    let sides = [Strips::of_level(dark, noise, papers[0]), Strips::of_upright(dark, noise, papers[1])];
     if !sides.iter().any(|strips| strips.are_crossed_by(family::FEWEST - 1)) {
         return None;
     }
-    let [level, upright] = sides.map(Side::of);
+    let [level, upright] = sides;
+    let (level, upright) = (Side::of(level, papers[0]), Side::of(upright, papers[1]));
     let [level_rules, upright_rules] = families(&level, &upright)?;
     let levels = Levels { noise: noise as f32, ink: strongest as f32 };
     let mut turned = dark.transposed();
@@ -88,11 +98,11 @@ pub(crate) fn without_rules(dark: &Plane<u8>, noise: f64, strongest: f64) -> Opt
     across.take_off(&mut turned, None, levels);
     plane = turned.transposed();
     // margins and the like: without the rules that cross them they are seen all along, but where they lie under one
-    let bare = Strips::of_level(&plane, noise).with(&level.strips_beside(&level_rules));
-    Side::of(bare).whole_lines_off(&mut plane, &under_upright, levels);
-    let bare = Strips::of_upright(&plane, noise).with(&upright.strips_beside(&upright_rules));
+    let bare = Strips::of_level(&plane, noise, papers[0]).with(&level.strips_beside(&level_rules));
+    Side::of(bare, papers[0]).whole_lines_off(&mut plane, &under_upright, levels);
+    let bare = Strips::of_upright(&plane, noise, papers[1]).with(&upright.strips_beside(&upright_rules));
     turned = plane.transposed();
-    Side::of(bare).whole_lines_off(&mut turned, &under_level, levels);
+    Side::of(bare, papers[1]).whole_lines_off(&mut turned, &under_level, levels);
     plane = turned.transposed();
     let mut combs = along.combs;
     let turn = |comb: Comb| Comb { upright: true, turned_rad: -comb.turned_rad, ..comb };
@@ -101,7 +111,7 @@ pub(crate) fn without_rules(dark: &Plane<u8>, noise: f64, strongest: f64) -> Opt
 }
 
 /// The rules of either direction; `None` where there are none at all.
-fn families(level: &Side, upright: &Side) -> Option<[Vec<Family>; 2]> {
+fn families(level: &Side<'_>, upright: &Side<'_>) -> Option<[Vec<Family>; 2]> {
     let mut level_rules = level.families(Ends::At(&upright.margins()));
     let mut upright_rules = upright.families(Ends::At(&level.margins()));
     match (level_rules.first(), upright_rules.first()) {
@@ -114,15 +124,16 @@ fn families(level: &Side, upright: &Side) -> Option<[Vec<Family>; 2]> {
 }
 
 /// What crosses the strips of one direction.
-struct Side {
+struct Side<'a> {
     strips: Strips,
     tracks: Vec<Track>,
+    paper: Paper<'a>,
 }
 
-impl Side {
-    fn of(strips: Strips) -> Self {
+impl<'a> Side<'a> {
+    fn of(strips: Strips, paper: Paper<'a>) -> Self {
         let tracks = tracks(&strips);
-        Self { strips, tracks }
+        Self { strips, tracks, paper }
     }
 
     /// Where the lines are that lead from border to border.
@@ -170,10 +181,16 @@ impl Side {
         self.strips.clone().without(|strip, at| families.iter().any(|family| family.has_at(strip, at)))
     }
 
-    /// By column, between where it crosses the strips.
+    /// By column, between where it crosses the strips; beside the sheet it is far off the plane.
     fn course(&self, at: &[f64], width: usize) -> Vec<f32> {
         let strips: Vec<f64> = self.strips.strips.iter().map(|strip| strip.at).collect();
-        courses(&strips, at, width)
+        let mut course = courses(&strips, at, width);
+        for (x, at) in course.iter_mut().enumerate() {
+            if !self.paper.has(x, at.round().max(0.0) as usize) {
+                *at = OFF_THE_PLANE;
+            }
+        }
+        course
     }
 
     /// Takes the lines from border to border off a plane on which they are level; where there were rules `across` them it may not be seen.
@@ -192,6 +209,9 @@ impl Side {
         }
     }
 }
+
+/// Where a rule is that is not on the sheet, px across.
+const OFF_THE_PLANE: f32 = -1e5;
 
 /// How far a level rule's darkness may reach, px.
 fn most_reach(plane: &Plane<u8>) -> usize {

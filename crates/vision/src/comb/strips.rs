@@ -1,5 +1,6 @@
 //! Where thin dark lines cross narrow strips of a plane.
 
+use super::paper::Paper;
 use crate::plane::Plane;
 
 /// Strips beside those at the two borders.
@@ -33,6 +34,15 @@ pub(super) struct Strip {
     /// Its middle, px along the rules, from the first pixel's centre.
     pub(super) at: f64,
     pub(super) peaks: Vec<Peak>,
+    /// Where the sheet begins and ends, px across the rules; nowhere where the end is before the beginning.
+    pub(super) sheet: (f64, f64),
+}
+
+impl Strip {
+    /// Whether there is paper.
+    pub(super) fn has(&self, across: f64) -> bool {
+        self.sheet.0 <= across && across <= self.sheet.1
+    }
 }
 
 /// Strips across rules of one direction; the first and the last lie at the borders.
@@ -42,35 +52,63 @@ pub(super) struct Strips {
     pub(super) length: usize,
     /// Pixels across them.
     pub(super) breadth: usize,
+    /// By how much lines parallel to the sheet's sides move across a px along: each strip lies aslant as they do.
+    pub(super) tilt: f64,
+    /// Whether the sheet was found in a picture that shows more.
+    pub(super) is_cut_out: bool,
     pub(super) strips: Vec<Strip>,
 }
 
 impl Strips {
-    /// Across level rules. `noise` is a pixel's deviation, levels.
-    pub(super) fn of_level(dark: &Plane<u8>, noise: f64) -> Self {
+    /// Across level rules of a sheet. `noise` is a pixel's deviation, levels.
+    pub(super) fn of_level(dark: &Plane<u8>, noise: f64, paper: Paper<'_>) -> Self {
         let ranges = ranges(dark.width);
+        let last = dark.height as isize - 1;
         let mut sums = vec![vec![0.0_f32; dark.height]; ranges.len()];
-        for y in 0..dark.height {
-            let row = dark.row(y);
-            for (sum, &(from, to)) in sums.iter_mut().zip(&ranges) {
-                sum[y] = row[from..to].iter().map(|&v| u32::from(v)).sum::<u32>() as f32;
+        for (sums, &(from, to)) in sums.iter_mut().zip(&ranges) {
+            // columns that are shifted alike together
+            let mut first = from;
+            while first < to {
+                let shift = |x: usize| paper.shift(x as isize - ((from + to) / 2) as isize);
+                let end = (first + 1..to).find(|&x| shift(x) != shift(first)).unwrap_or(to);
+                for (y, sum) in sums.iter_mut().enumerate() {
+                    let y = (y as isize + shift(first)).clamp(0, last) as usize;
+                    *sum += dark.row(y)[first..end].iter().map(|&v| u32::from(v)).sum::<u32>() as f32;
+                }
+                first = end;
             }
         }
-        Self::of(&sums, &ranges, (dark.width, dark.height), noise)
+        Self::of(&sums, &ranges, (dark.width, dark.height), noise, paper)
     }
 
     /// Across upright rules.
-    pub(super) fn of_upright(dark: &Plane<u8>, noise: f64) -> Self {
+    pub(super) fn of_upright(dark: &Plane<u8>, noise: f64, paper: Paper<'_>) -> Self {
         let ranges = ranges(dark.height);
         let sum = |&(from, to): &(usize, usize)| {
             let mut sum = vec![0_u16; dark.width];
+            let mut add = |levels: &[u8], to: std::ops::Range<usize>| {
+                sum[to].iter_mut().zip(levels).for_each(|(s, &v)| *s += u16::from(v));
+            };
             for y in from..to.min(from + MOST_SUMMED) {
-                sum.iter_mut().zip(dark.row(y)).for_each(|(s, &v)| *s += u16::from(v));
+                let (row, width) = (dark.row(y), dark.width);
+                let shift = paper.shift(y as isize - ((from + to) / 2) as isize);
+                let by = shift.unsigned_abs().min(width);
+                // what is shifted in from beyond the border is as at the border
+                match shift >= 0 {
+                    true => {
+                        add(&row[by..], 0..width - by);
+                        add(&vec![row[width - 1]; by], width - by..width);
+                    }
+                    false => {
+                        add(&row[..width - by], by..width);
+                        add(&vec![row[0]; by], 0..by);
+                    }
+                }
             }
             sum.into_iter().map(f32::from).collect()
         };
         let sums: Vec<Vec<f32>> = ranges.iter().map(sum).collect();
-        Self::of(&sums, &ranges, (dark.height, dark.width), noise)
+        Self::of(&sums, &ranges, (dark.height, dark.width), noise, paper)
     }
 
     fn of(
@@ -78,16 +116,21 @@ impl Strips {
         ranges: &[(usize, usize)],
         (length, breadth): (usize, usize),
         noise: f64,
+        paper: Paper<'_>,
     ) -> Self {
         let widest = ((WIDEST * breadth as f64) as usize).max(LEAST_WIDEST);
         let strip = |(sum, &(from, to)): (&Vec<f32>, &(usize, usize))| {
             let count = (to - from).min(MOST_SUMMED) as f64;
             let least = LEAST_CONTRAST.max(DEVIATIONS * noise / count.sqrt());
             let peaks = peaks(&ridges(sum, widest), least * count, 1.0 / count);
-            Strip { at: 0.5 * (from + to - 1) as f64, peaks }
+            // all of the strip is paper there
+            let ((first, last), (other_first, other_last)) =
+                (paper.across(from, breadth), paper.across(to - 1, breadth));
+            let sheet = (first.max(other_first), last.min(other_last));
+            Strip { at: 0.5 * (from + to - 1) as f64, peaks, sheet }
         };
         let strips = sums.iter().zip(ranges).map(strip).collect();
-        Self { length, breadth, strips }
+        Self { length, breadth, tilt: paper.tilt, is_cut_out: paper.is_cut_out(), strips }
     }
 
     /// With the lines that cross the same strips elsewhere, of two in one place the stronger: where rules were taken off, a line

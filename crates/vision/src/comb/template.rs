@@ -161,6 +161,9 @@ impl Template {
         let Some((middle, mass)) = centroid(core) else { return centre.to_vec() };
         let mass = mass / BINS;
         let off = |x: usize| {
+            if centre[x] < -self.reach {
+                return None;
+            }
             let rows = (centre[x] + at(first) - MOST_OFF).ceil().max(0.0) as usize
                 ..((centre[x] + at(last) + MOST_OFF).floor().max(0.0) as usize + 1).min(dark.height);
             let over = |y: usize| (f32::from(dark.row(y)[x]) - self.paper - foot).max(0.0);

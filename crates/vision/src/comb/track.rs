@@ -3,7 +3,7 @@
 use super::strips::{Peak, Strip, Strips};
 use crate::solve;
 
-/// Steepest rule: 6.5°, as its tangent.
+/// Steepest rule beside the sheet's sides: 6.5°, as its tangent.
 const STEEPEST: f64 = 0.114;
 /// A line's place is known to this, px, and its bend to so much per px.
 const PLACE: f64 = 1.2;
@@ -53,7 +53,7 @@ impl Track {
         let smoothed = self.smoothed(strips);
         let places = self.points.iter().zip(&strips.strips).zip(&smoothed);
         let sees = |((point, strip), at): &((&Option<Peak>, &Strip), &f64)| {
-            point.is_some() || !is_blind(strip.at, **at)
+            point.is_some() || strip.has(**at) && !is_blind(strip.at, **at)
         };
         let seeing: Vec<Option<Peak>> = places.filter(sees).map(|((point, _), _)| *point).collect();
         let reaches = [seeing.first(), seeing.last()].iter().all(|end| matches!(end, Some(Some(_))));
@@ -89,7 +89,7 @@ impl Track {
         let known: Vec<(f64, f64)> = known.collect();
         let &(x, y) = known.first()?;
         if known.len() < 3 {
-            return Some((y, known.len()));
+            return Some((y + strips.tilt * (at - x), known.len()));
         }
         let unit = 0.5 * strips.length as f64;
         let places = known.iter().map(|&(px, py)| ((px - x) / unit, py - y));

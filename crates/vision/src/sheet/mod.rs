@@ -37,6 +37,26 @@ pub struct Sheet {
     pub beside: f64,
 }
 
+impl Sheet {
+    /// How far its sides are turned from those of a picture of so many px, clockwise as seen, at most an eighth of a turn, rad: the
+    /// mean over their length of what is not the picture's own border.
+    pub(crate) fn turned_rad(&self, size: (usize, usize)) -> f64 {
+        let (right, bottom) = (size.0 as f64, size.1 as f64);
+        let on = |a: f64, b: f64, border: f64| (a - border).abs().max((b - border).abs()) < BORDER_PX;
+        let is_border = |a: Point, b: Point| {
+            on(a.x, b.x, 0.0) || on(a.x, b.x, right) || on(a.y, b.y, 0.0) || on(a.y, b.y, bottom)
+        };
+        let ends = self.outline.iter().zip(self.outline.iter().cycle().skip(1));
+        let sides = ends.filter(|(a, b)| !is_border(**a, **b)).map(|(a, b)| *b - *a);
+        // four quarters of a turn are all the same to it
+        let sum = sides.fold(Vec2::ZERO, |sum, side| sum + Vec2::from_angle(4.0 * side.atan2()) * side.hypot());
+        if sum == Vec2::ZERO { 0.0 } else { 0.25 * sum.atan2() }
+    }
+}
+
+/// What is nearer to the picture's border lies on it, px.
+const BORDER_PX: f64 = 1.5;
+
 /// What of a picture is looked at.
 #[derive(Clone, Debug)]
 pub struct Page<'a> {
