@@ -21,6 +21,7 @@
 //! | `near` | which of many points are near a place |
 //! | `follow` | points to paths |
 //! | `rest` | a second look at the ink that no line follows |
+//! | `twice` | a line that was sketched twice is one |
 //! | `missed`, `on_ink` | ink that no stroke follows; strokes that follow no ink |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
@@ -70,6 +71,7 @@ mod sweep;
 mod thin;
 mod tone;
 mod trace;
+mod twice;
 
 pub use comb::{Comb, Rules};
 pub use error::VisionError;

@@ -9,7 +9,7 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{self, Region, pinholes, regions};
-use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, sweep, tone};
+use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, sweep, tone, twice};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -319,7 +319,8 @@ fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Optio
         .collect();
     let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
     let rows = rest::with_rest(dark, &lined, rows);
-    let (rows, over_paper_px) = on_ink::only(mask, gap::bridged(dark, rows));
+    let rows = twice::once(dark, gap::bridged(dark, rows));
+    let (rows, over_paper_px) = on_ink::only(mask, rows);
     strokes.extend(rows.iter().filter_map(|row| centreline::stroke(dark, row, options)));
     let counts = missed::counts(mask, &lined, &strokes);
     let (mut missed, mut all) = (0, 0);

@@ -143,7 +143,8 @@ fn longest_chain(strips: &Strips, tracks: &[Track]) -> Option<Vec<Link>> {
         chain.len() >= FEWEST.min(4) && (span - chain.len() as f64) <= 0.5 * span
     };
     // a line midway between two rules makes each second one of another comb missing
-    let missing = |chain: &Vec<Link>| (chain[chain.len() - 1].index - chain[0].index + 1) as usize - chain.len();
+    let missing =
+        |chain: &Vec<Link>| (chain[chain.len() - 1].index - chain[0].index + 1) as usize - chain.len();
     chains.filter(whole).max_by_key(|chain| chain.len() as isize - missing(chain) as isize)
 }
 

@@ -49,7 +49,8 @@ impl Sheet {
         let ends = self.outline.iter().zip(self.outline.iter().cycle().skip(1));
         let sides = ends.filter(|(a, b)| !is_border(**a, **b)).map(|(a, b)| *b - *a);
         // four quarters of a turn are all the same to it
-        let sum = sides.fold(Vec2::ZERO, |sum, side| sum + Vec2::from_angle(4.0 * side.atan2()) * side.hypot());
+        let sum =
+            sides.fold(Vec2::ZERO, |sum, side| sum + Vec2::from_angle(4.0 * side.atan2()) * side.hypot());
         if sum == Vec2::ZERO { 0.0 } else { 0.25 * sum.atan2() }
     }
 }
