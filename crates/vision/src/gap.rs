@@ -4,6 +4,7 @@ use tracelight_stroke::{Point, Vec2};
 
 use crate::bridge::Tip;
 use crate::centreline::Row;
+use crate::near::Near;
 use crate::plane::Plane;
 use crate::ridge::median;
 
@@ -36,13 +37,50 @@ struct End {
 }
 
 /// The rows with those joined that go on into each other over a gap, the straightest first.
-pub(crate) fn bridged(dark: &Plane<u8>, mut rows: Vec<Row>) -> Vec<Row> {
+pub(crate) fn bridged(dark: &Plane<u8>, rows: Vec<Row>) -> Vec<Row> {
+    let mut rows = cornered(rows);
     orient_dots(&mut rows);
     let mut pairs = pairs(dark, &rows);
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut chains = Chains::new(rows);
     for (_, a, b) in pairs {
-        chains.join(a, b);
+        chains.join(a, b, over);
+    }
+    chains.rows()
+}
+
+/// A line ends on another's very end if it is this near, pens.
+const CORNER_PENS: f64 = 0.5;
+
+/// The rows with those joined that end in one place, with nothing else: a corner, however sharp. One of them may have been ended
+/// on the other, as on a bar.
+fn cornered(rows: Vec<Row>) -> Vec<Row> {
+    let all = rows.iter().enumerate().filter(|(_, row)| !row.closed && !row.dot && row.points.len() > 1);
+    let ends: Vec<(Point, Place)> = all
+        .flat_map(|(k, row)| [0, 1].map(|end| (row.points[end * (row.points.len() - 1)], (k, end))))
+        .collect();
+    let widest = rows.iter().map(|row| row.width).fold(0.0, f64::max);
+    let near = Near::of(ends.iter().copied(), (CORNER_PENS * widest).max(0.1));
+    let partner = |at: Point, (row, end): Place| {
+        let beside = |&(p, &(other, other_end)): &(Point, &Place)| {
+            let width = rows[row].width.min(rows[other].width);
+            (other, other_end) != (row, end) && p.distance(at) <= CORNER_PENS * width
+        };
+        let mut others = near.around(at).filter(beside);
+        others.next().map(|(_, place)| *place).filter(|_| others.next().is_none())
+    };
+    let pairs: Vec<(Place, Place)> = ends
+        .iter()
+        .filter_map(|&(at, a)| {
+            let b = partner(at, a)?;
+            let back = partner(rows[b.0].points[b.1 * (rows[b.0].points.len() - 1)], b)?;
+            let is_open = rows[a.0].free[a.1] || rows[b.0].free[b.1];
+            (a < b && back == a && is_open && a.0 != b.0).then_some((a, b))
+        })
+        .collect();
+    let mut chains = Chains::new(rows);
+    for (a, b) in pairs {
+        chains.join(a, b, |_, _| Vec::new());
     }
     chains.rows()
 }
@@ -161,8 +199,8 @@ impl Chains {
         Self { rows: rows.into_iter().map(Some).collect(), now }
     }
 
-    /// Joins two ends, unless one of them has been joined before.
-    fn join(&mut self, a: Place, b: Place) {
+    /// Joins two ends, with points `over` the gap between them, unless one of them has been joined before.
+    fn join(&mut self, a: Place, b: Place, over: impl Fn(&[Point], &[Point]) -> Vec<Point>) {
         let (Some((first, end)), Some((second, other))) = (self.now[a.0][a.1], self.now[b.0][b.1]) else {
             return;
         };
