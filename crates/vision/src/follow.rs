@@ -8,6 +8,9 @@ use crate::Options;
 /// and the fit uses 0.7 of the tolerance.
 const TOLERANCE_TO_NOISE: f64 = 4.4;
 
+/// Noise of thin lines is worth up to this, px.
+const LEAST_NOISE_PX: f64 = 1.0;
+
 /// Length over which a line is a parabola, but for noise, px: a bend of 16 px leaves 0.03 px.
 const WINDOW_PX: f64 = 13.0;
 /// Fewer points than this say nothing about a parabola.
@@ -24,7 +27,9 @@ pub(crate) fn path(
     reach_px: f64,
     options: &Options,
 ) -> Option<Path> {
-    let tolerance = options.tolerance_px.max(TOLERANCE_TO_NOISE * noise_px);
+    // corners near each other look like noise: that is never worth more than half the pen
+    let noise = (TOLERANCE_TO_NOISE * noise_px).min(reach_px.max(LEAST_NOISE_PX));
+    let tolerance = options.tolerance_px.max(noise);
     let fitted =
         |reach| fit(points, closed, &FitOptions { tolerance, corner_rad: options.corner_rad, reach });
     let margin = 2.0 * tolerance + 1.0 + (2.0 * reach_px).min(6.0);
