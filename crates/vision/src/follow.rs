@@ -9,7 +9,7 @@ use crate::Options;
 const TOLERANCE_TO_NOISE: f64 = 4.4;
 
 /// Noise of thin lines is worth up to this, px.
-const LEAST_NOISE_PX: f64 = 1.0;
+const LEAST_NOISE_PX: f64 = 0.6;
 
 /// Length over which a line is a parabola, but for noise, px: a bend of 16 px leaves 0.03 px.
 const WINDOW_PX: f64 = 13.0;
