@@ -235,6 +235,9 @@ impl Strewn {
     }
 }
 
+/// A crescent is filled if it is so much wider than the pen: a pen's own comma is hardly wider.
+const LENS_PENS: f64 = 1.35;
+
 /// Parts the patches that may hold both kinds.
 struct Sorter {
     /// The picture's, px; 0 where none is known.
@@ -248,7 +251,9 @@ impl Sorter {
         let mut drawn: Vec<Patch> = Vec::new();
         let mut filled: Vec<Patch> = Vec::new();
         for patch in patches {
-            if patch.is_pure_line(self.pen) {
+            if patch.reading.is_lens && patch.reading.widest > LENS_PENS * self.pen + 0.5 {
+                patch.region.fill_into(&mut self.shape_mask);
+            } else if patch.is_pure_line(self.pen) {
                 self.lines.push((patch.region, patch.graph));
             } else if patch.reading.is_drawn {
                 drawn.push(patch);

@@ -135,6 +135,8 @@ pub(crate) struct Reading {
     pub(crate) usual: f64,
     /// Whether its ink was drawn line by line, though some of it may be filled.
     pub(crate) is_drawn: bool,
+    /// Whether it is short and swells towards its middle: a crescent.
+    pub(crate) is_lens: bool,
 }
 
 impl Reading {
@@ -144,8 +146,9 @@ impl Reading {
         let length = graph.length();
         let mean_width = area as f64 / length.max(1.0);
         let (long, bulky) = (length / mean_width, widest / mean_width);
-        if is_blob(graph) {
-            return Self { lines: Vec::new(), widest, long, usual, is_drawn: false };
+        let is_lens = is_lens(graph, bulky);
+        if is_lens || is_blob(graph) {
+            return Self { lines: Vec::new(), widest, long, usual, is_drawn: false, is_lens };
         }
         let reaches = graph.branches.iter().flat_map(|branch| Reach::all(graph, branch));
         let mut lines: Vec<Reach> = reaches.filter(Reach::is_line).collect();
@@ -153,7 +156,7 @@ impl Reading {
         let together: f64 = lines.iter().map(|line| line.length).sum();
         let is_drawn = together >= MANY_WIDTHS * widest
             || DRAWN.iter().any(|&(least, most)| long >= least && bulky <= most) && !tapers_all_along(graph);
-        Self { lines, widest, long, usual, is_drawn }
+        Self { lines, widest, long, usual, is_drawn, is_lens }
     }
 
     /// The usual width of its lines, px; 0 of none.
@@ -172,6 +175,21 @@ impl Reading {
         let sticks: Vec<Reach> = self.lines.iter().filter(is_stick).copied().collect();
         (!sticks.is_empty()).then(|| pen_of(&sticks))
     }
+}
+
+/// A crescent, an oval that is pointed at both ends: one way through, less than so many times as long as it is wide, so much wider
+/// at its widest than in the mean, and halfway to either end at least this share as wide as there. A pen's dash is as wide as in its mean,
+/// a brush's stroke is longer, and a disc with its stick is narrow on one side.
+const LENS_LONG: f64 = 6.5;
+const LENS_BULKY: f64 = 1.22;
+const LENS_HALFWAY: f64 = 0.55;
+
+fn is_lens(graph: &Graph, bulky: f64) -> bool {
+    let [branch] = &graph.branches[..] else { return false };
+    let widest = graph.widest();
+    let halfway = |quarter: usize| branch.radii[(branch.radii.len() - 1) * quarter / 4];
+    let is_long = branch.ring || branch.length() >= LENS_LONG * 2.0 * widest;
+    bulky >= LENS_BULKY && !is_long && halfway(1).min(halfway(3)) >= LENS_HALFWAY * widest
 }
 
 fn sorted(values: &[f64]) -> Vec<f64> {
