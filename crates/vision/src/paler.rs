@@ -24,6 +24,8 @@ const LEAST_PX: usize = 12;
 const LEAST_ROWS: usize = 40;
 /// A line that leaves the picture has less of its length on the border than this; what lies along it there is the end of the light.
 const ALONG_BORDER: f64 = 0.3;
+/// Just beyond a line's edge it is less dark than this share of the line.
+const FADED: f64 = 0.35;
 /// An edge's foot is this many of its widths from 10 to 90 % away from where it is cut.
 const FOOT: f64 = 0.9;
 /// Most pixels that are looked at.
@@ -43,7 +45,9 @@ pub(crate) fn with_paler(dark: &Plane<u8>, mut ink: Mask, strength: f64, edge_px
     }
     let side = (dark.width.min(dark.height) / SOLID_SHARE).max(LEAST_PX);
     let solid = drawn.clone().eroded(side);
-    regions(&drawn).iter().filter(|r| !is_drawn(r, &solid)).for_each(|region| region.erase_from(&mut drawn));
+    let edges = Edges { dark, drawn: drawn.clone(), near: &near, beyond: reach as isize + 1 };
+    let is_line = |region: &Region| is_drawn(region, &solid) && edges.are_sharp(region);
+    regions(&drawn).iter().filter(|r| !is_line(r)).for_each(|region| region.erase_from(&mut drawn));
     // up to the first ink's own edge, through what its blur hides
     for _ in 0..reach {
         drawn = drawn.dilated_by(1).and(&pale);
@@ -83,6 +87,34 @@ fn is_drawn(region: &Region, solid: &Mask) -> bool {
     let is_shadow = || at_border > 0 && region.cells(solid).next().is_some();
     let fades = at_border as f64 > ALONG_BORDER * length as f64;
     length >= LEAST_PX.max(solid.height / LEAST_ROWS) && !fades && !is_shadow()
+}
+
+/// How what may be a second ink ends.
+struct Edges<'a> {
+    dark: &'a Plane<u8>,
+    drawn: Mask,
+    near: &'a Mask,
+    /// What is so far from ink is beyond its edge, if that is as sharp as the first ink's, px.
+    beyond: isize,
+}
+
+impl Edges<'_> {
+    /// Whether there is paper just beyond a patch's edge: what fades over longer is a smudge, or light that is not even.
+    fn are_sharp(&self, region: &Region) -> bool {
+        let (mut inside, mut outside) = ((0.0, 0.0), (0.0, 0.0));
+        for (x, y) in region.places() {
+            inside = (inside.0 + 1.0, inside.1 + f64::from(self.dark.row(y)[x]));
+            let (x, y) = (x as isize, y as isize);
+            for (right, down) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
+                let (x, y) = (x + right * self.beyond, y + down * self.beyond);
+                let is_in = (0..self.dark.width as isize).contains(&x) && (0..self.dark.height as isize).contains(&y);
+                if is_in && !self.drawn.get(x, y) && !self.near.get(x, y) {
+                    outside = (outside.0 + 1.0, outside.1 + f64::from(self.dark.row(y as usize)[x as usize]));
+                }
+            }
+        }
+        outside.1 * inside.0 <= FADED * inside.1 * outside.0
+    }
 }
 
 #[cfg(test)]
