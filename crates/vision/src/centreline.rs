@@ -37,8 +37,8 @@ pub(crate) fn rows(dark: &Plane<u8>, shapes: &Mask, region: &Region, graph: &Gra
         drawn = Drawn::of(dark, shapes, graph, &bars);
     }
     let Drawn { mut lines, junctions, .. } = drawn;
-    for (port, stop) in &junctions.ends {
-        lines[port.line].end_at(port.end, *stop);
+    for (port, way) in &junctions.ends {
+        lines[port.line].end_along(port.end, way);
     }
     let mut found = strung_together(&lines, &junctions.joints);
     if found.len() > 1 {

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use tracelight_stroke::Point;
+use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::{Tip, inked_towards, meeting};
 use crate::graph::{Graph, Node};
@@ -47,8 +47,8 @@ pub(crate) struct Joint {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Junctions {
     pub(crate) joints: Vec<Joint>,
-    /// Ports that end there, each with the place where.
-    pub(crate) ends: Vec<(Port, Point)>,
+    /// Ports that end there, each with the way to the place where.
+    pub(crate) ends: Vec<(Port, Vec<Point>)>,
 }
 
 /// Nodes whose discs of ink nearly touch and are bridged are one junction: the cluster of each node, and which branches
@@ -143,9 +143,12 @@ impl Junctions {
     /// Points along all ways through the junctions, about 1 px apart.
     pub(crate) fn ways(&self) -> Vec<Point> {
         let mut ways: Vec<Point> = self.joints.iter().flat_map(|joint| &joint.bridge).copied().collect();
-        for (Port { tip, .. }, stop) in &self.ends {
-            let steps = tip.at.distance(*stop).ceil().max(1.0) as u32;
-            ways.extend((0..=steps).map(|k| tip.at.lerp(*stop, f64::from(k) / f64::from(steps))));
+        for (Port { tip, .. }, way) in &self.ends {
+            let from = std::iter::once(&tip.at).chain(way);
+            for (from, to) in from.zip(way) {
+                let steps = from.distance(*to).ceil().max(1.0) as u32;
+                ways.extend((0..=steps).map(|k| from.lerp(*to, f64::from(k) / f64::from(steps))));
+            }
         }
         ways
     }
@@ -153,7 +156,7 @@ impl Junctions {
     /// One junction: the straightest pairs first, then any two that are left.
     fn resolve(&mut self, dark: &Plane<u8>, mut left: Vec<Port>, lines: &[Line]) {
         if left.len() > MOST_PORTS {
-            self.ends.extend(left.into_iter().map(|p| (p, p.tip.at)));
+            self.ends.extend(left.into_iter().map(|p| (p, vec![p.tip.at])));
             return;
         }
         let tips: Vec<Tip> = left.iter().map(|p| p.tip).collect();
@@ -172,13 +175,42 @@ impl Junctions {
             let hits = self.joints[first..].iter().filter_map(|joint| hit(&port, joint, lines));
             let stop =
                 hits.chain(middle).min_by(|a, b| a.distance(port.tip.at).total_cmp(&b.distance(port.tip.at)));
-            let width = lines[port.line].width;
-            self.ends
-                .push((port, stop.map_or(port.tip.at, |stop| inked_towards(dark, port.tip.at, stop, width))));
+            let line = &lines[port.line];
+            let straight = stop.map(|stop| (stop, inked_towards(dark, port.tip.at, stop, line.width)));
+            let way = match straight {
+                Some((stop, end)) if stop == end => vec![end],
+                _ => self
+                    .round(first, lines, &port)
+                    .or(straight.map(|(_, end)| vec![end]))
+                    .unwrap_or(vec![port.tip.at]),
+            };
+            self.ends.push((port, way));
         }
+    }
+
+    /// The way of a port along its skeleton to the nearest place on the joints from number `first` on: where a line bends in the
+    /// ink that it shares with another, and carried straight on would miss it. `None` where it is hardly hidden.
+    fn round(&self, first: usize, lines: &[Line], port: &Port) -> Option<Vec<Point>> {
+        let line = &lines[port.line];
+        let pixels = &line.lost[port.end];
+        if polyline_length(pixels) < HIDDEN_PENS * line.width {
+            return None;
+        }
+        let node = *pixels.last()?;
+        let rows = self.joints[first..].iter().flat_map(|joint| row_of(joint, lines));
+        let place = rows.min_by(|a, b| a.distance_squared(node).total_cmp(&b.distance_squared(node)))?;
+        // no further than it is from where the ink is shared
+        let own = pixels.iter().position(|p| p.distance(place) <= 0.5 * line.width).unwrap_or(pixels.len());
+        // the mean of five pixels is off the steps of their grid
+        let smooth = pixels[..own]
+            .windows(5)
+            .map(|w| w.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2() / 5.0).to_point());
+        Some(smooth.chain([place]).collect())
     }
 }
 
+/// A line that is hidden for less than this, in its own pens, is carried straight on.
+const HIDDEN_PENS: f64 = 1.0;
 /// The pair of ports that bends least on the way from one to the other, if less than `most`.
 fn straightest(ports: &[Port], most: f64) -> Option<(usize, usize)> {
     let pairs = (0..ports.len()).flat_map(|i| (i + 1..ports.len()).map(move |j| (i, j)));
@@ -189,18 +221,23 @@ fn straightest(ports: &[Port], most: f64) -> Option<(usize, usize)> {
 
 /// Where a port carried straight on hits a joint's line.
 fn hit(port: &Port, joint: &Joint, lines: &[Line]) -> Option<Point> {
-    let [a, b] = joint.ports;
-    let mut row = near_tip(&lines[a.line], a.end);
-    row.reverse();
-    row.extend(&joint.bridge);
-    row.extend(near_tip(&lines[b.line], b.end));
-    row.windows(2).find_map(|w| {
+    row_of(joint, lines).windows(2).find_map(|w| {
         let (across, back) = (w[1] - w[0], port.tip.at - w[0]);
         let cross = port.tip.along.cross(across);
         let (ahead, share) = (-back.cross(across) / cross, port.tip.along.cross(back) / cross);
         (cross.abs() > 1e-9 && ahead > -1.0 && (0.0..=1.0).contains(&share))
             .then(|| port.tip.at + port.tip.along * ahead)
     })
+}
+
+/// The points of a joint, and of its two lines near it.
+fn row_of(joint: &Joint, lines: &[Line]) -> Vec<Point> {
+    let [a, b] = joint.ports;
+    let mut row = near_tip(&lines[a.line], a.end);
+    row.reverse();
+    row.extend(&joint.bridge);
+    row.extend(near_tip(&lines[b.line], b.end));
+    row
 }
 
 /// Up to 12 points of a line from one end on.

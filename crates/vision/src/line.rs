@@ -20,6 +20,8 @@ pub(crate) struct Line {
     pub(crate) ring: bool,
     /// Whether the pen was lifted at either end, away from other ink.
     pub(crate) free: [bool; 2],
+    /// The skeleton's way from either end on to its node, through ink in which the line cannot be seen.
+    pub(crate) lost: [Vec<Point>; 2],
 }
 
 impl Line {
@@ -42,7 +44,9 @@ impl Line {
             _ if points.is_empty() => points.push(branch.points[(from + to) / 2]),
             _ => {}
         }
-        let mut line = Self { points, width, nodes: branch.nodes, ring: branch.ring, free: [false; 2] };
+        let lost =
+            [0, 1].map(|end| branch.nodes[end].map_or_else(Vec::new, |_| way_on(branch, &points, end)));
+        let mut line = Self { points, width, nodes: branch.nodes, ring: branch.ring, free: [false; 2], lost };
         if !branch.ring {
             (0..2)
                 .filter(|&end| branch.nodes[end].is_none())
@@ -81,9 +85,9 @@ impl Line {
         self.end_with(end, tip.along, way);
     }
 
-    /// Carries an end on to `stop`, or back to it.
-    pub(crate) fn end_at(&mut self, end: usize, stop: Point) {
-        self.end_with(end, self.tip(end).along, std::iter::once(stop));
+    /// Carries an end on along a way, or back to where that begins.
+    pub(crate) fn end_along(&mut self, end: usize, way: &[Point]) {
+        self.end_with(end, self.tip(end).along, way.iter().copied());
     }
 
     /// Carries an end, whose direction is `along`, on along a way, or back to where that begins.
@@ -102,6 +106,17 @@ impl Line {
             self.points.reverse();
         }
     }
+}
+
+/// The pixels of a branch from the end of its line on.
+fn way_on(branch: &Branch, points: &[Point], end: usize) -> Vec<Point> {
+    let n = branch.points.len();
+    let pixel = |k: usize| branch.points[if end == 0 { k } else { n - 1 - k }];
+    let tip = points[end * (points.len() - 1)];
+    // the nearest, as seen from the node, of the half that is this end's
+    let half = (0..n.div_ceil(2)).map(|k| (pixel(k).distance_squared(tip), k));
+    let nearest = half.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, k)| k);
+    (0..nearest).rev().map(pixel).collect()
 }
 
 /// Takes away the points at an end that lean towards the ink of a junction: what lies off the straight line through

@@ -107,7 +107,8 @@ impl Edges<'_> {
             let (x, y) = (x as isize, y as isize);
             for (right, down) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
                 let (x, y) = (x + right * self.beyond, y + down * self.beyond);
-                let is_in = (0..self.dark.width as isize).contains(&x) && (0..self.dark.height as isize).contains(&y);
+                let is_in =
+                    (0..self.dark.width as isize).contains(&x) && (0..self.dark.height as isize).contains(&y);
                 if is_in && !self.drawn.get(x, y) && !self.near.get(x, y) {
                     outside = (outside.0 + 1.0, outside.1 + f64::from(self.dark.row(y as usize)[x as usize]));
                 }
