@@ -27,8 +27,8 @@ pub(crate) fn path(
     reach_px: f64,
     options: &Options,
 ) -> Option<Path> {
-    // corners near each other look like noise: that is never worth more than half the pen
-    let noise = (TOLERANCE_TO_NOISE * noise_px).min(reach_px.max(LEAST_NOISE_PX));
+    // corners near each other look like noise: that is never worth more than a quarter of the pen
+    let noise = (TOLERANCE_TO_NOISE * noise_px).min((0.5 * reach_px).max(LEAST_NOISE_PX));
     let tolerance = options.tolerance_px.max(noise);
     let fitted =
         |reach| fit(points, closed, &FitOptions { tolerance, corner_rad: options.corner_rad, reach });
