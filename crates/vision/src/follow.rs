@@ -8,8 +8,9 @@ use crate::Options;
 /// and the fit uses 0.7 of the tolerance.
 const TOLERANCE_TO_NOISE: f64 = 4.4;
 
-/// Noise of thin lines is worth up to this, px.
-const LEAST_NOISE_PX: f64 = 0.6;
+/// Noise is worth up to this share of the reach about a corner, which is half the pen, and for thin lines px.
+const NOISE_REACHES: f64 = 0.3;
+const LEAST_NOISE_PX: f64 = 0.5;
 
 /// Length over which a line is a parabola, but for noise, px: a bend of 16 px leaves 0.03 px.
 const WINDOW_PX: f64 = 13.0;
@@ -27,8 +28,8 @@ pub(crate) fn path(
     reach_px: f64,
     options: &Options,
 ) -> Option<Path> {
-    // corners near each other look like noise: that is never worth more than a quarter of the pen
-    let noise = (TOLERANCE_TO_NOISE * noise_px).min((0.5 * reach_px).max(LEAST_NOISE_PX));
+    // corners near each other, and tight bends, look like noise
+    let noise = (TOLERANCE_TO_NOISE * noise_px).min((NOISE_REACHES * reach_px).max(LEAST_NOISE_PX));
     let tolerance = options.tolerance_px.max(noise);
     let fitted =
         |reach| fit(points, closed, &FitOptions { tolerance, corner_rad: options.corner_rad, reach });
