@@ -73,7 +73,7 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
         let s = (0.5 * others[0].cross(others[1]).atan2(others[0].dot(others[1])).abs()).sin();
         let length = (pen + 0.5) * ((1.0 - s) / (s * (1.0 + s)).max(0.05) + 1.0 / s.max(0.1));
         let midway = out.dot(back) > 0.9 * out.hypot() * back.hypot() && !is_bent(&graph.branches[end.0]);
-        s < MITRED && midway && out.hypot() < (1.25 * length + 2.5).max(most)
+        s < MITRED && midway && out.hypot() < (1.25 * length + (1.0 + pen).min(2.5)).max(most)
     })
 }
 
