@@ -157,6 +157,8 @@ const HAIR_LONG: f64 = 1.6;
 /// A speck this near to a line, pen widths, and not much smaller than the pen, squared, belongs to it: the dot of an i.
 const BELONGS_PENS: f64 = 4.0;
 const LEAST_DOT_PENS: f64 = 0.4;
+/// A speck whose skeleton is so many times as long as its ink is wide in the mean was drawn line by line.
+const MARK_LONG: f64 = 3.5;
 /// Unless at least so many, and this many times those near lines, lie far from all that are as large but for this ratio.
 const FEWEST_STREWN: usize = 12;
 const STREWN: usize = 2;
@@ -205,8 +207,13 @@ fn dusted(dark: &Plane<u8>, mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<
         patches.iter().filter(|patch| speck(patch)).partition(|patch| is_near(patch));
     let strewn = Strewn { near: areas(&near), far: areas(&far) };
     let belongs = |patch: &Patch| dot(patch) && is_near(patch) && !strewn.has(patch.region.area());
+    // a cross, a ring, a tick, wherever it is: drawn line by line, and as dark as the others
+    let is_mark = |patch: &Patch| {
+        let Patch { region, reading, .. } = patch;
+        region.area() as f64 >= SPECK_PX && reading.long >= MARK_LONG && is_dark(region)
+    };
     let (kept, dust): (Vec<_>, Vec<_>) =
-        patches.into_iter().partition(|patch| !speck(patch) || belongs(patch));
+        patches.into_iter().partition(|patch| !speck(patch) || belongs(patch) || is_mark(patch));
     (kept, dust.into_iter().map(|patch| patch.region).collect())
 }
 
