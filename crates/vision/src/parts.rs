@@ -167,11 +167,11 @@ const STREWN_ALIKE: f64 = 1.6;
 /// and grit are paler, an eye is drawn with the same pen.
 const AS_DARK: f64 = 0.75;
 
-/// The level that half of some pixels reach.
-fn middle_level(dark: &Plane<u8>, places: impl Iterator<Item = (usize, usize)>) -> u8 {
+/// The level that one in so many of some pixels reaches.
+fn level_of(dark: &Plane<u8>, places: impl Iterator<Item = (usize, usize)>, one_in: usize) -> u8 {
     let mut counts = [0_usize; 256];
     places.for_each(|(x, y)| counts[usize::from(dark.row(y)[x])] += 1);
-    let mut left = counts.iter().sum::<usize>().div_ceil(2);
+    let mut left = counts.iter().sum::<usize>().div_ceil(one_in);
     let reached = |level: &u8| {
         left = left.saturating_sub(counts[usize::from(*level)]);
         left == 0
@@ -193,24 +193,24 @@ fn dusted(dark: &Plane<u8>, mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<
     }
     let reach = (BELONGS_PENS * pen).max(SPECK_PX) as usize;
     let usual = OnceCell::new();
-    let is_dark = |region: &Region| {
-        let drawn = usual.get_or_init(|| middle_level(dark, drawn.cells().map(|cell| drawn.place(cell))));
-        f64::from(middle_level(dark, region.places())) >= AS_DARK * f64::from(*drawn)
+    let is_dark = |region: &Region, one_in: usize| {
+        let drawn = usual.get_or_init(|| level_of(dark, drawn.cells().map(|cell| drawn.place(cell)), 2));
+        f64::from(level_of(dark, region.places(), one_in)) >= AS_DARK * f64::from(*drawn)
     };
     let dot = |patch: &Patch| {
         let is_large = patch.region.area() as f64 >= LEAST_DOT_PENS * pen * pen;
         let is_round = patch.reading.widest >= HAIR_PENS * pen;
-        is_large && (is_round || is_dark(&patch.region))
+        is_large && (is_round || is_dark(&patch.region, 2))
     };
     let is_near = |patch: &Patch| patch.region.is_near(&drawn, reach);
     let (near, far): (Vec<&Patch>, Vec<&Patch>) =
         patches.iter().filter(|patch| speck(patch)).partition(|patch| is_near(patch));
     let strewn = Strewn { near: areas(&near), far: areas(&far) };
     let belongs = |patch: &Patch| dot(patch) && is_near(patch) && !strewn.has(patch.region.area());
-    // a cross, a ring, a tick, wherever it is: drawn line by line, and as dark as the others
+    // a cross, a ring, a tick, wherever it is: drawn line by line, and somewhere as dark as the others, for most of it may be edge
     let is_mark = |patch: &Patch| {
         let Patch { region, reading, .. } = patch;
-        region.area() as f64 >= SPECK_PX && reading.long >= MARK_LONG && is_dark(region)
+        region.area() as f64 >= SPECK_PX && reading.long >= MARK_LONG && is_dark(region, 8)
     };
     let (kept, dust): (Vec<_>, Vec<_>) =
         patches.into_iter().partition(|patch| !speck(patch) || belongs(patch) || is_mark(patch));
