@@ -51,6 +51,11 @@ impl Tip {
         Self { at, along: Vec2::ZERO, curve: None }
     }
 
+    /// A lone point that leads to another place.
+    pub(crate) fn towards(at: Point, place: Point) -> Self {
+        Self { along: (place - at).normalize(), ..Self::single(at) }
+    }
+
     /// Where the row's curve is, and where it leads, `ahead` of the tip.
     pub(crate) fn beyond(&self, ahead: f64) -> (Point, Vec2) {
         let on = |c: Parabola| (c.point(-ahead), -c.tangent(-ahead));

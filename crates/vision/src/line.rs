@@ -20,7 +20,7 @@ pub(crate) struct Line {
     pub(crate) ring: bool,
     /// Whether the pen was lifted at either end, away from other ink.
     pub(crate) free: [bool; 2],
-    /// The skeleton's way from either end on to its node, through ink in which the line cannot be seen.
+    /// The skeleton's way from either end on to its node and that itself, through ink in which the line cannot be seen.
     pub(crate) lost: [Vec<Point>; 2],
 }
 
@@ -44,8 +44,13 @@ impl Line {
             _ if points.is_empty() => points.push(branch.points[(from + to) / 2]),
             _ => {}
         }
-        let lost =
-            [0, 1].map(|end| branch.nodes[end].map_or_else(Vec::new, |_| way_on(branch, &points, end)));
+        let to_node = |end: usize| {
+            let node = graph.nodes[branch.nodes[end]?];
+            let mut way = way_on(branch, &points, end);
+            way.push(node.at);
+            Some(way)
+        };
+        let lost = [0, 1].map(|end| to_node(end).unwrap_or_default());
         let mut line = Self { points, width, nodes: branch.nodes, ring: branch.ring, free: [false; 2], lost };
         if !branch.ring {
             (0..2)
@@ -60,9 +65,13 @@ impl Line {
         polyline_length(&self.points)
     }
 
-    /// The line's end (0: at its first point) and the direction out of it.
+    /// The line's end (0: at its first point) and the direction out of it: that of a single point is to its node.
     pub(crate) fn tip(&self, end: usize) -> Tip {
-        Tip::of(&self.points, end).unwrap_or(Tip::single(self.points[0]))
+        let tip = Tip::of(&self.points, end).unwrap_or(Tip::single(self.points[0]));
+        match (&self.points[..], self.lost[end].last()) {
+            ([only], Some(node)) if node != only => Tip::towards(*only, *node),
+            _ => tip,
+        }
     }
 
     /// Moves a free end, along its curve, to where the pen was lifted or where the line meets a shape.
