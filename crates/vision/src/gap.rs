@@ -50,7 +50,7 @@ pub(crate) fn bridged(dark: &Plane<u8>, rows: Vec<Row>) -> Vec<Row> {
 }
 
 /// A line ends on another's very end if it is this near, pens.
-const CORNER_PENS: f64 = 0.5;
+const CORNER_PENS: f64 = 0.75;
 
 /// The rows with those joined that end in one place, with nothing else: a corner, however sharp. One of them may have been ended
 /// on the other, as on a bar.

@@ -14,15 +14,15 @@ use crate::ridge::median;
 
 /// Along a pencil's line the darkness varies by more than this share of its usual one, and from line to line by more than that:
 /// measured from the 15th to the 85th percentile. Pens have 0.0 to 0.3 and 0.0 to 0.2, pencils in sketches 0.4 to 0.6 and 0.3 to 0.6.
-const VARIES_ALONG: f64 = 0.35;
-const VARIES_BETWEEN: f64 = 0.25;
+const VARIES_ALONG: f64 = 0.3;
+const VARIES_BETWEEN: f64 = 0.2;
 /// Fewer points tell no variation, and fewer lines none between them.
 const LEAST_POINTS: usize = 12;
 const LEAST_ROWS: usize = 4;
 /// The middles of two passes are no further apart than this, pens.
 const APART_PENS: f64 = 1.9;
 /// The slit between them is at least as dark as this share of the paler one.
-const SLIT: f64 = 0.2;
+const SLIT: f64 = 0.15;
 /// They lead the same way within this angle, rad.
 const ALIKE: f64 = 0.45;
 /// They run beside each other for at least so many pens.
