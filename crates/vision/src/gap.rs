@@ -23,9 +23,9 @@ const PALE: f64 = 0.6;
 /// Two ends of one line differ less than this in the width of their pen, as a ratio.
 const LIKE: f64 = 1.6;
 
-/// The most paper that a line may cross: what is bridged, less the pen's two halves, and the ink's edge on either side, px.
+/// The most paper that a line may cross, from a pixel beside ink to the next one: what is bridged, less the pen's two halves, px.
 pub(crate) fn widest_paper(width: f64) -> f64 {
-    (WIDEST_PENS - 1.0) * width + LEAST_PX + 2.0
+    (WIDEST_PENS - 1.0) * width + LEAST_PX
 }
 
 /// A free end of a row.
@@ -92,7 +92,7 @@ type Place = (usize, usize);
 fn pairs(dark: &Plane<u8>, rows: &[Row]) -> Vec<(f64, Place, Place)> {
     let ends = ends(rows);
     let usual = median(&rows.iter().map(|row| row.width).collect::<Vec<_>>());
-    let widest = |a: &End, b: &End| WIDEST_PENS * a.width.max(b.width).max(0.8 * usual) + LEAST_PX;
+    let widest = |a: &End, b: &End| WIDEST_PENS * a.width.min(b.width).max(0.8 * usual) + LEAST_PX;
     let farthest = ends.iter().map(|e| widest(e, e)).fold(0.0, f64::max);
     // sorted by column, only near ends are compared
     let mut order: Vec<usize> = (0..ends.len()).collect();
