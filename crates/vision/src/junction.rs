@@ -18,10 +18,9 @@ const THROUGH: f64 = PI / 3.0;
 /// A pair that turns more than this is not joined: it would go back on itself, rad (165°).
 const BACK: f64 = 165.0 * PI / 180.0;
 
-/// Lines that cross bend less than this on the way over, rad (40°).
-const CROSSING: f64 = 40.0 * PI / 180.0;
-/// Longest common part of two crossing lines, pen widths: that of a crossing at 15°.
-const LONGEST_CROSSING: f64 = 6.0;
+/// Longest common parts of two crossing lines, pen widths, and by how much the lines may bend on the way over, rad: that of a
+/// crossing at 15° by 40°, that of one at 3° by 10°.
+const CROSSINGS: [(f64, f64); 2] = [(6.0, 40.0 * PI / 180.0), (24.0, 10.0 * PI / 180.0)];
 
 /// Where more lines than this meet, no pen drew them through: texture, not a drawing.
 const MOST_PORTS: usize = 32;
@@ -85,8 +84,9 @@ pub(crate) fn merge_acute(lines: &mut Vec<Line>, cluster: &mut [usize]) {
     for (number, line) in lines.iter().enumerate() {
         let [Some(a), Some(b)] = line.nodes else { continue };
         let (a, b) = (root(&mut joined, cluster[a]), root(&mut joined, cluster[b]));
-        let short = line.length() < LONGEST_CROSSING * line.width;
-        if a != b && short && is_acute(number, &ports[a], &ports[b]) {
+        let pens = line.length() / line.width;
+        let most = CROSSINGS.iter().find(|(longest, _)| pens < *longest).map(|(_, most)| *most);
+        if a != b && most.is_some_and(|most| is_acute(number, &ports[a], &ports[b], most)) {
             gone[number] = true;
             joined[b] = a;
             let moved = std::mem::take(&mut ports[b]);
@@ -109,11 +109,11 @@ fn root(joined: &mut [usize], mut n: usize) -> usize {
 }
 
 /// Whether a line between two junctions of three only is the common part of two that cross there.
-fn is_acute(number: usize, from: &[Port], to: &[Port]) -> bool {
+fn is_acute(number: usize, from: &[Port], to: &[Port], most: f64) -> bool {
     let others = |at: &[Port]| at.iter().filter(|p| p.line != number).map(|p| p.tip).collect::<Vec<Tip>>();
     let (before, after) = (others(from), others(to));
     let ([p, q], [r, s]) = (&before[..], &after[..]) else { return false };
-    p.crosses(r, q, s, CROSSING) || p.crosses(s, q, r, CROSSING)
+    p.crosses(r, q, s, most) || p.crosses(s, q, r, most)
 }
 
 /// The ends of lines at each cluster.
