@@ -94,6 +94,20 @@ impl Tip {
         angle(self.along, over).abs() + angle(over, -other.along).abs()
     }
 
+    /// By how much a line would have to leave its own curve to get from this tip to another, and from that one to this: off it as a
+    /// share of the way, and turned from it, rad. A straight line that runs on has 0, and so has a bow that bends on.
+    pub(crate) fn misfit(&self, other: &Tip) -> f64 {
+        let way = self.at.distance(other.at);
+        if way < 0.5 {
+            return self.turn(other).abs();
+        }
+        let off = |from: &Tip, to: &Tip| {
+            let (place, along) = from.beyond(way);
+            place.distance(to.at) / way + 0.5 * angle(along, -to.along).abs()
+        };
+        0.5 * (off(self, other) + off(other, self))
+    }
+
     /// Whether lines from here to `other` and from `across` to `beyond` are two that cross: neither bends by `most`
     /// and the ways over cut each other.
     pub(crate) fn crosses(&self, other: &Tip, across: &Tip, beyond: &Tip, most: f64) -> bool {

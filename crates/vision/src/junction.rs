@@ -20,7 +20,7 @@ const BACK: f64 = 165.0 * PI / 180.0;
 
 /// Longest common parts of two crossing lines, pen widths, and by how much the lines may bend on the way over, rad: that of a
 /// crossing at 15° by 40°, that of one at 3° by 10°.
-const CROSSINGS: [(f64, f64); 2] = [(6.0, 40.0 * PI / 180.0), (24.0, 10.0 * PI / 180.0)];
+const CROSSINGS: [(f64, f64); 2] = [(6.0, 40.0 * PI / 180.0), (32.0, 10.0 * PI / 180.0)];
 
 /// Where more lines than this meet, no pen drew them through: texture, not a drawing.
 const MOST_PORTS: usize = 32;
@@ -113,7 +113,36 @@ fn is_acute(number: usize, from: &[Port], to: &[Port], most: f64) -> bool {
     let others = |at: &[Port]| at.iter().filter(|p| p.line != number).map(|p| p.tip).collect::<Vec<Tip>>();
     let (before, after) = (others(from), others(to));
     let ([p, q], [r, s]) = (&before[..], &after[..]) else { return false };
-    p.crosses(r, q, s, most) || p.crosses(s, q, r, most)
+    p.crosses(r, q, s, most) || p.crosses(s, q, r, most) || touch((p, r), (q, s)) || touch((p, s), (q, r))
+}
+
+/// Whether two lines that share ink for a while both bend on there as before.
+fn touch((a, b): (&Tip, &Tip), (c, d): (&Tip, &Tip)) -> bool {
+    a.misfit(b) < TOUCHING && c.misfit(d) < TOUCHING
+}
+
+/// Two lines that touch leave their own curves by less than this over their common ink; see [`Tip::misfit`].
+const TOUCHING: f64 = 0.12;
+/// Of two ways to pair four lines the one is taken that leaves their curves so much less.
+const CLEARLY: f64 = 0.6;
+
+/// The pairs of four ports of two lines that touch or cross at a few degrees: those whose lines leave their own curves least. `None`
+/// where they meet at an angle, which is clearer.
+fn bent_on(ports: &[Port]) -> Option<[(usize, usize); 2]> {
+    let [a, b, c, d] = ports else { return None };
+    let ways = [
+        ((a, b), (c, d), [(0, 1), (2, 3)]),
+        ((a, c), (b, d), [(0, 2), (1, 3)]),
+        ((a, d), (b, c), [(0, 3), (1, 2)]),
+    ];
+    let mut likely: Vec<(f64, [(usize, usize); 2])> = ways
+        .into_iter()
+        .filter(|((p, q), (r, s), _)| p.tip.bend(&q.tip).max(r.tip.bend(&s.tip)) < THROUGH)
+        .map(|((p, q), (r, s), pairs)| (p.tip.misfit(&q.tip) + r.tip.misfit(&s.tip), pairs))
+        .collect();
+    likely.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [first, second, ..] = &likely[..] else { return None };
+    (first.0 < CLEARLY * second.0).then_some(first.1)
 }
 
 /// The ends of lines at each cluster.
@@ -162,6 +191,13 @@ impl Junctions {
         let tips: Vec<Tip> = left.iter().map(|p| p.tip).collect();
         let middle = meeting(&tips);
         let first = self.joints.len();
+        if let Some([(a, b), (c, d)]) = bent_on(&left) {
+            let four = std::mem::take(&mut left);
+            for (a, b) in [(four[a], four[b]), (four[c], four[d])] {
+                let bridge = a.tip.bridge(&b.tip, dark, &[]);
+                self.joints.push(Joint { ports: [a, b], bridge });
+            }
+        }
         for most in [THROUGH, BACK] {
             while let Some((i, j)) = straightest(&left, most) {
                 let (b, a) = (left.remove(j), left.remove(i));
