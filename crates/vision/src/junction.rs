@@ -123,6 +123,8 @@ fn touch((a, b): (&Tip, &Tip), (c, d): (&Tip, &Tip)) -> bool {
 
 /// Two lines that touch leave their own curves by less than this over their common ink; see [`Tip::misfit`].
 const TOUCHING: f64 = 0.12;
+/// A line bends by less than this over the ink that it shares: as a small ring does that touches a larger one, rad (100°).
+const AROUND: f64 = 100.0 * PI / 180.0;
 /// Of two ways to pair four lines the one is taken that leaves their curves so much less.
 const CLEARLY: f64 = 0.6;
 
@@ -137,7 +139,7 @@ fn bent_on(ports: &[Port]) -> Option<[(usize, usize); 2]> {
     ];
     let mut likely: Vec<(f64, [(usize, usize); 2])> = ways
         .into_iter()
-        .filter(|((p, q), (r, s), _)| p.tip.bend(&q.tip).max(r.tip.bend(&s.tip)) < THROUGH)
+        .filter(|((p, q), (r, s), _)| p.tip.bend(&q.tip).max(r.tip.bend(&s.tip)) < AROUND)
         .map(|((p, q), (r, s), pairs)| (p.tip.misfit(&q.tip) + r.tip.misfit(&s.tip), pairs))
         .collect();
     likely.sort_by(|a, b| a.0.total_cmp(&b.0));
