@@ -1,6 +1,6 @@
 //! From points found in an image to a path.
 
-use tracelight_stroke::{FitOptions, Parabola, Path, Point, fit, polyline_length, simplify};
+use tracelight_stroke::{FitOptions, Parabola, Path, Piece, Point, fit, polyline_length, simplify};
 
 use crate::Options;
 
@@ -38,11 +38,48 @@ pub(crate) fn path(
     let first = fitted(reach_px)?;
     let tame = |path: &Path| stays_near(path, points, margin);
     if tame(&first) {
-        return Some(first);
+        // a tight bow looks like a corner, whose points are not to be trusted
+        let bow = cuts_short(&first, points, reach_px).then(|| fitted(options.tolerance_px)).flatten();
+        let round = bow.filter(|bow| tame(bow) && !cuts_short(bow, points, reach_px));
+        return Some(round.unwrap_or(first));
     }
     let second = fitted(options.tolerance_px).filter(tame);
     second.or_else(|| Path::polyline(&simplify(points, closed, tolerance), closed))
 }
+
+/// Points this far outside a corner, in reaches, belong to no corner: those of one lie inside, for its skeleton is rounded.
+const OUTSIDE: f64 = 0.4;
+
+/// Whether a path has a corner that cuts its points off.
+fn cuts_short(path: &Path, points: &[Point], reach: f64) -> bool {
+    /// Samples along either side of a corner.
+    const SAMPLES: u32 = 12;
+    let pieces: Vec<Piece> = path.pieces().collect();
+    let first = path.is_closed().then(|| pieces.first()).flatten();
+    let after = pieces.iter().skip(1).chain(first);
+    pieces.iter().zip(after).any(|(a, b)| {
+        let (into, out) = (a.end_tangent(), b.start_tangent());
+        if into.cross(out).atan2(into.dot(out)).abs() < LEAST_CORNER_RAD {
+            return false;
+        }
+        let at = b.from;
+        let share = |piece: &Piece| (3.0 * reach / piece.length(1.0).max(1e-9)).min(1.0) / f64::from(SAMPLES);
+        let (before, behind) = (share(a), share(b));
+        let side: Vec<Point> = (0..=SAMPLES).rev().map(|k| a.at(1.0 - before * f64::from(k))).collect();
+        let sides: Vec<Point> =
+            side.into_iter().chain((1..=SAMPLES).map(|k| b.at(behind * f64::from(k)))).collect();
+        let inward = (sides[0] - at) + (sides[sides.len() - 1] - at);
+        points.iter().filter(|p| p.distance(at) < 2.0 * reach).any(|p| {
+            let nearest =
+                sides.iter().min_by(|a, b| a.distance_squared(*p).total_cmp(&b.distance_squared(*p)));
+            let off = *p - *nearest.unwrap_or(&at);
+            off.dot(inward) < 0.0 && off.hypot() > OUTSIDE * reach
+        })
+    })
+}
+
+/// From this change of direction on two pieces of a path make a corner, rad (25°).
+const LEAST_CORNER_RAD: f64 = 0.44;
 
 /// Whether a path keeps within the bounding box of its points, widened by `margin`.
 fn stays_near(path: &Path, points: &[Point], margin: f64) -> bool {
