@@ -113,7 +113,14 @@ fn pen_of(rows: &[Row]) -> f64 {
 pub(crate) fn stroke(dark: &Plane<u8>, row: &Row, options: &Options) -> Option<Stroke> {
     // a line that was carried on out of the picture ends at its border
     let points: Vec<Point> = row.points.iter().map(|&p| dark.clamp(p)).collect();
-    let path = follow::path(&points, row.closed, follow::noise_px(&points), 0.5 * row.width, options)?;
+    let path = follow::path(
+        &points,
+        row.closed,
+        follow::noise_px(&points),
+        0.5 * row.width,
+        |p| dark.at(p),
+        options,
+    )?;
     Some(Stroke { pen: Some(row.width), ..Stroke::new(path) })
 }
 

@@ -20,12 +20,13 @@ const LEAST_WINDOW: usize = 6;
 const MOST_WINDOWS: usize = 100;
 
 /// The path through points; where their noise is worth more than the tolerance, the tolerance gives way. `reach_px`
-/// is how far about a corner they are not to be trusted.
+/// is how far about a corner they are not to be trusted, `level` how dark it is at a place.
 pub(crate) fn path(
     points: &[Point],
     closed: bool,
     noise_px: f64,
     reach_px: f64,
+    level: impl Fn(Point) -> f64,
     options: &Options,
 ) -> Option<Path> {
     // corners near each other, and tight bends, look like noise
@@ -39,8 +40,9 @@ pub(crate) fn path(
     let tame = |path: &Path| stays_near(path, points, margin);
     if tame(&first) {
         // a tight bow looks like a corner, whose points are not to be trusted
-        let bow = cuts_short(&first, points, reach_px).then(|| fitted(options.tolerance_px)).flatten();
-        let round = bow.filter(|bow| tame(bow) && !cuts_short(bow, points, reach_px));
+        let is_bow = |path: &Path| has_false_corner(path, points, reach_px, &level);
+        let bow = is_bow(&first).then(|| fitted(options.tolerance_px)).flatten();
+        let round = bow.filter(|bow| tame(bow) && !is_bow(bow));
         return Some(round.unwrap_or(first));
     }
     let second = fitted(options.tolerance_px).filter(tame);
@@ -50,8 +52,11 @@ pub(crate) fn path(
 /// Points this far outside a corner, in reaches, belong to no corner: those of one lie inside, for its skeleton is rounded.
 const OUTSIDE: f64 = 0.4;
 
-/// Whether a path has a corner that cuts its points off.
-fn cuts_short(path: &Path, points: &[Point], reach: f64) -> bool {
+/// At a corner it is at least this share as dark as at the nearest point.
+const CORNER_LEVEL: f64 = 1.0 / 3.0;
+
+/// Whether a path has a corner that cuts its points off, or lies off the ink.
+fn has_false_corner(path: &Path, points: &[Point], reach: f64, level: impl Fn(Point) -> f64) -> bool {
     /// Samples along either side of a corner.
     const SAMPLES: u32 = 12;
     let pieces: Vec<Piece> = path.pieces().collect();
@@ -69,12 +74,16 @@ fn cuts_short(path: &Path, points: &[Point], reach: f64) -> bool {
         let sides: Vec<Point> =
             side.into_iter().chain((1..=SAMPLES).map(|k| b.at(behind * f64::from(k)))).collect();
         let inward = (sides[0] - at) + (sides[sides.len() - 1] - at);
-        points.iter().filter(|p| p.distance(at) < 2.0 * reach).any(|p| {
-            let nearest =
-                sides.iter().min_by(|a, b| a.distance_squared(*p).total_cmp(&b.distance_squared(*p)));
-            let off = *p - *nearest.unwrap_or(&at);
-            off.dot(inward) < 0.0 && off.hypot() > OUTSIDE * reach
-        })
+        let near = || points.iter().filter(|p| p.distance(at) < 2.0 * reach);
+        let nearest = near().min_by(|a, b| a.distance_squared(at).total_cmp(&b.distance_squared(at)));
+        let is_off = |p: &Point| level(at) < CORNER_LEVEL * level(*p);
+        nearest.is_some_and(is_off)
+            || near().any(|p| {
+                let nearest =
+                    sides.iter().min_by(|a, b| a.distance_squared(*p).total_cmp(&b.distance_squared(*p)));
+                let off = *p - *nearest.unwrap_or(&at);
+                off.dot(inward) < 0.0 && off.hypot() > OUTSIDE * reach
+            })
     })
 }
 

@@ -73,7 +73,7 @@ fn stroke(points: &[Point], edge_px: f64, options: &Options) -> Option<Stroke> {
     let unbroken = points.chunk_by(|a, b| a.distance(*b) < 2.0);
     let together = if points.len() >= MANY || edge_px >= BLURRED_PX { 2 } else { 1 };
     let fewer: Vec<Point> = unbroken.flat_map(|row| row.chunks(together)).map(mean).collect();
-    let path = follow::path(&fewer, true, follow::noise_px(points), REACH_PX, options)?;
+    let path = follow::path(&fewer, true, follow::noise_px(points), REACH_PX, |_| 1.0, options)?;
     Some(Stroke { kind: StrokeKind::Outline, ..Stroke::new(path) })
 }
 
