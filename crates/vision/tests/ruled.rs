@@ -130,6 +130,42 @@ fn a_drawings_own_parallel_lines_stay() {
     }
 }
 
+/// A ruled sheet that lies turned on a dark table; its rules end at its edges, not at the picture's.
+#[test]
+fn rules_of_a_sheet_that_lies_turned_on_a_table_are_no_strokes() {
+    for degrees in [-11.0, -4.0, 3.0, 9.0, 14.0_f64] {
+        let along = Vec2::from_angle(degrees.to_radians());
+        let across = Vec2::new(-along.y, along.x);
+        let at = |x: f64, y: f64| Point::new(320.0, 240.0) + along * x + across * y;
+        let sheet: Vec<Point> = [(-220.0, -160.0), (220.0, -160.0), (220.0, 160.0), (-220.0, 160.0)]
+            .map(|(x, y)| at(x, y))
+            .to_vec();
+        let (mut paper, mut rules, mut ink) =
+            (Canvas::new(WIDTH, HEIGHT), Canvas::new(WIDTH, HEIGHT), Canvas::new(WIDTH, HEIGHT));
+        paper.fill(&[sheet]);
+        (0..12).for_each(|k| {
+            let y = -148.0 + 26.0 * f64::from(k);
+            rules.pen(&[at(-220.0, y), at(220.0, y)], 2.0);
+        });
+        let figure: Vec<Vec<Point>> = vec![
+            (0..=120)
+                .map(|k| at(-80.0, -10.0) + Vec2::from_angle(TAU * f64::from(k) / 120.0) * 61.7)
+                .collect(),
+            vec![at(60.0, -110.0), at(150.0, 90.0)],
+        ];
+        figure.iter().for_each(|line| ink.pen(line, 4.0));
+        let pixel = |((paper, rule), ink): ((f64, f64), f64)| {
+            let on_sheet = 225.0 - 105.0 * rule;
+            let seen = 70.0 + (on_sheet - 70.0) * paper;
+            (seen + (35.0 - seen) * ink) as u8
+        };
+        let levels = paper.shares().zip(rules.shares()).zip(ink.shares()).map(pixel).collect();
+        let found = trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap();
+        let rules = found.rules.map(|rules| rules.combs.len());
+        assert_eq!((found.strokes.strokes.len(), rules), (2, Some(1)), "turned by {degrees}°");
+    }
+}
+
 /// Dots on a lattice are the paper's, also those that lie near lines.
 #[test]
 fn the_dots_of_dotted_paper_are_no_strokes() {

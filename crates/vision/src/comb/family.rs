@@ -277,13 +277,12 @@ impl Law {
         let is_reached = |k: usize| most(found.iter().filter(|(_, seen)| seen[k].is_some()).count());
         // by rule: where the sheet is turned in the picture, each has its own ends
         let short = if strips.is_cut_out && found.len() >= MANY { SHORT } else { 1 };
-        let is_seen = |seen: &[Option<Peak>], k: usize| seen[k].is_some();
         let is_within = |index: i32, k: usize| all[k].has(self.at(f64::from(index), all[k].at));
         let starts = found.iter().filter(|(index, seen)| {
-            (0..all.len()).filter(|&k| is_within(*index, k)).take(short).any(|k| is_seen(seen, k))
+            (0..all.len()).filter(|&k| is_within(*index, k)).take(short).any(|k| seen[k].is_some())
         });
         let ends = found.iter().filter(|(index, seen)| {
-            (0..all.len()).rev().filter(|&k| is_within(*index, k)).take(short).any(|k| is_seen(seen, k))
+            (0..all.len()).rev().filter(|&k| is_within(*index, k)).take(short).any(|k| seen[k].is_some())
         });
         let (is_started, is_ended) = (most(starts.count()), most(ends.count()));
         // the strips just within such a line

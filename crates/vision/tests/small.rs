@@ -1,0 +1,172 @@
+//! Small figures and sharp angles come out as their strokes: crosses of a few pixels, corners however sharp, tight bows, lines that
+//! cross at a few degrees or touch, small crescents.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
+
+use std::f64::consts::{PI, TAU};
+
+#[path = "support/raster.rs"]
+#[allow(dead_code, reason = "each test draws with some of it")]
+mod raster;
+
+use raster::Canvas;
+use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2, compare_polylines};
+use tracelight_vision::{Grey, Options, trace};
+
+const WIDTH: usize = 480;
+const HEIGHT: usize = 360;
+
+/// The strokes of dark ink on white paper.
+fn strokes(canvas: &Canvas) -> Vec<Stroke> {
+    let levels = canvas.shares().map(|s| (250.0 - 220.0 * s) as u8).collect();
+    trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap().strokes.strokes
+}
+
+/// Checks that each line has a stroke of its own that covers nine tenths of it to `within` px, and lies on it to nine tenths, and that
+/// there are no others.
+fn each_is_drawn(lines: &[Vec<Point>], pen: f64, within: f64, what: &str) {
+    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    lines.iter().for_each(|line| canvas.pen(line, pen));
+    let found = strokes(&canvas);
+    assert_eq!(found.len(), lines.len(), "{what}");
+    for (number, line) in lines.iter().enumerate() {
+        let own = found.iter().any(|stroke| {
+            let drawn = [stroke.path.flatten(0.02)];
+            let comparison = compare_polylines(&drawn, std::slice::from_ref(line), within).unwrap();
+            comparison.coverage > 0.9 && comparison.precision > 0.9
+        });
+        assert!(own, "{what}: line {number} has no stroke of its own");
+    }
+}
+
+fn arc(centre: (f64, f64), radius: f64, from: f64, sweep: f64) -> Vec<Point> {
+    let at = |k: i32| Point::from(centre) + Vec2::from_angle(from + sweep * f64::from(k) / 160.0) * radius;
+    (0..=160).map(at).collect()
+}
+
+/// A line of some length about a place.
+fn bar(middle: (f64, f64), length: f64, angle: f64) -> Vec<Point> {
+    let half = Vec2::from_angle(angle) * (0.5 * length);
+    vec![Point::from(middle) - half, Point::from(middle) + half]
+}
+
+#[test]
+fn small_crosses_run_through() {
+    for (size, pen) in [(8.0, 1.5), (10.0, 1.8), (14.0, 2.5)] {
+        let lines: Vec<Vec<Point>> = (0..12)
+            .flat_map(|k| {
+                let middle = (60.0 + 35.7 * f64::from(k % 4), 60.0 + 41.3 * f64::from(k / 4));
+                [0.0, 0.5 * PI].map(|turn| bar(middle, size, turn + 0.26 * f64::from(k)))
+            })
+            .collect();
+        each_is_drawn(&lines, pen, 2.0, &format!("crosses of {size} px"));
+    }
+}
+
+#[test]
+fn the_bar_of_a_small_t_is_whole() {
+    let lines: Vec<Vec<Point>> = (0..8)
+        .flat_map(|k| {
+            let (x, y) = (60.3 + 37.1 * f64::from(k), 80.0 + 0.37 * f64::from(k));
+            [bar((x, y), 10.0, 0.0), vec![Point::new(x, y), Point::new(x - 0.5, y + 14.0)]]
+        })
+        .collect();
+    each_is_drawn(&lines, 2.2, 2.0, "small T");
+}
+
+#[test]
+fn a_corner_is_one_line_however_sharp_it_is() {
+    for pen in [2.5, 4.0, 5.0] {
+        let lines: Vec<Vec<Point>> = (0..6)
+            .map(|k| {
+                let half = (6.0 + 3.0 * f64::from(k)).to_radians();
+                let tip = Point::new(180.0 + 200.0 * f64::from(k % 2), 60.0 + 110.0 * f64::from(k / 2));
+                [half, -half].map(|a| tip - Vec2::from_angle(a) * 130.0).to_vec()
+            })
+            .zip(0..)
+            .map(|(ends, k)| {
+                let tip = Point::new(180.0 + 200.0 * f64::from(k % 2), 60.0 + 110.0 * f64::from(k / 2));
+                vec![ends[0], tip, ends[1]]
+            })
+            .collect();
+        each_is_drawn(&lines, pen, 2.0, &format!("corners of a pen of {pen} px"));
+    }
+}
+
+#[test]
+fn a_tight_bow_goes_round() {
+    for (radius, pen) in [(3.4, 5.0), (4.5, 5.0), (6.0, 4.0)] {
+        let legs = |turn: f64| {
+            let middle = Point::new(240.0, 180.0);
+            let bow = arc((0.0, 0.0), radius, -0.5 * PI, PI).into_iter();
+            let line: Vec<Point> = [Point::new(-120.0, -radius - 26.0)]
+                .into_iter()
+                .chain(bow)
+                .chain([Point::new(-120.0, radius + 26.0)])
+                .collect();
+            let (cos, sin) = (turn.cos(), turn.sin());
+            vec![
+                line.iter()
+                    .map(|p| middle + Vec2::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y))
+                    .collect(),
+            ]
+        };
+        for turn in [0.0, 0.4, 1.1, 2.0] {
+            each_is_drawn(&legs(turn), pen, 1.2, &format!("a bow of {radius} px turned by {turn} rad"));
+        }
+    }
+}
+
+#[test]
+fn lines_that_cross_at_a_few_degrees_are_two() {
+    for degrees in [5.0, 6.0, 9.0, 14.0_f64] {
+        let lines = [0.5, -0.5].map(|side| bar((240.0, 180.0), 380.0, 0.1 + side * degrees.to_radians()));
+        each_is_drawn(&lines, 4.0, 2.0, &format!("{degrees}°"));
+    }
+}
+
+#[test]
+fn curves_that_touch_bend_on() {
+    for overlap in [0.0, 0.5, 1.0] {
+        let lines = [
+            arc((240.0, 180.0 - 120.0), 120.0 + 0.5 * overlap, 0.25 * PI, 0.5 * PI),
+            arc((240.0, 180.0 + 120.0), 120.0 + 0.5 * overlap, -0.75 * PI, 0.5 * PI),
+        ];
+        each_is_drawn(&lines, 4.0, 2.0, &format!("they overlap by {overlap} px"));
+    }
+}
+
+#[test]
+fn small_crescents_are_shapes() {
+    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    let ring = arc((240.0, 180.0), 150.0, 0.0, TAU);
+    canvas.pen(&ring, 5.0);
+    let crescent = |middle: (f64, f64), size: f64| -> Vec<Point> {
+        let half = 0.5 * size;
+        let outer =
+            (0..=40).map(|k| f64::from(k) / 20.0 - 1.0).map(|u| (half * u, -0.36 * size * (1.0 - u * u)));
+        let inner =
+            (0..=40).map(|k| 1.0 - f64::from(k) / 20.0).map(|u| (half * u, -0.14 * size * (1.0 - u * u)));
+        outer.chain(inner).map(|(x, y)| Point::new(middle.0 + x, middle.1 + y)).collect()
+    };
+    let shapes = [((180.0, 140.0), 42.0), ((300.0, 140.0), 42.0), ((240.0, 250.0), 56.0)]
+        .map(|(middle, size)| crescent(middle, size));
+    canvas.fill(&shapes);
+    let found = strokes(&canvas);
+    let outlines: Vec<_> =
+        found.iter().filter(|s| s.kind == StrokeKind::Outline).map(|s| s.path.flatten(0.02)).collect();
+    assert_eq!((found.len(), outlines.len()), (4, 3));
+    let comparison = compare_polylines(&outlines, &shapes, 1.5).unwrap();
+    assert!(comparison.coverage > 0.98 && comparison.precision > 0.99, "{comparison:?}");
+}
+
+/// A cross of a thin pen beside a thick one's ring, far from it, is no dust; a speck of grit is.
+#[test]
+fn a_thin_mark_beside_a_thick_pen_stays() {
+    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    canvas.pen(&arc((130.0, 180.0), 80.0, 0.0, TAU), 9.0);
+    [0.3, 0.3 + 0.5 * PI].iter().for_each(|&turn| canvas.pen(&bar((380.0, 120.0), 10.0, turn), 1.6));
+    let grit = Point::new(400.3, 280.2);
+    canvas.pen(&[grit, grit], 2.4);
+    assert_eq!(strokes(&canvas).len(), 3);
+}
