@@ -75,7 +75,7 @@ fn has_false_corner(path: &Path, points: &[Point], reach: f64, level: impl Fn(Po
             side.into_iter().chain((1..=SAMPLES).map(|k| b.at(behind * f64::from(k)))).collect();
         let inward = (sides[0] - at) + (sides[sides.len() - 1] - at);
         let near = || points.iter().filter(|p| p.distance(at) < 2.0 * reach);
-        let nearest = near().min_by(|a, b| a.distance_squared(at).total_cmp(&b.distance_squared(at)));
+        let nearest = points.iter().min_by(|a, b| a.distance_squared(at).total_cmp(&b.distance_squared(at)));
         let is_off = |p: &Point| level(at) < CORNER_LEVEL * level(*p);
         nearest.is_some_and(is_off)
             || near().any(|p| {

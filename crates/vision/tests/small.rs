@@ -95,24 +95,20 @@ fn a_corner_is_one_line_however_sharp_it_is() {
 
 #[test]
 fn a_tight_bow_goes_round() {
-    for (radius, pen) in [(3.4, 5.0), (4.5, 5.0), (6.0, 4.0)] {
-        let legs = |turn: f64| {
-            let middle = Point::new(240.0, 180.0);
-            let bow = arc((0.0, 0.0), radius, -0.5 * PI, PI).into_iter();
-            let line: Vec<Point> = [Point::new(-120.0, -radius - 26.0)]
-                .into_iter()
-                .chain(bow)
-                .chain([Point::new(-120.0, radius + 26.0)])
-                .collect();
+    for (radius, pen) in [(3.4, 5.0), (4.0, 6.0), (6.0, 4.0)] {
+        for turn in (0..24).map(|k| TAU * f64::from(k) / 24.0) {
+            let leg = |side: f64| Point::new(-110.0, side * (radius + 40.0));
+            let bow = arc((0.0, 0.0), radius, -0.5 * PI, PI);
             let (cos, sin) = (turn.cos(), turn.sin());
-            vec![
-                line.iter()
-                    .map(|p| middle + Vec2::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y))
-                    .collect(),
-            ]
-        };
-        for turn in [0.0, 0.4, 1.1, 2.0] {
-            each_is_drawn(&legs(turn), pen, 1.2, &format!("a bow of {radius} px turned by {turn} rad"));
+            let turned = |p: Point| Point::new(240.0 + cos * p.x - sin * p.y, 180.0 + sin * p.x + cos * p.y);
+            let line: Vec<Point> = [leg(-1.0)].into_iter().chain(bow).chain([leg(1.0)]).map(turned).collect();
+            let mut canvas = Canvas::new(WIDTH, HEIGHT);
+            canvas.pen(&line, pen);
+            let found = strokes(&canvas);
+            let drawn: Vec<_> = found.iter().map(|s| s.path.flatten(0.02)).collect();
+            let comparison = compare_polylines(&drawn, &[line], 1.5).unwrap();
+            let which = format!("a bow of {radius} px turned by {turn} rad: {comparison:?}");
+            assert!(found.len() == 1 && comparison.max < 1.5 && comparison.coverage > 0.99, "{which}");
         }
     }
 }
