@@ -165,15 +165,12 @@ fn run(
         (slit >= SLIT * dark.at(a).min(dark.at(b))).then_some(place.number)
     };
     let seen: Vec<Option<usize>> = (0..points.len()).map(is_dark).collect();
+    let way = ways(points);
     let (mut best, mut start, mut last) = ((0, 0, 0.0), None, 0);
-    for k in 0..points.len() {
-        if seen[k].is_none() {
-            continue;
-        }
-        let goes_on = start.is_some() && polyline_length(&points[last..=k]) <= SKIPPED_PX.max(apart);
-        let from = if goes_on { start.unwrap_or(k) } else { k };
+    for k in (0..points.len()).filter(|&k| seen[k].is_some()) {
+        let from = start.filter(|_| way[k] - way[last] <= SKIPPED_PX.max(apart)).unwrap_or(k);
         (start, last) = (Some(from), k);
-        let long = polyline_length(&points[from..=k]);
+        let long = way[k] - way[from];
         if long > best.2 {
             best = (from, k, long);
         }
@@ -201,6 +198,18 @@ fn run(
         beside.push(known);
     }
     Some(Run { kept, other, from, to, beside, length: long })
+}
+
+/// How long the way is from the first of some points to each of them, px.
+fn ways(points: &[Point]) -> Vec<f64> {
+    let mut way = 0.0;
+    let step = |k: usize| if k > 0 { points[k].distance(points[k - 1]) } else { 0.0 };
+    (0..points.len())
+        .map(|k| {
+            way += step(k);
+            way
+        })
+        .collect()
 }
 
 impl Run {
