@@ -168,7 +168,7 @@ impl Case {
             Set::World => look.of_kind(random, (self.kind, self.size), &page, warp.as_ref()),
         };
         let ink: Vec<Vec<&Ink>> = page.figures.iter().flat_map(Figure::by_stroke).collect();
-        let strokes: Vec<_> = page.figures.iter().flat_map(|f| f.strokes.clone()).collect();
+        let strokes = page.strokes();
         Picture {
             width: self.size.width,
             height: self.size.height,

@@ -1,6 +1,6 @@
 //! How a drawing looks to a camera: levels of paper and ink, light, and what spoils a picture.
 
-use tracelight_stroke::{Point, Stroke};
+use tracelight_stroke::Point;
 
 use crate::desk::Desk;
 use crate::grain::Grain;
@@ -122,8 +122,7 @@ impl Look {
             Kind::Retouched if random.chance(0.4) => self.pencilled(random, page.pen),
             Kind::Felt => self.felt(random),
             Kind::Ruled | Kind::Squared | Kind::Dotted => {
-                let strokes: Vec<Stroke> = page.figures.iter().flat_map(|f| f.strokes.clone()).collect();
-                Self { printed: Paper::under(random, kind, size, &strokes, page.pen), ..self }
+                Self { printed: Paper::under(random, kind, size, &page.strokes(), page.pen), ..self }
             }
             Kind::Table => self.on_a_table(random, size, page, warp),
             _ => self,
@@ -161,10 +160,9 @@ impl Look {
         let desk = Some(Desk::around(random, size, paper, (warp, &points)));
         let ink = [random.between(0.0, 0.4) * paper; 3];
         let pattern = if random.chance(0.5) { Kind::Ruled } else { Kind::Squared };
-        let strokes = || -> Vec<Stroke> { page.figures.iter().flat_map(|f| f.strokes.clone()).collect() };
         let printed = random
             .chance(RULED_ON_A_TABLE)
-            .then(|| Paper::under(random, pattern, size, &strokes(), page.pen))
+            .then(|| Paper::under(random, pattern, size, &page.strokes(), page.pen))
             .flatten();
         Self { paper: [paper; 3], ink, light, desk, printed, ..self }
     }

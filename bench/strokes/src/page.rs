@@ -1,4 +1,4 @@
-use tracelight_stroke::{Affine, Point, Vec2};
+use tracelight_stroke::{Affine, Point, Stroke, Vec2};
 
 use crate::habit::Habit;
 use crate::kinds::frame;
@@ -27,6 +27,11 @@ pub struct Page {
 }
 
 impl Page {
+    /// The strokes of all its figures.
+    pub(crate) fn strokes(&self) -> Vec<Stroke> {
+        self.figures.iter().flat_map(|figure| figure.strokes.clone()).collect()
+    }
+
     /// A page of a kind. Lengths that the rules bound from below are kept `roomy` times as large.
     pub fn draw(random: &mut Random, kind: Kind, size: Size, roomy: f64) -> Self {
         // a straight line always fits

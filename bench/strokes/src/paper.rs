@@ -150,8 +150,7 @@ mod tests {
         for pattern in [Kind::Ruled, Kind::Squared] {
             let found = (0..60).filter(|&seed| {
                 let page = Page::draw(&mut Random::new(seed), pattern, size, 1.0);
-                let strokes: Vec<Stroke> = page.figures.iter().flat_map(|f| f.strokes.clone()).collect();
-                Paper::under(&mut Random::new(seed), pattern, size, &strokes, page.pen).is_some()
+                Paper::under(&mut Random::new(seed), pattern, size, &page.strokes(), page.pen).is_some()
             });
             let count = found.count();
             assert!(count >= 56, "{pattern:?}: {count} of 60");

@@ -26,6 +26,13 @@ pub(crate) struct Row {
     pub(crate) dot: bool,
 }
 
+impl Row {
+    /// Its first (`end` 0) or last point.
+    pub(crate) fn end(&self, end: usize) -> Point {
+        self.points[end * (self.points.len() - 1)]
+    }
+}
+
 /// The rows of one patch's graph; lines end where they meet `shapes`.
 pub(crate) fn rows(dark: &Plane<u8>, shapes: &Mask, region: &Region, graph: &Graph) -> Vec<Row> {
     if is_dot(graph) {

@@ -40,7 +40,7 @@ pub(crate) fn path(
     let tame = |path: &Path| stays_near(path, points, margin);
     if tame(&first) {
         // a tight bow looks like a corner, whose points are not to be trusted
-        let is_bow = |path: &Path| has_false_corner(path, points, reach_px, &level);
+        let is_bow = |path: &Path| has_false_corner(path, points, reach_px, options.corner_rad, &level);
         let bow = is_bow(&first).then(|| fitted(options.tolerance_px)).flatten();
         let round = bow.filter(|bow| tame(bow) && !is_bow(bow));
         return Some(round.unwrap_or(first));
@@ -56,7 +56,13 @@ const OUTSIDE: f64 = 0.4;
 const CORNER_LEVEL: f64 = 1.0 / 3.0;
 
 /// Whether a path has a corner that cuts its points off, or lies off the ink.
-fn has_false_corner(path: &Path, points: &[Point], reach: f64, level: impl Fn(Point) -> f64) -> bool {
+fn has_false_corner(
+    path: &Path,
+    points: &[Point],
+    reach: f64,
+    corner_rad: f64,
+    level: impl Fn(Point) -> f64,
+) -> bool {
     /// Samples along either side of a corner.
     const SAMPLES: u32 = 12;
     let pieces: Vec<Piece> = path.pieces().collect();
@@ -64,7 +70,7 @@ fn has_false_corner(path: &Path, points: &[Point], reach: f64, level: impl Fn(Po
     let after = pieces.iter().skip(1).chain(first);
     pieces.iter().zip(after).any(|(a, b)| {
         let (into, out) = (a.end_tangent(), b.start_tangent());
-        if into.cross(out).atan2(into.dot(out)).abs() < LEAST_CORNER_RAD {
+        if into.cross(out).atan2(into.dot(out)).abs() < corner_rad {
             return false;
         }
         let at = b.from;
@@ -86,9 +92,6 @@ fn has_false_corner(path: &Path, points: &[Point], reach: f64, level: impl Fn(Po
             })
     })
 }
-
-/// From this change of direction on two pieces of a path make a corner, rad (25°).
-const LEAST_CORNER_RAD: f64 = 0.44;
 
 /// Whether a path keeps within the bounding box of its points, widened by `margin`.
 fn stays_near(path: &Path, points: &[Point], margin: f64) -> bool {

@@ -56,9 +56,8 @@ const CORNER_PENS: f64 = 0.75;
 /// on the other, as on a bar.
 fn cornered(rows: Vec<Row>) -> Vec<Row> {
     let all = rows.iter().enumerate().filter(|(_, row)| !row.closed && !row.dot && row.points.len() > 1);
-    let ends: Vec<(Point, Place)> = all
-        .flat_map(|(k, row)| [0, 1].map(|end| (row.points[end * (row.points.len() - 1)], (k, end))))
-        .collect();
+    let ends: Vec<(Point, Place)> =
+        all.flat_map(|(k, row)| [0, 1].map(|end| (row.end(end), (k, end)))).collect();
     let widest = rows.iter().map(|row| row.width).fold(0.0, f64::max);
     let near = Near::of(ends.iter().copied(), (CORNER_PENS * widest).max(0.1));
     let partner = |at: Point, (row, end): Place| {
@@ -73,7 +72,7 @@ fn cornered(rows: Vec<Row>) -> Vec<Row> {
         .iter()
         .filter_map(|&(at, a)| {
             let b = partner(at, a)?;
-            let back = partner(rows[b.0].points[b.1 * (rows[b.0].points.len() - 1)], b)?;
+            let back = partner(rows[b.0].end(b.1), b)?;
             let is_open = rows[a.0].free[a.1] || rows[b.0].free[b.1];
             (a < b && back == a && is_open && a.0 != b.0).then_some((a, b))
         })
@@ -126,11 +125,8 @@ fn orient_dots(rows: &mut [Row]) {
     for i in dots {
         let at = rows[i].points[0].midpoint(rows[i].points[1]);
         let reach = WIDEST_PENS * rows[i].width + LEAST_PX;
-        let near: Vec<End> = ends_where(rows, |k, row| {
-            k != i
-                && (row.points[0].distance(at) < reach
-                    || row.points[row.points.len() - 1].distance(at) < reach)
-        });
+        let near: Vec<End> =
+            ends_where(rows, |k, row| k != i && (0..2).any(|end| row.end(end).distance(at) < reach));
         let near: Vec<&End> = near.iter().filter(|end| end.tip.at.distance(at) < reach).collect();
         if let Some(along) = through(at, &near) {
             let half = along * (0.25 * rows[i].width);

@@ -8,7 +8,7 @@ use crate::mask::Mask;
 use crate::paler::with_paler;
 use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
-use crate::quality::clipped_percent;
+use crate::quality::{GOOD_CONTRAST_PERCENT, clipped_percent};
 use crate::sharpness::{self, Step};
 use crate::{Page, Quality, VisionError};
 
@@ -261,8 +261,8 @@ impl Split {
     /// The same, or where the two classes are hardly apart, and so both are paper, the little ink that stands out from it:
     /// a small mark on a large sheet. `noise` is a pixel's deviation, levels.
     fn or_of_little(self, darkness: &Plane<u8>, noise: f64) -> Self {
-        /// What is darker than the paper by less is no ink, levels: a good contrast.
-        const LEAST: f64 = 0.12 * 255.0;
+        /// What is darker than the paper by less is no ink, levels.
+        const LEAST: f64 = 2.55 * GOOD_CONTRAST_PERCENT;
         /// Of normal noise one pixel in 500 million exceeds as many deviations.
         const DEVIATIONS: f64 = 6.0;
         /// Of the pixels that stand out, the share on an edge, paler than ink.

@@ -6,11 +6,11 @@
 
 use std::f64::consts::PI;
 
-use tracelight_stroke::{Point, Vec2, polyline_length};
+use tracelight_stroke::{Point, polyline_length};
 
 use crate::bridge::{Tip, inked_towards, meeting};
 use crate::graph::{Graph, Node};
-use crate::line::Line;
+use crate::line::{Line, off_the_grid};
 use crate::plane::Plane;
 
 /// A pair of lines that turns less than this from one into the other is one line passing through, rad (60°).
@@ -239,11 +239,7 @@ impl Junctions {
         let place = rows.min_by(|a, b| a.distance_squared(node).total_cmp(&b.distance_squared(node)))?;
         // no further than it is from where the ink is shared
         let own = pixels.iter().position(|p| p.distance(place) <= 0.5 * line.width).unwrap_or(pixels.len());
-        // the mean of five pixels is off the steps of their grid
-        let smooth = pixels[..own]
-            .windows(5)
-            .map(|w| w.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2() / 5.0).to_point());
-        Some(smooth.chain([place]).collect())
+        Some(off_the_grid(&pixels[..own]).chain([place]).collect())
     }
 }
 

@@ -214,11 +214,12 @@ fn lost(pixels: &[(Point, f64)], last: Option<&Point>, width: f64) -> Vec<Point>
     if polyline_length(&rest) <= LOST_PENS * width + LOST_PX {
         return Vec::new();
     }
-    // the mean of five pixels is off the steps of their grid
-    rest.windows(5)
-        .step_by(2)
-        .map(|five| five.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2() / 5.0).to_point())
-        .collect()
+    off_the_grid(&rest).step_by(2).collect()
+}
+
+/// The means of five pixels each, which are off the steps of their grid.
+pub(crate) fn off_the_grid(pixels: &[Point]) -> impl Iterator<Item = Point> {
+    pixels.windows(5).map(|five| five.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2() / 5.0).to_point())
 }
 
 /// The same of a branch that turns back on itself: side by side, and out to each turn and back between them.

@@ -99,6 +99,8 @@ struct Bounds {
 /// A pen thinner than this is as wide as a pixel's blur, so that edges are compared with this much.
 const LEAST_PEN_PX: f64 = 2.0;
 
+/// Of [`Figure::Contrast`], from here on it is good, %.
+pub(crate) const GOOD_CONTRAST_PERCENT: f64 = 12.0;
 /// Of [`Figure::Clipped`] and of [`Figure::Tone`], up to here it is good, %.
 pub(crate) const GOOD_CLIPPED_PERCENT: f64 = 10.0;
 pub(crate) const GOOD_TONE_PERCENT: f64 = 0.3;
@@ -123,7 +125,7 @@ const BOUNDS: [Bounds; 9] = [
     Bounds {
         figure: Figure::Contrast,
         bad: Bad::Below,
-        good: 12.0,
+        good: GOOD_CONTRAST_PERCENT,
         refused: Some(8.0),
         words: ("contrast is", " %"),
         advice: "use a darker pen or more light",

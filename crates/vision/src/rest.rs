@@ -126,7 +126,7 @@ fn tied(dark: &Plane<u8>, mut row: Row, others: &Others<'_>) -> Row {
     if row.closed {
         return row;
     }
-    let place = |end: usize| row.points[end * (row.points.len() - 1)];
+    let place = |end: usize| row.end(end);
     let tie = |end: usize| {
         let nearest = others.nearest(place(end), row.width);
         nearest.filter(|&(stop, _)| inked_towards(dark, place(end), stop, row.width) == stop)

@@ -221,6 +221,8 @@ impl Run {
         if kept.closed {
             self.turn_seam_away(&mut kept.points);
         }
+        let way = ways(&kept.points);
+        let whole = way[way.len() - 1];
         self.shift(&mut kept.points, &other.points, apart);
         kept.width = kept.width.max(other.width);
         // where the other one leaves it
@@ -247,9 +249,9 @@ impl Run {
             tail[0] = ties[side];
             let (at, free) = (leaves[side], other.free[side]);
             // the one that stays ends there: it goes on as the other one does
-            if !kept.closed && end.is_none() && polyline_length(&kept.points[at..]) < apart {
+            if !kept.closed && end.is_none() && whole - way[at] < apart {
                 end = Some((at, tail, free));
-            } else if !kept.closed && start.is_none() && polyline_length(&kept.points[..=at]) < apart {
+            } else if !kept.closed && start.is_none() && way[at] < apart {
                 start = Some((at, tail, free));
             } else {
                 rows.push(own(tail, [false, free]));

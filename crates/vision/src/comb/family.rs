@@ -81,7 +81,7 @@ pub(super) enum Ends<'a> {
 }
 
 /// The family of rules among some tracks, if there is one.
-pub(super) fn family(strips: &Strips, tracks: &[Track], ends: Ends<'_>) -> Option<Family> {
+pub(super) fn family(strips: &Strips<'_>, tracks: &[Track], ends: Ends<'_>) -> Option<Family> {
     let chain = longest_chain(strips, tracks)?;
     let law = Law::of(strips, tracks, &chain)?;
 
@@ -113,7 +113,7 @@ pub(super) fn family(strips: &Strips, tracks: &[Track], ends: Ends<'_>) -> Optio
 }
 
 /// How much paper there is across the rules, halfway along, px.
-fn breadth(strips: &Strips) -> f64 {
+fn breadth(strips: &Strips<'_>) -> f64 {
     let (first, last) = strips.strips[strips.strips.len() / 2].sheet;
     last + 1.0 - first
 }
@@ -126,7 +126,7 @@ struct Link {
 }
 
 /// The most tracks that follow each other at equal distances, in the page's middle.
-fn longest_chain(strips: &Strips, tracks: &[Track]) -> Option<Vec<Link>> {
+fn longest_chain(strips: &Strips<'_>, tracks: &[Track]) -> Option<Vec<Link>> {
     let places: Vec<(f64, usize)> = tracks.iter().enumerate().map(|(k, t)| (t.middle(strips), k)).collect();
     let chains = (0..places.len()).filter_map(|k| {
         // the other side of the paper may shine through: rules look alike
@@ -194,7 +194,7 @@ struct Law {
 }
 
 impl Law {
-    fn of(strips: &Strips, tracks: &[Track], chain: &[Link]) -> Option<Self> {
+    fn of(strips: &Strips<'_>, tracks: &[Track], chain: &[Link]) -> Option<Self> {
         let (first, last) = (f64::from(chain.first()?.index), f64::from(chain.last()?.index));
         let about = (0.5 * (first + last), (0.5 * (last - first)).max(1.0));
         let mut law = Self { terms: [0.0; TERMS], about, length: strips.length as f64, spacing: 0.0 };
@@ -234,7 +234,7 @@ impl Law {
     }
 
     /// Whether the tracks keep to the law as print does.
-    fn is_even(&self, strips: &Strips, tracks: &[Track], chain: &[Link]) -> bool {
+    fn is_even(&self, strips: &Strips<'_>, tracks: &[Track], chain: &[Link]) -> bool {
         let (mut between, mut along) = (0.0, 0.0);
         for link in chain {
             let off = |(_, x, peak): (f64, f64, Peak)| peak.at - self.at(f64::from(link.index), x);
@@ -252,7 +252,7 @@ impl Law {
     }
 
     /// The rules that are seen, also those that no track followed, by number, with where.
-    fn seen(&self, strips: &Strips, contrast: f64) -> Vec<(i32, Vec<Option<Peak>>)> {
+    fn seen(&self, strips: &Strips<'_>, contrast: f64) -> Vec<(i32, Vec<Option<Peak>>)> {
         let mut found = Vec::new();
         let middle = self.about.0.round() as i32;
         let most = (strips.breadth as f64 / self.spacing) as i32 + 2;
@@ -271,12 +271,12 @@ impl Law {
     }
 
     /// Whether most rules lead from one border of the sheet to the other, or to one of some lines across them that is near it.
-    fn reach(&self, strips: &Strips, found: &[(i32, Vec<Option<Peak>>)], lines: &[f64]) -> bool {
+    fn reach(&self, strips: &Strips<'_>, found: &[(i32, Vec<Option<Peak>>)], lines: &[f64]) -> bool {
         let all = &strips.strips;
         let most = |reaching: usize| reaching as f64 >= REACHING * found.len() as f64;
         let is_reached = |k: usize| most(found.iter().filter(|(_, seen)| seen[k].is_some()).count());
         // by rule: where the sheet is turned in the picture, each has its own ends
-        let short = if strips.is_cut_out && found.len() >= MANY { SHORT } else { 1 };
+        let short = if strips.paper.is_cut_out() && found.len() >= MANY { SHORT } else { 1 };
         let is_within = |index: i32, k: usize| all[k].has(self.at(f64::from(index), all[k].at));
         let starts = found.iter().filter(|(index, seen)| {
             (0..all.len()).filter(|&k| is_within(*index, k)).take(short).any(|k| seen[k].is_some())
@@ -294,7 +294,7 @@ impl Law {
     }
 
     /// Whether some of a rule lies in the picture, or on its border, which cuts it.
-    fn is_cut(&self, strips: &Strips, index: i32) -> bool {
+    fn is_cut(&self, strips: &Strips<'_>, index: i32) -> bool {
         strips.strips.iter().any(|strip| {
             let at = self.at(f64::from(index), strip.at);
             strip.sheet.0 - CUT_PX <= at && at <= strip.sheet.1 + CUT_PX
@@ -302,7 +302,7 @@ impl Law {
     }
 
     /// In each strip the line nearest to where a rule must be.
-    fn points_on(&self, strips: &Strips, index: f64, contrast: f64) -> Vec<Option<Peak>> {
+    fn points_on(&self, strips: &Strips<'_>, index: f64, contrast: f64) -> Vec<Option<Peak>> {
         let reach = (NEAR * self.spacing).max(NEAR_PX);
         let nearest = |strip: &super::strips::Strip| {
             let expected = self.at(index, strip.at);
@@ -315,7 +315,7 @@ impl Law {
     }
 
     /// A rule's course: the law, and by how much the strips nearby are off it.
-    fn rule(&self, strips: &Strips, index: i32, seen: &[Option<Peak>]) -> Rule {
+    fn rule(&self, strips: &Strips<'_>, index: i32, seen: &[Option<Peak>]) -> Rule {
         let law: Vec<f64> = strips.strips.iter().map(|strip| self.at(f64::from(index), strip.at)).collect();
         let off: Vec<Option<f64>> = seen.iter().zip(&law).map(|(p, at)| p.map(|p| p.at - at)).collect();
         let near = |k: usize| {
@@ -334,7 +334,7 @@ impl Law {
 
 /// Number, place along and line of all that some tracks passed.
 fn points<'a>(
-    strips: &'a Strips,
+    strips: &'a Strips<'_>,
     tracks: &'a [Track],
     chain: &'a [Link],
 ) -> impl Iterator<Item = (f64, f64, Peak)> + 'a {

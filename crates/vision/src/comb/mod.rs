@@ -82,8 +82,7 @@ pub(crate) fn without_rules(
     if !sides.iter().any(|strips| strips.are_crossed_by(family::FEWEST - 1)) {
         return None;
     }
-    let [level, upright] = sides;
-    let (level, upright) = (Side::of(level, papers[0]), Side::of(upright, papers[1]));
+    let [level, upright] = sides.map(Side::of);
     let [level_rules, upright_rules] = families(&level, &upright)?;
     let levels = Levels { noise: noise as f32, ink: strongest as f32 };
     let mut turned = dark.transposed();
@@ -99,10 +98,10 @@ pub(crate) fn without_rules(
     plane = turned.transposed();
     // margins and the like: without the rules that cross them they are seen all along, but where they lie under one
     let bare = Strips::of_level(&plane, noise, papers[0]).with(&level.strips_beside(&level_rules));
-    Side::of(bare, papers[0]).whole_lines_off(&mut plane, &under_upright, levels);
+    Side::of(bare).whole_lines_off(&mut plane, &under_upright, levels);
     let bare = Strips::of_upright(&plane, noise, papers[1]).with(&upright.strips_beside(&upright_rules));
     turned = plane.transposed();
-    Side::of(bare, papers[1]).whole_lines_off(&mut turned, &under_level, levels);
+    Side::of(bare).whole_lines_off(&mut turned, &under_level, levels);
     plane = turned.transposed();
     let mut combs = along.combs;
     let turn = |comb: Comb| Comb { upright: true, turned_rad: -comb.turned_rad, ..comb };
@@ -125,15 +124,14 @@ fn families(level: &Side<'_>, upright: &Side<'_>) -> Option<[Vec<Family>; 2]> {
 
 /// What crosses the strips of one direction.
 struct Side<'a> {
-    strips: Strips,
+    strips: Strips<'a>,
     tracks: Vec<Track>,
-    paper: Paper<'a>,
 }
 
 impl<'a> Side<'a> {
-    fn of(strips: Strips, paper: Paper<'a>) -> Self {
+    fn of(strips: Strips<'a>) -> Self {
         let tracks = tracks(&strips);
-        Self { strips, tracks, paper }
+        Self { strips, tracks }
     }
 
     /// Where the lines are that lead from border to border.
@@ -177,7 +175,7 @@ impl<'a> Side<'a> {
     }
 
     /// What crosses the strips beside some families of rules.
-    fn strips_beside(&self, families: &[Family]) -> Strips {
+    fn strips_beside(&self, families: &[Family]) -> Strips<'a> {
         self.strips.clone().without(|strip, at| families.iter().any(|family| family.has_at(strip, at)))
     }
 
@@ -186,7 +184,7 @@ impl<'a> Side<'a> {
         let strips: Vec<f64> = self.strips.strips.iter().map(|strip| strip.at).collect();
         let mut course = courses(&strips, at, width);
         for (x, at) in course.iter_mut().enumerate() {
-            if !self.paper.has(x, at.round().max(0.0) as usize) {
+            if !self.strips.paper.has(x, at.round().max(0.0) as usize) {
                 *at = OFF_THE_PLANE;
             }
         }

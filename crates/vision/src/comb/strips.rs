@@ -47,21 +47,19 @@ impl Strip {
 
 /// Strips across rules of one direction; the first and the last lie at the borders.
 #[derive(Clone, Debug)]
-pub(super) struct Strips {
+pub(super) struct Strips<'a> {
     /// Pixels along the rules.
     pub(super) length: usize,
     /// Pixels across them.
     pub(super) breadth: usize,
-    /// By how much lines parallel to the sheet's sides move across a px along: each strip lies aslant as they do.
-    pub(super) tilt: f64,
-    /// Whether the sheet was found in a picture that shows more.
-    pub(super) is_cut_out: bool,
+    /// Where the sheet is; each strip lies aslant as its sides do.
+    pub(super) paper: Paper<'a>,
     pub(super) strips: Vec<Strip>,
 }
 
-impl Strips {
+impl<'a> Strips<'a> {
     /// Across level rules of a sheet. `noise` is a pixel's deviation, levels.
-    pub(super) fn of_level(dark: &Plane<u8>, noise: f64, paper: Paper<'_>) -> Self {
+    pub(super) fn of_level(dark: &Plane<u8>, noise: f64, paper: Paper<'a>) -> Self {
         let ranges = ranges(dark.width);
         let last = dark.height as isize - 1;
         let mut sums = vec![vec![0.0_f32; dark.height]; ranges.len()];
@@ -82,7 +80,7 @@ impl Strips {
     }
 
     /// Across upright rules.
-    pub(super) fn of_upright(dark: &Plane<u8>, noise: f64, paper: Paper<'_>) -> Self {
+    pub(super) fn of_upright(dark: &Plane<u8>, noise: f64, paper: Paper<'a>) -> Self {
         let ranges = ranges(dark.height);
         let sum = |&(from, to): &(usize, usize)| {
             let mut sum = vec![0_u16; dark.width];
@@ -116,7 +114,7 @@ impl Strips {
         ranges: &[(usize, usize)],
         (length, breadth): (usize, usize),
         noise: f64,
-        paper: Paper<'_>,
+        paper: Paper<'a>,
     ) -> Self {
         let widest = ((WIDEST * breadth as f64) as usize).max(LEAST_WIDEST);
         let strip = |(sum, &(from, to)): (&Vec<f32>, &(usize, usize))| {
@@ -130,7 +128,7 @@ impl Strips {
             Strip { at: 0.5 * (from + to - 1) as f64, peaks, sheet }
         };
         let strips = sums.iter().zip(ranges).map(strip).collect();
-        Self { length, breadth, tilt: paper.tilt, is_cut_out: paper.is_cut_out(), strips }
+        Self { length, breadth, paper, strips }
     }
 
     /// With the lines that cross the same strips elsewhere, of two in one place the stronger: where rules were taken off, a line

@@ -43,13 +43,13 @@ impl Track {
     }
 
     /// Where it is halfway across the page.
-    pub(super) fn middle(&self, strips: &Strips) -> f64 {
+    pub(super) fn middle(&self, strips: &Strips<'_>) -> f64 {
         self.parabola(strips)[0]
     }
 
     /// Whether it leads from border to border, and as straight as print; in strips that are blind there, by places along and across,
     /// it need not be seen.
-    pub(super) fn is_whole(&self, strips: &Strips, is_blind: impl Fn(f64, f64) -> bool) -> bool {
+    pub(super) fn is_whole(&self, strips: &Strips<'_>, is_blind: impl Fn(f64, f64) -> bool) -> bool {
         let smoothed = self.smoothed(strips);
         let places = self.points.iter().zip(&strips.strips).zip(&smoothed);
         let sees = |((point, strip), at): &((&Option<Peak>, &Strip), &f64)| {
@@ -64,32 +64,32 @@ impl Track {
     }
 
     /// Its course by strip, as a parabola.
-    pub(super) fn smoothed(&self, strips: &Strips) -> Vec<f64> {
+    pub(super) fn smoothed(&self, strips: &Strips<'_>) -> Vec<f64> {
         let [c, b, a] = self.parabola(strips);
         let at = |x: f64| c + (b + a * unit(x, strips)) * unit(x, strips);
         strips.strips.iter().map(|strip| at(strip.at)).collect()
     }
 
     /// The parabola nearest to it, of the way along the page from -1 to 1: its middle, its slope and its bend.
-    fn parabola(&self, strips: &Strips) -> [f64; 3] {
+    fn parabola(&self, strips: &Strips<'_>) -> [f64; 3] {
         let places = self.places(strips).into_iter().map(|(x, y)| (unit(x, strips), y));
         nearest(places, 0.0).unwrap_or([0.0; 3])
     }
 
     /// Where it is seen, along and across.
-    pub(super) fn places(&self, strips: &Strips) -> Vec<(f64, f64)> {
+    pub(super) fn places(&self, strips: &Strips<'_>) -> Vec<(f64, f64)> {
         self.points.iter().zip(&strips.strips).filter_map(|(p, s)| p.map(|p| (s.at, p.at))).collect()
     }
 
     /// Where it would cross at a place beyond its last points, and how many tell so: along the parabola through them, which
     /// bends no more than they say for sure.
-    fn course(&self, strips: &Strips, at: f64) -> Option<(f64, usize)> {
+    fn course(&self, strips: &Strips<'_>, at: f64) -> Option<(f64, usize)> {
         let places = self.points.iter().zip(&strips.strips).rev();
         let known = places.filter_map(|(p, s)| p.map(|p| (s.at, p.at))).take(REMEMBERED);
         let known: Vec<(f64, f64)> = known.collect();
         let &(x, y) = known.first()?;
         if known.len() < 3 {
-            return Some((y + strips.tilt * (at - x), known.len()));
+            return Some((y + strips.paper.tilt * (at - x), known.len()));
         }
         let unit = 0.5 * strips.length as f64;
         let places = known.iter().map(|&(px, py)| ((px - x) / unit, py - y));
@@ -102,7 +102,7 @@ impl Track {
 }
 
 /// How far a place along the page is from its middle, in halves of its length.
-fn unit(along: f64, strips: &Strips) -> f64 {
+fn unit(along: f64, strips: &Strips<'_>) -> f64 {
     2.0 * along / strips.length as f64 - 1.0
 }
 
@@ -121,7 +121,7 @@ fn nearest(points: impl Iterator<Item = (f64, f64)>, stiffness: f64) -> Option<[
 }
 
 /// The lines that are seen in most strips.
-pub(super) fn tracks(strips: &Strips) -> Vec<Track> {
+pub(super) fn tracks(strips: &Strips<'_>) -> Vec<Track> {
     let count = strips.strips.len();
     let least = (SEEN * count as f64) as usize;
     let mut tracks: Vec<Track> = Vec::new();
@@ -149,7 +149,7 @@ pub(super) fn tracks(strips: &Strips) -> Vec<Track> {
 }
 
 /// Which of a strip's lines continues each track: the nearest to where it leads.
-fn matched(tracks: &[Track], strips: &Strips, number: usize) -> Vec<Option<usize>> {
+fn matched(tracks: &[Track], strips: &Strips<'_>, number: usize) -> Vec<Option<usize>> {
     let strip = &strips.strips[number];
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for (t, track) in tracks.iter().enumerate() {
