@@ -37,6 +37,10 @@ struct Photograph {
     shadow: Option<(f64, f64, f64)>,
     /// A finger's two ends.
     finger: Option<(Point, Point)>,
+    /// Another sheet below it, and its level.
+    below: Option<([Point; 4], f64)>,
+    /// Light from one side: the way to it, and how much of it is left at the other end of the picture.
+    light: (Vec2, f64),
 }
 
 impl Photograph {
@@ -74,7 +78,43 @@ impl Photograph {
             )
         });
         // a table as bright as paper shows no finger's end, and needs none
-        Self { size, corners, figure, pen, paper, table, shadow, finger: finger.filter(|_| table < 200.0) }
+        let finger = finger.filter(|_| table < 200.0);
+        let light = (Vec2::new(1.0, 0.0), 1.0);
+        Self { size, corners, figure, pen, paper, table, shadow, finger, below: None, light }
+    }
+
+    /// The same with a deep shadow, or light from one side, or another sheet below it.
+    fn hard(chance: &mut Chance) -> Self {
+        let easy = Self { shadow: None, finger: None, ..Self::any(chance) };
+        let (w, h) = (easy.size.0 as f64, easy.size.1 as f64);
+        let way = |chance: &mut Chance| Vec2::from_angle(chance.between(0.0, TAU));
+        match chance.between(0.0, 2.999) as usize {
+            0 => {
+                let deep =
+                    (chance.between(0.45, 0.6), chance.between(0.0, TAU), chance.between(-0.2, 0.2) * h);
+                Self { shadow: Some(deep), table: easy.table.min(0.6 * easy.paper), ..easy }
+            }
+            1 => Self { light: (way(chance), chance.between(0.35, 0.6)), ..easy },
+            _ => {
+                let turn = Vec2::from_angle(chance.between(0.12, 0.3) * chance.between(-1.0, 1.0).signum());
+                let middle = Point::new(0.5 * w, 0.5 * h);
+                let below = easy.corners.map(|c| {
+                    let from = 0.98 * (c - middle);
+                    middle + Vec2::new(turn.x * from.x - turn.y * from.y, turn.y * from.x + turn.x * from.y)
+                });
+                let level = easy.paper * chance.between(0.88, 1.0);
+                Self { below: Some((below, level)), table: easy.table.min(0.6 * easy.paper), ..easy }
+            }
+        }
+    }
+
+    /// How far a place is outside the sheet; none on it.
+    fn outside(&self, at: Point) -> f64 {
+        let side = |k: usize| {
+            let (a, b) = (self.corners[k], self.corners[(k + 1) % 4]);
+            (b - a).cross(a - at) / a.distance(b)
+        };
+        (0..4).map(side).fold(0.0, f64::max)
     }
 
     fn taken(&self, chance: &mut Chance) -> Grey {
@@ -85,11 +125,19 @@ impl Photograph {
         self.figure.iter().for_each(|line| ink.pen(line, self.pen));
         let mut finger = Canvas::new(width, height);
         self.finger.iter().for_each(|(from, tip)| finger.pen(&[*from, *tip], 0.07 * height as f64));
-        let [sheet, ink, finger] = [sheet, ink, finger].map(|drawn| drawn.shares().collect::<Vec<f64>>());
+        let mut below = Canvas::new(width, height);
+        self.below.iter().for_each(|(corners, _)| below.fill(&[corners.to_vec()]));
+        let [sheet, ink, finger, below] =
+            [sheet, ink, finger, below].map(|drawn| drawn.shares().collect::<Vec<f64>>());
         let mut level = |k: usize| {
             let at = Point::new((k % width) as f64 + 0.5, (k / width) as f64 + 0.5);
             let paper = self.paper * (1.0 - 0.85 * ink[k]);
-            let seen = self.table + (paper - self.table) * sheet[k];
+            let other = self.below.map_or(self.table, |(_, level)| level);
+            let under = self.table + (other - self.table) * below[k];
+            // a sheet on another throws a narrow shadow on it
+            let near = 0.3 * (1.0 - self.outside(at) / (0.012 * height as f64)).max(0.0);
+            let under = under * (1.0 - if self.below.is_some() { near } else { 0.0 });
+            let seen = under + (paper - under) * sheet[k];
             let seen = seen + (0.6 * self.paper - seen) * finger[k];
             let light = self.shadow.map_or(1.0, |(light, turn, off)| {
                 let from_edge = (at - Point::new(0.5 * width as f64, 0.5 * height as f64))
@@ -97,6 +145,10 @@ impl Photograph {
                     - off;
                 light + (1.0 - light) * (from_edge + 0.5).clamp(0.0, 1.0)
             });
+            let (way, left) = self.light;
+            let share =
+                0.5 + (at - Point::new(0.5 * width as f64, 0.5 * height as f64)).dot(way) / width as f64;
+            let light = light * (left + (1.0 - left) * share).clamp(0.2, 1.0);
             (seen * light + chance.between(-3.0, 3.0)).clamp(0.0, 255.0) as u8
         };
         Grey::new(width, height, (0..width * height).map(&mut level).collect()).unwrap()
@@ -135,6 +187,18 @@ fn two_hundred_photographs_of_sheets_give_their_figures_and_nothing_else() {
         faults.extend(fault(&photograph, &image).map(|fault| format!("photograph {k}: {fault}")));
     }
     assert!(faults.is_empty(), "{} of 200:\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn nor_do_deep_shadows_light_from_one_side_and_other_sheets_below_change_that() {
+    let mut chance = Chance(0x2545_f491_4f6c_dd1d);
+    let mut faults = Vec::new();
+    for k in 0..120 {
+        let photograph = Photograph::hard(&mut chance);
+        let image = photograph.taken(&mut chance);
+        faults.extend(fault(&photograph, &image).map(|fault| format!("photograph {k}: {fault}")));
+    }
+    assert!(faults.len() < 6, "{} of 120:\n{}", faults.len(), faults.join("\n"));
 }
 
 /// A picture of 640 × 480 by the level of each place.

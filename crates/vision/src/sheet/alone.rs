@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
-use tracelight_stroke::Point;
+use tracelight_stroke::{Point, Vec2};
 
-use super::choice::{Quad, SIDES, is_upright};
+use super::choice::{Quad, SIDES};
+use super::over::covered;
 use super::{Beside, Found, Small};
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -15,23 +16,10 @@ const RIM: f64 = 0.005;
 const LEAST_RIM: f64 = 1.0;
 /// Paper is about as bright as the middle of its surroundings, so many px of the small picture either way.
 const TILE: usize = 8;
-/// What reaches over a sheet differs from its paper by this share.
-const FOREIGN: f64 = 0.08;
 /// So far inside a sheet there is nothing but its paper, px of the small picture.
 const EDGE: f64 = 2.0;
 /// So many pixels at the edge of what is seen tell what is not seen, of the small picture.
 const AT_EDGE: usize = 6;
-/// Levels on and beside it are taken so far from the sheet's edge, px of the small picture.
-const NEAR: f64 = 4.0;
-/// A stretch of a side that is hidden is at least so long, px.
-const LEAST_HIDDEN: usize = 4;
-/// Most of a sheet that something covers.
-const MOST_COVERED: f64 = 0.15;
-/// And most of what covers it in squares of its width at the sheet's edge: a finger is some three times as long as wide.
-const MOST_SQUARES: f64 = 6.0;
-/// So far beyond what covers it the sheet is in its shadow, px.
-const LEAST_WIDER: usize = 3;
-const MOST_WIDER: usize = 8;
 
 /// The part of a picture that holds a sheet, and where its first pixel lies.
 pub(super) struct Alone {
@@ -49,7 +37,7 @@ pub(super) fn alone(plane: &Plane<u8>, small: &Small, found: &Found) -> Alone {
         (low.max(0.0) as usize, (high.ceil() as usize).min(most))
     };
     let ((left, right), (top, bottom)) = (extent(|p| p.x, plane.width), extent(|p| p.y, plane.height));
-    let over = Over::of(small, found);
+    let over = Cover::of(small, found);
     let rim = (RIM * plane.width.min(plane.height) as f64).max(LEAST_RIM + found.blur_px);
     let mut part = Plane::filled(right - left, bottom - top, 0);
     (top..bottom).for_each(|y| part.row_mut(y - top).copy_from_slice(&plane.row(y)[left..right]));
@@ -108,7 +96,7 @@ fn span(outline: &[Point], y: f64, width: usize) -> Range<usize> {
 }
 
 /// What reaches over a sheet, and how bright its paper is.
-struct Over {
+struct Cover {
     /// Pixels of the picture in one of the small one, either way.
     by: usize,
     /// Whether each pixel of the small picture is under something.
@@ -116,7 +104,7 @@ struct Over {
     paper: Plane<u8>,
 }
 
-impl Over {
+impl Cover {
     fn of(small: &Small, found: &Found) -> Self {
         let calm = small.calm();
         let quad = &found.quad;
@@ -124,7 +112,9 @@ impl Over {
         let at = |i: usize| Point::new((i % calm.width) as f64 + 0.5, (i / calm.width) as f64 + 0.5);
         let depths: Vec<f64> = (0..calm.values.len()).map(|i| depth(at(i))).collect();
         let covered = covered(calm, quad, &depths);
-        let paper = paper(calm, |i| depths[i] > EDGE && !covered.values[i]);
+        let is_seen = |i: usize| depths[i] > EDGE && !covered.values[i];
+        let mut paper = paper(calm, is_seen);
+        go_on_outside(&mut paper, &tiles(calm, &is_seen), quad, &depths);
         Self { by: small.by, covered, paper }
     }
 
@@ -189,6 +179,28 @@ fn paper(calm: &Plane<u8>, is_seen: impl Fn(usize) -> bool) -> Plane<u8> {
     out
 }
 
+/// Beside a sheet its paper goes on as it is at the nearest place inside, so that light falls off there as well.
+fn go_on_outside(paper: &mut Plane<u8>, tiles: &Plane<u8>, quad: &Quad, depths: &[f64]) {
+    let inside = paper.clone();
+    let sides = SIDES.map(|side| (quad.ends(side).0, quad.inward(side)));
+    let width = paper.width;
+    for i in (0..depths.len()).filter(|&i| depths[i] <= EDGE) {
+        let at = Point::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+        let onto = |at: Point, (from, inward): &(Point, Vec2)| {
+            at + *inward * (EDGE + 1.0 - (at - *from).dot(*inward)).max(0.0)
+        };
+        // twice, for that of one side may be outside another one
+        let nearest = (0..2).fold(at, |at, _| sides.iter().fold(at, onto));
+        let inward = (nearest - at) / nearest.distance(at).max(1e-9);
+        let tile = Point::new(nearest.x / TILE as f64, nearest.y / TILE as f64);
+        let usual = tiles.at(tile);
+        // the one most like paper: a filled shape may reach up to the edge
+        let levels = (0..AT_EDGE).map(|k| inside.at(nearest + inward * k as f64));
+        let like = levels.min_by(|a, b| (a - usual).abs().total_cmp(&(b - usual).abs()));
+        paper.values[i] = like.unwrap_or(usual).round() as u8;
+    }
+}
+
 /// The usual level of what is seen of each tile and its neighbours; 255 where that is hardly anything.
 fn tiles(calm: &Plane<u8>, is_seen: &impl Fn(usize) -> bool) -> Plane<u8> {
     let (width, height) = (calm.width.div_ceil(TILE), calm.height.div_ceil(TILE));
@@ -202,109 +214,4 @@ fn tiles(calm: &Plane<u8>, is_seen: &impl Fn(usize) -> bool) -> Plane<u8> {
         middle(levels).map_or(255, |level| level as u8)
     };
     Plane { width, height, values: (0..width * height).map(level).collect() }
-}
-
-/// What reaches over a sheet from beside it: a finger, a weight. Where it does, a side is not seen, and there is the
-/// same on both sides of it.
-fn covered(calm: &Plane<u8>, quad: &Quad, depths: &[f64]) -> Plane<bool> {
-    let mut covered = Plane::filled(calm.width, calm.height, false);
-    for side in SIDES {
-        for stretch in hidden(quad, side) {
-            // a finger's nail and the shadow about it are about as wide as a part of it
-            let wider = (stretch.len() / 3).clamp(LEAST_WIDER, MOST_WIDER);
-            let patch = cover(calm, depths, &Stretch::of(calm, quad, side, stretch));
-            patch.into_iter().for_each(|i| cover_near(&mut covered, i, wider));
-        }
-    }
-    covered
-}
-
-/// Along a side the stretches in which it is not seen, as numbers of its places.
-fn hidden(quad: &Quad, side: usize) -> Vec<Range<usize>> {
-    let Some(seen) = &quad.sides[side] else { return Vec::new() };
-    let (from, to) = quad.ends(side);
-    let places = from.distance(to) as usize;
-    let is_hidden = |k: usize| {
-        let at = from.lerp(to, k as f64 / places as f64);
-        !seen.is_seen_near(if is_upright(side) { at.y } else { at.x }.max(0.0) as usize)
-    };
-    let mut stretches: Vec<Range<usize>> = Vec::new();
-    for k in (0..places).filter(|&k| is_hidden(k)) {
-        match stretches.last_mut().filter(|stretch| stretch.end + 2 >= k) {
-            Some(stretch) => stretch.end = k + 1,
-            None => stretches.push(k..k + 1),
-        }
-    }
-    stretches.retain(|stretch| stretch.len() >= LEAST_HIDDEN && 2 * stretch.len() < places);
-    stretches
-}
-
-/// A stretch of a side on which something lies.
-struct Stretch {
-    /// Places in it just inside the sheet.
-    inside: Vec<Point>,
-    /// What lies there: its level, and that of the paper beside it.
-    level: f64,
-    paper: f64,
-}
-
-impl Stretch {
-    fn of(calm: &Plane<u8>, quad: &Quad, side: usize, places: Range<usize>) -> Self {
-        let (from, to) = quad.ends(side);
-        let (inward, length) = (quad.inward(side), from.distance(to));
-        let at = |k: f64| from.lerp(to, k / length) + inward * NEAR;
-        let level = |at: Point| calm.at(at);
-        let inside: Vec<Point> = places.clone().map(|k| at(k as f64)).collect();
-        let inside_level = middle(inside.iter().map(|p| level(*p)).collect()).unwrap_or(0.0);
-        // past the shadow of what lies there; one of both may be in another shadow
-        let paper = |from: f64, way: f64| {
-            let on = (6..16).map(|k| from + way * f64::from(k)).filter(|k| (0.0..length).contains(k));
-            middle(on.map(|k| level(at(k))).collect())
-        };
-        let papers = [paper(places.start as f64, -1.0), paper(places.end as f64, 1.0)];
-        let (a, b) = (papers[0].or(papers[1]).unwrap_or(255.0), papers[1].or(papers[0]).unwrap_or(255.0));
-        let (near, far) = if (a - inside_level).abs() < (b - inside_level).abs() { (a, b) } else { (b, a) };
-        let paper = if (near - inside_level).abs() > FOREIGN * near { near } else { far };
-        Self { level: inside_level, paper, inside }
-    }
-
-    /// Whether a level is nearer to what lies there than to the paper.
-    fn holds(&self, level: f64) -> bool {
-        (level - self.level).abs() < (level - self.paper).abs()
-    }
-}
-
-/// What lies on a stretch, and all that is joined to it.
-fn cover(calm: &Plane<u8>, depths: &[f64], stretch: &Stretch) -> Vec<usize> {
-    if (stretch.level - stretch.paper).abs() < FOREIGN * stretch.paper {
-        return Vec::new();
-    }
-    let holds = |i: usize| depths[i] > 0.0 && stretch.holds(f64::from(calm.values[i]));
-    let places = stretch
-        .inside
-        .iter()
-        .filter(|at| calm.holds(**at))
-        .map(|at| at.y as usize * calm.width + at.x as usize);
-    let mut patch: Vec<usize> = Vec::new();
-    let mut seen = vec![false; calm.values.len()];
-    for i in places {
-        if !seen[i] && holds(i) {
-            seen[i] = true;
-            patch.push(i);
-        }
-    }
-    calm.flood(&mut patch, &mut seen, |_, k| holds(k));
-    // what takes up much of the sheet is a shadow on it
-    let sheet = depths.iter().filter(|depth| **depth > 0.0).count();
-    let most = (MOST_COVERED * sheet as f64).min(MOST_SQUARES * (stretch.inside.len() as f64).powi(2));
-    if (patch.len() as f64) < most { patch } else { Vec::new() }
-}
-
-/// With all so near, px.
-fn cover_near(covered: &mut Plane<bool>, i: usize, by: usize) {
-    let (x, y) = (i % covered.width, i / covered.width);
-    let (from, to) = (x.saturating_sub(by), (x + by + 1).min(covered.width));
-    for y in y.saturating_sub(by)..(y + by + 1).min(covered.height) {
-        covered.row_mut(y)[from..to].fill(true);
-    }
 }

@@ -2,6 +2,7 @@
 
 use tracelight_stroke::{Point, Vec2};
 
+use super::shade::Shade;
 use super::sides::{self, Side};
 use super::{Small, inward, steps};
 use crate::outline::area;
@@ -10,6 +11,8 @@ use crate::ridge::middle;
 
 /// Least of a side that is seen; a finger, a shadow or another sheet hides the rest.
 const LEAST_SEEN: f64 = 0.5;
+/// A shorter part of a side in a shadow is not looked at, px.
+const LEAST_IN_SHADE: usize = 5;
 /// A side is at least this share of the picture's.
 const LEAST_SIDE: f64 = 0.2;
 /// Least share of the picture that is sheet.
@@ -30,15 +33,21 @@ const LEAST_SHADE: f64 = 0.5;
 const CALMER: f64 = 0.4;
 /// Share of the blocks that are below what counts as their contrast.
 const MOST_BLOCKS: f64 = 0.97;
+/// Of all blocks this share has no more than noise.
+const NOISE_BLOCKS: f64 = 0.2;
 /// Pixels of such a block, either way.
 const BLOCK: usize = 8;
 /// Levels differ from this share on.
 const STEP: f64 = 0.06;
 /// Least share of the sides along which paper ends for good: a finger and another sheet below hide the rest.
 const LEAST_FIRM: f64 = 0.6;
-/// Of a sheet seen on three sides.
+/// The same with places at which a dark line tells the edge of a sheet on another: so much without them.
+const LEAST_FIRM_BY_LINES: f64 = 0.3;
+/// Of a sheet seen on three sides, and of one that is darker than what lies beside it and seen on all.
 const LEAST_FIRM_OF_THREE: f64 = 0.7;
-/// Of a sheet seen on two sides or one, and of one that is darker than what lies beside it.
+/// Of what lies in a shadow across the sheet.
+const LEAST_FIRM_IN_SHADE: f64 = 0.8;
+/// Of a sheet seen on two sides or one, and of one that is darker than what lies beside it and seen on three.
 const LEAST_FIRM_OF_TWO: f64 = 0.85;
 /// What a shadow on the paper lets through of the light: a step of that size on a single side may be its edge.
 const SHADE: std::ops::Range<f64> = 0.42..0.88;
@@ -48,8 +57,12 @@ const MOST_OUTSIDE: f64 = 0.4;
 const RIVAL: f64 = 0.75;
 /// So many of the likeliest are looked at.
 const LOOKED_AT: usize = 24;
-/// A level is the paper's again within this share.
+/// A level is the paper's again within this share, and half of the step; the paper goes on if it is on this share of the way.
 const SAME: f64 = 0.1;
+const LEAST_BACK: f64 = 0.25;
+/// So far out of the sheet, and into it, px.
+const FAR: f64 = 40.0;
+const FAR_INSIDE: f64 = 40.0;
 /// A side so near to the picture's border all along is none, px.
 const AT_BORDER: f64 = 2.5;
 /// A line along the picture's border is narrower than this share of its shorter side, and as wide everywhere within so
@@ -69,20 +82,22 @@ pub(super) struct Quad {
     pub(super) corners: [Point; 4],
     /// Whether it is brighter than what lies beside it.
     pub(super) is_brighter: bool,
+    /// What falls across it.
+    shade: Option<Shade>,
 }
 
 /// Of left, top, right and bottom: its number.
 pub(super) const SIDES: [usize; 4] = [0, 1, 2, 3];
 
 /// Whether a side is the left or the right one.
-pub(super) const fn is_upright(side: usize) -> bool {
+const fn is_upright(side: usize) -> bool {
     matches!(side, 0 | 2)
 }
 
 impl Quad {
     /// All of a picture.
     pub(super) fn all(plane: &Plane<u8>) -> Self {
-        Self { sides: Default::default(), corners: corners(plane, [None; 4]), is_brighter: true }
+        Self { sides: Default::default(), corners: corners(plane, [None; 4]), is_brighter: true, shade: None }
     }
 
     /// Between corners that someone gives; `None` where they are no quadrilateral.
@@ -91,7 +106,8 @@ impl Quad {
             let [a, b, c] = [k, k + 1, k + 2].map(|k| corners[k % 4]);
             (b - a).cross(c - b) > 0.0
         };
-        (0..4).all(turns).then(|| Self { sides: Default::default(), corners, is_brighter: true })
+        let quad = Self { sides: Default::default(), corners, is_brighter: true, shade: None };
+        (0..4).all(turns).then_some(quad)
     }
 
     /// The ends of a side, clockwise.
@@ -114,6 +130,34 @@ impl Quad {
     fn seen(&self) -> usize {
         self.sides.iter().flatten().count()
     }
+
+    /// Whether its sides are seen both in a shadow and beside it.
+    fn goes_on_in(&self, shade: &Shade, plane: &Plane<u8>) -> bool {
+        let (width, height) = (plane.width as f64 - BESIDE, plane.height as f64 - BESIDE);
+        let may_be_seen = |p: Point| (BESIDE..width).contains(&p.x) && (BESIDE..height).contains(&p.y);
+        SIDES.into_iter().filter_map(|k| Some((k, self.sides[k].as_ref()?))).all(|(k, side)| {
+            let (from, to) = self.ends(k);
+            let row = |p: Point| if is_upright(k) { p.y } else { p.x }.max(0.0) as usize;
+            let (first, last) = (row(from).min(row(to)), row(from).max(row(to)));
+            // in the light, and in the shadow
+            let (mut all, mut seen) = ([0, 0], [0, 0]);
+            for row in first..last {
+                let at = side.place(is_upright(k), row as f64 + 0.5);
+                if may_be_seen(at) {
+                    let dark = usize::from(shade.is_dark(at));
+                    all[dark] += 1;
+                    seen[dark] += side.seen(row..row + 1) + side.lines(row..row + 1);
+                }
+            }
+            let is_seen = |(all, seen)| all < LEAST_IN_SHADE || seen as f64 > LEAST_SEEN * all as f64;
+            all.into_iter().zip(seen).all(is_seen)
+        })
+    }
+
+    /// What a level would be without the shadow across it.
+    pub(super) fn lit(&self, at: Point, level: f64) -> f64 {
+        self.shade.as_ref().map_or(level, |shade| shade.lit(at, level))
+    }
 }
 
 /// The sheet with most of its sides seen.
@@ -121,8 +165,12 @@ pub(super) fn best(small: &Small) -> Option<Quad> {
     let plane = &small.levels;
     let across = plane.transposed();
     let (rows, columns) = (steps::of_rows(plane), steps::of_rows(&across));
-    let kinds =
-        |rises: bool| (sides::of(&rows, plane.width, rises), sides::of(&columns, plane.height, rises));
+    let of = |rows, plane: &Plane<u8>, rises| {
+        let mut sides = sides::of(rows, plane.width, rises);
+        sides.iter_mut().for_each(|side| side.look_for_lines(plane));
+        sides
+    };
+    let kinds = |rises| (of(&rows, plane, rises), of(&columns, &across, rises));
     let (rising, falling) = (kinds(true), kinds(false));
     // of a sheet that is brighter than what lies beside it, left, top, right and bottom
     let brighter: [&[Side]; 4] = [&rising.0, &rising.1, &falling.0, &falling.1];
@@ -130,6 +178,12 @@ pub(super) fn best(small: &Small) -> Option<Quad> {
     if brighter.iter().all(|sides| sides.is_empty()) {
         return None;
     }
+    let shades: Vec<Shade> = [(&rising.0, true), (&falling.0, true), (&rising.1, false), (&falling.1, false)]
+        .into_iter()
+        .flat_map(|(sides, is_upright)| {
+            sides.iter().filter_map(move |side| Shade::of(small.calm(), side, is_upright))
+        })
+        .collect();
     let mut found: Vec<(f64, Quad)> = Vec::new();
     for (sides, is_brighter) in [(brighter, true), (darker, false)] {
         let mut likely = candidates(plane, sides, is_brighter);
@@ -137,7 +191,15 @@ pub(super) fn best(small: &Small) -> Option<Quad> {
         found.extend(likely.into_iter().take(LOOKED_AT).map(|(score, numbers)| {
             let chosen = picked(sides, numbers);
             let corners = corners(plane, chosen);
-            (score, Quad { sides: chosen.map(|side| side.cloned()), corners, is_brighter })
+            let mut quad =
+                Quad { sides: chosen.map(|side| side.cloned()), corners, is_brighter, shade: None };
+            // of a shadow's edge that falls across it as much is told by it as by a side
+            let depth = quad.depths();
+            let across = shades.iter().filter_map(|shade| Some((shade.across(&depth, plane)?, shade)));
+            let across = across.filter(|(_, shade)| quad.goes_on_in(shade, plane));
+            let most = across.max_by(|a, b| a.0.total_cmp(&b.0));
+            quad.shade = most.map(|(_, shade)| shade.clone());
+            (score + most.map_or(0.0, |(seen, _)| seen), quad)
         }));
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -222,13 +284,13 @@ fn score(plane: &Plane<u8>, sides: [Option<&Side>; 4], is_brighter: bool) -> Opt
         if a.max(b) < AT_BORDER {
             return None;
         }
-        let (all, seen) = (last - first, side.seen(first..last));
-        if (seen as f64) < LEAST_SEEN * all as f64 || (all as f64) < LEAST_SIDE * most as f64 {
+        let (all, steps, lines) = (last - first, side.seen(first..last), side.lines(first..last));
+        if ((steps + lines) as f64) < LEAST_SEEN * all as f64 || (all as f64) < LEAST_SIDE * most as f64 {
             return None;
         }
         // a shadow's edge, or the table's, goes on behind the corners
-        let beyond = side.seen(0..most) - seen;
-        score += seen as f64 - 1.5 * (all - seen) as f64 - beyond as f64;
+        let beyond = side.seen(0..most) - steps;
+        score += side.score(first..last) - beyond as f64;
     }
     (score > 0.0).then_some(score)
 }
@@ -274,8 +336,10 @@ struct Evidence {
     inner: [Option<f64>; 4],
     /// Usual level just outside.
     beyond: f64,
-    /// Share of the sides at which the level differs on both sides, and does not come back further out.
+    /// Share of the sides at which the level differs on both sides, and does not come back further out, or a dark line is.
     firm: f64,
+    /// Whether what falls across it does so: it is seen in it as well as elsewhere.
+    is_shadow: bool,
 }
 
 impl<'a> Calm<'a> {
@@ -300,12 +364,13 @@ impl<'a> Calm<'a> {
 
     /// Whether a quadrilateral may be a sheet, and whether there is far less to be seen beside it than on it.
     fn judged(&self, quad: &Quad) -> Option<bool> {
-        let Evidence { inner, beyond, firm } = self.beside(quad)?;
+        let Evidence { inner, beyond, firm, is_shadow } = self.beside(quad)?;
         let paper = middle(inner.iter().flatten().copied().collect())?;
         let is_even = inner.iter().flatten().all(|level| EVEN.contains(&(level / paper)));
         let is_ink = !quad.is_brighter && paper < LEAST_SHADE * beyond;
         let least_firm = match quad.seen() {
             4 if quad.is_brighter => LEAST_FIRM,
+            4 => LEAST_FIRM_OF_THREE,
             3 if quad.is_brighter => LEAST_FIRM_OF_THREE,
             _ => LEAST_FIRM_OF_TWO,
         };
@@ -315,6 +380,7 @@ impl<'a> Calm<'a> {
             && !self.is_framed(quad)
             && !is_ink
             && firm >= least_firm
+            && is_shadow
             && self.is_paper(quad, paper);
         is_sheet.then(|| self.is_calmer_outside(quad, paper))
     }
@@ -332,11 +398,10 @@ impl<'a> Calm<'a> {
     /// What is seen along its sides; `None` where all of them are at the picture's border.
     fn beside(&self, quad: &Quad) -> Option<Evidence> {
         let mut inner: [Option<f64>; 4] = Default::default();
-        let (mut outer, mut firm) = (Vec::new(), 0);
+        let (mut outer, mut firm, mut lines) = (Vec::new(), 0, 0);
+        let (mut in_shade, mut firm_in_shade) = (0, 0);
         for (k, side) in quad.sides.iter().enumerate() {
-            if side.is_none() {
-                continue;
-            }
+            let Some(side) = side else { continue };
             let (from, to) = quad.ends(k);
             let inward = quad.inward(k);
             let mut levels = Vec::new();
@@ -344,22 +409,44 @@ impl<'a> Calm<'a> {
                 let at = from.lerp(to, f64::from(i) / 40.0);
                 let (inside, outside) = (at + inward * BESIDE, at - inward * BESIDE);
                 let (Some(paper), Some(beside)) = (self.level(inside), self.level(outside)) else { continue };
-                levels.push(paper);
                 outer.push(beside);
                 let differs =
                     (paper > beside) == quad.is_brighter && (paper - beside).abs() > STEP * paper.max(beside);
-                firm += usize::from(differs && !self.comes_back(outside, -inward, paper));
+                let (paper, table) = (quad.lit(inside, paper), quad.lit(outside, beside));
+                levels.push(paper);
+                // on neither side it is soon as on the other again, else it is a line
+                let is_line = || {
+                    self.comes_back(quad, (outside, -inward, FAR), paper)
+                        || self.comes_back(quad, (inside, inward, FAR_INSIDE), table)
+                };
+                let is_firm = differs && !is_line();
+                let row = if is_upright(k) { at.y } else { at.x }.max(0.0) as usize;
+                let is_line = !is_firm && side.is_line_at(row);
+                firm += usize::from(is_firm);
+                lines += usize::from(is_line);
+                if quad.shade.as_ref().is_some_and(|shade| shade.is_dark(at)) {
+                    in_shade += 1;
+                    firm_in_shade += i32::from(is_firm || is_line);
+                }
             }
             inner[k] = middle(levels);
         }
-        let firm = firm as f64 / outer.len().max(1) as f64;
-        Some(Evidence { inner, beyond: middle(outer)?, firm })
+        let share = |places: usize| places as f64 / outer.len().max(1) as f64;
+        // a line alone is a frame that someone drew, or a rule
+        let by_lines = share(firm) > LEAST_FIRM_BY_LINES && quad.seen() > 2;
+        let firm = share(firm + if by_lines { lines } else { 0 });
+        let is_shadow = f64::from(firm_in_shade) >= LEAST_FIRM_IN_SHADE * f64::from(in_shade);
+        Some(Evidence { inner, beyond: middle(outer)?, firm, is_shadow })
     }
 
-    /// Whether on a way the level is the paper's again.
-    fn comes_back(&self, from: Point, way: Vec2, paper: f64) -> bool {
-        let on = (0..60).map(|k| self.level(from + way * (2.0 * f64::from(k))));
-        on.map_while(|level| level).any(|level| (level - paper).abs() < SAME * paper)
+    /// Whether much of what lies on a way, with its length in px, is as bright again as on the other side of its beginning.
+    fn comes_back(&self, quad: &Quad, (from, way, far): (Point, Vec2, f64), paper: f64) -> bool {
+        let on = (0..(0.5 * far) as usize).map(|k| from + way * (2.0 * k as f64));
+        let lit: Vec<f64> = on.map_while(|at| Some(quad.lit(at, self.level(at)?))).collect();
+        let step = lit.first().map_or(0.0, |beside| (paper - beside).abs());
+        let same = (SAME * paper).min(0.5 * step);
+        let back = lit.iter().filter(|level| (**level - paper).abs() < same).count();
+        back as f64 > LEAST_BACK * lit.len() as f64
     }
 
     /// Whether most of what it holds is paper, and hardly any of what it does not.
@@ -368,7 +455,7 @@ impl<'a> Calm<'a> {
         let (mut inside, mut like, mut like_outside) = (0_usize, 0_usize, 0_usize);
         let depth = quad.depths();
         for (at, level, _) in &self.blocks {
-            let ratio = f64::from(*level) / paper;
+            let ratio = quad.lit(*at, f64::from(*level)) / paper;
             match depth(*at) > 0.0 {
                 true => {
                     inside += 1;
@@ -391,9 +478,12 @@ impl<'a> Calm<'a> {
                 _ => {}
             }
         }
-        // a corner of the table is no drawing
+        // noise is the same everywhere, and a corner of the table is no drawing
+        let noise = strong(self.blocks.iter().map(|block| block.2).collect(), NOISE_BLOCKS).unwrap_or(0.0);
         match (strong(inside, MOST_BLOCKS), strong(outside, MOST_BLOCKS)) {
-            (Some(inside), Some(outside)) => outside < CALMER * inside.max(STEP * paper),
+            (Some(inside), Some(outside)) => {
+                (outside - noise).max(0.0) < CALMER * (inside - noise).max(STEP * paper)
+            }
             _ => true,
         }
     }

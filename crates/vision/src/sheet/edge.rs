@@ -19,6 +19,8 @@ const WINDOW: usize = 9;
 /// A side is straight whose steps are off a straight line by less, px of the full picture and of the small one.
 const STRAIGHT_PX: f64 = 1.5;
 const STRAIGHT_SMALL: f64 = 0.3;
+/// From place to place a bent side goes on by less than this share of how far it is bent.
+const MOST_JUMP: f64 = 0.4;
 /// A smaller sheet holds no drawing, px².
 const LEAST_PX2: f64 = 64.0 * 64.0;
 /// A step is over where levels are the paper's within this share of it, at most of the places.
@@ -38,15 +40,34 @@ struct Line {
 }
 
 impl Line {
+    /// Where the small picture has it.
+    fn in_small(by: f64, quad: &Quad, side: usize) -> Self {
+        let (from, to) = quad.ends(side);
+        let scaled = |p: Point| Point::new(p.x * by, p.y * by);
+        Self { from: scaled(from), to: scaled(to), bent: Vec::new(), blur: 0.0 }
+    }
+
     fn inward(&self) -> Vec2 {
         inward(self.from, self.to)
+    }
+
+    /// The levels some way outside.
+    fn outside(&self, plane: &Plane<u8>, by: f64) -> impl Iterator<Item = f64> {
+        let out = self.inward() * -(4.0 * by + 2.0);
+        let places = (0..PLACES).map(move |k| (k as f64 + 0.5) / PLACES as f64);
+        places
+            .map(move |share| self.from.lerp(self.to, share) + out)
+            .filter(|at| plane.holds(*at))
+            .map(|at| plane.at(at))
     }
 }
 
 /// The sheet, from where the small picture has it, and how far inside its edge that is over, px.
 pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<(Sheet, f64)> {
     let by = small.by as f64;
-    let lines = SIDES.map(|side| line(plane, by, quad, side));
+    let mut seen = SIDES.map(|side| quad.sides[side].as_ref().map(|_| seen(plane, by, quad, side)));
+    let usual = middle(seen.iter().flatten().flat_map(|line| line.outside(plane, by)).collect());
+    let lines = SIDES.map(|side| seen[side].take().unwrap_or_else(|| border(plane, by, quad, side, usual)));
     let mut corners = [Point::ORIGIN; 4];
     for side in SIDES {
         corners[side] = meet(&lines[side], &lines[(side + 1) % 4])?;
@@ -99,25 +120,27 @@ fn meet(a: &Line, b: &Line) -> Option<Point> {
     at.is_finite().then_some(at)
 }
 
-fn line(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize) -> Line {
-    let (from, to) = quad.ends(side);
-    let scaled = |p: Point| Point::new(p.x * by, p.y * by);
-    let mut line = Line { from: scaled(from), to: scaled(to), bent: Vec::new(), blur: 0.0 };
-    if quad.sides[side].is_none() {
-        // what was averaged may leave some px of the picture over at its right and lower border
-        let (width, height) = (plane.width as f64, plane.height as f64);
-        let on_border = |p: Point| match side {
-            2 => Point::new(width, p.y),
-            3 => Point::new(p.x, height),
-            _ => p,
-        };
-        (line.from, line.to) = (on_border(line.from), on_border(line.to));
-        if let Some((first, last)) = rim::strip(plane, line.from, line.to) {
-            let inward = line.inward();
-            (line.from, line.to) = (line.from + inward * first, line.to + inward * last);
-        }
-        return line;
+/// Where the picture ends, or further in where there is a narrow strip of what is usual beside the sheet.
+fn border(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize, usual: Option<f64>) -> Line {
+    let mut line = Line::in_small(by, quad, side);
+    // what was averaged may leave some px of the picture over at its right and lower border
+    let (width, height) = (plane.width as f64, plane.height as f64);
+    let on_border = |p: Point| match side {
+        2 => Point::new(width, p.y),
+        3 => Point::new(p.x, height),
+        _ => p,
+    };
+    (line.from, line.to) = (on_border(line.from), on_border(line.to));
+    if let Some((first, last)) = rim::strip(plane, line.from, line.to, usual) {
+        let inward = line.inward();
+        (line.from, line.to) = (line.from + inward * first, line.to + inward * last);
     }
+    line
+}
+
+/// A side that is seen.
+fn seen(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize) -> Line {
+    let mut line = Line::in_small(by, quad, side);
     let (steps, blur) = steps(plane, by, &line, quad.is_brighter);
     line.blur = blur;
     if steps.len() < LEAST_PLACES {
@@ -131,10 +154,13 @@ fn line(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize) -> Line {
         .windows(WINDOW)
         .filter_map(|near| Some((near[WINDOW / 2].0, middle(near.iter().map(|n| n.1).collect())?)))
         .collect();
+    // where steps of something else begin they jump; a bent sheet's do not
+    let jump = running.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs()).fold(0.0, f64::max);
     // the median of nine leaves half of what steps stray by
     let furthest = running.iter().map(|r| r.1.abs()).fold(0.0, f64::max);
     let strays = off.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs()).collect();
-    if furthest > STRAIGHT_PX.max(STRAIGHT_SMALL * by).max(2.0 * middle(strays).unwrap_or(0.0)) {
+    let is_bent = furthest > STRAIGHT_PX.max(STRAIGHT_SMALL * by).max(2.0 * middle(strays).unwrap_or(0.0));
+    if is_bent && jump < MOST_JUMP * furthest {
         line.bent = running;
     }
     line

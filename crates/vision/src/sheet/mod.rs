@@ -2,15 +2,18 @@
 //!
 //! Its border is a long step of brightness that is seen from one side only: a line comes back behind it, a table does
 //! not. On the picture averaged down to some 180 rows, medians over five pixels take lines out (`steps`); what steps
-//! are left are gathered into straight sides (`sides`); of these and the picture's own borders the quadrilateral with
-//! most of its sides seen is chosen (`choice`) and moved on to the full picture's steps (`edge`). Where it runs out of the
-//! picture a narrow wedge of the table may be left along the border (`rim`). All beside it, with what reaches in from
-//! there, is given its paper's brightness (`alone`).
+//! are left are gathered into straight sides (`sides`), which may go on as a dark line where the sheet lies on another
+//! one; of these and the picture's own borders the quadrilateral with most of its sides seen is chosen (`choice`), a
+//! shadow that falls across it with it (`shade`), and moved on to the full picture's steps (`edge`). Where it runs out of
+//! the picture a narrow strip of the table may be left along the border (`rim`). All beside it, with what reaches in from
+//! there (`over`), is given its paper's brightness (`alone`).
 
 mod alone;
 mod choice;
 mod edge;
+mod over;
 mod rim;
+mod shade;
 mod sides;
 mod steps;
 

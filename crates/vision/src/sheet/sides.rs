@@ -1,6 +1,9 @@
 //! Steps in a row, on a straight line through the rows: a side.
 
+use tracelight_stroke::Point;
+
 use super::steps::Step;
+use crate::plane::Plane;
 
 /// The steepest side of those that go down the rows: a little more than half a right angle, so that none falls between
 /// those of rows and those of columns.
@@ -12,6 +15,14 @@ const LEAST_SEEN: f64 = 0.15;
 /// Sides of one kind that are looked at.
 const MOST: usize = 6;
 
+/// What is not seen of a side counts so many times as much as what is.
+const UNSEEN: f64 = 1.5;
+/// A sheet's shadow on another one leaves less than this share of the light.
+const VALLEY: f64 = 0.96;
+/// It is narrower than this to either side, px, and seen along so many rows to either way.
+const VALLEY_PX: usize = 6;
+const VALLEY_ROWS: usize = 3;
+
 /// A straight side through rows: at row y it is at `at` + `slope`·y.
 #[derive(Clone, Debug)]
 pub(super) struct Side {
@@ -19,6 +30,9 @@ pub(super) struct Side {
     pub(super) slope: f64,
     /// How many of the rows before each have a step of it; one more than there are rows.
     seen: Vec<u32>,
+    /// Whether it is a dark line at each row, and before how many of them it is one without a step.
+    is_line: Vec<bool>,
+    lines: Vec<u32>,
 }
 
 impl Side {
@@ -26,6 +40,60 @@ impl Side {
     pub(super) fn seen(&self, rows: std::ops::Range<usize>) -> usize {
         let last = self.seen.len() - 1;
         (self.seen[rows.end.min(last)] - self.seen[rows.start.min(last)]) as usize
+    }
+
+    /// Where it is at a row, or at a column of those that go across.
+    pub(super) const fn place(&self, is_upright: bool, row: f64) -> Point {
+        let at = self.at + self.slope * row;
+        if is_upright { Point::new(at, row) } else { Point::new(row, at) }
+    }
+
+    /// Looks where it is a dark line: where a sheet lies on another one as bright, its edge is seen by its shadow.
+    pub(super) fn look_for_lines(&mut self, plane: &Plane<u8>) {
+        let rows = self.seen.len() - 1;
+        self.is_line = (0..rows).map(|y| self.is_valley(plane, y)).collect();
+        self.lines = vec![0; rows + 1];
+        for y in 0..rows {
+            let is_line = self.is_line[y] && self.seen[y + 1] == self.seen[y];
+            self.lines[y + 1] = self.lines[y] + u32::from(is_line);
+        }
+    }
+
+    /// Whether at a row, and some rows to either way, it is darker on it than on both sides of it.
+    fn is_valley(&self, plane: &Plane<u8>, row: usize) -> bool {
+        let rows = row.saturating_sub(VALLEY_ROWS)..(row + VALLEY_ROWS + 1).min(plane.height);
+        let count = rows.len() as f64;
+        let mut sums = [0.0; 2 * VALLEY_PX + 1];
+        for y in rows {
+            let middle = (self.at + self.slope * (y as f64 + 0.5)).floor();
+            if middle < VALLEY_PX as f64 || middle >= (plane.width - VALLEY_PX) as f64 {
+                return false;
+            }
+            let first = middle as usize - VALLEY_PX;
+            let levels = &plane.row(y)[first..=first + 2 * VALLEY_PX];
+            sums.iter_mut().zip(levels).for_each(|(sum, level)| *sum += f64::from(*level) / count);
+        }
+        let beside = |of: std::ops::Range<usize>| sums[of].iter().sum::<f64>() / 3.0;
+        let (before, behind) = (beside(0..3), beside(2 * VALLEY_PX - 2..2 * VALLEY_PX + 1));
+        let least = sums[VALLEY_PX - 2..=VALLEY_PX + 2].iter().copied().fold(f64::INFINITY, f64::min);
+        least < VALLEY * before.min(behind)
+    }
+
+    /// Whether it is a dark line at a row.
+    pub(super) fn is_line_at(&self, row: usize) -> bool {
+        self.is_line.get(row).copied().unwrap_or(false)
+    }
+
+    /// In how many of some rows there is no step of it, but a dark line.
+    pub(super) fn lines(&self, rows: std::ops::Range<usize>) -> usize {
+        let last = self.lines.len() - 1;
+        (self.lines[rows.end.min(last)] - self.lines[rows.start.min(last)]) as usize
+    }
+
+    /// How much more of it is seen than not, px; a dark line is neither.
+    pub(super) fn score(&self, rows: std::ops::Range<usize>) -> f64 {
+        let (all, seen, lines) = (rows.len(), self.seen(rows.clone()), self.lines(rows));
+        seen as f64 - UNSEEN * (all - seen - lines) as f64
     }
 
     /// Whether a step of it is seen near a row.
@@ -188,5 +256,5 @@ fn taken(points: &[Voter], line: (f64, f64), rows: usize) -> (Side, Vec<Voter>, 
     let mut has = vec![0_u32; rows + 1];
     on.iter().for_each(|point| has[point.at.1 as usize + 1] = 1);
     (1..=rows).for_each(|y| has[y] += has[y - 1]);
-    (Side { at, slope, seen: has }, on, rest)
+    (Side { at, slope, seen: has, is_line: Vec::new(), lines: Vec::new() }, on, rest)
 }

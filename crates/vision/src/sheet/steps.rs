@@ -5,6 +5,8 @@ use crate::plane::Plane;
 /// A step from paper to table is at least so many levels, and this share of the brighter side.
 const LEAST_LEVELS: i16 = 10;
 const LEAST_SHARE: f64 = 0.07;
+/// It is none where by this share of it levels go on to rise, or to fall, to both sides.
+const GOES_ON: f64 = 0.4;
 /// The levels on either side of a step are taken so far from it, px.
 const BESIDE: usize = 3;
 
@@ -81,7 +83,12 @@ fn of_row(levels: &[u8]) -> Vec<Step> {
         }
         let step = across(i);
         let brighter = level(i + BESIDE - 1).max(level(i.saturating_sub(BESIDE)));
-        if step.abs() < LEAST_LEVELS.max((LEAST_SHARE * f64::from(brighter)) as i16) {
+        // where light falls off it goes on to either side, as far as is seen
+        let next = [i.checked_sub(2 * BESIDE), Some(i + 2 * BESIDE)];
+        let on = next.into_iter().flatten().filter(|i| (BESIDE..=last + 1 - BESIDE).contains(i));
+        let least = on.map(|i| across(i) * step.signum()).min().unwrap_or(0);
+        let is_slope = least > (GOES_ON * f64::from(step.abs())) as i16;
+        if step.abs() < LEAST_LEVELS.max((LEAST_SHARE * f64::from(brighter)) as i16) || is_slope {
             i += 1;
             continue;
         }
