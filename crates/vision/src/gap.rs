@@ -1,6 +1,6 @@
 //! Gaps that were not meant: where a pen skipped, its line goes on.
 
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::Tip;
 use crate::centreline::Row;
@@ -23,6 +23,9 @@ const PALE: f64 = 0.6;
 /// Two ends of one line differ less than this in the width of their pen, as a ratio.
 const LIKE: f64 = 1.6;
 
+/// A line that the pen skipped is longer on both sides than so many times the paper between.
+const LEAST_LENGTHS: f64 = 2.5;
+
 /// The most paper that a line may cross, from a pixel beside ink to the next one: what is bridged, less the pen's two halves, px.
 pub(crate) fn widest_paper(width: f64) -> f64 {
     (WIDEST_PENS - 1.0) * width + LEAST_PX
@@ -34,6 +37,8 @@ struct End {
     end: usize,
     tip: Tip,
     width: f64,
+    /// Of its row, px.
+    length: f64,
 }
 
 /// The rows with those joined that go on into each other over a gap, the straightest first.
@@ -161,16 +166,22 @@ fn ends_where(rows: &[Row], wanted: impl Fn(usize, &Row) -> bool) -> Vec<End> {
         .filter(|(i, row)| wanted(*i, row))
         .flat_map(|(row, r)| (0..2).map(move |end| (row, end, r)));
     let free = all.filter(|(_, end, r)| r.free[*end] && !r.closed);
-    free.filter_map(|(row, end, r)| Some(End { row, end, tip: Tip::of(&r.points, end)?, width: r.width }))
-        .collect()
+    free.filter_map(|(row, end, r)| {
+        let tip = Tip::of(&r.points, end)?;
+        Some(End { row, end, tip, width: r.width, length: polyline_length(&r.points) })
+    })
+    .collect()
 }
 
 /// How much the line would bend from one end to the other, rad; `None` if it is not one line.
 fn fit(dark: &Plane<u8>, a: &End, b: &End) -> Option<f64> {
     let like = a.width.max(b.width) <= LIKE * a.width.min(b.width) + 1.0;
     let bend = a.tip.bend(&b.tip);
-    let most = || if is_pale(dark, a, b) { BEND_OF_PALE } else { BEND };
-    (like && (bend < BEND || bend < most())).then_some(bend)
+    // the bars of two letters beside each other are no broken line
+    let paper = a.tip.at.distance(b.tip.at) - 0.5 * (a.width + b.width);
+    let is_long = a.length.min(b.length) > LEAST_LENGTHS * paper;
+    let is_one = (bend < BEND && is_long) || (bend < BEND_OF_PALE && is_pale(dark, a, b));
+    (like && is_one).then_some(bend)
 }
 
 /// Whether the paper between two ends is nearly as dark as they are: the line fades there, and goes on.

@@ -121,6 +121,10 @@ impl<'a> Skeleton<'a> {
 /// Radii are measured this share of one apart.
 const APART: f64 = 3.0;
 
+/// Lines of a letter, and how long they are together, px.
+const LETTER_LINES: usize = 8;
+const LETTER_PX: f64 = 45.0;
+
 impl Graph {
     /// Reads the graph of some pixels of a skeleton: whole patches of it.
     pub(crate) fn read(skeleton: &mut Skeleton<'_>, cells: &[Cell]) -> Self {
@@ -144,6 +148,26 @@ impl Graph {
                 }
             }
         }
+    }
+
+    /// Whether all of it is no longer than a letter of some ten pixels: too short for its lines to tell their width and direction as
+    /// longer ones do.
+    pub(crate) fn is_letter(&self) -> bool {
+        // most have more branches than a letter
+        self.branches.len() <= LETTER_LINES
+            && self.branches.iter().map(Branch::length).sum::<f64>() < LETTER_PX
+    }
+
+    /// The length of all branches with their ways to their nodes, px.
+    pub(crate) fn reach(&self) -> f64 {
+        let to_nodes = |branch: &Branch| {
+            let ends = [branch.points.first(), branch.points.last()];
+            let way = |(node, end): (&Option<usize>, Option<&Point>)| {
+                node.zip(end).map_or(0.0, |(node, end)| self.nodes[node].at.distance(*end))
+            };
+            branch.nodes.iter().zip(ends).map(way).sum::<f64>()
+        };
+        self.length() + self.branches.iter().map(to_nodes).sum::<f64>()
     }
 
     /// Half the pen's width as the median along all branches, px.

@@ -30,8 +30,12 @@ impl Line {
     pub(crate) fn of(dark: &Plane<u8>, shapes: &Mask, graph: &Graph, branch: &Branch) -> Self {
         let radius = median(&branch.radii).max(0.5);
         let (from, to) = if branch.ring { (0, branch.points.len()) } else { trusted(graph, branch, radius) };
+        let is_letter = graph.is_letter();
         let (mut points, width) = match branch.turns.is_empty() {
-            true => centred(dark, (&branch.points[from..to], &branch.radii[from..to]), radius, branch.ring),
+            true => {
+                let pixels = (&branch.points[from..to], &branch.radii[from..to]);
+                centred(dark, pixels, radius, branch.ring, is_letter)
+            }
             false => turning(dark, branch, (from, to), radius),
         };
         (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
@@ -176,8 +180,16 @@ fn shape_ahead(shapes: &Mask, tip: &Tip, reach: f64) -> Option<f64> {
 
 /// Points on the middle of a line along a row of pixels, of which each is known with the half width of its ink; and the
 /// line's width.
-fn centred(dark: &Plane<u8>, pixels: (&[Point], &[f64]), radius: f64, ring: bool) -> (Vec<Point>, f64) {
-    let ridge = ridge::centred(dark, pixels, radius, ring);
+fn centred(
+    dark: &Plane<u8>,
+    pixels: (&[Point], &[f64]),
+    radius: f64,
+    ring: bool,
+    is_letter: bool,
+) -> (Vec<Point>, f64) {
+    // of a letter as many pixels to either side as elsewhere would be half of it
+    let reach = if is_letter { (pixels.0.len() / 5).clamp(2, REACH) } else { REACH };
+    let ridge = ridge::centred(dark, pixels, radius, ring, reach);
     let mut points = bridged(dark, &ridge, ring);
     if !ring {
         let mut pixels: Vec<(Point, f64)> =
@@ -186,12 +198,14 @@ fn centred(dark: &Plane<u8>, pixels: (&[Point], &[f64]), radius: f64, ring: bool
         for _ in 0..2 {
             points.reverse();
             pixels.reverse();
-            points.extend(lost(&pixels, points.last(), ridge.width));
+            points.extend(lost(&pixels, points.last(), ridge.width, is_letter));
         }
     }
     (points, ridge.width)
 }
 
+/// So many pixels to either side tell the direction of a line.
+const REACH: usize = 5;
 /// Ink that is this much wider than its line is a blot's or a junction's.
 const BLOT: f64 = 1.3;
 /// So much of a row of pixels may be without a cross-section at an end, in pens and px: the ink of a junction.
@@ -200,7 +214,7 @@ const LOST_PX: f64 = 2.0;
 
 /// The pixels from where the middle of a line so wide can be seen last to their end, if that is further than a junction's
 /// ink reaches: the middle of a jagged line has no cross-section for long.
-fn lost(pixels: &[(Point, f64)], last: Option<&Point>, width: f64) -> Vec<Point> {
+fn lost(pixels: &[(Point, f64)], last: Option<&Point>, width: f64, is_letter: bool) -> Vec<Point> {
     let Some(&last) = last else { return Vec::new() };
     // a line that goes round ends beside its beginning
     let nearest = (pixels.len() / 2..pixels.len()).min_by(|&a, &b| {
@@ -211,6 +225,9 @@ fn lost(pixels: &[(Point, f64)], last: Option<&Point>, width: f64) -> Vec<Point>
     let here = rest.first().map_or(0.0, |(_, radius)| 2.0 * radius);
     let as_wide = |(_, radius): &(Point, f64)| 2.0 * radius <= BLOT * width.max(here) + 1.0;
     let rest: Vec<Point> = rest.iter().copied().take_while(as_wide).map(|(at, _)| at).collect();
+    if is_letter && polyline_length(&rest) > LOST_PENS * width {
+        return rest[1..].to_vec();
+    }
     if polyline_length(&rest) <= LOST_PENS * width + LOST_PX {
         return Vec::new();
     }
@@ -247,7 +264,7 @@ fn turning(dark: &Plane<u8>, branch: &Branch, (from, to): (usize, usize), radius
             (start..end).filter(clear).map(|k| (pixels[k], radii[k])).unzip();
         let (side, width) = match side.is_empty() {
             true => (side, 2.0 * radius),
-            false => centred(dark, (&side, &wide), radius, false),
+            false => centred(dark, (&side, &wide), radius, false, false),
         };
         sides.push(side);
         widths.push(width);

@@ -167,6 +167,11 @@ const STREWN_ALIKE: f64 = 1.6;
 /// and grit are paler, an eye is drawn with the same pen.
 const AS_DARK: f64 = 0.75;
 
+/// One that goes round, or of so many lines, so many times as long as wide, may be drawn with a thinner pen: blur leaves it paler.
+const FIGURE_LINES: usize = 4;
+const FIGURE_LONG: f64 = 8.0;
+const FIGURE_DARK: f64 = 0.5;
+
 /// The level that one in so many of some pixels reaches.
 fn level_of(dark: &Plane<u8>, places: impl Iterator<Item = (usize, usize)>, one_in: usize) -> u8 {
     let mut counts = [0_usize; 256];
@@ -193,14 +198,14 @@ fn dusted(dark: &Plane<u8>, mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<
     }
     let reach = (BELONGS_PENS * pen).max(SPECK_PX) as usize;
     let usual = OnceCell::new();
-    let is_dark = |region: &Region, one_in: usize| {
+    let is_dark = |region: &Region, one_in: usize, least: f64| {
         let drawn = usual.get_or_init(|| level_of(dark, drawn.cells().map(|cell| drawn.place(cell)), 2));
-        f64::from(level_of(dark, region.places(), one_in)) >= AS_DARK * f64::from(*drawn)
+        f64::from(level_of(dark, region.places(), one_in)) >= least * f64::from(*drawn)
     };
     let dot = |patch: &Patch| {
         let is_large = patch.region.area() as f64 >= LEAST_DOT_PENS * pen * pen;
         let is_round = patch.reading.widest >= HAIR_PENS * pen;
-        is_large && (is_round || is_dark(&patch.region, 2))
+        is_large && (is_round || is_dark(&patch.region, 2, AS_DARK))
     };
     let is_near = |patch: &Patch| patch.region.is_near(&drawn, reach);
     let (near, far): (Vec<&Patch>, Vec<&Patch>) =
@@ -209,8 +214,12 @@ fn dusted(dark: &Plane<u8>, mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<
     let belongs = |patch: &Patch| dot(patch) && is_near(patch) && !strewn.has(patch.region.area());
     // a cross, a ring, a tick, wherever it is: drawn line by line, and somewhere as dark as the others, for most of it may be edge
     let is_mark = |patch: &Patch| {
-        let Patch { region, reading, .. } = patch;
-        region.area() as f64 >= SPECK_PX && reading.long >= MARK_LONG && is_dark(region, 8)
+        let Patch { region, graph, .. } = patch;
+        let long = graph.reach().powi(2) / region.area() as f64;
+        // no hair crosses itself or goes round
+        let is_figure = graph.branches.iter().any(|b| b.ring) || graph.branches.len() >= FIGURE_LINES;
+        let least = if is_figure && long >= FIGURE_LONG { FIGURE_DARK } else { AS_DARK };
+        long >= MARK_LONG && is_dark(region, 8, least)
     };
     let (kept, dust): (Vec<_>, Vec<_>) =
         patches.into_iter().partition(|patch| !speck(patch) || belongs(patch) || is_mark(patch));

@@ -54,11 +54,13 @@ fn is_bump(graph: &Graph, end: (usize, usize)) -> bool {
 /// between their backs, as far as their outer edges take to meet.
 ///
 /// With pen half-width r and s = sin(θ/2) of the angle θ between the two, the fork lies r(1 − s)/(s(1 + s)) inside
-/// the corner (a disc there touches the inner corner and both outer edges) and the point r/s outside.
+/// the corner (a disc there touches the inner corner and both outer edges) and the point r/s outside. Its ink gets as much
+/// narrower on the way as that takes: what is as wide as the pen up to its end is a nub.
 fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f64) -> bool {
-    let Some((node, tip, _)) = free_end(graph, end).filter(|_| ends.len() == 3) else { return false };
+    let Some((node, tip, radius)) = free_end(graph, end).filter(|_| ends.len() == 3) else { return false };
     let out = tip - node.at;
-    if is_line(&graph.branches[end.0], node.at, pen) {
+    let is_half = |&other: &(usize, usize)| other != end && is_other_half(graph, end, other);
+    if is_line(&graph.branches[end.0], node.at, pen) || ends.iter().any(is_half) {
         return false;
     }
     // skeleton pixels lie up to half a pixel beside the middle, hence `pen + 0.5` below;
@@ -71,11 +73,38 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
         let others: Vec<Vec2> = others.collect();
         let back = -(others[0] + others[1]);
         let s = (0.5 * others[0].cross(others[1]).atan2(others[0].dot(others[1])).abs()).sin();
-        let length = (pen + 0.5) * ((1.0 - s) / (s * (1.0 + s)).max(0.05) + 1.0 / s.max(0.1));
+        let inside = (pen + 0.5) * (1.0 - s) / (s * (1.0 + s)).max(0.05);
+        let length = inside + (pen + 1.0 - radius).clamp(0.0, pen + 0.5) / s.max(0.1);
         let midway = out.dot(back) > 0.9 * out.hypot() * back.hypot() && !is_bent(&graph.branches[end.0]);
         s < MITRED && midway && out.hypot() < (1.25 * length + (1.0 + pen).min(2.5)).max(most)
     })
 }
+
+/// Whether a branch goes on straight beyond its node as another one: both are halves of the bar of a small letter, too short for
+/// their width to tell. The point of a corner leads midway between its sides.
+fn is_other_half(graph: &Graph, (spur, end): (usize, usize), (other, from): (usize, usize)) -> bool {
+    if !graph.is_letter() {
+        return false;
+    }
+    let (spur, other) = (&graph.branches[spur], &graph.branches[other]);
+    if spur.points.is_empty() || other.points.len() < 2 {
+        return false;
+    }
+    // from the node on
+    let on = |branch: &Branch, end: usize, most: usize| -> Vec<Point> {
+        let n = branch.points.len();
+        (0..most.min(n)).map(|k| branch.points[if end == 0 { k } else { n - 1 - k }]).collect()
+    };
+    let (half, rest) = (on(spur, end, spur.points.len()), on(other, from, spur.points.len().max(HALF)));
+    let (Some(&tip), Some(&far)) = (half.last(), rest.last()) else { return false };
+    let along = (tip - far) / tip.distance(far).max(1e-9);
+    let off = |p: &Point| (*p - far).cross(along).abs();
+    half.iter().chain(&rest).all(|p| off(p) < STRAIGHT_PX)
+}
+
+/// Points of the other half that are looked at, and how far they may be off a straight line, px.
+const HALF: usize = 4;
+const STRAIGHT_PX: f64 = 0.5;
 
 /// Whether a branch bends more than skeletons of points do.
 fn is_bent(branch: &Branch) -> bool {

@@ -59,13 +59,14 @@ pub(crate) fn centred(
     (points, radii): (&[Point], &[f64]),
     radius: f64,
     ring: bool,
+    reach: usize,
 ) -> Ridge {
     let stride = spacing(2.0 * radius);
     // first across the pixels' own row, then across what became of it: the pixels lead round corners and wobble
     let cuts = Cuts::of(radius, radii);
     let first: Vec<Place> = (0..points.len())
         .step_by(stride)
-        .filter_map(|i| place(dark, i, points[i], normal(points, i, 5, ring)?, cuts.at(i)))
+        .filter_map(|i| place(dark, i, points[i], normal(points, i, reach, ring)?, cuts.at(i)))
         .collect();
     let width = usual_width(&first).unwrap_or(2.0 * radius);
     let first = of_usual_width(&first, cuts.swell());

@@ -113,7 +113,8 @@ fn letter(random: &mut Random, (w, h): (f64, f64), tall: bool) -> Vec<Path> {
         16 => vec![through(&[(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)])],
         17 => vec![through(&[(0.0, 1.0), (1.0, 1.0), (0.0, 0.0), (1.0, 0.0)])],
         18 => vec![snake((w, h))],
-        _ => vec![through(&[(0.0, 1.0), (0.5, 0.5), (1.0, 1.0)]), bar((0.5, 0.5), (0.5, 0.0))],
+        // Y with one stroke straight through: of three lines that meet alike nobody says which two are one
+        _ => vec![bar((1.0, 1.0), (0.2, 0.0)), bar((0.05, 1.0), (0.6, 0.5))],
     }
 }
 
