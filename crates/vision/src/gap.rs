@@ -18,8 +18,13 @@ const LEAST_PX: f64 = 1.5;
 const BEND: f64 = 0.56;
 /// The same over what is not bare paper: there the ends' directions may be off, as their ink fades.
 const BEND_OF_PALE: f64 = 1.2;
+/// And over what is no longer than this share of both widths: a small ring's halves bend much at their ends.
+const BEND_OF_NEAR: f64 = 1.8;
+const NEAR: f64 = 0.25;
 /// The ink of a line that fades keeps this share of the ends' darkness.
 const PALE: f64 = 0.6;
+/// And that of one that was too pale for the mask this one.
+const FAINT: f64 = 0.35;
 /// Two ends of one line differ less than this in the width of their pen, as a ratio.
 const LIKE: f64 = 1.6;
 
@@ -179,18 +184,20 @@ fn fit(dark: &Plane<u8>, a: &End, b: &End) -> Option<f64> {
     let bend = a.tip.bend(&b.tip);
     // the bars of two letters beside each other are no broken line
     let paper = a.tip.at.distance(b.tip.at) - 0.5 * (a.width + b.width);
-    let is_long = a.length.min(b.length) > LEAST_LENGTHS * paper;
-    let is_one = (bend < BEND && is_long) || (bend < BEND_OF_PALE && is_pale(dark, a, b));
+    let is_near = paper < NEAR * (a.width + b.width);
+    let is_long = || a.length.min(b.length) > LEAST_LENGTHS * paper;
+    let is_one = (bend < BEND && (is_long() || is_darker(dark, a, b, FAINT)))
+        || (bend < if is_near { BEND_OF_NEAR } else { BEND_OF_PALE } && is_darker(dark, a, b, PALE));
     (like && is_one).then_some(bend)
 }
 
-/// Whether the paper between two ends is nearly as dark as they are: the line fades there, and goes on.
-fn is_pale(dark: &Plane<u8>, a: &End, b: &End) -> bool {
+/// Whether between two ends it is everywhere darker than this share of them: the line fades there, and goes on.
+fn is_darker(dark: &Plane<u8>, a: &End, b: &End, share: f64) -> bool {
     let (from, to) = (a.tip.at, b.tip.at);
     let steps = (2.0 * from.distance(to)).ceil().max(2.0);
     let along = |k: f64| dark.at(from.lerp(to, k / steps));
     let ends = along(0.0).min(along(steps));
-    (1..steps as usize).all(|k| along(k as f64) > PALE * ends)
+    (1..steps as usize).all(|k| along(k as f64) > share * ends)
 }
 
 /// Rows strung together end to end.

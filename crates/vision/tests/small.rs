@@ -75,6 +75,65 @@ fn the_bar_of_a_small_t_is_whole() {
 }
 
 #[test]
+fn letters_of_eight_px_are_whole_and_stay_apart() {
+    let letter = |x: f64, y: f64, k: usize| -> Vec<Vec<Point>> {
+        let p = |u: f64, v: f64| Point::new(x + u, y + v);
+        match k % 3 {
+            0 => vec![vec![p(0.0, 0.0), p(6.0, 0.0)], vec![p(3.0, 0.0), p(3.0, 8.0)]],
+            1 => vec![vec![p(0.0, 0.0), p(6.0, 0.0), p(2.0, 8.0)]],
+            // a tick
+            _ => vec![vec![p(0.0, 4.0), p(2.0, 8.0), p(6.5, 1.0)]],
+        }
+    };
+    // from bar to bar there are 3 px of paper
+    let lines: Vec<Vec<Point>> =
+        (0..12).flat_map(|k| letter(60.0 + 10.5 * k as f64, 80.0 + 1.3 * (k / 3) as f64, k)).collect();
+    each_is_drawn(&lines, 1.5, 2.0, "letters of 8 px");
+}
+
+#[test]
+fn crosses_and_rings_of_a_thin_pen_beside_a_thick_one_are_no_dust() {
+    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    canvas.pen(&[Point::new(60.0, 280.0), Point::new(420.0, 300.0)], 12.0);
+    for k in 0..6 {
+        let (x, y) = (80.2 + 55.3 * f64::from(k), 90.4 + 0.3 * f64::from(k));
+        canvas.pen(&bar((x, y), 9.0, 0.6), 1.2);
+        canvas.pen(&bar((x, y), 9.0, 0.6 + 0.5 * PI), 1.2);
+        canvas.pen(&arc((x, y + 60.0), 4.0, 0.0, TAU), 1.2);
+    }
+    // a lens spreads what is thin
+    let shares: Vec<f64> = canvas.shares().collect();
+    let spread = |k: usize| {
+        let (x, y) = (k % WIDTH, k / WIDTH);
+        let beside = |v: usize, by: usize, most: usize| (v + by).saturating_sub(1).min(most - 1);
+        let share = |i: usize| shares[beside(y, i / 3, HEIGHT) * WIDTH + beside(x, i % 3, WIDTH)];
+        let weight = |i: usize| [0.28, 0.44, 0.28][i / 3] * [0.28, 0.44, 0.28][i % 3];
+        (0..9).map(|i| weight(i) * share(i)).sum::<f64>()
+    };
+    let levels = (0..WIDTH * HEIGHT).map(|k| (250.0 - 220.0 * spread(k)) as u8).collect();
+    let found =
+        trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap().strokes.strokes;
+    assert_eq!(found.len(), 1 + 6 * 3);
+    assert_eq!(found.iter().filter(|stroke| stroke.path.is_closed()).count(), 6);
+}
+
+#[test]
+fn a_fat_stem_that_runs_on_beyond_a_bow_keeps_its_nub() {
+    for (k, pen) in [9.0, 10.0, 11.0].into_iter().enumerate() {
+        let (x, y) = (70.0 + 130.0 * k as f64, 40.0);
+        let stem = vec![Point::new(x, y), Point::new(x + 3.0, y + 24.0 * pen)];
+        // a bow that leaves it upwards, 1.5 pens below the stem's upper end
+        let bow = arc((x + 2.8 * pen + 0.2, y + 4.2 * pen), 3.9 * pen, -2.37, 4.4);
+        let mut canvas = Canvas::new(WIDTH, HEIGHT);
+        [&stem, &bow].into_iter().for_each(|line| canvas.pen(line, pen));
+        let drawn: Vec<Vec<Point>> =
+            strokes(&canvas).iter().map(|stroke| stroke.path.flatten(0.02)).collect();
+        let comparison = compare_polylines(&drawn, &[stem], 0.5 * pen).unwrap();
+        assert!(comparison.coverage > 0.98, "pen {pen}: {} of the stem is drawn", comparison.coverage);
+    }
+}
+
+#[test]
 fn a_corner_is_one_line_however_sharp_it_is() {
     for pen in [2.5, 4.0, 5.0] {
         let lines: Vec<Vec<Point>> = (0..6)
