@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 
 use tracelight_stroke::{Point, polyline_length};
 
+use crate::bow::Bow;
 use crate::bridge::{Tip, inked_towards, meeting};
 use crate::graph::{Graph, Node};
 use crate::line::{Line, off_the_grid};
@@ -32,6 +33,17 @@ pub(crate) struct Port {
     pub(crate) end: usize,
     /// Its direction leads into the junction.
     tip: Tip,
+    /// How it bends further in.
+    bow: Option<Bow>,
+}
+
+impl Port {
+    /// By how much a line would have to leave its own curve to get from this port to another; see [`Bow::misfit`]. Its tips lean
+    /// to the ink that is shared, and its bows may have bent otherwise before: both are asked.
+    fn misfit(&self, other: &Self) -> f64 {
+        let tips = self.tip.misfit(&other.tip);
+        self.bow.zip(other.bow).map_or(tips, |(a, b)| 0.5 * (tips + a.misfit(&b)))
+    }
 }
 
 /// Two ports made one, with the points between them.
@@ -110,23 +122,29 @@ fn root(joined: &mut [usize], mut n: usize) -> usize {
 
 /// Whether a line between two junctions of three only is the common part of two that cross there.
 fn is_acute(number: usize, from: &[Port], to: &[Port], most: f64) -> bool {
-    let others = |at: &[Port]| at.iter().filter(|p| p.line != number).map(|p| p.tip).collect::<Vec<Tip>>();
+    let others = |at: &[Port]| at.iter().filter(|p| p.line != number).copied().collect::<Vec<Port>>();
     let (before, after) = (others(from), others(to));
     let ([p, q], [r, s]) = (&before[..], &after[..]) else { return false };
-    p.crosses(r, q, s, most) || p.crosses(s, q, r, most) || touch((p, r), (q, s)) || touch((p, s), (q, r))
+    p.tip.crosses(&r.tip, &q.tip, &s.tip, most)
+        || p.tip.crosses(&s.tip, &q.tip, &r.tip, most)
+        || touch((p, r), (q, s))
+        || touch((p, s), (q, r))
 }
 
 /// Whether two lines that share ink for a while both bend on there as before.
-fn touch((a, b): (&Tip, &Tip), (c, d): (&Tip, &Tip)) -> bool {
-    a.misfit(b) < TOUCHING && c.misfit(d) < TOUCHING
+fn touch((a, b): (&Port, &Port), (c, d): (&Port, &Port)) -> bool {
+    let fits = |a: &Port, b: &Port| {
+        a.misfit(b) < TOUCHING || a.bow.zip(b.bow).is_some_and(|(a, b)| a.misfit(&b) < TOUCHING)
+    };
+    fits(a, b) && fits(c, d)
 }
 
-/// Two lines that touch leave their own curves by less than this over their common ink; see [`Tip::misfit`].
+/// Two lines that touch leave their own curves by less than this over their common ink; see [`Bow::misfit`].
 const TOUCHING: f64 = 0.12;
 /// A line bends by less than this over the ink that it shares: as a small ring does that touches a larger one, rad (100°).
 const AROUND: f64 = 100.0 * PI / 180.0;
 /// Of two ways to pair four lines the one is taken that leaves their curves so much less.
-const CLEARLY: f64 = 0.6;
+const CLEARLY: f64 = 0.7;
 
 /// The pairs of four ports of two lines that touch or cross at a few degrees: those whose lines leave their own curves least. `None`
 /// where they meet at an angle, which is clearer.
@@ -140,7 +158,7 @@ fn bent_on(ports: &[Port]) -> Option<[(usize, usize); 2]> {
     let mut likely: Vec<(f64, [(usize, usize); 2])> = ways
         .into_iter()
         .filter(|((p, q), (r, s), _)| p.tip.bend(&q.tip).max(r.tip.bend(&s.tip)) < AROUND)
-        .map(|((p, q), (r, s), pairs)| (p.tip.misfit(&q.tip) + r.tip.misfit(&s.tip), pairs))
+        .map(|((p, q), (r, s), pairs)| (p.misfit(q) + r.misfit(s), pairs))
         .collect();
     likely.sort_by(|a, b| a.0.total_cmp(&b.0));
     let [first, second, ..] = &likely[..] else { return None };
@@ -153,7 +171,12 @@ fn ports(lines: &[Line], cluster: &[usize]) -> Vec<Vec<Port>> {
     for (number, line) in lines.iter().enumerate() {
         for (end, node) in line.nodes.iter().enumerate() {
             if let Some(node) = node {
-                ports[cluster[*node]].push(Port { line: number, end, tip: line.tip(end) });
+                ports[cluster[*node]].push(Port {
+                    line: number,
+                    end,
+                    tip: line.tip(end),
+                    bow: Bow::of(&line.points, end, line.width),
+                });
             }
         }
     }
@@ -196,7 +219,8 @@ impl Junctions {
         if let Some([(a, b), (c, d)]) = bent_on(&left) {
             let four = std::mem::take(&mut left);
             for (a, b) in [(four[a], four[b]), (four[c], four[d])] {
-                let bridge = a.tip.bridge(&b.tip, dark, &[]);
+                // what bends on has no corner there
+                let bridge = a.tip.smoothly_to(&b.tip);
                 self.joints.push(Joint { ports: [a, b], bridge });
             }
         }

@@ -134,6 +134,21 @@ fn a_fat_stem_that_runs_on_beyond_a_bow_keeps_its_nub() {
 }
 
 #[test]
+fn rings_that_touch_or_overlap_a_little_stay_rings() {
+    for (pen, overlap) in [(3.0, 0.0), (4.0, 1.0), (4.0, 1.5)] {
+        let rings: Vec<Vec<Point>> =
+            [(70.0, 80.0, 40.0, 24.0), (90.0, 240.0, 45.0, 35.0), (280.0, 150.0, 60.0, 28.0)]
+                .into_iter()
+                .flat_map(|(x, y, large, small)| {
+                    let middle = Point::new(x, y) + Vec2::from_angle(0.005 * x) * (large + small - overlap);
+                    [arc((x, y), large, 0.0, TAU), arc((middle.x, middle.y), small, 0.0, TAU)]
+                })
+                .collect();
+        each_is_drawn(&rings, pen, 2.0, &format!("rings of a pen of {pen} px"));
+    }
+}
+
+#[test]
 fn a_corner_is_one_line_however_sharp_it_is() {
     for pen in [2.5, 4.0, 5.0] {
         let lines: Vec<Vec<Point>> = (0..6)
