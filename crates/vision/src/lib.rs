@@ -16,7 +16,7 @@
 //! | `region`, `distance` | connected patches of ink; distance to the paper |
 //! | `reading`, `parts` | what is a line by its own width; lines and shapes parted |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
-//! | `ridge`, `line`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
+//! | `ridge`, `line`, `bow`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
 //! | `near` | which of many points are near a place |
 //! | `follow` | points to paths |
