@@ -35,6 +35,15 @@ const FILLED: f64 = 1.6;
 const RIM_PX: usize = 2;
 const RIM_SHARE: usize = 12;
 
+/// What becomes of specks that are no marks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Dust {
+    Kept,
+    Dropped,
+    /// Where rules were taken off some of what they left where they cross looks like marks.
+    DroppedOnRules,
+}
+
 /// The ink in two kinds of parts.
 #[derive(Debug)]
 pub(crate) struct Parts {
@@ -59,7 +68,7 @@ impl Parts {
     }
 
     /// Each part by its width.
-    pub(crate) fn of(dark: &Plane<u8>, mut ink: Mask, patches: Vec<Region>, keep_dust: bool) -> Self {
+    pub(crate) fn of(dark: &Plane<u8>, mut ink: Mask, patches: Vec<Region>, dust: Dust) -> Self {
         let read = |ink: &Mask, patches| graphs(ink, patches).into_iter().map(Patch::new).collect();
         let mut patches: Vec<Patch> = read(&ink, patches);
         let mut pen = usual_pen(&patches);
@@ -70,8 +79,12 @@ impl Parts {
         }
         let pens = Pens::of(&patches);
         patches.iter_mut().for_each(|patch| patch.reading.is_drawn |= pens.drew(patch));
-        let (patches, dust) =
-            if keep_dust { (patches, Vec::new()) } else { dusted(dark, &ink, patches, pen) };
+        let (patches, dust) = match dust {
+            Dust::Kept => (patches, Vec::new()),
+            Dust::Dropped | Dust::DroppedOnRules => {
+                dusted(dark, &ink, patches, pen, dust == Dust::DroppedOnRules)
+            }
+        };
         let mut sorter = Sorter { pen, lines: Vec::new(), shape_mask: Mask::empty(ink.width, ink.height) };
         sorter.sort(patches);
         let Sorter { lines, shape_mask, .. } = sorter;
@@ -185,7 +198,13 @@ fn level_of(dark: &Plane<u8>, places: impl Iterator<Item = (usize, usize)>, one_
 }
 
 /// The patches without the specks that lie by themselves, and those.
-fn dusted(dark: &Plane<u8>, mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<Patch>, Vec<Region>) {
+fn dusted(
+    dark: &Plane<u8>,
+    mask: &Mask,
+    patches: Vec<Patch>,
+    pen: f64,
+    on_rules: bool,
+) -> (Vec<Patch>, Vec<Region>) {
     let speck = |patch: &Patch| {
         let (width, height) = patch.region.extent();
         let is_hair = patch.reading.widest < HAIR_PENS * pen && (width.max(height) as f64) < HAIR_LONG * pen;
@@ -214,7 +233,11 @@ fn dusted(dark: &Plane<u8>, mask: &Mask, patches: Vec<Patch>, pen: f64) -> (Vec<
     let belongs = |patch: &Patch| dot(patch) && is_near(patch) && !strewn.has(patch.region.area());
     // a cross, a ring, a tick, wherever it is: drawn line by line, and somewhere as dark as the others, for most of it may be edge
     let is_mark = |patch: &Patch| {
-        let Patch { region, graph, .. } = patch;
+        let Patch { region, graph, reading } = patch;
+        if on_rules {
+            let is_large = region.area() as f64 >= SPECK_PX;
+            return is_large && reading.long >= MARK_LONG && is_dark(region, 8, AS_DARK);
+        }
         let long = graph.reach().powi(2) / region.area() as f64;
         // no hair crosses itself or goes round
         let is_figure = graph.branches.iter().any(|b| b.ring) || graph.branches.len() >= FIGURE_LINES;

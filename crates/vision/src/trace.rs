@@ -7,7 +7,7 @@ use crate::ink::Ink;
 use crate::inside::inside;
 use crate::mask::Mask;
 use crate::outline::Outliner;
-use crate::parts::Parts;
+use crate::parts::{Dust, Parts};
 use crate::region::{self, Region, pinholes, regions};
 use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, sweep, tone, twice};
 
@@ -308,7 +308,14 @@ fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Optio
     let dark = &ink.darkness;
     let parts = match options.mode {
         Mode::Centreline => Parts::all_lines(mask, regions),
-        _ => Parts::of(dark, mask, regions, options.despeckle_px2.is_some()),
+        _ => {
+            let dust = match (options.despeckle_px2, &ink.rules) {
+                (Some(_), _) => Dust::Kept,
+                (None, None) => Dust::Dropped,
+                (None, Some(_)) => Dust::DroppedOnRules,
+            };
+            Parts::of(dark, mask, regions, dust)
+        }
     };
     let mask = &parts.ink;
     let mut strokes = outlines(ink, &parts.shape_mask, mask, &parts.shapes, options);

@@ -181,8 +181,11 @@ fn chain(places: &[(f64, usize)], from: usize, spacing: f64) -> Vec<Link> {
     links
 }
 
-/// Terms of the law: up to the square of a rule's number, and the cube of the way along it.
-const TERMS: usize = 12;
+/// Terms of the law: up to the cube of a rule's number, and of the way along it.
+const TERMS: usize = 16;
+/// Of the cube of their number only so many rules tell: those of a sheet that is seen at a slant are the nearer to each other the
+/// further they are away.
+const TELL_CUBE: usize = 14;
 
 /// Where each rule is: smooth in its number and along it, for a page lies bent or is seen at a slant.
 struct Law {
@@ -211,7 +214,8 @@ impl Law {
                     right[k] += basis[k] * peak.at;
                 }
             }
-            (0..TERMS).for_each(|k| normal[k][k] += 1e-6);
+            let unknown = |k: usize| if k >= 12 && chain.len() < TELL_CUBE { 1e9 } else { 1e-6 };
+            (0..TERMS).for_each(|k| normal[k][k] += unknown(k));
             law.terms = solve::symmetric(normal, right)?;
             let middle = 0.5 * law.length;
             law.spacing = (law.at(last, middle) - law.at(first, middle)) / (last - first);
