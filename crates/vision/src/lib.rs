@@ -14,7 +14,7 @@
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
 //! | `tone` | whether it is a drawing at all |
 //! | `region`, `distance` | connected patches of ink; distance to the paper |
-//! | `reading`, `parts` | what is a line by its own width; lines and shapes parted |
+//! | `reading`, `parts`, `dust` | what is a line by its own width; lines and shapes parted; specks |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bow`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
@@ -34,6 +34,7 @@ mod centreline;
 mod comb;
 mod contrast;
 mod distance;
+mod dust;
 mod error;
 mod felt;
 mod fiducial;

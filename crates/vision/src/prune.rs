@@ -55,7 +55,7 @@ fn is_bump(graph: &Graph, end: (usize, usize)) -> bool {
 ///
 /// With pen half-width r and s = sin(θ/2) of the angle θ between the two, the fork lies r(1 − s)/(s(1 + s)) inside
 /// the corner (a disc there touches the inner corner and both outer edges) and the point r/s outside. Its ink gets as much
-/// narrower on the way as that takes: what is as wide as the pen up to its end is a nub.
+/// narrower on the way as that takes: what goes on straight as one of the two, as wide as the pen up to its end, is a nub.
 fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f64) -> bool {
     let Some((node, tip, radius)) = free_end(graph, end).filter(|_| ends.len() == 3) else { return false };
     let out = tip - node.at;
@@ -74,7 +74,11 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
         let back = -(others[0] + others[1]);
         let s = (0.5 * others[0].cross(others[1]).atan2(others[0].dot(others[1])).abs()).sin();
         let inside = (pen + 0.5) * (1.0 - s) / (s * (1.0 + s)).max(0.05);
-        let length = inside + (pen + 1.0 - radius).clamp(0.0, pen + 0.5) / s.max(0.1);
+        // a nub goes on straight as one of the two, the point of a corner as neither
+        let straight = |other: &&Vec2| out.dot(**other) < -GOES_ON * out.hypot();
+        let is_nub = others.iter().filter(straight).count() == 1;
+        let beyond = if is_nub { (pen + 1.0 - radius).clamp(0.0, pen + 0.5) } else { pen + 0.5 };
+        let length = inside + beyond / s.max(0.1);
         let midway = out.dot(back) > 0.9 * out.hypot() * back.hypot() && !is_bent(&graph.branches[end.0]);
         s < MITRED && midway && out.hypot() < (1.25 * length + (1.0 + pen).min(2.5)).max(most)
     })
@@ -105,6 +109,9 @@ fn is_other_half(graph: &Graph, (spur, end): (usize, usize), (other, from): (usi
 /// Points of the other half that are looked at, and how far they may be off a straight line, px.
 const HALF: usize = 4;
 const STRAIGHT_PX: f64 = 0.5;
+
+/// Cosine of the most by which a line bends that goes on straight: 25°.
+const GOES_ON: f64 = 0.9;
 
 /// Whether a branch bends more than skeletons of points do.
 fn is_bent(branch: &Branch) -> bool {

@@ -6,6 +6,7 @@
 use tracelight_stroke::polyline_length;
 
 use crate::graph::{Branch, Graph};
+use crate::region::Region;
 
 /// A line is at least this many of its own widths long, away from the ink of its junctions.
 const LONG: f64 = 3.0;
@@ -174,6 +175,20 @@ impl Reading {
         let is_stick = |line: &&Reach| line.stick && line.width * STICK < self.widest;
         let sticks: Vec<Reach> = self.lines.iter().filter(is_stick).copied().collect();
         (!sticks.is_empty()).then(|| pen_of(&sticks))
+    }
+}
+
+/// A patch of ink with its skeleton and what that says of it.
+pub(crate) struct Patch {
+    pub(crate) region: Region,
+    pub(crate) graph: Graph,
+    pub(crate) reading: Reading,
+}
+
+impl Patch {
+    pub(crate) fn new((region, graph): (Region, Graph)) -> Self {
+        let reading = Reading::of(&graph, region.area());
+        Self { region, graph, reading }
     }
 }
 

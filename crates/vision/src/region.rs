@@ -228,6 +228,13 @@ impl Runs {
     }
 }
 
+/// The mask of these regions alone.
+pub(crate) fn mask_of<'a>(like: &Mask, regions: impl IntoIterator<Item = &'a Region>) -> Mask {
+    let mut mask = Mask::empty(like.width, like.height);
+    regions.into_iter().for_each(|region| region.fill_into(&mut mask));
+    mask
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,11 +3,12 @@ use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 use crate::centreline::{self, Row};
 use crate::comb::Rules;
 use crate::contrast::stands_out;
+use crate::dust::Dust;
 use crate::ink::Ink;
 use crate::inside::inside;
 use crate::mask::Mask;
 use crate::outline::Outliner;
-use crate::parts::{Dust, Parts};
+use crate::parts::Parts;
 use crate::region::{self, Region, pinholes, regions};
 use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, sweep, tone, twice};
 
