@@ -5,6 +5,8 @@
 
 use tracelight_stroke::{Parabola, Point, Vec2};
 
+use crate::bridge::{angle, measured};
+
 /// A line leans so far from its end, in its widths.
 const LEANS: f64 = 1.0;
 /// Its bow is taken over this length further in, widths and px, and at most this share of the line.
@@ -31,24 +33,15 @@ pub(crate) struct Bow {
 impl Bow {
     /// Of the first (`end` 0) or last points of a line of some width; `None` of a line that is short or bends otherwise.
     pub(crate) fn of(points: &[Point], end: usize, width: f64) -> Option<Self> {
-        let n = points.len();
-        let at = |k: usize| points[if end == 0 { k } else { n - 1 - k }];
-        let mut passed = 0.0;
-        let places: Vec<(f64, Point)> = (0..n)
-            .map(|k| {
-                passed += if k > 0 { at(k).distance(at(k - 1)) } else { 0.0 };
-                (passed, at(k))
-            })
-            .collect();
+        let places: Vec<(f64, Point)> = measured(points, end).collect();
         let from = LEANS * width;
-        let to = from + (LENGTH * width).max(LEAST_PX).min(SHARE * passed);
+        let to = from + (LENGTH * width).max(LEAST_PX).min(SHARE * places.last()?.0);
         let window: Vec<(f64, Point)> = places.into_iter().filter(|(s, _)| (from..to).contains(s)).collect();
         let (first, last) = (window.first()?.0, window.last()?.0);
         let curve = Parabola::through(window.iter().copied()).filter(|_| window.len() >= LEAST_POINTS)?;
         let middle = 0.5 * (first + last);
-        let (a, b) = (curve.tangent(first), curve.tangent(last));
         // towards the end all is the other way round
-        let turn = a.cross(b).atan2(a.dot(b)) / (last - first).max(1e-9);
+        let turn = angle(curve.tangent(first), curve.tangent(last)) / (last - first).max(1e-9);
         (curve.rms < (MOST_OFF * width).max(MOST_OFF_PX)).then(|| Self {
             at: curve.point(middle),
             along: -curve.tangent(middle),
@@ -59,11 +52,7 @@ impl Bow {
     /// Where it leads on a way of this length, and in which direction.
     fn beyond(&self, way: f64) -> (Point, Vec2) {
         let angle = self.turn * way;
-        let rotated = |by: f64| {
-            let turned = Vec2::from_angle(by);
-            let (x, y) = (self.along.x, self.along.y);
-            Vec2::new(turned.x * x - turned.y * y, turned.y * x + turned.x * y)
-        };
+        let rotated = |by: f64| self.along.rotate_scale(Vec2::from_angle(by));
         if self.turn.abs() < STRAIGHT {
             return (self.at + self.along * way, rotated(angle));
         }
@@ -83,8 +72,7 @@ impl Bow {
         let half = (0.5 * self.turn.abs() * chord).min(1.0).asin();
         let way = if self.turn.abs() < STRAIGHT { chord } else { 2.0 * half / self.turn.abs() };
         let (place, along) = self.beyond(way);
-        let back = -other.along;
-        place.distance(other.at) / way + 0.5 * along.cross(back).atan2(along.dot(back)).abs()
+        place.distance(other.at) / way + 0.5 * angle(along, -other.along).abs()
     }
 }
 

@@ -31,11 +31,7 @@ impl Tip {
     pub(crate) fn of(points: &[Point], end: usize) -> Option<Self> {
         let n = points.len();
         let at = |k: usize| points[if end == 0 { k } else { n - 1 - k }];
-        let mut length = 0.0;
-        let samples = (0..n).map(|k| {
-            length += if k > 0 { at(k).distance(at(k - 1)) } else { 0.0 };
-            (length, at(k))
-        });
+        let samples = measured(points, end);
         let rms = ON_PARABOLA_PX.max(OVER_NOISE * noise_near(points, end));
         let curve = (n > 0).then(|| Parabola::widest(samples, &WINDOWS, rms))?;
         let along = match (curve, points) {
@@ -156,6 +152,17 @@ impl Tip {
     }
 }
 
+/// The points of a row from its first (`end` 0) or last one on, each with how far along the row it is.
+pub(crate) fn measured(points: &[Point], end: usize) -> impl Iterator<Item = (f64, Point)> {
+    let n = points.len();
+    let at = move |k: usize| points[if end == 0 { k } else { n - 1 - k }];
+    let mut length = 0.0;
+    (0..n).map(move |k| {
+        length += if k > 0 { at(k).distance(at(k - 1)) } else { 0.0 };
+        (length, at(k))
+    })
+}
+
 /// How far the points near a row's end scatter about their line, px.
 fn noise_near(points: &[Point], end: usize) -> f64 {
     let reach = points.len().min(WINDOWS[WINDOWS.len() - 1]);
@@ -184,7 +191,8 @@ fn is_inked(dark: &Plane<u8>, line: Point, place: Point) -> bool {
     3.0 * dark.at(place) >= dark.at(line)
 }
 
-fn angle(a: Vec2, b: Vec2) -> f64 {
+/// From one direction to another, rad.
+pub(crate) fn angle(a: Vec2, b: Vec2) -> f64 {
     a.cross(b).atan2(a.dot(b))
 }
 

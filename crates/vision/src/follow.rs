@@ -3,6 +3,7 @@
 use tracelight_stroke::{FitOptions, Parabola, Path, Piece, Point, fit, polyline_length, simplify};
 
 use crate::Options;
+use crate::bridge::{angle, measured};
 
 /// Tolerance over the points' own noise: their largest deviations are three to four times its mean square's root,
 /// and the fit uses 0.7 of the tolerance.
@@ -70,7 +71,7 @@ fn has_false_corner(
     let after = pieces.iter().skip(1).chain(first);
     pieces.iter().zip(after).any(|(a, b)| {
         let (into, out) = (a.end_tangent(), b.start_tangent());
-        if into.cross(out).atan2(into.dot(out)).abs() < corner_rad {
+        if angle(into, out).abs() < corner_rad {
             return false;
         }
         let at = b.from;
@@ -122,14 +123,7 @@ fn scatters(points: &[Point]) -> Vec<f64> {
     let window = ((WINDOW_PX / spacing.max(1e-9)) as usize).clamp(LEAST_WINDOW, WINDOW_PX as usize);
     // three points of each window are the parabola's own
     let own = (window as f64 / (window - 3) as f64).sqrt();
-    let rms = |window: &[Point]| {
-        let mut length = 0.0;
-        let samples = window.iter().enumerate().map(|(k, p)| {
-            length += if k > 0 { p.distance(window[k - 1]) } else { 0.0 };
-            (length, *p)
-        });
-        Parabola::through(samples).map(|p| own * p.rms)
-    };
+    let rms = |window: &[Point]| Parabola::through(measured(window, 0)).map(|p| own * p.rms);
     let stride = (points.len() / MOST_WINDOWS).max(4);
     points.windows(window).step_by(stride).filter_map(rms).collect()
 }

@@ -2,7 +2,7 @@
 
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
-use crate::bridge::Tip;
+use crate::bridge::{Tip, angle};
 use crate::centreline::Row;
 use crate::near::Near;
 use crate::plane::Plane;
@@ -152,7 +152,7 @@ fn through(at: Point, ends: &[&End]) -> Option<Vec2> {
     let pairs = (0..ends.len()).flat_map(|i| (i + 1..ends.len()).map(move |k| (ends[i], ends[k])));
     let bend = |(a, b): (&End, &End)| {
         let (to, on) = (at - a.tip.at, b.tip.at - at);
-        let turned = to.cross(on).atan2(to.dot(on)).abs();
+        let turned = angle(to, on).abs();
         (a.tip.bend(&middle) + turned + b.tip.bend(&middle), b.tip.at - a.tip.at)
     };
     let (least, along) = pairs.map(bend).min_by(|a, b| a.0.total_cmp(&b.0))?;

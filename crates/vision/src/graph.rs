@@ -154,8 +154,7 @@ impl Graph {
     /// longer ones do.
     pub(crate) fn is_letter(&self) -> bool {
         // most have more branches than a letter
-        self.branches.len() <= LETTER_LINES
-            && self.branches.iter().map(Branch::length).sum::<f64>() < LETTER_PX
+        self.branches.len() <= LETTER_LINES && self.length() < LETTER_PX
     }
 
     /// The length of all branches with their ways to their nodes, px.

@@ -33,16 +33,23 @@ pub(crate) struct Port {
     pub(crate) end: usize,
     /// Its direction leads into the junction.
     tip: Tip,
-    /// How it bends further in.
-    bow: Option<Bow>,
 }
 
 impl Port {
     /// By how much a line would have to leave its own curve to get from this port to another; see [`Bow::misfit`]. Its tips lean
     /// to the ink that is shared, and its bows may have bent otherwise before: both are asked.
-    fn misfit(&self, other: &Self) -> f64 {
+    fn misfit(&self, other: &Self, lines: &[Line]) -> f64 {
         let tips = self.tip.misfit(&other.tip);
-        self.bow.zip(other.bow).map_or(tips, |(a, b)| 0.5 * (tips + a.misfit(&b)))
+        self.misfit_of_bows(other, lines).map_or(tips, |bows| 0.5 * (tips + bows))
+    }
+
+    /// The same by what both are further in; `None` if one of them is no bow there.
+    fn misfit_of_bows(&self, other: &Self, lines: &[Line]) -> Option<f64> {
+        let bow = |port: &Self| {
+            let line = &lines[port.line];
+            Bow::of(&line.points, port.end, line.width)
+        };
+        Some(bow(self)?.misfit(&bow(other)?))
     }
 }
 
@@ -98,7 +105,7 @@ pub(crate) fn merge_acute(lines: &mut Vec<Line>, cluster: &mut [usize]) {
         let (a, b) = (root(&mut joined, cluster[a]), root(&mut joined, cluster[b]));
         let pens = line.length() / line.width;
         let most = CROSSINGS.iter().find(|(longest, _)| pens < *longest).map(|(_, most)| *most);
-        if a != b && most.is_some_and(|most| is_acute(number, &ports[a], &ports[b], most)) {
+        if a != b && most.is_some_and(|most| is_acute(number, (&ports[a], &ports[b]), most, &lines[..])) {
             gone[number] = true;
             joined[b] = a;
             let moved = std::mem::take(&mut ports[b]);
@@ -121,20 +128,20 @@ fn root(joined: &mut [usize], mut n: usize) -> usize {
 }
 
 /// Whether a line between two junctions of three only is the common part of two that cross there.
-fn is_acute(number: usize, from: &[Port], to: &[Port], most: f64) -> bool {
+fn is_acute(number: usize, (from, to): (&[Port], &[Port]), most: f64, lines: &[Line]) -> bool {
     let others = |at: &[Port]| at.iter().filter(|p| p.line != number).copied().collect::<Vec<Port>>();
     let (before, after) = (others(from), others(to));
     let ([p, q], [r, s]) = (&before[..], &after[..]) else { return false };
     p.tip.crosses(&r.tip, &q.tip, &s.tip, most)
         || p.tip.crosses(&s.tip, &q.tip, &r.tip, most)
-        || touch((p, r), (q, s))
-        || touch((p, s), (q, r))
+        || touch((p, r), (q, s), lines)
+        || touch((p, s), (q, r), lines)
 }
 
 /// Whether two lines that share ink for a while both bend on there as before.
-fn touch((a, b): (&Port, &Port), (c, d): (&Port, &Port)) -> bool {
+fn touch((a, b): (&Port, &Port), (c, d): (&Port, &Port), lines: &[Line]) -> bool {
     let fits = |a: &Port, b: &Port| {
-        a.misfit(b) < TOUCHING || a.bow.zip(b.bow).is_some_and(|(a, b)| a.misfit(&b) < TOUCHING)
+        a.misfit(b, lines) < TOUCHING || a.misfit_of_bows(b, lines).is_some_and(|bows| bows < TOUCHING)
     };
     fits(a, b) && fits(c, d)
 }
@@ -148,7 +155,7 @@ const CLEARLY: f64 = 0.7;
 
 /// The pairs of four ports of two lines that touch or cross at a few degrees: those whose lines leave their own curves least. `None`
 /// where they meet at an angle, which is clearer.
-fn bent_on(ports: &[Port]) -> Option<[(usize, usize); 2]> {
+fn bent_on(ports: &[Port], lines: &[Line]) -> Option<[(usize, usize); 2]> {
     let [a, b, c, d] = ports else { return None };
     let ways = [
         ((a, b), (c, d), [(0, 1), (2, 3)]),
@@ -158,7 +165,7 @@ fn bent_on(ports: &[Port]) -> Option<[(usize, usize); 2]> {
     let mut likely: Vec<(f64, [(usize, usize); 2])> = ways
         .into_iter()
         .filter(|((p, q), (r, s), _)| p.tip.bend(&q.tip).max(r.tip.bend(&s.tip)) < AROUND)
-        .map(|((p, q), (r, s), pairs)| (p.misfit(q) + r.misfit(s), pairs))
+        .map(|((p, q), (r, s), pairs)| (p.misfit(q, lines) + r.misfit(s, lines), pairs))
         .collect();
     likely.sort_by(|a, b| a.0.total_cmp(&b.0));
     let [first, second, ..] = &likely[..] else { return None };
@@ -171,12 +178,7 @@ fn ports(lines: &[Line], cluster: &[usize]) -> Vec<Vec<Port>> {
     for (number, line) in lines.iter().enumerate() {
         for (end, node) in line.nodes.iter().enumerate() {
             if let Some(node) = node {
-                ports[cluster[*node]].push(Port {
-                    line: number,
-                    end,
-                    tip: line.tip(end),
-                    bow: Bow::of(&line.points, end, line.width),
-                });
+                ports[cluster[*node]].push(Port { line: number, end, tip: line.tip(end) });
             }
         }
     }
@@ -216,7 +218,7 @@ impl Junctions {
         let tips: Vec<Tip> = left.iter().map(|p| p.tip).collect();
         let middle = meeting(&tips);
         let first = self.joints.len();
-        if let Some([(a, b), (c, d)]) = bent_on(&left) {
+        if let Some([(a, b), (c, d)]) = bent_on(&left, lines) {
             let four = std::mem::take(&mut left);
             for (a, b) in [(four[a], four[b]), (four[c], four[d])] {
                 // what bends on has no corner there

@@ -211,7 +211,6 @@ const BLOT: f64 = 1.3;
 /// So much of a row of pixels may be without a cross-section at an end, in pens and px: the ink of a junction.
 const LOST_PENS: f64 = 1.0;
 const LOST_PX: f64 = 2.0;
-const LOST_PX_OF_LETTER: f64 = 0.0;
 
 /// The pixels from where the middle of a line so wide can be seen last to their end, if that is further than a junction's
 /// ink reaches: the middle of a jagged line has no cross-section for long.
@@ -226,7 +225,7 @@ fn lost(pixels: &[(Point, f64)], last: Option<&Point>, width: f64, is_letter: bo
     let here = rest.first().map_or(0.0, |(_, radius)| 2.0 * radius);
     let as_wide = |(_, radius): &(Point, f64)| 2.0 * radius <= BLOT * width.max(here) + 1.0;
     let rest: Vec<Point> = rest.iter().copied().take_while(as_wide).map(|(at, _)| at).collect();
-    let most = LOST_PENS * width + if is_letter { LOST_PX_OF_LETTER } else { LOST_PX };
+    let most = LOST_PENS * width + if is_letter { 0.0 } else { LOST_PX };
     match polyline_length(&rest) > most {
         true if is_letter => rest[1..].to_vec(),
         true => off_the_grid(&rest).step_by(2).collect(),

@@ -5,6 +5,7 @@
 
 use tracelight_stroke::{Point, Vec2};
 
+use crate::bridge::angle;
 use crate::graph::{Branch, Graph, Node};
 use crate::ridge::median;
 
@@ -72,14 +73,14 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
         let others = ends.iter().filter(|&&e| e != end).map(|&e| leaving(graph, e, node.at, window));
         let others: Vec<Vec2> = others.collect();
         let back = -(others[0] + others[1]);
-        let s = (0.5 * others[0].cross(others[1]).atan2(others[0].dot(others[1])).abs()).sin();
+        let s = (0.5 * angle(others[0], others[1]).abs()).sin();
         let inside = (pen + 0.5) * (1.0 - s) / (s * (1.0 + s)).max(0.05);
         // a nub goes on straight as one of the two, the point of a corner as neither
         let straight = |other: &&Vec2| out.dot(**other) < -GOES_ON * out.hypot();
         let is_nub = others.iter().filter(straight).count() == 1;
         let beyond = if is_nub { (pen + 1.0 - radius).clamp(0.0, pen + 0.5) } else { pen + 0.5 };
         let length = inside + beyond / s.max(0.1);
-        let midway = out.dot(back) > 0.9 * out.hypot() * back.hypot() && !is_bent(&graph.branches[end.0]);
+        let midway = out.dot(back) > GOES_ON * out.hypot() * back.hypot() && !is_bent(&graph.branches[end.0]);
         s < MITRED && midway && out.hypot() < (1.25 * length + (1.0 + pen).min(2.5)).max(most)
     })
 }
@@ -154,7 +155,7 @@ fn half_angle_sine(
     let others: Vec<Vec2> =
         ends.iter().filter(|&&e| e != spur).map(|&e| leaving(graph, e, node, window)).collect();
     let [a, b] = others[..] else { return 1.0 };
-    (0.5 * a.cross(b).atan2(a.dot(b)).abs()).sin()
+    (0.5 * angle(a, b).abs()).sin()
 }
 
 /// Near an acute corner the two skeletons lean together, far from it they may have bent: points of them, from and to.

@@ -98,10 +98,7 @@ impl Photograph {
             _ => {
                 let turn = Vec2::from_angle(chance.between(0.12, 0.3) * chance.between(-1.0, 1.0).signum());
                 let middle = Point::new(0.5 * w, 0.5 * h);
-                let below = easy.corners.map(|c| {
-                    let from = 0.98 * (c - middle);
-                    middle + Vec2::new(turn.x * from.x - turn.y * from.y, turn.y * from.x + turn.x * from.y)
-                });
+                let below = easy.corners.map(|c| middle + (0.98 * (c - middle)).rotate_scale(turn));
                 let level = easy.paper * chance.between(0.88, 1.0);
                 Self { below: Some((below, level)), table: easy.table.min(0.6 * easy.paper), ..easy }
             }
@@ -129,6 +126,7 @@ impl Photograph {
         self.below.iter().for_each(|(corners, _)| below.fill(&[corners.to_vec()]));
         let [sheet, ink, finger, below] =
             [sheet, ink, finger, below].map(|drawn| drawn.shares().collect::<Vec<f64>>());
+        let middle = Point::new(0.5 * width as f64, 0.5 * height as f64);
         let mut level = |k: usize| {
             let at = Point::new((k % width) as f64 + 0.5, (k / width) as f64 + 0.5);
             let paper = self.paper * (1.0 - 0.85 * ink[k]);
@@ -140,14 +138,11 @@ impl Photograph {
             let seen = under + (paper - under) * sheet[k];
             let seen = seen + (0.6 * self.paper - seen) * finger[k];
             let light = self.shadow.map_or(1.0, |(light, turn, off)| {
-                let from_edge = (at - Point::new(0.5 * width as f64, 0.5 * height as f64))
-                    .dot(Vec2::from_angle(turn))
-                    - off;
+                let from_edge = (at - middle).dot(Vec2::from_angle(turn)) - off;
                 light + (1.0 - light) * (from_edge + 0.5).clamp(0.0, 1.0)
             });
             let (way, left) = self.light;
-            let share =
-                0.5 + (at - Point::new(0.5 * width as f64, 0.5 * height as f64)).dot(way) / width as f64;
+            let share = 0.5 + (at - middle).dot(way) / width as f64;
             let light = light * (left + (1.0 - left) * share).clamp(0.2, 1.0);
             (seen * light + chance.between(-3.0, 3.0)).clamp(0.0, 255.0) as u8
         };
@@ -177,27 +172,26 @@ fn fault(photograph: &Photograph, image: &Grey) -> Option<String> {
     })
 }
 
+/// What is wrong with some photographs, by number.
+fn faults(seed: u64, count: usize, any: impl Fn(&mut Chance) -> Photograph) -> Vec<String> {
+    let mut chance = Chance(seed);
+    let fault = |k: usize| {
+        let photograph = any(&mut chance);
+        let image = photograph.taken(&mut chance);
+        fault(&photograph, &image).map(|fault| format!("photograph {k}: {fault}"))
+    };
+    (0..count).filter_map(fault).collect()
+}
+
 #[test]
 fn two_hundred_photographs_of_sheets_give_their_figures_and_nothing_else() {
-    let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
-    let mut faults = Vec::new();
-    for k in 0..200 {
-        let photograph = Photograph::any(&mut chance);
-        let image = photograph.taken(&mut chance);
-        faults.extend(fault(&photograph, &image).map(|fault| format!("photograph {k}: {fault}")));
-    }
+    let faults = faults(0x9e37_79b9_7f4a_7c15, 200, Photograph::any);
     assert!(faults.is_empty(), "{} of 200:\n{}", faults.len(), faults.join("\n"));
 }
 
 #[test]
 fn nor_do_deep_shadows_light_from_one_side_and_other_sheets_below_change_that() {
-    let mut chance = Chance(0x2545_f491_4f6c_dd1d);
-    let mut faults = Vec::new();
-    for k in 0..120 {
-        let photograph = Photograph::hard(&mut chance);
-        let image = photograph.taken(&mut chance);
-        faults.extend(fault(&photograph, &image).map(|fault| format!("photograph {k}: {fault}")));
-    }
+    let faults = faults(0x2545_f491_4f6c_dd1d, 120, Photograph::hard);
     assert!(faults.len() < 6, "{} of 120:\n{}", faults.len(), faults.join("\n"));
 }
 

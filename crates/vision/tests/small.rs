@@ -18,7 +18,12 @@ const HEIGHT: usize = 360;
 
 /// The strokes of dark ink on white paper.
 fn strokes(canvas: &Canvas) -> Vec<Stroke> {
-    let levels = canvas.shares().map(|s| (250.0 - 220.0 * s) as u8).collect();
+    strokes_of(canvas.shares())
+}
+
+/// The same by how much of each pixel's light the ink takes.
+fn strokes_of(shares: impl Iterator<Item = f64>) -> Vec<Stroke> {
+    let levels = shares.map(|s| (250.0 - 220.0 * s) as u8).collect();
     trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap().strokes.strokes
 }
 
@@ -110,9 +115,7 @@ fn crosses_and_rings_of_a_thin_pen_beside_a_thick_one_are_no_dust() {
         let weight = |i: usize| [0.28, 0.44, 0.28][i / 3] * [0.28, 0.44, 0.28][i % 3];
         (0..9).map(|i| weight(i) * share(i)).sum::<f64>()
     };
-    let levels = (0..WIDTH * HEIGHT).map(|k| (250.0 - 220.0 * spread(k)) as u8).collect();
-    let found =
-        trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap().strokes.strokes;
+    let found = strokes_of((0..WIDTH * HEIGHT).map(spread));
     assert_eq!(found.len(), 1 + 6 * 3);
     assert_eq!(found.iter().filter(|stroke| stroke.path.is_closed()).count(), 6);
 }

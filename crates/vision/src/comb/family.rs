@@ -187,6 +187,11 @@ const TERMS: usize = 16;
 /// further they are away.
 const TELL_CUBE: usize = 14;
 
+/// Of a rule's number in a term.
+const fn power(term: usize) -> i32 {
+    term as i32 / 4
+}
+
 /// Where each rule is: smooth in its number and along it, for a page lies bent or is seen at a slant.
 struct Law {
     terms: [f64; TERMS],
@@ -214,7 +219,7 @@ impl Law {
                     right[k] += basis[k] * peak.at;
                 }
             }
-            let unknown = |k: usize| if k >= 12 && chain.len() < TELL_CUBE { 1e9 } else { 1e-6 };
+            let unknown = |k: usize| if power(k) == 3 && chain.len() < TELL_CUBE { 1e9 } else { 1e-6 };
             (0..TERMS).for_each(|k| normal[k][k] += unknown(k));
             law.terms = solve::symmetric(normal, right)?;
             let middle = 0.5 * law.length;
@@ -226,7 +231,7 @@ impl Law {
 
     fn basis(&self, index: f64, x: f64) -> [f64; TERMS] {
         let (i, u) = ((index - self.about.0) / self.about.1, 2.0 * x / self.length - 1.0);
-        std::array::from_fn(|k| i.powi(k as i32 / 4) * u.powi(k as i32 % 4))
+        std::array::from_fn(|k| i.powi(power(k)) * u.powi(k as i32 % 4))
     }
 
     fn at(&self, index: f64, x: f64) -> f64 {

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use tracelight_stroke::{Point, Vec2};
 
-use super::choice::{Quad, SIDES};
 use super::over::covered;
+use super::quad::{Quad, SIDES};
 use super::{Beside, Found, Small};
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -113,8 +113,9 @@ impl Cover {
         let depths: Vec<f64> = (0..calm.values.len()).map(|i| depth(at(i))).collect();
         let covered = covered(calm, quad, &depths);
         let is_seen = |i: usize| depths[i] > EDGE && !covered.values[i];
-        let mut paper = paper(calm, is_seen);
-        go_on_outside(&mut paper, &tiles(calm, &is_seen), quad, &depths);
+        let tiles = tiles(calm, is_seen);
+        let mut paper = paper(calm, &tiles, is_seen);
+        go_on_outside(&mut paper, &tiles, quad, &depths);
         Self { by: small.by, covered, paper }
     }
 
@@ -141,8 +142,7 @@ impl Cover {
 
 /// The paper of each pixel of the small picture: row by row, what is not seen of it is as bright as what is seen to its left and
 /// right, so that a shadow's hard edge stays one.
-fn paper(calm: &Plane<u8>, is_seen: impl Fn(usize) -> bool) -> Plane<u8> {
-    let tiles = tiles(calm, &is_seen);
+fn paper(calm: &Plane<u8>, tiles: &Plane<u8>, is_seen: impl Fn(usize) -> bool) -> Plane<u8> {
     let mut out = calm.clone();
     let mut filled = vec![false; calm.height];
     for (y, filled) in filled.iter_mut().enumerate() {
@@ -202,7 +202,7 @@ fn go_on_outside(paper: &mut Plane<u8>, tiles: &Plane<u8>, quad: &Quad, depths: 
 }
 
 /// The usual level of what is seen of each tile and its neighbours; 255 where that is hardly anything.
-fn tiles(calm: &Plane<u8>, is_seen: &impl Fn(usize) -> bool) -> Plane<u8> {
+fn tiles(calm: &Plane<u8>, is_seen: impl Fn(usize) -> bool) -> Plane<u8> {
     let (width, height) = (calm.width.div_ceil(TILE), calm.height.div_ceil(TILE));
     let level = |i: usize| {
         let (x, y) = (i % width, i / width);

@@ -2,7 +2,7 @@
 
 use tracelight_stroke::{Point, Vec2};
 
-use super::choice::{Quad, SIDES};
+use super::quad::{Quad, SIDES};
 use super::{Sheet, Small, inward, rim};
 use crate::outline::area;
 use crate::plane::Plane;

@@ -3,15 +3,18 @@
 //! Its border is a long step of brightness that is seen from one side only: a line comes back behind it, a table does
 //! not. On the picture averaged down to some 180 rows, medians over five pixels take lines out (`steps`); what steps
 //! are left are gathered into straight sides (`sides`), which may go on as a dark line where the sheet lies on another
-//! one; of these and the picture's own borders the quadrilateral with most of its sides seen is chosen (`choice`), a
-//! shadow that falls across it with it (`shade`), and moved on to the full picture's steps (`edge`). Where it runs out of
-//! the picture a narrow strip of the table may be left along the border (`rim`). All beside it, with what reaches in from
-//! there (`over`), is given its paper's brightness (`alone`).
+//! one. Of these and the picture's own borders the quadrilateral (`quad`) with most of its sides seen is chosen (`choice`),
+//! a shadow that falls across it with it (`shade`), if what is seen along it and beside it says that it is a sheet
+//! (`evidence`), and moved on to the full picture's steps (`edge`). Where it runs out of the picture a narrow strip of
+//! the table may be left along the border (`rim`). All beside it, with what reaches in from there (`over`), is given its
+//! paper's brightness (`alone`).
 
 mod alone;
 mod choice;
 mod edge;
+mod evidence;
 mod over;
+mod quad;
 mod rim;
 mod shade;
 mod sides;
@@ -26,7 +29,7 @@ use crate::Grey;
 use crate::mask::Mask;
 use crate::plane::Plane;
 use alone::{Alone, alone};
-use choice::Quad;
+use quad::Quad;
 
 /// A sheet of paper in a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,6 +157,8 @@ fn inward(from: Point, to: Point) -> Vec2 {
 const SIDE: usize = 180;
 /// And at most so many the other way.
 const LONGER: usize = 600;
+/// Levels beside a side are taken so far from it, px.
+const BESIDE: f64 = 4.0;
 /// With fewer pixels a side a picture shows a figure, hardly its surroundings.
 const LEAST_SIDE: usize = 64;
 

@@ -8,14 +8,13 @@ use std::ops::Range;
 
 use tracelight_stroke::{Point, Vec2};
 
-use super::choice::{Quad, SIDES};
+use super::BESIDE;
+use super::quad::{Quad, SIDES};
 use crate::plane::Plane;
 use crate::ridge::middle;
 
 /// What reaches over a sheet differs from its paper by this share.
 const FOREIGN: f64 = 0.08;
-/// Levels on and beside it are taken so far from the sheet's edge, px.
-const NEAR: f64 = 4.0;
 /// A stretch of a side that is hidden is at least so long: share of the picture's shorter side, and px.
 const LEAST_HIDDEN: f64 = 0.035;
 const LEAST_HIDDEN_PX: f64 = 4.0;
@@ -78,8 +77,8 @@ impl<'a> Along<'a> {
         let (inward, length) = (quad.inward(side), from.distance(to));
         let way = (to - from) / length;
         let depth = quad.depths();
-        let at = |k: usize| from + way * k as f64 + inward * NEAR;
-        let is_clear = |k: &usize| calm.holds(at(*k)) && depth(at(*k)) > 0.9 * NEAR;
+        let at = |k: usize| from + way * k as f64 + inward * BESIDE;
+        let is_clear = |k: &usize| calm.holds(at(*k)) && depth(at(*k)) > 0.9 * BESIDE;
         let first = (0..length as usize).find(is_clear).unwrap_or(0);
         let last = (first..length as usize).rfind(is_clear).map_or(first, |last| last + 1);
         let lit = (first..last).map(|k| quad.lit(at(k), calm.at(at(k)))).collect();
@@ -121,9 +120,9 @@ impl<'a> Along<'a> {
     /// thing of that width.
     fn over(&self, run: &Range<usize>) -> Option<Vec<Point>> {
         let width = run.len() as f64;
-        let mut over = Over::new(self, 0.5 * (run.start + run.end) as f64, width, NEAR)?;
-        let outermost = if self.is_border { 0.0 } else { -NEAR };
-        let outward = (1..).map(|step| NEAR - f64::from(step)).take_while(|depth| *depth >= outermost);
+        let mut over = Over::new(self, 0.5 * (run.start + run.end) as f64, width, BESIDE)?;
+        let outermost = if self.is_border { 0.0 } else { -BESIDE };
+        let outward = (1..).map(|step| BESIDE - f64::from(step)).take_while(|depth| *depth >= outermost);
         let near = (run.start.saturating_sub(LEANS)..run.end + LEANS).step_by(2);
         let comes_from = |depth: f64| {
             let mut levels = near.clone().filter_map(|k| self.level(k as f64, depth)).peekable();
@@ -136,7 +135,7 @@ impl<'a> Along<'a> {
         let darkest = LIKE_BEFORE * over.level / over.paper;
         let mut widest: f64 = 0.0;
         for step in 0.. {
-            let depth = NEAR + f64::from(step);
+            let depth = BESIDE + f64::from(step);
             let Some((start, end)) = over.across(self, depth) else { break };
             if end - start > MOST_WIDENED * width || depth > MOST_LONG * width {
                 return None;
@@ -153,8 +152,9 @@ impl<'a> Along<'a> {
             }
         }
         // and what of it is nearer to the edge
-        let edge: Vec<Point> = points.iter().take_while(|p| self.depth(**p) < NEAR + 0.5).copied().collect();
-        let steps = (0..NEAR as usize).map(|k| k as f64 + 1.0);
+        let edge: Vec<Point> =
+            points.iter().take_while(|p| self.depth(**p) < BESIDE + 0.5).copied().collect();
+        let steps = (0..BESIDE as usize).map(|k| k as f64 + 1.0);
         points.extend(steps.flat_map(|back| edge.iter().map(move |p| *p - self.inward * back)));
         Some(points)
     }
@@ -165,8 +165,8 @@ impl<'a> Along<'a> {
         if run.start > self.places.start + 2 && run.end + 2 < self.places.end {
             return None;
         }
-        let over = Over::new(self, 0.5 * (run.start + run.end) as f64, run.len() as f64, NEAR)?;
-        let outside = run.clone().filter_map(|k| self.level(k as f64, -NEAR)).collect();
+        let over = Over::new(self, 0.5 * (run.start + run.end) as f64, run.len() as f64, BESIDE)?;
+        let outside = run.clone().filter_map(|k| self.level(k as f64, -BESIDE)).collect();
         if !self.is_border && !over.holds(middle(outside)?) {
             return None;
         }
@@ -174,7 +174,7 @@ impl<'a> Along<'a> {
         let holds = |i: usize| depths[i] > 0.0 && over.holds(f64::from(calm.values[i]));
         let mut seen = vec![false; calm.values.len()];
         let mut patch: Vec<usize> = Vec::new();
-        for at in run.clone().map(|k| self.at(k as f64, NEAR)) {
+        for at in run.clone().map(|k| self.at(k as f64, BESIDE)) {
             let i = at.y as usize * calm.width + at.x as usize;
             if !seen[i] && holds(i) {
                 seen[i] = true;
@@ -246,7 +246,7 @@ impl Over {
         // it may lean, and end on one side
         let start = (0..=reach).flat_map(|k| [middle - k as f64, middle + k as f64]).find(|at| holds(*at))?;
         // past the sides next to it there is none of the sheet
-        let (first, last) = (along.places.start as f64 - NEAR, along.places.end as f64 + NEAR);
+        let (first, last) = (along.places.start as f64 - BESIDE, along.places.end as f64 + BESIDE);
         let until = |way: f64| {
             let on = (0..).map(|k| start + way * f64::from(k));
             on.take_while(|at| (first..last).contains(at) && holds(*at)).last().unwrap_or(start)

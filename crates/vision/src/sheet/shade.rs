@@ -2,6 +2,7 @@
 
 use tracelight_stroke::{Point, Vec2};
 
+use super::BESIDE;
 use super::sides::Side;
 use crate::plane::Plane;
 
@@ -9,8 +10,6 @@ use crate::plane::Plane;
 const SHADE: std::ops::Range<f64> = 0.35..0.88;
 /// Half of its share at different places is within this factor.
 const SAME: f64 = 1.2;
-/// Levels are taken so far from the edge, px.
-const BESIDE: f64 = 4.0;
 /// An edge lies so far inside a sheet somewhere, else it is its side, px.
 const LEAST_DEPTH: f64 = 8.0;
 /// Places along it at which its share is taken.

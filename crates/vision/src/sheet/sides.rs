@@ -38,8 +38,7 @@ pub(super) struct Side {
 impl Side {
     /// In how many of some rows a step of it is seen.
     pub(super) fn seen(&self, rows: std::ops::Range<usize>) -> usize {
-        let last = self.seen.len() - 1;
-        (self.seen[rows.end.min(last)] - self.seen[rows.start.min(last)]) as usize
+        within(&self.seen, rows)
     }
 
     /// Where it is at a row, or at a column of those that go across.
@@ -86,8 +85,7 @@ impl Side {
 
     /// In how many of some rows there is no step of it, but a dark line.
     pub(super) fn lines(&self, rows: std::ops::Range<usize>) -> usize {
-        let last = self.lines.len() - 1;
-        (self.lines[rows.end.min(last)] - self.lines[rows.start.min(last)]) as usize
+        within(&self.lines, rows)
     }
 
     /// How much more of it is seen than not, px; a dark line is neither.
@@ -100,6 +98,12 @@ impl Side {
     pub(super) fn is_seen_near(&self, row: usize) -> bool {
         self.seen(row.saturating_sub(2)..row + 3) > 1
     }
+}
+
+/// How many there are in some rows, by how many there are before each row.
+fn within(before: &[u32], rows: std::ops::Range<usize>) -> usize {
+    let last = before.len() - 1;
+    (before[rows.end.min(last)] - before[rows.start.min(last)]) as usize
 }
 
 /// The sides along steps of one kind, the longest first; rows are `width` px long.
