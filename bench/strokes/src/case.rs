@@ -46,10 +46,19 @@ impl Size {
         (Self { width: 4000, height: 3000 }, 2),
     ];
 
-    /// The sizes of a set's pictures, and how often each comes.
-    pub const fn of(set: Set) -> &'static [(Self, usize)] {
-        match set {
+    /// What phones take.
+    pub const OF_A_PHONE: [(Self, usize); 4] = [
+        (Self { width: 1280, height: 960 }, 40),
+        (Self { width: 1600, height: 1200 }, 30),
+        (Self { width: 2560, height: 1920 }, 20),
+        (Self { width: 4000, height: 3000 }, 10),
+    ];
+
+    /// The sizes of a kind's pictures, and how often each comes.
+    pub fn of(kind: Kind) -> &'static [(Self, usize)] {
+        match kind.set() {
             Set::Plain => &Self::USUAL,
+            Set::World if matches!(kind, Kind::Crayon) => &Self::OF_A_PHONE,
             Set::World => &Self::OF_THE_WORLD,
         }
     }
@@ -59,8 +68,8 @@ impl Size {
         (self.height as f64 / 360.0).max(2.0)
     }
 
-    fn usual(set: Set, random: &mut Random) -> Self {
-        let sizes = Self::of(set);
+    fn usual(kind: Kind, random: &mut Random) -> Self {
+        let sizes = Self::of(kind);
         let sum = sizes.iter().map(|(_, weight)| weight).sum::<usize>();
         let mut left = random.whole(0, sum - 1);
         for &(size, weight) in sizes {
@@ -125,10 +134,11 @@ impl Case {
         let degradations = wanted.degradation.map_or_else(|| Degradation::of(set).to_vec(), |d| vec![d]);
         let case = |i: usize| {
             let seed = mixed(seed, i as u64);
+            let kind = kinds[i % kinds.len()];
             Self {
-                kind: kinds[i % kinds.len()],
+                kind,
                 degradation: degradations[i / kinds.len() % degradations.len()],
-                size: wanted.size.unwrap_or_else(|| Size::usual(set, &mut Random::new(seed))),
+                size: wanted.size.unwrap_or_else(|| Size::usual(kind, &mut Random::new(seed))),
                 seed,
             }
         };

@@ -74,6 +74,7 @@ impl Habit {
             // the page's pen is the widest place of a swelling line
             Kind::Swell | Kind::Brush | Kind::Nib => Self { pens: (1.8, 2.2), ..usual },
             Kind::Fading | Kind::Graphite => Self { figures: (1, 7), ..usual },
+            Kind::Crayon => Self { figures: (1, 5), pens: (2.6, 1.0), ..usual },
             Kind::Felt => Self { figures: (1, 4), pens: (1.8, 2.4), ..usual },
             Kind::Retouched => Self { pens: (1.8, 1.6), ..usual },
             Kind::Hatching => Self { figures: (1, 3), strokes: MOST_STROKES_MIXED, paper_px: 1.5, ..usual },

@@ -81,6 +81,8 @@ pub enum Kind {
     Fading,
     /// A pencil on grain, its pressure changing.
     Graphite,
+    /// Crayon, chalk, a soft pencil or a dry felt pen from near: pens of ten px and more with ragged edges.
+    Crayon,
     /// Felt pen: thick, darker where it goes twice, areas filled to and fro.
     Felt,
     /// Lines gone over again, in full or in part, and rings whose ends overlap.
@@ -156,7 +158,7 @@ impl Kind {
             Kind::Brush => swelling::brush(random, hand),
             Kind::Nib => swelling::nib(random, hand),
             Kind::Fading => swelling::fading(random, hand),
-            Kind::Graphite => swelling::pencil(random, hand),
+            Kind::Graphite | Kind::Crayon => swelling::pencil(random, hand),
             Kind::Felt => felt::figure(random, hand),
             Kind::Retouched => retouched::figure(random, hand),
             Kind::Hatching => hatched::figure(random, hand),

@@ -15,6 +15,10 @@ const DEEP_FROM_PX: f64 = 5.0;
 /// Size of the grain, in pens, and px at least and most.
 const GRAIN_PENS: (f64, f64) = (0.3, 0.6);
 const GRAIN_PX: (f64, f64) = (1.0, 4.0);
+/// A crayon's grain, in pens, and px at least; its edge, σ in pens: what presses less takes fewer of the grain's heights.
+const CRAYON_GRAIN_PENS: (f64, f64) = (0.05, 0.15);
+const CRAYON_GRAIN_PX: f64 = 1.5;
+const CRAYON_SOFT_PENS: (f64, f64) = (0.06, 0.16);
 /// From bare to covered graphite rises over so much of the grain's height.
 const RISE: f64 = 0.45;
 
@@ -23,8 +27,15 @@ const RISE: f64 = 0.45;
 pub(crate) enum Medium {
     /// Ink: twice is as dark as once.
     Pen,
-    /// A pencil on grain of a depth.
-    Graphite(Grain, f64),
+    /// A pencil or a crayon on grain.
+    Graphite {
+        /// The paper's.
+        grain: Grain,
+        /// How deep it is: 1 is as high as a full press reaches.
+        depth: f64,
+        /// How soft the line's edge is, σ in px.
+        soft_px: f64,
+    },
     /// A felt pen: this share of the light is taken where it goes once, more where it goes again.
     Felt(f64),
 }
@@ -34,7 +45,14 @@ impl Medium {
     pub(crate) fn graphite(random: &mut Random, pen: f64) -> Self {
         let cell = (pen * random.between(GRAIN_PENS.0, GRAIN_PENS.1)).clamp(GRAIN_PX.0, GRAIN_PX.1);
         let depth = DEPTH * (0.5 + 0.5 * (pen / DEEP_FROM_PX).min(1.0));
-        Self::Graphite(Grain::new(random.bits(), (cell, cell)), depth)
+        Self::Graphite { grain: Grain::new(random.bits(), (cell, cell)), depth, soft_px: SOFT_PX }
+    }
+
+    /// A crayon of so many px.
+    pub(crate) fn crayon(random: &mut Random, pen: f64) -> Self {
+        let cell = (pen * random.between(CRAYON_GRAIN_PENS.0, CRAYON_GRAIN_PENS.1)).max(CRAYON_GRAIN_PX);
+        let soft_px = pen * random.between(CRAYON_SOFT_PENS.0, CRAYON_SOFT_PENS.1);
+        Self::Graphite { grain: Grain::new(random.bits(), (cell, cell)), depth: DEPTH, soft_px }
     }
 
     /// Share of the ink's darkness that each pixel has; what is of one stroke is given together.
@@ -43,8 +61,8 @@ impl Medium {
         let mut covered = empty();
         let Self::Felt(once) = self else {
             ink.iter().flatten().for_each(|ink| draw(&mut covered, ink, warp));
-            if let Self::Graphite(grain, depth) = self {
-                blur(&mut covered, SOFT_PX);
+            if let Self::Graphite { grain, depth, soft_px } = self {
+                blur(&mut covered, soft_px);
                 rub(&mut covered, grain, depth);
             }
             return covered;

@@ -104,7 +104,7 @@ fn one(
         let turn = random.angle();
         let figure = figure.moved(Affine::rotate(habit.turn(turn)));
         let (pen, bounds) = habit.bounds(&figure, &hand);
-        if broken_within(&figure, (pen, hand.paper), &bounds).is_some() {
+        if figure.strokes.is_empty() || broken_within(&figure, (pen, hand.paper), &bounds).is_some() {
             continue;
         }
         let place = (0..PLACES_TRIED).find_map(|_| sheet.place(random, &figure));
