@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use crate::coarse;
 use crate::comb::{self, Lie, Rules};
 use crate::light::{Paper, percentile};
 use crate::mask::Mask;
@@ -37,13 +38,30 @@ pub(crate) struct Ink {
 impl Ink {
     /// Finds the ink of an image and refuses one that has none. `threshold_percent` is the darkness from which on it
     /// is ink, % of the paper's brightness; without it, it is found. Paper may have hard edges, of `sheets` or of shadows.
+    /// Wide lines with ragged edges are looked at from further, as long as that evens them.
     pub(crate) fn of(
         page: &Page<'_>,
         threshold_percent: Option<f64>,
         sheets: bool,
     ) -> Result<Self, VisionError> {
+        let mut ink = Self::at(page, threshold_percent, sheets, page.picture.reduction())?;
+        while coarse::is_ragged(&ink.darkness, ink.threshold) {
+            match Self::at(page, threshold_percent, sheets, 2 * ink.reduction) {
+                Ok(coarser) => ink = coarser,
+                Err(_) => break,
+            }
+        }
+        Ok(ink)
+    }
+
+    /// The same, so many pixels averaged into one either way.
+    fn at(
+        page: &Page<'_>,
+        threshold_percent: Option<f64>,
+        sheets: bool,
+        reduction: usize,
+    ) -> Result<Self, VisionError> {
         let image = &*page.picture;
-        let reduction = image.reduction();
         let reduced = |plane| match reduction {
             1 => Cow::Borrowed(plane),
             _ => Cow::Owned(Plane::reduced(plane, reduction)),

@@ -31,6 +31,7 @@
 mod bow;
 mod bridge;
 mod centreline;
+mod coarse;
 mod comb;
 mod contrast;
 mod distance;

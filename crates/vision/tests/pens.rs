@@ -137,3 +137,47 @@ fn an_area_that_a_felt_pen_filled_is_one_shape_and_hatching_is_lines() {
         assert!(lines >= 12 && lines == found.strokes.strokes.len(), "{lines} lines, {pitch} pens apart");
     }
 }
+
+/// How high the paper's grain is at a pixel, 0 to 1: as high over squares of three pixels.
+fn grain(seed: u64, x: usize, y: usize) -> f64 {
+    let mut word = seed ^ ((x as u64 / 3) << 32 | y as u64 / 3);
+    for _ in 0..3 {
+        word = (word ^ (word >> 31)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+    (word >> 40) as f64 / f64::from(1 << 24)
+}
+
+#[test]
+fn a_crayon_from_near_draws_lines_and_no_crumbs() {
+    let (width, height, pen) = (1200, 900, 30.0);
+    let truth: Vec<Vec<Point>> = vec![
+        (0..=90)
+            .map(|k| f64::from(4 * k).to_radians())
+            .map(|a| Point::new(420.0, 450.0) + Vec2::from_angle(a) * 260.0)
+            .collect(),
+        vec![Point::new(420.0, 300.0), Point::new(1080.0, 620.0)],
+        vec![Point::new(800.0, 120.0), Point::new(900.0, 250.0), Point::new(1100.0, 180.0)],
+    ];
+    for seed in 1..6 {
+        // pressed less towards its edges: there the grain's heights alone are taken
+        let presses: Vec<Vec<f64>> = [0.65, 0.8, 1.0]
+            .map(|share| {
+                let mut canvas = Canvas::new(width, height);
+                truth.iter().for_each(|line| canvas.pen(line, share * pen));
+                canvas.shares().collect()
+            })
+            .to_vec();
+        let level = |i: usize| {
+            let press = presses.iter().map(|shares| shares[i]).sum::<f64>() / 3.0;
+            let taken = press > 0.9 * grain(seed, i % width, i / width) && press > 0.0;
+            if taken { 90 } else { 225 }
+        };
+        let levels = (0..width * height).map(level).collect();
+        let found = trace(&Grey::new(width, height, levels).unwrap(), &Options::default()).unwrap();
+        let drawn: Vec<_> = found.strokes.strokes.iter().map(|s| s.path.flatten(0.02)).collect();
+        let comparison = compare_polylines(&drawn, &truth, 0.25 * pen).unwrap();
+        assert_eq!(drawn.len(), truth.len(), "seed {seed}: {comparison:?}");
+        assert!(comparison.coverage > 0.985 && comparison.rms < 1.0, "seed {seed}: {comparison:?}");
+        assert!(found.quality.pen_px.is_some_and(|px| (px / pen - 1.0).abs() < 0.25), "{:?}", found.quality);
+    }
+}

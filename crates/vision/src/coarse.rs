@@ -1,0 +1,139 @@
+//! How closely a picture is looked at: crayon and chalk from near have ragged edges and holes finer than what they draw.
+//!
+//! Where a mask at half the resolution has a shorter border, the rest of it was the paper's grain. Where the lines are still
+//! wide enough there, nothing that was drawn is lost.
+
+use std::f64::consts::FRAC_PI_4;
+
+use crate::ink::over;
+use crate::mask::Mask;
+use crate::plane::Plane;
+
+/// The border of ragged ink is this many times as long as half as closely. Of clean edges it is 1.00 to 1.04, of those of a
+/// pencil 1.06 to 1.6.
+const RAGGED: f64 = 1.06;
+/// Half as closely, ink is still so wide in the mean, px,
+const LEAST_WIDTH_PX: f64 = 4.5;
+/// and at most this share of its length is thinner than three pixels.
+const MOST_THIN: f64 = 0.5;
+
+/// Whether the ink of a plane, what is over a threshold, is better looked at half as closely.
+pub(crate) fn is_ragged(darkness: &Plane<u8>, threshold: u8) -> bool {
+    let fine = over(darkness, threshold);
+    let (fine_px, fine_length) = (fine.count() as f64, length(&fine));
+    // holes and ragged edges halve the mean width at most: thin lines need no second look
+    if fine_px < LEAST_WIDTH_PX * fine_length {
+        return false;
+    }
+    let half = over(&darkness.reduced(2), threshold);
+    let half_length = length(&half);
+    let wide = half.clone().eroded(THIN_PX).dilated(THIN_PX).and(&half);
+    let (wide_px, thin_px) = (wide.count() as f64, (half.count() - wide.count()) as f64);
+    let is_wide = wide_px >= LEAST_WIDTH_PX * length(&wide).max(1.0);
+    if !is_wide || thin_px > MOST_THIN * half_length * (0.5 * THIN_PX as f64) {
+        return false;
+    }
+    // marks beside it that are gone from half as closely do not make it ragged
+    let about = wide.dilated_by(1);
+    let fine = fine.and(&twice(&about, darkness.width, darkness.height));
+    length(&fine) >= RAGGED * 2.0 * length(&half.and(&about))
+}
+
+/// What is thinner than this is thin, px.
+const THIN_PX: usize = 3;
+
+/// A mask with four pixels for each of its own, of this size.
+fn twice(ink: &Mask, width: usize, height: usize) -> Mask {
+    let mut out = Mask::empty(width, height);
+    for y in 0..ink.height {
+        for (k, &word) in ink.row(y).iter().enumerate().filter(|(_, word)| **word != 0) {
+            let words = [spread(word as u32), spread((word >> 32) as u32)];
+            for row in [2 * y, 2 * y + 1] {
+                let there = out.row_mut(row)[2 * k..].iter_mut();
+                there.zip(words).for_each(|(to, word)| *to = word | word << 1);
+            }
+        }
+    }
+    out
+}
+
+/// The bits of a word at every other place (Warren, *Hacker's Delight*, 2012, §7-2).
+fn spread(word: u32) -> u64 {
+    const MASKS: [(u32, u64); 5] = [
+        (16, 0x0000_FFFF_0000_FFFF),
+        (8, 0x00FF_00FF_00FF_00FF),
+        (4, 0x0F0F_0F0F_0F0F_0F0F),
+        (2, 0x3333_3333_3333_3333),
+        (1, 0x5555_5555_5555_5555),
+    ];
+    MASKS.iter().fold(u64::from(word), |word, (by, mask)| (word | word << by) & mask)
+}
+
+/// Length of the lines that have this ink's border on either side, px. Rows and columns of pixels cross a border 4/π times as
+/// often as it is long, whichever way it runs (Cauchy and Crofton).
+fn length(ink: &Mask) -> f64 {
+    let changes = |(one, other): (u64, u64)| (one ^ other).count_ones() as usize;
+    let crossed = |y: usize| {
+        let row = ink.row(y);
+        let carried = std::iter::once(0).chain(row.iter().map(|word| word >> 63));
+        let across = row.iter().zip(carried).map(|(&word, carried)| changes((word, word << 1 | carried)));
+        let below = if y + 1 < ink.height { ink.row(y + 1) } else { row };
+        across.sum::<usize>()
+            + row.iter().zip(below).map(|(&one, &other)| changes((one, other))).sum::<usize>()
+    };
+    let crossings: usize = (0..ink.height).map(crossed).sum();
+    0.5 * FRAC_PI_4 * crossings as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ring of this width, drawn with a pen whose edge wanders by so many px from pixel to pixel.
+    fn ring(width: f64, ragged_px: f64) -> Plane<u8> {
+        let mut plane = Plane::filled(400, 400, 0);
+        let mut word = 1_u64;
+        for y in 0..400 {
+            for x in 0..400 {
+                word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                let wander = ragged_px * ((word >> 40) as f64 / f64::from(1 << 24) - 0.5);
+                let off = ((x as f64 - 199.5).hypot(y as f64 - 199.5) - 150.0).abs() + wander;
+                plane.row_mut(y)[x] = (255.0 * (0.5 * width - off + 0.5).clamp(0.0, 1.0)) as u8;
+            }
+        }
+        plane
+    }
+
+    #[test]
+    fn a_wide_line_with_ragged_edges_is_looked_at_from_further() {
+        assert!(is_ragged(&ring(24.0, 6.0), 128));
+        assert!(!is_ragged(&ring(24.0, 0.0), 128), "clean edges are as long however they are looked at");
+        assert!(!is_ragged(&ring(5.0, 6.0), 128), "half as wide is no line any more");
+    }
+
+    #[test]
+    fn small_marks_beside_a_clean_line_do_not_make_it_ragged() {
+        let mut plane = ring(24.0, 0.0);
+        for (x, y) in (0..400).flat_map(|x| (0..400).map(move |y| (x, y))) {
+            let dot = x % 20 < 2 && y % 20 < 2;
+            if dot {
+                plane.row_mut(y)[x] = 160;
+            }
+        }
+        assert!(!is_ragged(&plane, 128));
+    }
+
+    #[test]
+    fn a_mask_twice_as_large_has_each_pixel_four_times() {
+        let ink = over(&ring(10.0, 0.0), 128);
+        let large = twice(&ink, 801, 803);
+        assert_eq!(large.count(), 4 * ink.count());
+        assert!((0..801).all(|x| (0..803).all(|y| large.get(x, y) == ink.get(x / 2, y / 2))));
+    }
+
+    #[test]
+    fn a_lines_length_is_that_of_its_middle() {
+        let length = length(&over(&ring(10.0, 0.0), 128));
+        assert!((length / (2.0 * std::f64::consts::PI * 150.0) - 1.0).abs() < 0.03, "{length}");
+    }
+}
