@@ -50,17 +50,14 @@ pub enum VisionError {
     },
     /// No ink on paper, as drawings are.
     #[error(
-        "this looks like a photograph or a screenshot, not like a drawing: {tone_percent:.1} % of it is neither paper nor \
-         ink and may be up to {most_percent:.1} % (where {outlined_percent:.0} % of the light goes round shapes): crop it to \
-         the drawing, or --force traces it all the same"
+        "this looks like a photograph or a screenshot, not like a drawing: broad dark patches whose edges fade cover {tone_percent:.2} % \
+         of it, up to {most_percent:.2} % are a drawing's: crop it to the drawing, or --force traces it all the same"
     )]
     NoDrawing {
-        /// Share of the picture that is neither paper nor ink nor the edge between them, %.
+        /// Broad ink whose edges fade, % of the picture.
         tone_percent: f64,
         /// Its bound.
         most_percent: f64,
-        /// Share of the strokes' length that goes round shapes, %.
-        outlined_percent: f64,
     },
     /// At the threshold that was set all is ink, or nothing is.
     #[error(

@@ -25,7 +25,7 @@ pub struct Quality {
     pub clipped_percent: f64,
     /// Width of the pen, px: the median over the length of the centrelines. `None` where there are none.
     pub pen_px: Option<f64>,
-    /// Share of the picture that is neither paper nor ink nor the edge between the two, %: of a drawing next to nothing.
+    /// Broad ink whose edges fade, % of the picture: of a drawing next to nothing.
     /// `None` where who had it traced has seen what it is, and said so.
     pub tone_percent: Option<f64>,
     /// Whether the ink is lighter than the paper.
@@ -103,7 +103,7 @@ const LEAST_PEN_PX: f64 = 2.0;
 pub(crate) const GOOD_CONTRAST_PERCENT: f64 = 12.0;
 /// Of [`Figure::Clipped`] and of [`Figure::Tone`], up to here it is good, %.
 pub(crate) const GOOD_CLIPPED_PERCENT: f64 = 10.0;
-pub(crate) const GOOD_TONE_PERCENT: f64 = 0.3;
+pub(crate) const GOOD_TONE_PERCENT: f64 = 0.06;
 
 /// What is good, what is weak, what is refused.
 ///
@@ -191,7 +191,7 @@ const BOUNDS: [Bounds; 9] = [
         bad: Bad::Above,
         good: GOOD_TONE_PERCENT,
         refused: None,
-        words: ("what is neither paper nor ink covers", " %"),
+        words: ("broad patches whose edges fade cover", " %"),
         advice: "is this a photograph, or more than a drawing? Crop it to the drawing",
     },
 ];

@@ -162,6 +162,7 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
     let ink = Ink::of(page, options.threshold_percent, options.sheets)?;
     let mut mask = ink.mask();
     let tone_percent = options.judges().then(|| ink.tone_percent(&mask));
+    tone_percent.map_or(Ok(()), tone::check)?;
     let regions = drawn(&mut mask, least_patch(&ink, options))?;
     let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
     let only = |strokes: Vec<Stroke>| Found { strokes, missed_ink: 0.0, left_out: LeftOut::default() };
@@ -179,7 +180,6 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
     }
     let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
     let strokes = Drawing { strokes };
-    tone_percent.map_or(Ok(()), |percent| tone::check(percent, &strokes))?;
     let mut strokes = strokes.transformed(Affine::scale(ink.reduction as f64));
     if options.sheets {
         strokes = ink_only(&strokes, &page.picture, ink.quality.light_on_dark);

@@ -118,7 +118,7 @@ fn quality_rows(q: &Quality) -> Vec<String> {
         row("width of the edges", known(q.edge_px), unit(q.edge_px)),
         row("burnt or black spots", number(q.clipped_percent, 3), "%"),
         row("width of the pen", known(q.pen_px), unit(q.pen_px)),
-        row("neither paper nor ink", known(q.tone_percent), q.tone_percent.map_or("", |_| "%")),
+        row("broad ink whose edges fade", known(q.tone_percent), q.tone_percent.map_or("", |_| "%")),
     ]
 }
 
