@@ -15,6 +15,11 @@ const DEEP_FROM_PX: f64 = 5.0;
 /// Size of the grain, in pens, and px at least and most.
 const GRAIN_PENS: (f64, f64) = (0.3, 0.6);
 const GRAIN_PX: (f64, f64) = (1.0, 4.0);
+/// This share of the pencils is soft, on paper whose grain is as rough as under the sketches that people scan: of so many px, and deeper
+/// than a full press reaches.
+const ROUGH: f64 = 0.5;
+const ROUGH_GRAIN_PX: (f64, f64) = (0.8, 1.4);
+const ROUGH_DEPTH: (f64, f64) = (1.0, 1.5);
 /// A crayon's grain, in pens, and px at least; its edge, σ in pens: what presses less takes fewer of the grain's heights.
 const CRAYON_GRAIN_PENS: (f64, f64) = (0.05, 0.15);
 const CRAYON_GRAIN_PX: f64 = 1.5;
@@ -43,8 +48,11 @@ pub(crate) enum Medium {
 impl Medium {
     /// A pencil of so many px.
     pub(crate) fn graphite(random: &mut Random, pen: f64) -> Self {
+        let is_rough = random.chance(ROUGH);
         let cell = (pen * random.between(GRAIN_PENS.0, GRAIN_PENS.1)).clamp(GRAIN_PX.0, GRAIN_PX.1);
+        let cell = if is_rough { random.between(ROUGH_GRAIN_PX.0, ROUGH_GRAIN_PX.1) } else { cell };
         let depth = DEPTH * (0.5 + 0.5 * (pen / DEEP_FROM_PX).min(1.0));
+        let depth = if is_rough { random.between(ROUGH_DEPTH.0, ROUGH_DEPTH.1) } else { depth };
         Self::Graphite { grain: Grain::new(random.bits(), (cell, cell)), depth, soft_px: SOFT_PX }
     }
 
