@@ -9,14 +9,29 @@ use crate::mask::Mask;
 use crate::paler::with_paler;
 use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
-use crate::quality::{GOOD_CONTRAST_PERCENT, clipped_percent};
-use crate::sharpness::{self, Step};
+use crate::quality::clipped_percent;
+use crate::split::{Split, strongest};
 use crate::{Page, Quality, VisionError};
 
 /// Noise from which on the picture is smoothed, levels.
 const SMOOTHED_FROM: f64 = 2.5;
-/// What is left of it then: the root of the sum of the squares of the binomial mean's weights.
-const SMOOTHED: f64 = 3.0 / 8.0;
+/// What is left of it after so many passes: the root of the sum of the squares of the weights of the binomial mean, alone and of itself.
+pub(crate) const SMOOTHED: [f64; 3] = [1.0, 3.0 / 8.0, 35.0 / 128.0];
+/// Most passes.
+const MOST_SMOOTHINGS: usize = SMOOTHED.len() - 1;
+
+/// A pencil's ink begins by this share of its strength nearer to the paper than a pen's, and so many deviations of the noise above it.
+const PALER: f64 = 0.13;
+const PALER_DEVIATIONS: f64 = 4.0;
+
+/// How closely a picture is looked at.
+#[derive(Clone, Copy)]
+struct Look {
+    /// Pixels averaged into one, either way.
+    reduction: usize,
+    /// Passes of [`smoothed`], if its noise asks for no more.
+    smoothings: usize,
+}
 
 /// An image with its light and polarity evened out.
 #[derive(Clone, Debug)]
@@ -32,34 +47,47 @@ pub(crate) struct Ink {
     strength: Option<f64>,
     /// Pixels averaged into one, either way.
     pub(crate) reduction: usize,
+    /// Passes of [`smoothed`] over it.
+    smoothings: usize,
     pub(crate) quality: Quality,
 }
 
 impl Ink {
     /// Finds the ink of an image and refuses one that has none. `threshold_percent` is the darkness from which on it
     /// is ink, % of the paper's brightness; without it, it is found. Paper may have hard edges, of `sheets` or of shadows.
-    /// Wide lines with ragged edges are looked at from further, as long as that evens them.
+    /// Wide lines with ragged edges are looked at from further, and grainy ones smoothed, as long as that evens them.
     pub(crate) fn of(
         page: &Page<'_>,
         threshold_percent: Option<f64>,
         sheets: bool,
     ) -> Result<Self, VisionError> {
-        let mut ink = Self::at(page, threshold_percent, sheets, page.picture.reduction())?;
+        let at = |look| Self::at(page, threshold_percent, sheets, look);
+        let mut ink = at(Look { reduction: page.picture.reduction(), smoothings: 0 })?;
         while coarse::is_ragged(&ink.darkness, ink.threshold) {
-            match Self::at(page, threshold_percent, sheets, 2 * ink.reduction) {
+            match at(Look { reduction: 2 * ink.reduction, smoothings: 0 }) {
                 Ok(coarser) => ink = coarser,
                 Err(_) => break,
             }
         }
+        let first = ink.smoothings;
+        while ink.smoothings < MOST_SMOOTHINGS && coarse::may_be_grainy(&ink.darkness, ink.threshold) {
+            match at(Look { reduction: ink.reduction, smoothings: ink.smoothings + 1 }) {
+                Ok(smoother) if coarse::is_grainy(&ink.over(), &smoother.over()) => ink = smoother,
+                _ => break,
+            }
+        }
+        if ink.smoothings > first && threshold_percent.is_none() {
+            ink.threshold = ink.pencils_threshold();
+        }
         Ok(ink)
     }
 
-    /// The same, so many pixels averaged into one either way.
+    /// The same, looked at as closely as this.
     fn at(
         page: &Page<'_>,
         threshold_percent: Option<f64>,
         sheets: bool,
-        reduction: usize,
+        Look { reduction, smoothings }: Look,
     ) -> Result<Self, VisionError> {
         let image = &*page.picture;
         let reduced = |plane| match reduction {
@@ -80,8 +108,8 @@ impl Ink {
         let paper = Paper::of(&plane, seen.as_deref().unwrap_or(&plane), sheets);
         let mut darkness = paper.darkness(&plane);
         let noise_levels = noise(&darkness, SAMPLED);
-        let is_noisy = noise_levels > SMOOTHED_FROM;
-        if is_noisy {
+        let smoothings = smoothings.max(usize::from(noise_levels > SMOOTHED_FROM));
+        for _ in 0..smoothings {
             darkness = smoothed(&darkness);
         }
         let beside = page.beside.as_ref().map(|beside| reduced_mask(&beside.mask, &darkness, reduction));
@@ -92,7 +120,7 @@ impl Ink {
             }
         }
         let mut levels = sampled_histogram(&darkness);
-        let blur = if is_noisy { SMOOTHED } else { 1.0 };
+        let blur = SMOOTHED[smoothings];
         let turned = page.sheet.as_ref().map_or(0.0, |sheet| sheet.turned_rad(page.size));
         let lie = Lie { beside: beside.as_ref(), turned };
         let rules = comb::without_rules(&darkness, blur * noise_levels, strongest(&levels), lie);
@@ -114,7 +142,7 @@ impl Ink {
             noise_levels,
             light_evenness: dimmest / brightest,
             ink_percent: 100.0 * split.share,
-            edge_px: split.edge_px(&darkness, noise_levels, is_noisy).map(|px| px * reduction as f64),
+            edge_px: split.edge_px(&darkness, noise_levels, smoothings).map(|px| px * reduction as f64),
             clipped_percent: clipped_percent(&raw_levels, split.share),
             pen_px: None,
             tone_percent: None,
@@ -123,12 +151,24 @@ impl Ink {
         quality.gate(threshold_percent.is_some())?;
         let is_alone = threshold_percent.is_some() || paper.has_shadows();
         let strength = (!is_alone).then_some(split.ink - split.paper);
-        Ok(Self { darkness, threshold: split.threshold, rules, strength, reduction, quality })
+        Ok(Self { darkness, threshold: split.threshold, rules, strength, reduction, smoothings, quality })
+    }
+
+    /// Where a pencil's ink begins: it pales along its way, and smoothed it stands out from paper that is paler than half of it.
+    fn pencils_threshold(&self) -> u8 {
+        let noise = SMOOTHED[self.smoothings] * self.quality.noise_levels;
+        let lower = f64::from(self.threshold) - PALER * 2.55 * self.quality.contrast_percent;
+        (lower.max(PALER_DEVIATIONS * noise) as u8).min(self.threshold)
+    }
+
+    /// Where it is darker than the threshold.
+    fn over(&self) -> Mask {
+        over(&self.darkness, self.threshold)
     }
 
     /// Where there is ink; there may be a second, paler one.
     pub(crate) fn mask(&self) -> Mask {
-        let mask = over(&self.darkness, self.threshold);
+        let mask = self.over();
         match self.strength {
             Some(strength) => with_paler(&self.darkness, mask, strength, self.edge_px()),
             None => mask,
@@ -232,127 +272,6 @@ pub(crate) fn sampled_blocks(
         blocks.map(move |(number, levels)| (y, number, levels))
     };
     (0..plane.height).flat_map(row)
-}
-
-/// The level that a two-thousandth of all pixels exceed: more than specks of dust cover, and less than any drawing.
-fn strongest(histogram: &[u32; 256]) -> f64 {
-    percentile(histogram, 1.0 - 1.0 / 2000.0)
-}
-
-/// A histogram cut in two.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Split {
-    /// Highest level of the lower class.
-    pub(crate) threshold: u8,
-    /// Mean of the lower class.
-    pub(crate) paper: f64,
-    /// Mean of the upper class.
-    pub(crate) ink: f64,
-    /// Standard deviation of the lower class.
-    paper_deviation: f64,
-    /// Share of the upper class.
-    share: f64,
-}
-
-impl Split {
-    /// Where the variance between the classes is largest (Otsu, "A threshold selection method from gray-level
-    /// histograms", 1979); in the middle of a stretch where it is.
-    pub(crate) fn of(histogram: &[u32; 256]) -> Self {
-        let (all, total, _) = moments(histogram, 0..256);
-        let (mut n, mut sum) = (0.0, 0.0);
-        let (mut best, mut first, mut last) = (0.0, 0, 0);
-        for (level, &count) in histogram.iter().enumerate().take(255) {
-            n += f64::from(count);
-            sum += f64::from(count) * level as f64;
-            let between =
-                if n > 0.0 && n < all { (sum * all - n * total).powi(2) / (n * (all - n)) } else { 0.0 };
-            if between > best * (1.0 + 1e-12) {
-                (best, first) = (between, level);
-            }
-            if between >= best * (1.0 - 1e-12) {
-                last = level;
-            }
-        }
-        Self::at(histogram, ((first + last) / 2) as u8)
-    }
-
-    /// The same, or where the two classes are hardly apart, and so both are paper, the little ink that stands out from it:
-    /// a small mark on a large sheet. `noise` is a pixel's deviation, levels.
-    fn or_of_little(self, darkness: &Plane<u8>, noise: f64) -> Self {
-        /// What is darker than the paper by less is no ink, levels.
-        const LEAST: f64 = 2.55 * GOOD_CONTRAST_PERCENT;
-        /// Of normal noise one pixel in 500 million exceeds as many deviations.
-        const DEVIATIONS: f64 = 6.0;
-        /// Of the pixels that stand out, the share on an edge, paler than ink.
-        const EDGE: f64 = 0.5;
-        if self.ink - self.paper >= LEAST {
-            return self;
-        }
-        // all pixels: a sample may have none of the mark's
-        let mut levels = histogram(std::iter::once(&darkness.values[..]));
-        let all = levels;
-        let least = self.paper + LEAST.max(DEVIATIONS * noise);
-        levels[..=(least as usize).min(255)].fill(0);
-        match levels.iter().any(|&count| count > 0) {
-            true => Self::at(&all, (0.5 * (self.paper + percentile(&levels, EDGE))).max(least) as u8),
-            false => self,
-        }
-    }
-
-    /// At a threshold.
-    fn at(histogram: &[u32; 256], threshold: u8) -> Self {
-        let threshold = usize::from(threshold);
-        let moments = |range: std::ops::Range<usize>| moments(histogram, range);
-        let (lower, upper) = (moments(0..threshold + 1), moments(threshold + 1..256));
-        // a class without pixels is no different from the other
-        let mean = |class: (f64, f64, f64), other: (f64, f64, f64)| {
-            if class.0 > 0.0 { class.1 / class.0 } else { other.1 / other.0.max(1.0) }
-        };
-        let paper = mean(lower, upper);
-        Self {
-            threshold: threshold as u8,
-            paper,
-            ink: mean(upper, lower),
-            paper_deviation: (lower.2 / lower.0.max(1.0) - paper * paper).max(0.0).sqrt(),
-            share: upper.0 / (lower.0 + upper.0).max(1.0),
-        }
-    }
-
-    /// Refuses a threshold that leaves no ink, or no paper.
-    fn check(&self, threshold_percent: Option<f64>, strongest: f64) -> Result<(), VisionError> {
-        match threshold_percent {
-            Some(threshold) if !(0.0 < self.share && self.share < 1.0) => {
-                Err(VisionError::Threshold { threshold, darkest: strongest / 2.55 })
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Width of the ink's edges, px, without what smoothing added.
-    fn edge_px(&self, darkness: &Plane<u8>, noise: f64, smoothed: bool) -> Option<f64> {
-        // the binomial mean of 3 px has a variance of 1/2; a Gaussian's integral rises from 10 to 90 % in 2.563 σ
-        const ADDED_SQ: f64 = 2.563 * 2.563 * 0.5;
-        let noise = if smoothed { SMOOTHED * noise } else { noise };
-        // two deviations: what differs by less is as likely to be noise
-        let step = Step {
-            threshold: self.threshold,
-            least: 0.5 * (self.ink - self.paper),
-            noise: (2.0 * noise).max(1.0),
-        };
-        let width = sharpness::edge_px(darkness, step)?;
-        Some(if smoothed { (width * width - ADDED_SQ).max(SHARPEST_SQ).sqrt() } else { width })
-    }
-}
-
-/// Square of the least width an edge has on pixels: from 10 to 90 % of one pixel.
-const SHARPEST_SQ: f64 = 0.8 * 0.8;
-
-/// Count, sum and sum of squares of the levels in a range.
-fn moments(histogram: &[u32; 256], range: std::ops::Range<usize>) -> (f64, f64, f64) {
-    range.fold((0.0, 0.0, 0.0), |(n, sum, square), level| {
-        let (count, v) = (f64::from(histogram[level]), level as f64);
-        (n + count, sum + count * v, square + count * v * v)
-    })
 }
 
 /// Standard deviation of the pixel noise, levels: the mask of Immerkær, "Fast noise variance estimation" (1996),

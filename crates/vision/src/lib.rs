@@ -68,6 +68,7 @@ mod shadow;
 mod sharpness;
 mod sheet;
 mod solve;
+mod split;
 mod spot;
 mod stages;
 mod sweep;

@@ -2,9 +2,10 @@
 
 use tracelight_stroke::{Point, Vec2};
 
-use crate::ink::{Ink, Split, histogram, over};
+use crate::ink::{Ink, histogram, over};
 use crate::plane::Plane;
 use crate::region::{Region, regions};
+use crate::split::Split;
 use crate::{Grey, Page, VisionError};
 
 /// Most the line through the marks may be off upright or level, degrees: at 3° the scale is 0.14 % off already, but
