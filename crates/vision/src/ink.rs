@@ -49,6 +49,8 @@ pub(crate) struct Ink {
     pub(crate) reduction: usize,
     /// Passes of [`smoothed`] over it.
     smoothings: usize,
+    /// Its tone, of a pencil's drawing, before it was smoothed: that makes its edges fade.
+    pub(crate) closer_tone_percent: Option<f64>,
     pub(crate) quality: Quality,
 }
 
@@ -69,15 +71,19 @@ impl Ink {
                 Err(_) => break,
             }
         }
-        let first = ink.smoothings;
+        let (first, mut tone_percent) = (ink.smoothings, None);
         while ink.smoothings < MOST_SMOOTHINGS && coarse::may_be_grainy(&ink.darkness, ink.threshold) {
             match at(Look { reduction: ink.reduction, smoothings: ink.smoothings + 1 }) {
-                Ok(smoother) if coarse::is_grainy(&ink.over(), &smoother.over()) => ink = smoother,
+                Ok(smoother) if coarse::is_grainy(&ink.over(), &smoother.over()) => {
+                    tone_percent = tone_percent.or_else(|| Some(ink.tone_percent(&ink.mask())));
+                    ink = smoother;
+                }
                 _ => break,
             }
         }
         if ink.smoothings > first && threshold_percent.is_none() {
             ink.threshold = ink.pencils_threshold();
+            ink.closer_tone_percent = tone_percent;
         }
         Ok(ink)
     }
@@ -151,7 +157,16 @@ impl Ink {
         quality.gate(threshold_percent.is_some())?;
         let is_alone = threshold_percent.is_some() || paper.has_shadows();
         let strength = (!is_alone).then_some(split.ink - split.paper);
-        Ok(Self { darkness, threshold: split.threshold, rules, strength, reduction, smoothings, quality })
+        Ok(Self {
+            darkness,
+            threshold: split.threshold,
+            rules,
+            strength,
+            reduction,
+            smoothings,
+            closer_tone_percent: None,
+            quality,
+        })
     }
 
     /// Where a pencil's ink begins: it pales along its way, and smoothed it stands out from paper that is paler than half of it.
