@@ -120,10 +120,7 @@ impl Ink {
         }
         let beside = page.beside.as_ref().map(|beside| reduced_mask(&beside.mask, &darkness, reduction));
         if let Some(beside) = &beside {
-            for cell in beside.cells() {
-                let (x, y) = beside.place(cell);
-                darkness.row_mut(y)[x] = 0;
-            }
+            clear(&mut darkness, beside);
         }
         let mut levels = sampled_histogram(&darkness);
         let blur = SMOOTHED[smoothings];
@@ -193,6 +190,14 @@ impl Ink {
     /// How wide the ink's edges are, px of [`Self::darkness`]; `None` where too few could be measured.
     pub(crate) fn edge_px(&self) -> Option<f64> {
         self.quality.edge_px.map(|px| px / self.reduction as f64)
+    }
+}
+
+/// Makes paper of what is beside the sheet.
+fn clear(darkness: &mut Plane<u8>, beside: &Mask) {
+    for cell in beside.cells() {
+        let (x, y) = beside.place(cell);
+        darkness.row_mut(y)[x] = 0;
     }
 }
 

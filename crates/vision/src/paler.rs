@@ -74,7 +74,7 @@ fn threshold(dark: &Plane<u8>, near: &Mask, strength: f64) -> Option<u8> {
 }
 
 /// Of up to 64 levels those eights that have nothing in `near`.
-pub(crate) fn clear(levels: &[u8], near: u64) -> impl Iterator<Item = &[u8]> {
+fn clear(levels: &[u8], near: u64) -> impl Iterator<Item = &[u8]> {
     let eights = levels.chunks(8).zip(near.to_le_bytes());
     eights.filter(|(_, near)| *near == 0).map(|(levels, _)| levels)
 }
