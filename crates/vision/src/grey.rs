@@ -55,11 +55,15 @@ impl Grey {
         &self.plane.values
     }
 
+    /// Averaged so many times either way, the shorter side still has 8 px.
+    pub(crate) fn most_reduction(&self) -> usize {
+        (self.width().min(self.height()) / LEAST_SIDE).max(1)
+    }
+
     /// How many pixels either way are averaged into one before tracing: 1 up to 12 megapixels. Never so many that
     /// a side falls under 8 px.
     pub(crate) fn reduction(&self) -> usize {
-        let (w, h) = (self.width(), self.height());
-        let most = (w.min(h) / LEAST_SIDE).max(1);
+        let (w, h, most) = (self.width(), self.height(), self.most_reduction());
         (1..=most).find(|k| (w / k) * (h / k) <= MOST_PIXELS).unwrap_or(most)
     }
 }

@@ -10,6 +10,7 @@ use crate::paler::with_paler;
 use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
 use crate::quality::clipped_percent;
+use crate::region::{Region, mask_of, regions};
 use crate::split::{Split, strongest};
 use crate::{Page, Quality, VisionError};
 
@@ -20,9 +21,11 @@ pub(crate) const SMOOTHED: [f64; 3] = [1.0, 3.0 / 8.0, 35.0 / 128.0];
 /// Most passes.
 const MOST_SMOOTHINGS: usize = SMOOTHED.len() - 1;
 
-/// A pencil's ink begins by this share of its strength nearer to the paper than a pen's, and so many deviations of the noise above it.
-const PALER: f64 = 0.13;
+/// A pencil's ink ends by this share of its strength nearer to the paper than a pen's, and so many deviations of the noise above it.
+const PALER: f64 = 0.18;
 const PALER_DEVIATIONS: f64 = 4.0;
+/// This share of a patch that pales is as dark as ink: light that falls off towards a corner has a speck of it.
+const LEAST_JOINED: f64 = 0.15;
 
 /// How closely a picture is looked at.
 #[derive(Clone, Copy)]
@@ -31,6 +34,15 @@ struct Look {
     reduction: usize,
     /// Passes of [`smoothed`], if its noise asks for no more.
     smoothings: usize,
+}
+
+/// What is known of a pencil's drawing whose grain was smoothed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pencil {
+    /// A pencil pales along its way: what is joined to ink is ink where it is darker than this.
+    threshold: u8,
+    /// Its tone before it was smoothed: that makes edges fade.
+    pub(crate) tone_percent: f64,
 }
 
 /// An image with its light and polarity evened out.
@@ -49,8 +61,8 @@ pub(crate) struct Ink {
     pub(crate) reduction: usize,
     /// Passes of [`smoothed`] over it.
     smoothings: usize,
-    /// Its tone, of a pencil's drawing, before it was smoothed: that makes its edges fade.
-    pub(crate) closer_tone_percent: Option<f64>,
+    /// What is otherwise where it was smoothed for a pencil's grain.
+    pub(crate) pencil: Option<Pencil>,
     pub(crate) quality: Quality,
 }
 
@@ -65,13 +77,14 @@ impl Ink {
     ) -> Result<Self, VisionError> {
         let at = |look| Self::at(page, threshold_percent, sheets, look);
         let mut ink = at(Look { reduction: page.picture.reduction(), smoothings: 0 })?;
-        while coarse::is_ragged(&ink.darkness, ink.threshold) {
+        let most = page.picture.most_reduction();
+        while 2 * ink.reduction <= most && coarse::is_ragged(&ink.darkness, ink.threshold) {
             match at(Look { reduction: 2 * ink.reduction, smoothings: 0 }) {
                 Ok(coarser) => ink = coarser,
                 Err(_) => break,
             }
         }
-        let (first, mut tone_percent) = (ink.smoothings, None);
+        let mut tone_percent = None;
         while ink.smoothings < MOST_SMOOTHINGS && coarse::may_be_grainy(&ink.darkness, ink.threshold) {
             match at(Look { reduction: ink.reduction, smoothings: ink.smoothings + 1 }) {
                 Ok(smoother) if coarse::is_grainy(&ink.over(), &smoother.over()) => {
@@ -81,10 +94,9 @@ impl Ink {
                 _ => break,
             }
         }
-        if ink.smoothings > first && threshold_percent.is_none() {
-            ink.threshold = ink.pencils_threshold();
-            ink.closer_tone_percent = tone_percent;
-        }
+        let tone_percent = tone_percent.filter(|_| threshold_percent.is_none());
+        ink.pencil =
+            tone_percent.map(|percent| Pencil { threshold: ink.pencils_threshold(), tone_percent: percent });
         Ok(ink)
     }
 
@@ -161,12 +173,12 @@ impl Ink {
             strength,
             reduction,
             smoothings,
-            closer_tone_percent: None,
+            pencil: None,
             quality,
         })
     }
 
-    /// Where a pencil's ink begins: it pales along its way, and smoothed it stands out from paper that is paler than half of it.
+    /// Where a pencil's ink ends: smoothed, it stands out from paper that is paler than half of it.
     fn pencils_threshold(&self) -> u8 {
         let noise = SMOOTHED[self.smoothings] * self.quality.noise_levels;
         let lower = f64::from(self.threshold) - PALER * 2.55 * self.quality.contrast_percent;
@@ -180,7 +192,10 @@ impl Ink {
 
     /// Where there is ink; there may be a second, paler one.
     pub(crate) fn mask(&self) -> Mask {
-        let mask = self.over();
+        let mask = match self.pencil {
+            Some(pencil) => joined(over(&self.darkness, pencil.threshold), &self.over()),
+            None => self.over(),
+        };
         match self.strength {
             Some(strength) => with_paler(&self.darkness, mask, strength, self.edge_px()),
             None => mask,
@@ -191,6 +206,13 @@ impl Ink {
     pub(crate) fn edge_px(&self) -> Option<f64> {
         self.quality.edge_px.map(|px| px / self.reduction as f64)
     }
+}
+
+/// The patches of a mask of which enough is in the other.
+fn joined(mask: Mask, other: &Mask) -> Mask {
+    let is_joined =
+        |region: &&Region| region.cells(other).count() as f64 >= LEAST_JOINED * region.area() as f64;
+    mask_of(&mask, regions(&mask).iter().filter(is_joined))
 }
 
 /// Makes paper of what is beside the sheet.

@@ -28,8 +28,8 @@ impl Ink {
     /// Broad ink, % of the picture, as far as it fades: times the share of what lies beside ink that is no paper. `mask` is what is ink.
     /// 0 where spots are burnt.
     pub(crate) fn tone_percent(&self, mask: &Mask) -> f64 {
-        if let Some(percent) = self.closer_tone_percent {
-            return percent;
+        if let Some(pencil) = self.pencil {
+            return pencil.tone_percent;
         }
         // under such spots paper and ink are not all there is of a drawing either
         if self.quality.clipped_percent > GOOD_CLIPPED_PERCENT {
