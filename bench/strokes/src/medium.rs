@@ -19,7 +19,7 @@ const GRAIN_PX: (f64, f64) = (1.0, 4.0);
 /// than a full press reaches.
 const ROUGH: f64 = 0.5;
 const ROUGH_GRAIN_PX: (f64, f64) = (0.8, 1.4);
-const ROUGH_DEPTH: (f64, f64) = (1.0, 1.5);
+const ROUGH_DEPTH: (f64, f64) = (1.0, 1.25);
 /// A crayon's grain, in pens, and px at least; its edge, σ in pens: what presses less takes fewer of the grain's heights.
 const CRAYON_GRAIN_PENS: (f64, f64) = (0.05, 0.15);
 const CRAYON_GRAIN_PX: f64 = 1.5;
