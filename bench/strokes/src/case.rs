@@ -56,10 +56,10 @@ impl Size {
 
     /// The sizes of a kind's pictures, and how often each comes.
     pub fn of(kind: Kind) -> &'static [(Self, usize)] {
-        match kind.set() {
-            Set::Plain => &Self::USUAL,
-            Set::World if matches!(kind, Kind::Crayon) => &Self::OF_A_PHONE,
-            Set::World => &Self::OF_THE_WORLD,
+        match (kind, kind.set()) {
+            (_, Set::Plain) => &Self::USUAL,
+            (Kind::Crayon, Set::World) => &Self::OF_A_PHONE,
+            (_, Set::World) => &Self::OF_THE_WORLD,
         }
     }
 

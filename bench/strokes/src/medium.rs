@@ -50,9 +50,13 @@ impl Medium {
     pub(crate) fn graphite(random: &mut Random, pen: f64) -> Self {
         let is_rough = random.chance(ROUGH);
         let cell = (pen * random.between(GRAIN_PENS.0, GRAIN_PENS.1)).clamp(GRAIN_PX.0, GRAIN_PX.1);
-        let cell = if is_rough { random.between(ROUGH_GRAIN_PX.0, ROUGH_GRAIN_PX.1) } else { cell };
-        let depth = DEPTH * (0.5 + 0.5 * (pen / DEEP_FROM_PX).min(1.0));
-        let depth = if is_rough { random.between(ROUGH_DEPTH.0, ROUGH_DEPTH.1) } else { depth };
+        let (cell, depth) = match is_rough {
+            true => (
+                random.between(ROUGH_GRAIN_PX.0, ROUGH_GRAIN_PX.1),
+                random.between(ROUGH_DEPTH.0, ROUGH_DEPTH.1),
+            ),
+            false => (cell, DEPTH * (0.5 + 0.5 * (pen / DEEP_FROM_PX).min(1.0))),
+        };
         Self::Graphite { grain: Grain::new(random.bits(), (cell, cell)), depth, soft_px: SOFT_PX }
     }
 

@@ -26,8 +26,8 @@ const MAY_BE_GRAINY: f64 = 1.06;
 const MOST_LOST: f64 = 0.02;
 
 /// Whether the ink of a plane, what is over a threshold, may be grainy: to know it takes the smoothed ink.
-pub(crate) fn may_be_grainy(darkness: &Plane<u8>, threshold: u8) -> bool {
-    grain(&over(darkness, threshold), &over(&smoothed(darkness), threshold)) >= MAY_BE_GRAINY
+pub(crate) fn may_be_grainy(fine: &Mask, darkness: &Plane<u8>, threshold: u8) -> bool {
+    grain(fine, &over(&smoothed(darkness), threshold)) >= MAY_BE_GRAINY
 }
 
 /// Whether ink is so grainy that a smoothed look, in which it is `even`, is better.
@@ -46,8 +46,7 @@ fn grain(fine: &Mask, even: &Mask) -> f64 {
 }
 
 /// Whether the ink of a plane, what is over a threshold, is better looked at half as closely.
-pub(crate) fn is_ragged(darkness: &Plane<u8>, threshold: u8) -> bool {
-    let fine = over(darkness, threshold);
+pub(crate) fn is_ragged(fine: &Mask, darkness: &Plane<u8>, threshold: u8) -> bool {
     let (fine_px, fine_length) = (fine.count() as f64, fine.line_length());
     // holes and ragged edges halve the mean width at most: thin lines need no second look
     if fine_px < LEAST_WIDTH_PX * fine_length {
@@ -65,7 +64,7 @@ pub(crate) fn is_ragged(darkness: &Plane<u8>, threshold: u8) -> bool {
     }
     // marks beside it that are gone from half as closely do not make it ragged
     let about = wide.dilated_by(1);
-    let fine = fine.and(&twice(&about, darkness.width, darkness.height));
+    let fine = fine.clone().and(&twice(&about, darkness.width, darkness.height));
     fine.line_length() >= RAGGED * 2.0 * half.and(&about).line_length()
 }
 
@@ -118,11 +117,16 @@ mod tests {
         plane
     }
 
+    fn is_ragged_over_half(plane: &Plane<u8>) -> bool {
+        is_ragged(&over(plane, 128), plane, 128)
+    }
+
     #[test]
     fn a_wide_line_with_ragged_edges_is_looked_at_from_further() {
-        assert!(is_ragged(&ring(24.0, 6.0), 128));
-        assert!(!is_ragged(&ring(24.0, 0.0), 128), "clean edges are as long however they are looked at");
-        assert!(!is_ragged(&ring(5.0, 6.0), 128), "half as wide is no line any more");
+        let is_ragged = |width, ragged_px| is_ragged_over_half(&ring(width, ragged_px));
+        assert!(is_ragged(24.0, 6.0));
+        assert!(!is_ragged(24.0, 0.0), "clean edges are as long however they are looked at");
+        assert!(!is_ragged(5.0, 6.0), "half as wide is no line any more");
     }
 
     #[test]
@@ -134,7 +138,7 @@ mod tests {
                 plane.row_mut(y)[x] = 160;
             }
         }
-        assert!(!is_ragged(&plane, 128));
+        assert!(!is_ragged_over_half(&plane));
     }
 
     #[test]

@@ -78,21 +78,22 @@ impl Ink {
         let at = |look| Self::at(page, threshold_percent, sheets, look);
         let mut ink = at(Look { reduction: page.picture.reduction(), smoothings: 0 })?;
         let most = page.picture.most_reduction();
-        while 2 * ink.reduction <= most && coarse::is_ragged(&ink.darkness, ink.threshold) {
-            match at(Look { reduction: 2 * ink.reduction, smoothings: 0 }) {
-                Ok(coarser) => ink = coarser,
-                Err(_) => break,
-            }
+        let mut fine = ink.over();
+        while 2 * ink.reduction <= most && coarse::is_ragged(&fine, &ink.darkness, ink.threshold) {
+            let Ok(coarser) = at(Look { reduction: 2 * ink.reduction, smoothings: 0 }) else { break };
+            fine = coarser.over();
+            ink = coarser;
         }
         let mut tone_percent = None;
-        while ink.smoothings < MOST_SMOOTHINGS && coarse::may_be_grainy(&ink.darkness, ink.threshold) {
-            match at(Look { reduction: ink.reduction, smoothings: ink.smoothings + 1 }) {
-                Ok(smoother) if coarse::is_grainy(&ink.over(), &smoother.over()) => {
-                    tone_percent = tone_percent.or_else(|| Some(ink.tone_percent(&ink.mask())));
-                    ink = smoother;
-                }
-                _ => break,
+        while ink.smoothings < MOST_SMOOTHINGS && coarse::may_be_grainy(&fine, &ink.darkness, ink.threshold) {
+            let look = Look { reduction: ink.reduction, smoothings: ink.smoothings + 1 };
+            let Ok(smoother) = at(look) else { break };
+            let even = smoother.over();
+            if !coarse::is_grainy(&fine, &even) {
+                break;
             }
+            tone_percent = tone_percent.or_else(|| Some(ink.tone_percent(&ink.mask())));
+            (ink, fine) = (smoother, even);
         }
         let tone_percent = tone_percent.filter(|_| threshold_percent.is_none());
         ink.pencil =
@@ -132,7 +133,7 @@ impl Ink {
         }
         let beside = page.beside.as_ref().map(|beside| reduced_mask(&beside.mask, &darkness, reduction));
         if let Some(beside) = &beside {
-            clear(&mut darkness, beside);
+            darkness.clear(beside);
         }
         let mut levels = sampled_histogram(&darkness);
         let blur = SMOOTHED[smoothings];
@@ -213,14 +214,6 @@ fn joined(mask: Mask, other: &Mask) -> Mask {
     let is_joined =
         |region: &&Region| region.cells(other).count() as f64 >= LEAST_JOINED * region.area() as f64;
     mask_of(&mask, regions(&mask).iter().filter(is_joined))
-}
-
-/// Makes paper of what is beside the sheet.
-fn clear(darkness: &mut Plane<u8>, beside: &Mask) {
-    for cell in beside.cells() {
-        let (x, y) = beside.place(cell);
-        darkness.row_mut(y)[x] = 0;
-    }
 }
 
 /// A mask on a plane for which so many pixels were averaged into one.

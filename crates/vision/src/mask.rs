@@ -121,8 +121,8 @@ impl Mask {
         out
     }
 
-    /// Length of the lines that have this ink's border on either side, px: half of the border. Rows and columns of pixels cross a border 4/π times as
-    /// often as it is long, whichever way it runs (Cauchy and Crofton).
+    /// Length of the lines that have this ink's border on either side, px: half of the border. Rows and columns of pixels cross a
+    /// border 4/π times as often as it is long, whichever way it runs (Cauchy and Crofton).
     pub(crate) fn line_length(&self) -> f64 {
         let changes = |(one, other): (u64, u64)| (one ^ other).count_ones() as usize;
         let crossed = |y: usize| {

@@ -1,5 +1,7 @@
 use tracelight_stroke::{Point, Vec2};
 
+use crate::mask::Mask;
+
 /// Values on a grid of pixels, row by row from the top left.
 #[derive(Clone)]
 pub(crate) struct Plane<T> {
@@ -26,6 +28,14 @@ impl<T: Copy + Default> Plane<T> {
 
     pub(crate) fn row_mut(&mut self, y: usize) -> &mut [T] {
         &mut self.values[y * self.width..][..self.width]
+    }
+
+    /// Sets the pixels of a mask, as large as this, to the default.
+    pub(crate) fn clear(&mut self, mask: &Mask) {
+        for cell in mask.cells() {
+            let (x, y) = mask.place(cell);
+            self.row_mut(y)[x] = T::default();
+        }
     }
 
     /// The value at a pixel; the default outside.

@@ -58,10 +58,7 @@ pub(crate) fn with_rest(dark: &Plane<u8>, patches: &[&Region], mut rows: Vec<Row
         return rows;
     }
     let mut bare = dark.clone();
-    own.cells().for_each(|cell| {
-        let (x, y) = own.place(cell);
-        bare.row_mut(y)[x] = 0;
-    });
+    bare.clear(&own);
     let none = Mask::empty(dark.width, dark.height);
     let found = graphs(&rest, left);
     let found = found.iter().flat_map(|(region, graph)| centreline::rows(&bare, &none, region, graph));
