@@ -7,6 +7,8 @@ use crate::ink::{over, smoothed};
 use crate::mask::Mask;
 use crate::plane::Plane;
 
+/// Looked at half as closely, a picture still has so many pixels either way.
+const LEAST_SIDE_PX: usize = 200;
 /// The border of ragged ink is this many times as long as half as closely. Of clean edges it is 1.00 to 1.04, of those of a
 /// crayon 1.06 to 1.6.
 const RAGGED: f64 = 1.06;
@@ -14,6 +16,8 @@ const RAGGED: f64 = 1.06;
 const LEAST_WIDTH_PX: f64 = 4.5;
 /// and at most this share of its length is thinner than three pixels,
 const MOST_THIN: f64 = 0.5;
+/// and so many times as long: of crayon 40 at least, of a silhouette, whose ragged edge is what was cut, hardly as much,
+const LEAST_LONG: f64 = 30.0;
 /// and covers as much as before, within this share: of crayon 3 %.
 const MOST_GROWN: f64 = 0.06;
 
@@ -48,8 +52,9 @@ fn grain(fine: &Mask, even: &Mask) -> f64 {
 /// Whether the ink of a plane, what is over a threshold, is better looked at half as closely.
 pub(crate) fn is_ragged(fine: &Mask, darkness: &Plane<u8>, threshold: u8) -> bool {
     let (fine_px, fine_length) = (fine.count() as f64, fine.line_length());
-    // holes and ragged edges halve the mean width at most: thin lines need no second look
-    if fine_px < LEAST_WIDTH_PX * fine_length {
+    // holes and ragged edges halve the mean width at most: thin lines need no second look, and small pictures have no grain
+    let is_small = darkness.width.min(darkness.height) < 2 * LEAST_SIDE_PX;
+    if is_small || fine_px < LEAST_WIDTH_PX * fine_length {
         return false;
     }
     let half = over(&darkness.reduced(2), threshold);
@@ -58,8 +63,10 @@ pub(crate) fn is_ragged(fine: &Mask, darkness: &Plane<u8>, threshold: u8) -> boo
     let (wide_px, thin_px) = (wide.count() as f64, (half.count() - wide.count()) as f64);
     // lines whose edges fall between two of the larger pixels grow wider, and their holes smaller, by up to a pixel
     let is_same = (4.0 * half.count() as f64 - fine_px).abs() <= MOST_GROWN * fine_px;
-    let is_wide = is_same && wide_px >= LEAST_WIDTH_PX * wide.line_length().max(1.0);
-    if !is_wide || thin_px > MOST_THIN * half_length * (0.5 * THIN_PX as f64) {
+    let wide_length = wide.line_length().max(1.0);
+    let width_px = wide_px / wide_length;
+    let is_line = is_same && width_px >= LEAST_WIDTH_PX && wide_length >= LEAST_LONG * width_px;
+    if !is_line || thin_px > MOST_THIN * half_length * (0.5 * THIN_PX as f64) {
         return false;
     }
     // marks beside it that are gone from half as closely do not make it ragged

@@ -124,7 +124,7 @@ impl Ink {
             }
             raw_levels.reverse();
         }
-        let paper = Paper::of(&plane, seen.as_deref().unwrap_or(&plane), sheets);
+        let paper = Paper::of(&plane, &raw_levels, seen.as_deref().unwrap_or(&plane), sheets);
         let mut darkness = paper.darkness(&plane);
         let noise_levels = noise(&darkness, SAMPLED);
         let smoothings = smoothings.max(usize::from(noise_levels > SMOOTHED_FROM));

@@ -74,6 +74,7 @@ mod stages;
 mod sweep;
 mod thin;
 mod tone;
+mod tones;
 mod trace;
 mod twice;
 

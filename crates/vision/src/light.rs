@@ -8,6 +8,7 @@
 
 use crate::ink::smoothed;
 use crate::plane::Plane;
+use crate::tones::Tones;
 use crate::{shadow, solve};
 
 /// Tiles along the shorter side.
@@ -38,9 +39,18 @@ pub(crate) struct Paper {
 }
 
 impl Paper {
-    /// Of an image with light paper, of which beside a sheet more may be `seen` than paper. It may have hard edges if `sheets`
+    /// As bright everywhere.
+    fn even(level: u8) -> Self {
+        let level = f64::from(level).max(DIMMEST);
+        Self { tile: 1, levels: Plane::filled(1, 1, level), shaded: None }
+    }
+
+    /// Of an image with light paper and of such levels, of which beside a sheet more may be `seen` than paper. It may have hard edges if `sheets`
     /// lie in it, or if it looks as if shadows had.
-    pub(crate) fn of(image: &Plane<u8>, seen: &Plane<u8>, sheets: bool) -> Self {
+    pub(crate) fn of(image: &Plane<u8>, levels: &[u32; 256], seen: &Plane<u8>, sheets: bool) -> Self {
+        if let Some(tones) = Tones::of(levels).filter(|_| !sheets) {
+            return Self::even(tones.bright);
+        }
         let tile = (image.width.min(image.height) / TILES).max(LEAST_TILE);
         let bright = tile_levels(image, tile);
         let surface = Surface::over(&bright);
@@ -301,6 +311,7 @@ fn around(ratio: &Plane<f64>, paper: &[bool], i: usize, reach: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ink::sampled_histogram;
 
     #[test]
     fn light_from_one_side_and_a_large_filled_shape_leave_even_paper() {
@@ -311,7 +322,7 @@ mod tests {
             (paper(x) * if ink(x, y) { 0.12 } else { 1.0 }) as u8
         };
         let image = Plane { width: 640, height: 480, values: (0..640 * 480).map(level).collect() };
-        let dark = Paper::of(&image, &image, false).darkness(&image);
+        let dark = Paper::of(&image, &sampled_histogram(&image), &image, false).darkness(&image);
         let (mut palest, mut darkest) = (255, 0);
         for (i, &d) in dark.values.iter().enumerate() {
             match ink(i % 640, i / 640) {

@@ -61,12 +61,13 @@ impl Parts {
     pub(crate) fn of(dark: &Plane<u8>, mut ink: Mask, patches: Vec<Region>, dust: Dust) -> Self {
         let read = |ink: &Mask, patches| graphs(ink, patches).into_iter().map(Patch::new).collect();
         let mut patches: Vec<Patch> = read(&ink, patches);
-        let mut pen = usual_pen(&patches);
-        if let Some(filled) = felt::filled(&ink, pen) {
+        // what a felt pen filled to and fro is broad, and of many lines
+        let filling = usual_pen(&patches, |patch| patch.is_line_drawing() || patch.reading.many_lines);
+        if let Some(filled) = felt::filled(&ink, filling) {
             ink = filled;
             patches = read(&ink, regions(&ink));
-            pen = usual_pen(&patches);
         }
+        let pen = usual_pen(&patches, Patch::is_line_drawing);
         let pens = Pens::of(&patches);
         patches.iter_mut().for_each(|patch| patch.reading.is_drawn |= pens.drew(patch));
         let (patches, dust) = match dust {
@@ -83,9 +84,14 @@ impl Parts {
 }
 
 impl Patch {
-    /// Whether no part of it is wider than two lines of its own pen or the picture's where they cross.
+    /// Whether it may be one pen's, and no part of it is wider than two lines of its own pen or the picture's where they cross.
     fn is_pure_line(&self, pen: f64) -> bool {
-        self.reading.widest <= CROSSED_PENS * pen.max(self.reading.pen()) + 1.0
+        self.reading.is_even && self.reading.widest <= CROSSED_PENS * pen.max(self.reading.pen()) + 1.0
+    }
+
+    /// Whether it is a drawing of lines by itself.
+    fn is_line_drawing(&self) -> bool {
+        self.is_pure_line(0.0) || self.reading.is_drawn
     }
 }
 
@@ -117,8 +123,8 @@ const SAME_PEN: f64 = 1.25;
 
 /// The usual width of all lines, px; 0 if there are none. Those of drawings, and only where there are no drawings a
 /// shape's sticks.
-fn usual_pen(patches: &[Patch]) -> f64 {
-    let drawn = patches.iter().filter(|patch| patch.is_pure_line(0.0) || patch.reading.is_drawn);
+fn usual_pen(patches: &[Patch], is_drawing: impl Fn(&Patch) -> bool) -> f64 {
+    let drawn = patches.iter().filter(|patch| is_drawing(patch));
     let mut lines: Vec<_> = drawn.flat_map(|patch| patch.reading.lines.iter().copied()).collect();
     lines.sort_by(|a, b| a.width.total_cmp(&b.width));
     if lines.is_empty() {

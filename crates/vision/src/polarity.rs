@@ -1,8 +1,9 @@
 //! Dark lines on light paper, or light ones on dark.
 
-use crate::ink::noise;
+use crate::ink::{histogram, noise};
 use crate::light::percentile;
 use crate::plane::Plane;
+use crate::tones::Tones;
 
 /// A fall and a rise of brightness count from this share of the picture's range on.
 const STEP: f64 = 0.22;
@@ -27,25 +28,35 @@ const SURE_SHARE: f64 = 0.04;
 const SHAPES: i64 = 6;
 /// No drawing's ink is a larger share of its picture.
 const MOST_INK: f64 = 0.6;
+/// In a picture of two tones, what this share of the border is, is its paper.
+const BORDER: f64 = 0.9;
 
 /// Whether the picture's lines are lighter than what they are drawn on.
 ///
 /// Along rows and columns, what is thin and darker than both its neighbours is counted against what is thin and
 /// lighter: lines are thin, and there is one more of them than of the gaps between. The edges of shapes, of shadows and
 /// of the paper itself are neither. Where that says nothing, the picture is paper along its border, inside of what may be
-/// a line there.
+/// a line there; of one of two tones always, if it is nearly all the same there.
 pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256]) -> bool {
+    let thin = (image.width.min(image.height) / THIN).max(4);
+    let border = border_levels(image, thin);
+    if let Some(tones) = Tones::of(levels) {
+        let bright = border.iter().filter(|&&level| tones.is_bright(level)).count() as f64;
+        let share = bright / border.len() as f64;
+        if share.max(1.0 - share) >= BORDER {
+            return share < 0.5;
+        }
+    }
     let range = |share: f64| (percentile(levels, share), percentile(levels, 1.0 - share));
     let (low, high) = match range(DUST) {
         (low, high) if high - low < LEAST_RANGE => range(SPECK),
         range => range,
     };
     let least = NOISE * noise(image, SAMPLED / 2);
-    let thin = (image.width.min(image.height) / THIN).max(4);
     let runs = Runs::of(image, thin, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
     // light multiplies: a shadow on paper is nearer to its brightest than to its ink as a ratio
     let middle = (low.max(10.0) * high).sqrt();
-    let light_border = border_level(image, thin).max(10.0) >= middle;
+    let light_border = percentile(&histogram(std::iter::once(&border[..])), 0.5).max(10.0) >= middle;
     if !runs.are_sure() {
         return !light_border;
     }
@@ -158,15 +169,13 @@ impl Way {
     }
 }
 
-/// Median level of the pixels so far inside the border: a line along it is thinner.
-fn border_level(image: &Plane<u8>, inside: usize) -> f64 {
-    let mut border = [0u32; 256];
+/// The pixels so far inside the border: a line along it is thinner.
+fn border_levels(image: &Plane<u8>, inside: usize) -> Vec<u8> {
     let inside = inside.min((image.width.min(image.height) - 1) / 2);
     let (right, last) = (image.width - 1 - inside, image.height - 1 - inside);
-    let ends = image.row(inside)[inside..=right].iter().chain(&image.row(last)[inside..=right]);
-    let sides = (inside..=last).flat_map(|y| [&image.row(y)[inside], &image.row(y)[right]]);
-    ends.chain(sides).for_each(|&v| border[usize::from(v)] += 1);
-    percentile(&border, 0.5)
+    let ends = [inside, last].map(|y| &image.row(y)[inside..=right]);
+    let sides = (inside..=last).flat_map(|y| [image.row(y)[inside], image.row(y)[right]]);
+    ends.into_iter().flatten().copied().chain(sides).collect()
 }
 
 #[cfg(test)]

@@ -26,6 +26,8 @@ const EVEN: f64 = 0.25;
 /// Where a stick meets its shape the ink is this much wider within so many widths.
 const SUDDENLY: f64 = 1.8;
 const SUDDEN_WITHIN: f64 = 1.5;
+/// There its width grows by this over its length somewhere: into a disc by up to 2, along a horse's leg by 0.6.
+const OPENS: f64 = 1.0;
 
 /// A stretch of a branch, away from the ink of its nodes, over which the width changes slowly.
 #[derive(Clone, Copy, Debug)]
@@ -68,16 +70,20 @@ impl Reach {
     }
 }
 
-/// Whether, where a stretch of a branch ends, the branch ends or is much wider a width further on.
+/// Whether, where a stretch of a branch ends, the branch ends or opens at once into what is much wider.
 fn ends_suddenly(graph: &Graph, branch: &Branch, (first, last): (usize, usize), width: f64) -> bool {
     let beyond = LEAST_REACH + (SUDDEN_WITHIN * width).ceil() as usize;
     let suddenly = |end: usize, there: Option<usize>| {
+        let (from, to) = match end {
+            0 => (there.unwrap_or(0), first),
+            _ => (last, there.unwrap_or(branch.points.len() - 1)),
+        };
         let radius = match (there, branch.nodes[end]) {
             (Some(i), _) => branch.radii[i],
             (None, Some(node)) => graph.nodes[node].radius,
             (None, None) => return true,
         };
-        2.0 * radius >= SUDDENLY * width
+        2.0 * radius >= SUDDENLY * width && (from..=to).any(|i| slope(branch, i) >= OPENS)
     };
     let after = Some(last + beyond).filter(|&i| i < branch.points.len());
     suddenly(0, first.checked_sub(beyond)) && suddenly(1, after)
@@ -123,6 +129,19 @@ const MANY_WIDTHS: f64 = 10.0;
 /// shorter, the more even it must be: a brush's stroke, or a letter of a felt pen.
 const DRAWN: [(f64, f64); 2] = [(8.0, 1.8), (3.5, 1.4)];
 
+/// What is narrower in the mean, px, has too few pixels across to tell its widths apart. Broader ink was drawn if its lines hold so
+/// much of it; by the second rule most of it, and what is short is about as wide all along: a body has legs, a bottle a neck.
+const BROAD_PX: f64 = 10.0;
+const HALF: f64 = 0.5;
+const MOSTLY: f64 = 0.7;
+const EVENLY: f64 = 0.45;
+
+/// Whether four fifths of the ink are hardly wider than one fifth.
+fn is_even(graph: &Graph) -> bool {
+    let at = |share| graph.radius_under(share);
+    at(80) - at(20) <= EVENLY * at(50)
+}
+
 /// What the branches of a patch are together.
 #[derive(Clone, Debug)]
 pub(crate) struct Reading {
@@ -134,6 +153,10 @@ pub(crate) struct Reading {
     pub(crate) long: f64,
     /// The width that three quarters of its skeleton are under, px.
     pub(crate) usual: f64,
+    /// Whether its lines together are far longer than it is wide: those of a pen, or of limbs.
+    pub(crate) many_lines: bool,
+    /// Whether it may be what one pen drew: it is narrow, or its lines hold most of it, and what is short is about as wide all along.
+    pub(crate) is_even: bool,
     /// Whether its ink was drawn line by line, though some of it may be filled.
     pub(crate) is_drawn: bool,
     /// Whether it is short and swells towards its middle: a crescent.
@@ -149,15 +172,23 @@ impl Reading {
         let (long, bulky) = (length / mean_width, widest / mean_width);
         let is_lens = is_lens(graph, bulky);
         if is_lens || is_blob(graph) {
-            return Self { lines: Vec::new(), widest, long, usual, is_drawn: false, is_lens };
+            let lines = Vec::new();
+            return Self { lines, widest, long, usual, many_lines: false, is_even: false, is_drawn: false, is_lens };
         }
         let reaches = graph.branches.iter().flat_map(|branch| Reach::all(graph, branch));
         let mut lines: Vec<Reach> = reaches.filter(Reach::is_line).collect();
         lines.sort_by(|a, b| a.width.total_cmp(&b.width));
         let together: f64 = lines.iter().map(|line| line.length).sum();
-        let is_drawn = together >= MANY_WIDTHS * widest
-            || DRAWN.iter().any(|&(least, most)| long >= least && bulky <= most) && !tapers_all_along(graph);
-        Self { lines, widest, long, usual, is_drawn, is_lens }
+        // the share of the ink that the lines hold
+        let inked = lines.iter().map(|line| line.length * line.width).sum::<f64>() / area as f64;
+        let is_narrow = mean_width < BROAD_PX;
+        let is_even = is_narrow || inked >= MOSTLY && (long >= DRAWN[0].0 || is_even(graph));
+        let many_lines = together >= MANY_WIDTHS * widest;
+        let is_drawn = many_lines && (is_narrow || inked >= HALF)
+            || DRAWN.iter().any(|&(least, most)| long >= least && bulky <= most)
+                && !tapers_all_along(graph)
+                && is_even;
+        Self { lines, widest, long, usual, many_lines, is_even, is_drawn, is_lens }
     }
 
     /// The usual width of its lines, px; 0 of none.

@@ -26,8 +26,10 @@ use std::cell::OnceCell;
 use tracelight_stroke::{Point, Vec2};
 
 use crate::Grey;
+use crate::ink::sampled_histogram;
 use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::tones::Tones;
 use alone::{Alone, alone};
 use quad::Quad;
 
@@ -95,6 +97,10 @@ impl<'a> Page<'a> {
 
     /// The sheet in a picture, if there is one, else all of it.
     pub fn of(image: &'a Grey) -> Self {
+        // white on black is a silhouette, or light lines on a dark ground
+        if Tones::of(&sampled_histogram(&image.plane)).is_some() {
+            return Self::whole(image);
+        }
         let found = Small::of(&image.plane).and_then(|small| {
             let found = Found::of(&image.plane, &small)?;
             Some((alone(&image.plane, &small, &found), found.sheet))
