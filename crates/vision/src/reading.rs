@@ -122,6 +122,8 @@ fn slope(branch: &Branch, i: usize) -> f64 {
 
 /// What hangs on a shape as its stick is narrower than it by this.
 const STICK: f64 = 2.5;
+/// Its sticks are so many times as long as all that is as narrow and no stick.
+const LIMBS: f64 = 2.0;
 
 /// Ink is drawn if its lines together are this many times as long as it is wide at its widest,
 const MANY_WIDTHS: f64 = 10.0;
@@ -201,11 +203,13 @@ impl Reading {
         width_under(&self.lines, 0.9, |line| line.length).max(self.usual)
     }
 
-    /// The usual width of the sticks of a shape: lines that are even, and narrow beside it.
+    /// The usual width of the sticks of a shape: lines that are even, and narrow beside it. `None` if it has as many other narrow
+    /// lines: limbs.
     pub(crate) fn stick_pen(&self) -> Option<f64> {
-        let is_stick = |line: &&Reach| line.stick && line.width * STICK < self.widest;
-        let sticks: Vec<Reach> = self.lines.iter().filter(is_stick).copied().collect();
-        (!sticks.is_empty()).then(|| pen_of(&sticks))
+        let narrow = self.lines.iter().filter(|line| line.width * STICK < self.widest);
+        let (sticks, limbs): (Vec<Reach>, Vec<Reach>) = narrow.partition(|line| line.stick);
+        let length = |lines: &[Reach]| lines.iter().map(|line| line.length).sum::<f64>();
+        (length(&sticks) > LIMBS * length(&limbs)).then(|| pen_of(&sticks))
     }
 }
 
