@@ -84,9 +84,10 @@ impl Parts {
 }
 
 impl Patch {
-    /// Whether it may be one pen's, and no part of it is wider than two lines of its own pen or the picture's where they cross.
+    /// Whether no part of it is wider than two lines of the picture's pen where they cross; or, if it may be one pen's, of its own.
     fn is_pure_line(&self, pen: f64) -> bool {
-        self.reading.is_even && self.reading.widest <= CROSSED_PENS * pen.max(self.reading.pen()) + 1.0
+        let is_within = |pen: f64| self.reading.widest <= CROSSED_PENS * pen + 1.0;
+        is_within(pen) || self.reading.is_even && is_within(self.reading.pen())
     }
 
     /// Whether it is a drawing of lines by itself.
@@ -199,13 +200,20 @@ impl Sorter {
     /// Filled shapes, which may have sticks of about one pen.
     fn sort_filled(&mut self, group: Vec<Patch>, pen: f64) {
         let blob = WIDE_PENS * self.pen + 1.0;
-        let is_whole = |p: &Patch| pen == 0.0 || (p.reading.lines.is_empty() && p.reading.widest > blob);
+        let bulk = BULK_PENS * pen + 2.0;
+        // no line is in it, nothing hangs on its bulk, or what does is as wide for it as limbs
+        let is_whole = |patch: &Patch| {
+            let Reading { lines, widest, is_even, .. } = &patch.reading;
+            let has_sticks = patch.reading.stick_pen().is_some();
+            let is_bare = if *widest >= bulk { !has_sticks } else { has_sticks && !is_even };
+            pen == 0.0 || *widest > blob && (lines.is_empty() || is_bare)
+        };
         let (whole, mixed): (Vec<_>, Vec<_>) = group.into_iter().partition(is_whole);
         whole.iter().for_each(|patch| patch.region.fill_into(&mut self.shape_mask));
         if mixed.is_empty() {
             return;
         }
-        let width = ((BULK_PENS * pen + 2.0).ceil() as usize).max(LEAST_BULK);
+        let width = (bulk.ceil() as usize).max(LEAST_BULK);
         let inner = mask_of(&self.shape_mask, mixed.iter().map(|patch| &patch.region)).opened(width);
         self.part(mixed, inner, width, |piece, beside| {
             let is_line = piece.is_pure_line(pen) && piece.graph.is_line_beside(pen);

@@ -175,7 +175,7 @@ impl Reading {
         let is_lens = is_lens(graph, bulky);
         if is_lens || is_blob(graph) {
             let lines = Vec::new();
-            return Self { lines, widest, long, usual, many_lines: false, is_even: false, is_drawn: false, is_lens };
+            return Self { lines, widest, long, usual, many_lines: false, is_even: true, is_drawn: false, is_lens };
         }
         let reaches = graph.branches.iter().flat_map(|branch| Reach::all(graph, branch));
         let mut lines: Vec<Reach> = reaches.filter(Reach::is_line).collect();
