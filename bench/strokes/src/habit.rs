@@ -83,6 +83,7 @@ impl Habit {
             Kind::Hairpin | Kind::Shallow => Self { half: (0.15, 0.45), half_pens: 10.0, ..usual },
             Kind::Hair => Self { figures: (1, 4), strokes: MOST_STROKES_MIXED, half: (0.12, 0.4), ..usual },
             Kind::Spots => Self { figures: (1, 7), strokes: MOST_STROKES_MIXED, ..usual },
+            Kind::Silhouette => Self { figures: (1, 3), half: (0.2, 0.45), half_pens: 12.0, ..usual },
             Kind::Frame => Self { margin_pens: 5.0, turned: Turned::Upright, ..usual },
             Kind::Thick => {
                 Self { figures: (1, 1), pens: (1.6, 5.5), half: (0.28, 0.44), half_pens: 0.0, ..usual }
@@ -129,7 +130,7 @@ impl Habit {
             }
             Kind::Hairpin | Kind::Hair | Kind::Shallow => (hand.pen, Bounds::SHARP),
             Kind::Hatching => (hand.pen, Bounds::HATCHED),
-            Kind::Spots => (hand.pen, Bounds::FILLED),
+            Kind::Spots | Kind::Silhouette => (hand.pen, Bounds::FILLED),
             Kind::Felt if figure.strokes.iter().any(|s| s.kind == StrokeKind::Outline) => {
                 (hand.pen, Bounds::FILLED)
             }

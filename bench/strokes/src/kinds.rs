@@ -15,6 +15,7 @@ mod parallel;
 mod plain;
 mod retouched;
 mod shallow;
+mod silhouette;
 mod spot;
 mod swelling;
 mod tangent;
@@ -101,6 +102,8 @@ pub enum Kind {
     Shallow,
     /// Small filled shapes: ovals, crescents, drops, suns with rays, faces.
     Spots,
+    /// What is cut out of black paper: animals with limbs, bottles, keys, leaves; white on black now and then, without a shade.
+    Silhouette,
     /// A frame along the picture's border, whole or half cut off by it.
     Frame,
     /// One figure in a thick pen.
@@ -168,6 +171,7 @@ impl Kind {
             Kind::Hair => hair::figure(random, hand),
             Kind::Shallow => shallow::figure(random, hand),
             Kind::Spots => spot::figure(random, hand),
+            Kind::Silhouette => silhouette::figure(random, hand),
             Kind::Thick => random.pick(&THICK).figure(random, hand),
             Kind::Ruled | Kind::Squared | Kind::Dotted if random.chance(0.25) => writing::words(random, hand),
             Kind::Frame | Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => lines(random, hand),

@@ -45,6 +45,8 @@ pub(crate) struct Look {
     tooth: Option<(Grain, f64)>,
     printed: Option<Paper>,
     desk: Option<Desk>,
+    /// Whether it has two tones and nothing between.
+    is_cut: bool,
 }
 
 impl Look {
@@ -64,6 +66,7 @@ impl Look {
             tooth: None,
             printed: None,
             desk: None,
+            is_cut: false,
         }
     }
 
@@ -121,6 +124,7 @@ impl Look {
             Kind::Graphite => self.pencilled(random, page.pen),
             Kind::Crayon => self.crayoned(random, page.pen),
             Kind::Retouched if random.chance(0.4) => self.pencilled(random, page.pen),
+            Kind::Silhouette => self.cut(random),
             Kind::Felt => self.felt(random),
             Kind::Ruled | Kind::Squared | Kind::Dotted => {
                 Self { printed: Paper::under(random, kind, size, &page.strokes(), page.pen), ..self }
@@ -157,6 +161,14 @@ impl Look {
         let paper = random.between(190.0, 250.0);
         let ink = random.between(0.0, 70.0);
         Self { paper: [paper; 3], ink: [ink; 3], medium: Medium::Felt(random.between(0.6, 0.9)), ..self }
+    }
+
+    /// White on black now and then; what nothing spoils has no shades as often as not.
+    fn cut(self, random: &mut Random) -> Self {
+        let is_clean = matches!(self.light, Light::Even) && self.noise == 0.0 && self.jpeg.is_none();
+        let is_cut = is_clean && random.chance(0.5);
+        let (paper, ink) = if random.chance(0.4) { (self.ink, self.paper) } else { (self.paper, self.ink) };
+        Self { paper, ink, is_cut, ..self }
     }
 
     fn on_a_table(self, random: &mut Random, size: Size, page: &Page, warp: Option<&Warp>) -> Self {
@@ -207,6 +219,11 @@ impl Look {
         self.lit(&mut seen);
         blur(&mut seen, self.blur_px);
         self.spoil(random, &mut seen);
+        if self.is_cut {
+            let (paper, ink) = (self.paper[0] as f32, self.ink[0] as f32);
+            let is_ink = |level: f32| (level - ink).abs() < (level - paper).abs();
+            seen.values.iter_mut().for_each(|v| *v = if is_ink(*v) { ink } else { paper });
+        }
         let levels = seen.values.iter().map(|v| v.round().clamp(0.0, 255.0) as u8).collect();
         match self.jpeg {
             Some(quality) => through_jpeg(levels, width, height, quality),
