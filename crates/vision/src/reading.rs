@@ -23,6 +23,9 @@ const ROUGH: usize = 3;
 /// Of a pen's line four fifths are this much wider than one fifth at most, as a share of its width.
 const EVEN: f64 = 0.25;
 
+/// And a shape's stick is as wide at both ends, within this share and so many px.
+const NARROWS: f64 = 0.1;
+const NARROWS_PX: f64 = 0.8;
 /// Where a stick meets its shape the ink is this much wider within so many widths.
 const SUDDENLY: f64 = 1.8;
 const SUDDEN_WITHIN: f64 = 1.5;
@@ -57,7 +60,7 @@ impl Reach {
             let length = polyline_length(&branch.points[first..=last]);
             // distances to pixels go in steps of up to a pixel where they are small
             let even = at(80) - at(20) <= (EVEN * at(50)).max(2.1);
-            let stick = even && ends_suddenly(graph, branch, (first, last), at(50));
+            let stick = even && !narrows(&branch.radii[first..=last]) && ends_suddenly(graph, branch, (first, last), at(50));
             Self { length, width: at(50), stick, ring }
         };
         steady.chunk_by(|a, b| b - a <= ROUGH).map(of).collect()
@@ -68,6 +71,14 @@ impl Reach {
         let long = if self.ring { LONG_ROUND } else { LONG };
         self.length >= long * self.width
     }
+}
+
+/// Whether the width is less at one end than at the other, by more than pixels make of it: limbs taper.
+fn narrows(radii: &[f64]) -> bool {
+    let third = (radii.len() / 3).max(1);
+    let width = |radii: &[f64]| 2.0 * radii.iter().sum::<f64>() / radii.len() as f64;
+    let (first, last) = (width(&radii[..third]), width(&radii[radii.len() - third..]));
+    (first - last).abs() > (NARROWS * 0.5 * (first + last)).max(NARROWS_PX)
 }
 
 /// Whether, where a stretch of a branch ends, the branch ends or opens at once into what is much wider.
