@@ -60,7 +60,9 @@ impl Reach {
             let length = polyline_length(&branch.points[first..=last]);
             // distances to pixels go in steps of up to a pixel where they are small
             let even = at(80) - at(20) <= (EVEN * at(50)).max(2.1);
-            let stick = even && !narrows(&branch.radii[first..=last]) && ends_suddenly(graph, branch, (first, last), at(50));
+            let stick = even
+                && !narrows(&branch.radii[first..=last])
+                && ends_suddenly(graph, branch, (first, last), at(50));
             Self { length, width: at(50), stick, ring }
         };
         steady.chunk_by(|a, b| b - a <= ROUGH).map(of).collect()
@@ -186,7 +188,16 @@ impl Reading {
         let is_lens = is_lens(graph, bulky);
         if is_lens || is_blob(graph) {
             let lines = Vec::new();
-            return Self { lines, widest, long, usual, many_lines: false, is_even: true, is_drawn: false, is_lens };
+            return Self {
+                lines,
+                widest,
+                long,
+                usual,
+                many_lines: false,
+                is_even: true,
+                is_drawn: false,
+                is_lens,
+            };
         }
         let reaches = graph.branches.iter().flat_map(|branch| Reach::all(graph, branch));
         let mut lines: Vec<Reach> = reaches.filter(Reach::is_line).collect();

@@ -66,7 +66,10 @@ mod tests {
     #[test]
     fn black_and_white_with_soft_edges_are_two_tones() {
         assert_eq!(of(&[(0, 400), (255, 600)]), Some(Tones { dark: 0, bright: 255 }));
-        assert_eq!(of(&[(20, 4000), (21, 300), (100, 250), (250, 6000)]), Some(Tones { dark: 20, bright: 250 }));
+        assert_eq!(
+            of(&[(20, 4000), (21, 300), (100, 250), (250, 6000)]),
+            Some(Tones { dark: 20, bright: 250 })
+        );
     }
 
     #[test]
