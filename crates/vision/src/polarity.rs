@@ -210,9 +210,10 @@ mod tests {
                 240
             }
         });
-        // paper on a dark table
+        // paper on a dark table, of wood
         let paper = |x: usize, y: usize| (30..290).contains(&x) && (25..215).contains(&y);
-        check(false, |x, y| if !paper(x, y) || line(x, y) { 30 } else { 220 });
+        let table = |x: usize, y: usize| if paper(x, y) { 220 } else { 24 + 3 * (y / 8 % 5) as u8 };
+        check(false, |x, y| if line(x, y) { 30 } else { table(x, y) });
         // dense lines, wider than their gaps
         check(
             false,

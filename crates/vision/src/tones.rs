@@ -2,7 +2,10 @@
 //!
 //! No camera made them, so no light falls off in them, no sheet lies on a table, and what most of their border is, is paper.
 
+use crate::ink::over;
 use crate::light::percentile;
+use crate::mask::Mask;
+use crate::plane::Plane;
 
 /// Less than this share of the pixels are specks.
 const SPECKS: f64 = 0.0005;
@@ -36,7 +39,18 @@ impl Tones {
 
     /// Whether a level is nearer to the bright one.
     pub(crate) fn is_bright(self, level: u8) -> bool {
-        2 * u16::from(level) > u16::from(self.dark) + u16::from(self.bright)
+        level > self.middle()
+    }
+
+    /// Where a picture of these tones is dark.
+    pub(crate) fn dark(self, plane: &Plane<u8>) -> Mask {
+        let mut darkness = plane.clone();
+        darkness.values.iter_mut().for_each(|level| *level = 255 - *level);
+        over(&darkness, 254 - self.middle())
+    }
+
+    fn middle(self) -> u8 {
+        self.dark.midpoint(self.bright)
     }
 }
 

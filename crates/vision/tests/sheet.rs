@@ -262,3 +262,21 @@ fn corners_that_are_given_bound_what_is_traced() {
     assert!(Page::within(&image, [a, c, b, d]).is_none());
     assert!(Page::within(&image, [a, b, c, d].map(|p| Point::new(0.1 * p.x, 0.1 * p.y))).is_none());
 }
+
+#[test]
+fn a_page_copied_with_a_black_margin_is_a_sheet_and_a_blank_card_is_drawn() {
+    // turned by two degrees, in black and white and nothing between
+    let on_page = |x: f64, y: f64| {
+        let (along, across) = (x - 0.035 * (y - 240.0), y + 0.035 * (x - 320.0));
+        (70.0..570.0).contains(&along) && (60.0..420.0).contains(&across)
+    };
+    let page = picture(|x, y| if on_page(x, y) && !is_ring(x, y) { 255.0 } else { 0.0 });
+    assert_eq!(Page::of(&page).sheet.and_then(|sheet| sheet.corners).map(|corners| corners.len()), Some(4));
+    let found = trace(&page, &Options::default()).unwrap();
+    assert_eq!(found.strokes.strokes.len(), 1);
+    assert!(!found.quality.light_on_dark);
+    let card = picture(|x, y| if on_page(x, y) { 255.0 } else { 0.0 });
+    assert!(Page::of(&card).sheet.is_none());
+    let found = trace(&card, &Options::default()).unwrap();
+    assert!(found.quality.light_on_dark && found.strokes.strokes.len() == 1);
+}

@@ -28,7 +28,9 @@ use tracelight_stroke::{Point, Vec2};
 use crate::Grey;
 use crate::ink::sampled_histogram;
 use crate::mask::Mask;
+use crate::outline::area;
 use crate::plane::Plane;
+use crate::region::{Region, regions};
 use crate::tones::Tones;
 use alone::{Alone, alone};
 use quad::Quad;
@@ -63,6 +65,9 @@ impl Sheet {
     }
 }
 
+/// A copied page fills the sheet that was found within this share, and so much of the picture at least is drawn on it.
+const SAME_AREA: f64 = 0.02;
+const LEAST_DRAWN: f64 = 0.001;
 /// What is nearer to the picture's border lies on it, px.
 const BORDER_PX: f64 = 1.5;
 
@@ -95,15 +100,14 @@ impl<'a> Page<'a> {
         Self { picture: Cow::Borrowed(image), size, origin: (0, 0), sheet: None, beside: None }
     }
 
-    /// The sheet in a picture, if there is one, else all of it.
+    /// The sheet in a picture, if there is one, else all of it. In one of two tones what is white on black is a silhouette, unless it is
+    /// a page that was copied with a black margin.
     pub fn of(image: &'a Grey) -> Self {
-        // white on black is a silhouette, or light lines on a dark ground
-        if Tones::of(&sampled_histogram(&image.plane)).is_some() {
-            return Self::whole(image);
-        }
+        let tones = Tones::of(&sampled_histogram(&image.plane));
         let found = Small::of(&image.plane).and_then(|small| {
             let found = Found::of(&image.plane, &small)?;
-            Some((alone(&image.plane, &small, &found), found.sheet))
+            let is_sheet = tones.is_none_or(|tones| is_page(&image.plane, tones, &found.sheet));
+            is_sheet.then(|| (alone(&image.plane, &small, &found), found.sheet))
         });
         found.map_or(Self::whole(image), |(alone, sheet)| Self::cut(image, alone, sheet))
     }
@@ -151,6 +155,18 @@ impl Found {
         let sheet = edge::between(plane, corners)?;
         Some(Self { sheet, quad, blur_px: 0.0 })
     }
+}
+
+/// Whether what has the brighter of two tones is the sheet and nothing else, and something is drawn on it.
+fn is_page(plane: &Plane<u8>, tones: Tones, sheet: &Sheet) -> bool {
+    let pixels = plane.values.len() as f64;
+    let dark = tones.dark(plane);
+    let (beside, drawn): (Vec<Region>, Vec<Region>) =
+        regions(&dark).into_iter().partition(|region| region.at_border_px(&dark) > 0);
+    let px = |regions: &[Region]| regions.iter().map(Region::area).sum::<usize>() as f64;
+    let page = pixels - px(&beside);
+    let is_sheet = (page - area(&sheet.outline)).abs() < SAME_AREA * page;
+    is_sheet && !beside.is_empty() && px(&drawn) > LEAST_DRAWN * pixels
 }
 
 /// The way into what lies on the right of the way from one place to another, square to that: clockwise round a sheet, into it.
