@@ -2,8 +2,10 @@
 
 use std::borrow::Cow;
 
+use crate::centreline::Row;
 use crate::coarse;
 use crate::comb::{self, Lie, Rules};
+use crate::faint;
 use crate::light::{Paper, percentile};
 use crate::mask::Mask;
 use crate::paler::with_paler;
@@ -201,6 +203,13 @@ impl Ink {
             Some(strength) => with_paler(&self.darkness, mask, strength, self.edge_px()),
             None => mask,
         }
+    }
+
+    /// The mask with what is too pale for it of its lines, ahead of their ends; `None` where there is nothing, or where all that is
+    /// paler is paper.
+    pub(crate) fn goes_on(&self, mask: &Mask, rows: &[Row]) -> Option<Mask> {
+        let may = self.rules.is_none();
+        may.then(|| faint::followed(&self.darkness, mask, rows)).flatten()
     }
 
     /// How wide the ink's edges are, px of [`Self::darkness`]; `None` where too few could be measured.

@@ -37,6 +37,7 @@ mod contrast;
 mod distance;
 mod dust;
 mod error;
+mod faint;
 mod felt;
 mod fiducial;
 mod follow;

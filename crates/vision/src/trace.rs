@@ -4,6 +4,7 @@ use crate::centreline::{self, Row};
 use crate::comb::Rules;
 use crate::contrast::stands_out;
 use crate::dust::Dust;
+use crate::graph::Graph;
 use crate::ink::Ink;
 use crate::inside::inside;
 use crate::mask::Mask;
@@ -307,7 +308,7 @@ fn outlines(ink: &Ink, filled: &Mask, mask: &Mask, shapes: &[Region], options: &
 
 fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Options) -> Found {
     let dark = &ink.darkness;
-    let parts = match options.mode {
+    let parts_of = |mask: Mask, regions| match options.mode {
         Mode::Centreline => Parts::all_lines(mask, regions),
         _ => {
             let dust = match (options.despeckle_px2, &ink.rules) {
@@ -318,13 +319,19 @@ fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Optio
             Parts::of(dark, mask, regions, dust)
         }
     };
+    let rows_of = |parts: &Parts| -> Vec<Row> {
+        let of = |(region, graph): &(Region, Graph)| centreline::rows(dark, &parts.shape_mask, region, graph);
+        parts.lines.iter().flat_map(of).collect()
+    };
+    let mut parts = parts_of(mask, regions);
+    let mut rows = rows_of(&parts);
+    if let Some(mut more) = ink.goes_on(&parts.ink, &rows) {
+        let regions = drawn(&mut more, least_patch(ink, options)).unwrap_or_default();
+        parts = parts_of(more, regions);
+        rows = rows_of(&parts);
+    }
     let mask = &parts.ink;
     let mut strokes = outlines(ink, &parts.shape_mask, mask, &parts.shapes, options);
-    let rows: Vec<Row> = parts
-        .lines
-        .iter()
-        .flat_map(|(region, graph)| centreline::rows(dark, &parts.shape_mask, region, graph))
-        .collect();
     let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
     let rows = rest::with_rest(dark, &lined, rows);
     let rows = twice::once(dark, gap::bridged(dark, rows));
