@@ -12,7 +12,7 @@ use crate::plane::Plane;
 
 /// A step ahead, and the stretch by which its direction is chosen, pens.
 const STEP: f64 = 0.75;
-const STRETCH: f64 = 2.0;
+const STRETCH: f64 = 1.5;
 /// Directions that are tried either side, and how far each turns, rad.
 const TURNS: i32 = 3;
 const TURN: f64 = 0.09;
@@ -28,16 +28,15 @@ const LEAST_SHARE: f64 = 0.06;
 /// Ink is followed over so many pens at most,
 const MOST_PENS: f64 = 20.0;
 /// from lines that are at least as long as this.
-const LEAST_LENGTH: f64 = 2.5;
+const LEAST_LENGTH: f64 = 1.5;
 /// What ends in paper is a line if so many pens of it were seen.
 const LEAST_SEEN: f64 = 3.0;
 
 /// The mask with what is found ahead of its lines' free ends; `None` where nothing is.
 pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row]) -> Option<Mask> {
     let mut more = Mask::empty(mask.width, mask.height);
-    let is_long = |row: &&Row| {
-        !row.closed && !row.dot && polyline_length(&row.points) >= LEAST_LENGTH * row.width
-    };
+    let is_long =
+        |row: &&Row| !row.closed && !row.dot && polyline_length(&row.points) >= LEAST_LENGTH * row.width;
     for row in rows.iter().filter(is_long) {
         for end in [0, 1].into_iter().filter(|&end| row.free[end]) {
             let Some(tip) = Tip::of(&row.points, end) else { continue };
@@ -160,7 +159,8 @@ fn paint(mask: &mut Mask, from: Point, to: Point, radius: f64) {
     for k in 0..=steps {
         let at = from.lerp(to, k as f64 / steps as f64);
         let range = |middle: f64, most: usize| {
-            ((middle - radius).round().max(0.0) as usize).min(most)..((middle + radius).round().max(0.0) as usize).min(most)
+            ((middle - radius).round().max(0.0) as usize).min(most)
+                ..((middle + radius).round().max(0.0) as usize).min(most)
         };
         range(at.y, mask.height).for_each(|y| {
             let columns = range(at.x, mask.width);
