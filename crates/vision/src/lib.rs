@@ -9,7 +9,7 @@
 //! | module | what |
 //! |---|---|
 //! | `sheet` | the sheet of paper in a photograph or a scan, by itself |
-//! | `light`, `ink` | even light, polarity, threshold |
+//! | `light`, `ink`, `tones` | even light, polarity, threshold; pictures of two tones |
 //! | `comb` | the rules of ruled and squared paper, taken out from under the ink |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
 //! | `tone` | whether it is a drawing at all |
@@ -20,6 +20,7 @@
 //! | `outline` | edges of filled shapes, holes too |
 //! | `near` | which of many points are near a place |
 //! | `follow` | points to paths |
+//! | `faint` | where a line goes on too pale for the mask |
 //! | `rest` | a second look at the ink that no line follows |
 //! | `twice` | a line that was sketched twice is one |
 //! | `missed`, `on_ink` | ink that no stroke follows; strokes that follow no ink |

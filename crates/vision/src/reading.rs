@@ -152,13 +152,13 @@ const MOSTLY: f64 = 0.7;
 const EVENLY: f64 = 0.45;
 
 /// Whether four fifths of the ink are hardly wider than one fifth.
-fn is_even(graph: &Graph) -> bool {
+fn is_even_all_along(graph: &Graph) -> bool {
     let at = |share| graph.radius_under(share);
     at(80) - at(20) <= EVENLY * at(50)
 }
 
 /// What the branches of a patch are together.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Reading {
     /// The lines among them, from the narrowest.
     pub(crate) lines: Vec<Reach>,
@@ -187,17 +187,7 @@ impl Reading {
         let (long, bulky) = (length / mean_width, widest / mean_width);
         let is_lens = is_lens(graph, bulky);
         if is_lens || is_blob(graph) {
-            let lines = Vec::new();
-            return Self {
-                lines,
-                widest,
-                long,
-                usual,
-                many_lines: false,
-                is_even: true,
-                is_drawn: false,
-                is_lens,
-            };
+            return Self { widest, long, usual, is_even: true, is_lens, ..Self::default() };
         }
         let reaches = graph.branches.iter().flat_map(|branch| Reach::all(graph, branch));
         let mut lines: Vec<Reach> = reaches.filter(Reach::is_line).collect();
@@ -206,7 +196,7 @@ impl Reading {
         // the share of the ink that the lines hold
         let inked = lines.iter().map(|line| line.length * line.width).sum::<f64>() / area as f64;
         let is_narrow = mean_width < BROAD_PX;
-        let is_even = is_narrow || inked >= MOSTLY && (long >= DRAWN[0].0 || is_even(graph));
+        let is_even = is_narrow || inked >= MOSTLY && (long >= DRAWN[0].0 || is_even_all_along(graph));
         let many_lines = together >= MANY_WIDTHS * widest;
         let is_drawn = many_lines && (is_narrow || inked >= HALF)
             || DRAWN.iter().any(|&(least, most)| long >= least && bulky <= most)

@@ -15,8 +15,11 @@ use tracelight_vision::{Grey, Options, trace};
 const WIDTH: usize = 360;
 const HEIGHT: usize = 300;
 
+/// The level of a pixel by the share of it that is ink.
+type Look = fn(f64) -> u8;
+
 /// How a silhouette looks: dark on light with soft edges, the other way round, in two tones.
-const LOOKS: [(&str, fn(f64) -> u8); 3] = [
+const LOOKS: [(&str, Look); 3] = [
     ("dark on light", |ink| (245.0 - 215.0 * ink) as u8),
     ("light on dark", |ink| (20.0 + 215.0 * ink) as u8),
     ("white on black, two tones", |ink| if ink >= 0.5 { 255 } else { 0 }),
