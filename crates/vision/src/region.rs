@@ -1,5 +1,7 @@
 //! Patches of ink.
 
+use std::ops::Range;
+
 use crate::mask::{Cell, Mask};
 
 /// Ink pixels `from..to` of row `y`.
@@ -46,6 +48,15 @@ impl Region {
         let to = self.runs.iter().map(|run| run.to).max().unwrap_or(0);
         let rows = self.runs.first().zip(self.runs.last()).map_or(0, |(top, low)| low.y + 1 - top.y);
         ((to - from) as usize, rows as usize)
+    }
+
+    /// Columns and rows of its bounding box and so many px round it, within an image of this size; `None` without pixels.
+    pub(crate) fn bounds(&self, round: usize, size: (usize, usize)) -> Option<(Range<usize>, Range<usize>)> {
+        let (top, bottom) = (self.runs.first()?.y as usize, self.runs.last()?.y as usize + 1);
+        let left = self.runs.iter().map(|run| run.from as usize).min()?;
+        let right = self.runs.iter().map(|run| run.to as usize).max()?;
+        let within = |from: usize, to: usize, most: usize| from.saturating_sub(round)..(to + round).min(most);
+        Some((within(left, right, size.0), within(top, bottom, size.1)))
     }
 
     /// Whether it leads from one border of its image to the one across.

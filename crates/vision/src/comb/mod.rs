@@ -21,7 +21,9 @@ use template::Template;
 use track::{Track, tracks};
 use wipe::{Levels, wipe};
 
+use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::region::regions;
 
 /// Rules of paper that were taken out of an image.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,10 +105,41 @@ pub(crate) fn without_rules(
     turned = plane.transposed();
     Side::of(bare).whole_lines_off(&mut turned, &under_level, levels);
     plane = turned.transposed();
+    crossings_off(&mut plane, &under_level.transposed(), &under_upright, levels);
     let mut combs = along.combs;
     let turn = |comb: Comb| Comb { upright: true, turned_rad: -comb.turned_rad, ..comb };
     combs.extend(across.combs.into_iter().map(turn));
     (!combs.is_empty()).then_some((plane, Rules { combs }))
+}
+
+/// What is left where two rules cross lies alone: so far from them there is paper all round, px,
+const ROUND_CROSSING: usize = 2;
+/// or what is paler than this share of the ink.
+const LEFT: f32 = 0.3;
+
+/// Clears what rules left where they cross, level ones and upright ones each known by how dark they were, and nothing else is drawn.
+fn crossings_off(plane: &mut Plane<u8>, level: &Plane<u8>, upright: &Plane<u8>, levels: Levels) {
+    let mut crossings = Mask::empty(plane.width, plane.height);
+    for y in 0..plane.height {
+        let both = level.row(y).iter().zip(upright.row(y)).enumerate();
+        let crossed: Vec<usize> = both.filter(|(_, (a, b))| **a > 0 && **b > 0).map(|(x, _)| x).collect();
+        crossed.into_iter().for_each(|x| crossings.set(crossings.cell(x, y)));
+    }
+    let most = LEFT * levels.ink;
+    for crossing in regions(&crossings) {
+        let Some((columns, rows)) = crossing.bounds(ROUND_CROSSING, (plane.width, plane.height)) else {
+            continue;
+        };
+        let (left, right, top, bottom) = (columns.start, columns.end - 1, rows.start, rows.end - 1);
+        let ends = [top, bottom].into_iter().flat_map(|y| plane.row(y)[left..=right].to_vec());
+        let sides = (top..=bottom).flat_map(|y| [plane.row(y)[left], plane.row(y)[right]]);
+        let mut round: Vec<u8> = ends.chain(sides).collect();
+        if round.iter().all(|&level| f32::from(level) < most) {
+            round.sort_unstable();
+            let paper = round[round.len() / 2];
+            rows.for_each(|y| plane.row_mut(y)[left..=right].fill(paper));
+        }
+    }
 }
 
 /// The rules of either direction; `None` where there are none at all.
