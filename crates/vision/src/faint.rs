@@ -23,8 +23,9 @@ const PAPERS: i32 = 5;
 const PAPERS_APART: f64 = 0.7;
 /// A line is darker than its sides by so many times what the paper differs,
 const SURE: f64 = 4.0;
-/// and by this share of what it is where it is ink.
+/// and by this share of what it is where it is ink; where shadows were evened out, whose edges leave a pale line, by this one.
 const LEAST_SHARE: f64 = 0.06;
+const LEAST_BY_SHADOWS: f64 = 0.3;
 /// Ink is followed over so many pens at most,
 const MOST_PENS: f64 = 20.0;
 /// from lines that are at least as long as this.
@@ -32,8 +33,9 @@ const LEAST_LENGTH: f64 = 1.5;
 /// What ends in paper is a line if so many pens of it were seen.
 const LEAST_SEEN: f64 = 3.0;
 
-/// The mask with what is found ahead of its lines' free ends; `None` where nothing is.
-pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row]) -> Option<Mask> {
+/// The mask with what is found ahead of its lines' free ends; `None` where nothing is. The paper may have had `shadows`.
+pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row], shadows: bool) -> Option<Mask> {
+    let least = if shadows { LEAST_BY_SHADOWS } else { LEAST_SHARE };
     let mut more = Mask::empty(mask.width, mask.height);
     let is_long =
         |row: &&Row| !row.closed && !row.dot && polyline_length(&row.points) >= LEAST_LENGTH * row.width;
@@ -41,7 +43,7 @@ pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row]) -> Option<Ma
         for end in [0, 1].into_iter().filter(|&end| row.free[end]) {
             let Some(tip) = Tip::of(&row.points, end) else { continue };
             let strength = usual(row.points.iter().map(|&p| dark.at(p)).collect());
-            let ahead = Ahead { dark, mask, width: row.width.max(1.5), strength };
+            let ahead = Ahead { dark, mask, width: row.width.max(1.5), least: least * strength };
             if let Some(way) = ahead.follow(&tip) {
                 way.windows(2).for_each(|pair| paint(&mut more, pair[0], pair[1], 0.5 * ahead.width));
             }
@@ -59,8 +61,8 @@ struct Ahead<'a> {
     dark: &'a Plane<u8>,
     mask: &'a Mask,
     width: f64,
-    /// How dark the line is where it is ink.
-    strength: f64,
+    /// By how much it is darker than its sides at least, levels.
+    least: f64,
 }
 
 impl Ahead<'_> {
@@ -101,7 +103,7 @@ impl Ahead<'_> {
         let from = at + along * (0.5 * self.width);
         (-TURNS..=TURNS).any(|k| {
             let way = turned(along, f64::from(k) * TURN);
-            self.contrast(from, way) > LEAST_SHARE * self.strength
+            self.contrast(from, way) > self.least
         })
     }
 
@@ -116,7 +118,7 @@ impl Ahead<'_> {
             self.contrast(at + across * (aside * self.width), way).abs()
         });
         let paper = usual(papers.collect());
-        (contrast > (SURE * paper).max(LEAST_SHARE * self.strength)).then_some(way)
+        (contrast > (SURE * paper).max(self.least)).then_some(way)
     }
 
     /// By how much a stretch of the line is darker than the paper on either side of it, at least, levels: where it is palest, twice that, so

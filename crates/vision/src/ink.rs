@@ -205,11 +205,11 @@ impl Ink {
         }
     }
 
-    /// The mask with what is too pale for it of its lines, ahead of their ends; `None` where there is nothing, or where all that is
-    /// paler is paper.
+    /// The mask with what is too pale for it of its lines, ahead of their ends; `None` where there is nothing.
     pub(crate) fn goes_on(&self, mask: &Mask, rows: &[Row]) -> Option<Mask> {
-        let may = self.rules.is_none();
-        may.then(|| faint::followed(&self.darkness, mask, rows)).flatten()
+        // what is left of rules is no line
+        let followed = || faint::followed(&self.darkness, mask, rows, self.strength.is_none());
+        self.rules.is_none().then(followed).flatten()
     }
 
     /// How wide the ink's edges are, px of [`Self::darkness`]; `None` where too few could be measured.

@@ -67,9 +67,10 @@ impl Parts {
             ink = filled;
             patches = read(&ink, regions(&ink));
         }
-        let pen = usual_pen(&patches, Patch::is_line_drawing);
-        let pens = Pens::of(&patches);
+        let pens = Pens::of(&patches, |reading| reading.is_drawn);
         patches.iter_mut().for_each(|patch| patch.reading.is_drawn |= pens.drew(patch));
+        agree_on_letters(&mut patches);
+        let pen = usual_pen(&patches, Patch::is_line_drawing);
         let (patches, dust) = match dust {
             Dust::Kept => (patches, Vec::new()),
             Dust::Dropped | Dust::DroppedOnRules => {
@@ -100,23 +101,52 @@ impl Patch {
 struct Pens(Vec<f64>);
 
 impl Pens {
-    fn of(patches: &[Patch]) -> Self {
-        let drawn = patches.iter().filter(|patch| patch.reading.is_drawn);
+    fn of(patches: &[Patch], is_sure: impl Fn(&Reading) -> bool) -> Self {
+        let drawn = patches.iter().filter(|patch| is_sure(&patch.reading));
         let mut pens: Vec<f64> =
             drawn.flat_map(|patch| patch.reading.lines.iter().map(|l| l.width)).collect();
         pens.sort_unstable_by(f64::total_cmp);
         Self(pens)
     }
 
+    /// One that is about as wide as this.
+    fn alike(&self, width: f64) -> Option<f64> {
+        let from = self.0.partition_point(|&pen| pen < width / SAME_PEN);
+        self.0.get(from).copied().filter(|&pen| pen <= width * SAME_PEN)
+    }
+
     /// Whether one of them drew a patch that by itself might as well be a shape: a fat letter beside others.
     fn drew(&self, patch: &Patch) -> bool {
         let Reading { usual, widest, long, .. } = patch.reading;
-        let from = self.0.partition_point(|&pen| pen < usual / SAME_PEN);
-        let pen = self.0.get(from).filter(|&&pen| pen <= usual * SAME_PEN);
-        long >= LONG_LETTER && pen.is_some_and(|pen| widest <= CROSSED_PENS * pen + 1.0)
+        long >= LONG_LETTER && self.alike(usual).is_some_and(|pen| widest <= CROSSED_PENS * pen + 1.0)
     }
 }
 
+/// A fat pen's letters are all lines, or none: so much of what is longer than wide is.
+const LETTERS: f64 = 0.8;
+
+/// Where much of the broad letters for which no long line vouches are no lines, none of them are.
+fn agree_on_letters(patches: &mut [Patch]) {
+    let sure = Pens::of(patches, |r| r.is_drawn && (r.many_lines || r.long >= LONG_LINE));
+    let is_letter = |patch: &Patch| {
+        let Reading { is_broad, is_lens, long, usual, .. } = patch.reading;
+        is_broad && !is_lens && long >= LONG_LETTER && sure.alike(usual).is_none()
+    };
+    let area = |is_counted: &dyn Fn(&Patch) -> bool| {
+        let counted = patches.iter().filter(|patch| is_letter(patch) && is_counted(patch));
+        counted.map(|patch| patch.region.area()).sum::<usize>() as f64
+    };
+    let pen = usual_pen(patches, Patch::is_line_drawing);
+    let is_line = |patch: &Patch| patch.reading.is_drawn || patch.is_pure_line(pen);
+    if area(&is_line) < LETTERS * area(&|_| true) {
+        for patch in patches.iter_mut().filter(|patch| is_letter(patch)) {
+            (patch.reading.is_drawn, patch.reading.is_even) = (false, false);
+        }
+    }
+}
+
+/// What is so many times as long as wide is a line for sure.
+const LONG_LINE: f64 = 8.0;
 /// A fat pen's letter is so many times as long as wide.
 const LONG_LETTER: f64 = 2.4;
 /// Two widths of one pen differ less than this, as a ratio.

@@ -168,6 +168,8 @@ pub(crate) struct Reading {
     pub(crate) long: f64,
     /// The width that three quarters of its skeleton are under, px.
     pub(crate) usual: f64,
+    /// Whether it has pixels enough across to tell its widths apart.
+    pub(crate) is_broad: bool,
     /// Whether its lines together are far longer than it is wide: those of a pen, or of limbs.
     pub(crate) many_lines: bool,
     /// Whether it may be what one pen drew: it is narrow, or its lines hold most of it, and what is short is about as wide all along.
@@ -185,9 +187,10 @@ impl Reading {
         let length = graph.length();
         let mean_width = area as f64 / length.max(1.0);
         let (long, bulky) = (length / mean_width, widest / mean_width);
+        let is_broad = mean_width >= BROAD_PX;
         let is_lens = is_lens(graph, bulky);
         if is_lens || is_blob(graph) {
-            return Self { widest, long, usual, is_even: true, is_lens, ..Self::default() };
+            return Self { widest, long, usual, is_broad, is_even: true, is_lens, ..Self::default() };
         }
         let reaches = graph.branches.iter().flat_map(|branch| Reach::all(graph, branch));
         let mut lines: Vec<Reach> = reaches.filter(Reach::is_line).collect();
@@ -195,14 +198,13 @@ impl Reading {
         let together: f64 = lines.iter().map(|line| line.length).sum();
         // the share of the ink that the lines hold
         let inked = lines.iter().map(|line| line.length * line.width).sum::<f64>() / area as f64;
-        let is_narrow = mean_width < BROAD_PX;
-        let is_even = is_narrow || inked >= MOSTLY && (long >= DRAWN[0].0 || is_even_all_along(graph));
+        let is_even = !is_broad || inked >= MOSTLY && (long >= DRAWN[0].0 || is_even_all_along(graph));
         let many_lines = together >= MANY_WIDTHS * widest;
-        let is_drawn = many_lines && (is_narrow || inked >= HALF)
+        let is_drawn = many_lines && (!is_broad || inked >= HALF)
             || DRAWN.iter().any(|&(least, most)| long >= least && bulky <= most)
                 && !tapers_all_along(graph)
                 && is_even;
-        Self { lines, widest, long, usual, many_lines, is_even, is_drawn, is_lens }
+        Self { lines, widest, long, usual, is_broad, many_lines, is_even, is_drawn, is_lens }
     }
 
     /// The usual width of its lines, px; 0 of none.

@@ -125,3 +125,40 @@ fn a_white_sheet_cut_out_of_black_is_drawn_and_a_ragged_edge_keeps_its_rags() {
         .collect();
     check("a leaf", &[leaf]);
 }
+
+#[test]
+fn a_fat_pens_letters_are_all_lines_or_all_outlines() {
+    let p = |x: f64, y: f64| Point::new(x, y);
+    let ring = |x: f64, y: f64, radius: f64| -> Vec<Point> {
+        let at = |k: i32| p(x, y) + tracelight_stroke::Vec2::from_angle(TAU * f64::from(k) / 40.0) * radius;
+        (0..=40).map(at).collect()
+    };
+    // A, l, o, s, and twice an h and an a that run together
+    let letters = [
+        vec![p(40.0, 180.0), p(66.0, 105.0), p(92.0, 180.0)],
+        vec![p(48.0, 155.0), p(86.0, 155.0)],
+        vec![p(135.0, 95.0), p(135.0, 182.0)],
+        ring(195.0, 158.0, 21.0),
+        vec![p(285.0, 128.0), p(258.0, 132.0), p(284.0, 158.0), p(255.0, 180.0)],
+    ];
+    let joined = |x: f64| {
+        vec![
+            vec![p(x, 200.0), p(x, 282.0)],
+            vec![p(x, 246.0), p(x + 20.0, 238.0), p(x + 27.0, 282.0)],
+            ring(x + 58.0, 264.0, 17.0),
+            vec![p(x + 76.0, 246.0), p(x + 80.0, 282.0)],
+        ]
+    };
+    let closed = [joined(40.0), joined(200.0)].concat();
+    let kinds = |letters: &[Vec<Point>]| {
+        let mut canvas = Canvas::new(WIDTH, HEIGHT);
+        letters.iter().for_each(|line| canvas.pen(line, 22.0));
+        let levels = canvas.shares().map(|ink| (235.0 - 190.0 * ink) as u8).collect();
+        let found = trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap();
+        let lines = found.strokes.strokes.iter().filter(|s| s.kind != StrokeKind::Outline).count();
+        (lines, found.strokes.strokes.len())
+    };
+    assert_eq!(kinds(&letters), (5, 5), "A's two, l, o, s");
+    let (lines, all) = kinds(&[&letters[..], &closed[..]].concat());
+    assert!(lines == 0 && all >= 6, "{lines} lines of {all}");
+}

@@ -349,3 +349,30 @@ fn courses(at: &[f64], values: &[f64], width: usize) -> Vec<f32> {
     };
     (0..width).map(value).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_two_rules_left_where_they_cross_goes_and_a_line_over_it_stays() {
+        let rule = |at: &dyn Fn(usize, usize) -> bool| {
+            let level = |i: usize| if at(i % 40, i / 40) { 90 } else { 0 };
+            Plane { width: 40, height: 30, values: (0..1200).map(level).collect() }
+        };
+        let level = rule(&|_, y| (14..17).contains(&y));
+        let upright = rule(&|x, _| (9..12).contains(&x) || (29..32).contains(&x));
+        let levels = Levels { noise: 0.0, ink: 200.0 };
+        // a speck at the first crossing, a line over the second
+        let ink = |x: usize, y: usize| {
+            (10..12).contains(&x) && (14..16).contains(&y) || x + y > 43 && x + y < 47 && x > 20
+        };
+        let mut plane = Plane { width: 40, height: 30, values: vec![3; 1200] };
+        (0..1200).filter(|i| ink(i % 40, i / 40)).for_each(|i| plane.values[i] = 180);
+        let before = plane.clone();
+        crossings_off(&mut plane, &level, &upright, levels);
+        let is_speck = |i: &usize| i % 40 < 20;
+        assert!((0..1200).filter(is_speck).all(|i| plane.values[i] == 3));
+        assert!((0..1200).filter(|i| !is_speck(i)).all(|i| plane.values[i] == before.values[i]));
+    }
+}
