@@ -325,6 +325,7 @@ fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Optio
     };
     let mut parts = parts_of(mask, regions);
     let mut rows = rows_of(&parts);
+    // no patch is smaller with more ink: nothing is refused that was not before
     if let Some(mut more) = ink.goes_on(&parts.ink, &rows) {
         let regions = drawn(&mut more, least_patch(ink, options)).unwrap_or_default();
         parts = parts_of(more, regions);
