@@ -9,6 +9,7 @@ use crate::bridge::Tip;
 use crate::centreline::Row;
 use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::ridge::median;
 
 /// A step ahead, and the stretch by which its direction is chosen, pens.
 const STEP: f64 = 0.75;
@@ -42,7 +43,7 @@ pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row], shadows: boo
     for row in rows.iter().filter(is_long) {
         for end in [0, 1].into_iter().filter(|&end| row.free[end]) {
             let Some(tip) = Tip::of(&row.points, end) else { continue };
-            let strength = usual(row.points.iter().map(|&p| dark.at(p)).collect());
+            let strength = median(&row.points.iter().map(|&p| dark.at(p)).collect::<Vec<_>>());
             let ahead = Ahead { dark, mask, width: row.width.max(1.5), least: least * strength };
             if let Some(way) = ahead.follow(&tip) {
                 way.windows(2).for_each(|pair| paint(&mut more, pair[0], pair[1], 0.5 * ahead.width));
@@ -74,24 +75,21 @@ impl Ahead<'_> {
             return None;
         }
         let mut way = vec![at];
-        while polyline_length(&way) < MOST_PENS * self.width {
-            along = self.best(at, along)?;
-            let next = at + along * step;
-            if !self.dark.holds(next) {
+        let mut passed = 0.0;
+        while let Some(ahead) = self.best(at, along).filter(|_| passed < MOST_PENS * self.width) {
+            along = ahead;
+            at += along * step;
+            if !self.dark.holds(at) {
                 break;
             }
-            let passed = polyline_length(&way);
-            way.push(next);
+            way.push(at);
             // past what the end's own ink covers
-            if passed > 0.75 * self.width && self.is_ink(next) {
+            if passed > 0.75 * self.width && self.is_ink(at) {
                 return Some(way);
             }
-            at = next;
-            if self.best(at, along).is_none() {
-                break;
-            }
+            passed = polyline_length(&way);
         }
-        (polyline_length(&way) >= LEAST_SEEN * self.width).then_some(way)
+        (passed >= LEAST_SEEN * self.width).then_some(way)
     }
 
     fn is_ink(&self, at: Point) -> bool {
@@ -101,30 +99,26 @@ impl Ahead<'_> {
     /// A quick look: most ends end.
     fn may_go_on(&self, at: Point, along: Vec2) -> bool {
         let from = at + along * (0.5 * self.width);
-        (-TURNS..=TURNS).any(|k| {
-            let way = turned(along, f64::from(k) * TURN);
-            self.contrast(from, way) > self.least
-        })
+        ways(along).any(|way| self.contrast(from, way) > self.least)
     }
 
     /// The direction in which the line goes on, if it does.
     fn best(&self, at: Point, along: Vec2) -> Option<Vec2> {
-        let ways = (-TURNS..=TURNS).map(|k| turned(along, f64::from(k) * TURN));
-        let (contrast, way) =
-            ways.map(|way| (self.contrast(at, way), way)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let across = Vec2::new(-way.y, way.x);
+        let told = ways(along).map(|way| (self.contrast(at, way), way));
+        let (contrast, way) = told.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let across = way.turn_90();
         let papers = (1..=PAPERS).flat_map(|k| [f64::from(k), -f64::from(k)]).map(|k| {
             let aside = k * PAPERS_APART + k.signum() * BESIDE;
             self.contrast(at + across * (aside * self.width), way).abs()
         });
-        let paper = usual(papers.collect());
+        let paper = median(&papers.collect::<Vec<_>>());
         (contrast > (SURE * paper).max(self.least)).then_some(way)
     }
 
     /// By how much a stretch of the line is darker than the paper on either side of it, at least, levels: where it is palest, twice that, so
     /// that no paper is crossed to what lies beyond.
     fn contrast(&self, from: Point, way: Vec2) -> f64 {
-        let across = Vec2::new(-way.y, way.x);
+        let across = way.turn_90();
         let length = STRETCH * self.width / 3.0;
         let steps = length.ceil().max(2.0);
         let third = |number: i32| {
@@ -144,14 +138,9 @@ impl Ahead<'_> {
     }
 }
 
-fn turned(way: Vec2, by: f64) -> Vec2 {
-    let (sin, cos) = by.sin_cos();
-    Vec2::new(way.x * cos - way.y * sin, way.x * sin + way.y * cos)
-}
-
-/// The median; 0 of none.
-fn usual(values: Vec<f64>) -> f64 {
-    crate::ridge::middle(values).unwrap_or(0.0)
+/// The directions that are tried about one.
+fn ways(along: Vec2) -> impl Iterator<Item = Vec2> {
+    (-TURNS..=TURNS).map(move |k| along.rotate_scale(Vec2::from_angle(f64::from(k) * TURN)))
 }
 
 /// Inks what is within a distance of a line, px.

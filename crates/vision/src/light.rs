@@ -45,8 +45,8 @@ impl Paper {
         Self { tile: 1, levels: Plane::filled(1, 1, level), shaded: None }
     }
 
-    /// Of an image with light paper and of such levels, of which beside a sheet more may be `seen` than paper. It may have hard edges if `sheets`
-    /// lie in it, or if it looks as if shadows had.
+    /// Of an image with light paper and of such levels, of which beside a sheet more may be `seen` than paper. It may have hard
+    /// edges if `sheets` lie in it, or if it looks as if shadows had.
     pub(crate) fn of(image: &Plane<u8>, levels: &[u32; 256], seen: &Plane<u8>, sheets: bool) -> Self {
         if let Some(tones) = Tones::of(levels).filter(|_| !sheets) {
             return Self::even(tones.bright);

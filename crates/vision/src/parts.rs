@@ -10,7 +10,7 @@ use crate::graph::{Graph, Skeleton};
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::prune;
-use crate::reading::{Patch, Reading, pen_of};
+use crate::reading::{LONG_LINE, Patch, Reading, pen_of};
 use crate::region::{Region, mask_of, regions};
 use crate::ridge::median;
 use crate::thin;
@@ -145,8 +145,6 @@ fn agree_on_letters(patches: &mut [Patch]) {
     }
 }
 
-/// What is so many times as long as wide is a line for sure.
-const LONG_LINE: f64 = 8.0;
 /// A fat pen's letter is so many times as long as wide.
 const LONG_LETTER: f64 = 2.4;
 /// Two widths of one pen differ less than this, as a ratio.

@@ -142,7 +142,9 @@ const LIMBS: f64 = 2.0;
 const MANY_WIDTHS: f64 = 10.0;
 /// or if all its skeleton is so many times as long as the ink is wide in the mean, and nowhere much wider than that; the
 /// shorter, the more even it must be: a brush's stroke, or a letter of a felt pen.
-const DRAWN: [(f64, f64); 2] = [(8.0, 1.8), (3.5, 1.4)];
+const DRAWN: [(f64, f64); 2] = [(LONG_LINE, 1.8), (3.5, 1.4)];
+/// What is so many times as long as wide is a line for sure.
+pub(crate) const LONG_LINE: f64 = 8.0;
 
 /// What is narrower in the mean, px, has too few pixels across to tell its widths apart. Broader ink was drawn if its lines hold so
 /// much of it; by the second rule most of it, and what is short is about as wide all along: a body has legs, a bottle a neck.
@@ -198,7 +200,7 @@ impl Reading {
         let together: f64 = lines.iter().map(|line| line.length).sum();
         // the share of the ink that the lines hold
         let inked = lines.iter().map(|line| line.length * line.width).sum::<f64>() / area as f64;
-        let is_even = !is_broad || inked >= MOSTLY && (long >= DRAWN[0].0 || is_even_all_along(graph));
+        let is_even = !is_broad || inked >= MOSTLY && (long >= LONG_LINE || is_even_all_along(graph));
         let many_lines = together >= MANY_WIDTHS * widest;
         let is_drawn = many_lines && (!is_broad || inked >= HALF)
             || DRAWN.iter().any(|&(least, most)| long >= least && bulky <= most)

@@ -44,10 +44,8 @@ impl Region {
 
     /// Width and height of its bounding box, px.
     pub(crate) fn extent(&self) -> (usize, usize) {
-        let from = self.runs.iter().map(|run| run.from).min().unwrap_or(0);
-        let to = self.runs.iter().map(|run| run.to).max().unwrap_or(0);
-        let rows = self.runs.first().zip(self.runs.last()).map_or(0, |(top, low)| low.y + 1 - top.y);
-        ((to - from) as usize, rows as usize)
+        let any = (usize::MAX, usize::MAX);
+        self.bounds(0, any).map_or((0, 0), |(columns, rows)| (columns.len(), rows.len()))
     }
 
     /// Columns and rows of its bounding box and so many px round it, within an image of this size; `None` without pixels.
@@ -79,13 +77,10 @@ impl Region {
 
     /// Whether there is ink of `mask` at most `reach` px beyond its bounding box.
     pub(crate) fn is_near(&self, mask: &Mask, reach: usize) -> bool {
-        let from = self.runs.iter().map(|run| run.from as usize).min().unwrap_or(0);
-        let to = self.runs.iter().map(|run| run.to as usize).max().unwrap_or(0);
-        let top = self.runs.first().map_or(0, |run| run.y as usize);
-        let low = self.runs.last().map_or(0, |run| run.y as usize);
-        let columns = (from.saturating_sub(reach), (to + reach).min(mask.width));
-        let mut rows = top.saturating_sub(reach)..(low + reach + 1).min(mask.height);
-        rows.any(|y| mask.cells_in(y, columns.0, columns.1).next().is_some())
+        let bounds = self.bounds(reach, (mask.width, mask.height));
+        bounds.is_some_and(|(columns, mut rows)| {
+            rows.any(|y| mask.cells_in(y, columns.start, columns.end).next().is_some())
+        })
     }
 
     /// Makes all of it paper.

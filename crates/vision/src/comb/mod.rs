@@ -21,7 +21,7 @@ use template::Template;
 use track::{Track, tracks};
 use wipe::{Levels, wipe};
 
-use crate::mask::Mask;
+use crate::ink::over;
 use crate::plane::Plane;
 use crate::region::regions;
 
@@ -119,12 +119,7 @@ const LEFT: f32 = 0.3;
 
 /// Clears what rules left where they cross, level ones and upright ones each known by how dark they were, and nothing else is drawn.
 fn crossings_off(plane: &mut Plane<u8>, level: &Plane<u8>, upright: &Plane<u8>, levels: Levels) {
-    let mut crossings = Mask::empty(plane.width, plane.height);
-    for y in 0..plane.height {
-        let both = level.row(y).iter().zip(upright.row(y)).enumerate();
-        let crossed: Vec<usize> = both.filter(|(_, (a, b))| **a > 0 && **b > 0).map(|(x, _)| x).collect();
-        crossed.into_iter().for_each(|x| crossings.set(crossings.cell(x, y)));
-    }
+    let crossings = over(level, 0).and(&over(upright, 0));
     let most = LEFT * levels.ink;
     for crossing in regions(&crossings) {
         let Some((columns, rows)) = crossing.bounds(ROUND_CROSSING, (plane.width, plane.height)) else {

@@ -103,9 +103,9 @@ impl<'a> Page<'a> {
     /// The sheet in a picture, if there is one, else all of it. In one of two tones what is white on black is a silhouette, unless it is
     /// a page that was copied with a black margin.
     pub fn of(image: &'a Grey) -> Self {
-        let tones = Tones::of(&sampled_histogram(&image.plane));
         let found = Small::of(&image.plane).and_then(|small| {
             let found = Found::of(&image.plane, &small)?;
+            let tones = Tones::of(&sampled_histogram(&image.plane));
             let is_sheet = tones.is_none_or(|tones| is_page(&image.plane, tones, &found.sheet));
             is_sheet.then(|| (alone(&image.plane, &small, &found), found.sheet))
         });
