@@ -50,7 +50,7 @@ pub enum VisionError {
     },
     /// No ink on paper, as drawings are.
     #[error(
-        "this looks like a photograph or a screenshot, not like a drawing: broad dark patches whose edges fade cover {tone_percent:.2} % \
+        "this looks like a photograph, not like a drawing: broad dark patches whose edges fade cover {tone_percent:.2} % \
          of it, up to {most_percent:.2} % are a drawing's: crop it to the drawing, or --force traces it all the same"
     )]
     NoDrawing {
@@ -58,6 +58,19 @@ pub enum VisionError {
         tone_percent: f64,
         /// Its bound.
         most_percent: f64,
+    },
+    /// What a computer's screen shows.
+    #[error(
+        "this looks like a screenshot, not like a drawing: {}: crop it to the drawing, or --force traces it all the same",
+        of_a_screen(*.tones, *.kinds, *.written_percent)
+    )]
+    Screenshot {
+        /// Tones that are parted from each other exactly along rows and columns.
+        tones: usize,
+        /// Different letters that come again pixel by pixel; 0 where the tones say enough.
+        kinds: usize,
+        /// Of them, % of the ink.
+        written_percent: f64,
     },
     /// At the threshold that was set all is ink, or nothing is.
     #[error(
@@ -154,4 +167,14 @@ pub enum VisionError {
         /// Its bound.
         most_deg: f64,
     },
+}
+
+/// By what a screen was told.
+fn of_a_screen(tones: usize, kinds: usize, written_percent: f64) -> String {
+    match kinds {
+        0 => format!("{tones} even tones in it are parted exactly along rows and columns"),
+        _ => format!(
+            "{written_percent:.0} % of its ink are letters that come again pixel by pixel, of {kinds} kinds"
+        ),
+    }
 }

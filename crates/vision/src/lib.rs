@@ -12,7 +12,7 @@
 //! | `light`, `ink`, `tones` | even light, polarity, threshold; pictures of two tones |
 //! | `comb` | the rules of ruled and squared paper, taken out from under the ink |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
-//! | `tone` | whether it is a drawing at all |
+//! | `tone`, `screen` | whether it is a drawing at all: no photograph, and no computer's screen |
 //! | `region`, `distance` | connected patches of ink; distance to the paper |
 //! | `reading`, `parts`, `dust` | what is a line by its own width; lines and shapes parted; specks |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
@@ -66,6 +66,7 @@ mod reading;
 mod region;
 mod rest;
 mod ridge;
+mod screen;
 mod shadow;
 mod sharpness;
 mod sheet;

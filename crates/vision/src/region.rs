@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::mask::{Cell, Mask};
 
 /// Ink pixels `from..to` of row `y`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Run {
     pub(crate) y: u32,
     pub(crate) from: u32,

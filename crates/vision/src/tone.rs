@@ -10,8 +10,7 @@ use crate::mask::Mask;
 use crate::quality::GOOD_CLIPPED_PERCENT;
 
 /// Most of a drawing that may be broad and fade, %. Of 326 photographs of other things 97 % have more, or are refused for other
-/// reasons, and of 162 screenshots, icons and diagrams 24 %; of 340 drawings (scans, photographs of paper and whiteboards, sketches,
-/// plans, pictures of the bench) 1 %.
+/// reasons; of 340 drawings (scans, photographs of paper and whiteboards, sketches, plans, pictures of the bench) 1 %.
 const MOST_PERCENT: f64 = 0.16;
 /// A hundredth of the picture's shorter side, at least so many pixels: ink is broad that is as far from paper, and beside the ink is
 /// what is from once to one and a half times as far from it. Blurred edges are narrower.

@@ -11,7 +11,7 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{self, Region, pinholes, regions};
-use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, sweep, tone, twice};
+use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, screen, sweep, tone, twice};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -165,6 +165,9 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
     let tone_percent = options.judges().then(|| ink.tone_percent(&mask));
     tone_percent.map_or(Ok(()), tone::check)?;
     let regions = drawn(&mut mask, least_patch(&ink, options))?;
+    if options.judges() {
+        screen::check(page.given(), regions.len())?;
+    }
     let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
     let only = |strokes: Vec<Stroke>| Found { strokes, missed_ink: 0.0, left_out: LeftOut::default() };
     let Found { strokes, missed_ink, left_out } = match options.mode {

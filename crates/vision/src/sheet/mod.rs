@@ -83,6 +83,8 @@ pub struct Page<'a> {
     /// The sheet; `None` where all of the picture is one, or none is seen.
     pub sheet: Option<Sheet>,
     pub(crate) beside: Option<Beside>,
+    /// The whole picture, where the sheet was looked for and found in it.
+    whole: Option<&'a Grey>,
 }
 
 /// What of a page's picture is not its sheet's.
@@ -97,7 +99,7 @@ impl<'a> Page<'a> {
     /// All of a picture.
     pub const fn whole(image: &'a Grey) -> Self {
         let size = (image.width(), image.height());
-        Self { picture: Cow::Borrowed(image), size, origin: (0, 0), sheet: None, beside: None }
+        Self { picture: Cow::Borrowed(image), size, origin: (0, 0), sheet: None, beside: None, whole: None }
     }
 
     /// The sheet in a picture, if there is one, else all of it. In one of two tones what is white on black is a silhouette, unless it is
@@ -109,7 +111,10 @@ impl<'a> Page<'a> {
             let is_sheet = tones.is_none_or(|tones| is_page(&image.plane, tones, &found.sheet));
             is_sheet.then(|| (alone(&image.plane, &small, &found), found.sheet))
         });
-        found.map_or(Self::whole(image), |(alone, sheet)| Self::cut(image, alone, sheet))
+        found.map_or(Self::whole(image), |(alone, sheet)| Self {
+            whole: Some(image),
+            ..Self::cut(image, alone, sheet)
+        })
     }
 
     /// What of a picture lies within four corners, clockwise from the upper left, px; `None` where they are no
@@ -129,7 +134,13 @@ impl<'a> Page<'a> {
             origin: alone.origin,
             sheet: Some(sheet),
             beside: Some(alone.beside),
+            whole: None,
         }
+    }
+
+    /// What tells whether a drawing was given: all of the picture, but for what its corners were told of.
+    pub(crate) fn given(&self) -> &Grey {
+        self.whole.unwrap_or(&self.picture)
     }
 }
 
