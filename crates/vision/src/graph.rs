@@ -29,10 +29,17 @@ pub(crate) struct Turn {
     pub(crate) index: usize,
     /// How far about the fork the sides' ink is one, px.
     pub(crate) reach: f64,
-    /// Where the pen turned.
+    pub(crate) tip: TurnTip,
+}
+
+/// Where a pen turned back, and what is known of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TurnTip {
     pub(crate) at: Point,
-    /// Whether its sides meet nowhere in particular.
-    pub(crate) acute: bool,
+    /// How far from there the corner of both sides may be, px; 0 where they meet nowhere in particular.
+    pub(crate) corner_px: f64,
+    /// Whether it is so near its fork that what is seen of the branch may tell where it turns.
+    pub(crate) is_near: bool,
 }
 
 impl Branch {
@@ -79,14 +86,14 @@ pub(crate) struct Node {
     pub(crate) at: Point,
     /// Distance to the paper's edge, px.
     pub(crate) radius: f64,
-    /// Where the pen turned back, if two sides of a hairpin part here, and whether they meet nowhere in particular.
-    pub(crate) turn: Option<(Point, bool)>,
+    /// Where the pen turned back, if two sides of a hairpin part here.
+    pub(crate) turn: Option<TurnTip>,
 }
 
 impl Node {
     /// The turn of a branch that passes here with one of its points.
     fn turn(&self, index: usize) -> Option<Turn> {
-        self.turn.map(|(at, acute)| Turn { index, reach: 1.1 * self.radius + 0.5, at, acute })
+        self.turn.map(|tip| Turn { index, reach: 1.1 * self.radius + 0.5, tip })
     }
 }
 

@@ -3,7 +3,7 @@
 use tracelight_stroke::{Parabola, Point, Vec2, polyline_length};
 
 use crate::bridge::{Tip, scatter_px};
-use crate::graph::{Branch, Graph, Turn};
+use crate::graph::{Branch, Graph, Turn, TurnTip};
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::ridge::{self, Ridge, median};
@@ -31,19 +31,28 @@ impl Line {
         let radius = median(&branch.radii).max(0.5);
         let (from, to) = if branch.ring { (0, branch.points.len()) } else { trusted(graph, branch, radius) };
         let is_letter = graph.is_letter();
-        let (mut points, width) = match branch.turns.is_empty() {
-            true => {
-                let pixels = (&branch.points[from..to], &branch.radii[from..to]);
-                centred(dark, pixels, radius, branch.ring, is_letter)
+        let seen = || {
+            let pixels = (&branch.points[from..to], &branch.radii[from..to]);
+            centred(dark, pixels, radius, branch.ring, is_letter)
+        };
+        let (mut points, width) = if branch.turns.iter().all(|turn| turn.tip.is_near) {
+            let (points, width) = seen();
+            let is_told = |turn: &Turn| points.iter().any(|p| p.distance(turn.tip.at) < radius);
+            match branch.turns.iter().all(is_told) {
+                true => (points, width),
+                false => turning(dark, branch, (from, to), radius),
             }
-            false => turning(dark, branch, (from, to), radius),
+        } else {
+            turning(dark, branch, (from, to), radius)
         };
         (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
         let n = branch.points.len();
+        let is_nub = !is_letter && branch.length() >= NUB_RADII * graph.pen_radius();
         match branch.nodes {
-            // of a short bar its pixels have to tell the direction
-            [Some(_), Some(_)] if points.len() < 2 && n > 3 => {
-                points = vec![branch.points[n / 4], branch.points[n - 1 - n / 4]];
+            // of a short bar its pixels have to tell the direction, and of a hairpin where it turns
+            [Some(_), Some(_)] if points.len() < 2 && n > 3 => points = inner(branch),
+            [Some(_), None] | [None, Some(_)] if points.len() < 2 && n > 3 && is_nub => {
+                points = inner(branch);
             }
             _ if points.is_empty() => points.push(branch.points[(from + to) / 2]),
             _ => {}
@@ -120,6 +129,26 @@ impl Line {
         }
     }
 }
+
+/// The inner half of a branch by its pixels: two of them where it is straight, and where it turns what lies between.
+fn inner(branch: &Branch) -> Vec<Point> {
+    let n = branch.points.len();
+    let pixels = &branch.points[n / 4..n - n / 4];
+    let (first, last) = (pixels[0], pixels[pixels.len() - 1]);
+    // a few pixels are straight
+    let is_straight = polyline_length(pixels) <= BENT * first.distance(last) + 4.0;
+    match branch.turns.is_empty() {
+        true if is_straight => vec![first, last],
+        true => off_the_grid(pixels).collect(),
+        false => {
+            let turns = branch.turns.iter().map(|turn| turn.tip.at);
+            filled_in(&[first].into_iter().chain(turns).chain([last]).collect::<Vec<_>>(), false)
+        }
+    }
+}
+
+/// Skeletons go from pixel to pixel, up to 8 % longer than what they follow.
+const BENT: f64 = 1.15;
 
 /// The pixels of a branch from the end of its line on.
 fn way_on(branch: &Branch, points: &[Point], end: usize) -> Vec<Point> {
@@ -204,6 +233,8 @@ fn centred(
     (points, ridge.width)
 }
 
+/// A line with a free end that is shorter than this, half pen widths, is an edge's bump or a speck beside it.
+const NUB_RADII: f64 = 3.5;
 /// So many pixels to either side tell the direction of a line.
 const REACH: usize = 5;
 /// Ink that is this much wider than its line is a blot's or a junction's.
@@ -282,8 +313,8 @@ fn turning(dark: &Plane<u8>, branch: &Branch, (from, to): (usize, usize), radius
 /// The way round a turn from one side to the next: over the corner where they meet, if they do somewhere.
 fn round(dark: &Plane<u8>, side: &[Point], turn: Turn, next: &[Point]) -> Vec<Point> {
     let corner = || Tip::of(side, 1)?.corner(&Tip::of(next, 0)?, dark, &[]);
-    let corner = if turn.acute { None } else { corner() };
-    corner.unwrap_or_else(|| vec![turn.at])
+    let TurnTip { at, corner_px, .. } = turn.tip;
+    corner().filter(|way| way.iter().any(|p| p.distance(at) < corner_px)).unwrap_or_else(|| vec![at])
 }
 
 /// With points about 1 px apart between those that are further apart than a few.

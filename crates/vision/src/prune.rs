@@ -6,7 +6,7 @@
 use tracelight_stroke::{Point, Vec2};
 
 use crate::bridge::angle;
-use crate::graph::{Branch, Graph, Node};
+use crate::graph::{Branch, Graph, Node, TurnTip};
 use crate::ridge::median;
 
 /// Removes spurs, shortest first, and joins what they parted, until none is left.
@@ -135,13 +135,20 @@ fn keep_turn(graph: &mut Graph, spur: usize, pen: f64) {
     let from = if n >= LEADING { branch.points[back] } else { node.at };
     let along = (tip - from) / (tip - from).hypot().max(1e-9);
     let turn = tip + along * (radius - pen);
+    let far = along.dot(turn - node.at);
     // what blur and the node's own disc cover needs no turn
-    let far = along.dot(turn - node.at) > TURN_PENS * pen + 1.0;
+    if far <= LEAST_TURN * pen + 1.0 {
+        return;
+    }
     let ends = &graph.ends_at_nodes()[number];
     let acute = WINDOWS.into_iter().any(|window| half_angle_sine(graph, ends, (spur, end), window) < ACUTE);
-    if far {
-        graph.nodes[number].turn = Some((turn, acute));
-    }
+    // a pen's round end is where it turned; a point that tapers was drawn as the corner of both sides
+    let corner_px = match (acute, radius < BLUNT * pen) {
+        (true, _) => 0.0,
+        (_, true) => f64::INFINITY,
+        _ => pen,
+    };
+    graph.nodes[number].turn = Some(TurnTip { at: turn, corner_px, is_near: far <= FAR_TURN * pen + 1.0 });
 }
 
 /// Sine of half the angle between the two other branches at a spur's node.
@@ -161,13 +168,16 @@ fn half_angle_sine(
 /// Near an acute corner the two skeletons lean together, far from it they may have bent: points of them, from and to.
 const WINDOWS: [(usize, usize); 2] = [(0, 10), (12, 36)];
 
+/// A spur whose end is as wide as this, half pen widths, ends as a pen does.
+const BLUNT: f64 = 0.7;
 /// Sine of half the least angle of a mitre: sharper corners are cut off (SVG's limit of 4).
 const ACUTE: f64 = 0.25;
 
 /// Points of a spur that tell where it leads.
 const LEADING: usize = 6;
-/// A turn is this far from its fork, half pen widths: nearer ones are corners, whose sides tell where they meet.
-const TURN_PENS: f64 = 3.0;
+/// A turn is this far from its fork, half pen widths; to where it is a far one, most are corners, whose sides tell where they meet.
+const LEAST_TURN: f64 = 1.5;
+const FAR_TURN: f64 = 3.0;
 
 /// Whether a branch is as wide as the pen beyond the ink of its node, and stays so: a line's. Over a corner's point the
 /// two sides' ink is one, wider than the pen, and runs out.

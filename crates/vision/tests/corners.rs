@@ -107,3 +107,47 @@ fn a_bar_as_short_as_its_junctions_are_wide_is_kept() {
         assert!(comparison.coverage > 0.99, "bar of {bar} px, {degrees}°: {comparison:?}");
     }
 }
+
+#[test]
+fn a_hairpin_that_a_bar_crosses_just_below_its_turn_reaches_to_it() {
+    // nothing of either leg is clear of all the ink where they cross and meet
+    for (pen, apart, shoulder, below) in
+        [(9.0, 0.65, 1.0, 1.8), (11.0, 0.65, 0.6, 1.8), (11.0, 0.75, 1.0, 2.2)]
+    {
+        let (half, top) = (pen * apart, 160.0 + pen * shoulder);
+        let legs = row(&[
+            (300.0 - half, 260.0),
+            (300.0 - half, top),
+            (300.0, 160.0),
+            (300.0 + half, top),
+            (300.0 + half, 290.0),
+        ]);
+        let bar = row(&[(240.0, 160.0 + pen * below), (370.0, 163.0 + pen * below)]);
+        let truth = [legs.clone(), bar.clone()];
+        let comparison = compare_polylines(&strokes(&[(legs, pen), (bar, pen)], 2), &truth, 3.0).unwrap();
+        assert!(comparison.coverage > 0.97 && comparison.precision > 0.99, "{pen} px: {comparison:?}");
+    }
+}
+
+#[test]
+fn a_three_is_one_line_and_its_point_is_where_both_bows_run_together() {
+    let (radius, long) = (3.0, 0.8);
+    for pen in [5.0, 6.0, 7.0, 8.0] {
+        let bow = |from: f64, to: f64, y: f64| {
+            let at = move |k: u32| {
+                let angle = from + (to - from) * f64::from(k) / 40.0;
+                Point::new(320.0, y) + Vec2::from_angle(angle) * (radius * pen)
+            };
+            (0..=40).map(at)
+        };
+        // both bows end at 20° to the way on to the point
+        let (end, inner) = (1.22, radius * pen * f64::sin(1.22));
+        let tip = Point::new(320.0 + radius * pen * f64::cos(end) - long * pen, 240.0);
+        let bows = bow(-2.6, end, 240.0 - inner).chain([tip]).chain(bow(-end, 2.6, 240.0 + inner));
+        let three: Vec<Point> = bows.collect();
+        let drawn = strokes(&[(three.clone(), pen)], 2);
+        let comparison = compare_polylines(&drawn, &[three], 3.0).unwrap();
+        assert_eq!(drawn.len(), 1, "{pen} px");
+        assert!(comparison.coverage > 0.99 && comparison.precision > 0.99, "{pen} px: {comparison:?}");
+    }
+}
