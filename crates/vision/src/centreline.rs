@@ -27,6 +27,11 @@ pub(crate) struct Row {
 }
 
 impl Row {
+    /// Of its ink, px².
+    pub(crate) fn area_px2(&self) -> usize {
+        (polyline_length(&self.points) * self.width) as usize
+    }
+
     /// Its first (`end` 0) or last point.
     pub(crate) fn end(&self, end: usize) -> Point {
         self.points[end * (self.points.len() - 1)]

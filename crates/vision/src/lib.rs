@@ -24,6 +24,7 @@
 //! | `rest` | a second look at the ink that no line follows |
 //! | `twice` | a line that was sketched twice is one |
 //! | `missed`, `on_ink` | ink that no stroke follows; strokes that follow no ink |
+//! | `crumbs` | what a pencil leaves on the paper's grain beside its lines |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
 //! | `fiducial` | printed square markers and which they are |
@@ -35,6 +36,7 @@ mod centreline;
 mod coarse;
 mod comb;
 mod contrast;
+mod crumbs;
 mod distance;
 mod dust;
 mod error;

@@ -11,7 +11,9 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{self, Region, pinholes, regions};
-use crate::{Grey, Page, Quality, VisionError, gap, missed, on_ink, rest, screen, sweep, tone, twice};
+use crate::{
+    Grey, Page, Quality, VisionError, crumbs, gap, missed, on_ink, rest, screen, sweep, tone, twice,
+};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -137,7 +139,7 @@ pub struct Traced {
 /// What of an image's ink, and of the ways between it, is in no stroke on purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LeftOut {
-    /// Patches of six pixels or more that were taken for dust: smaller than the pen, and by themselves.
+    /// Patches of six pixels or more that were taken for dust: smaller than the pen, and by themselves; and the crumbs of a pencil.
     pub specks: usize,
     /// The largest of them, px².
     pub largest_speck_px2: usize,
@@ -340,8 +342,17 @@ fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Optio
     let rows = rest::with_rest(dark, &lined, rows);
     let rows = twice::once(dark, gap::bridged(dark, rows));
     let (rows, over_paper_px) = on_ink::only(mask, rows);
-    strokes.extend(rows.iter().filter_map(|row| centreline::stroke(dark, row, options)));
-    let counts = missed::counts(mask, &lined, &strokes);
+    let (rows, crumbs) = match options.despeckle_px2 {
+        // a pen leaves none
+        None if ink.pencil.is_some() => crumbs::parted(dark, rows),
+        _ => (rows, Vec::new()),
+    };
+    let along = |rows: &[Row]| -> Vec<Stroke> {
+        rows.iter().filter_map(|row| centreline::stroke(dark, row, options)).collect()
+    };
+    strokes.extend(along(&rows));
+    // crumbs are left out on purpose, not missed
+    let counts = missed::counts(mask, &lined, &[&strokes[..], &along(&crumbs)].concat());
     let (mut missed, mut all) = (0, 0);
     let mut lost_ink = Mask::empty(mask.width, mask.height);
     for (region, (area, lost)) in lined.iter().zip(counts) {
@@ -356,8 +367,14 @@ fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Optio
         strokes.extend(outlines(ink, &lost_ink, mask, &region::regions(&lost_ink), options));
     }
     let left_out = LeftOut {
-        specks: parts.dust.len(),
-        largest_speck_px2: parts.dust.iter().map(Region::area).max().unwrap_or(0),
+        specks: parts.dust.len() + crumbs.len(),
+        largest_speck_px2: parts
+            .dust
+            .iter()
+            .map(Region::area)
+            .chain(crumbs.iter().map(Row::area_px2))
+            .max()
+            .unwrap_or(0),
         over_paper_px,
     };
     Found { strokes, missed_ink: missed as f64 / (all as f64).max(1.0), left_out }
