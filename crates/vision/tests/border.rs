@@ -35,3 +35,25 @@ fn three_lines_along_the_border_are_no_dark_picture() {
     assert_eq!(found.strokes.strokes.len(), 1);
     assert!(!found.strokes.strokes[0].path.is_closed());
 }
+
+#[test]
+fn a_frame_on_which_a_shadow_falls_is_no_sheet_of_paper() {
+    for shadow in [(0.25, 260.0), (-0.1, 150.0), (1.2, 400.0)] {
+        let frame = |x: usize, y: usize| (4..8).contains(&x.min(419 - x).min(y.min(319 - y)));
+        let ring = |x: usize, y: usize| ((x as f64 - 200.0).hypot(y as f64 - 160.0) - 90.0).abs() < 1.5;
+        // a pixel's edges are soft, and so is the shadow's
+        let lit = |x: f64, y: f64| {
+            let off = (y + shadow.0 * x - shadow.1) / f64::hypot(1.0, shadow.0);
+            0.58 + 0.42 * (0.5 - off / 3.0).clamp(0.0, 1.0)
+        };
+        let level = |i: usize| {
+            let (x, y) = (i % 420, i / 420);
+            let ink = if frame(x, y) || ring(x, y) { 0.12 } else { 1.0 };
+            (238.0 * ink * lit(x as f64, y as f64)) as u8
+        };
+        let image = Grey::new(420, 320, (0..420 * 320).map(level).collect()).unwrap();
+        let found = trace(&image, &Options::default()).unwrap();
+        let closed = found.strokes.strokes.iter().filter(|stroke| stroke.path.is_closed()).count();
+        assert_eq!((found.strokes.strokes.len(), closed), (2, 2), "{shadow:?}");
+    }
+}

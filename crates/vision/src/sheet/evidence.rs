@@ -64,7 +64,9 @@ pub(super) struct Calm<'a> {
 struct Evidence {
     /// Usual level just inside each side.
     inner: [Option<f64>; 4],
-    /// Usual level just outside.
+    /// The same just outside each.
+    outer: [Option<f64>; 4],
+    /// And outside all of them.
     beyond: f64,
     /// Share of the sides at which the level differs on both sides, and does not come back further out, or a dark line is.
     firm: f64,
@@ -95,7 +97,7 @@ impl<'a> Calm<'a> {
 
     /// Whether a quadrilateral may be a sheet, and whether there is far less to be seen beside it than on it.
     pub(super) fn judged(&self, quad: &Quad) -> Option<bool> {
-        let Evidence { inner, beyond, firm, is_shadow } = self.beside(quad)?;
+        let Evidence { inner, outer, beyond, firm, is_shadow } = self.beside(quad)?;
         let paper = middle(inner.iter().flatten().copied().collect())?;
         let is_even = inner.iter().flatten().all(|level| EVEN.contains(&(level / paper)));
         let is_ink = !quad.is_brighter && paper < LEAST_SHADE * beyond;
@@ -108,7 +110,7 @@ impl<'a> Calm<'a> {
         let may_be_shadow = quad.seen() < 2 && SHADE.contains(&(beyond.min(paper) / beyond.max(paper)));
         let is_sheet = is_even
             && !may_be_shadow
-            && !self.is_framed(quad)
+            && !self.is_framed(quad, &inner, &outer)
             && !is_ink
             && firm >= least_firm
             && is_shadow
@@ -116,31 +118,45 @@ impl<'a> Calm<'a> {
         is_sheet.then(|| self.is_calmer_outside(quad, paper))
     }
 
-    /// Whether there is nothing beside it but a line along the picture's border, as wide everywhere.
-    fn is_framed(&self, quad: &Quad) -> bool {
+    /// Whether there is nothing beside it but a line along the picture's border, as wide everywhere, and at most the edge of a shadow
+    /// that falls on what it frames.
+    fn is_framed(&self, quad: &Quad, inner: &[Option<f64>; 4], outer: &[Option<f64>; 4]) -> bool {
+        let most = FRAME * self.calm.width.min(self.calm.height) as f64;
+        let width = |side: usize| off_border(self.calm, &quad.corners, side);
         let seen = SIDES.into_iter().filter(|&side| quad.sides[side].is_some());
-        let widths: Vec<f64> = seen.flat_map(|side| off_border(self.calm, &quad.corners, side)).collect();
-        let least = widths.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = widths.iter().copied().fold(0.0, f64::max);
-        let shorter = self.calm.width.min(self.calm.height) as f64;
-        most < FRAME * shorter && most - least < SAME_WIDTH_PX + SAME_WIDTH * most
+        let (frame, rest): (Vec<usize>, Vec<usize>) =
+            seen.partition(|&side| width(side).into_iter().all(|width| width < most));
+        let widths: Vec<f64> = frame.iter().flat_map(|&side| width(side)).collect();
+        let narrowest = widths.iter().copied().fold(f64::INFINITY, f64::min);
+        let widest = widths.iter().copied().fold(0.0, f64::max);
+        let is_even = widest - narrowest < SAME_WIDTH_PX + SAME_WIDTH * widest;
+        let is_shadow = |side: usize| {
+            let [Some(inside), Some(outside)] = [inner[side], outer[side]] else { return false };
+            SHADE.contains(&(inside.min(outside) / inside.max(outside)))
+        };
+        is_even
+            && match rest[..] {
+                [] => true,
+                [side] => frame.len() > 1 && is_shadow(side),
+                _ => false,
+            }
     }
 
     /// What is seen along its sides; `None` where all of them are at the picture's border.
     fn beside(&self, quad: &Quad) -> Option<Evidence> {
-        let mut inner: [Option<f64>; 4] = Default::default();
-        let (mut outer, mut firm, mut lines) = (Vec::new(), 0, 0);
+        let (mut inner, mut outer): ([Option<f64>; 4], [Option<f64>; 4]) = Default::default();
+        let (mut all, mut firm, mut lines) = (Vec::new(), 0, 0);
         let (mut in_shade, mut firm_in_shade) = (0, 0);
         for (k, side) in quad.sides.iter().enumerate() {
             let Some(side) = side else { continue };
             let (from, to) = quad.ends(k);
             let inward = quad.inward(k);
-            let mut levels = Vec::new();
+            let (mut levels, before) = (Vec::new(), all.len());
             for i in 1..40 {
                 let at = from.lerp(to, f64::from(i) / 40.0);
                 let (inside, outside) = (at + inward * BESIDE, at - inward * BESIDE);
                 let (Some(paper), Some(beside)) = (self.level(inside), self.level(outside)) else { continue };
-                outer.push(beside);
+                all.push(beside);
                 let differs =
                     (paper > beside) == quad.is_brighter && (paper - beside).abs() > STEP * paper.max(beside);
                 let (paper, table) = (quad.lit(inside, paper), quad.lit(outside, beside));
@@ -160,14 +176,14 @@ impl<'a> Calm<'a> {
                     firm_in_shade += i32::from(is_firm || is_line);
                 }
             }
-            inner[k] = middle(levels);
+            (inner[k], outer[k]) = (middle(levels), middle(all[before..].to_vec()));
         }
-        let share = |places: usize| places as f64 / outer.len().max(1) as f64;
+        let share = |places: usize| places as f64 / all.len().max(1) as f64;
         // a line alone is a frame that someone drew, or a rule
         let by_lines = share(firm) > LEAST_FIRM_BY_LINES && quad.seen() > 2;
         let firm = share(firm + if by_lines { lines } else { 0 });
         let is_shadow = f64::from(firm_in_shade) >= LEAST_FIRM_IN_SHADE * f64::from(in_shade);
-        Some(Evidence { inner, beyond: middle(outer)?, firm, is_shadow })
+        Some(Evidence { inner, outer, beyond: middle(all)?, firm, is_shadow })
     }
 
     /// Whether much of what lies on a way is as bright again as on the other side of its beginning.
