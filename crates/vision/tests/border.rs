@@ -57,3 +57,21 @@ fn a_frame_on_which_a_shadow_falls_is_no_sheet_of_paper() {
         assert_eq!((found.strokes.strokes.len(), closed), (2, 2), "{shadow:?}");
     }
 }
+
+#[test]
+fn a_frame_round_a_small_picture_is_no_sheet_of_paper() {
+    for size in [80, 96, 100] {
+        let frame = |x: usize, y: usize| (2..5).contains(&x.min(size - 1 - x).min(y.min(size - 1 - y)));
+        let middle = size as f64 / 2.0;
+        let off = |x: usize, y: usize| (x as f64 - middle).hypot(y as f64 - middle);
+        let level = |i: usize| {
+            let (x, y) = (i % size, i / size);
+            let ink = if frame(x, y) || (off(x, y) - 18.0).abs() < 1.5 { 0.15 } else { 1.0 };
+            (235.0 * ink * (1.0 - 0.4 * x as f64 / size as f64)) as u8
+        };
+        let image = Grey::new(size, size, (0..size * size).map(level).collect()).unwrap();
+        let found = trace(&image, &Options::default()).unwrap();
+        assert_eq!(found.strokes.strokes.len(), 2, "{size}");
+        assert!(found.strokes.strokes.iter().all(|stroke| stroke.path.is_closed()), "{size}");
+    }
+}

@@ -44,9 +44,10 @@ const SAME: f64 = 0.1;
 const LEAST_BACK: f64 = 0.25;
 /// So many px are looked at, every other one, out of the sheet and into it.
 const FAR: usize = 40;
-/// A line along the picture's border is narrower than this share of its shorter side, and as wide everywhere within so
+/// A line along the picture's border is narrower than this share of its shorter side and so many px, and as wide everywhere within so
 /// many px, and as a share.
 const FRAME: f64 = 0.05;
+const FRAME_PX: f64 = 2.0;
 const SAME_WIDTH_PX: f64 = 1.0;
 const SAME_WIDTH: f64 = 0.15;
 
@@ -118,10 +119,10 @@ impl<'a> Calm<'a> {
         is_sheet.then(|| self.is_calmer_outside(quad, paper))
     }
 
-    /// Whether there is nothing beside it but a line along the picture's border, as wide everywhere, and at most the edge of a shadow
-    /// that falls on what it frames.
+    /// Whether there is nothing beside it but a line along the picture's border, as wide everywhere, and on one side at most what is no
+    /// darker than in a shadow that falls on what it frames.
     fn is_framed(&self, quad: &Quad, inner: &[Option<f64>; 4], outer: &[Option<f64>; 4]) -> bool {
-        let most = FRAME * self.calm.width.min(self.calm.height) as f64;
+        let most = FRAME * self.calm.width.min(self.calm.height) as f64 + FRAME_PX;
         let width = |side: usize| off_border(self.calm, &quad.corners, side);
         let seen = SIDES.into_iter().filter(|&side| quad.sides[side].is_some());
         let (frame, rest): (Vec<usize>, Vec<usize>) =
@@ -132,7 +133,7 @@ impl<'a> Calm<'a> {
         let is_even = widest - narrowest < SAME_WIDTH_PX + SAME_WIDTH * widest;
         let is_shadow = |side: usize| {
             let [Some(inside), Some(outside)] = [inner[side], outer[side]] else { return false };
-            SHADE.contains(&(inside.min(outside) / inside.max(outside)))
+            inside.min(outside) > SHADE.start * inside.max(outside)
         };
         is_even
             && match rest[..] {
