@@ -6,6 +6,7 @@ use crate::bridge::{Tip, scatter_px};
 use crate::graph::{Branch, Graph, Turn, TurnTip};
 use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::prune::BENT;
 use crate::ridge::{self, Ridge, median};
 
 /// A stretch of pen line without junctions.
@@ -35,16 +36,11 @@ impl Line {
             let pixels = (&branch.points[from..to], &branch.radii[from..to]);
             centred(dark, pixels, radius, branch.ring, is_letter)
         };
-        let (mut points, width) = if branch.turns.iter().all(|turn| turn.tip.is_near) {
-            let (points, width) = seen();
-            let is_told = |turn: &Turn| points.iter().any(|p| p.distance(turn.tip.at) < radius);
-            match branch.turns.iter().all(is_told) {
-                true => (points, width),
-                false => turning(dark, branch, (from, to), radius),
-            }
-        } else {
-            turning(dark, branch, (from, to), radius)
-        };
+        // where a near turn is, its sides may tell
+        let told = branch.turns.iter().all(|turn| turn.tip.is_near).then(seen).filter(|(points, _)| {
+            branch.turns.iter().all(|turn| points.iter().any(|p| p.distance(turn.tip.at) < radius))
+        });
+        let (mut points, width) = told.unwrap_or_else(|| turning(dark, branch, (from, to), radius));
         (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
         let n = branch.points.len();
         let is_nub = !is_letter && branch.length() >= NUB_RADII * graph.pen_radius();
@@ -146,9 +142,6 @@ fn inner(branch: &Branch) -> Vec<Point> {
         }
     }
 }
-
-/// Skeletons go from pixel to pixel, up to 8 % longer than what they follow.
-const BENT: f64 = 1.15;
 
 /// The pixels of a branch from the end of its line on.
 fn way_on(branch: &Branch, points: &[Point], end: usize) -> Vec<Point> {

@@ -121,7 +121,7 @@ fn is_bent(branch: &Branch) -> bool {
 }
 
 /// Skeletons go from pixel to pixel, up to 8 % longer than what they follow.
-const BENT: f64 = 1.15;
+pub(crate) const BENT: f64 = 1.15;
 
 /// Keeps where the pen turned, if a spur that goes leads there. Lines that meet at less than a mitre is drawn for meet nowhere
 /// in particular.
