@@ -75,7 +75,8 @@ impl Drawn {
         let (mut cluster, bridges) = junction::clusters(graph, bars);
         let (bridges, real): (Vec<usize>, Vec<usize>) =
             (0..graph.branches.len()).partition(|&branch| bridges[branch]);
-        let line = |&branch: &usize| Line::of(dark, shapes, graph, &graph.branches[branch]);
+        let pen = graph.pen_radius();
+        let line = |&branch: &usize| Line::of(dark, shapes, graph, pen, &graph.branches[branch]);
         let mut lines: Vec<Line> = real.iter().map(line).collect();
         junction::merge_acute(&mut lines, &mut cluster);
         let junctions = junction::join(dark, &lines, &cluster);

@@ -28,7 +28,8 @@ pub(crate) struct Line {
 impl Line {
     /// From a branch: its points without those that show a junction, a corner or an end instead of the line,
     /// centred on the grey levels, with its corners where its sides meet and its free ends where the pen was lifted.
-    pub(crate) fn of(dark: &Plane<u8>, shapes: &Mask, graph: &Graph, branch: &Branch) -> Self {
+    /// `pen` is half the width of the graph's pen.
+    pub(crate) fn of(dark: &Plane<u8>, shapes: &Mask, graph: &Graph, pen: f64, branch: &Branch) -> Self {
         let radius = median(&branch.radii).max(0.5);
         let (from, to) = if branch.ring { (0, branch.points.len()) } else { trusted(graph, branch, radius) };
         let is_letter = graph.is_letter();
@@ -43,7 +44,7 @@ impl Line {
         let (mut points, width) = told.unwrap_or_else(|| turning(dark, branch, (from, to), radius));
         (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
         let n = branch.points.len();
-        let is_nub = !is_letter && branch.length() >= NUB_RADII * graph.pen_radius();
+        let is_nub = !is_letter && branch.length() >= NUB_RADII * pen;
         match branch.nodes {
             // of a short bar its pixels have to tell the direction, and of a hairpin where it turns
             [Some(_), Some(_)] if points.len() < 2 && n > 3 => points = inner(branch),
