@@ -16,11 +16,12 @@ pub(crate) fn parted(dark: &Plane<u8>, rows: Vec<Row>) -> (Vec<Row>, Vec<Row>) {
     let lengths: Vec<f64> = rows.iter().map(|row| polyline_length(&row.points)).collect();
     let darkness = |row: &Row| row.points.iter().map(|&p| dark.at(p)).sum::<f64>() / row.points.len() as f64;
     let darknesses: Vec<f64> = rows.iter().map(darkness).collect();
-    let mean = |of: &dyn Fn(usize) -> f64| {
-        let sum: f64 = (0..rows.len()).map(|k| lengths[k] * of(k)).sum();
-        sum / lengths.iter().sum::<f64>().max(1e-9)
-    };
-    let (usual, pen) = (mean(&|k| darknesses[k]), mean(&|k| rows[k].width));
+    let widths: Vec<f64> = rows.iter().map(|row| row.width).collect();
+    let total = lengths.iter().sum::<f64>().max(1e-9);
+    // over the length of the lines
+    let mean =
+        |values: &[f64]| values.iter().zip(&lengths).map(|(v, length)| v * length).sum::<f64>() / total;
+    let (usual, pen) = (mean(&darknesses), mean(&widths));
     let is_crumb =
         |k: usize| !rows[k].closed && lengths[k] < LONGEST_PENS * pen && darknesses[k] < PALE * usual;
     let crumbs: Vec<bool> = (0..rows.len()).map(is_crumb).collect();

@@ -6,7 +6,7 @@ use crate::bridge::{Tip, scatter_px};
 use crate::graph::{Branch, Graph, Turn, TurnTip};
 use crate::mask::Mask;
 use crate::plane::Plane;
-use crate::prune::BENT;
+use crate::prune::is_bent;
 use crate::ridge::{self, Ridge, median};
 
 /// A stretch of pen line without junctions.
@@ -43,16 +43,16 @@ impl Line {
         });
         let (mut points, width) = told.unwrap_or_else(|| turning(dark, branch, (from, to), radius));
         (0..2).filter(|&end| branch.nodes[end].is_some()).for_each(|end| settle(&mut points, end, width));
-        let n = branch.points.len();
-        let is_nub = !is_letter && branch.length() >= NUB_RADII * pen;
-        match branch.nodes {
-            // of a short bar its pixels have to tell the direction, and of a hairpin where it turns
-            [Some(_), Some(_)] if points.len() < 2 && n > 3 => points = inner(branch),
-            [Some(_), None] | [None, Some(_)] if points.len() < 2 && n > 3 && is_nub => {
-                points = inner(branch);
-            }
-            _ if points.is_empty() => points.push(branch.points[(from + to) / 2]),
-            _ => {}
+        // of a short bar or nub its pixels have to tell the direction, and of a hairpin where it turns
+        let is_more_than_a_bump = || match branch.nodes.iter().flatten().count() {
+            2 => true,
+            1 => !is_letter && branch.length() >= NUB_RADII * pen,
+            _ => false,
+        };
+        if points.len() < 2 && branch.points.len() > 3 && is_more_than_a_bump() {
+            points = inner(branch);
+        } else if points.is_empty() {
+            points.push(branch.points[(from + to) / 2]);
         }
         let to_node = |end: usize| {
             let node = graph.nodes[branch.nodes[end]?];
@@ -132,11 +132,9 @@ fn inner(branch: &Branch) -> Vec<Point> {
     let n = branch.points.len();
     let pixels = &branch.points[n / 4..n - n / 4];
     let (first, last) = (pixels[0], pixels[pixels.len() - 1]);
-    // a few pixels are straight
-    let is_straight = polyline_length(pixels) <= BENT * first.distance(last) + 4.0;
     match branch.turns.is_empty() {
-        true if is_straight => vec![first, last],
-        true => off_the_grid(pixels).collect(),
+        true if is_bent(pixels) => off_the_grid(pixels).collect(),
+        true => vec![first, last],
         false => {
             let turns = branch.turns.iter().map(|turn| turn.tip.at);
             filled_in(&[first].into_iter().chain(turns).chain([last]).collect::<Vec<_>>(), false)

@@ -16,8 +16,12 @@ const FLAT_PX: f64 = 1.0;
 const FLAT_SHARE: f64 = 0.1;
 
 /// For each region its pixels, and how many of them lie further from every stroke than the pen reaches.
-pub(crate) fn counts(ink: &Mask, regions: &[&Region], strokes: &[Stroke]) -> Vec<(usize, usize)> {
-    let usual = median(&strokes.iter().filter_map(|s| s.pen).collect::<Vec<_>>());
+pub(crate) fn counts<'a>(
+    ink: &Mask,
+    regions: &[&Region],
+    strokes: impl Iterator<Item = &'a Stroke> + Clone,
+) -> Vec<(usize, usize)> {
+    let usual = median(&strokes.clone().filter_map(|s| s.pen).collect::<Vec<_>>());
     let mut painted = Mask::empty(ink.width, ink.height);
     for stroke in strokes {
         let near = reach(stroke.pen.unwrap_or(0.0), usual);
@@ -127,7 +131,7 @@ mod tests {
         let path = Path::polyline(&[Point::new(20.0, 20.0), Point::new(150.0, 20.0)], false).unwrap();
         let mut stroke = Stroke::new(path);
         stroke.pen = Some(4.0);
-        let [(all, missed)] = counts(&ink, &[&found[0]], &[stroke])[..] else { panic!("one region") };
+        let [(all, missed)] = counts(&ink, &[&found[0]], [stroke].iter())[..] else { panic!("one region") };
         assert!((missed as f64 / all as f64 - 0.5).abs() < 0.03, "{missed} of {all}");
     }
 }

@@ -3,7 +3,7 @@
 //! A spur between two lines is where both run together, up to the corner's point or the hairpin's turn, or it is a third
 //! line. A point goes; where the turn of a hairpin is, the two sides are told.
 
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::angle;
 use crate::graph::{Branch, Graph, Node, TurnTip};
@@ -14,9 +14,10 @@ pub(crate) fn prune(graph: &mut Graph) {
     let pen = graph.pen_radius();
     for _ in 0..MOST_ROUNDS {
         graph.join_pairs();
+        let at_nodes = graph.ends_at_nodes();
         let mut spurs = Vec::new();
-        for ends in graph.ends_at_nodes() {
-            let short = ends.iter().filter(|&&end| is_bump(graph, end) || is_mitre(graph, &ends, end, pen));
+        for ends in &at_nodes {
+            let short = ends.iter().filter(|&&end| is_bump(graph, end) || is_mitre(graph, ends, end, pen));
             // one at a time at each node: a spur less can make a line of the two others
             spurs.extend(
                 short
@@ -28,7 +29,7 @@ pub(crate) fn prune(graph: &mut Graph) {
             return;
         }
         spurs.sort_unstable_by(|a, b| b.cmp(a));
-        spurs.iter().for_each(|&i| keep_turn(graph, i, pen));
+        spurs.iter().for_each(|&i| keep_turn(graph, &at_nodes, i, pen));
         spurs.into_iter().for_each(|i| drop(graph.branches.swap_remove(i)));
     }
 }
@@ -80,7 +81,8 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
         let is_nub = others.iter().filter(straight).count() == 1;
         let beyond = if is_nub { (pen + 1.0 - radius).clamp(0.0, pen + 0.5) } else { pen + 0.5 };
         let length = inside + beyond / s.max(0.1);
-        let midway = out.dot(back) > GOES_ON * out.hypot() * back.hypot() && !is_bent(&graph.branches[end.0]);
+        let midway =
+            out.dot(back) > GOES_ON * out.hypot() * back.hypot() && !is_bent(&graph.branches[end.0].points);
         s < MITRED && midway && out.hypot() < (1.25 * length + (1.0 + pen).min(2.5)).max(most)
     })
 }
@@ -114,18 +116,18 @@ const STRAIGHT_PX: f64 = 0.5;
 /// Cosine of the most by which a line bends that goes on straight: 25°.
 const GOES_ON: f64 = 0.9;
 
-/// Whether a branch bends more than skeletons of points do.
-fn is_bent(branch: &Branch) -> bool {
-    let [first, .., last] = branch.points[..] else { return false };
-    branch.length() > BENT * first.distance(last) + 4.0
+/// Whether a branch, by its pixels, bends more than skeletons of points do.
+pub(crate) fn is_bent(pixels: &[Point]) -> bool {
+    let [first, .., last] = pixels else { return false };
+    polyline_length(pixels) > BENT * first.distance(*last) + 4.0
 }
 
 /// Skeletons go from pixel to pixel, up to 8 % longer than what they follow.
-pub(crate) const BENT: f64 = 1.15;
+const BENT: f64 = 1.15;
 
 /// Keeps where the pen turned, if a spur that goes leads there. Lines that meet at less than a mitre is drawn for meet nowhere
 /// in particular.
-fn keep_turn(graph: &mut Graph, spur: usize, pen: f64) {
+fn keep_turn(graph: &mut Graph, at_nodes: &[Vec<(usize, usize)>], spur: usize, pen: f64) {
     let branch = &graph.branches[spur];
     let end = usize::from(branch.nodes[0].is_none());
     let Some((node, tip, radius)) = free_end(graph, (spur, end)) else { return };
@@ -140,7 +142,7 @@ fn keep_turn(graph: &mut Graph, spur: usize, pen: f64) {
     if far <= LEAST_TURN * pen + 1.0 {
         return;
     }
-    let ends = &graph.ends_at_nodes()[number];
+    let ends = &at_nodes[number];
     let acute = WINDOWS.into_iter().any(|window| half_angle_sine(graph, ends, (spur, end), window) < ACUTE);
     // a pen's round end is where it turned; a point that tapers was drawn as the corner of both sides
     let corner_px = match (acute, radius < BLUNT * pen) {

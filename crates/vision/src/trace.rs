@@ -352,7 +352,7 @@ fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Optio
     };
     strokes.extend(along(&rows));
     // crumbs are left out on purpose, not missed
-    let counts = missed::counts(mask, &lined, &[&strokes[..], &along(&crumbs)].concat());
+    let counts = missed::counts(mask, &lined, strokes.iter().chain(&along(&crumbs)));
     let (mut missed, mut all) = (0, 0);
     let mut lost_ink = Mask::empty(mask.width, mask.height);
     for (region, (area, lost)) in lined.iter().zip(counts) {
