@@ -75,3 +75,34 @@ fn a_frame_round_a_small_picture_is_no_sheet_of_paper() {
         assert!(found.strokes.strokes.iter().all(|stroke| stroke.path.is_closed()), "{size}");
     }
 }
+
+#[test]
+fn strips_of_table_along_the_border_are_no_lines() {
+    // left, top, right, bottom: px at the beginning and at the end of each
+    let strips: [(&str, [(f64, f64); 4]); 4] = [
+        ("half a pixel", [(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.5, 0.5)]),
+        ("a hair's breadth on two sides", [(1.2, 0.9), (0.7, 0.7), (0.0, 0.0), (0.0, 0.0)]),
+        ("a narrow wedge", [(0.0, 0.0), (0.0, 0.0), (1.4, 2.2), (0.0, 0.0)]),
+        ("not as wide on one side as on the other", [(3.0, 3.0), (6.0, 6.0), (0.0, 0.0), (0.0, 0.0)]),
+    ];
+    for (name, widths) in strips {
+        let covered = |(width, at): (f64, f64)| (width - at).clamp(0.0, 1.0);
+        let level = |i: usize| {
+            let (x, y) = ((i % 420) as f64, (i / 420) as f64);
+            let width = |k: usize, share: f64| widths[k].0 + (widths[k].1 - widths[k].0) * share;
+            let strip = [
+                (width(0, y / 320.0), x),
+                (width(1, x / 420.0), y),
+                (width(2, y / 320.0), 419.0 - x),
+                (width(3, x / 420.0), 319.0 - y),
+            ];
+            let table = strip.into_iter().map(covered).fold(0.0, f64::max);
+            let ink = (2.0 - ((x - 200.0).hypot(y - 160.0) - 90.0).abs()).clamp(0.0, 1.0);
+            (235.0 - 200.0 * ink + (40.0 - 235.0) * table * (1.0 - ink)) as u8
+        };
+        let image = Grey::new(420, 320, (0..420 * 320).map(level).collect()).unwrap();
+        let found = trace(&image, &Options::default()).unwrap();
+        assert_eq!(found.strokes.strokes.len(), 1, "{name}");
+        assert!(found.strokes.strokes[0].path.is_closed(), "{name}");
+    }
+}

@@ -3,7 +3,8 @@
 use tracelight_stroke::{Point, Vec2};
 
 use super::quad::{Quad, SIDES};
-use super::{Sheet, Small, inward, rim};
+use super::rim::{self, Strip};
+use super::{Sheet, Small, inward};
 use crate::outline::area;
 use crate::plane::Plane;
 use crate::ridge::middle;
@@ -26,8 +27,6 @@ const LEAST_PX2: f64 = 64.0 * 64.0;
 /// A step is over where levels are the paper's within this share of it, at most of the places.
 const OVER: f64 = 0.06;
 const MOST_OVER: f64 = 0.75;
-/// Less than this share of the picture beside a sheet is a line along its border.
-const LEAST_BESIDE: f64 = 0.004;
 
 /// A side in the full picture.
 struct Line {
@@ -51,6 +50,12 @@ impl Line {
         inward(self.from, self.to)
     }
 
+    /// Further in, by so much at its beginning and at its end, px.
+    fn move_in(&mut self, first: f64, last: f64) {
+        let inward = self.inward();
+        (self.from, self.to) = (self.from + inward * first, self.to + inward * last);
+    }
+
     /// The levels some way outside.
     fn outside(&self, plane: &Plane<u8>, by: f64) -> impl Iterator<Item = f64> {
         let out = self.inward() * -(4.0 * by + 2.0);
@@ -65,9 +70,22 @@ impl Line {
 /// The sheet, from where the small picture has it, and how far inside its edge that is over, px.
 pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<(Sheet, f64)> {
     let by = small.by as f64;
-    let mut seen = SIDES.map(|side| quad.sides[side].as_ref().map(|_| seen(plane, by, quad, side)));
-    let usual = middle(seen.iter().flatten().flat_map(|line| line.outside(plane, by)).collect());
-    let lines = SIDES.map(|side| seen[side].take().unwrap_or_else(|| border(plane, by, quad, side, usual)));
+    let is_seen = |side: usize| quad.sides[side].is_some();
+    let mut lines = SIDES.map(|side| match is_seen(side) {
+        true => seen(plane, by, quad, side),
+        false => border(plane, by, quad, side),
+    });
+    let outside = SIDES.into_iter().filter(|&side| is_seen(side)).flat_map(|k| lines[k].outside(plane, by));
+    let usual = middle(outside.collect());
+    let strips = SIDES.map(|side| {
+        let line = &lines[side];
+        if is_seen(side) { None } else { Strip::along(plane, line.from, line.to, usual) }
+    });
+    for (line, strip) in lines.iter_mut().zip(rim::beside(strips)) {
+        if let Some(Strip { first, last, .. }) = strip {
+            line.move_in(first, last);
+        }
+    }
     let mut corners = [Point::ORIGIN; 4];
     for side in SIDES {
         corners[side] = meet(&lines[side], &lines[(side + 1) % 4])?;
@@ -97,7 +115,7 @@ pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<(Sh
     let beside = 1.0 - area(&outline) / (width * height);
     let blur = lines.iter().map(|line| line.blur).fold(0.0, f64::max);
     let corners = is_whole.then_some(corners);
-    (beside > LEAST_BESIDE && outline.len() > 2).then_some((Sheet { outline, corners, beside }, blur))
+    (beside > 0.0 && outline.len() > 2).then_some((Sheet { outline, corners, beside }, blur))
 }
 
 /// The sheet between corners that someone gives; `None` where hardly any of it is in the picture.
@@ -120,8 +138,8 @@ fn meet(a: &Line, b: &Line) -> Option<Point> {
     at.is_finite().then_some(at)
 }
 
-/// Where the picture ends, or further in where there is a narrow strip of what is usual beside the sheet.
-fn border(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize, usual: Option<f64>) -> Line {
+/// Where the picture ends.
+fn border(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize) -> Line {
     let mut line = Line::in_small(by, quad, side);
     // what was averaged may leave some px of the picture over at its right and lower border
     let (width, height) = (plane.width as f64, plane.height as f64);
@@ -131,10 +149,6 @@ fn border(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize, usual: Option<f6
         _ => p,
     };
     (line.from, line.to) = (on_border(line.from), on_border(line.to));
-    if let Some((first, last)) = rim::strip(plane, line.from, line.to, usual) {
-        let inward = line.inward();
-        (line.from, line.to) = (line.from + inward * first, line.to + inward * last);
-    }
     line
 }
 
@@ -147,8 +161,7 @@ fn seen(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize) -> Line {
         return line;
     }
     let (first, last) = straight(&steps);
-    let inward = line.inward();
-    (line.from, line.to) = (line.from + inward * first, line.to + inward * last);
+    line.move_in(first, last);
     let off: Vec<(f64, f64)> = steps.iter().map(|&(s, off)| (s, off - first - (last - first) * s)).collect();
     let running: Vec<(f64, f64)> = off
         .windows(WINDOW)
