@@ -35,8 +35,9 @@ struct Photograph {
     table: f64,
     /// How much darker one half of the picture is, and how its edge runs.
     shadow: Option<(f64, f64, f64)>,
-    /// A finger's two ends.
+    /// A finger's two ends, how bright it is against the paper, and how dark the soft shadow beside it.
     finger: Option<(Point, Point)>,
+    finger_tone: (f64, f64),
     /// Another sheet below it, and its level.
     below: Option<([Point; 4], f64)>,
     /// Light from one side: the way to it, and how much of it is left at the other end of the picture.
@@ -80,7 +81,26 @@ impl Photograph {
         // a table as bright as paper shows no finger's end, and needs none
         let finger = finger.filter(|_| table < 200.0);
         let light = (Vec2::new(1.0, 0.0), 1.0);
-        Self { size, corners, figure, pen, paper, table, shadow, finger, below: None, light }
+        let finger_tone = (0.6, 0.0);
+        Self { size, corners, figure, pen, paper, table, shadow, finger, finger_tone, below: None, light }
+    }
+
+    /// The same held by a finger that reaches in from any side, dark or as bright as paper, with its own soft shadow.
+    fn held(chance: &mut Chance) -> Self {
+        let easy = Self { shadow: None, finger: None, ..Self::any(chance) };
+        let side = chance.between(0.0, 3.999) as usize;
+        let (a, b) = (easy.corners[side], easy.corners[(side + 1) % 4]);
+        let on = a.lerp(b, chance.between(0.3, 0.7));
+        let inward = (b - a).turn_90() / a.distance(b);
+        let way = inward.rotate_scale(Vec2::from_angle(chance.between(-0.5, 0.5)));
+        let side = easy.size.0.min(easy.size.1) as f64;
+        let finger = Some((on - way * (0.5 * side), on + way * (0.02 * side)));
+        let finger_tone = (chance.between(0.25, 1.0), chance.between(0.1, 0.4));
+        let held = Self { finger, finger_tone, table: easy.table.min(0.6 * easy.paper), ..easy };
+        // no ink lies in its shadow
+        let clear = 0.08 * held.size.1 as f64;
+        let is_clear = held.figure.iter().flatten().all(|p| held.off_finger(*p) > clear);
+        if is_clear { held } else { Self::held(chance) }
     }
 
     /// The same with a deep shadow, or light from one side, or another sheet below it.
@@ -114,6 +134,14 @@ impl Photograph {
         (0..4).map(side).fold(0.0, f64::max)
     }
 
+    /// How far a place is from the middle of the finger.
+    fn off_finger(&self, at: Point) -> f64 {
+        self.finger.map_or(f64::INFINITY, |(from, tip)| {
+            let way = tip - from;
+            at.distance(from + way * ((at - from).dot(way) / way.hypot2()).clamp(0.0, 1.0))
+        })
+    }
+
     fn taken(&self, chance: &mut Chance) -> Grey {
         let (width, height) = self.size;
         let mut sheet = Canvas::new(width, height);
@@ -136,7 +164,10 @@ impl Photograph {
             let near = 0.3 * (1.0 - self.outside(at) / (0.012 * height as f64)).max(0.0);
             let under = under * (1.0 - if self.below.is_some() { near } else { 0.0 });
             let seen = under + (paper - under) * sheet[k];
-            let seen = seen + (0.6 * self.paper - seen) * finger[k];
+            let (tone, shade) = self.finger_tone;
+            let off = self.off_finger(at) / (0.035 * height as f64) - 1.0;
+            let seen = seen * (1.0 - shade * (1.0 - off.max(0.0)).max(0.0).powi(2));
+            let seen = seen + (tone * self.paper - seen) * finger[k];
             let light = self.shadow.map_or(1.0, |(light, turn, off)| {
                 let from_edge = (at - middle).dot(Vec2::from_angle(turn)) - off;
                 light + (1.0 - light) * (from_edge + 0.5).clamp(0.0, 1.0)
@@ -193,6 +224,12 @@ fn two_hundred_photographs_of_sheets_give_their_figures_and_nothing_else() {
 fn nor_do_deep_shadows_light_from_one_side_and_other_sheets_below_change_that() {
     let faults = faults(0x2545_f491_4f6c_dd1d, 120, Photograph::hard);
     assert!(faults.len() < 6, "{} of 120:\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn nor_do_fingers_that_hold_the_sheet_dark_or_as_bright_as_paper() {
+    let faults = faults(0x1b87_3593_cc9e_2d51, 60, Photograph::held);
+    assert!(faults.is_empty(), "{} of 60:\n{}", faults.len(), faults.join("\n"));
 }
 
 /// A picture of 640 × 480 by the level of each place.

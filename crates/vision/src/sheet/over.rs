@@ -5,6 +5,7 @@
 //! joined to it.
 
 use std::ops::Range;
+use std::slice;
 
 use tracelight_stroke::{Point, Vec2};
 
@@ -13,45 +14,52 @@ use super::quad::{Quad, SIDES};
 use crate::plane::Plane;
 use crate::ridge::middle;
 
-/// What reaches over a sheet differs from its paper by this share.
+/// What is seen along a side differs from its paper by this share.
 const FOREIGN: f64 = 0.08;
+/// And where it is followed by this one: its shadow on the paper, which goes on beyond it.
+const SHADED: f64 = 0.035;
+/// Where the step from the sheet to what lies beside it is less than this share of the usual one, it is hidden.
+const HIDDEN: f64 = 0.5;
 /// A stretch of a side that is hidden is at least so long: share of the picture's shorter side, and px.
 const LEAST_HIDDEN: f64 = 0.035;
 const LEAST_HIDDEN_PX: f64 = 4.0;
 /// Paper is as bright as the middle of this share of a side to either way.
 const USUAL: usize = 4;
-/// What is darker than this share of the paper is ink that runs off the sheet.
+/// What is darker than this share of the paper is ink that runs off the sheet, unless it is seen to go on beyond it.
 const DARKEST: f64 = 0.4;
-/// What lies over a sheet is at most so many times as long as it is wide where it comes in, and widens so much: a finger
-/// is some three times as long as wide.
+/// What lies over a sheet is at most so many times as long as it is wide where it comes in, and widens so much, with its
+/// shadow: a finger is some three times as long as wide.
 const MOST_LONG: f64 = 8.0;
 const MOST_WIDENED: f64 = 3.0;
 /// Further in it is no darker than this share of what it was, against the paper: what is, is ink behind it.
 const LIKE_BEFORE: f64 = 0.75;
-/// A tip is narrower than this share of it.
+/// A tip begins where it is narrower than this share of what it was, and is over within half of that.
 const TIP: f64 = 0.6;
-/// It may lean by so much on its way in, px.
-const LEANS: usize = 8;
-/// Paper is seen so far from it, px.
-const PAPER: Range<f64> = 6.0..16.0;
+/// On its way in it leans by at most so much from row to row, px.
+const LEANS: f64 = 2.0;
+/// And on its way to the edge, px.
+const LEANING: f64 = 8.0;
+/// What is nearer to each other belongs together, px.
+const GAP: f64 = 3.0;
+/// Paper is seen half as far from it as it is wide, for so many px.
+const PAPER: f64 = 10.0;
 /// So far beyond what covers it the sheet is in its shadow, px.
-const LEAST_WIDER: usize = 3;
-const MOST_WIDER: usize = 8;
-/// Most of a sheet that is table.
+const WIDER: usize = 3;
+/// A corner begins so near to an end of a side, px.
+const AT_END: usize = 4;
+/// Most of a sheet that something lies on, and that is table.
+const MOST_OVER: f64 = 0.1;
 const MOST_CORNER: f64 = 0.15;
 
-/// What reaches over a sheet from beside it: a finger, a weight. Where it does, there is the same on both sides of the
-/// sheet's edge, and other than the paper along it.
+/// What reaches over a sheet from beside it: a finger, a weight. Where it does, the sheet's edge is hidden.
 pub(super) fn covered(calm: &Plane<u8>, quad: &Quad, depths: &[f64]) -> Plane<bool> {
     let mut covered = Plane::filled(calm.width, calm.height, false);
     for side in SIDES {
         let along = Along::of(calm, quad, side);
         for run in along.runs() {
-            // a finger's nail and the shadow about it are about as wide as a part of it
-            let wider = (run.len() / 3).clamp(LEAST_WIDER, MOST_WIDER);
             let points = along.over(&run).or_else(|| along.corner(&run, depths));
             for at in points.into_iter().flatten() {
-                cover_near(&mut covered, at, wider);
+                cover_near(&mut covered, at);
             }
         }
     }
@@ -61,18 +69,18 @@ pub(super) fn covered(calm: &Plane<u8>, quad: &Quad, depths: &[f64]) -> Plane<bo
 /// A side of a sheet, with what is seen along it.
 struct Along<'a> {
     calm: &'a Plane<u8>,
+    quad: &'a Quad,
     from: Point,
     way: Vec2,
     inward: Vec2,
     /// Whether nothing is seen beyond it.
     is_border: bool,
-    /// Places along it that are clear of the sides next to it, px, and the levels just inside, without a shadow.
+    /// Places along it that are clear of the sides next to it, px.
     places: Range<usize>,
-    lit: Vec<f64>,
 }
 
 impl<'a> Along<'a> {
-    fn of(calm: &'a Plane<u8>, quad: &Quad, side: usize) -> Self {
+    fn of(calm: &'a Plane<u8>, quad: &'a Quad, side: usize) -> Self {
         let (from, to) = quad.ends(side);
         let (inward, length) = (quad.inward(side), from.distance(to));
         let way = (to - from) / length;
@@ -81,27 +89,51 @@ impl<'a> Along<'a> {
         let is_clear = |k: &usize| calm.holds(at(*k)) && depth(at(*k)) > 0.9 * BESIDE;
         let first = (0..length as usize).find(is_clear).unwrap_or(0);
         let last = (first..length as usize).rfind(is_clear).map_or(first, |last| last + 1);
-        let lit = (first..last).map(|k| quad.lit(at(k), calm.at(at(k)))).collect();
         let is_border = quad.sides[side].is_none();
-        Self { calm, from, way, inward, is_border, places: first..last, lit }
+        Self { calm, quad, from, way, inward, is_border, places: first..last }
     }
 
     fn at(&self, along: f64, depth: f64) -> Point {
         self.from + self.way * along + self.inward * depth
     }
 
+    /// The level at a place, without a shadow.
     fn level(&self, along: f64, depth: f64) -> Option<f64> {
         let at = self.at(along, depth);
-        self.calm.holds(at).then(|| self.calm.at(at))
+        self.calm.holds(at).then(|| self.quad.lit(at, self.calm.at(at)))
     }
 
-    /// Where along it there is something else than its paper.
+    /// The levels of some places.
+    fn levels(&self, places: Range<f64>, depth: f64) -> Vec<f64> {
+        let places = places.start.ceil() as i64..places.end.floor() as i64 + 1;
+        places.filter_map(|k| self.level(k as f64, depth)).collect()
+    }
+
+    /// Where along it there is something else than its paper; where something is seen beyond it, where its step is hidden.
     fn runs(&self) -> Vec<Range<usize>> {
-        let (first, count) = (self.places.start, self.lit.len());
+        let row = |depth: f64| -> Vec<Option<f64>> {
+            self.places.clone().map(|k| self.level(k as f64, depth)).collect()
+        };
+        let (inner, outer) = (row(BESIDE), row(-BESIDE));
+        let (first, count) = (self.places.start, inner.len());
         let reach = count / USUAL;
+        let usual =
+            |row: &[Option<f64>], near: Range<usize>| middle(row[near].iter().flatten().copied().collect());
         let is_other = |k: &usize| {
-            let near = &self.lit[k.saturating_sub(reach)..(k + reach + 1).min(count)];
-            middle(near.to_vec()).is_some_and(|paper| (self.lit[*k] - paper).abs() > FOREIGN * paper)
+            let near = k.saturating_sub(reach)..(k + reach + 1).min(count);
+            let sides = [near.start..*k, k + 1..near.end];
+            // at an end what lies there is a part of what is usual
+            let sides = if sides.iter().all(|side| 2 * side.len() > reach) {
+                &sides[..]
+            } else {
+                slice::from_ref(&near)
+            };
+            let papers: Vec<f64> = sides.iter().filter_map(|side| usual(&inner, side.clone())).collect();
+            let Some(inside) = inner[*k] else { return false };
+            let step =
+                || Some((inside - outer[*k]?, usual(&inner, near.clone())? - usual(&outer, near.clone())?));
+            differs(inside, &papers, FOREIGN)
+                || !self.is_border && step().is_some_and(|(step, usual)| step.abs() < HIDDEN * usual.abs())
         };
         let mut runs: Vec<Range<usize>> = Vec::new();
         for k in (0..count).filter(is_other).map(|k| first + k) {
@@ -112,66 +144,100 @@ impl<'a> Along<'a> {
         }
         let shorter = self.calm.width.min(self.calm.height) as f64;
         let least = (LEAST_HIDDEN * shorter).max(LEAST_HIDDEN_PX);
-        runs.retain(|run| run.len() as f64 >= least && 2 * run.len() < count);
-        runs
+        runs.retain(|run| run.len() as f64 >= least);
+        // its middle may be as bright as the paper
+        let mut joined: Vec<Range<usize>> = Vec::new();
+        for run in runs {
+            let near = |last: &&mut Range<usize>| run.start - last.end < run.len().min(last.len());
+            match joined.last_mut().filter(near) {
+                Some(last) => last.end = run.end,
+                None => joined.push(run),
+            }
+        }
+        joined.retain(|run| 2 * run.len() < count);
+        joined
     }
 
-    /// The places of what lies on a run, followed into the sheet; `None` if it does not come from beside the sheet, or is no
-    /// thing of that width.
+    /// The places of what lies on a run, with its shadow on the paper, followed into the sheet; `None` if it does not come
+    /// from beside the sheet, or is no thing of that width.
     fn over(&self, run: &Range<usize>) -> Option<Vec<Point>> {
         let width = run.len() as f64;
-        let mut over = Over::new(self, 0.5 * (run.start + run.end) as f64, width, BESIDE)?;
-        let outermost = if self.is_border { 0.0 } else { -BESIDE };
-        let outward = (1..).map(|step| BESIDE - f64::from(step)).take_while(|depth| *depth >= outermost);
-        let near = (run.start.saturating_sub(LEANS)..run.end + LEANS).step_by(2);
-        let comes_from = |depth: f64| {
-            let mut levels = near.clone().filter_map(|k| self.level(k as f64, depth)).peekable();
-            levels.peek().is_none() || levels.any(|level| over.holds(level))
-        };
-        if over.level < DARKEST * over.paper || !outward.into_iter().all(comes_from) {
+        let reach = 0.5 * width;
+        let mut row = Row::of(run).next(self, BESIDE, (width, width), 0.0)?;
+        if !self.comes_from_beside(run, &row) {
             return None;
         }
-        let mut points = Vec::new();
-        let darkest = LIKE_BEFORE * over.level / over.paper;
-        let mut widest: f64 = 0.0;
-        for step in 0.. {
+        let darkest = LIKE_BEFORE * row.level / row.paper;
+        let first = row.width();
+        let most = MOST_OVER * self.quad.area();
+        let mut area = 0.0;
+        let (mut rows, mut widest, mut last) = (vec![row.clone()], first, f64::INFINITY);
+        for step in 1.. {
             let depth = BESIDE + f64::from(step);
-            let Some((start, end)) = over.across(self, depth) else { break };
-            if end - start > MOST_WIDENED * width || depth > MOST_LONG * width {
+            let Some(next) = row.next(self, depth, (reach, LEANS), darkest) else { break };
+            area += next.width();
+            if next.width() > MOST_WIDENED * first || depth > MOST_LONG * first || area > most {
                 return None;
             }
+            widest = widest.max(next.width());
             // its tip is round; what is behind it is ink
-            widest = widest.max(end - start);
-            if end - start < TIP * widest {
+            if next.width() < TIP * widest {
+                last = last.min(depth + 0.5 * widest);
+            }
+            let is_behind = last.is_finite() && next.width() > row.width() + LEANS;
+            if is_behind || next.level < darkest * next.paper || depth > last {
                 break;
             }
-            points.extend((0..=(end - start) as usize).map(|k| self.at(start + k as f64, depth)));
-            match Over::new(self, 0.5 * (start + end), end - start, depth) {
-                Some(here) if here.level > darkest * here.paper => over = here,
-                _ => break,
-            }
+            row = next;
+            rows.push(row.clone());
         }
         // and what of it is nearer to the edge
-        let edge: Vec<Point> =
-            points.iter().take_while(|p| self.depth(**p) < BESIDE + 0.5).copied().collect();
-        let steps = (0..BESIDE as usize).map(|k| k as f64 + 1.0);
-        points.extend(steps.flat_map(|back| edge.iter().map(move |p| *p - self.inward * back)));
-        Some(points)
+        let nearer = (-(BESIDE as i64)..BESIDE as i64).map(|depth| (depth as f64, &rows[0]));
+        let further = rows.iter().enumerate().map(|(k, row)| (BESIDE + k as f64, row));
+        let places = |(depth, row): (f64, &Row)| {
+            let start = row.start;
+            (0..=row.width() as usize).map(move |k| self.at(start + k as f64, depth)).collect::<Vec<_>>()
+        };
+        Some(nearer.chain(further).flat_map(places).collect())
+    }
+
+    /// Whether what is seen in a row reaches over the sheet's edge: what is as dark as ink only if it differs from what lies
+    /// beside the sheet.
+    fn comes_from_beside(&self, run: &Range<usize>, row: &Row) -> bool {
+        let near = run.start as f64 - LEANING..run.end as f64 + LEANING;
+        let outermost = if self.is_border { 0 } else { -(BESIDE as i64) };
+        let goes_on = |depth: i64| {
+            let levels = self.levels(near.clone(), depth as f64);
+            levels.is_empty() || levels.into_iter().any(|level| row.holds(level))
+        };
+        let is_ink = row.level < DARKEST * row.paper;
+        if !is_ink
+            && differs(row.level, &row.papers, if row.papers.len() < 2 { 2.0 * FOREIGN } else { FOREIGN })
+            && (outermost..BESIDE as i64).all(goes_on)
+        {
+            return true;
+        }
+        let of =
+            |range: &Range<usize>| middle(self.levels(range.start as f64..range.end as f64 - 1.0, -BESIDE));
+        let Some((beyond, table)) = of(run).zip(of(&self.places)) else { return false };
+        (beyond - row.level).abs() < HIDDEN * (beyond - table).abs()
     }
 
     /// The places of what is seen of the table at a corner, where a side of another sheet below is taken for one of its own:
     /// a run that begins at an end of the side, as bright as what lies beside it there, and all that is joined to it.
     fn corner(&self, run: &Range<usize>, depths: &[f64]) -> Option<Vec<Point>> {
-        if run.start > self.places.start + 2 && run.end + 2 < self.places.end {
+        if run.start > self.places.start + AT_END && run.end + AT_END < self.places.end {
             return None;
         }
-        let over = Over::new(self, 0.5 * (run.start + run.end) as f64, run.len() as f64, BESIDE)?;
+        let row = Row::of(run).next(self, BESIDE, (0.5 * run.len() as f64, 0.0), 0.0)?;
         let outside = run.clone().filter_map(|k| self.level(k as f64, -BESIDE)).collect();
-        if !self.is_border && !over.holds(middle(outside)?) {
+        if !self.is_border && !row.holds(middle(outside)?) {
             return None;
         }
         let calm = self.calm;
-        let holds = |i: usize| depths[i] > 0.0 && over.holds(f64::from(calm.values[i]));
+        let place = |i: usize| Point::new((i % calm.width) as f64 + 0.5, (i / calm.width) as f64 + 0.5);
+        let lit = |i: usize| self.quad.lit(place(i), f64::from(calm.values[i]));
+        let holds = |i: usize| depths[i] > 0.0 && row.holds(lit(i));
         let mut seen = vec![false; calm.values.len()];
         let mut patch: Vec<usize> = Vec::new();
         for at in run.clone().map(|k| self.at(k as f64, BESIDE)) {
@@ -183,53 +249,35 @@ impl<'a> Along<'a> {
         }
         calm.flood(&mut patch, &mut seen, |_, k| holds(k));
         let sheet = depths.iter().filter(|depth| **depth > 0.0).count();
-        let place = |i: usize| Point::new((i % calm.width) as f64 + 0.5, (i / calm.width) as f64 + 0.5);
         ((patch.len() as f64) < MOST_CORNER * sheet as f64).then(|| patch.into_iter().map(place).collect())
     }
-
-    fn depth(&self, at: Point) -> f64 {
-        (at - self.from).dot(self.inward)
-    }
 }
 
-/// What lies over a sheet, at some depth in it: where along the side its middle is, its level, and the paper's beside it.
-struct Over {
-    middle: f64,
-    width: f64,
+/// What lies over a sheet at some depth in it: from where to where along the side, its level in the middle, and the paper's
+/// beside it.
+#[derive(Clone, Debug)]
+struct Row {
+    start: f64,
+    end: f64,
+    /// What of that is seen to differ from the paper.
+    patches: Vec<(f64, f64)>,
+    /// The same a row before.
+    before: Vec<(f64, f64)>,
     level: f64,
     paper: f64,
+    /// The paper's before it and after it, where they are seen.
+    papers: Vec<f64>,
 }
 
-impl Over {
-    /// `None` where there is nothing but paper.
-    fn new(along: &Along, middle_at: f64, width: f64, depth: f64) -> Option<Self> {
-        let levels = |from: f64, to: f64| {
-            let places =
-                (from.ceil() as i64..=to.floor() as i64).filter_map(|k| along.level(k as f64, depth));
-            middle(places.collect())
-        };
-        let level = levels(middle_at - 0.25 * width - 1.0, middle_at + 0.25 * width + 1.0)?;
-        // past the shadow of what lies there; one of both may be in another shadow
-        let (first, last) = (middle_at - 0.5 * width, middle_at + 0.5 * width);
-        let within = |at: f64| at.clamp(along.places.start as f64, along.places.end as f64);
-        let beside = [
-            (within(first - PAPER.end), first - PAPER.start),
-            (last + PAPER.start, within(last + PAPER.end)),
-        ];
-        let papers = beside.into_iter().filter(|(a, b)| b - a > 3.0).filter_map(|(a, b)| levels(a, b));
-        let papers: Vec<f64> = papers.collect();
-        let differs = |share: f64, is_darker: bool| {
-            let off = |paper: &f64| if is_darker { paper - level } else { level - paper };
-            !papers.is_empty() && papers.iter().all(|paper| off(paper) > share * paper)
-        };
-        // light falls off on one way: what is seen from one side alone differs by more, what is seen from both from both
-        let share = if papers.len() == 2 { FOREIGN } else { 2.0 * FOREIGN };
-        let near = |a: &f64, b: &f64| (a - level).abs().total_cmp(&(b - level).abs());
-        let paper = papers.iter().copied().min_by(near)?;
-        if !differs(share, true) && !differs(share, false) {
-            return None;
-        }
-        Some(Self { middle: middle_at, width, level, paper })
+impl Row {
+    fn of(run: &Range<usize>) -> Self {
+        let (start, end) = (run.start as f64, run.end as f64 - 1.0);
+        let (patches, before, papers) = (vec![(start, end)], Vec::new(), Vec::new());
+        Self { start, end, patches, before, level: 0.0, paper: 0.0, papers }
+    }
+
+    fn width(&self) -> f64 {
+        self.end - self.start
     }
 
     /// Whether a level is nearer to its own than to the paper's.
@@ -238,29 +286,64 @@ impl Over {
         (level > half) == (self.level > half)
     }
 
-    /// From where to where along the side it lies at a depth.
-    fn across(&self, along: &Along, depth: f64) -> Option<(f64, f64)> {
-        let holds = |at: f64| along.level(at, depth).is_some_and(|level| self.holds(level));
-        let reach = (0.25 * self.width) as i64;
-        let middle = self.middle.round();
-        // it may lean, and end on one side
-        let start = (0..=reach).flat_map(|k| [middle - k as f64, middle + k as f64]).find(|at| holds(*at))?;
-        // past the sides next to it there is none of the sheet
-        let (first, last) = (along.places.start as f64 - BESIDE, along.places.end as f64 + BESIDE);
-        let until = |way: f64| {
-            let on = (0..).map(|k| start + way * f64::from(k));
-            on.take_while(|at| (first..last).contains(at) && holds(*at)).last().unwrap_or(start)
+    /// What of it is seen at a depth, past which it may reach on either side by so much; paper is seen further out. What is
+    /// darker than some share of the paper is none of it. `None` where there is nothing but paper.
+    fn next(&self, along: &Along, depth: f64, (off, reach): (f64, f64), darkest: f64) -> Option<Self> {
+        let places = along.places.start as f64..along.places.end as f64 - 1.0;
+        let window = |from: f64, to: f64| {
+            let (from, to) = (from.max(places.start), to.min(places.end));
+            let levels = if to - from > 3.0 { along.levels(from..to, depth) } else { Vec::new() };
+            Some((0.5 * (from + to), middle(levels)?))
         };
-        Some((until(-1.0), until(1.0)))
+        let before = window(self.start - off - PAPER, self.start - off);
+        let after = window(self.end + off, self.end + off + PAPER);
+        // light falls off from one to the other
+        let paper = move |k: f64| match (before, after) {
+            (Some((a, from)), Some((b, to))) => {
+                Some(from + (to - from) * ((k - a) / (b - a)).clamp(0.0, 1.0))
+            }
+            (one, other) => one.or(other).map(|(_, level)| level),
+        };
+        let share = if before.is_some() && after.is_some() { SHADED } else { 2.0 * FOREIGN };
+        let is_over = |k: f64| {
+            let Some((level, paper)) = along.level(k, depth).zip(paper(k)) else { return false };
+            (level - paper).abs() > share * paper && level > darkest * paper
+        };
+        // its middle may be as bright as the paper
+        let mut patches: Vec<(f64, f64)> = Vec::new();
+        for k in (0..=(self.width() + 2.0 * reach) as usize).map(|k| self.start - reach + k as f64) {
+            match patches.last_mut().filter(|patch| patch.1 + GAP >= k) {
+                _ if !is_over(k) => {}
+                Some(patch) => patch.1 = k,
+                None => patches.push((k, k)),
+            }
+        }
+        // what is joined to it, and not only behind it
+        let own = || self.patches.iter().chain(&self.before);
+        let is_joined = |patch: &(f64, f64)| own().any(|own| patch.1 >= own.0 && patch.0 <= own.1);
+        patches.retain(is_joined);
+        let (start, end) = (patches.first()?.0, patches.last()?.1);
+        let (middle_at, quarter) = (0.5 * (start + end), 0.125 * (end - start) + 1.0);
+        let level = middle(along.levels(middle_at - quarter..middle_at + quarter, depth))?;
+        let papers = [before, after].into_iter().flatten().map(|(_, level)| level).collect();
+        let before = self.patches.clone();
+        Some(Self { start, end, patches, before, level, paper: paper(middle_at)?, papers })
     }
 }
 
+/// Whether a level is none of the papers that are seen, by some share: light falls off on one way, and what is seen from both
+/// sides differs from both.
+fn differs(level: f64, papers: &[f64], share: f64) -> bool {
+    let off = |paper: &f64| (level - paper) / paper;
+    !papers.is_empty() && (papers.iter().all(|p| off(p) > share) || papers.iter().all(|p| off(p) < -share))
+}
+
 /// With all so near, px.
-fn cover_near(covered: &mut Plane<bool>, at: Point, by: usize) {
+fn cover_near(covered: &mut Plane<bool>, at: Point) {
     let (x, y) = (at.x.max(0.0) as usize, at.y.max(0.0) as usize);
     let (x, y) = (x.min(covered.width - 1), y.min(covered.height - 1));
-    let (from, to) = (x.saturating_sub(by), (x + by + 1).min(covered.width));
-    for y in y.saturating_sub(by)..(y + by + 1).min(covered.height) {
+    let (from, to) = (x.saturating_sub(WIDER), (x + WIDER + 1).min(covered.width));
+    for y in y.saturating_sub(WIDER)..(y + WIDER + 1).min(covered.height) {
         covered.row_mut(y)[from..to].fill(true);
     }
 }

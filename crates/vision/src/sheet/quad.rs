@@ -5,6 +5,7 @@ use tracelight_stroke::{Point, Vec2};
 use super::shade::Shade;
 use super::sides::Side;
 use super::{BESIDE, inward};
+use crate::outline::area;
 use crate::plane::Plane;
 
 /// Least of a side that is seen; a finger, a shadow or another sheet hides the rest.
@@ -64,6 +65,11 @@ impl Quad {
     pub(super) fn depths(&self) -> impl Fn(Point) -> f64 + use<> {
         let sides = SIDES.map(|side| (self.ends(side).0, self.inward(side)));
         move |at| sides.iter().map(|(from, inward)| (at - *from).dot(*inward)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// In the small picture, px².
+    pub(super) fn area(&self) -> f64 {
+        area(&self.corners)
     }
 
     pub(super) fn seen(&self) -> usize {
