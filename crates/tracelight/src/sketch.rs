@@ -5,7 +5,7 @@ use std::time::Instant;
 use tracelight_aim::{Placement, SizeRequest};
 use tracelight_formats::{Reading, svg};
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
-use tracelight_vision::{Comb, Quality, Traced, VisionError};
+use tracelight_vision::{Comb, Dots, Quality, Traced, VisionError};
 
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::placing::PlacementArgs;
@@ -110,7 +110,12 @@ fn doubts(traced: &Traced) -> Vec<String> {
     let cut = (left_out.over_paper_px > CUT_SILENTLY_PX)
         .then(|| format!("{:.0} px of strokes led over paper and were cut out", left_out.over_paper_px));
     let ruled = rules.iter().flat_map(|rules| &rules.combs).map(ruled);
-    ruled.chain(missed).chain(outlined(&traced.strokes)).chain(specks).chain(cut).collect()
+    let dotted = left_out.dots.map(|Dots { count, spacing_px }| {
+        format!(
+            "{count} dots of the paper, {spacing_px:.0} px apart, were left out: --despeckle 0 keeps them"
+        )
+    });
+    ruled.chain(dotted).chain(missed).chain(outlined(&traced.strokes)).chain(specks).chain(cut).collect()
 }
 
 /// That a comb of rules was taken out.

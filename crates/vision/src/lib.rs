@@ -18,6 +18,7 @@
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bow`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
+//! | `dots` | the dots of dotted paper |
 //! | `near` | which of many points are near a place |
 //! | `follow` | points to paths |
 //! | `faint` | where a line goes on too pale for the mask |
@@ -38,6 +39,7 @@ mod comb;
 mod contrast;
 mod crumbs;
 mod distance;
+mod dots;
 mod dust;
 mod error;
 mod faint;
@@ -84,6 +86,7 @@ mod trace;
 mod twice;
 
 pub use comb::{Comb, Rules};
+pub use dots::Dots;
 pub use error::VisionError;
 pub use fiducial::{TAG_COUNT, Tag, TagPlace, find_tags, tag_cells};
 pub use grey::Grey;

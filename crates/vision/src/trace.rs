@@ -3,6 +3,7 @@ use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 use crate::centreline::{self, Row};
 use crate::comb::Rules;
 use crate::contrast::stands_out;
+use crate::dots::{self, Dots, Dotted};
 use crate::dust::Dust;
 use crate::graph::Graph;
 use crate::ink::Ink;
@@ -10,7 +11,8 @@ use crate::inside::inside;
 use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
-use crate::region::{self, Region, pinholes, regions};
+use crate::plane::Plane;
+use crate::region::{Region, pinholes, regions};
 use crate::{
     Grey, Page, Quality, VisionError, crumbs, gap, missed, on_ink, rest, screen, sweep, tone, twice,
 };
@@ -143,6 +145,8 @@ pub struct LeftOut {
     pub specks: usize,
     /// The largest of them, px².
     pub largest_speck_px2: usize,
+    /// The dots of dotted paper.
+    pub dots: Option<Dots>,
     /// Length of the ways over paper that were cut out of strokes, px.
     pub over_paper_px: f64,
 }
@@ -166,10 +170,11 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
     let mut mask = ink.mask();
     let tone_percent = options.judges().then(|| ink.tone_percent(&mask));
     tone_percent.map_or(Ok(()), tone::check)?;
-    let regions = drawn(&mut mask, least_patch(&ink, options))?;
+    let patches = Patches::of(&mut mask, least_patch(&ink, options))?;
     if options.judges() {
-        screen::check(page.given(), regions.len())?;
+        screen::check(page.given(), patches.drawn.len())?;
     }
+    let regions = &patches.drawn;
     let largest_px = regions.iter().map(Region::area).max().unwrap_or(0);
     let only = |strokes: Vec<Stroke>| Found { strokes, missed_ink: 0.0, left_out: LeftOut::default() };
     let Found { strokes, missed_ink, left_out } = match options.mode {
@@ -177,8 +182,8 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
             let area = regions.iter().map(Region::area).sum();
             only(vec![sweep::stroke(&mask, area)?])
         }
-        Mode::Outline => only(outlines(&ink, &mask, &mask, &regions, options)),
-        Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, mask, regions, options),
+        Mode::Outline => only(outlines(&ink, &mask, &mask, regions, options)),
+        Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, mask, patches, options),
     };
     let (width, height) = (ink.darkness.width as f64, ink.darkness.height as f64);
     if strokes.is_empty() {
@@ -217,6 +222,7 @@ impl LeftOut {
     fn enlarged(self, by: usize) -> Self {
         Self {
             largest_speck_px2: self.largest_speck_px2 * by * by,
+            dots: self.dots.map(|dots| Dots { spacing_px: dots.spacing_px * by as f64, ..dots }),
             over_paper_px: self.over_paper_px * by as f64,
             ..self
         }
@@ -286,17 +292,41 @@ fn least_patch(ink: &Ink, options: &Options) -> usize {
     })
 }
 
-/// The regions of at least so many pixels, their pinholes filled.
-fn drawn(mask: &mut Mask, least_px: usize) -> Result<Vec<Region>, VisionError> {
-    pinholes(mask, LEAST_HOLE_PX).iter().for_each(|hole| hole.fill_into(mask));
-    let (found, dust): (Vec<Region>, Vec<Region>) =
-        regions(mask).into_iter().partition(|r| r.area() >= least_px);
-    dust.iter().for_each(|speck| speck.erase_from(mask));
-    if found.is_empty() {
-        let largest_px = dust.iter().map(Region::area).max().unwrap_or(0);
-        return Err(VisionError::NoInk { largest_px, least_px });
+/// The patches of a mask.
+struct Patches {
+    drawn: Vec<Region>,
+    /// Too small to be drawn on purpose; no longer in the mask.
+    specks: Vec<Region>,
+}
+
+impl Patches {
+    /// Those of at least so many pixels, their pinholes filled, and the others, which are taken out.
+    fn of(mask: &mut Mask, least_px: usize) -> Result<Self, VisionError> {
+        pinholes(mask, LEAST_HOLE_PX).iter().for_each(|hole| hole.fill_into(mask));
+        let (drawn, specks): (Vec<Region>, Vec<Region>) =
+            regions(mask).into_iter().partition(|r| r.area() >= least_px);
+        specks.iter().for_each(|speck| speck.erase_from(mask));
+        if drawn.is_empty() {
+            let largest_px = specks.iter().map(Region::area).max().unwrap_or(0);
+            return Err(VisionError::NoInk { largest_px, least_px });
+        }
+        Ok(Self { drawn, specks })
     }
-    Ok(found)
+
+    /// Takes the dots of dotted paper out; a picture of nothing else means them.
+    fn take_dots(&mut self, mask: &mut Mask) -> Option<Dotted> {
+        let dotted = dots::of_paper(&self.drawn, &self.specks, (mask.width, mask.height));
+        let dotted = dotted.filter(|dotted| dotted.is_dot.contains(&false))?;
+        let mut is_dot = dotted.is_dot.iter();
+        self.drawn.retain(|region| {
+            let is_dot = is_dot.next() == Some(&true);
+            if is_dot {
+                region.erase_from(mask);
+            }
+            !is_dot
+        });
+        Some(dotted)
+    }
 }
 
 /// Fewer pixels of paper than this were never left out on purpose.
@@ -311,35 +341,44 @@ fn outlines(ink: &Ink, filled: &Mask, mask: &Mask, shapes: &[Region], options: &
     shapes.iter().flat_map(|shape| outliner.strokes(shape, options)).collect()
 }
 
-fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Options) -> Found {
+/// The rows of all lines.
+fn rows_of(dark: &Plane<u8>, parts: &Parts) -> Vec<Row> {
+    let of = |(region, graph): &(Region, Graph)| centreline::rows(dark, &parts.shape_mask, region, graph);
+    parts.lines.iter().flat_map(of).collect()
+}
+
+fn lines_and_shapes(ink: &Ink, mask: Mask, patches: Patches, options: &Options) -> Found {
     let dark = &ink.darkness;
-    let parts_of = |mask: Mask, regions| match options.mode {
-        Mode::Centreline => Parts::all_lines(mask, regions),
-        _ => {
-            let dust = match (options.despeckle_px2, &ink.rules) {
-                (Some(_), _) => Dust::Kept,
-                (None, None) => Dust::Dropped,
-                (None, Some(_)) => Dust::DroppedOnRules,
-            };
-            Parts::of(dark, mask, regions, dust)
+    let mut dotted = None;
+    let mut parts_of = |mut mask: Mask, mut patches: Patches| {
+        dotted = options.despeckle_px2.is_none().then(|| patches.take_dots(&mut mask)).flatten();
+        let dust = match (options.despeckle_px2, &ink.rules) {
+            (Some(_), _) => Dust::Kept,
+            (None, None) => Dust::Dropped,
+            (None, Some(_)) => Dust::DroppedOnRules,
+        };
+        match options.mode {
+            Mode::Centreline => Parts::all_lines(mask, patches.drawn),
+            _ => Parts::of(dark, mask, patches.drawn, dust),
         }
     };
-    let rows_of = |parts: &Parts| -> Vec<Row> {
-        let of = |(region, graph): &(Region, Graph)| centreline::rows(dark, &parts.shape_mask, region, graph);
-        parts.lines.iter().flat_map(of).collect()
-    };
-    let mut parts = parts_of(mask, regions);
-    let mut rows = rows_of(&parts);
+    let mut parts = parts_of(mask, patches);
+    let mut rows = rows_of(dark, &parts);
     // no patch is smaller with more ink: nothing is refused that was not before
-    if let Some(mut more) = ink.goes_on(&parts.ink, &rows) {
-        let regions = drawn(&mut more, least_patch(ink, options)).unwrap_or_default();
-        parts = parts_of(more, regions);
-        rows = rows_of(&parts);
+    if let Some(mut more) = ink.goes_on(&parts.ink, &rows)
+        && let Ok(patches) = Patches::of(&mut more, least_patch(ink, options))
+    {
+        parts = parts_of(more, patches);
+        rows = rows_of(dark, &parts);
     }
     let mask = &parts.ink;
     let mut strokes = outlines(ink, &parts.shape_mask, mask, &parts.shapes, options);
     let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
     let rows = rest::with_rest(dark, &lined, rows);
+    let rows = match &dotted {
+        Some(dotted) => dotted.off(rows),
+        None => rows,
+    };
     let rows = twice::once(dark, gap::bridged(dark, rows));
     let (rows, over_paper_px) = on_ink::only(mask, rows);
     let (rows, crumbs) = match options.despeckle_px2 {
@@ -364,7 +403,7 @@ fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Optio
     }
     // no lines, whatever they are: then their edges at least
     if !lost_ink.is_empty() {
-        strokes.extend(outlines(ink, &lost_ink, mask, &region::regions(&lost_ink), options));
+        strokes.extend(outlines(ink, &lost_ink, mask, &regions(&lost_ink), options));
     }
     let left_out = LeftOut {
         specks: parts.dust.len() + crumbs.len(),
@@ -375,6 +414,7 @@ fn lines_and_shapes(ink: &Ink, mask: Mask, regions: Vec<Region>, options: &Optio
             .chain(crumbs.iter().map(Row::area_px2))
             .max()
             .unwrap_or(0),
+        dots: dotted.map(|dotted| dotted.told),
         over_paper_px,
     };
     Found { strokes, missed_ink: missed as f64 / (all as f64).max(1.0), left_out }

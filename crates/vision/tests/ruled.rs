@@ -166,22 +166,22 @@ fn rules_of_a_sheet_that_lies_turned_on_a_table_are_no_strokes() {
     }
 }
 
-/// Dots on a lattice are the paper's, also those that lie near lines.
+/// Dots on a lattice are the paper's, also as large as the pen's, and those that touch a line.
 #[test]
 fn the_dots_of_dotted_paper_are_no_strokes() {
-    for spacing in [24.0, 40.0] {
+    for (spacing, dot, rise) in [(24.0, 3.0, 0.0), (40.0, 3.0, 0.0), (24.0, 4.5, 1.7), (32.0, 5.0, 2.9)] {
         let mut canvas = Canvas::new(WIDTH, HEIGHT);
         let count = |length: usize| (length as f64 / spacing) as i32;
         for (k, l) in (0..count(HEIGHT)).flat_map(|k| (0..count(WIDTH)).map(move |l| (k, l))) {
             let at = Point::new((f64::from(l) + 0.61) * spacing, (f64::from(k) + 0.42) * spacing);
-            canvas.pen(&[at, at], 3.0);
+            canvas.pen(&[at, at], dot);
         }
-        // between the dots
+        // between the dots, or over some
         let figure: Vec<Vec<Point>> = [4.1, 7.1]
             .map(|k| {
                 vec![
                     Point::new(1.1 * spacing, (k + 0.8) * spacing),
-                    Point::new(11.1 * spacing, (k + 0.8) * spacing),
+                    Point::new(11.1 * spacing, (k + 0.8 + rise) * spacing),
                 ]
             })
             .to_vec();
@@ -189,6 +189,7 @@ fn the_dots_of_dotted_paper_are_no_strokes() {
         let levels = canvas.shares().map(|share| (240.0 - 200.0 * share) as u8).collect();
         let found = trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap();
         assert_eq!(found.strokes.strokes.len(), 2, "{spacing} px apart");
-        assert!(found.left_out.specks > 100, "{spacing} px apart");
+        let dots = found.left_out.dots.unwrap();
+        assert!(dots.count > 100 && (dots.spacing_px - spacing).abs() < 0.5, "{spacing} px apart: {dots:?}");
     }
 }
