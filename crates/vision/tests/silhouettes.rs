@@ -163,3 +163,32 @@ fn a_fat_pens_letters_are_all_lines_or_all_outlines() {
     let (lines, all) = kinds(&[&letters[..], &closed[..]].concat());
     assert!(lines == 0 && all >= 6, "{lines} lines of {all}");
 }
+
+#[test]
+fn a_gate_between_straight_sides_is_no_sheet_of_paper() {
+    let gate = [
+        (40.0, 285.0),
+        (35.0, 18.0),
+        (341.0, 15.0),
+        (336.0, 288.0),
+        (286.0, 285.0),
+        (272.0, 132.0),
+        (102.0, 129.0),
+        (94.0, 285.0),
+    ];
+    for is_upside_down in [false, true] {
+        let outline = closed(&gate.map(|(x, y)| (x, if is_upside_down { 300.0 - y } else { y })));
+        let mut canvas = Canvas::new(WIDTH, HEIGHT);
+        canvas.fill(&[outline.clone()]);
+        // photographed: light falls off a little, and no level is even
+        let level = |(i, ink): (usize, f64)| {
+            let light = 1.0 - 0.08 * (i % WIDTH) as f64 / WIDTH as f64;
+            ((25.0 + 210.0 * ink) * light + (i * 7919 % 7) as f64) as u8
+        };
+        let levels = canvas.shares().enumerate().map(level).collect();
+        let found = trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap();
+        let drawn: Vec<_> = found.strokes.strokes.iter().map(|s| s.path.flatten(0.02)).collect();
+        let comparison = compare_polylines(&drawn, &[outline], 2.0).unwrap();
+        assert!(comparison.coverage > 0.98 && comparison.precision > 0.98, "{comparison:?}");
+    }
+}

@@ -37,6 +37,8 @@ const LEAST_FIRM_IN_SHADE: f64 = 0.8;
 const LEAST_FIRM_OF_TWO: f64 = 0.85;
 /// What a shadow on the paper lets through of the light: a step of that size on a single side may be its edge.
 const SHADE: std::ops::Range<f64> = 0.42..0.88;
+/// Least of a sheet that is like its paper.
+const LEAST_PAPER: f64 = 0.67;
 /// Most of as bright beside the sheet, as a share of the sheet: other sheets.
 const MOST_OUTSIDE: f64 = 0.4;
 /// A level is the paper's again within this share, and half of the step; the paper goes on if it is on this share of the way.
@@ -212,7 +214,7 @@ impl<'a> Calm<'a> {
                 false => like_outside += usize::from((ratio - 1.0).abs() < SAME),
             }
         }
-        2 * like > inside && (like_outside as f64) < MOST_OUTSIDE * inside as f64
+        like as f64 > LEAST_PAPER * inside as f64 && (like_outside as f64) < MOST_OUTSIDE * inside as f64
     }
 
     /// Whether there is far less to be seen beside the sheet than on it, block by block.
