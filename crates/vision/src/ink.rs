@@ -119,7 +119,7 @@ impl Ink {
         // a shadow on the sheet goes on beside it
         let mut seen = page.beside.as_ref().map(|_| reduced(&image.plane));
         let mut raw_levels = sampled_histogram(&plane);
-        let light_on_dark = is_light_on_dark(&plane, &raw_levels);
+        let light_on_dark = is_light_on_dark(&plane, &raw_levels, page.is_brighter);
         if light_on_dark {
             for plane in [Some(&mut plane), seen.as_mut()].into_iter().flatten() {
                 plane.to_mut().values.iter_mut().for_each(|v| *v = 255 - *v);

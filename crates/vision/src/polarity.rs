@@ -36,8 +36,8 @@ const BORDER: f64 = 0.9;
 /// Along rows and columns, what is thin and darker than both its neighbours is counted against what is thin and
 /// lighter: lines are thin, and there is one more of them than of the gaps between. The edges of shapes, of shadows and
 /// of the paper itself are neither. Where that says nothing, the picture is paper along its border, inside of what may be
-/// a line there; of one of two tones always, if it is nearly all the same there.
-pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256]) -> bool {
+/// a line there; of one of two tones always, if it is nearly all the same there. What is known to be light paper is that.
+pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256], is_light_paper: bool) -> bool {
     let thin = (image.width.min(image.height) / THIN).max(4);
     let border = border_levels(image, thin);
     if let Some(tones) = Tones::of(levels) {
@@ -58,7 +58,7 @@ pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256]) -> bool {
     let middle = (low.max(10.0) * high).sqrt();
     let light_border = percentile(&histogram(std::iter::once(&border[..])), 0.5).max(10.0) >= middle;
     if !runs.are_sure() {
-        return !light_border;
+        return !light_border && !is_light_paper;
     }
     let light_ink = runs.light > runs.dark;
     let all: u32 = levels.iter().sum();
@@ -191,7 +191,7 @@ mod tests {
             };
             Plane { width: 320, height: 240, values: (0..320 * 240).map(value).collect() }
         };
-        let found = |image: Plane<u8>| is_light_on_dark(&image, &sampled_histogram(&image));
+        let found = |image: Plane<u8>| is_light_on_dark(&image, &sampled_histogram(&image), false);
         assert_eq!(found(image(false)), light_on_dark);
         assert_eq!(found(image(true)), !light_on_dark, "inverted");
     }

@@ -232,6 +232,20 @@ fn nor_do_fingers_that_hold_the_sheet_dark_or_as_bright_as_paper() {
     assert!(faults.is_empty(), "{} of 60:\n{}", faults.len(), faults.join("\n"));
 }
 
+#[test]
+fn a_short_line_on_a_sheet_half_in_deep_shadow_does_not_turn_it_inside_out() {
+    let mut chance = Chance(0x0123_4567_89ab_cdef);
+    for k in 0..12 {
+        let any = Photograph { finger: None, ..Photograph::any(&mut chance) };
+        let middle = Point::new(0.5 * any.size.0 as f64, 0.5 * any.size.1 as f64);
+        let from = middle + Vec2::new(-60.0, 55.0);
+        let figure = vec![vec![from, from + Vec2::new(27.0, 19.0)]];
+        let deep = Photograph { figure, pen: 4.0, shadow: Some((0.5, 2.9, 20.0)), table: 60.0, ..any };
+        let image = deep.taken(&mut chance);
+        assert_eq!(fault(&deep, &image), None, "photograph {k}");
+    }
+}
+
 /// A picture of 640 × 480 by the level of each place.
 fn picture(level: impl Fn(f64, f64) -> f64) -> Grey {
     let at = |k: usize| level((k % 640) as f64 + 0.5, (k / 640) as f64 + 0.5) as u8;

@@ -85,6 +85,8 @@ pub struct Page<'a> {
     pub(crate) beside: Option<Beside>,
     /// The whole picture, where the sheet was looked for and found in it.
     whole: Option<&'a Grey>,
+    /// Whether the sheet is seen to be brighter than what lies beside it: its paper is, not its ink.
+    pub(crate) is_brighter: bool,
 }
 
 /// What of a page's picture is not its sheet's.
@@ -99,7 +101,8 @@ impl<'a> Page<'a> {
     /// All of a picture.
     pub const fn whole(image: &'a Grey) -> Self {
         let size = (image.width(), image.height());
-        Self { picture: Cow::Borrowed(image), size, origin: (0, 0), sheet: None, beside: None, whole: None }
+        let (picture, origin) = (Cow::Borrowed(image), (0, 0));
+        Self { picture, size, origin, sheet: None, beside: None, whole: None, is_brighter: false }
     }
 
     /// The sheet in a picture, if there is one, else all of it. In one of two tones what is white on black is a silhouette, unless it is
@@ -109,10 +112,11 @@ impl<'a> Page<'a> {
             let found = Found::of(&image.plane, &small)?;
             let tones = Tones::of(&sampled_histogram(&image.plane));
             let is_sheet = tones.is_none_or(|tones| is_page(&image.plane, tones, &found.sheet));
-            is_sheet.then(|| (alone(&image.plane, &small, &found), found.sheet))
+            is_sheet.then(|| (alone(&image.plane, &small, &found), found))
         });
-        found.map_or(Self::whole(image), |(alone, sheet)| Self {
+        found.map_or(Self::whole(image), |(alone, Found { sheet, quad, .. })| Self {
             whole: Some(image),
+            is_brighter: quad.is_brighter && quad.seen() > 0,
             ..Self::cut(image, alone, sheet)
         })
     }
@@ -135,6 +139,7 @@ impl<'a> Page<'a> {
             sheet: Some(sheet),
             beside: Some(alone.beside),
             whole: None,
+            is_brighter: false,
         }
     }
 

@@ -211,10 +211,8 @@ impl<'a> Along<'a> {
             levels.is_empty() || levels.into_iter().any(|level| row.holds(level))
         };
         let is_ink = row.level < DARKEST * row.paper;
-        if !is_ink
-            && differs(row.level, &row.papers, if row.papers.len() < 2 { 2.0 * FOREIGN } else { FOREIGN })
-            && (outermost..BESIDE as i64).all(goes_on)
-        {
+        let share = if row.papers.len() < 2 { 2.0 * FOREIGN } else { FOREIGN };
+        if !is_ink && differs(row.level, &row.papers, share) && (outermost..BESIDE as i64).all(goes_on) {
             return true;
         }
         let of =
