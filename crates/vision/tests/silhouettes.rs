@@ -179,7 +179,7 @@ fn a_gate_between_straight_sides_is_no_sheet_of_paper() {
     for is_upside_down in [false, true] {
         let outline = closed(&gate.map(|(x, y)| (x, if is_upside_down { 300.0 - y } else { y })));
         let mut canvas = Canvas::new(WIDTH, HEIGHT);
-        canvas.fill(&[outline.clone()]);
+        canvas.fill(std::slice::from_ref(&outline));
         // photographed: light falls off a little, and no level is even
         let level = |(i, ink): (usize, f64)| {
             let light = 1.0 - 0.08 * (i % WIDTH) as f64 / WIDTH as f64;
