@@ -3,6 +3,7 @@
 use tracelight_stroke::{Point, Vec2};
 
 use crate::centreline::Row;
+use crate::comb::ratio;
 use crate::near::Near;
 use crate::region::Region;
 use crate::ridge::middle;
@@ -36,14 +37,14 @@ const BESIDE_PX: f64 = 1.5;
 /// The next ones lie within so many times the distance of as many as there are, strewn all over.
 const REACH: f64 = 2.5;
 /// Ways to neighbours are as long as the usual one, within this ratio.
-const SAME_WAY: f64 = 1.25;
+const SAME_LENGTH: f64 = 1.25;
 /// So many of the nearest are asked for the way from one to the next.
 const ASKED: usize = 6;
 /// Of its four neighbours at least so many are seen.
 const NEIGHBOURS: usize = 3;
 /// At least so many of these have their own the same way, within this share of it.
 const AGREEING: usize = 2;
-const SAME_WAYS: f64 = 0.2;
+const SAME_WAY: f64 = 0.2;
 
 /// A patch that may be a dot.
 #[derive(Clone, Copy)]
@@ -98,7 +99,7 @@ pub(crate) fn of_paper(
         return None;
     }
     let spacing_px = middle(ways.iter().map(|(_, _, way)| way.hypot()).collect())?;
-    let is_usual = |way: &Vec2| (way.hypot() / spacing_px).max(spacing_px / way.hypot()) < SAME_WAY;
+    let is_usual = |way: &Vec2| ratio(way.hypot(), spacing_px) < SAME_LENGTH;
     let mut known: Vec<Option<Vec2>> = vec![None; regions.len() + specks.len()];
     ways.iter()
         .filter(|(.., way)| is_usual(way))
@@ -165,9 +166,9 @@ fn nearest(near: &Near<Patch>, at: Point, way: Vec2, like: (f64, f64)) -> Option
     let (area, alike) = like;
     let expected = at + way;
     let most = OFF * way.hypot() + OFF_PX;
-    let found = near.around(expected).filter(|(p, patch)| {
-        p.distance(expected) < most && (patch.area / area).max(area / patch.area) < alike
-    });
+    let found = near
+        .around(expected)
+        .filter(|(p, patch)| p.distance(expected) < most && ratio(patch.area, area) < alike);
     found.min_by(|(a, _), (b, _)| a.distance(expected).total_cmp(&b.distance(expected)))
 }
 
@@ -177,9 +178,7 @@ fn way(near: &Near<Patch>, at: Point, patch: &Patch) -> Option<Vec2> {
     let mut ways: Vec<Vec2> = near
         .around(at)
         .map(|(p, other)| (p - at, other))
-        .filter(|(way, other)| {
-            is_apart(way) && (other.area / patch.area).max(patch.area / other.area) < ALIKE
-        })
+        .filter(|(way, other)| is_apart(way) && ratio(other.area, patch.area) < ALIKE)
         .map(|(way, _)| way)
         .collect();
     ways.sort_unstable_by(|a, b| a.hypot().total_cmp(&b.hypot()));
@@ -198,7 +197,7 @@ fn ways_from(way: Vec2) -> [Vec2; 4] {
 /// Whether most of a dot's neighbours have theirs the same way: specks that lie so by chance have not.
 fn agrees(near: &Near<Patch>, known: &[Option<Vec2>], (at, patch, way): &Dot) -> bool {
     let ways = ways_from(*way);
-    let is_same = |other: Vec2| ways.iter().any(|way| (*way - other).hypot() < SAME_WAYS * way.hypot());
+    let is_same = |other: Vec2| ways.iter().any(|way| (*way - other).hypot() < SAME_WAY * way.hypot());
     let seen = ways.iter().filter_map(|way| nearest(near, *at, *way, (patch.area, ALIKE)));
     seen.filter(|(_, other)| known[other.number].is_some_and(is_same)).count() >= AGREEING
 }

@@ -149,7 +149,7 @@ fn longest_chain(strips: &Strips<'_>, tracks: &[Track]) -> Option<Vec<Link>> {
 }
 
 /// How many times the larger of two is the smaller.
-fn ratio(a: f64, b: f64) -> f64 {
+pub(crate) fn ratio(a: f64, b: f64) -> f64 {
     (a / b).max(b / a)
 }
 

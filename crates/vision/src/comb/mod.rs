@@ -13,6 +13,7 @@ mod template;
 mod track;
 mod wipe;
 
+pub(crate) use family::ratio;
 use family::{Ends, Family};
 pub(crate) use paper::Lie;
 use paper::Paper;

@@ -137,7 +137,7 @@ impl Place {
 
     /// How wide it is there if it has a level of its own, px.
     fn width(&self, own: f64) -> f64 {
-        if self.px < FEW_PX { self.sum / (self.paper - own).abs() } else { self.px }
+        if self.px < FEW_PX { self.sum / (self.paper - own).abs().max(1.0) } else { self.px }
     }
 }
 
