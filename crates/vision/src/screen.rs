@@ -334,7 +334,7 @@ mod tests {
         ];
         let mut plan = panes(255, &[&[([52, 52, 300, 288], 200)], &rooms[..]].concat());
         write(&mut plan, 5, 360);
-        assert!(told(plan, &Options::default()).is_ok());
+        assert_eq!(told(plan, &Options::default()), Ok(()));
     }
 
     #[test]

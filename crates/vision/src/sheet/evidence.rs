@@ -189,13 +189,15 @@ impl<'a> Calm<'a> {
         Some(Evidence { inner, outer, beyond: middle(all)?, firm, is_shadow })
     }
 
-    /// Whether much of what lies on a way is as bright again as on the other side of its beginning.
+    /// Whether much of what lies on a way is as bright again as on the other side of its beginning: brighter than a sheet that is brighter
+    /// than what lies beside it nothing is there either.
     fn comes_back(&self, quad: &Quad, from: Point, way: Vec2, paper: f64) -> bool {
         let on = (0..FAR).step_by(2).map(|k| from + way * k as f64);
         let lit: Vec<f64> = on.map_while(|at| Some(quad.lit(at, self.level(at)?))).collect();
-        let step = lit.first().map_or(0.0, |beside| (paper - beside).abs());
-        let same = (SAME * paper).min(0.5 * step);
-        let back = lit.iter().filter(|level| (**level - paper).abs() < same).count();
+        let step = lit.first().map_or(0.0, |beside| paper - beside);
+        let same = (SAME * paper).min(0.5 * step.abs());
+        let is_back = |level: &&f64| (paper - **level).abs() < same || step > 0.0 && **level > paper;
+        let back = lit.iter().filter(is_back).count();
         back as f64 > LEAST_BACK * lit.len() as f64
     }
 
