@@ -273,6 +273,18 @@ fn what_is_no_sheet_is_traced_as_it_was() {
     for wide in [3.0, 8.0, 16.0] {
         is_whole("a frame about it", &|x, y| if frame(x, y, wide) { 30.0 } else { ink(x, y) });
     }
+    is_whole("a floor between walls", &|x, y| {
+        let floor = if x < 360.0 { 200.0 } else { 255.0 };
+        let is_in = (52.0..588.0).contains(&x) && (52.0..340.0).contains(&y);
+        let is_wall = !is_in && (40.0..600.0).contains(&x) && (40.0..352.0).contains(&y);
+        if is_wall {
+            0.0
+        } else if is_in {
+            floor
+        } else {
+            255.0
+        }
+    });
     is_whole("a frame along the border", &|x, y| {
         if !(5.0..635.0).contains(&x) || !(5.0..475.0).contains(&y) { 30.0 } else { ink(x, y) }
     });

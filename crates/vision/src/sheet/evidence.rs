@@ -196,7 +196,8 @@ impl<'a> Calm<'a> {
         let lit: Vec<f64> = on.map_while(|at| Some(quad.lit(at, self.level(at)?))).collect();
         let step = lit.first().map_or(0.0, |beside| paper - beside);
         let same = (SAME * paper).min(0.5 * step.abs());
-        let is_back = |level: &&f64| (paper - **level).abs() < same || step > 0.0 && **level > paper;
+        let is_bright = quad.is_brighter && step > 0.0;
+        let is_back = |level: &&f64| (paper - **level).abs() < same || is_bright && **level > paper;
         let back = lit.iter().filter(is_back).count();
         back as f64 > LEAST_BACK * lit.len() as f64
     }
