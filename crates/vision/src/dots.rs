@@ -21,7 +21,7 @@ pub struct Dots {
 const FEWEST: usize = 20;
 /// They lie all over at least this share of the picture, either way.
 const LEAST_SPREAD: f64 = 0.3;
-/// A dot's width is at most this share of its height, or of the way to the next one.
+/// A dot is at most so many times as long as wide, and no longer than this share of the way to the next one.
 const ROUND: f64 = 2.2;
 const MOST_SPACED: f64 = 0.5;
 /// And it covers at least this share of the box about it.
@@ -134,8 +134,7 @@ fn hidden(near: &Near<Patch>, dots: &[Dot]) -> Vec<Point> {
             .filter(|w| nearest(near, *at, *w, (patch.area, KNOWN_ALIKE)).is_none())
         {
             let expected = *at + way;
-            let most = OFF * way.hypot() + OFF_PX;
-            match found.iter_mut().find(|(p, _)| p.distance(expected) < most) {
+            match found.iter_mut().find(|(p, _)| p.distance(expected) < tolerance(way)) {
                 Some((p, votes)) => {
                     *votes += 1;
                     *p = p.lerp(expected, 1.0 / *votes as f64);
@@ -147,7 +146,7 @@ fn hidden(near: &Near<Patch>, dots: &[Dot]) -> Vec<Point> {
     found.into_iter().filter(|(_, votes)| *votes > 1).map(|(p, _)| p).collect()
 }
 
-/// A region by its middle, if it is small and round.
+/// A region by its middle, if it is round.
 fn patch(number: usize, region: &Region) -> Option<(Point, Patch)> {
     let (width, height) = region.extent();
     let (area, side) = (region.area() as f64, width.max(height) as f64);
@@ -161,11 +160,16 @@ fn patch(number: usize, region: &Region) -> Option<(Point, Patch)> {
 /// Where a dot is, and the way to one of its neighbours.
 type Dot = (Point, Patch, Vec2);
 
+/// How far from where it must be a dot may lie, one way from another, px.
+fn tolerance(way: Vec2) -> f64 {
+    OFF * way.hypot() + OFF_PX
+}
+
 /// The patch nearest to a place where a dot must be, one way from another.
 fn nearest(near: &Near<Patch>, at: Point, way: Vec2, like: (f64, f64)) -> Option<(Point, &Patch)> {
     let (area, alike) = like;
     let expected = at + way;
-    let most = OFF * way.hypot() + OFF_PX;
+    let most = tolerance(way);
     let found = near
         .around(expected)
         .filter(|(p, patch)| p.distance(expected) < most && ratio(patch.area, area) < alike);

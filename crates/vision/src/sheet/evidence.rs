@@ -3,7 +3,7 @@
 use tracelight_stroke::{Point, Vec2};
 
 use super::quad::{Quad, SIDES, is_upright, off_border};
-use super::{BESIDE, Small};
+use super::{BESIDE, Small, are_as_wide};
 use crate::plane::Plane;
 use crate::ridge::middle;
 
@@ -46,12 +46,9 @@ const SAME: f64 = 0.1;
 const LEAST_BACK: f64 = 0.25;
 /// So many px are looked at, every other one, out of the sheet and into it.
 const FAR: usize = 40;
-/// A line along the picture's border is narrower than this share of its shorter side and so many px, and as wide everywhere within so
-/// many px, and as a share.
+/// A line along the picture's border is narrower than this share of its shorter side and so many px.
 const FRAME: f64 = 0.05;
 const FRAME_PX: f64 = 2.0;
-const SAME_WIDTH_PX: f64 = 1.0;
-const SAME_WIDTH: f64 = 0.15;
 
 /// The small picture, and what it is without lines.
 pub(super) struct Calm<'a> {
@@ -129,10 +126,7 @@ impl<'a> Calm<'a> {
         let seen = SIDES.into_iter().filter(|&side| quad.sides[side].is_some());
         let (frame, rest): (Vec<usize>, Vec<usize>) =
             seen.partition(|&side| width(side).into_iter().all(|width| width < most));
-        let widths: Vec<f64> = frame.iter().flat_map(|&side| width(side)).collect();
-        let narrowest = widths.iter().copied().fold(f64::INFINITY, f64::min);
-        let widest = widths.iter().copied().fold(0.0, f64::max);
-        let is_even = widest - narrowest < SAME_WIDTH_PX + SAME_WIDTH * widest;
+        let is_even = are_as_wide(frame.iter().flat_map(|&side| width(side)));
         let is_shadow = |side: usize| {
             let [Some(inside), Some(outside)] = [inner[side], outer[side]] else { return false };
             inside.min(outside) > SHADE.start * inside.max(outside)

@@ -191,6 +191,17 @@ fn inward(from: Point, to: Point) -> Vec2 {
     Vec2::new(-way.y, way.x)
 }
 
+/// A frame along the picture's border is as wide everywhere within so many px, and as a share.
+const SAME_WIDTH_PX: f64 = 1.0;
+const SAME_WIDTH: f64 = 0.15;
+
+/// Whether some widths are those of one frame, px.
+fn are_as_wide(widths: impl Iterator<Item = f64>) -> bool {
+    let (narrowest, widest) =
+        widths.fold((f64::INFINITY, 0.0_f64), |(low, high), width| (low.min(width), high.max(width)));
+    widest - narrowest < SAME_WIDTH_PX + SAME_WIDTH * widest
+}
+
 /// About so many rows, or columns, tell where a sheet lies.
 const SIDE: usize = 180;
 /// And at most so many the other way.

@@ -135,13 +135,9 @@ impl<'a> Along<'a> {
             differs(inside, &papers, FOREIGN)
                 || !self.is_border && step().is_some_and(|(step, usual)| step.abs() < HIDDEN * usual.abs())
         };
-        let mut runs: Vec<Range<usize>> = Vec::new();
-        for k in (0..count).filter(is_other).map(|k| first + k) {
-            match runs.last_mut().filter(|run| run.end + 2 >= k) {
-                Some(run) => run.end = k + 1,
-                None => runs.push(k..k + 1),
-            }
-        }
+        let runs = stretches((0..count).filter(is_other).map(|k| (first + k) as f64));
+        let mut runs: Vec<Range<usize>> =
+            runs.into_iter().map(|(start, end)| start as usize..end as usize + 1).collect();
         let shorter = self.calm.width.min(self.calm.height) as f64;
         let least = (LEAST_HIDDEN * shorter).max(LEAST_HIDDEN_PX);
         runs.retain(|run| run.len() as f64 >= least);
@@ -195,7 +191,7 @@ impl<'a> Along<'a> {
         let nearer = (-(BESIDE as i64)..BESIDE as i64).map(|depth| (depth as f64, &rows[0]));
         let further = rows.iter().enumerate().map(|(k, row)| (BESIDE + k as f64, row));
         let places = |(depth, row): (f64, &Row)| {
-            let start = row.start;
+            let start = row.start();
             (0..=row.width() as usize).map(move |k| self.at(start + k as f64, depth)).collect::<Vec<_>>()
         };
         Some(nearer.chain(further).flat_map(places).collect())
@@ -251,13 +247,10 @@ impl<'a> Along<'a> {
     }
 }
 
-/// What lies over a sheet at some depth in it: from where to where along the side, its level in the middle, and the paper's
-/// beside it.
+/// What lies over a sheet at some depth in it: its level in the middle, and the paper's beside it.
 #[derive(Clone, Debug)]
 struct Row {
-    start: f64,
-    end: f64,
-    /// What of that is seen to differ from the paper.
+    /// From where to where along the side it is seen to differ from the paper, at least once.
     patches: Vec<(f64, f64)>,
     /// The same a row before.
     before: Vec<(f64, f64)>,
@@ -269,13 +262,20 @@ struct Row {
 
 impl Row {
     fn of(run: &Range<usize>) -> Self {
-        let (start, end) = (run.start as f64, run.end as f64 - 1.0);
-        let (patches, before, papers) = (vec![(start, end)], Vec::new(), Vec::new());
-        Self { start, end, patches, before, level: 0.0, paper: 0.0, papers }
+        let patches = vec![(run.start as f64, run.end as f64 - 1.0)];
+        Self { patches, before: Vec::new(), level: 0.0, paper: 0.0, papers: Vec::new() }
+    }
+
+    fn start(&self) -> f64 {
+        self.patches[0].0
+    }
+
+    fn end(&self) -> f64 {
+        self.patches[self.patches.len() - 1].1
     }
 
     fn width(&self) -> f64 {
-        self.end - self.start
+        self.end() - self.start()
     }
 
     /// Whether a level is nearer to its own than to the paper's.
@@ -293,8 +293,8 @@ impl Row {
             let levels = if to - from > 3.0 { along.levels(from..to, depth) } else { Vec::new() };
             Some((0.5 * (from + to), middle(levels)?))
         };
-        let before = window(self.start - off - PAPER, self.start - off);
-        let after = window(self.end + off, self.end + off + PAPER);
+        let before = window(self.start() - off - PAPER, self.start() - off);
+        let after = window(self.end() + off, self.end() + off + PAPER);
         // light falls off from one to the other
         let paper = move |k: f64| match (before, after) {
             (Some((a, from)), Some((b, to))) => {
@@ -307,15 +307,8 @@ impl Row {
             let Some((level, paper)) = along.level(k, depth).zip(paper(k)) else { return false };
             (level - paper).abs() > share * paper && level > darkest * paper
         };
-        // its middle may be as bright as the paper
-        let mut patches: Vec<(f64, f64)> = Vec::new();
-        for k in (0..=(self.width() + 2.0 * reach) as usize).map(|k| self.start - reach + k as f64) {
-            match patches.last_mut().filter(|patch| patch.1 + GAP >= k) {
-                _ if !is_over(k) => {}
-                Some(patch) => patch.1 = k,
-                None => patches.push((k, k)),
-            }
-        }
+        let near = (0..=(self.width() + 2.0 * reach) as usize).map(|k| self.start() - reach + k as f64);
+        let mut patches = stretches(near.filter(|k| is_over(*k)));
         // what is joined to it, and not only behind it
         let own = || self.patches.iter().chain(&self.before);
         let is_joined = |patch: &(f64, f64)| own().any(|own| patch.1 >= own.0 && patch.0 <= own.1);
@@ -325,8 +318,20 @@ impl Row {
         let level = middle(along.levels(middle_at - quarter..middle_at + quarter, depth))?;
         let papers = [before, after].into_iter().flatten().map(|(_, level)| level).collect();
         let before = self.patches.clone();
-        Some(Self { start, end, patches, before, level, paper: paper(middle_at)?, papers })
+        Some(Self { patches, before, level, paper: paper(middle_at)?, papers })
     }
+}
+
+/// From the first to the last of places that are near each other.
+fn stretches(places: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    for k in places {
+        match found.last_mut().filter(|last| last.1 + GAP >= k) {
+            Some(last) => last.1 = k,
+            None => found.push((k, k)),
+        }
+    }
+    found
 }
 
 /// Whether a level is none of the papers that are seen, by some share: light falls off on one way, and what is seen from both

@@ -6,7 +6,7 @@
 use tracelight_stroke::Point;
 
 use super::edge::straight;
-use super::inward;
+use super::{are_as_wide, inward};
 use crate::plane::Plane;
 use crate::ridge::middle;
 
@@ -30,9 +30,6 @@ const LEAST_SEEN: f64 = 0.25;
 const LEAST_WEDGE_PX: f64 = 0.35;
 const LEAST_WEDGE: f64 = 0.15;
 const LEAST_WEDGE_OFF: f64 = 6.0;
-/// The sides of a frame are as wide as each other within so many px, and as a share.
-const SAME_WIDTH_PX: f64 = 1.0;
-const SAME_WIDTH: f64 = 0.15;
 /// There is no greater gap in what is seen of it than leaves this share.
 const LEAST_WHOLE: f64 = 0.7;
 /// What has fewer pixels has none that is all its own.
@@ -93,12 +90,9 @@ impl Strip {
 }
 
 /// Which of the strips along the four borders lie beside the sheet. One that is as wide everywhere may be a line that someone
-/// drew, if it is not too narrow for that, and three or four of them a frame, which is as wide on all sides.
+/// drew, if it is not too narrow for that; such strips on all sides are a frame, however narrow. Lines are as wide as each other.
 pub(super) fn beside(strips: [Option<Strip>; 4]) -> [Option<Strip>; 4] {
-    let widths = || strips.iter().flatten().map(Strip::width);
-    let (narrowest, widest) =
-        widths().fold((f64::INFINITY, 0.0_f64), |(low, high), width| (low.min(width), high.max(width)));
-    let is_even = widest - narrowest < SAME_WIDTH_PX + SAME_WIDTH * widest;
+    let is_even = are_as_wide(strips.iter().flatten().map(Strip::width));
     let is_frame = is_even && strips.iter().all(|strip| strip.as_ref().is_some_and(|strip| !strip.is_beside));
     let is_line = |strip: &Strip| !strip.is_beside && is_even && (is_frame || strip.width() > SLIVER_PX);
     strips.map(|strip| strip.filter(|strip| !is_line(strip)))
