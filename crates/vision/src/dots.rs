@@ -38,6 +38,8 @@ const BESIDE_PX: f64 = 1.5;
 const REACH: f64 = 2.5;
 /// Ways to neighbours are as long as the usual one, within this ratio.
 const SAME_LENGTH: f64 = 1.25;
+/// And nothing alike is nearer than this share of it.
+const BETWEEN: f64 = 0.7;
 /// So many of the nearest are asked for the way from one to the next.
 const ASKED: usize = 6;
 /// Of its four neighbours at least so many are seen.
@@ -178,15 +180,17 @@ fn nearest(near: &Near<Patch>, at: Point, way: Vec2, like: (f64, f64)) -> Option
 
 /// The way from a patch to its neighbour, if it has most of the four that a dot has.
 fn way(near: &Near<Patch>, at: Point, patch: &Patch) -> Option<Vec2> {
-    let is_apart = |way: &Vec2| patch.side < MOST_SPACED * way.hypot();
     let mut ways: Vec<Vec2> = near
         .around(at)
         .map(|(p, other)| (p - at, other))
-        .filter(|(way, other)| is_apart(way) && ratio(other.area, patch.area) < ALIKE)
+        .filter(|(way, other)| way.hypot() > 0.0 && ratio(other.area, patch.area) < ALIKE)
         .map(|(way, _)| way)
         .collect();
     ways.sort_unstable_by(|a, b| a.hypot().total_cmp(&b.hypot()));
-    ways.into_iter().take(ASKED).find(|way| {
+    // letters of a page of type have others beside them
+    let nearest_px = ways.first()?.hypot();
+    let is_apart = |way: &Vec2| patch.side < MOST_SPACED * way.hypot() && nearest_px > BETWEEN * way.hypot();
+    ways.into_iter().take(ASKED).filter(is_apart).find(|way| {
         let [_, others @ ..] = ways_from(*way);
         let seen = others.iter().filter(|way| nearest(near, at, **way, (patch.area, ALIKE)).is_some());
         seen.count() + 1 >= NEIGHBOURS
@@ -261,6 +265,9 @@ mod tests {
             .collect();
         let is_speck = |x: f64, y: f64| specks.iter().any(|p| p.distance(Point::new(x, y)) < 1.8);
         assert!(found(&mask(is_speck)).is_none());
+        // a page of type, every second letter of which is as far from the next one as from that of the next line
+        let is_letter = |x: f64, y: f64| x % 11.0 < 7.0 && y % 22.0 < 7.0;
+        assert!(found(&mask(is_letter)).is_none());
         // a few that someone drew
         let is_few =
             |x: f64, y: f64| is_dot(x, y) && (150.0..210.0).contains(&x) && (90.0..150.0).contains(&y);
