@@ -347,11 +347,10 @@ fn rows_of(dark: &Plane<u8>, parts: &Parts) -> Vec<Row> {
     parts.lines.iter().flat_map(of).collect()
 }
 
-fn lines_and_shapes(ink: &Ink, mask: Mask, patches: Patches, options: &Options) -> Found {
+fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &Options) -> Found {
     let dark = &ink.darkness;
-    let mut dotted = None;
-    let mut parts_of = |mut mask: Mask, mut patches: Patches| {
-        dotted = options.despeckle_px2.is_none().then(|| patches.take_dots(&mut mask)).flatten();
+    let dotted = options.despeckle_px2.is_none().then(|| patches.take_dots(&mut mask)).flatten();
+    let parts_of = |mask: Mask, patches: Patches| {
         let dust = match (options.despeckle_px2, &ink.rules) {
             (Some(_), _) => Dust::Kept,
             (None, None) => Dust::Dropped,
