@@ -21,6 +21,8 @@ const LEAST_LONG: f64 = 30.0;
 /// and covers as much as before, within this share: of crayon 3 %.
 const MOST_GROWN: f64 = 0.06;
 
+/// A picture of fewer pixels either way shows no grain: its pixels are as coarse, and smoothed its small figures run together.
+const GRAIN_SIDE_PX: usize = 300;
 /// The border of grainy ink is this many times as long as when it is smoothed. Of a pen it is 1.00 to 1.05, of printed letters and of
 /// even pencils up to 1.08, of sketches in pencil 1.09 to 1.35.
 const GRAINY: f64 = 1.09;
@@ -31,7 +33,8 @@ const MOST_LOST: f64 = 0.02;
 
 /// Whether the ink of a plane, what is over a threshold, may be grainy: to know it takes the smoothed ink.
 pub(crate) fn may_be_grainy(fine: &Mask, darkness: &Plane<u8>, threshold: u8) -> bool {
-    grain(fine, &over(&smoothed(darkness), threshold)) >= MAY_BE_GRAINY
+    let is_small = darkness.width.min(darkness.height) < GRAIN_SIDE_PX;
+    !is_small && grain(fine, &over(&smoothed(darkness), threshold)) >= MAY_BE_GRAINY
 }
 
 /// Whether ink is so grainy that a smoothed look, in which it is `even`, is better.
@@ -109,15 +112,20 @@ fn spread(word: u32) -> u64 {
 mod tests {
     use super::*;
 
-    /// A ring of this width, drawn with a pen whose edge wanders by so many px from pixel to pixel.
     fn ring(width: f64, ragged_px: f64) -> Plane<u8> {
-        let mut plane = Plane::filled(400, 400, 0);
+        ring_within(400, width, ragged_px)
+    }
+
+    /// A ring of this width in so many pixels either way, drawn with a pen whose edge wanders by so many px from pixel to pixel.
+    fn ring_within(side: usize, width: f64, ragged_px: f64) -> Plane<u8> {
+        let mut plane = Plane::filled(side, side, 0);
+        let (middle, radius) = (0.5 * (side - 1) as f64, 0.375 * side as f64);
         let mut word = 1_u64;
-        for y in 0..400 {
-            for x in 0..400 {
+        for y in 0..side {
+            for x in 0..side {
                 word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 let wander = ragged_px * ((word >> 40) as f64 / f64::from(1 << 24) - 0.5);
-                let off = ((x as f64 - 199.5).hypot(y as f64 - 199.5) - 150.0).abs() + wander;
+                let off = ((x as f64 - middle).hypot(y as f64 - middle) - radius).abs() + wander;
                 plane.row_mut(y)[x] = (255.0 * (0.5 * width - off + 0.5).clamp(0.0, 1.0)) as u8;
             }
         }
@@ -165,6 +173,16 @@ mod tests {
         assert!(is_grainy(4.0, 4.0));
         assert!(!is_grainy(4.0, 0.0));
         assert!(!is_grainy(0.8, 0.0), "thin lines would be lost");
+    }
+
+    #[test]
+    fn a_picture_of_few_pixels_has_no_grain() {
+        let may_be_grainy = |side| {
+            let plane = ring_within(side, 4.0, 4.0);
+            may_be_grainy(&over(&plane, 128), &plane, 128)
+        };
+        assert!(may_be_grainy(GRAIN_SIDE_PX));
+        assert!(!may_be_grainy(GRAIN_SIDE_PX - 1));
     }
 
     #[test]
