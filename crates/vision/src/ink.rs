@@ -8,7 +8,7 @@ use crate::comb::{self, Lie, Rules};
 use crate::faint;
 use crate::light::{Paper, percentile};
 use crate::mask::Mask;
-use crate::paler::with_paler;
+use crate::paler::Inked;
 use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
 use crate::quality::clipped_percent;
@@ -199,10 +199,10 @@ impl Ink {
             Some(pencil) => joined(over(&self.darkness, pencil.threshold), &self.over()),
             None => self.over(),
         };
-        match self.strength {
-            Some(strength) => with_paler(&self.darkness, mask, strength, self.edge_px()),
-            None => mask,
-        }
+        let Some(strength) = self.strength else { return mask };
+        // what is left of rules is no line
+        let pales = self.rules.is_none();
+        Inked { dark: &self.darkness, ink: mask, strength, edge_px: self.edge_px() }.with_paler(pales)
     }
 
     /// The mask with what is too pale for it of its lines, ahead of their ends; `None` where there is nothing.

@@ -1,8 +1,8 @@
-//! A second ink: a pencil's lines beside a pen's.
+//! Ink that one threshold for the whole picture does not tell: where a line pales along its way, and a pencil's lines beside a pen's.
 //!
-//! One threshold for the whole picture goes between the darkest ink and all else, or between paper and all else; a pencil
-//! beside a pen is lost, or the pen's blur is ink. So what is beyond the reach of the first ink's blur is looked at by
-//! itself: what stands out from the paper there is the second ink.
+//! One threshold goes between the darkest ink and all else, or between paper and all else; a pencil beside a pen is lost, or the
+//! pen's blur is ink. A line ends where it is half as dark as in its middle: what is joined to ink is ink as far as that. And what is
+//! beyond the reach of the first ink's blur is looked at by itself: what stands out from the paper there is the second ink.
 
 use crate::ink::{histogram, over, sampled_blocks};
 use crate::light::percentile;
@@ -30,47 +30,135 @@ const FADED: f64 = 0.35;
 const FOOT: f64 = 0.9;
 /// Most pixels that are looked at.
 const SAMPLED: usize = 130_000;
+/// A line's edge is where it is this share as dark as the darkest about.
+const EDGE: f64 = 0.5;
+/// A patch that ink pales to has so many pixels: fewer are the edge's own.
+const LEAST_PALING_PX: usize = 6;
 
-/// The ink with what is paler than it and drawn as well. `strength` is how much darker than the paper it is, levels;
-/// `edge_px` how wide its edges are.
-pub(crate) fn with_paler(dark: &Plane<u8>, mut ink: Mask, strength: f64, edge_px: Option<f64>) -> Mask {
-    let reach = (FOOT * edge_px.unwrap_or(1.0)).ceil().clamp(1.0, 16.0) as usize + 1;
-    let near = ink.clone().dilated_by(reach);
-    let Some(threshold) = threshold(dark, &near, strength) else { return ink };
-    let pale = over(dark, threshold);
-    let mut drawn = pale.clone().without(&near);
-    // from border to border lead ruled paper's lines and the edges of shadows, unless the first ink does itself
-    if any_spans(if any_spans(&ink) { &drawn } else { &pale }) {
-        return ink;
-    }
-    let side = (dark.width.min(dark.height) / SOLID_SHARE).max(LEAST_PX);
-    let solid = drawn.clone().eroded(side);
-    let edges = Edges { dark, drawn: drawn.clone(), near: &near, beyond: reach as isize + 1 };
-    let is_line = |region: &Region| is_drawn(region, &solid) && edges.are_sharp(region);
-    regions(&drawn).iter().filter(|r| !is_line(r)).for_each(|region| region.erase_from(&mut drawn));
-    // up to the first ink's own edge, through what its blur hides
-    for _ in 0..reach {
-        drawn = drawn.dilated_by(1).and(&pale);
-    }
-    ink.add(&drawn);
-    ink
+/// Ink, and how it ends.
+pub(crate) struct Inked<'a> {
+    pub(crate) dark: &'a Plane<u8>,
+    pub(crate) ink: Mask,
+    /// How much darker than the paper it is, levels.
+    pub(crate) strength: f64,
+    /// How wide its edges are, px.
+    pub(crate) edge_px: Option<f64>,
 }
 
-/// Darkness from which on there is ink beyond `near`; `None` where there is nothing but paper.
-fn threshold(dark: &Plane<u8>, near: &Mask, strength: f64) -> Option<u8> {
-    let blocks = sampled_blocks(dark, SAMPLED);
-    let levels = histogram(blocks.flat_map(|(y, number, levels)| clear(levels, near.row(y)[number])));
-    let paper = percentile(&levels, 0.5);
-    // of a normal distribution a sixth is more than a deviation above the middle
-    let deviation = (percentile(&levels, 0.841) - paper).max(0.5);
-    let least = paper + (LEAST_SHARE * strength).max(DEVIATIONS * deviation).max(LEAST_LEVELS);
-    let class = |from: usize| {
-        let counted = levels.iter().enumerate().skip(from).map(|(level, &n)| (f64::from(n), level as f64));
-        counted.fold((0.0, 0.0), |(all, sum), (n, level)| (all + n, sum + n * level))
-    };
-    let ((all, _), (count, sum)) = (class(0), class(least as usize + 1));
-    let is_ink = count >= (LEAST_INK * all).max(LEAST_PX as f64);
-    is_ink.then(|| least.max(0.5 * (paper + sum / count)) as u8)
+impl Inked<'_> {
+    /// The ink with what is paler than it and drawn as well. Where a line `pales` along its way, that is so too.
+    pub(crate) fn with_paler(mut self, pales: bool) -> Mask {
+        let reach = (FOOT * self.edge_px.unwrap_or(1.0)).ceil().clamp(1.0, 16.0) as usize + 1;
+        let mut near = self.ink.clone().dilated_by(reach);
+        let mut beyond = Beyond::of(self.dark, &near);
+        if pales && self.goes_on_paler(&near, beyond.least(self.strength), reach) {
+            near = self.ink.clone().dilated_by(reach);
+            beyond = Beyond::of(self.dark, &near);
+        }
+        if let Some(threshold) = beyond.threshold(self.strength) {
+            self.add_second(&near, threshold, reach);
+        }
+        self.ink
+    }
+
+    /// Adds what the ink pales to along its way, where that is darker than `least`; whether there is any. `near` is what is within
+    /// `reach` of the ink, px: as far as its blur does.
+    fn goes_on_paler(&mut self, near: &Mask, least: f64, reach: usize) -> bool {
+        let pale = over(self.dark, least as u8).without(&self.ink);
+        let drawn = half_as_dark(self.dark, pale, reach);
+        if drawn.is_empty() {
+            return false;
+        }
+        let beside = self.ink.clone().dilated_by(1);
+        let edges = Edges { dark: self.dark, drawn, near, beyond: reach as isize + 1 };
+        let is_joined = |region: &Region| {
+            region.area() >= LEAST_PALING_PX
+                && region.cells(&beside).next().is_some()
+                && edges.are_sharp(region)
+        };
+        let mut found = regions(&edges.drawn);
+        found.retain(is_joined);
+        found.iter().for_each(|region| region.fill_into(&mut self.ink));
+        !found.is_empty()
+    }
+
+    /// Adds what is over a threshold beyond the reach of the ink: a second one.
+    fn add_second(&mut self, near: &Mask, threshold: u8, reach: usize) {
+        let pale = over(self.dark, threshold);
+        let mut drawn = pale.clone().without(near);
+        // from border to border lead ruled paper's lines and the edges of shadows, unless the first ink does itself
+        if any_spans(if any_spans(&self.ink) { &drawn } else { &pale }) {
+            return;
+        }
+        let side = (self.dark.width.min(self.dark.height) / SOLID_SHARE).max(LEAST_PX);
+        let solid = drawn.clone().eroded(side);
+        let edges = Edges { dark: self.dark, drawn: drawn.clone(), near, beyond: reach as isize + 1 };
+        let is_line = |region: &Region| is_drawn(region, &solid) && edges.are_sharp(region);
+        regions(&drawn).iter().filter(|r| !is_line(r)).for_each(|region| region.erase_from(&mut drawn));
+        // up to the first ink's own edge, through what its blur hides
+        for _ in 0..reach {
+            drawn = drawn.dilated_by(1).and(&pale);
+        }
+        self.ink.add(&drawn);
+    }
+}
+
+/// What of some pixels is darker than half of what is darkest within so many px.
+fn half_as_dark(dark: &Plane<u8>, mut pale: Mask, reach: usize) -> Mask {
+    for y in 0..dark.height {
+        let rows = y.saturating_sub(reach)..(y + reach + 1).min(dark.height);
+        for k in 0..pale.row(y).len() {
+            let mut left = pale.row(y)[k];
+            while left != 0 {
+                let bit = left.trailing_zeros();
+                left &= left - 1;
+                let x = 64 * k + bit as usize;
+                let columns = x.saturating_sub(reach)..(x + reach + 1).min(dark.width);
+                let level = EDGE.recip() * f64::from(dark.row(y)[x]);
+                let is_darker =
+                    |y: usize| dark.row(y)[columns.clone()].iter().any(|&v| f64::from(v) >= level);
+                if rows.clone().any(is_darker) {
+                    pale.row_mut(y)[k] &= !(1 << bit);
+                }
+            }
+        }
+    }
+    pale
+}
+
+/// What is beyond the reach of ink: how many times each level occurs there.
+struct Beyond {
+    levels: [u32; 256],
+    /// Of the paper, levels.
+    paper: f64,
+}
+
+impl Beyond {
+    fn of(dark: &Plane<u8>, near: &Mask) -> Self {
+        let blocks = sampled_blocks(dark, SAMPLED);
+        let levels = histogram(blocks.flat_map(|(y, number, levels)| clear(levels, near.row(y)[number])));
+        Self { levels, paper: percentile(&levels, 0.5) }
+    }
+
+    /// What is paler is no ink beside one of this strength, levels.
+    fn least(&self, strength: f64) -> f64 {
+        // of a normal distribution a sixth is more than a deviation above the middle
+        let deviation = (percentile(&self.levels, 0.841) - self.paper).max(0.5);
+        self.paper + (LEAST_SHARE * strength).max(DEVIATIONS * deviation).max(LEAST_LEVELS)
+    }
+
+    /// Darkness from which on there is ink; `None` where there is nothing but paper.
+    fn threshold(&self, strength: f64) -> Option<u8> {
+        let least = self.least(strength);
+        let class = |from: usize| {
+            let counted = self.levels.iter().enumerate().skip(from);
+            let weighed = counted.map(|(level, &n)| (f64::from(n), level as f64));
+            weighed.fold((0.0, 0.0), |(all, sum), (n, level)| (all + n, sum + n * level))
+        };
+        let ((all, _), (count, sum)) = (class(0), class(least as usize + 1));
+        let is_ink = count >= (LEAST_INK * all).max(LEAST_PX as f64);
+        is_ink.then(|| least.max(0.5 * (self.paper + sum / count)) as u8)
+    }
 }
 
 /// Of up to 64 levels those eights that have nothing in `near`.
@@ -134,11 +222,30 @@ mod tests {
         Plane { width: 160, height: 120, values: (0..160 * 120).map(level).collect() }
     }
 
+    fn paler(dark: &Plane<u8>, ink: Mask) -> Mask {
+        Inked { dark, ink, strength: 220.0, edge_px: Some(1.0) }.with_paler(false)
+    }
+
+    #[test]
+    fn a_line_that_pales_is_ink_as_wide_as_it_was() {
+        // from 220 to 50 levels over 140 px, 6 px wide, on paper with a pale smudge
+        let level = |x: usize, y: usize| match (x, y) {
+            (10..150, 57..63) => 220.0 - 170.0 * (x as f64 - 10.0) / 140.0,
+            _ => 10.0 * (-((x as f64 - 80.0).powi(2) + (y as f64 - 20.0).powi(2)) / 200.0).exp(),
+        };
+        let values = (0..160 * 120).map(|i| level(i % 160, i / 160) as u8).collect();
+        let dark = Plane { width: 160, height: 120, values };
+        let ink = Inked { dark: &dark, ink: over(&dark, 110), strength: 170.0, edge_px: Some(1.0) };
+        let found = ink.with_paler(true);
+        assert_eq!(found.count(), 140 * 6);
+        assert!((10..150).all(|x| found.get(x, 57) && found.get(x, 62)));
+    }
+
     #[test]
     fn a_pencils_line_beside_a_pens_is_ink_up_to_the_pens_edge() {
         for share in [0.3, 0.45, 0.6] {
             let dark = crossed(share);
-            let found = with_paler(&dark, over(&dark, 150), 220.0, Some(1.0));
+            let found = paler(&dark, over(&dark, 150));
             for y in [-45.0, -10.0, -4.0, 4.0, 20.0, 45.0] {
                 let (x, y) = ((79.5 - 0.4 * y) as isize, (59.5 + y) as isize);
                 assert!(found.get(x, y), "{share}: nothing at {x}, {y}");
@@ -157,7 +264,7 @@ mod tests {
                     + u8::from(inside && (500..505).contains(&y)) * 220
             };
             let dark = Plane { width: 1280, height: 720, values: (0..1280 * 720).map(level).collect() };
-            let found = with_paler(&dark, over(&dark, 150), 220.0, Some(1.0));
+            let found = paler(&dark, over(&dark, 150));
             assert!(found.get(600, top as isize + 1), "nothing at {top}");
         }
     }
@@ -166,6 +273,6 @@ mod tests {
     fn paper_beside_a_line_stays_paper() {
         let dark = crossed(0.0);
         let ink = over(&dark, 150);
-        assert_eq!(with_paler(&dark, ink.clone(), 220.0, Some(1.0)).count(), ink.count());
+        assert_eq!(paler(&dark, ink.clone()).count(), ink.count());
     }
 }

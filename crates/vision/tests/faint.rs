@@ -61,6 +61,23 @@ fn a_line_that_pales_is_one_line_and_with_paper_between_it_is_two() {
 }
 
 #[test]
+fn a_corner_is_one_though_its_sides_pale_to_just_the_threshold() {
+    let (corner, ends) = (Point::new(200.0, 400.0), [Point::new(120.0, 60.0), Point::new(420.0, 80.0)]);
+    for palest in (50..130).step_by(5).map(f64::from) {
+        // so many levels at the corner, and 220 at the ends, in steps
+        let step = |end: Point, k: u32| {
+            let at = |k: u32| corner.lerp(end, f64::from(k) / 40.0);
+            (palest + (220.0 - palest) * f64::from(k) / 40.0, vec![at(k), at(k + 1)])
+        };
+        let lines: Vec<_> = ends.iter().flat_map(|&end| (0..40).map(move |k| step(end, k))).collect();
+        let strokes = traced(&lines, even).strokes.strokes;
+        assert_eq!(strokes.len(), 1, "{palest} levels");
+        let near = |p: Point| strokes[0].path.flatten(0.1).iter().any(|q| q.distance(p) < 2.0);
+        assert!(near(corner) && ends.iter().all(|&end| near(end)), "{palest} levels: not all of it");
+    }
+}
+
+#[test]
 fn a_tail_is_followed_as_far_as_it_is_seen() {
     let found = traced(&[(170.0, bow(60, 300)), (22.0, bow(300, 420))], even);
     let path = &found.strokes.strokes[0].path;
