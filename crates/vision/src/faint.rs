@@ -1,13 +1,16 @@
 //! Where a pencil pressed less its line is too pale for the mask, and goes on.
 //!
 //! From every free end the line is followed ahead as long as what lies there is darker than the paper on both sides of it, by far more than
-//! that paper differs from place to place. What is found becomes ink, and is traced with the rest.
+//! that paper differs from place to place. Between two ends that face each other all of the way is seen at once: there it may be as broken
+//! as grain makes it. What is found becomes ink, and is traced with the rest.
 
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::Tip;
 use crate::centreline::Row;
+use crate::gap::widest_paper;
 use crate::mask::Mask;
+use crate::near::Near;
 use crate::plane::Plane;
 use crate::ridge::median;
 
@@ -34,20 +37,40 @@ const LEAST_LENGTH: f64 = 1.5;
 /// What ends in paper is a line if so many pens of it were seen.
 const LEAST_SEEN: f64 = 3.0;
 
+/// Two ends that face each other are this near at most, pens; and pens of a px and a half at least.
+const FACING_PENS: f64 = 12.0;
+const FACING_LEAST_PX: f64 = 1.5;
+/// One of them is a line of so many pens: the strokes of letters are shorter, and end beside each other.
+const FACING_LENGTH: f64 = 10.0;
+/// They are one line that bends by less than this on its way over, rad, and their widths differ by less, as a ratio.
+const FACING_BEND: f64 = 1.0;
+const FACING_LIKE: f64 = 2.5;
+/// On the way over it is darker than its sides by this share of what it is where it is ink, by so many times what the paper beside the way
+/// differs, and nowhere paler than by this share for longer than a pen may skip.
+const FACING_MEAN: f64 = 0.2;
+const FACING_SURE: f64 = 4.0;
+const FACING_PALEST: f64 = 0.1;
+/// Ways beside it that are paper, pens from it.
+const FACING_PAPERS: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
+
 /// The mask with what is found ahead of its lines' free ends; `None` where nothing is. The paper may have had `shadows`.
 pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row], shadows: bool) -> Option<Mask> {
     let least = if shadows { LEAST_BY_SHADOWS } else { LEAST_SHARE };
     let mut more = Mask::empty(mask.width, mask.height);
-    let is_long =
-        |row: &&Row| !row.closed && !row.dot && polyline_length(&row.points) >= LEAST_LENGTH * row.width;
-    for row in rows.iter().filter(is_long) {
-        for end in [0, 1].into_iter().filter(|&end| row.free[end]) {
-            let Some(tip) = Tip::of(&row.points, end) else { continue };
-            let strength = median(&row.points.iter().map(|&p| dark.at(p)).collect::<Vec<_>>());
-            let ahead = Ahead { dark, mask, width: row.width.max(1.5), least: least * strength };
-            if let Some(way) = ahead.follow(&tip) {
-                way.windows(2).for_each(|pair| paint(&mut more, pair[0], pair[1], 0.5 * ahead.width));
-            }
+    let ends = ends(dark, rows);
+    let mut ink = |way: &[Point], width: f64| {
+        way.windows(2).for_each(|pair| paint(&mut more, pair[0], pair[1], 0.5 * width));
+    };
+    for End { tip, width, strength, .. } in &ends {
+        let ahead = Ahead { dark, mask, width: *width, least: least * strength };
+        if let Some(way) = ahead.follow(tip) {
+            ink(&way, *width);
+        }
+    }
+    for (a, b) in facing(&ends) {
+        let over = Over { dark, way: a.way_to(b), width: 0.5 * (a.width + b.width) };
+        if over.is_line(0.5 * (a.strength + b.strength), least) {
+            ink(&over.way, over.width);
         }
     }
     if more.is_empty() {
@@ -55,6 +78,97 @@ pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row], shadows: boo
     }
     more.add(mask);
     Some(more)
+}
+
+/// A free end of a line that is long enough to tell where it goes.
+struct End {
+    tip: Tip,
+    /// Of its line, and not less than a px and a half.
+    width: f64,
+    /// How dark its line is, levels.
+    strength: f64,
+    /// Of its line, px.
+    length: f64,
+}
+
+fn ends(dark: &Plane<u8>, rows: &[Row]) -> Vec<End> {
+    let is_long =
+        |row: &&Row| !row.closed && !row.dot && polyline_length(&row.points) >= LEAST_LENGTH * row.width;
+    let of = |row: &Row| {
+        let strength = median(&row.points.iter().map(|&p| dark.at(p)).collect::<Vec<_>>());
+        let tips = [0, 1].map(|end| Tip::of(&row.points, end).filter(|_| row.free[end]));
+        let (width, length) = (row.width.max(FACING_LEAST_PX), polyline_length(&row.points));
+        tips.into_iter().flatten().map(move |tip| End { tip, width, strength, length }).collect::<Vec<_>>()
+    };
+    rows.iter().filter(is_long).flat_map(of).collect()
+}
+
+/// Pairs of ends that may be one line.
+fn facing(ends: &[End]) -> Vec<(&End, &End)> {
+    let reach = FACING_PENS * ends.iter().map(|end| end.width).fold(0.0, f64::max);
+    let near = Near::of(ends.iter().enumerate().map(|(k, end)| (end.tip.at, k)), reach.max(1.0));
+    let mut found = Vec::new();
+    for (k, a) in ends.iter().enumerate() {
+        let others = near.around(a.tip.at).filter(|&(_, &other)| other > k);
+        found.extend(others.map(|(_, &other)| (a, &ends[other])).filter(|(a, b)| a.faces(b)));
+    }
+    found
+}
+
+impl End {
+    fn faces(&self, other: &End) -> bool {
+        let (thin, thick) = (self.width.min(other.width), self.width.max(other.width));
+        let way = self.tip.at.distance(other.tip.at);
+        way <= FACING_PENS * 0.5 * (thin + thick)
+            && self.length.max(other.length) >= FACING_LENGTH * thick
+            && thick < FACING_LIKE * thin
+            && self.tip.bend(&other.tip) < FACING_BEND
+    }
+
+    /// A smooth way to another, about 1 px from point to point.
+    fn way_to(&self, other: &End) -> Vec<Point> {
+        let between = self.tip.smoothly_to(&other.tip);
+        [self.tip.at].into_iter().chain(between).chain([other.tip.at]).collect()
+    }
+}
+
+/// What lies on a way from one end to another.
+struct Over<'a> {
+    dark: &'a Plane<u8>,
+    way: Vec<Point>,
+    width: f64,
+}
+
+impl Over<'_> {
+    /// Whether a line of this darkness goes on there; `least` is the least share of it that is darker than its sides.
+    fn is_line(&self, strength: f64, least: f64) -> bool {
+        let along: Vec<f64> = (0..self.way.len()).map(|k| self.contrast(k, 0.0)).collect();
+        let skipped = (widest_paper(self.width) as usize).clamp(1, along.len());
+        let palest = along.windows(skipped).map(mean).fold(f64::INFINITY, f64::min);
+        let beside = |aside: f64| {
+            let contrasts: Vec<f64> = (0..self.way.len()).map(|k| self.contrast(k, aside)).collect();
+            mean(&contrasts).abs()
+        };
+        let papers = FACING_PAPERS.into_iter().flat_map(|pens| [pens, -pens]);
+        mean(&along) > FACING_MEAN.max(least) * strength
+            && palest > FACING_PALEST * strength
+            && mean(&along) > FACING_SURE * median(&papers.map(beside).collect::<Vec<_>>())
+    }
+
+    /// By how much it is darker so many pens aside of a point of the way than on both sides of there, levels.
+    fn contrast(&self, k: usize, aside: f64) -> f64 {
+        let (from, to) = (self.way[k.saturating_sub(1)], self.way[(k + 1).min(self.way.len() - 1)]);
+        let across = (to - from).turn_90() * (self.width / from.distance(to).max(1e-9));
+        let darkness = |aside: f64| {
+            let at = |off: f64| self.dark.at(self.way[k] + across * (aside + off));
+            (at(-0.2) + at(0.0) + at(0.2)) / 3.0
+        };
+        darkness(aside) - 0.5 * (darkness(aside + BESIDE) + darkness(aside - BESIDE))
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// What lies ahead of one end.
@@ -157,5 +271,35 @@ fn paint(mask: &mut Mask, from: Point, to: Point, radius: f64) {
             let columns = range(at.x, mask.width);
             mask.fill(y, columns.start, columns.end);
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is found between two rows of 4 px that face each other over 20 px, where marks of so many levels lie two px apart.
+    fn between(marks: u8) -> Option<Mask> {
+        let mut dark = Plane::filled(120, 60, 0);
+        for y in 28..32 {
+            dark.row_mut(y)[10..50].fill(200);
+            dark.row_mut(y)[70..110].fill(200);
+            (50..70).filter(|x| x % 4 < 2).for_each(|x| dark.row_mut(y)[x] = marks);
+        }
+        let row = |from: i32, to: i32, free| {
+            let points = (from..=to).map(|x| Point::new(f64::from(x), 30.0)).collect();
+            Row { points, closed: false, width: 4.0, free, dot: false }
+        };
+        let rows = [row(12, 48, [false, true]), row(72, 108, [true, false])];
+        followed(&dark, &crate::ink::over(&dark, 150), &rows, false)
+    }
+
+    #[test]
+    fn between_ends_that_face_each_other_broken_ink_is_a_line_and_paper_is_none() {
+        for marks in [110, 140] {
+            let found = between(marks).unwrap();
+            assert!((48..72).all(|x| found.get(x, 30)), "{marks} levels");
+        }
+        assert!(between(0).is_none());
     }
 }

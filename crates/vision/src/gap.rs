@@ -47,7 +47,8 @@ struct End {
 }
 
 /// The rows with those joined that go on into each other over a gap, the straightest first.
-pub(crate) fn bridged(dark: &Plane<u8>, rows: Vec<Row>) -> Vec<Row> {
+pub(crate) fn bridged(dark: &Plane<u8>, mut rows: Vec<Row>) -> Vec<Row> {
+    draw_back(&mut rows);
     let mut rows = cornered(rows);
     orient_dots(&mut rows);
     let mut pairs = pairs(dark, &rows);
@@ -120,6 +121,62 @@ fn pairs(dark: &Plane<u8>, rows: &[Row]) -> Vec<(f64, Place, Place)> {
         }
     }
     found
+}
+
+/// Two ends of a line that have passed each other lie beside each other by less than this, pens,
+const BESIDE: f64 = 0.6;
+/// and have passed by less than this.
+const PASSED: f64 = 3.0;
+/// Of a row that is drawn back this many pens stay at least.
+const STAYS: f64 = 1.5;
+
+/// Draws ends that have passed each other back to where they meet: where a line pales, either side of it was carried on to where
+/// its ink ends.
+fn draw_back(rows: &mut [Row]) {
+    let ends = ends(rows);
+    let reach = PASSED * ends.iter().map(|end| end.width).fold(0.0, f64::max);
+    let near = Near::of(ends.iter().enumerate().map(|(k, end)| (end.tip.at, k)), reach.max(1.0));
+    let passed = |a: &End, b: &End| {
+        let (over, width) = (b.tip.at - a.tip.at, a.width.min(b.width));
+        let is_passed = over.dot(a.tip.along) < 0.0 && over.dot(b.tip.along) > 0.0;
+        let is_beside = over.cross(a.tip.along).abs().max(over.cross(b.tip.along).abs()) < BESIDE * width;
+        is_passed
+            && is_beside
+            && angle(a.tip.along, -b.tip.along).abs() < BEND
+            && over.hypot() < PASSED * width
+    };
+    let mut cuts = Vec::new();
+    for (k, a) in ends.iter().enumerate() {
+        let others = near.around(a.tip.at).map(|(_, &other)| (other, &ends[other]));
+        let found: Vec<(usize, &End)> = others.filter(|&(_, b)| b.row != a.row && passed(a, b)).collect();
+        if let [(_, b)] = found[..] {
+            cuts.push((k, a.tip.at.midpoint(b.tip.at)));
+        }
+    }
+    for (k, at) in cuts {
+        let End { row, end, tip, width, .. } = &ends[k];
+        rows[*row].draw_back(*end, at, tip.along, STAYS * width);
+    }
+}
+
+impl Row {
+    /// Takes away an end's points that lie beyond a place, seen along the end's direction, as long as `stays` px are left.
+    fn draw_back(&mut self, end: usize, at: Point, along: Vec2, stays: f64) {
+        if end == 0 {
+            self.points.reverse();
+        }
+        let mut left = polyline_length(&self.points);
+        while let [.., before, last] = self.points[..] {
+            left -= last.distance(before);
+            if (last - at).dot(along) <= -0.25 || left < stays {
+                break;
+            }
+            self.points.pop();
+        }
+        if end == 0 {
+            self.points.reverse();
+        }
+    }
 }
 
 /// More dots times rows than this are not compared, which takes some milliseconds.
@@ -267,5 +324,35 @@ fn over(head: &[Point], tail: &[Point]) -> Vec<Point> {
     match (Tip::of(head, 1), Tip::of(tail, 0)) {
         (Some(from), Some(to)) => from.smoothly_to(&to),
         _ => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A level row, free at both ends.
+    fn row(from: i32, to: i32, y: f64) -> Row {
+        let points = (from..=to).map(|x| Point::new(f64::from(x), y)).collect();
+        Row { points, closed: false, width: 4.0, free: [true; 2], dot: false }
+    }
+
+    #[test]
+    fn ends_that_passed_each_other_are_one_line_and_lines_beside_each_other_are_two() {
+        let dark = Plane::filled(120, 60, 200);
+        let joined = |beside: f64, passed: i32| {
+            bridged(&dark, vec![row(10, 60, 30.0), row(60 - passed, 110, 30.0 + beside)])
+        };
+        for passed in [2, 5, 9] {
+            let rows = joined(0.5, passed);
+            assert_eq!(rows.len(), 1, "{passed} px");
+            let columns: Vec<f64> = rows[0].points.iter().map(|p| p.x).collect();
+            assert!(
+                columns.windows(2).all(|pair| pair[0] < pair[1]),
+                "{passed} px: it turns back: {columns:?}"
+            );
+        }
+        assert_eq!(joined(6.0, 5).len(), 2, "beside");
+        assert_eq!(joined(0.5, 40).len(), 2, "gone over");
     }
 }
