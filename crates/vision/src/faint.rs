@@ -103,16 +103,17 @@ fn ends(dark: &Plane<u8>, rows: &[Row]) -> Vec<End> {
     rows.iter().filter(is_long).flat_map(of).collect()
 }
 
+/// More pairs of ends are not looked at, which takes some milliseconds: so many near each other are a texture.
+const MOST_COMPARED: usize = 1_000_000;
+
 /// Pairs of ends that may be one line.
 fn facing(ends: &[End]) -> Vec<(&End, &End)> {
     let reach = FACING_PENS * ends.iter().map(|end| end.width).fold(0.0, f64::max);
     let near = Near::of(ends.iter().enumerate().map(|(k, end)| (end.tip.at, k)), reach.max(1.0));
-    let mut found = Vec::new();
-    for (k, a) in ends.iter().enumerate() {
-        let others = near.around(a.tip.at).filter(|&(_, &other)| other > k);
-        found.extend(others.map(|(_, &other)| (a, &ends[other])).filter(|(a, b)| a.faces(b)));
-    }
-    found
+    let pairs =
+        ends.iter().enumerate().flat_map(|(k, a)| near.around(a.tip.at).map(move |(_, &other)| (k, other)));
+    let once = pairs.take(MOST_COMPARED).filter(|(k, other)| k < other);
+    once.map(|(k, other)| (&ends[k], &ends[other])).filter(|(a, b)| a.faces(b)).collect()
 }
 
 impl End {

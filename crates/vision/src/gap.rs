@@ -145,11 +145,13 @@ fn draw_back(rows: &mut [Row]) {
             && angle(a.tip.along, -b.tip.along).abs() < BEND
             && over.hypot() < PASSED * width
     };
+    let mut left = MOST_COMPARED;
     let mut cuts = Vec::new();
     for (k, a) in ends.iter().enumerate() {
-        let others = near.around(a.tip.at).map(|(_, &other)| (other, &ends[other]));
-        let found: Vec<(usize, &End)> = others.filter(|&(_, b)| b.row != a.row && passed(a, b)).collect();
-        if let [(_, b)] = found[..] {
+        let others: Vec<&End> = near.around(a.tip.at).take(left).map(|(_, &other)| &ends[other]).collect();
+        left -= others.len();
+        let found: Vec<&End> = others.into_iter().filter(|b| b.row != a.row && passed(a, b)).collect();
+        if let [b] = found[..] {
             cuts.push((k, a.tip.at.midpoint(b.tip.at)));
         }
     }
@@ -179,7 +181,7 @@ impl Row {
     }
 }
 
-/// More dots times rows than this are not compared, which takes some milliseconds.
+/// More pairs than this, of dots and rows or of ends, are not compared, which takes some milliseconds.
 const MOST_COMPARED: usize = 1_000_000;
 
 /// Gives a dot between two ends the direction from one to the other: a dash of a broken line. Others stay dots.
