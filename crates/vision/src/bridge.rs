@@ -1,6 +1,6 @@
 //! What the pen did where its line cannot be seen: between two ends that belong together.
 
-use tracelight_stroke::{Parabola, Point, Vec2};
+use tracelight_stroke::{Parabola, Point, Vec2, polyline_length};
 
 use crate::plane::Plane;
 use crate::ridge::median;
@@ -161,6 +161,18 @@ pub(crate) fn measured(points: &[Point], end: usize) -> impl Iterator<Item = (f6
         length += if k > 0 { at(k).distance(at(k - 1)) } else { 0.0 };
         (length, at(k))
     })
+}
+
+/// Takes away the last points of a row that lie beyond a place, seen along a direction, as long as one of them and `stays` px are left.
+pub(crate) fn drop_beyond(points: &mut Vec<Point>, at: Point, along: Vec2, stays: f64) {
+    let mut left = polyline_length(points);
+    while let [.., before, last] = points[..] {
+        left -= last.distance(before);
+        if (last - at).dot(along) <= -0.25 || left < stays {
+            break;
+        }
+        points.pop();
+    }
 }
 
 /// How far the points near a row's end scatter about their line, px.

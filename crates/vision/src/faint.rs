@@ -8,9 +8,8 @@ use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::Tip;
 use crate::centreline::Row;
-use crate::gap::widest_paper;
+use crate::gap::{End, ends_where, near_pairs, widest_paper};
 use crate::mask::Mask;
-use crate::near::Near;
 use crate::plane::Plane;
 use crate::ridge::median;
 
@@ -37,9 +36,10 @@ const LEAST_LENGTH: f64 = 1.5;
 /// What ends in paper is a line if so many pens of it were seen.
 const LEAST_SEEN: f64 = 3.0;
 
-/// Two ends that face each other are this near at most, pens; and pens of a px and a half at least.
+/// Lines are looked at as if they were so wide at least, px.
+const LEAST_WIDTH_PX: f64 = 1.5;
+/// Two ends that face each other are this near at most, pens.
 const FACING_PENS: f64 = 12.0;
-const FACING_LEAST_PX: f64 = 1.5;
 /// One of them is a line of so many pens: the strokes of letters are shorter, and end beside each other.
 const FACING_LENGTH: f64 = 10.0;
 /// They are one line that bends by less than this on its way over, rad, and their widths differ by less, as a ratio.
@@ -57,19 +57,25 @@ const FACING_PAPERS: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
 pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row], shadows: bool) -> Option<Mask> {
     let least = if shadows { LEAST_BY_SHADOWS } else { LEAST_SHARE };
     let mut more = Mask::empty(mask.width, mask.height);
-    let ends = ends(dark, rows);
+    let is_long = |row: &Row| polyline_length(&row.points) >= LEAST_LENGTH * row.width;
+    let ends = ends_where(rows, |_, row| !row.dot && is_long(row));
+    // how dark a line is, levels
+    let strength = |end: &End| {
+        let levels: Vec<f64> = rows[end.row].points.iter().map(|&p| dark.at(p)).collect();
+        median(&levels)
+    };
     let mut ink = |way: &[Point], width: f64| {
         way.windows(2).for_each(|pair| paint(&mut more, pair[0], pair[1], 0.5 * width));
     };
-    for End { tip, width, strength, .. } in &ends {
-        let ahead = Ahead { dark, mask, width: *width, least: least * strength };
-        if let Some(way) = ahead.follow(tip) {
-            ink(&way, *width);
+    for end in &ends {
+        let ahead = Ahead { dark, mask, width: width(end), least: least * strength(end) };
+        if let Some(way) = ahead.follow(&end.tip) {
+            ink(&way, ahead.width);
         }
     }
     for (a, b) in facing(&ends) {
-        let over = Over { dark, way: a.way_to(b), width: 0.5 * (a.width + b.width) };
-        if over.is_line(0.5 * (a.strength + b.strength), least) {
+        let over = Over { dark, way: way_over(a, b), width: 0.5 * (width(a) + width(b)) };
+        if over.is_line(0.5 * (strength(a) + strength(b)), least) {
             ink(&over.way, over.width);
         }
     }
@@ -80,57 +86,29 @@ pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row], shadows: boo
     Some(more)
 }
 
-/// A free end of a line that is long enough to tell where it goes.
-struct End {
-    tip: Tip,
-    /// Of its line, and not less than a px and a half.
-    width: f64,
-    /// How dark its line is, levels.
-    strength: f64,
-    /// Of its line, px.
-    length: f64,
-}
-
-fn ends(dark: &Plane<u8>, rows: &[Row]) -> Vec<End> {
-    let is_long =
-        |row: &&Row| !row.closed && !row.dot && polyline_length(&row.points) >= LEAST_LENGTH * row.width;
-    let of = |row: &Row| {
-        let strength = median(&row.points.iter().map(|&p| dark.at(p)).collect::<Vec<_>>());
-        let tips = [0, 1].map(|end| Tip::of(&row.points, end).filter(|_| row.free[end]));
-        let (width, length) = (row.width.max(FACING_LEAST_PX), polyline_length(&row.points));
-        tips.into_iter().flatten().map(move |tip| End { tip, width, strength, length }).collect::<Vec<_>>()
-    };
-    rows.iter().filter(is_long).flat_map(of).collect()
-}
-
-/// More pairs of ends are not looked at, which takes some milliseconds: so many near each other are a texture.
-const MOST_COMPARED: usize = 1_000_000;
-
 /// Pairs of ends that may be one line.
-fn facing(ends: &[End]) -> Vec<(&End, &End)> {
-    let reach = FACING_PENS * ends.iter().map(|end| end.width).fold(0.0, f64::max);
-    let near = Near::of(ends.iter().enumerate().map(|(k, end)| (end.tip.at, k)), reach.max(1.0));
-    let pairs =
-        ends.iter().enumerate().flat_map(|(k, a)| near.around(a.tip.at).map(move |(_, &other)| (k, other)));
-    let once = pairs.take(MOST_COMPARED).filter(|(k, other)| k < other);
-    once.map(|(k, other)| (&ends[k], &ends[other])).filter(|(a, b)| a.faces(b)).collect()
+fn facing(ends: &[End]) -> impl Iterator<Item = (&End, &End)> {
+    // of two that are alike in width the mean is at most so many times either
+    let reach = |end: &End| FACING_PENS * 0.5 * (1.0 + FACING_LIKE) * width(end);
+    near_pairs(ends, reach).into_iter().filter(|(a, b)| do_face(a, b))
 }
 
-impl End {
-    fn faces(&self, other: &End) -> bool {
-        let (thin, thick) = (self.width.min(other.width), self.width.max(other.width));
-        let way = self.tip.at.distance(other.tip.at);
-        way <= FACING_PENS * 0.5 * (thin + thick)
-            && self.length.max(other.length) >= FACING_LENGTH * thick
-            && thick < FACING_LIKE * thin
-            && self.tip.bend(&other.tip) < FACING_BEND
-    }
+fn do_face(a: &End, b: &End) -> bool {
+    let (thin, thick) = (width(a).min(width(b)), width(a).max(width(b)));
+    a.tip.at.distance(b.tip.at) <= FACING_PENS * 0.5 * (thin + thick)
+        && a.length.max(b.length) >= FACING_LENGTH * thick
+        && thick < FACING_LIKE * thin
+        && a.tip.bend(&b.tip) < FACING_BEND
+}
 
-    /// A smooth way to another, about 1 px from point to point.
-    fn way_to(&self, other: &End) -> Vec<Point> {
-        let between = self.tip.smoothly_to(&other.tip);
-        [self.tip.at].into_iter().chain(between).chain([other.tip.at]).collect()
-    }
+/// Of an end's line, px: what is thinner is looked at as if it had a px and a half.
+fn width(end: &End) -> f64 {
+    end.width.max(LEAST_WIDTH_PX)
+}
+
+/// A smooth way from one end to another, about 1 px from point to point.
+fn way_over(a: &End, b: &End) -> Vec<Point> {
+    [a.tip.at].into_iter().chain(a.tip.smoothly_to(&b.tip)).chain([b.tip.at]).collect()
 }
 
 /// What lies on a way from one end to another.
@@ -151,9 +129,10 @@ impl Over<'_> {
             mean(&contrasts).abs()
         };
         let papers = FACING_PAPERS.into_iter().flat_map(|pens| [pens, -pens]);
-        mean(&along) > FACING_MEAN.max(least) * strength
+        let seen = mean(&along);
+        seen > FACING_MEAN.max(least) * strength
             && palest > FACING_PALEST * strength
-            && mean(&along) > FACING_SURE * median(&papers.map(beside).collect::<Vec<_>>())
+            && seen > FACING_SURE * median(&papers.map(beside).collect::<Vec<_>>())
     }
 
     /// By how much it is darker so many pens aside of a point of the way than on both sides of there, levels.

@@ -2,7 +2,7 @@
 
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
-use crate::bridge::{Tip, angle};
+use crate::bridge::{Tip, angle, drop_beyond};
 use crate::centreline::Row;
 use crate::near::Near;
 use crate::plane::Plane;
@@ -37,13 +37,13 @@ pub(crate) fn widest_paper(width: f64) -> f64 {
 }
 
 /// A free end of a row.
-struct End {
-    row: usize,
+pub(crate) struct End {
+    pub(crate) row: usize,
     end: usize,
-    tip: Tip,
-    width: f64,
+    pub(crate) tip: Tip,
+    pub(crate) width: f64,
     /// Of its row, px.
-    length: f64,
+    pub(crate) length: f64,
 }
 
 /// The rows with those joined that go on into each other over a gap, the straightest first.
@@ -102,23 +102,26 @@ type Place = (usize, usize);
 fn pairs(dark: &Plane<u8>, rows: &[Row]) -> Vec<(f64, Place, Place)> {
     let ends = ends(rows);
     let usual = median(&rows.iter().map(|row| row.width).collect::<Vec<_>>());
-    let widest = |a: &End, b: &End| WIDEST_PENS * a.width.min(b.width).max(0.8 * usual) + LEAST_PX;
-    let farthest = ends.iter().map(|e| widest(e, e)).fold(0.0, f64::max);
-    // sorted by column, only near ends are compared
-    let mut order: Vec<usize> = (0..ends.len()).collect();
-    order.sort_by(|&a, &b| ends[a].tip.at.x.total_cmp(&ends[b].tip.at.x));
+    let widest = |width: f64| WIDEST_PENS * width.max(0.8 * usual) + LEAST_PX;
+    let is_near = |a: &End, b: &End| a.tip.at.distance(b.tip.at) <= widest(a.width.min(b.width));
+    let near = near_pairs(&ends, |end| widest(end.width)).into_iter().filter(|(a, b)| is_near(a, b));
+    near.filter_map(|(a, b)| fit(dark, a, b).map(|bend| (bend, (a.row, a.end), (b.row, b.end)))).collect()
+}
+
+/// More pairs of ends are not compared, which takes some milliseconds: so many near each other are a texture.
+const MOST_PAIRS: usize = 4_000_000;
+
+/// Pairs of ends that are near each other, the left one first: `reach` is how far from one its partners are at most, px.
+pub(crate) fn near_pairs(ends: &[End], reach: impl Fn(&End) -> f64) -> Vec<(&End, &End)> {
+    let mut order: Vec<&End> = ends.iter().collect();
+    order.sort_by(|a, b| a.tip.at.x.total_cmp(&b.tip.at.x));
+    let mut left = MOST_PAIRS;
     let mut found = Vec::new();
-    for (k, &i) in order.iter().enumerate() {
-        let a = &ends[i];
-        for &j in &order[k + 1..] {
-            let b = &ends[j];
-            if b.tip.at.x - a.tip.at.x > farthest {
-                break;
-            }
-            if a.tip.at.distance(b.tip.at) <= widest(a, b) && (a.row, a.end) != (b.row, b.end) {
-                found.extend(fit(dark, a, b).map(|bend| (bend, (a.row, a.end), (b.row, b.end))));
-            }
-        }
+    for (k, a) in order.iter().enumerate() {
+        let reach = reach(a);
+        let right = order[k + 1..].iter().take_while(|b| b.tip.at.x - a.tip.at.x <= reach).take(left);
+        left -= right.clone().count();
+        found.extend(right.filter(|b| a.tip.at.distance(b.tip.at) <= reach).map(|b| (*a, *b)));
     }
     found
 }
@@ -134,30 +137,25 @@ const STAYS: f64 = 1.5;
 /// its ink ends.
 fn draw_back(rows: &mut [Row]) {
     let ends = ends(rows);
-    let reach = PASSED * ends.iter().map(|end| end.width).fold(0.0, f64::max);
-    let near = Near::of(ends.iter().enumerate().map(|(k, end)| (end.tip.at, k)), reach.max(1.0));
-    let passed = |a: &End, b: &End| {
+    let have_passed = |a: &End, b: &End| {
         let (over, width) = (b.tip.at - a.tip.at, a.width.min(b.width));
-        let is_passed = over.dot(a.tip.along) < 0.0 && over.dot(b.tip.along) > 0.0;
         let is_beside = over.cross(a.tip.along).abs().max(over.cross(b.tip.along).abs()) < BESIDE * width;
-        is_passed
+        a.row != b.row
+            && over.hypot() < PASSED * width
+            && over.dot(a.tip.along) < 0.0
+            && over.dot(b.tip.along) > 0.0
             && is_beside
             && angle(a.tip.along, -b.tip.along).abs() < BEND
-            && over.hypot() < PASSED * width
     };
-    let mut left = MOST_COMPARED;
-    let mut cuts = Vec::new();
-    for (k, a) in ends.iter().enumerate() {
-        let others: Vec<&End> = near.around(a.tip.at).take(left).map(|(_, &other)| &ends[other]).collect();
-        left -= others.len();
-        let found: Vec<&End> = others.into_iter().filter(|b| b.row != a.row && passed(a, b)).collect();
-        if let [b] = found[..] {
-            cuts.push((k, a.tip.at.midpoint(b.tip.at)));
-        }
-    }
-    for (k, at) in cuts {
-        let End { row, end, tip, width, .. } = &ends[k];
-        rows[*row].draw_back(*end, at, tip.along, STAYS * width);
+    let near = near_pairs(&ends, |end| PASSED * end.width).into_iter();
+    let passed: Vec<(&End, &End)> = near.filter(|(a, b)| have_passed(a, b)).collect();
+    let mut partners = vec![[0; 2]; rows.len()];
+    let both = || passed.iter().flat_map(|&(a, b)| [(a, b), (b, a)]);
+    both().for_each(|(end, _)| partners[end.row][end.end] += 1);
+    // which of several lines it is, nothing tells
+    for (end, other) in both().filter(|(end, _)| partners[end.row][end.end] == 1) {
+        let middle = end.tip.at.midpoint(other.tip.at);
+        rows[end.row].draw_back(end.end, middle, end.tip.along, STAYS * end.width);
     }
 }
 
@@ -167,21 +165,14 @@ impl Row {
         if end == 0 {
             self.points.reverse();
         }
-        let mut left = polyline_length(&self.points);
-        while let [.., before, last] = self.points[..] {
-            left -= last.distance(before);
-            if (last - at).dot(along) <= -0.25 || left < stays {
-                break;
-            }
-            self.points.pop();
-        }
+        drop_beyond(&mut self.points, at, along, stays);
         if end == 0 {
             self.points.reverse();
         }
     }
 }
 
-/// More pairs than this, of dots and rows or of ends, are not compared, which takes some milliseconds.
+/// More dots times rows than this are not compared, which takes some milliseconds.
 const MOST_COMPARED: usize = 1_000_000;
 
 /// Gives a dot between two ends the direction from one to the other: a dash of a broken line. Others stay dots.
@@ -223,7 +214,7 @@ fn ends(rows: &[Row]) -> Vec<End> {
 }
 
 /// The free ends of some rows.
-fn ends_where(rows: &[Row], wanted: impl Fn(usize, &Row) -> bool) -> Vec<End> {
+pub(crate) fn ends_where(rows: &[Row], wanted: impl Fn(usize, &Row) -> bool) -> Vec<End> {
     let all = rows
         .iter()
         .enumerate()

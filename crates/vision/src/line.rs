@@ -2,7 +2,7 @@
 
 use tracelight_stroke::{Parabola, Point, Vec2, polyline_length};
 
-use crate::bridge::{Tip, scatter_px};
+use crate::bridge::{Tip, drop_beyond, scatter_px};
 use crate::graph::{Branch, Graph, Turn, TurnTip};
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -116,10 +116,7 @@ impl Line {
         if end == 0 {
             self.points.reverse();
         }
-        let beyond = |p: &Point| (*p - first).dot(along) > -0.25;
-        while self.points.len() > 1 && self.points.last().is_some_and(beyond) {
-            self.points.pop();
-        }
+        drop_beyond(&mut self.points, first, along, f64::NEG_INFINITY);
         self.points.extend(way);
         if end == 0 {
             self.points.reverse();

@@ -6,7 +6,7 @@
 
 use crate::ink::{histogram, over, sampled_blocks};
 use crate::light::percentile;
-use crate::mask::Mask;
+use crate::mask::{Cell, Mask};
 use crate::parts::SOLID_SHARE;
 use crate::plane::Plane;
 use crate::region::{Region, any_spans, regions};
@@ -49,11 +49,14 @@ impl Inked<'_> {
     /// The ink with what is paler than it and drawn as well. Where a line `pales` along its way, that is so too.
     pub(crate) fn with_paler(mut self, pales: bool) -> Mask {
         let reach = (FOOT * self.edge_px.unwrap_or(1.0)).ceil().clamp(1.0, 16.0) as usize + 1;
-        let mut near = self.ink.clone().dilated_by(reach);
-        let mut beyond = Beyond::of(self.dark, &near);
-        if pales && self.goes_on_paler(&near, beyond.least(self.strength), reach) {
-            near = self.ink.clone().dilated_by(reach);
-            beyond = Beyond::of(self.dark, &near);
+        let looked_at = |ink: &Mask| {
+            let near = ink.clone().dilated_by(reach);
+            let beyond = Beyond::of(self.dark, &near);
+            (near, beyond)
+        };
+        let (mut near, mut beyond) = looked_at(&self.ink);
+        if pales && self.add_paling(&near, beyond.least(self.strength), reach) {
+            (near, beyond) = looked_at(&self.ink);
         }
         if let Some(threshold) = beyond.threshold(self.strength) {
             self.add_second(&near, threshold, reach);
@@ -63,7 +66,7 @@ impl Inked<'_> {
 
     /// Adds what the ink pales to along its way, where that is darker than `least`; whether there is any. `near` is what is within
     /// `reach` of the ink, px: as far as its blur does.
-    fn goes_on_paler(&mut self, near: &Mask, least: f64, reach: usize) -> bool {
+    fn add_paling(&mut self, near: &Mask, least: f64, reach: usize) -> bool {
         let pale = over(self.dark, least as u8).without(&self.ink);
         let drawn = half_as_dark(self.dark, pale, reach);
         if drawn.is_empty() {
@@ -107,25 +110,19 @@ impl Inked<'_> {
 /// the pixels about tell.
 fn half_as_dark(dark: &Plane<u8>, mut pale: Mask, reach: usize) -> Mask {
     let every = (reach / 3).max(1);
+    let about = |middle: usize, most: usize| middle.saturating_sub(reach)..(middle + reach + 1).min(most);
+    let is_blur = |x: usize, y: usize| {
+        let level = EDGE.recip() * f64::from(dark.row(y)[x]);
+        let columns = about(x, dark.width);
+        let is_darker =
+            |y: usize| dark.row(y)[columns.clone()].iter().step_by(every).any(|&v| f64::from(v) >= level);
+        about(y, dark.height).step_by(every).any(is_darker)
+    };
     for y in 0..dark.height {
-        let rows = (y.saturating_sub(reach)..(y + reach + 1).min(dark.height)).step_by(every);
-        for k in 0..pale.row(y).len() {
-            let mut left = pale.row(y)[k];
-            while left != 0 {
-                let bit = left.trailing_zeros();
-                left &= left - 1;
-                let x = 64 * k + bit as usize;
-                let columns = x.saturating_sub(reach)..(x + reach + 1).min(dark.width);
-                let level = EDGE.recip() * f64::from(dark.row(y)[x]);
-                let is_darker = |y: usize| {
-                    let mut levels = dark.row(y)[columns.clone()].iter().step_by(every);
-                    levels.any(|&v| f64::from(v) >= level)
-                };
-                if rows.clone().any(is_darker) {
-                    pale.row_mut(y)[k] &= !(1 << bit);
-                }
-            }
-        }
+        let first = pale.cell(0, y);
+        let cells = pale.cells_in(y, 0, dark.width);
+        let blur: Vec<Cell> = cells.filter(|&cell| is_blur((cell - first) as usize, y)).collect();
+        blur.into_iter().for_each(|cell| pale.clear(cell));
     }
     pale
 }
