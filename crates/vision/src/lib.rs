@@ -64,6 +64,7 @@ mod paler;
 mod parts;
 mod plane;
 mod polarity;
+mod projection;
 mod prune;
 mod quality;
 mod reading;

@@ -2,6 +2,7 @@
 
 use tracelight_stroke::{Point, Vec2};
 
+use crate::projection::Projection;
 use crate::solve::linear;
 
 /// Cells of a side with the black border.
@@ -9,7 +10,7 @@ pub(super) const SIDE: usize = 8;
 
 /// From cells to pixels: (0, 0) is the first corner of the black border, (8, 0) the second, (8, 8) the third.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Square([f64; 8]);
+pub(super) struct Square(Projection);
 
 /// A place across a boundary: in cells; how far off it is, px; and the unit vector along which.
 pub(super) type Off = (Point, f64, Vec2);
@@ -17,33 +18,17 @@ pub(super) type Off = (Point, f64, Vec2);
 impl Square {
     /// With these corners, in order.
     pub(super) fn of(corners: &[Point; 4]) -> Option<Self> {
-        const FAR: f64 = SIDE as f64;
-        let mut rows = [[0.0; 9]; 8];
-        for (k, &(x, y)) in [(0.0, 0.0), (FAR, 0.0), (FAR, FAR), (0.0, FAR)].iter().enumerate() {
-            let Point { x: u, y: v } = corners[k];
-            rows[2 * k] = [x, y, 1.0, 0.0, 0.0, 0.0, -u * x, -u * y, u];
-            rows[2 * k + 1] = [0.0, 0.0, 0.0, x, y, 1.0, -v * x, -v * y, v];
-        }
-        linear(rows).map(Self)
+        Projection::of((SIDE as f64, SIDE as f64), corners).map(Self)
     }
 
     /// Where a place in cells is, px; `None` behind the camera.
     pub(super) fn at(&self, x: f64, y: f64) -> Option<Point> {
-        self.with_slopes(x, y).map(|(at, _, _)| at)
+        self.0.at(x, y)
     }
 
     /// The same, and how far a cell across and a cell down go there, px.
     pub(super) fn with_slopes(&self, x: f64, y: f64) -> Option<(Point, Vec2, Vec2)> {
-        let [a, b, c, d, e, f, g, h] = self.0;
-        let w = g * x + h * y + 1.0;
-        if w < 1e-3 {
-            return None;
-        }
-        let one = 1.0 / w;
-        let (u, v) = ((a * x + b * y + c) * one, (d * x + e * y + f) * one);
-        let across = Vec2::new((a - u * g) * one, (d - v * g) * one);
-        let down = Vec2::new((b - u * h) * one, (e - v * h) * one);
-        Some((Point::new(u, v), across, down))
+        self.0.with_slopes(x, y)
     }
 
     /// Its corners, px.
@@ -57,7 +42,7 @@ impl Square {
     pub(super) fn moved(&self, places: &[Off]) -> Option<Self> {
         let mut rows = [[0.0; 9]; 8];
         for &(cell, off, normal) in places {
-            let [_, _, _, _, _, _, g, h] = self.0;
+            let Projection([_, _, _, _, _, _, g, h]) = self.0;
             let w = g * cell.x + h * cell.y + 1.0;
             let at = self.at(cell.x, cell.y)?;
             let (x, y, one) = (cell.x / w, cell.y / w, 1.0 / w);
@@ -75,6 +60,7 @@ impl Square {
                 .for_each(|(j, v)| *v /= sizes[i] * sizes.get(j).copied().unwrap_or(1.0));
         }
         let step = linear(rows)?;
-        Some(Self(std::array::from_fn(|k| self.0[k] + step[k] / sizes[k])))
+        let Projection(terms) = self.0;
+        Some(Self(Projection(std::array::from_fn(|k| terms[k] + step[k] / sizes[k]))))
     }
 }
