@@ -139,8 +139,7 @@ impl Ink {
         }
         let mut levels = sampled_histogram(&darkness);
         let blur = SMOOTHED[smoothings];
-        let turned = page.sheet.as_ref().map_or(0.0, |sheet| sheet.turned_rad(page.size));
-        let lie = Lie { beside: beside.as_ref(), turned };
+        let lie = Lie { beside: beside.as_ref(), corners: page.lines_meet(reduction) };
         let rules = comb::without_rules(&darkness, blur * noise_levels, strongest(&levels), lie);
         let rules = rules.map(|(plain, rules)| {
             levels = sampled_histogram(&plain);

@@ -130,26 +130,44 @@ fn a_drawings_own_parallel_lines_stay() {
     }
 }
 
-/// A ruled sheet that lies turned on a dark table; its rules end at its edges, not at the picture's.
+/// A ruled or squared sheet that lies turned on a dark table, and is seen at a slant; its rules end at its edges, not at the picture's.
 #[test]
-fn rules_of_a_sheet_that_lies_turned_on_a_table_are_no_strokes() {
-    for degrees in [-11.0, -4.0, 3.0, 9.0, 14.0_f64] {
-        let along = Vec2::from_angle(degrees.to_radians());
+fn rules_of_a_sheet_that_lies_aslant_on_a_table_are_no_strokes() {
+    let turned = [-11.0, -4.0, 3.0, 9.0, 14.0].map(|degrees| (degrees, (0.0, 0.0), 26.0, false));
+    // by this share a px along, and across, it is further away
+    let slants = [
+        (0.0, (0.0006, 0.0), 26.0, true),
+        (8.0, (-0.0006, 0.0008), 18.0, true),
+        (-12.0, (0.0008, 0.001), 20.0, true),
+        (5.0, (0.0, -0.0014), 16.0, false),
+        (-3.0, (0.0015, 0.0), 20.0, true),
+    ];
+    for (degrees, (right, down), spacing, is_squared) in turned.into_iter().chain(slants) {
+        let along = Vec2::from_angle(f64::to_radians(degrees));
         let across = Vec2::new(-along.y, along.x);
-        let at = |x: f64, y: f64| Point::new(320.0, 240.0) + along * x + across * y;
+        let at = |x: f64, y: f64| {
+            Point::new(320.0, 240.0) + (along * x + across * y) / (1.0 + right * x + down * y)
+        };
         let sheet: Vec<Point> = [(-220.0, -160.0), (220.0, -160.0), (220.0, 160.0), (-220.0, 160.0)]
             .map(|(x, y)| at(x, y))
             .to_vec();
         let (mut paper, mut rules, mut ink) =
             (Canvas::new(WIDTH, HEIGHT), Canvas::new(WIDTH, HEIGHT), Canvas::new(WIDTH, HEIGHT));
         paper.fill(&[sheet]);
-        (0..12).for_each(|k| {
-            let y = -148.0 + 26.0 * f64::from(k);
+        let rule = |first: f64, k: i32| first + spacing * (f64::from(k) + 0.5);
+        for y in (0..(320.0 / spacing) as i32).map(|k| rule(-160.0, k)) {
             rules.pen(&[at(-220.0, y), at(220.0, y)], 2.0);
-        });
+        }
+        for x in (0..(440.0 / spacing) as i32 * i32::from(is_squared)).map(|k| rule(-220.0, k)) {
+            rules.pen(&[at(x, -160.0), at(x, 160.0)], 2.0);
+        }
+        // along no rule
+        let middle = |first: f64, most: f64| first + spacing * ((most - first) / spacing).floor();
+        let radius = spacing * (60.0 / spacing).round();
         let figure: Vec<Vec<Point>> = vec![
             (0..=120)
-                .map(|k| at(-80.0, -10.0) + Vec2::from_angle(TAU * f64::from(k) / 120.0) * 61.7)
+                .map(|k| Vec2::from_angle(TAU * f64::from(k) / 120.0) * radius)
+                .map(|off| at(off.x + middle(-220.0, -78.0), off.y + middle(-160.0, -10.0)))
                 .collect(),
             vec![at(60.0, -110.0), at(150.0, 90.0)],
         ];
@@ -162,7 +180,9 @@ fn rules_of_a_sheet_that_lies_turned_on_a_table_are_no_strokes() {
         let levels = paper.shares().zip(rules.shares()).zip(ink.shares()).map(pixel).collect();
         let found = trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap();
         let rules = found.rules.map(|rules| rules.combs.len());
-        assert_eq!((found.strokes.strokes.len(), rules), (2, Some(1)), "turned by {degrees}°");
+        let combs = if is_squared { 2 } else { 1 };
+        let which = format!("turned by {degrees}°, slant {right} {down}");
+        assert_eq!((found.strokes.strokes.len(), rules), (2, Some(combs)), "{which}");
     }
 }
 

@@ -1,5 +1,7 @@
 //! Which of the lines that cross a page are its rules: equally spaced, alike, all over it, from border to border.
 
+use tracelight_stroke::Point;
+
 use super::Comb;
 use super::strips::{Peak, Strips};
 use super::track::Track;
@@ -48,8 +50,6 @@ pub(super) struct Family {
     /// Those that the picture's border cuts, all along or somewhere on their way.
     pub(super) cut: Vec<Rule>,
     pub(super) spacing: f64,
-    /// Tangent of the angle by which they are turned from the plane's sides.
-    pub(super) slope: f64,
 }
 
 impl Family {
@@ -64,11 +64,25 @@ impl Family {
         self.rules.iter().any(|rule| (rule.at[strip] - at).abs() <= near)
     }
 
-    /// What is told of it; on the plane it is level.
-    pub(super) fn told(&self, width_px: f64) -> Comb {
-        let turned = self.slope.atan();
-        let spacing_px = self.spacing * turned.cos();
-        Comb { count: self.rules.len(), spacing_px, width_px, upright: false, turned_rad: -turned }
+    /// What is told of it but its width; on the plane it is level.
+    pub(super) fn told(&self, strips: &Strips<'_>) -> Comb {
+        let (all, rules) = (strips.strips.len(), self.rules.len());
+        let place = |rule: usize, strip: usize| {
+            let (along, across) = strips.paper.on_plane(strips.strips[strip].at, self.rules[rule].at[strip]);
+            Point::new(along, across)
+        };
+        let way = place(rules / 2, all * 3 / 4) - place(rules / 2, all / 4);
+        // what lies between the first and the last, there and where they lie square
+        let (first, last) = (place(0, all / 2), place(rules - 1, all / 2));
+        let square = self.rules[rules - 1].at[all / 2] - self.rules[0].at[all / 2];
+        let scale = (way.cross(last - first) / way.hypot()).abs() / square.max(f64::MIN_POSITIVE);
+        Comb {
+            count: rules,
+            spacing_px: self.spacing * scale,
+            width_px: 0.0,
+            upright: false,
+            turned_rad: -way.atan2(),
+        }
     }
 }
 
@@ -108,8 +122,9 @@ pub(super) fn family(strips: &Strips<'_>, tracks: &[Track], ends: Ends<'_>) -> O
     let most = (strips.breadth as f64 / law.spacing) as i32 + 2;
     let beyond = (first - most..first).chain(last + 1..=last + most);
     let cut = beyond.filter(|&index| law.is_cut(strips, index));
-    let cut = cut.map(|index| law.rule(strips, index, &vec![None; strips.strips.len()])).collect();
-    Some(Family { rules, cut, spacing: law.spacing, slope: law.slope() })
+    let seen = |index: i32| law.points_on(strips, f64::from(index), contrast);
+    let cut = cut.map(|index| law.rule(strips, index, &seen(index))).collect();
+    Some(Family { rules, cut, spacing: law.spacing })
 }
 
 /// How much paper there is across the rules, halfway along, px.
@@ -236,10 +251,6 @@ impl Law {
 
     fn at(&self, index: f64, x: f64) -> f64 {
         self.basis(index, x).iter().zip(self.terms).map(|(b, t)| b * t).sum()
-    }
-
-    fn slope(&self) -> f64 {
-        (self.at(self.about.0, self.length) - self.at(self.about.0, 0.0)) / self.length
     }
 
     /// Whether the tracks keep to the law as print does.

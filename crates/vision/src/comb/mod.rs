@@ -1,7 +1,7 @@
 //! Ruled, squared paper: its rules found, told of, and taken out from under the ink.
 //!
 //! Printed rules are thin, straight but for the page's own bend, parallel, equally spaced, of one darkness, and run from border to border
-//! all over the page; a drawing's lines rarely do one of these things and never all. `strips` finds thin lines in narrow strips
+//! all over the page; a drawing's lines rarely do one of these things and never all. On a sheet laid square (`paper`) `strips` finds thin lines in narrow strips
 //! across the page, `track` follows them over it, `family` asks of those whether they are rules, `template` learns what each looks
 //! like, `wipe` takes it off and leaves what is drawn over it.
 
@@ -16,7 +16,7 @@ mod wipe;
 pub(crate) use family::ratio;
 use family::{Ends, Family};
 pub(crate) use paper::Lie;
-use paper::Paper;
+use paper::{Laid, Paper};
 use strips::Strips;
 use template::Template;
 use track::{Track, tracks};
@@ -77,11 +77,13 @@ pub(crate) fn without_rules(
     strongest: f64,
     lie: Lie<'_>,
 ) -> Option<(Plane<u8>, Rules)> {
-    if dark.width.min(dark.height) < LEAST_SIDE {
+    let laid = Laid::of(lie, (dark.width, dark.height));
+    let papers = [Paper::level(&laid), Paper::upright(&laid)];
+    let seen = laid.seen(dark);
+    if seen.width.min(seen.height) < LEAST_SIDE {
         return None;
     }
-    let papers = [Paper::level(lie), Paper::upright(lie)];
-    let sides = [Strips::of_level(dark, noise, papers[0]), Strips::of_upright(dark, noise, papers[1])];
+    let sides = [Strips::of_level(&seen, noise, papers[0]), Strips::of_upright(&seen, noise, papers[1])];
     if !sides.iter().any(|strips| strips.are_crossed_by(family::FEWEST - 1)) {
         return None;
     }
@@ -100,9 +102,11 @@ pub(crate) fn without_rules(
     across.take_off(&mut turned, None, levels);
     plane = turned.transposed();
     // margins and the like: without the rules that cross them they are seen all along, but where they lie under one
-    let bare = Strips::of_level(&plane, noise, papers[0]).with(&level.strips_beside(&level_rules));
+    let bare =
+        Strips::of_level(&laid.seen(&plane), noise, papers[0]).with(&level.strips_beside(&level_rules));
     Side::of(bare).whole_lines_off(&mut plane, &under_upright, levels);
-    let bare = Strips::of_upright(&plane, noise, papers[1]).with(&upright.strips_beside(&upright_rules));
+    let bare =
+        Strips::of_upright(&laid.seen(&plane), noise, papers[1]).with(&upright.strips_beside(&upright_rules));
     turned = plane.transposed();
     Side::of(bare).whole_lines_off(&mut turned, &under_level, levels);
     plane = turned.transposed();
@@ -187,16 +191,18 @@ impl<'a> Side<'a> {
     fn printed(&self, plane: &Plane<u8>, families: &[Family]) -> Printed {
         let mut printed = Printed { rules: Vec::new(), cut: Vec::new(), combs: Vec::new() };
         for family in families {
-            let reach = ((0.45 * family.spacing) as usize).clamp(3, most_reach(plane));
+            let told = family.told(&self.strips);
+            let reach = ((0.45 * told.spacing_px) as usize).clamp(3, most_reach(plane));
             let course = |at: &[f64]| self.course(at, plane.width);
             let rules: Vec<Rule> =
                 family.rules.iter().filter_map(|rule| Rule::of(plane, course(&rule.at), reach)).collect();
             let mut by_width: Vec<&Template> = rules.iter().map(|rule| &rule.template).collect();
             by_width.sort_by(|a, b| a.width().total_cmp(&b.width()));
             let Some(&usual) = by_width.get(by_width.len() / 2) else { continue };
-            printed.combs.push(family.told(usual.width()));
+            printed.combs.push(Comb { width_px: usual.width(), ..told });
             // too little of it is seen to know it by itself
-            let cut = |at: &[f64]| Rule { centre: course(at), template: usual.clone() };
+            let cut =
+                |at: &[f64]| Rule { centre: usual.centred(plane, &course(at)), template: usual.clone() };
             printed.cut.extend(family.cut.iter().map(|rule| cut(&rule.at)));
             printed.rules.extend(rules);
         }
@@ -208,12 +214,14 @@ impl<'a> Side<'a> {
         self.strips.clone().without(|strip, at| families.iter().any(|family| family.has_at(strip, at)))
     }
 
-    /// By column, between where it crosses the strips; beside the sheet it is far off the plane.
+    /// By column of a plane on which it is level, between where it crosses the strips; beside the sheet it is far off the plane.
     fn course(&self, at: &[f64], width: usize) -> Vec<f32> {
-        let strips: Vec<f64> = self.strips.strips.iter().map(|strip| strip.at).collect();
-        let mut course = courses(&strips, at, width);
+        let paper = self.strips.paper;
+        let places = self.strips.strips.iter().zip(at).map(|(strip, &at)| paper.on_plane(strip.at, at));
+        let (along, across): (Vec<f64>, Vec<f64>) = places.unzip();
+        let mut course = courses(&along, &across, width);
         for (x, at) in course.iter_mut().enumerate() {
-            if !self.strips.paper.has(x, at.round().max(0.0) as usize) {
+            if !paper.is_on_plane(x, at.round().max(0.0) as usize) {
                 *at = OFF_THE_PLANE;
             }
         }
@@ -225,6 +233,7 @@ impl<'a> Side<'a> {
         let reach = most_reach(plane);
         let half = strips::wide(plane.width) as isize / 2;
         let is_blind = |along: f64, at: f64| {
+            let (along, at) = self.strips.paper.on_plane(along, at);
             let (x, y) = (along.round() as isize, at.round() as isize);
             (x - half..=x + half).any(|x| across.get(x, y) > 0)
         };

@@ -52,7 +52,7 @@ pub(super) struct Strips<'a> {
     pub(super) length: usize,
     /// Pixels across them.
     pub(super) breadth: usize,
-    /// Where the sheet is; each strip lies aslant as its sides do.
+    /// Where the sheet is.
     pub(super) paper: Paper<'a>,
     pub(super) strips: Vec<Strip>,
 }
@@ -61,19 +61,10 @@ impl<'a> Strips<'a> {
     /// Across level rules of a sheet. `noise` is a pixel's deviation, levels.
     pub(super) fn of_level(dark: &Plane<u8>, noise: f64, paper: Paper<'a>) -> Self {
         let ranges = ranges(dark.width);
-        let last = dark.height as isize - 1;
         let mut sums = vec![vec![0.0_f32; dark.height]; ranges.len()];
         for (sums, &(from, to)) in sums.iter_mut().zip(&ranges) {
-            // columns that are shifted alike together
-            let mut first = from;
-            while first < to {
-                let shift = |x: usize| paper.shift(x as isize - ((from + to) / 2) as isize);
-                let end = (first + 1..to).find(|&x| shift(x) != shift(first)).unwrap_or(to);
-                for (y, sum) in sums.iter_mut().enumerate() {
-                    let y = (y as isize + shift(first)).clamp(0, last) as usize;
-                    *sum += dark.row(y)[first..end].iter().map(|&v| u32::from(v)).sum::<u32>() as f32;
-                }
-                first = end;
+            for (y, sum) in sums.iter_mut().enumerate() {
+                *sum = dark.row(y)[from..to].iter().map(|&v| u32::from(v)).sum::<u32>() as f32;
             }
         }
         Self::of(&sums, &ranges, (dark.width, dark.height), noise, paper)
@@ -84,24 +75,8 @@ impl<'a> Strips<'a> {
         let ranges = ranges(dark.height);
         let sum = |&(from, to): &(usize, usize)| {
             let mut sum = vec![0_u16; dark.width];
-            let mut add = |levels: &[u8], to: std::ops::Range<usize>| {
-                sum[to].iter_mut().zip(levels).for_each(|(s, &v)| *s += u16::from(v));
-            };
             for y in from..to.min(from + MOST_SUMMED) {
-                let (row, width) = (dark.row(y), dark.width);
-                let shift = paper.shift(y as isize - ((from + to) / 2) as isize);
-                let by = shift.unsigned_abs().min(width);
-                // what is shifted in from beyond the border is as at the border
-                match shift >= 0 {
-                    true => {
-                        add(&row[by..], 0..width - by);
-                        add(&vec![row[width - 1]; by], width - by..width);
-                    }
-                    false => {
-                        add(&row[..width - by], by..width);
-                        add(&vec![row[0]; by], 0..by);
-                    }
-                }
+                sum.iter_mut().zip(dark.row(y)).for_each(|(sum, &level)| *sum += u16::from(level));
             }
             sum.into_iter().map(f32::from).collect()
         };

@@ -89,7 +89,7 @@ impl Track {
         let known: Vec<(f64, f64)> = known.collect();
         let &(x, y) = known.first()?;
         if known.len() < 3 {
-            return Some((y + strips.paper.tilt * (at - x), known.len()));
+            return Some((y, known.len()));
         }
         let unit = 0.5 * strips.length as f64;
         let places = known.iter().map(|&(px, py)| ((px - x) / unit, py - y));

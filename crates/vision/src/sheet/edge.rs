@@ -67,8 +67,17 @@ impl Line {
     }
 }
 
-/// The sheet, from where the small picture has it, and how far inside its edge that is over, px.
-pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<(Sheet, f64)> {
+/// Where a sheet ends.
+pub(super) struct Edge {
+    pub(super) sheet: Sheet,
+    /// The quadrilateral on whose lines its sides lie, px.
+    pub(super) square: Option<[Point; 4]>,
+    /// How far inside its edge that is over, px.
+    pub(super) blur_px: f64,
+}
+
+/// The sheet, from where the small picture has it.
+pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<Edge> {
     let by = small.by as f64;
     let is_seen = |side: usize| quad.sides[side].is_some();
     let mut lines = SIDES.map(|side| match is_seen(side) {
@@ -88,7 +97,8 @@ pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<(Sh
     }
     let mut corners = [Point::ORIGIN; 4];
     for side in SIDES {
-        corners[side] = meet(&lines[side], &lines[(side + 1) % 4])?;
+        let (line, next) = (&lines[side], &lines[(side + 1) % 4]);
+        corners[side] = cross((line.from, line.to), (next.from, next.to))?;
     }
     // where sides are bent, their ends are not where the straight ones meet
     let shift = |line: &Line, end: Option<&(f64, f64)>| line.inward() * end.map_or(0.0, |end| end.1);
@@ -113,9 +123,42 @@ pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<(Sh
     let is_whole = quad.sides.iter().all(Option::is_some) && corners.iter().all(is_inside);
     let outline = within(outline, width, height);
     let beside = 1.0 - area(&outline) / (width * height);
-    let blur = lines.iter().map(|line| line.blur).fold(0.0, f64::max);
+    let blur_px = lines.iter().map(|line| line.blur).fold(0.0, f64::max);
+    let square = square(&lines, is_seen, &outline);
     let corners = is_whole.then_some(corners);
-    (beside > 0.0 && outline.len() > 2).then_some((Sheet { outline, corners, beside }, blur))
+    (beside > 0.0 && outline.len() > 2).then_some(Edge {
+        sheet: Sheet { outline, corners, beside },
+        square,
+        blur_px,
+    })
+}
+
+/// The quadrilateral on whose lines the sides of a sheet lie. A side that is not seen is parallel to the one across from it, or square to
+/// those beside it, and as far out as the sheet is seen; `None` where no side is.
+fn square(lines: &[Line; 4], is_seen: impl Fn(usize) -> bool, outline: &[Point]) -> Option<[Point; 4]> {
+    let way = |side: usize| {
+        let line = &lines[side % 4];
+        is_seen(side % 4).then(|| (line.to - line.from).normalize())
+    };
+    let line = |side: usize| {
+        let line = &lines[side];
+        if is_seen(side) {
+            return Some((line.from, line.to));
+        }
+        let beside = || {
+            let (next, before) = (way(side + 1), way(side + 3));
+            let sum =
+                next.map_or(Vec2::ZERO, |way| -way.turn_90()) + before.map_or(Vec2::ZERO, Vec2::turn_90);
+            (sum.hypot() > 0.0).then(|| sum.normalize())
+        };
+        let way = way(side + 2).map(|way| -way).or_else(beside)?;
+        let out = -way.turn_90();
+        let far = |p: &&Point| out.dot(p.to_vec2());
+        let furthest = outline.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
+        Some((*furthest, *furthest + way))
+    };
+    let [left, top, right, bottom] = [line(0)?, line(1)?, line(2)?, line(3)?];
+    Some([cross(left, top)?, cross(top, right)?, cross(right, bottom)?, cross(bottom, left)?])
 }
 
 /// The sheet between corners that someone gives; `None` where hardly any of it is in the picture.
@@ -130,11 +173,11 @@ pub(super) fn between(plane: &Plane<u8>, corners: [Point; 4]) -> Option<Sheet> {
     })
 }
 
-/// Where two lines meet.
-fn meet(a: &Line, b: &Line) -> Option<Point> {
-    let (along, other) = (a.to - a.from, b.to - b.from);
+/// Where two lines meet, each through two places.
+fn cross(a: (Point, Point), b: (Point, Point)) -> Option<Point> {
+    let (along, other) = (a.1 - a.0, b.1 - b.0);
     let across = along.cross(other);
-    let at = a.from + along * ((b.from - a.from).cross(other) / across);
+    let at = a.0 + along * ((b.0 - a.0).cross(other) / across);
     at.is_finite().then_some(at)
 }
 

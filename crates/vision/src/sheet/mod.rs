@@ -33,6 +33,7 @@ use crate::plane::Plane;
 use crate::region::{Region, regions};
 use crate::tones::Tones;
 use alone::{Alone, alone};
+use edge::Edge;
 use quad::Quad;
 
 /// A sheet of paper in a picture.
@@ -47,29 +48,9 @@ pub struct Sheet {
     pub beside: f64,
 }
 
-impl Sheet {
-    /// How far its sides are turned from those of a picture of so many px, clockwise as seen, at most an eighth of a turn, rad: the
-    /// mean over their length of what is not the picture's own border.
-    pub(crate) fn turned_rad(&self, size: (usize, usize)) -> f64 {
-        let (right, bottom) = (size.0 as f64, size.1 as f64);
-        let on = |a: f64, b: f64, border: f64| (a - border).abs().max((b - border).abs()) < BORDER_PX;
-        let is_border = |a: Point, b: Point| {
-            on(a.x, b.x, 0.0) || on(a.x, b.x, right) || on(a.y, b.y, 0.0) || on(a.y, b.y, bottom)
-        };
-        let ends = self.outline.iter().zip(self.outline.iter().cycle().skip(1));
-        let sides = ends.filter(|(a, b)| !is_border(**a, **b)).map(|(a, b)| *b - *a);
-        // four quarters of a turn are all the same to it
-        let sum =
-            sides.fold(Vec2::ZERO, |sum, side| sum + Vec2::from_angle(4.0 * side.atan2()) * side.hypot());
-        if sum == Vec2::ZERO { 0.0 } else { 0.25 * sum.atan2() }
-    }
-}
-
 /// A copied page fills the sheet that was found within this share, and so much of the picture at least is drawn on it.
 const SAME_AREA: f64 = 0.02;
 const LEAST_DRAWN: f64 = 0.001;
-/// What is nearer to the picture's border lies on it, px.
-const BORDER_PX: f64 = 1.5;
 
 /// What of a picture is looked at.
 #[derive(Clone, Debug)]
@@ -87,6 +68,8 @@ pub struct Page<'a> {
     whole: Option<&'a Grey>,
     /// Whether the sheet is seen to be brighter than what lies beside it: its paper is, not its ink.
     pub(crate) is_brighter: bool,
+    /// The quadrilateral on whose lines its sides lie, clockwise from the upper left, px of the whole picture.
+    square: Option<[Point; 4]>,
 }
 
 /// What of a page's picture is not its sheet's.
@@ -102,7 +85,16 @@ impl<'a> Page<'a> {
     pub const fn whole(image: &'a Grey) -> Self {
         let size = (image.width(), image.height());
         let (picture, origin) = (Cow::Borrowed(image), (0, 0));
-        Self { picture, size, origin, sheet: None, beside: None, whole: None, is_brighter: false }
+        Self {
+            picture,
+            size,
+            origin,
+            sheet: None,
+            beside: None,
+            whole: None,
+            is_brighter: false,
+            square: None,
+        }
     }
 
     /// The sheet in a picture, if there is one, else all of it. In one of two tones what is white on black is a silhouette, unless it is
@@ -114,9 +106,10 @@ impl<'a> Page<'a> {
             let is_sheet = tones.is_none_or(|tones| is_page(&image.plane, tones, &found.sheet));
             is_sheet.then(|| (alone(&image.plane, &small, &found), found))
         });
-        found.map_or(Self::whole(image), |(alone, Found { sheet, quad, .. })| Self {
+        found.map_or(Self::whole(image), |(alone, Found { sheet, quad, square, .. })| Self {
             whole: Some(image),
             is_brighter: quad.is_brighter && quad.seen() > 0,
+            square,
             ..Self::cut(image, alone, sheet)
         })
     }
@@ -128,7 +121,7 @@ impl<'a> Page<'a> {
         let small = Small::by(&image.plane, (side / SIDE).max(1));
         let found = Found::within(&image.plane, &small, corners)?;
         let alone = alone(&image.plane, &small, &found);
-        Some(Self::cut(image, alone, found.sheet))
+        Some(Self { square: found.square, ..Self::cut(image, alone, found.sheet) })
     }
 
     fn cut(image: &Grey, alone: Alone, sheet: Sheet) -> Self {
@@ -140,7 +133,15 @@ impl<'a> Page<'a> {
             beside: Some(alone.beside),
             whole: None,
             is_brighter: false,
+            square: None,
         }
+    }
+
+    /// Where the lines of the sheet's sides meet, px of its picture of which so many either way are one.
+    pub(crate) fn lines_meet(&self, reduction: usize) -> Option<[Point; 4]> {
+        let (right, down) = (self.origin.0 as f64, self.origin.1 as f64);
+        let by = reduction as f64;
+        self.square.map(|corners| corners.map(|at| Point::new((at.x - right) / by, (at.y - down) / by)))
     }
 
     /// What tells whether a drawing was given: all of the picture, but for what its corners were told of.
@@ -153,6 +154,8 @@ impl<'a> Page<'a> {
 struct Found {
     sheet: Sheet,
     quad: Quad,
+    /// On whose lines its sides lie.
+    square: Option<[Point; 4]>,
     /// How far inside its edge that is over.
     blur_px: f64,
 }
@@ -160,8 +163,8 @@ struct Found {
 impl Found {
     fn of(plane: &Plane<u8>, small: &Small) -> Option<Self> {
         let quad = choice::best(small).unwrap_or_else(|| Quad::all(&small.levels));
-        let (sheet, blur_px) = edge::sheet(plane, small, &quad)?;
-        Some(Self { sheet, quad, blur_px })
+        let Edge { sheet, square, blur_px } = edge::sheet(plane, small, &quad)?;
+        Some(Self { sheet, quad, square, blur_px })
     }
 
     /// What someone says to be one.
@@ -169,7 +172,7 @@ impl Found {
         let by = small.by as f64;
         let quad = Quad::between(corners.map(|c| Point::new(c.x / by, c.y / by)))?;
         let sheet = edge::between(plane, corners)?;
-        Some(Self { sheet, quad, blur_px: 0.0 })
+        Some(Self { sheet, quad, square: Some(corners), blur_px: 0.0 })
     }
 }
 
