@@ -343,3 +343,29 @@ fn a_page_copied_with_a_black_margin_is_a_sheet_and_a_blank_card_is_drawn() {
     let found = trace(&card, &Options::default()).unwrap();
     assert!(found.quality.light_on_dark && found.strokes.strokes.len() == 1);
 }
+
+/// Hardly anything is drawn on the sheet, with a pencil, and cloth or grain shows all over the table, which ends at its far edge.
+#[test]
+fn a_table_with_a_grain_is_none_of_the_drawing_however_little_is_drawn() {
+    for (paper, table, bottom) in [(190.0, 136.0, 600.0), (190.0, 136.0, 430.0), (173.0, 208.0, 430.0)] {
+        let image = picture(|x, y| {
+            let (along, across) = (x - 0.05 * (y - 240.0), y + 0.05 * (x - 320.0));
+            let on_sheet = (60.0..460.0).contains(&along) && (90.0..bottom).contains(&across);
+            let weave = 16.0 * (0.9 * along).sin() * (0.8 * across).sin();
+            if on_sheet && ((along - 160.0).hypot(across - 300.0) - 40.0).abs() < 1.2 {
+                paper - 50.0
+            } else if on_sheet {
+                paper
+            } else if across < 40.0 {
+                0.45 * table
+            } else {
+                table + weave
+            }
+        });
+        let sheet = Page::of(&image).sheet.unwrap();
+        let beside = 1.0 - 400.0 * (f64::min(bottom, 480.0) - 90.0) / (640.0 * 480.0);
+        assert!((sheet.beside - beside).abs() < 0.03, "paper {paper}: {sheet:?}");
+        let found = trace(&image, &Options::default()).unwrap();
+        assert_eq!(found.strokes.strokes.len(), 1, "paper {paper}");
+    }
+}

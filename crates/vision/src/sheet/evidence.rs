@@ -21,6 +21,11 @@ const CALMER: f64 = 0.4;
 const MOST_BLOCKS: f64 = 0.97;
 /// Of all blocks this share has no more than noise.
 const NOISE_BLOCKS: f64 = 0.2;
+/// A table's grain is seen in nearly all blocks beside the sheet, and is at most so many times what this share of them has; in as many blocks
+/// just within the sheet's edge, so many blocks wide, there is less.
+const GRAIN_BLOCKS: f64 = 0.25;
+const MOST_GRAIN: f64 = 3.0;
+const EDGE_BLOCKS: f64 = 3.0;
 /// Pixels of such a block, either way.
 const BLOCK: usize = 8;
 /// Levels differ from this share on.
@@ -216,20 +221,27 @@ impl<'a> Calm<'a> {
 
     /// Whether there is far less to be seen beside the sheet than on it, block by block.
     fn is_calmer_outside(&self, quad: &Quad, paper: f64) -> bool {
-        let (mut inside, mut outside) = (Vec::new(), Vec::new());
-        let depth = quad.depths();
+        let (mut inside, mut outside, mut at_edge) = (Vec::new(), Vec::new(), Vec::new());
+        let (depth, block) = (quad.depths(), BLOCK as f64);
         for (at, _, fine) in &self.blocks {
             match depth(*at) {
-                depth if depth > BLOCK as f64 => inside.push(*fine),
-                depth if depth < -(BLOCK as f64) => outside.push(*fine),
+                depth if depth > block => {
+                    inside.push(*fine);
+                    at_edge.extend((depth < EDGE_BLOCKS * block).then_some(*fine));
+                }
+                depth if depth < -block => outside.push(*fine),
                 _ => {}
             }
         }
-        // noise is the same everywhere, and a corner of the table is no drawing
+        // noise is the same everywhere, a table's grain all over the table, and a corner of the table is no drawing
         let noise = self.noise;
+        let grain = strong(outside.clone(), GRAIN_BLOCKS);
+        let at_edge = strong(at_edge, 1.0 - GRAIN_BLOCKS);
+        let grain = grain.zip(at_edge).filter(|(grain, paper)| paper < grain);
+        let grain = grain.map_or(0.0, |(grain, _)| MOST_GRAIN * grain);
         match (strong(inside, MOST_BLOCKS), strong(outside, MOST_BLOCKS)) {
             (Some(inside), Some(outside)) => {
-                (outside - noise).max(0.0) < CALMER * (inside - noise).max(STEP * paper)
+                outside - noise.max(grain) < CALMER * (inside - noise).max(STEP * paper)
             }
             _ => true,
         }
