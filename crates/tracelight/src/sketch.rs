@@ -109,13 +109,22 @@ fn doubts(traced: &Traced) -> Vec<String> {
     });
     let cut = (left_out.over_paper_px > CUT_SILENTLY_PX)
         .then(|| format!("{:.0} px of strokes led over paper and were cut out", left_out.over_paper_px));
+    let edges = (left_out.edges > 0)
+        .then(|| format!("{} of paper or of a shadow left out", counted(left_out.edges, "edge")));
     let ruled = rules.iter().flat_map(|rules| &rules.combs).map(ruled);
     let dotted = left_out.dots.map(|Dots { count, spacing_px }| {
         format!(
             "{count} dots of the paper, {spacing_px:.0} px apart, were left out: --despeckle 0 keeps them"
         )
     });
-    ruled.chain(dotted).chain(missed).chain(outlined(&traced.strokes)).chain(specks).chain(cut).collect()
+    ruled
+        .chain(dotted)
+        .chain(missed)
+        .chain(outlined(&traced.strokes))
+        .chain(specks)
+        .chain(cut)
+        .chain(edges)
+        .collect()
 }
 
 /// That a comb of rules was taken out.

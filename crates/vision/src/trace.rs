@@ -2,7 +2,7 @@ use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 
 use crate::centreline::{self, Row};
 use crate::comb::Rules;
-use crate::contrast::stands_out;
+use crate::contrast::{Edge, stands_out};
 use crate::dots::{self, Dots, Dotted};
 use crate::dust::Dust;
 use crate::graph::Graph;
@@ -149,6 +149,8 @@ pub struct LeftOut {
     pub dots: Option<Dots>,
     /// Length of the ways over paper that were cut out of strokes, px.
     pub over_paper_px: f64,
+    /// Lines that are the edge of a sheet, of a table or of a shadow.
+    pub edges: usize,
 }
 
 /// Finds the strokes of an image: of the sheet of paper in it, if it shows one with something beside it.
@@ -192,6 +194,7 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
     let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
     let strokes = Drawing { strokes };
     let mut strokes = strokes.transformed(Affine::scale(ink.reduction as f64));
+    let edges = drop_edges(&mut strokes, &page.picture, ink.quality.light_on_dark);
     if options.sheets {
         strokes = ink_only(&strokes, &page.picture, ink.quality.light_on_dark);
     }
@@ -205,7 +208,7 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
         quality: Quality { pen_px: usual_pen(&strokes), tone_percent, ..ink.quality },
         strokes,
         missed_ink,
-        left_out: left_out.enlarged(ink.reduction),
+        left_out: LeftOut { edges, ..left_out.enlarged(ink.reduction) },
         rules: ink.rules.map(|rules| rules.scaled(ink.reduction as f64)),
     })
 }
@@ -239,6 +242,28 @@ fn ink_only(drawing: &Drawing, image: &Grey, light_on_dark: bool) -> Drawing {
     let least = LEAST_CONTRAST * contrasts.iter().copied().fold(0.0, f64::max);
     let kept = drawing.strokes.iter().zip(&contrasts).filter(|(_, contrast)| **contrast >= least);
     Drawing { strokes: kept.map(|(stroke, _)| stroke.clone()).collect() }
+}
+
+/// At more of the picture's borders than this a line is a frame that they cut.
+const MOST_CUT: usize = 2;
+
+/// Takes the lines away that are edges of paper or of shadows, unless there is nothing else; how many they were.
+fn drop_edges(drawing: &mut Drawing, image: &Grey, light_on_dark: bool) -> usize {
+    let edges = drawing.strokes.iter().map(|stroke| Edge::of(image, stroke, light_on_dark));
+    let edges: Vec<Option<Edge>> = edges.collect();
+    let cut = (0..4).filter(|&border| edges.contains(&Some(Edge::AtBorder(border)))).count();
+    let is_none = |edge: &Option<Edge>| match edge {
+        Some(Edge::Seen) => false,
+        Some(Edge::AtBorder(_)) => cut > MOST_CUT,
+        None => true,
+    };
+    let kept = edges.iter().filter(|edge| is_none(edge)).count();
+    if kept == 0 {
+        return 0;
+    }
+    let mut left = edges.iter();
+    drawing.strokes.retain(|_| left.next().is_some_and(is_none));
+    edges.len() - kept
 }
 
 /// Chords that measure a length or a pen's share of it stay this close to their path, px.
@@ -415,6 +440,7 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
             .unwrap_or(0),
         dots: dotted.map(|dotted| dotted.told),
         over_paper_px,
+        edges: 0,
     };
     Found { strokes, missed_ink: missed as f64 / (all as f64).max(1.0), left_out }
 }
