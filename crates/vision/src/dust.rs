@@ -2,18 +2,19 @@
 
 use std::cell::OnceCell;
 
+use crate::comb::TakenOff;
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::reading::Patch;
 use crate::region::{Region, mask_of};
 
 /// What becomes of specks that are no marks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Dust {
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Dust<'a> {
     Kept,
     Dropped,
-    /// Where rules were taken off some of what they left where they cross looks like marks.
-    DroppedOnRules,
+    /// Where rules were taken off: what they left looks like marks, and lies where they lay.
+    DroppedOnRules(&'a TakenOff),
 }
 
 /// Specks of fewer pixels may be dust; so may those smaller than the pen's own dot, which covers π/4 of its width
@@ -59,7 +60,7 @@ pub(crate) fn dusted(
     mask: &Mask,
     patches: Vec<Patch>,
     pen: f64,
-    on_rules: bool,
+    rules: Option<&TakenOff>,
 ) -> (Vec<Patch>, Vec<Region>) {
     let speck = |patch: &Patch| {
         let (width, height) = patch.region.extent();
@@ -90,7 +91,7 @@ pub(crate) fn dusted(
     // a cross, a ring, a tick, wherever it is: drawn line by line, and somewhere as dark as the others, for most of it may be edge
     let is_mark = |patch: &Patch| {
         let Patch { region, graph, reading } = patch;
-        if on_rules {
+        if rules.is_some_and(|rules| rules.left_patch(region)) {
             let is_large = region.area() as f64 >= SPECK_PX;
             return is_large && reading.long >= MARK_LONG && is_dark(region, 8, AS_DARK);
         }

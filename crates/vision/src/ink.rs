@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::centreline::Row;
 use crate::coarse;
-use crate::comb::{self, Lie, Rules};
+use crate::comb::{self, Lie, TakenOff};
 use crate::faint;
 use crate::light::{Paper, percentile};
 use crate::mask::Mask;
@@ -55,7 +55,7 @@ pub(crate) struct Ink {
     /// Ink is darker than this.
     pub(crate) threshold: u8,
     /// The paper's rules, which are no longer there.
-    pub(crate) rules: Option<Rules>,
+    pub(crate) rules: Option<TakenOff>,
     /// How much darker the ink is than the paper, levels; `None` where all that is paler is paper: the threshold was
     /// given, or there are shadows.
     strength: Option<f64>,
@@ -141,10 +141,10 @@ impl Ink {
         let blur = SMOOTHED[smoothings];
         let lie = Lie { beside: beside.as_ref(), corners: page.lines_meet(reduction) };
         let rules = comb::without_rules(&darkness, blur * noise_levels, strongest(&levels), lie);
-        let rules = rules.map(|(plain, rules)| {
+        let rules = rules.map(|(plain, taken_off)| {
             levels = sampled_histogram(&plain);
             darkness = plain;
-            rules
+            taken_off
         });
         let split = match threshold_percent {
             Some(percent) => Split::at(&levels, (2.55 * percent).round() as u8),

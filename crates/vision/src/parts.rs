@@ -58,7 +58,7 @@ impl Parts {
     }
 
     /// Each part by its width.
-    pub(crate) fn of(dark: &Plane<u8>, mut ink: Mask, patches: Vec<Region>, dust: Dust) -> Self {
+    pub(crate) fn of(dark: &Plane<u8>, mut ink: Mask, patches: Vec<Region>, dust: Dust<'_>) -> Self {
         let read = |ink: &Mask, patches| graphs(ink, patches).into_iter().map(Patch::new).collect();
         let mut patches: Vec<Patch> = read(&ink, patches);
         // what a felt pen filled to and fro is broad, and of many lines
@@ -73,9 +73,8 @@ impl Parts {
         let pen = usual_pen(&patches, Patch::is_line_drawing);
         let (patches, dust) = match dust {
             Dust::Kept => (patches, Vec::new()),
-            Dust::Dropped | Dust::DroppedOnRules => {
-                dusted(dark, &ink, patches, pen, dust == Dust::DroppedOnRules)
-            }
+            Dust::Dropped => dusted(dark, &ink, patches, pen, None),
+            Dust::DroppedOnRules(rules) => dusted(dark, &ink, patches, pen, Some(rules)),
         };
         let mut sorter = Sorter { pen, lines: Vec::new(), shape_mask: Mask::empty(ink.width, ink.height) };
         sorter.sort(patches);

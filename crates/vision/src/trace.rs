@@ -209,7 +209,7 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
         strokes,
         missed_ink,
         left_out: LeftOut { edges, ..left_out.enlarged(ink.reduction) },
-        rules: ink.rules.map(|rules| rules.scaled(ink.reduction as f64)),
+        rules: ink.rules.map(|off| off.rules.scaled(ink.reduction as f64)),
     })
 }
 
@@ -379,7 +379,7 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
         let dust = match (options.despeckle_px2, &ink.rules) {
             (Some(_), _) => Dust::Kept,
             (None, None) => Dust::Dropped,
-            (None, Some(_)) => Dust::DroppedOnRules,
+            (None, Some(off)) => Dust::DroppedOnRules(off),
         };
         match options.mode {
             Mode::Centreline => Parts::all_lines(mask, patches.drawn),
@@ -405,6 +405,8 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
     };
     let rows = twice::once(dark, gap::bridged(dark, rows));
     let (rows, over_paper_px) = on_ink::only(mask, rows);
+    let is_left = |row: &Row| ink.rules.as_ref().is_some_and(|off| off.left_line(&row.points, row.width));
+    let (left, rows): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(is_left);
     let (rows, crumbs) = match options.despeckle_px2 {
         // a pen leaves none
         None if ink.pencil.is_some() => crumbs::parted(dark, rows),
@@ -414,8 +416,8 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
         rows.iter().filter_map(|row| centreline::stroke(dark, row, options)).collect()
     };
     strokes.extend(along(&rows));
-    // crumbs are left out on purpose, not missed
-    let counts = missed::counts(mask, &lined, strokes.iter().chain(&along(&crumbs)));
+    // crumbs, and what rules left, are left out on purpose, not missed
+    let counts = missed::counts(mask, &lined, strokes.iter().chain(&along(&crumbs)).chain(&along(&left)));
     let (mut missed, mut all) = (0, 0);
     let mut lost_ink = Mask::empty(mask.width, mask.height);
     for (region, (area, lost)) in lined.iter().zip(counts) {

@@ -213,3 +213,42 @@ fn the_dots_of_dotted_paper_are_no_strokes() {
         assert!(dots.count > 100 && (dots.spacing_px - spacing).abs() < 0.5, "{spacing} px apart: {dots:?}");
     }
 }
+
+/// A page that curls: the nearer to its upper edge, the more its rules bend, and words stand on them.
+#[test]
+fn rules_of_a_page_that_curls_are_no_strokes_where_words_stand_on_them() {
+    let rule = |k: i32, x: f64| {
+        let curl = 9.0 * (1.0 - f64::from(k) / 9.0).powi(3);
+        30.0 + 48.0 * f64::from(k) + curl * (1.5 * TAU * (x / 640.0 - 0.1)).sin()
+    };
+    let (mut rules, mut ink) = (Canvas::new(WIDTH, HEIGHT), Canvas::new(WIDTH, HEIGHT));
+    for k in 0..10 {
+        let points: Vec<Point> =
+            (-1..=65).map(|i| 10.0 * f64::from(i)).map(|x| Point::new(x, rule(k, x))).collect();
+        rules.pen(&points, 1.8);
+    }
+    let letters: Vec<Vec<Point>> = (0..10)
+        .flat_map(|k| (0..26).map(move |i| (k, 150.0 + 12.0 * f64::from(i))))
+        .map(|(k, x)| {
+            let foot = rule(k, x) - 5.0;
+            [(x - 2.0, foot - 12.0), (x, foot), (x + 6.0, foot)].map(Point::from).to_vec()
+        })
+        .collect();
+    letters.iter().for_each(|letter| ink.pen(letter, 2.5));
+    let pixel = |(rule, ink): (f64, f64)| {
+        let under = 235.0 - 75.0 * rule;
+        (under + (60.0 - under) * ink) as u8
+    };
+    let levels = rules.shares().zip(ink.shares()).map(pixel).collect();
+    // so many equal letters look like a screen
+    let options = Options { force: true, ..Options::default() };
+    let found = trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &options).unwrap();
+    assert_eq!(found.rules.map(|rules| rules.combs.len()), Some(1));
+    let drawn: Vec<_> = found.strokes.strokes.iter().map(|s| s.path.flatten(0.02)).collect();
+    let comparison = compare_polylines(&drawn, &letters, 2.0).unwrap();
+    assert!(
+        comparison.coverage > 0.97 && comparison.precision > 0.97,
+        "{} strokes: {comparison:?}",
+        drawn.len()
+    );
+}

@@ -3,6 +3,7 @@
 use tracelight_stroke::Point;
 
 use super::Comb;
+use super::drift::Drift;
 use super::strips::{Peak, Strips};
 use super::track::Track;
 use crate::solve;
@@ -34,7 +35,7 @@ const SEEN: f64 = 0.45;
 /// The middle of a rule that the picture's border cuts is this near to it, px: half of a wide rule.
 pub(super) const CUT_PX: f64 = 4.0;
 /// Rules differ in contrast from their fellows by no more than this, as a ratio: each fifth may be printed darker.
-const ALIKE: f64 = 2.6;
+pub(super) const ALIKE: f64 = 2.6;
 
 /// One rule: where it crosses each strip.
 #[derive(Clone, Debug)]
@@ -118,12 +119,14 @@ pub(super) fn family(strips: &Strips<'_>, tracks: &[Track], ends: Ends<'_>) -> O
     if !(is_all_over && is_whole && reach) {
         return None;
     }
-    let rules = found.iter().map(|(index, seen)| law.rule(strips, *index, seen)).collect();
     let most = (strips.breadth as f64 / law.spacing) as i32 + 2;
-    let beyond = (first - most..first).chain(last + 1..=last + most);
-    let cut = beyond.filter(|&index| law.is_cut(strips, index));
-    let seen = |index: i32| law.points_on(strips, f64::from(index), contrast);
-    let cut = cut.map(|index| law.rule(strips, index, &seen(index))).collect();
+    let is_cut = |index: &i32| law.is_cut(strips, *index);
+    let cut: Vec<i32> = (first - most..first).chain(last + 1..=last + most).filter(is_cut).collect();
+    let all = cut.iter().copied().fold((first, last), |(low, high), cut| (low.min(cut), high.max(cut)));
+    let courses = Drift::of(&law, strips, contrast).courses(all.0..=all.1);
+    let rule = |index: i32| Rule { at: courses[(index - all.0) as usize].clone() };
+    let rules = found.iter().map(|(index, _)| rule(*index)).collect();
+    let cut = cut.into_iter().map(rule).collect();
     Some(Family { rules, cut, spacing: law.spacing })
 }
 
@@ -208,12 +211,12 @@ const fn power(term: usize) -> i32 {
 }
 
 /// Where each rule is: smooth in its number and along it, for a page lies bent or is seen at a slant.
-struct Law {
+pub(super) struct Law {
     terms: [f64; TERMS],
     /// Rules that were used to find it, the middle one and half their number.
     about: (f64, f64),
     length: f64,
-    spacing: f64,
+    pub(super) spacing: f64,
 }
 
 impl Law {
@@ -249,7 +252,8 @@ impl Law {
         std::array::from_fn(|k| i.powi(power(k)) * u.powi(k as i32 % 4))
     }
 
-    fn at(&self, index: f64, x: f64) -> f64 {
+    /// Where a rule is, px across.
+    pub(super) fn at(&self, index: f64, x: f64) -> f64 {
         self.basis(index, x).iter().zip(self.terms).map(|(b, t)| b * t).sum()
     }
 
@@ -313,6 +317,11 @@ impl Law {
         (is_started || firsts.any(is_reached)) && (is_ended || lasts.any(is_reached))
     }
 
+    /// So far from where it is expected a rule may be, px.
+    pub(super) fn reach_px(&self) -> f64 {
+        (NEAR * self.spacing).max(NEAR_PX)
+    }
+
     /// Whether some of a rule lies in the picture, or on its border, which cuts it.
     fn is_cut(&self, strips: &Strips<'_>, index: i32) -> bool {
         strips.strips.iter().any(|strip| {
@@ -323,7 +332,7 @@ impl Law {
 
     /// In each strip the line nearest to where a rule must be.
     fn points_on(&self, strips: &Strips<'_>, index: f64, contrast: f64) -> Vec<Option<Peak>> {
-        let reach = (NEAR * self.spacing).max(NEAR_PX);
+        let reach = self.reach_px();
         let nearest = |strip: &super::strips::Strip| {
             let expected = self.at(index, strip.at);
             let off = |peak: &&Peak| (peak.at - expected).abs();
@@ -332,23 +341,6 @@ impl Law {
             near.min_by(|a, b| off(a).total_cmp(&off(b))).copied()
         };
         strips.strips.iter().map(nearest).collect()
-    }
-
-    /// A rule's course: the law, and by how much the strips nearby are off it.
-    fn rule(&self, strips: &Strips<'_>, index: i32, seen: &[Option<Peak>]) -> Rule {
-        let law: Vec<f64> = strips.strips.iter().map(|strip| self.at(f64::from(index), strip.at)).collect();
-        let off: Vec<Option<f64>> = seen.iter().zip(&law).map(|(p, at)| p.map(|p| p.at - at)).collect();
-        let near = |k: usize| {
-            let reach = (2..off.len()).find(|&r| {
-                off[k.saturating_sub(r)..(k + r + 1).min(off.len())].iter().flatten().count() >= 3
-            });
-            let r = reach.unwrap_or(off.len());
-            let mut near: Vec<f64> =
-                off[k.saturating_sub(r)..(k + r + 1).min(off.len())].iter().flatten().copied().collect();
-            near.sort_unstable_by(f64::total_cmp);
-            near.get(near.len() / 2).copied().unwrap_or(0.0)
-        };
-        Rule { at: (0..law.len()).map(|k| law[k] + near(k)).collect() }
     }
 }
 

@@ -2,13 +2,15 @@
 //!
 //! Printed rules are thin, straight but for the page's own bend, parallel, equally spaced, of one darkness, and run from border to border
 //! all over the page; a drawing's lines rarely do one of these things and never all. On a sheet laid square (`paper`) `strips` finds thin lines in narrow strips
-//! across the page, `track` follows them over it, `family` asks of those whether they are rules, `template` learns what each looks
-//! like, `wipe` takes it off and leaves what is drawn over it.
+//! across the page, `track` follows them over it, `family` asks of those whether they are rules, and by how much each of them `drift`s off their law, `template` learns what each looks
+//! like, `wipe` takes it off and leaves what is drawn over it; what was `taken` off may have left something where it lay.
 
+mod drift;
 mod family;
 mod paper;
 mod runs;
 mod strips;
+mod taken;
 mod template;
 mod track;
 mod wipe;
@@ -18,6 +20,7 @@ use family::{Ends, Family};
 pub(crate) use paper::Lie;
 use paper::{Laid, Paper};
 use strips::Strips;
+pub(crate) use taken::TakenOff;
 use template::Template;
 use track::{Track, tracks};
 use wipe::{Levels, wipe};
@@ -76,7 +79,7 @@ pub(crate) fn without_rules(
     noise: f64,
     strongest: f64,
     lie: Lie<'_>,
-) -> Option<(Plane<u8>, Rules)> {
+) -> Option<(Plane<u8>, TakenOff)> {
     let laid = Laid::of(lie, (dark.width, dark.height));
     let papers = [Paper::level(&laid), Paper::upright(&laid)];
     let seen = laid.seen(dark);
@@ -110,11 +113,15 @@ pub(crate) fn without_rules(
     turned = plane.transposed();
     Side::of(bare).whole_lines_off(&mut turned, &under_level, levels);
     plane = turned.transposed();
-    crossings_off(&mut plane, &under_level.transposed(), &under_upright, levels);
+    let under_level = under_level.transposed();
+    crossings_off(&mut plane, &under_level, &under_upright, levels);
     let mut combs = along.combs;
     let turn = |comb: Comb| Comb { upright: true, turned_rad: -comb.turned_rad, ..comb };
     combs.extend(across.combs.into_iter().map(turn));
-    (!combs.is_empty()).then_some((plane, Rules { combs }))
+    (!combs.is_empty()).then(|| {
+        let rules = Rules { combs };
+        (plane, TakenOff::of(dark, rules, [&under_level, &under_upright], levels))
+    })
 }
 
 /// What is left where two rules cross lies alone: so far from them there is paper all round, px,

@@ -30,6 +30,11 @@ pub(super) struct Levels {
 }
 
 impl Levels {
+    /// By how much a pixel is darker than another for sure.
+    pub(super) fn margin(self) -> f32 {
+        LEAST_LEVELS.max(DEVIATIONS * self.noise)
+    }
+
     /// By how much ink for sure is darker than a rule, on paper of some darkness.
     fn sure(&self, pixel: &Pixel, paper: f32) -> f32 {
         SURE * (self.ink - paper - pixel.rule)
@@ -80,7 +85,7 @@ impl<'a> Band<'a> {
             .map(|c| ((c - template.before).ceil() as isize - 1, (c + template.behind).floor() as isize + 1))
             .collect();
         let depth = rows.iter().map(|r| (r.1 - r.0 - 1).max(0)).max().unwrap_or(0) as usize;
-        let margin = LEAST_LEVELS.max(DEVIATIONS * levels.noise);
+        let margin = levels.margin();
         let row = |pick: fn(&(isize, isize)) -> isize, off: isize| -> Vec<f32> {
             let level = |(x, r): (usize, &(isize, isize))| {
                 let y = pick(r) + off;
