@@ -18,6 +18,8 @@
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bow`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `outline` | edges of filled shapes, holes too |
+//! | `contrast` | whether a stroke is ink, or the edge of paper or of a shadow |
+//! | `projection` | a rectangle seen at a slant |
 //! | `dots` | the dots of dotted paper |
 //! | `near` | which of many points are near a place |
 //! | `follow` | points to paths |
