@@ -226,6 +226,10 @@ impl<'a> Side<'a> {
         let paper = self.strips.paper;
         let places = self.strips.strips.iter().zip(at).map(|(strip, &at)| paper.on_plane(strip.at, at));
         let (along, across): (Vec<f64>, Vec<f64>) = places.unzip();
+        // beyond the horizon of a sheet there is none of it
+        if along.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return vec![OFF_THE_PLANE; width];
+        }
         let mut course = courses(&along, &across, width);
         for (x, at) in course.iter_mut().enumerate() {
             if !paper.is_on_plane(x, at.round().max(0.0) as usize) {

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use tracelight_stroke::Point;
+use tracelight_stroke::{Point, Vec2};
 
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -63,12 +63,14 @@ impl<'a> Laid<'a> {
 }
 
 impl Turned {
-    /// `None` where it lies square as it is.
+    /// `None` where it lies square as it is, or on its side.
     fn of(corners: &[Point; 4], plane: (usize, usize)) -> Option<Self> {
         let [a, b, c, d] = *corners;
-        let is_off = |along: f64, across: f64| across.abs() > SQUARE * along.abs();
-        let is_turned = [b - a, c - d].into_iter().any(|way| is_off(way.x, way.y))
-            || [d - a, c - b].into_iter().any(|way| is_off(way.y, way.x));
+        let (level, upright) = ([b - a, c - d], [d - a, c - b].map(|way| Vec2::new(way.y, way.x)));
+        let mut sides = level.into_iter().chain(upright);
+        // corners that someone gives may begin with another one: then what is level is upright
+        let lies_right = sides.clone().all(|side| side.x > side.y.abs());
+        let is_turned = lies_right && sides.any(|side| side.y.abs() > SQUARE * side.x);
         // as large as where it is nearest: no rule gets thinner
         let (width, height) = (a.distance(b).max(d.distance(c)), a.distance(d).max(b.distance(c)));
         let most = MOST_ENLARGED * (plane.0 * plane.1) as f64;
@@ -171,3 +173,45 @@ impl<'a> Paper<'a> {
 
 /// Where what the camera cannot see is, px.
 const FAR: f64 = -1e6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sheet of 240 × 180 px that is seen at a slant.
+    const CORNERS: [Point; 4] =
+        [Point::new(60.0, 40.0), Point::new(280.0, 20.0), Point::new(300.0, 190.0), Point::new(40.0, 210.0)];
+
+    #[test]
+    fn lines_across_a_sheet_that_lies_aslant_are_level_where_it_is_laid_square() {
+        let lie = Lie { beside: None, corners: Some(CORNERS) };
+        let laid = Laid::of(lie, (320, 240));
+        let ends = [0.0, 230.0].map(|along| Paper::level(&laid).on_plane(along, 90.0));
+        let [from, to] = ends.map(|(x, y)| Point::new(x + 0.5, y + 0.5));
+        let off = |x: usize, y: usize| {
+            let at = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+            (at - from).cross(to - from).abs() / from.distance(to)
+        };
+        let mut plane = Plane::filled(320, 240, 0_u8);
+        (0..240)
+            .for_each(|y| (0..320).for_each(|x| plane.row_mut(y)[x] = if off(x, y) < 1.5 { 200 } else { 0 }));
+        let seen = laid.seen(&plane);
+        let darkest = |x: usize| (0..seen.height).max_by_key(|&y| seen.row(y)[x]).unwrap_or(0);
+        let rows: Vec<usize> = (20..seen.width - 20).step_by(20).map(darkest).collect();
+        assert!(rows.iter().all(|row| row.abs_diff(90) <= 1), "{rows:?}");
+        let back = Paper::level(&laid).on_plane(-0.5, -0.5);
+        assert!((back.0 + 0.5 - 60.0).abs() < 1e-6 && (back.1 + 0.5 - 40.0).abs() < 1e-6, "{back:?}");
+    }
+
+    #[test]
+    fn a_sheet_that_lies_square_or_on_its_side_is_seen_as_it_is() {
+        let plane = Plane::filled(320, 240, 7_u8);
+        let [a, b, c, d] = CORNERS;
+        let square = [(10.0, 10.0), (300.0, 10.5), (300.0, 200.0), (10.0, 200.0)].map(Point::from);
+        for corners in [None, Some(square), Some([b, c, d, a]), Some([c, d, a, b])] {
+            let laid = Laid::of(Lie { beside: None, corners }, (320, 240));
+            assert!(matches!(laid.seen(&plane), Cow::Borrowed(_)), "{corners:?}");
+            assert_eq!(Paper::upright(&laid).on_plane(12.0, 34.0), (12.0, 34.0));
+        }
+    }
+}
