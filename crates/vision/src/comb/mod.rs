@@ -227,7 +227,7 @@ impl<'a> Side<'a> {
         let places = self.strips.strips.iter().zip(at).map(|(strip, &at)| paper.on_plane(strip.at, at));
         let (along, across): (Vec<f64>, Vec<f64>) = places.unzip();
         // beyond the horizon of a sheet there is none of it
-        if along.windows(2).any(|pair| pair[0] >= pair[1]) {
+        if along.iter().any(|&at| at < 0.5 * paper::FAR) {
             return vec![OFF_THE_PLANE; width];
         }
         let mut course = courses(&along, &across, width);
@@ -369,6 +369,18 @@ fn courses(at: &[f64], values: &[f64], width: usize) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// So small that the strips at the borders are those beside them.
+    #[test]
+    fn rules_of_a_picture_of_some_ninety_px_are_taken_off() {
+        let level = |i: usize| if (i / 90) % 12 == 6 { 120 } else { 4 };
+        let plane = Plane { width: 90, height: 90, values: (0..90 * 90).map(level).collect() };
+        let (plain, off) = without_rules(&plane, 0.0, 200.0, Lie { beside: None, corners: None })
+            .unwrap_or_else(|| panic!());
+        assert_eq!(off.rules.combs.len(), 1);
+        let left = plain.values.iter().filter(|&&level| level > 60).count();
+        assert!(left < 90, "{left} of 630 px");
+    }
 
     #[test]
     fn what_two_rules_left_where_they_cross_goes_and_a_line_over_it_stays() {

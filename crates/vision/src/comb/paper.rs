@@ -172,7 +172,7 @@ impl<'a> Paper<'a> {
 }
 
 /// Where what the camera cannot see is, px.
-const FAR: f64 = -1e6;
+pub(super) const FAR: f64 = -1e6;
 
 #[cfg(test)]
 mod tests {
