@@ -25,7 +25,7 @@ pub(crate) fn stands_out(grey: &Grey, stroke: &Stroke, light_on_dark: bool) -> f
     let sign = if light_on_dark { -1.0 } else { 1.0 };
     let half = 0.5 * stroke.pen.unwrap_or(0.0);
     let of = |Place { at, across }: Place| {
-        let level = |off: f64| between(grey, at + across * off);
+        let level = |off: f64| grey.plane.at(at + across * off);
         match stroke.kind {
             StrokeKind::Centreline => {
                 let beside = [half + BEYOND_PX, -half - BEYOND_PX].map(|off| sign * level(off));
@@ -63,14 +63,15 @@ impl Edge {
     pub(crate) fn of(grey: &Grey, stroke: &Stroke, light_on_dark: bool) -> Option<Self> {
         let pen = stroke.pen.filter(|_| stroke.kind == StrokeKind::Centreline)?;
         let spacing = (stroke.path.length(0.1) / MOST_PLACES).max(SPACING_PX);
-        let most_other = ((1.0 - EDGE) * places(stroke, spacing).count() as f64) as usize;
+        let places: Vec<Place> = places(stroke, spacing).collect();
+        let most_other = ((1.0 - EDGE) * places.len() as f64) as usize;
         let ways = Across { grey, light_on_dark, pen };
         // places at which either side is paper, and those that are not at each border
         let (mut paper, mut off) = ([0; 2], [0; 4]);
-        for place in places(stroke, spacing) {
-            let is_dark = ways.dark_sides(&place);
+        for place in &places {
+            let is_dark = ways.dark_sides(place);
             (0..2).for_each(|side| paper[side] += usize::from(!is_dark[side]));
-            let is_at = ways.at_borders(&place);
+            let is_at = ways.at_borders(place);
             (0..4).for_each(|border| off[border] += usize::from(!is_at[border]));
             if paper.iter().chain(&off).all(|&other| other > most_other) {
                 return None;
@@ -96,7 +97,7 @@ impl Across<'_> {
         let at = place.at + place.across * off;
         let (width, height) = (self.grey.width() as f64, self.grey.height() as f64);
         let is_seen = (0.0..width).contains(&at.x) && (0.0..height).contains(&at.y);
-        let level = is_seen.then(|| between(self.grey, at))?;
+        let level = is_seen.then(|| self.grey.plane.at(at))?;
         Some(if self.light_on_dark { level } else { 255.0 - level })
     }
 
@@ -142,21 +143,6 @@ fn places(stroke: &Stroke, spacing: f64) -> impl Iterator<Item = Place> {
             (length > 0.0).then(|| Place { at: place(k as f64 + 0.5), across: ahead.turn_90() / length })
         })
     })
-}
-
-/// The level at a place, between pixels evenly.
-fn between(grey: &Grey, at: Point) -> f64 {
-    let (width, height) = (grey.width(), grey.height());
-    let along = |v: f64, n: usize| {
-        let v = (v - 0.5).clamp(0.0, (n - 1) as f64);
-        let low = (v as usize).min(n - 2);
-        (low, v - low as f64)
-    };
-    let ((x, fx), (y, fy)) = (along(at.x, width), along(at.y, height));
-    let level = |x: usize, y: usize| f64::from(grey.levels()[y * width + x]);
-    let upper = level(x, y) + fx * (level(x + 1, y) - level(x, y));
-    let lower = level(x, y + 1) + fx * (level(x + 1, y + 1) - level(x, y + 1));
-    upper + fy * (lower - upper)
 }
 
 #[cfg(test)]

@@ -43,6 +43,19 @@ pub(crate) fn symmetric<const N: usize>(mut rows: [[f64; N]; N], mut right: [f64
     Some(right)
 }
 
+/// The straight line nearest to some places, (x, y, weight) each, by least squares: y where x is 0, and its slope. `None` where all of
+/// them are at one x.
+pub(crate) fn line(places: impl Iterator<Item = (f64, f64, f64)>) -> Option<(f64, f64)> {
+    let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (px, py, weight) in places {
+        (n, x, y) = (n + weight, x + weight * px, y + weight * py);
+        (xx, xy) = (xx + weight * px * px, xy + weight * px * py);
+    }
+    let spread = n * xx - x * x;
+    let slope = (n * xy - x * y) / spread;
+    (spread > 1e-9).then(|| ((y - slope * x) / n, slope))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,9 +1,10 @@
 //! By how much each rule is off the law of its family: a page bends in more ways than a law knows, but from rule to rule hardly, and
 //! writing on a rule looks like a part of it that lies elsewhere.
 
-use super::family::{ALIKE, Law, ratio};
+use super::family::{Law, is_alike};
 use super::strips::{Strip, Strips};
 use crate::ridge::middle;
+use crate::solve::line;
 
 /// From rule to rule a page bends by no more than this share of the spacing, or so many px, than it did before.
 const NEAR: f64 = 0.025;
@@ -72,9 +73,8 @@ impl<'a> Drift<'a> {
     fn seen(&self, rule: i32, expected: &[f64], near: f64) -> Seen {
         let on_law = self.on_law(rule, expected);
         let nearest = |(strip, at): (&Strip, &f64)| {
-            let off = strip.peaks.iter().filter(|peak| ratio(peak.contrast, self.contrast) < ALIKE);
-            let off = off.map(|peak| peak.at - at).filter(|off| off.abs() <= near);
-            off.min_by(|a, b| a.abs().total_cmp(&b.abs()))
+            let peak = strip.nearest(*at, near, |peak| is_alike(peak, self.contrast));
+            peak.map(|peak| peak.at - at)
         };
         self.strips.strips.iter().zip(&on_law).map(nearest).collect()
     }
@@ -97,16 +97,11 @@ fn smoothed(seen: &Seen, most: f64) -> Vec<f64> {
         };
         let reach = (BESIDE..seen.len()).find(|&reach| near(reach).count() >= FEWEST).unwrap_or(seen.len());
         let middle = middle(near(reach).map(|(_, off)| off).collect()).unwrap_or(0.0);
-        let own = near(reach).filter(|(_, off)| (off - middle).abs() < STRAY_PX);
-        let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for (i, off) in own {
-            (n, x, y, xx, xy) = (n + 1.0, x + i, y + off, xx + i * i, xy + i * off);
-        }
+        let own = || near(reach).filter(|(_, off)| (off - middle).abs() < STRAY_PX);
         // on one side of it alone a line would lead anywhere
-        let spread = n * xx - x * x;
-        let is_about = x.abs() <= n * BESIDE as f64;
-        let line = if spread > 0.0 && is_about { (xx * y - x * xy) / spread } else { middle };
-        line.clamp(-most, most)
+        let is_about = own().map(|(i, _)| i).sum::<f64>().abs() <= (own().count() * BESIDE) as f64;
+        let line = line(own().map(|(i, off)| (i, off, 1.0))).filter(|_| is_about);
+        line.map_or(middle, |(at, _)| at).clamp(-most, most)
     };
     (0..seen.len()).map(at).collect()
 }

@@ -2,9 +2,8 @@
 
 use tracelight_stroke::Point;
 
-use super::Comb;
 use super::drift::Drift;
-use super::strips::{Peak, Strips};
+use super::strips::{Peak, Strip, Strips};
 use super::track::Track;
 use crate::solve;
 
@@ -35,7 +34,7 @@ const SEEN: f64 = 0.45;
 /// The middle of a rule that the picture's border cuts is this near to it, px: half of a wide rule.
 pub(super) const CUT_PX: f64 = 4.0;
 /// Rules differ in contrast from their fellows by no more than this, as a ratio: each fifth may be printed darker.
-pub(super) const ALIKE: f64 = 2.6;
+const ALIKE: f64 = 2.6;
 
 /// One rule: where it crosses each strip.
 #[derive(Clone, Debug)]
@@ -65,8 +64,8 @@ impl Family {
         self.rules.iter().any(|rule| (rule.at[strip] - at).abs() <= near)
     }
 
-    /// What is told of it but its width; on the plane it is level.
-    pub(super) fn told(&self, strips: &Strips<'_>) -> Comb {
+    /// How far apart its rules are, px, and how far they are turned, counter-clockwise as seen, rad, on the plane, on which it is level.
+    pub(super) fn spacing_and_turn(&self, strips: &Strips<'_>) -> (f64, f64) {
         let (all, rules) = (strips.strips.len(), self.rules.len());
         let place = |rule: usize, strip: usize| {
             let (along, across) = strips.paper.on_plane(strips.strips[strip].at, self.rules[rule].at[strip]);
@@ -77,13 +76,7 @@ impl Family {
         let (first, last) = (place(0, all / 2), place(rules - 1, all / 2));
         let square = self.rules[rules - 1].at[all / 2] - self.rules[0].at[all / 2];
         let scale = (way.cross(last - first) / way.hypot()).abs() / square.max(f64::MIN_POSITIVE);
-        Comb {
-            count: rules,
-            spacing_px: self.spacing * scale,
-            width_px: 0.0,
-            upright: false,
-            turned_rad: -way.atan2(),
-        }
+        (self.spacing * scale, -way.atan2())
     }
 }
 
@@ -164,6 +157,11 @@ fn longest_chain(strips: &Strips<'_>, tracks: &[Track]) -> Option<Vec<Link>> {
     let missing =
         |chain: &Vec<Link>| (chain[chain.len() - 1].index - chain[0].index + 1) as usize - chain.len();
     chains.filter(whole).max_by_key(|chain| chain.len() as isize - missing(chain) as isize)
+}
+
+/// Whether a line is as dark as rules of some contrast.
+pub(super) fn is_alike(peak: &Peak, contrast: f64) -> bool {
+    ratio(peak.contrast, contrast) < ALIKE
 }
 
 /// How many times the larger of two is the smaller.
@@ -333,13 +331,8 @@ impl Law {
     /// In each strip the line nearest to where a rule must be.
     fn points_on(&self, strips: &Strips<'_>, index: f64, contrast: f64) -> Vec<Option<Peak>> {
         let reach = self.reach_px();
-        let nearest = |strip: &super::strips::Strip| {
-            let expected = self.at(index, strip.at);
-            let off = |peak: &&Peak| (peak.at - expected).abs();
-            let alike = |peak: &&Peak| ratio(peak.contrast, contrast) < ALIKE;
-            let near = strip.peaks.iter().filter(|p| off(p) <= reach).filter(alike);
-            near.min_by(|a, b| off(a).total_cmp(&off(b))).copied()
-        };
+        let nearest =
+            |strip: &Strip| strip.nearest(self.at(index, strip.at), reach, |peak| is_alike(peak, contrast));
         strips.strips.iter().map(nearest).collect()
     }
 }

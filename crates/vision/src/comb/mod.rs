@@ -198,15 +198,16 @@ impl<'a> Side<'a> {
     fn printed(&self, plane: &Plane<u8>, families: &[Family]) -> Printed {
         let mut printed = Printed { rules: Vec::new(), cut: Vec::new(), combs: Vec::new() };
         for family in families {
-            let told = family.told(&self.strips);
-            let reach = ((0.45 * told.spacing_px) as usize).clamp(3, most_reach(plane));
+            let (spacing_px, turned_rad) = family.spacing_and_turn(&self.strips);
+            let reach = ((0.45 * spacing_px) as usize).clamp(3, most_reach(plane));
             let course = |at: &[f64]| self.course(at, plane.width);
             let rules: Vec<Rule> =
                 family.rules.iter().filter_map(|rule| Rule::of(plane, course(&rule.at), reach)).collect();
             let mut by_width: Vec<&Template> = rules.iter().map(|rule| &rule.template).collect();
             by_width.sort_by(|a, b| a.width().total_cmp(&b.width()));
             let Some(&usual) = by_width.get(by_width.len() / 2) else { continue };
-            printed.combs.push(Comb { width_px: usual.width(), ..told });
+            let (count, width_px) = (family.rules.len(), usual.width());
+            printed.combs.push(Comb { count, spacing_px, width_px, upright: false, turned_rad });
             // too little of it is seen to know it by itself
             let cut =
                 |at: &[f64]| Rule { centre: usual.centred(plane, &course(at)), template: usual.clone() };

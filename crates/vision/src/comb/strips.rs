@@ -43,6 +43,13 @@ impl Strip {
     pub(super) fn has(&self, across: f64) -> bool {
         self.sheet.0 <= across && across <= self.sheet.1
     }
+
+    /// The line nearest to a place, at most `reach` px from it, among those for which this says so.
+    pub(super) fn nearest(&self, across: f64, reach: f64, is_one: impl Fn(&Peak) -> bool) -> Option<Peak> {
+        let off = |peak: &Peak| (peak.at - across).abs();
+        let near = self.peaks.iter().filter(|peak| off(peak) <= reach && is_one(peak));
+        near.min_by(|a, b| off(a).total_cmp(&off(b))).copied()
+    }
 }
 
 /// Strips across rules of one direction; the first and the last lie at the borders.

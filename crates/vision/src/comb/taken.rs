@@ -4,6 +4,7 @@ use tracelight_stroke::{Point, polyline_length};
 
 use super::Rules;
 use super::wipe::Levels;
+use crate::ink::over;
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::region::Region;
@@ -46,17 +47,8 @@ impl Lay {
     fn of(dark: &Plane<u8>, under: &Plane<u8>, levels: Levels) -> Self {
         let darkest = f32::from(under.values.iter().copied().max().unwrap_or(0));
         let most = (DARKER * darkest).max(darkest + levels.margin());
-        let on = |share: f32| {
-            let mut mask = Mask::empty(dark.width, dark.height);
-            for y in 0..dark.height {
-                let is_on = |(under, dark): (&u8, &u8)| {
-                    f32::from(*under) > share * darkest && f32::from(*dark) <= most
-                };
-                let row = under.row(y).iter().zip(dark.row(y)).map(is_on).enumerate();
-                row.filter(|(_, is_on)| *is_on).for_each(|(x, _)| mask.fill(y, x, x + 1));
-            }
-            mask
-        };
+        let inked = over(dark, most as u8);
+        let on = |share: f32| over(under, (share * darkest) as u8).without(&inked);
         Self { far: on(FOOT), near: on(SURE) }
     }
 }

@@ -8,6 +8,7 @@ use super::{Sheet, Small, inward};
 use crate::outline::area;
 use crate::plane::Plane;
 use crate::ridge::middle;
+use crate::solve;
 
 /// Places along a side at which its step is looked for.
 const PLACES: usize = 96;
@@ -294,20 +295,11 @@ pub(super) fn straight(steps: &[(f64, f64)]) -> (f64, f64) {
     for _ in 0..8 {
         let off = |&(s, off): &(f64, f64)| off - first - (last - first) * s;
         let spread = 4.0 * middle(steps.iter().map(|s| off(s).abs()).collect()).unwrap_or(0.0).max(0.25);
-        let (mut n, mut ss, mut so, mut sso, mut sss) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for step in steps {
-            let near = (1.0 - (off(step) / spread).powi(2)).max(0.0).powi(2);
-            let (s, o) = *step;
-            (n, ss, so, sso, sss) =
-                (n + near, ss + near * s, so + near * o, sso + near * s * o, sss + near * s * s);
-        }
-        let spread = n * sss - ss * ss;
-        if spread <= 1e-9 {
+        let near = |step: &(f64, f64)| (1.0 - (off(step) / spread).powi(2)).max(0.0).powi(2);
+        let Some((at, slope)) = solve::line(steps.iter().map(|step| (step.0, step.1, near(step)))) else {
             break;
-        }
-        let slope = (n * sso - ss * so) / spread;
-        first = (so - slope * ss) / n;
-        last = first + slope;
+        };
+        (first, last) = (at, at + slope);
     }
     (first, last)
 }

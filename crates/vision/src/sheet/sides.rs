@@ -4,6 +4,7 @@ use tracelight_stroke::Point;
 
 use super::steps::Step;
 use crate::plane::Plane;
+use crate::solve;
 
 /// The steepest side of those that go down the rows: a little more than half a right angle, so that none falls between
 /// those of rows and those of columns.
@@ -245,15 +246,7 @@ fn taken(points: &[Voter], line: (f64, f64), rows: usize) -> (Side, Vec<Voter>, 
     let (mut at, mut slope) = line;
     for near in [2.0 * NEAR, NEAR] {
         let on = points.iter().map(|point| point.at).filter(|(x, y)| (x - at - slope * y).abs() < near);
-        let (mut n, mut sx, mut sy, mut sxy, mut syy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for (x, y) in on {
-            (n, sx, sy, sxy, syy) = (n + 1.0, sx + x, sy + y, sxy + x * y, syy + y * y);
-        }
-        let spread = n * syy - sy * sy;
-        if spread > 1e-6 {
-            slope = (n * sxy - sx * sy) / spread;
-            at = (sx - slope * sy) / n;
-        }
+        (at, slope) = solve::line(on.map(|(x, y)| (y, x, 1.0))).unwrap_or((at, slope));
     }
     let is_on = |point: &Voter| (point.at.0 - at - slope * point.at.1).abs() < NEAR;
     let (on, rest): (Vec<Voter>, Vec<Voter>) = points.iter().partition(|point| is_on(point));
