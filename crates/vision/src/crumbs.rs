@@ -6,10 +6,10 @@ use crate::centreline::Row;
 use crate::plane::Plane;
 
 /// A crumb is shorter than this, in widths of the drawing's pen,
-const LONGEST_PENS: f64 = 4.0;
+pub(crate) const LONGEST_PENS: f64 = 4.0;
 /// and has less than this share of the lines' darkness. Of six sketches that others scanned 7 % of the strokes are so short and pale,
 /// and none of them was meant.
-const PALE: f64 = 0.6;
+pub(crate) const PALE: f64 = 0.6;
 
 /// The rows that were drawn, and the crumbs beside them.
 pub(crate) fn parted(dark: &Plane<u8>, rows: Vec<Row>) -> (Vec<Row>, Vec<Row>) {

@@ -51,15 +51,15 @@ pub(crate) struct Parts {
 
 impl Parts {
     /// Every patch as lines.
-    pub(crate) fn all_lines(ink: Mask, regions: Vec<Region>) -> Self {
-        let lines = graphs(&ink, regions);
+    pub(crate) fn all_lines(dark: &Plane<u8>, ink: Mask, regions: Vec<Region>) -> Self {
+        let lines = graphs(dark, &ink, regions);
         let shape_mask = Mask::empty(ink.width, ink.height);
         Self { ink, lines, shapes: Vec::new(), shape_mask, dust: Vec::new() }
     }
 
     /// Each part by its width.
     pub(crate) fn of(dark: &Plane<u8>, mut ink: Mask, patches: Vec<Region>, dust: Dust<'_>) -> Self {
-        let read = |ink: &Mask, patches| graphs(ink, patches).into_iter().map(Patch::new).collect();
+        let read = |ink: &Mask, patches| graphs(dark, ink, patches).into_iter().map(Patch::new).collect();
         let mut patches: Vec<Patch> = read(&ink, patches);
         // what a felt pen filled to and fro is broad, and of many lines
         let filling = usual_pen(&patches, |patch| patch.is_line_drawing() || patch.reading.many_lines);
@@ -76,7 +76,8 @@ impl Parts {
             Dust::Dropped => dusted(dark, &ink, patches, pen, None),
             Dust::DroppedOnRules(rules) => dusted(dark, &ink, patches, pen, Some(rules)),
         };
-        let mut sorter = Sorter { pen, lines: Vec::new(), shape_mask: Mask::empty(ink.width, ink.height) };
+        let shape_mask = Mask::empty(ink.width, ink.height);
+        let mut sorter = Sorter { dark, pen, lines: Vec::new(), shape_mask };
         sorter.sort(patches);
         let Sorter { lines, shape_mask, .. } = sorter;
         Self { ink, lines, shapes: regions(&shape_mask), shape_mask, dust }
@@ -176,14 +177,15 @@ impl Region {
 const LENS_PENS: f64 = 1.35;
 
 /// Parts the patches that may hold both kinds.
-struct Sorter {
+struct Sorter<'a> {
+    dark: &'a Plane<u8>,
     /// The picture's, px; 0 where none is known.
     pen: f64,
     lines: Vec<(Region, Graph)>,
     shape_mask: Mask,
 }
 
-impl Sorter {
+impl Sorter<'_> {
     fn sort(&mut self, patches: Vec<Patch>) {
         let mut drawn: Vec<Patch> = Vec::new();
         let mut filled: Vec<Patch> = Vec::new();
@@ -215,7 +217,7 @@ impl Sorter {
         let mut inner = mask.opened(width);
         let least = WIDE_PENS * pen + 2.0;
         let cores = regions(&inner);
-        for core in graphs(&inner, cores).into_iter().map(Patch::new) {
+        for core in graphs(self.dark, &inner, cores).into_iter().map(Patch::new) {
             let small = (core.region.area() as f64) < FILLED * least * least;
             if core.reading.widest < least || small || core.reading.is_drawn {
                 core.region.erase_from(&mut inner);
@@ -279,7 +281,7 @@ impl Sorter {
             corner.fill_into(&mut self.shape_mask);
             corner.erase_from(&mut rest);
         }
-        for piece in graphs(&rest, long).into_iter().map(Patch::new) {
+        for piece in graphs(self.dark, &rest, long).into_iter().map(Patch::new) {
             match is_line(&piece, &beside) {
                 true => self.lines.push((piece.region, piece.graph)),
                 false => piece.region.fill_into(&mut self.shape_mask),
@@ -331,12 +333,12 @@ impl Squares {
 const LEAST_BULK: usize = 8;
 
 /// The regions, which are all the ink of `mask`, with their skeletons' graphs.
-pub(crate) fn graphs(mask: &Mask, regions: Vec<Region>) -> Vec<(Region, Graph)> {
+pub(crate) fn graphs(dark: &Plane<u8>, mask: &Mask, regions: Vec<Region>) -> Vec<(Region, Graph)> {
     let mut skeleton = Skeleton::new(mask, thin::thinned(mask.clone()));
     let read = |region: Region| {
         let cells = skeleton.cells_of(&region);
         let mut graph = Graph::read(&mut skeleton, &cells);
-        prune::prune(&mut graph);
+        prune::prune(&mut graph, dark);
         (region, graph)
     };
     regions.into_iter().map(read).collect()

@@ -6,32 +6,45 @@
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::angle;
+use crate::crumbs;
 use crate::graph::{Branch, Graph, Node, TurnTip};
+use crate::plane::Plane;
 use crate::ridge::median;
 
 /// Removes spurs, shortest first, and joins what they parted, until none is left.
-pub(crate) fn prune(graph: &mut Graph) {
+pub(crate) fn prune(graph: &mut Graph, dark: &Plane<u8>) {
     let pen = graph.pen_radius();
     for _ in 0..MOST_ROUNDS {
         graph.join_pairs();
         let at_nodes = graph.ends_at_nodes();
         let mut spurs = Vec::new();
         for ends in &at_nodes {
-            let short = ends.iter().filter(|&&end| is_bump(graph, end) || is_mitre(graph, ends, end, pen));
+            let spur = |&end: &(usize, usize)| {
+                free_end(graph, end)?;
+                let pen = pen_beside(graph, ends, end, pen);
+                let is_whisker = is_whisker(graph, ends, end, pen, dark);
+                let goes = is_whisker || is_bump(graph, end) || is_mitre(graph, ends, end, pen);
+                goes.then_some(Spur { branch: end.0, is_whisker })
+            };
+            let length = |spur: &Spur| graph.branches[spur.branch].length();
             // one at a time at each node: a spur less can make a line of the two others
-            spurs.extend(
-                short
-                    .map(|&(b, _)| b)
-                    .min_by(|&a, &b| graph.branches[a].length().total_cmp(&graph.branches[b].length())),
-            );
+            spurs.extend(ends.iter().filter_map(spur).min_by(|a, b| length(a).total_cmp(&length(b))));
         }
         if spurs.is_empty() {
             return;
         }
-        spurs.sort_unstable_by(|a, b| b.cmp(a));
-        spurs.iter().for_each(|&i| keep_turn(graph, &at_nodes, i, pen));
-        spurs.into_iter().for_each(|i| drop(graph.branches.swap_remove(i)));
+        spurs.sort_unstable_by(|a, b| b.branch.cmp(&a.branch));
+        let points = spurs.iter().filter(|spur| !spur.is_whisker);
+        points.for_each(|spur| keep_turn(graph, &at_nodes, spur.branch, pen));
+        spurs.into_iter().for_each(|spur| drop(graph.branches.swap_remove(spur.branch)));
     }
+}
+
+/// A branch that goes.
+struct Spur {
+    branch: usize,
+    /// Whether it leads to no turn of the pen.
+    is_whisker: bool,
 }
 
 /// Rounds of pruning; drawings take two or three, texture could take thousands.
@@ -51,6 +64,61 @@ fn is_bump(graph: &Graph, end: (usize, usize)) -> bool {
         tip.distance(node.at) + radius - node.radius < (0.6 * node.radius).max(1.5)
     })
 }
+
+/// Whether a branch with one free end is what a pencil leaves on the paper's grain at its lines' edges: short, and much thinner than
+/// the lines that it leaves, or thinner and paler.
+fn is_whisker(
+    graph: &Graph,
+    ends: &[(usize, usize)],
+    end: (usize, usize),
+    pen: f64,
+    dark: &Plane<u8>,
+) -> bool {
+    let Some((node, tip, _)) = free_end(graph, end) else { return false };
+    let radius = median(&graph.branches[end.0].radii);
+    let length = tip.distance(node.at) - node.radius;
+    // a letter's bars are as short, and as thin where they are a pixel wide
+    if radius < HAIR * pen && length < 2.0 * HAIR_PENS * pen && !graph.is_letter() {
+        return true;
+    }
+    if radius > THINNER * pen || length > 2.0 * crumbs::LONGEST_PENS * pen {
+        return false;
+    }
+    let darkness = |(branch, end): (usize, usize)| {
+        let near = near(&graph.branches[branch].points, end, (0, BESIDE));
+        let (sum, count) = near.fold((0.0, 0.0), |(sum, count), &p| (sum + dark.at(p), count + 1.0));
+        sum / f64::max(count, 1.0)
+    };
+    let others = ends.iter().filter(|&&other| other != end).map(|&other| darkness(other));
+    darkness(end) < crumbs::PALE * others.fold(f64::INFINITY, f64::min)
+}
+
+/// A whisker is thinner than this share of the lines that it leaves, and shorter than so many of their widths;
+const HAIR: f64 = 0.4;
+const HAIR_PENS: f64 = 1.5;
+/// or, if it is a crumb but for the line that it touches, thinner than this share.
+const THINNER: f64 = 0.6;
+
+/// Half the width of the narrower of the lines beside a spur, px: where a pencil went to and fro they are wider than elsewhere. At least
+/// `pen`, which is half the graph's.
+fn pen_beside(graph: &Graph, ends: &[(usize, usize)], spur: (usize, usize), pen: f64) -> f64 {
+    let beside = |&(branch, end): &(usize, usize)| {
+        let from = (2.0 * pen) as usize;
+        let near: Vec<f64> =
+            near(&graph.branches[branch].radii, end, (from, from + BESIDE)).copied().collect();
+        if near.len() < BESIDE / 2 { pen } else { median(&near) }
+    };
+    ends.iter().filter(|&&end| end != spur).map(beside).fold(f64::INFINITY, f64::min).max(pen)
+}
+
+/// Some of a branch's values, counted from one of its ends.
+fn near<T>(values: &[T], end: usize, (from, to): (usize, usize)) -> impl Iterator<Item = &T> {
+    let n = values.len();
+    (from.min(n)..to.min(n)).map(move |k| &values[if end == 0 { k } else { n - 1 - k }])
+}
+
+/// Points of a line that tell its width beside a spur.
+const BESIDE: usize = 16;
 
 /// Whether a branch with one free end is the point of a mitred corner: it leads away from two others, midway
 /// between their backs, as far as their outer edges take to meet.
@@ -97,11 +165,7 @@ fn is_other_half(graph: &Graph, (spur, end): (usize, usize), (other, from): (usi
     if spur.points.is_empty() || other.points.len() < 2 {
         return false;
     }
-    // from the node on
-    let on = |branch: &Branch, end: usize, most: usize| -> Vec<Point> {
-        let n = branch.points.len();
-        (0..most.min(n)).map(|k| branch.points[if end == 0 { k } else { n - 1 - k }]).collect()
-    };
+    let on = |branch: &Branch, end, most| near(&branch.points, end, (0, most)).copied().collect::<Vec<_>>();
     let (half, rest) = (on(spur, end, spur.points.len()), on(other, from, spur.points.len().max(HALF)));
     let (Some(&tip), Some(&far)) = (half.last(), rest.last()) else { return false };
     let along = (tip - far) / tip.distance(far).max(1e-9);
@@ -216,9 +280,13 @@ mod tests {
     }
 
     fn pruned(branches: Vec<Branch>) -> Graph {
+        pruned_on(&Plane::filled(100, 100, 255), branches)
+    }
+
+    fn pruned_on(dark: &Plane<u8>, branches: Vec<Branch>) -> Graph {
         let node = Node { at: Point::new(50.0, 50.0), radius: 3.0, turn: None };
         let mut graph = Graph { nodes: vec![node], branches };
-        prune(&mut graph);
+        prune(&mut graph, dark);
         graph
     }
 
@@ -255,5 +323,20 @@ mod tests {
             branch(6, (0.0, 1.0), 2.5, n),
         ]);
         assert_eq!(graph.branches.len(), 3);
+    }
+
+    #[test]
+    fn a_whisker_at_a_lines_edge_goes_and_a_third_line_stays() {
+        let n = [Some(0), None];
+        let line = || vec![branch(30, (1.0, 0.0), 2.5, n), branch(30, (-1.0, 0.0), 2.5, n)];
+        let left = |dark: &Plane<u8>, length, radius| {
+            pruned_on(dark, [line(), vec![branch(length, (0.2, 0.98), radius, n)]].concat()).branches.len()
+        };
+        let even = Plane::filled(100, 100, 255);
+        assert_eq!((left(&even, 8, 0.9), left(&even, 14, 0.9), left(&even, 8, 2.0)), (1, 3, 3));
+        // as pale as a crumb it goes up to a crumb's length
+        let mut pale = even;
+        (52..100).for_each(|y| pale.row_mut(y).fill(120));
+        assert_eq!((left(&pale, 14, 1.2), left(&pale, 14, 2.0), left(&pale, 26, 1.2)), (1, 3, 3));
     }
 }

@@ -60,7 +60,7 @@ pub(crate) fn with_rest(dark: &Plane<u8>, patches: &[&Region], mut rows: Vec<Row
     let mut bare = dark.clone();
     bare.clear(&own);
     let none = Mask::empty(dark.width, dark.height);
-    let found = graphs(&rest, left);
+    let found = graphs(dark, &rest, left);
     let found = found.iter().flat_map(|(region, graph)| centreline::rows(&bare, &none, region, graph));
     let leads_away = |row: &Row| {
         let is_lost = |p: &Point| lost.get(p.x.floor() as isize, p.y.floor() as isize);

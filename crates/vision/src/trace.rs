@@ -382,7 +382,7 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
             (None, Some(off)) => Dust::DroppedOnRules(off),
         };
         match options.mode {
-            Mode::Centreline => Parts::all_lines(mask, patches.drawn),
+            Mode::Centreline => Parts::all_lines(dark, mask, patches.drawn),
             _ => Parts::of(dark, mask, patches.drawn, dust),
         }
     };
