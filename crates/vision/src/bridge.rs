@@ -9,7 +9,7 @@ use crate::ridge::median;
 const WINDOWS: [usize; 6] = [6, 9, 13, 19, 28, 40];
 /// How far points of one parabola are from it, px, root mean square, where they have no noise; or, over their noise.
 const ON_PARABOLA_PX: f64 = 0.06;
-const OVER_NOISE: f64 = 1.3;
+const OVER_NOISE: f64 = 1.5;
 /// Fewer points lead from the last to the first, if they are this far apart, px.
 const LEAST_PAIR_PX: f64 = 0.5;
 /// Sine of the least angle between two lines that are said to meet: 4°.
@@ -185,8 +185,12 @@ fn noise_near(points: &[Point], end: usize) -> f64 {
 pub(crate) fn scatter_px(points: &[Point]) -> f64 {
     // across the line: √20 times the scatter, of which the median is 0.6745
     const TIMES: f64 = 3.016;
-    let third_sq = |w: &[Point]| ((w[3] - w[0]) - (w[2] - w[1]) * 3.0).hypot2();
-    median(&points.windows(4).map(third_sq).collect::<Vec<_>>()).sqrt() / TIMES
+    // along it the points may lie as they like
+    let third = |w: &[Point]| {
+        let along = w[3] - w[0];
+        (along - (w[2] - w[1]) * 3.0).cross(along / along.hypot().max(1e-9)).abs()
+    };
+    median(&points.windows(4).map(third).collect::<Vec<_>>()) / TIMES
 }
 
 /// How far a line of some width leads from its end towards a place: all the way if that is ink, or to half its width from

@@ -208,10 +208,9 @@ fn centred(
     // of a letter as many pixels to either side as elsewhere would be half of it
     let reach = if is_letter { (pixels.0.len() / 5).clamp(2, REACH) } else { REACH };
     let ridge = ridge::centred(dark, pixels, radius, ring, reach);
-    let mut points = bridged(dark, &ridge, ring);
+    let mut pixels: Vec<(Point, f64)> = std::iter::zip(pixels.0, pixels.1).map(|(&p, &r)| (p, r)).collect();
+    let mut points = bridged(dark, &ridge, &pixels, ring);
     if !ring {
-        let mut pixels: Vec<(Point, f64)> =
-            std::iter::zip(pixels.0, pixels.1).map(|(&p, &r)| (p, r)).collect();
         // first what is lost at the beginning, then at the end
         for _ in 0..2 {
             points.reverse();
@@ -322,28 +321,44 @@ fn filled_in(points: &[Point], ring: bool) -> Vec<Point> {
     filled
 }
 
-/// The stretches in one row, the gaps between them bridged.
-fn bridged(dark: &Plane<u8>, ridge: &Ridge, ring: bool) -> Vec<Point> {
+/// The stretches in one row, the gaps between them bridged. The line's pixels are known each with half the width of its ink.
+fn bridged(dark: &Plane<u8>, ridge: &Ridge, pixels: &[(Point, f64)], ring: bool) -> Vec<Point> {
     let mut row: Vec<Point> = Vec::new();
+    let mut last = 0;
     for stretch in &ridge.stretches {
-        row.extend(gap(dark, &row, stretch));
-        row.extend(stretch);
+        row.extend(gap(dark, &row, &stretch.points, &pixels[last..stretch.from[0]]));
+        row.extend(&stretch.points);
+        last = stretch.from[1];
     }
     if let (true, Some(first)) = (ring, ridge.stretches.first()) {
         // a ring that can be seen all round needs no bridge to its own start
-        let open = row.last().is_some_and(|last| last.distance(first[0]) > ridge.gap);
-        row.extend(if open { gap(dark, &row, first) } else { Vec::new() });
+        let open = row.last().is_some_and(|last| last.distance(first.points[0]) > ridge.gap);
+        let round = [&pixels[last..], &pixels[..first.from[0]]].concat();
+        row.extend(if open { gap(dark, &row, &first.points, &round) } else { Vec::new() });
     }
     row
 }
 
-/// Points between the end of one row and the start of another.
-fn gap(dark: &Plane<u8>, before: &[Point], after: &[Point]) -> Vec<Point> {
-    match (Tip::of(before, 1), Tip::of(after, 0)) {
-        (Some(end), Some(start)) => end.bridge(&start, dark, &[]),
-        _ => Vec::new(),
-    }
+/// Points between the end of one row and the start of another: a corner, or a smooth curve in the middle of the ink between them; else
+/// as the pixels lead.
+fn gap(dark: &Plane<u8>, before: &[Point], after: &[Point], between: &[(Point, f64)]) -> Vec<Point> {
+    let (Some(end), Some(start)) = (Tip::of(before, 1), Tip::of(after, 0)) else { return Vec::new() };
+    end.corner(&start, dark, &[]).unwrap_or_else(|| {
+        let way = end.smoothly_to(&start);
+        let is_inside = |p: &Point| {
+            let is_near = |(at, radius): &(Point, f64)| p.distance(*at) <= INSIDE * radius + INSIDE_PX;
+            between.iter().any(is_near)
+        };
+        match way.iter().all(is_inside) {
+            true => way,
+            false => off_the_grid(&between.iter().map(|(at, _)| *at).collect::<Vec<_>>()).collect(),
+        }
+    })
 }
+
+/// A way in the middle of the ink is nowhere further from its pixels than this share of its half width, and px.
+const INSIDE: f64 = 0.4;
+const INSIDE_PX: f64 = 1.0;
 
 /// Points that tell the pen's width near an end.
 const NEAR_END: usize = 40;

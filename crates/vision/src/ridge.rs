@@ -34,8 +34,9 @@ struct Place {
 
 /// Places either side with whose median width a place's is compared: a pen's width changes slowly.
 const LOCAL: usize = 15;
-/// The same at the ends of a line that swells.
-const LEAST_LOCAL: usize = 4;
+/// The same of a line that swells, and the fewest pairs that tell how wide it is between them.
+const NEAR_PAIRS: usize = 4;
+const LEAST_PAIRS: usize = 2;
 
 /// More places than this left out in a row are a gap: the line cannot be seen there.
 const GAP: usize = 2;
@@ -43,12 +44,20 @@ const GAP: usize = 2;
 /// A row of points moved on to the middle of their line.
 #[derive(Clone, Debug)]
 pub(crate) struct Ridge {
-    /// Stretches of points; between two of them the line cannot be seen.
-    pub(crate) stretches: Vec<Vec<Point>>,
+    /// Between two of them the line cannot be seen.
+    pub(crate) stretches: Vec<Stretch>,
     /// The line's width in the median, px.
     pub(crate) width: f64,
     /// Points further apart than this are two stretches', px.
     pub(crate) gap: f64,
+}
+
+/// Points of a row where the line can be seen.
+#[derive(Clone, Debug)]
+pub(crate) struct Stretch {
+    pub(crate) points: Vec<Point>,
+    /// The numbers of the given points from which the first and the last one came.
+    pub(crate) from: [usize; 2],
 }
 
 /// Moves points on to the middle of their line, one for every third of its width; those whose cross-section is not
@@ -63,7 +72,7 @@ pub(crate) fn centred(
 ) -> Ridge {
     let stride = spacing(2.0 * radius);
     // first across the pixels' own row, then across what became of it: the pixels lead round corners and wobble
-    let cuts = Cuts::of(radius, radii);
+    let cuts = Cuts::of(radius, radii, CUT_PX);
     let first: Vec<Place> = (0..points.len())
         .step_by(stride)
         .filter_map(|i| place(dark, i, points[i], normal(points, i, reach, ring)?, cuts.at(i)))
@@ -71,7 +80,8 @@ pub(crate) fn centred(
     let width = usual_width(&first).unwrap_or(2.0 * radius);
     let first = of_usual_width(&first, cuts.swell());
     let row: Vec<Point> = first.iter().map(|p| p.at).collect();
-    let cuts = Cuts::of(0.5 * width, &first.iter().map(|p| 0.5 * p.width).collect::<Vec<_>>());
+    let halves: Vec<f64> = first.iter().map(|p| 0.5 * p.width).collect();
+    let cuts = Cuts::of(0.5 * width, &halves, (CUT_PX / stride).max(1));
     let again = |i: usize| place(dark, first[i].index, row[i], normal(&row, i, 3, ring)?, cuts.at(i));
     let second: Vec<Place> = (0..row.len()).filter_map(again).collect();
     let width = usual_width(&second).unwrap_or(width);
@@ -81,7 +91,11 @@ pub(crate) fn centred(
     }
     // a step from pixel to pixel is up to √2 long
     let gap = std::f64::consts::SQRT_2 * (GAP * stride) as f64;
-    let stretches = rows(&places, stride).map(|row| row.iter().map(|p| p.at).collect()).collect();
+    let stretch = |row: &[Place]| Stretch {
+        points: row.iter().map(|p| p.at).collect(),
+        from: [row[0].index, row[row.len() - 1].index],
+    };
+    let stretches = rows(&places, stride).map(stretch).collect();
     Ridge { stretches, width, gap }
 }
 
@@ -101,16 +115,16 @@ fn usual_width(places: &[Place]) -> Option<f64> {
     middle(places.iter().map(|p| p.width).collect())
 }
 
-/// Those as wide as the line usually is thereabouts. Where it swells, as many places either side are compared, down to a few
-/// at its ends: it is wider behind than ahead.
+/// Those as wide as the line usually is thereabouts.
 fn of_usual_width(places: &[Place], swells: bool) -> Vec<Place> {
+    if swells {
+        return of_width_between(places);
+    }
     let mut kept = Vec::with_capacity(places.len());
     let mut near = Vec::with_capacity(2 * LOCAL + 3);
     // three places at a time: the median of 31 moves by less than the bound in between
     for (i, three) in places.chunks(3).enumerate() {
-        let (before, after) = (3 * i, places.len() - 1 - 3 * i);
-        let reach = if swells { before.min(after).clamp(LEAST_LOCAL, LOCAL) } else { LOCAL };
-        let range = before.saturating_sub(reach)..(before + reach + 1).min(places.len());
+        let range = (3 * i).saturating_sub(LOCAL)..(3 * i + LOCAL + 1).min(places.len());
         let widths = places[range.clone()].iter().map(|p| p.width);
         let (least, most) = widths.fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
         // then none is further than that from a median of them
@@ -125,6 +139,22 @@ fn of_usual_width(places: &[Place], swells: bool) -> Vec<Place> {
         kept.extend(three.iter().filter(|place| (place.width - usual).abs() <= bound(usual)));
     }
     kept
+}
+
+/// The same where the line swells: those about as wide as it is in the middle between places as far before and behind.
+fn of_width_between(places: &[Place]) -> Vec<Place> {
+    let is_usual = |i: usize| {
+        let pair = |k: usize| {
+            let (before, after) = (i.checked_sub(k)?, i + k);
+            Some(0.5 * (places[before].width + places.get(after)?.width))
+        };
+        let pairs: Vec<f64> = (1..=NEAR_PAIRS).map_while(pair).collect();
+        let near = || places[i.saturating_sub(NEAR_PAIRS)..].iter().take(2 * NEAR_PAIRS + 1).map(|p| p.width);
+        // at its ends there are none on one side
+        let usual = median(&if pairs.len() < LEAST_PAIRS { near().collect() } else { pairs });
+        (places[i].width - usual).abs() <= bound(usual)
+    };
+    (0..places.len()).filter(|&i| is_usual(i)).map(|i| places[i]).collect()
 }
 
 /// Fewer places than this in a row, between two gaps, tell no direction.
@@ -260,24 +290,25 @@ struct Cuts {
     usual: Cut,
     /// Half widths, px, of every so many places; none where the line is about as wide all along.
     local: Vec<f64>,
+    every: usize,
 }
 
-/// The half widths of so many places go into one.
-const CUT_PLACES: usize = 16;
+/// Over so many pixels half widths go into one.
+const CUT_PX: usize = 16;
 /// A line swells whose half width is, over so many places, so much more or less than elsewhere, as a ratio and px: pixels and
 /// blots change it by less.
 const SWELLS: f64 = 1.3;
 const SWELLS_PX: f64 = 1.0;
 
 impl Cuts {
-    fn of(radius: f64, radii: &[f64]) -> Self {
-        let local: Vec<f64> = radii.chunks(CUT_PLACES).map(median).collect();
+    fn of(radius: f64, radii: &[f64], every: usize) -> Self {
+        let local: Vec<f64> = radii.chunks(every).map(median).collect();
         let swells = |r: &f64| {
             let (less, more) = (r.min(radius), r.max(radius));
             more > SWELLS * less && more - less > SWELLS_PX
         };
         let local = if local.iter().any(swells) { local } else { Vec::new() };
-        Self { usual: Cut::of(radius), local }
+        Self { usual: Cut::of(radius), local, every }
     }
 
     /// Whether the line swells or tapers.
@@ -286,7 +317,7 @@ impl Cuts {
     }
 
     fn at(&self, place: usize) -> Cut {
-        self.local.get(place / CUT_PLACES).map_or(self.usual, |&radius| Cut::of(radius.max(0.5)))
+        self.local.get(place / self.every).map_or(self.usual, |&radius| Cut::of(radius.max(0.5)))
     }
 }
 

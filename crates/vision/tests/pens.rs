@@ -51,6 +51,26 @@ fn a_line_that_swells_is_followed_from_end_to_end() {
     }
 }
 
+/// A broad nib's ring: thin where its edge leads along, thick across it, and that within a quarter of the way round.
+#[test]
+fn a_nibs_ring_is_followed_all_round() {
+    for (radius, nib, slant) in [(12.0, 5.0, 0.7), (12.0, 5.0, 2.1), (80.0, 30.0, 0.7), (110.0, 26.0, 1.4)] {
+        let ring: Vec<Point> = (0..=360).map(|k| ring_at(f64::from(k).to_radians(), radius)).collect();
+        let mut canvas = Canvas::new(600, 440);
+        // along the ring the direction is a right angle further
+        let width = |share: f64| {
+            let along = std::f64::consts::TAU * share + std::f64::consts::FRAC_PI_2;
+            (nib * (along - slant).sin().abs()).max(0.15 * nib)
+        };
+        swelling(&mut canvas, &ring, width);
+        let (found, comparison) = traced(&canvas, 600, std::slice::from_ref(&ring));
+        let only = found.strokes.strokes.len() == 1 && found.strokes.strokes[0].path.is_closed();
+        assert!(only, "{radius} px, {slant}: {} strokes, {comparison:?}", found.strokes.strokes.len());
+        let good = comparison.coverage > 0.99 && comparison.precision > 0.99 && comparison.rms < 0.5;
+        assert!(good, "{radius} px, {slant}: {comparison:?}");
+    }
+}
+
 /// A face's ring with two eyes, which are longer than wide and narrower than the pen, and with grit as large but paler.
 #[test]
 fn an_eye_narrower_than_the_pen_is_drawn_and_grit_is_not() {
