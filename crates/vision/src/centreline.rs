@@ -197,7 +197,7 @@ fn strung(
 }
 
 /// Whether a region is no longer than one and a half times its width: a dot or a dash of the pen.
-fn is_dot(graph: &Graph) -> bool {
+pub(crate) fn is_dot(graph: &Graph) -> bool {
     let length: f64 = graph.branches.iter().map(|b| b.length()).sum();
     let radius = graph.branches.iter().flat_map(|b| &b.radii).copied().fold(0.5, f64::max);
     graph.branches.len() <= 1 && graph.branches.iter().all(|b| !b.ring) && length <= 3.0 * radius

@@ -74,39 +74,12 @@ pub(crate) fn is_ragged(fine: &Mask, darkness: &Plane<u8>, threshold: u8) -> boo
     }
     // marks beside it that are gone from half as closely do not make it ragged
     let about = wide.dilated_by(1);
-    let fine = fine.clone().and(&twice(&about, darkness.width, darkness.height));
+    let fine = fine.clone().and(&about.doubled_to(darkness.width, darkness.height));
     fine.line_length() >= RAGGED * 2.0 * half.and(&about).line_length()
 }
 
 /// What is thinner than this is thin, px.
 const THIN_PX: usize = 3;
-
-/// A mask with four pixels for each of its own, of this size.
-fn twice(ink: &Mask, width: usize, height: usize) -> Mask {
-    let mut out = Mask::empty(width, height);
-    for y in 0..ink.height {
-        for (k, &word) in ink.row(y).iter().enumerate().filter(|(_, word)| **word != 0) {
-            let words = [spread(word as u32), spread((word >> 32) as u32)];
-            for row in [2 * y, 2 * y + 1] {
-                let there = out.row_mut(row)[2 * k..].iter_mut();
-                there.zip(words).for_each(|(to, word)| *to = word | word << 1);
-            }
-        }
-    }
-    out
-}
-
-/// The bits of a word at every other place (Warren, *Hacker's Delight*, 2012, §7-2).
-fn spread(word: u32) -> u64 {
-    const MASKS: [(u32, u64); 5] = [
-        (16, 0x0000_FFFF_0000_FFFF),
-        (8, 0x00FF_00FF_00FF_00FF),
-        (4, 0x0F0F_0F0F_0F0F_0F0F),
-        (2, 0x3333_3333_3333_3333),
-        (1, 0x5555_5555_5555_5555),
-    ];
-    MASKS.iter().fold(u64::from(word), |word, (by, mask)| (word | word << by) & mask)
-}
 
 #[cfg(test)]
 mod tests {
@@ -159,7 +132,7 @@ mod tests {
     #[test]
     fn a_mask_twice_as_large_has_each_pixel_four_times() {
         let ink = over(&ring(10.0, 0.0), 128);
-        let large = twice(&ink, 801, 803);
+        let large = ink.doubled_to(801, 803);
         assert_eq!(large.count(), 4 * ink.count());
         assert!((0..801).all(|x| (0..803).all(|y| large.get(x, y) == ink.get(x / 2, y / 2))));
     }

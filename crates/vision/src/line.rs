@@ -345,11 +345,10 @@ fn gap(dark: &Plane<u8>, before: &[Point], after: &[Point], between: &[(Point, f
     let (Some(end), Some(start)) = (Tip::of(before, 1), Tip::of(after, 0)) else { return Vec::new() };
     end.corner(&start, dark, &[]).unwrap_or_else(|| {
         let way = end.smoothly_to(&start);
-        let is_inside = |p: &Point| {
-            let is_near = |(at, radius): &(Point, f64)| p.distance(*at) <= INSIDE * radius + INSIDE_PX;
-            between.iter().any(is_near)
-        };
-        match way.iter().all(is_inside) {
+        let is_near = |p: Point, (at, radius): (Point, f64)| p.distance(at) <= INSIDE * radius + INSIDE_PX;
+        let is_inside = |&p: &Point| between.iter().any(|&pixel| is_near(p, pixel));
+        let is_followed = |&pixel: &(Point, f64)| way.iter().any(|&p| is_near(p, pixel));
+        match way.iter().all(is_inside) && between.iter().all(is_followed) {
             true => way,
             false => off_the_grid(&between.iter().map(|(at, _)| *at).collect::<Vec<_>>()).collect(),
         }

@@ -3,6 +3,7 @@
 mod morphology;
 
 use std::f64::consts::FRAC_PI_4;
+use std::ops::Range;
 
 use tracelight_stroke::Point;
 
@@ -188,6 +189,18 @@ impl Mask {
     pub(crate) fn erase(&mut self, y: usize, from: usize, to: usize) {
         let row = self.row_mut(y);
         (from / WORD..to.div_ceil(WORD)).for_each(|i| row[i] &= !span(i, from, to));
+    }
+
+    /// Its pixels in some columns and rows.
+    pub(crate) fn part(&self, columns: &Range<usize>, rows: &Range<usize>) -> Self {
+        let mut part = Self::empty(columns.len(), rows.len());
+        for y in rows.clone() {
+            for cell in self.cells_in(y, columns.start, columns.end) {
+                let (x, y) = self.place(cell);
+                part.set(part.cell(x - columns.start, y - rows.start));
+            }
+        }
+        part
     }
 
     /// What is ink here and in `other`, which has the same size.

@@ -33,7 +33,7 @@ pub(crate) fn prune(graph: &mut Graph, dark: &Plane<u8>) {
         if spurs.is_empty() {
             return;
         }
-        spurs.sort_unstable_by(|a, b| b.branch.cmp(&a.branch));
+        spurs.sort_unstable_by_key(|spur| std::cmp::Reverse(spur.branch));
         let points = spurs.iter().filter(|spur| !spur.is_whisker);
         points.for_each(|spur| keep_turn(graph, &at_nodes, spur.branch, pen));
         spurs.into_iter().for_each(|spur| drop(graph.branches.swap_remove(spur.branch)));

@@ -11,10 +11,9 @@ use crate::inside::inside;
 use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
-use crate::plane::Plane;
 use crate::region::{Region, pinholes, regions};
 use crate::{
-    Grey, Page, Quality, VisionError, crumbs, gap, missed, on_ink, rest, screen, sweep, tone, twice,
+    Grey, Page, Quality, VisionError, closer, crumbs, gap, missed, on_ink, rest, screen, sweep, tone, twice,
 };
 
 /// Which tracer follows the ink.
@@ -367,8 +366,12 @@ fn outlines(ink: &Ink, filled: &Mask, mask: &Mask, shapes: &[Region], options: &
 }
 
 /// The rows of all lines.
-fn rows_of(dark: &Plane<u8>, parts: &Parts) -> Vec<Row> {
-    let of = |(region, graph): &(Region, Graph)| centreline::rows(dark, &parts.shape_mask, region, graph);
+fn rows_of(ink: &Ink, parts: &Parts) -> Vec<Row> {
+    let (dark, shapes) = (&ink.darkness, &parts.shape_mask);
+    let of = |(region, graph): &(Region, Graph)| {
+        let closer = closer::rows(dark, ink.threshold, (&parts.ink, shapes), (region, graph));
+        closer.unwrap_or_else(|| centreline::rows(dark, shapes, region, graph))
+    };
     parts.lines.iter().flat_map(of).collect()
 }
 
@@ -387,13 +390,13 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
         }
     };
     let mut parts = parts_of(mask, patches);
-    let mut rows = rows_of(dark, &parts);
+    let mut rows = rows_of(ink, &parts);
     // no patch is smaller with more ink: nothing is refused that was not before
     if let Some(mut more) = ink.goes_on(&parts.ink, &rows)
         && let Ok(patches) = Patches::of(&mut more, least_patch(ink, options))
     {
         parts = parts_of(more, patches);
-        rows = rows_of(dark, &parts);
+        rows = rows_of(ink, &parts);
     }
     let mask = &parts.ink;
     let mut strokes = outlines(ink, &parts.shape_mask, mask, &parts.shapes, options);

@@ -28,6 +28,23 @@ impl Mask {
         self
     }
 
+    /// Four pixels for each of its own, on a mask of this size.
+    pub(crate) fn doubled_to(&self, width: usize, height: usize) -> Self {
+        let mut out = Self::empty(width, height);
+        for y in 0..self.height.min(height.div_ceil(2)) {
+            for (k, &word) in self.row(y).iter().enumerate().filter(|(_, word)| **word != 0) {
+                let words = [spread(word as u32), spread((word >> 32) as u32)];
+                for row in [2 * y, 2 * y + 1] {
+                    if row < height {
+                        let there = out.row_mut(row)[2 * k..].iter_mut();
+                        there.zip(words).for_each(|(to, word)| *to = word | word << 1);
+                    }
+                }
+            }
+        }
+        out
+    }
+
     /// What upright octagons of this width (up to 400 px), which fit into the ink, cover.
     ///
     /// A regular octagon is four runs added up, level, upright and on both slants, and each is built by doubling: some
@@ -218,6 +235,18 @@ fn each_shift(side: usize, mut shift: impl FnMut(usize)) {
 /// Word `low` with the bits of `high` behind it, moved down by `by` (1 to 64) bits.
 fn shifted_down(low: u64, high: u64, by: usize) -> u64 {
     low >> 1 >> (by - 1) | high << (WORD - by)
+}
+
+/// The bits of a word at every other place (Warren, *Hacker's Delight*, 2012, §7-2).
+fn spread(word: u32) -> u64 {
+    const MASKS: [(u32, u64); 5] = [
+        (16, 0x0000_FFFF_0000_FFFF),
+        (8, 0x00FF_00FF_00FF_00FF),
+        (4, 0x0F0F_0F0F_0F0F_0F0F),
+        (2, 0x3333_3333_3333_3333),
+        (1, 0x5555_5555_5555_5555),
+    ];
+    MASKS.iter().fold(u64::from(word), |word, (by, mask)| (word | word << by) & mask)
 }
 
 #[cfg(test)]
