@@ -1,4 +1,4 @@
-//! Branches that the pen's outline made and not the pen: bumps, and the points of corners.
+//! Branches that the pen's outline made and not the pen: bumps, whiskers, and the points of corners.
 //!
 //! A spur between two lines is where both run together, up to the corner's point or the hairpin's turn, or it is a third
 //! line. A point goes; where the turn of a hairpin is, the two sides are told.
