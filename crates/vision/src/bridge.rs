@@ -152,14 +152,22 @@ impl Tip {
     }
 }
 
+/// Values from the first (`end` 0) or the last one on.
+pub(crate) fn from_end<T>(
+    values: &[T],
+    end: usize,
+) -> impl ExactSizeIterator<Item = &T> + DoubleEndedIterator {
+    let n = values.len();
+    (0..n).map(move |k| &values[if end == 0 { k } else { n - 1 - k }])
+}
+
 /// The points of a row from its first (`end` 0) or last one on, each with how far along the row it is.
 pub(crate) fn measured(points: &[Point], end: usize) -> impl Iterator<Item = (f64, Point)> {
-    let n = points.len();
-    let at = move |k: usize| points[if end == 0 { k } else { n - 1 - k }];
-    let mut length = 0.0;
-    (0..n).map(move |k| {
-        length += if k > 0 { at(k).distance(at(k - 1)) } else { 0.0 };
-        (length, at(k))
+    let (mut length, mut before) = (0.0, None);
+    from_end(points, end).map(move |&p| {
+        length += before.map_or(0.0, |before| p.distance(before));
+        before = Some(p);
+        (length, p)
     })
 }
 

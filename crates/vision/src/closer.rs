@@ -44,7 +44,7 @@ pub(crate) fn rows(
     let near = part.doubled();
     let closer = |mask: Mask| mask.doubled_to(near.width, near.height);
     let mut own = Mask::empty(part.width, part.height);
-    region.places().for_each(|(x, y)| own.set(own.cell(x - columns.start, y - lines.start)));
+    region.seen_from(columns.start, lines.start).fill_into(&mut own);
     let pale = own.clone().without(&over(&part, threshold)).count();
     if pale as f64 > MOST_PALE * own.count() as f64 {
         return None;

@@ -14,7 +14,7 @@ pub(crate) const PALE: f64 = 0.6;
 /// The rows that were drawn, and the crumbs beside them.
 pub(crate) fn parted(dark: &Plane<u8>, rows: Vec<Row>) -> (Vec<Row>, Vec<Row>) {
     let lengths: Vec<f64> = rows.iter().map(|row| polyline_length(&row.points)).collect();
-    let darkness = |row: &Row| row.points.iter().map(|&p| dark.at(p)).sum::<f64>() / row.points.len() as f64;
+    let darkness = |row: &Row| dark.mean_at(row.points.iter().copied());
     let darknesses: Vec<f64> = rows.iter().map(darkness).collect();
     let widths: Vec<f64> = rows.iter().map(|row| row.width).collect();
     let total = lengths.iter().sum::<f64>().max(1e-9);

@@ -220,7 +220,7 @@ impl Ahead<'_> {
             let mean = |aside: f64| {
                 let places = (0..steps as usize)
                     .map(|k| from + way * (length * (k as f64 + 0.5) / steps) + across * aside * self.width);
-                places.map(|p| self.dark.at(p)).sum::<f64>() / steps
+                self.dark.mean_at(places)
             };
             let middle = (mean(-0.2) + mean(0.0) + mean(0.2)) / 3.0;
             let side = |sign: f64| 0.5 * (mean(sign * BESIDE) + mean(sign * (BESIDE + 0.3)));

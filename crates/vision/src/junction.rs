@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use tracelight_stroke::{Point, polyline_length};
 
 use crate::bow::Bow;
-use crate::bridge::{Tip, inked_towards, meeting};
+use crate::bridge::{Tip, from_end, inked_towards, meeting};
 use crate::graph::{Graph, Node};
 use crate::line::{Line, off_the_grid};
 use crate::plane::Plane;
@@ -302,7 +302,5 @@ fn row_of(joint: &Joint, lines: &[Line]) -> Vec<Point> {
 
 /// Up to 12 points of a line from one end on.
 fn near_tip(line: &Line, end: usize) -> Vec<Point> {
-    let forward = line.points.iter().take(12).copied();
-    let backward = line.points.iter().rev().take(12).copied();
-    if end == 0 { forward.collect() } else { backward.collect() }
+    from_end(&line.points, end).take(12).copied().collect()
 }

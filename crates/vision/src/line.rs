@@ -2,7 +2,7 @@
 
 use tracelight_stroke::{Parabola, Point, Vec2, polyline_length};
 
-use crate::bridge::{Tip, drop_beyond, scatter_px};
+use crate::bridge::{Tip, drop_beyond, from_end, scatter_px};
 use crate::graph::{Branch, Graph, Turn, TurnTip};
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -141,13 +141,12 @@ fn inner(branch: &Branch) -> Vec<Point> {
 
 /// The pixels of a branch from the end of its line on.
 fn way_on(branch: &Branch, points: &[Point], end: usize) -> Vec<Point> {
-    let n = branch.points.len();
-    let pixel = |k: usize| branch.points[if end == 0 { k } else { n - 1 - k }];
+    let pixels = || from_end(&branch.points, end).copied();
     let tip = points[end * (points.len() - 1)];
     // the nearest, as seen from the node, of the half that is this end's
-    let half = (0..n.div_ceil(2)).map(|k| (pixel(k).distance_squared(tip), k));
-    let nearest = half.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, k)| k);
-    (0..nearest).rev().map(pixel).collect()
+    let half = pixels().take(branch.points.len().div_ceil(2)).map(|p| p.distance_squared(tip)).enumerate();
+    let nearest = half.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(k, _)| k);
+    pixels().take(nearest).rev().collect()
 }
 
 /// Takes away the points at an end that lean towards the ink of a junction: what lies off the straight line through
@@ -376,7 +375,7 @@ fn trusted(graph: &Graph, branch: &Branch, radius: f64) -> (usize, usize) {
         let index = |k: usize| if end == 0 { k } else { n - 1 - k };
         // the pen's half-width near this end: elsewhere on a long branch it may have been another
         let near = (4.0 * radius) as usize;
-        let window: Vec<f64> = (near..(near + NEAR_END).min(n)).map(|k| branch.radii[index(k)]).collect();
+        let window: Vec<f64> = from_end(&branch.radii, end).skip(near).take(NEAR_END).copied().collect();
         let usual = if window.len() < NEAR_END { radius } else { median(&window).max(0.5) };
         let ok = |k: &usize| match branch.nodes[end] {
             None => branch.points[index(*k)].distance(branch.points[index(0)]) >= radius,

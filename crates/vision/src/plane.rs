@@ -203,6 +203,12 @@ impl Plane<u8> {
         row(y0) * (1.0 - fy) + row(y1) * fy
     }
 
+    /// The mean of [`Self::at`] over some places; 0 of none.
+    pub(crate) fn mean_at(&self, places: impl Iterator<Item = Point>) -> f64 {
+        let (sum, count) = places.fold((0.0, 0.0), |(sum, count), p| (sum + self.at(p), count + 1.0));
+        sum / f64::max(count, 1.0)
+    }
+
     /// Values at equal steps from a place on, as [`Self::at`] gives them but for its last digits.
     pub(crate) fn along(&self, from: Point, step: Vec2, values: &mut [f32]) {
         let Some(steps) = self.steps(from, step, values.len()) else {

@@ -5,7 +5,7 @@
 
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
-use crate::bridge::angle;
+use crate::bridge::{angle, from_end};
 use crate::crumbs;
 use crate::graph::{Branch, Graph, Node, TurnTip};
 use crate::plane::Plane;
@@ -85,9 +85,7 @@ fn is_whisker(
         return false;
     }
     let darkness = |(branch, end): (usize, usize)| {
-        let near = near(&graph.branches[branch].points, end, (0, BESIDE));
-        let (sum, count) = near.fold((0.0, 0.0), |(sum, count), &p| (sum + dark.at(p), count + 1.0));
-        sum / f64::max(count, 1.0)
+        dark.mean_at(from_end(&graph.branches[branch].points, end).take(BESIDE).copied())
     };
     let others = ends.iter().filter(|&&other| other != end).map(|&other| darkness(other));
     darkness(end) < crumbs::PALE * others.fold(f64::INFINITY, f64::min)
@@ -103,18 +101,11 @@ const THINNER: f64 = 0.6;
 /// `pen`, which is half the graph's.
 fn pen_beside(graph: &Graph, ends: &[(usize, usize)], spur: (usize, usize), pen: f64) -> f64 {
     let beside = |&(branch, end): &(usize, usize)| {
-        let from = (2.0 * pen) as usize;
-        let near: Vec<f64> =
-            near(&graph.branches[branch].radii, end, (from, from + BESIDE)).copied().collect();
+        let along = from_end(&graph.branches[branch].radii, end);
+        let near: Vec<f64> = along.skip((2.0 * pen) as usize).take(BESIDE).copied().collect();
         if near.len() < BESIDE / 2 { pen } else { median(&near) }
     };
     ends.iter().filter(|&&end| end != spur).map(beside).fold(f64::INFINITY, f64::min).max(pen)
-}
-
-/// Some of a branch's values, counted from one of its ends.
-fn near<T>(values: &[T], end: usize, (from, to): (usize, usize)) -> impl Iterator<Item = &T> {
-    let n = values.len();
-    (from.min(n)..to.min(n)).map(move |k| &values[if end == 0 { k } else { n - 1 - k }])
 }
 
 /// Points of a line that tell its width beside a spur.
@@ -165,7 +156,8 @@ fn is_other_half(graph: &Graph, (spur, end): (usize, usize), (other, from): (usi
     if spur.points.is_empty() || other.points.len() < 2 {
         return false;
     }
-    let on = |branch: &Branch, end, most| near(&branch.points, end, (0, most)).copied().collect::<Vec<_>>();
+    let on =
+        |branch: &Branch, end, most| from_end(&branch.points, end).take(most).copied().collect::<Vec<_>>();
     let (half, rest) = (on(spur, end, spur.points.len()), on(other, from, spur.points.len().max(HALF)));
     let (Some(&tip), Some(&far)) = (half.last(), rest.last()) else { return false };
     let along = (tip - far) / tip.distance(far).max(1e-9);

@@ -83,6 +83,13 @@ impl Region {
         })
     }
 
+    /// The same with its place `left`, `top` as the origin; none of its pixels lies before that.
+    pub(crate) fn seen_from(&self, left: usize, top: usize) -> Self {
+        let (left, top) = (left as u32, top as u32);
+        let moved = |run: &Run| Run { y: run.y - top, from: run.from - left, to: run.to - left };
+        Self { runs: self.runs.iter().map(moved).collect() }
+    }
+
     /// Makes all of it paper.
     pub(crate) fn erase_from(&self, mask: &mut Mask) {
         self.runs.iter().for_each(|run| mask.erase(run.y as usize, run.from as usize, run.to as usize));

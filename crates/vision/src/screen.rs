@@ -115,9 +115,7 @@ fn as_letter(region: &Region, highest: usize) -> Option<Vec<Run>> {
     if columns.len() as f64 > WIDEST * highest as f64 || region.area() < LEAST_PX {
         return None;
     }
-    let (left, top) = (columns.start as u32, rows.start as u32);
-    let moved = |run: &Run| Run { y: run.y - top, from: run.from - left, to: run.to - left };
-    Some(region.runs.iter().map(moved).collect())
+    Some(region.seen_from(columns.start, rows.start).runs)
 }
 
 /// How many tones of a picture are parted exactly along rows and columns, and how long their edges are, shorter sides of the picture.

@@ -39,8 +39,7 @@ pub(super) fn alone(plane: &Plane<u8>, small: &Small, found: &Found) -> Alone {
     let ((left, right), (top, bottom)) = (extent(|p| p.x, plane.width), extent(|p| p.y, plane.height));
     let over = Cover::of(small, found);
     let rim = (RIM * plane.width.min(plane.height) as f64).max(LEAST_RIM + found.blur_px);
-    let mut part = Plane::filled(right - left, bottom - top, 0);
-    (top..bottom).for_each(|y| part.row_mut(y - top).copy_from_slice(&plane.row(y)[left..right]));
+    let part = plane.part(left..right, top..bottom);
     let mut papered = part.clone();
     let mut mask = Mask::empty(part.width, part.height);
     let inside = inside(outline, (plane.width, plane.height), rim.ceil() as usize);
