@@ -1,8 +1,10 @@
-//! How closely a picture is looked at: the grain that a pencil or a crayon leaves bare is finer than what they draw.
+//! How closely a picture is looked at: the grain that a pencil or a crayon leaves bare is finer than what they draw, and thin lines are
+//! finer than what the pixels' grid shows.
 //!
 //! Where a mask at half the resolution, or of a smoothed plane, has a shorter border, the rest of it was the paper's grain. Where its
 //! lines are still wide enough, or all there, nothing that was drawn is lost.
 
+use crate::grey::MOST_PIXELS;
 use crate::ink::{over, smoothed};
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -39,9 +41,13 @@ pub(crate) fn may_be_grainy(fine: &Mask, darkness: &Plane<u8>, threshold: u8) ->
 
 /// Whether ink is so grainy that a smoothed look, in which it is `even`, is better.
 pub(crate) fn is_grainy(fine: &Mask, even: &Mask) -> bool {
-    let kept = even.clone().dilated_by(2);
-    let lost = fine.clone().without(&kept).count();
-    lost as f64 <= MOST_LOST * fine.count() as f64 && grain(fine, even) >= GRAINY
+    lost(fine, even) <= MOST_LOST && grain(fine, even) >= GRAINY
+}
+
+/// The share of ink of which nothing is left near by when it is smoothed.
+fn lost(fine: &Mask, even: &Mask) -> f64 {
+    let gone = fine.clone().without(&even.clone().dilated_by(2)).count();
+    gone as f64 / (fine.count() as f64).max(1.0)
 }
 
 /// How many times as long the border of ink is as when it is smoothed, along that: letters whose holes and slits are closed then are
@@ -76,6 +82,21 @@ pub(crate) fn is_ragged(fine: &Mask, darkness: &Plane<u8>, threshold: u8) -> boo
     let about = wide.dilated_by(1);
     let fine = fine.clone().and(&about.doubled_to(darkness.width, darkness.height));
     fine.line_length() >= RAGGED * 2.0 * half.and(&about).line_length()
+}
+
+/// Thinner in the mean than this, px, lines are better looked at twice as closely: between the pixels' centres the picture is smooth,
+/// and a skeleton that goes from pixel to pixel has no direction over so short a way as their corners and letters are.
+const FINE_PX: f64 = 2.8;
+/// Unless more than this share of them is gone when they are smoothed: crumbs of grain and specks of dust would be lines.
+const MOST_CRUMBS: f64 = 0.001;
+
+/// Whether the ink of a plane, most of it over a threshold, is better looked at twice as closely.
+pub(crate) fn is_thin(ink: &Mask, darkness: &Plane<u8>, threshold: u8) -> bool {
+    let is_small = 4 * darkness.values.len() <= MOST_PIXELS;
+    if !is_small || ink.count() as f64 >= FINE_PX * ink.line_length() {
+        return false;
+    }
+    lost(ink, &over(&smoothed(darkness), threshold)) <= MOST_CRUMBS
 }
 
 /// What is thinner than this is thin, px.
@@ -146,6 +167,17 @@ mod tests {
         assert!(is_grainy(4.0, 4.0));
         assert!(!is_grainy(4.0, 0.0));
         assert!(!is_grainy(0.8, 0.0), "thin lines would be lost");
+    }
+
+    #[test]
+    fn thin_lines_are_looked_at_closer_unless_there_are_crumbs_beside_them() {
+        let is_thin = |plane: &Plane<u8>| is_thin(&over(plane, 100), plane, 100);
+        assert!(is_thin(&ring(1.6, 0.0)) && is_thin(&ring(2.4, 0.0)));
+        assert!(!is_thin(&ring(4.0, 0.0)));
+        assert!(!is_thin(&ring_within(1800, 1.6, 0.0)), "too many pixels");
+        let mut dusty = ring(1.6, 0.0);
+        (10..390).step_by(40).for_each(|x| dusty.row_mut(5)[x] = 160);
+        assert!(!is_thin(&dusty));
     }
 
     #[test]

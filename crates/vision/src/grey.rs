@@ -7,7 +7,7 @@ use crate::plane::Plane;
 const LEAST_SIDE: usize = 8;
 
 /// More pixels than this say nothing more about a drawing; larger images are averaged down.
-const MOST_PIXELS: usize = 12_000_000;
+pub(crate) const MOST_PIXELS: usize = 12_000_000;
 
 /// An image of brightnesses: 0 is black, 255 white.
 ///

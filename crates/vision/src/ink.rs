@@ -59,8 +59,8 @@ pub(crate) struct Ink {
     /// How much darker the ink is than the paper, levels; `None` where all that is paler is paper: the threshold was
     /// given, or there are shadows.
     strength: Option<f64>,
-    /// Pixels averaged into one, either way.
-    pub(crate) reduction: usize,
+    /// Pixels of the image along one of these: 2 where four were averaged into one, a half where one became four.
+    pub(crate) scale: f64,
     /// Passes of [`smoothed`] over it.
     smoothings: usize,
     /// What is otherwise where it was smoothed for a pencil's grain.
@@ -78,17 +78,19 @@ impl Ink {
         sheets: bool,
     ) -> Result<Self, VisionError> {
         let at = |look| Self::at(page, threshold_percent, sheets, look);
-        let mut ink = at(Look { reduction: page.picture.reduction(), smoothings: 0 })?;
+        let mut reduction = page.picture.reduction();
+        let mut ink = at(Look { reduction, smoothings: 0 })?;
         let most = page.picture.most_reduction();
         let mut fine = ink.over();
-        while 2 * ink.reduction <= most && coarse::is_ragged(&fine, &ink.darkness, ink.threshold) {
-            let Ok(coarser) = at(Look { reduction: 2 * ink.reduction, smoothings: 0 }) else { break };
+        while 2 * reduction <= most && coarse::is_ragged(&fine, &ink.darkness, ink.threshold) {
+            let Ok(coarser) = at(Look { reduction: 2 * reduction, smoothings: 0 }) else { break };
+            reduction *= 2;
             fine = coarser.over();
             ink = coarser;
         }
         let mut tone_percent = None;
         while ink.smoothings < MOST_SMOOTHINGS && coarse::may_be_grainy(&fine, &ink.darkness, ink.threshold) {
-            let look = Look { reduction: ink.reduction, smoothings: ink.smoothings + 1 };
+            let look = Look { reduction, smoothings: ink.smoothings + 1 };
             let Ok(smoother) = at(look) else { break };
             let even = smoother.over();
             if !coarse::is_grainy(&fine, &even) {
@@ -173,11 +175,26 @@ impl Ink {
             threshold: split.threshold,
             rules,
             strength,
-            reduction,
+            scale: reduction as f64,
             smoothings,
             pencil: None,
             quality,
         })
+    }
+
+    /// Whether what its mask shows is so thin that a look twice as close tells more.
+    pub(crate) fn is_thin(&self, mask: &Mask) -> bool {
+        coarse::is_thin(mask, &self.darkness, self.threshold)
+    }
+
+    /// The same, looked at twice as closely.
+    pub(crate) fn doubled(self) -> Self {
+        Self {
+            darkness: self.darkness.doubled(),
+            rules: self.rules.map(|rules| rules.doubled()),
+            scale: 0.5 * self.scale,
+            ..self
+        }
     }
 
     /// Where a pencil's ink ends: smoothed, it stands out from paper that is paler than half of it.
@@ -213,7 +230,7 @@ impl Ink {
 
     /// How wide the ink's edges are, px of [`Self::darkness`]; `None` where too few could be measured.
     pub(crate) fn edge_px(&self) -> Option<f64> {
-        self.quality.edge_px.map(|px| px / self.reduction as f64)
+        self.quality.edge_px.map(|px| px / self.scale)
     }
 }
 

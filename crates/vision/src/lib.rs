@@ -17,7 +17,7 @@
 //! | `reading`, `parts`, `dust` | what is a line by its own width; lines and shapes parted; specks |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bow`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
-//! | `closer` | a second, closer look at small figures |
+//! | `coarse`, `closer` | how closely a picture is looked at; a second, closer look at small figures |
 //! | `outline` | edges of filled shapes, holes too |
 //! | `contrast` | whether a stroke is ink, or the edge of paper or of a shadow |
 //! | `projection` | a rectangle seen at a slant |

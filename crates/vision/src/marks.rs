@@ -55,7 +55,7 @@ pub fn find_two_marks(image: &Grey) -> Result<Marks, VisionError> {
         let found = candidates(&ink.darkness, threshold);
         most = most.max(found.len());
         if let Some((a, b)) = pair(&found) {
-            return marks(a, b, ink.reduction as f64);
+            return marks(a, b, ink.scale);
         }
     }
     Err(VisionError::Marks { found: most })
@@ -137,7 +137,7 @@ fn pair(found: &[Patch]) -> Option<(Patch, Patch)> {
     (others.count() == 0).then_some((found[i], found[j]))
 }
 
-fn marks(a: Patch, b: Patch, reduction: f64) -> Result<Marks, VisionError> {
+fn marks(a: Patch, b: Patch, scale: f64) -> Result<Marks, VisionError> {
     let along = b.middle - a.middle;
     let (less, more) = (along.x.abs().min(along.y.abs()), along.x.abs().max(along.y.abs()));
     let slant_deg = less.atan2(more).to_degrees();
@@ -146,6 +146,6 @@ fn marks(a: Patch, b: Patch, reduction: f64) -> Result<Marks, VisionError> {
     }
     let swapped = if along.y.abs() > along.x.abs() { along.y < 0.0 } else { along.x < 0.0 };
     let (first, second) = if swapped { (b.middle, a.middle) } else { (a.middle, b.middle) };
-    let scaled = |p: Point| (p.to_vec2() * reduction).to_point();
+    let scaled = |p: Point| (p.to_vec2() * scale).to_point();
     Ok(Marks { a: scaled(first), b: scaled(second) })
 }

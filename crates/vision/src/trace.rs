@@ -167,10 +167,14 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
 /// figure; when an option is out of its bounds, or leaves nothing.
 pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionError> {
     options.check()?;
-    let ink = Ink::of(page, options.threshold_percent, options.sheets)?;
+    let mut ink = Ink::of(page, options.threshold_percent, options.sheets)?;
     let mut mask = ink.mask();
     let tone_percent = options.judges().then(|| ink.tone_percent(&mask));
     tone_percent.map_or(Ok(()), tone::check)?;
+    if ink.is_thin(&mask) {
+        ink = ink.doubled();
+        mask = ink.mask();
+    }
     let patches = Patches::of(&mut mask, least_patch(&ink, options))?;
     if options.judges() {
         screen::check(page.given(), patches.drawn.len())?;
@@ -192,7 +196,7 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
     }
     let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
     let strokes = Drawing { strokes };
-    let mut strokes = strokes.transformed(Affine::scale(ink.reduction as f64));
+    let mut strokes = strokes.transformed(Affine::scale(ink.scale));
     let edges = drop_edges(&mut strokes, &page.picture, ink.quality.light_on_dark);
     if options.sheets {
         strokes = ink_only(&strokes, &page.picture, ink.quality.light_on_dark);
@@ -207,8 +211,8 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
         quality: Quality { pen_px: usual_pen(&strokes), tone_percent, ..ink.quality },
         strokes,
         missed_ink,
-        left_out: LeftOut { edges, ..left_out.enlarged(ink.reduction) },
-        rules: ink.rules.map(|off| off.rules.scaled(ink.reduction as f64)),
+        left_out: LeftOut { edges, ..left_out.scaled(ink.scale) },
+        rules: ink.rules.map(|off| off.rules.scaled(ink.scale)),
     })
 }
 
@@ -220,12 +224,12 @@ struct Found {
 }
 
 impl LeftOut {
-    /// In px of an image of which so many either way were averaged into one.
-    fn enlarged(self, by: usize) -> Self {
+    /// In px of an image that has so many along one of these.
+    fn scaled(self, by: f64) -> Self {
         Self {
-            largest_speck_px2: self.largest_speck_px2 * by * by,
-            dots: self.dots.map(|dots| Dots { spacing_px: dots.spacing_px * by as f64, ..dots }),
-            over_paper_px: self.over_paper_px * by as f64,
+            largest_speck_px2: (self.largest_speck_px2 as f64 * by * by).round() as usize,
+            dots: self.dots.map(|dots| Dots { spacing_px: dots.spacing_px * by, ..dots }),
+            over_paper_px: self.over_paper_px * by,
             ..self
         }
     }
@@ -307,7 +311,7 @@ fn usual_pen(drawing: &Drawing) -> Option<f64> {
 /// Pixels a patch must have: six, or as many as asked for. Where no pen is looked for that could tell dust, a speck of a
 /// 120th of the picture's shorter side either way is dust too.
 fn least_patch(ink: &Ink, options: &Options) -> usize {
-    let averaged = (ink.reduction * ink.reduction) as f64;
+    let averaged = ink.scale * ink.scale;
     let asked = options.despeckle_px2.map(|area| (area / averaged).ceil() as usize);
     let side = ink.darkness.width.min(ink.darkness.height) / 120;
     asked.unwrap_or(match options.mode {

@@ -65,6 +65,14 @@ impl TakenOff {
         Self { rules, level, upright }
     }
 
+    /// The same of a plane of four pixels for each.
+    pub(crate) fn doubled(self) -> Self {
+        let twice = |mask: Mask| mask.doubled_to(2 * mask.width, 2 * mask.height);
+        let [level, upright] =
+            [self.level, self.upright].map(|lay| Lay { far: twice(lay.far), near: twice(lay.near) });
+        Self { rules: self.rules.scaled(2.0), level, upright }
+    }
+
     /// Whether rules left a patch of ink: most of it lies where they lay.
     pub(crate) fn left_patch(&self, region: &Region) -> bool {
         let is_on = |&(x, y): &(usize, usize)| {
@@ -132,5 +140,15 @@ mod tests {
         assert!(!left((10.0, 19.5), (40.0, 20.5), 6.0), "wider");
         assert!(!left((65.0, 20.0), (90.0, 20.0), 2.0), "darker");
         assert!(!left((30.0, 5.0), (30.0, 35.0), 2.0), "across");
+    }
+
+    #[test]
+    fn twice_as_closely_it_lies_twice_as_far_down_and_is_twice_as_wide() {
+        let taken_off = taken_off().doubled();
+        let left =
+            |y: f64, width: f64| taken_off.left_line(&[Point::new(20.0, y), Point::new(80.0, y)], width);
+        assert!(left(40.0, 4.0) && left(40.0, 6.0));
+        assert!(!left(20.0, 4.0), "where it lay from afar");
+        assert!(!left(40.0, 12.0), "wider");
     }
 }
