@@ -175,6 +175,8 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
         ink = ink.doubled();
         mask = ink.mask();
     }
+    // it is told in the image's pixels, however close the look
+    let options = &Options { tolerance_px: options.tolerance_px / ink.scale.min(1.0), ..*options };
     let patches = Patches::of(&mut mask, least_patch(&ink, options))?;
     if options.judges() {
         screen::check(page.given(), patches.drawn.len())?;
