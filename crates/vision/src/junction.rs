@@ -83,6 +83,7 @@ pub(crate) fn clusters(graph: &Graph, bars: &[usize]) -> (Vec<usize>, Vec<bool>)
     };
     let mut bridges: Vec<bool> = graph.branches.iter().map(is_bridge).collect();
     bars.iter().for_each(|&bar| bridges[bar] = false);
+    open_rings(graph, &mut bridges, pen);
     for (branch, _) in graph.branches.iter().zip(&bridges).filter(|(_, bridge)| **bridge) {
         if let [Some(a), Some(b)] = branch.nodes {
             let (a, b) = (root(&mut cluster, a), root(&mut cluster, b));
@@ -92,6 +93,73 @@ pub(crate) fn clusters(graph: &Graph, bars: &[usize]) -> (Vec<usize>, Vec<bool>)
     // roots come before what hangs on them, so that one pass shortens every way
     (0..cluster.len()).for_each(|n| cluster[n] = cluster[cluster[n]]);
     (cluster, bridges)
+}
+
+/// Paper that is as wide as so many pens, and no crumb of so many px either way from its middle, is no crossing's own: what goes round
+/// it is a line.
+const RING_PENS: f64 = 1.0;
+const RING_PX: f64 = 1.5;
+/// Unless it is a slit between two strands: round that circle it is this share as far as round it. A square's is 0.79, a triangle's 0.6.
+const ROUND: f64 = 0.6;
+
+/// Bridges that go round paper are none: of a wheel's spokes none leads on over its hub's hole.
+fn open_rings(graph: &Graph, bridges: &mut [bool], pen_radius: f64) {
+    for ring in rings(graph, bridges) {
+        let way = ring.iter().flat_map(|&(branch, forward)| way_along(graph, branch, forward));
+        let way: Vec<Point> = way.collect();
+        let sides = || way.iter().zip(way.iter().cycle().skip(1));
+        let area = 0.5 * sides().map(|(a, b)| a.to_vec2().cross(b.to_vec2())).sum::<f64>().abs();
+        let length: f64 = sides().map(|(a, b)| a.distance(*b)).sum();
+        // the radius of the circle that all sides touch, for a ring like that
+        let radius = 2.0 * area / length;
+        let is_round = 2.0 * PI * radius >= ROUND * length;
+        if is_round && radius - pen_radius > (RING_PENS * pen_radius).max(RING_PX) {
+            ring.iter().for_each(|&(branch, _)| bridges[branch] = false);
+        }
+    }
+}
+
+/// A branch's places with that of the node that it leaves.
+fn way_along(graph: &Graph, branch: usize, forward: bool) -> Vec<Point> {
+    let branch = &graph.branches[branch];
+    let mut way = branch.points.clone();
+    if !forward {
+        way.reverse();
+    }
+    let from = branch.nodes[usize::from(!forward)].map(|node| graph.nodes[node].at);
+    from.into_iter().chain(way).collect()
+}
+
+/// The ways round along bridges that nothing else of them leads to: branches with whether they are gone along from their first point.
+fn rings(graph: &Graph, bridges: &[bool]) -> Vec<Vec<(usize, bool)>> {
+    let mut ends = graph.ends_at_nodes();
+    ends.iter_mut().for_each(|at| at.retain(|&(branch, _)| bridges[branch]));
+    // what leads nowhere is in no ring
+    let mut bare: Vec<usize> = (0..ends.len()).filter(|&node| ends[node].len() == 1).collect();
+    while let Some(node) = bare.pop() {
+        let Some((branch, end)) = ends[node].pop() else { continue };
+        let Some(far) = graph.branches[branch].nodes[1 - end] else { continue };
+        ends[far].retain(|&(other, _)| other != branch);
+        if ends[far].len() == 1 {
+            bare.push(far);
+        }
+    }
+    let (mut found, mut seen) = (Vec::new(), vec![false; bridges.len()]);
+    for start in 0..ends.len() {
+        let (mut ring, mut node) = (Vec::new(), start);
+        while ends[node].len() == 2
+            && let Some(&(branch, end)) = ends[node].iter().find(|(branch, _)| !seen[*branch])
+            && let Some(far) = graph.branches[branch].nodes[1 - end]
+        {
+            seen[branch] = true;
+            ring.push((branch, end == 0));
+            node = far;
+        }
+        if !ring.is_empty() && node == start {
+            found.push(ring);
+        }
+    }
+    found
 }
 
 /// Two lines that cross at an acute angle run together for a while: the skeleton has two forks and one line between

@@ -14,7 +14,7 @@
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
 //! | `tone`, `screen` | whether it is a drawing at all: no photograph, and no computer's screen |
 //! | `region`, `distance` | connected patches of ink; distance to the paper |
-//! | `reading`, `parts`, `dust` | what is a line by its own width; lines and shapes parted; specks |
+//! | `reading`, `parts`, `hub`, `dust` | what is a line by its own width; lines and shapes parted; where many lines meet; specks |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bow`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `coarse`, `closer` | how closely a picture is looked at; a second, closer look at small figures |
@@ -53,6 +53,7 @@ mod follow;
 mod gap;
 mod graph;
 mod grey;
+mod hub;
 mod ink;
 mod inside;
 mod junction;

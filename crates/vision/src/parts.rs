@@ -7,6 +7,7 @@
 use crate::dust::{Dust, dusted};
 use crate::felt;
 use crate::graph::{Graph, Skeleton};
+use crate::hub::is_hub;
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::prune;
@@ -33,6 +34,11 @@ const FILLED: f64 = 1.6;
 /// leaves that much.
 const RIM_PX: usize = 2;
 const RIM_SHARE: usize = 12;
+
+/// How far beyond octagons of some width their shape reaches, px.
+const fn rim(width: usize) -> usize {
+    RIM_PX + width / RIM_SHARE
+}
 
 /// The ink in two kinds of parts.
 #[derive(Debug)]
@@ -214,7 +220,7 @@ impl Sorter<'_> {
     fn sort_drawn(&mut self, group: Vec<Patch>, pen: f64) {
         let width = ((CROSSED_PENS * pen + 2.0).ceil() as usize).max(LEAST_BULK);
         let mask = mask_of(&self.shape_mask, group.iter().map(|patch| &patch.region));
-        let mut inner = mask.opened(width);
+        let mut inner = mask.clone().opened(width);
         let least = WIDE_PENS * pen + 2.0;
         let cores = regions(&inner);
         for core in graphs(self.dark, &inner, cores).into_iter().map(Patch::new) {
@@ -222,6 +228,13 @@ impl Sorter<'_> {
             if core.reading.widest < least || small || core.reading.is_drawn {
                 core.region.erase_from(&mut inner);
             }
+        }
+        // where lines meet
+        let bulk = inner.clone().dilated_by(rim(width)).and(&mask);
+        for part in
+            regions(&bulk).iter().filter(|part| is_hub(part, &mask, group.iter().map(|patch| &patch.graph)))
+        {
+            part.erase_from(&mut inner);
         }
         self.part(group, inner, width, |piece, _| piece.reading.is_drawn || !piece.reading.lines.is_empty());
     }
@@ -263,7 +276,7 @@ impl Sorter<'_> {
         self.lines.extend(rest.into_iter().map(|patch| (patch.region, patch.graph)));
         if !fits.is_empty() {
             let mixed = mask_of(&self.shape_mask, fits.iter().map(|patch| &patch.region));
-            self.split(mixed, inner.dilated_by(RIM_PX + width / RIM_SHARE), is_line);
+            self.split(mixed, inner.dilated_by(rim(width)), is_line);
         }
     }
 

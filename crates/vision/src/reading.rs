@@ -147,16 +147,18 @@ const DRAWN: [(f64, f64); 2] = [(LONG_LINE, 1.8), (3.5, 1.4)];
 pub(crate) const LONG_LINE: f64 = 8.0;
 
 /// What is narrower in the mean, px, has too few pixels across to tell its widths apart. Broader ink was drawn if its lines hold so
-/// much of it; by the second rule most of it, and what is short is about as wide all along: a body has legs, a bottle a neck.
+/// much of it; by the second rule most of it, and what is short is about as wide all along: a body has legs, a bottle a neck. What is
+/// long, and as wide all along as one line, is a pen's, however much of it is of short ones.
 const BROAD_PX: f64 = 10.0;
 const HALF: f64 = 0.5;
 const MOSTLY: f64 = 0.7;
+const PARTLY: f64 = 0.15;
 const EVENLY: f64 = 0.45;
 
-/// Whether four fifths of the ink are hardly wider than one fifth.
-fn is_even_all_along(graph: &Graph) -> bool {
+/// Whether four fifths of the ink are wider than one fifth by this share at most.
+fn is_even_all_along(graph: &Graph, share: f64) -> bool {
     let at = |share| graph.radius_under(share);
-    at(80) - at(20) <= EVENLY * at(50)
+    at(80) - at(20) <= share * at(50)
 }
 
 /// What the branches of a patch are together.
@@ -200,7 +202,11 @@ impl Reading {
         let together: f64 = lines.iter().map(|line| line.length).sum();
         // the share of the ink that the lines hold
         let inked = lines.iter().map(|line| line.length * line.width).sum::<f64>() / area as f64;
-        let is_even = !is_broad || inked >= MOSTLY && (long >= LONG_LINE || is_even_all_along(graph));
+        let is_long = long >= LONG_LINE;
+        let is_held = inked >= MOSTLY && (is_long || is_even_all_along(graph, EVENLY));
+        // a grid and an arrow's head are of short lines
+        let is_penned = is_long && inked >= PARTLY && is_even_all_along(graph, EVEN);
+        let is_even = !is_broad || is_held || is_penned;
         let many_lines = together >= MANY_WIDTHS * widest;
         let is_drawn = many_lines && (!is_broad || inked >= HALF)
             || DRAWN.iter().any(|&(least, most)| long >= least && bulky <= most)
