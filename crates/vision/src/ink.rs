@@ -84,6 +84,10 @@ impl Ink {
         let mut fine = ink.over();
         while 2 * reduction <= most && coarse::is_ragged(&fine, &ink.darkness, ink.threshold) {
             let Ok(coarser) = at(Look { reduction: 2 * reduction, smoothings: 0 }) else { break };
+            // rules that are no longer seen would be lines
+            if ink.rules.is_some() && coarser.rules.is_none() {
+                break;
+            }
             reduction *= 2;
             fine = coarser.over();
             ink = coarser;

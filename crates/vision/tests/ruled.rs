@@ -252,3 +252,26 @@ fn rules_of_a_page_that_curls_are_no_strokes_where_words_stand_on_them() {
         drawn.len()
     );
 }
+
+#[test]
+fn squares_that_end_before_the_border_are_rules_unless_they_are_drawn_in_ink() {
+    let at = |k: i32| 22.0 * f64::from(k);
+    let level = (2..20).map(|k| vec![Point::new(40.0, at(k)), Point::new(600.0, at(k))]);
+    let upright = (2..28).map(|k| vec![Point::new(at(k), 40.0), Point::new(at(k), 440.0)]);
+    let squares: Vec<Vec<Point>> = level.chain(upright).collect();
+    let strokes = |level: f64| {
+        let (mut rules, mut ink) = (Canvas::new(WIDTH, HEIGHT), Canvas::new(WIDTH, HEIGHT));
+        squares.iter().for_each(|rule| rules.pen(rule, 1.8));
+        figure().iter().for_each(|line| ink.pen(line, 4.0));
+        let pixel = |(rule, ink): (f64, f64)| {
+            let under = 240.0 - (240.0 - level) * rule;
+            (under + (40.0_f64.min(under) - under) * ink) as u8
+        };
+        let levels = rules.shares().zip(ink.shares()).map(pixel).collect();
+        let found = trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap();
+        (found.rules.map_or(0, |rules| rules.combs.len()), found.strokes.strokes.len())
+    };
+    assert_eq!(strokes(150.0), (2, 3));
+    let (combs, drawn) = strokes(40.0);
+    assert!(combs == 0 && drawn > 20, "{combs} combs, {drawn} strokes");
+}

@@ -50,6 +50,8 @@ pub(super) struct Family {
     /// Those that the picture's border cuts, all along or somewhere on their way.
     pub(super) cut: Vec<Rule>,
     pub(super) spacing: f64,
+    /// Of most of them, levels.
+    pub(super) contrast: f64,
 }
 
 impl Family {
@@ -81,11 +83,12 @@ impl Family {
 }
 
 /// Where rules may end: at the border, or at a line that itself leads from border to border across them; or anywhere, where those
-/// across them with this spacing are rules.
+/// across them with this spacing are rules, or whatever is across them.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Ends<'a> {
     At(&'a [f64]),
     Squared(f64),
+    Anywhere,
 }
 
 /// The family of rules among some tracks, if there is one.
@@ -106,7 +109,8 @@ pub(super) fn family(strips: &Strips<'_>, tracks: &[Track], ends: Ends<'_>) -> O
     let is_whole = found.len() >= FEWEST && (between - found.len()) as f64 <= MISSING * between as f64;
     let reach = match ends {
         Ends::At(lines) => law.reach(strips, &found, lines),
-        Ends::Squared(spacing) => (law.spacing / spacing - 1.0).abs() < SQUARE,
+        Ends::Squared(spacing) => is_square(law.spacing, spacing),
+        Ends::Anywhere => true,
     };
 
     if !(is_all_over && is_whole && reach) {
@@ -120,7 +124,12 @@ pub(super) fn family(strips: &Strips<'_>, tracks: &[Track], ends: Ends<'_>) -> O
     let rule = |index: i32| Rule { at: courses[(index - all.0) as usize].clone() };
     let rules = found.iter().map(|(index, _)| rule(*index)).collect();
     let cut = cut.into_iter().map(rule).collect();
-    Some(Family { rules, cut, spacing: law.spacing })
+    Some(Family { rules, cut, spacing: law.spacing, contrast })
+}
+
+/// Whether rules that are so far apart either way make squares.
+pub(super) fn is_square(spacing: f64, other: f64) -> bool {
+    (spacing / other - 1.0).abs() < SQUARE
 }
 
 /// How much paper there is across the rules, halfway along, px.

@@ -91,7 +91,7 @@ pub(crate) fn without_rules(
         return None;
     }
     let [level, upright] = sides.map(Side::of);
-    let [level_rules, upright_rules] = families(&level, &upright)?;
+    let [level_rules, upright_rules] = families(&level, &upright, strongest)?;
     let levels = Levels { noise: noise as f32, ink: strongest as f32 };
     let mut turned = dark.transposed();
     let across = upright.printed(&turned, &upright_rules);
@@ -149,17 +149,32 @@ fn crossings_off(plane: &mut Plane<u8>, level: &Plane<u8>, upright: &Plane<u8>, 
     }
 }
 
-/// The rules of either direction; `None` where there are none at all.
-fn families(level: &Side<'_>, upright: &Side<'_>) -> Option<[Vec<Family>; 2]> {
+/// Squares that end anywhere are paper's if there are at least so many rules either way,
+const FEWEST_SQUARED: usize = 12;
+/// and they are paler than this share of the strongest ink: a board is drawn in it.
+const PALER: f64 = 0.8;
+
+/// The rules of either direction; `None` where there are none at all. The strongest ink is so dark.
+fn families(level: &Side<'_>, upright: &Side<'_>, strongest: f64) -> Option<[Vec<Family>; 2]> {
     let mut level_rules = level.families(Ends::At(&upright.margins()));
     let mut upright_rules = upright.families(Ends::At(&level.margins()));
     match (level_rules.first(), upright_rules.first()) {
-        (None, None) => return None,
+        (None, None) => return squares(level, upright, strongest),
         (Some(rules), None) => upright_rules = upright.families(Ends::Squared(rules.spacing)),
         (None, Some(rules)) => level_rules = level.families(Ends::Squared(rules.spacing)),
         (Some(_), Some(_)) => (),
     }
     Some([level_rules, upright_rules])
+}
+
+/// The rules of squared paper that end anywhere: its edge may be unknown.
+fn squares(level: &Side<'_>, upright: &Side<'_>, strongest: f64) -> Option<[Vec<Family>; 2]> {
+    let found = [level, upright].map(|side| side.families(Ends::Anywhere));
+    let [Some(first), Some(other)] = found.each_ref().map(|families| families.first()) else { return None };
+    let is_paper =
+        |family: &Family| family.rules.len() >= FEWEST_SQUARED && family.contrast < PALER * strongest;
+    let are_squares = family::is_square(first.spacing, other.spacing);
+    (are_squares && is_paper(first) && is_paper(other)).then_some(found)
 }
 
 /// What crosses the strips of one direction.
