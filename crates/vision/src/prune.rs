@@ -233,8 +233,9 @@ const ACUTE: f64 = 0.25;
 
 /// Points of a spur that tell where it leads.
 const LEADING: usize = 6;
-/// A turn is this far from its fork, half pen widths; to where it is a far one, most are corners, whose sides tell where they meet.
-const LEAST_TURN: f64 = 1.5;
+/// A turn is this far from its fork, half pen widths: nearer than that even a short side of a corner is seen. To where it is a far one,
+/// most are corners, whose sides tell where they meet.
+const LEAST_TURN: f64 = 0.7;
 const FAR_TURN: f64 = 3.0;
 
 /// Whether a branch is as wide as the pen beyond the ink of its node, and stays so: a line's. Over a corner's point the

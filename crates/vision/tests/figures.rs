@@ -74,6 +74,15 @@ fn a_grid_and_a_ladder_of_short_lines_are_lines() {
 }
 
 #[test]
+fn sides_shorter_than_three_pens_keep_their_corners() {
+    // a fir: where its notches are, their ink is one with that of the sides
+    let half = [(0.5, 0.05), (0.25, 0.35), (0.4, 0.35), (0.2, 0.65), (0.4, 0.65), (0.15, 0.9)];
+    let other = half[1..].iter().rev().map(|&(x, y)| (1.0 - x, y));
+    let fir: Vec<(f64, f64)> = half.into_iter().chain(other).chain([half[0]]).collect();
+    check("a fir", &[line(&fir)], &[4.0, 8.0, 16.0]);
+}
+
+#[test]
 fn four_lines_through_one_place_are_four() {
     let through = |k: u32| {
         let angle = FRAC_PI_4 * f64::from(k);
