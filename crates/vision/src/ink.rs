@@ -186,6 +186,11 @@ impl Ink {
         })
     }
 
+    /// So many pixels of the image, however closely it is looked at; from further they are as many of its own.
+    pub(crate) fn px2(&self, pixels: usize) -> usize {
+        (pixels as f64 / self.scale.min(1.0).powi(2)) as usize
+    }
+
     /// Whether what its mask shows is so thin that a look twice as close tells more.
     pub(crate) fn is_thin(&self, mask: &Mask) -> bool {
         coarse::is_thin(mask, &self.darkness, self.threshold)

@@ -177,7 +177,7 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
     }
     // it is told in the image's pixels, however close the look
     let options = &Options { tolerance_px: options.tolerance_px / ink.scale.min(1.0), ..*options };
-    let patches = Patches::of(&mut mask, least_patch(&ink, options))?;
+    let patches = Patches::of(&mut mask, &ink, options)?;
     if options.judges() {
         screen::check(page.given(), patches.drawn.len())?;
     }
@@ -317,8 +317,8 @@ fn least_patch(ink: &Ink, options: &Options) -> usize {
     let asked = options.despeckle_px2.map(|area| (area / averaged).ceil() as usize);
     let side = ink.darkness.width.min(ink.darkness.height) / 120;
     asked.unwrap_or(match options.mode {
-        Mode::Auto | Mode::Centreline => LEAST_PX,
-        Mode::Outline | Mode::Sweep => (side * side).max(LEAST_PX),
+        Mode::Auto | Mode::Centreline => ink.px2(LEAST_PX),
+        Mode::Outline | Mode::Sweep => (side * side).max(ink.px2(LEAST_PX)),
     })
 }
 
@@ -330,9 +330,10 @@ struct Patches {
 }
 
 impl Patches {
-    /// Those of at least so many pixels, their pinholes filled, and the others, which are taken out.
-    fn of(mask: &mut Mask, least_px: usize) -> Result<Self, VisionError> {
-        pinholes(mask, LEAST_HOLE_PX).iter().for_each(|hole| hole.fill_into(mask));
+    /// Those that are large enough, their pinholes filled, and the others, which are taken out.
+    fn of(mask: &mut Mask, ink: &Ink, options: &Options) -> Result<Self, VisionError> {
+        let least_px = least_patch(ink, options);
+        pinholes(mask, ink.px2(LEAST_HOLE_PX)).iter().for_each(|hole| hole.fill_into(mask));
         let (drawn, specks): (Vec<Region>, Vec<Region>) =
             regions(mask).into_iter().partition(|r| r.area() >= least_px);
         specks.iter().for_each(|speck| speck.erase_from(mask));
@@ -399,7 +400,7 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
     let mut rows = rows_of(ink, &parts);
     // no patch is smaller with more ink: nothing is refused that was not before
     if let Some(mut more) = ink.goes_on(&parts.ink, &rows)
-        && let Ok(patches) = Patches::of(&mut more, least_patch(ink, options))
+        && let Ok(patches) = Patches::of(&mut more, ink, options)
     {
         parts = parts_of(more, patches);
         rows = rows_of(ink, &parts);
