@@ -148,11 +148,12 @@ pub(crate) const LONG_LINE: f64 = 8.0;
 
 /// What is narrower in the mean, px, has too few pixels across to tell its widths apart. Broader ink was drawn if its lines hold so
 /// much of it; by the second rule most of it, and what is short is about as wide all along: a body has legs, a bottle a neck. What is
-/// long, and as wide all along as one line, is a pen's, however much of it is of short ones.
+/// long, and as wide all along as one line, is a pen's, however much of it is of short ones; and all of it, where it is as long as a grid.
 const BROAD_PX: f64 = 10.0;
 const HALF: f64 = 0.5;
 const MOSTLY: f64 = 0.7;
 const PARTLY: f64 = 0.15;
+const NETWORK: f64 = 24.0;
 const EVENLY: f64 = 0.45;
 
 /// Whether four fifths of the ink are wider than one fifth by this share at most.
@@ -205,7 +206,8 @@ impl Reading {
         let is_long = long >= LONG_LINE;
         let is_held = inked >= MOSTLY && (is_long || is_even_all_along(graph, EVENLY));
         // a grid and an arrow's head are of short lines
-        let is_penned = is_long && inked >= PARTLY && is_even_all_along(graph, EVEN);
+        let is_network = long >= NETWORK || is_long && inked >= PARTLY;
+        let is_penned = is_network && is_even_all_along(graph, EVEN);
         let is_even = !is_broad || is_held || is_penned;
         let many_lines = together >= MANY_WIDTHS * widest;
         let is_drawn = many_lines && (!is_broad || inked >= HALF)
