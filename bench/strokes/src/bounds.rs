@@ -38,6 +38,15 @@ impl Bounds {
         Self { angle_deg: 2.9, node_pens: 0.0, radius_pens: 0.0, alongside: false, ..Self::USUAL };
     /// For hatching, whose lines end where others lie.
     pub const HATCHED: Self = Self { node_pens: 2.8, ahead_pens: 1.5, ..Self::USUAL };
+    /// For signs, whose sides are short for their pen.
+    pub const SHORT: Self = Self {
+        node_pens: 1.8,
+        radius_pens: 1.5,
+        shortest: (2.5, 8.0),
+        ahead_pens: 1.0,
+        alongside: false,
+        ..Self::USUAL
+    };
     /// For small filled shapes, whose tips are as sharp as they like.
     pub const FILLED: Self = Self { shortest: (6.0, 12.0), ..Self::SHARP };
 }

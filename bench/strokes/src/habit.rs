@@ -88,6 +88,7 @@ impl Habit {
             Kind::Thick => {
                 Self { figures: (1, 1), pens: (1.6, 5.5), half: (0.28, 0.44), half_pens: 0.0, ..usual }
             }
+            Kind::Signs => Self { figures: (1, 4), pens: (1.0, 3.0), half_pens: 5.0, ..usual },
             Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => {
                 Self { figures: (1, 6), turned: Turned::Either, ..usual }
             }
@@ -130,6 +131,7 @@ impl Habit {
             }
             Kind::Hairpin | Kind::Hair | Kind::Shallow => (hand.pen, Bounds::SHARP),
             Kind::Hatching => (hand.pen, Bounds::HATCHED),
+            Kind::Signs => (hand.pen, Bounds::SHORT),
             Kind::Spots | Kind::Silhouette => (hand.pen, Bounds::FILLED),
             Kind::Felt if figure.strokes.iter().any(|s| s.kind == StrokeKind::Outline) => {
                 (hand.pen, Bounds::FILLED)

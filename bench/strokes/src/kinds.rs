@@ -15,6 +15,7 @@ mod parallel;
 mod plain;
 mod retouched;
 mod shallow;
+mod sign;
 mod silhouette;
 mod spot;
 mod swelling;
@@ -116,6 +117,8 @@ pub enum Kind {
     Dotted,
     /// A sheet on a table, seen aside, with shadows, a finger, another sheet.
     Table,
+    /// Arrows, grids, ladders, snowflakes, wheels, firs and crowns, in thin pens and fat ones.
+    Signs,
 }
 
 impl Kind {
@@ -172,6 +175,7 @@ impl Kind {
             Kind::Shallow => shallow::figure(random, hand),
             Kind::Spots => spot::figure(random, hand),
             Kind::Silhouette => silhouette::figure(random, hand),
+            Kind::Signs => sign::figure(random, hand),
             Kind::Thick => random.pick(&THICK).figure(random, hand),
             Kind::Ruled | Kind::Squared | Kind::Dotted if random.chance(0.25) => writing::words(random, hand),
             Kind::Frame | Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => lines(random, hand),
