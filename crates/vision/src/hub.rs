@@ -1,10 +1,12 @@
 //! Where many lines meet: their ink together is wider than any of them, and no filled shape.
 
-use tracelight_stroke::{Point, polyline_length};
+use std::collections::BTreeMap;
+
+use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::Tip;
 use crate::graph::{Branch, Graph};
-use crate::mask::Mask;
+use crate::mask::{Cell, Mask};
 use crate::missed::paint;
 use crate::region::Region;
 use crate::ridge::median;
@@ -19,40 +21,64 @@ const REACH_PX: f64 = 0.75;
 /// and all of them cover at least this share of a hub: a disc with rays has more between them.
 const COVERED: f64 = 0.95;
 
-/// A line that leads into a wide part of the ink, and how wide it is, px.
+/// A line that leads into a wide part of the ink.
 struct Arm {
+    /// Where its skeleton is in that part.
+    enters: Point,
     tip: Tip,
+    /// px
     width: f64,
 }
 
-/// Whether a wide part of the ink of some graphs is where their lines meet: carried on, those that lead into it cover it.
-pub(crate) fn is_hub<'a>(part: &Region, ink: &Mask, graphs: impl Iterator<Item = &'a Graph>) -> bool {
-    let mut inside = Mask::empty(ink.width, ink.height);
-    part.fill_into(&mut inside);
-    let arms: Vec<Arm> = graphs.flat_map(|graph| arms(graph, &inside)).collect();
-    if arms.len() < FEWEST {
-        return false;
+/// Those of some wide parts of the ink of graphs that are where their lines meet: carried on, the lines that lead into one cover it.
+/// `wide` is all parts.
+pub(crate) fn hubs<'a, 'g>(
+    parts: &'a [Region],
+    wide: &Mask,
+    graphs: impl Iterator<Item = &'g Graph>,
+) -> Vec<&'a Region> {
+    let mut arms_at: BTreeMap<Cell, Vec<Arm>> = BTreeMap::new();
+    let mut entries = Mask::empty(wide.width, wide.height);
+    for arm in graphs.flat_map(|graph| arms(graph, wide)) {
+        let cell = wide.cell(arm.enters.x as usize, arm.enters.y as usize);
+        entries.set(cell);
+        arms_at.entry(cell).or_default().push(arm);
     }
-    let (width, height) = part.extent();
-    let mut covered = Mask::empty(ink.width, ink.height);
-    for Arm { tip, width: pen } in arms {
-        paint(&mut covered, tip.at, tip.beyond(width.max(height) as f64).0, REACH * 0.5 * pen + REACH_PX);
-    }
-    part.cells(&covered).count() as f64 >= COVERED * part.area() as f64
+    let is_hub = |part: &&Region| {
+        let arms: Vec<&Arm> = part.cells(&entries).filter_map(|cell| arms_at.get(&cell)).flatten().collect();
+        arms.len() >= FEWEST && is_covered(part, &arms, (wide.width, wide.height))
+    };
+    parts.iter().filter(is_hub).collect()
 }
 
-/// The lines of a graph that lead into a part of its ink.
-fn arms(graph: &Graph, part: &Mask) -> Vec<Arm> {
-    let is_in = |p: Point| part.get(p.x.floor() as isize, p.y.floor() as isize);
+/// Whether some lines, carried on, cover a part of a mask of some size.
+fn is_covered(part: &Region, arms: &[&Arm], size: (usize, usize)) -> bool {
+    let Some((columns, rows)) = part.bounds(0, size) else { return false };
+    let corner = Vec2::new(columns.start as f64, rows.start as f64);
+    let mut covered = Mask::empty(columns.len(), rows.len());
+    for Arm { tip, width, .. } in arms {
+        let far = tip.beyond(columns.len().max(rows.len()) as f64).0;
+        paint(&mut covered, tip.at - corner, far - corner, REACH * 0.5 * width + REACH_PX);
+    }
+    let own = part.seen_from(columns.start, rows.start);
+    own.cells(&covered).count() as f64 >= COVERED * part.area() as f64
+}
+
+/// The lines of a graph that lead into wide parts of its ink.
+fn arms(graph: &Graph, wide: &Mask) -> Vec<Arm> {
+    let is_in = |p: &Point| wide.get(p.x.floor() as isize, p.y.floor() as isize);
     let of = |branch: &Branch| {
-        let outside: Vec<usize> = (0..branch.points.len()).filter(|&i| !is_in(branch.points[i])).collect();
+        let Branch { points, radii, nodes, .. } = branch;
+        let outside: Vec<usize> = (0..points.len()).filter(|&i| !is_in(&points[i])).collect();
         let runs = outside.chunk_by(|a, b| a + 1 == *b).map(|run| (run[0], run[run.len() - 1]));
-        let at_node = |end: usize| branch.nodes[end].is_some_and(|node| is_in(graph.nodes[node].at));
-        let last = branch.points.len() - 1;
+        let node = |end: usize| nodes[end].map(|node| graph.nodes[node].at).filter(is_in);
         let ends = runs.flat_map(|(from, to)| {
-            let enters = [from > 0 || at_node(0), to < last || at_node(1)];
-            let arm = move |end: usize| Arm::of(&branch.points[from..=to], &branch.radii[from..=to], end);
-            [0, 1].into_iter().filter(move |&end| enters[end]).filter_map(arm)
+            let before = from.checked_sub(1).map_or_else(|| node(0), |i| Some(points[i]));
+            let behind = points.get(to + 1).copied().or_else(|| node(1));
+            let arm = move |(end, enters): (usize, Option<Point>)| {
+                Arm::of(enters?, &points[from..=to], &radii[from..=to], end)
+            };
+            [before, behind].into_iter().enumerate().filter_map(arm)
         });
         ends.collect::<Vec<Arm>>()
     };
@@ -61,9 +87,9 @@ fn arms(graph: &Graph, part: &Mask) -> Vec<Arm> {
 
 impl Arm {
     /// One of two ends of a line; `None` of what is too short to lead anywhere.
-    fn of(points: &[Point], radii: &[f64], end: usize) -> Option<Self> {
+    fn of(enters: Point, points: &[Point], radii: &[f64], end: usize) -> Option<Self> {
         let width = 2.0 * median(radii);
         let tip = Tip::of(points, end)?;
-        (polyline_length(points) >= LEAST_PENS * width).then_some(Self { tip, width })
+        (polyline_length(points) >= LEAST_PENS * width).then_some(Self { enters, tip, width })
     }
 }

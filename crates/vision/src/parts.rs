@@ -7,7 +7,7 @@
 use crate::dust::{Dust, dusted};
 use crate::felt;
 use crate::graph::{Graph, Skeleton};
-use crate::hub::is_hub;
+use crate::hub::hubs;
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::prune;
@@ -229,13 +229,10 @@ impl Sorter<'_> {
                 core.region.erase_from(&mut inner);
             }
         }
-        // where lines meet
-        let bulk = inner.clone().dilated_by(rim(width)).and(&mask);
-        for part in
-            regions(&bulk).iter().filter(|part| is_hub(part, &mask, group.iter().map(|patch| &patch.graph)))
-        {
-            part.erase_from(&mut inner);
-        }
+        let wide = inner.clone().dilated_by(rim(width)).and(&mask);
+        let parts = regions(&wide);
+        let hubs = hubs(&parts, &wide, group.iter().map(|patch| &patch.graph));
+        hubs.into_iter().for_each(|hub| hub.erase_from(&mut inner));
         self.part(group, inner, width, |piece, _| piece.reading.is_drawn || !piece.reading.lines.is_empty());
     }
 
