@@ -25,8 +25,12 @@ fn traced(figure: &[Vec<Point>], pen: f64, turned: f64) -> (Vec<Vec<Point>>, Tra
     let drawn: Vec<Vec<Point>> = figure.iter().map(|line| line.iter().map(place).collect()).collect();
     let mut canvas = Canvas::new(SIDE, SIDE);
     drawn.iter().for_each(|line| canvas.pen(line, pen));
+    (drawn, found_on(&canvas))
+}
+
+fn found_on(canvas: &Canvas) -> Traced {
     let levels = canvas.shares().map(|share| (245.0 - 225.0 * share) as u8).collect();
-    (drawn, trace(&Grey::new(SIDE, SIDE, levels).unwrap(), &Options::default()).unwrap())
+    trace(&Grey::new(SIDE, SIDE, levels).unwrap(), &Options::default()).unwrap()
 }
 
 /// All of a figure is found as lines, and nothing else, in each pen.
@@ -116,8 +120,7 @@ fn a_disc_with_rays_stays_a_disc() {
     let mut draw = |line: Vec<Point>, pen: f64| canvas.pen(&line.iter().map(place).collect::<Vec<_>>(), pen);
     (0..8).for_each(|k| draw(ray(k), 6.0));
     draw(line(&[(0.5, 0.5), (0.5, 0.501)]), 90.0);
-    let levels = canvas.shares().map(|share| (245.0 - 225.0 * share) as u8).collect();
-    let found = trace(&Grey::new(SIDE, SIDE, levels).unwrap(), &Options::default()).unwrap();
+    let found = found_on(&canvas);
     let outlines = found.strokes.strokes.iter().filter(|s| s.kind != StrokeKind::Centreline).count();
     assert!(outlines > 0 && found.strokes.strokes.len() > 8, "{outlines} outlines");
 }

@@ -58,8 +58,13 @@ fn figure() -> Vec<Vec<Point>> {
 
 /// What is found of pen lines of level 40 over rules of some level, and of noise a little.
 fn traced(paper: &Paper, level: f64, figure: &[Vec<Point>]) -> Traced {
+    traced_over((&paper.rules(), paper.width), level, figure)
+}
+
+/// The same over these rules, so wide.
+fn traced_over((lines, width): (&[Vec<Point>], f64), level: f64, figure: &[Vec<Point>]) -> Traced {
     let (mut rules, mut ink) = (Canvas::new(WIDTH, HEIGHT), Canvas::new(WIDTH, HEIGHT));
-    paper.rules().iter().for_each(|rule| rules.pen(rule, paper.width));
+    lines.iter().for_each(|rule| rules.pen(rule, width));
     figure.iter().for_each(|line| ink.pen(line, 4.0));
     let pixel = |(k, (rule, ink)): (usize, (f64, f64))| {
         let noise = ((k * 7919 + k / 640 * 104_729) % 7) as f64 - 3.0;
@@ -260,15 +265,7 @@ fn squares_that_end_before_the_border_are_rules_unless_they_are_drawn_in_ink() {
     let upright = (2..28).map(|k| vec![Point::new(at(k), 40.0), Point::new(at(k), 440.0)]);
     let squares: Vec<Vec<Point>> = level.chain(upright).collect();
     let strokes = |level: f64| {
-        let (mut rules, mut ink) = (Canvas::new(WIDTH, HEIGHT), Canvas::new(WIDTH, HEIGHT));
-        squares.iter().for_each(|rule| rules.pen(rule, 1.8));
-        figure().iter().for_each(|line| ink.pen(line, 4.0));
-        let pixel = |(rule, ink): (f64, f64)| {
-            let under = 240.0 - (240.0 - level) * rule;
-            (under + (40.0_f64.min(under) - under) * ink) as u8
-        };
-        let levels = rules.shares().zip(ink.shares()).map(pixel).collect();
-        let found = trace(&Grey::new(WIDTH, HEIGHT, levels).unwrap(), &Options::default()).unwrap();
+        let found = traced_over((&squares, 1.8), level, &figure());
         (found.rules.map_or(0, |rules| rules.combs.len()), found.strokes.strokes.len())
     };
     assert_eq!(strokes(150.0), (2, 3));
