@@ -180,7 +180,7 @@ impl Region {
 }
 
 /// A crescent is filled if it is so much wider than the pen: a pen's own comma is hardly wider.
-const LENS_PENS: f64 = 1.35;
+const LENS_PENS: f64 = 1.5;
 
 /// Parts the patches that may hold both kinds.
 struct Sorter<'a> {
@@ -196,7 +196,7 @@ impl Sorter<'_> {
         let mut drawn: Vec<Patch> = Vec::new();
         let mut filled: Vec<Patch> = Vec::new();
         for patch in patches {
-            if patch.reading.is_lens && patch.reading.widest > LENS_PENS * self.pen + 0.5 {
+            if patch.reading.is_lens && patch.reading.widest > LENS_PENS * self.pen + 1.0 {
                 patch.region.fill_into(&mut self.shape_mask);
             } else if patch.is_pure_line(self.pen) {
                 self.lines.push((patch.region, patch.graph));

@@ -193,12 +193,12 @@ impl Reading {
         let mean_width = area as f64 / length.max(1.0);
         let (long, bulky) = (length / mean_width, widest / mean_width);
         let is_broad = mean_width >= BROAD_PX;
-        let is_lens = is_lens(graph, bulky);
+        let reaches = graph.branches.iter().flat_map(|branch| Reach::all(graph, branch));
+        let mut lines: Vec<Reach> = reaches.filter(Reach::is_line).collect();
+        let is_lens = is_lens(graph, lines.iter().any(|line| line.stick));
         if is_lens || is_blob(graph) {
             return Self { widest, long, usual, is_broad, is_even: true, is_lens, ..Self::default() };
         }
-        let reaches = graph.branches.iter().flat_map(|branch| Reach::all(graph, branch));
-        let mut lines: Vec<Reach> = reaches.filter(Reach::is_line).collect();
         lines.sort_by(|a, b| a.width.total_cmp(&b.width));
         let together: f64 = lines.iter().map(|line| line.length).sum();
         // the share of the ink that the lines hold
@@ -251,19 +251,34 @@ impl Patch {
     }
 }
 
-/// A crescent, an oval that is pointed at both ends: one way through, less than so many times as long as it is wide, so much wider
-/// at its widest than in the mean, and halfway to either end at least this share as wide as there. A pen's dash is as wide as in its mean,
-/// a brush's stroke is longer, and a disc with its stick is narrow on one side.
+/// A crescent, an oval, a drop: one way through, less than so many times as long as it is wide. Its last quarters are at most this share
+/// as wide in the mean as its middle half, and where they begin it is half as wide as anywhere: a pen's dash is as wide all along, a
+/// brush's stroke longer, a disc with sticks suddenly narrow. A drop is shorter, half as wide at one end as at the other, and has no
+/// stick.
 const LENS_LONG: f64 = 6.5;
-const LENS_BULKY: f64 = 1.22;
-const LENS_HALFWAY: f64 = 0.55;
+const LENS_TAPERS: f64 = 0.78;
+const LENS_HALFWAY: f64 = 0.45;
+const DROP_LONG: f64 = 3.5;
+const DROP_TAPERS: f64 = 0.5;
+/// And so much narrower that it is no pixel's doing, px.
+const LENS_PX: f64 = 0.3;
 
-fn is_lens(graph: &Graph, bulky: f64) -> bool {
+fn is_lens(graph: &Graph, has_stick: bool) -> bool {
     let [branch] = &graph.branches[..] else { return false };
-    let widest = graph.widest();
-    let halfway = |quarter: usize| branch.radii[(branch.radii.len() - 1) * quarter / 4];
-    let is_long = branch.ring || branch.length() >= LENS_LONG * 2.0 * widest;
-    bulky >= LENS_BULKY && !is_long && halfway(1).min(halfway(3)) >= LENS_HALFWAY * widest
+    let (radii, count) = (&branch.radii, branch.radii.len());
+    let quarter = count / 4;
+    if quarter == 0 || branch.ring {
+        return false;
+    }
+    let mean = |from: usize, to: usize| radii[from..to].iter().sum::<f64>() / (to - from) as f64;
+    let (first, middle, last) =
+        (mean(0, quarter), mean(quarter, count - quarter), mean(count - quarter, count));
+    let long = branch.length() / (2.0 * graph.widest());
+    let (narrow, wide) = (first.min(last), first.max(last));
+    let halfway = radii[quarter].min(radii[count - 1 - quarter]);
+    let is_pointed = wide <= LENS_TAPERS * middle - LENS_PX && halfway >= LENS_HALFWAY * graph.widest();
+    let is_drop = !has_stick && long < DROP_LONG && narrow <= DROP_TAPERS * wide - LENS_PX;
+    is_drop || long < LENS_LONG && is_pointed
 }
 
 fn sorted(values: &[f64]) -> Vec<f64> {

@@ -233,6 +233,36 @@ fn small_crescents_are_shapes() {
     assert!(comparison.coverage > 0.98 && comparison.precision > 0.99, "{comparison:?}");
 }
 
+/// Drops and ovals beside a pen's ring are shapes, and a dash of the pen is a line.
+#[test]
+fn small_drops_and_ovals_are_shapes() {
+    let around = |half: (f64, f64), narrow: f64, middle: (f64, f64), turn: f64| -> Vec<Point> {
+        let (cos, sin) = (turn.cos(), turn.sin());
+        let at = |k: usize| TAU * k as f64 / 80.0;
+        let by = |t: f64| (half.0 * t.cos(), half.1 * t.sin() * (1.0 - narrow * 0.5 * (1.0 + t.cos())));
+        let turned =
+            |(x, y): (f64, f64)| Point::new(middle.0 + x * cos - y * sin, middle.1 + x * sin + y * cos);
+        (0..80).map(|k| turned(by(at(k)))).collect()
+    };
+    for size in [1.0, 1.5] {
+        let mut canvas = Canvas::new(WIDTH, HEIGHT);
+        canvas.pen(&arc((240.0, 180.0), 150.0, 0.0, TAU), 4.0);
+        let shapes = [
+            around((15.0 * size, 8.0 * size), 0.9, (180.0, 130.0), 0.4),
+            around((15.0 * size, 8.0 * size), 0.9, (300.0, 130.0), 2.2),
+            around((16.0 * size, 5.5 * size), 0.0, (180.0, 230.0), 1.0),
+        ];
+        canvas.fill(&shapes);
+        canvas.pen(&bar((300.0, 230.0), 18.0, 0.5), 4.5);
+        let found = strokes(&canvas);
+        let outlines: Vec<_> =
+            found.iter().filter(|s| s.kind == StrokeKind::Outline).map(|s| s.path.flatten(0.02)).collect();
+        assert_eq!((found.len(), outlines.len()), (5, 3), "{size}");
+        let comparison = compare_polylines(&outlines, &shapes, 1.5).unwrap();
+        assert!(comparison.coverage > 0.97 && comparison.precision > 0.98, "{size} {comparison:?}");
+    }
+}
+
 /// A cross of a thin pen beside a thick one's ring, far from it, is no dust; a speck of grit is.
 #[test]
 fn a_thin_mark_beside_a_thick_pen_stays() {
