@@ -3,8 +3,11 @@
 //! Each way is a line by its width, and nobody means them. Where ways lie so close that less than half a pen's width of paper
 //! shows between them, and many of them do, the area is what was drawn: its slits are ink. Hatching leaves more paper than that.
 
+use tracelight_stroke::{Point, Vec2};
+
 use crate::mask::Mask;
-use crate::region::{Region, regions};
+use crate::region::{Region, pinholes, regions};
+use crate::ridge::median;
 
 /// Widest slit, pen widths; of slanted ones half as much more.
 const SLIT_PENS: f64 = 0.5;
@@ -59,6 +62,106 @@ pub(crate) fn filled(ink: &Mask, pen: f64) -> Option<Mask> {
     }
     filled.add(ink);
     (filled.count() > ink.count()).then_some(filled)
+}
+
+/// Of a shape by itself a slit is so many times as long as wide, and about as wide all along; beside another one that leads the same way,
+/// within this angle, rad, the shorter one.
+const SLIT_LONG: f64 = 5.0;
+const SLIT_STRAIGHT: f64 = 2.0;
+const SLIT_SHORT: f64 = 2.5;
+const SLIT_ALIKE: f64 = 0.2;
+/// It leads through this share of the shape along its way,
+const THROUGH: f64 = 0.5;
+/// takes no more than this of it across, or so many px,
+const SLIT_ACROSS: f64 = 0.12;
+const SLIT_PX: f64 = 2.5;
+/// and the ink on either side is so many times as wide: a way of the pen at least.
+const WAY_SLITS: f64 = 1.5;
+/// A hole is no slit that is larger than this share of the picture.
+const LARGEST: usize = 50;
+
+/// The slits in what was filled with a pen that no line tells of: they lead from side to side of a shape, all but its rim, and are
+/// narrow. A key's hole is short, and the slot of a letter's counter as wide as its strokes.
+pub(crate) fn slits(shapes: &Mask) -> Vec<Region> {
+    let holes = pinholes(shapes, shapes.width * shapes.height / LARGEST);
+    let mut solid = shapes.clone();
+    holes.iter().for_each(|hole| hole.fill_into(&mut solid));
+    let long = holes.into_iter().filter_map(|hole| Some((Slit::of(&hole)?, hole)));
+    let narrow = long.filter(|(slit, _)| slit.is_between_ways(shapes, &solid));
+    let (sure, short): (Vec<_>, Vec<_>) = narrow.partition(|(slit, _)| slit.leads_through(&solid));
+    let is_beside = |slit: &Slit| sure.iter().any(|(other, _)| slit.is_beside(other, &solid));
+    let short: Vec<Region> = short.into_iter().filter(|(s, _)| is_beside(s)).map(|(_, hole)| hole).collect();
+    sure.into_iter().map(|(_, hole)| hole).chain(short).collect()
+}
+
+/// A long, narrow hole.
+struct Slit {
+    middle: Point,
+    /// Along it.
+    way: Vec2,
+    length: f64,
+    width: f64,
+}
+
+/// How far one gets in a mask from a place, px.
+fn run(mask: &Mask, from: Point, way: Vec2) -> f64 {
+    let is_in = |k: &usize| {
+        let at = from + way * *k as f64;
+        mask.get(at.x.floor() as isize, at.y.floor() as isize)
+    };
+    (0..).take_while(is_in).count() as f64
+}
+
+impl Slit {
+    /// A hole that is one.
+    fn of(hole: &Region) -> Option<Self> {
+        let area = hole.area() as f64;
+        let places: Vec<Vec2> =
+            hole.places().map(|(x, y)| Vec2::new(x as f64 + 0.5, y as f64 + 0.5)).collect();
+        let middle = places.iter().copied().sum::<Vec2>() / area;
+        let [mut xx, mut xy, mut yy] = [0.0; 3];
+        for at in places.iter().map(|&p| p - middle) {
+            (xx, xy, yy) = (xx + at.x * at.x, xy + at.x * at.y, yy + at.y * at.y);
+        }
+        let way = Vec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy));
+        let extent = |way: Vec2| {
+            let along = places.iter().map(|&p| (p - middle).dot(way));
+            let (from, to) = along.fold((0.0_f64, 0.0_f64), |(from, to), v| (from.min(v), to.max(v)));
+            to - from + 1.0
+        };
+        let (length, across) = (extent(way), extent(way.turn_90()));
+        let width = area / length;
+        let is_slit = length >= SLIT_SHORT * width && across <= SLIT_STRAIGHT * width + 2.0;
+        is_slit.then_some(Self { middle: middle.to_point(), way, length, width })
+    }
+
+    /// How wide a mask is through its middle, px.
+    fn through(&self, mask: &Mask, way: Vec2) -> f64 {
+        run(mask, self.middle, way) + run(mask, self.middle, -way)
+    }
+
+    /// Whether it is narrow, and a way of the pen lies on either side: `solid` are the shapes without their holes.
+    fn is_between_ways(&self, shapes: &Mask, solid: &Mask) -> bool {
+        let aside = self.way.turn_90();
+        let ways = |side: Vec2| {
+            let beside = (1..=9).map(|k| self.middle + self.way * (self.length * (0.1 * f64::from(k) - 0.5)));
+            let ways = beside.map(|p| run(shapes, p + side * (0.5 * self.width + 1.0), side));
+            median(&ways.collect::<Vec<_>>()) >= WAY_SLITS * self.width
+        };
+        self.width <= (SLIT_ACROSS * self.through(solid, aside)).max(SLIT_PX) && ways(aside) && ways(-aside)
+    }
+
+    /// Whether it leads from one side of its shape to the other.
+    fn leads_through(&self, solid: &Mask) -> bool {
+        self.length >= SLIT_LONG * self.width && self.length >= THROUGH * self.through(solid, self.way)
+    }
+
+    /// Whether it leads the same way as another one in the same shape.
+    fn is_beside(&self, other: &Self, solid: &Mask) -> bool {
+        let between = other.middle - self.middle;
+        self.way.cross(other.way).abs() <= SLIT_ALIKE
+            && run(solid, self.middle, between.normalize()) >= between.hypot()
+    }
 }
 
 /// Whether a slit has nothing but ink round it: `closed` is all ink and all slits.

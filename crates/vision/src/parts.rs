@@ -85,7 +85,11 @@ impl Parts {
         let shape_mask = Mask::empty(ink.width, ink.height);
         let mut sorter = Sorter { dark, pen, lines: Vec::new(), shape_mask };
         sorter.sort(patches);
-        let Sorter { lines, shape_mask, .. } = sorter;
+        let Sorter { lines, mut shape_mask, .. } = sorter;
+        for slit in felt::slits(&shape_mask) {
+            slit.fill_into(&mut shape_mask);
+            slit.fill_into(&mut ink);
+        }
         Self { ink, lines, shapes: regions(&shape_mask), shape_mask, dust }
     }
 }

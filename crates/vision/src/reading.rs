@@ -137,6 +137,8 @@ fn slope(branch: &Branch, i: usize) -> f64 {
 const STICK: f64 = 2.5;
 /// Its sticks are so many times as long as all that is as narrow and no stick.
 const LIMBS: f64 = 2.0;
+/// No limb is so many times as long as wide.
+const PEN_LONG: f64 = 20.0;
 
 /// Ink is drawn if its lines together are this many times as long as it is wide at its widest,
 const MANY_WIDTHS: f64 = 10.0;
@@ -227,11 +229,12 @@ impl Reading {
         width_under(&self.lines, 0.9, |line| line.length).max(self.usual)
     }
 
-    /// The usual width of the sticks of a shape: lines that are even, and narrow beside it. `None` if it has as many other narrow
-    /// lines: limbs.
+    /// The usual width of the sticks of a shape: lines that are even, or so long that a pen drew them, and narrow beside it. `None` if
+    /// it has as many other narrow lines: limbs.
     pub(crate) fn stick_pen(&self) -> Option<f64> {
         let narrow = self.lines.iter().filter(|line| line.width * STICK < self.widest);
-        let (sticks, limbs): (Vec<Reach>, Vec<Reach>) = narrow.partition(|line| line.stick);
+        let is_stick = |line: &Reach| line.stick || line.length >= PEN_LONG * line.width;
+        let (sticks, limbs): (Vec<Reach>, Vec<Reach>) = narrow.partition(|line| is_stick(line));
         let length = |lines: &[Reach]| lines.iter().map(|line| line.length).sum::<f64>();
         (length(&sticks) > LIMBS * length(&limbs)).then(|| pen_of(&sticks))
     }

@@ -158,6 +158,32 @@ fn an_area_that_a_felt_pen_filled_is_one_shape_and_hatching_is_lines() {
     }
 }
 
+/// A disc of 80 px with slots of such widths and lengths beside each other; how many strokes it is.
+fn slotted(slots: &[(f64, f64)]) -> usize {
+    let mut canvas = Canvas::new(400, 400);
+    let centre = Point::new(200.0, 200.0);
+    let ring: Vec<Point> =
+        (0..90).map(|k| centre + Vec2::from_angle(f64::from(k) * 4_f64.to_radians()) * 80.0).collect();
+    let (way, aside) = (Vec2::from_angle(0.4), Vec2::from_angle(0.4).turn_90());
+    let slot = |(k, &(wide, long)): (usize, &(f64, f64))| {
+        let middle = centre + aside * (24.0 * (k as f64 - 0.5 * (slots.len() - 1) as f64));
+        let corner = |(u, v): (f64, f64)| middle + way * (0.5 * long * u) + aside * (0.5 * wide * v);
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner).to_vec()
+    };
+    let slots = slots.iter().enumerate().map(slot);
+    canvas.fill(&std::iter::once(ring.clone()).chain(slots).collect::<Vec<_>>());
+    traced(&canvas, 400, &[ring]).0.strokes.strokes.len()
+}
+
+#[test]
+fn slits_that_a_pen_left_are_filled_though_no_line_tells_of_the_pen_and_slots_stay() {
+    assert_eq!(slotted(&[(4.0, 130.0)]), 1, "one slit");
+    assert_eq!(slotted(&[(4.0, 110.0), (5.0, 130.0), (4.0, 25.0)]), 1, "three slits, one of them short");
+    assert_eq!(slotted(&[(4.0, 60.0)]), 2, "a coin's slot");
+    assert_eq!(slotted(&[(24.0, 130.0)]), 2, "a wide one");
+    assert_eq!(slotted(&[(12.0, 110.0), (12.0, 110.0)]), 3, "bars");
+}
+
 /// How high the paper's grain is at a pixel, 0 to 1: as high over squares of so many pixels.
 fn grain(seed: u64, size: u64, x: usize, y: usize) -> f64 {
     let mut word = seed ^ (((x as u64 / size) << 32) | (y as u64 / size));
