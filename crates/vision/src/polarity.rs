@@ -3,6 +3,7 @@
 use crate::ink::{histogram, noise};
 use crate::light::percentile;
 use crate::plane::Plane;
+use crate::ridge::median;
 use crate::tones::Tones;
 
 /// A fall and a rise of brightness count from this share of the picture's range on.
@@ -30,6 +31,8 @@ const SHAPES: i64 = 6;
 const MOST_INK: f64 = 0.6;
 /// In a picture of two tones, what this share of the border is, is its paper.
 const BORDER: f64 = 0.9;
+/// The border is looked at so many times as far inside as a line is wide: on one of these places there may be a frame.
+const INSIDE: [usize; 3] = [0, 1, 2];
 
 /// Whether the picture's lines are lighter than what they are drawn on.
 ///
@@ -39,10 +42,10 @@ const BORDER: f64 = 0.9;
 /// a line there; of one of two tones always, if it is nearly all the same there. What is known to be light paper is that.
 pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256], is_light_paper: bool) -> bool {
     let thin = (image.width.min(image.height) / THIN).max(4);
-    let border = border_levels(image, thin);
+    let borders = INSIDE.map(|times| border_levels(image, times * thin));
     if let Some(tones) = Tones::of(levels) {
-        let bright = border.iter().filter(|&&level| tones.is_bright(level)).count() as f64;
-        let share = bright / border.len() as f64;
+        let bright = |border: &Vec<u8>| border.iter().filter(|&&level| tones.is_bright(level)).count() as f64;
+        let share = median(&borders.each_ref().map(|border| bright(border) / border.len() as f64));
         if share.max(1.0 - share) >= BORDER {
             return share < 0.5;
         }
@@ -56,7 +59,7 @@ pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256], is_light_
     let runs = Runs::of(image, thin, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
     // light multiplies: a shadow on paper is nearer to its brightest than to its ink as a ratio
     let middle = (low.max(10.0) * high).sqrt();
-    let light_border = percentile(&histogram(std::iter::once(&border[..])), 0.5).max(10.0) >= middle;
+    let light_border = percentile(&histogram(std::iter::once(&borders[1][..])), 0.5).max(10.0) >= middle;
     if !runs.are_sure() {
         return !light_border && !is_light_paper;
     }

@@ -28,6 +28,20 @@ fn a_frame_along_the_border_is_one_closed_line() {
 }
 
 #[test]
+fn a_frame_anywhere_within_the_border_is_no_dark_picture() {
+    for inside in 0..28 {
+        for wide in [3, 6] {
+            let frame =
+                |x: usize, y: usize| (inside..inside + wide).contains(&x.min(419 - x).min(y.min(319 - y)));
+            let ring = |x: usize, y: usize| ((x as f64 - 200.0).hypot(y as f64 - 160.0) - 90.0).abs() < 2.5;
+            let found = trace(&picture(|x, y| frame(x, y) || ring(x, y)), &Options::default()).unwrap();
+            let closed = found.strokes.strokes.iter().filter(|stroke| stroke.path.is_closed()).count();
+            assert_eq!((found.strokes.strokes.len(), closed), (2, 2), "{wide} px, {inside} px inside");
+        }
+    }
+}
+
+#[test]
 fn three_lines_along_the_border_are_no_dark_picture() {
     let lines = |x: usize, y: usize| (y < 3 || !(3..=416).contains(&x)) && y < 300;
     let found = trace(&picture(lines), &Options::default()).unwrap();
@@ -38,7 +52,7 @@ fn three_lines_along_the_border_are_no_dark_picture() {
 
 #[test]
 fn a_frame_on_which_a_shadow_falls_is_no_sheet_of_paper() {
-    for shadow in [(0.25, 260.0), (-0.1, 150.0), (1.2, 400.0)] {
+    for shadow in [(0.25, 260.0), (-0.1, 150.0), (1.2, 400.0), (6.0, 1700.0), (1.4, 330.0)] {
         let frame = |x: usize, y: usize| (4..8).contains(&x.min(419 - x).min(y.min(319 - y)));
         let ring = |x: usize, y: usize| ((x as f64 - 200.0).hypot(y as f64 - 160.0) - 90.0).abs() < 1.5;
         // a pixel's edges are soft, and so is the shadow's

@@ -54,6 +54,8 @@ const FAR: usize = 40;
 /// A line along the picture's border is narrower than this share of its shorter side and so many px.
 const FRAME: f64 = 0.05;
 const FRAME_PX: f64 = 2.0;
+/// Its level is below this share of a shadow's.
+const LINE_DARKER: f64 = 0.7;
 
 /// The small picture, and what it is without lines.
 pub(super) struct Calm<'a> {
@@ -123,8 +125,9 @@ impl<'a> Calm<'a> {
         is_sheet.then(|| self.is_calmer_outside(quad, paper))
     }
 
-    /// Whether there is nothing beside it but a line along the picture's border, as wide everywhere, and on one side at most what is no
-    /// darker than in a shadow that falls on what it frames.
+    /// Whether there is nothing beside it but a line along the picture's border, as wide everywhere, and on the other sides what is no
+    /// darker than in a shadow that falls on what it frames: on one of them, or on all where the line is darker than that. A table is
+    /// as dark on all sides.
     fn is_framed(&self, quad: &Quad, inner: &[Option<f64>; 4], outer: &[Option<f64>; 4]) -> bool {
         let most = FRAME * self.calm.width.min(self.calm.height) as f64 + FRAME_PX;
         let width = |side: usize| off_border(self.calm, &quad.corners, side);
@@ -132,16 +135,14 @@ impl<'a> Calm<'a> {
         let (frame, rest): (Vec<usize>, Vec<usize>) =
             seen.partition(|&side| width(side).into_iter().all(|width| width < most));
         let is_even = are_as_wide(frame.iter().flat_map(|&side| width(side)));
-        let is_shadow = |side: usize| {
+        let darkest = frame.iter().filter_map(|&side| outer[side]).fold(f64::INFINITY, f64::min);
+        let is_shadow = |&side: &usize| {
             let [Some(inside), Some(outside)] = [inner[side], outer[side]] else { return false };
+            let is_alone = rest.len() == 1 && frame.len() > 1;
             inside.min(outside) > SHADE.start * inside.max(outside)
+                && (is_alone || darkest < LINE_DARKER * inside.min(outside))
         };
-        is_even
-            && match rest[..] {
-                [] => true,
-                [side] => frame.len() > 1 && is_shadow(side),
-                _ => false,
-            }
+        is_even && !frame.is_empty() && rest.iter().all(is_shadow)
     }
 
     /// What is seen along its sides; `None` where all of them are at the picture's border.
