@@ -2,7 +2,7 @@
 //!
 //! Whether there are any is seen on the tiles. If so, the paper is the picture closed (Serra, "Image Analysis and
 //! Mathematical Morphology", 1982) by a square that is wider than any pen: lines are filled up, the edges of shadows
-//! stay where they are to a pixel.
+//! stay where they are to a pixel. What is dark and wider than that is a shadow if it reaches the picture's border, else it was filled.
 
 use crate::plane::Plane;
 
@@ -69,6 +69,7 @@ pub(crate) fn paper(
     instead: impl Fn(&Plane<u8>) -> Plane<f64>,
 ) -> Plane<u8> {
     let mut closed = closed(image, side);
+    fill_islands(&mut closed, (tile / CELLS).max(1));
     let instead = instead(&closed);
     for y in 0..closed.height {
         for (x, level) in closed.row_mut(y).iter_mut().enumerate() {
@@ -79,6 +80,73 @@ pub(crate) fn paper(
         }
     }
     closed
+}
+
+/// Cells along a tile's side in which patches that reach no border are looked for.
+const CELLS: usize = 4;
+/// A cell of such a patch is darker than what encloses it by this share, and the patch no larger than this share of the picture.
+const ISLAND: f64 = 0.9;
+const LARGEST_ISLAND: f64 = 0.1;
+
+/// Makes dark patches that reach no border of the picture as bright as the way out of them where that is darkest, cells of so many px
+/// either way at a time (Barnes et al., "Priority-flood", 2014).
+fn fill_islands(paper: &mut Plane<u8>, side: usize) {
+    let cells = cells(paper, side);
+    let mut filled = cells.clone();
+    let mut seen: Vec<bool> = (0..cells.values.len()).map(|i| cells.is_at_border(i)).collect();
+    // cells by the level at which they are reached, from the darkest
+    let mut reached: Vec<Vec<usize>> = vec![Vec::new(); 256];
+    (0..seen.len()).filter(|&i| seen[i]).for_each(|i| reached[usize::from(cells.values[i])].push(i));
+    for level in 0..256 {
+        while let Some(i) = reached[level].pop() {
+            let mut next = vec![i];
+            cells.flood(&mut next, &mut seen, |from, _| from == i);
+            for &k in &next[1..] {
+                filled.values[k] = cells.values[k].max(level as u8);
+                reached[usize::from(filled.values[k])].push(k);
+            }
+        }
+    }
+    let is_dark = |i: usize| f64::from(cells.values[i]) < ISLAND * f64::from(filled.values[i]);
+    let mut seen: Vec<bool> = (0..cells.values.len()).map(|i| !is_dark(i)).collect();
+    let most = (LARGEST_ISLAND * seen.len() as f64) as usize;
+    for start in 0..seen.len() {
+        if seen[start] {
+            continue;
+        }
+        let mut island = vec![start];
+        seen[start] = true;
+        cells.flood(&mut island, &mut seen, |_, _| true);
+        if island.len() <= most {
+            island
+                .iter()
+                .for_each(|&i| brighten(paper, side, (i % cells.width, i / cells.width), filled.values[i]));
+        }
+    }
+}
+
+/// Makes a cell and those round it at least as bright as this.
+fn brighten(paper: &mut Plane<u8>, side: usize, (x, y): (usize, usize), level: u8) {
+    let rows = y.saturating_sub(1) * side..((y + 2) * side).min(paper.height);
+    let columns = x.saturating_sub(1) * side..((x + 2) * side).min(paper.width);
+    for y in rows {
+        paper.row_mut(y)[columns.clone()].iter_mut().for_each(|v| *v = level.max(*v));
+    }
+}
+
+/// The mean level of each square of so many px either way; those at the right and lower border may be cut.
+fn cells(image: &Plane<u8>, side: usize) -> Plane<u8> {
+    let mut cells = Plane::filled(image.width.div_ceil(side), image.height.div_ceil(side), 0);
+    for y in 0..cells.height {
+        let rows = y * side..((y + 1) * side).min(image.height);
+        for (x, cell) in cells.row_mut(y).iter_mut().enumerate() {
+            let columns = x * side..((x + 1) * side).min(image.width);
+            let levels = rows.clone().flat_map(|y| &image.row(y)[columns.clone()]);
+            let sum: u32 = levels.map(|&level| u32::from(level)).sum();
+            *cell = (sum / (rows.len() * columns.len()) as u32) as u8;
+        }
+    }
+    cells
 }
 
 /// Whether a level is ink on the paper expected, not a shadow.
@@ -176,6 +244,32 @@ mod tests {
                 let row = &expected.row(y + reach)[reach..][..w];
                 assert_eq!(found.row(y), row, "side {side}, row {y}");
             }
+        }
+    }
+
+    #[test]
+    fn what_reaches_no_border_is_filled_and_a_shadow_stays() {
+        let (w, h) = (180, 120);
+        let shadow = |x: usize, y: usize| x + y > 200;
+        let disc = |x: usize, y: usize, cx: f64, cy: f64| (x as f64 - cx).hypot(y as f64 - cy) < 18.0;
+        // one in the light, one in the shadow, one at the border
+        let inks = |x: usize, y: usize| disc(x, y, 50.0, 40.0) || disc(x, y, 148.0, 90.0);
+        let level = |i: usize| {
+            let (x, y) = (i % w, i / w);
+            let lit = if shadow(x, y) { 150.0 } else { 240.0 };
+            (lit * if inks(x, y) || disc(x, y, 0.0, 80.0) { 0.6 } else { 1.0 }) as u8
+        };
+        let mut paper = Plane { width: w, height: h, values: (0..w * h).map(level).collect() };
+        let before = paper.clone();
+        fill_islands(&mut paper, 4);
+        for (i, (&now, &was)) in paper.values.iter().zip(&before.values).enumerate() {
+            let (x, y) = (i % w, i / w);
+            let expected = match inks(x, y) {
+                true if shadow(x, y) => 150,
+                true => 240,
+                false => was,
+            };
+            assert_eq!(now, expected, "{x}, {y}");
         }
     }
 
