@@ -1,6 +1,6 @@
 //! Dark lines on light paper, or light ones on dark.
 
-use crate::ink::{histogram, noise};
+use crate::ink::noise;
 use crate::light::percentile;
 use crate::plane::Plane;
 use crate::ridge::median;
@@ -27,10 +27,13 @@ const SURE_SHARE: f64 = 0.04;
 /// A row through a line falls and rises once. With fewer thin runs than this share of the turns the picture is one of
 /// shapes, and its thin places are gaps as well as lines.
 const SHAPES: i64 = 6;
-/// No drawing's ink is a larger share of its picture.
+/// No drawing's ink is a larger share of its picture, and of its border.
 const MOST_INK: f64 = 0.6;
+const INK_BORDER: f64 = 0.8;
 /// In a picture of two tones, what this share of the border is, is its paper.
 const BORDER: f64 = 0.9;
+/// Where this share of the border is light it is paper, of which the rest may lie in a shadow.
+const LIT: f64 = 0.3;
 /// The border is looked at so many times as far inside as a line is wide: on one of these places there may be a frame.
 const INSIDE: [usize; 3] = [0, 1, 2];
 
@@ -39,13 +42,17 @@ const INSIDE: [usize; 3] = [0, 1, 2];
 /// Along rows and columns, what is thin and darker than both its neighbours is counted against what is thin and
 /// lighter: lines are thin, and there is one more of them than of the gaps between. The edges of shapes, of shadows and
 /// of the paper itself are neither. Where that says nothing, the picture is paper along its border, inside of what may be
-/// a line there; of one of two tones always, if it is nearly all the same there. What is known to be light paper is that.
+/// a line there, of which most may lie in a shadow; of one of two tones always, if it is nearly all the same there. What is known to be
+/// light paper is that.
 pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256], is_light_paper: bool) -> bool {
     let thin = (image.width.min(image.height) / THIN).max(4);
-    let borders = INSIDE.map(|times| border_levels(image, times * thin));
+    // the share of the border so many times as far inside as a line is wide that is light
+    let border = |times: usize, is_light: &dyn Fn(u8) -> bool| {
+        let border = border_levels(image, times * thin);
+        border.iter().filter(|&&level| is_light(level)).count() as f64 / border.len() as f64
+    };
     if let Some(tones) = Tones::of(levels) {
-        let bright = |border: &Vec<u8>| border.iter().filter(|&&level| tones.is_bright(level)).count() as f64;
-        let share = median(&borders.each_ref().map(|border| bright(border) / border.len() as f64));
+        let share = median(&INSIDE.map(|times| border(times, &|level| tones.is_bright(level))));
         if share.max(1.0 - share) >= BORDER {
             return share < 0.5;
         }
@@ -59,17 +66,18 @@ pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256], is_light_
     let runs = Runs::of(image, thin, (STEP * (high - low)).max(least).clamp(2.0, 255.0) as u8);
     // light multiplies: a shadow on paper is nearer to its brightest than to its ink as a ratio
     let middle = (low.max(10.0) * high).sqrt();
-    let light_border = percentile(&histogram(std::iter::once(&borders[1][..])), 0.5).max(10.0) >= middle;
+    let light_border = border(1, &|level| f64::from(level.max(10)) >= middle);
     if !runs.are_sure() {
-        return !light_border && !is_light_paper;
+        // a shadow may lie on most of the paper, a dark board has no light border
+        return light_border < LIT && !is_light_paper;
     }
     let light_ink = runs.light > runs.dark;
     let all: u32 = levels.iter().sum();
     let above: u32 = levels[middle as usize + 1..].iter().sum();
     let light = f64::from(above) / f64::from(all.max(1));
-    let ink = if light_ink { light } else { 1.0 - light };
+    let ink = |light: f64| if light_ink { light } else { 1.0 - light };
     // nothing but shapes, whose holes are thin: what is ink then would be most of the picture, its border too
-    let contradicted = light_ink == light_border && ink > MOST_INK;
+    let contradicted = ink(light_border) > INK_BORDER && ink(light) > MOST_INK;
     light_ink != contradicted
 }
 
@@ -229,6 +237,21 @@ mod tests {
         let line = |x: usize, y: usize| (150..165).contains(&x) && (120..122).contains(&y);
         let about = |x: usize, y: usize| (144..176).contains(&x) && (112..136).contains(&y) && x % 5 < 2;
         check(false, |x, y| if line(x, y) { 20 } else { 236 + 8 * u8::from(about(x, y)) });
+    }
+
+    #[test]
+    fn paper_that_lies_in_a_hard_shadow_for_the_most_part_is_light() {
+        let lit = |x: usize, y: usize| if x + y > 380 { 1.0 } else { 0.52 };
+        let paper =
+            |x: usize, y: usize, ink: f64| (lit(x, y) * 228.0 * ink) as u8 + ((x * 7 + y * 3) % 3) as u8;
+        let line = |x: usize, y: usize| y.abs_diff(100 + x / 4) < 2;
+        for ink in [20..300, 20..40] {
+            let level =
+                |x: usize, y: usize| paper(x, y, if line(x, y) && ink.contains(&x) { 0.62 } else { 1.0 });
+            let values = (0..320 * 240).map(|i| level(i % 320, i / 320)).collect();
+            let image = Plane { width: 320, height: 240, values };
+            assert!(!is_light_on_dark(&image, &sampled_histogram(&image), false), "{ink:?}");
+        }
     }
 
     #[test]

@@ -15,6 +15,11 @@ const LEVELS: usize = 1;
 /// The tones are at least so many levels apart.
 const APART: f64 = 64.0;
 
+/// Paper in a shadow has this share of the light at least.
+const SHADE: f64 = 0.42;
+/// So much of a tone that is not darker has one and the same level.
+const EXACT: f64 = 0.9;
+
 /// The two levels that nearly all of a picture has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Tones {
@@ -34,7 +39,11 @@ impl Tones {
         let (dark, of_dark) = tone(levels, 0..quarter + 1)?;
         let (bright, of_bright) = tone(levels, rest..256)?;
         let between = count(&levels[quarter + 1..rest]);
-        (between <= of_dark.min(of_bright)).then_some(Self { dark, bright })
+        // what is no darker than paper in a shadow is one, unless both are one level as no camera makes them
+        let is_exact = |level: u8, all: u64| f64::from(levels[usize::from(level)]) >= EXACT * all as f64;
+        let is_ink = f64::from(dark) < SHADE * f64::from(bright)
+            || is_exact(dark, of_dark) && is_exact(bright, of_bright);
+        (is_ink && between <= of_dark.min(of_bright)).then_some(Self { dark, bright })
     }
 
     /// Whether a level is nearer to the bright one.
@@ -91,5 +100,8 @@ mod tests {
         assert_eq!(of(&[(0, 200), (128, 300), (255, 600)]), None);
         assert_eq!(of(&[(0, 400), (215, 300), (235, 300), (255, 300)]), None);
         assert_eq!(of(&[(200, 400), (255, 600)]), None);
+        // paper, half of it in a shadow
+        assert_eq!(of(&[(119, 100), (120, 200), (121, 100), (209, 100), (210, 400), (211, 100)]), None);
+        assert_eq!(of(&[(120, 400), (210, 600)]), Some(Tones { dark: 120, bright: 210 }));
     }
 }
