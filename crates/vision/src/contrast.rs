@@ -1,6 +1,7 @@
 use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
 
 use crate::Grey;
+use crate::mask::Mask;
 
 /// How far beyond a line's edge its paper is looked at, px: beyond what blur leaves of the ink.
 const BEYOND_PX: f64 = 2.5;
@@ -82,6 +83,28 @@ impl Edge {
         }
         off.iter().position(|&other| other <= most_other).map(Self::AtBorder)
     }
+}
+
+/// A shape that was cut off with what lies beside its sheet runs along there on this share of its outline, and for so many places: so
+/// near, px. A letter that ends there is smaller.
+const CUT_OFF: f64 = 0.3;
+const CUT_PLACES: usize = 12;
+const CUT_PX: isize = 2;
+
+/// Whether a shape is what is left of the table within a sheet's corners: much of its outline is where the sheet was cut out.
+pub(crate) fn is_cut_off(stroke: &Stroke, beside: &Mask) -> bool {
+    if stroke.kind != StrokeKind::Outline {
+        return false;
+    }
+    let points: Vec<Point> = places(stroke, SPACING_PX).map(|place| place.at).collect();
+    let is_near = |at: &&Point| {
+        let (x, y) = (at.x as isize, at.y as isize);
+        [-CUT_PX, 0, CUT_PX]
+            .into_iter()
+            .any(|dy| [-CUT_PX, 0, CUT_PX].into_iter().any(|dx| beside.get(x + dx, y + dy)))
+    };
+    let cut = points.iter().filter(is_near).count();
+    cut >= CUT_PLACES && cut as f64 >= CUT_OFF * points.len() as f64
 }
 
 /// What is seen on ways across a pen's line.
@@ -194,5 +217,23 @@ mod tests {
         let mut patch = line(&[(60.0, 40.0), (60.0, 58.0), (75.0, 50.0)], true);
         patch.kind = StrokeKind::Outline;
         assert!(stands_out(&wall(), &patch, false) < 1.0);
+    }
+
+    #[test]
+    fn a_patch_along_a_sheets_edge_is_cut_off_and_a_shape_that_touches_it_is_not() {
+        let mut beside = Mask::empty(100, 60);
+        (0..60).for_each(|y| beside.fill(y, 80, 100));
+        let of = |corners: &[(f64, f64)]| {
+            let corners: Vec<Point> = corners.iter().map(|&at| Point::from(at)).collect();
+            let path = Path::polyline(&corners, true).unwrap();
+            is_cut_off(&Stroke { kind: StrokeKind::Outline, ..Stroke::new(path) }, &beside)
+        };
+        assert!(of(&[(80.0, 10.0), (80.0, 50.0), (60.0, 50.0)]));
+        assert!(!of(&[(74.0, 10.0), (74.0, 50.0), (60.0, 50.0)]), "some way inside");
+        assert!(!of(&[(80.0, 10.0), (80.0, 20.0), (72.0, 20.0)]), "a small one");
+        assert!(
+            !of(&[(80.0, 15.0), (80.0, 40.0), (20.0, 50.0), (20.0, 10.0)]),
+            "a large one that ends there"
+        );
     }
 }

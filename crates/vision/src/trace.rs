@@ -2,7 +2,7 @@ use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 
 use crate::centreline::{self, Row};
 use crate::comb::Rules;
-use crate::contrast::{Edge, stands_out};
+use crate::contrast::{Edge, is_cut_off, stands_out};
 use crate::dots::{self, Dots, Dotted};
 use crate::dust::Dust;
 use crate::graph::Graph;
@@ -199,7 +199,7 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
     let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
     let strokes = Drawing { strokes };
     let mut strokes = strokes.transformed(Affine::scale(ink.scale));
-    let edges = drop_edges(&mut strokes, &page.picture, ink.quality.light_on_dark);
+    let edges = drop_edges(&mut strokes, page, ink.quality.light_on_dark);
     if options.sheets {
         strokes = ink_only(&strokes, &page.picture, ink.quality.light_on_dark);
     }
@@ -252,9 +252,15 @@ fn ink_only(drawing: &Drawing, image: &Grey, light_on_dark: bool) -> Drawing {
 /// At more of the picture's borders than this a line is a frame that they cut.
 const MOST_CUT: usize = 2;
 
-/// Takes the lines away that are edges of paper or of shadows, unless there is nothing else; how many they were.
-fn drop_edges(drawing: &mut Drawing, image: &Grey, light_on_dark: bool) -> usize {
-    let edges = drawing.strokes.iter().map(|stroke| Edge::of(image, stroke, light_on_dark));
+/// Takes away the lines that are edges of paper or of shadows, and the shapes that are what is left of the table, unless there is nothing else; how many they were.
+fn drop_edges(drawing: &mut Drawing, page: &Page<'_>, light_on_dark: bool) -> usize {
+    let is_table =
+        |stroke: &Stroke| page.beside.as_ref().is_some_and(|beside| is_cut_off(stroke, &beside.mask));
+    let of = |stroke: &Stroke| match is_table(stroke) {
+        true => Some(Edge::Seen),
+        false => Edge::of(&page.picture, stroke, light_on_dark),
+    };
+    let edges = drawing.strokes.iter().map(of);
     let edges: Vec<Option<Edge>> = edges.collect();
     let cut = (0..4).filter(|&border| edges.contains(&Some(Edge::AtBorder(border)))).count();
     let is_none = |edge: &Option<Edge>| match edge {
