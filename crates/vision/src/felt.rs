@@ -2,6 +2,8 @@
 //!
 //! Each way is a line by its width, and nobody means them. Where ways lie so close that less than half a pen's width of paper
 //! shows between them, and many of them do, the area is what was drawn: its slits are ink. Hatching leaves more paper than that.
+//!
+//! Where no line tells how wide the pen is (`slits`), a hole of a filled shape is such a slit if it is narrow and leads through it.
 
 use tracelight_stroke::{Point, Vec2};
 
