@@ -288,6 +288,20 @@ fn what_is_no_sheet_is_traced_as_it_was() {
     is_whole("a frame along the border", &|x, y| {
         if !(5.0..635.0).contains(&x) || !(5.0..475.0).contains(&y) { 30.0 } else { ink(x, y) }
     });
+    // how the shadow's edge lies, how far apart and how far turned the rules, and where they begin
+    for ((slope, off, shade), (gap, turn, pale), (left, top), wide) in [
+        ((0.476, 197.289, 0.525), (40.961, 0.049, 0.66), (8.66, 27.037), 3.642),
+        ((0.275, 289.785, 0.53), (40.689, -0.04, 0.532), (38.231, 34.636), 3.67),
+        ((0.586, 167.333, 0.673), (55.891, 0.003, 0.623), (47.054, 8.251), 3.782),
+    ] {
+        is_whole("squared paper on which a shadow falls", &|x, y| {
+            let is_rule = |at: f64| at.rem_euclid(gap) < wide;
+            let is_on = is_rule(x + turn * y - left) || is_rule(y - turn * x - top);
+            let ring = ((x - 250.0).hypot(y - 240.0) - 90.0).abs() < 3.0;
+            let lit = if y > off + slope * x { shade } else { 1.0 };
+            lit * if ring { 30.0 } else { 230.0 } * if is_on { pale } else { 1.0 }
+        });
+    }
     is_whole("a filled shape", &|x, y| {
         if (380.0..600.0).contains(&x) && (80.0..400.0).contains(&y) { 40.0 } else { ink(x, y) }
     });

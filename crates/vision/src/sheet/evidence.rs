@@ -79,6 +79,8 @@ struct Evidence {
     firm: f64,
     /// Whether what falls across it does so: it is seen in it as well as elsewhere.
     is_shadow: bool,
+    /// The sides that are steps of brightness, not dark lines.
+    steps: Vec<usize>,
 }
 
 impl<'a> Calm<'a> {
@@ -104,7 +106,7 @@ impl<'a> Calm<'a> {
 
     /// Whether a quadrilateral may be a sheet, and whether there is far less to be seen beside it than on it.
     pub(super) fn judged(&self, quad: &Quad) -> Option<bool> {
-        let Evidence { inner, outer, beyond, firm, is_shadow } = self.beside(quad)?;
+        let Evidence { inner, outer, beyond, firm, is_shadow, steps } = self.beside(quad)?;
         let paper = middle(inner.iter().flatten().copied().collect())?;
         let is_even = inner.iter().flatten().all(|level| EVEN.contains(&(level / paper)));
         let is_ink = !quad.is_brighter && paper < LEAST_SHADE * beyond;
@@ -122,7 +124,14 @@ impl<'a> Calm<'a> {
             && firm >= least_firm
             && is_shadow
             && self.is_paper(quad, paper);
-        is_sheet.then(|| self.is_calmer_outside(quad, paper))
+        let is_calmer = is_sheet && self.is_calmer_outside(quad, paper);
+        // rules or a frame, and a shadow's edge, beyond which the drawing goes on
+        let is_in_shade = |&side: &usize| {
+            let [Some(inside), Some(outside)] = [inner[side], outer[side]] else { return false };
+            SHADE.contains(&(inside.min(outside) / inside.max(outside)))
+        };
+        let goes_on = !is_calmer && steps.len() < 2 && steps.iter().all(is_in_shade);
+        (is_sheet && !goes_on).then_some(is_calmer)
     }
 
     /// Whether there is nothing beside it but a line along the picture's border, as wide everywhere, and on the other sides what is no
@@ -150,11 +159,12 @@ impl<'a> Calm<'a> {
         let (mut inner, mut outer): ([Option<f64>; 4], [Option<f64>; 4]) = Default::default();
         let (mut all, mut firm, mut lines) = (Vec::new(), 0, 0);
         let (mut in_shade, mut firm_in_shade) = (0, 0);
+        let mut steps = Vec::new();
         for (k, side) in quad.sides.iter().enumerate() {
             let Some(side) = side else { continue };
             let (from, to) = quad.ends(k);
             let inward = quad.inward(k);
-            let (mut levels, before) = (Vec::new(), all.len());
+            let (mut levels, before) = (Vec::new(), (all.len(), firm, lines));
             for i in 1..40 {
                 let at = from.lerp(to, f64::from(i) / 40.0);
                 let (inside, outside) = (at + inward * BESIDE, at - inward * BESIDE);
@@ -179,14 +189,17 @@ impl<'a> Calm<'a> {
                     firm_in_shade += i32::from(is_firm || is_line);
                 }
             }
-            (inner[k], outer[k]) = (middle(levels), middle(all[before..].to_vec()));
+            (inner[k], outer[k]) = (middle(levels), middle(all[before.0..].to_vec()));
+            if firm - before.1 > lines - before.2 {
+                steps.push(k);
+            }
         }
         let share = |places: usize| places as f64 / all.len().max(1) as f64;
         // a line alone is a frame that someone drew, or a rule
         let by_lines = share(firm) > LEAST_FIRM_BY_LINES && quad.seen() > 2;
         let firm = share(firm + if by_lines { lines } else { 0 });
         let is_shadow = f64::from(firm_in_shade) >= LEAST_FIRM_IN_SHADE * f64::from(in_shade);
-        Some(Evidence { inner, outer, beyond: middle(all)?, firm, is_shadow })
+        Some(Evidence { inner, outer, beyond: middle(all)?, firm, is_shadow, steps })
     }
 
     /// Whether much of what lies on a way is as bright again as on the other side of its beginning: brighter than a sheet that is brighter
