@@ -10,7 +10,7 @@ use crate::line::Line;
 use crate::mask::Mask;
 use crate::near::Near;
 use crate::plane::Plane;
-use crate::region::Region;
+use crate::region::{Region, long_axis};
 use crate::ridge::median;
 
 /// A row of points to be fitted, and the pen that drew it.
@@ -218,16 +218,10 @@ fn dot(dark: &Plane<u8>, region: &Region) -> Row {
 /// Centre, long axis, length and width of a region, from the moments of its darkness. A stadium's are those of its
 /// second moments to within some percent.
 fn extent(dark: &Plane<u8>, region: &Region) -> (Point, Vec2, f64, f64) {
-    let weighted = || {
-        region.places().map(|(x, y)| (Vec2::new(x as f64 + 0.5, y as f64 + 0.5), f64::from(dark.row(y)[x])))
-    };
-    let mass = weighted().map(|(_, w)| w).sum::<f64>().max(1e-9);
-    let centre = weighted().map(|(p, w)| p * w).sum::<Vec2>() / mass;
-    let moment = |f: fn(Vec2) -> f64| weighted().map(|(p, w)| w * f(p - centre)).sum::<f64>() / mass;
-    let (xx, xy, yy) = (moment(|v| v.x * v.x), moment(|v| v.x * v.y), moment(|v| v.y * v.y));
+    let (centre, variances) = region.moments(|x, y| f64::from(dark.row(y)[x]));
+    let [xx, xy, yy] = variances;
     let spread = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
     let (long, short) = (0.5 * (xx + yy) + spread, (0.5 * (xx + yy) - spread).max(0.0));
-    let axis = Vec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy));
     // a disc of diameter d has a variance of d²/16 about each axis
-    (centre.to_point(), axis, 4.0 * long.sqrt(), 4.0 * short.sqrt())
+    (centre, long_axis(variances), 4.0 * long.sqrt(), 4.0 * short.sqrt())
 }

@@ -8,7 +8,7 @@
 use tracelight_stroke::{Point, Vec2};
 
 use crate::mask::Mask;
-use crate::region::{Region, pinholes, regions};
+use crate::region::{Region, long_axis, pinholes, regions};
 use crate::ridge::median;
 
 /// Widest slit, pen widths; of slanted ones half as much more.
@@ -118,23 +118,18 @@ impl Slit {
     /// A hole that is one.
     fn of(hole: &Region) -> Option<Self> {
         let area = hole.area() as f64;
-        let places: Vec<Vec2> =
-            hole.places().map(|(x, y)| Vec2::new(x as f64 + 0.5, y as f64 + 0.5)).collect();
-        let middle = places.iter().copied().sum::<Vec2>() / area;
-        let [mut xx, mut xy, mut yy] = [0.0; 3];
-        for at in places.iter().map(|&p| p - middle) {
-            (xx, xy, yy) = (xx + at.x * at.x, xy + at.x * at.y, yy + at.y * at.y);
-        }
-        let way = Vec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy));
+        let (middle, variances) = hole.moments(|_, _| 1.0);
+        let way = long_axis(variances);
         let extent = |way: Vec2| {
-            let along = places.iter().map(|&p| (p - middle).dot(way));
+            let at = |(x, y): (usize, usize)| Point::new(x as f64 + 0.5, y as f64 + 0.5);
+            let along = hole.places().map(|place| (at(place) - middle).dot(way));
             let (from, to) = along.fold((0.0_f64, 0.0_f64), |(from, to), v| (from.min(v), to.max(v)));
             to - from + 1.0
         };
         let (length, across) = (extent(way), extent(way.turn_90()));
         let width = area / length;
         let is_slit = length >= SLIT_SHORT * width && across <= SLIT_STRAIGHT * width + 2.0;
-        is_slit.then_some(Self { middle: middle.to_point(), way, length, width })
+        is_slit.then_some(Self { middle, way, length, width })
     }
 
     /// How wide a mask is through its middle, px.

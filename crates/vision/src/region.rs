@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use tracelight_stroke::{Point, Vec2};
+
 use crate::mask::{Cell, Mask};
 
 /// Ink pixels `from..to` of row `y`.
@@ -35,6 +37,16 @@ impl Region {
     /// Columns and rows of its pixels, row by row.
     pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.runs.iter().flat_map(|run| (run.from as usize..run.to as usize).map(|x| (x, run.y as usize)))
+    }
+
+    /// The middle of its pixels by their weights, and their variances across, of both, and down.
+    pub(crate) fn moments(&self, weight: impl Fn(usize, usize) -> f64) -> (Point, [f64; 3]) {
+        let weighted =
+            || self.places().map(|(x, y)| (Vec2::new(x as f64 + 0.5, y as f64 + 0.5), weight(x, y)));
+        let mass = weighted().map(|(_, w)| w).sum::<f64>().max(1e-9);
+        let centre = weighted().map(|(p, w)| p * w).sum::<Vec2>() / mass;
+        let moment = |f: fn(Vec2) -> f64| weighted().map(|(p, w)| w * f(p - centre)).sum::<f64>() / mass;
+        (centre.to_point(), [moment(|v| v.x * v.x), moment(|v| v.x * v.y), moment(|v| v.y * v.y)])
     }
 
     /// Those of its pixels that are ink in `mask`.
@@ -99,6 +111,11 @@ impl Region {
     pub(crate) fn fill_into(&self, mask: &mut Mask) {
         self.runs.iter().for_each(|run| mask.fill(run.y as usize, run.from as usize, run.to as usize));
     }
+}
+
+/// The long axis of what has such variances.
+pub(crate) fn long_axis([xx, xy, yy]: [f64; 3]) -> Vec2 {
+    Vec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy))
 }
 
 /// How pixels hang together.

@@ -11,7 +11,7 @@ const SAME: f64 = 0.9;
 /// A patch of tiles that is paper has at least this share of all of them and reaches the picture's border.
 const LEAST_SHARE: f64 = 0.03;
 /// Shadows let through this much of the light; what is darker is ink, what is brighter is no matter.
-const SHADE: std::ops::Range<f64> = 0.42..0.88;
+pub(crate) const SHADE: std::ops::Range<f64> = 0.42..0.88;
 
 /// Whether the tiles' paper falls into patches of different brightness.
 pub(crate) fn is_cast(bright: &Plane<f64>) -> bool {
@@ -91,7 +91,7 @@ const LARGEST_ISLAND: f64 = 0.1;
 /// Makes dark patches that reach no border of the picture as bright as the way out of them where that is darkest, cells of so many px
 /// either way at a time (Barnes et al., "Priority-flood", 2014).
 fn fill_islands(paper: &mut Plane<u8>, side: usize) {
-    let cells = cells(paper, side);
+    let cells = paper.reduced(side);
     let mut filled = cells.clone();
     let mut seen: Vec<bool> = (0..cells.values.len()).map(|i| cells.is_at_border(i)).collect();
     // cells by the level at which they are reached, from the darkest
@@ -132,21 +132,6 @@ fn brighten(paper: &mut Plane<u8>, side: usize, (x, y): (usize, usize), level: u
     for y in rows {
         paper.row_mut(y)[columns.clone()].iter_mut().for_each(|v| *v = level.max(*v));
     }
-}
-
-/// The mean level of each square of so many px either way; those at the right and lower border may be cut.
-fn cells(image: &Plane<u8>, side: usize) -> Plane<u8> {
-    let mut cells = Plane::filled(image.width.div_ceil(side), image.height.div_ceil(side), 0);
-    for y in 0..cells.height {
-        let rows = y * side..((y + 1) * side).min(image.height);
-        for (x, cell) in cells.row_mut(y).iter_mut().enumerate() {
-            let columns = x * side..((x + 1) * side).min(image.width);
-            let levels = rows.clone().flat_map(|y| &image.row(y)[columns.clone()]);
-            let sum: u32 = levels.map(|&level| u32::from(level)).sum();
-            *cell = (sum / (rows.len() * columns.len()) as u32) as u8;
-        }
-    }
-    cells
 }
 
 /// Whether a level is ink on the paper expected, not a shadow.

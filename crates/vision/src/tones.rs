@@ -6,6 +6,7 @@ use crate::ink::over;
 use crate::light::percentile;
 use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::shadow;
 
 /// Less than this share of the pixels are specks.
 const SPECKS: f64 = 0.0005;
@@ -15,8 +16,6 @@ const LEVELS: usize = 1;
 /// The tones are at least so many levels apart.
 const APART: f64 = 64.0;
 
-/// Paper in a shadow has this share of the light at least.
-const SHADE: f64 = 0.42;
 /// So much of a tone that is not darker has one and the same level.
 const EXACT: f64 = 0.9;
 
@@ -41,7 +40,7 @@ impl Tones {
         let between = count(&levels[quarter + 1..rest]);
         // what is no darker than paper in a shadow is one, unless both are one level as no camera makes them
         let is_exact = |level: u8, all: u64| f64::from(levels[usize::from(level)]) >= EXACT * all as f64;
-        let is_ink = f64::from(dark) < SHADE * f64::from(bright)
+        let is_ink = shadow::is_ink(f64::from(dark), f64::from(bright))
             || is_exact(dark, of_dark) && is_exact(bright, of_bright);
         (is_ink && between <= of_dark.min(of_bright)).then_some(Self { dark, bright })
     }

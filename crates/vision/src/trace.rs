@@ -252,7 +252,8 @@ fn ink_only(drawing: &Drawing, image: &Grey, light_on_dark: bool) -> Drawing {
 /// At more of the picture's borders than this a line is a frame that they cut.
 const MOST_CUT: usize = 2;
 
-/// Takes away the lines that are edges of paper or of shadows, and the shapes that are what is left of the table, unless there is nothing else; how many they were.
+/// Takes away the lines that are edges of paper or of shadows, and the shapes that are what is left of the table, unless there is
+/// nothing else; how many they were.
 fn drop_edges(drawing: &mut Drawing, page: &Page<'_>, light_on_dark: bool) -> usize {
     let is_table =
         |stroke: &Stroke| page.beside.as_ref().is_some_and(|beside| is_cut_off(stroke, &beside.mask));

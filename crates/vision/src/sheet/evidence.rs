@@ -6,6 +6,7 @@ use super::quad::{Quad, SIDES, is_upright, off_border};
 use super::{BESIDE, Small, are_as_wide};
 use crate::plane::Plane;
 use crate::ridge::middle;
+use crate::shadow::SHADE;
 
 /// Paper is so even from one side of the sheet to another, as a ratio: in a shadow it keeps this much.
 const EVEN: std::ops::Range<f64> = 0.42..2.4;
@@ -40,8 +41,6 @@ const LEAST_FIRM_OF_THREE: f64 = 0.7;
 const LEAST_FIRM_IN_SHADE: f64 = 0.8;
 /// Of a sheet seen on two sides or one, and of one that is darker than what lies beside it and seen on three.
 const LEAST_FIRM_OF_TWO: f64 = 0.85;
-/// What a shadow on the paper lets through of the light: a step of that size on a single side may be its edge.
-const SHADE: std::ops::Range<f64> = 0.42..0.88;
 /// Least of a sheet that is like its paper.
 const LEAST_PAPER: f64 = 0.67;
 /// Most of as bright beside the sheet, as a share of the sheet: other sheets.
@@ -127,8 +126,7 @@ impl<'a> Calm<'a> {
         let is_calmer = is_sheet && self.is_calmer_outside(quad, paper);
         // rules or a frame, and a shadow's edge, beyond which the drawing goes on
         let is_in_shade = |&side: &usize| {
-            let [Some(inside), Some(outside)] = [inner[side], outer[side]] else { return false };
-            SHADE.contains(&(inside.min(outside) / inside.max(outside)))
+            either_side(&inner, &outer, side).is_some_and(|(dark, bright)| SHADE.contains(&(dark / bright)))
         };
         let goes_on = !is_calmer && steps.len() < 2 && steps.iter().all(is_in_shade);
         (is_sheet && !goes_on).then_some(is_calmer)
@@ -146,10 +144,10 @@ impl<'a> Calm<'a> {
         let is_even = are_as_wide(frame.iter().flat_map(|&side| width(side)));
         let darkest = frame.iter().filter_map(|&side| outer[side]).fold(f64::INFINITY, f64::min);
         let is_shadow = |&side: &usize| {
-            let [Some(inside), Some(outside)] = [inner[side], outer[side]] else { return false };
             let is_alone = rest.len() == 1 && frame.len() > 1;
-            inside.min(outside) > SHADE.start * inside.max(outside)
-                && (is_alone || darkest < LINE_DARKER * inside.min(outside))
+            either_side(inner, outer, side).is_some_and(|(dark, bright)| {
+                dark > SHADE.start * bright && (is_alone || darkest < LINE_DARKER * dark)
+            })
         };
         is_even && !frame.is_empty() && rest.iter().all(is_shadow)
     }
@@ -164,7 +162,8 @@ impl<'a> Calm<'a> {
             let Some(side) = side else { continue };
             let (from, to) = quad.ends(k);
             let inward = quad.inward(k);
-            let (mut levels, before) = (Vec::new(), (all.len(), firm, lines));
+            let (mut levels, first) = (Vec::new(), all.len());
+            let (firm_before, lines_before) = (firm, lines);
             for i in 1..40 {
                 let at = from.lerp(to, f64::from(i) / 40.0);
                 let (inside, outside) = (at + inward * BESIDE, at - inward * BESIDE);
@@ -189,8 +188,8 @@ impl<'a> Calm<'a> {
                     firm_in_shade += i32::from(is_firm || is_line);
                 }
             }
-            (inner[k], outer[k]) = (middle(levels), middle(all[before.0..].to_vec()));
-            if firm - before.1 > lines - before.2 {
+            (inner[k], outer[k]) = (middle(levels), middle(all[first..].to_vec()));
+            if firm - firm_before > lines - lines_before {
                 steps.push(k);
             }
         }
@@ -264,6 +263,11 @@ impl<'a> Calm<'a> {
     fn level(&self, at: Point) -> Option<f64> {
         self.calm.holds(at).then(|| f64::from(self.calm.row(at.y as usize)[at.x as usize]))
     }
+}
+
+/// The darker and the brighter level on either side of a side.
+fn either_side(inner: &[Option<f64>; 4], outer: &[Option<f64>; 4], side: usize) -> Option<(f64, f64)> {
+    inner[side].zip(outer[side]).map(|(inside, outside)| (inside.min(outside), inside.max(outside)))
 }
 
 /// What a share of some values stays below; `None` of fewer than ten.

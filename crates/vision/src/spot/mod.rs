@@ -12,6 +12,7 @@ use tracelight_stroke::{Point, Vec2};
 
 use crate::Grey;
 use crate::plane::Plane;
+use crate::region::long_axis;
 use crate::solve::linear;
 use change::{Change, Patch};
 
@@ -166,7 +167,7 @@ impl Bell {
     fn axes(&self) -> (f64, f64, Vec2) {
         let [a, b, c] = self.spread;
         let (middle, half) = (0.5 * (a + c), 0.5 * (a - c).hypot(2.0 * b));
-        (middle + half, (middle - half).max(0.05), Vec2::from_angle(0.5 * (2.0 * b).atan2(a - c)))
+        (middle + half, (middle - half).max(0.05), long_axis(self.spread))
     }
 
     /// From one end of a streak to the other; nothing of a round spot. Even light on a length has a twelfth of its square as variance.
