@@ -12,11 +12,13 @@ mod hatched;
 mod junction;
 mod looped;
 mod parallel;
+mod places;
 mod plain;
 mod retouched;
 mod shallow;
 mod sign;
 mod silhouette;
+pub(crate) mod sketched;
 mod spot;
 mod swelling;
 mod tangent;
@@ -89,6 +91,8 @@ pub enum Kind {
     Felt,
     /// Lines gone over again, in full or in part, and rings whose ends overlap.
     Retouched,
+    /// A pencil sketch: each line drawn in up to three passes beside each other, paper between them or not.
+    Sketched,
     /// Lines side by side that stay lines.
     Hatching,
     /// Writing of 6 to 30 px beside a large figure.
@@ -167,6 +171,7 @@ impl Kind {
             Kind::Graphite | Kind::Crayon => swelling::pencil(random, hand),
             Kind::Felt => felt::figure(random, hand),
             Kind::Retouched => retouched::figure(random, hand),
+            Kind::Sketched => sketched::figure(random, hand),
             Kind::Hatching => hatched::figure(random, hand),
             Kind::Writing => writing::words(random, hand),
             Kind::Marks => writing::marks(random, hand),

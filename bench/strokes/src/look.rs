@@ -122,6 +122,7 @@ impl Look {
     ) -> Self {
         match kind {
             Kind::Graphite => self.pencilled(random, page.pen),
+            Kind::Sketched => self.pencilled(random, crate::kinds::sketched::OWN_PEN * page.pen),
             Kind::Crayon => self.crayoned(random, page.pen),
             Kind::Retouched if random.chance(0.4) => self.pencilled(random, page.pen),
             Kind::Silhouette => self.cut(random),

@@ -1,9 +1,10 @@
 use std::f64::consts::{PI, TAU};
 
-use tracelight_stroke::{Path, Point, Vec2};
+use tracelight_stroke::{Path, Point};
 
+use super::places::Places;
 use super::plain;
-use crate::shapes::{circle, ellipse, polyline};
+use crate::shapes::{circle, ellipse};
 use crate::{Figure, Hand, Ink, Random};
 
 /// The page's pen is what both lines are across together: each has this share.
@@ -22,7 +23,7 @@ pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
     if whole.is_closed() && random.chance(0.6) {
         return overlapping(random, (&whole, pen), apart);
     }
-    let places = Places::along(&whole);
+    let places = Places::along(&whole, STEPS);
     // both all along, the second on a part, or the first up to a place and the second from before it
     let (from, to) = match random.whole(0, 2) {
         0 => (0.0, 1.0),
@@ -55,7 +56,7 @@ fn ring(random: &mut Random, hand: &Hand) -> Figure {
 
 /// A closed line that goes on beyond its start for 10 to 60°, leaves itself there and comes back.
 fn overlapping(random: &mut Random, (whole, pen): (&Path, f64), apart: f64) -> Figure {
-    let places = Places::along(whole);
+    let places = Places::along(whole, STEPS);
     let beyond = random.between(10.0, 60.0) / 360.0;
     let aside = |share: f64| 0.5 * apart * bump(share / beyond);
     let first = places.beside(0.0, 1.0, |s| if s < beyond { -aside(s) } else { 0.0 }, false);
@@ -67,36 +68,4 @@ fn overlapping(random: &mut Random, (whole, pen): (&Path, f64), apart: f64) -> F
 /// From none to 1 and back to none, smoothly; none outside [0, 1].
 fn bump(share: f64) -> f64 {
     (PI * share.clamp(0.0, 1.0)).sin().powi(2)
-}
-
-/// Points and normals at even steps along a path.
-struct Places(Vec<(Point, Vec2)>);
-
-impl Places {
-    fn along(path: &Path) -> Self {
-        let points = path.flatten(0.005);
-        let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
-        let step = length / STEPS as f64;
-        let (mut places, mut walked) = (Vec::new(), 0.0);
-        for pair in points.windows(2) {
-            let piece = pair[0].distance(pair[1]);
-            let way = (pair[1] - pair[0]) / piece.max(1e-12);
-            while places.len() as f64 * step <= walked + piece {
-                let at = pair[0] + way * (places.len() as f64 * step - walked);
-                places.push((at, Vec2::new(-way.y, way.x)));
-            }
-            walked += piece;
-        }
-        Self(places)
-    }
-
-    /// The part from one share of the length to another, moved aside.
-    fn beside(&self, from: f64, to: f64, aside: impl Fn(f64) -> f64, closed: bool) -> Path {
-        let last = self.0.len() - 1;
-        let index = |share: f64| (share * last as f64).round() as usize;
-        let at = |i: usize| self.0[i].0 + self.0[i].1 * aside(i as f64 / last as f64);
-        let points: Vec<_> = (index(from)..=index(to)).map(at).collect();
-        let kept = points.len() - usize::from(closed);
-        polyline(&points[..kept], closed)
-    }
 }

@@ -67,18 +67,21 @@ pub(super) fn fading(random: &mut Random, hand: &Hand) -> Figure {
 
 /// A pencil: the pressure changes along the line, and a little of its width with it.
 pub(super) fn pencil(random: &mut Random, hand: &Hand) -> Figure {
-    each_line(random, hand, |random, path| {
-        let least = random.between(0.55, 0.8);
-        let waves = waves(random, path.is_closed());
-        let lifted = random.chance(0.4) && !path.is_closed();
-        let pressure = move |share: f64| {
-            let lift = if lifted { (6.0 * (1.0 - share)).min(1.0) } else { 1.0 };
-            (least + (1.0 - least) * waves(share)) * (0.7 + 0.3 * lift)
-        };
-        touches(path, |along| {
-            let pressed = pressure(along.share);
-            disc(along, hand.pen * (0.75 + 0.25 * pressed), pressed)
-        })
+    each_line(random, hand, |random, path| pressed(random, hand, path))
+}
+
+/// A pencil along a path.
+pub(super) fn pressed(random: &mut Random, hand: &Hand, path: &Path) -> Vec<Touch> {
+    let least = random.between(0.55, 0.8);
+    let waves = waves(random, path.is_closed());
+    let lifted = random.chance(0.4) && !path.is_closed();
+    let pressure = move |share: f64| {
+        let lift = if lifted { (6.0 * (1.0 - share)).min(1.0) } else { 1.0 };
+        (least + (1.0 - least) * waves(share)) * (0.7 + 0.3 * lift)
+    };
+    touches(path, |along| {
+        let pressed = pressure(along.share);
+        disc(along, hand.pen * (0.75 + 0.25 * pressed), pressed)
     })
 }
 
