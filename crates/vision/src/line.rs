@@ -130,7 +130,8 @@ fn inner(branch: &Branch) -> Vec<Point> {
     let pixels = &branch.points[n / 4..n - n / 4];
     let (first, last) = (pixels[0], pixels[pixels.len() - 1]);
     match branch.turns.is_empty() {
-        true if is_bent(pixels) => off_the_grid(pixels).collect(),
+        // of fewer pixels there is no mean
+        true if pixels.len() >= MEAN_OF && is_bent(pixels) => off_the_grid(pixels).collect(),
         true => vec![first, last],
         false => {
             let turns = branch.turns.iter().map(|turn| turn.tip.at);
@@ -251,9 +252,13 @@ fn lost(pixels: &[(Point, f64)], last: Option<&Point>, width: f64, is_letter: bo
     }
 }
 
-/// The means of five pixels each, which are off the steps of their grid.
+/// So many pixels in a row have a mean that is off the steps of their grid.
+const MEAN_OF: usize = 5;
+
+/// The means of five pixels each, which are off the steps of their grid; none of fewer.
 pub(crate) fn off_the_grid(pixels: &[Point]) -> impl Iterator<Item = Point> {
-    pixels.windows(5).map(|five| five.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2() / 5.0).to_point())
+    let mean = |some: &[Point]| some.iter().fold(Vec2::ZERO, |sum, p| sum + p.to_vec2() / MEAN_OF as f64);
+    pixels.windows(MEAN_OF).map(move |some| mean(some).to_point())
 }
 
 /// The same of a branch that turns back on itself: side by side, and out to each turn and back between them.
@@ -407,6 +412,24 @@ mod tests {
         let node = Node { at: Point::new(0.0, 0.0), radius: 3.1, turn: None };
         let graph = Graph { nodes: vec![node], branches: vec![branch] };
         trusted(&graph, &graph.branches[0], 1.7).0
+    }
+
+    #[test]
+    fn a_bent_branch_of_few_pixels_has_two_points_inside() {
+        // a branch that leapt over a gap
+        let points = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 9.0), (8.0, 2.0), (9.0, 2.0), (10.0, 2.0)];
+        let points: Vec<Point> = points.into_iter().map(Point::from).collect();
+        assert!(is_bent(&points[1..6]) && is_bent(&points[1..5]));
+        let branch = |points: &[Point]| Branch {
+            points: points.to_vec(),
+            radii: vec![1.5; points.len()],
+            nodes: [Some(0), Some(0)],
+            ring: false,
+            turns: Vec::new(),
+        };
+        for few in 4..=points.len() {
+            assert!(!inner(&branch(&points[..few])).is_empty(), "{few} pixels");
+        }
     }
 
     #[test]
