@@ -78,7 +78,7 @@ impl Habit {
             Kind::Felt => Self { figures: (1, 4), pens: (1.8, 2.4), ..usual },
             Kind::Retouched => Self { pens: (1.8, 1.6), ..usual },
             // the page's pen is what all passes of a line are across together
-            Kind::Sketched => Self { figures: (2, 7), pens: (2.4, 2.6), ..usual },
+            Kind::Sketched => Self { figures: (4, 9), pens: (2.4, 2.6), ..usual },
             Kind::Hatching => Self { figures: (1, 3), strokes: MOST_STROKES_MIXED, paper_px: 1.5, ..usual },
             Kind::Writing => Self { figures: (2, 12), paper_px: 1.2, ..usual }.written(),
             Kind::Marks => Self { figures: (6, 24), paper_px: 1.5, ..usual }.written(),

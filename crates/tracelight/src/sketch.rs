@@ -86,6 +86,9 @@ const MISSED_SILENTLY: f64 = 0.01;
 /// Shorter ways over paper that were cut are not spoken of, px: a corner cut off between two hairs.
 const CUT_SILENTLY_PX: f64 = 8.0;
 
+/// Less of a pencil's lines that was drawn again is not spoken of, px.
+const AGAIN_SILENTLY_PX: f64 = 8.0;
+
 /// Of strokes of both kinds less than this share of the length as outlines is not spoken of.
 const OUTLINED_SILENTLY: f64 = 0.05;
 
@@ -109,6 +112,13 @@ fn doubts(traced: &Traced) -> Vec<String> {
     });
     let cut = (left_out.over_paper_px > CUT_SILENTLY_PX)
         .then(|| format!("{:.0} px of strokes led over paper and were cut out", left_out.over_paper_px));
+    let again = (left_out.again_px > AGAIN_SILENTLY_PX).then(|| {
+        format!(
+            "{:.0} px of the lines were drawn again beside them, in pencil, and are one with them: --despeckle 0 keeps \
+             each",
+            left_out.again_px
+        )
+    });
     let edges = (left_out.edges > 0)
         .then(|| format!("{} of paper or of a shadow left out", counted(left_out.edges, "edge")));
     let ruled = rules.iter().flat_map(|rules| &rules.combs).map(ruled);
@@ -123,6 +133,7 @@ fn doubts(traced: &Traced) -> Vec<String> {
         .chain(outlined(&traced.strokes))
         .chain(specks)
         .chain(cut)
+        .chain(again)
         .chain(edges)
         .collect()
 }

@@ -12,8 +12,9 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{Region, pinholes, regions};
+use crate::twice::{self, Once};
 use crate::{
-    Grey, Page, Quality, VisionError, closer, crumbs, gap, missed, on_ink, rest, screen, sweep, tone, twice,
+    Grey, Page, Quality, VisionError, closer, crumbs, gap, missed, on_ink, rest, screen, sweep, tone,
 };
 
 /// Which tracer follows the ink.
@@ -148,6 +149,8 @@ pub struct LeftOut {
     pub dots: Option<Dots>,
     /// Length of the ways over paper that were cut out of strokes, px.
     pub over_paper_px: f64,
+    /// Length of what a pencil drew again beside a line, which is one with it, px.
+    pub again_px: f64,
     /// Lines that are the edge of a sheet, of a table or of a shadow.
     pub edges: usize,
 }
@@ -232,6 +235,7 @@ impl LeftOut {
             largest_speck_px2: (self.largest_speck_px2 as f64 * by * by).round() as usize,
             dots: self.dots.map(|dots| Dots { spacing_px: dots.spacing_px * by, ..dots }),
             over_paper_px: self.over_paper_px * by,
+            again_px: self.again_px * by,
             ..self
         }
     }
@@ -389,9 +393,8 @@ fn rows_of(ink: &Ink, parts: &Parts) -> Vec<Row> {
     parts.lines.iter().flat_map(of).collect()
 }
 
-fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &Options) -> Found {
-    let dark = &ink.darkness;
-    let dotted = options.despeckle_px2.is_none().then(|| patches.take_dots(&mut mask)).flatten();
+/// What is a line and what a shape, and the rows of the lines; looked at again with the ink that lines go on in where it is paler.
+fn parts_and_rows(ink: &Ink, mask: Mask, patches: Patches, options: &Options) -> (Parts, Vec<Row>) {
     let parts_of = |mask: Mask, patches: Patches| {
         let dust = match (options.despeckle_px2, &ink.rules) {
             (Some(_), _) => Dust::Kept,
@@ -399,8 +402,8 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
             (None, Some(off)) => Dust::DroppedOnRules(off),
         };
         match options.mode {
-            Mode::Centreline => Parts::all_lines(dark, mask, patches.drawn),
-            _ => Parts::of(dark, mask, patches.drawn, dust),
+            Mode::Centreline => Parts::all_lines(&ink.darkness, mask, patches.drawn),
+            _ => Parts::of(&ink.darkness, mask, patches.drawn, dust),
         }
     };
     let mut parts = parts_of(mask, patches);
@@ -412,6 +415,13 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
         parts = parts_of(more, patches);
         rows = rows_of(ink, &parts);
     }
+    (parts, rows)
+}
+
+fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &Options) -> Found {
+    let dark = &ink.darkness;
+    let dotted = options.despeckle_px2.is_none().then(|| patches.take_dots(&mut mask)).flatten();
+    let (parts, rows) = parts_and_rows(ink, mask, patches, options);
     let mask = &parts.ink;
     let mut strokes = outlines(ink, &parts.shape_mask, mask, &parts.shapes, options);
     let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
@@ -420,8 +430,12 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
         Some(dotted) => dotted.off(rows),
         None => rows,
     };
-    let rows = twice::once(dark, gap::bridged(dark, rows));
-    let (rows, over_paper_px) = on_ink::only(mask, rows);
+    let (rows, over_paper_px) = on_ink::only(mask, gap::bridged(dark, rows));
+    // what is made of two passes lies between them, no further than a pen and a half from its ink
+    let Once { rows, passes, again_px } = match options.despeckle_px2 {
+        None => twice::once(dark, rows),
+        Some(_) => Once { rows, ..Once::default() },
+    };
     let is_left = |row: &Row| ink.rules.as_ref().is_some_and(|off| off.left_line(&row.points, row.width));
     let (left, rows): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(is_left);
     let (rows, crumbs) = match options.despeckle_px2 {
@@ -433,8 +447,9 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
         rows.iter().filter_map(|row| centreline::stroke(dark, row, options)).collect()
     };
     strokes.extend(along(&rows));
-    // crumbs, and what rules left, are left out on purpose, not missed
-    let counts = missed::counts(mask, &lined, strokes.iter().chain(&along(&crumbs)).chain(&along(&left)));
+    // crumbs, what rules left and passes that are one line now are left out on purpose, not missed
+    let known = [crumbs.as_slice(), &left, &passes].map(along);
+    let counts = missed::counts(mask, &lined, strokes.iter().chain(known.iter().flatten()));
     let (mut missed, mut all) = (0, 0);
     let mut lost_ink = Mask::empty(mask.width, mask.height);
     for (region, (area, lost)) in lined.iter().zip(counts) {
@@ -459,6 +474,7 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
             .unwrap_or(0),
         dots: dotted.map(|dotted| dotted.told),
         over_paper_px,
+        again_px,
         edges: 0,
     };
     Found { strokes, missed_ink: missed as f64 / (all as f64).max(1.0), left_out }

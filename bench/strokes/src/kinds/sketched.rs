@@ -15,6 +15,8 @@ const STEP_PENS: f64 = 0.5;
 /// This share of the lines is drawn once, and twice; the others three times.
 const ONCE: f64 = 0.15;
 const TWICE: f64 = 0.5;
+/// A pass is pressed by at least a share of a full press between these.
+const PRESSED: (f64, f64) = (0.3, 0.7);
 /// How far a pass sways, of how far passes may be from the line.
 const SWAY: f64 = 0.45;
 /// A closed line goes on beyond its start by up to this share.
@@ -25,15 +27,15 @@ const RAMP_PENS: f64 = 4.0;
 /// What a pencil sketches: each line in one to three passes, the first all along, the others on a part of it or all along too; now on
 /// one side of each other and now on the other. The line is the middle of them.
 pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
-    let own = Hand { pen: OWN_PEN * hand.pen, ..*hand };
+    let own = OWN_PEN * hand.pen;
     let mut figure = Figure::default();
     for stroke in super::lines(random, hand).strokes {
         let (path, length) = (&stroke.path, stroke.path.length(1e-3));
-        let places = Places::along(path, (length / (STEP_PENS * own.pen)).ceil() as usize);
-        let passes = passes(random, path, own.pen);
+        let places = Places::along(path, (length / (STEP_PENS * own)).ceil() as usize);
+        let passes = passes(random, path, own);
         let drawn = passes.iter().map(|pass| {
             let path = places.moved((pass.from, pass.to), false, |share| pass.aside(share));
-            Ink::Touches(swelling::pressed(random, &own, &path))
+            Ink::Touches(swelling::pressed(random, (own, PRESSED), &path))
         });
         let drawn: Vec<Ink> = drawn.collect();
         let ramp = RAMP_PENS * hand.pen / length;

@@ -11,6 +11,9 @@ const LEAST_SWELL: f64 = 0.3 / 2.5;
 /// No line is thinner, px.
 const LEAST_PX: f64 = 0.9;
 
+/// A pencil that draws presses by at least a share of its full press between these.
+const PRESSED: (f64, f64) = (0.55, 0.8);
+
 /// This share of the figures is a word, as large as the pen needs it.
 const LETTERS: f64 = 0.2;
 
@@ -67,12 +70,12 @@ pub(super) fn fading(random: &mut Random, hand: &Hand) -> Figure {
 
 /// A pencil: the pressure changes along the line, and a little of its width with it.
 pub(super) fn pencil(random: &mut Random, hand: &Hand) -> Figure {
-    each_line(random, hand, |random, path| pressed(random, hand, path))
+    each_line(random, hand, |random, path| pressed(random, (hand.pen, PRESSED), path))
 }
 
-/// A pencil along a path.
-pub(super) fn pressed(random: &mut Random, hand: &Hand, path: &Path) -> Vec<Touch> {
-    let least = random.between(0.55, 0.8);
+/// A pencil along a path, pressed by at least a share between these.
+pub(super) fn pressed(random: &mut Random, (pen, least): (f64, (f64, f64)), path: &Path) -> Vec<Touch> {
+    let least = random.between(least.0, least.1);
     let waves = waves(random, path.is_closed());
     let lifted = random.chance(0.4) && !path.is_closed();
     let pressure = move |share: f64| {
@@ -81,7 +84,7 @@ pub(super) fn pressed(random: &mut Random, hand: &Hand, path: &Path) -> Vec<Touc
     };
     touches(path, |along| {
         let pressed = pressure(along.share);
-        disc(along, hand.pen * (0.75 + 0.25 * pressed), pressed)
+        disc(along, pen * (0.75 + 0.25 * pressed), pressed)
     })
 }
 

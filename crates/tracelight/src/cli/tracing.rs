@@ -20,7 +20,7 @@ pub(crate) struct TracingArgs {
     /// lighter, counted from white)
     #[arg(long, value_name = "auto|PERCENT", default_value = "auto", allow_hyphen_values = true, value_parser = threshold)]
     pub(crate) threshold: OrAuto,
-    /// Smallest patch of ink that is kept, in square pixels, such as 20; 0 keeps all
+    /// Smallest patch of ink that is kept, in square pixels, such as 20; 0 keeps all, and each pass of a pencil's line
     #[arg(long, value_name = "auto|AREA", default_value = "auto", allow_hyphen_values = true, value_parser = despeckle)]
     pub(crate) despeckle: OrAuto,
     /// Drop strokes shorter than this, in the picture (8px) or on the target (5mm, 0.2in)
