@@ -127,7 +127,7 @@ impl Habit {
         let pen = figure.thinnest().unwrap_or(hand.pen);
         match self.kind {
             Kind::Writing | Kind::Marks | Kind::Ruled | Kind::Squared | Kind::Dotted
-                if pen < 0.99 * hand.pen =>
+                if (pen - hand.pen).abs() > 0.01 * hand.pen =>
             {
                 (pen, Bounds::SMALL)
             }

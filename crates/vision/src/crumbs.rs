@@ -1,9 +1,10 @@
-//! Marks that a pencil leaves on the paper's grain beside its lines: short, and paler than what it draws.
+//! Marks that a pencil leaves on the paper's grain beside its lines, and smudges: small, and paler than what it draws.
 
 use tracelight_stroke::polyline_length;
 
 use crate::centreline::Row;
 use crate::plane::Plane;
+use crate::region::Region;
 
 /// A crumb is shorter than this, in widths of the drawing's pen,
 pub(crate) const LONGEST_PENS: f64 = 4.0;
@@ -11,22 +12,46 @@ pub(crate) const LONGEST_PENS: f64 = 4.0;
 /// and none of them was meant.
 pub(crate) const PALE: f64 = 0.6;
 
-/// The rows that were drawn, and the crumbs beside them.
-pub(crate) fn parted(dark: &Plane<u8>, rows: Vec<Row>) -> (Vec<Row>, Vec<Row>) {
-    let lengths: Vec<f64> = rows.iter().map(|row| polyline_length(&row.points)).collect();
-    let darkness = |row: &Row| dark.mean_at(row.points.iter().copied());
-    let darknesses: Vec<f64> = rows.iter().map(darkness).collect();
-    let widths: Vec<f64> = rows.iter().map(|row| row.width).collect();
-    let total = lengths.iter().sum::<f64>().max(1e-9);
-    // over the length of the lines
-    let mean =
-        |values: &[f64]| values.iter().zip(&lengths).map(|(v, length)| v * length).sum::<f64>() / total;
-    let (usual, pen) = (mean(&darknesses), mean(&widths));
-    let is_crumb =
-        |k: usize| !rows[k].closed && lengths[k] < LONGEST_PENS * pen && darknesses[k] < PALE * usual;
-    let crumbs: Vec<bool> = (0..rows.len()).map(is_crumb).collect();
-    let mut crumbs = crumbs.into_iter();
-    rows.into_iter().partition(|_| crumbs.next() == Some(false))
+/// What a pencil usually draws in one drawing, the mean over the length of its lines.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Usual {
+    darkness: f64,
+    /// Width, px.
+    pen: f64,
+}
+
+impl Usual {
+    /// In these rows.
+    pub(crate) fn of(dark: &Plane<u8>, rows: &[Row]) -> Self {
+        let lengths: Vec<f64> = rows.iter().map(|row| polyline_length(&row.points)).collect();
+        let total = lengths.iter().sum::<f64>().max(1e-9);
+        let mean = |of: &dyn Fn(&Row) -> f64| {
+            rows.iter().zip(&lengths).map(|(row, length)| of(row) * length).sum::<f64>() / total
+        };
+        Self { darkness: mean(&|row| darkness(dark, row)), pen: mean(&|row| row.width) }
+    }
+
+    /// Whether a row is a crumb.
+    pub(crate) fn is_crumb(&self, dark: &Plane<u8>, row: &Row) -> bool {
+        !row.closed && self.is_little(polyline_length(&row.points), darkness(dark, row))
+    }
+
+    /// Whether a filled shape is one.
+    pub(crate) fn is_smudge(&self, dark: &Plane<u8>, shape: &Region) -> bool {
+        let (width, height) = shape.extent();
+        let levels =
+            shape.runs.iter().flat_map(|run| &dark.row(run.y as usize)[run.from as usize..run.to as usize]);
+        let mean = levels.map(|&level| f64::from(level)).sum::<f64>() / shape.area() as f64;
+        self.is_little(width.max(height) as f64, mean)
+    }
+
+    fn is_little(&self, length: f64, darkness: f64) -> bool {
+        length < LONGEST_PENS * self.pen && darkness < PALE * self.darkness
+    }
+}
+
+fn darkness(dark: &Plane<u8>, row: &Row) -> f64 {
+    dark.mean_at(row.points.iter().copied())
 }
 
 #[cfg(test)]
@@ -46,8 +71,17 @@ mod tests {
             Row { points, closed: k == 4, width: 3.0, free: [true; 2], dot: false }
         };
         let rows: Vec<Row> = drawn.iter().enumerate().map(|(k, &drawn)| row(k, drawn)).collect();
-        let (kept, crumbs) = parted(&dark, rows);
+        let usual = Usual::of(&dark, &rows);
+        let (crumbs, kept): (Vec<Row>, Vec<Row>) =
+            rows.into_iter().partition(|row| usual.is_crumb(&dark, row));
         let at = |rows: &[Row]| rows.iter().map(|row| row.points[0].y).collect::<Vec<_>>();
         assert_eq!((at(&kept), at(&crumbs)), (vec![10.0, 20.0, 30.0, 50.0], vec![40.0]));
+        // a small pale patch is a smudge, a dark one and a large one are shapes
+        for (columns, level, is_smudge) in [(80..90, 70, true), (80..90, 200, false), (60..98, 70, false)] {
+            let mut patch = Plane::filled(100, 60, 0);
+            (4..12).for_each(|y| patch.row_mut(y)[columns.clone()].fill(level));
+            let shapes = crate::region::regions(&crate::ink::over(&patch, 0));
+            assert_eq!(usual.is_smudge(&patch, &shapes[0]), is_smudge, "{columns:?} {level}");
+        }
     }
 }

@@ -3,6 +3,7 @@ use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 use crate::centreline::{self, Row};
 use crate::comb::Rules;
 use crate::contrast::{Edge, is_cut_off, stands_out};
+use crate::crumbs::Usual;
 use crate::dots::{self, Dots, Dotted};
 use crate::dust::Dust;
 use crate::graph::Graph;
@@ -13,9 +14,7 @@ use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{Region, pinholes, regions};
 use crate::twice::{self, Once};
-use crate::{
-    Grey, Page, Quality, VisionError, closer, crumbs, gap, missed, on_ink, rest, screen, sweep, tone,
-};
+use crate::{Grey, Page, Quality, VisionError, closer, gap, missed, on_ink, rest, screen, sweep, tone};
 
 /// Which tracer follows the ink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -421,9 +420,8 @@ fn parts_and_rows(ink: &Ink, mask: Mask, patches: Patches, options: &Options) ->
 fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &Options) -> Found {
     let dark = &ink.darkness;
     let dotted = options.despeckle_px2.is_none().then(|| patches.take_dots(&mut mask)).flatten();
-    let (parts, rows) = parts_and_rows(ink, mask, patches, options);
+    let (mut parts, rows) = parts_and_rows(ink, mask, patches, options);
     let mask = &parts.ink;
-    let mut strokes = outlines(ink, &parts.shape_mask, mask, &parts.shapes, options);
     let lined: Vec<&Region> = parts.lines.iter().map(|(region, _)| region).collect();
     let rows = rest::with_rest(dark, &lined, rows);
     let rows = match &dotted {
@@ -432,20 +430,25 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
     };
     let (rows, over_paper_px) = on_ink::only(mask, gap::bridged(dark, rows));
     // what is made of two passes lies between them, no further than a pen and a half from its ink
-    let Once { rows, passes, again_px } = match options.despeckle_px2 {
+    let Once { rows, passes, again_px, is_sketch } = match options.despeckle_px2 {
         None => twice::once(dark, rows),
         Some(_) => Once { rows, ..Once::default() },
     };
     let is_left = |row: &Row| ink.rules.as_ref().is_some_and(|off| off.left_line(&row.points, row.width));
     let (left, rows): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(is_left);
-    let (rows, crumbs) = match options.despeckle_px2 {
-        // a pen leaves none
-        None if ink.pencil.is_some() => crumbs::parted(dark, rows),
-        _ => (rows, Vec::new()),
+    // a pen leaves none
+    let leaves_crumbs = options.despeckle_px2.is_none() && (ink.pencil.is_some() || is_sketch);
+    let usual = leaves_crumbs.then(|| Usual::of(dark, &rows));
+    let (crumbs, rows): (Vec<Row>, Vec<Row>) =
+        rows.into_iter().partition(|row| usual.is_some_and(|usual| usual.is_crumb(dark, row)));
+    let of_shapes = |shapes: Vec<Region>| -> (Vec<Region>, Vec<Region>) {
+        shapes.into_iter().partition(|shape| usual.is_some_and(|usual| usual.is_smudge(dark, shape)))
     };
+    let (mut smudges, shapes) = of_shapes(std::mem::take(&mut parts.shapes));
     let along = |rows: &[Row]| -> Vec<Stroke> {
         rows.iter().filter_map(|row| centreline::stroke(dark, row, options)).collect()
     };
+    let mut strokes = outlines(ink, &parts.shape_mask, mask, &shapes, options);
     strokes.extend(along(&rows));
     // crumbs, what rules left and passes that are one line now are left out on purpose, not missed
     let known = [crumbs.as_slice(), &left, &passes].map(along);
@@ -461,17 +464,14 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
     }
     // no lines, whatever they are: then their edges at least
     if !lost_ink.is_empty() {
-        strokes.extend(outlines(ink, &lost_ink, mask, &regions(&lost_ink), options));
+        let (more, lost) = of_shapes(regions(&lost_ink));
+        smudges.extend(more);
+        strokes.extend(outlines(ink, &lost_ink, mask, &lost, options));
     }
+    let specks = parts.dust.iter().chain(&smudges).map(Region::area).chain(crumbs.iter().map(Row::area_px2));
     let left_out = LeftOut {
-        specks: parts.dust.len() + crumbs.len(),
-        largest_speck_px2: parts
-            .dust
-            .iter()
-            .map(Region::area)
-            .chain(crumbs.iter().map(Row::area_px2))
-            .max()
-            .unwrap_or(0),
+        specks: specks.clone().count(),
+        largest_speck_px2: specks.max().unwrap_or(0),
         dots: dotted.map(|dotted| dotted.told),
         over_paper_px,
         again_px,

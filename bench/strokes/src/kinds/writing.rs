@@ -17,11 +17,21 @@ const PEN_SHARE: (f64, f64) = (1.0 / 12.0, 1.0 / 6.0);
 const TALL_PENS: f64 = 8.0;
 /// Of the figures this share is large.
 const LARGE: f64 = 0.2;
+/// And of the rest this share is a title: in a pen so many times the page's, which is that share of its height.
+const TITLES: f64 = 0.15;
+const TITLE_PENS: (f64, f64) = (1.5, 4.0);
+const TITLE_PEN_SHARE: (f64, f64) = (1.0 / 8.0, 1.0 / 4.5);
 
-/// A word, or now and then a large figure.
+/// A word, now and then a large figure, or a title in a fat marker.
 pub(super) fn words(random: &mut Random, hand: &Hand) -> Figure {
     if random.chance(LARGE) {
         return large(random, hand);
+    }
+    if random.chance(TITLES) {
+        let marker =
+            Hand { pen: hand.pen * random.between(TITLE_PENS.0, TITLE_PENS.1), nib: Nib::Round, ..*hand };
+        let height = marker.pen / random.between(TITLE_PEN_SHARE.0, TITLE_PEN_SHARE.1);
+        return Figure::lines(&marker, row_of(random, &marker, height, (3, 7)));
     }
     let height = random.log_between(HEIGHT_PX.0, HEIGHT_PX.1);
     let small = small(random, hand, height);
@@ -41,9 +51,14 @@ pub(super) fn word(random: &mut Random, hand: &Hand) -> Figure {
 
 /// Letters side by side, their feet at zero.
 fn row(random: &mut Random, hand: &Hand, height: f64) -> Vec<Path> {
+    row_of(random, hand, height, (1, 7))
+}
+
+/// The same of so many letters.
+fn row_of(random: &mut Random, hand: &Hand, height: f64, (fewest, most): (usize, usize)) -> Vec<Path> {
     let mut x = 0.0;
     let mut paths = Vec::new();
-    for _ in 0..random.whole(1, 7) {
+    for _ in 0..random.whole(fewest, most) {
         let wide = height * random.between(0.5, 0.75);
         let drawn = letter(random, (wide, height), height > TALL_PENS * hand.pen);
         paths.extend(drawn.into_iter().map(|p| p.transformed(Affine::translate((x, 0.0)))));

@@ -45,6 +45,8 @@ pub(crate) struct Once {
     pub(crate) passes: Vec<Row>,
     /// Length of what was drawn again, px.
     pub(crate) again_px: f64,
+    /// Whether it is a pencil's sketch.
+    pub(crate) is_sketch: bool,
 }
 
 /// The rows of which those that were drawn twice are one.
@@ -72,7 +74,7 @@ pub(crate) fn once(dark: &Plane<u8>, rows: Vec<Row>) -> Once {
         }
         rows.retain(|row| row.points.len() > 1);
     }
-    Once { again_px: (before - length(&rows)).max(0.0), rows, passes }
+    Once { again_px: (before - length(&rows)).max(0.0), rows, passes, is_sketch: true }
 }
 
 fn length(rows: &[Row]) -> f64 {
