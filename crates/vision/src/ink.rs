@@ -6,6 +6,7 @@ use crate::centreline::Row;
 use crate::coarse;
 use crate::comb::{self, Lie, TakenOff};
 use crate::faint;
+use crate::levels::{Counts, SAMPLED, sampled_histogram};
 use crate::light::{Paper, percentile};
 use crate::mask::Mask;
 use crate::paler::Inked;
@@ -77,7 +78,20 @@ impl Ink {
         threshold_percent: Option<f64>,
         sheets: bool,
     ) -> Result<Self, VisionError> {
-        let at = |look| Self::at(page, threshold_percent, sheets, look);
+        Self::by(page, threshold_percent, (sheets, false))
+    }
+
+    /// The same of dark lines, whatever the picture seems to be of.
+    pub(crate) fn of_dark_lines(page: &Page<'_>, sheets: bool) -> Result<Self, VisionError> {
+        Self::by(page, None, (sheets, true))
+    }
+
+    fn by(
+        page: &Page<'_>,
+        threshold_percent: Option<f64>,
+        (sheets, is_dark): (bool, bool),
+    ) -> Result<Self, VisionError> {
+        let at = |look| Self::at(page, threshold_percent, (sheets, is_dark), look);
         let mut reduction = page.picture.reduction();
         let mut ink = at(Look { reduction, smoothings: 0 })?;
         let most = page.picture.most_reduction();
@@ -113,7 +127,7 @@ impl Ink {
     fn at(
         page: &Page<'_>,
         threshold_percent: Option<f64>,
-        sheets: bool,
+        (sheets, is_dark): (bool, bool),
         Look { reduction, smoothings }: Look,
     ) -> Result<Self, VisionError> {
         let image = &*page.picture;
@@ -125,7 +139,7 @@ impl Ink {
         // a shadow on the sheet goes on beside it
         let mut seen = page.beside.as_ref().map(|_| reduced(&image.plane));
         let mut raw_levels = sampled_histogram(&plane);
-        let light_on_dark = is_light_on_dark(&plane, &raw_levels, page.is_brighter);
+        let light_on_dark = !is_dark && is_light_on_dark(&plane, &raw_levels, page.is_brighter);
         if light_on_dark {
             for plane in [Some(&mut plane), seen.as_mut()].into_iter().flatten() {
                 plane.to_mut().values.iter_mut().for_each(|v| *v = 255 - *v);
@@ -286,61 +300,6 @@ pub(crate) fn word_of(flags: &[u8; 64]) -> u64 {
         (u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * k)
     };
     (0..8).map(byte).fold(0, |word, bits| word | bits)
-}
-
-/// A histogram in the making: four tables, for a level that repeats need not wait for itself.
-struct Counts([[u32; 256]; 4]);
-
-impl Default for Counts {
-    fn default() -> Self {
-        Self([[0; 256]; 4])
-    }
-}
-
-impl Counts {
-    fn add(&mut self, levels: &[u8]) {
-        let fours = levels.chunks_exact(4);
-        fours.remainder().iter().for_each(|&v| self.0[0][usize::from(v)] += 1);
-        for four in fours {
-            four.iter().zip(&mut self.0).for_each(|(&v, table)| table[usize::from(v)] += 1);
-        }
-    }
-
-    fn sum(&self) -> [u32; 256] {
-        std::array::from_fn(|level| self.0.iter().map(|table| table[level]).sum())
-    }
-}
-
-/// How many times each level occurs.
-pub(crate) fn histogram<'a>(levels: impl Iterator<Item = &'a [u8]>) -> [u32; 256] {
-    let mut counts = Counts::default();
-    levels.for_each(|levels| counts.add(levels));
-    counts.sum()
-}
-
-/// Pixels that are looked at together: as many as a mask has in a word.
-const BLOCK: usize = 64;
-/// As many pixels tell a picture's levels: all the others would move a share by a thousandth at most.
-const SAMPLED: usize = 250_000;
-
-/// The histogram of about [`SAMPLED`] pixels.
-pub(crate) fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
-    histogram(sampled_blocks(plane, SAMPLED).map(|(.., levels)| levels))
-}
-
-/// Every k-th block of 64 pixels, about `sampled` in all, with its row and its number there: without a pattern, so that no
-/// line falls between them all along, whatever its direction (Knuth's multiplicative hash, *Sorting and Searching*, §6.4).
-pub(crate) fn sampled_blocks(
-    plane: &Plane<u8>,
-    sampled: usize,
-) -> impl Iterator<Item = (usize, usize, &[u8])> {
-    let every = (plane.values.len() / sampled).max(1);
-    let row = move |y: usize| {
-        let first = ((y as u32).wrapping_mul(2_654_435_769) >> 12) as usize % every;
-        let blocks = plane.row(y).chunks(BLOCK).enumerate().skip(first).step_by(every);
-        blocks.map(move |(number, levels)| (y, number, levels))
-    };
-    (0..plane.height).flat_map(row)
 }
 
 /// Standard deviation of the pixel noise, levels: the mask of Immerkær, "Fast noise variance estimation" (1996),

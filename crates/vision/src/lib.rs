@@ -9,7 +9,7 @@
 //! | module | what |
 //! |---|---|
 //! | `sheet` | the sheet of paper in a photograph or a scan, by itself |
-//! | `light`, `ink`, `tones` | even light, polarity, threshold; pictures of two tones |
+//! | `light`, `levels`, `ink`, `tones` | even light, how often each level comes, polarity, threshold; pictures of two tones |
 //! | `comb` | the rules of ruled and squared paper, taken out from under the ink |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
 //! | `tone`, `screen` | whether it is a drawing at all: no photograph, and no computer's screen |
@@ -28,7 +28,7 @@
 //! | `rest` | a second look at the ink that no line follows |
 //! | `twice` | a line that was sketched twice is one |
 //! | `missed`, `on_ink` | ink that no stroke follows; strokes that follow no ink |
-//! | `crumbs` | what a pencil leaves on the paper's grain beside its lines |
+//! | `crumbs` | what a pencil leaves on the paper's grain beside its lines, and smudges |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
 //! | `fiducial` | printed square markers and which they are |
@@ -57,6 +57,7 @@ mod hub;
 mod ink;
 mod inside;
 mod junction;
+mod levels;
 mod light;
 mod line;
 mod marks;

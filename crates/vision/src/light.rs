@@ -311,7 +311,7 @@ fn around(ratio: &Plane<f64>, paper: &[bool], i: usize, reach: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ink::sampled_histogram;
+    use crate::levels::sampled_histogram;
 
     #[test]
     fn light_from_one_side_and_a_large_filled_shape_leave_even_paper() {

@@ -2,7 +2,8 @@
 
 use tracelight_stroke::{Point, Vec2};
 
-use crate::ink::{Ink, histogram, over};
+use crate::ink::{Ink, over};
+use crate::levels::histogram;
 use crate::plane::Plane;
 use crate::region::{Region, regions};
 use crate::split::Split;

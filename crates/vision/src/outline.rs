@@ -4,7 +4,7 @@ use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
 
 use crate::Options;
 use crate::follow;
-use crate::ink::histogram;
+use crate::levels::histogram;
 use crate::light::percentile;
 use crate::mask::Mask;
 use crate::plane::Plane;

@@ -192,7 +192,7 @@ fn border_levels(image: &Plane<u8>, inside: usize) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ink::sampled_histogram;
+    use crate::levels::sampled_histogram;
 
     fn check(light_on_dark: bool, level: impl Fn(usize, usize) -> u8) {
         let image = |invert: bool| {

@@ -5,7 +5,8 @@
 
 use std::collections::HashMap;
 
-use crate::ink::{over, sampled_blocks, sampled_histogram};
+use crate::ink::over;
+use crate::levels::{sampled_blocks, sampled_histogram};
 use crate::light::percentile;
 use crate::plane::Plane;
 use crate::region::{Region, Run, regions};

@@ -1,7 +1,8 @@
 //! A histogram cut in two: paper and ink.
 
 use crate::VisionError;
-use crate::ink::{SMOOTHED, histogram};
+use crate::ink::SMOOTHED;
+use crate::levels::histogram;
 use crate::light::percentile;
 use crate::plane::Plane;
 use crate::quality::GOOD_CONTRAST_PERCENT;

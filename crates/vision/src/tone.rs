@@ -5,7 +5,8 @@
 //! fade, a silhouette is broad.
 
 use crate::VisionError;
-use crate::ink::{Ink, sampled_blocks, word_over};
+use crate::ink::{Ink, word_over};
+use crate::levels::sampled_blocks;
 use crate::mask::Mask;
 use crate::quality::GOOD_CLIPPED_PERCENT;
 
@@ -113,5 +114,20 @@ mod tests {
         let paper = |x: f64, y: f64| 240.0 - 0.35 * x - 0.1 * y;
         let seen = image(|x, y| if drawn(x, y) { 0.25 } else { 1.0 } * paper(x, y) + noise(x, y));
         assert!(trace(&seen, &Options::default()).is_ok());
+    }
+
+    #[test]
+    fn what_a_felt_pen_filled_with_slits_under_light_from_one_side_is_dark_on_light() {
+        let slitted = image(|x, y| {
+            let paper = 235.0 - 0.55 * x;
+            let (across, down) = (x - 110.0, y - 120.0);
+            let slit = (x / 12.0).fract() < 0.17 && down.abs() < 52.0;
+            match across.hypot(down) < 60.0 && !slit {
+                true => 0.25 * paper,
+                false => paper,
+            }
+        });
+        let traced = trace(&slitted, &Options::default()).unwrap();
+        assert_eq!((traced.quality.light_on_dark, traced.strokes.strokes.len()), (false, 1));
     }
 }

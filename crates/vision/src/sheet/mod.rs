@@ -26,7 +26,7 @@ use std::cell::OnceCell;
 use tracelight_stroke::{Point, Vec2};
 
 use crate::Grey;
-use crate::ink::sampled_histogram;
+use crate::levels::sampled_histogram;
 use crate::mask::Mask;
 use crate::outline::area;
 use crate::plane::Plane;
