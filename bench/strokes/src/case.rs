@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use tracelight_stroke::Drawing;
 
+use crate::kinds::sketched::OWN_PEN;
 use crate::look::Look;
 use crate::warp::Warp;
 use crate::{Degradation, Figure, Ink, Kind, Page, Picture, Random, Set, desk};
@@ -153,6 +154,18 @@ impl Case {
             None => 1.0,
         };
         Page::draw(&mut Random::new(self.seed ^ 1), self.kind, self.size, roomy)
+    }
+
+    /// What a drawn line may be off and still be the true one, px: that of the picture's size, and anywhere between the passes of a sketch.
+    pub fn tolerance_px(&self, picture: &Picture) -> f64 {
+        let least = self.size.tolerance_px();
+        match self.kind {
+            Kind::Sketched => {
+                let passes = picture.truth.strokes.iter().filter_map(|stroke| stroke.pen).fold(0.0, f64::max);
+                least.max(0.5 * (1.0 - OWN_PEN) * passes)
+            }
+            _ => least,
+        }
     }
 
     /// How a sheet on a table lies.

@@ -268,7 +268,8 @@ fn judge_all(cases: &[Case], threads: Option<usize>) -> Vec<Judged> {
         while let Some((number, case)) =
             Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|i| Some((i, cases.get(i)?)))
         {
-            let verdict = judge(&case.draw(), case.size.tolerance_px());
+            let picture = case.draw();
+            let verdict = judge(&picture, case.tolerance_px(&picture));
             done.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((number, (*case, verdict)));
         }
     };
