@@ -1,6 +1,6 @@
 //! Pen lines: strokes down their middle.
 
-use tracelight_stroke::{Point, Stroke, Vec2, polyline_length};
+use tracelight_stroke::{Path, Point, Stroke, Vec2, polyline_length};
 
 use crate::Options;
 use crate::follow;
@@ -135,6 +135,11 @@ pub(crate) fn stroke(dark: &Plane<u8>, row: &Row, options: &Options) -> Option<S
         options,
     )?;
     Some(Stroke { pen: Some(row.width), ..Stroke::new(path) })
+}
+
+/// A row as it lies, not made a path of lines and curves: to paint, not to draw.
+pub(crate) fn unfitted(row: &Row) -> Option<Stroke> {
+    Some(Stroke { pen: Some(row.width), ..Stroke::new(Path::polyline(&row.points, row.closed)?) })
 }
 
 /// Lines strung together through the joints.

@@ -438,7 +438,7 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
     };
     let (rows, over_paper_px) = on_ink::only(mask, gap::bridged(dark, rows));
     // what is made of two passes lies between them, no further than a pen and a half from its ink
-    let Once { rows, passes, again_px, is_sketch } = match options.despeckle_px2 {
+    let Once { rows, before, again_px, is_sketch } = match options.despeckle_px2 {
         None => twice::once(dark, rows),
         Some(_) => Once { rows, ..Once::default() },
     };
@@ -453,14 +453,12 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
         shapes.into_iter().partition(|shape| usual.is_some_and(|usual| usual.is_smudge(dark, shape)))
     };
     let (mut smudges, shapes) = of_shapes(std::mem::take(&mut parts.shapes));
-    let along = |rows: &[Row]| -> Vec<Stroke> {
-        rows.iter().filter_map(|row| centreline::stroke(dark, row, options)).collect()
-    };
     let mut strokes = outlines(ink, &parts.shape_mask, mask, &shapes, options);
-    strokes.extend(along(&rows));
+    strokes.extend(rows.iter().filter_map(|row| centreline::stroke(dark, row, options)));
     // crumbs, what rules left and passes that are one line now are left out on purpose, not missed
-    let known = [crumbs.as_slice(), &left, &passes].map(along);
-    let counts = missed::counts(mask, &lined, strokes.iter().chain(known.iter().flatten()));
+    let known = crumbs.iter().chain(&left).chain(&before);
+    let known: Vec<Stroke> = known.filter_map(centreline::unfitted).collect();
+    let counts = missed::counts(mask, &lined, strokes.iter().chain(&known));
     let (mut missed, mut all) = (0, 0);
     let mut lost_ink = Mask::empty(mask.width, mask.height);
     for (region, (area, lost)) in lined.iter().zip(counts) {

@@ -5,19 +5,9 @@ use crate::centreline::Row;
 use crate::near::Near;
 use crate::plane::Plane;
 
-/// The rows of which those that turn back beside themselves end where they turn, and these as they lay.
-pub(super) fn folded(dark: &Plane<u8>, rows: Vec<Row>, pen: f64) -> (Vec<Row>, Vec<Row>) {
-    let (mut found, mut passes) = (Vec::with_capacity(rows.len()), Vec::new());
-    for row in rows {
-        match fold(dark, &row, pen) {
-            Some(parts) => {
-                passes.push(row);
-                found.extend(parts);
-            }
-            None => found.push(row),
-        }
-    }
-    (found, passes)
+/// The rows of which those that turn back beside themselves end where they turn.
+pub(super) fn folded(dark: &Plane<u8>, rows: Vec<Row>, pen: f64) -> Vec<Row> {
+    rows.into_iter().flat_map(|row| fold(dark, &row, pen).unwrap_or_else(|| vec![row])).collect()
 }
 
 /// A row that is parted where it turns back, if what goes and what comes back are passes of one line.

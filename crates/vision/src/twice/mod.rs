@@ -41,8 +41,8 @@ const ROUNDS: usize = 6;
 #[derive(Default)]
 pub(crate) struct Once {
     pub(crate) rows: Vec<Row>,
-    /// The passes that were made one, as they lay.
-    pub(crate) passes: Vec<Row>,
+    /// How the rows lay before, if it is a sketch.
+    pub(crate) before: Vec<Row>,
     /// Length of what was drawn again, px.
     pub(crate) again_px: f64,
     /// Whether it is a pencil's sketch.
@@ -55,8 +55,8 @@ pub(crate) fn once(dark: &Plane<u8>, rows: Vec<Row>) -> Once {
     if pen <= 0.0 || !pencil::is_sketched(dark, &rows) {
         return Once { rows, ..Once::default() };
     }
-    let before = length(&rows);
-    let (mut rows, mut passes) = fold::folded(dark, rows.into_iter().map(evenly).collect(), pen);
+    let before = rows.clone();
+    let mut rows = fold::folded(dark, rows.into_iter().map(evenly).collect(), pen);
     for _ in 0..ROUNDS {
         let mut runs = Sketch::of(dark, &rows, pen).runs();
         if runs.is_empty() {
@@ -69,12 +69,11 @@ pub(crate) fn once(dark: &Plane<u8>, rows: Vec<Row>) -> Once {
                 continue;
             }
             (is_taken[run.kept], is_taken[run.other]) = (true, true);
-            passes.extend([rows[run.kept].clone(), rows[run.other].clone()]);
             run.merge(dark, &mut rows, APART_PENS * pen);
         }
         rows.retain(|row| row.points.len() > 1);
     }
-    Once { again_px: (before - length(&rows)).max(0.0), rows, passes, is_sketch: true }
+    Once { again_px: (length(&before) - length(&rows)).max(0.0), rows, before, is_sketch: true }
 }
 
 fn length(rows: &[Row]) -> f64 {
