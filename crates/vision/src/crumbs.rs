@@ -1,6 +1,6 @@
 //! Marks that a pencil leaves on the paper's grain beside its lines, and smudges: small, and paler than what it draws.
 
-use tracelight_stroke::polyline_length;
+use tracelight_stroke::{Point, polyline_length};
 
 use crate::centreline::Row;
 use crate::plane::Plane;
@@ -39,10 +39,8 @@ impl Usual {
     /// Whether a filled shape is one.
     pub(crate) fn is_smudge(&self, dark: &Plane<u8>, shape: &Region) -> bool {
         let (width, height) = shape.extent();
-        let levels =
-            shape.runs.iter().flat_map(|run| &dark.row(run.y as usize)[run.from as usize..run.to as usize]);
-        let mean = levels.map(|&level| f64::from(level)).sum::<f64>() / shape.area() as f64;
-        self.is_little(width.max(height) as f64, mean)
+        let centres = shape.places().map(|(x, y)| Point::new(x as f64 + 0.5, y as f64 + 0.5));
+        self.is_little(width.max(height) as f64, dark.mean_at(centres))
     }
 
     fn is_little(&self, length: f64, darkness: f64) -> bool {
@@ -56,8 +54,6 @@ fn darkness(dark: &Plane<u8>, row: &Row) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use tracelight_stroke::Point;
-
     use super::*;
 
     #[test]

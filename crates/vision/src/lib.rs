@@ -12,7 +12,7 @@
 //! | `light`, `levels`, `ink`, `tones` | even light, how often each level comes, polarity, threshold; pictures of two tones |
 //! | `comb` | the rules of ruled and squared paper, taken out from under the ink |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
-//! | `tone`, `screen` | whether it is a drawing at all: no photograph, and no computer's screen |
+//! | `tone`, `screen`, `seen` | whether it is a drawing at all: no photograph, and no computer's screen; a second look if it seems none |
 //! | `region`, `distance` | connected patches of ink; distance to the paper |
 //! | `reading`, `parts`, `hub`, `dust` | what is a line by its own width; lines and shapes parted; where many lines meet; specks |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
@@ -78,6 +78,7 @@ mod region;
 mod rest;
 mod ridge;
 mod screen;
+mod seen;
 mod shadow;
 mod sharpness;
 mod sheet;

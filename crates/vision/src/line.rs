@@ -312,17 +312,21 @@ fn round(dark: &Plane<u8>, side: &[Point], turn: Turn, next: &[Point]) -> Vec<Po
 /// With points about 1 px apart between those that are further apart than a few.
 fn filled_in(points: &[Point], ring: bool) -> Vec<Point> {
     const APART_PX: f64 = 1.5;
-    let mut filled = Vec::with_capacity(points.len());
+    parted(points, ring, |far| if far > APART_PX { far.round() as usize } else { 1 })
+}
+
+/// With the way from each point to the next in so many equal steps as `steps` says of its length, px.
+pub(crate) fn parted(points: &[Point], ring: bool, steps: impl Fn(f64) -> usize) -> Vec<Point> {
+    let mut found = Vec::with_capacity(points.len());
     for (k, &point) in points.iter().enumerate() {
-        filled.push(point);
+        found.push(point);
         let next = if ring { points.get((k + 1) % points.len()) } else { points.get(k + 1) };
-        let far = next.map_or(0.0, |next| next.distance(point));
-        if let (true, Some(next)) = (far > APART_PX, next) {
-            let steps = far.round() as usize;
-            filled.extend((1..steps).map(|i| point.lerp(*next, i as f64 / steps as f64)));
+        if let Some(next) = next {
+            let steps = steps(next.distance(point));
+            found.extend((1..steps).map(|i| point.lerp(*next, i as f64 / steps as f64)));
         }
     }
-    filled
+    found
 }
 
 /// The stretches in one row, the gaps between them bridged. The line's pixels are known each with half the width of its ink.

@@ -1,5 +1,5 @@
-use crate::ink::Ink;
-use crate::{Page, VisionError};
+use crate::seen::Seen;
+use crate::{Options, Page, VisionError};
 
 /// What an image is on its way to strokes.
 #[derive(Clone, Debug)]
@@ -18,14 +18,12 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// Of a page; `threshold_percent` is the darkness from which on it is ink, % of its paper's brightness, `None`: found;
-    /// whether `sheets` of paper lie in it.
+    /// Of a page, as it would be traced.
     ///
     /// # Errors
     /// As [`trace`](crate::trace): an image without ink.
-    pub fn of(page: &Page<'_>, threshold_percent: Option<f64>, sheets: bool) -> Result<Self, VisionError> {
-        let ink = Ink::of(page, threshold_percent, sheets)?;
-        let mask = ink.mask();
+    pub fn of(page: &Page<'_>, options: &Options) -> Result<Self, VisionError> {
+        let Seen { ink, mask, .. } = Seen::of(page, options)?;
         let (width, height) = (ink.darkness.width, ink.darkness.height);
         let at = |i: usize| mask.get((i % width) as isize, (i / width) as isize);
         Ok(Self {
@@ -54,7 +52,8 @@ mod tests {
     fn stages_of_a_line_are_its_own() {
         let line = |x: usize, y: usize| y == 20 && (10..50).contains(&x) || y == 21 && (10..50).contains(&x);
         let levels = (0..60 * 40).map(|i| if line(i % 60, i / 60) { 40 } else { 220 }).collect();
-        let stages = Stages::of(&Page::whole(&Grey::new(60, 40, levels).unwrap()), None, false).unwrap();
+        let stages =
+            Stages::of(&Page::whole(&Grey::new(60, 40, levels).unwrap()), &Options::default()).unwrap();
         assert_eq!((stages.width, stages.height), (60, 40));
         let counts = stages.histogram();
         assert_eq!(counts.iter().sum::<usize>(), 60 * 40);
@@ -62,5 +61,22 @@ mod tests {
         assert!((0..60 * 40).all(|i| stages.ink[i] == line(i % 60, i / 60)));
         let over: usize = counts[usize::from(stages.threshold) + 1..].iter().sum();
         assert_eq!(over, 80, "threshold {}", stages.threshold);
+    }
+
+    #[test]
+    fn stages_are_of_what_is_traced_where_slits_look_like_light_lines() {
+        // a disc filled with a felt pen, under light from one side
+        let level = |x: usize, y: usize| {
+            let (x, y) = (x as f64, y as f64);
+            let paper = 235.0 - 0.55 * x;
+            let slit = (x / 12.0).fract() < 0.17 && (y - 120.0).abs() < 52.0;
+            let is_ink = (x - 110.0).hypot(y - 120.0) < 60.0 && !slit;
+            if is_ink { 0.25 * paper } else { paper }
+        };
+        let levels = (0..320 * 240).map(|i| level(i % 320, i / 320) as u8).collect();
+        let image = Grey::new(320, 240, levels).unwrap();
+        let stages = Stages::of(&Page::whole(&image), &Options::default()).unwrap();
+        let ink = |x: usize, y: usize| stages.ink[y * 320 + x];
+        assert!(ink(106, 120) && !ink(10, 10) && !ink(300, 120));
     }
 }

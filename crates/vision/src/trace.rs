@@ -13,6 +13,7 @@ use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::parts::Parts;
 use crate::region::{Region, pinholes, regions};
+use crate::seen::Seen;
 use crate::twice::{self, Once};
 use crate::{Grey, Page, Quality, VisionError, closer, gap, missed, on_ink, rest, screen, sweep, tone};
 
@@ -95,7 +96,7 @@ impl Options {
 
     /// Whether an image is refused that looks like no drawing: who says what is ink, that paper lies in it, or that shapes are
     /// meant has seen it.
-    fn judges(&self) -> bool {
+    pub(crate) fn judges(&self) -> bool {
         let told = self.force || self.sheets || self.threshold_percent.is_some();
         !told && matches!(self.mode, Mode::Auto | Mode::Centreline)
     }
@@ -169,18 +170,8 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
 /// figure; when an option is out of its bounds, or leaves nothing.
 pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionError> {
     options.check()?;
-    let mut ink = Ink::of(page, options.threshold_percent, options.sheets)?;
-    let mut mask = ink.mask();
-    let mut tone_percent = options.judges().then(|| ink.tone_percent(&mask));
-    if let Err(photograph) = tone_percent.map_or(Ok(()), tone::check) {
-        // slits in what was filled look like light lines: then the paper round them looks like broad ink
-        let dark = ink.quality.light_on_dark.then(|| Ink::of_dark_lines(page, options.sheets));
-        ink = dark.and_then(Result::ok).ok_or(photograph)?;
-        mask = ink.mask();
-        let percent = ink.tone_percent(&mask);
-        tone::check(percent)?;
-        tone_percent = Some(percent);
-    }
+    let Seen { mut ink, mut mask, tone_percent } = Seen::of(page, options)?;
+    tone_percent.map_or(Ok(()), tone::check)?;
     if ink.is_thin(&mask) {
         ink = ink.doubled();
         mask = ink.mask();
@@ -438,12 +429,13 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
     };
     let (rows, over_paper_px) = on_ink::only(mask, gap::bridged(dark, rows));
     // what is made of two passes lies between them, no further than a pen and a half from its ink
-    let Once { rows, before, again_px, is_sketch } = match options.despeckle_px2 {
+    let Once { rows, before, again_px } = match options.despeckle_px2 {
         None => twice::once(dark, rows),
         Some(_) => Once { rows, ..Once::default() },
     };
     let is_left = |row: &Row| ink.rules.as_ref().is_some_and(|off| off.left_line(&row.points, row.width));
     let (left, rows): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(is_left);
+    let is_sketch = !before.is_empty();
     // a pen leaves none
     let leaves_crumbs = options.despeckle_px2.is_none() && (ink.pencil.is_some() || is_sketch);
     let usual = leaves_crumbs.then(|| Usual::of(dark, &rows));

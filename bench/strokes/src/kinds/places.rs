@@ -23,23 +23,20 @@ impl Places {
         Self(places)
     }
 
-    /// The part from one share of the length to another, moved aside.
-    pub(super) fn beside(&self, from: f64, to: f64, aside: impl Fn(f64) -> f64, closed: bool) -> Path {
-        let last = self.0.len() - 1;
-        let index = |share: f64| (share * last as f64).round() as usize;
-        let at = |i: usize| self.0[i].0 + self.0[i].1 * aside(i as f64 / last as f64);
-        let points: Vec<_> = (index(from)..=index(to)).map(at).collect();
-        let kept = points.len() - usize::from(closed);
-        polyline(&points[..kept], closed)
-    }
-
     /// The part from one share of the length to another, round again where it is beyond the end, each place moved by what `aside` says
-    /// of its share.
-    pub(super) fn moved(&self, (from, to): (f64, f64), closed: bool, aside: impl Fn(f64) -> Vec2) -> Path {
+    /// of its share and of the normal there.
+    pub(super) fn moved(
+        &self,
+        (from, to): (f64, f64),
+        closed: bool,
+        aside: impl Fn(f64, Vec2) -> Vec2,
+    ) -> Path {
         let last = self.0.len() - 1;
         let index = |share: f64| (share * last as f64).round() as usize;
-        let at =
-            |i: usize| self.0[if i > last { (i - last) % last } else { i }].0 + aside(i as f64 / last as f64);
+        let at = |i: usize| {
+            let (place, normal) = self.0[if i > last { (i - last) % last } else { i }];
+            place + aside(i as f64 / last as f64, normal)
+        };
         polyline(&(index(from)..index(to) + usize::from(!closed)).map(at).collect::<Vec<_>>(), closed)
     }
 }

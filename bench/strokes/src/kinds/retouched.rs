@@ -1,6 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
-use tracelight_stroke::{Path, Point};
+use tracelight_stroke::{Path, Point, Vec2};
 
 use super::places::Places;
 use super::plain;
@@ -40,7 +40,8 @@ pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
     let ends = if random.chance(0.5) { [(0.0, 1.0), both] } else { [(0.0, both.1), (both.0, 1.0)] };
     let lines = [1.0, -1.0].into_iter().zip(ends).map(|(side, (from, to))| {
         let closed = whole.is_closed() && to - from > 0.999;
-        Ink::Line { path: places.beside(from, to, |s| 0.5 * side * apart(s), closed), pen, nib: hand.nib }
+        let path = places.moved((from, to), closed, |s, normal| normal * (0.5 * side * apart(s)));
+        Ink::Line { path, pen, nib: hand.nib }
     });
     Figure::stroke(whole.clone(), pen, lines.collect::<Vec<_>>())
 }
@@ -59,8 +60,9 @@ fn overlapping(random: &mut Random, (whole, pen): (&Path, f64), apart: f64) -> F
     let places = Places::along(whole, STEPS);
     let beyond = random.between(10.0, 60.0) / 360.0;
     let aside = |share: f64| 0.5 * apart * bump(share / beyond);
-    let first = places.beside(0.0, 1.0, |s| if s < beyond { -aside(s) } else { 0.0 }, false);
-    let again = places.beside(0.0, beyond, aside, false);
+    let first =
+        places.moved((0.0, 1.0), false, |s, normal| if s < beyond { normal * -aside(s) } else { Vec2::ZERO });
+    let again = places.moved((0.0, beyond), false, |s, normal| normal * aside(s));
     let line = |path| Ink::Line { path, pen, nib: crate::Nib::Round };
     Figure::stroke(whole.clone(), pen, [line(first), line(again)])
 }

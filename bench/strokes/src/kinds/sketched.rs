@@ -34,12 +34,12 @@ pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
         let places = Places::along(path, (length / (STEP_PENS * own)).ceil() as usize);
         let passes = passes(random, path, own);
         let drawn = passes.iter().map(|pass| {
-            let path = places.moved((pass.from, pass.to), false, |share| pass.aside(share));
+            let path = places.moved((pass.from, pass.to), false, |share, _| pass.aside(share));
             Ink::Touches(swelling::pressed(random, (own, PRESSED), &path))
         });
         let drawn: Vec<Ink> = drawn.collect();
         let ramp = RAMP_PENS * hand.pen / length;
-        let middle = places.moved((0.0, 1.0), path.is_closed(), |share| middle(&passes, share, ramp));
+        let middle = places.moved((0.0, 1.0), path.is_closed(), |share, _| middle(&passes, share, ramp));
         figure = figure.and(Figure::stroke(middle, hand.pen, drawn));
     }
     figure

@@ -13,12 +13,15 @@ const MARK_PX: (f64, f64) = (5.0, 14.0);
 /// The thinnest pen, px, and pens as shares of the height.
 const THINNEST_PX: f64 = 1.2;
 const PEN_SHARE: (f64, f64) = (1.0 / 12.0, 1.0 / 6.0);
+/// Letters of a word, fewest and most.
+const LETTERS: (usize, usize) = (1, 7);
 /// Letters with three or more lines above each other need this height, in pens.
 const TALL_PENS: f64 = 8.0;
 /// Of the figures this share is large.
 const LARGE: f64 = 0.2;
 /// And of the rest this share is a title: in a pen so many times the page's, which is that share of its height.
 const TITLES: f64 = 0.15;
+const TITLE_LETTERS: (usize, usize) = (3, 7);
 const TITLE_PENS: (f64, f64) = (1.5, 4.0);
 const TITLE_PEN_SHARE: (f64, f64) = (1.0 / 8.0, 1.0 / 4.5);
 
@@ -31,14 +34,14 @@ pub(super) fn words(random: &mut Random, hand: &Hand) -> Figure {
         let marker =
             Hand { pen: hand.pen * random.between(TITLE_PENS.0, TITLE_PENS.1), nib: Nib::Round, ..*hand };
         let height = marker.pen / random.between(TITLE_PEN_SHARE.0, TITLE_PEN_SHARE.1);
-        return Figure::lines(&marker, row_of(random, &marker, height, (3, 7)));
+        return Figure::lines(&marker, row(random, &marker, height, TITLE_LETTERS));
     }
     let height = random.log_between(HEIGHT_PX.0, HEIGHT_PX.1);
     let small = small(random, hand, height);
     let rows = if random.chance(0.3) { random.whole(2, 4) } else { 1 };
     let row = |i: usize| {
         let down = Affine::translate((0.0, 1.9 * height * i as f64));
-        row(random, &small, height).into_iter().map(move |p| p.transformed(down))
+        row(random, &small, height, LETTERS).into_iter().map(move |p| p.transformed(down))
     };
     Figure::lines(&small, (0..rows).flat_map(row).collect::<Vec<_>>())
 }
@@ -46,16 +49,11 @@ pub(super) fn words(random: &mut Random, hand: &Hand) -> Figure {
 /// A word in the page's pen.
 pub(super) fn word(random: &mut Random, hand: &Hand) -> Figure {
     let height = random.between(10.0, 15.0) * hand.pen;
-    Figure::lines(hand, row(random, hand, height))
+    Figure::lines(hand, row(random, hand, height, LETTERS))
 }
 
-/// Letters side by side, their feet at zero.
-fn row(random: &mut Random, hand: &Hand, height: f64) -> Vec<Path> {
-    row_of(random, hand, height, (1, 7))
-}
-
-/// The same of so many letters.
-fn row_of(random: &mut Random, hand: &Hand, height: f64, (fewest, most): (usize, usize)) -> Vec<Path> {
+/// So many letters side by side, their feet at zero.
+fn row(random: &mut Random, hand: &Hand, height: f64, (fewest, most): (usize, usize)) -> Vec<Path> {
     let mut x = 0.0;
     let mut paths = Vec::new();
     for _ in 0..random.whole(fewest, most) {

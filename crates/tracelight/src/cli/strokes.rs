@@ -191,7 +191,8 @@ fn stages(picture: &str, source: &Source, tracing: &TracingArgs) -> Result<Strin
         return Err(Failure::usage("usage", message));
     };
     let page = page(picture, &pixels.grey, tracing)?;
-    let stages = Stages::of(&page, tracing.threshold.0, tracing.sheets)
+    // what is ink does not depend on how long a pixel is
+    let stages = Stages::of(&page, &tracing.options(1.0))
         .map_err(|e| Failure::failed("no-strokes-found", format!("{picture}: {e}")))?;
     let name =
         Path::new(picture).file_name().map_or_else(|| picture.to_owned(), |n| n.to_string_lossy().into());

@@ -3,7 +3,7 @@
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use super::pencil::strength;
-use super::{Run, places, ways};
+use super::{Run, ways};
 use crate::centreline::Row;
 use crate::plane::Plane;
 
@@ -83,10 +83,8 @@ impl Run {
 
     /// How far over to the other row the line is: the darker one draws it nearer.
     fn share(&self, dark: &Plane<u8>, (kept, other): (&Row, &Row)) -> f64 {
-        let places = |row| places(0, row).collect::<Vec<_>>();
-        let (of_kept, of_other) = (places(kept), places(other));
-        let other_sum: f64 = (self.from..=self.to).map(|k| strength(dark, other, of_other[k])).sum();
-        let kept_sum: f64 = self.beside.iter().map(|&k| strength(dark, kept, of_kept[k])).sum();
+        let other_sum: f64 = (self.from..=self.to).map(|k| strength(dark, other, k)).sum();
+        let kept_sum: f64 = self.beside.iter().map(|&k| strength(dark, kept, k)).sum();
         other_sum / (kept_sum + other_sum).max(1.0)
     }
 

@@ -9,6 +9,7 @@
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::centreline::Row;
+use crate::line::parted;
 use crate::near::Near;
 use crate::plane::Plane;
 use crate::ridge::median;
@@ -41,12 +42,10 @@ const ROUNDS: usize = 6;
 #[derive(Default)]
 pub(crate) struct Once {
     pub(crate) rows: Vec<Row>,
-    /// How the rows lay before, if it is a sketch.
+    /// How the rows lay before, if it is a sketch; none of other drawings.
     pub(crate) before: Vec<Row>,
     /// Length of what was drawn again, px.
     pub(crate) again_px: f64,
-    /// Whether it is a pencil's sketch.
-    pub(crate) is_sketch: bool,
 }
 
 /// The rows of which those that were drawn twice are one.
@@ -73,7 +72,7 @@ pub(crate) fn once(dark: &Plane<u8>, rows: Vec<Row>) -> Once {
         }
         rows.retain(|row| row.points.len() > 1);
     }
-    Once { again_px: (length(&before) - length(&rows)).max(0.0), rows, before, is_sketch: true }
+    Once { again_px: (length(&before) - length(&rows)).max(0.0), rows, before }
 }
 
 fn length(rows: &[Row]) -> f64 {
@@ -82,14 +81,7 @@ fn length(rows: &[Row]) -> f64 {
 
 /// A row whose points follow each other as closely as they are looked at.
 fn evenly(row: Row) -> Row {
-    let mut points = Vec::with_capacity(row.points.len());
-    let ends = row.points.iter().skip(1).chain(row.points.first().filter(|_| row.closed));
-    for (&from, &to) in row.points.iter().zip(ends) {
-        let steps = (from.distance(to) / STEP_PX).ceil().max(1.0) as usize;
-        points.extend((0..steps).map(|i| from.lerp(to, i as f64 / steps as f64)));
-    }
-    points.extend(row.points.last().filter(|_| !row.closed));
-    Row { points, ..row }
+    Row { points: parted(&row.points, row.closed, |far| (far / STEP_PX).ceil() as usize), ..row }
 }
 
 /// A place on a row.
@@ -104,11 +96,14 @@ struct Place {
 /// The ways from place to place of a row.
 fn places(row: usize, r: &Row) -> impl Iterator<Item = Place> + '_ {
     let points = &r.points;
-    (0..points.len()).map(move |number| {
-        let (before, behind) = (number.saturating_sub(3), (number + 3).min(points.len() - 1));
-        let way = points[behind] - points[before];
-        Place { row, number, way: way / way.hypot().max(1e-9) }
-    })
+    (0..points.len()).map(move |number| Place { row, number, way: way_at(points, number) })
+}
+
+/// The direction at one of some points.
+fn way_at(points: &[Point], number: usize) -> Vec2 {
+    let (before, behind) = (number.saturating_sub(3), (number + 3).min(points.len() - 1));
+    let way = points[behind] - points[before];
+    way / way.hypot().max(1e-9)
 }
 
 /// Whether two places lie beside each other on ways that are nearly parallel.
@@ -130,7 +125,8 @@ struct Beside {
 struct Sketch<'a> {
     dark: &'a Plane<u8>,
     rows: &'a [Row],
-    lengths: Vec<f64>,
+    /// For each row how long the way is from its first point to each, px.
+    ways: Vec<Vec<f64>>,
     /// For each row for each of its places.
     beside: Vec<Vec<Beside>>,
     pen: f64,
@@ -150,6 +146,8 @@ struct Run {
     /// For each of those points the one of the first row.
     beside: Vec<usize>,
     length: f64,
+    /// Whether this is all of the other row.
+    is_all: bool,
     /// Whether the row that stays is left where it lies: the other one is too short to tell of the line.
     stays: bool,
 }
@@ -174,13 +172,13 @@ impl<'a> Sketch<'a> {
         for (number, row) in lines() {
             beside[number] = places(number, row).map(|place| Beside::of(rows, place, &near, apart)).collect();
         }
-        let lengths = rows.iter().map(|row| polyline_length(&row.points)).collect();
-        Self { dark, rows, lengths, beside, pen, apart }
+        let ways = rows.iter().map(|row| ways(&row.points)).collect();
+        Self { dark, rows, ways, beside, pen, apart }
     }
 
     /// All stretches of rows that are a second pass of others.
     fn runs(&self) -> Vec<Run> {
-        let longer = |a: usize, b: usize| (self.lengths[a], a) > (self.lengths[b], b);
+        let longer = |a: usize, b: usize| (self.length(a), a) > (self.length(b), b);
         let mut found = Vec::new();
         for (other, beside) in self.beside.iter().enumerate() {
             let mut kept: Vec<usize> =
@@ -218,7 +216,7 @@ impl<'a> Sketch<'a> {
         pairs: &[Option<Pair>],
         is_pass: impl Fn(&Run) -> bool,
     ) -> Option<Run> {
-        let way = ways(&self.rows[other].points);
+        let way = &self.ways[other];
         let (mut best, mut start, mut last) = ((0, 0, 0.0), None, 0);
         for k in (0..pairs.len()).filter(|&k| pairs[k].is_some()) {
             let from = start.filter(|_| way[k] - way[last] <= SKIPPED_PX.max(self.apart)).unwrap_or(k);
@@ -237,8 +235,8 @@ impl<'a> Sketch<'a> {
             beside.push(known);
         }
         let is_long = length >= LONG_PENS * self.pen;
-        let run = Run { kept, other, from, to, beside, length, stays: !is_long };
-        let is_all = way[from] < self.apart && way[way.len() - 1] - way[to] < self.apart;
+        let is_all = way[from] < self.apart && self.length(other) - way[to] < self.apart;
+        let run = Run { kept, other, from, to, beside, length, is_all, stays: !is_long };
         ((is_long || is_all) && !self.is_hatched(&run) && is_pass(&run)).then_some(run)
     }
 
@@ -254,37 +252,31 @@ impl<'a> Sketch<'a> {
     /// Whether one of both begins or ends at the first and at the last place of a stretch. Where both go on at both they are two that
     /// run together for a while.
     fn ends_by(&self, run: &Run) -> [bool; 2] {
-        let reaches_end = |row: &Row, k: usize| {
-            let near = |part: &[Point]| polyline_length(part) < ENDS * self.apart;
-            !row.closed && (near(&row.points[..=k]) || near(&row.points[k..]))
-        };
+        let reaches_end = |row, k| self.to_end(row, k) < ENDS * self.apart;
         let last = run.beside.len() - 1;
-        [(run.from, 0), (run.to, last)].map(|(k, i)| {
-            reaches_end(&self.rows[run.other], k) || reaches_end(&self.rows[run.kept], run.beside[i])
-        })
+        [(run.from, 0), (run.to, last)]
+            .map(|(k, i)| reaches_end(run.other, k) || reaches_end(run.kept, run.beside[i]))
     }
 
-    /// Whether both touch somewhere, and one ends, or both touch, wherever they part; or one of them runs beside the other from end to end,
-    /// and that goes on.
+    /// How far it is from one of a row's points to its nearer end, px: infinitely far on a closed one.
+    fn to_end(&self, row: usize, k: usize) -> f64 {
+        let way = self.ways[row][k];
+        if self.rows[row].closed { f64::INFINITY } else { way.min(self.length(row) - way) }
+    }
+
+    fn length(&self, row: usize) -> f64 {
+        self.ways[row].last().copied().unwrap_or(0.0)
+    }
+
+    /// Whether both touch somewhere, and one ends, or both touch, wherever they part; or all of the shorter one runs beside the other, which
+    /// goes on beyond it.
     fn is_closed(&self, run: &Run, pairs: &[Option<Pair>]) -> bool {
         let touches = |k: usize| pairs[k].is_some_and(|pair| pair.touches);
+        let leaves = [run.beside[0], run.beside[run.beside.len() - 1]];
+        let goes_on = || leaves.iter().any(|&k| self.to_end(run.kept, k) > ENDS * self.apart);
+        let is_pass = (run.from..=run.to).any(touches) || run.is_all && goes_on();
         let ends = self.ends_by(run);
-        let parts = [(run.from, ends[0]), (run.to, ends[1])];
-        let is_pass = (run.from..=run.to).any(touches) || self.is_alongside(run);
-        is_pass && parts.into_iter().all(|(k, ends)| ends || touches(k))
-    }
-
-    /// Whether all of the shorter row runs beside the other one, which goes on beyond it.
-    fn is_alongside(&self, run: &Run) -> bool {
-        let (kept, other) = (&self.rows[run.kept], &self.rows[run.other]);
-        let last = run.beside.len() - 1;
-        let beyond = |k: usize| {
-            let part = |points: &[Point]| polyline_length(points);
-            part(&kept.points[..=k]).min(part(&kept.points[k..]))
-        };
-        let is_all = part_of(other, 0, run.from) < self.apart
-            && part_of(other, run.to, other.points.len() - 1) < self.apart;
-        is_all && (kept.closed || beyond(run.beside[0]).max(beyond(run.beside[last])) > ENDS * self.apart)
+        is_pass && [(run.from, ends[0]), (run.to, ends[1])].into_iter().all(|(k, ends)| ends || touches(k))
     }
 }
 
@@ -307,11 +299,6 @@ impl Beside {
         let (low, high) = sides.fold((0_f64, 0_f64), |(low, high), v| (low.min(v), high.max(v)));
         Self { is_wide: high - low > apart, nearest: nearest.into_iter().map(|(_, place)| place).collect() }
     }
-}
-
-/// The length of a row between two of its points, px.
-fn part_of(row: &Row, from: usize, to: usize) -> f64 {
-    polyline_length(&row.points[from..=to])
 }
 
 /// How long the way is from the first of some points to each of them, px.

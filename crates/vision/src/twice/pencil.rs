@@ -1,8 +1,8 @@
 //! Whether lines are a pencil's sketch.
 
-use tracelight_stroke::{Vec2, polyline_length};
+use tracelight_stroke::polyline_length;
 
-use super::{Place, places};
+use super::{places, way_at};
 use crate::centreline::Row;
 use crate::plane::Plane;
 use crate::ridge::median;
@@ -33,17 +33,17 @@ pub(super) fn is_sketched(dark: &Plane<u8>, rows: &[Row]) -> bool {
     let (along, levels): (Vec<f64>, Vec<f64>) = long.iter().map(middles).unzip();
     let is_varied =
         long.len() >= LEAST_ROWS && median(&along) > VARIES_ALONG && varies(levels).0 > VARIES_BETWEEN;
-    let across = |row: &&Row| varies(places(0, row).map(|place| strength(dark, row, place)).collect()).0;
+    let across = |row: &&Row| varies((0..row.points.len()).map(|k| strength(dark, row, k)).collect()).0;
     is_varied
         && usual_length(rows) > LONG_WIDTHS
         && on_the_grid(&long) < MOST_ON_THE_GRID
         && median(&long.iter().map(across).collect::<Vec<_>>()) > VARIES_ACROSS
 }
 
-/// All the darkness that a cut across a row has.
-pub(super) fn strength(dark: &Plane<u8>, row: &Row, place: Place) -> f64 {
-    let reach = Vec2::new(-place.way.y, place.way.x) * (0.5 * row.width + BEYOND_PX);
-    let at = |i: usize| row.points[place.number] + reach * (2.0 * i as f64 / (CUT - 1) as f64 - 1.0);
+/// All the darkness that a cut across a row at one of its points has.
+pub(super) fn strength(dark: &Plane<u8>, row: &Row, number: usize) -> f64 {
+    let reach = way_at(&row.points, number).turn_90() * (0.5 * row.width + BEYOND_PX);
+    let at = |i: usize| row.points[number] + reach * (2.0 * i as f64 / (CUT - 1) as f64 - 1.0);
     (0..CUT).map(|i| dark.at(at(i))).sum()
 }
 
