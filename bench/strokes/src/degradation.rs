@@ -41,6 +41,8 @@ pub enum Degradation {
     Photo,
     /// A pen and a pencil on one sheet: some figures at 30 to 60 % of the others' contrast; noise.
     Inks,
+    /// Sun through a window, or a soft shadow: 0.45 to 0.75 of the light beside it; a pen up to half as pale as the paper, noise.
+    Sun,
 }
 
 impl Degradation {
@@ -48,10 +50,18 @@ impl Degradation {
     /// are all that is left to spoil them.
     pub fn of(set: Set) -> &'static [Self] {
         match set {
-            Set::Plain => Self::value_variants(),
-            Set::World => {
-                &[Self::Clean, Self::Light, Self::Blur, Self::Noise, Self::Jpeg, Self::Webcam, Self::Photo]
-            }
+            // `Sun` came later
+            Set::Plain => &Self::value_variants()[..Self::Sun as usize],
+            Set::World => &[
+                Self::Clean,
+                Self::Light,
+                Self::Blur,
+                Self::Noise,
+                Self::Jpeg,
+                Self::Webcam,
+                Self::Photo,
+                Self::Sun,
+            ],
         }
     }
 

@@ -19,6 +19,37 @@ pub(crate) enum Light {
     },
     /// Down by this much in the corners.
     Vignette(f64),
+    /// This share of it inside of a pane that the sun throws, or that something far away keeps it from, and that outside; soft over so
+    /// many px.
+    Pane {
+        pane: Pane,
+        inside: f64,
+        outside: f64,
+        soft: f64,
+    },
+}
+
+/// A parallelogram: where it is, and each pair of sides' normal (rad) and distance. Places and distances are shares of the picture's
+/// width and height.
+#[derive(Clone, Copy)]
+pub(crate) struct Pane {
+    at: (f64, f64),
+    normals: [f64; 2],
+    across: [f64; 2],
+}
+
+impl Pane {
+    /// 1 inside, 0 outside, and between them over `soft` px.
+    fn share(&self, x: f64, y: f64, (width, height): (f64, f64), soft: f64) -> f64 {
+        let from = Vec2::new(x - self.at.0 * width, y - self.at.1 * height);
+        let sides = self.normals.iter().zip(self.across);
+        let of = |(&normal, across): (&f64, f64)| {
+            let aside = from.dot(Vec2::from_angle(normal)).abs();
+            let into = ((0.5 * across * height - aside) / soft + 0.5).clamp(0.0, 1.0);
+            into * into * (3.0 - 2.0 * into)
+        };
+        sides.map(of).product()
+    }
 }
 
 impl Light {
@@ -38,6 +69,9 @@ impl Light {
                 let from = Vec2::new(x - through.0 * width, y - through.1 * height);
                 let into = (from.dot(Vec2::from_angle(normal)) / soft + 0.5).clamp(0.0, 1.0);
                 1.0 - (1.0 - left) * into
+            }
+            Light::Pane { pane, inside, outside, soft } => {
+                outside + (inside - outside) * pane.share(x, y, (width, height), soft)
             }
             Light::Vignette(depth) => 1.0 - depth * 2.0 * ((u - 0.5).powi(2) + (v - 0.5).powi(2)),
         }
@@ -59,4 +93,17 @@ pub(crate) fn shadow(random: &mut Random) -> Light {
         left: random.between(0.5, 0.7),
         soft: random.between(1.0, 3.0),
     }
+}
+
+/// The sun through a window, or the shadow of something far from the paper: no edge of it is sharp.
+pub(crate) fn soft(random: &mut Random, height: f64) -> Light {
+    let one = random.angle();
+    let pane = Pane {
+        at: (random.between(0.0, 1.0), random.between(0.0, 1.0)),
+        normals: [one, one + random.between(0.7, 1.57)],
+        across: [random.between(0.1, 0.6), random.between(0.5, 3.0)],
+    };
+    let dim = random.between(0.45, 0.75);
+    let (inside, outside) = if random.chance(0.5) { (1.0, dim) } else { (dim, 1.0) };
+    Light::Pane { pane, inside, outside, soft: height * random.between(0.04, 0.12) }
 }

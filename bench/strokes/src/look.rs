@@ -5,7 +5,7 @@ use tracelight_stroke::Point;
 use crate::desk::Desk;
 use crate::grain::Grain;
 use crate::ink::{dot, draw};
-use crate::light::{Light, one_sided, shadow};
+use crate::light::{Light, one_sided, shadow, soft};
 use crate::medium::Medium;
 use crate::paper::Paper;
 use crate::picture::through_jpeg;
@@ -105,6 +105,11 @@ impl Look {
             Degradation::Photo => {
                 let noise = random.between(1.0, 4.0);
                 Self { light: shadow(random), noise, jpeg: Some(random.whole(60, 90) as u8), ..look }
+            }
+            Degradation::Sun => {
+                let pale = random.between(0.0, 0.5);
+                let ink = look.paper.map(|paper| pale * paper);
+                Self { light: soft(random, size.height as f64), ink, noise: random.between(1.0, 3.0), ..look }
             }
             Degradation::Inks => {
                 Self { second: Some(random.between(0.3, 0.6)), noise: random.between(1.0, 3.0), ..look }
