@@ -34,7 +34,7 @@ const SETTLED: f64 = 8e-4;
 pub(crate) struct Paper {
     tile: usize,
     levels: Plane<f64>,
-    /// Of every pixel, where there are shadows with hard edges.
+    /// Of every pixel, where there are shadows.
     shaded: Option<Plane<u8>>,
 }
 
@@ -62,12 +62,12 @@ impl Paper {
         let levels =
             even.values.iter().zip(surface.on(&even)).map(|(r, s)| (r * s).clamp(DIMMEST, 255.0)).collect();
         let levels = Plane { values: levels, ..even };
-        let has_edges = sheets || shadow::is_cast(&bright);
-        let shaded = has_edges.then(|| shaded(seen, tile, &surface.on(&bright).collect::<Vec<_>>()));
+        let has_shadows = sheets || shadow::is_cast(&bright) || shadow::is_soft(&ratio);
+        let shaded = has_shadows.then(|| shaded(seen, tile, &surface.on(&bright).collect::<Vec<_>>()));
         Self { tile, levels, shaded }
     }
 
-    /// Whether shadows with hard edges fall on it: what is left of those edges looks like a pale line.
+    /// Whether shadows fall on it: what is left of their edges looks like a pale line.
     pub(crate) fn has_shadows(&self) -> bool {
         self.shaded.is_some()
     }
@@ -195,18 +195,22 @@ pub(crate) fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
     level.unwrap_or(0) as f64
 }
 
-/// A quadratic surface of log-brightness over the tiles, in coordinates from −1 to 1.
-struct Surface([f64; 6]);
+/// A quadratic surface of log-brightness over the tiles, in coordinates from −1 to 1; nowhere brighter than the brightest of them.
+struct Surface {
+    of: [f64; 6],
+    brightest: f64,
+}
 
 impl Surface {
     fn over(bright: &Plane<f64>) -> Self {
         let logs: Vec<f64> = bright.values.iter().map(|b| b.ln()).collect();
         let bases: Vec<[f64; 6]> = (0..logs.len()).map(|i| basis(bright, i)).collect();
-        let mut surface = Self([logs.iter().copied().fold(f64::MIN, f64::max), 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let brightest = logs.iter().copied().fold(f64::MIN, f64::max);
+        let mut surface = Self { of: [brightest, 0.0, 0.0, 0.0, 0.0, 0.0], brightest };
         for _ in 0..ROUNDS {
-            let before = surface.0;
-            surface = surface.nearer(&bases, &logs);
-            let moved = surface.0.iter().zip(before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let before = surface.of;
+            surface.of = surface.nearer(&bases, &logs);
+            let moved = surface.of.iter().zip(before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             if moved < SETTLED {
                 break;
             }
@@ -215,7 +219,7 @@ impl Surface {
     }
 
     /// One round of asymmetric least squares: a tile below the surface counts the less the further it is below.
-    fn nearer(&self, bases: &[[f64; 6]], logs: &[f64]) -> Self {
+    fn nearer(&self, bases: &[[f64; 6]], logs: &[f64]) -> [f64; 6] {
         let mut normal = [[0.0; 7]; 6];
         for (basis, &log) in bases.iter().zip(logs) {
             let below = ((self.log_at(basis) - log) * (1.0 / 0.08)).max(0.0);
@@ -232,18 +236,19 @@ impl Surface {
         // a hundredth of a tile's weight against bends and slopes that no paper calls for
         let ridge = 0.01 * logs.len() as f64;
         (1..6).for_each(|k| normal[k][k] += 0.1 * ridge);
-        solve::linear(normal).map_or(Self(self.0), Self)
+        solve::linear(normal).unwrap_or(self.of)
     }
 
     fn log_at(&self, basis: &[f64; 6]) -> f64 {
-        self.0.iter().zip(basis).map(|(c, b)| c * b).sum()
+        self.of.iter().zip(basis).map(|(c, b)| c * b).sum()
     }
 
     fn on<'a, T>(&'a self, tiles: &'a Plane<T>) -> impl Iterator<Item = f64> + 'a
     where
         T: Copy + Default,
     {
-        (0..tiles.values.len()).map(|i| self.log_at(&basis(tiles, i)).exp())
+        let log = |i: usize| self.log_at(&basis(tiles, i)).min(self.brightest);
+        (0..tiles.values.len()).map(move |i| log(i).exp())
     }
 }
 

@@ -1,6 +1,6 @@
-//! Hard shadows: paper whose brightness has steps, which no smooth surface follows.
+//! Shadows: paper whose brightness has steps, or falls off in places, as no smooth surface does.
 //!
-//! Whether there are any is seen on the tiles. If so, the paper is the picture closed (Serra, "Image Analysis and
+//! Whether there are any is seen on the tiles: by the steps of hard ones, and by what is darker than the surface of soft ones. If so, the paper is the picture closed (Serra, "Image Analysis and
 //! Mathematical Morphology", 1982) by a square that is wider than any pen: lines are filled up, the edges of shadows
 //! stay where they are to a pixel. What is dark and wider than that is a shadow if it reaches the picture's border, else it was filled.
 
@@ -18,6 +18,24 @@ pub(crate) fn is_cast(bright: &Plane<f64>) -> bool {
     let levels: Vec<f64> = patches(bright);
     let brightest = levels.iter().copied().fold(0.0, f64::max);
     levels.iter().any(|level| SHADE.contains(&(level / brightest)))
+}
+
+/// Whether a part of the paper that reaches the picture's border is darker than a smooth surface has it, however slowly it becomes so;
+/// `ratio` is of the tiles' brightness to that surface.
+pub(crate) fn is_soft(ratio: &Plane<f64>) -> bool {
+    let mut seen: Vec<bool> = ratio.values.iter().map(|level| !SHADE.contains(level)).collect();
+    for start in 0..seen.len() {
+        if !seen[start] {
+            let mut patch = vec![start];
+            seen[start] = true;
+            ratio.flood(&mut patch, &mut seen, |_, _| true);
+            let is_large = patch.len() as f64 >= LEAST_SHARE * seen.len() as f64;
+            if is_large && patch.iter().filter(|&&i| ratio.is_at_border(i)).count() > 2 {
+                return true;
+            }
+        }
+    }
+    false
 }
 
 /// Mean brightness of each patch of paper.
@@ -256,6 +274,21 @@ mod tests {
             };
             assert_eq!(now, expected, "{x}, {y}");
         }
+    }
+
+    #[test]
+    fn a_part_at_the_border_that_is_darker_than_light_falls_off_is_a_soft_shadow() {
+        let ratios = |level: &dyn Fn(usize, usize) -> f64| Plane {
+            width: 32,
+            height: 24,
+            values: (0..768).map(|i| level(i % 32, i / 32)).collect(),
+        };
+        let slowly = |x: usize| (1.0 - 0.04 * x.saturating_sub(12) as f64).max(0.6);
+        assert!(is_soft(&ratios(&|x, _| slowly(x))));
+        assert!(!is_soft(&ratios(&|x, _| slowly(x).max(0.9))));
+        // what is drawn in the middle, and ink at the border
+        assert!(!is_soft(&ratios(&|x, y| if x.abs_diff(16) < 8 && y.abs_diff(12) < 6 { 0.6 } else { 1.0 })));
+        assert!(!is_soft(&ratios(&|x, _| if x < 9 { 0.2 } else { 1.0 })));
     }
 
     #[test]

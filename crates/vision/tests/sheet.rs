@@ -309,6 +309,32 @@ fn what_is_no_sheet_is_traced_as_it_was() {
 }
 
 #[test]
+fn sun_through_a_window_makes_no_sheet_and_takes_nothing_of_the_drawing() {
+    let soft = |aside: f64, wide: f64| {
+        let into = ((0.5 * wide - aside.abs()) / 30.0 + 0.5).clamp(0.0, 1.0);
+        into * into * (3.0 - 2.0 * into)
+    };
+    // in the sun, half in it, and in the shade
+    let rings = [(170.0, 130.0), (330.0, 250.0), (500.0, 360.0)];
+    let is_ink = |x: f64, y: f64| rings.iter().any(|&(cx, cy)| ((x - cx).hypot(y - cy) - 60.0).abs() < 2.5);
+    for (shade, turn) in [(0.5, 0.0_f64), (0.5, 0.3), (0.7, -0.5), (0.6, 1.2)] {
+        let (sin, cos) = turn.sin_cos();
+        let sun = |x: f64, y: f64| {
+            let (across, down) = (x - 160.0, y - 120.0);
+            soft(across * cos + down * sin, 330.0) * soft(down * cos - across * sin, 250.0)
+        };
+        for (inside, outside) in [(1.0, shade), (shade, 1.0)] {
+            let lit = |x: f64, y: f64| outside + (inside - outside) * sun(x, y);
+            let image = picture(|x, y| lit(x, y) * if is_ink(x, y) { 90.0 } else { 235.0 });
+            let found = trace(&image, &Options::default()).unwrap();
+            let closed = found.strokes.strokes.iter().filter(|stroke| stroke.path.is_closed()).count();
+            let told = (Page::of(&image).sheet, found.strokes.strokes.len(), closed);
+            assert_eq!(told, (None, 3, 3), "{inside} in the pane, {outside} beside it, turned by {turn}");
+        }
+    }
+}
+
+#[test]
 fn a_scan_that_lies_a_little_askew_has_no_rim() {
     let level = |x: f64, y: f64| {
         if y > 470.0 + 0.015 * x {

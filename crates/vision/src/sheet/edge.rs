@@ -29,6 +29,10 @@ const LEAST_PX2: f64 = 64.0 * 64.0;
 const OVER: f64 = 0.06;
 const MOST_OVER: f64 = 0.75;
 
+/// Along a sheet's sides this share of what levels differ by further out and in they do within a pixel of the small picture either way;
+/// along some, on other sheets or in a book, it may be less.
+const LEAST_AT_ONCE: f64 = 0.6;
+
 /// A side in the full picture.
 struct Line {
     from: Point,
@@ -37,6 +41,8 @@ struct Line {
     bent: Vec<(f64, f64)>,
     /// How far inside the step it is over, px.
     blur: f64,
+    /// Which share of it is over within a pixel of the small picture either way.
+    at_once: f64,
 }
 
 impl Line {
@@ -44,11 +50,15 @@ impl Line {
     fn in_small(by: f64, quad: &Quad, side: usize) -> Self {
         let (from, to) = quad.ends(side);
         let scaled = |p: Point| Point::new(p.x * by, p.y * by);
-        Self { from: scaled(from), to: scaled(to), bent: Vec::new(), blur: 0.0 }
+        Self { from: scaled(from), to: scaled(to), bent: Vec::new(), blur: 0.0, at_once: 1.0 }
     }
 
     fn inward(&self) -> Vec2 {
         inward(self.from, self.to)
+    }
+
+    fn length(&self) -> f64 {
+        self.from.distance(self.to)
     }
 
     /// Further in, by so much at its beginning and at its end, px.
@@ -77,7 +87,7 @@ pub(super) struct Edge {
     pub(super) blur_px: f64,
 }
 
-/// The sheet, from where the small picture has it.
+/// The sheet, from where the small picture has it; `None` of what does not end at once.
 pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<Edge> {
     let by = small.by as f64;
     let is_seen = |side: usize| quad.sides[side].is_some();
@@ -85,7 +95,14 @@ pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<Edg
         true => seen(plane, by, quad, side),
         false => border(plane, by, quad, side),
     });
-    let outside = SIDES.into_iter().filter(|&side| is_seen(side)).flat_map(|k| lines[k].outside(plane, by));
+    // paper ends at once, where light ends slowly
+    let seen_sides = || SIDES.into_iter().filter(|&side| is_seen(side)).map(|side| &lines[side]);
+    let length: f64 = seen_sides().map(Line::length).sum();
+    let at_once: f64 = seen_sides().map(|line| line.at_once * line.length()).sum();
+    if at_once < LEAST_AT_ONCE * length {
+        return None;
+    }
+    let outside = seen_sides().flat_map(|line| line.outside(plane, by));
     let usual = middle(outside.collect());
     let strips = SIDES.map(|side| {
         let line = &lines[side];
@@ -199,8 +216,8 @@ fn border(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize) -> Line {
 /// A side that is seen.
 fn seen(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize) -> Line {
     let mut line = Line::in_small(by, quad, side);
-    let (steps, blur) = steps(plane, by, &line, quad.is_brighter);
-    line.blur = blur;
+    let Steps { at: steps, blur, at_once } = steps(plane, by, &line, quad.is_brighter);
+    (line.blur, line.at_once) = (blur, at_once);
     if steps.len() < LEAST_PLACES {
         return line;
     }
@@ -223,15 +240,24 @@ fn seen(plane: &Plane<u8>, by: f64, quad: &Quad, side: usize) -> Line {
     line
 }
 
-/// Where along a line, as a share, the step is, and how far inside of the line, px; and how far inside the step it is over.
-fn steps(plane: &Plane<u8>, by: f64, line: &Line, is_brighter: bool) -> (Vec<(f64, f64)>, f64) {
+/// The steps along a side.
+struct Steps {
+    /// Where along the line, as a share, and how far inside of it, px.
+    at: Vec<(f64, f64)>,
+    /// As a [`Line`] has them.
+    blur: f64,
+    at_once: f64,
+}
+
+/// The steps near a line.
+fn steps(plane: &Plane<u8>, by: f64, line: &Line, is_brighter: bool) -> Steps {
     let reach = (2.5 * by + 3.0).ceil();
     let beside = by.max(2.0) as usize;
-    let (inward, along) = (line.inward(), (line.to - line.from) / line.from.distance(line.to));
+    let (inward, along) = (line.inward(), (line.to - line.from) / line.length());
     let count = 2 * reach as usize + 1;
     let mut levels = vec![0.0; count];
     let mut sums = vec![0.0; count];
-    let (mut found, mut over) = (Vec::new(), Vec::new());
+    let (mut found, mut over, mut at_once) = (Vec::new(), Vec::new(), Vec::new());
     for k in 0..PLACES {
         let share = (k as f64 + 0.5) / PLACES as f64;
         let at = line.from.lerp(line.to, share);
@@ -247,15 +273,26 @@ fn steps(plane: &Plane<u8>, by: f64, line: &Line, is_brighter: bool) -> (Vec<(f6
         if let Some((off, step)) = step(&sums, beside, is_brighter) {
             found.push((share, off - reach, step));
             over.push(blur(&sums, off, step));
+            at_once.push(share_at_once(&sums, off, beside));
         }
     }
     let usual = middle(found.iter().map(|f| f.2).collect()).unwrap_or(0.0);
     let counted = found.iter().filter(|f| f.2 > LEAST_SHARE * usual);
-    let steps = counted.map(|&(share, off, _)| (share, off)).collect();
+    let at = counted.map(|&(share, off, _)| (share, off)).collect();
     over.sort_by(f64::total_cmp);
     // at some places a line of the drawing begins there
     let blur = over.get((MOST_OVER * over.len() as f64) as usize).copied().unwrap_or(0.0);
-    (steps, blur)
+    Steps { at, blur, at_once: middle(at_once).unwrap_or(1.0) }
+}
+
+/// Which share of what levels differ by at both ends they do so far on either side of a place.
+fn share_at_once(levels: &[f32], at: f64, beside: usize) -> f64 {
+    let last = levels.len() - 1;
+    let level = |at: f64| f64::from(levels[(at.round().max(0.0) as usize).min(last)]);
+    let ends = |from: usize| levels[from..from + beside].iter().sum::<f32>() / beside as f32;
+    let all = f64::from(ends(levels.len() - beside) - ends(0));
+    let near = level(at + beside as f64) - level(at - beside as f64);
+    if all == 0.0 { 1.0 } else { (near / all).clamp(0.0, 1.0) }
 }
 
 /// How far inside a step levels are as far in, px.

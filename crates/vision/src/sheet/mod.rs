@@ -162,9 +162,11 @@ struct Found {
 
 impl Found {
     fn of(plane: &Plane<u8>, small: &Small) -> Option<Self> {
-        let quad = choice::best(small).unwrap_or_else(|| Quad::all(&small.levels));
-        let Edge { sheet, square, blur_px } = edge::sheet(plane, small, &quad)?;
-        Some(Self { sheet, quad, square, blur_px })
+        let by = |quad: Quad| {
+            let Edge { sheet, square, blur_px } = edge::sheet(plane, small, &quad)?;
+            Some(Self { sheet, quad, square, blur_px })
+        };
+        choice::best(small).and_then(by).or_else(|| by(Quad::all(&small.levels)))
     }
 
     /// What someone says to be one.
