@@ -59,7 +59,7 @@ impl Size {
     pub fn of(kind: Kind) -> &'static [(Self, usize)] {
         match (kind, kind.set()) {
             (_, Set::Plain) => &Self::USUAL,
-            (Kind::Crayon, Set::World) => &Self::OF_A_PHONE,
+            (Kind::Crayon | Kind::Ballpoint, Set::World) => &Self::OF_A_PHONE,
             (_, Set::World) => &Self::OF_THE_WORLD,
         }
     }

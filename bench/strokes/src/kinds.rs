@@ -123,6 +123,8 @@ pub enum Kind {
     Table,
     /// Arrows, grids, ladders, snowflakes, wheels, firs and crowns, in thin pens and fat ones.
     Signs,
+    /// A ballpoint from near: the middle of its lines shines, or is bare.
+    Ballpoint,
 }
 
 impl Kind {
@@ -183,7 +185,9 @@ impl Kind {
             Kind::Signs => sign::figure(random, hand),
             Kind::Thick => random.pick(&THICK).figure(random, hand),
             Kind::Ruled | Kind::Squared | Kind::Dotted if random.chance(0.25) => writing::words(random, hand),
-            Kind::Frame | Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => lines(random, hand),
+            Kind::Frame | Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table | Kind::Ballpoint => {
+                lines(random, hand)
+            }
         }
     }
 }

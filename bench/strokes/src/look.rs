@@ -132,6 +132,7 @@ impl Look {
             Kind::Retouched if random.chance(0.4) => self.pencilled(random, page.pen),
             Kind::Silhouette => self.cut(random),
             Kind::Felt => self.felt(random),
+            Kind::Ballpoint => Self { medium: Medium::ballpoint(random, page.pen), ..self },
             Kind::Ruled | Kind::Squared | Kind::Dotted => {
                 Self { printed: Paper::under(random, kind, size, &page.strokes(), page.pen), ..self }
             }

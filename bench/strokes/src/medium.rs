@@ -24,6 +24,12 @@ const ROUGH_DEPTH: (f64, f64) = (1.0, 1.25);
 const CRAYON_GRAIN_PENS: (f64, f64) = (0.05, 0.15);
 const CRAYON_GRAIN_PX: f64 = 1.5;
 const CRAYON_SOFT_PENS: (f64, f64) = (0.06, 0.16);
+/// A ballpoint's streak: how long its stretches are, in pens, how much of the darkness it takes, how wide it is, in pens, and over how much of
+/// the grain's height it begins.
+const STREAK_PENS: (f64, f64) = (3.0, 12.0);
+const STREAK_DEPTH: (f64, f64) = (0.3, 0.8);
+const STREAK_WIDE: f64 = 0.3;
+const STREAK_RISE: f64 = 0.15;
 /// From bare to covered graphite rises over so much of the grain's height.
 const RISE: f64 = 0.45;
 
@@ -40,6 +46,13 @@ pub(crate) enum Medium {
         depth: f64,
         /// How soft the line's edge is, σ in px.
         soft_px: f64,
+    },
+    /// A ballpoint: of the middle of its lines it leaves a streak paler, up to so much, here and there.
+    Ballpoint {
+        /// Where.
+        streak: Grain,
+        /// How much of the ink's darkness is gone at most.
+        depth: f64,
     },
     /// A felt pen: this share of the light is taken where it goes once, more where it goes again.
     Felt(f64),
@@ -60,6 +73,13 @@ impl Medium {
         Self::Graphite { grain: Grain::new(random.bits(), (cell, cell)), depth, soft_px: SOFT_PX }
     }
 
+    /// A ballpoint of so many px.
+    pub(crate) fn ballpoint(random: &mut Random, pen: f64) -> Self {
+        let cell = pen * random.between(STREAK_PENS.0, STREAK_PENS.1);
+        let streak = Grain::new(random.bits(), (cell, cell));
+        Self::Ballpoint { streak, depth: random.between(STREAK_DEPTH.0, STREAK_DEPTH.1) }
+    }
+
     /// A crayon of so many px.
     pub(crate) fn crayon(random: &mut Random, pen: f64) -> Self {
         let cell = (pen * random.between(CRAYON_GRAIN_PENS.0, CRAYON_GRAIN_PENS.1)).max(CRAYON_GRAIN_PX);
@@ -77,6 +97,11 @@ impl Medium {
                 blur(&mut covered, soft_px);
                 rub(&mut covered, grain, depth);
             }
+            if let Self::Ballpoint { streak, depth } = self {
+                let mut middles = empty();
+                ink.iter().flatten().for_each(|ink| draw(&mut middles, &middle(ink), warp));
+                shine(&mut covered, &middles, streak, depth);
+            }
             return covered;
         };
         for stroke in ink {
@@ -86,6 +111,25 @@ impl Medium {
             covered.values.iter_mut().zip(&own.values).for_each(|(v, o)| *v += (1.0 - *v) * once as f32 * o);
         }
         covered
+    }
+}
+
+/// A line's middle, as wide as a ballpoint's streak.
+fn middle(ink: &Ink) -> Ink {
+    match ink {
+        Ink::Line { path, pen, nib } => Ink::Line { path: path.clone(), pen: STREAK_WIDE * pen, nib: *nib },
+        _ => ink.clone(),
+    }
+}
+
+/// Makes the middles of lines paler where there is a streak: half of the way.
+fn shine(covered: &mut Plane, middles: &Plane, streak: Grain, depth: f64) {
+    for (i, (value, &middle)) in covered.values.iter_mut().zip(&middles.values).enumerate() {
+        if middle > 0.01 {
+            let height = streak.at((i % middles.width) as f64, (i / middles.width) as f64);
+            let share = ((height - 0.5) / STREAK_RISE + 0.5).clamp(0.0, 1.0);
+            *value *= 1.0 - middle * (depth * share) as f32;
+        }
     }
 }
 
