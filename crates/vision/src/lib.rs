@@ -86,6 +86,7 @@ mod solve;
 mod split;
 mod spot;
 mod stages;
+mod streak;
 mod sweep;
 mod thin;
 mod tone;

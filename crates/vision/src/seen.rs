@@ -2,7 +2,7 @@
 
 use crate::ink::Ink;
 use crate::mask::Mask;
-use crate::{Options, Page, VisionError, tone};
+use crate::{Options, Page, VisionError, streak, tone};
 
 /// What is ink of a page, before it is looked at as closely as its lines need.
 pub(crate) struct Seen {
@@ -14,9 +14,12 @@ pub(crate) struct Seen {
 
 impl Seen {
     pub(crate) fn of(page: &Page<'_>, options: &Options) -> Result<Self, VisionError> {
-        let with_mask = |ink: Ink| {
-            let mask = ink.mask();
+        let with_mask = |mut ink: Ink| {
+            let mut mask = ink.mask();
             let tone_percent = options.judges().then(|| ink.tone_percent(&mask));
+            if let Some(edge_px) = ink.edge_px() {
+                streak::fill(&mut ink.darkness, &mut mask, 2.55 * ink.quality.contrast_percent, edge_px);
+            }
             Self { ink, mask, tone_percent }
         };
         let seen = with_mask(Ink::of(page, options.threshold_percent, options.sheets)?);
