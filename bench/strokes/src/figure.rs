@@ -38,6 +38,13 @@ pub enum Ink {
     },
     /// The inside of closed paths; a path inside another one is a hole.
     Fill(Vec<Path>),
+    /// The inside of a closed path, coloured in.
+    Wash {
+        /// Its edge.
+        outline: Path,
+        /// Share of the ink's darkness.
+        dark: f64,
+    },
     /// A line whose width or darkness changes along it.
     Touches(Vec<Touch>),
     /// A closed path filled with a felt pen, to and fro.
@@ -116,7 +123,7 @@ impl Figure {
                 let both = |t: &Touch| [2.0 * t.radius, 2.0 * (t.radius + t.reach.hypot())];
                 touches.iter().flat_map(both).collect()
             }
-            Ink::Fill(_) => vec![],
+            Ink::Fill(_) | Ink::Wash { .. } => vec![],
         };
         self.ink.iter().flat_map(widths)
     }
@@ -126,6 +133,7 @@ impl Figure {
         let stroke = |s: &Stroke| s.along(s.path.transformed(by));
         let ink = |i: &Ink| match i {
             Ink::Line { path, pen, nib } => Ink::Line { path: path.transformed(by), pen: *pen, nib: *nib },
+            Ink::Wash { outline, dark } => Ink::Wash { outline: outline.transformed(by), dark: *dark },
             Ink::Fill(paths) => Ink::Fill(paths.iter().map(|p| p.transformed(by)).collect()),
             Ink::Touches(touches) => Ink::Touches(touches.iter().map(|t| t.moved(by)).collect()),
             Ink::Scribble { outline, ways, pen } => Ink::Scribble {

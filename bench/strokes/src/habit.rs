@@ -90,6 +90,7 @@ impl Habit {
             Kind::Thick => {
                 Self { figures: (1, 1), pens: (1.6, 5.5), half: (0.28, 0.44), half_pens: 0.0, ..usual }
             }
+            Kind::Coloured => Self { half: (0.14, 0.42), half_pens: 12.0, ..usual },
             Kind::Ballpoint => Self { figures: (1, 7), pens: (1.4, 0.6), ..usual },
             Kind::Signs => Self { figures: (1, 4), pens: (1.0, 3.0), half_pens: 5.0, ..usual },
             Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table => {

@@ -32,6 +32,12 @@ pub(crate) fn draw(plane: &mut Plane, ink: &Ink, warp: Option<&Warp>) {
                 Nib::Sharp => line.sharp(plane),
             }
         }
+        Ink::Wash { outline, dark } => {
+            let mut inside = Plane::filled(plane.width, plane.height, 0.0);
+            fill(&mut inside, &[seen(outline)]);
+            inside.values.iter_mut().for_each(|value| *value *= *dark as f32);
+            plane.at_least(&inside);
+        }
         Ink::Fill(paths) => fill(plane, &paths.iter().map(seen).collect::<Vec<_>>()),
         Ink::Touches(touches) => touches.iter().for_each(|t| touch(plane, t, warp)),
         Ink::Scribble { outline, ways, pen } => {

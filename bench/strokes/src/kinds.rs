@@ -1,6 +1,7 @@
 //! The kinds of figures. Each is drawn about the origin, about `hand.size` to either side, and may break the rules:
 //! who places it asks [`rules`](crate::rules) and draws another one if so.
 
+mod coloured;
 mod connected;
 mod crossing;
 mod felt;
@@ -125,6 +126,8 @@ pub enum Kind {
     Signs,
     /// A ballpoint from near: the middle of its lines shines, or is bare.
     Ballpoint,
+    /// Closed figures coloured in paler than the lines on and about them.
+    Coloured,
 }
 
 impl Kind {
@@ -183,6 +186,7 @@ impl Kind {
             Kind::Spots => spot::figure(random, hand),
             Kind::Silhouette => silhouette::figure(random, hand),
             Kind::Signs => sign::figure(random, hand),
+            Kind::Coloured => coloured::figure(random, hand),
             Kind::Thick => random.pick(&THICK).figure(random, hand),
             Kind::Ruled | Kind::Squared | Kind::Dotted if random.chance(0.25) => writing::words(random, hand),
             Kind::Frame | Kind::Ruled | Kind::Squared | Kind::Dotted | Kind::Table | Kind::Ballpoint => {

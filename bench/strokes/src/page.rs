@@ -162,7 +162,9 @@ impl Sheet {
                 Ink::Touches(touches) => {
                     self.along(&touches.iter().map(|t| t.at).collect::<Vec<_>>(), &mut cells);
                 }
-                Ink::Scribble { outline, .. } => self.within(&outline.flatten(0.1), &mut cells),
+                Ink::Scribble { outline, .. } | Ink::Wash { outline, .. } => {
+                    self.within(&outline.flatten(0.1), &mut cells)
+                }
             }
         }
         cells.sort_unstable();
