@@ -34,6 +34,7 @@
 //! | `fiducial` | printed square markers and which they are |
 //! | `spot` | the laser's spot, by an image with it and one without |
 
+mod areas;
 mod bow;
 mod bridge;
 mod centreline;

@@ -8,7 +8,7 @@ use crate::levels::histogram;
 use crate::light::percentile;
 use crate::mask::Mask;
 use crate::plane::Plane;
-use crate::region::{Region, Run};
+use crate::region::Region;
 
 /// Around a corner the pixel's own size shows, not the shape: px either side.
 const REACH_PX: f64 = 2.0;
@@ -88,8 +88,8 @@ fn mean(points: &[Point]) -> Point {
 
 /// The darkness of a pixel all inside a region.
 fn full_level(dark: &Plane<u8>, region: &Region) -> f64 {
-    let levels = |run: &Run| &dark.row(run.y as usize)[run.from as usize..run.to as usize];
-    percentile(&histogram(region.runs.iter().map(levels)), 0.5).max(1.0)
+    let levels = region.runs.iter().map(|run| run.levels(dark));
+    percentile(&histogram(levels), 0.5).max(1.0)
 }
 
 /// An edge between an ink pixel and a paper pixel.

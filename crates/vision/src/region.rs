@@ -5,6 +5,7 @@ use std::ops::Range;
 use tracelight_stroke::{Point, Vec2};
 
 use crate::mask::{Cell, Mask};
+use crate::plane::Plane;
 
 /// Ink pixels `from..to` of row `y`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -18,6 +19,11 @@ impl Run {
     /// Number of pixels.
     pub(crate) fn length(&self) -> usize {
         (self.to - self.from) as usize
+    }
+
+    /// What a plane has there.
+    pub(crate) fn levels<'a>(&self, plane: &'a Plane<u8>) -> &'a [u8] {
+        &plane.row(self.y as usize)[self.from as usize..self.to as usize]
     }
 }
 

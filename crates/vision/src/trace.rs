@@ -170,7 +170,7 @@ pub fn trace(image: &Grey, options: &Options) -> Result<Traced, VisionError> {
 /// figure; when an option is out of its bounds, or leaves nothing.
 pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionError> {
     options.check()?;
-    let Seen { mut ink, mut mask, tone_percent } = Seen::of(page, options)?;
+    let Seen { mut ink, mut mask, tone_percent, areas } = Seen::of(page, options)?;
     tone_percent.map_or(Ok(()), tone::check)?;
     if ink.is_thin(&mask) {
         ink = ink.doubled();
@@ -194,13 +194,14 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
         Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, mask, patches, options),
     };
     let (width, height) = (ink.darkness.width as f64, ink.darkness.height as f64);
-    if strokes.is_empty() {
+    if strokes.is_empty() && areas.is_empty() {
         return Err(VisionError::NoInk { largest_px, least_px: largest_px + 1 });
     }
     let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
     let strokes = Drawing { strokes };
     let mut strokes = strokes.transformed(Affine::scale(ink.scale));
     let edges = drop_edges(&mut strokes, page, ink.quality.light_on_dark);
+    strokes.strokes.extend(areas);
     if options.sheets {
         strokes = ink_only(&strokes, &page.picture, ink.quality.light_on_dark);
     }
