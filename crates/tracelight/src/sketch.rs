@@ -121,6 +121,10 @@ fn doubts(traced: &Traced) -> Vec<String> {
     });
     let edges = (left_out.edges > 0)
         .then(|| format!("{} of paper or of a shadow left out", counted(left_out.edges, "edge")));
+    let areas = (left_out.areas > 0).then(|| {
+        let are = if left_out.areas == 1 { "that was coloured in is" } else { "that were coloured in are" };
+        format!("{} {are} drawn by the lines about them alone", counted(left_out.areas, "area"))
+    });
     let ruled = rules.iter().flat_map(|rules| &rules.combs).map(ruled);
     let dotted = left_out.dots.map(|Dots { count, spacing_px }| {
         format!(
@@ -135,6 +139,7 @@ fn doubts(traced: &Traced) -> Vec<String> {
         .chain(cut)
         .chain(again)
         .chain(edges)
+        .chain(areas)
         .collect()
 }
 

@@ -1,8 +1,8 @@
 //! The ink of a page as it is traced: with a second look where it seems to be no drawing.
 
-use tracelight_stroke::{Affine, Drawing, Stroke};
+use tracelight_stroke::{Affine, Drawing};
 
-use crate::areas::Picture;
+use crate::areas::{Areas, Picture};
 use crate::ink::Ink;
 use crate::inside::inside;
 use crate::mask::Mask;
@@ -14,21 +14,13 @@ pub(crate) struct Seen {
     pub(crate) mask: Mask,
     /// How much of it is broad and fades, if that is judged.
     pub(crate) tone_percent: Option<f64>,
-    /// The outlines of areas that were coloured in, px of the page's picture.
-    pub(crate) areas: Vec<Stroke>,
+    /// What was coloured in, px of the page's picture.
+    pub(crate) areas: Areas,
 }
 
 impl Seen {
     pub(crate) fn of(page: &Page<'_>, options: &Options) -> Result<Self, VisionError> {
-        let with_mask = |mut ink: Ink| {
-            let mut mask = ink.mask();
-            if let Some(edge_px) = ink.edge_px() {
-                streak::fill(&mut ink.darkness, &mut mask, 2.55 * ink.quality.contrast_percent, edge_px);
-            }
-            let seen = Self { ink, mask, tone_percent: None, areas: Vec::new() }.without_areas(options);
-            let tone_percent = options.judges().then(|| seen.ink.tone_percent(&seen.mask));
-            Self { tone_percent, ..seen }
-        };
+        let with_mask = |ink: Ink| Self::by(ink, options);
         let seen = with_mask(Ink::of(page, options.threshold_percent, options.sheets)?);
         // slits in what was filled look like light lines: then the paper round them looks like broad ink
         if seen.is_photograph()
@@ -41,20 +33,31 @@ impl Seen {
         Ok(seen)
     }
 
-    /// With what was coloured in taken out, unless outlines are wanted or who says what is ink.
-    fn without_areas(mut self, options: &Options) -> Self {
-        let looks_for_lines = matches!(options.mode, Mode::Auto | Mode::Centreline);
-        let (Some(edge_px), None, true) = (self.ink.edge_px(), options.threshold_percent, looks_for_lines)
-        else {
-            return self;
-        };
+    /// Its mask, with streaks filled and areas taken out where lines are looked for, unless someone says what is ink.
+    fn by(ink: Ink, options: &Options) -> Self {
+        let mask = ink.mask();
+        let mut seen = Self { ink, mask, tone_percent: None, areas: Areas::default() };
+        if let (Some(edge_px), None) = (seen.ink.edge_px(), options.threshold_percent) {
+            if matches!(options.mode, Mode::Auto | Mode::Centreline) {
+                let strength = 2.55 * seen.ink.quality.contrast_percent;
+                streak::fill(&mut seen.ink.darkness, &mut seen.mask, strength, edge_px);
+            }
+            if options.mode == Mode::Auto {
+                seen.take_areas(edge_px, options);
+            }
+        }
+        seen.tone_percent = options.judges().then(|| seen.ink.tone_percent(&seen.mask));
+        seen
+    }
+
+    fn take_areas(&mut self, edge_px: f64, options: &Options) {
         let (dark, ink, noise) = (&mut self.ink.darkness, &mut self.mask, self.ink.quality.noise_levels);
         let (width, height) = (dark.width as f64, dark.height as f64);
-        let outlines = Picture { dark, ink, edge_px, noise }.without_areas(options);
+        let Areas { outlines, lined } = Picture { dark, ink, edge_px, noise }.take_areas(options);
         let strokes =
             outlines.iter().map(|stroke| stroke.along(inside(&stroke.path, width, height))).collect();
-        let outlines = Drawing { strokes }.transformed(Affine::scale(self.ink.scale));
-        Self { areas: outlines.strokes, ..self }
+        let outlines = Drawing { strokes }.transformed(Affine::scale(self.ink.scale)).strokes;
+        self.areas = Areas { outlines, lined };
     }
 
     fn is_photograph(&self) -> bool {

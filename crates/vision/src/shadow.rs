@@ -29,13 +29,18 @@ pub(crate) fn is_soft(ratio: &Plane<f64>) -> bool {
             let mut patch = vec![start];
             seen[start] = true;
             ratio.flood(&mut patch, &mut seen, |_, _| true);
-            let is_large = patch.len() as f64 >= LEAST_SHARE * seen.len() as f64;
-            if is_large && patch.iter().filter(|&&i| ratio.is_at_border(i)).count() > 2 {
+            if is_of_paper(ratio, &patch) {
                 return true;
             }
         }
     }
     false
+}
+
+/// Whether a patch of tiles is so large, and so much of it at the picture's border, that it is paper.
+fn is_of_paper(tiles: &Plane<f64>, patch: &[usize]) -> bool {
+    let is_large = patch.len() as f64 >= LEAST_SHARE * tiles.values.len() as f64;
+    is_large && patch.iter().filter(|&&i| tiles.is_at_border(i)).count() > 2
 }
 
 /// Mean brightness of each patch of paper.
@@ -46,8 +51,7 @@ fn patches(bright: &Plane<f64>) -> Vec<f64> {
     for start in 0..seen.len() {
         if !seen[start] {
             let patch = flooded(bright, start, SAME, &mut seen);
-            let large = patch.len() as f64 >= LEAST_SHARE * seen.len() as f64;
-            if large && patch.iter().filter(|&&i| bright.is_at_border(i)).count() > 2 {
+            if is_of_paper(bright, &patch) {
                 found.push(patch.iter().map(|&i| bright.values[i]).sum::<f64>() / patch.len() as f64);
             }
         }

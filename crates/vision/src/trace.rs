@@ -153,6 +153,8 @@ pub struct LeftOut {
     pub again_px: f64,
     /// Lines that are the edge of a sheet, of a table or of a shadow.
     pub edges: usize,
+    /// Areas that were coloured in paler than the lines about them, which alone are drawn.
+    pub areas: usize,
 }
 
 /// Finds the strokes of an image: of the sheet of paper in it, if it shows one with something beside it.
@@ -194,14 +196,14 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
         Mode::Auto | Mode::Centreline => lines_and_shapes(&ink, mask, patches, options),
     };
     let (width, height) = (ink.darkness.width as f64, ink.darkness.height as f64);
-    if strokes.is_empty() && areas.is_empty() {
+    if strokes.is_empty() && areas.outlines.is_empty() {
         return Err(VisionError::NoInk { largest_px, least_px: largest_px + 1 });
     }
     let strokes = strokes.iter().map(|s| s.along(inside(&s.path, width, height))).collect();
     let strokes = Drawing { strokes };
     let mut strokes = strokes.transformed(Affine::scale(ink.scale));
     let edges = drop_edges(&mut strokes, page, ink.quality.light_on_dark);
-    strokes.strokes.extend(areas);
+    strokes.strokes.extend(areas.outlines);
     if options.sheets {
         strokes = ink_only(&strokes, &page.picture, ink.quality.light_on_dark);
     }
@@ -215,7 +217,7 @@ pub fn trace_page(page: &Page<'_>, options: &Options) -> Result<Traced, VisionEr
         quality: Quality { pen_px: usual_pen(&strokes), tone_percent, ..ink.quality },
         strokes,
         missed_ink,
-        left_out: LeftOut { edges, ..left_out.scaled(ink.scale) },
+        left_out: LeftOut { edges, areas: areas.lined, ..left_out.scaled(ink.scale) },
         rules: ink.rules.map(|off| off.rules.scaled(ink.scale)),
     })
 }
@@ -475,6 +477,7 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
         over_paper_px,
         again_px,
         edges: 0,
+        areas: 0,
     };
     Found { strokes, missed_ink: missed as f64 / (all as f64).max(1.0), left_out }
 }
