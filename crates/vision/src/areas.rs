@@ -12,7 +12,7 @@ use crate::light::percentile;
 use crate::mask::Mask;
 use crate::outline::Outliner;
 use crate::plane::Plane;
-use crate::region::{Region, regions};
+use crate::region::{Region, mask_of, regions};
 
 /// An area holds a regular octagon of this share of the picture's shorter side, and of so many px.
 const BROAD: usize = 24;
@@ -36,6 +36,8 @@ const LEAST_EDGE_PX: usize = 3;
 const BLURRED: f64 = 2.0;
 /// Where dark lines run along this share of its edge they are all that is drawn of it.
 const MOST_LINED: f64 = 0.5;
+/// Its edge is so wide, px.
+const ABOUT_PX: usize = 2;
 
 /// How dark the picture is, and its ink.
 pub(crate) struct Picture<'a> {
@@ -93,7 +95,7 @@ impl Picture<'_> {
         *self.ink = ink.clone().without(&areas);
         // what is drawn on an area is no edge of it, and what pales outside of a line about it is none of it
         let solid = areas.opened(self.thin());
-        let whole = solid.dilated(side / 2 + 1).eroded(side / 2 + 1).and(&ink);
+        let whole = solid.closed(side / 2 + 1).and(&ink);
         let mut drawn = self.ink.clone();
         drawn.add(&whole);
         let mut outliner = Outliner::new(&dark, &whole, &drawn, self.edge_px);
@@ -152,15 +154,11 @@ impl Picture<'_> {
         let least = tones.fill + LINE * (tones.lines - tones.fill);
         let pale = patch.clone().without(&over(levels, least as u8));
         let thin = self.thin();
-        let mut cores = Mask::empty(pale.width, pale.height);
-        core.fill_into(&mut cores);
-        let cores = cores.and(&pale);
+        let core = mask_of(&pale, [core]).and(&pale);
         let patches = regions(&pale.clone().opened(thin));
-        let mut mask = Mask::empty(pale.width, pale.height);
-        let met = patches.iter().filter(|patch| patch.cells(&cores).next().is_some());
-        met.for_each(|patch| patch.fill_into(&mut mask));
+        let met = patches.iter().filter(|patch| patch.cells(&core).next().is_some());
         let reach = (BLURRED * self.edge_px).ceil() as usize + 2;
-        mask.dilated_by(reach.max(thin)).and(&pale)
+        mask_of(&pale, met).dilated_by(reach.max(thin)).and(&pale)
     }
 }
 
@@ -192,11 +190,13 @@ impl Tones {
 
 /// Whether lines run along an area's edge.
 fn is_lined(area: &Region, areas: &Mask, ink: &Mask) -> bool {
-    let mut one = Mask::empty(areas.width, areas.height);
-    area.fill_into(&mut one);
-    let about = one.clone().dilated_by(2).without(areas);
-    let lined = about.clone().and(ink).count();
-    lined as f64 >= MOST_LINED * about.count() as f64
+    // no more of the picture than is looked at
+    let Some((columns, rows)) = area.bounds(ABOUT_PX, (ink.width, ink.height)) else { return false };
+    let areas = areas.part(&columns, &rows);
+    let about =
+        mask_of(&areas, [&area.seen_from(columns.start, rows.start)]).dilated_by(ABOUT_PX).without(&areas);
+    let all = about.count();
+    about.and(&ink.part(&columns, &rows)).count() as f64 >= MOST_LINED * all as f64
 }
 
 #[cfg(test)]

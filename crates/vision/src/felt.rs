@@ -34,7 +34,7 @@ pub(crate) fn filled(ink: &Mask, pen: f64) -> Option<Mask> {
         return None;
     }
     let slit = (SLIT_PENS * pen).round() as usize;
-    let mut closed = ink.clone().dilated(slit + 1).eroded(slit + 1);
+    let mut closed = ink.clone().closed(slit + 1);
     closed.add(ink);
     let slits = closed.clone().without(ink);
     if slits.is_empty() {

@@ -280,28 +280,22 @@ mod tests {
         }
     }
 
+    fn tiles(level: &dyn Fn(usize, usize) -> f64) -> Plane<f64> {
+        Plane { width: 32, height: 24, values: (0..768).map(|i| level(i % 32, i / 32)).collect() }
+    }
+
     #[test]
     fn a_part_at_the_border_that_is_darker_than_light_falls_off_is_a_soft_shadow() {
-        let ratios = |level: &dyn Fn(usize, usize) -> f64| Plane {
-            width: 32,
-            height: 24,
-            values: (0..768).map(|i| level(i % 32, i / 32)).collect(),
-        };
         let slowly = |x: usize| (1.0 - 0.04 * x.saturating_sub(12) as f64).max(0.6);
-        assert!(is_soft(&ratios(&|x, _| slowly(x))));
-        assert!(!is_soft(&ratios(&|x, _| slowly(x).max(0.9))));
+        assert!(is_soft(&tiles(&|x, _| slowly(x))));
+        assert!(!is_soft(&tiles(&|x, _| slowly(x).max(0.9))));
         // what is drawn in the middle, and ink at the border
-        assert!(!is_soft(&ratios(&|x, y| if x.abs_diff(16) < 8 && y.abs_diff(12) < 6 { 0.6 } else { 1.0 })));
-        assert!(!is_soft(&ratios(&|x, _| if x < 9 { 0.2 } else { 1.0 })));
+        assert!(!is_soft(&tiles(&|x, y| if x.abs_diff(16) < 8 && y.abs_diff(12) < 6 { 0.6 } else { 1.0 })));
+        assert!(!is_soft(&tiles(&|x, _| if x < 9 { 0.2 } else { 1.0 })));
     }
 
     #[test]
     fn a_slope_is_no_shadow_and_a_step_is() {
-        let tiles = |level: &dyn Fn(usize, usize) -> f64| Plane {
-            width: 32,
-            height: 24,
-            values: (0..768).map(|i| level(i % 32, i / 32)).collect(),
-        };
         assert!(!is_cast(&tiles(&|x, _| 240.0 - 5.0 * x as f64)));
         assert!(is_cast(&tiles(&|x, y| if x + y > 30 { 140.0 } else { 235.0 })));
         // a filled shape inside the picture, and one of dark ink at its border

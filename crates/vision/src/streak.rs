@@ -32,8 +32,7 @@ pub(crate) fn fill(dark: &mut Plane<u8>, ink: &mut Mask, strength: f64, edge_px:
     if dark_width < LEAST_PX {
         return;
     }
-    let reach = (WIDEST * dark_width).round() as usize + 1;
-    let closed = ink.clone().dilated(reach).eroded(reach);
+    let closed = ink.clone().closed((WIDEST * dark_width).round() as usize + 1);
     let pale = over(dark, (LEAST_DARK * strength) as u8).and(&closed).without(ink);
     if pale.is_empty() {
         return;

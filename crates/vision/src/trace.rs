@@ -476,8 +476,7 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
         dots: dotted.map(|dotted| dotted.told),
         over_paper_px,
         again_px,
-        edges: 0,
-        areas: 0,
+        ..LeftOut::default()
     };
     Found { strokes, missed_ink: missed as f64 / (all as f64).max(1.0), left_out }
 }

@@ -28,6 +28,11 @@ impl Mask {
         self
     }
 
+    /// Closed by upright squares of `side` pixels: what is narrower between its ink is filled.
+    pub(crate) fn closed(self, side: usize) -> Self {
+        self.dilated(side).eroded(side)
+    }
+
     /// Four pixels for each of its own, on a mask of this size.
     pub(crate) fn doubled_to(&self, width: usize, height: usize) -> Self {
         let mut out = Self::empty(width, height);
