@@ -113,7 +113,10 @@ impl Picture<'_> {
     /// The areas, by what is broad.
     fn parts(&self, broad: &Mask) -> Vec<(Tones, Part)> {
         let mut parts = Vec::new();
-        if broad.is_empty() {
+        // darker than this nothing is paler than lines, however dark they are
+        let palest =
+            |core: &Region| percentile(&histogram(core.runs.iter().map(|run| run.levels(self.dark))), 0.5);
+        if !regions(broad).iter().any(|core| palest(core) <= MOST_DARK * 255.0) {
             return parts;
         }
         for patch in regions(self.ink).iter().filter(|patch| patch.cells(broad).next().is_some()) {

@@ -55,10 +55,10 @@ impl<T: Copy + Default> Plane<T> {
         let mut out = Self::filled(h, w, T::default());
         for top in (0..h).step_by(SQUARE) {
             for left in (0..w).step_by(SQUARE) {
-                for y in top..(top + SQUARE).min(h) {
-                    for x in left..(left + SQUARE).min(w) {
-                        out.values[x * h + y] = self.values[y * w + x];
-                    }
+                let bottom = (top + SQUARE).min(h);
+                for x in left..(left + SQUARE).min(w) {
+                    let column = out.values[x * h..][top..bottom].iter_mut();
+                    column.enumerate().for_each(|(down, v)| *v = self.values[(top + down) * w + x]);
                 }
             }
         }

@@ -166,8 +166,9 @@ pub(crate) fn is_ink(level: f64, expected: f64) -> bool {
 fn closed(image: &Plane<u8>, side: usize) -> Plane<u8> {
     let reach = side / 2;
     let wide = widened(image, reach);
-    let greatest = along_rows(along_columns(wide, reach, u8::max), reach, u8::max);
-    let closed = along_rows(along_columns(greatest, reach, u8::min), reach, u8::min);
+    // rows as columns once: the order of the two sides of a square does not matter
+    let rows = along_columns(along_columns(wide, reach, u8::max).transposed(), reach, u8::max);
+    let closed = along_columns(along_columns(rows, reach, u8::min).transposed(), reach, u8::min);
     let mut out = Plane::filled(image.width, image.height, 0);
     for y in 0..image.height {
         out.row_mut(y).copy_from_slice(&closed.row(y + reach)[reach..][..image.width]);
@@ -191,7 +192,7 @@ fn widened(image: &Plane<u8>, by: usize) -> Plane<u8> {
 
 /// For each pixel the most of those up to `reach` above and below (van Herk, "A fast algorithm for local minimum and
 /// maximum filters", 1992): most of a block of rows up to a row, most of a block from a row on.
-fn along_columns(plane: Plane<u8>, reach: usize, most: fn(u8, u8) -> u8) -> Plane<u8> {
+fn along_columns(plane: Plane<u8>, reach: usize, most: impl Fn(u8, u8) -> u8) -> Plane<u8> {
     let (w, h, block) = (plane.width, plane.height, 2 * reach + 1);
     let (mut before, mut after) = (plane.clone(), plane);
     for y in (1..h).filter(|y| y % block != 0) {
@@ -205,20 +206,15 @@ fn along_columns(plane: Plane<u8>, reach: usize, most: fn(u8, u8) -> u8) -> Plan
     let mut out = Plane::filled(w, h, 0);
     for y in 0..h {
         let (first, last) = (y.saturating_sub(reach), (y + reach).min(h - 1));
+        let (before, after, out) = (before.row(last), after.row(first), out.row_mut(y));
         // at the borders the window may lie within one block: then one of the two reaches beyond it
-        let alone = first / block == last / block;
-        let both = before.row(last).iter().zip(after.row(first)).map(|(&b, &a)| match (alone, first) {
-            (true, 0) => b,
-            (true, _) => a,
-            _ => most(a, b),
-        });
-        out.row_mut(y).iter_mut().zip(both).for_each(|(v, both)| *v = both);
+        match (first / block == last / block, first) {
+            (true, 0) => out.copy_from_slice(before),
+            (true, _) => out.copy_from_slice(after),
+            _ => out.iter_mut().zip(before.iter().zip(after)).for_each(|(v, (&b, &a))| *v = most(a, b)),
+        }
     }
     out
-}
-
-fn along_rows(plane: Plane<u8>, reach: usize, most: fn(u8, u8) -> u8) -> Plane<u8> {
-    along_columns(plane.transposed(), reach, most).transposed()
 }
 
 #[cfg(test)]
