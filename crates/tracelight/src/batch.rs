@@ -31,11 +31,10 @@ use pictures::Picture;
 use queue::Panicked;
 use report::Report;
 pub(crate) use report::{Outcome, Row, Totals};
+use tracelight_task::{Failure, Stop, Task};
 
+use crate::bar::Bar;
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::stop::Stop;
 
 /// What a batch is asked for.
 pub(crate) struct Batch<'a> {
@@ -84,8 +83,9 @@ pub(crate) fn run(batch: &Batch<'_>, trace: &Tracer<'_>, stop: &Stop) -> Result<
     let manifest = batch.out.as_ref().map(|out| Manifest::open(out.folder)).transpose()?;
     let mut report = Report::new(batch.pictures.len(), batch.voice.json);
     let left = keep(batch, &files, manifest.as_ref(), &mut report);
-    let progress = Progress::new(batch.voice.quiet);
-    progress.pictures(left.len() as u64);
+    let bar = Bar::new(batch.voice.quiet);
+    let task = Task { progress: &bar, stop };
+    task.progress.things(left.len() as u64);
     let work = Work { batch, files: &files, left: &left, manifest: manifest.map(Mutex::new), trace };
     let limits = queue::Limits { jobs: batch.jobs, bytes: weight::MOST_BYTES };
     queue::run(&work, left.len(), limits, stop, |index, result| {
@@ -93,9 +93,9 @@ pub(crate) fn run(batch: &Batch<'_>, trace: &Tracer<'_>, stop: &Stop) -> Result<
         let name = &batch.pictures[index].name;
         let made = result.unwrap_or_else(|panicked| Made::fallen(name, &panicked));
         report.add(index, Row { picture: name.clone(), outcome: made.outcome }, made.told);
-        progress.finished(&table::shortened(name, LAST_NAME_COLUMNS));
+        task.progress.finished(&table::shortened(name, LAST_NAME_COLUMNS));
     });
-    Ok(report.answer(batch, &progress, began.elapsed().as_secs_f64() * 1e3))
+    Ok(report.answer(batch, task, began.elapsed().as_secs_f64() * 1e3))
 }
 
 /// A file for each picture, if they are to be written.

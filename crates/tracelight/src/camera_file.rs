@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use toml_edit::{Array, Item};
 use tracelight_aim::{Camera, CameraPose, Lens, LensBelief, PlacedPage, Survey, SurveyedCamera};
 use tracelight_stroke::{Affine, Point};
+use tracelight_task::Failure;
 
 use crate::eye::wall::SeenWall;
-use crate::failure::Failure;
 use crate::picture::read_bytes;
 
 /// Largest camera file, bytes: twenty times what is written.

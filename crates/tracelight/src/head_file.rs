@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
+use tracelight_task::Failure;
 
 use crate::camera_file::{PageName, PageTable};
 use crate::cli::driving::Driving;
 use crate::eye::head::FoundHead;
 use crate::eye::spots::Timing;
 use crate::eye::wall::SeenWall;
-use crate::failure::Failure;
 use crate::picture::read_bytes;
 
 /// Largest head file, bytes.

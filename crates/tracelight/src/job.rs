@@ -12,23 +12,22 @@ use std::time::Instant;
 use tracelight_lab::{LAPS_WORTH, identify};
 use tracelight_rig::{Command, Joint, PanTilt, Rig};
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Tracking, score};
+use tracelight_task::{Failure, Stop, Task};
 use tracelight_trajectory::Plan;
 
+use crate::bar::Bar;
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::eye::homing::{check_homed, lost_power};
 use crate::eye::room::{Furnished, left};
-use crate::failure::Failure;
 use crate::output::{
     self, EyeFigures, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing,
 };
 use crate::picture;
-use crate::progress::Progress;
 use crate::rigfile;
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::settings;
 use crate::sketch::{Placed, Sketch, place, sketch};
-use crate::stop::Stop;
 use seen::Seen;
 use watched::{WatchedJob, WatchedRun, run_watched};
 
@@ -70,31 +69,32 @@ struct Laps {
 
 /// Picture → strokes → target → order → plan → run → results.
 pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
-    let progress = Progress::new(args.voice.quiet);
-    let prepared = prepare(args, &progress, stop)?;
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
+    let prepared = prepare(args, task)?;
     check_laps(args.laps, &prepared.schedule.plan)?;
     let dir = args.out.clone().unwrap_or_else(|| default_dir(args));
     std::fs::create_dir_all(&dir).map_err(|e| cannot_write(&dir, &e))?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
-    let laps = run_laps(args, &prepared, &dir, &settings, (&progress, stop))?;
-    progress.stage("report", 1);
+    let laps = run_laps(args, &prepared, &dir, &settings, task)?;
+    task.stage("report", 1);
     let summary = write(args, &prepared, &laps, &dir, &settings)?;
     let failure = laps.failure.or_else(|| ending(&laps.last, stop));
     Ok(Outcome { summary, dir, failure })
 }
 
-fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepared, Failure> {
+fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     args.check_camera()?;
     if args.eye.camera.is_some() {
-        return seen::prepare(args, progress, stop);
+        return seen::prepare(args, task);
     }
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
-    progress.stage("strokes", 1);
+    task.stage("strokes", 1);
     let sketch = sketch(args.name(), picture::read(args.name())?, &args.tracing, &args.placement)?;
-    stop.check()?;
+    task.check()?;
     let placed = place(&sketch, &args.placement);
-    planned(sketch.shown(), placed, driving, None, (progress, stop))
+    planned(sketch.shown(), placed, driving, None, task)
 }
 
 /// A drawing on the target, in order and in time.
@@ -103,15 +103,15 @@ fn planned(
     placed: Placed,
     driving: Driving,
     seen: Option<Seen>,
-    (progress, stop): (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<Prepared, Failure> {
-    progress.stage("plan", 1);
+    task.stage("plan", 1);
     let began = Instant::now();
     let schedule = schedule(&placed, &driving, OrderBy::default(), OrderEffort::default())?;
     let plan_ms = began.elapsed().as_secs_f64() * 1e3;
-    stop.check()?;
+    task.check()?;
     let notes: Vec<String> = sketch.notes().into_iter().chain(driving.remarks(&schedule.plan)).collect();
-    notes.iter().for_each(|n| progress.say(&format!("note: {n}")));
+    notes.iter().for_each(|n| task.say(&format!("note: {n}")));
     Ok(Prepared { sketch, placed, driving, schedule, notes, plan_ms, seen })
 }
 
@@ -161,7 +161,7 @@ fn run_laps(
     prepared: &Prepared,
     dir: &Path,
     settings: &[Setting],
-    (progress, stop): (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<Laps, Failure> {
     let began = Instant::now();
     let plan = &prepared.schedule.plan;
@@ -170,28 +170,28 @@ fn run_laps(
     let mut learned = Learned { rig: prepared.driving.rig.clone(), taken: false, notes: Vec::new() };
     let mut log = LogWriter::open(&dir.join("run.mcap"), &meta)?;
     let (mut watched, mut failure) = (None, None);
-    while laps.len() < args.laps as usize && !stop.is_wanted() && failure.is_none() {
+    while laps.len() < args.laps as usize && !task.stop.is_wanted() && failure.is_none() {
         if !laps.is_empty() {
-            progress.stage("identify", 1);
+            task.stage("identify", 1);
             learned = learn(&prepared.driving.rig, &laps);
         }
-        progress.stage("run", plan.points.len() as u64);
+        task.stage("run", plan.points.len() as u64);
         let Some(looks) = prepared.watched() else {
             let put_up = if args.is_powered_up() { left } else { SimulatedRig::new };
             let rig = put_up(&learned.rig, prepared.driving.pose, args.seed);
-            let (lap, why) = run_lap(rig, plan, args.dry_run, &mut log, (progress, stop))?;
+            let (lap, why) = run_lap(rig, plan, args.dry_run, &mut log, task)?;
             laps.push(lap);
             failure = why;
             continue;
         };
-        let mut done = watched_lap(args, prepared, looks, &learned.rig, &mut log, (progress, stop))?;
+        let mut done = watched_lap(args, prepared, looks, &learned.rig, &mut log, task)?;
         laps.push(std::mem::take(&mut done.run));
         failure = done.failure.take();
         watched = Some(done);
     }
     log.finish()?;
     let last = laps.pop().unwrap_or_default();
-    learned.notes.iter().for_each(|note| progress.say(&format!("note: {note}")));
+    learned.notes.iter().for_each(|note| task.say(&format!("note: {note}")));
     let identified = learned.taken.then_some(learned.rig);
     Ok(Laps {
         earlier: laps,
@@ -211,7 +211,7 @@ fn watched_lap(
     (seen, room): (&Seen, &Furnished),
     believed: &RigConfig,
     log: &mut LogWriter,
-    watched: (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<WatchedRun, Failure> {
     let mut driving = prepared.driving.clone();
     driving.rig = believed.clone();
@@ -224,7 +224,7 @@ fn watched_lap(
         dry: args.dry_run,
         open: args.follow.open_loop,
     };
-    run_watched(&job, room.watched(believed, driving.pose), log, watched)
+    run_watched(&job, room.watched(believed, driving.pose), log, task)
 }
 
 /// What the laps so far tell of a rig.
@@ -269,7 +269,7 @@ fn run_lap(
     plan: &Plan,
     dry: bool,
     log: &mut LogWriter,
-    (progress, stop): (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<(Run, Option<Failure>), Failure> {
     let mut failed: Option<Failure> = None;
     let (mut goodbye, mut begun, mut unpowered) = (0, false, None);
@@ -288,9 +288,9 @@ fn run_lap(
         }
         let number = tick.telemetry.tick;
         if number.is_multiple_of(256) {
-            progress.at(u64::from(number));
+            task.at(u64::from(number));
         }
-        if !stop.is_wanted() {
+        if !task.stop.is_wanted() {
             return ControlFlow::Continue(());
         }
         // a simulated rig takes every command but a segment for a full queue

@@ -3,11 +3,11 @@
 use clap::ValueEnum;
 use tracelight_aim::{Homography, proportions};
 use tracelight_stroke::{Drawing, Point};
+use tracelight_task::Failure;
 use tracelight_vision::{Grey, Page, Sheet};
 
 use crate::carried::carried;
 use crate::cli::tracing::{Straighten, TracingArgs};
-use crate::failure::Failure;
 use crate::output::Raster;
 
 /// What is drawn or printed on, upright, mm.

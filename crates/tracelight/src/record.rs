@@ -7,8 +7,8 @@
 use std::fmt::Write;
 
 use tracelight_rig::{Actuation, Joint, Measurement, PanTilt, Setpoint, TICK_F64_S, Telemetry};
+use tracelight_task::Failure;
 
-use crate::failure::Failure;
 use crate::picture::read_bytes;
 
 /// Most ticks of a record: half an hour.

@@ -15,10 +15,10 @@ use std::ops::Range;
 use toml_edit::{Document, Item, TableLike, Value};
 use tracelight_plant::Wear;
 use tracelight_sim::{Identified, Model, RigConfig};
+use tracelight_task::Failure;
+use tracelight_units as units;
 
-use crate::failure::Failure;
 use crate::picture::read_bytes;
-use crate::units;
 use caret::Mark;
 use found::identified_keys;
 use hand_tuned::rig_keys;

@@ -1,10 +1,10 @@
 //! Strokes on the target to a plan: order, then time.
 
 use tracelight_stroke::{Effort, OrderOptions, Ordered, Point, order};
+use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, PlanError, TravelTime, plan};
 
 use crate::cli::driving::{Driving, REACHED};
-use crate::failure::Failure;
 use crate::sketch::Placed;
 
 /// What the order is to save.
@@ -61,7 +61,7 @@ pub(crate) fn schedule(
         }
         OrderBy::Distance => order(&placed.drawing, start, options, &|a: Point, b: Point| a.distance(b)),
     };
-    let plan = plan(&ordered.drawing, &driving.machine, &driving.request)?;
+    let plan = plan(&ordered.drawing, &driving.machine, &driving.request).map_err(refused)?;
     check_speed(&plan, driving)?;
     Ok(Schedule { ordered, plan })
 }
@@ -73,7 +73,7 @@ fn check_reach(placed: &Placed, driving: &Driving) -> Result<(), Failure> {
         for piece in stroke.path.pieces() {
             for place in PLACES {
                 let aimed = driving.machine.angles(piece.at(place));
-                aimed.map_err(|source| PlanError::Aim { stroke: index + 1, source })?;
+                aimed.map_err(|source| refused(PlanError::Aim { stroke: index + 1, source }))?;
             }
         }
     }
@@ -92,4 +92,17 @@ pub(crate) fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure>
         best / 0.3048
     );
     Err(Failure::failed("speed-unreachable", message))
+}
+
+/// Why there is no plan, with its code.
+pub(crate) fn refused(error: PlanError) -> Failure {
+    let code = match error {
+        PlanError::Empty => "no-strokes",
+        PlanError::Aim { .. } => "unreachable",
+        PlanError::TooWeak { .. } => "motor-too-weak",
+        PlanError::TooLong { .. } => "too-long",
+        PlanError::NoWayAtSpeed { .. } => "no-way-at-speed",
+        PlanError::TooBent { .. } => "too-bent",
+    };
+    Failure::failed(code, error)
 }

@@ -5,13 +5,13 @@ use std::time::Instant;
 use tracelight_aim::{Placement, SizeRequest};
 use tracelight_formats::{Reading, svg};
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
+use tracelight_task::{Failure, counted};
 use tracelight_vision::{Comb, Dots, Quality, Traced, VisionError};
 
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::failure::Failure;
-use crate::output::{Raster, counted};
+use crate::output::Raster;
 use crate::paper::{self, PaperSeen};
 use crate::picture::{Pixels, Source};
 

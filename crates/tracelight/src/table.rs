@@ -1,8 +1,8 @@
 //! Tables that were measured: CSV with names above its columns, so many rows at most, each told with its line.
 
 use tracelight_rig::Joint;
+use tracelight_task::Failure;
 
-use crate::failure::Failure;
 use crate::picture::read_bytes;
 use crate::record::Row;
 

@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use serde::{Deserialize, Serialize};
+use tracelight_task::Failure;
 
 use crate::batch::figures::Figures;
-use crate::failure::Failure;
 
 /// The journal's name in the folder.
 const NAME: &str = ".tracelight-strokes.jsonl";

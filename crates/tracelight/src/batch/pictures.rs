@@ -5,8 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use image::ImageFormat;
-
-use crate::failure::Failure;
+use tracelight_task::Failure;
 
 /// One picture that was asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread;
 
-use crate::stop::Stop;
+use tracelight_task::Stop;
 
 /// Stack of a worker, bytes: what a main thread has on Linux, for drawings that nest as deep as it reads them.
 const STACK_BYTES: usize = 8 << 20;

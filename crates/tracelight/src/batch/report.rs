@@ -3,13 +3,11 @@
 use std::io::Write;
 
 use serde_json::{Value, json};
+use tracelight_task::{Failure, Status, Task, counted};
 
 use crate::batch::figures::Figures;
 use crate::batch::{Batch, table};
 use crate::cli::Answer;
-use crate::failure::{Failure, Status};
-use crate::output::counted;
-use crate::progress::Progress;
 
 /// What became of one picture.
 #[derive(Clone, Debug)]
@@ -113,9 +111,9 @@ impl Report {
     }
 
     /// The table, or the end of the JSON object whose beginning is printed already; and how the command ends.
-    pub(super) fn answer(mut self, batch: &Batch<'_>, progress: &Progress, timing_ms: f64) -> Answer {
+    pub(super) fn answer(mut self, batch: &Batch<'_>, task: Task<'_>, timing_ms: f64) -> Answer {
         let rows: Vec<_> = self.rows.iter().flatten().cloned().collect();
-        rows.iter().filter_map(remark).for_each(|remark| progress.say(&remark));
+        rows.iter().filter_map(remark).for_each(|remark| task.say(&remark));
         let totals = Totals::of(&rows, timing_ms);
         let left: Vec<_> = (0..self.rows.len()).filter(|&i| self.rows[i].is_none()).collect();
         let json = self.stream.take().map(|mut stream| {

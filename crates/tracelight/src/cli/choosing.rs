@@ -1,7 +1,6 @@
 use clap::Args;
 use tracelight_stroke::{Colour, Drawing, Stroke};
-
-use crate::failure::Failure;
+use tracelight_task::Failure;
 
 /// Which strokes of a drawing are taken.
 #[derive(Args, Clone, Debug, Default)]

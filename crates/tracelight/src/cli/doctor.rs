@@ -3,7 +3,9 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use serde_json::{Value, json};
 use tracelight_sim::RigConfig;
+use tracelight_task::{Failure, Stop, Task};
 
+use crate::bar::Bar;
 use crate::cli::eyes::ImageSize;
 use crate::cli::{Answer, Voice};
 use crate::eye::about::{About, Stamps};
@@ -11,9 +13,6 @@ use crate::eye::figure::histogram;
 use crate::eye::source::{Source, devices};
 use crate::eye::wall::{markers, well_exposed};
 use crate::eye::{Looks, grey};
-use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::stop::Stop;
 
 /// Look at what is plugged in: cameras, what they can, how fast and how late their images come
 #[derive(Args, Debug)]
@@ -42,16 +41,17 @@ const LATE_S: f64 = 0.2;
 const LOST_SHARE: f64 = 0.02;
 
 pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let progress = Progress::new(args.voice.quiet);
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
     let names: Vec<String> = match &args.camera {
         Some(name) => vec![name.clone()],
         None => devices().iter().map(|path| path.display().to_string()).collect(),
     };
-    progress.stage("cameras", names.len() as u64);
+    task.stage("cameras", names.len() as u64);
     let mut cameras = Vec::new();
     for (step, name) in (0..).zip(names) {
         stop.check()?;
-        progress.at(step);
+        task.at(step);
         let seen = look_at(&name, args.camera_size.map(|size| size.0), stop);
         // a second device of a camera is no news
         let is_other = seen.as_ref().is_err_and(|failure| failure.code == "not-a-camera");

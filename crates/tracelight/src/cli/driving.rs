@@ -1,12 +1,12 @@
 use clap::{Args, ValueEnum};
 use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_sim::RigConfig;
+use tracelight_task::Failure;
 use tracelight_trajectory::{AccelerationDemand, LitSpeed, Machine, Plan, PlanRequest};
+use tracelight_units::{AngularAcceleration, Length, Speed};
 
 use crate::cli::placing::positive_length;
 use crate::cli::shapes::ProfileName;
-use crate::failure::Failure;
-use crate::units::{AngularAcceleration, Length, Speed};
 
 /// 3 ft: where the original rig's camera stood.
 pub(crate) const DEFAULT_DISTANCE_M: f64 = 0.9144;

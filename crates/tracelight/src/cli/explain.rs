@@ -1,9 +1,8 @@
 use clap::Args;
 use tracelight_rig::{Darkness, Fault};
+use tracelight_task::{Failure, darkness_words, fault_words};
 
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::output::{darkness_words, fault_words};
 
 /// Say what a code in a message, a summary or a log means, and what to do
 #[derive(Args, Debug)]

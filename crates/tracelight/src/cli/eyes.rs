@@ -3,13 +3,13 @@
 use std::str::FromStr;
 
 use clap::Args;
+use tracelight_task::Failure;
 
 use crate::camera_file::{self, KnownCamera};
 use crate::eye::Looks;
 use crate::eye::room::SimulatedEye;
 use crate::eye::source::Source;
 use crate::eye::trouble::TroubleAt;
-use crate::failure::Failure;
 
 /// Which camera looks at the wall.
 #[derive(Args, Clone, Debug, Default)]

@@ -22,9 +22,9 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
+use tracelight_task::{Failure, Status, Stop};
 
-use crate::failure::Failure;
-use crate::stop::Stop;
+use crate::interrupt;
 
 /// Give it a picture: a pan/tilt laser head draws it on the wall, to scale.
 #[derive(Parser, Debug)]
@@ -88,7 +88,7 @@ pub(crate) fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return refuse(&error),
     };
-    let (voice, result) = perform(&cli.command, &Stop::listen());
+    let (voice, result) = perform(&cli.command, &interrupt::listen());
     finish(voice, result)
 }
 
@@ -147,7 +147,7 @@ fn report(json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
     }
     let hint = if json { String::new() } else { format!(" (see `tracelight explain {}`)", failure.code) };
     eprintln!("error: {}{hint}", failure.message);
-    failure.exit_code()
+    ExitCode::from(failure.status.code())
 }
 
 /// Wrong command lines: help and version are no errors; the rest is said on stderr, and as JSON where asked for.
@@ -163,7 +163,7 @@ fn refuse(error: &clap::Error) -> ExitCode {
         print(&Failure::usage("usage", first).json());
     }
     eprint!("{}", error.render());
-    Failure::usage("usage", "").exit_code()
+    ExitCode::from(Status::Usage.code())
 }
 
 /// Writes a file the user named.

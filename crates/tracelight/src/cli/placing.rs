@@ -1,7 +1,7 @@
 use clap::Args;
+use tracelight_units::{Angle, Length, Offset};
 
 use crate::cli::choosing::ChoiceArgs;
-use crate::units::{Angle, Length, Offset};
 
 /// What of a picture is drawn, where and how large it lies on the target.
 #[derive(Args, Clone, Debug, Default)]

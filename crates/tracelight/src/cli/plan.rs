@@ -3,19 +3,18 @@ use std::time::Instant;
 
 use clap::Args;
 use tracelight_rig::TICK_F64_S;
+use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::{LitSpeed, Plan};
 
+use crate::bar::Bar;
 use crate::cli::driving::DrivingArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
-use crate::output::{ColourBy, PlanFigures, StrokeFigures, counted, preview};
+use crate::output::{ColourBy, PlanFigures, StrokeFigures, preview};
 use crate::picture;
-use crate::progress::Progress;
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::sketch::{Placed, place, sketch};
-use crate::stop::Stop;
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]
@@ -49,13 +48,14 @@ pub(crate) struct PlanArgs {
 }
 
 pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let progress = Progress::new(args.voice.quiet);
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
     let driving = args.driving.resolve()?;
-    progress.stage("strokes", 1);
+    task.stage("strokes", 1);
     let sketch = sketch(&args.drawing, picture::read(&args.drawing)?, &args.tracing, &args.placement)?;
     let placed = place(&sketch, &args.placement);
     stop.check()?;
-    progress.stage("plan", 1);
+    task.stage("plan", 1);
     let began = Instant::now();
     let schedule = schedule(&placed, &driving, args.order_by, args.order_effort)?;
     let plan_ms = began.elapsed().as_secs_f64() * 1e3;
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         .notes()
         .iter()
         .chain(&driving.remarks(&schedule.plan))
-        .for_each(|n| progress.say(&format!("note: {n}")));
+        .for_each(|n| task.say(&format!("note: {n}")));
     if let Some(path) = &args.out {
         write_file(path, csv(&schedule.plan))?;
     }

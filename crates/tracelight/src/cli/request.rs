@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use tracelight_task::Failure;
 use tracelight_vision::Mode;
 
 use crate::cli::Voice;
@@ -13,7 +14,6 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::eye::room::SimulatedEye;
 use crate::eye::source::Source;
-use crate::failure::Failure;
 
 /// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
 #[derive(Args, Debug)]

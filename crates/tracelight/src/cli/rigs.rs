@@ -1,8 +1,8 @@
 use clap::{Args, Subcommand};
 use tracelight_sim::RigConfig;
+use tracelight_task::Failure;
 
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
 use crate::rigfile;
 
 /// List the rigs that come with the program, or print one as a file

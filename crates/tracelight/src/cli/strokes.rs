@@ -5,23 +5,22 @@ use clap::builder::PossibleValuesParser;
 use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, json};
 use tracelight_stroke::Point;
+use tracelight_task::{Failure, Progress as _, Stop, Task, counted};
 use tracelight_vision::Stages;
 
+use crate::bar::Bar;
 use crate::batch::figures::Figures;
 use crate::batch::pictures::{self, Picture, stands_for_several};
 use crate::batch::{self, Batch, Finding, Out, places};
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
+use crate::output;
 use crate::output::drawing::{self, FORMATS};
-use crate::output::{self, counted};
 use crate::paper::{PaperSeen, page};
 use crate::picture::{self, Source};
-use crate::progress::Progress;
 use crate::quality::QualityFigures;
 use crate::sketch::{Sketch, place, sketch};
-use crate::stop::Stop;
 
 /// How close `points` keep to their path, px.
 const POINTS_TOLERANCE_PX: f64 = 0.05;
@@ -90,7 +89,7 @@ fn single(args: &StrokesArgs, picture: &str) -> Result<Answer, Failure> {
         out => one(args, picture, out)?,
     };
     if let Some(doubt) = &traced.figures.doubt {
-        Progress::new(args.voice.quiet).say(&format!("note: {picture}: {doubt}"));
+        Bar::new(args.voice.quiet).say(&format!("note: {picture}: {doubt}"));
     }
     let verdict = traced.verdict.as_ref().map_or_else(String::new, |words| format!("\n{words}"));
     Ok(Answer::new(line(picture, &traced) + &verdict, traced.json.unwrap_or_default()))
@@ -103,9 +102,10 @@ fn many(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
         return Err(Failure::usage("usage", message));
     }
     let found = pictures::find(&args.pictures, args.recursive)?;
-    let progress = Progress::new(args.voice.quiet);
-    found.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
-    drop(progress);
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
+    found.remarks.iter().for_each(|remark| task.say(&format!("note: {remark}")));
+    drop(bar);
     let out = args.out.as_deref().map(|folder| Out {
         folder,
         extension: extension(args),

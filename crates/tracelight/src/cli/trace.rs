@@ -1,9 +1,9 @@
+use tracelight_task::{Failure, Stop, counted};
+
 use crate::cli::Answer;
 use crate::cli::request::TraceArgs;
-use crate::failure::Failure;
 use crate::job::{self, Outcome};
-use crate::output::{EyeFigures, Summary, counted};
-use crate::stop::Stop;
+use crate::output::{EyeFigures, Summary};
 
 pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
     let Outcome { summary, dir, failure } = job::trace(args, stop)?;

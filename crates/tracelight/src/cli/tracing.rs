@@ -4,11 +4,12 @@ use std::ops::RangeInclusive;
 
 use clap::Args;
 use tracelight_stroke::Point;
+use tracelight_units as units;
+use tracelight_units::{Angle, LENGTHS, PIXELS};
 use tracelight_vision::Options;
 
 use crate::cli::request::ModeName;
 use crate::paper::{PaperName, clockwise};
-use crate::units::{self, Angle, LENGTHS, PIXELS};
 
 /// How pixels become strokes. Without a flag, what the picture itself says.
 #[derive(Args, Clone, Debug)]

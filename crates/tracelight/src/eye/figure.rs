@@ -2,6 +2,7 @@
 
 use tracelight_aim::Camera;
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
+use tracelight_task::{Failure, Task};
 use tracelight_vision::Grey;
 
 use super::pages::without_pages;
@@ -11,12 +12,9 @@ use crate::carried::carried;
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::failure::Failure;
 use crate::output::Raster;
 use crate::picture::{Pixels, Source};
-use crate::progress::Progress;
 use crate::sketch::{Placed, Sketch, sketch_at};
-use crate::stop::Stop;
 
 /// A figure that was found.
 pub(crate) struct SeenFigure {
@@ -41,15 +39,15 @@ pub(crate) struct FigureRequest<'a> {
 pub(crate) fn see_figure(
     eye: &mut dyn Looks,
     request: &FigureRequest<'_>,
-    (progress, stop): (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<SeenFigure, Failure> {
     let known = request.eye.known()?;
     let mut retaken = 0;
     let mut last: Option<Failure> = None;
     loop {
-        stop.check()?;
+        task.check()?;
         // why the last image was refused says more than that there is no other
-        let pixels = well_exposed(eye, stop).map_err(|none| last.take().unwrap_or(none))?;
+        let pixels = well_exposed(eye, task.stop).map_err(|none| last.take().unwrap_or(none))?;
         let histogram = histogram(&grey(&pixels)?);
         let seen = see_wall(pixels, known.as_ref()).and_then(|wall| figure(wall, request));
         let why = match seen {
@@ -69,7 +67,7 @@ pub(crate) fn see_figure(
             return Err(Failure { message, ..why });
         }
         retaken += 1;
-        progress.say(&format!("note: image {retaken} is refused: {shown}; another is taken"));
+        task.say(&format!("note: image {retaken} is refused: {shown}; another is taken"));
         last = Some(why);
     }
 }
@@ -175,12 +173,12 @@ mod tests {
     use crate::cli::placing::PlacementArgs;
     use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
     use crate::eye::{Eye, Shot};
-    use crate::failure::Status;
     use std::f64::consts::PI;
     use tracelight_aim::{CameraPose, HeadPose, Lens};
     use tracelight_rig::{Command, Rig, Telemetry};
     use tracelight_sim::{RigConfig, Room, Simulated, Tick};
     use tracelight_stroke::{Element, Path, Piece, Stroke};
+    use tracelight_task::{NoProgress, Status, Stop};
 
     use crate::carried::has_corner;
 
@@ -277,15 +275,15 @@ mod tests {
     #[test]
     fn bad_images_are_refused_and_taken_again_so_often_and_no_more() {
         let (eye, stop) = (EyeArgs::default(), Stop::default());
-        let (tracing, placement, progress) =
-            (TracingArgs::default(), PlacementArgs::default(), Progress::new(true));
+        let (tracing, placement) = (TracingArgs::default(), PlacementArgs::default());
+        let task = Task { progress: &NoProgress, stop: &stop };
         let request =
             FigureRequest { eye: &eye, tracing: &tracing, choice: &placement.choice, most_refused: 3 };
         // of several covered ones some are only taken to find how long to expose, some were under way
-        let found = see_figure(&mut covered(12), &request, (&progress, &stop)).unwrap();
+        let found = see_figure(&mut covered(12), &request, task).unwrap();
         assert!((1..=3).contains(&found.retaken), "{}", found.retaken);
         assert_eq!(found.sketch.drawing.strokes.len(), 28);
-        let failure = see_figure(&mut covered(1000), &request, (&progress, &stop)).err().unwrap();
+        let failure = see_figure(&mut covered(1000), &request, task).err().unwrap();
         assert_eq!((failure.status, failure.code), (Status::Failed, "camera-not-found"));
         assert!(failure.message.starts_with("4 images of the wall were refused"), "{}", failure.message);
         assert!(failure.message.contains("dark to light: |█"), "{}", failure.message);

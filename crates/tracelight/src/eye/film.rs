@@ -5,9 +5,10 @@ use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
 
+use tracelight_task::Failure;
+
 use super::coding::as_file;
 use super::{Looks, MOST_IMAGE_BYTES, Shot};
-use crate::failure::Failure;
 
 /// What is read at once, bytes.
 const CHUNK: usize = 1 << 20;

@@ -9,15 +9,14 @@ use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, He
 use tracelight_rig::Command;
 use tracelight_sim::{Simulated, Tick, run_segments};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
+use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
 
 use super::homing::check_homed;
 use super::spots::{History, Sight, Sighting, SpotWatch, Timing};
 use super::{Eye, Looks};
 use crate::cli::driving::Driving;
-use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::stop::Stop;
+use crate::schedule::refused;
 
 /// Radius of a dot, m: three and a half counts of the report's encoders at 3 ft.
 const DOT_M: f64 = 0.005;
@@ -124,7 +123,7 @@ fn plan_of(dots: &[Point], driving: &Driving) -> Result<Plan, Failure> {
     };
     let drawing = Drawing { strokes: dots.iter().map(circle).collect() };
     let request = PlanRequest { speed_m_s: DOT_SPEED_M_S, ..driving.request };
-    Ok(plan(&drawing, &driving.machine, &request)?)
+    plan(&drawing, &driving.machine, &request).map_err(refused)
 }
 
 /// Dots that were drawn and watched.
@@ -149,10 +148,10 @@ pub(crate) fn find_head<R: Simulated + Eye>(
     camera: &Camera,
     driving: &Driving,
     request: &DotsRequest,
-    watched: (&Progress, &Stop),
+    task: Task<'_>,
     keep: &mut dyn FnMut(&Tick),
 ) -> Result<FoundHead, Failure> {
-    let mut seen = see_dots(rig, camera, driving, request, watched, keep)?;
+    let mut seen = see_dots(rig, camera, driving, request, task, keep)?;
     let aligned = aligned(&request.belief, &mut seen.watch.timing, &seen.sightings, &seen.history)
         .map_err(|e| not_found(&e, &seen.watch, seen.dots))?;
     Ok(FoundHead {
@@ -170,13 +169,13 @@ pub(crate) fn see_dots<R: Simulated + Eye>(
     camera: &Camera,
     driving: &Driving,
     request: &DotsRequest,
-    (progress, stop): (&Progress, &Stop),
+    task: Task<'_>,
     keep: &mut dyn FnMut(&Tick),
 ) -> Result<SeenDots, Failure> {
     let belief = &request.belief;
     let places = dots(camera, driving, request.across);
     let plan = plan_of(&places, driving)?;
-    progress.stage("dots", plan.points.len() as u64);
+    task.stage("dots", plan.points.len() as u64);
     let mut watch = SpotWatch::new(*camera, request.exposure_s.min(rig.longest_s()));
     watch.timing = request.timing;
     watch.begin(rig.take(watch.exposure_s)?);
@@ -187,10 +186,10 @@ pub(crate) fn see_dots<R: Simulated + Eye>(
         keep(now);
         history.push(&now.telemetry);
         look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
-        progress.at(u64::from(now.telemetry.plan_tick));
+        task.at(u64::from(now.telemetry.plan_tick));
         in_vain = sightings.is_empty() && watch.lost > request.most_in_vain;
         homed = check_homed(&now.telemetry);
-        if in_vain || homed.is_err() || stop.is_wanted() {
+        if in_vain || homed.is_err() || task.stop.is_wanted() {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
@@ -209,7 +208,7 @@ pub(crate) fn see_dots<R: Simulated + Eye>(
         history.push(&tick.telemetry);
         look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
     }
-    stop.check()?;
+    task.check()?;
     if let Some(fault) = run.fault() {
         return Err(Failure::fault(fault));
     }

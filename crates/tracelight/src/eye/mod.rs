@@ -41,8 +41,8 @@ pub(crate) mod wall;
 
 use tracelight_rig::Command;
 use tracelight_sim::Simulated;
+use tracelight_task::Failure;
 
-use crate::failure::Failure;
 use about::About;
 
 pub(crate) use shot::{Shot, grey};

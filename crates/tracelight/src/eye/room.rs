@@ -11,11 +11,11 @@ use tracelight_plant::{CameraConfig, Poster, SimulatedCamera, Wall};
 use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Room, SimulatedRig};
 use tracelight_stroke::{Affine, Point, Vec2};
+use tracelight_task::Failure;
 
 use super::homing::{Homed, turned_rad};
 use super::{Eye, Shot};
 use crate::cli::placing::PlacementArgs;
-use crate::failure::Failure;
 use crate::output::page_raster;
 use crate::paper::Paper;
 use crate::picture::{self, Source};

@@ -1,10 +1,10 @@
 use tracelight_plant::{Image, Part};
 use tracelight_sim::Taken;
 use tracelight_stroke::{Point, Vec2};
+use tracelight_task::Failure;
 use tracelight_vision::{Grey, SpotWindow};
 
 use super::coding::{Coding, Layout, as_file};
-use crate::failure::Failure;
 use crate::output::Raster;
 use crate::picture::{self, Source};
 

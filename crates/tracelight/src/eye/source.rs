@@ -3,11 +3,12 @@
 use std::collections::VecDeque;
 use std::path::PathBuf;
 
+use tracelight_task::Failure;
+
 use super::film::{self, Film};
 use super::stream::Stream;
 use super::{Looks, Shot};
 use crate::batch::pictures;
-use crate::failure::Failure;
 use crate::picture;
 
 /// A camera, as `--camera` names it.

@@ -4,11 +4,11 @@ use std::io::{BufRead, BufReader, Read};
 use std::sync::Arc;
 use std::time::Instant;
 
+use tracelight_task::Failure;
 use ureq::Agent;
 
 use super::latest::{Latest, PATIENCE};
 use super::{Looks, MOST_IMAGE_BYTES, Shot};
-use crate::failure::Failure;
 
 /// Largest image that is taken, bytes.
 const MOST_BYTES: u64 = MOST_IMAGE_BYTES as u64;

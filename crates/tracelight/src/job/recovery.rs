@@ -4,6 +4,7 @@ use tracelight_aim::{Alignment, HeadGeometry, HeadPose, TrimBelief};
 use tracelight_rig::{Command, PanTilt, Rig, TICK_F64_S, Telemetry};
 use tracelight_sim::Tick;
 use tracelight_stroke::{Drawing, Stroke};
+use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, plan};
 
 use super::log_tick;
@@ -14,8 +15,8 @@ use crate::eye::head::{DotsRequest, find_head};
 use crate::eye::homing::lost_power;
 use crate::eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
 use crate::eye::{Eye, Looks, PATIENCE_TICKS, Shot};
-use crate::failure::Failure;
 use crate::output::RecoveryFigures;
+use crate::schedule::refused;
 
 /// Most times that a job is begun anew after something was suddenly off.
 pub(super) const MOST_RECOVERIES: usize = 6;
@@ -97,8 +98,8 @@ impl Watched<'_> {
     fn wall_now(&mut self, suspicion: Suspicion) -> Result<Option<SeenWall>, Failure> {
         let _ = self.room.send(Command::Disarm);
         self.rest(REST_TICKS);
-        let stop = self.stop.clone();
-        let wall = well_exposed(self, &stop).and_then(|pixels| see_wall(pixels, Some(&self.wall)));
+        let stop = self.task.stop;
+        let wall = well_exposed(self, stop).and_then(|pixels| see_wall(pixels, Some(&self.wall)));
         stop.check()?;
         if self.is_over() || self.follower.blind() == Some(Blind::Stamps) {
             return Ok(None);
@@ -152,7 +153,7 @@ impl Watched<'_> {
         Why { words: why, seen_off }: &Why,
         left: &Drawing,
     ) -> Result<Plan, Failure> {
-        self.stop.check()?;
+        self.task.check()?;
         let began_s = self.now_s();
         self.rest(REST_TICKS);
         self.home()?;
@@ -171,8 +172,7 @@ impl Watched<'_> {
                 *failed = failed.take().or(Some(error));
             }
         };
-        let watched = (self.progress, self.stop);
-        let found = find_head(room, &camera, &self.driving, &request, watched, &mut keep);
+        let found = find_head(room, &camera, &self.driving, &request, self.task, &mut keep);
         let found = found.map_err(|e| Failure { message: format!("{why}; {}", e.message), ..e })?;
         let Alignment { geometry, pose, .. } = found.aligned.alignment;
         let moved = self.moved_mm(left, &geometry, &pose);
@@ -200,7 +200,7 @@ impl Watched<'_> {
             found.dots
         );
         self.recovered(began_s, what, found.dots);
-        Ok(plan(left, &self.driving.machine, &self.driving.request)?)
+        plan(left, &self.driving.machine, &self.driving.request).map_err(refused)
     }
 
     /// By how much the spot had moved on what is left, in the mean, mm.
@@ -232,7 +232,7 @@ impl Watched<'_> {
             if near(position_rad, HOME_RAD) && near(velocity_rad_s, HOME_RAD_S) {
                 return Ok(());
             }
-            self.stop.check()?;
+            self.task.check()?;
         }
         let message = format!(
             "the head did not come within {HOME_RAD} rad of zero in {:.0} s: is something in its way?",
@@ -254,7 +254,7 @@ impl Looks for Watched<'_> {
             if let Some(shot) = self.follower.taken() {
                 return Ok(shot);
             }
-            self.stop.check()?;
+            self.task.check()?;
         }
         self.follower.want_no_more();
         Err(Failure::failed("no-image", "the camera sends no image any more: is it still plugged in?"))

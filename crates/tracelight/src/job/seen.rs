@@ -4,6 +4,7 @@ use tracelight_aim::{Alignment, Camera, TrimBelief};
 use tracelight_rig::PanTilt;
 use tracelight_sim::{Room, Run, Simulated};
 use tracelight_stroke::{Comparison, Drawing, Point, compare};
+use tracelight_task::{Failure, Task};
 
 use super::Prepared;
 use crate::camera_file::KnownCamera;
@@ -17,13 +18,10 @@ use crate::eye::homing::{check_homed, home_head};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::source::Source;
 use crate::eye::spots::Timing;
-use crate::failure::Failure;
 use crate::head_file::{self, KnownHead};
 use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures, Raster};
 use crate::picture;
-use crate::progress::Progress;
 use crate::sketch::sketch;
-use crate::stop::Stop;
 
 /// What was seen before a run.
 pub(super) struct Seen {
@@ -41,7 +39,7 @@ pub(super) struct Seen {
 }
 
 /// Looks at the wall, has the head draw dots unless it is known, and plans the figure.
-pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Result<Prepared, Failure> {
+pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
     let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
@@ -49,7 +47,7 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         let message = "a dry run draws no dots to find the head by: give --head (tracelight calibrate head --camera … -o head.toml)";
         return Err(Failure::usage("usage", message));
     }
-    progress.stage("wall", 1);
+    task.stage("wall", 1);
     let mut simulated = furnished(args, &driving)?.map(|room| {
         let put_up = if args.is_powered_up() { Furnished::powered_up } else { Furnished::watched };
         (put_up(&room, &driving.rig, driving.pose), room)
@@ -66,9 +64,9 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         (None, camera) => camera.as_mut().map(|camera| &mut **camera as &mut dyn Looks),
     };
     let looks = looks.ok_or_else(|| Failure::failed("internal", "nothing that looks"))?;
-    let SeenFigure { wall, sketch, placed, retaken } = see_figure(looks, &wanted, (progress, stop))?;
-    wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
-    stop.check()?;
+    let SeenFigure { wall, sketch, placed, retaken } = see_figure(looks, &wanted, task)?;
+    wall.remarks.iter().for_each(|remark| task.say(&format!("note: {remark}")));
+    task.check()?;
     let camera = wall.camera.camera;
     match &known {
         Some(known) => {
@@ -78,10 +76,10 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
         None => driving.stand(in_front(&camera, driving.pose.distance_m)),
     }
     let head = match &mut simulated {
-        Some(scene) => head_of(args, scene, &camera, &mut driving, known, (progress, stop))?,
+        Some(scene) => head_of(args, scene, &camera, &mut driving, known, task)?,
         None => {
             if known.is_none() {
-                progress.say(&format!(
+                task.say(&format!(
                     "note: the simulated head is not where the camera is: it is taken to stand {:.3} m in front of the middle of the image, square-on",
                     driving.pose.distance_m
                 ));
@@ -102,9 +100,9 @@ pub(super) fn prepare(args: &TraceArgs, progress: &Progress, stop: &Stop) -> Res
     let followed = head.followed(camera, &driving);
     let known = KnownCamera::standing(&wall);
     let room = simulated.map(|(_, room)| room);
-    let truth = truth(args, room.as_ref(), progress)?;
+    let truth = truth(args, room.as_ref(), task)?;
     let seen = Seen { room, figures, image: wall.pixels, wall: known, followed, truth };
-    super::planned(sketch, placed, driving, Some(seen), (progress, stop))
+    super::planned(sketch, placed, driving, Some(seen), task)
 }
 
 /// What is known of a head and of when its images are taken.
@@ -145,11 +143,11 @@ fn head_of(
     camera: &Camera,
     driving: &mut Driving,
     known: Option<KnownHead>,
-    watched: (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<HeadSeen, Failure> {
     let believed = HeadSeen::believed(known.as_ref(), camera);
     let homed = if args.home {
-        let homed = home_head(rig, camera, driving, known.as_ref().map(KnownHead::images), watched)?;
+        let homed = home_head(rig, camera, driving, known.as_ref().map(KnownHead::images), task)?;
         room.homed(rig, &homed);
         Some(homed.figures())
     } else {
@@ -159,7 +157,7 @@ fn head_of(
         check_homed(&rig.step().telemetry)?;
         return Ok(HeadSeen { homed, ..believed });
     }
-    let (found, figures) = found_head(rig, room, camera, driving, watched)?;
+    let (found, figures) = found_head(rig, room, camera, driving, task)?;
     Ok(HeadSeen {
         timing: found.timing,
         exposure_s: found.exposure_s,
@@ -196,9 +194,9 @@ fn found_head(
     room: &Furnished,
     camera: &Camera,
     driving: &mut Driving,
-    watched: (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<(FoundHead, HeadFigures), Failure> {
-    let found = find_head(rig, camera, driving, &DotsRequest::first(driving), watched, &mut |_| {})?;
+    let found = find_head(rig, camera, driving, &DotsRequest::first(driving), task, &mut |_| {})?;
     let Alignment { geometry, pose, .. } = found.aligned.alignment;
     driving.believe(geometry, pose);
     let truth = room.true_error_m(&geometry, &pose);
@@ -217,11 +215,7 @@ fn found_head(
 const BESIDE_M: f64 = 1.5e-3;
 
 /// The figure of a simulated room as its picture's file has it, traced as asked; `None` where there is none, or it can not be told.
-fn truth(
-    args: &TraceArgs,
-    room: Option<&Furnished>,
-    progress: &Progress,
-) -> Result<Option<Drawing>, Failure> {
+fn truth(args: &TraceArgs, room: Option<&Furnished>, task: Task<'_>) -> Result<Option<Drawing>, Failure> {
     let hung = room.and_then(|room| room.wall_from_picture);
     let (Source::Simulated(Some(path)), Some(wall_from_picture)) = (args.eye.source()?, hung) else {
         return Ok(None);
@@ -230,7 +224,7 @@ fn truth(
         // as it hangs: a sheet in it is not laid square there
         Ok(truth) => Ok(Some(truth.in_picture().0.transformed(wall_from_picture))),
         Err(why) => {
-            progress.say(&format!("note: how far the light is from the figure is not told: {}", why.message));
+            task.say(&format!("note: how far the light is from the figure is not told: {}", why.message));
             Ok(None)
         }
     }

@@ -5,6 +5,7 @@ use tracelight_aim::Correction;
 use tracelight_rig::{Command, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
 use tracelight_sim::{Room, Run, Simulated, Tick};
 use tracelight_stroke::Drawing;
+use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
 
 use super::log_tick;
@@ -18,10 +19,7 @@ use crate::eye::follow::{Blind, Follower, Suspicion, strayed_rad};
 use crate::eye::homing::lost_power;
 use crate::eye::painted::Painted;
 use crate::eye::trouble::TroubleAt;
-use crate::failure::Failure;
 use crate::output::{FollowFigures, LogWriter, OutputError, SeenLight, SeenMark, SeenOff, TrimFigures};
-use crate::progress::Progress;
-use crate::stop::Stop;
 
 /// What is to be run.
 pub(super) struct WatchedJob<'a> {
@@ -93,8 +91,7 @@ pub(super) struct Watched<'a> {
     pub(super) failed: Option<OutputError>,
     /// The rig is not homed any more.
     pub(super) unpowered: bool,
-    pub(super) progress: &'a Progress,
-    pub(super) stop: &'a Stop,
+    pub(super) task: Task<'a>,
 }
 
 /// Runs a plan, watched.
@@ -102,7 +99,7 @@ pub(super) fn run_watched(
     job: &WatchedJob<'_>,
     room: Room,
     log: &mut LogWriter,
-    (progress, stop): (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<WatchedRun, Failure> {
     let painted = Painted::new(&job.seen.image, job.seen.followed.camera);
     let mut watched = Watched {
@@ -122,8 +119,7 @@ pub(super) fn run_watched(
         log,
         failed: None,
         unpowered: false,
-        progress,
-        stop,
+        task,
     };
     // what was drawn until then is told whatever became of it
     let failure = watched.all(job.plan.clone(), job.drawing.clone()).err();
@@ -147,7 +143,7 @@ impl Watched<'_> {
             strokes += first;
             self.base = join(&mut self.joined, self.plan_tick, &next, strokes);
             self.plan_tick = self.base;
-            self.progress.stage("run", self.joined.points.len() as u64);
+            self.task.stage("run", self.joined.points.len() as u64);
             (plan, drawing) = (next, left);
         }
     }
@@ -198,7 +194,7 @@ impl Watched<'_> {
 
     /// Whether the user, a log that can not be written, or a rig without power ends the run.
     pub(super) fn is_over(&self) -> bool {
-        self.stop.is_wanted() || self.failed.is_some() || self.unpowered
+        self.task.stop.is_wanted() || self.failed.is_some() || self.unpowered
     }
 
     /// Where the present plan's clock stood when the light was last seen to be right; where it begins, if it never was.
@@ -262,7 +258,7 @@ impl Watched<'_> {
             self.failed = self.failed.take().or(Some(error));
         }
         if tick.telemetry.tick.is_multiple_of(256) {
-            self.progress.at(u64::from(tick.telemetry.plan_tick));
+            self.task.at(u64::from(tick.telemetry.plan_tick));
         }
         // a dot is not the drawing's
         let keeps = !self.dots || !tick.light;
@@ -340,7 +336,7 @@ impl Watched<'_> {
     /// The same of something that was then, s.
     pub(super) fn remark_of(&mut self, t_s: f64, remark: &str) {
         let remark = format!("after {t_s:.1} s: {remark}");
-        self.progress.say(&format!("note: {remark}"));
+        self.task.say(&format!("note: {remark}"));
         self.figures.remarks.push(remark);
     }
 

@@ -3,9 +3,9 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use tracelight_rig::{Darkness, DarknessSet, TICK_F64_S};
+use tracelight_task::phase_word;
 
 use super::sample::{Sample, samples};
-use super::words::phase_word;
 use super::{Job, OutputError};
 
 /// Columns of `trace.csv`; `lap` follows where there were several.

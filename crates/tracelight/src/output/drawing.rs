@@ -4,8 +4,8 @@ use std::path::Path;
 
 use tracelight_formats::gcode::GcodeOptions;
 use tracelight_formats::{csv, dxf, gcode, hpgl, ild, svg};
+use tracelight_task::Failure;
 
-use crate::failure::Failure;
 use crate::sketch::{Page, Placed};
 
 /// How close points and chords keep to their curve, m: a hundredth of a millimetre.

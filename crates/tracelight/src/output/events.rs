@@ -1,7 +1,6 @@
 use tracelight_rig::{Darkness, TICK_F64_S, Telemetry};
 use tracelight_sim::Run;
-
-use super::words::{darkness_words, fault_words};
+use tracelight_task::{darkness_words, fault_words};
 
 /// A time when the rig darkened a beam that the plan wanted lit, or a fault that ended the job.
 #[derive(Clone, Copy, Debug, PartialEq)]

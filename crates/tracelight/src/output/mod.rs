@@ -16,6 +16,12 @@ mod board;
 mod csv;
 pub(crate) mod drawing;
 mod events;
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Self::failed("cannot-write", error)
+    }
+}
+
 #[cfg(test)]
 mod fixture;
 mod log;
@@ -27,7 +33,6 @@ mod sample;
 mod seen;
 pub(crate) mod stages;
 mod summary;
-mod words;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -35,6 +40,7 @@ use std::time::Instant;
 use tracelight_rig::PanTilt;
 use tracelight_sim::{Run, Tracking};
 use tracelight_stroke::{Affine, Drawing, Point};
+use tracelight_task::Failure;
 use tracelight_trajectory::Plan;
 use tracelight_vision::Quality;
 
@@ -50,7 +56,6 @@ pub(crate) use summary::{
     EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures, PlanFigures, RecoveryFigures, SeenOff,
     StrokeFigures, Summary, TrimFigures,
 };
-pub(crate) use words::{counted, darkness_words, fault_words};
 
 /// A finished (or stopped) job, as the outputs see it.
 pub(crate) struct Job<'a> {

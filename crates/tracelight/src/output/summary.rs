@@ -4,10 +4,10 @@ use serde::Serialize;
 use tracelight_rig::TICK_F64_S;
 use tracelight_sim::Run;
 use tracelight_stroke::Drawing;
+use tracelight_task::counted;
 use tracelight_trajectory::Plan;
 
 use super::sample::lit_s;
-use super::words::counted;
 use super::{Event, Job, OutputError, events};
 use crate::quality::QualityFigures;
 

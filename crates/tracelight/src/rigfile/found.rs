@@ -1,9 +1,9 @@
 //! Keys of `[identified]`: what was found of a head beyond its equations.
 
 use tracelight_sim::Identified;
+use tracelight_units::ANGULAR_SPEEDS;
 
 use super::keys::{Key, PURE, STIFFNESS, TORQUE, real};
-use crate::units::ANGULAR_SPEEDS;
 
 /// What was identified of a joint.
 macro_rules! found {

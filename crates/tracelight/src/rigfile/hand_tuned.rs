@@ -1,9 +1,9 @@
 //! Keys of law hand-tuned, and all keys that are not of a head.
 
 use tracelight_sim::{Feedforward, RigConfig};
+use tracelight_units::Unit;
 
 use super::keys::{Choice, Key, PURE, RIG_KEYS, STIFFNESS, VISCOUS, choice, flag, real};
-use crate::units::Unit;
 
 const INTEGRAL_GAIN: &[Unit] = &[("Nm/rad/s", 1.0)];
 /// More than any motor of a head like this asks for, and less than `f32` bears.

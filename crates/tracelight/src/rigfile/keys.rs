@@ -1,8 +1,7 @@
 //! Every key of a rig file: its place, unit, bounds, meaning, and the field it sets.
 
 use tracelight_sim::{LawName, Model, ObserverName, RigConfig};
-
-use crate::units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_JERKS, ANGULAR_SPEEDS, LENGTHS, TIMES, Unit};
+use tracelight_units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_JERKS, ANGULAR_SPEEDS, LENGTHS, TIMES, Unit};
 
 /// The field a key sets.
 #[derive(Clone, Copy)]

@@ -2,8 +2,7 @@
 
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 use tracelight_sim::RigConfig;
-
-use crate::failure::Failure;
+use tracelight_task::Failure;
 
 use super::found::identified_keys;
 use super::hand_tuned::rig_keys;

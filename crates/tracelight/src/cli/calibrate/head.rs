@@ -3,7 +3,9 @@ use serde_json::json;
 use tracelight_aim::HeadPose;
 use tracelight_rig::PanTilt;
 use tracelight_stroke::Point;
+use tracelight_task::{Failure, Stop, Task};
 
+use crate::bar::Bar;
 use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
@@ -13,10 +15,7 @@ use crate::eye::homing::{Homed, home_head};
 use crate::eye::room::{Furnished, RoomRequest};
 use crate::eye::source::Source;
 use crate::eye::wall::{SeenWall, see_wall, well_exposed};
-use crate::failure::Failure;
 use crate::head_file::{self, HeadFile, KnownHead};
-use crate::progress::Progress;
-use crate::stop::Stop;
 
 /// Where the head stands and points, from dots that it draws and a camera sees
 #[derive(Args, Debug)]
@@ -49,7 +48,8 @@ pub(super) struct HeadArgs {
 }
 
 pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let progress = Progress::new(args.voice.quiet);
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
     let mut driving = args.driving.resolve()?;
     let Source::Simulated(picture) = args.eye.source()? else {
         let message = "no head can be driven yet but simulated ones, and they draw in simulated rooms: give --camera sim or sim:PICTURE";
@@ -62,7 +62,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         pages: args.eye.has_pages()?,
         seed: args.seed,
     };
-    progress.stage("wall", 1);
+    task.stage("wall", 1);
     let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
     let mut room = Furnished::new(&request, &driving.rig, driving.pose)?;
     let mut rig = if args.home {
@@ -71,7 +71,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         room.watched(&driving.rig, driving.pose)
     };
     let wall = see_wall(well_exposed(&mut rig, stop)?, args.eye.known()?.as_ref())?;
-    wall.remarks.iter().for_each(|remark| progress.say(&format!("note: {remark}")));
+    wall.remarks.iter().for_each(|remark| task.say(&format!("note: {remark}")));
     stop.check()?;
     let camera = wall.camera.camera;
     match &known {
@@ -81,10 +81,9 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         }
         None => driving.stand(in_front(&camera, driving.pose.distance_m)),
     }
-    let watched = (&progress, stop);
     let homed = if args.home {
         let images = known.as_ref().map(KnownHead::images);
-        let homed = home_head(&mut rig, &camera, &driving, images, watched)?;
+        let homed = home_head(&mut rig, &camera, &driving, images, task)?;
         room.homed(&mut rig, &homed);
         Some((homed, room.zero_error_m(known.is_some())))
     } else {
@@ -94,7 +93,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         let text = format!("wall:     {}{}", wall.words(), homed_text(homed.as_ref()));
         return Ok(Answer::new(text, with_homed(json!({}), homed.as_ref()).to_string()));
     }
-    let found = find_head(&mut rig, &camera, &driving, &DotsRequest::first(&driving), watched, &mut |_| {})?;
+    let found = find_head(&mut rig, &camera, &driving, &DotsRequest::first(&driving), task, &mut |_| {})?;
     stop.check()?;
     write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, &wall))?)?;
     let pose = found.aligned.alignment.pose;

@@ -3,6 +3,8 @@ use serde_json::{Value, json};
 use tracelight_aim::{Board, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
 use tracelight_sim::RigConfig;
 use tracelight_stroke::Point;
+use tracelight_task::{Failure, Stop};
+use tracelight_units::Length;
 use tracelight_vision::Grey;
 
 use crate::camera_file::{self, CameraFile, PageName, Wall};
@@ -13,11 +15,8 @@ use crate::cli::{Answer, Voice, write_file};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::wall::{doubts, markers, well_exposed};
 use crate::eye::{self, grey};
-use crate::failure::Failure;
 use crate::output::BAR_M;
 use crate::picture::{self, Source};
-use crate::stop::Stop;
-use crate::units::Length;
 
 /// The camera in front of the wall, from an image of printed markers on it: lens, pose, scale
 #[derive(Args, Debug)]

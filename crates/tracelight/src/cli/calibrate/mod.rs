@@ -4,10 +4,9 @@ mod ruler;
 mod sheet;
 
 use clap::{Args, Subcommand};
+use tracelight_task::{Failure, Stop};
 
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::stop::Stop;
 
 /// Find out what a camera's pixels mean on the target
 #[derive(Args, Debug)]

@@ -1,10 +1,10 @@
 use clap::Args;
+use tracelight_task::Failure;
+use tracelight_units::{Length, Offset};
 
 use crate::cli::placing::positive_length;
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
 use crate::picture::{self, Source};
-use crate::units::{Length, Offset};
 
 /// Scale from two pictures of a ruler with two marks: once upright, once level
 #[derive(Args, Debug)]

@@ -1,9 +1,9 @@
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use tracelight_aim::Board;
+use tracelight_task::Failure;
 
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
 use crate::output::{BAR_M, page_pdf, page_svg};
 use crate::paper::Paper;
 

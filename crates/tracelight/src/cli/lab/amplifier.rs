@@ -6,6 +6,8 @@ use serde_json::json;
 use tracelight_lab::{Amplifier, CurrentPoint, Uncertain, amplifier};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{MotorReading, Mounting, READ_TICKS, RigConfig, motor_readings};
+use tracelight_task::Failure;
+use tracelight_units::{CURRENTS, TORQUE_CONSTANTS};
 
 use super::friction::{HOW_SURE, milli};
 use super::parts::{self, by_joint, leave, tell_each};
@@ -13,9 +15,7 @@ use super::step::Axis;
 use super::{above_zero, rig_out, voltage};
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
 use crate::record::MOST_V;
-use crate::units::{CURRENTS, TORQUE_CONSTANTS};
 use crate::{rigfile, table};
 
 /// Identify what an amplifier makes of a volt, and what the turning motor's own voltage takes away

@@ -7,6 +7,8 @@ use serde_json::json;
 use tracelight_lab::{Backlash, SpotPoint, Uncertain, backlash};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, LawName, MotionArray, RigConfig, follow_array};
+use tracelight_task::Failure;
+use tracelight_units::{LENGTHS, Length};
 
 use super::above_zero;
 use super::friction::HOW_SURE;
@@ -15,8 +17,6 @@ use super::step::Axis;
 use crate::chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
 use crate::cli::laws::choose;
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::units::{LENGTHS, Length};
 use crate::{rigfile, table};
 
 /// Identify the play between encoder and beam, and whether the encoder slips, from where the spot rests on a ruler

@@ -6,6 +6,8 @@ use tracelight_linear::{
     Complex, LeadLagWish, LinearError, LqgWish, Margins, PidWish, Response, Stability, StepInfo, Time,
     TransferFunction, Zpk,
 };
+use tracelight_task::Failure;
+use tracelight_units::Angle;
 
 use super::bode::{frequency, margin_lines, margins_json, stability_name, system_json};
 use super::poles::{Poles, poles};
@@ -15,8 +17,6 @@ use super::trial::Trial;
 use super::{OutFile, out_file, over_time, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Pen};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::units::Angle;
 
 /// Order beyond which digits run out, and time.
 const MOST_ORDER: usize = 24;

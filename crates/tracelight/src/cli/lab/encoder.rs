@@ -6,15 +6,14 @@ use serde_json::json;
 use tracelight_lab::{EdgeTime, EncoderTable, Spin, encoder_table, spin};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_sim::{Mounting, RigConfig, head_alone};
+use tracelight_task::{Failure, counted};
+use tracelight_units::{ANGULAR_SPEEDS, parse};
 
 use super::friction::HOW_SURE;
 use super::parts::{self, by_joint, leave, rounded, tell_each};
 use super::step::Axis;
 use crate::chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::output::counted;
-use crate::units::{ANGULAR_SPEEDS, parse};
 use crate::{rigfile, table};
 
 /// Identify what an encoder reads wrong: where its four kinds of edges lie, a disc beside its axis, counts it lost

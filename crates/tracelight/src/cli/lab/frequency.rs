@@ -7,14 +7,14 @@ use tracelight_linear::{Discretization, FrequencyResponse, LinearError, Transfer
 use tracelight_linear::{Polynomial, Time};
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{Mounting, RigConfig, head_alone};
+use tracelight_task::Failure;
+use tracelight_units::{ANGULAR_SPEEDS, TIMES};
 
 use super::step::Axis;
 use super::{OutFile, above_zero, out_file, voltage, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
 use crate::record::MOST_V;
-use crate::units::{ANGULAR_SPEEDS, TIMES};
 use crate::{rigfile, table};
 
 /// Measure a joint's frequency response with many sines at once, its coherence, and hold it against the model
@@ -86,7 +86,7 @@ fn frequency(text: &str) -> Result<f64, String> {
 }
 
 fn speed(text: &str) -> Result<f64, String> {
-    let rad_s = crate::units::parse(text, ANGULAR_SPEEDS).map_err(|e| e.to_string())?;
+    let rad_s = tracelight_units::parse(text, ANGULAR_SPEEDS).map_err(|e| e.to_string())?;
     if (0.5..=100.0).contains(&rad_s.abs()) {
         Ok(rad_s)
     } else {

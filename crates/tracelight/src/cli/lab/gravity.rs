@@ -5,14 +5,13 @@ use serde_json::json;
 use tracelight_lab::{Curves, Uncertain};
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
+use tracelight_task::{Failure, Stop};
 
 use super::friction::trials::{Subject, TrialArgs};
 use super::friction::{HOW_SURE, milli};
 use super::rig_out;
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
-use crate::stop::Stop;
 
 /// Identify what gravity does to tilt, from how voltages turn it against its weight
 #[derive(Args, Debug)]

@@ -4,10 +4,10 @@ use clap::{Args, ValueEnum};
 use tracelight_dynamics::HeadBodies;
 use tracelight_lab::{Linearization, Operation};
 use tracelight_rig::PanTilt;
+use tracelight_task::Failure;
+use tracelight_units::{Angle, AngularSpeed};
 
-use crate::failure::Failure;
 use crate::rigfile;
-use crate::units::{Angle, AngularSpeed};
 
 /// Which head is linearized, and where.
 #[derive(Args, Debug)]

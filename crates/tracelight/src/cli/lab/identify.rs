@@ -6,14 +6,13 @@ use clap::Args;
 use tracelight_lab::{Identification, JointFit, identify, routine};
 use tracelight_rig::{Joint, TICK_F64_S, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, run_segments};
+use tracelight_task::{Failure, Stop, Task};
 
 use super::{make_folder, rig_out, why_unfinished};
+use crate::bar::Bar;
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::LawArgs;
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::stop::Stop;
 use crate::{record, rigfile};
 
 /// Identify what the head is made of: inertia, friction, weight, amplifier, where its encoders' edges lie
@@ -88,12 +87,13 @@ fn moved(args: &IdentifyArgs, rig: &RigConfig, stop: &Stop) -> Result<Vec<Teleme
         return Err(Failure::failed("identify", message));
     }
     let segments = routine(rig);
-    let progress = Progress::new(args.voice.quiet);
-    progress.stage("moves", segments.last().map_or(0, |s| u64::from(s.end_tick())));
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
+    task.stage("moves", segments.last().map_or(0, |s| u64::from(s.end_tick())));
     let pose = tracelight_aim::HeadPose::square_on(DEFAULT_DISTANCE_M);
     let mut simulated = SimulatedRig::new(&rig.following(), pose, args.seed);
     let run = run_segments(&mut simulated, &segments, true, |_, tick| {
-        progress.at(u64::from(tick.telemetry.tick));
+        task.at(u64::from(tick.telemetry.tick));
         if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     stop.check()?;

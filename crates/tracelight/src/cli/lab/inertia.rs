@@ -5,14 +5,13 @@ use clap::Args;
 use serde_json::json;
 use tracelight_lab::{Curves, Uncertain};
 use tracelight_sim::RigConfig;
+use tracelight_task::{Failure, Stop};
 
 use super::friction::trials::{Subject, TrialArgs};
 use super::friction::{HOW_SURE, milli};
 use super::parts::by_joint;
 use super::rig_out;
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::stop::Stop;
 
 /// Identify what each joint's inertia is, from how fast voltages speed it up
 #[derive(Args, Debug)]

@@ -5,11 +5,11 @@ use serde_json::json;
 use tracelight_lab::Linearization;
 use tracelight_linear::{Complex, LinearError, Matrix, Time, TransferFunction};
 use tracelight_rig::{Joint, PanTilt};
+use tracelight_task::Failure;
 
 use super::head::{Head, HeadArgs};
 use super::systems::{four, place, pole_lines};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
 
 /// The head near a pose as a linear system: state space, transfer functions G11 and G22 from torque to angle, poles
 #[derive(Args, Debug)]

@@ -4,14 +4,13 @@ use std::fmt::Write;
 use clap::Args;
 use serde_json::json;
 use tracelight_linear::{Complex, DampedGains, Mode, RootLocus, Time, TransferFunction};
+use tracelight_task::{Failure, Stop};
 
 use super::bode::system_json;
 use super::systems::{Named, SystemArgs, bounded, four, pairs, place, pole_lines};
 use super::{OutFile, out_file, write_all};
 use crate::chart::{Curve, Figure, Guide, Key, Mark, Panel, Pen, Scale, Sign};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::stop::Stop;
 
 /// Where the poles of the closed loop go as the open loop's gain rises; which gain makes it as damped as asked
 #[derive(Args, Debug)]

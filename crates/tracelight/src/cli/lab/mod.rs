@@ -37,13 +37,12 @@ use std::path::Path;
 
 use clap::{Args, Subcommand};
 use tracelight_rig::Fault;
+use tracelight_task::{Failure, Stop};
+use tracelight_units::{Unit, VOLTAGES, parse};
 
 use crate::chart::{self, Colour, Curve, Panel, Scale};
 use crate::cli::shapes::ProfileName;
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
-use crate::stop::Stop;
-use crate::units::{Unit, VOLTAGES, parse};
 
 /// The control engineer's bench: profiles, moves, steps, friction and all else a head is made of, linear models, Bode, Nyquist and locus, controllers designed, many heads at once
 #[derive(Args, Debug)]

@@ -5,17 +5,15 @@ use clap::Args;
 use tracelight_lab::{LAPS_WORTH, Quantiles, identify};
 use tracelight_rig::{Fault, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, Spread, Tracking, score};
+use tracelight_task::{Failure, Stop, Task, on_all_cores};
 use tracelight_trajectory::Plan;
 
 use super::shape::ShapeArgs;
 use super::{OutFile, out_file, why_unfinished, write_all};
+use crate::bar::Bar;
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::driving::Driving;
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::fan::on_all_cores;
-use crate::progress::Progress;
-use crate::stop::Stop;
 
 /// Draw the same on many heads that differ: how exact it is on the middle one, on 95 of 100, on the worst
 #[derive(Args, Debug)]
@@ -64,10 +62,11 @@ pub(crate) fn run(args: &MonteCarloArgs, stop: &Stop) -> Result<Answer, Failure>
 
 /// Every head, on all cores; what comes out does not depend on how many there are.
 fn run_all(args: &MonteCarloArgs, driving: &Driving, plan: &Plan, stop: &Stop) -> Vec<Trial> {
-    let progress = Progress::new(args.voice.quiet);
-    progress.stage("heads", u64::from(args.plants));
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
+    task.stage("heads", u64::from(args.plants));
     let work = |number: usize| trial(driving, plan, args.laps, args.seed + number as u64);
-    on_all_cores(args.plants as usize, &progress, stop, work)
+    on_all_cores(args.plants as usize, task, work)
 }
 
 fn trial(driving: &Driving, plan: &Plan, laps: u32, seed: u64) -> Trial {

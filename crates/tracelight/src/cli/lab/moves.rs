@@ -10,19 +10,18 @@ use tracelight_aim::HeadPose;
 use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tracking, score};
 use tracelight_stroke::{Element, Piece, Point, Vec2};
+use tracelight_task::{Failure, Stop};
 use tracelight_trajectory::{Course, CourseError, Machine, MoveLimits, Pace, PlanError, Ramps};
+use tracelight_units::{
+    ACCELERATIONS, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, Length, Offset, Rate, SPEEDS, Unit,
+};
 
 use super::{OutFile, out_file, within, write_all};
 use crate::cli::driving::{DEFAULT_DISTANCE_M, request_of};
 use crate::cli::placing::positive_length;
 use crate::cli::shapes::{ProfileName, ramps};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
 use crate::rigfile;
-use crate::stop::Stop;
-use crate::units::{
-    ACCELERATIONS, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, Length, Offset, Rate, SPEEDS, Unit,
-};
 
 /// Follow a line or an arc of the target from rest to rest: every profile as asked, and as the motors can
 #[derive(Args, Debug)]

@@ -4,13 +4,13 @@ use std::fmt::Write;
 use clap::Args;
 use serde_json::json;
 use tracelight_linear::{Complex, Margins, decibels};
+use tracelight_task::Failure;
 
 use super::bode::{FrequencyArgs, margin_lines, margins_json, summary, system_json};
 use super::systems::Named;
 use super::write_all;
 use crate::chart::{Colour, Curve, Figure, Guide, Key, Mark, Panel, Pen, Scale, Sign};
 use crate::cli::Answer;
-use crate::failure::Failure;
 
 /// The open loop's values over all frequencies in the complex plane, how often they turn round −1, and what is left of stability
 #[derive(Args, Debug)]

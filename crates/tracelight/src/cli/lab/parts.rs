@@ -4,11 +4,11 @@ use std::path::Path;
 
 use serde_json::Value;
 use tracelight_rig::{Joint, PanTilt};
+use tracelight_task::Failure;
 
 use super::make_folder;
 use super::step::Axis;
 use crate::cli::write_file;
-use crate::failure::Failure;
 
 /// A joint, what was seen of it, and what that says.
 pub(super) struct Found<S, T> {

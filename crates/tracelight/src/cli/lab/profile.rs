@@ -2,14 +2,16 @@ use std::fmt::Write;
 
 use clap::Args;
 use tracelight_rig::TICK_F64_S;
+use tracelight_task::Failure;
 use tracelight_trajectory::{MoveLimits, MovePoint, Peaks, Profile, Ramps};
+use tracelight_units::{
+    ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, AngularAcceleration, AngularSpeed,
+};
 
 use super::{OutFile, colour, out_file, within, write_all};
 use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::shapes::{ProfileName, ramps};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, AngularAcceleration, AngularSpeed};
 
 /// Move one joint from rest to rest, motors left out: durations and peaks of every profile, and plots
 #[derive(Args, Debug)]

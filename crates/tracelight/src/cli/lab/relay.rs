@@ -9,6 +9,8 @@ use tracelight_sim::{
     BenchTick, HandTuned, LawName, Mounting, ObserverName, RigConfig, StepReference, StepResponse,
     head_alone, step_response,
 };
+use tracelight_task::Failure;
+use tracelight_units::Angle;
 
 use super::bode::frequency;
 use super::step::{Axis, curve, figures, figures_json, heading, row, step, unreachable};
@@ -16,9 +18,7 @@ use super::{OutFile, out_file, over_time, rig_out, voltage, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use crate::cli::laws::observer;
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
 use crate::rigfile;
-use crate::units::Angle;
 
 /// Let a relay swing a joint, and tune a PID from how it swings: no model needed
 #[derive(Args, Debug)]

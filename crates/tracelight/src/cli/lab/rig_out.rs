@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use tracelight_sim::RigConfig;
+use tracelight_task::Failure;
 
 use crate::cli::write_file;
-use crate::failure::Failure;
 use crate::rigfile;
 
 /// Refuses to write into what comes with the program.

@@ -1,13 +1,14 @@
 use clap::Args;
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
+use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, plan};
 
 use crate::cli::driving::{Driving, DrivingArgs};
 use crate::cli::laws::LawArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::failure::Failure;
 use crate::picture;
+use crate::schedule::refused;
 use crate::schedule::{OrderBy, OrderEffort, check_speed, schedule};
 use crate::sketch::{place, sketch};
 
@@ -65,7 +66,7 @@ impl ShapeArgs {
             picture => return plan_picture(picture, driving),
         };
         let drawing = Drawing { strokes: vec![Stroke::new(path)] };
-        let plan = plan(&drawing, &driving.machine, &driving.request)?;
+        let plan = plan(&drawing, &driving.machine, &driving.request).map_err(refused)?;
         check_speed(&plan, driving)?;
         Ok(plan)
     }

@@ -6,6 +6,8 @@ use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{
     BenchTick, LawName, ObserverName, RigConfig, StepReference, StepResponse, step_response,
 };
+use tracelight_task::Failure;
+use tracelight_units::Angle;
 
 use super::by_hand::ByHandArgs;
 use super::{OutFile, out_file, over_time, write_all};
@@ -13,9 +15,7 @@ use crate::chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
 use crate::rigfile;
-use crate::units::Angle;
 
 /// Send one joint from rest at zero to an angle: overshoot, settling, what stays, on the head as it is and linearized
 #[derive(Args, Debug)]

@@ -7,11 +7,11 @@ use tracelight_linear::{
 };
 use tracelight_rig::Joint;
 use tracelight_sim::Compensator;
+use tracelight_task::Failure;
+use tracelight_units::{TIMES, parse};
 
 use super::head::HeadArgs;
 use crate::chart::{Colour, Theme};
-use crate::failure::Failure;
-use crate::units::{TIMES, parse};
 
 /// Systems to plot.
 #[derive(Args, Debug)]

@@ -3,13 +3,13 @@ use tracelight_lab::StepFigures;
 use tracelight_linear::Zpk;
 use tracelight_rig::Joint;
 use tracelight_sim::{BenchTick, CompensatorLaw, RigConfig, StepResponse, step_response_by};
+use tracelight_task::Failure;
+use tracelight_units::Angle;
 
 use super::over_time;
 use super::step::{curve, figures, figures_json, heading, row, unreachable};
 use crate::chart::{Colour, Panel, Pen};
-use crate::failure::Failure;
 use crate::rigfile;
-use crate::units::Angle;
 
 /// The controller on a rig.
 pub(super) struct Trial {

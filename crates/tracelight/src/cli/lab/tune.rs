@@ -6,19 +6,17 @@ use serde_json::json;
 use tracelight_lab::{Demand, Setting, around, coarse};
 use tracelight_rig::{PanTilt, Phase};
 use tracelight_sim::{LawName, RigConfig, SimulatedRig, Spread, score};
+use tracelight_task::{Failure, Stop, Task, on_all_cores};
 use tracelight_trajectory::Plan;
+use tracelight_units::{ANGULAR_SPEEDS, TIMES};
 
 use super::shape::ShapeArgs;
 use super::{above_zero, make_folder, rig_out};
+use crate::bar::Bar;
 use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use crate::cli::driving::Driving;
 use crate::cli::laws::law;
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
-use crate::fan::on_all_cores;
-use crate::progress::Progress;
-use crate::stop::Stop;
-use crate::units::{ANGULAR_SPEEDS, TIMES};
 
 /// Pick the control law of a rig and how fast its loops are: the smallest error on heads that differ, of all that bear what is asked
 #[derive(Args, Debug)]
@@ -120,17 +118,17 @@ pub(crate) fn run(args: &TuneArgs, stop: &Stop) -> Result<Answer, Failure> {
         return Err(Failure::usage("usage", "--slowest must be below --fastest"));
     }
     let bench = Bench { args, driving: &driving, plan: args.shape.plan(&driving)? };
-    let progress = Progress::new(args.voice.quiet);
-    progress.stage("laws", 1);
-    let mut tried =
-        bench.try_all(coarse(&args.laws, (args.slowest, args.fastest), BANDWIDTHS), &progress, stop)?;
-    let had = bench.try_all(vec![Setting::of(&driving.rig)], &progress, stop)?.remove(0);
-    progress.stage("joints", 1);
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
+    task.stage("laws", 1);
+    let mut tried = bench.try_all(coarse(&args.laws, (args.slowest, args.fastest), BANDWIDTHS), task)?;
+    let had = bench.try_all(vec![Setting::of(&driving.rig)], task)?.remove(0);
+    task.stage("joints", 1);
     let middle = best(&tried).ok_or_else(|| nothing_bears(args))?.setting;
     let mut near = around(middle);
     let within = args.slowest..=args.fastest;
     near.retain(|s| within.contains(&s.bandwidth_rad_s.pan) && within.contains(&s.bandwidth_rad_s.tilt));
-    tried.extend(bench.try_all(near, &progress, stop)?);
+    tried.extend(bench.try_all(near, task)?);
     tried.sort_by(|a, b| a.setting.bandwidth_rad_s.pan.total_cmp(&b.setting.bandwidth_rad_s.pan));
     let picked = best(&tried).ok_or_else(|| nothing_bears(args))?;
     let better = picked.setting.apply(&driving.rig);
@@ -157,15 +155,10 @@ impl Bench<'_> {
     }
 
     /// Tries settings, on all cores.
-    fn try_all(
-        &self,
-        settings: Vec<Setting>,
-        progress: &Progress,
-        stop: &Stop,
-    ) -> Result<Vec<Tried>, Failure> {
-        progress.stage("settings", settings.len() as u64);
-        let tried = on_all_cores(settings.len(), progress, stop, |number| self.tried(settings[number]));
-        stop.check()?;
+    fn try_all(&self, settings: Vec<Setting>, task: Task<'_>) -> Result<Vec<Tried>, Failure> {
+        task.stage("settings", settings.len() as u64);
+        let tried = on_all_cores(settings.len(), task, |number| self.tried(settings[number]));
+        task.check()?;
         Ok(tried)
     }
 

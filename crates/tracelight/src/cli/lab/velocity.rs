@@ -5,16 +5,16 @@ use clap::Args;
 use tracelight_lab::{Peaks, VelocityError, highest, peaks, peaks_seen, velocity_error};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{LONGEST_INTERVAL_TICKS, ObserverName, Run, SimulatedRig};
+use tracelight_task::{Failure, Stop, Task};
+use tracelight_units as units;
+use tracelight_units::{Speed, TIMES};
 
 use super::shape::ShapeArgs;
 use super::{OutFile, out_file, why_unfinished, write_all};
+use crate::bar::Bar;
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::driving::{Driving, positive_speed};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::stop::Stop;
-use crate::units::{self, Speed, TIMES};
 
 /// Ask of each way to tell velocity and acceleration from counts how far off it is, by interval and speed
 #[derive(Args, Debug)]
@@ -72,16 +72,17 @@ impl Row {
 }
 
 pub(crate) fn run(args: &VelocityArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let progress = Progress::new(args.voice.quiet);
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
     let mut driving = args.shape.resolve()?;
     let mut runs = Vec::new();
-    progress.stage("runs", args.speeds.len() as u64);
+    task.stage("runs", args.speeds.len() as u64);
     for (number, speed) in args.speeds.iter().enumerate() {
         stop.check()?;
         driving.request.speed_m_s = speed.0;
         driving.speed_is_asked = true;
         runs.push(draw(args, &driving)?);
-        progress.at(number as u64 + 1);
+        task.at(number as u64 + 1);
     }
     let rows = rows(args, &driving, &runs, stop)?;
     let seen = highest(runs.iter().map(|run| peaks_seen(&driving.rig, run, ObserverName::Kalman, 1)));

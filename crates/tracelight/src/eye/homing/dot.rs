@@ -3,12 +3,12 @@
 use tracelight_rig::Command;
 use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
+use tracelight_task::Failure;
 use tracelight_vision::{Grey, SpotLost, SpotWindow, find_spot};
 
 use super::Homing;
 use crate::eye::spots::{Light, WHOLE};
 use crate::eye::{Eye, Looks};
-use crate::failure::Failure;
 
 /// How long a dot is lit, ticks: a camera that sends ten images a second sees it whole.
 const DOT_TICKS: u16 = 350;
@@ -26,7 +26,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         let dark = Dark { image: self.rig.take(self.exposure_s)?.red()?, change: 0.0 };
         let mut change = 0.0_f64;
         for _ in 1..IMAGES {
-            self.stop.check()?;
+            self.task.check()?;
             change = change.max(dark.brightest(&self.rig.take(self.exposure_s)?.red()?));
         }
         Ok(change)

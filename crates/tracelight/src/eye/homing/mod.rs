@@ -18,15 +18,13 @@ use tracelight_lab::Quantiles;
 use tracelight_rig::{Command, PanTilt, Telemetry};
 use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
+use tracelight_task::{Failure, Task};
 
 use super::Eye;
 use super::head::{DotsRequest, SPOT_EXPOSURE_S, find_head, see_dots};
 use super::spots::{History, Timing};
 use crate::cli::driving::Driving;
-use crate::failure::Failure;
 use crate::output::HomedFigures;
-use crate::progress::Progress;
-use crate::stop::Stop;
 
 /// A head whose encoders were told where it stands.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +60,7 @@ pub(crate) fn home_head<R: Simulated + Eye>(
     camera: &Camera,
     driving: &Driving,
     known: Option<(Timing, f64)>,
-    (progress, stop): (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<Homed, Failure> {
     // an unhomed rig goes no further from where it was powered up than its joints' ranges are wide
     let free_rad = driving.machine.geometry.range_rad.map(|(lower, upper)| {
@@ -75,8 +73,7 @@ pub(crate) fn home_head<R: Simulated + Eye>(
         rig,
         camera,
         driving,
-        progress,
-        stop,
+        task,
         history: History::new(&driving.rig.model.relay),
         timing,
         exposure_s,
@@ -84,8 +81,8 @@ pub(crate) fn home_head<R: Simulated + Eye>(
         free_rad,
         stops: 0,
     };
-    progress.stage("homing", 1);
-    let homed = homing.home(known.is_some(), (progress, stop));
+    task.stage("homing", 1);
+    let homed = homing.home(known.is_some(), task);
     // dark whatever became of it; and a guess is not to be drawn by
     let _ = homing.rig.send(Command::Disarm);
     if homed.is_err() {
@@ -111,10 +108,10 @@ fn off_rad<R: Simulated + Eye>(
     camera: &Camera,
     driving: &Driving,
     request: &DotsRequest,
-    watched: (&Progress, &Stop),
+    task: Task<'_>,
 ) -> Result<PanTilt<f64>, Failure> {
     let geometry = anywhere(&driving.machine.geometry);
-    let spots = see_dots(rig, camera, driving, request, watched, &mut |_| {})?.spots();
+    let spots = see_dots(rig, camera, driving, request, task, &mut |_| {})?.spots();
     let off: Vec<PanTilt<f64>> = spots
         .iter()
         .filter_map(|spot| {
@@ -153,8 +150,7 @@ struct Homing<'a, R> {
     rig: &'a mut R,
     camera: &'a Camera,
     driving: &'a Driving,
-    progress: &'a Progress,
-    stop: &'a Stop,
+    task: Task<'a>,
     history: History,
     /// When images are taken, by their stamps, and how long they are exposed, s.
     timing: Timing,
@@ -168,15 +164,15 @@ struct Homing<'a, R> {
 }
 
 impl<R: Simulated + Eye> Homing<'_, R> {
-    fn home(&mut self, is_known: bool, watched: (&Progress, &Stop)) -> Result<Homed, Failure> {
+    fn home(&mut self, is_known: bool, task: Task<'_>) -> Result<Homed, Failure> {
         let (sought, true_rad) = self.seek()?;
         self.tell(true_rad)?;
         let off_rad = if is_known {
             let few = DotsRequest::few(self.driving, self.timing, self.exposure_s);
-            off_rad(self.rig, self.camera, self.driving, &few, watched)?
+            off_rad(self.rig, self.camera, self.driving, &few, task)?
         } else {
             let all = DotsRequest::first(self.driving);
-            let found = find_head(self.rig, self.camera, self.driving, &all, watched, &mut |_| {})?;
+            let found = find_head(self.rig, self.camera, self.driving, &all, task, &mut |_| {})?;
             let Alignment { geometry, pose, .. } = found.aligned.alignment;
             turned_rad(&geometry, &pose).ok_or_else(|| {
                 Failure::failed("head-not-found", "the head as its dots tell does not face the wall: turn it by hand so that it does, and home it again")

@@ -2,11 +2,11 @@
 
 use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, Segment, TICK_F64_S, Telemetry};
 use tracelight_sim::Simulated;
+use tracelight_task::Failure;
 use tracelight_trajectory::JointMotion;
 
 use super::{Homing, REST_TICKS};
 use crate::eye::Eye;
-use crate::failure::Failure;
 
 /// Fastest and most sudden motion of a joint of which nobody knows where it is, rad/s and rad/s².
 const GENTLE_RAD_S: f64 = 1.5;
@@ -94,7 +94,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             } else {
                 *upper = free_rad
             }
-            self.progress.say(&format!(
+            self.task.say(&format!(
                 "note: something is in the way of {joint} {:.0}° from where it was powered up: it goes no further that way",
                 end_rad.max(0.0).to_degrees()
             ));
@@ -191,7 +191,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
 
     /// The same, whatever is wrong with the rig.
     pub(super) fn tick(&mut self) -> Result<Telemetry, Failure> {
-        self.stop.check()?;
+        self.task.check()?;
         let _ = self.rig.send(Command::KeepAlive);
         let now = self.rig.step().telemetry;
         self.history.push(&now);

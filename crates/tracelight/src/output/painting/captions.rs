@@ -1,9 +1,10 @@
 use tracelight_stroke::{Point, Vec2};
+use tracelight_task::counted;
 
 use super::layout::{Layout, WIDTH};
 use super::lettering::{Align, Pen, fitted};
 use super::plane::Plane;
-use crate::output::{Job, counted};
+use crate::output::Job;
 
 /// Height of a capital, px.
 const LARGE: f64 = 13.0;

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use tracelight_lab::{Sample, SteadyPoint, Trial};
 use tracelight_rig::{Joint, PanTilt};
+use tracelight_task::Failure;
 
-use crate::failure::Failure;
 use crate::picture::read_bytes;
 use crate::record::{MOST_V, Row};
 use crate::table::{self, Names};

@@ -10,12 +10,11 @@ use serde_json::{Value, json};
 use tracelight_lab::{Curves, Line, Side, Steady, SteadyPoint, Uncertain, curves, steady, steady_of};
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
+use tracelight_task::{Failure, Stop};
 
 use super::parts::by_joint;
 use super::rig_out;
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
-use crate::stop::Stop;
 use trials::{Subject, TrialArgs};
 
 /// Identify friction as the 2006 report did, by voltages held, say what is wrong with that, and identify it from the whole curves

@@ -1,10 +1,10 @@
 use tracelight_lab::{Side, Trial, Uncertain};
 use tracelight_sim::RigConfig;
+use tracelight_task::Failure;
 
 use super::Found;
 use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Sign, Theme};
 use crate::cli::lab::over_time;
-use crate::failure::Failure;
 
 /// Time that speeds are told over, s.
 const OVER_S: f64 = 0.2;

@@ -7,18 +7,16 @@ use clap::Args;
 use tracelight_lab::{Believed, Protocol, Shuttle, SteadyPoint, Travel, Trial, free_trial};
 use tracelight_rig::Joint;
 use tracelight_sim::{Mounting, RigConfig, head_alone};
+use tracelight_task::{Failure, Stop, Task, on_all_cores};
+use tracelight_units::TIMES;
 
 use super::log::{self, Log};
+use crate::bar::Bar;
 use crate::cli::lab::parts::joints;
 use crate::cli::lab::step::Axis;
 use crate::cli::lab::{above_zero, make_folder, voltage};
 use crate::cli::write_file;
-use crate::failure::Failure;
-use crate::fan::on_all_cores;
-use crate::progress::Progress;
 use crate::rigfile;
-use crate::stop::Stop;
-use crate::units::TIMES;
 
 /// What joints are put through.
 #[derive(Args, Clone, Debug)]
@@ -86,9 +84,10 @@ impl TrialArgs {
     ) -> Result<Vec<Subject>, Failure> {
         let mut asked: Vec<Subject> = joints(self.axis).map(|joint| self.subject(rig, joint)).collect();
         if self.logs.is_empty() {
-            let progress = Progress::new(quiet);
+            let bar = Bar::new(quiet);
+            let task = Task { progress: &bar, stop };
             for subject in &mut asked {
-                subject.trials = self.conduct(rig, subject, &progress, stop)?;
+                subject.trials = self.conduct(rig, subject, task)?;
                 stop.check()?;
             }
             return Ok(asked);
@@ -174,30 +173,24 @@ impl TrialArgs {
     }
 
     /// The trials of a joint on the simulated head.
-    fn conduct(
-        &self,
-        rig: &RigConfig,
-        subject: &Subject,
-        progress: &Progress,
-        stop: &Stop,
-    ) -> Result<Vec<Trial>, Failure> {
+    fn conduct(&self, rig: &RigConfig, subject: &Subject, task: Task<'_>) -> Result<Vec<Trial>, Failure> {
         let (joint, limit_v) = (subject.joint, rig.model.motors[subject.joint].limit_v);
         let protocol = self.protocol(limit_v)?;
-        progress.stage(joint.name(), protocol.volts.len() as u64);
+        task.stage(joint.name(), protocol.volts.len() as u64);
         if self.fixture {
             let trial = |number: usize| {
                 let mut head = head_alone(rig, joint, Mounting::Fixture, self.seed);
                 free_trial(&mut head, joint, &protocol, protocol.volts[number])
             };
-            return Ok(on_all_cores(protocol.volts.len(), progress, stop, trial));
+            return Ok(on_all_cores(protocol.volts.len(), task, trial));
         }
         let (lower_rad, upper_rad) = rig.model.geometry.range_rad[joint];
         let travel = Travel { lower_rad, upper_rad };
         let shuttle = Shuttle { protocol: &protocol, travel, believed: &subject.believed, limit_v };
         let mut head = head_alone(rig, joint, Mounting::Standing, self.seed);
         Ok(shuttle.trials(&mut head, joint, |number| {
-            progress.at(number as u64);
-            if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            task.at(number as u64);
+            if task.stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         }))
     }
 

@@ -7,11 +7,11 @@ use clap::Args;
 use serde_json::{Value, json};
 use tracelight_lab::{Check, Graded, Lesson};
 use tracelight_rig::TICK_F64_S;
+use tracelight_task::Failure;
 
 use super::by_hand::{number, settings};
 use super::{OutFile, OutKind, out_file, write_all};
 use crate::cli::{Answer, Voice, write_file};
-use crate::failure::Failure;
 use crate::rigfile;
 
 /// Learn control on the simulated head: eight lessons, each a text, a command to try, a plot and a question that the simulator grades

@@ -2,12 +2,12 @@
 
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::Tick;
+use tracelight_task::Failure;
 use tracelight_trajectory::CoursePoint;
 
 use super::super::colour;
 use super::{Bench, Entry, OnRig, failure};
 use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale, Theme};
-use crate::failure::Failure;
 
 /// Points of a plotted curve.
 const PLOTTED: u32 = 400;

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use tracelight_rig::{Joint, PanTilt};
+use tracelight_task::Failure;
 use tracelight_trajectory::{Pace, Peaks};
 
 use super::{Bench, Entry, OnRig, failure};
 use crate::cli::shapes::ProfileName;
-use crate::failure::Failure;
 
 pub(super) fn text(bench: &Bench<'_>) -> String {
     let limits = &bench.wish.limits;

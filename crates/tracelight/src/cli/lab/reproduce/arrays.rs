@@ -5,10 +5,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use tracelight_rig::TICK_F64_S;
+use tracelight_task::Failure;
 use tracelight_trajectory::{MoveLimits, Profile, Ramps, Shape};
 
 use crate::cli::write_file;
-use crate::failure::Failure;
 use crate::output::html::data_uri;
 
 /// A picture to trace: one closed figure, as the report asks for.

@@ -9,13 +9,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::{Value, json};
+use tracelight_task::{Failure, Stop, Task, on_all_cores};
 
 use super::make_folder;
+use crate::bar::Bar;
 use crate::cli::{Answer, Voice, answer, write_file};
-use crate::failure::Failure;
-use crate::fan::on_all_cores;
-use crate::progress::Progress;
-use crate::stop::Stop;
 
 /// Make every figure and table of the 2006 report again that can be: one page, its numbers beside ours, and what explains the difference
 #[derive(Args, Debug)]
@@ -92,10 +90,11 @@ pub(crate) fn run(args: &ReproduceArgs, stop: &Stop) -> Result<Answer, Failure> 
     }
     arrays::write(&args.out)?;
     let chapters = chapters::chapters(&args.out);
-    let progress = Progress::new(args.voice.quiet);
+    let bar = Bar::new(args.voice.quiet);
+    let task = Task { progress: &bar, stop };
     let runs: Vec<&Run> = chapters.iter().flat_map(|c| c.parts.iter()).filter_map(Part::run).collect();
-    progress.stage("figures", runs.len() as u64);
-    let done: Vec<Done> = on_all_cores(runs.len(), &progress, stop, |number| perform(runs[number], stop));
+    task.stage("figures", runs.len() as u64);
+    let done: Vec<Done> = on_all_cores(runs.len(), task, |number| perform(runs[number], stop));
     stop.check()?;
     let done = done.into_iter().collect::<Result<Vec<_>, _>>()?;
     let index = args.out.join("index.html").display().to_string();

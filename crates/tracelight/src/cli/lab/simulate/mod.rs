@@ -9,6 +9,8 @@ use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{
     Between, Diagram, LawName, MotionArray, ObserverName, RigConfig, ScopeTick, follow_array,
 };
+use tracelight_task::Failure;
+use tracelight_units::{TIMES, TORQUES};
 
 use super::by_hand::ByHandArgs;
 use super::head::Set;
@@ -19,9 +21,7 @@ use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};
-use crate::failure::Failure;
 use crate::rigfile;
-use crate::units::{TIMES, TORQUES};
 
 /// Run an array of times and angles through the nonlinear loop: desired, actual and error, as the 2006 report's simulation
 #[derive(Args, Debug)]

@@ -2,8 +2,8 @@
 
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, MotionArray};
+use tracelight_task::Failure;
 
-use crate::failure::Failure;
 use crate::picture::read_bytes;
 use crate::record::Row;
 

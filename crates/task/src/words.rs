@@ -1,13 +1,15 @@
 use tracelight_rig::{Darkness, Fault, Phase};
 
 /// So many of something, in words: "1 stroke", "2 strokes".
-pub(crate) fn counted(count: usize, one: &str) -> String {
+#[must_use]
+pub fn counted(count: usize, one: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {one}{plural}")
 }
 
 /// What a fault means and what to look at, one sentence each.
-pub(crate) const fn fault_words(fault: Fault) -> &'static str {
+#[must_use]
+pub const fn fault_words(fault: Fault) -> &'static str {
     match fault {
         Fault::EncoderJumped => {
             "An encoder's count moved faster than the joint can: look for a loose plug, interference or a slipping disc, and home the head before it is armed again."
@@ -56,7 +58,8 @@ pub(crate) const fn fault_words(fault: Fault) -> &'static str {
 }
 
 /// Why the interlock darkened the beam, one sentence each.
-pub(crate) const fn darkness_words(reason: Darkness) -> &'static str {
+#[must_use]
+pub const fn darkness_words(reason: Darkness) -> &'static str {
     match reason {
         Darkness::Planned => "The plan wants no light here.",
         Darkness::Disarmed => "Nobody armed the rig.",
@@ -76,7 +79,8 @@ pub(crate) const fn darkness_words(reason: Darkness) -> &'static str {
 }
 
 /// A phase's name in tables and logs.
-pub(super) const fn phase_word(phase: Phase) -> &'static str {
+#[must_use]
+pub const fn phase_word(phase: Phase) -> &'static str {
     match phase {
         Phase::Dark => "dark",
         Phase::Armed => "armed",

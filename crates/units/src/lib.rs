@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 /// Why a text is no quantity.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub(crate) enum UnitError {
+pub enum UnitError {
     /// A number without unit.
     #[error("{text} has no unit; write it with one of {units}, such as {text}{first}")]
     Bare {
@@ -48,42 +48,42 @@ pub(crate) enum UnitError {
 }
 
 /// A unit's name and what one of it is in SI.
-pub(crate) type Unit = (&'static str, f64);
+pub type Unit = (&'static str, f64);
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
 /// The first of each list is the SI unit the quantity prints in.
-pub(crate) const LENGTHS: &[Unit] = &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("ft", 0.3048)];
+pub const LENGTHS: &[Unit] = &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("ft", 0.3048)];
 /// Lengths in a picture.
-pub(crate) const PIXELS: &[Unit] = &[("px", 1.0)];
+pub const PIXELS: &[Unit] = &[("px", 1.0)];
 /// See [`LENGTHS`].
-pub(crate) const ANGLES: &[Unit] =
+pub const ANGLES: &[Unit] =
     &[("rad", 1.0), ("mrad", 1e-3), ("deg", DEG), ("arcmin", DEG / 60.0), ("arcsec", DEG / 3600.0)];
 /// See [`LENGTHS`].
-pub(crate) const SPEEDS: &[Unit] =
+pub const SPEEDS: &[Unit] =
     &[("m/s", 1.0), ("mm/s", 1e-3), ("cm/s", 1e-2), ("in/s", 0.0254), ("ft/s", 0.3048)];
 /// See [`LENGTHS`].
-pub(crate) const ACCELERATIONS: &[Unit] =
+pub const ACCELERATIONS: &[Unit] =
     &[("m/s2", 1.0), ("mm/s2", 1e-3), ("cm/s2", 1e-2), ("in/s2", 0.0254), ("ft/s2", 0.3048)];
 /// See [`LENGTHS`].
-pub(crate) const TIMES: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
+pub const TIMES: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 /// See [`LENGTHS`].
-pub(crate) const VOLTAGES: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
+pub const VOLTAGES: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
 /// See [`LENGTHS`].
-pub(crate) const CURRENTS: &[Unit] = &[("A", 1.0), ("mA", 1e-3)];
+pub const CURRENTS: &[Unit] = &[("A", 1.0), ("mA", 1e-3)];
 /// See [`LENGTHS`].
-pub(crate) const TORQUE_CONSTANTS: &[Unit] = &[("Nm/A", 1.0), ("mNm/A", 1e-3)];
+pub const TORQUE_CONSTANTS: &[Unit] = &[("Nm/A", 1.0), ("mNm/A", 1e-3)];
 /// See [`LENGTHS`].
-pub(crate) const TORQUES: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
+pub const TORQUES: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
 /// See [`LENGTHS`].
-pub(crate) const ANGULAR_SPEEDS: &[Unit] = &[("rad/s", 1.0), ("deg/s", DEG)];
+pub const ANGULAR_SPEEDS: &[Unit] = &[("rad/s", 1.0), ("deg/s", DEG)];
 /// See [`LENGTHS`].
-pub(crate) const ANGULAR_ACCELERATIONS: &[Unit] = &[("rad/s2", 1.0), ("deg/s2", DEG)];
+pub const ANGULAR_ACCELERATIONS: &[Unit] = &[("rad/s2", 1.0), ("deg/s2", DEG)];
 /// See [`LENGTHS`].
-pub(crate) const ANGULAR_JERKS: &[Unit] = &[("rad/s3", 1.0), ("deg/s3", DEG)];
+pub const ANGULAR_JERKS: &[Unit] = &[("rad/s3", 1.0), ("deg/s3", DEG)];
 
 /// Splits a text into number and unit and converts to SI.
-pub(crate) fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError> {
+pub fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError> {
     const LONGEST: usize = 64; // no quantity is longer, and splitting takes the square of the length
     let text = text.trim();
     let names = || units.iter().map(|u| u.0).collect::<Vec<_>>().join(", ");
@@ -132,7 +132,7 @@ macro_rules! quantity {
     ($(#[$doc:meta])* $name:ident, $units:ident) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
-        pub(crate) struct $name(pub(crate) f64);
+        pub struct $name(pub f64);
 
         impl FromStr for $name {
             type Err = UnitError;
@@ -179,7 +179,7 @@ quantity!(
 /// A rate of a length or of an angle: one of [`SPEEDS`] or [`ANGULAR_SPEEDS`], [`ACCELERATIONS`] or
 /// [`ANGULAR_ACCELERATIONS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Rate {
+pub enum Rate {
     /// m/s or m/s².
     Linear(f64),
     /// rad/s or rad/s².
@@ -188,11 +188,7 @@ pub(crate) enum Rate {
 
 impl Rate {
     /// A rate of either kind; what fits neither is said of both.
-    pub(crate) fn parse(
-        text: &str,
-        linear: &'static [Unit],
-        angular: &'static [Unit],
-    ) -> Result<Self, String> {
+    pub fn parse(text: &str, linear: &'static [Unit], angular: &'static [Unit]) -> Result<Self, String> {
         match (parse(text, linear), parse(text, angular)) {
             (Ok(value), _) => Ok(Rate::Linear(value)),
             (_, Ok(value)) => Ok(Rate::Angular(value)),
@@ -204,7 +200,7 @@ impl Rate {
     }
 
     /// As a rate of a length, where a radian is so many metres long.
-    pub(crate) fn linear(self, metres_per_rad: f64) -> f64 {
+    pub fn linear(self, metres_per_rad: f64) -> f64 {
         match self {
             Rate::Linear(value) => value,
             Rate::Angular(value) => value * metres_per_rad,
@@ -212,7 +208,7 @@ impl Rate {
     }
 
     /// The number alone, SI.
-    pub(crate) const fn value(self) -> f64 {
+    pub const fn value(self) -> f64 {
         match self {
             Rate::Linear(value) | Rate::Angular(value) => value,
         }
@@ -221,7 +217,7 @@ impl Rate {
 
 /// Two lengths: right and up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Offset(pub(crate) Length, pub(crate) Length);
+pub struct Offset(pub Length, pub Length);
 
 impl FromStr for Offset {
     type Err = UnitError;

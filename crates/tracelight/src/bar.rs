@@ -4,14 +4,15 @@ use std::fmt::Write;
 use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+use tracelight_task::Progress;
 
 /// A bar with the stage's name when stderr is a terminal, nothing otherwise.
-pub(crate) struct Progress {
+pub(crate) struct Bar {
     bar: ProgressBar,
     quiet: bool,
 }
 
-impl Progress {
+impl Bar {
     pub(crate) fn new(quiet: bool) -> Self {
         let shown = !quiet && std::io::stderr().is_terminal();
         let bar = if shown { ProgressBar::new(1) } else { ProgressBar::hidden() };
@@ -22,16 +23,17 @@ impl Progress {
         }
         Self { bar, quiet }
     }
+}
 
-    /// Begins a stage of `steps` steps.
-    pub(crate) fn stage(&self, name: &'static str, steps: u64) {
+impl Progress for Bar {
+    fn stage(&self, name: &'static str, steps: u64) {
         self.bar.set_length(steps.max(1));
         self.bar.set_position(0);
         self.bar.set_message(name);
     }
 
-    /// Begins a stage of many pictures, shown with their rate and the last one's name.
-    pub(crate) fn pictures(&self, count: u64) {
+    /// Shown with their rate and the last one's name.
+    fn things(&self, count: u64) {
         const TEMPLATE: &str = "{pos} of {len} {wide_bar} {rate}  {eta:>4} left  {msg}";
         let rate = |state: &ProgressState, text: &mut dyn Write| {
             let _ = write!(text, "{:.1} pictures/s", state.per_sec()); // the bar goes on without it
@@ -42,27 +44,24 @@ impl Progress {
         self.stage("", count);
     }
 
-    /// One more picture has ended.
-    pub(crate) fn finished(&self, picture: &str) {
-        self.bar.set_message(picture.to_owned());
+    fn finished(&self, name: &str) {
+        self.bar.set_message(name.to_owned());
         self.bar.inc(1);
     }
 
-    /// Moves the bar to a step.
-    pub(crate) fn at(&self, step: u64) {
+    fn at(&self, step: u64) {
         self.bar.set_position(step);
     }
 
-    /// A remark that stays on stderr.
     #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
-    pub(crate) fn say(&self, message: &str) {
+    fn say(&self, message: &str) {
         if !self.quiet {
             self.bar.suspend(|| eprintln!("{message}"));
         }
     }
 }
 
-impl Drop for Progress {
+impl Drop for Bar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

@@ -1,0 +1,80 @@
+use std::fmt::Display;
+
+use tracelight_rig::Fault;
+
+use crate::words::fault_words;
+
+/// How a command that did not succeed ends the process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// The work failed, or a readable input was refused.
+    Failed,
+    /// The command line, or a file given to it, is wrong.
+    Usage,
+    /// A rig fault darkened the laser and stopped the run.
+    Fault,
+    /// The user interrupted.
+    Interrupted,
+}
+
+impl Status {
+    /// The exit status of a process.
+    #[must_use]
+    pub const fn code(self) -> u8 {
+        match self {
+            Status::Failed => 1,
+            Status::Usage => 2,
+            Status::Fault => 3,
+            Status::Interrupted => 130,
+        }
+    }
+}
+
+/// Why a command failed, in words for the user and a code for scripts.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// Whose fault it is.
+    pub status: Status,
+    /// Stable, for `--json` and `explain`.
+    pub code: &'static str,
+    /// A sentence: what, where, and what to do.
+    pub message: String,
+}
+
+impl Failure {
+    /// A readable input that is refused, or work that failed.
+    #[must_use]
+    pub fn failed(code: &'static str, message: impl Display) -> Self {
+        Self { status: Status::Failed, code, message: message.to_string() }
+    }
+
+    /// A wrong command line or file.
+    #[must_use]
+    pub fn usage(code: &'static str, message: impl Display) -> Self {
+        Self { status: Status::Usage, code, message: message.to_string() }
+    }
+
+    /// The user pressed Ctrl-C.
+    #[must_use]
+    pub fn interrupted() -> Self {
+        Self {
+            status: Status::Interrupted,
+            code: "interrupted",
+            message: "interrupted: the laser is dark, the log is closed".into(),
+        }
+    }
+
+    /// The rig latched a fault.
+    #[must_use]
+    pub fn fault(fault: Fault) -> Self {
+        let message =
+            format!("the laser darkened and the run stopped: {} ({})", fault.code(), fault_words(fault));
+        Self { status: Status::Fault, code: fault.code(), message }
+    }
+
+    /// `{"error":{"code","message"}}`.
+    #[must_use]
+    pub fn json(&self) -> String {
+        serde_json::json!({"error": {"code": self.code, "message": self.message}}).to_string()
+    }
+}

@@ -1,0 +1,15 @@
+//! A piece of work that takes its time: it says how far it is, is stopped, fails with a code and a sentence, and uses all cores.
+//!
+//! Who has the work done brings a [`Progress`] and a [`Stop`]; nothing here knows of a terminal, a signal or a process.
+
+mod failure;
+mod fan;
+mod progress;
+mod stop;
+mod words;
+
+pub use failure::{Failure, Status};
+pub use fan::on_all_cores;
+pub use progress::{NoProgress, Progress, Task};
+pub use stop::Stop;
+pub use words::{counted, darkness_words, fault_words, phase_word};
