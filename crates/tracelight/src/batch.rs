@@ -11,7 +11,6 @@
 
 pub(crate) mod figures;
 mod manifest;
-pub(crate) mod pictures;
 pub(crate) mod places;
 mod queue;
 mod report;
@@ -27,10 +26,10 @@ use std::time::Instant;
 
 use figures::Figures;
 use manifest::{Entry, Manifest, Stamp};
-use pictures::Picture;
 use queue::Panicked;
 use report::Report;
 pub(crate) use report::{Outcome, Row, Totals};
+use tracelight_files::Picture;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::bar::Bar;

@@ -6,11 +6,11 @@ use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 use toml_edit::{Array, Item};
 use tracelight_aim::{Camera, CameraPose, Lens, LensBelief, PlacedPage, Survey, SurveyedCamera};
+use tracelight_files as files;
 use tracelight_stroke::{Affine, Point};
 use tracelight_task::Failure;
 
 use crate::eye::wall::SeenWall;
-use crate::picture::read_bytes;
 
 /// Largest camera file, bytes: twenty times what is written.
 const MOST_BYTES: usize = 1 << 18;
@@ -341,7 +341,7 @@ pub(crate) fn read(path: &str) -> Result<LensBelief, Failure> {
 /// All of a camera file.
 pub(crate) fn read_whole(path: &str) -> Result<KnownCamera, Failure> {
     let wrong = |what: String| Failure::usage("camera-file", format!("{path}: {what}"));
-    let bytes = read_bytes(path)?;
+    let bytes = files::read(path)?;
     if bytes.len() > MOST_BYTES {
         return Err(wrong(format!(
             "{} bytes are no camera file, which has at most {MOST_BYTES}",

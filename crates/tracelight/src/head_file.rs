@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
+use tracelight_files as files;
 use tracelight_task::Failure;
 
 use crate::camera_file::{PageName, PageTable};
@@ -9,7 +10,6 @@ use crate::cli::driving::Driving;
 use crate::eye::head::FoundHead;
 use crate::eye::spots::Timing;
 use crate::eye::wall::SeenWall;
-use crate::picture::read_bytes;
 
 /// Largest head file, bytes.
 const MOST_BYTES: usize = 1 << 16;
@@ -141,7 +141,7 @@ pub(crate) fn write(file: &HeadFile) -> Result<String, Failure> {
 /// The head of a file, for a rig that is built as told otherwise.
 pub(crate) fn read(path: &str, driving: &Driving) -> Result<KnownHead, Failure> {
     let wrong = |what: String| Failure::usage("head-file", format!("{path}: {what}"));
-    let bytes = read_bytes(path)?;
+    let bytes = files::read(path)?;
     if bytes.len() > MOST_BYTES {
         return Err(wrong(format!("{} bytes are no head file, which has at most {MOST_BYTES}", bytes.len())));
     }

@@ -9,6 +9,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use tracelight_files as files;
 use tracelight_lab::{LAPS_WORTH, identify};
 use tracelight_rig::{Command, Joint, PanTilt, Rig};
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Tracking, score};
@@ -23,11 +24,11 @@ use crate::eye::room::{Furnished, left};
 use crate::output::{
     self, EyeFigures, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing,
 };
-use crate::picture;
 use crate::rigfile;
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::settings;
 use crate::sketch::{Placed, Sketch, place, sketch};
+use crate::source;
 use seen::Seen;
 use watched::{WatchedJob, WatchedRun, run_watched};
 
@@ -91,7 +92,7 @@ fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
     task.stage("strokes", 1);
-    let sketch = sketch(args.name(), picture::read(args.name())?, &args.tracing, &args.placement)?;
+    let sketch = sketch(args.name(), source::read(args.name())?, &args.tracing, &args.placement)?;
     task.check()?;
     let placed = place(&sketch, &args.placement);
     planned(sketch.shown(), placed, driving, None, task)
@@ -373,7 +374,7 @@ fn write(
 /// removed. A rig file that the job was given stays as it is.
 fn write_rig(args: &TraceArgs, dir: &Path, laps: &Laps) -> Result<(), Failure> {
     let path = dir.join("rig.toml");
-    if rigfile::is_same(&path.to_string_lossy(), &args.driving.rig) {
+    if files::is_same(&path.to_string_lossy(), &args.driving.rig) {
         return Ok(());
     }
     let Some(rig) = &laps.identified else {

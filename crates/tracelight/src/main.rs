@@ -12,14 +12,13 @@ mod interrupt;
 mod job;
 mod output;
 mod paper;
-mod picture;
 mod quality;
-mod quiet;
 mod record;
 mod rigfile;
 mod schedule;
 mod settings;
 mod sketch;
+mod source;
 mod table;
 
 use std::process::ExitCode;

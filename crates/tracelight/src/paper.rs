@@ -2,13 +2,13 @@
 
 use clap::ValueEnum;
 use tracelight_aim::{Homography, proportions};
+use tracelight_picture::Raster;
 use tracelight_stroke::{Drawing, Point};
 use tracelight_task::Failure;
 use tracelight_vision::{Grey, Page, Sheet};
 
 use crate::carried::carried;
 use crate::cli::tracing::{Straighten, TracingArgs};
-use crate::output::Raster;
 
 /// What is drawn or printed on, upright, mm.
 #[derive(Clone, Copy, Debug)]

@@ -6,10 +6,9 @@
 
 use std::fmt::Write;
 
+use tracelight_files as files;
 use tracelight_rig::{Actuation, Joint, Measurement, PanTilt, Setpoint, TICK_F64_S, Telemetry};
 use tracelight_task::Failure;
-
-use crate::picture::read_bytes;
 
 /// Most ticks of a record: half an hour.
 const MOST_TICKS: usize = 1_800_000;
@@ -20,7 +19,7 @@ const SAME_S: f64 = 1e-5;
 
 /// Reads a record; one for each lap.
 pub(crate) fn read(path: &str, count_rad: f64) -> Result<Vec<Vec<Telemetry>>, Failure> {
-    let bytes = read_bytes(path)?;
+    let bytes = files::read(path)?;
     parse(&bytes, count_rad).map_err(|what| Failure::usage("record", format!("{path}{what}")))
 }
 

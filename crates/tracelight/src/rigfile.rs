@@ -13,18 +13,18 @@ mod save;
 use std::ops::Range;
 
 use toml_edit::{Document, Item, TableLike, Value};
+use tracelight_files as files;
 use tracelight_plant::Wear;
 use tracelight_sim::{Identified, Model, RigConfig};
 use tracelight_task::Failure;
 use tracelight_units as units;
 
-use crate::picture::read_bytes;
 use caret::Mark;
 use found::identified_keys;
 use hand_tuned::rig_keys;
 pub(crate) use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
 use keys::{Choice, Key, Slot, model_keys};
-pub(crate) use save::{date, is_same, save, today};
+pub(crate) use save::{date, save, today};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
 const MOST_BYTES: usize = 1 << 20;
@@ -41,7 +41,7 @@ pub(crate) fn load(name: &str) -> Result<RigConfig, Failure> {
     }
     let bytes = match std::fs::metadata(name) {
         Ok(about) if about.is_file() && about.len() == 0 => Vec::new(), // every key left out: the preset `report`
-        _ => read_bytes(name)?,
+        _ => files::read(name)?,
     };
     if bytes.len() > MOST_BYTES {
         let message = format!("{name} has {} bytes, a rig file has at most {MOST_BYTES}", bytes.len());

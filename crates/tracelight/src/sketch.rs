@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use tracelight_aim::{Placement, SizeRequest};
 use tracelight_formats::{Reading, svg};
+use tracelight_picture::{Pixels, Raster, Source};
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 use tracelight_task::{Failure, counted};
 use tracelight_vision::{Comb, Dots, Quality, Traced, VisionError};
@@ -11,9 +12,7 @@ use tracelight_vision::{Comb, Dots, Quality, Traced, VisionError};
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::output::Raster;
 use crate::paper::{self, PaperSeen};
-use crate::picture::{Pixels, Source};
 
 /// Width of a picture that says nothing of its size, m: 24 in.
 const DEFAULT_WIDTH_M: f64 = 24.0 * 0.0254;

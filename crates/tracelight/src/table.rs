@@ -1,9 +1,9 @@
 //! Tables that were measured: CSV with names above its columns, so many rows at most, each told with its line.
 
+use tracelight_files as files;
 use tracelight_rig::Joint;
 use tracelight_task::Failure;
 
-use crate::picture::read_bytes;
 use crate::record::Row;
 
 /// Most rows: ten hours of a sample each 10 ms.
@@ -37,7 +37,7 @@ pub(crate) fn read<C>(
     columns: impl FnOnce(&Names) -> Result<C, String>,
     row: impl FnMut(&C, &Row<'_>) -> Result<(), String>,
 ) -> Result<(), Failure> {
-    let bytes = read_bytes(path)?;
+    let bytes = files::read(path)?;
     parse(&bytes, columns, row).map_err(|what| Failure::usage(code, format!("{path}{what}")))
 }
 

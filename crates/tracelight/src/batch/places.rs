@@ -4,9 +4,8 @@ use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
+use tracelight_files::Picture;
 use tracelight_task::Failure;
-
-use crate::batch::pictures::Picture;
 
 /// A file for each picture, as paths from `folder`: the picture's name, below a named folder its way from there; where
 /// these meet, with the folders that tell them apart.

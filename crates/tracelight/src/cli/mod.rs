@@ -166,12 +166,6 @@ fn refuse(error: &clap::Error) -> ExitCode {
     ExitCode::from(Status::Usage.code())
 }
 
-/// Writes a file the user named.
-pub(crate) fn write_file(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
-    let failed = |e| Failure::failed("cannot-write", format!("cannot write {path}: {e}"));
-    std::fs::write(path, bytes).map_err(failed)
-}
-
 /// To standard output; a reader that has left is no error.
 fn print(text: &str) {
     use std::io::Write;

@@ -2,6 +2,7 @@ use std::fmt::Write;
 use std::time::Instant;
 
 use clap::Args;
+use tracelight_files as files;
 use tracelight_rig::TICK_F64_S;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::{LitSpeed, Plan};
@@ -10,11 +11,11 @@ use crate::bar::Bar;
 use crate::cli::driving::DrivingArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::output::{ColourBy, PlanFigures, StrokeFigures, preview};
-use crate::picture;
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::sketch::{Placed, place, sketch};
+use crate::source;
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]
@@ -52,7 +53,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let task = Task { progress: &bar, stop };
     let driving = args.driving.resolve()?;
     task.stage("strokes", 1);
-    let sketch = sketch(&args.drawing, picture::read(&args.drawing)?, &args.tracing, &args.placement)?;
+    let sketch = sketch(&args.drawing, source::read(&args.drawing)?, &args.tracing, &args.placement)?;
     let placed = place(&sketch, &args.placement);
     stop.check()?;
     task.stage("plan", 1);
@@ -65,10 +66,10 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| task.say(&format!("note: {n}")));
     if let Some(path) = &args.out {
-        write_file(path, csv(&schedule.plan))?;
+        files::write(path, csv(&schedule.plan))?;
     }
     if let Some(path) = &args.preview {
-        write_file(path, preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
+        files::write(path, preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
     }
     let timing = serde_json::json!({ "vision": sketch.vision_ms, "plan": plan_ms });
     let shortest = args.order_by == OrderBy::Distance || driving.request.lit_speed == LitSpeed::Stops;

@@ -2,25 +2,27 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use tracelight_files as files;
+use tracelight_files::{Picture, stands_for_several};
 use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, json};
+use tracelight_picture::Source;
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Progress as _, Stop, Task, counted};
 use tracelight_vision::Stages;
 
 use crate::bar::Bar;
 use crate::batch::figures::Figures;
-use crate::batch::pictures::{self, Picture, stands_for_several};
 use crate::batch::{self, Batch, Finding, Out, places};
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::output;
 use crate::output::drawing::{self, FORMATS};
 use crate::paper::{PaperSeen, page};
-use crate::picture::{self, Source};
 use crate::quality::QualityFigures;
 use crate::sketch::{Sketch, place, sketch};
+use crate::source;
 
 /// How close `points` keep to their path, px.
 const POINTS_TOLERANCE_PX: f64 = 0.05;
@@ -101,7 +103,7 @@ fn many(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
         let message = "several pictures need a folder: end --out with / (such as -o strokes/)";
         return Err(Failure::usage("usage", message));
     }
-    let found = pictures::find(&args.pictures, args.recursive)?;
+    let found = files::find(&args.pictures, args.recursive)?;
     let bar = Bar::new(args.voice.quiet);
     let task = Task { progress: &bar, stop };
     found.remarks.iter().for_each(|remark| task.say(&format!("note: {remark}")));
@@ -159,14 +161,14 @@ fn made_with(args: &StrokesArgs) -> String {
 }
 
 fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding, Failure> {
-    let source = picture::read(picture)?;
+    let source = source::read(picture)?;
     if let Some(path) = &args.stages {
         if path.as_path() == Path::new(picture) || args.out.as_deref() == Some(path) {
             let message =
                 format!("--stages {} is the picture or --out: give it a name of its own", path.display());
             return Err(Failure::usage("usage", message));
         }
-        write_file(&path.display().to_string(), stages(picture, &source, &args.tracing)?)?;
+        files::write(&path.display().to_string(), stages(picture, &source, &args.tracing)?)?;
     }
     let mut sketch = sketch(picture, source, &args.tracing, &args.placement)?;
     sketch.picture = None; // its colours are not needed, and large

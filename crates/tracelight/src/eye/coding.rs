@@ -3,8 +3,7 @@
 
 use std::borrow::Cow;
 
-use crate::output::Raster;
-use crate::picture::jpeg_is_whole;
+use tracelight_picture::{Raster, jpeg_is_whole};
 
 /// How an image's bytes mean pixels; named by four characters, as in Video4Linux and UVC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! The figure on the wall, as strokes in the wall's frame: traced where the camera sees it, not where it lies in a file.
 
 use tracelight_aim::Camera;
+use tracelight_picture::{Pixels, Raster, Source};
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 use tracelight_task::{Failure, Task};
 use tracelight_vision::Grey;
@@ -12,8 +13,6 @@ use crate::carried::carried;
 use crate::cli::choosing::ChoiceArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::output::Raster;
-use crate::picture::{Pixels, Source};
 use crate::sketch::{Placed, Sketch, sketch_at};
 
 /// A figure that was found.

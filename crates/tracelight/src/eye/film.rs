@@ -213,8 +213,8 @@ fn end_of_scan(bytes: &[u8], from: usize) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::Raster;
     use std::collections::VecDeque;
+    use tracelight_picture::Raster;
 
     fn jpeg(width: u32, seed: u8) -> Vec<u8> {
         let levels = (0..3 * width * 8).map(|k| (k as u8).wrapping_mul(37).wrapping_add(seed)).collect();

@@ -1,10 +1,11 @@
 //! Pages of markers taken off an image of a wall: what is about them is carried on smoothly where they are.
 
 use tracelight_aim::{Board, Camera, PlacedPage};
+use tracelight_picture::Raster;
 use tracelight_stroke::Point;
 
 use super::wall::SeenWall;
-use crate::output::{Raster, printed_m};
+use crate::output::printed_m;
 use crate::paper::Paper;
 
 /// How far a page is taken to reach beyond its paper, m: paper casts shadows.

@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 
 use clap::ValueEnum;
 use tracelight_aim::{Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens, Placement, SizeRequest};
+use tracelight_picture::Source;
 use tracelight_plant::{CameraConfig, Poster, SimulatedCamera, Wall};
 use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Room, SimulatedRig};
@@ -18,7 +19,7 @@ use super::{Eye, Shot};
 use crate::cli::placing::PlacementArgs;
 use crate::output::page_raster;
 use crate::paper::Paper;
-use crate::picture::{self, Source};
+use crate::source;
 
 /// Which camera is simulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -201,7 +202,7 @@ impl Hung {
 }
 
 fn hang(path: &str, request: &RoomRequest<'_>) -> Result<Hung, Failure> {
-    let Source::Pixels(pixels) = picture::read(path)? else {
+    let Source::Pixels(pixels) = source::read(path)? else {
         let message = format!(
             "{path} is a drawing; a simulated wall wants a picture with pixels: PNG, JPEG, WebP, BMP, GIF, PNM or TIFF"
         );

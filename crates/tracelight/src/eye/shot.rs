@@ -1,3 +1,4 @@
+use tracelight_picture::{Raster, Source, decode};
 use tracelight_plant::{Image, Part};
 use tracelight_sim::Taken;
 use tracelight_stroke::{Point, Vec2};
@@ -5,8 +6,6 @@ use tracelight_task::Failure;
 use tracelight_vision::{Grey, SpotWindow};
 
 use super::coding::{Coding, Layout, as_file};
-use crate::output::Raster;
-use crate::picture::{self, Source};
 
 /// An image, and when it was taken by the clock of the rig's ticks. What a camera sent is decoded when somebody looks.
 #[derive(Clone, Debug)]
@@ -152,7 +151,7 @@ impl From<Taken> for Shot {
 }
 
 fn decoded(from: &str, bytes: &[u8]) -> Result<Raster, Failure> {
-    match picture::decode(from, bytes)? {
+    match decode(from, bytes)? {
         Source::Pixels(pixels) => Ok(pixels.colour),
         Source::Strokes(_) => Err(Failure::usage(
             "not-a-picture",

@@ -3,13 +3,12 @@
 use std::collections::VecDeque;
 use std::path::PathBuf;
 
+use tracelight_files as files;
 use tracelight_task::Failure;
 
 use super::film::{self, Film};
 use super::stream::Stream;
 use super::{Looks, Shot};
-use crate::batch::pictures;
-use crate::picture;
 
 /// A camera, as `--camera` names it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,7 +111,7 @@ struct Files {
 
 impl Files {
     fn open(path: &str) -> Result<Self, Failure> {
-        let found = pictures::find(&[path.to_owned()], false)?;
+        let found = files::find(&[path.to_owned()], false)?;
         Ok(Self {
             of: path.to_owned(),
             left: found.pictures.into_iter().map(|picture| picture.name).collect(),
@@ -130,7 +129,7 @@ impl Looks for Files {
             ));
         };
         self.taken += 1;
-        let bytes = picture::read_bytes(&name)?;
+        let bytes = files::read(&name)?;
         // as if thirty had been taken a second
         Ok(Shot::encoded(&name, bytes, f64::from(self.taken) / 30.0))
     }

@@ -3,13 +3,13 @@
 use tracelight_aim::{
     Board, Camera, Doubt, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyedCamera, survey,
 };
+use tracelight_picture::Raster;
 use tracelight_stroke::{Affine, Point};
 use tracelight_task::{Failure, Stop};
 use tracelight_vision::{Grey, Tag, TagPlace, find_tags};
 
 use super::{Looks, grey};
 use crate::camera_file::{KnownCamera, PageName, Stood};
-use crate::output::Raster;
 
 /// A wall as one image shows it.
 pub(crate) struct SeenWall {

@@ -1,6 +1,7 @@
 //! What a camera adds to a job: the figure is traced where it is seen, and the head is found from dots before it draws.
 
 use tracelight_aim::{Alignment, Camera, TrimBelief};
+use tracelight_picture::Raster;
 use tracelight_rig::PanTilt;
 use tracelight_sim::{Room, Run, Simulated};
 use tracelight_stroke::{Comparison, Drawing, Point, compare};
@@ -19,9 +20,9 @@ use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::source::Source;
 use crate::eye::spots::Timing;
 use crate::head_file::{self, KnownHead};
-use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures, Raster};
-use crate::picture;
+use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures};
 use crate::sketch::sketch;
+use crate::source;
 
 /// What was seen before a run.
 pub(super) struct Seen {
@@ -220,7 +221,7 @@ fn truth(args: &TraceArgs, room: Option<&Furnished>, task: Task<'_>) -> Result<O
     let (Source::Simulated(Some(path)), Some(wall_from_picture)) = (args.eye.source()?, hung) else {
         return Ok(None);
     };
-    match sketch(path, picture::read(path)?, &args.tracing, &args.placement) {
+    match sketch(path, source::read(path)?, &args.tracing, &args.placement) {
         // as it hangs: a sheet in it is not laid square there
         Ok(truth) => Ok(Some(truth.in_picture().0.transformed(wall_from_picture))),
         Err(why) => {

@@ -1,5 +1,6 @@
 //! A job without a simulator: three strokes followed with a known error, for the tests of the outputs.
 
+use tracelight_picture::Raster;
 use tracelight_rig::{
     Actuation, Darkness, DarknessSet, Measurement, PanTilt, Phase, Setpoint, TICK_F64_S, Telemetry,
 };
@@ -8,7 +9,7 @@ use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{JointMotion, Plan, PlanPoint};
 use tracelight_vision::Quality;
 
-use super::{Job, Picture, Raster, Setting, Target, Timing};
+use super::{Job, Picture, Setting, Target, Timing};
 
 /// Speed along the strokes, m/s.
 pub(super) const SPEED_M_S: f64 = 0.3048;

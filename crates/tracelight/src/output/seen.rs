@@ -3,9 +3,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use tracelight_picture::Raster;
 use tracelight_stroke::Point;
 
-use super::{Job, OutputError, Raster, forget, write_jpeg};
+use super::{Job, OutputError, forget, write_jpeg};
 
 /// Where the spot was seen, and where it was asked to be.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Writes what was identified or tuned into a user's own rig file: only what changed, comments kept.
 
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
+use tracelight_files as files;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
@@ -16,18 +17,7 @@ pub(crate) fn save(path: &str, old: &RigConfig, new: &RigConfig) -> Result<(), F
     let saved = updated(&text, old, new).map_err(wrong)?;
     super::parse(path, &saved)
         .map_err(|e| wrong(format!("what was found is no head that a rig file takes: {e}")))?;
-    // what a link leads to is changed, not the link
-    let real = std::fs::canonicalize(path).map_err(|e| wrong(e.to_string()))?;
-    let fresh = format!("{}.{}.new", real.display(), std::process::id());
-    crate::cli::write_file(&fresh, &saved)?;
-    std::fs::rename(&fresh, &real)
-        .map_err(|e| Failure::failed("cannot-write", format!("cannot write {path}: {e}")))
-}
-
-/// Whether two paths lead to one file that exists.
-pub(crate) fn is_same(one: &str, other: &str) -> bool {
-    let real = |path: &str| std::fs::canonicalize(path).ok();
-    real(one).is_some_and(|one| Some(one) == real(other))
+    files::replace(path, saved)
 }
 
 /// The text of a rig file with another rig's model, what was identified of it and how it is driven. What is simulated stays what it was:

@@ -1,6 +1,7 @@
 use clap::Args;
 use serde_json::json;
 use tracelight_aim::HeadPose;
+use tracelight_files as files;
 use tracelight_rig::PanTilt;
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop, Task};
@@ -9,7 +10,7 @@ use crate::bar::Bar;
 use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::eye::head::{DotsRequest, FoundHead, find_head, in_front};
 use crate::eye::homing::{Homed, home_head};
 use crate::eye::room::{Furnished, RoomRequest};
@@ -95,7 +96,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     }
     let found = find_head(&mut rig, &camera, &driving, &DotsRequest::first(&driving), task, &mut |_| {})?;
     stop.check()?;
-    write_file(&args.output, head_file::write(&HeadFile::of(&found, &driving, &wall))?)?;
+    files::write(&args.output, head_file::write(&HeadFile::of(&found, &driving, &wall))?)?;
     let pose = found.aligned.alignment.pose;
     let truth = room.true_error_m(&found.aligned.alignment.geometry, &pose);
     let text = text(&wall, &found, truth, &args.output) + &homed_text(homed.as_ref());

@@ -1,6 +1,8 @@
 use clap::Args;
 use serde_json::{Value, json};
 use tracelight_aim::{Board, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
+use tracelight_files as files;
+use tracelight_picture::Source;
 use tracelight_sim::RigConfig;
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop};
@@ -11,12 +13,12 @@ use crate::camera_file::{self, CameraFile, PageName, Wall};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::eyes::ImageSize;
 use crate::cli::placing::{PlacementArgs, positive_length};
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::wall::{doubts, markers, well_exposed};
 use crate::eye::{self, grey};
 use crate::output::BAR_M;
-use crate::picture::{self, Source};
+use crate::source;
 
 /// The camera in front of the wall, from an image of printed markers on it: lens, pose, scale
 #[derive(Args, Debug)]
@@ -93,7 +95,7 @@ pub(super) fn run(args: &MarkersArgs, stop: &Stop) -> Result<Answer, Failure> {
         seen.survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
     let wall = Wall::of(&seen.survey, &camera);
     let file = CameraFile::of(&seen.survey, Some((&camera, wall)), seen.scale);
-    write_file(&args.output, camera_file::write(&file)?)?;
+    files::write(&args.output, camera_file::write(&file)?)?;
     let text = format!(
         "{}\n{}\n{}\n{}",
         seen.lens_text(),
@@ -122,7 +124,7 @@ pub(super) fn lens(args: &LensArgs) -> Result<Answer, Failure> {
     let views: Result<Vec<View>, Failure> = args.images.iter().map(|path| found(path)).collect();
     let seen = Seen::of(views?, args.bar.as_ref(), None)?;
     let file = CameraFile::of(&seen.survey, None, seen.scale);
-    write_file(&args.output, camera_file::write(&file)?)?;
+    files::write(&args.output, camera_file::write(&file)?)?;
     let belief = &seen.survey.belief;
     let share = belief.covariance[(0, 0)].sqrt() / belief.lens.focal_px[0];
     let sure = if share > KNOWN_FOCAL {
@@ -252,7 +254,7 @@ impl View {
 }
 
 fn found(path: &str) -> Result<View, Failure> {
-    let Source::Pixels(pixels) = picture::read(path)? else {
+    let Source::Pixels(pixels) = source::read(path)? else {
         let message = format!("{path} is a drawing; give an image that a camera took");
         return Err(Failure::usage("not-a-picture", message));
     };

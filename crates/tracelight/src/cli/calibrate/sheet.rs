@@ -1,9 +1,10 @@
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use tracelight_aim::Board;
+use tracelight_files as files;
 use tracelight_task::Failure;
 
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::output::{BAR_M, page_pdf, page_svg};
 use crate::paper::Paper;
 
@@ -79,10 +80,10 @@ pub(super) fn run(args: &SheetArgs) -> Result<Answer, Failure> {
         return Err(Failure::usage("usage", message));
     }
     if is_svg {
-        write_file(&args.output, page_svg(&board, args.first - 1, paper))?;
+        files::write(&args.output, page_svg(&board, args.first - 1, paper))?;
     } else {
         let numbers: Vec<u16> = (args.first - 1..last).collect();
-        write_file(&args.output, page_pdf(&board, &numbers, paper))?;
+        files::write(&args.output, page_pdf(&board, &numbers, paper))?;
     }
     let text = format!(
         "{}: {}, {} markers of {:.0} mm on each\nPrint at 100 % and measure the bar: {:.0} mm. Stick the pages flat on the wall.",

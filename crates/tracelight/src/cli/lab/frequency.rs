@@ -2,6 +2,7 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_files as files;
 use tracelight_lab::{Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response};
 use tracelight_linear::{Discretization, FrequencyResponse, LinearError, TransferFunction, decibels};
 use tracelight_linear::{Polynomial, Time};
@@ -13,7 +14,7 @@ use tracelight_units::{ANGULAR_SPEEDS, TIMES};
 use super::step::Axis;
 use super::{OutFile, above_zero, out_file, voltage, write_all};
 use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::record::MOST_V;
 use crate::{rigfile, table};
 
@@ -162,11 +163,11 @@ fn measure(args: &FrequencyTrialArgs, rig: &RigConfig) -> Result<Found, Failure>
     };
     let mut head = head_alone(rig, joint, Mounting::Fixture, args.seed);
     if let Some(path) = &args.volts {
-        write_file(path, played(&multisine, bias_v))?;
+        files::write(path, played(&multisine, bias_v))?;
     }
     let seen = excite(&mut head, joint, &multisine, &how);
     if let Some(path) = &args.record {
-        write_file(path, log(joint, &seen, how.count_rad))?;
+        files::write(path, log(joint, &seen, how.count_rad))?;
     }
     found(args, rig, &multisine, (&seen, bias_v))
 }

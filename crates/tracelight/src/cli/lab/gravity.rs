@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_files as files;
 use tracelight_lab::{Curves, Uncertain};
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
@@ -11,7 +12,7 @@ use super::friction::trials::{Subject, TrialArgs};
 use super::friction::{HOW_SURE, milli};
 use super::rig_out;
 use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 
 /// Identify what gravity does to tilt, from how voltages turn it against its weight
 #[derive(Args, Debug)]
@@ -54,7 +55,7 @@ pub(crate) fn run(args: &GravityArgs, stop: &Stop) -> Result<Answer, Failure> {
     let mut better = rig.clone();
     better.model.set_weight(weight.nm.map(|u| u.value));
     better.model.set_own_inertia(Joint::Tilt, subject.believed.inertia_kg_m2);
-    write_file(
+    files::write(
         &args.out.join("gravity.svg").display().to_string(),
         figure(&rig, subject, &curves, &weight)?,
     )?;

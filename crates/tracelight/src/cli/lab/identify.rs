@@ -3,6 +3,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use clap::Args;
+use tracelight_files as files;
 use tracelight_lab::{Identification, JointFit, identify, routine};
 use tracelight_rig::{Joint, TICK_F64_S, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, run_segments};
@@ -12,7 +13,7 @@ use super::{make_folder, rig_out, why_unfinished};
 use crate::bar::Bar;
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::LawArgs;
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::{record, rigfile};
 
 /// Identify what the head is made of: inertia, friction, weight, amplifier, where its encoders' edges lie
@@ -117,7 +118,7 @@ fn write(
     make_folder(&args.out, "--out")?;
     let path = |name: &str| args.out.join(name).display().to_string();
     if let ([], [record]) = (args.records.as_slice(), records) {
-        write_file(&path("record.csv"), record::write(record))?;
+        files::write(&path("record.csv"), record::write(record))?;
     }
     rig_out::write(&args.out, &args.rig, args.save, (rig, &found.rig))
 }

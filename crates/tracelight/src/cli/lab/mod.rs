@@ -36,13 +36,14 @@ mod velocity;
 use std::path::Path;
 
 use clap::{Args, Subcommand};
+use tracelight_files as files;
 use tracelight_rig::Fault;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{Unit, VOLTAGES, parse};
 
 use crate::chart::{self, Colour, Curve, Panel, Scale};
 use crate::cli::shapes::ProfileName;
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 
 /// The control engineer's bench: profiles, moves, steps, friction and all else a head is made of, linear models, Bode, Nyquist and locus, controllers designed, many heads at once
 #[derive(Args, Debug)]
@@ -185,7 +186,7 @@ fn write_all(
             OutKind::Pixels => chart::pixels(&plot()?).map_err(|e| Failure::failed("internal", e))?,
             OutKind::Table => table()?.into_bytes(),
         };
-        write_file(&file.path, bytes)
+        files::write(&file.path, bytes)
     })
 }
 

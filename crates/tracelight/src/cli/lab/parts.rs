@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use serde_json::Value;
+use tracelight_files as files;
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_task::Failure;
 
 use super::make_folder;
 use super::step::Axis;
-use crate::cli::write_file;
 
 /// A joint, what was seen of it, and what that says.
 pub(super) struct Found<S, T> {
@@ -44,7 +44,7 @@ pub(super) fn tell_each<S, T>(
 /// Leaves files in a folder, which is made if missing.
 pub(super) fn leave(out: &Path, files: &[(&str, String)]) -> Result<(), Failure> {
     make_folder(out, "--out")?;
-    files.iter().try_for_each(|(name, text)| write_file(&out.join(name).display().to_string(), text))
+    files.iter().try_for_each(|(name, text)| files::write(&out.join(name).display().to_string(), text))
 }
 
 /// An object for each joint, as one.

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use tracelight_files as files;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
-use crate::cli::write_file;
 use crate::rigfile;
 
 /// Refuses to write into what comes with the program.
@@ -25,7 +25,7 @@ pub(super) fn write(
     (before, after): (&RigConfig, &RigConfig),
 ) -> Result<String, Failure> {
     let path = out.join("rig.toml").display().to_string();
-    let own = rigfile::is_same(&path, rig);
+    let own = files::is_same(&path, rig);
     let text = rigfile::write(after);
     if let Err(wrong) = rigfile::parse("what was found", &text) {
         let message =
@@ -41,7 +41,7 @@ pub(super) fn write(
         return Err(Failure::usage("usage", message));
     }
     if !own {
-        write_file(&path, text)?;
+        files::write(&path, text)?;
     }
     Ok(format!("\n\nrig: {path}{}", if save { format!(", and in {rig}") } else { String::new() }))
 }

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_files as files;
 use tracelight_lab::{Demand, Setting, around, coarse};
 use tracelight_rig::{PanTilt, Phase};
 use tracelight_sim::{LawName, RigConfig, SimulatedRig, Spread, score};
@@ -16,7 +17,7 @@ use crate::bar::Bar;
 use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use crate::cli::driving::Driving;
 use crate::cli::laws::law;
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 
 /// Pick the control law of a rig and how fast its loops are: the smallest error on heads that differ, of all that bear what is asked
 #[derive(Args, Debug)]
@@ -133,7 +134,7 @@ pub(crate) fn run(args: &TuneArgs, stop: &Stop) -> Result<Answer, Failure> {
     let picked = best(&tried).ok_or_else(|| nothing_bears(args))?;
     let better = picked.setting.apply(&driving.rig);
     make_folder(&args.out, "--out")?;
-    write_file(
+    files::write(
         &args.out.join("tune.svg").display().to_string(),
         figure(args, &driving.rig, &tried, picked)?,
     )?;

@@ -23,13 +23,13 @@ use moq_v4l::io::mmap::Stream;
 use moq_v4l::video::Capture;
 use moq_v4l::video::capture::Parameters;
 use moq_v4l::{Device, Format, FourCC, Fraction};
+use tracelight_picture::unless_it_panics;
 use tracelight_task::Failure;
 
 use super::about::About;
 use super::coding::{Coding, Layout};
 use super::latest::PATIENCE;
 use super::{Looks, Shot};
-use crate::quiet::unless_it_panics;
 use controls::Controls;
 use mode::{Mode, chosen};
 use reader::{Reader, now_s};

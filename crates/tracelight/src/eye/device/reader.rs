@@ -9,12 +9,12 @@ use moq_v4l::io::mmap::Stream;
 use moq_v4l::io::traits::CaptureStream;
 use nix::sys::signal::SigSet;
 use nix::time::{ClockId, clock_gettime};
+use tracelight_picture::unless_it_panics;
 
 use super::why;
 use crate::eye::about::{Rhythm, Stamps};
 use crate::eye::coding::Layout;
 use crate::eye::latest::{Latest, PATIENCE};
-use crate::quiet::unless_it_panics;
 
 /// An image that a camera sent.
 #[derive(Clone, Debug)]

@@ -2,9 +2,10 @@
 
 use std::io;
 
+use tracelight_picture::unless_it_panics;
+
 use crate::eye::latest::PATIENCE;
 use crate::eye::source::devices;
-use crate::quiet::unless_it_panics;
 
 const EIO: i32 = 5;
 const ENXIO: i32 = 6;

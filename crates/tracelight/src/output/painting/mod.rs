@@ -14,13 +14,15 @@ mod wall;
 
 use std::path::Path;
 
+use tracelight_picture::Raster;
+
 use self::film::Film;
 use self::layout::{Layout, WIDTH};
 use self::light::Exposure;
 use self::plane::Plane;
 use self::sheet::Sheet;
 use self::wall::Wall;
-use super::{Job, OutputError, Raster};
+use super::{Job, OutputError};
 
 /// 650 nm as a camera's three channels see it: overexposed red spills into the others and whitens.
 const LASER: [f32; 3] = [1.0, 0.034, 0.040];
@@ -106,24 +108,6 @@ impl Scene {
     fn away(&self, x: usize, y: usize, cx: f64, cy: f64) -> (f32, f32) {
         (x as f32 + 0.5 - cx as f32, y as f32 + 0.5 - cy as f32)
     }
-}
-
-/// Fills rows of `stride` bytes by `fill(y, row)`, in bands on all cores. What each row becomes does not depend on
-/// their number.
-pub(super) fn share_rows(bytes: &mut [u8], stride: usize, fill: impl Fn(usize, &mut [u8]) + Sync) {
-    let rows = bytes.len() / stride.max(1);
-    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(8);
-    let band = rows.div_ceil(cores).max(1);
-    std::thread::scope(|scope| {
-        for (number, rows) in bytes.chunks_mut(band * stride).enumerate() {
-            let fill = &fill;
-            scope.spawn(move || {
-                for (i, row) in rows.chunks_exact_mut(stride).enumerate() {
-                    fill(number * band + i, row);
-                }
-            });
-        }
-    });
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
+use tracelight_picture::Raster;
 use tracelight_stroke::{Affine, Point, Vec2};
 
 use super::film::linear_from_srgb;
 use super::layout::Layout;
 use super::lettering::Pen;
 use super::plane::Plane;
-use crate::output::{DISPLAY_TOLERANCE_M, Job, Raster};
+use crate::output::{DISPLAY_TOLERANCE_M, Job};
 
 /// The picture on a sheet of paper, pinned to the wall a little askew.
 pub(super) struct Sheet {

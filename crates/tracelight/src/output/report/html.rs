@@ -1,4 +1,6 @@
-use crate::output::{OutputError, Raster};
+use tracelight_picture::Raster;
+
+use crate::output::OutputError;
 
 /// A text made safe for element content and quoted attributes.
 pub(crate) fn escaped(text: &str) -> String {

@@ -15,9 +15,11 @@ mod tables;
 use std::fmt::Write;
 use std::path::Path;
 
+use tracelight_picture::Raster;
+
 use self::html::{escaped, jpeg_uri};
 use super::sample::samples;
-use super::{Job, OutputError, Raster, Summary};
+use super::{Job, OutputError, Summary};
 
 /// Writes the page.
 pub(super) fn write(

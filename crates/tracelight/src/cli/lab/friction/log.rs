@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
+use tracelight_files as files;
 use tracelight_lab::{Sample, SteadyPoint, Trial};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_task::Failure;
 
-use crate::picture::read_bytes;
 use crate::record::{MOST_V, Row};
 use crate::table::{self, Names};
 
@@ -48,7 +48,7 @@ fn columns(names: &Names) -> Result<(usize, Columns), String> {
 impl Log {
     /// Reads one more file.
     pub(super) fn read(&mut self, path: &str) -> Result<(), Failure> {
-        let bytes = read_bytes(path)?;
+        let bytes = files::read(path)?;
         self.parse(&bytes).map_err(|what| Failure::usage("friction-log", format!("{path}{what}")))
     }
 

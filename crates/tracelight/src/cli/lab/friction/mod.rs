@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::{Value, json};
+use tracelight_files as files;
 use tracelight_lab::{Curves, Line, Side, Steady, SteadyPoint, Uncertain, curves, steady, steady_of};
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
@@ -14,7 +15,7 @@ use tracelight_task::{Failure, Stop};
 
 use super::parts::by_joint;
 use super::rig_out;
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use trials::{Subject, TrialArgs};
 
 /// Identify friction as the 2006 report did, by voltages held, say what is wrong with that, and identify it from the whole curves
@@ -62,7 +63,7 @@ pub(crate) fn run(args: &FrictionArgs, stop: &Stop) -> Result<Answer, Failure> {
     let mut better = rig.clone();
     found.iter().for_each(|one| one.tell(&mut better));
     let plot = plot::figure(&rig, &found)?;
-    write_file(&args.out.join("friction.svg").display().to_string(), plot)?;
+    files::write(&args.out.join("friction.svg").display().to_string(), plot)?;
     let written = rig_out::write(&args.out, &args.trials.rig, args.save, (&rig, &better))?;
     Ok(Answer::either(args.voice, || text(args, &rig, &found) + &written, || json(&found)))
 }

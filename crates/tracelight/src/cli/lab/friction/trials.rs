@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use clap::Args;
+use tracelight_files as files;
 use tracelight_lab::{Believed, Protocol, Shuttle, SteadyPoint, Travel, Trial, free_trial};
 use tracelight_rig::Joint;
 use tracelight_sim::{Mounting, RigConfig, head_alone};
@@ -15,7 +16,6 @@ use crate::bar::Bar;
 use crate::cli::lab::parts::joints;
 use crate::cli::lab::step::Axis;
 use crate::cli::lab::{above_zero, make_folder, voltage};
-use crate::cli::write_file;
 use crate::rigfile;
 
 /// What joints are put through.
@@ -225,7 +225,7 @@ impl TrialArgs {
         make_folder(out, "--out")?;
         if self.logs.is_empty() {
             let all = subjects.iter().flat_map(|subject| &subject.trials);
-            write_file(&out.join("log.csv").display().to_string(), log::write(all))?;
+            files::write(&out.join("log.csv").display().to_string(), log::write(all))?;
         }
         Ok(())
     }

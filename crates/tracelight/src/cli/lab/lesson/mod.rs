@@ -5,13 +5,14 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::{Value, json};
+use tracelight_files as files;
 use tracelight_lab::{Check, Graded, Lesson};
 use tracelight_rig::TICK_F64_S;
 use tracelight_task::Failure;
 
 use super::by_hand::{number, settings};
 use super::{OutFile, OutKind, out_file, write_all};
-use crate::cli::{Answer, Voice, write_file};
+use crate::cli::{Answer, Voice};
 use crate::rigfile;
 
 /// Learn control on the simulated head: eight lessons, each a text, a command to try, a plot and a question that the simulator grades
@@ -108,7 +109,7 @@ fn keep(args: &LessonArgs, lesson: &Lesson, graded: Option<&Graded>) -> Result<(
                     let message = format!("{path}: lesson {} is on the preset report", lesson.number);
                     return Err(Failure::usage("usage", message));
                 };
-                write_file(path, rigfile::write(&rig()))?;
+                files::write(path, rigfile::write(&rig()))?;
             }
         }
     }

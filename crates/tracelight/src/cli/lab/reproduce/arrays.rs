@@ -4,11 +4,11 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
 use std::path::Path;
 
+use tracelight_files as files;
 use tracelight_rig::TICK_F64_S;
 use tracelight_task::Failure;
 use tracelight_trajectory::{MoveLimits, Profile, Ramps, Shape};
 
-use crate::cli::write_file;
 use crate::output::html::data_uri;
 
 /// A picture to trace: one closed figure, as the report asks for.
@@ -26,14 +26,14 @@ const HOLD_S: f64 = 1.5;
 pub(super) fn write(out: &Path) -> Result<(), Failure> {
     let path = |folder: &str, name: &str| out.join(folder).join(name).display().to_string();
     for (name, bytes) in PICTURES {
-        write_file(&path("pictures", name), bytes)?;
+        files::write(&path("pictures", name), bytes)?;
     }
-    write_file(&path("pictures", "ring.png"), ring()?)?;
+    files::write(&path("pictures", "ring.png"), ring()?)?;
     let fast = MoveLimits { speed: 24.0, acceleration: 100.0, deceleration: 100.0 };
     let slow = MoveLimits { speed: 5.0, acceleration: 4.0, deceleration: 1.0 };
-    write_file(&path("arrays", "trapezoid.csv"), half_turn(&fast))?;
-    write_file(&path("arrays", "feasible.csv"), half_turn(&slow))?;
-    write_file(&path("arrays", "circle.csv"), circle())
+    files::write(&path("arrays", "trapezoid.csv"), half_turn(&fast))?;
+    files::write(&path("arrays", "feasible.csv"), half_turn(&slow))?;
+    files::write(&path("arrays", "circle.csv"), circle())
 }
 
 /// A picture that is traced, for the page.

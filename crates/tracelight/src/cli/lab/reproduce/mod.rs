@@ -9,11 +9,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::{Value, json};
+use tracelight_files as files;
 use tracelight_task::{Failure, Stop, Task, on_all_cores};
 
 use super::make_folder;
 use crate::bar::Bar;
-use crate::cli::{Answer, Voice, answer, write_file};
+use crate::cli::{Answer, Voice, answer};
 
 /// Make every figure and table of the 2006 report again that can be: one page, its numbers beside ours, and what explains the difference
 #[derive(Args, Debug)]
@@ -98,7 +99,7 @@ pub(crate) fn run(args: &ReproduceArgs, stop: &Stop) -> Result<Answer, Failure> 
     stop.check()?;
     let done = done.into_iter().collect::<Result<Vec<_>, _>>()?;
     let index = args.out.join("index.html").display().to_string();
-    write_file(&index, page::page(&chapters, &done))?;
+    files::write(&index, page::page(&chapters, &done))?;
     let compared = page::all_compared(&chapters, &done);
     let text = || {
         let numbers = compared.iter().filter(|(.., c)| c.report.is_some()).count();

@@ -1,10 +1,10 @@
 //! A motion as a table: `t,pan,tilt`.
 
+use tracelight_files as files;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, MotionArray};
 use tracelight_task::Failure;
 
-use crate::picture::read_bytes;
 use crate::record::Row;
 
 /// Most rows,
@@ -55,7 +55,7 @@ pub(super) fn read(
     between: Between,
     range_rad: PanTilt<(f64, f64)>,
 ) -> Result<MotionArray, Failure> {
-    let bytes = read_bytes(path)?;
+    let bytes = files::read(path)?;
     parse(&bytes, between, range_rad).map_err(|what| Failure::usage("motion-array", format!("{path}{what}")))
 }
 

@@ -5,7 +5,7 @@ use tracelight_stroke::Point;
 
 /// An RGB picture, eight bits a channel, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Raster {
+pub struct Raster {
     width: u32,
     height: u32,
     rgb: Vec<u8>,
@@ -13,36 +13,42 @@ pub(crate) struct Raster {
 
 impl Raster {
     /// A picture from its bytes, three a pixel; `None` when their number does not fit the size or it has no pixel.
-    pub(crate) fn new(width: u32, height: u32, rgb: Vec<u8>) -> Option<Self> {
+    #[must_use]
+    pub fn new(width: u32, height: u32, rgb: Vec<u8>) -> Option<Self> {
         let wanted = (width as usize).checked_mul(height as usize)?.checked_mul(3)?;
         (wanted > 0 && wanted == rgb.len()).then_some(Self { width, height, rgb })
     }
 
     /// A picture whose rows are made by `row(y, bytes)`, rows shared out among the processor's cores.
-    pub(crate) fn from_rows(width: u32, height: u32, row: impl Fn(u32, &mut [u8]) + Sync) -> Self {
+    #[must_use]
+    pub fn from_rows(width: u32, height: u32, row: impl Fn(u32, &mut [u8]) + Sync) -> Self {
         let stride = width.max(1) as usize * 3;
         let mut rgb = vec![0; stride * height.max(1) as usize];
-        super::painting::share_rows(&mut rgb, stride, |y, bytes| row(y as u32, bytes));
+        share_rows(&mut rgb, stride, |y, bytes| row(y as u32, bytes));
         Self { width: width.max(1), height: height.max(1), rgb }
     }
 
     /// Columns.
-    pub(crate) const fn width(&self) -> u32 {
+    #[must_use]
+    pub const fn width(&self) -> u32 {
         self.width
     }
 
     /// Rows.
-    pub(crate) const fn height(&self) -> u32 {
+    #[must_use]
+    pub const fn height(&self) -> u32 {
         self.height
     }
 
     /// Its bytes, three a pixel.
-    pub(crate) fn rgb(&self) -> &[u8] {
+    #[must_use]
+    pub fn rgb(&self) -> &[u8] {
         &self.rgb
     }
 
     /// The pixel at column `x`, row `y`, both clamped into the picture.
-    pub(super) fn pixel(&self, x: i64, y: i64) -> [u8; 3] {
+    #[must_use]
+    pub fn pixel(&self, x: i64, y: i64) -> [u8; 3] {
         let x = x.clamp(0, i64::from(self.width) - 1) as usize;
         let y = y.clamp(0, i64::from(self.height) - 1) as usize;
         let at = (y * self.width as usize + x) * 3;
@@ -50,7 +56,8 @@ impl Raster {
     }
 
     /// The colour at a place, pixel frame, between pixels evenly.
-    pub(crate) fn between(&self, at: Point) -> [u8; 3] {
+    #[must_use]
+    pub fn between(&self, at: Point) -> [u8; 3] {
         let (x, y) = (at.x - 0.5, at.y - 0.5);
         let (left, top) = (x.floor(), y.floor());
         let (fx, fy) = (x - left, y - top);
@@ -64,7 +71,8 @@ impl Raster {
     }
 
     /// The picture made to fit a square of `side` pixels by averaging; one that fits already stays as it is.
-    pub(super) fn shrunk(&self, side: u32) -> Self {
+    #[must_use]
+    pub fn shrunk(&self, side: u32) -> Self {
         let longest = self.width.max(self.height);
         if longest <= side {
             return self.clone();
@@ -95,7 +103,10 @@ impl Raster {
     }
 
     /// The picture as a PNG file. Speed over size: the wall's texture hardly compresses either way.
-    pub(super) fn png(&self) -> Result<Vec<u8>, png::EncodingError> {
+    ///
+    /// # Errors
+    /// What the encoder says: of a picture that fits its bytes, nothing.
+    pub fn png(&self) -> Result<Vec<u8>, png::EncodingError> {
         let mut bytes = Vec::with_capacity(self.rgb.len());
         let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
         encoder.set_color(ColorType::Rgb);
@@ -108,7 +119,10 @@ impl Raster {
     }
 
     /// The picture as a JPEG file of `quality` 1 to 100.
-    pub(crate) fn jpeg(&self, quality: u8) -> Result<Vec<u8>, ImageError> {
+    ///
+    /// # Errors
+    /// Where it has more than 65 535 columns or rows, which no JPEG has.
+    pub fn jpeg(&self, quality: u8) -> Result<Vec<u8>, ImageError> {
         let mut bytes = Vec::new();
         let encoder = JpegEncoder::new_with_quality(&mut bytes, quality);
         encoder.write_image(&self.rgb, self.width, self.height, ExtendedColorType::Rgb8)?;
@@ -121,6 +135,29 @@ fn share(i: u32, cells: u32, of: u32) -> (u32, u32) {
     let edge = |i: u32| (u64::from(i) * u64::from(of) / u64::from(cells)) as u32;
     let from = edge(i).min(of - 1);
     (from, edge(i + 1).clamp(from + 1, of))
+}
+
+/// Fills rows of `stride` bytes by `fill(y, row)`, in bands on all cores. What each row becomes does not depend on
+/// their number.
+fn share_rows(bytes: &mut [u8], stride: usize, fill: impl Fn(usize, &mut [u8]) + Sync) {
+    let rows = bytes.len() / stride.max(1);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(8);
+    let band = rows.div_ceil(cores).max(1);
+    if cores == 1 {
+        // where there are no threads there is one core
+        bytes.chunks_exact_mut(stride.max(1)).enumerate().for_each(|(y, row)| fill(y, row));
+        return;
+    }
+    std::thread::scope(|scope| {
+        for (number, rows) in bytes.chunks_mut(band * stride).enumerate() {
+            let fill = &fill;
+            scope.spawn(move || {
+                for (i, row) in rows.chunks_exact_mut(stride).enumerate() {
+                    fill(number * band + i, row);
+                }
+            });
+        }
+    });
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ thread_local! {
 
 /// What a library answers; `None` where it panics, which nobody need read about. For work that leaves nothing half changed that is used
 /// afterwards.
-pub(crate) fn unless_it_panics<T>(work: impl FnOnce() -> T) -> Option<T> {
+pub fn unless_it_panics<T>(work: impl FnOnce() -> T) -> Option<T> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let told = take_hook();

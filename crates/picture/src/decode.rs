@@ -1,7 +1,7 @@
 //! Bytes of a picture file to something that can be traced.
 
 use std::fmt::Display;
-use std::io::{Cursor, Read};
+use std::io::Cursor;
 use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
@@ -10,18 +10,17 @@ use tracelight_stroke::{Affine, Drawing, Vec2};
 use tracelight_task::Failure;
 use tracelight_vision::Grey;
 
-use crate::output::Raster;
 use crate::quiet::unless_it_panics;
+use crate::raster::Raster;
 
 /// Largest picture, pixels: 100 megapixels.
 const MOST_PIXELS: u64 = 100_000_000;
-/// Largest file that is read, bytes: such a picture at 16 bit and four channels, uncompressed.
-const MOST_BYTES: u64 = 8 * MOST_PIXELS;
 /// What a decoder may allocate, bytes: the pixels of such a picture at 8 bit and four channels, and as much again.
 const MOST_DECODER_BYTES: u64 = 8 * MOST_PIXELS;
 
 /// What a file holds.
-pub(crate) enum Source {
+#[derive(Debug)]
+pub enum Source {
     /// Pixels, to be traced.
     Pixels(Pixels),
     /// Strokes, to be taken as they are.
@@ -29,53 +28,19 @@ pub(crate) enum Source {
 }
 
 /// A decoded picture, upright, on paper where it was transparent.
-pub(crate) struct Pixels {
+#[derive(Debug)]
+pub struct Pixels {
     /// For display.
-    pub(crate) colour: Raster,
+    pub colour: Raster,
     /// For tracing.
-    pub(crate) grey: Grey,
-}
-
-/// Reads a picture or a drawing; `-` is standard input. What it is, its content says, not its name.
-pub(crate) fn read(path: &str) -> Result<Source, Failure> {
-    let bytes = read_bytes(path)?;
-    decode(path, &bytes)
-}
-
-/// The whole of a file, or of standard input, bounded.
-pub(crate) fn read_bytes(path: &str) -> Result<Vec<u8>, Failure> {
-    let unreadable = |e: std::io::Error| {
-        Failure::usage("unreadable", format!("cannot read {path}: {e}; check the name and the permissions"))
-    };
-    let mut bytes = Vec::new();
-    let limit = MOST_BYTES + 1;
-    if path == "-" {
-        std::io::stdin().lock().take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
-    } else {
-        let file = std::fs::File::open(path).map_err(unreadable)?;
-        if file.metadata().map_err(unreadable)?.is_dir() {
-            return Err(Failure::usage("unreadable", format!("{path} is a folder; give a file in it")));
-        }
-        file.take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
-    }
-    if bytes.len() as u64 > MOST_BYTES {
-        let most = MOST_BYTES / 1_000_000;
-        return Err(Failure::usage(
-            "too-large",
-            format!("{path} is larger than {most} MB; give a smaller one"),
-        ));
-    }
-    if bytes.is_empty() {
-        return Err(Failure::usage(
-            "empty-file",
-            format!("{path} is empty; give a file with something in it"),
-        ));
-    }
-    Ok(bytes)
+    pub grey: Grey,
 }
 
 /// What a file's bytes are; `path` is for messages, and its extension for contents that say nothing of themselves.
-pub(crate) fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
+///
+/// # Errors
+/// What is wrong with the file: broken, cut off, too large, of a kind that is not read, or with nothing in it.
+pub fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
     let malformed = |e: &FormatError| match e {
         FormatError::Nothing { .. } => Failure::failed("no-strokes", format!("{path}: {e}")),
         _ => Failure::usage("malformed", format!("{path}: {}", brief(e))),
@@ -209,7 +174,8 @@ fn brief(error: &impl Display) -> String {
 
 /// Whether the last scan of a JPEG ends: decoders fill what is missing with grey. Within a scan 0xFF is followed by 0,
 /// so neither marker can be picture data; a thumbnail's stand before the picture's (ITU-T T.81, §B.1.1.3).
-pub(crate) fn jpeg_is_whole(bytes: &[u8]) -> bool {
+#[must_use]
+pub fn jpeg_is_whole(bytes: &[u8]) -> bool {
     let last = |marker: u8| bytes.windows(2).rposition(|w| w == [0xFF, marker]);
     let (start_of_scan, end_of_image) = (last(0xDA), last(0xD9));
     start_of_scan.is_none() || end_of_image > start_of_scan

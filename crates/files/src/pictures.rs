@@ -9,28 +9,34 @@ use tracelight_task::Failure;
 
 /// One picture that was asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Picture {
+pub struct Picture {
     /// Its path as the user would type it.
-    pub(crate) name: String,
+    pub name: String,
     /// The same from the folder that was named instead of it.
-    pub(crate) within: Option<PathBuf>,
+    pub within: Option<PathBuf>,
 }
 
 /// Pictures in the order of the command line, and remarks about arguments that held none.
 #[derive(Debug, Default)]
-pub(crate) struct Found {
-    pub(crate) pictures: Vec<Picture>,
-    pub(crate) remarks: Vec<String>,
+pub struct Found {
+    /// Each that was found.
+    pub pictures: Vec<Picture>,
+    /// What arguments held none.
+    pub remarks: Vec<String>,
 }
 
 /// Whether an argument stands for other names than its own. A pattern that matches nothing is a name.
-pub(crate) fn stands_for_several(argument: &str) -> bool {
+#[must_use]
+pub fn stands_for_several(argument: &str) -> bool {
     let matches = || glob::glob(argument).is_ok_and(|mut found| found.next().is_some());
     argument != "-" && (Path::new(argument).is_dir() || is_pattern(argument) && matches())
 }
 
 /// Files as they are; folders as the pictures in them, by name; patterns that no shell expanded as what they match.
-pub(crate) fn find(arguments: &[String], recursive: bool) -> Result<Found, Failure> {
+///
+/// # Errors
+/// `unreadable` where a folder cannot be read or nothing was found, `usage` where a pattern is none.
+pub fn find(arguments: &[String], recursive: bool) -> Result<Found, Failure> {
     let mut found = Found::default();
     for argument in arguments {
         if argument != "-" && Path::new(argument).is_dir() {

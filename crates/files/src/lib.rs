@@ -1,0 +1,8 @@
+//! Files: read with a bound, written whole or not at all, and pictures found by name. The one room under cameras and the host that
+//! opens any.
+
+mod pictures;
+mod whole;
+
+pub use pictures::{Found, Picture, find, stands_for_several};
+pub use whole::{is_same, read, replace, write};

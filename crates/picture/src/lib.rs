@@ -1,0 +1,9 @@
+//! Bytes of a picture or a drawing to upright pixels or strokes, and pixels back to bytes. What a file is, its content says.
+
+mod decode;
+mod quiet;
+mod raster;
+
+pub use decode::{Pixels, Source, decode, jpeg_is_whole};
+pub use quiet::unless_it_panics;
+pub use raster::Raster;
