@@ -4,7 +4,6 @@ mod bar;
 mod batch;
 mod camera_file;
 mod carried;
-mod chart;
 mod cli;
 mod eye;
 mod head_file;

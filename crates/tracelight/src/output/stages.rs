@@ -4,11 +4,11 @@ use std::fmt::Write;
 use std::io::Cursor;
 
 use image::{GrayImage, ImageFormat};
+use tracelight_chart::{Colour, Curve, Figure, Panel, Pen, Theme};
 use tracelight_task::Failure;
 use tracelight_vision::{Grey, Stages};
 
 use super::html::{data_uri, escaped};
-use crate::chart::{Colour, Curve, Figure, Panel, Pen, Theme};
 
 /// Width of a panel and of what is between, px.
 const PANEL: f64 = 520.0;

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use tracelight_lab::{Amplifier, CurrentPoint, Uncertain, amplifier};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{MotorReading, Mounting, READ_TICKS, RigConfig, motor_readings};
@@ -13,7 +14,6 @@ use super::friction::{HOW_SURE, milli};
 use super::parts::{self, by_joint, leave, tell_each};
 use super::step::Axis;
 use super::{above_zero, rig_out, voltage};
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use crate::cli::{Answer, Voice};
 use crate::record::MOST_V;
 use crate::{rigfile, table};

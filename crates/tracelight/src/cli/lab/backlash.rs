@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
 use tracelight_lab::{Backlash, SpotPoint, Uncertain, backlash};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, LawName, MotionArray, RigConfig, follow_array};
@@ -14,7 +15,6 @@ use super::above_zero;
 use super::friction::HOW_SURE;
 use super::parts::{self, by_joint, leave, rounded, tell_each};
 use super::step::Axis;
-use crate::chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
 use crate::cli::laws::choose;
 use crate::cli::{Answer, Voice};
 use crate::{rigfile, table};

@@ -2,13 +2,13 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::{Value, json};
+use tracelight_chart::{Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign};
 use tracelight_linear::{FrequencyResponse, Margins, Stability, TransferFunction, decibels, logspace};
 use tracelight_task::Failure;
 use tracelight_units::ANGULAR_SPEEDS;
 
 use super::systems::{Named, SystemArgs, bounded, four, pairs};
 use super::{OutFile, above_zero, out_file, write_all};
-use crate::chart::{Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign};
 use crate::cli::{Answer, Voice};
 
 /// Amplification and phase over frequency, gain, phase, delay and modulus margins

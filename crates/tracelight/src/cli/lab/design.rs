@@ -2,6 +2,7 @@ use std::fmt::Write;
 
 use clap::{Args, Subcommand};
 use serde_json::json;
+use tracelight_chart::{Colour, Curve, Figure, Key, Pen};
 use tracelight_linear::{
     Complex, LeadLagWish, LinearError, LqgWish, Margins, PidWish, Response, Stability, StepInfo, Time,
     TransferFunction, Zpk,
@@ -15,7 +16,6 @@ use super::step::{Axis, step};
 use super::systems::{OneSystemArgs, four, pairs, percent, pole_lines, seconds};
 use super::trial::Trial;
 use super::{OutFile, out_file, over_time, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Pen};
 use crate::cli::{Answer, Voice};
 
 /// Order beyond which digits run out, and time.

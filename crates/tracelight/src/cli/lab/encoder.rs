@@ -3,6 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
 use tracelight_lab::{EdgeTime, EncoderTable, Spin, encoder_table, spin};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_sim::{Mounting, RigConfig, head_alone};
@@ -12,7 +13,6 @@ use tracelight_units::{ANGULAR_SPEEDS, parse};
 use super::friction::HOW_SURE;
 use super::parts::{self, by_joint, leave, rounded, tell_each};
 use super::step::Axis;
-use crate::chart::{Colour, Figure, Key, Mark, Panel, Sign, Theme};
 use crate::cli::{Answer, Voice};
 use crate::{rigfile, table};
 

@@ -2,6 +2,7 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use tracelight_files as files;
 use tracelight_lab::{Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response};
 use tracelight_linear::{Discretization, FrequencyResponse, LinearError, TransferFunction, decibels};
@@ -13,7 +14,6 @@ use tracelight_units::{ANGULAR_SPEEDS, TIMES};
 
 use super::step::Axis;
 use super::{OutFile, above_zero, out_file, voltage, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use crate::cli::{Answer, Voice};
 use crate::record::MOST_V;
 use crate::{rigfile, table};

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use tracelight_files as files;
 use tracelight_lab::{Curves, Uncertain};
 use tracelight_rig::Joint;
@@ -11,7 +12,6 @@ use tracelight_task::{Failure, Stop};
 use super::friction::trials::{Subject, TrialArgs};
 use super::friction::{HOW_SURE, milli};
 use super::rig_out;
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use crate::cli::{Answer, Voice};
 
 /// Identify what gravity does to tilt, from how voltages turn it against its weight

@@ -3,13 +3,13 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_chart::{Curve, Figure, Guide, Key, Mark, Panel, Pen, Scale, Sign};
 use tracelight_linear::{Complex, DampedGains, Mode, RootLocus, Time, TransferFunction};
 use tracelight_task::{Failure, Stop};
 
 use super::bode::system_json;
 use super::systems::{Named, SystemArgs, bounded, four, pairs, place, pole_lines};
 use super::{OutFile, out_file, write_all};
-use crate::chart::{Curve, Figure, Guide, Key, Mark, Panel, Pen, Scale, Sign};
 use crate::cli::{Answer, Voice};
 
 /// Where the poles of the closed loop go as the open loop's gain rises; which gain makes it as damped as asked
@@ -225,7 +225,12 @@ fn figure(args: &LocusArgs, entries: &[Entry]) -> Result<String, Failure> {
     draw("Root locus", entries.iter().map(key).collect(), panel, args.plane.systems.theme())
 }
 
-fn draw(title: &str, legend: Vec<Key>, panel: Panel, theme: crate::chart::Theme) -> Result<String, Failure> {
+fn draw(
+    title: &str,
+    legend: Vec<Key>,
+    panel: Panel,
+    theme: tracelight_chart::Theme,
+) -> Result<String, Failure> {
     let figure = Figure { title: title.into(), legend, panels: vec![panel], columns: 1, panel: SIZE, theme };
     figure.svg().map_err(|e| Failure::failed("internal", e))
 }

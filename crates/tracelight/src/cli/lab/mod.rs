@@ -36,12 +36,13 @@ mod velocity;
 use std::path::Path;
 
 use clap::{Args, Subcommand};
+use tracelight_chart as chart;
+use tracelight_chart::{Colour, Curve, Panel, Scale};
 use tracelight_files as files;
 use tracelight_rig::Fault;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{Unit, VOLTAGES, parse};
 
-use crate::chart::{self, Colour, Curve, Panel, Scale};
 use crate::cli::shapes::ProfileName;
 use crate::cli::{Answer, Voice};
 

@@ -2,6 +2,7 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 
 use clap::Args;
+use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use tracelight_lab::{LAPS_WORTH, Quantiles, identify};
 use tracelight_rig::{Fault, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, Spread, Tracking, score};
@@ -11,7 +12,6 @@ use tracelight_trajectory::Plan;
 use super::shape::ShapeArgs;
 use super::{OutFile, out_file, why_unfinished, write_all};
 use crate::bar::Bar;
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::driving::Driving;
 use crate::cli::{Answer, Voice};
 

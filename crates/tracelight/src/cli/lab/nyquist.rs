@@ -3,13 +3,13 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_chart::{Colour, Curve, Figure, Guide, Key, Mark, Panel, Pen, Scale, Sign};
 use tracelight_linear::{Complex, Margins, decibels};
 use tracelight_task::Failure;
 
 use super::bode::{FrequencyArgs, margin_lines, margins_json, summary, system_json};
 use super::systems::Named;
 use super::write_all;
-use crate::chart::{Colour, Curve, Figure, Guide, Key, Mark, Panel, Pen, Scale, Sign};
 use crate::cli::Answer;
 
 /// The open loop's values over all frequencies in the complex plane, how often they turn round −1, and what is left of stability
@@ -178,7 +178,7 @@ fn draw(
     entries: &[Entry],
     panel: Panel,
     size: (i32, i32),
-    theme: crate::chart::Theme,
+    theme: tracelight_chart::Theme,
 ) -> Result<String, Failure> {
     let key = |e: &Entry| Key { colour: e.named.colour, name: summary(&e.named.name, &e.margins) };
     let figure = Figure {

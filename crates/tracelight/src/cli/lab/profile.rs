@@ -1,6 +1,7 @@
 use std::fmt::Write;
 
 use clap::Args;
+use tracelight_chart::{Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use tracelight_rig::TICK_F64_S;
 use tracelight_task::Failure;
 use tracelight_trajectory::{MoveLimits, MovePoint, Peaks, Profile, Ramps};
@@ -9,7 +10,6 @@ use tracelight_units::{
 };
 
 use super::{OutFile, colour, out_file, within, write_all};
-use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::shapes::{ProfileName, ramps};
 use crate::cli::{Answer, Voice};
 

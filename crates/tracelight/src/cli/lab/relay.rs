@@ -2,6 +2,7 @@ use std::fmt::Write;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use tracelight_lab::{Relay, RelayPid, StepFigures, Swing, swing};
 use tracelight_linear::decibels;
 use tracelight_rig::{Joint, TICK_F64_S};
@@ -15,7 +16,6 @@ use tracelight_units::Angle;
 use super::bode::frequency;
 use super::step::{Axis, curve, figures, figures_json, heading, row, step, unreachable};
 use super::{OutFile, out_file, over_time, rig_out, voltage, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use crate::cli::laws::observer;
 use crate::cli::{Answer, Voice};
 use crate::rigfile;

@@ -2,13 +2,13 @@ use std::fmt::Write;
 
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
+use tracelight_chart::{Curve, Figure, Key, Mark, Panel, Pen, Sign};
 use tracelight_linear::{LinearError, Polynomial, Response, StepInfo, Time, TransferFunction};
 use tracelight_task::Failure;
 use tracelight_units::TIMES;
 
 use super::systems::{Named, SystemArgs, bounded, four, percent, seconds};
 use super::{OutFile, above_zero, out_file, over_time, write_all};
-use crate::chart::{Curve, Figure, Key, Mark, Panel, Pen, Sign};
 use crate::cli::{Answer, Voice};
 
 /// What transfer functions answer to a step, an impulse or a ramp: overshoot, rise, settling

@@ -1,6 +1,7 @@
 use std::fmt::Write;
 
 use clap::{Args, ValueEnum};
+use tracelight_chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use tracelight_lab::StepFigures;
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{
@@ -11,7 +12,6 @@ use tracelight_units::Angle;
 
 use super::by_hand::ByHandArgs;
 use super::{OutFile, out_file, over_time, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};

@@ -1,6 +1,7 @@
 use std::fmt::Write;
 
 use clap::{Args, ValueEnum};
+use tracelight_chart::{Colour, Theme};
 use tracelight_lab::Linearization;
 use tracelight_linear::{
     Complex, Discretization, FormulaError, LinearError, Mode, Names, Time, TransferFunction, Zpk, four_digits,
@@ -11,7 +12,6 @@ use tracelight_task::Failure;
 use tracelight_units::{TIMES, parse};
 
 use super::head::HeadArgs;
-use crate::chart::{Colour, Theme};
 
 /// Systems to plot.
 #[derive(Args, Debug)]

@@ -1,4 +1,5 @@
 use serde_json::Value;
+use tracelight_chart::{Colour, Panel, Pen};
 use tracelight_lab::StepFigures;
 use tracelight_linear::Zpk;
 use tracelight_rig::Joint;
@@ -8,7 +9,6 @@ use tracelight_units::Angle;
 
 use super::over_time;
 use super::step::{curve, figures, figures_json, heading, row, unreachable};
-use crate::chart::{Colour, Panel, Pen};
 use crate::rigfile;
 
 /// The controller on a rig.

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
+use tracelight_chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use tracelight_files as files;
 use tracelight_lab::{Demand, Setting, around, coarse};
 use tracelight_rig::{PanTilt, Phase};
@@ -14,7 +15,6 @@ use tracelight_units::{ANGULAR_SPEEDS, TIMES};
 use super::shape::ShapeArgs;
 use super::{above_zero, make_folder, rig_out};
 use crate::bar::Bar;
-use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use crate::cli::driving::Driving;
 use crate::cli::laws::law;
 use crate::cli::{Answer, Voice};

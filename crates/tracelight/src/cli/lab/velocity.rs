@@ -2,6 +2,7 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 
 use clap::Args;
+use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use tracelight_lab::{Peaks, VelocityError, highest, peaks, peaks_seen, velocity_error};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{LONGEST_INTERVAL_TICKS, ObserverName, Run, SimulatedRig};
@@ -12,7 +13,6 @@ use tracelight_units::{Speed, TIMES};
 use super::shape::ShapeArgs;
 use super::{OutFile, out_file, why_unfinished, write_all};
 use crate::bar::Bar;
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use crate::cli::driving::{Driving, positive_speed};
 use crate::cli::{Answer, Voice};
 

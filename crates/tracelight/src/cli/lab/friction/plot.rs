@@ -1,9 +1,9 @@
+use tracelight_chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Sign, Theme};
 use tracelight_lab::{Side, Trial, Uncertain};
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
 use super::Found;
-use crate::chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Sign, Theme};
 use crate::cli::lab::over_time;
 
 /// Time that speeds are told over, s.

@@ -1,8 +1,8 @@
+use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use tracelight_lab::{Experiment, Graded, Lesson, Quantity};
 use tracelight_rig::TICK_F64_S;
 use tracelight_task::Failure;
 
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use crate::cli::lab::over_time;
 
 /// What one set of values did, under its name.

@@ -1,5 +1,6 @@
 //! The moves of a course as plots: on the target, along the course, at the joints, as counts.
 
+use tracelight_chart::{Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::Tick;
 use tracelight_task::Failure;
@@ -7,7 +8,6 @@ use tracelight_trajectory::CoursePoint;
 
 use super::super::colour;
 use super::{Bench, Entry, OnRig, failure};
-use crate::chart::{Curve, Figure, Key, Panel, Pen, Scale, Theme};
 
 /// Points of a plotted curve.
 const PLOTTED: u32 = 400;

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use clap::{ArgAction, Args, ValueEnum};
 use serde_json::json;
+use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use tracelight_linear::Zpk;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{
@@ -17,7 +18,6 @@ use super::head::Set;
 use super::shape::switch;
 use super::systems::controller;
 use super::{OutFile, above_zero, out_file, over_time, write_all};
-use crate::chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};

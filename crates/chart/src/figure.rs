@@ -1,10 +1,3 @@
-//! Figures of curves as SVG, and that as PNG: panels in a grid under one title and one legend.
-
-mod colour;
-mod linear;
-mod pixels;
-mod range;
-
 use plotters::chart::ChartContext;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{Ranged, ValueFormatter};
@@ -15,91 +8,101 @@ use plotters::prelude::{
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, TextStyle};
 
-pub(crate) use colour::Colour;
-use linear::Linear;
-pub(crate) use pixels::pixels;
-use range::{Range, inside};
+use crate::colour::Colour;
+use crate::linear::Linear;
+use crate::range::{Range, inside};
+use crate::theme::Theme;
 
 /// A page of panels.
-pub(crate) struct Figure {
-    pub(crate) title: String,
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Above all panels.
+    pub title: String,
     /// What each colour stands for.
-    pub(crate) legend: Vec<Key>,
+    pub legend: Vec<Key>,
     /// Row by row.
-    pub(crate) panels: Vec<Panel>,
+    pub panels: Vec<Panel>,
     /// Panels beside each other.
-    pub(crate) columns: usize,
+    pub columns: usize,
     /// Size of a panel, pixels.
-    pub(crate) panel: (i32, i32),
-    pub(crate) theme: Theme,
-}
-
-/// Light or dark ground.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Theme {
-    #[default]
-    Light,
-    Dark,
+    pub panel: (i32, i32),
+    /// Its ground.
+    pub theme: Theme,
 }
 
 /// An entry of the legend.
-pub(crate) struct Key {
-    pub(crate) colour: Colour,
-    pub(crate) name: String,
+#[derive(Clone, Debug)]
+pub struct Key {
+    /// Of the curve.
+    pub colour: Colour,
+    /// What it is.
+    pub name: String,
 }
 
 impl Key {
-    pub(crate) fn new(colour: Colour, name: impl Into<String>) -> Self {
+    /// Of a colour and a name.
+    pub fn new(colour: Colour, name: impl Into<String>) -> Self {
         Self { colour, name: name.into() }
     }
 }
 
 /// One diagram.
-#[derive(Default)]
-pub(crate) struct Panel {
-    pub(crate) x_title: String,
-    pub(crate) y_title: String,
-    pub(crate) curves: Vec<Curve>,
+#[derive(Clone, Debug, Default)]
+pub struct Panel {
+    /// With the unit.
+    pub x_title: String,
+    /// With the unit.
+    pub y_title: String,
+    /// From the one below to the one on top.
+    pub curves: Vec<Curve>,
     /// Values of y that are marked by a line.
-    pub(crate) levels: Vec<f64>,
-    pub(crate) scale: Scale,
+    pub levels: Vec<f64>,
+    /// How values become places.
+    pub scale: Scale,
     /// Faint lines behind the curves, and what is written at their ends.
-    pub(crate) guides: Vec<Guide>,
+    pub guides: Vec<Guide>,
     /// Single places.
-    pub(crate) marks: Vec<Mark>,
+    pub marks: Vec<Mark>,
     /// What is shown: from and to on x, and on y; otherwise all there is.
-    pub(crate) view: Option<[(f64, f64); 2]>,
+    pub view: Option<[(f64, f64); 2]>,
     /// Distance of the lines across, where it should be another than the usual.
-    pub(crate) y_step: Option<f64>,
+    pub y_step: Option<f64>,
 }
 
 /// A line of a grid that is not straight.
-pub(crate) struct Guide {
-    pub(crate) points: Vec<(f64, f64)>,
+#[derive(Clone, Debug)]
+pub struct Guide {
+    /// Its way.
+    pub points: Vec<(f64, f64)>,
     /// At the last of its points that is shown; empty for none.
-    pub(crate) label: String,
+    pub label: String,
 }
 
 /// A single place.
-pub(crate) struct Mark {
-    pub(crate) colour: Colour,
-    pub(crate) sign: Sign,
-    pub(crate) at: (f64, f64),
+#[derive(Clone, Debug)]
+pub struct Mark {
+    /// Of the sign.
+    pub colour: Colour,
+    /// What is put there.
+    pub sign: Sign,
+    /// x and y.
+    pub at: (f64, f64),
 }
 
 /// What a place is marked with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sign {
+pub enum Sign {
     /// A pole.
     Cross,
     /// A zero.
     Ring,
+    /// What was measured.
     Dot,
 }
 
 /// How values become places.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Scale {
+pub enum Scale {
     /// Each axis as its values need.
     #[default]
     Free,
@@ -112,60 +115,25 @@ pub(crate) enum Scale {
 }
 
 /// One line of a diagram.
-pub(crate) struct Curve {
-    pub(crate) colour: Colour,
-    pub(crate) pen: Pen,
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// As in the legend.
+    pub colour: Colour,
+    /// How it is drawn.
+    pub pen: Pen,
     /// NaN lifts the pen.
-    pub(crate) points: Vec<(f64, f64)>,
+    pub points: Vec<(f64, f64)>,
 }
 
 /// How a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Pen {
+pub enum Pen {
+    /// A line.
     Solid,
+    /// A broken line.
     Dashed,
     /// Points, not joined.
     Dots,
-}
-
-impl Theme {
-    const fn ground(self) -> RGBColor {
-        match self {
-            Self::Light => RGBColor(255, 255, 255),
-            Self::Dark => RGBColor(24, 26, 31),
-        }
-    }
-
-    const fn ink(self) -> RGBColor {
-        match self {
-            Self::Light => RGBColor(51, 51, 51),
-            Self::Dark => RGBColor(215, 215, 215),
-        }
-    }
-
-    /// Of lines that only help.
-    const fn faint(self) -> RGBColor {
-        match self {
-            Self::Light => RGBColor(225, 225, 225),
-            Self::Dark => RGBColor(58, 61, 68),
-        }
-    }
-
-    /// Of lines between those.
-    const fn fainter(self) -> RGBColor {
-        match self {
-            Self::Light => RGBColor(242, 242, 242),
-            Self::Dark => RGBColor(38, 41, 47),
-        }
-    }
-
-    /// Of what is written at those.
-    const fn dim(self) -> RGBColor {
-        match self {
-            Self::Light => RGBColor(140, 140, 140),
-            Self::Dark => RGBColor(140, 145, 152),
-        }
-    }
 }
 
 /// The backend rounds to whole units: so many of them make a pixel.
@@ -186,7 +154,10 @@ type Chart<'a, X, Y> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>;
 
 impl Figure {
     /// The figure as an SVG file.
-    pub(crate) fn svg(&self) -> Result<String, Box<dyn std::error::Error>> {
+    ///
+    /// # Errors
+    /// What the drawing library says; into a text nothing goes wrong.
+    pub fn svg(&self) -> Result<String, Box<dyn std::error::Error>> {
         let columns = self.columns.clamp(1, self.panels.len().max(1));
         let rows = self.panels.len().div_ceil(columns).max(1);
         let width = self.panel.0 * columns as i32;

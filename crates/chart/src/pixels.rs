@@ -6,7 +6,10 @@ use resvg::{tiny_skia, usvg};
 const SCALE: f32 = 1.5;
 
 /// An SVG of ours as a PNG. Its letters are DejaVu Sans, whatever fonts there are.
-pub(crate) fn pixels(svg: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+///
+/// # Errors
+/// Where it is no SVG, or has no pixels.
+pub fn pixels(svg: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_source(usvg::fontdb::Source::Binary(Arc::new(dejavu::sans::regular())));
     fonts.set_sans_serif_family("DejaVu Sans");

@@ -1,17 +1,17 @@
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::coord::types::RangedCoordf64;
 
-use super::range::Range;
+use crate::range::Range;
 
 /// An even axis, with lines at multiples of a step, or at round numbers.
-pub(super) struct Linear {
+pub(crate) struct Linear {
     even: RangedCoordf64,
     range: Range,
     step: Option<f64>,
 }
 
 impl Linear {
-    pub(super) fn new(range: Range, step: Option<f64>) -> Self {
+    pub(crate) fn new(range: Range, step: Option<f64>) -> Self {
         Self { even: (range.low..range.high).into(), range, step }
     }
 }

@@ -2,14 +2,14 @@
 
 /// What an axis shows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Range {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(crate) struct Range {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
 }
 
 impl Range {
     /// From the least to the greatest of some values, with some room where they are all one.
-    pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Self {
         let seen = values.filter(|v| v.is_finite());
         let (low, high) = seen.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let size = low.abs().max(high.abs());
@@ -21,12 +21,12 @@ impl Range {
     }
 
     /// Somewhat wider on a logarithmic axis.
-    pub(super) fn decades(&self) -> Self {
+    pub(crate) fn decades(&self) -> Self {
         Self { low: 0.8 * self.low, high: 1.25 * self.high }
     }
 
     /// One whose lines can be counted: no further than `f64` reaches from one end to the other.
-    pub(super) fn sane(self, log: bool) -> Self {
+    pub(crate) fn sane(self, log: bool) -> Self {
         const FURTHEST: f64 = 1e300;
         let finite = |value: f64, otherwise: f64| {
             if value.is_nan() { otherwise } else { value.clamp(-FURTHEST, FURTHEST) }
@@ -40,15 +40,15 @@ impl Range {
     }
 
     /// Whether it is shown.
-    pub(super) fn holds(&self, value: f64) -> bool {
+    pub(crate) fn holds(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    pub(super) fn span(&self) -> f64 {
+    pub(crate) fn span(&self) -> f64 {
         self.high - self.low
     }
 
-    pub(super) fn widen(&mut self, span: f64) {
+    pub(crate) fn widen(&mut self, span: f64) {
         let more = 0.5 * (span - self.span()).max(0.0);
         (self.low, self.high) = (self.low - more, self.high + more);
     }
@@ -56,7 +56,7 @@ impl Range {
 
 /// The parts of a line through these points that lie in a rectangle, each with its ends on the edge where it leaves. A point that is
 /// no number ends a part.
-pub(super) fn inside(points: &[(f64, f64)], x: Range, y: Range) -> Vec<Vec<(f64, f64)>> {
+pub(crate) fn inside(points: &[(f64, f64)], x: Range, y: Range) -> Vec<Vec<(f64, f64)>> {
     let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut last_end = None;
     for pair in points.windows(2) {

@@ -1,27 +1,35 @@
 use plotters::prelude::RGBColor;
 
-use super::Theme;
+use crate::theme::Theme;
 
 /// Colours that people who see red and green alike can tell apart (Okabe and Ito, "Color universal design", 2008).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Colour {
+pub enum Colour {
+    /// #D55E00.
     Vermilion,
+    /// #0072B2.
     Blue,
+    /// #009E73.
     Green,
+    /// #CC79A7.
     Purple,
+    /// #E69F00.
     Orange,
+    /// #56B4E9.
     Sky,
+    /// The ink of the ground.
     Black,
+    /// Of what only helps.
     Grey,
 }
 
 impl Colour {
     /// Of curves that have none of their own, again from the first once there are no more.
-    pub(crate) fn in_turn() -> impl Iterator<Item = Self> + Clone {
+    pub fn in_turn() -> impl Iterator<Item = Self> + Clone {
         [Self::Blue, Self::Vermilion, Self::Green, Self::Purple, Self::Orange, Self::Sky].into_iter().cycle()
     }
 
-    pub(super) const fn rgb(self, theme: Theme) -> RGBColor {
+    pub(crate) const fn rgb(self, theme: Theme) -> RGBColor {
         if matches!(theme, Theme::Dark) {
             return self.on_dark();
         }
