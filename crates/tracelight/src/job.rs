@@ -12,6 +12,7 @@ use std::time::Instant;
 use tracelight_files as files;
 use tracelight_lab::{LAPS_WORTH, identify};
 use tracelight_rig::{Command, Joint, PanTilt, Rig};
+use tracelight_rigfile as rigfile;
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Tracking, score};
 use tracelight_task::{Failure, Stop, Task};
 use tracelight_trajectory::Plan;
@@ -21,14 +22,13 @@ use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::eye::homing::{check_homed, lost_power};
 use crate::eye::room::{Furnished, left};
+use crate::named;
 use crate::output::{
     self, EyeFigures, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing,
 };
-use crate::rigfile;
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::settings;
 use crate::sketch::{Placed, Sketch, place, sketch};
-use crate::source;
 use seen::Seen;
 use watched::{WatchedJob, WatchedRun, run_watched};
 
@@ -92,7 +92,7 @@ fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
     task.stage("strokes", 1);
-    let sketch = sketch(args.name(), source::read(args.name())?, &args.tracing, &args.placement)?;
+    let sketch = sketch(args.name(), named::picture(args.name())?, &args.tracing, &args.placement)?;
     task.check()?;
     let placed = place(&sketch, &args.placement);
     planned(sketch.shown(), placed, driving, None, task)
@@ -381,7 +381,7 @@ fn write_rig(args: &TraceArgs, dir: &Path, laps: &Laps) -> Result<(), Failure> {
         return output::forget(&path).map_err(|e| cannot_write(&path, &e));
     };
     let mut rig = rig.clone();
-    rigfile::date(&mut rig);
+    named::date_rig(&mut rig);
     std::fs::write(&path, rigfile::write(&rig)).map_err(|e| cannot_write(&path, &e))
 }
 

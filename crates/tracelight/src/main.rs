@@ -2,22 +2,19 @@
 
 mod bar;
 mod batch;
-mod camera_file;
 mod carried;
 mod cli;
 mod eye;
-mod head_file;
 mod interrupt;
 mod job;
+mod named;
 mod output;
 mod paper;
 mod quality;
 mod record;
-mod rigfile;
 mod schedule;
 mod settings;
 mod sketch;
-mod source;
 mod table;
 
 use std::process::ExitCode;

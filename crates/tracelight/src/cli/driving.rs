@@ -7,6 +7,7 @@ use tracelight_units::{AngularAcceleration, Length, Speed};
 
 use crate::cli::placing::positive_length;
 use crate::cli::shapes::ProfileName;
+use crate::named;
 
 /// 3 ft: where the original rig's camera stood.
 pub(crate) const DEFAULT_DISTANCE_M: f64 = 0.9144;
@@ -136,7 +137,7 @@ pub(crate) const REACHED: f64 = 0.98;
 impl DrivingArgs {
     /// Reads the rig and gathers the rest.
     pub(crate) fn resolve(&self) -> Result<Driving, Failure> {
-        let mut rig = crate::rigfile::load(&self.rig)?;
+        let mut rig = named::rig(&self.rig)?;
         if let Some(wish) = self.amax {
             rig.motion.acceleration_limit_rad_s2 = rig.motion.acceleration_limit_rad_s2.map(|_| wish.0);
         }

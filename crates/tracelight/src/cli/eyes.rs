@@ -3,13 +3,14 @@
 use std::str::FromStr;
 
 use clap::Args;
+use tracelight_rigfile::camera::KnownCamera;
 use tracelight_task::Failure;
 
-use crate::camera_file::{self, KnownCamera};
 use crate::eye::Looks;
 use crate::eye::room::SimulatedEye;
 use crate::eye::source::Source;
 use crate::eye::trouble::TroubleAt;
+use crate::named;
 
 /// Which camera looks at the wall.
 #[derive(Args, Clone, Debug, Default)]
@@ -86,7 +87,7 @@ impl EyeArgs {
 
     /// What is known of it.
     pub(crate) fn known(&self) -> Result<Option<KnownCamera>, Failure> {
-        self.calibration.as_deref().map(camera_file::read_whole).transpose()
+        self.calibration.as_deref().map(named::camera).transpose()
     }
 }
 

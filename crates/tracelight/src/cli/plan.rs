@@ -12,10 +12,10 @@ use crate::cli::driving::DrivingArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
+use crate::named;
 use crate::output::{ColourBy, PlanFigures, StrokeFigures, preview};
 use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::sketch::{Placed, place, sketch};
-use crate::source;
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]
@@ -53,7 +53,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let task = Task { progress: &bar, stop };
     let driving = args.driving.resolve()?;
     task.stage("strokes", 1);
-    let sketch = sketch(&args.drawing, source::read(&args.drawing)?, &args.tracing, &args.placement)?;
+    let sketch = sketch(&args.drawing, named::picture(&args.drawing)?, &args.tracing, &args.placement)?;
     let placed = place(&sketch, &args.placement);
     stop.check()?;
     task.stage("plan", 1);

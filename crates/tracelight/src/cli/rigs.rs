@@ -1,9 +1,10 @@
 use clap::{Args, Subcommand};
+use tracelight_rigfile as rigfile;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
 use crate::cli::{Answer, Voice};
-use crate::rigfile;
+use crate::named;
 
 /// List the rigs that come with the program, or print one as a file
 #[derive(Args, Debug)]
@@ -29,7 +30,7 @@ pub(crate) fn run(args: &RigsArgs) -> Result<Answer, Failure> {
     match &args.action {
         None => Ok(list()),
         Some(RigsAction::Show { name }) => {
-            let text = rigfile::write(&rigfile::load(name)?);
+            let text = rigfile::write(&named::rig(name)?);
             let json = serde_json::json!({ "name": name, "toml": text }).to_string();
             Ok(Answer::new(text.trim_end(), json))
         }

@@ -17,12 +17,12 @@ use crate::batch::{self, Batch, Finding, Out, places};
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
+use crate::named;
 use crate::output;
 use crate::output::drawing::{self, FORMATS};
 use crate::paper::{PaperSeen, page};
 use crate::quality::QualityFigures;
 use crate::sketch::{Sketch, place, sketch};
-use crate::source;
 
 /// How close `points` keep to their path, px.
 const POINTS_TOLERANCE_PX: f64 = 0.05;
@@ -161,7 +161,7 @@ fn made_with(args: &StrokesArgs) -> String {
 }
 
 fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding, Failure> {
-    let source = source::read(picture)?;
+    let source = named::picture(picture)?;
     if let Some(path) = &args.stages {
         if path.as_path() == Path::new(picture) || args.out.as_deref() == Some(path) {
             let message =

@@ -3,12 +3,13 @@
 use tracelight_aim::{Alignment, Camera, Correction, Trim, TrimBelief};
 use tracelight_plant::RelayConfig;
 use tracelight_rig::{PanTilt, Phase, TICK_F64_S, Telemetry};
+use tracelight_rigfile::Timing;
 use tracelight_sim::Tick;
 use tracelight_stroke::Point;
 use tracelight_vision::SpotLost;
 
 use super::painted::Painted;
-use super::spots::{History, Sight, Sighting, SpotWatch, Timing};
+use super::spots::{History, Sight, Sighting, SpotWatch};
 use super::{Eye, Shot};
 use crate::output::SeenMark;
 

@@ -7,13 +7,14 @@ use std::ops::ControlFlow;
 
 use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, SeenSpot, align};
 use tracelight_rig::Command;
+use tracelight_rigfile::Timing;
 use tracelight_sim::{Simulated, Tick, run_segments};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
 
 use super::homing::check_homed;
-use super::spots::{History, Sight, Sighting, SpotWatch, Timing};
+use super::spots::{History, Sight, Sighting, SpotWatch};
 use super::{Eye, Looks};
 use crate::cli::driving::Driving;
 use crate::schedule::refused;

@@ -17,9 +17,9 @@ use tracelight_task::Failure;
 use super::homing::{Homed, turned_rad};
 use super::{Eye, Shot};
 use crate::cli::placing::PlacementArgs;
+use crate::named;
 use crate::output::page_raster;
 use crate::paper::Paper;
-use crate::source;
 
 /// Which camera is simulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -202,7 +202,7 @@ impl Hung {
 }
 
 fn hang(path: &str, request: &RoomRequest<'_>) -> Result<Hung, Failure> {
-    let Source::Pixels(pixels) = source::read(path)? else {
+    let Source::Pixels(pixels) = named::picture(path)? else {
         let message = format!(
             "{path} is a drawing; a simulated wall wants a picture with pixels: PNG, JPEG, WebP, BMP, GIF, PNM or TIFF"
         );

@@ -6,6 +6,8 @@ use tracelight_rig::{PanTilt, TICK_F64_S, Telemetry};
 use tracelight_stroke::Point;
 use tracelight_vision::{Spot, SpotLost, SpotWindow, find_spot};
 
+use tracelight_rigfile::Timing;
+
 use super::Shot;
 use super::painted::Painted;
 
@@ -94,35 +96,12 @@ impl History {
     }
 }
 
-/// How a camera's stamps relate to the rig's ticks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Timing {
-    /// By how much later than stamped an image is taken, s.
-    pub(crate) late_s: f64,
-    /// How much later its last row is than its first, s.
-    pub(crate) readout_s: f64,
-    /// How far off all that may be, s.
-    pub(crate) unsure_s: f64,
-}
-
-impl Timing {
-    /// Of a usual webcam that nobody has looked at.
-    pub(crate) const USUAL: Self = Self { late_s: 0.0, readout_s: 0.02, unsure_s: 0.03 };
-    /// How far off it may be once it was found from dots, s.
-    pub(crate) const FOUND_S: f64 = 0.003;
-
+impl History {
     /// Whether there was light while rows of an image were exposed, from one down it to another; surely, as far as times are known.
-    pub(crate) fn light(&self, history: &History, shot: &Shot, [from, until]: [f64; 2]) -> Light {
-        let when = Stamp { stamp_s: shot.stamp_s, exposure_s: shot.exposure_s };
-        let (from_s, _) = self.row_s(&when, from);
-        let (_, until_s) = self.row_s(&when, until);
-        history.light(from_s - self.unsure_s, until_s + self.unsure_s)
-    }
-
-    /// When a row is exposed: from and until.
-    fn row_s(&self, shot: &Stamp, down: f64) -> (f64, f64) {
-        let from_s = shot.stamp_s + self.late_s + down * self.readout_s;
-        (from_s, from_s + shot.exposure_s)
+    pub(crate) fn light_in(&self, timing: &Timing, shot: &Shot, [from, until]: [f64; 2]) -> Light {
+        let (from_s, _) = timing.row_s(shot.stamp_s, shot.exposure_s, from);
+        let (_, until_s) = timing.row_s(shot.stamp_s, shot.exposure_s, until);
+        self.light(from_s - timing.unsure_s, until_s + timing.unsure_s)
     }
 }
 
@@ -151,12 +130,12 @@ pub(crate) struct Sighting {
 impl Sighting {
     /// When it was, as it is believed: from and until, s.
     pub(crate) fn time_s(&self, timing: &Timing) -> (f64, f64) {
-        timing.row_s(&self.when, self.down)
+        timing.row_s(self.when.stamp_s, self.when.exposure_s, self.down)
     }
 
     /// The same with where the encoders had the joints then; `None` if they were not watched then.
     pub(crate) fn spot(&self, history: &History, timing: &Timing) -> Option<SeenSpot> {
-        let (from_s, until_s) = timing.row_s(&self.when, self.down);
+        let (from_s, until_s) = timing.row_s(self.when.stamp_s, self.when.exposure_s, self.down);
         let (angle_rad, rate_rad_s) = history.mean(from_s, until_s)?;
         Some(SeenSpot { angle_rad, rate_rad_s, down: self.down, at: self.at, deviation_m: self.deviation_m })
     }
@@ -233,14 +212,14 @@ impl SpotWatch {
     /// Looks at a shot. `head` is what is believed of where the beam goes.
     pub(crate) fn see(&mut self, shot: &Shot, history: &History, head: &Alignment) -> Sight {
         let when = Stamp { stamp_s: shot.stamp_s, exposure_s: shot.exposure_s };
-        if self.timing.light(history, shot, WHOLE) == Light::Dark {
+        if history.light_in(&self.timing, shot, WHOLE) == Light::Dark {
             self.dark = Some(shot.clone());
             self.exposure_s = self.wished_s;
             return Sight::Nothing;
         }
         let Some(awaited) = self.awaited(when, history, head) else { return Sight::Nothing };
         let down = self.down(awaited);
-        if self.timing.light(history, shot, [down; 2]) != Light::Lit {
+        if history.light_in(&self.timing, shot, [down; 2]) != Light::Lit {
             return Sight::Nothing;
         }
         match self.look(shot, when, awaited) {
@@ -306,7 +285,7 @@ impl SpotWatch {
         let mut at = None;
         // which row it is on tells when that was exposed
         for _ in 0..3 {
-            let (from_s, until_s) = self.timing.row_s(&when, down);
+            let (from_s, until_s) = self.timing.row_s(when.stamp_s, when.exposure_s, down);
             let angle = history.at(0.5 * (from_s + until_s))?;
             let pixel = self.camera.pixel(head.geometry.spot(&head.pose, angle)?)?;
             down = self.down(pixel);

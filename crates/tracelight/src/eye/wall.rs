@@ -4,12 +4,14 @@ use tracelight_aim::{
     Board, Camera, Doubt, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyedCamera, survey,
 };
 use tracelight_picture::Raster;
+use tracelight_rigfile::PageName;
+use tracelight_rigfile::camera::{KnownCamera, Stood};
 use tracelight_stroke::{Affine, Point};
 use tracelight_task::{Failure, Stop};
 use tracelight_vision::{Grey, Tag, TagPlace, find_tags};
 
 use super::{Looks, grey};
-use crate::camera_file::{KnownCamera, PageName, Stood};
+use crate::named;
 
 /// A wall as one image shows it.
 pub(crate) struct SeenWall {
@@ -31,6 +33,11 @@ pub(crate) struct SeenWall {
 }
 
 impl SeenWall {
+    /// Its camera as one that was found today.
+    pub(crate) fn known(&self) -> KnownCamera {
+        KnownCamera::standing(self.camera, self.print_scale, &self.pages, &named::today())
+    }
+
     /// By what it is known.
     pub(crate) fn words(&self) -> String {
         match self.rms_px {

@@ -9,7 +9,6 @@ use tracelight_trajectory::{Plan, plan};
 
 use super::log_tick;
 use super::watched::{REST_TICKS, Watched, Why};
-use crate::camera_file::KnownCamera;
 use crate::eye::follow::{Blind, Followed, Follower, Suspicion};
 use crate::eye::head::{DotsRequest, find_head};
 use crate::eye::homing::lost_power;
@@ -87,7 +86,7 @@ impl Watched<'_> {
         };
         self.figures.lost_images += self.follower.watch.lost;
         self.follower.look_from(wall.camera.camera);
-        self.wall = KnownCamera::standing(&wall);
+        self.wall = wall.known();
         // an image without the spot, as it sees now
         self.rest(REST_TICKS);
         self.recovered(began_s, format!("the camera {moved}; it was found anew"), 0);

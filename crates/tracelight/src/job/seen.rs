@@ -3,12 +3,14 @@
 use tracelight_aim::{Alignment, Camera, TrimBelief};
 use tracelight_picture::Raster;
 use tracelight_rig::PanTilt;
+use tracelight_rigfile::Timing;
+use tracelight_rigfile::camera::KnownCamera;
+use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::{Room, Run, Simulated};
 use tracelight_stroke::{Comparison, Drawing, Point, compare};
 use tracelight_task::{Failure, Task};
 
 use super::Prepared;
-use crate::camera_file::KnownCamera;
 use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::eye::Looks;
@@ -18,11 +20,9 @@ use crate::eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_fr
 use crate::eye::homing::{check_homed, home_head};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::source::Source;
-use crate::eye::spots::Timing;
-use crate::head_file::{self, KnownHead};
+use crate::named;
 use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures};
 use crate::sketch::sketch;
-use crate::source;
 
 /// What was seen before a run.
 pub(super) struct Seen {
@@ -43,7 +43,7 @@ pub(super) struct Seen {
 pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
-    let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
+    let known = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
     if args.dry_run && known.is_none() && matches!(args.eye.source()?, Source::Simulated(_)) {
         let message = "a dry run draws no dots to find the head by: give --head (tracelight calibrate head --camera … -o head.toml)";
         return Err(Failure::usage("usage", message));
@@ -71,7 +71,7 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
     let camera = wall.camera.camera;
     match &known {
         Some(known) => {
-            known.check_wall(&wall)?;
+            known.check_wall(wall.frame, &wall.pages)?;
             driving.believe(known.geometry, known.pose);
         }
         None => driving.stand(in_front(&camera, driving.pose.distance_m)),
@@ -99,7 +99,7 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
         figure_mm: None,
     };
     let followed = head.followed(camera, &driving);
-    let known = KnownCamera::standing(&wall);
+    let known = wall.known();
     let room = simulated.map(|(_, room)| room);
     let truth = truth(args, room.as_ref(), task)?;
     let seen = Seen { room, figures, image: wall.pixels, wall: known, followed, truth };
@@ -221,7 +221,7 @@ fn truth(args: &TraceArgs, room: Option<&Furnished>, task: Task<'_>) -> Result<O
     let (Source::Simulated(Some(path)), Some(wall_from_picture)) = (args.eye.source()?, hung) else {
         return Ok(None);
     };
-    match sketch(path, source::read(path)?, &args.tracing, &args.placement) {
+    match sketch(path, named::picture(path)?, &args.tracing, &args.placement) {
         // as it hangs: a sheet in it is not laid square there
         Ok(truth) => Ok(Some(truth.in_picture().0.transformed(wall_from_picture))),
         Err(why) => {

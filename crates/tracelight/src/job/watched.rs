@@ -3,6 +3,7 @@
 
 use tracelight_aim::Correction;
 use tracelight_rig::{Command, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
+use tracelight_rigfile::camera::KnownCamera;
 use tracelight_sim::{Room, Run, Simulated, Tick};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task};
@@ -12,7 +13,6 @@ use super::log_tick;
 use super::recovery::MOST_RECOVERIES;
 use super::remainder::{join, left};
 use super::seen::Seen;
-use crate::camera_file::KnownCamera;
 use crate::cli::driving::Driving;
 use crate::eye::feed::TrimmedFeeder;
 use crate::eye::follow::{Blind, Follower, Suspicion, strayed_rad};

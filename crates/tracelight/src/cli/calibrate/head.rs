@@ -3,6 +3,8 @@ use serde_json::json;
 use tracelight_aim::HeadPose;
 use tracelight_files as files;
 use tracelight_rig::PanTilt;
+use tracelight_rigfile as rigfile;
+use tracelight_rigfile::head::{HeadFile, KnownHead, NewHead};
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop, Task};
 
@@ -16,7 +18,7 @@ use crate::eye::homing::{Homed, home_head};
 use crate::eye::room::{Furnished, RoomRequest};
 use crate::eye::source::Source;
 use crate::eye::wall::{SeenWall, see_wall, well_exposed};
-use crate::head_file::{self, HeadFile, KnownHead};
+use crate::named;
 
 /// Where the head stands and points, from dots that it draws and a camera sees
 #[derive(Args, Debug)]
@@ -64,7 +66,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         seed: args.seed,
     };
     task.stage("wall", 1);
-    let known = args.head.as_deref().map(|path| head_file::read(path, &driving)).transpose()?;
+    let known = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
     let mut room = Furnished::new(&request, &driving.rig, driving.pose)?;
     let mut rig = if args.home {
         room.powered_up(&driving.rig, driving.pose)
@@ -77,7 +79,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     let camera = wall.camera.camera;
     match &known {
         Some(known) => {
-            known.check_wall(&wall)?;
+            known.check_wall(wall.frame, &wall.pages)?;
             driving.believe(known.geometry, known.pose);
         }
         None => driving.stand(in_front(&camera, driving.pose.distance_m)),
@@ -96,7 +98,16 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     }
     let found = find_head(&mut rig, &camera, &driving, &DotsRequest::first(&driving), task, &mut |_| {})?;
     stop.check()?;
-    files::write(&args.output, head_file::write(&HeadFile::of(&found, &driving, &wall))?)?;
+    let file = HeadFile::of(&NewHead {
+        date: &named::today(),
+        rig: &driving.rig.name,
+        aligned: &found.aligned,
+        timing: found.timing,
+        exposure_s: found.exposure_s,
+        frame: wall.frame,
+        pages: &wall.pages,
+    });
+    files::write(&args.output, rigfile::head::write(&file)?)?;
     let pose = found.aligned.alignment.pose;
     let truth = room.true_error_m(&found.aligned.alignment.geometry, &pose);
     let text = text(&wall, &found, truth, &args.output) + &homed_text(homed.as_ref());

@@ -3,13 +3,15 @@ use serde_json::{Value, json};
 use tracelight_aim::{Board, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
 use tracelight_files as files;
 use tracelight_picture::Source;
+use tracelight_rigfile as rigfile;
+use tracelight_rigfile::PageName;
+use tracelight_rigfile::camera::{CameraFile, Wall};
 use tracelight_sim::RigConfig;
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::Length;
 use tracelight_vision::Grey;
 
-use crate::camera_file::{self, CameraFile, PageName, Wall};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::eyes::ImageSize;
 use crate::cli::placing::{PlacementArgs, positive_length};
@@ -17,8 +19,8 @@ use crate::cli::{Answer, Voice};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::wall::{doubts, markers, well_exposed};
 use crate::eye::{self, grey};
+use crate::named;
 use crate::output::BAR_M;
-use crate::source;
 
 /// The camera in front of the wall, from an image of printed markers on it: lens, pose, scale
 #[derive(Args, Debug)]
@@ -83,7 +85,7 @@ const FEWEST_IMAGES: usize = 3;
 const KNOWN_FOCAL: f64 = 0.005;
 
 pub(super) fn run(args: &MarkersArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let known = args.lens.as_deref().map(camera_file::read).transpose()?;
+    let known = args.lens.as_deref().map(named::camera).transpose()?.map(|known| known.lens);
     let seen = match (&args.image, &args.camera) {
         (Some(path), _) => Seen::of(vec![found(path)?], args.bar.as_ref(), known.as_ref())?,
         (None, source) => {
@@ -94,8 +96,8 @@ pub(super) fn run(args: &MarkersArgs, stop: &Stop) -> Result<Answer, Failure> {
     let camera =
         seen.survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
     let wall = Wall::of(&seen.survey, &camera);
-    let file = CameraFile::of(&seen.survey, Some((&camera, wall)), seen.scale);
-    files::write(&args.output, camera_file::write(&file)?)?;
+    let file = CameraFile::of(&seen.survey, Some((&camera, wall)), seen.scale, &named::today());
+    files::write(&args.output, rigfile::camera::write(&file)?)?;
     let text = format!(
         "{}\n{}\n{}\n{}",
         seen.lens_text(),
@@ -123,8 +125,8 @@ pub(super) fn lens(args: &LensArgs) -> Result<Answer, Failure> {
     }
     let views: Result<Vec<View>, Failure> = args.images.iter().map(|path| found(path)).collect();
     let seen = Seen::of(views?, args.bar.as_ref(), None)?;
-    let file = CameraFile::of(&seen.survey, None, seen.scale);
-    files::write(&args.output, camera_file::write(&file)?)?;
+    let file = CameraFile::of(&seen.survey, None, seen.scale, &named::today());
+    files::write(&args.output, rigfile::camera::write(&file)?)?;
     let belief = &seen.survey.belief;
     let share = belief.covariance[(0, 0)].sqrt() / belief.lens.focal_px[0];
     let sure = if share > KNOWN_FOCAL {
@@ -254,7 +256,7 @@ impl View {
 }
 
 fn found(path: &str) -> Result<View, Failure> {
-    let Source::Pixels(pixels) = source::read(path)? else {
+    let Source::Pixels(pixels) = named::picture(path)? else {
         let message = format!("{path} is a drawing; give an image that a camera took");
         return Err(Failure::usage("not-a-picture", message));
     };

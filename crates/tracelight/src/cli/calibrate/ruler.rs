@@ -5,7 +5,7 @@ use tracelight_units::{Length, Offset};
 
 use crate::cli::placing::positive_length;
 use crate::cli::{Answer, Voice};
-use crate::source;
+use crate::named;
 
 /// Scale from two pictures of a ruler with two marks: once upright, once level
 #[derive(Args, Debug)]
@@ -66,7 +66,7 @@ fn field(text: &str) -> Result<Offset, String> {
 
 /// Distance of the two marks, and the picture's size, px.
 fn marks_px(path: &str) -> Result<(f64, (f64, f64)), Failure> {
-    let Source::Pixels(pixels) = source::read(path)? else {
+    let Source::Pixels(pixels) = named::picture(path)? else {
         return Err(Failure::usage(
             "not-a-picture",
             format!("{path} is a drawing; give a picture of a ruler"),

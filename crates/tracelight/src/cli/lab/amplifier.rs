@@ -15,8 +15,9 @@ use super::parts::{self, by_joint, leave, tell_each};
 use super::step::Axis;
 use super::{above_zero, rig_out, voltage};
 use crate::cli::{Answer, Voice};
+use crate::named;
 use crate::record::MOST_V;
-use crate::{rigfile, table};
+use crate::table;
 
 /// Identify what an amplifier makes of a volt, and what the turning motor's own voltage takes away
 #[derive(Args, Debug)]
@@ -70,7 +71,7 @@ fn current(text: &str) -> Result<f64, String> {
 type Found = parts::Found<CurrentPoint, Amplifier>;
 
 pub(crate) fn run(args: &AmplifierArgs) -> Result<Answer, Failure> {
-    let rig = rigfile::load(&args.rig)?;
+    let rig = named::rig(&args.rig)?;
     rig_out::may_save(&args.rig, args.save)?;
     let readings = if args.logs.is_empty() { tried(args, &rig) } else { logged(args)? };
     let tell = |joint: Joint, points: &[CurrentPoint]| {

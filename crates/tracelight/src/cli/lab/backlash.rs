@@ -17,7 +17,8 @@ use super::parts::{self, by_joint, leave, rounded, tell_each};
 use super::step::Axis;
 use crate::cli::laws::choose;
 use crate::cli::{Answer, Voice};
-use crate::{rigfile, table};
+use crate::named;
+use crate::table;
 
 /// Identify the play between encoder and beam, and whether the encoder slips, from where the spot rests on a ruler
 #[derive(Args, Debug)]
@@ -72,7 +73,7 @@ struct Reading {
 type Found = parts::Found<Reading, Backlash>;
 
 pub(crate) fn run(args: &BacklashArgs) -> Result<Answer, Failure> {
-    let rig = rigfile::load(&args.rig)?;
+    let rig = named::rig(&args.rig)?;
     if args.distance.0 <= 0.0 {
         return Err(Failure::usage("usage", "--distance must be above zero"));
     }

@@ -1,11 +1,11 @@
 use clap::{ArgAction, Args};
 use tracelight_rig::{Joint, TICK_F64_S};
+use tracelight_rigfile::{FEEDFORWARDS, HIGHEST_GAIN};
 use tracelight_sim::{Feedforward, HandTuned, LawName, RigConfig};
 use tracelight_task::Failure;
 
 use super::shape::switch;
 use super::velocity::interval;
-use crate::rigfile::{FEEDFORWARDS, HIGHEST_GAIN};
 
 /// A PID that is set on the command line.
 #[derive(Args, Debug, Default)]

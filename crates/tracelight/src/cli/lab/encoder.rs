@@ -14,7 +14,8 @@ use super::friction::HOW_SURE;
 use super::parts::{self, by_joint, leave, rounded, tell_each};
 use super::step::Axis;
 use crate::cli::{Answer, Voice};
-use crate::{rigfile, table};
+use crate::named;
+use crate::table;
 
 /// Identify what an encoder reads wrong: where its four kinds of edges lie, a disc beside its axis, counts it lost
 #[derive(Args, Debug)]
@@ -63,7 +64,7 @@ fn speed(text: &str) -> Result<f64, String> {
 type Found = parts::Found<Vec<EdgeTime>, EncoderTable>;
 
 pub(crate) fn run(args: &EncoderArgs) -> Result<Answer, Failure> {
-    let rig = rigfile::load(&args.rig)?;
+    let rig = named::rig(&args.rig)?;
     let runs =
         if args.logs.is_empty() { PanTilt::from_fn(|joint| tried(args, &rig, joint)) } else { logged(args)? };
     let count_rad = rig.model.encoder.count_rad();

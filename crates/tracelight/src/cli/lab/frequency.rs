@@ -15,8 +15,9 @@ use tracelight_units::{ANGULAR_SPEEDS, TIMES};
 use super::step::Axis;
 use super::{OutFile, above_zero, out_file, voltage, write_all};
 use crate::cli::{Answer, Voice};
+use crate::named;
 use crate::record::MOST_V;
-use crate::{rigfile, table};
+use crate::table;
 
 /// Measure a joint's frequency response with many sines at once, its coherence, and hold it against the model
 #[derive(Args, Debug)]
@@ -114,7 +115,7 @@ struct Found {
 }
 
 pub(crate) fn run(args: &FrequencyTrialArgs) -> Result<Answer, Failure> {
-    let rig = rigfile::load(&args.rig)?;
+    let rig = named::rig(&args.rig)?;
     let found = match &args.log {
         Some(path) => logged(args, &rig, path)?,
         None => measure(args, &rig)?,

@@ -7,7 +7,7 @@ use tracelight_rig::PanTilt;
 use tracelight_task::Failure;
 use tracelight_units::{Angle, AngularSpeed};
 
-use crate::rigfile;
+use crate::named;
 
 /// Which head is linearized, and where.
 #[derive(Args, Debug)]
@@ -84,7 +84,7 @@ impl HeadArgs {
         const HALF_RANGE_RAD: f64 = 0.463_647_609_000_806_1;
         let (name, bodies, viscous) = match &self.rig {
             Some(rig) => {
-                let rig = rigfile::load(rig)?;
+                let rig = named::rig(rig)?;
                 let viscous = rig.model.friction.map(|f| 0.5 * (f.viscous_pos + f.viscous_neg));
                 (format!("rig {}", rig.name), rig.model.bodies, viscous)
             }

@@ -14,7 +14,8 @@ use crate::bar::Bar;
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::LawArgs;
 use crate::cli::{Answer, Voice};
-use crate::{record, rigfile};
+use crate::named;
+use crate::record;
 
 /// Identify what the head is made of: inertia, friction, weight, amplifier, where its encoders' edges lie
 #[derive(Args, Debug)]
@@ -51,14 +52,14 @@ pub(crate) struct IdentifyArgs {
 const LEAST_SWING_RAD: f64 = 0.05;
 
 pub(crate) fn run(args: &IdentifyArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let mut rig = rigfile::load(&args.rig)?;
+    let mut rig = named::rig(&args.rig)?;
     rig_out::may_save(&args.rig, args.save)?;
     args.law.apply(&mut rig);
     let records = if args.records.is_empty() { vec![moved(args, &rig, stop)?] } else { read(args, &rig)? };
     let ticks: usize = records.iter().map(Vec::len).sum();
     let mut found = identify(&rig, &records).map_err(|e| Failure::failed("identify", e))?;
     if Joint::BOTH.iter().any(|&j| found.joints[j].taken) {
-        rigfile::date(&mut found.rig);
+        named::date_rig(&mut found.rig);
     }
     let written = write(args, &rig, &found, &records)?;
     Ok(Answer::new(table(&rig, &found, ticks) + &written, json(&rig, &found)))

@@ -21,7 +21,7 @@ use crate::cli::driving::{DEFAULT_DISTANCE_M, request_of};
 use crate::cli::placing::positive_length;
 use crate::cli::shapes::{ProfileName, ramps};
 use crate::cli::{Answer, Voice};
-use crate::rigfile;
+use crate::named;
 
 /// Follow a line or an arc of the target from rest to rest: every profile as asked, and as the motors can
 #[derive(Args, Debug)]
@@ -185,7 +185,7 @@ struct OnRig {
 
 pub(crate) fn run(args: &MoveArgs, stop: &Stop) -> Result<Answer, Failure> {
     let pace = args.pace();
-    let rig = rigfile::load(&pace.rig)?;
+    let rig = named::rig(&pace.rig)?;
     let pose = HeadPose::square_on(pace.distance.map_or(DEFAULT_DISTANCE_M, |d| d.0));
     let machine = rig.machine(pose);
     let wish = args.wish(&pose)?;

@@ -18,7 +18,7 @@ use super::step::{Axis, curve, figures, figures_json, heading, row, step, unreac
 use super::{OutFile, out_file, over_time, rig_out, voltage, write_all};
 use crate::cli::laws::observer;
 use crate::cli::{Answer, Voice};
-use crate::rigfile;
+use crate::named;
 
 /// Let a relay swing a joint, and tune a PID from how it swings: no model needed
 #[derive(Args, Debug)]
@@ -99,7 +99,7 @@ struct Tuned {
 
 pub(crate) fn run(args: &RelayArgs) -> Result<Answer, Failure> {
     rig_out::may_save(&args.rig, args.save)?;
-    let rig = rigfile::load(&args.rig)?;
+    let rig = named::rig(&args.rig)?;
     let joint = args.axis.joint();
     let (swing, relay) = swung(args, &rig, joint)?;
     let torque_nm_per_v = rig.model.motors[joint].torque_nm_per_v;
@@ -119,7 +119,7 @@ pub(crate) fn run(args: &RelayArgs) -> Result<Answer, Failure> {
     let tuned = Tuned { relay, swing, pid, response, nonlinear, linear };
     write_all(&args.out, || figure(args, &rig, &tuned), || Ok(csv(&tuned)))?;
     if args.save {
-        rigfile::save(&args.rig, &rig, &better)?;
+        named::save_rig(&args.rig, &rig, &better)?;
     }
     Ok(Answer::either(args.voice, || text(args, &rig, &tuned), || json(args, &rig, &tuned)))
 }

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use tracelight_files as files;
+use tracelight_rigfile as rigfile;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
-use crate::rigfile;
+use crate::named;
 
 /// Refuses to write into what comes with the program.
 pub(super) fn may_save(rig: &str, save: bool) -> Result<(), Failure> {
@@ -33,7 +34,7 @@ pub(super) fn write(
         return Err(Failure::failed("identify", message));
     }
     if save {
-        rigfile::save(rig, before, after)?;
+        named::save_rig(rig, before, after)?;
     } else if own {
         let message = format!(
             "{path} is the rig file itself: it changes only with --save; choose another folder with --out"

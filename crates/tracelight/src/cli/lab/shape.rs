@@ -7,10 +7,10 @@ use crate::cli::driving::{Driving, DrivingArgs};
 use crate::cli::laws::LawArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
+use crate::named;
 use crate::schedule::refused;
 use crate::schedule::{OrderBy, OrderEffort, check_speed, schedule};
 use crate::sketch::{place, sketch};
-use crate::source;
 
 /// Radius of the circle, m.
 const RADIUS_M: f64 = 0.25;
@@ -87,7 +87,7 @@ fn level_line() -> Path {
 
 fn plan_picture(name: &str, driving: &Driving) -> Result<Plan, Failure> {
     let (tracing, placement) = (TracingArgs::default(), PlacementArgs::default());
-    let sketch = sketch(name, source::read(name)?, &tracing, &placement)?;
+    let sketch = sketch(name, named::picture(name)?, &tracing, &placement)?;
     let placed = place(&sketch, &placement);
     Ok(schedule(&placed, driving, OrderBy::default(), OrderEffort::default())?.plan)
 }

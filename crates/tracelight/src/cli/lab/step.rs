@@ -15,7 +15,7 @@ use super::{OutFile, out_file, over_time, write_all};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};
-use crate::rigfile;
+use crate::named;
 
 /// Send one joint from rest at zero to an angle: overshoot, settling, what stays, on the head as it is and linearized
 #[derive(Args, Debug)]
@@ -104,7 +104,7 @@ struct Entry {
 }
 
 pub(crate) fn run(args: &StepArgs) -> Result<Answer, Failure> {
-    let mut rig = rigfile::load(&args.rig)?;
+    let mut rig = named::rig(&args.rig)?;
     let mut laws = args.by_hand.apply(&mut rig, &[args.axis.joint()], &args.law)?;
     if laws.is_empty() {
         laws.push(rig.control.law);

@@ -9,7 +9,7 @@ use tracelight_units::Angle;
 
 use super::over_time;
 use super::step::{curve, figures, figures_json, heading, row, unreachable};
-use crate::rigfile;
+use crate::named;
 
 /// The controller on a rig.
 pub(super) struct Trial {
@@ -29,7 +29,7 @@ impl Trial {
         (to, seed): (Angle, u64),
         controller: &Zpk,
     ) -> Result<Self, Failure> {
-        let rig = rigfile::load(rig.unwrap_or("report"))?;
+        let rig = named::rig(rig.unwrap_or("report"))?;
         let law = CompensatorLaw::new(controller).map_err(|e| {
             let message = format!("K = {controller} does not fit into the rig's controller: {e}");
             Failure::failed("no-such-design", message)

@@ -59,7 +59,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             self.step()?;
             while let Some(shot) = self.rig.shot() {
                 if shot.is_exposed(self.exposure_s)
-                    && self.timing.light(&self.history, &shot, WHOLE) == wanted
+                    && self.history.light_in(&self.timing, &shot, WHOLE) == wanted
                     && let Ok(image) = shot.red()
                 {
                     return Ok(Some(image));

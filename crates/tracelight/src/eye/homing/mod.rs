@@ -16,13 +16,14 @@ mod travel;
 use tracelight_aim::{Alignment, Camera, HeadGeometry, HeadPose};
 use tracelight_lab::Quantiles;
 use tracelight_rig::{Command, PanTilt, Telemetry};
+use tracelight_rigfile::Timing;
 use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Task};
 
 use super::Eye;
 use super::head::{DotsRequest, SPOT_EXPOSURE_S, find_head, see_dots};
-use super::spots::{History, Timing};
+use super::spots::History;
 use crate::cli::driving::Driving;
 use crate::output::HomedFigures;
 

@@ -16,7 +16,7 @@ use crate::bar::Bar;
 use crate::cli::lab::parts::joints;
 use crate::cli::lab::step::Axis;
 use crate::cli::lab::{above_zero, make_folder, voltage};
-use crate::rigfile;
+use crate::named;
 
 /// What joints are put through.
 #[derive(Args, Clone, Debug)]
@@ -232,6 +232,6 @@ impl TrialArgs {
 
     /// The rig as it is believed to be.
     pub(in crate::cli::lab) fn load(&self) -> Result<RigConfig, Failure> {
-        rigfile::load(&self.rig)
+        named::rig(&self.rig)
     }
 }

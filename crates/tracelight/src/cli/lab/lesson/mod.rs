@@ -8,12 +8,12 @@ use serde_json::{Value, json};
 use tracelight_files as files;
 use tracelight_lab::{Check, Graded, Lesson};
 use tracelight_rig::TICK_F64_S;
+use tracelight_rigfile as rigfile;
 use tracelight_task::Failure;
 
 use super::by_hand::{number, settings};
 use super::{OutFile, OutKind, out_file, write_all};
 use crate::cli::{Answer, Voice};
-use crate::rigfile;
 
 /// Learn control on the simulated head: eight lessons, each a text, a command to try, a plot and a question that the simulator grades
 #[derive(Args, Debug)]

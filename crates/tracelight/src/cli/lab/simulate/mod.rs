@@ -21,7 +21,7 @@ use super::{OutFile, above_zero, out_file, over_time, write_all};
 use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};
-use crate::rigfile;
+use crate::named;
 
 /// Run an array of times and angles through the nonlinear loop: desired, actual and error, as the 2006 report's simulation
 #[derive(Args, Debug)]
@@ -148,7 +148,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
 
 /// The rig as it is to be simulated.
 fn rig(args: &SimulateArgs) -> Result<RigConfig, Failure> {
-    let mut rig = rigfile::load(&args.rig)?;
+    let mut rig = named::rig(&args.rig)?;
     if let Some(set) = args.set {
         (rig.model.bodies, rig.truth.model.bodies) = (set.bodies(), set.bodies());
         rig.name += if set == Set::A { ", set A" } else { ", set B" };

@@ -5,7 +5,7 @@ use tracelight_units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_JERKS, ANGULAR_SPE
 
 /// The field a key sets.
 #[derive(Clone, Copy)]
-pub(super) enum Slot<T> {
+pub(crate) enum Slot<T> {
     /// A quantity or a pure number.
     Real(fn(&mut T) -> &mut f64),
     /// A whole number.
@@ -18,44 +18,44 @@ pub(super) enum Slot<T> {
 
 /// A key whose value is a name.
 #[derive(Clone, Copy)]
-pub(super) struct Choice<T> {
+pub(crate) struct Choice<T> {
     /// What fits.
-    pub(super) names: fn() -> Vec<&'static str>,
+    pub(crate) names: fn() -> Vec<&'static str>,
     /// The name that holds.
-    pub(super) get: fn(&T) -> &'static str,
+    pub(crate) get: fn(&T) -> &'static str,
     /// Takes one of `names`.
-    pub(super) set: fn(&mut T, &str),
+    pub(crate) set: fn(&mut T, &str),
 }
 
 /// A key of `T`.
 #[derive(Clone, Copy)]
-pub(super) struct Key<T: 'static> {
+pub(crate) struct Key<T: 'static> {
     /// Dotted path under its section.
-    pub(super) path: &'static str,
+    pub(crate) path: &'static str,
     /// Units that fit; empty for a pure number.
-    pub(super) units: &'static [Unit],
+    pub(crate) units: &'static [Unit],
     /// Lowest and highest value, SI.
-    pub(super) bounds: (f64, f64),
+    pub(crate) bounds: (f64, f64),
     /// What it is.
-    pub(super) meaning: &'static str,
+    pub(crate) meaning: &'static str,
     /// Where it goes.
-    pub(super) slot: Slot<T>,
+    pub(crate) slot: Slot<T>,
 }
 
-pub(super) const PURE: &[Unit] = &[];
+pub(crate) const PURE: &[Unit] = &[];
 const MASS: &[Unit] = &[("kg", 1.0), ("g", 1e-3)];
 const INERTIA: &[Unit] = &[("kgm2", 1.0), ("gcm2", 1e-7)];
 const GRAVITY: &[Unit] = &[("m/s2", 1.0)];
-pub(super) const TORQUE: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
+pub(crate) const TORQUE: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
 const FREQUENCIES: &[Unit] = &[("Hz", 1.0)];
-pub(super) const STIFFNESS: &[Unit] = &[("Nm/rad", 1.0), ("mNm/rad", 1e-3)];
-pub(super) const VISCOUS: &[Unit] = &[("Nms/rad", 1.0), ("mNms/rad", 1e-3)];
+pub(crate) const STIFFNESS: &[Unit] = &[("Nm/rad", 1.0), ("mNm/rad", 1e-3)];
+pub(crate) const VISCOUS: &[Unit] = &[("Nms/rad", 1.0), ("mNms/rad", 1e-3)];
 const GAIN: &[Unit] = &[("Nm/V", 1.0), ("mNm/V", 1e-3)];
 const VOLTAGE: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
 
 type Real = fn(&mut Model) -> &mut f64;
 
-pub(super) const fn real<T>(
+pub(crate) const fn real<T>(
     path: &'static str,
     units: &'static [Unit],
     bounds: (f64, f64),
@@ -65,7 +65,7 @@ pub(super) const fn real<T>(
     Key { path, units, bounds, meaning, slot: Slot::Real(field) }
 }
 
-pub(super) const fn flag<T>(
+pub(crate) const fn flag<T>(
     path: &'static str,
     meaning: &'static str,
     field: fn(&mut T) -> &mut bool,
@@ -73,7 +73,7 @@ pub(super) const fn flag<T>(
     Key { path, units: PURE, bounds: (0.0, 0.0), meaning, slot: Slot::Flag(field) }
 }
 
-pub(super) const fn choice<T>(path: &'static str, meaning: &'static str, choice: Choice<T>) -> Key<T> {
+pub(crate) const fn choice<T>(path: &'static str, meaning: &'static str, choice: Choice<T>) -> Key<T> {
     Key { path, units: PURE, bounds: (0.0, 0.0), meaning, slot: Slot::Choice(choice) }
 }
 
@@ -222,7 +222,7 @@ const WHOLE: [Key<Model>; 11] = [
 ];
 
 /// Keys of `[model]` and of `[truth]`.
-pub(super) fn model_keys() -> Vec<Key<Model>> {
+pub(crate) fn model_keys() -> Vec<Key<Model>> {
     let mut keys = WHOLE.to_vec();
     keys.extend(drive!("pan", pan));
     keys.extend(body!("pan", pan_body));
@@ -232,7 +232,7 @@ pub(super) fn model_keys() -> Vec<Key<Model>> {
 }
 
 /// Keys of `[truth.wear]`, `[control]` and `[motion]`.
-pub(super) const RIG_KEYS: [Key<RigConfig>; 36] = [
+pub(crate) const RIG_KEYS: [Key<RigConfig>; 36] = [
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),

@@ -1,11 +1,13 @@
 use std::ops::Range;
 
 /// A place in a file, for messages.
-pub(super) struct Mark<'a> {
-    pub(super) file: &'a str,
-    pub(super) text: &'a str,
+pub(crate) struct Mark<'a> {
+    /// Its name.
+    pub(crate) file: &'a str,
+    /// All of it.
+    pub(crate) text: &'a str,
     /// Bytes; without it the message names the file alone.
-    pub(super) span: Option<Range<usize>>,
+    pub(crate) span: Option<Range<usize>>,
 }
 
 /// Longest line that is shown, characters.
@@ -13,7 +15,7 @@ const SHOWN: usize = 120;
 
 impl Mark<'_> {
     /// `file:line:column: what`, the line, and carets under the place.
-    pub(super) fn message(&self, what: &str) -> String {
+    pub(crate) fn message(&self, what: &str) -> String {
         let Some(span) = &self.span else { return format!("{}: {what}", self.file) };
         let start = span.start.min(self.text.len());
         let before = &self.text.as_bytes()[..start];

@@ -1,23 +1,22 @@
 //! What is known of a head in front of a wall, as a file.
 
 use serde::{Deserialize, Serialize};
-use tracelight_aim::{Alignment, HeadGeometry, HeadPose};
-use tracelight_files as files;
+use tracelight_aim::{Aligned, Alignment, HeadGeometry, HeadPose, PlacedPage};
+use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
-use crate::camera_file::{PageName, PageTable};
-use crate::cli::driving::Driving;
-use crate::eye::head::FoundHead;
-use crate::eye::spots::Timing;
-use crate::eye::wall::SeenWall;
+use crate::pages::{PageName, PageTable};
+use crate::text::{Kind, text_of};
+use crate::timing::Timing;
 
 /// Largest head file, bytes.
 const MOST_BYTES: usize = 1 << 16;
+const KIND: Kind = Kind { name: "head", code: "head-file", most_bytes: MOST_BYTES };
 
 /// A head file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct HeadFile {
+pub struct HeadFile {
     /// Day it was found, as 2026-11-23.
     date: String,
     /// Name of the rig.
@@ -80,34 +79,57 @@ fn named(frame: Option<PageName>) -> String {
 
 /// What a head file tells.
 #[derive(Clone, Debug)]
-pub(crate) struct KnownHead {
+pub struct KnownHead {
     path: String,
     page: String,
     pages: Vec<PageTable>,
-    pub(crate) geometry: HeadGeometry,
-    pub(crate) pose: HeadPose,
-    /// How its camera's stamps related to the rig's ticks, and how long rows were exposed then, s.
-    pub(crate) timing: Timing,
-    pub(crate) exposure_s: f64,
+    /// How it is built.
+    pub geometry: HeadGeometry,
+    /// target_from_head.
+    pub pose: HeadPose,
+    /// How its camera's stamps related to the rig's ticks then.
+    pub timing: Timing,
+    /// How long rows were exposed, s.
+    pub exposure_s: f64,
 }
 
 impl KnownHead {
     /// How its camera's stamps related to the rig's ticks, and how long rows were exposed, s.
-    pub(crate) const fn images(&self) -> (Timing, f64) {
+    pub const fn images(&self) -> (Timing, f64) {
         (self.timing, self.exposure_s)
     }
 }
 
+/// A head that was found.
+#[derive(Clone, Copy, Debug)]
+pub struct NewHead<'a> {
+    /// The day, such as 2026-11-23.
+    pub date: &'a str,
+    /// Name of the rig.
+    pub rig: &'a str,
+    /// Where it stands and how it is built, and how well that is known.
+    pub aligned: &'a Aligned,
+    /// How its camera's stamps related to the rig's ticks.
+    pub timing: Timing,
+    /// Exposure in which the spot is not full, s.
+    pub exposure_s: f64,
+    /// The page whose frame the wall's is.
+    pub frame: Option<PageName>,
+    /// Pages that were in sight, in the wall's frame.
+    pub pages: &'a [PlacedPage],
+}
+
 impl HeadFile {
     /// Of a head that was found.
-    pub(crate) fn of(found: &FoundHead, driving: &Driving, wall: &SeenWall) -> Self {
+    #[must_use]
+    pub fn of(found: &NewHead<'_>) -> Self {
         let Alignment { geometry, pose, .. } = found.aligned.alignment;
         let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = pose;
         let HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, .. } = geometry;
         Self {
-            date: crate::rigfile::today(),
-            rig: driving.rig.name.clone(),
-            page: named(wall.frame),
+            date: found.date.to_owned(),
+            rig: found.rig.to_owned(),
+            page: named(found.frame),
             pose: PoseTable { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
             built: BuiltTable { laser_offset_m, beam_off_rad, axis_skew_rad },
             images: ImagesTable {
@@ -120,13 +142,16 @@ impl HeadFile {
                 spots: found.aligned.spots,
                 outliers: found.aligned.outliers,
             },
-            pages: wall.pages.iter().map(PageTable::of).collect(),
+            pages: found.pages.iter().map(PageTable::of).collect(),
         }
     }
 }
 
 /// A head as a file.
-pub(crate) fn write(file: &HeadFile) -> Result<String, Failure> {
+///
+/// # Errors
+/// `internal`: of what is in a file there is nothing that cannot be written.
+pub fn write(file: &HeadFile) -> Result<String, Failure> {
     let mut document = toml_edit::ser::to_document(file).map_err(|e| Failure::failed("internal", e))?;
     for (_, item) in document.iter_mut() {
         if let Some(table) = item.as_inline_table() {
@@ -138,25 +163,23 @@ pub(crate) fn write(file: &HeadFile) -> Result<String, Failure> {
     ))
 }
 
-/// The head of a file, for a rig that is built as told otherwise.
-pub(crate) fn read(path: &str, driving: &Driving) -> Result<KnownHead, Failure> {
-    let wrong = |what: String| Failure::usage("head-file", format!("{path}: {what}"));
-    let bytes = files::read(path)?;
-    if bytes.len() > MOST_BYTES {
-        return Err(wrong(format!("{} bytes are no head file, which has at most {MOST_BYTES}", bytes.len())));
-    }
-    let text =
-        String::from_utf8(bytes).map_err(|_| wrong("not text; give a head file (.toml)".to_owned()))?;
+/// The head of a file's bytes, for a rig that is built as told otherwise.
+///
+/// # Errors
+/// `head-file`, with the key that is wrong; or where it is another rig's.
+pub fn read(path: &str, bytes: Vec<u8>, rig: &RigConfig) -> Result<KnownHead, Failure> {
+    let wrong = |what: String| KIND.wrong(path, &what);
+    let text = text_of(&KIND, path, bytes)?;
     let file: HeadFile = toml_edit::de::from_str(&text)
         .map_err(|e| wrong(format!("no head file: {}", e.to_string().trim_end())))?;
-    if file.rig != driving.rig.name {
+    if file.rig != rig.name {
         return Err(wrong(format!(
             "it is of the rig {}, and this is {}: calibrate its head",
-            file.rig, driving.rig.name
+            file.rig, rig.name
         )));
     }
     file.check().map_err(wrong)?;
-    Ok(file.known(path, &driving.rig.model.geometry))
+    Ok(file.known(path, &rig.model.geometry))
 }
 
 impl HeadFile {
@@ -217,18 +240,21 @@ impl HeadFile {
 
 impl KnownHead {
     /// Refuses a wall whose frame is that of another page, or on which pages hang elsewhere: then its frame is not where it was.
-    pub(crate) fn check_wall(&self, wall: &SeenWall) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// `head-file`, with the page.
+    pub fn check_wall(&self, frame: Option<PageName>, pages: &[PlacedPage]) -> Result<(), Failure> {
         let again = |why: String| {
             Failure::usage("head-file", format!("{}: {why}: calibrate the head again", self.path))
         };
-        let frame = named(wall.frame);
+        let frame = named(frame);
         if frame != self.page {
             return Err(again(format!(
                 "the head was found in the frame of page {}, and the wall's is that of page {frame}",
                 self.page
             )));
         }
-        for page in &wall.pages {
+        for page in pages {
             let off_m = self.pages.iter().find_map(|own| own.off_m(page)).unwrap_or(0.0);
             if off_m > ELSEWHERE_M {
                 let (name, mm) = (PageName::of(page), 1e3 * off_m);

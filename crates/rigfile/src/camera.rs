@@ -1,24 +1,23 @@
 //! What is known of a camera, as a file: its lens and, in front of a wall, its pose, with what they hold for.
 
-use std::fmt;
-
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
 use toml_edit::{Array, Item};
 use tracelight_aim::{Camera, CameraPose, Lens, LensBelief, PlacedPage, Survey, SurveyedCamera};
-use tracelight_files as files;
 use tracelight_stroke::{Affine, Point};
 use tracelight_task::Failure;
 
-use crate::eye::wall::SeenWall;
+use crate::pages::{PageName, PageTable};
+use crate::text::{Kind, text_of};
 
 /// Largest camera file, bytes: twenty times what is written.
 const MOST_BYTES: usize = 1 << 18;
+const KIND: Kind = Kind { name: "camera", code: "camera-file", most_bytes: MOST_BYTES };
 
 /// A camera file.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct CameraFile {
+pub struct CameraFile {
     /// Day it was found, as 2026-11-23.
     date: String,
     lens: LensTable,
@@ -29,22 +28,6 @@ pub(crate) struct CameraFile {
     #[serde(default)]
     pages: Vec<PageTable>,
 }
-
-/// Where a page lies on the wall.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PageTable {
-    /// fine or coarse.
-    board: String,
-    /// From 1.
-    page: u16,
-    /// Where the middle of its markers is, and by how much it is turned anticlockwise.
-    middle_m: [f64; 2],
-    turn_rad: f64,
-}
-
-/// Names of the boards, in the order of `Board::ALL`.
-const BOARDS: [&str; 2] = ["fine", "coarse"];
 
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -86,15 +69,17 @@ struct ScoreTable {
 
 /// What points of the wall are likely to be off, root of the mean square.
 #[derive(Clone, Copy)]
-pub(crate) struct Wall {
+pub struct Wall {
     /// Between the middles of the pages, or on the one there is.
-    pub(crate) between_m: Option<f64>,
+    pub between_m: Option<f64>,
     /// All over the image, but for a twentieth at its borders; `None` if it shows more than the wall.
-    pub(crate) image_m: Option<f64>,
+    pub image_m: Option<f64>,
 }
 
 impl Wall {
-    pub(crate) fn of(survey: &Survey, camera: &SurveyedCamera) -> Self {
+    /// Of a camera that a survey found.
+    #[must_use]
+    pub fn of(survey: &Survey, camera: &SurveyedCamera) -> Self {
         let [width, height] = camera.camera.lens.size_px.map(|n| n as f64);
         let place = |k: usize| 0.05 + 0.1 * k as f64;
         let all: Vec<Point> =
@@ -108,8 +93,14 @@ impl Wall {
 }
 
 impl CameraFile {
-    /// Of a survey, with the camera of one of its images, or of its lens alone.
-    pub(crate) fn of(survey: &Survey, camera: Option<(&SurveyedCamera, Wall)>, print_scale: f64) -> Self {
+    /// Of a survey on a day, such as 2026-11-23, with the camera of one of its images, or of its lens alone.
+    #[must_use]
+    pub fn of(
+        survey: &Survey,
+        camera: Option<(&SurveyedCamera, Wall)>,
+        print_scale: f64,
+        date: &str,
+    ) -> Self {
         let lens = &survey.belief.lens;
         let pose = |camera: &SurveyedCamera| PoseTable {
             turn_rad: camera.camera.pose.turn_rad(),
@@ -117,7 +108,7 @@ impl CameraFile {
             covariance: rows(&camera.covariance),
         };
         Self {
-            date: crate::rigfile::today(),
+            date: date.to_owned(),
             lens: LensTable {
                 size_px: lens.size_px,
                 focal_px: lens.focal_px,
@@ -184,42 +175,6 @@ impl CameraFile {
     }
 }
 
-impl PageTable {
-    pub(crate) fn of(page: &PlacedPage) -> Self {
-        let PlacedPage { board, page, middle, turn_rad, .. } = *page;
-        let board = BOARDS.get(board).copied().unwrap_or_default().to_owned();
-        Self { board, page: page + 1, middle_m: [middle.x, middle.y], turn_rad }
-    }
-
-    /// How far from where the file has it a page hangs, m; `None` if it is another.
-    pub(crate) fn off_m(&self, page: &PlacedPage) -> Option<f64> {
-        let own = Self::of(page);
-        let [x, y] = [0, 1].map(|k| own.middle_m[k] - self.middle_m[k]);
-        ((own.board, own.page) == (self.board.clone(), self.page)).then(|| x.hypot(y))
-    }
-
-    /// The page's name and the wall's frame from its own; why there is no such page, otherwise.
-    fn placed(&self) -> Result<(PageName, Affine), String> {
-        let board = BOARDS.iter().position(|name| *name == self.board);
-        let wrong = || {
-            format!(
-                "pages: a page is of the board fine or coarse, and counted from 1, not {} {}",
-                self.board, self.page
-            )
-        };
-        let name =
-            PageName { board: board.ok_or_else(wrong)?, page: self.page.checked_sub(1).ok_or_else(wrong)? };
-        let [x, y] = self.middle_m;
-        if !([x, y].iter().all(|v| v.abs() <= 1e3) && self.turn_rad.abs() <= 10.0) {
-            return Err(format!(
-                "pages: no page hangs at ({x}, {y}) m, turned by {} rad; calibrate the camera again",
-                self.turn_rad
-            ));
-        }
-        Ok((name, Affine::rotate(self.turn_rad).then_translate(Point::new(x, y).to_vec2())))
-    }
-}
-
 impl PoseTable {
     /// The camera that stands there.
     fn camera(&self, lens: &LensBelief) -> Result<SurveyedCamera, String> {
@@ -248,7 +203,10 @@ fn square<const N: usize>(rows: &[Vec<f64>]) -> Option<SMatrix<f64, N, N>> {
 }
 
 /// A camera as a file.
-pub(crate) fn write(file: &CameraFile) -> Result<String, Failure> {
+///
+/// # Errors
+/// `internal`: of what is in a file there is nothing that cannot be written.
+pub fn write(file: &CameraFile) -> Result<String, Failure> {
     let mut document = toml_edit::ser::to_document(file).map_err(|e| Failure::failed("internal", e))?;
     for (_, item) in document.iter_mut() {
         if let Some(table) = item.as_inline_table() {
@@ -266,90 +224,58 @@ pub(crate) fn write(file: &CameraFile) -> Result<String, Failure> {
     ))
 }
 
-/// A page of a board, as people call it: page 3, or of a coarse board page 3 (coarse).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct PageName {
-    /// Number of the board in `Board::ALL`.
-    board: usize,
-    /// From 0.
-    page: u16,
-}
-
-impl PageName {
-    pub(crate) const fn of(page: &PlacedPage) -> Self {
-        Self { board: page.board, page: page.page }
-    }
-}
-
-impl fmt::Display for PageName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match BOARDS.get(self.board) {
-            Some(board) if self.board > 0 => write!(f, "{} ({board})", self.page + 1),
-            _ => write!(f, "{}", self.page + 1),
-        }
-    }
-}
-
 /// What is known of a camera before it looks.
 #[derive(Clone, Debug)]
-pub(crate) struct KnownCamera {
-    pub(crate) lens: LensBelief,
+pub struct KnownCamera {
+    /// Its lens, and how well that is known.
+    pub lens: LensBelief,
     /// How much larger than meant the pages were printed.
-    pub(crate) print_scale: f64,
+    pub print_scale: f64,
     /// Where it stood; none of a lens alone.
-    pub(crate) stood: Option<Stood>,
+    pub stood: Option<Stood>,
 }
 
 /// Where a camera stood.
 #[derive(Clone, Debug)]
-pub(crate) struct Stood {
-    pub(crate) camera: SurveyedCamera,
+pub struct Stood {
+    /// Lens and pose in the wall's frame.
+    pub camera: SurveyedCamera,
     /// On which day.
-    pub(crate) date: String,
+    pub date: String,
     /// Pages that hung there then, and the wall's frame from theirs; the wall's is that of the first.
     pages: Vec<(PageName, Affine)>,
 }
 
 impl KnownCamera {
-    /// Of a camera that was found a moment ago.
-    pub(crate) fn standing(wall: &SeenWall) -> Self {
-        let SeenWall { camera, print_scale, .. } = *wall;
+    /// Of a camera that was found on that day, before pages printed so much larger than meant that hang in the wall's frame.
+    #[must_use]
+    pub fn standing(camera: SurveyedCamera, print_scale: f64, pages: &[PlacedPage], date: &str) -> Self {
         let covariance = camera.covariance.fixed_view::<9, 9>(6, 6).into_owned();
-        let pages = wall.pages.iter().map(|page| (PageName::of(page), page.place())).collect();
-        let stood = Stood { camera, date: crate::rigfile::today(), pages };
+        let pages = pages.iter().map(|page| (PageName::of(page), page.place())).collect();
+        let stood = Stood { camera, date: date.to_owned(), pages };
         Self { lens: LensBelief { lens: camera.camera.lens, covariance }, print_scale, stood: Some(stood) }
     }
 }
 
 impl Stood {
     /// The wall's frame from that of a page, if that hung there.
-    pub(crate) fn wall_from(&self, page: PageName) -> Option<Affine> {
+    pub fn wall_from(&self, page: PageName) -> Option<Affine> {
         self.pages.iter().find(|(name, _)| *name == page).map(|(_, wall_from_page)| *wall_from_page)
     }
 
     /// The page whose frame is the wall's.
-    pub(crate) fn frame(&self) -> Option<PageName> {
+    pub fn frame(&self) -> Option<PageName> {
         self.pages.first().map(|(name, _)| *name)
     }
 }
 
-/// The lens of a camera file.
-pub(crate) fn read(path: &str) -> Result<LensBelief, Failure> {
-    Ok(read_whole(path)?.lens)
-}
-
-/// All of a camera file.
-pub(crate) fn read_whole(path: &str) -> Result<KnownCamera, Failure> {
-    let wrong = |what: String| Failure::usage("camera-file", format!("{path}: {what}"));
-    let bytes = files::read(path)?;
-    if bytes.len() > MOST_BYTES {
-        return Err(wrong(format!(
-            "{} bytes are no camera file, which has at most {MOST_BYTES}",
-            bytes.len()
-        )));
-    }
-    let text =
-        String::from_utf8(bytes).map_err(|_| wrong("not text; give a camera file (.toml)".to_owned()))?;
+/// What a camera file's bytes say.
+///
+/// # Errors
+/// `camera-file`, with the key that is wrong.
+pub fn read(path: &str, bytes: Vec<u8>) -> Result<KnownCamera, Failure> {
+    let wrong = |what: String| KIND.wrong(path, &what);
+    let text = text_of(&KIND, path, bytes)?;
     let file: CameraFile = toml_edit::de::from_str(&text)
         .map_err(|e| wrong(format!("no camera file: {}", e.to_string().trim_end())))?;
     let lens = file.lens().map_err(wrong)?;

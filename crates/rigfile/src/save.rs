@@ -1,26 +1,24 @@
-//! Writes what was identified or tuned into a user's own rig file: only what changed, comments kept.
+//! What was identified or tuned, written into the text of a user's own rig file: only what changed, comments kept.
 
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
-use tracelight_files as files;
 use tracelight_sim::RigConfig;
-use tracelight_task::Failure;
 
-use super::found::identified_keys;
-use super::hand_tuned::rig_keys;
-use super::keys::{Key, Slot, model_keys};
-use super::shown;
+use crate::found::identified_keys;
+use crate::hand_tuned::rig_keys;
+use crate::keys::{Key, Slot, model_keys};
+use crate::rig::{parse, shown};
 
-/// Writes a rig's model, what was identified of it and how it is driven into the rig file it came from, whole or not at all.
-pub(crate) fn save(path: &str, old: &RigConfig, new: &RigConfig) -> Result<(), Failure> {
-    let wrong = |e: String| Failure::usage("rig-file", format!("{path} cannot be saved: {e}"));
-    let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
-    let saved = updated(&text, old, new).map_err(wrong)?;
-    super::parse(path, &saved)
-        .map_err(|e| wrong(format!("what was found is no head that a rig file takes: {e}")))?;
-    files::replace(path, saved)
+/// The text of a rig file with another rig's model, what was identified of it and how it is driven, which can be read again.
+///
+/// # Errors
+/// Where the text is no rig file, or what was found is no head that one takes.
+pub fn saved(file: &str, text: &str, old: &RigConfig, new: &RigConfig) -> Result<String, String> {
+    let saved = updated(text, old, new)?;
+    parse(file, &saved).map_err(|e| format!("what was found is no head that a rig file takes: {e}"))?;
+    Ok(saved)
 }
 
-/// The text of a rig file with another rig's model, what was identified of it and how it is driven. What is simulated stays what it was:
+/// As [`saved`], not read again. What is simulated stays what it was:
 /// keys of `[model]` that change are written into `[truth]` with their old value where they do not stand there.
 fn updated(text: &str, old: &RigConfig, new: &RigConfig) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|e| format!("not valid TOML: {e}"))?;
@@ -58,18 +56,6 @@ fn rounded<T>(key: &Key<T>, from: &mut T) -> String {
         *value = format!("{value:.6e}").parse().unwrap_or(*value);
     }
     shown(key, from)
-}
-
-/// Says that a rig was identified today.
-pub(crate) fn date(rig: &mut RigConfig) {
-    if let Some(identified) = &mut rig.identified {
-        identified.date = today();
-    }
-}
-
-/// The day, as 2026-11-23.
-pub(crate) fn today() -> String {
-    jiff::Timestamp::now().strftime("%Y-%m-%d").to_string()
 }
 
 /// Whether a key stands in a file.
@@ -113,7 +99,6 @@ fn put(root: &mut Table, path: &str, text: &str) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigfile::parse;
     use tracelight_sim::Identified;
 
     #[test]

@@ -1,55 +1,29 @@
-//! Rig files: `rig.toml` to [`RigConfig`] and back.
-//!
-//! A file has two halves. `[model]` is what planner and controller believe; `[truth]` is what the simulated head is,
-//! and defaults to the model; `[identified]` is what was identified of this very head besides. Keys that are not given keep
-//! the values of the preset `report`.
-
-mod caret;
-mod found;
-mod hand_tuned;
-mod keys;
-mod save;
-
 use std::ops::Range;
 
 use toml_edit::{Document, Item, TableLike, Value};
-use tracelight_files as files;
 use tracelight_plant::Wear;
 use tracelight_sim::{Identified, Model, RigConfig};
 use tracelight_task::Failure;
 use tracelight_units as units;
 
-use caret::Mark;
-use found::identified_keys;
-use hand_tuned::rig_keys;
-pub(crate) use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
-use keys::{Choice, Key, Slot, model_keys};
-pub(crate) use save::{date, save, today};
+use crate::caret::Mark;
+use crate::found::identified_keys;
+use crate::hand_tuned::rig_keys;
+use crate::keys::{Choice, Key, Slot, model_keys};
+use crate::text::{Kind, text_of};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
 const MOST_BYTES: usize = 1 << 20;
 
-/// A preset by name, or a rig file by path.
-pub(crate) fn load(name: &str) -> Result<RigConfig, Failure> {
-    if let Some(preset) = RigConfig::preset(name) {
-        return Ok(preset);
-    }
-    if !name.ends_with(".toml") && !std::path::Path::new(name).exists() {
-        let known: Vec<String> = RigConfig::presets().into_iter().map(|p| p.name).collect();
-        let message = format!("{name} is no preset ({}) and no rig file", known.join(", "));
-        return Err(Failure::usage("rig-file", message));
-    }
-    let bytes = match std::fs::metadata(name) {
-        Ok(about) if about.is_file() && about.len() == 0 => Vec::new(), // every key left out: the preset `report`
-        _ => files::read(name)?,
-    };
-    if bytes.len() > MOST_BYTES {
-        let message = format!("{name} has {} bytes, a rig file has at most {MOST_BYTES}", bytes.len());
-        return Err(Failure::usage("rig-file", message));
-    }
-    let text = String::from_utf8(bytes)
-        .map_err(|_| Failure::usage("rig-file", format!("{name} is not text; give a rig file (.toml)")))?;
-    parse(name, &text).map_err(|message| Failure::usage("rig-file", message))
+const KIND: Kind = Kind { name: "rig", code: "rig-file", most_bytes: MOST_BYTES };
+
+/// The rig of a file's bytes; of none at all the preset `report`, whose keys hold where others are left out.
+///
+/// # Errors
+/// `rig-file`, with file, line and caret.
+pub fn read(file: &str, bytes: Vec<u8>) -> Result<RigConfig, Failure> {
+    let text = text_of(&KIND, file, bytes)?;
+    parse(file, &text).map_err(|message| Failure::usage(KIND.code, message))
 }
 
 /// One value of a file with where it stands.
@@ -60,8 +34,11 @@ struct Entry<'a> {
     key_span: Option<Range<usize>>,
 }
 
-/// Parses a file; the message of an error is complete, with file, line and caret.
-pub(crate) fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
+/// Parses a file.
+///
+/// # Errors
+/// The whole message, with file, line and caret.
+pub fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
     let document = Document::parse(text).map_err(|e| {
         let place = Mark { file, text, span: e.span() };
         place.message(&format!("not valid TOML: {}", e.message().trim()))
@@ -267,7 +244,8 @@ fn number<T>(key: &Key<T>, value: &Value) -> Result<f64, String> {
 }
 
 /// A rig as a file, every key with its meaning.
-pub(crate) fn write(config: &RigConfig) -> String {
+#[must_use]
+pub fn write(config: &RigConfig) -> String {
     let mut config = config.clone();
     let mut text = String::from(
         "# A rig file for Tracelight. [model]: what planner and controller believe. [truth]: what the simulated head\n\
@@ -314,7 +292,7 @@ fn section<T>(text: &mut String, prefix: &str, keys: &[Key<T>], from: &mut T) {
 }
 
 /// A value as it stands in a file: shortest digits that read back to the same bits.
-fn shown<T>(key: &Key<T>, from: &mut T) -> String {
+pub(crate) fn shown<T>(key: &Key<T>, from: &mut T) -> String {
     match key.slot {
         Slot::Real(field) => match key.units.first() {
             Some((unit, _)) => format!("\"{}{unit}\"", field(from)),

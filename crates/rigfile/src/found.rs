@@ -3,7 +3,7 @@
 use tracelight_sim::Identified;
 use tracelight_units::ANGULAR_SPEEDS;
 
-use super::keys::{Key, PURE, STIFFNESS, TORQUE, real};
+use crate::keys::{Key, PURE, STIFFNESS, TORQUE, real};
 
 /// What was identified of a joint.
 macro_rules! found {
@@ -78,7 +78,7 @@ macro_rules! found {
 }
 
 /// Keys of `[identified]`; its date stands beside them.
-pub(super) fn identified_keys() -> Vec<Key<Identified>> {
+pub(crate) fn identified_keys() -> Vec<Key<Identified>> {
     let mut keys = found!("pan", pan).to_vec();
     keys.extend(found!("tilt", tilt));
     keys

@@ -3,14 +3,14 @@
 use tracelight_sim::{Feedforward, RigConfig};
 use tracelight_units::Unit;
 
-use super::keys::{Choice, Key, PURE, RIG_KEYS, STIFFNESS, VISCOUS, choice, flag, real};
+use crate::keys::{Choice, Key, PURE, RIG_KEYS, STIFFNESS, VISCOUS, choice, flag, real};
 
 const INTEGRAL_GAIN: &[Unit] = &[("Nm/rad/s", 1.0)];
 /// More than any motor of a head like this asks for, and less than `f32` bears.
-pub(crate) const HIGHEST_GAIN: f64 = 1e6;
+pub const HIGHEST_GAIN: f64 = 1e6;
 
 /// The names of what a PID set by hand may have from the model.
-pub(crate) const FEEDFORWARDS: [(&str, Feedforward); 3] =
+pub const FEEDFORWARDS: [(&str, Feedforward); 3] =
     [("none", Feedforward::None), ("gravity", Feedforward::Gravity), ("model", Feedforward::Model)];
 
 /// A joint's PID.
@@ -79,7 +79,7 @@ fn named(feedforward: Feedforward) -> &'static str {
 }
 
 /// Keys of `[truth.wear]`, `[control]` and `[motion]`.
-pub(super) fn rig_keys() -> Vec<Key<RigConfig>> {
+pub(crate) fn rig_keys() -> Vec<Key<RigConfig>> {
     let mut keys = RIG_KEYS.to_vec();
     keys.extend(by_hand!(pan));
     keys.extend(by_hand!(tilt));

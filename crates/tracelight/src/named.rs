@@ -1,0 +1,60 @@
+//! What is in the files that the user named.
+
+use tracelight_files as files;
+use tracelight_picture::{Source, decode};
+use tracelight_rigfile as rigfile;
+use tracelight_rigfile::camera::KnownCamera;
+use tracelight_rigfile::head::KnownHead;
+use tracelight_sim::RigConfig;
+use tracelight_task::Failure;
+
+/// A picture or a drawing; `-` is standard input. What it is, its content says, not its name.
+pub(crate) fn picture(path: &str) -> Result<Source, Failure> {
+    decode(path, &files::read(path)?)
+}
+
+/// A preset by name, or a rig file by path.
+pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
+    if let Some(preset) = RigConfig::preset(name) {
+        return Ok(preset);
+    }
+    if !name.ends_with(".toml") && !std::path::Path::new(name).exists() {
+        let known: Vec<String> = RigConfig::presets().into_iter().map(|p| p.name).collect();
+        let message = format!("{name} is no preset ({}) and no rig file", known.join(", "));
+        return Err(Failure::usage("rig-file", message));
+    }
+    let bytes = match std::fs::metadata(name) {
+        Ok(about) if about.is_file() && about.len() == 0 => Vec::new(), // every key left out: the preset `report`
+        _ => files::read(name)?,
+    };
+    rigfile::read(name, bytes)
+}
+
+/// Writes a rig's model, what was identified of it and how it is driven into the rig file it came from, whole or not at all.
+pub(crate) fn save_rig(path: &str, old: &RigConfig, new: &RigConfig) -> Result<(), Failure> {
+    let wrong = |e: String| Failure::usage("rig-file", format!("{path} cannot be saved: {e}"));
+    let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
+    files::replace(path, rigfile::saved(path, &text, old, new).map_err(wrong)?)
+}
+
+/// What a camera file knows.
+pub(crate) fn camera(path: &str) -> Result<KnownCamera, Failure> {
+    rigfile::camera::read(path, files::read(path)?)
+}
+
+/// The head of a file, for a rig.
+pub(crate) fn head(path: &str, rig: &RigConfig) -> Result<KnownHead, Failure> {
+    rigfile::head::read(path, files::read(path)?, rig)
+}
+
+/// The day, as 2026-11-23.
+pub(crate) fn today() -> String {
+    jiff::Timestamp::now().strftime("%Y-%m-%d").to_string()
+}
+
+/// Says that a rig was identified today.
+pub(crate) fn date_rig(rig: &mut RigConfig) {
+    if let Some(identified) = &mut rig.identified {
+        identified.date = today();
+    }
+}
