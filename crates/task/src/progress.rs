@@ -20,6 +20,11 @@ pub trait Progress: Sync {
 
     /// A remark that people should read.
     fn say(&self, message: &str);
+
+    /// Seconds since some moment, by which is told how long work took; always the same where there is no clock.
+    fn clock_s(&self) -> f64 {
+        0.0
+    }
 }
 
 /// Nobody.
@@ -57,6 +62,13 @@ impl Task<'_> {
     /// As [`Progress::say`].
     pub fn say(&self, message: &str) {
         self.progress.say(message);
+    }
+
+    /// What `work` makes, and how long that took, ms.
+    pub fn timed<T>(&self, work: impl FnOnce() -> T) -> (T, f64) {
+        let began_s = self.progress.clock_s();
+        let made = work();
+        (made, 1e3 * (self.progress.clock_s() - began_s))
     }
 
     /// # Errors

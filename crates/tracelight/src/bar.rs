@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::io::IsTerminal;
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use tracelight_task::Progress;
@@ -10,6 +11,7 @@ use tracelight_task::Progress;
 pub(crate) struct Bar {
     bar: ProgressBar,
     quiet: bool,
+    began: Instant,
 }
 
 impl Bar {
@@ -21,7 +23,7 @@ impl Bar {
         {
             bar.set_style(style);
         }
-        Self { bar, quiet }
+        Self { bar, quiet, began: Instant::now() }
     }
 }
 
@@ -58,6 +60,10 @@ impl Progress for Bar {
         if !self.quiet {
             self.bar.suspend(|| eprintln!("{message}"));
         }
+    }
+
+    fn clock_s(&self) -> f64 {
+        self.began.elapsed().as_secs_f64()
     }
 }
 

@@ -11,14 +11,15 @@ use std::time::Instant;
 
 use tracelight_files as files;
 use tracelight_lab::{LAPS_WORTH, identify};
+use tracelight_pipeline::{Driving, OrderBy, Placed, Schedule, Sketch, place, schedule, sketch};
 use tracelight_rig::{Command, Joint, PanTilt, Rig};
 use tracelight_rigfile as rigfile;
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Tracking, score};
+use tracelight_stroke::Effort;
 use tracelight_task::{Failure, Stop, Task};
 use tracelight_trajectory::Plan;
 
 use crate::bar::Bar;
-use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::eye::homing::{check_homed, lost_power};
 use crate::eye::room::{Furnished, left};
@@ -26,9 +27,7 @@ use crate::named;
 use crate::output::{
     self, EyeFigures, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing,
 };
-use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
 use crate::settings;
-use crate::sketch::{Placed, Sketch, place, sketch};
 use seen::Seen;
 use watched::{WatchedJob, WatchedRun, run_watched};
 
@@ -49,6 +48,7 @@ struct Prepared {
     schedule: Schedule,
     /// Remarks for the user.
     notes: Vec<String>,
+    vision_ms: f64,
     plan_ms: f64,
     /// What a camera saw.
     seen: Option<Seen>,
@@ -92,28 +92,29 @@ fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
     task.stage("strokes", 1);
-    let sketch = sketch(args.name(), named::picture(args.name())?, &args.tracing, &args.placement)?;
+    let (source, placing) = (named::picture(args.name())?, args.placement.placing());
+    let (sketch, vision_ms) = task.timed(|| sketch(args.name(), source, &args.tracing.tracing(), &placing));
+    let sketch = sketch?;
     task.check()?;
-    let placed = place(&sketch, &args.placement);
-    planned(sketch.shown(), placed, driving, None, task)
+    let placed = place(&sketch, &placing);
+    planned((sketch.shown(), vision_ms), placed, driving, None, task)
 }
 
 /// A drawing on the target, in order and in time.
 fn planned(
-    sketch: Sketch,
+    (sketch, vision_ms): (Sketch, f64),
     placed: Placed,
     driving: Driving,
     seen: Option<Seen>,
     task: Task<'_>,
 ) -> Result<Prepared, Failure> {
     task.stage("plan", 1);
-    let began = Instant::now();
-    let schedule = schedule(&placed, &driving, OrderBy::default(), OrderEffort::default())?;
-    let plan_ms = began.elapsed().as_secs_f64() * 1e3;
+    let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving, OrderBy::default(), Effort::Normal));
+    let schedule = schedule?;
     task.check()?;
     let notes: Vec<String> = sketch.notes().into_iter().chain(driving.remarks(&schedule.plan)).collect();
     notes.iter().for_each(|n| task.say(&format!("note: {n}")));
-    Ok(Prepared { sketch, placed, driving, schedule, notes, plan_ms, seen })
+    Ok(Prepared { sketch, placed, driving, schedule, notes, vision_ms, plan_ms, seen })
 }
 
 impl Prepared {
@@ -357,7 +358,7 @@ fn write(
         settings,
         notes: &notes,
         timing: Timing {
-            vision_ms: sketch.vision_ms,
+            vision_ms: prepared.vision_ms,
             plan_ms: prepared.plan_ms,
             run_ms: laps.run_ms,
             report_ms: 0.0,

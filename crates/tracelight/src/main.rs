@@ -2,19 +2,14 @@
 
 mod bar;
 mod batch;
-mod carried;
 mod cli;
 mod eye;
 mod interrupt;
 mod job;
 mod named;
 mod output;
-mod paper;
-mod quality;
 mod record;
-mod schedule;
 mod settings;
-mod sketch;
 mod table;
 
 use std::process::ExitCode;

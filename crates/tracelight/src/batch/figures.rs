@@ -1,10 +1,7 @@
 //! What is told of one picture.
 
 use serde::{Deserialize, Serialize};
-
-use crate::cli::placing::PlacementArgs;
-use crate::quality::QualityFigures;
-use crate::sketch::Sketch;
+use tracelight_pipeline::{Placing, QualityFigures, Sketch};
 
 /// A traced picture in figures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,9 +54,9 @@ fn rounded(value: f64) -> f64 {
 
 impl Figures {
     /// Of a sketch, in millimetres if it was asked to be of a size or says its own.
-    pub(crate) fn of(sketch: &Sketch, placement: &PlacementArgs) -> Self {
+    pub(crate) fn of(sketch: &Sketch, placing: &Placing) -> Self {
         let (width, height) = sketch.size;
-        let asked = placement.width.map(|w| w.0 / width).or(placement.height.map(|h| h.0 / height));
+        let asked = placing.asked_m(sketch.size);
         let metres = asked.or(sketch.true_width_m.map(|w| w / width));
         let (scale, unit) = metres.map_or((1.0, Unit::Px), |m| (1e3 * m, Unit::Mm));
         Self {

@@ -1,22 +1,13 @@
 use clap::{Args, ValueEnum};
-use tracelight_aim::{HeadGeometry, HeadPose};
-use tracelight_sim::RigConfig;
+use tracelight_aim::HeadPose;
+use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, Driving, request_of};
 use tracelight_task::Failure;
-use tracelight_trajectory::{AccelerationDemand, LitSpeed, Machine, Plan, PlanRequest};
+use tracelight_trajectory::{LitSpeed, PlanRequest};
 use tracelight_units::{AngularAcceleration, Length, Speed};
 
 use crate::cli::placing::positive_length;
 use crate::cli::shapes::ProfileName;
 use crate::named;
-
-/// 3 ft: where the original rig's camera stood.
-pub(crate) const DEFAULT_DISTANCE_M: f64 = 0.9144;
-/// 1 ft/s: what the original rig was to reach.
-const DEFAULT_SPEED_M_S: f64 = 0.3048;
-
-/// Where inertia and gravity are taken for remarks on what motors can do: the edge of the original rig's working
-/// range, atan(18 in / 36 in).
-const WORKING_TILT_RAD: f64 = 0.463_647_609_000_806_1;
 
 /// With what and how a drawing is run.
 #[derive(Args, Clone, Debug)]
@@ -73,67 +64,6 @@ impl LitSpeedName {
     }
 }
 
-/// What the arguments mean: a rig, where it stands, what is asked of it.
-#[derive(Clone)]
-pub(crate) struct Driving {
-    pub(crate) rig: RigConfig,
-    pub(crate) pose: HeadPose,
-    pub(crate) machine: Machine,
-    pub(crate) request: PlanRequest,
-    /// The speed was asked for, not assumed.
-    pub(crate) speed_is_asked: bool,
-    /// An acceleration was asked for, not taken from the rig.
-    acceleration_is_asked: bool,
-}
-
-impl Driving {
-    /// The head stands elsewhere than was told.
-    pub(crate) fn stand(&mut self, pose: HeadPose) {
-        self.pose = pose;
-        self.machine = self.rig.machine(pose);
-    }
-
-    /// The head is built otherwise than was told, and stands elsewhere.
-    pub(crate) fn believe(&mut self, geometry: HeadGeometry, pose: HeadPose) {
-        self.rig.model.geometry = geometry;
-        self.stand(pose);
-    }
-
-    /// What the user should know about a plan: wishes the motors do not fulfil, and a speed it never reaches.
-    pub(crate) fn remarks(&self, plan: &Plan) -> Vec<String> {
-        let wishes = self.machine.impossible_wishes(WORKING_TILT_RAD);
-        let asked = wishes.iter().filter(|_| self.acceleration_is_asked);
-        let mut remarks: Vec<String> = asked.map(wish_note).collect();
-        if let Some(bend) = &plan.tightest {
-            // all but straight: it is not the bend that holds it back
-            let why = if bend.radius_m < 10.0 {
-                format!("bends with a radius of {:.1} mm", 1e3 * bend.radius_m)
-            } else {
-                "asks most of the joints".to_string()
-            };
-            remarks.push(format!(
-                "lit at {:.4} m/s throughout instead of {:.4}: stroke {} {why} at ({:.1}, {:.1}) mm, and the motors hold no \
-                 more there",
-                plan.set_speed_m_s,
-                self.request.speed_m_s,
-                bend.stroke + 1,
-                1e3 * bend.point.x,
-                1e3 * bend.point.y
-            ));
-        }
-        let (set, top) = (plan.set_speed_m_s, plan.top_speed_m_s());
-        if top < REACHED * set {
-            remarks.push(format!(
-                "{set:.3} m/s is reached nowhere: the lines are too short or too bent; the fastest is {top:.3} m/s"
-            ));
-        }
-        remarks
-    }
-}
-
-/// A speed counts as reached from this share of it on.
-pub(crate) const REACHED: f64 = 0.98;
-
 impl DrivingArgs {
     /// Reads the rig and gathers the rest.
     pub(crate) fn resolve(&self) -> Result<Driving, Failure> {
@@ -142,7 +72,6 @@ impl DrivingArgs {
             rig.motion.acceleration_limit_rad_s2 = rig.motion.acceleration_limit_rad_s2.map(|_| wish.0);
         }
         let pose = HeadPose::square_on(self.distance.map_or(DEFAULT_DISTANCE_M, |d| d.0));
-        let machine = rig.machine(pose);
         let request = PlanRequest {
             speed_m_s: self.speed.map_or(DEFAULT_SPEED_M_S, |s| s.0),
             lit_speed: self.lit_speed.lit_speed(),
@@ -150,36 +79,9 @@ impl DrivingArgs {
             corner_m: self.corner.map_or(0.0, |c| c.0),
             ..request_of(&rig)
         };
-        Ok(Driving {
-            rig,
-            pose,
-            machine,
-            request,
-            speed_is_asked: self.speed.is_some(),
-            acceleration_is_asked: self.amax.is_some(),
-        })
+        let asked = Asked { speed: self.speed.is_some(), acceleration: self.amax.is_some() };
+        Ok(Driving::new(rig, pose, request, asked))
     }
-}
-
-/// What a rig's own settings ask of a plan; the rest as without any flag.
-pub(crate) fn request_of(rig: &RigConfig) -> PlanRequest {
-    PlanRequest {
-        speed_m_s: DEFAULT_SPEED_M_S,
-        lit_speed: LitSpeed::default(),
-        travel: ProfileName::SCurve.dark_move(),
-        ramp_s: rig.motion.ramp_s,
-        settle_s: rig.motion.settle_s,
-        tolerance_m: rig.control.tolerance_m,
-        corner_m: 0.0,
-    }
-}
-
-fn wish_note(wish: &AccelerationDemand) -> String {
-    let AccelerationDemand { joint, asked_rad_s2, needed_v, limit_v, possible_rad_s2 } = wish;
-    format!(
-        "{asked_rad_s2:.0} rad/s² on {joint} would need {needed_v:.0} V, its amplifier gives {limit_v:.0} V: planned \
-         with what the motor has, about {possible_rad_s2:.1} rad/s² against gravity"
-    )
 }
 
 pub(crate) fn positive_speed(text: &str) -> Result<Speed, String> {

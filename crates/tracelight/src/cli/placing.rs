@@ -1,4 +1,6 @@
 use clap::Args;
+use tracelight_aim::SizeRequest;
+use tracelight_pipeline::Placing;
 use tracelight_units::{Angle, Length, Offset};
 
 use crate::cli::choosing::ChoiceArgs;
@@ -25,6 +27,24 @@ pub(crate) struct PlacementArgs {
     pub(crate) flip: bool,
     #[command(flatten)]
     pub(crate) choice: ChoiceArgs,
+}
+
+impl PlacementArgs {
+    /// What they mean.
+    pub(crate) fn placing(&self) -> Placing {
+        let size = match (self.width, self.height) {
+            (Some(width), _) => Some(SizeRequest::Width(width.0)),
+            (None, Some(height)) => Some(SizeRequest::Height(height.0)),
+            (None, None) => None,
+        };
+        Placing {
+            size,
+            offset_m: self.offset.map(|o| (o.0.0, o.1.0).into()),
+            rotation_rad: self.rotate.map_or(0.0, |a| a.0),
+            flip: self.flip,
+            choice: self.choice.choice(),
+        }
+    }
 }
 
 /// A length between a millimetre and a kilometre.

@@ -1,9 +1,10 @@
 use std::fmt::Write;
-use std::time::Instant;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use tracelight_files as files;
+use tracelight_pipeline::{OrderBy, Placed, Schedule, place, schedule, sketch};
 use tracelight_rig::TICK_F64_S;
+use tracelight_stroke::Effort;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::{LitSpeed, Plan};
 
@@ -14,8 +15,6 @@ use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
 use crate::named;
 use crate::output::{ColourBy, PlanFigures, StrokeFigures, preview};
-use crate::schedule::{OrderBy, OrderEffort, Schedule, schedule};
-use crate::sketch::{Placed, place, sketch};
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]
@@ -34,10 +33,10 @@ pub(crate) struct PlanArgs {
     colour_by: ColourBy,
     /// What the order is to save
     #[arg(long, value_enum, default_value_t)]
-    order_by: OrderBy,
+    order_by: OrderByName,
     /// How much work goes into the order; the same amount gives the same order
     #[arg(long, value_enum, default_value_t)]
-    order_effort: OrderEffort,
+    order_effort: OrderEffortName,
     #[command(flatten)]
     tracing: TracingArgs,
     #[command(flatten)]
@@ -48,18 +47,61 @@ pub(crate) struct PlanArgs {
     pub(crate) voice: Voice,
 }
 
+/// What the order is to save.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum OrderByName {
+    /// Seconds of dark moves
+    #[default]
+    Time,
+    /// Metres of dark moves
+    Distance,
+}
+
+/// How much work goes into the order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum OrderEffortName {
+    /// No single move improves it
+    Quick,
+    /// About a second for 5000 strokes
+    #[default]
+    Normal,
+    /// Ten times that
+    Best,
+}
+
+impl OrderByName {
+    const fn order_by(self) -> OrderBy {
+        match self {
+            OrderByName::Time => OrderBy::Time,
+            OrderByName::Distance => OrderBy::Distance,
+        }
+    }
+}
+
+impl OrderEffortName {
+    const fn effort(self) -> Effort {
+        match self {
+            OrderEffortName::Quick => Effort::Quick,
+            OrderEffortName::Normal => Effort::Normal,
+            OrderEffortName::Best => Effort::Best,
+        }
+    }
+}
+
 pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let bar = Bar::new(args.voice.quiet);
     let task = Task { progress: &bar, stop };
     let driving = args.driving.resolve()?;
     task.stage("strokes", 1);
-    let sketch = sketch(&args.drawing, named::picture(&args.drawing)?, &args.tracing, &args.placement)?;
-    let placed = place(&sketch, &args.placement);
+    let (source, placing) = (named::picture(&args.drawing)?, args.placement.placing());
+    let (sketch, vision_ms) = task.timed(|| sketch(&args.drawing, source, &args.tracing.tracing(), &placing));
+    let sketch = sketch?;
+    let placed = place(&sketch, &placing);
     stop.check()?;
     task.stage("plan", 1);
-    let began = Instant::now();
-    let schedule = schedule(&placed, &driving, args.order_by, args.order_effort)?;
-    let plan_ms = began.elapsed().as_secs_f64() * 1e3;
+    let (by, effort) = (args.order_by.order_by(), args.order_effort.effort());
+    let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving, by, effort));
+    let schedule = schedule?;
     sketch
         .notes()
         .iter()
@@ -71,8 +113,8 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     if let Some(path) = &args.preview {
         files::write(path, preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
     }
-    let timing = serde_json::json!({ "vision": sketch.vision_ms, "plan": plan_ms });
-    let shortest = args.order_by == OrderBy::Distance || driving.request.lit_speed == LitSpeed::Stops;
+    let timing = serde_json::json!({ "vision": vision_ms, "plan": plan_ms });
+    let shortest = args.order_by == OrderByName::Distance || driving.request.lit_speed == LitSpeed::Stops;
     Ok(Answer::new(text(&schedule, shortest), json(&placed, &schedule, &timing)))
 }
 

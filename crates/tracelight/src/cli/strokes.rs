@@ -1,4 +1,5 @@
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -7,6 +8,7 @@ use tracelight_files::{Picture, stands_for_several};
 use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, json};
 use tracelight_picture::Source;
+use tracelight_pipeline::{PaperSeen, QualityFigures, Sketch, Tracing, page, place, sketch};
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Progress as _, Stop, Task, counted};
 use tracelight_vision::Stages;
@@ -20,9 +22,6 @@ use crate::cli::{Answer, Voice};
 use crate::named;
 use crate::output;
 use crate::output::drawing::{self, FORMATS};
-use crate::paper::{PaperSeen, page};
-use crate::quality::QualityFigures;
-use crate::sketch::{Sketch, place, sketch};
 
 /// How close `points` keep to their path, px.
 const POINTS_TOLERANCE_PX: f64 = 0.05;
@@ -168,26 +167,29 @@ fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding
                 format!("--stages {} is the picture or --out: give it a name of its own", path.display());
             return Err(Failure::usage("usage", message));
         }
-        files::write(&path.display().to_string(), stages(picture, &source, &args.tracing)?)?;
+        files::write(&path.display().to_string(), stages(picture, &source, &args.tracing.tracing())?)?;
     }
-    let mut sketch = sketch(picture, source, &args.tracing, &args.placement)?;
+    let (tracing, placing) = (args.tracing.tracing(), args.placement.placing());
+    let began = Instant::now();
+    let mut sketch = sketch(picture, source, &tracing, &placing)?;
+    let vision_ms = began.elapsed().as_secs_f64() * 1e3;
     sketch.picture = None; // its colours are not needed, and large
     let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let json = (args.voice.json || path.is_some_and(is_json)).then(|| pixel_json(&sketch));
     if let Some(path) = path {
-        write(path, &sketch, args, json.as_deref().unwrap_or_default())?;
+        drawing::write(path, &place(&sketch, &placing), json.as_deref().unwrap_or_default())?;
     }
-    let figures = Figures::of(&sketch, &args.placement);
+    let figures = Figures::of(&sketch, &placing);
     Ok(Finding {
         figures,
         verdict: sketch.quality.map(|quality| quality.words()),
         json: json.filter(|_| args.voice.json),
-        vision_ms: sketch.vision_ms,
+        vision_ms,
     })
 }
 
 /// How a picture becomes ink.
-fn stages(picture: &str, source: &Source, tracing: &TracingArgs) -> Result<String, Failure> {
+fn stages(picture: &str, source: &Source, tracing: &Tracing) -> Result<String, Failure> {
     let Source::Pixels(pixels) = source else {
         let message = format!("--stages: {picture} has strokes already, and no ink to be found");
         return Err(Failure::usage("usage", message));
@@ -237,10 +239,6 @@ fn is_folder(path: &Path) -> bool {
 /// With several pictures a name without an extension can only mean a folder.
 fn may_become_folder(path: &Path) -> bool {
     is_folder(path) || path.extension().is_none() && !path.exists()
-}
-
-fn write(path: &Path, sketch: &Sketch, args: &StrokesArgs, json: &str) -> Result<(), Failure> {
-    drawing::write(path, &place(sketch, &args.placement), json)
 }
 
 fn line(picture: &str, traced: &Finding) -> String {

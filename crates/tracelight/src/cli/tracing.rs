@@ -2,14 +2,14 @@
 
 use std::ops::RangeInclusive;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+use tracelight_pipeline::{LeastLength, Paper, Straighten, Tracing, clockwise};
 use tracelight_stroke::Point;
 use tracelight_units as units;
 use tracelight_units::{Angle, LENGTHS, PIXELS};
 use tracelight_vision::Options;
 
 use crate::cli::request::ModeName;
-use crate::paper::{PaperName, clockwise};
 
 /// How pixels become strokes. Without a flag, what the picture itself says.
 #[derive(Args, Clone, Debug)]
@@ -51,33 +51,29 @@ pub(crate) struct TracingArgs {
     pub(crate) force: bool,
 }
 
-/// How a sheet that was photographed at a slant is laid square.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) enum Straighten {
-    /// By its corners, where all four are found.
-    #[default]
-    Auto,
-    /// Not at all.
-    Off,
-    /// By these, clockwise from the upper left, px.
-    By([Point; 4]),
+/// Sizes of paper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PaperName {
+    /// 148 × 210 mm
+    A5,
+    /// 210 × 297 mm
+    A4,
+    /// 297 × 420 mm
+    A3,
+    /// 8.5 × 11 in
+    Letter,
+    /// 8.5 × 14 in
+    Legal,
 }
 
-impl Default for TracingArgs {
-    /// As without any flag.
-    fn default() -> Self {
-        Self {
-            mode: ModeName::default(),
-            threshold: OrAuto(None),
-            despeckle: OrAuto(None),
-            min_length: LeastLength::Pixels(0.0),
-            tolerance: Pixels(0.35),
-            corner_angle: Angle(25_f64.to_radians()),
-            sheets: false,
-            whole: false,
-            straighten: Straighten::Auto,
-            paper: None,
-            force: false,
+impl PaperName {
+    const fn paper(self) -> Paper {
+        match self {
+            Self::A5 => Paper::A5,
+            Self::A4 => Paper::A4,
+            Self::A3 => Paper::A3,
+            Self::Letter => Paper::LETTER,
+            Self::Legal => Paper::LEGAL,
         }
     }
 }
@@ -90,36 +86,20 @@ pub(crate) struct OrAuto(pub(crate) Option<f64>);
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pixels(pub(crate) f64);
 
-/// Where a length is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum LeastLength {
-    /// In the picture, px.
-    Pixels(f64),
-    /// On the target, m.
-    Metres(f64),
-}
-
-impl LeastLength {
-    /// In the sheet's unit, of which one is so long on the target.
-    pub(crate) fn in_units(self, metres_per_unit: f64) -> f64 {
-        match self {
-            LeastLength::Pixels(px) => px,
-            LeastLength::Metres(m) => m / metres_per_unit,
-        }
-    }
-}
-
 impl TracingArgs {
-    /// For a picture of which a pixel is so long on the target.
-    pub(crate) fn options(&self, metres_per_px: f64) -> Options {
-        Options {
+    /// What they mean.
+    pub(crate) fn tracing(&self) -> Tracing {
+        Tracing {
             mode: self.mode.into(),
             tolerance_px: self.tolerance.0,
             corner_rad: self.corner_angle.0,
             threshold_percent: self.threshold.0,
             despeckle_px2: self.despeckle.0,
-            min_length_px: self.min_length.in_units(metres_per_px),
+            min_length: self.min_length,
             sheets: self.sheets,
+            whole: self.whole,
+            straighten: self.straighten,
+            paper: self.paper.map(PaperName::paper),
             force: self.force,
         }
     }
@@ -265,7 +245,7 @@ mod tests {
             #[command(flatten)]
             tracing: TracingArgs,
         }
-        assert_eq!(Line::parse_from(["line"]).tracing.options(1.0), Options::default());
-        assert_eq!(TracingArgs::default().options(1.0), Options::default());
+        assert_eq!(Line::parse_from(["line"]).tracing.tracing(), Tracing::default());
+        assert_eq!(Tracing::default().options(1.0), Options::default());
     }
 }

@@ -2,6 +2,7 @@
 
 use tracelight_aim::Camera;
 use tracelight_picture::{Pixels, Raster, Source};
+use tracelight_pipeline::{Choice, Placed, Sketch, Tracing, carried, sketch_at};
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 use tracelight_task::{Failure, Task};
 use tracelight_vision::Grey;
@@ -9,11 +10,7 @@ use tracelight_vision::Grey;
 use super::pages::without_pages;
 use super::wall::{SeenWall, see_wall, well_exposed};
 use super::{Looks, grey};
-use crate::carried::carried;
-use crate::cli::choosing::ChoiceArgs;
 use crate::cli::eyes::EyeArgs;
-use crate::cli::tracing::TracingArgs;
-use crate::sketch::{Placed, Sketch, sketch_at};
 
 /// A figure that was found.
 pub(crate) struct SeenFigure {
@@ -23,13 +20,15 @@ pub(crate) struct SeenFigure {
     pub(crate) placed: Placed,
     /// Images that were refused before.
     pub(crate) retaken: u32,
+    /// How long it took to trace, ms.
+    pub(crate) vision_ms: f64,
 }
 
 /// How a figure is looked for.
 pub(crate) struct FigureRequest<'a> {
     pub(crate) eye: &'a EyeArgs,
-    pub(crate) tracing: &'a TracingArgs,
-    pub(crate) choice: &'a ChoiceArgs,
+    pub(crate) tracing: &'a Tracing,
+    pub(crate) choice: &'a Choice,
     /// Most images that are refused before it is given up.
     pub(crate) most_refused: u32,
 }
@@ -48,7 +47,7 @@ pub(crate) fn see_figure(
         // why the last image was refused says more than that there is no other
         let pixels = well_exposed(eye, task.stop).map_err(|none| last.take().unwrap_or(none))?;
         let histogram = histogram(&grey(&pixels)?);
-        let seen = see_wall(pixels, known.as_ref()).and_then(|wall| figure(wall, request));
+        let seen = see_wall(pixels, known.as_ref()).and_then(|wall| figure(wall, request, task));
         let why = match seen {
             Ok(seen) => return Ok(SeenFigure { retaken, ..seen }),
             // another image would not help
@@ -84,7 +83,7 @@ pub(crate) fn histogram(grey: &Grey) -> String {
     format!("|{}|", counts.iter().map(block).collect::<String>())
 }
 
-fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Failure> {
+fn figure(wall: SeenWall, request: &FigureRequest<'_>, task: Task<'_>) -> Result<SeenFigure, Failure> {
     let camera = wall.camera.camera;
     let scale_m = metres_per_pixel(&camera).ok_or_else(|| {
         Failure::failed("camera-not-found", "the middle of the camera's image shows no wall")
@@ -92,9 +91,11 @@ fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Fai
     let blank = without_pages(&wall.pixels, &wall);
     let pixels = Pixels { grey: grey(&blank)?, colour: blank };
     // a figure is as often on a sheet on the wall as on the wall itself
-    let tracing = TracingArgs { sheets: true, whole: true, ..request.tracing.clone() };
-    let mut seen =
-        sketch_at("the camera's image", Source::Pixels(pixels), &tracing, request.choice, &|_, _| scale_m)?;
+    let tracing = Tracing { sheets: true, whole: true, ..*request.tracing };
+    let (seen, vision_ms) = task.timed(|| {
+        sketch_at("the camera's image", Source::Pixels(pixels), &tracing, request.choice, &|_, _| scale_m)
+    });
+    let mut seen = seen?;
     let drawing = on_wall(&seen.drawing, &camera, scale_m);
     let lost = seen.drawing.strokes.len() - drawing.strokes.len();
     if lost > 0 {
@@ -115,7 +116,7 @@ fn figure(wall: SeenWall, request: &FigureRequest<'_>) -> Result<SeenFigure, Fai
     };
     let mut placed = Placed::of(drawing, size, wall_from_sheet);
     placed.size_m = extent;
-    Ok(SeenFigure { wall, sketch, placed, retaken: 0 })
+    Ok(SeenFigure { wall, sketch, placed, retaken: 0, vision_ms })
 }
 
 /// Length on the wall of a pixel in the middle of the image, m.
@@ -169,7 +170,6 @@ fn square_on(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::placing::PlacementArgs;
     use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
     use crate::eye::{Eye, Shot};
     use std::f64::consts::PI;
@@ -179,7 +179,7 @@ mod tests {
     use tracelight_stroke::{Element, Path, Piece, Stroke};
     use tracelight_task::{NoProgress, Status, Stop};
 
-    use crate::carried::has_corner;
+    use tracelight_pipeline::{Placing, has_corner};
 
     fn camera() -> Camera {
         let pose = CameraPose::looking_at([0.3, -0.2, 1.1], [0.0; 3]).unwrap();
@@ -259,11 +259,11 @@ mod tests {
 
     fn covered(images: u32) -> Covered {
         let (rig, pose) = (RigConfig::report(), HeadPose::square_on(0.9144));
-        let placement = PlacementArgs::default();
+        let placing = Placing::default();
         let picture = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/house.png");
         let request = RoomRequest {
             picture: Some(picture),
-            placement: &placement,
+            placing: &placing,
             eye: SimulatedEye::Webcam,
             pages: true,
             seed: 2,
@@ -274,10 +274,9 @@ mod tests {
     #[test]
     fn bad_images_are_refused_and_taken_again_so_often_and_no_more() {
         let (eye, stop) = (EyeArgs::default(), Stop::default());
-        let (tracing, placement) = (TracingArgs::default(), PlacementArgs::default());
+        let (tracing, choice) = (Tracing::default(), Choice::default());
         let task = Task { progress: &NoProgress, stop: &stop };
-        let request =
-            FigureRequest { eye: &eye, tracing: &tracing, choice: &placement.choice, most_refused: 3 };
+        let request = FigureRequest { eye: &eye, tracing: &tracing, choice: &choice, most_refused: 3 };
         // of several covered ones some are only taken to find how long to expose, some were under way
         let found = see_figure(&mut covered(12), &request, task).unwrap();
         assert!((1..=3).contains(&found.retaken), "{}", found.retaken);

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, SeenSpot, align};
+use tracelight_pipeline::{Driving, refused};
 use tracelight_rig::Command;
 use tracelight_rigfile::Timing;
 use tracelight_sim::{Simulated, Tick, run_segments};
@@ -16,8 +17,6 @@ use tracelight_trajectory::{Plan, PlanRequest, plan};
 use super::homing::check_homed;
 use super::spots::{History, Sight, Sighting, SpotWatch};
 use super::{Eye, Looks};
-use crate::cli::driving::Driving;
-use crate::schedule::refused;
 
 /// Radius of a dot, m: three and a half counts of the report's encoders at 3 ft.
 const DOT_M: f64 = 0.005;

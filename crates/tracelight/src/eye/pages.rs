@@ -2,11 +2,11 @@
 
 use tracelight_aim::{Board, Camera, PlacedPage};
 use tracelight_picture::Raster;
+use tracelight_pipeline::Paper;
 use tracelight_stroke::Point;
 
 use super::wall::SeenWall;
 use crate::output::printed_m;
-use crate::paper::Paper;
 
 /// How far a page is taken to reach beyond its paper, m: paper casts shadows.
 const EDGE_M: f64 = 0.008;

@@ -6,8 +6,9 @@
 use std::f64::consts::PI;
 
 use clap::ValueEnum;
-use tracelight_aim::{Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens, Placement, SizeRequest};
+use tracelight_aim::{Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens};
 use tracelight_picture::Source;
+use tracelight_pipeline::{Paper, Placing};
 use tracelight_plant::{CameraConfig, Poster, SimulatedCamera, Wall};
 use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Room, SimulatedRig};
@@ -16,10 +17,8 @@ use tracelight_task::Failure;
 
 use super::homing::{Homed, turned_rad};
 use super::{Eye, Shot};
-use crate::cli::placing::PlacementArgs;
 use crate::named;
 use crate::output::page_raster;
-use crate::paper::Paper;
 
 /// Which camera is simulated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -35,7 +34,7 @@ pub(crate) enum SimulatedEye {
 pub(crate) struct RoomRequest<'a> {
     /// A picture on the wall.
     pub(crate) picture: Option<&'a str>,
-    pub(crate) placement: &'a PlacementArgs,
+    pub(crate) placing: &'a Placing,
     pub(crate) eye: SimulatedEye,
     /// Whether pages of markers hang there.
     pub(crate) pages: bool,
@@ -209,19 +208,7 @@ fn hang(path: &str, request: &RoomRequest<'_>) -> Result<Hung, Failure> {
         return Err(Failure::usage("not-a-picture", message));
     };
     let (width, height) = (pixels.colour.width() as usize, pixels.colour.height() as usize);
-    let args = request.placement;
-    let size = match (args.width, args.height) {
-        (Some(width), _) => SizeRequest::Width(width.0),
-        (None, Some(height)) => SizeRequest::Height(height.0),
-        (None, None) => SizeRequest::Width(WIDTH_M),
-    };
-    let upright = Placement::new(size, width as f64, height as f64);
-    let placed = Placement {
-        offset_m: args.offset.map_or(Vec2::ZERO, |o| (o.0.0, o.1.0).into()),
-        rotation_rad: args.rotate.map_or(0.0, |a| a.0),
-        flip: args.flip,
-        ..upright
-    };
+    let placed = request.placing.placement((width as f64, height as f64), WIDTH_M);
     Ok(Hung {
         width,
         painted: painted(pixels.colour.rgb()),

@@ -1,6 +1,7 @@
 //! What becomes of a run when something is suddenly off: it is dark, somebody looks, and the head is found again.
 
 use tracelight_aim::{Alignment, HeadGeometry, HeadPose, TrimBelief};
+use tracelight_pipeline::refused;
 use tracelight_rig::{Command, PanTilt, Rig, TICK_F64_S, Telemetry};
 use tracelight_sim::Tick;
 use tracelight_stroke::{Drawing, Stroke};
@@ -15,7 +16,6 @@ use crate::eye::homing::lost_power;
 use crate::eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
 use crate::eye::{Eye, Looks, PATIENCE_TICKS, Shot};
 use crate::output::RecoveryFigures;
-use crate::schedule::refused;
 
 /// Most times that a job is begun anew after something was suddenly off.
 pub(super) const MOST_RECOVERIES: usize = 6;

@@ -50,8 +50,8 @@ pub(super) fn join(all: &mut Plan, cut: u32, next: &Plan, first: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::driving::request_of;
     use tracelight_aim::HeadPose;
+    use tracelight_pipeline::request_of;
     use tracelight_sim::RigConfig;
     use tracelight_stroke::{Path, Point};
     use tracelight_trajectory::plan;

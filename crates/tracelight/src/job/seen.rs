@@ -2,6 +2,7 @@
 
 use tracelight_aim::{Alignment, Camera, TrimBelief};
 use tracelight_picture::Raster;
+use tracelight_pipeline::{Driving, sketch};
 use tracelight_rig::PanTilt;
 use tracelight_rigfile::Timing;
 use tracelight_rigfile::camera::KnownCamera;
@@ -11,7 +12,6 @@ use tracelight_stroke::{Comparison, Drawing, Point, compare};
 use tracelight_task::{Failure, Task};
 
 use super::Prepared;
-use crate::cli::driving::Driving;
 use crate::cli::request::TraceArgs;
 use crate::eye::Looks;
 use crate::eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_figure};
@@ -22,7 +22,6 @@ use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::source::Source;
 use crate::named;
 use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures};
-use crate::sketch::sketch;
 
 /// What was seen before a run.
 pub(super) struct Seen {
@@ -56,8 +55,8 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
     let mut camera = args.eye.open()?;
     let wanted = FigureRequest {
         eye: &args.eye,
-        tracing: &args.tracing,
-        choice: &args.placement.choice,
+        tracing: &args.tracing.tracing(),
+        choice: &args.placement.choice.choice(),
         most_refused: args.retakes,
     };
     let looks: Option<&mut dyn Looks> = match (&mut simulated, &mut camera) {
@@ -65,7 +64,7 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
         (None, camera) => camera.as_mut().map(|camera| &mut **camera as &mut dyn Looks),
     };
     let looks = looks.ok_or_else(|| Failure::failed("internal", "nothing that looks"))?;
-    let SeenFigure { wall, sketch, placed, retaken } = see_figure(looks, &wanted, task)?;
+    let SeenFigure { wall, sketch, placed, retaken, vision_ms } = see_figure(looks, &wanted, task)?;
     wall.remarks.iter().for_each(|remark| task.say(&format!("note: {remark}")));
     task.check()?;
     let camera = wall.camera.camera;
@@ -103,7 +102,7 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
     let room = simulated.map(|(_, room)| room);
     let truth = truth(args, room.as_ref(), task)?;
     let seen = Seen { room, figures, image: wall.pixels, wall: known, followed, truth };
-    super::planned(sketch, placed, driving, Some(seen), task)
+    super::planned((sketch, vision_ms), placed, driving, Some(seen), task)
 }
 
 /// What is known of a head and of when its images are taken.
@@ -181,7 +180,7 @@ fn furnished(args: &TraceArgs, driving: &Driving) -> Result<Option<Furnished>, F
     }
     let request = RoomRequest {
         picture,
-        placement: &args.placement,
+        placing: &args.placement.placing(),
         eye: args.eye.sim_camera,
         pages: args.eye.has_pages()?,
         seed: args.seed,
@@ -221,7 +220,7 @@ fn truth(args: &TraceArgs, room: Option<&Furnished>, task: Task<'_>) -> Result<O
     let (Source::Simulated(Some(path)), Some(wall_from_picture)) = (args.eye.source()?, hung) else {
         return Ok(None);
     };
-    match sketch(path, named::picture(path)?, &args.tracing, &args.placement) {
+    match sketch(path, named::picture(path)?, &args.tracing.tracing(), &args.placement.placing()) {
         // as it hangs: a sheet in it is not laid square there
         Ok(truth) => Ok(Some(truth.in_picture().0.transformed(wall_from_picture))),
         Err(why) => {

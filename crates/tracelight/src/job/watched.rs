@@ -2,6 +2,7 @@
 //! on from where the light was last seen to be right.
 
 use tracelight_aim::Correction;
+use tracelight_pipeline::Driving;
 use tracelight_rig::{Command, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_sim::{Room, Run, Simulated, Tick};
@@ -13,7 +14,6 @@ use super::log_tick;
 use super::recovery::MOST_RECOVERIES;
 use super::remainder::{join, left};
 use super::seen::Seen;
-use crate::cli::driving::Driving;
 use crate::eye::feed::TrimmedFeeder;
 use crate::eye::follow::{Blind, Follower, Suspicion, strayed_rad};
 use crate::eye::homing::lost_power;

@@ -4,9 +4,8 @@ use std::path::Path;
 
 use tracelight_formats::gcode::GcodeOptions;
 use tracelight_formats::{csv, dxf, gcode, hpgl, ild, svg};
+use tracelight_pipeline::{Page, Placed};
 use tracelight_task::Failure;
-
-use crate::sketch::{Page, Placed};
 
 /// How close points and chords keep to their curve, m: a hundredth of a millimetre.
 const TOLERANCE_M: f64 = 1e-5;

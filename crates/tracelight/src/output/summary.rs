@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use serde::Serialize;
+use tracelight_pipeline::QualityFigures;
 use tracelight_rig::TICK_F64_S;
 use tracelight_sim::Run;
 use tracelight_stroke::Drawing;
@@ -9,7 +10,6 @@ use tracelight_trajectory::Plan;
 
 use super::sample::lit_s;
 use super::{Event, Job, OutputError, events};
-use crate::quality::QualityFigures;
 
 /// The figures of a job: `summary.json` and the `--json` of `trace`. Lengths in m unless the name says mm.
 #[derive(Clone, Debug, PartialEq, Serialize)]

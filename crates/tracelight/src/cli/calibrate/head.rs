@@ -60,7 +60,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     };
     let request = RoomRequest {
         picture,
-        placement: &args.placement,
+        placing: &args.placement.placing(),
         eye: args.eye.sim_camera,
         pages: args.eye.has_pages()?,
         seed: args.seed,

@@ -3,6 +3,7 @@ use serde_json::{Value, json};
 use tracelight_aim::{Board, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
 use tracelight_files as files;
 use tracelight_picture::Source;
+use tracelight_pipeline::{DEFAULT_DISTANCE_M, Placing};
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::PageName;
 use tracelight_rigfile::camera::{CameraFile, Wall};
@@ -12,9 +13,8 @@ use tracelight_task::{Failure, Stop};
 use tracelight_units::Length;
 use tracelight_vision::Grey;
 
-use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::eyes::ImageSize;
-use crate::cli::placing::{PlacementArgs, positive_length};
+use crate::cli::placing::positive_length;
 use crate::cli::{Answer, Voice};
 use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
 use crate::eye::wall::{doubts, markers, well_exposed};
@@ -271,9 +271,9 @@ fn taken(args: &MarkersArgs, name: &str, known: Option<&LensBelief>, stop: &Stop
         (Some(mut camera), _) => well_exposed(&mut *camera, stop)?,
         (None, eye::source::Source::Simulated(picture)) => {
             let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));
-            let placement = PlacementArgs::default();
+            let placing = Placing::default();
             let (eye, seed) = (args.sim_camera, args.seed);
-            let request = RoomRequest { picture, placement: &placement, eye, pages: true, seed };
+            let request = RoomRequest { picture, placing: &placing, eye, pages: true, seed };
             well_exposed(&mut Furnished::new(&request, &rig, pose)?.watched(&rig, pose), stop)?
         }
         (None, _) => return Err(Failure::failed("internal", "a camera that is none")),

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 use tracelight_files as files;
 use tracelight_lab::{Identification, JointFit, identify, routine};
+use tracelight_pipeline::DEFAULT_DISTANCE_M;
 use tracelight_rig::{Joint, TICK_F64_S, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, run_segments};
 use tracelight_task::{Failure, Stop, Task};
 
 use super::{make_folder, rig_out, why_unfinished};
 use crate::bar::Bar;
-use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::LawArgs;
 use crate::cli::{Answer, Voice};
 use crate::named;

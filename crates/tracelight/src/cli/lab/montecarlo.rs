@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use clap::Args;
 use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use tracelight_lab::{LAPS_WORTH, Quantiles, identify};
+use tracelight_pipeline::Driving;
 use tracelight_rig::{Fault, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, Spread, Tracking, score};
 use tracelight_task::{Failure, Stop, Task, on_all_cores};
@@ -12,7 +13,6 @@ use tracelight_trajectory::Plan;
 use super::shape::ShapeArgs;
 use super::{OutFile, out_file, why_unfinished, write_all};
 use crate::bar::Bar;
-use crate::cli::driving::Driving;
 use crate::cli::{Answer, Voice};
 
 /// Draw the same on many heads that differ: how exact it is on the middle one, on 95 of 100, on the worst

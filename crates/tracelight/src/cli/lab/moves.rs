@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 
 use clap::{Args, Subcommand};
 use tracelight_aim::HeadPose;
+use tracelight_pipeline::{DEFAULT_DISTANCE_M, request_of};
 use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Run, SimulatedRig, Tracking, score};
 use tracelight_stroke::{Element, Piece, Point, Vec2};
@@ -17,7 +18,6 @@ use tracelight_units::{
 };
 
 use super::{OutFile, out_file, within, write_all};
-use crate::cli::driving::{DEFAULT_DISTANCE_M, request_of};
 use crate::cli::placing::positive_length;
 use crate::cli::shapes::{ProfileName, ramps};
 use crate::cli::{Answer, Voice};

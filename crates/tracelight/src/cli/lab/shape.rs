@@ -1,16 +1,14 @@
 use clap::Args;
-use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
+use tracelight_pipeline::{
+    Driving, OrderBy, Placing, Tracing, check_speed, place, refused, schedule, sketch,
+};
+use tracelight_stroke::{Drawing, Effort, Element, Path, Point, Stroke};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, plan};
 
-use crate::cli::driving::{Driving, DrivingArgs};
+use crate::cli::driving::DrivingArgs;
 use crate::cli::laws::LawArgs;
-use crate::cli::placing::PlacementArgs;
-use crate::cli::tracing::TracingArgs;
 use crate::named;
-use crate::schedule::refused;
-use crate::schedule::{OrderBy, OrderEffort, check_speed, schedule};
-use crate::sketch::{place, sketch};
 
 /// Radius of the circle, m.
 const RADIUS_M: f64 = 0.25;
@@ -86,8 +84,8 @@ fn level_line() -> Path {
 }
 
 fn plan_picture(name: &str, driving: &Driving) -> Result<Plan, Failure> {
-    let (tracing, placement) = (TracingArgs::default(), PlacementArgs::default());
-    let sketch = sketch(name, named::picture(name)?, &tracing, &placement)?;
-    let placed = place(&sketch, &placement);
-    Ok(schedule(&placed, driving, OrderBy::default(), OrderEffort::default())?.plan)
+    let placing = Placing::default();
+    let sketch = sketch(name, named::picture(name)?, &Tracing::default(), &placing)?;
+    let placed = place(&sketch, &placing);
+    Ok(schedule(&placed, driving, OrderBy::default(), Effort::Normal)?.plan)
 }

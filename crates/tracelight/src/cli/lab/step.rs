@@ -3,6 +3,7 @@ use std::fmt::Write;
 use clap::{Args, ValueEnum};
 use tracelight_chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use tracelight_lab::StepFigures;
+use tracelight_pipeline::DEFAULT_DISTANCE_M;
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{
     BenchTick, LawName, ObserverName, RigConfig, StepReference, StepResponse, step_response,
@@ -12,7 +13,6 @@ use tracelight_units::Angle;
 
 use super::by_hand::ByHandArgs;
 use super::{OutFile, out_file, over_time, write_all};
-use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};
 use crate::named;

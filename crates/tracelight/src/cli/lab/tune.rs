@@ -6,6 +6,7 @@ use serde_json::json;
 use tracelight_chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use tracelight_files as files;
 use tracelight_lab::{Demand, Setting, around, coarse};
+use tracelight_pipeline::Driving;
 use tracelight_rig::{PanTilt, Phase};
 use tracelight_sim::{LawName, RigConfig, SimulatedRig, Spread, score};
 use tracelight_task::{Failure, Stop, Task, on_all_cores};
@@ -15,7 +16,6 @@ use tracelight_units::{ANGULAR_SPEEDS, TIMES};
 use super::shape::ShapeArgs;
 use super::{above_zero, make_folder, rig_out};
 use crate::bar::Bar;
-use crate::cli::driving::Driving;
 use crate::cli::laws::law;
 use crate::cli::{Answer, Voice};
 

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use clap::Args;
 use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Scale, Theme};
 use tracelight_lab::{Peaks, VelocityError, highest, peaks, peaks_seen, velocity_error};
+use tracelight_pipeline::Driving;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{LONGEST_INTERVAL_TICKS, ObserverName, Run, SimulatedRig};
 use tracelight_task::{Failure, Stop, Task};
@@ -13,7 +14,7 @@ use tracelight_units::{Speed, TIMES};
 use super::shape::ShapeArgs;
 use super::{OutFile, out_file, why_unfinished, write_all};
 use crate::bar::Bar;
-use crate::cli::driving::{Driving, positive_speed};
+use crate::cli::driving::positive_speed;
 use crate::cli::{Answer, Voice};
 
 /// Ask of each way to tell velocity and acceleration from counts how far off it is, by interval and speed
@@ -80,7 +81,7 @@ pub(crate) fn run(args: &VelocityArgs, stop: &Stop) -> Result<Answer, Failure> {
     for (number, speed) in args.speeds.iter().enumerate() {
         stop.check()?;
         driving.request.speed_m_s = speed.0;
-        driving.speed_is_asked = true;
+        driving.asked.speed = true;
         runs.push(draw(args, &driving)?);
         task.at(number as u64 + 1);
     }

@@ -15,6 +15,7 @@ mod travel;
 
 use tracelight_aim::{Alignment, Camera, HeadGeometry, HeadPose};
 use tracelight_lab::Quantiles;
+use tracelight_pipeline::Driving;
 use tracelight_rig::{Command, PanTilt, Telemetry};
 use tracelight_rigfile::Timing;
 use tracelight_sim::Simulated;
@@ -24,7 +25,6 @@ use tracelight_task::{Failure, Task};
 use super::Eye;
 use super::head::{DotsRequest, SPOT_EXPOSURE_S, find_head, see_dots};
 use super::spots::History;
-use crate::cli::driving::Driving;
 use crate::output::HomedFigures;
 
 /// A head whose encoders were told where it stands.

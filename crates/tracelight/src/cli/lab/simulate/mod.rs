@@ -6,6 +6,7 @@ use clap::{ArgAction, Args, ValueEnum};
 use serde_json::json;
 use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use tracelight_linear::Zpk;
+use tracelight_pipeline::DEFAULT_DISTANCE_M;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{
     Between, Diagram, LawName, MotionArray, ObserverName, RigConfig, ScopeTick, follow_array,
@@ -18,7 +19,6 @@ use super::head::Set;
 use super::shape::switch;
 use super::systems::controller;
 use super::{OutFile, above_zero, out_file, over_time, write_all};
-use crate::cli::driving::DEFAULT_DISTANCE_M;
 use crate::cli::laws::{choose, law, observer};
 use crate::cli::{Answer, Voice};
 use crate::named;

@@ -4,57 +4,41 @@ use tracelight_stroke::{Effort, OrderOptions, Ordered, Point, order};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, PlanError, TravelTime, plan};
 
-use crate::cli::driving::{Driving, REACHED};
-use crate::sketch::Placed;
+use crate::driving::{Driving, REACHED};
+use crate::placed::Placed;
 
 /// What the order is to save.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum OrderBy {
-    /// Seconds of dark moves
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OrderBy {
+    /// Seconds of dark moves.
     #[default]
     Time,
-    /// Metres of dark moves
+    /// Metres of dark moves.
     Distance,
 }
 
-/// How much work goes into the order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum OrderEffort {
-    /// No single move improves it
-    Quick,
-    /// About a second for 5000 strokes
-    #[default]
-    Normal,
-    /// Ten times that
-    Best,
-}
-
-impl OrderEffort {
-    const fn effort(self) -> Effort {
-        match self {
-            OrderEffort::Quick => Effort::Quick,
-            OrderEffort::Normal => Effort::Normal,
-            OrderEffort::Best => Effort::Best,
-        }
-    }
-}
-
 /// A drawing in order, and in time.
-pub(crate) struct Schedule {
-    pub(crate) ordered: Ordered,
-    pub(crate) plan: Plan,
+#[derive(Clone, Debug)]
+pub struct Schedule {
+    /// Its strokes, in order.
+    pub ordered: Ordered,
+    /// When what of them is drawn.
+    pub plan: Plan,
 }
 
 /// Orders and times a drawing. Every stroke must be in reach before any work goes into its order.
-pub(crate) fn schedule(
+///
+/// # Errors
+/// What cannot be reached, or not at the speed asked for.
+pub fn schedule(
     placed: &Placed,
     driving: &Driving,
     by: OrderBy,
-    effort: OrderEffort,
+    effort: Effort,
 ) -> Result<Schedule, Failure> {
     check_reach(placed, driving)?;
     let start = driving.machine.geometry.spot(&driving.pose, Default::default()).unwrap_or(Point::ORIGIN);
-    let options = OrderOptions { effort: effort.effort(), seed: 0 };
+    let options = OrderOptions { effort, seed: 0 };
     let ordered = match by {
         OrderBy::Time => {
             order(&placed.drawing, start, options, &TravelTime::new(&driving.machine, &driving.request))
@@ -81,9 +65,12 @@ fn check_reach(placed: &Placed, driving: &Driving) -> Result<(), Failure> {
 }
 
 /// A speed that is asked for and reached nowhere is refused; slowing down here and there is no error.
-pub(crate) fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
+///
+/// # Errors
+/// `speed-unreachable`.
+pub fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
     let (asked, best) = (plan.set_speed_m_s, plan.top_speed_m_s());
-    if !driving.speed_is_asked || best >= REACHED * asked {
+    if !driving.asked.speed || best >= REACHED * asked {
         return Ok(());
     }
     let message = format!(
@@ -95,7 +82,8 @@ pub(crate) fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure>
 }
 
 /// Why there is no plan, with its code.
-pub(crate) fn refused(error: PlanError) -> Failure {
+#[must_use]
+pub fn refused(error: PlanError) -> Failure {
     let code = match error {
         PlanError::Empty => "no-strokes",
         PlanError::Aim { .. } => "unreachable",

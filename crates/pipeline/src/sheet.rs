@@ -1,6 +1,5 @@
 //! The sheet of paper in a picture: what is looked at, and how one that was photographed at a slant is laid square.
 
-use clap::ValueEnum;
 use tracelight_aim::{Homography, proportions};
 use tracelight_picture::Raster;
 use tracelight_stroke::{Drawing, Point};
@@ -8,72 +7,18 @@ use tracelight_task::Failure;
 use tracelight_vision::{Grey, Page, Sheet};
 
 use crate::carried::carried;
-use crate::cli::tracing::{Straighten, TracingArgs};
-
-/// What is drawn or printed on, upright, mm.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Paper {
-    pub(crate) width_mm: f64,
-    pub(crate) height_mm: f64,
-}
-
-impl Paper {
-    pub(crate) const A5: Self = Self { width_mm: 148.0, height_mm: 210.0 };
-    pub(crate) const A4: Self = Self { width_mm: 210.0, height_mm: 297.0 };
-    pub(crate) const A3: Self = Self { width_mm: 297.0, height_mm: 420.0 };
-    pub(crate) const LETTER: Self = Self { width_mm: 215.9, height_mm: 279.4 };
-    pub(crate) const LEGAL: Self = Self { width_mm: 215.9, height_mm: 355.6 };
-
-    /// Width and height, m.
-    pub(crate) const fn size_m(&self) -> (f64, f64) {
-        (1e-3 * self.width_mm, 1e-3 * self.height_mm)
-    }
-
-    /// Width and height, m, if it lies upright or across, whichever is nearer to such proportions.
-    fn lying_m(&self, ratio: f64) -> (f64, f64) {
-        let (width, height) = self.size_m();
-        if ratio < 1.0 { (width, height) } else { (height, width) }
-    }
-}
-
-/// Sizes of paper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PaperName {
-    /// 148 × 210 mm
-    A5,
-    /// 210 × 297 mm
-    A4,
-    /// 297 × 420 mm
-    A3,
-    /// 8.5 × 11 in
-    Letter,
-    /// 8.5 × 14 in
-    Legal,
-}
-
-impl PaperName {
-    /// Width and height, m, if it lies upright or across, whichever is nearer to such proportions.
-    pub(crate) fn lying_m(self, ratio: f64) -> (f64, f64) {
-        let paper = match self {
-            Self::A5 => Paper::A5,
-            Self::A4 => Paper::A4,
-            Self::A3 => Paper::A3,
-            Self::Letter => Paper::LETTER,
-            Self::Legal => Paper::LEGAL,
-        };
-        paper.lying_m(ratio)
-    }
-}
+use crate::paper::Paper;
+use crate::tracing::{Straighten, Tracing};
 
 /// How a sheet in a picture is seen from straight ahead.
 #[derive(Clone, Debug)]
-pub(crate) struct Straight {
+pub struct Straight {
     from_picture: Homography,
     to_picture: Homography,
     /// Width and height of the sheet, in px that are about as large as the picture's.
-    pub(crate) size_px: (f64, f64),
+    pub size_px: (f64, f64),
     /// Its true width, where it is known.
-    pub(crate) width_m: Option<f64>,
+    pub width_m: Option<f64>,
 }
 
 /// Largest side of a straightened picture, px.
@@ -82,7 +27,8 @@ const MOST_PX: f64 = 16_384.0;
 impl Straight {
     /// Of a sheet's corners in a picture of that size, clockwise from the upper left, px; `None` where they are no
     /// rectangle's seen at a slant.
-    pub(crate) fn of(corners: [Point; 4], picture: (f64, f64), paper: Option<PaperName>) -> Option<Self> {
+    #[must_use]
+    pub fn of(corners: [Point; 4], picture: (f64, f64), paper: Option<Paper>) -> Option<Self> {
         let seen = proportions(corners, picture)?;
         let size_m = paper.map(|paper| paper.lying_m(seen));
         let ratio = size_m.map_or(seen, |(width, height)| width / height);
@@ -105,12 +51,14 @@ impl Straight {
     }
 
     /// Strokes of the picture, on the sheet.
-    pub(crate) fn drawing(&self, drawing: &Drawing) -> Drawing {
+    #[must_use]
+    pub fn drawing(&self, drawing: &Drawing) -> Drawing {
         carried(drawing, 1.0, &|p| self.from_picture.apply(p))
     }
 
     /// The sheet by itself.
-    pub(crate) fn picture(&self, picture: &Raster) -> Raster {
+    #[must_use]
+    pub fn picture(&self, picture: &Raster) -> Raster {
         let (width, height) = (self.size_px.0 as u32, self.size_px.1 as u32);
         Raster::from_rows(width, height, |y, row| {
             for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
@@ -122,18 +70,23 @@ impl Straight {
 }
 
 /// A sheet of paper in a picture, and what was drawn on it there.
-pub(crate) struct PaperSeen {
-    pub(crate) sheet: Sheet,
+#[derive(Clone, Debug)]
+pub struct PaperSeen {
+    /// Where it is.
+    pub sheet: Sheet,
     /// The picture's size, px.
-    pub(crate) picture_px: (f64, f64),
+    pub picture_px: (f64, f64),
     /// How it is laid square, where it is.
-    pub(crate) straight: Option<Straight>,
+    pub straight: Option<Straight>,
     /// The strokes in the picture, px, where the sketch's own are those of the sheet laid square.
-    pub(crate) slanted: Option<Drawing>,
+    pub slanted: Option<Drawing>,
 }
 
 /// What of a picture is looked at.
-pub(crate) fn page<'a>(name: &str, grey: &'a Grey, tracing: &TracingArgs) -> Result<Page<'a>, Failure> {
+///
+/// # Errors
+/// Where corners were given that are no sheet's in it, or all of the picture as well.
+pub fn page<'a>(name: &str, grey: &'a Grey, tracing: &Tracing) -> Result<Page<'a>, Failure> {
     match (tracing.whole, tracing.straighten) {
         (true, Straighten::By(_)) => Err(Failure::usage(
             "usage",
@@ -159,11 +112,10 @@ pub(crate) fn page<'a>(name: &str, grey: &'a Grey, tracing: &TracingArgs) -> Res
 const LIKE_PAPER: f64 = 0.04;
 
 /// How a page's sheet is laid square; `None` where it is not.
-pub(crate) fn straight(
-    name: &str,
-    page: &Page<'_>,
-    tracing: &TracingArgs,
-) -> Result<Option<Straight>, Failure> {
+///
+/// # Errors
+/// `not-straightened`, where its corners are no rectangle's or are not all seen.
+pub(crate) fn straight(name: &str, page: &Page<'_>, tracing: &Tracing) -> Result<Option<Straight>, Failure> {
     let picture = (page.size.0 as f64, page.size.1 as f64);
     let corners = page.sheet.as_ref().and_then(|sheet| sheet.corners);
     if let (Some(corners), false) = (corners, tracing.straighten == Straighten::Off) {
@@ -206,7 +158,8 @@ pub(crate) fn remark(sheet: &Sheet, straight: Option<&Straight>) -> String {
 }
 
 /// Four corners in whatever order, clockwise from the upper left.
-pub(crate) fn clockwise(mut corners: [Point; 4]) -> [Point; 4] {
+#[must_use]
+pub fn clockwise(mut corners: [Point; 4]) -> [Point; 4] {
     let middle = corners.iter().fold(Point::ORIGIN, |sum, c| sum + c.to_vec2() / 4.0);
     corners.sort_by(|a, b| (*a - middle).atan2().total_cmp(&(*b - middle).atan2()));
     // angles run from −π, clockwise as seen: the upper left is the one of least x + y
@@ -233,7 +186,7 @@ mod tests {
     #[test]
     fn a_sheet_of_known_paper_is_as_wide_as_that() {
         let corners = [(100.0, 100.0), (310.0, 110.0), (320.0, 400.0), (95.0, 395.0)].map(Point::from);
-        let straight = Straight::of(corners, (640.0, 480.0), Some(PaperName::A4)).unwrap();
+        let straight = Straight::of(corners, (640.0, 480.0), Some(Paper::A4)).unwrap();
         assert_eq!(straight.width_m, Some(0.21));
         let (width, height) = straight.size_px;
         assert!((width / height - 210.0 / 297.0).abs() < 2e-3, "{width} × {height}");

@@ -1,49 +1,42 @@
 //! From a source to strokes on the target.
 
-use std::time::Instant;
-
-use tracelight_aim::{Placement, SizeRequest};
-use tracelight_formats::{Reading, svg};
+use tracelight_formats::Reading;
 use tracelight_picture::{Pixels, Raster, Source};
-use tracelight_stroke::{Affine, Drawing, Point, Vec2};
+use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, counted};
 use tracelight_vision::{Comb, Dots, Quality, Traced, VisionError};
 
-use crate::cli::choosing::ChoiceArgs;
-use crate::cli::placing::PlacementArgs;
-use crate::cli::tracing::TracingArgs;
-use crate::paper::{self, PaperSeen};
-
-/// Width of a picture that says nothing of its size, m: 24 in.
-const DEFAULT_WIDTH_M: f64 = 24.0 * 0.0254;
+use crate::choice::Choice;
+use crate::sheet::{self, PaperSeen};
+use crate::tracing::Tracing;
 
 /// Strokes on the sheet they came from.
-pub(crate) struct Sketch {
+#[derive(Clone, Debug)]
+pub struct Sketch {
     /// In the sheet's unit, x right, y down.
-    pub(crate) drawing: Drawing,
+    pub drawing: Drawing,
     /// The sheet's size in that unit.
-    pub(crate) size: (f64, f64),
+    pub size: (f64, f64),
     /// The sheet of paper in the picture, where there is something beside it.
-    pub(crate) paper: Option<PaperSeen>,
+    pub paper: Option<PaperSeen>,
     /// The sheet's true width, m, where the file says it.
-    pub(crate) true_width_m: Option<f64>,
+    pub true_width_m: Option<f64>,
     /// The picture as it was read, for display: see [`Self::shown`].
-    pub(crate) picture: Option<Raster>,
+    pub picture: Option<Raster>,
     /// How it was traced.
-    pub(crate) mode: &'static str,
+    pub mode: &'static str,
     /// What the user should know about it: one sentence each.
-    pub(crate) remarks: Vec<String>,
+    pub remarks: Vec<String>,
     /// What its pixels are worth; none of a drawing.
-    pub(crate) quality: Option<Quality>,
+    pub quality: Option<Quality>,
     /// Share of the ink that lies on no stroke; none where there was no ink.
-    pub(crate) missed_ink: Option<f64>,
-    /// Time it took, ms.
-    pub(crate) vision_ms: f64,
+    pub missed_ink: Option<f64>,
 }
 
 impl Sketch {
     /// The strokes in the picture's pixels, x right, y down, and its size.
-    pub(crate) fn in_picture(&self) -> (&Drawing, (f64, f64)) {
+    #[must_use]
+    pub fn in_picture(&self) -> (&Drawing, (f64, f64)) {
         match &self.paper {
             Some(PaperSeen { picture_px, slanted: Some(slanted), .. }) => (slanted, *picture_px),
             _ => (&self.drawing, self.size),
@@ -60,7 +53,8 @@ impl Sketch {
 
     /// With the picture as its strokes lie on it: of a sheet that is laid square, from straight ahead. That takes longer than all else,
     /// so that only who shows the picture asks for it.
-    pub(crate) fn shown(mut self) -> Self {
+    #[must_use]
+    pub fn shown(mut self) -> Self {
         let straight = self.paper.as_ref().and_then(|paper| paper.straight.as_ref());
         if let (Some(straight), Some(picture)) = (straight, &self.picture) {
             self.picture = Some(straight.picture(picture));
@@ -69,7 +63,8 @@ impl Sketch {
     }
 
     /// All that the user should know of it.
-    pub(crate) fn notes(&self) -> Vec<String> {
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
         let weak = self.quality.iter().flat_map(Quality::remarks);
         self.remarks
             .iter()
@@ -162,81 +157,18 @@ fn outlined(drawing: &Drawing) -> Option<String> {
 /// Chords that measure a share of the light stay this close to their path, px.
 const CHORDS_PX: f64 = 0.1;
 
-/// Strokes on a page of their own, for a file.
-pub(crate) struct Page {
-    /// Metres, y up, the origin at the page's centre.
-    pub(crate) drawing: Drawing,
-    /// The page's width, m.
-    pub(crate) width_m: f64,
-    /// The page's height, m.
-    pub(crate) height_m: f64,
-}
-
-/// A drawing on the target.
-pub(crate) struct Placed {
-    /// In target metres.
-    pub(crate) drawing: Drawing,
-    /// Size of the sheet on the target, m.
-    pub(crate) size_m: (f64, f64),
-    /// From the sheet to the target.
-    pub(crate) target_from_sheet: Affine,
-    /// Where the sheet's corners lie on the target, m.
-    corners_m: [Point; 4],
-}
-
-impl Placed {
-    /// A drawing in target metres, of a sheet of that size in units of its own.
-    pub(crate) fn of(drawing: Drawing, (width, height): (f64, f64), target_from_sheet: Affine) -> Self {
-        let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
-        let unit_m = target_from_sheet.determinant().abs().sqrt();
-        Self {
-            drawing,
-            size_m: (width * unit_m, height * unit_m),
-            target_from_sheet,
-            corners_m: corners.map(|(u, v)| target_from_sheet * Point::new(u, v)),
-        }
-    }
-
-    /// Its strokes as an SVG of true size.
-    pub(crate) fn svg(&self, drawing: &Drawing) -> String {
-        let Page { drawing, width_m, height_m } = self.page(drawing);
-        svg::write(&drawing, width_m, height_m)
-    }
-
-    /// Strokes on a page that just holds the sheet as it lies, moved and turned.
-    pub(crate) fn page(&self, drawing: &Drawing) -> Page {
-        let corners = self.corners_m;
-        let reach = |of: fn(&Point) -> f64| {
-            let values = corners.iter().map(of);
-            (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max))
-        };
-        let ((left, right), (low, high)) = (reach(|p| p.x), reach(|p| p.y));
-        let to_centre = Vec2::new(-0.5 * (left + right), -0.5 * (low + high));
-        let drawing = drawing.transformed(Affine::translate(to_centre));
-        Page { drawing, width_m: right - left, height_m: high - low }
-    }
-}
-
-/// Traces pixels, takes strokes as they are; of these, the chosen ones that are long enough.
-pub(crate) fn sketch(
+/// Traces pixels, takes strokes as they are; of these, the chosen ones that are long enough. `metres_per_unit` says how long the unit of
+/// a sheet is on the target, by its size and its true width, such as [`Placing::metres_per_unit`](crate::Placing::metres_per_unit).
+///
+/// # Errors
+/// Why there are no strokes in it: it is no drawing, an option leaves nothing, or no stroke is what was chosen.
+pub fn sketch_at(
     name: &str,
     source: Source,
-    tracing: &TracingArgs,
-    placement: &PlacementArgs,
-) -> Result<Sketch, Failure> {
-    let scale = |size: (f64, f64), true_width_m: Option<f64>| metres_per_unit(size, true_width_m, placement);
-    sketch_at(name, source, tracing, &placement.choice, &scale)
-}
-
-/// The same of a sheet whose unit is so long on the target, by its size and its true width.
-pub(crate) fn sketch_at(
-    name: &str,
-    source: Source,
-    tracing: &TracingArgs,
-    choice: &ChoiceArgs,
+    tracing: &Tracing,
+    choice: &Choice,
     metres_per_unit: &dyn Fn((f64, f64), Option<f64>) -> f64,
 ) -> Result<Sketch, Failure> {
-    let began = Instant::now();
     let mut sketch = match source {
         Source::Strokes(reading) => taken(reading),
         Source::Pixels(pixels) => traced(name, pixels, tracing, metres_per_unit)?,
@@ -255,7 +187,6 @@ pub(crate) fn sketch_at(
     if sketch.drawing.strokes.is_empty() {
         return refused("all its strokes are shorter than --min-length; set it lower");
     }
-    sketch.vision_ms = began.elapsed().as_secs_f64() * 1e3;
     Ok(sketch)
 }
 
@@ -271,7 +202,6 @@ fn taken(Reading { sheet, remarks }: Reading) -> Sketch {
         remarks,
         quality: None,
         missed_ink: None,
-        vision_ms: 0.0,
     }
 }
 
@@ -279,12 +209,12 @@ fn taken(Reading { sheet, remarks }: Reading) -> Sketch {
 fn traced(
     name: &str,
     Pixels { colour, grey }: Pixels,
-    tracing: &TracingArgs,
+    tracing: &Tracing,
     metres_per_unit: &dyn Fn((f64, f64), Option<f64>) -> f64,
 ) -> Result<Sketch, Failure> {
     let picture_px = (f64::from(colour.width()), f64::from(colour.height()));
-    let page = paper::page(name, &grey, tracing)?;
-    let straight = paper::straight(name, &page, tracing)?;
+    let page = sheet::page(name, &grey, tracing)?;
+    let straight = sheet::straight(name, &page, tracing)?;
     let size = straight.as_ref().map_or(picture_px, |straight| straight.size_px);
     let true_width_m = match &straight {
         Some(straight) => straight.width_m,
@@ -296,7 +226,7 @@ fn traced(
         _ => Failure::failed("no-strokes-found", format!("{name}: {e}")),
     };
     let traced = tracelight_vision::trace_page(&page, &options).map_err(refused)?;
-    let laid = page.sheet.as_ref().map(|sheet| paper::remark(sheet, straight.as_ref()));
+    let laid = page.sheet.as_ref().map(|sheet| sheet::remark(sheet, straight.as_ref()));
     let remarks = laid.into_iter().chain(doubts(&traced)).collect();
     Ok(Sketch {
         size,
@@ -308,34 +238,5 @@ fn traced(
         mode: options.mode.name(),
         quality: Some(traced.quality),
         missed_ink: Some(traced.missed_ink),
-        vision_ms: 0.0,
     })
-}
-
-/// How long a sheet's unit is on the target: as large as asked, as it is truly, or 24 in wide.
-fn metres_per_unit((width, height): (f64, f64), true_width_m: Option<f64>, args: &PlacementArgs) -> f64 {
-    let asked = args.width.map(|w| w.0 / width).or(args.height.map(|h| h.0 / height));
-    asked.unwrap_or_else(|| true_width_m.unwrap_or(DEFAULT_WIDTH_M) / width)
-}
-
-/// Puts a sketch on the target: as large as asked, as it is truly, or 24 in wide.
-pub(crate) fn place(sketch: &Sketch, args: &PlacementArgs) -> Placed {
-    let size = match (args.width, args.height) {
-        (Some(width), _) => SizeRequest::Width(width.0),
-        (None, Some(height)) => SizeRequest::Height(height.0),
-        (None, None) => SizeRequest::Width(sketch.true_width_m.unwrap_or(DEFAULT_WIDTH_M)),
-    };
-    let (width, height) = sketch.size;
-    let upright = Placement::new(size, width, height);
-    let placement = Placement {
-        offset_m: args.offset.map_or(upright.offset_m, |o| (o.0.0, o.1.0).into()),
-        rotation_rad: args.rotate.map_or(0.0, |a| a.0),
-        flip: args.flip,
-        ..upright
-    };
-    let drawing = placement.place(&sketch.drawing, width);
-    Placed {
-        size_m: (placement.width_m, placement.height_m),
-        ..Placed::of(drawing, sketch.size, placement.target_from_pixel(width))
-    }
 }

@@ -5,23 +5,33 @@ use tracelight_vision::Quality;
 
 /// The object `quality` of `--json`, `summary.json` and a batch's figures: see [`Quality`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct QualityFigures {
-    pub(crate) ink_percent: f64,
-    pub(crate) contrast_percent: f64,
-    pub(crate) contrast_to_noise: f64,
-    pub(crate) noise_levels: f64,
-    pub(crate) light_evenness: f64,
-    pub(crate) edge_px: Option<f64>,
-    pub(crate) clipped_percent: f64,
-    pub(crate) pen_px: Option<f64>,
+pub struct QualityFigures {
+    /// As [`Quality::ink_percent`].
+    pub ink_percent: f64,
+    /// As [`Quality::contrast_percent`].
+    pub contrast_percent: f64,
+    /// As [`Quality::contrast_to_noise`].
+    pub contrast_to_noise: f64,
+    /// As [`Quality::noise_levels`].
+    pub noise_levels: f64,
+    /// As [`Quality::light_evenness`].
+    pub light_evenness: f64,
+    /// As [`Quality::edge_px`].
+    pub edge_px: Option<f64>,
+    /// As [`Quality::clipped_percent`].
+    pub clipped_percent: f64,
+    /// As [`Quality::pen_px`].
+    pub pen_px: Option<f64>,
     /// `good` or `usable`.
-    pub(crate) verdict: String,
+    pub verdict: String,
     /// What is weak: a clause a figure.
-    pub(crate) remarks: Vec<String>,
+    pub remarks: Vec<String>,
 }
 
 impl QualityFigures {
-    pub(crate) fn of(quality: &Quality) -> Self {
+    /// Rounded to what is worth telling.
+    #[must_use]
+    pub fn of(quality: &Quality) -> Self {
         Self {
             ink_percent: rounded(quality.ink_percent),
             contrast_percent: rounded(quality.contrast_percent),

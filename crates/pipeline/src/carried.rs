@@ -15,7 +15,8 @@ const CORNER_RAD: f64 = 0.35;
 
 /// Strokes in pixels by a map that bends them a little, and under which a pixel is about so long; without those of which
 /// some comes to lie nowhere.
-pub(crate) fn carried(drawing: &Drawing, scale: f64, map: &dyn Fn(Point) -> Option<Point>) -> Drawing {
+#[must_use]
+pub fn carried(drawing: &Drawing, scale: f64, map: &dyn Fn(Point) -> Option<Point>) -> Drawing {
     let options = FitOptions { corner_rad: PI, reach: 0.0, ..FitOptions::new(OFF_PX * scale) };
     let moved = |stroke: &Stroke| {
         let path = path(&stroke.path, map, &options)?;
@@ -64,7 +65,8 @@ fn stretches(path: &Path) -> Vec<Vec<Point>> {
 }
 
 /// Whether one piece goes on in another direction than the one before ends in.
-pub(crate) fn has_corner(before: Piece, after: Piece) -> bool {
+#[must_use]
+pub fn has_corner(before: Piece, after: Piece) -> bool {
     let (a, b) = (before.end_tangent(), after.start_tangent());
     a.cross(b).atan2(a.dot(b)).abs() > CORNER_RAD
 }

@@ -1,0 +1,117 @@
+use tracelight_stroke::{Colour, Drawing, Stroke};
+use tracelight_task::Failure;
+
+/// Which strokes of a drawing are taken; all of them by default.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Choice {
+    /// Only strokes on these layers of an SVG, DXF or JSON drawing.
+    pub layers: Vec<String>,
+    /// Only strokes of these colours.
+    pub colours: Vec<Colour>,
+}
+
+/// Names in a message at most.
+const MOST_NAMES: usize = 20;
+
+impl Choice {
+    /// The strokes on one of the layers asked for and of one of the colours asked for; all where nothing is asked.
+    /// Names of layers differ in more than case.
+    ///
+    /// # Errors
+    /// A layer or colour that no stroke has, with those there are; and strokes of both that are none.
+    pub fn of(&self, name: &str, drawing: Drawing) -> Result<Drawing, Failure> {
+        let refused = |message| Failure::failed("no-strokes", format!("{name}: {message}"));
+        for layer in &self.layers {
+            if !drawing.strokes.iter().any(|s| is_on(s, layer)) {
+                let known =
+                    names(drawing.strokes.iter().filter_map(|s| s.layer.as_deref().map(str::to_owned)));
+                return Err(refused(missing("layer", layer, &known)));
+            }
+        }
+        for colour in &self.colours {
+            if !drawing.strokes.iter().any(|s| s.colour == Some(*colour)) {
+                let known = names(drawing.strokes.iter().filter_map(|s| s.colour.map(|c| c.to_string())));
+                return Err(refused(missing("colour", &colour.to_string(), &known)));
+            }
+        }
+        let strokes: Vec<Stroke> = drawing.strokes.into_iter().filter(|s| self.takes(s)).collect();
+        match strokes.is_empty() && !(self.layers.is_empty() && self.colours.is_empty()) {
+            true => Err(refused("no stroke is on these layers and of these colours; ask for less".into())),
+            false => Ok(Drawing { strokes }),
+        }
+    }
+
+    fn takes(&self, stroke: &Stroke) -> bool {
+        let on_layer = self.layers.is_empty() || self.layers.iter().any(|l| is_on(stroke, l));
+        on_layer && (self.colours.is_empty() || stroke.colour.is_some_and(|c| self.colours.contains(&c)))
+    }
+}
+
+fn is_on(stroke: &Stroke, layer: &str) -> bool {
+    stroke.layer.as_deref().is_some_and(|own| own.to_lowercase() == layer.to_lowercase())
+}
+
+/// Each once, in order of appearance.
+fn names(all: impl Iterator<Item = String>) -> Vec<String> {
+    let mut seen = std::collections::HashSet::new();
+    all.filter(|name| seen.insert(name.clone())).collect()
+}
+
+fn missing(what: &str, asked: &str, known: &[String]) -> String {
+    if known.is_empty() {
+        return format!("it has no {what}s; leave --{what} {asked} out");
+    }
+    let shown = known[..known.len().min(MOST_NAMES)].join(", ");
+    let more = if known.len() > MOST_NAMES { ", …" } else { "" };
+    format!("no stroke has the {what} {asked}; there are: {shown}{more}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_stroke::{Path, Point};
+
+    fn drawing() -> Drawing {
+        let stroke = |layer: Option<&str>, colour: Option<u32>| Stroke {
+            layer: layer.map(Into::into),
+            colour: colour.map(Colour::from_rgb),
+            ..Stroke::new(Path::polyline(&[Point::ORIGIN, Point::new(1.0, 0.0)], false).unwrap())
+        };
+        let strokes = vec![
+            stroke(Some("Cut"), Some(0xff0000)),
+            stroke(Some("Engrave"), Some(0x0000ff)),
+            stroke(Some("Engrave"), Some(0xff0000)),
+            stroke(None, None),
+        ];
+        Drawing { strokes }
+    }
+
+    fn chosen(layers: &[&str], colours: &[&str]) -> Result<usize, String> {
+        let layers = layers.iter().map(|&l| l.to_owned()).collect();
+        let colours = colours.iter().map(|c| tracelight_formats::colour_of(c).unwrap()).collect();
+        let chosen = Choice { layers, colours }.of("a.svg", drawing());
+        chosen.map(|d| d.strokes.len()).map_err(|failure| failure.message)
+    }
+
+    #[test]
+    fn layers_and_colours_choose_together() {
+        assert_eq!(chosen(&[], &[]), Ok(4));
+        assert_eq!(chosen(&["cut"], &[]), Ok(1));
+        assert_eq!(chosen(&["Cut", "engrave"], &[]), Ok(3));
+        assert_eq!(chosen(&[], &["#F00", "blue"]), Ok(3));
+        assert_eq!(chosen(&["Engrave"], &["red"]), Ok(1));
+    }
+
+    #[test]
+    fn what_is_not_there_is_refused_with_what_is() {
+        assert_eq!(
+            chosen(&["Score"], &[]).unwrap_err(),
+            "a.svg: no stroke has the layer Score; there are: Cut, Engrave"
+        );
+        let message = chosen(&[], &["lime"]).unwrap_err();
+        assert_eq!(message, "a.svg: no stroke has the colour #00ff00; there are: #ff0000, #0000ff");
+        assert!(chosen(&["Cut"], &["blue"]).unwrap_err().contains("ask for less"));
+        let bare = Choice { layers: vec!["Cut".into()], colours: vec![] }.of("a.png", Drawing::default());
+        assert!(bare.unwrap_err().message.contains("it has no layers"));
+    }
+}

@@ -1,0 +1,24 @@
+//! From a picture or a drawing to a plan: strokes on their sheet, on the target, in order, in time. Values in, values out: no flag,
+//! no file, no clock.
+
+mod carried;
+mod choice;
+mod driving;
+mod paper;
+mod placed;
+mod quality;
+mod schedule;
+mod sheet;
+mod sketch;
+mod tracing;
+
+pub use carried::{carried, has_corner};
+pub use choice::Choice;
+pub use driving::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, Driving, REACHED, request_of};
+pub use paper::Paper;
+pub use placed::{Page, Placed, Placing, place, sketch};
+pub use quality::QualityFigures;
+pub use schedule::{OrderBy, Schedule, check_speed, refused, schedule};
+pub use sheet::{PaperSeen, Straight, clockwise, page};
+pub use sketch::{Sketch, sketch_at};
+pub use tracing::{LeastLength, Straighten, Tracing};
