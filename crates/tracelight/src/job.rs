@@ -9,6 +9,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use tracelight_eye::figures::EyeFigures;
+use tracelight_eye::homing::{check_homed, lost_power};
+use tracelight_eye::room::{Furnished, left};
 use tracelight_files as files;
 use tracelight_lab::{LAPS_WORTH, identify};
 use tracelight_pipeline::{Driving, OrderBy, Placed, Schedule, Sketch, place, schedule, sketch};
@@ -21,12 +24,8 @@ use tracelight_trajectory::Plan;
 
 use crate::bar::Bar;
 use crate::cli::request::TraceArgs;
-use crate::eye::homing::{check_homed, lost_power};
-use crate::eye::room::{Furnished, left};
 use crate::named;
-use crate::output::{
-    self, EyeFigures, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing,
-};
+use crate::output::{self, Job, LogMeta, LogWriter, OutputError, Picture, Setting, Summary, Target, Timing};
 use crate::settings;
 use seen::Seen;
 use watched::{WatchedJob, WatchedRun, run_watched};

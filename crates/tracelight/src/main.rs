@@ -3,7 +3,6 @@
 mod bar;
 mod batch;
 mod cli;
-mod eye;
 mod interrupt;
 mod job;
 mod named;

@@ -1,7 +1,7 @@
 //! What is in the files that the user named.
 
 use tracelight_files as files;
-use tracelight_picture::{Source, decode};
+use tracelight_picture::{Raster, Source, decode};
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_rigfile::head::KnownHead;
@@ -11,6 +11,19 @@ use tracelight_task::Failure;
 /// A picture or a drawing; `-` is standard input. What it is, its content says, not its name.
 pub(crate) fn picture(path: &str) -> Result<Source, Failure> {
     decode(path, &files::read(path)?)
+}
+
+/// What is to hang on a simulated wall.
+pub(crate) fn painted(path: &str) -> Result<Raster, Failure> {
+    match picture(path)? {
+        Source::Pixels(pixels) => Ok(pixels.colour),
+        Source::Strokes(_) => {
+            let message = format!(
+                "{path} is a drawing; a simulated wall wants a picture with pixels: PNG, JPEG, WebP, BMP, GIF, PNM or TIFF"
+            );
+            Err(Failure::usage("not-a-picture", message))
+        }
+    }
 }
 
 /// A preset by name, or a rig file by path.

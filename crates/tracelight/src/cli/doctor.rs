@@ -2,17 +2,17 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use serde_json::{Value, json};
+use tracelight_camera::{Source, devices};
+use tracelight_eye::about::{About, Stamps};
+use tracelight_eye::figure::histogram;
+use tracelight_eye::wall::{markers, well_exposed};
+use tracelight_eye::{Looks, grey};
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::bar::Bar;
 use crate::cli::eyes::ImageSize;
 use crate::cli::{Answer, Voice};
-use crate::eye::about::{About, Stamps};
-use crate::eye::figure::histogram;
-use crate::eye::source::{Source, devices};
-use crate::eye::wall::{markers, well_exposed};
-use crate::eye::{Looks, grey};
 
 /// Look at what is plugged in: cameras, what they can, how fast and how late their images come
 #[derive(Args, Debug)]

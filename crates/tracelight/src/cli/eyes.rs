@@ -2,14 +2,14 @@
 
 use std::str::FromStr;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
+use tracelight_camera::Source;
+use tracelight_eye::Looks;
+use tracelight_eye::room::SimulatedEye;
+use tracelight_eye::trouble::TroubleAt;
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_task::Failure;
 
-use crate::eye::Looks;
-use crate::eye::room::SimulatedEye;
-use crate::eye::source::Source;
-use crate::eye::trouble::TroubleAt;
 use crate::named;
 
 /// Which camera looks at the wall.
@@ -25,11 +25,30 @@ pub(crate) struct EyeArgs {
     pub(crate) camera_size: Option<ImageSize>,
     /// Which camera is simulated
     #[arg(long, value_enum, default_value_t, requires = "camera")]
-    pub(crate) sim_camera: SimulatedEye,
+    pub(crate) sim_camera: SimulatedEyeName,
     /// What is known of the camera: a file that `calibrate markers` or `calibrate lens` has written. Where no markers are in sight, the
     /// camera is believed to stand where it stood
     #[arg(long, value_name = "FILE.toml", requires = "camera")]
     pub(crate) calibration: Option<String>,
+}
+
+/// Which camera is simulated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SimulatedEyeName {
+    /// 1280 × 720 px, as far away as it takes to see all
+    #[default]
+    Webcam,
+    /// The 2006 report's: 320 × 240 px, 3 ft away
+    Report,
+}
+
+impl SimulatedEyeName {
+    pub(crate) const fn eye(self) -> SimulatedEye {
+        match self {
+            SimulatedEyeName::Webcam => SimulatedEye::Webcam,
+            SimulatedEyeName::Report => SimulatedEye::Report,
+        }
+    }
 }
 
 /// How a camera follows the spot while it draws.
@@ -82,7 +101,7 @@ impl EyeArgs {
     /// down once it is calibrated.
     pub(crate) fn has_pages(&self) -> Result<bool, Failure> {
         let stood = self.known()?.is_some_and(|known| known.stood.is_some());
-        Ok(self.sim_camera == SimulatedEye::Webcam || !stood)
+        Ok(self.sim_camera == SimulatedEyeName::Webcam || !stood)
     }
 
     /// What is known of it.

@@ -3,17 +3,16 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use tracelight_camera::Source;
 use tracelight_task::Failure;
 use tracelight_vision::Mode;
 
 use crate::cli::Voice;
 use crate::cli::driving::DrivingArgs;
-use crate::cli::eyes::{EyeArgs, FollowArgs};
+use crate::cli::eyes::{EyeArgs, FollowArgs, SimulatedEyeName};
 use crate::cli::laws::LawArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::eye::room::SimulatedEye;
-use crate::eye::source::Source;
 
 /// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
 #[derive(Args, Debug)]
@@ -77,7 +76,7 @@ impl TraceArgs {
             ("--calibration", self.eye.calibration.is_some()),
             ("--open-loop", self.follow.open_loop),
             ("--sim-trouble", !self.follow.sim_trouble.is_empty()),
-            ("--sim-camera", self.eye.sim_camera != SimulatedEye::default()),
+            ("--sim-camera", self.eye.sim_camera != SimulatedEyeName::default()),
         ];
         let follows = self.follow.open_loop || !self.follow.sim_trouble.is_empty() || self.home;
         if follows && self.eye.camera.is_some() && !self.is_simulated() {

@@ -1,6 +1,12 @@
 //! What becomes of a run when something is suddenly off: it is dark, somebody looks, and the head is found again.
 
 use tracelight_aim::{Alignment, HeadGeometry, HeadPose, TrimBelief};
+use tracelight_eye::figures::RecoveryFigures;
+use tracelight_eye::follow::{Blind, Followed, Follower, Suspicion};
+use tracelight_eye::head::{DotsRequest, find_head};
+use tracelight_eye::homing::lost_power;
+use tracelight_eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
+use tracelight_eye::{Eye, Looks, PATIENCE_TICKS, Shot};
 use tracelight_pipeline::refused;
 use tracelight_rig::{Command, PanTilt, Rig, TICK_F64_S, Telemetry};
 use tracelight_sim::Tick;
@@ -10,12 +16,7 @@ use tracelight_trajectory::{Plan, plan};
 
 use super::log_tick;
 use super::watched::{REST_TICKS, Watched, Why};
-use crate::eye::follow::{Blind, Followed, Follower, Suspicion};
-use crate::eye::head::{DotsRequest, find_head};
-use crate::eye::homing::lost_power;
-use crate::eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
-use crate::eye::{Eye, Looks, PATIENCE_TICKS, Shot};
-use crate::output::RecoveryFigures;
+use crate::named;
 
 /// Most times that a job is begun anew after something was suddenly off.
 pub(super) const MOST_RECOVERIES: usize = 6;
@@ -86,7 +87,7 @@ impl Watched<'_> {
         };
         self.figures.lost_images += self.follower.watch.lost;
         self.follower.look_from(wall.camera.camera);
-        self.wall = wall.known();
+        self.wall = wall.known(&named::today());
         // an image without the spot, as it sees now
         self.rest(REST_TICKS);
         self.recovered(began_s, format!("the camera {moved}; it was found anew"), 0);

@@ -1,6 +1,14 @@
 //! What a camera adds to a job: the figure is traced where it is seen, and the head is found from dots before it draws.
 
 use tracelight_aim::{Alignment, Camera, TrimBelief};
+use tracelight_camera::Source;
+use tracelight_eye::Looks;
+use tracelight_eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_figure};
+use tracelight_eye::figures::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures};
+use tracelight_eye::follow::Followed;
+use tracelight_eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_front};
+use tracelight_eye::homing::{check_homed, home_head};
+use tracelight_eye::room::{Furnished, RoomRequest};
 use tracelight_picture::Raster;
 use tracelight_pipeline::{Driving, sketch};
 use tracelight_rig::PanTilt;
@@ -12,16 +20,9 @@ use tracelight_stroke::{Comparison, Drawing, Point, compare};
 use tracelight_task::{Failure, Task};
 
 use super::Prepared;
+use crate::cli::eyes::SimulatedEyeName;
 use crate::cli::request::TraceArgs;
-use crate::eye::Looks;
-use crate::eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_figure};
-use crate::eye::follow::Followed;
-use crate::eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_front};
-use crate::eye::homing::{check_homed, home_head};
-use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
-use crate::eye::source::Source;
 use crate::named;
-use crate::output::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures};
 
 /// What was seen before a run.
 pub(super) struct Seen {
@@ -53,8 +54,9 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
         (put_up(&room, &driving.rig, driving.pose), room)
     });
     let mut camera = args.eye.open()?;
+    let known_camera = args.eye.known()?;
     let wanted = FigureRequest {
-        eye: &args.eye,
+        known: known_camera.as_ref(),
         tracing: &args.tracing.tracing(),
         choice: &args.placement.choice.choice(),
         most_refused: args.retakes,
@@ -98,7 +100,7 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
         figure_mm: None,
     };
     let followed = head.followed(camera, &driving);
-    let known = wall.known();
+    let known = wall.known(&named::today());
     let room = simulated.map(|(_, room)| room);
     let truth = truth(args, room.as_ref(), task)?;
     let seen = Seen { room, figures, image: wall.pixels, wall: known, followed, truth };
@@ -170,7 +172,7 @@ fn head_of(
 /// The room, if it is simulated.
 fn furnished(args: &TraceArgs, driving: &Driving) -> Result<Option<Furnished>, Failure> {
     let Source::Simulated(picture) = args.eye.source()? else { return Ok(None) };
-    if args.eye.sim_camera == SimulatedEye::Report && args.eye.has_pages()? {
+    if args.eye.sim_camera == SimulatedEyeName::Report && args.eye.has_pages()? {
         let message = format!(
             "the report's camera does not see picture and pages at once: calibrate it first (tracelight calibrate markers --camera sim \
              --sim-camera report --seed {} -o camera.toml), then give --calibration camera.toml",
@@ -178,10 +180,11 @@ fn furnished(args: &TraceArgs, driving: &Driving) -> Result<Option<Furnished>, F
         );
         return Err(Failure::usage("usage", message));
     }
+    let picture = picture.map(named::painted).transpose()?;
     let request = RoomRequest {
-        picture,
+        picture: picture.as_ref(),
         placing: &args.placement.placing(),
-        eye: args.eye.sim_camera,
+        eye: args.eye.sim_camera.eye(),
         pages: args.eye.has_pages()?,
         seed: args.seed,
     };

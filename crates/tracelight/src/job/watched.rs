@@ -2,6 +2,13 @@
 //! on from where the light was last seen to be right.
 
 use tracelight_aim::Correction;
+use tracelight_eye::feed::TrimmedFeeder;
+use tracelight_eye::figures::{FollowFigures, SeenOff, TrimFigures};
+use tracelight_eye::follow::{Blind, Follower, Suspicion, strayed_rad};
+use tracelight_eye::homing::lost_power;
+use tracelight_eye::painted::Painted;
+use tracelight_eye::seen::{SeenLight, SeenMark};
+use tracelight_eye::trouble::TroubleAt;
 use tracelight_pipeline::Driving;
 use tracelight_rig::{Command, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
 use tracelight_rigfile::camera::KnownCamera;
@@ -14,12 +21,7 @@ use super::log_tick;
 use super::recovery::MOST_RECOVERIES;
 use super::remainder::{join, left};
 use super::seen::Seen;
-use crate::eye::feed::TrimmedFeeder;
-use crate::eye::follow::{Blind, Follower, Suspicion, strayed_rad};
-use crate::eye::homing::lost_power;
-use crate::eye::painted::Painted;
-use crate::eye::trouble::TroubleAt;
-use crate::output::{FollowFigures, LogWriter, OutputError, SeenLight, SeenMark, SeenOff, TrimFigures};
+use crate::output::{LogWriter, OutputError};
 
 /// What is to be run.
 pub(super) struct WatchedJob<'a> {

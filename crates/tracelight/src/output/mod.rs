@@ -12,7 +12,6 @@
 //! | `seen.csv`, `seen.jpg` | [`seen`], where it followed the spot |
 //! | `report.html` | [`report`] |
 
-mod board;
 mod csv;
 pub(crate) mod drawing;
 mod events;
@@ -36,6 +35,8 @@ mod summary;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use tracelight_eye::figures::EyeFigures;
+use tracelight_eye::seen::SeenLight;
 use tracelight_picture::Raster;
 use tracelight_rig::PanTilt;
 use tracelight_sim::{Run, Tracking};
@@ -44,17 +45,12 @@ use tracelight_task::Failure;
 use tracelight_trajectory::Plan;
 use tracelight_vision::Quality;
 
-pub(crate) use board::{BAR_M, page_pdf, page_raster, page_svg, printed_m};
 pub(crate) use events::{Event, events};
 pub(crate) use log::{LogMeta, LogWriter};
 pub(crate) use preview::{ColourBy, preview};
 pub(crate) use report::html;
 pub(crate) use sample::planned;
-pub(crate) use seen::{SeenLight, SeenMark};
-pub(crate) use summary::{
-    EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures, PlanFigures, RecoveryFigures, SeenOff,
-    StrokeFigures, Summary, TrimFigures,
-};
+pub(crate) use summary::{PlanFigures, StrokeFigures, Summary};
 
 /// A finished (or stopped) job, as the outputs see it.
 pub(crate) struct Job<'a> {

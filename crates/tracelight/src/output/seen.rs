@@ -3,36 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use tracelight_picture::Raster;
-use tracelight_stroke::Point;
+use tracelight_eye::seen::SeenMark;
 
 use super::{Job, OutputError, forget, write_jpeg};
-
-/// Where the spot was seen, and where it was asked to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SeenMark {
-    /// Since the rig's power-up, s.
-    pub(crate) time_s: f64,
-    /// On the target, m.
-    pub(crate) seen: Point,
-    pub(crate) asked: Point,
-}
-
-/// What a camera saw while the laser drew.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SeenLight {
-    /// In the order they were seen.
-    pub(crate) marks: Vec<SeenMark>,
-    /// The spot of each image on the wall.
-    pub(crate) painting: Option<Raster>,
-}
-
-impl SeenMark {
-    /// How far it is from where it should be, mm.
-    pub(crate) fn off_mm(&self) -> f64 {
-        1e3 * self.seen.distance(self.asked)
-    }
-}
 
 /// Writes both; those that an earlier job left are removed where nobody looked.
 pub(super) fn write(dir: &Path, job: &Job<'_>) -> Result<(), OutputError> {
@@ -66,6 +39,7 @@ fn rows(marks: &[SeenMark]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tracelight_stroke::Point;
 
     #[test]
     fn a_row_tells_where_it_was_seen_and_how_far_off() {

@@ -1,6 +1,11 @@
 use clap::Args;
 use serde_json::json;
 use tracelight_aim::HeadPose;
+use tracelight_camera::Source;
+use tracelight_eye::head::{DotsRequest, FoundHead, find_head, in_front};
+use tracelight_eye::homing::{Homed, home_head};
+use tracelight_eye::room::{Furnished, RoomRequest};
+use tracelight_eye::wall::{SeenWall, see_wall, well_exposed};
 use tracelight_files as files;
 use tracelight_rig::PanTilt;
 use tracelight_rigfile as rigfile;
@@ -13,11 +18,6 @@ use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::{Answer, Voice};
-use crate::eye::head::{DotsRequest, FoundHead, find_head, in_front};
-use crate::eye::homing::{Homed, home_head};
-use crate::eye::room::{Furnished, RoomRequest};
-use crate::eye::source::Source;
-use crate::eye::wall::{SeenWall, see_wall, well_exposed};
 use crate::named;
 
 /// Where the head stands and points, from dots that it draws and a camera sees
@@ -58,10 +58,11 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
         let message = "no head can be driven yet but simulated ones, and they draw in simulated rooms: give --camera sim or sim:PICTURE";
         return Err(Failure::usage("usage", message));
     };
+    let picture = picture.map(named::painted).transpose()?;
     let request = RoomRequest {
-        picture,
+        picture: picture.as_ref(),
         placing: &args.placement.placing(),
-        eye: args.eye.sim_camera,
+        eye: args.eye.sim_camera.eye(),
         pages: args.eye.has_pages()?,
         seed: args.seed,
     };

@@ -1,8 +1,13 @@
 use clap::Args;
 use serde_json::{Value, json};
 use tracelight_aim::{Board, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
+use tracelight_camera::Source;
+use tracelight_eye::board::BAR_M;
+use tracelight_eye::grey;
+use tracelight_eye::room::{Furnished, RoomRequest};
+use tracelight_eye::wall::{doubts, markers, well_exposed};
 use tracelight_files as files;
-use tracelight_picture::Source;
+use tracelight_picture as picture;
 use tracelight_pipeline::{DEFAULT_DISTANCE_M, Placing};
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::PageName;
@@ -14,13 +19,10 @@ use tracelight_units::Length;
 use tracelight_vision::Grey;
 
 use crate::cli::eyes::ImageSize;
+use crate::cli::eyes::SimulatedEyeName;
 use crate::cli::placing::positive_length;
 use crate::cli::{Answer, Voice};
-use crate::eye::room::{Furnished, RoomRequest, SimulatedEye};
-use crate::eye::wall::{doubts, markers, well_exposed};
-use crate::eye::{self, grey};
 use crate::named;
-use crate::output::BAR_M;
 
 /// The camera in front of the wall, from an image of printed markers on it: lens, pose, scale
 #[derive(Args, Debug)]
@@ -41,7 +43,7 @@ pub(super) struct MarkersArgs {
     camera_size: Option<ImageSize>,
     /// Which camera is simulated
     #[arg(long, value_enum, default_value_t, requires = "camera")]
-    sim_camera: SimulatedEye,
+    sim_camera: SimulatedEyeName,
     /// What a simulated room is like is drawn from this seed
     #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true, requires = "camera")]
     seed: u64,
@@ -256,7 +258,7 @@ impl View {
 }
 
 fn found(path: &str) -> Result<View, Failure> {
-    let Source::Pixels(pixels) = named::picture(path)? else {
+    let picture::Source::Pixels(pixels) = named::picture(path)? else {
         let message = format!("{path} is a drawing; give an image that a camera took");
         return Err(Failure::usage("not-a-picture", message));
     };
@@ -265,15 +267,17 @@ fn found(path: &str) -> Result<View, Failure> {
 
 /// An image of a camera.
 fn taken(args: &MarkersArgs, name: &str, known: Option<&LensBelief>, stop: &Stop) -> Result<View, Failure> {
-    let source = eye::source::Source::of(name)?;
+    let source = Source::of(name)?;
     let size = args.camera_size.map(|size| size.0).or_else(|| known.map(|known| known.lens.size_px));
     let pixels = match (source.open(size)?, source) {
         (Some(mut camera), _) => well_exposed(&mut *camera, stop)?,
-        (None, eye::source::Source::Simulated(picture)) => {
+        (None, Source::Simulated(picture)) => {
             let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));
             let placing = Placing::default();
-            let (eye, seed) = (args.sim_camera, args.seed);
-            let request = RoomRequest { picture, placing: &placing, eye, pages: true, seed };
+            let (eye, seed) = (args.sim_camera.eye(), args.seed);
+            let picture = picture.map(named::painted).transpose()?;
+            let request =
+                RoomRequest { picture: picture.as_ref(), placing: &placing, eye, pages: true, seed };
             well_exposed(&mut Furnished::new(&request, &rig, pose)?.watched(&rig, pose), stop)?
         }
         (None, _) => return Err(Failure::failed("internal", "a camera that is none")),

@@ -1,12 +1,12 @@
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use tracelight_aim::Board;
+use tracelight_eye::board::{BAR_M, page_pdf, page_svg};
 use tracelight_files as files;
 use tracelight_pipeline::Paper;
 use tracelight_task::Failure;
 
 use crate::cli::{Answer, Voice};
-use crate::output::{BAR_M, page_pdf, page_svg};
 
 /// Pages of printed markers, to be stuck on the wall where a camera sees them
 #[derive(Args, Debug)]

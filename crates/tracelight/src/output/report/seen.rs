@@ -1,9 +1,11 @@
 use std::fmt::Write;
 
+use tracelight_eye::seen::SeenLight;
+
 use super::axis::Axis;
 use super::html::{escaped, jpeg_uri, number};
 use super::map::{COLOURS, Place, bar, bin_of, coloured, picture, swatches};
-use crate::output::{Job, OutputError, SeenLight};
+use crate::output::{Job, OutputError};
 
 /// What a camera saw while the laser drew, as a section of its own; nothing where none looked.
 pub(super) fn section(job: &Job<'_>) -> Result<String, OutputError> {
@@ -87,7 +89,8 @@ mod tests {
     use tracelight_stroke::{Point, Vec2};
 
     use super::*;
-    use crate::output::{SeenMark, fixture};
+    use crate::output::fixture;
+    use tracelight_eye::seen::SeenMark;
 
     #[test]
     fn a_run_nobody_watched_has_no_section_and_a_watched_one_has_its_arrows() {

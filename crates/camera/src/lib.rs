@@ -1,0 +1,10 @@
+//! Where images come from that are not simulated: cameras that are plugged in or on the net, films, and files.
+
+#[cfg(target_os = "linux")]
+mod device;
+mod film;
+mod latest;
+mod source;
+mod stream;
+
+pub use source::{Source, devices};

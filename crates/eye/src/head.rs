@@ -1,0 +1,306 @@
+//! The head found from dots that it draws and a camera sees.
+//!
+//! A dot is a circle of a few millimetres, drawn slowly: at rest an encoder says no more than between which two of its edges a joint is.
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, SeenSpot, align};
+use tracelight_pipeline::{Driving, refused};
+use tracelight_rig::Command;
+use tracelight_rigfile::Timing;
+use tracelight_sim::{Simulated, Tick, run_segments};
+use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
+use tracelight_task::{Failure, Task};
+use tracelight_trajectory::{Plan, PlanRequest, plan};
+
+use crate::homing::check_homed;
+use crate::spots::{History, Sight, Sighting, SpotWatch};
+use crate::{Eye, Looks};
+
+/// Radius of a dot, m: three and a half counts of the report's encoders at 3 ft.
+const DOT_M: f64 = 0.005;
+/// Speed at which it is drawn, m/s.
+const DOT_SPEED_M_S: f64 = 0.1;
+/// Dots across, and as many down: of a head of which nothing is known, and of one that moved.
+const ACROSS: usize = 5;
+const ACROSS_AGAIN: usize = 3;
+/// Images of dots of a head that moved in which nothing is seen: it points elsewhere.
+const IN_VAIN: usize = 6;
+/// Share of the image, from its border, in which none are drawn.
+const BORDER: f64 = 0.08;
+/// A first guess of an exposure in which the spot is not full, s.
+pub const SPOT_EXPOSURE_S: f64 = 2e-3;
+/// Ticks after a job in which its last images arrive.
+const AFTERMATH_TICKS: u32 = 300;
+/// How often lateness is estimated anew: each time what is left is a tenth or less.
+const ROUNDS: usize = 4;
+
+/// A head that was found.
+pub struct FoundHead {
+    /// How it is built and stands.
+    pub aligned: Aligned,
+    /// When the camera's images are taken.
+    pub timing: Timing,
+    /// Exposure in which the spot is not full, s.
+    pub exposure_s: f64,
+    /// Dots that were drawn.
+    pub dots: usize,
+    /// Images in which the spot was looked for in vain.
+    pub lost: usize,
+}
+
+/// What is known before dots are drawn.
+pub struct DotsRequest {
+    belief: AlignmentBelief,
+    timing: Timing,
+    /// A first guess of an exposure in which the spot is not full, s.
+    exposure_s: f64,
+    /// Dots across, and as many down.
+    across: usize,
+    /// After so many images in which the spot was looked for and never once seen it is given up.
+    most_in_vain: usize,
+}
+
+impl DotsRequest {
+    /// Of a head that somebody put up by eye, and a camera whose stamps nobody knows.
+    pub const fn first(driving: &Driving) -> Self {
+        Self {
+            belief: AlignmentBelief::by_eye(driving.machine.geometry, driving.pose),
+            timing: Timing::USUAL,
+            exposure_s: SPOT_EXPOSURE_S,
+            across: ACROSS,
+            most_in_vain: usize::MAX,
+        }
+    }
+
+    /// Of a known head that was homed by one dot: to tell where zero is.
+    pub const fn few(driving: &Driving, timing: Timing, exposure_s: f64) -> Self {
+        Self { across: ACROSS_AGAIN, timing, exposure_s, ..Self::first(driving) }
+    }
+
+    /// Of a head that stood and was built so until it was bumped or an encoder slipped, by a few degrees; the camera's stamps are known.
+    pub const fn again(driving: &Driving, timing: Timing, exposure_s: f64) -> Self {
+        let first = AlignmentBelief::by_eye(driving.machine.geometry, driving.pose);
+        // where the beam points is also where the tilt encoder's zero is
+        let belief = AlignmentBelief {
+            place_m: 0.01,
+            turn_rad: 0.05,
+            offset_m: 2e-4,
+            beam_rad: 0.03,
+            skew_rad: 1e-3,
+            late_s: 2e-3,
+            readout_s: 2e-3,
+            ..first
+        };
+        Self { belief, timing, exposure_s, across: ACROSS_AGAIN, most_in_vain: IN_VAIN }
+    }
+}
+
+/// Places for the dots: evenly over what the camera sees, as far as the head reaches.
+fn dots(camera: &Camera, driving: &Driving, across: usize) -> Vec<Point> {
+    let [width, height] = camera.lens.size_px.map(|n| n as f64);
+    let place = |k: usize| BORDER + (1.0 - 2.0 * BORDER) * k as f64 / (across - 1) as f64;
+    let at = |row: usize, k: usize| {
+        // each other row back
+        let column = if row.is_multiple_of(2) { k } else { across - 1 - k };
+        Point::new(width * place(column), height * place(row))
+    };
+    let all = (0..across * across).map(|k| at(k / across, k % across));
+    let reached = |at: &Point| {
+        let edges =
+            [Vec2::new(DOT_M, 0.0), Vec2::new(-DOT_M, 0.0), Vec2::new(0.0, DOT_M), Vec2::new(0.0, -DOT_M)];
+        edges.iter().all(|edge| driving.machine.angles(*at + *edge).is_ok())
+    };
+    all.filter_map(|pixel| camera.target(pixel)).filter(reached).collect()
+}
+
+/// The plan that draws dots in their order.
+fn plan_of(dots: &[Point], driving: &Driving) -> Result<Plan, Failure> {
+    let circle = |at: &Point| {
+        let mut path = Path::new(*at + Vec2::new(DOT_M, 0.0));
+        (0..2).for_each(|_| path.push(Element::Arc { centre: *at, sweep: PI }));
+        path.close();
+        Stroke::new(path)
+    };
+    let drawing = Drawing { strokes: dots.iter().map(circle).collect() };
+    let request = PlanRequest { speed_m_s: DOT_SPEED_M_S, ..driving.request };
+    plan(&drawing, &driving.machine, &request).map_err(refused)
+}
+
+/// Dots that were drawn and watched.
+pub struct SeenDots {
+    watch: SpotWatch,
+    history: History,
+    sightings: Vec<Sighting>,
+    dots: usize,
+}
+
+impl SeenDots {
+    /// Where they were seen, and where the encoders had the joints then.
+    pub fn spots(&self) -> Vec<SeenSpot> {
+        spots(&self.sightings, &self.history, &self.watch.timing)
+    }
+}
+
+/// Has the head draw dots, watches them, and finds the head; whoever keeps its ticks is given each of them. The rig rests at zero in the dark; afterwards it rests
+/// in the dark at the last dot.
+pub fn find_head<R: Simulated + Eye>(
+    rig: &mut R,
+    camera: &Camera,
+    driving: &Driving,
+    request: &DotsRequest,
+    task: Task<'_>,
+    keep: &mut dyn FnMut(&Tick),
+) -> Result<FoundHead, Failure> {
+    let mut seen = see_dots(rig, camera, driving, request, task, keep)?;
+    let aligned = aligned(&request.belief, &mut seen.watch.timing, &seen.sightings, &seen.history)
+        .map_err(|e| not_found(&e, &seen.watch, seen.dots))?;
+    Ok(FoundHead {
+        aligned,
+        timing: Timing { unsure_s: Timing::FOUND_S, ..seen.watch.timing },
+        exposure_s: seen.watch.exposure_s,
+        dots: seen.dots,
+        lost: seen.watch.lost,
+    })
+}
+
+/// Has the head draw dots, and watches them. The rig is as for [`find_head`].
+pub fn see_dots<R: Simulated + Eye>(
+    rig: &mut R,
+    camera: &Camera,
+    driving: &Driving,
+    request: &DotsRequest,
+    task: Task<'_>,
+    keep: &mut dyn FnMut(&Tick),
+) -> Result<SeenDots, Failure> {
+    let belief = &request.belief;
+    let places = dots(camera, driving, request.across);
+    let plan = plan_of(&places, driving)?;
+    task.stage("dots", plan.points.len() as u64);
+    let mut watch = SpotWatch::new(*camera, request.exposure_s.min(rig.longest_s()));
+    watch.timing = request.timing;
+    watch.begin(rig.take(watch.exposure_s)?);
+    let mut history = History::new(&driving.rig.model.relay);
+    let mut sightings = Vec::new();
+    let (mut in_vain, mut homed) = (false, Ok(()));
+    let run = run_segments(rig, &plan.segments, false, |rig, now| {
+        keep(now);
+        history.push(&now.telemetry);
+        look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
+        task.at(u64::from(now.telemetry.plan_tick));
+        in_vain = sightings.is_empty() && watch.lost > request.most_in_vain;
+        homed = check_homed(&now.telemetry);
+        if in_vain || homed.is_err() || task.stop.is_wanted() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    // dark, whether it came to its end or not
+    let _ = rig.send(Command::Disarm);
+    for _ in 0..AFTERMATH_TICKS {
+        let _ = rig.send(Command::KeepAlive);
+        let tick = rig.step();
+        keep(&tick);
+        homed = homed.and_then(|()| check_homed(&tick.telemetry));
+        if homed.is_err() {
+            break;
+        }
+        history.push(&tick.telemetry);
+        look(rig, &mut watch, &history, &belief.alignment, &mut sightings);
+    }
+    task.check()?;
+    if let Some(fault) = run.fault() {
+        return Err(Failure::fault(fault));
+    }
+    homed?;
+    if in_vain {
+        let message =
+            format!("in {} images of its dots no spot is to be seen: it points elsewhere", watch.lost);
+        return Err(Failure::failed("head-not-found", message));
+    }
+    if !run.is_done() {
+        let message =
+            "the head left its dots again and again, and the run was given up; step nearer (--distance)";
+        return Err(Failure::failed("unfinished", message));
+    }
+    Ok(SeenDots { watch, history, sightings, dots: places.len() })
+}
+
+fn look<R: Eye>(
+    rig: &mut R,
+    watch: &mut SpotWatch,
+    history: &History,
+    head: &Alignment,
+    sightings: &mut Vec<Sighting>,
+) {
+    while let Some(shot) = rig.shot() {
+        if let Sight::Seen(sighting) = watch.see(&shot, history, head) {
+            sightings.push(sighting);
+        }
+        watch.bound(rig.longest_s());
+        rig.expose(watch.exposure_s);
+    }
+}
+
+fn spots(sightings: &[Sighting], history: &History, timing: &Timing) -> Vec<SeenSpot> {
+    sightings.iter().filter_map(|sighting| sighting.spot(history, timing)).collect()
+}
+
+fn aligned(
+    belief: &AlignmentBelief,
+    timing: &mut Timing,
+    sightings: &[Sighting],
+    history: &History,
+) -> Result<Aligned, AlignError> {
+    let mut found = align(belief, &spots(sightings, history, timing))?;
+    for _ in 1..ROUNDS {
+        timing.late_s += found.alignment.late_s;
+        timing.readout_s += found.alignment.readout_s;
+        found = align(belief, &spots(sightings, history, timing))?;
+    }
+    Ok(found)
+}
+
+fn not_found(error: &AlignError, watch: &SpotWatch, dots: usize) -> Failure {
+    let why = watch.last_lost.map_or_else(String::new, |why| {
+        format!("; {} times it was looked for in vain, last: {why}", watch.lost)
+    });
+    Failure::failed("head-not-found", format!("of {dots} dots: {error}{why}"))
+}
+
+/// Where a head probably stands that was put up in front of the middle of what the camera shows: square-on, as far away as told, and as
+/// upright as the camera, however the page hangs whose frame is the wall's.
+pub fn in_front(camera: &Camera, distance_m: f64) -> HeadPose {
+    let [width, height] = camera.lens.size_px.map(|n| n as f64);
+    let on_wall = |down: f64| camera.target(Point::new(width / 2.0, height * down));
+    let (Some(middle), Some(above)) = (on_wall(0.5), on_wall(0.45)) else {
+        return HeadPose::square_on(distance_m);
+    };
+    let up = above - middle;
+    let upright = Affine::rotate((-up.x).atan2(up.y)).then_translate(middle.to_vec2());
+    HeadPose::square_on(distance_m).in_frame(upright)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_aim::{CameraPose, Lens};
+
+    #[test]
+    fn a_head_is_taken_to_be_upright_however_the_page_hangs() {
+        let pose = CameraPose::looking_at([0.3, 0.2, 1.2], [0.1, 0.0, 0.0]).unwrap();
+        let camera = Camera { lens: Lens::ideal(1280, 720, 1000.0), pose };
+        let upright = in_front(&camera, 0.9);
+        assert!(upright.roll_rad.abs() < 0.06 && (upright.right_m - 0.1).abs() < 1e-9, "{upright:?}");
+        for turn_rad in [0.5, 1.6, 3.1, -2.0] {
+            let frame = Affine::rotate(turn_rad).then_translate(Vec2::new(0.3, -0.4));
+            let turned = in_front(&Camera { pose: camera.pose.in_frame(frame), ..camera }, 0.9);
+            let wanted = upright.in_frame(frame);
+            assert!((turned.right_m - wanted.right_m).hypot(turned.up_m - wanted.up_m) < 1e-9);
+            let off = (turned.roll_rad - wanted.roll_rad).rem_euclid(2.0 * PI);
+            assert!(off.min(2.0 * PI - off) < 1e-9, "{turned:?} {wanted:?}");
+        }
+    }
+}

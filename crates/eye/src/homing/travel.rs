@@ -1,0 +1,215 @@
+//! How a head goes round of which nobody knows where it points: gently, a joint at a time, and back from whatever is in its way.
+
+use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, Segment, TICK_F64_S, Telemetry};
+use tracelight_sim::Simulated;
+use tracelight_task::Failure;
+use tracelight_trajectory::JointMotion;
+
+use super::{Homing, REST_TICKS};
+use crate::Eye;
+
+/// Fastest and most sudden motion of a joint of which nobody knows where it is, rad/s and rad/s².
+const GENTLE_RAD_S: f64 = 1.5;
+const GENTLE_RAD_S2: f64 = 4.0;
+/// How far it may stray meanwhile, rad.
+const STRAY_RAD: f32 = 0.05;
+/// Most times that a joint comes up against something: it has two stops.
+const MOST_STOPS: usize = 8;
+/// How far before a stop a joint turns back, rad.
+pub(super) const BEFORE_STOP_RAD: f64 = 0.03;
+/// Of how many strides on either joint a place is no other than one that was tried.
+const SAME_STRIDES: f64 = 0.25;
+/// How long a joint swings that came up against something, ticks.
+const SWING_TICKS: u32 = 300;
+/// Longest that a head takes to go to zero, ticks.
+const HOMEWARD_TICKS: u32 = 15_000;
+/// How near to it is there, rad, and how slow at rest, rad/s.
+const THERE_RAD: f32 = 3e-3;
+const STILL_RAD_S: f32 = 0.01;
+
+impl<R: Simulated + Eye> Homing<'_, R> {
+    /// Goes to a place, or as near to it as a stop lets it, one joint after the other; where it is then, unless a dot was tried there before.
+    pub(super) fn reach(
+        &mut self,
+        at: &mut PanTilt<f64>,
+        place: PanTilt<f64>,
+        stride_rad: PanTilt<f64>,
+        tried: &[PanTilt<f64>],
+    ) -> Result<Option<PanTilt<f64>>, Failure> {
+        loop {
+            let there = PanTilt::from_fn(|j| {
+                let (lower, upper) = self.free_rad[j];
+                place[j].clamp(lower, upper)
+            });
+            let is_same = |other: &PanTilt<f64>| {
+                Joint::BOTH.into_iter().all(|j| (there[j] - other[j]).abs() < SAME_STRIDES * stride_rad[j])
+            };
+            if tried.iter().any(is_same) {
+                return Ok(None);
+            }
+            let stopped = Joint::BOTH.into_iter().find_map(|j| {
+                let mut to = *at;
+                to[j] = there[j];
+                match self.go(*at, to) {
+                    Ok(None) => {
+                        *at = to;
+                        None
+                    }
+                    Ok(Some(fault)) => Some(self.turn_back(j, there[j] - at[j], tried, fault)),
+                    Err(failure) => Some(Err(failure)),
+                }
+            });
+            match stopped {
+                None => return Ok(Some(there)),
+                Some(turned) => turned?,
+            }
+            *at = PanTilt::new(0.0, 0.0);
+        }
+    }
+
+    /// Something was in a joint's way, as the fault shows: goes back to where it was powered up, and goes no further that way, unless it was there before.
+    fn turn_back(
+        &mut self,
+        joint: Joint,
+        way_rad: f64,
+        tried: &[PanTilt<f64>],
+        fault: Fault,
+    ) -> Result<(), Failure> {
+        self.stops += 1;
+        if self.stops > MOST_STOPS || !may_be_a_stop(fault) {
+            return Err(Failure::fault(fault));
+        }
+        // it may still go on, and swings back
+        let mut end_rad = f64::NEG_INFINITY;
+        for _ in 0..SWING_TICKS {
+            let count = self.tick()?.measured[joint].count;
+            end_rad = end_rad.max(way_rad.signum() * self.count_rad() * f64::from(count));
+        }
+        let beyond = |place: &PanTilt<f64>| way_rad.signum() * place[joint] > end_rad;
+        if !tried.iter().any(beyond) {
+            let (lower, upper) = &mut self.free_rad[joint];
+            let free_rad = (end_rad - BEFORE_STOP_RAD).max(0.0);
+            if way_rad < 0.0 {
+                *lower = -free_rad
+            } else {
+                *upper = free_rad
+            }
+            self.task.say(&format!(
+                "note: something is in the way of {joint} {:.0}° from where it was powered up: it goes no further that way",
+                end_rad.max(0.0).to_degrees()
+            ));
+        }
+        let _ = self.rig.send(Command::Arm);
+        self.zero("the head does not come back from where something was in its way: is it free?")
+    }
+
+    /// Moves in the dark from rest to rest, by its encoders, and rests; the fault that ended it, if one did.
+    fn go(&mut self, from: PanTilt<f64>, to: PanTilt<f64>) -> Result<Option<Fault>, Failure> {
+        let far = (to.pan - from.pan).abs().max((to.tilt - from.tilt).abs());
+        if far == 0.0 {
+            return Ok(None);
+        }
+        // a quintic from rest to rest is 1.875 times as fast as in the mean, and speeds up with 5.77 times way over time squared
+        let time_s = (1.875 * far / GENTLE_RAD_S).max((5.774 * far / GENTLE_RAD_S2).sqrt());
+        let ticks = (time_s / TICK_F64_S).ceil().clamp(50.0, 30_000.0);
+        let coefficients = PanTilt::from_fn(|j| {
+            JointMotion::at_rest(from[j]).quintic_to(&JointMotion::at_rest(to[j]), ticks).map(|c| c as f32)
+        });
+        let tolerance_rad = PanTilt::new(STRAY_RAD, STRAY_RAD);
+        let segment =
+            Segment { start_tick: 0, ticks: ticks as u16, coefficients, tolerance_rad, gate: false };
+        for command in [Command::Arm, Command::Append(segment), Command::Finish] {
+            let _ = self.rig.send(command);
+        }
+        let most = 2 * segment.ticks + 5000;
+        for _ in 0..most {
+            let now = self.tick()?;
+            if now.fault.is_some() {
+                return Ok(now.fault);
+            }
+            if now.phase == Phase::Done {
+                let _ = self.rig.send(Command::Disarm);
+                return self.fault_at_rest();
+            }
+        }
+        let message = "the head does not come where it is sent: is something in its way?";
+        Err(Failure::failed("unfinished", message))
+    }
+
+    /// Rests; the fault that shows meanwhile: what is in a joint's way just before its end shows when it pushes there.
+    fn fault_at_rest(&mut self) -> Result<Option<Fault>, Failure> {
+        for _ in 0..REST_TICKS {
+            let now = self.tick()?;
+            if now.fault.is_some() {
+                return Ok(now.fault);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Forgets what was to be done, and goes to where both encoders read zero; what it is told if it does not come there.
+    pub(super) fn zero(&mut self, otherwise: &str) -> Result<(), Failure> {
+        let _ = self.rig.send(Command::Abandon);
+        let is_there = |now: &Telemetry| {
+            let near =
+                |j: Joint| now.position_rad[j].abs() < THERE_RAD && now.velocity_rad_s[j].abs() < STILL_RAD_S;
+            Joint::BOTH.into_iter().all(near)
+        };
+        if self.until(HOMEWARD_TICKS, is_there)?.is_none() {
+            return Err(Failure::failed("unfinished", otherwise));
+        }
+        self.rest(REST_TICKS).map(|_| ())
+    }
+
+    /// Lets ticks pass until something holds; `None` if it never does.
+    fn until(
+        &mut self,
+        ticks: u32,
+        holds: impl Fn(&Telemetry) -> bool,
+    ) -> Result<Option<Telemetry>, Failure> {
+        for _ in 0..ticks {
+            let now = self.step()?;
+            if holds(&now) {
+                return Ok(Some(now));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Lets ticks pass.
+    pub(super) fn rest(&mut self, ticks: u32) -> Result<Telemetry, Failure> {
+        for _ in 1..ticks {
+            self.step()?;
+        }
+        self.step()
+    }
+
+    pub(super) fn step(&mut self) -> Result<Telemetry, Failure> {
+        let now = self.tick()?;
+        now.fault.map_or(Ok(now), |fault| Err(Failure::fault(fault)))
+    }
+
+    /// The same, whatever is wrong with the rig.
+    pub(super) fn tick(&mut self) -> Result<Telemetry, Failure> {
+        self.task.check()?;
+        let _ = self.rig.send(Command::KeepAlive);
+        let now = self.rig.step().telemetry;
+        self.history.push(&now);
+        Ok(now)
+    }
+}
+
+/// Whether a joint that comes up against something may have this fault.
+const fn may_be_a_stop(fault: Fault) -> bool {
+    matches!(
+        fault,
+        Fault::EncoderJumped
+            | Fault::EncoderDead
+            | Fault::EncoderSlipping
+            | Fault::EncoderNoisy
+            | Fault::EstimateDiverged
+            | Fault::HoldTimedOut
+            | Fault::AmplifierSaturated
+            | Fault::LimitReached
+    )
+}

@@ -1,0 +1,43 @@
+//! What looks at the wall: what the images of cameras, real or simulated, tell of a wall, a figure, a head and its spot. No device, no
+//! file.
+//!
+//! | part | what |
+//! |---|---|
+//! | [`Shot`] | an image, and when it was taken; [`coding`] how its bytes mean pixels |
+//! | [`about`] | what a camera says of itself |
+//! | [`Looks`] | what takes a shot when told |
+//! | [`Eye`] | what sends shots by itself while a rig runs |
+//! | [`board`] | pages of markers |
+//! | [`room`] | a simulated head and camera in front of a simulated wall |
+//! | [`wall`] | the camera found from markers in sight |
+//! | [`figure`] | the figure on the wall, as strokes |
+//! | [`spots`] | the laser's spot in shots, held against what the encoders said |
+//! | [`head`] | the head found from spots |
+//! | [`homing`] | a head that was just powered up finds where it points |
+//! | [`follow`] | the spot followed while a rig draws: what is off slowly, and suddenly |
+//! | [`painted`] | what was seen of it, as a picture |
+//! | [`feed`] | segments sent with what is slowly off taken off them |
+//! | [`trouble`] | what goes wrong in a simulated room |
+//! | [`figures`], [`seen`] | what was seen, as figures and as marks |
+
+pub mod about;
+pub mod board;
+pub mod coding;
+pub mod feed;
+pub mod figure;
+pub mod figures;
+pub mod follow;
+pub mod head;
+pub mod homing;
+mod looks;
+mod pages;
+pub mod painted;
+pub mod room;
+pub mod seen;
+mod shot;
+pub mod spots;
+pub mod trouble;
+pub mod wall;
+
+pub use looks::{Eye, Looks, MOST_IMAGE_BYTES, PATIENCE_TICKS};
+pub use shot::{Shot, grey};
