@@ -1,7 +1,7 @@
 //! What is in the files that the user named.
 
 use tracelight_files as files;
-use tracelight_picture::{Raster, Source, decode};
+use tracelight_picture::{Pixels, Raster, Source, decode};
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_rigfile::head::KnownHead;
@@ -13,10 +13,10 @@ pub(crate) fn picture(path: &str) -> Result<Source, Failure> {
     decode(path, &files::read(path)?)
 }
 
-/// What is to hang on a simulated wall.
-pub(crate) fn painted(path: &str) -> Result<Raster, Failure> {
+/// A picture to hang on a simulated wall.
+pub(crate) fn pixels(path: &str) -> Result<Pixels, Failure> {
     match picture(path)? {
-        Source::Pixels(pixels) => Ok(pixels.colour),
+        Source::Pixels(pixels) => Ok(pixels),
         Source::Strokes(_) => {
             let message = format!(
                 "{path} is a drawing; a simulated wall wants a picture with pixels: PNG, JPEG, WebP, BMP, GIF, PNM or TIFF"
@@ -24,6 +24,11 @@ pub(crate) fn painted(path: &str) -> Result<Raster, Failure> {
             Err(Failure::usage("not-a-picture", message))
         }
     }
+}
+
+/// Its colours.
+pub(crate) fn painted(path: &str) -> Result<Raster, Failure> {
+    Ok(pixels(path)?.colour)
 }
 
 /// A preset by name, or a rig file by path.

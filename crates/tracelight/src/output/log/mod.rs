@@ -92,11 +92,11 @@ impl LogWriter {
 
     /// Appends a tick and the point of the plan it follows; both are in the file when this returns. Laps follow each
     /// other in one log: where the ticks start again, the log's time goes on.
-    pub(crate) fn tick(&mut self, tick: &Tick, planned: &PlanPoint) -> Result<(), OutputError> {
-        self.append(&Sample::new(tick, planned)).map_err(|source| self.failure(source))
+    pub(crate) fn append(&mut self, tick: &Tick, planned: &PlanPoint) -> Result<(), OutputError> {
+        self.add(&Sample::new(tick, planned)).map_err(|source| self.failure(source))
     }
 
-    fn append(&mut self, sample: &Sample<'_>) -> McapResult<()> {
+    fn add(&mut self, sample: &Sample<'_>) -> McapResult<()> {
         let tick = self.clock.at(sample.tick.telemetry.tick);
         let lap = self.clock.laps + 1;
         self.send(self.channels.telemetry, tick, |out| schema::telemetry(out, sample, lap))?;
@@ -236,7 +236,7 @@ mod tests {
         let meta = LogMeta { picture_path: "star.png", settings: &fixture.settings, seed: 7 };
         let mut log = LogWriter::open(path, &meta).unwrap();
         for (tick, planned) in fixture.run.ticks.iter().zip(&fixture.plan.points).take(ticks) {
-            log.tick(tick, planned).unwrap();
+            log.append(tick, planned).unwrap();
         }
         (log, fixture)
     }
@@ -311,8 +311,8 @@ mod tests {
         let (mut log, fixture) = begun(&path, 10);
         let mut tick = fixture.run.ticks[10];
         tick.telemetry.fault = Some(Fault::EncoderJumped);
-        log.tick(&tick, &fixture.plan.points[10]).unwrap();
-        log.tick(&tick, &fixture.plan.points[11]).unwrap();
+        log.append(&tick, &fixture.plan.points[10]).unwrap();
+        log.append(&tick, &fixture.plan.points[11]).unwrap();
         log.finish().unwrap();
         let bytes = std::fs::read(&path).unwrap();
         assert_eq!(count(&bytes, "/faults"), 1);
@@ -325,7 +325,7 @@ mod tests {
         let path = file("laps");
         let (mut log, fixture) = begun(&path, 40);
         for tick in &fixture.run.ticks[..40] {
-            log.tick(tick, &fixture.plan.points[0]).unwrap();
+            log.append(tick, &fixture.plan.points[0]).unwrap();
         }
         log.finish().unwrap();
         let bytes = std::fs::read(&path).unwrap();

@@ -14,12 +14,8 @@ use tracelight_stroke::{Drawing, Stroke};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, plan};
 
-use super::log_tick;
-use super::watched::{REST_TICKS, Watched, Why};
-use crate::named;
+use crate::watched::{MOST_RECOVERIES, REST_TICKS, Watched, Why};
 
-/// Most times that a job is begun anew after something was suddenly off.
-pub(super) const MOST_RECOVERIES: usize = 6;
 /// Most ticks that a head needs to go back to zero, and what counts as there.
 const HOME_TICKS: u32 = 8000;
 const HOME_RAD: f64 = 2e-3;
@@ -34,7 +30,7 @@ const LONGEST_DOT_TICKS: f64 = 3000.0;
 
 impl Watched<'_> {
     /// What a jolt came to: the head is darkened, and one dot tells where it points. Nothing if that is where it should be, or nobody sees.
-    pub(super) fn dotted(&mut self, suspicion: Suspicion) -> Option<Suspicion> {
+    pub(crate) fn dotted(&mut self, suspicion: Suspicion) -> Option<Suspicion> {
         let Suspicion::Jolt(_) = suspicion else { return Some(suspicion) };
         let is_lit = self.joined.points.get(self.plan_tick as usize).is_some_and(|point| point.lit);
         let is_blind = self.follower.blind().is_some();
@@ -68,7 +64,7 @@ impl Watched<'_> {
     }
 
     /// Darkens, and looks what became of the camera. Why the head must be found again, if the camera stands where it stood.
-    pub(super) fn look_into(&mut self, suspicion: Suspicion) -> Result<Option<String>, Failure> {
+    pub(crate) fn look_into(&mut self, suspicion: Suspicion) -> Result<Option<String>, Failure> {
         let began_s = self.now_s();
         let Some(wall) = self.wall_now(suspicion)? else { return Ok(None) };
         if self.figures.recoveries.len() >= MOST_RECOVERIES {
@@ -87,7 +83,7 @@ impl Watched<'_> {
         };
         self.figures.lost_images += self.follower.watch.lost;
         self.follower.look_from(wall.camera.camera);
-        self.wall = wall.known(&named::today());
+        self.wall = wall.known(&self.job.seen.today);
         // an image without the spot, as it sees now
         self.rest(REST_TICKS);
         self.recovered(began_s, format!("the camera {moved}; it was found anew"), 0);
@@ -137,7 +133,7 @@ impl Watched<'_> {
     }
 
     /// Time since power-up, s.
-    pub(super) fn now_s(&self) -> f64 {
+    pub(crate) fn now_s(&self) -> f64 {
         self.run.ticks.last().map_or(0.0, |tick| f64::from(tick.telemetry.tick) * TICK_F64_S)
     }
 
@@ -148,7 +144,7 @@ impl Watched<'_> {
     }
 
     /// Goes home in the dark, has the head draw a few dots, and plans what is left with the head as it is now.
-    pub(super) fn found_again(
+    pub(crate) fn found_again(
         &mut self,
         Why { words: why, seen_off }: &Why,
         left: &Drawing,
@@ -160,7 +156,7 @@ impl Watched<'_> {
         let (timing, exposure_s) = (self.follower.watch.timing, self.follower.watch.exposure_s);
         let camera = self.wall.stood.as_ref().map_or(self.job.seen.followed.camera, |s| s.camera.camera);
         let request = DotsRequest::again(&self.driving, timing, exposure_s);
-        let Self { room, log, joined, failed, plan_tick, unpowered, .. } = self;
+        let Self { room, keep: kept, joined, failed, plan_tick, unpowered, .. } = self;
         let mut keep = |tick: &Tick| {
             let mut tick = *tick;
             *unpowered |= !tick.telemetry.homed;
@@ -168,7 +164,7 @@ impl Watched<'_> {
                 return;
             }
             tick.telemetry.plan_tick = *plan_tick;
-            if let Err(error) = log_tick(log, joined, &tick) {
+            if let Err(error) = kept.tick(joined, &tick) {
                 *failed = failed.take().or(Some(error));
             }
         };

@@ -1,65 +1,45 @@
 //! What a camera adds to a job: the figure is traced where it is seen, and the head is found from dots before it draws.
 
 use tracelight_aim::{Alignment, Camera, TrimBelief};
-use tracelight_camera::Source;
 use tracelight_eye::Looks;
 use tracelight_eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_figure};
-use tracelight_eye::figures::{EyeFigures, FigureMatch, FollowFigures, HeadFigures, HomedFigures};
+use tracelight_eye::figures::{EyeFigures, HeadFigures, HomedFigures};
 use tracelight_eye::follow::Followed;
 use tracelight_eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_front};
 use tracelight_eye::homing::{check_homed, home_head};
 use tracelight_eye::room::{Furnished, RoomRequest};
-use tracelight_picture::Raster;
+use tracelight_picture::{Pixels, Source};
 use tracelight_pipeline::{Driving, sketch};
 use tracelight_rig::PanTilt;
 use tracelight_rigfile::Timing;
-use tracelight_rigfile::camera::KnownCamera;
 use tracelight_rigfile::head::KnownHead;
-use tracelight_sim::{Room, Run, Simulated};
-use tracelight_stroke::{Comparison, Drawing, Point, compare};
+use tracelight_sim::{Room, Simulated};
+use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task};
 
-use super::Prepared;
-use crate::cli::eyes::SimulatedEyeName;
-use crate::cli::request::TraceArgs;
-use crate::named;
-
-/// What was seen before a run.
-pub(super) struct Seen {
-    /// The room, if it is simulated.
-    pub(super) room: Option<Furnished>,
-    pub(super) figures: EyeFigures,
-    /// The image in which the figure was found.
-    pub(super) image: Raster,
-    /// What the camera is known by, should it have to be found again.
-    pub(super) wall: KnownCamera,
-    /// What is known when the camera begins to follow the spot.
-    pub(super) followed: Followed,
-    /// The true figure on the wall, which a simulated room knows.
-    truth: Option<Drawing>,
-}
+use crate::prepared::{Prepared, planned};
+use crate::request::{Request, Scene, Wall};
+use crate::seen::Seen;
 
 /// Looks at the wall, has the head draw dots unless it is known, and plans the figure.
-pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
-    let mut driving = args.driving.resolve()?;
-    args.law.apply(&mut driving.rig);
-    let known = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
-    if args.dry_run && known.is_none() && matches!(args.eye.source()?, Source::Simulated(_)) {
+///
+/// # Errors
+/// Why there is nothing to be drawn, no head to draw it, or no way to draw it.
+pub fn prepare_wall(request: &Request<'_>, wall: Wall<'_>, task: Task<'_>) -> Result<Prepared, Failure> {
+    let Request { name, tracing, placing, run: how, .. } = request;
+    let Wall { scene, camera: known_camera, head: known, home, retakes, open_loop, troubles, today } = wall;
+    let mut driving = request.driving.clone();
+    if how.dry && known.is_none() && matches!(scene, Scene::Room { .. }) {
         let message = "a dry run draws no dots to find the head by: give --head (tracelight calibrate head --camera … -o head.toml)";
         return Err(Failure::usage("usage", message));
     }
     task.stage("wall", 1);
-    let mut simulated = furnished(args, &driving)?.map(|room| {
-        let put_up = if args.is_powered_up() { Furnished::powered_up } else { Furnished::watched };
-        (put_up(&room, &driving.rig, driving.pose), room)
-    });
-    let mut camera = args.eye.open()?;
-    let known_camera = args.eye.known()?;
+    let Stage { mut simulated, mut camera, hung } = Stage::of(scene, request, &driving)?;
     let wanted = FigureRequest {
         known: known_camera.as_ref(),
-        tracing: &args.tracing.tracing(),
-        choice: &args.placement.choice.choice(),
-        most_refused: args.retakes,
+        tracing,
+        choice: &placing.choice,
+        most_refused: retakes,
     };
     let looks: Option<&mut dyn Looks> = match (&mut simulated, &mut camera) {
         (Some((rig, _)), _) => Some(rig),
@@ -78,7 +58,7 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
         None => driving.stand(in_front(&camera, driving.pose.distance_m)),
     }
     let head = match &mut simulated {
-        Some(scene) => head_of(args, scene, &camera, &mut driving, known, task)?,
+        Some(scene) => head_of(home, scene, &camera, &mut driving, known, task)?,
         None => {
             if known.is_none() {
                 task.say(&format!(
@@ -90,7 +70,7 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
         }
     };
     let figures = EyeFigures {
-        source: args.name().to_owned(),
+        source: (*name).to_owned(),
         markers: wall.markers,
         markers_rms_px: wall.rms_px,
         refused_images: retaken,
@@ -100,11 +80,45 @@ pub(super) fn prepare(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Fail
         figure_mm: None,
     };
     let followed = head.followed(camera, &driving);
-    let known = wall.known(&named::today());
+    let known = wall.known(&today);
     let room = simulated.map(|(_, room)| room);
-    let truth = truth(args, room.as_ref(), task)?;
-    let seen = Seen { room, figures, image: wall.pixels, wall: known, followed, truth };
-    super::planned((sketch, vision_ms), placed, driving, Some(seen), task)
+    let truth = truth(request, hung, room.as_ref(), task);
+    let seen = Seen {
+        room,
+        figures,
+        image: wall.pixels,
+        wall: known,
+        followed,
+        truth,
+        troubles,
+        open: open_loop,
+        today,
+    };
+    planned((sketch, vision_ms), placed, driving, (*how, Some(seen)), task)
+}
+
+/// What images come from: a simulated rig in its room, or a camera.
+struct Stage<'a> {
+    simulated: Option<(Room, Furnished)>,
+    camera: Option<&'a mut dyn Looks>,
+    /// The picture on the room's wall, and its name.
+    hung: Option<(&'a str, Pixels)>,
+}
+
+impl<'a> Stage<'a> {
+    fn of(scene: Scene<'a>, request: &Request<'_>, driving: &Driving) -> Result<Self, Failure> {
+        let (picture, eye, pages) = match scene {
+            Scene::Camera(camera) => return Ok(Self { simulated: None, camera: Some(camera), hung: None }),
+            Scene::Room { picture, eye, pages } => (picture, eye, pages),
+        };
+        let hung = picture.as_ref().map(|(_, pixels)| &pixels.colour);
+        let asked =
+            RoomRequest { picture: hung, placing: &request.placing, eye, pages, seed: request.run.seed };
+        let room = Furnished::new(&asked, &driving.rig, driving.pose)?;
+        let put_up = if request.run.powered_up { Furnished::powered_up } else { Furnished::watched };
+        let rig = put_up(&room, &driving.rig, driving.pose);
+        Ok(Self { simulated: Some((rig, room)), camera: None, hung: picture })
+    }
 }
 
 /// What is known of a head and of when its images are taken.
@@ -140,7 +154,7 @@ impl HeadSeen {
 
 /// The head of a simulated room: homed if that is asked for, and found from dots unless it was before; from then on it is believed.
 fn head_of(
-    args: &TraceArgs,
+    home: bool,
     (rig, room): &mut (Room, Furnished),
     camera: &Camera,
     driving: &mut Driving,
@@ -148,7 +162,7 @@ fn head_of(
     task: Task<'_>,
 ) -> Result<HeadSeen, Failure> {
     let believed = HeadSeen::believed(known.as_ref(), camera);
-    let homed = if args.home {
+    let homed = if home {
         let homed = home_head(rig, camera, driving, known.as_ref().map(KnownHead::images), task)?;
         room.homed(rig, &homed);
         Some(homed.figures())
@@ -167,28 +181,6 @@ fn head_of(
         homed,
         figures: Some(figures),
     })
-}
-
-/// The room, if it is simulated.
-fn furnished(args: &TraceArgs, driving: &Driving) -> Result<Option<Furnished>, Failure> {
-    let Source::Simulated(picture) = args.eye.source()? else { return Ok(None) };
-    if args.eye.sim_camera == SimulatedEyeName::Report && args.eye.has_pages()? {
-        let message = format!(
-            "the report's camera does not see picture and pages at once: calibrate it first (tracelight calibrate markers --camera sim \
-             --sim-camera report --seed {} -o camera.toml), then give --calibration camera.toml",
-            args.seed
-        );
-        return Err(Failure::usage("usage", message));
-    }
-    let picture = picture.map(named::painted).transpose()?;
-    let request = RoomRequest {
-        picture: picture.as_ref(),
-        placing: &args.placement.placing(),
-        eye: args.eye.sim_camera.eye(),
-        pages: args.eye.has_pages()?,
-        seed: args.seed,
-    };
-    Furnished::new(&request, &driving.rig, driving.pose).map(Some)
 }
 
 /// The head found from dots; from then on it is believed.
@@ -214,48 +206,21 @@ fn found_head(
     Ok((found, figures))
 }
 
-/// How far from the true figure a lit trace counts as beside it, m: what users of it see.
-const BESIDE_M: f64 = 1.5e-3;
-
 /// The figure of a simulated room as its picture's file has it, traced as asked; `None` where there is none, or it can not be told.
-fn truth(args: &TraceArgs, room: Option<&Furnished>, task: Task<'_>) -> Result<Option<Drawing>, Failure> {
-    let hung = room.and_then(|room| room.wall_from_picture);
-    let (Source::Simulated(Some(path)), Some(wall_from_picture)) = (args.eye.source()?, hung) else {
-        return Ok(None);
-    };
-    match sketch(path, named::picture(path)?, &args.tracing.tracing(), &args.placement.placing()) {
+fn truth(
+    request: &Request<'_>,
+    hung: Option<(&str, Pixels)>,
+    room: Option<&Furnished>,
+    task: Task<'_>,
+) -> Option<Drawing> {
+    let wall_from_picture = room.and_then(|room| room.wall_from_picture)?;
+    let (name, pixels) = hung?;
+    match sketch(name, Source::Pixels(pixels), &request.tracing, &request.placing) {
         // as it hangs: a sheet in it is not laid square there
-        Ok(truth) => Ok(Some(truth.in_picture().0.transformed(wall_from_picture))),
+        Ok(truth) => Some(truth.in_picture().0.transformed(wall_from_picture)),
         Err(why) => {
             task.say(&format!("note: how far the light is from the figure is not told: {}", why.message));
-            Ok(None)
+            None
         }
     }
-}
-
-impl Seen {
-    /// What a run adds: how far the lit trace truly is from the figure.
-    pub(super) fn after(&self, run: &Run, follow: Option<FollowFigures>) -> EyeFigures {
-        let found = self.truth.as_ref().and_then(|truth| compare(&lit(run), truth, BESIDE_M));
-        let figure_mm = found.map(|Comparison { rms, p99, max, coverage, .. }| FigureMatch {
-            rms: 1e3 * rms,
-            p99: 1e3 * p99,
-            max: 1e3 * max,
-            covered_share: coverage,
-        });
-        EyeFigures { figure_mm, follow, ..self.figures.clone() }
-    }
-}
-
-/// Where there was light, tick by tick.
-fn lit(run: &Run) -> Vec<Vec<Point>> {
-    let mut lines: Vec<Vec<Point>> = vec![Vec::new()];
-    for tick in &run.ticks {
-        match (tick.light, tick.spot) {
-            (true, Some(spot)) => lines.iter_mut().last().into_iter().for_each(|line| line.push(spot)),
-            _ if lines.last().is_some_and(|line| !line.is_empty()) => lines.push(Vec::new()),
-            _ => {}
-        }
-    }
-    lines
 }

@@ -17,43 +17,41 @@ use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
 
-use super::log_tick;
-use super::recovery::MOST_RECOVERIES;
-use super::remainder::{join, left};
-use super::seen::Seen;
-use crate::output::{LogWriter, OutputError};
+use crate::keep::Keep;
+use crate::remainder::{join, left};
+use crate::seen::Seen;
 
 /// What is to be run.
-pub(super) struct WatchedJob<'a> {
-    pub(super) plan: &'a Plan,
+pub(crate) struct WatchedJob<'a> {
+    pub(crate) plan: &'a Plan,
     /// The strokes it draws, in its order.
-    pub(super) drawing: &'a Drawing,
-    pub(super) driving: &'a Driving,
-    pub(super) seen: &'a Seen,
-    pub(super) troubles: &'a [TroubleAt],
+    pub(crate) drawing: &'a Drawing,
+    pub(crate) driving: &'a Driving,
+    pub(crate) seen: &'a Seen,
     /// The gate is held dark.
-    pub(super) dry: bool,
-    /// What is off is seen, but not trimmed.
-    pub(super) open: bool,
+    pub(crate) dry: bool,
 }
 
 /// What came of it.
-pub(super) struct WatchedRun {
-    pub(super) run: Run,
+pub(crate) struct WatchedRun {
+    pub(crate) run: Run,
     /// What was run in the end: the plan as far as it was followed, and those that took its place.
-    pub(super) plan: Plan,
-    pub(super) figures: FollowFigures,
-    pub(super) seen: SeenLight,
+    pub(crate) plan: Plan,
+    pub(crate) figures: FollowFigures,
+    pub(crate) seen: SeenLight,
     /// Why it ended before its time, if neither the rig nor the user ended it.
-    pub(super) failure: Option<Failure>,
+    pub(crate) failure: Option<Failure>,
 }
 
 /// Ticks the head is watched after a fault or Ctrl-C, so that the log shows what followed.
 const AFTERMATH_TICKS: u32 = 200;
 /// Ticks in which a head comes to rest in the dark, and images that show its light have arrived.
-pub(super) const REST_TICKS: u32 = 300;
+pub(crate) const REST_TICKS: u32 = 300;
 /// Furthest that an encoder may have jumped for its head to be looked for by dots, rad: what is further off draws them who knows where.
 const MOST_JUMP_RAD: f64 = 0.06;
+
+/// Most times that a job is begun anew after something was suddenly off.
+pub(crate) const MOST_RECOVERIES: usize = 6;
 
 /// Why a stretch of a run ended.
 enum Ended {
@@ -65,42 +63,42 @@ enum Ended {
 }
 
 /// Why a head must be found again.
-pub(super) struct Why {
-    pub(super) words: String,
+pub(crate) struct Why {
+    pub(crate) words: String,
     /// A camera saw its spot elsewhere.
-    pub(super) seen_off: bool,
+    pub(crate) seen_off: bool,
 }
 
 /// A run under way.
-pub(super) struct Watched<'a> {
-    pub(super) job: &'a WatchedJob<'a>,
-    pub(super) room: Room,
-    pub(super) follower: Follower,
-    pub(super) driving: Driving,
-    pub(super) wall: KnownCamera,
-    pub(super) run: Run,
+pub(crate) struct Watched<'a> {
+    pub(crate) job: &'a WatchedJob<'a>,
+    pub(crate) room: Room,
+    pub(crate) follower: Follower,
+    pub(crate) driving: Driving,
+    pub(crate) wall: KnownCamera,
+    pub(crate) run: Run,
     /// All that is planned, one after the other.
-    pub(super) joined: Plan,
+    pub(crate) joined: Plan,
     /// Where in it the plan that is followed now begins, and where its clock stands.
-    pub(super) base: u32,
-    pub(super) plan_tick: u32,
-    pub(super) troubles: Vec<TroubleAt>,
-    pub(super) blind: Option<Blind>,
+    pub(crate) base: u32,
+    pub(crate) plan_tick: u32,
+    pub(crate) troubles: Vec<TroubleAt>,
+    pub(crate) blind: Option<Blind>,
     /// A dot is drawn.
-    pub(super) dots: bool,
-    pub(super) figures: FollowFigures,
-    pub(super) log: &'a mut LogWriter,
-    pub(super) failed: Option<OutputError>,
+    pub(crate) dots: bool,
+    pub(crate) figures: FollowFigures,
+    pub(crate) keep: &'a mut dyn Keep,
+    pub(crate) failed: Option<Failure>,
     /// The rig is not homed any more.
-    pub(super) unpowered: bool,
-    pub(super) task: Task<'a>,
+    pub(crate) unpowered: bool,
+    pub(crate) task: Task<'a>,
 }
 
 /// Runs a plan, watched.
-pub(super) fn run_watched(
+pub(crate) fn run_watched(
     job: &WatchedJob<'_>,
     room: Room,
-    log: &mut LogWriter,
+    keep: &mut dyn Keep,
     task: Task<'_>,
 ) -> Result<WatchedRun, Failure> {
     let painted = Painted::new(&job.seen.image, job.seen.followed.camera);
@@ -114,11 +112,11 @@ pub(super) fn run_watched(
         joined: job.plan.clone(),
         base: 0,
         plan_tick: 0,
-        troubles: job.troubles.to_vec(),
+        troubles: job.seen.troubles.clone(),
         blind: None,
         dots: false,
-        figures: FollowFigures { closed: !job.open, ..FollowFigures::default() },
-        log,
+        figures: FollowFigures { closed: !job.seen.open, ..FollowFigures::default() },
+        keep,
         failed: None,
         unpowered: false,
         task,
@@ -177,7 +175,7 @@ impl Watched<'_> {
     }
 
     fn can_recover(&self) -> bool {
-        let may_look = self.follower.blind().is_none() && !self.job.open && !self.job.dry;
+        let may_look = self.follower.blind().is_none() && !self.job.seen.open && !self.job.dry;
         may_look && self.figures.recoveries.len() < MOST_RECOVERIES && self.jumped_rad() < MOST_JUMP_RAD
     }
 
@@ -195,7 +193,7 @@ impl Watched<'_> {
     }
 
     /// Whether the user, a log that can not be written, or a rig without power ends the run.
-    pub(super) fn is_over(&self) -> bool {
+    pub(crate) fn is_over(&self) -> bool {
         self.task.stop.is_wanted() || self.failed.is_some() || self.unpowered
     }
 
@@ -219,7 +217,7 @@ impl Watched<'_> {
         // what is armed anew on its way begins with a hold
         let mut was_held = true;
         for _ in 0..most {
-            let wanted = if self.job.open { Correction::default() } else { self.follower.correction() };
+            let wanted = if self.job.seen.open { Correction::default() } else { self.follower.correction() };
             feeder.feed(&mut self.room, self.plan_tick - self.base, &wanted);
             let (tick, suspicion) = self.step(Some(feeder));
             if self.is_over() {
@@ -236,7 +234,7 @@ impl Watched<'_> {
             let held = (tick.telemetry.phase == Phase::Holding && !was_held)
                 .then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
             was_held = tick.telemetry.phase == Phase::Holding;
-            if let Some(suspicion) = suspicion.or(held).filter(|_| !self.job.open) {
+            if let Some(suspicion) = suspicion.or(held).filter(|_| !self.job.seen.open) {
                 return Ended::Suspect(suspicion);
             }
         }
@@ -244,7 +242,7 @@ impl Watched<'_> {
     }
 
     /// One tick, watched and kept.
-    pub(super) fn step(&mut self, feeder: Option<&TrimmedFeeder<'_>>) -> (Tick, Option<Suspicion>) {
+    pub(crate) fn step(&mut self, feeder: Option<&TrimmedFeeder<'_>>) -> (Tick, Option<Suspicion>) {
         let _ = self.room.send(Command::KeepAlive);
         let mut tick = self.room.step();
         // its ticks, counts and clock are others from then on
@@ -256,7 +254,7 @@ impl Watched<'_> {
         self.strike(&tick);
         let suspicion = self.follower.tick(&mut self.room, &tick);
         self.tell_blindness();
-        if let Err(error) = log_tick(self.log, &self.joined, &tick) {
+        if let Err(error) = self.keep.tick(&self.joined, &tick) {
             self.failed = self.failed.take().or(Some(error));
         }
         if tick.telemetry.tick.is_multiple_of(256) {
@@ -319,7 +317,7 @@ impl Watched<'_> {
         };
     }
 
-    pub(super) fn tell_blindness(&mut self) {
+    pub(crate) fn tell_blindness(&mut self) {
         let blind = self.follower.blind();
         if blind == std::mem::replace(&mut self.blind, blind) {
             return;
@@ -331,19 +329,19 @@ impl Watched<'_> {
         self.remark(remark);
     }
 
-    pub(super) fn remark(&mut self, remark: String) {
+    pub(crate) fn remark(&mut self, remark: String) {
         self.remark_of(self.now_s(), &remark);
     }
 
     /// The same of something that was then, s.
-    pub(super) fn remark_of(&mut self, t_s: f64, remark: &str) {
+    pub(crate) fn remark_of(&mut self, t_s: f64, remark: &str) {
         let remark = format!("after {t_s:.1} s: {remark}");
         self.task.say(&format!("note: {remark}"));
         self.figures.remarks.push(remark);
     }
 
     /// So many ticks in which nothing new is sent.
-    pub(super) fn rest(&mut self, ticks: u32) {
+    pub(crate) fn rest(&mut self, ticks: u32) {
         for _ in 0..ticks {
             self.step(None);
         }

@@ -5,7 +5,7 @@ use tracelight_stroke::{Drawing, Stroke};
 use tracelight_trajectory::{LegEnd, Plan};
 
 /// What a plan has not drawn at a tick of its own, and the number of the stroke that begins with; `None` if nothing is left.
-pub(super) fn left(plan: &Plan, drawing: &Drawing, tick: u32) -> Option<(u32, Drawing)> {
+pub(crate) fn left(plan: &Plan, drawing: &Drawing, tick: u32) -> Option<(u32, Drawing)> {
     const TOLERANCE_M: f64 = 1e-6;
     /// Less of a stroke is not worth a way there.
     const LEAST_M: f64 = 5e-4;
@@ -31,7 +31,7 @@ pub(super) fn left(plan: &Plan, drawing: &Drawing, tick: u32) -> Option<(u32, Dr
 
 /// Appends a plan to what was followed of those before, up to a tick of it; the tick at which it begins. `first` is the number of its first
 /// stroke among all.
-pub(super) fn join(all: &mut Plan, cut: u32, next: &Plan, first: u32) -> u32 {
+pub(crate) fn join(all: &mut Plan, cut: u32, next: &Plan, first: u32) -> u32 {
     all.points.truncate(cut as usize + 1);
     all.segments.retain(|segment| segment.end_tick() <= cut);
     all.leg_ends.retain(|end| end.tick <= cut);

@@ -1,0 +1,24 @@
+//! Who keeps what happens.
+
+use tracelight_sim::Tick;
+use tracelight_task::Failure;
+use tracelight_trajectory::Plan;
+
+/// Told of every tick of a run as it happens: a log, a page, an array.
+pub trait Keep {
+    /// One more tick, and the plan that it follows.
+    ///
+    /// # Errors
+    /// Why it cannot be kept: then the run ends, as nothing that was measured may be lost.
+    fn tick(&mut self, plan: &Plan, tick: &Tick) -> Result<(), Failure>;
+}
+
+/// Nobody: who wants the run alone finds it in [`Ran`](crate::Ran).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KeepNothing;
+
+impl Keep for KeepNothing {
+    fn tick(&mut self, _: &Plan, _: &Tick) -> Result<(), Failure> {
+        Ok(())
+    }
+}

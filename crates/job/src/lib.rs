@@ -1,0 +1,29 @@
+//! A job: a request to strokes on the target, to a plan, to a run of a rig, told tick by tick to whoever keeps it. Values in, values out:
+//! no flag, no file, no format of a log.
+//!
+//! ```text
+//! prepare       a picture or a drawing ─┐
+//!                                       ├─► Prepared ─► run(keep) ─► Ran
+//! prepare_wall  what a camera sees ─────┘
+//! ```
+//!
+//! From a picture to figures:
+//!
+//! ```
+#![doc = include_str!("../examples/picture_to_figures.rs")]
+//! ```
+
+mod keep;
+mod lap;
+mod prepared;
+mod recovery;
+mod remainder;
+mod request;
+mod seen;
+mod wall;
+mod watched;
+
+pub use keep::{Keep, KeepNothing};
+pub use prepared::{Prepared, Ran, prepare};
+pub use request::{Request, RunRequest, Scene, Wall};
+pub use wall::prepare_wall;

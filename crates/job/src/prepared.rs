@@ -1,0 +1,222 @@
+//! A job from request to run.
+
+use tracelight_eye::figures::EyeFigures;
+use tracelight_eye::room::{Furnished, left};
+use tracelight_eye::seen::SeenLight;
+use tracelight_picture::{Raster, Source};
+use tracelight_pipeline::{Driving, OrderBy, Placed, Schedule, Sketch, place, schedule, sketch};
+use tracelight_sim::{RigConfig, Run, SimulatedRig};
+use tracelight_stroke::Effort;
+use tracelight_task::{Failure, Stop, Task};
+use tracelight_trajectory::Plan;
+
+use crate::keep::Keep;
+use crate::lap::{Learned, learn, run_lap};
+use crate::request::{Request, RunRequest};
+use crate::seen::Seen;
+use crate::watched::{WatchedJob, WatchedRun, run_watched};
+
+/// What the stages before the run made.
+pub struct Prepared {
+    /// The strokes on their sheet, and the picture.
+    pub sketch: Sketch,
+    /// The strokes on the target.
+    pub placed: Placed,
+    /// The rig, as it is believed to be and to stand.
+    pub driving: Driving,
+    /// The strokes in order, and in time.
+    pub schedule: Schedule,
+    /// Remarks for the user.
+    pub notes: Vec<String>,
+    /// From pixels to strokes, ms.
+    pub vision_ms: f64,
+    /// From strokes to a plan, ms.
+    pub plan_ms: f64,
+    how: RunRequest,
+    seen: Option<Seen>,
+}
+
+/// A job that was run.
+pub struct Ran {
+    /// Laps before the last.
+    pub earlier: Vec<Run>,
+    /// The last one.
+    pub last: Run,
+    /// What the last one came to follow, where that is not what was planned.
+    plan: Option<Plan>,
+    /// The rig as it was identified between laps, if it was.
+    pub identified: Option<RigConfig>,
+    /// What a camera saw of it, in figures.
+    pub eye: Option<EyeFigures>,
+    /// What a camera saw of its spot.
+    pub seen: Option<SeenLight>,
+    /// Remarks for the user, those of before the run first.
+    pub notes: Vec<String>,
+    /// Why it ended early: a rig's fault, lost power, or because the user wanted it.
+    pub failure: Option<Failure>,
+    /// How long all laps took to run, ms.
+    pub run_ms: f64,
+}
+
+impl Ran {
+    /// What the last lap followed.
+    #[must_use]
+    pub fn plan<'a>(&'a self, prepared: &'a Prepared) -> &'a Plan {
+        self.plan.as_ref().unwrap_or(&prepared.schedule.plan)
+    }
+}
+
+/// A picture or a drawing → strokes → target → order → plan.
+///
+/// # Errors
+/// Why there is nothing to be drawn, or no way to draw it.
+pub fn prepare(request: &Request<'_>, source: Source, task: Task<'_>) -> Result<Prepared, Failure> {
+    let Request { name, tracing, placing, driving, run } = request;
+    task.stage("strokes", 1);
+    let (sketch, vision_ms) = task.timed(|| sketch(name, source, tracing, placing));
+    let sketch = sketch?;
+    task.check()?;
+    let placed = place(&sketch, placing);
+    planned((sketch.shown(), vision_ms), placed, driving.clone(), (*run, None), task)
+}
+
+/// A drawing on the target, in order and in time.
+pub(crate) fn planned(
+    (sketch, vision_ms): (Sketch, f64),
+    placed: Placed,
+    driving: Driving,
+    (how, seen): (RunRequest, Option<Seen>),
+    task: Task<'_>,
+) -> Result<Prepared, Failure> {
+    task.stage("plan", 1);
+    let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving, OrderBy::default(), Effort::Normal));
+    let schedule = schedule?;
+    task.check()?;
+    let notes: Vec<String> = sketch.notes().into_iter().chain(driving.remarks(&schedule.plan)).collect();
+    notes.iter().for_each(|n| task.say(&format!("note: {n}")));
+    check_laps(how.laps, &schedule.plan)?;
+    Ok(Prepared { sketch, placed, driving, schedule, notes, vision_ms, plan_ms, how, seen })
+}
+
+/// Longest run of all laps together, s: every tick is kept for the results, at some 200 bytes.
+const LONGEST_S: f64 = 1800.0;
+
+/// Refuses more laps than can be kept.
+fn check_laps(laps: u32, plan: &Plan) -> Result<(), Failure> {
+    let needed_s = f64::from(laps) * plan.duration_s();
+    if needed_s <= LONGEST_S {
+        return Ok(());
+    }
+    let message = format!(
+        "--laps {laps} would take {needed_s:.0} s together, at most {LONGEST_S:.0} s are run at once"
+    );
+    Err(Failure::failed("too-long", message))
+}
+
+impl Prepared {
+    /// The image of the wall in which the figure was found, if a camera saw it.
+    #[must_use]
+    pub fn camera_image(&self) -> Option<&Raster> {
+        self.seen.as_ref().map(|seen| &seen.image)
+    }
+
+    /// The simulated room that a camera looks at while the laser draws.
+    fn watched(&self) -> Option<(&Seen, &Furnished)> {
+        self.seen.as_ref().and_then(|seen| Some((seen, seen.room.as_ref()?)))
+    }
+
+    /// Runs the laps, each from power-up on the same head, and has every tick kept. Between two of them the head is identified from
+    /// those before, and the controller is told.
+    ///
+    /// # Errors
+    /// Where a tick cannot be kept, or the head was never homed. What ends a lap early is no error: see [`Ran::failure`].
+    pub fn run(&self, keep: &mut dyn Keep, task: Task<'_>) -> Result<Ran, Failure> {
+        let (laps, run_ms) = task.timed(|| self.run_laps(keep, task));
+        let Laps { earlier, last, learned, watched, failure } = laps?;
+        learned.notes.iter().for_each(|note| task.say(&format!("note: {note}")));
+        let follow = watched.as_ref().map(|watched| watched.figures.clone());
+        let eye = self.seen.as_ref().map(|seen| seen.after(&last, follow));
+        let words = eye.iter().flat_map(EyeFigures::words);
+        let notes = self.notes.iter().chain(&learned.notes).cloned().chain(words).collect();
+        let failure = failure.or_else(|| ending(&last, task.stop));
+        let identified = learned.taken.then_some(learned.rig);
+        let (plan, seen) = watched.map(|watched| (watched.plan, watched.seen)).unzip();
+        Ok(Ran { earlier, last, plan, identified, eye, seen, notes, failure, run_ms })
+    }
+
+    fn run_laps(&self, keep: &mut dyn Keep, task: Task<'_>) -> Result<Laps, Failure> {
+        let RunRequest { laps: wanted, seed, dry, powered_up } = self.how;
+        let plan = &self.schedule.plan;
+        let mut laps: Vec<Run> = Vec::new();
+        let mut learned = Learned { rig: self.driving.rig.clone(), taken: false, notes: Vec::new() };
+        let (mut watched, mut failure) = (None, None);
+        while laps.len() < wanted as usize && !task.stop.is_wanted() && failure.is_none() {
+            if !laps.is_empty() {
+                task.stage("identify", 1);
+                learned = learn(&self.driving.rig, &laps);
+            }
+            task.stage("run", plan.points.len() as u64);
+            let Some(looks) = self.watched() else {
+                let put_up = if powered_up { left } else { SimulatedRig::new };
+                let rig = put_up(&learned.rig, self.driving.pose, seed);
+                let (lap, why) = run_lap(rig, plan, dry, keep, task)?;
+                laps.push(lap);
+                failure = why;
+                continue;
+            };
+            let mut done = self.watched_lap(looks, &learned.rig, keep, task)?;
+            laps.push(std::mem::take(&mut done.run));
+            failure = done.failure.take();
+            watched = Some(done);
+        }
+        let last = laps.pop().unwrap_or_default();
+        Ok(Laps { earlier: laps, last, learned, watched, failure })
+    }
+
+    /// One lap that a camera follows, of a rig that is believed to be this.
+    fn watched_lap(
+        &self,
+        (seen, room): (&Seen, &Furnished),
+        believed: &RigConfig,
+        keep: &mut dyn Keep,
+        task: Task<'_>,
+    ) -> Result<WatchedRun, Failure> {
+        let mut driving = self.driving.clone();
+        driving.rig = believed.clone();
+        let job = WatchedJob {
+            plan: &self.schedule.plan,
+            drawing: &self.schedule.ordered.drawing,
+            driving: &driving,
+            seen,
+            dry: self.how.dry,
+        };
+        run_watched(&job, room.watched(believed, driving.pose), keep, task)
+    }
+}
+
+/// Every lap that was run.
+struct Laps {
+    earlier: Vec<Run>,
+    last: Run,
+    learned: Learned,
+    /// What a camera saw of the last one, and the plan that it came to.
+    watched: Option<WatchedRun>,
+    /// Why the last one ended before its time, if neither the rig's fault nor the user ended it.
+    failure: Option<Failure>,
+}
+
+/// Whether the last lap ended as it should.
+fn ending(run: &Run, stop: &Stop) -> Option<Failure> {
+    if let Some(fault) = run.fault() {
+        return Some(Failure::fault(fault));
+    }
+    if stop.is_wanted() {
+        return Some(Failure::interrupted());
+    }
+    (!run.is_done()).then(|| {
+        let message = "the run was given up: the head left its stroke again and again, and the laser was dark most of \
+                       the time. One encoder count is more on a target that is further away: step nearer \
+                       (--distance), or allow more (control.tolerance in the rig file)";
+        Failure::failed("unfinished", message)
+    })
+}
