@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 
 use tracelight_eye::Looks;
 use tracelight_files as files;
-use tracelight_job::{Keep, Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
+use tracelight_job::{Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
+use tracelight_report::{Finished, LogMeta, Picture, Setting, Summary, Target, Timing};
 use tracelight_rig::PanTilt;
 use tracelight_rigfile as rigfile;
-use tracelight_sim::{Tick, Tracking, score};
+use tracelight_sim::{Tracking, score};
 use tracelight_task::{Failure, Stop, Task};
-use tracelight_trajectory::Plan;
 
 use crate::bar::Bar;
 use crate::cli::request::TraceArgs;
 use crate::named;
-use crate::output::{self, Job, LogMeta, LogWriter, Picture, Setting, Summary, Target, Timing};
+use crate::results::{self, RunLog};
 use crate::settings;
 
 /// How a job ended.
@@ -36,19 +36,12 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     std::fs::create_dir_all(&dir).map_err(|e| cannot_write(&dir, &e))?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
     let meta = LogMeta { picture_path: args.name(), settings: &settings, seed: args.seed };
-    let mut log = LogWriter::open(&dir.join("run.mcap"), &meta)?;
+    let mut log = RunLog::open(&dir.join("run.mcap"), &meta)?;
     let mut ran = prepared.run(&mut log, task)?;
     log.finish()?;
     task.stage("report", 1);
     let summary = write(args, &prepared, &ran, &dir, &settings)?;
     Ok(Outcome { summary, dir, failure: ran.failure.take() })
-}
-
-impl Keep for LogWriter {
-    fn tick(&mut self, plan: &Plan, tick: &Tick) -> Result<(), Failure> {
-        let planned = output::planned(plan, tick.telemetry.plan_tick);
-        planned.map_or(Ok(()), |planned| self.append(tick, planned)).map_err(Failure::from)
-    }
 }
 
 fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
@@ -135,14 +128,14 @@ fn write(
     std::fs::write(&path, strokes).map_err(|e| cannot_write(&path, &e))?;
     let path = dir.join("camera.jpg");
     match prepared.camera_image() {
-        Some(image) => output::write_jpeg(&path, image)?,
-        None => output::forget(&path).map_err(|e| cannot_write(&path, &e))?,
+        Some(image) => results::write_jpeg(&path, image)?,
+        None => results::forget(&path).map_err(|e| cannot_write(&path, &e))?,
     }
     write_rig(args, dir, ran)?;
     let plan = ran.plan(prepared);
     let tracking: Tracking = score(plan, &ran.last, plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
-    let job = Job {
+    let job = Finished {
         picture_path: args.name(),
         picture: sketch
             .picture
@@ -176,7 +169,7 @@ fn write(
         eye: ran.eye.clone(),
         seen: ran.seen.as_ref(),
     };
-    Ok(output::write_all(dir, &job)?)
+    results::write_all(dir, &job)
 }
 
 /// Writes `rig.toml`, the rig as its laps identified it; where they did not, one that an earlier job left under this name is
@@ -187,7 +180,7 @@ fn write_rig(args: &TraceArgs, dir: &Path, ran: &Ran) -> Result<(), Failure> {
         return Ok(());
     }
     let Some(rig) = &ran.identified else {
-        return output::forget(&path).map_err(|e| cannot_write(&path, &e));
+        return results::forget(&path).map_err(|e| cannot_write(&path, &e));
     };
     let mut rig = rig.clone();
     named::date_rig(&mut rig);

@@ -6,8 +6,8 @@ mod cli;
 mod interrupt;
 mod job;
 mod named;
-mod output;
 mod record;
+mod results;
 mod settings;
 mod table;
 

@@ -1,8 +1,8 @@
 //! What a job was asked to do, in words: the report's and the log's table.
 
 use crate::cli::request::TraceArgs;
-use crate::output::Setting;
 use tracelight_pipeline::{Driving, Placed};
+use tracelight_report::Setting;
 use tracelight_sim::RigConfig;
 
 /// In the order to show.

@@ -3,6 +3,7 @@ use std::fmt::Write;
 use clap::{Args, ValueEnum};
 use tracelight_files as files;
 use tracelight_pipeline::{OrderBy, Placed, Schedule, place, schedule, sketch};
+use tracelight_report::{ColourBy, PlanFigures, StrokeFigures, preview};
 use tracelight_rig::TICK_F64_S;
 use tracelight_stroke::Effort;
 use tracelight_task::{Failure, Stop, Task, counted};
@@ -14,7 +15,6 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
 use crate::named;
-use crate::output::{ColourBy, PlanFigures, StrokeFigures, preview};
 
 /// Order a drawing and time it within what the motors can do
 #[derive(Args, Debug)]
@@ -30,7 +30,7 @@ pub(crate) struct PlanArgs {
     preview: Option<String>,
     /// What the colours of the preview say
     #[arg(long, value_enum, default_value_t, requires = "preview")]
-    colour_by: ColourBy,
+    colour_by: ColourByName,
     /// What the order is to save
     #[arg(long, value_enum, default_value_t)]
     order_by: OrderByName,
@@ -47,9 +47,31 @@ pub(crate) struct PlanArgs {
     pub(crate) voice: Voice,
 }
 
+/// What the colours of a preview say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum ColourByName {
+    /// How fast the spot is
+    #[default]
+    Speed,
+    /// When a stroke is drawn
+    Order,
+    /// Which limit holds the spot back
+    Limit,
+}
+
+impl ColourByName {
+    const fn colour_by(self) -> ColourBy {
+        match self {
+            ColourByName::Speed => ColourBy::Speed,
+            ColourByName::Order => ColourBy::Order,
+            ColourByName::Limit => ColourBy::Limit,
+        }
+    }
+}
+
 /// What the order is to save.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum OrderByName {
+enum OrderByName {
     /// Seconds of dark moves
     #[default]
     Time,
@@ -59,7 +81,7 @@ pub(crate) enum OrderByName {
 
 /// How much work goes into the order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum OrderEffortName {
+enum OrderEffortName {
     /// No single move improves it
     Quick,
     /// About a second for 5000 strokes
@@ -111,7 +133,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         files::write(path, csv(&schedule.plan))?;
     }
     if let Some(path) = &args.preview {
-        files::write(path, preview(&schedule.plan, args.colour_by, schedule.plan.set_speed_m_s))?;
+        files::write(path, preview(&schedule.plan, args.colour_by.colour_by(), schedule.plan.set_speed_m_s))?;
     }
     let timing = serde_json::json!({ "vision": vision_ms, "plan": plan_ms });
     let shortest = args.order_by == OrderByName::Distance || driving.request.lit_speed == LitSpeed::Stops;

@@ -9,6 +9,8 @@ use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, json};
 use tracelight_picture::Source;
 use tracelight_pipeline::{PaperSeen, QualityFigures, Sketch, Tracing, page, place, sketch};
+use tracelight_report as output;
+use tracelight_report::drawing::{self, FORMATS};
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Progress as _, Stop, Task, counted};
 use tracelight_vision::Stages;
@@ -20,8 +22,6 @@ use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::cli::{Answer, Voice};
 use crate::named;
-use crate::output;
-use crate::output::drawing::{self, FORMATS};
 
 /// How close `points` keep to their path, px.
 const POINTS_TOLERANCE_PX: f64 = 0.05;
@@ -177,7 +177,8 @@ fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding
     let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let json = (args.voice.json || path.is_some_and(is_json)).then(|| pixel_json(&sketch));
     if let Some(path) = path {
-        drawing::write(path, &place(&sketch, &placing), json.as_deref().unwrap_or_default())?;
+        let file = drawing::file(path, &place(&sketch, &placing), json.as_deref().unwrap_or_default())?;
+        files::write(&path.display().to_string(), file)?;
     }
     let figures = Figures::of(&sketch, &placing);
     Ok(Finding {

@@ -1,10 +1,10 @@
 use tracelight_eye::figures::EyeFigures;
+use tracelight_report::Summary;
 use tracelight_task::{Failure, Stop, counted};
 
 use crate::cli::Answer;
 use crate::cli::request::TraceArgs;
 use crate::job::{self, Outcome};
-use crate::output::Summary;
 
 pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
     let Outcome { summary, dir, failure } = job::trace(args, stop)?;

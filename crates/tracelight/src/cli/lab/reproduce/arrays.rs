@@ -5,11 +5,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use tracelight_files as files;
+use tracelight_report::html::data_uri;
 use tracelight_rig::TICK_F64_S;
 use tracelight_task::Failure;
 use tracelight_trajectory::{MoveLimits, Profile, Ramps, Shape};
-
-use crate::output::html::data_uri;
 
 /// A picture to trace: one closed figure, as the report asks for.
 const STAR: &[u8] = include_bytes!("../../../../../../examples/star.png");

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::output::html::escaped;
+use tracelight_report::html::escaped;
 
 /// A box: its name and what it is, where it stands on a grid.
 pub(super) struct Block {

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use serde_json::Value;
+use tracelight_report::html::escaped;
 
 use super::{Chapter, Compared, Part, Run};
-use crate::output::html::escaped;
 
 /// The page, from chapters and what their commands came to, in order.
 pub(super) fn page(chapters: &[Chapter], done: &[(Value, Option<String>)]) -> String {

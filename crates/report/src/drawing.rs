@@ -38,17 +38,15 @@ const EXTENSIONS: [(&str, Kind); 11] = [
 ];
 
 /// The usual extension of each kind, the default first.
-pub(crate) const FORMATS: [&str; 7] = ["svg", "dxf", "json", "csv", "gcode", "ild", "hpgl"];
+pub const FORMATS: [&str; 7] = ["svg", "dxf", "json", "csv", "gcode", "ild", "hpgl"];
 
-/// Writes the placed strokes to `path`, as what its extension says. `json` is what `.json` gets: the strokes in
+/// The placed strokes as a file of that name, as what its extension says. `json` is what `.json` gets: the strokes in
 /// pixels, which placing does not change.
 ///
 /// # Errors
-/// An extension that is none of those known (the message lists them), and whatever the file system says.
-pub(crate) fn write(path: &Path, placed: &Placed, json: &str) -> Result<(), Failure> {
-    let bytes = bytes(kind_of(path)?, placed, json);
-    std::fs::write(path, bytes)
-        .map_err(|e| Failure::failed("cannot-write", format!("cannot write {}: {e}", path.display())))
+/// An extension that is none of those known; the message lists them.
+pub fn file(path: &Path, placed: &Placed, json: &str) -> Result<Vec<u8>, Failure> {
+    Ok(bytes(kind_of(path)?, placed, json))
 }
 
 fn kind_of(path: &Path) -> Result<Kind, Failure> {

@@ -6,14 +6,14 @@ use super::axis::Axis;
 use super::curve::{bands, curve, strip};
 use super::html::number;
 use super::plot::Plot;
-use crate::output::Job;
-use crate::output::sample::{Sample, samples};
+use crate::finished::Finished;
+use crate::sample::{Sample, samples};
 
 /// Marks along the time axis; on a phone their labels still stand apart.
 const TIME_MARKS: usize = 6;
 
 /// All diagrams over time, as HTML.
-pub(super) fn diagrams(job: &Job<'_>) -> String {
+pub(super) fn diagrams(job: &Finished<'_>) -> String {
     let samples: Vec<Sample<'_>> = samples(job.plan, job.run).collect();
     if samples.is_empty() {
         return r#"<p class="note">Nothing was run, so there is nothing to plot over time.</p>"#.to_owned();
@@ -28,7 +28,7 @@ pub(super) fn diagrams(job: &Job<'_>) -> String {
 
 /// What all diagrams share.
 struct Over<'a> {
-    job: &'a Job<'a>,
+    job: &'a Finished<'a>,
     samples: Vec<Sample<'a>>,
     time: Axis,
     lit: String,
@@ -123,7 +123,7 @@ fn torque(over: &Over<'_>, joint: Joint) -> Plot {
 }
 
 /// The plan in time: who is drawn when, and how fast.
-pub(super) fn schedule(job: &Job<'_>) -> String {
+pub(super) fn schedule(job: &Finished<'_>) -> String {
     if job.plan.points.len() < 2 {
         return r#"<p class="note">The plan is empty.</p>"#.to_owned();
     }
@@ -156,7 +156,7 @@ const STRIP: [f64; 2] = [0.0, 95.0];
 const LIMIT_STRIP: [f64; 2] = [103.0, 143.0];
 
 /// What holds the motion back, over time: for each limit that does its class, its spans and its name.
-fn limits(job: &Job<'_>, time: &Axis) -> Vec<(&'static str, String, String)> {
+fn limits(job: &Finished<'_>, time: &Axis) -> Vec<(&'static str, String, String)> {
     let points = || job.plan.points.iter().enumerate().map(|(i, p)| (i as f64 * TICK_F64_S, p.limit));
     let spans = |limit: Binding| strip(points().map(|(t, l)| (t, l == Some(limit))), time, LIMIT_STRIP);
     let all = Binding::ALL.into_iter().map(|limit| (limit_class(limit), spans(limit), limit.to_string()));
@@ -184,7 +184,7 @@ fn speed_between(from: Option<Point>, to: Option<Point>, ticks: u32) -> Option<f
     (ticks > 0).then_some(from?.distance(to?) / (f64::from(ticks) * TICK_F64_S))
 }
 
-fn planned_speed<'a>(job: &'a Job<'_>) -> impl Iterator<Item = (f64, Option<f64>)> + 'a {
+fn planned_speed<'a>(job: &'a Finished<'_>) -> impl Iterator<Item = (f64, Option<f64>)> + 'a {
     let points = &job.plan.points;
     (0..points.len()).map(move |i| {
         let (from, to) = (i.saturating_sub(REACH), (i + REACH).min(points.len() - 1));
@@ -196,7 +196,7 @@ fn planned_speed<'a>(job: &'a Job<'_>) -> impl Iterator<Item = (f64, Option<f64>
 }
 
 /// Speed of the true spot while the plan's clock ran, over that clock.
-fn actual_speed<'a>(job: &'a Job<'_>) -> impl Iterator<Item = (f64, Option<f64>)> + 'a {
+fn actual_speed<'a>(job: &'a Finished<'_>) -> impl Iterator<Item = (f64, Option<f64>)> + 'a {
     let ticks = &job.run.ticks;
     (REACH..ticks.len().saturating_sub(REACH)).filter_map(move |i| {
         let sample = Sample::new(&ticks[i], job.plan.points.last()?);
@@ -208,17 +208,17 @@ fn actual_speed<'a>(job: &'a Job<'_>) -> impl Iterator<Item = (f64, Option<f64>)
 /// Travel is quick; the axis is for the strokes.
 const MOST_SET_SPEEDS: f64 = 2.0;
 
-fn speed_axis(job: &Job<'_>) -> Axis {
+fn speed_axis(job: &Finished<'_>) -> Axis {
     let fastest = fastest(job);
     let top = fastest.min(job.set_speed_m_s * MOST_SET_SPEEDS).max(job.set_speed_m_s * 1.1);
     Axis::new(0.0, top * 1.2, 4) // air for the strips of strokes and limits
 }
 
-fn fastest(job: &Job<'_>) -> f64 {
+fn fastest(job: &Finished<'_>) -> f64 {
     planned_speed(job).filter_map(|p| p.1).fold(0.0, f64::max)
 }
 
-fn cut_note(job: &Job<'_>, y: &Axis) -> String {
+fn cut_note(job: &Finished<'_>, y: &Axis) -> String {
     let fastest = fastest(job);
     if fastest <= y.high() {
         return String::new();
@@ -227,7 +227,7 @@ fn cut_note(job: &Job<'_>, y: &Axis) -> String {
 }
 
 /// Strokes wide enough for their number: the middle of their span and the number, from one.
-fn numbers(job: &Job<'_>) -> Vec<(f64, String)> {
+fn numbers(job: &Finished<'_>) -> Vec<(f64, String)> {
     let wide = job.plan.duration_s() * 0.045;
     let mut found = Vec::new();
     let mut start = 0;

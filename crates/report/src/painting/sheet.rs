@@ -5,7 +5,7 @@ use super::film::linear_from_srgb;
 use super::layout::Layout;
 use super::lettering::Pen;
 use super::plane::Plane;
-use crate::output::{DISPLAY_TOLERANCE_M, Job};
+use crate::finished::{DISPLAY_TOLERANCE_M, Finished};
 
 /// The picture on a sheet of paper, pinned to the wall a little askew.
 pub(super) struct Sheet {
@@ -38,7 +38,7 @@ const PIN_RADIUS_PX: f64 = 6.5;
 
 impl Sheet {
     /// Prepares a job's picture, or a drawing of its strokes where there is none.
-    pub(super) fn new(job: &Job<'_>, layout: &Layout) -> Self {
+    pub(super) fn new(job: &Finished<'_>, layout: &Layout) -> Self {
         // twice the size it is shown at: sharp under the slight turn
         let side = (layout.sheet_size.x.max(layout.sheet_size.y) * 2.0) as u32;
         let picture_half = layout.sheet_size / 2.0;
@@ -119,7 +119,7 @@ fn pin_colour(at: Vec2) -> [f32; 3] {
 }
 
 /// The strokes in ink on white, for a job whose picture has no pixels.
-fn drawn(job: &Job<'_>, layout: &Layout) -> Raster {
+fn drawn(job: &Finished<'_>, layout: &Layout) -> Raster {
     let size = layout.sheet_size * 2.0;
     let (low, high) = job.bounds();
     let scale = (size.x / (high.x - low.x)).min(size.y / (high.y - low.y));

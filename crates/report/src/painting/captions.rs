@@ -4,7 +4,7 @@ use tracelight_task::counted;
 use super::layout::{Layout, WIDTH};
 use super::lettering::{Align, Pen, fitted};
 use super::plane::Plane;
-use crate::output::Job;
+use crate::finished::Finished;
 
 /// Height of a capital, px.
 const LARGE: f64 = 13.0;
@@ -13,7 +13,7 @@ const CHALK: Pen = Pen { radius: 0.8, strength: 0.9 };
 const FAINT: Pen = Pen { radius: 0.7, strength: 0.55 };
 
 /// Everything written on the wall: names, sizes, marks and the scale; a share of chalk for each pixel.
-pub(super) fn captions(job: &Job<'_>, layout: &Layout) -> Plane {
+pub(super) fn captions(job: &Finished<'_>, layout: &Layout) -> Plane {
     let mut chalk = Plane::dark(WIDTH as usize, layout.height as usize);
     corner_marks(&mut chalk, layout);
     under_the_sheet(&mut chalk, job, layout);
@@ -40,7 +40,7 @@ fn corner_marks(chalk: &mut Plane, layout: &Layout) {
     }
 }
 
-fn under_the_sheet(chalk: &mut Plane, job: &Job<'_>, layout: &Layout) {
+fn under_the_sheet(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {
     let middle = layout.sheet_middle.x;
     let lowest = layout.sheet_middle.y
         + layout.sheet_size.y / 2.0
@@ -53,7 +53,7 @@ fn under_the_sheet(chalk: &mut Plane, job: &Job<'_>, layout: &Layout) {
     FAINT.text(chalk, &size, SMALL, Point::new(middle, y + 24.0), Align::Middle);
 }
 
-fn size_label(chalk: &mut Plane, job: &Job<'_>, layout: &Layout) {
+fn size_label(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {
     let (w, h) = (job.target.width_m, job.target.height_m);
     let at = Point::new(layout.wall.0.x, baseline(layout));
     let metric = if w.max(h) >= 2.0 {

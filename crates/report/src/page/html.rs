@@ -1,9 +1,11 @@
+//! Texts, numbers and files as a page holds them.
+
 use tracelight_picture::Raster;
 
-use crate::output::OutputError;
+use crate::error::EncodeError;
 
 /// A text made safe for element content and quoted attributes.
-pub(crate) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -21,7 +23,7 @@ pub(crate) fn escaped(text: &str) -> String {
 }
 
 /// A number with about `digits` significant digits, for people: no exponent, a true minus sign.
-pub(crate) fn number(value: f64, digits: usize) -> String {
+pub fn number(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
@@ -34,7 +36,7 @@ pub(crate) fn number(value: f64, digits: usize) -> String {
 }
 
 /// A file inside the page.
-pub(crate) fn data_uri(media_type: &str, bytes: &[u8]) -> String {
+pub fn data_uri(media_type: &str, bytes: &[u8]) -> String {
     format!("data:{media_type};base64,{}", base64(bytes))
 }
 
@@ -43,9 +45,9 @@ pub(super) fn jpeg_uri(
     raster: &Raster,
     (longest_px, quality): (u32, u8),
     of: &str,
-) -> Result<String, OutputError> {
+) -> Result<String, EncodeError> {
     let jpeg = raster.shrunk(longest_px).jpeg(quality);
-    let jpeg = jpeg.map_err(|e| OutputError::Encode { path: of.into(), reason: e.to_string() })?;
+    let jpeg = jpeg.map_err(|e| EncodeError { name: of.to_owned(), reason: e.to_string() })?;
     Ok(data_uri("image/jpeg", &jpeg))
 }
 

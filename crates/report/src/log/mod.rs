@@ -8,38 +8,35 @@ mod protobuf;
 mod schema;
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufReader, BufWriter};
-use std::path::{Path, PathBuf};
+use std::io::{BufReader, Read, Seek, Write};
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::sans_io::LinearReaderOptions;
-use mcap::{McapError, McapResult, WriteOptions, Writer};
+use mcap::{McapResult, WriteOptions, Writer};
 use tracelight_sim::Tick;
 use tracelight_trajectory::PlanPoint;
 
 use self::protobuf::{Encoder, descriptor_set};
 use self::schema::time_ns;
-use super::events::{Change, Watch};
-use super::sample::Sample;
-use super::{OutputError, Setting};
+use crate::events::{Change, Watch};
+use crate::finished::Setting;
+use crate::sample::Sample;
 
 /// What is known before the first tick; it becomes the log's metadata record `tracelight`.
-pub(crate) struct LogMeta<'a> {
+pub struct LogMeta<'a> {
     /// The picture's file as the user named it.
-    pub(crate) picture_path: &'a str,
+    pub picture_path: &'a str,
     /// What the job was asked to do.
-    pub(crate) settings: &'a [Setting],
+    pub settings: &'a [Setting],
     /// Seed of the run.
-    pub(crate) seed: u64,
+    pub seed: u64,
 }
 
 /// Writes `run.mcap` while the run goes on.
 ///
 /// Dropping it without [`finish`](Self::finish) leaves a log that is complete but for its index.
-pub(crate) struct LogWriter {
-    path: PathBuf,
-    writer: Writer<BufWriter<File>>,
+pub struct LogWriter<W: Write + Seek> {
+    writer: Writer<W>,
     channels: Channels,
     message: Encoder,
     watch: Watch,
@@ -68,20 +65,17 @@ struct Channels {
 /// Size of a finished log's chunks: a few seconds of ticks each.
 const CHUNK_BYTES: u64 = 1 << 20;
 
-impl LogWriter {
-    /// Begins a log; a file of that name is replaced.
-    pub(crate) fn open(path: &Path, meta: &LogMeta<'_>) -> Result<Self, OutputError> {
-        let file = File::create(path).map_err(OutputError::at(path))?;
-        Self::begin(path, file, meta).map_err(|source| OutputError::Log { path: path.to_owned(), source })
-    }
-
-    fn begin(path: &Path, file: File, meta: &LogMeta<'_>) -> McapResult<Self> {
-        let mut writer = options().use_chunks(false).create(BufWriter::new(file))?;
+impl<W: Write + Seek> LogWriter<W> {
+    /// Begins a log.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn begin(out: W, meta: &LogMeta<'_>) -> McapResult<Self> {
+        let mut writer = options().use_chunks(false).create(out)?;
         writer.write_metadata(&metadata(meta))?;
         let channels = Channels::declare(&mut writer)?;
         writer.flush()?;
         Ok(Self {
-            path: path.to_owned(),
             writer,
             channels,
             message: Encoder::default(),
@@ -92,11 +86,11 @@ impl LogWriter {
 
     /// Appends a tick and the point of the plan it follows; both are in the file when this returns. Laps follow each
     /// other in one log: where the ticks start again, the log's time goes on.
-    pub(crate) fn append(&mut self, tick: &Tick, planned: &PlanPoint) -> Result<(), OutputError> {
-        self.add(&Sample::new(tick, planned)).map_err(|source| self.failure(source))
-    }
-
-    fn add(&mut self, sample: &Sample<'_>) -> McapResult<()> {
+    ///
+    /// # Errors
+    /// What the file says.
+    pub fn append(&mut self, tick: &Tick, planned: &PlanPoint) -> McapResult<()> {
+        let sample = &Sample::new(tick, planned);
         let tick = self.clock.at(sample.tick.telemetry.tick);
         let lap = self.clock.laps + 1;
         self.send(self.channels.telemetry, tick, |out| schema::telemetry(out, sample, lap))?;
@@ -119,16 +113,12 @@ impl LogWriter {
         self.writer.write_to_known_channel(&header, self.message.bytes())
     }
 
-    /// Closes the log: indexed, and whole for every reader.
-    pub(crate) fn finish(mut self) -> Result<(), OutputError> {
-        self.writer.finish().map_err(|source| self.failure(source))?;
-        let indexed = self.path.with_extension("mcap.part");
-        index(&self.path, &indexed).map_err(|source| self.failure(source))?;
-        std::fs::rename(&indexed, &self.path).map_err(OutputError::at(&self.path))
-    }
-
-    fn failure(&self, source: McapError) -> OutputError {
-        OutputError::Log { path: self.path.clone(), source }
+    /// Closes the log: whole, and not indexed yet.
+    ///
+    /// # Errors
+    /// What the file says.
+    pub fn finish(mut self) -> McapResult<()> {
+        self.writer.finish().map(drop)
     }
 }
 
@@ -147,7 +137,7 @@ impl Clock {
 }
 
 impl Channels {
-    fn declare(writer: &mut Writer<BufWriter<File>>) -> McapResult<Self> {
+    fn declare<W: Write + Seek>(writer: &mut Writer<W>) -> McapResult<Self> {
         let own = descriptor_set(&[&schema::TRACELIGHT]);
         let log = descriptor_set(&[&schema::TIMESTAMP, &schema::FOXGLOVE_LOG]);
         let mut channel = |topic: &str, schema: &str, descriptor: &[u8]| {
@@ -169,14 +159,18 @@ fn options() -> WriteOptions {
         .chunk_size(Some(CHUNK_BYTES))
 }
 
-/// Copies a bare log into an indexed one, record by record.
-fn index(bare: &Path, indexed: &Path) -> McapResult<()> {
-    let reader = BufReader::new(File::open(bare)?);
-    let mut writer = options().create(BufWriter::new(File::create(indexed)?))?;
-    for metadata in metadata_of(bare)? {
+/// Copies a closed log into an indexed one, record by record.
+///
+/// # Errors
+/// What either of them says.
+pub fn index(mut bare: impl Read + Seek, indexed: impl Write + Seek) -> McapResult<()> {
+    let mut writer = options().create(indexed)?;
+    for metadata in metadata_of(&mut bare)? {
         writer.write_metadata(&metadata)?;
     }
-    for message in mcap::io::MessageReader::new_with_options(reader, LinearReaderOptions::default()) {
+    bare.rewind()?;
+    let bare = BufReader::new(bare);
+    for message in mcap::io::MessageReader::new_with_options(bare, LinearReaderOptions::default()) {
         writer.write(&message?)?;
     }
     writer.finish()?;
@@ -184,14 +178,14 @@ fn index(bare: &Path, indexed: &Path) -> McapResult<()> {
 }
 
 /// The metadata records of a log.
-fn metadata_of(path: &Path) -> McapResult<Vec<Metadata>> {
+fn metadata_of(log: &mut impl Read) -> McapResult<Vec<Metadata>> {
     let mut reader = mcap::sans_io::LinearReader::new();
-    let mut file = BufReader::new(File::open(path)?);
+    let mut log = BufReader::new(log);
     let mut found = Vec::new();
     while let Some(event) = reader.next_event() {
         match event? {
             mcap::sans_io::LinearReadEvent::ReadRequest(wanted) => {
-                let got = std::io::Read::read(&mut file, reader.insert(wanted))?;
+                let got = log.read(reader.insert(wanted))?;
                 reader.notify_read(got);
             }
             mcap::sans_io::LinearReadEvent::Record { data, opcode } => {
@@ -221,7 +215,10 @@ fn metadata(meta: &LogMeta<'_>) -> Metadata {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::fixture;
+    use crate::fixture;
+    use std::fs::File;
+    use std::io::BufWriter;
+    use std::path::{Path, PathBuf};
     use std::sync::atomic::{AtomicU32, Ordering};
     use tracelight_rig::Fault;
 
@@ -231,14 +228,22 @@ mod tests {
         std::env::temp_dir().join(format!("tracelight-{}-{number}-{name}.mcap", std::process::id()))
     }
 
-    fn begun(path: &Path, ticks: usize) -> (LogWriter, fixture::Fixture) {
+    fn begun(path: &Path, ticks: usize) -> (LogWriter<BufWriter<File>>, fixture::Fixture) {
         let fixture = fixture::star();
         let meta = LogMeta { picture_path: "star.png", settings: &fixture.settings, seed: 7 };
-        let mut log = LogWriter::open(path, &meta).unwrap();
+        let mut log = LogWriter::begin(BufWriter::new(File::create(path).unwrap()), &meta).unwrap();
         for (tick, planned) in fixture.run.ticks.iter().zip(&fixture.plan.points).take(ticks) {
             log.append(tick, planned).unwrap();
         }
         (log, fixture)
+    }
+
+    /// A log that was closed and indexed.
+    fn finished(log: LogWriter<BufWriter<File>>, path: &Path) -> Vec<u8> {
+        log.finish().unwrap();
+        let mut indexed = std::io::Cursor::new(Vec::new());
+        index(File::open(path).unwrap(), &mut indexed).unwrap();
+        indexed.into_inner()
     }
 
     /// Messages on a topic, until the file ends, however it ends.
@@ -259,8 +264,7 @@ mod tests {
     fn a_finished_log_is_whole_indexed_and_true() {
         let path = file("finished");
         let (log, fixture) = begun(&path, 3000);
-        log.finish().unwrap();
-        let bytes = std::fs::read(&path).unwrap();
+        let bytes = finished(log, &path);
         let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
         assert!(!summary.chunk_indexes.is_empty());
         assert_eq!(summary.stats.unwrap().message_count, 9000);
@@ -313,8 +317,7 @@ mod tests {
         tick.telemetry.fault = Some(Fault::EncoderJumped);
         log.append(&tick, &fixture.plan.points[10]).unwrap();
         log.append(&tick, &fixture.plan.points[11]).unwrap();
-        log.finish().unwrap();
-        let bytes = std::fs::read(&path).unwrap();
+        let bytes = finished(log, &path);
         assert_eq!(count(&bytes, "/faults"), 1);
         assert!(bytes.windows(14).any(|w| w == b"encoder-jumped"));
         std::fs::remove_file(&path).unwrap();
@@ -327,8 +330,7 @@ mod tests {
         for tick in &fixture.run.ticks[..40] {
             log.append(tick, &fixture.plan.points[0]).unwrap();
         }
-        log.finish().unwrap();
-        let bytes = std::fs::read(&path).unwrap();
+        let bytes = finished(log, &path);
         let spots = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
         let times: Vec<_> = spots.filter(|m| m.channel.topic == "/spot").map(|m| m.log_time).collect();
         assert!(times.iter().copied().eq((0..80).map(|i| i * 1_000_000)), "{times:?}");
@@ -338,19 +340,10 @@ mod tests {
     #[test]
     fn equal_runs_give_equal_logs() {
         let logs = [file("one"), file("two")].map(|path| {
-            begun(&path, 500).0.finish().unwrap();
-            let bytes = std::fs::read(&path).unwrap();
+            let bytes = finished(begun(&path, 500).0, &path);
             std::fs::remove_file(&path).unwrap();
             bytes
         });
         assert!(logs[0] == logs[1]);
-    }
-
-    #[test]
-    fn a_folder_that_is_not_there_is_named_in_the_error() {
-        let path = Path::new("/nowhere/at/all/run.mcap");
-        let meta = LogMeta { picture_path: "", settings: &[], seed: 0 };
-        let Err(error) = LogWriter::open(path, &meta) else { panic!("opened {path:?}") };
-        assert!(error.to_string().contains("/nowhere/at/all/run.mcap"), "{error}");
     }
 }

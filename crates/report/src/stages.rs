@@ -8,7 +8,7 @@ use tracelight_chart::{Colour, Curve, Figure, Panel, Pen, Theme};
 use tracelight_task::Failure;
 use tracelight_vision::{Grey, Stages};
 
-use super::html::{data_uri, escaped};
+use crate::page::html::{data_uri, escaped};
 
 /// Width of a panel and of what is between, px.
 const PANEL: f64 = 520.0;
@@ -17,7 +17,7 @@ const GAP: f64 = 40.0;
 const TITLE: f64 = 26.0;
 
 /// The figure.
-pub(crate) fn figure(name: &str, grey: &Grey, stages: &Stages) -> Result<String, Failure> {
+pub fn figure(name: &str, grey: &Grey, stages: &Stages) -> Result<String, Failure> {
     let evened: Vec<u8> = stages.darkness.iter().map(|level| 255 - level).collect();
     let ink: Vec<u8> = stages.ink.iter().map(|&ink| if ink { 0 } else { 255 }).collect();
     let size = (stages.width, stages.height);

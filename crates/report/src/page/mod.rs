@@ -6,33 +6,27 @@
 mod axis;
 mod curve;
 mod diagrams;
-pub(crate) mod html;
+pub mod html;
 mod map;
 mod plot;
 mod seen;
 mod tables;
 
 use std::fmt::Write;
-use std::path::Path;
 
 use tracelight_picture::Raster;
 
 use self::html::{escaped, jpeg_uri};
-use super::sample::samples;
-use super::{Job, OutputError, Summary};
+use crate::error::EncodeError;
+use crate::finished::Finished;
+use crate::sample::samples;
+use crate::summary::Summary;
 
-/// Writes the page.
-pub(super) fn write(
-    path: &Path,
-    job: &Job<'_>,
-    figures: &Summary,
-    painting: &Raster,
-) -> Result<(), OutputError> {
-    let text = page(job, figures, painting)?;
-    std::fs::write(path, text).map_err(OutputError::at(path))
-}
-
-fn page(job: &Job<'_>, figures: &Summary, painting: &Raster) -> Result<String, OutputError> {
+/// The page, with the light-painting on it.
+///
+/// # Errors
+/// Where a picture on it cannot be encoded.
+pub fn page(job: &Finished<'_>, figures: &Summary, painting: &Raster) -> Result<String, EncodeError> {
     const PAINTING_PX: u32 = 1400;
     const QUALITY: u8 = 84;
     let jpeg = jpeg_uri(painting, (PAINTING_PX, QUALITY), "report.html")?;
@@ -62,7 +56,7 @@ fn page(job: &Job<'_>, figures: &Summary, painting: &Raster) -> Result<String, O
 }
 
 /// Where the spot was, thinned, for the cursor: `[[t_s, x_mm, y_mm, error_mm, lit], …]`, and the map's frame.
-fn track(job: &Job<'_>) -> String {
+fn track(job: &Finished<'_>) -> String {
     const MOST: usize = 1500;
     let every = job.run.ticks.len().div_ceil(MOST).max(1);
     let mut rows = String::new();
@@ -86,9 +80,9 @@ fn track(job: &Job<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::{fixture, painting};
+    use crate::{fixture, painting};
 
-    fn text(job: &Job<'_>) -> String {
+    fn text(job: &Finished<'_>) -> String {
         page(job, &Summary::new(job), &painting::paint(job)).unwrap()
     }
 

@@ -6,8 +6,8 @@ use tracelight_task::phase_word;
 use tracelight_trajectory::PlanPoint;
 
 use super::protobuf::{Encoder, Kind, Message, ProtoFile};
-use crate::output::Event;
-use crate::output::sample::Sample;
+use crate::Event;
+use crate::sample::Sample;
 
 /// Log time counts from power-up, not from a date: equal runs give equal logs.
 pub(super) const fn time_ns(tick: u64) -> u64 {

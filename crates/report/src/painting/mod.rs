@@ -12,8 +12,6 @@ mod plane;
 mod sheet;
 mod wall;
 
-use std::path::Path;
-
 use tracelight_picture::Raster;
 
 use self::film::Film;
@@ -22,7 +20,7 @@ use self::light::Exposure;
 use self::plane::Plane;
 use self::sheet::Sheet;
 use self::wall::Wall;
-use super::{Job, OutputError};
+use crate::finished::Finished;
 
 /// 650 nm as a camera's three channels see it: overexposed red spills into the others and whitens.
 const LASER: [f32; 3] = [1.0, 0.034, 0.040];
@@ -35,7 +33,8 @@ const PLASTER: f32 = 0.34;
 const CHALK: [f32; 3] = [0.34, 0.33, 0.31];
 
 /// Paints a job.
-pub(super) fn paint(job: &Job<'_>) -> Raster {
+#[must_use]
+pub fn paint(job: &Finished<'_>) -> Raster {
     let layout = Layout::new(job);
     let scene = Scene {
         light: Exposure::new(job, &layout),
@@ -50,13 +49,6 @@ pub(super) fn paint(job: &Job<'_>) -> Raster {
             pixel.copy_from_slice(&scene.film.develop(scene.seen(x, y as usize)));
         }
     })
-}
-
-/// Writes a painting as PNG.
-pub(super) fn write(path: &Path, painting: &Raster) -> Result<(), OutputError> {
-    let bytes =
-        painting.png().map_err(|e| OutputError::Encode { path: path.to_owned(), reason: e.to_string() })?;
-    std::fs::write(path, bytes).map_err(OutputError::at(path))
 }
 
 /// All that reflects or shines.
@@ -113,9 +105,9 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::fixture;
+    use crate::fixture;
 
-    fn red_at(painting: &Raster, job: &Job<'_>, number: usize) -> [u8; 3] {
+    fn red_at(painting: &Raster, job: &Finished<'_>, number: usize) -> [u8; 3] {
         let layout = Layout::new(job);
         let tick = job.run.ticks.iter().filter(|t| t.light).nth(number).unwrap();
         let p = layout.pixel_from_target * tick.spot.unwrap();

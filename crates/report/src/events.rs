@@ -4,28 +4,28 @@ use tracelight_task::{darkness_words, fault_words};
 
 /// A time when the rig darkened a beam that the plan wanted lit, or a fault that ended the job.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Event {
+pub struct Event {
     /// Stable code of the first reason.
-    pub(crate) code: &'static str,
+    pub code: &'static str,
     /// What it means.
-    pub(crate) words: &'static str,
+    pub words: &'static str,
     /// When it began, s since power-up.
-    pub(crate) t_s: f64,
+    pub t_s: f64,
     /// How long it lasted, s.
-    pub(crate) lasted_s: f64,
+    pub lasted_s: f64,
     /// Whether the job ended with it.
-    pub(crate) stops: bool,
+    pub stops: bool,
 }
 
 /// Finds events in a stream of ticks, one open at a time.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Watch {
+pub(crate) struct Watch {
     open: Option<Event>,
 }
 
 /// What changed with a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Change {
+pub(crate) enum Change {
     /// Nothing.
     None,
     /// An event began; its length is not known yet.
@@ -38,7 +38,7 @@ pub(super) enum Change {
 
 impl Watch {
     /// Takes the next tick.
-    pub(super) fn push(&mut self, telemetry: &Telemetry) -> Change {
+    pub(crate) fn push(&mut self, telemetry: &Telemetry) -> Change {
         let now = trouble(telemetry);
         match (self.open.as_mut(), now) {
             (None, None) => Change::None,
@@ -62,7 +62,7 @@ impl Watch {
     }
 
     /// The event still going on, as it stands.
-    pub(super) const fn open(&self) -> Option<Event> {
+    pub(crate) const fn open(&self) -> Option<Event> {
         self.open
     }
 }
@@ -84,7 +84,7 @@ fn trouble(telemetry: &Telemetry) -> Option<Event> {
 }
 
 /// All events of a run in time order; an event's length runs to the tick before the light was allowed again.
-pub(crate) fn events(run: &Run) -> Vec<Event> {
+pub fn events(run: &Run) -> Vec<Event> {
     let mut watch = Watch::default();
     let mut found = Vec::new();
     for tick in &run.ticks {

@@ -5,10 +5,11 @@ use tracelight_eye::seen::SeenLight;
 use super::axis::Axis;
 use super::html::{escaped, jpeg_uri, number};
 use super::map::{COLOURS, Place, bar, bin_of, coloured, picture, swatches};
-use crate::output::{Job, OutputError};
+use crate::error::EncodeError;
+use crate::finished::Finished;
 
 /// What a camera saw while the laser drew, as a section of its own; nothing where none looked.
-pub(super) fn section(job: &Job<'_>) -> Result<String, OutputError> {
+pub(super) fn section(job: &Finished<'_>) -> Result<String, EncodeError> {
     let Some(seen) = job.seen else { return Ok(String::new()) };
     let mut text = String::from("<section><h2>What the camera saw</h2>");
     if let Some(follow) = job.eye.as_ref().and_then(|eye| eye.follow.as_ref()) {
@@ -23,7 +24,7 @@ pub(super) fn section(job: &Job<'_>) -> Result<String, OutputError> {
     Ok(text + "</section>")
 }
 
-fn painting(seen: &SeenLight) -> Result<String, OutputError> {
+fn painting(seen: &SeenLight) -> Result<String, EncodeError> {
     const LONGEST_PX: u32 = 1400;
     const QUALITY: u8 = 84;
     let Some(raster) = &seen.painting else { return Ok(String::new()) };
@@ -39,7 +40,7 @@ fn painting(seen: &SeenLight) -> Result<String, OutputError> {
 }
 
 /// Where it was seen against where it was asked to be: arrows, many times as long as the errors, coloured by them.
-fn marks(job: &Job<'_>, seen: &SeenLight) -> Result<String, OutputError> {
+fn marks(job: &Finished<'_>, seen: &SeenLight) -> Result<String, EncodeError> {
     let place = Place::new(job);
     let mut sorted: Vec<f64> = seen.marks.iter().map(|mark| mark.off_mm()).collect();
     sorted.sort_by(f64::total_cmp);
@@ -89,7 +90,7 @@ mod tests {
     use tracelight_stroke::{Point, Vec2};
 
     use super::*;
-    use crate::output::fixture;
+    use crate::fixture;
     use tracelight_eye::seen::SeenMark;
 
     #[test]

@@ -5,8 +5,9 @@ use tracelight_stroke::{Affine, Point};
 use super::axis::{Axis, round_step};
 use super::curve::tenth;
 use super::html::{escaped, jpeg_uri, number};
-use crate::output::sample::{Sample, samples};
-use crate::output::{Job, OutputError};
+use crate::error::EncodeError;
+use crate::finished::Finished;
+use crate::sample::{Sample, samples};
 
 /// Steps of the error's colours; the style sheet has a class for each.
 pub(super) const COLOURS: usize = 8;
@@ -18,7 +19,7 @@ const SHORTEST: f64 = 0.4;
 const NUMBERED: usize = 24;
 
 /// The picture with the lit trace on it, coloured by its error, and its legend, as HTML.
-pub(super) fn map(job: &Job<'_>) -> Result<String, OutputError> {
+pub(super) fn map(job: &Finished<'_>) -> Result<String, EncodeError> {
     let place = Place::new(job);
     let samples = || samples(job.plan, job.run);
     let largest = samples().filter(|s| s.tick.light).filter_map(|s| s.error_mm()).fold(0.0, f64::max);
@@ -54,7 +55,7 @@ pub(super) fn bin_of(error_mm: f64, scale_mm: f64) -> usize {
 }
 
 /// From target metres to the map's units, y down.
-pub(super) fn frame(job: &Job<'_>) -> Affine {
+pub(super) fn frame(job: &Finished<'_>) -> Affine {
     Place::new(job).map_from_target
 }
 
@@ -67,7 +68,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    pub(super) fn new(job: &Job<'_>) -> Self {
+    pub(super) fn new(job: &Finished<'_>) -> Self {
         let (low, high) = job.bounds();
         let size = high - low;
         let air = 0.04 * size.x.max(size.y);
@@ -151,7 +152,7 @@ fn push(data: &mut String, letter: char, at: Point) {
 }
 
 /// The picture itself, faint, or its strokes where there are no pixels.
-pub(super) fn picture(job: &Job<'_>, place: &Place) -> Result<String, OutputError> {
+pub(super) fn picture(job: &Finished<'_>, place: &Place) -> Result<String, EncodeError> {
     const LONGEST_PX: u32 = 1100;
     const QUALITY: u8 = 82;
     let Some(picture) = job.picture else { return Ok(strokes(job, place)) };
@@ -163,7 +164,7 @@ pub(super) fn picture(job: &Job<'_>, place: &Place) -> Result<String, OutputErro
     ))
 }
 
-fn strokes(job: &Job<'_>, place: &Place) -> String {
+fn strokes(job: &Finished<'_>, place: &Place) -> String {
     let mut data = String::new();
     for stroke in &job.drawing.strokes {
         let points = stroke.path.flatten(SHORTEST / place.units_per_m);
@@ -174,7 +175,7 @@ fn strokes(job: &Job<'_>, place: &Place) -> String {
 }
 
 /// Each stroke's number at its start, in tracing order.
-fn numbers(job: &Job<'_>, place: &Place) -> String {
+fn numbers(job: &Finished<'_>, place: &Place) -> String {
     let strokes = &job.drawing.strokes;
     if strokes.len() > NUMBERED {
         return String::new();
@@ -207,7 +208,7 @@ pub(super) fn swatches() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::fixture;
+    use crate::fixture;
 
     #[test]
     fn the_whole_lit_way_is_on_the_map() {

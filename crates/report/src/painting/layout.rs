@@ -1,6 +1,6 @@
 use tracelight_stroke::{Affine, Point, Vec2};
 
-use crate::output::Job;
+use crate::finished::Finished;
 
 /// Width of the painting, px.
 pub(super) const WIDTH: u32 = 1600;
@@ -31,7 +31,7 @@ pub(super) struct Layout {
 
 impl Layout {
     /// Fits a job's picture and trace side by side, both as large as their rooms allow.
-    pub(super) fn new(job: &Job<'_>) -> Self {
+    pub(super) fn new(job: &Finished<'_>) -> Self {
         let (low, high) = job.bounds();
         let size = high - low;
         let px_per_m = (WALL.x / size.x).min(WALL.y / size.y);
@@ -55,7 +55,7 @@ impl Layout {
 }
 
 /// Size of the picture on its sheet; a vector file's is that of what is shown of the wall.
-fn sheet_size(job: &Job<'_>, wall: Vec2) -> Vec2 {
+fn sheet_size(job: &Finished<'_>, wall: Vec2) -> Vec2 {
     let size =
         job.picture.map_or(wall, |p| Vec2::new(f64::from(p.raster.width()), f64::from(p.raster.height())));
     let fitted = size * (SHEET.x / size.x).min(SHEET.y / size.y);

@@ -1,41 +1,27 @@
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::Path;
+//! `trace.csv` and `fault.csv`: a row a tick.
+
+use std::io::Write;
 
 use tracelight_rig::{Darkness, DarknessSet, TICK_F64_S};
 use tracelight_task::phase_word;
 
-use super::sample::{Sample, samples};
-use super::{Job, OutputError};
+use crate::finished::Finished;
+use crate::sample::{Sample, samples};
 
 /// Columns of `trace.csv`; `lap` follows where there were several.
 const HEADER: &str = "t_s,x_m,y_m,laser,pan_rad,tilt_rad,pan_set_rad,tilt_set_rad,pan_count,tilt_count,pan_v,tilt_v,\
                       gate,plan_x_m,plan_y_m,error_mm,phase,dark,pan_est_rad,tilt_est_rad,plan_tick,pan_est_rad_s,tilt_est_rad_s,\
                       pan_est_rad_s2,tilt_est_rad_s2,pan_edge_ms,tilt_edge_ms,pan_lost,tilt_lost";
 
-/// Writes one row a control tick, laps after each other.
-///
-/// `pan_edge_ms`: how long before the tick the joint's last edge came, if one came in the tick before and was stamped.
-/// `pan_lost`: counts that are to be added to `pan_count`, because its encoder lost some.
-/// Decimals are fixed (0.1 µm, 0.1 µrad, 0.1 mV, 1 ns), so equal runs give equal bytes. Where the beam misses the plane,
-/// `x_m`, `y_m` and `error_mm` are empty.
-pub(super) fn write(path: &Path, job: &Job<'_>) -> Result<(), OutputError> {
-    let file = File::create(path).map_err(OutputError::at(path))?;
-    let mut out = BufWriter::with_capacity(1 << 17, file);
-    write_rows(&mut out, job).and_then(|()| out.flush()).map_err(OutputError::at(path))
-}
-
 /// What a fault's log shows of the run: ticks before it,
 const BEFORE_FAULT: usize = 200;
 /// and after it.
 const AFTER_FAULT: usize = 100;
 
-/// Writes `fault.csv`, the rows about the tick in which the last lap's fault was seen; where there was none, a log that an
-/// earlier job left under this name is removed.
-pub(super) fn write_fault(path: &Path, job: &Job<'_>) -> Result<(), OutputError> {
-    let Some(at) = job.run.ticks.iter().position(|tick| tick.telemetry.fault.is_some()) else {
-        return super::forget(path).map_err(OutputError::at(path));
-    };
+/// `fault.csv`: the rows about the tick in which the last lap's fault was seen; `None` where there was none.
+#[must_use]
+pub fn fault_csv(job: &Finished<'_>) -> Option<Vec<u8>> {
+    let at = job.run.ticks.iter().position(|tick| tick.telemetry.fault.is_some())?;
     let from = at.saturating_sub(BEFORE_FAULT);
     let mut text = format!("{HEADER}\n").into_bytes();
     for sample in samples(job.plan, job.run).skip(from).take(at - from + AFTER_FAULT + 1) {
@@ -43,10 +29,19 @@ pub(super) fn write_fault(path: &Path, job: &Job<'_>) -> Result<(), OutputError>
         text.pop(); // the last comma
         text.push(b'\n');
     }
-    std::fs::write(path, text).map_err(OutputError::at(path))
+    Some(text)
 }
 
-fn write_rows(out: &mut impl Write, job: &Job<'_>) -> std::io::Result<()> {
+/// Writes `trace.csv`: one row a control tick, laps after each other.
+///
+/// `pan_edge_ms`: how long before the tick the joint's last edge came, if one came in the tick before and was stamped.
+/// `pan_lost`: counts that are to be added to `pan_count`, because its encoder lost some.
+/// Decimals are fixed (0.1 µm, 0.1 µrad, 0.1 mV, 1 ns), so equal runs give equal bytes. Where the beam misses the plane,
+/// `x_m`, `y_m` and `error_mm` are empty.
+///
+/// # Errors
+/// What `out` says.
+pub fn trace_csv(out: &mut impl Write, job: &Finished<'_>) -> std::io::Result<()> {
     let laps = job.earlier_laps.iter().chain([job.run]);
     let numbered = !job.earlier_laps.is_empty();
     writeln!(out, "{HEADER}{}", if numbered { ",lap" } else { "" })?;
@@ -171,11 +166,11 @@ fn push_digits(line: &mut Vec<u8>, mut value: u64, least: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::fixture;
+    use crate::fixture;
 
-    fn text(job: &Job<'_>) -> String {
+    fn text(job: &Finished<'_>) -> String {
         let mut out = Vec::new();
-        write_rows(&mut out, job).unwrap();
+        trace_csv(&mut out, job).unwrap();
         String::from_utf8(out).unwrap()
     }
 
@@ -224,15 +219,11 @@ mod tests {
 
     #[test]
     fn the_ticks_about_a_fault_have_their_own_file() {
-        let dir = std::env::temp_dir().join(format!("tracelight-fault-{}", std::process::id()));
-        std::fs::create_dir_all(&dir).unwrap();
-        let path = dir.join("fault.csv");
         let mut fixture = fixture::star();
         for tick in fixture.run.ticks.iter_mut().skip(300) {
             tick.telemetry.fault = Some(tracelight_rig::Fault::EncoderDead);
         }
-        write_fault(&path, &fixture.job()).unwrap();
-        let written = std::fs::read_to_string(&path).unwrap();
+        let written = String::from_utf8(fault_csv(&fixture.job()).unwrap()).unwrap();
         let rows: Vec<&str> = written.lines().collect();
         assert_eq!(rows.len(), 1 + 200 + 1 + 100);
         assert!(
@@ -243,9 +234,7 @@ mod tests {
         );
         let whole = text(&fixture.job());
         assert!(whole.contains(&written[written.find('\n').unwrap()..]), "the same rows");
-        write_fault(&path, &fixture::star().job()).unwrap();
-        assert!(!path.exists(), "no fault, no log of one");
-        std::fs::remove_dir_all(dir).unwrap();
+        assert_eq!(fault_csv(&fixture::star().job()), None, "no fault, no log of one");
     }
 
     #[test]
@@ -264,7 +253,7 @@ mod tests {
     fn laps_are_numbered_from_one() {
         let fixture = fixture::star();
         let laps = [fixture.run.clone(), fixture.run.clone()];
-        let text = text(&Job { earlier_laps: &laps, ..fixture.job() });
+        let text = text(&Finished { earlier_laps: &laps, ..fixture.job() });
         assert!(text.lines().next().unwrap().ends_with(",lap"));
         assert!(text.lines().nth(1).unwrap().ends_with(",1"));
         assert!(text.lines().last().unwrap().ends_with(",3"));

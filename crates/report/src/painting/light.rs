@@ -3,7 +3,7 @@ use tracelight_stroke::Point;
 
 use super::layout::{Layout, WIDTH};
 use super::plane::Plane;
-use crate::output::Job;
+use crate::finished::Finished;
 
 /// What an open shutter collects of the spot: the line itself, and what lens and wall scatter of it.
 pub(super) struct Exposure {
@@ -38,7 +38,7 @@ const BOUNCE_GAIN: f32 = 0.05 * BOUNCE_SIGMA_PX / 0.4;
 
 impl Exposure {
     /// Collects every lit tick of all laps.
-    pub(super) fn new(job: &Job<'_>, layout: &Layout) -> Self {
+    pub(super) fn new(job: &Finished<'_>, layout: &Layout) -> Self {
         let mut dose = Plane::dark(WIDTH as usize, layout.height as usize);
         // a tick at the set speed leaves as much energy as it covers pixels: one a pixel of line
         let per_tick = (job.set_speed_m_s * tracelight_rig::TICK_F64_S * layout.px_per_m).clamp(1e-6, 1e6);
@@ -92,7 +92,7 @@ fn draw(dose: &mut Plane, from: Point, to: Point, energy: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::fixture;
+    use crate::fixture;
 
     #[test]
     fn the_line_is_bright_where_the_spot_went_and_dark_elsewhere() {

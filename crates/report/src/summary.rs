@@ -1,5 +1,3 @@
-use std::path::Path;
-
 use serde::Serialize;
 use tracelight_eye::figures::EyeFigures;
 use tracelight_pipeline::QualityFigures;
@@ -8,130 +6,139 @@ use tracelight_sim::Run;
 use tracelight_stroke::Drawing;
 use tracelight_trajectory::Plan;
 
-use super::sample::lit_s;
-use super::{Event, Job, OutputError, events};
+use crate::events::{Event, events};
+use crate::finished::Finished;
+use crate::sample::lit_s;
 
 /// The figures of a job: `summary.json` and the `--json` of `trace`. Lengths in m unless the name says mm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Summary {
+pub struct Summary {
     /// What was traced.
-    pub(crate) picture: PictureFigures,
+    pub picture: PictureFigures,
     /// What its pixels are worth; `null` for a vector file.
-    pub(crate) quality: Option<QualityFigures>,
+    pub quality: Option<QualityFigures>,
     /// Where.
-    pub(crate) target: TargetFigures,
+    pub target: TargetFigures,
     /// What it became.
-    pub(crate) strokes: StrokeFigures,
+    pub strokes: StrokeFigures,
     /// What was meant to happen.
-    pub(crate) plan: PlanFigures,
+    pub plan: PlanFigures,
     /// Whether it was done, and how long that took.
-    pub(crate) run: RunFigures,
+    pub run: RunFigures,
     /// What happened instead.
-    pub(crate) tracking: TrackingFigures,
+    pub tracking: TrackingFigures,
     /// Light and what kept it away.
-    pub(crate) laser: LaserFigures,
+    pub laser: LaserFigures,
     /// What a camera saw; not there where none looked.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) camera: Option<EyeFigures>,
+    pub camera: Option<EyeFigures>,
     /// Wall-clock time of the stages, ms.
-    pub(crate) timing_ms: TimingFigures,
+    pub timing_ms: TimingFigures,
     /// Seed of the run.
-    pub(crate) seed: u64,
+    pub seed: u64,
     /// Version of the program.
-    pub(crate) version: &'static str,
+    pub version: &'static str,
 }
 
 /// See [`Summary::picture`]; sizes are `null` for a vector file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct PictureFigures {
-    pub(crate) path: String,
-    pub(crate) width_px: Option<u32>,
-    pub(crate) height_px: Option<u32>,
+pub struct PictureFigures {
+    pub path: String,
+    pub width_px: Option<u32>,
+    pub height_px: Option<u32>,
 }
 
 /// See [`Summary::target`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct TargetFigures {
-    pub(crate) width_m: f64,
-    pub(crate) height_m: f64,
-    pub(crate) distance_m: f64,
+pub struct TargetFigures {
+    pub width_m: f64,
+    pub height_m: f64,
+    pub distance_m: f64,
 }
 
 /// See [`Summary::strokes`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct StrokeFigures {
-    pub(crate) count: usize,
-    pub(crate) length_m: f64,
-    pub(crate) travel_m: f64,
+pub struct StrokeFigures {
+    /// How many.
+    pub count: usize,
+    /// How long all of them are.
+    pub length_m: f64,
+    /// How far the spot goes in the dark.
+    pub travel_m: f64,
 }
 
 /// See [`Summary::plan`]; `speed_m_s` is the mean planned speed while lit, `set_speed_m_s` what lit strokes are run at where
 /// nothing holds them back.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct PlanFigures {
-    pub(crate) duration_s: f64,
-    pub(crate) lit_s: f64,
-    pub(crate) speed_m_s: f64,
-    pub(crate) set_speed_m_s: f64,
-    pub(crate) torque_peak_fraction: f64,
+pub struct PlanFigures {
+    /// Of all of it.
+    pub duration_s: f64,
+    /// Of what is lit.
+    pub lit_s: f64,
+    /// In the mean while lit.
+    pub speed_m_s: f64,
+    /// Where nothing holds it back.
+    pub set_speed_m_s: f64,
+    /// Most torque, as a share of what the motor has.
+    pub torque_peak_fraction: f64,
 }
 
 /// See [`Summary::run`]; of the last lap.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct RunFigures {
-    pub(crate) duration_s: f64,
-    pub(crate) finished: bool,
-    pub(crate) lost_counts: JointCounts,
+pub struct RunFigures {
+    pub duration_s: f64,
+    pub finished: bool,
+    pub lost_counts: JointCounts,
 }
 
 /// One figure a joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct JointCounts {
-    pub(crate) pan: i32,
-    pub(crate) tilt: i32,
+pub struct JointCounts {
+    pub pan: i32,
+    pub tilt: i32,
 }
 
 /// See [`Summary::tracking`] and [`tracelight_sim::Tracking`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct TrackingFigures {
-    pub(crate) rms_mm: f64,
-    pub(crate) max_mm: f64,
-    pub(crate) off_stroke_rms_mm: f64,
-    pub(crate) off_stroke_max_mm: f64,
-    pub(crate) overshoot_percent: f64,
-    pub(crate) final_error_mm: f64,
-    pub(crate) lit_speed_m_s: f64,
-    pub(crate) at_speed_share: f64,
+pub struct TrackingFigures {
+    pub rms_mm: f64,
+    pub max_mm: f64,
+    pub off_stroke_rms_mm: f64,
+    pub off_stroke_max_mm: f64,
+    pub overshoot_percent: f64,
+    pub final_error_mm: f64,
+    pub lit_speed_m_s: f64,
+    pub at_speed_share: f64,
 }
 
 /// See [`Summary::laser`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct LaserFigures {
-    pub(crate) lit_s: f64,
-    pub(crate) faults: Vec<FaultFigures>,
+pub struct LaserFigures {
+    pub lit_s: f64,
+    pub faults: Vec<FaultFigures>,
 }
 
 /// A fault, or a darkening by the interlock.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct FaultFigures {
-    pub(crate) code: &'static str,
-    pub(crate) t_s: f64,
-    pub(crate) lasted_s: f64,
-    pub(crate) stops: bool,
+pub struct FaultFigures {
+    pub code: &'static str,
+    pub t_s: f64,
+    pub lasted_s: f64,
+    pub stops: bool,
 }
 
 /// See [`Summary::timing_ms`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct TimingFigures {
-    pub(crate) vision: f64,
-    pub(crate) plan: f64,
-    pub(crate) run: f64,
-    pub(crate) report: f64,
+pub struct TimingFigures {
+    pub vision: f64,
+    pub plan: f64,
+    pub run: f64,
+    pub report: f64,
 }
 
 impl Summary {
     /// All figures of a job.
-    pub(crate) fn new(job: &Job<'_>) -> Self {
+    pub fn new(job: &Finished<'_>) -> Self {
         Self {
             picture: picture(job),
             quality: job.quality.map(QualityFigures::of),
@@ -161,14 +168,9 @@ impl Summary {
     }
 
     /// The figures as JSON text, indented for people.
-    pub(crate) fn json(&self) -> String {
+    pub fn json(&self) -> String {
         // numbers, texts and options cannot fail to become JSON
         serde_json::to_string_pretty(self).unwrap_or_default()
-    }
-
-    /// Writes `summary.json`.
-    pub(super) fn write(&self, path: &Path) -> Result<(), OutputError> {
-        std::fs::write(path, self.json() + "\n").map_err(OutputError::at(path))
     }
 }
 
@@ -178,7 +180,7 @@ impl FaultFigures {
     }
 }
 
-fn picture(job: &Job<'_>) -> PictureFigures {
+fn picture(job: &Finished<'_>) -> PictureFigures {
     PictureFigures {
         path: job.picture_path.to_owned(),
         width_px: job.picture.map(|p| p.raster.width()),
@@ -199,7 +201,7 @@ impl RunFigures {
 
 impl StrokeFigures {
     /// Of a drawing in tracing order and its plan.
-    pub(crate) fn of(drawing: &Drawing, plan: &Plan) -> Self {
+    pub fn of(drawing: &Drawing, plan: &Plan) -> Self {
         const LENGTH_TOLERANCE_M: f64 = 1e-6;
         let start = plan.points.first().map_or_else(Default::default, |p| p.spot);
         Self {
@@ -212,7 +214,7 @@ impl StrokeFigures {
 
 impl PlanFigures {
     /// Of a plan.
-    pub(crate) fn of(plan: &Plan) -> Self {
+    pub fn of(plan: &Plan) -> Self {
         Self {
             duration_s: round(plan.duration_s()),
             lit_s: round(plan.lit_s()),
@@ -231,7 +233,7 @@ fn planned_speed(plan: &Plan) -> f64 {
     way / (f64::from(ticks.max(1)) * TICK_F64_S)
 }
 
-fn tracking(job: &Job<'_>) -> TrackingFigures {
+fn tracking(job: &Finished<'_>) -> TrackingFigures {
     let t = &job.tracking;
     TrackingFigures {
         rms_mm: round(t.rms_mm),
@@ -253,7 +255,7 @@ fn round(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::fixture;
+    use crate::fixture;
 
     #[test]
     fn the_summary_has_every_name_scripts_rely_on() {

@@ -8,8 +8,8 @@ use tracelight_stroke::{Point, Rect};
 use tracelight_trajectory::{Binding, Plan, PlanPoint};
 
 /// What the colours of a preview say.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum ColourBy {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColourBy {
     /// How fast the spot is
     #[default]
     Speed,
@@ -54,7 +54,7 @@ const fn limit_colour(limit: Option<Binding>) -> &'static str {
 }
 
 /// An SVG of the plan, `set_m_s` the speed it was asked for.
-pub(crate) fn preview(plan: &Plan, by: ColourBy, set_m_s: f64) -> String {
+pub fn preview(plan: &Plan, by: ColourBy, set_m_s: f64) -> String {
     let frame = Frame::around(plan);
     let inner = frame.size.0.max(NARROWEST);
     let columns = (inner / ENTRY.0).floor().max(1.0) as usize;

@@ -1,12 +1,14 @@
 use super::html::{escaped, number};
-use crate::output::{Job, Summary, events};
+use crate::events::events;
+use crate::finished::Finished;
+use crate::summary::Summary;
 use tracelight_rig::Phase;
 use tracelight_vision::Quality;
 
 const METRES_PER_INCH: f64 = 0.0254;
 
 /// The figures that matter most, large.
-pub(super) fn tiles(job: &Job<'_>, figures: &Summary) -> String {
+pub(super) fn tiles(job: &Finished<'_>, figures: &Summary) -> String {
     let t = &figures.tracking;
     let at_speed = t.at_speed_share * 100.0;
     let tiles = [
@@ -25,12 +27,12 @@ pub(super) fn tiles(job: &Job<'_>, figures: &Summary) -> String {
     tiles.into_iter().map(tile).collect()
 }
 
-fn torque_peak(job: &Job<'_>) -> f64 {
+fn torque_peak(job: &Finished<'_>) -> f64 {
     job.plan.torque_peak_fraction()
 }
 
 /// One line below the title: size, place, speed.
-pub(super) fn subtitle(job: &Job<'_>) -> String {
+pub(super) fn subtitle(job: &Finished<'_>) -> String {
     let target = &job.target;
     let inches = |m: f64| number(m / METRES_PER_INCH, 3);
     format!(
@@ -45,7 +47,7 @@ pub(super) fn subtitle(job: &Job<'_>) -> String {
 }
 
 /// Every figure of the summary, grouped.
-pub(super) fn figures(job: &Job<'_>, f: &Summary) -> String {
+pub(super) fn figures(job: &Finished<'_>, f: &Summary) -> String {
     let share = |x: f64| number(x * 100.0, 3);
     let lost = f.run.lost_counts;
     let groups = [
@@ -89,7 +91,7 @@ pub(super) fn figures(job: &Job<'_>, f: &Summary) -> String {
     filled.map(|(title, rows)| group(title, &rows.concat())).collect()
 }
 
-fn picture_rows(job: &Job<'_>, f: &Summary) -> Vec<String> {
+fn picture_rows(job: &Finished<'_>, f: &Summary) -> Vec<String> {
     let size = job.picture.map(|p| format!("{} × {}", p.raster.width(), p.raster.height()));
     let inches = |m: f64| format!("{} mm, {} in", number(m * 1e3, 4), number(m / METRES_PER_INCH, 4));
     let mut rows = vec![row("file", escaped(job.picture_path), "")];
@@ -123,7 +125,7 @@ fn quality_rows(q: &Quality) -> Vec<String> {
 }
 
 /// What was asked for.
-pub(super) fn settings(job: &Job<'_>) -> String {
+pub(super) fn settings(job: &Finished<'_>) -> String {
     let rows: String = job.settings.iter().map(|s| row(&escaped(&s.name), escaped(&s.value), "")).collect();
     let named = job.settings.iter().any(|s| s.name == "seed");
     let seed = if named { String::new() } else { row("seed", job.seed.to_string(), "") };
@@ -141,7 +143,7 @@ fn group(title: &str, rows: &str) -> String {
 }
 
 /// Whether the job ended well: a class for the badge and its words.
-pub(super) fn verdict(job: &Job<'_>) -> (&'static str, String) {
+pub(super) fn verdict(job: &Finished<'_>) -> (&'static str, String) {
     let events = events(job.run);
     if let Some(stop) = events.iter().find(|e| e.stops) {
         return ("bad", format!("stopped: {}", stop.code));
@@ -161,10 +163,10 @@ pub(super) fn verdict(job: &Job<'_>) -> (&'static str, String) {
 }
 
 /// Faults, darkenings and remarks in words.
-pub(super) fn happenings(job: &Job<'_>) -> String {
+pub(super) fn happenings(job: &Finished<'_>) -> String {
     const MOST: usize = 100;
     let events = events(job.run);
-    let event = |e: &crate::output::Event| {
+    let event = |e: &crate::events::Event| {
         let class = if e.stops { "bad" } else { "fair" };
         let lasted = number(e.lasted_s * 1e3, 3);
         format!(

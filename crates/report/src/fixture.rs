@@ -9,30 +9,30 @@ use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_trajectory::{JointMotion, Plan, PlanPoint};
 use tracelight_vision::Quality;
 
-use super::{Job, Picture, Setting, Target, Timing};
+use crate::{Finished, Picture, Setting, Target, Timing};
 
 /// Speed along the strokes, m/s.
-pub(super) const SPEED_M_S: f64 = 0.3048;
+pub(crate) const SPEED_M_S: f64 = 0.3048;
 const TRAVEL_M_S: f64 = 1.0;
 const TARGET: Target = Target { width_m: 0.6096, height_m: 0.4572, distance_m: 0.9144 };
 
-/// Owns what a [`Job`] borrows.
-pub(super) struct Fixture {
-    pub(super) raster: Option<Raster>,
-    pub(super) quality: Option<Quality>,
-    pub(super) drawing: Drawing,
-    pub(super) plan: Plan,
-    pub(super) run: Run,
-    pub(super) settings: Vec<Setting>,
-    pub(super) notes: Vec<String>,
+/// Owns what a [`Finished`] borrows.
+pub(crate) struct Fixture {
+    pub(crate) raster: Option<Raster>,
+    pub(crate) quality: Option<Quality>,
+    pub(crate) drawing: Drawing,
+    pub(crate) plan: Plan,
+    pub(crate) run: Run,
+    pub(crate) settings: Vec<Setting>,
+    pub(crate) notes: Vec<String>,
 }
 
 impl Fixture {
-    pub(super) fn job(&self) -> Job<'_> {
+    pub(crate) fn job(&self) -> Finished<'_> {
         let scale = TARGET.width_m / 640.0;
         let place = Affine::translate((-TARGET.width_m / 2.0, TARGET.height_m / 2.0))
             * Affine::scale_non_uniform(scale, -scale);
-        Job {
+        Finished {
             picture_path: "examples/star <&> \"friends\".png",
             picture: self.raster.as_ref().map(|raster| Picture { raster, target_from_pixel: place }),
             quality: self.quality.as_ref(),
@@ -71,7 +71,7 @@ fn tracking() -> Tracking {
 }
 
 /// A star, a circle in it and a wave below.
-pub(super) fn star() -> Fixture {
+pub(crate) fn star() -> Fixture {
     let drawing = Drawing { strokes: vec![five_points(), circle(), wave()] };
     let plan = plan(&drawing);
     let run = run(&plan);
@@ -91,7 +91,7 @@ pub(super) fn star() -> Fixture {
 }
 
 /// A job of a vector file without a stroke that never ran.
-pub(super) fn nothing() -> Fixture {
+pub(crate) fn nothing() -> Fixture {
     let (drawing, plan, run) = (Drawing::default(), Plan::default(), Run::default());
     Fixture { raster: None, quality: None, drawing, plan, run, settings: vec![], notes: vec![] }
 }

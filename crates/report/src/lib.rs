@@ -1,0 +1,42 @@
+//! What a traced job leaves behind: figures, tables, pictures and the run log, as bytes.
+//!
+//! Everything here is computed from one read-only [`Finished`]; nothing here decides anything, and nothing here opens a file.
+//!
+//! | file | made by |
+//! |---|---|
+//! | `summary.json`, `--json` | [`Summary`] |
+//! | `trace.csv`, `fault.csv` | [`trace_csv`], [`fault_csv`] |
+//! | `run.mcap` | [`LogWriter`], tick by tick while the run goes on, and [`index`] |
+//! | `trace.png` | [`paint`] |
+//! | `seen.csv` | [`seen_csv`], where a camera followed the spot |
+//! | `report.html` | [`page()`] |
+//! | `plan --preview`, `strokes --stages` | [`preview()`], [`stages`] |
+//! | a drawing | [`drawing`] |
+
+mod csv;
+pub mod drawing;
+mod error;
+mod events;
+mod finished;
+#[cfg(test)]
+mod fixture;
+mod log;
+mod page;
+mod painting;
+mod preview;
+mod sample;
+mod seen;
+pub mod stages;
+mod summary;
+
+pub use csv::{fault_csv, trace_csv};
+pub use error::EncodeError;
+pub use events::{Event, events};
+pub use finished::{Finished, Picture, Setting, Target, Timing};
+pub use log::{LogMeta, LogWriter, index};
+pub use page::{html, page};
+pub use painting::paint;
+pub use preview::{ColourBy, preview};
+pub use sample::planned;
+pub use seen::seen_csv;
+pub use summary::{PlanFigures, StrokeFigures, Summary};
