@@ -18,8 +18,4 @@ pub mod picture;
 pub mod trace;
 
 mod bytes;
-mod failure;
-mod output;
-#[path = "../../crates/tracelight/src/quiet.rs"]
-mod quiet;
 mod sound;

@@ -3,14 +3,9 @@
 use std::io::Cursor;
 
 use image::ImageReader;
+use tracelight_picture::{Pixels, Source, decode};
 
 use crate::sound::check_sheet;
-use front_door::{Pixels, Source};
-
-/// The program has no library; this is its own file, with nothing of it left out.
-#[allow(dead_code, reason = "opening files is the program's")]
-#[path = "../../crates/tracelight/src/picture.rs"]
-mod front_door;
 
 /// Most pixels that may come out of the door: the documented 100 megapixels.
 const MOST_PIXELS: usize = 100_000_000;
@@ -30,7 +25,7 @@ pub fn check(file: &[u8]) {
     if is_slow(file) {
         return;
     }
-    match front_door::decode("picture", file) {
+    match decode("picture", file) {
         Ok(Source::Pixels(pixels)) => check_pixels(&pixels),
         Ok(Source::Strokes(reading)) => check_sheet(&reading.sheet),
         Err(failure) => {
@@ -41,7 +36,7 @@ pub fn check(file: &[u8]) {
 }
 
 fn check_pixels(pixels: &Pixels) {
-    let (width, height) = pixels.colour.size();
+    let (width, height) = (pixels.colour.width() as usize, pixels.colour.height() as usize);
     assert!(width * height <= MOST_PIXELS, "{width} × {height}");
     assert_eq!((pixels.grey.width(), pixels.grey.height()), (width, height));
     assert_eq!(pixels.grey.levels().len(), width * height);

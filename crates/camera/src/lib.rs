@@ -2,9 +2,11 @@
 
 #[cfg(target_os = "linux")]
 mod device;
+mod devices;
 mod film;
 mod latest;
 mod source;
 mod stream;
 
-pub use source::{Source, devices};
+pub use devices::devices;
+pub use source::Source;

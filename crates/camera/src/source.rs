@@ -1,7 +1,6 @@
 //! Where images come from that are not simulated: files and films, one image after the other, and cameras.
 
 use std::collections::VecDeque;
-use std::path::PathBuf;
 
 use tracelight_files as files;
 use tracelight_task::Failure;
@@ -75,17 +74,6 @@ fn is_device(name: &str) -> bool {
         return about.file_type().is_char_device();
     }
     ["/dev/video", "/dev/v4l/"].iter().any(|begin| name.starts_with(begin))
-}
-
-/// Video devices that are plugged in; not all of them send images.
-#[must_use]
-pub fn devices() -> Vec<PathBuf> {
-    let entries = std::fs::read_dir("/dev").into_iter().flatten().flatten();
-    let number = |path: &PathBuf| path.to_str()?.strip_prefix("/dev/video")?.parse::<u32>().ok();
-    let mut all: Vec<(u32, PathBuf)> =
-        entries.map(|entry| entry.path()).filter_map(|path| Some((number(&path)?, path))).collect();
-    all.sort();
-    all.into_iter().map(|(_, path)| path).collect()
 }
 
 /// A camera that is plugged in.

@@ -14,7 +14,7 @@ use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
 
-use crate::homing::check_homed;
+use crate::power::check_homed;
 use crate::spots::{History, Sight, Sighting, SpotWatch};
 use crate::{Eye, Looks};
 

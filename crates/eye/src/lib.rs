@@ -13,6 +13,7 @@
 //! | [`figure`] | the figure on the wall, as strokes |
 //! | [`spots`] | the laser's spot in shots, held against what the encoders said |
 //! | [`head`] | the head found from spots |
+//! | [`power`] | a rig that was just powered up, or lost power |
 //! | [`homing`] | a head that was just powered up finds where it points |
 //! | [`follow`] | the spot followed while a rig draws: what is off slowly, and suddenly |
 //! | [`painted`] | what was seen of it, as a picture |
@@ -32,6 +33,7 @@ pub mod homing;
 mod looks;
 mod pages;
 pub mod painted;
+pub mod power;
 pub mod room;
 pub mod seen;
 mod shot;

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use tracelight_eye::homing::{check_homed, lost_power};
+use tracelight_eye::power::{check_homed, lost_power};
 use tracelight_lab::{LAPS_WORTH, identify};
 use tracelight_rig::{Command, Joint, Rig};
 use tracelight_sim::{RigConfig, Run, SimulatedRig};

@@ -4,7 +4,7 @@ use tracelight_aim::{Alignment, HeadGeometry, HeadPose, TrimBelief};
 use tracelight_eye::figures::RecoveryFigures;
 use tracelight_eye::follow::{Blind, Followed, Follower, Suspicion};
 use tracelight_eye::head::{DotsRequest, find_head};
-use tracelight_eye::homing::lost_power;
+use tracelight_eye::power::lost_power;
 use tracelight_eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
 use tracelight_eye::{Eye, Looks, PATIENCE_TICKS, Shot};
 use tracelight_pipeline::refused;

@@ -6,7 +6,8 @@ use tracelight_eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_fi
 use tracelight_eye::figures::{EyeFigures, HeadFigures, HomedFigures};
 use tracelight_eye::follow::Followed;
 use tracelight_eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_front};
-use tracelight_eye::homing::{check_homed, home_head};
+use tracelight_eye::homing::home_head;
+use tracelight_eye::power::check_homed;
 use tracelight_eye::room::{Furnished, RoomRequest};
 use tracelight_picture::{Pixels, Source};
 use tracelight_pipeline::{Driving, sketch};

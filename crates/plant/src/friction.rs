@@ -1,6 +1,6 @@
 use tracelight_dynamics::Friction;
 
-use crate::Wear;
+use crate::wear::Wear;
 
 /// Periods of the friction ripple in a turn of a joint: of the order of a gear's teeth.
 const RIPPLE_PERIODS: f64 = 40.0;

@@ -12,10 +12,12 @@ mod friction;
 mod light;
 mod plant;
 mod step;
+mod wear;
 
 pub use camera::{
     CameraConfig, Exposed, Image, Lamp, Laser, Part, Poster, Sensor, SimulatedCamera, SpotSample, Wall,
 };
-pub use config::{EncoderConfig, PlantConfig, RelayConfig, Wear};
+pub use config::{EncoderConfig, PlantConfig, RelayConfig};
 pub use plant::Plant;
 pub use step::{JointState, Stepper};
+pub use wear::Wear;

@@ -1,32 +1,4 @@
-use crate::{Command, PanTilt, Telemetry};
-
-/// What one encoder says at a tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Measurement {
-    /// Signed count: of a head, since power-up; told by a rig that was homed, count 0 is centred on angle zero.
-    pub count: i32,
-    /// Age of the last edge, ticks before this measurement, in `[0, 1)`; `None` when no edge came in the last
-    /// tick or where the hardware does not stamp edges.
-    pub edge_age_ticks: Option<f32>,
-}
-
-/// What a head says at a tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sensed {
-    /// Of each joint's encoder.
-    pub encoders: PanTilt<Measurement>,
-    /// Whether the laser's switch is closed, where something watches it: a relay's second contact, a photodiode.
-    pub laser_on: Option<bool>,
-}
-
-/// What the controller does to the motors and the laser in one tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Actuation {
-    /// Command at the amplifiers' inputs, V.
-    pub command_v: PanTilt<f32>,
-    /// Whether the laser's switch is driven on.
-    pub gate: bool,
-}
+use crate::{Actuation, Command, Sensed, Telemetry};
 
 /// The hardware seam: motors, encoders and laser of one head, boards or equations.
 ///
@@ -34,7 +6,7 @@ pub struct Actuation {
 /// - return from [`exchange`](Self::exchange) once per tick, one tick after the last return;
 /// - hold the actuation (zero-order) until the next exchange;
 /// - take both encoders' counts at the same instant, and never wrap them within a job;
-/// - stamp an edge either always or never ([`Measurement::edge_age_ticks`]);
+/// - stamp an edge either always or never ([`Measurement::edge_age_ticks`](crate::Measurement::edge_age_ticks));
 /// - open the laser's switch and zero the amplifiers by themselves when the exchanges stop coming;
 /// - never fail: a dead encoder is a count that does not move, which is the controller's to notice.
 pub trait Head {

@@ -13,14 +13,16 @@
 
 #![no_std]
 
+mod exchange;
 mod fault;
 mod head;
 mod joint;
 mod segment;
 mod telemetry;
 
+pub use exchange::{Actuation, Measurement, Sensed};
 pub use fault::{Darkness, DarknessSet, Fault};
-pub use head::{Actuation, Head, Measurement, Rig, Sensed};
+pub use head::{Head, Rig};
 pub use joint::{Joint, JointLimits, PanTilt};
 pub use segment::{Command, Segment, Setpoint};
 pub use telemetry::{Phase, Telemetry};

@@ -9,6 +9,7 @@
 mod ascent;
 mod bound;
 mod exchange;
+mod forest;
 mod greedy;
 mod kdtree;
 mod memo;

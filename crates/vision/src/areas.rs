@@ -5,14 +5,14 @@
 
 use tracelight_stroke::Stroke;
 
-use crate::Options;
-use crate::ink::over;
 use crate::levels::histogram;
-use crate::light::percentile;
+use crate::levels::percentile;
 use crate::mask::Mask;
+use crate::options::Options;
 use crate::outline::Outliner;
 use crate::plane::Plane;
 use crate::region::{Region, mask_of, regions};
+use crate::threshold::over;
 
 /// An area holds a regular octagon of this share of the picture's shorter side, and of so many px.
 const BROAD: usize = 24;
@@ -206,7 +206,8 @@ fn is_lined(area: &Region, areas: &Mask, ink: &Mask) -> bool {
 mod tests {
     use tracelight_stroke::StrokeKind;
 
-    use crate::{Grey, Options, trace};
+    use crate::options::Options;
+    use crate::{Grey, trace};
 
     const SIDE: usize = 320;
 

@@ -2,41 +2,17 @@
 
 use tracelight_stroke::{Path, Point, Stroke, Vec2, polyline_length};
 
-use crate::Options;
 use crate::follow;
 use crate::graph::Graph;
 use crate::junction::{self, Joint, Junctions};
 use crate::line::Line;
 use crate::mask::Mask;
 use crate::near::Near;
+use crate::options::Options;
 use crate::plane::Plane;
 use crate::region::{Region, long_axis};
 use crate::ridge::median;
-
-/// A row of points to be fitted, and the pen that drew it.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Row {
-    pub(crate) points: Vec<Point>,
-    pub(crate) closed: bool,
-    /// Width of the pen, px.
-    pub(crate) width: f64,
-    /// Whether the line ends free at its first and last point: not at another line nor at a shape.
-    pub(crate) free: [bool; 2],
-    /// Whether this is a dot, whose direction says nothing.
-    pub(crate) dot: bool,
-}
-
-impl Row {
-    /// Of its ink, px².
-    pub(crate) fn area_px2(&self) -> usize {
-        (polyline_length(&self.points) * self.width) as usize
-    }
-
-    /// Its first (`end` 0) or last point.
-    pub(crate) fn end(&self, end: usize) -> Point {
-        self.points[end * (self.points.len() - 1)]
-    }
-}
+use crate::row::Row;
 
 /// The rows of one patch's graph; lines end where they meet `shapes`.
 pub(crate) fn rows(dark: &Plane<u8>, shapes: &Mask, region: &Region, graph: &Graph) -> Vec<Row> {

@@ -5,13 +5,14 @@
 
 use tracelight_stroke::Vec2;
 
-use crate::centreline::{self, Row, is_dot};
+use crate::centreline::{self, is_dot};
 use crate::graph::Graph;
-use crate::ink::over;
 use crate::mask::Mask;
 use crate::parts::graphs;
 use crate::plane::Plane;
 use crate::region::{Region, regions};
+use crate::row::Row;
+use crate::threshold::over;
 
 /// No larger than this either way, px, is a small figure,
 const LARGEST_PX: usize = 64;

@@ -5,9 +5,10 @@
 //! lines are still wide enough, or all there, nothing that was drawn is lost.
 
 use crate::grey::MOST_PIXELS;
-use crate::ink::{over, smoothed};
 use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::smooth::smoothed;
+use crate::threshold::over;
 
 /// Looked at half as closely, a picture still has so many pixels either way.
 const LEAST_SIDE_PX: usize = 200;

@@ -2,11 +2,11 @@
 
 use tracelight_stroke::{Point, Vec2};
 
-use crate::centreline::Row;
 use crate::comb::ratio;
 use crate::near::Near;
 use crate::region::Region;
 use crate::ridge::middle;
+use crate::row::Row;
 
 /// Dots of the paper that are in no stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,11 +7,11 @@
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::Tip;
-use crate::centreline::Row;
 use crate::gap::{End, ends_where, near_pairs, widest_paper};
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::ridge::median;
+use crate::row::Row;
 
 /// A step ahead, and the stretch by which its direction is chosen, pens.
 const STEP: f64 = 0.75;
@@ -271,7 +271,7 @@ mod tests {
             Row { points, closed: false, width: 4.0, free, dot: false }
         };
         let rows = [row(12, 48, [false, true]), row(72, 108, [true, false])];
-        followed(&dark, &crate::ink::over(&dark, 150), &rows, false)
+        followed(&dark, &crate::threshold::over(&dark, 150), &rows, false)
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use tracelight_stroke::{FitOptions, Parabola, Path, Piece, Point, fit, polyline_length, simplify};
 
-use crate::Options;
 use crate::bridge::{angle, measured};
+use crate::options::Options;
 
 /// Tolerance over the points' own noise: their largest deviations are three to four times its mean square's root,
 /// and the fit uses 0.7 of the tolerance.

@@ -3,10 +3,10 @@
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::{Tip, angle, drop_beyond};
-use crate::centreline::Row;
 use crate::near::Near;
 use crate::plane::Plane;
 use crate::ridge::median;
+use crate::row::Row;
 
 /// Widest gap, from where the pen was lifted to where it was put down, pen widths: one of paper and the pen's two
 /// halves, and some more for what blur and threshold took.

@@ -2,25 +2,27 @@
 
 use std::borrow::Cow;
 
-use crate::centreline::Row;
 use crate::coarse;
 use crate::comb::{self, Lie, TakenOff};
 use crate::faint;
-use crate::levels::{Counts, SAMPLED, sampled_histogram};
-use crate::light::{Paper, percentile};
+use crate::levels::{SAMPLED, sampled_histogram};
+use crate::light::Paper;
 use crate::mask::Mask;
 use crate::paler::Inked;
 use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
 use crate::quality::clipped_percent;
 use crate::region::{Region, mask_of, regions};
+use crate::row::Row;
+use crate::smooth::SMOOTHED;
+use crate::smooth::noise;
+use crate::smooth::smoothed;
 use crate::split::{Split, strongest};
+use crate::threshold::over;
 use crate::{Page, Quality, VisionError};
 
 /// Noise from which on the picture is smoothed, levels.
 const SMOOTHED_FROM: f64 = 2.5;
-/// What is left of it after so many passes: the root of the sum of the squares of the weights of the binomial mean, alone and of itself.
-pub(crate) const SMOOTHED: [f64; 3] = [1.0, 3.0 / 8.0, 35.0 / 128.0];
 /// Most passes.
 const MOST_SMOOTHINGS: usize = SMOOTHED.len() - 1;
 
@@ -271,78 +273,6 @@ fn reduced_mask(mask: &Mask, plane: &Plane<u8>, reduction: usize) -> Mask {
     for y in 0..plane.height {
         let beside = (0..plane.width).filter(|&x| mask.get(middle(x), middle(y)));
         beside.for_each(|x| out.set(out.cell(x, y)));
-    }
-    out
-}
-
-/// Where a plane is over a threshold.
-pub(crate) fn over(plane: &Plane<u8>, threshold: u8) -> Mask {
-    let mut mask = Mask::empty(plane.width, plane.height);
-    for y in 0..plane.height {
-        let words = mask.row_mut(y).iter_mut();
-        words.zip(plane.row(y).chunks(64)).for_each(|(word, levels)| *word = word_over(levels, threshold));
-    }
-    mask
-}
-
-/// Bit k: level k is over the threshold; up to 64 levels.
-pub(crate) fn word_over(levels: &[u8], threshold: u8) -> u64 {
-    let mut flags = [0u8; 64];
-    flags.iter_mut().zip(levels).for_each(|(flag, &level)| *flag = u8::from(level > threshold));
-    word_of(&flags)
-}
-
-/// Bit k: flag k is 1; all of them are 0 or 1.
-pub(crate) fn word_of(flags: &[u8; 64]) -> u64 {
-    // the product moves the lowest bits of eight bytes next to each other, into the highest byte
-    let byte = |k: usize| {
-        let eight: [u8; 8] = std::array::from_fn(|i| flags[8 * k + i]);
-        (u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * k)
-    };
-    (0..8).map(byte).fold(0, |word, bits| word | bits)
-}
-
-/// Standard deviation of the pixel noise, levels: the mask of Immerkær, "Fast noise variance estimation" (1996),
-/// which is blind to flat places and slopes, with the median instead of the mean, which is blind to lines too; of about
-/// `sampled` pixels.
-pub(crate) fn noise(plane: &Plane<u8>, sampled: usize) -> f64 {
-    const TIMES: f64 = 6.0; // the mask's gain on white noise
-    const MEDIAN: f64 = 0.6745; // of |x| for a standard normal x
-    let mut counts = Counts::default();
-    let (mut seconds, mut responses) = (vec![0i16; plane.width], vec![0u8; plane.width.saturating_sub(2)]);
-    let every = (plane.values.len() / sampled).max(1);
-    for y in (1..plane.height - 1).step_by(every) {
-        let [above, here, below] = [y - 1, y, y + 1].map(|y| plane.row(y));
-        // 1 −2 1 down the columns, and of those the same along the row
-        let threes = above.iter().zip(here).zip(below);
-        let second = |((a, h), b): ((&u8, &u8), &u8)| i16::from(*a) + i16::from(*b) - 2 * i16::from(*h);
-        seconds.iter_mut().zip(threes).for_each(|(out, three)| *out = second(three));
-        let threes = seconds.iter().zip(&seconds[1..]).zip(&seconds[2..]);
-        let response = |((a, h), b): ((&i16, &i16), &i16)| (a + b - 2 * h).unsigned_abs().min(255) as u8;
-        responses.iter_mut().zip(threes).for_each(|(out, three)| *out = response(three));
-        counts.add(&responses);
-    }
-    percentile(&counts.sum(), 0.5) / (TIMES * MEDIAN)
-}
-
-/// The binomial mean of 3 × 3 pixels: noise falls to 3/8.
-pub(crate) fn smoothed(plane: &Plane<u8>) -> Plane<u8> {
-    let (w, h) = (plane.width, plane.height);
-    let mut out = Plane::filled(w, h, 0);
-    // sums of columns of three, with one more at either end, which repeats the border
-    let mut columns = vec![0u16; w + 2];
-    for y in 0..h {
-        let [above, here, below] = [y.saturating_sub(1), y, (y + 1).min(h - 1)].map(|y| plane.row(y));
-        let threes = above.iter().zip(here).zip(below);
-        columns[1..=w]
-            .iter_mut()
-            .zip(threes)
-            .for_each(|(c, ((a, b), d))| *c = u16::from(*a) + 2 * u16::from(*b) + u16::from(*d));
-        (columns[0], columns[w + 1]) = (columns[1], columns[w]);
-        let (left, right) = (&columns[..w], &columns[2..]);
-        for (((v, l), c), r) in out.row_mut(y).iter_mut().zip(left).zip(&columns[1..=w]).zip(right) {
-            *v = ((l + 2 * c + r + 8) / 16) as u8;
-        }
     }
     out
 }

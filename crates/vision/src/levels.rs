@@ -32,6 +32,19 @@ pub(crate) fn histogram<'a>(levels: impl Iterator<Item = &'a [u8]>) -> [u32; 256
     counts.sum()
 }
 
+/// The level below which `share` of a histogram lies.
+pub(crate) fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
+    let all = histogram.iter().sum::<u32>();
+    // counted from above: paper is bright, and its levels are few
+    let above = ((1.0 - share) * f64::from(all)) as u32;
+    let mut passed = 0;
+    let level = histogram.iter().rposition(|&n| {
+        passed += n;
+        passed > above
+    });
+    level.unwrap_or(0) as f64
+}
+
 /// Pixels that are looked at together: as many as a mask has in a word.
 const BLOCK: usize = 64;
 /// As many pixels tell a picture's levels: all the others would move a share by a thousandth at most.

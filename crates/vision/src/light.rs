@@ -6,8 +6,9 @@
 //! ratio to the surface instead of its own. Unlike a morphological closing this needs no window larger than the
 //! largest patch of ink.
 
-use crate::ink::smoothed;
+use crate::levels::percentile;
 use crate::plane::Plane;
+use crate::smooth::smoothed;
 use crate::tones::Tones;
 use crate::{shadow, solve};
 
@@ -180,19 +181,6 @@ fn tile_levels(image: &Plane<u8>, tile: usize) -> Plane<f64> {
         }
     }
     levels
-}
-
-/// The level below which `share` of a histogram lies.
-pub(crate) fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
-    let all = histogram.iter().sum::<u32>();
-    // counted from above: paper is bright, and its levels are few
-    let above = ((1.0 - share) * f64::from(all)) as u32;
-    let mut passed = 0;
-    let level = histogram.iter().rposition(|&n| {
-        passed += n;
-        passed > above
-    });
-    level.unwrap_or(0) as f64
 }
 
 /// A quadratic surface of log-brightness over the tiles, in coordinates from −1 to 1; nowhere brighter than the brightest of them.

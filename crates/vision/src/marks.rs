@@ -2,11 +2,12 @@
 
 use tracelight_stroke::{Point, Vec2};
 
-use crate::ink::{Ink, over};
+use crate::ink::Ink;
 use crate::levels::histogram;
 use crate::plane::Plane;
 use crate::region::{Region, regions};
 use crate::split::Split;
+use crate::threshold::over;
 use crate::{Grey, Page, VisionError};
 
 /// Most the line through the marks may be off upright or level, degrees: at 3° the scale is 0.14 % off already, but

@@ -5,9 +5,9 @@
 
 use tracelight_stroke::Point;
 
-use crate::centreline::Row;
 use crate::gap;
 use crate::mask::Mask;
+use crate::row::Row;
 
 /// The rows without their ways over paper, and the length of what was cut, px.
 pub(crate) fn only(ink: &Mask, rows: Vec<Row>) -> (Vec<Row>, f64) {

@@ -2,11 +2,11 @@
 
 use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
 
-use crate::Options;
 use crate::follow;
 use crate::levels::histogram;
-use crate::light::percentile;
+use crate::levels::percentile;
 use crate::mask::Mask;
+use crate::options::Options;
 use crate::plane::Plane;
 use crate::region::Region;
 
@@ -187,8 +187,8 @@ pub(crate) fn area(points: &[Point]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ink::over;
     use crate::region::regions;
+    use crate::threshold::over;
 
     fn traced(width: usize, height: usize, darkness: impl Fn(f64, f64) -> f64) -> Vec<Stroke> {
         let level = |i: usize| {

@@ -4,13 +4,13 @@
 //! pen's blur is ink. A line ends where it is half as dark as in its middle: what is joined to ink is ink as far as that. And what is
 //! beyond the reach of the first ink's blur is looked at by itself: what stands out from the paper there is the second ink.
 
-use crate::ink::over;
+use crate::levels::percentile;
 use crate::levels::{histogram, sampled_blocks};
-use crate::light::percentile;
 use crate::mask::{Cell, Mask};
 use crate::parts::SOLID_SHARE;
 use crate::plane::Plane;
 use crate::region::{Region, any_spans, regions};
+use crate::threshold::over;
 
 /// Ink is at least this much darker than the paper about it, as a share of the first ink: the middle of the edge of a
 /// pencil of 28 %.

@@ -1,9 +1,9 @@
 //! Dark lines on light paper, or light ones on dark.
 
-use crate::ink::noise;
-use crate::light::percentile;
+use crate::levels::percentile;
 use crate::plane::Plane;
 use crate::ridge::median;
+use crate::smooth::noise;
 use crate::tones::Tones;
 
 /// A fall and a rise of brightness count from this share of the picture's range on.

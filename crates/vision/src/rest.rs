@@ -7,7 +7,7 @@
 use tracelight_stroke::{Point, polyline_length};
 
 use crate::bridge::inked_towards;
-use crate::centreline::{self, Row};
+use crate::centreline;
 use crate::distance::{WIDEST_RADIUS, to_paper};
 use crate::mask::Mask;
 use crate::missed;
@@ -16,6 +16,7 @@ use crate::parts::graphs;
 use crate::plane::Plane;
 use crate::region::{Region, regions};
 use crate::ridge::median;
+use crate::row::Row;
 
 /// A row's own ink reaches so far from it, in half widths of its ink there, or of its pen, and px of blur.
 const OWN_RADII: f64 = 1.2;
@@ -169,7 +170,7 @@ fn painted(like: &Plane<u8>, rows: &[Row], reach: impl Fn(&Row, Point) -> f64) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ink::over;
+    use crate::threshold::over;
 
     /// A line 6 px wide along y = 50, with a stub so long and wide below it at x = 80, and what is made of the line alone.
     fn beside(length: usize, width: usize) -> Vec<Row> {

@@ -5,11 +5,11 @@
 
 use std::collections::HashMap;
 
-use crate::ink::over;
+use crate::levels::percentile;
 use crate::levels::{sampled_blocks, sampled_histogram};
-use crate::light::percentile;
 use crate::plane::Plane;
 use crate::region::{Region, Run, regions};
+use crate::threshold::over;
 use crate::{Grey, VisionError};
 
 /// So many tones with so much edge, shorter sides of the picture, are a screen's; of 270 icons and pictures that programs drew 3 % have
@@ -264,7 +264,8 @@ impl Border {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Mode, Options, trace};
+    use crate::options::{Mode, Options};
+    use crate::trace;
 
     const SIZE: (usize, usize) = (640, 400);
 
@@ -349,9 +350,9 @@ mod tests {
         }
         assert_eq!([discs, slants, shades].map(|plane| tones(&plane).0), [0; 3]);
         // blurred by a camera they are none either
-        let blurred = crate::ink::smoothed(&panes(255, &WINDOW));
+        let blurred = crate::smooth::smoothed(&panes(255, &WINDOW));
         assert!(tones(&blurred).0 >= TONES, "one row between two areas is still an edge");
-        assert_eq!(tones(&crate::ink::smoothed(&crate::ink::smoothed(&blurred))).0, 0);
+        assert_eq!(tones(&crate::smooth::smoothed(&crate::smooth::smoothed(&blurred))).0, 0);
     }
 
     #[test]

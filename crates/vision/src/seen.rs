@@ -6,7 +6,8 @@ use crate::areas::{Areas, Picture};
 use crate::ink::Ink;
 use crate::inside::inside;
 use crate::mask::Mask;
-use crate::{Mode, Options, Page, VisionError, streak, tone};
+use crate::options::{Mode, Options};
+use crate::{Page, VisionError, streak, tone};
 
 /// What is ink of a page, before it is looked at as closely as its lines need.
 pub(crate) struct Seen {

@@ -1,9 +1,9 @@
 //! How sharp a picture's edges are.
 
-use crate::ink::word_over;
 use crate::plane::Plane;
 use crate::region::ink_runs;
 use crate::ridge::median;
+use crate::threshold::word_over;
 
 /// Rows, and columns, that are looked at: of 720 rows every fifteenth crosses each longer stroke, in 0.1 ms.
 const LINES: usize = 48;

@@ -1,12 +1,12 @@
 //! A histogram cut in two: paper and ink.
 
 use crate::VisionError;
-use crate::ink::SMOOTHED;
 use crate::levels::histogram;
-use crate::light::percentile;
+use crate::levels::percentile;
 use crate::plane::Plane;
 use crate::quality::GOOD_CONTRAST_PERCENT;
 use crate::sharpness::{self, Step};
+use crate::smooth::SMOOTHED;
 
 /// The level that a two-thousandth of all pixels exceed: more than specks of dust cover, and less than any drawing.
 pub(crate) fn strongest(histogram: &[u32; 256]) -> f64 {

@@ -1,5 +1,6 @@
+use crate::options::Options;
 use crate::seen::Seen;
-use crate::{Options, Page, VisionError};
+use crate::{Page, VisionError};
 
 /// What an image is on its way to strokes.
 #[derive(Clone, Debug)]

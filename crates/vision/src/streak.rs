@@ -4,10 +4,10 @@
 //! beside each other are wider together than each of them.
 
 use crate::distance::to_paper;
-use crate::ink::over;
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::region::{Region, regions};
+use crate::threshold::over;
 
 /// A streak is darker than this share of the ink.
 const LEAST_DARK: f64 = 0.2;

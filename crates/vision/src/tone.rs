@@ -5,10 +5,11 @@
 //! fade, a silhouette is broad.
 
 use crate::VisionError;
-use crate::ink::{Ink, word_over};
+use crate::ink::Ink;
 use crate::levels::sampled_blocks;
 use crate::mask::Mask;
 use crate::quality::GOOD_CLIPPED_PERCENT;
+use crate::threshold::word_over;
 
 /// Most of a drawing that may be broad and fade, %. Of 326 photographs of other things 97 % have more, or are refused for other
 /// reasons; of 340 drawings (scans, photographs of paper and whiteboards, sketches, plans, pictures of the bench) 1 %.
@@ -69,7 +70,8 @@ pub(crate) fn check(tone_percent: f64) -> Result<(), VisionError> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Grey, Mode, Options, VisionError, trace};
+    use crate::options::{Mode, Options};
+    use crate::{Grey, VisionError, trace};
 
     const WIDTH: usize = 320;
 

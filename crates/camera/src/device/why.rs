@@ -4,8 +4,8 @@ use std::io;
 
 use tracelight_picture::unless_it_panics;
 
+use crate::devices::devices;
 use crate::latest::PATIENCE;
-use crate::source::devices;
 
 const EIO: i32 = 5;
 const ENXIO: i32 = 6;

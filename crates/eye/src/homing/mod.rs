@@ -16,7 +16,7 @@ mod travel;
 use tracelight_aim::{Alignment, Camera, HeadGeometry, HeadPose};
 use tracelight_lab::Quantiles;
 use tracelight_pipeline::Driving;
-use tracelight_rig::{Command, PanTilt, Telemetry};
+use tracelight_rig::{Command, PanTilt};
 use tracelight_rigfile::Timing;
 use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
@@ -25,6 +25,7 @@ use tracelight_task::{Failure, Task};
 use crate::Eye;
 use crate::figures::HomedFigures;
 use crate::head::{DotsRequest, SPOT_EXPOSURE_S, find_head, see_dots};
+use crate::power::check_homed;
 use crate::spots::History;
 
 /// A head whose encoders were told where it stands.
@@ -231,19 +232,4 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         self.zero("the head does not come to where it was told zero is: is something in its way?")?;
         check_homed(&self.rest(1)?)
     }
-}
-
-/// Refuses a rig that does not know where its joints are.
-pub fn check_homed(now: &Telemetry) -> Result<(), Failure> {
-    if now.homed {
-        return Ok(());
-    }
-    let message = "the head was powered up and not homed since: nobody knows where its light would fall, and nothing was drawn; home it first (tracelight calibrate head --home --camera …)";
-    Err(Failure::failed("unhomed", message))
-}
-
-/// What becomes of a job whose rig was homed, and is not any more.
-pub fn lost_power() -> Failure {
-    let message = "the rig lost power while it drew: it is dark, and nobody knows where its light would fall; what was drawn until then is told; home it (tracelight calibrate head --home --camera …) and draw what is left";
-    Failure::failed("unhomed", message)
 }

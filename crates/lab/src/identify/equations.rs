@@ -4,12 +4,10 @@ use tracelight_dynamics::Lumped;
 use tracelight_rig::{Joint, Telemetry};
 use tracelight_sim::{Cable, Identified, Quirks, RigConfig, Ripple};
 
-use super::stretch::Edge;
+use super::edge::{Edge, PHASES};
 
 /// Mechanical unknowns: θ of [`acts`], in that order.
 pub(super) const MECHANICS: usize = 12;
-/// Kinds of edges of a quadrature encoder.
-pub(super) const PHASES: usize = 4;
 
 /// Places in θ.
 const GAIN: usize = 0;

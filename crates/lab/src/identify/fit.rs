@@ -2,7 +2,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::equations::{Equations, MECHANICS, PHASES, RIPPLE_COS, RIPPLE_SIN};
+use super::edge::PHASES;
+use super::equations::{Equations, MECHANICS, RIPPLE_COS, RIPPLE_SIN};
 use super::stretch::{Row, Stretch};
 
 /// All unknowns: the mechanical ones and where the edges lie.

@@ -16,6 +16,7 @@
 //! Counts and volts alone tell ratios: twice the inertia, friction and weight with twice the torque per volt move alike.
 //! `Equations::tell` says how that is settled.
 
+mod edge;
 mod equations;
 mod fit;
 mod routine;

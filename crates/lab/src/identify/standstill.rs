@@ -7,8 +7,9 @@
 use tracelight_rig::{Joint, TICK_F64_S, Telemetry};
 use tracelight_sim::{Quirks, RigConfig};
 
+use super::edge::Edge;
 use super::equations::{Balance, Equations, Surroundings, stribeck};
-use super::stretch::{Edge, edges, slides};
+use super::stretch::{edges, slides};
 
 /// Edges before the gap that tell angle and speed.
 const BEFORE: usize = 6;

@@ -3,7 +3,8 @@
 use tracelight_rig::{Joint, TICK_F64_S, Telemetry};
 use tracelight_sim::RigConfig;
 
-use super::equations::{Equations, MECHANICS, PHASES, RIPPLE_COS, RIPPLE_SIN, Surroundings, friction};
+use super::edge::Edge;
+use super::equations::{Equations, MECHANICS, RIPPLE_COS, RIPPLE_SIN, Surroundings, friction};
 
 /// Longest time between two edges within a stretch, s: a joint that turns by less than 20 mrad/s may have stood in between.
 const LONGEST_GAP_S: f64 = 0.08;
@@ -13,31 +14,6 @@ const LONGEST_S: f64 = 0.4;
 const SHORTEST_S: f64 = 0.04;
 /// and fewest edges.
 const FEWEST_EDGES: usize = 8;
-
-/// An edge the encoder counted.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
-    /// Since the record's first tick, s.
-    pub(super) time_s: f64,
-    /// The count above it.
-    pub(super) number: i32,
-    /// 1 or −1.
-    pub(super) way: f64,
-    /// Its time is known only to this much, s.
-    pub(super) blur_s: f64,
-}
-
-impl Edge {
-    /// Which kind of edge it is.
-    pub(super) const fn phase(&self) -> usize {
-        self.number.rem_euclid(PHASES as i32) as usize
-    }
-
-    /// Where it lies on a perfect disc, counts.
-    pub(super) fn ideal_counts(&self) -> f64 {
-        f64::from(self.number) - 0.5
-    }
-}
 
 /// One edge of a stretch as a line of the least squares: where the joint was, less what is known, is position and speed
 /// at the start plus Σ θₖ `columns[k]`.

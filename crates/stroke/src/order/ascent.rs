@@ -2,7 +2,7 @@ use std::collections::HashSet;
 
 use kurbo::{Point, Rect};
 
-use super::bound::Forest;
+use super::forest::Forest;
 use super::kdtree::{Gather, KdTree};
 use super::ports::Ports;
 

@@ -7,7 +7,7 @@
 //! `base`. (Lin, "Computer solutions of the traveling salesman problem", 1965; the gain criterion, by which only
 //! exchanges that gain at every step are followed, is Lin & Kernighan's, 1973.)
 
-use super::search::Search;
+use super::search::{LEAST_GAIN, Search};
 use super::travel::Travel;
 
 /// Exchanges done one after the other before their sum must be a gain. Two: a third costs time and gains nothing on
@@ -17,9 +17,6 @@ const DEPTH: usize = 2;
 /// Of larger tours only exchanges that gain by themselves are done: trying others turns long parts of the tour around
 /// and back.
 const LARGE: usize = 50_000;
-
-/// A move must gain this share of the travels it removes: anything less is rounding, and might go on forever.
-pub(super) const LEAST_GAIN: f64 = 1e-9;
 
 /// An exchange that begins with a new travel from `end` to `v`.
 #[derive(Clone, Copy)]

@@ -1,10 +1,12 @@
 use kurbo::Point;
 
-use super::exchange::LEAST_GAIN;
 use super::memo::Memo;
 use super::neighbours::{Neighbours, discounted};
 use super::tour::Tour;
 use super::travel::{StrokeEnd, Travel};
+
+/// A move must gain this share of the travels it removes: anything less is rounding, and might go on forever.
+pub(super) const LEAST_GAIN: f64 = 1e-9;
 
 /// Longest run of strokes that a kick swaps with another: short, so that mending it stays local. Measured at equal
 /// time on 5000 random strokes: 5 and 10 stall earlier, 50 costs half as much again and gains nothing.

@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use tracelight_camera::Source;
 use tracelight_task::Failure;
-use tracelight_vision::Mode;
 
 use crate::cli::Voice;
 use crate::cli::driving::DrivingArgs;
@@ -127,30 +126,5 @@ impl TraceArgs {
     /// The picture's name, or the camera's.
     pub(crate) fn name(&self) -> &str {
         self.picture.as_deref().or(self.eye.camera.as_deref()).unwrap_or_default()
-    }
-}
-
-/// How pixels become strokes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ModeName {
-    /// Each part by its width: pen lines as centrelines, shapes as outlines
-    #[default]
-    Auto,
-    /// The middle of every line
-    Centreline,
-    /// The edge of all ink
-    Outline,
-    /// The 2006 report's radial sweep round one closed figure, for comparison
-    Sweep,
-}
-
-impl From<ModeName> for Mode {
-    fn from(name: ModeName) -> Self {
-        match name {
-            ModeName::Auto => Mode::Auto,
-            ModeName::Centreline => Mode::Centreline,
-            ModeName::Outline => Mode::Outline,
-            ModeName::Sweep => Mode::Sweep,
-        }
     }
 }

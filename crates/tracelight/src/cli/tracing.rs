@@ -7,9 +7,7 @@ use tracelight_pipeline::{LeastLength, Paper, Straighten, Tracing, clockwise};
 use tracelight_stroke::Point;
 use tracelight_units as units;
 use tracelight_units::{Angle, LENGTHS, PIXELS};
-use tracelight_vision::Options;
-
-use crate::cli::request::ModeName;
+use tracelight_vision::{Mode, Options};
 
 /// How pixels become strokes. Without a flag, what the picture itself says.
 #[derive(Args, Clone, Debug)]
@@ -49,6 +47,31 @@ pub(crate) struct TracingArgs {
     /// Trace also a photograph or a screenshot that looks like no drawing
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+/// How pixels become strokes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ModeName {
+    /// Each part by its width: pen lines as centrelines, shapes as outlines
+    #[default]
+    Auto,
+    /// The middle of every line
+    Centreline,
+    /// The edge of all ink
+    Outline,
+    /// The 2006 report's radial sweep round one closed figure, for comparison
+    Sweep,
+}
+
+impl From<ModeName> for Mode {
+    fn from(name: ModeName) -> Self {
+        match name {
+            ModeName::Auto => Mode::Auto,
+            ModeName::Centreline => Mode::Centreline,
+            ModeName::Outline => Mode::Outline,
+            ModeName::Sweep => Mode::Sweep,
+        }
+    }
 }
 
 /// Sizes of paper.

@@ -25,9 +25,9 @@ use template::Template;
 use track::{Track, tracks};
 use wipe::{Levels, wipe};
 
-use crate::ink::over;
 use crate::plane::Plane;
 use crate::region::regions;
+use crate::threshold::over;
 
 /// Rules of paper that were taken out of an image.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,10 +4,10 @@ use tracelight_stroke::{Point, polyline_length};
 
 use super::Rules;
 use super::wipe::Levels;
-use crate::ink::over;
 use crate::mask::Mask;
 use crate::plane::Plane;
 use crate::region::Region;
+use crate::threshold::over;
 
 /// Share of a patch of ink, and of a line, that lies where rules lay, if they left it.
 const PATCH: f64 = 0.6;

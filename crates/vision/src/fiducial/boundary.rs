@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use tracelight_stroke::{Point, Vec2};
 
-use super::TagPlace;
+use super::place::TagPlace;
 use super::square::{Off, SIDE, Square};
 use crate::grey::light_of_levels;
 use crate::plane::Plane;

@@ -1,8 +1,8 @@
 //! Dark from light, each place by what is about it.
 
-use crate::ink::word_of;
 use crate::mask::Mask;
 use crate::plane::Plane;
+use crate::threshold::word_of;
 
 /// Side of the squares in which the darkest and the brightest level are looked for, px.
 const TILE: usize = 4;

@@ -9,12 +9,14 @@ mod boundary;
 mod cells;
 mod codes;
 mod local;
+mod place;
 mod quad;
 mod square;
 
 use tracelight_stroke::Point;
 
 use boundary::{Cells, Tables};
+pub use place::TagPlace;
 use square::Square;
 
 use crate::Grey;
@@ -35,19 +37,6 @@ pub struct Tag {
     pub deviation_px: f64,
     /// Cells that had to be put right.
     pub wrong_cells: u8,
-}
-
-/// The middle of a boundary between a black cell and a white one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TagPlace {
-    /// Where it is on the marker, in cells from the upper left as printed: x to the right, y down, 8 of them a side.
-    pub cell: Point,
-    /// Whether the boundary is upright, or level.
-    pub upright: bool,
-    /// Whether black is on its right, or below.
-    pub black_behind: bool,
-    /// Where it is seen, px. Along the boundary nothing is known of it.
-    pub at: Point,
 }
 
 /// How many ids the family has.

@@ -4,8 +4,8 @@ use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use super::pencil::strength;
 use super::{Run, ways};
-use crate::centreline::Row;
 use crate::plane::Plane;
+use crate::row::Row;
 
 impl Run {
     /// Makes one row of both where they run beside each other, and rows of their own of what else there is of the other one.

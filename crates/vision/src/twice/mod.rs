@@ -8,11 +8,11 @@
 
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
-use crate::centreline::Row;
 use crate::line::parted;
 use crate::near::Near;
 use crate::plane::Plane;
 use crate::ridge::median;
+use crate::row::Row;
 
 mod fold;
 mod merge;

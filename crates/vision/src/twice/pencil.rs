@@ -3,9 +3,9 @@
 use tracelight_stroke::polyline_length;
 
 use super::{places, way_at};
-use crate::centreline::Row;
 use crate::plane::Plane;
 use crate::ridge::median;
+use crate::row::Row;
 
 /// Along a pencil's line its middle varies by more than this share of its usual darkness, and so does all that a cut across it has; from
 /// line to line it varies by more than that: measured from the 15th to the 85th percentile. Of 230 public pictures sketches have at
