@@ -1,3 +1,5 @@
+//! The newest image of a camera that sends by itself, and how long any is waited for.
+
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 

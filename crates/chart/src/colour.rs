@@ -1,3 +1,5 @@
+//! Colours of curves.
+
 use plotters::prelude::RGBColor;
 
 use crate::theme::Theme;

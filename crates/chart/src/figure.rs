@@ -1,3 +1,5 @@
+//! Panels of curves, and how they are drawn.
+
 use plotters::chart::ChartContext;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{Ranged, ValueFormatter};

@@ -1,3 +1,5 @@
+//! A figure as PNG.
+
 use std::sync::Arc;
 
 use resvg::{tiny_skia, usvg};

@@ -1,3 +1,5 @@
+//! Colours of a figure's ground and of what is written on it.
+
 use plotters::prelude::RGBColor;
 
 /// Light or dark ground.

@@ -1,3 +1,5 @@
+//! An image, and when it was taken.
+
 use tracelight_picture::{Raster, Source, decode};
 use tracelight_plant::{Image, Part};
 use tracelight_sim::Taken;

@@ -1,3 +1,5 @@
+//! Files read and written whole.
+
 use std::io::Read;
 
 use tracelight_task::Failure;

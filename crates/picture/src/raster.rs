@@ -1,3 +1,5 @@
+//! Pixels in colour.
+
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use png::{BitDepth, ColorType, Compression, Filter};

@@ -1,3 +1,5 @@
+//! Which strokes of a drawing are taken.
+
 use tracelight_stroke::{Colour, Drawing, Stroke};
 use tracelight_task::Failure;
 

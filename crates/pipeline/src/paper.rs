@@ -1,3 +1,5 @@
+//! Sizes of paper.
+
 /// What is drawn or printed on, upright, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paper {

@@ -1,3 +1,5 @@
+//! How a real head differs from its equations.
+
 /// How a real head differs from its equations. [`Wear::NONE`] is a head as good as new.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wear {

@@ -1,3 +1,5 @@
+//! Why a picture is missing.
+
 /// Why a picture is missing.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot encode {name}: {reason}")]

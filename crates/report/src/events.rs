@@ -1,3 +1,5 @@
+//! When it was dark where light was planned, and why.
+
 use tracelight_rig::{Darkness, TICK_F64_S, Telemetry};
 use tracelight_sim::Run;
 use tracelight_task::{darkness_words, fault_words};

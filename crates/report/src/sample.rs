@@ -1,3 +1,5 @@
+//! A run's ticks beside the points of the plan they follow.
+
 use tracelight_rig::{Phase, TICK_F64_S};
 use tracelight_sim::{Run, Tick};
 use tracelight_stroke::Point;

@@ -1,3 +1,5 @@
+//! A job's figures, as `summary.json` and `--json` have them.
+
 use serde::Serialize;
 use tracelight_eye::figures::EyeFigures;
 use tracelight_pipeline::QualityFigures;

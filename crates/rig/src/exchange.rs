@@ -1,3 +1,5 @@
+//! What a head says, and what is done to it, in a tick.
+
 use crate::PanTilt;
 
 /// What one encoder says at a tick.

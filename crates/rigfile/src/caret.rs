@@ -1,3 +1,5 @@
+//! Where in a file something is wrong.
+
 use std::ops::Range;
 
 /// A place in a file, for messages.

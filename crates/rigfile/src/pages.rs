@@ -1,3 +1,5 @@
+//! Pages of markers on a wall, as files name them.
+
 use std::fmt;
 
 use serde::{Deserialize, Serialize};

@@ -1,3 +1,5 @@
+//! A rig as text and back.
+
 use std::ops::Range;
 
 use toml_edit::{Document, Item, TableLike, Value};

@@ -1,3 +1,5 @@
+//! A file's bytes as the text of its kind.
+
 use tracelight_task::Failure;
 
 /// A kind of file.

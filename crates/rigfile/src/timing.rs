@@ -1,3 +1,5 @@
+//! When a camera's images are taken, by their stamps.
+
 /// How a camera's stamps relate to the rig's ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {

@@ -1,3 +1,5 @@
+//! Why work failed: a status, a code for scripts, a sentence for people.
+
 use std::fmt::Display;
 
 use tracelight_rig::Fault;

@@ -1,3 +1,5 @@
+//! How far work is, and what it is given to say so.
+
 use crate::{Failure, Stop};
 
 /// Who is told how far a piece of work is.

@@ -1,3 +1,5 @@
+//! That work is to stop.
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 

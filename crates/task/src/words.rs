@@ -1,3 +1,5 @@
+//! What faults, darknesses and phases mean, in words.
+
 use tracelight_rig::{Darkness, Fault, Phase};
 
 /// So many of something, in words: "1 stroke", "2 strokes".

@@ -1,3 +1,5 @@
+//! What an encoder counted.
+
 /// Kinds of edges of a quadrature encoder.
 pub(super) const PHASES: usize = 4;
 

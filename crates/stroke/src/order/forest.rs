@@ -1,3 +1,5 @@
+//! Sets that are joined.
+
 /// Disjoint sets with path halving (Tarjan & van Leeuwen, 1984).
 pub(super) struct Forest(Vec<u32>);
 

@@ -9,7 +9,7 @@ use tracelight_formats::json::Traced;
 use tracelight_formats::{Sheet, json};
 use tracelight_picture::Source;
 use tracelight_pipeline::{PaperSeen, QualityFigures, Sketch, Tracing, page, place, sketch};
-use tracelight_report as output;
+use tracelight_report as report;
 use tracelight_report::drawing::{self, FORMATS};
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Progress as _, Stop, Task, counted};
@@ -201,7 +201,7 @@ fn stages(picture: &str, source: &Source, tracing: &Tracing) -> Result<String, F
         .map_err(|e| Failure::failed("no-strokes-found", format!("{picture}: {e}")))?;
     let name =
         Path::new(picture).file_name().map_or_else(|| picture.to_owned(), |n| n.to_string_lossy().into());
-    output::stages::figure(&name, &page.picture, &stages)
+    report::stages::figure(&name, &page.picture, &stages)
 }
 
 /// Pixels, to a hundredth.

@@ -1,3 +1,5 @@
+//! Where a marker's black meets its white.
+
 use tracelight_stroke::Point;
 
 /// The middle of a boundary between a black cell and a white one.
