@@ -93,7 +93,7 @@ pub struct Timing {
     pub plan_ms: f64,
     /// The run itself.
     pub run_ms: f64,
-    /// Whatever of the report was made before [`write_all`]; it adds its own.
+    /// Whatever of the report was made before it is written; who writes it adds that.
     pub report_ms: f64,
 }
 

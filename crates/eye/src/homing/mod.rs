@@ -5,9 +5,9 @@
 //!
 //! | part | what |
 //! |---|---|
-//! | [`places`] | where dots are lit, one after the other |
-//! | [`travel`] | from one to the next, and back from whatever is in the way |
-//! | [`dot`] | one dot, and whether the camera sees it |
+//! | `places` | where dots are lit, one after the other |
+//! | `travel` | from one to the next, and back from whatever is in the way |
+//! | `dot` | one dot, and whether the camera sees it |
 
 mod dot;
 mod places;
