@@ -5,8 +5,7 @@
 
 use tracelight_stroke::Stroke;
 
-use crate::levels::histogram;
-use crate::levels::percentile;
+use crate::levels::{histogram, percentile};
 use crate::mask::Mask;
 use crate::options::Options;
 use crate::outline::Outliner;

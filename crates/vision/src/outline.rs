@@ -3,8 +3,7 @@
 use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
 
 use crate::follow;
-use crate::levels::histogram;
-use crate::levels::percentile;
+use crate::levels::{histogram, percentile};
 use crate::mask::Mask;
 use crate::options::Options;
 use crate::plane::Plane;

@@ -4,8 +4,7 @@
 //! pen's blur is ink. A line ends where it is half as dark as in its middle: what is joined to ink is ink as far as that. And what is
 //! beyond the reach of the first ink's blur is looked at by itself: what stands out from the paper there is the second ink.
 
-use crate::levels::percentile;
-use crate::levels::{histogram, sampled_blocks};
+use crate::levels::{histogram, percentile, sampled_blocks};
 use crate::mask::{Cell, Mask};
 use crate::parts::SOLID_SHARE;
 use crate::plane::Plane;

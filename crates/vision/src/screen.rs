@@ -5,8 +5,7 @@
 
 use std::collections::HashMap;
 
-use crate::levels::percentile;
-use crate::levels::{sampled_blocks, sampled_histogram};
+use crate::levels::{percentile, sampled_blocks, sampled_histogram};
 use crate::plane::Plane;
 use crate::region::{Region, Run, regions};
 use crate::threshold::over;

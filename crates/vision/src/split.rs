@@ -1,8 +1,7 @@
 //! A histogram cut in two: paper and ink.
 
 use crate::VisionError;
-use crate::levels::histogram;
-use crate::levels::percentile;
+use crate::levels::{histogram, percentile};
 use crate::plane::Plane;
 use crate::quality::GOOD_CONTRAST_PERCENT;
 use crate::sharpness::{self, Step};

@@ -18,8 +18,7 @@ use tracelight_task::{Failure, Stop};
 use tracelight_units::Length;
 use tracelight_vision::Grey;
 
-use crate::cli::eyes::ImageSize;
-use crate::cli::eyes::SimulatedEyeName;
+use crate::cli::eyes::{ImageSize, SimulatedEyeName};
 use crate::cli::placing::positive_length;
 use crate::cli::{Answer, Voice};
 use crate::named;
