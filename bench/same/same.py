@@ -196,7 +196,7 @@ def main():
     options = parser.parse_args()
     lines = [line for line in COMMANDS.strip().splitlines() if not options.only or options.only in line]
     with tempfile.TemporaryDirectory() as scratch:
-        base = options.keep or Path(scratch)
+        base = (options.keep or Path(scratch)).resolve()  # programs run in another folder
         # one folder's name and one program's for both: what is written may hold them
         here, program = base / "here", base / "tracelight"
         sides = []

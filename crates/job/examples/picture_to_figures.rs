@@ -19,7 +19,7 @@ fn main() -> Result<(), Failure> {
         tracing: Tracing::default(),
         placing: Placing { size: Some(SizeRequest::Width(0.6)), ..Placing::default() },
         driving: Driving::new(rig, HeadPose::square_on(0.9), wishes, Asked::default()),
-        run: RunRequest { laps: 1, ..RunRequest::default() },
+        run: RunRequest::default(),
     };
     let prepared = prepare(&request, decode("star", STAR)?, task)?;
     let ran = prepared.run(&mut KeepNothing, task)?;

@@ -24,7 +24,7 @@ pub struct Request<'a> {
 }
 
 /// How a job is run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunRequest {
     /// How often, each time from power-up, the head identified between them.
     pub laps: u32,
@@ -34,6 +34,13 @@ pub struct RunRequest {
     pub dry: bool,
     /// A simulated head was just powered up, and nobody homed it.
     pub powered_up: bool,
+}
+
+impl Default for RunRequest {
+    /// Once, lit, by a head that was homed.
+    fn default() -> Self {
+        Self { laps: 1, seed: 0, dry: false, powered_up: false }
+    }
 }
 
 /// A wall that a camera looks at: what it sees there is drawn, in place.

@@ -1,4 +1,4 @@
-//! From a source to strokes on the target.
+//! From a source to strokes on their sheet.
 
 use tracelight_formats::Reading;
 use tracelight_picture::{Pixels, Raster, Source};

@@ -2,7 +2,6 @@
 //!
 //! | module | knows |
 //! |---|---|
-//! | [`pictures`] | which pictures a command line means |
 //! | [`places`] | the file each picture's strokes go to |
 //! | [`manifest`] | what is done already |
 //! | [`queue`] | threads, memory, panics |

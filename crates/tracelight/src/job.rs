@@ -41,7 +41,9 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     log.finish()?;
     task.stage("report", 1);
     let summary = write(args, &prepared, &ran, &dir, &settings)?;
-    Ok(Outcome { summary, dir, failure: ran.failure.take() })
+    // also who wants it to end while results are written is told so
+    let failure = ran.failure.take().or_else(|| task.check().err());
+    Ok(Outcome { summary, dir, failure })
 }
 
 fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
