@@ -2,13 +2,14 @@ use tracelight_rig::{
     Actuation, Command, Fault, Joint, Measurement, PanTilt, Phase, Segment, Sensed, Telemetry,
 };
 
+use crate::config::Config;
 use crate::creep::Pace;
+use crate::estimate::Estimate;
 use crate::player::{Played, Player};
 use crate::return_path::ReturnPath;
 use crate::servo::{Reference, Servo};
 use crate::supervisor::{Clock, Situation, Supervisor, rests};
 use crate::watch::Watch;
-use crate::{Config, Estimate};
 
 /// The controller: its configuration, fixed at start.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 use tracelight_rig::{Setpoint, TICK_S};
 
+use crate::estimate::Estimate;
 use crate::limit::within;
-use crate::observer::Estimate;
 
 /// How a joint follows a plan that is slower than friction lets go.
 ///

@@ -16,27 +16,33 @@
 
 #![no_std]
 
+mod axis;
 mod config;
 mod controller;
 mod creep;
+mod estimate;
 mod law;
 mod limit;
 mod model;
 mod observer;
 mod player;
+mod quirks;
 mod return_path;
 mod servo;
 mod supervisor;
 mod watch;
 
-pub use config::{AxisConfig, Cable, Config, Quirks, Ripple};
+pub use axis::AxisConfig;
+pub use config::Config;
 pub use controller::{Controller, State};
 pub use creep::Creep;
+pub use estimate::{Effort, Estimate, Learned};
 pub use law::{Biquad, Feedback, Feedforward, LawConfig, LeadLag, Pid, StateFeedback};
 pub use model::{FrictionModel, HeadModel};
-pub use observer::{
-    Effort, Estimate, KalmanTuning, LONGEST_INTERVAL_TICKS, Learned, Observer, ObserverConfig, Unknown,
-};
+pub use observer::Observer;
+pub use observer::config::{LONGEST_INTERVAL_TICKS, ObserverConfig};
+pub use observer::tuning::{KalmanTuning, Unknown};
 pub use player::QUEUE_LENGTH;
+pub use quirks::{Cable, Quirks, Ripple};
 pub use servo::{Reference, Servo};
 pub use watch::MotorRating;

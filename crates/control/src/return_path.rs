@@ -1,7 +1,8 @@
 use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_S};
 
+use crate::config::Config;
+use crate::estimate::Estimate;
 use crate::limit::within;
-use crate::{Config, Estimate};
 
 /// Share of a motor's torque the way back may use; the rest holds against gravity, friction and whoever pushes.
 const TORQUE_SHARE: f32 = 0.4;

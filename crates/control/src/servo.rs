@@ -1,9 +1,10 @@
 use tracelight_rig::{Joint, Measurement, PanTilt, Setpoint};
 
-use crate::Config;
+use crate::config::Config;
+use crate::estimate::{Effort, Estimate};
 use crate::law::{LawInput, LawState, feedforward};
 use crate::limit::within;
-use crate::observer::{Effort, Estimate, Observer};
+use crate::observer::Observer;
 
 /// Observers and laws of both joints: counts and setpoints in, volts out. It judges nothing and knows no light.
 #[derive(Clone, Copy, Debug)]

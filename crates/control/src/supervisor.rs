@@ -1,6 +1,6 @@
 use tracelight_rig::{Darkness, DarknessSet, Fault, PanTilt, Phase, Segment, Setpoint};
 
-use crate::Config;
+use crate::config::Config;
 
 /// Share of the tolerance within which a head that left its stroke counts as back on it.
 const RETURN_SHARE: f32 = 0.25;

@@ -207,11 +207,7 @@ fn enclosed(rest: &str) -> &str {
 }
 
 /// Circles that stand, each as its crate and its files. It only gets shorter.
-const KNOWN: [(&str, &str); 16] = [
-    (
-        "control",
-        "config creep law law::pid observer observer::differences observer::edge_times observer::kalman observer::past observer::recount observer::tracking_loop watch::motor",
-    ),
+const KNOWN: [(&str, &str); 15] = [
     ("linear", "notation polynomial"),
     ("linear", "state_space transfer zpk"),
     ("plant", "camera camera::sensor camera::spot"),

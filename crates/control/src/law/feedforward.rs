@@ -1,25 +1,12 @@
 use tracelight_rig::{Joint, PanTilt, Setpoint};
 
-use crate::Config;
-use crate::observer::{Estimate, Learned};
+use super::Feedforward;
+use crate::config::Config;
+use crate::estimate::{Estimate, Learned};
 
 /// Reference speed over which Coulomb feedforward is faded in, rad/s: half a mm/s on a target at 1 m. It only keeps the
 /// torque from jumping on a reference at rest.
 const FRICTION_FADE_RAD_S: f32 = 5e-4;
-
-/// What the model adds to feedback.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Feedforward {
-    /// Nothing.
-    #[default]
-    None,
-    /// What holds the head against gravity where it should be.
-    Gravity,
-    /// All the motion asks for by the model: inertia, Coriolis, gravity, friction.
-    Model,
-    /// The same by what the head has shown to be, and against the load that was found.
-    Learned,
-}
 
 /// Torques the motion asks for whatever the error, N m: computed torque with the reference's model terms (Siciliano et
 /// al., *Robotics*, §8.5.2, with the inverse dynamics taken on the desired motion). `ahead` is where the joints should

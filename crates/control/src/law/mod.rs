@@ -1,15 +1,13 @@
 //! From where a joint is and where it should be to torque.
 
 mod feedforward;
+mod input;
 mod lead_lag;
 mod pid;
 mod state_feedback;
 
-use tracelight_rig::Setpoint;
-
-use crate::observer::Estimate;
-pub use feedforward::Feedforward;
 pub(crate) use feedforward::feedforward;
+pub(crate) use input::LawInput;
 pub use lead_lag::{Biquad, LeadLag};
 pub use pid::Pid;
 pub use state_feedback::StateFeedback;
@@ -37,32 +35,25 @@ pub enum Feedback {
     State(StateFeedback),
 }
 
+/// What the model adds to feedback.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Feedforward {
+    /// Nothing.
+    #[default]
+    None,
+    /// What holds the head against gravity where it should be.
+    Gravity,
+    /// All the motion asks for by the model: inertia, Coriolis, gravity, friction.
+    Model,
+    /// The same by what the head has shown to be, and against the load that was found.
+    Learned,
+}
+
 /// What one joint's law remembers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LawState {
     pid: PidState,
     lead_lag: LeadLagState,
-}
-
-/// What a law looks at in one tick.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LawInput<'a> {
-    /// Where the joint should be now.
-    pub(crate) setpoint: &'a Setpoint,
-    /// Where it is believed to be.
-    pub(crate) estimate: &'a Estimate,
-    /// Inertia the joint feels, by the model, kg m².
-    pub(crate) inertia_kg_m2: f32,
-}
-
-impl LawInput<'_> {
-    fn error_rad(&self) -> f32 {
-        self.setpoint.position_rad - self.estimate.position_rad
-    }
-
-    fn rate_error_rad_s(&self) -> f32 {
-        self.setpoint.velocity_rad_s - self.estimate.velocity_rad_s
-    }
 }
 
 impl Feedback {

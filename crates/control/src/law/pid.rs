@@ -1,6 +1,6 @@
 use tracelight_rig::TICK_S;
 
-use super::LawInput;
+use super::input::LawInput;
 
 /// PID with two degrees of freedom (Åström & Hägglund, *Advanced PID Control*, §3.4): N m at the joint.
 #[derive(Clone, Copy, Debug, PartialEq)]

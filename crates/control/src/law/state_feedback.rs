@@ -1,4 +1,4 @@
-use super::LawInput;
+use super::input::LawInput;
 
 /// Position and velocity error to acceleration, both closed-loop poles placed; there is no integrator, since what an
 /// integrator would find is estimated by the observer and taken away by [`Feedforward::Learned`](super::Feedforward).

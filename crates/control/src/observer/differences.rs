@@ -1,7 +1,8 @@
 use tracelight_rig::{Measurement, TICK_S};
 
+use super::config::LONGEST_INTERVAL_TICKS;
 use super::past::Past;
-use super::{Estimate, LONGEST_INTERVAL_TICKS};
+use crate::estimate::Estimate;
 
 /// Counts gained over a fixed interval, smoothed by a low-pass of first order: with an interval of one tick the
 /// washout filter s·ω/(s + ω), with an infinite corner plain differences.

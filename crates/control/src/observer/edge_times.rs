@@ -1,7 +1,8 @@
 use tracelight_rig::{Measurement, TICK_S};
 
+use super::config::LONGEST_INTERVAL_TICKS;
 use super::past::Past;
-use super::{Estimate, LONGEST_INTERVAL_TICKS};
+use crate::estimate::Estimate;
 use crate::limit::within;
 
 /// Edges gained, over the time between the first of them and the last: the M/T method (Ohmae et al., *A

@@ -1,4 +1,4 @@
-use super::LONGEST_INTERVAL_TICKS;
+use super::config::LONGEST_INTERVAL_TICKS;
 
 /// A power of two over the longest interval, so that "one interval ago" is never the present's own place.
 const KEPT: usize = 2 * LONGEST_INTERVAL_TICKS;

@@ -1,8 +1,9 @@
 use tracelight_rig::Measurement;
 
 use super::kalman::{Fit, Kalman, Misfit};
-use super::{Effort, Estimate, KalmanTuning};
-use crate::AxisConfig;
+use super::tuning::KalmanTuning;
+use crate::axis::AxisConfig;
+use crate::estimate::{Effort, Estimate};
 
 /// [`Kalman`] filters that notice when their encoder lost a count or made one up, and put it back.
 ///

@@ -1,6 +1,6 @@
 use tracelight_rig::{Measurement, TICK_S};
 
-use super::Estimate;
+use crate::estimate::Estimate;
 
 /// A double integrator that is held to the count's middle by both its poles at −ω: the tracking loop of resolver
 /// converters, and what open motor controllers use. In ticks both poles are at r = exp(−ωT), which gives the gains

@@ -1,8 +1,9 @@
 use tracelight_rig::{Fault, Measurement, TICK_S};
 
+use crate::axis::AxisConfig;
+use crate::estimate::{Effort, Estimate, Learned};
 use crate::limit::within;
 use crate::observer::MOST_INERTIA;
-use crate::{AxisConfig, Effort, Estimate, Learned};
 
 /// Share of Coulomb friction that must be overcome before a joint is expected to move: stiction and ripple of worn
 /// heads stay under it.

@@ -18,8 +18,9 @@ mod motor;
 
 use tracelight_rig::{Fault, Joint, PanTilt, Sensed};
 
+use crate::config::Config;
+use crate::estimate::Estimate;
 use crate::servo::Servo;
-use crate::{Config, Estimate};
 use encoder::EncoderWatch;
 pub use motor::MotorRating;
 use motor::MotorWatch;
@@ -90,9 +91,11 @@ impl Watch {
 
     /// What the volts of a tick show, if anything.
     pub(crate) fn drive(&mut self, config: &Config, command_v: &PanTilt<f32>) -> Option<Fault> {
-        let pan = self.motors.pan.tick(&config.axes.pan, command_v.pan);
-        let tilt = self.motors.tilt.tick(&config.axes.tilt, command_v.tilt);
-        pan.or(tilt)
+        let faults = PanTilt::from_fn(|j| {
+            let axis = &config.axes[j];
+            self.motors[j].tick(&axis.rating, command_v[j] / axis.limit_v)
+        });
+        faults.pan.or(faults.tilt)
     }
 
     /// What the gate is set to in this tick.

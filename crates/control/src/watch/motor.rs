@@ -1,7 +1,5 @@
 use tracelight_rig::{Fault, TICK_S};
 
-use crate::AxisConfig;
-
 /// Share of an amplifier's limit from which on it is saturated.
 const SATURATED: f32 = 0.999;
 /// For how long an amplifier may give all it has in one direction, ticks: the longest move of a joint at full torque,
@@ -28,15 +26,14 @@ pub(super) struct MotorWatch {
 }
 
 impl MotorWatch {
-    /// One tick with that command; the fault it shows, if any.
-    pub(super) fn tick(&mut self, axis: &AxisConfig, command_v: f32) -> Option<Fault> {
-        let share = command_v / axis.limit_v;
+    /// One tick with that share of its amplifier's limit, −1 to 1; the fault it shows, if any.
+    pub(super) fn tick(&mut self, rating: &MotorRating, share: f32) -> Option<Fault> {
         let (saturated, upwards) = (share.abs() >= SATURATED, share > 0.0);
         let goes_on = saturated && upwards == self.upwards;
         self.saturated_ticks = if goes_on { self.saturated_ticks + 1 } else { u32::from(saturated) };
         self.upwards = upwards;
-        self.heat += TICK_S / axis.rating.heating_s * (share * share - self.heat);
-        let most = axis.rating.continuous_share * axis.rating.continuous_share;
+        self.heat += TICK_S / rating.heating_s * (share * share - self.heat);
+        let most = rating.continuous_share * rating.continuous_share;
         if self.saturated_ticks > SATURATED_TICKS {
             Some(Fault::AmplifierSaturated)
         } else {
