@@ -5,6 +5,7 @@
 
 mod binary;
 mod cascade;
+mod convert;
 mod damped;
 mod design;
 mod discretize;

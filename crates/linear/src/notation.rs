@@ -1,6 +1,8 @@
 //! Formulas as text.
 
-use crate::Polynomial;
+use std::fmt;
+
+use crate::polynomial::Polynomial;
 
 /// `13.16 s² + 1.754 s + 10.29`.
 pub(crate) fn polynomial(polynomial: &Polynomial, variable: &str) -> String {
@@ -21,6 +23,13 @@ pub(crate) fn polynomial(polynomial: &Polynomial, variable: &str) -> String {
         };
     }
     if text.is_empty() { "0".to_owned() } else { text }
+}
+
+impl fmt::Display for Polynomial {
+    /// In s, four digits: `13.16 s² + 1.754 s + 10.29`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&polynomial(self, "s"))
+    }
 }
 
 /// Four digits, without idle zeros.

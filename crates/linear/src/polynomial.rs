@@ -1,4 +1,3 @@
-use std::fmt;
 use std::ops::{Add, Mul, Sub};
 
 use crate::Complex;
@@ -180,13 +179,6 @@ impl Mul for &Polynomial {
             }
         }
         Polynomial::new(product)
-    }
-}
-
-impl fmt::Display for Polynomial {
-    /// In s, four digits: `13.16 s² + 1.754 s + 10.29`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&crate::notation::polynomial(self, "s"))
     }
 }
 

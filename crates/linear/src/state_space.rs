@@ -1,5 +1,7 @@
 use crate::eigen::eigenvalues;
-use crate::{Complex, LinearError, Matrix, Time, TransferFunction, Zpk};
+use crate::error::LinearError;
+use crate::time::Time;
+use crate::{Complex, Matrix};
 
 /// ẋ = A x + B u, y = C x + D u; of samples, the next x instead of ẋ.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,35 +29,6 @@ impl StateSpace {
             return Err(LinearError::NotFinite);
         }
         Ok(Self { a, b, c, d, time })
-    }
-
-    /// The controllable canonical form of a transfer function, its states scaled so that the matrix is balanced.
-    pub(crate) fn of_transfer(transfer: &TransferFunction) -> Result<Self, LinearError> {
-        let order = transfer.denominator().degree();
-        let zeros = transfer.numerator().degree();
-        if zeros > order {
-            return Err(LinearError::Improper { zeros, poles: order, what: "state space" });
-        }
-        let through = transfer.numerator().coefficient(order);
-        // states scaled as powers of what a pole is like, so that neither the last row nor the ones above it stand out
-        let size = transfer.denominator().constant().abs().powf(1.0 / order.max(1) as f64);
-        let unit = if size > 0.0 { size.log2().round().exp2() } else { 1.0 };
-        let (mut a, mut b, mut c) =
-            (Matrix::zeros(order, order), Matrix::zeros(order, 1), Matrix::zeros(1, order));
-        for i in 0..order {
-            if i + 1 < order {
-                a[(i, i + 1)] = unit;
-            }
-            let scale = unit.powi(order as i32 - 1 - i as i32);
-            a[(order - 1, i)] = -transfer.denominator().coefficient(i) / scale;
-            c[(0, i)] = (transfer.numerator().coefficient(i)
-                - through * transfer.denominator().coefficient(i))
-                / scale;
-        }
-        if order > 0 {
-            b[(order - 1, 0)] = 1.0;
-        }
-        Self::new(a, b, c, Matrix::from_element(1, 1, through), transfer.time())
     }
 
     /// How the state goes on by itself.
@@ -107,20 +80,12 @@ impl StateSpace {
         })
     }
 
-    /// The transfer function from one input to one output: all eigenvalues are poles, whether or not the input moves them and the
-    /// output sees them.
-    pub fn transfer(&self, output: usize, input: usize) -> Result<Zpk, LinearError> {
-        let channel = self.channel(output, input)?;
-        let (gain, zeros) = channel.gain_and_zeros()?;
-        Ok(Zpk::of(gain, zeros, channel.poles()?, self.time))
-    }
-
     /// Of one input and one output: the gain before the zeros, and these.
     ///
     /// An output that stays zero keeps the state it sees zero, and what would move that has to be zero, too: what then is left is a
     /// smaller system with the same zeros, until the input goes straight through (Emami-Naeini & Van Dooren, *Computation of
     /// zeros of linear multivariable systems*, Automatica 18, 1982).
-    fn gain_and_zeros(&self) -> Result<(f64, Vec<Complex>), LinearError> {
+    pub(crate) fn gain_and_zeros(&self) -> Result<(f64, Vec<Complex>), LinearError> {
         /// What is smaller beside the rest of B is rounding.
         const NOTHING: f64 = 1e3 * f64::EPSILON;
         let (mut a, mut b, mut c, mut d) = (self.a.clone(), self.b.clone(), self.c.clone(), self.d[(0, 0)]);
@@ -225,7 +190,8 @@ pub(crate) fn stack(rows: &[&[&Matrix]]) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Polynomial;
+    use crate::polynomial::Polynomial;
+    use crate::transfer::TransferFunction;
 
     fn tf(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
         TransferFunction::new(Polynomial::new(numerator), Polynomial::new(denominator), Time::Continuous)

@@ -1,6 +1,10 @@
 use std::fmt;
 
-use crate::{Complex, LinearError, Polynomial, Root, StateSpace, Time, Zpk};
+use crate::Complex;
+use crate::error::LinearError;
+use crate::polynomial::Polynomial;
+use crate::roots::Root;
+use crate::time::Time;
 
 /// A transfer function with one input and one output: a quotient of polynomials, its denominator monic.
 ///
@@ -163,16 +167,6 @@ impl TransferFunction {
             Self { numerator, denominator: Polynomial::from_roots(1.0, &values(&poles)), time: self.time },
             cancelled,
         )
-    }
-
-    /// By its gain, zeros and poles.
-    pub fn zpk(&self) -> Zpk {
-        Zpk::of(self.numerator.leading(), self.zeros(), self.poles(), self.time)
-    }
-
-    /// In state space; not possible with more zeros than poles.
-    pub fn state_space(&self) -> Result<StateSpace, LinearError> {
-        StateSpace::of_transfer(self)
     }
 }
 

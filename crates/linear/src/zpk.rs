@@ -1,8 +1,10 @@
 use std::fmt;
 
+use crate::Complex;
+use crate::error::LinearError;
 use crate::notation::{four_digits, quadratic};
 use crate::polynomial::are_paired;
-use crate::{Complex, LinearError, Polynomial, Time, TransferFunction};
+use crate::time::Time;
 
 /// A transfer function by its gain, zeros and poles: gain · Π(s − zᵢ) / Π(s − pᵢ).
 #[derive(Clone, Debug, PartialEq)]
@@ -65,15 +67,6 @@ impl Zpk {
     /// Its time.
     pub const fn time(&self) -> Time {
         self.time
-    }
-
-    /// Multiplied out.
-    pub fn transfer(&self) -> TransferFunction {
-        let numerator = Polynomial::from_roots(self.gain, &self.zeros);
-        let denominator = Polynomial::from_roots(1.0, &self.poles);
-        // the denominator is monic and all is finite, unless the products overflow
-        TransferFunction::new(numerator, denominator, self.time)
-            .unwrap_or_else(|_| TransferFunction::gain(f64::INFINITY, self.time))
     }
 
     /// In the form of time constants: `0.6 (1 + s/32.9) / (s (1 + s/250))`.

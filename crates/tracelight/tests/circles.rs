@@ -207,9 +207,7 @@ fn enclosed(rest: &str) -> &str {
 }
 
 /// Circles that stand, each as its crate and its files. It only gets shorter.
-const KNOWN: [(&str, &str); 15] = [
-    ("linear", "notation polynomial"),
-    ("linear", "state_space transfer zpk"),
+const KNOWN: [(&str, &str); 13] = [
     ("plant", "camera camera::sensor camera::spot"),
     ("sim", "bench config laws linear step"),
     ("stroke", "fit fit::corner"),
