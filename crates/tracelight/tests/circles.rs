@@ -207,11 +207,9 @@ fn enclosed(rest: &str) -> &str {
 }
 
 /// Circles that stand, each as its crate and its files. It only gets shorter.
-const KNOWN: [(&str, &str); 13] = [
+const KNOWN: [(&str, &str); 11] = [
     ("plant", "camera camera::sensor camera::spot"),
     ("sim", "bench config laws linear step"),
-    ("stroke", "fit fit::corner"),
-    ("stroke", "fit::bend fit::plan fit::section"),
     ("tracelight", "batch batch::report batch::table"),
     ("trajectory", "corner leg mark planner swing tour tour::link"),
     ("trajectory", "machine plan retime::law retime::limits retime::passes"),

@@ -2,11 +2,11 @@
 
 use kurbo::Point;
 
-use super::FitOptions;
 use super::arc::SWEEPS;
+use super::line::Line;
+use super::options::FitOptions;
 use super::plan::{Plan, Shut, is_moved};
 use super::round::{Bow, Circle, FEWEST, bows, scatter};
-use super::section::Line;
 use super::straight::{RMS, direction};
 use super::tangent::{Part, Shape, join};
 use crate::polyline_length;
@@ -38,7 +38,7 @@ impl Bends<'_> {
             if arcs.iter().all(Vec::is_empty) {
                 break;
             }
-            let plan = Plan::of(self, &arcs, loose);
+            let plan = self.plan(&arcs, loose);
             let failed: Vec<usize> = match self.joined(&plan) {
                 Err(part) => plan.beside(part).collect(),
                 Ok(parts) => {
@@ -56,7 +56,11 @@ impl Bends<'_> {
                 }
             }
         }
-        Plan::of(self, &[], loose).parts
+        self.plan(&[], loose).parts
+    }
+
+    fn plan(&self, arcs: &[Vec<Bow>], loose: [bool; 2]) -> Plan {
+        Plan::of(self.row, self.lines, self.shut, arcs, loose)
     }
 
     /// Lets those ends of the row go that are too far off their arcs; whether any was held until now.

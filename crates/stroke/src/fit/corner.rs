@@ -5,8 +5,8 @@
 
 use kurbo::Point;
 
-use super::FitOptions;
 use super::flank::Flanks;
+use super::options::FitOptions;
 use super::samples::Samples;
 use super::window::{Parabola, turn};
 

@@ -2,9 +2,8 @@
 
 use kurbo::Point;
 
-use super::bend::Bends;
+use super::line::Line;
 use super::round::Bow;
-use super::section::Line;
 use super::straight::direction;
 use super::tangent::{Part, Shape};
 
@@ -35,8 +34,7 @@ enum Of {
 impl Plan {
     /// The lines, with arcs in those bends that have some; there, everything is linked.
     /// Arcs at ends that are `loose` end where a pen's tip begins.
-    pub(super) fn of(bends: &Bends, arcs: &[Vec<Bow>], loose: [bool; 2]) -> Self {
-        let &Bends { row, lines, shut, .. } = bends;
+    pub(super) fn of(row: &[Point], lines: &[Line], shut: Shut, arcs: &[Vec<Bow>], loose: [bool; 2]) -> Self {
         let mut plan = Self { parts: Vec::new(), of: Vec::new(), bends: arcs.len().max(1) };
         for bend in 0..arcs.len().max(lines.len()) {
             let here = arcs.get(bend).map_or(&[][..], Vec::as_slice);

@@ -2,11 +2,12 @@
 
 use kurbo::{CubicBez, Point, Vec2};
 
-use super::FitOptions;
 use super::arc;
 use super::bend::{Bends, is_near};
 use super::chain;
 use super::cubic::Ends;
+use super::line::Line;
+use super::options::FitOptions;
 use super::plan::Shut;
 use super::round::Circle;
 use super::straight::{Run, Straightness};
@@ -15,15 +16,6 @@ use crate::{Element, polyline_length};
 
 /// Points between two straight runs, at least: a break of direction gets this much room to become a bend.
 const ROOM: usize = 4;
-
-/// A line of the section, with the indices of the points it replaces.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
-    pub(super) first: usize,
-    pub(super) last: usize,
-    pub(super) from: Point,
-    pub(super) to: Point,
-}
 
 /// The section through `row`, from its first point to its last.
 pub(super) fn open(row: &[Point], options: &FitOptions) -> Vec<Element> {
