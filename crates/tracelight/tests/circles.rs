@@ -207,8 +207,7 @@ fn enclosed(rest: &str) -> &str {
 }
 
 /// Circles that stand, each as its crate and its files. It only gets shorter.
-const KNOWN: [(&str, &str); 11] = [
-    ("plant", "camera camera::sensor camera::spot"),
+const KNOWN: [(&str, &str); 10] = [
     ("sim", "bench config laws linear step"),
     ("tracelight", "batch batch::report batch::table"),
     ("trajectory", "corner leg mark planner swing tour tour::link"),

@@ -2,7 +2,10 @@
 //! light and of the sensor, in colours one a pixel.
 
 mod config;
+mod exposed;
+mod part;
 mod sensor;
+mod splitmix;
 mod spot;
 mod wall;
 
@@ -11,7 +14,8 @@ use std::sync::Arc;
 use tracelight_aim::Camera;
 
 pub use config::{CameraConfig, Lamp, Laser, Sensor};
-pub use spot::SpotSample;
+pub use exposed::{Exposed, SpotSample};
+pub use part::Part;
 pub use wall::{Poster, Wall};
 
 use sensor::{Electrons, Mosaic};
@@ -48,47 +52,6 @@ impl Image {
             ((77 * u32::from(p[0]) + 150 * u32::from(p[1]) + 29 * u32::from(p[2]) + 128) >> 8) as u8
         };
         self.rgb.chunks_exact(3).map(of).collect()
-    }
-}
-
-/// What fell on a sensor while an image was taken: all that tells it, before anybody looks.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Exposed {
-    /// Number of the image since the camera began.
-    pub number: u64,
-    /// When its first row began to be exposed, s, by the clock of the rig.
-    pub start_s: f64,
-    /// How long each row was.
-    pub exposure_s: f64,
-    /// Where the beam met the wall from then until the last row's end, in time order; what was before and after is dark.
-    pub spots: Vec<SpotSample>,
-}
-
-/// A rectangle of an image's pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Part {
-    /// Its first column and row.
-    pub left: usize,
-    /// See `left`.
-    pub top: usize,
-    /// Columns and rows it has.
-    pub width: usize,
-    /// See `width`.
-    pub height: usize,
-}
-
-impl Part {
-    /// All of an image.
-    pub const fn whole([width, height]: [usize; 2]) -> Self {
-        Self { left: 0, top: 0, width, height }
-    }
-
-    /// The same with one more pixel around, as far as the image goes.
-    fn wider(&self, [width, height]: [usize; 2]) -> Self {
-        let (left, top) = (self.left.saturating_sub(1), self.top.saturating_sub(1));
-        let right = (self.left + self.width + 1).min(width);
-        let bottom = (self.top + self.height + 1).min(height);
-        Self { left, top, width: right - left, height: bottom - top }
     }
 }
 

@@ -1,8 +1,8 @@
 use std::sync::Arc;
 
-use super::Part;
 use super::config::Sensor;
-use super::spot::{GOLDEN, mixed};
+use super::part::Part;
+use super::splitmix::{GOLDEN, mixed};
 
 /// Noise, drawn from a seed.
 #[derive(Clone, Debug)]

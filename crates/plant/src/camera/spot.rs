@@ -2,18 +2,9 @@ use tracelight_aim::Camera;
 use tracelight_stroke::{Point, Vec2};
 
 use super::config::CameraConfig;
-use super::{Exposed, Part};
-
-/// Where the beam meets the wall at a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpotSample {
-    /// When, s, by the clock of the rig.
-    pub time_s: f64,
-    /// Where, target frame, m.
-    pub at: Point,
-    /// Whether light leaves the head from then until the next sample.
-    pub light: bool,
-}
+use super::exposed::Exposed;
+use super::part::Part;
+use super::splitmix::{GOLDEN, mixed};
 
 /// Longest piece of a streak that is drawn as one, in deviations of the spot.
 const PIECE: f64 = 0.25;
@@ -123,14 +114,4 @@ fn grain(column: usize, row: usize, image: u64) -> f64 {
     let bits = mixed((column as u64) << 40 ^ (row as u64) << 20 ^ image.wrapping_mul(GOLDEN));
     let even = bits as f64 / u64::MAX as f64;
     (2.0 * even - 1.0) * 3.0_f64.sqrt()
-}
-
-/// 2⁶⁴ by the golden ratio: numbers that follow each other are far apart.
-pub(super) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-
-/// Bits that look drawn: the finalizer of SplitMix64 (Steele, Lea & Flood, *Fast splittable pseudorandom number generators*, 2014, fig. 16).
-pub(super) const fn mixed(mut z: u64) -> u64 {
-    z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ z >> 31
 }
