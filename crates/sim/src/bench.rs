@@ -1,9 +1,10 @@
 use tracelight_control::{Config, Estimate, LawConfig, Reference, Servo};
 use tracelight_plant::Plant;
-use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, Setpoint};
+use tracelight_rig::{Actuation, Joint, Measurement, PanTilt, Setpoint};
 
-use crate::RigConfig;
+use crate::config::RigConfig;
 use crate::linear::LinearHead;
+use crate::truth::Truth;
 
 /// Observers and laws on a head, without plan, supervisor and light: what a control engineer puts on the bench.
 #[derive(Clone, Debug)]
@@ -30,27 +31,6 @@ pub struct BenchTick {
     pub estimates: PanTilt<Estimate>,
     /// What is done about it, V.
     pub command_v: PanTilt<f32>,
-}
-
-/// A simulated head whose truth can be looked at.
-pub(crate) trait Truth: Head {
-    /// Joint angles, rad.
-    fn angle_rad(&self) -> PanTilt<f64>;
-
-    /// What the beam makes of them, rad.
-    fn beam_rad(&self) -> PanTilt<f64> {
-        self.angle_rad()
-    }
-}
-
-impl Truth for Plant {
-    fn angle_rad(&self) -> PanTilt<f64> {
-        Plant::angle_rad(self)
-    }
-
-    fn beam_rad(&self) -> PanTilt<f64> {
-        Plant::beam_rad(self)
-    }
 }
 
 impl Bench<Plant> {

@@ -3,7 +3,7 @@ use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
 use tracelight_rig::{Joint, PanTilt};
 
-use crate::{HandTuned, LawName, ObserverName};
+use crate::control_settings::ControlSettings;
 
 /// A rig, whole: what we believe it is, what it really is (in simulation), and how it is to be driven.
 #[derive(Clone, Debug, PartialEq)]
@@ -160,42 +160,6 @@ pub struct Truth {
     pub model: Model,
     /// What is worse than its equations.
     pub wear: Wear,
-}
-
-/// Settings of the controller.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ControlSettings {
-    /// From error to torque.
-    pub law: LawName,
-    /// From counts to position and velocity; none is the one the law is meant for.
-    pub observer: Option<ObserverName>,
-    /// Time over which those observers look that have one, s; the others' corner is its reciprocal.
-    pub observer_interval_s: f64,
-    /// What law [`LawName::HandTuned`] is.
-    pub hand_tuned: PanTilt<HandTuned>,
-    /// Whether a joint hops where its plan is slower than friction lets go; only law [`LawName::State`] with observer
-    /// [`ObserverName::Kalman`] can.
-    pub hops: bool,
-    /// Bandwidth of each loop, rad/s: how far its closed-loop poles lie from the origin. The 2006 report's laws have
-    /// their own.
-    pub bandwidth_rad_s: PanTilt<f64>,
-    /// Distance on the target beyond which the laser is darkened, m.
-    pub tolerance_m: f64,
-    /// How long the head may need to come back to its stroke, s.
-    pub hold_limit_s: f64,
-    /// How long a host may be silent, s.
-    pub host_silence_s: f64,
-    /// Share of its amplifier's limit that a motor stands for ever.
-    pub motor_continuous: f64,
-    /// Time constant of a motor's temperature, s.
-    pub motor_heating_s: f64,
-}
-
-impl ControlSettings {
-    /// The observer that is chosen, or the one the law is meant for.
-    pub fn observer_in_use(&self) -> ObserverName {
-        self.observer.unwrap_or(self.law.observer())
-    }
 }
 
 /// Settings of the planner.

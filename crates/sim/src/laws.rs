@@ -1,12 +1,7 @@
 //! Laws and observers by name.
 
-use tracelight_control::{
-    Feedback, Feedforward, KalmanTuning, LawConfig, LeadLag, ObserverConfig, Pid, StateFeedback,
-};
+use tracelight_control::{Feedforward, KalmanTuning, ObserverConfig, Pid};
 use tracelight_rig::Joint;
-
-use crate::lead_lag::{Format, LeadLagDesign};
-use crate::{ControlSettings, StepReference};
 
 /// A law that a rig can be driven by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -82,7 +77,7 @@ impl LawName {
 
     /// Share of a rig's bandwidth that it is given: an observer that knows nothing of the head lags behind it, and leaves
     /// a sixth; an integrator takes half.
-    const fn bandwidth_share(self) -> f64 {
+    pub(crate) const fn bandwidth_share(self) -> f64 {
         match self {
             Self::State => 1.0,
             Self::PidFeedforward => 0.5,
@@ -93,35 +88,13 @@ impl LawName {
     }
 }
 
-impl ControlSettings {
-    /// The law of one joint that has that inertia, kg m².
-    pub fn law_config(&self, joint: Joint, inertia_kg_m2: f64) -> LawConfig {
-        let bandwidth_rad_s = self.law.bandwidth_share() * self.bandwidth_rad_s[joint];
-        let (bandwidth, inertia) = (bandwidth_rad_s as f32, inertia_kg_m2 as f32);
-        let pid = Feedback::Pid(Pid::triple_pole(bandwidth, inertia));
-        let (feedback, feedforward) = match self.law {
-            LawName::State => (
-                Feedback::State(StateFeedback { bandwidth_rad_s: bandwidth, damping: DAMPING }),
-                Feedforward::Learned,
-            ),
-            LawName::PidFeedforward => (pid, Feedforward::Model),
-            LawName::Pid => (pid, Feedforward::Gravity),
-            LawName::HandTuned => {
-                let by_hand = &self.hand_tuned[joint];
-                (Feedback::Pid(by_hand.pid()), by_hand.feedforward)
-            }
-            LawName::LeadLag => (
-                Feedback::LeadLag(LeadLagDesign::for_inertia(bandwidth_rad_s, inertia_kg_m2).discretize()),
-                Feedforward::Gravity,
-            ),
-            LawName::ReportZpk => (Feedback::LeadLag(report(joint, Format::Zpk)), Feedforward::None),
-            LawName::ReportTimeConstants => {
-                (Feedback::LeadLag(report(joint, Format::TimeConstants)), Feedforward::None)
-            }
-            LawName::ReportPd => (Feedback::Pid(report_pd(joint)), Feedforward::None),
-        };
-        LawConfig { feedback, feedforward }
-    }
+/// How a joint is told to go somewhere else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepReference {
+    /// The setpoint is there at once.
+    Jump,
+    /// It goes there as fast as the rig's limits allow.
+    Move,
 }
 
 /// A PID of one joint with gains that somebody set by hand.
@@ -155,7 +128,7 @@ impl HandTuned {
         feedforward: Feedforward::Gravity,
     };
 
-    const fn pid(&self) -> Pid {
+    pub(crate) const fn pid(&self) -> Pid {
         Pid {
             ki: self.ki as f32,
             kd: self.kd as f32,
@@ -166,9 +139,6 @@ impl HandTuned {
         }
     }
 }
-
-/// Of the pair of closed-loop poles: a step of the load overshoots by 1.5 %.
-const DAMPING: f32 = 0.8;
 
 /// A compensator as the 2006 report prints it: gain (s + z₁)(s + z₂) / ((s + p₁)(s + p₂)).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -190,20 +160,6 @@ impl Compensator {
             Joint::Tilt => Self { gain: 144.0, zeros: [31.5, 33.4], poles: [194.0, 83.5] },
         }
     }
-}
-
-fn report(joint: Joint, format: Format) -> LeadLag {
-    let Compensator { gain, zeros, poles } = Compensator::of_the_report(joint);
-    LeadLagDesign::report(gain, zeros, poles, format).discretize()
-}
-
-/// "PD gains tried: pan kp 2, kd 10; tilt kp 2, kd 5", their units taken to be N m/rad and N m s/rad.
-fn report_pd(joint: Joint) -> Pid {
-    let kd = match joint {
-        Joint::Pan => 10.0,
-        Joint::Tilt => 5.0,
-    };
-    Pid { kd, ..Pid::proportional(2.0) }
 }
 
 /// How counts become position and velocity.

@@ -8,6 +8,7 @@ mod array;
 mod bench;
 mod compensator;
 mod config;
+mod control_settings;
 mod diagram;
 mod join;
 mod laws;
@@ -21,23 +22,21 @@ mod score;
 mod spread;
 mod step;
 mod trouble;
+mod truth;
 
 pub use alone::{MotorReading, Mounting, READ_TICKS, head_alone, motor_readings};
 pub use array::{ArrayError, Between, MotionArray};
 pub use bench::BenchTick;
 pub use compensator::CompensatorLaw;
-pub use config::{
-    Cable, ControlSettings, Identified, Model, MotionSettings, Quirks, RigConfig, Ripple, Truth,
-};
+pub use config::{Cable, Identified, Model, MotionSettings, Quirks, RigConfig, Ripple, Truth};
+pub use control_settings::ControlSettings;
 pub use diagram::{Diagram, ScopeTick};
-pub use laws::{Compensator, HandTuned, LawName, ObserverName};
+pub use laws::{Compensator, HandTuned, LawName, ObserverName, StepReference};
 pub use replay::replay;
 pub use room::{Room, Taken};
 pub use run::{Feeder, Run, Simulated, SimulatedRig, Tick, run, run_segments};
 pub use score::{Tracking, score};
 pub use spread::Spread;
-pub use step::{
-    Push, StepReference, StepResponse, follow_array, push_response, step_response, step_response_by,
-};
+pub use step::{Push, StepResponse, follow_array, push_response, step_response, step_response_by};
 pub use tracelight_control::{Feedforward, LONGEST_INTERVAL_TICKS};
 pub use trouble::{EyeTrouble, Trouble};

@@ -1,8 +1,8 @@
 use tracelight_control::{Config, FrictionModel, HeadModel};
 use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, Sensed, TICK_F64_S};
 
-use crate::RigConfig;
-use crate::bench::Truth;
+use crate::config::RigConfig;
+use crate::truth::Truth;
 
 /// Counts a turn of an encoder that quantizes nothing that matters: 60 nrad.
 const COUNTS_PER_REV: f64 = 1e8;

@@ -7,7 +7,8 @@ use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
 use tracelight_rig::PanTilt;
 
-use crate::config::{ControlSettings, Model, MotionSettings, RigConfig, Truth};
+use crate::config::{Model, MotionSettings, RigConfig, Truth};
+use crate::control_settings::ControlSettings;
 use crate::{HandTuned, LawName};
 
 /// Motor torque constant × gearhead × belt, N m at the joint per A.

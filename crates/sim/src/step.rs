@@ -3,9 +3,12 @@ use tracelight_control::Reference;
 use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_F64_S, TICK_S};
 use tracelight_trajectory::{JointMotion, rest_to_rest};
 
-use crate::bench::{Bench, BenchTick, Truth};
+use crate::array::MotionArray;
+use crate::bench::{Bench, BenchTick};
 use crate::compensator::CompensatorLaw;
-use crate::{LawName, MotionArray, ObserverName, RigConfig};
+use crate::config::RigConfig;
+use crate::laws::{LawName, ObserverName, StepReference};
+use crate::truth::Truth;
 
 /// What a joint does when it is sent somewhere else, for [`StepResponse::LENGTH_S`].
 #[derive(Clone, Debug)]
@@ -19,15 +22,6 @@ pub struct StepResponse {
 impl StepResponse {
     /// How long a step is watched, s.
     pub const LENGTH_S: f64 = 3.0;
-}
-
-/// How a joint is told to go somewhere else.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StepReference {
-    /// The setpoint is there at once.
-    Jump,
-    /// It goes there as fast as the rig's limits allow.
-    Move,
 }
 
 /// Sends one joint from rest at zero to `to_rad`, the other is held at zero. `None` if the motors are too weak for a move, or

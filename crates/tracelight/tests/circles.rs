@@ -207,8 +207,7 @@ fn enclosed(rest: &str) -> &str {
 }
 
 /// Circles that stand, each as its crate and its files. It only gets shorter.
-const KNOWN: [(&str, &str); 10] = [
-    ("sim", "bench config laws linear step"),
+const KNOWN: [(&str, &str); 9] = [
     ("tracelight", "batch batch::report batch::table"),
     ("trajectory", "corner leg mark planner swing tour tour::link"),
     ("trajectory", "machine plan retime::law retime::limits retime::passes"),
