@@ -207,13 +207,8 @@ fn enclosed(rest: &str) -> &str {
 }
 
 /// Circles that stand, each as its crate and its files. It only gets shorter.
-const KNOWN: [(&str, &str); 9] = [
+const KNOWN: [(&str, &str); 4] = [
     ("tracelight", "batch batch::report batch::table"),
-    ("trajectory", "corner leg mark planner swing tour tour::link"),
-    ("trajectory", "machine plan retime::law retime::limits retime::passes"),
-    ("trajectory", "profile profile::ramped profile::smooth"),
-    ("trajectory", "retime::smooth retime::smooth::cells"),
-    ("trajectory", "steer steer::furthest steer::phases"),
     ("vision", "comb::drift comb::family"),
     ("vision", "sheet sheet::alone sheet::edge sheet::over sheet::quad sheet::rim sheet::shade"),
     ("vision", "spot spot::change"),

@@ -1,6 +1,6 @@
 use tracelight_rig::{Joint, PanTilt, Segment};
 
-use crate::Machine;
+use crate::machine::Machine;
 use crate::plan::PlanPoint;
 
 /// Longest segment, ticks: short enough that a stroke's shape and the tolerance hardly change within.

@@ -1,11 +1,13 @@
-//! What becomes of a break of the tangent: passed, rounded off, or the end of a leg.
+//! Strokes cut into legs: what becomes of a break of the tangent, which is passed, rounded off, or the end of a leg.
 
-use tracelight_stroke::{Element, Piece, Vec2};
+use tracelight_stroke::{Path, Piece};
 
-use crate::leg::{LENGTH_TOLERANCE_M, Leg};
-use crate::mark::{End, MarkRequest, mark};
+use crate::leg::{DUST_M, Fate, LENGTH_TOLERANCE_M, Leg};
+use crate::machine::Machine;
+use crate::mark::mark;
+use crate::request::{End, LitSpeed, MarkRequest, PlanRequest};
 use crate::retime::steady_speed;
-use crate::{LitSpeed, Machine, PlanRequest};
+use crate::rounding::turn_rad;
 
 /// A break of the tangent from which on the head stops: 20°. Below it the spot passes with the speed that keeps the
 /// jump of velocity under [`JUMP_M_S`].
@@ -37,24 +39,26 @@ pub(crate) struct Corners<'a> {
     acceleration_m_s2: f64,
 }
 
-/// What becomes of a break.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Fate {
-    /// It is passed, no faster than this, m/s.
-    Pass(f64),
-    /// So much of both pieces, m, gives way to a curve from one to the other.
-    Round(f64),
-    /// One leg ends there and another begins.
-    Cut,
-}
-
 impl<'a> Corners<'a> {
     pub(crate) fn of(machine: &'a Machine, request: &'a PlanRequest) -> Self {
         Self { machine, request, acceleration_m_s2: machine.spot_acceleration_m_s2() }
     }
 
+    /// The legs of a path in drawing order, cut or rounded off at corners.
+    pub(crate) fn legs(&self, path: &Path) -> Vec<Leg> {
+        let sized = path.pieces().map(|piece| (piece, piece.length(LENGTH_TOLERANCE_M)));
+        let pieces: Vec<(Piece, f64)> = sized.filter(|&(_, length)| length >= DUST_M).collect();
+        // a piece may be cut back at both ends, and some of it must be left to tell its direction
+        let fate = |pair: &[(Piece, f64)]| {
+            let [(before, before_m), (after, after_m)] = [pair[0], pair[1]];
+            self.fate(&before, &after, 0.45 * before_m.min(after_m))
+        };
+        let fates: Vec<Fate> = pieces.windows(2).map(fate).collect();
+        Leg::joined(&pieces, &fates)
+    }
+
     /// What becomes of the break between two pieces; no more than `room_m` of either may be given up.
-    pub(crate) fn fate(&self, before: &Piece, after: &Piece, room_m: f64) -> Fate {
+    fn fate(&self, before: &Piece, after: &Piece, room_m: f64) -> Fate {
         let turn = turn_rad(before.end_tangent(), after.start_tangent());
         let passed_m_s = break_speed(turn);
         if turn < NONE_RAD || passed_m_s >= self.request.speed_m_s {
@@ -123,43 +127,4 @@ impl<'a> Corners<'a> {
 /// How fast a small break of the tangent is passed, m/s.
 fn break_speed(turn_rad: f64) -> f64 {
     JUMP_M_S / (2.0 * (0.5 * turn_rad).sin()).max(1e-12)
-}
-
-/// The angle between two directions, rad.
-pub(crate) fn turn_rad(incoming: Vec2, outgoing: Vec2) -> f64 {
-    incoming.cross(outgoing).atan2(incoming.dot(outgoing)).abs()
-}
-
-/// The curve that leads from the end of one piece to the start of the next, touching both: between straight lines cut
-/// back equally, a circle's arc but for 3 parts in 10 000 of its radius.
-pub(crate) fn rounding(before: &Piece, after: &Piece) -> Piece {
-    let (from, to) = (before.end(), after.from);
-    let (incoming, outgoing) = (before.end_tangent(), after.start_tangent());
-    let turn = turn_rad(incoming, outgoing);
-    let radius = 0.5 * from.distance(to) / (0.5 * turn).sin().max(1e-12);
-    let handle = 4.0 / 3.0 * (0.25 * turn).tan() * radius;
-    Piece { from, element: Element::Cubic { c1: from + incoming * handle, c2: to - outgoing * handle, to } }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use tracelight_stroke::Point;
-
-    #[test]
-    fn a_rounded_corner_keeps_to_its_distance() {
-        const TOLERANCE_M: f64 = 2e-4;
-        for degrees in [10.0f64, 45.0, 90.0, 135.0, 170.0] {
-            let turn = degrees.to_radians();
-            let cut = TOLERANCE_M / (0.25 * turn).tan();
-            let (out, corner) = (Vec2::from_angle(turn), Point::new(0.1, 0.0));
-            let line = |from, to| Piece { from, element: Element::Line { to } };
-            let before = line(Point::ORIGIN, corner - Vec2::new(cut, 0.0));
-            let after = line(corner + out * cut, corner + out * 0.1);
-            let curve = rounding(&before, &after);
-            let away = (0..=1000).map(|i| curve.at(f64::from(i) / 1000.0).distance(corner));
-            let nearest = away.fold(f64::INFINITY, f64::min);
-            assert!((nearest / TOLERANCE_M - 1.0).abs() < 0.03, "{degrees}°: {nearest} m");
-        }
-    }
 }

@@ -7,13 +7,19 @@ use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::{Piece, Point};
 
 use crate::compress::compress;
+use crate::error::PlanError;
 use crate::leg::{LENGTH_TOLERANCE_M, Leg};
-use crate::plan::JointMotion;
-use crate::planner::{FINAL_REST_S, assess, check_duration, dark, last_tick, light_up, linger, rest};
-use crate::profile::{MoveLimits, MovePoint, Peaks, Profile, Shape};
-use crate::retime::{Along, AlongLimits, PathSample, Retimed, TimeLaw, chain};
+use crate::machine::Machine;
+use crate::motion::JointMotion;
+use crate::move_point::MovePoint;
+use crate::plan::{Plan, PlanPoint, check_duration};
+use crate::planner::{FINAL_REST_S, assess, dark, last_tick, light_up, linger, rest};
+use crate::profile::limits::{MoveLimits, Peaks};
+use crate::profile::{Profile, Ramps, Shape};
+use crate::request::{DarkMove, PlanRequest};
+use crate::retime::along::Along;
+use crate::retime::{AlongLimits, PathSample, Retimed, TimeLaw, chain};
 use crate::travel::travel;
-use crate::{DarkMove, Machine, Plan, PlanError, PlanPoint, PlanRequest, Ramps};
 
 /// Why a course cannot be followed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -151,17 +157,6 @@ impl<'m> Course<'m> {
     /// By the fastest profile of a shape within limits along the course (m/s, m/s²), whatever that asks of the motors.
     pub fn shaped(&self, shape: Shape, limits: &MoveLimits) -> Pace {
         Pace::shaped(Profile::new(shape, self.length_m(), limits))
-    }
-
-    /// By the fastest profile of a shape within the limits that the motors can follow: every joint's torque stays within
-    /// the share a plan may use, its speed and acceleration within what the rig allows. Where a trapezoid or S-curve
-    /// has to give way, how its time is shared out between speeding up, cruising and braking is chosen for the shortest
-    /// time.
-    ///
-    /// # Errors
-    /// [`PlanError::TooWeak`] where a motor cannot even hold or start its joint.
-    pub fn shaped_for_motors(&self, shape: Shape, limits: &MoveLimits) -> Result<Pace, CourseError> {
-        fit::fit(self, shape, limits).map(Pace::shaped)
     }
 
     /// As fast as limits and motors allow, place by place: no shape.

@@ -1,20 +1,32 @@
-//! Strokes cut into legs: stretches without a corner.
+//! Legs: stretches of a stroke without a corner.
 
 use tracelight_aim::{AimError, JointPath, SpotMotion};
-use tracelight_stroke::{Path, PathPoint, Piece, Point};
+use tracelight_stroke::{PathPoint, Piece, Point};
 
-use crate::corner::{Corners, Fate, rounding};
+use crate::machine::Machine;
+use crate::plan::LegEnd;
 use crate::retime::PathSample;
-use crate::{LegEnd, Machine};
+use crate::rounding::rounding;
 
 /// Shorter pieces than this are dust, m.
-const DUST_M: f64 = 1e-7;
+pub(crate) const DUST_M: f64 = 1e-7;
 
 /// Most places at which a leg is looked at: 50 m at the finest.
 const MOST_PLACES: f64 = 1e5;
 
 /// Error of arc length on curves, m: a ten-thousandth of what the spot moves in a tick at 1 ft/s.
 pub(crate) const LENGTH_TOLERANCE_M: f64 = 3e-8;
+
+/// What becomes of a break of the tangent between two pieces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Fate {
+    /// It is passed, no faster than this, m/s.
+    Pass(f64),
+    /// So much of both pieces, m, gives way to a curve from one to the other.
+    Round(f64),
+    /// One leg ends there and another begins.
+    Cut,
+}
 
 /// A stretch of a stroke without a corner, with arc length along it.
 #[derive(Clone, Debug)]
@@ -27,19 +39,6 @@ pub(crate) struct Leg {
 }
 
 impl Leg {
-    /// The legs of a path in drawing order, cut or rounded off at corners.
-    pub(crate) fn split(path: &Path, corners: &Corners<'_>) -> Vec<Leg> {
-        let sized = path.pieces().map(|piece| (piece, piece.length(LENGTH_TOLERANCE_M)));
-        let pieces: Vec<(Piece, f64)> = sized.filter(|&(_, length)| length >= DUST_M).collect();
-        // a piece may be cut back at both ends, and some of it must be left to tell its direction
-        let fate = |pair: &[(Piece, f64)]| {
-            let [(before, before_m), (after, after_m)] = [pair[0], pair[1]];
-            corners.fate(&before, &after, 0.45 * before_m.min(after_m))
-        };
-        let fates: Vec<Fate> = pieces.windows(2).map(fate).collect();
-        Self::joined(&pieces, &fates)
-    }
-
     /// Legs of pieces, each with its length, that are joined by what becomes of the breaks between them.
     pub(crate) fn joined(pieces: &[(Piece, f64)], fates: &[Fate]) -> Vec<Leg> {
         let cut_m = |fate: Option<&Fate>| if let Some(&Fate::Round(cut_m)) = fate { cut_m } else { 0.0 };
@@ -174,7 +173,7 @@ fn onwards(at: PathPoint, by_m: f64) -> PathPoint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tracelight_stroke::{Element, Vec2};
+    use tracelight_stroke::{Element, Path, Vec2};
 
     fn pieces(path: &Path) -> Vec<(Piece, f64)> {
         path.pieces().map(|piece| (piece, piece.length(LENGTH_TOLERANCE_M))).collect()

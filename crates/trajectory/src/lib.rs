@@ -10,6 +10,7 @@
 //! The crate knows neither images nor encoder counts, and computes torque only to stay under it: what the motors are
 //! told is the controller's.
 
+mod binding;
 mod compress;
 mod corner;
 mod course;
@@ -17,23 +18,33 @@ mod error;
 mod leg;
 mod machine;
 mod mark;
+mod motion;
+mod move_point;
 mod plan;
 mod planner;
 mod profile;
+mod request;
 mod retime;
+mod rounding;
 mod steer;
 mod swing;
 mod tour;
 mod travel;
 mod travel_time;
 
+pub use binding::Binding;
 pub use course::{Course, CourseError, CoursePoint, Pace};
 pub use error::PlanError;
 pub use machine::{AccelerationDemand, Machine};
-pub use plan::{JointMotion, LegEnd, Plan, PlanPoint, Tightest};
-pub use planner::{DarkMove, LitSpeed, PlanRequest, plan};
-pub use profile::{MoveLimits, MovePoint, Peaks, Profile, Ramps, Shape};
-pub use retime::{Binding, JointLimits, PathSample, Retimed, Smooth, SmoothError, retime, retime_smooth};
-pub use steer::{Bounds, SteerError, Steered, steer, steer_no_faster};
+pub use motion::JointMotion;
+pub use move_point::MovePoint;
+pub use plan::{LegEnd, Plan, PlanPoint, Tightest};
+pub use planner::plan;
+pub use profile::limits::{MoveLimits, Peaks};
+pub use profile::{Profile, Ramps, Shape};
+pub use request::{DarkMove, LitSpeed, PlanRequest};
+pub use retime::{JointLimits, PathSample, Retimed, Smooth, SmoothError, retime, retime_smooth};
+pub use steer::bounds::Bounds;
+pub use steer::{SteerError, Steered, steer, steer_no_faster};
 pub use swing::rest_to_rest;
 pub use travel_time::{Aimed, TravelTime};

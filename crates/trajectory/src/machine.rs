@@ -3,8 +3,8 @@ use tracelight_dynamics::{Friction, Lumped, Motor};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::{Point, Vec2};
 
-use crate::plan::JointMotion;
-use crate::retime::Binding;
+use crate::binding::Binding;
+use crate::motion::JointMotion;
 
 /// What the planner believes of head, motors and target.
 #[derive(Clone, Copy, Debug, PartialEq)]

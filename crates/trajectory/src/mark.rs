@@ -4,11 +4,15 @@ use tracelight_aim::AimError;
 use tracelight_rig::{PanTilt, TICK_F64_S};
 use tracelight_stroke::Point;
 
+use crate::error::PlanError;
 use crate::leg::Leg;
-use crate::plan::JointMotion;
-use crate::planner::check_duration;
-use crate::retime::{Along, PathSample, Retimed, chain};
-use crate::{Machine, PlanError, travel};
+use crate::machine::Machine;
+use crate::motion::JointMotion;
+use crate::plan::check_duration;
+use crate::request::{End, MarkRequest};
+use crate::retime::along::Along;
+use crate::retime::{PathSample, Retimed, chain};
+use crate::travel;
 
 /// One tick on a stroke.
 #[derive(Clone, Copy, Debug)]
@@ -21,34 +25,6 @@ pub(crate) struct MarkPoint {
     pub(crate) lit: bool,
     /// Largest share of a motor's torque.
     fraction: f64,
-}
-
-/// How the spot comes to a leg's start, or leaves its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum End {
-    /// It rests there.
-    Rest,
-    /// It is under way: it has run up to the start in the dark, or runs out of the end.
-    Moving,
-}
-
-impl End {
-    pub(crate) const BOTH: [End; 2] = [End::Rest, End::Moving];
-}
-
-/// How a leg is to be run.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MarkRequest {
-    /// Set speed, m/s.
-    pub(crate) speed_m_s: f64,
-    /// Window of the S-curve, s.
-    pub(crate) ramp_s: f64,
-    /// How long the spot runs up to the leg at even speed, s; half a window at least.
-    pub(crate) run_up_s: f64,
-    /// How it starts and ends.
-    pub(crate) ends: [End; 2],
-    /// Number of the stroke, for messages.
-    pub(crate) stroke: usize,
 }
 
 /// A leg in time.

@@ -1,35 +1,12 @@
 use tracelight_rig::{PanTilt, Segment, TICK_F64_S};
 use tracelight_stroke::{Point, Vec2};
 
-use crate::retime::{Along, Binding, hermite};
+use crate::binding::Binding;
+use crate::error::PlanError;
+use crate::motion::JointMotion;
 
-/// Angle, speed and acceleration of one joint, in `f64`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct JointMotion {
-    /// Angle, rad.
-    pub position_rad: f64,
-    /// Speed, rad/s.
-    pub velocity_rad_s: f64,
-    /// Acceleration, rad/s².
-    pub acceleration_rad_s2: f64,
-}
-
-impl JointMotion {
-    /// Standing still.
-    pub fn at_rest(position_rad: f64) -> Self {
-        Self { position_rad, ..Self::default() }
-    }
-
-    /// The quintic through position, speed and acceleration here and there, so many ticks later; coefficients per tickⁱ.
-    pub fn quintic_to(&self, there: &Self, ticks: f64) -> [f64; 6] {
-        let per_tick = |m: &Self| Along {
-            s: m.position_rad,
-            v: m.velocity_rad_s * TICK_F64_S,
-            a: m.acceleration_rad_s2 * TICK_F64_S * TICK_F64_S,
-        };
-        hermite(per_tick(self), per_tick(there), ticks)
-    }
-}
+/// Longest job, s: its ticks are kept in memory, planned and run, at about 350 bytes each.
+const LONGEST_S: f64 = 1800.0;
 
 /// Where everything is to be at one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +51,14 @@ pub struct Tightest {
     pub radius_m: f64,
     /// Speed it permits, m/s.
     pub speed_m_s: f64,
+}
+
+/// Whether a job of that length can be kept in memory.
+///
+/// # Errors
+/// [`PlanError::TooLong`].
+pub(crate) fn check_duration(needed_s: f64) -> Result<(), PlanError> {
+    if needed_s <= LONGEST_S { Ok(()) } else { Err(PlanError::TooLong { needed_s, most_s: LONGEST_S }) }
 }
 
 /// A whole job in time: what is executed is exactly this.

@@ -1,107 +1,22 @@
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::{Drawing, Point};
 
+use crate::binding::Binding;
 use crate::compress::compress;
 use crate::corner::Corners;
-use crate::leg::Leg;
-use crate::mark::{End, Marked};
-use crate::plan::{JointMotion, Plan, PlanPoint, Tightest};
-use crate::retime::{Binding, steady_speed};
-use crate::tour::{NoTour, Run, Tour, TourLeg};
-use crate::{Machine, PlanError, Shape};
+use crate::error::PlanError;
+use crate::machine::Machine;
+use crate::mark::Marked;
+use crate::motion::JointMotion;
+use crate::plan::{Plan, PlanPoint, Tightest, check_duration};
+use crate::request::{End, LitSpeed, PlanRequest};
+use crate::retime::steady_speed;
+use crate::tour::leg::TourLeg;
+use crate::tour::run::Run;
+use crate::tour::{NoTour, Tour};
 
 /// Rest after the last stroke, s: the error at rest is measured over its last 0.2 s.
 pub(crate) const FINAL_REST_S: f64 = 0.4;
-
-/// Longest job, s: its ticks are kept in memory, planned and run, at about 350 bytes each.
-const LONGEST_S: f64 = 1800.0;
-
-/// How lit strokes are run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LitSpeed {
-    /// As fast as the set speed and the motors allow: from rest to rest at corners and stroke ends, or past them at
-    /// speed, whichever is quicker.
-    #[default]
-    Fastest,
-    /// From rest to rest at every corner and stroke end.
-    Stops,
-    /// At one speed throughout: what the tightest curve permits of the set speed. Every corner and stroke end is passed at
-    /// that speed, with dark ways up to it and out of it.
-    Exact,
-}
-
-impl LitSpeed {
-    /// How legs may start and end.
-    pub(crate) const fn ends(self) -> &'static [End] {
-        match self {
-            LitSpeed::Fastest => &End::BOTH,
-            LitSpeed::Stops => &[End::Rest],
-            LitSpeed::Exact => &[End::Moving],
-        }
-    }
-}
-
-/// How a dark move goes from rest to rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum DarkMove {
-    /// Both joints by one profile of that shape, each over its own distance.
-    Shaped(Shape),
-    /// As fast as each joint can, limited in jerk, both arriving together ([`crate::steer`]).
-    Optimal,
-}
-
-/// How a drawing is to be run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlanRequest {
-    /// Speed of the lit spot on the target, m/s; slower where the motors need it.
-    pub speed_m_s: f64,
-    /// Whether that is to be kept.
-    pub lit_speed: LitSpeed,
-    /// The dark moves from rest to rest.
-    pub travel: DarkMove,
-    /// Time over which the acceleration along a stroke builds up, s.
-    pub ramp_s: f64,
-    /// Rest before a stroke that begins at rest is lit, s.
-    pub settle_s: f64,
-    /// Distance from the stroke at which the laser is to be darkened, m.
-    pub tolerance_m: f64,
-    /// How far corners may be rounded off, m: by so much the line may lie inside of them where that is quicker than to stop
-    /// there; at one speed, where they need no slowing down then. Zero keeps all of them sharp, and where a closed stroke
-    /// begins it stays sharp anyway.
-    pub corner_m: f64,
-}
-
-impl PlanRequest {
-    /// Rest before a stroke that does not begin where the last one ends, s: to settle, and for the relay to have let go
-    /// before it is to hold again.
-    pub fn lift_s(&self, machine: &Machine) -> f64 {
-        self.settle_s.max(f64::from(relay_ticks(machine)) * TICK_F64_S)
-    }
-
-    /// The same with time enough for the acceleration to build up within the highest jerk.
-    pub(crate) fn within_jerk(&self, machine: &Machine) -> Self {
-        Self { ramp_s: self.ramp_s.max(machine.least_ramp_s()), ..*self }
-    }
-
-    /// How long the spot runs up to a stroke, s: past the end of the S-curve, and for the relay to have let go before it
-    /// is to hold again.
-    pub(crate) fn run_up_s(&self, machine: &Machine) -> f64 {
-        RUN_UP_S.max(0.5 * self.ramp_s).max(f64::from(relay_ticks(machine)) * TICK_F64_S)
-    }
-
-    /// Time over which the acceleration of dark moves under way builds up, s.
-    pub(crate) fn swing_rise_s(&self) -> f64 {
-        0.5 * self.ramp_s
-    }
-}
-
-/// From one light to the next at least, ticks.
-const fn relay_ticks(machine: &Machine) -> u32 {
-    machine.relay_on_ticks + machine.relay_off_ticks + 1
-}
-
-/// Shortest run-up, s: on the simulated 2006 rig the error at a stroke's start is no smaller after a longer one.
-const RUN_UP_S: f64 = 0.015;
 
 /// Times a drawing, strokes in the order given, starting from rest straight ahead.
 ///
@@ -181,7 +96,7 @@ fn at_one_speed(
     // breaks are judged when the speed is known
     let unhurried = PlanRequest { lit_speed: LitSpeed::Fastest, corner_m: 0.0, ..*request };
     for (stroke, drawn) in drawing.strokes.iter().enumerate() {
-        for leg in Leg::split(&drawn.path, &Corners::of(machine, &unhurried)) {
+        for leg in Corners::of(machine, &unhurried).legs(&drawn.path) {
             let aim = |source| PlanError::Aim { stroke: stroke + 1, source };
             let mut samples = leg.places(machine, request.speed_m_s).map_err(aim)?;
             samples.iter_mut().for_each(|sample| sample.cap = request.speed_m_s);
@@ -220,10 +135,6 @@ fn check_length(drawing: &Drawing, request: &PlanRequest) -> Result<(), PlanErro
         return Err(PlanError::Empty);
     }
     check_duration(drawing.length(1e-4) / request.speed_m_s)
-}
-
-pub(crate) fn check_duration(needed_s: f64) -> Result<(), PlanError> {
-    if needed_s <= LONGEST_S { Ok(()) } else { Err(PlanError::TooLong { needed_s, most_s: LONGEST_S }) }
 }
 
 /// A plan in the making.

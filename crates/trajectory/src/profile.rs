@@ -1,8 +1,11 @@
 //! Moves of one coordinate from rest to rest: closed forms.
 
+pub(crate) mod limits;
 mod ramped;
 mod smooth;
 
+use crate::move_point::MovePoint;
+use limits::{MoveLimits, Peaks};
 use ramped::Phases;
 pub use ramped::Ramps;
 use smooth::Unit;
@@ -21,43 +24,6 @@ pub enum Shape {
     Sigmoid,
     /// The polynomial of fifth degree with speed and acceleration zero at both ends.
     Quintic,
-}
-
-/// What a move may do, in whatever unit its distance has.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MoveLimits {
-    /// Highest speed, unit/s.
-    pub speed: f64,
-    /// Highest acceleration, unit/s².
-    pub acceleration: f64,
-    /// Highest deceleration, unit/s²; shapes that are symmetric keep to the smaller of the two.
-    pub deceleration: f64,
-}
-
-/// Place, speed and acceleration at one time of a move.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MovePoint {
-    /// From the start, unit.
-    pub position: f64,
-    /// unit/s.
-    pub velocity: f64,
-    /// unit/s².
-    pub acceleration: f64,
-}
-
-/// The most of a move.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peaks {
-    /// Highest speed, unit/s.
-    pub speed: f64,
-    /// Highest acceleration, unit/s²; what a jump of the speed would be is left out.
-    pub acceleration: f64,
-    /// Highest deceleration, unit/s².
-    pub deceleration: f64,
-    /// Highest jerk, unit/s³; none where the acceleration jumps.
-    pub jerk: Option<f64>,
-    /// By how much the speed jumps at both ends, unit/s.
-    pub speed_jump: f64,
 }
 
 /// A move of a positive distance, fully determined.

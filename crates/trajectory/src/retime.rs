@@ -5,6 +5,7 @@
 //! the limits leave a range of u ([`limits`]), and two passes over the places find the fastest way through
 //! ([`passes`]). A [`law`] makes it a motion over time.
 
+pub(crate) mod along;
 mod law;
 mod limits;
 mod passes;
@@ -13,13 +14,17 @@ mod smooth;
 use tracelight_aim::JointPath;
 use tracelight_rig::{Joint, PanTilt};
 
-pub(crate) use law::{Along, TimeLaw, hermite};
+use along::Along;
+pub(crate) use law::TimeLaw;
 pub(crate) use limits::AlongLimits;
-pub use limits::{Binding, PathSample};
+pub use limits::PathSample;
 use passes::Speeds;
-pub use smooth::{JointLimits, Smooth, SmoothError, retime_smooth};
+pub use smooth::limits::JointLimits;
+pub use smooth::{Smooth, SmoothError, retime_smooth};
 
-use crate::{JointMotion, Machine, PlanError};
+use crate::error::PlanError;
+use crate::machine::Machine;
+use crate::motion::JointMotion;
 
 /// The fastest motion along a path.
 #[derive(Clone, Debug)]

@@ -10,24 +10,15 @@
 //! trajectory generation with arbitrary target states", RSS 2021, who enumerate profiles and solve their polynomials;
 //! the bounds and the mixture are our own.
 
+pub(crate) mod bounds;
 mod furthest;
 mod phases;
 
+use bounds::Bounds;
 use furthest::{Furthest, Shape};
 use phases::{Phases, brake};
 
-use crate::MovePoint;
-
-/// Limits of one joint's move.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// Least and highest velocity, below and above zero, unit/s.
-    pub velocity: [f64; 2],
-    /// Least and highest acceleration, below and above zero, unit/s².
-    pub acceleration: [f64; 2],
-    /// Highest jerk, unit/s³.
-    pub jerk: f64,
-}
+use crate::move_point::MovePoint;
 
 /// Why there is no such move. Joints are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -337,24 +328,6 @@ impl Problem {
             lower: phases(&self.lower, &choice.lower).mirrored(),
             share: choice.share,
         }
-    }
-}
-
-impl MovePoint {
-    fn mirrored(&self) -> Self {
-        Self { position: -self.position, velocity: -self.velocity, acceleration: -self.acceleration }
-    }
-}
-
-impl Bounds {
-    /// The same in both directions.
-    pub const fn symmetric(velocity: f64, acceleration: f64, jerk: f64) -> Self {
-        Self { velocity: [-velocity, velocity], acceleration: [-acceleration, acceleration], jerk }
-    }
-
-    fn mirrored(&self) -> Self {
-        let swap = |[least, most]: [f64; 2]| [-most, -least];
-        Self { velocity: swap(self.velocity), acceleration: swap(self.acceleration), jerk: self.jerk }
     }
 }
 

@@ -1,9 +1,12 @@
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 
+use crate::machine::Machine;
 use crate::mark::BORROW;
-use crate::plan::JointMotion;
+use crate::motion::JointMotion;
+use crate::move_point::MovePoint;
+use crate::steer::bounds::Bounds;
+use crate::steer::{Steered, steer, steer_no_faster};
 use crate::travel::{ROUNDS, kept_share, least_shrink};
-use crate::{Bounds, Machine, MovePoint, Steered, steer, steer_no_faster};
 
 /// A dark move between joints that are under way, or from or to rest: the fastest there is within each joint's own
 /// limits of acceleration and jerk.

@@ -5,45 +5,23 @@
 //! what it consists of is then timed tick by tick within the motors' torque. Where that takes longer than estimated the
 //! choice is made again, until all of the fastest sequence is exact. What was timed is what is laid.
 
+pub(crate) mod leg;
 mod link;
+pub(crate) mod run;
 
-use tracelight_rig::{PanTilt, TICK_F64_S};
+use tracelight_rig::PanTilt;
 use tracelight_stroke::Drawing;
 
 use crate::corner::Corners;
-use crate::leg::Leg;
-use crate::mark::{End, MarkRequest, Marked, mark};
-use crate::plan::JointMotion;
-use crate::planner::check_duration;
-use crate::retime::{Along, PathSample, Retimed, chain};
-use crate::travel::touches;
-use crate::{Machine, PlanError, PlanRequest};
-use link::{Excess, Link};
-
-/// How a leg is run: by how it starts and how it ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Run {
-    pub(crate) start: End,
-    pub(crate) end: End,
-}
-
-impl Run {
-    const COUNT: usize = 4;
-    const ALL: [Run; Run::COUNT] = [
-        Run { start: End::Rest, end: End::Rest },
-        Run { start: End::Rest, end: End::Moving },
-        Run { start: End::Moving, end: End::Rest },
-        Run { start: End::Moving, end: End::Moving },
-    ];
-
-    const fn index(self) -> usize {
-        2 * self.start as usize + self.end as usize
-    }
-
-    const fn ends(self) -> [End; 2] {
-        [self.start, self.end]
-    }
-}
+use crate::error::PlanError;
+use crate::machine::Machine;
+use crate::mark::Marked;
+use crate::motion::JointMotion;
+use crate::plan::check_duration;
+use crate::request::{End, PlanRequest};
+use leg::TourLeg;
+use link::{Excess, Link, Sides};
+use run::Run;
 
 /// The tour from `home`, at rest, through all strokes to rest.
 pub(crate) struct Tour<'a> {
@@ -56,22 +34,6 @@ pub(crate) struct Tour<'a> {
     excess: Excess,
     /// Why something that was looked at cannot be.
     refused: Option<PlanError>,
-}
-
-/// A leg of the tour.
-pub(crate) struct TourLeg {
-    pub(crate) leg: Leg,
-    /// Number of its stroke, from 0.
-    pub(crate) stroke: usize,
-    /// It begins where the one before ends: resting there the light may stay on.
-    pub(crate) joined: bool,
-    /// Seconds it takes, run in each way; infinite where it cannot be.
-    drawn_s: [f64; Run::COUNT],
-    /// The same tick by tick, of those that were looked at.
-    marked: [Option<Marked>; Run::COUNT],
-    /// About where the joints are at first and last, by how it starts and ends; `None` where that is out of reach.
-    starts: [Option<PanTilt<JointMotion>>; 2],
-    ends: [Option<PanTilt<JointMotion>>; 2],
 }
 
 /// Why there is no tour.
@@ -92,19 +54,15 @@ impl<'a> Tour<'a> {
         let mut legs: Vec<TourLeg> = Vec::new();
         let mut at = home.map(JointMotion::at_rest);
         for (stroke, drawn) in drawing.strokes.iter().enumerate() {
-            for leg in Leg::split(&drawn.path, &Corners::of(machine, request)) {
+            for leg in Corners::of(machine, request).legs(&drawn.path) {
                 let leg = TourLeg::new(leg, stroke, machine, request, at, legs.is_empty())?;
                 at = leg.ends[End::Rest as usize].unwrap_or(at);
                 legs.push(leg);
             }
         }
-        let links = Vec::with_capacity(legs.len() + 1);
-        let mut tour = Self { machine, request, home, links, legs, excess: Excess::default(), refused: None };
-        for i in 0..=tour.legs.len() {
-            let link = tour.estimated(i);
-            tour.links.push(link);
-        }
-        Ok(tour)
+        let sides = |i: usize| Sides::of(i, &legs, home, machine, request);
+        let links = (0..=legs.len()).map(|i| sides(i).estimated()).collect();
+        Ok(Self { machine, request, home, links, legs, excess: Excess::default(), refused: None })
     }
 
     /// How to run every leg for the shortest tour, to a two-thousandth. All of it has been timed tick by tick.
@@ -121,7 +79,7 @@ impl<'a> Tour<'a> {
                 return Ok(runs);
             }
             if std::mem::take(&mut is_first) {
-                self.correct();
+                self.links.iter_mut().for_each(|link| link.correct(&self.excess));
             }
         }
     }
@@ -145,7 +103,7 @@ impl<'a> Tour<'a> {
 
     /// A leg tick by tick, if it was chosen.
     pub(crate) fn marked(&self, leg: usize, run: Run) -> Option<&Marked> {
-        self.legs[leg].marked[run.index()].as_ref()
+        self.legs[leg].marked(run)
     }
 
     /// Times legs and links of a choice tick by tick; whether all of them are what they were taken for.
@@ -165,7 +123,12 @@ impl<'a> Tour<'a> {
         let befores = std::iter::once(None).chain(runs.iter().copied().map(Some));
         let afters = runs.iter().copied().map(Some).chain(std::iter::once(None));
         for (i, (before, after)) in befores.zip(afters).enumerate() {
-            is_exact &= self.look_closer(i, before, after);
+            let sides = Sides::of(i, &self.legs, self.home, self.machine, self.request);
+            let looked = self.links[i].look_closer(&sides, [before, after], &mut self.excess);
+            is_exact &= looked.unwrap_or_else(|error| {
+                self.refused = Some(error);
+                false
+            });
         }
         Ok(is_exact)
     }
@@ -214,89 +177,4 @@ impl<'a> Tour<'a> {
 fn shortest(time: impl Fn(usize) -> f64) -> (usize, f64) {
     let all = (0..Run::COUNT).map(|run| (run, time(run)));
     all.fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best })
-}
-
-impl TourLeg {
-    fn new(
-        leg: Leg,
-        stroke: usize,
-        machine: &Machine,
-        request: &PlanRequest,
-        before: PanTilt<JointMotion>,
-        is_first: bool,
-    ) -> Result<Self, PlanError> {
-        let samples = leg
-            .places(machine, request.speed_m_s)
-            .map_err(|source| PlanError::Aim { stroke: stroke + 1, source })?;
-        let mut drawn_s = [f64::INFINITY; Run::COUNT];
-        let mut passing = [0.0; 2];
-        let allowed = request.lit_speed.ends();
-        for run in Run::ALL.into_iter().filter(|run| run.ends().iter().all(|end| allowed.contains(end))) {
-            (drawn_s[run.index()], passing) = timed(machine, &samples, request, run.ends())?;
-        }
-        let at = |s_m: f64, v: f64| {
-            let (_, joints) = leg.joints_at(machine, s_m).ok()?;
-            Some(chain(&joints, &Along { s: s_m, v, a: 0.0 }))
-        };
-        let length = leg.length_m();
-        // a relay that lets go more slowly than it takes hold cannot make light as short as it likes
-        let least_ticks = f64::from(machine.relay_off_ticks) - f64::from(machine.relay_on_ticks) + 1.0;
-        let passes = length >= least_ticks * TICK_F64_S * passing[0].max(passing[1]);
-        let passed = |s_m: f64, v: f64| if passes { at(s_m, v) } else { None };
-        let starts = [at(0.0, 0.0), passed(-passing[0] * request.run_up_s(machine), passing[0])];
-        let ends = [at(length, 0.0), passed(length + 0.5 * passing[1] * request.ramp_s, passing[1])];
-        let joined = !is_first
-            && starts[0]
-                .is_some_and(|start| touches(before.map(|j| j.position_rad), start.map(|j| j.position_rad)));
-        Ok(Self { leg, stroke, joined, drawn_s, marked: Default::default(), starts, ends })
-    }
-
-    /// Runs it tick by tick; whether that takes what it was taken for.
-    fn look_closer(&mut self, machine: &Machine, request: &PlanRequest, run: Run) -> Result<bool, PlanError> {
-        let (marked, drawn_s) = (&mut self.marked[run.index()], &mut self.drawn_s[run.index()]);
-        if marked.is_some() {
-            return Ok(true);
-        }
-        let request = MarkRequest {
-            speed_m_s: request.speed_m_s,
-            ramp_s: request.ramp_s,
-            run_up_s: request.run_up_s(machine),
-            ends: run.ends(),
-            stroke: self.stroke + 1,
-        };
-        let known_s = *drawn_s;
-        *drawn_s = match mark(machine, &self.leg, &request) {
-            // the leg itself is in reach: its run-up or run-out is not
-            Err(PlanError::Aim { .. }) if run.ends() != [End::Rest; 2] => f64::INFINITY,
-            Err(error) => {
-                *drawn_s = f64::INFINITY;
-                return Err(error);
-            }
-            Ok(ticks) => marked.insert(ticks).points.len() as f64 * TICK_F64_S,
-        };
-        Ok(is_near(*drawn_s, known_s))
-    }
-}
-
-/// Whether an estimate was as good as a tick allows.
-fn is_near(exact_s: f64, estimate_s: f64) -> bool {
-    (exact_s - estimate_s).abs() <= TICK_F64_S
-}
-
-/// How long a leg takes with its run-up and run-out, and how fast it is passed at both ends.
-fn timed(
-    machine: &Machine,
-    samples: &[PathSample],
-    request: &PlanRequest,
-    ends: [End; 2],
-) -> Result<(f64, [f64; 2]), PlanError> {
-    let speeds = ends.map(|end| if end == End::Moving { request.speed_m_s } else { 0.0 });
-    let motion = Retimed::new(machine, samples.to_vec(), speeds)?;
-    let run_up_s =
-        if ends[0] == End::Moving { request.run_up_s(machine) - 0.5 * request.ramp_s } else { 0.0 };
-    let speeds = motion.speeds();
-    let passing = [speeds.first(), speeds.last()].map(|v| v.copied().unwrap_or(0.0));
-    // to whole ticks, up
-    let time_s = motion.duration_s() + request.ramp_s + run_up_s + 0.5 * TICK_F64_S;
-    Ok((time_s, passing))
 }

@@ -1,8 +1,10 @@
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 
-use crate::plan::JointMotion;
-use crate::profile::{MoveLimits, Profile};
-use crate::{Machine, PlanError, Shape};
+use crate::error::PlanError;
+use crate::machine::Machine;
+use crate::motion::JointMotion;
+use crate::profile::limits::MoveLimits;
+use crate::profile::{Profile, Shape};
 
 /// A dark move that takes longer means that a motor can hardly hold its joint, s.
 const LONGEST_S: f64 = 60.0;

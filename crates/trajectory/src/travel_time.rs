@@ -2,9 +2,12 @@ use tracelight_aim::SpotMotion;
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::{Point, StrokeEnd, Travel, Vec2};
 
+use crate::machine::Machine;
+use crate::profile::limits::MoveLimits;
+use crate::profile::{Profile, Ramps, Shape};
+use crate::request::{DarkMove, LitSpeed, PlanRequest};
 use crate::swing::LEAST_RAD_S2;
 use crate::travel::touches;
-use crate::{DarkMove, LitSpeed, Machine, MoveLimits, PlanRequest, Profile, Ramps, Shape};
 
 /// How long dark moves take, s, for ordering strokes: what the slower joint needs at full torque with gravity and Coulomb
 /// friction, between ends that are rested at or passed at speed, whichever is quickest of what the request allows.

@@ -8,14 +8,29 @@
 use tracelight_rig::PanTilt;
 
 use super::{Course, CourseError, DENSE, Pace};
-use crate::profile::{MoveLimits, Profile, Shape};
+use crate::error::PlanError;
+use crate::profile::limits::MoveLimits;
+use crate::profile::{Profile, Shape};
 use crate::retime::{PathSample, most_pace};
-use crate::{PlanError, travel};
+use crate::travel;
 
 /// Times at which a motion is looked at while its phases are searched for.
 const COARSE: usize = 200;
 
-pub(super) fn fit(course: &Course<'_>, shape: Shape, limits: &MoveLimits) -> Result<Profile, CourseError> {
+impl Course<'_> {
+    /// By the fastest profile of a shape within the limits that the motors can follow: every joint's torque stays within
+    /// the share a plan may use, its speed and acceleration within what the rig allows. Where a trapezoid or S-curve
+    /// has to give way, how its time is shared out between speeding up, cruising and braking is chosen for the shortest
+    /// time.
+    ///
+    /// # Errors
+    /// [`PlanError::TooWeak`] where a motor cannot even hold or start its joint.
+    pub fn shaped_for_motors(&self, shape: Shape, limits: &MoveLimits) -> Result<Pace, CourseError> {
+        fit(self, shape, limits).map(Pace::shaped)
+    }
+}
+
+fn fit(course: &Course<'_>, shape: Shape, limits: &MoveLimits) -> Result<Profile, CourseError> {
     let asked = Profile::new(shape, course.length_m(), limits);
     let dense = DENSE.max(course.samples.len());
     if fastest_pace(course, &asked, dense)? >= 1.0 {

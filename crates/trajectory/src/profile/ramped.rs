@@ -1,6 +1,7 @@
 //! Seven phases of constant jerk: trapezoids and S-curves of velocity.
 
-use super::{MoveLimits, MovePoint, Peaks};
+use super::limits::{MoveLimits, Peaks};
+use crate::move_point::MovePoint;
 
 /// How long the acceleration builds up and fades, as shares of the acceleration phase (`pa`) and of the
 /// deceleration phase (`pb`); all zero is a trapezoid of velocity.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::MovePoint;
+use crate::move_point::MovePoint;
 
 /// A move over one unit of way in one of time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,3 +1,4 @@
+use super::along::{Along, hermite};
 use super::passes::Speeds;
 
 /// Place, speed and acceleration along a path over time, rounded into an S: the mean of the fastest motion over a
@@ -17,14 +18,6 @@ struct Cell {
     k: [f64; 6],
     /// ∫ s dt up to its start.
     integral: f64,
-}
-
-/// Motion along the path: m, m/s, m/s².
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Along {
-    pub(crate) s: f64,
-    pub(crate) v: f64,
-    pub(crate) a: f64,
 }
 
 impl TimeLaw {
@@ -102,23 +95,6 @@ impl Cell {
         let sum = (0..6).rev().fold(0.0, |sum, i| sum * t + self.k[i] / (i + 1) as f64);
         sum * t
     }
-}
-
-/// The quintic with the given place, speed and acceleration at both ends of `time`.
-pub(crate) fn hermite(from: Along, to: Along, time: f64) -> [f64; 6] {
-    let n = time;
-    // what the first three coefficients leave over at the far end
-    let ds = to.s - from.s - from.v * n - 0.5 * from.a * n * n;
-    let dv = (to.v - from.v - from.a * n) * n;
-    let da = (to.a - from.a) * n * n;
-    [
-        from.s,
-        from.v,
-        0.5 * from.a,
-        (10.0 * ds - 4.0 * dv + 0.5 * da) / n.powi(3),
-        (-15.0 * ds + 7.0 * dv - da) / n.powi(4),
-        (6.0 * ds - 3.0 * dv + 0.5 * da) / n.powi(5),
-    ]
 }
 
 /// A cell entered and left at rest cannot be crossed. Only a cap of nothing, or a path of one single cell, makes one; it

@@ -1,7 +1,8 @@
 use tracelight_rig::{Joint, PanTilt};
 
 use super::limits::{AlongLimits, OF_JOINTS, PathSample, Place, Rows};
-use crate::{Machine, PlanError};
+use crate::error::PlanError;
+use crate::machine::Machine;
 
 /// A stretch between two neighbouring places. The acceleration goes in a straight line over s from one end to the
 /// other, and keeps to the limits at both.

@@ -2,25 +2,15 @@
 
 mod band;
 mod cells;
+pub(crate) mod limits;
 
 use tracelight_rig::{Joint, PanTilt};
 
-use super::{PathSample, hermite};
-use crate::MovePoint;
-use crate::retime::law::Along;
+use super::limits::PathSample;
+use crate::move_point::MovePoint;
 use band::Band;
 use cells::{Cells, Path, ROWS, dot, row};
-
-/// Limits of a joint's motion, the same both ways.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointLimits {
-    /// Highest speed, rad/s.
-    pub speed_rad_s: f64,
-    /// Highest acceleration, rad/s².
-    pub acceleration_rad_s2: f64,
-    /// Highest jerk, rad/s³.
-    pub jerk_rad_s3: f64,
-}
+use limits::JointLimits;
 
 /// Why a path has no such motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -1,5 +1,6 @@
+use super::bounds::Bounds;
 use super::phases::Phases;
-use super::{Bounds, MovePoint};
+use crate::move_point::MovePoint;
 
 /// Of all motions that turn one speed and acceleration into another in a given time, those that get furthest.
 ///

@@ -1,4 +1,5 @@
-use super::{Bounds, MovePoint};
+use super::bounds::Bounds;
+use crate::move_point::MovePoint;
 
 /// Stretches of constant jerk, one after the other.
 #[derive(Clone, Copy, Debug, Default)]

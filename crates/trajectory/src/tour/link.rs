@@ -2,12 +2,14 @@
 
 use tracelight_rig::{PanTilt, TICK_F64_S};
 
-use super::{Run, Tour, is_near};
-use crate::mark::End;
-use crate::plan::JointMotion;
+use super::leg::{TourLeg, is_near};
+use super::run::Run;
+use crate::error::PlanError;
+use crate::machine::Machine;
+use crate::motion::JointMotion;
+use crate::request::{DarkMove, End, PlanRequest};
 use crate::swing::Swing;
 use crate::travel::{travel, travel_estimate_s};
-use crate::{DarkMove, Machine, PlanError, PlanRequest};
 
 /// Both joints at every tick of a dark move, its start left out.
 type Way = Vec<PanTilt<JointMotion>>;
@@ -31,6 +33,130 @@ impl Link {
         let [from, to] = [from, to].map(index);
         let found = self.ways.iter().find(|way| (way.0, way.1) == (from, to));
         found.map_or(&[], |(_, _, way)| way)
+    }
+
+    /// Makes its estimates that were not looked at what links turn out to be on the whole.
+    pub(super) fn correct(&mut self, excess: &Excess) {
+        let later_s = |from: Run, to: Run| LAID_UPON * excess.mean_s([from.end, to.start]);
+        for (from, to) in Run::ALL.into_iter().flat_map(|from| Run::ALL.map(|to| (from, to))) {
+            let known_s = &mut self.seconds[from.index()][to.index()];
+            // where the light stays on nothing was estimated
+            if *known_s > 0.0 && !is_known(&self.ways, from.index(), to.index()) {
+                *known_s += later_s(from, to);
+            }
+        }
+    }
+
+    /// Times the way between legs that are timed, run like this; whether it takes what it was taken for.
+    ///
+    /// # Errors
+    /// Those of [`travel`]; it then takes for ever.
+    pub(super) fn look_closer(
+        &mut self,
+        sides: &Sides<'_>,
+        runs: [Option<Run>; 2],
+        excess: &mut Excess,
+    ) -> Result<bool, PlanError> {
+        let [from, to] = runs.map(index);
+        let known_s = self.seconds[from][to];
+        if is_known(&self.ways, from, to) || known_s.is_infinite() {
+            return Ok(true);
+        }
+        let Some(motions) = sides.motions(runs) else { return Ok(false) };
+        let ends = [runs[0].map_or(End::Rest, |run| run.end), runs[1].map_or(End::Rest, |run| run.start)];
+        let stays_lit = sides.stays_lit(ends);
+        let way = match stays_lit {
+            true => Ok(Some(Way::new())),
+            false => dark_way(sides.machine, sides.request, motions, ends),
+        };
+        self.seconds[from][to] = f64::INFINITY;
+        let Some(way) = way? else { return Ok(false) };
+        let lift_s = if stays_lit { 0.0 } else { sides.lift_s(ends[1]) };
+        let time_s = way.len() as f64 * TICK_F64_S + lift_s;
+        if !stays_lit {
+            excess.count(ends, time_s - known_s);
+        }
+        self.ways.push((from, to, way));
+        self.seconds[from][to] = time_s;
+        Ok(is_near(time_s, known_s))
+    }
+}
+
+/// What a link leads between: from a leg, or from the head at rest at home, to another, or to where it comes to rest.
+pub(super) struct Sides<'a> {
+    machine: &'a Machine,
+    request: &'a PlanRequest,
+    home: PanTilt<f64>,
+    before: Option<&'a TourLeg>,
+    after: Option<&'a TourLeg>,
+}
+
+impl<'a> Sides<'a> {
+    /// Of the link before leg `i`, or after the last of them.
+    pub(super) fn of(
+        i: usize,
+        legs: &'a [TourLeg],
+        home: PanTilt<f64>,
+        machine: &'a Machine,
+        request: &'a PlanRequest,
+    ) -> Self {
+        let before = i.checked_sub(1).and_then(|last| legs.get(last));
+        Self { machine, request, home, before, after: legs.get(i) }
+    }
+
+    /// The link with what it about takes.
+    pub(super) fn estimated(&self) -> Link {
+        let by_ends = End::BOTH.map(|before| End::BOTH.map(|after| self.estimate_s([before, after])));
+        let seconds = Run::ALL.map(|from| Run::ALL.map(|to| by_ends[from.end as usize][to.start as usize]));
+        Link { seconds, ways: Vec::new() }
+    }
+
+    fn estimate_s(&self, ends: [End; 2]) -> f64 {
+        let (machine, request) = (self.machine, self.request);
+        let ([before, after], allowed) = (ends, request.lit_speed.ends());
+        let from = match self.before {
+            None => (before == End::Rest).then(|| self.home.map(JointMotion::at_rest)),
+            Some(leg) => leg.ends[before as usize].filter(|_| allowed.contains(&before)),
+        };
+        let Some(from) = from else { return f64::INFINITY };
+        let to = match self.after {
+            None => (after == End::Rest).then(|| stopped(machine, &from, request.ramp_s)),
+            Some(leg) => leg.starts[after as usize].filter(|_| allowed.contains(&after)),
+        };
+        let Some(to) = to else { return f64::INFINITY };
+        let swing_s =
+            || Swing::new(machine, from, to, request.swing_rise_s()).estimate_s().unwrap_or(f64::INFINITY);
+        match (ends, request.travel) {
+            _ if self.stays_lit(ends) => 0.0,
+            ([End::Rest, End::Rest], DarkMove::Shaped(shape)) => {
+                let [from, to] = [from, to].map(|end| end.map(|j| j.position_rad));
+                travel_estimate_s(machine, shape, from, to) + self.lift_s(after)
+            }
+            _ => swing_s() + self.lift_s(after),
+        }
+    }
+
+    /// Whether nothing is moved: the light may stay on to the next leg, or the head rests after the last.
+    fn stays_lit(&self, ends: [End; 2]) -> bool {
+        ends == [End::Rest; 2] && self.after.is_none_or(|leg| leg.joined)
+    }
+
+    /// The rest before a leg that begins at rest, s.
+    fn lift_s(&self, after: End) -> f64 {
+        if after == End::Rest && self.after.is_some() { self.request.lift_s(self.machine) } else { 0.0 }
+    }
+
+    /// How the joints move at both, if the legs there are timed.
+    fn motions(&self, [before, after]: [Option<Run>; 2]) -> Option<[PanTilt<JointMotion>; 2]> {
+        let left = match before {
+            None => self.home.map(JointMotion::at_rest),
+            Some(run) => self.before?.marked(run)?.points.last()?.joints,
+        };
+        let come = match after {
+            None => stopped(self.machine, &left, self.request.ramp_s),
+            Some(run) => self.after?.marked(run)?.start,
+        };
+        Some([left, come])
     }
 }
 
@@ -64,104 +190,6 @@ const LAID_UPON: f64 = 0.7;
 /// Before the first leg and after the last the head is at rest.
 fn index(run: Option<Run>) -> usize {
     run.map_or(0, Run::index)
-}
-
-impl Tour<'_> {
-    /// What a link about takes.
-    pub(super) fn estimated(&self, i: usize) -> Link {
-        let by_ends = End::BOTH.map(|before| End::BOTH.map(|after| self.estimate_s(i, [before, after])));
-        let seconds = Run::ALL.map(|from| Run::ALL.map(|to| by_ends[from.end as usize][to.start as usize]));
-        Link { seconds, ways: Vec::new() }
-    }
-
-    /// Makes estimates of links that were not looked at what they turn out to be on the whole.
-    pub(super) fn correct(&mut self) {
-        let later_s = |from: Run, to: Run| LAID_UPON * self.excess.mean_s([from.end, to.start]);
-        for link in &mut self.links {
-            for (from, to) in Run::ALL.into_iter().flat_map(|from| Run::ALL.map(|to| (from, to))) {
-                let known_s = &mut link.seconds[from.index()][to.index()];
-                // where the light stays on nothing was estimated
-                if *known_s > 0.0 && !is_known(&link.ways, from.index(), to.index()) {
-                    *known_s += later_s(from, to);
-                }
-            }
-        }
-    }
-
-    fn estimate_s(&self, i: usize, [before, after]: [End; 2]) -> f64 {
-        let (machine, request) = (self.machine, self.request);
-        let last = i.checked_sub(1).and_then(|last| self.legs.get(last));
-        let leg = self.legs.get(i);
-        let allowed = request.lit_speed.ends();
-        let from = match last {
-            None => (before == End::Rest).then(|| self.home.map(JointMotion::at_rest)),
-            Some(last) => last.ends[before as usize].filter(|_| allowed.contains(&before)),
-        };
-        let Some(from) = from else { return f64::INFINITY };
-        let to = match leg {
-            None => (after == End::Rest).then(|| stopped(machine, &from, request.ramp_s)),
-            Some(leg) => leg.starts[after as usize].filter(|_| allowed.contains(&after)),
-        };
-        let Some(to) = to else { return f64::INFINITY };
-        let swing_s =
-            || Swing::new(machine, from, to, request.swing_rise_s()).estimate_s().unwrap_or(f64::INFINITY);
-        let lift_s = if after == End::Rest && leg.is_some() { request.lift_s(machine) } else { 0.0 };
-        match ([before, after], request.travel) {
-            ([End::Rest, End::Rest], _) if leg.is_none_or(|leg| leg.joined) => 0.0,
-            ([End::Rest, End::Rest], DarkMove::Shaped(shape)) => {
-                let [from, to] = [from, to].map(|end| end.map(|j| j.position_rad));
-                travel_estimate_s(machine, shape, from, to) + lift_s
-            }
-            _ => swing_s() + lift_s,
-        }
-    }
-
-    /// Times a link between legs that are timed; whether it takes what it was taken for.
-    pub(super) fn look_closer(&mut self, i: usize, before: Option<Run>, after: Option<Run>) -> bool {
-        let [from, to] = [before, after].map(index);
-        let known_s = self.links[i].seconds[from][to];
-        if is_known(&self.links[i].ways, from, to) || known_s.is_infinite() {
-            return true;
-        }
-        let Some(motions) = self.around(i, before, after) else { return false };
-        let ends = [before.map_or(End::Rest, |run| run.end), after.map_or(End::Rest, |run| run.start)];
-        let stays_lit = ends == [End::Rest; 2] && self.legs.get(i).is_none_or(|leg| leg.joined);
-        let way = match stays_lit {
-            true => Some(Way::new()),
-            false => dark_way(self.machine, self.request, motions, ends).unwrap_or_else(|error| {
-                self.refused = Some(error);
-                None
-            }),
-        };
-        let settles = ends[1] == End::Rest && after.is_some() && !stays_lit;
-        let lift_s = if settles { self.request.lift_s(self.machine) } else { 0.0 };
-        let link = &mut self.links[i];
-        link.seconds[from][to] = match way {
-            None => f64::INFINITY,
-            Some(way) => {
-                let time_s = way.len() as f64 * TICK_F64_S + lift_s;
-                if !stays_lit {
-                    self.excess.count(ends, time_s - known_s);
-                }
-                link.ways.push((from, to, way));
-                time_s
-            }
-        };
-        is_near(link.seconds[from][to], known_s)
-    }
-
-    /// How the joints move before a link and after it, if the legs there are timed.
-    fn around(&self, i: usize, before: Option<Run>, after: Option<Run>) -> Option<[PanTilt<JointMotion>; 2]> {
-        let left = match before {
-            None => self.home.map(JointMotion::at_rest),
-            Some(run) => self.marked(i.checked_sub(1)?, run)?.points.last()?.joints,
-        };
-        let come = match after {
-            None => stopped(self.machine, &left, self.request.ramp_s),
-            Some(run) => self.marked(i, run)?.start,
-        };
-        Some([left, come])
-    }
 }
 
 /// The dark move from one motion to another; none where the motors or the joints' range allow none.

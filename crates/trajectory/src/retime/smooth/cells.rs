@@ -1,8 +1,10 @@
 use tracelight_rig::{Joint, PanTilt};
 
 use super::band::Local;
-use super::{Along, JointLimits, PathSample, hermite};
+use super::limits::JointLimits;
+use crate::retime::along::{Along, hermite};
 use crate::retime::law::GAUSS;
+use crate::retime::limits::PathSample;
 
 /// Coefficients of a cell's four numbers: x and its slope at the start, x and its slope at the end.
 pub(super) type Row4 = [f64; 4];
