@@ -1,3 +1,5 @@
+//! What the controller is told of one axis.
+
 use tracelight_rig::JointLimits;
 
 use crate::creep::Creep;

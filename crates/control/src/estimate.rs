@@ -1,3 +1,5 @@
+//! What is believed of a joint, and what acts on it.
+
 use tracelight_rig::Measurement;
 
 /// What a joint has shown to be different from its model.

@@ -1,3 +1,5 @@
+//! What a joint has beyond its equations: break-away friction, misplaced edges, ripple, cables.
+
 use crate::estimate::Learned;
 
 /// What a joint has beyond its equations, as far as it was identified; zeros where it was not.

@@ -1,3 +1,5 @@
+//! How a rig's controller is set, and the law of each joint that makes.
+
 use tracelight_control::{Feedback, Feedforward, LawConfig, LeadLag, Pid, StateFeedback};
 use tracelight_rig::{Joint, PanTilt};
 

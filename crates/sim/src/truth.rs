@@ -1,3 +1,5 @@
+//! Where a simulated head truly is, which no encoder tells.
+
 use tracelight_plant::Plant;
 use tracelight_rig::{Head, PanTilt};
 

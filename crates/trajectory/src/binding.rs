@@ -1,3 +1,5 @@
+//! Which limit a motion is at.
+
 use tracelight_rig::Joint;
 
 /// What a limit is of.

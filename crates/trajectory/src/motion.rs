@@ -1,3 +1,5 @@
+//! How a joint moves at one time.
+
 use tracelight_rig::TICK_F64_S;
 
 use crate::retime::along::{Along, hermite};

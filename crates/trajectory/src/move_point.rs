@@ -1,3 +1,5 @@
+//! A move of one coordinate at one time.
+
 /// Place, speed and acceleration at one time of a move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MovePoint {

@@ -1,3 +1,5 @@
+//! What a law is given in a tick.
+
 use tracelight_rig::Setpoint;
 
 use crate::estimate::Estimate;

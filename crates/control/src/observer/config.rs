@@ -1,3 +1,5 @@
+//! Which observer a joint has.
+
 use super::tuning::KalmanTuning;
 
 /// Longest interval of [`ObserverConfig::Differences`] and [`ObserverConfig::EdgeTimes`], ticks.

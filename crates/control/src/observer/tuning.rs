@@ -1,3 +1,5 @@
+//! How far the Kalman filter trusts model and encoder.
+
 /// How far the filter trusts model and encoder. Shares are of [`AxisConfig::unknown_nm`](crate::AxisConfig::unknown_nm).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KalmanTuning {

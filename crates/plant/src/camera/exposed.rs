@@ -1,3 +1,5 @@
+//! What falls on a sensor while an image is taken.
+
 use tracelight_stroke::Point;
 
 /// Where the beam meets the wall at a time.

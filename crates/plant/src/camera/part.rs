@@ -1,3 +1,5 @@
+//! A rectangle of an image's pixels.
+
 /// A rectangle of an image's pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {

@@ -1,3 +1,5 @@
+//! The straight lines in a row of points.
+
 use kurbo::Point;
 
 /// A straight line in a row of points, with the indices of the points it replaces.

@@ -1,3 +1,5 @@
+//! How a fit treats its points.
+
 /// How [`fit`](crate::fit) treats its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {

@@ -1,3 +1,5 @@
+//! Motion of one coordinate, and the quintic between two such.
+
 /// Motion along the path: m, m/s, m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Along {

@@ -1,3 +1,5 @@
+//! What one joint's move keeps to.
+
 /// Limits of one joint's move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {

@@ -1,3 +1,5 @@
+//! How a leg is run: from rest or under way, to rest or under way.
+
 use crate::request::End;
 
 /// How a leg is run: by how it starts and how it ends.

@@ -1,3 +1,5 @@
+//! What each joint keeps to along a smooth path.
+
 /// Limits of a joint's motion, the same both ways.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointLimits {
