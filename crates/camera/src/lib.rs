@@ -9,4 +9,4 @@ mod source;
 mod stream;
 
 pub use devices::devices;
-pub use source::Source;
+pub use source::{Opened, Source};

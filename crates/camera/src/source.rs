@@ -24,8 +24,19 @@ pub enum Source<'a> {
     Files(&'a str),
 }
 
+/// A source that was opened.
+pub enum Opened<'a> {
+    /// It sends images.
+    Camera(Box<dyn Looks>),
+    /// It is simulated: what is on its wall.
+    Simulated(Option<&'a str>),
+}
+
 impl<'a> Source<'a> {
     /// What `--camera` says.
+    ///
+    /// # Errors
+    /// `usage`: what is no camera and no file, with what may be given.
     pub fn of(text: &'a str) -> Result<Self, Failure> {
         let wrong = |what: &str| {
             let known = "sim:PICTURE (simulated), /dev/video0 (one that is plugged in), http://… (one on the net), or an image, a folder of them, or a film of them (Motion JPEG)";
@@ -55,14 +66,18 @@ impl<'a> Source<'a> {
     }
 
     /// Opens it, unless it is simulated; one that is plugged in sends images of so many columns and rows, if that is asked for.
-    pub fn open(self, size_px: Option<[usize; 2]>) -> Result<Option<Box<dyn Looks>>, Failure> {
-        Ok(match self {
-            Self::Simulated(_) => None,
-            Self::Device(path) => Some(plugged(path, size_px)?),
-            Self::Net(url) => Some(Box::new(Stream::open(url)?)),
-            Self::Film(path) => Some(Box::new(Film::open(path)?)),
-            Self::Files(path) => Some(Box::new(Files::open(path)?)),
-        })
+    ///
+    /// # Errors
+    /// What cannot be opened, or sends nothing that is understood.
+    pub fn open(self, size_px: Option<[usize; 2]>) -> Result<Opened<'a>, Failure> {
+        let camera: Box<dyn Looks> = match self {
+            Self::Simulated(picture) => return Ok(Opened::Simulated(picture)),
+            Self::Device(path) => plugged(path, size_px)?,
+            Self::Net(url) => Box::new(Stream::open(url)?),
+            Self::Film(path) => Box::new(Film::open(path)?),
+            Self::Files(path) => Box::new(Files::open(path)?),
+        };
+        Ok(Opened::Camera(camera))
     }
 }
 

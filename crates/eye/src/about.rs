@@ -52,6 +52,7 @@ pub enum Stamps {
 
 impl Rhythm {
     /// Images a second, broken and lost ones, too.
+    #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
         let [first, last] = self.between_s?;
         let sent = f64::from(self.images + self.lost + self.broken) - 1.0;

@@ -93,6 +93,7 @@ impl Page {
 }
 
 /// A page as SVG, in true millimetres.
+#[must_use]
 pub fn page_svg(board: &Board, page: u16, paper: Paper) -> String {
     let page = Page::of(board, page, paper);
     let Paper { width_mm, height_mm } = paper;
@@ -116,6 +117,7 @@ pub fn page_svg(board: &Board, page: u16, paper: Paper) -> String {
 
 /// A page as grey levels, pixels of `pixel_m` a side: how many there are in a row, row by row from the upper left, and where the middle of
 /// its markers is, px. Text is left out.
+#[must_use]
 pub fn page_raster(board: &Board, page: u16, paper: Paper, pixel_m: f64) -> (usize, Vec<u8>, Point) {
     /// Light that paper and ink throw back, shares.
     const PAPER: f64 = 0.9;
@@ -149,6 +151,7 @@ pub fn page_raster(board: &Board, page: u16, paper: Paper, pixel_m: f64) -> (usi
 }
 
 /// How far paper reaches from the middle of a board's markers, m: left and right, below and above; on the largest of several papers.
+#[must_use]
 pub fn printed_m(board: &Board, papers: &[Paper]) -> ([f64; 2], [f64; 2]) {
     let largest = |of: fn(&Paper) -> f64| papers.iter().map(of).fold(0.0, f64::max);
     let half_mm = 0.5 * largest(|paper| paper.width_mm);
@@ -166,6 +169,7 @@ fn rows_mm(board: &Board) -> f64 {
 const POINTS: f64 = 72.0 / 25.4;
 
 /// Pages as one PDF.
+#[must_use]
 pub fn page_pdf(board: &Board, pages: &[u16], paper: Paper) -> Vec<u8> {
     let mut pdf = Pdf::new();
     let mut last = 0;

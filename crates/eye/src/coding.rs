@@ -40,6 +40,7 @@ impl Coding {
     ];
 
     /// The coding of that name, if it is understood.
+    #[must_use]
     pub fn named(name: [u8; 4]) -> Option<Self> {
         Self::ALL.iter().find(|known| known.0 == name).map(|known| known.1)
     }
@@ -73,6 +74,7 @@ const MOST_PIXELS: usize = 100_000_000;
 impl Layout {
     /// A layout of columns and rows, so many bytes from row to row; `None` where pixels that share a colour would have no partner, or an
     /// image would have no pixel, or too many.
+    #[must_use]
     pub fn new(coding: Coding, size_px: [usize; 2], stride: usize, full_range: bool) -> Option<Self> {
         let shared = matches!(coding, Coding::Yuyv | Coding::Uyvy | Coding::Nv12 | Coding::Yu12);
         let pixels = size_px[0].checked_mul(size_px[1]).filter(|n| (1..=MOST_PIXELS).contains(n))?;
@@ -82,11 +84,13 @@ impl Layout {
     }
 
     /// How pixels are coded.
+    #[must_use]
     pub const fn coding(&self) -> Coding {
         self.coding
     }
 
     /// Whether bytes may be a whole image: a camera whose cable is bad sends half ones.
+    #[must_use]
     pub fn is_whole(&self, bytes: &[u8]) -> bool {
         match self.coding {
             Coding::Jpeg => begins(bytes) && jpeg_is_whole(bytes),
@@ -95,6 +99,7 @@ impl Layout {
     }
 
     /// Whether it may be a JPEG file but for its end, which some cameras never send.
+    #[must_use]
     pub fn is_endless(&self, bytes: &[u8]) -> bool {
         self.coding == Coding::Jpeg && begins(bytes) && !jpeg_is_whole(bytes)
     }
@@ -110,6 +115,7 @@ impl Layout {
     }
 
     /// An image's pixels; `None` of JPEG, which a decoder reads, and where bytes are missing.
+    #[must_use]
     pub fn pixels(&self, bytes: &[u8]) -> Option<Raster> {
         if self.coding == Coding::Jpeg || !self.is_whole(bytes) {
             return None;
@@ -168,6 +174,7 @@ fn begins(bytes: &[u8]) -> bool {
 
 /// What a camera sends as a JPEG file that every decoder reads. Many leave out the tables by which it was compressed, and mean the usual ones (ITU-T T.81,
 /// annex K.3), as the JPEG of AVI files does: that it is such a one, a segment tells the decoder. Some leave out the end.
+#[must_use]
 pub fn as_file(bytes: &[u8]) -> Cow<'_, [u8]> {
     const AS_IN_AVI: [u8; 18] = [0xff, 0xe0, 0, 16, b'A', b'V', b'I', b'1', 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
     let tables: &[u8] = if has_tables(bytes) { &[] } else { &AS_IN_AVI };

@@ -29,6 +29,7 @@ pub struct TrimmedFeeder<'a> {
 
 impl<'a> TrimmedFeeder<'a> {
     /// `dark` shuts every segment's gate: a dry run.
+    #[must_use]
     pub const fn new(segments: &'a [Segment], dark: bool) -> Self {
         let none = Correction { offset_rad: PanTilt::new(0.0, 0.0), scale: PanTilt::new(0.0, 0.0) };
         Self { segments, dark, finished: false, trimmed: none, taken_off: Vec::new() }
@@ -58,6 +59,7 @@ impl<'a> TrimmedFeeder<'a> {
     }
 
     /// Where the joints were asked to be before it was trimmed, rad.
+    #[must_use]
     pub fn untrimmed(&self, plan_tick: u32, setpoint: &PanTilt<Setpoint>) -> PanTilt<f64> {
         let number = self.segments.partition_point(|segment| segment.end_tick() <= plan_tick);
         let last = self.taken_off.len().saturating_sub(1);

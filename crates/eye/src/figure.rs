@@ -39,6 +39,9 @@ pub struct FigureRequest<'a> {
 }
 
 /// Takes images until one shows markers and a figure.
+///
+/// # Errors
+/// The camera sends nothing, or no image shows markers or a figure; or [`Failure::interrupted`].
 pub fn see_figure(
     eye: &mut dyn Looks,
     request: &FigureRequest<'_>,
@@ -78,6 +81,7 @@ pub fn see_figure(
 const COLUMNS: usize = 32;
 
 /// How many pixels there are of each brightness, as a line of blocks; their heights go by the root, or paper would be all one sees.
+#[must_use]
 pub fn histogram(grey: &Grey) -> String {
     const BLOCKS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let mut counts = [0_u32; COLUMNS];
@@ -124,6 +128,7 @@ fn figure(wall: SeenWall, request: &FigureRequest<'_>, task: Task<'_>) -> Result
 }
 
 /// Length on the wall of a pixel in the middle of the image, m.
+#[must_use]
 pub fn metres_per_pixel(camera: &Camera) -> Option<f64> {
     let [width, height] = camera.lens.size_px.map(|n| n as f64);
     Some(1.0 / camera.scale(camera.target(Point::new(width / 2.0, height / 2.0))?)?)

@@ -123,6 +123,7 @@ pub struct RecoveryFigures {
 
 impl FollowFigures {
     /// What was seen, a line each.
+    #[must_use]
     pub fn words(&self) -> Vec<String> {
         let seen = match &self.off_mm {
             Some(SeenOff { rms, p99, max }) => format!(
@@ -151,6 +152,7 @@ pub struct HomedFigures {
 
 impl HomedFigures {
     /// How it was homed, in words.
+    #[must_use]
     pub fn words(&self) -> String {
         let dots = match self.sought {
             1 => "the first dot was in sight".to_owned(),

@@ -60,6 +60,7 @@ pub enum Blind {
 
 impl Blind {
     /// As a sentence's end.
+    #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
             Self::NoImages => "the camera sends no images any more: is it still plugged in?",
@@ -101,6 +102,7 @@ const LATE_FADES: f64 = 1e-2;
 const WATCHED_TICKS: u32 = 1000;
 
 /// How far the joint that is further off is from its setpoint, rad.
+#[must_use]
 pub fn strayed_rad(telemetry: &Telemetry) -> f64 {
     let off = PanTilt::from_fn(|j| telemetry.setpoint[j].position_rad - telemetry.position_rad[j]);
     f64::from(off.pan.abs().max(off.tilt.abs()))
@@ -144,6 +146,7 @@ pub struct Follower {
 
 impl Follower {
     /// Begins with a rig at rest in the dark. What is seen is painted there.
+    #[must_use]
     pub fn new(followed: &Followed, painted: Option<Painted>) -> Self {
         let mut watch = SpotWatch::new(followed.camera, followed.exposure_s);
         (watch.timing, watch.painted) = (followed.timing, painted);
@@ -197,21 +200,25 @@ impl Follower {
     }
 
     /// What joints are beyond their encoders.
+    #[must_use]
     pub fn correction(&self) -> Correction {
         self.trim.correction()
     }
 
     /// Longest from an image to the next of late, s.
+    #[must_use]
     pub const fn period_s(&self) -> f64 {
         self.period_s
     }
 
     /// Why it sees nothing, if so.
+    #[must_use]
     pub const fn blind(&self) -> Option<Blind> {
         self.blind
     }
 
     /// Where the plan's clock stood when the spot was last seen where it should be.
+    #[must_use]
     pub const fn good_plan_tick(&self) -> Option<u32> {
         self.good_plan_tick
     }

@@ -9,6 +9,7 @@ use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, He
 use tracelight_pipeline::{Driving, refused};
 use tracelight_rig::Command;
 use tracelight_rigfile::Timing;
+use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::{Simulated, Tick, run_segments};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_task::{Failure, Task};
@@ -16,6 +17,7 @@ use tracelight_trajectory::{Plan, PlanRequest, plan};
 
 use crate::power::check_homed;
 use crate::spots::{History, Sight, Sighting, SpotWatch};
+use crate::wall::SeenWall;
 use crate::{Eye, Looks};
 
 /// Radius of a dot, m: three and a half counts of the report's encoders at 3 ft.
@@ -64,6 +66,7 @@ pub struct DotsRequest {
 
 impl DotsRequest {
     /// Of a head that somebody put up by eye, and a camera whose stamps nobody knows.
+    #[must_use]
     pub const fn first(driving: &Driving) -> Self {
         Self {
             belief: AlignmentBelief::by_eye(driving.machine.geometry, driving.pose),
@@ -75,11 +78,13 @@ impl DotsRequest {
     }
 
     /// Of a known head that was homed by one dot: to tell where zero is.
+    #[must_use]
     pub const fn few(driving: &Driving, timing: Timing, exposure_s: f64) -> Self {
         Self { across: ACROSS_AGAIN, timing, exposure_s, ..Self::first(driving) }
     }
 
     /// Of a head that stood and was built so until it was bumped or an encoder slipped, by a few degrees; the camera's stamps are known.
+    #[must_use]
     pub const fn again(driving: &Driving, timing: Timing, exposure_s: f64) -> Self {
         let first = AlignmentBelief::by_eye(driving.machine.geometry, driving.pose);
         // where the beam points is also where the tilt encoder's zero is
@@ -138,6 +143,7 @@ pub struct SeenDots {
 
 impl SeenDots {
     /// Where they were seen, and where the encoders had the joints then.
+    #[must_use]
     pub fn spots(&self) -> Vec<SeenSpot> {
         spots(&self.sightings, &self.history, &self.watch.timing)
     }
@@ -145,6 +151,9 @@ impl SeenDots {
 
 /// Has the head draw dots, watches them, and finds the head; whoever keeps its ticks is given each of them. The rig rests at zero in the dark; afterwards it rests
 /// in the dark at the last dot.
+///
+/// # Errors
+/// The head does not draw, its spot is not seen, or what is seen fits no head; or [`Failure::interrupted`].
 pub fn find_head<R: Simulated + Eye>(
     rig: &mut R,
     camera: &Camera,
@@ -166,6 +175,9 @@ pub fn find_head<R: Simulated + Eye>(
 }
 
 /// Has the head draw dots, and watches them. The rig is as for [`find_head`].
+///
+/// # Errors
+/// The head does not draw, or its spot is not seen often enough; or [`Failure::interrupted`].
 pub fn see_dots<R: Simulated + Eye>(
     rig: &mut R,
     camera: &Camera,
@@ -270,9 +282,28 @@ fn not_found(error: &AlignError, watch: &SpotWatch, dots: usize) -> Failure {
     Failure::failed("head-not-found", format!("of {dots} dots: {error}{why}"))
 }
 
+/// Has a rig stand before a wall that was seen: as it did when its head was found, or else in front of the middle of the image.
+///
+/// # Errors
+/// `head-file`, where the wall is not the one before which the head was found.
+pub fn stand_before(
+    driving: &mut Driving,
+    wall: &SeenWall,
+    known: Option<&KnownHead>,
+) -> Result<(), Failure> {
+    match known {
+        Some(known) => {
+            known.check_wall(wall.frame, &wall.pages)?;
+            driving.believe(known.geometry, known.pose);
+        }
+        None => driving.stand(in_front(&wall.camera.camera, driving.pose.distance_m)),
+    }
+    Ok(())
+}
+
 /// Where a head probably stands that was put up in front of the middle of what the camera shows: square-on, as far away as told, and as
 /// upright as the camera, however the page hangs whose frame is the wall's.
-pub fn in_front(camera: &Camera, distance_m: f64) -> HeadPose {
+fn in_front(camera: &Camera, distance_m: f64) -> HeadPose {
     let [width, height] = camera.lens.size_px.map(|n| n as f64);
     let on_wall = |down: f64| camera.target(Point::new(width / 2.0, height * down));
     let (Some(middle), Some(above)) = (on_wall(0.5), on_wall(0.45)) else {

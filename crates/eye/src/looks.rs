@@ -10,6 +10,9 @@ use crate::shot::Shot;
 /// Something that takes an image when told.
 pub trait Looks {
     /// The next image, each row of it exposed so long, s, if the camera can be told.
+    ///
+    /// # Errors
+    /// The camera is gone, sends nothing in time, or has no further image.
     fn take(&mut self, exposure_s: f64) -> Result<Shot, Failure>;
 
     /// Longest that a row can be exposed, s; `None` of a camera that exposes as it likes.

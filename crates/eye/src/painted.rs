@@ -26,6 +26,7 @@ pub struct Painted {
 
 impl Painted {
     /// Nothing on a wall yet, as a camera shows it.
+    #[must_use]
     pub fn new(wall: &Raster, camera: Camera) -> Self {
         let (width, height) = (wall.width() as usize, wall.height() as usize);
         Self { width, height, wall: wall.rgb().to_vec(), paint: vec![0.0; width * height], camera }
@@ -59,6 +60,7 @@ impl Painted {
     }
 
     /// As a picture.
+    #[must_use]
     pub fn picture(&self) -> Option<Raster> {
         let of = |(i, &v): (usize, &u8)| {
             let share = f64::from(self.paint[i / 3]);

@@ -77,6 +77,9 @@ const REPORT_PAGES_M: (f64, f64) = (0.19, 0.115);
 
 impl Furnished {
     /// Hangs picture and pages, puts up camera and head: a rig in front of the picture's middle, as far away as is told.
+    ///
+    /// # Errors
+    /// `beyond-sight`: the camera cannot see all that hangs there.
     pub fn new(request: &RoomRequest<'_>, rig: &RigConfig, pose: HeadPose) -> Result<Self, Failure> {
         let mut dice = Dice(oorandom::Rand64::new(u128::from(request.seed)));
         let hung = request.picture.map(|picture| hang(picture, request));
@@ -127,11 +130,13 @@ impl Furnished {
     }
 
     /// The same with the camera.
+    #[must_use]
     pub fn watched(&self, believed: &RigConfig, pose: HeadPose) -> Room {
         Room::new(self.rig(believed, pose, true), self.eye.clone(), self.seed)
     }
 
     /// The same of a rig that was just powered up, its head wherever somebody left it.
+    #[must_use]
     pub fn powered_up(&self, believed: &RigConfig, pose: HeadPose) -> Room {
         Room::new(self.rig(believed, pose, false), self.eye.clone(), self.seed)
     }
@@ -142,6 +147,7 @@ impl Furnished {
     }
 
     /// How far the zero of its homed head truly is from where it was to be, m on the wall: where a known head has it, or where one faces the wall.
+    #[must_use]
     pub fn zero_error_m(&self, is_known: bool) -> PanTilt<f64> {
         let turned = turned_rad(&self.geometry, &self.pose).filter(|_| !is_known).unwrap_or_default();
         let beside_rad = self.beside_rad();
@@ -149,6 +155,7 @@ impl Furnished {
     }
 
     /// Root mean square and most of how far the spot truly is from where a head so believed would put it, over the picture's place, m.
+    #[must_use]
     pub fn true_error_m(&self, geometry: &HeadGeometry, pose: &HeadPose) -> Option<(f64, f64)> {
         const STEPS: usize = 10;
         let beside_rad = self.beside_rad();
@@ -167,6 +174,7 @@ impl Furnished {
 }
 
 /// A rig that was just powered up, its head left anywhere in four fifths of its joints' ranges, and in front of it.
+#[must_use]
 pub fn left(rig: &RigConfig, pose: HeadPose, seed: u64) -> SimulatedRig {
     const MOST_RAD: f64 = 1.0;
     let mut dice = Dice(oorandom::Rand64::new(u128::from(seed) << 64 | 1));

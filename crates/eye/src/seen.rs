@@ -25,6 +25,7 @@ pub struct SeenLight {
 
 impl SeenMark {
     /// How far it is from where it should be, mm.
+    #[must_use]
     pub fn off_mm(&self) -> f64 {
         1e3 * self.seen.distance(self.asked)
     }

@@ -38,6 +38,7 @@ const QUALITY: u8 = 92;
 
 impl Shot {
     /// An image file that was there at a time, s; how long it was exposed nobody knows.
+    #[must_use]
     pub fn encoded(from: &str, bytes: Vec<u8>, stamp_s: f64) -> Self {
         Self { sent: Sent::Encoded { from: from.to_owned(), bytes }, stamp_s, exposure_s: 0.0 }
     }
@@ -49,6 +50,9 @@ impl Shot {
     }
 
     /// Its pixels.
+    ///
+    /// # Errors
+    /// Bytes that are no image, or one that is too large.
     pub fn pixels(&self) -> Result<Raster, Failure> {
         match &self.sent {
             Sent::Simulated(taken) => compressed(taken.image()),
@@ -79,11 +83,13 @@ impl Shot {
     }
 
     /// Whether each row was exposed so long, s, to a hundredth of it.
+    #[must_use]
     pub fn is_exposed(&self, exposure_s: f64) -> bool {
         (self.exposure_s - exposure_s).abs() <= 0.01 * exposure_s
     }
 
     /// Whether it shows to the byte what another does: no two images of a camera that looks do, for their noise.
+    #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         match (&self.sent, &other.sent) {
             (Sent::Simulated(one), Sent::Simulated(other)) => one.shows_same(other),
@@ -95,6 +101,9 @@ impl Shot {
 
     /// Its red, where a red laser is, in a window and some way around it; and where in the image that begins. Of a simulated camera nothing
     /// else is computed: as JPEG has it, blocks of 16 pixels by themselves.
+    ///
+    /// # Errors
+    /// As of [`Self::pixels`].
     pub fn red_near(&self, window: &SpotWindow) -> Result<(Grey, Vec2), Failure> {
         /// Side of the squares that JPEG compresses by themselves, colours that stand for four pixels included.
         const BLOCK: usize = 16;
@@ -116,6 +125,9 @@ impl Shot {
     }
 
     /// Its red, where a red laser is.
+    ///
+    /// # Errors
+    /// As of [`Self::pixels`].
     pub fn red(&self) -> Result<Grey, Failure> {
         red(&self.pixels()?)
     }
@@ -137,6 +149,9 @@ fn compressed(image: Image) -> Result<Raster, Failure> {
 }
 
 /// Brightness of each pixel.
+///
+/// # Errors
+/// An image that is too large, or has no pixels.
 pub fn grey(raster: &Raster) -> Result<Grey, Failure> {
     let luma =
         |p: &[u8]| ((77 * u32::from(p[0]) + 150 * u32::from(p[1]) + 29 * u32::from(p[2]) + 128) >> 8) as u8;

@@ -37,6 +37,7 @@ const SLACK_S: f64 = 0.005;
 
 impl History {
     /// Of a laser with that relay.
+    #[must_use]
     pub const fn new(relay: &RelayConfig) -> Self {
         Self { switches_s: relay.on_s.max(relay.off_s) + SLACK_S, ticks: Vec::new(), first: 0 }
     }
@@ -57,6 +58,7 @@ impl History {
     }
 
     /// Whether there was light from one time to another.
+    #[must_use]
     pub fn light(&self, from_s: f64, until_s: f64) -> Light {
         let Some(ticks) = self.between(from_s - self.switches_s, until_s) else { return Light::Mixed };
         let lit = ticks.iter().filter(|(_, gate)| *gate).count();
@@ -98,6 +100,7 @@ impl History {
 
 impl History {
     /// Whether there was light while rows of an image were exposed, from one down it to another; surely, as far as times are known.
+    #[must_use]
     pub fn light_in(&self, timing: &Timing, shot: &Shot, [from, until]: [f64; 2]) -> Light {
         let (from_s, _) = timing.row_s(shot.stamp_s, shot.exposure_s, from);
         let (_, until_s) = timing.row_s(shot.stamp_s, shot.exposure_s, until);
@@ -129,11 +132,13 @@ pub struct Sighting {
 
 impl Sighting {
     /// When it was, as it is believed: from and until, s.
+    #[must_use]
     pub fn time_s(&self, timing: &Timing) -> (f64, f64) {
         timing.row_s(self.when.stamp_s, self.when.exposure_s, self.down)
     }
 
     /// The same with where the encoders had the joints then; `None` if they were not watched then.
+    #[must_use]
     pub fn spot(&self, history: &History, timing: &Timing) -> Option<SeenSpot> {
         let (from_s, until_s) = timing.row_s(self.when.stamp_s, self.when.exposure_s, self.down);
         let (angle_rad, rate_rad_s) = history.mean(from_s, until_s)?;
@@ -185,6 +190,7 @@ const FAR_PX: usize = 200;
 
 impl SpotWatch {
     /// For a camera, with a first guess of a short exposure, s.
+    #[must_use]
     pub const fn new(camera: Camera, exposure_s: f64) -> Self {
         Self {
             camera,

@@ -41,6 +41,7 @@ impl SeenWall {
     }
 
     /// By what it is known.
+    #[must_use]
     pub fn words(&self) -> String {
         match self.rms_px {
             Some(px) => format!("{} markers, {px:.3} px off, rms", self.markers),
@@ -62,6 +63,9 @@ const BRIGHTEST: f64 = 0.99;
 const MOST_SHOTS: usize = 10;
 
 /// Finds the camera from the markers that an image shows; where it shows none, the camera stands where it stood.
+///
+/// # Errors
+/// `camera-image`: an image of another size than the lens that is known. `camera-not-found`: markers in sight that fit no camera, or none.
 pub fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<SeenWall, Failure> {
     let tags = markers(&grey(&pixels)?);
     let markers = tags.len();
@@ -147,6 +151,7 @@ fn held_against(
 }
 
 /// By how much places of the wall moved in the image from one camera to another, root of the mean square, px.
+#[must_use]
 pub fn moved_px(from: &Camera, to: &Camera) -> Option<f64> {
     const PLACES: usize = 5;
     let [width, height] = from.lens.size_px.map(|n| n as f64);
@@ -177,6 +182,9 @@ fn seen(tag: &Tag) -> SeenTag {
 }
 
 /// An image that is neither too dark nor too bright, or as nearly so as the camera can; the next, of a camera that exposes as it likes.
+///
+/// # Errors
+/// The camera sends nothing; or [`Failure::interrupted`].
 pub fn well_exposed(eye: &mut dyn Looks, stop: &Stop) -> Result<Raster, Failure> {
     let Some(longest_s) = eye.longest() else { return readable(eye, 0.0, stop).map(|taken| taken.0) };
     let mut exposure_s = 0.5 * longest_s;
@@ -264,6 +272,7 @@ fn brightest(pixels: &Raster) -> u8 {
 }
 
 /// What does not look as it should, in words.
+#[must_use]
 pub fn doubts(survey: &Survey) -> Vec<String> {
     let page =
         |page: usize| survey.pages.get(page).map_or_else(String::new, |page| PageName::of(page).to_string());

@@ -5,7 +5,7 @@ use tracelight_eye::Looks;
 use tracelight_eye::figure::{FigureRequest, SeenFigure, metres_per_pixel, see_figure};
 use tracelight_eye::figures::{EyeFigures, HeadFigures, HomedFigures};
 use tracelight_eye::follow::Followed;
-use tracelight_eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, in_front};
+use tracelight_eye::head::{DotsRequest, FoundHead, SPOT_EXPOSURE_S, find_head, stand_before};
 use tracelight_eye::homing::home_head;
 use tracelight_eye::power::check_homed;
 use tracelight_eye::room::{Furnished, RoomRequest};
@@ -35,32 +35,24 @@ pub fn prepare_wall(request: &Request<'_>, wall: Wall<'_>, task: Task<'_>) -> Re
         return Err(Failure::usage("usage", message));
     }
     task.stage("wall", 1);
-    let Stage { mut simulated, mut camera, hung } = Stage::of(scene, request, &driving)?;
+    let mut stage = Stage::of(scene, request, &driving)?;
     let wanted = FigureRequest {
         known: known_camera.as_ref(),
         tracing,
         choice: &placing.choice,
         most_refused: retakes,
     };
-    let looks: Option<&mut dyn Looks> = match (&mut simulated, &mut camera) {
-        (Some((rig, _)), _) => Some(rig),
-        (None, camera) => camera.as_mut().map(|camera| &mut **camera as &mut dyn Looks),
-    };
-    let looks = looks.ok_or_else(|| Failure::failed("internal", "nothing that looks"))?;
-    let SeenFigure { wall, sketch, placed, retaken, vision_ms } = see_figure(looks, &wanted, task)?;
+    let SeenFigure { wall, sketch, placed, retaken, vision_ms } = see_figure(stage.looks(), &wanted, task)?;
     wall.remarks.iter().for_each(|remark| task.say(&format!("note: {remark}")));
     task.check()?;
     let camera = wall.camera.camera;
-    match &known {
-        Some(known) => {
-            known.check_wall(wall.frame, &wall.pages)?;
-            driving.believe(known.geometry, known.pose);
+    stand_before(&mut driving, &wall, known.as_ref())?;
+    let head = match &mut stage {
+        Stage::Room(staged) => {
+            let Staged { rig, room, .. } = staged.as_mut();
+            head_of(home, (rig, room), &camera, &mut driving, known, task)?
         }
-        None => driving.stand(in_front(&camera, driving.pose.distance_m)),
-    }
-    let head = match &mut simulated {
-        Some(scene) => head_of(home, scene, &camera, &mut driving, known, task)?,
-        None => {
+        Stage::Camera(_) => {
             if known.is_none() {
                 task.say(&format!(
                     "note: the simulated head is not where the camera is: it is taken to stand {:.3} m in front of the middle of the image, square-on",
@@ -82,7 +74,7 @@ pub fn prepare_wall(request: &Request<'_>, wall: Wall<'_>, task: Task<'_>) -> Re
     };
     let followed = head.followed(camera, &driving);
     let known = wall.known(&today);
-    let room = simulated.map(|(_, room)| room);
+    let (room, hung) = stage.left();
     let truth = truth(request, hung, room.as_ref(), task);
     let seen = Seen {
         room,
@@ -98,18 +90,26 @@ pub fn prepare_wall(request: &Request<'_>, wall: Wall<'_>, task: Task<'_>) -> Re
     planned((sketch, vision_ms), placed, driving, (*how, Some(seen)), task)
 }
 
-/// What images come from: a simulated rig in its room, or a camera.
-struct Stage<'a> {
-    simulated: Option<(Room, Furnished)>,
-    camera: Option<&'a mut dyn Looks>,
-    /// The picture on the room's wall, and its name.
-    hung: Option<(&'a str, Pixels)>,
+/// What images come from.
+enum Stage<'a> {
+    Camera(&'a mut dyn Looks),
+    Room(Box<Staged<'a>>),
 }
+
+/// A simulated rig in its room.
+struct Staged<'a> {
+    rig: Room,
+    room: Furnished,
+    hung: Option<Hung<'a>>,
+}
+
+/// The picture on a room's wall, under its name.
+type Hung<'a> = (&'a str, Pixels);
 
 impl<'a> Stage<'a> {
     fn of(scene: Scene<'a>, request: &Request<'_>, driving: &Driving) -> Result<Self, Failure> {
         let (picture, eye, pages) = match scene {
-            Scene::Camera(camera) => return Ok(Self { simulated: None, camera: Some(camera), hung: None }),
+            Scene::Camera(camera) => return Ok(Self::Camera(camera)),
             Scene::Room { picture, eye, pages } => (picture, eye, pages),
         };
         let hung = picture.as_ref().map(|(_, pixels)| &pixels.colour);
@@ -118,7 +118,22 @@ impl<'a> Stage<'a> {
         let room = Furnished::new(&asked, &driving.rig, driving.pose)?;
         let put_up = if request.run.powered_up { Furnished::powered_up } else { Furnished::watched };
         let rig = put_up(&room, &driving.rig, driving.pose);
-        Ok(Self { simulated: Some((rig, room)), camera: None, hung: picture })
+        Ok(Self::Room(Box::new(Staged { rig, room, hung: picture })))
+    }
+
+    fn looks(&mut self) -> &mut dyn Looks {
+        match self {
+            Self::Camera(camera) => *camera,
+            Self::Room(staged) => &mut staged.rig,
+        }
+    }
+
+    /// What a room leaves: itself, and what hangs on its wall.
+    fn left(self) -> (Option<Furnished>, Option<Hung<'a>>) {
+        match self {
+            Self::Camera(_) => (None, None),
+            Self::Room(staged) => (Some(staged.room), staged.hung),
+        }
     }
 }
 
@@ -156,7 +171,7 @@ impl HeadSeen {
 /// The head of a simulated room: homed if that is asked for, and found from dots unless it was before; from then on it is believed.
 fn head_of(
     home: bool,
-    (rig, room): &mut (Room, Furnished),
+    (rig, room): (&mut Room, &mut Furnished),
     camera: &Camera,
     driving: &mut Driving,
     known: Option<KnownHead>,
@@ -210,7 +225,7 @@ fn found_head(
 /// The figure of a simulated room as its picture's file has it, traced as asked; `None` where there is none, or it can not be told.
 fn truth(
     request: &Request<'_>,
-    hung: Option<(&str, Pixels)>,
+    hung: Option<Hung<'_>>,
     room: Option<&Furnished>,
     task: Task<'_>,
 ) -> Option<Drawing> {

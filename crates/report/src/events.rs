@@ -86,6 +86,7 @@ fn trouble(telemetry: &Telemetry) -> Option<Event> {
 }
 
 /// All events of a run in time order; an event's length runs to the tick before the light was allowed again.
+#[must_use]
 pub fn events(run: &Run) -> Vec<Event> {
     let mut watch = Watch::default();
     let mut found = Vec::new();

@@ -54,6 +54,7 @@ const fn limit_colour(limit: Option<Binding>) -> &'static str {
 }
 
 /// An SVG of the plan, `set_m_s` the speed it was asked for.
+#[must_use]
 pub fn preview(plan: &Plan, by: ColourBy, set_m_s: f64) -> String {
     let frame = Frame::around(plan);
     let inner = frame.size.0.max(NARROWEST);

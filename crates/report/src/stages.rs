@@ -17,6 +17,9 @@ const GAP: f64 = 40.0;
 const TITLE: f64 = 26.0;
 
 /// The figure.
+///
+/// # Errors
+/// A figure that cannot be drawn, which is a mistake of the program.
 pub fn figure(name: &str, grey: &Grey, stages: &Stages) -> Result<String, Failure> {
     let evened: Vec<u8> = stages.darkness.iter().map(|level| 255 - level).collect();
     let ink: Vec<u8> = stages.ink.iter().map(|&ink| if ink { 0 } else { 255 }).collect();

@@ -170,6 +170,7 @@ impl Summary {
     }
 
     /// The figures as JSON text, indented for people.
+    #[must_use]
     pub fn json(&self) -> String {
         // numbers, texts and options cannot fail to become JSON
         serde_json::to_string_pretty(self).unwrap_or_default()
@@ -216,6 +217,7 @@ impl StrokeFigures {
 
 impl PlanFigures {
     /// Of a plan.
+    #[must_use]
     pub fn of(plan: &Plan) -> Self {
         Self {
             duration_s: round(plan.duration_s()),

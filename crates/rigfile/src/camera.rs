@@ -259,11 +259,13 @@ impl KnownCamera {
 
 impl Stood {
     /// The wall's frame from that of a page, if that hung there.
+    #[must_use]
     pub fn wall_from(&self, page: PageName) -> Option<Affine> {
         self.pages.iter().find(|(name, _)| *name == page).map(|(_, wall_from_page)| *wall_from_page)
     }
 
     /// The page whose frame is the wall's.
+    #[must_use]
     pub fn frame(&self) -> Option<PageName> {
         self.pages.first().map(|(name, _)| *name)
     }

@@ -95,6 +95,7 @@ pub struct KnownHead {
 
 impl KnownHead {
     /// How its camera's stamps related to the rig's ticks, and how long rows were exposed, s.
+    #[must_use]
     pub const fn images(&self) -> (Timing, f64) {
         (self.timing, self.exposure_s)
     }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use tracelight_eye::Looks;
+use tracelight_camera::Opened;
 use tracelight_files as files;
 use tracelight_job::{Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
 use tracelight_report::{Finished, LogMeta, Picture, Setting, Summary, Target, Timing};
@@ -12,6 +12,7 @@ use tracelight_sim::{Tracking, score};
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::bar::Bar;
+use crate::cli::eyes::SimulatedEyeName;
 use crate::cli::request::TraceArgs;
 use crate::named;
 use crate::results::{self, RunLog};
@@ -33,7 +34,7 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     args.check_camera()?;
     let prepared = prepared(args, task)?;
     let dir = args.out.clone().unwrap_or_else(|| default_dir(args));
-    std::fs::create_dir_all(&dir).map_err(|e| cannot_write(&dir, &e))?;
+    results::make_folder(&dir)?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
     let meta = LogMeta { picture_path: args.name(), settings: &settings, seed: args.seed };
     let mut log = RunLog::open(&dir.join("run.mcap"), &meta)?;
@@ -65,9 +66,9 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
         return prepare(&request, named::picture(args.name())?, task);
     }
     let head = args.head.as_deref().map(|path| named::head(path, &request.driving.rig)).transpose()?;
-    let mut camera = args.eye.open()?;
+    let mut opened = args.eye.open()?;
     let wall = Wall {
-        scene: scene(args, &mut camera)?,
+        scene: scene(args, &mut opened)?,
         camera: args.eye.known()?,
         head,
         home: args.home,
@@ -80,14 +81,13 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
 }
 
 /// Where images of the wall come from.
-fn scene<'a>(args: &'a TraceArgs, camera: &'a mut Option<Box<dyn Looks>>) -> Result<Scene<'a>, Failure> {
-    let source = args.eye.source()?;
-    let tracelight_camera::Source::Simulated(picture) = source else {
-        let camera = camera.as_mut().ok_or_else(|| Failure::failed("internal", "nothing that looks"))?;
-        return Ok(Scene::Camera(&mut **camera));
+fn scene<'a>(args: &TraceArgs, opened: &'a mut Opened<'_>) -> Result<Scene<'a>, Failure> {
+    let picture = match opened {
+        Opened::Camera(camera) => return Ok(Scene::Camera(&mut **camera)),
+        Opened::Simulated(picture) => *picture,
     };
     let pages = args.eye.has_pages()?;
-    if args.eye.sim_camera == crate::cli::eyes::SimulatedEyeName::Report && pages {
+    if args.eye.sim_camera == SimulatedEyeName::Report && pages {
         let message = format!(
             "the report's camera does not see picture and pages at once: calibrate it first (tracelight calibrate markers --camera sim \
              --sim-camera report --seed {} -o camera.toml), then give --calibration camera.toml",
@@ -109,13 +109,6 @@ fn default_dir(args: &TraceArgs) -> PathBuf {
     Path::new("out").join(format!("{}{seen}", stem.to_string_lossy()))
 }
 
-fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::failed(
-        "cannot-write",
-        format!("cannot write {}: {error}; choose another with --out", path.display()),
-    )
-}
-
 fn write(
     args: &TraceArgs,
     prepared: &Prepared,
@@ -125,14 +118,8 @@ fn write(
 ) -> Result<Summary, Failure> {
     let Prepared { sketch, placed, driving, schedule, .. } = prepared;
     let drawing = &schedule.ordered.drawing;
-    let strokes = placed.svg(drawing);
-    let path = dir.join("strokes.svg");
-    std::fs::write(&path, strokes).map_err(|e| cannot_write(&path, &e))?;
-    let path = dir.join("camera.jpg");
-    match prepared.camera_image() {
-        Some(image) => results::write_jpeg(&path, image)?,
-        None => results::forget(&path).map_err(|e| cannot_write(&path, &e))?,
-    }
+    results::put(&dir.join("strokes.svg"), placed.svg(drawing))?;
+    results::put_jpeg(&dir.join("camera.jpg"), prepared.camera_image())?;
     write_rig(args, dir, ran)?;
     let plan = ran.plan(prepared);
     let tracking: Tracking = score(plan, &ran.last, plan.set_speed_m_s);
@@ -181,10 +168,9 @@ fn write_rig(args: &TraceArgs, dir: &Path, ran: &Ran) -> Result<(), Failure> {
     if files::is_same(&path.to_string_lossy(), &args.driving.rig) {
         return Ok(());
     }
-    let Some(rig) = &ran.identified else {
-        return results::forget(&path).map_err(|e| cannot_write(&path, &e));
-    };
-    let mut rig = rig.clone();
-    named::date_rig(&mut rig);
-    std::fs::write(&path, rigfile::write(&rig)).map_err(|e| cannot_write(&path, &e))
+    let identified = ran.identified.clone().map(|mut rig| {
+        named::date_rig(&mut rig);
+        rigfile::write(&rig)
+    });
+    results::put_or_forget(&path, identified)
 }

@@ -1,7 +1,7 @@
 //! A job's results in a folder.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::fs::{self, File};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -37,7 +37,7 @@ impl RunLog {
             index(File::open(&path)?, BufWriter::new(File::create(&indexed)?))
         };
         all().map_err(|e| cannot_log(&path, &e))?;
-        std::fs::rename(&indexed, &path).map_err(|e| cannot_write(&path, &e))
+        fs::rename(&indexed, &path).map_err(|e| cannot_write(&path, &e))
     }
 }
 
@@ -73,30 +73,32 @@ fn cannot_encode(path: &Path, error: &impl std::fmt::Display) -> Failure {
     Failure::failed("cannot-write", format!("cannot encode {}: {error}", path.display()))
 }
 
-/// Writes what a camera saw.
-pub(crate) fn write_jpeg(path: &Path, image: &Raster) -> Result<(), Failure> {
-    const QUALITY: u8 = 90;
-    put(path, image.jpeg(QUALITY).map_err(|e| cannot_encode(path, &e))?)
+/// Makes the folder for results, if it is missing.
+pub(crate) fn make_folder(dir: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(dir).map_err(|e| cannot_write(dir, &e))
 }
 
-fn put(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
-    std::fs::write(path, bytes).map_err(|e| cannot_write(path, &e))
+/// Writes a result.
+pub(crate) fn put(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
+    fs::write(path, bytes).map_err(|e| cannot_write(path, &e))
 }
 
 /// Writes a result; one that an earlier job left under its name is removed where this one has none.
-fn put_or_forget(path: &Path, bytes: Option<impl AsRef<[u8]>>) -> Result<(), Failure> {
-    match bytes {
-        Some(bytes) => put(path, bytes),
-        None => forget(path).map_err(|e| cannot_write(path, &e)),
-    }
+pub(crate) fn put_or_forget(path: &Path, bytes: Option<impl AsRef<[u8]>>) -> Result<(), Failure> {
+    let Some(bytes) = bytes else {
+        return match fs::remove_file(path) {
+            Err(e) if e.kind() != ErrorKind::NotFound => Err(cannot_write(path, &e)),
+            _ => Ok(()),
+        };
+    };
+    put(path, bytes)
 }
 
-/// Removes a result that an earlier job may have left and this one has none of.
-pub(crate) fn forget(path: &Path) -> std::io::Result<()> {
-    match std::fs::remove_file(path) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(e),
-        _ => Ok(()),
-    }
+/// The same of what a camera saw.
+pub(crate) fn put_jpeg(path: &Path, image: Option<&Raster>) -> Result<(), Failure> {
+    const QUALITY: u8 = 90;
+    let encoded = image.map(|image| image.jpeg(QUALITY)).transpose();
+    put_or_forget(path, encoded.map_err(|e| cannot_encode(path, &e))?)
 }
 
 /// Writes `trace.csv`, after a fault `fault.csv`, what a camera saw of the spot, `trace.png`, `report.html` and `summary.json` into a
@@ -106,7 +108,7 @@ pub(crate) fn forget(path: &Path) -> std::io::Result<()> {
 /// `strokes.svg` are not written here: the one exists before, the other is a drawing format's.
 pub(crate) fn write_all(dir: &Path, job: &Finished<'_>) -> Result<Summary, Failure> {
     let began = Instant::now();
-    std::fs::create_dir_all(dir).map_err(|e| cannot_write(dir, &e))?;
+    make_folder(dir)?;
     let pictures = || {
         let wall = paint(job);
         let path = dir.join("trace.png");
@@ -123,11 +125,7 @@ pub(crate) fn write_all(dir: &Path, job: &Finished<'_>) -> Result<Summary, Failu
 
 fn write_tables(dir: &Path, job: &Finished<'_>) -> Result<(), Failure> {
     put_or_forget(&dir.join("fault.csv"), fault_csv(job))?;
-    let painting = dir.join("seen.jpg");
-    match job.seen.and_then(|seen| seen.painting.as_ref()) {
-        Some(raster) => write_jpeg(&painting, raster)?,
-        None => forget(&painting).map_err(|e| cannot_write(&painting, &e))?,
-    }
+    put_jpeg(&dir.join("seen.jpg"), job.seen.and_then(|seen| seen.painting.as_ref()))?;
     put_or_forget(&dir.join("seen.csv"), job.seen.map(|seen| seen_csv(&seen.marks)))?;
     let path = dir.join("trace.csv");
     let file = File::create(&path).map_err(|e| cannot_write(&path, &e))?;

@@ -41,6 +41,7 @@ pub struct Homed {
 
 impl Homed {
     /// The same as figures.
+    #[must_use]
     pub fn figures(&self) -> HomedFigures {
         let PanTilt { pan, tilt } = self.counts.map(|count| -count);
         HomedFigures { sought: self.sought, stops: self.stops, pan_counts: pan, tilt_counts: tilt }
@@ -57,6 +58,9 @@ const MOST_APART_COUNTS: f64 = 0.75;
 /// Homes a head by dots, wherever it points. Zero is then where a known head, as is believed, has it; of another, where pan has the beam
 /// straight at the wall, and tilt has it square to the pan axis. `known` is of a head that was found before, when its images were taken and how long
 /// they were exposed, s. The rig rests unhomed in the dark; afterwards at zero, homed.
+///
+/// # Errors
+/// The spot is not found, or the head does not go where it is sent; or [`Failure::interrupted`].
 pub fn home_head<R: Simulated + Eye>(
     rig: &mut R,
     camera: &Camera,
@@ -98,6 +102,7 @@ pub fn home_head<R: Simulated + Eye>(
 }
 
 /// By which angles a head is turned from where it should be to have zero, rad: pan from where its beam goes straight at the wall, tilt from where it is square to the pan axis.
+#[must_use]
 pub fn turned_rad(geometry: &HeadGeometry, pose: &HeadPose) -> Option<PanTilt<f64>> {
     let beam = HeadGeometry { laser_offset_m: [0.0; 3], ..anywhere(geometry) };
     let straight = beam.angles(pose, Point::new(pose.right_m, pose.up_m)).ok()?;

@@ -5,6 +5,7 @@ use tracelight_picture::Raster;
 use crate::error::EncodeError;
 
 /// A text made safe for element content and quoted attributes.
+#[must_use]
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -23,6 +24,7 @@ pub fn escaped(text: &str) -> String {
 }
 
 /// A number with about `digits` significant digits, for people: no exponent, a true minus sign.
+#[must_use]
 pub fn number(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
@@ -36,6 +38,7 @@ pub fn number(value: f64, digits: usize) -> String {
 }
 
 /// A file inside the page.
+#[must_use]
 pub fn data_uri(media_type: &str, bytes: &[u8]) -> String {
     format!("data:{media_type};base64,{}", base64(bytes))
 }

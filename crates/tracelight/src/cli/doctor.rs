@@ -2,7 +2,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_camera::{Source, devices};
+use tracelight_camera::{Opened, Source, devices};
 use tracelight_eye::about::{About, Stamps};
 use tracelight_eye::figure::histogram;
 use tracelight_eye::wall::{markers, well_exposed};
@@ -106,14 +106,15 @@ struct SeenCamera {
 }
 
 fn look_at(name: &str, size_px: Option<[usize; 2]>, stop: &Stop) -> Result<SeenCamera, Failure> {
-    let camera = match Source::of(name)? {
-        source @ (Source::Device(_) | Source::Net(_)) => source.open(size_px)?,
-        _ => None,
-    };
-    let Some(mut camera) = camera else {
+    let none = || {
         let message = format!("{name} is no camera that can be looked at; give /dev/video0 or http://…");
-        return Err(Failure::usage("usage", message));
+        Failure::usage("usage", message)
     };
+    let source = Source::of(name)?;
+    if !matches!(source, Source::Device(_) | Source::Net(_)) {
+        return Err(none());
+    }
+    let Opened::Camera(mut camera) = source.open(size_px)? else { return Err(none()) };
     let taken_hz = watched(&mut *camera, stop)?;
     let pixels = well_exposed(&mut *camera, stop)?;
     let about = camera.about();

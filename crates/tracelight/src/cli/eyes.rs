@@ -3,8 +3,7 @@
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use tracelight_camera::Source;
-use tracelight_eye::Looks;
+use tracelight_camera::{Opened, Source};
 use tracelight_eye::room::SimulatedEye;
 use tracelight_eye::trouble::TroubleAt;
 use tracelight_rigfile::camera::KnownCamera;
@@ -84,8 +83,8 @@ impl FromStr for ImageSize {
 }
 
 impl EyeArgs {
-    /// The camera, sending images; `None` of a simulated one.
-    pub(crate) fn open(&self) -> Result<Option<Box<dyn Looks>>, Failure> {
+    /// The camera, sending images, or what is simulated.
+    pub(crate) fn open(&self) -> Result<Opened<'_>, Failure> {
         let known = || Ok::<_, Failure>(self.known()?.map(|known| known.lens.lens.size_px));
         let size = self.camera_size.map_or_else(known, |size| Ok(Some(size.0)))?;
         self.source()?.open(size)

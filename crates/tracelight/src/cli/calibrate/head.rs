@@ -2,7 +2,7 @@ use clap::Args;
 use serde_json::json;
 use tracelight_aim::HeadPose;
 use tracelight_camera::Source;
-use tracelight_eye::head::{DotsRequest, FoundHead, find_head, in_front};
+use tracelight_eye::head::{DotsRequest, FoundHead, find_head, stand_before};
 use tracelight_eye::homing::{Homed, home_head};
 use tracelight_eye::room::{Furnished, RoomRequest};
 use tracelight_eye::wall::{SeenWall, see_wall, well_exposed};
@@ -78,13 +78,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     wall.remarks.iter().for_each(|remark| task.say(&format!("note: {remark}")));
     stop.check()?;
     let camera = wall.camera.camera;
-    match &known {
-        Some(known) => {
-            known.check_wall(wall.frame, &wall.pages)?;
-            driving.believe(known.geometry, known.pose);
-        }
-        None => driving.stand(in_front(&camera, driving.pose.distance_m)),
-    }
+    stand_before(&mut driving, &wall, known.as_ref())?;
     let homed = if args.home {
         let images = known.as_ref().map(KnownHead::images);
         let homed = home_head(&mut rig, &camera, &driving, images, task)?;

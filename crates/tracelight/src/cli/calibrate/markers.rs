@@ -1,7 +1,7 @@
 use clap::Args;
 use serde_json::{Value, json};
 use tracelight_aim::{Board, HeadPose, LensBelief, PlacedPage, SeenTag, Survey, SurveyedCamera, survey};
-use tracelight_camera::Source;
+use tracelight_camera::{Opened, Source};
 use tracelight_eye::board::BAR_M;
 use tracelight_eye::grey;
 use tracelight_eye::room::{Furnished, RoomRequest};
@@ -268,9 +268,9 @@ fn found(path: &str) -> Result<View, Failure> {
 fn taken(args: &MarkersArgs, name: &str, known: Option<&LensBelief>, stop: &Stop) -> Result<View, Failure> {
     let source = Source::of(name)?;
     let size = args.camera_size.map(|size| size.0).or_else(|| known.map(|known| known.lens.size_px));
-    let pixels = match (source.open(size)?, source) {
-        (Some(mut camera), _) => well_exposed(&mut *camera, stop)?,
-        (None, Source::Simulated(picture)) => {
+    let pixels = match source.open(size)? {
+        Opened::Camera(mut camera) => well_exposed(&mut *camera, stop)?,
+        Opened::Simulated(picture) => {
             let (rig, pose) = (RigConfig::report(), HeadPose::square_on(DEFAULT_DISTANCE_M));
             let placing = Placing::default();
             let (eye, seed) = (args.sim_camera.eye(), args.seed);
@@ -279,7 +279,6 @@ fn taken(args: &MarkersArgs, name: &str, known: Option<&LensBelief>, stop: &Stop
                 RoomRequest { picture: picture.as_ref(), placing: &placing, eye, pages: true, seed };
             well_exposed(&mut Furnished::new(&request, &rig, pose)?.watched(&rig, pose), stop)?
         }
-        (None, _) => return Err(Failure::failed("internal", "a camera that is none")),
     };
     Ok(View::of(name, &grey(&pixels)?))
 }
