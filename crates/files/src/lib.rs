@@ -5,4 +5,4 @@ mod pictures;
 mod whole;
 
 pub use pictures::{Found, Picture, find, stands_for_several};
-pub use whole::{is_same, read, replace, write};
+pub use whole::{is_same, read, replace, write, written_whole};

@@ -1,6 +1,10 @@
 //! Files read and written whole.
 
+use std::ffi::OsStr;
+use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Read;
+use std::path::Path;
 
 use tracelight_task::Failure;
 
@@ -20,7 +24,7 @@ pub fn read(path: &str) -> Result<Vec<u8>, Failure> {
     if path == "-" {
         std::io::stdin().lock().take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
     } else {
-        let file = std::fs::File::open(path).map_err(unreadable)?;
+        let file = fs::File::open(path).map_err(unreadable)?;
         if file.metadata().map_err(unreadable)?.is_dir() {
             return Err(Failure::usage("unreadable", format!("{path} is a folder; give a file in it")));
         }
@@ -47,7 +51,7 @@ pub fn read(path: &str) -> Result<Vec<u8>, Failure> {
 /// # Errors
 /// `cannot-write`, with what the system says.
 pub fn write(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
-    std::fs::write(path, bytes).map_err(|e| cannot_write(path, &e))
+    fs::write(path, bytes).map_err(|e| cannot_write(path, &e))
 }
 
 /// Writes what a file holds anew, whole or not at all. What a link leads to is changed, not the link.
@@ -55,10 +59,42 @@ pub fn write(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
 /// # Errors
 /// `cannot-write`, with what the system says; then the file is as it was.
 pub fn replace(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
-    let real = std::fs::canonicalize(path).map_err(|e| cannot_write(path, &e))?;
+    let real = fs::canonicalize(path).map_err(|e| cannot_write(path, &e))?;
     let fresh = format!("{}.{}.new", real.display(), std::process::id());
     write(&fresh, bytes)?;
-    std::fs::rename(&fresh, &real).map_err(|e| cannot_write(path, &e))
+    fs::rename(&fresh, &real).map_err(|e| cannot_write(path, &e))
+}
+
+/// Lets `write` write a file beside `path`, and gives it that name when it is whole: whoever looks sees the old file,
+/// the new one, or none, whenever the process ends.
+///
+/// # Errors
+/// `cannot-write`, or what `write` fails with; then the old file stands.
+pub fn written_whole<T>(path: &Path, write: impl FnOnce(&Path) -> Result<T, Failure>) -> Result<T, Failure> {
+    let cannot_write = |e: std::io::Error| {
+        let advice = "check the folder, its permissions and the free space";
+        Failure::failed("cannot-write", format!("cannot write {}: {e}; {advice}", path.display()))
+    };
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    fs::create_dir_all(folder).map_err(cannot_write)?;
+    let part = folder.join(part_name(path));
+    let written = write(&part).and_then(|made| {
+        fs::rename(&part, path).map_err(cannot_write)?;
+        Ok(made)
+    });
+    if written.is_err() {
+        drop(fs::remove_file(&part)); // it may never have been begun
+    }
+    written
+}
+
+/// The name of a file that is not whole yet: hidden, short even where `path` is not, of the same kind, and the same
+/// each time, so that the next run replaces what a killed one left.
+fn part_name(path: &Path) -> String {
+    let mut hasher = DefaultHasher::new();
+    path.file_name().hash(&mut hasher);
+    let extension = path.extension().map(OsStr::to_string_lossy).unwrap_or_default();
+    format!(".tracelight-part-{:016x}.{extension}", hasher.finish())
 }
 
 fn cannot_write(path: &str, error: &std::io::Error) -> Failure {
@@ -68,6 +104,27 @@ fn cannot_write(path: &str, error: &std::io::Error) -> Failure {
 /// Whether two paths lead to one file that exists.
 #[must_use]
 pub fn is_same(one: &str, other: &str) -> bool {
-    let real = |path: &str| std::fs::canonicalize(path).ok();
+    let real = |path: &str| fs::canonicalize(path).ok();
     real(one).is_some_and(|one| Some(one) == real(other))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_written_whole_or_not_at_all() {
+        let folder = std::env::temp_dir().join(format!("tracelight-whole-{}", std::process::id()));
+        let path = folder.join("below/a.svg");
+        written_whole(&path, |part| fs::write(part, "old").map_err(|e| Failure::failed("cannot-write", e)))
+            .unwrap();
+        let failed = written_whole(&path, |part| -> Result<(), Failure> {
+            fs::write(part, "half").unwrap();
+            Err(Failure::failed("cannot-write", "the disk is full"))
+        });
+        assert_eq!(failed.unwrap_err().message, "the disk is full");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(fs::read_dir(folder.join("below")).unwrap().count(), 1, "the half is gone");
+        fs::remove_dir_all(folder).unwrap();
+    }
 }

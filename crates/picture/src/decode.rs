@@ -19,7 +19,7 @@ const MOST_PIXELS: u64 = 100_000_000;
 const MOST_DECODER_BYTES: u64 = 8 * MOST_PIXELS;
 
 /// What a file holds.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub enum Source {
     /// Pixels, to be traced.
     Pixels(Pixels),
@@ -28,7 +28,7 @@ pub enum Source {
 }
 
 /// A decoded picture, upright, on paper where it was transparent.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Pixels {
     /// For display.
     pub colour: Raster,

@@ -16,7 +16,7 @@ pub const DEFAULT_SPEED_M_S: f64 = 0.3048;
 const WORKING_TILT_RAD: f64 = 0.463_647_609_000_806_1;
 
 /// With what and how a drawing is run: a rig, where it stands, what is asked of it.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Driving {
     /// What draws.
     pub rig: RigConfig,

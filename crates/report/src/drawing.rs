@@ -3,12 +3,17 @@
 use std::path::Path;
 
 use tracelight_formats::gcode::GcodeOptions;
-use tracelight_formats::{csv, dxf, gcode, hpgl, ild, svg};
-use tracelight_pipeline::{Page, Placed};
+use tracelight_formats::json::Traced;
+use tracelight_formats::{Sheet, csv, dxf, gcode, hpgl, ild, json, svg};
+use tracelight_pipeline::{Page, PaperSeen, Placed, QualityFigures, Sketch};
+use tracelight_stroke::Point;
 use tracelight_task::Failure;
 
 /// How close points and chords keep to their curve, m: a hundredth of a millimetre.
 const TOLERANCE_M: f64 = 1e-5;
+
+/// How close `points` keep to their path, px.
+const POINTS_TOLERANCE_PX: f64 = 0.05;
 
 /// Kinds of files a drawing can be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +78,36 @@ fn bytes(kind: Kind, placed: &Placed, json: &str) -> Vec<u8> {
         Kind::Ild => ild::write(&drawing, width_m, height_m),
         Kind::Hpgl => hpgl::write(&drawing, width_m, height_m, TOLERANCE_M).into(),
     }
+}
+
+/// Pixels, to a hundredth.
+fn round(px: f64) -> f64 {
+    (100.0 * px).round() / 100.0
+}
+
+/// The strokes of a picture in its pixels, as JSON; with the sheet it was on and what its pixels are worth.
+#[must_use]
+pub fn json(sketch: &Sketch) -> String {
+    let (drawing, (width, height)) = sketch.in_picture();
+    let sheet = Sheet { width, height, metres_per_unit: None, drawing: drawing.clone() };
+    let text = json::write(&Traced { sheet, mode: sketch.mode.to_owned() }, POINTS_TOLERANCE_PX);
+    let quality = sketch.quality.as_ref().map(QualityFigures::of);
+    let quality = quality.and_then(|figures| serde_json::to_string(&figures).ok());
+    let points = |points: &[Point]| points.iter().map(|p| [round(p.x), round(p.y)]).collect::<Vec<_>>();
+    let paper = sketch.paper.as_ref().map(|PaperSeen { sheet, slanted, .. }| {
+        serde_json::json!({
+            "outline": points(&sheet.outline),
+            "corners": sheet.corners.as_ref().map(|corners| points(corners)),
+            "beside": round(sheet.beside),
+            "laid_square": slanted.is_some(),
+        })
+    });
+    let Some(object) = text.strip_suffix('}') else { return text };
+    let mut all = object.to_owned();
+    all.extend(paper.map(|paper| format!(",\"sheet\":{paper}")));
+    all.extend(quality.map(|quality| format!(",\"quality\":{quality}")));
+    all.push('}');
+    all
 }
 
 #[cfg(test)]

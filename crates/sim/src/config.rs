@@ -4,6 +4,7 @@ use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
 use tracelight_rig::{Joint, PanTilt};
 
 use crate::control_settings::ControlSettings;
+use crate::laws::{LawName, ObserverName};
 
 /// A rig, whole: what we believe it is, what it really is (in simulation), and how it is to be driven.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,6 +123,13 @@ impl RigConfig {
     /// What was identified of a joint beyond its equations.
     pub fn quirks_of(&self, joint: Joint) -> Quirks {
         self.identified.as_ref().map_or(Quirks::NONE, |identified| identified.quirks[joint])
+    }
+
+    /// Sets a law, and an observer: the rig's own where it is the rig's own law, the law's for another.
+    pub fn set_law(&mut self, law: LawName, observer: Option<ObserverName>) {
+        let own = self.control.observer.filter(|_| law == self.control.law);
+        self.control.law = law;
+        self.control.observer = observer.or(own);
     }
 
     /// The same rig without hops: for motion that is looked at for its own sake.

@@ -1,15 +1,12 @@
 //! Tracelight: give it a picture, and a pan/tilt laser head draws it on the wall, to scale.
 
 mod bar;
-mod batch;
 mod cli;
 mod interrupt;
 mod job;
 mod named;
-mod record;
 mod results;
 mod settings;
-mod table;
 
 use std::process::ExitCode;
 

@@ -207,8 +207,7 @@ fn enclosed(rest: &str) -> &str {
 }
 
 /// Circles that stand, each as its crate and its files. It only gets shorter.
-const KNOWN: [(&str, &str); 4] = [
-    ("tracelight", "batch batch::report batch::table"),
+const KNOWN: [(&str, &str); 3] = [
     ("vision", "comb::drift comb::family"),
     ("vision", "sheet sheet::alone sheet::edge sheet::over sheet::quad sheet::rim sheet::shade"),
     ("vision", "spot spot::change"),

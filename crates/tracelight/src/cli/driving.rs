@@ -1,12 +1,13 @@
 use clap::{Args, ValueEnum};
 use tracelight_aim::HeadPose;
+use tracelight_experiment::profile_name::ProfileName;
 use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, Driving, request_of};
 use tracelight_task::Failure;
 use tracelight_trajectory::{LitSpeed, PlanRequest};
 use tracelight_units::{AngularAcceleration, Length, Speed};
 
 use crate::cli::placing::positive_length;
-use crate::cli::shapes::ProfileName;
+use crate::cli::shapes::profile;
 use crate::named;
 
 /// With what and how a drawing is run.
@@ -28,7 +29,7 @@ pub(crate) struct DrivingArgs {
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     pub(crate) rig: String,
     /// Shape of the dark moves between strokes
-    #[arg(long, value_enum, default_value_t = ProfileName::SCurve)]
+    #[arg(long, default_value = ProfileName::SCurve.name(), value_parser = profile())]
     pub(crate) profile: ProfileName,
     /// Highest joint acceleration wished for, such as 100rad/s2; the motors decide where they allow less
     #[arg(long, value_name = "ACCELERATION", allow_hyphen_values = true, value_parser = positive_acceleration)]

@@ -17,15 +17,8 @@ pub(crate) struct LawArgs {
 impl LawArgs {
     /// Sets what was asked for.
     pub(crate) fn apply(self, rig: &mut RigConfig) {
-        choose(rig, self.law.unwrap_or(rig.control.law), self.observer);
+        rig.set_law(self.law.unwrap_or(rig.control.law), self.observer);
     }
-}
-
-/// Sets a law, and an observer: the rig's own where it is the rig's own law, the law's for another.
-pub(crate) fn choose(rig: &mut RigConfig, law: LawName, observer: Option<ObserverName>) {
-    let own = rig.control.observer.filter(|_| law == rig.control.law);
-    rig.control.law = law;
-    rig.control.observer = observer.or(own);
 }
 
 /// Names of laws on the command line.

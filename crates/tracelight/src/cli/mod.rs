@@ -174,3 +174,9 @@ fn print(text: &str) {
         drop(writeln!(out, "{text}"));
     }
 }
+
+/// A piece of what is printed, before the rest is there; a reader that has left is no error.
+pub(crate) fn print_piece(text: &str) {
+    use std::io::Write;
+    drop(write!(std::io::stdout().lock(), "{text}"));
+}

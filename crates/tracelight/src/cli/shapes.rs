@@ -1,68 +1,11 @@
-use clap::ValueEnum;
-use tracelight_trajectory::{DarkMove, Ramps, Shape};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use tracelight_experiment::profile_name::ProfileName;
+use tracelight_trajectory::Ramps;
 
-/// How a move goes from rest to rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ProfileName {
-    /// Constant acceleration and deceleration
-    Trapezoid,
-    /// Acceleration that builds up and fades over a fifth of its phase
-    SCurve,
-    /// Half a sine of velocity
-    Sine,
-    /// A whole sine of acceleration
-    Cycloid,
-    /// Logistic position
-    Sigmoid,
-    /// Polynomial of fifth degree
-    Quintic,
-    /// As fast as the motors can; dark moves limited in jerk
-    Optimal,
-}
-
-impl ProfileName {
-    /// In the order of tables.
-    pub(crate) const ALL: [ProfileName; 7] = [
-        ProfileName::Trapezoid,
-        ProfileName::SCurve,
-        ProfileName::Sine,
-        ProfileName::Cycloid,
-        ProfileName::Sigmoid,
-        ProfileName::Quintic,
-        ProfileName::Optimal,
-    ];
-
-    /// The shape of velocity that it names, an S-curve with these ramps; none for the optimum, which has none.
-    pub(crate) const fn shape(self, ramps: Ramps) -> Option<Shape> {
-        Some(match self {
-            ProfileName::Trapezoid => Shape::Ramped(Ramps::NONE),
-            ProfileName::SCurve => Shape::Ramped(ramps),
-            ProfileName::Sine => Shape::Sine,
-            ProfileName::Cycloid => Shape::Cycloid,
-            ProfileName::Sigmoid => Shape::Sigmoid,
-            ProfileName::Quintic => Shape::Quintic,
-            ProfileName::Optimal => return None,
-        })
-    }
-
-    pub(crate) const fn dark_move(self) -> DarkMove {
-        match self.shape(Ramps::REPORT) {
-            Some(shape) => DarkMove::Shaped(shape),
-            None => DarkMove::Optimal,
-        }
-    }
-
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            ProfileName::Trapezoid => "trapezoid",
-            ProfileName::SCurve => "s-curve",
-            ProfileName::Sine => "sine",
-            ProfileName::Cycloid => "cycloid",
-            ProfileName::Sigmoid => "sigmoid",
-            ProfileName::Quintic => "quintic",
-            ProfileName::Optimal => "optimal",
-        }
-    }
+/// Names of profiles on the command line.
+pub(crate) fn profile() -> impl TypedValueParser<Value = ProfileName> {
+    let known = ProfileName::ALL.map(|profile| PossibleValue::new(profile.name()).help(profile.about()));
+    PossibleValuesParser::new(known).map(|name| ProfileName::named(&name).unwrap_or(ProfileName::SCurve))
 }
 
 /// `pa1,pa2,pb1,pb2`: shares of the acceleration phase over which the acceleration builds up and fades, and the same of

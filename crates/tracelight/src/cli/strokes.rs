@@ -3,28 +3,22 @@ use std::time::Instant;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use tracelight_campaign as campaign;
+use tracelight_campaign::{Batch, Figures, Finding, Out};
 use tracelight_files as files;
 use tracelight_files::{Picture, stands_for_several};
-use tracelight_formats::json::Traced;
-use tracelight_formats::{Sheet, json};
 use tracelight_picture::Source;
-use tracelight_pipeline::{PaperSeen, QualityFigures, Sketch, Tracing, page, place, sketch};
+use tracelight_pipeline::{Tracing, page, place, sketch};
 use tracelight_report as report;
 use tracelight_report::drawing::{self, FORMATS};
-use tracelight_stroke::Point;
 use tracelight_task::{Failure, Progress as _, Stop, Task, counted};
 use tracelight_vision::Stages;
 
 use crate::bar::Bar;
-use crate::batch::figures::Figures;
-use crate::batch::{self, Batch, Finding, Out, places};
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::cli::{Answer, Voice};
+use crate::cli::{Answer, Voice, print_piece};
 use crate::named;
-
-/// How close `points` keep to their path, px.
-const POINTS_TOLERANCE_PX: f64 = 0.05;
 
 /// Find the strokes of pictures, without a rig
 #[derive(Args, Debug)]
@@ -84,8 +78,8 @@ fn single(args: &StrokesArgs, picture: &str) -> Result<Answer, Failure> {
     let named = Picture { name: picture.to_owned(), within: None };
     let traced = match args.out.as_deref() {
         Some(out) if is_folder(out) => {
-            let files = places::files(&[named], out, extension(args))?;
-            batch::whole(&out.join(&files[0]), |path| one(args, picture, Some(path)))?
+            let files = campaign::files(&[named], out, extension(args))?;
+            files::written_whole(&out.join(&files[0]), |path| one(args, picture, Some(path)))?
         }
         out => one(args, picture, out)?,
     };
@@ -106,7 +100,6 @@ fn many(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
     let bar = Bar::new(args.voice.quiet);
     let task = Task { progress: &bar, stop };
     found.remarks.iter().for_each(|remark| task.say(&format!("note: {remark}")));
-    drop(bar);
     let out = args.out.as_deref().map(|folder| Out {
         folder,
         extension: extension(args),
@@ -114,8 +107,11 @@ fn many(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
         again: args.again,
     });
     let jobs = args.jobs.map_or_else(processors, usize::from);
-    let batch = Batch { pictures: found.pictures, out, jobs, voice: args.voice };
-    batch::run(&batch, &|picture, path| one(args, picture, path), stop)
+    let batch = Batch { pictures: found.pictures, out, jobs };
+    let mut print: fn(&str) = print_piece;
+    let pieces: Option<&mut dyn FnMut(&str)> = if args.voice.json { Some(&mut print) } else { None };
+    let ended = campaign::run(&batch, &|picture, path| one(args, picture, path), task, pieces)?;
+    Ok(Answer { failure: ended.failure, ..Answer::new(ended.text, ended.json) })
 }
 
 fn processors() -> usize {
@@ -175,7 +171,7 @@ fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding
     let vision_ms = began.elapsed().as_secs_f64() * 1e3;
     sketch.picture = None; // its colours are not needed, and large
     let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let json = (args.voice.json || path.is_some_and(is_json)).then(|| pixel_json(&sketch));
+    let json = (args.voice.json || path.is_some_and(is_json)).then(|| drawing::json(&sketch));
     if let Some(path) = path {
         let file = drawing::file(path, &place(&sketch, &placing), json.as_deref().unwrap_or_default())?;
         files::write(&path.display().to_string(), file)?;
@@ -202,35 +198,6 @@ fn stages(picture: &str, source: &Source, tracing: &Tracing) -> Result<String, F
     let name =
         Path::new(picture).file_name().map_or_else(|| picture.to_owned(), |n| n.to_string_lossy().into());
     report::stages::figure(&name, &page.picture, &stages)
-}
-
-/// Pixels, to a hundredth.
-fn round(px: f64) -> f64 {
-    (100.0 * px).round() / 100.0
-}
-
-/// Strokes in the picture's pixels.
-fn pixel_json(sketch: &Sketch) -> String {
-    let (drawing, (width, height)) = sketch.in_picture();
-    let sheet = Sheet { width, height, metres_per_unit: None, drawing: drawing.clone() };
-    let text = json::write(&Traced { sheet, mode: sketch.mode.to_owned() }, POINTS_TOLERANCE_PX);
-    let quality = sketch.quality.as_ref().map(QualityFigures::of);
-    let quality = quality.and_then(|figures| serde_json::to_string(&figures).ok());
-    let points = |points: &[Point]| points.iter().map(|p| [round(p.x), round(p.y)]).collect::<Vec<_>>();
-    let paper = sketch.paper.as_ref().map(|PaperSeen { sheet, slanted, .. }| {
-        serde_json::json!({
-            "outline": points(&sheet.outline),
-            "corners": sheet.corners.as_ref().map(|corners| points(corners)),
-            "beside": round(sheet.beside),
-            "laid_square": slanted.is_some(),
-        })
-    });
-    let Some(object) = text.strip_suffix('}') else { return text };
-    let mut all = object.to_owned();
-    all.extend(paper.map(|paper| format!(",\"sheet\":{paper}")));
-    all.extend(quality.map(|quality| format!(",\"quality\":{quality}")));
-    all.push('}');
-    all
 }
 
 fn is_folder(path: &Path) -> bool {

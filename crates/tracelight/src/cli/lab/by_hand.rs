@@ -1,8 +1,7 @@
 use clap::{ArgAction, Args};
-use tracelight_rig::{Joint, TICK_F64_S};
+use tracelight_experiment::by_hand::{ByHand, Gains};
 use tracelight_rigfile::{FEEDFORWARDS, HIGHEST_GAIN};
-use tracelight_sim::{Feedforward, HandTuned, LawName, RigConfig};
-use tracelight_task::Failure;
+use tracelight_sim::Feedforward;
 
 use super::shape::switch;
 use super::velocity::interval;
@@ -24,16 +23,6 @@ pub(super) struct ByHandArgs {
     /// How long an observer looks back that has such a time
     #[arg(long, value_name = "TIME", value_parser = interval)]
     interval: Option<usize>,
-}
-
-/// A PID's gains and setpoint weights.
-#[derive(Clone, Copy, Debug)]
-struct Gains {
-    kp: f64,
-    ki: f64,
-    kd: f64,
-    b: f64,
-    c: f64,
 }
 
 fn gains(text: &str) -> Result<Gains, String> {
@@ -84,35 +73,12 @@ fn feedforward(text: &str) -> Result<Feedforward, String> {
 }
 
 impl ByHandArgs {
-    /// Sets these joints of a rig, and says which laws are meant: `laws`, or hand-tuned where only gains are given.
-    pub(super) fn apply(
-        &self,
-        rig: &mut RigConfig,
-        joints: &[Joint],
-        laws: &[LawName],
-    ) -> Result<Vec<LawName>, Failure> {
-        if let Some(ticks) = self.interval {
-            rig.control.observer_interval_s = ticks as f64 * TICK_F64_S;
+    pub(super) const fn by_hand(&self) -> ByHand {
+        ByHand {
+            gains: self.gains,
+            anti_windup: self.anti_windup,
+            feedforward: self.feedforward,
+            interval_ticks: self.interval,
         }
-        for &joint in joints {
-            let by_hand = &mut rig.control.hand_tuned[joint];
-            if let Some(Gains { kp, ki, kd, b, c }) = self.gains {
-                *by_hand = HandTuned { kp, ki, kd, position_weight: b, velocity_weight: c, ..*by_hand };
-            }
-            by_hand.anti_windup = self.anti_windup.unwrap_or(by_hand.anti_windup);
-            by_hand.feedforward = self.feedforward.unwrap_or(by_hand.feedforward);
-        }
-        let meant = self.gains.is_some() || self.anti_windup.is_some() || self.feedforward.is_some();
-        if !meant {
-            return Ok(laws.to_vec());
-        }
-        if laws.is_empty() {
-            return Ok(vec![LawName::HandTuned]);
-        }
-        if laws.contains(&LawName::HandTuned) {
-            return Ok(laws.to_vec());
-        }
-        let message = "--gains, --anti-windup and --feedforward set law hand-tuned, which --law does not name: add it there";
-        Err(Failure::usage("usage", message))
     }
 }

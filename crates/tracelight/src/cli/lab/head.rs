@@ -1,8 +1,7 @@
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
-use tracelight_dynamics::HeadBodies;
-use tracelight_lab::{Linearization, Operation};
+use tracelight_experiment::head::{self, HeadChoice, Masses};
 use tracelight_rig::PanTilt;
 use tracelight_task::Failure;
 use tracelight_units::{Angle, AngularSpeed};
@@ -27,7 +26,7 @@ pub(crate) struct HeadArgs {
     rates: Option<Pair<AngularSpeed>>,
     /// Keep poles that a zero takes back but for a ten thousandth
     #[arg(long)]
-    pub(super) keep_cancellations: bool,
+    keep_cancellations: bool,
 }
 
 /// One of the report's parameter sets.
@@ -42,11 +41,10 @@ pub(super) enum Set {
 }
 
 impl Set {
-    /// What it says of the bodies.
-    pub(super) const fn bodies(self) -> HeadBodies {
+    pub(super) const fn set(self) -> head::Set {
         match self {
-            Self::A => HeadBodies::set_a(),
-            Self::B => HeadBodies::set_b(),
+            Self::A => head::Set::A,
+            Self::B => head::Set::B,
         }
     }
 }
@@ -69,64 +67,24 @@ impl<T: FromStr<Err: std::fmt::Display>> FromStr for Pair<T> {
     }
 }
 
-/// What is linearized, in words and in numbers.
-pub(super) struct Head {
-    /// What it is.
-    pub(super) name: String,
-    /// Where pan stands, rad.
-    pub(super) pan_rad: f64,
-    pub(super) operation: Operation,
+impl<T> Pair<T> {
+    /// In SI, by what its unit is worth.
+    fn si(self, value: impl Fn(T) -> f64) -> PanTilt<f64> {
+        PanTilt::new(value(self.0), value(self.1))
+    }
 }
 
 impl HeadArgs {
-    pub(super) fn head(&self) -> Result<Head, Failure> {
-        /// atan 1/2: 18 in beside what is 36 in away.
-        const HALF_RANGE_RAD: f64 = 0.463_647_609_000_806_1;
-        let (name, bodies, viscous) = match &self.rig {
-            Some(rig) => {
-                let rig = named::rig(rig)?;
-                let viscous = rig.model.friction.map(|f| 0.5 * (f.viscous_pos + f.viscous_neg));
-                (format!("rig {}", rig.name), rig.model.bodies, viscous)
-            }
-            None => {
-                let (name, bodies) = match self.set {
-                    None | Some(Set::A) => ("parameter set A", Set::A.bodies()),
-                    Some(Set::B) => ("parameter set B", Set::B.bodies()),
-                };
-                // what the report's own helper had
-                (name.to_owned(), HeadBodies { gravity_m_s2: 9.8, ..bodies }, PanTilt::new(0.01, 0.01))
-            }
+    pub(super) fn choice(&self) -> Result<HeadChoice, Failure> {
+        let masses = match &self.rig {
+            Some(rig) => Masses::Rig(Box::new(named::rig(rig)?)),
+            None => Masses::Set(self.set.map_or(head::Set::A, Set::set)),
         };
-        let at = self.at.unwrap_or(Pair(Angle(HALF_RANGE_RAD), Angle(HALF_RANGE_RAD)));
-        let rates = self.rates.unwrap_or(Pair(AngularSpeed(0.0), AngularSpeed(0.0)));
-        let operation = Operation {
-            head: bodies.lumped(),
-            viscous,
-            tilt_rad: at.1.0,
-            rate_rad_s: PanTilt::new(rates.0.0, rates.1.0),
-        };
-        let gravity = bodies.gravity_m_s2;
-        let name =
-            format!("{name}, viscous {} and {} N m s/rad, g = {gravity} m/s²", viscous.pan, viscous.tilt);
-        Ok(Head { name, pan_rad: at.0.0, operation })
-    }
-}
-
-impl Head {
-    pub(super) fn linearize(&self) -> Result<Linearization, Failure> {
-        self.operation
-            .linearize()
-            .map_err(|e| Failure::failed("no-linear-model", format!("{}: {e}", self.name)))
-    }
-
-    /// Where it is and how it moves.
-    pub(super) fn place(&self) -> String {
-        let rates = &self.operation.rate_rad_s;
-        let moving = match (rates.pan, rates.tilt) {
-            (0.0, 0.0) => "at rest".to_owned(),
-            (pan, tilt) => format!("turning with {pan} and {tilt} rad/s"),
-        };
-        let (pan, tilt) = (self.pan_rad.to_degrees(), self.operation.tilt_rad.to_degrees());
-        format!("pan {pan:.3}°, tilt {tilt:.3}°, {moving}")
+        Ok(HeadChoice {
+            masses,
+            at_rad: self.at.map(|at| at.si(|angle| angle.0)),
+            rates_rad_s: self.rates.map_or(PanTilt::default(), |rates| rates.si(|rate| rate.0)),
+            keep_cancellations: self.keep_cancellations,
+        })
     }
 }

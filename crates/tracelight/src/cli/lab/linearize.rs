@@ -1,14 +1,9 @@
-use std::fmt::Write;
-
 use clap::Args;
-use serde_json::json;
-use tracelight_lab::Linearization;
-use tracelight_linear::{Complex, LinearError, Matrix, Time, TransferFunction};
-use tracelight_rig::{Joint, PanTilt};
-use tracelight_task::Failure;
+use tracelight_experiment::linearize::Request;
+use tracelight_task::{Failure, Stop};
 
-use super::head::{Head, HeadArgs};
-use super::systems::{four, place, pole_lines};
+use super::command::{self, LabCommand};
+use super::head::HeadArgs;
 use crate::cli::{Answer, Voice};
 
 /// The head near a pose as a linear system: state space, transfer functions G11 and G22 from torque to angle, poles
@@ -20,98 +15,15 @@ pub(crate) struct LinearizeArgs {
     #[command(flatten)]
     head: HeadArgs,
     #[command(flatten)]
-    pub(super) voice: Voice,
+    voice: Voice,
 }
 
-/// A joint's transfer function and what was left out of it.
-struct Own {
-    transfer: TransferFunction,
-    cancelled: Vec<Complex>,
-}
-
-pub(crate) fn run(args: &LinearizeArgs) -> Result<Answer, Failure> {
-    let head = args.head.head()?;
-    let linear = head.linearize()?;
-    let own = |joint| own(&linear, joint, args.head.keep_cancellations);
-    let failed = |e: LinearError| Failure::failed("no-linear-model", e);
-    let both = PanTilt::new(own(Joint::Pan).map_err(failed)?, own(Joint::Tilt).map_err(failed)?);
-    Ok(Answer::new(text(&head, &linear, &both), json(&head, &linear, &both)))
-}
-
-fn own(linear: &Linearization, joint: Joint, keep: bool) -> Result<Own, LinearError> {
-    if keep {
-        return Ok(Own { transfer: linear.transfer(joint)?, cancelled: Vec::new() });
+impl LabCommand for LinearizeArgs {
+    fn voice(&self) -> Voice {
+        self.voice
     }
-    let (transfer, cancelled) = linear.own_transfer(joint)?;
-    Ok(Own { transfer, cancelled })
-}
 
-fn text(head: &Head, linear: &Linearization, both: &PanTilt<Own>) -> String {
-    let holding = &linear.holding_nm;
-    let mut text = format!(
-        "{}\n{}; {} and {} N m keep it so\n",
-        head.name,
-        head.place(),
-        four(holding.pan),
-        four(holding.tilt)
-    );
-    for (name, joint) in [("G11", Joint::Pan), ("G22", Joint::Tilt)] {
-        let Own { transfer, cancelled } = &both[joint];
-        // writing to a String cannot fail
-        let _ = writeln!(text, "\n{name}, {joint} angle over {joint} torque, rad/(N m)\n    {transfer}");
-        let factors = transfer.zpk().to_string();
-        if factors != transfer.to_string() {
-            let _ = writeln!(text, "    = {factors}");
-        }
-        if !cancelled.is_empty() {
-            let places: Vec<String> = cancelled.iter().filter(|z| z.im >= 0.0).map(|z| place(*z)).collect();
-            let _ = writeln!(text, "    cancelled: {} (kept with --keep-cancellations)", places.join(", "));
-        }
+    fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
+        command::told(Request(self.head.choice()?), self.voice, stop)
     }
-    let _ = write!(text, "\n{}", pole_lines(&linear.system.poles().unwrap_or_default(), Time::Continuous));
-    let _ = write!(
-        text,
-        "\nx = (pan, tilt, pan rate, tilt rate), u = (pan torque, tilt torque), y = (pan, tilt)\n\nA =\n{}\nB =\n{}",
-        matrix(linear.system.a()),
-        matrix(linear.system.b())
-    );
-    text.trim_end().to_owned()
-}
-
-fn matrix(matrix: &Matrix) -> String {
-    matrix.row_iter().fold(String::new(), |mut text, row| {
-        for entry in row.iter() {
-            let _ = write!(text, " {:12.6}", entry + 0.0);
-        }
-        text + "\n"
-    })
-}
-
-fn json(head: &Head, linear: &Linearization, both: &PanTilt<Own>) -> String {
-    let pair = |z: &Complex| json!([z.re, z.im]);
-    let own = |Own { transfer, cancelled }: &Own| {
-        json!({
-            "num": transfer.numerator().coefficients(),
-            "den": transfer.denominator().coefficients(),
-            "cancelled": cancelled.iter().map(pair).collect::<Vec<_>>(),
-        })
-    };
-    let rows =
-        |m: &Matrix| m.row_iter().map(|row| row.iter().copied().collect::<Vec<f64>>()).collect::<Vec<_>>();
-    let system = &linear.system;
-    json!({
-        "head": head.name,
-        "pan_rad": head.pan_rad,
-        "tilt_rad": head.operation.tilt_rad,
-        "rates_rad_s": [head.operation.rate_rad_s.pan, head.operation.rate_rad_s.tilt],
-        "holding_nm": [linear.holding_nm.pan, linear.holding_nm.tilt],
-        "G11": own(&both.pan),
-        "G22": own(&both.tilt),
-        "poles": system.poles().unwrap_or_default().iter().map(pair).collect::<Vec<_>>(),
-        "A": rows(system.a()),
-        "B": rows(system.b()),
-        "C": rows(system.c()),
-        "D": rows(system.d()),
-    })
-    .to_string()
 }

@@ -1,25 +1,21 @@
 //! What the 2006 report did in LabVIEW: a line or an arc, from rest to rest, by every profile.
 
-mod figure;
-mod table;
-
-use std::ops::ControlFlow;
-
 use clap::{Args, Subcommand};
 use tracelight_aim::HeadPose;
-use tracelight_pipeline::{DEFAULT_DISTANCE_M, request_of};
-use tracelight_rig::PanTilt;
-use tracelight_sim::{RigConfig, Run, SimulatedRig, Tracking, score};
-use tracelight_stroke::{Element, Piece, Point, Vec2};
+use tracelight_experiment::moves::{Request, Way};
+use tracelight_experiment::profile_name::ProfileName;
+use tracelight_pipeline::DEFAULT_DISTANCE_M;
+use tracelight_stroke::{Point, Vec2};
 use tracelight_task::{Failure, Stop};
-use tracelight_trajectory::{Course, CourseError, Machine, MoveLimits, Pace, PlanError, Ramps};
+use tracelight_trajectory::Ramps;
 use tracelight_units::{
     ACCELERATIONS, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, Length, Offset, Rate, SPEEDS, Unit,
 };
 
-use super::{OutFile, out_file, within, write_all};
+use super::command::{self, LabCommand, OutFile, out_file};
+use super::within;
 use crate::cli::placing::positive_length;
-use crate::cli::shapes::{ProfileName, ramps};
+use crate::cli::shapes::{profile, ramps};
 use crate::cli::{Answer, Voice};
 use crate::named;
 
@@ -93,7 +89,7 @@ struct PaceArgs {
     #[arg(long, value_name = "PA1,PA2,PB1,PB2", default_value = "0.2,0.2,0.15,0.15", allow_hyphen_values = true, value_parser = ramps)]
     ramps: Ramps,
     /// Which to plot; the first of them goes into the CSV
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "trapezoid,s-curve")]
+    #[arg(long, value_delimiter = ',', default_value = "trapezoid,s-curve", value_parser = profile())]
     profile: Vec<ProfileName>,
     /// Take the limits as they are, whatever that asks of the motors, and run nothing: what the 2006 report simulated
     #[arg(long)]
@@ -112,19 +108,6 @@ struct PaceArgs {
     out: Vec<OutFile>,
     #[command(flatten)]
     voice: Voice,
-}
-
-impl MoveArgs {
-    pub(super) const fn voice(&self) -> Voice {
-        self.pace().voice
-    }
-
-    const fn pace(&self) -> &PaceArgs {
-        match &self.course {
-            CourseArgs::Line(args) => &args.pace,
-            CourseArgs::Arc(args) => &args.pace,
-        }
-    }
 }
 
 fn place(text: &str) -> Result<Offset, String> {
@@ -156,211 +139,51 @@ fn rate(text: &str, linear: &'static [Unit], angular: &'static [Unit]) -> Result
     within(text, rate, rate.value(), if let Rate::Linear(_) = rate { linear } else { angular })
 }
 
-/// What is to be followed.
-struct Wish {
-    /// In words.
-    title: String,
-    piece: Piece,
-    limits: MoveLimits,
-}
-
-/// One profile's moves.
-struct Entry {
-    name: ProfileName,
-    /// By the limits as they were asked for, and the torque that takes; none for the optimum, which is the motors'.
-    asked: Option<(Pace, PanTilt<f64>)>,
-    /// What the motors can do of it, and how the simulated rig follows that.
-    on_rig: Option<OnRig>,
-}
-
-struct OnRig {
-    pace: Pace,
-    run: Run,
-    tracking: Tracking,
-    /// The tick of the plan at which the move begins.
-    start_tick: u32,
-    /// The rig left the course and held, or did not get to the end.
-    held: bool,
-}
-
-pub(crate) fn run(args: &MoveArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let pace = args.pace();
-    let rig = named::rig(&pace.rig)?;
-    let pose = HeadPose::square_on(pace.distance.map_or(DEFAULT_DISTANCE_M, |d| d.0));
-    let machine = rig.machine(pose);
-    let wish = args.wish(&pose)?;
-    let course = Course::new(&machine, wish.piece).map_err(failure)?;
-    if pace.as_asked && pace.profile.contains(&ProfileName::Optimal) {
-        let message =
-            "--profile optimal is as fast as the motors can, and --as-asked leaves them out; leave one away";
-        return Err(Failure::usage("usage", message));
-    }
-    let mut entries = Vec::new();
-    for name in ProfileName::ALL {
-        stop.check()?;
-        let asked = asked(name, &course, (&wish, pace)).map_err(failure)?;
-        entries.push(Entry { name, asked, on_rig: None });
-    }
-    if !pace.as_asked {
-        run_all(&mut entries, &course, (&wish, pace), (&rig, &pose), stop)?;
-    }
-    let bench =
-        Bench { args: pace, wish: &wish, rig: &rig, machine: &machine, course: &course, entries: &entries };
-    write_all(&pace.out, || figure::figure(&bench), || table::csv(&bench))?;
-    Ok(Answer::new(table::text(&bench), table::json(&bench)))
-}
-
-/// All that is shown.
-struct Bench<'a> {
-    args: &'a PaceArgs,
-    wish: &'a Wish,
-    rig: &'a RigConfig,
-    machine: &'a Machine,
-    course: &'a Course<'a>,
-    entries: &'a [Entry],
-}
-
-impl Bench<'_> {
-    /// The moves to be plotted, in the order they were named.
-    fn chosen(&self) -> impl Iterator<Item = &Entry> {
-        self.args.profile.iter().filter_map(|&name| self.entries.iter().find(|entry| entry.name == name))
+impl LabCommand for MoveArgs {
+    fn voice(&self) -> Voice {
+        self.pace().voice
     }
 
-    /// The move of an entry that is wanted: on the rig, or as asked.
-    fn pace<'e>(&self, entry: &'e Entry) -> Option<&'e Pace> {
-        let asked = entry.asked.as_ref().map(|(pace, _)| pace);
-        entry.on_rig.as_ref().map(|on_rig| &on_rig.pace).or(asked)
+    fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
+        let (way, pace) = (self.way(), self.pace());
+        let request = Request {
+            rig: named::rig(&pace.rig)?,
+            pose: HeadPose::square_on(pace.distance.map_or(DEFAULT_DISTANCE_M, |d| d.0)),
+            way,
+            speed: pace.vmax,
+            acceleration: pace.amax,
+            deceleration: pace.dmax.unwrap_or(pace.amax),
+            ramps: pace.ramps,
+            profiles: pace.profile.clone(),
+            as_asked: pace.as_asked,
+            seed: pace.seed,
+        };
+        command::plotted(request, &pace.out, pace.voice, stop)
     }
 }
 
 impl MoveArgs {
-    fn wish(&self, pose: &HeadPose) -> Result<Wish, Failure> {
-        let (piece, metres_per_rad, title) = match &self.course {
-            CourseArgs::Line(line) => line.course(pose),
-            CourseArgs::Arc(arc) => arc.course()?,
-        };
-        let pace = self.pace();
-        let limits = MoveLimits {
-            speed: pace.vmax.linear(metres_per_rad),
-            acceleration: pace.amax.linear(metres_per_rad),
-            deceleration: pace.dmax.unwrap_or(pace.amax).linear(metres_per_rad),
-        };
-        Ok(Wish { title, piece, limits })
+    const fn pace(&self) -> &PaceArgs {
+        match &self.course {
+            CourseArgs::Line(args) => &args.pace,
+            CourseArgs::Arc(args) => &args.pace,
+        }
+    }
+
+    fn way(&self) -> Way {
+        match &self.course {
+            CourseArgs::Line(line) => {
+                let from = point(line.start);
+                let to = || from + line.length.0 * Vec2::from_angle(line.angle.0);
+                Way::Line { from, to: line.to.map_or_else(to, point) }
+            }
+            CourseArgs::Arc(arc) => {
+                Way::Arc { from: point(arc.start), centre: point(arc.centre), sweep_rad: arc.angle.0 }
+            }
+        }
     }
 }
 
 fn point(at: Offset) -> Point {
     Point::new(at.0.0, at.1.0)
-}
-
-impl LineArgs {
-    fn course(&self, pose: &HeadPose) -> (Piece, f64, String) {
-        let from = point(self.start);
-        let to = self.to.map_or_else(|| from + self.length.0 * Vec2::from_angle(self.angle.0), point);
-        let title =
-            format!("line of {:.1} mm from {} to {} mm", 1e3 * from.distance(to), in_mm(from), in_mm(to));
-        (Piece { from, element: Element::Line { to } }, pose.distance_m, title)
-    }
-}
-
-impl ArcArgs {
-    fn course(&self) -> Result<(Piece, f64, String), Failure> {
-        let (from, centre) = (point(self.start), point(self.centre));
-        let radius_m = from.distance(centre);
-        if radius_m < 1e-6 {
-            let message = "--start is at --centre: such an arc has no radius; move one of them";
-            return Err(Failure::usage("usage", message));
-        }
-        let title = format!(
-            "arc of {:.4}° about {} from {} mm, radius {:.1} mm",
-            self.angle.0.to_degrees(),
-            in_mm(centre),
-            in_mm(from),
-            1e3 * radius_m
-        );
-        Ok((Piece { from, element: Element::Arc { centre, sweep: self.angle.0 } }, radius_m, title))
-    }
-}
-
-fn in_mm(at: Point) -> String {
-    format!("({:.1}, {:.1})", 1e3 * at.x, 1e3 * at.y)
-}
-
-/// A profile by the limits as they were asked for, and the torque that takes.
-fn asked(
-    name: ProfileName,
-    course: &Course<'_>,
-    (wish, args): (&Wish, &PaceArgs),
-) -> Result<Option<(Pace, PanTilt<f64>)>, CourseError> {
-    let Some(shape) = name.shape(args.ramps) else { return Ok(None) };
-    let pace = course.shaped(shape, &wish.limits);
-    let torque_nm = course.torque_peaks_nm(&pace)?;
-    Ok(Some((pace, torque_nm)))
-}
-
-/// Longest move that is run, s: all seven are kept, tick by tick.
-const LONGEST_S: f64 = 60.0;
-
-/// Fits every profile to the motors, and if none takes too long runs them all.
-fn run_all(
-    entries: &mut [Entry],
-    course: &Course<'_>,
-    (wish, args): (&Wish, &PaceArgs),
-    (rig, pose): (&RigConfig, &HeadPose),
-    stop: &Stop,
-) -> Result<(), Failure> {
-    let mut paces = Vec::new();
-    for entry in entries.iter() {
-        let pace = match entry.name.shape(args.ramps) {
-            None => course.optimal(&wish.limits),
-            Some(shape) => course.shaped_for_motors(shape, &wish.limits),
-        };
-        let pace = pace.map_err(failure)?;
-        if pace.duration_s() > LONGEST_S {
-            let too_long = PlanError::TooLong { needed_s: pace.duration_s(), most_s: LONGEST_S };
-            return Err(failure(too_long.into()));
-        }
-        paces.push(pace);
-    }
-    for (entry, pace) in entries.iter_mut().zip(paces) {
-        entry.on_rig = Some(run_one(pace, course, (rig, pose), args.seed, stop).map_err(failure)?);
-        stop.check()?;
-    }
-    Ok(())
-}
-
-fn run_one(
-    pace: Pace,
-    course: &Course<'_>,
-    (rig, pose): (&RigConfig, &HeadPose),
-    seed: u64,
-    stop: &Stop,
-) -> Result<OnRig, CourseError> {
-    let plan = course.plan(&pace, &request_of(rig))?;
-    let mut simulated = SimulatedRig::new(rig, *pose, seed);
-    let run = tracelight_sim::run(&mut simulated, &plan, false, |_, _| {
-        if stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    let tracking = score(&plan, &run, plan.set_speed_m_s);
-    // a rig that holds takes longer than its plan
-    let held = !run.is_done() || run.ticks.len() > plan.points.len() + 50;
-    let start_tick = plan.leg_ends.first().map_or(0, |end| end.start_tick);
-    Ok(OnRig { pace, run, tracking, start_tick, held })
-}
-
-fn failure(error: CourseError) -> Failure {
-    match error {
-        CourseError::NoLength => Failure::usage("usage", error),
-        CourseError::Reach { .. } => {
-            let message = format!("{error}; move it nearer to the centre, or step back (--distance)");
-            Failure::failed("unreachable", message)
-        }
-        CourseError::Plan(PlanError::TooLong { needed_s, most_s }) => {
-            let message = format!(
-                "the move would take {needed_s:.0} s, and at most {most_s:.0} s are run; give it a higher --vmax or --amax"
-            );
-            Failure::failed("too-long", message)
-        }
-        CourseError::Plan(error) => Failure::failed("motor-too-weak", error),
-    }
 }

@@ -1,21 +1,14 @@
-use std::fmt::Write;
-
 use clap::Args;
-use serde_json::json;
-use tracelight_chart::{Colour, Curve, Figure, Key, Pen, Theme};
-use tracelight_lab::{Relay, RelayPid, StepFigures, Swing, swing};
-use tracelight_linear::decibels;
-use tracelight_rig::{Joint, TICK_F64_S};
-use tracelight_sim::{
-    BenchTick, HandTuned, LawName, Mounting, ObserverName, RigConfig, StepReference, StepResponse,
-    head_alone, step_response,
-};
-use tracelight_task::Failure;
+use tracelight_experiment::relay::Request;
+use tracelight_rig::Joint;
+use tracelight_sim::{Mounting, ObserverName};
+use tracelight_task::{Failure, Stop};
 use tracelight_units::Angle;
 
 use super::bode::frequency;
-use super::step::{Axis, curve, figures, figures_json, heading, row, step, unreachable};
-use super::{OutFile, out_file, over_time, rig_out, voltage, write_all};
+use super::command::{self, LabCommand, OutFile, out_file};
+use super::step::{Axis, step};
+use super::{rig_out, voltage};
 use crate::cli::laws::observer;
 use crate::cli::{Answer, Voice};
 use crate::named;
@@ -70,7 +63,7 @@ pub(crate) struct RelayArgs {
     #[arg(long)]
     save: bool,
     #[command(flatten)]
-    pub(super) voice: Voice,
+    voice: Voice,
 }
 
 fn margin(text: &str) -> Result<Angle, String> {
@@ -87,182 +80,49 @@ fn factor(text: &str) -> Result<f64, String> {
     super::by_hand::number("--integral", text, 2.0, 1e4)
 }
 
-/// A swing, the gains from it, and what they do.
-struct Tuned {
-    relay: Relay,
-    swing: Swing,
-    pid: RelayPid,
-    response: StepResponse,
-    nonlinear: StepFigures,
-    linear: StepFigures,
-}
-
-pub(crate) fn run(args: &RelayArgs) -> Result<Answer, Failure> {
-    rig_out::may_save(&args.rig, args.save)?;
-    let rig = named::rig(&args.rig)?;
-    let joint = args.axis.joint();
-    let (swing, relay) = swung(args, &rig, joint)?;
-    let torque_nm_per_v = rig.model.motors[joint].torque_nm_per_v;
-    let pid = swing
-        .pid(&relay, torque_nm_per_v, args.crossover, (args.phase_margin.0, args.integral))
-        .map_err(|e| Failure::failed("relay", e))?;
-    let mut better = rig.clone();
-    // an observer that the rig's file names stays
-    better.control.law = LawName::HandTuned;
-    better.control.observer = args.observer.or(rig.control.observer);
-    let by_hand = &mut better.control.hand_tuned[joint];
-    *by_hand = HandTuned { kp: pid.kp, ki: pid.ki, kd: pid.kd, ..*by_hand };
-    let response = step_response(&better, joint, args.to.0, StepReference::Jump, args.seed)
-        .ok_or_else(|| unreachable(joint, args.to))?;
-    let (nonlinear, linear) =
-        (figures(&response.nonlinear, joint, args.to), figures(&response.linear, joint, args.to));
-    let tuned = Tuned { relay, swing, pid, response, nonlinear, linear };
-    write_all(&args.out, || figure(args, &rig, &tuned), || Ok(csv(&tuned)))?;
-    if args.save {
-        named::save_rig(&args.rig, &rig, &better)?;
+impl LabCommand for RelayArgs {
+    fn voice(&self) -> Voice {
+        self.voice
     }
-    Ok(Answer::either(args.voice, || text(args, &rig, &tuned), || json(args, &rig, &tuned)))
-}
 
-fn swung(args: &RelayArgs, rig: &RigConfig, joint: Joint) -> Result<(Swing, Relay), Failure> {
-    let motor = rig.model.motors[joint];
-    let mounting = if args.fixture { Mounting::Fixture } else { Mounting::Standing };
-    let pull_nm = match (joint, mounting) {
-        (Joint::Tilt, Mounting::Standing) => rig.model.bodies.lumped().gravity(0.0).tilt,
-        _ => 0.0,
-    };
-    let count_rad = rig.model.encoder.count_rad();
-    let relay = Relay {
-        level_v: args.level,
-        hysteresis_rad: args.hysteresis.map_or(1.5 * count_rad, |angle| angle.0.abs()),
-        hold_v: motor.volts_for(pull_nm),
-        limit_v: motor.limit_v,
-        count_rad,
-    };
-    if args.level + relay.hold_v.abs() > motor.limit_v {
-        let message = format!(
-            "--level {} V and {:.2} V to hold {joint} are more than the {} V of its amplifier",
-            args.level,
-            relay.hold_v.abs(),
-            motor.limit_v
-        );
-        return Err(Failure::usage("usage", message));
+    fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
+        rig_out::may_save(&self.rig, self.save)?;
+        let finding = command::tried(self.request()?, self.voice, stop)?;
+        self.out.iter().try_for_each(|file| file.write(&finding))?;
+        if self.save {
+            named::save_rig(&self.rig, finding.rig(), finding.better())?;
+        }
+        Ok(rig_out::answer(&finding, &self.saved(), self.voice))
     }
-    let mut head = head_alone(rig, joint, mounting, args.seed);
-    let swing = swing(&mut head, joint, &relay).map_err(|e| Failure::failed("relay", e))?;
-    Ok((swing, relay))
 }
 
-fn text(args: &RelayArgs, rig: &RigConfig, tuned: &Tuned) -> String {
-    let Tuned { relay, swing, pid, .. } = tuned;
-    let joint = args.axis.joint();
-    let torque_nm_per_v = rig.model.motors[joint].torque_nm_per_v;
-    let there = swing.response(relay, torque_nm_per_v);
-    let (inertia_kg_m2, coulomb_nm) = swing.mass(relay, torque_nm_per_v);
-    let mut text = format!(
-        "{joint} of rig {} between {:.2} V and {:.2} V, turned over {:.3}° beyond its middle:\n\
-         swings by ±{:.3}° in {:.4} s, periods and amplitudes within {:.1} %\n\
-         at {:.2} rad/s it answers {:.2} dB and {:.1}°, rad per N m,\n\
-         like {:.5} kg m² with {:.4} N m of Coulomb friction\n\n\
-         gains for a phase margin of {:.1}° at {:.2} rad/s, as it answers at this amplitude: kp = {:.4} N m/rad, ki = {:.4} N m/(rad s), kd = {:.4} N m s/rad\n\n",
-        rig.name,
-        swing.hold_v - relay.level_v,
-        swing.hold_v + relay.level_v,
-        relay.hysteresis_rad.to_degrees(),
-        swing.amplitude_rad.to_degrees(),
-        swing.period_s,
-        100.0 * swing.unevenness,
-        swing.rad_s(),
-        decibels(there.norm()),
-        there.arg().to_degrees(),
-        inertia_kg_m2,
-        coulomb_nm,
-        args.phase_margin.0.to_degrees(),
-        args.crossover.unwrap_or(swing.rad_s()),
-        pid.kp,
-        pid.ki,
-        pid.kd,
-    );
-    text += &heading(rig, joint, args.to);
-    text += &row(LawName::HandTuned.name(), &tuned.nonlinear, &tuned.linear, rig);
-    text += "\n\nmm on a target 3 ft away.";
-    if args.save {
-        // writing to a String cannot fail
+impl RelayArgs {
+    fn request(&self) -> Result<Request, Failure> {
+        Ok(Request {
+            rig: named::rig(&self.rig)?,
+            joint: self.axis.joint(),
+            level_v: self.level,
+            hysteresis_rad: self.hysteresis.map(|angle| angle.0),
+            mounting: if self.fixture { Mounting::Fixture } else { Mounting::Standing },
+            crossover_rad_s: self.crossover,
+            phase_margin_rad: self.phase_margin.0,
+            integral: self.integral,
+            observer: self.observer,
+            to_rad: self.to.0,
+            seed: self.seed,
+        })
+    }
+
+    /// What the rig file has now.
+    fn saved(&self) -> String {
+        if !self.save {
+            return String::new();
+        }
+        let joint = self.axis.joint();
         let other = if joint == Joint::Pan { Joint::Tilt } else { Joint::Pan };
-        let _ = write!(
-            text,
+        format!(
             " {} has law hand-tuned now, for both joints, and {joint}'s gains; {other}'s are those of control.hand_tuned.{other}: tune them as well.",
-            args.rig
-        );
+            self.rig
+        )
     }
-    text
-}
-
-fn json(args: &RelayArgs, rig: &RigConfig, tuned: &Tuned) -> String {
-    let Tuned { relay, swing, pid, .. } = tuned;
-    let mut object = figures_json(&tuned.nonlinear, rig);
-    object["linear"] = figures_json(&tuned.linear, rig);
-    let torque_nm_per_v = rig.model.motors[args.axis.joint()].torque_nm_per_v;
-    let there = swing.response(relay, torque_nm_per_v);
-    let (inertia_kg_m2, coulomb_nm) = swing.mass(relay, torque_nm_per_v);
-    let swung = json!({
-        "axis": args.axis.joint().name(),
-        "amplitude_rad": swing.amplitude_rad,
-        "period_s": swing.period_s,
-        "unevenness": swing.unevenness,
-        "hold_v": swing.hold_v,
-        "rad_s": swing.rad_s(),
-        "magnitude_rad_per_nm": there.norm(),
-        "phase_deg": there.arg().to_degrees(),
-        "inertia_kg_m2": inertia_kg_m2,
-        "coulomb_nm": coulomb_nm,
-        "crossover_rad_s": args.crossover.unwrap_or(swing.rad_s()),
-        "kp": pid.kp,
-        "ki": pid.ki,
-        "kd": pid.kd,
-        "to_rad": args.to.0,
-        "step": object,
-    });
-    swung.to_string()
-}
-
-fn csv(tuned: &Tuned) -> String {
-    let mut text = String::from("t_s,volt,angle_rad\n");
-    for (number, (volts, angle_rad)) in tuned.swing.ticks.iter().enumerate() {
-        let _ = writeln!(text, "{:.3},{volts:.4},{angle_rad:.7}", number as f64 * TICK_F64_S);
-    }
-    text
-}
-
-fn figure(args: &RelayArgs, rig: &RigConfig, tuned: &Tuned) -> Result<String, Failure> {
-    let joint = args.axis.joint();
-    let swung = |value: &dyn Fn(&(f64, f64)) -> f64| {
-        let ticks = tuned.swing.ticks.iter().enumerate();
-        let points = ticks.map(|(k, tick)| (k as f64 * TICK_F64_S, value(tick))).collect();
-        vec![Curve { colour: Colour::Blue, pen: Pen::Solid, points }]
-    };
-    let angle = |tick: &BenchTick| tick.angle_rad[joint].to_degrees();
-    let volts = |tick: &BenchTick| f64::from(tick.command_v[joint]);
-    let of = |ticks, pen, value| curve(Colour::Vermilion, ticks, pen, value);
-    let tried = vec![
-        of(&tuned.response.nonlinear, Pen::Solid, &angle),
-        of(&tuned.response.linear, Pen::Dashed, &angle),
-    ];
-    let figure = Figure {
-        title: format!("{joint} of rig {}: swung by a relay, tuned, tried", rig.name),
-        legend: vec![
-            Key::new(Colour::Blue, "by the relay"),
-            Key::new(Colour::Vermilion, "by the PID tuned from it (dashed: linearized)"),
-        ],
-        panels: vec![
-            over_time("angle, °", vec![0.0], swung(&|(_, angle)| angle.to_degrees())),
-            over_time("relay, V", Vec::new(), swung(&|(volts, _)| *volts)),
-            over_time("angle, °", vec![args.to.0.to_degrees()], tried),
-            over_time("command, V", Vec::new(), vec![of(&tuned.response.nonlinear, Pen::Solid, &volts)]),
-        ],
-        columns: 2,
-        panel: (560, 260),
-        theme: Theme::Light,
-    };
-    figure.svg().map_err(|e| Failure::failed("internal", e))
 }

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use tracelight_experiment::Finding;
+use tracelight_experiment::better::rig_file;
 use tracelight_files as files;
-use tracelight_rigfile as rigfile;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
+use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// Refuses to write into what comes with the program.
@@ -27,12 +29,7 @@ pub(super) fn write(
 ) -> Result<String, Failure> {
     let path = out.join("rig.toml").display().to_string();
     let own = files::is_same(&path, rig);
-    let text = rigfile::write(after);
-    if let Err(wrong) = rigfile::parse("what was found", &text) {
-        let message =
-            format!("what was found is no head that a rig file takes, so nothing is written: {wrong}");
-        return Err(Failure::failed("identify", message));
-    }
+    let text = rig_file(after)?;
     if save {
         named::save_rig(rig, before, after)?;
     } else if own {
@@ -45,4 +42,9 @@ pub(super) fn write(
         files::write(&path, text)?;
     }
     Ok(format!("\n\nrig: {path}{}", if save { format!(", and in {rig}") } else { String::new() }))
+}
+
+/// What is printed of a finding, and where the better rig is.
+pub(super) fn answer(finding: &impl Finding, written: &str, voice: Voice) -> Answer {
+    Answer::either(voice, || finding.text() + written, || finding.json())
 }

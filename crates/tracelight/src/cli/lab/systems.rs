@@ -1,13 +1,7 @@
-use std::fmt::Write;
-
 use clap::{Args, ValueEnum};
-use tracelight_chart::{Colour, Theme};
-use tracelight_lab::Linearization;
-use tracelight_linear::{
-    Complex, Discretization, FormulaError, LinearError, Mode, Names, Time, TransferFunction, Zpk, four_digits,
-};
-use tracelight_rig::Joint;
-use tracelight_sim::Compensator;
+use tracelight_chart::Theme;
+use tracelight_experiment::systems::{OneSystem, Reading, Systems};
+use tracelight_linear::Discretization;
 use tracelight_task::Failure;
 use tracelight_units::{TIMES, parse};
 
@@ -80,14 +74,6 @@ impl Method {
             Self::Matched => Discretization::Matched,
         }
     }
-
-    const fn words(self) -> &'static str {
-        match self {
-            Self::Hold => "a hold",
-            Self::Tustin => "Tustin's rule",
-            Self::Matched => "matching",
-        }
-    }
 }
 
 fn period(text: &str) -> Result<f64, String> {
@@ -95,178 +81,38 @@ fn period(text: &str) -> Result<f64, String> {
     if period_s > 0.0 { Ok(period_s) } else { Err(format!("{text} is no time between samples")) }
 }
 
-/// A system and what it is called.
-pub(super) struct Named {
-    /// As typed, and what was made of it.
-    pub(super) name: String,
-    pub(super) system: TransferFunction,
-    pub(super) colour: Colour,
+const fn theme(dark: bool) -> Theme {
+    if dark { Theme::Dark } else { Theme::Light }
 }
 
 impl SystemArgs {
-    pub(super) const fn theme(&self) -> Theme {
-        if self.dark { Theme::Dark } else { Theme::Light }
-    }
-
-    /// All systems, as they are to be plotted.
-    pub(super) fn systems(&self) -> Result<Vec<Named>, Failure> {
-        let reader = self.how.reader()?;
-        let all = self.systems.iter().zip(Colour::in_turn());
-        all.map(|(text, colour)| {
-            let (mut name, mut system) = reader.read(text)?;
-            if self.closed {
-                system = system.closed().map_err(|e| no_such_system(text, &e))?;
-                name += ", closed";
-            }
-            Ok(Named { name, system, colour })
+    pub(super) fn systems(&self) -> Result<Systems, Failure> {
+        Ok(Systems {
+            formulas: self.systems.clone(),
+            how: self.how.reading()?,
+            closed: self.closed,
+            theme: theme(self.dark),
         })
-        .collect()
     }
 }
 
 impl OneSystemArgs {
-    pub(super) const fn theme(&self) -> Theme {
-        if self.dark { Theme::Dark } else { Theme::Light }
-    }
-
     /// The rig whose masses are linearized, if one is named.
     pub(super) fn rig(&self) -> Option<&str> {
         self.how.head.rig.as_deref()
     }
 
-    /// Its name and what it is.
-    pub(super) fn system(&self) -> Result<(String, TransferFunction), Failure> {
-        self.how.reader()?.read(&self.system)
+    pub(super) fn system(&self) -> Result<OneSystem, Failure> {
+        Ok(OneSystem { formula: self.system.clone(), how: self.how.reading()?, theme: theme(self.dark) })
     }
-}
-
-fn no_such_system(text: &str, error: &LinearError) -> Failure {
-    Failure::failed("no-such-system", format!("{text}: {error}"))
-}
-
-/// A controller in continuous time: a formula, in which K11, K22, K11t and K22t are the report's.
-pub(super) fn controller(text: &str) -> Result<Zpk, Failure> {
-    Ok(parsed(text, Time::Continuous, &the_reports)?.zpk())
-}
-
-/// A formula read; what is wrong with it is pointed at.
-fn parsed(text: &str, time: Time, named: &Names<'_>) -> Result<TransferFunction, Failure> {
-    let pointed = |e: FormulaError| format!("{e}\n  {text}\n  {}^", " ".repeat(e.at));
-    TransferFunction::parse_with(text, time, named).map_err(|e| Failure::usage("bad-formula", pointed(e)))
-}
-
-/// The report's compensators by name.
-fn the_reports(name: &str) -> Option<TransferFunction> {
-    match name {
-        "K11" => compensator(Joint::Pan, false),
-        "K22" => compensator(Joint::Tilt, false),
-        "K11t" => compensator(Joint::Pan, true),
-        "K22t" => compensator(Joint::Tilt, true),
-        _ => None,
-    }
-}
-
-/// What formulas are read with.
-struct Reader<'a> {
-    how: &'a HowArgs,
-    head: Linearization,
 }
 
 impl HowArgs {
-    fn reader(&self) -> Result<Reader<'_>, Failure> {
-        Ok(Reader { how: self, head: self.head.head()?.linearize()? })
+    fn reading(&self) -> Result<Reading, Failure> {
+        Ok(Reading {
+            head: self.head.choice()?,
+            period_s: self.period,
+            sampling: self.sample.map(|period_s| (period_s, self.method.discretization())),
+        })
     }
-}
-
-impl Reader<'_> {
-    /// The system that a formula names.
-    fn named(&self, name: &str) -> Option<TransferFunction> {
-        let keep = self.how.head.keep_cancellations;
-        let own = |joint: Joint| match keep {
-            true => self.head.transfer(joint).ok(),
-            false => self.head.own_transfer(joint).ok().map(|own| own.0),
-        };
-        match name {
-            "G11" => own(Joint::Pan),
-            "G22" => own(Joint::Tilt),
-            _ => the_reports(name),
-        }
-    }
-
-    /// What a formula is, and what was made of it.
-    fn read(&self, text: &str) -> Result<(String, TransferFunction), Failure> {
-        let time = self.how.period.map_or(Time::Continuous, Time::Sampled);
-        let mut system = parsed(text, time, &|name| self.named(name))?;
-        let mut name = text.to_owned();
-        if let Some(period_s) = self.how.sample {
-            let method = self.how.method;
-            system =
-                system.sampled(period_s, method.discretization()).map_err(|e| no_such_system(text, &e))?;
-            name += &format!(", sampled every {} ms by {}", four(1e3 * period_s), method.words());
-        }
-        Ok((name, system))
-    }
-}
-
-/// Refuses what would take more memory than a plot is worth: so many numbers in all.
-pub(super) fn bounded(points: u32, others: usize) -> Result<(), Failure> {
-    const MOST: usize = 1_000_000;
-    let most = MOST / others.max(1);
-    if points as usize <= most {
-        return Ok(());
-    }
-    let message = format!("--points {points} would make more than {MOST} numbers; here {most} is the most");
-    Err(Failure::usage("usage", message))
-}
-
-/// The report's compensator of a joint, in one of its readings.
-fn compensator(joint: Joint, time_constants: bool) -> Option<TransferFunction> {
-    let Compensator { gain, zeros, poles } = Compensator::of_the_report(joint);
-    let left = |roots: [f64; 2]| roots.map(|root| Complex::new(-root, 0.0)).to_vec();
-    let (zeros, poles) = (left(zeros), left(poles));
-    let zpk = match time_constants {
-        true => Zpk::from_time_constants(gain, zeros, poles),
-        false => Zpk::new(gain, zeros, poles, Time::Continuous),
-    };
-    zpk.ok().map(|zpk| zpk.transfer())
-}
-
-/// A number for people: four digits, without idle zeros.
-pub(super) fn four(value: f64) -> String {
-    if value.is_infinite() { "∞".to_owned() } else { four_digits(value).replace('-', "−") }
-}
-
-/// A time, for people.
-pub(super) fn seconds(seconds: Option<f64>) -> String {
-    seconds.map_or("never".to_owned(), |s| format!("{} s", four(s)))
-}
-
-/// A share, for people.
-pub(super) fn percent(value: Option<f64>) -> String {
-    value.map_or("–".to_owned(), |p| format!("{} %", four(p)))
-}
-
-/// A pole or zero and its mirror, for people.
-pub(super) fn place(root: Complex) -> String {
-    if root.im == 0.0 { four(root.re) } else { format!("{} ± {}j", four(root.re), four(root.im.abs())) }
-}
-
-/// Poles for people: a line each, with natural frequency and damping.
-pub(super) fn pole_lines(poles: &[Complex], time: Time) -> String {
-    let mut text = format!("    {:28} {:>16} {:>10}\n", "pole", "natural, rad/s", "damping");
-    for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
-        let Mode { natural_rad_s, damping, .. } = Mode::of(*pole, time);
-        let damping = match natural_rad_s {
-            0.0 => "–".to_owned(),
-            _ => format!("{damping:.4}").replace('-', "−"),
-        };
-        // writing to a String cannot fail
-        let _ = writeln!(text, "    {:28} {:>16} {damping:>10}", place(*pole), four(natural_rad_s));
-    }
-    text
-}
-
-/// A complex number for scripts.
-pub(super) fn pairs(values: &[Complex]) -> Vec<[f64; 2]> {
-    values.iter().map(|z| [z.re, z.im]).collect()
 }

@@ -1,0 +1,144 @@
+//! What an amplifier makes of a volt, and what the turning motor's own voltage takes away.
+
+mod view;
+
+use tracelight_lab::{Amplifier, CurrentPoint, amplifier};
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
+use tracelight_sim::{MotorReading, Mounting, READ_TICKS, RigConfig, motor_readings};
+use tracelight_task::{Failure, Task};
+
+use crate::finding::Experiment;
+use crate::parts::{self, tell_each};
+use crate::record::MOST_V;
+use crate::table::{self, Log};
+
+/// Volts at amplifiers and amperes through motors: as logs have them, or tried with a simulated head.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The rig that the readings are of.
+    pub rig: RigConfig,
+    /// Logs with a row each reading: `axis,volt,ampere`, and `velocity_rad_s` if somebody looked at the speed; if none, the simulated
+    /// head is tried in a fixture.
+    pub logs: Vec<Log>,
+    /// Only this joint.
+    pub only: Option<Joint>,
+    /// Torque at the joint for each ampere: the motor's constant times its gears and belt, N m/A.
+    pub torque_nm_per_a: f64,
+    /// Highest voltage, either way, that the simulated head is tried with, V.
+    pub most_v: f64,
+    /// The last digit of what the ammeter shows, A.
+    pub ammeter_a: f64,
+    /// Of what differs from head to head.
+    pub seed: u64,
+}
+
+/// The amplifier of each joint.
+pub struct Finding {
+    of: Request,
+    joints: Vec<Found>,
+    better: RigConfig,
+}
+
+/// A joint's readings and what they say.
+type Found = parts::Found<CurrentPoint, Amplifier>;
+
+impl Experiment for Request {
+    type Finding = Finding;
+
+    fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
+        let readings = if self.logs.is_empty() { self.tried() } else { self.logged()? };
+        let tell = |joint: Joint, points: &[CurrentPoint]| {
+            amplifier(points).ok_or_else(|| {
+                let count = points.len();
+                let message = format!(
+                    "{joint}: {count} readings tell no amplifier; give three at least, at different volts"
+                );
+                Failure::failed("amplifier", message)
+            })
+        };
+        let nothing = || {
+            let message = format!("{}: no reading of the joint that is asked for", table::names(&self.logs));
+            Failure::usage("amplifier-log", message)
+        };
+        let joints = tell_each(self.only, readings, tell, nothing)?;
+        let mut better = self.rig.clone();
+        for Found { joint, told: amplifier, .. } in &joints {
+            better.model.motors[*joint].torque_nm_per_v = amplifier.gain.value * self.torque_nm_per_a;
+        }
+        Ok(Finding { of: self, joints, better })
+    }
+}
+
+impl Request {
+    /// Readings of the simulated head: each voltage held for three seconds, up and down.
+    fn tried(&self) -> PanTilt<Vec<CurrentPoint>> {
+        const VOLTAGES: i32 = 8;
+        const READINGS: usize = 30;
+        let rig = &self.rig;
+        let count_rad = rig.model.encoder.count_rad();
+        PanTilt::from_fn(|joint| {
+            let most = self.most_v.min(rig.model.motors[joint].limit_v);
+            let volts: Vec<f64> = (1..=VOLTAGES)
+                .flat_map(|k| [1.0, -1.0].map(|way| way * most * f64::from(k) / f64::from(VOLTAGES)))
+                .collect();
+            let seen = motor_readings(rig, joint, Mounting::Fixture, &volts, (READINGS, self.seed));
+            let read = |reading: &MotorReading| CurrentPoint {
+                volts: reading.volts,
+                amperes: (reading.motor_nm / self.torque_nm_per_a / self.ammeter_a).round() * self.ammeter_a,
+                rate_rad_s: Some(f64::from(reading.counts) * count_rad / (READ_TICKS as f64 * TICK_F64_S)),
+            };
+            // each second: readings beside each other are rounded alike, and tell no more than one of them
+            seen.chunks(READINGS).flat_map(|held| held.iter().skip(4).step_by(10)).map(read).collect()
+        })
+    }
+
+    fn logged(&self) -> Result<PanTilt<Vec<CurrentPoint>>, Failure> {
+        /// More than any motor of such a head takes, A, and turns with, rad/s.
+        const MOST: f64 = 1e4;
+        let mut points: PanTilt<Vec<CurrentPoint>> = PanTilt::default();
+        for log in &self.logs {
+            table::read(
+                log,
+                "amplifier-log",
+                |names| Ok((names.all(["axis", "volt", "ampere"])?, names.find("velocity_rad_s"))),
+                |&([axis, volt, ampere], rate), row| {
+                    let rate_rad_s = rate.filter(|&column| !row.text(column).is_empty());
+                    points[row.joint(axis)?].push(CurrentPoint {
+                        volts: row.up_to(volt, MOST_V, "any amplifier takes")?,
+                        amperes: row.up_to(ampere, MOST, "any motor takes")?,
+                        rate_rad_s: rate_rad_s
+                            .map(|column| row.up_to(column, MOST, "any joint turns with"))
+                            .transpose()?,
+                    });
+                    Ok(())
+                },
+            )?;
+        }
+        for joint in Joint::BOTH {
+            let blind = points[joint].iter().filter(|point| point.rate_rad_s.is_none()).count();
+            if blind > 0 && blind < points[joint].len() {
+                let message = format!(
+                    "{}: {blind} of {} readings of {joint} have no velocity_rad_s: give it in each, or leave the column out",
+                    table::names(&self.logs),
+                    points[joint].len()
+                );
+                return Err(Failure::usage("amplifier-log", message));
+            }
+        }
+        Ok(points)
+    }
+}
+
+impl Finding {
+    /// The rig as it was believed to be.
+    #[must_use]
+    pub const fn rig(&self) -> &RigConfig {
+        &self.of.rig
+    }
+
+    /// The rig with the torque per volt of the amperes that were read.
+    #[must_use]
+    pub const fn better(&self) -> &RigConfig {
+        &self.better
+    }
+}

@@ -1,0 +1,245 @@
+//! A controller from wishes, and the loop it makes: margins, step, poles.
+
+mod view;
+
+use tracelight_chart::Theme;
+use tracelight_linear::{
+    Complex, LeadLagWish, LinearError, LqgWish, Margins, PidWish, Response, Stability, StepInfo, Time,
+    TransferFunction, Zpk,
+};
+use tracelight_rig::Joint;
+use tracelight_sim::RigConfig;
+use tracelight_task::{Failure, Task};
+
+use crate::finding::Experiment;
+use crate::numbers::four;
+use crate::systems::OneSystem;
+use crate::trial::Trial;
+
+/// A system and the controller that is wished for it.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// What is controlled.
+    pub system: OneSystem,
+    /// How the controller is found.
+    pub method: Method,
+    /// A rig that it drives, too.
+    pub tried: Option<TriedOn>,
+}
+
+/// How a controller is found.
+#[derive(Clone, Debug)]
+pub enum Method {
+    /// As many leads as the phase margin asks for, and a lag.
+    LeadLag(LeadLagWish),
+    /// The PID with the largest integral gain that keeps the margins.
+    Pid(PidWish),
+    /// State feedback that costs least, the state estimated by a Kalman filter.
+    Lqg(LqgWish),
+    /// State feedback and an estimator with these poles, pairs complete.
+    Place {
+        /// Of the regulator: as many as the system has, or one more.
+        regulator: Vec<Complex>,
+        /// Of the estimator; if not given, those of the regulator, four times as fast.
+        estimator: Option<Vec<Complex>>,
+    },
+}
+
+/// A simulated rig whose joint a controller drives, from a jump of its setpoint.
+#[derive(Clone, Debug)]
+pub struct TriedOn {
+    /// The rig.
+    pub rig: RigConfig,
+    /// The joint.
+    pub joint: Joint,
+    /// How far it jumps, rad.
+    pub to_rad: f64,
+    /// Of what differs from head to head.
+    pub seed: u64,
+}
+
+/// Order beyond which digits run out, and time.
+const MOST_ORDER: usize = 24;
+
+/// What was designed, and what it does.
+pub struct Finding {
+    name: String,
+    plant: TransferFunction,
+    controller: Zpk,
+    /// The controller in its own figures.
+    remark: String,
+    closed: TransferFunction,
+    margins: Margins,
+    /// What comes out, and what the controller puts in, after a step of what is wished.
+    step: Response,
+    input: Response,
+    /// The largest of the input.
+    peak: f64,
+    stability: Stability,
+    /// Of what settles.
+    info: Option<StepInfo>,
+    trial: Option<Trial>,
+    theme: Theme,
+}
+
+impl Experiment for Request {
+    type Finding = Finding;
+
+    fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
+        let (name, plant) = self.system.system()?;
+        let order = plant.denominator().degree().max(plant.numerator().degree());
+        if order > MOST_ORDER {
+            let message = format!(
+                "{name} is of order {order}; controllers are designed for systems up to order {MOST_ORDER}"
+            );
+            return Err(Failure::failed("no-such-design", message));
+        }
+        let failed = |e: LinearError| Failure::failed("no-such-design", format!("{name}: {e}"));
+        let (controller, remark) = self.method.controller(&plant).map_err(failed)?;
+        let tried = |on: TriedOn| Trial::of(on.rig, on.joint, (on.to_rad, on.seed), &controller);
+        let trial = self.tried.map(tried).transpose()?;
+        let designed = Finding::of(name.clone(), plant, controller, remark).map_err(failed)?;
+        Ok(Finding { trial, theme: self.system.theme, ..designed })
+    }
+}
+
+impl Method {
+    fn controller(&self, plant: &TransferFunction) -> Result<(Zpk, String), LinearError> {
+        match self {
+            Self::LeadLag(wish) => Ok((plant.lead_lag(*wish)?, String::new())),
+            Self::Pid(wish) => {
+                let pid = plant.pid(*wish)?;
+                let remark = format!(
+                    "kp = {}, ki = {} 1/s, kd = {} s, derivative up to {} rad/s",
+                    four(pid.kp),
+                    four(pid.ki),
+                    four(pid.kd),
+                    four(pid.filter_rad_s)
+                );
+                Ok((pid.transfer().zpk(), remark))
+            }
+            Self::Lqg(wish) => Ok((plant.lqg(wish)?, String::new())),
+            Self::Place { regulator, estimator } => {
+                let own = || faster(regulator, plant);
+                let estimator = estimator.clone().unwrap_or_else(own);
+                Ok((plant.placed(regulator, &estimator)?, String::new()))
+            }
+        }
+    }
+}
+
+/// As many poles as the system has, four times as fast as these.
+fn faster(poles: &[Complex], plant: &TransferFunction) -> Vec<Complex> {
+    let mut poles = poles.to_vec();
+    if poles.len() > plant.denominator().degree() {
+        // the integral's is not estimated: a real pole less, or one for a pair
+        match poles.iter().position(|pole| pole.im == 0.0) {
+            Some(real) => drop(poles.remove(real)),
+            None => {
+                let size = match plant.time() {
+                    Time::Continuous => -poles[0].norm(),
+                    Time::Sampled(_) => poles[0].norm(),
+                };
+                poles.splice(..2, [Complex::new(size, 0.0)]);
+            }
+        }
+    }
+    let four_times = |pole: &Complex| match plant.time() {
+        Time::Continuous => 4.0 * pole,
+        Time::Sampled(_) => pole * pole * pole * pole,
+    };
+    poles.iter().map(four_times).collect()
+}
+
+impl Finding {
+    fn of(
+        name: String,
+        plant: TransferFunction,
+        controller: Zpk,
+        remark: String,
+    ) -> Result<Self, LinearError> {
+        let k = controller.transfer();
+        let open = k.series(&plant)?;
+        let closed = open.closed()?;
+        let to_input = k.feedback(&plant)?;
+        let stability = closed.stability();
+        let (step, info) = settled_step(&closed, stability)?;
+        // what a derivative without an end puts in is an impulse: it has no step
+        let input = to_input.step_response(step.step_s, step.values.len()).unwrap_or_default();
+        // its peak may be over long before the output has settled
+        let mut peak = input.peak().0.abs();
+        if let Time::Continuous = plant.time() {
+            for shorter in (1..=20).map(|k| step.step_s * 0.5_f64.powi(k)) {
+                peak = peak.max(
+                    to_input.step_response(shorter, step.values.len()).map_or(0.0, |u| u.peak().0.abs()),
+                );
+            }
+        }
+        let [step, input] = [step, input].map(shown);
+        let margins = open.margins();
+        Ok(Self {
+            name,
+            plant,
+            controller,
+            remark,
+            closed,
+            margins,
+            step,
+            input,
+            peak,
+            stability,
+            info,
+            trial: None,
+            theme: Theme::Light,
+        })
+    }
+}
+
+/// A step, watched until it has settled; what it is judged by, if it does.
+fn settled_step(
+    closed: &TransferFunction,
+    stability: Stability,
+) -> Result<(Response, Option<StepInfo>), LinearError> {
+    /// Rows of a step in continuous time, and most samples.
+    const ROWS: usize = 2000;
+    const MOST_SAMPLES: f64 = 60_000.0;
+    /// Within this share of the goal it is settled.
+    const BAND: f64 = 0.02;
+    /// Times the watch is doubled.
+    const DOUBLINGS: i32 = 20;
+    let sizes = closed.poles().into_iter().map(|pole| closed.time().continuous(pole));
+    let rates = sizes.filter(|s| s.re.is_finite() && s.norm() > 1e-9).map(|s| s.re.abs().max(0.1 * s.norm()));
+    // begun with the fastest
+    let fastest = rates.fold(0.0, f64::max);
+    let begun_s = if fastest > 0.0 { 3.0 / fastest } else { 1.0 };
+    let watch = |duration_s: f64| match closed.time() {
+        Time::Continuous => closed.step_response(duration_s / ROWS as f64, ROWS + 1),
+        Time::Sampled(period_s) => {
+            closed.step_response(period_s, (duration_s / period_s).clamp(20.0, MOST_SAMPLES) as usize + 1)
+        }
+    };
+    if stability != Stability::Stable {
+        return Ok((watch(4.0 * begun_s)?, None));
+    }
+    let mut doubling = 0;
+    loop {
+        let step = watch(begun_s * 2.0_f64.powi(doubling))?;
+        let info = step.step_info(Some(closed.dc_gain()), BAND);
+        let end_s = step.step_s * (step.values.len() - 1) as f64;
+        // some rest after it shows that it is one
+        let is_over = info.settle_s.is_some_and(|settle_s| settle_s < 0.6 * end_s);
+        if is_over || doubling == DOUBLINGS {
+            return Ok((step, Some(info)));
+        }
+        doubling += 1;
+    }
+}
+
+/// As far as a plot has room: what grows ends where it is a million.
+fn shown(mut response: Response) -> Response {
+    let end =
+        response.values.iter().position(|y| y.is_nan() || y.abs() >= 1e6).unwrap_or(response.values.len());
+    response.values.truncate(end.max(2));
+    response.values.iter_mut().for_each(|y| *y = if y.is_finite() { *y } else { 0.0 });
+    response
+}

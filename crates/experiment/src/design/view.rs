@@ -1,0 +1,134 @@
+//! A controller and its loop, as they are shown.
+
+use std::fmt::Write;
+
+use serde_json::json;
+use tracelight_chart::{Colour, Curve, Figure, Key, Pen};
+use tracelight_linear::{Response, Stability};
+use tracelight_task::Failure;
+
+use super::Finding;
+use crate::finding::{self, Plotted};
+use crate::margins::{margin_lines, margins_json};
+use crate::numbers::{four, percent, seconds};
+use crate::panels::over_time;
+use crate::systems::{pairs, pole_lines, stability_name, system_json};
+use crate::trial::Trial;
+
+impl finding::Finding for Finding {
+    fn text(&self) -> String {
+        let Self { name, plant, controller, remark, closed, margins, info, .. } = self;
+        let mut text = format!("{name} = {plant}\n\nK = {controller}\n");
+        if !remark.is_empty() {
+            text += &format!("    {remark}\n");
+        }
+        // writing to a String cannot fail
+        let _ = writeln!(text, "\nthe loop\n{}", margin_lines(margins));
+        if let Some(info) = info {
+            let _ = writeln!(
+                text,
+                "\na step comes to {}, overshoots by {}, rises in {}, is within 2 % after {}\nfor a step of 1 the input is {} at most",
+                four(info.final_value),
+                percent(info.overshoot_percent),
+                seconds(info.rise_s),
+                info.settle_s.map_or_else(
+                    || format!(
+                        "more than the {} s watched",
+                        four(self.step.step_s * self.step.values.len() as f64)
+                    ),
+                    |s| format!("{} s", four(s))
+                ),
+                four(self.peak)
+            );
+        }
+        let closed_is = match self.stability {
+            Stability::Stable => "stable",
+            Stability::Marginal => "at the edge of stability, or nearer to it than rounding lets tell",
+            Stability::Growing => "NOT stable: it grows",
+        };
+        let _ = write!(text, "\nclosed it is {closed_is}\n{}", pole_lines(&closed.poles(), closed.time()));
+        if let Some(trial) = &self.trial {
+            text += &format!("\n{}", trial.text());
+        }
+        text.trim_end().to_owned()
+    }
+
+    fn json(&self) -> String {
+        let info = self.info;
+        let stable = self.stability == Stability::Stable;
+        let modulus = self.margins.modulus.filter(|_| stable);
+        let zpk = &self.controller;
+        json!({
+            "system": system_json(&self.name, &self.plant),
+            "controller": {
+                "text": zpk.to_string(),
+                "gain": zpk.gain(),
+                "zeros": pairs(zpk.zeros()),
+                "poles": pairs(zpk.poles()),
+                "num": zpk.transfer().numerator().coefficients(),
+                "den": zpk.transfer().denominator().coefficients(),
+            },
+            "margins": margins_json(&self.margins),
+            "closed_poles": pairs(&self.closed.poles()),
+            "closed_stable": stable,
+            "closed_stability": stability_name(self.stability),
+            "bandwidth_rad_s": stable.then(|| self.closed.bandwidth()).flatten(),
+            "sensitivity": modulus.map(|m| 1.0 / m.distance).filter(|s| s.is_finite()),
+            "complementary_sensitivity": self.closed.peak().map(|peak| peak.gain),
+            "step": info.map(|info| json!({
+                "final": info.final_value,
+                "overshoot_percent": info.overshoot_percent,
+                "rise_s": info.rise_s,
+                "settle_s": info.settle_s,
+            })),
+            "trial": self.trial.as_ref().map(Trial::json),
+            "input_peak": stable.then_some(self.peak),
+        })
+        .to_string()
+    }
+}
+
+impl Plotted for Finding {
+    fn figure(&self) -> Result<Figure, Failure> {
+        let curve = |response: &Response| Curve {
+            colour: Colour::Blue,
+            pen: Pen::Solid,
+            points: (0..).zip(&response.values).map(|(k, y)| (f64::from(k) * response.step_s, *y)).collect(),
+        };
+        let panel = |title: &str, level: f64, response: &Response| {
+            over_time(title, vec![level], vec![curve(response)])
+        };
+        let phase = self
+            .margins
+            .least_phase()
+            .map_or(String::new(), |m| format!(", {}° of phase", four(m.degrees())));
+        let modulus =
+            self.margins.modulus.map_or(String::new(), |m| format!(", modulus {}", four(m.distance)));
+        let mut panels = vec![panel("output", 1.0, &self.step), panel("input", 0.0, &self.input)];
+        let mut legend = vec![Key { colour: Colour::Blue, name: format!("a step of 1{phase}{modulus}") }];
+        if let Some(trial) = &self.trial {
+            panels.extend(trial.panels());
+            legend.push(Key { colour: Colour::Vermilion, name: trial.name() });
+        }
+        Ok(Figure {
+            title: match self.controller.to_string() {
+                text if text.chars().count() <= 70 => format!("{} with K = {text}", self.name),
+                _ => format!("{} with a K of order {}", self.name, self.controller.poles().len()),
+            },
+            legend,
+            columns: if panels.len() > 2 { 2 } else { 1 },
+            panel: if panels.len() > 2 { (560, 280) } else { (820, 280) },
+            panels,
+            theme: self.theme,
+        })
+    }
+
+    fn csv(&self) -> Result<String, Failure> {
+        let mut text = String::from("t_s,output,input\n");
+        for (row, output) in self.step.values.iter().enumerate() {
+            let input = self.input.values.get(row).map_or(String::new(), |u| format!("{u:.9e}"));
+            let _ = writeln!(text, "{:.9e},{output:.9e},{input}", row as f64 * self.step.step_s);
+        }
+        Ok(text)
+    }
+}

@@ -1,0 +1,115 @@
+//! What the head is made of: inertia, friction, weight, amplifier, where its encoders' edges lie.
+
+mod view;
+
+use std::ops::ControlFlow;
+
+use tracelight_aim::HeadPose;
+use tracelight_lab::{Identification, identify, routine};
+use tracelight_pipeline::DEFAULT_DISTANCE_M;
+use tracelight_rig::{Joint, Telemetry};
+use tracelight_sim::{RigConfig, SimulatedRig, run_segments};
+use tracelight_task::{Failure, Task};
+
+use crate::finding::Experiment;
+use crate::numbers::why_unfinished;
+use crate::record;
+use crate::table::Log;
+
+/// Least swing that tells anything: twenty counts of the original rig.
+const LEAST_SWING_RAD: f64 = 0.05;
+
+/// A rig to identify: from records, or from how the simulated rig moves.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The rig as it is believed to be, and the law that moves it.
+    pub rig: RigConfig,
+    /// Records of what the rig did, see [`crate::record`]; if none, the simulated rig moves in the dark.
+    pub records: Vec<Log>,
+    /// Of what differs from head to head.
+    pub seed: u64,
+    /// Which day it is, such as 2026-11-23: the better rig is of that day.
+    pub day: String,
+}
+
+/// What the rig was believed to be made of, and what it is made of.
+pub struct Finding {
+    of: Request,
+    records: Vec<Vec<Telemetry>>,
+    found: Identification,
+}
+
+impl Experiment for Request {
+    type Finding = Finding;
+
+    fn run(self, task: Task<'_>) -> Result<Finding, Failure> {
+        let records = if self.records.is_empty() { vec![self.moved(task)?] } else { self.recorded()? };
+        let mut found = identify(&self.rig, &records).map_err(|e| Failure::failed("identify", e))?;
+        if Joint::BOTH.iter().any(|&j| found.joints[j].taken)
+            && let Some(identified) = &mut found.rig.identified
+        {
+            identified.date.clone_from(&self.day);
+        }
+        Ok(Finding { of: self, records, found })
+    }
+}
+
+impl Request {
+    fn recorded(&self) -> Result<Vec<Vec<Telemetry>>, Failure> {
+        let count_rad = self.rig.model.encoder.count_rad();
+        let mut all = Vec::new();
+        for log in &self.records {
+            all.extend(record::read(log, count_rad)?);
+        }
+        Ok(all)
+    }
+
+    /// The routine on the simulated rig, dark.
+    fn moved(&self, task: Task<'_>) -> Result<Vec<Telemetry>, Failure> {
+        let rig = &self.rig;
+        let narrow = Joint::BOTH.into_iter().find(|&j| {
+            let (lower, upper) = rig.model.geometry.range_rad[j];
+            upper.min(-lower) < LEAST_SWING_RAD
+        });
+        if let Some(joint) = narrow {
+            let (lower, upper) = rig.model.geometry.range_rad[joint];
+            let message = format!(
+                "{joint} may turn from {lower} to {upper} rad, and has to swing {LEAST_SWING_RAD} rad to either side of zero to be \
+                 identified; give a record of a motion it can make"
+            );
+            return Err(Failure::failed("identify", message));
+        }
+        let segments = routine(rig);
+        task.stage("moves", segments.last().map_or(0, |s| u64::from(s.end_tick())));
+        let pose = HeadPose::square_on(DEFAULT_DISTANCE_M);
+        let mut simulated = SimulatedRig::new(&rig.following(), pose, self.seed);
+        let run = run_segments(&mut simulated, &segments, true, |_, tick| {
+            task.at(u64::from(tick.telemetry.tick));
+            if task.stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        task.check()?;
+        if !run.is_done() {
+            let message = format!(
+                "the head did not finish its motion ({}): its model may be too far off; correct torque_per_volt and friction in \
+                 the rig file, or give a record of a motion it can make",
+                why_unfinished(run.fault())
+            );
+            return Err(Failure::failed("unfinished", message));
+        }
+        Ok(run.telemetry())
+    }
+}
+
+impl Finding {
+    /// The rig as it was believed to be.
+    #[must_use]
+    pub const fn rig(&self) -> &RigConfig {
+        &self.of.rig
+    }
+
+    /// The rig with what was found; what explains its motion no better than what was believed is left out.
+    #[must_use]
+    pub const fn better(&self) -> &RigConfig {
+        &self.found.rig
+    }
+}

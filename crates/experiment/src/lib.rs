@@ -1,0 +1,51 @@
+//! Experiments of the control engineer's bench: a request in, a finding out, and how that is shown.
+//!
+//! Each experiment is a file that is named after its command: its request, which is an [`Experiment`]; what it finds; and in
+//! `view.rs` beside it how that is shown, as text, as JSON, as a plot, as tables ([`Finding`], [`Plotted`], [`Filed`]). Who has it
+//! done (a command line, a page, a script) makes the request of what was typed, and puts what is shown where it belongs.
+//! Nothing here opens a file, prints, or knows a flag but by its name in a message.
+
+pub mod amplifier;
+pub mod backlash;
+pub mod better;
+pub mod bode;
+pub mod by_hand;
+pub mod design;
+pub mod encoder;
+mod finding;
+pub mod frequencies;
+pub mod frequency;
+pub mod friction;
+pub mod gravity;
+pub mod head;
+pub mod identify;
+pub mod inertia;
+pub mod lesson;
+pub mod linearize;
+pub mod locus;
+mod margins;
+pub mod montecarlo;
+pub mod moves;
+mod numbers;
+pub mod nyquist;
+mod panels;
+mod parts;
+pub mod plane;
+pub mod profile;
+pub mod profile_name;
+pub mod pzmap;
+pub mod record;
+pub mod relay;
+pub mod response;
+pub mod shape;
+pub mod simulate;
+pub mod step;
+mod step_words;
+pub mod systems;
+pub mod table;
+mod trial;
+pub mod trials;
+pub mod tune;
+pub mod velocity;
+
+pub use finding::{Experiment, Filed, Finding, Plotted, svg};

@@ -1,0 +1,74 @@
+//! Margins, as they are shown.
+
+use serde_json::{Value, json};
+use tracelight_linear::{GainMargin, Margins, PhaseMargin, decibels};
+
+use crate::numbers::four;
+
+/// Margins for people, a line each.
+pub(crate) fn margin_lines(margins: &Margins) -> String {
+    let mut lines = Vec::new();
+    lines.push(match margins.least_gain() {
+        Some(margin) => format!(
+            "    gain margin     {} dB (factor {}) at {} rad/s",
+            four(decibels(margin.factor)),
+            four(margin.factor),
+            four(margin.rad_s)
+        ),
+        None if margins.is_always_real => {
+            "    gain margin     none: it is real at every frequency".to_owned()
+        }
+        None => "    gain margin     none: it is nowhere real and negative".to_owned(),
+    });
+    lines.push(match margins.least_phase() {
+        Some(margin) => {
+            format!("    phase margin    {}° at {} rad/s", four(margin.degrees()), four(margin.rad_s))
+        }
+        None if margins.is_always_one => {
+            "    phase margin    none: its gain is 1 at every frequency".to_owned()
+        }
+        None => "    phase margin    none: its gain is nowhere 1".to_owned(),
+    });
+    if let Some(margin) = margins.least_delay() {
+        lines.push(format!(
+            "    delay margin    {} ms at {} rad/s",
+            four(1e3 * margin.delay_s),
+            four(margin.rad_s)
+        ));
+    }
+    if let Some(margin) = margins.modulus {
+        lines.push(format!(
+            "    modulus margin  {} at {} rad/s: sensitivity at most {}",
+            four(margin.distance),
+            four(margin.rad_s),
+            four(1.0 / margin.distance)
+        ));
+    }
+    lines.join("\n")
+}
+
+/// Margins for scripts.
+pub(crate) fn margins_json(margins: &Margins) -> Value {
+    let gain = |m: &GainMargin| json!({"rad_s": m.rad_s, "factor": m.factor, "db": decibels(m.factor)});
+    let phase = |m: &PhaseMargin| json!({"rad_s": m.rad_s, "deg": m.degrees(), "delay_s": m.delay_s});
+    let modulus = margins.modulus.map(|m| {
+        // JSON has no infinity
+        json!({"rad_s": m.rad_s.is_finite().then_some(m.rad_s), "distance": m.distance})
+    });
+    json!({
+        "gain": margins.least_gain().as_ref().map(gain),
+        "phase": margins.least_phase().as_ref().map(phase),
+        "delay_s": margins.least_delay().map(|m| m.delay_s),
+        "modulus": modulus,
+        "every_gain": margins.gain.iter().map(gain).collect::<Vec<_>>(),
+        "every_phase": margins.phase.iter().map(phase).collect::<Vec<_>>(),
+    })
+}
+
+/// A name with its margins.
+pub(crate) fn summary(name: &str, margins: &Margins) -> String {
+    let phase = margins.least_phase().map(|m| format!("{}° of phase", four(m.degrees())));
+    let gain = margins.least_gain().map(|m| format!("{} dB of gain", four(decibels(m.factor))));
+    let both: Vec<String> = phase.into_iter().chain(gain).collect();
+    if both.is_empty() { name.to_owned() } else { format!("{name}: {}", both.join(", ")) }
+}

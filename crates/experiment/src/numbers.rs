@@ -1,0 +1,50 @@
+//! Numbers as people read them.
+
+use tracelight_lab::Uncertain;
+use tracelight_linear::four_digits;
+use tracelight_rig::Fault;
+
+/// To so many digits, and without a sign where that is none.
+pub(crate) fn rounded(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.strip_prefix('-') {
+        Some(size) if size.bytes().all(|b| matches!(b, b'0' | b'.')) => size.to_owned(),
+        _ => text,
+    }
+}
+
+/// What the intervals of a table mean.
+pub(crate) const HOW_SURE: &str = "\n\n± has the true value in 95 of 100 cases, if the model is right.";
+
+/// A value and its interval, times a thousand.
+pub(crate) fn milli(value: Option<Uncertain>) -> String {
+    value.map_or("–".to_owned(), |u| {
+        // two digits of how well it is known
+        let digits = (1.0 - (1e3 * u.within).log10().floor()).clamp(0.0, 6.0);
+        if !u.within.is_finite() {
+            return format!("{:.4} ± ?", 1e3 * u.value);
+        }
+        let digits = if u.within > 0.0 { digits as usize } else { 4 };
+        format!("{:.digits$} ± {:.digits$}", 1e3 * u.value, 1e3 * u.within)
+    })
+}
+
+/// A number for people: four digits, without idle zeros.
+pub(crate) fn four(value: f64) -> String {
+    if value.is_infinite() { "∞".to_owned() } else { four_digits(value).replace('-', "−") }
+}
+
+/// A time, for people.
+pub(crate) fn seconds(seconds: Option<f64>) -> String {
+    seconds.map_or("never".to_owned(), |s| format!("{} s", four(s)))
+}
+
+/// A share, for people.
+pub(crate) fn percent(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |p| format!("{} %", four(p)))
+}
+
+/// Why a run is not done, given the fault it ended with.
+pub(crate) fn why_unfinished(fault: Option<Fault>) -> &'static str {
+    fault.map_or("held again and again", |fault| fault.code())
+}

@@ -1,0 +1,73 @@
+//! The open loop's values over all frequencies in the complex plane, and on Nichols's chart.
+
+mod view;
+
+use tracelight_chart::Theme;
+use tracelight_linear::{Complex, Margins};
+use tracelight_task::{Failure, Task};
+
+use crate::finding::Experiment;
+use crate::frequencies::Frequencies;
+use crate::systems::Named;
+
+/// Open loops over frequencies.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The loops and the frequencies.
+    pub over: Frequencies,
+    /// On which chart they are plotted.
+    pub chart: Chart,
+}
+
+/// A chart of open loops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chart {
+    /// The complex plane.
+    Nyquist,
+    /// Amplification over phase.
+    Nichols,
+}
+
+/// What each loop is like.
+pub struct Finding {
+    theme: Theme,
+    chart: Chart,
+    entries: Vec<Entry>,
+}
+
+/// A loop and what is known of it.
+struct Entry {
+    named: Named,
+    rad_s: Vec<f64>,
+    values: Vec<Complex>,
+    phases_deg: Vec<f64>,
+    margins: Margins,
+    /// Poles of the open loop that grow, and of the closed one.
+    open_unstable: usize,
+    closed_unstable: Option<usize>,
+}
+
+impl Entry {
+    fn of(named: Named, rad_s: &[f64]) -> Self {
+        let response = named.system.frequency_response(rad_s.to_vec());
+        Self {
+            rad_s: response.rad_s.clone(),
+            phases_deg: response.phases_deg().collect(),
+            values: response.values,
+            margins: named.system.margins(),
+            open_unstable: named.system.growing_poles(),
+            closed_unstable: named.system.closed().ok().map(|closed| closed.growing_poles()),
+            named,
+        }
+    }
+}
+
+impl Experiment for Request {
+    type Finding = Finding;
+
+    fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
+        let (systems, rad_s) = self.over.read()?;
+        let entries = systems.into_iter().map(|named| Entry::of(named, &rad_s)).collect();
+        Ok(Finding { theme: self.over.systems.theme, chart: self.chart, entries })
+    }
+}

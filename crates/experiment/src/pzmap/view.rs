@@ -1,0 +1,64 @@
+//! Poles and zeros, as they are shown.
+
+use std::fmt::Write;
+
+use serde_json::json;
+use tracelight_chart::{Figure, Key};
+use tracelight_linear::Mode;
+use tracelight_task::Failure;
+
+use super::Finding;
+use crate::finding::{self, Plotted};
+use crate::plane::{draw, plane, signs};
+use crate::systems::{Named, place, pole_lines, system_json};
+
+impl finding::Finding for Finding {
+    fn text(&self) -> String {
+        let mut text = String::new();
+        for Named { name, system, .. } in &self.systems {
+            let zeros: Vec<String> =
+                system.zeros().iter().filter(|z| z.im >= 0.0).map(|z| place(*z)).collect();
+            // writing to a String cannot fail
+            let _ = writeln!(text, "{name} = {}\n    = {}", system.zpk(), system);
+            let _ = writeln!(
+                text,
+                "    zeros: {}",
+                if zeros.is_empty() { "none".to_owned() } else { zeros.join(", ") }
+            );
+            let _ = writeln!(text, "{}", pole_lines(&system.poles(), system.time()));
+        }
+        text.trim_end().to_owned()
+    }
+
+    fn json(&self) -> String {
+        let all: Vec<_> = self.systems.iter().map(|named| system_json(&named.name, &named.system)).collect();
+        json!({ "systems": all }).to_string()
+    }
+}
+
+impl Plotted for Finding {
+    fn figure(&self) -> Result<Figure, Failure> {
+        let systems = &self.systems;
+        let mut panel = plane(systems.iter().map(|named| (&named.system, &[][..])), self.of.reach);
+        systems.iter().for_each(|named| panel.marks.extend(signs(named)));
+        let legend =
+            systems.iter().map(|named| Key { colour: named.colour, name: named.name.clone() }).collect();
+        Ok(draw("Poles (crosses) and zeros (rings)", legend, panel, self.of.systems.theme))
+    }
+
+    fn csv(&self) -> Result<String, Failure> {
+        let mut text = String::from("system,kind,re,im,natural_rad_s,damping\n");
+        for (number, named) in (1..).zip(&self.systems) {
+            let all = named.system.poles().into_iter().map(|z| ("pole", z));
+            for (kind, z) in all.chain(named.system.zeros().into_iter().map(|z| ("zero", z))) {
+                let Mode { natural_rad_s, damping, .. } = Mode::of(z, named.system.time());
+                let _ = writeln!(
+                    text,
+                    "{number},{kind},{:.9e},{:.9e},{natural_rad_s:.9e},{damping:.9}",
+                    z.re, z.im
+                );
+            }
+        }
+        Ok(text)
+    }
+}

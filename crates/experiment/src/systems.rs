@@ -1,0 +1,228 @@
+//! Systems on paper: formulas, the head linearized among their names, and what is shown of each.
+
+use std::fmt::Write;
+
+use serde_json::{Value, json};
+use tracelight_chart::{Colour, Theme};
+use tracelight_lab::Linearization;
+use tracelight_linear::{
+    Complex, Discretization, FormulaError, LinearError, Mode, Names, Stability, Time, TransferFunction, Zpk,
+};
+use tracelight_rig::Joint;
+use tracelight_sim::Compensator;
+use tracelight_task::Failure;
+
+use crate::head::HeadChoice;
+use crate::numbers::four;
+
+/// Systems to plot.
+#[derive(Clone, Debug)]
+pub struct Systems {
+    /// Each a formula in which G11 and G22 are the head linearized, K11, K22, K11t and K22t the 2006 report's compensators.
+    pub formulas: Vec<String>,
+    /// How they are read.
+    pub how: Reading,
+    /// Close each by negative feedback of its output, after it is sampled.
+    pub closed: bool,
+    /// How they are plotted.
+    pub theme: Theme,
+}
+
+/// One system.
+#[derive(Clone, Debug)]
+pub struct OneSystem {
+    /// Its formula, as in [`Systems`].
+    pub formula: String,
+    /// How it is read.
+    pub how: Reading,
+    /// How it is plotted.
+    pub theme: Theme,
+}
+
+/// What a formula's names and its variable are.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The head that G11 and G22 are.
+    pub head: HeadChoice,
+    /// The formula is of samples so far apart, s, its variable is z.
+    pub period_s: Option<f64>,
+    /// Sample it: how often, s, and how.
+    pub sampling: Option<(f64, Discretization)>,
+}
+
+const fn words(method: Discretization) -> &'static str {
+    match method {
+        Discretization::ZeroOrderHold => "a hold",
+        Discretization::Tustin(_) => "Tustin's rule",
+        Discretization::Matched => "matching",
+    }
+}
+
+/// A system and what it is called.
+pub(crate) struct Named {
+    /// As typed, and what was made of it.
+    pub(crate) name: String,
+    pub(crate) system: TransferFunction,
+    pub(crate) colour: Colour,
+}
+
+impl Systems {
+    /// All systems, as they are to be plotted.
+    pub(crate) fn systems(&self) -> Result<Vec<Named>, Failure> {
+        let reader = self.how.reader()?;
+        let all = self.formulas.iter().zip(Colour::in_turn());
+        all.map(|(text, colour)| {
+            let (mut name, mut system) = reader.read(text)?;
+            if self.closed {
+                system = system.closed().map_err(|e| no_such_system(text, &e))?;
+                name += ", closed";
+            }
+            Ok(Named { name, system, colour })
+        })
+        .collect()
+    }
+}
+
+impl OneSystem {
+    /// Its name and what it is.
+    pub(crate) fn system(&self) -> Result<(String, TransferFunction), Failure> {
+        self.how.reader()?.read(&self.formula)
+    }
+}
+
+fn no_such_system(text: &str, error: &LinearError) -> Failure {
+    Failure::failed("no-such-system", format!("{text}: {error}"))
+}
+
+/// A controller in continuous time: a formula, in which K11, K22, K11t and K22t are the report's.
+pub(crate) fn controller(text: &str) -> Result<Zpk, Failure> {
+    Ok(parsed(text, Time::Continuous, &the_reports)?.zpk())
+}
+
+/// A formula read; what is wrong with it is pointed at.
+fn parsed(text: &str, time: Time, named: &Names<'_>) -> Result<TransferFunction, Failure> {
+    let pointed = |e: FormulaError| format!("{e}\n  {text}\n  {}^", " ".repeat(e.at));
+    TransferFunction::parse_with(text, time, named).map_err(|e| Failure::usage("bad-formula", pointed(e)))
+}
+
+/// The report's compensators by name.
+fn the_reports(name: &str) -> Option<TransferFunction> {
+    match name {
+        "K11" => compensator(Joint::Pan, false),
+        "K22" => compensator(Joint::Tilt, false),
+        "K11t" => compensator(Joint::Pan, true),
+        "K22t" => compensator(Joint::Tilt, true),
+        _ => None,
+    }
+}
+
+/// What formulas are read with.
+struct Reader<'a> {
+    how: &'a Reading,
+    head: Linearization,
+}
+
+impl Reading {
+    fn reader(&self) -> Result<Reader<'_>, Failure> {
+        Ok(Reader { how: self, head: self.head.head().linearize()? })
+    }
+}
+
+impl Reader<'_> {
+    /// The system that a formula names.
+    fn named(&self, name: &str) -> Option<TransferFunction> {
+        let keep = self.how.head.keep_cancellations;
+        let own = |joint: Joint| match keep {
+            true => self.head.transfer(joint).ok(),
+            false => self.head.own_transfer(joint).ok().map(|own| own.0),
+        };
+        match name {
+            "G11" => own(Joint::Pan),
+            "G22" => own(Joint::Tilt),
+            _ => the_reports(name),
+        }
+    }
+
+    /// What a formula is, and what was made of it.
+    fn read(&self, text: &str) -> Result<(String, TransferFunction), Failure> {
+        let time = self.how.period_s.map_or(Time::Continuous, Time::Sampled);
+        let mut system = parsed(text, time, &|name| self.named(name))?;
+        let mut name = text.to_owned();
+        if let Some((period_s, method)) = self.how.sampling {
+            system = system.sampled(period_s, method).map_err(|e| no_such_system(text, &e))?;
+            name += &format!(", sampled every {} ms by {}", four(1e3 * period_s), words(method));
+        }
+        Ok((name, system))
+    }
+}
+
+/// Refuses what would take more memory than a plot is worth: so many numbers in all.
+pub(crate) fn bounded(points: u32, others: usize) -> Result<(), Failure> {
+    const MOST: usize = 1_000_000;
+    let most = MOST / others.max(1);
+    if points as usize <= most {
+        return Ok(());
+    }
+    let message = format!("--points {points} would make more than {MOST} numbers; here {most} is the most");
+    Err(Failure::usage("usage", message))
+}
+
+/// The report's compensator of a joint, in one of its readings.
+fn compensator(joint: Joint, time_constants: bool) -> Option<TransferFunction> {
+    let Compensator { gain, zeros, poles } = Compensator::of_the_report(joint);
+    let left = |roots: [f64; 2]| roots.map(|root| Complex::new(-root, 0.0)).to_vec();
+    let (zeros, poles) = (left(zeros), left(poles));
+    let zpk = match time_constants {
+        true => Zpk::from_time_constants(gain, zeros, poles),
+        false => Zpk::new(gain, zeros, poles, Time::Continuous),
+    };
+    zpk.ok().map(|zpk| zpk.transfer())
+}
+
+/// A pole or zero and its mirror, for people.
+pub(crate) fn place(root: Complex) -> String {
+    if root.im == 0.0 { four(root.re) } else { format!("{} ± {}j", four(root.re), four(root.im.abs())) }
+}
+
+/// Poles for people: a line each, with natural frequency and damping.
+pub(crate) fn pole_lines(poles: &[Complex], time: Time) -> String {
+    let mut text = format!("    {:28} {:>16} {:>10}\n", "pole", "natural, rad/s", "damping");
+    for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
+        let Mode { natural_rad_s, damping, .. } = Mode::of(*pole, time);
+        let damping = match natural_rad_s {
+            0.0 => "–".to_owned(),
+            _ => format!("{damping:.4}").replace('-', "−"),
+        };
+        // writing to a String cannot fail
+        let _ = writeln!(text, "    {:28} {:>16} {damping:>10}", place(*pole), four(natural_rad_s));
+    }
+    text
+}
+
+/// A complex number for scripts.
+pub(crate) fn pairs(values: &[Complex]) -> Vec<[f64; 2]> {
+    values.iter().map(|z| [z.re, z.im]).collect()
+}
+
+/// A system for scripts.
+pub(crate) fn system_json(name: &str, system: &TransferFunction) -> Value {
+    let (gain, stability) = (system.dc_gain(), system.stability());
+    json!({
+        "name": name,
+        "num": system.numerator().coefficients(),
+        "den": system.denominator().coefficients(),
+        "zeros": pairs(&system.zeros()),
+        "poles": pairs(&system.poles()),
+        "dc_gain": gain.is_finite().then_some(gain),
+        "stable": stability == Stability::Stable,
+        "stability": stability_name(stability),
+    })
+}
+
+pub(crate) const fn stability_name(stability: Stability) -> &'static str {
+    match stability {
+        Stability::Stable => "stable",
+        Stability::Marginal => "marginal",
+        Stability::Growing => "growing",
+    }
+}
