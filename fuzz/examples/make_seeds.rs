@@ -9,7 +9,7 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path as FilePath, PathBuf};
 
-#[path = "../../crates/formats/tests/support/plate.rs"]
+#[path = "../../crates/formats/tests/all/support/plate.rs"]
 mod plate;
 
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};

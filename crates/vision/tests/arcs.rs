@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on may panic")]
 #![allow(clippy::print_stdout, reason = "the figures are worth seeing when a bound is missed")]
 
-#[path = "../../stroke/tests/support/drawn.rs"]
+#[path = "../../stroke/tests/all/support/drawn.rs"]
 mod drawn;
 #[path = "support/raster.rs"]
 #[allow(dead_code, reason = "each test draws with some of it")]

@@ -1,0 +1,9 @@
+//! All integration tests of the crate in one program: linked once.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
+
+mod any_drawing;
+mod machines;
+mod mutations;
+#[path = "support/plate.rs"]
+mod plate;

@@ -1,0 +1,11 @@
+//! All integration tests of the crate in one program: linked once.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
+
+mod friction;
+mod identify;
+mod lessons;
+#[path = "../../../sim/tests/all/shapes/mod.rs"]
+#[allow(dead_code, reason = "these tests use a part of it")]
+mod shapes;
+mod steps;

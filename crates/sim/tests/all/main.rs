@@ -1,0 +1,12 @@
+//! All integration tests of the crate in one program: linked once.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
+
+mod by_hand;
+mod closed_loop;
+mod disturbances;
+mod faults;
+mod homing;
+mod recovery;
+mod shapes;
+mod tracking;

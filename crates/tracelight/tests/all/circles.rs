@@ -1,0 +1,279 @@
+//! Files of one crate that import each other in a circle: none but those that are known, and those can only get fewer.
+//!
+//! An import is followed to the file that defines the name, through whatever re-exports it; tests do not count.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A module's path from its crate's root, such as `order::search`; empty for the root.
+type Module = Vec<String>;
+
+/// A crate's files without their tests.
+#[derive(Default)]
+struct Files(BTreeMap<Module, String>);
+
+/// A path that is imported, and the name it has where it is.
+struct Import {
+    path: Vec<String>,
+    name: String,
+    /// Only passed on, to whoever imports from here.
+    is_export: bool,
+}
+
+impl Files {
+    fn of(source: &Path) -> Self {
+        let mut files = Self::default();
+        for path in rust_files(source) {
+            let within = path.strip_prefix(source).unwrap().with_extension("");
+            let mut module: Module = within.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+            if module.last().is_some_and(|last| ["mod", "lib", "main"].contains(&last.as_str())) {
+                module.pop();
+            }
+            files.add(module, &fs::read_to_string(&path).unwrap());
+        }
+        files
+    }
+
+    fn add(&mut self, module: Module, text: &str) {
+        let code = text.split("\n#[cfg(test)]\nmod ").next().unwrap_or_default();
+        let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+        self.0.insert(module, lines.collect::<Vec<_>>().join("\n"));
+    }
+
+    /// What a file imports from its own crate.
+    fn imports(&self, module: &Module) -> Vec<Import> {
+        let mut found = Vec::new();
+        let text = &self.0[module];
+        for (start, _) in text.match_indices("use ") {
+            let before = text[..start].rsplit('\n').next().unwrap_or_default().trim();
+            if !["", "pub", "pub(crate)", "pub(super)"].contains(&before) {
+                continue;
+            }
+            let tree = text[start + 4..].split(';').next().unwrap_or_default();
+            let tree: String = tree.split_whitespace().collect::<Vec<_>>().join(" ");
+            let paths = expanded(&tree);
+            let own =
+                paths.into_iter().filter_map(|(path, name)| Some((self.absolute(module, &path)?, name)));
+            found.extend(own.map(|(path, name)| Import { path, name, is_export: !before.is_empty() }));
+        }
+        // paths that are written out where they are used
+        for (start, _) in text.match_indices("crate::") {
+            let is_import =
+                text[..start].rsplit(['\n', ';']).next().is_some_and(|line| line.contains("use "));
+            let is_whole = !text[..start].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '$');
+            if !is_import && is_whole {
+                let end = text[start..].find(|c: char| !(c.is_alphanumeric() || "_:".contains(c)));
+                let path = text[start..end.map_or(text.len(), |end| start + end)].trim_end_matches(':');
+                let path: Vec<&str> = path.split("::").collect();
+                if let Some(path) = self.absolute(module, &path) {
+                    found.push(Import { path, name: String::new(), is_export: false });
+                }
+            }
+        }
+        found
+    }
+
+    /// A path from the crate's root; `None` if it leads into another crate.
+    fn absolute(&self, module: &Module, path: &[impl AsRef<str>]) -> Option<Vec<String>> {
+        let mut from = match path.first()?.as_ref() {
+            "crate" => Vec::new(),
+            "self" => module.clone(),
+            "super" => module[..module.len().checked_sub(1)?].to_vec(),
+            // a module of this file's own
+            first => {
+                let child: Module = module.iter().cloned().chain([first.to_owned()]).collect();
+                return self.0.contains_key(&child).then(|| {
+                    module.iter().cloned().chain(path.iter().map(|part| part.as_ref().to_owned())).collect()
+                });
+            }
+        };
+        for part in &path[1..] {
+            match part.as_ref() {
+                "super" => drop(from.pop()),
+                "self" => {}
+                part => from.push(part.to_owned()),
+            }
+        }
+        Some(from)
+    }
+
+    /// The file that defines what a path names.
+    fn defined(&self, path: &[String]) -> Module {
+        let mut seen = BTreeSet::new();
+        let mut path = path.to_vec();
+        loop {
+            let length = (0..=path.len()).rev().find(|&n| self.0.contains_key(&path[..n])).unwrap_or(0);
+            let module = path[..length].to_vec();
+            if !seen.insert(path.clone()) || length == path.len() {
+                return module;
+            }
+            let exports = self.imports(&module).into_iter().filter(|import| import.is_export);
+            match exports.into_iter().find(|export| export.name == path[length]) {
+                Some(export) => path = export.path.into_iter().chain(path[length + 1..].to_vec()).collect(),
+                None => return module,
+            }
+        }
+    }
+
+    /// Groups of files each of which imports, over others, itself; each as its files in order.
+    fn circles(&self) -> BTreeSet<Vec<String>> {
+        let reach: BTreeMap<&Module, BTreeSet<Module>> = {
+            let direct = |module: &Module| -> BTreeSet<Module> {
+                let imports = self.imports(module).into_iter().filter(|import| !import.is_export);
+                imports.map(|import| self.defined(&import.path)).filter(|to| to != module).collect()
+            };
+            let direct: BTreeMap<&Module, BTreeSet<Module>> =
+                self.0.keys().map(|module| (module, direct(module))).collect();
+            let all = |start: &Module| {
+                let mut seen = BTreeSet::new();
+                let mut next: Vec<Module> = direct[start].iter().cloned().collect();
+                while let Some(module) = next.pop() {
+                    if seen.insert(module.clone()) {
+                        next.extend(direct[&module].iter().cloned());
+                    }
+                }
+                seen
+            };
+            self.0.keys().map(|module| (module, all(module))).collect()
+        };
+        let circle = |module: &&Module| {
+            let others = reach[*module].iter().filter(|other| reach[*other].contains(*module));
+            others.map(|module| module.join("::")).collect::<Vec<_>>()
+        };
+        self.0
+            .keys()
+            .filter(|module| reach[*module].contains(*module))
+            .map(|module| circle(&module))
+            .collect()
+    }
+}
+
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path());
+    let of = |path: PathBuf| if path.is_dir() { rust_files(&path) } else { vec![path] };
+    entries.flat_map(of).filter(|path| path.extension().is_some_and(|e| e == "rs")).collect()
+}
+
+/// The paths of a `use`, and the names they get.
+fn expanded(tree: &str) -> Vec<(Vec<String>, String)> {
+    let tree = tree.trim();
+    let Some(open) = tree.find('{') else {
+        let (path, alias) = tree.split_once(" as ").unwrap_or((tree, ""));
+        let mut parts: Vec<String> = path.split("::").map(|part| part.trim().to_owned()).collect();
+        if parts.len() > 1 && parts.last().is_some_and(|last| last == "self") {
+            parts.pop();
+        }
+        let name = if alias.is_empty() {
+            parts.last().cloned().unwrap_or_default()
+        } else {
+            alias.trim().to_owned()
+        };
+        return vec![(parts, name)];
+    };
+    let head = &tree[..open];
+    let inner = enclosed(&tree[open + 1..]);
+    let (mut depth, mut start, mut parts) = (0_i32, 0, Vec::new());
+    for (at, c) in inner.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(&inner[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(&inner[start..]);
+    let parts = parts.into_iter().map(str::trim).filter(|part| !part.is_empty());
+    parts.flat_map(|part| expanded(&format!("{head}{part}"))).collect()
+}
+
+/// What stands before the brace that closes a list.
+fn enclosed(rest: &str) -> &str {
+    let mut depth = 1;
+    let end = rest.char_indices().find(|(_, c)| {
+        depth += match c {
+            '{' => 1,
+            '}' => -1,
+            _ => 0,
+        };
+        depth == 0
+    });
+    &rest[..end.map_or(rest.len(), |(at, _)| at)]
+}
+
+/// Circles that stand, each as its crate and its files. It only gets shorter.
+const KNOWN: [(&str, &str); 3] = [
+    ("vision", "comb::drift comb::family"),
+    ("vision", "sheet sheet::alone sheet::edge sheet::over sheet::quad sheet::rim sheet::shade"),
+    ("vision", "spot spot::change"),
+];
+
+fn crates() -> Vec<(String, PathBuf)> {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut all: Vec<PathBuf> = fs::read_dir(crates).unwrap().map(|entry| entry.unwrap().path()).collect();
+    all.sort();
+    let named = |path: PathBuf| (path.file_name().unwrap().to_string_lossy().into_owned(), path.join("src"));
+    all.into_iter().map(named).filter(|(_, source)| source.is_dir()).collect()
+}
+
+#[test]
+fn files_import_each_other_in_no_circle_that_is_not_known() {
+    let mut found = BTreeSet::new();
+    for (name, source) in crates() {
+        let files = Files::of(&source);
+        assert!(files.0.len() > 1 || name == "units", "{name} has no files");
+        found.extend(files.circles().into_iter().map(|circle| (name.clone(), circle.join(" "))));
+    }
+    let known: BTreeSet<(String, String)> =
+        KNOWN.iter().map(|(name, circle)| ((*name).to_owned(), (*circle).to_owned())).collect();
+    let fresh: Vec<_> = found.difference(&known).collect();
+    assert!(
+        fresh.is_empty(),
+        "new circles: import from where a name is defined, or move it down: {fresh:#?}"
+    );
+    let gone: Vec<_> = known.difference(&found).collect();
+    assert!(gone.is_empty(), "no circles any more: take them off the list: {gone:#?}");
+}
+
+fn circles(files: &[(&str, &str)]) -> Vec<Vec<String>> {
+    let mut all = Files::default();
+    for (module, text) in files {
+        all.add(module.split("::").filter(|part| !part.is_empty()).map(str::to_owned).collect(), text);
+    }
+    all.circles().into_iter().collect()
+}
+
+#[test]
+fn a_circle_is_found_however_its_imports_are_written() {
+    let one = ("one", "use crate::two::Two;\npub struct One;");
+    for two in [
+        "use crate::one::One;",
+        "use super::one::{self, One};",
+        "fn f() -> crate::one::One { todo() }",
+        // through what the root passes on
+        "use crate::{Other, One as First};",
+        "use crate::nested::{inner::Passed};",
+    ] {
+        let files = [
+            ("", "mod one;\nmod two;\npub use one::One;"),
+            one,
+            ("two", two),
+            ("nested::inner", "pub(crate) use crate::one::One as Passed;"),
+        ];
+        assert_eq!(circles(&files), [["one", "two"]], "{two}");
+    }
+}
+
+#[test]
+fn what_leads_one_way_is_no_circle() {
+    let root = ("", "mod one;\nmod two;\npub use one::One;\nuse two::Two;");
+    let one = (
+        "one",
+        "use super::two::Two;\nuse std::one::One;\n#[cfg(test)]\nmod tests {\n    use crate::One;\n}",
+    );
+    let two = ("two", "// use crate::one::One;\npub struct Two;");
+    assert!(circles(&[root, one, two]).is_empty());
+}

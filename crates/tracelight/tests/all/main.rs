@@ -1,0 +1,27 @@
+//! All integration tests of the crate in one program: linked once.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
+
+mod arrows;
+mod batch;
+mod calibrate;
+mod camera;
+mod circles;
+mod contract;
+mod device;
+mod examples;
+mod formats;
+mod friction;
+mod homing;
+mod hostile;
+mod house_rules;
+mod identify_parts;
+mod lab;
+mod lesson;
+mod linear;
+mod paper;
+mod preview;
+mod quality;
+mod reproduce;
+mod simulate;
+mod support;
