@@ -2,7 +2,7 @@
 
 use tracelight_stroke::{Point, polyline_length};
 
-use super::Rules;
+use super::rules::Rules;
 use super::wipe::Levels;
 use crate::mask::Mask;
 use crate::plane::Plane;
@@ -112,7 +112,7 @@ fn share_on(points: &[Point], mask: &Mask) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Comb;
+    use super::super::rules::Comb;
     use super::*;
 
     /// A rule of level 80, two px wide, along row 20; from column 60 on there is ink of level 200 on it.
