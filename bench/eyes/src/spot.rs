@@ -1,8 +1,9 @@
 use std::time::Instant;
 
+use tracelight_image::Grey;
 use tracelight_plant::{CameraConfig, Image, SpotSample};
 use tracelight_stroke::{Point, Vec2};
-use tracelight_vision::{Grey, SpotWindow, find_spot};
+use tracelight_vision::{SpotWindow, find_spot};
 
 use crate::scene::{Dice, Scene};
 

@@ -6,11 +6,12 @@
 //! ratio to the surface instead of its own. Unlike a morphological closing this needs no window larger than the
 //! largest patch of ink.
 
-use crate::levels::percentile;
-use crate::plane::Plane;
-use crate::smooth::smoothed;
+use tracelight_image::levels::percentile;
+use tracelight_image::smooth::smoothed;
+use tracelight_image::{Plane, solve};
+
+use crate::shadow;
 use crate::tones::Tones;
-use crate::{shadow, solve};
 
 /// Tiles along the shorter side.
 const TILES: usize = 24;
@@ -303,8 +304,9 @@ fn around(ratio: &Plane<f64>, paper: &[bool], i: usize, reach: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::levels::sampled_histogram;
+
     use super::*;
-    use crate::levels::sampled_histogram;
 
     #[test]
     fn light_from_one_side_and_a_large_filled_shape_leave_even_paper() {

@@ -1,9 +1,10 @@
 //! Dark lines on light paper, or light ones on dark.
 
-use crate::levels::percentile;
-use crate::plane::Plane;
-use crate::ridge::median;
-use crate::smooth::noise;
+use tracelight_image::Plane;
+use tracelight_image::levels::percentile;
+use tracelight_image::median::median;
+use tracelight_image::smooth::noise;
+
 use crate::tones::Tones;
 
 /// A fall and a rise of brightness count from this share of the picture's range on.
@@ -191,8 +192,9 @@ fn border_levels(image: &Plane<u8>, inside: usize) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::levels::sampled_histogram;
+
     use super::*;
-    use crate::levels::sampled_histogram;
 
     fn check(light_on_dark: bool, level: impl Fn(usize, usize) -> u8) {
         let image = |invert: bool| {

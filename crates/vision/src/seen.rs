@@ -1,11 +1,11 @@
 //! The ink of a page as it is traced: with a second look where it seems to be no drawing.
 
+use tracelight_image::Mask;
 use tracelight_stroke::{Affine, Drawing};
 
 use crate::areas::{Areas, Picture};
 use crate::ink::Ink;
 use crate::inside::inside;
-use crate::mask::Mask;
 use crate::options::{Mode, Options};
 use crate::{Page, VisionError, streak, tone};
 

@@ -4,7 +4,7 @@
 //! Mathematical Morphology", 1982) by a square that is wider than any pen: lines are filled up, the edges of shadows
 //! stay where they are to a pixel. What is dark and wider than that is a shadow if it reaches the picture's border, else it was filled.
 
-use crate::plane::Plane;
+use tracelight_image::Plane;
 
 /// Neighbouring tiles of one paper differ less than this in brightness, as a ratio.
 const SAME: f64 = 0.9;

@@ -46,8 +46,9 @@ impl Stages {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::Grey;
+
     use super::*;
-    use crate::Grey;
 
     #[test]
     fn stages_of_a_line_are_its_own() {

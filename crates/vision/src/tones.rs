@@ -2,11 +2,11 @@
 //!
 //! No camera made them, so no light falls off in them, no sheet lies on a table, and what most of their border is, is paper.
 
-use crate::levels::percentile;
-use crate::mask::Mask;
-use crate::plane::Plane;
+use tracelight_image::levels::percentile;
+use tracelight_image::threshold::over;
+use tracelight_image::{Mask, Plane};
+
 use crate::shadow;
-use crate::threshold::over;
 
 /// Less than this share of the pixels are specks.
 const SPECKS: f64 = 0.0005;

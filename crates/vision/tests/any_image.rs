@@ -5,8 +5,9 @@
 use std::time::{Duration, Instant};
 
 use oorandom::Rand32;
+use tracelight_image::Grey;
 use tracelight_stroke::Point;
-use tracelight_vision::{Grey, Mode, Options, Traced, VisionError, find_two_marks, trace};
+use tracelight_vision::{Mode, Options, Traced, VisionError, find_two_marks, trace};
 
 const MODES: [Mode; 4] = [Mode::Auto, Mode::Centreline, Mode::Outline, Mode::Sweep];
 

@@ -12,8 +12,9 @@ mod raster;
 use drawn::Drawn::{self, Arc, Line};
 use drawn::{kinds, kinds_drawn, kink, path};
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::{Element, Path};
-use tracelight_vision::{Grey, Options, trace};
+use tracelight_vision::{Options, trace};
 
 /// The path drawn with a pen on 640 × 480 px, and traced.
 fn traced(path: &Path, pen_px: f64) -> Vec<Path> {

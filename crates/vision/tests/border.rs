@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 
-use tracelight_vision::{Grey, Options, trace};
+use tracelight_image::Grey;
+use tracelight_vision::{Options, trace};
 
 /// A picture of 420 × 320 px by what is ink.
 fn picture(is_ink: impl Fn(usize, usize) -> bool) -> Grey {

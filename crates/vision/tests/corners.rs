@@ -7,8 +7,9 @@
 mod raster;
 
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::{Comparison, Point, Vec2, compare_polylines};
-use tracelight_vision::{Grey, Options, trace};
+use tracelight_vision::{Options, trace};
 
 /// Polylines in pens of their own on 640 × 480 px, traced; strokes found, and how they compare with what was drawn.
 fn traced(figures: &[(Vec<Point>, f64)]) -> (usize, Comparison) {

@@ -6,8 +6,9 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
+use tracelight_image::Grey;
 use tracelight_stroke::{Comparison, Point, StrokeKind, compare_polylines};
-use tracelight_vision::{Grey, Options, Traced, trace};
+use tracelight_vision::{Options, Traced, trace};
 
 fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")

@@ -7,8 +7,9 @@
 mod raster;
 
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::Point;
-use tracelight_vision::{Grey, Options, Traced, trace};
+use tracelight_vision::{Options, Traced, trace};
 
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;

@@ -10,8 +10,9 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 mod raster;
 
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::{Point, StrokeKind, Vec2, compare_polylines};
-use tracelight_vision::{Grey, Options, Traced, trace};
+use tracelight_vision::{Options, Traced, trace};
 
 const SIDE: usize = 300;
 

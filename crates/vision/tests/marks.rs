@@ -9,8 +9,9 @@ mod raster;
 use std::path::Path;
 
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::{Point, Vec2};
-use tracelight_vision::{Grey, VisionError, find_two_marks};
+use tracelight_vision::{VisionError, find_two_marks};
 
 fn picture(name: &str) -> Grey {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name);

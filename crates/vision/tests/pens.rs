@@ -7,8 +7,9 @@
 mod raster;
 
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::{Comparison, Point, StrokeKind, Vec2, compare_polylines};
-use tracelight_vision::{Grey, Options, Traced, trace};
+use tracelight_vision::{Options, Traced, trace};
 
 /// What is found of dark ink on white paper, and how it compares with what was drawn.
 fn traced(canvas: &Canvas, width: usize, truth: &[Vec<Point>]) -> (Traced, Comparison) {

@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
 
-use tracelight_vision::{Grey, Options, Traced, Verdict, VisionError, trace};
+use tracelight_image::Grey;
+use tracelight_vision::{Options, Traced, Verdict, VisionError, trace};
 
 const WIDTH: usize = 320;
 const HEIGHT: usize = 240;

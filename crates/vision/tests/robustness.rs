@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
 
-use tracelight_vision::{Grey, Mode, Options, find_two_marks, trace};
+use tracelight_image::Grey;
+use tracelight_vision::{Mode, Options, find_two_marks, trace};
 
 /// Marsaglia's xorshift64.
 struct Draw(u64);

@@ -9,8 +9,9 @@ use std::f64::consts::TAU;
 mod raster;
 
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::{Comparison, Point, StrokeKind, Vec2, compare_polylines};
-use tracelight_vision::{Grey, Options, Traced, trace};
+use tracelight_vision::{Options, Traced, trace};
 
 /// What is found of ink on paper of level 245, and how it compares with what was drawn.
 fn traced(canvas: &Canvas, width: usize, ink: f64, truth: &[Vec<Point>]) -> (Traced, Comparison) {

@@ -9,8 +9,9 @@ use std::f64::consts::TAU;
 mod raster;
 
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::{Point, StrokeKind, compare_polylines};
-use tracelight_vision::{Grey, Options, trace};
+use tracelight_vision::{Options, trace};
 
 const WIDTH: usize = 360;
 const HEIGHT: usize = 300;

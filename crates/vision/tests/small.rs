@@ -10,8 +10,9 @@ use std::f64::consts::{PI, TAU};
 mod raster;
 
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2, compare_polylines};
-use tracelight_vision::{Grey, Options, trace};
+use tracelight_vision::{Options, trace};
 
 const WIDTH: usize = 480;
 const HEIGHT: usize = 360;

@@ -9,8 +9,9 @@ mod raster;
 use std::f64::consts::{PI, TAU};
 
 use raster::Canvas;
+use tracelight_image::Grey;
 use tracelight_stroke::{Point, Vec2, compare_polylines};
-use tracelight_vision::{Grey, Mode, Options, Traced, VisionError, trace};
+use tracelight_vision::{Mode, Options, Traced, VisionError, trace};
 
 /// A closed polyline in pen on 320 × 240 px.
 fn drawn(figures: &[Vec<Point>]) -> Grey {

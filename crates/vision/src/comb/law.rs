@@ -1,9 +1,10 @@
 //! Where each rule of a family is by its number: the law that the family keeps to.
 
+use tracelight_image::solve;
+
 use super::chain::{LEAST_SPACING, Link, NEAR, NEAR_PX, is_alike};
 use super::strips::{Peak, Strip, Strips};
 use super::track::Track;
-use crate::solve;
 
 /// Share of the rules that reach either border.
 const REACHING: f64 = 0.7;

@@ -29,9 +29,8 @@ use template::Template;
 use track::{Track, tracks};
 use wipe::{Levels, wipe};
 
-use crate::plane::Plane;
-use crate::region::regions;
-use crate::threshold::over;
+use tracelight_image::threshold::over;
+use tracelight_image::{Plane, regions};
 
 /// Most families of rules in one direction.
 const MOST_FAMILIES: usize = 3;

@@ -6,13 +6,13 @@
 
 use std::sync::LazyLock;
 
+use tracelight_image::Plane;
+use tracelight_image::solve::symmetric;
 use tracelight_stroke::{Point, Vec2};
 
 use super::place::TagPlace;
 use super::square::{Off, SIDE, Square};
-use crate::grey::light_of_levels;
-use crate::plane::Plane;
-use crate::solve::symmetric;
+use crate::gamma::light_of_levels;
 
 /// Samples across a boundary.
 const SAMPLES: usize = 11;

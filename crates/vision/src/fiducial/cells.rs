@@ -1,11 +1,11 @@
 //! The cells of a marker, read and looked up.
 
+use tracelight_image::Plane;
+use tracelight_image::solve::linear;
 use tracelight_stroke::Vec2;
 
 use super::codes::CODES;
 use super::square::{SIDE, Square};
-use crate::plane::Plane;
-use crate::solve::linear;
 
 /// Cells that may be wrong, if they are unclear: the family tells up to five, and what is no marker has clear ones.
 const MOST_WRONG: u32 = 2;

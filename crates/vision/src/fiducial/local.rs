@@ -1,8 +1,7 @@
 //! Dark from light, each place by what is about it.
 
-use crate::mask::Mask;
-use crate::plane::Plane;
-use crate::threshold::word_of;
+use tracelight_image::threshold::word_of;
+use tracelight_image::{Mask, Plane};
 
 /// Side of the squares in which the darkest and the brightest level are looked for, px.
 const TILE: usize = 4;

@@ -13,16 +13,12 @@ mod place;
 mod quad;
 mod square;
 
+use tracelight_image::{Grey, Mask, Plane, regions};
 use tracelight_stroke::Point;
 
 use boundary::{Cells, Tables};
 pub use place::TagPlace;
 use square::Square;
-
-use crate::Grey;
-use crate::mask::Mask;
-use crate::plane::Plane;
-use crate::region::regions;
 
 /// A marker that was found, pixel frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,10 +51,10 @@ pub fn tag_cells(id: u16) -> Option<[[bool; 8]; 8]> {
 
 /// Finds every marker whose sides are at least 12 px long and all in sight, with white about it as wide as one of its cells.
 pub fn find_tags(image: &Grey) -> Vec<Tag> {
-    let plane = &image.plane;
+    let plane = image.plane();
     let dark = local::darker(plane);
     let tables = Tables::get();
-    let mut walked = Mask::empty(dark.width, dark.height);
+    let mut walked = Mask::empty(dark.width(), dark.height());
     let patches = regions(&dark);
     let rough = patches.iter().filter_map(|patch| quad::of(&dark, patch, &mut walked));
     rough.filter_map(|corners| tag(plane, tables, &corners)).collect()

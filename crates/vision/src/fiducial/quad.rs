@@ -1,10 +1,8 @@
 //! Patches with four straight sides.
 
+use tracelight_image::border::{Edge, border};
+use tracelight_image::{Mask, Region};
 use tracelight_stroke::{Point, Vec2};
-
-use crate::mask::Mask;
-use crate::outline::{Edge, border};
-use crate::region::Region;
 
 /// Shortest side of a marker that can be read, px: a pixel and a half a cell.
 const LEAST_SIDE_PX: f64 = 12.0;

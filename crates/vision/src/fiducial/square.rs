@@ -1,9 +1,8 @@
 //! A marker's cells in the image.
 
+use tracelight_image::Projection;
+use tracelight_image::solve::linear;
 use tracelight_stroke::{Point, Vec2};
-
-use crate::projection::Projection;
-use crate::solve::linear;
 
 /// Cells of a side with the black border.
 pub(super) const SIDE: usize = 8;

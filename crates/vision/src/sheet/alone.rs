@@ -2,14 +2,13 @@
 
 use std::ops::Range;
 
+use tracelight_image::median::middle;
+use tracelight_image::{Mask, Plane};
 use tracelight_stroke::{Point, Vec2};
 
 use super::over::covered;
 use super::quad::{Quad, SIDES};
 use super::{Beside, Found, Small};
-use crate::mask::Mask;
-use crate::plane::Plane;
-use crate::ridge::middle;
 
 /// So far inside a sheet's edge its shadow ends: share of the picture's shorter side, and px beyond its blur.
 const RIM: f64 = 0.005;

@@ -1,5 +1,7 @@
 //! Which sides, with the picture's borders, make the sheet.
 
+use tracelight_image::Plane;
+use tracelight_image::border::area;
 use tracelight_stroke::Point;
 
 use super::evidence::Calm;
@@ -7,8 +9,6 @@ use super::quad::{LEAST_SEEN, Quad, corners, ends, is_upright, off_border};
 use super::shade::Shade;
 use super::sides::{self, Side};
 use super::{Small, steps};
-use crate::outline::area;
-use crate::plane::Plane;
 
 /// A side is at least this share of the picture's.
 const LEAST_SIDE: f64 = 0.2;

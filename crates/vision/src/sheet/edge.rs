@@ -1,14 +1,13 @@
 //! A sheet's sides where the full picture has their steps.
 
+use tracelight_image::border::area;
+use tracelight_image::median::middle;
+use tracelight_image::{Plane, solve};
 use tracelight_stroke::{Point, Vec2};
 
 use super::quad::{Quad, SIDES};
 use super::rim::{self, Strip};
 use super::{Sheet, Small, inward};
-use crate::outline::area;
-use crate::plane::Plane;
-use crate::ridge::middle;
-use crate::solve;
 
 /// Places along a side at which its step is looked for.
 const PLACES: usize = 96;

@@ -1,11 +1,11 @@
 //! Whether a quadrilateral is a sheet: by the levels along its sides, and what is to be seen on it and beside it.
 
+use tracelight_image::Plane;
+use tracelight_image::median::middle;
 use tracelight_stroke::{Point, Vec2};
 
 use super::quad::{Quad, SIDES, is_upright, off_border};
 use super::{BESIDE, Small, are_as_wide};
-use crate::plane::Plane;
-use crate::ridge::middle;
 use crate::shadow::SHADE;
 
 /// Paper is so even from one side of the sheet to another, as a ratio: in a shadow it keeps this much.

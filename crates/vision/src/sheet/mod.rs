@@ -23,14 +23,11 @@ mod steps;
 use std::borrow::Cow;
 use std::cell::OnceCell;
 
+use tracelight_image::border::area;
+use tracelight_image::levels::sampled_histogram;
+use tracelight_image::{Grey, Mask, Plane, Region, regions};
 use tracelight_stroke::{Point, Vec2};
 
-use crate::Grey;
-use crate::levels::sampled_histogram;
-use crate::mask::Mask;
-use crate::outline::area;
-use crate::plane::Plane;
-use crate::region::{Region, regions};
 use crate::tones::Tones;
 use alone::{Alone, alone};
 use edge::Edge;
@@ -100,11 +97,11 @@ impl<'a> Page<'a> {
     /// The sheet in a picture, if there is one, else all of it. In one of two tones what is white on black is a silhouette, unless it is
     /// a page that was copied with a black margin.
     pub fn of(image: &'a Grey) -> Self {
-        let found = Small::of(&image.plane).and_then(|small| {
-            let found = Found::of(&image.plane, &small)?;
-            let tones = Tones::of(&sampled_histogram(&image.plane));
-            let is_sheet = tones.is_none_or(|tones| is_page(&image.plane, tones, &found.sheet));
-            is_sheet.then(|| (alone(&image.plane, &small, &found), found))
+        let found = Small::of(image.plane()).and_then(|small| {
+            let found = Found::of(image.plane(), &small)?;
+            let tones = Tones::of(&sampled_histogram(image.plane()));
+            let is_sheet = tones.is_none_or(|tones| is_page(image.plane(), tones, &found.sheet));
+            is_sheet.then(|| (alone(image.plane(), &small, &found), found))
         });
         found.map_or(Self::whole(image), |(alone, Found { sheet, quad, square, .. })| Self {
             whole: Some(image),
@@ -118,15 +115,15 @@ impl<'a> Page<'a> {
     /// quadrilateral of some size in it.
     pub fn within(image: &'a Grey, corners: [Point; 4]) -> Option<Self> {
         let side = image.width().min(image.height());
-        let small = Small::by(&image.plane, (side / SIDE).max(1));
-        let found = Found::within(&image.plane, &small, corners)?;
-        let alone = alone(&image.plane, &small, &found);
+        let small = Small::by(image.plane(), (side / SIDE).max(1));
+        let found = Found::within(image.plane(), &small, corners)?;
+        let alone = alone(image.plane(), &small, &found);
         Some(Self { square: found.square, ..Self::cut(image, alone, found.sheet) })
     }
 
     fn cut(image: &Grey, alone: Alone, sheet: Sheet) -> Self {
         Self {
-            picture: Cow::Owned(Grey { plane: alone.plane }),
+            picture: Cow::Owned(Grey::of_part(alone.plane)),
             size: (image.width(), image.height()),
             origin: alone.origin,
             sheet: Some(sheet),

@@ -7,12 +7,12 @@
 use std::ops::Range;
 use std::slice;
 
+use tracelight_image::Plane;
+use tracelight_image::median::middle;
 use tracelight_stroke::{Point, Vec2};
 
 use super::BESIDE;
 use super::quad::{Quad, SIDES};
-use crate::plane::Plane;
-use crate::ridge::middle;
 
 /// What is seen along a side differs from its paper by this share.
 const FOREIGN: f64 = 0.08;

@@ -1,12 +1,12 @@
 //! Four sides of a sheet in the small picture, and what falls across it.
 
+use tracelight_image::Plane;
+use tracelight_image::border::area;
 use tracelight_stroke::{Point, Vec2};
 
 use super::shade::Shade;
 use super::sides::Side;
 use super::{BESIDE, inward};
-use crate::outline::area;
-use crate::plane::Plane;
 
 /// Least of a side that is seen; a finger, a shadow or another sheet hides the rest.
 pub(super) const LEAST_SEEN: f64 = 0.5;

@@ -3,12 +3,12 @@
 //! A frame drawn along the border looks alike, but is as wide at one end as at the other, and not as bright as what lies
 //! beside the sheet elsewhere.
 
+use tracelight_image::Plane;
+use tracelight_image::median::middle;
 use tracelight_stroke::Point;
 
 use super::edge::straight;
 use super::{are_as_wide, inward};
-use crate::plane::Plane;
-use crate::ridge::middle;
 
 /// Places along a border that are looked at.
 const PLACES: usize = 96;

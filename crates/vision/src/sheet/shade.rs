@@ -1,10 +1,10 @@
 //! A shadow's straight edge across a sheet: what is in it is darker by the same share, on the paper and beside it.
 
+use tracelight_image::Plane;
 use tracelight_stroke::{Point, Vec2};
 
 use super::BESIDE;
 use super::sides::Side;
-use crate::plane::Plane;
 
 /// What a shadow lets through of the light.
 const SHADE: std::ops::Range<f64> = 0.35..0.88;

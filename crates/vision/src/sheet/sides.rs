@@ -1,10 +1,9 @@
 //! Steps in a row, on a straight line through the rows: a side.
 
+use tracelight_image::{Plane, solve};
 use tracelight_stroke::Point;
 
 use super::steps::Step;
-use crate::plane::Plane;
-use crate::solve;
 
 /// The steepest side of those that go down the rows: a little more than half a right angle, so that none falls between
 /// those of rows and those of columns.

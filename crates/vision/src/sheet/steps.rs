@@ -1,6 +1,6 @@
 //! Steps of brightness along the rows of a picture whose lines are taken out.
 
-use crate::plane::Plane;
+use tracelight_image::Plane;
 
 /// A step from paper to table is at least so many levels, and this share of the brighter side.
 const LEAST_LEVELS: i16 = 10;

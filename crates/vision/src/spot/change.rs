@@ -1,10 +1,10 @@
 //! What is brighter in one image than in another.
 
+use tracelight_image::Plane;
 use tracelight_stroke::Point;
 
 use super::{Bell, SpotWindow};
-use crate::grey::light_of_levels;
-use crate::plane::Plane;
+use crate::gamma::light_of_levels;
 
 /// Level from which on a pixel may be full.
 const FULL: u8 = 250;

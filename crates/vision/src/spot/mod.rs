@@ -8,12 +8,10 @@ mod change;
 
 use std::ops::Range;
 
+use tracelight_image::solve::linear;
+use tracelight_image::{Grey, Plane, long_axis};
 use tracelight_stroke::{Point, Vec2};
 
-use crate::Grey;
-use crate::plane::Plane;
-use crate::region::long_axis;
-use crate::solve::linear;
 use change::{Change, Patch};
 
 /// Where a spot is looked for.
@@ -95,7 +93,7 @@ pub fn find_spot(lit: &Grey, dark: &Grey, window: &SpotWindow) -> Result<Spot, S
     if size(lit) != size(dark) {
         return Err(SpotLost::Sizes { lit: size(lit), dark: size(dark) });
     }
-    let change = Change::of(&lit.plane, &dark.plane, window).ok_or(SpotLost::OutOfSight(window.centre))?;
+    let change = Change::of(lit.plane(), dark.plane(), window).ok_or(SpotLost::OutOfSight(window.centre))?;
     let noise = change.noise();
     let (peak, most) = change.peak();
     // a mean of nine is a third as noisy; and eight bits are never better than a tenth of a level

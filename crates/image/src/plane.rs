@@ -6,10 +6,13 @@ use crate::mask::Mask;
 
 /// Values on a grid of pixels, row by row from the top left.
 #[derive(Clone)]
-pub(crate) struct Plane<T> {
-    pub(crate) width: usize,
-    pub(crate) height: usize,
-    pub(crate) values: Vec<T>,
+pub struct Plane<T> {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// `width · height` of them, row by row.
+    pub values: Vec<T>,
 }
 
 /// Its size; a picture's worth of numbers helps nobody.
@@ -20,20 +23,23 @@ impl<T> std::fmt::Debug for Plane<T> {
 }
 
 impl<T: Copy + Default> Plane<T> {
-    pub(crate) fn filled(width: usize, height: usize, value: T) -> Self {
+    /// One value everywhere.
+    pub fn filled(width: usize, height: usize, value: T) -> Self {
         Self { width, height, values: vec![value; width * height] }
     }
 
-    pub(crate) fn row(&self, y: usize) -> &[T] {
+    /// The values of a row.
+    pub fn row(&self, y: usize) -> &[T] {
         &self.values[y * self.width..][..self.width]
     }
 
-    pub(crate) fn row_mut(&mut self, y: usize) -> &mut [T] {
+    /// The same, to be written.
+    pub fn row_mut(&mut self, y: usize) -> &mut [T] {
         &mut self.values[y * self.width..][..self.width]
     }
 
     /// Sets the pixels of a mask, as large as this, to the default.
-    pub(crate) fn clear(&mut self, mask: &Mask) {
+    pub fn clear(&mut self, mask: &Mask) {
         for cell in mask.cells() {
             let (x, y) = mask.place(cell);
             self.row_mut(y)[x] = T::default();
@@ -41,7 +47,7 @@ impl<T: Copy + Default> Plane<T> {
     }
 
     /// The value at a pixel; the default outside.
-    pub(crate) fn get(&self, x: isize, y: isize) -> T {
+    pub fn get(&self, x: isize, y: isize) -> T {
         match (usize::try_from(x), usize::try_from(y)) {
             (Ok(x), Ok(y)) if x < self.width && y < self.height => self.values[y * self.width + x],
             _ => T::default(),
@@ -49,7 +55,7 @@ impl<T: Copy + Default> Plane<T> {
     }
 
     /// Rows as columns, in squares that fit into the cache.
-    pub(crate) fn transposed(&self) -> Self {
+    pub fn transposed(&self) -> Self {
         const SQUARE: usize = 32;
         let (w, h) = (self.width, self.height);
         let mut out = Self::filled(h, w, T::default());
@@ -66,24 +72,19 @@ impl<T: Copy + Default> Plane<T> {
     }
 
     /// Whether the value with this number is one of the outermost.
-    pub(crate) fn is_at_border(&self, i: usize) -> bool {
+    pub fn is_at_border(&self, i: usize) -> bool {
         let (x, y) = (i % self.width, i / self.width);
         x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
     }
 
     /// Whether a place is within the image.
-    pub(crate) fn holds(&self, p: Point) -> bool {
+    pub fn holds(&self, p: Point) -> bool {
         (0.0..self.width as f64).contains(&p.x) && (0.0..self.height as f64).contains(&p.y)
     }
 
     /// Adds to a patch of values, by their numbers, all that it reaches from neighbour to neighbour, row by row and column by column; `joins`
     /// says whether the first leads to the second. What is `seen` already is not reached; the patch is part of it.
-    pub(crate) fn flood(
-        &self,
-        patch: &mut Vec<usize>,
-        seen: &mut [bool],
-        joins: impl Fn(usize, usize) -> bool,
-    ) {
+    pub fn flood(&self, patch: &mut Vec<usize>, seen: &mut [bool], joins: impl Fn(usize, usize) -> bool) {
         let mut next = 0;
         while let Some(&i) = patch.get(next) {
             let (x, y) = ((i % self.width) as isize, (i / self.width) as isize);
@@ -102,13 +103,13 @@ impl<T: Copy + Default> Plane<T> {
     }
 
     /// The nearest place within the image.
-    pub(crate) fn clamp(&self, p: Point) -> Point {
+    pub fn clamp(&self, p: Point) -> Point {
         Point::new(p.x.clamp(0.0, self.width as f64), p.y.clamp(0.0, self.height as f64))
     }
 
     /// Equal steps from a place on: of each, the number of the pixel up left of it, and how far it is from that one's centre to the next's,
     /// across and down, in 65536ths. `None` where a step has no pixels' centres on all sides, and on a plane longer than [`LONGEST`].
-    pub(crate) fn steps(
+    pub fn steps(
         &self,
         from: Point,
         step: Vec2,
@@ -140,7 +141,7 @@ const LONGEST: usize = 1 << 15;
 
 impl Plane<u8> {
     /// Means of `k` × `k` pixels; what does not fill a block at the right and lower border is left out.
-    pub(crate) fn reduced(&self, k: usize) -> Self {
+    pub fn reduced(&self, k: usize) -> Self {
         let (width, height) = (self.width / k, self.height / k);
         let mut plane = Self::filled(width, height, 0);
         let area = (k * k) as u32;
@@ -158,14 +159,14 @@ impl Plane<u8> {
     }
 
     /// Its pixels in some columns and rows.
-    pub(crate) fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Self {
+    pub fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Self {
         let (width, height) = (columns.len(), rows.len());
         let values = rows.flat_map(|y| self.row(y)[columns.clone()].iter().copied()).collect();
         Self { width, height, values }
     }
 
     /// Four pixels for each, on the cubics through the pixels' centres (Catmull and Rom, "A class of local interpolating splines", 1974).
-    pub(crate) fn doubled(&self) -> Self {
+    pub fn doubled(&self) -> Self {
         self.doubled_across().transposed().doubled_across().transposed()
     }
 
@@ -189,7 +190,8 @@ impl Plane<u8> {
     }
 
     /// Between the four nearest pixels' centres, bilinear; the border's values go on outside.
-    pub(crate) fn at(&self, p: Point) -> f64 {
+    #[inline]
+    pub fn at(&self, p: Point) -> f64 {
         let along = |v: f64, n: usize| {
             let v = (v - 0.5).clamp(0.0, (n - 1) as f64);
             let low = (v as usize).min(n.saturating_sub(2));
@@ -204,13 +206,14 @@ impl Plane<u8> {
     }
 
     /// The mean of [`Self::at`] over some places; 0 of none.
-    pub(crate) fn mean_at(&self, places: impl Iterator<Item = Point>) -> f64 {
+    pub fn mean_at(&self, places: impl Iterator<Item = Point>) -> f64 {
         let (sum, count) = places.fold((0.0, 0.0), |(sum, count), p| (sum + self.at(p), count + 1.0));
         sum / f64::max(count, 1.0)
     }
 
     /// Values at equal steps from a place on, as [`Self::at`] gives them but for its last digits.
-    pub(crate) fn along(&self, from: Point, step: Vec2, values: &mut [f32]) {
+    #[inline]
+    pub fn along(&self, from: Point, step: Vec2, values: &mut [f32]) {
         let Some(steps) = self.steps(from, step, values.len()) else {
             values.iter_mut().enumerate().for_each(|(k, v)| *v = self.at(from + step * k as f64) as f32);
             return;

@@ -6,7 +6,7 @@ impl Mask {
     /// The upper left pixels of the upright squares of `side` pixels (at most 192) that fit into the ink.
     ///
     /// A run of n in common is had from runs of n/2 in common by one more shift (van Herk's idea for words).
-    pub(crate) fn eroded(mut self, side: usize) -> Self {
+    pub fn eroded(mut self, side: usize) -> Self {
         let side = side.clamp(1, MOST_SIDE);
         for row in self.inked_rows() {
             each_shift(side, |by| and_right(row, by));
@@ -16,7 +16,7 @@ impl Mask {
     }
 
     /// The squares of `side` pixels whose upper left pixels are ink: undoes [`Self::eroded`] for what survived it.
-    pub(crate) fn dilated(mut self, side: usize) -> Self {
+    pub fn dilated(mut self, side: usize) -> Self {
         let side = side.clamp(1, MOST_SIDE);
         let (last, mut was) = (self.last_word(), vec![0; self.stride]);
         for row in self.inked_rows() {
@@ -29,12 +29,12 @@ impl Mask {
     }
 
     /// Closed by upright squares of `side` pixels: what is narrower between its ink is filled.
-    pub(crate) fn closed(self, side: usize) -> Self {
+    pub fn closed(self, side: usize) -> Self {
         self.dilated(side).eroded(side)
     }
 
     /// Four pixels for each of its own, on a mask of this size.
-    pub(crate) fn doubled_to(&self, width: usize, height: usize) -> Self {
+    pub fn doubled_to(&self, width: usize, height: usize) -> Self {
         let mut out = Self::empty(width, height);
         for y in 0..self.height.min(height.div_ceil(2)) {
             for (k, &word) in self.row(y).iter().enumerate().filter(|(_, word)| **word != 0) {
@@ -54,7 +54,7 @@ impl Mask {
     ///
     /// A regular octagon is four runs added up, level, upright and on both slants, and each is built by doubling: some
     /// thirty passes over the words, whatever the width.
-    pub(crate) fn opened(mut self, width: usize) -> Self {
+    pub fn opened(mut self, width: usize) -> Self {
         let slant = ((0.293 * width as f64).round() as usize).min(MOST_SIDE);
         let side = width.saturating_sub(2 * slant).clamp(1, MOST_SIDE);
         let slants = [Slant::Right, Slant::Left];
@@ -68,7 +68,7 @@ impl Mask {
     }
 
     /// All within the upright squares of `reach` px either way about each ink pixel.
-    pub(crate) fn dilated_by(self, reach: usize) -> Self {
+    pub fn dilated_by(self, reach: usize) -> Self {
         let mut grown = self.dilated(reach + 1);
         for row in grown.inked_rows() {
             each_shift(reach + 1, |by| or_right(row, by));
@@ -78,7 +78,8 @@ impl Mask {
         grown
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
+    /// Whether there is no ink.
+    pub fn is_empty(&self) -> bool {
         self.words.iter().all(|&word| word == 0)
     }
 

@@ -1,6 +1,8 @@
+//! Few linear equations, and the straight line nearest to some places.
+
 /// Solves n linear equations by Gaussian elimination with row pivoting; each row holds its coefficients and, behind
 /// them, the right-hand side. `None` where they are dependent.
-pub(crate) fn linear<const N: usize, const M: usize>(mut rows: [[f64; M]; N]) -> Option<[f64; N]> {
+pub fn linear<const N: usize, const M: usize>(mut rows: [[f64; M]; N]) -> Option<[f64; N]> {
     for k in 0..N {
         let pivot = (k..N).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs()))?;
         rows.swap(k, pivot);
@@ -23,7 +25,7 @@ pub(crate) fn linear<const N: usize, const M: usize>(mut rows: [[f64; M]; N]) ->
 
 /// Solves n linear equations whose coefficients are a symmetric, positive definite matrix, as those of least squares are, by Cholesky's
 /// method without roots: no pivots. `None` where they are dependent.
-pub(crate) fn symmetric<const N: usize>(mut rows: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
+pub fn symmetric<const N: usize>(mut rows: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
     for k in 0..N {
         let pivot = rows[k][k];
         if pivot.is_nan() || pivot <= 1e-12 {
@@ -45,7 +47,7 @@ pub(crate) fn symmetric<const N: usize>(mut rows: [[f64; N]; N], mut right: [f64
 
 /// The straight line nearest to some places, (x, y, weight) each, by least squares: y where x is 0, and its slope. `None` where all of
 /// them are at one x.
-pub(crate) fn line(places: impl Iterator<Item = (f64, f64, f64)>) -> Option<(f64, f64)> {
+pub fn line(places: impl Iterator<Item = (f64, f64, f64)>) -> Option<(f64, f64)> {
     let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (px, py, weight) in places {
         (n, x, y) = (n + weight, x + weight * px, y + weight * py);

@@ -4,12 +4,12 @@ use crate::levels::{Counts, percentile};
 use crate::plane::Plane;
 
 /// What is left of noise after so many passes of [`smoothed`]: the root of the sum of the squares of the weights of the binomial mean, alone and of itself.
-pub(crate) const SMOOTHED: [f64; 3] = [1.0, 3.0 / 8.0, 35.0 / 128.0];
+pub const SMOOTHED: [f64; 3] = [1.0, 3.0 / 8.0, 35.0 / 128.0];
 
 /// Standard deviation of the pixel noise, levels: the mask of Immerkær, "Fast noise variance estimation" (1996),
 /// which is blind to flat places and slopes, with the median instead of the mean, which is blind to lines too; of about
 /// `sampled` pixels.
-pub(crate) fn noise(plane: &Plane<u8>, sampled: usize) -> f64 {
+pub fn noise(plane: &Plane<u8>, sampled: usize) -> f64 {
     const TIMES: f64 = 6.0; // the mask's gain on white noise
     const MEDIAN: f64 = 0.6745; // of |x| for a standard normal x
     let mut counts = Counts::default();
@@ -30,7 +30,7 @@ pub(crate) fn noise(plane: &Plane<u8>, sampled: usize) -> f64 {
 }
 
 /// The binomial mean of 3 × 3 pixels: noise falls to 3/8.
-pub(crate) fn smoothed(plane: &Plane<u8>) -> Plane<u8> {
+pub fn smoothed(plane: &Plane<u8>) -> Plane<u8> {
     let (w, h) = (plane.width, plane.height);
     let mut out = Plane::filled(w, h, 0);
     // sums of columns of three, with one more at either end, which repeats the border

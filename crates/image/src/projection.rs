@@ -6,11 +6,11 @@ use crate::solve::linear;
 
 /// From a rectangle to pixels: (0, 0) is its first corner, (width, 0) the second, (width, height) the third.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Projection(pub(crate) [f64; 8]);
+pub struct Projection(pub [f64; 8]);
 
 impl Projection {
     /// Of a rectangle of this width and height, with its corners in order; `None` where they span none.
-    pub(crate) fn of((width, height): (f64, f64), corners: &[Point; 4]) -> Option<Self> {
+    pub fn of((width, height): (f64, f64), corners: &[Point; 4]) -> Option<Self> {
         let mut rows = [[0.0; 9]; 8];
         let places = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
         for (k, &(x, y)) in places.iter().enumerate() {
@@ -22,12 +22,14 @@ impl Projection {
     }
 
     /// Where a place of the rectangle is, px; `None` behind the camera.
-    pub(crate) fn at(&self, x: f64, y: f64) -> Option<Point> {
+    #[inline]
+    pub fn at(&self, x: f64, y: f64) -> Option<Point> {
         self.with_slopes(x, y).map(|(at, _, _)| at)
     }
 
     /// The same, and how far a unit across and a unit down go there, px.
-    pub(crate) fn with_slopes(&self, x: f64, y: f64) -> Option<(Point, Vec2, Vec2)> {
+    #[inline]
+    pub fn with_slopes(&self, x: f64, y: f64) -> Option<(Point, Vec2, Vec2)> {
         let [a, b, c, d, e, f, g, h] = self.0;
         let w = g * x + h * y + 1.0;
         if w < 1e-3 {

@@ -4,49 +4,60 @@ use std::ops::Range;
 
 use tracelight_stroke::{Point, Vec2};
 
+use crate::levels::histogram;
 use crate::mask::{Cell, Mask};
 use crate::plane::Plane;
 
 /// Ink pixels `from..to` of row `y`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct Run {
-    pub(crate) y: u32,
-    pub(crate) from: u32,
-    pub(crate) to: u32,
+pub struct Run {
+    /// Its row.
+    pub y: u32,
+    /// Its first column.
+    pub from: u32,
+    /// The column behind its last.
+    pub to: u32,
 }
 
 impl Run {
     /// Number of pixels.
-    pub(crate) fn length(&self) -> usize {
+    #[inline]
+    pub fn length(&self) -> usize {
         (self.to - self.from) as usize
     }
 
     /// What a plane has there.
-    pub(crate) fn levels<'a>(&self, plane: &'a Plane<u8>) -> &'a [u8] {
+    #[inline]
+    pub fn levels<'a>(&self, plane: &'a Plane<u8>) -> &'a [u8] {
         &plane.row(self.y as usize)[self.from as usize..self.to as usize]
     }
 }
 
 /// Ink that hangs together, corners touching included.
 #[derive(Clone, Debug)]
-pub(crate) struct Region {
+pub struct Region {
     /// Row by row, left to right.
-    pub(crate) runs: Vec<Run>,
+    pub runs: Vec<Run>,
 }
 
 impl Region {
     /// Number of pixels.
-    pub(crate) fn area(&self) -> usize {
+    pub fn area(&self) -> usize {
         self.runs.iter().map(Run::length).sum()
     }
 
+    /// How often each level of a plane comes on it.
+    pub fn histogram(&self, plane: &Plane<u8>) -> [u32; 256] {
+        histogram(self.runs.iter().map(|run| run.levels(plane)))
+    }
+
     /// Columns and rows of its pixels, row by row.
-    pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.runs.iter().flat_map(|run| (run.from as usize..run.to as usize).map(|x| (x, run.y as usize)))
     }
 
     /// The middle of its pixels by their weights, and their variances across, of both, and down.
-    pub(crate) fn moments(&self, weight: impl Fn(usize, usize) -> f64) -> (Point, [f64; 3]) {
+    pub fn moments(&self, weight: impl Fn(usize, usize) -> f64) -> (Point, [f64; 3]) {
         let weighted =
             || self.places().map(|(x, y)| (Vec2::new(x as f64 + 0.5, y as f64 + 0.5), weight(x, y)));
         let mass = weighted().map(|(_, w)| w).sum::<f64>().max(1e-9);
@@ -56,18 +67,18 @@ impl Region {
     }
 
     /// Those of its pixels that are ink in `mask`.
-    pub(crate) fn cells<'a>(&'a self, mask: &'a Mask) -> impl Iterator<Item = Cell> + 'a {
+    pub fn cells<'a>(&'a self, mask: &'a Mask) -> impl Iterator<Item = Cell> + 'a {
         self.runs.iter().flat_map(|run| mask.cells_in(run.y as usize, run.from as usize, run.to as usize))
     }
 
     /// Width and height of its bounding box, px.
-    pub(crate) fn extent(&self) -> (usize, usize) {
+    pub fn extent(&self) -> (usize, usize) {
         let any = (usize::MAX, usize::MAX);
         self.bounds(0, any).map_or((0, 0), |(columns, rows)| (columns.len(), rows.len()))
     }
 
     /// Columns and rows of its bounding box and so many px round it, within an image of this size; `None` without pixels.
-    pub(crate) fn bounds(&self, round: usize, size: (usize, usize)) -> Option<(Range<usize>, Range<usize>)> {
+    pub fn bounds(&self, round: usize, size: (usize, usize)) -> Option<(Range<usize>, Range<usize>)> {
         let (top, bottom) = (self.runs.first()?.y as usize, self.runs.last()?.y as usize + 1);
         let left = self.runs.iter().map(|run| run.from as usize).min()?;
         let right = self.runs.iter().map(|run| run.to as usize).max()?;
@@ -76,57 +87,57 @@ impl Region {
     }
 
     /// Whether it leads from one border of its image to the one across.
-    pub(crate) fn spans(&self, mask: &Mask) -> bool {
+    pub fn spans(&self, mask: &Mask) -> bool {
         let rows = self.runs.first().is_some_and(|run| run.y == 0)
-            && self.runs.last().is_some_and(|run| run.y as usize + 1 == mask.height);
+            && self.runs.last().is_some_and(|run| run.y as usize + 1 == mask.height());
         let columns = self.runs.iter().any(|run| run.from == 0)
-            && self.runs.iter().any(|run| run.to as usize == mask.width);
+            && self.runs.iter().any(|run| run.to as usize == mask.width());
         rows || columns
     }
 
     /// How many of its pixels are its image's outermost.
-    pub(crate) fn at_border_px(&self, mask: &Mask) -> usize {
-        let at_border = |run: &Run| match run.y == 0 || run.y as usize + 1 == mask.height {
+    pub fn at_border_px(&self, mask: &Mask) -> usize {
+        let at_border = |run: &Run| match run.y == 0 || run.y as usize + 1 == mask.height() {
             true => run.length(),
-            false => usize::from(run.from == 0) + usize::from(run.to as usize == mask.width),
+            false => usize::from(run.from == 0) + usize::from(run.to as usize == mask.width()),
         };
         self.runs.iter().map(at_border).sum()
     }
 
     /// Whether there is ink of `mask` at most `reach` px beyond its bounding box.
-    pub(crate) fn is_near(&self, mask: &Mask, reach: usize) -> bool {
-        let bounds = self.bounds(reach, (mask.width, mask.height));
+    pub fn is_near(&self, mask: &Mask, reach: usize) -> bool {
+        let bounds = self.bounds(reach, (mask.width(), mask.height()));
         bounds.is_some_and(|(columns, mut rows)| {
             rows.any(|y| mask.cells_in(y, columns.start, columns.end).next().is_some())
         })
     }
 
     /// The same with its place `left`, `top` as the origin; none of its pixels lies before that.
-    pub(crate) fn seen_from(&self, left: usize, top: usize) -> Self {
+    pub fn seen_from(&self, left: usize, top: usize) -> Self {
         let (left, top) = (left as u32, top as u32);
         let moved = |run: &Run| Run { y: run.y - top, from: run.from - left, to: run.to - left };
         Self { runs: self.runs.iter().map(moved).collect() }
     }
 
     /// Makes all of it paper.
-    pub(crate) fn erase_from(&self, mask: &mut Mask) {
+    pub fn erase_from(&self, mask: &mut Mask) {
         self.runs.iter().for_each(|run| mask.erase(run.y as usize, run.from as usize, run.to as usize));
     }
 
     /// Makes all of it ink.
-    pub(crate) fn fill_into(&self, mask: &mut Mask) {
+    pub fn fill_into(&self, mask: &mut Mask) {
         self.runs.iter().for_each(|run| mask.fill(run.y as usize, run.from as usize, run.to as usize));
     }
 }
 
 /// The long axis of what has such variances.
-pub(crate) fn long_axis([xx, xy, yy]: [f64; 3]) -> Vec2 {
+pub fn long_axis([xx, xy, yy]: [f64; 3]) -> Vec2 {
     Vec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy))
 }
 
 /// How pixels hang together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Joined {
+enum Joined {
     /// By sides and corners: ink.
     Corners = 1,
     /// By sides only: paper.
@@ -134,27 +145,27 @@ pub(crate) enum Joined {
 }
 
 /// Every region of a mask's ink, in the order of their first pixels.
-pub(crate) fn regions(mask: &Mask) -> Vec<Region> {
+pub fn regions(mask: &Mask) -> Vec<Region> {
     let mut runs = Runs::default();
-    for y in 0..mask.height {
+    for y in 0..mask.height() {
         runs.row(y, Joined::Corners, |found| ink_runs(mask.row(y), y as u32, found));
     }
     runs.gathered(|_| true)
 }
 
 /// Whether some of a mask's ink leads from border to border.
-pub(crate) fn any_spans(mask: &Mask) -> bool {
+pub fn any_spans(mask: &Mask) -> bool {
     regions(mask).iter().any(|region| region.spans(mask))
 }
 
 /// Patches of paper of fewer than `least` pixels.
-pub(crate) fn pinholes(mask: &Mask, least: usize) -> Vec<Region> {
+pub fn pinholes(mask: &Mask, least: usize) -> Vec<Region> {
     let mut runs = Runs::default();
     let mut inks = Vec::new();
-    for y in 0..mask.height {
+    for y in 0..mask.height() {
         inks.clear();
         ink_runs(mask.row(y), y as u32, &mut inks);
-        runs.row(y, Joined::Sides, |found| paper_between(&inks, mask.width as u32, y as u32, found));
+        runs.row(y, Joined::Sides, |found| paper_between(&inks, mask.width() as u32, y as u32, found));
     }
     runs.gathered(|area| area < least)
 }
@@ -171,7 +182,7 @@ fn paper_between(inks: &[Run], width: u32, y: u32, found: &mut Vec<Run>) {
 }
 
 /// Adds the runs of ink in the words of a row.
-pub(crate) fn ink_runs(row: &[u64], y: u32, found: &mut Vec<Run>) {
+pub fn ink_runs(row: &[u64], y: u32, found: &mut Vec<Run>) {
     let (mut start, mut inside) = (0, false);
     for (i, &word) in row.iter().enumerate() {
         // bits that differ from the one before them: where runs begin and end
@@ -265,8 +276,8 @@ impl Runs {
 }
 
 /// The mask of these regions alone.
-pub(crate) fn mask_of<'a>(like: &Mask, regions: impl IntoIterator<Item = &'a Region>) -> Mask {
-    let mut mask = Mask::empty(like.width, like.height);
+pub fn mask_of<'a>(like: &Mask, regions: impl IntoIterator<Item = &'a Region>) -> Mask {
+    let mut mask = Mask::empty(like.width(), like.height());
     regions.into_iter().for_each(|region| region.fill_into(&mut mask));
     mask
 }

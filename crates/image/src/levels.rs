@@ -26,14 +26,15 @@ impl Counts {
 }
 
 /// How many times each level occurs.
-pub(crate) fn histogram<'a>(levels: impl Iterator<Item = &'a [u8]>) -> [u32; 256] {
+pub fn histogram<'a>(levels: impl Iterator<Item = &'a [u8]>) -> [u32; 256] {
     let mut counts = Counts::default();
     levels.for_each(|levels| counts.add(levels));
     counts.sum()
 }
 
 /// The level below which `share` of a histogram lies.
-pub(crate) fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
+#[inline]
+pub fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
     let all = histogram.iter().sum::<u32>();
     // counted from above: paper is bright, and its levels are few
     let above = ((1.0 - share) * f64::from(all)) as u32;
@@ -48,19 +49,16 @@ pub(crate) fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
 /// Pixels that are looked at together: as many as a mask has in a word.
 const BLOCK: usize = 64;
 /// As many pixels tell a picture's levels: all the others would move a share by a thousandth at most.
-pub(crate) const SAMPLED: usize = 250_000;
+pub const SAMPLED: usize = 250_000;
 
 /// The histogram of about [`SAMPLED`] pixels.
-pub(crate) fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
+pub fn sampled_histogram(plane: &Plane<u8>) -> [u32; 256] {
     histogram(sampled_blocks(plane, SAMPLED).map(|(.., levels)| levels))
 }
 
 /// Every k-th block of 64 pixels, about `sampled` in all, with its row and its number there: without a pattern, so that no
 /// line falls between them all along, whatever its direction (Knuth's multiplicative hash, *Sorting and Searching*, §6.4).
-pub(crate) fn sampled_blocks(
-    plane: &Plane<u8>,
-    sampled: usize,
-) -> impl Iterator<Item = (usize, usize, &[u8])> {
+pub fn sampled_blocks(plane: &Plane<u8>, sampled: usize) -> impl Iterator<Item = (usize, usize, &[u8])> {
     let every = (plane.values.len() / sampled).max(1);
     let row = move |y: usize| {
         let first = ((y as u32).wrapping_mul(2_654_435_769) >> 12) as usize % every;

@@ -8,13 +8,13 @@ use std::ops::Range;
 use tracelight_stroke::Point;
 
 /// Number of a pixel's bit in its mask: its neighbours are at ±1, at ± [`Mask::line`] and between.
-pub(crate) type Cell = u32;
+pub type Cell = u32;
 
 /// Which pixels are ink. Beyond its borders, by one pixel, there is paper, so that every pixel has eight neighbours.
 #[derive(Clone)]
-pub(crate) struct Mask {
-    pub(crate) width: usize,
-    pub(crate) height: usize,
+pub struct Mask {
+    width: usize,
+    height: usize,
     /// Words from one row to the next: those of the row and one of margin, which serves the row above on its right.
     stride: usize,
     words: Vec<u64>,
@@ -31,47 +31,70 @@ const WORD: usize = u64::BITS as usize;
 
 impl Mask {
     /// All paper.
-    pub(crate) fn empty(width: usize, height: usize) -> Self {
+    pub fn empty(width: usize, height: usize) -> Self {
         let stride = width.div_ceil(WORD) + 1;
         Self { width, height, stride, words: vec![0; (height + 2) * stride + 1] }
     }
 
+    /// Pixels in a row.
+    #[inline]
+    pub const fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    #[inline]
+    pub const fn height(&self) -> usize {
+        self.height
+    }
+
     /// Bits from a row to the next.
-    pub(crate) fn line(&self) -> Cell {
+    #[inline]
+    pub fn line(&self) -> Cell {
         (self.stride * WORD) as Cell
     }
 
     /// The bit of a pixel.
-    pub(crate) fn cell(&self, x: usize, y: usize) -> Cell {
+    #[inline]
+    pub fn cell(&self, x: usize, y: usize) -> Cell {
         (((y + 1) * self.stride + 1) * WORD + x) as Cell
     }
 
     /// Column and row of a bit.
-    pub(crate) fn place(&self, cell: Cell) -> (usize, usize) {
+    #[inline]
+    pub fn place(&self, cell: Cell) -> (usize, usize) {
         let (line, bit) = (self.stride * WORD, cell as usize);
         (bit % line - WORD, bit / line - 1)
     }
 
     /// Centre of a bit's pixel.
-    pub(crate) fn centre(&self, cell: Cell) -> Point {
+    #[inline]
+    pub fn centre(&self, cell: Cell) -> Point {
         let (x, y) = self.place(cell);
         Point::new(x as f64 + 0.5, y as f64 + 0.5)
     }
 
-    pub(crate) fn has(&self, cell: Cell) -> bool {
+    /// Whether a cell is ink.
+    #[inline]
+    pub fn has(&self, cell: Cell) -> bool {
         self.words[cell as usize / WORD] >> (cell as usize % WORD) & 1 != 0
     }
 
-    pub(crate) fn set(&mut self, cell: Cell) {
+    /// Makes a cell ink.
+    #[inline]
+    pub fn set(&mut self, cell: Cell) {
         self.words[cell as usize / WORD] |= 1 << (cell as usize % WORD);
     }
 
-    pub(crate) fn clear(&mut self, cell: Cell) {
+    /// Makes a cell paper.
+    #[inline]
+    pub fn clear(&mut self, cell: Cell) {
         self.words[cell as usize / WORD] &= !(1 << (cell as usize % WORD));
     }
 
     /// Whether a pixel is ink; outside there is none.
-    pub(crate) fn get(&self, x: isize, y: isize) -> bool {
+    #[inline]
+    pub fn get(&self, x: isize, y: isize) -> bool {
         match (usize::try_from(x), usize::try_from(y)) {
             (Ok(x), Ok(y)) if x < self.width && y < self.height => self.has(self.cell(x, y)),
             _ => false,
@@ -79,16 +102,19 @@ impl Mask {
     }
 
     /// The words of a row, lowest bit leftmost; bits past the width are 0.
-    pub(crate) fn row(&self, y: usize) -> &[u64] {
+    #[inline]
+    pub fn row(&self, y: usize) -> &[u64] {
         &self.words[(y + 1) * self.stride + 1..][..self.stride - 1]
     }
 
     /// The same, to be written; bits past the width must stay 0.
-    pub(crate) fn row_mut(&mut self, y: usize) -> &mut [u64] {
+    #[inline]
+    pub fn row_mut(&mut self, y: usize) -> &mut [u64] {
         &mut self.words[(y + 1) * self.stride + 1..][..self.stride - 1]
     }
 
     /// The bits left of a cell, of itself and right of it, as the lowest three.
+    #[inline]
     fn three(&self, cell: usize) -> usize {
         let (word, shift) = ((cell - 1) / WORD, (cell - 1) % WORD);
         // a shift by 64 is none: hence the two steps
@@ -97,18 +123,20 @@ impl Mask {
     }
 
     /// The 3 × 3 pixels about one: the row above in the lowest three bits, left to right, its own, the row below.
-    pub(crate) fn around(&self, cell: Cell) -> usize {
+    #[inline]
+    pub fn around(&self, cell: Cell) -> usize {
         let (cell, line) = (cell as usize, self.stride * WORD);
         self.three(cell - line) | self.three(cell) << 3 | self.three(cell + line) << 6
     }
 
     /// Bits of the pixels about one that are ink; itself is not among them.
-    pub(crate) fn neighbours(&self, cell: Cell) -> Neighbours {
+    #[inline]
+    pub fn neighbours(&self, cell: Cell) -> Neighbours {
         Neighbours { around: self.around(cell) & !MIDDLE, cell, line: self.line() }
     }
 
     /// The pixels all of whose eight neighbours are ink.
-    pub(crate) fn inside(&self) -> Self {
+    pub fn inside(&self) -> Self {
         let mut out = Self::empty(self.width, self.height);
         for y in 1..self.height.saturating_sub(1) {
             let threes = self.row(y - 1).iter().zip(self.row(y)).zip(self.row(y + 1));
@@ -124,7 +152,7 @@ impl Mask {
 
     /// Length of the lines that have this ink's border on either side, px: half of the border. Rows and columns of pixels cross a
     /// border 4/π times as often as it is long, whichever way it runs (Cauchy and Crofton).
-    pub(crate) fn line_length(&self) -> f64 {
+    pub fn line_length(&self) -> f64 {
         let changes = |(one, other): (u64, u64)| (one ^ other).count_ones() as usize;
         let crossed = |y: usize| {
             let row = self.row(y);
@@ -139,38 +167,42 @@ impl Mask {
     }
 
     /// Number of ink pixels.
-    pub(crate) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.words.iter().map(|w| w.count_ones() as usize).sum()
     }
 
     /// All words, with those of the margins.
-    pub(crate) fn words(&self) -> &[u64] {
+    #[inline]
+    pub fn words(&self) -> &[u64] {
         &self.words
     }
 
     /// The same, to be written; margins must stay 0.
-    pub(crate) fn words_mut(&mut self) -> &mut [u64] {
+    #[inline]
+    pub fn words_mut(&mut self) -> &mut [u64] {
         &mut self.words
     }
 
     /// Words from a row to the next.
-    pub(crate) fn stride(&self) -> usize {
+    #[inline]
+    pub fn stride(&self) -> usize {
         self.stride
     }
 
     /// Numbers of the words that hold ink.
-    pub(crate) fn inked_words(&self) -> impl Iterator<Item = u32> + '_ {
+    pub fn inked_words(&self) -> impl Iterator<Item = u32> + '_ {
         self.words.iter().enumerate().filter(|(_, word)| **word != 0).map(|(i, _)| i as u32)
     }
 
     /// All ink pixels, row by row.
-    pub(crate) fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
+    pub fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
         let of = |(i, &word): (usize, &u64)| Ones(word).map(move |bit| (i * WORD) as Cell + bit);
         self.words.iter().enumerate().filter(|(_, w)| **w != 0).flat_map(of)
     }
 
     /// Ink pixels among `from..to` of row `y`.
-    pub(crate) fn cells_in(&self, y: usize, from: usize, to: usize) -> impl Iterator<Item = Cell> + '_ {
+    #[inline]
+    pub fn cells_in(&self, y: usize, from: usize, to: usize) -> impl Iterator<Item = Cell> + '_ {
         let first = self.cell(0, y);
         let row = self.row(y);
         (from / WORD..to.div_ceil(WORD)).flat_map(move |i| {
@@ -180,19 +212,21 @@ impl Mask {
     }
 
     /// Makes `from..to` of row `y` ink.
-    pub(crate) fn fill(&mut self, y: usize, from: usize, to: usize) {
+    #[inline]
+    pub fn fill(&mut self, y: usize, from: usize, to: usize) {
         let row = self.row_mut(y);
         (from / WORD..to.div_ceil(WORD)).for_each(|i| row[i] |= span(i, from, to));
     }
 
     /// Makes `from..to` of row `y` paper.
+    #[inline]
     pub(crate) fn erase(&mut self, y: usize, from: usize, to: usize) {
         let row = self.row_mut(y);
         (from / WORD..to.div_ceil(WORD)).for_each(|i| row[i] &= !span(i, from, to));
     }
 
     /// Its pixels in some columns and rows.
-    pub(crate) fn part(&self, columns: &Range<usize>, rows: &Range<usize>) -> Self {
+    pub fn part(&self, columns: &Range<usize>, rows: &Range<usize>) -> Self {
         let mut part = Self::empty(columns.len(), rows.len());
         for y in rows.clone() {
             for cell in self.cells_in(y, columns.start, columns.end) {
@@ -204,19 +238,19 @@ impl Mask {
     }
 
     /// What is ink here and in `other`, which has the same size.
-    pub(crate) fn and(mut self, other: &Self) -> Self {
+    pub fn and(mut self, other: &Self) -> Self {
         self.words.iter_mut().zip(&other.words).for_each(|(a, b)| *a &= b);
         self
     }
 
     /// What is ink here and not in `other`, which has the same size.
-    pub(crate) fn without(mut self, other: &Self) -> Self {
+    pub fn without(mut self, other: &Self) -> Self {
         self.words.iter_mut().zip(&other.words).for_each(|(a, b)| *a &= !b);
         self
     }
 
     /// Makes ink what is ink in `other`, which has the same size.
-    pub(crate) fn add(&mut self, other: &Self) {
+    pub fn add(&mut self, other: &Self) {
         self.words.iter_mut().zip(&other.words).for_each(|(a, b)| *a |= b);
     }
 }
@@ -225,6 +259,7 @@ impl Mask {
 const MIDDLE: usize = 1 << 4;
 
 /// The bits of word number `i` that lie in `from..to`.
+#[inline]
 fn span(i: usize, from: usize, to: usize) -> u64 {
     let (low, high) = (from.saturating_sub(i * WORD).min(WORD), to.saturating_sub(i * WORD).min(WORD));
     let below = |n: usize| if n == WORD { u64::MAX } else { (1 << n) - 1 };
@@ -237,6 +272,7 @@ struct Ones(u64);
 impl Iterator for Ones {
     type Item = Cell;
 
+    #[inline]
     fn next(&mut self) -> Option<Cell> {
         let bit = (self.0 != 0).then(|| self.0.trailing_zeros())?;
         self.0 &= self.0 - 1;
@@ -246,25 +282,32 @@ impl Iterator for Ones {
 
 /// Neighbours of a pixel that are ink, row by row.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Neighbours {
+pub struct Neighbours {
     around: usize,
     cell: Cell,
     line: Cell,
 }
 
-impl Neighbours {
-    pub(crate) fn len(&self) -> usize {
-        self.around.count_ones() as usize
-    }
-}
-
 impl Iterator for Neighbours {
     type Item = Cell;
 
+    #[inline]
     fn next(&mut self) -> Option<Cell> {
         let bit = (self.around != 0).then(|| self.around.trailing_zeros())?;
         self.around &= self.around - 1;
         Some(self.cell - self.line - 1 + bit / 3 * self.line + bit % 3)
+    }
+
+    #[inline]
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.len(), Some(self.len()))
+    }
+}
+
+impl ExactSizeIterator for Neighbours {
+    #[inline]
+    fn len(&self) -> usize {
+        self.around.count_ones() as usize
     }
 }
 

@@ -2,22 +2,19 @@
 
 use crate::mask::{Cell, Mask};
 
-/// Half widths beyond this are all one: no pen has them, px.
-pub(crate) const WIDEST_RADIUS: f64 = 400.0;
-
 /// Distance from an ink pixel's centre to the nearest paper pixel's centre, px, exact up to `most`; `most` where
 /// there is none nearer. Beyond the image is paper.
 ///
 /// Rows are looked at outwards from the pixel's own until they are further away than the best found: for a pen's
 /// skeleton that is a few words a pixel, where a transform of the whole image would touch each of its pixels.
-pub(crate) fn to_paper(mask: &Mask, cell: Cell, most: f64) -> f64 {
+pub fn to_paper(mask: &Mask, cell: Cell, most: f64) -> f64 {
     let (x, y) = mask.place(cell);
     let mut best = most * most;
     let mut rise = 0;
     while ((rise * rise) as f64) < best {
         for row in [y.checked_sub(rise), Some(y + rise)] {
             let aside = match row {
-                Some(row) if row < mask.height => along_row(mask, x, row, best),
+                Some(row) if row < mask.height() => along_row(mask, x, row, best),
                 _ => 0,
             };
             best = best.min((rise * rise + aside * aside) as f64);
