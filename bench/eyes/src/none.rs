@@ -1,5 +1,5 @@
 use tracelight_image::Grey;
-use tracelight_vision::find_tags;
+use tracelight_markers::find_tags;
 
 use crate::scene::Dice;
 

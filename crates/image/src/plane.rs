@@ -38,6 +38,13 @@ impl<T: Copy + Default> Plane<T> {
         &mut self.values[y * self.width..][..self.width]
     }
 
+    /// Its values in some columns and rows.
+    pub fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Self {
+        let (width, height) = (columns.len(), rows.len());
+        let values = rows.flat_map(|y| self.row(y)[columns.clone()].iter().copied()).collect();
+        Self { width, height, values }
+    }
+
     /// Sets the pixels of a mask, as large as this, to the default.
     pub fn clear(&mut self, mask: &Mask) {
         for cell in mask.cells() {
@@ -156,13 +163,6 @@ impl Plane<u8> {
             plane.row_mut(y).iter_mut().zip(sums).for_each(|(v, sum)| *v = ((sum + area / 2) / area) as u8);
         }
         plane
-    }
-
-    /// Its pixels in some columns and rows.
-    pub fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Self {
-        let (width, height) = (columns.len(), rows.len());
-        let values = rows.flat_map(|y| self.row(y)[columns.clone()].iter().copied()).collect();
-        Self { width, height, values }
     }
 
     /// Four pixels for each, on the cubics through the pixels' centres (Catmull and Rom, "A class of local interpolating splines", 1974).

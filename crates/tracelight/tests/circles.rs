@@ -207,7 +207,7 @@ fn enclosed(rest: &str) -> &str {
 }
 
 /// Circles that stand, each as its crate and its files. It only gets shorter.
-const KNOWN: [(&str, &str); 15] = [
+const KNOWN: [(&str, &str); 14] = [
     (
         "control",
         "config creep law law::pid observer observer::differences observer::edge_times observer::kalman observer::past observer::recount observer::tracking_loop watch::motor",
@@ -225,7 +225,6 @@ const KNOWN: [(&str, &str); 15] = [
     ("trajectory", "retime::smooth retime::smooth::cells"),
     ("trajectory", "steer steer::furthest steer::phases"),
     ("vision", "sheet sheet::alone sheet::edge sheet::over sheet::quad sheet::rim sheet::shade"),
-    ("vision", "spot spot::change"),
 ];
 
 fn crates() -> Vec<(String, PathBuf)> {

@@ -29,8 +29,6 @@
 //! | `crumbs` | what a pencil leaves on the paper's grain beside its lines, and smudges |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
-//! | `fiducial` | printed square markers and which they are |
-//! | `spot` | the laser's spot, by an image with it and one without |
 
 mod areas;
 mod bow;
@@ -46,9 +44,7 @@ mod dust;
 mod error;
 mod faint;
 mod felt;
-mod fiducial;
 mod follow;
-mod gamma;
 mod gap;
 mod graph;
 mod hub;
@@ -78,7 +74,6 @@ mod shadow;
 mod sharpness;
 mod sheet;
 mod split;
-mod spot;
 mod stages;
 mod streak;
 mod sweep;
@@ -91,11 +86,9 @@ mod twice;
 pub use comb::{Comb, Rules};
 pub use dots::Dots;
 pub use error::VisionError;
-pub use fiducial::{TAG_COUNT, Tag, TagPlace, find_tags, tag_cells};
 pub use marks::{Marks, find_two_marks};
 pub use options::{Mode, Options};
 pub use quality::{Figure, Quality, Verdict};
 pub use sheet::{Page, Sheet};
-pub use spot::{Spot, SpotLost, SpotWindow, find_spot};
 pub use stages::Stages;
 pub use trace::{LeftOut, Traced, trace, trace_page};

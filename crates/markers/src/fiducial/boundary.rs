@@ -12,7 +12,7 @@ use tracelight_stroke::{Point, Vec2};
 
 use super::place::TagPlace;
 use super::square::{Off, SIDE, Square};
-use crate::gamma::light_of_levels;
+use crate::light::{Border, light_of_levels, smooth};
 
 /// Samples across a boundary.
 const SAMPLES: usize = 11;
@@ -137,7 +137,7 @@ impl Part {
             values.extend(plane.row(y)[left..right].iter().map(|&v| tables.light[usize::from(v)]));
         }
         let mut light = Plane { width: right - left, height: bottom - top, values };
-        (0..smoothings).for_each(|_| smooth(&mut light));
+        (0..smoothings).for_each(|_| smooth(&mut light, Border::Stays));
         let corner = Vec2::new(left as f64, top as f64);
         Self { corner, light }
     }
@@ -155,28 +155,6 @@ impl Part {
             *v = above + (below - above) * share(y);
         }
         Some(())
-    }
-}
-
-/// Each value with its neighbours by 1 2 1, across and down; the border's stay.
-fn smooth(light: &mut Plane<f32>) {
-    let width = light.width;
-    for row in light.values.chunks_exact_mut(width.max(1)) {
-        let mut before = row.first().copied().unwrap_or(0.0);
-        for x in 1..width.saturating_sub(1) {
-            let own = row[x];
-            row[x] = 0.25 * (before + row[x + 1]) + 0.5 * own;
-            before = own;
-        }
-    }
-    let mut before = light.values.get(..width).unwrap_or(&[]).to_vec();
-    for y in 1..light.height.saturating_sub(1) {
-        let (own, below) = light.values[y * width..][..2 * width].split_at_mut(width);
-        for ((own, before), below) in own.iter_mut().zip(&mut before).zip(below) {
-            let smooth = 0.25 * (*before + *below) + 0.5 * *own;
-            *before = *own;
-            *own = smooth;
-        }
     }
 }
 

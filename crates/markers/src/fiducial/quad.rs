@@ -1,6 +1,6 @@
 //! Patches with four straight sides.
 
-use tracelight_image::border::{Edge, border};
+use tracelight_image::border::{Edge, area, border};
 use tracelight_image::{Mask, Region};
 use tracelight_stroke::{Point, Vec2};
 
@@ -129,10 +129,6 @@ fn is_like(corners: &[Point; 4], border: &[Point]) -> bool {
     let lengths: [f64; 4] = std::array::from_fn(|k| side(k).hypot());
     let (least, most) = lengths.iter().fold((f64::MAX, 0.0_f64), |(l, m), &v| (l.min(v), m.max(v)));
     let convex = (0..4).all(|k| side(k).cross(side((k + 1) % 4)) > 0.0);
-    let area = |points: &[Point]| {
-        let next = points.iter().skip(1).chain(points.first());
-        0.5 * points.iter().zip(next).map(|(a, b)| a.to_vec2().cross(b.to_vec2())).sum::<f64>()
-    };
     let share = area(border) / area(corners);
     convex && least >= LEAST_SIDE_PX && least >= NARROWEST * most && (0.85..1.1).contains(&share)
 }

@@ -1,18 +1,17 @@
 //! What is brighter in one image than in another.
 
+use std::ops::Range;
+
 use tracelight_image::Plane;
 use tracelight_stroke::Point;
 
-use super::{Bell, SpotWindow};
-use crate::gamma::light_of_levels;
+use super::window::SpotWindow;
+use crate::light::{Border, light_of_levels, smooth};
 
 /// Level from which on a pixel may be full.
 const FULL: u8 = 250;
 /// Fewest pixels of a window.
 const FEWEST: usize = 25;
-/// How far beyond a spot pixels are smoothed, px: the fit may make it some wider, and moves it.
-pub(super) const SMOOTHED_PX: f64 = 2.0;
-
 /// What became brighter, in light, in a part of an image.
 pub(super) struct Change {
     pub(super) left: usize,
@@ -80,29 +79,14 @@ impl Change {
         (best.0, f64::from(best.1 / 9.0))
     }
 
-    /// What is about a bell, each pixel's light by its neighbours' too: 1 2 1 across, and down. A sensor that sees one colour a pixel fills in red between the pixels that saw it, by
-    /// the mean of two; that pattern, of two pixels, is taken away, and what is left of the spot is a bell again.
-    pub(super) fn smoothed(&self, about: &Bell) -> Self {
-        let (columns, rows) = about.reach(self, SMOOTHED_PX);
-        let (width, height) = (columns.len(), rows.len());
-        let mut across = Vec::with_capacity(width * height);
-        for y in rows.clone() {
-            let row = &self.light.row(y)[columns.clone()];
-            let beside = |k: usize, by: usize| row[(k + by).saturating_sub(1).min(width - 1)];
-            across.extend((0..width).map(|k| 0.25 * (beside(k, 0) + beside(k, 2)) + 0.5 * row[k]));
-        }
-        let mut values = Vec::with_capacity(width * height);
-        for k in 0..height {
-            let row = |by: usize| &across[(k + by).saturating_sub(1).min(height - 1) * width..][..width];
-            let three = row(0).iter().zip(row(1)).zip(row(2));
-            values.extend(three.map(|((above, own), below)| 0.25 * (above + below) + 0.5 * own));
-        }
-        Self {
-            left: self.left + columns.start,
-            top: self.top + rows.start,
-            light: Plane { width, height, values },
-            full: vec![false; width * height],
-        }
+    /// A part of it, each pixel's light by its neighbours' too: 1 2 1 across, and down. A sensor that sees one colour a pixel fills in red between the pixels that saw it, by
+    /// the mean of two; that pattern, of two pixels, is taken away, and what is left of the spot is a bell again. Nothing of it is full.
+    pub(super) fn smoothed(&self, (columns, rows): (Range<usize>, Range<usize>)) -> Self {
+        let (left, top) = (self.left + columns.start, self.top + rows.start);
+        let mut light = self.light.part(columns, rows);
+        smooth(&mut light, Border::GoesOn);
+        let full = vec![false; light.values.len()];
+        Self { left, top, light, full }
     }
 
     /// The cells about one that hang together and are brighter than that, with one more around.
