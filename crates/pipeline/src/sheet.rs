@@ -3,9 +3,9 @@
 use tracelight_aim::{Homography, proportions};
 use tracelight_image::Grey;
 use tracelight_picture::Raster;
+use tracelight_sheet::{Page, Sheet};
 use tracelight_stroke::{Drawing, Point};
 use tracelight_task::Failure;
-use tracelight_vision::{Page, Sheet};
 
 use crate::carried::carried;
 use crate::paper::Paper;

@@ -207,7 +207,7 @@ fn enclosed(rest: &str) -> &str {
 }
 
 /// Circles that stand, each as its crate and its files. It only gets shorter.
-const KNOWN: [(&str, &str); 14] = [
+const KNOWN: [(&str, &str); 13] = [
     (
         "control",
         "config creep law law::pid observer observer::differences observer::edge_times observer::kalman observer::past observer::recount observer::tracking_loop watch::motor",
@@ -224,7 +224,6 @@ const KNOWN: [(&str, &str); 14] = [
     ("trajectory", "profile profile::ramped profile::smooth"),
     ("trajectory", "retime::smooth retime::smooth::cells"),
     ("trajectory", "steer steer::furthest steer::phases"),
-    ("vision", "sheet sheet::alone sheet::edge sheet::over sheet::quad sheet::rim sheet::shade"),
 ];
 
 fn crates() -> Vec<(String, PathBuf)> {

@@ -6,17 +6,17 @@ use tracelight_image::levels::{SAMPLED, sampled_histogram};
 use tracelight_image::smooth::{SMOOTHED, noise, smoothed};
 use tracelight_image::threshold::over;
 use tracelight_image::{Mask, Plane, Region, mask_of, regions};
+use tracelight_sheet::{Page, Paper};
 
 use crate::coarse;
 use crate::comb::{self, Lie, TakenOff};
 use crate::faint;
-use crate::light::Paper;
 use crate::paler::Inked;
 use crate::polarity::is_light_on_dark;
 use crate::quality::clipped_percent;
 use crate::row::Row;
 use crate::split::{Split, strongest};
-use crate::{Page, Quality, VisionError};
+use crate::{Quality, VisionError};
 
 /// Noise from which on the picture is smoothed, levels.
 const SMOOTHED_FROM: f64 = 2.5;

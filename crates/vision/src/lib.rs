@@ -2,14 +2,14 @@
 //!
 //! [`trace`] takes a [`Grey`](tracelight_image::Grey) image and gives the strokes that draw it, in the pixel frame: x right, y down, the
 //! image spans [0, width] × [0, height], the first pixel's centre is (0.5, 0.5). The way: find the sheet of paper
-//! ([`Page`]), even out the light and the polarity, cut ink from paper (`ink`), part it into regions, then follow the middle of pen lines (thinning, a
+//! ([`Page`](tracelight_sheet::Page)), even out the light and the polarity, cut ink from paper (`ink`), part it into regions, then follow the middle of pen lines (thinning, a
 //! graph, junctions resolved, points moved on to the grey levels' ridge) and the edges of filled shapes. Nothing
-//! here knows metres, angles, files or cameras; the host decodes.
+//! here knows metres, angles, files or cameras; the host decodes. Pixels and masks are `tracelight_image`'s, the sheet and its light
+//! `tracelight_sheet`'s.
 //!
 //! | module | what |
 //! |---|---|
-//! | `sheet` | the sheet of paper in a photograph or a scan, by itself |
-//! | `light`, `shadow`, `polarity`, `split`, `ink`, `tones` | even light, polarity, threshold; pictures of two tones |
+//! | `polarity`, `split`, `ink` | dark lines or light ones, threshold, ink cut from paper |
 //! | `comb` | the rules of ruled and squared paper, taken out from under the ink |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
 //! | `tone`, `screen`, `seen` | whether it is a drawing at all: no photograph, and no computer's screen; a second look if it seems none |
@@ -51,7 +51,6 @@ mod hub;
 mod ink;
 mod inside;
 mod junction;
-mod light;
 mod line;
 mod marks;
 mod missed;
@@ -70,16 +69,13 @@ mod ridge;
 mod row;
 mod screen;
 mod seen;
-mod shadow;
 mod sharpness;
-mod sheet;
 mod split;
 mod stages;
 mod streak;
 mod sweep;
 mod thin;
 mod tone;
-mod tones;
 mod trace;
 mod twice;
 
@@ -89,6 +85,5 @@ pub use error::VisionError;
 pub use marks::{Marks, find_two_marks};
 pub use options::{Mode, Options};
 pub use quality::{Figure, Quality, Verdict};
-pub use sheet::{Page, Sheet};
 pub use stages::Stages;
 pub use trace::{LeftOut, Traced, trace, trace_page};

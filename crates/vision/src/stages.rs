@@ -1,6 +1,8 @@
+use tracelight_sheet::Page;
+
+use crate::VisionError;
 use crate::options::Options;
 use crate::seen::Seen;
-use crate::{Page, VisionError};
 
 /// What an image is on its way to strokes.
 #[derive(Clone, Debug)]

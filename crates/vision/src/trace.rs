@@ -1,4 +1,5 @@
 use tracelight_image::{Grey, Mask, Region, pinholes, regions};
+use tracelight_sheet::Page;
 use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 
 use crate::centreline;
@@ -16,7 +17,7 @@ use crate::parts::Parts;
 use crate::row::Row;
 use crate::seen::Seen;
 use crate::twice::{self, Once};
-use crate::{Page, Quality, VisionError, closer, gap, missed, on_ink, rest, screen, sweep, tone};
+use crate::{Quality, VisionError, closer, gap, missed, on_ink, rest, screen, sweep, tone};
 
 /// What an image draws.
 #[derive(Clone, Debug, PartialEq)]

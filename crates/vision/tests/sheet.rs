@@ -11,8 +11,9 @@ mod raster;
 
 use raster::Canvas;
 use tracelight_image::Grey;
+use tracelight_sheet::Page;
 use tracelight_stroke::{Point, Vec2, compare_polylines};
-use tracelight_vision::{Options, Page, trace, trace_page};
+use tracelight_vision::{Options, trace, trace_page};
 
 /// Numbers that look like chance (Marsaglia, "Xorshift RNGs", 2003).
 struct Chance(u64);

@@ -4,44 +4,44 @@ use tracelight_image::Plane;
 use tracelight_image::border::area;
 use tracelight_stroke::{Point, Vec2};
 
-use super::shade::Shade;
-use super::sides::Side;
-use super::{BESIDE, inward};
+use crate::shade::Shade;
+use crate::sides::Side;
+use crate::small::BESIDE;
 
 /// Least of a side that is seen; a finger, a shadow or another sheet hides the rest.
-pub(super) const LEAST_SEEN: f64 = 0.5;
+pub(crate) const LEAST_SEEN: f64 = 0.5;
 /// A shorter part of a side in a shadow is not looked at, px.
 const LEAST_IN_SHADE: usize = 5;
 
 /// A sheet in the small picture.
 #[derive(Clone, Debug)]
-pub(super) struct Quad {
+pub(crate) struct Quad {
     /// Left, top, right, bottom; `None` where it runs out of the picture.
-    pub(super) sides: [Option<Side>; 4],
+    pub(crate) sides: [Option<Side>; 4],
     /// Upper left, upper right, lower right, lower left, px.
-    pub(super) corners: [Point; 4],
+    pub(crate) corners: [Point; 4],
     /// Whether it is brighter than what lies beside it.
-    pub(super) is_brighter: bool,
+    pub(crate) is_brighter: bool,
     /// What falls across it.
-    pub(super) shade: Option<Shade>,
+    pub(crate) shade: Option<Shade>,
 }
 
 /// Of left, top, right and bottom: its number.
-pub(super) const SIDES: [usize; 4] = [0, 1, 2, 3];
+pub(crate) const SIDES: [usize; 4] = [0, 1, 2, 3];
 
 /// Whether a side is the left or the right one.
-pub(super) const fn is_upright(side: usize) -> bool {
+pub(crate) const fn is_upright(side: usize) -> bool {
     matches!(side, 0 | 2)
 }
 
 impl Quad {
     /// All of a picture.
-    pub(super) fn all(plane: &Plane<u8>) -> Self {
+    pub(crate) fn all(plane: &Plane<u8>) -> Self {
         Self { sides: Default::default(), corners: corners(plane, [None; 4]), is_brighter: true, shade: None }
     }
 
     /// Between corners that someone gives; `None` where they are no quadrilateral.
-    pub(super) fn between(corners: [Point; 4]) -> Option<Self> {
+    pub(crate) fn between(corners: [Point; 4]) -> Option<Self> {
         let turns = |k: usize| {
             let [a, b, c] = [k, k + 1, k + 2].map(|k| corners[k % 4]);
             (b - a).cross(c - b) > 0.0
@@ -51,33 +51,33 @@ impl Quad {
     }
 
     /// The ends of a side, clockwise.
-    pub(super) const fn ends(&self, side: usize) -> (Point, Point) {
+    pub(crate) const fn ends(&self, side: usize) -> (Point, Point) {
         ends(&self.corners, side)
     }
 
     /// The way into the sheet, square to a side.
-    pub(super) fn inward(&self, side: usize) -> Vec2 {
+    pub(crate) fn inward(&self, side: usize) -> Vec2 {
         let (from, to) = self.ends(side);
         inward(from, to)
     }
 
     /// How far inside a point lies, px; negative outside.
-    pub(super) fn depths(&self) -> impl Fn(Point) -> f64 + use<> {
+    pub(crate) fn depths(&self) -> impl Fn(Point) -> f64 + use<> {
         let sides = SIDES.map(|side| (self.ends(side).0, self.inward(side)));
         move |at| sides.iter().map(|(from, inward)| (at - *from).dot(*inward)).fold(f64::INFINITY, f64::min)
     }
 
     /// In the small picture, px².
-    pub(super) fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         area(&self.corners)
     }
 
-    pub(super) fn seen(&self) -> usize {
+    pub(crate) fn seen(&self) -> usize {
         self.sides.iter().flatten().count()
     }
 
     /// Whether its sides are seen both in a shadow and beside it.
-    pub(super) fn goes_on_in(&self, shade: &Shade, plane: &Plane<u8>) -> bool {
+    pub(crate) fn goes_on_in(&self, shade: &Shade, plane: &Plane<u8>) -> bool {
         let (width, height) = (plane.width as f64 - BESIDE, plane.height as f64 - BESIDE);
         let may_be_seen = |p: Point| (BESIDE..width).contains(&p.x) && (BESIDE..height).contains(&p.y);
         SIDES.into_iter().filter_map(|k| Some((k, self.sides[k].as_ref()?))).all(|(k, side)| {
@@ -100,9 +100,15 @@ impl Quad {
     }
 
     /// What a level would be without the shadow across it.
-    pub(super) fn lit(&self, at: Point, level: f64) -> f64 {
+    pub(crate) fn lit(&self, at: Point, level: f64) -> f64 {
         self.shade.as_ref().map_or(level, |shade| shade.lit(at, level))
     }
+}
+
+/// The way into what lies on the right of the way from one place to another, square to that: clockwise round a sheet, into it.
+pub(crate) fn inward(from: Point, to: Point) -> Vec2 {
+    let way = (to - from) / from.distance(to).max(1e-9);
+    Vec2::new(-way.y, way.x)
 }
 
 /// Where the picture ends on the left, at the top, on the right and at the bottom.
@@ -111,7 +117,7 @@ const fn borders(plane: &Plane<u8>) -> [f64; 4] {
 }
 
 /// Where sides and the picture's borders meet: upper left, upper right, lower right, lower left.
-pub(super) fn corners(plane: &Plane<u8>, sides: [Option<&Side>; 4]) -> [Point; 4] {
+pub(crate) fn corners(plane: &Plane<u8>, sides: [Option<&Side>; 4]) -> [Point; 4] {
     let border = borders(plane);
     let line = |k: usize| sides[k].map_or((border[k], 0.0), |side| (side.at, side.slope));
     // x = a + b y meets y = c + d x
@@ -124,7 +130,7 @@ pub(super) fn corners(plane: &Plane<u8>, sides: [Option<&Side>; 4]) -> [Point; 4
 }
 
 /// The ends of a side, clockwise.
-pub(super) const fn ends(corners: &[Point; 4], side: usize) -> (Point, Point) {
+pub(crate) const fn ends(corners: &[Point; 4], side: usize) -> (Point, Point) {
     let [upper_left, upper_right, lower_right, lower_left] = *corners;
     match side {
         0 => (lower_left, upper_left),
@@ -135,7 +141,7 @@ pub(super) const fn ends(corners: &[Point; 4], side: usize) -> (Point, Point) {
 }
 
 /// How far the two ends of a side are from the picture's border on that side, px.
-pub(super) fn off_border(plane: &Plane<u8>, corners: &[Point; 4], side: usize) -> [f64; 2] {
+pub(crate) fn off_border(plane: &Plane<u8>, corners: &[Point; 4], side: usize) -> [f64; 2] {
     let (from, to) = ends(corners, side);
     let border = borders(plane)[side];
     [from, to].map(|p| (if is_upright(side) { p.x } else { p.y } - border).abs())

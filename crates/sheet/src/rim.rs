@@ -7,8 +7,8 @@ use tracelight_image::Plane;
 use tracelight_image::median::middle;
 use tracelight_stroke::Point;
 
-use super::edge::straight;
-use super::{are_as_wide, inward};
+use crate::quad::inward;
+use crate::straight::straight;
 
 /// Places along a border that are looked at.
 const PLACES: usize = 96;
@@ -40,10 +40,10 @@ const SLIVER_PX: f64 = 1.5;
 const STRAIGHT_PX: f64 = 1.0;
 
 /// A strip that is no paper.
-pub(super) struct Strip {
+pub(crate) struct Strip {
     /// How far inside the border the paper begins, at its one end and at its other, px.
-    pub(super) first: f64,
-    pub(super) last: f64,
+    pub(crate) first: f64,
+    pub(crate) last: f64,
     /// Whether it is a wedge, or as bright as what lies beside the sheet's other sides: no line that someone drew.
     is_beside: bool,
 }
@@ -56,7 +56,7 @@ impl Strip {
 
     /// The strip along a border; `None` where there is none. Known is what is usual beside the sheet's other sides, if any of
     /// them is seen.
-    pub(super) fn along(plane: &Plane<u8>, from: Point, to: Point, usual: Option<f64>) -> Option<Self> {
+    pub(crate) fn along(plane: &Plane<u8>, from: Point, to: Point, usual: Option<f64>) -> Option<Self> {
         let found = places(plane, from, to);
         // what is further in is one paper, and no drawing
         let paper = middle(found.iter().map(|f| f.paper).collect())?;
@@ -91,11 +91,22 @@ impl Strip {
 
 /// Which of the strips along the four borders lie beside the sheet. One that is as wide everywhere may be a line that someone
 /// drew, if it is not too narrow for that; such strips on all sides are a frame, however narrow. Lines are as wide as each other.
-pub(super) fn beside(strips: [Option<Strip>; 4]) -> [Option<Strip>; 4] {
+pub(crate) fn beside(strips: [Option<Strip>; 4]) -> [Option<Strip>; 4] {
     let is_even = are_as_wide(strips.iter().flatten().map(Strip::width));
     let is_frame = is_even && strips.iter().all(|strip| strip.as_ref().is_some_and(|strip| !strip.is_beside));
     let is_line = |strip: &Strip| !strip.is_beside && is_even && (is_frame || strip.width() > SLIVER_PX);
     strips.map(|strip| strip.filter(|strip| !is_line(strip)))
+}
+
+/// A frame along the picture's border is as wide everywhere within so many px, and as a share.
+const SAME_WIDTH_PX: f64 = 1.0;
+const SAME_WIDTH: f64 = 0.15;
+
+/// Whether some widths are those of one frame, px.
+pub(crate) fn are_as_wide(widths: impl Iterator<Item = f64>) -> bool {
+    let (narrowest, widest) =
+        widths.fold((f64::INFINITY, 0.0_f64), |(low, high), width| (low.min(width), high.max(width)));
+    widest - narrowest < SAME_WIDTH_PX + SAME_WIDTH * widest
 }
 
 /// Where along a border something else than paper is seen.

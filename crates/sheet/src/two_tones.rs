@@ -21,14 +21,16 @@ const EXACT: f64 = 0.9;
 
 /// The two levels that nearly all of a picture has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Tones {
-    pub(crate) dark: u8,
-    pub(crate) bright: u8,
+pub struct TwoTones {
+    /// The lower one.
+    pub dark: u8,
+    /// The higher one.
+    pub bright: u8,
 }
 
-impl Tones {
+impl TwoTones {
     /// Those of a histogram; `None` where a picture has more shades than edges need: between the two lies less than either covers.
-    pub(crate) fn of(levels: &[u32; 256]) -> Option<Self> {
+    pub fn of(levels: &[u32; 256]) -> Option<Self> {
         let (least, most) = (percentile(levels, SPECKS), percentile(levels, 1.0 - SPECKS));
         if most - least < APART {
             return None;
@@ -46,12 +48,12 @@ impl Tones {
     }
 
     /// Whether a level is nearer to the bright one.
-    pub(crate) fn is_bright(self, level: u8) -> bool {
+    pub fn is_bright(self, level: u8) -> bool {
         level > self.middle()
     }
 
     /// Where a picture of these tones is dark.
-    pub(crate) fn dark(self, plane: &Plane<u8>) -> Mask {
+    pub fn dark(self, plane: &Plane<u8>) -> Mask {
         let mut darkness = plane.clone();
         darkness.values.iter_mut().for_each(|level| *level = 255 - *level);
         over(&darkness, 254 - self.middle())
@@ -79,18 +81,18 @@ mod tests {
     use super::*;
 
     /// So many pixels of each of these levels.
-    fn of(levels: &[(usize, u32)]) -> Option<Tones> {
+    fn of(levels: &[(usize, u32)]) -> Option<TwoTones> {
         let mut all = [0; 256];
         levels.iter().for_each(|&(level, count)| all[level] = count);
-        Tones::of(&all)
+        TwoTones::of(&all)
     }
 
     #[test]
     fn black_and_white_with_soft_edges_are_two_tones() {
-        assert_eq!(of(&[(0, 400), (255, 600)]), Some(Tones { dark: 0, bright: 255 }));
+        assert_eq!(of(&[(0, 400), (255, 600)]), Some(TwoTones { dark: 0, bright: 255 }));
         assert_eq!(
             of(&[(20, 4000), (21, 300), (100, 250), (250, 6000)]),
-            Some(Tones { dark: 20, bright: 250 })
+            Some(TwoTones { dark: 20, bright: 250 })
         );
     }
 
@@ -101,6 +103,6 @@ mod tests {
         assert_eq!(of(&[(200, 400), (255, 600)]), None);
         // paper, half of it in a shadow
         assert_eq!(of(&[(119, 100), (120, 200), (121, 100), (209, 100), (210, 400), (211, 100)]), None);
-        assert_eq!(of(&[(120, 400), (210, 600)]), Some(Tones { dark: 120, bright: 210 }));
+        assert_eq!(of(&[(120, 400), (210, 600)]), Some(TwoTones { dark: 120, bright: 210 }));
     }
 }

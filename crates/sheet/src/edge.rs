@@ -1,13 +1,15 @@
 //! A sheet's sides where the full picture has their steps.
 
+use tracelight_image::Plane;
 use tracelight_image::border::area;
 use tracelight_image::median::middle;
-use tracelight_image::{Plane, solve};
 use tracelight_stroke::{Point, Vec2};
 
-use super::quad::{Quad, SIDES};
-use super::rim::{self, Strip};
-use super::{Sheet, Small, inward};
+use crate::quad::{Quad, SIDES, inward};
+use crate::rim::{self, Strip};
+use crate::sheet::Sheet;
+use crate::small::Small;
+use crate::straight::straight;
 
 /// Places along a side at which its step is looked for.
 const PLACES: usize = 96;
@@ -78,16 +80,16 @@ impl Line {
 }
 
 /// Where a sheet ends.
-pub(super) struct Edge {
-    pub(super) sheet: Sheet,
+pub(crate) struct Edge {
+    pub(crate) sheet: Sheet,
     /// The quadrilateral on whose lines its sides lie, px.
-    pub(super) square: Option<[Point; 4]>,
+    pub(crate) square: Option<[Point; 4]>,
     /// How far inside its edge that is over, px.
-    pub(super) blur_px: f64,
+    pub(crate) blur_px: f64,
 }
 
 /// The sheet, from where the small picture has it; `None` of what does not end at once.
-pub(super) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<Edge> {
+pub(crate) fn sheet(plane: &Plane<u8>, small: &Small, quad: &Quad) -> Option<Edge> {
     let by = small.by as f64;
     let is_seen = |side: usize| quad.sides[side].is_some();
     let mut lines = SIDES.map(|side| match is_seen(side) {
@@ -179,7 +181,7 @@ fn square(lines: &[Line; 4], is_seen: impl Fn(usize) -> bool, outline: &[Point])
 }
 
 /// The sheet between corners that someone gives; `None` where hardly any of it is in the picture.
-pub(super) fn between(plane: &Plane<u8>, corners: [Point; 4]) -> Option<Sheet> {
+pub(crate) fn between(plane: &Plane<u8>, corners: [Point; 4]) -> Option<Sheet> {
     let (width, height) = (plane.width as f64, plane.height as f64);
     let outline = within(corners.to_vec(), width, height);
     let area = if outline.len() > 2 { area(&outline) } else { 0.0 };
@@ -321,23 +323,6 @@ fn step(levels: &[f32], beside: usize, rises: bool) -> Option<(f64, f64)> {
         (sum, weight) = (sum + here * (k as f64 + 0.5), weight + here);
     }
     (size > 0.0 && weight > 0.0).then(|| (sum / weight, size))
-}
-
-/// How far inside, at a line's beginning and at its end, the straight line lies that most steps are on: least squares
-/// whose weights are the less the further off a step is (Beaton & Tukey, 1974).
-pub(super) fn straight(steps: &[(f64, f64)]) -> (f64, f64) {
-    let level = middle(steps.iter().map(|s| s.1).collect()).unwrap_or(0.0);
-    let (mut first, mut last) = (level, level);
-    for _ in 0..8 {
-        let off = |&(s, off): &(f64, f64)| off - first - (last - first) * s;
-        let spread = 4.0 * middle(steps.iter().map(|s| off(s).abs()).collect()).unwrap_or(0.0).max(0.25);
-        let near = |step: &(f64, f64)| (1.0 - (off(step) / spread).powi(2)).max(0.0).powi(2);
-        let Some((at, slope)) = solve::line(steps.iter().map(|step| (step.0, step.1, near(step)))) else {
-            break;
-        };
-        (first, last) = (at, at + slope);
-    }
-    (first, last)
 }
 
 /// What of a polygon lies in the picture (Sutherland & Hodgman, "Reentrant polygon clipping", 1974).

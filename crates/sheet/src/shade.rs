@@ -3,8 +3,8 @@
 use tracelight_image::Plane;
 use tracelight_stroke::{Point, Vec2};
 
-use super::BESIDE;
-use super::sides::Side;
+use crate::sides::Side;
+use crate::small::BESIDE;
 
 /// What a shadow lets through of the light.
 const SHADE: std::ops::Range<f64> = 0.35..0.88;
@@ -17,7 +17,7 @@ const PLACES: usize = 48;
 
 /// The edge of a shadow that may be.
 #[derive(Clone, Debug)]
-pub(super) struct Shade {
+pub(crate) struct Shade {
     side: Side,
     is_upright: bool,
     /// A place on the edge, and the way into the shadow.
@@ -29,7 +29,7 @@ pub(super) struct Shade {
 
 impl Shade {
     /// Whether a side may be a shadow's edge: as much darker on one side all along.
-    pub(super) fn of(calm: &Plane<u8>, side: &Side, is_upright: bool) -> Option<Self> {
+    pub(crate) fn of(calm: &Plane<u8>, side: &Side, is_upright: bool) -> Option<Self> {
         let most = if is_upright { calm.height } else { calm.width };
         let (first, last) = (side.place(is_upright, 0.0), side.place(is_upright, most as f64));
         let aside = (last - first).turn_90() / (last - first).hypot();
@@ -56,7 +56,7 @@ impl Shade {
     }
 
     /// How much of it is seen in a quadrilateral, less what is not, rows; `None` where it does not cross it.
-    pub(super) fn across(&self, depth: impl Fn(Point) -> f64, plane: &Plane<u8>) -> Option<f64> {
+    pub(crate) fn across(&self, depth: impl Fn(Point) -> f64, plane: &Plane<u8>) -> Option<f64> {
         let most = if self.is_upright { plane.height } else { plane.width };
         let depths: Vec<f64> =
             (0..most).map(|row| depth(self.side.place(self.is_upright, row as f64 + 0.5))).collect();
@@ -68,12 +68,12 @@ impl Shade {
     }
 
     /// What a level would be in the light.
-    pub(super) fn lit(&self, at: Point, level: f64) -> f64 {
+    pub(crate) fn lit(&self, at: Point, level: f64) -> f64 {
         if self.is_dark(at) { level / self.share } else { level }
     }
 
     /// Whether a place is in it.
-    pub(super) fn is_dark(&self, at: Point) -> bool {
+    pub(crate) fn is_dark(&self, at: Point) -> bool {
         (at - self.on).dot(self.into) > 0.0
     }
 }

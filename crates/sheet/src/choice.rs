@@ -4,11 +4,12 @@ use tracelight_image::Plane;
 use tracelight_image::border::area;
 use tracelight_stroke::Point;
 
-use super::evidence::Calm;
-use super::quad::{LEAST_SEEN, Quad, corners, ends, is_upright, off_border};
-use super::shade::Shade;
-use super::sides::{self, Side};
-use super::{Small, steps};
+use crate::evidence::Calm;
+use crate::quad::{LEAST_SEEN, Quad, corners, ends, is_upright, off_border};
+use crate::shade::Shade;
+use crate::sides::{self, Side};
+use crate::small::Small;
+use crate::steps;
 
 /// A side is at least this share of the picture's.
 const LEAST_SIDE: f64 = 0.2;
@@ -26,7 +27,7 @@ const LOOKED_AT: usize = 24;
 const AT_BORDER: f64 = 2.5;
 
 /// The sheet with most of its sides seen.
-pub(super) fn best(small: &Small) -> Option<Quad> {
+pub(crate) fn best(small: &Small) -> Option<Quad> {
     let plane = &small.levels;
     let across = plane.transposed();
     let (rows, columns) = (steps::of_rows(plane), steps::of_rows(&across));

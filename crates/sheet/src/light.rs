@@ -11,7 +11,7 @@ use tracelight_image::smooth::smoothed;
 use tracelight_image::{Plane, solve};
 
 use crate::shadow;
-use crate::tones::Tones;
+use crate::two_tones::TwoTones;
 
 /// Tiles along the shorter side.
 const TILES: usize = 24;
@@ -33,7 +33,7 @@ const SETTLED: f64 = 8e-4;
 
 /// Brightness of the paper at the tiles' centres.
 #[derive(Clone, Debug)]
-pub(crate) struct Paper {
+pub struct Paper {
     tile: usize,
     levels: Plane<f64>,
     /// Of every pixel, where there are shadows.
@@ -49,8 +49,8 @@ impl Paper {
 
     /// Of an image with light paper and of such levels, of which beside a sheet more may be `seen` than paper. It may have hard
     /// edges if `sheets` lie in it, or if it looks as if shadows had.
-    pub(crate) fn of(image: &Plane<u8>, levels: &[u32; 256], seen: &Plane<u8>, sheets: bool) -> Self {
-        if let Some(tones) = Tones::of(levels).filter(|_| !sheets) {
+    pub fn of(image: &Plane<u8>, levels: &[u32; 256], seen: &Plane<u8>, sheets: bool) -> Self {
+        if let Some(tones) = TwoTones::of(levels).filter(|_| !sheets) {
             return Self::even(tones.bright);
         }
         let tile = (image.width.min(image.height) / TILES).max(LEAST_TILE);
@@ -70,12 +70,12 @@ impl Paper {
     }
 
     /// Whether shadows fall on it: what is left of their edges looks like a pale line.
-    pub(crate) fn has_shadows(&self) -> bool {
+    pub fn has_shadows(&self) -> bool {
         self.shaded.is_some()
     }
 
     /// Darkest and brightest paper, levels.
-    pub(crate) fn range(&self) -> (f64, f64) {
+    pub fn range(&self) -> (f64, f64) {
         let fold = |f: fn(f64, f64) -> f64, from| self.levels.values.iter().copied().fold(from, f);
         (fold(f64::min, 255.0), fold(f64::max, 0.0))
     }
@@ -84,7 +84,7 @@ impl Paper {
     ///
     /// A level v on paper p leaves 255 (1 − v/p). 255/p is interpolated along the row with 11 bits behind the point
     /// (the dimmest paper's, 21, needs 5 before it), so that a pixel is one 16-bit product.
-    pub(crate) fn darkness(&self, image: &Plane<u8>) -> Plane<u8> {
+    pub fn darkness(&self, image: &Plane<u8>) -> Plane<u8> {
         if let Some(paper) = &self.shaded {
             return below(image, paper);
         }

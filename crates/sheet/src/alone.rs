@@ -6,9 +6,10 @@ use tracelight_image::median::middle;
 use tracelight_image::{Mask, Plane};
 use tracelight_stroke::{Point, Vec2};
 
-use super::over::covered;
-use super::quad::{Quad, SIDES};
-use super::{Beside, Found, Small};
+use crate::found::Found;
+use crate::over::covered;
+use crate::quad::{Quad, SIDES};
+use crate::small::Small;
 
 /// So far inside a sheet's edge its shadow ends: share of the picture's shorter side, and px beyond its blur.
 const RIM: f64 = 0.005;
@@ -20,15 +21,24 @@ const EDGE: f64 = 2.0;
 /// So many pixels at the edge of what is seen tell what is not seen, of the small picture.
 const AT_EDGE: usize = 6;
 
+/// What of a page's picture is not its sheet's.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// Which pixels these are.
+    pub mask: Mask,
+    /// The picture with paper in its place.
+    pub papered: Plane<u8>,
+}
+
 /// The part of a picture that holds a sheet, and where its first pixel lies.
-pub(super) struct Alone {
-    pub(super) plane: Plane<u8>,
-    pub(super) origin: (usize, usize),
-    pub(super) beside: Beside,
+pub(crate) struct Alone {
+    pub(crate) plane: Plane<u8>,
+    pub(crate) origin: (usize, usize),
+    pub(crate) beside: Beside,
 }
 
 /// Cuts a sheet out.
-pub(super) fn alone(plane: &Plane<u8>, small: &Small, found: &Found) -> Alone {
+pub(crate) fn alone(plane: &Plane<u8>, small: &Small, found: &Found) -> Alone {
     let outline = &found.sheet.outline;
     let extent = |of: fn(&Point) -> f64, most: usize| {
         let (low, high) =

@@ -3,7 +3,7 @@
 use tracelight_image::{Plane, solve};
 use tracelight_stroke::Point;
 
-use super::steps::Step;
+use crate::steps::Step;
 
 /// The steepest side of those that go down the rows: a little more than half a right angle, so that none falls between
 /// those of rows and those of columns.
@@ -25,9 +25,9 @@ const VALLEY_ROWS: usize = 3;
 
 /// A straight side through rows: at row y it is at `at` + `slope`·y.
 #[derive(Clone, Debug)]
-pub(super) struct Side {
-    pub(super) at: f64,
-    pub(super) slope: f64,
+pub(crate) struct Side {
+    pub(crate) at: f64,
+    pub(crate) slope: f64,
     /// How many of the rows before each have a step of it; one more than there are rows.
     seen: Vec<u32>,
     /// Whether it is a dark line at each row, and before how many of them it is one without a step.
@@ -37,18 +37,18 @@ pub(super) struct Side {
 
 impl Side {
     /// In how many of some rows a step of it is seen.
-    pub(super) fn seen(&self, rows: std::ops::Range<usize>) -> usize {
+    pub(crate) fn seen(&self, rows: std::ops::Range<usize>) -> usize {
         within(&self.seen, rows)
     }
 
     /// Where it is at a row, or at a column of those that go across.
-    pub(super) const fn place(&self, is_upright: bool, row: f64) -> Point {
+    pub(crate) const fn place(&self, is_upright: bool, row: f64) -> Point {
         let at = self.at + self.slope * row;
         if is_upright { Point::new(at, row) } else { Point::new(row, at) }
     }
 
     /// Looks where it is a dark line: where a sheet lies on another one as bright, its edge is seen by its shadow.
-    pub(super) fn look_for_lines(&mut self, plane: &Plane<u8>) {
+    pub(crate) fn look_for_lines(&mut self, plane: &Plane<u8>) {
         let rows = self.seen.len() - 1;
         self.is_line = (0..rows).map(|y| self.is_valley(plane, y)).collect();
         self.lines = vec![0; rows + 1];
@@ -79,23 +79,23 @@ impl Side {
     }
 
     /// Whether it is a dark line at a row.
-    pub(super) fn is_line_at(&self, row: usize) -> bool {
+    pub(crate) fn is_line_at(&self, row: usize) -> bool {
         self.is_line.get(row).copied().unwrap_or(false)
     }
 
     /// In how many of some rows there is no step of it, but a dark line.
-    pub(super) fn lines(&self, rows: std::ops::Range<usize>) -> usize {
+    pub(crate) fn lines(&self, rows: std::ops::Range<usize>) -> usize {
         within(&self.lines, rows)
     }
 
     /// How much more of it is seen than not, px; a dark line is neither.
-    pub(super) fn score(&self, rows: std::ops::Range<usize>) -> f64 {
+    pub(crate) fn score(&self, rows: std::ops::Range<usize>) -> f64 {
         let (all, seen, lines) = (rows.len(), self.seen(rows.clone()), self.lines(rows));
         seen as f64 - UNSEEN * (all - seen - lines) as f64
     }
 
     /// Whether a step of it is seen near a row.
-    pub(super) fn is_seen_near(&self, row: usize) -> bool {
+    pub(crate) fn is_seen_near(&self, row: usize) -> bool {
         self.seen(row.saturating_sub(2)..row + 3) > 1
     }
 }
@@ -107,7 +107,7 @@ fn within(before: &[u32], rows: std::ops::Range<usize>) -> usize {
 }
 
 /// The sides along steps of one kind, the longest first; rows are `width` px long.
-pub(super) fn of(rows: &[Vec<Step>], width: usize, rises: bool) -> Vec<Side> {
+pub(crate) fn of(rows: &[Vec<Step>], width: usize, rises: bool) -> Vec<Side> {
     let mut points: Vec<Voter> = in_chains(rows, rises).iter().flat_map(|chain| voters(chain)).collect();
     let least = (LEAST_SEEN * rows.len() as f64).max(8.0);
     if (points.len() as f64) < least {

@@ -11,8 +11,8 @@ use tracelight_image::Plane;
 use tracelight_image::median::middle;
 use tracelight_stroke::{Point, Vec2};
 
-use super::BESIDE;
-use super::quad::{Quad, SIDES};
+use crate::quad::{Quad, SIDES};
+use crate::small::BESIDE;
 
 /// What is seen along a side differs from its paper by this share.
 const FOREIGN: f64 = 0.08;
@@ -52,7 +52,7 @@ const MOST_OVER: f64 = 0.1;
 const MOST_CORNER: f64 = 0.15;
 
 /// What reaches over a sheet from beside it: a finger, a weight. Where it does, the sheet's edge is hidden.
-pub(super) fn covered(calm: &Plane<u8>, quad: &Quad, depths: &[f64]) -> Plane<bool> {
+pub(crate) fn covered(calm: &Plane<u8>, quad: &Quad, depths: &[f64]) -> Plane<bool> {
     let mut covered = Plane::filled(calm.width, calm.height, false);
     for side in SIDES {
         let along = Along::of(calm, quad, side);

@@ -12,15 +12,15 @@ const BESIDE: usize = 3;
 
 /// A step in a row.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
+pub(crate) struct Step {
     /// Where, px from the row's beginning.
-    pub(super) at: f32,
+    pub(crate) at: f32,
     /// Whether it is brighter behind it.
-    pub(super) rises: bool,
+    pub(crate) rises: bool,
 }
 
 /// Of each row the steps that are no sides of lines.
-pub(super) fn of_rows(plane: &Plane<u8>) -> Vec<Vec<Step>> {
+pub(crate) fn of_rows(plane: &Plane<u8>) -> Vec<Vec<Step>> {
     let mut row = vec![0; plane.width];
     (0..plane.height)
         .map(|y| {
@@ -31,7 +31,7 @@ pub(super) fn of_rows(plane: &Plane<u8>) -> Vec<Vec<Step>> {
 }
 
 /// A picture without what is narrower than three pixels.
-pub(super) fn without_lines(plane: &Plane<u8>) -> Plane<u8> {
+pub(crate) fn without_lines(plane: &Plane<u8>) -> Plane<u8> {
     let along = |plane: &Plane<u8>| {
         let mut out = plane.clone();
         (0..plane.height).for_each(|y| medians(plane.row(y), out.row_mut(y)));

@@ -4,9 +4,10 @@ use tracelight_image::Plane;
 use tracelight_image::median::middle;
 use tracelight_stroke::{Point, Vec2};
 
-use super::quad::{Quad, SIDES, is_upright, off_border};
-use super::{BESIDE, Small, are_as_wide};
+use crate::quad::{Quad, SIDES, is_upright, off_border};
+use crate::rim::are_as_wide;
 use crate::shadow::SHADE;
+use crate::small::{BESIDE, Small};
 
 /// Paper is so even from one side of the sheet to another, as a ratio: in a shadow it keeps this much.
 const EVEN: std::ops::Range<f64> = 0.42..2.4;
@@ -57,7 +58,7 @@ const FRAME_PX: f64 = 2.0;
 const LINE_DARKER: f64 = 0.7;
 
 /// The small picture, and what it is without lines.
-pub(super) struct Calm<'a> {
+pub(crate) struct Calm<'a> {
     calm: &'a Plane<u8>,
     /// The middle of each block, its level without lines there, and how far its pixels differ from what they are without
     /// lines, where they differ most.
@@ -83,7 +84,7 @@ struct Evidence {
 }
 
 impl<'a> Calm<'a> {
-    pub(super) fn of(small: &'a Small) -> Self {
+    pub(crate) fn of(small: &'a Small) -> Self {
         let (picture, calm) = (&small.levels, small.calm());
         let mut blocks = Vec::new();
         for top in (0..calm.height).step_by(BLOCK) {
@@ -104,7 +105,7 @@ impl<'a> Calm<'a> {
     }
 
     /// Whether a quadrilateral may be a sheet, and whether there is far less to be seen beside it than on it.
-    pub(super) fn judged(&self, quad: &Quad) -> Option<bool> {
+    pub(crate) fn judged(&self, quad: &Quad) -> Option<bool> {
         let Evidence { inner, outer, beyond, firm, is_shadow, steps } = self.beside(quad)?;
         let paper = middle(inner.iter().flatten().copied().collect())?;
         let is_even = inner.iter().flatten().all(|level| EVEN.contains(&(level / paper)));
