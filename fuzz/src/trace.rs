@@ -3,7 +3,9 @@
 use std::f64::consts::FRAC_PI_2;
 
 use tracelight_stroke::Point;
-use tracelight_vision::{Grey, Mode, Options, TAG_COUNT, Traced, find_tags, find_two_marks, trace};
+use tracelight_image::Grey;
+use tracelight_vision::{Mode, Options, Traced, find_two_marks, trace};
+use tracelight_markers::{TAG_COUNT, find_tags};
 
 use crate::bytes::Bytes;
 use crate::sound::check_path;

@@ -1,9 +1,10 @@
 use std::time::Instant;
 
 use tracelight_aim::{Board, LensBelief, SeenPlace, SeenTag, Survey, survey};
+use tracelight_image::Grey;
+use tracelight_markers::{Tag, TagPlace, find_tags};
 use tracelight_plant::Image;
 use tracelight_stroke::Point;
-use tracelight_vision::{Grey, Tag, TagPlace, find_tags};
 
 use crate::scene::{Dice, Scene, save};
 

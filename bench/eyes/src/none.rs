@@ -1,4 +1,5 @@
-use tracelight_vision::{Grey, find_tags};
+use tracelight_image::Grey;
+use tracelight_markers::find_tags;
 
 use crate::scene::Dice;
 

@@ -1,9 +1,9 @@
 use std::fmt::Write;
 
 use tracelight_aim::{Board, Camera, CameraPose, Lens};
+use tracelight_markers::tag_cells;
 use tracelight_plant::{CameraConfig, Image, Lamp, Laser, Poster, SimulatedCamera, Wall};
 use tracelight_stroke::{Affine, Point, Vec2};
-use tracelight_vision::tag_cells;
 
 /// Draws from a seed.
 pub(crate) struct Dice(oorandom::Rand64);

@@ -1,8 +1,9 @@
 use std::time::Instant;
 
+use tracelight_image::Grey;
+use tracelight_markers::{SpotWindow, find_spot};
 use tracelight_plant::{CameraConfig, Image, SpotSample};
 use tracelight_stroke::{Point, Vec2};
-use tracelight_vision::{Grey, SpotWindow, find_spot};
 
 use crate::scene::{Dice, Scene};
 
@@ -83,11 +84,11 @@ trait Near {
     fn filter_near(self, truth: Point) -> Self;
 }
 
-impl Near for Result<tracelight_vision::Spot, tracelight_vision::SpotLost> {
+impl Near for Result<tracelight_markers::Spot, tracelight_markers::SpotLost> {
     fn filter_near(self, truth: Point) -> Self {
         self.and_then(|spot| {
             let near = spot.at.distance(truth) < 5.0;
-            if near { Ok(spot) } else { Err(tracelight_vision::SpotLost::OutOfSight(spot.at)) }
+            if near { Ok(spot) } else { Err(tracelight_markers::SpotLost::OutOfSight(spot.at)) }
         })
     }
 }

@@ -15,8 +15,9 @@ use tracelight_bench_strokes::table::{self, Judged};
 use tracelight_bench_strokes::verdict::judge;
 use tracelight_bench_strokes::{Case, Degradation, Kind, Picture, Set, Size, nine, show};
 use tracelight_formats::{FormatError, Sheet, json};
+use tracelight_image::{Grey, ImageError};
 use tracelight_stroke::{Drawing, Score, score};
-use tracelight_vision::{Grey, Mode, Options, VisionError, trace};
+use tracelight_vision::{Mode, Options, VisionError, trace};
 
 /// Truth is written to this, px.
 const TRUTH_PX: f64 = 0.004;
@@ -131,6 +132,8 @@ enum Failure {
     Picture(PathBuf, image::ImageError),
     #[error("{}: {}", .0.display(), .1)]
     Trace(PathBuf, VisionError),
+    #[error("{}: {}", .0.display(), .1)]
+    Levels(PathBuf, ImageError),
 }
 
 fn main() -> ExitCode {
@@ -207,7 +210,7 @@ fn read_grey(file: &Path) -> Result<Grey, Failure> {
     let image =
         image::load_from_memory(&bytes).map_err(|e| Failure::Picture(file.to_owned(), e))?.into_luma8();
     let (width, height) = (image.width() as usize, image.height() as usize);
-    Grey::new(width, height, image.into_raw()).map_err(|e| Failure::Trace(file.to_owned(), e))
+    Grey::new(width, height, image.into_raw()).map_err(|e| Failure::Levels(file.to_owned(), e))
 }
 
 /// A refused picture has no strokes; the file says so.

@@ -2,8 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use tracelight_image::Grey;
 use tracelight_stroke::{Drawing, Point, Score, Stroke, StrokeKind, compare, score};
-use tracelight_vision::{Grey, Options, trace};
+use tracelight_vision::{Options, trace};
 
 use crate::Picture;
 use crate::page::crossings;
@@ -94,9 +95,10 @@ fn near(strokes: &[Stroke], truth: &Drawing, within_px: f64) -> f64 {
 pub fn judge(picture: &Picture, tolerance_px: f64) -> Verdict {
     let started = Instant::now();
     let traced = Grey::new(picture.width, picture.height, picture.levels.clone())
-        .and_then(|grey| trace(&grey, &Options::default()));
+        .map_err(|e| e.to_string())
+        .and_then(|grey| trace(&grey, &Options::default()).map_err(|e| e.to_string()));
     let took = started.elapsed();
-    let refused = traced.as_ref().err().map(ToString::to_string);
+    let refused = traced.as_ref().err().cloned();
     let found = traced.map(|t| t.strokes).unwrap_or_default();
     let score = score(&found, &picture.truth, tolerance_px);
     let astray = Astray::of(&found, &picture.truth, tolerance_px);

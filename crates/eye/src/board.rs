@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 use tracelight_aim::Board;
+use tracelight_markers::tag_cells;
 use tracelight_pipeline::Paper;
 use tracelight_stroke::Point;
-use tracelight_vision::tag_cells;
 
 /// Length of the bar by which a print is checked, m.
 pub const BAR_M: f64 = 0.150;

@@ -1,12 +1,12 @@
 //! The figure on the wall, as strokes in the wall's frame: traced where the camera sees it, not where it lies in a file.
 
 use tracelight_aim::Camera;
+use tracelight_image::Grey;
 use tracelight_picture::{Pixels, Raster, Source};
 use tracelight_pipeline::{Choice, Placed, Sketch, Tracing, carried, sketch_at};
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 use tracelight_task::{Failure, Task};
-use tracelight_vision::Grey;
 
 use crate::pages::without_pages;
 use crate::wall::{SeenWall, see_wall, well_exposed};

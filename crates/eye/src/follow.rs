@@ -1,12 +1,12 @@
 //! A camera that follows the spot while it draws: what is slowly off is estimated, what is suddenly off is told.
 
 use tracelight_aim::{Alignment, Camera, Correction, Trim, TrimBelief};
+use tracelight_markers::SpotLost;
 use tracelight_plant::RelayConfig;
 use tracelight_rig::{PanTilt, Phase, TICK_F64_S, Telemetry};
 use tracelight_rigfile::Timing;
 use tracelight_sim::Tick;
 use tracelight_stroke::Point;
-use tracelight_vision::SpotLost;
 
 use crate::painted::Painted;
 use crate::seen::SeenMark;

@@ -1,9 +1,9 @@
 //! A light-painting of what a camera saw: the spot of each image, on the image in which the figure was found.
 
 use tracelight_aim::Camera;
+use tracelight_image::Grey;
 use tracelight_picture::Raster;
 use tracelight_stroke::{Point, Vec2};
-use tracelight_vision::Grey;
 
 /// Share of its light that is left of the wall, so that the spot stands out.
 const DIMMED: f64 = 0.4;

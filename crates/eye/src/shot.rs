@@ -1,11 +1,12 @@
 //! An image, and when it was taken.
 
+use tracelight_image::Grey;
+use tracelight_markers::SpotWindow;
 use tracelight_picture::{Raster, Source, decode};
 use tracelight_plant::{Image, Part};
 use tracelight_sim::Taken;
 use tracelight_stroke::{Point, Vec2};
 use tracelight_task::Failure;
-use tracelight_vision::{Grey, SpotWindow};
 
 use crate::coding::{Coding, Layout, as_file};
 

@@ -1,10 +1,10 @@
 //! The laser's spot in shots, held against what the encoders said when they were taken.
 
 use tracelight_aim::{Alignment, Camera, SeenSpot};
+use tracelight_markers::{Spot, SpotLost, SpotWindow, find_spot};
 use tracelight_plant::RelayConfig;
 use tracelight_rig::{PanTilt, TICK_F64_S, Telemetry};
 use tracelight_stroke::Point;
-use tracelight_vision::{Spot, SpotLost, SpotWindow, find_spot};
 
 use tracelight_rigfile::Timing;
 

@@ -3,12 +3,13 @@
 use tracelight_aim::{
     Board, Camera, Doubt, LensBelief, PlacedPage, SeenPlace, SeenTag, Survey, SurveyedCamera, survey,
 };
+use tracelight_image::Grey;
+use tracelight_markers::{Tag, TagPlace, find_tags};
 use tracelight_picture::Raster;
 use tracelight_rigfile::PageName;
 use tracelight_rigfile::camera::{KnownCamera, Stood};
 use tracelight_stroke::{Affine, Point};
 use tracelight_task::{Failure, Stop};
-use tracelight_vision::{Grey, Tag, TagPlace, find_tags};
 
 use crate::{Looks, grey};
 

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
 use tracelight_formats::{FormatError, Reading, Sheet, csv, dxf, json, svg};
+use tracelight_image::Grey;
 use tracelight_stroke::{Affine, Drawing, Vec2};
 use tracelight_task::Failure;
-use tracelight_vision::Grey;
 
 use crate::quiet::unless_it_panics;
 use crate::raster::Raster;

@@ -1,10 +1,11 @@
 //! The sheet of paper in a picture: what is looked at, and how one that was photographed at a slant is laid square.
 
 use tracelight_aim::{Homography, proportions};
+use tracelight_image::Grey;
 use tracelight_picture::Raster;
+use tracelight_sheet::{Page, Sheet};
 use tracelight_stroke::{Drawing, Point};
 use tracelight_task::Failure;
-use tracelight_vision::{Grey, Page, Sheet};
 
 use crate::carried::carried;
 use crate::paper::Paper;

@@ -5,8 +5,9 @@ use std::io::Cursor;
 
 use image::{GrayImage, ImageFormat};
 use tracelight_chart::{Colour, Curve, Figure, Panel, Pen, Theme};
+use tracelight_image::Grey;
 use tracelight_task::Failure;
-use tracelight_vision::{Grey, Stages};
+use tracelight_vision::Stages;
 
 use crate::page::html::{data_uri, escaped};
 

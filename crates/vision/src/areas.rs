@@ -3,15 +3,13 @@
 //! An area is broad and of one tone, and what is darker on it is as dark as the picture's lines. It is taken out of the ink, so that its
 //! lines are left; where they do not run along its edge, that is drawn as well.
 
+use tracelight_image::levels::percentile;
+use tracelight_image::threshold::over;
+use tracelight_image::{Mask, Plane, Region, mask_of, regions};
 use tracelight_stroke::Stroke;
 
-use crate::levels::{histogram, percentile};
-use crate::mask::Mask;
 use crate::options::Options;
 use crate::outline::Outliner;
-use crate::plane::Plane;
-use crate::region::{Region, mask_of, regions};
-use crate::threshold::over;
 
 /// An area holds a regular octagon of this share of the picture's shorter side, and of so many px.
 const BROAD: usize = 24;
@@ -57,16 +55,16 @@ pub(crate) struct Areas {
     pub(crate) lined: usize,
 }
 
-/// The tones of an area.
-struct Tones {
-    fill: f64,
+/// How dark an area is, and the lines on it.
+struct Fill {
+    tone: f64,
     lines: f64,
 }
 
 impl Picture<'_> {
     /// Takes the areas out.
     pub(crate) fn take_areas(self, options: &Options) -> Areas {
-        let side = (self.ink.width.min(self.ink.height) / BROAD).max(LEAST_PX);
+        let side = (self.ink.width().min(self.ink.height()) / BROAD).max(LEAST_PX);
         // in a blurred picture a line's middle is darker than its sides
         if (side as f64) < LEAST_EDGES * self.edge_px {
             return Areas::default();
@@ -76,18 +74,18 @@ impl Picture<'_> {
             return Areas::default();
         }
         let (dark, ink) = (self.dark.clone(), self.ink.clone());
-        let mut areas = Mask::empty(ink.width, ink.height);
+        let mut areas = Mask::empty(ink.width(), ink.height());
         parts.iter().for_each(|(_, part)| part.add_to(&mut areas));
         let reach = (EDGE * self.edge_px).ceil() as usize;
-        let mut done = Mask::empty(ink.width, ink.height);
-        for (tones, part) in parts {
+        let mut done = Mask::empty(ink.width(), ink.height());
+        for (fill, part) in parts {
             let near = Part { mask: part.mask.dilated_by(reach), ..part };
             for (x, y) in near.cells().filter(|&(x, y)| ink.get(x as isize, y as isize)) {
                 let cell = done.cell(x, y);
                 if !done.has(cell) {
                     done.set(cell);
                     let level = &mut self.dark.row_mut(y)[x];
-                    *level = tones.of_paper(*level);
+                    *level = fill.of_paper(*level);
                 }
             }
         }
@@ -110,50 +108,50 @@ impl Picture<'_> {
     }
 
     /// The areas, by what is broad.
-    fn parts(&self, broad: &Mask) -> Vec<(Tones, Part)> {
+    fn parts(&self, broad: &Mask) -> Vec<(Fill, Part)> {
         let mut parts = Vec::new();
         // darker than this nothing is paler than lines, however dark they are
-        let palest =
-            |core: &Region| percentile(&histogram(core.runs.iter().map(|run| run.levels(self.dark))), 0.5);
+        let palest = |core: &Region| percentile(&core.histogram(self.dark), 0.5);
         if !regions(broad).iter().any(|core| palest(core) <= MOST_DARK * 255.0) {
             return parts;
         }
         for patch in regions(self.ink).iter().filter(|patch| patch.cells(broad).next().is_some()) {
-            let Some((columns, rows)) = patch.bounds(0, (self.ink.width, self.ink.height)) else { continue };
+            let Some((columns, rows)) = patch.bounds(0, (self.ink.width(), self.ink.height())) else {
+                continue;
+            };
             let (left, top) = (columns.start, rows.start);
             let levels = self.dark.part(columns.clone(), rows.clone());
             let mut rest = Mask::empty(columns.len(), rows.len());
             patch.seen_from(left, top).fill_into(&mut rest);
             let cores = broad.part(&columns, &rows).and(&rest);
-            let runs = patch.runs.iter().map(|run| run.levels(self.dark));
-            let lines = percentile(&histogram(runs), 1.0 - LINES);
+            let lines = percentile(&patch.histogram(self.dark), 1.0 - LINES);
             for core in regions(&cores) {
                 // an area may have several
                 if core.cells(&rest).next().is_none() {
                     continue;
                 }
-                let Some(tones) = self.tones(&core, &levels, lines) else { continue };
-                let mask = self.area(&core, &tones, &levels, &rest);
+                let Some(fill) = self.fill(&core, &levels, lines) else { continue };
+                let mask = self.area(&core, &fill, &levels, &rest);
                 rest = rest.without(&mask);
-                parts.push((tones, Part { mask, left, top }));
+                parts.push((fill, Part { mask, left, top }));
             }
         }
         parts
     }
 
-    /// Those of a broad part of a patch of ink whose lines are so dark, if it is an area.
-    fn tones(&self, core: &Region, levels: &Plane<u8>, lines: f64) -> Option<Tones> {
-        let of_core = histogram(core.runs.iter().map(|run| run.levels(levels)));
-        let [least, fill, most] = [0.25, 0.5, 0.75].map(|share| percentile(&of_core, share));
-        let is_even = most - least <= UNEVEN * (lines - fill);
+    /// That of a broad part of a patch of ink whose lines are so dark, if it is an area.
+    fn fill(&self, core: &Region, levels: &Plane<u8>, lines: f64) -> Option<Fill> {
+        let of_core = core.histogram(levels);
+        let [least, tone, most] = [0.25, 0.5, 0.75].map(|share| percentile(&of_core, share));
+        let is_even = most - least <= UNEVEN * (lines - tone);
         let is_area =
-            is_even && fill <= MOST_DARK * lines && lines - fill >= LEAST_DARKER.max(NOISE * self.noise);
-        is_area.then_some(Tones { fill, lines })
+            is_even && tone <= MOST_DARK * lines && lines - tone >= LEAST_DARKER.max(NOISE * self.noise);
+        is_area.then_some(Fill { tone, lines })
     }
 
     /// What of a patch an area covers that has this core.
-    fn area(&self, core: &Region, tones: &Tones, levels: &Plane<u8>, patch: &Mask) -> Mask {
-        let least = tones.fill + LINE * (tones.lines - tones.fill);
+    fn area(&self, core: &Region, fill: &Fill, levels: &Plane<u8>, patch: &Mask) -> Mask {
+        let least = fill.tone + LINE * (fill.lines - fill.tone);
         let pale = patch.clone().without(&over(levels, least as u8));
         let thin = self.thin();
         let core = mask_of(&pale, [core]).and(&pale);
@@ -182,18 +180,18 @@ impl Part {
     }
 }
 
-impl Tones {
+impl Fill {
     /// A level, with the area's tone as paper.
     fn of_paper(&self, level: u8) -> u8 {
-        let gain = self.lines / (self.lines - self.fill);
-        ((f64::from(level) - self.fill) * gain).clamp(0.0, 255.0) as u8
+        let gain = self.lines / (self.lines - self.tone);
+        ((f64::from(level) - self.tone) * gain).clamp(0.0, 255.0) as u8
     }
 }
 
 /// Whether lines run along an area's edge.
 fn is_lined(area: &Region, areas: &Mask, ink: &Mask) -> bool {
     // no more of the picture than is looked at
-    let Some((columns, rows)) = area.bounds(ABOUT_PX, (ink.width, ink.height)) else { return false };
+    let Some((columns, rows)) = area.bounds(ABOUT_PX, (ink.width(), ink.height())) else { return false };
     let areas = areas.part(&columns, &rows);
     let about =
         mask_of(&areas, [&area.seen_from(columns.start, rows.start)]).dilated_by(ABOUT_PX).without(&areas);
@@ -203,10 +201,11 @@ fn is_lined(area: &Region, areas: &Mask, ink: &Mask) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::Grey;
     use tracelight_stroke::StrokeKind;
 
     use crate::options::Options;
-    use crate::{Grey, trace};
+    use crate::trace;
 
     const SIDE: usize = 320;
 

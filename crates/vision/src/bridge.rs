@@ -1,9 +1,8 @@
 //! What the pen did where its line cannot be seen: between two ends that belong together.
 
+use tracelight_image::Plane;
+use tracelight_image::median::median;
 use tracelight_stroke::{Parabola, Point, Vec2, polyline_length};
-
-use crate::plane::Plane;
-use crate::ridge::median;
 
 /// Points from a line's end on of which its direction there is taken: as many as lie on a parabola.
 const WINDOWS: [usize; 6] = [6, 9, 13, 19, 28, 40];

@@ -1,17 +1,15 @@
 //! Pen lines: strokes down their middle.
 
+use tracelight_image::median::median;
+use tracelight_image::{Mask, Plane, Region, long_axis};
 use tracelight_stroke::{Path, Point, Stroke, Vec2, polyline_length};
 
 use crate::follow;
 use crate::graph::Graph;
 use crate::junction::{self, Joint, Junctions};
 use crate::line::Line;
-use crate::mask::Mask;
 use crate::near::Near;
 use crate::options::Options;
-use crate::plane::Plane;
-use crate::region::{Region, long_axis};
-use crate::ridge::median;
 use crate::row::Row;
 
 /// The rows of one patch's graph; lines end where they meet `shapes`.

@@ -3,16 +3,14 @@
 //! Of a letter of ten pixels the pixels' grid leaves little: its lines are three pixels apart, its corners as long as its pen is wide,
 //! and a skeleton that goes from pixel to pixel has no direction. Between the pixels' centres the picture is smooth, and says more.
 
+use tracelight_image::threshold::over;
+use tracelight_image::{Mask, Plane, Region, regions};
 use tracelight_stroke::Vec2;
 
 use crate::centreline::{self, is_dot};
 use crate::graph::Graph;
-use crate::mask::Mask;
 use crate::parts::graphs;
-use crate::plane::Plane;
-use crate::region::{Region, regions};
 use crate::row::Row;
-use crate::threshold::over;
 
 /// No larger than this either way, px, is a small figure,
 const LARGEST_PX: usize = 64;

@@ -4,11 +4,9 @@
 //! Where a mask at half the resolution, or of a smoothed plane, has a shorter border, the rest of it was the paper's grain. Where its
 //! lines are still wide enough, or all there, nothing that was drawn is lost.
 
-use crate::grey::MOST_PIXELS;
-use crate::mask::Mask;
-use crate::plane::Plane;
-use crate::smooth::smoothed;
-use crate::threshold::over;
+use tracelight_image::smooth::smoothed;
+use tracelight_image::threshold::over;
+use tracelight_image::{Grey, Mask, Plane};
 
 /// Looked at half as closely, a picture still has so many pixels either way.
 const LEAST_SIDE_PX: usize = 200;
@@ -33,6 +31,21 @@ const GRAINY: f64 = 1.09;
 const MAY_BE_GRAINY: f64 = 1.06;
 /// And at most this share of it is gone then: thin lines and small letters are more than grain.
 const MOST_LOST: f64 = 0.02;
+
+/// More pixels than this say nothing more about a drawing; larger images are averaged down.
+const MOST_PIXELS: usize = 12_000_000;
+
+/// Averaged so many times either way, the shorter side of an image still has 8 px.
+pub(crate) fn most_reduction(image: &Grey) -> usize {
+    (image.width().min(image.height()) / Grey::LEAST_SIDE).max(1)
+}
+
+/// How many pixels of an image either way are averaged into one before tracing: 1 up to 12 megapixels. Never so many that
+/// a side falls under 8 px.
+pub(crate) fn reduction(image: &Grey) -> usize {
+    let (w, h, most) = (image.width(), image.height(), most_reduction(image));
+    (1..=most).find(|k| (w / k) * (h / k) <= MOST_PIXELS).unwrap_or(most)
+}
 
 /// Whether the ink of a plane, what is over a threshold, may be grainy: to know it takes the smoothed ink.
 pub(crate) fn may_be_grainy(fine: &Mask, darkness: &Plane<u8>, threshold: u8) -> bool {
@@ -195,5 +208,15 @@ mod tests {
     fn a_lines_length_is_that_of_its_middle() {
         let length = over(&ring(10.0, 0.0), 128).line_length();
         assert!((length / (2.0 * std::f64::consts::PI * 150.0) - 1.0).abs() < 0.03, "{length}");
+    }
+
+    #[test]
+    fn a_vast_image_is_averaged_down_and_another_is_not() {
+        let reduction = |width: usize, height: usize| {
+            reduction(&Grey::new(width, height, vec![0; width * height]).unwrap())
+        };
+        assert_eq!(reduction(30, 20), 1);
+        assert_eq!(reduction(4000, 3001), 2);
+        assert_eq!(reduction(8, 1_500_001), 1);
     }
 }

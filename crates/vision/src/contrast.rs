@@ -1,7 +1,5 @@
+use tracelight_image::{Grey, Mask};
 use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
-
-use crate::Grey;
-use crate::mask::Mask;
 
 /// How far beyond a line's edge its paper is looked at, px: beyond what blur leaves of the ink.
 const BEYOND_PX: f64 = 2.5;
@@ -26,7 +24,7 @@ pub(crate) fn stands_out(grey: &Grey, stroke: &Stroke, light_on_dark: bool) -> f
     let sign = if light_on_dark { -1.0 } else { 1.0 };
     let half = 0.5 * stroke.pen.unwrap_or(0.0);
     let of = |Place { at, across }: Place| {
-        let level = |off: f64| grey.plane.at(at + across * off);
+        let level = |off: f64| grey.plane().at(at + across * off);
         match stroke.kind {
             StrokeKind::Centreline => {
                 let beside = [half + BEYOND_PX, -half - BEYOND_PX].map(|off| sign * level(off));
@@ -120,7 +118,7 @@ impl Across<'_> {
         let at = place.at + place.across * off;
         let (width, height) = (self.grey.width() as f64, self.grey.height() as f64);
         let is_seen = (0.0..width).contains(&at.x) && (0.0..height).contains(&at.y);
-        let level = is_seen.then(|| self.grey.plane.at(at))?;
+        let level = is_seen.then(|| self.grey.plane().at(at))?;
         Some(if self.light_on_dark { level } else { 255.0 - level })
     }
 

@@ -1,9 +1,8 @@
 //! Marks that a pencil leaves on the paper's grain beside its lines, and smudges: small, and paler than what it draws.
 
+use tracelight_image::{Plane, Region};
 use tracelight_stroke::{Point, polyline_length};
 
-use crate::plane::Plane;
-use crate::region::Region;
 use crate::row::Row;
 
 /// A crumb is shorter than this, in widths of the drawing's pen,
@@ -76,7 +75,7 @@ mod tests {
         for (columns, level, is_smudge) in [(80..90, 70, true), (80..90, 200, false), (60..98, 70, false)] {
             let mut patch = Plane::filled(100, 60, 0);
             (4..12).for_each(|y| patch.row_mut(y)[columns.clone()].fill(level));
-            let shapes = crate::region::regions(&crate::threshold::over(&patch, 0));
+            let shapes = tracelight_image::regions(&tracelight_image::threshold::over(&patch, 0));
             assert_eq!(usual.is_smudge(&patch, &shapes[0]), is_smudge, "{columns:?} {level}");
         }
     }

@@ -1,11 +1,11 @@
 //! The dots of dotted paper: many small patches, as far from each other in two directions square to each other.
 
+use tracelight_image::Region;
+use tracelight_image::median::middle;
 use tracelight_stroke::{Point, Vec2};
 
 use crate::comb::ratio;
 use crate::near::Near;
-use crate::region::Region;
-use crate::ridge::middle;
 use crate::row::Row;
 
 /// Dots of the paper that are in no stroke.
@@ -231,9 +231,9 @@ fn with_neighbours(near: &Near<Patch>, mut dots: Vec<Dot>, seen: &mut [bool]) ->
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::{Mask, regions};
+
     use super::*;
-    use crate::mask::Mask;
-    use crate::region::regions;
 
     /// A mask of 400 × 300 px by what is ink.
     fn mask(is_ink: impl Fn(f64, f64) -> bool) -> Mask {

@@ -2,11 +2,10 @@
 
 use std::cell::OnceCell;
 
+use tracelight_image::{Mask, Plane, Region, mask_of};
+
 use crate::comb::TakenOff;
-use crate::mask::Mask;
-use crate::plane::Plane;
 use crate::reading::Patch;
-use crate::region::{Region, mask_of};
 
 /// What becomes of specks that are no marks.
 #[derive(Clone, Copy, Debug)]

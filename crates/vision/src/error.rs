@@ -4,28 +4,6 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum VisionError {
-    /// Number of levels and size do not agree.
-    #[error("an image of {width} × {height} px needs width × height levels, not {levels}")]
-    Levels {
-        /// Pixels in a row.
-        width: usize,
-        /// Rows.
-        height: usize,
-        /// Levels given.
-        levels: usize,
-    },
-    /// Too few pixels for a drawing.
-    #[error(
-        "the image is {width} × {height} px; a drawing needs at least {least} px either way: use a larger picture"
-    )]
-    TooSmall {
-        /// Pixels in a row.
-        width: usize,
-        /// Rows.
-        height: usize,
-        /// Least of either.
-        least: usize,
-    },
     /// Ink and paper are of nearly the same brightness.
     #[error(
         "contrast between ink and paper is {contrast:.1} % and must be at least {least:.1} %: use a darker pen, more \

@@ -4,13 +4,12 @@
 //! that paper differs from place to place. Between two ends that face each other all of the way is seen at once: there it may be as broken
 //! as grain makes it. What is found becomes ink, and is traced with the rest.
 
+use tracelight_image::median::median;
+use tracelight_image::{Mask, Plane};
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::Tip;
 use crate::gap::{End, ends_where, near_pairs, widest_paper};
-use crate::mask::Mask;
-use crate::plane::Plane;
-use crate::ridge::median;
 use crate::row::Row;
 
 /// A step ahead, and the stretch by which its direction is chosen, pens.
@@ -56,7 +55,7 @@ const FACING_PAPERS: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
 /// The mask with what is found ahead of its lines' free ends; `None` where nothing is. The paper may have had `shadows`.
 pub(crate) fn followed(dark: &Plane<u8>, mask: &Mask, rows: &[Row], shadows: bool) -> Option<Mask> {
     let least = if shadows { LEAST_BY_SHADOWS } else { LEAST_SHARE };
-    let mut more = Mask::empty(mask.width, mask.height);
+    let mut more = Mask::empty(mask.width(), mask.height());
     let is_long = |row: &Row| polyline_length(&row.points) >= LEAST_LENGTH * row.width;
     let ends = ends_where(rows, |_, row| !row.dot && is_long(row));
     // how dark a line is, levels
@@ -247,8 +246,8 @@ fn paint(mask: &mut Mask, from: Point, to: Point, radius: f64) {
             ((middle - radius).round().max(0.0) as usize).min(most)
                 ..((middle + radius).round().max(0.0) as usize).min(most)
         };
-        range(at.y, mask.height).for_each(|y| {
-            let columns = range(at.x, mask.width);
+        range(at.y, mask.height()).for_each(|y| {
+            let columns = range(at.x, mask.width());
             mask.fill(y, columns.start, columns.end);
         });
     }
@@ -271,7 +270,7 @@ mod tests {
             Row { points, closed: false, width: 4.0, free, dot: false }
         };
         let rows = [row(12, 48, [false, true]), row(72, 108, [true, false])];
-        followed(&dark, &crate::threshold::over(&dark, 150), &rows, false)
+        followed(&dark, &tracelight_image::threshold::over(&dark, 150), &rows, false)
     }
 
     #[test]

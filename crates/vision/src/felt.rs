@@ -5,11 +5,9 @@
 //!
 //! Where no line tells how wide the pen is (`slits`), a hole of a filled shape is such a slit if it is narrow and leads through it.
 
+use tracelight_image::median::median;
+use tracelight_image::{Mask, Region, long_axis, pinholes, regions};
 use tracelight_stroke::{Point, Vec2};
-
-use crate::mask::Mask;
-use crate::region::{Region, long_axis, pinholes, regions};
-use crate::ridge::median;
 
 /// Widest slit, pen widths; of slanted ones half as much more.
 const SLIT_PENS: f64 = 0.5;
@@ -85,7 +83,7 @@ const LARGEST: usize = 50;
 /// The slits in what was filled with a pen that no line tells of: they lead from side to side of a shape, all but its rim, and are
 /// narrow. A key's hole is short, and the slot of a letter's counter as wide as its strokes.
 pub(crate) fn slits(shapes: &Mask) -> Vec<Region> {
-    let holes = pinholes(shapes, shapes.width * shapes.height / LARGEST);
+    let holes = pinholes(shapes, shapes.width() * shapes.height() / LARGEST);
     let mut solid = shapes.clone();
     holes.iter().for_each(|hole| hole.fill_into(&mut solid));
     let long = holes.into_iter().filter_map(|hole| Some((Slit::of(&hole)?, hole)));

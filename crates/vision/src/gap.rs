@@ -1,11 +1,11 @@
 //! Gaps that were not meant: where a pen skipped, its line goes on.
 
+use tracelight_image::Plane;
+use tracelight_image::median::median;
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::{Tip, angle, drop_beyond};
 use crate::near::Near;
-use crate::plane::Plane;
-use crate::ridge::median;
 use crate::row::Row;
 
 /// Widest gap, from where the pen was lifted to where it was put down, pen widths: one of paper and the pen's two

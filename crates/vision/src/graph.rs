@@ -1,11 +1,12 @@
 //! The skeleton as a graph: branches of pixels between nodes.
 
+use tracelight_image::distance::to_paper;
+use tracelight_image::median::median;
+use tracelight_image::{Cell, Mask, Neighbours, Region};
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
-use crate::distance::{WIDEST_RADIUS, to_paper};
-use crate::mask::{Cell, Mask, Neighbours};
-use crate::region::Region;
-use crate::ridge::median;
+/// Half widths beyond this are all one: no pen has them, px.
+pub(crate) const WIDEST_RADIUS: f64 = 400.0;
 
 /// A line of skeleton pixels between two nodes, or an end, or round in a ring.
 #[derive(Clone, Debug)]
@@ -115,7 +116,7 @@ pub(crate) struct Skeleton<'a> {
 impl<'a> Skeleton<'a> {
     /// `line` is `ink` thinned.
     pub(crate) fn new(ink: &'a Mask, line: Mask) -> Self {
-        let seen = Mask::empty(ink.width, ink.height);
+        let seen = Mask::empty(ink.width(), ink.height());
         Self { ink, line, seen }
     }
 

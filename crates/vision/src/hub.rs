@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use tracelight_image::median::median;
+use tracelight_image::{Cell, Mask, Region};
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::Tip;
 use crate::graph::{Branch, Graph};
-use crate::mask::{Cell, Mask};
 use crate::missed::paint;
-use crate::region::Region;
-use crate::ridge::median;
 
 /// Fewer lines leave no ink between them that is wider than where two cross.
 const FEWEST: usize = 3;
@@ -38,7 +37,7 @@ pub(crate) fn hubs<'a, 'g>(
     graphs: impl Iterator<Item = &'g Graph>,
 ) -> Vec<&'a Region> {
     let mut arms_at: BTreeMap<Cell, Vec<Arm>> = BTreeMap::new();
-    let mut entries = Mask::empty(wide.width, wide.height);
+    let mut entries = Mask::empty(wide.width(), wide.height());
     for arm in graphs.flat_map(|graph| arms(graph, wide)) {
         let cell = wide.cell(arm.enters.x as usize, arm.enters.y as usize);
         entries.set(cell);
@@ -46,7 +45,7 @@ pub(crate) fn hubs<'a, 'g>(
     }
     let is_hub = |part: &&Region| {
         let arms: Vec<&Arm> = part.cells(&entries).filter_map(|cell| arms_at.get(&cell)).flatten().collect();
-        arms.len() >= FEWEST && is_covered(part, &arms, (wide.width, wide.height))
+        arms.len() >= FEWEST && is_covered(part, &arms, (wide.width(), wide.height()))
     };
     parts.iter().filter(is_hub).collect()
 }

@@ -2,22 +2,21 @@
 
 use std::borrow::Cow;
 
+use tracelight_image::levels::{SAMPLED, sampled_histogram};
+use tracelight_image::smooth::{SMOOTHED, noise, smoothed};
+use tracelight_image::threshold::over;
+use tracelight_image::{Mask, Plane, Region, mask_of, regions};
+use tracelight_sheet::{Page, Paper};
+
 use crate::coarse;
 use crate::comb::{self, Lie, TakenOff};
 use crate::faint;
-use crate::levels::{SAMPLED, sampled_histogram};
-use crate::light::Paper;
-use crate::mask::Mask;
 use crate::paler::Inked;
-use crate::plane::Plane;
 use crate::polarity::is_light_on_dark;
 use crate::quality::clipped_percent;
-use crate::region::{Region, mask_of, regions};
 use crate::row::Row;
-use crate::smooth::{SMOOTHED, noise, smoothed};
 use crate::split::{Split, strongest};
-use crate::threshold::over;
-use crate::{Page, Quality, VisionError};
+use crate::{Quality, VisionError};
 
 /// Noise from which on the picture is smoothed, levels.
 const SMOOTHED_FROM: f64 = 2.5;
@@ -92,9 +91,9 @@ impl Ink {
         (sheets, is_dark): (bool, bool),
     ) -> Result<Self, VisionError> {
         let at = |look| Self::at(page, threshold_percent, (sheets, is_dark), look);
-        let mut reduction = page.picture.reduction();
+        let mut reduction = coarse::reduction(&page.picture);
         let mut ink = at(Look { reduction, smoothings: 0 })?;
-        let most = page.picture.most_reduction();
+        let most = coarse::most_reduction(&page.picture);
         let mut fine = ink.over();
         while 2 * reduction <= most && coarse::is_ragged(&fine, &ink.darkness, ink.threshold) {
             let Ok(coarser) = at(Look { reduction: 2 * reduction, smoothings: 0 }) else { break };
@@ -135,9 +134,9 @@ impl Ink {
             1 => Cow::Borrowed(plane),
             _ => Cow::Owned(Plane::reduced(plane, reduction)),
         };
-        let mut plane = reduced(page.beside.as_ref().map_or(&image.plane, |beside| &beside.papered));
+        let mut plane = reduced(page.beside.as_ref().map_or(image.plane(), |beside| &beside.papered));
         // a shadow on the sheet goes on beside it
-        let mut seen = page.beside.as_ref().map(|_| reduced(&image.plane));
+        let mut seen = page.beside.as_ref().map(|_| reduced(image.plane()));
         let mut raw_levels = sampled_histogram(&plane);
         let light_on_dark = !is_dark && is_light_on_dark(&plane, &raw_levels, page.is_brighter);
         if light_on_dark {
@@ -277,8 +276,9 @@ fn reduced_mask(mask: &Mask, plane: &Plane<u8>, reduction: usize) -> Mask {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::Grey;
+
     use super::*;
-    use crate::Grey;
 
     fn image(level: impl Fn(usize, usize) -> u8) -> Grey {
         Grey::new(160, 120, (0..160 * 120).map(|i| level(i % 160, i / 160)).collect()).unwrap()

@@ -6,13 +6,13 @@
 
 use std::f64::consts::PI;
 
+use tracelight_image::Plane;
 use tracelight_stroke::{Point, polyline_length};
 
 use crate::bow::Bow;
 use crate::bridge::{Tip, from_end, inked_towards, meeting};
 use crate::graph::{Graph, Node};
 use crate::line::{Line, off_the_grid};
-use crate::plane::Plane;
 
 /// A pair of lines that turns less than this from one into the other is one line passing through, rad (60°).
 const THROUGH: f64 = PI / 3.0;

@@ -1,26 +1,24 @@
 //! A picture in, strokes out.
 //!
-//! [`trace`] takes a [`Grey`] image and gives the strokes that draw it, in the pixel frame: x right, y down, the
+//! [`trace`] takes a [`Grey`](tracelight_image::Grey) image and gives the strokes that draw it, in the pixel frame: x right, y down, the
 //! image spans [0, width] × [0, height], the first pixel's centre is (0.5, 0.5). The way: find the sheet of paper
-//! ([`Page`]), even out the light and the polarity, cut ink from paper (`ink`), part it into regions, then follow the middle of pen lines (thinning, a
+//! ([`Page`](tracelight_sheet::Page)), even out the light and the polarity, cut ink from paper (`ink`), part it into regions, then follow the middle of pen lines (thinning, a
 //! graph, junctions resolved, points moved on to the grey levels' ridge) and the edges of filled shapes. Nothing
-//! here knows metres, angles, files or cameras; the host decodes.
+//! here knows metres, angles, files or cameras; the host decodes. Pixels and masks are `tracelight_image`'s, the sheet and its light
+//! `tracelight_sheet`'s.
 //!
 //! | module | what |
 //! |---|---|
-//! | `sheet` | the sheet of paper in a photograph or a scan, by itself |
-//! | `light`, `levels`, `ink`, `tones` | even light, how often each level comes, polarity, threshold; pictures of two tones |
+//! | `polarity`, `split`, `ink` | dark lines or light ones, threshold, ink cut from paper |
 //! | `comb` | the rules of ruled and squared paper, taken out from under the ink |
 //! | `quality`, `sharpness` | figures of a picture, their bounds, the gate that refuses bad ones; how sharp it is |
 //! | `tone`, `screen`, `seen` | whether it is a drawing at all: no photograph, and no computer's screen; a second look if it seems none |
-//! | `region`, `distance` | connected patches of ink; distance to the paper |
 //! | `reading`, `parts`, `hub`, `dust` | what is a line by its own width; lines and shapes parted; where many lines meet; specks |
 //! | `thin`, `graph`, `prune` | one-pixel skeleton; its branches and nodes; without spurs |
 //! | `ridge`, `line`, `bow`, `bridge`, `junction`, `centreline` | sub-pixel middle of pen lines; crossings run through |
 //! | `coarse`, `closer` | how closely a picture is looked at; a second, closer look at small figures |
 //! | `outline` | edges of filled shapes, holes too |
 //! | `contrast` | whether a stroke is ink, or the edge of paper or of a shadow |
-//! | `projection` | a rectangle seen at a slant |
 //! | `dots` | the dots of dotted paper |
 //! | `near` | which of many points are near a place |
 //! | `follow` | points to paths |
@@ -31,8 +29,6 @@
 //! | `crumbs` | what a pencil leaves on the paper's grain beside its lines, and smudges |
 //! | `sweep` | the original report's tracer |
 //! | `marks` | the two marks on a ruler |
-//! | `fiducial` | printed square markers and which they are |
-//! | `spot` | the laser's spot, by an image with it and one without |
 
 mod areas;
 mod bow;
@@ -43,26 +39,20 @@ mod coarse;
 mod comb;
 mod contrast;
 mod crumbs;
-mod distance;
 mod dots;
 mod dust;
 mod error;
 mod faint;
 mod felt;
-mod fiducial;
 mod follow;
 mod gap;
 mod graph;
-mod grey;
 mod hub;
 mod ink;
 mod inside;
 mod junction;
-mod levels;
-mod light;
 mod line;
 mod marks;
-mod mask;
 mod missed;
 mod near;
 mod on_ink;
@@ -70,44 +60,30 @@ mod options;
 mod outline;
 mod paler;
 mod parts;
-mod plane;
 mod polarity;
-mod projection;
 mod prune;
 mod quality;
 mod reading;
-mod region;
 mod rest;
 mod ridge;
 mod row;
 mod screen;
 mod seen;
-mod shadow;
 mod sharpness;
-mod sheet;
-mod smooth;
-mod solve;
 mod split;
-mod spot;
 mod stages;
 mod streak;
 mod sweep;
 mod thin;
-mod threshold;
 mod tone;
-mod tones;
 mod trace;
 mod twice;
 
 pub use comb::{Comb, Rules};
 pub use dots::Dots;
 pub use error::VisionError;
-pub use fiducial::{TAG_COUNT, Tag, TagPlace, find_tags, tag_cells};
-pub use grey::Grey;
 pub use marks::{Marks, find_two_marks};
 pub use options::{Mode, Options};
 pub use quality::{Figure, Quality, Verdict};
-pub use sheet::{Page, Sheet};
-pub use spot::{Spot, SpotLost, SpotWindow, find_spot};
 pub use stages::Stages;
 pub use trace::{LeftOut, Traced, trace, trace_page};

@@ -1,13 +1,13 @@
 //! Branches of the skeleton as lines on the middle of the pen.
 
+use tracelight_image::median::median;
+use tracelight_image::{Mask, Plane};
 use tracelight_stroke::{Parabola, Point, Vec2, polyline_length};
 
 use crate::bridge::{Tip, drop_beyond, from_end, scatter_px};
 use crate::graph::{Branch, Graph, Turn, TurnTip};
-use crate::mask::Mask;
-use crate::plane::Plane;
 use crate::prune::is_bent;
-use crate::ridge::{self, Ridge, median};
+use crate::ridge::{self, Ridge};
 
 /// A stretch of pen line without junctions.
 #[derive(Clone, Debug)]

@@ -1,14 +1,14 @@
 //! The two marks on a ruler, for scale.
 
+use tracelight_image::levels::histogram;
+use tracelight_image::threshold::over;
+use tracelight_image::{Grey, Plane, Region, regions};
+use tracelight_sheet::Page;
 use tracelight_stroke::{Point, Vec2};
 
+use crate::VisionError;
 use crate::ink::Ink;
-use crate::levels::histogram;
-use crate::plane::Plane;
-use crate::region::{Region, regions};
 use crate::split::Split;
-use crate::threshold::over;
-use crate::{Grey, Page, VisionError};
 
 /// Most the line through the marks may be off upright or level, degrees: at 3° the scale is 0.14 % off already, but
 /// which of the two it is stays clear up to here.

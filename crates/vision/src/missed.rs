@@ -1,10 +1,8 @@
 //! How much of the pen's ink no stroke follows.
 
+use tracelight_image::median::median;
+use tracelight_image::{Mask, Region};
 use tracelight_stroke::{Point, Stroke, Vec2};
-
-use crate::mask::Mask;
-use crate::region::Region;
-use crate::ridge::median;
 
 /// How far ink may lie from its stroke, pen widths: half of one is its edge, the rest the blots of junctions.
 const NEAR_PENS: f64 = 1.2;
@@ -22,7 +20,7 @@ pub(crate) fn counts<'a>(
     strokes: impl Iterator<Item = &'a Stroke> + Clone,
 ) -> Vec<(usize, usize)> {
     let usual = median(&strokes.clone().filter_map(|s| s.pen).collect::<Vec<_>>());
-    let mut painted = Mask::empty(ink.width, ink.height);
+    let mut painted = Mask::empty(ink.width(), ink.height());
     for stroke in strokes {
         let near = reach(stroke.pen.unwrap_or(0.0), usual);
         let flat = FLAT_PX.max(FLAT_SHARE * near);
@@ -48,12 +46,12 @@ pub(crate) fn is_none_of_lines(missed: usize, area: usize) -> bool {
 /// Paints all pixels whose centres are within `radius` of the line from `a` to `b`, row by row.
 pub(crate) fn paint(mask: &mut Mask, a: Point, b: Point, radius: f64) {
     let rows = |y: f64, last: usize| (y.max(0.0) as usize).min(last);
-    let last = mask.height - 1;
+    let last = mask.height() - 1;
     let (top, low) = (a.y.min(b.y) - radius, a.y.max(b.y) + radius);
     let stadium = Stadium::about(a, b, radius);
     for y in rows(top, last)..=rows(low, last) {
         let (from, to) = stadium.chord(y as f64 + 0.5);
-        let column = |x: f64| (x + 0.5).clamp(0.0, mask.width as f64) as usize;
+        let column = |x: f64| (x + 0.5).clamp(0.0, mask.width() as f64) as usize;
         let (from, to) = (column(from), column(to));
         if to > from {
             mask.fill(y, from, to);
@@ -101,9 +99,8 @@ impl Stadium {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tracelight_image::regions;
     use tracelight_stroke::Path;
-
-    use crate::region::regions;
 
     #[test]
     fn a_painted_line_is_all_that_is_near_it() {

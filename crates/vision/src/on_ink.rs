@@ -3,10 +3,10 @@
 //! The reverse of `missed`, and the last word: whatever joined two lines, what lies between them must be ink, or a gap
 //! that a pen may have left. Only what `twice` makes of two passes comes later, and lies between their ink.
 
+use tracelight_image::Mask;
 use tracelight_stroke::Point;
 
 use crate::gap;
-use crate::mask::Mask;
 use crate::row::Row;
 
 /// The rows without their ways over paper, and the length of what was cut, px.

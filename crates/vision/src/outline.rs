@@ -1,22 +1,18 @@
 //! Filled shapes: strokes along their edges, holes included.
 
+use tracelight_image::border::{Edge, area, border};
+use tracelight_image::levels::percentile;
+use tracelight_image::{Mask, Plane, Region};
 use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2};
 
 use crate::follow;
-use crate::levels::{histogram, percentile};
-use crate::mask::Mask;
 use crate::options::Options;
-use crate::plane::Plane;
-use crate::region::Region;
 
 /// Around a corner the pixel's own size shows, not the shape: px either side.
 const REACH_PX: f64 = 2.0;
 
 /// Outlines smaller than this enclose dust, px².
 const LEAST_AREA_PX2: f64 = 12.0;
-
-/// Directions along pixel edges, clockwise from right: (x, y) steps.
-const STEPS: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
 /// Follows the edges of shapes.
 #[derive(Debug)]
@@ -32,7 +28,7 @@ pub(crate) struct Outliner<'a> {
 impl<'a> Outliner<'a> {
     /// `shapes` is what is followed, `ink` all the ink there is: where a line leaves a shape there is no edge.
     pub(crate) fn new(dark: &'a Plane<u8>, shapes: &'a Mask, ink: &'a Mask, edge_px: f64) -> Self {
-        Self { dark, shapes, ink, edge_px, walked: Mask::empty(ink.width, ink.height) }
+        Self { dark, shapes, ink, edge_px, walked: Mask::empty(ink.width(), ink.height()) }
     }
 
     /// The closed outlines of a region: outer edge and holes.
@@ -60,7 +56,7 @@ impl<'a> Outliner<'a> {
             (0..=2 * BESIDE_LINES).for_each(|k| open[(i + n + k - BESIDE_LINES.min(n)) % n] = true);
         }
         let all = border.iter().zip(open).filter(|(_, open)| !open);
-        all.filter_map(|(edge, _)| edge.place(self.dark, full)).collect()
+        all.filter_map(|(edge, _)| place(edge, self.dark, full)).collect()
     }
 }
 
@@ -87,49 +83,33 @@ fn mean(points: &[Point]) -> Point {
 
 /// The darkness of a pixel all inside a region.
 fn full_level(dark: &Plane<u8>, region: &Region) -> f64 {
-    let levels = region.runs.iter().map(|run| run.levels(dark));
-    percentile(&histogram(levels), 0.5).max(1.0)
+    percentile(&region.histogram(dark), 0.5).max(1.0)
 }
 
-/// An edge between an ink pixel and a paper pixel.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Edge {
-    ink: (isize, isize),
-    paper: (isize, isize),
-}
-
-impl Edge {
-    /// Between its two pixels.
-    pub(crate) fn middle(&self) -> Point {
-        let between = |ink: isize, paper: isize| (ink + paper) as f64 / 2.0 + 0.5;
-        Point::new(between(self.ink.0, self.paper.0), between(self.ink.1, self.paper.1))
+/// Where the shape's edge crosses the line through the two pixels' centres; `None` where it runs along that
+/// line and a neighbouring edge knows better.
+///
+/// Each pixel's darkness is the share of it that is inked, so the sum from a full pixel to an empty one is how
+/// far the ink reaches: exact for a straight edge, where interpolation between two pixels is off by up to
+/// 0.08 px.
+fn place(edge: &Edge, dark: &Plane<u8>, full: f64) -> Option<Point> {
+    let (dx, dy) = (edge.paper.0 - edge.ink.0, edge.paper.1 - edge.ink.1);
+    let at = |k: isize, side: isize| {
+        let (x, y) = (edge.ink.0 + k * dx - side * dy, edge.ink.1 + k * dy + side * dx);
+        (f64::from(dark.get(x, y)) / full).min(1.0)
+    };
+    let fall = |side: isize| at(0, side) - at(1, side);
+    let slant = |k: isize| at(k, 1) - at(k, -1);
+    if 2.0 * (fall(-1) + 2.0 * fall(0) + fall(1)) < 1.2 * (slant(0) + slant(1)).abs() {
+        return None;
     }
-
-    /// Where the shape's edge crosses the line through the two pixels' centres; `None` where it runs along that
-    /// line and a neighbouring edge knows better.
-    ///
-    /// Each pixel's darkness is the share of it that is inked, so the sum from a full pixel to an empty one is how
-    /// far the ink reaches: exact for a straight edge, where interpolation between two pixels is off by up to
-    /// 0.08 px.
-    fn place(&self, dark: &Plane<u8>, full: f64) -> Option<Point> {
-        let (dx, dy) = (self.paper.0 - self.ink.0, self.paper.1 - self.ink.1);
-        let at = |k: isize, side: isize| {
-            let (x, y) = (self.ink.0 + k * dx - side * dy, self.ink.1 + k * dy + side * dx);
-            (f64::from(dark.get(x, y)) / full).min(1.0)
-        };
-        let fall = |side: isize| at(0, side) - at(1, side);
-        let slant = |k: isize| at(k, 1) - at(k, -1);
-        if 2.0 * (fall(-1) + 2.0 * fall(0) + fall(1)) < 1.2 * (slant(0) + slant(1)).abs() {
-            return None;
-        }
-        // inside: WINDOW pixels that would all be full; outside: as many that would all be empty
-        let inside = covered(true, |k| at(-k, 0));
-        let outside = covered(false, |k| at(k + 1, 0));
-        let reach = inside + outside - WINDOW as f64;
-        let centre = Point::new(self.ink.0 as f64 + 0.5, self.ink.1 as f64 + 0.5);
-        let share = reach.clamp(-1.5, 1.5) + 0.5;
-        Some(Point::new(centre.x + share * dx as f64, centre.y + share * dy as f64))
-    }
+    // inside: WINDOW pixels that would all be full; outside: as many that would all be empty
+    let inside = covered(true, |k| at(-k, 0));
+    let outside = covered(false, |k| at(k + 1, 0));
+    let reach = inside + outside - WINDOW as f64;
+    let centre = Point::new(edge.ink.0 as f64 + 0.5, edge.ink.1 as f64 + 0.5);
+    let share = reach.clamp(-1.5, 1.5) + 0.5;
+    Some(Point::new(centre.x + share * dx as f64, centre.y + share * dy as f64))
 }
 
 /// Pixels either way of an edge whose darkness counts.
@@ -147,47 +127,12 @@ fn covered(rising: bool, share: impl Fn(isize) -> f64) -> f64 {
     sum
 }
 
-/// The edges of a border in order, ink on the right, from the left edge of ink pixel (x, y) upwards until there
-/// again (crack following: Rosenfeld, "Connectivity in digital pictures", 1970). Ink joined at corners stays joined.
-pub(crate) fn border(mask: &Mask, x: isize, y: isize, walked: &mut Mask) -> Vec<Edge> {
-    const UP: usize = 3;
-    let ink = |p: (isize, isize)| mask.get(p.0, p.1);
-    let start = ((x, y), UP);
-    let (mut pixel, mut direction) = start;
-    let mut edges = Vec::new();
-    loop {
-        let (ahead, left) = (STEPS[direction], STEPS[(direction + 3) % 4]);
-        let paper = (pixel.0 + left.0, pixel.1 + left.1);
-        edges.push(Edge { ink: pixel, paper });
-        if direction == UP {
-            walked.set(mask.cell(pixel.0 as usize, pixel.1 as usize));
-        }
-        let beyond = (paper.0 + ahead.0, paper.1 + ahead.1);
-        let before = (pixel.0 + ahead.0, pixel.1 + ahead.1);
-        (pixel, direction) = if ink(beyond) {
-            (beyond, (direction + 3) % 4)
-        } else if ink(before) {
-            (before, direction)
-        } else {
-            (pixel, (direction + 1) % 4)
-        };
-        if (pixel, direction) == start {
-            return edges;
-        }
-    }
-}
-
-/// Signed area of a polygon: positive if it is clockwise as seen.
-pub(crate) fn area(points: &[Point]) -> f64 {
-    let next = points.iter().skip(1).chain(points.first());
-    0.5 * points.iter().zip(next).map(|(a, b)| a.to_vec2().cross(b.to_vec2())).sum::<f64>()
-}
-
 #[cfg(test)]
 mod tests {
+    use tracelight_image::regions;
+    use tracelight_image::threshold::over;
+
     use super::*;
-    use crate::region::regions;
-    use crate::threshold::over;
 
     fn traced(width: usize, height: usize, darkness: impl Fn(f64, f64) -> f64) -> Vec<Stroke> {
         let level = |i: usize| {

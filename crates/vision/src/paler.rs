@@ -4,12 +4,11 @@
 //! pen's blur is ink. A line ends where it is half as dark as in its middle: what is joined to ink is ink as far as that. And what is
 //! beyond the reach of the first ink's blur is looked at by itself: what stands out from the paper there is the second ink.
 
-use crate::levels::{histogram, percentile, sampled_blocks};
-use crate::mask::{Cell, Mask};
+use tracelight_image::levels::{histogram, percentile, sampled_blocks};
+use tracelight_image::threshold::over;
+use tracelight_image::{Cell, Mask, Plane, Region, any_spans, regions};
+
 use crate::parts::SOLID_SHARE;
-use crate::plane::Plane;
-use crate::region::{Region, any_spans, regions};
-use crate::threshold::over;
 
 /// Ink is at least this much darker than the paper about it, as a share of the first ink: the middle of the edge of a
 /// pencil of 28 %.
@@ -175,7 +174,7 @@ fn is_drawn(region: &Region, solid: &Mask) -> bool {
     let at_border = region.at_border_px(solid);
     let is_shadow = || at_border > 0 && region.cells(solid).next().is_some();
     let fades = at_border as f64 > ALONG_BORDER * length as f64;
-    length >= LEAST_PX.max(solid.height / LEAST_ROWS) && !fades && !is_shadow()
+    length >= LEAST_PX.max(solid.height() / LEAST_ROWS) && !fades && !is_shadow()
 }
 
 /// How what may be a second ink ends.

@@ -4,16 +4,15 @@
 //! for its own width is a line, and its middle is meant. A patch can hold both: a drawing of lines with hair filled in,
 //! a disc with a stick that ends on its outline.
 
+use tracelight_image::median::median;
+use tracelight_image::{Mask, Plane, Region, mask_of, regions};
+
 use crate::dust::{Dust, dusted};
 use crate::felt;
 use crate::graph::{Graph, Skeleton};
 use crate::hub::hubs;
-use crate::mask::Mask;
-use crate::plane::Plane;
 use crate::prune;
 use crate::reading::{LONG_LINE, Patch, Reading, pen_of};
-use crate::region::{Region, mask_of, regions};
-use crate::ridge::median;
 use crate::thin;
 
 /// No pen's lines, nor two of them where they cross, hold an upright square of this share of the picture's shorter
@@ -59,7 +58,7 @@ impl Parts {
     /// Every patch as lines.
     pub(crate) fn all_lines(dark: &Plane<u8>, ink: Mask, regions: Vec<Region>) -> Self {
         let lines = graphs(dark, &ink, regions);
-        let shape_mask = Mask::empty(ink.width, ink.height);
+        let shape_mask = Mask::empty(ink.width(), ink.height());
         Self { ink, lines, shapes: Vec::new(), shape_mask, dust: Vec::new() }
     }
 
@@ -82,7 +81,7 @@ impl Parts {
             Dust::Dropped => dusted(dark, &ink, patches, pen, None),
             Dust::DroppedOnRules(rules) => dusted(dark, &ink, patches, pen, Some(rules)),
         };
-        let shape_mask = Mask::empty(ink.width, ink.height);
+        let shape_mask = Mask::empty(ink.width(), ink.height());
         let mut sorter = Sorter { dark, pen, lines: Vec::new(), shape_mask };
         sorter.sort(patches);
         let Sorter { lines, mut shape_mask, .. } = sorter;
@@ -172,15 +171,13 @@ fn usual_pen(patches: &[Patch], is_drawing: impl Fn(&Patch) -> bool) -> f64 {
     pen_of(&lines)
 }
 
-impl Region {
-    /// Whether a piece touches what it lies beside with its ends only. A sliver, which octagons leave along a slanted
-    /// edge, touches it all along.
-    fn leads_away(&self, beside: &Mask, graph: &Graph) -> bool {
-        let width = 2.0 * graph.widest();
-        let touching = self.cells(beside).count() as f64;
-        // two rows of pixels at either end
-        touching <= 4.0 * width + 0.25 * graph.length()
-    }
+/// Whether a piece touches what it lies beside with its ends only. A sliver, which octagons leave along a slanted
+/// edge, touches it all along.
+fn leads_away(piece: &Patch, beside: &Mask) -> bool {
+    let width = 2.0 * piece.graph.widest();
+    let touching = piece.region.cells(beside).count() as f64;
+    // two rows of pixels at either end
+    touching <= 4.0 * width + 0.25 * piece.graph.length()
 }
 
 /// A crescent is filled if it is so much wider than the pen: a pen's own comma is hardly wider.
@@ -260,7 +257,7 @@ impl Sorter<'_> {
         let inner = mask_of(&self.shape_mask, mixed.iter().map(|patch| &patch.region)).opened(width);
         self.part(mixed, inner, width, |piece, beside| {
             let is_line = piece.is_pure_line(pen) && piece.graph.is_line_beside(pen);
-            is_line && piece.region.leads_away(beside, &piece.graph)
+            is_line && leads_away(piece, beside)
         });
     }
 

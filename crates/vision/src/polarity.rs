@@ -1,10 +1,10 @@
 //! Dark lines on light paper, or light ones on dark.
 
-use crate::levels::percentile;
-use crate::plane::Plane;
-use crate::ridge::median;
-use crate::smooth::noise;
-use crate::tones::Tones;
+use tracelight_image::Plane;
+use tracelight_image::levels::percentile;
+use tracelight_image::median::median;
+use tracelight_image::smooth::noise;
+use tracelight_sheet::TwoTones;
 
 /// A fall and a rise of brightness count from this share of the picture's range on.
 const STEP: f64 = 0.22;
@@ -51,7 +51,7 @@ pub(crate) fn is_light_on_dark(image: &Plane<u8>, levels: &[u32; 256], is_light_
         let border = border_levels(image, times * thin);
         border.iter().filter(|&&level| is_light(level)).count() as f64 / border.len() as f64
     };
-    if let Some(tones) = Tones::of(levels) {
+    if let Some(tones) = TwoTones::of(levels) {
         let share = median(&INSIDE.map(|times| border(times, &|level| tones.is_bright(level))));
         if share.max(1.0 - share) >= BORDER {
             return share < 0.5;
@@ -191,8 +191,9 @@ fn border_levels(image: &Plane<u8>, inside: usize) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::levels::sampled_histogram;
+
     use super::*;
-    use crate::levels::sampled_histogram;
 
     fn check(light_on_dark: bool, level: impl Fn(usize, usize) -> u8) {
         let image = |invert: bool| {

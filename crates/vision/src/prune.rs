@@ -3,13 +3,13 @@
 //! A spur between two lines is where both run together, up to the corner's point or the hairpin's turn, or it is a third
 //! line. A point goes; where the turn of a hairpin is, the two sides are told.
 
+use tracelight_image::Plane;
+use tracelight_image::median::median;
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::{angle, from_end};
 use crate::crumbs;
 use crate::graph::{Branch, Graph, Node, TurnTip};
-use crate::plane::Plane;
-use crate::ridge::median;
 
 /// Removes spurs, shortest first, and joins what they parted, until none is left.
 pub(crate) fn prune(graph: &mut Graph, dark: &Plane<u8>) {

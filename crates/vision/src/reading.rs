@@ -3,10 +3,10 @@
 //! A line is long for its own width, and changes it slowly; a shape is wide where the way through it is short. Neither
 //! needs a pen that is the same all over the picture: a brush swells, felt pen and pencil lie on one sheet.
 
+use tracelight_image::Region;
 use tracelight_stroke::polyline_length;
 
 use crate::graph::{Branch, Graph};
-use crate::region::Region;
 
 /// A line is at least this many of its own widths long, away from the ink of its junctions.
 const LONG: f64 = 3.0;

@@ -4,18 +4,17 @@
 //! further from every row than its pen reaches was drawn by somebody. What is left of a patch without the ink of its rows
 //! is thinned and followed as a patch of its own, and its ends are carried on to the rows that they touch.
 
+use tracelight_image::distance::to_paper;
+use tracelight_image::median::median;
+use tracelight_image::{Mask, Plane, Region, regions};
 use tracelight_stroke::{Point, polyline_length};
 
 use crate::bridge::inked_towards;
 use crate::centreline;
-use crate::distance::{WIDEST_RADIUS, to_paper};
-use crate::mask::Mask;
+use crate::graph::WIDEST_RADIUS;
 use crate::missed;
 use crate::near::Near;
 use crate::parts::graphs;
-use crate::plane::Plane;
-use crate::region::{Region, regions};
-use crate::ridge::median;
 use crate::row::Row;
 
 /// A row's own ink reaches so far from it, in half widths of its ink there, or of its pen, and px of blur.
@@ -169,8 +168,9 @@ fn painted(like: &Plane<u8>, rows: &[Row], reach: impl Fn(&Row, Point) -> f64) -
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::threshold::over;
+
     use super::*;
-    use crate::threshold::over;
 
     /// A line 6 px wide along y = 50, with a stub so long and wide below it at x = 80, and what is made of the line alone.
     fn beside(length: usize, width: usize) -> Vec<Row> {

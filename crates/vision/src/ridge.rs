@@ -4,9 +4,9 @@
 //! its edges (sampling by pixel areas keeps first moments; Steger, "An unbiased detector of curvilinear structures",
 //! 1998, discusses the others). That needs neither the threshold nor the skeleton to be right to a pixel.
 
+use tracelight_image::Plane;
+use tracelight_image::median::{median, middle};
 use tracelight_stroke::{Point, Vec2};
-
-use crate::plane::Plane;
 
 /// Distance of the samples across a hair line, px; across a thick one a tenth of it.
 const STEP: f64 = 0.5;
@@ -234,17 +234,6 @@ fn bound(usual: f64) -> f64 {
 /// The places parted where more than two in a row are missing.
 fn rows(places: &[Place], stride: usize) -> impl Iterator<Item = &[Place]> {
     places.chunk_by(move |a, b| b.index - a.index <= GAP * stride)
-}
-
-/// The middle value; 0 of none.
-pub(crate) fn median(values: &[f64]) -> f64 {
-    middle(values.to_vec()).unwrap_or(0.0)
-}
-
-/// The middle value; `None` of none.
-pub(crate) fn middle(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// Unit normal of a row of points at one of them, from means of up to `reach` points either side.

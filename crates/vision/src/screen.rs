@@ -5,11 +5,11 @@
 
 use std::collections::HashMap;
 
-use crate::levels::{percentile, sampled_blocks, sampled_histogram};
-use crate::plane::Plane;
-use crate::region::{Region, Run, regions};
-use crate::threshold::over;
-use crate::{Grey, VisionError};
+use tracelight_image::levels::{percentile, sampled_blocks, sampled_histogram};
+use tracelight_image::threshold::over;
+use tracelight_image::{Grey, Plane, Region, Run, regions};
+
+use crate::{VisionError, coarse};
 
 /// So many tones with so much edge, shorter sides of the picture, are a screen's; of 270 icons and pictures that programs drew 3 % have
 /// as much, of 230 drawings, plans and sketches none.
@@ -54,9 +54,9 @@ const SPECKS: f64 = 0.002;
 
 /// Refuses what shows a screen; so many patches of ink are in it.
 pub(crate) fn check(picture: &Grey, patches: usize) -> Result<(), VisionError> {
-    let plane = &picture.plane;
+    let plane = picture.plane();
     // a picture so large that its pixels are averaged is no screen's
-    if patches < LEAST_PATCHES || picture.reduction() > 1 || evenness(plane) < LEAST_EVEN {
+    if patches < LEAST_PATCHES || coarse::reduction(picture) > 1 || evenness(plane) < LEAST_EVEN {
         return Ok(());
     }
     let (tones, edge) = tones(plane);
@@ -297,7 +297,7 @@ mod tests {
     }
 
     fn told(plane: Plane<u8>, options: &Options) -> Result<(), VisionError> {
-        trace(&Grey { plane }, options).map(|_| ())
+        trace(&Grey::of_part(plane), options).map(|_| ())
     }
 
     #[test]
@@ -349,9 +349,12 @@ mod tests {
         }
         assert_eq!([discs, slants, shades].map(|plane| tones(&plane).0), [0; 3]);
         // blurred by a camera they are none either
-        let blurred = crate::smooth::smoothed(&panes(255, &WINDOW));
+        let blurred = tracelight_image::smooth::smoothed(&panes(255, &WINDOW));
         assert!(tones(&blurred).0 >= TONES, "one row between two areas is still an edge");
-        assert_eq!(tones(&crate::smooth::smoothed(&crate::smooth::smoothed(&blurred))).0, 0);
+        assert_eq!(
+            tones(&tracelight_image::smooth::smoothed(&tracelight_image::smooth::smoothed(&blurred))).0,
+            0
+        );
     }
 
     #[test]

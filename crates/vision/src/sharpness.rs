@@ -1,9 +1,8 @@
 //! How sharp a picture's edges are.
 
-use crate::plane::Plane;
-use crate::region::ink_runs;
-use crate::ridge::median;
-use crate::threshold::word_over;
+use tracelight_image::median::median;
+use tracelight_image::threshold::word_over;
+use tracelight_image::{Plane, ink_runs};
 
 /// Rows, and columns, that are looked at: of 720 rows every fifteenth crosses each longer stroke, in 0.1 ms.
 const LINES: usize = 48;

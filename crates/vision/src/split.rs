@@ -1,11 +1,12 @@
 //! A histogram cut in two: paper and ink.
 
+use tracelight_image::Plane;
+use tracelight_image::levels::{histogram, percentile};
+use tracelight_image::smooth::SMOOTHED;
+
 use crate::VisionError;
-use crate::levels::{histogram, percentile};
-use crate::plane::Plane;
 use crate::quality::GOOD_CONTRAST_PERCENT;
 use crate::sharpness::{self, Step};
-use crate::smooth::SMOOTHED;
 
 /// The level that a two-thousandth of all pixels exceed: more than specks of dust cover, and less than any drawing.
 pub(crate) fn strongest(histogram: &[u32; 256]) -> f64 {

@@ -1,6 +1,8 @@
+use tracelight_sheet::Page;
+
+use crate::VisionError;
 use crate::options::Options;
 use crate::seen::Seen;
-use crate::{Page, VisionError};
 
 /// What an image is on its way to strokes.
 #[derive(Clone, Debug)]
@@ -46,8 +48,9 @@ impl Stages {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::Grey;
+
     use super::*;
-    use crate::Grey;
 
     #[test]
     fn stages_of_a_line_are_its_own() {

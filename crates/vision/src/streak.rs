@@ -3,11 +3,9 @@
 //! It lies between two edges as dark as ink that are no further apart than a line of the picture is wide, and it is no paper. Two lines
 //! beside each other are wider together than each of them.
 
-use crate::distance::to_paper;
-use crate::mask::Mask;
-use crate::plane::Plane;
-use crate::region::{Region, regions};
-use crate::threshold::over;
+use tracelight_image::distance::to_paper;
+use tracelight_image::threshold::over;
+use tracelight_image::{Mask, Plane, Region, regions};
 
 /// A streak is darker than this share of the ink.
 const LEAST_DARK: f64 = 0.2;

@@ -1,9 +1,9 @@
 //! The original report's tracer, kept for comparison: one closed figure, walked in steps of 5 px.
 
+use tracelight_image::Mask;
 use tracelight_stroke::{Path, Point, Stroke, Vec2};
 
 use crate::VisionError;
-use crate::mask::Mask;
 
 /// Length of a step, px: the report's.
 const RADIUS_PX: f64 = 5.0;

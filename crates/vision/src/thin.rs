@@ -1,6 +1,6 @@
 //! Thinning: from a patch of ink to a line one pixel wide.
 
-use crate::mask::{Cell, Mask};
+use tracelight_image::{Cell, Mask};
 
 /// Thins ink to lines one pixel wide that hang together as the ink did.
 ///

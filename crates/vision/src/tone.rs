@@ -4,12 +4,13 @@
 //! beside them it is neither light nor dark: their edges fade. Neither says it alone: a sheet of notes has a shadow, pencils
 //! fade, a silhouette is broad.
 
+use tracelight_image::Mask;
+use tracelight_image::levels::sampled_blocks;
+use tracelight_image::threshold::word_over;
+
 use crate::VisionError;
 use crate::ink::Ink;
-use crate::levels::sampled_blocks;
-use crate::mask::Mask;
 use crate::quality::GOOD_CLIPPED_PERCENT;
-use crate::threshold::word_over;
 
 /// Most of a drawing that may be broad and fade, %. Of 326 photographs of other things 97 % have more, or are refused for other
 /// reasons; of 340 drawings (scans, photographs of paper and whiteboards, sketches, plans, pictures of the bench) 1 %.
@@ -70,8 +71,10 @@ pub(crate) fn check(tone_percent: f64) -> Result<(), VisionError> {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_image::Grey;
+
     use crate::options::{Mode, Options};
-    use crate::{Grey, VisionError, trace};
+    use crate::{VisionError, trace};
 
     const WIDTH: usize = 320;
 

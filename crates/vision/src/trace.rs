@@ -1,3 +1,5 @@
+use tracelight_image::{Grey, Mask, Region, pinholes, regions};
+use tracelight_sheet::Page;
 use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, polyline_length};
 
 use crate::centreline;
@@ -9,15 +11,13 @@ use crate::dust::Dust;
 use crate::graph::Graph;
 use crate::ink::Ink;
 use crate::inside::inside;
-use crate::mask::Mask;
 use crate::options::{Mode, Options};
 use crate::outline::Outliner;
 use crate::parts::Parts;
-use crate::region::{Region, pinholes, regions};
 use crate::row::Row;
 use crate::seen::Seen;
 use crate::twice::{self, Once};
-use crate::{Grey, Page, Quality, VisionError, closer, gap, missed, on_ink, rest, screen, sweep, tone};
+use crate::{Quality, VisionError, closer, gap, missed, on_ink, rest, screen, sweep, tone};
 
 /// What an image draws.
 #[derive(Clone, Debug, PartialEq)]
@@ -260,7 +260,7 @@ impl Patches {
 
     /// Takes the dots of dotted paper out; a picture of nothing else means them.
     fn take_dots(&mut self, mask: &mut Mask) -> Option<Dotted> {
-        let dotted = dots::of_paper(&self.drawn, &self.specks, (mask.width, mask.height));
+        let dotted = dots::of_paper(&self.drawn, &self.specks, (mask.width(), mask.height()));
         let dotted = dotted.filter(|dotted| dotted.is_dot.contains(&false))?;
         let mut is_dot = dotted.is_dot.iter();
         self.drawn.retain(|region| {
@@ -357,7 +357,7 @@ fn lines_and_shapes(ink: &Ink, mut mask: Mask, mut patches: Patches, options: &O
     let known: Vec<Stroke> = known.filter_map(centreline::unfitted).collect();
     let counts = missed::counts(mask, &lined, strokes.iter().chain(&known));
     let (mut missed, mut all) = (0, 0);
-    let mut lost_ink = Mask::empty(mask.width, mask.height);
+    let mut lost_ink = Mask::empty(mask.width(), mask.height());
     for (region, (area, lost)) in lined.iter().zip(counts) {
         all += area;
         match missed::is_none_of_lines(lost, area) {

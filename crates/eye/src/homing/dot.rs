@@ -1,10 +1,11 @@
 //! A dot of light, and whether the camera sees it.
 
+use tracelight_image::Grey;
+use tracelight_markers::{SpotLost, SpotWindow, find_spot};
 use tracelight_rig::Command;
 use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
 use tracelight_task::Failure;
-use tracelight_vision::{Grey, SpotLost, SpotWindow, find_spot};
 
 use super::Homing;
 use crate::spots::{Light, WHOLE};

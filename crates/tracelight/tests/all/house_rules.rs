@@ -37,7 +37,7 @@ fn line_complaint(line: &str) -> Option<String> {
 }
 
 /// Every `.rs` file below a folder.
-fn sources(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn sources(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     let paths = entries.map(|entry| entry.unwrap().path());
     let of = |path: PathBuf| match path.is_dir() {

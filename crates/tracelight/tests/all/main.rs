@@ -24,4 +24,5 @@ mod preview;
 mod quality;
 mod reproduce;
 mod simulate;
+mod sizes;
 mod support;

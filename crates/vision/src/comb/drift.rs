@@ -1,10 +1,12 @@
 //! By how much each rule is off the law of its family: a page bends in more ways than a law knows, but from rule to rule hardly, and
 //! writing on a rule looks like a part of it that lies elsewhere.
 
-use super::family::{Law, is_alike};
+use tracelight_image::median::middle;
+use tracelight_image::solve::line;
+
+use super::chain::is_alike;
+use super::law::Law;
 use super::strips::{Strip, Strips};
-use crate::ridge::middle;
-use crate::solve::line;
 
 /// From rule to rule a page bends by no more than this share of the spacing, or so many px, than it did before.
 const NEAR: f64 = 0.025;

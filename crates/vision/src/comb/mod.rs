@@ -2,12 +2,15 @@
 //!
 //! Printed rules are thin, straight but for the page's own bend, parallel, equally spaced, of one darkness, and run from border to border
 //! all over the page; a drawing's lines rarely do one of these things and never all. On a sheet laid square (`paper`) `strips` finds thin lines in narrow strips
-//! across the page, `track` follows them over it, `family` asks of those whether they are rules, and by how much each of them `drift`s off their law, `template` learns what each looks
+//! across the page, `track` follows them over it, a `chain` is those of them that follow each other at equal distances, a `family` those that are rules: they keep to a `law`, but for how much each of them `drift`s off it; `template` learns what each looks
 //! like, `wipe` takes it off and leaves what is drawn over it; what was `taken` off may have left something where it lay.
 
+mod chain;
 mod drift;
 mod family;
+mod law;
 mod paper;
+mod rules;
 mod runs;
 mod strips;
 mod taken;
@@ -15,52 +18,19 @@ mod template;
 mod track;
 mod wipe;
 
-pub(crate) use family::ratio;
+pub(crate) use chain::ratio;
 use family::{Ends, Family};
 pub(crate) use paper::Lie;
 use paper::{Laid, Paper};
+pub use rules::{Comb, Rules};
 use strips::Strips;
 pub(crate) use taken::TakenOff;
 use template::Template;
 use track::{Track, tracks};
 use wipe::{Levels, wipe};
 
-use crate::plane::Plane;
-use crate::region::regions;
-use crate::threshold::over;
-
-/// Rules of paper that were taken out of an image.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Rules {
-    /// One for ruled paper, two for squared.
-    pub combs: Vec<Comb>,
-}
-
-impl Rules {
-    /// In pixels of another size.
-    pub(crate) fn scaled(mut self, by: f64) -> Self {
-        for comb in &mut self.combs {
-            comb.spacing_px *= by;
-            comb.width_px *= by;
-        }
-        self
-    }
-}
-
-/// Parallel rules.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Comb {
-    /// How many.
-    pub count: usize,
-    /// From one's middle to the next one's, px.
-    pub spacing_px: f64,
-    /// Their width where they are half as dark as at their darkest, px.
-    pub width_px: f64,
-    /// Whether they lead from top to bottom, or from left to right.
-    pub upright: bool,
-    /// How far they are turned from that, counter-clockwise as seen, rad.
-    pub turned_rad: f64,
-}
+use tracelight_image::threshold::over;
+use tracelight_image::{Plane, regions};
 
 /// Most families of rules in one direction.
 const MOST_FAMILIES: usize = 3;
@@ -87,7 +57,7 @@ pub(crate) fn without_rules(
         return None;
     }
     let sides = [Strips::of_level(&seen, noise, papers[0]), Strips::of_upright(&seen, noise, papers[1])];
-    if !sides.iter().any(|strips| strips.are_crossed_by(family::FEWEST - 1)) {
+    if !sides.iter().any(|strips| strips.are_crossed_by(chain::FEWEST - 1)) {
         return None;
     }
     let [level, upright] = sides.map(Side::of);
@@ -340,7 +310,7 @@ impl Printed {
 /// side.
 fn continue_over(plane: &mut Plane<u8>, centre: &[f32], width: f64) {
     let (columns, last) = (plane.width, plane.height - 1);
-    let on_border = |at: f32| at.abs().min((at - last as f32).abs()) <= family::CUT_PX as f32;
+    let on_border = |at: f32| at.abs().min((at - last as f32).abs()) <= law::CUT_PX as f32;
     for (x, &at) in centre.iter().enumerate().filter(|(_, at)| on_border(**at)) {
         let reach = (width as f32 + 1.5).ceil();
         let is_upper = at < 0.5 * last as f32;

@@ -3,11 +3,8 @@
 
 use std::borrow::Cow;
 
+use tracelight_image::{Mask, Plane, Projection};
 use tracelight_stroke::{Point, Vec2};
-
-use crate::mask::Mask;
-use crate::plane::Plane;
-use crate::projection::Projection;
 
 /// How a sheet lies in a picture.
 #[derive(Clone, Copy, Debug)]

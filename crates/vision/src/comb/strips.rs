@@ -1,7 +1,8 @@
 //! Where thin dark lines cross narrow strips of a plane.
 
+use tracelight_image::Plane;
+
 use super::paper::Paper;
-use crate::plane::Plane;
 
 /// Strips beside those at the two borders.
 const INNER: usize = 32;

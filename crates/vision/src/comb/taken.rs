@@ -1,13 +1,11 @@
 //! Where rules lay that were taken off, and what they left there.
 
+use tracelight_image::threshold::over;
+use tracelight_image::{Mask, Plane, Region};
 use tracelight_stroke::{Point, polyline_length};
 
-use super::Rules;
+use super::rules::Rules;
 use super::wipe::Levels;
-use crate::mask::Mask;
-use crate::plane::Plane;
-use crate::region::Region;
-use crate::threshold::over;
 
 /// Share of a patch of ink, and of a line, that lies where rules lay, if they left it.
 const PATCH: f64 = 0.6;
@@ -67,7 +65,7 @@ impl TakenOff {
 
     /// The same of a plane of four pixels for each.
     pub(crate) fn doubled(self) -> Self {
-        let twice = |mask: Mask| mask.doubled_to(2 * mask.width, 2 * mask.height);
+        let twice = |mask: Mask| mask.doubled_to(2 * mask.width(), 2 * mask.height());
         let [level, upright] =
             [self.level, self.upright].map(|lay| Lay { far: twice(lay.far), near: twice(lay.near) });
         Self { rules: self.rules.scaled(2.0), level, upright }
@@ -112,7 +110,7 @@ fn share_on(points: &[Point], mask: &Mask) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Comb;
+    use super::super::rules::Comb;
     use super::*;
 
     /// A rule of level 80, two px wide, along row 20; from column 60 on there is ink of level 200 on it.

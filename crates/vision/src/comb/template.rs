@@ -1,6 +1,6 @@
 //! What a rule looks like across, and how dark it is along.
 
-use crate::plane::Plane;
+use tracelight_image::Plane;
 
 /// Bins a pixel of a rule's template.
 const BINS: f32 = 2.0;

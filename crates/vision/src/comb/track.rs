@@ -1,7 +1,8 @@
 //! Thin lines followed from strip to strip, right across the page.
 
+use tracelight_image::solve;
+
 use super::strips::{Peak, Strip, Strips};
-use crate::solve;
 
 /// Steepest rule beside the sheet's sides: 6.5°, as its tangent.
 const STEEPEST: f64 = 0.114;

@@ -4,9 +4,10 @@
 //! just beside the rule tell: what leaves the rule on one side is matched with what leaves it on the other where its slope leads,
 //! and its cross-section is carried from the one to the other.
 
+use tracelight_image::Plane;
+
 use super::runs::{Run, pairs, runs};
 use super::template::{Template, bridged};
-use crate::plane::Plane;
 
 /// Levels by which ink differs at least from what it lies on.
 const LEAST_LEVELS: f32 = 8.0;

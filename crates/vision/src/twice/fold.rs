@@ -1,8 +1,9 @@
 //! A pencil that turns at a line's end and goes back beside it.
 
+use tracelight_image::Plane;
+
 use super::{APART_PENS, ENDS, Sketch, is_beside, places, ways};
 use crate::near::Near;
-use crate::plane::Plane;
 use crate::row::Row;
 
 /// The rows of which those that turn back beside themselves end where they turn.

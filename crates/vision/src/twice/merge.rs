@@ -1,10 +1,10 @@
 //! How two passes become one line.
 
+use tracelight_image::Plane;
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use super::pencil::strength;
 use super::{Run, ways};
-use crate::plane::Plane;
 use crate::row::Row;
 
 impl Run {

@@ -6,12 +6,12 @@
 //! lines beside each other, at a few degrees too, are two. A sketch shows by its lines, which are darker here and paler there, along
 //! their way and one beside the other. Hatches, of which a third one is beside, stay.
 
+use tracelight_image::Plane;
+use tracelight_image::median::median;
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::line::parted;
 use crate::near::Near;
-use crate::plane::Plane;
-use crate::ridge::median;
 use crate::row::Row;
 
 mod fold;

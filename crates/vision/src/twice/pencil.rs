@@ -1,10 +1,10 @@
 //! Whether lines are a pencil's sketch.
 
+use tracelight_image::Plane;
+use tracelight_image::median::median;
 use tracelight_stroke::polyline_length;
 
 use super::{places, way_at};
-use crate::plane::Plane;
-use crate::ridge::median;
 use crate::row::Row;
 
 /// Along a pencil's line its middle varies by more than this share of its usual darkness, and so does all that a cut across it has; from

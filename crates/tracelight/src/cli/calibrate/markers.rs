@@ -7,6 +7,7 @@ use tracelight_eye::grey;
 use tracelight_eye::room::{Furnished, RoomRequest};
 use tracelight_eye::wall::{doubts, markers, well_exposed};
 use tracelight_files as files;
+use tracelight_image::Grey;
 use tracelight_picture as picture;
 use tracelight_pipeline::{DEFAULT_DISTANCE_M, Placing};
 use tracelight_rigfile as rigfile;
@@ -16,7 +17,6 @@ use tracelight_sim::RigConfig;
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::Length;
-use tracelight_vision::Grey;
 
 use crate::cli::eyes::{ImageSize, SimulatedEyeName};
 use crate::cli::placing::positive_length;
