@@ -1,6 +1,5 @@
 //! Light from levels, and less noise on it.
 
-use std::ops::Range;
 use std::sync::LazyLock;
 
 use tracelight_image::Plane;
@@ -21,38 +20,48 @@ pub(crate) enum Border {
     GoesOn,
 }
 
-impl Border {
-    /// Which of so many values are smoothed.
-    const fn smoothed(self, count: usize) -> Range<usize> {
-        match self {
-            Self::Stays => 1..count.saturating_sub(1),
-            Self::GoesOn => 0..count,
+/// Each value with its neighbours by 1 2 1, across and down.
+pub(crate) fn smooth(light: &mut Plane<f32>, border: Border) {
+    let (width, height) = (light.width, light.height);
+    light.values.chunks_exact_mut(width.max(1)).for_each(|row| smooth_row(row, border));
+    let rows = match border {
+        Border::Stays => 1..height.saturating_sub(1),
+        Border::GoesOn => 0..height,
+    };
+    let mut above = light.values.get(..width).unwrap_or(&[]).to_vec();
+    for y in rows {
+        let (row, below) = light.values[y * width..].split_at_mut(width);
+        match below.get(..width) {
+            Some(below) => smooth_down(row, &mut above, below),
+            None => {
+                let beyond = row.to_vec();
+                smooth_down(row, &mut above, &beyond);
+            }
         }
     }
 }
 
-/// Each value with its neighbours by 1 2 1, across and down.
-pub(crate) fn smooth(light: &mut Plane<f32>, border: Border) {
-    let width = light.width;
-    for row in light.values.chunks_exact_mut(width.max(1)) {
-        let mut before = row.first().copied().unwrap_or(0.0);
-        for x in border.smoothed(width) {
-            let own = row[x];
-            row[x] = 0.25 * (before + row[(x + 1).min(width - 1)]) + 0.5 * own;
-            before = own;
-        }
+fn smooth_row(row: &mut [f32], border: Border) {
+    let (Some(&first), Some(&last)) = (row.first(), row.last()) else { return };
+    let (second, end) = (row.get(1).copied().unwrap_or(first), row.len() - 1);
+    let mut before = first;
+    for x in 1..end {
+        let own = row[x];
+        row[x] = 0.25 * (before + row[x + 1]) + 0.5 * own;
+        before = own;
     }
-    let mut before = light.values.get(..width).unwrap_or(&[]).to_vec();
-    for y in border.smoothed(light.height) {
-        let (own, below) = light.values[y * width..].split_at_mut(width);
-        // beyond the last row there is itself again
-        let last = if below.is_empty() { own.to_vec() } else { Vec::new() };
-        let below = if below.is_empty() { &last } else { &below[..width] };
-        for ((own, before), below) in own.iter_mut().zip(&mut before).zip(below) {
-            let smooth = 0.25 * (*before + *below) + 0.5 * *own;
-            *before = *own;
-            *own = smooth;
-        }
+    if border == Border::GoesOn {
+        row[0] = 0.25 * (first + second) + 0.5 * first;
+        row[end] = 0.25 * (before + last) + 0.5 * last;
+    }
+}
+
+/// A row with the one above, as that was, and the one below; from then on it is the one above, as it was.
+fn smooth_down(row: &mut [f32], above: &mut [f32], below: &[f32]) {
+    for ((own, above), below) in row.iter_mut().zip(above).zip(below) {
+        let smooth = 0.25 * (*above + *below) + 0.5 * *own;
+        *above = *own;
+        *own = smooth;
     }
 }
 
