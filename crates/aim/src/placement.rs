@@ -1,3 +1,4 @@
+use tracelight_maths::planar;
 use tracelight_stroke::{Affine, Drawing, Vec2};
 
 /// The size a picture is asked to have on the target.
@@ -43,7 +44,7 @@ impl Placement {
         let centred = Affine::scale_non_uniform(scale, -scale)
             .then_translate(Vec2::new(-self.width_m / 2.0, self.height_m / 2.0));
         let flipped = if self.flip { centred.then_scale_non_uniform(-1.0, 1.0) } else { centred };
-        flipped.then_rotate(self.rotation_rad).then_translate(self.offset_m)
+        (planar::rotation(self.rotation_rad) * flipped).then_translate(self.offset_m)
     }
 
     /// A drawing in pixels put on the target, m.

@@ -1,5 +1,7 @@
 use std::sync::Arc;
 
+use tracelight_maths::erfc;
+
 use super::config::Sensor;
 use super::part::Part;
 use super::splitmix::{GOLDEN, mixed};
@@ -130,7 +132,7 @@ fn quantile(p: f64) -> f64 {
     let mut z = (p / (1.0 - p)).ln() / 1.702;
     for _ in 0..20 {
         let density = (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
-        let off = 0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2) - p;
+        let off = 0.5 * erfc(-z * std::f64::consts::FRAC_1_SQRT_2) - p;
         // half a deviation at most: far out the density is next to nothing
         z -= (off / density).clamp(-0.5, 0.5);
     }
