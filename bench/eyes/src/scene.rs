@@ -2,6 +2,7 @@ use std::fmt::Write;
 
 use tracelight_aim::{Board, Camera, CameraPose, Lens};
 use tracelight_markers::tag_cells;
+use tracelight_maths::planar;
 use tracelight_plant::{CameraConfig, Image, Lamp, Laser, Poster, SimulatedCamera, Wall};
 use tracelight_stroke::{Affine, Point, Vec2};
 
@@ -61,7 +62,7 @@ impl Scene {
             .iter()
             .map(|&(x, y)| {
                 let middle = Vec2::new(x + dice.between(-0.03, 0.03), y + dice.between(-0.02, 0.02));
-                Affine::rotate(1.57 + dice.between(-0.1, 0.1)).then_translate(middle)
+                planar::rotation(1.57 + dice.between(-0.1, 0.1)).then_translate(middle)
             })
             .collect();
         let posters = pages.iter().enumerate().map(|(page, place)| poster(board, page as u16, *place));

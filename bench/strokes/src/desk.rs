@@ -1,5 +1,6 @@
 //! A sheet on a table: what is seen beside it, over it and below it.
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Point, Rect, Vec2};
 
 use crate::grain::Grain;
@@ -80,7 +81,7 @@ impl Desk {
                 .then(|| (other_sheet(random, size), paper * random.between(0.86, 1.03))),
             table: Table::any(random, size, paper),
             shade: (
-                Vec2::from_angle(random.angle()) * (0.006 * rows * random.between(0.2, 1.0)),
+                planar::direction(random.angle()) * (0.006 * rows * random.between(0.2, 1.0)),
                 rows * random.log_between(0.004, 0.03),
                 random.between(0.1, 0.5),
             ),
@@ -139,7 +140,7 @@ fn sheet(random: &mut Random, size: Size) -> [Point; 4] {
 
 fn other_sheet(random: &mut Random, size: Size) -> [Point; 4] {
     let (w, h) = (size.width as f64, size.height as f64);
-    let turn = Vec2::from_angle(random.between(4.0, 20.0).to_radians() * random.sign());
+    let turn = planar::direction(random.between(4.0, 20.0).to_radians() * random.sign());
     let middle = Point::new(0.5 * w, 0.5 * h)
         + Vec2::new(random.between(-0.2, 0.2) * w, random.between(-0.2, 0.2) * h);
     [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(x, y): (f64, f64)| {
@@ -175,14 +176,14 @@ impl Table {
         let fine = (rows / 60.0).max(2.0) * random.between(0.4, 1.2);
         let cell = if wood { (14.0 * fine, fine) } else { (fine, fine) };
         let edge = random.chance(0.25).then(|| {
-            let out = Vec2::from_angle(random.angle());
+            let out = planar::direction(random.angle());
             let middle = Point::new(0.5 * size.width as f64, 0.5 * rows);
             (middle + out * (0.45 * rows), out, level * random.between(-0.6, -0.25))
         });
         Self {
             level,
             depth: level * random.between(0.03, if wood { 0.35 } else { 0.2 }),
-            along: Vec2::from_angle(random.angle()),
+            along: planar::direction(random.angle()),
             grain: Grain::new(random.bits(), cell),
             weave: (!wood && random.chance(0.5)).then(|| (rows / 90.0).max(3.0)),
             edge,
@@ -211,8 +212,8 @@ impl Finger {
             let (a, b): (Point, Point) = (corner[side].into(), corner[(side + 1) % 4].into());
             let from = a.lerp(b, random.between(0.1, 0.9));
             let inward = Point::new(0.5 * w, 0.5 * h) - from;
-            let turn = inward.atan2() + random.between(-0.4, 0.4);
-            let tip = from + Vec2::from_angle(turn) * (h * random.between(0.12, 0.28));
+            let turn = planar::heading(inward) + random.between(-0.4, 0.4);
+            let tip = from + planar::direction(turn) * (h * random.between(0.12, 0.28));
             let finger = Self {
                 from,
                 tip,

@@ -191,6 +191,8 @@ fn fill(plane: &mut Plane, outlines: &[Vec<Point>]) {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::planar;
+
     use super::*;
     use crate::shapes::{circle, line};
 
@@ -198,11 +200,11 @@ mod tests {
     fn across(ink: &Ink, angle: f64) -> (f64, f64) {
         let mut plane = Plane::filled(40, 40, 0.0);
         draw(&mut plane, ink, None);
-        let normal = Vec2::from_angle(angle + std::f64::consts::FRAC_PI_2);
+        let normal = planar::direction(angle + std::f64::consts::FRAC_PI_2);
         let (mut mass, mut moment, mut rows) = (0.0, 0.0, 0.0);
         for (i, &v) in plane.values.iter().enumerate() {
             let from = Point::new((i % 40) as f64 + 0.5, (i / 40) as f64 + 0.5) - Point::new(20.0, 20.0);
-            if from.dot(Vec2::from_angle(angle)).abs() < 10.0 {
+            if from.dot(planar::direction(angle)).abs() < 10.0 {
                 mass += f64::from(v);
                 moment += f64::from(v) * from.dot(normal);
                 rows += 1.0;
@@ -216,7 +218,7 @@ mod tests {
     fn a_line_lies_where_it_was_drawn_and_is_as_wide() {
         for degrees in [0, 10, 30, 45, 77, 90] {
             let angle = f64::from(degrees).to_radians();
-            let way = Vec2::from_angle(angle) * 18.0;
+            let way = planar::direction(angle) * 18.0;
             let middle = Point::new(20.0, 20.0) + Vec2::new(-way.y, way.x) * (0.3 / 18.0);
             for nib in [Nib::Round, Nib::Sharp] {
                 let ink = Ink::Line { path: line(middle - way, middle + way), pen: 3.0, nib };

@@ -20,6 +20,8 @@
 //! | [`mod@show`] | a picture with truth and strokes on it, to look at |
 //! | [`verdict`], [`table`] | one picture's score; many in a table |
 
+#![allow(clippy::disallowed_methods, reason = "a measurement may ask the C library: it keeps no results")]
+
 pub mod bounds;
 pub mod case;
 mod degradation;

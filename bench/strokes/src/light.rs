@@ -1,3 +1,4 @@
+use tracelight_maths::planar;
 use tracelight_stroke::Vec2;
 
 use crate::Random;
@@ -44,7 +45,7 @@ impl Pane {
         let from = Vec2::new(x - self.at.0 * width, y - self.at.1 * height);
         let sides = self.normals.iter().zip(self.across);
         let of = |(&normal, across): (&f64, f64)| {
-            let aside = from.dot(Vec2::from_angle(normal)).abs();
+            let aside = from.dot(planar::direction(normal)).abs();
             let into = ((0.5 * across * height - aside) / soft + 0.5).clamp(0.0, 1.0);
             into * into * (3.0 - 2.0 * into)
         };
@@ -67,7 +68,7 @@ impl Light {
             }
             Light::Shadow { through, normal, left, soft } => {
                 let from = Vec2::new(x - through.0 * width, y - through.1 * height);
-                let into = (from.dot(Vec2::from_angle(normal)) / soft + 0.5).clamp(0.0, 1.0);
+                let into = (from.dot(planar::direction(normal)) / soft + 0.5).clamp(0.0, 1.0);
                 1.0 - (1.0 - left) * into
             }
             Light::Pane { pane, inside, outside, soft } => {

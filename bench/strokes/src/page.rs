@@ -1,3 +1,4 @@
+use tracelight_maths::planar;
 use tracelight_stroke::{Affine, Point, Stroke, Vec2};
 
 use crate::habit::Habit;
@@ -102,7 +103,7 @@ fn one(
         let hand = Hand { size: half.max(habit.half_pens * hand.pen), ..hand };
         let figure = kind.figure(random, &hand);
         let turn = random.angle();
-        let figure = figure.moved(Affine::rotate(habit.turn(turn)));
+        let figure = figure.moved(planar::rotation(habit.turn(turn)));
         let (pen, bounds) = habit.bounds(&figure, &hand);
         if figure.strokes.is_empty() || broken_within(&figure, (pen, hand.paper), &bounds).is_some() {
             continue;

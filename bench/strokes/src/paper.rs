@@ -1,5 +1,6 @@
 //! Paper that is ruled, squared or dotted.
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Point, Stroke, Vec2};
 
 use crate::shapes::polyline;
@@ -57,7 +58,7 @@ impl Paper {
         Self {
             pattern,
             centre: Point::new(0.5 * size.width as f64, 0.5 * size.height as f64),
-            along: Vec2::from_angle(turn.to_radians()),
+            along: planar::direction(turn.to_radians()),
             // the border's middle is off by up to a fiftieth of the width
             bend: if bent { random.between(-1.0, 1.0) * 0.08 / size.width as f64 } else { 0.0 },
             pitch: pitch.max(LEAST_PITCH_PX).max(LEAST_PITCH_WIDTHS * width),

@@ -2,11 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use tracelight_stroke::{Element, Path, Point, Vec2};
+use tracelight_maths::planar;
+use tracelight_stroke::{Element, Path, Point};
 
 /// The point at an angle and a distance from another.
 pub(crate) fn polar(from: Point, angle: f64, distance: f64) -> Point {
-    from + Vec2::from_angle(angle) * distance
+    from + planar::direction(angle) * distance
 }
 
 /// A straight line.

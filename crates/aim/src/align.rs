@@ -1,6 +1,7 @@
 //! A head's pose, and how it is built, from spots that a camera saw.
 
 use nalgebra::DMatrix;
+use tracelight_maths::powi;
 use tracelight_rig::PanTilt;
 use tracelight_stroke::{Point, Vec2};
 
@@ -231,17 +232,17 @@ pub fn align(belief: &AlignmentBelief, spots: &[SeenSpot]) -> Result<Aligned, Al
     let times = |spot: &SeenSpot| off(spot) / (std::f64::consts::SQRT_2 * spot.deviation_m);
     let good: Vec<&SeenSpot> = spots.iter().filter(|spot| times(spot) < LOST).collect();
     let mean = |of: &dyn Fn(&SeenSpot) -> f64| {
-        (good.iter().map(|spot| of(spot).powi(2)).sum::<f64>() / good.len().max(1) as f64).sqrt()
+        (good.iter().map(|spot| powi(of(spot), 2)).sum::<f64>() / good.len().max(1) as f64).sqrt()
     };
     let rms_m = mean(&off);
     let misfit = mean(&times);
     if 2 * good.len() < spots.len() || misfit > MOST_MISFIT {
-        let all = spots.iter().map(|spot| off(spot).powi(2)).sum::<f64>() / spots.len() as f64;
+        let all = spots.iter().map(|spot| powi(off(spot), 2)).sum::<f64>() / spots.len() as f64;
         return Err(no_fit(all.sqrt()));
     }
     let covariance = normal.and_then(|normal: Normal| normal.covariance()).ok_or(no_fit(rms_m))?;
     // what scatters more than was told is known less well
-    let covariance = covariance * misfit.max(1.0).powi(2);
+    let covariance = covariance * powi(misfit.max(1.0), 2);
     Ok(Aligned {
         alignment: found,
         rms_m,

@@ -1,4 +1,5 @@
 use nalgebra::{Matrix2, Matrix3, Rotation3, Vector3};
+use tracelight_maths::atan2;
 use tracelight_stroke::{Affine, Point, Vec2};
 
 use crate::jet::Scalar;
@@ -51,7 +52,7 @@ impl CameraPose {
     #[must_use]
     pub fn in_frame(&self, frame_from_target: Affine) -> Self {
         let [a, b, _, _, x, y] = frame_from_target.as_coeffs();
-        let rotation = self.rotation * Rotation3::from_axis_angle(&Vector3::z_axis(), -b.atan2(a));
+        let rotation = self.rotation * Rotation3::from_axis_angle(&Vector3::z_axis(), -atan2(b, a));
         Self { rotation, translation_m: self.translation_m - rotation * Vector3::new(x, y, 0.0) }
     }
 
@@ -188,6 +189,8 @@ impl Camera {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::planar;
+
     use super::*;
 
     fn skew() -> Camera {
@@ -249,7 +252,7 @@ mod tests {
 
     #[test]
     fn in_another_frame_a_place_is_seen_at_the_same_pixel() {
-        let frame = Affine::rotate(0.7).then_translate(Vec2::new(0.3, -0.1));
+        let frame = planar::rotation(0.7).then_translate(Vec2::new(0.3, -0.1));
         let moved = Camera { pose: skew().pose.in_frame(frame), ..skew() };
         for at in [Point::ORIGIN, Point::new(0.2, -0.1)] {
             assert!(skew().pixel(at).unwrap().distance(moved.pixel(frame * at).unwrap()) < 1e-9);

@@ -1,5 +1,7 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+use tracelight_maths as maths;
+
 use crate::jet::Scalar;
 
 /// A number with its first derivatives by N parameters: forward-mode differentiation (Griewank & Walther, *Evaluating Derivatives*, §3.1).
@@ -65,7 +67,7 @@ impl<const N: usize> Scalar for Dual<N> {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        let (s, c) = self.value.sin_cos();
+        let (s, c) = maths::sin_cos(self.value);
         (Self { value: s, by: self.by.map(|d| c * d) }, Self { value: c, by: self.by.map(|d| -s * d) })
     }
 }

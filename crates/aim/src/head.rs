@@ -1,3 +1,4 @@
+use tracelight_maths::{atan2, hypot, sin_cos};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::{Point, Vec2};
 
@@ -130,7 +131,7 @@ impl HeadGeometry {
 
     /// The beam in the tilt body's frame.
     fn beam(&self) -> [f64; 3] {
-        let [(sl, cl), (sd, cd)] = self.beam_off_rad.map(f64::sin_cos);
+        let [(sl, cl), (sd, cd)] = self.beam_off_rad.map(sin_cos);
         [cl * cd, sl * cd, -sd]
     }
 
@@ -139,7 +140,7 @@ impl HeadGeometry {
         let (s1, c1) = angle.pan.sin_cos();
         let (s2, c2) = angle.tilt.sin_cos();
         let square = self.axis_skew_rad == 0.0;
-        let (skew_sin, skew_cos) = self.axis_skew_rad.sin_cos();
+        let (skew_sin, skew_cos) = sin_cos(self.axis_skew_rad);
         let (skew_sin, skew_cos) = (S::constant(skew_sin), S::constant(skew_cos));
         let turn = |[x, y, z]: [f64; 3]| {
             let (x, y, z) = (S::constant(x), S::constant(y), S::constant(z));
@@ -215,7 +216,7 @@ fn jets(angle: PanTilt<f64>, rate: PanTilt<f64>) -> PanTilt<Jet> {
 /// From the crossing of the axes: the laser's own offset changes this by the angle it is seen under.
 fn check_incidence(pose: &HeadPose, point: Point) -> Result<(), AimError> {
     let [x, y, z] = pose.translation();
-    let incidence_rad = (point.x - x).hypot(point.y - y).atan2(z);
+    let incidence_rad = atan2(hypot(point.x - x, point.y - y), z);
     if incidence_rad <= GRAZING_RAD { Ok(()) } else { Err(AimError::Grazing { point, incidence_rad }) }
 }
 
@@ -225,8 +226,8 @@ fn first_guess(pose: &HeadPose, point: Point) -> Option<PanTilt<f64>> {
     let to = [point.x - x0, point.y - y0, -z0];
     let rows = pose.rotation();
     let [x, y, z] = [0, 1, 2].map(|i| rows[0][i] * to[0] + rows[1][i] * to[1] + rows[2][i] * to[2]);
-    let level = x.hypot(y);
-    (z0 > 0.0 && level > 0.0 && level.is_finite()).then(|| PanTilt::new(y.atan2(x), (-z).atan2(level)))
+    let level = hypot(x, y);
+    (z0 > 0.0 && level > 0.0 && level.is_finite()).then(|| PanTilt::new(atan2(y, x), atan2(-z, level)))
 }
 
 /// Solves [a b] q = v for the two columns a, b.

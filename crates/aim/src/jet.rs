@@ -1,5 +1,7 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+use tracelight_maths as maths;
+
 /// What forward kinematics is written in: plain numbers, or numbers with derivatives.
 pub(crate) trait Scalar:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
@@ -14,7 +16,7 @@ impl Scalar for f64 {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        maths::sin_cos(self)
     }
 }
 
@@ -82,7 +84,7 @@ impl Scalar for Jet {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        let (s, c) = self.value.sin_cos();
+        let (s, c) = maths::sin_cos(self.value);
         let (d, dd) = (self.first, self.second);
         (Self::new(s, c * d, c * dd - s * d * d), Self::new(c, -s * d, -s * dd - c * d * d))
     }

@@ -1,4 +1,5 @@
 use nalgebra::{DMatrix, DVector};
+use tracelight_maths::{ln_1p, powi};
 
 /// What a least-squares problem is near a state: JᵀWJ, JᵀWr and half the (robust) sum of squares, r = measured − told.
 #[derive(Clone, Debug)]
@@ -21,7 +22,7 @@ impl Normal {
     /// with these numbers. What is further off than the others counts less (Cauchy's loss; Triggs et al., *Bundle adjustment: a
     /// modern synthesis*, 1999, §3.3).
     pub(crate) fn add(&mut self, residual: f64, by: impl Iterator<Item = (usize, f64)> + Clone) {
-        self.weigh(residual, by, 1.0 / (1.0 + (residual / SOFT).powi(2)));
+        self.weigh(residual, by, 1.0 / (1.0 + powi(residual / SOFT, 2)));
         self.cost += loss(residual);
     }
 
@@ -55,7 +56,7 @@ const HARDLY_DAMPED: f64 = 1e-3;
 const SOFT: f64 = 3.0;
 
 fn loss(residual: f64) -> f64 {
-    0.5 * SOFT * SOFT * (residual / SOFT).powi(2).ln_1p()
+    0.5 * SOFT * SOFT * ln_1p(powi(residual / SOFT, 2))
 }
 
 /// Something with parameters that measurements tell.

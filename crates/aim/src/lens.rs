@@ -1,3 +1,4 @@
+use tracelight_maths::hypot;
 use tracelight_stroke::Point;
 
 use crate::jet::Scalar;
@@ -40,7 +41,7 @@ impl Lens {
     /// Where a direction (x, y, 1) comes to lie, px; `None` beyond where distortion turns back.
     pub fn pixel(&self, [x, y]: [f64; 2]) -> Option<Point> {
         let [u, v] = distorted(self.parameters(), [x, y]);
-        let size = x.hypot(y);
+        let size = hypot(x, y);
         (self.within(size) == size).then(|| Point::new(u, v))
     }
 
@@ -51,7 +52,7 @@ impl Lens {
         let [fx, fy] = self.focal_px;
         let wanted = [(pixel.x - self.centre_px.x) / fx, (pixel.y - self.centre_px.y) / fy];
         let within = |[x, y]: [f64; 2]| {
-            let r = x.hypot(y);
+            let r = hypot(x, y);
             let most = self.within(r);
             // from beyond where distortion turns back, Newton's method would find the wrong branch
             let share = if r > most { most / r } else { 1.0 };
@@ -72,7 +73,7 @@ impl Lens {
             }
         }
         let ([u, v], _) = self.image(at);
-        ((u - pixel.x).hypot(v - pixel.y) < 1e-6).then_some(at)
+        (hypot(u - pixel.x, v - pixel.y) < 1e-6).then_some(at)
     }
 
     /// A pixel and its derivatives by the direction.

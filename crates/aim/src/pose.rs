@@ -1,3 +1,4 @@
+use tracelight_maths::{asin, atan2, sin_cos};
 use tracelight_stroke::{Affine, Point};
 
 /// Where the head stands in front of the target: target_from_head.
@@ -29,7 +30,7 @@ impl HeadPose {
     #[must_use]
     pub fn in_frame(&self, frame_from_target: Affine) -> Self {
         let [a, b, _, _, _, _] = frame_from_target.as_coeffs();
-        let (sin, cos) = b.atan2(a).sin_cos();
+        let (sin, cos) = sin_cos(atan2(b, a));
         let [x, y, z] = self.rotation();
         let turned = |k: usize| (cos * x[k] - sin * y[k], sin * x[k] + cos * y[k]);
         // by the square-on exchange of axes back to Rz(yaw) Ry(pitch) Rx(roll), whose first column and last row have the angles
@@ -40,18 +41,18 @@ impl HeadPose {
             distance_m: self.distance_m,
             right_m: foot.x,
             up_m: foot.y,
-            yaw_rad: (-right).atan2(-z[0]),
-            pitch_rad: -up.clamp(-1.0, 1.0).asin(),
-            roll_rad: last[0].atan2(last[1]),
+            yaw_rad: atan2(-right, -z[0]),
+            pitch_rad: -asin(up.clamp(-1.0, 1.0)),
+            roll_rad: atan2(last[0], last[1]),
         }
     }
 
     /// Rotation part of target_from_head, by rows: the square-on exchange of axes (x_t = −y_h, y_t = z_h,
     /// z_t = −x_h) after Rz(yaw) Ry(pitch) Rx(roll).
     pub(crate) fn rotation(&self) -> [[f64; 3]; 3] {
-        let (sy, cy) = self.yaw_rad.sin_cos();
-        let (sp, cp) = self.pitch_rad.sin_cos();
-        let (sr, cr) = self.roll_rad.sin_cos();
+        let (sy, cy) = sin_cos(self.yaw_rad);
+        let (sp, cp) = sin_cos(self.pitch_rad);
+        let (sr, cr) = sin_cos(self.roll_rad);
         let x = [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr];
         let y = [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr];
         let z = [-sp, cp * sr, cp * cr];
@@ -66,6 +67,8 @@ impl HeadPose {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::planar;
+
     use super::*;
     use crate::HeadGeometry;
     use tracelight_rig::PanTilt;
@@ -86,7 +89,7 @@ mod tests {
             ..HeadGeometry::centred(PanTilt::new((-2.0, 2.0), (-1.5, 1.5)))
         };
         for turn_rad in [0.0, 0.3, -1.6, 3.0] {
-            let frame = Affine::rotate(turn_rad).then_translate(Vec2::new(0.4, -0.2));
+            let frame = planar::rotation(turn_rad).then_translate(Vec2::new(0.4, -0.2));
             let moved = pose.in_frame(frame);
             for angle in [PanTilt::new(0.0, 0.0), PanTilt::new(0.3, -0.2), PanTilt::new(-0.4, 0.25)] {
                 let [a, b] = [frame * head.spot(&pose, angle).unwrap(), head.spot(&moved, angle).unwrap()];

@@ -10,6 +10,8 @@ mod start;
 mod tests;
 mod valley;
 
+use tracelight_maths::{planar, powi};
+
 use nalgebra::{DMatrix, Matrix2, SMatrix};
 use tracelight_stroke::{Affine, Point, Vec2};
 
@@ -62,7 +64,7 @@ impl LensBelief {
         let focal = 0.8 * width;
         let mut covariance = SMatrix::zeros();
         // square pixels: the two focal lengths vary as one, but for 0.3 %
-        let (common, apart) = ((0.4 * focal).powi(2), (0.003 * focal).powi(2));
+        let (common, apart) = (powi(0.4 * focal, 2), powi(0.003 * focal, 2));
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             covariance[(i, j)] = common + if i == j { apart } else { 0.0 };
         }
@@ -95,7 +97,7 @@ pub struct PlacedPage {
 impl PlacedPage {
     /// The target's frame from the page's own: its middle, x to its right, y up as printed.
     pub fn place(&self) -> Affine {
-        Affine::rotate(self.turn_rad).then_translate(self.middle.to_vec2())
+        planar::rotation(self.turn_rad).then_translate(self.middle.to_vec2())
     }
 }
 

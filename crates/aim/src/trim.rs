@@ -1,4 +1,5 @@
 use nalgebra::{SMatrix, SVector};
+use tracelight_maths::powi;
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::Vec2;
 
@@ -171,7 +172,7 @@ impl Trim {
         for (k, column) in columns.into_iter().enumerate() {
             (by[(0, k)], by[(1, k)]) = (column.x, column.y);
         }
-        let own = spot.deviation_m.powi(2) + self.own_m * self.own_m;
+        let own = powi(spot.deviation_m, 2) + self.own_m * self.own_m;
         let along = moves * STAMP_S;
         let mut noise = SMatrix::<f64, 2, 2>::identity() * own;
         for along in

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
 
+use tracelight_maths::{cos, hypot, sin};
 use tracelight_report::html::data_uri;
 use tracelight_rig::TICK_F64_S;
 use tracelight_task::Failure;
@@ -45,7 +46,7 @@ fn ring() -> Result<Vec<u8>, Failure> {
     const RADIUS_PX: f64 = 90.0;
     const HALF_PEN_PX: f64 = 2.0;
     let grey = |x: u32, y: u32| {
-        let from_middle = (f64::from(x) + 0.5 - 160.0).hypot(f64::from(y) + 0.5 - 120.0);
+        let from_middle = hypot(f64::from(x) + 0.5 - 160.0, f64::from(y) + 0.5 - 120.0);
         // a pixel's share of paper
         let paper = ((from_middle - RADIUS_PX).abs() - HALF_PEN_PX + 0.5).clamp(0.0, 1.0);
         image::Luma([(255.0 * paper) as u8])
@@ -69,7 +70,7 @@ fn circle() -> String {
     let within = |t: f64, (from, to): (f64, f64)| ((t - from) / (to - from)).clamp(0.0, 1.0);
     rows(0.8 + HOLD_S, &|t| {
         let (pan, tilt) = (within(t, (0.1, 0.8)), within(t, (0.05, 0.55)));
-        [0.5 * (1.0 - (TAU * pan).cos()), (TAU * tilt).sin()]
+        [0.5 * (1.0 - cos(TAU * pan)), sin(TAU * tilt)]
     })
 }
 

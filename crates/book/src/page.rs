@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use serde_json::Value;
+use tracelight_maths::log10;
 use tracelight_report::html::escaped;
 
 use crate::chapter::{Chapter, Compared, Fact, Part, Run};
@@ -142,7 +143,7 @@ fn digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    let whole = value.abs().log10().floor() as i32;
+    let whole = log10(value.abs()).floor() as i32;
     let after = (4 - whole).clamp(0, 8) as usize;
     let text = format!("{value:.after$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };

@@ -1,3 +1,4 @@
+use tracelight_maths::sin_cos;
 use tracelight_rig::PanTilt;
 
 /// The head's inertial and gravitational parameters, gathered: s and c are sine and cosine of tilt.
@@ -70,7 +71,7 @@ impl Lumped {
     /// M(tilt).
     #[inline]
     pub fn mass(&self, tilt_rad: f64) -> MassMatrix {
-        let (s, c) = tilt_rad.sin_cos();
+        let (s, c) = sin_cos(tilt_rad);
         self.mass_at(s, c)
     }
 
@@ -86,7 +87,7 @@ impl Lumped {
     /// C(q, q̇) + G(q): Coriolis, centrifugal and gravity torques, N m.
     #[inline]
     pub fn bias(&self, tilt_rad: f64, rate_rad_s: PanTilt<f64>) -> PanTilt<f64> {
-        let (s, c) = tilt_rad.sin_cos();
+        let (s, c) = sin_cos(tilt_rad);
         self.bias_at(s, c, rate_rad_s)
     }
 
@@ -106,7 +107,7 @@ impl Lumped {
     /// Mass matrix and bias with one sine and cosine between them.
     #[inline]
     pub fn mass_and_bias(&self, tilt_rad: f64, rate_rad_s: PanTilt<f64>) -> (MassMatrix, PanTilt<f64>) {
-        let (s, c) = tilt_rad.sin_cos();
+        let (s, c) = sin_cos(tilt_rad);
         (self.mass_at(s, c), self.bias_at(s, c, rate_rad_s))
     }
 
@@ -117,7 +118,7 @@ impl Lumped {
 
     /// How C + G changes with tilt and with the rates, N m/rad and N m s/rad: the derivatives of [`bias`](Self::bias) on paper.
     pub fn bias_slopes(&self, tilt_rad: f64, rate_rad_s: PanTilt<f64>) -> BiasSlopes {
-        let (s, c) = tilt_rad.sin_cos();
+        let (s, c) = sin_cos(tilt_rad);
         let (w1, w2) = (rate_rad_s.pan, rate_rad_s.tilt);
         let (twice_sin, twice_cos) = (2.0 * s * c, c * c - s * s);
         // M₁₁′, M₁₂′ and how they go on

@@ -5,6 +5,7 @@ mod view;
 use std::f64::consts::TAU;
 
 use tracelight_lab::{Backlash, SpotPoint, backlash};
+use tracelight_maths::{sin, tan};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, LawName, MotionArray, RigConfig, follow_array};
 use tracelight_task::{Failure, Task};
@@ -127,7 +128,7 @@ impl Request {
         let ticks = follow_array(rig, &array, 0.1, self.seed);
         let read = |&(time_s, way): &(f64, i32)| {
             let tick = ticks.get((time_s / TICK_F64_S) as usize)?;
-            let spot_m = -self.distance_m * tick.beam_rad[joint].tan();
+            let spot_m = -self.distance_m * tan(tick.beam_rad[joint]);
             let spot_m = (spot_m / self.ruler_m).round() * self.ruler_m;
             Some(Reading { count: tick.measured[joint].count, way, spot_m })
         };
@@ -171,7 +172,7 @@ fn travel(rows: &mut Vec<(f64, f64)>, to: f64, (move_s, rest_s): (f64, f64)) {
     let (start_s, from) = rows.last().copied().unwrap_or_default();
     for k in 1..=STEPS {
         let x = f64::from(k) / f64::from(STEPS);
-        let share = x - (TAU * x).sin() / TAU;
+        let share = x - sin(TAU * x) / TAU;
         rows.push((start_s + move_s * x, from + share * (to - from)));
     }
     // a rest that a spline keeps

@@ -7,6 +7,7 @@ use tracelight_linear::{
     Complex, LeadLagWish, LinearError, LqgWish, Margins, PidWish, Response, Stability, StepInfo, Time,
     TransferFunction, Zpk,
 };
+use tracelight_maths::{complex, powi};
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Task};
@@ -137,8 +138,8 @@ fn faster(poles: &[Complex], plant: &TransferFunction) -> Vec<Complex> {
             Some(real) => drop(poles.remove(real)),
             None => {
                 let size = match plant.time() {
-                    Time::Continuous => -poles[0].norm(),
-                    Time::Sampled(_) => poles[0].norm(),
+                    Time::Continuous => -complex::norm(poles[0]),
+                    Time::Sampled(_) => complex::norm(poles[0]),
                 };
                 poles.splice(..2, [Complex::new(size, 0.0)]);
             }
@@ -169,7 +170,7 @@ impl Finding {
         // its peak may be over long before the output has settled
         let mut peak = input.peak().0.abs();
         if let Time::Continuous = plant.time() {
-            for shorter in (1..=20).map(|k| step.step_s * 0.5_f64.powi(k)) {
+            for shorter in (1..=20).map(|k| step.step_s * powi(0.5, k)) {
                 peak = peak.max(
                     to_input.step_response(shorter, step.values.len()).map_or(0.0, |u| u.peak().0.abs()),
                 );
@@ -208,7 +209,9 @@ fn settled_step(
     /// Times the watch is doubled.
     const DOUBLINGS: i32 = 20;
     let sizes = closed.poles().into_iter().map(|pole| closed.time().continuous(pole));
-    let rates = sizes.filter(|s| s.re.is_finite() && s.norm() > 1e-9).map(|s| s.re.abs().max(0.1 * s.norm()));
+    let rates = sizes
+        .filter(|s| s.re.is_finite() && complex::norm(*s) > 1e-9)
+        .map(|s| s.re.abs().max(0.1 * complex::norm(s)));
     // begun with the fastest
     let fastest = rates.fold(0.0, f64::max);
     let begun_s = if fastest > 0.0 { 3.0 / fastest } else { 1.0 };
@@ -223,7 +226,7 @@ fn settled_step(
     }
     let mut doubling = 0;
     loop {
-        let step = watch(begun_s * 2.0_f64.powi(doubling))?;
+        let step = watch(begun_s * powi(2.0, doubling))?;
         let info = step.step_info(Some(closed.dc_gain()), BAND);
         let end_s = step.step_s * (step.values.len() - 1) as f64;
         // some rest after it shows that it is one

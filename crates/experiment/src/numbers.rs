@@ -2,6 +2,7 @@
 
 use tracelight_lab::Uncertain;
 use tracelight_linear::four_digits;
+use tracelight_maths::log10;
 use tracelight_rig::Fault;
 
 /// To so many digits, and without a sign where that is none.
@@ -20,7 +21,7 @@ pub(crate) const HOW_SURE: &str = "\n\n± has the true value in 95 of 100 cases,
 pub(crate) fn milli(value: Option<Uncertain>) -> String {
     value.map_or("–".to_owned(), |u| {
         // two digits of how well it is known
-        let digits = (1.0 - (1e3 * u.within).log10().floor()).clamp(0.0, 6.0);
+        let digits = (1.0 - log10(1e3 * u.within).floor()).clamp(0.0, 6.0);
         if !u.within.is_finite() {
             return format!("{:.4} ± ?", 1e3 * u.value);
         }

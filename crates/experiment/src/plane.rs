@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use tracelight_chart::{Figure, Guide, Key, Mark, Panel, Scale, Sign, Theme};
 use tracelight_linear::{Complex, Time, TransferFunction};
+use tracelight_maths as maths;
 
 use crate::numbers::four;
 use crate::systems::{Named, Systems};
@@ -41,7 +42,7 @@ pub(crate) fn plane<'a>(
     for (system, closed) in systems {
         time = system.time();
         let all = system.poles().into_iter().chain(system.zeros()).chain(closed.iter().copied());
-        most = most.max(all.map(|z| z.norm()).filter(|size| size.is_finite()).fold(0.0, f64::max));
+        most = most.max(all.map(maths::complex::norm).filter(|size| size.is_finite()).fold(0.0, f64::max));
     }
     let sampled = time != Time::Continuous;
     let all = match (sampled, most) {
@@ -82,7 +83,7 @@ fn grid(up: f64, left: f64) -> Vec<Guide> {
         let radius = step * f64::from(k);
         let at = |i: i32| PI * (0.5 + f64::from(i) / 90.0);
         // its label stands below, those of the rays above
-        let points = (0..=90).map(|i| (radius * at(i).cos(), radius * at(i).sin())).collect();
+        let points = (0..=90).map(|i| (radius * maths::cos(at(i)), radius * maths::sin(at(i)))).collect();
         Guide { points, label: format!("{} rad/s", four(radius)) }
     };
     rays.chain((1..=8).map(ring)).collect()
@@ -90,7 +91,7 @@ fn grid(up: f64, left: f64) -> Vec<Guide> {
 
 /// 1, 2 or 5 times a power of ten, the nearest not below.
 fn round_step(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
+    let power = maths::powf(10.0, maths::log10(value).floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|f| f * power).find(|step| *step >= value * 0.999).unwrap_or(power)
 }
 
@@ -101,7 +102,7 @@ fn sampled_grid(period_s: f64) -> Vec<Guide> {
         let root = (1.0 - damping * damping).sqrt();
         let at = |k: i32| {
             let turn = PI * f64::from(k) / 90.0;
-            let z = Complex::from_polar((-damping / root * turn).exp(), sign * turn);
+            let z = maths::complex::from_polar(maths::exp(-damping / root * turn), sign * turn);
             (z.re, z.im)
         };
         let label = if sign > 0.0 && damping > 0.0 { format!("{damping}") } else { String::new() };

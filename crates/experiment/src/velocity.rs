@@ -5,6 +5,7 @@ mod view;
 use std::ops::ControlFlow;
 
 use tracelight_lab::{Peaks, VelocityError, highest, peaks, peaks_seen, velocity_error};
+use tracelight_maths::{exp, ln};
 use tracelight_pipeline::Driving;
 use tracelight_rig::PanTilt;
 use tracelight_sim::{ObserverName, RigConfig, Run, SimulatedRig};
@@ -59,8 +60,8 @@ struct Row {
 impl Row {
     /// Geometric mean over the speeds, rad/s: what is wrong by half counts the same at every speed.
     fn overall(&self) -> f64 {
-        let logs = self.errors.iter().map(|error| error.velocity_rms_rad_s.max(1e-12).ln());
-        (logs.sum::<f64>() / self.errors.len().max(1) as f64).exp()
+        let logs = self.errors.iter().map(|error| ln(error.velocity_rms_rad_s.max(1e-12)));
+        exp(logs.sum::<f64>() / self.errors.len().max(1) as f64)
     }
 }
 

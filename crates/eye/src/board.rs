@@ -5,6 +5,7 @@ use std::fmt::Write;
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 use tracelight_aim::Board;
 use tracelight_markers::tag_cells;
+use tracelight_maths::powf;
 use tracelight_pipeline::Paper;
 use tracelight_stroke::Point;
 
@@ -144,7 +145,7 @@ pub fn page_raster(board: &Board, page: u16, paper: Paper, pixel_m: f64) -> (usi
     }
     let level = |ink: f64| {
         let light = PAPER + (INK - PAPER) * ink.clamp(0.0, 1.0);
-        (255.0 * light.powf(1.0 / 2.2)).round() as u8
+        (255.0 * powf(light, 1.0 / 2.2)).round() as u8
     };
     let middle = Point::new(paper.width_mm / 2.0 / pixel_mm, (TOP_MM + rows_mm(board) / 2.0) / pixel_mm);
     (width, ink.into_iter().map(level).collect(), middle)

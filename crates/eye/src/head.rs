@@ -6,12 +6,13 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use tracelight_aim::{AlignError, Aligned, Alignment, AlignmentBelief, Camera, HeadPose, SeenSpot, align};
+use tracelight_maths::{atan2, planar};
 use tracelight_pipeline::{Driving, refused};
 use tracelight_rig::Command;
 use tracelight_rigfile::Timing;
 use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::{Simulated, Tick, run_segments};
-use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
+use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
 
@@ -310,7 +311,7 @@ fn in_front(camera: &Camera, distance_m: f64) -> HeadPose {
         return HeadPose::square_on(distance_m);
     };
     let up = above - middle;
-    let upright = Affine::rotate((-up.x).atan2(up.y)).then_translate(middle.to_vec2());
+    let upright = planar::rotation(atan2(-up.x, up.y)).then_translate(middle.to_vec2());
     HeadPose::square_on(distance_m).in_frame(upright)
 }
 
@@ -326,7 +327,7 @@ mod tests {
         let upright = in_front(&camera, 0.9);
         assert!(upright.roll_rad.abs() < 0.06 && (upright.right_m - 0.1).abs() < 1e-9, "{upright:?}");
         for turn_rad in [0.5, 1.6, 3.1, -2.0] {
-            let frame = Affine::rotate(turn_rad).then_translate(Vec2::new(0.3, -0.4));
+            let frame = planar::rotation(turn_rad).then_translate(Vec2::new(0.3, -0.4));
             let turned = in_front(&Camera { pose: camera.pose.in_frame(frame), ..camera }, 0.9);
             let wanted = upright.in_frame(frame);
             assert!((turned.right_m - wanted.right_m).hypot(turned.up_m - wanted.up_m) < 1e-9);

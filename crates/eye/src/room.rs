@@ -6,6 +6,7 @@
 use std::f64::consts::PI;
 
 use tracelight_aim::{Board, Camera, CameraPose, HeadGeometry, HeadPose, Lens};
+use tracelight_maths::{cos, planar, powi, sin, single};
 use tracelight_picture::Raster;
 use tracelight_pipeline::{Paper, Placing};
 use tracelight_plant::{CameraConfig, Poster, SimulatedCamera, Wall};
@@ -224,8 +225,8 @@ fn hang(picture: &Raster, request: &RoomRequest<'_>) -> Hung {
 fn painted(rgb: &[u8]) -> Vec<[u8; 3]> {
     let on_wall: [[u8; 256]; 3] = PLAIN.map(|plain| {
         std::array::from_fn(|level| {
-            let light = (level as f32 / 255.0).powf(2.2) * plain;
-            (255.0 * light.powf(1.0 / 2.2)).round() as u8
+            let light = single::powf(level as f32 / 255.0, 2.2) * plain;
+            (255.0 * single::powf(light, 1.0 / 2.2)).round() as u8
         })
     });
     rgb.chunks_exact(3).map(|p| std::array::from_fn(|c| on_wall[c][usize::from(p[c])])).collect()
@@ -244,7 +245,7 @@ fn pages(eye: SimulatedEye, (width, height): (f64, f64), dice: &mut Dice) -> (Bo
     };
     let upper = if eye == SimulatedEye::Report { PI } else { 0.0 };
     let mut place = |x: f64, y: f64, turn_rad: f64| {
-        let lean = Affine::rotate(turn_rad + dice.within(0.025));
+        let lean = planar::rotation(turn_rad + dice.within(0.025));
         let mut further = || 1.0 + 0.01 * (1.0 + dice.within(1.0));
         lean.then_translate(Vec2::new(x * further(), y * further()))
     };
@@ -277,9 +278,9 @@ fn camera(eye: SimulatedEye, pages: &[Affine], dice: &mut Dice) -> Result<Camera
     let (tilt_rad, roll_rad) = (dice.within(0.1), dice.within(0.03));
     let from = |distance_m: f64| {
         let at = [
-            distance_m * pan_rad.sin() * tilt_rad.cos(),
-            distance_m * tilt_rad.sin(),
-            distance_m * pan_rad.cos() * tilt_rad.cos(),
+            distance_m * sin(pan_rad) * cos(tilt_rad),
+            distance_m * sin(tilt_rad),
+            distance_m * cos(pan_rad) * cos(tilt_rad),
         ];
         let pose = CameraPose::looking_at(at, [0.0; 3])?.moved([0.0, 0.0, roll_rad], [0.0; 3]);
         Some(Camera { lens, pose })
@@ -297,7 +298,7 @@ fn camera(eye: SimulatedEye, pages: &[Affine], dice: &mut Dice) -> Result<Camera
     };
     // the report's stands 3 ft away
     let distances = match eye {
-        SimulatedEye::Webcam => (0..60).map(|k| 0.5 * 1.05_f64.powi(k)).collect(),
+        SimulatedEye::Webcam => (0..60).map(|k| 0.5 * powi(1.05, k)).collect(),
         SimulatedEye::Report => vec![0.9144],
     };
     let found = distances.into_iter().filter_map(from).find(sees_all);

@@ -2,6 +2,7 @@
 
 use tracelight_aim::{Alignment, Camera, SeenSpot};
 use tracelight_markers::{Spot, SpotLost, SpotWindow, find_spot};
+use tracelight_maths::hypot;
 use tracelight_plant::RelayConfig;
 use tracelight_rig::{PanTilt, TICK_F64_S, Telemetry};
 use tracelight_stroke::Point;
@@ -283,7 +284,7 @@ impl SpotWatch {
             painted.add(&lit, &dark, begins, &self.camera);
         }
         let at = self.camera.target(spot.at)?;
-        let deviation_m = spot.deviation_px.hypot(LEAST_DEVIATION_PX) / self.camera.scale(at)?;
+        let deviation_m = hypot(spot.deviation_px, LEAST_DEVIATION_PX) / self.camera.scale(at)?;
         Some(Ok(Sighting { when, down: self.down(spot.at), at, deviation_m }))
     }
 

@@ -5,6 +5,7 @@ use tracelight_aim::{
 };
 use tracelight_image::Grey;
 use tracelight_markers::{Tag, TagPlace, find_tags};
+use tracelight_maths::{atan2, powf};
 use tracelight_picture::Raster;
 use tracelight_rigfile::PageName;
 use tracelight_rigfile::camera::{KnownCamera, Stood};
@@ -97,7 +98,7 @@ pub fn see_wall(pixels: Raster, known: Option<&KnownCamera>) -> Result<SeenWall,
         .map_err(|e| Failure::failed("camera-not-found", format!("the camera's image of the wall: {e}")))?;
     let found = survey.camera(0).ok_or_else(|| Failure::failed("internal", "a survey without a camera"))?;
     let (frame, wall_from_first, stale) = held_against(&survey, &found, stood);
-    let turn_rad = wall_from_first.as_coeffs()[1].atan2(wall_from_first.as_coeffs()[0]);
+    let turn_rad = atan2(wall_from_first.as_coeffs()[1], wall_from_first.as_coeffs()[0]);
     let placed = |page: &PlacedPage| PlacedPage {
         middle: wall_from_first * page.middle,
         turn_rad: page.turn_rad + turn_rad,
@@ -224,7 +225,7 @@ pub fn well_exposed(eye: &mut dyn Looks, stop: &Stop) -> Result<Raster, Failure>
 
 /// The next exposure that is tried after one that was too dark or too bright, s.
 fn next_s(exposed_s: f64, brightest: u8, [dark_s, bright_s]: [f64; 2]) -> f64 {
-    let light = |level: u8| (f64::from(level) / 255.0).powf(2.2);
+    let light = |level: u8| powf(f64::from(level) / 255.0, 2.2);
     let wanted = light(WELL_EXPOSED[0] / 2 + WELL_EXPOSED[1] / 2);
     // how much too bright one is that is full, it does not tell
     let factor = if brightest < WELL_EXPOSED[0] { wanted / light(brightest.max(1)) } else { 0.5 };

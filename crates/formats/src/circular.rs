@@ -2,13 +2,14 @@
 
 use std::f64::consts::{PI, TAU};
 
+use tracelight_maths::{atan, atan2, tan};
 use tracelight_stroke::{Element, Piece, Point, Vec2};
 
 /// The way from one point to another along a circle by `sweep` radians; a line where that is straight.
 pub(crate) fn arc_between(from: Point, to: Point, sweep: f64) -> Element {
     let chord = to - from;
     // the centre lies on the bisector, ½·chord·cot(½·sweep) to the left of the chord
-    let height = 0.5 / (0.5 * sweep).tan();
+    let height = 0.5 / tan(0.5 * sweep);
     let centre = from.midpoint(to) + Vec2::new(-chord.y, chord.x) * height;
     match height.abs() < STRAIGHT && sweep != 0.0 && chord != Vec2::ZERO {
         true => Element::Arc { centre, sweep },
@@ -21,7 +22,7 @@ const STRAIGHT: f64 = 1e6;
 
 /// The sweep of a DXF bulge: the tangent of a quarter of it, positive anticlockwise.
 pub(crate) fn sweep_of_bulge(bulge: f64) -> f64 {
-    4.0 * bulge.atan()
+    4.0 * atan(bulge)
 }
 
 /// The circular arc that a cubic stands for, if it is one to `noise`.
@@ -34,13 +35,13 @@ pub(crate) fn arc_of_cubic(piece: &Piece, noise: f64) -> Option<Element> {
     const MOST_RAD: f64 = 0.55 * PI; // a quarter with some slack: longer ones are no good circles
     let Element::Cubic { c1, c2, to } = piece.element else { return None };
     let (out, back) = (c1 - piece.from, to - c2);
-    let sweep = out.cross(back).atan2(out.dot(back));
+    let sweep = atan2(out.cross(back), out.dot(back));
     let arc = arc_between(piece.from, to, sweep);
     let Element::Arc { centre, .. } = arc else { return None };
     let arm = piece.from - centre;
     // beyond a thousandth of the radius, noise would find circles in anything
     let noise = noise.max(FIT * arm.hypot()).min(1e-3 * arm.hypot());
-    let handle = 4.0 / 3.0 * (0.25 * sweep).tan();
+    let handle = 4.0 / 3.0 * tan(0.25 * sweep);
     let wanted_c1 = piece.from + quarter_turn(arm) * handle;
     let wanted_c2 = to - quarter_turn(to - centre) * handle;
     let fits = wanted_c1.distance(c1) <= noise && wanted_c2.distance(c2) <= noise;

@@ -1,4 +1,5 @@
 use kurbo::{CubicBez, ParamCurveExtrema, Rect};
+use tracelight_maths::atan2;
 use tracelight_stroke::{Drawing, Element, Piece, Point, Vec2};
 
 /// The smallest upright rectangle round a drawing, exact for lines, arcs and cubics; `None` for an empty one.
@@ -23,7 +24,7 @@ fn of_piece(piece: &Piece) -> Rect {
 
 /// Whether an arm that sweeps by an angle passes a direction.
 fn is_passed(arm: Vec2, direction: Vec2, sweep: f64) -> bool {
-    let ahead = arm.cross(direction).atan2(arm.dot(direction)) * sweep.signum();
+    let ahead = atan2(arm.cross(direction), arm.dot(direction)) * sweep.signum();
     ahead.rem_euclid(std::f64::consts::TAU) <= sweep.abs()
 }
 

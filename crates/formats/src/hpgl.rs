@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
+use tracelight_maths::acos;
 use tracelight_stroke::{Affine, Colour, Drawing, Element, Path, Piece, Point};
 
 /// Plotter units in a metre: one is 0.025 mm.
@@ -71,8 +72,7 @@ fn arc(piece: &Piece, tolerance: f64) -> Option<String> {
     let radius = from.distance(rounded);
     let drawn = Piece { from, element: Element::Arc { centre: rounded, sweep } };
     let off = [0.5, 1.0].map(|t| drawn.at(t).distance(piece.at(t)));
-    let chord_degrees =
-        (2.0 * (1.0 - (0.7 * tolerance / radius).min(1.0)).acos()).to_degrees().min(5.0).floor();
+    let chord_degrees = (2.0 * acos(1.0 - (0.7 * tolerance / radius).min(1.0))).to_degrees().min(5.0).floor();
     // whole degrees only, for the oldest plotters; and less than a whole turn, which some take for none. A plotter makes
     // the chords even and may round their number down: there should be several
     let is_exact =

@@ -4,6 +4,7 @@
 //! A frame is a list of points that the scanners jump to at an even pace; lines are what they draw on the way. So
 //! points are set close enough that the way is straight, and repeated where the mirrors must come to rest.
 
+use tracelight_maths::atan2;
 use tracelight_stroke::{Affine, Colour, Drawing, Path, Point};
 
 /// Coordinates go from minus this to this.
@@ -104,7 +105,7 @@ fn dots(at: Point, path: &Path, colour: Colour) -> Vec<Dot> {
 
 fn is_corner(before: Point, at: Point, after: Point) -> bool {
     let (way_in, out) = (at - before, after - at);
-    way_in.cross(out).atan2(way_in.dot(out)).abs() >= CORNER_RAD
+    atan2(way_in.cross(out), way_in.dot(out)).abs() >= CORNER_RAD
 }
 
 /// Equal steps from one point to another, without the first.

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use tracelight_maths::{atan2, planar};
 use tracelight_stroke::{Point, Vec2};
 
 use crate::levels::histogram;
@@ -132,7 +133,7 @@ impl Region {
 
 /// The long axis of what has such variances.
 pub fn long_axis([xx, xy, yy]: [f64; 3]) -> Vec2 {
-    Vec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy))
+    planar::direction(0.5 * atan2(2.0 * xy, xx - yy))
 }
 
 /// How pixels hang together.

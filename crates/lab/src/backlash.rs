@@ -1,3 +1,5 @@
+use tracelight_maths::atan;
+
 use crate::regression::{Uncertain, regression, student};
 
 /// Where the spot was when a joint had come to rest.
@@ -33,7 +35,7 @@ pub struct Backlash {
 /// rests at the same part of its count: so readings are compared with others of their own place, where there are such.
 pub fn backlash(points: &[SpotPoint], distance_m: f64) -> Option<Backlash> {
     let beyond: Vec<f64> =
-        points.iter().map(|point| (-point.spot_m / distance_m).atan() - point.angle_rad).collect();
+        points.iter().map(|point| atan(-point.spot_m / distance_m) - point.angle_rad).collect();
     let last = points.len().saturating_sub(1).max(1) as f64;
     // coming from below the beam is behind by half the play
     let sides: Vec<f64> = points.iter().map(|point| -0.5 * point.way).collect();

@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use tracelight_maths::{atan2, cos, hypot, sin};
 use tracelight_rig::{Actuation, Head, Joint, TICK_F64_S};
 
 use crate::regression::{Uncertain, regression};
@@ -280,8 +281,8 @@ fn eccentricity(runs: &[Run], table: &[f64; PHASES], count_rad: f64) -> Option<(
                 column.push(one);
                 (one, two) = (two, 2.0 * x * two - one);
             }
-            columns[POWERS].push(angle.sin());
-            columns[POWERS + 1].push(angle.cos());
+            columns[POWERS].push(sin(angle));
+            columns[POWERS + 1].push(cos(angle));
             // the middle of the run as base keeps the digits
             wanted.push(f64::from(edge.edge - first.edge) + table[run.kind(k)]);
         }
@@ -295,9 +296,9 @@ fn eccentricity(runs: &[Run], table: &[f64; PHASES], count_rad: f64) -> Option<(
     let count = found.len() as f64;
     let mean = |i: usize| found.iter().map(|pair| pair[i].value).sum::<f64>() / count;
     let (sine, cosine) = (mean(0), mean(1));
-    let within = found.iter().map(|pair| pair[0].within.hypot(pair[1].within)).sum::<f64>() / count;
-    let amplitude = Uncertain { value: sine.hypot(cosine), within };
-    Some((amplitude, sine.atan2(cosine)))
+    let within = found.iter().map(|pair| hypot(pair[0].within, pair[1].within)).sum::<f64>() / count;
+    let amplitude = Uncertain { value: hypot(sine, cosine), within };
+    Some((amplitude, atan2(sine, cosine)))
 }
 
 #[cfg(test)]

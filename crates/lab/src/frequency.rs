@@ -2,6 +2,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::{DMatrix, DVector};
 use tracelight_linear::{Complex, logspace};
+use tracelight_maths::{complex, cos};
 use tracelight_rig::{Actuation, Head, Joint, TICK_F64_S};
 
 use crate::start::{OVER_TICKS, come_to_speed};
@@ -74,7 +75,7 @@ impl Multisine {
         let each_v = amplitude_v / (harmonics.len() as f64).sqrt();
         // such that they are not all at their top at once (Schroeder, *IEEE Trans. Inf. Theory* 16, 1970)
         let phase = |number: usize| -PI * (number * (number + 1)) as f64 / harmonics.len() as f64;
-        let sines_v = (0..harmonics.len()).map(|number| Complex::from_polar(each_v, phase(number))).collect();
+        let sines_v = (0..harmonics.len()).map(|number| complex::from_polar(each_v, phase(number))).collect();
         Self { period_ticks, harmonics, sines_v }
     }
 
@@ -92,12 +93,12 @@ impl Multisine {
         let period: Vec<f64> = (0..period_ticks).map(mean).collect();
         let all = Self { period_ticks, harmonics: (1..=period_ticks / 4).collect(), sines_v: Vec::new() };
         let sines_v = amplitudes(&all, &period);
-        let largest = sines_v.iter().map(|sine| sine.norm()).fold(0.0, f64::max);
+        let largest = sines_v.iter().map(|sine| complex::norm(*sine)).fold(0.0, f64::max);
         // what rounding leaves of a steady voltage is none
         let rounding = 1e-9 * period.iter().map(|v| v.abs()).fold(0.0, f64::max);
         let least = (SMALL * largest).max(rounding).max(f64::MIN_POSITIVE);
         let (harmonics, sines_v) =
-            all.harmonics.into_iter().zip(sines_v).filter(|(_, sine)| sine.norm() >= least).unzip();
+            all.harmonics.into_iter().zip(sines_v).filter(|(_, sine)| complex::norm(*sine) >= least).unzip();
         let found = Self { period_ticks, harmonics, sines_v };
         (!found.harmonics.is_empty()).then_some(found)
     }
@@ -117,7 +118,9 @@ impl Multisine {
     pub fn volts(&self) -> Vec<f64> {
         let at = |tick: usize| {
             let turn = TAU * tick as f64 / self.period_ticks as f64;
-            let sine = |(&k, volts): (&usize, &Complex)| volts.norm() * (k as f64 * turn + volts.arg()).cos();
+            let sine = |(&k, volts): (&usize, &Complex)| {
+                complex::norm(*volts) * cos(k as f64 * turn + complex::arg(*volts))
+            };
             self.harmonics.iter().zip(&self.sines_v).map(sine).sum::<f64>()
         };
         (0..self.period_ticks).map(at).collect()
@@ -233,11 +236,11 @@ fn amplitudes(multisine: &Multisine, values: &[f64]) -> Vec<Complex> {
     let one = |&k: &usize| {
         // a turn a tick, by multiplication; renewed before rounding adds up
         const RENEWED: usize = 256;
-        let step = Complex::from_polar(1.0, -TAU * k as f64 / n as f64);
+        let step = complex::from_polar(1.0, -TAU * k as f64 / n as f64);
         let mut sum = Complex::new(0.0, 0.0);
         for (block, part) in values.chunks(RENEWED).enumerate() {
             let turns = (k * block * RENEWED) % n;
-            let mut at = Complex::from_polar(1.0, -TAU * turns as f64 / n as f64);
+            let mut at = complex::from_polar(1.0, -TAU * turns as f64 / n as f64);
             for value in part {
                 sum += at * *value;
                 at *= step;
@@ -260,17 +263,17 @@ mod tests {
         let multisine = Multisine::new((TAU * 0.5, TAU * 40.0), 12, 4.0, 1.0);
         let separation = Separation::of(&multisine);
         let wanted: Vec<Complex> = (0..multisine.harmonics.len())
-            .map(|k| Complex::from_polar(1.0 / (k + 1) as f64, k as f64))
+            .map(|k| complex::from_polar(1.0 / (k + 1) as f64, k as f64))
             .collect();
         let at = |tick: usize| {
             let x = tick as f64 / multisine.period_ticks as f64;
-            let sine = |(k, a): (&usize, &Complex)| (a * Complex::from_polar(1.0, TAU * *k as f64 * x)).re;
+            let sine = |(k, a): (&usize, &Complex)| (a * complex::from_polar(1.0, TAU * *k as f64 * x)).re;
             multisine.harmonics.iter().zip(&wanted).map(sine).sum::<f64>() + 50.0 * x - 7.0 * x * x
                 + 3.0 * x * x * x
         };
         let found = separation.sines(&(0..multisine.period_ticks).map(at).collect::<Vec<_>>());
         for (found, wanted) in found.iter().zip(&wanted) {
-            assert!((found - wanted).norm() < 1e-9, "{found} {wanted}");
+            assert!(complex::norm(found - wanted) < 1e-9, "{found} {wanted}");
         }
     }
 
@@ -280,7 +283,7 @@ mod tests {
         let record: Vec<f64> = made.volts().repeat(3).iter().map(|v| v + 0.7).collect();
         let found = Multisine::in_record(2000, &record).unwrap();
         assert_eq!(found.harmonics, made.harmonics);
-        assert!(found.sines_v.iter().zip(&made.sines_v).all(|(a, b)| (a - b).norm() < 1e-9));
+        assert!(found.sines_v.iter().zip(&made.sines_v).all(|(a, b)| complex::norm(a - b) < 1e-9));
         assert_eq!(Multisine::in_record(2000, &record[..3999]), None);
         assert_eq!(Multisine::in_record(2000, &[1.0; 6000]), None);
     }
@@ -313,7 +316,7 @@ mod tests {
             assert!(found.len() > 25);
             for point in &found {
                 let wanted = model.frequency_response(vec![point.rad_s]).values[0];
-                let off = (point.response / wanted - 1.0).norm();
+                let off = complex::norm(point.response / wanted - 1.0);
                 if point.coherence > 0.5 {
                     assert!(
                         off < 2e-3 + 4.0 * point.deviation,

@@ -10,6 +10,7 @@ use std::fmt;
 
 use thiserror::Error;
 use tracelight_linear::Complex;
+use tracelight_maths::{complex, cos, tan};
 use tracelight_rig::{Actuation, Head, Joint, TICK_F64_S};
 
 /// How a joint is swung.
@@ -238,14 +239,14 @@ impl Swing {
         let rad_s = crossover_rad_s.unwrap_or(self.rad_s());
         let plant = crossover_rad_s.map_or_else(|| self.response(relay, torque_nm_per_v), of_mass);
         // of −1 the argument is π or −π as its sign of zero is
-        let lead = (margin_rad - PI - plant.arg()).rem_euclid(TAU);
+        let lead = (margin_rad - PI - complex::arg(plant)).rem_euclid(TAU);
         let lead = if lead > PI { lead - TAU } else { lead };
         if lead.abs() >= 0.5 * PI - 1e-3 {
             return Err(RelayError::Margin(margin_rad.to_degrees()));
         }
-        let slope = lead.tan();
+        let slope = tan(lead);
         let derivative = 0.5 * (slope + (slope * slope + 4.0 / integral).sqrt());
-        let kp = lead.cos() / plant.norm();
+        let kp = cos(lead) / complex::norm(plant);
         let derivative_s = derivative / rad_s;
         Ok(RelayPid { kp, ki: kp / (integral * derivative_s), kd: kp * derivative_s })
     }
@@ -296,7 +297,10 @@ mod tests {
                 .unwrap();
             let s = Complex::new(0.0, 30.0);
             let open = (pid.kp + pid.kd * s + pid.ki / s) / (mass * s * s);
-            assert!((open.norm() - 1.0).abs() < 1e-9 && (open.arg() + PI - 1.0).abs() < 1e-9, "{open}");
+            assert!(
+                (complex::norm(open) - 1.0).abs() < 1e-9 && (complex::arg(open) + PI - 1.0).abs() < 1e-9,
+                "{open}"
+            );
         }
     }
 
@@ -310,8 +314,8 @@ mod tests {
             let s = Complex::new(0.0, swing.rad_s());
             let controller = pid.kp + pid.kd * s + pid.ki / s;
             let open = controller * swing.response(&relay, 0.06);
-            assert!((open.norm() - 1.0).abs() < 1e-9);
-            assert!((open.arg() + PI - margin_deg.to_radians()).abs() < 1e-9, "{open}");
+            assert!((complex::norm(open) - 1.0).abs() < 1e-9);
+            assert!((complex::arg(open) + PI - margin_deg.to_radians()).abs() < 1e-9, "{open}");
         }
         assert!(
             swing.pid(&relay, 0.06, None, (2.0, 6.0)).is_err(),

@@ -7,6 +7,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use tracelight_linear::{Complex, Discretization, Matrix, Polynomial, Time, TransferFunction, logspace};
+use tracelight_maths::powi;
 
 /// The report's pan loop, nothing cancelled.
 const K11_G11: &str = "281 (s+32.9)(s+97.8)/((s+250)(s+177)) (13.16 s^2 + 1.754 s + 10.29)/(s^4 + 0.2649 s^3 + 0.7997 s^2 + 0.1029 s)";
@@ -47,7 +48,7 @@ fn hostile() -> Vec<(&'static str, Polynomial)> {
         (0..times).fold(Polynomial::one(), |p, _| &p * &Polynomial::new([1.0, -root]))
     };
     let wilkinson = (1..=20).fold(Polynomial::one(), |p, k| &p * &Polynomial::new([1.0, -f64::from(k)]));
-    let spread = (0..40).fold(Polynomial::one(), |p, k| &p * &Polynomial::new([1.0, 10_f64.powi(k - 20)]));
+    let spread = (0..40).fold(Polynomial::one(), |p, k| &p * &Polynomial::new([1.0, powi(10.0, k - 20)]));
     let mut unity = vec![0.0; 41];
     (unity[0], unity[40]) = (1.0, -1.0);
     vec![

@@ -1,5 +1,7 @@
 //! Numbers as mantissas and powers of two, for what may leave the range of `f64` on the way.
 
+use tracelight_maths::powi;
+
 use crate::Complex;
 
 /// A complex number times a power of two.
@@ -30,7 +32,7 @@ pub(crate) fn split(value: f64) -> (f64, i32) {
 /// mantissa · 2^exponent, rounded once; beyond the range zero or infinity.
 pub(crate) fn join(mantissa: f64, exponent: i32) -> f64 {
     let half = exponent.clamp(-2200, 2200) / 2;
-    let power = |e: i32| 2.0_f64.powi(e);
+    let power = |e: i32| powi(2.0, e);
     let quarter = |e: i32| power(e / 2) * power(e - e / 2);
     mantissa * quarter(half) * quarter(exponent.clamp(-2200, 2200) - half)
 }

@@ -1,3 +1,5 @@
+use tracelight_maths as maths;
+
 use crate::{Complex, LinearError, Matrix, StateSpace, Zpk};
 
 /// A factor of order one or two with real coefficients: zeros over poles.
@@ -73,7 +75,7 @@ fn sections(zeros: &[Complex], poles: &[Complex]) -> Vec<Section> {
     for zero in zeros {
         let size = if zero.im > 0.0 { 2 } else { 1 };
         let room = |i: &usize| groups[*i].len() >= taken[*i].len() + size;
-        let apart = |i: usize| (groups[i][0] - zero).norm();
+        let apart = |i: usize| maths::complex::norm(groups[i][0] - zero);
         if let Some(i) = (0..groups.len()).filter(room).min_by(|&a, &b| apart(a).total_cmp(&apart(b))) {
             taken[i].push(zero);
             if size == 2 {
@@ -104,6 +106,8 @@ fn multiplied(roots: &[Complex]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::complex;
+
     use crate::{Complex, Time, TransferFunction};
 
     #[test]
@@ -128,7 +132,7 @@ mod tests {
                 let complex = |m: &crate::Matrix| m.map(|x| Complex::new(x, 0.0));
                 let value = (complex(chain.c()) * inverse * complex(chain.b()) + complex(chain.d()))[(0, 0)];
                 assert!(
-                    (value - g.at(s)).norm() < 1e-10 * g.at(s).norm(),
+                    complex::norm(value - g.at(s)) < 1e-10 * complex::norm(g.at(s)),
                     "{text} at {w}: {value} {}",
                     g.at(s)
                 );

@@ -1,5 +1,7 @@
 //! One system in three forms: a quotient of polynomials, gain with zeros and poles, state space.
 
+use tracelight_maths::{exp2, log2, powf, powi};
+
 use crate::Matrix;
 use crate::error::LinearError;
 use crate::polynomial::Polynomial;
@@ -49,15 +51,15 @@ fn canonical(transfer: &TransferFunction) -> Result<StateSpace, LinearError> {
     }
     let through = transfer.numerator().coefficient(order);
     // states scaled as powers of what a pole is like, so that neither the last row nor the ones above it stand out
-    let size = transfer.denominator().constant().abs().powf(1.0 / order.max(1) as f64);
-    let unit = if size > 0.0 { size.log2().round().exp2() } else { 1.0 };
+    let size = powf(transfer.denominator().constant().abs(), 1.0 / order.max(1) as f64);
+    let unit = if size > 0.0 { exp2(log2(size).round()) } else { 1.0 };
     let (mut a, mut b, mut c) =
         (Matrix::zeros(order, order), Matrix::zeros(order, 1), Matrix::zeros(1, order));
     for i in 0..order {
         if i + 1 < order {
             a[(i, i + 1)] = unit;
         }
-        let scale = unit.powi(order as i32 - 1 - i as i32);
+        let scale = powi(unit, order as i32 - 1 - i as i32);
         a[(order - 1, i)] = -transfer.denominator().coefficient(i) / scale;
         c[(0, i)] =
             (transfer.numerator().coefficient(i) - through * transfer.denominator().coefficient(i)) / scale;

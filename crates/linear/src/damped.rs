@@ -1,5 +1,7 @@
 use std::f64::consts::PI;
 
+use tracelight_maths::{complex, exp, powi};
+
 use crate::{Complex, Polynomial, Time, TransferFunction};
 
 /// Factors on an open loop that leave its closed poles so damped.
@@ -59,7 +61,7 @@ impl TransferFunction {
         let calm = |pole: Complex| {
             let s = self.time().continuous(pole);
             // a pole at z = 0 is over at once
-            s.re == f64::NEG_INFINITY || (s.re < 0.0 && -s.re >= (damping - 1e-9) * s.norm())
+            s.re == f64::NEG_INFINITY || (s.re < 0.0 && -s.re >= (damping - 1e-9) * complex::norm(s))
         };
         let closed = self.closed_at(gain);
         closed.degree() >= self.denominator().degree() && closed.root_values().into_iter().all(calm)
@@ -95,13 +97,13 @@ impl TransferFunction {
             // real poles alone: what changes are breakaways, and what passes z = 0
             return vec![-1.0 / self.at(Complex::ZERO).re];
         }
-        let place = |angle: f64| Complex::from_polar((-damping / root * angle).exp(), angle);
+        let place = |angle: f64| complex::from_polar(exp(-damping / root * angle), angle);
         let off = |angle: f64| self.at(place(angle)).inv().im;
         let mut found = Vec::new();
         let mut before = (0.0, 0.0);
         for k in 1..=STEPS {
             // closer where slow poles are
-            let angle = PI * (f64::from(k) / f64::from(STEPS)).powi(2);
+            let angle = PI * powi(f64::from(k) / f64::from(STEPS), 2);
             let here = (angle, off(angle));
             if before.1 * here.1 < 0.0 {
                 let (mut low, mut high) = (before.0, here.0);

@@ -1,3 +1,5 @@
+use tracelight_maths::{complex, cos, exp, exp_m1, log2, powi, sin, tan};
+
 use crate::eigen::balanced;
 use crate::time::positive;
 use crate::{Complex, LinearError, Matrix, Polynomial, StateSpace, Time, TransferFunction};
@@ -71,21 +73,21 @@ impl TransferFunction {
             let of = |ratios: &[Complex]| ratios.get(i).copied().unwrap_or(Complex::ONE);
             of(&above) / of(&below)
         });
-        let gain = self.numerator().leading() * pairs.product::<Complex>().re / 2.0_f64.powi(added);
+        let gain = self.numerator().leading() * pairs.product::<Complex>().re / powi(2.0, added);
         Self::new(Polynomial::from_roots(gain, &there), Polynomial::from_roots(1.0, &poles_there), time)
     }
 }
 
 /// e^(sT) of each; what grows beyond all numbers from sample to sample has none.
 fn mapped(roots: &[Complex], period_s: f64) -> Result<Vec<Complex>, LinearError> {
-    let mapped: Vec<Complex> = roots.iter().map(|root| (root * period_s).exp()).collect();
+    let mapped: Vec<Complex> = roots.iter().map(|root| complex::exp(root * period_s)).collect();
     if mapped.iter().all(|root| root.is_finite()) { Ok(mapped) } else { Err(LinearError::NotFinite) }
 }
 
 /// e^z − 1, to all digits where z is small.
 fn less_one(z: Complex) -> Complex {
-    let half = (0.5 * z.im).sin();
-    Complex::new(z.re.exp_m1() * z.im.cos() - 2.0 * half * half, z.re.exp() * z.im.sin())
+    let half = sin(0.5 * z.im);
+    Complex::new(exp_m1(z.re) * cos(z.im) - 2.0 * half * half, exp(z.re) * sin(z.im))
 }
 
 impl StateSpace {
@@ -159,8 +161,8 @@ fn exponential(a: &Matrix) -> Matrix {
     const TERMS: usize = 18;
     let n = a.nrows();
     let norm = a.row_iter().map(|row| row.iter().map(|entry| entry.abs()).sum::<f64>()).fold(0.0, f64::max);
-    let halvings = if norm > 1.0 { norm.log2().ceil().min(1100.0) as i32 } else { 0 };
-    let small = a * 0.5_f64.powi(halvings);
+    let halvings = if norm > 1.0 { log2(norm).ceil().min(1100.0) as i32 } else { 0 };
+    let small = a * powi(0.5, halvings);
     let mut term = Matrix::identity(n, n);
     let mut sum = term.clone();
     for k in 1..=TERMS {
@@ -183,7 +185,7 @@ fn tustin_rate(period_s: f64, prewarp_rad_s: Option<f64>) -> Result<f64, LinearE
             below,
         });
     }
-    Ok(prewarp / (0.5 * prewarp * period_s).tan())
+    Ok(prewarp / tan(0.5 * prewarp * period_s))
 }
 
 #[cfg(test)]
@@ -228,7 +230,7 @@ mod tests {
         let sampled = g.sampled(0.1, Discretization::Tustin(Some(10.0))).unwrap();
         let (here, there) =
             (g.at(Complex::new(0.0, 10.0)), sampled.at(Time::Sampled(0.1).at_frequency(10.0)));
-        assert!((here - there).norm() < 1e-11 * here.norm(), "{here} {there}");
+        assert!(complex::norm(here - there) < 1e-11 * complex::norm(here), "{here} {there}");
         assert!(g.sampled(0.1, Discretization::Tustin(Some(40.0))).is_err());
     }
 
@@ -242,8 +244,11 @@ mod tests {
             let other =
                 g.state_space().unwrap().sampled(0.2, how).unwrap().transfer(0, 0).unwrap().transfer();
             for turn in [0.1, 1.0, 3.0] {
-                let at = Complex::from_polar(1.0, turn);
-                assert!((one.at(at) - other.at(at)).norm() < 1e-11 * one.at(at).norm(), "{how:?}");
+                let at = complex::from_polar(1.0, turn);
+                assert!(
+                    complex::norm(one.at(at) - other.at(at)) < 1e-11 * complex::norm(one.at(at)),
+                    "{how:?}"
+                );
             }
         }
     }

@@ -3,6 +3,11 @@
 //! It knows nothing of heads and their joints: numbers in, numbers out. Everything here ends: iterations are bounded, and what they
 //! reached is said.
 
+#![cfg_attr(
+    test,
+    allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")
+)]
+
 mod binary;
 mod cascade;
 mod convert;

@@ -1,3 +1,5 @@
+use tracelight_maths::{complex, ln, powf, powi};
+
 use crate::{Complex, Polynomial, Root, TransferFunction};
 
 /// Where the poles of a closed loop go as the gain of its open loop rises.
@@ -67,7 +69,7 @@ impl TransferFunction {
         for Breakaway { gain, .. } in breakaways {
             // branches leave a double pole as roots do: by the square root of the gain
             let around =
-                (-12..=12).map(|n: i32| gain * (1.0 + f64::from(n.signum()) * 4.0_f64.powi(n.abs() - 13)));
+                (-12..=12).map(|n: i32| gain * (1.0 + f64::from(n.signum()) * powi(4.0, n.abs() - 13)));
             gains.extend(around.filter(|g| (low..=high).contains(g)));
         }
         gains.push(0.0);
@@ -91,7 +93,8 @@ impl TransferFunction {
         let crossing = self.margins().gain.iter().map(|m| m.factor).fold(0.0, f64::max);
         let meeting = breakaways.last().map_or(0.0, |b| b.gain);
         // the gain that brings a branch as far beyond all poles and zeros
-        let reach = 10.0 * self.poles().into_iter().chain(self.zeros()).map(|z| z.norm()).fold(0.0, f64::max);
+        let reach =
+            10.0 * self.poles().into_iter().chain(self.zeros()).map(complex::norm).fold(0.0, f64::max);
         let out = if self.relative_degree() > 0 { below.value(reach) / above.value(reach) } else { 0.0 };
         let high = [1e2 * most(&small) / most(&large), 10.0 * crossing, 10.0 * meeting, out.abs(), 1e2];
         let high = high.into_iter().filter(|gain| gain.is_finite()).fold(0.0, f64::max).min(1e300);
@@ -107,7 +110,7 @@ impl TransferFunction {
         let place = |meeting: Root| {
             let pole = meeting.value;
             // at a double pole or zero of the open loop branches begin or end
-            if ends.iter().any(|end| (end.value - pole).norm() <= end.radius + meeting.radius) {
+            if ends.iter().any(|end| complex::norm(end.value - pole) <= end.radius + meeting.radius) {
                 return None;
             }
             let gain = -below.at(pole) / above.at(pole);
@@ -185,7 +188,7 @@ impl Follower {
 
     /// Remembers where poles went.
     fn remember(&mut self, gain: f64, last: &[Complex], next: &[Complex]) {
-        let at = gain.ln();
+        let at = ln(gain);
         let by = at - self.at;
         self.moved = (last.len() == next.len() && by.is_finite())
             .then(|| (next.iter().zip(last).map(|(next, last)| next - last).collect(), by));
@@ -204,7 +207,7 @@ impl Follower {
         }
         // a step of 1e-10 leaves at most its square
         let middle =
-            (self.coefficients[last.len()] / self.coefficients[0]).abs().powf(2.0 / last.len() as f64);
+            powf((self.coefficients[last.len()] / self.coefficients[0]).abs(), 2.0 / last.len() as f64);
         let most = last.iter().map(Complex::norm_sqr).fold(middle, f64::max);
         let near = |place: Complex| 1e-20 * (place.norm_sqr() + 1e-30 * most);
         // two at one place push each other nowhere
@@ -214,7 +217,7 @@ impl Follower {
         if (0..last.len()).any(close) {
             return None;
         }
-        let mut places = self.ahead(last, gain.ln() - self.at).unwrap_or_else(|| last.to_vec());
+        let mut places = self.ahead(last, ln(gain) - self.at).unwrap_or_else(|| last.to_vec());
         for _ in 0..MOST_ROUNDS {
             let mut moving = false;
             for i in 0..places.len() {
@@ -308,20 +311,22 @@ mod tests {
                 let closed = open.closed_at(*gain);
                 assert_eq!(poles.len(), closed.degree());
                 for pole in poles {
-                    let terms = closed.coefficients().iter().fold(0.0, |sum, c| sum * pole.norm() + c.abs());
-                    assert!(closed.at(*pole).norm() <= 1e-12 * terms, "{text}: {gain} {pole}");
+                    let terms =
+                        closed.coefficients().iter().fold(0.0, |sum, c| sum * complex::norm(*pole) + c.abs());
+                    assert!(complex::norm(closed.at(*pole)) <= 1e-12 * terms, "{text}: {gain} {pole}");
                 }
                 let sum: Complex = poles.iter().sum();
-                let size: f64 = poles.iter().map(|p| p.norm()).sum();
+                let size: f64 = poles.iter().map(|p| complex::norm(*p)).sum();
                 assert!(
                     (sum.re + closed.coefficient(closed.degree() - 1) / closed.leading()).abs()
                         <= 1e-6 * size,
                     "{text}: {gain}"
                 );
             }
-            let far = locus.poles.last().unwrap().iter().map(|p| p.norm()).fold(1.0, f64::max);
+            let far = locus.poles.last().unwrap().iter().map(|p| complex::norm(*p)).fold(1.0, f64::max);
             for pair in locus.poles.windows(2).skip(1) {
-                let moved = pair[0].iter().zip(&pair[1]).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+                let moved =
+                    pair[0].iter().zip(&pair[1]).map(|(a, b)| complex::norm(a - b)).fold(0.0, f64::max);
                 assert!(moved < 0.1 * far, "{text}: {moved} of {far}");
             }
         }
@@ -363,7 +368,7 @@ mod tests {
         let last = locus.poles.last().unwrap();
         let radius = locus.gains.last().unwrap().powf(1.0 / 60.0);
         assert!(
-            last.iter().all(|pole| ((pole + 1.0).norm() / radius - 1.0).abs() < 0.5),
+            last.iter().all(|pole| (complex::norm(pole + 1.0) / radius - 1.0).abs() < 0.5),
             "{last:?} {radius}"
         );
     }

@@ -1,5 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
+use tracelight_maths::{atan, complex, ln};
+
 use crate::binary::{join, split};
 use crate::{Complex, Polynomial, Time, TransferFunction};
 
@@ -50,7 +52,7 @@ pub struct ModulusMargin {
 impl Margins {
     /// The gain margin nearest to 1, either way.
     pub fn least_gain(&self) -> Option<GainMargin> {
-        self.gain.iter().copied().min_by(|a, b| a.factor.ln().abs().total_cmp(&b.factor.ln().abs()))
+        self.gain.iter().copied().min_by(|a, b| ln(a.factor).abs().total_cmp(&ln(b.factor).abs()))
     }
 
     /// The phase margin nearest to 0, either way.
@@ -90,7 +92,10 @@ impl TransferFunction {
             return Vec::new();
         }
         let crossings = along.frequencies(&(&square(&along.above) - &square(&along.below)));
-        crossings.into_iter().map(|w| self.refined(w, |value| value.norm().ln(), |slope| slope.re)).collect()
+        crossings
+            .into_iter()
+            .map(|w| self.refined(w, |value| ln(complex::norm(value)), |slope| slope.re))
+            .collect()
     }
 
     /// The value at a frequency, where it rests from its gain there.
@@ -100,7 +105,7 @@ impl TransferFunction {
 
     fn phase_margins(&self, along: &Along) -> Vec<PhaseMargin> {
         let margin = |rad_s: f64| {
-            let phase_rad = (-self.at(self.time().at_frequency(rad_s))).arg();
+            let phase_rad = complex::arg(-self.at(self.time().at_frequency(rad_s)));
             let late = if phase_rad < 0.0 { phase_rad + TAU } else { phase_rad };
             PhaseMargin { rad_s, phase_rad, delay_s: late / rad_s }
         };
@@ -114,7 +119,7 @@ impl TransferFunction {
         let across = across(&along.above, &along.below);
         let between =
             if along.is_always_real() { Vec::new() } else { along.frequencies(&across) }.into_iter();
-        let refined = between.map(|w| self.refined(w, |value| (-value).arg(), |slope| slope.im));
+        let refined = between.map(|w| self.refined(w, |value| complex::arg(-value), |slope| slope.im));
         let mut all: Vec<f64> = ends.chain(refined).collect();
         all.sort_by(f64::total_cmp);
         all.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * *b);
@@ -129,7 +134,7 @@ impl TransferFunction {
     fn modulus_margin(&self, along: &Along) -> Option<ModulusMargin> {
         let (above, below) = (square(&(&along.above + &along.below)), square(&along.below));
         let flat = &(&above.derivative() * &below) - &(&above * &below.derivative());
-        let distance = |rad_s: f64| (1.0 + self.value(rad_s)).norm();
+        let distance = |rad_s: f64| complex::norm(1.0 + self.value(rad_s));
         let mut places: Vec<(f64, f64)> =
             along.frequencies(&flat).into_iter().map(|w| (w, distance(w))).collect();
         places.push((0.0, distance(0.0)));
@@ -205,7 +210,7 @@ impl Along {
         let along = real.map(|root| join(root.value.re.sqrt(), self.unit));
         let mut found: Vec<f64> = match self.time {
             Time::Continuous => along.collect(),
-            Time::Sampled(period_s) => along.map(|v| 2.0 * v.atan() / period_s).collect(),
+            Time::Sampled(period_s) => along.map(|v| 2.0 * atan(v) / period_s).collect(),
         };
         found.sort_by(f64::total_cmp);
         found
@@ -379,7 +384,7 @@ mod tests {
             let found = g.margins().modulus.unwrap();
             let seen = crate::logspace((1e-3, 1e4), 20_000)
                 .into_iter()
-                .map(|w| (1.0 + g.at(Complex::new(0.0, w))).norm());
+                .map(|w| complex::norm(1.0 + g.at(Complex::new(0.0, w))));
             let nearest = seen.fold(f64::INFINITY, f64::min);
             assert!(
                 found.distance <= nearest && found.distance > nearest - 1e-5,

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use tracelight_maths::log10;
+
 use crate::polynomial::Polynomial;
 
 /// `13.16 s² + 1.754 s + 10.29`.
@@ -37,7 +39,7 @@ pub fn four_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
-    let exponent = value.abs().log10().floor() as i32;
+    let exponent = log10(value.abs()).floor() as i32;
     let trimmed = |text: String| match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,

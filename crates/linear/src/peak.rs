@@ -1,3 +1,5 @@
+use tracelight_maths::complex;
+
 use crate::TransferFunction;
 use crate::margins::{Along, square};
 use crate::stability::Stability;
@@ -26,7 +28,7 @@ impl TransferFunction {
         let gain = |rad_s: f64| match rad_s {
             w if w.is_infinite() && self.relative_degree() > 0 => 0.0,
             w if w.is_infinite() => self.numerator().leading().abs(),
-            w => self.value(w).norm(),
+            w => complex::norm(self.value(w)),
         };
         let places = [0.0, end].into_iter().chain(along.frequencies(&flat));
         let peaks = places.map(|rad_s| Peak { rad_s, gain: gain(rad_s) });

@@ -1,5 +1,7 @@
 use std::ops::{Add, Mul, Sub};
 
+use tracelight_maths::complex;
+
 use crate::Complex;
 
 /// A polynomial with real coefficients, highest power first, without leading zeros; the zero polynomial has none.
@@ -137,7 +139,7 @@ pub(crate) fn are_paired(roots: &[Complex]) -> bool {
     let mut below: Vec<Complex> = roots.iter().filter(|r| r.im < 0.0).map(Complex::conj).collect();
     let mut above = roots.iter().filter(|r| r.im > 0.0);
     let all = above.all(|r| {
-        let place = below.iter().position(|b| (b - r).norm() <= 1e-9 * r.norm());
+        let place = below.iter().position(|b| complex::norm(b - r) <= 1e-9 * complex::norm(*r));
         place.map(|place| below.swap_remove(place)).is_some()
     });
     all && below.is_empty()

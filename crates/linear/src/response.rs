@@ -1,3 +1,5 @@
+use tracelight_maths::complex;
+
 use crate::{Complex, LinearError, Matrix, StateSpace, Time, TransferFunction};
 
 /// What a system of one input and one output does over time.
@@ -65,9 +67,12 @@ impl TransferFunction {
     pub fn settling_horizon_s(&self) -> f64 {
         /// Time constants: e⁻⁷ is a thousandth.
         const CONSTANTS: f64 = 7.0;
-        let rates =
-            self.poles().into_iter().map(|pole| self.time().continuous(pole)).filter(|p| p.norm() > 1e-9);
-        let slowest = rates.map(|p| p.re.abs().max(0.05 * p.norm())).fold(f64::INFINITY, f64::min);
+        let rates = self
+            .poles()
+            .into_iter()
+            .map(|pole| self.time().continuous(pole))
+            .filter(|p| complex::norm(*p) > 1e-9);
+        let slowest = rates.map(|p| p.re.abs().max(0.05 * complex::norm(p))).fold(f64::INFINITY, f64::min);
         if slowest.is_finite() { CONSTANTS / slowest } else { 1.0 }
     }
 }
@@ -211,7 +216,7 @@ impl Mode {
     /// Of a pole. What is over at once, as a pole at z = 0, has an infinite frequency; what stays, at 0, none.
     pub fn of(pole: Complex, time: Time) -> Self {
         let s = time.continuous(pole);
-        let natural_rad_s = s.norm();
+        let natural_rad_s = complex::norm(s);
         let oscillates = natural_rad_s > 0.0 && natural_rad_s.is_finite();
         Self { pole, natural_rad_s, damping: if oscillates { -s.re / natural_rad_s } else { 1.0 } }
     }

@@ -1,3 +1,5 @@
+use tracelight_maths::{complex, ln};
+
 use crate::{Complex, Polynomial, Time, TransferFunction};
 
 /// What becomes of what a system does by itself. Worse is greater.
@@ -41,12 +43,12 @@ pub(crate) fn stabilities(polynomial: &Polynomial, time: Time) -> Vec<(Complex, 
         let (beyond, edge) = match time {
             Time::Continuous => (root.re, Complex::new(0.0, root.im)),
             Time::Sampled(_) if root == Complex::ZERO => (-1.0, Complex::ONE),
-            Time::Sampled(_) => (root.norm() - 1.0, root / root.norm()),
+            Time::Sampled(_) => (complex::norm(root) - 1.0, root / complex::norm(root)),
         };
         // the value there, were those that are nearer no nearer than it: another root at the edge does not bring it there
-        let away = (root - edge).norm();
-        let factor = |other: &Complex| (other - edge).norm().max(away).ln();
-        let value = polynomial.leading().abs().ln() + roots.iter().map(factor).sum::<f64>();
+        let away = complex::norm(root - edge);
+        let factor = |other: &Complex| ln(complex::norm(other - edge).max(away));
+        let value = ln(polynomial.leading().abs()) + roots.iter().map(factor).sum::<f64>();
         let side = if beyond < 0.0 { Stability::Stable } else { Stability::Growing };
         // what is no number compares as neither
         let is_off = value > polynomial.rounding_ln(edge);
@@ -58,11 +60,11 @@ pub(crate) fn stabilities(polynomial: &Polynomial, time: Time) -> Vec<(Complex, 
 impl Polynomial {
     /// ln of what roundings of all coefficients may make of a value of 0 at a place.
     fn rounding_ln(&self, at: Complex) -> f64 {
-        let size = at.norm().ln();
-        let term = |(c, power): (&f64, f64)| c.abs().ln() + if power > 0.0 { power * size } else { 0.0 };
+        let size = ln(complex::norm(at));
+        let term = |(c, power): (&f64, f64)| ln(c.abs()) + if power > 0.0 { power * size } else { 0.0 };
         let most = self.coefficients().iter().rev().zip((0..).map(f64::from)).map(term);
         let count = self.coefficients().len() as f64;
-        most.fold(f64::NEG_INFINITY, f64::max) + (2.0 * count * f64::EPSILON).ln()
+        most.fold(f64::NEG_INFINITY, f64::max) + ln(2.0 * count * f64::EPSILON)
     }
 }
 

@@ -1,5 +1,7 @@
 use std::fmt;
 
+use tracelight_maths::complex;
+
 use crate::{Complex, LinearError};
 
 /// Whether a system goes on all the time or from sample to sample.
@@ -22,7 +24,7 @@ impl Time {
     pub fn at_frequency(self, rad_s: f64) -> Complex {
         match self {
             Self::Continuous => Complex::new(0.0, rad_s),
-            Self::Sampled(period_s) => Complex::from_polar(1.0, rad_s * period_s),
+            Self::Sampled(period_s) => complex::from_polar(1.0, rad_s * period_s),
         }
     }
 
@@ -38,7 +40,7 @@ impl Time {
     pub fn continuous(self, pole: Complex) -> Complex {
         match self {
             Self::Continuous => pole,
-            Self::Sampled(period_s) => pole.ln() / period_s,
+            Self::Sampled(period_s) => complex::ln(pole) / period_s,
         }
     }
 

@@ -1,5 +1,7 @@
 use std::fmt;
 
+use tracelight_maths::complex;
+
 use crate::Complex;
 use crate::error::LinearError;
 use crate::polynomial::Polynomial;
@@ -139,13 +141,16 @@ impl TransferFunction {
         let (mut zeros, mut poles) = (self.numerator.roots(), self.denominator.roots());
         let mut cancelled = Vec::new();
         let close = |zero: &Root, pole: &Root| {
-            let apart = (zero.value - pole.value).norm();
-            apart <= zero.radius + pole.radius + tolerance * zero.value.norm().max(pole.value.norm())
+            let apart = complex::norm(zero.value - pole.value);
+            apart
+                <= zero.radius
+                    + pole.radius
+                    + tolerance * complex::norm(zero.value).max(complex::norm(pole.value))
         };
         let mut i = 0;
         while i < poles.len() {
             let pole = poles[i];
-            let apart = |zero: &Root| (zero.value - pole.value).norm();
+            let apart = |zero: &Root| complex::norm(zero.value - pole.value);
             let taken = (0..zeros.len())
                 // what is real is taken back by what is real: pairs stay pairs
                 .filter(|&j| close(&zeros[j], &pole) && (zeros[j].value.im == 0.0) == (pole.value.im == 0.0))
@@ -239,7 +244,7 @@ mod tests {
         let g = tf(&[2e90], &[1.0, 1e9]).series(&tf(&[1e100], &[1.0, 1e150])).unwrap();
         let g = g.series(&tf(&[1.0], &[1.0, 1e30])).unwrap();
         assert!(
-            (g.at(Complex::new(0.0, 1e9)) - Complex::new(1e1, -1e1)).norm() < 1e-10,
+            complex::norm(g.at(Complex::new(0.0, 1e9)) - Complex::new(1e1, -1e1)) < 1e-10,
             "{}",
             g.at(Complex::new(0.0, 1e9))
         );

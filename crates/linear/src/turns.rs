@@ -1,5 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
+use tracelight_maths::complex;
+
 use crate::stability::{Stability, stabilities};
 use crate::{Complex, Polynomial, Time, TransferFunction};
 
@@ -41,7 +43,7 @@ impl Turns {
             let factor = move |(root, stability): (Complex, Stability)| {
                 let root = match (stability, time) {
                     (Stability::Marginal, Time::Continuous) => Complex::new(0.0, root.im),
-                    (Stability::Marginal, Time::Sampled(_)) => root / root.norm(),
+                    (Stability::Marginal, Time::Sampled(_)) => root / complex::norm(root),
                     _ => root,
                 };
                 Factor { root, is_inside: stability != Stability::Growing, is_zero }
@@ -81,7 +83,8 @@ impl Turns {
         let (Some(&first), Some(&last)) = (rad_s.first(), rad_s.last()) else { return false };
         let turned = |forwards: bool| {
             let [from, to] = [first, last].map(|w| self.turned(w, |q| q.forwards == forwards));
-            (to.product.arg() - from.product.arg() + TAU * f64::from(to.turns - from.turns)).abs()
+            (complex::arg(to.product) - complex::arg(from.product) + TAU * f64::from(to.turns - from.turns))
+                .abs()
         };
         self.time == Time::Continuous && rad_s.is_sorted() && turned(true) + turned(false) < 0.9 * PI
     }
@@ -125,7 +128,7 @@ fn nearest(about: f64, value: Complex) -> f64 {
     if value == Complex::ZERO || !value.is_finite() {
         return about;
     }
-    let exact = value.arg();
+    let exact = complex::arg(value);
     exact + TAU * ((about - exact) / TAU).round()
 }
 

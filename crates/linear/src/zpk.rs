@@ -1,5 +1,7 @@
 use std::fmt;
 
+use tracelight_maths::complex;
+
 use crate::Complex;
 use crate::error::LinearError;
 use crate::notation::{four_digits, quadratic};
@@ -75,7 +77,7 @@ impl Zpk {
             (0.0, 0.0) => self.time.variable().to_owned(),
             (re, 0.0) => format!("(1 {} s/{})", if re > 0.0 { '−' } else { '+' }, four_digits(re.abs())),
             (re, _) => {
-                let natural = root.norm();
+                let natural = complex::norm(*root);
                 format!("(1 + 2·{}·s/{n} + (s/{n})²)", four_digits(-re / natural), n = four_digits(natural))
             }
         };

@@ -3,11 +3,12 @@
 use std::sync::LazyLock;
 
 use tracelight_image::Plane;
+use tracelight_maths::single;
 
 /// Light of each level, as a share of the brightest: cameras store it to a power of about 1/2.2.
 pub(crate) fn light_of_levels() -> &'static [f32; 256] {
     static LIGHT: LazyLock<[f32; 256]> =
-        LazyLock::new(|| std::array::from_fn(|level| (level as f32 / 255.0).powf(2.2)));
+        LazyLock::new(|| std::array::from_fn(|level| single::powf(level as f32 / 255.0, 2.2)));
     &LIGHT
 }
 

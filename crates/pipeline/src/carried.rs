@@ -3,6 +3,7 @@
 
 use std::f64::consts::PI;
 
+use tracelight_maths::atan2;
 use tracelight_stroke::{Drawing, FitOptions, Path, Piece, Point, Stroke, fit};
 
 /// Spacing of the points that carry a stroke, px.
@@ -68,5 +69,5 @@ fn stretches(path: &Path) -> Vec<Vec<Point>> {
 #[must_use]
 pub fn has_corner(before: Piece, after: Piece) -> bool {
     let (a, b) = (before.end_tangent(), after.start_tangent());
-    a.cross(b).atan2(a.dot(b)).abs() > CORNER_RAD
+    atan2(a.cross(b), a.dot(b)).abs() > CORNER_RAD
 }

@@ -2,6 +2,7 @@
 
 use tracelight_aim::{Homography, proportions};
 use tracelight_image::Grey;
+use tracelight_maths::planar;
 use tracelight_picture::Raster;
 use tracelight_sheet::{Page, Sheet};
 use tracelight_stroke::{Drawing, Point};
@@ -162,7 +163,7 @@ pub(crate) fn remark(sheet: &Sheet, straight: Option<&Straight>) -> String {
 #[must_use]
 pub fn clockwise(mut corners: [Point; 4]) -> [Point; 4] {
     let middle = corners.iter().fold(Point::ORIGIN, |sum, c| sum + c.to_vec2() / 4.0);
-    corners.sort_by(|a, b| (*a - middle).atan2().total_cmp(&(*b - middle).atan2()));
+    corners.sort_by(|a, b| planar::heading(*a - middle).total_cmp(&planar::heading(*b - middle)));
     // angles run from −π, clockwise as seen: the upper left is the one of least x + y
     let first = (0..4).min_by(|&a, &b| {
         let sum = |k: usize| corners[k].x + corners[k].y;

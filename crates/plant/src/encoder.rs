@@ -1,3 +1,4 @@
+use tracelight_maths::sin;
 use tracelight_rig::Measurement;
 
 /// Number of edges after which a quadrature encoder's misplacements repeat.
@@ -62,7 +63,7 @@ impl Encoder {
         if counts == 0.0 {
             return angle_rad;
         }
-        angle_rad + counts * self.count_rad * ((angle_rad + direction).sin() - direction.sin())
+        angle_rad + counts * self.count_rad * (sin(angle_rad + direction) - sin(direction))
     }
 
     /// Whether the counter misses an edge.

@@ -1,4 +1,5 @@
 use tracelight_dynamics::Friction;
+use tracelight_maths::{exp, sin};
 
 use crate::wear::Wear;
 
@@ -39,10 +40,10 @@ impl WornFriction {
         let mut scale = 1.0;
         if self.excess != 0.0 {
             let ratio = rate_rad_s / self.stribeck_speed_rad_s;
-            scale += self.excess * (-ratio * ratio).exp();
+            scale += self.excess * exp(-ratio * ratio);
         }
         if self.ripple != 0.0 {
-            scale *= 1.0 + self.ripple * (RIPPLE_PERIODS * angle_rad + self.ripple_phase_rad).sin();
+            scale *= 1.0 + self.ripple * sin(RIPPLE_PERIODS * angle_rad + self.ripple_phase_rad);
         }
         Levels { pos_nm: scale * self.nominal.coulomb_pos_nm, neg_nm: scale * self.nominal.coulomb_neg_nm }
     }

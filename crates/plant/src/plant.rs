@@ -1,3 +1,4 @@
+use tracelight_maths::{exp, sin};
 use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, Sensed, TICK_F64_S};
 
 use crate::belt::Belted;
@@ -196,7 +197,7 @@ impl Plant {
 
     /// Torque of the motors: what is asked for, as much of it as the supply has, once the current is there.
     fn follow_command(&mut self, asked_nm: PanTilt<f64>, length_s: f64) {
-        let ripple = self.wear.supply_ripple * (std::f64::consts::TAU * SUPPLY_HZ * self.time_s).sin();
+        let ripple = self.wear.supply_ripple * sin(std::f64::consts::TAU * SUPPLY_HZ * self.time_s);
         let supply = self.supply_left * (1.0 + ripple);
         let own = self.state.rate_rad_s.map(|rate| self.wear.back_emf_nm_s_per_rad * rate);
         let there = PanTilt::from_fn(|j| supply * asked_nm[j] - own[j]);
@@ -205,7 +206,7 @@ impl Plant {
             self.current_nm = there;
             return;
         }
-        let share = 1.0 - (-length_s / lag_s).exp();
+        let share = 1.0 - exp(-length_s / lag_s);
         for joint in Joint::BOTH {
             self.current_nm[joint] += share * (there[joint] - self.current_nm[joint]);
         }

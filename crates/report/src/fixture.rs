@@ -1,5 +1,6 @@
 //! A job without a simulator: three strokes followed with a known error, for the tests of the outputs.
 
+use tracelight_maths::planar;
 use tracelight_picture::Raster;
 use tracelight_rig::{
     Actuation, Darkness, DarknessSet, Measurement, PanTilt, Phase, Setpoint, TICK_F64_S, Telemetry,
@@ -116,7 +117,7 @@ fn five_points() -> Stroke {
     let corner = |i: i32| {
         let angle = std::f64::consts::PI * (0.5 + f64::from(i) / 5.0);
         let radius = if i % 2 == 0 { 0.2 } else { 0.2 * 0.382 };
-        Point::new(0.0, 0.02) + Vec2::from_angle(angle) * radius
+        Point::new(0.0, 0.02) + planar::direction(angle) * radius
     };
     let corners: Vec<_> = (0..10).map(corner).collect();
     Stroke::new(Path::polyline(&corners, true).unwrap())

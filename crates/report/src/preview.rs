@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use tracelight_maths::{hypot, log10, powf};
 use tracelight_rig::Joint;
 use tracelight_rig::TICK_F64_S;
 use tracelight_stroke::{Point, Rect};
@@ -104,7 +105,7 @@ pub fn preview(plan: &Plan, by: ColourBy, set_m_s: f64) -> String {
 fn scale_bar(svg: &mut String, frame: &Frame, (to, y): (f64, f64)) {
     const LONGEST: f64 = 180.0;
     let most_mm = 1e3 * LONGEST / frame.scale;
-    let decade = 10_f64.powf(most_mm.log10().floor());
+    let decade = powf(10.0, log10(most_mm).floor());
     let length_mm = [5.0, 2.0, 1.0].map(|n| n * decade).into_iter().find(|&l| l <= most_mm).unwrap_or(decade);
     let from = to - 1e-3 * length_mm * frame.scale;
     let _ = writeln!(
@@ -152,7 +153,7 @@ fn dark_way(plan: &Plan, frame: &Frame) -> String {
         let mut last = None;
         for (i, p) in run.iter().enumerate() {
             let (x, y) = frame.at(p.spot);
-            let is_near = last.is_some_and(|(u, v): (f64, f64)| (x - u).hypot(y - v) < 4.0 * SHORTEST);
+            let is_near = last.is_some_and(|(u, v): (f64, f64)| hypot(x - u, y - v) < 4.0 * SHORTEST);
             if is_near && i + 1 < run.len() {
                 continue;
             }
@@ -179,7 +180,7 @@ fn lit_way(svg: &mut String, plan: &Plan, frame: &Frame, colour: &dyn Fn(&PlanPo
         let wanted = colour(&pair[1], speed_m_s);
         match open {
             Some((now, last)) if now == wanted => {
-                if (to.0 - last.0).hypot(to.1 - last.1) >= SHORTEST {
+                if hypot(to.0 - last.0, to.1 - last.1) >= SHORTEST {
                     let _ = write!(svg, "L{:.1} {:.1}", to.0, to.1);
                     open = Some((now, to));
                 }

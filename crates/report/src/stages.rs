@@ -6,6 +6,7 @@ use std::io::Cursor;
 use image::{GrayImage, ImageFormat};
 use tracelight_chart::{Colour, Curve, Figure, Panel, Pen, Theme};
 use tracelight_image::Grey;
+use tracelight_maths::log10;
 use tracelight_task::Failure;
 use tracelight_vision::Stages;
 
@@ -75,7 +76,7 @@ fn png((width, height): (usize, usize), levels: &[u8]) -> Result<String, Failure
 /// How many pixels are how dark, in powers of ten, and from where on they are ink.
 fn histogram(stages: &Stages) -> Result<String, Failure> {
     let counts = stages.histogram();
-    let high = |count: usize| (1.0 + count as f64).log10();
+    let high = |count: usize| log10(1.0 + count as f64);
     let steps = counts
         .iter()
         .enumerate()

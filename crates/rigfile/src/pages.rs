@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use tracelight_aim::PlacedPage;
+use tracelight_maths::{hypot, planar};
 use tracelight_stroke::{Affine, Point};
 
 /// A page of a board, as people call it: page 3, or of a coarse board page 3 (coarse).
@@ -59,7 +60,7 @@ impl PageTable {
     pub(crate) fn off_m(&self, page: &PlacedPage) -> Option<f64> {
         let own = Self::of(page);
         let [x, y] = [0, 1].map(|k| own.middle_m[k] - self.middle_m[k]);
-        ((own.board, own.page) == (self.board.clone(), self.page)).then(|| x.hypot(y))
+        ((own.board, own.page) == (self.board.clone(), self.page)).then(|| hypot(x, y))
     }
 
     /// The page's name and the wall's frame from its own; why there is no such page, otherwise.
@@ -80,6 +81,6 @@ impl PageTable {
                 self.turn_rad
             ));
         }
-        Ok((name, Affine::rotate(self.turn_rad).then_translate(Point::new(x, y).to_vec2())))
+        Ok((name, planar::rotation(self.turn_rad).then_translate(Point::new(x, y).to_vec2())))
     }
 }

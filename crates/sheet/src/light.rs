@@ -9,6 +9,7 @@
 use tracelight_image::levels::percentile;
 use tracelight_image::smooth::smoothed;
 use tracelight_image::{Plane, solve};
+use tracelight_maths::{exp, ln};
 
 use crate::shadow;
 use crate::two_tones::TwoTones;
@@ -192,7 +193,7 @@ struct Surface {
 
 impl Surface {
     fn over(bright: &Plane<f64>) -> Self {
-        let logs: Vec<f64> = bright.values.iter().map(|b| b.ln()).collect();
+        let logs: Vec<f64> = bright.values.iter().map(|b| ln(*b)).collect();
         let bases: Vec<[f64; 6]> = (0..logs.len()).map(|i| basis(bright, i)).collect();
         let brightest = logs.iter().copied().fold(f64::MIN, f64::max);
         let mut surface = Self { of: [brightest, 0.0, 0.0, 0.0, 0.0, 0.0], brightest };
@@ -237,7 +238,7 @@ impl Surface {
         T: Copy + Default,
     {
         let log = |i: usize| self.log_at(&basis(tiles, i)).min(self.brightest);
-        (0..tiles.values.len()).map(move |i| log(i).exp())
+        (0..tiles.values.len()).map(move |i| exp(log(i)))
     }
 }
 

@@ -1,3 +1,4 @@
+use tracelight_maths::powi;
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_trajectory::JointMotion;
 
@@ -73,7 +74,7 @@ impl MotionArray {
         let mut dice = oorandom::Rand64::new(u128::from(seed));
         let places = (length_s.round() as usize).max(4);
         // where there is less time from place to place, they are nearer, so that accelerations stay what they are
-        let nearer = (length_s / places as f64).powi(2).min(1.0);
+        let nearer = powi(length_s / places as f64, 2).min(1.0);
         let rows: Vec<_> = (0..=places)
             .map(|place| {
                 let mut signed = |reach: f64| nearer * reach * (2.0 * dice.rand_float() - 1.0);

@@ -6,6 +6,11 @@
 //!
 //! Points and vectors are [`kurbo`]'s: differences of points are vectors, and adding two points does not compile.
 
+#![cfg_attr(
+    test,
+    allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")
+)]
+
 mod colour;
 mod compare;
 mod fit;

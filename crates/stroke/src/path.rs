@@ -1,4 +1,5 @@
 use kurbo::{Affine, CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, Point, Vec2};
+use tracelight_maths::{acos, sin_cos};
 
 /// One piece of a [`Path`], from the end of the piece before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -308,7 +309,7 @@ impl Piece {
             Element::Line { .. } => 1.0,
             Element::Arc { centre, sweep } => {
                 let radius = self.from.distance(centre).max(1e-300);
-                let step = 2.0 * (1.0 - (tolerance / radius).min(1.0)).acos();
+                let step = 2.0 * acos(1.0 - (tolerance / radius).min(1.0));
                 (sweep.abs() / step.max(1e-6)).ceil()
             }
             Element::Cubic { c1, c2, to } => {
@@ -321,7 +322,7 @@ impl Piece {
 }
 
 fn rotate(v: Vec2, angle_rad: f64) -> Vec2 {
-    let (s, c) = angle_rad.sin_cos();
+    let (s, c) = sin_cos(angle_rad);
     Vec2::new(c * v.x - s * v.y, s * v.x + c * v.y)
 }
 
@@ -353,6 +354,8 @@ fn cubic_at(curve: CubicBez, t: f64) -> PathPoint {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::planar;
+
     use super::*;
     use std::f64::consts::PI;
 
@@ -370,7 +373,7 @@ mod tests {
         let p = path.pieces().next().unwrap().at_length(PI / 4.0, 1e-9);
         assert!((p.curvature.hypot() - 1.0).abs() < 1e-12);
         assert!(p.tangent.dot(p.curvature).abs() < 1e-12);
-        assert!((p.tangent.atan2() - 3.0 * PI / 4.0).abs() < 1e-12);
+        assert!((planar::heading(p.tangent) - 3.0 * PI / 4.0).abs() < 1e-12);
     }
 
     #[test]

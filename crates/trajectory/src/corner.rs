@@ -1,5 +1,6 @@
 //! Strokes cut into legs: what becomes of a break of the tangent, which is passed, rounded off, or the end of a leg.
 
+use tracelight_maths::{sin, tan};
 use tracelight_stroke::{Path, Piece};
 
 use crate::leg::{DUST_M, Fate, LENGTH_TOLERANCE_M, Leg};
@@ -67,15 +68,13 @@ impl<'a> Corners<'a> {
         let exact = self.request.lit_speed == LitSpeed::Exact;
         let sharp = if turn < CORNER_RAD && !exact { Fate::Pass(passed_m_s) } else { Fate::Cut };
         // an arc that touches both lines leaves the corner by d tan(θ/4) and has the radius d / tan(θ/2)
-        let cut_m = (self.request.corner_m / (0.25 * turn).tan()).min(room_m);
-        let rounded_m_s = (self.acceleration_m_s2 * cut_m / (0.5 * turn).tan()).max(0.0).sqrt();
+        let cut_m = (self.request.corner_m / tan(0.25 * turn)).min(room_m);
+        let rounded_m_s = (self.acceleration_m_s2 * cut_m / tan(0.5 * turn)).max(0.0).sqrt();
         let rounds = match exact {
             true => {
                 cut_m > 0.0 && rounded_m_s >= self.request.speed_m_s && self.keeps_speed(before, after, cut_m)
             }
-            false => {
-                cut_m * turn / (0.5 * turn).tan() >= SHORTEST_M && self.gains(before, after, cut_m, sharp)
-            }
+            false => cut_m * turn / tan(0.5 * turn) >= SHORTEST_M && self.gains(before, after, cut_m, sharp),
         };
         if rounds { Fate::Round(cut_m) } else { sharp }
     }
@@ -126,5 +125,5 @@ impl<'a> Corners<'a> {
 
 /// How fast a small break of the tangent is passed, m/s.
 fn break_speed(turn_rad: f64) -> f64 {
-    JUMP_M_S / (2.0 * (0.5 * turn_rad).sin()).max(1e-12)
+    JUMP_M_S / (2.0 * sin(0.5 * turn_rad)).max(1e-12)
 }

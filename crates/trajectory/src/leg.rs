@@ -1,6 +1,7 @@
 //! Legs: stretches of a stroke without a corner.
 
 use tracelight_aim::{AimError, JointPath, SpotMotion};
+use tracelight_maths::sin_cos;
 use tracelight_stroke::{PathPoint, Piece, Point};
 
 use crate::machine::Machine;
@@ -157,7 +158,7 @@ fn onwards(at: PathPoint, by_m: f64) -> PathPoint {
     }
     let per_radius = at.tangent.cross(at.curvature);
     let angle = per_radius * by_m;
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = sin_cos(angle);
     let normal = at.tangent.turn_90();
     // sin x / x and (1 − cos x) / x
     let (along, aside) =
@@ -172,6 +173,8 @@ fn onwards(at: PathPoint, by_m: f64) -> PathPoint {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::planar;
+
     use super::*;
     use tracelight_stroke::{Element, Path, Vec2};
 
@@ -212,9 +215,9 @@ mod tests {
             (length + 0.02, std::f64::consts::PI + 0.2),
         ] {
             let at = legs[0].at(s);
-            let arm = Vec2::from_angle(angle) * 0.1;
+            let arm = planar::direction(angle) * 0.1;
             assert!((at.point.to_vec2() - arm).hypot() < 1e-12, "{s}: {at:?}");
-            assert!((at.tangent - Vec2::from_angle(angle).turn_90()).hypot() < 1e-12, "{s}: {at:?}");
+            assert!((at.tangent - planar::direction(angle).turn_90()).hypot() < 1e-12, "{s}: {at:?}");
             assert!((at.curvature + arm * 100.0).hypot() < 1e-9, "{s}: {at:?}");
         }
     }

@@ -4,6 +4,8 @@ pub(crate) mod limits;
 mod ramped;
 mod smooth;
 
+use tracelight_maths::powi;
+
 use crate::move_point::MovePoint;
 use limits::{MoveLimits, Peaks};
 use ramped::Phases;
@@ -114,7 +116,7 @@ impl Profile {
                     speed: most.velocity * self.distance * per_s,
                     acceleration,
                     deceleration: acceleration,
-                    jerk: (!unit.starts_hard()).then_some(most.jerk * self.distance * per_s.powi(3)),
+                    jerk: (!unit.starts_hard()).then_some(most.jerk * self.distance * powi(per_s, 3)),
                     speed_jump: unit.at(0.0).velocity * self.distance * per_s,
                 }
             }

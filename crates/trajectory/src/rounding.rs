@@ -1,10 +1,11 @@
 //! Corners rounded off.
 
+use tracelight_maths::{atan2, sin, tan};
 use tracelight_stroke::{Element, Piece, Vec2};
 
 /// The angle between two directions, rad.
 pub(crate) fn turn_rad(incoming: Vec2, outgoing: Vec2) -> f64 {
-    incoming.cross(outgoing).atan2(incoming.dot(outgoing)).abs()
+    atan2(incoming.cross(outgoing), incoming.dot(outgoing)).abs()
 }
 
 /// The curve that leads from the end of one piece to the start of the next, touching both: between straight lines cut
@@ -13,13 +14,15 @@ pub(crate) fn rounding(before: &Piece, after: &Piece) -> Piece {
     let (from, to) = (before.end(), after.from);
     let (incoming, outgoing) = (before.end_tangent(), after.start_tangent());
     let turn = turn_rad(incoming, outgoing);
-    let radius = 0.5 * from.distance(to) / (0.5 * turn).sin().max(1e-12);
-    let handle = 4.0 / 3.0 * (0.25 * turn).tan() * radius;
+    let radius = 0.5 * from.distance(to) / sin(0.5 * turn).max(1e-12);
+    let handle = 4.0 / 3.0 * tan(0.25 * turn) * radius;
     Piece { from, element: Element::Cubic { c1: from + incoming * handle, c2: to - outgoing * handle, to } }
 }
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::planar;
+
     use super::*;
     use tracelight_stroke::Point;
 
@@ -29,7 +32,7 @@ mod tests {
         for degrees in [10.0f64, 45.0, 90.0, 135.0, 170.0] {
             let turn = degrees.to_radians();
             let cut = TOLERANCE_M / (0.25 * turn).tan();
-            let (out, corner) = (Vec2::from_angle(turn), Point::new(0.1, 0.0));
+            let (out, corner) = (planar::direction(turn), Point::new(0.1, 0.0));
             let line = |from, to| Piece { from, element: Element::Line { to } };
             let before = line(Point::ORIGIN, corner - Vec2::new(cut, 0.0));
             let after = line(corner + out * cut, corner + out * 0.1);

@@ -1,3 +1,4 @@
+use tracelight_maths::{cbrt, powi};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 
 use crate::error::PlanError;
@@ -49,7 +50,7 @@ pub(crate) fn travel(
                 return Ok(motion);
             }
             // jerk goes with the third power of the time; between ticks, where the acceleration jumps, with the second
-            slower *= jerk.cbrt().max(1.002);
+            slower *= cbrt(jerk).max(1.002);
             continue;
         }
         let least = least_shrink(round);
@@ -75,7 +76,7 @@ pub(crate) const ROUNDS: usize = 200;
 pub(crate) fn least_shrink(round: usize) -> f64 {
     const FIRST: f64 = 0.002;
     const MOST: f64 = 0.03;
-    (FIRST * 1.5f64.powi(round.min(10) as i32)).min(MOST)
+    (FIRST * powi(1.5, round.min(10) as i32)).min(MOST)
 }
 
 /// What is left of a limit that is too high by `excess`, as a share of it: half at least.

@@ -1,4 +1,5 @@
 use tracelight_aim::SpotMotion;
+use tracelight_maths::powi;
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::{Point, StrokeEnd, Travel, Vec2};
 
@@ -141,7 +142,7 @@ impl<'a> TravelTime<'a> {
             let square = if quarter <= at_limit * at_limit {
                 quarter
             } else {
-                0.25 * (at_limit + span.abs() / limit).powi(2)
+                0.25 * powi(at_limit + span.abs() / limit, 2)
             };
             4.0 * square
         };

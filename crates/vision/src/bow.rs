@@ -3,6 +3,7 @@
 //! Where two lines run into each other at a few degrees, or touch, each leans towards the ink of both for a while before
 //! that. What it is further in tells where it goes.
 
+use tracelight_maths::{asin, planar, sin};
 use tracelight_stroke::{Parabola, Point, Vec2};
 
 use crate::bridge::{angle, measured};
@@ -52,11 +53,11 @@ impl Bow {
     /// Where it leads on a way of this length, and in which direction.
     fn beyond(&self, way: f64) -> (Point, Vec2) {
         let angle = self.turn * way;
-        let rotated = |by: f64| self.along.rotate_scale(Vec2::from_angle(by));
+        let rotated = |by: f64| self.along.rotate_scale(planar::direction(by));
         if self.turn.abs() < STRAIGHT {
             return (self.at + self.along * way, rotated(angle));
         }
-        let chord = 2.0 / self.turn * (0.5 * angle).sin();
+        let chord = 2.0 / self.turn * sin(0.5 * angle);
         (self.at + rotated(0.5 * angle) * chord, rotated(angle))
     }
 
@@ -69,7 +70,7 @@ impl Bow {
     fn off(&self, other: &Self) -> f64 {
         let chord = self.at.distance(other.at).max(1e-9);
         // along the bow it is further; beyond half a circle nothing is said
-        let half = (0.5 * self.turn.abs() * chord).min(1.0).asin();
+        let half = asin((0.5 * self.turn.abs() * chord).min(1.0));
         let way = if self.turn.abs() < STRAIGHT { chord } else { 2.0 * half / self.turn.abs() };
         let (place, along) = self.beyond(way);
         place.distance(other.at) / way + 0.5 * angle(along, -other.along).abs()
@@ -82,7 +83,8 @@ mod tests {
 
     /// On a circle about the origin from one angle to another.
     fn arc(radius: f64, from: f64, to: f64) -> Vec<Point> {
-        let at = |k: i32| Point::ORIGIN + Vec2::from_angle(from + (to - from) * f64::from(k) / 60.0) * radius;
+        let at =
+            |k: i32| Point::ORIGIN + planar::direction(from + (to - from) * f64::from(k) / 60.0) * radius;
         (0..=60).map(at).collect()
     }
 

@@ -2,6 +2,7 @@
 
 use tracelight_image::Plane;
 use tracelight_image::median::median;
+use tracelight_maths::atan2;
 use tracelight_stroke::{Parabola, Point, Vec2, polyline_length};
 
 /// Points from a line's end on of which its direction there is taken: as many as lie on a parabola.
@@ -216,7 +217,7 @@ fn is_inked(dark: &Plane<u8>, line: Point, place: Point) -> bool {
 
 /// From one direction to another, rad.
 pub(crate) fn angle(a: Vec2, b: Vec2) -> f64 {
-    a.cross(b).atan2(a.dot(b))
+    atan2(a.cross(b), a.dot(b))
 }
 
 /// The place nearest to all tips' lines; `None` where they are nearly parallel.

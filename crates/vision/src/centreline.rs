@@ -2,6 +2,7 @@
 
 use tracelight_image::median::median;
 use tracelight_image::{Mask, Plane, Region, long_axis};
+use tracelight_maths::powi;
 use tracelight_stroke::{Path, Point, Stroke, Vec2, polyline_length};
 
 use crate::follow;
@@ -199,7 +200,7 @@ fn dot(dark: &Plane<u8>, region: &Region) -> Row {
 fn extent(dark: &Plane<u8>, region: &Region) -> (Point, Vec2, f64, f64) {
     let (centre, variances) = region.moments(|x, y| f64::from(dark.row(y)[x]));
     let [xx, xy, yy] = variances;
-    let spread = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
+    let spread = (0.25 * powi(xx - yy, 2) + xy * xy).sqrt();
     let (long, short) = (0.5 * (xx + yy) + spread, (0.5 * (xx + yy) - spread).max(0.0));
     // a disc of diameter d has a variance of d²/16 about each axis
     (centre, long_axis(variances), 4.0 * long.sqrt(), 4.0 * short.sqrt())

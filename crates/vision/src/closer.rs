@@ -68,6 +68,8 @@ pub(crate) fn rows(
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::planar;
+
     use tracelight_stroke::Point;
 
     use super::*;
@@ -96,7 +98,7 @@ mod tests {
         // in all directions: how far off the worst corner is, px, and how many rows there are
         let (mut near_px, mut far_px, mut pieces) = (0.0, 0.0, 0);
         for turned in 0..12 {
-            let along = Vec2::from_angle(0.3 + f64::from(turned) * 0.5);
+            let along = planar::direction(0.3 + f64::from(turned) * 0.5);
             let corner = |k: i32| {
                 let aside = if k % 2 == 0 { -6.0 } else { 6.0 };
                 Point::new(22.3, 21.6) + along * (5.0 * f64::from(k - 2)) + along.turn_90() * aside

@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 
 use tracelight_image::{Mask, Plane, Region, mask_of};
+use tracelight_maths::powi;
 
 use crate::comb::TakenOff;
 use crate::reading::Patch;
@@ -94,7 +95,7 @@ pub(crate) fn dusted(
             let is_large = region.area() as f64 >= SPECK_PX;
             return is_large && reading.long >= MARK_LONG && is_dark(region, 8, AS_DARK);
         }
-        let long = graph.reach().powi(2) / region.area() as f64;
+        let long = powi(graph.reach(), 2) / region.area() as f64;
         // no hair crosses itself or goes round
         let is_figure = graph.branches.iter().any(|b| b.ring) || graph.branches.len() >= FIGURE_LINES;
         let least = if is_figure && long >= FIGURE_LONG { FIGURE_DARK } else { AS_DARK };

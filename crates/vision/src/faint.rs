@@ -6,6 +6,7 @@
 
 use tracelight_image::median::median;
 use tracelight_image::{Mask, Plane};
+use tracelight_maths::planar;
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::Tip;
@@ -233,7 +234,7 @@ impl Ahead<'_> {
 
 /// The directions that are tried about one.
 fn ways(along: Vec2) -> impl Iterator<Item = Vec2> {
-    (-TURNS..=TURNS).map(move |k| along.rotate_scale(Vec2::from_angle(f64::from(k) * TURN)))
+    (-TURNS..=TURNS).map(move |k| along.rotate_scale(planar::direction(f64::from(k) * TURN)))
 }
 
 /// Inks what is within a distance of a line, px.

@@ -7,6 +7,7 @@
 
 use tracelight_image::median::median;
 use tracelight_image::{Mask, Region, long_axis, pinholes, regions};
+use tracelight_maths::powi;
 use tracelight_stroke::{Point, Vec2};
 
 /// Widest slit, pen widths; of slanted ones half as much more.
@@ -51,7 +52,7 @@ pub(crate) fn filled(ink: &Mask, pen: f64) -> Option<Mask> {
         if !is_filled || share > 1.0 - LEAST_SLITS {
             area.erase_from(&mut areas);
         }
-        if !is_filled || (area.area() as f64) < (BROAD_PENS * pen).powi(2) {
+        if !is_filled || (area.area() as f64) < powi(BROAD_PENS * pen, 2) {
             area.erase_from(&mut broad);
         }
     }

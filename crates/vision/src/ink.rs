@@ -6,6 +6,7 @@ use tracelight_image::levels::{SAMPLED, sampled_histogram};
 use tracelight_image::smooth::{SMOOTHED, noise, smoothed};
 use tracelight_image::threshold::over;
 use tracelight_image::{Mask, Plane, Region, mask_of, regions};
+use tracelight_maths::powi;
 use tracelight_sheet::{Page, Paper};
 
 use crate::coarse;
@@ -201,7 +202,7 @@ impl Ink {
 
     /// So many pixels of the image, however closely it is looked at; from further they are as many of its own.
     pub(crate) fn px2(&self, pixels: usize) -> usize {
-        (pixels as f64 / self.scale.min(1.0).powi(2)) as usize
+        (pixels as f64 / powi(self.scale.min(1.0), 2)) as usize
     }
 
     /// Whether what its mask shows is so thin that a look twice as close tells more.

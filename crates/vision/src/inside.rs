@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use tracelight_maths::tan;
 use tracelight_stroke::{Element, Path, Piece, Point};
 
 /// The path with whatever lies outside `[0, width] × [0, height]` moved to the border. Lines and cubics lie within the
@@ -44,7 +45,7 @@ fn cubics(arc: &Piece, centre: Point, sweep: f64) -> Vec<[Point; 3]> {
     let radius = arc.from.distance(centre).max(1e-9);
     let most = (3.0 * (0.2 / radius).sqrt()).min(0.25 * PI);
     let parts = (sweep.abs() / most).ceil().clamp(1.0, 1e4);
-    let handle = 4.0 / 3.0 * (0.25 * sweep / parts).tan();
+    let handle = 4.0 / 3.0 * tan(0.25 * sweep / parts);
     let at = |i: f64| arc.at(i / parts);
     let ahead = |p: Point| (p - centre).turn_90() * handle;
     let part = |i: usize| {

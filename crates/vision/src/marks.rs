@@ -3,6 +3,7 @@
 use tracelight_image::levels::histogram;
 use tracelight_image::threshold::over;
 use tracelight_image::{Grey, Plane, Region, regions};
+use tracelight_maths::atan2;
 use tracelight_sheet::Page;
 use tracelight_stroke::{Point, Vec2};
 
@@ -142,7 +143,7 @@ fn pair(found: &[Patch]) -> Option<(Patch, Patch)> {
 fn marks(a: Patch, b: Patch, scale: f64) -> Result<Marks, VisionError> {
     let along = b.middle - a.middle;
     let (less, more) = (along.x.abs().min(along.y.abs()), along.x.abs().max(along.y.abs()));
-    let slant_deg = less.atan2(more).to_degrees();
+    let slant_deg = atan2(less, more).to_degrees();
     if slant_deg > MOST_SLANT_DEG {
         return Err(VisionError::Slant { slant_deg, most_deg: MOST_SLANT_DEG });
     }

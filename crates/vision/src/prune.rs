@@ -5,6 +5,7 @@
 
 use tracelight_image::Plane;
 use tracelight_image::median::median;
+use tracelight_maths::sin;
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::bridge::{angle, from_end};
@@ -133,7 +134,7 @@ fn is_mitre(graph: &Graph, ends: &[(usize, usize)], end: (usize, usize), pen: f6
         let others = ends.iter().filter(|&&e| e != end).map(|&e| leaving(graph, e, node.at, window));
         let others: Vec<Vec2> = others.collect();
         let back = -(others[0] + others[1]);
-        let s = (0.5 * angle(others[0], others[1]).abs()).sin();
+        let s = sin(0.5 * angle(others[0], others[1]).abs());
         let inside = (pen + 0.5) * (1.0 - s) / (s * (1.0 + s)).max(0.05);
         // a nub goes on straight as one of the two, the point of a corner as neither
         let straight = |other: &&Vec2| out.dot(**other) < -GOES_ON * out.hypot();
@@ -220,7 +221,7 @@ fn half_angle_sine(
     let others: Vec<Vec2> =
         ends.iter().filter(|&&e| e != spur).map(|&e| leaving(graph, e, node, window)).collect();
     let [a, b] = others[..] else { return 1.0 };
-    (0.5 * angle(a, b).abs()).sin()
+    sin(0.5 * angle(a, b).abs())
 }
 
 /// Near an acute corner the two skeletons lean together, far from it they may have bent: points of them, from and to.

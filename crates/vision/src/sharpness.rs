@@ -3,6 +3,7 @@
 use tracelight_image::median::median;
 use tracelight_image::threshold::word_over;
 use tracelight_image::{Plane, ink_runs};
+use tracelight_maths::hypot;
 
 /// Rows, and columns, that are looked at: of 720 rows every fifteenth crosses each longer stroke, in 0.1 ms.
 const LINES: usize = 48;
@@ -127,7 +128,7 @@ impl Lane<'_> {
         };
         // two differences over 2 px each
         let across = 0.25 * (change(paper) + change(ink));
-        along.abs() / along.hypot(across)
+        along.abs() / hypot(along, across)
     }
 }
 

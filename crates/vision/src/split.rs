@@ -3,6 +3,7 @@
 use tracelight_image::Plane;
 use tracelight_image::levels::{histogram, percentile};
 use tracelight_image::smooth::SMOOTHED;
+use tracelight_maths::powi;
 
 use crate::VisionError;
 use crate::quality::GOOD_CONTRAST_PERCENT;
@@ -39,7 +40,7 @@ impl Split {
             n += f64::from(count);
             sum += f64::from(count) * level as f64;
             let between =
-                if n > 0.0 && n < all { (sum * all - n * total).powi(2) / (n * (all - n)) } else { 0.0 };
+                if n > 0.0 && n < all { powi(sum * all - n * total, 2) / (n * (all - n)) } else { 0.0 };
             if between > best * (1.0 + 1e-12) {
                 (best, first) = (between, level);
             }

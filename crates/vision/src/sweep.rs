@@ -1,6 +1,7 @@
 //! The original report's tracer, kept for comparison: one closed figure, walked in steps of 5 px.
 
 use tracelight_image::Mask;
+use tracelight_maths::planar;
 use tracelight_stroke::{Path, Point, Stroke, Vec2};
 
 use crate::VisionError;
@@ -61,7 +62,7 @@ fn next_heading(mask: &Mask, at: Point, heading: usize) -> Option<usize> {
 
 /// Clockwise as seen, y being down.
 fn direction(heading: usize) -> Vec2 {
-    Vec2::from_angle(std::f64::consts::TAU * heading as f64 / DIRECTIONS as f64)
+    planar::direction(std::f64::consts::TAU * heading as f64 / DIRECTIONS as f64)
 }
 
 fn polygon(points: &[Point]) -> Option<Stroke> {

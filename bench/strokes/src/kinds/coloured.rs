@@ -1,4 +1,5 @@
-use tracelight_stroke::{Path, Point, Stroke, StrokeKind, Vec2};
+use tracelight_maths::planar;
+use tracelight_stroke::{Path, Point, Stroke, StrokeKind};
 
 use super::plain::closed_path;
 use crate::shapes::line;
@@ -42,7 +43,7 @@ fn line_on(random: &mut Random, hand: &Hand, outline: &Path) -> Option<Path> {
     let nearest = outline.flatten(0.1).iter().map(|p| p.to_vec2().hypot()).fold(f64::INFINITY, f64::min);
     let half = nearest - CLEAR_PENS * hand.pen - CLEAR_PX;
     (half >= (LEAST_PENS * hand.pen).max(LEAST_PX)).then(|| {
-        let way = Vec2::from_angle(random.angle()) * half;
+        let way = planar::direction(random.angle()) * half;
         line(Point::ORIGIN - way, Point::ORIGIN + way)
     })
 }

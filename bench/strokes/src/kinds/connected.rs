@@ -1,3 +1,4 @@
+use tracelight_maths::planar;
 use tracelight_stroke::{Path, Point, Vec2};
 
 use super::plain;
@@ -34,7 +35,7 @@ pub(super) fn figure(random: &mut Random, hand: &Hand) -> Figure {
 fn leaving(random: &mut Random, hand: &Hand, on: &Path) -> Path {
     let (foot, tangent) = somewhere(random, on);
     let turn = random.between(ASIDE_DEG.0, ASIDE_DEG.1).to_radians() * random.sign();
-    let way = Vec2::from_angle(tangent.atan2() + turn);
+    let way = planar::direction(planar::heading(tangent) + turn);
     let aside = Vec2::new(-way.y, way.x) * random.between(-0.4, 0.4);
     let length = hand.size * random.between(0.4, 1.2);
     let at = |share: f64| foot + (way * share + aside * (share * share)) * length;

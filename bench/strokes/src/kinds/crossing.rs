@@ -1,5 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Affine, Path, Point, Vec2};
 
 use super::plain::closed_path;
@@ -32,7 +33,7 @@ fn asterisk(random: &mut Random, size: f64) -> Vec<Path> {
 fn grid(random: &mut Random, size: f64) -> Vec<Path> {
     let lean = random.between(-40.0, 40.0).to_radians();
     let along = Vec2::new(1.0, 0.0);
-    let across = Vec2::from_angle(PI / 2.0 + lean);
+    let across = planar::direction(PI / 2.0 + lean);
     let (rows, columns) = (random.whole(2, 3), random.whole(2, 3));
     let mut lines = Vec::new();
     for (count, way, aside) in [(rows, along, across), (columns, across, along)] {

@@ -1,5 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Path, Point, Stroke, StrokeKind, Vec2};
 
 use super::plain::{blob, closed_path};
@@ -33,7 +34,7 @@ fn area(random: &mut Random, hand: &Hand, shape: impl Fn(&mut Random, f64) -> Pa
 /// A closed path filled with a felt pen.
 fn scribbled(random: &mut Random, hand: &Hand, outline: Path) -> Figure {
     let (way, pitch) =
-        (Vec2::from_angle(random.angle()), hand.pen * random.between(PITCH_PENS.0, PITCH_PENS.1));
+        (planar::direction(random.angle()), hand.pen * random.between(PITCH_PENS.0, PITCH_PENS.1));
     let aside = Vec2::new(-way.y, way.x);
     let points = outline.flatten(0.1);
     let reach = points.iter().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max) + hand.pen;

@@ -1,5 +1,6 @@
 use std::f64::consts::PI;
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Affine, Path, Point};
 
 use super::plain::blob;
@@ -62,6 +63,6 @@ fn lollipop(random: &mut Random, hand: &Hand, size: f64) -> Figure {
         return figure;
     }
     let other = polar(to, way, radius).to_vec2();
-    let far = circle(Point::ORIGIN, radius).transformed(Affine::translate(other) * Affine::rotate(PI));
+    let far = circle(Point::ORIGIN, radius).transformed(Affine::translate(other) * planar::rotation(PI));
     figure.and(Figure::filled(vec![far]))
 }

@@ -1,5 +1,6 @@
 use std::f64::consts::PI;
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Path, Point, Vec2};
 
 use crate::shapes::{arc, line, polar, spline};
@@ -82,7 +83,7 @@ fn tuft(random: &mut Random, hand: &Hand, scalp: Option<f64>) -> Figure {
 
 /// A curve out of a root, bent by an angle in all.
 fn strand(root: Point, way: f64, (length, curl): (f64, f64)) -> Path {
-    let at = |share: f64| Vec2::from_angle(way + curl * share) * (length * share);
+    let at = |share: f64| planar::direction(way + curl * share) * (length * share);
     spline(&[0.0, 0.25, 0.5, 0.75, 1.0].map(|s| root + at(s)), false)
 }
 

@@ -1,5 +1,6 @@
 use std::f64::consts::PI;
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Path, Point};
 
 use crate::shapes::{line, spline};
@@ -32,7 +33,7 @@ fn rank(random: &mut Random, hand: &Hand, (turn, pitch): (f64, f64)) -> Vec<Path
         let (a, b) = (Point::new(x - lean, top), Point::new(x + lean, bottom));
         let middle = Point::new(x + bow, 0.5 * (top + bottom));
         let path = if bowed { spline(&[a, middle, b], false) } else { line(a, b) };
-        path.transformed(tracelight_stroke::Affine::rotate(turn + 0.5 * PI))
+        path.transformed(planar::rotation(turn + 0.5 * PI))
     };
     (0..count).map(&mut one).collect()
 }

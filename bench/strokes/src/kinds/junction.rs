@@ -1,6 +1,7 @@
 use std::f64::consts::PI;
 
-use tracelight_stroke::{Element, Path, Point, Vec2};
+use tracelight_maths::planar;
+use tracelight_stroke::{Element, Path, Point};
 
 use crate::shapes::{arc, circle, line, line_through, polar, polyline, spline};
 use crate::{Figure, Hand, Random};
@@ -49,7 +50,7 @@ fn tree(random: &mut Random, size: f64) -> Vec<Path> {
     let mut branch = |share: f64, side: f64| {
         let on = trunk.pieces().next().map(|p| p.at_length(share * length, 1e-9));
         on.into_iter().for_each(|on| {
-            let angle = on.tangent.atan2() + side * random.between(40.0, 90.0).to_radians();
+            let angle = planar::heading(on.tangent) + side * random.between(40.0, 90.0).to_radians();
             paths.push(line(on.point, polar(on.point, angle, size * random.between(0.4, 0.8))));
         });
     };
@@ -143,8 +144,8 @@ fn between_waves(random: &mut Random, size: f64) -> Vec<Path> {
     let mut y = || size * random.between(-0.25, 0.25);
     let points: Vec<_> = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|x| Point::new(x * size, y())).into();
     let foot = points[2];
-    let way = Vec2::from_angle((points[3] - points[1]).atan2() + aside(random));
+    let way = planar::direction(planar::heading(points[3] - points[1]) + aside(random));
     let knee = foot + way * (0.4 * size);
-    let tip = knee + Vec2::from_angle(way.atan2() + random.between(-0.7, 0.7)) * (0.5 * size);
+    let tip = knee + planar::direction(planar::heading(way) + random.between(-0.7, 0.7)) * (0.5 * size);
     vec![spline(&points, false), spline(&[foot, knee, tip], false)]
 }

@@ -1,6 +1,7 @@
 use std::f64::consts::PI;
 
-use tracelight_stroke::{Affine, Path, Point};
+use tracelight_maths::planar;
+use tracelight_stroke::{Path, Point};
 
 use super::plain::closed_path;
 use crate::shapes::{arc, circle, line, polyline};
@@ -77,5 +78,5 @@ fn beside(random: &mut Random, size: f64, pitch: f64) -> Vec<Path> {
     let figure = closed_path(random, 0.7 * size);
     let right = figure.flatten(0.01).iter().fold(0.0, |x: f64, p| x.max(p.x));
     let wall = line(Point::new(right + pitch, -size), Point::new(right + pitch, size));
-    vec![figure, wall].into_iter().map(|p| p.transformed(Affine::rotate(PI * 0.5))).collect()
+    vec![figure, wall].into_iter().map(|p| p.transformed(planar::rotation(PI * 0.5))).collect()
 }

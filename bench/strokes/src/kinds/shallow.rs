@@ -1,6 +1,7 @@
 use std::f64::consts::PI;
 
-use tracelight_stroke::{Path, Point, Vec2};
+use tracelight_maths::planar;
+use tracelight_stroke::{Path, Point};
 
 use crate::shapes::{Turtle, arc, circle, line, line_through, polar};
 use crate::{Figure, Hand, Random};
@@ -83,7 +84,7 @@ fn eight(random: &mut Random, hand: &Hand) -> Vec<Path> {
     if radius < (2.0 * hand.pen).max(0.5 * (hand.pen + hand.paper)) {
         return vec![];
     }
-    let start = Point::ORIGIN - Vec2::from_angle(0.5 * open) * half;
+    let start = Point::ORIGIN - planar::direction(0.5 * open) * half;
     let turtle = Turtle::new(start, 0.5 * open);
     let turtle = turtle.ahead(2.0 * half).turn(radius, -PI - open).ahead(2.0 * half);
     vec![turtle.turn(radius, PI + open).closed()]

@@ -1,6 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
-use tracelight_stroke::{Point, Vec2};
+use tracelight_maths::planar;
+use tracelight_stroke::Point;
 
 use super::plain::blob;
 use crate::shapes::{circle, polar, polyline, spline, star};
@@ -63,7 +64,7 @@ fn limb(random: &mut Random, points: &mut Vec<Point>, (way, radius): (f64, f64),
     let side = |k: usize, sign: f64| {
         let share = k as f64 / STEPS as f64;
         let heading = way + 2.0 * bend * share;
-        middle(share) + Vec2::from_angle(heading + sign * PI / 2.0) * half(k)
+        middle(share) + planar::direction(heading + sign * PI / 2.0) * half(k)
     };
     points.extend((0..=STEPS).map(|k| side(k, -1.0)));
     points.push(polar(middle(1.0), way + 2.0 * bend, half(STEPS)));

@@ -1,5 +1,6 @@
 use std::f64::consts::TAU;
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Path, Vec2};
 
 use super::places::Places;
@@ -88,7 +89,7 @@ fn passes(random: &mut Random, path: &Path, pen: f64) -> Vec<Pass> {
             (_, false) if random.chance(0.4) => (0.0, 1.0),
             (_, false) => (random.between(0.0, 0.4), random.between(0.6, 1.0)),
         };
-        let held = Vec2::from_angle(way + TAU * number as f64 / count as f64) * (1.0 - SWAY) * reach;
+        let held = planar::direction(way + TAU * number as f64 / count as f64) * (1.0 - SWAY) * reach;
         Pass {
             from,
             to,

@@ -1,5 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Affine, Element, Path, Point};
 
 use crate::shapes::{arc, circle, ellipse, line, polar, spline};
@@ -74,6 +75,6 @@ fn face(random: &mut Random, hand: &Hand) -> Figure {
     for side in [-1.0, 1.0] {
         figure = figure.and(Figure::filled(vec![eye.transformed(shift(0.38 * side, -0.25))]));
     }
-    let mouth = crescent(0.28 * size, 0.55, random.between(0.1, 0.3)).transformed(Affine::rotate(PI));
+    let mouth = crescent(0.28 * size, 0.55, random.between(0.1, 0.3)).transformed(planar::rotation(PI));
     figure.and(Figure::filled(vec![mouth.transformed(shift(0.0, 0.35))]))
 }

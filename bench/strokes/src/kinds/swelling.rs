@@ -1,5 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Path, Vec2};
 
 use super::writing;
@@ -45,7 +46,7 @@ pub(super) fn brush(random: &mut Random, hand: &Hand) -> Figure {
 
 /// A broad nib held at one angle: thick across it, thin along it.
 pub(super) fn nib(random: &mut Random, hand: &Hand) -> Figure {
-    let held = Vec2::from_angle(random.angle());
+    let held = planar::direction(random.angle());
     let ratio = random.between(3.0, 8.0).min(hand.pen / LEAST_PX).max(1.0);
     let radius = 0.5 * hand.pen / ratio;
     let reach = held * (0.5 * hand.pen - radius);

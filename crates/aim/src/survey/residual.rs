@@ -1,4 +1,5 @@
 use nalgebra::{SMatrix, SVector};
+use tracelight_maths::{ln, powi};
 use tracelight_stroke::{Point, Vec2};
 
 use super::valley::{Slopes, lens_by_coordinates, stepped_lens, stepped_pose};
@@ -234,7 +235,7 @@ impl Bundle<'_> {
         let bound = 3.0 * self.scale;
         let off = |seen: &Sighting| {
             let off = Self::off(state, seen)?.value;
-            Some(off.abs().min(bound * seen.deviation_px).powi(2))
+            Some(powi(off.abs().min(bound * seen.deviation_px), 2))
         };
         let all: Vec<f64> = self.sightings.iter().filter_map(off).collect();
         (all.iter().sum::<f64>() / all.len().max(1) as f64).sqrt()
@@ -270,7 +271,7 @@ impl Bundle<'_> {
         let covariance = LensMatrix::from_fn(|i, j| self.belief.covariance[(i, j)] / (unit(i) * unit(j)));
         let rows = covariance.cholesky()?.l().try_inverse()?;
         let off = SVector::from_fn(|k, _| match k {
-            0 | 1 => (likely[k] / state.lens[k]).ln(),
+            0 | 1 => ln(likely[k] / state.lens[k]),
             k => likely[k] - state.lens[k],
         });
         Some((rows * off, rows))

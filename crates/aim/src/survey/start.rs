@@ -1,6 +1,7 @@
 //! Where a survey starts: poses from homographies, by several guesses of the focal length.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use tracelight_maths::{acos, atan2, sin_cos};
 use tracelight_stroke::{Point, Vec2};
 
 use super::residual::{All, Bundle, Place, Sighting, State};
@@ -125,7 +126,7 @@ fn pose(lens: &Lens, all: &All, pages: &[Option<Place>], view: usize) -> Option<
 
 impl Place {
     fn apply(&self, at: Point) -> Point {
-        let (s, c) = self.turn_rad.sin_cos();
+        let (s, c) = sin_cos(self.turn_rad);
         Point::new(c * at.x - s * at.y + self.x, s * at.x + c * at.y + self.y)
     }
 }
@@ -143,7 +144,7 @@ fn place(camera: &Camera, all: &All, view: usize, page: usize) -> Option<Place> 
         let (a, b) = (*a - from, *b - to);
         (sine + a.cross(b), cosine + a.dot(b))
     });
-    let turned = Place { turn_rad: sine.atan2(cosine), ..Place::default() };
+    let turned = Place { turn_rad: atan2(sine, cosine), ..Place::default() };
     let by = to - turned.apply(from.to_point()).to_vec2();
     Some(Place { x: by.x, y: by.y, ..turned })
 }
@@ -155,7 +156,7 @@ fn mirrored(state: &State) -> State {
         let (normal, sight) = (pose.rotation * Vector3::z(), pose.translation_m.normalize());
         let turn = Unit::try_new(normal.cross(&sight), 1e-6).map_or_else(Rotation3::identity, |axis| {
             // the plane's normal comes towards the camera
-            let lean = (-normal.dot(&sight)).clamp(-1.0, 1.0).acos();
+            let lean = acos((-normal.dot(&sight)).clamp(-1.0, 1.0));
             Rotation3::from_axis_angle(&axis, -2.0 * lean)
         });
         CameraPose { rotation: turn * pose.rotation, ..*pose }

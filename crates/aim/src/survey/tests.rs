@@ -1,3 +1,5 @@
+use tracelight_maths::planar;
+
 use super::*;
 
 /// What a camera sees of pages that lie so, to a deviation.
@@ -259,7 +261,7 @@ fn in_another_frame_a_place_is_as_uncertain() {
     let mut dice = oorandom::Rand64::new(4);
     let tags = seen(&camera, &Board::FINE, &corners(), 0.1, &mut dice);
     let found = survey(&LensBelief::unknown(1280, 720), &Board::ALL, &[tags]).unwrap().camera(0).unwrap();
-    let frame = Affine::rotate(0.4).then_translate(Vec2::new(-0.5, 0.8));
+    let frame = planar::rotation(0.4).then_translate(Vec2::new(-0.5, 0.8));
     let moved = found.in_frame(frame);
     for pixel in [(100.0, 80.0), (640.0, 360.0), (1200.0, 700.0)].map(Point::from) {
         let [a, b] = [found, moved].map(|camera| camera.target(pixel, &Matrix2::zeros()).unwrap());

@@ -5,6 +5,7 @@
 //! is straight, however long, and no other coordinate needs to move in it.
 
 use nalgebra::{Rotation3, SMatrix, Unit, Vector3};
+use tracelight_maths::{atan2, cos, exp, powi, sin};
 
 use crate::camera::{CAMERA_PARAMETERS, CameraPose, POSE_PARAMETERS};
 use crate::lens::LENS_PARAMETERS;
@@ -19,14 +20,14 @@ const ASPECT: usize = 1;
 
 /// A lens's parameters after a step of its coordinates.
 pub(super) fn stepped_lens(lens: &[f64; LENS_PARAMETERS], step: &[f64]) -> [f64; LENS_PARAMETERS] {
-    let longer = step[FOCAL].exp();
+    let longer = exp(step[FOCAL]);
     std::array::from_fn(|k| {
         let moved = match k {
             FOCAL => lens[k],
-            ASPECT => lens[k] * step[ASPECT].exp(),
+            ASPECT => lens[k] * exp(step[ASPECT]),
             k => lens[k] + step[k],
         };
-        moved * longer.powi(POWERS[k])
+        moved * powi(longer, POWERS[k])
     })
 }
 
@@ -43,10 +44,10 @@ pub(super) fn lens_by_coordinates(
 
 /// A pose after a step of its own coordinates, a small turn and a change of the translation, and of the focal length's.
 pub(super) fn stepped_pose(pose: &CameraPose, step: [f64; POSE_PARAMETERS], lens_step: &[f64]) -> CameraPose {
-    let longer = lens_step[FOCAL].exp();
+    let longer = exp(lens_step[FOCAL]);
     let (axis, lean) = leans(pose);
     // what an image has of a lean is its tangent over the focal length
-    let more = (longer * lean.sin()).atan2(lean.cos()) - lean;
+    let more = atan2(longer * sin(lean), cos(lean)) - lean;
     let turn = axis.map_or_else(Rotation3::identity, |axis| Rotation3::from_axis_angle(&axis, more));
     let moved = pose.stepped(step);
     let further = Vector3::new(1.0, 1.0, longer);
@@ -59,7 +60,7 @@ fn leans(pose: &CameraPose) -> (Option<Unit<Vector3<f64>>>, f64) {
     // towards the camera is behind the image
     let normal = if normal.z > 0.0 { normal } else { -normal };
     let axis = Vector3::z().cross(&normal);
-    (Unit::try_new(axis, 1e-12), axis.norm().atan2(normal.z))
+    (Unit::try_new(axis, 1e-12), atan2(axis.norm(), normal.z))
 }
 
 /// The derivatives of a camera's parameters by these coordinates: pose, then lens.
@@ -72,7 +73,7 @@ pub(super) struct Slopes {
 impl Slopes {
     pub(super) fn of(pose: &CameraPose, lens: &[f64; LENS_PARAMETERS]) -> Self {
         let (axis, lean) = leans(pose);
-        let turn = axis.map_or_else(Vector3::zeros, |axis| axis.into_inner() * (lean.sin() * lean.cos()));
+        let turn = axis.map_or_else(Vector3::zeros, |axis| axis.into_inner() * (sin(lean) * cos(lean)));
         Self { pose_by_focal: [turn.x, turn.y, turn.z, 0.0, 0.0, pose.translation_m.z], lens: *lens }
     }
 

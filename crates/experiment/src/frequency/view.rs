@@ -6,6 +6,7 @@ use serde_json::json;
 use tracelight_chart::{Colour, Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign, Theme};
 use tracelight_lab::FrequencyPoint;
 use tracelight_linear::decibels;
+use tracelight_maths::complex;
 use tracelight_rig::TICK_F64_S;
 use tracelight_task::Failure;
 
@@ -31,8 +32,8 @@ impl finding::Finding for Finding {
                 text,
                 "\n{:10.3} {:14.2} {:10.2} {:12.1} {:10.1} {:11.4} {:12.2}",
                 point.rad_s,
-                decibels(point.response.norm()),
-                decibels(self.model.values[number].norm()),
+                decibels(complex::norm(point.response)),
+                decibels(complex::norm(self.model.values[number])),
                 self.phase_deg(number),
                 self.model.phases_rad[number].to_degrees(),
                 point.coherence,
@@ -54,11 +55,11 @@ impl finding::Finding for Finding {
             let model = self.model.values[number];
             json!({
                 "rad_s": point.rad_s,
-                "magnitude": point.response.norm(),
+                "magnitude": complex::norm(point.response),
                 "phase_deg": self.phase_deg(number),
                 "coherence": point.coherence,
                 "deviation": point.deviation,
-                "model_magnitude": model.norm(),
+                "model_magnitude": complex::norm(model),
                 "model_phase_deg": self.model.phases_rad[number].to_degrees(),
             })
         };
@@ -99,8 +100,8 @@ impl Plotted for Finding {
         let panels = vec![
             panel(
                 "angle per volt, dB",
-                dots(&|k| decibels(self.points[k].response.norm())),
-                line(&|k| decibels(self.model.values[k].norm())),
+                dots(&|k| decibels(complex::norm(self.points[k].response))),
+                line(&|k| decibels(complex::norm(self.model.values[k]))),
             ),
             panel("phase, °", dots(&|k| self.phase_deg(k)), line(&|k| self.model.phases_rad[k].to_degrees())),
             panel(
@@ -131,11 +132,11 @@ impl Plotted for Finding {
                 text,
                 "{:.6},{:.6e},{:.3},{:.6},{:.6},{:.6e},{:.3}",
                 point.rad_s,
-                point.response.norm(),
+                complex::norm(point.response),
                 self.phase_deg(number),
                 point.coherence,
                 point.deviation,
-                self.model.values[number].norm(),
+                complex::norm(self.model.values[number]),
                 self.model.phases_rad[number].to_degrees()
             );
         }
@@ -171,7 +172,7 @@ impl Finding {
 
     /// The phase that was measured, turned as often as the model's.
     fn phase_deg(&self, number: usize) -> f64 {
-        let (measured, model) = (self.points[number].response.arg(), self.model.phases_rad[number]);
+        let (measured, model) = (complex::arg(self.points[number].response), self.model.phases_rad[number]);
         let turns = ((model - measured) / std::f64::consts::TAU).round();
         (measured + turns * std::f64::consts::TAU).to_degrees()
     }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 use tracelight_lab::{Line, Side, SteadyPoint, Uncertain};
+use tracelight_maths::hypot;
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
@@ -131,7 +132,7 @@ fn below_nothing(one: &Found) -> String {
 /// What the highest voltage can do against weight, where the head stands on its feet.
 fn against_gravity(rig: &RigConfig, one: &Found) -> String {
     let lumped = rig.model.bodies.lumped();
-    let weight_nm = lumped.gravity_c.hypot(lumped.gravity_s);
+    let weight_nm = hypot(lumped.gravity_c, lumped.gravity_s);
     let volts = one.steady.points.iter().filter_map(|p| p.volts).fold(0.0, |most: f64, v| most.max(v.abs()));
     let torque_nm = volts * one.subject.believed.torque_nm_per_v;
     if one.subject.joint == Joint::Pan || torque_nm == 0.0 || torque_nm > weight_nm {

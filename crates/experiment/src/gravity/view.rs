@@ -3,6 +3,7 @@
 use serde_json::json;
 use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use tracelight_lab::Uncertain;
+use tracelight_maths::{cos, sin};
 use tracelight_rig::Joint;
 use tracelight_task::Failure;
 
@@ -70,7 +71,7 @@ impl Finding {
         };
         let spring = self.weight.spring_nm_per_rad.map_or(0.0, |u| u.value);
         let held = |[level, upright]: [f64; 2], spring: f64| {
-            move |angle: f64| spring * angle - level * angle.cos() - upright * angle.sin()
+            move |angle: f64| spring * angle - level * cos(angle) - upright * sin(angle)
         };
         let believed = held(self.believed_nm(), 0.0);
         let found = held(self.weight.nm.map(|u| u.value), spring);

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 use tracelight_lab::JointFit;
+use tracelight_maths::hypot;
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
@@ -27,7 +28,7 @@ const FIGURES: [(&str, &str, f64, Figure); 18] = [
     ("break_away_rad_s", "  falls at, mrad/s", 1e3, |r, j| r.quirks_of(j).break_away_rad_s),
     ("ripple_nm", "friction ripples by, mNm", 1e3, |r, j| {
         let ripple = r.quirks_of(j).ripple;
-        ripple.sin_nm.hypot(ripple.cos_nm)
+        hypot(ripple.sin_nm, ripple.cos_nm)
     }),
     ("ripple_periods", "  times a turn", 1.0, |r, j| r.quirks_of(j).ripple.periods),
     ("gravity_level_nm", "weight, beam level, mNm", 1e3, |r, j| weight(r, j).0),

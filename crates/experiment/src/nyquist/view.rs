@@ -5,7 +5,8 @@ use std::fmt::Write;
 
 use serde_json::json;
 use tracelight_chart::{Colour, Curve, Figure, Guide, Key, Mark, Panel, Pen, Scale, Sign};
-use tracelight_linear::{Complex, decibels};
+use tracelight_linear::decibels;
+use tracelight_maths::{complex, cos, powf, sin};
 use tracelight_task::Failure;
 
 use super::{Chart, Entry, Finding};
@@ -120,7 +121,7 @@ impl Finding {
                 .phases_deg
                 .iter()
                 .copied()
-                .zip(entry.values.iter().map(|z| decibels(z.norm())))
+                .zip(entry.values.iter().map(|z| decibels(complex::norm(*z))))
                 .collect(),
         };
         let phases = || self.entries.iter().flat_map(|entry| entry.phases_deg.iter().copied());
@@ -133,7 +134,10 @@ impl Finding {
             let crossings = crossings.chain(entry.margins.least_gain().map(|m| m.rad_s).filter(|w| *w > 0.0));
             let system = &entry.named.system;
             let at = |w: f64| {
-                (system.phase(w).to_degrees(), decibels(system.at(system.time().at_frequency(w)).norm()))
+                (
+                    system.phase(w).to_degrees(),
+                    decibels(complex::norm(system.at(system.time().at_frequency(w)))),
+                )
             };
             marks.extend(crossings.map(|w| Mark { colour: entry.named.colour, sign: Sign::Dot, at: at(w) }));
         }
@@ -166,14 +170,15 @@ impl Finding {
 
 fn circle(centre: (f64, f64), radius: f64) -> Vec<(f64, f64)> {
     let at = |k: i32| TAU * f64::from(k) / 180.0;
-    (0..=180).map(|k| (centre.0 + radius * at(k).cos(), centre.1 + radius * at(k).sin())).collect()
+    (0..=180).map(|k| (centre.0 + radius * cos(at(k)), centre.1 + radius * sin(at(k)))).collect()
 }
 
 /// How far about −1 is shown: all of what stays near, of what goes far away only the near part.
 fn reach(entries: &[Entry]) -> f64 {
     const LEAST: f64 = 1.5;
     const MOST: f64 = 2.2;
-    let far = entries.iter().flat_map(|entry| &entry.values).map(|z| z.norm()).filter(|r| r.is_finite());
+    let far =
+        entries.iter().flat_map(|entry| &entry.values).map(|z| complex::norm(*z)).filter(|r| r.is_finite());
     (1.1 * far.fold(0.0, f64::max)).clamp(LEAST, MOST)
 }
 
@@ -184,14 +189,14 @@ fn closed_lines((low, high): (f64, f64)) -> Vec<Guide> {
     let turns = (low / 360.0).floor() as i32..=(high / 360.0).ceil() as i32;
     for turn in turns {
         for level in LEVELS {
-            let m = 10_f64.powf(level / 20.0);
+            let m = powf(10.0, level / 20.0);
             // L = T / (1 − T) for T on a circle of that radius
             let at = |k: i32| {
-                let t = Complex::from_polar(m, TAU * (f64::from(k) + 0.5) / 720.0);
+                let t = complex::from_polar(m, TAU * (f64::from(k) + 0.5) / 720.0);
                 let open = t / (1.0 - t);
-                let phase = open.arg().to_degrees();
+                let phase = complex::arg(open).to_degrees();
                 let phase = if phase > 0.0 { phase - 360.0 } else { phase };
-                (phase + 360.0 * f64::from(turn), decibels(open.norm()))
+                (phase + 360.0 * f64::from(turn), decibels(complex::norm(open)))
             };
             let mut points: Vec<(f64, f64)> = Vec::new();
             for k in 0..720 {

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde_json::json;
 use tracelight_chart::{Colour, Curve, Figure, Key, Pen, Theme};
 use tracelight_linear::decibels;
+use tracelight_maths::complex;
 use tracelight_rig::TICK_F64_S;
 use tracelight_sim::{BenchTick, LawName};
 use tracelight_task::Failure;
@@ -35,8 +36,8 @@ impl finding::Finding for Finding {
             swing.period_s,
             100.0 * swing.unevenness,
             swing.rad_s(),
-            decibels(there.norm()),
-            there.arg().to_degrees(),
+            decibels(complex::norm(there)),
+            complex::arg(there).to_degrees(),
             inertia_kg_m2,
             coulomb_nm,
             of.phase_margin_rad.to_degrees(),
@@ -65,8 +66,8 @@ impl finding::Finding for Finding {
             "unevenness": swing.unevenness,
             "hold_v": swing.hold_v,
             "rad_s": swing.rad_s(),
-            "magnitude_rad_per_nm": there.norm(),
-            "phase_deg": there.arg().to_degrees(),
+            "magnitude_rad_per_nm": complex::norm(there),
+            "phase_deg": complex::arg(there).to_degrees(),
             "inertia_kg_m2": inertia_kg_m2,
             "coulomb_nm": coulomb_nm,
             "crossover_rad_s": of.crossover_rad_s.unwrap_or(swing.rad_s()),

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
+use tracelight_maths::{cos, hypot, planar, sin, tan};
 use tracelight_stroke::{Affine, Element, Path, Piece, Point};
 
 use super::groups::Record;
@@ -36,8 +37,8 @@ pub(super) fn moved(path: &Path, by: Affine) -> Path {
 /// Whether a map keeps circles round, to a millionth.
 fn is_similarity(map: Affine) -> bool {
     let [a, b, c, d, ..] = map.as_coeffs();
-    let size = a.hypot(b).max(c.hypot(d));
-    let (like, unlike) = ((a - d).hypot(b + c), (a + d).hypot(b - c));
+    let size = hypot(a, b).max(hypot(c, d));
+    let (like, unlike) = (hypot(a - d, b + c), hypot(a + d, b - c));
     size > 0.0 && like.min(unlike) <= 1e-6 * size
 }
 
@@ -45,11 +46,11 @@ fn is_similarity(map: Affine) -> bool {
 /// for a quarter of a turn, 4.3e-6 for an eighth (Goldapp, "Approximation of circular arcs by cubic polynomials", 1991).
 fn cubics(arc: &Piece, centre: Point, sweep: f64) -> impl Iterator<Item = [Point; 3]> {
     let parts = (sweep.abs() / FRAC_PI_4).ceil().clamp(1.0, 16.0) as usize;
-    let handle = 4.0 / 3.0 * (0.25 * sweep / parts as f64).tan();
+    let handle = 4.0 / 3.0 * tan(0.25 * sweep / parts as f64);
     let arc = *arc;
     (0..parts).map(move |i| {
         let at = |i: usize| arc.at(i as f64 / parts as f64);
-        let tangent = |p: Point| Affine::rotate(std::f64::consts::FRAC_PI_2) * (p - centre).to_point();
+        let tangent = |p: Point| planar::rotation(std::f64::consts::FRAC_PI_2) * (p - centre).to_point();
         let (from, to) = (at(i), at(i + 1));
         [from + tangent(from).to_vec2() * handle, to - tangent(to).to_vec2() * handle, to]
     })
@@ -74,7 +75,7 @@ pub(super) fn world_from_plane(record: &Record, elevation: f64) -> Result<Affine
 }
 
 fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
-    let length = v[0].hypot(v[1]).hypot(v[2]);
+    let length = hypot(hypot(v[0], v[1]), v[2]);
     (length > 0.0).then(|| v.map(|c| c / length))
 }
 
@@ -88,7 +89,7 @@ pub(super) fn unit_arc(from_rad: f64, to_rad: f64) -> Path {
     // what is a rounding error off a whole turn is one: nobody draws an arc of a billionth
     let is_whole = !(1e-9..=TAU - 1e-9).contains(&sweep);
     let sweep = if is_whole { TAU } else { sweep };
-    let mut path = Path::new(Point::new(from_rad.cos(), from_rad.sin()));
+    let mut path = Path::new(Point::new(cos(from_rad), sin(from_rad)));
     path.push(Element::Arc { centre: Point::ORIGIN, sweep });
     if is_whole {
         path.close();

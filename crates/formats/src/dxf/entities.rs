@@ -1,5 +1,6 @@
 //! Records to items: what each entity's groups mean.
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Affine, Element, Path, Point, Vec2};
 
 use super::curves::{has_length, moved, unit_arc, world_from_plane};
@@ -188,7 +189,7 @@ impl Polyline {
 
 fn insert(record: &Record, look: Look) -> Result<Insert, FormatError> {
     let scale = [record.number_or(41, 1.0)?, record.number_or(42, 1.0)?];
-    let turn = Affine::rotate(record.number_or(50, 0.0)?.to_radians());
+    let turn = planar::rotation(record.number_or(50, 0.0)?.to_radians());
     let world = world_from_plane(record, record.number_or(30, 0.0)?)?;
     let at = world * Affine::translate(record.point(10)?.to_vec2()) * turn;
     // spacings are measured along the turned axes, and are not scaled

@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 
+use tracelight_maths::atan2;
 use tracelight_stroke::{Element, Path, Piece, Point, Vec2};
 
 use super::blocks::Drawn;
@@ -119,7 +120,7 @@ fn rough_length(piece: &Piece) -> f64 {
 /// The change of direction on the way in by one end and out by the other, rad.
 fn turn(a: End, b: End, drawn: &[Drawn]) -> f64 {
     let (out_a, out_b) = (outwards(a, drawn), outwards(b, drawn));
-    out_a.cross(-out_b).atan2(out_a.dot(-out_b)).abs()
+    atan2(out_a.cross(-out_b), out_a.dot(-out_b)).abs()
 }
 
 /// The direction into the path at one of its ends.

@@ -1,5 +1,6 @@
 //! The whole way from bytes to a sheet.
 
+use tracelight_maths::{log10, powf};
 use tracelight_stroke::{Affine, Drawing, Stroke};
 
 use super::blocks::{Drawn, unfolded};
@@ -201,11 +202,11 @@ fn sheet(drawing: &Drawing, header: Header) -> Result<Option<Sheet>, FormatError
 /// The power of ten that brings a size between what four decimals and what readers can hold.
 fn of_usual_size(size: f64) -> f64 {
     let exponent = match size {
-        s if s > MAX_COORDINATE => (MAX_COORDINATE / s).log10().floor(),
-        s if s > 0.0 && s < LEAST_SIDE => (LEAST_SIDE / s).log10().ceil(),
+        s if s > MAX_COORDINATE => log10(MAX_COORDINATE / s).floor(),
+        s if s > 0.0 && s < LEAST_SIDE => log10(LEAST_SIDE / s).ceil(),
         _ => 0.0,
     };
-    10f64.powf(exponent)
+    powf(10.0, exponent)
 }
 
 fn hint(skipped: &Skipped) -> &'static str {

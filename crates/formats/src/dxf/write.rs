@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::{Display, Write};
 
 use kurbo::Rect;
+use tracelight_maths::tan;
 use tracelight_stroke::{Affine, Colour, Drawing, Element, Path, Piece, Point, Stroke};
 
 use super::aci;
@@ -189,7 +190,7 @@ impl Writer {
 fn vertices(piece: &Piece) -> Vec<(Point, f64)> {
     let Element::Arc { sweep, .. } = piece.element else { return vec![(piece.from, 0.0)] };
     let parts = (sweep.abs() / (1.001 * PI)).ceil().clamp(1.0, 1e3) as usize;
-    let bulge = (0.25 * sweep / parts as f64).tan();
+    let bulge = tan(0.25 * sweep / parts as f64);
     (0..parts).map(|i| (piece.at(i as f64 / parts as f64), bulge)).collect()
 }
 

@@ -4,11 +4,12 @@
 //! A radius of 1e90, fifty characters of a file, is more of them than memory holds.
 
 use svgtypes::{Length, LengthUnit, PathParser, PathSegment};
+use tracelight_maths::powf;
 use usvg::roxmltree::{Document, Node};
 
 /// Cubics of a whole turn, as `kurbo::Arc` has them for the tolerance of 0.1 that `usvg` asks for; four at least.
 fn cubics(radius: f64) -> f64 {
-    (1.1163 * radius / 0.1).powf(1.0 / 6.0).max(4.0)
+    powf(1.1163 * radius / 0.1, 1.0 / 6.0).max(4.0)
 }
 
 /// Bytes of attributes that would be as many segments as the element's round parts become; 0 for one without.

@@ -1,5 +1,7 @@
 //! Motion one way, and the equation of motion integrated along it.
 
+use tracelight_maths::{powi, sin_cos};
+
 use super::{Believed, Sample, Trial};
 
 /// Unknowns: inertia, viscous and Coulomb friction each way, gravity with cos and sin, cables against the angle.
@@ -91,7 +93,7 @@ fn rows(samples: &[Sample], angles: &[f64], believed: &Believed, side: usize) ->
             torque.hold(believed.torque_nm_per_v * samples[i - 1].volts, step_s);
             turned += 0.5 * step_s * (angles[i - 1] + angles[i] - 2.0 * start.1);
             let middle = 0.5 * (angles[i - 1] + angles[i]);
-            let (sin, cos) = middle.sin_cos();
+            let (sin, cos) = sin_cos(middle);
             spring.hold(middle, step_s);
             gravity[0].hold(cos, step_s);
             gravity[1].hold(sin, step_s);
@@ -132,7 +134,7 @@ fn without_start(samples: &[Sample], mut rows: Vec<Row>) -> Vec<Row> {
     let count = rows.len() as f64;
     let mean_s = samples.iter().map(|s| s.time_s).sum::<f64>() / count;
     let since = |sample: &Sample| sample.time_s - mean_s;
-    let spread = samples.iter().map(|s| since(s).powi(2)).sum::<f64>().max(1e-12);
+    let spread = samples.iter().map(|s| powi(since(s), 2)).sum::<f64>().max(1e-12);
     for column in 0..=UNKNOWNS {
         let mean = rows.iter_mut().map(|row| *row.column(column)).sum::<f64>() / count;
         let slope =

@@ -1,5 +1,6 @@
 use std::ops::ControlFlow;
 
+use tracelight_maths::sin_cos;
 use tracelight_rig::{Actuation, Head, Joint, TICK_F64_S};
 
 use super::{Believed, Sample, Trial};
@@ -178,7 +179,7 @@ impl<'a, H: Head> Drive<'a, H> {
 impl Shuttle<'_> {
     /// Holds gravity where the joint is, V.
     fn balance_v(&self, count: i32) -> f64 {
-        let (sin, cos) = (f64::from(count) * self.believed.count_rad).sin_cos();
+        let (sin, cos) = sin_cos(f64::from(count) * self.believed.count_rad);
         let held = self.believed.gravity_nm.map_or(0.0, |[by_cos, by_sin]| by_cos * cos + by_sin * sin);
         -held / self.believed.torque_nm_per_v
     }

@@ -1,6 +1,7 @@
 //! One joint's equation of motion in numbers: what is believed, what was found, and the way between them and a rig.
 
 use tracelight_dynamics::Lumped;
+use tracelight_maths::{exp, hypot, ln, powi, sin_cos};
 use tracelight_rig::{Joint, Telemetry};
 use tracelight_sim::{Cable, Identified, Quirks, RigConfig, Ripple};
 
@@ -88,7 +89,7 @@ impl Surroundings {
         };
         let rates = told.setpoint.map(|s| f64::from(s.velocity_rad_s));
         let (mass, bias) = lumped.mass_and_bias(tilt, rates);
-        let (sin, cos) = tilt.sin_cos();
+        let (sin, cos) = sin_cos(tilt);
         let gravity = -lumped.gravity_c * cos - lumped.gravity_s * sin;
         let (inertia, ahead, other, coriolis) = match joint {
             Joint::Pan => (mass.m11, lumped.m11_fixed + lumped.m11_cc, told.setpoint.tilt, bias.pan),
@@ -124,7 +125,7 @@ pub(super) fn friction(acts: &[f64]) -> f64 {
 /// Stribeck's curve: what is left of the break-away excess at a speed over the one at which it is 1/e; the controller's
 /// own approximation, for which it is identified.
 pub(super) fn stribeck(ratio: f64) -> f64 {
-    (1.0 + 0.125 * ratio * ratio).powi(-8)
+    powi(1.0 + 0.125 * ratio * ratio, -8)
 }
 
 impl Equations {
@@ -151,7 +152,7 @@ impl Equations {
             quirks.cable.spring_nm_per_rad / inertia,
         ];
         let coulomb = rig.model.unknown_nm(joint) / inertia;
-        let gravity = 0.1 * theta[GRAVITY_C].hypot(theta[GRAVITY_S]);
+        let gravity = 0.1 * hypot(theta[GRAVITY_C], theta[GRAVITY_S]);
         let viscous = theta[VISCOUS_POS].max(theta[VISCOUS_NEG]).max(0.02);
         let part = FRICTION_SHARE * coulomb;
         // cables that pull harder than a part of friction are seen to
@@ -212,7 +213,7 @@ impl Equations {
         let theta = &self.theta;
         let part = |k: usize| theta[k] * columns[k];
         let share = -columns[COULOMB_POS];
-        let (sin, cos) = (self.periods * angle_rad).sin_cos();
+        let (sin, cos) = sin_cos(self.periods * angle_rad);
         let ripple = share * (theta[RIPPLE_SIN] * sin + theta[RIPPLE_COS] * cos);
         Balance {
             drive: known + [GAIN, GRAVITY_C, GRAVITY_S, LOAD, SPRING].map(part).iter().sum::<f64>(),
@@ -270,16 +271,16 @@ impl Equations {
     fn scale(&self, rig: &RigConfig, joint: Joint) -> f64 {
         let precision = |deviation: f64| 1.0 / (deviation * deviation);
         let torque_per_volt = rig.model.motors[joint].torque_nm_per_v;
-        let gain = (self.theta[GAIN] * self.inertia_kg_m2 / torque_per_volt).ln();
+        let gain = ln(self.theta[GAIN] * self.inertia_kg_m2 / torque_per_volt);
         let (mut pull, mut sum) =
             (gain * precision(GAIN_DEVIATION), precision(GAIN_DEVIATION) + precision(INERTIA_DEVIATION));
         let lumped = rig.model.bodies.lumped();
-        let believed = lumped.gravity_c.hypot(lumped.gravity_s);
-        let found = self.theta[GRAVITY_C].hypot(self.theta[GRAVITY_S]) * self.inertia_kg_m2;
+        let believed = hypot(lumped.gravity_c, lumped.gravity_s);
+        let found = hypot(self.theta[GRAVITY_C], self.theta[GRAVITY_S]) * self.inertia_kg_m2;
         if joint == Joint::Tilt && believed > 0.0 && found > 0.0 {
-            pull += (found / believed).ln() * precision(WEIGHT_DEVIATION);
+            pull += ln(found / believed) * precision(WEIGHT_DEVIATION);
             sum += precision(WEIGHT_DEVIATION);
         }
-        (-pull / sum).exp()
+        exp(-pull / sum)
     }
 }

@@ -1,6 +1,7 @@
 //! Linear least squares over stretches of motion.
 
 use nalgebra::{SMatrix, SVector};
+use tracelight_maths::{hypot, powi};
 
 use super::edge::PHASES;
 use super::equations::{Equations, MECHANICS, RIPPLE_COS, RIPPLE_SIN};
@@ -71,7 +72,7 @@ fn weighed(believed: &Equations, stretches: &[&Stretch]) -> Vec<Weighed> {
         let worth = (WORTH_EDGES / stretch.rows.len() as f64).min(1.0);
         let lines = Free::of(stretch).lines(stretch, believed);
         let weigh = |(row, (line, value)): (&Row, (Line, f64))| {
-            let noise = (NOISE_COUNTS * stretch.count_rad).hypot(row.blur_rad);
+            let noise = hypot(NOISE_COUNTS * stretch.count_rad, row.blur_rad);
             Weighed { line, value, weight: worth / (noise * noise) }
         };
         stretch.rows.iter().zip(lines).map(weigh).collect::<Vec<_>>()
@@ -159,7 +160,7 @@ impl Free {
     fn of(stretch: &Stretch) -> Self {
         let count = stretch.rows.len() as f64;
         let mean_s = stretch.rows.iter().map(|row| row.time_s).sum::<f64>() / count;
-        let spread = stretch.rows.iter().map(|row| (row.time_s - mean_s).powi(2)).sum::<f64>();
+        let spread = stretch.rows.iter().map(|row| powi(row.time_s - mean_s, 2)).sum::<f64>();
         Self { mean_s, spread }
     }
 
@@ -210,7 +211,7 @@ fn stretch_counts(equations: &Equations, stretch: &Stretch) -> f64 {
 
 /// The same over many, each stretch alike, but for the worst tenth: in one somebody may have pushed.
 pub(super) fn residual_counts(equations: &Equations, stretches: &[&Stretch]) -> f64 {
-    let mut squares: Vec<f64> = stretches.iter().map(|s| stretch_counts(equations, s).powi(2)).collect();
+    let mut squares: Vec<f64> = stretches.iter().map(|s| powi(stretch_counts(equations, s), 2)).collect();
     squares.sort_by(f64::total_cmp);
     squares.truncate(squares.len() - squares.len() / 10);
     (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()

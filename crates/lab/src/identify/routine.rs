@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use tracelight_maths::{hypot, powi, sin};
 use tracelight_rig::{Joint, PanTilt, Segment, TICK_F64_S};
 use tracelight_sim::{Model, RigConfig};
 
@@ -88,9 +89,9 @@ impl Swings {
     /// Where a joint is to be, rad: sin² of the whole part lets it begin and end at rest at zero.
     fn angle_rad(&self, rig: &RigConfig, joint: Joint, time_s: f64, lasts_s: f64) -> f64 {
         let phase = time_s / lasts_s;
-        let envelope = (PI * phase).sin().powi(2);
-        let full = (1.0 - (1.0 - envelope).powi(3)).clamp(0.0, 1.0);
-        self.widest_rad(rig, joint) * full * (TAU * self.times(joint) * phase).sin()
+        let envelope = powi(sin(PI * phase), 2);
+        let full = (1.0 - powi(1.0 - envelope, 3)).clamp(0.0, 1.0);
+        self.widest_rad(rig, joint) * full * sin(TAU * self.times(joint) * phase)
     }
 
     /// A quintic with the angle, speed and acceleration of both ends, in ticks.
@@ -112,9 +113,9 @@ fn quintic(from: (f64, f64, f64), to: (f64, f64, f64), n: f64) -> [f64; 6] {
     let position = to.0 - (x + n * (v + 0.5 * n * a));
     let speed = to.1 - (v + n * a);
     let acceleration = to.2 - a;
-    let c3 = (10.0 * position - 4.0 * n * speed + 0.5 * n * n * acceleration) / n.powi(3);
-    let c4 = (-15.0 * position + 7.0 * n * speed - n * n * acceleration) / n.powi(4);
-    let c5 = (6.0 * position - 3.0 * n * speed + 0.5 * n * n * acceleration) / n.powi(5);
+    let c3 = (10.0 * position - 4.0 * n * speed + 0.5 * n * n * acceleration) / powi(n, 3);
+    let c4 = (-15.0 * position + 7.0 * n * speed - n * n * acceleration) / powi(n, 4);
+    let c5 = (6.0 * position - 3.0 * n * speed + 0.5 * n * n * acceleration) / powi(n, 5);
     [x, v, 0.5 * a, c3, c4, c5]
 }
 
@@ -123,7 +124,7 @@ fn possible_rad_s2(model: &Model, joint: Joint) -> f64 {
     let lumped = model.bodies.lumped();
     let weight = match joint {
         Joint::Pan => 0.0,
-        Joint::Tilt => lumped.gravity_c.hypot(lumped.gravity_s),
+        Joint::Tilt => hypot(lumped.gravity_c, lumped.gravity_s),
     };
     let left = model.motors[joint].torque_limit_nm() - weight - model.friction[joint].coulomb_nm();
     (left / model.own_inertia_kg_m2()[joint]).max(0.1)

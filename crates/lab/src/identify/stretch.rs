@@ -1,5 +1,6 @@
 //! Stretches of motion in one direction, and what each unknown did to the joint on them.
 
+use tracelight_maths::sin_cos;
 use tracelight_rig::{Joint, TICK_F64_S, Telemetry};
 use tracelight_sim::RigConfig;
 
@@ -72,7 +73,7 @@ impl Stretch {
         let mut columns = [vec![0.0], vec![0.0]];
         let mut integrals = Integrals::NONE;
         for step in &self.steps {
-            let (sin, cos) = (periods * step.angle_rad).sin_cos();
+            let (sin, cos) = sin_cos(periods * step.angle_rad);
             integrals.advance(&[sin * step.friction, cos * step.friction], step.time_s);
             if step.to_edge {
                 columns.iter_mut().zip(integrals.twice).for_each(|(column, moved)| column.push(moved));

@@ -1,3 +1,4 @@
+use tracelight_maths::powi;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, MotionArray, ObserverName, RigConfig, follow_array};
 
@@ -44,7 +45,7 @@ fn run(values: &[f64]) -> Vec<Experiment> {
 
 fn check(_: &[f64], experiments: &[Experiment]) -> Vec<Check> {
     let [ramps @ .., step] = experiments else { return Vec::new() };
-    let jumps_v = (ramps.iter().map(|ramp| jumps_v(ramp).powi(2)).sum::<f64>() / ramps.len() as f64).sqrt();
+    let jumps_v = (ramps.iter().map(|ramp| powi(jumps_v(ramp), 2)).sum::<f64>() / ramps.len() as f64).sqrt();
     vec![
         Check::at_most(
             "pan, about 1 ft/s: command jumps by, rms",

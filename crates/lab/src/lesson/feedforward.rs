@@ -1,3 +1,4 @@
+use tracelight_maths::cos;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, Feedforward, HandTuned, MotionArray, RigConfig, follow_array};
 
@@ -50,7 +51,7 @@ fn swing() -> Option<MotionArray> {
     let row = |k: u32| {
         let time_s = 0.025 * f64::from(k);
         let turn = std::f64::consts::TAU * time_s / PERIOD_S;
-        (time_s, PanTilt::new(0.5 * REACH_RAD * (1.0 - turn.cos()), 0.0))
+        (time_s, PanTilt::new(0.5 * REACH_RAD * (1.0 - cos(turn)), 0.0))
     };
     let rows: Vec<(f64, PanTilt<f64>)> = (0..=120).map(row).collect();
     MotionArray::new(&rows, Between::Spline).ok()

@@ -1,5 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use tracelight_maths::{atan, complex, tan};
+
 use super::in_continuous_time;
 use crate::notation::four_digits;
 use crate::time::positive;
@@ -58,7 +60,7 @@ impl TransferFunction {
         if wish.lag > 1.0 {
             zeros.push(left(0.1 * w));
             poles.push(left(0.1 * w / wish.lag));
-            missing += (10.0 * wish.lag).atan() - 10.0_f64.atan();
+            missing += atan(10.0 * wish.lag) - atan(10.0);
         }
         let leads = (missing / MOST_LEAD_RAD).ceil().max(0.0);
         if leads > MOST_LEADS as f64 || leads.is_nan() {
@@ -71,14 +73,14 @@ impl TransferFunction {
         }
         if leads > 0.0 {
             // arg (1 + j r) − arg (1 + j/r) = 2 atan r − π/2
-            let root = (0.5 * (missing / leads + FRAC_PI_2)).tan();
+            let root = tan(0.5 * (missing / leads + FRAC_PI_2));
             for _ in 0..leads as usize {
                 zeros.push(left(w / root));
                 poles.push(left(w * root));
             }
         }
         let shape = Zpk::new(1.0, zeros.clone(), poles.clone(), Time::Continuous)?.transfer();
-        let gain = 1.0 / (shape.at(Complex::new(0.0, w)) * self.at(Complex::new(0.0, w))).norm();
+        let gain = 1.0 / complex::norm(shape.at(Complex::new(0.0, w)) * self.at(Complex::new(0.0, w)));
         if !(gain.is_finite() && gain > 0.0) {
             return Err(LinearError::Wish(format!(
                 "at {} rad/s the system's gain is no number, or none",

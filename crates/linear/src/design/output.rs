@@ -1,3 +1,5 @@
+use tracelight_maths::{complex, exp, ln, powi};
+
 use crate::state_space::stack;
 use crate::time::positive;
 use crate::{Complex, LinearError, Matrix, Polynomial, StateSpace, TransferFunction, Zpk};
@@ -35,17 +37,17 @@ impl TransferFunction {
             return Err(LinearError::Wish("it has no states: there is nothing to estimate".into()));
         }
         let one = |size: f64| Matrix::from_element(1, 1, size);
-        let input = one(wish.input.powi(-2));
+        let input = one(powi(wish.input, -2));
         let regulator = match wish.integral {
-            None => plant.lqr_of_outputs(&one(wish.output.powi(-2)), &input)?,
+            None => plant.lqr_of_outputs(&one(powi(wish.output, -2)), &input)?,
             Some(integral) => {
-                let weights = [wish.output.powi(-2), integral.powi(-2)];
+                let weights = [powi(wish.output, -2), powi(integral, -2)];
                 let weights = Matrix::from_diagonal(&weights.to_vec().into());
                 plant.with_integrals()?.lqr_of_outputs(&weights, &input)?
             }
         };
-        let pushed = plant.b() * plant.b().transpose() * wish.disturbance.powi(2);
-        let estimator = plant.kalman(&pushed, &one(wish.noise.powi(2)))?;
+        let pushed = plant.b() * plant.b().transpose() * powi(wish.disturbance, 2);
+        let estimator = plant.kalman(&pushed, &one(powi(wish.noise, 2)))?;
         let controller = estimated(&plant, &regulator.gain, &estimator.gain)?;
         self.checked(controller, regulator.poles.into_iter().chain(estimator.poles))
     }
@@ -77,7 +79,7 @@ impl TransferFunction {
         let edge = self.time().at_rest();
         let n = poles.len() as f64;
         let size =
-            (poles.iter().map(|z| (z - edge).norm().max(f64::MIN_POSITIVE).ln()).sum::<f64>() / n).exp();
+            exp(poles.iter().map(|z| ln(complex::norm(z - edge).max(f64::MIN_POSITIVE))).sum::<f64>() / n);
         let shift = Polynomial::new([size, edge.re]);
         let [is, should] =
             [closed.denominator(), &wanted].map(|p| p.substituted(&shift, &Polynomial::one(), p.degree()));
@@ -141,7 +143,7 @@ mod tests {
         let sampled = parse("13.16/(s(s+0.1316))").sampled(1e-3, Discretization::ZeroOrderHold).unwrap();
         let controller = sampled.lqg(&LqgWish { integral: Some(1e-4), ..WISH }).unwrap();
         let closed = sampled.series(&controller.transfer()).unwrap().closed().unwrap();
-        assert!(closed.poles().iter().all(|pole| pole.norm() < 1.0), "{closed}");
+        assert!(closed.poles().iter().all(|pole| complex::norm(*pole) < 1.0), "{closed}");
         assert!(parse("1/s").lqg(&LqgWish { noise: 0.0, ..WISH }).is_err());
     }
 
@@ -155,8 +157,9 @@ mod tests {
             let controller = plant.placed(&wanted, &real(&[-200.0, -220.0])).unwrap();
             let closed = plant.series(&controller.transfer()).unwrap().closed().unwrap();
             for pole in wanted.iter().chain(&real(&[-200.0, -220.0])) {
-                let nearest = closed.poles().iter().map(|z| (z - pole).norm()).fold(f64::INFINITY, f64::min);
-                assert!(nearest < 1e-6 * pole.norm(), "{pole}: {:?}", closed.poles());
+                let nearest =
+                    closed.poles().iter().map(|z| complex::norm(z - pole)).fold(f64::INFINITY, f64::min);
+                assert!(nearest < 1e-6 * complex::norm(*pole), "{pole}: {:?}", closed.poles());
             }
         }
         assert!(plant.placed(&pair[..1], &pair).is_err());

@@ -1,5 +1,7 @@
 use std::f64::consts::PI;
 
+use tracelight_maths::{complex, exp, ln, powi, sin};
+
 use super::in_continuous_time;
 use crate::notation::four_digits;
 use crate::time::positive;
@@ -70,11 +72,11 @@ impl TransferFunction {
             return Err(LinearError::Wish(message.into()));
         }
         // the circle of that modulus margin about −1 lies where the phase margin is this at least
-        if modulus > 2.0 * (0.5 * phase_margin_rad).sin() {
+        if modulus > 2.0 * sin(0.5 * phase_margin_rad) {
             return Err(LinearError::Wish(format!(
                 "a phase margin of {:.1}° leaves a modulus margin of {:.3} at most: ask for more of the one or less of the other",
                 phase_margin_rad.to_degrees(),
-                2.0 * (0.5 * phase_margin_rad).sin()
+                2.0 * sin(0.5 * phase_margin_rad)
             )));
         }
         match wish.crossover_rad_s {
@@ -111,10 +113,10 @@ impl TransferFunction {
             )));
         }
         // between the neighbours, by golden section
-        let (mut from, mut to) = (crossovers[best.saturating_sub(1)].ln(), crossovers[best + 1].ln());
+        let (mut from, mut to) = (ln(crossovers[best.saturating_sub(1)]), ln(crossovers[best + 1]));
         let mut found = all[best];
         for _ in 0..24 {
-            let at = |share: f64| self.pid_at((from + share * (to - from)).exp(), wish);
+            let at = |share: f64| self.pid_at(exp(from + share * (to - from)), wish);
             let (one, other) = (at(0.382), at(0.618));
             let ki = |pid: &Option<Pid>| pid.map_or(f64::NEG_INFINITY, |pid| pid.ki);
             if ki(&one) > ki(&other) {
@@ -135,7 +137,7 @@ impl TransferFunction {
     fn pid_at(&self, w: f64, wish: &PidWish) -> Option<Pid> {
         /// Shares of the controller's size at the crossover that the integral has: a step of 8 %.
         const STEPS: i32 = 100;
-        let share = |k: i32| if k == STEPS { 0.0 } else { 5.0 * 0.92_f64.powi(k) };
+        let share = |k: i32| if k == STEPS { 0.0 } else { 5.0 * powi(0.92, k) };
         let ok = |share: f64| self.pid_with(w, share, wish).filter(|pid| self.is_calm(pid, wish));
         let first = (0..=STEPS).find(|&k| ok(share(k)).is_some())?;
         let (mut good, mut bad) = (share(first), share((first - 1).max(0)));
@@ -148,18 +150,18 @@ impl TransferFunction {
 
     /// The controller's value at the crossover is given: with that share of it as the integral the two other gains follow.
     fn pid_with(&self, w: f64, share: f64, wish: &PidWish) -> Option<Pid> {
-        let value = -Complex::from_polar(1.0, wish.phase_margin_rad) / self.at(Complex::new(0.0, w));
+        let value = -complex::from_polar(1.0, wish.phase_margin_rad) / self.at(Complex::new(0.0, w));
         let f = wish.filter * w;
         let of_derivative = Complex::new(w, f) * (w * f / (w * w + f * f));
-        let ki = share * w * value.norm();
+        let ki = share * w * complex::norm(value);
         let kd = (value.im + ki / w) / of_derivative.im;
         let kp = value.re - kd * of_derivative.re;
         // less than rounding is none
-        let kd = if kd.abs() * w < 1e-12 * value.norm() { 0.0 } else { kd };
+        let kd = if kd.abs() * w < 1e-12 * complex::norm(value) { 0.0 } else { kd };
         // zeros that swing would leave poles that do
-        let is_calm = (kp * f + ki).powi(2) >= 4.0 * ki * f * (kp + kd * f);
+        let is_calm = powi(kp * f + ki, 2) >= 4.0 * ki * f * (kp + kd * f);
         let makes_sense =
-            is_calm && kp >= 0.0 && kd >= 0.0 && (kp + ki + kd).is_finite() && value.norm() > 0.0;
+            is_calm && kp >= 0.0 && kd >= 0.0 && (kp + ki + kd).is_finite() && complex::norm(value) > 0.0;
         makes_sense.then_some(Pid { kp, ki, kd, filter_rad_s: f })
     }
 
@@ -201,7 +203,7 @@ mod tests {
             // the integral is the largest: the circle is touched, or the zeros are about to swing
             let touches = (margins.modulus.unwrap().distance - 0.6).abs() < 1e-4;
             let zeros = pid.transfer().zeros();
-            let is_double = (zeros[0] / zeros[1] - 1.0).norm() < 1e-2;
+            let is_double = complex::norm(zeros[0] / zeros[1] - 1.0) < 1e-2;
             assert!(touches || is_double, "{text} {pid:?} {margins:?}");
             assert!(zeros.iter().all(|zero| zero.im == 0.0), "{text}: {zeros:?}");
         }

@@ -1,3 +1,5 @@
+use tracelight_maths::{complex, powi};
+
 use crate::polynomial::are_paired;
 use crate::{Complex, LinearError, Matrix, Polynomial, StateSpace, eigenvalues};
 
@@ -73,13 +75,13 @@ impl StateSpace {
     fn check_placed(&self, poles: &[Complex], gain: &Matrix, condition: f64) -> Result<(), LinearError> {
         let there = eigenvalues(&(self.a() - self.b() * gain))?;
         let (wanted, there) = (Polynomial::from_roots(1.0, poles), Polynomial::from_roots(1.0, &there));
-        let size = poles.iter().map(|z| z.norm()).fold(f64::MIN_POSITIVE, f64::max);
+        let size = poles.iter().map(|z| complex::norm(*z)).fold(f64::MIN_POSITIVE, f64::max);
         let n = poles.len();
         let off = (0..n)
-            .map(|k| (wanted.coefficient(k) - there.coefficient(k)).abs() / size.powi((n - k) as i32))
+            .map(|k| (wanted.coefficient(k) - there.coefficient(k)).abs() / powi(size, (n - k) as i32))
             .fold(0.0, f64::max);
         // (1 + z)ⁿ at most, all poles being of one size
-        if off <= 1e-6 * 2.0_f64.powi(n as i32) {
+        if off <= 1e-6 * powi(2.0, n as i32) {
             return Ok(());
         }
         Err(LinearError::Wish(format!(
@@ -106,10 +108,10 @@ fn blocks(poles: &[Complex]) -> Matrix {
     let mut f = Matrix::zeros(n, n);
     let mut sorted: Vec<Complex> = poles.iter().copied().filter(|z| z.im >= 0.0).collect();
     sorted.sort_by(|a, b| (a.im, a.re).partial_cmp(&(b.im, b.re)).unwrap_or(std::cmp::Ordering::Equal));
-    let size = poles.iter().map(|z| z.norm()).fold(f64::MIN_POSITIVE, f64::max);
+    let size = poles.iter().map(|z| complex::norm(*z)).fold(f64::MIN_POSITIVE, f64::max);
     let (mut at, mut before): (usize, Option<Complex>) = (0, None);
     // a real one and a pair are no chain, however near
-    let alike = |a: Complex, b: Complex| (a.im == 0.0) == (b.im == 0.0) && (a - b).norm() < 1e-3 * size;
+    let alike = |a: Complex, b: Complex| (a.im == 0.0) == (b.im == 0.0) && complex::norm(a - b) < 1e-3 * size;
     for pole in sorted {
         let wide = if pole.im == 0.0 { 1 } else { 2 };
         for i in 0..wide {
@@ -176,7 +178,10 @@ mod tests {
             let mut there = eigenvalues(&(plant.a() - plant.b() * gain)).unwrap();
             there.sort_by(|a, b| b.re.total_cmp(&a.re));
             for (there, wanted) in there.iter().zip(&wanted) {
-                assert!((there - wanted).norm() < 1e-5 * wanted.norm(), "{text}: {there} {wanted}");
+                assert!(
+                    complex::norm(there - wanted) < 1e-5 * complex::norm(*wanted),
+                    "{text}: {there} {wanted}"
+                );
             }
         }
     }
@@ -195,7 +200,7 @@ mod tests {
         let gain = plant.place(&wanted).unwrap();
         let mut there = eigenvalues(&(plant.a() - plant.b() * gain)).unwrap();
         there.sort_by(|a, b| b.re.total_cmp(&a.re));
-        assert!(there.iter().zip(&wanted).all(|(a, b)| (a - b).norm() < 1e-4), "{there:?}");
+        assert!(there.iter().zip(&wanted).all(|(a, b)| complex::norm(a - b) < 1e-4), "{there:?}");
     }
 
     #[test]

@@ -1,3 +1,5 @@
+use tracelight_maths::{complex, exp2, log2, powf, powi};
+
 use crate::eigen::{balanced, eigenvalues};
 use crate::{Complex, LinearError, Matrix, StateSpace, Time};
 
@@ -32,7 +34,7 @@ impl Riccati<'_> {
         let rows = |m: &Matrix, power: i32| {
             let mut m = m.clone();
             for (i, scale) in scales.iter().enumerate() {
-                m.row_mut(i).iter_mut().for_each(|entry| *entry *= scale.powi(power));
+                m.row_mut(i).iter_mut().for_each(|entry| *entry *= powi(*scale, power));
             }
             m
         };
@@ -79,7 +81,7 @@ impl Riccati<'_> {
         let poles = eigenvalues(&(self.a - self.b * gain)).unwrap_or_default();
         let is_stable = |pole: &Complex| match self.time {
             Time::Continuous => pole.re < 0.0,
-            Time::Sampled(_) => pole.norm() < 1.0,
+            Time::Sampled(_) => complex::norm(*pole) < 1.0,
         };
         poles.len() == self.a.nrows() && poles.iter().all(is_stable)
     }
@@ -93,11 +95,13 @@ impl Riccati<'_> {
         let (c, d) = (Matrix::zeros(1, n), Matrix::zeros(1, self.b.ncols()));
         let plant = StateSpace::new(self.a.clone(), self.b.clone(), c, d, self.time)?;
         let poles = eigenvalues(self.a)?;
-        let size = poles.iter().map(|pole| pole.norm()).fold(f64::MIN_POSITIVE, f64::max);
+        let size = poles.iter().map(|pole| complex::norm(*pole)).fold(f64::MIN_POSITIVE, f64::max);
         let mirrored = |pole: &Complex| match self.time {
             // those at the edge a little inside
             Time::Continuous => Complex::new(-pole.re.abs().max(1e-3 * size), pole.im),
-            Time::Sampled(_) if pole.norm() > 0.999 => pole / pole.norm() * (1.0 / pole.norm()).min(0.999),
+            Time::Sampled(_) if complex::norm(*pole) > 0.999 => {
+                pole / complex::norm(*pole) * (1.0 / complex::norm(*pole)).min(0.999)
+            }
             Time::Sampled(_) => *pole,
         };
         let mirrored: Vec<Complex> = poles.iter().map(mirrored).collect();
@@ -159,11 +163,11 @@ impl Riccati<'_> {
 fn scales(a: &Matrix, g: &Matrix, q: &Matrix) -> Vec<f64> {
     let (_, mut scales) = balanced(a.clone());
     let size = |m: &Matrix, power: i32| {
-        let entry = |(i, j): (usize, usize)| m[(i, j)] * (scales[i] * scales[j]).powi(power);
+        let entry = |(i, j): (usize, usize)| m[(i, j)] * powi(scales[i] * scales[j], power);
         let all = (0..a.nrows()).flat_map(|i| (0..a.nrows()).map(move |j| (i, j)));
-        all.map(|at| entry(at).powi(2)).sum::<f64>().sqrt()
+        all.map(|at| powi(entry(at), 2)).sum::<f64>().sqrt()
     };
-    let unit = (size(g, -1) / size(q, 1)).powf(0.25).log2().round().exp2();
+    let unit = exp2(log2(powf(size(g, -1) / size(q, 1), 0.25)).round());
     if unit.is_finite() && unit > 0.0 {
         scales.iter_mut().for_each(|scale| *scale *= unit);
     }
@@ -179,7 +183,8 @@ fn continuous(a: &Matrix, g: &Matrix, q: &Matrix) -> Result<Matrix, LinearError>
     hamiltonian.view_mut((0, n), (n, n)).copy_from(&-g);
     hamiltonian.view_mut((n, 0), (n, n)).copy_from(&-q);
     hamiltonian.view_mut((n, n), (n, n)).copy_from(&-a.transpose());
-    let sizes: Vec<f64> = eigenvalues(&hamiltonian)?.iter().map(|z| z.norm()).filter(|s| *s > 0.0).collect();
+    let sizes: Vec<f64> =
+        eigenvalues(&hamiltonian)?.iter().map(|z| complex::norm(*z)).filter(|s| *s > 0.0).collect();
     let (least, most) =
         (sizes.iter().copied().fold(f64::INFINITY, f64::min), sizes.iter().copied().fold(0.0, f64::max));
     let middle = if most > 0.0 { (least * most).sqrt() } else { 1.0 };

@@ -1,3 +1,5 @@
+use tracelight_maths::{complex, powf, powi};
+
 use super::evaluate::Scaled;
 use crate::Complex;
 
@@ -10,8 +12,10 @@ pub(super) fn disc(scaled: &Scaled, place: Complex) -> f64 {
     let degree = scaled.degree();
     let (terms, sizes) = expansion(scaled, place);
     let rounding = 4.0 * degree as f64 * f64::EPSILON;
-    let most = |k: usize| if k == 0 { scaled.residual(place) } else { terms[k].norm() + rounding * sizes[k] };
-    let least = |k: usize| terms[k].norm() - rounding * sizes[k];
+    let most = |k: usize| {
+        if k == 0 { scaled.residual(place) } else { complex::norm(terms[k]) + rounding * sizes[k] }
+    };
+    let least = |k: usize| complex::norm(terms[k]) - rounding * sizes[k];
     let holds = |m: usize| {
         let least = least(m);
         if least <= 0.0 {
@@ -19,13 +23,13 @@ pub(super) fn disc(scaled: &Scaled, place: Complex) -> f64 {
         }
         // half of the term is for those below it, half for those above
         let share = 2.0 * m as f64 / least;
-        let radius = (0..m).map(|k| (share * most(k)).powf(1.0 / (m - k) as f64)).fold(0.0, f64::max);
-        let above: f64 = (m + 1..=degree).map(|k| most(k) * radius.powi((k - m) as i32)).sum();
+        let radius = (0..m).map(|k| powf(share * most(k), 1.0 / (m - k) as f64)).fold(0.0, f64::max);
+        let above: f64 = (m + 1..=degree).map(|k| most(k) * powi(radius, (k - m) as i32)).sum();
         (2.0 * above < least).then_some(radius)
     };
     // rounding of the place itself
     let own = f64::EPSILON;
-    (1..=degree).find_map(holds).map_or(f64::INFINITY, |radius| place.norm() * (radius + own))
+    (1..=degree).find_map(holds).map_or(f64::INFINITY, |radius| complex::norm(place) * (radius + own))
 }
 
 /// Terms of p(z (1 + h)) / max(1, |z|)ⁿ as powers of h, the lowest first, and of the same with all signs alike.
@@ -42,7 +46,7 @@ fn expansion(scaled: &Scaled, place: Complex) -> (Vec<Complex>, Vec<f64>) {
         terms[at] = power * coefficients[at];
         power *= base;
     }
-    let mut sizes: Vec<f64> = terms.iter().map(|term| term.norm()).collect();
+    let mut sizes: Vec<f64> = terms.iter().map(|term| complex::norm(*term)).collect();
     shift(&mut terms);
     shift(&mut sizes);
     terms.reverse();

@@ -1,3 +1,5 @@
+use tracelight_maths::complex;
+
 use super::start::polygon;
 use crate::Complex;
 use crate::binary::{join, split, times_power};
@@ -97,25 +99,25 @@ impl Scaled {
     pub(super) fn step(&self, place: Complex) -> Step {
         let (newton, value, size) = self.newton(place, plain);
         let rounding = 4.0 * self.degree as f64 * f64::EPSILON * size;
-        Step { newton, is_settled: value.norm() <= rounding }
+        Step { newton, is_settled: complex::norm(value) <= rounding }
     }
 
     /// With values in twice the digits.
     pub(super) fn accurate_step(&self, place: Complex) -> Step {
         let (newton, value, size) = self.newton(place, compensated);
-        Step { newton, is_settled: value.norm() <= self.compensated_rounding(size) }
+        Step { newton, is_settled: complex::norm(value) <= self.compensated_rounding(size) }
     }
 
     /// |p| at a place, or |p / zⁿ| outside the unit circle, with all that rounding may hide.
     pub(super) fn residual(&self, place: Complex) -> f64 {
         let (_, value, size) = self.newton(place, compensated);
-        value.norm() * (1.0 + f64::EPSILON) + self.compensated_rounding(size)
+        complex::norm(value) * (1.0 + f64::EPSILON) + self.compensated_rounding(size)
     }
 
     /// Whether the value is no more than rounding of each coefficient could make it.
     pub(super) fn may_vanish_at(&self, place: Complex) -> bool {
         let (_, value, size) = self.newton(place, compensated);
-        value.norm() <= 2.0 * (self.degree + 1) as f64 * f64::EPSILON * size
+        complex::norm(value) <= 2.0 * (self.degree + 1) as f64 * f64::EPSILON * size
     }
 
     /// Graillat & Langlois's bound, for complex places.
@@ -126,7 +128,7 @@ impl Scaled {
 }
 
 fn plain(coefficients: &[f64], at: Complex) -> Value {
-    let norm = at.norm();
+    let norm = complex::norm(at);
     let start = Value { value: Complex::ZERO, derivative: Complex::ZERO, size: 0.0 };
     coefficients.iter().fold(start, |sum, &c| Value {
         derivative: sum.derivative * at + sum.value,
@@ -140,7 +142,7 @@ fn plain(coefficients: &[f64], at: Complex) -> Value {
 fn compensated(coefficients: &[f64], at: Complex) -> Value {
     let Value { mut value, derivative, size } = plain(&[], at);
     let (mut derivative, mut size, mut lost) = (derivative, size, Complex::ZERO);
-    let norm = at.norm();
+    let norm = complex::norm(at);
     for &c in coefficients {
         derivative = derivative * at + value;
         size = size * norm + c.abs();

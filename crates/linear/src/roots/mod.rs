@@ -4,6 +4,8 @@ mod disc;
 mod evaluate;
 mod start;
 
+use tracelight_maths::complex;
+
 use crate::{Complex, Polynomial};
 use disc::disc;
 use evaluate::{Scaled, Step};
@@ -90,7 +92,7 @@ fn approach(scaled: &Scaled, places: &mut [Complex], step: fn(&Scaled, Complex) 
             if moved.is_finite() {
                 places[i] -= moved;
             }
-            settled[i] = is_settled || moved.norm() <= f64::EPSILON * place.norm();
+            settled[i] = is_settled || complex::norm(moved) <= f64::EPSILON * complex::norm(place);
         }
         if settled.iter().all(|&done| done) {
             return true;
@@ -121,10 +123,10 @@ fn repulsion(places: &[Complex], i: usize) -> Complex {
 /// become pairs, or are their own mirrors.
 fn mirrored(roots: Vec<Root>) -> Vec<Root> {
     let ways = |i: usize| (i..roots.len()).map(move |j| (i, j));
-    let apart = |(i, j): (usize, usize)| (roots[i].value - roots[j].value.conj()).norm();
+    let apart = |(i, j): (usize, usize)| complex::norm(roots[i].value - roots[j].value.conj());
     // a root that is alone in a disc that reaches the real axis is real
     let alone = |i: usize| {
-        let apart = |j: usize| (roots[i].value - roots[j].value).norm();
+        let apart = |j: usize| complex::norm(roots[i].value - roots[j].value);
         (0..roots.len()).all(|j| j == i || apart(j) > roots[i].radius + roots[j].radius)
     };
     let real: Vec<bool> =
@@ -148,6 +150,6 @@ fn mirrored(roots: Vec<Root>) -> Vec<Root> {
         }
     }
     // stable: pairs stay together
-    done.sort_by(|a, b| a.value.norm().total_cmp(&b.value.norm()));
+    done.sort_by(|a, b| complex::norm(a.value).total_cmp(&complex::norm(b.value)));
     done
 }

@@ -1,5 +1,7 @@
 use std::f64::consts::TAU;
 
+use tracelight_maths::{complex, exp2, log2};
+
 use crate::Complex;
 use crate::binary::{join, split};
 
@@ -15,7 +17,7 @@ pub(super) struct Edge {
 pub(super) fn polygon(coefficients: &[f64]) -> Vec<Edge> {
     let height = |c: f64| {
         let (mantissa, exponent) = split(c);
-        mantissa.abs().log2() + f64::from(exponent)
+        log2(mantissa.abs()) + f64::from(exponent)
     };
     let points = (0..).zip(coefficients).filter(|(_, c)| **c != 0.0).map(|(i, &c)| (i, height(c)));
     let corners = upper_edge(&points.collect::<Vec<_>>());
@@ -33,10 +35,10 @@ pub(super) fn starts(coefficients: &[f64]) -> Vec<Complex> {
     let degree = (coefficients.len() - 1) as f64;
     let on_circle = |edge: Edge| {
         let whole = edge.radius_log2.clamp(-1000.0, 1000.0).floor();
-        let radius = join((edge.radius_log2.clamp(-1000.0, 1000.0) - whole).exp2(), whole as i32);
+        let radius = join(exp2(edge.radius_log2.clamp(-1000.0, 1000.0) - whole), whole as i32);
         (0..edge.count).map(move |k| {
             let turn = TAU * (k as f64 / edge.count as f64 + edge.first as f64 / degree) + TURN;
-            Complex::from_polar(radius, turn)
+            complex::from_polar(radius, turn)
         })
     };
     polygon(coefficients).into_iter().flat_map(on_circle).collect()

@@ -1,6 +1,7 @@
 //! Roots of polynomials that make root finders fail: repeated, far apart, of high order, badly scaled.
 
 use tracelight_linear::{Complex, Polynomial, Root};
+use tracelight_maths::complex;
 
 /// Whether the true roots, each as often as it occurs, lie in the discs: as many in each cluster of discs as it is of.
 fn check(name: &str, coefficients: &[f64], truth: &[Complex]) {
@@ -9,11 +10,11 @@ fn check(name: &str, coefficients: &[f64], truth: &[Complex]) {
     let mut left: Vec<Complex> = truth.to_vec();
     for root in &roots {
         assert!(root.radius.is_finite(), "{name}: {root:?}");
-        let near = |t: &Complex| (t - root.value).norm();
+        let near = |t: &Complex| complex::norm(t - root.value);
         let place = (0..left.len()).min_by(|&a, &b| near(&left[a]).total_cmp(&near(&left[b]))).unwrap();
         let nearest = left.swap_remove(place);
         assert!(
-            near(&nearest) <= 1.0001 * root.radius + 1e-15 * root.value.norm(),
+            near(&nearest) <= 1.0001 * root.radius + 1e-15 * complex::norm(root.value),
             "{name}: {root:?} is off by {:e}",
             near(&nearest)
         );
@@ -40,7 +41,7 @@ fn product(roots: &[i64]) -> Vec<f64> {
 }
 
 fn widest(roots: &[Root]) -> f64 {
-    roots.iter().map(|root| root.radius / root.value.norm().max(1e-300)).fold(0.0, f64::max)
+    roots.iter().map(|root| root.radius / complex::norm(root.value).max(1e-300)).fold(0.0, f64::max)
 }
 
 #[test]
@@ -63,7 +64,7 @@ fn wilkinsons_polynomial_is_solved_to_all_its_digits() {
     let coefficients = product(&truth);
     let roots = Polynomial::new(coefficients).roots();
     for (root, truth) in roots.iter().zip(&truth) {
-        let off = (root.value - *truth as f64).norm() / *truth as f64;
+        let off = complex::norm(root.value - *truth as f64) / *truth as f64;
         assert!(off < 1e-14 && root.value.im == 0.0, "{root:?} {off:e}");
         assert!(root.radius < 1e-12 * *truth as f64, "{root:?}");
     }
@@ -74,7 +75,7 @@ fn repeated_roots_are_as_close_as_their_coefficients_say() {
     // the coefficients are exact; what limits it are the derivatives, which have no more digits than others
     for (count, most) in [(2, 1e-13), (3, 1e-8), (5, 1e-4), (8, 1e-2)] {
         let roots = Polynomial::new(product(&vec![-1; count])).roots();
-        let off = roots.iter().map(|root| (root.value + 1.0).norm()).fold(0.0, f64::max);
+        let off = roots.iter().map(|root| complex::norm(root.value + 1.0)).fold(0.0, f64::max);
         assert!(off < most, "{count}: {off:e}");
         check("repeated", &product(&vec![-1; count]), &real(&vec![-1.0; count]));
     }
@@ -86,7 +87,7 @@ fn what_hangs_others_ends() {
     let zeros = |n: usize| [&[1.0][..], &vec![0.0; n]].concat();
     check("x¹², all at zero", &zeros(12), &real(&[0.0; 12]));
     let turns =
-        |n: usize| (0..n).map(move |k| Complex::from_polar(1.0, std::f64::consts::TAU * k as f64 / n as f64));
+        |n: usize| (0..n).map(move |k| complex::from_polar(1.0, std::f64::consts::TAU * k as f64 / n as f64));
     for n in [2, 4, 5, 8, 40] {
         let mut unit = zeros(n);
         unit[n] = -1.0;

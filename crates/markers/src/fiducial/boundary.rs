@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 
 use tracelight_image::Plane;
 use tracelight_image::solve::symmetric;
+use tracelight_maths::{exp, powi};
 use tracelight_stroke::{Point, Vec2};
 
 use super::place::TagPlace;
@@ -52,7 +53,7 @@ impl Tables {
 
     fn new() -> Self {
         let deviations = |k: usize| k as f64 / STEPS as f64 - TAILS as f64;
-        let density = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
+        let density = |z: f64| exp(-0.5 * z * z) / std::f64::consts::TAU.sqrt();
         let bell = std::array::from_fn(|k| density(deviations(k)) as f32);
         let mut below = [0.0; 2 * TAILS * STEPS + 1];
         let mut sum = 0.0;
@@ -236,7 +237,7 @@ pub(super) fn placed(plane: &Plane<u8>, tables: &Tables, cells: &Cells, square: 
     for f in &found {
         let Found { cell, upright, black_behind, .. } = *f;
         let at = view.square.at(cell.x, cell.y)? + f.normal * f.off_px;
-        squares += (at - square.at(cell.x, cell.y)?).dot(f.normal).powi(2);
+        squares += powi((at - square.at(cell.x, cell.y)?).dot(f.normal), 2);
         places.push(TagPlace { cell, upright, black_behind, at });
     }
     // eight of them it takes to place the square

@@ -2,6 +2,7 @@
 
 use tracelight_image::border::{Edge, area, border};
 use tracelight_image::{Mask, Region};
+use tracelight_maths::{atan2, hypot, planar};
 use tracelight_stroke::{Point, Vec2};
 
 /// Shortest side of a marker that can be read, px: a pixel and a half a cell.
@@ -108,9 +109,9 @@ impl Side {
             let off = p.to_vec2() - mean;
             (xx, xy, yy) = (xx + off.x * off.x, xy + off.x * off.y, yy + off.y * off.y);
         }
-        let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
-        let along = Vec2::from_angle(angle);
-        let across = (yy + xx - (xx - yy).hypot(2.0 * xy)).max(0.0) / 2.0;
+        let angle = 0.5 * atan2(2.0 * xy, xx - yy);
+        let along = planar::direction(angle);
+        let across = (yy + xx - hypot(xx - yy, 2.0 * xy)).max(0.0) / 2.0;
         let along = if along.dot(*points.last()? - *points.first()?) < 0.0 { -along } else { along };
         Some((Self { on: mean.to_point(), along }, (across / n).sqrt()))
     }

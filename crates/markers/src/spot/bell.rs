@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use tracelight_image::solve::linear;
 use tracelight_image::{Plane, long_axis};
+use tracelight_maths::{exp, hypot};
 use tracelight_stroke::{Point, Vec2};
 
 use super::change::{Change, Patch};
@@ -57,7 +58,7 @@ impl Bell {
     /// Variances along and across its long axis, and that axis.
     fn axes(&self) -> (f64, f64, Vec2) {
         let [a, b, c] = self.spread;
-        let (middle, half) = (0.5 * (a + c), 0.5 * (a - c).hypot(2.0 * b));
+        let (middle, half) = (0.5 * (a + c), 0.5 * hypot(a - c, 2.0 * b));
         (middle + half, (middle - half).max(0.05), long_axis(self.spread))
     }
 
@@ -152,7 +153,7 @@ impl Bell {
                 let cell = y * change.light.width + x;
                 let off = change.place(cell) - self.at;
                 let (u, v) = (ia * off.x + ib * off.y, ib * off.x + ic * off.y);
-                let bell = (-0.5 * (u * off.x + v * off.y)).exp();
+                let bell = exp(-0.5 * (u * off.x + v * off.y));
                 let light = self.brightness * bell;
                 let told = light + self.floor;
                 // what is full is at least that bright, and says no more

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use tracelight_maths::erfc;
+use tracelight_maths::{erfc, exp, ln, powf};
 
 use super::config::Sensor;
 use super::part::Part;
@@ -38,7 +38,7 @@ impl Electrons {
     /// `gamma` is the exponent from light to levels.
     pub(super) fn new(seed: u64, gamma: f64) -> Self {
         let at = |k: usize| quantile((k as f64 + 0.5) / QUANTILES as f64) as f32;
-        let level = |k: usize| (255.0 * (k as f64 / CURVE as f64).powf(gamma)).round() as u8;
+        let level = |k: usize| (255.0 * powf(k as f64 / CURVE as f64, gamma)).round() as u8;
         Self { seed, normal: (0..QUANTILES).map(at).collect(), curve: (0..=CURVE).map(level).collect() }
     }
 
@@ -129,9 +129,9 @@ const fn mirrored(at: usize, size: usize, before: bool) -> usize {
 
 /// The normal distribution's quantile: Newton's method on its distribution, from a logistic one's.
 fn quantile(p: f64) -> f64 {
-    let mut z = (p / (1.0 - p)).ln() / 1.702;
+    let mut z = ln(p / (1.0 - p)) / 1.702;
     for _ in 0..20 {
-        let density = (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
+        let density = exp(-0.5 * z * z) / std::f64::consts::TAU.sqrt();
         let off = 0.5 * erfc(-z * std::f64::consts::FRAC_1_SQRT_2) - p;
         // half a deviation at most: far out the density is next to nothing
         z -= (off / density).clamp(-0.5, 0.5);

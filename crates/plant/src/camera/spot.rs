@@ -1,4 +1,5 @@
 use tracelight_aim::Camera;
+use tracelight_maths::{exp, hypot, powi};
 use tracelight_stroke::{Point, Vec2};
 
 use super::config::CameraConfig;
@@ -60,7 +61,7 @@ impl Exposure<'_> {
                 let [a, b, c] = shape.inverse;
                 let square = a * off.x * off.x + 2.0 * b * off.x * off.y + c * off.y * off.y;
                 let grain = 1.0 + laser.speckle * grain(column, row, self.exposed.number);
-                let here = share * (-0.5 * square).exp() * grain.max(0.0);
+                let here = share * exp(-0.5 * square) * grain.max(0.0);
                 let pixel = &mut light[(row - part.top) * part.width + column - part.left];
                 pixel.iter_mut().zip(laser.brightness).for_each(|(v, own)| *v += (own * here) as f32);
             }
@@ -83,7 +84,7 @@ struct Shape {
 impl Shape {
     fn of(config: &CameraConfig, camera: &Camera, at: Point) -> Option<Self> {
         let [x, y] = camera.pixels_per_metre(at)?;
-        let (beam, blur) = (config.laser.radius_m.powi(2), config.blur_px.powi(2));
+        let (beam, blur) = (powi(config.laser.radius_m, 2), powi(config.blur_px, 2));
         let spread =
             [beam * (x.x * x.x + y.x * y.x), beam * (x.x * x.y + y.x * y.y), beam * (x.y * x.y + y.y * y.y)];
         // a pixel is a twelfth of its square more
@@ -91,7 +92,7 @@ impl Shape {
         let seen = [spread[0] + blur + pixel, spread[1], spread[2] + blur + pixel];
         let area = |[a, b, c]: [f64; 3]| (a * c - b * b).max(1e-12);
         let det = area(seen);
-        let least = 0.5 * (seen[0] + seen[2] - (seen[0] - seen[2]).hypot(2.0 * seen[1]));
+        let least = 0.5 * (seen[0] + seen[2] - hypot(seen[0] - seen[2], 2.0 * seen[1]));
         Some(Self {
             inverse: [seen[2] / det, -seen[1] / det, seen[0] / det],
             reach: Vec2::new(seen[0].sqrt(), seen[2].sqrt()) * REACH,

@@ -1,4 +1,5 @@
 use tracelight_aim::Camera;
+use tracelight_maths::{exp, log2, powi, single};
 use tracelight_stroke::{Affine, Point};
 
 use super::config::CameraConfig;
@@ -39,7 +40,7 @@ impl Poster {
             return None;
         }
         // what is stored is light to the power of 1/2.2
-        let linear: Vec<f32> = (0..256).map(|v| (v as f32 / 255.0).powf(2.2)).collect();
+        let linear: Vec<f32> = (0..256).map(|v| single::powf(v as f32 / 255.0, 2.2)).collect();
         let values = rgb.iter().map(|p| p.map(|v| linear[usize::from(v)])).collect();
         let mut levels = vec![Level { width, height, values }];
         while let Some(half) = levels.last().and_then(Level::half) {
@@ -55,7 +56,7 @@ impl Poster {
         if !((0.0..width as f64).contains(&p.x) && (0.0..height as f64).contains(&p.y)) {
             return None;
         }
-        let number = (over_m / self.pixel_m).max(1.0).log2() as usize;
+        let number = log2((over_m / self.pixel_m).max(1.0)) as usize;
         let level = &self.levels[number.min(self.levels.len() - 1)];
         let (sx, sy) = (level.width as f64 / width as f64, level.height as f64 / height as f64);
         Some(level.between(p.x * sx - 0.5, p.y * sy - 0.5))
@@ -164,7 +165,7 @@ fn light_at(config: &CameraConfig, at: Point, width: f64, height: f64) -> (f32, 
     let corner = at.distance(centre) / centre.to_vec2().hypot();
     let lamp = config.lamp.map_or(0.0, |lamp| {
         let off = at.distance(lamp.at) / lamp.size_px;
-        lamp.brightness * (-0.5 * off * off).exp()
+        lamp.brightness * exp(-0.5 * off * off)
     });
     ((side * (1.0 - config.vignetting * corner * corner)) as f32, lamp as f32)
 }
@@ -210,7 +211,7 @@ fn add(sum: &mut [f32; 3], value: [f32; 3], weight: f32) {
 fn weights(deviation_px: f64) -> Vec<f32> {
     let deviation = PARTS as f64 * deviation_px;
     let reach = (4.0 * deviation).ceil() as isize;
-    let bell = |k: isize| if k == 0 { 1.0 } else { (-0.5 * (k as f64 / deviation).powi(2)).exp() };
+    let bell = |k: isize| if k == 0 { 1.0 } else { exp(-0.5 * powi(k as f64 / deviation, 2)) };
     let total: f64 = (-reach..=reach).map(bell).sum();
     let last = PARTS as isize - 1;
     let weight = |k: isize| {

@@ -1,3 +1,5 @@
+use tracelight_maths::{log10, powf};
+
 use super::html::number;
 
 /// A range of values shown from edge to edge, with its marks.
@@ -55,16 +57,16 @@ impl Axis {
     }
 
     fn label(&self, value: f64) -> String {
-        let decimals = (-self.step.log10().floor()).clamp(0.0, 6.0) as usize;
+        let decimals = (-log10(self.step).floor()).clamp(0.0, 6.0) as usize;
         let value = (value / self.step).round() * self.step;
-        let whole = value.abs().max(1.0).log10().floor() as usize + 1;
+        let whole = log10(value.abs().max(1.0)).floor() as usize + 1;
         number(value, whole + decimals)
     }
 }
 
 /// The least 1, 2, 5 · 10ⁿ that is not below `step`.
 pub(super) fn round_step(step: f64) -> f64 {
-    let power = 10_f64.powf(step.max(1e-12).log10().floor());
+    let power = powf(10.0, log10(step.max(1e-12)).floor());
     let factor = [1.0, 2.0, 5.0].into_iter().find(|f| f * power >= step * (1.0 - 1e-9));
     factor.unwrap_or(10.0) * power
 }

@@ -1,5 +1,6 @@
 //! Texts, numbers and files as a page holds them.
 
+use tracelight_maths::log10;
 use tracelight_picture::Raster;
 
 use crate::error::EncodeError;
@@ -30,7 +31,7 @@ pub fn number(value: f64, digits: usize) -> String {
         return "–".to_owned();
     }
     let size = value.abs();
-    let whole = if size < 1.0 { 1 } else { size.log10().floor() as usize + 1 };
+    let whole = if size < 1.0 { 1 } else { log10(size).floor() as usize + 1 };
     let text = format!("{value:.*}", digits.saturating_sub(whole).min(6));
     // a negative number that rounds to nothing is nothing
     let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));

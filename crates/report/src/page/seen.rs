@@ -1,6 +1,7 @@
 use std::fmt::Write;
 
 use tracelight_eye::seen::SeenLight;
+use tracelight_maths::{log10, powf};
 
 use super::axis::Axis;
 use super::html::{escaped, jpeg_uri, number};
@@ -80,7 +81,7 @@ fn marks(job: &Finished<'_>, seen: &SeenLight) -> Result<String, EncodeError> {
 
 /// A round number of times, at most what is wanted.
 fn round_times(wanted: f64) -> f64 {
-    let power = 10.0_f64.powf(wanted.max(1.0).log10().floor());
+    let power = powf(10.0, log10(wanted.max(1.0)).floor());
     let digit = [5.0, 2.0, 1.0].into_iter().find(|digit| digit * power <= wanted).unwrap_or(1.0);
     digit * power
 }

@@ -1,3 +1,4 @@
+use tracelight_maths::{log10, powf};
 use tracelight_stroke::{Point, Vec2};
 use tracelight_task::counted;
 
@@ -99,7 +100,7 @@ fn tick_marks(chalk: &mut Plane, left: Point, length: f64, side: f64, label: &st
 
 /// The largest of `steps`, falling from below 10 to 1, times 10ⁿ that is not above `length`.
 fn round_length(length: f64, steps: &[f64]) -> f64 {
-    let power = 10_f64.powf(length.max(1e-9).log10().floor());
+    let power = powf(10.0, log10(length.max(1e-9)).floor());
     let step = steps.iter().find(|&s| s * power <= length * (1.0 + 1e-9));
     step.copied().unwrap_or(1.0) * power
 }

@@ -1,5 +1,7 @@
 //! From light to eight bits: a filmic curve, then the sRGB transfer function.
 
+use tracelight_maths::single;
+
 /// Entries of the table between black and white; finer than eight bits even in the darkest tones.
 const STEPS: usize = 4096;
 
@@ -29,13 +31,13 @@ fn filmic(x: f32) -> f32 {
 
 /// Transfer function of IEC 61966-2-1.
 fn srgb_from_linear(x: f32) -> f32 {
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * single::powf(x, 1.0 / 2.4) - 0.055 }
 }
 
 /// Its inverse for a byte.
 pub(super) fn linear_from_srgb(byte: u8) -> f32 {
     let x = f32::from(byte) / 255.0;
-    if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+    if x <= 0.040_45 { x / 12.92 } else { single::powf((x + 0.055) / 1.055, 2.4) }
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ mod plane;
 mod sheet;
 mod wall;
 
+use tracelight_maths::single;
 use tracelight_picture::Raster;
 
 use self::film::Film;
@@ -93,7 +94,7 @@ impl Scene {
     fn vignette(&self, x: usize, y: usize) -> f32 {
         let (w, h) = (f64::from(WIDTH) / 2.0, f64::from(self.layout.height) / 2.0);
         let (dx, dy) = self.away(x, y, w * 1.15, h * 0.95);
-        let square = (dx / w as f32).powi(2) * 0.55 + (dy / h as f32).powi(2) * 0.45;
+        let square = single::powi(dx / w as f32, 2) * 0.55 + single::powi(dy / h as f32, 2) * 0.45;
         1.15 / (1.0 + 1.3 * square * square + 0.5 * square)
     }
 

@@ -1,3 +1,5 @@
+use tracelight_maths::single;
+
 /// A field of light or texture: one `f32` a pixel, rows from the top.
 #[derive(Clone, Debug)]
 pub(super) struct Plane {
@@ -116,7 +118,7 @@ fn convolve_row(from: &[f32], out: &mut [f32], kernel: &[f32]) {
 /// Weights of a Gaussian cut at three sigmas, sum one, odd number.
 fn gaussian(sigma: f32) -> Vec<f32> {
     let reach = (3.0 * sigma).ceil().max(0.0) as i32;
-    let weight = |i: i32| (-0.5 * (i as f32 / sigma.max(1e-3)).powi(2)).exp();
+    let weight = |i: i32| single::exp(-0.5 * single::powi(i as f32 / sigma.max(1e-3), 2));
     let weights: Vec<f32> = (-reach..=reach).map(weight).collect();
     let sum: f32 = weights.iter().sum();
     weights.into_iter().map(|w| w / sum).collect()

@@ -1,3 +1,4 @@
+use tracelight_maths::{exp, planar, powi};
 use tracelight_picture::Raster;
 use tracelight_stroke::{Affine, Point, Vec2};
 
@@ -46,7 +47,7 @@ impl Sheet {
         Self {
             picture: job.picture.map_or_else(|| drawn(job, layout), |p| p.raster.shrunk(side)),
             linear: std::array::from_fn(|i| linear_from_srgb(i as u8)),
-            sheet_from_pixel: Affine::rotate(-TILT_RAD) * Affine::translate(-layout.sheet_middle.to_vec2()),
+            sheet_from_pixel: planar::rotation(-TILT_RAD) * Affine::translate(-layout.sheet_middle.to_vec2()),
             picture_half,
             half: picture_half + Vec2::new(margin, margin * 1.15),
         }
@@ -60,14 +61,14 @@ impl Sheet {
             return None;
         }
         let share = (0.5 - outside(p, self.half)).clamp(0.0, 1.0) as f32;
-        let shadow = 1.0 / (1.0 + ((shadow_edge + 4.0) / (0.3 * SHADOW_SOFT_PX)).exp());
+        let shadow = 1.0 / (1.0 + exp((shadow_edge + 4.0) / (0.3 * SHADOW_SOFT_PX)));
         Some(Cover { share, albedo: self.albedo(p), unshadowed: 1.0 - 0.8 * shadow as f32 })
     }
 
     fn albedo(&self, p: Point) -> [f32; 3] {
         let pin = p - Point::new(0.0, -self.half.y + 15.0);
         let pin_shadow = 1.0 - 0.45 * falloff((pin - Vec2::new(4.0, 6.0)).hypot(), PIN_RADIUS_PX + 1.0, 3.0);
-        let curl = 1.0 - 0.10 * ((p.y / self.half.y + 1.0) / 2.0).powi(3) as f32;
+        let curl = 1.0 - 0.10 * powi((p.y / self.half.y + 1.0) / 2.0, 3) as f32;
         let shade = pin_shadow as f32 * curl;
         let inside = outside(p, self.picture_half);
         let ink = (0.5 - inside).clamp(0.0, 1.0) as f32;
@@ -111,7 +112,7 @@ fn falloff(distance: f64, radius: f64, soft: f64) -> f64 {
 
 /// A brass ball lit from the upper left.
 fn pin_colour(at: Vec2) -> [f32; 3] {
-    let lift = (1.0 - (at.hypot() / PIN_RADIUS_PX).powi(2)).max(0.0).sqrt();
+    let lift = (1.0 - powi(at.hypot() / PIN_RADIUS_PX, 2)).max(0.0).sqrt();
     let facing = (-0.55 * at.x - 0.6 * at.y) / PIN_RADIUS_PX + 0.58 * lift;
     let glint = falloff((at - Vec2::new(-2.0, -2.2)).hypot(), 0.6, 1.8) as f32;
     let body = (0.22 + 0.9 * facing.max(0.0)) as f32;

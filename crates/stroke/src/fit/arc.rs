@@ -45,6 +45,8 @@ fn swept(row: &[Point], centre: Point) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::planar;
+
     use kurbo::Vec2;
 
     use super::*;
@@ -54,7 +56,7 @@ mod tests {
         let centre = Point::new(12.0, -5.0);
         for (sweep, squash) in [(0.6, 1.0), (-2.0, 1.0), (4.4, 1.0), (1.5, 0.9)] {
             let at = |k: u32| {
-                let v = Vec2::from_angle(0.3 + sweep * f64::from(k) / 60.0) * 40.0;
+                let v = planar::direction(0.3 + sweep * f64::from(k) / 60.0) * 40.0;
                 centre + Vec2::new(v.x, squash * v.y)
             };
             let row: Vec<Point> = (0..=60).map(at).collect();
@@ -71,7 +73,7 @@ mod tests {
     #[test]
     fn a_spiral_and_a_straight_row_are_no_arcs() {
         let spiral =
-            |k: u32| Point::ORIGIN + Vec2::from_angle(f64::from(k) / 20.0) * (30.0 + 0.2 * f64::from(k));
+            |k: u32| Point::ORIGIN + planar::direction(f64::from(k) / 20.0) * (30.0 + 0.2 * f64::from(k));
         assert!(through(&(0..=60).map(spiral).collect::<Vec<_>>(), 0.2).is_none());
         assert!(through(&(0..=60).map(|k| Point::new(f64::from(k), 1.0)).collect::<Vec<_>>(), 0.2).is_none());
     }

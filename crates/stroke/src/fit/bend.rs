@@ -1,6 +1,7 @@
 //! What bends between straight lines: arcs, where it is made of arcs.
 
 use kurbo::Point;
+use tracelight_maths::{cos, powi};
 
 use super::arc::SWEEPS;
 use super::line::Line;
@@ -129,12 +130,12 @@ impl Bends<'_> {
                 let counting = part.counting(self.row);
                 let square = counting.iter().map(|&p| p.distance_squared(part.shape.nearest(p))).sum::<f64>();
                 let rms = if part.pins == [None; 2] { RMS } else { PULL };
-                let even = square <= counting.len() as f64 * (rms * tolerance).powi(2);
+                let even = square <= counting.len() as f64 * powi(rms * tolerance, 2);
                 most <= tolerance && even && along.dot(part.to - part.from) > 0.0
             }
             Shape::Round(circle) => {
                 let (sweep, radius) = (part.sweep().abs(), circle.radius.abs());
-                let sagitta = radius * (1.0 - (0.5 * sweep).min(1.6).cos());
+                let sagitta = radius * (1.0 - cos((0.5 * sweep).min(1.6)));
                 most <= if pinned { 1.0 } else { 0.7 } * tolerance
                     && SWEEPS.contains(&sweep)
                     && sagitta >= tolerance
@@ -157,8 +158,8 @@ impl Bends<'_> {
 
 /// Whether points are off a circle by noise and little more.
 pub(super) fn is_near(points: &[Point], circle: &Circle, options: &FitOptions) -> bool {
-    let off = |p: &Point| (p.distance(circle.centre) - circle.radius.abs()).powi(2);
+    let off = |p: &Point| powi(p.distance(circle.centre) - circle.radius.abs(), 2);
     let square = points.iter().map(off).sum::<f64>() / points.len() as f64;
     let noise = scatter(points, RMS * options.tolerance);
-    noise.is_some_and(|noise| square <= noise + (PULL * options.tolerance).powi(2))
+    noise.is_some_and(|noise| square <= noise + powi(PULL * options.tolerance, 2))
 }

@@ -4,6 +4,7 @@
 //! that a tight bend (its flanks bend alike) is told from a corner (its flanks do not).
 
 use kurbo::Point;
+use tracelight_maths::{cos, powi, tan};
 
 use super::flank::Flanks;
 use super::options::FitOptions;
@@ -42,7 +43,7 @@ impl Scale {
 /// How far from a corner that turns by `turn_rad` a pen of half-width `reach` hides it: its inner edges meet at
 /// `reach · tan(turn/2)` along either side. Past 152° the ink of both sides is one.
 fn zone(reach: f64, turn_rad: f64) -> usize {
-    (reach * (1.15 * (0.5 * turn_rad.abs()).tan().min(4.0) + 0.3)).ceil() as usize + 1
+    (reach * (1.15 * tan(0.5 * turn_rad.abs()).min(4.0) + 0.3)).ceil() as usize + 1
 }
 
 impl FitOptions {
@@ -50,7 +51,7 @@ impl FitOptions {
     /// as an arc of half the pen's half-width would, whose sagitta is r/2 · (1/cos(φ/2) − 1), the pixels of a shape's
     /// edge up to a pixel more; a bend of three times that radius is no corner.
     fn cut(&self, turn_rad: f64) -> f64 {
-        let sagitta = 1.0 / (0.5 * turn_rad).cos().max(0.25) - 1.0;
+        let sagitta = 1.0 / cos(0.5 * turn_rad).max(0.25) - 1.0;
         1.4 * self.reach * sagitta + 0.6 * self.tolerance
     }
 }
@@ -109,7 +110,7 @@ impl Samples {
         let Some((before, after)) = self.before(i, reach).zip(self.after(i, reach)) else { return false };
         let (chord, next) = (self.points[i] - before, after - self.points[i]);
         let dot = chord.dot(next);
-        dot > 0.0 && dot * dot > most.cos().powi(2) * chord.hypot2() * next.hypot2()
+        dot > 0.0 && dot * dot > powi(cos(most), 2) * chord.hypot2() * next.hypot2()
     }
 
     /// Mean of the values up to `reach` neighbours away; 0 where the value is.

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use tracelight_maths as maths;
+
 /// Slow waves that are looked for: an arc laid along a curve leaves one to three of them.
 const WAVES: usize = 5;
 /// Slow waves are a shape when they have more than this times the power that noise puts there.
@@ -18,8 +20,8 @@ pub(super) fn is_even(off: &[f64], rms: f64) -> bool {
     let total: f64 = off.iter().map(|e| e * e).sum();
     let waves = (off.len() / 4).clamp(2, WAVES);
     let mut sums = [0.0; WAVES];
-    let (sin, cos) = (PI / n).sin_cos();
-    let (mut c, mut s) = ((0.5 * PI / n).cos(), (0.5 * PI / n).sin());
+    let (sin, cos) = maths::sin_cos(PI / n);
+    let (mut c, mut s) = (maths::cos(0.5 * PI / n), maths::sin(0.5 * PI / n));
     for e in off {
         // cos(m t) by Chebyshev's recurrence
         let (mut before, mut now) = (1.0, c);
@@ -32,5 +34,5 @@ pub(super) fn is_even(off: &[f64], rms: f64) -> bool {
     let slow = sums.iter().map(|a| a * a).sum::<f64>() * 2.0 / n;
     let quick = (total - slow).max(0.0);
     let share = waves as f64 / (n - waves as f64 - 1.0).max(1.0);
-    slow <= n * (FLOOR * rms).powi(2) || slow <= SIGNIFICANT * share * quick
+    slow <= n * maths::powi(FLOOR * rms, 2) || slow <= SIGNIFICANT * share * quick
 }

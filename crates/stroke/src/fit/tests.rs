@@ -1,6 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
 use kurbo::{Point, Vec2};
+use tracelight_maths::planar;
 
 use super::*;
 
@@ -65,7 +66,7 @@ fn options() -> FitOptions {
 fn a_star_gets_its_ten_sharp_corners_back() {
     let tip = |i: u32| {
         let radius = if i.is_multiple_of(2) { 200.0 } else { 80.0 };
-        Point::ORIGIN + Vec2::from_angle(TAU * f64::from(i) / 10.0) * radius
+        Point::ORIGIN + planar::direction(TAU * f64::from(i) / 10.0) * radius
     };
     let mut star: Vec<_> = (0..=10).map(tip).collect();
     star[10] = star[0];
@@ -132,8 +133,8 @@ fn a_rounded_square_is_lines_and_bends_without_a_corner() {
         let side = |a: f64| {
             curve(
                 move |t| {
-                    let centre = Vec2::from_angle(a) * 80.0 + Vec2::from_angle(a + PI / 2.0) * 80.0;
-                    (centre + Vec2::from_angle(a + t) * radius).into()
+                    let centre = planar::direction(a) * 80.0 + planar::direction(a + PI / 2.0) * 80.0;
+                    (centre + planar::direction(a + t) * radius).into()
                 },
                 0.0,
                 PI / 2.0,

@@ -1,6 +1,7 @@
 //! Local regression: what a stretch of samples says about place, direction and bend.
 
 use kurbo::{Point, Vec2};
+use tracelight_maths::atan2;
 
 /// A parabola x(s), y(s) through samples by least squares; `s` is arc length.
 #[derive(Clone, Copy, Debug)]
@@ -149,5 +150,5 @@ pub(super) fn unit(v: Vec2) -> Vec2 {
 
 /// Signed angle from `a` to `b`, rad.
 pub(super) fn turn(a: Vec2, b: Vec2) -> f64 {
-    a.cross(b).atan2(a.dot(b))
+    atan2(a.cross(b), a.dot(b))
 }

@@ -1,6 +1,7 @@
 use std::collections::HashSet;
 
 use kurbo::{Point, Rect};
+use tracelight_maths::powf;
 
 use super::forest::Forest;
 use super::kdtree::{Gather, KdTree};
@@ -103,7 +104,7 @@ impl<'a> Ascent<'a> {
                 *tax += self.step * ((1.0 - MEMORY) * excess + MEMORY * last_excess[i]);
                 last_excess[i] = excess;
             }
-            self.step *= LAST_STEP.powf(1.0 / all as f64);
+            self.step *= powf(LAST_STEP, 1.0 / all as f64);
         }
     }
 

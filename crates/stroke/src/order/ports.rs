@@ -1,6 +1,7 @@
 use std::ops::Range;
 
 use kurbo::{Point, Vec2};
+use tracelight_maths::cos;
 
 use super::travel::StrokeEnd;
 use crate::{Drawing, Path};
@@ -94,7 +95,7 @@ fn start_joints(path: &Path) -> Vec<(u32, Point)> {
     let joints = pieces.iter().zip(before).enumerate();
     let is_corner = |(_, (piece, last)): &(usize, (&crate::Piece, &crate::Piece))| {
         let cosine = piece.start_tangent().dot(last.end_tangent());
-        cosine < CORNER_RAD.cos()
+        cosine < cos(CORNER_RAD)
     };
     let named = |(number, (piece, _)): (usize, (&crate::Piece, &crate::Piece))| (number as u32, piece.from);
     let corners: Vec<_> = joints.clone().filter(is_corner).map(named).collect();

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use oorandom::Rand64;
+use tracelight_maths::planar;
 use tracelight_stroke::{
     Drawing, Effort, Element, FitOptions, OrderOptions, Path, Point, Stroke, Vec2, fit, order, simplify,
 };
@@ -25,7 +26,7 @@ fn points(kind: u64, r: &mut Rand64) -> Vec<Point> {
         0 => place(r),
         1 => Point::new(r.rand_range(0..4) as f64, r.rand_range(0..3) as f64),
         2 => {
-            at += Vec2::from_angle(uniform(r, 0.0, TAU)) * uniform(r, 0.0, 2.0);
+            at += planar::direction(uniform(r, 0.0, TAU)) * uniform(r, 0.0, 2.0);
             at
         }
         3 => Point::new(f64::from(i) * a, f64::from(i % 7 / 5) * 10.0 * b),

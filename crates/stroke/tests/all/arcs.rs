@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::drawn::Drawn::{self, Arc, Line};
+use tracelight_maths::planar;
 use tracelight_stroke::{Element, FitOptions, Path, Point, Vec2, fit};
 
 use crate::drawn::{kinds, kinds_drawn, kink, path};
@@ -158,7 +159,7 @@ fn clothoids(size: f64, turn_rad: f64, t: f64) -> (f64, f64) {
         _ => 1.0,
     };
     let step = t / f64::from(STEPS);
-    let along = |k: u32| Vec2::from_angle(turn_rad * turned(step * (f64::from(k) + 0.5))) * step * size;
+    let along = |k: u32| planar::direction(turn_rad * turned(step * (f64::from(k) + 0.5))) * step * size;
     let end: Vec2 = (0..STEPS).map(along).sum();
     (end.x, end.y)
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use resvg::{tiny_skia, usvg};
 use serde_json::Value;
 use tracelight_aim::{Camera, CameraPose, Lens};
+use tracelight_maths::planar;
 use tracelight_plant::{CameraConfig, Image, Poster, SimulatedCamera, Wall};
 use tracelight_stroke::{Affine, Point, Vec2};
 
@@ -42,7 +43,7 @@ fn stuck(dir: &Path, page: usize, scale: f64) -> Poster {
     let page_from_dot = Affine::scale_non_uniform(dot, -dot)
         .then_translate(Vec2::new(-0.105 * scale, 1e-3 * scale * (13.0 + 116.0)));
     let (x, y, turn_rad) = PLACES[page];
-    let wall_from_page = Affine::rotate(turn_rad).then_translate(Vec2::new(x, y));
+    let wall_from_page = planar::rotation(turn_rad).then_translate(Vec2::new(x, y));
     Poster::new(width as usize, &dots, wall_from_page * page_from_dot).unwrap()
 }
 
@@ -99,7 +100,7 @@ fn found(told: &Value) -> Camera {
 fn off_m(told: &Value, truth: &Camera, first: usize, scale: f64) -> f64 {
     let camera = found(told);
     let (x, y, turn_rad) = PLACES[first];
-    let wall_from_first = Affine::rotate(turn_rad).then_translate(Vec2::new(x, y));
+    let wall_from_first = planar::rotation(turn_rad).then_translate(Vec2::new(x, y));
     let square = |k: i32| {
         let on_wall = Point::new(0.06 * f64::from(k % 11 - 5), 0.06 * f64::from(k / 11 - 2));
         // the program believes the pages are as meant
@@ -126,7 +127,7 @@ fn a_wall_with_printed_pages_is_found_to_a_tenth_of_a_millimetre() {
         assert!(1e3 * off_m < 3.0 * known_mm && known_mm < 0.1, "{off_m} m off and {known_mm} mm told");
         for (page, (x, y, turn_rad)) in PLACES.into_iter().enumerate() {
             let (fx, fy, f_rad) = PLACES[0];
-            let from_first = Affine::rotate(-f_rad) * Point::new(x - fx, y - fy);
+            let from_first = planar::rotation(-f_rad) * Point::new(x - fx, y - fy);
             near(&told["pages"][page]["middle_m"][0], from_first.x, 3e-4);
             near(&told["pages"][page]["middle_m"][1], from_first.y, 3e-4);
             let turned = told["pages"][page]["turn_rad"].as_f64().unwrap() - (turn_rad - f_rad);

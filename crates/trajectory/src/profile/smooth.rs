@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use tracelight_maths::{exp, ln, powi, sin_cos};
+
 use crate::move_point::MovePoint;
 
 /// A move over one unit of way in one of time.
@@ -29,7 +31,7 @@ pub(super) struct UnitPeaks {
 
 /// Steepness of the cut logistic over its whole length: σ(−k/2) = [`SIGMOID_CUT`].
 fn sigmoid_steepness() -> f64 {
-    2.0 * (1.0 / SIGMOID_CUT - 1.0).ln()
+    2.0 * ln(1.0 / SIGMOID_CUT - 1.0)
 }
 
 /// What the rescaling multiplies the logistic by.
@@ -40,11 +42,11 @@ impl Unit {
     pub(super) fn at(self, t: f64) -> MovePoint {
         let (position, velocity, acceleration) = match self {
             Unit::Sine => {
-                let (s, c) = (PI * t).sin_cos();
+                let (s, c) = sin_cos(PI * t);
                 (0.5 * (1.0 - c), 0.5 * PI * s, 0.5 * PI * PI * c)
             }
             Unit::Cycloid => {
-                let (s, c) = (2.0 * PI * t).sin_cos();
+                let (s, c) = sin_cos(2.0 * PI * t);
                 (t - s / (2.0 * PI), 1.0 - c, 2.0 * PI * s)
             }
             Unit::Quintic => {
@@ -54,7 +56,7 @@ impl Unit {
             }
             Unit::Sigmoid => {
                 let k = sigmoid_steepness();
-                let y = 1.0 / (1.0 + (-k * (t - 0.5)).exp());
+                let y = 1.0 / (1.0 + exp(-k * (t - 0.5)));
                 let slope = y * (1.0 - y);
                 let scaled = [y - SIGMOID_CUT, k * slope, k * k * slope * (1.0 - 2.0 * y)];
                 let [x, v, a] = scaled.map(|value| SIGMOID_SCALE * value);
@@ -67,7 +69,7 @@ impl Unit {
     pub(super) fn peaks(self) -> UnitPeaks {
         let k = sigmoid_steepness();
         let (velocity, acceleration, jerk) = match self {
-            Unit::Sine => (PI / 2.0, PI * PI / 2.0, PI.powi(3) / 2.0),
+            Unit::Sine => (PI / 2.0, PI * PI / 2.0, powi(PI, 3) / 2.0),
             Unit::Cycloid => (2.0, 2.0 * PI, 4.0 * PI * PI),
             // x″ is largest where 1 − 6t + 6t² = 0, x‴ at both ends
             Unit::Quintic => (15.0 / 8.0, 10.0 / 3f64.sqrt(), 60.0),
@@ -75,7 +77,7 @@ impl Unit {
             Unit::Sigmoid => (
                 SIGMOID_SCALE * k / 4.0,
                 SIGMOID_SCALE * k * k / (6.0 * 3f64.sqrt()),
-                SIGMOID_SCALE * k.powi(3) / 8.0,
+                SIGMOID_SCALE * powi(k, 3) / 8.0,
             ),
         };
         UnitPeaks { velocity, acceleration, jerk }

@@ -1,5 +1,7 @@
 //! Motion of one coordinate, and the quintic between two such.
 
+use tracelight_maths::powi;
+
 /// Motion along the path: m, m/s, m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Along {
@@ -19,8 +21,8 @@ pub(crate) fn hermite(from: Along, to: Along, time: f64) -> [f64; 6] {
         from.s,
         from.v,
         0.5 * from.a,
-        (10.0 * ds - 4.0 * dv + 0.5 * da) / n.powi(3),
-        (-15.0 * ds + 7.0 * dv - da) / n.powi(4),
-        (6.0 * ds - 3.0 * dv + 0.5 * da) / n.powi(5),
+        (10.0 * ds - 4.0 * dv + 0.5 * da) / powi(n, 3),
+        (-15.0 * ds + 7.0 * dv - da) / powi(n, 4),
+        (6.0 * ds - 3.0 * dv + 0.5 * da) / powi(n, 5),
     ]
 }

@@ -10,8 +10,9 @@ use crate::support::drawings::{
     SPEED_M_S, circle, drawing, line, machine, mixed, places_and_speeds_belong_together, request,
 };
 use oorandom::Rand64;
+use tracelight_maths::planar;
 use tracelight_rig::TICK_F64_S;
-use tracelight_stroke::{Drawing, Element, OrderOptions, Path, Point, Vec2, order};
+use tracelight_stroke::{Drawing, Element, OrderOptions, Path, Point, order};
 use tracelight_trajectory::{
     LitSpeed, Plan, PlanError, PlanPoint, PlanRequest, Ramps, Shape, TravelTime, plan,
 };
@@ -99,7 +100,7 @@ fn short_bends_anywhere_are_drawn_at_one_speed() {
     for i in 0..24 {
         let turn = f64::from(i) * std::f64::consts::TAU / 24.0;
         let centre = Point::new(0.25 * turn.cos(), 0.2 * turn.sin());
-        let arm = Vec2::from_angle(3.0 * turn) * 0.005;
+        let arm = planar::direction(3.0 * turn) * 0.005;
         let mut arc = Path::new(centre + arm);
         arc.push(Element::Arc { centre, sweep: 1.0 });
         let plan = planned(&drawing([arc, line(&[(0.0, 0.0), (0.05, 0.0)])]), LitSpeed::Exact);

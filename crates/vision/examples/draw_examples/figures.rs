@@ -1,5 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
+use tracelight_maths::{planar, sin};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, Vec2};
 
 use crate::spline::{points, through};
@@ -11,10 +12,10 @@ pub(crate) const PEN_PX: f64 = 5.0;
 pub(crate) fn star() -> Drawing {
     let centre = Point::new(320.0, 258.0);
     // inner over outer radius of the pentagram: its sides continue across the middle
-    let inner = (PI / 10.0).sin() / (3.0 * PI / 10.0).sin();
+    let inner = sin(PI / 10.0) / sin(3.0 * PI / 10.0);
     let tip = |k: usize| {
         let radius = if k.is_multiple_of(2) { 212.0 } else { 212.0 * inner };
-        centre + Vec2::from_angle(PI * k as f64 / 5.0 - PI / 2.0) * radius
+        centre + planar::direction(PI * k as f64 / 5.0 - PI / 2.0) * radius
     };
     let ring: Vec<_> = (0..10).map(tip).collect();
     let pairs: Vec<_> = ring.iter().map(|p| (p.x, p.y)).collect();

@@ -1,6 +1,7 @@
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use tracelight_stroke::{Drawing, Element, Path, Point, Vec2};
+use tracelight_maths::planar;
+use tracelight_stroke::{Drawing, Element, Path, Point};
 
 use crate::figures::{circle, curve, line, pen, polygon, ring};
 
@@ -71,7 +72,7 @@ fn tree() -> Vec<Path> {
 fn sun() -> Vec<Path> {
     let centre = Point::new(98.0, 98.0);
     let ray = |k: i32| {
-        let out = Vec2::from_angle(FRAC_PI_4 * f64::from(k));
+        let out = planar::direction(FRAC_PI_4 * f64::from(k));
         line(&[(centre + out * 46.0).into(), (centre + out * 70.0).into()])
     };
     (0..8).map(ray).chain([circle(centre.into(), 28.0)]).collect()

@@ -1,3 +1,4 @@
+use tracelight_maths::{atan2, cos};
 use tracelight_stroke::{Path, Point, Vec2};
 
 use crate::{TOLERANCE_PX, canvas::Canvas};
@@ -36,11 +37,11 @@ fn draw_side(canvas: &mut Canvas, a: Point, b: Point, half: f64) {
 /// The wedge beyond both sides of a corner: there the further of the two side lines bounds the ink.
 fn draw_mitre(canvas: &mut Canvas, [a, corner, b]: [Point; 3], half: f64) {
     let (arrive, leave) = ((corner - a).normalize(), (b - corner).normalize());
-    let turn = arrive.cross(leave).atan2(arrive.dot(leave)).abs();
+    let turn = atan2(arrive.cross(leave), arrive.dot(leave)).abs();
     if turn > MITRE_TURN_RAD {
         return;
     }
-    let reach = half / (turn / 2.0).cos() + 1.0;
+    let reach = half / cos(turn / 2.0) + 1.0;
     let reach = Vec2::new(reach, reach);
     canvas.cover(corner - reach, corner + reach, |p| {
         let from = p - corner;

@@ -1,3 +1,5 @@
+use tracelight_maths::hypot;
+
 use crate::{canvas::Canvas, grain::grain};
 
 /// What is drawn on, and with what.
@@ -65,7 +67,7 @@ impl Sheet {
     }
 
     fn tone(&self, size: [usize; 2], u: usize, v: usize, inked: f64) -> u8 {
-        let away = (u as f64 / size[0] as f64).hypot(v as f64 / size[1] as f64) / 2_f64.sqrt();
+        let away = hypot(u as f64 / size[0] as f64, v as f64 / size[1] as f64) / 2_f64.sqrt();
         let light = 1.0 - self.shade * away * away * (3.0 - 2.0 * away);
         let tone = self.ground + (self.ink - self.ground) * inked.min(1.0);
         (tone * light + self.grain * grain(u, v, SEED)).round().clamp(0.0, 255.0) as u8

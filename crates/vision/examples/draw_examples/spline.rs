@@ -1,3 +1,4 @@
+use tracelight_maths::{atan2, planar, sin_cos};
 use tracelight_stroke::{Element, Path, Point, Vec2};
 
 /// Sweeps of the Gauss–Seidel iteration. Its matrix is diagonally dominant by two, an error at least halves in each,
@@ -48,7 +49,7 @@ fn chords(points: &[Point], closed: bool) -> Vec<Vec2> {
 
 /// Angle by which the polygon turns at each point; zero at open ends.
 fn turns(chords: &[Vec2], closed: bool) -> Vec<f64> {
-    let turn = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b));
+    let turn = |a: Vec2, b: Vec2| atan2(a.cross(b), a.dot(b));
     let mut turns: Vec<_> = chords.windows(2).map(|pair| turn(pair[0], pair[1])).collect();
     let last = chords.len() - 1;
     turns.insert(0, if closed { turn(chords[last], chords[0]) } else { 0.0 });
@@ -82,15 +83,16 @@ fn departures(chords: &[Vec2], turns: &[f64], closed: bool) -> Vec<f64> {
 /// The cubic over a chord that leaves it by θ and arrives by φ.
 fn piece(from: Point, chord: Vec2, theta: f64, phi: f64) -> Element {
     let to = from + chord;
-    let c1 = from + Vec2::from_angle(chord.atan2() + theta) * (chord.hypot() * velocity(theta, phi));
-    let c2 = to - Vec2::from_angle(chord.atan2() - phi) * (chord.hypot() * velocity(phi, theta));
+    let c1 =
+        from + planar::direction(planar::heading(chord) + theta) * (chord.hypot() * velocity(theta, phi));
+    let c2 = to - planar::direction(planar::heading(chord) - phi) * (chord.hypot() * velocity(phi, theta));
     Element::Cubic { c1, c2, to }
 }
 
 /// Length of a handle as a share of its chord: Hobby's ρ(θ, φ)/3.
 fn velocity(theta: f64, phi: f64) -> f64 {
-    let (st, ct) = theta.sin_cos();
-    let (sp, cp) = phi.sin_cos();
+    let (st, ct) = sin_cos(theta);
+    let (sp, cp) = sin_cos(phi);
     let over = 2.0 + 2_f64.sqrt() * (st - sp / 16.0) * (sp - st / 16.0) * (ct - cp);
     let under = 1.0 + 0.5 * (5_f64.sqrt() - 1.0) * ct + 0.5 * (3.0 - 5_f64.sqrt()) * cp;
     over / (3.0 * under)

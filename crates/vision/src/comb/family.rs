@@ -1,5 +1,6 @@
 //! Which of the lines that cross a page are its rules: equally spaced, alike, all over it, from border to border.
 
+use tracelight_maths::planar;
 use tracelight_stroke::Point;
 
 use super::chain::{FEWEST, longest_chain};
@@ -57,7 +58,7 @@ impl Family {
         let (first, last) = (place(0, all / 2), place(rules - 1, all / 2));
         let square = self.rules[rules - 1].at[all / 2] - self.rules[0].at[all / 2];
         let scale = (way.cross(last - first) / way.hypot()).abs() / square.max(f64::MIN_POSITIVE);
-        (self.spacing * scale, -way.atan2())
+        (self.spacing * scale, -planar::heading(way))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Where each rule of a family is by its number: the law that the family keeps to.
 
 use tracelight_image::solve;
+use tracelight_maths::powi;
 
 use super::chain::{LEAST_SPACING, Link, NEAR, NEAR_PX, is_alike};
 use super::strips::{Peak, Strip, Strips};
@@ -73,7 +74,7 @@ impl Law {
 
     fn basis(&self, index: f64, x: f64) -> [f64; TERMS] {
         let (i, u) = ((index - self.about.0) / self.about.1, 2.0 * x / self.length - 1.0);
-        std::array::from_fn(|k| i.powi(power(k)) * u.powi(k as i32 % 4))
+        std::array::from_fn(|k| powi(i, power(k)) * powi(u, k as i32 % 4))
     }
 
     /// Where a rule is, px across.
@@ -92,7 +93,7 @@ impl Law {
             between += middle * middle;
             // half of them lie within the quartiles: writing on a rule moves some
             let quartiles = 0.5 * (offs[offs.len() * 3 / 4] - offs[offs.len() / 4]);
-            along += (1.48 * quartiles).powi(2);
+            along += powi(1.48 * quartiles, 2);
         }
         let rms = |sum: f64| (sum / chain.len() as f64).sqrt();
         rms(between) <= (EVEN * self.spacing).max(EVEN_PX)

@@ -1,6 +1,7 @@
 //! Thin lines followed from strip to strip, right across the page.
 
 use tracelight_image::solve;
+use tracelight_maths::powi;
 
 use super::strips::{Peak, Strip, Strips};
 
@@ -95,7 +96,7 @@ impl Track {
         let unit = 0.5 * strips.length as f64;
         let places = known.iter().map(|&(px, py)| ((px - x) / unit, py - y));
         // of half the length the square term is the sag
-        let stiffness = (PEAK_PX / (SAG * strips.length as f64)).powi(2);
+        let stiffness = powi(PEAK_PX / (SAG * strips.length as f64), 2);
         let [c, b, a] = nearest(places, stiffness)?;
         let u = (at - x) / unit;
         Some((y + c + (b + a * u) * u, known.len()))

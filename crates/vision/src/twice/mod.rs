@@ -8,6 +8,7 @@
 
 use tracelight_image::Plane;
 use tracelight_image::median::median;
+use tracelight_maths::sin;
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use crate::line::parted;
@@ -109,7 +110,7 @@ fn way_at(points: &[Point], number: usize) -> Vec2 {
 /// Whether two places lie beside each other on ways that are nearly parallel.
 fn is_beside(a: (Point, Vec2), b: (Point, Vec2)) -> bool {
     let across = b.0 - a.0;
-    a.1.cross(b.1).abs() < ALIKE.sin() && across.dot(a.1).abs() < 0.7 * across.hypot() + 0.5
+    a.1.cross(b.1).abs() < sin(ALIKE) && across.dot(a.1).abs() < 0.7 * across.hypot() + 0.5
 }
 
 /// What lies beside a place of a row.

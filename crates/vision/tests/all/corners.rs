@@ -1,7 +1,8 @@
 //! Drawings that once lost part of their ink: a pen of two widths, and very acute corners.
 
 use tracelight_image::Grey;
-use tracelight_stroke::{Comparison, Point, Vec2, compare_polylines};
+use tracelight_maths::planar;
+use tracelight_stroke::{Comparison, Point, compare_polylines};
 use tracelight_vision::{Options, trace};
 
 use crate::raster::Canvas;
@@ -33,7 +34,7 @@ fn strokes(figures: &[(Vec<Point>, f64)], passes: usize) -> Vec<Vec<Point>> {
 #[test]
 fn two_lines_that_part_slowly_miss_no_ink() {
     // 6° apart from one point on: in a pen of 12 px they are one wedge for 100 px and more
-    let leg = |side: f64| Point::new(60.0, 240.0) + Vec2::from_angle(side * f64::to_radians(3.0)) * 300.0;
+    let leg = |side: f64| Point::new(60.0, 240.0) + planar::direction(side * f64::to_radians(3.0)) * 300.0;
     let mut canvas = Canvas::new(640, 480);
     canvas.pen(&[leg(-1.0), Point::new(60.0, 240.0), leg(1.0)], 12.0);
     let levels = canvas.shares().map(|s| (245.0 - 225.0 * s) as u8).collect();
@@ -47,7 +48,7 @@ fn row(points: &[(f64, f64)]) -> Vec<Point> {
 
 #[test]
 fn a_line_thicker_than_the_rest_of_its_figure_is_kept_to_its_end() {
-    let arc = |k: u32| Point::new(320.0, 320.0) + Vec2::from_angle(f64::from(k) / 100.0 * 4.7) * 120.0;
+    let arc = |k: u32| Point::new(320.0, 320.0) + planar::direction(f64::from(k) / 100.0 * 4.7) * 120.0;
     let (_, comparison) = traced(&[
         (row(&[(80.0, 418.0), (320.0, 60.0), (560.0, 418.0)]), 4.0),
         (row(&[(80.0, 418.0), (560.0, 418.0)]), 6.0),
@@ -61,7 +62,7 @@ fn a_line_thicker_than_the_rest_of_its_figure_is_kept_to_its_end() {
 fn an_acute_corner_reaches_to_its_point() {
     for degrees in [12.0, 15.0, 20.0, 30.0, 45.0] {
         let leg =
-            |side: f64| Point::new(80.0, 240.0) + Vec2::from_angle(side * f64::to_radians(degrees)) * 400.0;
+            |side: f64| Point::new(80.0, 240.0) + planar::direction(side * f64::to_radians(degrees)) * 400.0;
         let (strokes, comparison) = traced(&[(vec![leg(-0.5), Point::new(80.0, 240.0), leg(0.5)], 5.0)]);
         assert!(comparison.coverage > 0.995 && comparison.precision > 0.995, "{degrees}°: {comparison:?}");
         assert!(strokes <= 2, "{degrees}°: {strokes}");
@@ -87,7 +88,7 @@ fn a_bar_as_short_as_its_junctions_are_wide_is_kept() {
     // an R: its bar leads from the stem to where bowl and leg meet
     for (bar, degrees) in [(11.0, 0.0), (11.0, 75.0), (12.0, 40.0), (13.0, 20.0), (14.0, 0.0)] {
         let turned = |p: Point| {
-            Point::new(320.0, 240.0) + Vec2::from_angle(f64::to_radians(degrees)).rotate_scale(p.to_vec2())
+            Point::new(320.0, 240.0) + planar::direction(f64::to_radians(degrees)).rotate_scale(p.to_vec2())
         };
         let bowl = (0..=30).map(|k| {
             let angle = std::f64::consts::PI * (f64::from(k) / 30.0 - 0.5);
@@ -132,7 +133,7 @@ fn a_three_is_one_line_and_its_point_is_where_both_bows_run_together() {
         let bow = |from: f64, to: f64, y: f64| {
             let at = move |k: u32| {
                 let angle = from + (to - from) * f64::from(k) / 40.0;
-                Point::new(320.0, y) + Vec2::from_angle(angle) * (radius * pen)
+                Point::new(320.0, y) + planar::direction(angle) * (radius * pen)
             };
             (0..=40).map(at)
         };

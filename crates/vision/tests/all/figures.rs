@@ -4,7 +4,8 @@
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 use tracelight_image::Grey;
-use tracelight_stroke::{Point, StrokeKind, Vec2, compare_polylines};
+use tracelight_maths::planar;
+use tracelight_stroke::{Point, StrokeKind, compare_polylines};
 use tracelight_vision::{Options, Traced, trace};
 
 use crate::raster::Canvas;
@@ -15,7 +16,7 @@ const SIDE: usize = 300;
 fn traced(figure: &[Vec<Point>], pen: f64, turned: f64) -> (Vec<Vec<Point>>, Traced) {
     let place = |p: &Point| {
         let middle = 0.5 * SIDE as f64;
-        let off = Vec2::from_angle(turned).rotate_scale(*p - Point::new(0.5, 0.5));
+        let off = planar::direction(turned).rotate_scale(*p - Point::new(0.5, 0.5));
         Point::new(middle, middle) + off * (0.84 * SIDE as f64)
     };
     let drawn: Vec<Vec<Point>> = figure.iter().map(|line| line.iter().map(place).collect()).collect();
@@ -51,7 +52,7 @@ fn ring(radius: f64) -> Vec<Point> {
 }
 
 fn on_ring(radius: f64, angle: f64) -> Point {
-    Point::new(0.5, 0.5) + Vec2::from_angle(angle) * radius
+    Point::new(0.5, 0.5) + planar::direction(angle) * radius
 }
 
 #[test]

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use tracelight_image::Grey;
-use tracelight_stroke::{Point, Vec2};
+use tracelight_maths::planar;
+use tracelight_stroke::Point;
 use tracelight_vision::{VisionError, find_two_marks};
 
 use crate::raster::Canvas;
@@ -28,7 +29,7 @@ fn the_example_rulers_marks_are_48_px_apart() {
 fn ruler(places: &[f64], tilt_rad: f64, light: bool) -> Grey {
     let mut canvas = Canvas::new(320, 240);
     let (along, across) =
-        (Vec2::from_angle(tilt_rad), Vec2::from_angle(tilt_rad + std::f64::consts::FRAC_PI_2));
+        (planar::direction(tilt_rad), planar::direction(tilt_rad + std::f64::consts::FRAC_PI_2));
     let corner = |s: f64, t: f64| Point::new(100.0, 120.0) + along * s + across * t;
     let bar = |&s: &f64| {
         vec![corner(s - 4.0, -30.0), corner(s + 4.0, -30.0), corner(s + 4.0, 30.0), corner(s - 4.0, 30.0)]

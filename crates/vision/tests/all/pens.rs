@@ -1,7 +1,8 @@
 //! Lines of pens that are not even: that swell and taper.
 
 use tracelight_image::Grey;
-use tracelight_stroke::{Comparison, Point, StrokeKind, Vec2, compare_polylines};
+use tracelight_maths::planar;
+use tracelight_stroke::{Comparison, Point, StrokeKind, compare_polylines};
 use tracelight_vision::{Options, Traced, trace};
 
 use crate::raster::Canvas;
@@ -102,7 +103,7 @@ fn ring_at(angle: f64, radius: f64) -> Point {
 /// The ways of a pen to and fro in a disc of 80 px, so many pens from middle to middle, slanted.
 fn scribbled(canvas: &mut Canvas, centre: Point, pen: f64, pitch_pens: f64, joined: bool) {
     let radius = 80.0_f64;
-    let (way, aside) = (Vec2::from_angle(0.4), Vec2::from_angle(0.4).turn_90());
+    let (way, aside) = (planar::direction(0.4), planar::direction(0.4).turn_90());
     let ways = (2.0 * radius / (pitch_pens * pen)) as i32 + 1;
     for k in 0..ways {
         let middle = -radius + (f64::from(k) + 0.5) * pitch_pens * pen;
@@ -136,7 +137,7 @@ fn an_area_that_a_felt_pen_filled_is_one_shape_and_hatching_is_lines() {
     let mut canvas = Canvas::new(600, 440);
     let ring = |radius: f64| {
         (0..90)
-            .map(|k| Point::new(190.0, 220.0) + Vec2::from_angle(f64::from(k) * 4_f64.to_radians()) * radius)
+            .map(|k| Point::new(190.0, 220.0) + planar::direction(f64::from(k) * 4_f64.to_radians()) * radius)
             .collect::<Vec<_>>()
     };
     let slit = [(150.0, 218.0), (230.0, 218.0), (230.0, 222.0), (150.0, 222.0)].map(Point::from).to_vec();
@@ -159,8 +160,8 @@ fn slotted(slots: &[(f64, f64)]) -> usize {
     let mut canvas = Canvas::new(400, 400);
     let centre = Point::new(200.0, 200.0);
     let ring: Vec<Point> =
-        (0..90).map(|k| centre + Vec2::from_angle(f64::from(k) * 4_f64.to_radians()) * 80.0).collect();
-    let (way, aside) = (Vec2::from_angle(0.4), Vec2::from_angle(0.4).turn_90());
+        (0..90).map(|k| centre + planar::direction(f64::from(k) * 4_f64.to_radians()) * 80.0).collect();
+    let (way, aside) = (planar::direction(0.4), planar::direction(0.4).turn_90());
     let slot = |(k, &(wide, long)): (usize, &(f64, f64))| {
         let middle = centre + aside * (24.0 * (k as f64 - 0.5 * (slots.len() - 1) as f64));
         let corner = |(u, v): (f64, f64)| middle + way * (0.5 * long * u) + aside * (0.5 * wide * v);
@@ -195,7 +196,7 @@ fn a_crayon_from_near_draws_lines_and_no_crumbs() {
     let truth: Vec<Vec<Point>> = vec![
         (0..=90)
             .map(|k| f64::from(4 * k).to_radians())
-            .map(|a| Point::new(420.0, 450.0) + Vec2::from_angle(a) * 260.0)
+            .map(|a| Point::new(420.0, 450.0) + planar::direction(a) * 260.0)
             .collect(),
         vec![Point::new(420.0, 300.0), Point::new(1080.0, 620.0)],
         vec![Point::new(800.0, 120.0), Point::new(900.0, 250.0), Point::new(1100.0, 180.0)],
@@ -229,7 +230,7 @@ fn a_soft_pencil_on_rough_paper_draws_lines_and_no_crumbs() {
     let (width, height) = (640, 480);
     let truth: Vec<Vec<Point>> = vec![
         (0..=90)
-            .map(|k| Point::new(200.0, 240.0) + Vec2::from_angle(f64::from(4 * k).to_radians()) * 130.0)
+            .map(|k| Point::new(200.0, 240.0) + planar::direction(f64::from(4 * k).to_radians()) * 130.0)
             .collect(),
         (0..=60)
             .map(|k| Point::new(380.0 + 3.5 * f64::from(k), 120.0 + 40.0 * (f64::from(k) / 12.0).sin()))

@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use tracelight_image::Grey;
+use tracelight_maths::planar;
 use tracelight_stroke::{Point, Vec2, compare_polylines};
 use tracelight_vision::{Options, Traced, trace};
 
@@ -42,7 +43,7 @@ impl Paper {
 /// A circle, a bow across several rules and a slanted line.
 fn figure() -> Vec<Vec<Point>> {
     let round = |centre: Point, radius: f64, from: f64, sweep: f64| -> Vec<Point> {
-        (0..=160).map(|k| centre + Vec2::from_angle(from + sweep * f64::from(k) / 160.0) * radius).collect()
+        (0..=160).map(|k| centre + planar::direction(from + sweep * f64::from(k) / 160.0) * radius).collect()
     };
     let line = vec![Point::new(420.0, 60.0), Point::new(560.0, 410.0)];
     vec![
@@ -144,7 +145,7 @@ fn rules_of_a_sheet_that_lies_aslant_on_a_table_are_no_strokes() {
         (-3.0, (0.0015, 0.0), 20.0, true),
     ];
     for (degrees, (right, down), spacing, is_squared) in turned.into_iter().chain(slants) {
-        let along = Vec2::from_angle(f64::to_radians(degrees));
+        let along = planar::direction(f64::to_radians(degrees));
         let across = Vec2::new(-along.y, along.x);
         let at = |x: f64, y: f64| {
             Point::new(320.0, 240.0) + (along * x + across * y) / (1.0 + right * x + down * y)
@@ -167,7 +168,7 @@ fn rules_of_a_sheet_that_lies_aslant_on_a_table_are_no_strokes() {
         let radius = spacing * (60.0 / spacing).round();
         let figure: Vec<Vec<Point>> = vec![
             (0..=120)
-                .map(|k| Vec2::from_angle(TAU * f64::from(k) / 120.0) * radius)
+                .map(|k| planar::direction(TAU * f64::from(k) / 120.0) * radius)
                 .map(|off| at(off.x + middle(-220.0, -78.0), off.y + middle(-160.0, -10.0)))
                 .collect(),
             vec![at(60.0, -110.0), at(150.0, 90.0)],

@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use tracelight_image::Grey;
-use tracelight_stroke::{Comparison, Point, StrokeKind, Vec2, compare_polylines};
+use tracelight_maths::planar;
+use tracelight_stroke::{Comparison, Point, StrokeKind, compare_polylines};
 use tracelight_vision::{Options, Traced, trace};
 
 use crate::raster::Canvas;
@@ -20,7 +21,7 @@ fn traced(canvas: &Canvas, width: usize, ink: f64, truth: &[Vec<Point>]) -> (Tra
 
 fn ring(centre: (f64, f64), radii: (f64, f64)) -> Vec<Point> {
     let at = |k: u32| {
-        let way = Vec2::from_angle(TAU * f64::from(k) / 200.0);
+        let way = planar::direction(TAU * f64::from(k) / 200.0);
         Point::new(centre.0 + radii.0 * way.x, centre.1 + radii.1 * way.y)
     };
     (0..=200).map(at).collect()
@@ -30,7 +31,7 @@ fn ring(centre: (f64, f64), radii: (f64, f64)) -> Vec<Point> {
 fn star(centre: (f64, f64), radii: (f64, f64), points: u32) -> Vec<Point> {
     let at = |k: u32| {
         let radius = if k.is_multiple_of(2) { radii.1 } else { radii.0 };
-        Point::from(centre) + Vec2::from_angle(TAU * f64::from(k) / f64::from(2 * points) + 0.1) * radius
+        Point::from(centre) + planar::direction(TAU * f64::from(k) / f64::from(2 * points) + 0.1) * radius
     };
     (0..=2 * points).map(at).collect()
 }
@@ -72,7 +73,7 @@ fn a_nut_with_a_small_hole_is_a_shape_however_it_is_turned() {
         for turn in [0.0, 0.1, 0.3] {
             let at = |k: u32| {
                 Point::new(200.0, 150.0)
-                    + Vec2::from_angle(TAU * f64::from(k) / f64::from(corners) + turn) * radius
+                    + planar::direction(TAU * f64::from(k) / f64::from(corners) + turn) * radius
             };
             let truth = [
                 (0..=corners).map(at).collect(),

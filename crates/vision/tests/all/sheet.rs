@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use tracelight_image::Grey;
+use tracelight_maths::planar;
 use tracelight_sheet::Page;
 use tracelight_stroke::{Point, Vec2, compare_polylines};
 use tracelight_vision::{Options, trace, trace_page};
@@ -58,7 +59,7 @@ impl Photograph {
         let turn = chance.between(0.0, TAU);
         let middle = Point::new(0.5 * w, 0.5 * h);
         let round = |at: Vec2, radius: f64, sweep: f64| -> Vec<Point> {
-            let on = |k: i32| middle + at + Vec2::from_angle(turn + sweep * f64::from(k) / 120.0) * radius;
+            let on = |k: i32| middle + at + planar::direction(turn + sweep * f64::from(k) / 120.0) * radius;
             (0..=120).map(on).collect()
         };
         let figure = vec![
@@ -89,7 +90,7 @@ impl Photograph {
         let (a, b) = (easy.corners[side], easy.corners[(side + 1) % 4]);
         let on = a.lerp(b, chance.between(0.3, 0.7));
         let inward = (b - a).turn_90() / a.distance(b);
-        let way = inward.rotate_scale(Vec2::from_angle(chance.between(-0.5, 0.5)));
+        let way = inward.rotate_scale(planar::direction(chance.between(-0.5, 0.5)));
         let side = easy.size.0.min(easy.size.1) as f64;
         let finger = Some((on - way * (0.5 * side), on + way * (0.02 * side)));
         let finger_tone = (chance.between(0.25, 1.0), chance.between(0.1, 0.4));
@@ -104,7 +105,7 @@ impl Photograph {
     fn hard(chance: &mut Chance) -> Self {
         let easy = Self { shadow: None, finger: None, ..Self::any(chance) };
         let (w, h) = (easy.size.0 as f64, easy.size.1 as f64);
-        let way = |chance: &mut Chance| Vec2::from_angle(chance.between(0.0, TAU));
+        let way = |chance: &mut Chance| planar::direction(chance.between(0.0, TAU));
         match chance.between(0.0, 2.999) as usize {
             0 => {
                 let deep =
@@ -113,7 +114,7 @@ impl Photograph {
             }
             1 => Self { light: (way(chance), chance.between(0.35, 0.6)), ..easy },
             _ => {
-                let turn = Vec2::from_angle(chance.between(0.12, 0.3) * chance.between(-1.0, 1.0).signum());
+                let turn = planar::direction(chance.between(0.12, 0.3) * chance.between(-1.0, 1.0).signum());
                 let middle = Point::new(0.5 * w, 0.5 * h);
                 let below = easy.corners.map(|c| middle + (0.98 * (c - middle)).rotate_scale(turn));
                 let level = easy.paper * chance.between(0.88, 1.0);
@@ -166,7 +167,7 @@ impl Photograph {
             let seen = seen * (1.0 - shade * (1.0 - off.max(0.0)).max(0.0).powi(2));
             let seen = seen + (tone * self.paper - seen) * finger[k];
             let light = self.shadow.map_or(1.0, |(light, turn, off)| {
-                let from_edge = (at - middle).dot(Vec2::from_angle(turn)) - off;
+                let from_edge = (at - middle).dot(planar::direction(turn)) - off;
                 light + (1.0 - light) * (from_edge + 0.5).clamp(0.0, 1.0)
             });
             let (way, left) = self.light;

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use tracelight_image::Grey;
+use tracelight_maths::planar;
 use tracelight_stroke::{Point, StrokeKind, compare_polylines};
 use tracelight_vision::{Options, trace};
 
@@ -86,7 +87,7 @@ fn a_body_with_a_neck_is_no_thick_line() {
     let bow: Vec<Point> = (0..=80)
         .map(|k| {
             let turn = TAU * f64::from(k) / 80.0;
-            Point::new(95.0, 150.0) + tracelight_stroke::Vec2::from_angle(turn + 0.4) * 62.0
+            Point::new(95.0, 150.0) + planar::direction(turn + 0.4) * 62.0
         })
         .collect();
     let key =
@@ -115,8 +116,7 @@ fn a_white_sheet_cut_out_of_black_is_drawn_and_a_ragged_edge_keeps_its_rags() {
     let leaf: Vec<Point> = (0..=120)
         .map(|k| {
             let radius = if k % 2 == 0 { 124.0 } else { 115.0 };
-            Point::new(180.0, 150.0)
-                + tracelight_stroke::Vec2::from_angle(TAU * f64::from(k) / 120.0) * radius
+            Point::new(180.0, 150.0) + planar::direction(TAU * f64::from(k) / 120.0) * radius
         })
         .collect();
     check("a leaf", &[leaf]);
@@ -126,7 +126,7 @@ fn a_white_sheet_cut_out_of_black_is_drawn_and_a_ragged_edge_keeps_its_rags() {
 fn a_fat_pens_letters_are_all_lines_or_all_outlines() {
     let p = |x: f64, y: f64| Point::new(x, y);
     let ring = |x: f64, y: f64, radius: f64| -> Vec<Point> {
-        let at = |k: i32| p(x, y) + tracelight_stroke::Vec2::from_angle(TAU * f64::from(k) / 40.0) * radius;
+        let at = |k: i32| p(x, y) + planar::direction(TAU * f64::from(k) / 40.0) * radius;
         (0..=40).map(at).collect()
     };
     // A, l, o, s, and twice an h and an a that run together

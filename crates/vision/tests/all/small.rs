@@ -4,7 +4,8 @@
 use std::f64::consts::{PI, TAU};
 
 use tracelight_image::Grey;
-use tracelight_stroke::{Point, Stroke, StrokeKind, Vec2, compare_polylines};
+use tracelight_maths::planar;
+use tracelight_stroke::{Point, Stroke, StrokeKind, compare_polylines};
 use tracelight_vision::{Options, trace};
 
 use crate::raster::Canvas;
@@ -41,13 +42,13 @@ fn each_is_drawn(lines: &[Vec<Point>], pen: f64, within: f64, what: &str) {
 }
 
 fn arc(centre: (f64, f64), radius: f64, from: f64, sweep: f64) -> Vec<Point> {
-    let at = |k: i32| Point::from(centre) + Vec2::from_angle(from + sweep * f64::from(k) / 160.0) * radius;
+    let at = |k: i32| Point::from(centre) + planar::direction(from + sweep * f64::from(k) / 160.0) * radius;
     (0..=160).map(at).collect()
 }
 
 /// A line of some length about a place.
 fn bar(middle: (f64, f64), length: f64, angle: f64) -> Vec<Point> {
-    let half = Vec2::from_angle(angle) * (0.5 * length);
+    let half = planar::direction(angle) * (0.5 * length);
     vec![Point::from(middle) - half, Point::from(middle) + half]
 }
 
@@ -139,7 +140,7 @@ fn rings_that_touch_or_overlap_a_little_stay_rings() {
             [(70.0, 80.0, 40.0, 24.0), (90.0, 240.0, 45.0, 35.0), (280.0, 150.0, 60.0, 28.0)]
                 .into_iter()
                 .flat_map(|(x, y, large, small)| {
-                    let middle = Point::new(x, y) + Vec2::from_angle(0.005 * x) * (large + small - overlap);
+                    let middle = Point::new(x, y) + planar::direction(0.005 * x) * (large + small - overlap);
                     [arc((x, y), large, 0.0, TAU), arc((middle.x, middle.y), small, 0.0, TAU)]
                 })
                 .collect();
@@ -154,7 +155,7 @@ fn a_corner_is_one_line_however_sharp_it_is() {
             .map(|k| {
                 let half = (6.0 + 3.0 * f64::from(k)).to_radians();
                 let tip = Point::new(180.0 + 200.0 * f64::from(k % 2), 60.0 + 110.0 * f64::from(k / 2));
-                [half, -half].map(|a| tip - Vec2::from_angle(a) * 130.0).to_vec()
+                [half, -half].map(|a| tip - planar::direction(a) * 130.0).to_vec()
             })
             .zip(0..)
             .map(|(ends, k)| {

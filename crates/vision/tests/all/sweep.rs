@@ -3,7 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use tracelight_image::Grey;
-use tracelight_stroke::{Point, Vec2, compare_polylines};
+use tracelight_maths::planar;
+use tracelight_stroke::{Point, compare_polylines};
 use tracelight_vision::{Mode, Options, Traced, VisionError, trace};
 
 use crate::raster::Canvas;
@@ -20,7 +21,7 @@ fn swept(image: &Grey) -> Result<Traced, VisionError> {
 }
 
 fn round(centre: (f64, f64), radii: (f64, f64)) -> Vec<Point> {
-    let at = |k: u32| Vec2::from_angle(TAU * f64::from(k) / 400.0);
+    let at = |k: u32| planar::direction(TAU * f64::from(k) / 400.0);
     (0..=400).map(|k| Point::new(centre.0 + radii.0 * at(k).x, centre.1 + radii.1 * at(k).y)).collect()
 }
 
@@ -31,7 +32,7 @@ fn polygon(corners: &[(f64, f64)]) -> Vec<Point> {
 fn star() -> Vec<Point> {
     let corner = |k: u32| {
         let radius = if k.is_multiple_of(2) { 100.0 } else { 40.0 };
-        let p = Vec2::from_angle(TAU * f64::from(k) / 10.0 - PI / 2.0) * radius;
+        let p = planar::direction(TAU * f64::from(k) / 10.0 - PI / 2.0) * radius;
         (160.0 + p.x, 125.0 + p.y)
     };
     polygon(&(0..10).map(corner).collect::<Vec<_>>())

@@ -1,5 +1,6 @@
 //! Figures of lines and arcs that pass into each other, and what is asked of those found.
 
+use tracelight_maths::planar;
 use tracelight_stroke::{Element, Path, Point, Vec2};
 
 /// What was drawn: a line's length, or an arc's radius and sweep in degrees (positive turns x towards y).
@@ -12,7 +13,7 @@ pub(crate) enum Drawn {
 /// Draws one after the other, from a place in a direction.
 pub(crate) fn path(start: Point, angle_rad: f64, drawn: &[Drawn], closed: bool) -> Path {
     let mut path = Path::new(start);
-    let mut along = Vec2::from_angle(angle_rad);
+    let mut along = planar::direction(angle_rad);
     for d in drawn {
         match *d {
             Drawn::Line(length) => path.line_to(path.end() + along * length),
@@ -20,7 +21,7 @@ pub(crate) fn path(start: Point, angle_rad: f64, drawn: &[Drawn], closed: bool) 
                 let sweep = degrees.to_radians();
                 let centre = path.end() + along.turn_90() * radius.copysign(sweep);
                 path.push(Element::Arc { centre, sweep });
-                along = Vec2::from_angle(along.atan2() + sweep);
+                along = planar::direction(planar::heading(along) + sweep);
             }
         }
     }

@@ -8,6 +8,7 @@ use tracelight_eye::room::{Furnished, RoomRequest};
 use tracelight_eye::wall::{doubts, markers, well_exposed};
 use tracelight_files as files;
 use tracelight_image::Grey;
+use tracelight_maths::atan;
 use tracelight_picture as picture;
 use tracelight_pipeline::{DEFAULT_DISTANCE_M, Placing};
 use tracelight_rigfile as rigfile;
@@ -184,7 +185,7 @@ impl Seen {
 
     fn lens_text(&self) -> String {
         let (lens, covariance) = (&self.survey.belief.lens, &self.survey.belief.covariance);
-        let wide = 2.0 * (lens.size_px[0] as f64 / 2.0 / lens.focal_px[0]).atan().to_degrees();
+        let wide = 2.0 * atan(lens.size_px[0] as f64 / 2.0 / lens.focal_px[0]).to_degrees();
         let sure = |k: usize| 2.0 * covariance[(k, k)].sqrt();
         format!(
             "lens:     {} × {} px, focal length {:.1} ± {:.1} px ({wide:.0}° wide), centre ({:.1}, {:.1}) px, k1 {:.4} ± {:.4}, k2 {:.4} ± {:.4}",

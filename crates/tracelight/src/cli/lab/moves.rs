@@ -4,8 +4,9 @@ use clap::{Args, Subcommand};
 use tracelight_aim::HeadPose;
 use tracelight_experiment::moves::{Request, Way};
 use tracelight_experiment::profile_name::ProfileName;
+use tracelight_maths::planar;
 use tracelight_pipeline::DEFAULT_DISTANCE_M;
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop};
 use tracelight_trajectory::Ramps;
 use tracelight_units::{
@@ -174,7 +175,7 @@ impl MoveArgs {
         match &self.course {
             CourseArgs::Line(line) => {
                 let from = point(line.start);
-                let to = || from + line.length.0 * Vec2::from_angle(line.angle.0);
+                let to = || from + line.length.0 * planar::direction(line.angle.0);
                 Way::Line { from, to: line.to.map_or_else(to, point) }
             }
             CourseArgs::Arc(arc) => {

@@ -1,3 +1,4 @@
+use tracelight_maths::{cbrt, powf, powi};
 use tracelight_rig::{Joint, PanTilt};
 
 use super::band::Local;
@@ -114,7 +115,7 @@ impl Path {
                 third * s1 * s1 * s1 + 3.0 * second * s1 * s2 + first * s3,
             ]
         });
-        Place { joints, cap: (cap / s1).powi(2) }
+        Place { joints, cap: powi(cap / s1, 2) }
     }
 }
 
@@ -158,7 +159,7 @@ impl Cells {
                 }),
                 inverse_most: core::array::from_fn(|p| {
                     let place = &places[2 * p];
-                    let by_joint = |j: Joint| (place.joints[j][0] / limits[j].speed_rad_s).powi(2);
+                    let by_joint = |j: Joint| powi(place.joints[j][0] / limits[j].speed_rad_s, 2);
                     by_joint(Joint::Pan).max(by_joint(Joint::Tilt)).max(1.0 / place.cap)
                 }),
             }
@@ -178,7 +179,7 @@ impl Cells {
         for rows in &self.rows {
             let steady = rows.acceleration.iter().map(|row| dot(row, &SAME).abs());
             // √x · |row| x ≤ 1
-            let jerk = rows.jerk.iter().map(|row| dot(row, &SAME).abs().powf(2.0 / 3.0));
+            let jerk = rows.jerk.iter().map(|row| powf(dot(row, &SAME).abs(), 2.0 / 3.0));
             inverse = steady.chain(jerk).chain(rows.inverse_most).fold(inverse, f64::max);
         }
         let nodes = self.rows.len() + 1;
@@ -309,7 +310,7 @@ pub(super) fn excess(path: &Path, z: &[f64], h: f64, limits: &PanTilt<JointLimit
                 let acceleration = (second * x + 0.5 * first * x1).abs() / limits[j].acceleration_rad_s2;
                 let jerk =
                     rate * (third * x + 1.5 * second * x1 + 0.5 * first * x2).abs() / limits[j].jerk_rad_s3;
-                stretch = stretch.max(speed).max(acceleration.sqrt()).max(jerk.cbrt());
+                stretch = stretch.max(speed).max(acceleration.sqrt()).max(cbrt(jerk));
             }
             stretch = stretch.max((x / place.cap).sqrt());
         }
