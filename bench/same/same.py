@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Two programs held against each other: the same command lines, the same bytes.
 
-    python bench/same/same.py OLD/tracelight target/release/tracelight [--only WORD] [--keep FOLDER]
+    python bench/same/same.py OLD/tracelight target/release/tracelight [--only WORD] [--keep FOLDER] [--set NAME=VALUE]
 
 Both run every command line below, each in a folder of its own that begins with copies of `examples/`; what a command writes, later
 ones read. What is printed, how it ends, and every file left behind are compared byte by byte, apart from what tells the time: see
@@ -12,6 +12,7 @@ change nothing.
 import argparse
 import difflib
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -249,14 +250,15 @@ def without_times(data):
     return data
 
 
-def run_all(program, folder, lines):
+def run_all(program, folder, lines, environment):
     """What each line printed and how it ended, in this folder."""
     shutil.copytree(ROOT / "examples", folder / "examples")
     for name, content in FILES.items():
         (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     results = []
     for line in lines:
-        done = subprocess.run([program, *arguments(line)], cwd=folder, capture_output=True, timeout=600)
+        command = [program, *arguments(line)]
+        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, timeout=600)
         results.append({"status": str(done.returncode).encode(), "stdout": done.stdout, "stderr": done.stderr})
     return results
 
@@ -305,6 +307,7 @@ def main():
     parser.add_argument("new", type=Path)
     parser.add_argument("--only", help="command lines that hold this word; they may need files of others")
     parser.add_argument("--keep", type=Path, help="leave both folders here")
+    parser.add_argument("--set", default="", metavar="NAME=VALUE", help="a variable that only the new program is given")
     options = parser.parse_args()
     lines = [line for line in COMMANDS.strip().splitlines() if not options.only or options.only in line]
     with tempfile.TemporaryDirectory() as scratch:
@@ -316,7 +319,9 @@ def main():
             shutil.rmtree(here, ignore_errors=True)
             here.mkdir(parents=True)
             shutil.copy(given, program)
-            printed = run_all(program, here, lines)
+            name, _, value = options.set.partition("=")
+            environment = os.environ | ({name: value} if name and side == "new" else {})
+            printed = run_all(program, here, lines, environment)
             shown = {f"{line} ({what})": data for line, result in zip(lines, printed) for what, data in result.items()}
             sides.append((shown, files_of(here)))
             if side == "old":

@@ -174,9 +174,9 @@ fn onwards(at: PathPoint, by_m: f64) -> PathPoint {
 #[cfg(test)]
 mod tests {
     use tracelight_maths::planar;
+    use tracelight_stroke::{Element, Path};
 
     use super::*;
-    use tracelight_stroke::{Element, Path, Vec2};
 
     fn pieces(path: &Path) -> Vec<(Piece, f64)> {
         path.pieces().map(|piece| (piece, piece.length(LENGTH_TOLERANCE_M))).collect()
