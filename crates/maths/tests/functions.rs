@@ -121,8 +121,9 @@ fn whole_powers_are_products_in_the_order_that_is_promised() {
     assert_eq!((powi(2.0, 1023), powi(2.0, -1022)), (f64::MAX / (2.0 - f64::EPSILON), f64::MIN_POSITIVE));
     assert_eq!((powi(-1.0, i32::MAX), powi(-1.0, i32::MIN)), (-1.0, 1.0));
     assert_eq!((powi(0.0, -1), powi(f64::NAN, 0)), (f64::INFINITY, 1.0));
-    let off =
-        |n: i32| (powi(x, n) / powf(x, f64::from(n)) - 1.0).abs() / f64::from(n.abs()) * 9_007_199_254_740_992.0;
+    let off = |n: i32| {
+        (powi(x, n) / powf(x, f64::from(n)) - 1.0).abs() / f64::from(n.abs()) * 9_007_199_254_740_992.0
+    };
     assert!(
         (2..200).all(|n| off(n) < 2.0 && off(-n) < 2.0),
         "more than its rounding, and that of the other way"
