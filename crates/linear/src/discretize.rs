@@ -2,6 +2,7 @@ use tracelight_maths::{complex, cos, exp, exp_m1, log2, powi, sin, tan};
 
 use crate::eigen::balanced;
 use crate::time::positive;
+use crate::twofold::Twofold;
 use crate::{Complex, LinearError, Matrix, Polynomial, StateSpace, Time, TransferFunction};
 
 /// How a system in continuous time becomes one of samples.
@@ -152,24 +153,25 @@ impl StateSpace {
     }
 }
 
-/// e^A by its series on a small part of A, squared again and again.
+/// e^A by its series on a small part of A, squared again and again, in twice the digits: each squaring doubles what rounding has
+/// left, and of poles decades apart the slow one is squared some twenty times.
 ///
 /// Padé's quotient would be as good beside the largest entry. Here small entries count: at the end of a chain of integrators one is
 /// a high power of the time, and the series has it to all digits.
 fn exponential(a: &Matrix) -> Matrix {
-    /// 1/18! of a norm of at most 1 is less than rounding.
-    const TERMS: usize = 18;
+    /// 1/28! of a norm of at most 1 is less than rounding in twice the digits.
+    const TERMS: usize = 28;
     let n = a.nrows();
     let norm = a.row_iter().map(|row| row.iter().map(|entry| entry.abs()).sum::<f64>()).fold(0.0, f64::max);
     let halvings = if norm > 1.0 { log2(norm).ceil().min(1100.0) as i32 } else { 0 };
-    let small = a * powi(0.5, halvings);
-    let mut term = Matrix::identity(n, n);
+    let small = Twofold::of(a * powi(0.5, halvings));
+    let mut term = Twofold::of(Matrix::identity(n, n));
     let mut sum = term.clone();
     for k in 1..=TERMS {
-        term = &term * &small / k as f64;
-        sum += &term;
+        term = term.times(&small).over(k as f64);
+        sum = sum.plus(&term);
     }
-    (0..halvings).fold(sum, |power, _| &power * &power)
+    (0..halvings).fold(sum, |power, _| power.times(&power)).rounded()
 }
 
 /// What s becomes a multiple of.

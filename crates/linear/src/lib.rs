@@ -30,6 +30,7 @@ mod state_space;
 mod time;
 mod transfer;
 mod turns;
+mod twofold;
 mod zpk;
 
 /// A complex number.

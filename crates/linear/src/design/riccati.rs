@@ -9,6 +9,9 @@ const MOST_DOUBLINGS: usize = 60;
 /// States beyond which a solution is not refined: Lyapunov's equation is solved as one of n² unknowns.
 const MOST_REFINED: usize = 24;
 
+/// A gain that Newton's iteration would move by more than this share of it is not the best yet.
+const MOST_MOVED: f64 = 1e-9;
+
 /// What the best cost is, xᵀ X x, and what it needs: ẋ = A x + B u with cost ∫ xᵀ Q x + uᵀ R u, or a sum over samples.
 pub(super) struct Riccati<'a> {
     pub(super) a: &'a Matrix,
@@ -52,11 +55,14 @@ impl Riccati<'_> {
             let x = if is_small { inner.refined(x) } else { x };
             inner.gain(&x).map(|gain| (x, gain))
         });
+        let refined = refined.ok().filter(|(_, gain)| inner.settles(gain));
+        // what grows fast beside what is slow leaves doubling no digits: then Newton's iteration would go on
+        let is_there = |gain: &Matrix| !is_small || inner.moved(gain) <= MOST_MOVED;
         let (x, gain) = match refined {
-            Ok((x, gain)) if inner.settles(&gain) => (x, gain),
-            // what grows fast beside what is slow leaves doubling no digits
-            _ if is_small => inner.approached()?,
-            _ => return Err(LinearError::NoRegulator),
+            Some((x, gain)) if is_there(&gain) => (x, gain),
+            Some(found) => inner.approached().unwrap_or(found),
+            None if is_small => inner.approached()?,
+            None => return Err(LinearError::NoRegulator),
         };
         let back = columns(&rows(&x, -1), -1);
         Ok((0.5 * (&back + back.transpose()), columns(&gain, -1)))
@@ -131,6 +137,11 @@ impl Riccati<'_> {
         let x = lyapunov(&closed, &cost, self.time).ok_or(LinearError::NoRegulator)?;
         let next = self.gain(&x)?;
         Ok((x, next))
+    }
+
+    /// By which share of itself a step of Newton's iteration moves a gain.
+    fn moved(&self, gain: &Matrix) -> f64 {
+        self.newton(gain).map_or(f64::INFINITY, |(_, next)| (&next - gain).norm() / gain.norm())
     }
 
     /// What is left of the equation.
