@@ -9,7 +9,7 @@ use tracelight_task::{Failure, Task};
 use crate::figures::Figures;
 use crate::manifest::{Entry, Manifest, Stamp};
 use crate::queue::{self, Panicked};
-use crate::report::{Extra, Names, Pieces, Report};
+use crate::report::{Ended, Extra, Names, Pieces, Report};
 use crate::row::{Outcome, Row};
 use crate::{places, table, weight};
 
@@ -50,16 +50,6 @@ pub struct Finding {
 /// Traces the picture of this name, and writes its strokes to the file, if one is given.
 pub type Tracer<'a> = dyn Fn(&str, Option<&Path>) -> Result<Finding, Failure> + Sync + 'a;
 
-/// What a batch came to.
-pub struct Ended {
-    /// The table, and totals.
-    pub text: String,
-    /// The end of the JSON object whose beginning was given away already.
-    pub json: String,
-    /// How it ended, if not all pictures were traced.
-    pub failure: Option<Failure>,
-}
-
 /// Traces all pictures. If `pieces` is given, it gets the results as one JSON object, as they come; the answer holds its end.
 ///
 /// # Errors
@@ -90,8 +80,7 @@ pub fn run<'a>(
         pictures: batch.pictures.iter().map(|picture| picture.name.as_str()).collect(),
         are_kept: batch.out.is_some(),
     };
-    let told = report.end(&names, task, 1e3 * (task.progress.clock_s() - began_s));
-    Ok(Ended { text: told.text, json: told.json, failure: told.failure })
+    Ok(report.end(&names, task, 1e3 * (task.progress.clock_s() - began_s)))
 }
 
 /// A file for each picture, if they are to be written.

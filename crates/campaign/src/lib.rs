@@ -21,6 +21,7 @@ mod row;
 mod table;
 mod weight;
 
-pub use batch::{Batch, Ended, Finding, Out, Tracer, run};
+pub use batch::{Batch, Finding, Out, Tracer, run};
 pub use figures::{Figures, Unit};
 pub use places::files;
+pub use report::Ended;

@@ -33,13 +33,14 @@ pub(crate) struct Report<'a> {
     stream: Option<Stream<'a>>,
 }
 
-/// What a batch came to: what there is to say of it, and how it ended.
-pub(crate) struct Told {
-    /// The table.
-    pub(crate) text: String,
+/// What a batch came to.
+pub struct Ended {
+    /// The table, and totals.
+    pub text: String,
     /// The end of the JSON object whose beginning was given away already.
-    pub(crate) json: String,
-    pub(crate) failure: Option<Failure>,
+    pub json: String,
+    /// How it ended, if not all pictures were traced.
+    pub failure: Option<Failure>,
 }
 
 impl<'a> Report<'a> {
@@ -56,7 +57,7 @@ impl<'a> Report<'a> {
     }
 
     /// The table, or the end of the JSON object whose beginning is printed already; and how the command ends.
-    pub(crate) fn end(mut self, names: &Names<'_>, task: Task<'_>, timing_ms: f64) -> Told {
+    pub(crate) fn end(mut self, names: &Names<'_>, task: Task<'_>, timing_ms: f64) -> Ended {
         let rows: Vec<_> = self.rows.iter().flatten().cloned().collect();
         rows.iter().filter_map(remark).for_each(|remark| task.say(&remark));
         let totals = Totals::of(&rows, timing_ms);
@@ -70,7 +71,7 @@ impl<'a> Report<'a> {
         } else {
             Some(interrupted(rows.len(), left.len(), names.are_kept))
         };
-        Told { text: table::text(&rows, &totals), json: json.unwrap_or_default(), failure }
+        Ended { text: table::text(&rows, &totals), json: json.unwrap_or_default(), failure }
     }
 }
 

@@ -7,7 +7,7 @@ use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{MotorReading, Mounting, READ_TICKS, RigConfig, motor_readings};
 use tracelight_task::{Failure, Task};
 
-use crate::finding::Experiment;
+use crate::finding::{Experiment, Improved};
 use crate::parts::{self, tell_each};
 use crate::record::MOST_V;
 use crate::table::{self, Log};
@@ -129,16 +129,13 @@ impl Request {
     }
 }
 
-impl Finding {
-    /// The rig as it was believed to be.
-    #[must_use]
-    pub const fn rig(&self) -> &RigConfig {
+impl Improved for Finding {
+    fn rig(&self) -> &RigConfig {
         &self.of.rig
     }
 
-    /// The rig with the torque per volt of the amperes that were read.
-    #[must_use]
-    pub const fn better(&self) -> &RigConfig {
+    // the rig with the torque per volt of the amperes that were read
+    fn better(&self) -> &RigConfig {
         &self.better
     }
 }

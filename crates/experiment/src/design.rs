@@ -99,8 +99,8 @@ impl Experiment for Request {
         let (controller, remark) = self.method.controller(&plant).map_err(failed)?;
         let tried = |on: TriedOn| Trial::of(on.rig, on.joint, (on.to_rad, on.seed), &controller);
         let trial = self.tried.map(tried).transpose()?;
-        let designed = Finding::of(name.clone(), plant, controller, remark).map_err(failed)?;
-        Ok(Finding { trial, theme: self.system.theme, ..designed })
+        let designed = Designed { name: name.clone(), plant, controller, remark };
+        Finding::of(designed, trial, self.system.theme).map_err(failed)
     }
 }
 
@@ -152,13 +152,17 @@ fn faster(poles: &[Complex], plant: &TransferFunction) -> Vec<Complex> {
     poles.iter().map(four_times).collect()
 }
 
+/// A controller for a plant.
+struct Designed {
+    name: String,
+    plant: TransferFunction,
+    controller: Zpk,
+    remark: String,
+}
+
 impl Finding {
-    fn of(
-        name: String,
-        plant: TransferFunction,
-        controller: Zpk,
-        remark: String,
-    ) -> Result<Self, LinearError> {
+    fn of(designed: Designed, trial: Option<Trial>, theme: Theme) -> Result<Self, LinearError> {
+        let Designed { name, plant, controller, remark } = designed;
         let k = controller.transfer();
         let open = k.series(&plant)?;
         let closed = open.closed()?;
@@ -190,8 +194,8 @@ impl Finding {
             peak,
             stability,
             info,
-            trial: None,
-            theme: Theme::Light,
+            trial,
+            theme,
         })
     }
 }

@@ -1,6 +1,7 @@
 //! What every experiment has in common: it is run, and what it finds is shown.
 
 use tracelight_chart::Figure;
+use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Task};
 
 /// A question, with all that it is asked of.
@@ -46,6 +47,15 @@ pub trait Filed: Finding {
     /// # Errors
     /// What is in a file cannot be computed or drawn.
     fn files(&self) -> Result<Vec<(&'static str, String)>, Failure>;
+}
+
+/// A finding by which a rig is known, or tuned, better.
+pub trait Improved: Finding {
+    /// The rig as it was believed to be.
+    fn rig(&self) -> &RigConfig;
+
+    /// The rig with what was found.
+    fn better(&self) -> &RigConfig;
 }
 
 /// A figure as SVG.

@@ -7,7 +7,7 @@ use tracelight_lab::{Curves, Side, Steady, steady, steady_of};
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Task};
 
-use crate::finding::Experiment;
+use crate::finding::{Experiment, Improved};
 use crate::trials::{Seen, Subject, Trials};
 
 /// What joints did under voltages, to tell their friction from.
@@ -44,16 +44,13 @@ impl Experiment for Request {
     }
 }
 
-impl Finding {
-    /// The rig as it was believed to be.
-    #[must_use]
-    pub const fn rig(&self) -> &RigConfig {
+impl Improved for Finding {
+    fn rig(&self) -> &RigConfig {
         &self.trials.rig
     }
 
-    /// The rig with the friction that was found.
-    #[must_use]
-    pub const fn better(&self) -> &RigConfig {
+    // the rig with the friction that was found
+    fn better(&self) -> &RigConfig {
         &self.better
     }
 }

@@ -7,7 +7,7 @@ use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Task};
 
-use crate::finding::Experiment;
+use crate::finding::{Experiment, Improved};
 use crate::trials::{Seen, Subject, Trials};
 
 /// What tilt did under voltages (see [`of_tilt`]), to tell its weight from.
@@ -59,16 +59,13 @@ impl Experiment for Request {
     }
 }
 
-impl Finding {
-    /// The rig as it was believed to be.
-    #[must_use]
-    pub const fn rig(&self) -> &RigConfig {
+impl Improved for Finding {
+    fn rig(&self) -> &RigConfig {
         &self.trials.rig
     }
 
-    /// The rig with the weight that was found: what tilt carries is moved until it weighs so, its mass kept.
-    #[must_use]
-    pub const fn better(&self) -> &RigConfig {
+    // the rig with the weight that was found: what tilt carries is moved until it weighs so, its mass kept
+    fn better(&self) -> &RigConfig {
         &self.better
     }
 }

@@ -11,7 +11,7 @@ use tracelight_rig::{Joint, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, run_segments};
 use tracelight_task::{Failure, Task};
 
-use crate::finding::Experiment;
+use crate::finding::{Experiment, Improved};
 use crate::numbers::why_unfinished;
 use crate::record;
 use crate::table::Log;
@@ -100,16 +100,13 @@ impl Request {
     }
 }
 
-impl Finding {
-    /// The rig as it was believed to be.
-    #[must_use]
-    pub const fn rig(&self) -> &RigConfig {
+impl Improved for Finding {
+    fn rig(&self) -> &RigConfig {
         &self.of.rig
     }
 
-    /// The rig with what was found; what explains its motion no better than what was believed is left out.
-    #[must_use]
-    pub const fn better(&self) -> &RigConfig {
+    // the rig with what was found; what explains its motion no better than what was believed is left out
+    fn better(&self) -> &RigConfig {
         &self.found.rig
     }
 }

@@ -6,7 +6,7 @@ use tracelight_lab::{Curves, Uncertain};
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Task};
 
-use crate::finding::Experiment;
+use crate::finding::{Experiment, Improved};
 use crate::trials::{Seen, Subject, Trials};
 
 /// What joints did under voltages, to tell their inertia from.
@@ -49,16 +49,13 @@ fn told(subject: &Subject, curves: &Curves) -> Result<Uncertain, Failure> {
     })
 }
 
-impl Finding {
-    /// The rig as it was believed to be.
-    #[must_use]
-    pub const fn rig(&self) -> &RigConfig {
+impl Improved for Finding {
+    fn rig(&self) -> &RigConfig {
         &self.trials.rig
     }
 
-    /// The rig with the inertia that was found: bodies keep theirs, the rotor gets the rest.
-    #[must_use]
-    pub const fn better(&self) -> &RigConfig {
+    // the rig with the inertia that was found: bodies keep theirs, the rotor gets the rest
+    fn better(&self) -> &RigConfig {
         &self.better
     }
 }

@@ -1,7 +1,7 @@
 //! Experiments of the control engineer's bench: a request in, a finding out, and how that is shown.
 //!
 //! Each experiment is a file that is named after its command: its request, which is an [`Experiment`]; what it finds; and in
-//! `view.rs` beside it how that is shown, as text, as JSON, as a plot, as tables ([`Finding`], [`Plotted`], [`Filed`]). Who has it
+//! `view.rs` beside it how that is shown, as text, as JSON, as a plot, as tables ([`Finding`], [`Plotted`], [`Filed`]), and as a better rig ([`Improved`]). Who has it
 //! done (a command line, a page, a script) makes the request of what was typed, and puts what is shown where it belongs.
 //! Nothing here opens a file, prints, or knows a flag but by its name in a message.
 
@@ -48,4 +48,4 @@ pub mod trials;
 pub mod tune;
 pub mod velocity;
 
-pub use finding::{Experiment, Filed, Finding, Plotted, svg};
+pub use finding::{Experiment, Filed, Finding, Improved, Plotted, svg};

@@ -10,7 +10,7 @@ use tracelight_sim::{
 };
 use tracelight_task::{Failure, Task};
 
-use crate::finding::Experiment;
+use crate::finding::{Experiment, Improved};
 use crate::step::{figures, unreachable};
 
 /// A joint to swing, what is tuned from that, and how it is tried.
@@ -107,16 +107,13 @@ impl Request {
     }
 }
 
-impl Finding {
-    /// The rig as it was.
-    #[must_use]
-    pub const fn rig(&self) -> &RigConfig {
+impl Improved for Finding {
+    fn rig(&self) -> &RigConfig {
         &self.of.rig
     }
 
-    /// The rig with the gains, and law hand-tuned.
-    #[must_use]
-    pub const fn better(&self) -> &RigConfig {
+    // the rig with the gains, and law hand-tuned
+    fn better(&self) -> &RigConfig {
         &self.better
     }
 }

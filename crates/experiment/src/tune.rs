@@ -11,7 +11,7 @@ use tracelight_sim::{LawName, RigConfig, SimulatedRig, Spread, score};
 use tracelight_task::{Failure, Task, on_all_cores};
 use tracelight_trajectory::Plan;
 
-use crate::finding::Experiment;
+use crate::finding::{Experiment, Improved};
 use crate::shape::Shape;
 
 /// A shape that a rig is to draw, and what its loops must bear.
@@ -109,16 +109,12 @@ impl Experiment for Request {
     }
 }
 
-impl Finding {
-    /// The rig as it was.
-    #[must_use]
-    pub const fn rig(&self) -> &RigConfig {
+impl Improved for Finding {
+    fn rig(&self) -> &RigConfig {
         &self.rig
     }
 
-    /// The rig with what was picked.
-    #[must_use]
-    pub const fn better(&self) -> &RigConfig {
+    fn better(&self) -> &RigConfig {
         &self.better
     }
 }

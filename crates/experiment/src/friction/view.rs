@@ -11,7 +11,7 @@ use tracelight_task::Failure;
 
 use super::plot::figure;
 use super::{Finding, Found};
-use crate::finding::{self, Filed, svg};
+use crate::finding::{self, Filed, Improved, svg};
 use crate::numbers::{HOW_SURE, milli};
 use crate::parts::by_joint;
 

@@ -8,7 +8,7 @@ use tracelight_rig::Joint;
 use tracelight_task::Failure;
 
 use super::Finding;
-use crate::finding::{self, Filed, svg};
+use crate::finding::{self, Filed, Improved, svg};
 use crate::numbers::{HOW_SURE, milli};
 
 impl finding::Finding for Finding {

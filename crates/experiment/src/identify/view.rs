@@ -10,7 +10,7 @@ use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
 use super::Finding;
-use crate::finding::{self, Filed};
+use crate::finding::{self, Filed, Improved};
 use crate::record;
 
 /// A figure of a joint.

@@ -6,7 +6,7 @@ use serde_json::json;
 use tracelight_lab::Uncertain;
 
 use super::Finding;
-use crate::finding;
+use crate::finding::{self, Improved};
 use crate::numbers::{HOW_SURE, milli};
 use crate::parts::by_joint;
 use crate::trials::Subject;

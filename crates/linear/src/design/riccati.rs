@@ -52,15 +52,14 @@ impl Riccati<'_> {
         };
         let is_small = a.nrows() <= MOST_REFINED;
         let refined = doubled.and_then(|x| {
-            let x = if is_small { inner.refined(x) } else { x };
-            inner.gain(&x).map(|gain| (x, gain))
+            let (x, moved) = if is_small { inner.refined(x) } else { (x, 0.0) };
+            inner.gain(&x).map(|gain| ((x, gain), moved))
         });
-        let refined = refined.ok().filter(|(_, gain)| inner.settles(gain));
+        let refined = refined.ok().filter(|((_, gain), _)| inner.settles(gain));
         // what grows fast beside what is slow leaves doubling no digits: then Newton's iteration would go on
-        let is_there = |gain: &Matrix| !is_small || inner.moved(gain) <= MOST_MOVED;
         let (x, gain) = match refined {
-            Some((x, gain)) if is_there(&gain) => (x, gain),
-            Some(found) => inner.approached().unwrap_or(found),
+            Some((found, moved)) if moved <= MOST_MOVED => found,
+            Some((found, _)) => inner.approached().unwrap_or(found),
             None if is_small => inner.approached()?,
             None => return Err(LinearError::NoRegulator),
         };
@@ -139,11 +138,6 @@ impl Riccati<'_> {
         Ok((x, next))
     }
 
-    /// By which share of itself a step of Newton's iteration moves a gain.
-    fn moved(&self, gain: &Matrix) -> f64 {
-        self.newton(gain).map_or(f64::INFINITY, |(_, next)| (&next - gain).norm() / gain.norm())
-    }
-
     /// What is left of the equation.
     fn residual(&self, x: &Matrix, gain: &Matrix) -> f64 {
         let (closed, cost) = self.closed(gain);
@@ -153,20 +147,21 @@ impl Riccati<'_> {
         }
     }
 
-    /// Newton's iteration as long as it makes the residual smaller.
-    fn refined(&self, mut x: Matrix) -> Matrix {
+    /// Newton's iteration as long as it makes the residual smaller; and by which share of itself one step more moves the gain.
+    fn refined(&self, mut x: Matrix) -> (Matrix, f64) {
         const MOST_STEPS: usize = 4;
-        let Ok(mut gain) = self.gain(&x) else { return x };
+        let Ok(mut gain) = self.gain(&x) else { return (x, f64::INFINITY) };
         let mut left = self.residual(&x, &gain);
-        for _ in 0..MOST_STEPS {
-            let Ok((next, next_gain)) = self.newton(&gain) else { break };
+        let mut steps = 0;
+        while let Ok((next, next_gain)) = self.newton(&gain) {
             let next_left = self.residual(&next, &next_gain);
-            if next_left.is_nan() || next_left >= left {
-                break;
+            if steps == MOST_STEPS || next_left.is_nan() || next_left >= left {
+                return (x, (&next_gain - &gain).norm() / gain.norm());
             }
             (x, gain, left) = (next, next_gain, next_left);
+            steps += 1;
         }
-        x
+        (x, f64::INFINITY)
     }
 }
 

@@ -70,9 +70,7 @@ impl LabCommand for AmplifierArgs {
         let request = self.request()?;
         let finding = command::tried(request, self.voice, stop)?;
         command::leave(&finding, &self.out)?;
-        let rigs = (finding.rig(), finding.better());
-        let written = rig_out::write(&self.out, &self.rig, self.save, rigs)?;
-        Ok(rig_out::answer(&finding, &written, self.voice))
+        rig_out::written(&finding, &self.out, &self.rig, self.save, self.voice)
     }
 }
 

@@ -42,8 +42,6 @@ impl LabCommand for GravityArgs {
         leave_log(&seen, &self.out)?;
         let finding = command::tried(Request(seen), self.voice, stop)?;
         command::leave(&finding, &self.out)?;
-        let rigs = (finding.rig(), finding.better());
-        let written = rig_out::write(&self.out, &self.trials.rig, self.save, rigs)?;
-        Ok(rig_out::answer(&finding, &written, self.voice))
+        rig_out::written(&finding, &self.out, &self.trials.rig, self.save, self.voice)
     }
 }

@@ -51,9 +51,7 @@ impl LabCommand for IdentifyArgs {
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         let finding = command::tried(self.request()?, self.voice, stop)?;
         command::leave(&finding, &self.out)?;
-        let rigs = (finding.rig(), finding.better());
-        let written = rig_out::write(&self.out, &self.rig, self.save, rigs)?;
-        Ok(rig_out::answer(&finding, &written, self.voice))
+        rig_out::written(&finding, &self.out, &self.rig, self.save, self.voice)
     }
 }
 

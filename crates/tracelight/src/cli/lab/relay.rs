@@ -1,4 +1,5 @@
 use clap::Args;
+use tracelight_experiment::Improved;
 use tracelight_experiment::relay::Request;
 use tracelight_rig::Joint;
 use tracelight_sim::{Mounting, ObserverName};

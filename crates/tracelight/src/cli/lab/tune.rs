@@ -89,8 +89,7 @@ impl LabCommand for TuneArgs {
         let request = Request { shape: self.shape.shape()?, driving, choice: self.choice() };
         let finding = command::tried(request, self.voice, stop)?;
         command::leave(&finding, &self.out)?;
-        let written = rig_out::write(&self.out, rig, self.save, (finding.rig(), finding.better()))?;
-        Ok(rig_out::answer(&finding, &written, self.voice))
+        rig_out::written(&finding, &self.out, rig, self.save, self.voice)
     }
 }
 
