@@ -59,31 +59,42 @@ pub fn write(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
 /// # Errors
 /// `cannot-write`, with what the system says; then the file is as it was.
 pub fn replace(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
-    let real = fs::canonicalize(path).map_err(|e| cannot_write(path, &e))?;
-    let fresh = format!("{}.{}.new", real.display(), std::process::id());
-    write(&fresh, bytes)?;
-    fs::rename(&fresh, &real).map_err(|e| cannot_write(path, &e))
+    let failed = |e: std::io::Error| cannot_write(path, &e);
+    let real = fs::canonicalize(path).map_err(failed)?;
+    // a user's own file may be replaced by two processes at once: each has a part of its own
+    let mut part = real.clone().into_os_string();
+    part.push(format!(".{}.new", std::process::id()));
+    renamed_when_whole(part.as_ref(), &real, failed, |part| fs::write(part, bytes).map_err(failed))
 }
 
 /// Lets `write` write a file beside `path`, and gives it that name when it is whole: whoever looks sees the old file,
-/// the new one, or none, whenever the process ends.
+/// the new one, or none, whenever the process ends. The folder is made if there is none.
 ///
 /// # Errors
 /// `cannot-write`, or what `write` fails with; then the old file stands.
 pub fn written_whole<T>(path: &Path, write: impl FnOnce(&Path) -> Result<T, Failure>) -> Result<T, Failure> {
-    let cannot_write = |e: std::io::Error| {
+    let failed = |e: std::io::Error| {
         let advice = "check the folder, its permissions and the free space";
         Failure::failed("cannot-write", format!("cannot write {}: {e}; {advice}", path.display()))
     };
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
-    fs::create_dir_all(folder).map_err(cannot_write)?;
-    let part = folder.join(part_name(path));
-    let written = write(&part).and_then(|made| {
-        fs::rename(&part, path).map_err(cannot_write)?;
+    fs::create_dir_all(folder).map_err(failed)?;
+    renamed_when_whole(&folder.join(part_name(path)), path, failed, write)
+}
+
+/// Lets `write` write `part` and then calls that `path`, or takes it away: no other name is left behind.
+fn renamed_when_whole<T>(
+    part: &Path,
+    path: &Path,
+    failed: impl FnOnce(std::io::Error) -> Failure,
+    write: impl FnOnce(&Path) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let written = write(part).and_then(|made| {
+        fs::rename(part, path).map_err(failed)?;
         Ok(made)
     });
     if written.is_err() {
-        drop(fs::remove_file(&part)); // it may never have been begun
+        drop(fs::remove_file(part)); // it may never have been begun
     }
     written
 }
@@ -125,6 +136,26 @@ mod tests {
         assert_eq!(failed.unwrap_err().message, "the disk is full");
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(fs::read_dir(folder.join("below")).unwrap().count(), 1, "the half is gone");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_replaced_is_what_a_link_leads_to_and_no_other_file_is_left() {
+        let folder = std::env::temp_dir().join(format!("tracelight-replace-{}", std::process::id()));
+        let (real, link) = (folder.join("rig.toml"), folder.join("link.toml"));
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(&real, "old").unwrap();
+        std::os::unix::fs::symlink(&real, &link).unwrap();
+        replace(&link.to_string_lossy(), "new").unwrap();
+        assert_eq!(fs::read_to_string(&real).unwrap(), "new");
+        assert!(link.is_symlink());
+        // a folder takes no file's name: the rename fails
+        let failed = replace(&folder.to_string_lossy(), "new").unwrap_err();
+        assert!(failed.message.starts_with(&format!("cannot write {}: ", folder.display())), "{failed:?}");
+        let part = folder.with_file_name(format!("tracelight-replace-{0}.{0}.new", std::process::id()));
+        assert!(!part.exists(), "the part is gone");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "nothing else lies there");
         fs::remove_dir_all(folder).unwrap();
     }
 }
