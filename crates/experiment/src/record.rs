@@ -9,7 +9,7 @@ use std::fmt::Write;
 use tracelight_rig::{Actuation, Joint, Measurement, PanTilt, Setpoint, TICK_F64_S, Telemetry};
 use tracelight_task::Failure;
 
-use crate::table::{Log, Row};
+use crate::table::{self, Log, Names, Row};
 
 /// Most ticks of a record: half an hour.
 const MOST_TICKS: usize = 1_800_000;
@@ -39,8 +39,8 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(header: &csv::ByteRecord) -> Result<Self, String> {
-        let find = |name: &str| header.iter().position(|field| field.trim_ascii() == name.as_bytes());
+    fn of(names: &Names) -> Result<Self, String> {
+        let find = |name: &str| names.find(name);
         let must = |name: &str| {
             let what = ": no column {name}; a record has t_s, pan_count, tilt_count, pan_v, tilt_v, as trace.csv does";
             find(name).ok_or_else(|| what.replace("{name}", name))
@@ -64,15 +64,10 @@ impl Columns {
 }
 
 fn parse(bytes: &[u8], count_rad: f64) -> Result<Vec<Vec<Telemetry>>, String> {
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(bytes);
-    let header = reader.byte_headers().map_err(|e| format!(": {e}"))?.clone();
-    let columns = Columns::of(&header)?;
     let mut laps: Vec<Vec<Telemetry>> = Vec::new();
     let (mut lap, mut last_s, mut ticks) = (None, f64::NEG_INFINITY, 0);
-    let mut fields = csv::ByteRecord::new();
-    while reader.read_byte_record(&mut fields).map_err(|e| format!(": {e}"))? {
-        let line = fields.position().map_or(0, csv::Position::line);
-        let row = Row { fields: &fields, line };
+    table::parse(bytes, Columns::of, |columns, row| {
+        let line = row.line;
         let time_s = row.number(columns.time)?;
         let number = columns.lap.map(|c| row.text(c).to_owned());
         if laps.is_empty() || number != lap {
@@ -88,9 +83,10 @@ fn parse(bytes: &[u8], count_rad: f64) -> Result<Vec<Vec<Telemetry>>, String> {
         if ticks > MOST_TICKS {
             return Err(format!(":{line}: a record has at most {MOST_TICKS} rows; give a part of it"));
         }
-        let telemetry = telemetry(&columns, &row, count_rad)?;
+        let telemetry = telemetry(columns, row, count_rad)?;
         laps.last_mut().into_iter().for_each(|lap| lap.push(telemetry));
-    }
+        Ok(())
+    })?;
     Ok(laps)
 }
 

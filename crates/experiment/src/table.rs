@@ -60,6 +60,21 @@ pub(crate) fn parse<C>(
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(bytes);
     let names = Names(reader.byte_headers().map_err(|e| format!(": {e}"))?.clone());
     let columns = columns(&names)?;
+    each_row(reader, |row| each(&columns, row))
+}
+
+/// The same of a table that may have no names: they, or values, are its first row.
+pub(crate) fn parse_plain(
+    bytes: &[u8],
+    each: impl FnMut(&Row<'_>) -> Result<(), String>,
+) -> Result<(), String> {
+    each_row(csv::ReaderBuilder::new().flexible(true).has_headers(false).from_reader(bytes), each)
+}
+
+fn each_row(
+    mut reader: csv::Reader<&[u8]>,
+    mut each: impl FnMut(&Row<'_>) -> Result<(), String>,
+) -> Result<(), String> {
     let mut fields = csv::ByteRecord::new();
     let mut rows = 0;
     while reader.read_byte_record(&mut fields).map_err(|e| format!(": {e}"))? {
@@ -68,7 +83,7 @@ pub(crate) fn parse<C>(
         if rows > MOST_ROWS {
             return Err(format!(":{line}: a table has at most {MOST_ROWS} rows; give a part of it"));
         }
-        each(&columns, &Row { fields: &fields, line })?;
+        each(&Row { fields: &fields, line })?;
     }
     Ok(())
 }

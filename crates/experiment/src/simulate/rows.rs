@@ -4,7 +4,7 @@ use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, MotionArray};
 use tracelight_task::Failure;
 
-use crate::table::{Log, Row};
+use crate::table::{self, Log};
 
 /// Most rows.
 const MOST_ROWS: usize = 1_000_000;
@@ -59,25 +59,22 @@ pub(super) fn read(
 }
 
 fn parse(bytes: &[u8], between: Between, range_rad: PanTilt<(f64, f64)>) -> Result<MotionArray, String> {
-    let mut reader = csv::ReaderBuilder::new().flexible(true).has_headers(false).from_reader(bytes);
-    let mut fields = csv::ByteRecord::new();
     let mut columns = None;
     let mut rows: Vec<(f64, PanTilt<f64>)> = Vec::new();
-    while reader.read_byte_record(&mut fields).map_err(|e| format!(": {e}"))? {
-        let line = fields.position().map_or(0, csv::Position::line);
+    table::parse_plain(bytes, |row| {
+        let line = row.line;
         let columns = match &columns {
             Some(columns) => columns,
             None => {
-                let named = Columns::of(&fields)?;
+                let named = Columns::of(row.fields)?;
                 let has_names = named.is_some();
                 let known = columns.insert(named.unwrap_or(Columns::PLAIN));
                 if has_names {
-                    continue;
+                    return Ok(());
                 }
                 known
             }
         };
-        let row = Row { fields: &fields, line };
         let time_s = row.number(columns.time)?;
         let mut angle_rad = PanTilt::default();
         for joint in Joint::BOTH {
@@ -103,7 +100,8 @@ fn parse(bytes: &[u8], between: Between, range_rad: PanTilt<(f64, f64)>) -> Resu
             ));
         }
         rows.push((time_s, angle_rad));
-    }
+        Ok(())
+    })?;
     let array = MotionArray::new(&rows, between).map_err(|e| format!(": {e}"))?;
     stays_within(&array, range_rad).map(|()| array)
 }
