@@ -2,7 +2,8 @@
 
 use tracelight_image::Plane;
 
-use super::{APART_PENS, ENDS, Sketch, is_beside, places, ways};
+use super::place::{is_beside, places, ways};
+use super::sketch::{APART_PENS, ENDS, Sketch};
 use crate::near::Near;
 use crate::row::Row;
 

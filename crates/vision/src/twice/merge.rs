@@ -4,7 +4,8 @@ use tracelight_image::Plane;
 use tracelight_stroke::{Point, Vec2, polyline_length};
 
 use super::pencil::strength;
-use super::{Run, ways};
+use super::place::ways;
+use super::sketch::Run;
 use crate::row::Row;
 
 impl Run {

@@ -4,7 +4,7 @@ use tracelight_image::Plane;
 use tracelight_image::median::median;
 use tracelight_stroke::polyline_length;
 
-use super::{places, way_at};
+use super::place::{places, way_at};
 use crate::row::Row;
 
 /// Along a pencil's line its middle varies by more than this share of its usual darkness, and so does all that a cut across it has; from
