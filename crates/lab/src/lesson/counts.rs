@@ -2,8 +2,10 @@ use tracelight_maths::powi;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, MotionArray, ObserverName, RigConfig, follow_array};
 
+use super::check::Check;
+use super::experiment::{Experiment, Quantity};
+use super::question::{Ask, Lesson};
 use super::rigs::{driven, jump, pid};
-use super::{Ask, Check, Experiment, Lesson, Quantity};
 
 /// Speed from counts: too short a look is noise, too long a one is late.
 pub(super) const LESSON: Lesson = Lesson {

@@ -2,8 +2,10 @@ use tracelight_maths::cos;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, Feedforward, HandTuned, MotionArray, RigConfig, follow_array};
 
+use super::check::Check;
+use super::experiment::{Experiment, Quantity};
+use super::question::{Ask, Lesson};
 use super::rigs::{driven, pid};
-use super::{Ask, Check, Experiment, Lesson, Quantity};
 
 /// What is known of a head need not be found out by its errors.
 pub(super) const LESSON: Lesson = Lesson {

@@ -1,8 +1,10 @@
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{RigConfig, StepReference, step_response};
 
+use super::check::Check;
+use super::experiment::{Experiment, Quantity};
+use super::question::{Ask, Lesson};
 use super::rigs::{driven, pid};
-use super::{Ask, Check, Experiment, Lesson, Quantity};
 
 /// A joint that sticks, and an integral that waits for it.
 pub(super) const LESSON: Lesson = Lesson {

@@ -1,8 +1,10 @@
 use tracelight_rig::Joint;
 use tracelight_sim::{ObserverName, RigConfig};
 
+use super::check::Check;
+use super::experiment::{Experiment, Quantity};
+use super::question::Lesson;
 use super::rigs::{KP, driven, jump, linear_jump, pid};
-use super::{Check, Experiment, Lesson, Quantity};
 
 /// How far a spring with too little of a damper overshoots.
 pub(super) const LESSON: Lesson = Lesson {

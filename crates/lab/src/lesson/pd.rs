@@ -1,8 +1,10 @@
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 
-use super::rigs::{KD, KP, driven, jump, mm, pid};
-use super::{Check, Experiment, Lesson, Quantity};
+use super::check::Check;
+use super::experiment::{Experiment, Quantity, mm};
+use super::question::Lesson;
+use super::rigs::{KD, KP, driven, jump, pid};
 
 /// A spring and a damper, for small jumps and large ones.
 pub(super) const LESSON: Lesson = Lesson {

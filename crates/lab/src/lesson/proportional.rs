@@ -3,8 +3,10 @@ use std::f64::consts::PI;
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{RigConfig, StepReference, step_response};
 
+use super::check::Check;
+use super::experiment::{Experiment, Quantity};
+use super::question::{Ask, Lesson};
 use super::rigs::{KP, driven, jump, pid};
-use super::{Ask, Check, Experiment, Lesson, Quantity};
 
 /// A proportional gain is a spring.
 pub(super) const LESSON: Lesson = Lesson {

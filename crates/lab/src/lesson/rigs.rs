@@ -6,15 +6,8 @@ use tracelight_sim::{
     step_response,
 };
 
-use super::{Ask, Experiment};
-
-/// Distance of the target in mm that angles are shown at: 3 ft.
-const DISTANCE_MM: f64 = 914.4;
-
-/// What an angle is on a target 3 ft away, mm.
-pub(super) fn mm(angle_rad: f64) -> f64 {
-    DISTANCE_MM * angle_rad
-}
+use super::experiment::Experiment;
+use super::question::Ask;
 
 pub(super) const KP: Ask =
     Ask { name: "kp", unit: "N m/rad", bounds: (0.0, 1e4), meaning: "torque per angle: the spring" };

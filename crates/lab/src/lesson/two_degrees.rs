@@ -1,8 +1,10 @@
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{HandTuned, Push, RigConfig, push_response};
 
-use super::rigs::{KD, KI, KP, driven, jump, mm, pid};
-use super::{Ask, Check, Experiment, Lesson, Quantity};
+use super::check::Check;
+use super::experiment::{Experiment, Quantity, mm};
+use super::question::{Ask, Lesson};
+use super::rigs::{KD, KI, KP, driven, jump, pid};
 
 /// What answers a push need not answer a jump of the setpoint.
 pub(super) const LESSON: Lesson = Lesson {

@@ -1,8 +1,10 @@
 use tracelight_rig::Joint;
 use tracelight_sim::{HandTuned, RigConfig};
 
-use super::rigs::{KD, KI, KP, driven, jump, mm, pid};
-use super::{Ask, Check, Experiment, Lesson, Quantity};
+use super::check::Check;
+use super::experiment::{Experiment, Quantity, mm};
+use super::question::{Ask, Lesson};
+use super::rigs::{KD, KI, KP, driven, jump, pid};
 
 /// An integral takes away what is left, and winds up.
 pub(super) const LESSON: Lesson = Lesson {
