@@ -11,8 +11,8 @@ use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::bar::Bar;
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::eyes::ImageSize;
-use crate::cli::{Answer, Voice};
 
 /// Look at what is plugged in: cameras, what they can, how fast and how late their images come
 #[derive(Args, Debug)]

@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+pub(crate) mod answer;
 mod calibrate;
 pub(crate) mod choosing;
 mod completions;
@@ -21,9 +22,10 @@ pub(crate) mod tracing;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Args, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 use tracelight_task::{Failure, Status, Stop};
 
+use self::answer::{Answer, Voice, print};
 use crate::interrupt;
 
 /// Give it a picture: a pan/tilt laser head draws it on the wall, to scale.
@@ -52,36 +54,6 @@ enum Command {
     Completions(completions::CompletionsArgs),
 }
 
-/// What every command has.
-#[derive(Args, Clone, Copy, Debug, Default)]
-pub(crate) struct Voice {
-    /// One JSON object on standard output, nothing else there
-    #[arg(long, global = true)]
-    pub(crate) json: bool,
-    /// No progress and no remarks on standard error
-    #[arg(long, global = true)]
-    pub(crate) quiet: bool,
-}
-
-/// What a command prints on standard output when it succeeds, for people and for scripts.
-pub(crate) struct Answer {
-    pub(crate) text: String,
-    pub(crate) json: String,
-    /// The command did its work, and what it worked on failed.
-    pub(crate) failure: Option<Failure>,
-}
-
-impl Answer {
-    pub(crate) fn new(text: impl Into<String>, json: impl Into<String>) -> Self {
-        Self { text: text.into(), json: json.into(), failure: None }
-    }
-
-    /// The one that will be printed; the other is not made.
-    pub(crate) fn either(voice: Voice, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Self {
-        if voice.json { Self::new("", json()) } else { Self::new(text(), "") }
-    }
-}
-
 /// Runs the program on the process's arguments.
 pub(crate) fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -98,7 +70,7 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Strokes(args) => (args.voice, strokes::run(args, stop)),
         Command::Plan(args) => (args.voice, plan::run(args, stop)),
         Command::Calibrate(args) => (args.voice(), calibrate::run(args, stop)),
-        Command::Lab(args) => (args.voice(), lab::run(args, stop)),
+        Command::Lab(args) => (args.voice(), lab::run(args, answer_to, stop)),
         Command::Doctor(args) => (args.voice, doctor::run(args, stop)),
         Command::Rigs(args) => (args.voice, rigs::run(args)),
         Command::Explain(args) => (args.voice, explain::run(args)),
@@ -107,7 +79,7 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
 }
 
 /// Does what a command line says, in this process, and returns what would be printed.
-pub(crate) fn answer(arguments: &[&str], stop: &Stop) -> Result<Answer, Failure> {
+fn answer_to(arguments: &[&str], stop: &Stop) -> Result<Answer, Failure> {
     let all = std::iter::once("tracelight").chain(arguments.iter().copied());
     let cli = Cli::try_parse_from(all).map_err(|e| Failure::failed("internal", e))?;
     let answer = perform(&cli.command, stop).1?;
@@ -164,19 +136,4 @@ fn refuse(error: &clap::Error) -> ExitCode {
     }
     eprint!("{}", error.render());
     ExitCode::from(Status::Usage.code())
-}
-
-/// To standard output; a reader that has left is no error.
-fn print(text: &str) {
-    use std::io::Write;
-    let mut out = std::io::stdout().lock();
-    if !text.is_empty() {
-        drop(writeln!(out, "{text}"));
-    }
-}
-
-/// A piece of what is printed, before the rest is there; a reader that has left is no error.
-pub(crate) fn print_piece(text: &str) {
-    use std::io::Write;
-    drop(write!(std::io::stdout().lock(), "{text}"));
 }

@@ -10,10 +10,10 @@ use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::{LitSpeed, Plan};
 
 use crate::bar::Bar;
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// Order a drawing and time it within what the motors can do

@@ -6,7 +6,7 @@ use clap::Args;
 use tracelight_camera::Source;
 use tracelight_task::Failure;
 
-use crate::cli::Voice;
+use crate::cli::answer::Voice;
 use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::{EyeArgs, FollowArgs, SimulatedEyeName};
 use crate::cli::laws::LawArgs;

@@ -3,7 +3,7 @@ use tracelight_rigfile as rigfile;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
 /// List the rigs that come with the program, or print one as a file

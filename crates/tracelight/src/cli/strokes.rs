@@ -15,9 +15,9 @@ use tracelight_task::{Failure, Progress as _, Stop, Task, counted};
 use tracelight_vision::Stages;
 
 use crate::bar::Bar;
+use crate::cli::answer::{Answer, Voice, print_piece};
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
-use crate::cli::{Answer, Voice, print_piece};
 use crate::named;
 
 /// Find the strokes of pictures, without a rig

@@ -2,7 +2,7 @@ use tracelight_eye::figures::EyeFigures;
 use tracelight_report::Summary;
 use tracelight_task::{Failure, Stop, counted};
 
-use crate::cli::Answer;
+use crate::cli::answer::Answer;
 use crate::cli::request::TraceArgs;
 use crate::job::{self, Outcome};
 

@@ -14,10 +14,10 @@ use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::bar::Bar;
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
-use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// Where the head stands and points, from dots that it draws and a camera sees

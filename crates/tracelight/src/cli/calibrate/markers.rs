@@ -19,9 +19,9 @@ use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::Length;
 
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::eyes::{ImageSize, SimulatedEyeName};
 use crate::cli::placing::positive_length;
-use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// The camera in front of the wall, from an image of printed markers on it: lens, pose, scale

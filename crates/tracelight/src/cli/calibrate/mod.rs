@@ -6,7 +6,7 @@ mod sheet;
 use clap::{Args, Subcommand};
 use tracelight_task::{Failure, Stop};
 
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// Find out what a camera's pixels mean on the target
 #[derive(Args, Debug)]

@@ -3,8 +3,8 @@ use tracelight_picture::Source;
 use tracelight_task::Failure;
 use tracelight_units::{Length, Offset};
 
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::placing::positive_length;
-use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// Scale from two pictures of a ruler with two marks: once upright, once level

@@ -6,7 +6,7 @@ use tracelight_files as files;
 use tracelight_pipeline::Paper;
 use tracelight_task::Failure;
 
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// Pages of printed markers, to be stuck on the wall where a camera sees them
 #[derive(Args, Debug)]

@@ -7,10 +7,11 @@ use tracelight_experiment::amplifier::Request;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{CURRENTS, TORQUE_CONSTANTS};
 
+use super::bounds::{above_zero, voltage};
 use super::command::{self, LabCommand, logs};
+use super::rig_out;
 use super::step::Axis;
-use super::{above_zero, rig_out, voltage};
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
 /// Identify what an amplifier makes of a volt, and what the turning motor's own voltage takes away

@@ -5,10 +5,10 @@ use tracelight_experiment::backlash::Request;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{LENGTHS, Length};
 
-use super::above_zero;
+use super::bounds::above_zero;
 use super::command::{self, LabCommand, logs};
 use super::step::Axis;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
 /// Identify the play between encoder and beam, and whether the encoder slips, from where the spot rests on a ruler

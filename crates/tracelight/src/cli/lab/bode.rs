@@ -4,10 +4,10 @@ use tracelight_experiment::frequencies::Frequencies;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::ANGULAR_SPEEDS;
 
-use super::above_zero;
+use super::bounds::above_zero;
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::systems::SystemArgs;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// Amplification and phase over frequency, gain, phase, delay and modulus margins
 #[derive(Args, Debug)]

@@ -9,7 +9,7 @@ use tracelight_files as files;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::bar::Bar;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// A command of the bench.
 pub(super) trait LabCommand {

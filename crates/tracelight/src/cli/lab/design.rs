@@ -9,7 +9,7 @@ use super::command::{self, LabCommand, OutFile, out_file};
 use super::poles::{Poles, poles};
 use super::step::{Axis, step};
 use super::systems::OneSystemArgs;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
 /// A controller from wishes, and the loop it makes: margins, step, poles

@@ -9,7 +9,7 @@ use tracelight_units::{ANGULAR_SPEEDS, parse};
 
 use super::command::{self, LabCommand, logs};
 use super::step::Axis;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
 /// Identify what an encoder reads wrong: where its four kinds of edges lie, a disc beside its axis, counts it lost

@@ -6,10 +6,10 @@ use tracelight_files as files;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{ANGULAR_SPEEDS, TIMES};
 
+use super::bounds::{above_zero, voltage};
 use super::command::{self, LabCommand, OutFile, log, out_file};
 use super::step::Axis;
-use super::{above_zero, voltage};
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
 /// Measure a joint's frequency response with many sines at once, its coherence, and hold it against the model

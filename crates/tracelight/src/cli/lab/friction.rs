@@ -9,7 +9,7 @@ use tracelight_task::{Failure, Stop};
 use super::command::{self, LabCommand};
 use super::rig_out;
 use super::trials::{TrialArgs, leave_log};
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// Identify friction as the 2006 report did, by voltages held, say what is wrong with that, and identify it from the whole curves
 #[derive(Args, Debug)]

@@ -8,8 +8,8 @@ use tracelight_task::{Failure, Stop};
 
 use super::command::{self, LabCommand, logs};
 use super::rig_out;
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::LawArgs;
-use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// Identify what the head is made of: inertia, friction, weight, amplifier, where its encoders' edges lie

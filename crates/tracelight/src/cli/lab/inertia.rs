@@ -9,7 +9,7 @@ use tracelight_task::{Failure, Stop};
 use super::command::{self, LabCommand};
 use super::rig_out;
 use super::trials::{TrialArgs, leave_log};
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// Identify what each joint's inertia is, from how fast voltages speed it up
 #[derive(Args, Debug)]

@@ -7,7 +7,7 @@ use tracelight_task::{Failure, Stop};
 
 use super::by_hand::{number, settings};
 use super::command::{self, LabCommand, OutFile, OutKind, out_file};
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// Learn control on the simulated head: eight lessons, each a text, a command to try, a plot and a question that the simulator grades
 #[derive(Args, Debug)]

@@ -4,7 +4,7 @@ use tracelight_task::{Failure, Stop};
 
 use super::command::{self, LabCommand};
 use super::head::HeadArgs;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// The head near a pose as a linear system: state space, transfer functions G11 and G22 from torque to angle, poles
 #[derive(Args, Debug)]

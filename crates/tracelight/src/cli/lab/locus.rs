@@ -6,7 +6,7 @@ use tracelight_task::{Failure, Stop};
 
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::systems::SystemArgs;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// Where the poles of the closed loop go as the open loop's gain rises; which gain makes it as damped as asked
 #[derive(Args, Debug)]

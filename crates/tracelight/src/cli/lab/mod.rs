@@ -3,6 +3,7 @@
 mod amplifier;
 mod backlash;
 mod bode;
+mod bounds;
 mod by_hand;
 mod command;
 mod design;
@@ -35,10 +36,9 @@ mod velocity;
 
 use clap::{Args, Subcommand};
 use tracelight_task::{Failure, Stop};
-use tracelight_units::{Unit, VOLTAGES, parse};
 
 use self::command::LabCommand;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Performs, Voice};
 
 /// The control engineer's bench: profiles, moves, steps, friction and all else a head is made of, linear models, Bode, Nyquist and locus, controllers designed, many heads at once
 #[derive(Args, Debug)]
@@ -79,13 +79,23 @@ enum LabAction {
     MonteCarlo(montecarlo::MonteCarloArgs),
 }
 
+/// What is asked of the bench.
+enum Asked<'a> {
+    One(&'a dyn LabCommand),
+    /// The book, which is made of other commands' answers.
+    Book(&'a reproduce::ReproduceArgs),
+}
+
 impl LabArgs {
     pub(crate) fn voice(&self) -> Voice {
-        self.command().voice()
+        match self.asked() {
+            Asked::One(command) => command.voice(),
+            Asked::Book(book) => book.voice,
+        }
     }
 
-    fn command(&self) -> &dyn LabCommand {
-        match &self.action {
+    fn asked(&self) -> Asked<'_> {
+        Asked::One(match &self.action {
             LabAction::Profile(args) => args,
             LabAction::Move(args) => args,
             LabAction::Step(args) => args,
@@ -109,37 +119,17 @@ impl LabArgs {
             LabAction::Design(args) => args,
             LabAction::Tune(args) => args.as_ref(),
             LabAction::Relay(args) => args,
-            LabAction::Reproduce(args) => args,
+            LabAction::Reproduce(args) => return Asked::Book(args),
             LabAction::Lesson(args) => args,
             LabAction::MonteCarlo(args) => args,
-        }
+        })
     }
 }
 
-pub(crate) fn run(args: &LabArgs, stop: &Stop) -> Result<Answer, Failure> {
-    args.command().run(stop)
-}
-
-/// A value with its unit, in SI, that is more than none.
-fn above_zero(text: &str, units: &'static [Unit]) -> Result<f64, String> {
-    let value = parse(text, units).map_err(|e| e.to_string())?;
-    if value > 0.0 { Ok(value) } else { Err(format!("{text} is not above zero")) }
-}
-
-fn voltage(text: &str) -> Result<f64, String> {
-    above_zero(text, VOLTAGES)
-}
-
-/// What limits of moves may be, in SI: more is no head's, and less takes for ever.
-const LEAST: f64 = 1e-6;
-const MOST: f64 = 1e6;
-
-/// `value` if it is within reason.
-fn within<T>(text: &str, value: T, number: f64, units: &[Unit]) -> Result<T, String> {
-    let unit = units.first().map_or("", |unit| unit.0);
-    if (LEAST..=MOST).contains(&number) {
-        Ok(value)
-    } else {
-        Err(format!("{text} is not between {LEAST} and {MOST} {unit}"))
+/// `perform` does what a command line says: the bench knows only its own.
+pub(crate) fn run(args: &LabArgs, perform: Performs, stop: &Stop) -> Result<Answer, Failure> {
+    match args.asked() {
+        Asked::One(command) => command.run(stop),
+        Asked::Book(book) => reproduce::run(book, perform, stop),
     }
 }

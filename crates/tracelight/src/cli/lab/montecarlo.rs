@@ -4,7 +4,7 @@ use tracelight_task::{Failure, Stop};
 
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::shape::ShapeArgs;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// Draw the same on many heads that differ: how exact it is on the middle one, on 95 of 100, on the worst
 #[derive(Args, Debug)]

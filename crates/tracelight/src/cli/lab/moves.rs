@@ -13,11 +13,11 @@ use tracelight_units::{
     ACCELERATIONS, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, Length, Offset, Rate, SPEEDS, Unit,
 };
 
+use super::bounds::within;
 use super::command::{self, LabCommand, OutFile, out_file};
-use super::within;
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::placing::positive_length;
 use crate::cli::shapes::{profile, ramps};
-use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// Follow a line or an arc of the target from rest to rest: every profile as asked, and as the motors can

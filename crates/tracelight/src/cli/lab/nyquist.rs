@@ -4,7 +4,7 @@ use tracelight_task::{Failure, Stop};
 
 use super::bode::FrequencyArgs;
 use super::command::{self, LabCommand};
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// The open loop's values over all frequencies in the complex plane, how often they turn round −1, and what is left of stability
 #[derive(Args, Debug)]

@@ -7,10 +7,10 @@ use tracelight_units::{
     ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_SPEEDS, Angle, AngularAcceleration, AngularSpeed,
 };
 
+use super::bounds::within;
 use super::command::{self, LabCommand, OutFile, out_file};
-use super::within;
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::shapes::{profile, ramps};
-use crate::cli::{Answer, Voice};
 
 /// Move one joint from rest to rest, motors left out: durations and peaks of every profile, and plots
 #[derive(Args, Debug)]
@@ -25,6 +25,7 @@ pub(crate) struct ProfileArgs {
     /// Highest speed
     #[arg(long, value_name = "SPEED", default_value = "24rad/s", allow_hyphen_values = true, value_parser = speed)]
     vmax: AngularSpeed,
+    // an angle's alone: `lab move` takes the spot's too, and a drawing's `--amax` is a wish that may be missing
     /// Highest acceleration
     #[arg(long, value_name = "ACCELERATION", default_value = "100rad/s2", allow_hyphen_values = true, value_parser = acceleration)]
     amax: AngularAcceleration,

@@ -7,11 +7,12 @@ use tracelight_task::{Failure, Stop};
 use tracelight_units::Angle;
 
 use super::bode::frequency;
+use super::bounds::voltage;
 use super::command::{self, LabCommand, OutFile, out_file};
+use super::rig_out;
 use super::step::{Axis, step};
-use super::{rig_out, voltage};
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::observer;
-use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// Let a relay swing a joint, and tune a PID from how it swings: no model needed

@@ -5,9 +5,9 @@ use tracelight_book::{Book, CommandLine, Done};
 use tracelight_files as files;
 use tracelight_task::{Failure, Stop, Task};
 
-use super::command::{LabCommand, make_folder};
+use super::command::make_folder;
 use crate::bar::Bar;
-use crate::cli::{Answer, Voice, answer};
+use crate::cli::answer::{Answer, Performs, Voice};
 
 /// Make every figure and table of the 2006 report again that can be: one page, its numbers beside ours, and what explains the difference
 #[derive(Args, Debug)]
@@ -19,37 +19,32 @@ pub(crate) struct ReproduceArgs {
     #[arg(short, long, value_name = "DIR", default_value = "book")]
     out: PathBuf,
     #[command(flatten)]
-    voice: Voice,
+    pub(super) voice: Voice,
 }
 
-impl LabCommand for ReproduceArgs {
-    fn voice(&self) -> Voice {
-        self.voice
+/// Makes the book of what `perform` answers.
+pub(super) fn run(args: &ReproduceArgs, perform: Performs, stop: &Stop) -> Result<Answer, Failure> {
+    let book = Book::new(&args.out);
+    book.folders().try_for_each(|folder| make_folder(&folder, "-o"))?;
+    for (path, bytes) in book.given()? {
+        files::write(&path.display().to_string(), bytes)?;
     }
-
-    fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
-        let book = Book::new(&self.out);
-        book.folders().try_for_each(|folder| make_folder(&folder, "-o"))?;
-        for (path, bytes) in book.given()? {
-            files::write(&path.display().to_string(), bytes)?;
-        }
-        let bar = Bar::new(self.voice.quiet);
-        let made = book.make(Task { progress: &bar, stop }, |line| perform(line, stop))?;
-        let index = self.out.join("index.html").display().to_string();
-        files::write(&index, &made.page)?;
-        Ok(Answer::either(self.voice, || made.text(&index), || made.json(&index)))
-    }
+    let bar = Bar::new(args.voice.quiet);
+    let made = book.make(Task { progress: &bar, stop }, |line| done(line, perform, stop))?;
+    let index = args.out.join("index.html").display().to_string();
+    files::write(&index, &made.page)?;
+    Ok(Answer::either(args.voice, || made.text(&index), || made.json(&index)))
 }
 
 /// Runs a command and reads its figure.
-fn perform(line: CommandLine<'_>, stop: &Stop) -> Result<Done, Failure> {
+fn done(line: CommandLine<'_>, perform: Performs, stop: &Stop) -> Result<Done, Failure> {
     let with = ["--json", "--quiet"];
     let arguments: Vec<&str> = line.arguments.iter().map(String::as_str).chain(with).collect();
     let failed = |e: Failure| Failure {
         message: format!("tracelight {}: {}", line.arguments.join(" "), e.message),
         ..e
     };
-    let answer = answer(&arguments, stop).map_err(failed)?;
+    let answer = perform(&arguments, stop).map_err(failed)?;
     let value = serde_json::from_str(&answer.json).unwrap_or_default();
     let figure = line.figure.map(read).transpose()?;
     Ok((value, figure))

@@ -3,10 +3,10 @@ use tracelight_experiment::response::{self, Request};
 use tracelight_task::{Failure, Stop};
 use tracelight_units::TIMES;
 
-use super::above_zero;
+use super::bounds::above_zero;
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::systems::SystemArgs;
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 
 /// What transfer functions answer to a step, an impulse or a ramp: overshoot, rise, settling
 #[derive(Args, Debug)]

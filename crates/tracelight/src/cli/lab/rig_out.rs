@@ -8,7 +8,7 @@ use tracelight_files as files;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
-use crate::cli::{Answer, Voice};
+use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
 /// Refuses to write into what comes with the program.

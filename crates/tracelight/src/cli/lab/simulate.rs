@@ -5,13 +5,13 @@ use tracelight_sim::{Between, LawName, ObserverName};
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{TIMES, TORQUES};
 
-use super::above_zero;
+use super::bounds::above_zero;
 use super::by_hand::ByHandArgs;
 use super::command::{self, LabCommand, OutFile, log, out_file};
 use super::head::Set;
 use super::shape::switch;
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::{law, observer};
-use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// Run an array of times and angles through the nonlinear loop: desired, actual and error, as the 2006 report's simulation

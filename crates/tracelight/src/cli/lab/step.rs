@@ -7,8 +7,8 @@ use tracelight_units::Angle;
 
 use super::by_hand::ByHandArgs;
 use super::command::{self, LabCommand, OutFile, out_file};
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::{law, observer};
-use crate::cli::{Answer, Voice};
 use crate::named;
 
 /// Send one joint from rest at zero to an angle: overshoot, settling, what stays, on the head as it is and linearized

@@ -8,9 +8,9 @@ use tracelight_files as files;
 use tracelight_task::Failure;
 use tracelight_units::TIMES;
 
+use super::bounds::{above_zero, voltage};
 use super::command::{logs, make_folder};
 use super::step::Axis;
-use super::{above_zero, voltage};
 use crate::named;
 
 /// What joints are put through.

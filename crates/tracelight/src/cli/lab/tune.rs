@@ -6,11 +6,12 @@ use tracelight_sim::LawName;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{ANGULAR_SPEEDS, TIMES};
 
+use super::bounds::above_zero;
 use super::command::{self, LabCommand};
+use super::rig_out;
 use super::shape::ShapeArgs;
-use super::{above_zero, rig_out};
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::law;
-use crate::cli::{Answer, Voice};
 
 /// Pick the control law of a rig and how fast its loops are: the smallest error on heads that differ, of all that bear what is asked
 #[derive(Args, Debug)]

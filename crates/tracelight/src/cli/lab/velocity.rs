@@ -8,8 +8,8 @@ use tracelight_units::{Speed, TIMES};
 
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::shape::ShapeArgs;
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::positive_speed;
-use crate::cli::{Answer, Voice};
 
 /// Ask of each way to tell velocity and acceleration from counts how far off it is, by interval and speed
 #[derive(Args, Debug)]
