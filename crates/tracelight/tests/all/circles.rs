@@ -1,6 +1,8 @@
 //! Files of one crate import each other in no circle.
 //!
-//! An import is followed to the file that defines the name, through whatever re-exports it; tests do not count.
+//! An import is followed to the file that defines the name, through whatever hands it on; a path that is written out where it
+//! is used (`crate::one::f`, `super::f`, `child::f`) counts as one; tests do not. What a file names of its own children by
+//! `pub use` and then uses itself is not followed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -43,34 +45,15 @@ impl Files {
 
     /// What a file imports from its own crate.
     fn imports(&self, module: &Module) -> Vec<Import> {
+        let (uses, code) = parted(&self.0[module]);
         let mut found = Vec::new();
-        let text = &self.0[module];
-        for (start, _) in text.match_indices("use ") {
-            let before = text[..start].rsplit('\n').next().unwrap_or_default().trim();
-            if !["", "pub", "pub(crate)", "pub(super)"].contains(&before) {
-                continue;
-            }
-            let tree = text[start + 4..].split(';').next().unwrap_or_default();
-            let tree: String = tree.split_whitespace().collect::<Vec<_>>().join(" ");
-            let paths = expanded(&tree);
-            let own =
-                paths.into_iter().filter_map(|(path, name)| Some((self.absolute(module, &path)?, name)));
-            found.extend(own.map(|(path, name)| Import { path, name, is_export: !before.is_empty() }));
+        for (is_export, tree) in uses {
+            let own = expanded(&tree).into_iter();
+            let own = own.filter_map(|(path, name)| Some((self.absolute(module, &path)?, name)));
+            found.extend(own.map(|(path, name)| Import { path, name, is_export }));
         }
-        // paths that are written out where they are used
-        for (start, _) in text.match_indices("crate::") {
-            let is_import =
-                text[..start].rsplit(['\n', ';']).next().is_some_and(|line| line.contains("use "));
-            let is_whole = !text[..start].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '$');
-            if !is_import && is_whole {
-                let end = text[start..].find(|c: char| !(c.is_alphanumeric() || "_:".contains(c)));
-                let path = text[start..end.map_or(text.len(), |end| start + end)].trim_end_matches(':');
-                let path: Vec<&str> = path.split("::").collect();
-                if let Some(path) = self.absolute(module, &path) {
-                    found.push(Import { path, name: String::new(), is_export: false });
-                }
-            }
-        }
+        let own = written_out(&code).into_iter().filter_map(|path| self.absolute(module, &path));
+        found.extend(own.map(|path| Import { path, name: String::new(), is_export: false }));
         found
     }
 
@@ -108,9 +91,10 @@ impl Files {
             if !seen.insert(path.clone()) || length == path.len() {
                 return module;
             }
-            let exports = self.imports(&module).into_iter().filter(|import| import.is_export);
-            match exports.into_iter().find(|export| export.name == path[length]) {
-                Some(export) => path = export.path.into_iter().chain(path[length + 1..].to_vec()).collect(),
+            // what a file imports for itself it hands on to the files below it
+            let found = self.imports(&module).into_iter().find(|import| import.name == path[length]);
+            match found {
+                Some(import) => path = import.path.into_iter().chain(path[length + 1..].to_vec()).collect(),
                 None => return module,
             }
         }
@@ -153,6 +137,33 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path());
     let of = |path: PathBuf| if path.is_dir() { rust_files(&path) } else { vec![path] };
     entries.flat_map(of).filter(|path| path.extension().is_some_and(|e| e == "rs")).collect()
+}
+
+/// The trees of a file's `use`s, each with whether it passes on what it names, and the code without them.
+fn parted(text: &str) -> (Vec<(bool, String)>, String) {
+    let (mut uses, mut code, mut rest) = (Vec::new(), String::new(), text);
+    while let Some(start) = rest.find("use ") {
+        let (before, tree) = (&rest[..start], &rest[start + 4..]);
+        let line = before.rsplit('\n').next().unwrap_or_default().trim();
+        code.push_str(before);
+        rest = tree;
+        if ["", "pub", "pub(crate)", "pub(super)"].contains(&line) {
+            let end = tree.find(';').unwrap_or(tree.len());
+            let words: Vec<&str> = tree[..end].split_whitespace().collect();
+            uses.push((!line.is_empty(), words.join(" ")));
+            rest = &tree[end..];
+        }
+    }
+    (uses, code + rest)
+}
+
+/// The paths of more than one part that stand in code, such as `crate::one::One`, `super::f` and `child::f`.
+fn written_out(code: &str) -> Vec<Vec<&str>> {
+    let in_path = |c: char| c.is_alphanumeric() || "_:$".contains(c);
+    // what stands behind a type's `:` is a path of its own, what begins with `::` leads out
+    let words = code.split(|c: char| !in_path(c)).map(|word| word.trim_end_matches(':'));
+    let paths = words.map(|word| word.split("::").collect::<Vec<_>>());
+    paths.filter(|parts| parts.len() > 1 && !parts[0].is_empty()).collect()
 }
 
 /// The paths of a `use`, and the names they get.
@@ -212,6 +223,12 @@ fn crates() -> Vec<(String, PathBuf)> {
     all.into_iter().map(named).filter(|(_, source)| source.is_dir()).collect()
 }
 
+/// Circles that still stand; who cuts one takes it out here.
+const LEFT: [&str; 1] = [
+    // a `Homing` and what it is moved by: what both parts know belongs into a file below them
+    "eye: homing homing::places homing::travel",
+];
+
 #[test]
 fn files_import_each_other_in_no_circle() {
     let mut found = BTreeSet::new();
@@ -220,7 +237,11 @@ fn files_import_each_other_in_no_circle() {
         assert!(files.0.len() > 1 || name == "units", "{name} has no files");
         found.extend(files.circles().into_iter().map(|circle| format!("{name}: {}", circle.join(" "))));
     }
-    assert!(found.is_empty(), "import from where a name is defined, or move it down: {found:#?}");
+    let left = LEFT.map(str::to_owned).into();
+    let new: Vec<_> = found.difference(&left).collect();
+    assert!(new.is_empty(), "import from where a name is defined, or move it down: {new:#?}");
+    let cut: Vec<_> = left.difference(&found).collect();
+    assert!(cut.is_empty(), "these are cut: take them out of `LEFT`: {cut:#?}");
 }
 
 fn circles(files: &[(&str, &str)]) -> Vec<Vec<String>> {
@@ -253,6 +274,29 @@ fn a_circle_is_found_however_its_imports_are_written() {
 }
 
 #[test]
+fn a_circle_is_found_between_a_file_and_the_one_below_it() {
+    for (parent, child) in [
+        ("fn f() { child::g(); }", "use super::f;"),
+        ("fn f() { self::child::g(); }", "fn g() { super::f(); }"),
+        ("fn f() -> Vec<child::Of> { Vec::new() }", "fn g() { crate::parent::f(); }"),
+        ("use child::g;", "fn g(a: &super::A) {}"),
+        ("const F: fn() = child::g;", "use crate::parent::{self, A};"),
+        // through the file beside it
+        ("fn f() { child::g(); }", "use super::beside::h;"),
+    ] {
+        let files = [
+            ("", "mod parent;"),
+            ("parent", &format!("mod beside;\nmod child;\n{parent}")),
+            ("parent::child", child),
+            ("parent::beside", "fn h() { super::f(); }"),
+        ];
+        let found = circles(&files);
+        assert!(found.len() == 1 && found[0][..1] == ["parent"], "{parent} {child}: {found:?}");
+        assert!(found[0].contains(&"parent::child".to_owned()), "{parent} {child}: {found:?}");
+    }
+}
+
+#[test]
 fn what_leads_one_way_is_no_circle() {
     let root = ("", "mod one;\nmod two;\npub use one::One;\nuse two::Two;");
     let one = (
@@ -261,4 +305,21 @@ fn what_leads_one_way_is_no_circle() {
     );
     let two = ("two", "// use crate::one::One;\npub struct Two;");
     assert!(circles(&[root, one, two]).is_empty());
+}
+
+#[test]
+fn a_file_and_what_lies_below_it_are_no_circle_where_only_one_knows_the_other() {
+    for (parent, child) in [
+        // what the file is given, it hands on
+        ("use below::A;\nfn f() { child::g(); }", "use super::A;"),
+        ("fn f() { child::g(); }", "use super::below::A;\nfn g(a: &A) -> child::Other {}"),
+        // another crate's, a macro's, a word's end
+        ("fn f() { ::child::g(); grandchild::g(); $child::g(); other::child::g(); }", "use super::f;"),
+        // only declared
+        ("mod child;", "use super::f;"),
+    ] {
+        let files =
+            [("", "mod parent;"), ("parent", parent), ("parent::child", child), ("parent::below", "")];
+        assert!(circles(&files).is_empty(), "{parent} {child}");
+    }
 }
