@@ -90,3 +90,8 @@ fn is_sound(point: Point) -> bool {
     // asked this way round, what is not a number is not sound
     point.x.abs() <= MAX_COORDINATE && point.y.abs() <= MAX_COORDINATE
 }
+
+/// The examples of `README.md`, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -58,3 +58,8 @@ pub use state_space::StateSpace;
 pub use time::Time;
 pub use transfer::TransferFunction;
 pub use zpk::Zpk;
+
+/// The examples of `README.md`, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

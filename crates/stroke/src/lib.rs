@@ -29,3 +29,8 @@ pub use path::{Element, Path, PathPoint, Piece};
 pub use polyline::polyline_length;
 pub use simplify::simplify;
 pub use stroke::{Drawing, Stroke, StrokeKind};
+
+/// The examples of `README.md`, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -23,6 +23,7 @@ mod linear;
 mod paper;
 mod preview;
 mod quality;
+mod readmes;
 mod reproduce;
 mod simulate;
 mod sizes;
