@@ -1,4 +1,4 @@
-use crate::MAX_COORDINATE;
+use crate::limit::MAX_COORDINATE;
 
 /// Why bytes are no drawing: what, where, the value, the bound, and what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -169,7 +169,7 @@ fn stroke_of(line: &Line, number: usize, layers: &mut Layers) -> Result<Stroke, 
         Some(course) => path_of(course, line.closed, &place)?,
         None => polyline_of(&line.points, line.closed, &place)?,
     };
-    if let Some(pen) = line.pen_px.filter(|w| !(0.0..=crate::MAX_COORDINATE).contains(w)) {
+    if let Some(pen) = line.pen_px.filter(|w| !(0.0..=crate::limit::MAX_COORDINATE).contains(w)) {
         let value = pen.to_string();
         return Err(FormatError::Value { place, field: "pen_px", value, expected: "0 to 1e6, or null" });
     }

@@ -31,19 +31,14 @@ pub mod hpgl;
 pub mod ild;
 pub mod json;
 mod layers;
+mod limit;
 mod number;
 mod pen;
 pub mod svg;
 
 pub use error::FormatError;
+pub use limit::{MAX_BYTES, MAX_COORDINATE};
 use tracelight_stroke::{Colour, Drawing, Point};
-
-/// Largest file that is read, bytes. The worst ones of this size take 2 s and 900 MB (measured).
-pub const MAX_BYTES: usize = 16 << 20;
-
-/// Coordinates beyond this are a broken file's. A million metres, or pixels, is more than anyone draws, and leaves
-/// ten digits behind the point.
-pub const MAX_COORDINATE: f64 = 1e6;
 
 /// A drawing on its sheet, as a file has it: x right, y down, the sheet spans `[0, width] × [0, height]`.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,7 +10,8 @@ use super::header::Header;
 use super::join::joined;
 use super::scene::{Block, Layers, Scene, Skipped};
 use crate::extent::extent;
-use crate::{FormatError, MAX_COORDINATE, Reading, Sheet};
+use crate::limit::MAX_COORDINATE;
+use crate::{FormatError, Reading, Sheet};
 
 /// Sides of a sheet are at least so long, in its unit, or numbers with four decimals would show.
 const LEAST_SIDE: f64 = 10.0;
