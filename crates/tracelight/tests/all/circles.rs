@@ -1,8 +1,8 @@
 //! Files of one crate import each other in no circle.
 //!
-//! An import is followed to the file that defines the name, through whatever hands it on; a path that is written out where it
-//! is used (`crate::one::f`, `super::f`, `child::f`) counts as one; tests do not. What a file names of its own children by
-//! `pub use` and then uses itself is not followed.
+//! An import is followed to the file that defines the name, through whatever hands it on; a path that is written out where it is
+//! used (`crate::one::f`, `super::f`, `child::f`) counts as one; tests do not. What a file passes on by `pub use` it imports if it
+//! uses it by itself.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -50,7 +50,12 @@ impl Files {
         for (is_export, tree) in uses {
             let own = expanded(&tree).into_iter();
             let own = own.filter_map(|(path, name)| Some((self.absolute(module, &path)?, name)));
-            found.extend(own.map(|(path, name)| Import { path, name, is_export }));
+            for (path, name) in own {
+                if is_export && is_used(&code, &name) {
+                    found.push(Import { path: path.clone(), name: String::new(), is_export: false });
+                }
+                found.push(Import { path, name, is_export });
+            }
         }
         let own = written_out(&code).into_iter().filter_map(|path| self.absolute(module, &path));
         found.extend(own.map(|path| Import { path, name: String::new(), is_export: false }));
@@ -155,6 +160,17 @@ fn parted(text: &str) -> (Vec<(bool, String)>, String) {
         }
     }
     (uses, code + rest)
+}
+
+/// Whether code uses a name by itself: a type, or a function that is called, and no field, method or part of a path.
+fn is_used(code: &str, name: &str) -> bool {
+    let in_word = |c: char| c.is_alphanumeric() || c == '_';
+    code.match_indices(name).any(|(start, _)| {
+        let (before, after) = (&code[..start], &code[start + name.len()..]);
+        let is_whole = !before.ends_with(in_word) && !after.starts_with(in_word);
+        let is_own = !before.ends_with(['.', ':']) && !before.ends_with("fn ");
+        is_whole && is_own && (name.starts_with(char::is_uppercase) || after.starts_with('('))
+    })
 }
 
 /// The paths of more than one part that stand in code, such as `crate::one::One`, `super::f` and `child::f`.
@@ -281,6 +297,9 @@ fn a_circle_is_found_between_a_file_and_the_one_below_it() {
         ("fn f() -> Vec<child::Of> { Vec::new() }", "fn g() { crate::parent::f(); }"),
         ("use child::g;", "fn g(a: &super::A) {}"),
         ("const F: fn() = child::g;", "use crate::parent::{self, A};"),
+        // what it passes on, and uses
+        ("pub use child::g;\nfn f() { g(); }", "use super::f;"),
+        ("pub(crate) use child::{g, G};\nfn f() -> Vec<G> {}", "use super::f;"),
         // through the file beside it
         ("fn f() { child::g(); }", "use super::beside::h;"),
     ] {
@@ -315,6 +334,8 @@ fn a_file_and_what_lies_below_it_are_no_circle_where_only_one_knows_the_other() 
         ("fn f() { child::g(); }", "use super::below::A;\nfn g(a: &A) -> child::Other {}"),
         // another crate's, a macro's, a word's end
         ("fn f() { ::child::g(); grandchild::g(); $child::g(); other::child::g(); }", "use super::f;"),
+        // only passed on
+        ("pub use child::{g, G};\nfn f(h: H) { h.g(); other::g(); }", "use super::f;"),
         // only declared
         ("mod child;", "use super::f;"),
     ] {
