@@ -1,180 +1,290 @@
-/// A reason that stops a job: the laser is dark and stays dark until somebody arms again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Fault {
-    /// An encoder's count moved faster than the joint can.
-    EncoderJumped,
-    /// The model says the joint moved several counts, its encoder says nothing.
-    EncoderDead,
-    /// Edges came where the joint was not, again and again.
-    EncoderNoisy,
-    /// What an encoder shows and what its motor must have done do not belong together.
-    EncoderSlipping,
-    /// Segments ran out in the middle of a job.
-    SetpointsStale,
-    /// A segment leaves the joint limits, does not join the one before it, or says nothing of its tolerance.
-    SetpointInvalid,
-    /// The joint itself left its limits.
-    LimitReached,
-    /// The head did not come back to its stroke in time.
-    HoldTimedOut,
-    /// An amplifier gave all it has for too long.
-    AmplifierSaturated,
-    /// A motor was driven harder than it can be cooled.
-    MotorHot,
-    /// The laser does not follow its gate.
-    LaserStuck,
-    /// The host stopped saying that it is there.
-    HostLost,
-    /// What is believed of a joint's speed does not add up to what its encoder counted.
-    EstimateDiverged,
-    /// Something that should be a number is none.
-    NotANumber,
+//! Faults, and the one table that knows all of them.
+
+mod row;
+
+pub use row::{Clears, FaultRow, Motors, Soon};
+
+/// Makes the enum of its rows, so that each fault has exactly one and the compiler refuses a number that is given twice.
+macro_rules! faults {
+    ($($name:ident = $number:literal { what: $what:literal, $($field:ident: $value:expr,)* })*) => {
+        /// A reason that stops a job: the laser is dark and stays dark until somebody arms again.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        #[repr(u8)]
+        pub enum Fault {
+            $(#[doc = $what] $name = $number,)*
+        }
+
+        impl Fault {
+            /// Every fault.
+            pub const ALL: [Fault; [$($number),*].len()] = [$(Fault::$name),*];
+
+            /// What is known of each of them, in that order.
+            pub const TABLE: [FaultRow; Fault::ALL.len()] = [$(FaultRow {
+                fault: Fault::$name,
+                number: $number,
+                what: $what,
+                $($field: $value,)*
+            }),*];
+
+            /// Its row of [`Fault::TABLE`].
+            pub const fn row(self) -> &'static FaultRow {
+                const TABLE: &[FaultRow] = &Fault::TABLE;
+                let mut at = 0;
+                // the last row needs no look: it is the one that is left
+                while at + 1 < TABLE.len() && TABLE[at].number != self.number() {
+                    at += 1;
+                }
+                &TABLE[at]
+            }
+        }
+    };
+}
+
+faults! {
+    EncoderJumped = 1 {
+        what: "An encoder's count moved faster than the joint can.",
+        code: "encoder-jumped",
+        seen: "over one and a half counts beside the count the joint is expected on",
+        soon: Soon::InTheTick,
+        motors: Motors::Off,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "An encoder's count moved faster than the joint can: look for a loose plug, interference or a slipping disc, and home the head before it is armed again.",
+    }
+    EncoderDead = 2 {
+        what: "The model says the joint moved several counts, its encoder says nothing.",
+        code: "encoder-dead",
+        seen: "four counts of motion predicted, none counted, whether or not the last load still acts",
+        soon: Soon::Words("dark at once, a fault 20 ticks later"),
+        motors: Motors::Off,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "The motor was driven but its encoder did not move: look for a broken wire, a slipping disc or a blocked joint.",
+    }
+    EncoderNoisy = 3 {
+        what: "Edges came where the joint was not, again and again.",
+        code: "encoder-noisy",
+        seen: "surprises of three counts together within some 50 ticks, or three lost counts within some seconds",
+        soon: Soon::InTheTick,
+        motors: Motors::Off,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "Edges came where the joint was not: look for interference on an encoder's lines, a loose plug or a missing shield.",
+    }
+    EncoderSlipping = 4 {
+        what: "What an encoder shows and what its motor must have done do not belong together.",
+        code: "encoder-slipping",
+        seen: "a load of 30 % of the motor's torque, or 57 % more or less inertia than there is",
+        soon: Soon::Words("dark at once, a fault after 150 ticks in which it seems braked"),
+        motors: Motors::Off,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "What an encoder shows and what its motor must have done do not belong together: look for a slipping disc or belt, or an amplifier whose gain is not the rig file's.",
+    }
+    SetpointsStale = 5 {
+        what: "Segments ran out in the middle of a job.",
+        code: "setpoints-stale",
+        seen: "no segment for this tick, and the end of the job was not told",
+        soon: Soon::InTheTick,
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "Segments ran out in the middle of the job: the host was too slow or the connection broke.",
+    }
+    SetpointInvalid = 6 {
+        what: "A segment leaves the joint limits, does not join the one before it, or says nothing of its tolerance.",
+        code: "setpoint-invalid",
+        seen: "a segment comes that leaves the joint limits, does not join the one before it, or is no number",
+        soon: Soon::Words("when it comes, before its time"),
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "A segment left the joint limits or did not join the one before it: plan the job again with this rig file.",
+    }
+    LimitReached = 7 {
+        what: "The joint itself left its limits.",
+        code: "limit-reached",
+        seen: "a joint is believed outside its range, three counts beyond its end",
+        soon: Soon::InTheTick,
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "A joint left its limits: check the zero of the head and the limits in the rig file.",
+    }
+    HoldTimedOut = 8 {
+        what: "The head did not come back to its stroke in time.",
+        code: "hold-timed-out",
+        seen: "the head is off its stroke, dark, and not back",
+        soon: Soon::Words("after control.hold_limit"),
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "The head did not come back to its stroke in time: something holds it, or the gains do not suit this rig.",
+    }
+    AmplifierSaturated = 9 {
+        what: "An amplifier gave all it has for too long.",
+        code: "amplifier-saturated",
+        seen: "an amplifier is at its limit, one way",
+        soon: Soon::Ticks(300),
+        motors: Motors::Off,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "An amplifier gave all it has for 0.3 s: something blocks the joint, or the law and its bandwidth do not suit this rig.",
+    }
+    MotorHot = 10 {
+        what: "A motor was driven harder than it can be cooled.",
+        code: "motor-hot",
+        seen: "I²t over what the motor stands",
+        soon: Soon::InTheTick,
+        motors: Motors::Off,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "A motor was driven harder than it can be cooled: let it rest. control.motor_continuous and control.motor_heating in the rig file set the bound.",
+    }
+    LaserStuck = 11 {
+        what: "The laser does not follow its gate.",
+        code: "laser-stuck",
+        seen: "the laser is watched, and is not what its gate says after the relay's delay",
+        soon: Soon::Ticks(3),
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "The laser did not follow its gate: a relay's contact sticks or its coil is not driven. Switch the laser's supply off by hand.",
+    }
+    HostLost = 12 {
+        what: "The host stopped saying that it is there.",
+        code: "host-lost",
+        seen: "a host that has said that it is there says so no more",
+        soon: Soon::Words("after control.host_silence"),
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "The host stopped saying that it is there: it ended, hangs, or the connection broke. control.host_silence sets the bound.",
+    }
+    EstimateDiverged = 13 {
+        what: "What is believed of a joint's speed does not add up to what its encoder counted.",
+        code: "estimate-diverged",
+        seen: "six counts between speed believed and counted, over some 20 ticks",
+        soon: Soon::InTheTick,
+        motors: Motors::Off,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "What is believed of a joint's speed does not add up to what its encoder counted: the observer does not suit this rig, or its model is far off.",
+    }
+    NotANumber = 14 {
+        what: "Something that should be a number is none.",
+        code: "not-a-number",
+        seen: "an edge's stamp, an estimate or a law's result is no number",
+        soon: Soon::InTheTick,
+        motors: Motors::Off,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "A measurement, a setpoint or a law's result was no number: look for a broken edge stamp, and report it if there is none.",
+    }
+}
+
+/// Of which faults something is true, a bit each by number: a board asks without keeping the words of the table.
+const BLIND: u64 = bits(true);
+const LOSES_COUNTS: u64 = bits(false);
+
+/// Those that leave the motors off, or those that lose counts.
+const fn bits(off: bool) -> u64 {
+    let (table, mut at, mut set) = (Fault::TABLE, 0, 0);
+    while at < table.len() {
+        let row = &table[at];
+        assert!(row.number < 64, "a number that has no bit");
+        if if off { matches!(row.motors, Motors::Off) } else { row.loses_counts } {
+            set |= 1 << row.number;
+        }
+        at += 1;
+    }
+    set
 }
 
 impl Fault {
-    /// Every fault.
-    pub const ALL: [Fault; 14] = [
-        Fault::EncoderJumped,
-        Fault::EncoderDead,
-        Fault::EncoderNoisy,
-        Fault::EncoderSlipping,
-        Fault::SetpointsStale,
-        Fault::SetpointInvalid,
-        Fault::LimitReached,
-        Fault::HoldTimedOut,
-        Fault::AmplifierSaturated,
-        Fault::MotorHot,
-        Fault::LaserStuck,
-        Fault::HostLost,
-        Fault::EstimateDiverged,
-        Fault::NotANumber,
-    ];
+    /// Its number on a wire, from 1.
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+
+    /// The fault of that number, if there is one.
+    pub fn from_number(number: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|fault| fault.number() == number)
+    }
 
     /// Stable code for scripts and `explain`.
     pub const fn code(self) -> &'static str {
-        match self {
-            Fault::EncoderJumped => "encoder-jumped",
-            Fault::EncoderDead => "encoder-dead",
-            Fault::EncoderNoisy => "encoder-noisy",
-            Fault::EncoderSlipping => "encoder-slipping",
-            Fault::SetpointsStale => "setpoints-stale",
-            Fault::SetpointInvalid => "setpoint-invalid",
-            Fault::LimitReached => "limit-reached",
-            Fault::HoldTimedOut => "hold-timed-out",
-            Fault::AmplifierSaturated => "amplifier-saturated",
-            Fault::MotorHot => "motor-hot",
-            Fault::LaserStuck => "laser-stuck",
-            Fault::HostLost => "host-lost",
-            Fault::EstimateDiverged => "estimate-diverged",
-            Fault::NotANumber => "not-a-number",
-        }
+        self.row().code
     }
 
-    /// Whether there is nothing left to control a motor by, so that it gets no volts.
+    /// The fault of that code, if there is one.
+    pub fn from_code(code: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|fault| fault.code() == code)
+    }
+
+    /// What it means and what to look at.
+    pub const fn words(self) -> &'static str {
+        self.row().words
+    }
+
+    /// Whether there is nothing left to control a motor by, or to drive it with, so that it gets no volts.
     pub const fn leaves_motors_blind(self) -> bool {
-        match self {
-            Fault::EncoderJumped
-            | Fault::EncoderDead
-            | Fault::EncoderNoisy
-            | Fault::EncoderSlipping
-            | Fault::AmplifierSaturated
-            | Fault::MotorHot
-            | Fault::EstimateDiverged
-            | Fault::NotANumber => true,
-            Fault::SetpointsStale
-            | Fault::SetpointInvalid
-            | Fault::LimitReached
-            | Fault::HoldTimedOut
-            | Fault::LaserStuck
-            | Fault::HostLost => false,
-        }
+        BLIND & (1 << self.number()) != 0
+    }
+
+    /// Whether counts may have been lost or made up, so that nobody knows where the head stands.
+    pub const fn loses_counts(self) -> bool {
+        LOSES_COUNTS & (1 << self.number()) != 0
     }
 }
 
-/// A reason why the gate is shut in this tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u8)]
-pub enum Darkness {
-    /// The plan wants no light here.
-    Planned = 0,
-    /// Nobody armed the rig.
-    Disarmed = 1,
-    /// A joint's following error is over its segment's tolerance.
-    FollowingError = 2,
-    /// The two following errors together put the spot too far from its setpoint.
-    SpotError = 3,
-    /// The plan's clock stands still until the head is back on its stroke.
-    Holding = 4,
-    /// A setpoint lies outside the joint limits.
-    OutOfBounds = 5,
-    /// No valid setpoint for this tick.
-    Stale = 6,
-    /// A [`Fault`] is latched.
-    Faulted = 7,
-    /// An encoder has shown no edge where its joint should have passed several, or does not fit what its motor does, or a count
-    /// was put back a moment ago: it may be dead or slip or lose counts, or somebody holds the head.
-    Doubtful = 8,
-    /// The rig was powered up and not told since where its joints stand: nobody knows where light would fall.
-    Unhomed = 9,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl Darkness {
-    /// Every reason, in bit order.
-    pub const ALL: [Darkness; 10] = [
-        Darkness::Planned,
-        Darkness::Disarmed,
-        Darkness::FollowingError,
-        Darkness::SpotError,
-        Darkness::Holding,
-        Darkness::OutOfBounds,
-        Darkness::Stale,
-        Darkness::Faulted,
-        Darkness::Doubtful,
-        Darkness::Unhomed,
+    /// What wires and scripts know. A row may be added at the end; none may change, and who takes a fault out leaves its number here, alone.
+    const GOLDEN: &[(u8, &str)] = &[
+        (1, "encoder-jumped"),
+        (2, "encoder-dead"),
+        (3, "encoder-noisy"),
+        (4, "encoder-slipping"),
+        (5, "setpoints-stale"),
+        (6, "setpoint-invalid"),
+        (7, "limit-reached"),
+        (8, "hold-timed-out"),
+        (9, "amplifier-saturated"),
+        (10, "motor-hot"),
+        (11, "laser-stuck"),
+        (12, "host-lost"),
+        (13, "estimate-diverged"),
+        (14, "not-a-number"),
     ];
 
-    /// Stable code for logs and `explain`.
-    pub const fn code(self) -> &'static str {
-        match self {
-            Darkness::Planned => "planned",
-            Darkness::Disarmed => "disarmed",
-            Darkness::FollowingError => "following-error",
-            Darkness::SpotError => "spot-error",
-            Darkness::Holding => "holding",
-            Darkness::OutOfBounds => "out-of-bounds",
-            Darkness::Stale => "stale",
-            Darkness::Faulted => "faulted",
-            Darkness::Doubtful => "doubtful",
-            Darkness::Unhomed => "unhomed",
+    #[test]
+    fn numbers_and_codes_are_those_that_wires_and_scripts_know() {
+        let now = Fault::TABLE.map(|row| (row.number, row.code));
+        assert_eq!(now, GOLDEN);
+    }
+
+    #[test]
+    fn every_fault_has_one_row_with_a_number_and_a_code_of_its_own() {
+        for fault in Fault::ALL {
+            assert_eq!(Fault::TABLE.iter().filter(|row| row.fault == fault).count(), 1, "{fault:?}");
+            assert_eq!((fault.row().fault, fault.row().number), (fault, fault.number()));
+            assert_eq!(Fault::from_number(fault.number()), Some(fault));
+            assert_eq!(Fault::from_code(fault.code()), Some(fault));
+            assert_eq!(fault.leaves_motors_blind(), fault.row().motors == Motors::Off, "{fault:?}");
+            assert_eq!(fault.loses_counts(), fault.row().loses_counts, "{fault:?}");
         }
+        assert_eq!((Fault::from_number(0), Fault::from_code("")), (None, None));
     }
-}
 
-/// The reasons that hold at once; empty means the gate is open.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DarknessSet(u16);
-
-impl DarknessSet {
-    /// Adds a reason when `holds` is true.
-    pub fn insert_if(&mut self, holds: bool, reason: Darkness) {
-        if holds {
-            self.0 |= 1 << reason as u16;
+    #[test]
+    fn what_loses_counts_is_not_armed_before_the_head_is_found() {
+        for row in Fault::TABLE {
+            assert_eq!(row.loses_counts, row.clears == Clears::FoundAndArmed, "{}", row.code);
+            assert!(!row.loses_counts || row.motors == Motors::Off, "{}", row.code);
         }
-    }
-
-    /// Whether a reason is in the set.
-    pub const fn contains(self, reason: Darkness) -> bool {
-        self.0 & (1 << reason as u16) != 0
-    }
-
-    /// Whether nothing speaks against light.
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
-    /// One bit a reason, [`Darkness::ALL`] order.
-    pub const fn bits(self) -> u16 {
-        self.0
     }
 }

@@ -13,6 +13,7 @@
 
 #![no_std]
 
+mod darkness;
 mod exchange;
 mod fault;
 mod head;
@@ -20,8 +21,9 @@ mod joint;
 mod segment;
 mod telemetry;
 
+pub use darkness::{Darkness, DarknessRow, DarknessSet};
 pub use exchange::{Actuation, Measurement, Sensed};
-pub use fault::{Darkness, DarknessSet, Fault};
+pub use fault::{Clears, Fault, FaultRow, Motors, Soon};
 pub use head::{Head, Rig};
 pub use joint::{Joint, JointLimits, PanTilt};
 pub use segment::{Command, Segment, Setpoint};
