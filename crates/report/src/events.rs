@@ -2,7 +2,6 @@
 
 use tracelight_rig::{Darkness, TICK_F64_S, Telemetry};
 use tracelight_sim::Run;
-use tracelight_task::{darkness_words, fault_words};
 
 /// A time when the rig darkened a beam that the plan wanted lit, or a fault that ended the job.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +72,7 @@ impl Watch {
 fn trouble(telemetry: &Telemetry) -> Option<Event> {
     let t_s = f64::from(telemetry.tick) * TICK_F64_S;
     if let Some(fault) = telemetry.fault {
-        let (code, words) = (fault.code(), fault_words(fault));
+        let (code, words) = (fault.code(), fault.words());
         return Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: true });
     }
     let dark = telemetry.darkness;
@@ -81,7 +80,7 @@ fn trouble(telemetry: &Telemetry) -> Option<Event> {
         return None;
     }
     let reason = Darkness::ALL.into_iter().find(|&r| dark.contains(r))?;
-    let (code, words) = (reason.code(), darkness_words(reason));
+    let (code, words) = (reason.code(), reason.words());
     Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: false })
 }
 

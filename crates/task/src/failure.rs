@@ -4,8 +4,6 @@ use std::fmt::Display;
 
 use tracelight_rig::Fault;
 
-use crate::words::fault_words;
-
 /// How a command that did not succeed ends the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -69,8 +67,7 @@ impl Failure {
     /// The rig latched a fault.
     #[must_use]
     pub fn fault(fault: Fault) -> Self {
-        let message =
-            format!("the laser darkened and the run stopped: {} ({})", fault.code(), fault_words(fault));
+        let message = format!("the laser darkened and the run stopped: {} ({})", fault.code(), fault.words());
         Self { status: Status::Fault, code: fault.code(), message }
     }
 

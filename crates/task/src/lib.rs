@@ -12,4 +12,4 @@ pub use failure::{Failure, Status};
 pub use fan::on_all_cores;
 pub use progress::{NoProgress, Progress, Task};
 pub use stop::Stop;
-pub use words::{counted, darkness_words, fault_words, phase_word};
+pub use words::{counted, phase_word};

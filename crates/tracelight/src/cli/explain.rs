@@ -1,6 +1,6 @@
 use clap::Args;
 use tracelight_rig::{Darkness, Fault};
-use tracelight_task::{Failure, darkness_words, fault_words};
+use tracelight_task::Failure;
 
 use crate::cli::{Answer, Voice};
 
@@ -203,36 +203,7 @@ fn json(codes: &[(&'static str, String)]) -> String {
 
 fn codes() -> Vec<(&'static str, String)> {
     let own = MESSAGES.iter().map(|&(code, words)| (code, words.to_owned()));
-    let faults = Fault::ALL.map(|fault| (fault.code(), fault_words(fault).to_owned()));
-    let darkness = Darkness::ALL.map(|d| (d.code(), format!("{} {}", darkness_words(d), what_to_do(d))));
+    let faults = Fault::ALL.map(|fault| (fault.code(), fault.words().to_owned()));
+    let darkness = Darkness::TABLE.map(|row| (row.code, format!("{} {}", row.words, row.advice)));
     own.chain(faults).chain(darkness).collect()
-}
-
-/// What a user can do about a darkening.
-const fn what_to_do(reason: Darkness) -> &'static str {
-    match reason {
-        Darkness::Planned => "Nothing: the head is on its way between strokes.",
-        Darkness::Disarmed => "Arm it.",
-        Darkness::FollowingError | Darkness::SpotError => {
-            "See whether somebody or something pushes the head, whether --speed or --distance is more than it can \
-             hold, and whether the friction and gains in the rig file are its own. control.tolerance sets the bound."
-        }
-        Darkness::Holding => {
-            "Nothing, if it is rare: the head goes back to where it left and on from there. If not, look at the \
-             darkening before it."
-        }
-        Darkness::OutOfBounds => {
-            "Make the picture smaller or shift it; range_min and range_max in the rig file set the bound."
-        }
-        Darkness::Stale => {
-            "Nothing before the first and after the last stroke. Within a job the host was too slow."
-        }
-        Darkness::Doubtful => {
-            "See whether somebody holds the head; if not, an encoder is going dead or loses counts: look at its cable and its disc."
-        }
-        Darkness::Unhomed => {
-            "Encoders count from where they are powered up. Have a camera find where it stands: tracelight calibrate head --home --camera …"
-        }
-        Darkness::Faulted => "Look up the fault's own code.",
-    }
 }
