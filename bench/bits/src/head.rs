@@ -27,7 +27,7 @@ impl Head {
     pub(crate) fn sensed(&self) -> Sensed {
         let read =
             |j: Joint| Measurement { count: count(self.angle_rad[j]), edge_age_ticks: self.edge_age[j] };
-        Sensed { encoders: PanTilt::from_fn(read), laser_on: None }
+        Sensed { encoders: PanTilt::from_fn(read), ..Sensed::default() }
     }
 
     pub(crate) fn exchange(&mut self, actuation: &Actuation) {

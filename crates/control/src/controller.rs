@@ -103,7 +103,7 @@ impl Controller {
     }
 
     fn arm(&self, state: &mut State) {
-        if !state.supervisor.may_arm() {
+        if !state.supervisor.may_arm() || state.sensed.inputs.any_open() {
             return;
         }
         if state.supervisor.fault.is_some() {
@@ -170,18 +170,20 @@ impl Controller {
         // last of all: whatever this tick has shown is known
         let darkness = state.supervisor.darkness(&self.config, &situation);
         let gate = darkness.is_empty();
+        let enable = state.supervisor.may_light();
         state.watch.light(gate);
         state.supervisor.tell();
         let telemetry = Telemetry {
             tick: state.tick,
             plan_tick: state.player.plan_tick(),
             measured: sensed.encoders,
+            inputs: sensed.inputs,
             setpoint: played.setpoint,
             position_rad: estimates.map(|estimate| estimate.position_rad),
             velocity_rad_s: estimates.map(|estimate| estimate.velocity_rad_s),
             acceleration_rad_s2: estimates.map(|estimate| estimate.acceleration_rad_s2),
             lost_counts: estimates.map(|estimate| estimate.lost_counts),
-            actuation: Actuation { command_v, gate },
+            actuation: Actuation { command_v, gate, enable },
             darkness,
             homed: state.supervisor.homed,
             phase: state.supervisor.phase,
@@ -194,6 +196,8 @@ impl Controller {
 
     fn observe(&self, state: &mut State, sensed: &Sensed) {
         state.sensed = *sensed;
+        // before all that may come of them: a motor without a supply looks like a dead encoder
+        sensed.inputs.faults().for_each(|fault| state.supervisor.trip(fault));
         if state.tick == 0 {
             return;
         }

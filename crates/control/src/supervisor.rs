@@ -175,6 +175,13 @@ impl Supervisor {
         }
     }
 
+    /// Whether there may be light at all, now or soon: the second switch. Judged after [`tick`](Self::tick), as the gate is.
+    pub(crate) fn may_light(&self) -> bool {
+        let armed = matches!(self.phase, Phase::Armed | Phase::Tracing | Phase::Holding);
+        let may_point = self.phase == Phase::Dark && self.pointing_ticks > 0;
+        self.fault.is_none() && (armed || may_point)
+    }
+
     /// Every reason against light in this tick. The gate is open only if there is none.
     pub(crate) fn darkness(&self, config: &Config, at: &Situation<'_>) -> DarknessSet {
         let mut reasons = DarknessSet::default();

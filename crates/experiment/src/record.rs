@@ -119,7 +119,7 @@ fn telemetry(columns: &Columns, row: &Row<'_>, count_rad: f64) -> Result<Telemet
             acceleration_rad_s2: row.optional(acceleration)?.unwrap_or_default() as f32,
         };
     }
-    told.actuation = Actuation { command_v, gate: false };
+    told.actuation = Actuation { command_v, ..Actuation::default() };
     Ok(told)
 }
 

@@ -21,12 +21,12 @@ impl EncoderConfig {
     }
 }
 
-/// The relay between gate and laser.
+/// A switch of the laser: the relay between gate and laser, or what the enable drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelayConfig {
-    /// From the gate's rise to light, s.
+    /// From its command's rise to light, s.
     pub on_s: f64,
-    /// From the gate's fall to dark, s.
+    /// From its command's fall to dark, s.
     pub off_s: f64,
 }
 
@@ -43,6 +43,8 @@ pub struct PlantConfig {
     pub encoder: EncoderConfig,
     /// The laser's relay.
     pub relay: RelayConfig,
+    /// The laser's second switch, in series with it.
+    pub enable: RelayConfig,
     /// What is worse than that.
     pub wear: Wear,
 }

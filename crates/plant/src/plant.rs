@@ -1,5 +1,7 @@
 use tracelight_maths::{exp, sin};
-use tracelight_rig::{Actuation, Head, Joint, Measurement, PanTilt, Sensed, TICK_F64_S};
+use tracelight_rig::{
+    Actuation, Head, Input, InputState, Inputs, Joint, Measurement, PanTilt, Sensed, TICK_F64_S,
+};
 
 use crate::belt::Belted;
 use crate::encoder::Encoder;
@@ -33,6 +35,9 @@ pub struct Plant {
     beam_rad: PanTilt<f64>,
     encoders: PanTilt<Encoder>,
     relay: Relay,
+    /// What the enable drives, in series with the relay.
+    enable: Relay,
+    inputs: Inputs,
     push_nm: PanTilt<f64>,
     /// What the joints come up against either way, if anything is there.
     stops: Option<PanTilt<Stops>>,
@@ -42,6 +47,8 @@ pub struct Plant {
     time_s: f64,
     /// How late the present tick began, s.
     late_s: f64,
+    /// How much longer the next tick lasts, s.
+    held_up_s: f64,
     dice: Dice,
 }
 
@@ -110,12 +117,17 @@ impl Plant {
             beam_rad: rest,
             encoders,
             relay: Relay::new(config.relay),
+            enable: Relay::new(config.enable),
+            inputs: Input::ALL
+                .into_iter()
+                .fold(Inputs::ABSENT, |all, input| all.with(input, InputState::Fine)),
             push_nm: PanTilt::default(),
             stops: None,
             supply_left: 1.0,
             current_nm: PanTilt::default(),
             time_s: 0.0,
             late_s: 0.0,
+            held_up_s: 0.0,
             dice,
         }
     }
@@ -151,10 +163,25 @@ impl Plant {
 
     /// Whether light leaves the head.
     pub const fn light(&self) -> bool {
-        self.relay.is_closed()
+        self.relay.is_closed() && self.enable.is_closed()
     }
 
-    /// The laser's switch stays as it is from now on, whatever the gate.
+    /// What its safety inputs say.
+    pub const fn inputs(&self) -> Inputs {
+        self.inputs
+    }
+
+    /// A safety input says that from now on.
+    pub const fn set_input(&mut self, input: Input, state: InputState) {
+        self.inputs = self.inputs.with(input, state);
+    }
+
+    /// The controller's processor is held up: the next tick lasts so much longer, s.
+    pub const fn hold_up(&mut self, time_s: f64) {
+        self.held_up_s = time_s;
+    }
+
+    /// The laser's relay stays as it is from now on, whatever the gate.
     pub const fn stick_laser(&mut self) {
         self.relay.stick();
     }
@@ -214,11 +241,12 @@ impl Plant {
 
     /// How long this tick lasts, s: ticks come early or late, each by itself.
     fn tick_s(&mut self) -> f64 {
+        let proper_s = TICK_F64_S + std::mem::take(&mut self.held_up_s);
         if self.wear.jitter_s == 0.0 {
-            return TICK_F64_S;
+            return proper_s;
         }
         let before = std::mem::replace(&mut self.late_s, self.wear.jitter_s * self.dice.signed());
-        TICK_F64_S + self.late_s - before
+        proper_s + self.late_s - before
     }
 }
 
@@ -269,9 +297,16 @@ impl Head for Plant {
         let lasts_s = self.tick_s();
         for number in 0..SUBSTEPS {
             self.substep(asked, lasts_s, number);
-            self.relay.drive(actuation.gate, lasts_s / f64::from(SUBSTEPS));
+            let part_s = lasts_s / f64::from(SUBSTEPS);
+            self.relay.drive(actuation.gate, part_s);
+            self.enable.drive(actuation.enable, part_s);
         }
-        Sensed { encoders: self.encoders.map(|e| e.measurement()), laser_on: Some(self.relay.is_closed()) }
+        Sensed {
+            encoders: self.encoders.map(|e| e.measurement()),
+            laser_on: Some(self.relay.is_closed()),
+            inputs: self.inputs,
+            lasted_ticks: Some((lasts_s / TICK_F64_S) as f32),
+        }
     }
 }
 
@@ -301,12 +336,13 @@ mod tests {
             motors: PanTilt::new(motor, motor),
             encoder: EncoderConfig { counts_per_rev: 4096, edge_stamps: true },
             relay: RelayConfig { on_s: 5e-3, off_s: 3e-3 },
+            enable: RelayConfig { on_s: 0.0, off_s: 0.0 },
             wear: Wear::NONE,
         }
     }
 
     fn drive(plant: &mut Plant, pan_v: f32, ticks: usize) -> Sensed {
-        let actuation = Actuation { command_v: PanTilt::new(pan_v, -1.94), gate: true };
+        let actuation = Actuation { command_v: PanTilt::new(pan_v, -1.94), gate: true, enable: true };
         (0..ticks).map(|_| plant.exchange(&actuation)).last().unwrap()
     }
 
@@ -357,5 +393,28 @@ mod tests {
         drive(&mut hundred, 100.0, 100);
         assert_eq!(ten.angle_rad(), hundred.angle_rad());
         assert!(ten.light());
+    }
+
+    #[test]
+    fn light_needs_both_switches() {
+        let mut plant = Plant::new(&config(), 0);
+        let mut light = |gate, enable| {
+            let actuation = Actuation { gate, enable, ..Actuation::default() };
+            (0..10).for_each(|_| {
+                plant.exchange(&actuation);
+            });
+            plant.light()
+        };
+        assert!(!light(false, false) && !light(true, false) && !light(false, true));
+        assert!(light(true, true));
+        assert!(!light(true, false), "the relay is still closed");
+    }
+
+    #[test]
+    fn a_tick_that_is_held_up_says_how_long_it_was() {
+        let mut plant = Plant::new(&config(), 0);
+        plant.hold_up(1e-3);
+        let lasted = |plant: &mut Plant| plant.exchange(&Actuation::default()).lasted_ticks;
+        assert_eq!((lasted(&mut plant), lasted(&mut plant)), (Some(2.0), Some(1.0)));
     }
 }

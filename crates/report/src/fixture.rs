@@ -3,7 +3,7 @@
 use tracelight_maths::planar;
 use tracelight_picture::Raster;
 use tracelight_rig::{
-    Actuation, Darkness, DarknessSet, Measurement, PanTilt, Phase, Setpoint, TICK_F64_S, Telemetry,
+    Actuation, Darkness, DarknessSet, Inputs, Measurement, PanTilt, Phase, Setpoint, TICK_F64_S, Telemetry,
 };
 use tracelight_sim::{Run, Tick, Tracking};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
@@ -216,6 +216,7 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
             count: (a * 4096.0 / std::f64::consts::TAU).round() as i32,
             edge_age_ticks: None,
         }),
+        inputs: Inputs::ABSENT,
         setpoint: planned
             .joints
             .map(|j| Setpoint { position_rad: j.position_rad as f32, ..Setpoint::default() }),
@@ -226,6 +227,7 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
         actuation: Actuation {
             command_v: planned.torque_fraction.map(|f| f * 10.0 + (t * 400.0).sin() as f32 * 0.3),
             gate: planned.lit,
+            enable: true,
         },
         darkness,
         homed: true,

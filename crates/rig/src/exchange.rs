@@ -1,6 +1,6 @@
 //! What a head says, and what is done to it, in a tick.
 
-use crate::PanTilt;
+use crate::{Inputs, PanTilt};
 
 /// What one encoder says at a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,8 +17,12 @@ pub struct Measurement {
 pub struct Sensed {
     /// Of each joint's encoder.
     pub encoders: PanTilt<Measurement>,
-    /// Whether the laser's switch is closed, where something watches it: a relay's second contact, a photodiode.
+    /// Whether the laser's switch that the gate drives is closed, where something watches it: a relay's second contact, a photodiode.
     pub laser_on: Option<bool>,
+    /// What its safety inputs say, and which it has.
+    pub inputs: Inputs,
+    /// How long the tick took that ends here, in ticks of its proper length; `None` where the hardware does not measure it.
+    pub lasted_ticks: Option<f32>,
 }
 
 /// What the controller does to the motors and the laser in one tick.
@@ -28,4 +32,7 @@ pub struct Actuation {
     pub command_v: PanTilt<f32>,
     /// Whether the laser's switch is driven on.
     pub gate: bool,
+    /// Whether there may be light at all: a second switch, in series with the first (a key relay, the laser's supply, a shutter). It
+    /// falls in the tick of every fault, so that a switch that is stuck is no way for light.
+    pub enable: bool,
 }

@@ -56,7 +56,7 @@ faults! {
         what: "The model says the joint moved several counts, its encoder says nothing.",
         code: "encoder-dead",
         seen: "four counts of motion predicted, none counted, whether or not the last load still acts",
-        soon: Soon::Words("dark at once, a fault 20 ticks later"),
+        soon: Soon::DarkThen(20),
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -75,8 +75,8 @@ faults! {
     EncoderSlipping = 4 {
         what: "What an encoder shows and what its motor must have done do not belong together.",
         code: "encoder-slipping",
-        seen: "a load of 30 % of the motor's torque, or 57 % more or less inertia than there is",
-        soon: Soon::Words("dark at once, a fault after 150 ticks in which it seems braked"),
+        seen: "a load of 30 % of the motor's torque under which it seems braked, or 57 % more or less inertia than there is",
+        soon: Soon::DarkThen(150),
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -182,6 +182,76 @@ faults! {
         clears: Clears::FoundAndArmed,
         words: "A measurement, a setpoint or a law's result was no number: look for a broken edge stamp, and report it if there is none.",
     }
+    EmergencyStop = 15 {
+        what: "Somebody pressed an emergency stop, or its loop is broken.",
+        code: "emergency-stop",
+        seen: "the input is open",
+        soon: Soon::InTheTick,
+        motors: Motors::Off,
+        loses_counts: false,
+        clears: Clears::FineAndArmed,
+        words: "Somebody pressed an emergency stop, or its loop is broken: see why, release it, and arm again.",
+    }
+    InterlockOpen = 16 {
+        what: "A lid or a door is open.",
+        code: "interlock-open",
+        seen: "the input is open",
+        soon: Soon::InTheTick,
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::FineAndArmed,
+        words: "A lid or a door is open, or the line of its switch is broken: close it, and arm again.",
+    }
+    KeyOff = 17 {
+        what: "The key switch is off.",
+        code: "key-off",
+        seen: "the input is open",
+        soon: Soon::InTheTick,
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::FineAndArmed,
+        words: "The key switch is off, or its line is broken: turn the key, and arm again.",
+    }
+    AmplifierFault = 18 {
+        what: "An amplifier says that something is wrong with it or its motor.",
+        code: "amplifier-fault",
+        seen: "the input of either joint is open",
+        soon: Soon::InTheTick,
+        motors: Motors::Off,
+        loses_counts: false,
+        clears: Clears::FineAndArmed,
+        words: "An amplifier says by its own line that something is wrong: look for a short circuit, too much current or heat, and at its lamp; most need their supply switched off and on.",
+    }
+    SupplyLow = 19 {
+        what: "The supply gives less than it should.",
+        code: "supply-low",
+        seen: "the input is open",
+        soon: Soon::InTheTick,
+        motors: Motors::Off,
+        loses_counts: false,
+        clears: Clears::FineAndArmed,
+        words: "The supply gives less than it should: look at its cable, its fuse and what else hangs on it.",
+    }
+    TooHot = 20 {
+        what: "A thermal switch says that laser, amplifiers or motors are too hot.",
+        code: "too-hot",
+        seen: "the input is open",
+        soon: Soon::InTheTick,
+        motors: Motors::Off,
+        loses_counts: false,
+        clears: Clears::FineAndArmed,
+        words: "A thermal switch opened: laser, amplifiers or motors are too hot. Let them cool, look at fans and vents, and arm again.",
+    }
+    TickLate = 21 {
+        what: "A tick came too late for what was reckoned for it.",
+        code: "tick-late",
+        seen: "the hardware measures it, and a tick took more than one and a half times its length",
+        soon: Soon::InTheTick,
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "A tick of the controller came too late: something else held its processor. See what runs beside it; if nothing does, report it.",
+    }
 }
 
 /// Of which faults something is true, a bit each by number: a board asks without keeping the words of the table.
@@ -259,6 +329,13 @@ mod tests {
         (12, "host-lost"),
         (13, "estimate-diverged"),
         (14, "not-a-number"),
+        (15, "emergency-stop"),
+        (16, "interlock-open"),
+        (17, "key-off"),
+        (18, "amplifier-fault"),
+        (19, "supply-low"),
+        (20, "too-hot"),
+        (21, "tick-late"),
     ];
 
     #[test]

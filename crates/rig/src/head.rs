@@ -7,7 +7,8 @@ use crate::{Actuation, Command, Sensed, Telemetry};
 /// - hold the actuation (zero-order) until the next exchange;
 /// - take both encoders' counts at the same instant, and never wrap them within a job;
 /// - stamp an edge either always or never ([`Measurement::edge_age_ticks`](crate::Measurement::edge_age_ticks));
-/// - open the laser's switch and zero the amplifiers by themselves when the exchanges stop coming;
+/// - open both of the laser's switches and zero the amplifiers by themselves when the exchanges stop coming;
+/// - tell nothing of an input that is not there ([`InputState::Absent`](crate::InputState::Absent)), and a line that is cut as open;
 /// - never fail: a dead encoder is a count that does not move, which is the controller's to notice.
 pub trait Head {
     /// Applies an actuation for one tick and returns what is sensed at its end.

@@ -1,4 +1,4 @@
-use crate::{Actuation, DarknessSet, Fault, Measurement, PanTilt, Setpoint};
+use crate::{Actuation, DarknessSet, Fault, Inputs, Measurement, PanTilt, Setpoint};
 
 /// Where the supervisor stands.
 ///
@@ -37,6 +37,8 @@ pub struct Telemetry {
     pub plan_tick: u32,
     /// What the encoders read at the start of the tick.
     pub measured: PanTilt<Measurement>,
+    /// What the safety inputs said then, and which there are.
+    pub inputs: Inputs,
     /// Where the joints should be at the start of the tick.
     pub setpoint: PanTilt<Setpoint>,
     /// Where the observer believes the joints are, rad.

@@ -179,7 +179,7 @@ macro_rules! drive {
 }
 
 /// What belongs to no joint.
-const WHOLE: [Key<Model>; 11] = [
+const WHOLE: [Key<Model>; 13] = [
     real("gravity", GRAVITY, (0.0, 30.0), "along −z", (|m| &mut m.bodies.gravity_m_s2) as Real),
     Key {
         path: "encoder.counts_per_rev",
@@ -197,6 +197,8 @@ const WHOLE: [Key<Model>; 11] = [
     },
     real("relay.on", TIMES, (0.0, 0.05), "from the gate's rise to light", |m| &mut m.relay.on_s),
     real("relay.off", TIMES, (0.0, 0.05), "from the gate's fall to dark", |m| &mut m.relay.off_s),
+    real("enable.on", TIMES, (0.0, 0.05), "the same of the laser's second switch", |m| &mut m.enable.on_s),
+    real("enable.off", TIMES, (0.0, 0.05), "the same of the laser's second switch", |m| &mut m.enable.off_s),
     real(
         "laser.forward",
         LENGTHS,

@@ -59,7 +59,7 @@ fn control_tick(bencher: Bencher<'_, '_>) {
         rig.send(Command::Append(segment)).ok();
     }
     // the head's answers are recorded once and played back, so that only the controller is timed
-    let heard = |encoders| Sensed { encoders, laser_on: None };
+    let heard = |encoders| Sensed { encoders, ..Sensed::default() };
     let sensed: Vec<_> = (0..1000).map(|_| heard(rig.step().telemetry.measured)).collect();
     bencher.counter(ItemsCount::new(sensed.len())).bench(|| {
         let mut state = controller.start_homed(&sensed[0]);

@@ -84,7 +84,7 @@ mod tests {
 
     fn counts(mounting: Mounting, volts: f32) -> PanTilt<i32> {
         let mut head = head_alone(&RigConfig::report(), Joint::Tilt, mounting, 0);
-        let actuation = Actuation { command_v: PanTilt::new(volts, volts), gate: false };
+        let actuation = Actuation { command_v: PanTilt::new(volts, volts), ..Actuation::default() };
         let seen = (0..1000).map(|_| head.exchange(&actuation)).last();
         seen.map(|s| s.encoders.map(|e| e.count)).unwrap_or_default()
     }

@@ -81,7 +81,7 @@ impl<H: Truth> Bench<H> {
         let estimates = *self.servo.estimates();
         let command_v = self.servo.drive(&self.config, reference);
         let measured = self.measured;
-        self.measured = self.head.exchange(&Actuation { command_v, gate: false }).encoders;
+        self.measured = self.head.exchange(&Actuation { command_v, ..Actuation::default() }).encoders;
         BenchTick { setpoint: reference.now, angle_rad, beam_rad, measured, estimates, command_v }
     }
 }

@@ -38,6 +38,8 @@ pub struct Model {
     pub encoder: EncoderConfig,
     /// The laser's relay.
     pub relay: RelayConfig,
+    /// The laser's second switch, in series with it.
+    pub enable: RelayConfig,
     /// Where the beam leaves, and how far the joints turn.
     pub geometry: HeadGeometry,
 }

@@ -137,6 +137,7 @@ impl Model {
             motors: self.motors,
             encoder: self.encoder,
             relay: self.relay,
+            enable: self.enable,
             wear,
         }
     }

@@ -73,7 +73,7 @@ impl Head for LinearHead {
         }
         let count = |angle: f64| (angle * COUNTS_PER_REV / std::f64::consts::TAU).round() as i32;
         let encoders = self.angle_rad.map(|angle| Measurement { count: count(angle), edge_age_ticks: None });
-        Sensed { encoders, laser_on: None }
+        Sensed { encoders, ..Sensed::default() }
     }
 }
 

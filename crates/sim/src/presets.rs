@@ -132,6 +132,7 @@ fn report_model() -> Model {
         motors: PanTilt::new(motor(PAN_A_PER_V), motor(TILT_A_PER_V)),
         encoder: EncoderConfig { counts_per_rev: 4096, edge_stamps: true },
         relay: RelayConfig { on_s: 5e-3, off_s: 3e-3 },
+        enable: RelayConfig { on_s: 0.0, off_s: 0.0 },
         geometry: HeadGeometry::centred(PanTilt::new((-PI, PI), (-95.0 * PI / 180.0, 95.0 * PI / 180.0))),
     }
 }

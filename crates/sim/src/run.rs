@@ -124,7 +124,8 @@ impl SimulatedRig {
     /// A rig with this plant, homed, its encoders read as they are.
     fn of(config: &RigConfig, pose: HeadPose, plant: Plant, seed: u64) -> Self {
         let controller = Controller::new(config.control_config());
-        let sensed = Sensed::default(); // homed: count 0 on both
+        // homed: count 0 on both
+        let sensed = Sensed { inputs: plant.inputs(), ..Sensed::default() };
         Self {
             state: controller.start_homed(&sensed),
             controller,
@@ -212,6 +213,8 @@ impl SimulatedRig {
             Trouble::LaserStuck => self.plant.stick_laser(),
             Trouble::Bump(by_rad) => self.bump = Some(Bump::new(by_rad)),
             Trouble::PowerLoss => self.power_up(),
+            Trouble::Input(input, state) => self.plant.set_input(input, state),
+            Trouble::TickLate(ticks) => self.plant.hold_up(ticks * TICK_F64_S),
             Trouble::Drift(share_per_s) => self.stretch_per_tick = share_per_s * TICK_F64_S,
         }
     }

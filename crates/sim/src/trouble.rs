@@ -1,5 +1,5 @@
 use tracelight_aim::HeadPose;
-use tracelight_rig::{Joint, Measurement, PanTilt, TICK_F64_S};
+use tracelight_rig::{Input, InputState, Joint, Measurement, PanTilt, TICK_F64_S};
 
 /// What can go wrong with a rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub enum Trouble {
     EncoderSlip(Joint, f64),
     /// An encoder's stamps are no numbers.
     StampGarbled(Joint),
-    /// The laser's switch stays as it is.
+    /// The laser's relay stays as it is; its second switch, the enable, goes on working.
     LaserStuck,
     /// Somebody bumps into what the head stands on, which turns by so much about pan's and tilt's axes, rad, and stays so.
     Bump(PanTilt<f64>),
@@ -26,6 +26,10 @@ pub enum Trouble {
     PowerLoss,
     /// A belt's wheels grow warm: each second the beam turns by that share more for the same counts.
     Drift(f64),
+    /// A safety input opens, or is fine again.
+    Input(Input, InputState),
+    /// The controller's processor is held up: the next tick takes so many ticks longer.
+    TickLate(f64),
 }
 
 /// What can go wrong with a camera.

@@ -16,7 +16,7 @@ const MOST_HOLDING: f32 = 0.6;
 /// Predicted motion without any edge that makes an encoder doubtful, counts,
 const DOUBT_COUNTS: f32 = 4.0;
 /// and how long it may be so before it is taken for dead, ticks: somebody who holds the head looks the same.
-const DOUBT_TICKS: u32 = 20;
+pub(super) const DOUBT_TICKS: u32 = 20;
 /// Counts beside where the joint can be that mean it jumped: a kick that moves a joint by one count within a tick
 /// gives it 3000 rad/s², and breaks it. An observer that knows no more than the count is half a count off by itself, and
 /// noise of a count either way is not a jump. A jump of three counts is always seen, of two if the joint was near an edge.
@@ -40,7 +40,7 @@ const SLIP_LOAD: f32 = 0.3;
 const SLIP_RAD_S: f32 = 0.02;
 /// After so many ticks of being braked or heavy an encoder is taken to slip; a tick without load makes good one with, and
 /// one in which it is leant on counts for neither.
-const SLIP_TICKS: u32 = 150;
+pub(super) const SLIP_TICKS: u32 = 150;
 
 /// Counts put back that make an encoder a bad one, each forgotten by a share of a 5000th a tick: three within some seconds.
 const BAD_COUNTS: f32 = 2.5;

@@ -1,17 +1,7 @@
 //! Watches: what goes wrong with encoders, motors, the laser and the host, and how soon it is seen.
 //!
-//! | fault | seen when |
-//! |---|---|
-//! | encoder jumped | in the tick: over one and a half counts beside the count the joint is expected on |
-//! | encoder noisy | surprises of three counts together within some 50 ticks, or three lost counts within some seconds |
-//! | encoder dead | four counts of motion predicted, none counted, whether or not the last load still acts: dark at once, a fault 20 ticks later |
-//! | encoder slipping | a load of 30 % of the motor's torque, or 57 % more or less inertia than there is: dark at once, a fault after 150 ticks in which it seems braked |
-//! | estimate diverged | six counts between speed believed and counted, over some 20 ticks |
-//! | amplifier saturated | 300 ticks at its limit, one way |
-//! | motor hot | I²t over what it stands |
-//! | laser stuck | three ticks after it should have switched |
-//! | host lost | after [`Config::host_silence_ticks`](crate::Config) |
-//! | not a number | in the tick |
+//! When each fault is seen, how soon, and what is done then stands in [`Fault::TABLE`], which `docs/faults.md` is printed from; a test
+//! below holds its bounds against the constants here.
 
 mod encoder;
 mod motor;
@@ -27,6 +17,9 @@ use motor::MotorWatch;
 
 /// Ticks a laser may take longer than its relay.
 const LASER_SLACK_TICKS: u32 = 2;
+
+/// Length from which on a tick is late, ticks: what was reckoned for one was held for another half.
+const LATE_TICKS: f32 = 1.5;
 
 /// State of all watches.
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +55,11 @@ impl Watch {
             |j: Joint| sensed.encoders[j].edge_age_ticks.is_none_or(|age| (0.0..1.0).contains(&age));
         if !Joint::BOTH.iter().all(|&j| stamped(j) && servo.estimates()[j].is_finite()) {
             return Some(Fault::NotANumber);
+        }
+        if sensed.lasted_ticks.is_some_and(is_late) {
+            // counts of more than a tick say nothing of encoders
+            self.encoders = encoders(sensed, servo.estimates());
+            return Some(Fault::TickLate);
         }
         let encoder = |watch: &mut EncoderWatch, j: Joint| {
             watch.tick(&config.axes[j], &servo.efforts()[j], &servo.estimates()[j], &sensed.encoders[j])
@@ -115,4 +113,31 @@ impl Watch {
 
 fn encoders(sensed: &Sensed, estimates: &PanTilt<Estimate>) -> PanTilt<EncoderWatch> {
     PanTilt::from_fn(|j| EncoderWatch::new(&sensed.encoders[j], &estimates[j]))
+}
+
+/// Whether a tick of that length is late; one whose length is no number is.
+fn is_late(lasted_ticks: f32) -> bool {
+    lasted_ticks > LATE_TICKS || lasted_ticks.is_nan()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tracelight_rig::Soon;
+
+    #[test]
+    fn the_table_of_faults_has_the_bounds_of_the_watches() {
+        let soon = |fault: Fault| fault.row().soon;
+        let ticks = |ticks: u32| u16::try_from(ticks).unwrap_or(u16::MAX);
+        assert_eq!(soon(Fault::EncoderDead), Soon::DarkThen(ticks(encoder::DOUBT_TICKS)));
+        assert_eq!(soon(Fault::EncoderSlipping), Soon::DarkThen(ticks(encoder::SLIP_TICKS)));
+        assert_eq!(soon(Fault::AmplifierSaturated), Soon::Ticks(ticks(motor::SATURATED_TICKS)));
+        assert_eq!(soon(Fault::LaserStuck), Soon::Ticks(ticks(LASER_SLACK_TICKS + 1)));
+    }
+
+    #[test]
+    fn a_tick_is_late_over_one_and_a_half_of_its_length() {
+        assert!(!is_late(1.0) && !is_late(1.5));
+        assert!(is_late(1.51) && is_late(f32::INFINITY) && is_late(f32::NAN));
+    }
 }

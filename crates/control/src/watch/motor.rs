@@ -4,7 +4,7 @@ use tracelight_rig::{Fault, TICK_S};
 const SATURATED: f32 = 0.999;
 /// For how long an amplifier may give all it has in one direction, ticks: the longest move of a joint at full torque,
 /// half a turn, speeds up for 0.64 s and is planned at less; what goes on for half of that is stuck.
-const SATURATED_TICKS: u32 = 300;
+pub(super) const SATURATED_TICKS: u32 = 300;
 
 /// How much a motor may be driven.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -36,6 +36,8 @@ pub enum Soon {
     InTheTick,
     /// After so many ticks.
     Ticks(u16),
+    /// Dark at once, a fault once that has gone on for so many ticks.
+    DarkThen(u16),
     /// As the words say, where it depends on more than time.
     Words(&'static str),
 }
@@ -60,6 +62,17 @@ pub enum Clears {
     FineAndArmed,
     /// The head is homed or found again, then somebody arms.
     FoundAndArmed,
+}
+
+impl core::fmt::Display for Soon {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Soon::InTheTick => f.write_str("in the tick"),
+            Soon::Ticks(ticks) => write!(f, "after {ticks} ticks"),
+            Soon::DarkThen(ticks) => write!(f, "dark at once, a fault after {ticks} ticks of it"),
+            Soon::Words(words) => f.write_str(words),
+        }
+    }
 }
 
 impl Motors {

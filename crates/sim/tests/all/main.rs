@@ -8,6 +8,7 @@ mod closed_loop;
 mod disturbances;
 mod faults;
 mod homing;
+mod inputs;
 mod recovery;
 mod shapes;
 mod tracking;
