@@ -11,6 +11,7 @@ mod circles;
 mod contract;
 mod device;
 mod examples;
+mod fault_page;
 mod formats;
 mod friction;
 mod homing;
