@@ -30,11 +30,13 @@ pub enum Fault {
     EstimateDiverged,
     /// Something that should be a number is none.
     NotANumber,
+    /// A plan went on asking for light where that had stood as long as it may.
+    LightStood,
 }
 
 impl Fault {
     /// Every fault.
-    pub const ALL: [Fault; 14] = [
+    pub const ALL: [Fault; 15] = [
         Fault::EncoderJumped,
         Fault::EncoderDead,
         Fault::EncoderNoisy,
@@ -49,6 +51,7 @@ impl Fault {
         Fault::HostLost,
         Fault::EstimateDiverged,
         Fault::NotANumber,
+        Fault::LightStood,
     ];
 
     /// Stable code for scripts and `explain`.
@@ -68,6 +71,7 @@ impl Fault {
             Fault::HostLost => "host-lost",
             Fault::EstimateDiverged => "estimate-diverged",
             Fault::NotANumber => "not-a-number",
+            Fault::LightStood => "light-stood",
         }
     }
 
@@ -87,7 +91,8 @@ impl Fault {
             | Fault::LimitReached
             | Fault::HoldTimedOut
             | Fault::LaserStuck
-            | Fault::HostLost => false,
+            | Fault::HostLost
+            | Fault::LightStood => false,
         }
     }
 }
@@ -117,11 +122,13 @@ pub enum Darkness {
     Doubtful = 8,
     /// The rig was powered up and not told since where its joints stand: nobody knows where light would fall.
     Unhomed = 9,
+    /// As much light has fallen in this place as may.
+    Standing = 10,
 }
 
 impl Darkness {
     /// Every reason, in bit order.
-    pub const ALL: [Darkness; 10] = [
+    pub const ALL: [Darkness; 11] = [
         Darkness::Planned,
         Darkness::Disarmed,
         Darkness::FollowingError,
@@ -132,6 +139,7 @@ impl Darkness {
         Darkness::Faulted,
         Darkness::Doubtful,
         Darkness::Unhomed,
+        Darkness::Standing,
     ];
 
     /// Stable code for logs and `explain`.
@@ -147,6 +155,7 @@ impl Darkness {
             Darkness::Faulted => "faulted",
             Darkness::Doubtful => "doubtful",
             Darkness::Unhomed => "unhomed",
+            Darkness::Standing => "standing",
         }
     }
 }

@@ -55,6 +55,9 @@ pub const fn fault_words(fault: Fault) -> &'static str {
         Fault::NotANumber => {
             "A measurement, a setpoint or a law's result was no number: look for a broken edge stamp, and report it if there is none."
         }
+        Fault::LightStood => {
+            "The job went on asking for light where that had stood as long as it may: draw faster, or with a weaker laser and a longer safety.standing in the rig file."
+        }
         _ => "The rig stopped the job for a reason this version has no words for.",
     }
 }
@@ -77,6 +80,7 @@ pub const fn darkness_words(reason: Darkness) -> &'static str {
         Darkness::OutOfBounds => "A setpoint lay outside the joint limits.",
         Darkness::Stale => "There was no valid setpoint for this tick.",
         Darkness::Faulted => "A fault is latched.",
+        Darkness::Standing => "As much light had fallen in this place as may.",
     }
 }
 
