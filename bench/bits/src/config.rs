@@ -27,7 +27,7 @@ pub fn report() -> Config {
         laser_off_ticks: 3,
         host_silence_ticks: 50,
         standing_ticks: 1000,
-        standing_radius_rad: 0.001_860_603_7,
+        standing_radius_rad: 0.0014771085,
     }
 }
 

@@ -87,7 +87,7 @@ impl Controller {
             Command::Home(counts) => self.home(state, counts),
             Command::Unhome => {
                 state.supervisor.unhome();
-                state.budget.turn();
+                state.budget.turn(&self.config);
                 state.player.hold();
             }
             Command::Abandon => {
@@ -115,7 +115,7 @@ impl Controller {
             if state.supervisor.blind {
                 // what was believed is not worth keeping
                 state.servo = state.servo.anew(&self.config, &state.sensed.encoders);
-                state.budget.turn();
+                state.budget.turn(&self.config);
             }
             state.watch.rearm(&state.sensed, state.servo.estimates());
             // from wherever it fell to, gently
@@ -163,7 +163,7 @@ impl Controller {
         state.player = Player::resting_at(state.servo.position_rad());
         state.way_back = None;
         state.paces = PanTilt::default();
-        state.budget.turn();
+        state.budget.turn(&self.config);
         state.supervisor.home();
     }
 

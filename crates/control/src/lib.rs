@@ -7,6 +7,7 @@
 //!                                      ├─► Law (feedback + feedforward) ─► volts
 //! Segment ─────► Player ───► setpoint ─┤
 //!                                      └─► Supervisor + interlock ───────► gate, clock
+//!                                          light budget
 //! ```
 //!
 //! `no_std`, `f32`, no allocation, no panic, constant work a tick: the law that is simulated is, bit for bit, the law
@@ -31,6 +32,7 @@ mod quirks;
 mod recent_light;
 mod return_path;
 mod servo;
+mod squares;
 mod supervisor;
 mod watch;
 

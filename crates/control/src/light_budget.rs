@@ -18,12 +18,11 @@
 //! A direction is a place on the unit sphere, so light straight up stands, whatever pan does. What lies within r of each other on a wall at
 //! distance d lies within r / d as the head sees it, wherever on that wall it is.
 
-use core::f32::consts::{FRAC_PI_2, PI, TAU};
-
 use tracelight_rig::{PanTilt, TICK_S};
 
 use crate::config::Config;
 use crate::recent_light::RecentLight;
+use crate::squares::{Common, Direction, Rows, Square};
 
 /// Squares that a grid remembers.
 const SQUARES: usize = 32;
@@ -35,6 +34,8 @@ const WIDTH: f32 = 4.1;
 const OPEN_AGAIN: f32 = 0.5;
 /// Ticks a laser may shine longer than its relay is believed to let it.
 const SLACK_TICKS: u32 = 2;
+/// How often it is looked up at most what any square holds, ticks: it takes as long as some ticks else.
+const LOOK_UP_TICKS: u32 = 64;
 /// How long a plan may ask for light in vain, ticks.
 const PATIENCE_TICKS: u32 = 100;
 
@@ -47,6 +48,13 @@ pub struct LightBudget {
     now: u32,
     grids: [Grid; 4],
     rows: Rows,
+    /// What lies in the squares that were entered last,
+    common: Common,
+    /// and for how many ticks until the last one there was light that is not charged to them yet.
+    pending: u32,
+    /// No square holds more, ticks; as it was looked up then, and what was lit since.
+    bound: f32,
+    looked_up: u32,
     /// What any square may hold that is in no table, and all of the light of a head of which nobody knows where it points.
     beneath: Spent,
     /// Light of a head of which nobody knows where it points.
@@ -70,6 +78,10 @@ impl LightBudget {
             now: 0,
             grids: [Grid::EMPTY; 4],
             rows: Rows::NONE,
+            common: Common::NONE,
+            pending: 0,
+            bound: 0.0,
+            looked_up: 0,
             beneath: Spent::NOTHING,
             recent: RecentLight::NONE,
             shut_ticks: u32::MAX,
@@ -91,21 +103,41 @@ impl LightBudget {
         // a relay may close at once and open late; where it is watched, the worse of the two counts
         let may_shine = self.shut_ticks <= config.laser_off_ticks + SLACK_TICKS;
         let shines = may_shine || laser_on == Some(true);
-        self.recent.tick(shines && angle_rad.is_none());
-        if !shines {
-            return;
+        if angle_rad.is_none() || !self.recent.is_dark() {
+            self.recent.tick(shines && angle_rad.is_none());
         }
-        let most = most(config);
-        match angle_rad.and_then(Direction::of) {
-            Some(direction) => {
-                let squares = self.rows.squares(direction, WIDTH * config.standing_radius_rad);
-                for (grid, square) in self.grids.iter_mut().zip(squares) {
-                    let dropped = grid.enter(square, self.now, &self.beneath);
-                    grid.latest().charge(self.now, most);
-                    self.beneath.rise_to(&dropped, self.now);
-                }
-            }
-            None => self.beneath.charge(self.now, most),
+        if !shines {
+            return self.settle(config, self.now.wrapping_sub(1));
+        }
+        self.bound += 1.0;
+        match angle_rad {
+            Some(angle_rad) if self.common.holds(angle_rad) => self.pending += 1,
+            _ => self.charge(config, angle_rad.and_then(Direction::of)),
+        }
+    }
+
+    /// Charges this tick to where the beam goes that went elsewhere before.
+    #[inline(never)] // most ticks do not come here
+    fn charge(&mut self, config: &Config, direction: Option<Direction>) {
+        self.settle(config, self.now.wrapping_sub(1));
+        let Some(direction) = direction else {
+            return self.beneath.charge(self.now, 1, most(config));
+        };
+        let (squares, common) = self.rows.squares(direction, WIDTH * config.standing_radius_rad);
+        self.common = common;
+        for (grid, square) in self.grids.iter_mut().zip(squares) {
+            let dropped = grid.enter(square, self.now, &self.beneath);
+            grid.latest().charge(self.now, 1, most(config));
+            self.beneath.rise_to(&dropped, self.now);
+        }
+    }
+
+    /// Charges what is pending, of which that tick was the last.
+    fn settle(&mut self, config: &Config, last: u32) {
+        if self.pending > 0 {
+            let most = most(config);
+            self.grids.iter_mut().for_each(|grid| grid.latest().charge(last, self.pending, most));
+            self.pending = 0;
         }
     }
 
@@ -116,21 +148,47 @@ impl LightBudget {
         let Some((angle_rad, rate_rad_s)) = at else {
             return self.beneath.is_shut(self.now, most) || self.recent.left_ticks() <= tail_ticks(config);
         };
+        if self.bound < most {
+            return !(angle_rad.pan + angle_rad.tilt).is_finite();
+        }
+        self.is_spent_near(config, (angle_rad, rate_rad_s))
+    }
+
+    /// The same where some square may have spent its budget.
+    #[inline(never)] // most ticks do not come here
+    fn is_spent_near(
+        &mut self,
+        config: &Config,
+        (angle_rad, rate_rad_s): (PanTilt<f32>, PanTilt<f32>),
+    ) -> bool {
+        self.settle(config, self.now);
+        self.look_up(most(config));
         let later_s = tail_ticks(config) as f32 * TICK_S;
         let later_rad = PanTilt::from_fn(|j| angle_rad[j] + later_s * rate_rad_s[j]);
-        let (Some(here), Some(there)) = (Direction::of(angle_rad), Direction::of(later_rad)) else {
-            return true;
-        };
-        let width_rad = WIDTH * config.standing_radius_rad;
-        let here = self.rows.squares(here, width_rad);
-        let there = self.rows.squares(there, width_rad);
-        let (now, mut beneath) = (self.now, self.beneath);
-        let is_new_shut = beneath.is_shut(now, most);
-        self.beneath = beneath;
-        let mut is_shut = |k: usize, square: Square| {
-            self.grids[k].find(square).map_or(is_new_shut, |spent| spent.is_shut(now, most))
-        };
-        (0..4).any(|k| is_shut(k, here[k]) || (there[k] != here[k] && is_shut(k, there[k])))
+        [angle_rad, later_rad].into_iter().any(|place| self.is_shut(config, place))
+    }
+
+    /// Whether any square that a place lies in has spent its budget.
+    fn is_shut(&mut self, config: &Config, place_rad: PanTilt<f32>) -> bool {
+        let Some(direction) = Direction::of(place_rad) else { return true };
+        let (squares, _) = self.rows.squares(direction, WIDTH * config.standing_radius_rad);
+        let (now, most) = (self.now, most(config));
+        let is_new_shut = self.beneath.is_shut(now, most);
+        let mut squares = self.grids.iter_mut().zip(squares);
+        squares.any(|(grid, square)| grid.find(square).map_or(is_new_shut, |spent| spent.is_shut(now, most)))
+    }
+
+    /// Looks up now and then what any square holds at most.
+    fn look_up(&mut self, most: f32) {
+        if self.now.wrapping_sub(self.looked_up) < LOOK_UP_TICKS {
+            return;
+        }
+        let now = self.now;
+        let mut holds = |spent: &mut Spent| if spent.is_shut(now, most) { most } else { spent.held(now) };
+        let beneath = holds(&mut self.beneath);
+        self.bound =
+            self.grids.iter_mut().flat_map(|grid| &mut grid.spent).map(holds).fold(beneath, f32::max);
+        self.looked_up = now;
     }
 
     /// Whether a head of which nobody knows where it points may light all of a dot of so many ticks.
@@ -142,7 +200,9 @@ impl LightBudget {
     }
 
     /// Angles mean other directions from now on: what was spent somewhere may have been spent anywhere.
-    pub(crate) fn turn(&mut self) {
+    pub(crate) fn turn(&mut self, config: &Config) {
+        self.settle(config, self.now);
+        self.common = Common::NONE;
         for grid in &mut self.grids {
             for spent in &grid.spent {
                 self.beneath.rise_to(spent, self.now);
@@ -180,7 +240,6 @@ fn most(config: &Config) -> f32 {
 /// What light was charged to a square, less what has leaked.
 #[derive(Clone, Copy, Debug)]
 struct Spent {
-    square: Square,
     /// Ticks, when it was charged last.
     held: f32,
     /// That tick.
@@ -190,17 +249,19 @@ struct Spent {
 }
 
 impl Spent {
-    const NOTHING: Self = Self { square: Square::NONE, held: 0.0, charged: 0, shut: false };
+    const NOTHING: Self = Self { held: 0.0, charged: 0, shut: false };
 
     /// What it holds after that tick, if it was dark, or charged already.
     fn held(&self, now: u32) -> f32 {
         (self.held - LEAK * now.wrapping_sub(self.charged) as f32).max(0.0)
     }
 
-    fn charge(&mut self, now: u32, most: f32) {
-        // this tick is lit, and does not leak
-        self.held = if self.charged == now { self.held } else { self.held(now.wrapping_sub(1)) } + 1.0;
-        self.charged = now;
+    /// It was lit in so many ticks, of which that was the last.
+    fn charge(&mut self, last: u32, ticks: u32, most: f32) {
+        // a new one holds what any may in its first lit tick already
+        let dark = last.wrapping_sub(self.charged).saturating_sub(ticks);
+        self.held = (self.held - LEAK * dark as f32).max(0.0) + ticks as f32;
+        self.charged = last;
         self.shut |= self.held >= most;
     }
 
@@ -223,113 +284,48 @@ impl Spent {
 /// One of four ways to part all directions into squares, and what those hold that light fell into.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
+    squares: [Square; SQUARES],
     spent: [Spent; SQUARES],
     latest: usize,
 }
 
 impl Grid {
-    const EMPTY: Self = Self { spent: [Spent::NOTHING; SQUARES], latest: 0 };
+    const EMPTY: Self =
+        Self { squares: [Square::NONE; SQUARES], spent: [Spent::NOTHING; SQUARES], latest: 0 };
 
     fn latest(&mut self) -> &mut Spent {
         &mut self.spent[self.latest % SQUARES]
     }
 
-    fn find(&mut self, square: Square) -> Option<&mut Spent> {
-        if self.latest().square == square {
-            return Some(self.latest());
+    /// Where a square stands in the table.
+    fn place(&self, square: Square) -> Option<usize> {
+        if self.squares[self.latest % SQUARES] == square {
+            return Some(self.latest);
         }
-        self.spent.iter_mut().find(|spent| spent.square == square)
+        // without a branch: all at once
+        let places = (0_u32..).zip(&self.squares);
+        let place = places.fold(u32::MAX, |found, (k, &other)| if other == square { k } else { found });
+        (place != u32::MAX).then_some(place as usize)
+    }
+
+    fn find(&mut self, square: Square) -> Option<&mut Spent> {
+        self.place(square).map(|place| &mut self.spent[place % SQUARES])
     }
 
     /// Makes a square the latest; what is no longer remembered for it, if anything.
     fn enter(&mut self, square: Square, now: u32, beneath: &Spent) -> Spent {
-        if self.latest().square == square {
-            return Spent::NOTHING;
-        }
-        if let Some(place) = self.spent.iter().position(|spent| spent.square == square) {
+        if let Some(place) = self.place(square) {
             self.latest = place;
             return Spent::NOTHING;
         }
+        // the one that was entered longest ago, as a rule, has leaked empty
+        let next = (self.latest + 1) % SQUARES;
         let least = |&a: &usize, &b: &usize| self.spent[a].held(now).total_cmp(&self.spent[b].held(now));
-        self.latest = (0..SQUARES).min_by(least).unwrap_or(0);
-        core::mem::replace(self.latest(), Spent { square, ..*beneath })
-    }
-}
-
-/// Number of a square in its grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Square {
-    row: i32,
-    column: i32,
-}
-
-impl Square {
-    /// None of any grid.
-    const NONE: Self = Self { row: i32::MIN, column: 0 };
-}
-
-/// Which way the beam goes: tilt not beyond straight up or down.
-#[derive(Clone, Copy)]
-struct Direction {
-    pan_turns: f32,
-    tilt_rad: f32,
-}
-
-impl Direction {
-    /// `None` for what is no number, or further round than any joint goes.
-    fn of(angle_rad: PanTilt<f32>) -> Option<Self> {
-        if !(angle_rad.pan.abs() < 10.0 * TAU && angle_rad.tilt.abs() < PI) {
-            return None;
-        }
-        // beyond the pole it points where another pan would have it, from the other side
-        let (pan_rad, tilt_rad) = match angle_rad.tilt {
-            tilt if tilt > FRAC_PI_2 => (angle_rad.pan + PI, PI - tilt),
-            tilt if tilt < -FRAC_PI_2 => (angle_rad.pan + PI, -PI - tilt),
-            tilt => (angle_rad.pan, tilt),
+        self.latest = match self.spent[next].held(now) > 0.0 {
+            true => (0..SQUARES).min_by(least).unwrap_or(next),
+            false => next,
         };
-        Some(Self { pan_turns: pan_rad / TAU, tilt_rad })
+        self.squares[self.latest % SQUARES] = square;
+        core::mem::replace(self.latest(), *beneath)
     }
-}
-
-/// How many squares the rows have that the beam was in last: of the grids whose rows begin straight ahead, and of those beside them.
-#[derive(Clone, Copy, Debug)]
-struct Rows {
-    row: [i32; 2],
-    across: [f32; 2],
-}
-
-impl Rows {
-    const NONE: Self = Self { row: [i32::MIN; 2], across: [1.0; 2] };
-
-    /// The square of each grid that a direction lies in.
-    fn squares(&mut self, direction: Direction, width_rad: f32) -> [Square; 4] {
-        let mut squares = [Square::NONE; 4];
-        for tall in 0..2 {
-            let row = floor(direction.tilt_rad / width_rad + 0.5 * tall as f32);
-            if row != self.row[tall] {
-                self.row[tall] = row;
-                self.across[tall] = across((row as f32 - 0.5 * tall as f32) * width_rad, width_rad);
-            }
-            for wide in 0..2 {
-                let along = (direction.pan_turns - floor(direction.pan_turns) as f32) * self.across[tall];
-                let column = floor(along + 0.5 * wide as f32);
-                // once round
-                let column = if column as f32 >= self.across[tall] { 0 } else { column };
-                squares[2 * tall + wide] = Square { row, column };
-            }
-        }
-        squares
-    }
-}
-
-/// How many squares fit round a row that begins at that tilt, rad, where it is narrowest.
-fn across(from_rad: f32, width_rad: f32) -> f32 {
-    let furthest_rad = from_rad.abs().max((from_rad + width_rad).abs());
-    libm::floorf(TAU * libm::cosf(furthest_rad) / width_rad).max(1.0)
-}
-
-/// The whole number below.
-fn floor(value: f32) -> i32 {
-    let towards_zero = value as i32;
-    towards_zero - i32::from(towards_zero as f32 > value)
 }

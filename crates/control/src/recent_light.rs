@@ -34,6 +34,11 @@ impl RecentLight {
         self.sum += u32::from(is_lit);
     }
 
+    /// Whether there was none: then no tick needs to pass.
+    pub(crate) const fn is_dark(&self) -> bool {
+        self.sum == 0
+    }
+
     /// Ticks of light that are left.
     pub(crate) const fn left_ticks(&self) -> u32 {
         Self::MOST_TICKS.saturating_sub(self.sum)

@@ -56,8 +56,12 @@ impl RigConfig {
             laser_off_ticks: ticks(self.model.relay.off_s),
             host_silence_ticks: ticks(self.control.host_silence_s),
             standing_ticks: self.light.standing_ticks(),
-            standing_radius_rad: standing_radius_rad(self.model.encoder.count_rad()) as f32,
+            standing_radius_rad: self.standing_radius_rad() as f32,
         }
+    }
+
+    fn standing_radius_rad(&self) -> f64 {
+        standing_radius_rad(self.model.encoder.count_rad(), self.control.observer_in_use())
     }
 
     fn axis(&self, joint: Joint) -> AxisConfig {

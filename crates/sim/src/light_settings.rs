@@ -2,6 +2,8 @@
 
 use tracelight_rig::TICK_F64_S;
 
+use crate::laws::ObserverName;
+
 /// Energy that may fall in one place where the rig file says nothing else, J: what a class 2 laser gives in a second.
 const PLACE_J: f64 = 1e-3;
 /// Longest that light stands where the rig file says nothing else, s, however weak it is.
@@ -10,8 +12,11 @@ const USUAL_S: f64 = 1.0;
 const PLACE_M: f64 = 1e-3;
 /// of a wall that is no nearer than this, m: 3 ft, the usual distance. Nearer the same angle is a smaller place.
 const USUAL_DISTANCE_M: f64 = 0.9144;
-/// How far a joint may be from where it is believed to be, counts: one that rests is somewhere in its count.
-const BELIEVED_COUNTS: f64 = 0.5;
+/// How far what is believed of a joint that stays in a place may wander about where it is, counts: one that rests is believed to rest, wherever in its
+/// count; by a Kalman filter it is followed through it,
+const FOLLOWED_COUNTS: f64 = 0.25;
+/// by other observers from count to count.
+const COUNTED_COUNTS: f64 = 0.5;
 
 /// A laser, and how long its light may stand in one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,10 +50,11 @@ impl LightSettings {
     }
 }
 
-/// Radius of a place as the head sees it, rad, with encoders of that count, rad: light may stand in any disc of 1 mm on a wall 3 ft away
-/// or further, wherever in its count each joint truly is.
-pub(crate) fn standing_radius_rad(count_rad: f64) -> f64 {
-    PLACE_M / USUAL_DISTANCE_M + BELIEVED_COUNTS * count_rad
+/// Radius of a place as the head sees it, rad, with encoders of that count, rad: it holds any disc of 1 mm on a wall 3 ft away or further,
+/// and by how much what is believed of the joints wanders.
+pub(crate) fn standing_radius_rad(count_rad: f64, observer: ObserverName) -> f64 {
+    let wanders = if observer == ObserverName::Kalman { FOLLOWED_COUNTS } else { COUNTED_COUNTS };
+    PLACE_M / USUAL_DISTANCE_M + wanders * count_rad
 }
 
 /// Class of a laser by IEC 60825-1.

@@ -10,6 +10,7 @@
 //! | amplifier saturated | 300 ticks at its limit, one way |
 //! | motor hot | I²t over what it stands |
 //! | laser stuck | three ticks after it should have switched |
+//! | light stood | 100 ticks in which a plan asks for light where the [budget](crate::LightBudget) is spent: dark at once |
 //! | host lost | after [`Config::host_silence_ticks`](crate::Config) |
 //! | not a number | in the tick |
 

@@ -7,7 +7,7 @@ use tracelight_stroke::Point;
 /// Radius of the discs that are asked about, m,
 const RADIUS_M: f64 = 1e-3;
 /// and how far apart those lie that are counted. Each of them is larger by so much that it holds any that lies between.
-const STEP_M: f64 = 0.5e-3;
+const STEP_M: f64 = 0.25e-3;
 
 /// Lit ticks in excess of a tenth of the time in any window that ends now, of each disc.
 pub(crate) struct Discs {

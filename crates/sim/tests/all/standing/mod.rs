@@ -2,6 +2,7 @@
 
 mod discs;
 mod host;
+mod places;
 
 use tracelight_rig::{Command, Darkness, Fault, PanTilt, Rig, Segment};
 use tracelight_sim::{Feeder, RigConfig, Simulated, SimulatedRig, Tick, first_standing};
