@@ -67,8 +67,8 @@ pub fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
     if !entries.iter().any(|entry| entry.path == STANDING) {
         config.light.standing_s = LightSettings::usual_standing_s(config.light.power_w);
     }
-    if let Some(trouble) = impossible_laser(&config.light) {
-        return Err(format!("{file}: [laser] {trouble}"));
+    if let Some(trouble) = impossible_laser(&config) {
+        return Err(format!("{file}: {trouble}"));
     }
     for (half, model) in [("model", &config.model), ("truth", &config.truth.model)] {
         if let Some(trouble) = impossible(model) {
@@ -81,15 +81,23 @@ pub fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
     Ok(config)
 }
 
-/// A laser whose label does not tell of its power.
-fn impossible_laser(light: &LightSettings) -> Option<String> {
-    let LightSettings { class, power_w, .. } = *light;
-    (power_w > class.most_w()).then(|| {
-        format!(
-            "power: {} mW is more than the {} mW of class {}: set laser.class to what its label says",
+/// A laser whose label does not tell of its power, or one that is not dark as soon as it must be.
+fn impossible_laser(config: &RigConfig) -> Option<String> {
+    const SHORTEST_S: f64 = 0.01; // a dot that is light at all, and what a relay may take longer
+    let LightSettings { class, power_w, standing_s } = config.light;
+    if power_w > class.most_w() {
+        return Some(format!(
+            "[laser] power: {} mW is more than the {} mW of class {}: set laser.class to what its label says",
             1e3 * power_w,
             1e3 * class.most_w(),
             class.name()
+        ));
+    }
+    let relay_s = config.model.relay.off_s;
+    (standing_s < relay_s + SHORTEST_S).then(|| {
+        format!(
+            "[safety] standing: light may stand for {standing_s} s, and this laser's relay takes {relay_s} s to open: it is too slow for \
+             that light, or model.relay.off is not its own"
         )
     })
 }
@@ -398,6 +406,8 @@ mod tests {
         assert_eq!(stands("[laser]\nclass = \"4\"\npower = \"2W\"\n"), 0.02);
         let beyond = error("[laser]\npower = \"5mW\"\n");
         assert!(beyond.contains("[laser] power: 5 mW is more than the 1 mW of class 2"), "{beyond}");
+        let slow = error("[laser]\nclass = \"4\"\npower = \"2W\"\n[model.relay]\noff = \"30ms\"\n");
+        assert!(slow.contains("[safety] standing: light may stand for 0.02 s"), "{slow}");
         assert!(error("[safety]\nstanding = \"20s\"\n").contains("must be from 0.02s to 10s"));
         assert!(error("[laser]\nclass = 2\n").contains("must be one of 1, 1M, 2"));
         // a file that is written goes on following

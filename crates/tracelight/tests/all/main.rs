@@ -26,4 +26,5 @@ mod quality;
 mod reproduce;
 mod simulate;
 mod sizes;
+mod standing;
 mod support;
