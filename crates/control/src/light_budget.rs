@@ -184,7 +184,7 @@ impl LightBudget {
             return;
         }
         let now = self.now;
-        let mut holds = |spent: &mut Spent| if spent.is_shut(now, most) { most } else { spent.held(now) };
+        let holds = |spent: &mut Spent| if spent.is_shut(now, most) { most } else { spent.held(now) };
         let beneath = holds(&mut self.beneath);
         self.bound =
             self.grids.iter_mut().flat_map(|grid| &mut grid.spent).map(holds).fold(beneath, f32::max);
