@@ -43,7 +43,7 @@ fn light_straight_up_or_behind_is_in_one_place_however_joints_turn_there() {
     // tilt at the pole while pan goes round, pan from either side to what is behind, and one place from over the pole
     let up = |tick: u32| PanTilt::new(1e-3 * tick as f32 % 6.0 - 3.0, FRAC_PI_2 as f32);
     assert!(most(&config, up, PanTilt::new(0.0, FRAC_PI_2 as f32)) <= 500.0);
-    let behind = |tick: u32| PanTilt::new(if tick % 2 == 0 { PI as f32 } else { -PI as f32 }, 0.1);
+    let behind = |tick: u32| PanTilt::new(if tick.is_multiple_of(2) { PI as f32 } else { -PI as f32 }, 0.1);
     assert!(most(&config, behind, PanTilt::new(PI as f32, 0.1)) <= 500.0);
     let over = |tick: u32| match tick % 2 {
         0 => PanTilt::new(0.3, 1.5),
