@@ -26,6 +26,8 @@ pub fn report() -> Config {
         laser_on_ticks: 5,
         laser_off_ticks: 3,
         host_silence_ticks: 50,
+        standing_ticks: 1000,
+        standing_radius_rad: 0.0014771085,
     }
 }
 

@@ -18,6 +18,10 @@ pub struct Config {
     pub laser_off_ticks: u32,
     /// Ticks a host that has said it is there may be silent.
     pub host_silence_ticks: u32,
+    /// How long light may stand in one place, ticks.
+    pub standing_ticks: u32,
+    /// Radius of a place as the head sees it, rad.
+    pub standing_radius_rad: f32,
 }
 
 impl Config {

@@ -1,10 +1,12 @@
 use tracelight_rig::{
-    Actuation, Command, Fault, Joint, Measurement, PanTilt, Phase, Segment, Sensed, Telemetry,
+    Actuation, Command, Darkness, DarknessSet, Fault, Joint, Measurement, PanTilt, Phase, Segment, Sensed,
+    Telemetry,
 };
 
 use crate::config::Config;
 use crate::creep::Pace;
 use crate::estimate::Estimate;
+use crate::light_budget::{LightBudget, longest_dot_ticks};
 use crate::player::{Played, Player};
 use crate::return_path::ReturnPath;
 use crate::servo::{Reference, Servo};
@@ -26,6 +28,7 @@ pub struct State {
     watch: Watch,
     player: Player,
     supervisor: Supervisor,
+    budget: LightBudget,
     way_back: Option<ReturnPath>,
     paces: PanTilt<Pace>,
     /// What is added to what the encoders read, since the head was homed.
@@ -62,6 +65,7 @@ impl Controller {
             watch: Watch::new(sensed, servo.estimates()),
             player: Player::resting_at(servo.position_rad()),
             supervisor: Supervisor::default(),
+            budget: LightBudget::new(),
             way_back: None,
             paces: PanTilt::default(),
             home: PanTilt::default(),
@@ -78,11 +82,12 @@ impl Controller {
                 state.supervisor.disarm();
                 state.player.hold();
             }
-            Command::Point(ticks) => state.supervisor.point(u32::from(ticks)),
+            Command::Point(ticks) => self.point(state, u32::from(ticks)),
             Command::Home(counts) if !self.may_home(state, counts) => return Err(command),
             Command::Home(counts) => self.home(state, counts),
             Command::Unhome => {
                 state.supervisor.unhome();
+                state.budget.turn(&self.config);
                 state.player.hold();
             }
             Command::Abandon => {
@@ -110,6 +115,7 @@ impl Controller {
             if state.supervisor.blind {
                 // what was believed is not worth keeping
                 state.servo = state.servo.anew(&self.config, &state.sensed.encoders);
+                state.budget.turn(&self.config);
             }
             state.watch.rearm(&state.sensed, state.servo.estimates());
             // from wherever it fell to, gently
@@ -119,6 +125,17 @@ impl Controller {
             state.player.reopen();
         }
         state.supervisor.arm();
+    }
+
+    /// A dot; of a head that is not homed, one that there is room for, or none.
+    fn point(&self, state: &mut State, ticks: u32) {
+        if state.supervisor.homed {
+            return state.supervisor.point(ticks);
+        }
+        let ticks = ticks.min(longest_dot_ticks(&self.config));
+        if state.supervisor.phase != Phase::Dark || state.budget.has_room(&self.config, ticks) {
+            state.supervisor.point(ticks);
+        }
     }
 
     /// Whether the joints rest, unarmed, and may be at these counts.
@@ -146,6 +163,7 @@ impl Controller {
         state.player = Player::resting_at(state.servo.position_rad());
         state.way_back = None;
         state.paces = PanTilt::default();
+        state.budget.turn(&self.config);
         state.supervisor.home();
     }
 
@@ -168,7 +186,8 @@ impl Controller {
         let clock = state.supervisor.tick(&self.config, &situation);
         let command_v = self.drive(state, &played);
         // last of all: whatever this tick has shown is known
-        let darkness = state.supervisor.darkness(&self.config, &situation);
+        let mut darkness = state.supervisor.darkness(&self.config, &situation);
+        self.keep_budget(state, &estimates, &mut darkness);
         let gate = darkness.is_empty();
         let enable = state.supervisor.may_light();
         state.watch.light(gate);
@@ -202,9 +221,27 @@ impl Controller {
             return;
         }
         state.servo.observe(&self.config, &sensed.encoders);
+        let known_rad = state.supervisor.homed.then(|| state.servo.position_rad());
+        state.budget.tick(&self.config, known_rad, state.watch.gate(), sensed.laser_on);
+        if state.budget.is_asked_too_long() {
+            state.supervisor.trip(Fault::LightStood);
+        }
         if let Some(fault) = state.watch.sense(&self.config, &state.servo, sensed) {
             state.supervisor.trip(fault);
         }
+    }
+
+    /// Makes it dark where light would stand, if it were not dark anyway.
+    fn keep_budget(&self, state: &mut State, estimates: &PanTilt<Estimate>, darkness: &mut DarknessSet) {
+        let place = state.supervisor.homed.then(|| {
+            (
+                estimates.map(|estimate| estimate.position_rad),
+                estimates.map(|estimate| estimate.velocity_rad_s),
+            )
+        });
+        let stands = darkness.is_empty() && state.budget.is_spent(&self.config, place);
+        darkness.insert_if(stands, Darkness::Standing);
+        state.budget.ask(stands && state.supervisor.phase == Phase::Tracing);
     }
 
     fn situation<'a>(&self, state: &State, played: &'a Played) -> Situation<'a> {

@@ -7,6 +7,7 @@
 //!                                      ├─► Law (feedback + feedforward) ─► volts
 //! Segment ─────► Player ───► setpoint ─┤
 //!                                      └─► Supervisor + interlock ───────► gate, clock
+//!                                          light budget
 //! ```
 //!
 //! `no_std`, `f32`, no allocation, no panic, constant work a tick: the law that is simulated is, bit for bit, the law
@@ -22,13 +23,16 @@ mod controller;
 mod creep;
 mod estimate;
 mod law;
+mod light_budget;
 mod limit;
 mod model;
 mod observer;
 mod player;
 mod quirks;
+mod recent_light;
 mod return_path;
 mod servo;
+mod squares;
 mod supervisor;
 mod watch;
 
@@ -38,6 +42,7 @@ pub use controller::{Controller, State};
 pub use creep::Creep;
 pub use estimate::{Effort, Estimate, Learned};
 pub use law::{Biquad, Feedback, Feedforward, LawConfig, LeadLag, Pid, StateFeedback};
+pub use light_budget::LightBudget;
 pub use model::{FrictionModel, HeadModel};
 pub use observer::Observer;
 pub use observer::config::{LONGEST_INTERVAL_TICKS, ObserverConfig};

@@ -10,9 +10,7 @@ const RETURN_RATE_RAD_S: f32 = 0.02;
 const RETURN_TICKS: u32 = 60;
 /// Ticks without a hold after which the next one is another.
 const CALM_TICKS: u32 = 500;
-/// Longest dot of a head of which nobody knows where it points, ticks: a second.
-const UNHOMED_DOT_TICKS: u32 = 1000;
-/// and how long it is dark before another.
+/// How long it is dark at least from one dot of a head of which nobody knows where it points to another, ticks.
 const UNHOMED_REST_TICKS: u32 = 100;
 /// Distance in tolerances at which a head is lost on its way in the dark, too.
 const LOST_TOLERANCES: f32 = 10.0;
@@ -109,7 +107,7 @@ impl Supervisor {
             self.pointing_ticks = ticks;
         } else if self.pointing_ticks == 0 && self.dotless_ticks >= UNHOMED_REST_TICKS {
             // a host that asks again and again does not get light that stays
-            self.pointing_ticks = ticks.min(UNHOMED_DOT_TICKS);
+            self.pointing_ticks = ticks;
         }
     }
 

@@ -43,6 +43,12 @@ impl History {
         Self { switches_s: relay.on_s.max(relay.off_s) + SLACK_S, ticks: Vec::new(), first: 0 }
     }
 
+    /// After a change of the gate nobody knows for so long whether there is light, s.
+    #[must_use]
+    pub const fn switches_s(&self) -> f64 {
+        self.switches_s
+    }
+
     /// One more tick; they come in order.
     pub fn push(&mut self, telemetry: &Telemetry) {
         if self.ticks.is_empty() {

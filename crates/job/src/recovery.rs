@@ -26,7 +26,8 @@ const STOOD_MM: f64 = 0.7;
 const MOST_CHECKS: usize = 50;
 /// How long a dot is lit, ticks: as long as an image takes, and one after the other comes besides.
 const DOT_TICKS: u16 = 60;
-const LONGEST_DOT_TICKS: f64 = 3000.0;
+/// Share of the time that light may stand in one place which a dot takes at most: the stroke was there before.
+const DOT_SHARE: f64 = 0.8;
 
 impl Watched<'_> {
     /// What a jolt came to: the head is darkened, and one dot tells where it points. Nothing if that is where it should be, or nobody sees.
@@ -41,8 +42,9 @@ impl Watched<'_> {
         let _ = self.room.send(Command::Disarm);
         self.rest(REST_TICKS);
         let before = self.follower.marks.len();
-        let images = (2.0 * self.follower.period_s() / TICK_F64_S).min(LONGEST_DOT_TICKS);
-        let dot_ticks = DOT_TICKS + images as u16;
+        let images_s = 2.0 * self.follower.period_s() + f64::from(DOT_TICKS) * TICK_F64_S;
+        let most_s = DOT_SHARE * self.driving.rig.light.standing_s;
+        let dot_ticks = (images_s.min(most_s) / TICK_F64_S).round() as u16;
         if self.is_over() {
             return None;
         }

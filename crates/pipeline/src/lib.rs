@@ -18,7 +18,7 @@ pub use driving::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, Driving, REACHED
 pub use paper::Paper;
 pub use placed::{Page, Placed, Placing, place, sketch};
 pub use quality::QualityFigures;
-pub use schedule::{OrderBy, Schedule, check_speed, refused, schedule};
+pub use schedule::{OrderBy, Schedule, check_speed, check_standing, refused, schedule};
 pub use sheet::{PaperSeen, Straight, clockwise, page};
 pub use sketch::{Sketch, sketch_at};
 pub use tracing::{LeastLength, Straighten, Tracing};

@@ -1,5 +1,6 @@
 //! Strokes on the target to a plan: order, then time.
 
+use tracelight_sim::first_standing;
 use tracelight_stroke::{Effort, OrderOptions, Ordered, Point, order};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, PlanError, TravelTime, plan};
@@ -47,6 +48,7 @@ pub fn schedule(
     };
     let plan = plan(&ordered.drawing, &driving.machine, &driving.request).map_err(refused)?;
     check_speed(&plan, driving)?;
+    check_standing(&plan, driving)?;
     Ok(Schedule { ordered, plan })
 }
 
@@ -79,6 +81,29 @@ pub fn check_speed(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
         best / 0.3048
     );
     Err(Failure::failed("speed-unreachable", message))
+}
+
+/// A plan whose light would stand in one place for too long is refused before anything is lit: the rig would be dark there.
+///
+/// # Errors
+/// `standing-light`.
+pub fn check_standing(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
+    let Some(stands) = first_standing(&driving.rig, plan) else { return Ok(()) };
+    let stroke = stands.stroke.map_or_else(String::new, |stroke| format!(" of stroke {}", stroke + 1));
+    let light = &driving.rig.light;
+    let message = format!(
+        "the light would stand: {:.2} s within {:.0} mm of ({:.3}, {:.3}) m{stroke}, and {:.2} s are planned at most, since a laser of {} mW \
+         may stand {} s in one place; draw faster (--speed) or larger (--width), or, if eyes are safe from it, set laser.power \
+         and safety.standing in the rig file",
+        stands.stands_s,
+        1e3 * stands.about_rad * driving.pose.distance_m,
+        stands.spot.x,
+        stands.spot.y,
+        stands.most_s,
+        1e3 * light.power_w,
+        light.standing_s,
+    );
+    Err(Failure::failed("standing-light", message))
 }
 
 /// Why there is no plan, with its code.

@@ -115,6 +115,12 @@ darknesses! {
         words: "The rig was powered up and not homed since: nobody knew where light would fall.",
         advice: "Encoders count from where they are powered up. Have a camera find where it stands: tracelight calibrate head --home --camera …",
     }
+    Standing = 10 {
+        what: "As much light had fallen in this place as may.",
+        code: "standing",
+        words: "As much light had fallen in this place as may.",
+        advice: "Draw faster, or larger: a lit spot that stands, or comes back to its place again and again, is dark in time. safety.standing in the rig file sets the bound, by laser.power.",
+    }
 }
 
 const ASTRAY: &str = "See whether somebody or something pushes the head, whether --speed or --distance is more than it can hold, and whether the friction and gains in the rig file are its own. control.tolerance sets the bound.";
@@ -180,6 +186,7 @@ mod tests {
         (7, "faulted"),
         (8, "doubtful"),
         (9, "unhomed"),
+        (10, "standing"),
     ];
 
     #[test]

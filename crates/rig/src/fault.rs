@@ -252,6 +252,16 @@ faults! {
         clears: Clears::Armed,
         words: "A tick of the controller came too late: something else held its processor. See what runs beside it; if nothing does, report it.",
     }
+    LightStood = 22 {
+        what: "A plan went on asking for light where as much has fallen as may.",
+        code: "light-stood",
+        seen: "a plan asks for light where the light budget is spent, which darkens at once",
+        soon: Soon::DarkThen(100),
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "The job went on asking for light where that had stood as long as it may: draw faster, or with a weaker laser and a longer safety.standing in the rig file.",
+    }
 }
 
 /// Of which faults something is true, a bit each by number: a board asks without keeping the words of the table.
@@ -336,6 +346,7 @@ mod tests {
         (19, "supply-low"),
         (20, "too-hot"),
         (21, "tick-late"),
+        (22, "light-stood"),
     ];
 
     #[test]

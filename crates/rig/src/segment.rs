@@ -69,12 +69,12 @@ pub enum Command {
     /// there; after its end, a new one may begin at tick 0.
     Disarm,
     /// Let light out for so many ticks while nobody is armed, where a job was stopped on a lit stroke and the head rests: a dot, for whoever
-    /// looks where it truly is. Whatever else forbids light on a stroke forbids it here.
+    /// looks where it truly is. Whatever else forbids light on a stroke forbids it here; it ends before it would stand too long.
     Point(u16),
     /// The joints stand where encoders that know where zero is read these counts; from now on these do. For a head that was just powered up, which has no job yet
     /// and rests wherever it was left. Taken only while nobody is armed and the joints rest, and only of angles within their limits; the job is forgotten, the next one begins where the head
     /// stands ([`Abandon`](Self::Abandon) takes it to zero). Until it was told, a rig is *unhomed*: it moves by counts since power-up, no further than its joints' ranges are wide, and all the light it
-    /// lets out are dots ([`Point`](Self::Point), then anywhere, of a second at most and not one upon the other), by which somebody who looks finds where it points.
+    /// lets out are dots ([`Point`](Self::Point), then anywhere, of a second at most, all of them a second in any ten: one for which there is no room is not lit at all), by which somebody who looks finds where it points.
     Home(PanTilt<i32>),
     /// What was told of where the joints stand is not so, or nobody knows any more: be unhomed from now on, and dark.
     Unhome,

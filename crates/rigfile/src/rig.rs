@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use toml_edit::{Document, Item, TableLike, Value};
 use tracelight_plant::Wear;
-use tracelight_sim::{Identified, Model, RigConfig};
+use tracelight_sim::{Identified, LightSettings, Model, RigConfig};
 use tracelight_task::Failure;
 use tracelight_units as units;
 
 use crate::caret::Mark;
 use crate::found::identified_keys;
 use crate::hand_tuned::rig_keys;
-use crate::keys::{Choice, Key, Slot, model_keys};
+use crate::keys::{Choice, Key, STANDING, Slot, model_keys};
 use crate::text::{Kind, text_of};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
@@ -64,6 +64,12 @@ pub fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
         let place = Mark { file, text, span: entry.value.span() };
         set_other(&models, &mut config, entry, &place).unwrap_or_else(|| Err(unknown(file, text, entry)))?;
     }
+    if !entries.iter().any(|entry| entry.path == STANDING) {
+        config.light.standing_s = LightSettings::usual_standing_s(config.light.power_w);
+    }
+    if let Some(trouble) = impossible_laser(&config) {
+        return Err(format!("{file}: {trouble}"));
+    }
     for (half, model) in [("model", &config.model), ("truth", &config.truth.model)] {
         if let Some(trouble) = impossible(model) {
             return Err(format!("{file}: [{half}] {trouble}"));
@@ -73,6 +79,27 @@ pub fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
         return Err(format!("{file}: [truth.wear] {trouble}"));
     }
     Ok(config)
+}
+
+/// A laser whose label does not tell of its power, or one that is not dark as soon as it must be.
+fn impossible_laser(config: &RigConfig) -> Option<String> {
+    const SHORTEST_S: f64 = 0.01; // a dot that is light at all, and what a relay may take longer
+    let LightSettings { class, power_w, standing_s } = config.light;
+    if power_w > class.most_w() {
+        return Some(format!(
+            "[laser] power: {} mW is more than the {} mW of class {}: set laser.class to what its label says",
+            1e3 * power_w,
+            1e3 * class.most_w(),
+            class.name()
+        ));
+    }
+    let relay_s = config.model.relay.off_s;
+    (standing_s < relay_s + SHORTEST_S).then(|| {
+        format!(
+            "[safety] standing: light may stand for {standing_s} s, and this laser's relay takes {relay_s} s to open: it is too slow for \
+             that light, or model.relay.off is not its own"
+        )
+    })
 }
 
 /// Least inertia that can be stepped, kg m².
@@ -265,7 +292,15 @@ pub fn write(config: &RigConfig) -> String {
         section(&mut text, "identified", &identified_keys(), identified);
     }
     section(&mut text, "", &rig_keys(), &mut config);
+    follow_power(&mut text, &config.light);
     text
+}
+
+/// Makes a comment of what follows from the laser's power, so that it goes on doing so when somebody changes that.
+fn follow_power(text: &mut String, light: &LightSettings) {
+    if light.standing_s == LightSettings::usual_standing_s(light.power_w) {
+        *text = text.replacen("\nstanding = ", "\n# standing = ", 1);
+    }
 }
 
 fn quoted(text: &str) -> String {
@@ -360,6 +395,31 @@ mod tests {
         assert!(error(&format!("{belt}\"900Hz\"\nbelt_damping = 2.0\n")).contains("at most 48Hz"));
         let none = format!("{belt}\"25Hz\"\n[truth.pan]\nrotor_inertia = \"0kgm2\"\n");
         assert!(error(&none).contains("inertia on both sides"), "{}", error(&none));
+    }
+
+    #[test]
+    fn light_may_stand_as_long_as_its_power_allows_or_as_somebody_says() {
+        let stands = |text: &str| parse("my.toml", text).unwrap().light.standing_s;
+        assert_eq!((stands(""), stands("[laser]\npower = \"0.2mW\"\n")), (1.0, 1.0));
+        assert_eq!(stands("[laser]\nclass = \"3R\"\npower = \"5 mW\"\n"), 0.2);
+        assert_eq!(stands("[laser]\npower = \"5 mW\"\nclass = \"4\"\n[safety]\nstanding = \"30ms\"\n"), 0.03);
+        assert_eq!(stands("[laser]\nclass = \"4\"\npower = \"2W\"\n"), 0.02);
+        let beyond = error("[laser]\npower = \"5mW\"\n");
+        assert!(beyond.contains("[laser] power: 5 mW is more than the 1 mW of class 2"), "{beyond}");
+        let slow = error("[laser]\nclass = \"4\"\npower = \"2W\"\n[model.relay]\noff = \"30ms\"\n");
+        assert!(slow.contains("[safety] standing: light may stand for 0.02 s"), "{slow}");
+        assert!(error("[safety]\nstanding = \"20s\"\n").contains("must be from 0.02s to 10s"));
+        assert!(error("[laser]\nclass = 2\n").contains("must be one of 1, 1M, 2"));
+        // a file that is written goes on following
+        let text = write(&RigConfig::report());
+        let weaker =
+            text.replace("class = \"2\"", "class = \"3R\"").replace("power = \"0.001W\"", "power = \"5mW\"");
+        assert_eq!(stands(&weaker), 0.2, "{text}");
+        let own = RigConfig {
+            light: LightSettings { standing_s: 0.5, ..LightSettings::POINTER },
+            ..RigConfig::report()
+        };
+        assert_eq!(parse("my.toml", &write(&own)).unwrap(), own);
     }
 
     #[test]

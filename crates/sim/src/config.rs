@@ -5,6 +5,7 @@ use tracelight_rig::{Joint, PanTilt};
 
 use crate::control_settings::ControlSettings;
 use crate::laws::{LawName, ObserverName};
+use crate::light_settings::LightSettings;
 
 /// A rig, whole: what we believe it is, what it really is (in simulation), and how it is to be driven.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,8 @@ pub struct RigConfig {
     pub control: ControlSettings,
     /// How the planner is set.
     pub motion: MotionSettings,
+    /// Its laser, and how long that may stand.
+    pub light: LightSettings,
 }
 
 /// A head in numbers.

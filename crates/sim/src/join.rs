@@ -9,6 +9,7 @@ use tracelight_plant::{PlantConfig, Wear};
 use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
 use tracelight_trajectory::Machine;
 
+use crate::light_settings::standing_radius_rad;
 use crate::{LawName, Model, ObserverName, RigConfig};
 
 /// How far past the end of its range a joint may be before that is a fault, counts.
@@ -54,7 +55,13 @@ impl RigConfig {
             laser_on_ticks: ticks(self.model.relay.on_s),
             laser_off_ticks: ticks(self.model.relay.off_s),
             host_silence_ticks: ticks(self.control.host_silence_s),
+            standing_ticks: self.light.standing_ticks(),
+            standing_radius_rad: self.standing_radius_rad() as f32,
         }
+    }
+
+    fn standing_radius_rad(&self) -> f64 {
+        standing_radius_rad(self.model.encoder.count_rad(), self.control.observer_in_use())
     }
 
     fn axis(&self, joint: Joint) -> AxisConfig {

@@ -9,6 +9,7 @@ use tracelight_rig::PanTilt;
 
 use crate::config::{Model, MotionSettings, RigConfig, Truth};
 use crate::control_settings::ControlSettings;
+use crate::light_settings::LightSettings;
 use crate::{HandTuned, LawName};
 
 /// Motor torque constant × gearhead × belt, N m at the joint per A.
@@ -62,6 +63,7 @@ impl RigConfig {
                 ramp_s: 0.02,
                 settle_s: 0.04,
             },
+            light: LightSettings::POINTER,
         }
     }
 

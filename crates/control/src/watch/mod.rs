@@ -102,6 +102,11 @@ impl Watch {
         self.gate = gate;
     }
 
+    /// What it was set to in the last one.
+    pub(crate) const fn gate(&self) -> bool {
+        self.gate
+    }
+
     /// Begins anew after a fault.
     pub(crate) fn rearm(&mut self, sensed: &Sensed, estimates: &PanTilt<Estimate>) {
         self.encoders = encoders(sensed, estimates);

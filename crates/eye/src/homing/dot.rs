@@ -2,7 +2,8 @@
 
 use tracelight_image::Grey;
 use tracelight_markers::{SpotLost, SpotWindow, find_spot};
-use tracelight_rig::Command;
+use tracelight_rig::{Command, TICK_F64_S};
+use tracelight_rigfile::Timing;
 use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
 use tracelight_task::Failure;
@@ -11,12 +12,14 @@ use super::Homing;
 use crate::spots::{Light, WHOLE};
 use crate::{Eye, Looks};
 
-/// How long a dot is lit, ticks: a camera that sends ten images a second sees it whole.
-const DOT_TICKS: u16 = 350;
+/// How much longer than an image takes a dot is lit, ticks.
+const MORE_TICKS: u16 = 10;
+/// How long a rig makes wait for more light at most, ticks: it looks back on ten seconds.
+const BUDGET_TICKS: u32 = 11_000;
 /// How long its image is waited for, ticks.
 const WAIT_TICKS: u32 = 600;
-/// Images of a dot in which it is looked for.
-const LIT_IMAGES: usize = 3;
+/// Most dots until an image is taken all in light.
+const MOST_DOTS: usize = 3;
 /// How far apart two images of one dot may show it, px.
 const SAME_PX: f64 = 3.0;
 
@@ -33,8 +36,16 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         Ok(change)
     }
 
-    /// Lights a dot where the head rests; where the camera sees it, px. What does not go out with it is none.
+    /// Lights the laser twice where the head rests; where the camera sees it, px. What does not come and go with it is none. Where nothing comes
+    /// the first time, there is no second: a head of which nobody knows where it points has little light to spend.
     pub(super) fn dot(&mut self, change: f64) -> Result<Option<Point>, Failure> {
+        let Some(before) = self.glimpse(change)? else { return Ok(None) };
+        let now = self.glimpse(change)?;
+        Ok(now.filter(|now| before.distance(*now) < SAME_PX))
+    }
+
+    /// Lights the laser until one image shows it, and looks whether it went out again.
+    fn glimpse(&mut self, change: f64) -> Result<Option<Point>, Failure> {
         let Some(image) = self.image(Light::Dark)? else {
             return Err(Failure::failed(
                 "no-image",
@@ -42,16 +53,30 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             ));
         };
         let dark = Dark { image, change };
-        let _ = self.rig.send(Command::Point(DOT_TICKS));
-        let mut seen: Vec<Point> = Vec::new();
-        for _ in 0..LIT_IMAGES {
+        for _ in 0..MOST_DOTS {
+            self.light()?;
             let lit = self.image(Light::Lit)?;
-            seen.extend(lit.and_then(|lit| dark.spot(&lit)));
+            let _ = self.rig.send(Command::Disarm);
+            let Some(lit) = lit else { continue };
+            let Some(now) = dark.spot(&lit) else { return Ok(None) };
+            let after = self.image(Light::Dark)?.and_then(|after| dark.spot(&after));
+            return Ok(after.is_none_or(|after| after.distance(now) > SAME_PX).then_some(now));
         }
-        let &[.., before, now] = seen.as_slice() else { return Ok(None) };
-        let after = self.image(Light::Dark)?.and_then(|after| dark.spot(&after));
-        let is_gone = after.is_none_or(|after| after.distance(now) > SAME_PX);
-        Ok((is_gone && before.distance(now) < SAME_PX).then_some(now))
+        Ok(None)
+    }
+
+    /// Lights the laser as soon as there may be light again, for as long as an image takes.
+    fn light(&mut self) -> Result<(), Failure> {
+        let Timing { readout_s, unsure_s, .. } = self.timing;
+        let image_s = self.rig.longest_s() + self.exposure_s + readout_s + 2.0 * unsure_s;
+        let dot_ticks = ((image_s + self.history.switches_s()) / TICK_F64_S) as u16 + MORE_TICKS;
+        for _ in 0..BUDGET_TICKS {
+            let _ = self.rig.send(Command::Point(dot_ticks));
+            if self.step()?.actuation.gate {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// The next image that was taken all in light, or all in the dark; `None` if none comes.

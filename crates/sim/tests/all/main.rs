@@ -11,4 +11,5 @@ mod homing;
 mod inputs;
 mod recovery;
 mod shapes;
+mod standing;
 mod tracking;

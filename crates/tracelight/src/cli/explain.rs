@@ -24,6 +24,11 @@ const MESSAGES: &[(&str, &str)] = &[
     ),
     ("not-a-picture", "A file's first bytes are those of no picture or drawing that is known here."),
     ("unsupported", "A picture uses a part of its format that is not decoded here. Save it as PNG."),
+    (
+        "standing-light",
+        "The light of a job would stand in one place for longer than it may, or come back to it too often; nothing was lit. Draw faster (--speed) or larger (--width). \
+         How long it may stand is safety.standing in the rig file; left out, it follows from laser.power: 1 mJ, but a second at most.",
+    ),
     ("too-large", "A picture has more pixels or bytes than are traced (100 megapixels). Scale it down."),
     (
         "no-strokes-found",

@@ -28,4 +28,5 @@ mod readmes;
 mod reproduce;
 mod simulate;
 mod sizes;
+mod standing;
 mod support;

@@ -1,0 +1,46 @@
+//! How long a head was lit of late of which nobody knows where it points.
+
+/// Parts into which the time is cut that is looked back on,
+const PARTS: usize = 100;
+/// and how long each is, ticks.
+const PART_TICKS: u8 = 100;
+
+/// Lit ticks of the last ten seconds, to a tenth of a second: never fewer than there were.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RecentLight {
+    /// Lit ticks of each part; the one that goes on now, and as many before it as it takes.
+    lit: [u8; PARTS + 1],
+    part: usize,
+    /// Ticks of that one that have passed.
+    passed: u8,
+    sum: u32,
+}
+
+impl RecentLight {
+    pub(crate) const NONE: Self = Self { lit: [0; PARTS + 1], part: 0, passed: 0, sum: 0 };
+    /// Most of them: a tenth.
+    pub(crate) const MOST_TICKS: u32 = PARTS as u32 * PART_TICKS as u32 / 10;
+
+    /// One tick passes.
+    pub(crate) fn tick(&mut self, is_lit: bool) {
+        if self.passed == PART_TICKS {
+            self.part = (self.part + 1) % self.lit.len();
+            self.sum -= u32::from(self.lit[self.part]);
+            self.lit[self.part] = 0;
+            self.passed = 0;
+        }
+        self.passed += 1;
+        self.lit[self.part] += u8::from(is_lit);
+        self.sum += u32::from(is_lit);
+    }
+
+    /// Whether there was none: then no tick needs to pass.
+    pub(crate) const fn is_dark(&self) -> bool {
+        self.sum == 0
+    }
+
+    /// Ticks of light that are left.
+    pub(crate) const fn left_ticks(&self) -> u32 {
+        Self::MOST_TICKS.saturating_sub(self.sum)
+    }
+}
