@@ -30,6 +30,7 @@ mod quirks;
 mod return_path;
 mod servo;
 mod supervisor;
+mod test_move;
 mod watch;
 
 pub use axis::AxisConfig;

@@ -10,6 +10,8 @@ pub enum Fault {
     EncoderNoisy,
     /// What an encoder shows and what its motor must have done do not belong together.
     EncoderSlipping,
+    /// What an encoder shows is another share of what its motor must have done than the rig file allows.
+    EncoderScale,
     /// Segments ran out in the middle of a job.
     SetpointsStale,
     /// A segment leaves the joint limits, does not join the one before it, or says nothing of its tolerance.
@@ -34,11 +36,12 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault.
-    pub const ALL: [Fault; 14] = [
+    pub const ALL: [Fault; 15] = [
         Fault::EncoderJumped,
         Fault::EncoderDead,
         Fault::EncoderNoisy,
         Fault::EncoderSlipping,
+        Fault::EncoderScale,
         Fault::SetpointsStale,
         Fault::SetpointInvalid,
         Fault::LimitReached,
@@ -58,6 +61,7 @@ impl Fault {
             Fault::EncoderDead => "encoder-dead",
             Fault::EncoderNoisy => "encoder-noisy",
             Fault::EncoderSlipping => "encoder-slipping",
+            Fault::EncoderScale => "encoder-scale",
             Fault::SetpointsStale => "setpoints-stale",
             Fault::SetpointInvalid => "setpoint-invalid",
             Fault::LimitReached => "limit-reached",
@@ -78,6 +82,7 @@ impl Fault {
             | Fault::EncoderDead
             | Fault::EncoderNoisy
             | Fault::EncoderSlipping
+            | Fault::EncoderScale
             | Fault::AmplifierSaturated
             | Fault::MotorHot
             | Fault::EstimateDiverged

@@ -5,7 +5,8 @@
 //! | encoder jumped | in the tick: over one and a half counts beside the count the joint is expected on |
 //! | encoder noisy | surprises of three counts together within some 50 ticks, or three lost counts within some seconds |
 //! | encoder dead | four counts of motion predicted, none counted, whether or not the last load still acts: dark at once, a fault 20 ticks later |
-//! | encoder slipping | a load of 30 % of the motor's torque, or 57 % more or less inertia than there is: dark at once, a fault after 150 ticks in which it seems braked |
+//! | encoder scale | before the first light: it shows more or less of a motion than its motor must have made, beyond the rig file's tolerance |
+//! | encoder slipping | surprises that add up, or a scale that changed: dark at once, a fault once a move in the dark has shown it |
 //! | estimate diverged | six counts between speed believed and counted, over some 20 ticks |
 //! | amplifier saturated | 300 ticks at its limit, one way |
 //! | motor hot | I²t over what it stands |
@@ -15,6 +16,8 @@
 
 mod encoder;
 mod motor;
+mod scale;
+mod scale_filter;
 
 use tracelight_rig::{Fault, Joint, PanTilt, Sensed};
 
@@ -24,6 +27,7 @@ use crate::servo::Servo;
 use encoder::EncoderWatch;
 pub use motor::MotorRating;
 use motor::MotorWatch;
+use scale::ScaleWatch;
 
 /// Ticks a laser may take longer than its relay.
 const LASER_SLACK_TICKS: u32 = 2;
@@ -32,6 +36,7 @@ const LASER_SLACK_TICKS: u32 = 2;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watch {
     encoders: PanTilt<EncoderWatch>,
+    scales: PanTilt<ScaleWatch>,
     motors: PanTilt<MotorWatch>,
     gate: bool,
     /// How long the gate has been so, ticks.
@@ -41,9 +46,10 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    pub(crate) fn new(sensed: &Sensed, estimates: &PanTilt<Estimate>) -> Self {
+    pub(crate) fn new(config: &Config, sensed: &Sensed, estimates: &PanTilt<Estimate>) -> Self {
         Self {
             encoders: encoders(sensed, estimates),
+            scales: scales(config, sensed, estimates),
             motors: PanTilt::default(),
             gate: false,
             gate_ticks: u32::MAX,
@@ -68,12 +74,32 @@ impl Watch {
         };
         let pan = encoder(&mut self.encoders.pan, Joint::Pan);
         let tilt = encoder(&mut self.encoders.tilt, Joint::Tilt);
+        for j in Joint::BOTH {
+            let (axis, measured) = (&config.axes[j], &sensed.encoders[j]);
+            self.scales[j].tick(axis, &servo.efforts()[j], &servo.estimates()[j], measured);
+        }
         pan.or(tilt).or(self.laser(config, sensed)).or(self.host(config))
     }
 
     /// Whether an encoder has shown nothing where its joint should have passed several edges, or does not fit its motor.
     pub(crate) const fn is_doubtful(&self) -> bool {
         self.encoders.pan.is_doubtful() || self.encoders.tilt.is_doubtful()
+    }
+
+    /// Whether both encoders were seen to follow their motors, and nothing spoke against it since.
+    pub(crate) fn is_tested(&self) -> bool {
+        self.scales.pan.is_tested() && self.scales.tilt.is_tested()
+    }
+
+    /// The head rests and is about to make its test move.
+    pub(crate) fn begin_test(&mut self, config: &Config) {
+        Joint::BOTH.into_iter().for_each(|j| self.scales[j].begin_test(&config.axes[j]));
+    }
+
+    /// It has made it; the fault that showed, if any.
+    pub(crate) fn end_test(&mut self, config: &Config) -> Option<Fault> {
+        let faults = PanTilt::from_fn(|j| self.scales[j].end_test(&config.axes[j]));
+        faults.pan.or(faults.tilt)
     }
 
     fn laser(&mut self, config: &Config, sensed: &Sensed) -> Option<Fault> {
@@ -105,8 +131,10 @@ impl Watch {
     }
 
     /// Begins anew after a fault.
-    pub(crate) fn rearm(&mut self, sensed: &Sensed, estimates: &PanTilt<Estimate>) {
+    pub(crate) fn rearm(&mut self, config: &Config, sensed: &Sensed, estimates: &PanTilt<Estimate>) {
         self.encoders = encoders(sensed, estimates);
+        let anew = scales(config, sensed, estimates);
+        self.scales = PanTilt::from_fn(|j| anew[j].with_first(&self.scales[j]));
         Joint::BOTH.iter().for_each(|&j| self.motors[j].rearm());
         // who has said that it is there must go on saying so
         self.silence_ticks = self.silence_ticks.map(|_| 0);
@@ -115,4 +143,8 @@ impl Watch {
 
 fn encoders(sensed: &Sensed, estimates: &PanTilt<Estimate>) -> PanTilt<EncoderWatch> {
     PanTilt::from_fn(|j| EncoderWatch::new(&sensed.encoders[j], &estimates[j]))
+}
+
+fn scales(config: &Config, sensed: &Sensed, estimates: &PanTilt<Estimate>) -> PanTilt<ScaleWatch> {
+    PanTilt::from_fn(|j| ScaleWatch::new(&config.axes[j], &sensed.encoders[j], &estimates[j]))
 }

@@ -10,4 +10,5 @@ mod faults;
 mod homing;
 mod recovery;
 mod shapes;
+mod slips;
 mod tracking;
