@@ -23,6 +23,9 @@ pub struct AxisConfig {
     /// Torque by which the model may be wrong, N m: what the Kalman filter's deviations are shares of. The joint's Coulomb
     /// friction, where it has any to speak of.
     pub unknown_nm: f32,
+    /// By how much what the encoder shows of a motion may differ from what the motor's torque must have made, as a share: what is not known of
+    /// motor, inertia and friction together.
+    pub scale_tolerance: f32,
     /// What this very joint has beyond its equations.
     pub quirks: Quirks,
     /// How counts become position and velocity.

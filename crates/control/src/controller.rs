@@ -11,6 +11,7 @@ use crate::player::{Played, Player};
 use crate::return_path::ReturnPath;
 use crate::servo::{Reference, Servo};
 use crate::supervisor::{Clock, Situation, Supervisor, rests};
+use crate::test_move::TestMove;
 use crate::watch::Watch;
 
 /// The controller: its configuration, fixed at start.
@@ -31,6 +32,7 @@ pub struct State {
     budget: LightBudget,
     way_back: Option<ReturnPath>,
     paces: PanTilt<Pace>,
+    test_move: Option<TestMove>,
     /// What is added to what the encoders read, since the head was homed.
     home: PanTilt<i32>,
 }
@@ -62,12 +64,13 @@ impl Controller {
             tick: 0,
             sensed: *sensed,
             servo,
-            watch: Watch::new(sensed, servo.estimates()),
+            watch: Watch::new(&self.config, sensed, servo.estimates()),
             player: Player::resting_at(servo.position_rad()),
             supervisor: Supervisor::default(),
             budget: LightBudget::new(),
             way_back: None,
             paces: PanTilt::default(),
+            test_move: None,
             home: PanTilt::default(),
         }
     }
@@ -117,7 +120,7 @@ impl Controller {
                 state.servo = state.servo.anew(&self.config, &state.sensed.encoders);
                 state.budget.turn(&self.config);
             }
-            state.watch.rearm(&state.sensed, state.servo.estimates());
+            state.watch.rearm(&self.config, &state.sensed, state.servo.estimates());
             // from wherever it fell to, gently
             state.way_back = Some(ReturnPath::from(state.servo.estimates()));
         }
@@ -159,9 +162,10 @@ impl Controller {
             measured.count = counts[j];
         }
         state.servo = Servo::at_rest(&self.config, &state.sensed.encoders);
-        state.watch.rearm(&state.sensed, state.servo.estimates());
+        state.watch.rearm(&self.config, &state.sensed, state.servo.estimates());
         state.player = Player::resting_at(state.servo.position_rad());
         state.way_back = None;
+        state.test_move = None;
         state.paces = PanTilt::default();
         state.budget.turn(&self.config);
         state.supervisor.home();
@@ -253,6 +257,7 @@ impl Controller {
             rate_rad_s: state.servo.estimates().map(|estimate| estimate.velocity_rad_s),
             error_rad: PanTilt::from_fn(|j| played.setpoint[j].position_rad - position_rad[j]),
             doubtful: state.watch.is_doubtful(),
+            tested: state.watch.is_tested(),
             light_due: state.player.light_is_due(self.config.laser_on_ticks),
             begun: state.player.has_begun(),
             starved: state.player.is_empty() && !state.player.is_done(),
@@ -281,7 +286,7 @@ impl Controller {
     /// where it stands.
     fn reference(&self, state: &mut State, played: &Played) -> Reference {
         let stands = match state.supervisor.phase {
-            Phase::Holding | Phase::Faulted => true,
+            Phase::Holding | Phase::Testing | Phase::Faulted => true,
             Phase::Dark | Phase::Armed => {
                 state.way_back.is_some() || (state.player.has_begun() && played.segment.is_some())
             }
@@ -292,6 +297,9 @@ impl Controller {
             return self.along(state, played);
         }
         state.paces = PanTilt::default();
+        if let Some(reference) = self.test(state, played) {
+            return reference;
+        }
         let position_rad = state.servo.position_rad();
         let kept = state.way_back.filter(|w| !w.is_lost(&self.config, position_rad));
         let mut way = kept.unwrap_or_else(|| {
@@ -301,6 +309,28 @@ impl Controller {
         let now = way.tick(&self.config, &played.setpoint);
         state.way_back = Some(way);
         Reference { now, ahead: now }
+    }
+
+    /// A little way to and fro from where the plan's clock stands, by which encoders show whether they follow their motors.
+    fn test(&self, state: &mut State, played: &Played) -> Option<Reference> {
+        if state.supervisor.phase != Phase::Testing {
+            state.test_move = None;
+            return None;
+        }
+        let test_move = state.test_move.get_or_insert_with(|| {
+            state.watch.begin_test(&self.config);
+            TestMove::from(&self.config, &played.setpoint)
+        });
+        let reference = test_move.tick();
+        if test_move.is_over() {
+            state.test_move = None;
+            state.way_back = None;
+            state.supervisor.end_test();
+            if let Some(fault) = state.watch.end_test(&self.config) {
+                state.supervisor.trip(fault);
+            }
+        }
+        Some(reference)
     }
 
     /// Along the plan, from rest to rest where that is slower than friction lets go.

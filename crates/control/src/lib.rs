@@ -34,6 +34,7 @@ mod return_path;
 mod servo;
 mod squares;
 mod supervisor;
+mod test_move;
 mod watch;
 
 pub use axis::AxisConfig;

@@ -12,6 +12,8 @@ const RETURN_TICKS: u32 = 60;
 const CALM_TICKS: u32 = 500;
 /// How long it is dark at least from one dot of a head of which nobody knows where it points to another, ticks.
 const UNHOMED_REST_TICKS: u32 = 100;
+/// Test moves that may tell nothing: whoever leans on a head that long does not let it go back.
+const MOST_TESTS: u32 = 8;
 /// Distance in tolerances at which a head is lost on its way in the dark, too.
 const LOST_TOLERANCES: f32 = 10.0;
 
@@ -30,6 +32,8 @@ pub(crate) struct Supervisor {
     /// Since the last hold.
     calm_ticks: u32,
     settled_ticks: u32,
+    /// Test moves since an encoder was last trusted.
+    tests: u32,
     /// For how long a dot is still wanted while it is disarmed.
     pointing_ticks: u32,
     /// Since the last dot.
@@ -45,6 +49,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) error_rad: PanTilt<f32>,
     /// An encoder shows nothing where it should.
     pub(crate) doubtful: bool,
+    /// Both encoders were seen to follow their motors, and nothing spoke against it since.
+    pub(crate) tested: bool,
     /// What the gate lets through now falls where the plan wants light, however slowly its clock runs.
     pub(crate) light_due: bool,
     /// The plan's clock has left its start.
@@ -144,8 +150,15 @@ impl Supervisor {
         }
         match self.phase {
             Phase::Tracing => Clock::Run,
-            Phase::Holding | Phase::Faulted => Clock::Stop,
+            Phase::Holding | Phase::Testing | Phase::Faulted => Clock::Stop,
             Phase::Dark | Phase::Armed | Phase::Done => Clock::Wait,
+        }
+    }
+
+    /// The little move in the dark is over.
+    pub(crate) fn end_test(&mut self) {
+        if self.phase == Phase::Testing {
+            self.begin_hold();
         }
     }
 
@@ -164,10 +177,16 @@ impl Supervisor {
     }
 
     fn hold(&mut self, config: &Config, at: &Situation<'_>) {
+        self.tests = if at.tested { 0 } else { self.tests };
         self.held_ticks = self.held_ticks.saturating_add(1);
         self.settled_ticks = if returned(at) { self.settled_ticks + 1 } else { 0 };
-        if self.settled_ticks >= RETURN_TICKS {
+        if self.settled_ticks >= RETURN_TICKS && at.tested {
             self.phase = Phase::Tracing;
+        } else if self.settled_ticks >= RETURN_TICKS && self.tests < MOST_TESTS {
+            self.phase = Phase::Testing;
+            self.tests += 1;
+        } else if self.settled_ticks >= RETURN_TICKS {
+            self.trip(Fault::HoldTimedOut);
         } else if self.held_ticks > config.hold_limit_ticks {
             self.trip(Fault::HoldTimedOut);
         }
@@ -193,8 +212,10 @@ impl Supervisor {
         reasons.insert_if(self.phase == Phase::Dark && !points, Darkness::Disarmed);
         reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);
         reasons.insert_if(strayed(at), Darkness::SpotError);
-        reasons.insert_if(at.doubtful, Darkness::Doubtful);
-        reasons.insert_if(self.phase == Phase::Holding || !(at.light_due || points), Darkness::Holding);
+        // a dot may be let out by a head that was never moved: whoever asks for it looks where it is
+        reasons.insert_if(at.doubtful || !(at.tested || points), Darkness::Doubtful);
+        let held = matches!(self.phase, Phase::Holding | Phase::Testing);
+        reasons.insert_if(held || !(at.light_due || points), Darkness::Holding);
         let asked = at.setpoint.map(|s| s.position_rad);
         reasons.insert_if(!config.may_be_at(asked, self.homed), Darkness::OutOfBounds);
         let idle = matches!(self.phase, Phase::Armed | Phase::Done);
@@ -230,7 +251,7 @@ fn strayed(at: &Situation<'_>) -> bool {
 fn must_hold(at: &Situation<'_>) -> bool {
     let lit = at.segment.is_some_and(|segment| segment.gate);
     let lost = exceeds(spot_error(at), LOST_TOLERANCES);
-    (lit && (strayed(at) || at.doubtful)) || lost
+    (lit && (strayed(at) || at.doubtful || !at.tested)) || lost
 }
 
 /// Whether a value is beyond its bound; what is not a number is.

@@ -20,6 +20,7 @@ fn axis(observer: ObserverConfig) -> AxisConfig {
         count_rad: COUNT_RAD as f32,
         friction: FrictionModel::default(),
         unknown_nm: 0.03,
+        scale_tolerance: 0.35,
         quirks: Quirks::NONE,
         observer,
         law: LawConfig { feedback: Feedback::Pid(Pid::proportional(1.0)), feedforward: Feedforward::None },

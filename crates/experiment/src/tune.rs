@@ -163,7 +163,7 @@ impl Bench<'_> {
     fn bears(&self, head: &RigConfig) -> bool {
         let mut simulated = SimulatedRig::new(head, self.driving.pose, self.choice.seed);
         let run = tracelight_sim::run(&mut simulated, &self.plan, false, |_, tick| {
-            let lost = matches!(tick.telemetry.phase, Phase::Holding | Phase::Faulted);
+            let lost = matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing | Phase::Faulted);
             if lost { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         run.is_done()

@@ -13,6 +13,7 @@ pub(crate) struct Encoder {
     edge_error_counts: [f64; PHASES],
     /// The disc's axis beside the joint's: amplitude in counts, and the angle at which it reads right.
     eccentricity: (f64, f64),
+    slip: Slip,
     /// Share of edges the counter misses.
     lost_share: f64,
     dice: oorandom::Rand32,
@@ -20,6 +21,24 @@ pub(crate) struct Encoder {
     /// Edges it missed, upwards less downwards.
     missed: i32,
     edge_age_ticks: Option<f32>,
+}
+
+/// A disc that slips on its shaft: from one angle of its joint on it turns by a share of what the joint turns.
+#[derive(Clone, Copy, Debug)]
+struct Slip {
+    joint_rad: f64,
+    /// Where the disc stood then.
+    disc_rad: f64,
+    share: f64,
+}
+
+impl Slip {
+    const NONE: Self = Self { joint_rad: 0.0, disc_rad: 0.0, share: 1.0 };
+
+    /// Where the disc stands, rad; that of [`Slip::NONE`] to the bit where its joint does.
+    fn disc_rad(&self, joint_rad: f64) -> f64 {
+        self.disc_rad + self.share * (joint_rad - self.joint_rad)
+    }
 }
 
 impl Encoder {
@@ -36,6 +55,7 @@ impl Encoder {
             edge_stamps,
             edge_error_counts,
             eccentricity: (0.0, angle_rad),
+            slip: Slip::NONE,
             lost_share: 0.0,
             dice: oorandom::Rand32::new(0),
             count,
@@ -57,8 +77,15 @@ impl Encoder {
         self
     }
 
+    /// The disc slips on its shaft from this angle of the joint on: it turns by that share of what the joint turns.
+    pub(crate) fn slips(&mut self, angle_rad: f64, share: f64) {
+        // one that slips already stands elsewhere than its joint
+        self.slip = Slip { joint_rad: angle_rad, disc_rad: self.slip.disc_rad(angle_rad), share };
+    }
+
     /// What the disc makes of an angle, rad.
     fn on_disc(&self, angle_rad: f64) -> f64 {
+        let angle_rad = self.slip.disc_rad(angle_rad);
         let (counts, direction) = self.eccentricity;
         if counts == 0.0 {
             return angle_rad;

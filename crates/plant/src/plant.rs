@@ -186,6 +186,11 @@ impl Plant {
         self.relay.stick();
     }
 
+    /// The disc of a joint's encoder slips from now on: it turns by that share of what it sits on.
+    pub fn slip_disc(&mut self, joint: Joint, share: f64) {
+        self.encoders[joint].slips(self.state.angle_rad[joint], share);
+    }
+
     /// What the motors' currents make at the joints now, N m.
     pub const fn motor_nm(&self) -> PanTilt<f64> {
         self.current_nm

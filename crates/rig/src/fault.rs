@@ -75,8 +75,8 @@ faults! {
     EncoderSlipping = 4 {
         what: "What an encoder shows and what its motor must have done do not belong together.",
         code: "encoder-slipping",
-        seen: "a load of 30 % of the motor's torque under which it seems braked, or 57 % more or less inertia than there is",
-        soon: Soon::DarkThen(150),
+        seen: "surprises that the model cannot explain add up, or the encoder's scale has changed: dark at once; five test moves in the dark then show the same",
+        soon: Soon::Words("dark at once, a fault after five test moves, some 2 s"),
         motors: Motors::Off,
         loses_counts: true,
         clears: Clears::FoundAndArmed,
@@ -262,6 +262,16 @@ faults! {
         clears: Clears::Armed,
         words: "The job went on asking for light where that had stood as long as it may: draw faster, or with a weaker laser and a longer safety.standing in the rig file.",
     }
+    EncoderScale = 23 {
+        what: "What an encoder shows is another share of what its motor must have done than the rig file allows.",
+        code: "encoder-scale",
+        seen: "before the first light, five test moves in the dark show an angle beyond control.scale_tolerance from what the motor must have made",
+        soon: Soon::Words("dark from the start, a fault after five test moves, some 2 s"),
+        motors: Motors::Off,
+        loses_counts: true,
+        clears: Clears::FoundAndArmed,
+        words: "Before the first light, an encoder showed more or less of a motion than its motor must have made. Check model.encoder.counts_per_rev (half, double and four times are the usual slips), then the motor's torque and the joint's inertia: tracelight lab identify finds them. control.scale_tolerance sets the bound.",
+    }
 }
 
 /// Of which faults something is true, a bit each by number: a board asks without keeping the words of the table.
@@ -347,6 +357,7 @@ mod tests {
         (20, "too-hot"),
         (21, "tick-late"),
         (22, "light-stood"),
+        (23, "encoder-scale"),
     ];
 
     #[test]

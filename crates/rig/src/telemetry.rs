@@ -11,6 +11,8 @@ use crate::{Actuation, DarknessSet, Fault, Inputs, Measurement, PanTilt, Setpoin
 ///   │                                        │                          ▼
 ///   └──── power-up            any Fault, from anywhere ────────────► Faulted ── Arm ─► Armed
 /// ```
+///
+/// Back on its stroke, a head whose encoders are not trusted makes a little move in the dark first: Holding ◄─► Testing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Phase {
     /// Power-up: no light allowed; joints are held where they are.
@@ -22,6 +24,8 @@ pub enum Phase {
     Tracing,
     /// The plan's clock stands: dark until the head is back where it left its stroke.
     Holding,
+    /// The plan's clock stands, and the head makes a little move in the dark that shows whether its encoders follow its motors.
+    Testing,
     /// All segments done.
     Done,
     /// A fault is latched.

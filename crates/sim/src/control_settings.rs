@@ -32,6 +32,8 @@ pub struct ControlSettings {
     pub hold_limit_s: f64,
     /// How long a host may be silent, s.
     pub host_silence_s: f64,
+    /// By how much what an encoder shows of a motion may differ from what its motor must have made, as a share.
+    pub scale_tolerance: f64,
     /// Share of its amplifier's limit that a motor stands for ever.
     pub motor_continuous: f64,
     /// Time constant of a motor's temperature, s.

@@ -77,6 +77,7 @@ impl RigConfig {
             count_rad: self.model.encoder.count_rad() as f32,
             friction: friction_model(&self.model.friction[joint]),
             unknown_nm: self.model.unknown_nm(joint) as f32,
+            scale_tolerance: control.scale_tolerance as f32,
             quirks: self.quirks(joint),
             observer: control.observer_in_use().config(ticks(control.observer_interval_s).max(1) as usize),
             law: control.law_config(joint, inertia),

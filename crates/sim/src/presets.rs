@@ -51,6 +51,8 @@ impl RigConfig {
                 tolerance_m: 3e-3,
                 hold_limit_s: 3.0,
                 host_silence_s: 0.05,
+                // amplifiers differ by a tenth, inertia and friction by as much again
+                scale_tolerance: 0.35,
                 // small geared motors stand 1.4 times their rated current for half a minute
                 motor_continuous: 0.7,
                 motor_heating_s: 60.0,

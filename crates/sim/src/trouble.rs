@@ -16,6 +16,8 @@ pub enum Trouble {
     EncoderNoise(Joint, f64),
     /// An encoder's disc slips: it turns by that share of what the joint turns.
     EncoderSlip(Joint, f64),
+    /// An encoder's counter takes that share of the edges its disc shows.
+    EdgesMissed(Joint, f64),
     /// An encoder's stamps are no numbers.
     StampGarbled(Joint),
     /// The laser's relay stays as it is; its second switch, the enable, goes on working.
@@ -90,8 +92,8 @@ pub(crate) struct Line {
     pub(crate) off: i32,
     pub(crate) noise: f64,
     pub(crate) garbled: bool,
-    /// From where on the disc slips, and by what share it still turns.
-    slips: Option<(i32, f64)>,
+    /// From where on the counter misses edges, and what share of them it still takes.
+    misses: Option<(i32, f64)>,
     last: i32,
     dice: oorandom::Rand64,
 }
@@ -103,14 +105,14 @@ impl Line {
             off: 0,
             noise: 0.0,
             garbled: false,
-            slips: None,
+            misses: None,
             last: 0,
             dice: oorandom::Rand64::new(u128::from(seed)),
         }
     }
 
-    pub(crate) const fn slip(&mut self, share: f64) {
-        self.slips = Some((self.last, share));
+    pub(crate) const fn miss(&mut self, share: f64) {
+        self.misses = Some((self.last, share));
     }
 
     pub(crate) fn carry(&mut self, measured: Measurement) -> Measurement {
@@ -118,7 +120,7 @@ impl Line {
         if let Some(count) = self.cut_at {
             return Measurement { count, edge_age_ticks: None };
         }
-        let turned = match self.slips {
+        let turned = match self.misses {
             Some((from, share)) => from + (share * f64::from(measured.count - from)).round() as i32,
             None => measured.count,
         };

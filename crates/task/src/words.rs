@@ -17,6 +17,7 @@ pub const fn phase_word(phase: Phase) -> &'static str {
         Phase::Armed => "armed",
         Phase::Tracing => "tracing",
         Phase::Holding => "holding",
+        Phase::Testing => "testing",
         Phase::Done => "done",
         Phase::Faulted => "faulted",
     }

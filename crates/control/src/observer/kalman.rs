@@ -17,7 +17,7 @@ const LEAST_FRICTION: f32 = -0.6;
 const MOST_FRICTION: f32 = 1.5;
 const LEAST_BREAK_AWAY: f32 = -0.1;
 const MOST_BREAK_AWAY: f32 = 1.0;
-pub(crate) const MOST_INERTIA: f32 = 0.6;
+const MOST_INERTIA: f32 = 0.6;
 
 /// A Kalman filter whose predictor knows the joint's equation with friction that sticks (the set-valued Coulomb law),
 /// and whose measurements are what an incremental encoder really says: *at this instant the joint was exactly on this

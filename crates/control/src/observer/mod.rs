@@ -27,8 +27,6 @@ use tracelight_rig::Measurement;
 use crate::axis::AxisConfig;
 use crate::estimate::{Effort, Estimate};
 use config::ObserverConfig;
-pub(crate) use kalman::MOST_INERTIA;
-
 use differences::Differences;
 use edge_times::EdgeTimes;
 use recount::Recount;

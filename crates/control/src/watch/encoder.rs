@@ -1,9 +1,8 @@
 use tracelight_rig::{Fault, Measurement, TICK_S};
 
 use crate::axis::AxisConfig;
-use crate::estimate::{Effort, Estimate, Learned};
+use crate::estimate::{Effort, Estimate};
 use crate::limit::within;
-use crate::observer::MOST_INERTIA;
 
 /// Share of Coulomb friction that must be overcome before a joint is expected to move: stiction and ripple of worn
 /// heads stay under it.
@@ -31,17 +30,6 @@ const NOISE_FADES: f32 = 1.0 / 50.0;
 /// observer, 64 ticks of differences, is 3.4 off while a joint speeds up with 8 rad/s².
 const DIVERGED_COUNTS: f32 = 6.0;
 const DIVERGENCE_FADES: f32 = 1.0 / 20.0;
-/// What an encoder shows and what its motor did do not belong together when the joint seems to have this share of all
-/// the inertia that can be learned,
-const SLIP_INERTIA: f32 = 0.95;
-/// or a load acts on it of this share of the motor's torque: somebody who pushes that hard wants no light either.
-const SLIP_LOAD: f32 = 0.3;
-/// A joint that does not even seem to turn with this speed, rad/s, is held or leant on.
-const SLIP_RAD_S: f32 = 0.02;
-/// After so many ticks of being braked or heavy an encoder is taken to slip; a tick without load makes good one with, and
-/// one in which it is leant on counts for neither.
-pub(super) const SLIP_TICKS: u32 = 150;
-
 /// Counts put back that make an encoder a bad one, each forgotten by a share of a 5000th a tick: three within some seconds.
 const BAD_COUNTS: f32 = 2.5;
 const BAD_FADES: f32 = 1.0 / 5000.0;
@@ -57,8 +45,8 @@ pub(super) struct EncoderWatch {
     put_back: f32,
     /// Speed believed beyond what was counted, rad.
     gap_rad: f32,
-    is_strange: bool,
-    slipping_ticks: u32,
+    /// The observer put a count back a moment ago.
+    recounts: bool,
     doubtful_ticks: u32,
 }
 
@@ -71,8 +59,7 @@ impl EncoderWatch {
             surprises: 0.0,
             put_back: 0.0,
             gap_rad: 0.0,
-            is_strange: false,
-            slipping_ticks: 0,
+            recounts: false,
             doubtful_ticks: 0,
         }
     }
@@ -100,19 +87,17 @@ impl EncoderWatch {
         if self.surprises > NOISE_COUNTS || self.put_back > BAD_COUNTS {
             return Some(Fault::EncoderNoisy);
         }
+        self.recounts = estimate.is_doubtful;
         self.doubt(axis, effort, estimate, moved);
         if self.doubtful_ticks > DOUBT_TICKS {
             return Some(Fault::EncoderDead);
-        }
-        if self.slips(axis, estimate) {
-            return Some(Fault::EncoderSlipping);
         }
         self.has_diverged(axis, estimate, moved).then_some(Fault::EstimateDiverged)
     }
 
     /// Whether the laser is better dark until an edge comes.
     pub(super) const fn is_doubtful(&self) -> bool {
-        self.doubtful_ticks > 0 || self.is_strange
+        self.doubtful_ticks > 0 || self.recounts
     }
 
     fn doubt(&mut self, axis: &AxisConfig, effort: &Effort, estimate: &Estimate, moved: i32) {
@@ -126,21 +111,6 @@ impl EncoderWatch {
         self.expected.tick(net / effort.inertia_kg_m2, threshold / effort.inertia_kg_m2);
         let missing = self.expected.travel_rad.abs() > DOUBT_COUNTS * axis.count_rad;
         self.doubtful_ticks = if missing { self.doubtful_ticks.saturating_add(1) } else { 0 };
-    }
-
-    fn slips(&mut self, axis: &AxisConfig, estimate: &Estimate) -> bool {
-        let Learned { load_nm, inertia_share, .. } = estimate.learned;
-        let heavy = inertia_share.abs() > SLIP_INERTIA * MOST_INERTIA;
-        let loaded = load_nm.abs() > SLIP_LOAD * axis.torque_nm_per_v * axis.limit_v;
-        // what turns by less than its joint seems to be braked
-        let braked = load_nm * estimate.velocity_rad_s < -SLIP_RAD_S * load_nm.abs();
-        self.is_strange = heavy || loaded || estimate.is_doubtful;
-        if heavy || (loaded && braked) {
-            self.slipping_ticks = self.slipping_ticks.saturating_add(1);
-        } else if !loaded {
-            self.slipping_ticks = self.slipping_ticks.saturating_sub(1);
-        }
-        self.slipping_ticks > SLIP_TICKS
     }
 
     fn has_diverged(&mut self, axis: &AxisConfig, estimate: &Estimate, moved: i32) -> bool {

@@ -5,6 +5,8 @@
 
 mod encoder;
 mod motor;
+mod scale;
+mod scale_filter;
 
 use tracelight_rig::{Fault, Joint, PanTilt, Sensed};
 
@@ -14,6 +16,7 @@ use crate::servo::Servo;
 use encoder::EncoderWatch;
 pub use motor::MotorRating;
 use motor::MotorWatch;
+use scale::ScaleWatch;
 
 /// Ticks a laser may take longer than its relay.
 const LASER_SLACK_TICKS: u32 = 2;
@@ -25,6 +28,7 @@ const LATE_TICKS: f32 = 1.5;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watch {
     encoders: PanTilt<EncoderWatch>,
+    scales: PanTilt<ScaleWatch>,
     motors: PanTilt<MotorWatch>,
     gate: bool,
     /// How long the gate has been so, ticks.
@@ -34,9 +38,10 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    pub(crate) fn new(sensed: &Sensed, estimates: &PanTilt<Estimate>) -> Self {
+    pub(crate) fn new(config: &Config, sensed: &Sensed, estimates: &PanTilt<Estimate>) -> Self {
         Self {
             encoders: encoders(sensed, estimates),
+            scales: scales(config, sensed, estimates),
             motors: PanTilt::default(),
             gate: false,
             gate_ticks: u32::MAX,
@@ -66,12 +71,32 @@ impl Watch {
         };
         let pan = encoder(&mut self.encoders.pan, Joint::Pan);
         let tilt = encoder(&mut self.encoders.tilt, Joint::Tilt);
+        for j in Joint::BOTH {
+            let (axis, measured) = (&config.axes[j], &sensed.encoders[j]);
+            self.scales[j].tick(axis, &servo.efforts()[j], &servo.estimates()[j], measured);
+        }
         pan.or(tilt).or(self.laser(config, sensed)).or(self.host(config))
     }
 
     /// Whether an encoder has shown nothing where its joint should have passed several edges, or does not fit its motor.
     pub(crate) const fn is_doubtful(&self) -> bool {
         self.encoders.pan.is_doubtful() || self.encoders.tilt.is_doubtful()
+    }
+
+    /// Whether both encoders were seen to follow their motors, and nothing spoke against it since.
+    pub(crate) fn is_tested(&self) -> bool {
+        self.scales.pan.is_tested() && self.scales.tilt.is_tested()
+    }
+
+    /// The head rests and is about to make its test move.
+    pub(crate) fn begin_test(&mut self, config: &Config) {
+        Joint::BOTH.into_iter().for_each(|j| self.scales[j].begin_test(&config.axes[j]));
+    }
+
+    /// It has made it; the fault that showed, if any.
+    pub(crate) fn end_test(&mut self, config: &Config) -> Option<Fault> {
+        let faults = PanTilt::from_fn(|j| self.scales[j].end_test(&config.axes[j]));
+        faults.pan.or(faults.tilt)
     }
 
     fn laser(&mut self, config: &Config, sensed: &Sensed) -> Option<Fault> {
@@ -108,8 +133,10 @@ impl Watch {
     }
 
     /// Begins anew after a fault.
-    pub(crate) fn rearm(&mut self, sensed: &Sensed, estimates: &PanTilt<Estimate>) {
+    pub(crate) fn rearm(&mut self, config: &Config, sensed: &Sensed, estimates: &PanTilt<Estimate>) {
         self.encoders = encoders(sensed, estimates);
+        let anew = scales(config, sensed, estimates);
+        self.scales = PanTilt::from_fn(|j| anew[j].with_first(&self.scales[j]));
         Joint::BOTH.iter().for_each(|&j| self.motors[j].rearm());
         // who has said that it is there must go on saying so
         self.silence_ticks = self.silence_ticks.map(|_| 0);
@@ -118,6 +145,10 @@ impl Watch {
 
 fn encoders(sensed: &Sensed, estimates: &PanTilt<Estimate>) -> PanTilt<EncoderWatch> {
     PanTilt::from_fn(|j| EncoderWatch::new(&sensed.encoders[j], &estimates[j]))
+}
+
+fn scales(config: &Config, sensed: &Sensed, estimates: &PanTilt<Estimate>) -> PanTilt<ScaleWatch> {
+    PanTilt::from_fn(|j| ScaleWatch::new(&config.axes[j], &sensed.encoders[j], &estimates[j]))
 }
 
 /// Whether a tick of that length is late; one whose length is no number is.
@@ -135,7 +166,6 @@ mod tests {
         let soon = |fault: Fault| fault.row().soon;
         let ticks = |ticks: u32| u16::try_from(ticks).unwrap_or(u16::MAX);
         assert_eq!(soon(Fault::EncoderDead), Soon::DarkThen(ticks(encoder::DOUBT_TICKS)));
-        assert_eq!(soon(Fault::EncoderSlipping), Soon::DarkThen(ticks(encoder::SLIP_TICKS)));
         assert_eq!(soon(Fault::AmplifierSaturated), Soon::Ticks(ticks(motor::SATURATED_TICKS)));
         assert_eq!(soon(Fault::LaserStuck), Soon::Ticks(ticks(LASER_SLACK_TICKS + 1)));
     }

@@ -143,20 +143,6 @@ fn a_cut_encoder_is_seen_35_ms_after_four_counts_at_most() {
 }
 
 #[test]
-fn a_disc_that_slips_by_most_of_its_turn_is_seen() {
-    let mischief: Mischief = |rig, j, since| {
-        if since == 0 {
-            rig.suffer(Trouble::EncoderSlip(j, 0.2));
-        }
-    };
-    // dark at the first doubt; where a few edges come now and then, only the time to come back gives it away
-    let faults = &[Fault::EncoderDead, Fault::EncoderSlipping, Fault::EstimateDiverged, Fault::HoldTimedOut];
-    let case =
-        Case { name: "slipping disc", mischief, faults, bound: 2000, due: after_four_counts, limit_mm: 35.0 };
-    check(&case, &RigConfig::report());
-}
-
-#[test]
 fn a_garbled_stamp_is_seen_in_its_tick() {
     let mischief: Mischief = |rig, j, _| rig.suffer(Trouble::StampGarbled(j));
     let faults = &[Fault::NotANumber];

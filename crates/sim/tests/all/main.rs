@@ -11,5 +11,6 @@ mod homing;
 mod inputs;
 mod recovery;
 mod shapes;
+mod slips;
 mod standing;
 mod tracking;
