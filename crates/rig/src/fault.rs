@@ -90,6 +90,19 @@ impl Fault {
             | Fault::HostLost => false,
         }
     }
+
+    /// Whether counts are not to be believed any more: the rig is unhomed from then on.
+    pub const fn loses_counts(self) -> bool {
+        matches!(
+            self,
+            Fault::EncoderJumped
+                | Fault::EncoderDead
+                | Fault::EncoderNoisy
+                | Fault::EncoderSlipping
+                | Fault::EstimateDiverged
+                | Fault::NotANumber
+        )
+    }
 }
 
 /// A reason why the gate is shut in this tick.
@@ -115,13 +128,15 @@ pub enum Darkness {
     /// An encoder has shown no edge where its joint should have passed several, or does not fit what its motor does, or a count
     /// was put back a moment ago: it may be dead or slip or lose counts, or somebody holds the head.
     Doubtful = 8,
-    /// The rig was powered up and not told since where its joints stand: nobody knows where light would fall.
+    /// The rig was powered up, or lost counts, and was not told since where its joints stand: nobody knows where light would fall.
     Unhomed = 9,
+    /// No host has said of late that it is there.
+    HostSilent = 11,
 }
 
 impl Darkness {
     /// Every reason, in bit order.
-    pub const ALL: [Darkness; 10] = [
+    pub const ALL: [Darkness; 11] = [
         Darkness::Planned,
         Darkness::Disarmed,
         Darkness::FollowingError,
@@ -132,6 +147,7 @@ impl Darkness {
         Darkness::Faulted,
         Darkness::Doubtful,
         Darkness::Unhomed,
+        Darkness::HostSilent,
     ];
 
     /// Stable code for logs and `explain`.
@@ -147,6 +163,7 @@ impl Darkness {
             Darkness::Faulted => "faulted",
             Darkness::Doubtful => "doubtful",
             Darkness::Unhomed => "unhomed",
+            Darkness::HostSilent => "host-silent",
         }
     }
 }
@@ -173,7 +190,7 @@ impl DarknessSet {
         self.0 == 0
     }
 
-    /// One bit a reason, [`Darkness::ALL`] order.
+    /// One bit a reason: the one whose place is the reason's number.
     pub const fn bits(self) -> u16 {
         self.0
     }

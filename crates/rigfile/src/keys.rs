@@ -364,7 +364,7 @@ pub(crate) const RIG_KEYS: [Key<RigConfig>; 36] = [
     real(
         "control.tolerance",
         LENGTHS,
-        (1e-5, 1.0),
+        (1e-5, 0.05),
         "distance on the target beyond which the laser is darkened",
         |r| &mut r.control.tolerance_m,
     ),
@@ -374,7 +374,7 @@ pub(crate) const RIG_KEYS: [Key<RigConfig>; 36] = [
     real(
         "control.host_silence",
         TIMES,
-        (5e-3, 10.0),
+        (5e-3, 1.0),
         "how long a host may be silent before that is a fault",
         |r| &mut r.control.host_silence_s,
     ),

@@ -39,7 +39,7 @@ pub use diagram::{Diagram, ScopeTick};
 pub use laws::{Compensator, HandTuned, LawName, ObserverName, StepReference};
 pub use replay::replay;
 pub use room::{Room, Taken};
-pub use run::{Feeder, Run, Simulated, SimulatedRig, Tick, run, run_segments};
+pub use run::{Feeder, Run, Simulated, SimulatedRig, Tick, arm, darken, run, run_segments};
 pub use score::{Tracking, score};
 pub use spread::Spread;
 pub use step::{Push, StepResponse, follow_array, push_response, step_response, step_response_by};

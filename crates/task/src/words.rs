@@ -23,7 +23,7 @@ pub const fn fault_words(fault: Fault) -> &'static str {
             "Segments ran out in the middle of the job: the host was too slow or the connection broke."
         }
         Fault::SetpointInvalid => {
-            "A segment left the joint limits or did not join the one before it: plan the job again with this rig file."
+            "A segment left the limits of a joint's angle, speed or acceleration somewhere, let it stray further than any may, or did not join the one before it: plan the job again with this rig file."
         }
         Fault::LimitReached => {
             "A joint left its limits: check the zero of the head and the limits in the rig file."
@@ -69,8 +69,9 @@ pub const fn darkness_words(reason: Darkness) -> &'static str {
             "An encoder showed no edge where its joint should have passed several, does not fit what its motor does, or lost a count."
         }
         Darkness::Unhomed => {
-            "The rig was powered up and not homed since: nobody knew where light would fall."
+            "The rig was powered up, or lost counts, and was not homed since: nobody knew where light would fall."
         }
+        Darkness::HostSilent => "No host had said of late that it is there.",
         Darkness::FollowingError => "A joint was further from its setpoint than the stroke allows.",
         Darkness::SpotError => "Both joints together put the spot too far from its stroke.",
         Darkness::Holding => "The plan waited until the head was back on its stroke.",

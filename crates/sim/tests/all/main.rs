@@ -6,8 +6,10 @@
 mod by_hand;
 mod closed_loop;
 mod disturbances;
+mod evidence;
 mod faults;
 mod homing;
 mod recovery;
+mod segments;
 mod shapes;
 mod tracking;

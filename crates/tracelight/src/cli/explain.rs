@@ -231,7 +231,10 @@ const fn what_to_do(reason: Darkness) -> &'static str {
             "See whether somebody holds the head; if not, an encoder is going dead or loses counts: look at its cable and its disc."
         }
         Darkness::Unhomed => {
-            "Encoders count from where they are powered up. Have a camera find where it stands: tracelight calibrate head --home --camera …"
+            "Encoders count from where they are powered up, and a fault of one loses counts. Have a camera find where it stands: tracelight calibrate head --home --camera …"
+        }
+        Darkness::HostSilent => {
+            "See whether the host runs and whether the connection holds. control.host_silence sets the bound."
         }
         Darkness::Faulted => "Look up the fault's own code.",
     }
