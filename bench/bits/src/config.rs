@@ -26,6 +26,7 @@ pub fn report() -> Config {
         laser_on_ticks: 5,
         laser_off_ticks: 3,
         host_silence_ticks: 50,
+        tolerance_limit_rad: 0.1,
     }
 }
 
@@ -54,6 +55,11 @@ fn axis(
             acceleration_rad_s2,
         }),
         rating: MotorRating { continuous_share: 0.7, heating_s: 60.0 },
-        limits: JointLimits { lower_rad: -range_rad, upper_rad: range_rad, speed_rad_s: 24.0 },
+        limits: JointLimits {
+            lower_rad: -range_rad,
+            upper_rad: range_rad,
+            speed_rad_s: 26.4,
+            acceleration_rad_s2: 110.0,
+        },
     }
 }

@@ -92,11 +92,11 @@ fn hull(c: &[f32; 6], ticks: f32) -> Hull {
 /// The same polynomial on both halves of its stretch (de Casteljau).
 fn halves(hull: &Hull) -> (Hull, Hull) {
     let (mut before, mut after) = (*hull, *hull);
-    for step in 1..6 {
+    for (step, value) in before.iter_mut().enumerate().skip(1) {
         for i in 0..6 - step {
             after[i] = 0.5 * (after[i] + after[i + 1]);
         }
-        before[step] = after[0];
+        *value = after[0];
     }
     (before, after)
 }

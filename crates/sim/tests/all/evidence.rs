@@ -45,11 +45,18 @@ fn fed(rig: &mut SimulatedRig, feeder: &mut Feeder<'_>) -> Tick {
     alive(rig)
 }
 
+/// Lets ticks pass with a host that is there.
+fn pass(rig: &mut SimulatedRig, ticks: u32) {
+    for _ in 0..ticks {
+        alive(rig);
+    }
+}
+
 /// Ticks in which a rig that is fed no more gets through a segment, and takes another.
 const ROOM_TICKS: u32 = 40;
 
 fn make_room(rig: &mut SimulatedRig) {
-    (0..ROOM_TICKS).for_each(|_| drop(alive(rig)));
+    pass(rig, ROOM_TICKS);
 }
 
 /// A segment that no joint can follow.
@@ -144,13 +151,13 @@ fn a_head_that_lost_counts_draws_again_once_it_was_homed() {
     let plan = plan_of(&config, circle(0.2));
     let (mut rig, _) = under_way(&plan, lit_ticks(&plan)[200] as u32, 0, 3);
     rig.suffer(Trouble::EncoderJump(Joint::Tilt, 25));
-    (0..200).for_each(|_| drop(alive(&mut rig)));
+    pass(&mut rig, 200);
     assert!(arm(&mut rig));
     rig.send(Command::Abandon).unwrap();
     let rests = (0..4000).map(|_| alive(&mut rig)).last().unwrap();
     rig.send(Command::Home(true_counts(&config, &rests))).unwrap();
     rig.send(Command::Abandon).unwrap();
-    (0..3000).for_each(|_| drop(alive(&mut rig)));
+    pass(&mut rig, 3000);
     let again = run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(()));
     let off = again.ticks.iter().filter(|t| t.light).map(off_mm).fold(0.0, f64::max);
     assert!(again.is_done() && again.ticks.iter().filter(|t| t.light).count() > 1000);
@@ -231,10 +238,12 @@ fn a_dot_is_dark_without_a_host_and_ends_with_it() {
     let middle = lit_ticks(&plan)[300] as u32;
     let (mut homed, _) = under_way(&plan, middle, 0, 0);
     homed.send(Command::Disarm).unwrap();
-    (0..300).for_each(|_| drop(alive(&mut homed)));
+    pass(&mut homed, 300);
     let mut unhomed = SimulatedRig::unhomed(&config, POSE, PanTilt::new(0.1, 0.1), 0);
     // never heard of anybody
-    (0..200).for_each(|_| drop(unhomed.step()));
+    for _ in 0..200 {
+        unhomed.step();
+    }
     unhomed.send(Command::Point(900)).unwrap();
     for _ in 0..1000 {
         let now = unhomed.step();
