@@ -229,6 +229,7 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
         },
         darkness,
         homed: true,
+        fault_number: 0,
         phase: Phase::Tracing,
         fault: None,
     };
