@@ -28,6 +28,7 @@ pub fn report() -> Config {
         host_silence_ticks: 50,
         standing_ticks: 1000,
         standing_radius_rad: 0.0014771085,
+        tolerance_limit_rad: 0.1,
     }
 }
 
@@ -56,6 +57,11 @@ fn axis(
             acceleration_rad_s2,
         }),
         rating: MotorRating { continuous_share: 0.7, heating_s: 60.0 },
-        limits: JointLimits { lower_rad: -range_rad, upper_rad: range_rad, speed_rad_s: 24.0 },
+        limits: JointLimits {
+            lower_rad: -range_rad,
+            upper_rad: range_rad,
+            speed_rad_s: 26.4,
+            acceleration_rad_s2: 110.0,
+        },
     }
 }

@@ -41,13 +41,13 @@ pub fn run(ticks: u32) -> Outcome {
     let mut state = controller.start_homed(&sensed);
     let mut strokes = Strokes::default();
     let mut fnv = Fnv::default();
-    let (mut lit_ticks, mut held_ticks, mut fault) = (0, 0, None);
+    let (mut lit_ticks, mut held_ticks, mut fault, mut acknowledges) = (0, 0, None, 0);
     for tick in 0..ticks {
+        tell(&controller, &mut state, Command::KeepAlive);
         // armed anew every ten seconds: whatever fault there was is behind
         if tick % 10_000 == 0 {
-            tell(&controller, &mut state, Command::Arm);
+            tell(&controller, &mut state, Command::Arm { acknowledges });
         }
-        tell(&controller, &mut state, Command::KeepAlive);
         while let Some(segment) = strokes.due(tick) {
             if controller.accept(&mut state, Command::Append(segment)).is_err() {
                 strokes.put_back();
@@ -57,6 +57,7 @@ pub fn run(ticks: u32) -> Outcome {
         let telemetry = controller.tick(&mut state, &sensed);
         fnv.take(&telemetry);
         fault = fault.or(telemetry.fault);
+        acknowledges = telemetry.fault_number;
         lit_ticks += u32::from(telemetry.actuation.gate);
         held_ticks += u32::from(matches!(telemetry.phase, Phase::Holding | Phase::Faulted));
         head.push_nm = if tick % 7_300 < 60 { PanTilt::new(0.4, -0.3) } else { PanTilt::default() };

@@ -1,4 +1,4 @@
-use tracelight_rig::{Joint, PanTilt};
+use tracelight_rig::{Joint, JointLimits, PanTilt};
 
 use crate::axis::AxisConfig;
 use crate::model::HeadModel;
@@ -22,17 +22,23 @@ pub struct Config {
     pub standing_ticks: u32,
     /// Radius of a place as the head sees it, rad.
     pub standing_radius_rad: f32,
+    /// Furthest that a segment may let a joint stray, rad.
+    pub tolerance_limit_rad: f32,
 }
 
 impl Config {
     /// Whether joints may be there, by what their encoders count. Those that count from where they were left do not know where their ranges end: only how wide they are.
     pub(crate) fn may_be_at(&self, position_rad: PanTilt<f32>, homed: bool) -> bool {
         Joint::BOTH.iter().all(|&j| {
-            let limits = &self.axes[j].limits;
-            match homed {
-                true => limits.contains(position_rad[j]),
-                false => position_rad[j].abs() <= limits.upper_rad - limits.lower_rad,
-            }
+            let (lower, upper) = self.range_rad(j, homed);
+            lower <= position_rad[j] && position_rad[j] <= upper
         })
+    }
+
+    /// Where a joint may be, by what its encoder counts, rad.
+    pub(crate) fn range_rad(&self, joint: Joint, homed: bool) -> (f32, f32) {
+        let JointLimits { lower_rad, upper_rad, .. } = self.axes[joint].limits;
+        let width = upper_rad - lower_rad;
+        if homed { (lower_rad, upper_rad) } else { (-width, width) }
     }
 }

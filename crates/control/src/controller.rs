@@ -1,6 +1,5 @@
 use tracelight_rig::{
-    Actuation, Command, Darkness, DarknessSet, Fault, Joint, Measurement, PanTilt, Phase, Segment, Sensed,
-    Telemetry,
+    Actuation, Command, Darkness, DarknessSet, Fault, Joint, Measurement, PanTilt, Phase, Sensed, Telemetry,
 };
 
 use crate::config::Config;
@@ -24,6 +23,8 @@ pub struct Controller {
 #[derive(Clone, Copy, Debug)]
 pub struct State {
     tick: u32,
+    /// No tick has passed yet: what is sensed in the first is what it started with.
+    fresh: bool,
     sensed: Sensed,
     servo: Servo,
     watch: Watch,
@@ -38,6 +39,12 @@ pub struct State {
 }
 
 impl State {
+    /// The same, its ticks counted from another than 0: of a controller that has been on for long.
+    #[must_use]
+    pub const fn counting_from(self, tick: u32) -> Self {
+        Self { tick, ..self }
+    }
+
     /// What is believed of the joints.
     pub const fn estimates(&self) -> &PanTilt<Estimate> {
         self.servo.estimates()
@@ -62,6 +69,7 @@ impl Controller {
         let servo = Servo::at_rest(&self.config, &sensed.encoders);
         State {
             tick: 0,
+            fresh: true,
             sensed: *sensed,
             servo,
             watch: Watch::new(&self.config, sensed, servo.estimates()),
@@ -76,15 +84,16 @@ impl Controller {
     }
 
     /// Takes a command, or gives it back when the queue is full, or when a head is to be homed that is armed, moves, or can
-    /// not be there. A segment that does not join the last one is taken
-    /// and latches a fault.
+    /// not be there. A segment that does not join the last one, or leaves its bounds anywhere, is taken
+    /// and latches a fault. Arming that acknowledges other faults than there were, and arming and a dot without a host that is there, are taken and change nothing.
     pub fn accept(&self, state: &mut State, command: Command) -> Result<(), Command> {
         match command {
-            Command::Arm => self.arm(state),
+            Command::Arm { acknowledges } => self.arm(state, acknowledges),
             Command::Disarm => {
                 state.supervisor.disarm();
                 state.player.hold();
             }
+            Command::Point(_) if !state.watch.hears_host(&self.config) => {}
             Command::Point(ticks) => self.point(state, u32::from(ticks)),
             Command::Home(counts) if !self.may_home(state, counts) => return Err(command),
             Command::Home(counts) => self.home(state, counts),
@@ -102,7 +111,7 @@ impl Controller {
             Command::Finish => state.player.finish(),
             Command::Append(_) if !state.player.has_room() => return Err(command),
             Command::Append(segment) => {
-                if !self.in_range(&segment, state.supervisor.homed) || !state.player.append(segment) {
+                if !self.config.may_run(&segment, state.supervisor.homed) || !state.player.append(segment) {
                     state.supervisor.trip(Fault::SetpointInvalid);
                 }
             }
@@ -110,8 +119,9 @@ impl Controller {
         Ok(())
     }
 
-    fn arm(&self, state: &mut State) {
-        if !state.supervisor.may_arm() || state.sensed.inputs.any_open() {
+    fn arm(&self, state: &mut State, acknowledges: u32) {
+        let read = acknowledges == state.supervisor.fault_number;
+        if !read || !state.watch.hears_host(&self.config) || state.sensed.inputs.any_open() {
             return;
         }
         if state.supervisor.fault.is_some() {
@@ -171,14 +181,6 @@ impl Controller {
         state.supervisor.home();
     }
 
-    /// Whether both ends of a segment lie where the joints may be.
-    fn in_range(&self, segment: &Segment, homed: bool) -> bool {
-        [0.0, f32::from(segment.ticks)].into_iter().all(|n| {
-            let at = segment.sample(n);
-            self.config.may_be_at(at.map(|setpoint| setpoint.position_rad), homed)
-        })
-    }
-
     /// One tick. `sensed` is what the head reports at its start; the returned telemetry carries what to do until its
     /// end. The first tick after [`start`](Self::start) takes the same.
     pub fn tick(&self, state: &mut State, sensed: &Sensed) -> Telemetry {
@@ -195,7 +197,6 @@ impl Controller {
         let gate = darkness.is_empty();
         let enable = state.supervisor.may_light();
         state.watch.light(gate);
-        state.supervisor.tell();
         let telemetry = Telemetry {
             tick: state.tick,
             plan_tick: state.player.plan_tick(),
@@ -211,6 +212,7 @@ impl Controller {
             homed: state.supervisor.homed,
             phase: state.supervisor.phase,
             fault: state.supervisor.fault,
+            fault_number: state.supervisor.fault_number,
         };
         run_clock(&mut state.player, clock);
         state.tick = state.tick.wrapping_add(1);
@@ -221,7 +223,7 @@ impl Controller {
         state.sensed = *sensed;
         // before all that may come of them: a motor without a supply looks like a dead encoder
         sensed.inputs.faults().for_each(|fault| state.supervisor.trip(fault));
-        if state.tick == 0 {
+        if core::mem::take(&mut state.fresh) {
             return;
         }
         state.servo.observe(&self.config, &sensed.encoders);
@@ -258,6 +260,7 @@ impl Controller {
             error_rad: PanTilt::from_fn(|j| played.setpoint[j].position_rad - position_rad[j]),
             doubtful: state.watch.is_doubtful(),
             tested: state.watch.is_tested(),
+            host_silent: !state.watch.hears_host(&self.config),
             light_due: state.player.light_is_due(self.config.laser_on_ticks),
             begun: state.player.has_begun(),
             starved: state.player.is_empty() && !state.player.is_done(),

@@ -18,6 +18,7 @@
 #![no_std]
 
 mod axis;
+mod bounds;
 mod config;
 mod controller;
 mod creep;

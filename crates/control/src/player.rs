@@ -67,8 +67,8 @@ impl Player {
         self.length < QUEUE_LENGTH
     }
 
-    /// Appends a segment; false when it does not join the one before it in time and place, comes after the last, or
-    /// says nothing of how far the head may stray.
+    /// Appends a segment; false when it does not join the one before it in time and place, comes after the last, or ends
+    /// later than can be counted.
     pub(crate) fn append(&mut self, segment: Segment) -> bool {
         let from = segment.sample(0.0).map(|s| s.position_rad);
         let (tick, place) = self.end.unwrap_or((self.tick, self.rest.map(|s| s.position_rad)));
@@ -76,9 +76,7 @@ impl Player {
         let reach = if self.end.is_some() { JOIN_RAD } else { 10.0 * JOIN_RAD };
         let near = |a: f32, b: f32| (a - b).abs() <= reach;
         let joins = segment.start_tick == tick && near(from.pan, place.pan) && near(from.tilt, place.tilt);
-        let tolerable = |t: f32| t.is_finite() && t > 0.0;
-        let judged = tolerable(segment.tolerance_rad.pan) && tolerable(segment.tolerance_rad.tilt);
-        if !joins || !judged || segment.ticks == 0 || self.finished || !self.has_room() {
+        if !joins || !segment.fits() || segment.ticks == 0 || self.finished || !self.has_room() {
             return false;
         }
         self.queue[(self.head + self.length) % QUEUE_LENGTH] = Some(segment);
@@ -228,4 +226,32 @@ impl Player {
 
 fn at_rest(position_rad: f32) -> Setpoint {
     Setpoint { position_rad, ..Setpoint::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_segment_whose_end_cannot_be_counted_is_refused() {
+        let tolerance_rad = PanTilt::new(1e-3, 1e-3);
+        let still = |start_tick, ticks| Segment {
+            start_tick,
+            ticks,
+            coefficients: PanTilt::default(),
+            tolerance_rad,
+            gate: false,
+        };
+        let near_the_end = Player { tick: u32::MAX - 8, ..Player::resting_at(PanTilt::default()) };
+        for (ticks, fits) in [(8, true), (9, false), (u16::MAX, false)] {
+            let mut player = near_the_end;
+            assert_eq!(player.append(still(u32::MAX - 8, ticks)), fits, "{ticks}");
+        }
+        // there it ends
+        let mut player = near_the_end;
+        assert!(player.append(still(u32::MAX - 8, 8)));
+        player.finish();
+        (0..20).for_each(|_| player.advance());
+        assert!(player.is_done());
+    }
 }

@@ -26,8 +26,10 @@ pub(crate) struct Supervisor {
     pub(crate) blind: bool,
     /// The encoders know where the joints are.
     pub(crate) homed: bool,
-    /// The fault stood in a telemetry: whoever arms can have seen it.
-    told: bool,
+    /// How many faults were latched since power-up, of each kind one while another is latched.
+    pub(crate) fault_number: u32,
+    /// The kinds that came since somebody armed, a bit each.
+    kinds: u32,
     held_ticks: u32,
     /// Since the last hold.
     calm_ticks: u32,
@@ -51,6 +53,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) doubtful: bool,
     /// Both encoders were seen to follow their motors, and nothing spoke against it since.
     pub(crate) tested: bool,
+    /// No host has said of late that it is there.
+    pub(crate) host_silent: bool,
     /// What the gate lets through now falls where the plan wants light, however slowly its clock runs.
     pub(crate) light_due: bool,
     /// The plan's clock has left its start.
@@ -73,28 +77,25 @@ pub(crate) enum Clock {
 }
 
 impl Supervisor {
-    /// Latches a fault; the first one stays, and what any of them means for the motors.
+    /// Latches a fault; the first one stays, and what any of them means for the motors and for what counts are worth. One that
+    /// lasts, and trips in every tick, is one.
     pub(crate) fn trip(&mut self, fault: Fault) {
-        self.told &= self.fault.is_some();
+        let kind = 1 << fault as u32;
+        if self.kinds & kind == 0 {
+            self.kinds |= kind;
+            self.fault_number = self.fault_number.wrapping_add(1);
+        }
         self.fault = self.fault.or(Some(fault));
         self.blind |= fault.leaves_motors_blind();
+        self.homed &= !fault.loses_counts();
         self.phase = Phase::Faulted;
     }
 
-    /// The fault, if any, goes out with this tick's telemetry.
-    pub(crate) const fn tell(&mut self) {
-        self.told = self.fault.is_some();
-    }
-
-    /// Whether arming means something now: a fault nobody was told of yet stays.
-    pub(crate) const fn may_arm(&self) -> bool {
-        self.fault.is_none() || self.told
-    }
-
-    /// Allows light; a fault is forgotten.
+    /// Allows light; a fault is forgotten, but for its number and for counts that it lost.
     pub(crate) fn arm(&mut self) {
         if matches!(self.phase, Phase::Dark | Phase::Done | Phase::Faulted) {
-            *self = Self { phase: Phase::Armed, homed: self.homed, ..Self::default() };
+            let Self { homed, fault_number, .. } = *self;
+            *self = Self { phase: Phase::Armed, homed, fault_number, ..Self::default() };
         }
     }
 
@@ -135,7 +136,7 @@ impl Supervisor {
         if !config.may_be_at(at.position_rad, self.homed) && self.phase != Phase::Dark {
             self.trip(Fault::LimitReached);
         }
-        self.pointing_ticks = self.pointing_ticks.saturating_sub(1);
+        self.pointing_ticks = if at.host_silent { 0 } else { self.pointing_ticks.saturating_sub(1) };
         self.dotless_ticks = if self.pointing_ticks > 0 { 0 } else { self.dotless_ticks.saturating_add(1) };
         match self.phase {
             // a job that was disarmed on its way goes on only from where it stopped, a new one from where it begins
@@ -222,6 +223,7 @@ impl Supervisor {
         let stale = idle || at.starved || at.segment.is_none();
         reasons.insert_if(stale && !seeks, Darkness::Stale);
         reasons.insert_if(self.fault.is_some(), Darkness::Faulted);
+        reasons.insert_if(at.host_silent, Darkness::HostSilent);
         reasons
     }
 }

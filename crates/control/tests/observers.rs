@@ -26,7 +26,12 @@ fn axis(observer: ObserverConfig) -> AxisConfig {
         law: LawConfig { feedback: Feedback::Pid(Pid::proportional(1.0)), feedforward: Feedforward::None },
         creep: None,
         rating: MotorRating { continuous_share: 1.0, heating_s: 60.0 },
-        limits: JointLimits { lower_rad: -3.0, upper_rad: 3.0, speed_rad_s: 24.0 },
+        limits: JointLimits {
+            lower_rad: -3.0,
+            upper_rad: 3.0,
+            speed_rad_s: 24.0,
+            acceleration_rad_s2: 100.0,
+        },
     }
 }
 

@@ -245,6 +245,10 @@ mod tests {
             self.room.step()
         }
 
+        fn told(&self) -> &Telemetry {
+            self.room.told()
+        }
+
         fn patience_ticks(&self) -> usize {
             self.room.patience_ticks()
         }

@@ -27,7 +27,7 @@ const DOT_M: f64 = 0.005;
 const DOT_SPEED_M_S: f64 = 0.1;
 /// Dots across, and as many down: of a head of which nothing is known, and of one that moved.
 const ACROSS: usize = 5;
-const ACROSS_AGAIN: usize = 3;
+pub(crate) const ACROSS_AGAIN: usize = 3;
 /// Images of dots of a head that moved in which nothing is seen: it points elsewhere.
 const IN_VAIN: usize = 6;
 /// Share of the image, from its border, in which none are drawn.
@@ -104,7 +104,7 @@ impl DotsRequest {
 }
 
 /// Places for the dots: evenly over what the camera sees, as far as the head reaches.
-fn dots(camera: &Camera, driving: &Driving, across: usize) -> Vec<Point> {
+pub(crate) fn dots(camera: &Camera, driving: &Driving, across: usize) -> Vec<Point> {
     let [width, height] = camera.lens.size_px.map(|n| n as f64);
     let place = |k: usize| BORDER + (1.0 - 2.0 * BORDER) * k as f64 / (across - 1) as f64;
     let at = |row: usize, k: usize| {

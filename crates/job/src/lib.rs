@@ -14,6 +14,7 @@
 //! ```
 
 mod keep;
+mod kept;
 mod lap;
 mod prepared;
 mod recovery;

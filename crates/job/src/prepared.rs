@@ -158,8 +158,8 @@ impl Prepared {
             task.stage("run", plan.points.len() as u64);
             let Some(looks) = self.watched() else {
                 let put_up = if powered_up { left } else { SimulatedRig::new };
-                let rig = put_up(&learned.rig, self.driving.pose, seed);
-                let (lap, why) = run_lap(rig, plan, dry, keep, task)?;
+                let mut rig = put_up(&learned.rig, self.driving.pose, seed);
+                let (lap, why) = run_lap(&mut rig, plan, dry, keep, task)?;
                 laps.push(lap);
                 failure = why;
                 continue;

@@ -4,16 +4,18 @@ use tracelight_aim::{Alignment, HeadGeometry, HeadPose, TrimBelief};
 use tracelight_eye::figures::RecoveryFigures;
 use tracelight_eye::follow::{Blind, Followed, Follower, Suspicion};
 use tracelight_eye::head::{DotsRequest, find_head};
+use tracelight_eye::homing::home_again;
 use tracelight_eye::power::lost_power;
 use tracelight_eye::wall::{MOVED_PX, SeenWall, moved_px, see_wall, well_exposed};
 use tracelight_eye::{Eye, Looks, PATIENCE_TICKS, Shot};
 use tracelight_pipeline::refused;
 use tracelight_rig::{Command, PanTilt, Rig, TICK_F64_S, Telemetry};
-use tracelight_sim::Tick;
+use tracelight_sim::{Simulated, Tick, arm};
 use tracelight_stroke::{Drawing, Stroke};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, plan};
 
+use crate::kept::Kept;
 use crate::watched::{MOST_RECOVERIES, REST_TICKS, Watched, Why};
 
 /// Most ticks that a head needs to go back to zero, and what counts as there.
@@ -158,10 +160,10 @@ impl Watched<'_> {
         let (timing, exposure_s) = (self.follower.watch.timing, self.follower.watch.exposure_s);
         let camera = self.wall.stood.as_ref().map_or(self.job.seen.followed.camera, |s| s.camera.camera);
         let request = DotsRequest::again(&self.driving, timing, exposure_s);
-        let Self { room, keep: kept, joined, failed, plan_tick, unpowered, .. } = self;
+        let Self { room, keep: kept, joined, failed, plan_tick, power, unpowered, .. } = self;
         let mut keep = |tick: &Tick| {
             let mut tick = *tick;
-            *unpowered |= !tick.telemetry.homed;
+            *unpowered |= power.is_lost(&tick.telemetry);
             if *unpowered {
                 return;
             }
@@ -170,10 +172,18 @@ impl Watched<'_> {
                 *failed = failed.take().or(Some(error));
             }
         };
-        let found = find_head(room, &camera, &self.driving, &request, self.task, &mut keep);
-        let found = found.map_err(|e| Failure { message: format!("{why}; {}", e.message), ..e })?;
+        let because = |e: Failure| Failure { message: format!("{why}; {}", e.message), ..e };
+        let mut turned_rad = PanTilt::default();
+        if !room.told().homed {
+            let mut room = Kept { room, keep: &mut keep };
+            let homed = home_again(&mut room, &camera, &self.driving, (timing, exposure_s), self.task);
+            let count_rad = self.driving.rig.model.encoder.count_rad();
+            turned_rad = homed.map_err(because)?.counts.map(|count| f64::from(count) * count_rad);
+        }
+        let found =
+            find_head(room, &camera, &self.driving, &request, self.task, &mut keep).map_err(because)?;
         let Alignment { geometry, pose, .. } = found.aligned.alignment;
-        let moved = self.moved_mm(left, &geometry, &pose);
+        let moved = self.moved_mm(left, (&geometry, &pose), turned_rad);
         self.driving.believe(geometry, pose);
         let head = Alignment { late_s: 0.0, readout_s: 0.0, ..found.aligned.alignment };
         let followed = Followed {
@@ -201,12 +211,19 @@ impl Watched<'_> {
         plan(left, &self.driving.machine, &self.driving.request).map_err(refused)
     }
 
-    /// By how much the spot had moved on what is left, in the mean, mm.
-    fn moved_mm(&self, left: &Drawing, geometry: &HeadGeometry, pose: &HeadPose) -> f64 {
+    /// By how much the spot had moved on what is left, in the mean, mm: of a head that is so and stands so, and whose joints were by so much further than
+    /// their counts said, rad.
+    fn moved_mm(
+        &self,
+        left: &Drawing,
+        (geometry, pose): (&HeadGeometry, &HeadPose),
+        turned_rad: PanTilt<f64>,
+    ) -> f64 {
         let own = &self.driving;
         let off = |stroke: &Stroke| {
             let at = stroke.path.start();
             let angle = own.machine.geometry.angles(&own.pose, at).ok()?;
+            let angle = PanTilt::new(angle.pan + turned_rad.pan, angle.tilt + turned_rad.tilt);
             geometry.spot(pose, angle).map(|now| now.distance(at))
         };
         let all: Vec<f64> = left.strokes.iter().filter_map(off).collect();
@@ -215,7 +232,7 @@ impl Watched<'_> {
 
     /// Forgets the job and goes back to zero in the dark.
     fn home(&mut self) -> Result<(), Failure> {
-        let _ = self.room.send(Command::Arm);
+        arm(&mut self.room);
         let _ = self.room.send(Command::Abandon);
         for _ in 0..HOME_TICKS {
             let (tick, _) = self.step(None);

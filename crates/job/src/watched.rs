@@ -6,13 +6,13 @@ use tracelight_eye::feed::TrimmedFeeder;
 use tracelight_eye::figures::{FollowFigures, SeenOff, TrimFigures};
 use tracelight_eye::follow::{Blind, Follower, Suspicion, strayed_rad};
 use tracelight_eye::painted::Painted;
-use tracelight_eye::power::lost_power;
+use tracelight_eye::power::{PowerWatch, lost_power};
 use tracelight_eye::seen::{SeenLight, SeenMark};
 use tracelight_eye::trouble::TroubleAt;
 use tracelight_pipeline::Driving;
 use tracelight_rig::{Command, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
 use tracelight_rigfile::camera::KnownCamera;
-use tracelight_sim::{Room, Run, Simulated, Tick};
+use tracelight_sim::{Room, Run, Simulated, Tick, arm};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
@@ -89,7 +89,8 @@ pub(crate) struct Watched<'a> {
     pub(crate) figures: FollowFigures,
     pub(crate) keep: &'a mut dyn Keep,
     pub(crate) failed: Option<Failure>,
-    /// The rig is not homed any more.
+    pub(crate) power: PowerWatch,
+    /// The rig lost power.
     pub(crate) unpowered: bool,
     pub(crate) task: Task<'a>,
 }
@@ -118,12 +119,13 @@ pub(crate) fn run_watched(
         figures: FollowFigures { closed: !job.seen.open, ..FollowFigures::default() },
         keep,
         failed: None,
+        power: PowerWatch::default(),
         unpowered: false,
         task,
     };
     // what was drawn until then is told whatever became of it
     let failure = watched.all(job.plan.clone(), job.drawing.clone()).err();
-    let _ = watched.room.send(Command::Disarm);
+    watched.darken();
     let failure = watched.power_lost().or(failure);
     watched.failed.take().map_or(Ok(()), Err)?;
     watched.tell();
@@ -213,7 +215,7 @@ impl Watched<'_> {
             return Ended::Stopped;
         }
         let most = plan.points.len() + self.room.patience_ticks();
-        let _ = self.room.send(Command::Arm);
+        arm(&mut self.room);
         // what is armed anew on its way begins with a hold
         let mut was_held = true;
         for _ in 0..most {
@@ -246,7 +248,7 @@ impl Watched<'_> {
         let _ = self.room.send(Command::KeepAlive);
         let mut tick = self.room.step();
         // its ticks, counts and clock are others from then on
-        self.unpowered |= !tick.telemetry.homed;
+        self.unpowered |= self.power.is_lost(&tick.telemetry);
         if self.unpowered {
             return (tick, None);
         }
@@ -338,6 +340,14 @@ impl Watched<'_> {
         let remark = format!("after {t_s:.1} s: {remark}");
         self.task.say(&format!("note: {remark}"));
         self.figures.remarks.push(remark);
+    }
+
+    /// Nobody leaves a gate open.
+    fn darken(&mut self) {
+        let _ = self.room.send(Command::Disarm);
+        if self.room.told().actuation.gate {
+            self.step(None);
+        }
     }
 
     /// So many ticks in which nothing new is sent.

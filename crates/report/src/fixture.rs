@@ -231,6 +231,7 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
         },
         darkness,
         homed: true,
+        fault_number: 0,
         phase: Phase::Tracing,
         fault: None,
     };

@@ -121,6 +121,12 @@ darknesses! {
         words: "As much light had fallen in this place as may.",
         advice: "Draw faster, or larger: a lit spot that stands, or comes back to its place again and again, is dark in time. safety.standing in the rig file sets the bound, by laser.power.",
     }
+    HostSilent = 11 {
+        what: "No host said of late that it is there.",
+        code: "host-silent",
+        words: "No host had said of late that it is there.",
+        advice: "See whether the host runs and whether the connection holds. control.host_silence sets the bound.",
+    }
 }
 
 const ASTRAY: &str = "See whether somebody or something pushes the head, whether --speed or --distance is more than it can hold, and whether the friction and gains in the rig file are its own. control.tolerance sets the bound.";
@@ -187,6 +193,7 @@ mod tests {
         (8, "doubtful"),
         (9, "unhomed"),
         (10, "standing"),
+        (11, "host-silent"),
     ];
 
     #[test]

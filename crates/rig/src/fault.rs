@@ -95,12 +95,12 @@ faults! {
     SetpointInvalid = 6 {
         what: "A segment leaves the joint limits, does not join the one before it, or says nothing of its tolerance.",
         code: "setpoint-invalid",
-        seen: "a segment comes that leaves the joint limits, does not join the one before it, or is no number",
+        seen: "a segment comes that leaves a joint's limits of angle, speed or acceleration anywhere, lets it stray further than any may, does not join the one before it, or is no number",
         soon: Soon::Words("when it comes, before its time"),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
-        words: "A segment left the joint limits or did not join the one before it: plan the job again with this rig file.",
+        words: "A segment left the limits of a joint's angle, speed or acceleration somewhere, let it stray further than any may, or did not join the one before it: plan the job again with this rig file.",
     }
     LimitReached = 7 {
         what: "The joint itself left its limits.",

@@ -83,6 +83,8 @@ pub struct JointLimits {
     pub upper_rad: f32,
     /// Highest speed, rad/s.
     pub speed_rad_s: f32,
+    /// Highest acceleration, rad/s².
+    pub acceleration_rad_s2: f32,
 }
 
 impl JointLimits {

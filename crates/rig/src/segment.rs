@@ -34,9 +34,14 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// First tick after the segment.
+    /// First tick after the segment; the last tick that can be counted where that is later ([`fits`](Self::fits)).
     pub const fn end_tick(&self) -> u32 {
-        self.start_tick + self.ticks as u32
+        self.start_tick.saturating_add(self.ticks as u32)
+    }
+
+    /// Whether its end is a tick that can be counted.
+    pub const fn fits(&self) -> bool {
+        self.start_tick.checked_add(self.ticks as u32).is_some()
     }
 
     /// The setpoint `elapsed_ticks` (fractions allowed) after the segment's start.
@@ -63,17 +68,22 @@ fn evaluate(c: &[f32; 6], n: f32) -> Setpoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Allow light. Without it every gate stays shut. After a fault it is forgotten, the head goes back to where its job
-    /// stopped, and on from there. Counts are believed as they are: after a fault of an encoder the head must be homed, or found again, before anything is drawn.
-    Arm,
+    /// stopped, and on from there: in the dark where the fault [lost counts](crate::Fault::loses_counts), until it was homed again. It changes nothing at all unless it acknowledges
+    /// every fault so far, and unless the host has said of late that it is there ([`KeepAlive`](Self::KeepAlive)).
+    Arm {
+        /// [`Telemetry::fault_number`](crate::Telemetry::fault_number) of what whoever arms has read. What was on its way while a fault came acknowledges another.
+        acknowledges: u32,
+    },
     /// Forbid light and stop the plan's clock; the head is held where that stands. Armed again, the job goes on from
     /// there; after its end, a new one may begin at tick 0.
     Disarm,
     /// Let light out for so many ticks while nobody is armed, where a job was stopped on a lit stroke and the head rests: a dot, for whoever
-    /// looks where it truly is. Whatever else forbids light on a stroke forbids it here; it ends before it would stand too long.
+    /// looks where it truly is. Whatever else forbids light on a stroke forbids it here; without a host that said of late that it is there it
+    /// changes nothing, and it ends when the host falls silent, or before it would stand too long.
     Point(u16),
     /// The joints stand where encoders that know where zero is read these counts; from now on these do. For a head that was just powered up, which has no job yet
     /// and rests wherever it was left. Taken only while nobody is armed and the joints rest, and only of angles within their limits; the job is forgotten, the next one begins where the head
-    /// stands ([`Abandon`](Self::Abandon) takes it to zero). Until it was told, a rig is *unhomed*: it moves by counts since power-up, no further than its joints' ranges are wide, and all the light it
+    /// stands ([`Abandon`](Self::Abandon) takes it to zero). Until it was told, and again after a fault that loses counts, a rig is *unhomed*: it moves by counts since power-up, no further than its joints' ranges are wide, and all the light it
     /// lets out are dots ([`Point`](Self::Point), then anywhere, of a second at most, all of them a second in any ten: one for which there is no room is not lit at all), by which somebody who looks finds where it points.
     Home(PanTilt<i32>),
     /// What was told of where the joints stand is not so, or nobody knows any more: be unhomed from now on, and dark.
@@ -81,9 +91,9 @@ pub enum Command {
     /// Forget the job: forbid light, go back to where both joints are at zero, and be ready for a new one that begins there at
     /// tick 0. A fault stays; arm first.
     Abandon,
-    /// Append a segment; it must start where and when the one before it ends.
+    /// Append a segment; it must start where and when the one before it ends, and stay within the joints' limits all along.
     Append(Segment),
-    /// The host is there. Who has said so once must go on saying it: silence is a fault.
+    /// The host is there: nothing is armed and no dot is lit without. Who has said so once must go on saying it: silence is a fault.
     KeepAlive,
     /// No further segment will come (one that does is a fault): running out of them is the end of the job, not a fault.
     Finish,
@@ -108,5 +118,14 @@ mod tests {
         assert!((pan.velocity_rad_s - 1.04).abs() < 1e-5);
         assert!((pan.acceleration_rad_s2 - 4.0).abs() < 1e-4);
         assert_eq!(segment.end_tick(), 15);
+    }
+
+    #[test]
+    fn a_segment_whose_end_cannot_be_counted_does_not_fit() {
+        let coefficients = PanTilt::default();
+        let tolerance_rad = PanTilt::default();
+        let of = |start_tick| Segment { start_tick, ticks: 10, coefficients, tolerance_rad, gate: false };
+        assert!(of(u32::MAX - 10).fits() && of(u32::MAX - 10).end_tick() == u32::MAX);
+        assert!(!of(u32::MAX - 9).fits() && of(u32::MAX - 9).end_tick() == u32::MAX);
     }
 }

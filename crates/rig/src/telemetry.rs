@@ -58,10 +58,13 @@ pub struct Telemetry {
     pub actuation: Actuation,
     /// Why the gate is shut; empty when it is open.
     pub darkness: DarknessSet,
-    /// The rig was told where its joints stand ([`Command::Home`](crate::Command::Home)), and did not lose power since.
+    /// The rig was told where its joints stand ([`Command::Home`](crate::Command::Home)), and lost neither power nor counts since.
     pub homed: bool,
     /// Supervisor's state.
     pub phase: Phase,
     /// The latched fault, if any.
     pub fault: Option<Fault>,
+    /// How many faults were latched since power-up; 0 for none. While one is latched, each other kind that comes counts once. What
+    /// [`Command::Arm`](crate::Command::Arm) acknowledges.
+    pub fault_number: u32,
 }

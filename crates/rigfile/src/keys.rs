@@ -238,7 +238,7 @@ pub(crate) fn model_keys() -> Vec<Key<Model>> {
 pub(crate) const STANDING: &str = "safety.standing";
 
 /// Keys of `[truth.wear]`, `[control]`, `[motion]`, `[laser]` and `[safety]`.
-pub(crate) const RIG_KEYS: [Key<RigConfig>; 39] = [
+pub(crate) const RIG_KEYS: [Key<RigConfig>; 40] = [
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),
@@ -370,7 +370,7 @@ pub(crate) const RIG_KEYS: [Key<RigConfig>; 39] = [
     real(
         "control.tolerance",
         LENGTHS,
-        (1e-5, 1.0),
+        (1e-5, 0.05),
         "distance on the target beyond which the laser is darkened",
         |r| &mut r.control.tolerance_m,
     ),
@@ -380,9 +380,16 @@ pub(crate) const RIG_KEYS: [Key<RigConfig>; 39] = [
     real(
         "control.host_silence",
         TIMES,
-        (5e-3, 10.0),
+        (5e-3, 1.0),
         "how long a host may be silent before that is a fault",
         |r| &mut r.control.host_silence_s,
+    ),
+    real(
+        "control.scale_tolerance",
+        PURE,
+        (0.02, 2.0),
+        "by how much what an encoder shows of a motion may differ from what its motor must have made, as a share",
+        |r| &mut r.control.scale_tolerance,
     ),
     real(
         "control.motor_continuous",

@@ -365,6 +365,17 @@ mod tests {
     }
 
     #[test]
+    fn a_host_may_be_silent_for_a_second_and_light_stray_by_50_mm_at_most() {
+        let control = |key: &str, value: &str| format!("[control]\n{key} = \"{value}\"\n");
+        assert!(parse("my.toml", &control("host_silence", "1s")).is_ok());
+        assert!(parse("my.toml", &control("tolerance", "50mm")).is_ok());
+        let silence = error(&control("host_silence", "1.01s"));
+        assert!(silence.contains("must be from 0.005s to 1s"), "{silence}");
+        let tolerance = error(&control("tolerance", "51mm"));
+        assert!(tolerance.contains("must be from 0.00001m to 0.05m"), "{tolerance}");
+    }
+
+    #[test]
     fn a_wrong_unit_is_shown_with_line_and_caret() {
         let message = error("name = \"x\"\n[model.pan.motor]\nlimit = \"10A\"\n");
         assert!(message.contains("my.toml:3:9"), "{message}");

@@ -10,7 +10,7 @@ use tracelight_aim::HeadPose;
 use tracelight_control::Controller;
 use tracelight_plant::JointState;
 use tracelight_rig::{Command, PanTilt, Rig, Sensed};
-use tracelight_sim::{RigConfig, Simulated, SimulatedRig};
+use tracelight_sim::{RigConfig, Simulated, SimulatedRig, arm};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
 use tracelight_trajectory::{DarkMove, LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
 
@@ -51,19 +51,28 @@ fn steps(bencher: Bencher<'_, '_>, config: &RigConfig, step_s: f64) {
 #[divan::bench]
 fn control_tick(bencher: Bencher<'_, '_>) {
     let config = RigConfig::report();
-    let controller = Controller::new(config.control_config());
+    // who is timed has no host
+    let host_silence_ticks = u32::MAX;
+    let controller =
+        Controller::new(tracelight_control::Config { host_silence_ticks, ..config.control_config() });
     let plan = circle(&config);
     let mut rig = SimulatedRig::new(&config, POSE, 0);
-    rig.send(Command::Arm).ok();
+    arm(&mut rig);
     for &segment in plan.segments.iter().take(60) {
         rig.send(Command::Append(segment)).ok();
     }
     // the head's answers are recorded once and played back, so that only the controller is timed
     let heard = |encoders| Sensed { encoders, ..Sensed::default() };
-    let sensed: Vec<_> = (0..1000).map(|_| heard(rig.step().telemetry.measured)).collect();
+    let sensed: Vec<_> = (0..1000)
+        .map(|_| {
+            rig.send(Command::KeepAlive).ok();
+            heard(rig.step().telemetry.measured)
+        })
+        .collect();
     bencher.counter(ItemsCount::new(sensed.len())).bench(|| {
         let mut state = controller.start_homed(&sensed[0]);
-        controller.accept(&mut state, Command::Arm).ok();
+        controller.accept(&mut state, Command::KeepAlive).ok();
+        controller.accept(&mut state, Command::Arm { acknowledges: 0 }).ok();
         for &segment in plan.segments.iter().take(60) {
             controller.accept(&mut state, Command::Append(segment)).ok();
         }
@@ -78,11 +87,15 @@ fn closed_loop_tick(bencher: Bencher<'_, '_>) {
     let plan = circle(&config);
     bencher.counter(ItemsCount::new(1000_usize)).bench(|| {
         let mut rig = SimulatedRig::new(&config, POSE, 0);
-        rig.send(Command::Arm).ok();
+        arm(&mut rig);
         for &segment in plan.segments.iter().take(60) {
             rig.send(Command::Append(segment)).ok();
         }
-        (0..1000).filter(|_| rig.step().light).count()
+        let lit = |_: &i32| {
+            rig.send(Command::KeepAlive).ok();
+            rig.step().light
+        };
+        (0..1000).filter(lit).count()
     });
 }
 

@@ -15,6 +15,13 @@ use crate::{LawName, Model, ObserverName, RigConfig};
 /// How far past the end of its range a joint may be before that is a fault, counts.
 const RANGE_MARGIN_COUNTS: f64 = 3.0;
 
+/// How much faster, and how much more suddenly, than the planner may ask for a joint may be told to move: between two ticks a segment
+/// goes a little beyond what the plan's ticks keep to, and whoever trims it moves it a little more.
+const MOTION_MARGIN: f64 = 1.1;
+/// Furthest that a segment may let a joint stray, rad: 0.1 m on a target 1 m away, twice what any rig file may ask for. Routines in the dark
+/// ask for half of it.
+const TOLERANCE_LIMIT_RAD: f64 = 0.1;
+
 /// A joint hops where fewer edges pass than that, counts/s: in the time from one to the next, 77 ms, one that is slower than its
 /// friction lets go would stall.
 const CREEP_COUNTS_S: f64 = 13.0;
@@ -39,6 +46,7 @@ impl RigConfig {
             speed_limit_rad_s: self.motion.speed_limit_rad_s,
             acceleration_limit_rad_s2: self.motion.acceleration_limit_rad_s2,
             jerk_limit_rad_s3: self.motion.jerk_limit_rad_s3,
+            tolerance_limit_rad: TOLERANCE_LIMIT_RAD,
             geometry: self.model.geometry,
             pose,
             relay_on_ticks: ticks(self.model.relay.on_s),
@@ -57,6 +65,7 @@ impl RigConfig {
             host_silence_ticks: ticks(self.control.host_silence_s),
             standing_ticks: self.light.standing_ticks(),
             standing_radius_rad: self.standing_radius_rad() as f32,
+            tolerance_limit_rad: TOLERANCE_LIMIT_RAD as f32,
         }
     }
 
@@ -89,7 +98,8 @@ impl RigConfig {
             limits: JointLimits {
                 lower_rad: (lower - margin) as f32,
                 upper_rad: (upper + margin) as f32,
-                speed_rad_s: self.motion.speed_limit_rad_s[joint] as f32,
+                speed_rad_s: (MOTION_MARGIN * self.motion.speed_limit_rad_s[joint]) as f32,
+                acceleration_rad_s2: (MOTION_MARGIN * self.motion.acceleration_limit_rad_s2[joint]) as f32,
             },
         }
     }

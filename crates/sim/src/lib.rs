@@ -42,7 +42,7 @@ pub use laws::{Compensator, HandTuned, LawName, ObserverName, StepReference};
 pub use light_settings::{LaserClass, LightSettings};
 pub use replay::replay;
 pub use room::{Room, Taken};
-pub use run::{Feeder, Run, Simulated, SimulatedRig, Tick, run, run_segments};
+pub use run::{Feeder, Run, Simulated, SimulatedRig, Tick, arm, darken, run, run_segments};
 pub use score::{Tracking, score};
 pub use spread::Spread;
 pub use standing::{Standing, first_standing};

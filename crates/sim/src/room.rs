@@ -25,6 +25,8 @@ pub struct Room {
     number: u64,
     /// Images on their way, and when they are there, s.
     sent: VecDeque<(f64, Taken)>,
+    /// Ticks since power-up, which do not wrap.
+    ticks: u64,
     now_s: f64,
     trouble: Option<EyeTrouble>,
     /// The last image that was taken before the camera froze.
@@ -78,6 +80,7 @@ impl Room {
             begun_s: 0.0,
             number: 0,
             sent: VecDeque::new(),
+            ticks: 0,
             now_s: 0.0,
             trouble: None,
             last: None,
@@ -165,11 +168,18 @@ impl Room {
 impl Simulated for Room {
     fn step(&mut self) -> Tick {
         let tick = self.rig.step();
-        self.now_s = f64::from(tick.telemetry.tick) * TICK_F64_S;
+        let number = tick.telemetry.tick;
+        let goes_on = number == (self.ticks as u32).wrapping_add(1);
+        self.ticks = if goes_on { self.ticks + 1 } else { u64::from(number) };
+        self.now_s = self.ticks as f64 * TICK_F64_S;
         let (at, light) = tick.spot.map_or((Point::ORIGIN, false), |at| (at, tick.light));
         self.trail.push_back(SpotSample { time_s: self.now_s, at, light });
         self.take();
         tick
+    }
+
+    fn told(&self) -> &Telemetry {
+        self.rig.told()
     }
 
     fn patience_ticks(&self) -> usize {

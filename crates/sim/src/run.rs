@@ -75,6 +75,8 @@ pub struct SimulatedRig {
     state: State,
     plant: Plant,
     sensed: Sensed,
+    /// The last tick's.
+    told: Telemetry,
     lines: PanTilt<Line>,
     model: HeadGeometry,
     truth: HeadGeometry,
@@ -131,6 +133,7 @@ impl SimulatedRig {
             controller,
             plant,
             sensed,
+            told: Telemetry::default(),
             lines: PanTilt::from_fn(|_| Line::new(seed)),
             model: config.model.geometry,
             truth: config.truth.model.geometry,
@@ -159,6 +162,13 @@ impl SimulatedRig {
         PanTilt::from_fn(|j| self.lines[j].off.wrapping_neg())
     }
 
+    /// The same, its ticks counted from another than 0: of a controller that has been on for long.
+    #[must_use]
+    pub const fn counting_from(mut self, tick: u32) -> Self {
+        self.state = self.state.counting_from(tick);
+        self
+    }
+
     /// The same, truly standing elsewhere than is believed.
     #[must_use]
     pub const fn standing(mut self, true_pose: HeadPose) -> Self {
@@ -169,6 +179,7 @@ impl SimulatedRig {
     fn tick(&mut self) -> Tick {
         self.age();
         let telemetry = self.controller.tick(&mut self.state, &self.sensed);
+        self.told = telemetry;
         let asked = telemetry.setpoint.map(|s| f64::from(s.position_rad));
         let tick = Tick {
             telemetry,
@@ -232,6 +243,9 @@ pub trait Simulated: Rig {
     /// One tick of the closed loop, with the truth.
     fn step(&mut self) -> Tick;
 
+    /// What the last tick told whoever runs it: who arms acknowledges its faults. All is nought before the first.
+    fn told(&self) -> &Telemetry;
+
     /// Ticks beyond a plan after which a run is given up.
     fn patience_ticks(&self) -> usize;
 }
@@ -239,6 +253,10 @@ pub trait Simulated: Rig {
 impl Simulated for SimulatedRig {
     fn step(&mut self) -> Tick {
         self.tick()
+    }
+
+    fn told(&self) -> &Telemetry {
+        &self.told
     }
 
     fn patience_ticks(&self) -> usize {
@@ -285,7 +303,22 @@ impl<'a> Feeder<'a> {
     }
 }
 
-/// Runs a plan on a simulated rig from power-up to rest. `watch` sees every tick as it happens and may stop the run.
+/// Arms a rig: the host is there, and has read every fault that the rig told of. False where the rig does not take it.
+pub fn arm(rig: &mut impl Simulated) -> bool {
+    let acknowledges = rig.told().fault_number;
+    rig.send(Command::KeepAlive).is_ok() && rig.send(Command::Arm { acknowledges }).is_ok()
+}
+
+/// Disarms a rig and lets ticks pass until its gate is shut, one at most, which are kept. Whoever stops a run does so before he goes.
+pub fn darken<R: Simulated>(rig: &mut R, mut keep: impl FnMut(Tick)) {
+    let _ = rig.send(Command::Disarm);
+    if rig.told().actuation.gate {
+        keep(rig.step());
+    }
+}
+
+/// Runs a plan on a simulated rig from power-up to rest. `watch` sees every tick as it happens and may stop the run: then the rig is disarmed, and
+/// the run ends once the gate is shut.
 pub fn run<R: Simulated>(
     rig: &mut R,
     plan: &Plan,
@@ -306,7 +339,7 @@ pub fn run_segments<R: Simulated>(
     let planned = segments.last().map_or(0, |segment| segment.end_tick() as usize + 1);
     let mut ticks = Vec::with_capacity(planned);
     let mut aftermath = AFTERMATH_TICKS;
-    let armed = rig.send(Command::Arm).is_ok();
+    let armed = arm(rig);
     while armed && ticks.len() < planned + rig.patience_ticks() {
         let alive = rig.send(Command::KeepAlive).is_ok();
         debug_assert!(alive, "only segments wait");
@@ -318,6 +351,9 @@ pub fn run_segments<R: Simulated>(
         if watch(rig, &tick).is_break() || over {
             break;
         }
+    }
+    if rig.told().phase != Phase::Done {
+        darken(rig, |tick| ticks.push(tick));
     }
     Run { ticks }
 }

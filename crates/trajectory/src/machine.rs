@@ -23,6 +23,8 @@ pub struct Machine {
     pub acceleration_limit_rad_s2: PanTilt<f64>,
     /// Highest jerk of each joint, from tick to tick, rad/s³; infinite where there is none.
     pub jerk_limit_rad_s3: PanTilt<f64>,
+    /// Furthest that a joint may be allowed to stray, rad.
+    pub tolerance_limit_rad: f64,
     /// Laser and joint ranges.
     pub geometry: HeadGeometry,
     /// Where the head stands.
@@ -173,12 +175,12 @@ impl Machine {
 
     /// How far each joint may stray for the spot to stay within `tolerance_m`, rad: semi-axes of an ellipse of joint
     /// errors. Where the Jacobian's columns are not at right angles, that ellipse maps to one that is longer by
-    /// √(1 + |cos|) at most, so both are made smaller by it.
+    /// √(1 + |cos|) at most, so both are made smaller by it. No joint may stray further than the limit.
     pub(crate) fn joint_tolerance(&self, angle_rad: PanTilt<f64>, tolerance_m: f64) -> PanTilt<f32> {
         let right_angles = [Vec2::new(self.pose.distance_m, 0.0), Vec2::new(0.0, self.pose.distance_m)];
         let [a, b] = self.geometry.jacobian(&self.pose, angle_rad).unwrap_or(right_angles);
         let (pan, tilt) = (a.hypot(), b.hypot());
         let safe_m = tolerance_m / (1.0 + (a.dot(b) / (pan * tilt)).abs()).sqrt();
-        PanTilt::new((safe_m / pan) as f32, (safe_m / tilt) as f32)
+        PanTilt::new(safe_m / pan, safe_m / tilt).map(|stray| stray.min(self.tolerance_limit_rad) as f32)
     }
 }

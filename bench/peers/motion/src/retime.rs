@@ -80,6 +80,7 @@ fn rig(arguments: &Arguments) -> Machine {
         speed_limit_rad_s: PanTilt::new(24.0, 24.0),
         acceleration_limit_rad_s2: none,
         jerk_limit_rad_s3: none,
+        tolerance_limit_rad: f64::INFINITY,
         geometry: HeadGeometry::centred(PanTilt::new((-3.1, 3.1), (-3.1, 3.1))),
         pose: HeadPose::square_on(0.9),
         relay_on_ticks: 0,

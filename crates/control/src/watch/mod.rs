@@ -54,8 +54,15 @@ impl Watch {
         self.silence_ticks = Some(0);
     }
 
+    /// Whether the host has said of late that it is there.
+    pub(crate) fn hears_host(&self, config: &Config) -> bool {
+        self.silence_ticks.is_some_and(|silence| silence <= config.host_silence_ticks)
+    }
+
     /// What a tick's senses show, if anything.
     pub(crate) fn sense(&mut self, config: &Config, servo: &Servo, sensed: &Sensed) -> Option<Fault> {
+        // silence is counted whatever else is wrong
+        let silence = self.host(config);
         let stamped =
             |j: Joint| sensed.encoders[j].edge_age_ticks.is_none_or(|age| (0.0..1.0).contains(&age));
         if !Joint::BOTH.iter().all(|&j| stamped(j) && servo.estimates()[j].is_finite()) {
@@ -75,7 +82,7 @@ impl Watch {
             let (axis, measured) = (&config.axes[j], &sensed.encoders[j]);
             self.scales[j].tick(axis, &servo.efforts()[j], &servo.estimates()[j], measured);
         }
-        pan.or(tilt).or(self.laser(config, sensed)).or(self.host(config))
+        pan.or(tilt).or(self.laser(config, sensed)).or(silence)
     }
 
     /// Whether an encoder has shown nothing where its joint should have passed several edges, or does not fit its motor.
@@ -138,8 +145,6 @@ impl Watch {
         let anew = scales(config, sensed, estimates);
         self.scales = PanTilt::from_fn(|j| anew[j].with_first(&self.scales[j]));
         Joint::BOTH.iter().for_each(|&j| self.motors[j].rearm());
-        // who has said that it is there must go on saying so
-        self.silence_ticks = self.silence_ticks.map(|_| 0);
     }
 }
 

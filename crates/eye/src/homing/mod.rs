@@ -8,7 +8,9 @@
 //! | `places` | where dots are lit, one after the other |
 //! | `travel` | from one to the next, and back from whatever is in the way |
 //! | `dot` | one dot, and whether the camera sees it |
+//! | `again` | the same of a head that lost counts while it drew |
 
+mod again;
 mod dot;
 mod places;
 mod travel;
@@ -68,37 +70,27 @@ pub fn home_head<R: Simulated + Eye>(
     known: Option<(Timing, f64)>,
     task: Task<'_>,
 ) -> Result<Homed, Failure> {
-    // an unhomed rig goes no further from where it was powered up than its joints' ranges are wide
-    let free_rad = driving.machine.geometry.range_rad.map(|(lower, upper)| {
-        let width_rad = (upper - lower - travel::BEFORE_STOP_RAD).max(0.0);
-        (-width_rad, width_rad)
-    });
-    let (timing, exposure_s) = known.unwrap_or((Timing::USUAL, SPOT_EXPOSURE_S));
-    let exposure_s = exposure_s.min(rig.longest_s());
-    let mut homing = Homing {
-        rig,
-        camera,
-        driving,
-        task,
-        history: History::new(&driving.rig.model.relay),
-        timing,
-        exposure_s,
-        counts: PanTilt::default(),
-        free_rad,
-        stops: 0,
-    };
+    let mut homing = Homing::new(rig, camera, driving, known, task);
     task.stage("homing", 1);
     let homed = homing.home(known.is_some(), task);
-    // dark whatever became of it; and a guess is not to be drawn by
-    let _ = homing.rig.send(Command::Disarm);
-    if homed.is_err() {
-        let _ = homing.rig.send(Command::Unhome);
-    }
-    for _ in 0..REST_TICKS {
-        let _ = homing.rig.send(Command::KeepAlive);
-        homing.rig.step();
-    }
-    homed
+    homing.left(homed)
+}
+
+/// Homes a known head again that lost counts, few enough for its dots to be in sight where they should be. The rig rests at zero by its counts,
+/// unhomed, disarmed and dark; afterwards at zero, homed. `images` tells when they are taken and how long they are exposed, s.
+///
+/// # Errors
+/// As for [`home_head`].
+pub fn home_again<R: Simulated + Eye>(
+    rig: &mut R,
+    camera: &Camera,
+    driving: &Driving,
+    images: (Timing, f64),
+    task: Task<'_>,
+) -> Result<Homed, Failure> {
+    let mut homing = Homing::new(rig, camera, driving, Some(images), task);
+    let homed = homing.home_again();
+    homing.left(homed)
 }
 
 /// By which angles a head is turned from where it should be to have zero, rad: pan from where its beam goes straight at the wall, tilt from where it is square to the pan axis.
@@ -170,7 +162,48 @@ struct Homing<'a, R> {
     stops: usize,
 }
 
-impl<R: Simulated + Eye> Homing<'_, R> {
+impl<'a, R: Simulated + Eye> Homing<'a, R> {
+    fn new(
+        rig: &'a mut R,
+        camera: &'a Camera,
+        driving: &'a Driving,
+        known: Option<(Timing, f64)>,
+        task: Task<'a>,
+    ) -> Self {
+        // an unhomed rig goes no further from where it was powered up than its joints' ranges are wide
+        let free_rad = driving.machine.geometry.range_rad.map(|(lower, upper)| {
+            let width_rad = (upper - lower - travel::BEFORE_STOP_RAD).max(0.0);
+            (-width_rad, width_rad)
+        });
+        let (timing, exposure_s) = known.unwrap_or((Timing::USUAL, SPOT_EXPOSURE_S));
+        let exposure_s = exposure_s.min(rig.longest_s());
+        Self {
+            rig,
+            camera,
+            driving,
+            task,
+            history: History::new(&driving.rig.model.relay),
+            timing,
+            exposure_s,
+            counts: PanTilt::default(),
+            free_rad,
+            stops: 0,
+        }
+    }
+
+    /// Dark whatever became of it; and a guess is not to be drawn by.
+    fn left(&mut self, homed: Result<Homed, Failure>) -> Result<Homed, Failure> {
+        let _ = self.rig.send(Command::Disarm);
+        if homed.is_err() {
+            let _ = self.rig.send(Command::Unhome);
+        }
+        for _ in 0..REST_TICKS {
+            let _ = self.rig.send(Command::KeepAlive);
+            self.rig.step();
+        }
+        homed
+    }
+
     fn home(&mut self, is_known: bool, task: Task<'_>) -> Result<Homed, Failure> {
         let (sought, true_rad) = self.seek()?;
         self.tell(true_rad)?;

@@ -1,7 +1,7 @@
 //! How a head goes round of which nobody knows where it points: gently, a joint at a time, and back from whatever is in its way.
 
 use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, Segment, TICK_F64_S, Telemetry};
-use tracelight_sim::Simulated;
+use tracelight_sim::{Simulated, arm};
 use tracelight_task::Failure;
 use tracelight_trajectory::JointMotion;
 
@@ -99,18 +99,23 @@ impl<R: Simulated + Eye> Homing<'_, R> {
                 end_rad.max(0.0).to_degrees()
             ));
         }
-        let _ = self.rig.send(Command::Arm);
+        // what the fault was is known, and what it means here
+        arm(self.rig);
         self.zero("the head does not come back from where something was in its way: is it free?")
     }
 
     /// Moves in the dark from rest to rest, by its encoders, and rests; the fault that ended it, if one did.
-    fn go(&mut self, from: PanTilt<f64>, to: PanTilt<f64>) -> Result<Option<Fault>, Failure> {
+    pub(super) fn go(&mut self, from: PanTilt<f64>, to: PanTilt<f64>) -> Result<Option<Fault>, Failure> {
         let far = (to.pan - from.pan).abs().max((to.tilt - from.tilt).abs());
         if far == 0.0 {
             return Ok(None);
         }
         // a quintic from rest to rest is 1.875 times as fast as in the mean, and speeds up with 5.77 times way over time squared
-        let time_s = (1.875 * far / GENTLE_RAD_S).max((5.774 * far / GENTLE_RAD_S2).sqrt());
+        let machine = &self.driving.machine;
+        let least = |limits: PanTilt<f64>| limits.pan.min(limits.tilt);
+        let most_rad_s = least(machine.speed_limit_rad_s).min(GENTLE_RAD_S);
+        let most_rad_s2 = least(machine.acceleration_limit_rad_s2).min(GENTLE_RAD_S2);
+        let time_s = (1.875 * far / most_rad_s).max((5.774 * far / most_rad_s2).sqrt());
         let ticks = (time_s / TICK_F64_S).ceil().clamp(50.0, 30_000.0);
         let coefficients = PanTilt::from_fn(|j| {
             JointMotion::at_rest(from[j]).quintic_to(&JointMotion::at_rest(to[j]), ticks).map(|c| c as f32)
@@ -118,7 +123,8 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         let tolerance_rad = PanTilt::new(STRAY_RAD, STRAY_RAD);
         let segment =
             Segment { start_tick: 0, ticks: ticks as u16, coefficients, tolerance_rad, gate: false };
-        for command in [Command::Arm, Command::Append(segment), Command::Finish] {
+        arm(self.rig);
+        for command in [Command::Append(segment), Command::Finish] {
             let _ = self.rig.send(command);
         }
         let most = 2 * segment.ticks + 5000;

@@ -80,7 +80,9 @@ impl Swings {
             let widest = self.widest_rad(rig, j);
             let speed = rate * widest / (SPEED_SHARE * rig.motion.speed_limit_rad_s[j]);
             // the envelope adds to it: half as much again at most
-            let acceleration = 1.5 * rate * rate * widest / (TORQUE_SHARE * possible_rad_s2(&rig.model, j));
+            let most_rad_s2 =
+                (TORQUE_SHARE * possible_rad_s2(&rig.model, j)).min(rig.motion.acceleration_limit_rad_s2[j]);
+            let acceleration = 1.5 * rate * rate * widest / most_rad_s2;
             speed.max(acceleration.sqrt())
         };
         joint(Joint::Pan).max(joint(Joint::Tilt)).max(1.0)

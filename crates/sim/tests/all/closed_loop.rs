@@ -9,11 +9,11 @@
 use std::ops::ControlFlow;
 
 use tracelight_rig::{Fault, Joint, PanTilt, Phase};
-use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, run};
+use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, arm, run};
 use tracelight_stroke::Point;
 use tracelight_trajectory::{LitSpeed, Plan};
 
-use crate::shapes::{POSE, SPEED_M_S, circle, line, lit_ticks, off_mm, plan_at, plan_of, star, trace};
+use crate::shapes::{POSE, SPEED_M_S, alive, circle, line, lit_ticks, off_mm, plan_at, plan_of, star, trace};
 
 #[test]
 fn shapes_on_the_report_rig_are_drawn_within_a_quarter_of_a_millimetre() {
@@ -216,11 +216,11 @@ fn segments_that_stop_coming_darken_the_beam() {
     use tracelight_rig::{Command, Rig};
     let plan = plan_of(&RigConfig::report(), circle(0.2));
     let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
-    rig.send(Command::Arm).unwrap();
+    assert!(arm(&mut rig));
     for &segment in plan.segments.iter().take(60) {
         rig.send(Command::Append(segment)).unwrap();
     }
-    let ticks: Vec<_> = (0..plan.points.len()).map(|_| rig.step()).collect();
+    let ticks: Vec<_> = (0..plan.points.len()).map(|_| alive(&mut rig)).collect();
     let fault = ticks.iter().find(|t| t.telemetry.fault.is_some()).unwrap();
     assert_eq!(fault.telemetry.fault, Some(Fault::SetpointsStale));
     assert_eq!(fault.telemetry.tick, plan.segments[59].end_tick());
@@ -232,7 +232,7 @@ fn a_segment_that_does_not_join_is_refused_with_a_fault() {
     use tracelight_rig::{Command, Rig, Segment};
     let plan = plan_of(&RigConfig::report(), circle(0.2));
     let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
-    rig.send(Command::Arm).unwrap();
+    assert!(arm(&mut rig));
     rig.send(Command::Append(plan.segments[0])).unwrap();
     let late = Segment { start_tick: plan.segments[1].start_tick + 1, ..plan.segments[1] };
     rig.send(Command::Append(late)).unwrap();
@@ -274,7 +274,7 @@ fn a_segment_without_a_bound_on_its_error_is_refused() {
     let first = plan_of(&RigConfig::report(), circle(0.1)).segments[0];
     for bound in [f32::NAN, f32::INFINITY, 0.0] {
         let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
-        rig.send(Command::Arm).unwrap();
+        assert!(arm(&mut rig));
         rig.send(Command::Append(Segment { tolerance_rad: PanTilt::new(bound, 1e-3), ..first })).unwrap();
         assert_eq!(rig.step().telemetry.fault, Some(Fault::SetpointInvalid), "{bound}");
     }
@@ -289,7 +289,7 @@ fn a_job_disarmed_on_its_way_goes_on_dark_until_it_is_back() {
         if tick == at {
             rig.send(Command::Disarm).unwrap();
         } else if tick == at + 300 {
-            rig.send(Command::Arm).unwrap();
+            assert!(arm(rig));
         }
     });
     let off = at as usize + 1;

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use tracelight_rig::{Command, Darkness, Fault, Joint, PanTilt, Phase, Rig, Segment};
-use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, run_segments};
+use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, arm, run_segments};
 use tracelight_trajectory::Plan;
 
-use crate::shapes::{POSE, circle, plan_of};
+use crate::shapes::{POSE, alive, circle, plan_of, true_counts};
 
 /// Poses that heads were left in, rad.
 fn poses() -> Vec<PanTilt<f64>> {
@@ -20,17 +20,11 @@ fn unhomed(config: &RigConfig, angle_rad: PanTilt<f64>) -> SimulatedRig {
 }
 
 fn ticks(rig: &mut SimulatedRig, count: u32) -> Vec<Tick> {
-    (0..count).map(|_| rig.step()).collect()
+    (0..count).map(|_| alive(rig)).collect()
 }
 
 fn drawn(rig: &mut SimulatedRig, plan: &Plan) -> Run {
     run_segments(rig, &plan.segments, false, |_, _| ControlFlow::Continue(()))
-}
-
-/// The counts that its encoders would read if they knew where zero is.
-fn true_counts(config: &RigConfig, at: &Tick) -> PanTilt<i32> {
-    let count_rad = config.truth.model.encoder.count_rad();
-    at.angle_rad.map(|angle| (angle / count_rad + 0.5).floor() as i32)
 }
 
 #[test]
@@ -66,14 +60,14 @@ fn a_dot_of_a_second_is_lit_wherever_it_rests_and_none_while_it_moves() {
     let again: Vec<Tick> = (0..15_000)
         .map(|_| {
             rig.send(Command::Point(60_000)).unwrap();
-            rig.step()
+            alive(&mut rig)
         })
         .collect();
     let longest = again.split(|t| !t.light).map(<[Tick]>::len).max().unwrap();
     assert!((990..=1010).contains(&longest), "{longest}");
     // armed it moves, and lights nothing
     ticks(&mut rig, 1100);
-    rig.send(Command::Arm).unwrap();
+    assert!(arm(&mut rig));
     rig.send(Command::Point(1000)).unwrap();
     let run = run_segments(&mut rig, &plan.segments, false, |rig, _| {
         rig.send(Command::Point(1000)).unwrap();
@@ -107,7 +101,7 @@ fn an_armed_head_is_not_homed_and_counts_go_on_from_where_it_was() {
     let config = RigConfig::report();
     let mut rig = unhomed(&config, PanTilt::new(0.2, -0.1));
     ticks(&mut rig, 100);
-    rig.send(Command::Arm).unwrap();
+    assert!(arm(&mut rig));
     let home = Command::Home(PanTilt::new(100, -50));
     assert_eq!(rig.send(home), Err(home));
     rig.send(Command::Disarm).unwrap();

@@ -32,7 +32,8 @@ fn run_with(
     let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, seed);
     let mut feeder = Feeder::new(&plan.segments, false);
     let mut ticks: Vec<Tick> = Vec::new();
-    rig.send(Command::Arm).unwrap();
+    rig.send(Command::KeepAlive).unwrap();
+    rig.send(Command::Arm { acknowledges: 0 }).unwrap();
     while ticks.len() < most && ticks.last().is_none_or(|t| t.telemetry.phase != Phase::Done) {
         rig.send(Command::KeepAlive).unwrap();
         feeder.feed(&mut rig);
@@ -43,14 +44,19 @@ fn run_with(
     ticks
 }
 
+/// Arms by whoever has read that tick.
+fn arm_after(tick: &Tick) -> Command {
+    Command::Arm { acknowledges: tick.telemetry.fault_number }
+}
+
 /// Opens an input at a moment, arms while it is open, closes it, and arms again.
 fn opened(plan: &Plan, seed: u64, input: Input) -> Vec<Tick> {
     let when = moment(plan, seed);
     run_with(plan, seed, 20_000, |rig, tick| match tick.telemetry.tick.wrapping_sub(when) {
         0 => rig.suffer(Trouble::Input(input, InputState::Open)),
-        100 | 200 => rig.send(Command::Arm).unwrap(),
+        100 | 200 => rig.send(arm_after(tick)).unwrap(),
         250 => rig.suffer(Trouble::Input(input, InputState::Fine)),
-        400 => rig.send(Command::Arm).unwrap(),
+        400 => rig.send(arm_after(tick)).unwrap(),
         _ => {}
     })
 }
@@ -107,10 +113,12 @@ fn a_rig_that_is_powered_up_with_an_open_lid_cannot_be_armed() {
     let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 0);
     rig.suffer(Trouble::Input(Input::Lid, InputState::Open));
     rig.suffer(Trouble::PowerLoss);
-    rig.step();
+    let mut last = rig.step();
     for _ in 0..10 {
-        rig.send(Command::Arm).unwrap();
-        let now = rig.step().telemetry;
+        rig.send(Command::KeepAlive).unwrap();
+        rig.send(arm_after(&last)).unwrap();
+        last = rig.step();
+        let now = last.telemetry;
         assert_eq!((now.phase, now.fault), (Phase::Faulted, Some(Fault::InterlockOpen)));
     }
 }
@@ -149,7 +157,7 @@ fn a_laser_whose_relay_is_stuck_goes_dark_by_the_second_switch() {
         let ticks = run_with(&plan, seed, 20_000, |rig, tick| match tick.telemetry.fault {
             None if tick.telemetry.tick == when => rig.suffer(Trouble::LaserStuck),
             // whoever arms again gets no light by it either
-            Some(_) => rig.send(Command::Arm).unwrap(),
+            Some(_) => rig.send(arm_after(tick)).unwrap(),
             None => {}
         });
         let gate = |t: &Tick| t.telemetry.actuation.gate;

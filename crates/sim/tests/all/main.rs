@@ -6,10 +6,12 @@
 mod by_hand;
 mod closed_loop;
 mod disturbances;
+mod evidence;
 mod faults;
 mod homing;
 mod inputs;
 mod recovery;
+mod segments;
 mod shapes;
 mod slips;
 mod standing;

@@ -1,20 +1,20 @@
 //! What a host needs to find a head again while a job waits: a dot where it stands, and the job forgotten.
 
 use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, Rig};
-use tracelight_sim::{Feeder, RigConfig, Simulated, SimulatedRig, Tick, Trouble, run_segments};
+use tracelight_sim::{Feeder, RigConfig, SimulatedRig, Tick, Trouble, arm, run_segments};
 use tracelight_trajectory::Plan;
 
-use crate::shapes::{POSE, circle, lit_ticks, plan_of};
+use crate::shapes::{POSE, alive, circle, lit_ticks, plan_of, true_counts};
 
 /// A rig stopped in the middle of a lit circle and come to rest there.
 fn stopped(plan: &Plan) -> SimulatedRig {
     let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 3);
     let mut feeder = Feeder::new(&plan.segments, false);
     let middle = lit_ticks(plan)[lit_ticks(plan).len() / 2];
-    rig.send(Command::Arm).unwrap();
+    assert!(arm(&mut rig));
     for _ in 0..middle {
         feeder.feed(&mut rig);
-        rig.step();
+        alive(&mut rig);
     }
     rig.send(Command::Disarm).unwrap();
     ticks(&mut rig, 300);
@@ -22,7 +22,7 @@ fn stopped(plan: &Plan) -> SimulatedRig {
 }
 
 fn ticks(rig: &mut SimulatedRig, count: u32) -> Vec<Tick> {
-    (0..count).map(|_| rig.step()).collect()
+    (0..count).map(|_| alive(rig)).collect()
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn a_dot_is_lit_where_the_head_waits_and_the_job_goes_on_after_it() {
     assert!((95..=105).contains(&lit.len()), "{}", lit.len());
     assert!(lit.iter().all(|t| t.spot.unwrap().distance(t.asked.unwrap()) < 2e-3));
     assert!(dot.iter().all(|t| t.telemetry.plan_tick == dot[0].telemetry.plan_tick));
-    rig.send(Command::Arm).unwrap();
+    assert!(arm(&mut rig));
     let mut feeder = Feeder::new(&[], false);
     feeder.feed(&mut rig);
     let rest = ticks(&mut rig, 3000);
@@ -71,13 +71,20 @@ fn an_abandoned_job_leaves_a_head_at_zero_that_takes_another() {
         if fault {
             rig.suffer(Trouble::EncoderJump(Joint::Tilt, -7));
             assert_eq!(ticks(&mut rig, 200).last().unwrap().telemetry.fault, Some(Fault::EncoderJumped));
-            rig.send(Command::Arm).unwrap();
+            assert!(arm(&mut rig));
         }
         rig.send(Command::Abandon).unwrap();
         let way = ticks(&mut rig, 4000);
         assert!(way.iter().all(|t| !t.light && t.telemetry.fault.is_none()));
         let home = way.last().unwrap().telemetry.position_rad;
         assert!(home.pan.abs().max(home.tilt.abs()) < 2e-3, "{home:?}");
+        assert_eq!(way.last().unwrap().telemetry.homed, !fault);
+        if fault {
+            // its counts were lost: somebody has to look where it is
+            rig.send(Command::Home(true_counts(&RigConfig::report(), way.last().unwrap()))).unwrap();
+            rig.send(Command::Abandon).unwrap();
+            ticks(&mut rig, 1000);
+        }
         let again = run_segments(&mut rig, &plan.segments, false, |_, _| std::ops::ControlFlow::Continue(()));
         assert!(again.is_done() && again.ticks.iter().any(|t| t.light), "fault first: {fault}");
     }
@@ -87,13 +94,13 @@ fn an_abandoned_job_leaves_a_head_at_zero_that_takes_another() {
 fn a_bump_turns_what_stands_and_a_drift_stretches_it() {
     let plan = plan_of(&RigConfig::report(), circle(0.2));
     let mut rig = stopped(&plan);
-    let before = rig.step().spot.unwrap();
+    let before = alive(&mut rig).spot.unwrap();
     rig.suffer(Trouble::Bump(PanTilt::new(0.0175, 0.0)));
     let after = ticks(&mut rig, 400).last().unwrap().spot.unwrap();
     // 1° at 3 ft are 16 mm, further off the middle some more
     assert!((0.0155..0.018).contains(&before.distance(after)), "{before} {after}");
     let mut rig = stopped(&plan);
-    let before = rig.step().spot.unwrap();
+    let before = alive(&mut rig).spot.unwrap();
     rig.suffer(Trouble::Drift(0.01));
     let after = ticks(&mut rig, 1000).last().unwrap().spot.unwrap();
     let radius = before.to_vec2().hypot();

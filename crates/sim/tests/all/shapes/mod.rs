@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use tracelight_aim::HeadPose;
-use tracelight_sim::{RigConfig, Run, SimulatedRig, Tick, Tracking, run, score};
+use tracelight_rig::{Command, PanTilt, Rig};
+use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Tracking, run, score};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
 use tracelight_trajectory::{DarkMove, LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
 
@@ -67,4 +68,16 @@ pub(crate) fn lit_ticks(plan: &Plan) -> Vec<usize> {
 /// How far the true spot is from where its setpoint would put it, mm.
 pub(crate) fn off_mm(tick: &Tick) -> f64 {
     1e3 * tick.spot.unwrap().distance(tick.asked.unwrap())
+}
+
+/// One tick of a rig whose host is there.
+pub(crate) fn alive(rig: &mut SimulatedRig) -> Tick {
+    rig.send(Command::KeepAlive).unwrap();
+    rig.step()
+}
+
+/// The counts that its encoders would read if they knew where zero is.
+pub(crate) fn true_counts(config: &RigConfig, at: &Tick) -> PanTilt<i32> {
+    let count_rad = config.truth.model.encoder.count_rad();
+    at.angle_rad.map(|angle| (angle / count_rad + 0.5).floor() as i32)
 }

@@ -56,7 +56,8 @@ pub(crate) fn run(course: &Course, mut watch: impl FnMut(&Tick)) {
     let mut host = Host { next: 0, at: PanTilt::new(0.0, 0.0) };
     let mut last = Telemetry::default();
     // most begin with a plan: light needs one
-    let _ = rig.send(Command::Arm);
+    let _ = rig.send(Command::KeepAlive);
+    let _ = rig.send(Command::Arm { acknowledges: 0 });
     (0..4).for_each(|_| host.append(&mut rig, course, &mut dice));
     for tick in 0..course.ticks {
         if course.alive_until.is_some_and(|until| tick < until) {
@@ -80,7 +81,8 @@ struct Host {
 impl Host {
     fn command(&mut self, rig: &mut SimulatedRig, course: &Course, dice: &mut Dice, last: &Telemetry) {
         let command = match dice.0.rand_range(0..30) {
-            0..=6 => Command::Arm,
+            // now and then one that was on its way for long
+            0..=6 => Command::Arm { acknowledges: last.fault_number.wrapping_sub(u32::from(dice.one_in(8))) },
             7..=8 => Command::Disarm,
             9..=12 => Command::Point(dice.of(&[1, 20, 100, 1000, u16::MAX])),
             13 => {

@@ -18,6 +18,7 @@ pub(crate) fn machine() -> Machine {
         speed_limit_rad_s: PanTilt::new(24.0, 24.0),
         acceleration_limit_rad_s2: PanTilt::new(100.0, 100.0),
         jerk_limit_rad_s3: PanTilt::new(f64::INFINITY, f64::INFINITY),
+        tolerance_limit_rad: f64::INFINITY,
         geometry: HeadGeometry {
             laser_offset_m: [0.02, 0.005, 0.01],
             ..HeadGeometry::centred(PanTilt::new((-3.1, 3.1), (-1.6, 1.6)))

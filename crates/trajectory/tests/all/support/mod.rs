@@ -24,6 +24,7 @@ pub(crate) fn bare_rig(coulomb_nm: f64, viscous: f64) -> Machine {
         speed_limit_rad_s: PanTilt::new(24.0, 24.0),
         acceleration_limit_rad_s2: PanTilt::new(f64::INFINITY, f64::INFINITY),
         jerk_limit_rad_s3: PanTilt::new(f64::INFINITY, f64::INFINITY),
+        tolerance_limit_rad: f64::INFINITY,
         geometry: HeadGeometry::centred(PanTilt::new((-3.1, 3.1), (-1.6, 1.6))),
         pose: HeadPose::square_on(0.9),
         relay_on_ticks: 5,
