@@ -186,9 +186,7 @@ impl Supervisor {
         } else if self.settled_ticks >= RETURN_TICKS && self.tests < MOST_TESTS {
             self.phase = Phase::Testing;
             self.tests += 1;
-        } else if self.settled_ticks >= RETURN_TICKS {
-            self.trip(Fault::HoldTimedOut);
-        } else if self.held_ticks > config.hold_limit_ticks {
+        } else if self.settled_ticks >= RETURN_TICKS || self.held_ticks > config.hold_limit_ticks {
             self.trip(Fault::HoldTimedOut);
         }
     }

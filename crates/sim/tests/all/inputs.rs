@@ -11,7 +11,7 @@ use tracelight_rig::{Command, Fault, Input, InputState, Motors, PanTilt, Phase, 
 use tracelight_sim::{Feeder, RigConfig, Simulated, SimulatedRig, Tick, Trouble};
 use tracelight_trajectory::Plan;
 
-use crate::shapes::{POSE, circle, lit_ticks, off_mm, plan_of};
+use crate::shapes::{POSE, alive, circle, lit_ticks, off_mm, plan_of};
 
 const MOMENTS: u64 = 100;
 
@@ -186,8 +186,9 @@ fn the_second_switch_is_open_unless_somebody_armed_or_a_dot_is_wanted() {
     let mut rig = SimulatedRig::unhomed(&RigConfig::report(), POSE, PanTilt::new(0.1, 0.05), 0);
     let rest = (0..300).map(|_| rig.step()).last().unwrap();
     assert!(!rest.telemetry.actuation.enable);
+    rig.send(Command::KeepAlive).unwrap();
     rig.send(Command::Point(100)).unwrap();
-    let dot: Vec<Tick> = (0..200).map(|_| rig.step()).collect();
+    let dot: Vec<Tick> = (0..200).map(|_| alive(&mut rig)).collect();
     assert_eq!(dot.iter().filter(|t| t.telemetry.actuation.enable).count(), 99);
     assert!(dot.iter().any(|t| t.light) && !dot.last().unwrap().light);
 }

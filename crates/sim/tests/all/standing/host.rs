@@ -22,6 +22,9 @@ pub(crate) struct Course {
     eager: f64,
 }
 
+/// Until the end.
+const ALWAYS: u32 = u32::MAX;
+
 impl Course {
     pub(crate) fn drawn(seed: u64) -> Self {
         let mut dice = Dice(oorandom::Rand64::new(u128::from(seed)));
@@ -30,7 +33,7 @@ impl Course {
         Self {
             seed,
             homed: !dice.one_in(5),
-            alive_until: dice.of(&[None, Some(u32::MAX), Some(u32::MAX), Some(700)]),
+            alive_until: dice.of(&[None, Some(700), Some(ALWAYS), Some(ALWAYS), Some(ALWAYS), Some(ALWAYS)]),
             ticks: dice.of(&[800, 1500, 3000]),
             spread_rad: dice.of(&[1e-4, 1e-3, 3e-3, 6e-3, 0.03]),
             eager: dice.of(&[0.003, 0.01, 0.03]),

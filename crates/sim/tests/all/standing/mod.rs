@@ -197,7 +197,7 @@ fn the_same_sequences_stand_where_nothing_forbids_it_and_use_most_of_what_is_all
         used += usize::from(lit_longest(&course).0 > 0.7 * budget);
         stood += usize::from(lit_longest(&course.careless()).0 > budget);
     }
-    assert!(stood > 80 && used > 80, "{stood} stand, {used} use most of the budget, of 200");
+    assert!(stood > 60 && used > 60, "{stood} stand, {used} use most of the budget, of 200");
 }
 
 #[test]
