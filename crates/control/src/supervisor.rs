@@ -212,7 +212,8 @@ impl Supervisor {
         reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);
         reasons.insert_if(strayed(at), Darkness::SpotError);
         // a dot may be let out by a head that was never moved: whoever asks for it looks where it is
-        reasons.insert_if(at.doubtful || !(at.tested || points), Darkness::Doubtful);
+        reasons.insert_if(!(at.tested || points), Darkness::Untested);
+        reasons.insert_if(at.doubtful, Darkness::Doubtful);
         let held = matches!(self.phase, Phase::Holding | Phase::Testing);
         reasons.insert_if(held || !(at.light_due || points), Darkness::Holding);
         let asked = at.setpoint.map(|s| s.position_rad);

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 
 use tracelight_lab::{LAPS_WORTH, identify};
 use tracelight_pipeline::Driving;
-use tracelight_rig::{Fault, Telemetry};
-use tracelight_sim::{LawName, RigConfig, SimulatedRig, Spread, Tracking, score};
+use tracelight_rig::{Fault, Phase, Telemetry};
+use tracelight_sim::{LawName, RigConfig, Run, SimulatedRig, Spread, Tracking, score};
 use tracelight_task::{Failure, Task, on_all_cores};
 use tracelight_trajectory::Plan;
 
@@ -47,7 +47,7 @@ pub struct Finding {
 struct Trial {
     finished: bool,
     fault: Option<Fault>,
-    /// Ticks it took beyond its plan: it left its stroke and came back.
+    /// Ticks in which it had left its stroke, or had to show that its encoders follow its motors once it had lit something.
     late_ticks: usize,
     tracking: Tracking,
 }
@@ -89,9 +89,15 @@ fn trial(driving: &Driving, plan: &Plan, laps: u32, seed: u64) -> Trial {
     Trial {
         finished: run.is_done(),
         fault: run.fault(),
-        late_ticks: run.ticks.len().saturating_sub(plan.points.len()),
+        late_ticks: held_ticks(&run),
         tracking: score(plan, &run, plan.set_speed_m_s),
     }
+}
+
+/// Ticks in which a head that has lit something held its plan's clock, and was dark.
+fn held_ticks(run: &Run) -> usize {
+    let lit = run.ticks.iter().skip_while(|tick| !tick.telemetry.actuation.gate);
+    lit.filter(|tick| matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing)).count()
 }
 
 impl Finding {

@@ -169,7 +169,7 @@ impl Request {
 
     fn run_one(&self, pace: Pace, course: &Course<'_>, task: Task<'_>) -> Result<OnRig, CourseError> {
         let plan = course.plan(&pace, &request_of(&self.rig))?;
-        let mut simulated = SimulatedRig::new(&self.rig, self.pose, self.seed);
+        let mut simulated = SimulatedRig::new(&self.rig.trusting(), self.pose, self.seed);
         let run = tracelight_sim::run(&mut simulated, &plan, false, |_, _| {
             if task.stop.is_wanted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });

@@ -161,7 +161,7 @@ impl Bench<'_> {
 
     /// Whether a head draws the shape without ever leaving its way.
     fn bears(&self, head: &RigConfig) -> bool {
-        let mut simulated = SimulatedRig::new(head, self.driving.pose, self.choice.seed);
+        let mut simulated = SimulatedRig::new(&head.trusting(), self.driving.pose, self.choice.seed);
         let run = tracelight_sim::run(&mut simulated, &self.plan, false, |_, tick| {
             let lost = matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing | Phase::Faulted);
             if lost { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -172,7 +172,7 @@ impl Bench<'_> {
     /// Largest and rms error on a head, mm; `None` if it does not finish.
     fn errors_mm(&self, head: &RigConfig, number: u64) -> Option<(f64, f64)> {
         let seed = self.choice.seed.wrapping_add(number);
-        let mut simulated = SimulatedRig::new(head, self.driving.pose, seed);
+        let mut simulated = SimulatedRig::new(&head.trusting(), self.driving.pose, seed);
         let run = tracelight_sim::run(&mut simulated, &self.plan, false, |_, _| ControlFlow::Continue(()));
         let tracking = score(&self.plan, &run, self.plan.set_speed_m_s);
         run.is_done().then_some((tracking.max_mm, tracking.rms_mm))

@@ -10,7 +10,7 @@ use tracelight_eye::power::{PowerWatch, lost_power};
 use tracelight_eye::seen::{SeenLight, SeenMark};
 use tracelight_eye::trouble::TroubleAt;
 use tracelight_pipeline::Driving;
-use tracelight_rig::{Command, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
+use tracelight_rig::{Command, Darkness, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_sim::{Room, Run, Simulated, Tick, arm};
 use tracelight_stroke::Drawing;
@@ -218,6 +218,7 @@ impl Watched<'_> {
         arm(&mut self.room);
         // what is armed anew on its way begins with a hold
         let mut was_held = true;
+        let mut lit = false;
         for _ in 0..most {
             let wanted = if self.job.seen.open { Correction::default() } else { self.follower.correction() };
             feeder.feed(&mut self.room, self.plan_tick - self.base, &wanted);
@@ -233,9 +234,12 @@ impl Watched<'_> {
             if tick.telemetry.phase == Phase::Done {
                 return Ended::Done;
             }
-            let held = (tick.telemetry.phase == Phase::Holding && !was_held)
-                .then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
-            was_held = tick.telemetry.phase == Phase::Holding;
+            lit |= tick.telemetry.actuation.gate;
+            let holds = matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
+            // before the first light it may only wait until its encoders were seen to follow its motors
+            let waits = !lit && tick.telemetry.darkness.contains(Darkness::Untested);
+            let held = (holds && !was_held && !waits).then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
+            was_held = holds;
             if let Some(suspicion) = suspicion.or(held).filter(|_| !self.job.seen.open) {
                 return Ended::Suspect(suspicion);
             }

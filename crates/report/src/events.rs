@@ -22,6 +22,8 @@ pub struct Event {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Watch {
     open: Option<Event>,
+    /// There was light already.
+    lit: bool,
 }
 
 /// What changed with a tick.
@@ -40,7 +42,8 @@ pub(crate) enum Change {
 impl Watch {
     /// Takes the next tick.
     pub(crate) fn push(&mut self, telemetry: &Telemetry) -> Change {
-        let now = trouble(telemetry);
+        self.lit |= telemetry.actuation.gate;
+        let now = trouble(telemetry, self.lit);
         match (self.open.as_mut(), now) {
             (None, None) => Change::None,
             (None, Some(event)) => {
@@ -68,15 +71,17 @@ impl Watch {
     }
 }
 
-/// The event a tick belongs to: a latched fault, or the interlock against the plan's will.
-fn trouble(telemetry: &Telemetry) -> Option<Event> {
+/// The event a tick belongs to: a latched fault, or the interlock against the plan's will. That a head waits before its first light until its
+/// encoders were seen to follow its motors is none.
+fn trouble(telemetry: &Telemetry, lit: bool) -> Option<Event> {
     let t_s = f64::from(telemetry.tick) * TICK_F64_S;
     if let Some(fault) = telemetry.fault {
         let (code, words) = (fault.code(), fault.words());
         return Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: true });
     }
     let dark = telemetry.darkness;
-    if dark.contains(Darkness::Planned) || dark.contains(Darkness::Disarmed) {
+    let waits = !lit && dark.contains(Darkness::Untested);
+    if waits || dark.contains(Darkness::Planned) || dark.contains(Darkness::Disarmed) {
         return None;
     }
     let reason = Darkness::ALL.into_iter().find(|&r| dark.contains(r))?;

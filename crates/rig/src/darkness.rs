@@ -127,6 +127,12 @@ darknesses! {
         words: "No host had said of late that it is there.",
         advice: "See whether the host runs and whether the connection holds. control.host_silence sets the bound.",
     }
+    Untested = 12 {
+        what: "An encoder was not seen to follow its motor yet, or something spoke against it since: a little move in the dark is to tell.",
+        code: "untested",
+        words: "An encoder had not been seen to follow its motor, or something spoke against it since.",
+        advice: "Nothing, if it is rare: before the first light, and after a surprise such as a push, the head makes a little move in the dark and goes on. If it comes again and again, see encoder-slipping.",
+    }
 }
 
 const ASTRAY: &str = "See whether somebody or something pushes the head, whether --speed or --distance is more than it can hold, and whether the friction and gains in the rig file are its own. control.tolerance sets the bound.";
@@ -194,6 +200,7 @@ mod tests {
         (9, "unhomed"),
         (10, "standing"),
         (11, "host-silent"),
+        (12, "untested"),
     ];
 
     #[test]

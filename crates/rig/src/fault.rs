@@ -2,7 +2,33 @@
 
 mod row;
 
-pub use row::{Clears, FaultRow, Motors, Soon};
+pub use row::{Clears, Motors, Soon};
+
+/// One row of [`Fault::TABLE`]: all that is known of a fault but how it is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FaultRow {
+    /// Which it is.
+    pub fault: Fault,
+    /// Its number on a wire, from 1; that of a fault which is no more is never given to another.
+    pub number: u8,
+    /// Stable code for scripts and `explain`.
+    pub code: &'static str,
+    /// What it is, one sentence.
+    pub what: &'static str,
+    /// When it is seen; no sentence.
+    pub seen: &'static str,
+    /// How soon.
+    pub soon: Soon,
+    /// What becomes of the motors. The laser is dark from the tick on in which any fault is seen.
+    pub motors: Motors,
+    /// Whether counts may have been lost or made up: where the head stands is not known any more.
+    pub loses_counts: bool,
+    /// What makes an end of it.
+    pub clears: Clears,
+    /// What it means and what to look at, for `explain`.
+    pub words: &'static str,
+}
 
 /// Makes the enum of its rows, so that each fault has exactly one and the compiler refuses a number that is given twice.
 macro_rules! faults {

@@ -139,7 +139,14 @@ impl RigConfig {
 
     /// The same rig without hops: for motion that is looked at for its own sake.
     pub fn following(&self) -> Self {
-        Self { control: ControlSettings { hops: false, ..self.control }, ..self.clone() }
+        Self { control: ControlSettings { hops: false, ..self.control }, ..self.trusting() }
+    }
+
+    /// The same rig that believes its encoders from the first tick on, whatever they show of its motors: for simulated trials in which that is
+    /// not the question, of single moves, or of motors that are not as believed.
+    #[must_use]
+    pub fn trusting(&self) -> Self {
+        Self { control: ControlSettings { scale_tolerance: f64::INFINITY, ..self.control }, ..self.clone() }
     }
 }
 

@@ -18,6 +18,8 @@ const RANGE_MARGIN_COUNTS: f64 = 3.0;
 /// How much faster, and how much more suddenly, than the planner may ask for a joint may be told to move: between two ticks a segment
 /// goes a little beyond what the plan's ticks keep to, and whoever trims it moves it a little more.
 const MOTION_MARGIN: f64 = 1.1;
+/// The same of its acceleration: a sigmoid begins and ends with a jump of its speed, which a segment spreads over a tick or two.
+const ACCELERATION_MARGIN: f64 = 4.0;
 /// Furthest that a segment may let a joint stray, rad: 0.1 m on a target 1 m away, twice what any rig file may ask for. Routines in the dark
 /// ask for half of it.
 const TOLERANCE_LIMIT_RAD: f64 = 0.1;
@@ -99,7 +101,8 @@ impl RigConfig {
                 lower_rad: (lower - margin) as f32,
                 upper_rad: (upper + margin) as f32,
                 speed_rad_s: (MOTION_MARGIN * self.motion.speed_limit_rad_s[joint]) as f32,
-                acceleration_rad_s2: (MOTION_MARGIN * self.motion.acceleration_limit_rad_s2[joint]) as f32,
+                acceleration_rad_s2: (ACCELERATION_MARGIN * self.motion.acceleration_limit_rad_s2[joint])
+                    as f32,
             },
         }
     }
