@@ -24,6 +24,8 @@ pub(crate) struct Watch {
     open: Option<Event>,
     /// There was light already.
     lit: bool,
+    /// The head waits for its first light until its encoders were seen to follow its motors, and it is back on its stroke.
+    waits: bool,
 }
 
 /// What changed with a tick.
@@ -43,7 +45,10 @@ impl Watch {
     /// Takes the next tick.
     pub(crate) fn push(&mut self, telemetry: &Telemetry) -> Change {
         self.lit |= telemetry.actuation.gate;
-        let now = trouble(telemetry, self.lit);
+        let dark = telemetry.darkness;
+        self.waits |= dark.contains(Darkness::Untested) && !dark.contains(Darkness::Planned);
+        self.waits &= !self.lit;
+        let now = trouble(telemetry, self.waits);
         match (self.open.as_mut(), now) {
             (None, None) => Change::None,
             (None, Some(event)) => {
@@ -73,14 +78,13 @@ impl Watch {
 
 /// The event a tick belongs to: a latched fault, or the interlock against the plan's will. That a head waits before its first light until its
 /// encoders were seen to follow its motors is none.
-fn trouble(telemetry: &Telemetry, lit: bool) -> Option<Event> {
+fn trouble(telemetry: &Telemetry, waits: bool) -> Option<Event> {
     let t_s = f64::from(telemetry.tick) * TICK_F64_S;
     if let Some(fault) = telemetry.fault {
         let (code, words) = (fault.code(), fault.words());
         return Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: true });
     }
     let dark = telemetry.darkness;
-    let waits = !lit && dark.contains(Darkness::Untested);
     if waits || dark.contains(Darkness::Planned) || dark.contains(Darkness::Disarmed) {
         return None;
     }
@@ -135,6 +139,22 @@ mod tests {
     fn a_planned_darkness_is_no_event() {
         let run = run_of(&[&[], &[Darkness::Planned], &[Darkness::Planned, Darkness::Holding], &[]], 9);
         assert_eq!(events(&run), []);
+    }
+
+    #[test]
+    fn a_head_that_waits_for_its_first_light_has_no_event_and_one_that_does_so_later_has() {
+        const UNTESTED: &[Darkness] = &[Darkness::Holding, Darkness::Untested];
+        let begun: &[&[Darkness]] =
+            &[&[Darkness::Planned], UNTESTED, &[Darkness::SpotError], &[Darkness::Holding]];
+        let dark = |reasons: &[&[Darkness]]| {
+            let mut run = run_of(reasons, usize::MAX);
+            run.ticks.iter_mut().for_each(|t| t.telemetry.actuation.gate = t.telemetry.darkness.is_empty());
+            events(&run).len()
+        };
+        assert_eq!(dark(&[begun, &[&[]]].concat()), 0);
+        assert_eq!(dark(&[begun, &[&[], UNTESTED, &[]]].concat()), 1);
+        // without an encoder to wait for it is an event at any time
+        assert_eq!(dark(&[&[Darkness::SpotError], &[]]), 1);
     }
 
     #[test]
