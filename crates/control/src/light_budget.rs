@@ -320,7 +320,9 @@ impl Grid {
         }
         // the one that was entered longest ago, as a rule, has leaked empty
         let next = (self.latest + 1) % SQUARES;
-        let least = |&a: &usize, &b: &usize| self.spent[a].held(now).total_cmp(&self.spent[b].held(now));
+        let least = |&a: &usize, &b: &usize| {
+            self.spent[a % SQUARES].held(now).total_cmp(&self.spent[b % SQUARES].held(now))
+        };
         self.latest = match self.spent[next].held(now) > 0.0 {
             true => (0..SQUARES).min_by(least).unwrap_or(next),
             false => next,

@@ -25,12 +25,12 @@ impl RecentLight {
     pub(crate) fn tick(&mut self, is_lit: bool) {
         if self.passed == PART_TICKS {
             self.part = (self.part + 1) % self.lit.len();
-            self.sum -= u32::from(self.lit[self.part]);
-            self.lit[self.part] = 0;
+            self.sum -= u32::from(self.lit[self.part % (PARTS + 1)]);
+            self.lit[self.part % (PARTS + 1)] = 0;
             self.passed = 0;
         }
         self.passed += 1;
-        self.lit[self.part] += u8::from(is_lit);
+        self.lit[self.part % (PARTS + 1)] += u8::from(is_lit);
         self.sum += u32::from(is_lit);
     }
 

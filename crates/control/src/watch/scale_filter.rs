@@ -213,7 +213,7 @@ impl ScaleFilter {
         let width = axis.count_rad;
         // the last edge crossed is the one on the side it came from
         let (number, side) = if moved > 0 { (self.count, -0.5) } else { (self.count.wrapping_add(1), 0.5) };
-        let edge = (side + axis.quirks.edges_counts[number.rem_euclid(4) as usize]) * width;
+        let edge = (side + axis.quirks.edges_counts[(number & 3) as usize]) * width;
         let shown = self.scale * self.speed_rad_s;
         let (age_s, blur) = match age_ticks {
             Some(age) => (age * TICK_S, 0.0),
