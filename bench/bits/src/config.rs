@@ -47,6 +47,7 @@ fn axis(
         count_rad: 0.0015339808,
         friction: FrictionModel { viscous_pos, viscous_neg, coulomb_pos_nm, coulomb_neg_nm },
         unknown_nm: coulomb_pos_nm,
+        scale_tolerance: 0.35,
         quirks: Quirks::NONE,
         observer: ObserverConfig::Kalman(KalmanTuning::LEARNING),
         law: LawConfig { feedback: Feedback::State(state), feedforward: Feedforward::Learned },
@@ -61,7 +62,7 @@ fn axis(
             lower_rad: -range_rad,
             upper_rad: range_rad,
             speed_rad_s: 26.4,
-            acceleration_rad_s2: 110.0,
+            acceleration_rad_s2: 400.0,
         },
     }
 }
