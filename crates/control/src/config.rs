@@ -41,4 +41,10 @@ impl Config {
         let width = upper_rad - lower_rad;
         if homed { (lower_rad, upper_rad) } else { (-width, width) }
     }
+
+    /// How fast a joint speeds up by that share of its motor's torque, wherever it is, at least, rad/s².
+    pub(crate) fn sped_up_by(&self, joint: Joint, torque_share: f32) -> f32 {
+        let axis = &self.axes[joint];
+        torque_share * axis.torque_nm_per_v * axis.limit_v / self.model.own_inertia_at_most(joint)
+    }
 }

@@ -22,6 +22,7 @@ mod bounds;
 mod config;
 mod controller;
 mod creep;
+mod crossed;
 mod estimate;
 mod law;
 mod light_budget;

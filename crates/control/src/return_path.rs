@@ -43,12 +43,8 @@ impl ReturnPath {
     /// The reference now, moved on by a tick towards `goal`.
     pub(crate) fn tick(&mut self, config: &Config, goal: &PanTilt<Setpoint>) -> PanTilt<Setpoint> {
         let now = self.reference;
-        self.reference = PanTilt::from_fn(|j| {
-            let axis = &config.axes[j];
-            let inertia = config.model.own_inertia_at_most(j);
-            let most = TORQUE_SHARE * axis.torque_nm_per_v * axis.limit_v / inertia;
-            step(&now[j], goal[j].position_rad, most)
-        });
+        self.reference =
+            PanTilt::from_fn(|j| step(&now[j], goal[j].position_rad, config.sped_up_by(j, TORQUE_SHARE)));
         now
     }
 }

@@ -29,7 +29,7 @@ pub(crate) struct Supervisor {
     /// How many faults were latched since power-up, of each kind one while another is latched.
     pub(crate) fault_number: u32,
     /// The kinds that came since somebody armed, a bit each.
-    kinds: u32,
+    kinds: u64,
     held_ticks: u32,
     /// Since the last hold.
     calm_ticks: u32,
@@ -80,7 +80,7 @@ impl Supervisor {
     /// Latches a fault; the first one stays, and what any of them means for the motors and for what counts are worth. One that
     /// lasts, and trips in every tick, is one.
     pub(crate) fn trip(&mut self, fault: Fault) {
-        let kind = 1 << fault as u32;
+        let kind = 1_u64 << fault.number();
         if self.kinds & kind == 0 {
             self.kinds |= kind;
             self.fault_number = self.fault_number.wrapping_add(1);

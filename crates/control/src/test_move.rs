@@ -25,10 +25,7 @@ pub(crate) struct TestMove {
 impl TestMove {
     /// From where both joints are to rest.
     pub(crate) fn from(config: &Config, goal: &PanTilt<Setpoint>) -> Self {
-        let most = |j: Joint| {
-            let axis = &config.axes[j];
-            TORQUE_SHARE * axis.torque_nm_per_v * axis.limit_v / config.model.own_inertia_at_most(j)
-        };
+        let most = |j: Joint| config.sped_up_by(j, TORQUE_SHARE);
         let part_s = Joint::BOTH.into_iter().map(|j| part_s(&config.axes[j], most(j))).fold(0.0, f32::max);
         let part_ticks = libm::ceilf(part_s / TICK_S) as u16;
         let from = goal.map(|setpoint| setpoint.position_rad);

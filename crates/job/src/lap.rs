@@ -99,7 +99,7 @@ mod tests {
     use tracelight_sim::{Simulated, Tick, Trouble};
     use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
     use tracelight_task::{NoProgress, Stop};
-    use tracelight_trajectory::{DarkMove, LitSpeed, PlanRequest, Ramps, Shape, plan};
+    use tracelight_trajectory::plan;
 
     const POSE: HeadPose = HeadPose::square_on(0.9144);
 
@@ -128,15 +128,7 @@ mod tests {
         let mut path = Path::new(Point::new(0.2, 0.0));
         path.push(Element::Arc { centre: Point::ORIGIN, sweep: std::f64::consts::TAU });
         path.close();
-        let request = PlanRequest {
-            speed_m_s: 0.3048,
-            lit_speed: LitSpeed::Fastest,
-            travel: DarkMove::Shaped(Shape::Ramped(Ramps::REPORT)),
-            ramp_s: config.motion.ramp_s,
-            settle_s: config.motion.settle_s,
-            tolerance_m: config.control.tolerance_m,
-            corner_m: 0.0,
-        };
+        let request = tracelight_pipeline::request_of(config);
         plan(&Drawing { strokes: vec![Stroke::new(path)] }, &config.machine(POSE), &request).unwrap()
     }
 

@@ -86,10 +86,3 @@ pub struct JointLimits {
     /// Highest acceleration, rad/s².
     pub acceleration_rad_s2: f32,
 }
-
-impl JointLimits {
-    /// Whether an angle lies in the closed range.
-    pub fn contains(&self, angle_rad: f32) -> bool {
-        self.lower_rad <= angle_rad && angle_rad <= self.upper_rad
-    }
-}

@@ -6,6 +6,7 @@ use super::covariance::{
 use super::edge_table::EdgeTable;
 use super::tuning::KalmanTuning;
 use crate::axis::AxisConfig;
+use crate::crossed::{crossed, last_edge};
 use crate::estimate::{Effort, Estimate, Learned};
 use crate::limit::within;
 
@@ -174,18 +175,10 @@ impl Kalman {
         age_ticks: Option<f32>,
     ) -> Misfit {
         let width = axis.count_rad;
-        // the last edge crossed is the one on the side it came from
-        let (number, side) = if moved > 0 { (self.count, -0.5) } else { (self.count.wrapping_add(1), 0.5) };
+        let (number, side) = last_edge(self.count, moved);
         let (off, placed) = self.edges.place(number);
         let edge = (side + off) * width;
-        let (age_s, blur) = match age_ticks {
-            Some(age) => (age * TICK_S, 0.0),
-            // without a stamp it was some time in the last of the tick's equal parts
-            None => {
-                let part = TICK_S / moved.unsigned_abs() as f32;
-                (0.5 * part, self.velocity_rad_s * part)
-            }
-        };
+        let (age_s, blur) = crossed(moved, age_ticks, self.velocity_rad_s);
         let variance = placed * width * width + blur * blur / 12.0;
         let innovation = self.innovation(edge, age_s);
         // the first edge says where in its count the joint began, nothing else

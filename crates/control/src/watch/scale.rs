@@ -70,6 +70,11 @@ enum Trust {
     Doubted { tests: u32, shown: f32, times: u32 },
 }
 
+impl Trust {
+    /// Something spoke against it just now.
+    const DOUBTED: Self = Self::Doubted { tests: 0, shown: 0.0, times: 0 };
+}
+
 impl ScaleWatch {
     /// Untested.
     pub(super) fn new(axis: &AxisConfig, measured: &Measurement, estimate: &Estimate) -> Self {
@@ -92,7 +97,7 @@ impl ScaleWatch {
         self.first = before.first;
         self.may_be = before.may_be;
         if self.first.is_some() {
-            self.trust = Trust::Doubted { tests: 0, shown: 0.0, times: 0 };
+            self.trust = Trust::DOUBTED;
         }
         self
     }
@@ -113,13 +118,22 @@ impl ScaleWatch {
         let tested = self.is_tested();
         let surprise = self.filter.tick(axis, effort, measured, estimate.lost_counts, tested);
         self.add_up(surprise);
-        if tested && self.is_suspicious() {
-            self.trust = Trust::Doubted { tests: 0, shown: 0.0, times: 0 };
-        } else if tested {
-            self.better_first();
+        if tested {
+            // between two edges nothing is learned that could change what was held
+            if surprise != Surprise::None {
+                self.judge();
+            }
         } else if self.trust == Trust::Untested && self.is_surely_within(axis) {
             // any motion in the dark will do before the first light
             self.believe();
+        }
+    }
+
+    fn judge(&mut self) {
+        if self.is_suspicious() {
+            self.trust = Trust::DOUBTED;
+        } else {
+            self.better_first();
         }
     }
 
@@ -160,7 +174,7 @@ impl ScaleWatch {
 
     fn add_up(&mut self, surprise: Surprise) {
         match surprise {
-            Surprise::None => {}
+            Surprise::None | Surprise::Placed => {}
             Surprise::Edge(deviations) => {
                 let one = within(deviations, MOST_OF_ONE);
                 self.ahead = (self.ahead + one - ALLOWED).max(0.0);

@@ -3,6 +3,7 @@
 use tracelight_rig::{Measurement, TICK_S};
 
 use crate::axis::AxisConfig;
+use crate::crossed::{crossed, last_edge};
 use crate::estimate::{Effort, Learned};
 use crate::limit::within;
 
@@ -72,8 +73,10 @@ pub(super) struct ScaleFilter {
 /// What a tick said of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Surprise {
-    /// Nothing new.
+    /// No edge came, and none is overdue.
     None,
+    /// The first edge came, and says where in its count the joint is.
+    Placed,
     /// An edge came, or is overdue, by so many standard deviations ahead of where it was expected.
     Edge(f32),
     /// An edge came a whole count beside where it was expected, and is taken for its neighbour.
@@ -211,18 +214,10 @@ impl ScaleFilter {
 
     fn see_edge(&mut self, axis: &AxisConfig, moved: i32, age_ticks: Option<f32>, known: bool) -> Surprise {
         let width = axis.count_rad;
-        // the last edge crossed is the one on the side it came from
-        let (number, side) = if moved > 0 { (self.count, -0.5) } else { (self.count.wrapping_add(1), 0.5) };
+        let (number, side) = last_edge(self.count, moved);
         let edge = (side + axis.quirks.edges_counts[(number & 3) as usize]) * width;
         let shown = self.scale * self.speed_rad_s;
-        let (age_s, blur) = match age_ticks {
-            Some(age) => (age * TICK_S, 0.0),
-            // without a stamp it was some time in the last of the tick's equal parts
-            None => {
-                let part = TICK_S / moved.unsigned_abs() as f32;
-                (0.5 * part, shown * part)
-            }
-        };
+        let (age_s, blur) = crossed(moved, age_ticks, shown);
         let noise = EDGE_COUNTS * width;
         let variance = noise * noise + blur * blur / 12.0;
         let mut innovation = edge - (self.offset_rad - age_s * shown);
@@ -238,7 +233,7 @@ impl ScaleFilter {
         let deviations = if creeps { CREEPING_SHARE * deviations } else { deviations };
         match (miscounted, first) {
             (true, _) => Surprise::Count,
-            (false, true) => Surprise::None,
+            (false, true) => Surprise::Placed,
             (false, false) => Surprise::Edge(deviations),
         }
     }
