@@ -153,7 +153,7 @@ fn no_disc_of_a_millimetre_is_lit_longer_than_its_budget_whatever_is_sent() {
 }
 
 #[test]
-#[ignore = "as many as there is time for"]
+#[ignore = "minutes: `bash .ci/run long`; its short twin always runs"]
 fn no_disc_is_lit_longer_in_a_million_sequences() {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     let (from, seconds) = (number("FROM").unwrap_or(1_000_000), number("FOR_S").unwrap_or(3600));
