@@ -1,6 +1,6 @@
 use tracelight_control::{
     AxisConfig, Config, Creep, Feedback, Feedforward, FrictionModel, HeadModel, KalmanTuning, LawConfig,
-    MotorRating, ObserverConfig, Quirks, StateFeedback,
+    Foot, MotorRating, ObserverConfig, Quirks, StateFeedback,
 };
 use tracelight_rig::{JointLimits, PanTilt};
 
@@ -29,6 +29,7 @@ pub fn report() -> Config {
         standing_ticks: 1000,
         standing_radius_rad: 0.0014771085,
         tolerance_limit_rad: 0.1,
+        foot: Foot { jolt_rad_s: 0.035, turned_rad: 3e-4, sway: None },
     }
 }
 

@@ -2,6 +2,7 @@ use tracelight_rig::{Joint, JointLimits, PanTilt};
 
 use crate::axis::AxisConfig;
 use crate::model::HeadModel;
+use crate::watch::Foot;
 
 /// Everything the controller is told before it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +25,8 @@ pub struct Config {
     pub standing_radius_rad: f32,
     /// Furthest that a segment may let a joint stray, rad.
     pub tolerance_limit_rad: f32,
+    /// What the head stands on.
+    pub foot: Foot,
 }
 
 impl Config {

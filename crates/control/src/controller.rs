@@ -195,7 +195,7 @@ impl Controller {
         let mut darkness = state.supervisor.darkness(&self.config, &situation);
         self.keep_budget(state, &estimates, &mut darkness);
         let gate = darkness.is_empty();
-        let enable = state.supervisor.may_light();
+        let enable = state.supervisor.may_light(state.watch.is_steady());
         state.watch.light(gate);
         let telemetry = Telemetry {
             tick: state.tick,
@@ -207,6 +207,7 @@ impl Controller {
             velocity_rad_s: estimates.map(|estimate| estimate.velocity_rad_s),
             acceleration_rad_s2: estimates.map(|estimate| estimate.acceleration_rad_s2),
             lost_counts: estimates.map(|estimate| estimate.lost_counts),
+            foot_turned_rad: state.watch.foot_turned_rad(),
             actuation: Actuation { command_v, gate, enable },
             darkness,
             homed: state.supervisor.homed,
@@ -233,7 +234,10 @@ impl Controller {
             state.supervisor.trip(Fault::LightStood);
         }
         if let Some(fault) = state.watch.sense(&self.config, &state.servo, sensed) {
-            state.supervisor.trip(fault);
+            // who knows nothing of where it stands has nothing to lose
+            if fault != Fault::Bumped || state.supervisor.homed {
+                state.supervisor.trip(fault);
+            }
         }
     }
 
@@ -260,6 +264,7 @@ impl Controller {
             error_rad: PanTilt::from_fn(|j| played.setpoint[j].position_rad - position_rad[j]),
             doubtful: state.watch.is_doubtful(),
             tested: state.watch.is_tested(),
+            steady: state.watch.is_steady(),
             host_silent: !state.watch.hears_host(&self.config),
             light_due: state.player.light_is_due(self.config.laser_on_ticks),
             begun: state.player.has_begun(),

@@ -53,4 +53,4 @@ pub use observer::tuning::{KalmanTuning, Unknown};
 pub use player::QUEUE_LENGTH;
 pub use quirks::{Cable, Quirks, Ripple};
 pub use servo::{Reference, Servo};
-pub use watch::MotorRating;
+pub use watch::{Foot, MotorRating, Sway};

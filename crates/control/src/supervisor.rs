@@ -53,6 +53,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) doubtful: bool,
     /// Both encoders were seen to follow their motors, and nothing spoke against it since.
     pub(crate) tested: bool,
+    /// What the head stands on stands, as far as a gyroscope tells.
+    pub(crate) steady: bool,
     /// No host has said of late that it is there.
     pub(crate) host_silent: bool,
     /// What the gate lets through now falls where the plan wants light, however slowly its clock runs.
@@ -192,10 +194,10 @@ impl Supervisor {
     }
 
     /// Whether there may be light at all, now or soon: the second switch. Judged after [`tick`](Self::tick), as the gate is.
-    pub(crate) fn may_light(&self) -> bool {
+    pub(crate) fn may_light(&self, steady: bool) -> bool {
         let armed = matches!(self.phase, Phase::Armed | Phase::Tracing | Phase::Holding);
         let may_point = self.phase == Phase::Dark && self.pointing_ticks > 0;
-        self.fault.is_none() && (armed || may_point)
+        self.fault.is_none() && steady && (armed || may_point)
     }
 
     /// Every reason against light in this tick. The gate is open only if there is none.
@@ -214,6 +216,7 @@ impl Supervisor {
         // a dot may be let out by a head that was never moved: whoever asks for it looks where it is
         reasons.insert_if(!(at.tested || points), Darkness::Untested);
         reasons.insert_if(at.doubtful, Darkness::Doubtful);
+        reasons.insert_if(!at.steady, Darkness::Jolted);
         let held = matches!(self.phase, Phase::Holding | Phase::Testing);
         reasons.insert_if(held || !(at.light_due || points), Darkness::Holding);
         let asked = at.setpoint.map(|s| s.position_rad);
@@ -252,7 +255,7 @@ fn strayed(at: &Situation<'_>) -> bool {
 fn must_hold(at: &Situation<'_>) -> bool {
     let lit = at.segment.is_some_and(|segment| segment.gate);
     let lost = exceeds(spot_error(at), LOST_TOLERANCES);
-    (lit && (strayed(at) || at.doubtful || !at.tested)) || lost
+    (lit && (strayed(at) || at.doubtful || !at.tested || !at.steady)) || lost
 }
 
 /// Whether a value is beyond its bound; what is not a number is.
@@ -270,5 +273,5 @@ pub(crate) fn rests(rate_rad_s: PanTilt<f32>) -> bool {
 }
 
 fn returned(at: &Situation<'_>) -> bool {
-    is_still(at) && !at.doubtful && spot_error(at) < RETURN_SHARE
+    is_still(at) && !at.doubtful && at.steady && spot_error(at) < RETURN_SHARE
 }

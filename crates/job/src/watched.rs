@@ -371,5 +371,6 @@ const fn may_be_found_again(fault: Fault) -> bool {
             | Fault::EncoderNoisy
             | Fault::EncoderDead
             | Fault::EstimateDiverged
+            | Fault::Bumped
     )
 }

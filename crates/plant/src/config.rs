@@ -2,6 +2,7 @@ use tracelight_dynamics::{Friction, HeadBodies, Motor};
 use tracelight_rig::PanTilt;
 
 use crate::Stepper;
+use crate::foot::{FootConfig, GyroscopeConfig};
 use crate::friction::WornFriction;
 use crate::wear::Wear;
 
@@ -45,6 +46,10 @@ pub struct PlantConfig {
     pub relay: RelayConfig,
     /// The laser's second switch, in series with it.
     pub enable: RelayConfig,
+    /// What it stands on.
+    pub foot: FootConfig,
+    /// What is fixed to that.
+    pub gyroscope: GyroscopeConfig,
     /// What is worse than that.
     pub wear: Wear,
 }

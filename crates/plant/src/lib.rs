@@ -12,7 +12,9 @@
 mod belt;
 mod camera;
 mod config;
+mod dice;
 mod encoder;
+mod foot;
 mod friction;
 mod light;
 mod plant;
@@ -23,6 +25,7 @@ pub use camera::{
     CameraConfig, Exposed, Image, Lamp, Laser, Part, Poster, Sensor, SimulatedCamera, SpotSample, Wall,
 };
 pub use config::{EncoderConfig, PlantConfig, RelayConfig};
+pub use foot::{FootConfig, GyroscopeConfig};
 pub use plant::Plant;
 pub use step::{JointState, Stepper};
 pub use wear::Wear;

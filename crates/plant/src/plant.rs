@@ -4,7 +4,9 @@ use tracelight_rig::{
 };
 
 use crate::belt::Belted;
+use crate::dice::Dice;
 use crate::encoder::Encoder;
+use crate::foot::Foot;
 use crate::light::{Relay, play};
 use crate::{JointState, PlantConfig, Stepper, Wear};
 
@@ -38,6 +40,7 @@ pub struct Plant {
     /// What the enable drives, in series with the relay.
     enable: Relay,
     inputs: Inputs,
+    foot: Foot,
     push_nm: PanTilt<f64>,
     /// What the joints come up against either way, if anything is there.
     stops: Option<PanTilt<Stops>>,
@@ -89,7 +92,7 @@ impl Plant {
 
     /// The same at rest elsewhere, within one count of these angles, rad.
     pub fn resting_at(config: &PlantConfig, angle_rad: PanTilt<f64>, seed: u64) -> Self {
-        let mut dice = Dice(oorandom::Rand64::new(u128::from(seed)));
+        let mut dice = Dice::new(seed);
         let wear = &config.wear;
         let count_rad = config.encoder.count_rad();
         let rest = PanTilt::from_fn(|j| angle_rad[j] + 0.5 * count_rad * dice.signed());
@@ -121,6 +124,7 @@ impl Plant {
             inputs: Input::ALL
                 .into_iter()
                 .fold(Inputs::ABSENT, |all, input| all.with(input, InputState::Fine)),
+            foot: Foot::new(config.foot, config.gyroscope, carried_kg_m2(config), seed),
             push_nm: PanTilt::default(),
             stops: None,
             supply_left: 1.0,
@@ -201,6 +205,16 @@ impl Plant {
         self.push_nm = torque_nm;
     }
 
+    /// Somebody bumps into what the head stands on: it turns by so much about pan's and tilt's axes within 30 ms, rad, and stays so.
+    pub const fn bump(&mut self, by_rad: PanTilt<f64>) {
+        self.foot.bump(by_rad);
+    }
+
+    /// How far what it stands on has turned about pan's and tilt's axes since the beginning, rad.
+    pub fn foot_rad(&self) -> PanTilt<f64> {
+        self.foot.angle_rad()
+    }
+
     /// The supply gives that share of what it should from now on: so much is left of every volt's torque.
     pub const fn sag(&mut self, left: f64) {
         self.supply_left = left;
@@ -215,9 +229,14 @@ impl Plant {
         let pull = self.wear.cable_nm_per_rad;
         let stopped =
             |j: Joint| self.stops.map_or(0.0, |stops| stops[j].torque_nm(from[j], self.state.rate_rad_s[j]));
-        let others =
-            PanTilt::from_fn(|j| self.push_nm[j] - pull * (from[j] - self.cable_rest_rad[j]) + stopped(j));
+        let thrown = self.foot.torque_nm();
+        let others = PanTilt::from_fn(|j| {
+            self.push_nm[j] + thrown[j] - pull * (from[j] - self.cable_rest_rad[j]) + stopped(j)
+        });
+        let before = self.mechanism.rate_rad_s(&self.state);
         let carried = self.mechanism.step(&mut self.state, self.current_nm, others, length_s);
+        let after = self.mechanism.rate_rad_s(&self.state);
+        self.foot.substep(PanTilt::from_fn(|j| (after[j] - before[j]) / length_s), length_s);
         let to = self.state.angle_rad;
         let end_age = 1.0 - f64::from(number + 1) * LENGTH;
         for joint in Joint::BOTH {
@@ -267,6 +286,14 @@ impl Mechanism {
         Self::Belted { belted, encoders_at_motors: wear.encoders_at_motors }
     }
 
+    /// How fast the joints turn, which carry the beam, rad/s.
+    const fn rate_rad_s(&self, seen: &JointState) -> PanTilt<f64> {
+        match self {
+            Self::Rigid(_) => seen.rate_rad_s,
+            Self::Belted { belted, .. } => belted.joints().rate_rad_s,
+        }
+    }
+
     /// Steps what the encoders see; where the joints are, which carry the beam, rad.
     fn step(
         &mut self,
@@ -299,6 +326,7 @@ impl Head for Plant {
         for joint in Joint::BOTH {
             self.encoders[joint].begin_tick();
         }
+        self.foot.begin_tick();
         let lasts_s = self.tick_s();
         for number in 0..SUBSTEPS {
             self.substep(asked, lasts_s, number);
@@ -310,26 +338,22 @@ impl Head for Plant {
             encoders: self.encoders.map(|e| e.measurement()),
             laser_on: Some(self.relay.is_closed()),
             inputs: self.inputs,
+            foot_rad_s: self.foot.read_rad_s(),
             lasted_ticks: Some((lasts_s / TICK_F64_S) as f32),
         }
     }
 }
 
-/// Seeded draws.
-#[derive(Clone, Debug)]
-struct Dice(oorandom::Rand64);
-
-impl Dice {
-    /// Uniform in [−1, 1).
-    fn signed(&mut self) -> f64 {
-        2.0 * self.0.rand_float() - 1.0
-    }
+/// Inertia of what joints carry, without their rotors, kg m².
+fn carried_kg_m2(config: &PlantConfig) -> PanTilt<f64> {
+    let own = config.bodies.lumped().mass(0.0).own_inertia();
+    PanTilt::from_fn(|j| own[j] - config.bodies.rotor_kg_m2[j])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{EncoderConfig, RelayConfig};
+    use crate::{EncoderConfig, FootConfig, GyroscopeConfig, RelayConfig};
     use tracelight_dynamics::{Friction, HeadBodies, Motor};
 
     fn config() -> PlantConfig {
@@ -342,6 +366,8 @@ mod tests {
             encoder: EncoderConfig { counts_per_rev: 4096, edge_stamps: true },
             relay: RelayConfig { on_s: 5e-3, off_s: 3e-3 },
             enable: RelayConfig { on_s: 0.0, off_s: 0.0 },
+            foot: FootConfig::FIRM,
+            gyroscope: GyroscopeConfig::NONE,
             wear: Wear::NONE,
         }
     }

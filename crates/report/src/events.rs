@@ -1,6 +1,6 @@
 //! When it was dark where light was planned, and why.
 
-use tracelight_rig::{Darkness, TICK_F64_S, Telemetry};
+use tracelight_rig::{Darkness, Fault, TICK_F64_S, Telemetry};
 use tracelight_sim::Run;
 
 /// A time when the rig darkened a beam that the plan wanted lit, or a fault that ended the job.
@@ -16,6 +16,26 @@ pub struct Event {
     pub lasted_s: f64,
     /// Whether the job ended with it.
     pub stops: bool,
+    /// Of a fault after which what the head stands on was turned: how far, rad about the head's x, y and z (ahead, left, up), by its gyroscope.
+    pub foot_turned_rad: Option<[f32; 3]>,
+}
+
+impl Event {
+    /// What it means, with its figures.
+    #[must_use]
+    pub fn told(&self) -> String {
+        let Some([ahead, left, up]) = self.foot_turned_rad else { return self.words.to_owned() };
+        let way = |rad: f32, positive: &str, negative: &str| {
+            let degrees = f64::from(rad).to_degrees();
+            format!("{:.2}° {}", degrees.abs(), if degrees < 0.0 { negative } else { positive })
+        };
+        let turned = [
+            way(up, "to the left", "to the right"),
+            way(left, "down", "up"),
+            way(ahead, "clockwise", "anticlockwise"),
+        ];
+        format!("{} Its gyroscope says that it has turned by {}.", self.words, turned.join(", "))
+    }
 }
 
 /// Finds events in a stream of ticks, one open at a time.
@@ -82,7 +102,8 @@ fn trouble(telemetry: &Telemetry, waits: bool) -> Option<Event> {
     let t_s = f64::from(telemetry.tick) * TICK_F64_S;
     if let Some(fault) = telemetry.fault {
         let (code, words) = (fault.code(), fault.words());
-        return Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: true });
+        let foot_turned_rad = telemetry.foot_turned_rad.filter(|_| fault == Fault::Bumped);
+        return Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: true, foot_turned_rad });
     }
     let dark = telemetry.darkness;
     if waits || dark.contains(Darkness::Planned) || dark.contains(Darkness::Disarmed) {
@@ -90,7 +111,7 @@ fn trouble(telemetry: &Telemetry, waits: bool) -> Option<Event> {
     }
     let reason = Darkness::ALL.into_iter().find(|&r| dark.contains(r))?;
     let (code, words) = (reason.code(), reason.words());
-    Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: false })
+    Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: false, foot_turned_rad: None })
 }
 
 /// All events of a run in time order; an event's length runs to the tick before the light was allowed again.
@@ -114,7 +135,7 @@ pub fn events(run: &Run) -> Vec<Event> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tracelight_rig::{DarknessSet, Fault};
+    use tracelight_rig::DarknessSet;
     use tracelight_sim::Tick;
 
     fn run_of(reasons: &[&[Darkness]], fault_from: usize) -> Run {

@@ -224,6 +224,7 @@ fn tick(number: u32, planned: &PlanPoint) -> Tick {
         velocity_rad_s: PanTilt::default(),
         acceleration_rad_s2: PanTilt::default(),
         lost_counts: PanTilt::default(),
+        foot_turned_rad: None,
         actuation: Actuation {
             command_v: planned.torque_fraction.map(|f| f * 10.0 + (t * 400.0).sin() as f32 * 0.3),
             gate: planned.lit,

@@ -127,6 +127,9 @@ pub struct FaultFigures {
     pub t_s: f64,
     pub lasted_s: f64,
     pub stops: bool,
+    /// How far what the head stands on was turned, about the head's x, y and z (ahead, left, up), by its gyroscope.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub foot_turned_deg: Option<[f64; 3]>,
 }
 
 /// See [`Summary::timing_ms`].
@@ -179,7 +182,15 @@ impl Summary {
 
 impl FaultFigures {
     fn new(event: &Event) -> Self {
-        Self { code: event.code, t_s: round(event.t_s), lasted_s: round(event.lasted_s), stops: event.stops }
+        Self {
+            code: event.code,
+            t_s: round(event.t_s),
+            lasted_s: round(event.lasted_s),
+            stops: event.stops,
+            foot_turned_deg: event
+                .foot_turned_rad
+                .map(|axes| axes.map(|rad| round(f64::from(rad).to_degrees()))),
+        }
     }
 }
 

@@ -133,6 +133,12 @@ darknesses! {
         words: "An encoder had not been seen to follow its motor, or something spoke against it since.",
         advice: "Nothing, if it is rare: before the first light, and after a surprise such as a push, the head makes a little move in the dark and goes on. If it comes again and again, see encoder-slipping.",
     }
+    Jolted = 13 {
+        what: "What the head stands on turns, by the gyroscope that is fixed to it, or was not seen to stand still yet.",
+        code: "jolted",
+        words: "What the head stands on turned, or had not been seen to stand still yet.",
+        advice: "Nothing, if it is rare: once it stands still, and where it stood, the head goes on; if it stands elsewhere, that is the fault bumped. If it comes again and again, set the head on something firmer, or say in the rig file how that gives way: model.foot. safety.jolt sets the bound.",
+    }
 }
 
 const ASTRAY: &str = "See whether somebody or something pushes the head, whether --speed or --distance is more than it can hold, and whether the friction and gains in the rig file are its own. control.tolerance sets the bound.";
@@ -201,6 +207,7 @@ mod tests {
         (10, "standing"),
         (11, "host-silent"),
         (12, "untested"),
+        (13, "jolted"),
     ];
 
     #[test]

@@ -21,6 +21,9 @@ pub struct Sensed {
     pub laser_on: Option<bool>,
     /// What its safety inputs say, and which it has.
     pub inputs: Inputs,
+    /// How fast what the head stands on turns about the head's x, y and z as it stands (ahead, left, up), rad/s: a gyroscope that is fixed to the foot;
+    /// `None` without one.
+    pub foot_rad_s: Option<[f32; 3]>,
     /// How long the tick took that ends here, in ticks of its proper length; `None` where the hardware does not measure it.
     pub lasted_ticks: Option<f32>,
 }

@@ -298,6 +298,16 @@ faults! {
         clears: Clears::FoundAndArmed,
         words: "Before the first light, an encoder showed more or less of a motion than its motor must have made. Check model.encoder.counts_per_rev (half, double and four times are the usual slips), then the motor's torque and the joint's inertia: tracelight lab identify finds them. control.scale_tolerance sets the bound.",
     }
+    Bumped = 24 {
+        what: "Somebody bumped into what the head stands on, and it does not stand where it stood.",
+        code: "bumped",
+        seen: "a gyroscope on the foot says that it has turned further than safety.turned, once it is still again; without one, a joint was thrown aside by half a count or more within some hundredths of a second and is no faster afterwards",
+        soon: Soon::Words("dark in the tick with a gyroscope, a fault 0.2 s after it is still; without one, 65 ms after the first surprise"),
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "The head was bumped and does not stand where it stood, or nothing tells that it does: look where it points before it is armed again, or calibrate it anew; with a camera it is found again by itself. A gyroscope on the foot sees bumps that encoders do not feel.",
+    }
 }
 
 /// Of which faults something is true, a bit each by number: a board asks without keeping the words of the table.
@@ -384,6 +394,7 @@ mod tests {
         (21, "tick-late"),
         (22, "light-stood"),
         (23, "encoder-scale"),
+        (24, "bumped"),
     ];
 
     #[test]

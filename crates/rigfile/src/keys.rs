@@ -180,7 +180,7 @@ macro_rules! drive {
 }
 
 /// What belongs to no joint.
-const WHOLE: [Key<Model>; 13] = [
+const WHOLE: [Key<Model>; 16] = [
     real("gravity", GRAVITY, (0.0, 30.0), "along −z", (|m| &mut m.bodies.gravity_m_s2) as Real),
     Key {
         path: "encoder.counts_per_rev",
@@ -200,6 +200,21 @@ const WHOLE: [Key<Model>; 13] = [
     real("relay.off", TIMES, (0.0, 0.05), "from the gate's fall to dark", |m| &mut m.relay.off_s),
     real("enable.on", TIMES, (0.0, 0.05), "the same of the laser's second switch", |m| &mut m.enable.on_s),
     real("enable.off", TIMES, (0.0, 0.05), "the same of the laser's second switch", |m| &mut m.enable.off_s),
+    real(
+        "foot.inertia",
+        INERTIA,
+        (1e-4, 100.0),
+        "inertia of head and what it stands on together, about each axis",
+        |m| &mut m.foot.inertia_kg_m2,
+    ),
+    real(
+        "foot.resonance",
+        FREQUENCIES,
+        (0.0, 50.0),
+        "how often they swing on it; 0 for one that stands firm",
+        |m| &mut m.foot.resonance_hz,
+    ),
+    real("foot.damping", PURE, (0.0, 2.0), "share of critical damping of that", |m| &mut m.foot.damping),
     real(
         "laser.forward",
         LENGTHS,
@@ -237,8 +252,25 @@ pub(crate) fn model_keys() -> Vec<Key<Model>> {
 /// The key that follows from `laser.power` where a file does not have it.
 pub(crate) const STANDING: &str = "safety.standing";
 
-/// Keys of `[truth.wear]`, `[control]`, `[motion]`, `[laser]` and `[safety]`.
-pub(crate) const RIG_KEYS: [Key<RigConfig>; 40] = [
+/// Keys of `[truth.gyroscope]`, `[truth.wear]`, `[control]`, `[motion]`, `[laser]` and `[safety]`.
+pub(crate) const RIG_KEYS: [Key<RigConfig>; 45] = [
+    flag("truth.gyroscope.fitted", "whether a gyroscope is fixed to what it stands on", |r| {
+        &mut r.truth.gyroscope.fitted
+    }),
+    real(
+        "truth.gyroscope.noise",
+        ANGULAR_SPEEDS,
+        (0.0, 1.0),
+        "standard deviation of each of its readings",
+        |r| &mut r.truth.gyroscope.noise_rad_s,
+    ),
+    real(
+        "truth.gyroscope.bias",
+        ANGULAR_SPEEDS,
+        (0.0, 0.05),
+        "most that it reads at rest; how much is drawn from the seed",
+        |r| &mut r.truth.gyroscope.bias_rad_s,
+    ),
     real("truth.wear.stribeck_ratio", PURE, (1.0, 10.0), "break-away over Coulomb friction", |r| {
         &mut r.truth.wear.stribeck_ratio
     }),
@@ -454,5 +486,19 @@ pub(crate) const RIG_KEYS: [Key<RigConfig>; 40] = [
         LightSettings::STANDING_S,
         "how long light may stand in one place; left out, 1 mJ of laser.power, but a second at most",
         |r| &mut r.light.standing_s,
+    ),
+    real(
+        "safety.jolt",
+        ANGULAR_SPEEDS,
+        (1e-3, 10.0),
+        "how fast what it stands on turns, from which on that is a bump; by its gyroscope",
+        |r| &mut r.safety.jolt_rad_s,
+    ),
+    real(
+        "safety.turned",
+        ANGLES,
+        (5e-5, 0.5),
+        "how far that may have turned once it is still again, and count as standing where it stood",
+        |r| &mut r.safety.turned_rad,
     ),
 ];

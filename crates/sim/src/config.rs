@@ -1,11 +1,12 @@
 use tracelight_aim::HeadGeometry;
 use tracelight_dynamics::{Friction, HeadBodies, Motor};
-use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
+use tracelight_plant::{EncoderConfig, FootConfig, GyroscopeConfig, RelayConfig, Wear};
 use tracelight_rig::{Joint, PanTilt};
 
 use crate::control_settings::ControlSettings;
 use crate::laws::{LawName, ObserverName};
 use crate::light_settings::LightSettings;
+use crate::safety_settings::SafetySettings;
 
 /// A rig, whole: what we believe it is, what it really is (in simulation), and how it is to be driven.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +27,8 @@ pub struct RigConfig {
     pub motion: MotionSettings,
     /// Its laser, and how long that may stand.
     pub light: LightSettings,
+    /// When it is dark although nothing is wrong with the head.
+    pub safety: SafetySettings,
 }
 
 /// A head in numbers.
@@ -43,6 +46,8 @@ pub struct Model {
     pub relay: RelayConfig,
     /// The laser's second switch, in series with it.
     pub enable: RelayConfig,
+    /// What it stands on.
+    pub foot: FootConfig,
     /// Where the beam leaves, and how far the joints turn.
     pub geometry: HeadGeometry,
 }
@@ -178,6 +183,8 @@ pub struct Ripple {
 pub struct Truth {
     /// The head as it really is.
     pub model: Model,
+    /// What is fixed to its foot.
+    pub gyroscope: GyroscopeConfig,
     /// What is worse than its equations.
     pub wear: Wear,
 }

@@ -2,7 +2,7 @@
 //! nonlinear head, and in the way back a quantizer and a hold.
 
 use tracelight_linear::{Discretization, LinearError, Matrix, StateSpace, Zpk};
-use tracelight_plant::{JointState, Wear};
+use tracelight_plant::{GyroscopeConfig, JointState, Wear};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 
 use crate::{Model, MotionArray};
@@ -42,7 +42,7 @@ impl Diagram {
     pub fn follow(&self, array: &MotionArray, rest_s: f64) -> Result<Vec<ScopeTick>, LinearError> {
         let step_s = TICK_F64_S / STEPS as f64;
         let start = array.start_rad();
-        let stepper = self.head.plant_config(Wear::NONE).stepper(PanTilt::default());
+        let stepper = self.head.plant_config(GyroscopeConfig::NONE, Wear::NONE).stepper(PanTilt::default());
         let mut controllers = PanTilt::new(
             Block::new(&self.controllers.pan, step_s)?,
             Block::new(&self.controllers.tilt, step_s)?,

@@ -2,10 +2,10 @@
 
 use tracelight_aim::HeadPose;
 use tracelight_control::{
-    AxisConfig, Cable, Config, Creep, FrictionModel, HeadModel, MotorRating, Quirks, Ripple,
+    AxisConfig, Cable, Config, Creep, Foot, FrictionModel, HeadModel, MotorRating, Quirks, Ripple, Sway,
 };
 use tracelight_dynamics::{Friction, Lumped};
-use tracelight_plant::{PlantConfig, Wear};
+use tracelight_plant::{GyroscopeConfig, PlantConfig, Wear};
 use tracelight_rig::{Joint, JointLimits, PanTilt, TICK_F64_S};
 use tracelight_trajectory::Machine;
 
@@ -68,7 +68,24 @@ impl RigConfig {
             standing_ticks: self.light.standing_ticks(),
             standing_radius_rad: self.standing_radius_rad() as f32,
             tolerance_limit_rad: TOLERANCE_LIMIT_RAD as f32,
+            foot: Foot {
+                jolt_rad_s: self.safety.jolt_rad_s as f32,
+                turned_rad: self.safety.turned_rad as f32,
+                sway: self.sway(),
+            },
         }
+    }
+
+    /// How what it stands on is believed to give way, if it does.
+    fn sway(&self) -> Option<Sway> {
+        let foot = &self.model.foot;
+        let own = self.model.own_inertia_kg_m2();
+        let rotors = &self.model.bodies.rotor_kg_m2;
+        (foot.resonance_hz > 0.0).then(|| Sway {
+            carried_share: PanTilt::from_fn(|j| ((own[j] - rotors[j]) / foot.inertia_kg_m2) as f32),
+            rate_rad_s: (std::f64::consts::TAU * foot.resonance_hz) as f32,
+            damping: foot.damping as f32,
+        })
     }
 
     fn standing_radius_rad(&self) -> f64 {
@@ -145,13 +162,13 @@ impl RigConfig {
 
     /// What the simulated plant is.
     pub fn plant_config(&self) -> PlantConfig {
-        self.truth.model.plant_config(self.truth.wear)
+        self.truth.model.plant_config(self.truth.gyroscope, self.truth.wear)
     }
 }
 
 impl Model {
     /// A plant that is so, with that wear.
-    pub(crate) const fn plant_config(&self, wear: Wear) -> PlantConfig {
+    pub(crate) const fn plant_config(&self, gyroscope: GyroscopeConfig, wear: Wear) -> PlantConfig {
         PlantConfig {
             bodies: self.bodies,
             friction: self.friction,
@@ -159,6 +176,8 @@ impl Model {
             encoder: self.encoder,
             relay: self.relay,
             enable: self.enable,
+            foot: self.foot,
+            gyroscope,
             wear,
         }
     }

@@ -4,12 +4,13 @@ use std::f64::consts::PI;
 
 use tracelight_aim::HeadGeometry;
 use tracelight_dynamics::{Friction, HeadBodies, Motor};
-use tracelight_plant::{EncoderConfig, RelayConfig, Wear};
+use tracelight_plant::{EncoderConfig, FootConfig, GyroscopeConfig, RelayConfig, Wear};
 use tracelight_rig::PanTilt;
 
 use crate::config::{Model, MotionSettings, RigConfig, Truth};
 use crate::control_settings::ControlSettings;
 use crate::light_settings::LightSettings;
+use crate::safety_settings::SafetySettings;
 use crate::{HandTuned, LawName};
 
 /// Motor torque constant × gearhead × belt, N m at the joint per A.
@@ -39,7 +40,7 @@ impl RigConfig {
             name: "report".into(),
             description: "the rig of the 2006 report, as good as new".into(),
             model,
-            truth: Truth { model, wear: Wear::NONE },
+            truth: Truth { model, gyroscope: GyroscopeConfig::NONE, wear: Wear::NONE },
             identified: None,
             control: ControlSettings {
                 law: LawName::State,
@@ -66,6 +67,7 @@ impl RigConfig {
                 settle_s: 0.04,
             },
             light: LightSettings::POINTER,
+            safety: SafetySettings::USUAL,
         }
     }
 
@@ -137,6 +139,7 @@ fn report_model() -> Model {
         encoder: EncoderConfig { counts_per_rev: 4096, edge_stamps: true },
         relay: RelayConfig { on_s: 5e-3, off_s: 3e-3 },
         enable: RelayConfig { on_s: 0.0, off_s: 0.0 },
+        foot: FootConfig::FIRM,
         geometry: HeadGeometry::centred(PanTilt::new((-PI, PI), (-95.0 * PI / 180.0, 95.0 * PI / 180.0))),
     }
 }

@@ -10,8 +10,7 @@ use tracelight_stroke::Point;
 use tracelight_trajectory::Plan;
 
 use crate::RigConfig;
-use crate::config::Model;
-use crate::trouble::{Bump, Line, Trouble};
+use crate::trouble::{Line, Trouble};
 
 /// Ticks a run goes on after a fault, so that the log shows what followed: 0.2 s.
 const AFTERMATH_TICKS: u32 = 200;
@@ -82,10 +81,6 @@ pub struct SimulatedRig {
     truth: HeadGeometry,
     pose: HeadPose,
     true_pose: HeadPose,
-    /// What each joint feels when what it stands on is sped up, kg m²: what it carries. Its rotor turns about an axis of its own, and of
-    /// what that is worth at the joint only the gears' share acts.
-    inertia_kg_m2: PanTilt<f64>,
-    bump: Option<Bump>,
     /// Share by which the beam turns further than the counts say, and how much more each tick.
     stretch: f64,
     stretch_per_tick: f64,
@@ -139,8 +134,6 @@ impl SimulatedRig {
             truth: config.truth.model.geometry,
             pose,
             true_pose: pose,
-            inertia_kg_m2: carried_kg_m2(&config.truth.model),
-            bump: None,
             stretch: 0.0,
             stretch_per_tick: 0.0,
             patience_ticks: PATIENCE_TICKS + config.control_config().hold_limit_ticks as usize,
@@ -176,8 +169,15 @@ impl SimulatedRig {
         self
     }
 
+    /// Where it truly stands now.
+    fn stands(&self) -> HeadPose {
+        let turned = self.plant.foot_rad();
+        let HeadPose { yaw_rad, pitch_rad, .. } = self.true_pose;
+        HeadPose { yaw_rad: yaw_rad + turned.pan, pitch_rad: pitch_rad + turned.tilt, ..self.true_pose }
+    }
+
     fn tick(&mut self) -> Tick {
-        self.age();
+        self.stretch += self.stretch_per_tick;
         let telemetry = self.controller.tick(&mut self.state, &self.sensed);
         self.told = telemetry;
         let asked = telemetry.setpoint.map(|s| f64::from(s.position_rad));
@@ -185,7 +185,7 @@ impl SimulatedRig {
             telemetry,
             angle_rad: self.plant.angle_rad(),
             rate_rad_s: self.plant.rate_rad_s(),
-            spot: self.truth.spot(&self.true_pose, self.plant.beam_rad().map(|q| q * (1.0 + self.stretch))),
+            spot: self.truth.spot(&self.stands(), self.plant.beam_rad().map(|q| q * (1.0 + self.stretch))),
             asked: self.model.spot(&self.pose, asked),
             light: self.plant.light(),
         };
@@ -193,17 +193,6 @@ impl SimulatedRig {
         let encoders = PanTilt::from_fn(|j| self.lines[j].carry(seen.encoders[j]));
         self.sensed = Sensed { encoders, ..seen };
         tick
-    }
-
-    /// What goes on going wrong.
-    fn age(&mut self) {
-        self.stretch += self.stretch_per_tick;
-        let Some(bump) = &mut self.bump else { return };
-        let sped_up = bump.tick(&mut self.true_pose);
-        // a joint's own inertia stays behind
-        let felt = sped_up.unwrap_or_default();
-        self.plant.push(PanTilt::from_fn(|j| -self.inertia_kg_m2[j] * felt[j]));
-        self.bump = self.bump.filter(|_| sped_up.is_some());
     }
 
     /// What the controller believes of the joints.
@@ -223,19 +212,13 @@ impl SimulatedRig {
             Trouble::EdgesMissed(j, share) => self.lines[j].miss(share),
             Trouble::StampGarbled(j) => self.lines[j].garbled = true,
             Trouble::LaserStuck => self.plant.stick_laser(),
-            Trouble::Bump(by_rad) => self.bump = Some(Bump::new(by_rad)),
+            Trouble::Bump(by_rad) => self.plant.bump(by_rad),
             Trouble::PowerLoss => self.power_up(),
             Trouble::Input(input, state) => self.plant.set_input(input, state),
             Trouble::TickLate(ticks) => self.plant.hold_up(ticks * TICK_F64_S),
             Trouble::Drift(share_per_s) => self.stretch_per_tick = share_per_s * TICK_F64_S,
         }
     }
-}
-
-/// Inertia of what joints carry, without their rotors, kg m².
-fn carried_kg_m2(model: &Model) -> PanTilt<f64> {
-    let own = model.own_inertia_kg_m2();
-    PanTilt::from_fn(|j| own[j] - model.bodies.rotor_kg_m2[j])
 }
 
 /// A rig of which more is known than its controller tells.

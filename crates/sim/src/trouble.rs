@@ -1,5 +1,4 @@
-use tracelight_aim::HeadPose;
-use tracelight_rig::{Input, InputState, Joint, Measurement, PanTilt, TICK_F64_S};
+use tracelight_rig::{Input, InputState, Joint, Measurement, PanTilt};
 
 /// What can go wrong with a rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,40 +48,6 @@ pub enum EyeTrouble {
     Slow(f64),
     /// Each image's stamp is off by up to so much, s.
     Stamps(f64),
-}
-
-/// What a head stands on while it is bumped: from rest to rest with the least jerk (Flash & Hogan, *The coordination of arm movements*,
-/// 1985, eq. 4).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Bump {
-    by_rad: PanTilt<f64>,
-    ticks: u32,
-}
-
-/// How long it takes, ticks: what stands on rubber feet comes to rest in two or three hundredths of a second.
-const BUMP_TICKS: u32 = 30;
-
-impl Bump {
-    pub(crate) const fn new(by_rad: PanTilt<f64>) -> Self {
-        Self { by_rad, ticks: 0 }
-    }
-
-    /// One tick: the pose after it, and how what stands is sped up meanwhile, rad/s²; nothing once it is over.
-    pub(crate) fn tick(&mut self, pose: &mut HeadPose) -> Option<PanTilt<f64>> {
-        let way = |s: f64| s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
-        let share = |ticks: u32| f64::from(ticks) / f64::from(BUMP_TICKS);
-        if self.ticks == BUMP_TICKS {
-            return None;
-        }
-        let step = way(share(self.ticks + 1)) - way(share(self.ticks));
-        let s = share(self.ticks) + 0.5 / f64::from(BUMP_TICKS);
-        let bent = s * (60.0 - 180.0 * s + 120.0 * s * s);
-        self.ticks += 1;
-        pose.yaw_rad += step * self.by_rad.pan;
-        pose.pitch_rad += step * self.by_rad.tilt;
-        let time_s = f64::from(BUMP_TICKS) * TICK_F64_S;
-        Some(self.by_rad.map(|by| by * bent / (time_s * time_s)))
-    }
 }
 
 /// What happens to an encoder's count on its way to the controller.

@@ -4,6 +4,8 @@
 //! below holds its bounds against the constants here.
 
 mod encoder;
+mod foot;
+mod knock;
 mod motor;
 mod scale;
 mod scale_filter;
@@ -14,6 +16,9 @@ use crate::config::Config;
 use crate::estimate::Estimate;
 use crate::servo::Servo;
 use encoder::EncoderWatch;
+use foot::FootWatch;
+pub use foot::{Foot, Sway};
+use knock::KnockWatch;
 pub use motor::MotorRating;
 use motor::MotorWatch;
 use scale::ScaleWatch;
@@ -30,6 +35,8 @@ pub(crate) struct Watch {
     encoders: PanTilt<EncoderWatch>,
     scales: PanTilt<ScaleWatch>,
     motors: PanTilt<MotorWatch>,
+    foot: FootWatch,
+    knocks: PanTilt<KnockWatch>,
     gate: bool,
     /// How long the gate has been so, ticks.
     gate_ticks: u32,
@@ -43,6 +50,8 @@ impl Watch {
             encoders: encoders(sensed, estimates),
             scales: scales(config, sensed, estimates),
             motors: PanTilt::default(),
+            foot: FootWatch::default(),
+            knocks: PanTilt::new(KnockWatch::new(), KnockWatch::new()),
             gate: false,
             gate_ticks: u32::MAX,
             silence_ticks: None,
@@ -78,11 +87,18 @@ impl Watch {
         };
         let pan = encoder(&mut self.encoders.pan, Joint::Pan);
         let tilt = encoder(&mut self.encoders.tilt, Joint::Tilt);
+        let mut thrown = false;
         for j in Joint::BOTH {
             let (axis, measured) = (&config.axes[j], &sensed.encoders[j]);
-            self.scales[j].tick(axis, &servo.efforts()[j], &servo.estimates()[j], measured);
+            let (effort, estimate) = (&servo.efforts()[j], &servo.estimates()[j]);
+            let surprise = self.scales[j].tick(axis, effort, estimate, measured);
+            thrown |= self.knocks[j].tick(axis, effort, estimate, measured, surprise);
         }
-        pan.or(tilt).or(self.laser(config, sensed)).or(silence)
+        let sped_up = servo.estimates().map(|estimate| estimate.acceleration_rad_s2);
+        let turned = self.foot.tick(&config.foot, sensed.foot_rad_s, sped_up);
+        // who has a gyroscope need not ask encoders
+        let thrown = (thrown && !self.foot.is_fitted()).then_some(Fault::Bumped);
+        pan.or(tilt).or(self.laser(config, sensed)).or(silence).or(turned).or(thrown)
     }
 
     /// Whether an encoder has shown nothing where its joint should have passed several edges, or does not fit its motor.
@@ -93,6 +109,16 @@ impl Watch {
     /// Whether both encoders were seen to follow their motors, and nothing spoke against it since.
     pub(crate) fn is_tested(&self) -> bool {
         self.scales.pan.is_tested() && self.scales.tilt.is_tested()
+    }
+
+    /// Whether what the head stands on stands, as far as a gyroscope tells.
+    pub(crate) const fn is_steady(&self) -> bool {
+        self.foot.is_steady()
+    }
+
+    /// How far that has turned since it last stood still, rad about the head's x, y and z; `None` without a gyroscope.
+    pub(crate) fn foot_turned_rad(&self) -> Option<[f32; 3]> {
+        self.foot.turned_rad()
     }
 
     /// The head rests and is about to make its test move.
@@ -144,6 +170,8 @@ impl Watch {
         self.encoders = encoders(sensed, estimates);
         let anew = scales(config, sensed, estimates);
         self.scales = PanTilt::from_fn(|j| anew[j].with_first(&self.scales[j]));
+        self.foot.rearm();
+        self.knocks = PanTilt::new(KnockWatch::new(), KnockWatch::new());
         Joint::BOTH.iter().for_each(|&j| self.motors[j].rearm());
     }
 }

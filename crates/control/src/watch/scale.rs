@@ -107,14 +107,14 @@ impl ScaleWatch {
         self.trust == Trust::Tested
     }
 
-    /// One tick under what acted on the joint.
+    /// One tick under what acted on the joint; what it said of the model.
     pub(super) fn tick(
         &mut self,
         axis: &AxisConfig,
         effort: &Effort,
         estimate: &Estimate,
         measured: &Measurement,
-    ) {
+    ) -> Surprise {
         let tested = self.is_tested();
         let surprise = self.filter.tick(axis, effort, measured, estimate.lost_counts, tested);
         self.add_up(surprise);
@@ -127,6 +127,7 @@ impl ScaleWatch {
             // any motion in the dark will do before the first light
             self.believe();
         }
+        surprise
     }
 
     fn judge(&mut self) {
@@ -175,15 +176,18 @@ impl ScaleWatch {
     fn add_up(&mut self, surprise: Surprise) {
         match surprise {
             Surprise::None | Surprise::Placed => {}
-            Surprise::Edge(deviations) => {
-                let one = within(deviations, MOST_OF_ONE);
-                self.ahead = (self.ahead + one - ALLOWED).max(0.0);
-                self.behind = (self.behind - one - ALLOWED).max(0.0);
-                self.miscounts = (self.miscounts - MISCOUNT_FADES).max(0.0);
-                self.mean_square += MEAN_SHARE * (deviations * deviations - self.mean_square);
-            }
+            Surprise::Edge(deviations) => self.add_edge(deviations),
+            Surprise::Creeping(_) => self.add_edge(0.0),
             Surprise::Count => self.miscounts += 1.0,
         }
+    }
+
+    fn add_edge(&mut self, deviations: f32) {
+        let one = within(deviations, MOST_OF_ONE);
+        self.ahead = (self.ahead + one - ALLOWED).max(0.0);
+        self.behind = (self.behind - one - ALLOWED).max(0.0);
+        self.miscounts = (self.miscounts - MISCOUNT_FADES).max(0.0);
+        self.mean_square += MEAN_SHARE * (deviations * deviations - self.mean_square);
     }
 
     fn is_suspicious(&self) -> bool {

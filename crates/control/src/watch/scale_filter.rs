@@ -35,9 +35,8 @@ const LOAD_REVERSED: f32 = 0.4;
 const STICKING_RAD_S: f32 = 0.06;
 /// In motion, where friction is what it slides with: faster than that, rad/s.
 const FAST_RAD_S: f32 = 0.12;
-/// Slower, a joint creeps, rad/s, and how its edges come says less, by this share.
+/// Slower, a joint creeps, rad/s, and how its edges come says nothing of the model.
 const CREEPING_RAD_S: f32 = 0.02;
-const CREEPING_SHARE: f32 = 0.0;
 /// Most of it that may be unknown, shares².
 const MOST_LOAD: f32 = 4.0;
 /// What acts on a joint somebody pushes, deviations of the unknown torque.
@@ -79,6 +78,8 @@ pub(super) enum Surprise {
     Placed,
     /// An edge came, or is overdue, by so many standard deviations ahead of where it was expected.
     Edge(f32),
+    /// The same of a joint that creeps: friction is what it is.
+    Creeping(f32),
     /// An edge came a whole count beside where it was expected, and is taken for its neighbour.
     Count,
 }
@@ -230,10 +231,10 @@ impl ScaleFilter {
         let creeps = known && self.speed_rad_s.abs() < CREEPING_RAD_S;
         let deviations = self.correct(innovation, variance);
         let first = !core::mem::replace(&mut self.placed, true);
-        let deviations = if creeps { CREEPING_SHARE * deviations } else { deviations };
         match (miscounted, first) {
             (true, _) => Surprise::Count,
             (false, true) => Surprise::Placed,
+            (false, false) if creeps => Surprise::Creeping(deviations),
             (false, false) => Surprise::Edge(deviations),
         }
     }
@@ -267,7 +268,7 @@ impl ScaleFilter {
         let noise = OVERDUE_COUNTS * axis.count_rad;
         let creeps = known && self.speed_rad_s.abs() < CREEPING_RAD_S;
         let deviations = self.correct(inside - self.offset_rad, noise * noise);
-        Surprise::Edge(if creeps { CREEPING_SHARE * deviations } else { deviations })
+        if creeps { Surprise::Creeping(deviations) } else { Surprise::Edge(deviations) }
     }
 
     /// Kalman update: the place is `innovation` ahead of the estimate, ± √`variance`. How many deviations that is.

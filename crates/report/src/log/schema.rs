@@ -51,6 +51,9 @@ pub(super) const TRACELIGHT: ProtoFile = ProtoFile {
                 ("pan", Kind::Message(".tracelight.Joint")),
                 ("tilt", Kind::Message(".tracelight.Joint")),
                 ("lap", Kind::UInt32),
+                ("foot_turned_ahead_rad", Kind::Double),
+                ("foot_turned_left_rad", Kind::Double),
+                ("foot_turned_up_rad", Kind::Double),
             ],
             choice: None,
         },
@@ -128,6 +131,9 @@ pub(super) fn telemetry(out: &mut Encoder, sample: &Sample<'_>, lap: u32) {
     out.message(9, |joint| joint_state(joint, sample.tick, seen, Joint::Pan));
     out.message(10, |joint| joint_state(joint, sample.tick, seen, Joint::Tilt));
     out.unsigned(11, lap.into());
+    // about the head's x, y and z; nothing without a gyroscope
+    let turned = seen.foot_turned_rad.into_iter().flatten();
+    (12..).zip(turned).for_each(|(field, rad)| out.double(field, rad.into()));
 }
 
 fn joint_state(out: &mut Encoder, tick: &Tick, seen: &Telemetry, joint: Joint) {
@@ -180,7 +186,7 @@ pub(super) fn fault(out: &mut Encoder, event: &Event, tick: u64) {
         stamp.unsigned(2, time % 1_000_000_000);
     });
     out.unsigned(2, if event.stops { FATAL } else { WARNING });
-    out.text(3, &format!("{}: {}", event.code, event.words));
+    out.text(3, &format!("{}: {}", event.code, event.told()));
     out.text(4, "interlock");
 }
 

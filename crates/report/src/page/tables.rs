@@ -173,7 +173,7 @@ pub(super) fn happenings(job: &Finished<'_>) -> String {
             r#"<li class="{class}"><b>{}</b> at {:.3} s for {lasted} ms. {}</li>"#,
             escaped(e.code),
             e.t_s,
-            escaped(e.words)
+            escaped(&e.told())
         )
     };
     let mut items: String = events.iter().take(MOST).map(event).collect();

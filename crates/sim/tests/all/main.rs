@@ -10,6 +10,7 @@ mod evidence;
 mod faults;
 mod homing;
 mod inputs;
+mod jolts;
 mod recovery;
 mod segments;
 mod shapes;
