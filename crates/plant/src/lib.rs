@@ -14,15 +14,19 @@ mod camera;
 mod config;
 mod encoder;
 mod friction;
+mod gain;
 mod light;
 mod plant;
 mod step;
+mod teeth;
 mod wear;
 
 pub use camera::{
     CameraConfig, Exposed, Image, Lamp, Laser, Part, Poster, Sensor, SimulatedCamera, SpotSample, Wall,
 };
 pub use config::{EncoderConfig, PlantConfig, RelayConfig};
+pub use gain::Weakening;
 pub use plant::Plant;
 pub use step::{JointState, Stepper};
+pub use teeth::LooseBelt;
 pub use wear::Wear;
