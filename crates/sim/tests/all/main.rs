@@ -17,5 +17,6 @@ mod segments;
 mod shapes;
 mod slips;
 mod standing;
+mod sweep;
 mod tracking;
 mod troubled;
