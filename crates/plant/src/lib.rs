@@ -16,9 +16,11 @@ mod dice;
 mod encoder;
 mod foot;
 mod friction;
+mod gain;
 mod light;
 mod plant;
 mod step;
+mod teeth;
 mod wear;
 
 pub use camera::{
@@ -26,6 +28,8 @@ pub use camera::{
 };
 pub use config::{EncoderConfig, PlantConfig, RelayConfig};
 pub use foot::{FootConfig, GyroscopeConfig};
+pub use gain::Weakening;
 pub use plant::Plant;
 pub use step::{JointState, Stepper};
+pub use teeth::LooseBelt;
 pub use wear::Wear;

@@ -3,11 +3,13 @@ use tracelight_rig::{
     Actuation, Head, Input, InputState, Inputs, Joint, Measurement, PanTilt, Sensed, TICK_F64_S,
 };
 
-use crate::belt::Belted;
+use crate::belt::{Belted, STIFF_BELT};
 use crate::dice::Dice;
 use crate::encoder::Encoder;
 use crate::foot::Foot;
+use crate::gain::{Gain, Weakening};
 use crate::light::{Relay, play};
+use crate::teeth::{LooseBelt, Teeth};
 use crate::{JointState, PlantConfig, Stepper, Wear};
 
 /// Plant substeps in a tick. Measured on a traced polygon: four times as many change the rms and the largest
@@ -29,6 +31,7 @@ pub struct Plant {
     mechanism: Mechanism,
     torque_nm_per_v: PanTilt<f64>,
     limit_v: PanTilt<f64>,
+    rotor_kg_m2: PanTilt<f64>,
     wear: Wear,
     /// Where cables do not pull, rad.
     cable_rest_rad: PanTilt<f64>,
@@ -45,6 +48,7 @@ pub struct Plant {
     /// What the joints come up against either way, if anything is there.
     stops: Option<PanTilt<Stops>>,
     supply_left: f64,
+    gains: PanTilt<Gain>,
     /// What the motors give, N m: it follows the command.
     current_nm: PanTilt<f64>,
     time_s: f64,
@@ -114,6 +118,7 @@ impl Plant {
             mechanism: Mechanism::new(config, ripple_phase, rest),
             torque_nm_per_v,
             limit_v: config.motors.map(|m| m.limit_v),
+            rotor_kg_m2: config.bodies.rotor_kg_m2,
             wear: *wear,
             cable_rest_rad,
             state: JointState { angle_rad: rest, rate_rad_s: PanTilt::default() },
@@ -128,6 +133,7 @@ impl Plant {
             push_nm: PanTilt::default(),
             stops: None,
             supply_left: 1.0,
+            gains: PanTilt::new(Gain::FULL, Gain::FULL),
             current_nm: PanTilt::default(),
             time_s: 0.0,
             late_s: 0.0,
@@ -195,6 +201,24 @@ impl Plant {
         self.encoders[joint].slips(self.state.angle_rad[joint], share);
     }
 
+    /// A joint's belt jumps teeth from now on. Encoders at the motors do not see that, those at the joints do. Nothing happens to a head whose
+    /// rotors have no inertia: a belt needs some on both sides.
+    pub fn loosen_belt(&mut self, joint: Joint, belt: LooseBelt) {
+        if self.rotor_kg_m2.pan.min(self.rotor_kg_m2.tilt) <= 0.0 {
+            return;
+        }
+        let limit_nm = self.limit_v[joint] * self.torque_nm_per_v[joint];
+        let mut belted = self.mechanism.on_belts(&self.state, self.rotor_kg_m2);
+        belted.loosen(joint, Teeth::new(belt, limit_nm));
+        let encoders_at_motors = self.wear.encoders_at_motors;
+        self.mechanism = Mechanism::Belted { belted, encoders_at_motors };
+    }
+
+    /// A joint's amplifier weakens from now on.
+    pub fn weaken(&mut self, joint: Joint, weakening: Weakening) {
+        self.gains[joint].weaken(weakening);
+    }
+
     /// What the motors' currents make at the joints now, N m.
     pub const fn motor_nm(&self) -> PanTilt<f64> {
         self.current_nm
@@ -251,7 +275,8 @@ impl Plant {
         let ripple = self.wear.supply_ripple * sin(std::f64::consts::TAU * SUPPLY_HZ * self.time_s);
         let supply = self.supply_left * (1.0 + ripple);
         let own = self.state.rate_rad_s.map(|rate| self.wear.back_emf_nm_s_per_rad * rate);
-        let there = PanTilt::from_fn(|j| supply * asked_nm[j] - own[j]);
+        let gains = PanTilt::from_fn(|j| self.gains[j].after(length_s));
+        let there = PanTilt::from_fn(|j| gains[j] * (supply * asked_nm[j]) - own[j]);
         let lag_s = self.wear.current_lag_s;
         if lag_s == 0.0 {
             self.current_nm = there;
@@ -313,6 +338,18 @@ impl Mechanism {
                 *seen = if *encoders_at_motors { belted.rotors() } else { *belted.joints() };
                 belted.joints().angle_rad
             }
+        }
+    }
+
+    /// The same on its belts: joints that are one with their rotors on stiff ones.
+    fn on_belts(&self, state: &JointState, rotor_kg_m2: PanTilt<f64>) -> Belted {
+        match *self {
+            Self::Rigid(stepper) => {
+                let (lumped, friction) = stepper.parts();
+                let belted = Belted::new(lumped, rotor_kg_m2, friction, STIFF_BELT, state.angle_rad);
+                belted.turning(state.rate_rad_s)
+            }
+            Self::Belted { belted, .. } => belted,
         }
     }
 }

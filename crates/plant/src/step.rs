@@ -29,6 +29,11 @@ impl Stepper {
         Self { lumped, friction }
     }
 
+    /// What it steps.
+    pub(crate) const fn parts(&self) -> (Lumped, PanTilt<WornFriction>) {
+        (self.lumped, self.friction)
+    }
+
     /// One step of `step_s` under constant torques, N m at the joints.
     #[inline]
     pub fn step(&self, state: &mut JointState, torque_nm: PanTilt<f64>, step_s: f64) {

@@ -50,4 +50,5 @@ pub use spread::Spread;
 pub use standing::{Standing, first_standing};
 pub use step::{Push, StepResponse, follow_array, push_response, step_response, step_response_by};
 pub use tracelight_control::{Feedforward, LONGEST_INTERVAL_TICKS};
+pub use tracelight_plant::{LooseBelt, Weakening};
 pub use trouble::{EyeTrouble, Trouble};

@@ -210,6 +210,8 @@ impl SimulatedRig {
             Trouble::EncoderNoise(j, share) => self.lines[j].noise = share,
             Trouble::EncoderSlip(j, share) => self.plant.slip_disc(j, share),
             Trouble::EdgesMissed(j, share) => self.lines[j].miss(share),
+            Trouble::BeltSkip(j, belt) => self.plant.loosen_belt(j, belt),
+            Trouble::AmplifierWeakens(j, weakening) => self.plant.weaken(j, weakening),
             Trouble::StampGarbled(j) => self.lines[j].garbled = true,
             Trouble::LaserStuck => self.plant.stick_laser(),
             Trouble::Bump(by_rad) => self.plant.bump(by_rad),

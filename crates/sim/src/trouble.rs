@@ -1,3 +1,4 @@
+use tracelight_plant::{LooseBelt, Weakening};
 use tracelight_rig::{Input, InputState, Joint, Measurement, PanTilt};
 
 /// What can go wrong with a rig.
@@ -17,6 +18,10 @@ pub enum Trouble {
     EncoderSlip(Joint, f64),
     /// An encoder's counter takes that share of the edges its disc shows.
     EdgesMissed(Joint, f64),
+    /// A joint's belt jumps teeth where it carries too much.
+    BeltSkip(Joint, LooseBelt),
+    /// A joint's amplifier gives less and less torque for a volt.
+    AmplifierWeakens(Joint, Weakening),
     /// An encoder's stamps are no numbers.
     StampGarbled(Joint),
     /// The laser's relay stays as it is; its second switch, the enable, goes on working.

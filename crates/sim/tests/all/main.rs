@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
 #![allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")]
 
+mod amplifiers;
+mod belts;
 mod by_hand;
 mod closed_loop;
 mod disturbances;
@@ -16,4 +18,6 @@ mod segments;
 mod shapes;
 mod slips;
 mod standing;
+mod sweep;
 mod tracking;
+mod troubled;

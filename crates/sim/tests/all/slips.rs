@@ -11,38 +11,11 @@ use std::ops::ControlFlow;
 
 use tracelight_rig::{Fault, Joint, Phase};
 use tracelight_sim::{RigConfig, SimulatedRig, Spread, Tick, Trouble, run};
-use tracelight_trajectory::Plan;
 
-use crate::shapes::{POSE, circle, lit_ticks, off_mm, plan_of, star};
+use crate::shapes::{POSE, circle, lit_ticks, plan_of, star};
+use crate::troubled::run_with;
 
-/// Light further off its point than that is wrong, mm.
-const WRONG_MM: f64 = 3.0;
 const MOMENTS: u64 = 6;
-
-/// How a run went.
-struct Outcome {
-    finished: bool,
-    /// Light off its point at most, mm.
-    furthest_mm: f64,
-    /// Ticks of wrong light.
-    wrong_ticks: usize,
-}
-
-fn run_with(plan: &Plan, seed: u64, when: u32, trouble: Trouble) -> Outcome {
-    let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, seed);
-    let ran = run(&mut rig, plan, false, |rig, tick| {
-        if tick.telemetry.plan_tick == when {
-            rig.suffer(trouble);
-        }
-        ControlFlow::Continue(())
-    });
-    let lit = || ran.ticks.iter().filter(|t| t.light).map(off_mm);
-    Outcome {
-        finished: ran.is_done(),
-        furthest_mm: lit().fold(0.0, f64::max),
-        wrong_ticks: lit().filter(|&off| off > WRONG_MM).count(),
-    }
-}
 
 /// The worst of all moments, both joints and two shapes: light off its point, mm; and of those that finished as if nothing were, wrong
 /// ticks.
@@ -55,7 +28,7 @@ fn worst(trouble: impl Fn(Joint) -> Trouble) -> (f64, usize) {
         for moment in 0..MOMENTS {
             let when = lit[lit.len() * moment as usize / MOMENTS as usize + 17] as u32;
             for joint in Joint::BOTH {
-                let one = run_with(&plan, moment, when, trouble(joint));
+                let one = run_with(&config, &plan, moment, when, trouble(joint));
                 furthest_mm = furthest_mm.max(one.furthest_mm);
                 unseen = unseen.max(if one.finished { one.wrong_ticks } else { 0 });
             }

@@ -29,6 +29,21 @@ pub(crate) fn star(radius: f64) -> Path {
     Path::polyline(&(0..10).map(point).collect::<Vec<_>>(), true).unwrap()
 }
 
+/// A child's house: walls, roof, door and two windows, dark moves between them.
+pub(crate) fn house() -> Vec<Path> {
+    let rectangle =
+        |left, bottom, right, top| (vec![(left, bottom), (right, bottom), (right, top), (left, top)], true);
+    let roof = (vec![(-0.22, 0.1), (0.0, 0.25), (0.22, 0.1)], false);
+    let door = (vec![(-0.04, -0.15), (-0.04, 0.0), (0.05, 0.0), (0.05, -0.15)], false);
+    let walls = rectangle(-0.2, -0.15, 0.2, 0.1);
+    let (right, left) = (rectangle(0.09, -0.04, 0.15, 0.03), rectangle(-0.15, -0.04, -0.09, 0.03));
+    let line = |(corners, closed): (Vec<(f64, f64)>, bool)| {
+        let corners: Vec<Point> = corners.into_iter().map(|(x, y)| Point::new(x, y)).collect();
+        Path::polyline(&corners, closed).unwrap()
+    };
+    [walls, roof, door, right, left].map(line).to_vec()
+}
+
 /// A level line at a height: the hardest for tilt, which creeps through a reversal on it.
 pub(crate) fn line(height: f64) -> Path {
     Path::polyline(&[Point::new(-0.2, height), Point::new(0.2, height)], false).unwrap()
@@ -38,7 +53,16 @@ pub(crate) fn plan_of(config: &RigConfig, path: Path) -> Plan {
     plan_at(config, path, LitSpeed::Fastest)
 }
 
+/// A plan of several strokes, in this order.
+pub(crate) fn plan_of_all(config: &RigConfig, paths: Vec<Path>) -> Plan {
+    plan_paths(config, paths, LitSpeed::Fastest)
+}
+
 pub(crate) fn plan_at(config: &RigConfig, path: Path, lit_speed: LitSpeed) -> Plan {
+    plan_paths(config, vec![path], lit_speed)
+}
+
+fn plan_paths(config: &RigConfig, paths: Vec<Path>, lit_speed: LitSpeed) -> Plan {
     let request = PlanRequest {
         speed_m_s: SPEED_M_S,
         lit_speed,
@@ -48,7 +72,7 @@ pub(crate) fn plan_at(config: &RigConfig, path: Path, lit_speed: LitSpeed) -> Pl
         tolerance_m: config.control.tolerance_m,
         corner_m: 0.0,
     };
-    let drawing = Drawing { strokes: vec![Stroke::new(path)] };
+    let drawing = Drawing { strokes: paths.into_iter().map(Stroke::new).collect() };
     plan(&drawing, &config.machine(POSE), &request).unwrap()
 }
 
