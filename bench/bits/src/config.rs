@@ -25,10 +25,13 @@ pub fn report() -> Config {
         hold_limit_ticks: 3000,
         laser_on_ticks: 5,
         laser_off_ticks: 3,
+        enable_on_ticks: 0,
+        enable_off_ticks: 0,
         host_silence_ticks: 50,
         standing_ticks: 1000,
         standing_radius_rad: 0.0014771085,
         tolerance_limit_rad: 0.1,
+        park_rad: None,
     }
 }
 

@@ -169,14 +169,14 @@ faults! {
         words: "A motor was driven harder than it can be cooled: let it rest. control.motor_continuous and control.motor_heating in the rig file set the bound.",
     }
     LaserStuck = 11 {
-        what: "The laser does not follow its gate.",
+        what: "A switch of the laser does not open.",
         code: "laser-stuck",
-        seen: "the laser is watched, and is not what its gate says after the relay's delay",
+        seen: "the gate's switch is watched, and is closed, or light is seen, after a switch that was told to open must have; at any time, armed or not",
         soon: Soon::Ticks(3),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
-        words: "The laser did not follow its gate: a relay's contact sticks or its coil is not driven. Switch the laser's supply off by hand.",
+        words: "A switch of the laser did not open, and nobody can be sure that the other one holds: pull the laser's plug, then look for a relay whose contact sticks. safety.park_pan and park_tilt in the rig file say where the head turns then. Before it lights again, both switches are tried in the dark.",
     }
     HostLost = 12 {
         what: "The host stopped saying that it is there.",
@@ -298,6 +298,16 @@ faults! {
         clears: Clears::FoundAndArmed,
         words: "Before the first light, an encoder showed more or less of a motion than its motor must have made. Check model.encoder.counts_per_rev (half, double and four times are the usual slips), then the motor's torque and the joint's inertia: tracelight lab identify finds them. control.scale_tolerance sets the bound.",
     }
+    LaserDark = 25 {
+        what: "There is no light where there should be.",
+        code: "laser-dark",
+        seen: "the gate's switch is watched, and is open, or light is watched, and none is seen, after all that was told to close must have",
+        soon: Soon::Ticks(3),
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "No light came where it was wanted, or the gate's switch did not close: see whether the laser has its supply and the relay's coil is driven, and whether the photodiode that watches the light is covered or broken: nobody would see light that stays on.",
+    }
 }
 
 /// Of which faults something is true, a bit each by number: a board asks without keeping the words of the table.
@@ -384,6 +394,7 @@ mod tests {
         (21, "tick-late"),
         (22, "light-stood"),
         (23, "encoder-scale"),
+        (25, "laser-dark"),
     ];
 
     #[test]

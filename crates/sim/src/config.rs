@@ -24,7 +24,7 @@ pub struct RigConfig {
     pub control: ControlSettings,
     /// How the planner is set.
     pub motion: MotionSettings,
-    /// Its laser, and how long that may stand.
+    /// Its laser, how long that may stand, and where it is parked.
     pub light: LightSettings,
 }
 

@@ -127,7 +127,12 @@ impl SimulatedRig {
     fn of(config: &RigConfig, pose: HeadPose, plant: Plant, seed: u64) -> Self {
         let controller = Controller::new(config.control_config());
         // homed: count 0 on both
-        let sensed = Sensed { inputs: plant.inputs(), ..Sensed::default() };
+        let sensed = Sensed {
+            laser_on: Some(plant.laser_on()),
+            light: Some(plant.light()),
+            inputs: plant.inputs(),
+            ..Sensed::default()
+        };
         Self {
             state: controller.start_homed(&sensed),
             controller,
@@ -223,6 +228,8 @@ impl SimulatedRig {
             Trouble::EdgesMissed(j, share) => self.lines[j].miss(share),
             Trouble::StampGarbled(j) => self.lines[j].garbled = true,
             Trouble::LaserStuck => self.plant.stick_laser(),
+            Trouble::LaserMended => self.plant.free_laser(),
+            Trouble::EnableStuck => self.plant.stick_enable(),
             Trouble::Bump(by_rad) => self.bump = Some(Bump::new(by_rad)),
             Trouble::PowerLoss => self.power_up(),
             Trouble::Input(input, state) => self.plant.set_input(input, state),
@@ -312,7 +319,7 @@ pub fn arm(rig: &mut impl Simulated) -> bool {
 /// Disarms a rig and lets ticks pass until its gate is shut, one at most, which are kept. Whoever stops a run does so before he goes.
 pub fn darken<R: Simulated>(rig: &mut R, mut keep: impl FnMut(Tick)) {
     let _ = rig.send(Command::Disarm);
-    if rig.told().actuation.gate {
+    if rig.told().actuation.lights() {
         keep(rig.step());
     }
 }

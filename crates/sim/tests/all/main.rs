@@ -15,4 +15,5 @@ mod segments;
 mod shapes;
 mod slips;
 mod standing;
+mod switches;
 mod tracking;
