@@ -25,11 +25,14 @@ pub fn report() -> Config {
         hold_limit_ticks: 3000,
         laser_on_ticks: 5,
         laser_off_ticks: 3,
+        enable_on_ticks: 0,
+        enable_off_ticks: 0,
         host_silence_ticks: 50,
         standing_ticks: 1000,
         standing_radius_rad: 0.0014771085,
         tolerance_limit_rad: 0.1,
         foot: Foot { jolt_rad_s: 0.035, turned_rad: 3e-4, sway: None },
+        park_rad: None,
     }
 }
 

@@ -17,6 +17,10 @@ pub struct Config {
     pub laser_on_ticks: u32,
     /// From the gate's fall to dark, ticks.
     pub laser_off_ticks: u32,
+    /// The same of the laser's second switch, from the enable's rise,
+    pub enable_on_ticks: u32,
+    /// and from its fall.
+    pub enable_off_ticks: u32,
     /// Ticks a host that has said it is there may be silent.
     pub host_silence_ticks: u32,
     /// How long light may stand in one place, ticks.
@@ -27,6 +31,8 @@ pub struct Config {
     pub tolerance_limit_rad: f32,
     /// What the head stands on.
     pub foot: Foot,
+    /// Where the joints go, rad, when a switch of the laser does not open; `None` where they stay as with other faults.
+    pub park_rad: Option<PanTilt<f32>>,
 }
 
 impl Config {

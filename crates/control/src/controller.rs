@@ -6,7 +6,7 @@ use crate::config::Config;
 use crate::creep::Pace;
 use crate::estimate::Estimate;
 use crate::light_budget::{LightBudget, longest_dot_ticks};
-use crate::player::{Played, Player};
+use crate::player::{Played, Player, at_rest};
 use crate::return_path::ReturnPath;
 use crate::servo::{Reference, Servo};
 use crate::supervisor::{Clock, Situation, Supervisor, rests};
@@ -194,9 +194,7 @@ impl Controller {
         // last of all: whatever this tick has shown is known
         let mut darkness = state.supervisor.darkness(&self.config, &situation);
         self.keep_budget(state, &estimates, &mut darkness);
-        let gate = darkness.is_empty();
-        let enable = state.supervisor.may_light(state.watch.is_steady());
-        state.watch.light(gate);
+        let actuation = self.actuation(state, command_v, darkness.is_empty());
         let telemetry = Telemetry {
             tick: state.tick,
             plan_tick: state.player.plan_tick(),
@@ -208,7 +206,7 @@ impl Controller {
             acceleration_rad_s2: estimates.map(|estimate| estimate.acceleration_rad_s2),
             lost_counts: estimates.map(|estimate| estimate.lost_counts),
             foot_turned_rad: state.watch.foot_turned_rad(),
-            actuation: Actuation { command_v, gate, enable },
+            actuation,
             darkness,
             homed: state.supervisor.homed,
             phase: state.supervisor.phase,
@@ -220,6 +218,17 @@ impl Controller {
         telemetry
     }
 
+    /// Volts, and what the laser's switches are told; `lit` is whether nothing speaks against light.
+    fn actuation(&self, state: &mut State, command_v: PanTilt<f32>, lit: bool) -> Actuation {
+        let State { supervisor, watch, sensed, player, .. } = state;
+        let at = (&*sensed, player.has_light());
+        let (gate, enable) =
+            supervisor.drive_switches(&self.config, &watch.laser, at, (lit, watch.is_steady()));
+        let actuation = Actuation { command_v, gate, enable };
+        watch.laser.tell(&actuation);
+        actuation
+    }
+
     fn observe(&self, state: &mut State, sensed: &Sensed) {
         state.sensed = *sensed;
         // before all that may come of them: a motor without a supply looks like a dead encoder
@@ -229,11 +238,15 @@ impl Controller {
         }
         state.servo.observe(&self.config, &sensed.encoders);
         let known_rad = state.supervisor.homed.then(|| state.servo.position_rad());
-        state.budget.tick(&self.config, known_rad, state.watch.gate(), sensed.laser_on);
+        let laser = &state.watch.laser;
+        let seen = laser.seen_light(&self.config, sensed);
+        state.budget.tick(&self.config, known_rad, laser.lights(), seen);
+        let laser = laser.sense(&self.config, sensed);
         if state.budget.is_asked_too_long() {
             state.supervisor.trip(Fault::LightStood);
         }
-        if let Some(fault) = state.watch.sense(&self.config, &state.servo, sensed) {
+        // whatever else is wrong, a switch that is stuck is known
+        for fault in state.watch.sense(&self.config, &state.servo, sensed).into_iter().chain(laser) {
             // who knows nothing of where it stands has nothing to lose
             if fault != Fault::Bumped || state.supervisor.homed {
                 state.supervisor.trip(fault);
@@ -265,6 +278,7 @@ impl Controller {
             doubtful: state.watch.is_doubtful(),
             tested: state.watch.is_tested(),
             steady: state.watch.is_steady(),
+            tried: state.supervisor.are_tried(&state.sensed, state.player.has_light()),
             host_silent: !state.watch.hears_host(&self.config),
             light_due: state.player.light_is_due(self.config.laser_on_ticks),
             begun: state.player.has_begun(),
@@ -291,7 +305,7 @@ impl Controller {
     }
 
     /// Where the loop is to go now and half a tick later: along the plan, or, when its clock stands, gently back to
-    /// where it stands.
+    /// where it stands; with a laser that does not go dark, to where it is to be parked.
     fn reference(&self, state: &mut State, played: &Played) -> Reference {
         let stands = match state.supervisor.phase {
             Phase::Holding | Phase::Testing | Phase::Faulted => true,
@@ -314,7 +328,9 @@ impl Controller {
             state.servo.forget();
             ReturnPath::from(state.servo.estimates())
         });
-        let now = way.tick(&self.config, &played.setpoint);
+        let park = self.config.park_rad.filter(|_| state.supervisor.must_park());
+        let goal = park.map_or(played.setpoint, |park| park.map(at_rest));
+        let now = way.tick(&self.config, &goal);
         state.way_back = Some(way);
         Reference { now, ahead: now }
     }

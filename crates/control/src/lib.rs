@@ -36,6 +36,7 @@ mod return_path;
 mod servo;
 mod squares;
 mod supervisor;
+mod switch_test;
 mod test_move;
 mod watch;
 

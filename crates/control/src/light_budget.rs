@@ -89,20 +89,14 @@ impl LightBudget {
         }
     }
 
-    /// One tick passes. `gate` is what the laser was told in the last one, `laser_on` what is seen of it; the joints are at `angle_rad`,
+    /// One tick passes. `gate` is whether light was wanted in the last one, `seen` whether any is seen; the joints are at `angle_rad`,
     /// `None` where nobody knows.
-    pub fn tick(
-        &mut self,
-        config: &Config,
-        angle_rad: Option<PanTilt<f32>>,
-        gate: bool,
-        laser_on: Option<bool>,
-    ) {
+    pub fn tick(&mut self, config: &Config, angle_rad: Option<PanTilt<f32>>, gate: bool, seen: Option<bool>) {
         self.now = self.now.wrapping_add(1);
         self.shut_ticks = if gate { 0 } else { self.shut_ticks.saturating_add(1) };
-        // a relay may close at once and open late; where it is watched, the worse of the two counts
+        // a relay may close at once and open late; where light is seen, the worse of the two counts
         let may_shine = self.shut_ticks <= config.laser_off_ticks + SLACK_TICKS;
-        let shines = may_shine || laser_on == Some(true);
+        let shines = may_shine || seen == Some(true);
         if angle_rad.is_none() || !self.recent.is_dark() {
             self.recent.tick(shines && angle_rad.is_none());
         }

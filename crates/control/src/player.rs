@@ -19,6 +19,8 @@ pub(crate) struct Player {
     queue: [Option<Segment>; QUEUE_LENGTH],
     head: usize,
     length: usize,
+    /// How many of them want light.
+    lit: usize,
     finished: bool,
     /// Plan time: whole ticks and a fraction.
     tick: u32,
@@ -51,6 +53,7 @@ impl Player {
             queue: [None; QUEUE_LENGTH],
             head: 0,
             length: 0,
+            lit: 0,
             finished: false,
             tick: 0,
             fraction: 0.0,
@@ -81,6 +84,7 @@ impl Player {
         }
         self.queue[(self.head + self.length) % QUEUE_LENGTH] = Some(segment);
         self.length += 1;
+        self.lit += usize::from(segment.gate);
         self.watch_gate();
         let end = segment.sample(f32::from(segment.ticks)).map(|s| s.position_rad);
         self.end = Some((segment.end_tick(), end));
@@ -131,6 +135,11 @@ impl Player {
 
     pub(crate) const fn is_empty(&self) -> bool {
         self.length == 0
+    }
+
+    /// Whether anything that is queued wants light.
+    pub(crate) const fn has_light(&self) -> bool {
+        self.lit > 0
     }
 
     /// Setpoints at the plan's present time.
@@ -204,6 +213,7 @@ impl Player {
             self.queue[self.head % QUEUE_LENGTH] = None;
             self.head = (self.head + 1) % QUEUE_LENGTH;
             self.length -= 1;
+            self.lit -= usize::from(segment.gate);
         }
     }
 
@@ -224,7 +234,8 @@ impl Player {
     }
 }
 
-fn at_rest(position_rad: f32) -> Setpoint {
+/// A joint that rests at an angle, rad.
+pub(crate) fn at_rest(position_rad: f32) -> Setpoint {
     Setpoint { position_rad, ..Setpoint::default() }
 }
 

@@ -1,6 +1,8 @@
-use tracelight_rig::{Darkness, DarknessSet, Fault, PanTilt, Phase, Segment, Setpoint};
+use tracelight_rig::{Darkness, DarknessSet, Fault, PanTilt, Phase, Segment, Sensed, Setpoint};
 
 use crate::config::Config;
+use crate::switch_test::SwitchTest;
+use crate::watch::LaserWatch;
 
 /// Share of the tolerance within which a head that left its stroke counts as back on it.
 const RETURN_SHARE: f32 = 0.25;
@@ -30,6 +32,8 @@ pub(crate) struct Supervisor {
     pub(crate) fault_number: u32,
     /// The kinds that came since somebody armed, a bit each.
     kinds: u64,
+    /// Whether the laser's switches were seen to do what they are told, since power-up and since they did not.
+    switches: SwitchTest,
     held_ticks: u32,
     /// Since the last hold.
     calm_ticks: u32,
@@ -55,6 +59,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) tested: bool,
     /// What the head stands on stands, as far as a gyroscope tells.
     pub(crate) steady: bool,
+    /// The laser's switches were tried, or cannot be, or need not yet.
+    pub(crate) tried: bool,
     /// No host has said of late that it is there.
     pub(crate) host_silent: bool,
     /// What the gate lets through now falls where the plan wants light, however slowly its clock runs.
@@ -90,14 +96,17 @@ impl Supervisor {
         self.fault = self.fault.or(Some(fault));
         self.blind |= fault.leaves_motors_blind();
         self.homed &= !fault.loses_counts();
+        if matches!(fault, Fault::LaserStuck | Fault::LaserDark) {
+            self.switches = SwitchTest::default();
+        }
         self.phase = Phase::Faulted;
     }
 
     /// Allows light; a fault is forgotten, but for its number and for counts that it lost.
     pub(crate) fn arm(&mut self) {
         if matches!(self.phase, Phase::Dark | Phase::Done | Phase::Faulted) {
-            let Self { homed, fault_number, .. } = *self;
-            *self = Self { phase: Phase::Armed, homed, fault_number, ..Self::default() };
+            let Self { homed, fault_number, switches, .. } = *self;
+            *self = Self { phase: Phase::Armed, homed, fault_number, switches, ..Self::default() };
         }
     }
 
@@ -183,12 +192,13 @@ impl Supervisor {
         self.tests = if at.tested { 0 } else { self.tests };
         self.held_ticks = self.held_ticks.saturating_add(1);
         self.settled_ticks = if returned(at) { self.settled_ticks + 1 } else { 0 };
-        if self.settled_ticks >= RETURN_TICKS && at.tested {
+        let is_back = self.settled_ticks >= RETURN_TICKS;
+        if is_back && at.tested && at.tried {
             self.phase = Phase::Tracing;
-        } else if self.settled_ticks >= RETURN_TICKS && self.tests < MOST_TESTS {
+        } else if is_back && !at.tested && self.tests < MOST_TESTS {
             self.phase = Phase::Testing;
             self.tests += 1;
-        } else if self.settled_ticks >= RETURN_TICKS || self.held_ticks > config.hold_limit_ticks {
+        } else if is_back && !at.tested || self.held_ticks > config.hold_limit_ticks {
             self.trip(Fault::HoldTimedOut);
         }
     }
@@ -198,6 +208,38 @@ impl Supervisor {
         let armed = matches!(self.phase, Phase::Armed | Phase::Tracing | Phase::Holding);
         let may_point = self.phase == Phase::Dark && self.pointing_ticks > 0;
         self.fault.is_none() && steady && (armed || may_point)
+    }
+
+    /// What both switches of the laser are told in this tick, the gate's first, of which `lit` says whether it is to be lit. Armed, both stay open
+    /// until a plan has light to come, and are tried then; whoever asks for a dot of a head that was never armed looks himself.
+    pub(crate) fn drive_switches(
+        &mut self,
+        config: &Config,
+        watch: &LaserWatch,
+        (sensed, light_queued): (&Sensed, bool),
+        (lit, steady): (bool, bool),
+    ) -> (bool, bool) {
+        let may_light = self.may_light(steady);
+        if self.phase != Phase::Dark && !self.switches.is_over(sensed) {
+            // light that goes through a switch that is stuck falls where that is known
+            if may_light && self.homed && light_queued {
+                return self.switches.tick(config, watch);
+            }
+            self.switches.pause();
+            return (false, false);
+        }
+        self.switches.pause();
+        (lit, may_light)
+    }
+
+    /// Whether both switches were seen to do what they are told, or nothing sees it, or no light is to go through them.
+    pub(crate) fn are_tried(&self, sensed: &Sensed, light_queued: bool) -> bool {
+        self.switches.is_over(sensed) || !self.homed || !light_queued
+    }
+
+    /// Whether a switch of the laser did not open, and it is known where the head is: nobody knows whether the other one holds.
+    pub(crate) const fn must_park(&self) -> bool {
+        self.homed && self.kinds & (1 << Fault::LaserStuck.number()) != 0
     }
 
     /// Every reason against light in this tick. The gate is open only if there is none.
@@ -215,6 +257,7 @@ impl Supervisor {
         reasons.insert_if(strayed(at), Darkness::SpotError);
         // a dot may be let out by a head that was never moved: whoever asks for it looks where it is
         reasons.insert_if(!(at.tested || points), Darkness::Untested);
+        reasons.insert_if(!at.tried && self.phase != Phase::Dark, Darkness::Untested);
         reasons.insert_if(at.doubtful, Darkness::Doubtful);
         reasons.insert_if(!at.steady, Darkness::Jolted);
         let held = matches!(self.phase, Phase::Holding | Phase::Testing);
@@ -250,12 +293,13 @@ fn strayed(at: &Situation<'_>) -> bool {
 }
 
 /// Whether the plan's clock must stand until the head is back: where there is to be light, off the stroke or in doubt of
-/// an encoder. In the dark nothing is lost, and to stop a fast move and begin it again halfway takes more torque than to
+/// an encoder or the laser's switches. In the dark nothing is lost, and to stop a fast move and begin it again halfway takes more torque than to
 /// go on.
 fn must_hold(at: &Situation<'_>) -> bool {
     let lit = at.segment.is_some_and(|segment| segment.gate);
     let lost = exceeds(spot_error(at), LOST_TOLERANCES);
-    (lit && (strayed(at) || at.doubtful || !at.tested || !at.steady)) || lost
+    let unsure = at.doubtful || !at.tested || !at.tried || !at.steady;
+    (lit && (strayed(at) || unsure)) || lost
 }
 
 /// Whether a value is beyond its bound; what is not a number is.

@@ -96,7 +96,7 @@ fn trial(driving: &Driving, plan: &Plan, laps: u32, seed: u64) -> Trial {
 
 /// Ticks in which a head that has lit something held its plan's clock, and was dark.
 fn held_ticks(run: &Run) -> usize {
-    let lit = run.ticks.iter().skip_while(|tick| !tick.telemetry.actuation.gate);
+    let lit = run.ticks.iter().skip_while(|tick| !tick.telemetry.actuation.lights());
     lit.filter(|tick| matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing)).count()
 }
 

@@ -261,7 +261,7 @@ impl Follower {
         if telemetry.phase != Phase::Tracing {
             return None;
         }
-        if !telemetry.actuation.gate {
+        if !telemetry.actuation.lights() {
             return None;
         }
         let off_rad = strayed_rad(telemetry);

@@ -54,7 +54,7 @@ impl History {
         if self.ticks.is_empty() {
             self.first = telemetry.tick;
         }
-        self.ticks.push((telemetry.position_rad.map(f64::from), telemetry.actuation.gate));
+        self.ticks.push((telemetry.position_rad.map(f64::from), telemetry.actuation.lights()));
     }
 
     fn between(&self, from_s: f64, until_s: f64) -> Option<&[(PanTilt<f64>, bool)]> {

@@ -112,7 +112,7 @@ mod tests {
 
     impl Keep for Until<'_> {
         fn tick(&mut self, _: &Plan, tick: &Tick) -> Result<(), Failure> {
-            self.gates.push(tick.telemetry.actuation.gate);
+            self.gates.push(tick.telemetry.actuation.lights());
             match self.stop {
                 _ if tick.telemetry.tick != self.tick => Ok(()),
                 Some(stop) => {
@@ -158,8 +158,8 @@ mod tests {
                         assert_eq!(rig.told().tick, tick + 1, "a tick more, and its gate is shut");
                     }
                 }
-                assert!(!rig.told().actuation.gate);
-                assert!((0..300).all(|_| !rig.step().telemetry.actuation.gate), "{tick}: open again");
+                assert!(!rig.told().actuation.lights());
+                assert!((0..300).all(|_| !rig.step().telemetry.actuation.lights()), "{tick}: open again");
             }
         }
     }

@@ -234,7 +234,7 @@ impl Watched<'_> {
             if tick.telemetry.phase == Phase::Done {
                 return Ended::Done;
             }
-            lit |= tick.telemetry.actuation.gate;
+            lit |= tick.telemetry.actuation.lights();
             let holds = matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
             // before the first light it may only wait until its encoders were seen to follow its motors
             let waits = !lit && tick.telemetry.darkness.contains(Darkness::Untested);
@@ -349,7 +349,7 @@ impl Watched<'_> {
     /// Nobody leaves a gate open.
     fn darken(&mut self) {
         let _ = self.room.send(Command::Disarm);
-        if self.room.told().actuation.gate {
+        if self.room.told().actuation.lights() {
             self.step(None);
         }
     }

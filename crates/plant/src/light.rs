@@ -20,9 +20,9 @@ impl Relay {
         self.closed
     }
 
-    /// The contact stays as it is, welded or worn out.
-    pub(crate) const fn stick(&mut self) {
-        self.stuck = true;
+    /// The contact stays as it is, welded or worn out; or it does not any more.
+    pub(crate) const fn stick(&mut self, stuck: bool) {
+        self.stuck = stuck;
     }
 
     /// Holds the coil for `step_s`.

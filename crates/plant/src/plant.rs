@@ -193,7 +193,22 @@ impl Plant {
 
     /// The laser's relay stays as it is from now on, whatever the gate.
     pub const fn stick_laser(&mut self) {
-        self.relay.stick();
+        self.relay.stick(true);
+    }
+
+    /// Somebody put in another relay.
+    pub const fn free_laser(&mut self) {
+        self.relay.stick(false);
+    }
+
+    /// The laser's second switch stays as it is from now on, whatever the enable.
+    pub const fn stick_enable(&mut self) {
+        self.enable.stick(true);
+    }
+
+    /// Whether the relay that the gate drives is closed.
+    pub const fn laser_on(&self) -> bool {
+        self.relay.is_closed()
     }
 
     /// The disc of a joint's encoder slips from now on: it turns by that share of what it sits on.
@@ -373,7 +388,8 @@ impl Head for Plant {
         }
         Sensed {
             encoders: self.encoders.map(|e| e.measurement()),
-            laser_on: Some(self.relay.is_closed()),
+            laser_on: Some(self.laser_on()),
+            light: Some(self.light()),
             inputs: self.inputs,
             foot_rad_s: self.foot.read_rad_s(),
             lasted_ticks: Some((lasts_s / TICK_F64_S) as f32),

@@ -77,7 +77,7 @@ fn row(line: &mut Vec<u8>, sample: &Sample<'_>) {
     push_integer(line, telemetry.measured.tilt.count.into());
     push_fixed(line, telemetry.actuation.command_v.pan.into(), 4);
     push_fixed(line, telemetry.actuation.command_v.tilt.into(), 4);
-    push_flag(line, telemetry.actuation.gate);
+    push_flag(line, telemetry.actuation.lights());
     push_fixed(line, sample.asked().x, 7);
     push_fixed(line, sample.asked().y, 7);
     push_optional(line, sample.error_mm(), 4);

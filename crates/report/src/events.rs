@@ -64,7 +64,7 @@ pub(crate) enum Change {
 impl Watch {
     /// Takes the next tick.
     pub(crate) fn push(&mut self, telemetry: &Telemetry) -> Change {
-        self.lit |= telemetry.actuation.gate;
+        self.lit |= telemetry.actuation.lights();
         let dark = telemetry.darkness;
         self.waits |= dark.contains(Darkness::Untested) && !dark.contains(Darkness::Planned);
         self.waits &= !self.lit;
@@ -169,7 +169,9 @@ mod tests {
             &[&[Darkness::Planned], UNTESTED, &[Darkness::SpotError], &[Darkness::Holding]];
         let dark = |reasons: &[&[Darkness]]| {
             let mut run = run_of(reasons, usize::MAX);
-            run.ticks.iter_mut().for_each(|t| t.telemetry.actuation.gate = t.telemetry.darkness.is_empty());
+            for Telemetry { actuation, darkness, .. } in run.ticks.iter_mut().map(|t| &mut t.telemetry) {
+                (actuation.gate, actuation.enable) = (darkness.is_empty(), true);
+            }
             events(&run).len()
         };
         assert_eq!(dark(&[begun, &[&[]]].concat()), 0);

@@ -128,10 +128,10 @@ darknesses! {
         advice: "See whether the host runs and whether the connection holds. control.host_silence sets the bound.",
     }
     Untested = 12 {
-        what: "An encoder was not seen to follow its motor yet, or something spoke against it since: a little move in the dark is to tell.",
+        what: "An encoder was not seen to follow its motor yet, or something spoke against it since: a little move in the dark is to tell. Or the laser's two switches were not tried yet, where something watches them.",
         code: "untested",
-        words: "An encoder had not been seen to follow its motor, or something spoke against it since.",
-        advice: "Nothing, if it is rare: before the first light, and after a surprise such as a push, the head makes a little move in the dark and goes on. If it comes again and again, see encoder-slipping.",
+        words: "An encoder had not been seen to follow its motor, or something spoke against it since; or the laser's switches had not been tried.",
+        advice: "Nothing, if it is rare: before the first light the switches are tried in some hundredths of a second, and then as after a surprise such as a push, the head makes a little move in the dark and goes on. If it comes again and again, see encoder-slipping.",
     }
     Jolted = 13 {
         what: "What the head stands on turns, by the gyroscope that is fixed to it, or was not seen to stand still yet.",

@@ -17,8 +17,10 @@ pub struct Measurement {
 pub struct Sensed {
     /// Of each joint's encoder.
     pub encoders: PanTilt<Measurement>,
-    /// Whether the laser's switch that the gate drives is closed, where something watches it: a relay's second contact, a photodiode.
+    /// Whether the laser's switch that the gate drives is closed, where something watches it: a relay's second contact.
     pub laser_on: Option<bool>,
+    /// Whether light leaves the head, seen after both switches, where something sees it: a photodiode.
+    pub light: Option<bool>,
     /// What its safety inputs say, and which it has.
     pub inputs: Inputs,
     /// How fast what the head stands on turns about the head's x, y and z as it stands (ahead, left, up), rad/s: a gyroscope that is fixed to the foot;
@@ -28,7 +30,8 @@ pub struct Sensed {
     pub lasted_ticks: Option<f32>,
 }
 
-/// What the controller does to the motors and the laser in one tick.
+/// What the controller does to the motors and the laser in one tick. The laser shines through both switches: closed one by one, they are tried
+/// in the dark.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Actuation {
     /// Command at the amplifiers' inputs, V.
@@ -38,4 +41,11 @@ pub struct Actuation {
     /// Whether there may be light at all: a second switch, in series with the first (a key relay, the laser's supply, a shutter). It
     /// falls in the tick of every fault, so that a switch that is stuck is no way for light.
     pub enable: bool,
+}
+
+impl Actuation {
+    /// Whether light is wanted: both switches are driven on.
+    pub const fn lights(&self) -> bool {
+        self.gate && self.enable
+    }
 }

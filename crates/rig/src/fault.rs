@@ -169,14 +169,14 @@ faults! {
         words: "A motor was driven harder than it can be cooled: let it rest. control.motor_continuous and control.motor_heating in the rig file set the bound.",
     }
     LaserStuck = 11 {
-        what: "The laser does not follow its gate.",
+        what: "A switch of the laser does not open.",
         code: "laser-stuck",
-        seen: "the laser is watched, and is not what its gate says after the relay's delay",
+        seen: "the gate's switch is watched, and is closed, or light is seen, after a switch that was told to open must have; at any time, armed or not",
         soon: Soon::Ticks(3),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
-        words: "The laser did not follow its gate: a relay's contact sticks or its coil is not driven. Switch the laser's supply off by hand.",
+        words: "A switch of the laser did not open, and nobody can be sure that the other one holds: pull the laser's plug, then look for a relay whose contact sticks. safety.park_pan and park_tilt in the rig file say where the head turns then. Before it lights again, both switches are tried in the dark.",
     }
     HostLost = 12 {
         what: "The host stopped saying that it is there.",
@@ -301,12 +301,22 @@ faults! {
     Bumped = 24 {
         what: "Somebody bumped into what the head stands on, and it does not stand where it stood.",
         code: "bumped",
-        seen: "a gyroscope on the foot says that it has turned further than safety.turned, once it is still again; without one, a joint was thrown aside by half a count or more within some hundredths of a second and is no faster afterwards",
+        seen: "a gyroscope on the foot says that it has turned further than safety.turned, once it is still again; without one, a joint was thrown aside by one and a quarter counts or more within some hundredths of a second and is no faster afterwards",
         soon: Soon::Words("dark in the tick with a gyroscope, a fault 0.2 s after it is still; without one, 65 ms after the first surprise"),
         motors: Motors::Held,
         loses_counts: false,
         clears: Clears::Armed,
         words: "The head was bumped and does not stand where it stood, or nothing tells that it does: look where it points before it is armed again, or calibrate it anew; with a camera it is found again by itself. A gyroscope on the foot sees bumps that encoders do not feel.",
+    }
+    LaserDark = 25 {
+        what: "There is no light where there should be.",
+        code: "laser-dark",
+        seen: "the gate's switch is watched, and is open, or light is watched, and none is seen, after all that was told to close must have",
+        soon: Soon::Ticks(3),
+        motors: Motors::Held,
+        loses_counts: false,
+        clears: Clears::Armed,
+        words: "No light came where it was wanted, or the gate's switch did not close: see whether the laser has its supply and the relay's coil is driven, and whether the photodiode that watches the light is covered or broken: nobody would see light that stays on.",
     }
 }
 
@@ -395,6 +405,7 @@ mod tests {
         (22, "light-stood"),
         (23, "encoder-scale"),
         (24, "bumped"),
+        (25, "laser-dark"),
     ];
 
     #[test]

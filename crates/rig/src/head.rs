@@ -8,6 +8,8 @@ use crate::{Actuation, Command, Sensed, Telemetry};
 /// - take both encoders' counts at the same instant, and never wrap them within a job;
 /// - stamp an edge either always or never ([`Measurement::edge_age_ticks`](crate::Measurement::edge_age_ticks));
 /// - open both of the laser's switches and zero the amplifiers by themselves when the exchanges stop coming;
+/// - say what is seen of the laser's switch and of its light either always or never ([`Sensed::laser_on`], [`Sensed::light`]);
+/// - drive each of the laser's switches by its own command, whatever the other says;
 /// - tell nothing of an input that is not there ([`InputState::Absent`](crate::InputState::Absent)), and a line that is cut as open;
 /// - never fail: a dead encoder is a count that does not move, which is the controller's to notice.
 pub trait Head {

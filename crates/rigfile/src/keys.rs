@@ -8,6 +8,8 @@ use tracelight_units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_JERKS, ANGULAR_SPE
 pub(crate) enum Slot<T> {
     /// A quantity or a pure number.
     Real(fn(&mut T) -> &mut f64),
+    /// The same, which a rig need not have.
+    Maybe(fn(&mut T) -> &mut Option<f64>),
     /// A whole number.
     Count(fn(&mut T) -> &mut u32),
     /// Yes or no.

@@ -11,6 +11,7 @@ mod hand_tuned;
 pub mod head;
 mod keys;
 mod pages;
+mod park;
 mod rig;
 mod save;
 mod text;

@@ -12,6 +12,7 @@ use crate::caret::Mark;
 use crate::found::identified_keys;
 use crate::hand_tuned::rig_keys;
 use crate::keys::{Choice, Key, STANDING, Slot, model_keys};
+use crate::park::impossible_park;
 use crate::text::{Kind, text_of};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
@@ -67,7 +68,7 @@ pub fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
     if !entries.iter().any(|entry| entry.path == STANDING) {
         config.light.standing_s = LightSettings::usual_standing_s(config.light.power_w);
     }
-    if let Some(trouble) = impossible_laser(&config) {
+    if let Some(trouble) = impossible_laser(&config).or_else(|| impossible_park(&config)) {
         return Err(format!("{file}: {trouble}"));
     }
     for (half, model) in [("model", &config.model), ("truth", &config.truth.model)] {
@@ -84,7 +85,7 @@ pub fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
 /// A laser whose label does not tell of its power, or one that is not dark as soon as it must be.
 fn impossible_laser(config: &RigConfig) -> Option<String> {
     const SHORTEST_S: f64 = 0.01; // a dot that is light at all, and what a relay may take longer
-    let LightSettings { class, power_w, standing_s } = config.light;
+    let LightSettings { class, power_w, standing_s, .. } = config.light;
     if power_w > class.most_w() {
         return Some(format!(
             "[laser] power: {} mW is more than the {} mW of class {}: set laser.class to what its label says",
@@ -252,6 +253,7 @@ fn set<T>(key: &Key<T>, target: &mut T, entry: &Entry<'_>, place: &Mark<'_>) -> 
     }
     match key.slot {
         Slot::Real(field) => *field(target) = value,
+        Slot::Maybe(field) => *field(target) = Some(value),
         Slot::Count(field) if value.fract() == 0.0 => *field(target) = value as u32,
         Slot::Count(_) => return Err(complain("must be a whole number".into())),
         Slot::Flag(_) | Slot::Choice(_) => {}
@@ -323,18 +325,27 @@ fn section<T>(text: &mut String, prefix: &str, keys: &[Key<T>], from: &mut T) {
         *text += &format!("\n[{table}]\n");
         for key in keys.iter().filter(|k| table_of(k) == table) {
             let name = key.path.rsplit_once('.').map_or(key.path, |(_, name)| name);
-            *text += &format!("{:50} # {}\n", format!("{name} = {}", shown(key, from)), key.meaning);
+            let left_out = if is_absent(key, from) { "# " } else { "" };
+            *text +=
+                &format!("{:50} # {}\n", format!("{left_out}{name} = {}", shown(key, from)), key.meaning);
         }
     }
 }
 
-/// A value as it stands in a file: shortest digits that read back to the same bits.
+/// Whether a rig does not have what the key sets.
+fn is_absent<T>(key: &Key<T>, from: &mut T) -> bool {
+    matches!(key.slot, Slot::Maybe(field) if field(from).is_none())
+}
+
+/// A value as it stands in a file: shortest digits that read back to the same bits; 0 of what the rig does not have.
 pub(crate) fn shown<T>(key: &Key<T>, from: &mut T) -> String {
+    let quantity = |value: f64| match key.units.first() {
+        Some((unit, _)) => format!("\"{value}{unit}\""),
+        None => format!("{value:?}"),
+    };
     match key.slot {
-        Slot::Real(field) => match key.units.first() {
-            Some((unit, _)) => format!("\"{}{unit}\"", field(from)),
-            None => format!("{:?}", field(from)),
-        },
+        Slot::Real(field) => quantity(*field(from)),
+        Slot::Maybe(field) => quantity(field(from).unwrap_or_default()),
         Slot::Count(field) => field(from).to_string(),
         Slot::Flag(field) => field(from).to_string(),
         Slot::Choice(Choice { get, .. }) => quoted(get(from)),
@@ -431,6 +442,25 @@ mod tests {
             ..RigConfig::report()
         };
         assert_eq!(parse("my.toml", &write(&own)).unwrap(), own);
+    }
+
+    #[test]
+    fn a_laser_that_stays_on_is_parked_where_both_joints_reach_or_nowhere() {
+        let parked = |text: &str| {
+            let park = parse("my.toml", text).unwrap().light.park_rad;
+            (park.pan, park.tilt)
+        };
+        assert_eq!(parked(""), (None, None));
+        let park = "[safety]\npark_pan = \"-0.5rad\"\npark_tilt = \"0.7rad\"\n";
+        assert_eq!(parked(park), (Some(-0.5), Some(0.7)));
+        let own = parse("my.toml", park).unwrap();
+        assert_eq!(parse("my.toml", &write(&own)).unwrap(), own);
+        let half = error("[safety]\npark_tilt = \"0.7rad\"\n");
+        assert!(half.contains("safety.park_tilt without safety.park_pan"), "{half}");
+        let beyond = error(&format!("{park}[model.tilt]\nrange_max = \"0.6rad\"\n"));
+        assert!(beyond.contains("safety.park_tilt: 0.7 rad is outside of what tilt turns"), "{beyond}");
+        // what a rig does not have stands in its file as a comment
+        assert!(write(&RigConfig::report()).contains("\n# park_pan = \"0rad\""));
     }
 
     #[test]

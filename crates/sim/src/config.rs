@@ -25,7 +25,7 @@ pub struct RigConfig {
     pub control: ControlSettings,
     /// How the planner is set.
     pub motion: MotionSettings,
-    /// Its laser, and how long that may stand.
+    /// Its laser, how long that may stand, and where it is parked.
     pub light: LightSettings,
     /// When it is dark although nothing is wrong with the head.
     pub safety: SafetySettings,

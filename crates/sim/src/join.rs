@@ -64,6 +64,8 @@ impl RigConfig {
             hold_limit_ticks: ticks(self.control.hold_limit_s),
             laser_on_ticks: ticks(self.model.relay.on_s),
             laser_off_ticks: ticks(self.model.relay.off_s),
+            enable_on_ticks: ticks(self.model.enable.on_s),
+            enable_off_ticks: ticks(self.model.enable.off_s),
             host_silence_ticks: ticks(self.control.host_silence_s),
             standing_ticks: self.light.standing_ticks(),
             standing_radius_rad: self.standing_radius_rad() as f32,
@@ -73,6 +75,7 @@ impl RigConfig {
                 turned_rad: self.safety.turned_rad as f32,
                 sway: self.sway(),
             },
+            park_rad: self.light.parked_rad().map(|park| park.map(|angle| angle as f32)),
         }
     }
 

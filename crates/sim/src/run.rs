@@ -122,7 +122,12 @@ impl SimulatedRig {
     fn of(config: &RigConfig, pose: HeadPose, plant: Plant, seed: u64) -> Self {
         let controller = Controller::new(config.control_config());
         // homed: count 0 on both
-        let sensed = Sensed { inputs: plant.inputs(), ..Sensed::default() };
+        let sensed = Sensed {
+            laser_on: Some(plant.laser_on()),
+            light: Some(plant.light()),
+            inputs: plant.inputs(),
+            ..Sensed::default()
+        };
         Self {
             state: controller.start_homed(&sensed),
             controller,
@@ -215,6 +220,8 @@ impl SimulatedRig {
             Trouble::StampGarbled(j) => self.lines[j].garbled = true,
             Trouble::LaserStuck => self.plant.stick_laser(),
             Trouble::Bump(by_rad) => self.plant.bump(by_rad),
+            Trouble::LaserMended => self.plant.free_laser(),
+            Trouble::EnableStuck => self.plant.stick_enable(),
             Trouble::PowerLoss => self.power_up(),
             Trouble::Input(input, state) => self.plant.set_input(input, state),
             Trouble::TickLate(ticks) => self.plant.hold_up(ticks * TICK_F64_S),
@@ -297,7 +304,7 @@ pub fn arm(rig: &mut impl Simulated) -> bool {
 /// Disarms a rig and lets ticks pass until its gate is shut, one at most, which are kept. Whoever stops a run does so before he goes.
 pub fn darken<R: Simulated>(rig: &mut R, mut keep: impl FnMut(Tick)) {
     let _ = rig.send(Command::Disarm);
-    if rig.told().actuation.gate {
+    if rig.told().actuation.lights() {
         keep(rig.step());
     }
 }

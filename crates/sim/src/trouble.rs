@@ -26,6 +26,10 @@ pub enum Trouble {
     StampGarbled(Joint),
     /// The laser's relay stays as it is; its second switch, the enable, goes on working.
     LaserStuck,
+    /// Somebody put in another relay: it follows the gate again.
+    LaserMended,
+    /// The laser's second switch, the enable's, stays as it is.
+    EnableStuck,
     /// Somebody bumps into what the head stands on, which turns by so much about pan's and tilt's axes, rad, and stays so.
     Bump(PanTilt<f64>),
     /// The controller loses power for a moment: it begins anew, its encoders at zero where the joints are now.

@@ -6,6 +6,7 @@
 mod encoder;
 mod foot;
 mod knock;
+mod laser;
 mod motor;
 mod scale;
 mod scale_filter;
@@ -19,12 +20,10 @@ use encoder::EncoderWatch;
 use foot::FootWatch;
 pub use foot::{Foot, Sway};
 use knock::KnockWatch;
+pub(crate) use laser::LaserWatch;
 pub use motor::MotorRating;
 use motor::MotorWatch;
 use scale::ScaleWatch;
-
-/// Ticks a laser may take longer than its relay.
-const LASER_SLACK_TICKS: u32 = 2;
 
 /// Length from which on a tick is late, ticks: what was reckoned for one was held for another half.
 const LATE_TICKS: f32 = 1.5;
@@ -37,9 +36,7 @@ pub(crate) struct Watch {
     motors: PanTilt<MotorWatch>,
     foot: FootWatch,
     knocks: PanTilt<KnockWatch>,
-    gate: bool,
-    /// How long the gate has been so, ticks.
-    gate_ticks: u32,
+    pub(crate) laser: LaserWatch,
     /// How long ago the host said that it is there, ticks; `None` if it never did.
     silence_ticks: Option<u32>,
 }
@@ -52,8 +49,7 @@ impl Watch {
             motors: PanTilt::default(),
             foot: FootWatch::default(),
             knocks: PanTilt::new(KnockWatch::new(), KnockWatch::new()),
-            gate: false,
-            gate_ticks: u32::MAX,
+            laser: LaserWatch::new(),
             silence_ticks: None,
         }
     }
@@ -68,7 +64,7 @@ impl Watch {
         self.silence_ticks.is_some_and(|silence| silence <= config.host_silence_ticks)
     }
 
-    /// What a tick's senses show, if anything.
+    /// What a tick's senses show of encoders, motors and the host, if anything; what they show of the laser is [`LaserWatch::sense`]'s.
     pub(crate) fn sense(&mut self, config: &Config, servo: &Servo, sensed: &Sensed) -> Option<Fault> {
         // silence is counted whatever else is wrong
         let silence = self.host(config);
@@ -98,7 +94,7 @@ impl Watch {
         let turned = self.foot.tick(&config.foot, sensed.foot_rad_s, sped_up);
         // who has a gyroscope need not ask encoders
         let thrown = (thrown && !self.foot.is_fitted()).then_some(Fault::Bumped);
-        pan.or(tilt).or(self.laser(config, sensed)).or(silence).or(turned).or(thrown)
+        pan.or(tilt).or(silence).or(turned).or(thrown)
     }
 
     /// Whether an encoder has shown nothing where its joint should have passed several edges, or does not fit its motor.
@@ -132,13 +128,6 @@ impl Watch {
         faults.pan.or(faults.tilt)
     }
 
-    fn laser(&mut self, config: &Config, sensed: &Sensed) -> Option<Fault> {
-        let delay = if self.gate { config.laser_on_ticks } else { config.laser_off_ticks };
-        let due = self.gate_ticks > delay + LASER_SLACK_TICKS;
-        let wrong = sensed.laser_on.is_some_and(|on| on != self.gate);
-        (due && wrong).then_some(Fault::LaserStuck)
-    }
-
     fn host(&mut self, config: &Config) -> Option<Fault> {
         let silence = self.silence_ticks?.saturating_add(1);
         self.silence_ticks = Some(silence);
@@ -152,17 +141,6 @@ impl Watch {
             self.motors[j].tick(&axis.rating, command_v[j] / axis.limit_v)
         });
         faults.pan.or(faults.tilt)
-    }
-
-    /// What the gate is set to in this tick.
-    pub(crate) const fn light(&mut self, gate: bool) {
-        self.gate_ticks = if gate == self.gate { self.gate_ticks.saturating_add(1) } else { 1 };
-        self.gate = gate;
-    }
-
-    /// What it was set to in the last one.
-    pub(crate) const fn gate(&self) -> bool {
-        self.gate
     }
 
     /// Begins anew after a fault.
@@ -200,7 +178,9 @@ mod tests {
         let ticks = |ticks: u32| u16::try_from(ticks).unwrap_or(u16::MAX);
         assert_eq!(soon(Fault::EncoderDead), Soon::DarkThen(ticks(encoder::DOUBT_TICKS)));
         assert_eq!(soon(Fault::AmplifierSaturated), Soon::Ticks(ticks(motor::SATURATED_TICKS)));
-        assert_eq!(soon(Fault::LaserStuck), Soon::Ticks(ticks(LASER_SLACK_TICKS + 1)));
+        for fault in [Fault::LaserStuck, Fault::LaserDark] {
+            assert_eq!(soon(fault), Soon::Ticks(ticks(laser::SLACK_TICKS + 1)));
+        }
     }
 
     #[test]

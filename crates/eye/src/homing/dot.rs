@@ -72,7 +72,7 @@ impl<R: Simulated + Eye> Homing<'_, R> {
         let dot_ticks = ((image_s + self.history.switches_s()) / TICK_F64_S) as u16 + MORE_TICKS;
         for _ in 0..BUDGET_TICKS {
             let _ = self.rig.send(Command::Point(dot_ticks));
-            if self.step()?.actuation.gate {
+            if self.step()?.actuation.lights() {
                 break;
             }
         }

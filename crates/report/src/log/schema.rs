@@ -124,7 +124,7 @@ pub(super) fn telemetry(out: &mut Encoder, sample: &Sample<'_>, lap: u32) {
     out.unsigned(2, seen.tick.into());
     out.unsigned(3, seen.plan_tick.into());
     out.text(4, phase_word(seen.phase));
-    out.flag(5, seen.actuation.gate);
+    out.flag(5, seen.actuation.lights());
     out.flag(6, sample.tick.light);
     out.text(7, &reasons(seen.darkness));
     out.text(8, seen.fault.map_or("", |fault| fault.code()));

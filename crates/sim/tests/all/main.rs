@@ -19,5 +19,6 @@ mod shapes;
 mod slips;
 mod standing;
 mod sweep;
+mod switches;
 mod tracking;
 mod troubled;
