@@ -18,6 +18,7 @@ mod foot;
 mod friction;
 mod gain;
 mod light;
+mod mechanism;
 mod plant;
 mod step;
 mod teeth;

@@ -3,14 +3,14 @@ use tracelight_rig::{
     Actuation, Head, Input, InputState, Inputs, Joint, Measurement, PanTilt, Sensed, TICK_F64_S,
 };
 
-use crate::belt::{Belted, STIFF_BELT};
 use crate::dice::Dice;
 use crate::encoder::Encoder;
 use crate::foot::Foot;
 use crate::gain::{Gain, Weakening};
 use crate::light::{Relay, play};
+use crate::mechanism::Mechanism;
 use crate::teeth::{LooseBelt, Teeth};
-use crate::{JointState, PlantConfig, Stepper, Wear};
+use crate::{JointState, PlantConfig, Wear};
 
 /// Plant substeps in a tick. Measured on a traced polygon: four times as many change the rms and the largest
 /// error by less than 0.02 % on the preset `report` and by 0.02 % on `worn`.
@@ -78,13 +78,6 @@ impl Stops {
         let back = -self.inertia_kg_m2 * (spring + 2.0 * STOP_DAMPING * STOP_RAD_S * rate_rad_s);
         if into_rad > 0.0 { back.min(0.0) } else { back.max(0.0) }
     }
-}
-
-/// What turns: joints that are one with their rotors, or hang on belts.
-#[derive(Clone, Copy, Debug)]
-enum Mechanism {
-    Rigid(Stepper),
-    Belted { belted: Belted, encoders_at_motors: bool },
 }
 
 impl Plant {
@@ -311,61 +304,6 @@ impl Plant {
         }
         let before = std::mem::replace(&mut self.late_s, self.wear.jitter_s * self.dice.signed());
         proper_s + self.late_s - before
-    }
-}
-
-impl Mechanism {
-    fn new(config: &PlantConfig, ripple_phase_rad: PanTilt<f64>, rest_rad: PanTilt<f64>) -> Self {
-        let wear = &config.wear;
-        if wear.belt_resonance_hz == 0.0 {
-            return Self::Rigid(config.stepper(ripple_phase_rad));
-        }
-        let belt = (wear.belt_resonance_hz, wear.belt_damping);
-        let (lumped, rotors) = (config.bodies.lumped(), config.bodies.rotor_kg_m2);
-        let belted = Belted::new(lumped, rotors, config.friction(ripple_phase_rad), belt, rest_rad);
-        Self::Belted { belted, encoders_at_motors: wear.encoders_at_motors }
-    }
-
-    /// How fast the joints turn, which carry the beam, rad/s.
-    const fn rate_rad_s(&self, seen: &JointState) -> PanTilt<f64> {
-        match self {
-            Self::Rigid(_) => seen.rate_rad_s,
-            Self::Belted { belted, .. } => belted.joints().rate_rad_s,
-        }
-    }
-
-    /// Steps what the encoders see; where the joints are, which carry the beam, rad.
-    fn step(
-        &mut self,
-        seen: &mut JointState,
-        motor_nm: PanTilt<f64>,
-        others_nm: PanTilt<f64>,
-        step_s: f64,
-    ) -> PanTilt<f64> {
-        match self {
-            Self::Rigid(stepper) => {
-                let all = PanTilt::from_fn(|j| motor_nm[j] + others_nm[j]);
-                stepper.step(seen, all, step_s);
-                seen.angle_rad
-            }
-            Self::Belted { belted, encoders_at_motors } => {
-                belted.step(motor_nm, others_nm, step_s);
-                *seen = if *encoders_at_motors { belted.rotors() } else { *belted.joints() };
-                belted.joints().angle_rad
-            }
-        }
-    }
-
-    /// The same on its belts: joints that are one with their rotors on stiff ones.
-    fn on_belts(&self, state: &JointState, rotor_kg_m2: PanTilt<f64>) -> Belted {
-        match *self {
-            Self::Rigid(stepper) => {
-                let (lumped, friction) = stepper.parts();
-                let belted = Belted::new(lumped, rotor_kg_m2, friction, STIFF_BELT, state.angle_rad);
-                belted.turning(state.rate_rad_s)
-            }
-            Self::Belted { belted, .. } => belted,
-        }
     }
 }
 

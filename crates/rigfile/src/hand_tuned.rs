@@ -4,7 +4,7 @@ use tracelight_sim::{Feedforward, RigConfig};
 use tracelight_units::Unit;
 
 use crate::keys::{Choice, Key, PURE, RIG_KEYS, STIFFNESS, VISCOUS, choice, flag, real};
-use crate::park::PARK_KEYS;
+use crate::safety::SAFETY_KEYS;
 
 const INTEGRAL_GAIN: &[Unit] = &[("Nm/rad/s", 1.0)];
 /// More than any motor of a head like this asks for, and less than `f32` bears.
@@ -82,7 +82,7 @@ fn named(feedforward: Feedforward) -> &'static str {
 /// Keys of `[truth.wear]`, `[control]`, `[motion]`, `[laser]` and `[safety]`.
 pub(crate) fn rig_keys() -> Vec<Key<RigConfig>> {
     let mut keys = RIG_KEYS.to_vec();
-    keys.extend(PARK_KEYS);
+    keys.extend(SAFETY_KEYS);
     keys.extend(by_hand!(pan));
     keys.extend(by_hand!(tilt));
     keys

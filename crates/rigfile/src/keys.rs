@@ -1,6 +1,6 @@
 //! Every key of a rig file: its place, unit, bounds, meaning, and the field it sets.
 
-use tracelight_sim::{LaserClass, LawName, LightSettings, Model, ObserverName, RigConfig};
+use tracelight_sim::{LawName, Model, ObserverName, RigConfig};
 use tracelight_units::{ANGLES, ANGULAR_ACCELERATIONS, ANGULAR_JERKS, ANGULAR_SPEEDS, LENGTHS, TIMES, Unit};
 
 /// The field a key sets.
@@ -54,7 +54,6 @@ pub(crate) const STIFFNESS: &[Unit] = &[("Nm/rad", 1.0), ("mNm/rad", 1e-3)];
 pub(crate) const VISCOUS: &[Unit] = &[("Nms/rad", 1.0), ("mNms/rad", 1e-3)];
 const GAIN: &[Unit] = &[("Nm/V", 1.0), ("mNm/V", 1e-3)];
 const VOLTAGE: &[Unit] = &[("V", 1.0), ("mV", 1e-3)];
-const POWER: &[Unit] = &[("W", 1.0), ("mW", 1e-3)];
 
 type Real = fn(&mut Model) -> &mut f64;
 
@@ -251,11 +250,8 @@ pub(crate) fn model_keys() -> Vec<Key<Model>> {
     keys
 }
 
-/// The key that follows from `laser.power` where a file does not have it.
-pub(crate) const STANDING: &str = "safety.standing";
-
-/// Keys of `[truth.gyroscope]`, `[truth.wear]`, `[control]`, `[motion]`, `[laser]` and `[safety]`.
-pub(crate) const RIG_KEYS: [Key<RigConfig>; 45] = [
+/// Keys of `[truth.gyroscope]`, `[truth.wear]`, `[control]` and `[motion]`.
+pub(crate) const RIG_KEYS: [Key<RigConfig>; 40] = [
     flag("truth.gyroscope.fitted", "whether a gyroscope is fixed to what it stands on", |r| {
         &mut r.truth.gyroscope.fitted
     }),
@@ -472,35 +468,4 @@ pub(crate) const RIG_KEYS: [Key<RigConfig>; 45] = [
         |r| &mut r.motion.ramp_s,
     ),
     real("motion.settle", TIMES, (0.0, 5.0), "rest before a stroke is lit", |r| &mut r.motion.settle_s),
-    choice(
-        "laser.class",
-        "what its label says",
-        Choice {
-            names: || LaserClass::ALL.map(LaserClass::name).to_vec(),
-            get: |r| r.light.class.name(),
-            set: |r, name| r.light.class = LaserClass::named(name).unwrap_or(r.light.class),
-        },
-    ),
-    real("laser.power", POWER, LightSettings::POWER_W, "power of its light", |r| &mut r.light.power_w),
-    real(
-        STANDING,
-        TIMES,
-        LightSettings::STANDING_S,
-        "how long light may stand in one place; left out, 1 mJ of laser.power, but a second at most",
-        |r| &mut r.light.standing_s,
-    ),
-    real(
-        "safety.jolt",
-        ANGULAR_SPEEDS,
-        (1e-3, 10.0),
-        "how fast what it stands on turns, from which on that is a bump; by its gyroscope",
-        |r| &mut r.safety.jolt_rad_s,
-    ),
-    real(
-        "safety.turned",
-        ANGLES,
-        (5e-5, 0.5),
-        "how far that may have turned once it is still again, and count as standing where it stood",
-        |r| &mut r.safety.turned_rad,
-    ),
 ];

@@ -11,8 +11,8 @@ use tracelight_units as units;
 use crate::caret::Mark;
 use crate::found::identified_keys;
 use crate::hand_tuned::rig_keys;
-use crate::keys::{Choice, Key, STANDING, Slot, model_keys};
-use crate::park::impossible_park;
+use crate::keys::{Choice, Key, Slot, model_keys};
+use crate::safety::{STANDING, impossible_park};
 use crate::text::{Kind, text_of};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
@@ -447,7 +447,7 @@ mod tests {
     #[test]
     fn a_laser_that_stays_on_is_parked_where_both_joints_reach_or_nowhere() {
         let parked = |text: &str| {
-            let park = parse("my.toml", text).unwrap().light.park_rad;
+            let park = parse("my.toml", text).unwrap().safety.park_rad;
             (park.pan, park.tilt)
         };
         assert_eq!(parked(""), (None, None));

@@ -75,7 +75,7 @@ impl RigConfig {
                 turned_rad: self.safety.turned_rad as f32,
                 sway: self.sway(),
             },
-            park_rad: self.light.parked_rad().map(|park| park.map(|angle| angle as f32)),
+            park_rad: self.safety.parked_rad().map(|park| park.map(|angle| angle as f32)),
         }
     }
 

@@ -1,6 +1,6 @@
 //! What laser a rig has, how long its light may stand, and where the head turns if it does not go dark.
 
-use tracelight_rig::{PanTilt, TICK_F64_S};
+use tracelight_rig::TICK_F64_S;
 
 use crate::laws::ObserverName;
 
@@ -27,8 +27,6 @@ pub struct LightSettings {
     pub power_w: f64,
     /// How long it may stand, s.
     pub standing_s: f64,
-    /// Where the joints go, rad, when a switch of the laser does not open: of both or of none.
-    pub park_rad: PanTilt<Option<f64>>,
 }
 
 impl LightSettings {
@@ -38,23 +36,12 @@ impl LightSettings {
     pub const POWER_W: (f64, f64) = (1e-6, 10.0);
 
     /// A laser pointer: class 2, 1 mW.
-    pub const POINTER: Self = Self {
-        class: LaserClass::Two,
-        power_w: 1e-3,
-        standing_s: USUAL_S,
-        park_rad: PanTilt::new(None, None),
-    };
+    pub const POINTER: Self = Self { class: LaserClass::Two, power_w: 1e-3, standing_s: USUAL_S };
 
     /// How long light of that power, W, stands where the rig file does not say it, s: 1 mJ, but no longer than a second.
     pub fn usual_standing_s(power_w: f64) -> f64 {
         let (least, most) = Self::STANDING_S;
         (PLACE_J / power_w).min(USUAL_S).clamp(least, most)
-    }
-
-    /// Where the head turns, rad, when a switch of the laser does not open; `None` where it stays.
-    pub(crate) fn parked_rad(&self) -> Option<PanTilt<f64>> {
-        let PanTilt { pan, tilt } = self.park_rad;
-        Some(PanTilt::new(pan?, tilt?))
     }
 
     /// How long it may stand, ticks.

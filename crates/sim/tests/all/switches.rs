@@ -19,7 +19,7 @@ const PARK_RAD: PanTilt<f64> = PanTilt::new(-0.6, 0.4);
 /// A preset that parks its head there.
 fn parking() -> RigConfig {
     let mut config = RigConfig::report();
-    config.light.park_rad = PARK_RAD.map(Some);
+    config.safety.park_rad = PARK_RAD.map(Some);
     config
 }
 
