@@ -238,7 +238,10 @@ impl Watched<'_> {
             let holds = matches!(tick.telemetry.phase, Phase::Holding | Phase::Testing);
             // before the first light it may only wait until its encoders were seen to follow its motors
             let waits = !lit && tick.telemetry.darkness.contains(Darkness::Untested);
-            let held = (holds && !was_held && !waits).then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
+            // a gyroscope tells by itself whether the head stands where it stood
+            let judged = tick.telemetry.darkness.contains(Darkness::Jolted);
+            let held = (holds && !was_held && !waits && !judged)
+                .then(|| Suspicion::Jolt(strayed_rad(&tick.telemetry)));
             was_held = holds;
             if let Some(suspicion) = suspicion.or(held).filter(|_| !self.job.seen.open) {
                 return Ended::Suspect(suspicion);

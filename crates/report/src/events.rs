@@ -109,7 +109,9 @@ fn trouble(telemetry: &Telemetry, waits: bool) -> Option<Event> {
     if waits || dark.contains(Darkness::Planned) || dark.contains(Darkness::Disarmed) {
         return None;
     }
-    let reason = Darkness::ALL.into_iter().find(|&r| dark.contains(r))?;
+    // a head that is jolted is held, and that is why
+    let jolted = dark.contains(Darkness::Jolted).then_some(Darkness::Jolted);
+    let reason = jolted.or_else(|| Darkness::ALL.into_iter().find(|&reason| dark.contains(reason)))?;
     let (code, words) = (reason.code(), reason.words());
     Some(Event { code, words, t_s, lasted_s: TICK_F64_S, stops: false, foot_turned_rad: None })
 }

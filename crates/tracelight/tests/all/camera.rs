@@ -148,6 +148,23 @@ fn a_head_that_is_bumped_is_dark_within_a_fifth_of_a_second_and_draws_on() {
 }
 
 #[test]
+fn with_a_gyroscope_on_its_foot_no_light_goes_astray_before_it_is_found_again() {
+    let rig = folder("gyroscope-rig").join("rig.toml");
+    std::fs::write(&rig, "[truth.gyroscope]\nfitted = true\n").unwrap();
+    let rig = rig.to_str().unwrap();
+    let (found, said) = traced("camera-gyroscope", &["--rig", rig, "--sim-trouble", "head-bump=1@6"]);
+    assert!(
+        said.contains("fault bumped: the head was found anew by 9 dots, its spot had moved by 16"),
+        "{said}"
+    );
+    check_at_most(&found, "/tracking/max_mm", 0.5);
+    let turned = found["laser"]["faults"].as_array().unwrap().iter().find_map(|f| f.get("foot_turned_deg"));
+    let turned: Vec<f64> = turned.unwrap().as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+    // of 1 degree, 0.6 downwards and 0.8 to the left
+    assert!((turned[1] - 0.6).abs() < 0.01 && (turned[2] - 0.8).abs() < 0.01, "{turned:?}");
+}
+
+#[test]
 fn a_camera_that_fails_does_no_harm_and_is_told() {
     for (trouble, why) in [
         ("camera-unplugged@4", "sends no images any more"),
