@@ -301,7 +301,7 @@ faults! {
     Bumped = 24 {
         what: "Somebody bumped into what the head stands on, and it does not stand where it stood.",
         code: "bumped",
-        seen: "a gyroscope on the foot says that it has turned further than safety.turned, once it is still again; without one, a joint was thrown aside by one and a quarter counts or more within some hundredths of a second and is no faster afterwards",
+        seen: "a gyroscope on the foot says that it has turned further than safety.turned, once it is still again; without one, a joint was thrown aside on a lit stroke by one and a quarter counts or more within some hundredths of a second and is no faster afterwards",
         soon: Soon::Words("dark in the tick with a gyroscope, a fault 0.2 s after it is still; without one, 65 ms after the first surprise"),
         motors: Motors::Held,
         loses_counts: false,

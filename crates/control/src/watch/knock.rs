@@ -38,7 +38,7 @@ const FADE_RAD_S: f32 = 5e-3;
 /// Watch on one joint for a throw: whoever bumps into the foot speeds it up and stops it again, and the joint, which stays behind, stands or runs
 /// beside by some counts afterwards, no faster than before. What pushes the joint itself changes its speed.
 ///
-/// Only the motor's torque and what the model has of gravity and friction are reckoned with; nothing is learned.
+/// Only of lit strokes: how a joint speeds up between them is not known well enough of every head. Only the motor's torque and what the model has of gravity and friction are reckoned with; nothing is learned.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct KnockWatch {
     /// Angle by the encoder as it is read, rad, and how the joint sped up in the tick before, as far as that is known, rad/s²; the oldest at `next`.
@@ -56,14 +56,14 @@ impl KnockWatch {
         Self { kept: [(0.0, 0.0); KEPT], next: 0, filled: 0, since: None, calm_ticks: 0 }
     }
 
-    /// One tick; whether it shows that the joint was thrown a moment ago.
+    /// One tick; whether it shows that the joint was thrown a moment ago, while it was lit.
     pub(super) fn tick(
         &mut self,
         axis: &AxisConfig,
         effort: &Effort,
         estimate: &Estimate,
         measured: &Measurement,
-        surprise: Surprise,
+        (surprise, lit): (Surprise, bool),
     ) -> bool {
         self.keep(axis, effort, estimate, measured);
         let surprised = match surprise {
@@ -74,7 +74,7 @@ impl KnockWatch {
         let calm = self.calm_ticks >= CALM_TICKS;
         self.calm_ticks = if surprised { 0 } else { self.calm_ticks.saturating_add(1) };
         match self.since {
-            None if surprised && calm && self.filled == KEPT => self.since = Some(0),
+            None if surprised && calm && lit && self.filled == KEPT => self.since = Some(0),
             None => {}
             Some(ticks) if ticks + 1 < VERDICT_TICKS => self.since = Some(ticks + 1),
             Some(_) => {

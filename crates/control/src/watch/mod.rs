@@ -83,12 +83,12 @@ impl Watch {
         };
         let pan = encoder(&mut self.encoders.pan, Joint::Pan);
         let tilt = encoder(&mut self.encoders.tilt, Joint::Tilt);
-        let mut thrown = false;
+        let (mut thrown, lit) = (false, self.laser.lights());
         for j in Joint::BOTH {
             let (axis, measured) = (&config.axes[j], &sensed.encoders[j]);
             let (effort, estimate) = (&servo.efforts()[j], &servo.estimates()[j]);
             let surprise = self.scales[j].tick(axis, effort, estimate, measured);
-            thrown |= self.knocks[j].tick(axis, effort, estimate, measured, surprise);
+            thrown |= self.knocks[j].tick(axis, effort, estimate, measured, (surprise, lit));
         }
         let sped_up = servo.estimates().map(|estimate| estimate.acceleration_rad_s2);
         let turned = self.foot.tick(&config.foot, sensed.foot_rad_s, sped_up);

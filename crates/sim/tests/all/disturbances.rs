@@ -207,7 +207,7 @@ fn push(rig: &mut SimulatedRig, torque_nm: f64, way: PanTilt<f64>) {
 fn a_push_is_waited_for_and_the_stroke_goes_on() {
     let act: Disturbance =
         |rig, _, drawn| push(rig, if drawn.goes_on { 0.1 + 0.5 * drawn.strength } else { 0.0 }, drawn.way);
-    check(&Case { name: "push", act, over: |ticks| ticks, furthest_mm: 4.5, faults: 6, bumped: 30 });
+    check(&Case { name: "push", act, over: |ticks| ticks, furthest_mm: 4.5, faults: 6, bumped: 6 });
 }
 
 /// For a second, with 2 to 40 Hz.
@@ -218,7 +218,7 @@ fn a_shaken_head_is_waited_for_and_the_stroke_goes_on() {
         let swing = (TAU * hz * f64::from(tick.telemetry.tick) * 1e-3).sin();
         push(rig, if drawn.goes_on { 0.2 * swing } else { 0.0 }, drawn.way);
     };
-    check(&Case { name: "shaken", act, over: |_| 1000, furthest_mm: 3.5, faults: 3, bumped: 60 });
+    check(&Case { name: "shaken", act, over: |_| 1000, furthest_mm: 3.5, faults: 3, bumped: 40 });
 }
 
 /// A spring towards straight ahead that is hooked on for two seconds.
@@ -238,7 +238,7 @@ fn a_supply_that_sags_is_drawn_through_or_waited_for() {
         let left = if drawn.goes_on { 0.6 + 0.4 * drawn.strength } else { 1.0 };
         rig.suffer(Trouble::SupplySag(left));
     };
-    check(&Case { name: "sag", act, over: |ticks| 5 * ticks, furthest_mm: 3.5, faults: 6, bumped: 20 });
+    check(&Case { name: "sag", act, over: |ticks| 5 * ticks, furthest_mm: 3.5, faults: 6, bumped: 10 });
 }
 
 /// More than the motors have, or hardly any supply at all: dark like the others, and back or a named fault.
