@@ -46,25 +46,35 @@ pub fn read(path: &str) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// Writes a file the user named.
+/// Writes a file the user named, whole or not at all; into a pipe or a device as it comes. What a link leads to is changed, not the link, and who
+/// may read a file that was there stays who may.
 ///
 /// # Errors
-/// `cannot-write`, with what the system says.
+/// `cannot-write`, with what the system says; then a file that was there is as it was.
 pub fn write(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
-    fs::write(path, bytes).map_err(|e| cannot_write(path, &e))
-}
-
-/// Writes what a file holds anew, whole or not at all. What a link leads to is changed, not the link.
-///
-/// # Errors
-/// `cannot-write`, with what the system says; then the file is as it was.
-pub fn replace(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     let failed = |e: std::io::Error| cannot_write(path, &e);
-    let real = fs::canonicalize(path).map_err(failed)?;
-    // a user's own file may be replaced by two processes at once: each has a part of its own
+    let old = fs::metadata(path).ok();
+    if old.as_ref().is_some_and(|old| !old.is_file() && !old.is_dir()) {
+        return fs::write(path, bytes).map_err(failed);
+    }
+    let real =
+        if old.is_some() { fs::canonicalize(path).map_err(failed)? } else { Path::new(path).to_owned() };
+    // a file may be written by two processes at once: each has a part of its own
     let mut part = real.clone().into_os_string();
     part.push(format!(".{}.new", std::process::id()));
-    renamed_when_whole(part.as_ref(), &real, failed, |part| fs::write(part, bytes).map_err(failed))
+    renamed_when_whole(part.as_ref(), &real, failed, |part| {
+        fs::write(part, bytes).map_err(failed)?;
+        old.map_or(Ok(()), |old| fs::set_permissions(part, old.permissions()).map_err(failed))
+    })
+}
+
+/// Writes what a file holds anew, as [`write`] does.
+///
+/// # Errors
+/// `cannot-write`, with what the system says, also where there is none.
+pub fn replace(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
+    fs::metadata(path).map_err(|e| cannot_write(path, &e))?;
+    write(path, bytes)
 }
 
 /// Lets `write` write a file beside `path`, and gives it that name when it is whole: whoever looks sees the old file,
@@ -83,7 +93,7 @@ pub fn written_whole<T>(path: &Path, write: impl FnOnce(&Path) -> Result<T, Fail
 }
 
 /// Lets `write` write `part` and then calls that `path`, or takes it away: no other name is left behind.
-fn renamed_when_whole<T>(
+pub(crate) fn renamed_when_whole<T>(
     part: &Path,
     path: &Path,
     failed: impl FnOnce(std::io::Error) -> Failure,
@@ -101,7 +111,7 @@ fn renamed_when_whole<T>(
 
 /// The name of a file that is not whole yet: hidden, short even where `path` is not, of the same kind, and the same
 /// each time, so that the next run replaces what a killed one left.
-fn part_name(path: &Path) -> String {
+pub(crate) fn part_name(path: &Path) -> String {
     let mut hasher = DefaultHasher::new();
     path.file_name().hash(&mut hasher);
     let extension = path.extension().map(OsStr::to_string_lossy).unwrap_or_default();

@@ -44,4 +44,4 @@ pub use painting::paint;
 pub use preview::{ColourBy, preview};
 pub use sample::planned;
 pub use seen::seen_csv;
-pub use summary::{PlanFigures, StrokeFigures, Summary};
+pub use summary::{LogFigures, PlanFigures, StrokeFigures, Summary};

@@ -34,6 +34,9 @@ pub struct Summary {
     /// What a camera saw; not there where none looked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<EyeFigures>,
+    /// The run log that these are the figures of; not there where none was kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub log: Option<LogFigures>,
     /// Wall-clock time of the stages, ms.
     pub timing_ms: TimingFigures,
     /// Seed of the run.
@@ -132,6 +135,17 @@ pub struct FaultFigures {
     pub foot_turned_deg: Option<[f64; 3]>,
 }
 
+/// See [`Summary::log`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LogFigures {
+    /// Its name in the folder of the summary.
+    pub file: &'static str,
+    /// How long it is.
+    pub bytes: u64,
+    /// Of all of it, in hexadecimal digits.
+    pub sha256: String,
+}
+
 /// See [`Summary::timing_ms`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TimingFigures {
@@ -161,6 +175,7 @@ impl Summary {
                 faults: events(job.run).iter().map(FaultFigures::new).collect(),
             },
             camera: job.eye.clone(),
+            log: None,
             timing_ms: TimingFigures {
                 vision: job.timing.vision_ms,
                 plan: job.timing.plan_ms,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use tracelight_camera::Opened;
-use tracelight_files as files;
+use tracelight_files::{self as files, ResultFolder};
 use tracelight_job::{Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
 use tracelight_report::{Finished, LogMeta, Picture, Setting, Summary, Target, Timing};
 use tracelight_rig::PanTilt;
@@ -34,14 +34,18 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     args.check_camera()?;
     let prepared = prepared(args, task)?;
     let dir = args.out.clone().unwrap_or_else(|| default_dir(args));
-    results::make_folder(&dir)?;
+    let folder = results::open(&dir, &args.driving.rig)?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
     let meta = LogMeta { picture_path: args.name(), settings: &settings, seed: args.seed };
-    let mut log = RunLog::open(&dir.join("run.mcap"), &meta)?;
+    let mut log = RunLog::open(&folder, &meta)?;
     let mut ran = prepared.run(&mut log, task)?;
-    log.finish()?;
+    if let Some(remark) = log.finish()? {
+        task.say(&format!("note: {remark}"));
+        ran.notes.push(remark);
+    }
     task.stage("report", 1);
-    let summary = write(args, &prepared, &ran, &dir, &settings)?;
+    let summary = write(args, &prepared, &ran, &folder, &settings)?;
+    folder.finish()?;
     // also who wants it to end while results are written is told so
     let failure = ran.failure.take().or_else(|| task.check().err());
     Ok(Outcome { summary, dir, failure })
@@ -113,14 +117,14 @@ fn write(
     args: &TraceArgs,
     prepared: &Prepared,
     ran: &Ran,
-    dir: &Path,
+    folder: &ResultFolder,
     settings: &[Setting],
 ) -> Result<Summary, Failure> {
     let Prepared { sketch, placed, driving, schedule, .. } = prepared;
     let drawing = &schedule.ordered.drawing;
-    results::put(&dir.join("strokes.svg"), placed.svg(drawing))?;
-    results::put_jpeg(&dir.join("camera.jpg"), prepared.camera_image())?;
-    write_rig(args, dir, ran)?;
+    folder.put(results::STROKES, placed.svg(drawing))?;
+    results::put_jpeg(folder, results::CAMERA, prepared.camera_image())?;
+    write_rig(args, folder, ran)?;
     let plan = ran.plan(prepared);
     let tracking: Tracking = score(plan, &ran.last, plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
@@ -158,19 +162,15 @@ fn write(
         eye: ran.eye.clone(),
         seen: ran.seen.as_ref(),
     };
-    results::write_all(dir, &job)
+    results::write_all(folder, &job)
 }
 
-/// Writes `rig.toml`, the rig as its laps identified it; where they did not, one that an earlier job left under this name is
-/// removed. A rig file that the job was given stays as it is.
-fn write_rig(args: &TraceArgs, dir: &Path, ran: &Ran) -> Result<(), Failure> {
-    let path = dir.join("rig.toml");
-    if files::is_same(&path.to_string_lossy(), &args.driving.rig) {
+/// Writes `rig.toml`, the rig as its laps identified it. A rig file that the job was given stays as it is.
+fn write_rig(args: &TraceArgs, folder: &ResultFolder, ran: &Ran) -> Result<(), Failure> {
+    let Some(mut rig) = ran.identified.clone() else { return Ok(()) };
+    if files::is_same(&folder.path(results::RIG).to_string_lossy(), &args.driving.rig) {
         return Ok(());
     }
-    let identified = ran.identified.clone().map(|mut rig| {
-        named::date_rig(&mut rig);
-        rigfile::write(&rig)
-    });
-    results::put_or_forget(&path, identified)
+    named::date_rig(&mut rig);
+    folder.put(results::RIG, rigfile::write(&rig))
 }

@@ -1,62 +1,92 @@
 //! A job's results in a folder.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::io::{BufWriter, Read, Write};
+use std::path::Path;
 use std::time::Instant;
 
+use sha2::{Digest, Sha256};
+use tracelight_files::ResultFolder;
 use tracelight_job::Keep;
 use tracelight_picture::Raster;
 use tracelight_report::{
-    Finished, LogMeta, LogWriter, Summary, fault_csv, index, page, paint, planned, seen_csv, trace_csv,
+    Finished, LogFigures, LogMeta, LogWriter, Summary, fault_csv, index, page, paint, planned, seen_csv,
+    trace_csv,
 };
 use tracelight_sim::Tick;
 use tracelight_task::Failure;
 use tracelight_trajectory::Plan;
 
+/// The run log, written while the run goes on.
+const LOG: &str = "run.mcap";
+/// The same with an index, until it takes the log's place.
+const INDEXED: &str = "run.mcap.part";
+const SUMMARY: &str = "summary.json";
+pub(crate) const RIG: &str = "rig.toml";
+pub(crate) const STROKES: &str = "strokes.svg";
+pub(crate) const CAMERA: &str = "camera.jpg";
+
+/// All results that a job may have; the summary is written last.
+const NAMES: [&str; 12] = [
+    LOG,
+    INDEXED,
+    STROKES,
+    CAMERA,
+    RIG,
+    "trace.csv",
+    "fault.csv",
+    "seen.csv",
+    "seen.jpg",
+    "trace.png",
+    "report.html",
+    SUMMARY,
+];
+
+/// Takes a folder over for a job's results. A rig file that the job was given and that lies there under the name of one stays.
+pub(crate) fn open(dir: &Path, rig: &str) -> Result<ResultFolder, Failure> {
+    ResultFolder::open(dir, &NAMES, Some(Path::new(rig)))
+}
+
 /// The run log `run.mcap`, written while the run goes on. A killed program leaves all of it but its index.
-pub(crate) struct RunLog {
-    path: PathBuf,
+pub(crate) struct RunLog<'a> {
+    folder: &'a ResultFolder,
     writer: LogWriter<BufWriter<File>>,
 }
 
-impl RunLog {
-    /// Begins a log; a file of that name is replaced.
-    pub(crate) fn open(path: &Path, meta: &LogMeta<'_>) -> Result<Self, Failure> {
-        let file = File::create(path).map_err(|e| cannot_write(path, &e))?;
-        let writer = LogWriter::begin(BufWriter::new(file), meta).map_err(|e| cannot_log(path, &e))?;
-        Ok(Self { path: path.to_owned(), writer })
+impl<'a> RunLog<'a> {
+    /// Begins a log.
+    pub(crate) fn open(folder: &'a ResultFolder, meta: &LogMeta<'_>) -> Result<Self, Failure> {
+        let file = folder.begin(LOG)?;
+        let writer =
+            LogWriter::begin(BufWriter::new(file), meta).map_err(|e| cannot_log(&folder.path(LOG), &e))?;
+        Ok(Self { folder, writer })
     }
 
-    /// Closes the log: indexed, and whole for every reader.
-    pub(crate) fn finish(self) -> Result<(), Failure> {
-        let Self { path, writer } = self;
-        let indexed = path.with_extension("mcap.part");
-        let all = || {
-            writer.finish()?;
-            index(File::open(&path)?, BufWriter::new(File::create(&indexed)?))
+    /// Closes the log: indexed, and whole for every reader. Where there is no room for the index, the log stays without, and that is what is
+    /// returned: a remark.
+    pub(crate) fn finish(self) -> Result<Option<String>, Failure> {
+        let Self { folder, writer } = self;
+        let (path, indexed) = (folder.path(LOG), folder.path(INDEXED));
+        writer.finish().map_err(|e| cannot_log(&path, &e))?;
+        let all = || -> Result<(), Box<dyn std::error::Error>> {
+            index(File::open(&path)?, BufWriter::new(folder.begin(INDEXED).map_err(|e| e.message)?))?;
+            Ok(fs::rename(&indexed, &path)?)
         };
-        all().map_err(|e| cannot_log(&path, &e))?;
-        fs::rename(&indexed, &path).map_err(|e| cannot_write(&path, &e))
+        let Err(error) = all() else { return Ok(None) };
+        drop(fs::remove_file(&indexed)); // it may never have been begun
+        Ok(Some(format!(
+            "the run log {} is whole, but has no index, which some viewers ask for: {error}; check the free space",
+            path.display()
+        )))
     }
 }
 
-impl Keep for RunLog {
+impl Keep for RunLog<'_> {
     fn tick(&mut self, plan: &Plan, tick: &Tick) -> Result<(), Failure> {
         let appended = planned(plan, tick.telemetry.plan_tick)
             .map_or(Ok(()), |planned| self.writer.append(tick, planned));
-        appended.map_err(|e| cannot_log(&self.path, &e))
+        appended.map_err(|e| cannot_log(&self.folder.path(LOG), &e))
     }
-}
-
-fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::failed(
-        "cannot-write",
-        format!(
-            "cannot write {}: {error}; check the folder, its permissions and the free space, or choose another with --out",
-            path.display()
-        ),
-    )
 }
 
 fn cannot_log(path: &Path, error: &impl std::fmt::Display) -> Failure {
@@ -73,64 +103,60 @@ fn cannot_encode(path: &Path, error: &impl std::fmt::Display) -> Failure {
     Failure::failed("cannot-write", format!("cannot encode {}: {error}", path.display()))
 }
 
-/// Makes the folder for results, if it is missing.
-pub(crate) fn make_folder(dir: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(dir).map_err(|e| cannot_write(dir, &e))
-}
-
-/// Writes a result.
-pub(crate) fn put(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
-    fs::write(path, bytes).map_err(|e| cannot_write(path, &e))
-}
-
-/// Writes a result; one that an earlier job left under its name is removed where this one has none.
-pub(crate) fn put_or_forget(path: &Path, bytes: Option<impl AsRef<[u8]>>) -> Result<(), Failure> {
-    let Some(bytes) = bytes else {
-        return match fs::remove_file(path) {
-            Err(e) if e.kind() != ErrorKind::NotFound => Err(cannot_write(path, &e)),
-            _ => Ok(()),
-        };
-    };
-    put(path, bytes)
-}
-
-/// The same of what a camera saw.
-pub(crate) fn put_jpeg(path: &Path, image: Option<&Raster>) -> Result<(), Failure> {
+/// Writes what a camera saw, if it saw anything.
+pub(crate) fn put_jpeg(folder: &ResultFolder, name: &str, image: Option<&Raster>) -> Result<(), Failure> {
     const QUALITY: u8 = 90;
-    let encoded = image.map(|image| image.jpeg(QUALITY)).transpose();
-    put_or_forget(path, encoded.map_err(|e| cannot_encode(path, &e))?)
+    let Some(image) = image else { return Ok(()) };
+    folder.put(name, image.jpeg(QUALITY).map_err(|e| cannot_encode(&folder.path(name), &e))?)
 }
 
-/// Writes `trace.csv`, after a fault `fault.csv`, what a camera saw of the spot, `trace.png`, `report.html` and `summary.json` into a
-/// folder, which is made if missing.
+/// Writes `trace.csv`, after a fault `fault.csv`, what a camera saw of the spot, `trace.png`, `report.html` and, last of all, `summary.json`
+/// with the hash of the run log.
 ///
 /// Returns the figures as they stand in `summary.json`, the time this took included. The run log and
 /// `strokes.svg` are not written here: the one exists before, the other is a drawing format's.
-pub(crate) fn write_all(dir: &Path, job: &Finished<'_>) -> Result<Summary, Failure> {
+pub(crate) fn write_all(folder: &ResultFolder, job: &Finished<'_>) -> Result<Summary, Failure> {
     let began = Instant::now();
-    make_folder(dir)?;
     let pictures = || {
         let wall = paint(job);
-        let path = dir.join("trace.png");
-        put(&path, wall.png().map_err(|e| cannot_encode(&path, &e))?)?;
+        folder.put("trace.png", wall.png().map_err(|e| cannot_encode(&folder.path("trace.png"), &e))?)?;
         let page = page(job, &Summary::new(job), &wall).map_err(|e| Failure::failed("cannot-write", e))?;
-        put(&dir.join("report.html"), page)
+        folder.put("report.html", page)
     };
-    both(|| write_tables(dir, job), pictures)?;
+    both(|| write_tables(folder, job), pictures)?;
     let mut summary = Summary::new(job);
+    summary.log = Some(log_figures(&folder.path(LOG)).map_err(|e| cannot_log(&folder.path(LOG), &e))?);
     summary.timing_ms.report += began.elapsed().as_secs_f64() * 1e3;
-    put(&dir.join("summary.json"), summary.json() + "\n")?;
+    folder.put(SUMMARY, summary.json() + "\n")?;
     Ok(summary)
 }
 
-fn write_tables(dir: &Path, job: &Finished<'_>) -> Result<(), Failure> {
-    put_or_forget(&dir.join("fault.csv"), fault_csv(job))?;
-    put_jpeg(&dir.join("seen.jpg"), job.seen.and_then(|seen| seen.painting.as_ref()))?;
-    put_or_forget(&dir.join("seen.csv"), job.seen.map(|seen| seen_csv(&seen.marks)))?;
-    let path = dir.join("trace.csv");
-    let file = File::create(&path).map_err(|e| cannot_write(&path, &e))?;
-    let mut out = BufWriter::with_capacity(1 << 17, file);
-    trace_csv(&mut out, job).and_then(|()| out.flush()).map_err(|e| cannot_write(&path, &e))
+/// By which anybody can tell whether a log is the one that a summary is of.
+fn log_figures(path: &Path) -> std::io::Result<LogFigures> {
+    let mut log = File::open(path)?;
+    let (mut hash, mut bytes) = (Sha256::new(), 0);
+    let mut piece = vec![0; 1 << 16];
+    loop {
+        let read = log.read(&mut piece)?;
+        if read == 0 {
+            break;
+        }
+        hash.update(&piece[..read]);
+        bytes += read as u64;
+    }
+    let sha256 = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(LogFigures { file: LOG, bytes, sha256 })
+}
+
+fn write_tables(folder: &ResultFolder, job: &Finished<'_>) -> Result<(), Failure> {
+    fault_csv(job).map_or(Ok(()), |table| folder.put("fault.csv", table))?;
+    put_jpeg(folder, "seen.jpg", job.seen.and_then(|seen| seen.painting.as_ref()))?;
+    job.seen.map_or(Ok(()), |seen| folder.put("seen.csv", seen_csv(&seen.marks)))?;
+    folder.put_by("trace.csv", |file| {
+        let mut out = BufWriter::with_capacity(1 << 17, file);
+        trace_csv(&mut out, job)?;
+        out.flush()
+    })
 }
 
 /// Runs two writers side by side; the first error wins.
@@ -146,17 +172,4 @@ fn both(
             Err(panic) => std::panic::resume_unwind(panic),
         }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_folder_that_is_not_there_is_named_in_the_error() {
-        let path = Path::new("/nowhere/at/all/run.mcap");
-        let meta = LogMeta { picture_path: "", settings: &[], seed: 0 };
-        let Err(error) = RunLog::open(path, &meta) else { panic!("opened {path:?}") };
-        assert!(error.message.contains("/nowhere/at/all/run.mcap"), "{}", error.message);
-    }
 }

@@ -39,14 +39,23 @@ impl Answer {
 pub(crate) type Performs = fn(&[&str], &Stop) -> Result<Answer, Failure>;
 
 /// To standard output; a reader that has left is no error.
-pub(crate) fn print(text: &str) {
-    let mut out = std::io::stdout().lock();
-    if !text.is_empty() {
-        drop(writeln!(out, "{text}"));
-    }
+///
+/// # Errors
+/// `cannot-write` where what was to be answered was not.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    if text.is_empty() { Ok(()) } else { print_piece(&format!("{text}\n")) }
 }
 
-/// A piece of what is printed, before the rest is there; a reader that has left is no error.
-pub(crate) fn print_piece(text: &str) {
-    drop(write!(std::io::stdout().lock(), "{text}"));
+/// A piece of what is printed, before the rest is there.
+pub(crate) fn print_piece(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            let message = format!(
+                "cannot write to standard output: {error}; nothing, or only a part, of the answer was written"
+            );
+            Err(Failure::failed("cannot-write", message))
+        }
+        _ => Ok(()),
+    }
 }

@@ -91,12 +91,14 @@ fn answer_to(arguments: &[&str], stop: &Stop) -> Result<Answer, Failure> {
 
 fn finish(voice: Voice, result: Result<Answer, Failure>) -> ExitCode {
     match result {
-        Ok(Answer { text, json, failure: None }) => {
-            print(if voice.json { &json } else { &text });
-            ExitCode::SUCCESS
-        }
+        Ok(Answer { text, json, failure: None }) => match print(if voice.json { &json } else { &text }) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => report(voice.json, false, &failure),
+        },
         Ok(Answer { text, json, failure: Some(failure) }) => {
-            print(if voice.json { with_error(&json, &failure) } else { text }.as_str());
+            let printed = print(if voice.json { with_error(&json, &failure) } else { text }.as_str());
+            // what failed before counts for more
+            drop(printed);
             report(voice.json, false, &failure)
         }
         Err(failure) => report(voice.json, voice.json, &failure),
@@ -115,7 +117,8 @@ fn with_error(json: &str, failure: &Failure) -> String {
 #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
 fn report(json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
     if on_stdout {
-        print(&failure.json());
+        // the message below says it too
+        drop(print(&failure.json()));
     }
     let hint = if json { String::new() } else { format!(" (see `tracelight explain {}`)", failure.code) };
     eprintln!("error: {}{hint}", failure.message);
@@ -126,13 +129,15 @@ fn report(json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
 #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
 fn refuse(error: &clap::Error) -> ExitCode {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
-        print(error.render().to_string().trim_end());
-        return ExitCode::SUCCESS;
+        return match print(error.render().to_string().trim_end()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => report(false, false, &failure),
+        };
     }
     if std::env::args_os().any(|a| a == "--json") {
         let text = error.render().to_string();
         let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-        print(&Failure::usage("usage", first).json());
+        drop(print(&Failure::usage("usage", first).json()));
     }
     eprint!("{}", error.render());
     ExitCode::from(Status::Usage.code())

@@ -108,9 +108,15 @@ fn many(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
     });
     let jobs = args.jobs.map_or_else(processors, usize::from);
     let batch = Batch { pictures: found.pictures, out, jobs };
-    let mut print: fn(&str) = print_piece;
+    let mut printed = Ok(());
+    let mut print = |piece: &str| {
+        if printed.is_ok() {
+            printed = print_piece(piece);
+        }
+    };
     let pieces: Option<&mut dyn FnMut(&str)> = if args.voice.json { Some(&mut print) } else { None };
     let ended = campaign::run(&batch, &|picture, path| one(args, picture, path), task, pieces)?;
+    printed?;
     Ok(Answer { failure: ended.failure, ..Answer::new(ended.text, ended.json) })
 }
 

@@ -26,6 +26,7 @@ mod preview;
 mod quality;
 mod readmes;
 mod reproduce;
+mod results;
 mod simulate;
 mod sizes;
 mod standing;
