@@ -38,7 +38,7 @@ pub use csv::{fault_csv, trace_csv};
 pub use error::EncodeError;
 pub use events::{Event, events};
 pub use finished::{Finished, Picture, Setting, Target, Timing};
-pub use log::{LogMeta, LogWriter, index};
+pub use log::{LogMeta, LogWriter, Recovered, index, recover};
 pub use page::{html, page};
 pub use painting::paint;
 pub use preview::{ColourBy, preview};

@@ -62,6 +62,8 @@ struct Channels {
     faults: u16,
 }
 
+/// Longest record of a log that is read, bytes: what is longer is none of ours.
+const LONGEST_RECORD: usize = 1 << 24;
 /// Size of a finished log's chunks: a few seconds of ticks each.
 const CHUNK_BYTES: u64 = 1 << 20;
 
@@ -163,18 +165,60 @@ fn options() -> WriteOptions {
 ///
 /// # Errors
 /// What either of them says.
-pub fn index(mut bare: impl Read + Seek, indexed: impl Write + Seek) -> McapResult<()> {
-    let mut writer = options().create(indexed)?;
+pub fn index(bare: impl Read + Seek, indexed: impl Write + Seek) -> McapResult<()> {
+    let options = LinearReaderOptions::default().with_record_length_limit(LONGEST_RECORD);
+    match copy(bare, indexed, options)? {
+        (_, Some(error)) => Err(error),
+        (_, None) => Ok(()),
+    }
+}
+
+/// What was found of a log that was never closed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recovered {
+    /// Whole messages.
+    pub messages: u64,
+    /// Something follows the last of them that is no whole record: the program was killed while it wrote.
+    pub torn: bool,
+}
+
+/// Copies all whole records of a log that was never closed into an indexed one.
+///
+/// # Errors
+/// What either of them says; of the first one only before its first message.
+pub fn recover(bare: impl Read + Seek, indexed: impl Write + Seek) -> McapResult<Recovered> {
+    let options =
+        LinearReaderOptions::default().with_skip_end_magic(true).with_record_length_limit(LONGEST_RECORD);
+    match copy(bare, indexed, options)? {
+        (0, Some(error)) => Err(error),
+        (messages, torn) => Ok(Recovered { messages, torn: torn.is_some() }),
+    }
+}
+
+/// Copies records until one cannot be read: how many messages, and why that one could not.
+fn copy(
+    mut bare: impl Read + Seek,
+    indexed: impl Write + Seek,
+    options: LinearReaderOptions,
+) -> McapResult<(u64, Option<mcap::McapError>)> {
+    let mut writer = self::options().create(indexed)?;
     for metadata in metadata_of(&mut bare)? {
         writer.write_metadata(&metadata)?;
     }
     bare.rewind()?;
-    let bare = BufReader::new(bare);
-    for message in mcap::io::MessageReader::new_with_options(bare, LinearReaderOptions::default()) {
-        writer.write(&message?)?;
+    let (mut messages, mut unread) = (0, None);
+    for message in mcap::io::MessageReader::new_with_options(BufReader::new(bare), options) {
+        match message {
+            Ok(message) => writer.write(&message)?,
+            Err(error) => {
+                unread = Some(error);
+                break;
+            }
+        }
+        messages += 1;
     }
     writer.finish()?;
-    Ok(())
+    Ok((messages, unread))
 }
 
 /// The metadata records of a log.
@@ -278,6 +322,35 @@ mod tests {
         assert_eq!(spots.len(), 3000);
         assert_eq!(spots[1234].log_time, 1_234_000_000);
         assert_eq!(double_field(&spots[1234].data, 1), fixture.run.ticks[1234].spot.unwrap().x);
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn a_log_that_was_never_closed_is_made_whole_wherever_it_ends() {
+        let path = file("recovered");
+        let (log, _) = begun(&path, 300);
+        let bytes = std::fs::read(&path).unwrap();
+        drop(log);
+        let recovered = |bytes: &[u8]| {
+            let mut indexed = std::io::Cursor::new(Vec::new());
+            let found = recover(std::io::Cursor::new(bytes), &mut indexed)?;
+            // whole to the strictest reader
+            let all = mcap::MessageStream::new(indexed.get_ref()).unwrap().map(Result::unwrap).count();
+            assert_eq!(all as u64, found.messages);
+            assert!(mcap::Summary::read(indexed.get_ref()).unwrap().is_some());
+            McapResult::Ok(found)
+        };
+        let whole = recovered(&bytes).unwrap();
+        assert!(!whole.torn && whole.messages >= 900, "{whole:?}");
+        for cut in 1..200 {
+            let found = recovered(&bytes[..bytes.len() - cut]).unwrap();
+            assert!(found.messages < whole.messages && found.messages + 4 > whole.messages, "{found:?}");
+        }
+        assert!(recovered(b"no log at all").is_err() && recovered(b"").is_err());
+        // a record that says it is longer than any
+        let mut wild = bytes[..bytes.len() / 2].to_vec();
+        wild.extend([5, 255, 255, 255, 255, 255, 255, 255, 127]);
+        assert!(recovered(&wild).unwrap().torn);
         std::fs::remove_file(&path).unwrap();
     }
 

@@ -16,6 +16,10 @@ pub(crate) struct ExplainArgs {
 
 /// Codes of messages, with what they mean and what to do.
 const MESSAGES: &[(&str, &str)] = &[
+    (
+        "not-a-log",
+        "A file that should be a run log has no record of one. Give the run.mcap of a folder with results.",
+    ),
     ("unreadable", "A file could not be opened or read. Check its name and permissions."),
     ("empty-file", "A file has no bytes. Save it again."),
     (

@@ -12,6 +12,7 @@ mod lab;
 pub(crate) mod laws;
 pub(crate) mod placing;
 mod plan;
+mod recover;
 pub(crate) mod request;
 mod rigs;
 pub(crate) mod shapes;
@@ -50,6 +51,7 @@ enum Command {
     Lab(lab::LabArgs),
     Doctor(doctor::DoctorArgs),
     Rigs(rigs::RigsArgs),
+    Recover(recover::RecoverArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
 }
@@ -73,6 +75,7 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Lab(args) => (args.voice(), lab::run(args, answer_to, stop)),
         Command::Doctor(args) => (args.voice, doctor::run(args, stop)),
         Command::Rigs(args) => (args.voice, rigs::run(args)),
+        Command::Recover(args) => (args.voice, recover::run(args)),
         Command::Explain(args) => (args.voice, explain::run(args)),
         Command::Completions(args) => (args.voice, Ok(completions::run::<Cli>(args))),
     }

@@ -70,6 +70,11 @@ fn what_a_killed_job_leaves_is_never_mixed_with_what_was_there() {
     }
     job.kill().unwrap();
     job.wait().unwrap();
+    let log = dir.join("run.mcap");
+    let done = program().arg("recover").arg(&log).output().unwrap();
+    let said = String::from_utf8_lossy(&done.stdout);
+    assert!(done.status.success() && said.contains("messages, indexed"), "{said}");
+    assert!(mcap::Summary::read(&fs::read(&log).unwrap()).unwrap().is_some());
     for name in ["summary.json", "report.html", "trace.csv", "strokes.svg", "trace.png"] {
         assert!(!dir.join(name).exists() || name != "summary.json", "{name} is another job's");
     }
