@@ -61,6 +61,8 @@ pub fn run<'a>(
     task: Task<'_>,
     pieces: Option<&'a mut Pieces<'a>>,
 ) -> Result<Ended, Failure> {
+    // what is under way is finished, and what was done is told
+    let _kept = task.stop.keep();
     let began_s = task.progress.clock_s();
     let files = places_of(batch)?;
     let manifest = batch.out.as_ref().map(|out| Manifest::open(out.folder)).transpose()?;

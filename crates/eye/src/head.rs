@@ -163,6 +163,7 @@ pub fn find_head<R: Simulated + Eye>(
     task: Task<'_>,
     keep: &mut dyn FnMut(&Tick),
 ) -> Result<FoundHead, Failure> {
+    let _kept = task.stop.keep();
     let mut seen = see_dots(rig, camera, driving, request, task, keep)?;
     let aligned = aligned(&request.belief, &mut seen.watch.timing, &seen.sightings, &seen.history)
         .map_err(|e| not_found(&e, &seen.watch, seen.dots))?;

@@ -11,5 +11,5 @@ mod words;
 pub use failure::{Failure, Status};
 pub use fan::on_all_cores;
 pub use progress::{NoProgress, Progress, Task};
-pub use stop::Stop;
+pub use stop::{Kept, Stop};
 pub use words::{counted, phase_word};

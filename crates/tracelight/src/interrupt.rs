@@ -1,17 +1,44 @@
-//! Ctrl-C.
+//! Ctrl-C, and whatever else asks a process to end.
 
-use tracelight_task::Stop;
+use std::time::Duration;
 
-/// Listens from now on. A second Ctrl-C ends the process at once.
+use tracelight_task::{Failure, Stop};
+
+/// How long work has to end by itself.
+const GRACE: Duration = Duration::from_millis(300);
+const POLL: Duration = Duration::from_millis(10);
+
+/// Listens from now on. Work that looks at the [`Stop`] ends by itself; where it does not in time, because it reads a pipe or computes, the process ends,
+/// unless a laser may be lit or results are half written. A second Ctrl-C ends it at once.
 pub(crate) fn listen() -> Stop {
     let stop = Stop::default();
     let flag = stop.clone();
     let armed = ctrlc::set_handler(move || {
         if flag.want() {
-            std::process::exit(130);
+            leave();
         }
+        let flag = flag.clone();
+        std::thread::spawn(move || {
+            std::thread::sleep(GRACE);
+            while flag.is_kept() {
+                std::thread::sleep(POLL);
+            }
+            // who has just come to his end says so himself
+            std::thread::sleep(GRACE);
+            tell();
+            leave();
+        });
     });
     // without a handler Ctrl-C ends the process by itself, which is dark too: every rig darkens without a host
     drop(armed);
     stop
+}
+
+fn leave() -> ! {
+    std::process::exit(i32::from(Failure::interrupted().status.code()))
+}
+
+#[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
+fn tell() {
+    eprintln!("error: interrupted: nothing is lit, and no file is half written");
 }

@@ -34,6 +34,8 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     args.check_camera()?;
     let prepared = prepared(args, task)?;
     let dir = args.out.clone().unwrap_or_else(|| default_dir(args));
+    // from here on the laser may be lit, and results belong together
+    let _kept = stop.keep();
     let folder = results::open(&dir, &args.driving.rig)?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
     let meta = LogMeta { picture_path: args.name(), settings: &settings, seed: args.seed };

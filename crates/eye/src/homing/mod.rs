@@ -70,6 +70,7 @@ pub fn home_head<R: Simulated + Eye>(
     known: Option<(Timing, f64)>,
     task: Task<'_>,
 ) -> Result<Homed, Failure> {
+    let _kept = task.stop.keep();
     let mut homing = Homing::new(rig, camera, driving, known, task);
     task.stage("homing", 1);
     let homed = homing.home(known.is_some(), task);
@@ -88,6 +89,7 @@ pub fn home_again<R: Simulated + Eye>(
     images: (Timing, f64),
     task: Task<'_>,
 ) -> Result<Homed, Failure> {
+    let _kept = task.stop.keep();
     let mut homing = Homing::new(rig, camera, driving, Some(images), task);
     let homed = homing.home_again();
     homing.left(homed)

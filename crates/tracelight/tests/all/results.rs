@@ -113,3 +113,53 @@ fn a_file_that_was_there_outlives_a_disk_that_is_full() {
     assert_eq!(fs::read_to_string(&file).unwrap(), "precious");
     assert_eq!(fs::read_dir(&dir).unwrap().count(), 1, "no half is left");
 }
+
+/// One signal is enough, whatever a command does: reads what never comes, or computes.
+#[cfg(unix)]
+#[test]
+fn one_signal_ends_any_command() {
+    let dir = folder("results-signal");
+    let many = dir.join("many.csv");
+    let strokes: String = (0..50_000).map(|n| format!("{n},0.1,0.1\n{n},0.1001,0.1\n")).collect();
+    let strokes = format!("stroke,x_m,y_m\n{strokes}");
+    fs::write(&many, strokes).unwrap();
+    let many = many.to_str().unwrap();
+    let pipe = dir.join("pipe.png");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let pipe = pipe.to_str().unwrap();
+    let out = dir.join("out");
+    let out = out.to_str().unwrap();
+    let commands: [&[&str]; 6] = [
+        &["strokes", "-"],
+        &["trace", pipe, "--out", out],
+        &["trace", many, "--out", out],
+        &["lab", "montecarlo", "--plants", "1000"],
+        &["calibrate", "markers", "--camera", pipe, "-o", out],
+        &["trace", "examples/star.png", "--laps", "250", "--out", out],
+    ];
+    for arguments in commands {
+        for signal in ["-INT", "-TERM", "-HUP"] {
+            let mut command = program();
+            command.current_dir(root()).args(arguments).stdin(Stdio::piped());
+            let mut job = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+            // waiting for its end would close it
+            let stdin = job.stdin.take();
+            std::thread::sleep(Duration::from_millis(500));
+            if let Some(over) = job.try_wait().unwrap() {
+                panic!("{arguments:?} was over before the signal: {over}");
+            }
+            let id = job.id().to_string();
+            assert!(std::process::Command::new("kill").args([signal, &id]).status().unwrap().success());
+            let asked = Instant::now();
+            assert_eq!(job.wait().unwrap().code(), Some(130), "{arguments:?} {signal}");
+            // what was run is written down before the end
+            assert!(
+                asked.elapsed() < Duration::from_secs(4),
+                "{arguments:?} {signal}: {:?}",
+                asked.elapsed()
+            );
+            drop(stdin);
+            println!("{arguments:?} {signal}: {:?}", asked.elapsed());
+        }
+    }
+}
