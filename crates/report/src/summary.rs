@@ -34,6 +34,8 @@ pub struct Summary {
     /// What a camera saw; not there where none looked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<EyeFigures>,
+    /// Nothing of this was measured on a head: the rig was one of equations.
+    pub simulated: bool,
     /// Wall-clock time of the stages, ms.
     pub timing_ms: TimingFigures,
     /// Seed of the run.
@@ -161,6 +163,7 @@ impl Summary {
                 faults: events(job.run).iter().map(FaultFigures::new).collect(),
             },
             camera: job.eye.clone(),
+            simulated: job.simulated,
             timing_ms: TimingFigures {
                 vision: job.timing.vision_ms,
                 plan: job.timing.plan_ms,
@@ -291,6 +294,7 @@ mod tests {
         check("tracking", &["off_stroke_rms_mm", "off_stroke_max_mm", "lit_speed_m_s", "at_speed_share"]);
         check("laser", &["lit_s", "faults"]);
         check("timing_ms", &["vision", "plan", "run", "report"]);
+        assert!(value["simulated"] == true);
         assert!(value["seed"].is_u64() && value["version"].is_string());
     }
 
