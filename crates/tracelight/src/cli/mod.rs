@@ -10,6 +10,8 @@ mod explain;
 pub(crate) mod eyes;
 mod lab;
 pub(crate) mod laws;
+mod meant;
+pub(crate) mod nearest;
 pub(crate) mod placing;
 mod plan;
 pub(crate) mod request;
@@ -19,10 +21,11 @@ mod strokes;
 mod trace;
 pub(crate) mod tracing;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use tracelight_task::{Failure, Status, Stop};
 
 use self::answer::{Answer, Voice, print};
@@ -33,7 +36,8 @@ use crate::interrupt;
 #[command(
     name = "tracelight",
     version,
-    after_help = "Example: tracelight trace examples/house.png --width 24in --open\n\n\
+    after_help = "Example: tracelight trace examples/house.png --width 24in --open\n\
+                  A picture alone is traced: tracelight examples/house.png\n\n\
                   Without hardware everything runs on a simulated rig (see `tracelight rigs`)."
 )]
 struct Cli {
@@ -56,9 +60,15 @@ enum Command {
 
 /// Runs the program on the process's arguments.
 pub(crate) fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let typed: Vec<OsString> = std::env::args_os().collect();
+    let json = typed.iter().any(|argument| argument == "--json");
+    let arguments = match meant::meant(typed, &Cli::command()) {
+        Ok(arguments) => arguments,
+        Err(failure) => return report(json, json, &failure),
+    };
+    let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
-        Err(error) => return refuse(&error),
+        Err(error) => return refuse(&error, json),
     };
     let (voice, result) = perform(&cli.command, &interrupt::listen());
     finish(voice, result)
@@ -117,19 +127,22 @@ fn report(json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
     if on_stdout {
         print(&failure.json());
     }
-    let hint = if json { String::new() } else { format!(" (see `tracelight explain {}`)", failure.code) };
+    // of a wrong command line there is no more to be told than its message does
+    let tells_more = !json && failure.code != "usage";
+    let hint =
+        if tells_more { format!(" (see `tracelight explain {}`)", failure.code) } else { String::new() };
     eprintln!("error: {}{hint}", failure.message);
     ExitCode::from(failure.status.code())
 }
 
 /// Wrong command lines: help and version are no errors; the rest is said on stderr, and as JSON where asked for.
 #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
-fn refuse(error: &clap::Error) -> ExitCode {
+fn refuse(error: &clap::Error, json: bool) -> ExitCode {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
         print(error.render().to_string().trim_end());
         return ExitCode::SUCCESS;
     }
-    if std::env::args_os().any(|a| a == "--json") {
+    if json {
         let text = error.render().to_string();
         let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
         print(&Failure::usage("usage", first).json());
