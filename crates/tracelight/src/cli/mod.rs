@@ -18,17 +18,18 @@ pub(crate) mod request;
 mod rigs;
 pub(crate) mod shapes;
 mod strokes;
+mod terminal;
 mod trace;
 pub(crate) mod tracing;
 
-use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracelight_task::{Failure, Status, Stop};
 
 use self::answer::{Answer, Voice, print};
+use self::terminal::Terminal;
 use crate::interrupt;
 
 /// Give it a picture: a pan/tilt laser head draws it on the wall, to scale.
@@ -43,6 +44,9 @@ use crate::interrupt;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// When help and messages are coloured; NO_COLOR in the environment is never
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t)]
+    color: ColorChoice,
 }
 
 #[derive(Subcommand, Debug)]
@@ -60,18 +64,20 @@ enum Command {
 
 /// Runs the program on the process's arguments.
 pub(crate) fn main() -> ExitCode {
-    let typed: Vec<OsString> = std::env::args_os().collect();
+    let (terminal, typed) = Terminal::of(std::env::args_os().collect());
     let json = typed.iter().any(|argument| argument == "--json");
-    let arguments = match meant::meant(typed, &Cli::command()) {
+    let program = Cli::command().styles(terminal::STYLES).term_width(terminal::width_of_help());
+    let arguments = match meant::meant(typed, &program) {
         Ok(arguments) => arguments,
-        Err(failure) => return report(json, json, &failure),
+        Err(failure) => return report(terminal, json, json, &failure),
     };
-    let cli = match Cli::try_parse_from(arguments) {
+    let parsed = program.try_get_matches_from(arguments).and_then(|found| Cli::from_arg_matches(&found));
+    let cli = match parsed {
         Ok(cli) => cli,
-        Err(error) => return refuse(&error, json),
+        Err(error) => return refuse(terminal, &error, json),
     };
     let (voice, result) = perform(&cli.command, &interrupt::listen());
-    finish(voice, result)
+    finish(terminal, &cli.command, voice, result)
 }
 
 fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
@@ -99,17 +105,29 @@ fn answer_to(arguments: &[&str], stop: &Stop) -> Result<Answer, Failure> {
     }
 }
 
-fn finish(voice: Voice, result: Result<Answer, Failure>) -> ExitCode {
+impl Command {
+    /// Whether its answer is meant to become a file.
+    fn prints_file(&self) -> bool {
+        match self {
+            Command::Completions(_) => true,
+            Command::Rigs(args) => args.shows_file(),
+            _ => false,
+        }
+    }
+}
+
+fn finish(terminal: Terminal, command: &Command, voice: Voice, result: Result<Answer, Failure>) -> ExitCode {
+    let shown = |text: String| if command.prints_file() { text } else { terminal::shown(&text) };
     match result {
         Ok(Answer { text, json, failure: None }) => {
-            print(if voice.json { &json } else { &text });
+            print(&if voice.json { json } else { shown(text) });
             ExitCode::SUCCESS
         }
         Ok(Answer { text, json, failure: Some(failure) }) => {
-            print(if voice.json { with_error(&json, &failure) } else { text }.as_str());
-            report(voice.json, false, &failure)
+            print(&if voice.json { with_error(&json, &failure) } else { shown(text) });
+            report(terminal, voice.json, false, &failure)
         }
-        Err(failure) => report(voice.json, voice.json, &failure),
+        Err(failure) => report(terminal, voice.json, voice.json, &failure),
     }
 }
 
@@ -123,7 +141,7 @@ fn with_error(json: &str, failure: &Failure) -> String {
 }
 
 #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
-fn report(json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
+fn report(terminal: Terminal, json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
     if on_stdout {
         print(&failure.json());
     }
@@ -131,15 +149,17 @@ fn report(json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
     let tells_more = !json && failure.code != "usage";
     let hint =
         if tells_more { format!(" (see `tracelight explain {}`)", failure.code) } else { String::new() };
-    eprintln!("error: {}{hint}", failure.message);
+    eprintln!("{} {}{hint}", terminal.alarm("error:"), failure.message);
     ExitCode::from(failure.status.code())
 }
 
 /// Wrong command lines: help and version are no errors; the rest is said on stderr, and as JSON where asked for.
 #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
-fn refuse(error: &clap::Error, json: bool) -> ExitCode {
+fn refuse(terminal: Terminal, error: &clap::Error, json: bool) -> ExitCode {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
-        print(error.render().to_string().trim_end());
+        let help = error.render();
+        let text = if terminal.colours_output() { help.ansi().to_string() } else { help.to_string() };
+        print(text.trim_end());
         return ExitCode::SUCCESS;
     }
     if json {
@@ -147,6 +167,10 @@ fn refuse(error: &clap::Error, json: bool) -> ExitCode {
         let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
         print(&Failure::usage("usage", first).json());
     }
-    eprint!("{}", error.render());
+    let message = error.render();
+    match terminal.colours_errors() {
+        true => eprint!("{}", message.ansi()),
+        false => eprint!("{message}"),
+    }
     ExitCode::from(Status::Usage.code())
 }
