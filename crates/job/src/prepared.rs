@@ -54,6 +54,8 @@ pub struct Ran {
     pub notes: Vec<String>,
     /// Why it ended early: a rig's fault, lost power, or because the user wanted it.
     pub failure: Option<Failure>,
+    /// Its rig was one of equations: nothing moved, no light fell. Whatever shows results says so.
+    pub simulated: bool,
     /// How long all laps took to run, ms.
     pub run_ms: f64,
 }
@@ -132,7 +134,7 @@ impl Prepared {
     /// Where a tick cannot be kept, or the head was never homed. What ends a lap early is no error: see [`Ran::failure`].
     pub fn run(&self, keep: &mut dyn Keep, task: Task<'_>) -> Result<Ran, Failure> {
         let (laps, run_ms) = task.timed(|| self.run_laps(keep, task));
-        let Laps { earlier, last, learned, watched, failure } = laps?;
+        let Laps { earlier, last, learned, watched, failure, simulated } = laps?;
         learned.notes.iter().for_each(|note| task.say(&format!("note: {note}")));
         let follow = watched.as_ref().map(|watched| watched.figures.clone());
         let eye = self.seen.as_ref().map(|seen| seen.after(&last, follow));
@@ -141,7 +143,7 @@ impl Prepared {
         let failure = failure.or_else(|| ending(&last, task.stop));
         let identified = learned.taken.then_some(learned.rig);
         let (plan, seen) = watched.map(|watched| (watched.plan, watched.seen)).unzip();
-        Ok(Ran { earlier, last, plan, identified, eye, seen, notes, failure, run_ms })
+        Ok(Ran { earlier, last, plan, identified, eye, seen, notes, failure, simulated, run_ms })
     }
 
     fn run_laps(&self, keep: &mut dyn Keep, task: Task<'_>) -> Result<Laps, Failure> {
@@ -170,7 +172,8 @@ impl Prepared {
             watched = Some(done);
         }
         let last = laps.pop().unwrap_or_default();
-        Ok(Laps { earlier: laps, last, learned, watched, failure })
+        // both ways above put up a `SimulatedRig`
+        Ok(Laps { earlier: laps, last, learned, watched, failure, simulated: true })
     }
 
     /// One lap that a camera follows, of a rig that is believed to be this.
@@ -203,6 +206,8 @@ struct Laps {
     watched: Option<WatchedRun>,
     /// Why the last one ended before its time, if neither the rig's fault nor the user ended it.
     failure: Option<Failure>,
+    /// By equations of a head.
+    simulated: bool,
 }
 
 /// Whether the last lap ended as it should.

@@ -53,6 +53,8 @@ pub struct Finished<'a> {
     pub seed: u64,
     /// The gate was held dark on purpose.
     pub dry_run: bool,
+    /// The rig was one of equations; every result says so.
+    pub simulated: bool,
 }
 
 /// A decoded picture and where it lies.

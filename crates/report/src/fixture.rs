@@ -54,6 +54,7 @@ impl Fixture {
             timing: Timing { vision_ms: 31.4, plan_ms: 120.2, run_ms: 88.8, report_ms: 0.0 },
             seed: 0,
             dry_run: false,
+            simulated: true,
         }
     }
 }

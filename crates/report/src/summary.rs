@@ -37,6 +37,8 @@ pub struct Summary {
     /// The run log that these are the figures of; not there where none was kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub log: Option<LogFigures>,
+    /// Nothing of this was measured on a head: the rig was one of equations.
+    pub simulated: bool,
     /// Wall-clock time of the stages, ms.
     pub timing_ms: TimingFigures,
     /// Seed of the run.
@@ -176,6 +178,7 @@ impl Summary {
             },
             camera: job.eye.clone(),
             log: None,
+            simulated: job.simulated,
             timing_ms: TimingFigures {
                 vision: job.timing.vision_ms,
                 plan: job.timing.plan_ms,
@@ -306,6 +309,7 @@ mod tests {
         check("tracking", &["off_stroke_rms_mm", "off_stroke_max_mm", "lit_speed_m_s", "at_speed_share"]);
         check("laser", &["lit_s", "faults"]);
         check("timing_ms", &["vision", "plan", "run", "report"]);
+        assert!(value["simulated"] == true);
         assert!(value["seed"].is_u64() && value["version"].is_string());
     }
 

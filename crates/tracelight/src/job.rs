@@ -161,6 +161,7 @@ fn write(
         },
         seed: args.seed,
         dry_run: args.dry_run,
+        simulated: ran.simulated,
         eye: ran.eye.clone(),
         seen: ran.seen.as_ref(),
     };

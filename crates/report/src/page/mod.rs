@@ -40,6 +40,7 @@ pub fn page(job: &Finished<'_>, figures: &Summary, painting: &Raster) -> Result<
         subtitle = tables::subtitle(job),
         class = class,
         verdict = escaped(&verdict),
+        origin = tables::origin(job),
         painting = jpeg,
         painting_width = painting.width(),
         painting_height = painting.height(),
@@ -126,6 +127,17 @@ mod tests {
         ] {
             assert!(text.contains(words), "{words}");
         }
+    }
+
+    #[test]
+    fn the_head_of_the_page_says_what_was_simulated_and_only_that() {
+        let fixture = fixture::star();
+        let mut job = fixture.job();
+        job.settings = &[];
+        let head = |job: &Finished<'_>| text(job).split("<main>").next().unwrap_or_default().to_owned();
+        assert!(head(&job).contains(">simulated</span>"));
+        job.simulated = false;
+        assert!(!head(&job).contains("</span><span"), "{}", head(&job));
     }
 
     #[test]

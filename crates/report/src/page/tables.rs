@@ -162,6 +162,15 @@ pub(super) fn verdict(job: &Finished<'_>) -> (&'static str, String) {
     }
 }
 
+/// What says that nothing of the page was measured on a head; empty where it was.
+pub(super) fn origin(job: &Finished<'_>) -> &'static str {
+    if job.simulated {
+        r#"<span class="badge fair" title="The rig was one of equations: nothing moved, no light fell">simulated</span>"#
+    } else {
+        ""
+    }
+}
+
 /// Faults, darkenings and remarks in words.
 pub(super) fn happenings(job: &Finished<'_>) -> String {
     const MOST: usize = 100;

@@ -20,6 +20,9 @@ pub(super) fn captions(job: &Finished<'_>, layout: &Layout) -> Plane {
     under_the_sheet(&mut chalk, job, layout);
     size_label(&mut chalk, job, layout);
     scale_bar(&mut chalk, layout);
+    if job.simulated {
+        origin(&mut chalk, layout);
+    }
     chalk
 }
 
@@ -39,6 +42,12 @@ fn corner_marks(chalk: &mut Plane, layout: &Layout) {
             FAINT.stroke(chalk, corner, corner - Vec2::new(0.0, sy * LENGTH));
         }
     }
+}
+
+/// Above the trace and its corner marks, in the margin: no exposure of a wall was taken.
+fn origin(chalk: &mut Plane, layout: &Layout) {
+    const ABOVE: f64 = 32.0;
+    CHALK.text(chalk, "simulated", SMALL, layout.wall.0 - Vec2::new(0.0, ABOVE), Align::Left);
 }
 
 fn under_the_sheet(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {

@@ -135,6 +135,27 @@ mod tests {
     }
 
     #[test]
+    fn a_simulated_job_says_so_above_its_trace_and_nothing_else_of_it_changes() {
+        let fixture = fixture::star();
+        let simulated = paint(&fixture.job());
+        let mut job = fixture.job();
+        job.simulated = false;
+        let (real, layout) = (paint(&job), Layout::new(&job));
+        let mut written = 0;
+        for y in 0..i64::from(real.height()) {
+            for x in 0..i64::from(WIDTH) {
+                if simulated.pixel(x, y) == real.pixel(x, y) {
+                    continue;
+                }
+                written += 1;
+                let above = layout.wall.0.y - y as f64;
+                assert!((20.0..60.0).contains(&above) && x as f64 > layout.wall.0.x - 2.0, "{x}, {y}");
+            }
+        }
+        assert!(written > 200, "{written} pixels");
+    }
+
+    #[test]
     fn odd_jobs_are_painted_too() {
         let empty = fixture::nothing();
         assert_eq!(paint(&empty.job()).width(), WIDTH);

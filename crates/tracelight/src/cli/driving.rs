@@ -14,25 +14,25 @@ use crate::named;
 #[derive(Args, Clone, Debug)]
 pub(crate) struct DrivingArgs {
     /// From the head to the target [default: 3ft]
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
+    #[arg(help_heading = "Size and place", long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
     pub(crate) distance: Option<Length>,
     /// Speed of the lit spot on the target [default: 1ft/s]
-    #[arg(long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed)]
+    #[arg(help_heading = "Time and order", long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed)]
     pub(crate) speed: Option<Speed>,
     /// How the lit spot keeps to that speed
-    #[arg(long, value_enum, default_value_t = LitSpeedName::Fastest)]
+    #[arg(help_heading = "Time and order", long, value_enum, default_value_t = LitSpeedName::Fastest)]
     pub(crate) lit_speed: LitSpeedName,
     /// How far corners may be rounded off where that is faster than to stop there, such as 0.2mm [default: not at all]
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = rounding)]
+    #[arg(help_heading = "Time and order", long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = rounding)]
     pub(crate) corner: Option<Length>,
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
+    #[arg(help_heading = "Rig and law", long, value_name = "RIG.toml|PRESET", default_value = "report")]
     pub(crate) rig: String,
     /// Shape of the dark moves between strokes
-    #[arg(long, default_value = ProfileName::SCurve.name(), value_parser = profile())]
+    #[arg(help_heading = "Time and order", long, default_value = ProfileName::SCurve.name(), value_parser = profile())]
     pub(crate) profile: ProfileName,
     /// Highest joint acceleration wished for, such as 100rad/s2; the motors decide where they allow less
-    #[arg(long, value_name = "ACCELERATION", allow_hyphen_values = true, value_parser = positive_acceleration)]
+    #[arg(help_heading = "Time and order", long, value_name = "ACCELERATION", allow_hyphen_values = true, value_parser = positive_acceleration)]
     pub(crate) amax: Option<AngularAcceleration>,
 }
 

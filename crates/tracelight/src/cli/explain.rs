@@ -194,7 +194,7 @@ const MESSAGES: &[(&str, &str)] = &[
 pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Failure> {
     let all = codes();
     let Some(code) = &args.code else {
-        let lines: Vec<String> = all.iter().map(|(code, words)| format!("{code:18} {words}")).collect();
+        let lines: Vec<String> = all.iter().map(|(code, words)| format!("{code:18}  {words}")).collect();
         return Ok(Answer::new(lines.join("\n"), json(&all)));
     };
     let found: Vec<_> = all.into_iter().filter(|(c, _)| c == code).collect();

@@ -23,7 +23,7 @@ pub(crate) struct EyeArgs {
     #[arg(long, value_name = "WxH", requires = "camera")]
     pub(crate) camera_size: Option<ImageSize>,
     /// Which camera is simulated
-    #[arg(long, value_enum, default_value_t, requires = "camera")]
+    #[arg(help_heading = "Simulation", long, value_enum, default_value_t, requires = "camera")]
     pub(crate) sim_camera: SimulatedEyeName,
     /// What is known of the camera: a file that `calibrate markers` or `calibrate lens` has written. Where no markers are in sight, the
     /// camera is believed to stand where it stood
@@ -60,7 +60,7 @@ pub(crate) struct FollowArgs {
     /// Lets something go wrong in a simulated room, to see what is made of it: pan-slip=20@5 is an encoder that slips by 20 counts 5 s
     /// after drawing began; also tilt-slip=COUNTS, head-bump=DEGREES, power-loss, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen,
     /// camera-black, camera-slow=IMAGES_A_SECOND, camera-stamps=SECONDS. May be given more than once
-    #[arg(long, value_name = "TROUBLE", requires = "camera")]
+    #[arg(help_heading = "Simulation", long, value_name = "TROUBLE", requires = "camera")]
     pub(crate) sim_trouble: Vec<TroubleAt>,
 }
 

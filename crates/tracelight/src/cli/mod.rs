@@ -10,6 +10,8 @@ mod explain;
 pub(crate) mod eyes;
 mod lab;
 pub(crate) mod laws;
+mod meant;
+pub(crate) mod nearest;
 pub(crate) mod placing;
 mod plan;
 mod recover;
@@ -17,16 +19,18 @@ pub(crate) mod request;
 mod rigs;
 pub(crate) mod shapes;
 mod strokes;
+mod terminal;
 mod trace;
 pub(crate) mod tracing;
 
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use tracelight_task::{Failure, Status, Stop};
 
 use self::answer::{Answer, Voice, print};
+use self::terminal::Terminal;
 use crate::interrupt;
 
 /// Give it a picture: a pan/tilt laser head draws it on the wall, to scale.
@@ -34,12 +38,16 @@ use crate::interrupt;
 #[command(
     name = "tracelight",
     version,
-    after_help = "Example: tracelight trace examples/house.png --width 24in --open\n\n\
+    after_help = "Example: tracelight trace examples/house.png --width 24in --open\n\
+                  A picture alone is traced: tracelight examples/house.png\n\n\
                   Without hardware everything runs on a simulated rig (see `tracelight rigs`)."
 )]
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// When help and messages are coloured; NO_COLOR in the environment is never
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t)]
+    color: ColorChoice,
 }
 
 #[derive(Subcommand, Debug)]
@@ -58,12 +66,20 @@ enum Command {
 
 /// Runs the program on the process's arguments.
 pub(crate) fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let (terminal, typed) = Terminal::of(std::env::args_os().collect());
+    let json = typed.iter().any(|argument| argument == "--json");
+    let program = Cli::command().styles(terminal::STYLES).term_width(terminal::width_of_help());
+    let arguments = match meant::meant(typed, &program) {
+        Ok(arguments) => arguments,
+        Err(failure) => return report(terminal, json, json, &failure),
+    };
+    let parsed = program.try_get_matches_from(arguments).and_then(|found| Cli::from_arg_matches(&found));
+    let cli = match parsed {
         Ok(cli) => cli,
-        Err(error) => return refuse(&error),
+        Err(error) => return refuse(terminal, &error, json),
     };
     let (voice, result) = perform(&cli.command, &interrupt::listen());
-    finish(voice, result)
+    finish(terminal, &cli.command, voice, result)
 }
 
 fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
@@ -92,19 +108,32 @@ fn answer_to(arguments: &[&str], stop: &Stop) -> Result<Answer, Failure> {
     }
 }
 
-fn finish(voice: Voice, result: Result<Answer, Failure>) -> ExitCode {
-    match result {
-        Ok(Answer { text, json, failure: None }) => match print(if voice.json { &json } else { &text }) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(failure) => report(voice.json, false, &failure),
-        },
-        Ok(Answer { text, json, failure: Some(failure) }) => {
-            let printed = print(if voice.json { with_error(&json, &failure) } else { text }.as_str());
-            // what failed before counts for more
-            drop(printed);
-            report(voice.json, false, &failure)
+impl Command {
+    /// Whether its answer is meant to become a file.
+    fn prints_file(&self) -> bool {
+        match self {
+            Command::Completions(_) => true,
+            Command::Rigs(args) => args.shows_file(),
+            _ => false,
         }
-        Err(failure) => report(voice.json, voice.json, &failure),
+    }
+}
+
+fn finish(terminal: Terminal, command: &Command, voice: Voice, result: Result<Answer, Failure>) -> ExitCode {
+    let shown = |text: String| if command.prints_file() { text } else { terminal::shown(&text) };
+    match result {
+        Ok(Answer { text, json, failure: None }) => {
+            match print(&if voice.json { json } else { shown(text) }) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(failure) => report(terminal, voice.json, false, &failure),
+            }
+        }
+        Ok(Answer { text, json, failure: Some(failure) }) => {
+            // what failed before counts for more
+            drop(print(&if voice.json { with_error(&json, &failure) } else { shown(text) }));
+            report(terminal, voice.json, false, &failure)
+        }
+        Err(failure) => report(terminal, voice.json, voice.json, &failure),
     }
 }
 
@@ -118,30 +147,39 @@ fn with_error(json: &str, failure: &Failure) -> String {
 }
 
 #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
-fn report(json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
+fn report(terminal: Terminal, json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
     if on_stdout {
         // the message below says it too
         drop(print(&failure.json()));
     }
-    let hint = if json { String::new() } else { format!(" (see `tracelight explain {}`)", failure.code) };
-    eprintln!("error: {}{hint}", failure.message);
+    // of a wrong command line there is no more to be told than its message does
+    let tells_more = !json && failure.code != "usage";
+    let hint =
+        if tells_more { format!(" (see `tracelight explain {}`)", failure.code) } else { String::new() };
+    eprintln!("{} {}{hint}", terminal.alarm("error:"), failure.message);
     ExitCode::from(failure.status.code())
 }
 
 /// Wrong command lines: help and version are no errors; the rest is said on stderr, and as JSON where asked for.
 #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
-fn refuse(error: &clap::Error) -> ExitCode {
+fn refuse(terminal: Terminal, error: &clap::Error, json: bool) -> ExitCode {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
-        return match print(error.render().to_string().trim_end()) {
+        let help = error.render();
+        let text = if terminal.colours_output() { help.ansi().to_string() } else { help.to_string() };
+        return match print(text.trim_end()) {
             Ok(()) => ExitCode::SUCCESS,
-            Err(failure) => report(false, false, &failure),
+            Err(failure) => report(terminal, false, false, &failure),
         };
     }
-    if std::env::args_os().any(|a| a == "--json") {
+    if json {
         let text = error.render().to_string();
         let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
         drop(print(&Failure::usage("usage", first).json()));
     }
-    eprint!("{}", error.render());
+    let message = error.render();
+    match terminal.colours_errors() {
+        true => eprint!("{}", message.ansi()),
+        false => eprint!("{message}"),
+    }
     ExitCode::from(Status::Usage.code())
 }

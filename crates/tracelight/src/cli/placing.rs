@@ -25,7 +25,7 @@ pub(crate) struct PlacementArgs {
     /// Mirror the picture left to right
     #[arg(long)]
     pub(crate) flip: bool,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Picture")]
     pub(crate) choice: ChoiceArgs,
 }
 

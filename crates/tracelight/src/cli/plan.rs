@@ -23,27 +23,27 @@ pub(crate) struct PlanArgs {
     /// A drawing (SVG, DXF, JSON, CSV) or a picture; - is standard input
     drawing: String,
     /// Write the plan, a row a millisecond, to this CSV file
-    #[arg(short, long, value_name = "FILE.csv")]
+    #[arg(help_heading = "Output", short, long, value_name = "FILE.csv")]
     out: Option<String>,
     /// Draw the plan, its lit way in colours, into this SVG
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(help_heading = "Output", long, value_name = "FILE.svg")]
     preview: Option<String>,
     /// What the colours of the preview say
-    #[arg(long, value_enum, default_value_t, requires = "preview")]
+    #[arg(help_heading = "Output", long, value_enum, default_value_t, requires = "preview")]
     colour_by: ColourByName,
     /// What the order is to save
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(help_heading = "Time and order", long, value_enum, default_value_t)]
     order_by: OrderByName,
     /// How much work goes into the order; the same amount gives the same order
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(help_heading = "Time and order", long, value_enum, default_value_t)]
     order_effort: OrderEffortName,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Picture")]
     tracing: TracingArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Size and place")]
     placement: PlacementArgs,
     #[command(flatten)]
     driving: DrivingArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Output")]
     pub(crate) voice: Voice,
 }
 

@@ -22,47 +22,53 @@ pub(crate) struct TraceArgs {
     /// standard input
     #[arg(required_unless_present = "camera", conflicts_with = "camera")]
     picture: Option<String>,
-    #[command(flatten)]
-    pub(crate) eye: EyeArgs,
-    /// The head as `calibrate head` has found it; without it the laser draws dots first, and the camera finds it
-    #[arg(long, value_name = "FILE.toml", requires = "camera")]
-    pub(crate) head: Option<String>,
-    /// The head was just powered up, or lost count: it finds out where it points before it draws, by dots that the camera sees, as with `calibrate head --home`. They may fall
-    /// anywhere: keep eyes away. A simulated head is then powered up wherever somebody left it
-    #[arg(long, requires = "camera", conflicts_with = "dry_run")]
-    pub(crate) home: bool,
-    /// Most further images of the camera that are taken where one shows no markers or no figure
-    #[arg(long, value_name = "N", default_value_t = 5, requires = "camera", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
-    pub(crate) retakes: u32,
-    #[command(flatten)]
-    pub(crate) follow: FollowArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Picture")]
     pub(crate) tracing: TracingArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Size and place")]
     pub(crate) placement: PlacementArgs,
     #[command(flatten)]
     pub(crate) driving: DrivingArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Rig and law")]
     pub(crate) law: LawArgs,
+    #[command(flatten, next_help_heading = "Camera")]
+    pub(crate) eye: EyeArgs,
+    /// The head as `calibrate head` has found it; without it the laser draws dots first, and the camera finds it
+    #[arg(help_heading = "Camera", long, value_name = "FILE.toml", requires = "camera")]
+    pub(crate) head: Option<String>,
+    /// The head was just powered up, or lost count: it finds out where it points before it draws, by dots that the camera sees, as with `calibrate head --home`. They may fall
+    /// anywhere: keep eyes away. A simulated head is then powered up wherever somebody left it
+    #[arg(help_heading = "Camera", long, requires = "camera", conflicts_with = "dry_run")]
+    pub(crate) home: bool,
+    /// Most further images of the camera that are taken where one shows no markers or no figure
+    #[arg(help_heading = "Camera", long, value_name = "N", default_value_t = 5, requires = "camera", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) retakes: u32,
+    #[command(flatten, next_help_heading = "Camera")]
+    pub(crate) follow: FollowArgs,
     /// Draw it that many times, each from power-up, the head identified between them; the figures are the last lap's
-    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(help_heading = "Time and order", long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) laps: u32,
     /// What differs from head to head is drawn from this seed
-    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
+    #[arg(
+        help_heading = "Simulation",
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        allow_hyphen_values = true
+    )]
     pub(crate) seed: u64,
     /// The simulated head was just powered up and nobody homed it: to see that nothing is drawn then
-    #[arg(long)]
+    #[arg(help_heading = "Simulation", long)]
     pub(crate) sim_unhomed: bool,
     /// Folder for the results [default: out/<the picture's name>/]
-    #[arg(long, value_name = "DIR")]
+    #[arg(help_heading = "Output", long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Everything, with the laser's gate held dark
-    #[arg(long)]
+    #[arg(help_heading = "Rig and law", long)]
     pub(crate) dry_run: bool,
     /// Show the report in the browser when done
-    #[arg(long)]
+    #[arg(help_heading = "Output", long)]
     pub(crate) open: bool,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Output")]
     pub(crate) voice: Voice,
 }
 

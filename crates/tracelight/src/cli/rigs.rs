@@ -26,6 +26,13 @@ enum RigsAction {
     },
 }
 
+impl RigsArgs {
+    /// Whether a rig file is printed.
+    pub(crate) const fn shows_file(&self) -> bool {
+        self.action.is_some()
+    }
+}
+
 pub(crate) fn run(args: &RigsArgs) -> Result<Answer, Failure> {
     match &args.action {
         None => Ok(list()),
@@ -39,7 +46,7 @@ pub(crate) fn run(args: &RigsArgs) -> Result<Answer, Failure> {
 
 fn list() -> Answer {
     let presets = RigConfig::presets();
-    let lines: Vec<String> = presets.iter().map(|p| format!("{:10} {}", p.name, p.description)).collect();
+    let lines: Vec<String> = presets.iter().map(|p| format!("{:10}  {}", p.name, p.description)).collect();
     let json: Vec<_> =
         presets.iter().map(|p| serde_json::json!({ "name": p.name, "description": p.description })).collect();
     Answer::new(lines.join("\n"), serde_json::json!({ "rigs": json }).to_string())

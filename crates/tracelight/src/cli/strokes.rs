@@ -32,28 +32,28 @@ pub(crate) struct StrokesArgs {
     /// Write the strokes here: .svg, .dxf, .gcode (GRBL laser) or .hpgl in true size, .ild (ILDA, over its whole
     /// range), .csv (metres), .json (pixels); a folder, with / at its end, for several pictures. What is done there
     /// already is kept
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(help_heading = "Output", short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Format of the files in a folder
-    #[arg(long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(FORMATS))]
+    #[arg(help_heading = "Output", long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(FORMATS))]
     format: Option<String>,
     /// Show in an SVG how the picture becomes ink: grey, light evened out, histogram and threshold, ink; of one picture
-    #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
+    #[arg(help_heading = "Output", long, value_name = "FILE.svg", value_parser = svg_file)]
     stages: Option<PathBuf>,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Picture")]
     tracing: TracingArgs,
     /// Also the pictures in the folders of a folder
-    #[arg(short, long)]
+    #[arg(help_heading = "Output", short, long)]
     recursive: bool,
     /// Pictures that are traced at the same time [default: as many as there are processors]
-    #[arg(short, long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(help_heading = "Output", short, long, value_name = "N", allow_hyphen_values = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Trace also pictures whose strokes are in the folder already
-    #[arg(long)]
+    #[arg(help_heading = "Output", long)]
     again: bool,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Size and place")]
     placement: PlacementArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Output")]
     pub(crate) voice: Voice,
 }
 

@@ -40,6 +40,9 @@ fn text(s: &Summary) -> String {
         ),
         false => "\nerror:  none to measure, nothing was lit".to_owned(),
     };
+    if s.simulated {
+        text += "\nrig:    simulated, nothing of this was measured on a real head";
+    }
     s.camera.iter().flat_map(EyeFigures::words).for_each(|line| text += &format!("\n{line}"));
     let lost = s.run.lost_counts;
     if (lost.pan, lost.tilt) != (0, 0) {

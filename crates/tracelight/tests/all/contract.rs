@@ -65,6 +65,20 @@ fn the_summary_has_the_fields_of_the_contract() {
     assert!(printed["seed"] == 0 && printed["version"].is_string());
 }
 
+/// Without hardware every run is simulated, and nobody is to take its figures for a head's.
+#[test]
+fn a_simulated_run_is_called_so_wherever_it_is_shown() {
+    let dir = folder("simulated");
+    let output = program().args(["trace", STAR, "--out"]).arg(&dir).output().unwrap();
+    assert!(stdout(&output).contains("\nrig:    simulated"), "{}", stdout(&output));
+    let text = |file: &str| std::fs::read_to_string(dir.join(file)).unwrap();
+    let summary: Value = serde_json::from_str(&text("summary.json")).unwrap();
+    assert_eq!(summary["simulated"], true);
+    let report = text("report.html");
+    let head = report.split("<main>").next().unwrap();
+    assert!(head.contains(">simulated</span>"), "{head}");
+}
+
 #[test]
 fn the_table_begins_with_the_columns_of_the_contract() {
     let dir = folder("columns");

@@ -8,6 +8,7 @@ mod batch;
 mod calibrate;
 mod camera;
 mod circles;
+mod command_lines;
 mod contract;
 mod device;
 mod examples;

@@ -27,9 +27,9 @@ use crate::named;
                   the camera sees where they are, and pose, laser offset, axes, encoder zeroes and how late images come are those that fit them best. \
                   With --camera sim the room is simulated: head and camera stand millimetres and degrees from where they should, and how far the result truly is off is told.")]
 pub(super) struct HeadArgs {
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Camera")]
     eye: EyeArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Size and place")]
     placement: PlacementArgs,
     #[command(flatten)]
     driving: DrivingArgs,
