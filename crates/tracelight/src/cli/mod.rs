@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod advice;
 pub(crate) mod answer;
 mod calibrate;
 pub(crate) mod choosing;
@@ -161,6 +162,9 @@ fn refuse(terminal: Terminal, error: &clap::Error, json: bool) -> ExitCode {
         let text = if terminal.colours_output() { help.ansi().to_string() } else { help.to_string() };
         print(text.trim_end());
         return ExitCode::SUCCESS;
+    }
+    if let Some(failure) = advice::advice(error) {
+        return report(terminal, json, json, &failure);
     }
     if json {
         let text = error.render().to_string();
