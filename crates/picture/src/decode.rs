@@ -119,6 +119,28 @@ fn image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
         .unwrap_or_else(|| Err(broken(path, "its decoder gave up on it")))
 }
 
+/// What to do about a file of a kind that people have and that is not read here, by its first bytes.
+fn way_out(bytes: &[u8]) -> Option<&'static str> {
+    const HEIC: [&[u8]; 7] = [b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1"];
+    match bytes {
+        [_, _, _, _, b'f', b't', b'y', b'p', brand @ ..]
+            if HEIC.iter().any(|name| brand.starts_with(name)) =>
+        {
+            Some(
+                "it is a HEIC photo: share it as JPEG (iPhone: Settings, Camera, Formats, Most Compatible), or run heif-convert on it",
+            )
+        }
+        [b'%', b'P', b'D', b'F', ..] => Some(
+            "it is a PDF (or an Illustrator file): save its drawing as SVG (pdftocairo -svg, Inkscape), or its page as PNG (pdftoppm -png -r 200)",
+        ),
+        [b'%', b'!', b'P', b'S', ..] | [0xc5, 0xd0, 0xd3, 0xc6, ..] => {
+            Some("it is PostScript (EPS, Illustrator): open it with Inkscape and save it as SVG")
+        }
+        [b'8', b'B', b'P', b'S', ..] => Some("it is a Photoshop file: export it as PNG"),
+        _ => None,
+    }
+}
+
 fn broken(path: &str, what: &str) -> Failure {
     Failure::usage("malformed", format!("{path} is broken: {what}; save it again or give another file"))
 }
@@ -126,7 +148,8 @@ fn broken(path: &str, what: &str) -> Failure {
 fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
     let not_a_picture = || {
         let known = "PNG, JPEG, WebP, BMP, GIF, PNM, TIFF, SVG, DXF, JSON or CSV";
-        Failure::usage("not-a-picture", format!("{path} is none of {known}"))
+        let way = way_out(bytes).map_or_else(String::new, |way| format!("; {way}"));
+        Failure::usage("not-a-picture", format!("{path} is none of {known}{way}"))
     };
     let unread = |e: ImageError| match e {
         ImageError::Limits(_) => too_large(path, "more than the memory a picture may take"),

@@ -8,6 +8,8 @@ use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
+use crate::cli::nearest::nearest;
+
 /// A picture or a drawing; `-` is standard input. What it is, its content says, not its name.
 pub(crate) fn picture(path: &str) -> Result<Source, Failure> {
     decode(path, &files::read(path)?)
@@ -36,9 +38,17 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
     if let Some(preset) = RigConfig::preset(name) {
         return Ok(preset);
     }
+    if is_port(name) {
+        let message = format!(
+            "{name}: no real head can be driven yet, only simulated ones: a preset that `tracelight rigs` lists, or a rig file"
+        );
+        return Err(Failure::usage("rig-file", message));
+    }
     if !name.ends_with(".toml") && !std::path::Path::new(name).exists() {
         let known: Vec<String> = RigConfig::presets().into_iter().map(|p| p.name).collect();
-        let message = format!("{name} is no preset ({}) and no rig file", known.join(", "));
+        let near = nearest(name, known.iter().map(String::as_str));
+        let hint = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
+        let message = format!("{name} is no preset ({}) and no rig file{hint}", known.join(", "));
         return Err(Failure::usage("rig-file", message));
     }
     let bytes = match std::fs::metadata(name) {
@@ -46,6 +56,13 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
         _ => files::read(name)?,
     };
     rigfile::read(name, bytes)
+}
+
+/// Whether a name is that of a serial port, where people have a board.
+fn is_port(name: &str) -> bool {
+    let number = name.strip_prefix("COM").or_else(|| name.strip_prefix("com"));
+    name.starts_with("/dev/")
+        || number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
 }
 
 /// Writes a rig's model, what was identified of it and how it is driven into the rig file it came from, whole or not at all.

@@ -1,7 +1,9 @@
 //! Quantities as people type them: a number with its unit.
 //!
 //! `24in`, `0.6m`, `1ft/s`, `15deg`: each quantity has a type that parses its units and nothing else, holds SI, and
-//! prints SI. A bare number is an error that says which units fit.
+//! prints SI. A bare number is an error that says which units fit. Signs and words are read too: `24"`, `5'6"`, `15°`, `3 feet`.
+
+mod written;
 
 use std::fmt;
 use std::str::FromStr;
@@ -28,6 +30,14 @@ pub enum UnitError {
         unit: String,
         /// What fits.
         units: String,
+    },
+    /// A comma where numbers here have a point.
+    #[error("{text}: numbers have a point here, no comma; write {point}")]
+    Comma {
+        /// As typed.
+        text: String,
+        /// The same with a point.
+        point: String,
     },
     /// No number in front.
     #[error("{text} is no number with a unit; write it as 1{first}, with one of {units}")]
@@ -92,6 +102,9 @@ pub fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError> {
         let text = text.chars().take(LONGEST).chain("…".chars()).collect();
         return Err(UnitError::Number { text, units: names(), first });
     }
+    if let Some(feet) = units.iter().find(|u| u.0 == "in").zip(written::feet_and_inches(text)) {
+        return Ok(feet.1 * feet.0.1);
+    }
     let (number, unit) = split(text);
     let Ok(value) = number.parse::<f64>() else {
         return Err(UnitError::Number { text: text.into(), units: names(), first });
@@ -100,14 +113,36 @@ pub fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError> {
         return Err(UnitError::Number { text: text.into(), units: names(), first });
     }
     if unit.is_empty() {
-        return Err(UnitError::Bare { text: text.into(), units: names(), first });
+        return Err(UnitError::Bare { text: text.into(), units: names(), first: likely(value, units) });
     }
-    let factor = units.iter().find(|u| u.0 == unit).map(|u| u.1);
-    factor.map(|f| value * f).ok_or_else(|| UnitError::Unit {
-        text: text.into(),
-        unit: unit.into(),
-        units: names(),
+    if let Some(factor) = factor(unit, units) {
+        return Ok(value * factor);
+    }
+    Err(match written::with_point(text) {
+        Some(point) => UnitError::Comma { text: text.into(), point },
+        None => UnitError::Unit { text: text.into(), unit: unit.into(), units: names() },
     })
+}
+
+/// What one of a unit is in SI, however it is written.
+fn factor(unit: &str, units: &[Unit]) -> Option<f64> {
+    let named = |name: &str| units.iter().find(|u| u.0 == name).map(|u| u.1);
+    named(unit).or_else(|| {
+        let (name, share) = written::meant(unit)?;
+        named(&name).map(|one| one * share)
+    })
+}
+
+/// The unit to show in an example of a number that has none: of lengths, the one in which people give so many.
+fn likely(value: f64, units: &[Unit]) -> &'static str {
+    let name = match value.abs() {
+        _ if usual(units) != "in" => return usual(units),
+        v if v < 1.0 => "m",
+        v if v < 10.0 => "ft",
+        v if v < 100.0 => "in",
+        _ => "mm",
+    };
+    units.iter().map(|u| u.0).find(|&u| u == name).unwrap_or_else(|| usual(units))
 }
 
 /// The unit to show in an example: the one people type most.
@@ -255,6 +290,60 @@ mod tests {
         }
         assert!(("1ft/s".parse::<Speed>().unwrap().0 - 0.3048).abs() < 1e-15);
         assert!(("15deg".parse::<Angle>().unwrap().0 - 0.261_799_387_799_149_4).abs() < 1e-15);
+    }
+
+    #[test]
+    fn units_may_be_written_as_people_write_them() {
+        for (text, metres) in [
+            ("24\"", 0.6096),
+            ("24″", 0.6096),
+            ("24inches", 0.6096),
+            ("1 inch", 0.0254),
+            ("24IN", 0.6096),
+            ("3'", 0.9144),
+            ("3 feet", 0.9144),
+            ("5'6\"", 1.6764),
+            ("-5'6\"", -1.6764),
+            ("5' 6 in", 1.6764),
+            ("5ft6in", 1.6764),
+            ("5'6.5", 1.6891),
+            ("2 metres", 2.0),
+            ("250µm", 2.5e-4),
+            ("250um", 2.5e-4),
+        ] {
+            assert!((length(text) - metres).abs() < 1e-12, "{text}");
+        }
+        for text in ["5'13\"", "5ft6", "5.5'6\"", "5'6m", "5'6'", "1\"2'", "'", "\"", "5''6"] {
+            assert!(text.parse::<Length>().is_err(), "{text}");
+        }
+        assert!(("15°".parse::<Angle>().unwrap().0 - 15.0 * DEG).abs() < 1e-15);
+        assert!(("2 feet/sec".parse::<Speed>().unwrap().0 - 0.6096).abs() < 1e-15);
+        assert!(("90°/s".parse::<AngularSpeed>().unwrap().0 - 90.0 * DEG).abs() < 1e-12);
+        assert!(("90°/s²".parse::<AngularAcceleration>().unwrap().0 - 90.0 * DEG).abs() < 1e-12);
+        // of something else still
+        assert!("15\"".parse::<Angle>().is_err() && "15°".parse::<Length>().is_err());
+    }
+
+    #[test]
+    fn a_decimal_comma_is_answered_with_a_point() {
+        for (text, wanted) in [
+            ("2,4m", "write 2.4m"),
+            ("-2,45 m", "write -2.45 m"),
+            ("1,000mm", "write 1.000mm, or 1000mm for thousands"),
+            ("2,4", "write 2.4"),
+        ] {
+            let message = text.parse::<Length>().unwrap_err().to_string();
+            assert!(message.ends_with(wanted), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn an_example_is_of_the_size_that_is_likely() {
+        for (text, wanted) in [("0.6", "0.6m"), ("3", "3ft"), ("24", "24in"), ("600", "600mm")] {
+            let message = text.parse::<Length>().unwrap_err().to_string();
+            assert!(message.ends_with(&format!("such as {wanted}")), "{message}");
+        }
+        assert!("24".parse::<Angle>().unwrap_err().to_string().ends_with("such as 24deg"));
     }
 
     #[test]

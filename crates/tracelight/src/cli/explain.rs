@@ -2,6 +2,7 @@ use clap::Args;
 use tracelight_rig::{Darkness, Fault};
 use tracelight_task::Failure;
 
+use crate::cli::nearest::nearest;
 use crate::cli::{Answer, Voice};
 
 /// Say what a code in a message, a summary or a log means, and what to do
@@ -197,9 +198,11 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Failure> {
         let lines: Vec<String> = all.iter().map(|(code, words)| format!("{code:18}  {words}")).collect();
         return Ok(Answer::new(lines.join("\n"), json(&all)));
     };
+    let near = nearest(code, all.iter().map(|(code, _)| *code));
     let found: Vec<_> = all.into_iter().filter(|(c, _)| c == code).collect();
     let Some((_, words)) = found.first() else {
-        let message = format!("{code} is no code; `tracelight explain` lists all of them");
+        let hint = near.map_or_else(String::new, |near| format!(" did you mean {near}?"));
+        let message = format!("{code} is no code;{hint} `tracelight explain` lists all of them");
         return Err(Failure::usage("usage", message));
     };
     Ok(Answer::new(words, json(&found)))

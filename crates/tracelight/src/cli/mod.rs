@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod advice;
 pub(crate) mod answer;
 mod calibrate;
 pub(crate) mod choosing;
@@ -170,6 +171,9 @@ fn refuse(terminal: Terminal, error: &clap::Error, json: bool) -> ExitCode {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => report(terminal, false, false, &failure),
         };
+    }
+    if let Some(failure) = advice::advice(error) {
+        return report(terminal, json, json, &failure);
     }
     if json {
         let text = error.render().to_string();

@@ -139,3 +139,66 @@ fn colour_is_for_terminals_and_for_who_asks() {
     // what it has always been: a stroke's colour
     check_wrong(&["plan", "examples/star.png", "--color", "purplish"], &["is no colour"]);
 }
+
+#[test]
+fn quantities_are_read_as_people_write_them() {
+    let width = |text: &str| {
+        let output = run(&["strokes", "examples/star.png", "--json", "--quiet", "--width", text]);
+        assert!(output.status.success(), "{text}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    ["24\"", "5'6\"", "24inches", "3 feet", "600 mm", "0.6m"].into_iter().for_each(width);
+    let wrong = |flag: &str, text: &str, wanted: &str| {
+        check_wrong(&["plan", "examples/star.png", flag, text], &[wanted]);
+    };
+    wrong("--width", "2,4m", "write 2.4m");
+    wrong("--distance", "3", "such as 3ft");
+    wrong("--width", "24", "24 has no unit; write it with one of m, mm, cm, in, ft, such as 24in");
+    wrong("--rotate", "15", "such as 15deg");
+    wrong("--width", "15°", "the unit ° does not fit here");
+}
+
+#[test]
+fn wrong_flags_and_names_are_answered_with_what_to_type() {
+    let cases: &[(&[&str], &[&str])] = &[
+        (
+            &["trace"],
+            &["what is to be drawn?", "tracelight trace examples/house.png --open", "--camera SOURCE"],
+        ),
+        (&["strokes"], &["of which pictures?", "tracelight strokes drawing.jpg"]),
+        (&["plan"], &["of which drawing", "tracelight plan examples/star.png"]),
+        (
+            &["examples/star.png", "--camera", "sim"],
+            &["Either a PICTURE, or what a camera sees", "--camera sim:PICTURE"],
+        ),
+        (&["trace", "--camera", "sim", "examples/star.png"], &["Either a PICTURE, or what a camera sees"]),
+        (&["trace", "--text", "hello"], &["text is not drawn yet", "Object to Path"]),
+        (
+            &["plan", "examples/star.png", "--rig", "reprot"],
+            &["no preset (report, worn)", "did you mean report?"],
+        ),
+        (&["plan", "examples/star.png", "--rig", "banana"], &["no preset (report, worn) and no rig file"]),
+        (&["plan", "examples/star.png", "--rig", "/dev/ttyUSB0"], &["no real head can be driven yet"]),
+        (&["plan", "examples/star.png", "--rig", "COM3"], &["no real head can be driven yet"]),
+        (&["explain", "following-eror"], &["did you mean following-error?"]),
+        (&["explain", "nonsense"], &["nonsense is no code", "lists all of them"]),
+        (&["plan", "examples/star.png", "--widht", "3m"], &["--width"]),
+    ];
+    cases.iter().for_each(|(line, wanted)| check_wrong(line, wanted));
+}
+
+#[test]
+fn a_file_of_a_kind_that_is_not_read_is_answered_with_how_to_convert_it() {
+    let dir = folder("kinds");
+    for (name, bytes, wanted) in [
+        ("phone.heic", &b"\0\0\0\x18ftypheic\0\0\0\0"[..], "share it as JPEG"),
+        ("plan.pdf", b"%PDF-1.7\n", "pdftocairo -svg"),
+        ("logo.eps", b"%!PS-Adobe-3.0 EPSF-3.0\n", "save it as SVG"),
+        ("old.eps", b"\xc5\xd0\xd3\xc6\x1e\0\0\0", "save it as SVG"),
+        ("layers.psd", b"8BPS\0\x01", "export it as PNG"),
+        ("other.xyz", b"\x01\x02\x03\x04 what is this", "is none of PNG"),
+    ] {
+        let path = dir.join(name);
+        std::fs::write(&path, bytes).unwrap();
+        check_wrong(&["strokes", path.to_str().unwrap()], &["is none of PNG", wanted]);
+    }
+}
