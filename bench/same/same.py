@@ -27,12 +27,12 @@ FILES = {
     "path.csv": "t_s,pan_rad,tilt_rad\n" + "".join(f"{k / 100},{0.1 * k / 100},{-0.05 * k / 100}\n" for k in range(101)),
     "binary.toml": b"\xff\xfe\x00rig",
     "broken.csv": "axis,count,way,spot_m\npan,12,3,0.1\n",
-    "own.toml": "name = \"own\"  # a head of one's own\n",
+    "own.toml": "base = \"report\"\nname = \"own\"  # a head of one's own\n",
     "torques.csv": "axis,torque_nm,velocity_rad_s\n" + "".join(f"tilt,{0.02 * way * k + 0.03 * way},{way * k}\n" for way in (1, -1) for k in (1, 2, 3, 5)),
     "amperes.csv": "axis,volt,ampere\n" + "".join(f"pan,{k / 4},{0.11 * k / 4 + 0.001 * (k % 2)}\n" for k in range(-8, 9)),
     "broken.toml": "name = \"x\"\n[model.pan.motor]\nlimit = 9\n",
     "broken.svg": "<svg xmlns=\"http://www.w3.org/2000/svg\"><path d=\"M 0 0 L\"",
-    "mine.toml": "name = \"mine\" # my own\n\n[control]\nlaw = \"pid\" # for now\n",
+    "mine.toml": "base = \"report\"\nname = \"mine\" # my own\n\n[control]\nlaw = \"pid\" # for now\n",
     "plan.svg": '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
     '<g id="a"><path d="M10 10 C 30 0 50 40 90 70" stroke="#ff0000" fill="none"/></g><circle cx="40" cy="40" r="20"/></svg>',
 }

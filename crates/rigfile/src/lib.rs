@@ -1,8 +1,8 @@
 //! Rig files, camera files and head files: text to values and back, comments kept.
 //!
 //! A rig file has two halves. `[model]` is what planner and controller believe; `[truth]` is what the simulated head is,
-//! and defaults to the model; `[identified]` is what was identified of this very head besides. Keys that are not given keep
-//! the values of the preset `report`. What a camera and a head in front of a wall are known by lies in files of their own.
+//! and defaults to the model; `[identified]` is what was identified of this very head besides. A file has every key, or
+//! names with `base` the preset whose the others are. What a camera and a head in front of a wall are known by lies in files of their own.
 
 pub mod camera;
 mod caret;
@@ -11,14 +11,16 @@ mod hand_tuned;
 pub mod head;
 mod keys;
 mod pages;
+mod possible;
 mod rig;
 mod safety;
 mod save;
 mod text;
 mod timing;
+mod whole;
 
 pub use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
 pub use pages::PageName;
-pub use rig::{parse, read, write};
+pub use rig::{RigFile, parse, read, write};
 pub use save::saved;
 pub use timing::Timing;

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use toml_edit::{Document, Item, TableLike, Value};
-use tracelight_plant::Wear;
 use tracelight_sim::{Identified, LightSettings, Model, RigConfig};
 use tracelight_task::Failure;
 use tracelight_units as units;
@@ -12,21 +11,32 @@ use crate::caret::Mark;
 use crate::found::identified_keys;
 use crate::hand_tuned::rig_keys;
 use crate::keys::{Choice, Key, Slot, model_keys};
-use crate::safety::{STANDING, impossible_park};
+use crate::possible::possible;
+use crate::safety::STANDING;
 use crate::text::{Kind, text_of};
+use crate::whole::{BASE, LeftOut, preset};
 
 /// Largest rig file, bytes: a hundred times what `rigs show` prints.
 const MOST_BYTES: usize = 1 << 20;
 
 const KIND: Kind = Kind { name: "rig", code: "rig-file", most_bytes: MOST_BYTES };
 
-/// The rig of a file's bytes; of none at all the preset `report`, whose keys hold where others are left out.
+/// What is in a rig file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigFile {
+    /// The rig.
+    pub rig: RigConfig,
+    /// What its owner should know of the file: that it is older than some keys.
+    pub remark: Option<String>,
+}
+
+/// The rig of a file's bytes: one that has every key, or that names with `base` the preset whose the others are.
 ///
 /// # Errors
-/// `rig-file`, with file, line and caret.
-pub fn read(file: &str, bytes: Vec<u8>) -> Result<RigConfig, Failure> {
+/// `rig-file`, with file, line and caret, or the first key that is missing.
+pub fn read(file: &str, bytes: Vec<u8>) -> Result<RigFile, Failure> {
     let text = text_of(&KIND, file, bytes)?;
-    parse(file, &text).map_err(|message| Failure::usage(KIND.code, message))
+    parsed(file, &text).map_err(|message| Failure::usage(KIND.code, message))
 }
 
 /// One value of a file with where it stands.
@@ -37,19 +47,23 @@ struct Entry<'a> {
     key_span: Option<Range<usize>>,
 }
 
-/// Parses a file.
+/// Parses a file, as [`read`] does.
 ///
 /// # Errors
 /// The whole message, with file, line and caret.
 pub fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
+    parsed(file, text).map(|file| file.rig)
+}
+
+fn parsed(file: &str, text: &str) -> Result<RigFile, String> {
     let document = Document::parse(text).map_err(|e| {
         let place = Mark { file, text, span: e.span() };
         place.message(&format!("not valid TOML: {}", e.message().trim()))
     })?;
     let mut entries = Vec::new();
     flatten("", document.as_table(), &mut entries);
-    let mut config = RigConfig::report();
-    config.truth.wear = Wear::NONE;
+    let base = based(file, text, &entries)?;
+    let mut config = base.clone().unwrap_or_else(RigConfig::report);
     let models = model_keys();
     // the model first: the truth starts from it, wherever it stands in the file
     for entry in &entries {
@@ -65,91 +79,27 @@ pub fn parse(file: &str, text: &str) -> Result<RigConfig, String> {
         let place = Mark { file, text, span: entry.value.span() };
         set_other(&models, &mut config, entry, &place).unwrap_or_else(|| Err(unknown(file, text, entry)))?;
     }
+    let remark = if base.is_none() { whole(file, text, &entries)? } else { None };
     if !entries.iter().any(|entry| entry.path == STANDING) {
         config.light.standing_s = LightSettings::usual_standing_s(config.light.power_w);
     }
-    if let Some(trouble) = impossible_laser(&config).or_else(|| impossible_park(&config)) {
-        return Err(format!("{file}: {trouble}"));
-    }
-    for (half, model) in [("model", &config.model), ("truth", &config.truth.model)] {
-        if let Some(trouble) = impossible(model) {
-            return Err(format!("{file}: [{half}] {trouble}"));
-        }
-    }
-    if let Some(trouble) = impossible_belts(&config) {
-        return Err(format!("{file}: [truth.wear] {trouble}"));
-    }
-    Ok(config)
+    possible(&config).map_err(|trouble| format!("{file}: {trouble}"))?;
+    Ok(RigFile { rig: config, remark })
 }
 
-/// A laser whose label does not tell of its power, or one that is not dark as soon as it must be.
-fn impossible_laser(config: &RigConfig) -> Option<String> {
-    const SHORTEST_S: f64 = 0.01; // a dot that is light at all, and what a relay may take longer
-    let LightSettings { class, power_w, standing_s, .. } = config.light;
-    if power_w > class.most_w() {
-        return Some(format!(
-            "[laser] power: {} mW is more than the {} mW of class {}: set laser.class to what its label says",
-            1e3 * power_w,
-            1e3 * class.most_w(),
-            class.name()
-        ));
-    }
-    let relay_s = config.model.relay.off_s;
-    (standing_s < relay_s + SHORTEST_S).then(|| {
-        format!(
-            "[safety] standing: light may stand for {standing_s} s, and this laser's relay takes {relay_s} s to open: it is too slow for \
-             that light, or model.relay.off is not its own"
-        )
-    })
+/// The preset that a file names as its base, if it does.
+fn based(file: &str, text: &str, entries: &[Entry<'_>]) -> Result<Option<RigConfig>, String> {
+    let Some(entry) = entries.iter().find(|entry| entry.path == BASE) else { return Ok(None) };
+    let place = Mark { file, text, span: entry.value.span() };
+    let name = entry.value.as_str().ok_or_else(|| place.message(&format!("{BASE} must be text")))?;
+    preset(name).map(Some).map_err(|what| place.message(&format!("{BASE}: {what}")))
 }
 
-/// Least inertia that can be stepped, kg m².
-const LEAST_KG_M2: f64 = 1e-9;
-
-/// Belts that cannot be stepped.
-fn impossible_belts(config: &RigConfig) -> Option<String> {
-    const FASTEST: f64 = 1.5e3; // 1/s: what is damped faster than in some steps of 0.1 ms explodes
-    let wear = &config.truth.wear;
-    let (bodies, resonance) = (&config.truth.model.bodies, wear.belt_resonance_hz);
-    if resonance == 0.0 {
-        return None;
-    }
-    let (mass, rotors) = (bodies.lumped().mass(0.0), bodies.rotor_kg_m2);
-    let least = rotors.pan.min(rotors.tilt).min(mass.m11 - rotors.pan).min(mass.m22 - rotors.tilt);
-    if least < LEAST_KG_M2 {
-        return Some(format!(
-            "belt_resonance: a belt needs inertia on both sides, {LEAST_KG_M2:e} kgm2 at least, and has {least:e} kgm2: check \
-             rotor_inertia and bodies of [truth], or set it to 0Hz"
-        ));
-    }
-    let rate = std::f64::consts::TAU * resonance * (1.0 + 2.0 * wear.belt_damping);
-    (rate > FASTEST).then(|| {
-        let most = FASTEST / (std::f64::consts::TAU * (1.0 + 2.0 * wear.belt_damping));
-        format!(
-            "belt_resonance: with that belt_damping at most {most:.0}Hz can be simulated, not {resonance}Hz"
-        )
-    })
-}
-
-/// What no head can be, however sound each number is by itself.
-fn impossible(model: &Model) -> Option<String> {
-    const STRONGEST_COUPLING: f64 = 0.5; // of M11 and M22: the plant resolves friction joint by joint
-    let lumped = model.bodies.lumped();
-    for degrees in -180..=180 {
-        let mass = lumped.mass(f64::from(degrees).to_radians());
-        let least = mass.m11.min(mass.m22);
-        if least < LEAST_KG_M2 {
-            let what = format!("the inertia at a joint is {least:e} kgm2 at {degrees}° of tilt");
-            return Some(format!(
-                "{what}, and must be at least {LEAST_KG_M2:e}: give masses, inertias, rotors"
-            ));
-        }
-        if mass.m12.abs() > STRONGEST_COUPLING * least {
-            let what = format!("the joints' coupling inertia is {:e} kgm2 at {degrees}° of tilt", mass.m12);
-            return Some(format!("{what}, more than half of a joint's own ({least:e}): check the tilt body"));
-        }
-    }
-    None
+/// What to remark of a file without a base that is whole.
+fn whole(file: &str, text: &str, entries: &[Entry<'_>]) -> Result<Option<String>, String> {
+    let given: Vec<&str> = entries.iter().map(|entry| entry.path.as_str()).collect();
+    let left_out = LeftOut::of(&given);
+    left_out.trouble(file, text).map_or_else(|| Ok(left_out.remark(file)), Err)
 }
 
 /// Sets a key outside `[model]`; `None` if there is no such key.
@@ -172,6 +122,7 @@ fn set_other(
             config.identified.get_or_insert(Identified::NONE).date = s.value().clone();
             return Some(Ok(()));
         }
+        (BASE, _) => return Some(Ok(())), // what everything else started from
         ("name" | "description" | "identified.date", _) => {
             return Some(Err(place.message(&format!("{} must be text", entry.path))));
         }
@@ -225,7 +176,7 @@ fn known_paths() -> Vec<String> {
     let halves =
         ["model", "truth"].map(|half| model_keys().into_iter().map(move |k| format!("{half}.{}", k.path)));
     let found = identified_keys().into_iter().map(|k| format!("identified.{}", k.path));
-    let texts = ["name", "description", "identified.date"].map(str::to_owned);
+    let texts = [BASE, "name", "description", "identified.date"].map(str::to_owned);
     let own = rig_keys().into_iter().map(|k| k.path.to_owned()).chain(texts);
     halves.into_iter().flatten().chain(found).chain(own).collect()
 }
@@ -274,13 +225,15 @@ fn number<T>(key: &Key<T>, value: &Value) -> Result<f64, String> {
     }
 }
 
-/// A rig as a file, every key with its meaning.
+/// A rig as a file, every key with its meaning. What need not be there comes before the last keys that must, so that what is cut off
+/// anywhere is not whole.
 #[must_use]
 pub fn write(config: &RigConfig) -> String {
     let mut config = config.clone();
     let mut text = String::from(
         "# A rig file for Tracelight. [model]: what planner and controller believe. [truth]: what the simulated head\n\
-         # is; keys left out there are as in [model]. Keys left out elsewhere are as in the preset `report`.\n\n",
+         # is; keys left out there are as in [model]. This file has all other keys; one that begins\n\
+         # with `base = \"report\"` may leave out what is as in that preset.\n\n",
     );
     text += &format!("name = {}\ndescription = {}\n", quoted(&config.name), quoted(&config.description));
     let models = model_keys();
@@ -356,6 +309,15 @@ pub(crate) fn shown<T>(key: &Key<T>, from: &mut T) -> String {
 mod tests {
     use super::*;
 
+    /// With what it leaves out from the preset `report`.
+    fn based(text: &str) -> Result<RigConfig, String> {
+        parse("my.toml", &format!("base = \"report\"\n{text}"))
+    }
+
+    fn refused(text: &str) -> String {
+        based(text).unwrap_err()
+    }
+
     fn error(text: &str) -> String {
         parse("my.toml", text).unwrap_err()
     }
@@ -370,7 +332,7 @@ mod tests {
     #[test]
     fn the_truth_starts_from_the_model_wherever_that_stands() {
         let text = "[truth.pan.motor]\nlimit = \"9V\"\n[model.pan.motor]\ntorque_per_volt = \"0.05Nm/V\"\n";
-        let rig = parse("my.toml", text).unwrap();
+        let rig = based(text).unwrap();
         assert_eq!(rig.truth.model.motors.pan.torque_nm_per_v, 0.05);
         assert_eq!((rig.model.motors.pan.limit_v, rig.truth.model.motors.pan.limit_v), (10.0, 9.0));
     }
@@ -378,8 +340,8 @@ mod tests {
     #[test]
     fn a_host_may_be_silent_for_a_second_and_light_stray_by_50_mm_at_most() {
         let control = |key: &str, value: &str| format!("[control]\n{key} = \"{value}\"\n");
-        assert!(parse("my.toml", &control("host_silence", "1s")).is_ok());
-        assert!(parse("my.toml", &control("tolerance", "50mm")).is_ok());
+        assert!(based(&control("host_silence", "1s")).is_ok());
+        assert!(based(&control("tolerance", "50mm")).is_ok());
         let silence = error(&control("host_silence", "1.01s"));
         assert!(silence.contains("must be from 0.005s to 1s"), "{silence}");
         let tolerance = error(&control("tolerance", "51mm"));
@@ -406,29 +368,29 @@ mod tests {
     fn a_head_without_inertia_or_of_nothing_but_coupling_is_refused() {
         let none = "mass = \"0kg\"\ninertia_xx = \"0kgm2\"\ninertia_yy = \"0kgm2\"\ninertia_zz = \"0kgm2\"\n";
         let massless = format!("[truth.tilt]\nrotor_inertia = \"0kgm2\"\n[truth.tilt.body]\n{none}");
-        assert!(error(&massless).contains("[truth] the inertia at a joint"), "{}", error(&massless));
-        assert!(error("[truth.tilt.body]\ninertia_yz = \"10kgm2\"\n").contains("coupling"));
+        assert!(refused(&massless).contains("[truth] the inertia at a joint"), "{}", refused(&massless));
+        assert!(refused("[truth.tilt.body]\ninertia_yz = \"10kgm2\"\n").contains("coupling"));
     }
 
     #[test]
     fn belts_that_cannot_be_simulated_are_refused() {
         let belt = "[truth.wear]\nbelt_resonance = ";
-        assert!(parse("my.toml", &format!("{belt}\"60Hz\"\n")).is_ok());
-        assert!(error(&format!("{belt}\"900Hz\"\nbelt_damping = 2.0\n")).contains("at most 48Hz"));
+        assert!(based(&format!("{belt}\"60Hz\"\n")).is_ok());
+        assert!(refused(&format!("{belt}\"900Hz\"\nbelt_damping = 2.0\n")).contains("at most 48Hz"));
         let none = format!("{belt}\"25Hz\"\n[truth.pan]\nrotor_inertia = \"0kgm2\"\n");
-        assert!(error(&none).contains("inertia on both sides"), "{}", error(&none));
+        assert!(refused(&none).contains("inertia on both sides"), "{}", refused(&none));
     }
 
     #[test]
     fn light_may_stand_as_long_as_its_power_allows_or_as_somebody_says() {
-        let stands = |text: &str| parse("my.toml", text).unwrap().light.standing_s;
+        let stands = |text: &str| based(text).unwrap().light.standing_s;
         assert_eq!((stands(""), stands("[laser]\npower = \"0.2mW\"\n")), (1.0, 1.0));
         assert_eq!(stands("[laser]\nclass = \"3R\"\npower = \"5 mW\"\n"), 0.2);
         assert_eq!(stands("[laser]\npower = \"5 mW\"\nclass = \"4\"\n[safety]\nstanding = \"30ms\"\n"), 0.03);
         assert_eq!(stands("[laser]\nclass = \"4\"\npower = \"2W\"\n"), 0.02);
-        let beyond = error("[laser]\npower = \"5mW\"\n");
+        let beyond = refused("[laser]\npower = \"5mW\"\n");
         assert!(beyond.contains("[laser] power: 5 mW is more than the 1 mW of class 2"), "{beyond}");
-        let slow = error("[laser]\nclass = \"4\"\npower = \"2W\"\n[model.relay]\noff = \"30ms\"\n");
+        let slow = refused("[laser]\nclass = \"4\"\npower = \"2W\"\n[model.relay]\noff = \"30ms\"\n");
         assert!(slow.contains("[safety] standing: light may stand for 0.02 s"), "{slow}");
         assert!(error("[safety]\nstanding = \"20s\"\n").contains("must be from 0.02s to 10s"));
         assert!(error("[laser]\nclass = 2\n").contains("must be one of 1, 1M, 2"));
@@ -447,17 +409,17 @@ mod tests {
     #[test]
     fn a_laser_that_stays_on_is_parked_where_both_joints_reach_or_nowhere() {
         let parked = |text: &str| {
-            let park = parse("my.toml", text).unwrap().safety.park_rad;
+            let park = based(text).unwrap().safety.park_rad;
             (park.pan, park.tilt)
         };
         assert_eq!(parked(""), (None, None));
         let park = "[safety]\npark_pan = \"-0.5rad\"\npark_tilt = \"0.7rad\"\n";
         assert_eq!(parked(park), (Some(-0.5), Some(0.7)));
-        let own = parse("my.toml", park).unwrap();
+        let own = based(park).unwrap();
         assert_eq!(parse("my.toml", &write(&own)).unwrap(), own);
-        let half = error("[safety]\npark_tilt = \"0.7rad\"\n");
+        let half = refused("[safety]\npark_tilt = \"0.7rad\"\n");
         assert!(half.contains("safety.park_tilt without safety.park_pan"), "{half}");
-        let beyond = error(&format!("{park}[model.tilt]\nrange_max = \"0.6rad\"\n"));
+        let beyond = refused(&format!("{park}[model.tilt]\nrange_max = \"0.6rad\"\n"));
         assert!(beyond.contains("safety.park_tilt: 0.7 rad is outside of what tilt turns"), "{beyond}");
         // what a rig does not have stands in its file as a comment
         assert!(write(&RigConfig::report()).contains("\n# park_pan = \"0rad\""));

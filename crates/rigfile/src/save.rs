@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn what_was_identified_is_written_with_comments_kept_and_the_simulated_head_as_it_was() {
-        let text = "# my rig\n[model.pan.motor] # weak\ntorque_per_volt = \"0.07Nm/V\" # guessed\nlimit = \"9V\"\n\n\
+        let text = "# my rig\nbase = \"report\"\n[model.pan.motor] # weak\ntorque_per_volt = \"0.07Nm/V\" # guessed\nlimit = \"9V\"\n\n\
                     [truth.wear]\nbacklash = \"0.001rad\" # seen\n";
         let old = parse("my.toml", text).unwrap();
         let mut new = old.clone();

@@ -51,11 +51,17 @@ pub(crate) fn rig(name: &str) -> Result<RigConfig, Failure> {
         let message = format!("{name} is no preset ({}) and no rig file{hint}", known.join(", "));
         return Err(Failure::usage("rig-file", message));
     }
-    let bytes = match std::fs::metadata(name) {
-        Ok(about) if about.is_file() && about.len() == 0 => Vec::new(), // every key left out: the preset `report`
-        _ => files::read(name)?,
-    };
-    rigfile::read(name, bytes)
+    let file = rigfile::read(name, files::read(name)?)?;
+    file.remark.iter().for_each(|remark| say(remark));
+    Ok(file.rig)
+}
+
+/// A remark on standard error: files are read before there is a bar that it could disturb.
+#[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
+fn say(remark: &str) {
+    if !std::env::args_os().any(|argument| argument == "--quiet") {
+        eprintln!("note: {remark}");
+    }
 }
 
 /// Whether a name is that of a serial port, where people have a board.

@@ -150,7 +150,7 @@ fn a_head_that_is_bumped_is_dark_within_a_fifth_of_a_second_and_draws_on() {
 #[test]
 fn with_a_gyroscope_on_its_foot_no_light_goes_astray_before_it_is_found_again() {
     let rig = folder("gyroscope-rig").join("rig.toml");
-    std::fs::write(&rig, "[truth.gyroscope]\nfitted = true\n").unwrap();
+    std::fs::write(&rig, "base = \"report\"\n[truth.gyroscope]\nfitted = true\n").unwrap();
     let rig = rig.to_str().unwrap();
     let (found, said) = traced("camera-gyroscope", &["--rig", rig, "--sim-trouble", "head-bump=1@6"]);
     assert!(

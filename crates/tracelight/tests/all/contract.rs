@@ -259,7 +259,7 @@ fn a_rig_fault_darkens_stops_and_exits_with_3() {
     let dir = folder("fault");
     let rig = dir.join("weak.toml");
     // believed to be as strong as ever, its pan motor does nothing
-    std::fs::write(&rig, "[truth.pan.motor]\ntorque_per_volt = \"0.0001Nm/V\"\n").unwrap();
+    std::fs::write(&rig, "base = \"report\"\n[truth.pan.motor]\ntorque_per_volt = \"0.0001Nm/V\"\n").unwrap();
     let out = dir.join("out");
     let output =
         program().args(["trace", STAR, "--json", "--rig"]).arg(&rig).arg("--out").arg(&out).output().unwrap();

@@ -115,7 +115,7 @@ fn what_was_found_is_saved_with_the_files_comments() {
     let rig = dir.join("mine.toml");
     std::fs::write(
         &rig,
-        "name = \"mine\" # ours\n[model.pan.friction]\nviscous_pos = \"0.002Nms/rad\" # a guess\n[truth.pan.friction]\nviscous_pos = \"0.0009Nms/rad\"\n",
+        "name = \"mine\" # ours\nbase = \"report\"\n[model.pan.friction]\nviscous_pos = \"0.002Nms/rad\" # a guess\n[truth.pan.friction]\nviscous_pos = \"0.0009Nms/rad\"\n",
     )
     .unwrap();
     let before = std::fs::read_to_string(&rig).unwrap();

@@ -20,7 +20,11 @@ fn told(found: &Value, within: &Value, wanted: f64) {
 
 #[test]
 fn an_amplifier_is_told_from_its_motors_own_voltage() {
-    let (dir, rig) = written("lab-amplifier", "rig.toml", "[truth.wear]\nback_emf = \"0.005Nms/rad\"\n");
+    let (dir, rig) = written(
+        "lab-amplifier",
+        "rig.toml",
+        "base = \"report\"\n[truth.wear]\nback_emf = \"0.005Nms/rad\"\n",
+    );
     let out = dir.join("found");
     let command = ["amplifier", "--rig", &rig, "--out", out.to_str().unwrap()];
     let found = lab(&command);
@@ -61,7 +65,8 @@ fn play_and_slip_are_read_off_a_ruler() {
     let again = lab(&["backlash", &log, "--rig", "worn", "--out", dir.join("again").to_str().unwrap()]);
     near(&again["tilt"]["play_rad"], found["tilt"]["play_rad"].as_f64().unwrap(), 1e-9);
     // a counter that loses three edges in ten thousand is found out
-    let (lost_dir, rig) = written("lab-backlash-lost", "rig.toml", "[truth.wear]\nlost_counts = 0.0003\n");
+    let (lost_dir, rig) =
+        written("lab-backlash-lost", "rig.toml", "base = \"report\"\n[truth.wear]\nlost_counts = 0.0003\n");
     let found = lab(&["backlash", "--rig", &rig, "--axis", "pan", "--out", lost_dir.to_str().unwrap()]);
     assert!(
         found["pan"]["slips"] == true && found["pan"]["slip_counts"].as_f64().unwrap().abs() > 0.5,
@@ -88,7 +93,8 @@ fn an_encoders_edges_tell_its_disc_and_what_it_lost() {
     near(&again["pan"]["kinds_counts"][0], found["pan"]["kinds_counts"][0].as_f64().unwrap(), 1e-4);
     near(&again["tilt"]["eccentricity_counts"], 0.1, 0.005);
     let of = |lost_counts: f64| {
-        let text = format!("[truth.wear]\nedge_error = 0.1\nlost_counts = {lost_counts:?}\n");
+        let text =
+            format!("base = \"report\"\n[truth.wear]\nedge_error = 0.1\nlost_counts = {lost_counts:?}\n");
         let (lost_dir, rig) = written("lab-encoder-lost", "rig.toml", &text);
         lab(&["encoder", "--rig", &rig, "--axis", "tilt", "--out", lost_dir.to_str().unwrap()])
     };
@@ -123,7 +129,11 @@ fn a_frequency_response_comes_back_from_its_log() {
 
 #[test]
 fn a_relay_tunes_a_joint_and_writes_it_down() {
-    let (_, rig) = written("lab-relay", "rig.toml", "# mine\n[control]\ntolerance = \"3mm\" # wide\n");
+    let (_, rig) = written(
+        "lab-relay",
+        "rig.toml",
+        "# mine\nbase = \"report\"\n[control]\ntolerance = \"3mm\" # wide\n",
+    );
     for (joint, seed) in [("pan", "0"), ("tilt", "3")] {
         let tuned = lab(&[
             "relay",

@@ -385,7 +385,7 @@ fn what_the_routine_identifies_goes_to_a_rig_file_that_other_commands_take() {
 fn a_rig_file_of_ones_own_changes_only_with_save_and_keeps_its_comments() {
     let dir = folder("lab-identify-save");
     let [rig, out] = ["my.toml", "out"].map(|name| dir.join(name).to_str().unwrap().to_owned());
-    let text = "# mine\n[model.pan.motor]\ntorque_per_volt = \"0.0774Nm/V\" # as the data sheet says\n\
+    let text = "# mine\nbase = \"report\"\n[model.pan.motor]\ntorque_per_volt = \"0.0774Nm/V\" # as the data sheet says\n\
                 [truth.pan.motor]\ntorque_per_volt = \"0.0619Nm/V\"\n";
     std::fs::write(&rig, text).unwrap();
     lab(&["identify", "--rig", &rig, "--out", &out]);

@@ -129,7 +129,7 @@ fn the_heavy_head_is_identified_and_answered() {
 fn gains_by_hand_are_the_same_on_the_command_line_and_in_a_rig_file() {
     let dir = folder("lesson-gains");
     let rig = dir.join("mine.toml");
-    let text = "[control]\nlaw = \"hand-tuned\"\nobserver = \"differences\"\nobserver_interval = \"8ms\"\n\n\
+    let text = "base = \"report\"\n[control]\nlaw = \"hand-tuned\"\nobserver = \"differences\"\nobserver_interval = \"8ms\"\n\n\
                 [control.hand_tuned.tilt]\nkp = \"30Nm/rad\"\nki = \"50Nm/rad/s\"\nkd = \"3Nms/rad\"\nposition_weight = 0.5\n\
                 anti_windup = false\nfeedforward = \"none\"\n";
     std::fs::write(&rig, text).unwrap();

@@ -32,3 +32,4 @@ mod simulate;
 mod sizes;
 mod standing;
 mod support;
+mod whole_rig;

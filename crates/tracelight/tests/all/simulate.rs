@@ -104,7 +104,7 @@ fn a_law_is_picked_that_bears_what_is_asked_and_is_saved() {
     let rig = dir.join("mine.toml");
     std::fs::write(
         &rig,
-        "name = \"mine\" # ours\n[control]\nlaw = \"pid\" # for now\npan_bandwidth = \"12rad/s\"\n",
+        "name = \"mine\" # ours\nbase = \"report\"\n[control]\nlaw = \"pid\" # for now\npan_bandwidth = \"12rad/s\"\n",
     )
     .unwrap();
     let out = dir.join("out");

@@ -59,6 +59,6 @@ fn a_drawings_dots_do_not_stand_with_a_pointer_and_do_with_what_burns() {
     let (code, answer) = planned(&[]);
     assert_eq!(code, 0, "{answer}");
     let rig = dir.join("rig.toml").to_str().unwrap().to_owned();
-    std::fs::write(&rig, "[laser]\nclass = \"3B\"\npower = \"100mW\"\n").unwrap();
+    std::fs::write(&rig, "base = \"report\"\n[laser]\nclass = \"3B\"\npower = \"100mW\"\n").unwrap();
     assert_eq!(planned(&["--rig", &rig]).1["error"]["code"], "standing-light");
 }
