@@ -22,6 +22,7 @@ mod identify_parts;
 mod lab;
 mod lesson;
 mod linear;
+mod net_camera;
 mod paper;
 mod preview;
 mod quality;
