@@ -21,6 +21,7 @@ mod house_rules;
 mod identify_parts;
 mod lab;
 mod lesson;
+mod licences;
 mod linear;
 mod net_camera;
 mod paper;
