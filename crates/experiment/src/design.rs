@@ -4,10 +4,10 @@ mod view;
 
 use tracelight_chart::Theme;
 use tracelight_linear::{
-    Complex, LeadLagWish, LinearError, LqgWish, Margins, PidWish, Response, Stability, StepInfo, Time,
+    Complex, Input, LeadLagWish, LinearError, LqgWish, Margins, PidWish, Response, Stability, StepInfo, Time,
     TransferFunction, Zpk,
 };
-use tracelight_maths::{complex, powi};
+use tracelight_maths::complex;
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Task};
@@ -74,11 +74,11 @@ pub struct Finding {
     /// What comes out, and what the controller puts in, after a step of what is wished.
     step: Response,
     input: Response,
-    /// The largest of the input.
-    peak: f64,
+    /// The largest of the input; none where it is an impulse, or grows.
+    peak: Option<f64>,
     stability: Stability,
-    /// Of what settles.
-    info: Option<StepInfo>,
+    /// Figures of the step.
+    info: StepInfo,
     trial: Option<Trial>,
     theme: Theme,
 }
@@ -168,18 +168,10 @@ impl Finding {
         let closed = open.closed()?;
         let to_input = k.feedback(&plant)?;
         let stability = closed.stability();
-        let (step, info) = settled_step(&closed, stability)?;
+        let (step, info) = settled_step(&closed)?;
         // what a derivative without an end puts in is an impulse: it has no step
         let input = to_input.step_response(step.step_s, step.values.len()).unwrap_or_default();
-        // its peak may be over long before the output has settled
-        let mut peak = input.peak().0.abs();
-        if let Time::Continuous = plant.time() {
-            for shorter in (1..=20).map(|k| step.step_s * powi(0.5, k)) {
-                peak = peak.max(
-                    to_input.step_response(shorter, step.values.len()).map_or(0.0, |u| u.peak().0.abs()),
-                );
-            }
-        }
+        let peak = input_peak(&to_input, &input);
         let [step, input] = [step, input].map(shown);
         let margins = open.margins();
         Ok(Self {
@@ -200,45 +192,35 @@ impl Finding {
     }
 }
 
-/// A step, watched until it has settled; what it is judged by, if it does.
-fn settled_step(
-    closed: &TransferFunction,
-    stability: Stability,
-) -> Result<(Response, Option<StepInfo>), LinearError> {
-    /// Rows of a step in continuous time, and most samples.
+/// A step, watched until it has settled; what it is judged by.
+fn settled_step(closed: &TransferFunction) -> Result<(Response, StepInfo), LinearError> {
+    /// Rows of a step in continuous time, fewest and most samples.
     const ROWS: usize = 2000;
-    const MOST_SAMPLES: f64 = 60_000.0;
-    /// Within this share of the goal it is settled.
+    const SAMPLES: (f64, f64) = (20.0, 60_000.0);
+    /// Within this share of the final value it is settled.
     const BAND: f64 = 0.02;
-    /// Times the watch is doubled.
-    const DOUBLINGS: i32 = 20;
-    let sizes = closed.poles().into_iter().map(|pole| closed.time().continuous(pole));
-    let rates = sizes
-        .filter(|s| s.re.is_finite() && complex::norm(*s) > 1e-9)
-        .map(|s| s.re.abs().max(0.1 * complex::norm(s)));
-    // begun with the fastest
-    let fastest = rates.fold(0.0, f64::max);
-    let begun_s = if fastest > 0.0 { 3.0 / fastest } else { 1.0 };
-    let watch = |duration_s: f64| match closed.time() {
-        Time::Continuous => closed.step_response(duration_s / ROWS as f64, ROWS + 1),
+    /// Times the settling time: some rest after it shows that it is one.
+    const SHOWN: f64 = 1.6;
+    let info = closed.step_info(BAND)?;
+    let duration_s = info.settle_s.filter(|s| *s > 0.0).map_or_else(|| closed.lasts_s(), |s| SHOWN * s);
+    let step = match closed.time() {
+        Time::Continuous => closed.step_response(duration_s / ROWS as f64, ROWS + 1)?,
         Time::Sampled(period_s) => {
-            closed.step_response(period_s, (duration_s / period_s).clamp(20.0, MOST_SAMPLES) as usize + 1)
+            let samples = (duration_s / period_s).clamp(SAMPLES.0, SAMPLES.1);
+            closed.step_response(period_s, samples as usize + 1)?
         }
     };
-    if stability != Stability::Stable {
-        return Ok((watch(4.0 * begun_s)?, None));
-    }
-    let mut doubling = 0;
-    loop {
-        let step = watch(begun_s * powi(2.0, doubling))?;
-        let info = step.step_info(Some(closed.dc_gain()), BAND);
-        let end_s = step.step_s * (step.values.len() - 1) as f64;
-        // some rest after it shows that it is one
-        let is_over = info.settle_s.is_some_and(|settle_s| settle_s < 0.6 * end_s);
-        if is_over || doubling == DOUBLINGS {
-            return Ok((step, Some(info)));
+    Ok((step, info))
+}
+
+/// The largest input that a step of 1 asks for; none where it is an impulse, or never ends.
+fn input_peak(to_input: &TransferFunction, shown: &Response) -> Option<f64> {
+    match to_input.time() {
+        Time::Continuous => {
+            let peak = to_input.transient(Input::Step).and_then(|transient| transient.peak());
+            peak.ok().flatten().map(|peak| peak.value.abs())
         }
-        doubling += 1;
+        Time::Sampled(_) => Some(shown.peak().0.abs()),
     }
 }
 

@@ -29,6 +29,7 @@ mod stability;
 mod state_space;
 mod time;
 mod transfer;
+mod transient;
 mod turns;
 mod twofold;
 mod zpk;
@@ -51,12 +52,13 @@ pub use margins::{GainMargin, Margins, ModulusMargin, PhaseMargin};
 pub use notation::four_digits;
 pub use peak::Peak;
 pub use polynomial::Polynomial;
-pub use response::{Mode, Response, StepInfo};
+pub use response::{Mode, Response};
 pub use roots::Root;
 pub use stability::Stability;
 pub use state_space::StateSpace;
 pub use time::Time;
 pub use transfer::TransferFunction;
+pub use transient::{Ending, Extreme, Input, StepInfo, Transient};
 pub use zpk::Zpk;
 
 /// The examples of `README.md`, as tests.

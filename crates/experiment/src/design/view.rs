@@ -24,22 +24,22 @@ impl finding::Finding for Finding {
         }
         // writing to a String cannot fail
         let _ = writeln!(text, "\nthe loop\n{}", margin_lines(margins));
-        if let Some(info) = info {
+        if let Some(value) = info.ending.value() {
             let _ = writeln!(
                 text,
-                "\na step comes to {}, overshoots by {}, rises in {}, is within 2 % after {}\nfor a step of 1 the input is {} at most",
-                four(info.final_value),
+                "\na step has final value {}, overshoot {}, rise time {}, settling time (2 %) {}",
+                four(value),
                 percent(info.overshoot_percent),
                 seconds(info.rise_s),
-                info.settle_s.map_or_else(
-                    || format!(
-                        "more than the {} s watched",
-                        four(self.step.step_s * self.step.values.len() as f64)
-                    ),
-                    |s| format!("{} s", four(s))
-                ),
-                four(self.peak)
+                seconds(info.settle_s)
             );
+            let _ = match self.peak {
+                Some(peak) => writeln!(text, "for a step of 1 the input is {} at most", four(peak)),
+                None => writeln!(
+                    text,
+                    "for a step of 1 the input has no largest value: it is an impulse, or grows"
+                ),
+            };
         }
         let closed_is = match self.stability {
             Stability::Stable => "stable",
@@ -75,14 +75,14 @@ impl finding::Finding for Finding {
             "bandwidth_rad_s": stable.then(|| self.closed.bandwidth()).flatten(),
             "sensitivity": modulus.map(|m| 1.0 / m.distance).filter(|s| s.is_finite()),
             "complementary_sensitivity": self.closed.peak().map(|peak| peak.gain),
-            "step": info.map(|info| json!({
-                "final": info.final_value,
+            "step": info.ending.value().map(|value| json!({
+                "final": value,
                 "overshoot_percent": info.overshoot_percent,
                 "rise_s": info.rise_s,
                 "settle_s": info.settle_s,
             })),
             "trial": self.trial.as_ref().map(Trial::json),
-            "input_peak": stable.then_some(self.peak),
+            "input_peak": self.peak.filter(|_| stable),
         })
         .to_string()
     }

@@ -4,42 +4,23 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 use tracelight_chart::{Curve, Figure, Key, Mark, Panel, Pen, Sign};
-use tracelight_linear::Time;
+use tracelight_linear::{Complex, Ending, Extreme, Time};
 use tracelight_task::Failure;
 
 use super::{Entry, Finding, Input};
 use crate::finding::{self, Plotted};
-use crate::numbers::{four, percent, seconds};
+use crate::numbers::{four, percent};
 use crate::panels::over_time;
+use crate::systems::pairs;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
         let mut text = String::new();
-        for Entry { named, response, info } in &self.entries {
+        for entry in &self.entries {
             // writing to a String cannot fail
-            let _ = writeln!(text, "{} = {}", named.name, named.system);
-            if let Some(info) = info {
-                let _ = writeln!(
-                    text,
-                    "    comes to {}, overshoots by {}, undershoots by {}, rises in {}, is within 2 % {}",
-                    if info.final_value.is_nan() { "no value".to_owned() } else { four(info.final_value) },
-                    percent(info.overshoot_percent),
-                    percent(info.undershoot_percent),
-                    seconds(info.rise_s),
-                    info.settle_s.map_or("at no time shown".to_owned(), |s| format!("after {} s", four(s)))
-                );
-            }
-            let (most, at_s) = response.peak();
-            let last = response.values.last().copied().unwrap_or_default();
-            let end_s = response.step_s * (response.values.len().saturating_sub(1)) as f64;
-            let _ = writeln!(
-                text,
-                "    largest {} at {} s, {} at the end of {} s\n",
-                four(most),
-                four(at_s),
-                four(last),
-                four(end_s)
-            );
+            let _ = writeln!(text, "{} = {}", entry.named.name, entry.named.system);
+            text += &entry.lines(self.of.input);
+            text += "\n";
         }
         if self.of.input != Input::Step {
             let _ = writeln!(text, "(answers to {})", words(self.of.input));
@@ -48,19 +29,22 @@ impl finding::Finding for Finding {
     }
 
     fn json(&self) -> String {
-        let one = |Entry { named, response, info }: &Entry| -> Value {
-            let finite = |value: f64| value.is_finite().then_some(value);
+        let one = |entry: &Entry| -> Value {
+            let Entry { named, response, ending, peak, info, impulse, hidden } = entry;
             json!({
                 "name": named.name,
                 "step_s": response.step_s,
                 "values": response.values,
-                "final": info.and_then(|info| finite(info.final_value)),
+                "ending": ending.map(ending_name),
+                "final": ending.and_then(Ending::value),
                 "overshoot_percent": info.and_then(|info| info.overshoot_percent),
                 "undershoot_percent": info.and_then(|info| info.undershoot_percent),
                 "rise_s": info.and_then(|info| info.rise_s),
                 "settle_s": info.and_then(|info| info.settle_s),
-                "peak": response.peak().0,
-                "peak_s": response.peak().1,
+                "peak": peak.map(|peak| peak.value),
+                "peak_s": peak.and_then(|peak| peak.time_s),
+                "impulse": impulse,
+                "hidden_poles": pairs(hidden),
             })
         };
         json!({"systems": self.entries.iter().map(one).collect::<Vec<_>>()}).to_string()
@@ -80,7 +64,7 @@ impl Plotted for Finding {
             };
             Curve { colour: named.colour, pen: Pen::Solid, points }
         };
-        let settled = |Entry { named, response, info }: &Entry| {
+        let settled = |Entry { named, response, info, .. }: &Entry| {
             let at_s = info.and_then(|info| info.settle_s)?;
             let value = response.values.get((at_s / response.step_s).round() as usize)?;
             Some(Mark { colour: named.colour, sign: Sign::Dot, at: (at_s, *value) })
@@ -92,12 +76,7 @@ impl Plotted for Finding {
             });
             Key { colour: named.colour, name: format!("{}{more}", named.name) }
         };
-        let goals = self
-            .entries
-            .iter()
-            .filter_map(|e| e.info)
-            .map(|info| info.final_value)
-            .filter(|goal| goal.is_finite());
+        let goals = self.entries.iter().filter_map(|entry| entry.info).filter_map(|info| info.ending.value());
         let mut levels: Vec<f64> = goals.collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
@@ -136,6 +115,78 @@ impl Plotted for Finding {
             }
         }
         Ok(text + "\n")
+    }
+}
+
+impl Entry {
+    /// What there is to say of it.
+    fn lines(&self, input: Input) -> String {
+        let mut text = format!("    {}\n", self.ending_line(input));
+        if let Some(info) = self.info.filter(|info| info.ending.value().is_some()) {
+            let settled = |s: f64| format!(", settling time (2 %) {} s", four(s));
+            // writing to a String cannot fail
+            let _ = match info.rise_s {
+                Some(rise_s) => writeln!(
+                    text,
+                    "    overshoot {}, undershoot {}, rise time (10–90 %) {} s{}",
+                    percent(info.overshoot_percent),
+                    percent(info.undershoot_percent),
+                    four(rise_s),
+                    info.settle_s.map_or(String::new(), settled)
+                ),
+                None => writeln!(text, "    a final value of 0 has no overshoot, rise or settling time"),
+            };
+        }
+        if let Some(Extreme { value, time_s: Some(at_s) }) = self.peak {
+            text += &format!("    peak {} at {} s\n", four(value), four(at_s));
+        }
+        if self.impulse != 0.0 {
+            text += &format!(
+                "    an impulse of area {} at time 0 goes straight through; it is not drawn\n",
+                four(self.impulse)
+            );
+        }
+        for pole in self.hidden.iter().filter(|pole| pole.im >= 0.0) {
+            text += &format!(
+                "    note: a zero cancels the pole {}; that mode is in the system, but not in this output\n",
+                complex(*pole)
+            );
+        }
+        text
+    }
+
+    fn ending_line(&self, input: Input) -> String {
+        match (self.ending, self.response.values.last()) {
+            (Some(Ending::Converges(value)), _) => format!("final value {}", four(value)),
+            (Some(Ending::Diverges), _) if input == Input::Ramp => {
+                "grows without bounds, as the ramp does: no final value".to_owned()
+            }
+            (Some(Ending::Diverges), _) => "grows without bounds: no final value".to_owned(),
+            (Some(Ending::Oscillates { about, by }), _) => {
+                format!("oscillates for ever about {}, by {} at most: no final value", four(about), four(by))
+            }
+            (Some(Ending::Undecided), _) => {
+                "a pole is nearer to the edge of stability than rounding lets tell: no final value".to_owned()
+            }
+            (None, last) => {
+                format!("{} at the end of what is shown", four(last.copied().unwrap_or_default()))
+            }
+        }
+    }
+}
+
+/// A place in the complex plane.
+fn complex(place: Complex) -> String {
+    let name = if place.im == 0.0 { String::new() } else { format!(" ± {}j", four(place.im.abs())) };
+    format!("at {}{name}", four(place.re))
+}
+
+const fn ending_name(ending: Ending) -> &'static str {
+    match ending {
+        Ending::Converges(_) => "converges",
+        Ending::Diverges => "diverges",
+        Ending::Oscillates { .. } => "oscillates",
+        Ending::Undecided => "undecided",
     }
 }
 

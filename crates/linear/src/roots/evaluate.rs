@@ -127,6 +127,15 @@ impl Scaled {
     }
 }
 
+/// Value of a polynomial, highest power first, with nearly all its digits: in twice the digits where plain ones lose some.
+pub(crate) fn accurate_value(coefficients: &[f64], at: Complex) -> Complex {
+    /// Share of a value that rounding may be.
+    const ENOUGH: f64 = 1e-14;
+    let Value { value, size, .. } = plain(coefficients, at);
+    let is_enough = f64::EPSILON * size <= ENOUGH * complex::norm(value);
+    if is_enough { value } else { compensated(coefficients, at).value }
+}
+
 fn plain(coefficients: &[f64], at: Complex) -> Value {
     let norm = complex::norm(at);
     let start = Value { value: Complex::ZERO, derivative: Complex::ZERO, size: 0.0 };

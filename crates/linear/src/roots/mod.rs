@@ -9,6 +9,8 @@ use tracelight_maths::complex;
 use crate::{Complex, Polynomial};
 use disc::disc;
 use evaluate::{Scaled, Step};
+
+pub(crate) use evaluate::accurate_value;
 use start::starts;
 
 /// One root, and how far off it may be.

@@ -5,3 +5,4 @@
 
 mod goldens;
 mod roots;
+mod transients;
