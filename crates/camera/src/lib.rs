@@ -4,7 +4,11 @@
 mod device;
 mod devices;
 mod film;
+#[cfg(test)]
+mod hostile;
 mod latest;
+mod net;
+mod redirect;
 mod source;
 mod stream;
 

@@ -5,21 +5,19 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use tracelight_task::Failure;
-use ureq::Agent;
 
-use crate::latest::{Latest, PATIENCE};
-use tracelight_eye::{Looks, MOST_IMAGE_BYTES, Shot};
+use crate::latest::Latest;
+use crate::net::{Limits, MOST_BYTES, Net};
+use tracelight_eye::{Looks, Shot};
 
-/// Largest image that is taken, bytes.
-const MOST_BYTES: u64 = MOST_IMAGE_BYTES as u64;
 /// Longest line of a header, bytes, and most lines.
 const MOST_LINE: u64 = 8192;
 const MOST_LINES: usize = 100;
 
 /// A camera that is asked by HTTP.
 pub(crate) struct Stream {
-    url: String,
-    agent: Agent,
+    net: Net,
+    limits: Limits,
     /// What a stream brought last; `None` of a camera that sends one image each time it is asked.
     latest: Option<Arc<Latest<Vec<u8>>>>,
     opened: Instant,
@@ -27,50 +25,40 @@ pub(crate) struct Stream {
 
 impl Stream {
     pub(crate) fn open(url: &str) -> Result<Self, Failure> {
-        let config =
-            Agent::config_builder().timeout_connect(Some(PATIENCE)).timeout_recv_response(Some(PATIENCE));
-        let mut stream =
-            Self { url: url.to_owned(), agent: config.build().into(), latest: None, opened: Instant::now() };
-        let (kind, body) = stream.ask()?;
-        if let Some(boundary) = boundary_of(&kind) {
+        Self::with(url, Limits::USUAL)
+    }
+
+    pub(crate) fn with(url: &str, limits: Limits) -> Result<Self, Failure> {
+        let mut stream = Self { net: Net::new(url, limits), limits, latest: None, opened: Instant::now() };
+        let answer = stream.net.open().map_err(|why| stream.failed(&why))?;
+        if let Some(boundary) = boundary_of(&answer.kind) {
             let latest = Arc::new(Latest::default());
             let to = Arc::clone(&latest);
-            // ends with its connection, or with the process
-            std::thread::spawn(move || read_all(BufReader::new(body), &boundary, &to));
+            // ends with its connection, when nothing comes any more, or with the process
+            std::thread::spawn(move || read_all(BufReader::new(answer.body), &boundary, &to));
             stream.latest = Some(latest);
-        } else if !kind.starts_with("image/") {
+        } else if !answer.kind.starts_with("image/") {
             return Err(stream.failed(&format!(
-                "it sends {kind}, and neither images nor a stream of them (multipart/x-mixed-replace)"
+                "it sends {}, and neither images nor a stream of them (multipart/x-mixed-replace)",
+                answer.kind
             )));
         }
         Ok(stream)
     }
 
-    /// The kind of an answer, and its body.
-    fn ask(&self) -> Result<(String, impl Read + Send + 'static), Failure> {
-        let answer = self.agent.get(&self.url).call().map_err(|e| self.failed(&e.to_string()))?;
-        let kind =
-            answer.headers().get("content-type").and_then(|kind| kind.to_str().ok()).unwrap_or_default();
-        Ok((kind.to_owned(), answer.into_body().into_reader()))
-    }
-
     fn failed(&self, why: &str) -> Failure {
-        Failure::failed("no-image", format!("the camera at {}: {why}", self.url))
+        Failure::failed("no-image", format!("the camera at {}: {why}", self.net.url()))
     }
 }
 
 impl Looks for Stream {
     fn take(&mut self, _: f64) -> Result<Shot, Failure> {
         let bytes = match &self.latest {
-            None => {
-                let mut bytes = Vec::new();
-                let (_, body) = self.ask()?;
-                body.take(MOST_BYTES).read_to_end(&mut bytes).map_err(|e| self.failed(&e.to_string()))?;
-                bytes
-            }
-            Some(latest) => latest.next(PATIENCE).map_err(|why| self.failed(&why))?,
+            None => self.net.image(),
+            Some(latest) => latest.next(self.limits.patience),
         };
-        Ok(Shot::encoded(&self.url, bytes, self.opened.elapsed().as_secs_f64()))
+        let bytes = bytes.map_err(|why| self.failed(&why))?;
+        Ok(Shot::encoded(self.net.url(), bytes, self.opened.elapsed().as_secs_f64()))
     }
 
     fn longest(&self) -> Option<f64> {
@@ -145,7 +133,12 @@ fn read_to_boundary(body: &mut impl BufRead, is_boundary: impl Fn(&[u8]) -> bool
     let mut image = Vec::new();
     loop {
         let mut line = Vec::new();
-        let left = MOST_BYTES.saturating_sub(image.len() as u64);
+        let left = (MOST_BYTES + 1).saturating_sub(image.len() as u64);
+        if left == 0 {
+            return Err(format!(
+                "its stream sends an image of more than {MOST_BYTES} bytes, the most that are taken, and does not tell its length"
+            ));
+        }
         let read = body.take(left).read_until(b'\n', &mut line).map_err(|e| e.to_string())?;
         if read == 0 {
             return Err("its stream ended".to_owned());

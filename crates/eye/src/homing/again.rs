@@ -3,9 +3,9 @@
 use tracelight_sim::Simulated;
 use tracelight_task::Failure;
 
-use super::{Homed, Homing, anywhere};
 use crate::Eye;
 use crate::head::{ACROSS_AGAIN, dots};
+use crate::homing::state::{Homed, Homing, anywhere};
 
 impl<R: Simulated + Eye> Homing<'_, R> {
     /// Lights dots in sight, of a known head whose counts are not far off, until one is seen; tells the rig where its joints are by that.

@@ -8,7 +8,7 @@ use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
 use tracelight_task::Failure;
 
-use super::Homing;
+use crate::homing::state::Homing;
 use crate::spots::{Light, WHOLE};
 use crate::{Eye, Looks};
 

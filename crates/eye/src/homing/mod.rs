@@ -5,6 +5,7 @@
 //!
 //! | part | what |
 //! |---|---|
+//! | `state` | a head that is being homed, and what is known of it meanwhile |
 //! | `places` | where dots are lit, one after the other |
 //! | `travel` | from one to the next, and back from whatever is in the way |
 //! | `dot` | one dot, and whether the camera sees it |
@@ -13,6 +14,7 @@
 mod again;
 mod dot;
 mod places;
+pub(crate) mod state;
 mod travel;
 
 use tracelight_aim::{Alignment, Camera, HeadGeometry, HeadPose};
@@ -25,33 +27,12 @@ use tracelight_stroke::Point;
 use tracelight_task::{Failure, Task};
 
 use crate::Eye;
-use crate::figures::HomedFigures;
-use crate::head::{DotsRequest, SPOT_EXPOSURE_S, find_head, see_dots};
+use crate::head::{DotsRequest, find_head, see_dots};
+use crate::homing::state::{Homing, REST_TICKS, anywhere};
 use crate::power::check_homed;
-use crate::spots::History;
 
-/// A head whose encoders were told where it stands.
-#[derive(Clone, Copy, Debug)]
-pub struct Homed {
-    /// Dots that were lit until one was seen.
-    pub sought: usize,
-    /// How often something was in a joint's way.
-    pub stops: usize,
-    /// What its encoders read where they read 0 before.
-    pub counts: PanTilt<i32>,
-}
+pub use crate::homing::state::Homed;
 
-impl Homed {
-    /// The same as figures.
-    #[must_use]
-    pub fn figures(&self) -> HomedFigures {
-        let PanTilt { pan, tilt } = self.counts.map(|count| -count);
-        HomedFigures { sought: self.sought, stops: self.stops, pan_counts: pan, tilt_counts: tilt }
-    }
-}
-
-/// How long a joint rests after a motion until a dot is lit, ticks.
-const REST_TICKS: u32 = 150;
 /// Fewest spots by which a known head is homed.
 const FEWEST_SPOTS: usize = 12;
 /// Half of its dots tell of zeros that are no further apart, counts.
@@ -139,60 +120,7 @@ fn off_rad<R: Simulated + Eye>(
     Ok(middle)
 }
 
-/// The same head with joints that go anywhere in front of it: where one stands that was left, its range does not tell.
-fn anywhere(geometry: &HeadGeometry) -> HeadGeometry {
-    const NEARLY_RIGHT_RAD: f64 = 1.4;
-    let all = (-NEARLY_RIGHT_RAD, NEARLY_RIGHT_RAD);
-    HeadGeometry { range_rad: PanTilt::new(all, all), ..*geometry }
-}
-
-/// A rig that is being homed, and what is known meanwhile.
-struct Homing<'a, R> {
-    rig: &'a mut R,
-    camera: &'a Camera,
-    driving: &'a Driving,
-    task: Task<'a>,
-    history: History,
-    /// When images are taken, by their stamps, and how long they are exposed, s.
-    timing: Timing,
-    exposure_s: f64,
-    /// What was added to what its encoders read, until now.
-    counts: PanTilt<i32>,
-    /// How far the joints may turn from where they were powered up: as wide as their ranges are, or until something is in their way, rad.
-    free_rad: PanTilt<(f64, f64)>,
-    /// How often something was.
-    stops: usize,
-}
-
-impl<'a, R: Simulated + Eye> Homing<'a, R> {
-    fn new(
-        rig: &'a mut R,
-        camera: &'a Camera,
-        driving: &'a Driving,
-        known: Option<(Timing, f64)>,
-        task: Task<'a>,
-    ) -> Self {
-        // an unhomed rig goes no further from where it was powered up than its joints' ranges are wide
-        let free_rad = driving.machine.geometry.range_rad.map(|(lower, upper)| {
-            let width_rad = (upper - lower - travel::BEFORE_STOP_RAD).max(0.0);
-            (-width_rad, width_rad)
-        });
-        let (timing, exposure_s) = known.unwrap_or((Timing::USUAL, SPOT_EXPOSURE_S));
-        let exposure_s = exposure_s.min(rig.longest_s());
-        Self {
-            rig,
-            camera,
-            driving,
-            task,
-            history: History::new(&driving.rig.model.relay),
-            timing,
-            exposure_s,
-            counts: PanTilt::default(),
-            free_rad,
-            stops: 0,
-        }
-    }
-
+impl<R: Simulated + Eye> Homing<'_, R> {
     /// Dark whatever became of it; and a guess is not to be drawn by.
     fn left(&mut self, homed: Result<Homed, Failure>) -> Result<Homed, Failure> {
         let _ = self.rig.send(Command::Disarm);
@@ -223,10 +151,6 @@ impl<'a, R: Simulated + Eye> Homing<'a, R> {
         let now = self.rest(1)?;
         self.tell(PanTilt::from_fn(|j| self.count_rad() * f64::from(now.measured[j].count) + off_rad[j]))?;
         Ok(Homed { sought, stops: self.stops, counts: self.counts })
-    }
-
-    fn count_rad(&self) -> f64 {
-        self.driving.rig.model.encoder.count_rad()
     }
 
     /// Lights dots further and further off until one is seen. How many there were, and the joints' true angles at the last, rad.

@@ -4,8 +4,8 @@ use tracelight_rig::{Joint, PanTilt};
 use tracelight_sim::Simulated;
 use tracelight_stroke::Point;
 
-use super::{Homing, anywhere};
 use crate::Eye;
+use crate::homing::state::{Homing, anywhere};
 
 /// From one dot to the next, as a share of what the camera sees: one of them at least falls well within it.
 const STRIDE: f64 = 0.6;

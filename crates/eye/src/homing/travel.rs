@@ -5,8 +5,8 @@ use tracelight_sim::{Simulated, arm};
 use tracelight_task::Failure;
 use tracelight_trajectory::JointMotion;
 
-use super::{Homing, REST_TICKS};
 use crate::Eye;
+use crate::homing::state::{BEFORE_STOP_RAD, Homing, REST_TICKS};
 
 /// Fastest and most sudden motion of a joint of which nobody knows where it is, rad/s and rad/s².
 const GENTLE_RAD_S: f64 = 1.5;
@@ -15,8 +15,6 @@ const GENTLE_RAD_S2: f64 = 4.0;
 const STRAY_RAD: f32 = 0.05;
 /// Most times that a joint comes up against something: it has two stops.
 const MOST_STOPS: usize = 8;
-/// How far before a stop a joint turns back, rad.
-pub(super) const BEFORE_STOP_RAD: f64 = 0.03;
 /// Of how many strides on either joint a place is no other than one that was tried.
 const SAME_STRIDES: f64 = 0.25;
 /// How long a joint swings that came up against something, ticks.

@@ -2,8 +2,8 @@ use clap::Args;
 use tracelight_rig::{Darkness, Fault};
 use tracelight_task::Failure;
 
+use crate::cli::answer::{Answer, Voice};
 use crate::cli::nearest::nearest;
-use crate::cli::{Answer, Voice};
 
 /// Say what a code in a message, a summary or a log means, and what to do
 #[derive(Args, Debug)]
