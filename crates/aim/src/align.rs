@@ -1,4 +1,4 @@
-//! A head's pose, and how it is built, from spots that a camera saw.
+//! Estimates a head's pose and geometry from spots in camera images.
 
 use nalgebra::DMatrix;
 use tracelight_maths::powi;
@@ -12,7 +12,7 @@ use crate::pose::HeadPose;
 /// A lit spot as the encoders and a camera have it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenSpot {
-    /// Joint angles by the encoders when it is believed to have been taken, rad.
+    /// Joint angles by the encoders at the assumed time of the image, rad.
     pub angle_rad: PanTilt<f64>,
     /// How fast they changed, rad/s.
     pub rate_rad_s: PanTilt<f64>,
@@ -31,13 +31,13 @@ pub struct Alignment {
     pub geometry: HeadGeometry,
     /// Where it stands.
     pub pose: HeadPose,
-    /// By how much later images were taken than the spots' angles are, s,
+    /// Delay of the images relative to the spots' angles, s.
     pub late_s: f64,
-    /// and how much later still their last row than their first, s.
+    /// Readout time of an image, from its first to its last row, s.
     pub readout_s: f64,
 }
 
-/// What is believed of a head before anything is seen: the likeliest, and standard deviations.
+/// Prior of an alignment: most likely values and standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlignmentBelief {
     /// The likeliest.
@@ -84,22 +84,22 @@ pub enum AlignError {
     },
 }
 
-/// What spots tell of a head.
+/// Result of an alignment.
 #[derive(Clone, Debug)]
 pub struct Aligned {
     /// The likeliest.
     pub alignment: Alignment,
     /// How far spots are seen from where it has them, root mean square, m.
     pub rms_m: f64,
-    /// How many were seen,
+    /// Number of spots seen.
     pub spots: usize,
-    /// and how many of them are so far off that they hardly count.
+    /// Number of outliers, which have little weight.
     pub outliers: usize,
     covariance: DMatrix<f64>,
 }
 
 impl Aligned {
-    /// How far off the spot is likely to be from where it is believed, root mean square of the distance, m; `None` where no spot is.
+    /// Expected error of the spot's position, root mean square, m; `None` if the beam misses the target.
     pub fn deviation_m(&self, angle_rad: PanTilt<f64>) -> Option<f64> {
         let still = SeenSpot {
             angle_rad,
@@ -139,7 +139,7 @@ impl Alignment {
         all
     }
 
-    /// The same with others of the parameters. Where along the beam it leaves, nothing tells.
+    /// Returns the alignment with other parameters. The beam's origin along the beam is not observable.
     fn with(&self, p: [f64; PARAMETERS]) -> Self {
         let [
             distance_m,
@@ -188,7 +188,7 @@ impl Alignment {
 }
 
 impl AlignmentBelief {
-    /// Of a head that somebody put up by eye and built as told: a few centimetres and degrees.
+    /// Prior for a head set up by eye and built to its dimensions: a few centimetres and degrees.
     pub const fn by_eye(geometry: HeadGeometry, pose: HeadPose) -> Self {
         Self {
             alignment: Alignment { geometry, pose, late_s: 0.0, readout_s: 0.0 },
@@ -209,8 +209,8 @@ impl AlignmentBelief {
     }
 }
 
-/// The head that spots tell of, by least squares with what is believed beforehand as measurements of its own; what is far from where the
-/// others have it counts little. The pan encoder's zero is told by the pose, the tilt encoder's by where the beam points.
+/// Estimates a head by least squares from spots and a prior; outliers have little weight. The pose determines the zero of the pan encoder, the
+/// direction of the beam that of the tilt encoder.
 ///
 /// # Errors
 /// See [`AlignError`].

@@ -57,7 +57,7 @@ impl Board {
             .map(|(x, y)| (centre + Vec2::new(x, y)).to_point())
     }
 
-    /// The same printed larger or smaller than meant.
+    /// Rescales the board as it was printed.
     #[must_use]
     pub fn scaled(&self, by: f64) -> Self {
         Self { tag_m: by * self.tag_m, pitch_m: by * self.pitch_m, ..*self }

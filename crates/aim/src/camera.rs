@@ -48,7 +48,7 @@ impl CameraPose {
         (-(self.rotation.inverse() * self.translation_m)).into()
     }
 
-    /// The same in another frame on the same plane, of which `frame_from_target` is a turn and a shift.
+    /// Expresses the camera in another frame on the target plane; `frame_from_target` is a rotation and a translation.
     #[must_use]
     pub fn in_frame(&self, frame_from_target: Affine) -> Self {
         let [a, b, _, _, x, y] = frame_from_target.as_coeffs();
@@ -66,7 +66,7 @@ impl CameraPose {
         }
     }
 
-    /// The same of the parameters of a survey's step: a turn, rad, and a change of the translation, m.
+    /// Applies a step of the survey: a rotation, rad, and a change of the translation, m.
     pub(crate) fn stepped(&self, step: [f64; POSE_PARAMETERS]) -> Self {
         let [a, b, c, x, y, z] = step;
         Self {
@@ -124,7 +124,7 @@ impl Uncertain {
 }
 
 impl Camera {
-    /// Where a point of the target is seen, px, in the image or beside it; `None` of what is behind the camera.
+    /// Projects a point of the target to the pixel frame, px, inside the image or not; `None` for a point behind the camera.
     pub fn pixel(&self, on_target: Point) -> Option<Point> {
         self.pixel_of([on_target.x, on_target.y, 0.0])
     }

@@ -38,7 +38,7 @@ impl Homography {
         (at.x.is_finite() && at.y.is_finite()).then_some(at)
     }
 
-    /// The same with the covariance that the map's own brings there.
+    /// Maps a point, with the covariance that the map's own uncertainty causes.
     pub fn apply_with(&self, p: Point) -> Option<Uncertain> {
         let (at, _, by) = self.derivatives(p)?;
         Some(Uncertain { at, covariance: by * self.covariance * by.transpose() })
@@ -53,7 +53,7 @@ impl Homography {
         ))
     }
 
-    /// The way back; `None` of a map that lays everything on a line. Its covariance is carried over to first order.
+    /// Returns the inverse; `None` for a singular map. Its covariance is propagated to first order.
     pub fn inverse(&self) -> Option<Self> {
         let inverse = self.matrix.try_inverse()?;
         let scale = inverse[(2, 2)];

@@ -26,7 +26,7 @@ impl Normal {
         self.cost += loss(residual);
     }
 
-    /// The same of what is believed beforehand, however far off it is.
+    /// Adds a prior: weighted without the robust loss.
     pub(crate) fn add_belief(&mut self, residual: f64, by: impl Iterator<Item = (usize, f64)> + Clone) {
         self.weigh(residual, by, 1.0);
         self.cost += 0.5 * residual * residual;

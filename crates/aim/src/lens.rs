@@ -45,7 +45,7 @@ impl Lens {
         (self.within(size) == size).then(|| Point::new(u, v))
     }
 
-    /// The direction (x, y, 1) that comes to lie at a pixel; `None` where there is none.
+    /// Returns the direction (x, y, 1) that is projected to a pixel; `None` if there is no such direction.
     ///
     /// Newton's method from the undistorted direction; within the image of a usual lens it takes four steps to 1e-15.
     pub fn direction(&self, pixel: Point) -> Option<[f64; 2]> {
@@ -104,7 +104,7 @@ impl Lens {
         [fx, fy, c.x, c.y, k1, k2, p1, p2, k3]
     }
 
-    /// The same lens with others of its parameters.
+    /// Returns the lens with other values of its fitted parameters.
     pub(crate) fn with(&self, [fx, fy, cx, cy, k1, k2, p1, p2, k3]: [f64; LENS_PARAMETERS]) -> Self {
         Self {
             focal_px: [fx, fy],

@@ -1,4 +1,4 @@
-//! Where frames meet: pixels, target, head, joints.
+//! Coordinate frames: pixels, target, head, joints, camera.
 //!
 //! | frame | axes |
 //! |---|---|
@@ -8,7 +8,7 @@
 //! | joint | pan about z, tilt about the pan-carried y, rad; positive tilt turns the beam down |
 //! | camera | x right, y down, z ahead; origin where the light passes |
 //!
-//! Every conversion between two of them is done here and nowhere else. The crate knows no images and no clock.
+//! All conversions between them are in this crate and nowhere else. The crate knows no images and no clock.
 
 #![cfg_attr(
     test,

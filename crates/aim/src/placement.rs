@@ -47,7 +47,7 @@ impl Placement {
         (planar::rotation(self.rotation_rad) * flipped).then_translate(self.offset_m)
     }
 
-    /// A drawing in pixels put on the target, m.
+    /// Transforms a drawing from pixels to the target, m.
     pub fn place(&self, pixels: &Drawing, sheet_width: f64) -> Drawing {
         pixels.transformed(self.target_from_pixel(sheet_width))
     }

@@ -26,7 +26,7 @@ impl HeadPose {
         Self { distance_m, right_m: 0.0, up_m: 0.0, yaw_rad: 0.0, pitch_rad: 0.0, roll_rad: 0.0 }
     }
 
-    /// The same in another frame on the same plane, of which `frame_from_target` is a turn and a shift.
+    /// Expresses the pose in another frame on the target plane; `frame_from_target` is a rotation and a translation.
     #[must_use]
     pub fn in_frame(&self, frame_from_target: Affine) -> Self {
         let [a, b, _, _, _, _] = frame_from_target.as_coeffs();

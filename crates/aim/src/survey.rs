@@ -1,4 +1,4 @@
-//! Cameras and boards' pages found from what the cameras see of the boards' markers.
+//! Estimates cameras and pages of boards from observed markers.
 //!
 //! Every place where a marker's black meets white tells how far that is from where it should be seen, across it; poses, lens, where the pages
 //! lie on their plane and how far ink runs are those that fit all places best (bundle adjustment: Triggs et al. 1999), with what is
@@ -197,7 +197,7 @@ impl SurveyedCamera {
         Some(Uncertain { at, covariance: self.pixels(&by) })
     }
 
-    /// The same in another frame on the same plane, of which `frame_from_target` is a turn and a shift.
+    /// Expresses the survey in another frame on the target plane; `frame_from_target` is a rotation and a translation.
     #[must_use]
     pub fn in_frame(&self, frame_from_target: Affine) -> Self {
         let pose = self.camera.pose.in_frame(frame_from_target);

@@ -45,13 +45,13 @@ pub struct TrimBelief {
 }
 
 impl TrimBelief {
-    /// Of a head that was just found from spots that scatter by so much, m, root mean square of their distance.
+    /// Prior for a head just located from spots with this scatter, m, root mean square of their distance.
     pub fn found(scatter_m: f64) -> Self {
         let own_m = LEAST_OWN_M.max(scatter_m / std::f64::consts::SQRT_2);
         Self { offset_rad: 3e-4, scale: 1e-3, late_s: 2e-3, readout_s: 2e-3, own_m }
     }
 
-    /// Of one that was found another day, in front of a camera whose stamps nobody knows, and whose pixels have so many metres on the wall.
+    /// Prior for a head located another day, before a camera with unknown stamps; `pixel_m` is the size of its pixels on the wall.
     pub fn known(pixel_m: f64) -> Self {
         let own_m = LEAST_OWN_M.max(0.15 * pixel_m);
         Self { offset_rad: 1e-3, scale: 2e-3, late_s: 2e-2, readout_s: 1e-2, own_m }
@@ -84,9 +84,9 @@ pub struct Trim {
 /// How far a spot is from where it was awaited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surprise {
-    /// From where it was awaited to where it is, m.
+    /// Vector from the expected to the measured spot, m.
     pub off: Vec2,
-    /// The same in standard deviations of what is not known.
+    /// Its length in standard deviations.
     pub deviations: f64,
 }
 
@@ -123,12 +123,12 @@ impl Trim {
         Correction { offset_rad: PanTilt::new(x[0], x[1]), scale: PanTilt::new(x[2], x[3]) }
     }
 
-    /// By how much later than was believed an image was taken, s, so far down: 0 in its first row, 1 in the last.
+    /// Estimated error of an image's time, s, at a relative height: 0 in its first row, 1 in the last.
     pub fn late_s(&self, down: f64) -> f64 {
         self.state[4] + down * self.state[5]
     }
 
-    /// How far off a spot is; `None` where the head puts none.
+    /// Compares a spot with its prediction; `None` if the beam misses the target.
     pub fn surprise(&self, spot: &SeenSpot) -> Option<Surprise> {
         let seen = self.seen(spot)?;
         let spread = seen.by * self.covariance * seen.by.transpose() + seen.noise;

@@ -1,4 +1,4 @@
-//! What the controller is told of one axis.
+//! Configuration of one axis.
 
 use tracelight_rig::JointLimits;
 
@@ -18,7 +18,7 @@ pub struct AxisConfig {
     pub limit_v: f32,
     /// Width of one encoder count, rad.
     pub count_rad: f32,
-    /// Friction as it is believed to be.
+    /// The friction model.
     pub friction: FrictionModel,
     /// Torque by which the model may be wrong, N m: what the Kalman filter's deviations are shares of. The joint's Coulomb
     /// friction, where it has any to speak of.

@@ -1,4 +1,4 @@
-//! Whether a segment keeps to its bounds from its first instant to its last.
+//! Checks that a segment stays within its bounds from start to end.
 
 use tracelight_rig::{Joint, Segment, TICK_S};
 
@@ -89,7 +89,7 @@ fn hull(c: &[f32; 6], ticks: f32) -> Hull {
     hull
 }
 
-/// The same polynomial on both halves of its stretch (de Casteljau).
+/// Splits the polynomial at the middle of its interval (de Casteljau).
 fn halves(hull: &Hull) -> (Hull, Hull) {
     let (mut before, mut after) = (*hull, *hull);
     for (step, value) in before.iter_mut().enumerate().skip(1) {

@@ -4,10 +4,10 @@ use crate::axis::AxisConfig;
 use crate::model::HeadModel;
 use crate::watch::Foot;
 
-/// Everything the controller is told before it starts.
+/// Configuration of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// The head as it is believed to be.
+    /// The model of the head.
     pub model: HeadModel,
     /// Each axis.
     pub axes: PanTilt<AxisConfig>,
@@ -17,9 +17,9 @@ pub struct Config {
     pub laser_on_ticks: u32,
     /// From the gate's fall to dark, ticks.
     pub laser_off_ticks: u32,
-    /// The same of the laser's second switch, from the enable's rise,
+    /// From the enable's rise to light, by the second switch, ticks.
     pub enable_on_ticks: u32,
-    /// and from its fall.
+    /// From the enable's fall to dark, by the second switch, ticks.
     pub enable_off_ticks: u32,
     /// Ticks a host that has said it is there may be silent.
     pub host_silence_ticks: u32,

@@ -39,20 +39,20 @@ pub struct State {
 }
 
 impl State {
-    /// The same, its ticks counted from another than 0: of a controller that has been on for long.
+    /// Starts the tick count at another number than 0, as after a long uptime.
     #[must_use]
     pub const fn counting_from(self, tick: u32) -> Self {
         Self { tick, ..self }
     }
 
-    /// What is believed of the joints.
+    /// Estimates of both joints.
     pub const fn estimates(&self) -> &PanTilt<Estimate> {
         self.servo.estimates()
     }
 }
 
 impl Controller {
-    /// Takes a configuration as it is; whoever made it has checked it.
+    /// Makes a controller from a configuration that the caller has checked.
     pub const fn new(config: Config) -> Self {
         Self { config }
     }

@@ -3,7 +3,7 @@ use tracelight_rig::{Setpoint, TICK_S};
 use crate::estimate::Estimate;
 use crate::limit::within;
 
-/// How a joint follows a plan that is slower than friction lets go.
+/// Motion along a plan that is slower than stick–slip friction permits.
 ///
 /// At such speeds friction falls with speed: a joint that is to creep is unstable by itself, and between two edges, a count
 /// apart, nothing says that it stalled. One at rest is held by the same friction, whatever little is wrong. So it goes from rest

@@ -1,4 +1,4 @@
-//! The edge an encoder crossed last, as one of its readings tells.
+//! The edge that an encoder crossed last, derived from one reading.
 
 use tracelight_rig::TICK_S;
 

@@ -1,4 +1,4 @@
-//! What is believed of a joint, and what acts on it.
+//! The estimated state of a joint, and the torques that act on it.
 
 use tracelight_rig::Measurement;
 
@@ -15,7 +15,7 @@ pub struct Learned {
     pub inertia_share: f32,
 }
 
-/// What is believed of one joint.
+/// Estimated state of one joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// Angle, rad.
@@ -28,7 +28,7 @@ pub struct Estimate {
     pub learned: Learned,
     /// Counts that are to be added to what its encoder reads, because it lost some or made some up, as far as that was noticed.
     pub lost_counts: i32,
-    /// Counts were put back a moment ago, and the next edges have to tell whether rightly.
+    /// Whether counts were corrected recently and the next edges must confirm the correction.
     pub is_doubtful: bool,
     /// How far off what is taken for load and friction together may be: a standard deviation, N m.
     pub torque_deviation_nm: f32,
@@ -54,7 +54,7 @@ impl Estimate {
 pub struct Effort {
     /// Torque of the motor, N m.
     pub torque_nm: f32,
-    /// Torque that gravity, Coriolis, the other joint's acceleration and cables ask for, N m.
+    /// Torque of gravity, Coriolis, the other joint's acceleration and cables, N m.
     pub bias_nm: f32,
     /// Inertia the joint feels, kg m².
     pub inertia_kg_m2: f32,

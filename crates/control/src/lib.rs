@@ -1,4 +1,4 @@
-//! The law that runs every tick.
+//! The controller that runs every tick.
 //!
 //! Counts and segments in, volts and the laser's gate out, a thousand times a second:
 //!
@@ -10,10 +10,9 @@
 //!                                          light budget
 //! ```
 //!
-//! `no_std`, `f32`, no allocation, no panic, constant work a tick: the law that is simulated is, bit for bit, the law
-//! that is flashed. The crate does not know what hangs on the motors beyond its [`Config`], nor what is drawn, nor
-//! what time it is. Configuration ([`Controller`]) and state ([`State`]) are two types; a tick reads one and
-//! rewrites the other.
+//! `no_std`, `f32`, no allocation, no panic, constant work a tick: the simulated controller is bit for bit the flashed
+//! one. The crate does not know the plant beyond its [`Config`], nor what is drawn, nor what time it is.
+//! Configuration ([`Controller`]) and state ([`State`]) are two types; a tick reads one and rewrites the other.
 
 #![no_std]
 

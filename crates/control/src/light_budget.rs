@@ -1,4 +1,4 @@
-//! How much light falls in one place: no more than a budget, wherever the spot goes and comes back to.
+//! Bounds the light in one place to a budget, however often the spot returns there.
 //!
 //! Directions of the beam are parted into squares, by four grids at once, each half a square beside another. Light is charged, tick by
 //! tick, to the square of each grid that the spot is in. What a square was charged leaks while no light falls there, at a tenth of
@@ -48,11 +48,11 @@ pub struct LightBudget {
     now: u32,
     grids: [Grid; 4],
     rows: Rows,
-    /// What lies in the squares that were entered last,
+    /// Exposure of the squares that were entered last.
     common: Common,
-    /// and for how many ticks until the last one there was light that is not charged to them yet.
+    /// Lit ticks up to the last one that are not yet charged to these squares.
     pending: u32,
-    /// No square holds more, ticks; as it was looked up then, and what was lit since.
+    /// Upper bound of the exposure of any square, ticks: its value at the last lookup plus the light since.
     bound: f32,
     looked_up: u32,
     /// What any square may hold that is in no table, and all of the light of a head of which nobody knows where it points.
@@ -135,8 +135,8 @@ impl LightBudget {
         }
     }
 
-    /// Whether there may be no light where the joints are, rad, or will be, by their speed in rad/s, when a gate that falls now has made it
-    /// dark; `None` where nobody knows.
+    /// Whether light is forbidden at these joint angles, rad, or where the joints will be, at this speed in rad/s, once a gate that falls now has
+    /// darkened the beam; `None` if the position is unknown.
     pub fn is_spent(&mut self, config: &Config, at: Option<(PanTilt<f32>, PanTilt<f32>)>) -> bool {
         let most = most(config);
         let Some((angle_rad, rate_rad_s)) = at else {
@@ -148,7 +148,7 @@ impl LightBudget {
         self.is_spent_near(config, (angle_rad, rate_rad_s))
     }
 
-    /// The same where some square may have spent its budget.
+    /// Looks the squares up, for when one of them may have spent its budget.
     #[inline(never)] // most ticks do not come here
     fn is_spent_near(
         &mut self,
@@ -234,11 +234,11 @@ fn most(config: &Config) -> f32 {
 /// What light was charged to a square, less what has leaked.
 #[derive(Clone, Copy, Debug)]
 struct Spent {
-    /// Ticks, when it was charged last.
+    /// Exposure when last charged, ticks.
     held: f32,
-    /// That tick.
+    /// Tick of the last charge.
     charged: u32,
-    /// It held all it may, and has not leaked since.
+    /// Whether the square reached its limit and has not leaked since.
     shut: bool,
 }
 
@@ -250,7 +250,7 @@ impl Spent {
         (self.held - LEAK * now.wrapping_sub(self.charged) as f32).max(0.0)
     }
 
-    /// It was lit in so many ticks, of which that was the last.
+    /// Charges `ticks` of light, the last of them at tick `last`.
     fn charge(&mut self, last: u32, ticks: u32, most: f32) {
         // a new one holds what any may in its first lit tick already
         let dark = last.wrapping_sub(self.charged).saturating_sub(ticks);

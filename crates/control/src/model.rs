@@ -96,7 +96,7 @@ impl FrictionModel {
         }
     }
 
-    /// The same with `excess_nm` more Coulomb friction either way, or less, but never one that drives.
+    /// Adds `excess_nm` to the Coulomb friction of both directions; the sum never becomes negative friction.
     pub(crate) fn with_excess(&self, excess_nm: f32) -> Self {
         Self {
             coulomb_pos_nm: (self.coulomb_pos_nm + excess_nm).max(0.0),

@@ -3,11 +3,11 @@ use tracelight_rig::{PanTilt, Segment, Setpoint, TICK_S};
 /// Segments the controller can hold ahead of time.
 pub const QUEUE_LENGTH: usize = 64;
 
-/// Time in which the plan's clock gets back to full speed after a hold, s,
+/// Shortest time in which the plan's clock returns to full speed after a hold, s.
 const RESUME_S: f32 = 0.15;
 
-/// or longer where a joint is planned to be fast: a quarter of what the weaker motor can do, rad/s². At 1 ft/s on a target
-/// 3 ft away the two are alike.
+/// Acceleration that makes this time longer for fast motion: a quarter of what the weaker motor can do, rad/s². At 1 ft/s on a target
+/// 3 ft away both times are alike.
 const RESUME_RAD_S2: f32 = 2.2;
 
 /// Largest step between the end of one segment and the start of the next that still counts as joined, rad.

@@ -1,17 +1,17 @@
-//! What a joint has beyond its equations: break-away friction, misplaced edges, ripple, cables.
+//! Effects of a joint outside the rigid-body model: break-away friction, misplaced edges, ripple, cables.
 
 use crate::estimate::Learned;
 
 /// What a joint has beyond its equations, as far as it was identified; zeros where it was not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quirks {
-    /// What friction has on top of its Coulomb level near standstill, N m,
+    /// Friction above its Coulomb level near standstill, N m.
     pub break_away_nm: f32,
-    /// and the speed at which that has fallen to 1/e, rad/s.
+    /// Speed at which that excess has fallen to 1/e, rad/s.
     pub break_away_rad_s: f32,
     /// How far the four kinds of edges lie beyond their places, counts; edge n is the one below count n, and n mod 4 its kind.
     pub edges_counts: [f32; 4],
-    /// How Coulomb friction changes along the way.
+    /// Change of Coulomb friction with the angle.
     pub ripple: Ripple,
     /// What its cables do.
     pub cable: Cable,

@@ -1,8 +1,8 @@
-//! How long a head was lit of late of which nobody knows where it points.
+//! Bounds the recent light of an unhomed head, whose beam direction is unknown.
 
-/// Parts into which the time is cut that is looked back on,
+/// Number of parts that the window of recent light is divided into.
 const PARTS: usize = 100;
-/// and how long each is, ticks.
+/// Length of one part, ticks.
 const PART_TICKS: u8 = 100;
 
 /// Lit ticks of the last ten seconds, to a tenth of a second: never fewer than there were.

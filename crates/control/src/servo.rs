@@ -20,9 +20,9 @@ pub struct Servo {
     sound: bool,
 }
 
-/// Standard deviation of the speed of a joint at rest, rad/s,
+/// Standard deviation of the speed of a joint at rest, rad/s.
 const STILL_RAD_S: f32 = 1e-3;
-/// and of one that was left alone: tilt falls with 2 rad/s² at most.
+/// Standard deviation of the speed of a joint left without control, rad/s: tilt falls with 2 rad/s² at most.
 const ANY_RAD_S: f32 = 1.0;
 
 /// Where the joints should be.
@@ -54,7 +54,7 @@ impl Servo {
         Self { observers, laws: PanTilt::default(), estimates, efforts, torque_nm, sound: true }
     }
 
-    /// What is believed of the joints.
+    /// Estimates of both joints.
     pub const fn estimates(&self) -> &PanTilt<Estimate> {
         &self.estimates
     }

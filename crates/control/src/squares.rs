@@ -1,4 +1,4 @@
-//! Directions of the beam, and the squares that four grids part them into.
+//! Divides the directions of the beam into the squares of four grids.
 
 use core::f32::consts::{FRAC_PI_2, PI, TAU};
 

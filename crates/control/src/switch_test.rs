@@ -1,4 +1,4 @@
-//! Both of the laser's switches tried in the dark, one by one, before any light goes through them.
+//! Tests each of the laser's two switches alone, in the dark, before the first light.
 
 use tracelight_rig::Sensed;
 

@@ -1,4 +1,4 @@
-//! The border of a patch of ink, edge by edge, and what it encloses.
+//! The border of a region of ink, edge by edge, and what it encloses.
 
 use tracelight_stroke::Point;
 

@@ -1,4 +1,4 @@
-//! How far a pixel of ink is from the paper.
+//! Distance of an ink pixel to the paper.
 
 use crate::mask::{Cell, Mask};
 

@@ -46,7 +46,7 @@ impl Grey {
         &self.plane.values
     }
 
-    /// The same as a plane.
+    /// Views the image as a plane.
     #[inline]
     pub const fn plane(&self) -> &Plane<u8> {
         &self.plane

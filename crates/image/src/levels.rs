@@ -1,4 +1,4 @@
-//! How often each level comes, of all pixels or of some that stand for them.
+//! Histograms of grey levels, of all pixels or of a sample.
 
 use crate::plane::Plane;
 
@@ -48,7 +48,7 @@ pub fn percentile(histogram: &[u32; 256], share: f64) -> f64 {
 
 /// Pixels that are looked at together: as many as a mask has in a word.
 const BLOCK: usize = 64;
-/// As many pixels tell a picture's levels: all the others would move a share by a thousandth at most.
+/// Number of pixels sampled for a histogram: all the others would move a share by a thousandth at most.
 pub const SAMPLED: usize = 250_000;
 
 /// The histogram of about [`SAMPLED`] pixels.

@@ -1,4 +1,4 @@
-//! Pixels, and what can be asked of them.
+//! Pixel operations.
 //!
 //! A [`Grey`] is an image of brightnesses, a [`Plane`] any values on its grid, a [`Mask`] one bit a pixel: what is set is called ink,
 //! what is not paper, whatever they are of. In the pixel frame x is right, y down; the image spans [0, width] × [0, height], the

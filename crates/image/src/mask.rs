@@ -1,4 +1,4 @@
-//! A mask of one bit a pixel: 64 pixels a word, so that a whole picture of them stays in the cache.
+//! A mask of one bit a pixel, 64 pixels a word, so that a whole picture stays in the cache.
 
 mod morphology;
 
@@ -92,7 +92,7 @@ impl Mask {
         self.words[cell as usize / WORD] &= !(1 << (cell as usize % WORD));
     }
 
-    /// Whether a pixel is ink; outside there is none.
+    /// Whether a pixel is ink; pixels outside the mask are not.
     #[inline]
     pub fn get(&self, x: isize, y: isize) -> bool {
         match (usize::try_from(x), usize::try_from(y)) {
@@ -107,7 +107,7 @@ impl Mask {
         &self.words[(y + 1) * self.stride + 1..][..self.stride - 1]
     }
 
-    /// The same, to be written; bits past the width must stay 0.
+    /// Returns the words of a row for writing; bits past the width must stay 0.
     #[inline]
     pub fn row_mut(&mut self, y: usize) -> &mut [u64] {
         &mut self.words[(y + 1) * self.stride + 1..][..self.stride - 1]
@@ -177,7 +177,7 @@ impl Mask {
         &self.words
     }
 
-    /// The same, to be written; margins must stay 0.
+    /// Returns all words for writing; margins must stay 0.
     #[inline]
     pub fn words_mut(&mut self) -> &mut [u64] {
         &mut self.words

@@ -1,4 +1,4 @@
-//! The middle of some values.
+//! Median.
 
 /// The middle value; 0 of none.
 pub fn median(values: &[f64]) -> f64 {

@@ -33,7 +33,7 @@ impl<T: Copy + Default> Plane<T> {
         &self.values[y * self.width..][..self.width]
     }
 
-    /// The same, to be written.
+    /// Returns a row for writing.
     pub fn row_mut(&mut self, y: usize) -> &mut [T] {
         &mut self.values[y * self.width..][..self.width]
     }

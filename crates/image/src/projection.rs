@@ -1,4 +1,4 @@
-//! A rectangle seen at a slant.
+//! Perspective of a rectangle.
 
 use tracelight_stroke::{Point, Vec2};
 
@@ -27,7 +27,7 @@ impl Projection {
         self.with_slopes(x, y).map(|(at, _, _)| at)
     }
 
-    /// The same, and how far a unit across and a unit down go there, px.
+    /// Maps a position, and gives the steps of one unit across and one unit down there, px.
     #[inline]
     pub fn with_slopes(&self, x: f64, y: f64) -> Option<(Point, Vec2, Vec2)> {
         let [a, b, c, d, e, f, g, h] = self.0;

@@ -1,4 +1,4 @@
-//! Patches of ink.
+//! Connected regions of ink.
 
 use std::ops::Range;
 
@@ -78,7 +78,7 @@ impl Region {
         self.bounds(0, any).map_or((0, 0), |(columns, rows)| (columns.len(), rows.len()))
     }
 
-    /// Columns and rows of its bounding box and so many px round it, within an image of this size; `None` without pixels.
+    /// Columns and rows of the bounding box with `round` px on each side, within an image of this size; `None` without pixels.
     pub fn bounds(&self, round: usize, size: (usize, usize)) -> Option<(Range<usize>, Range<usize>)> {
         let (top, bottom) = (self.runs.first()?.y as usize, self.runs.last()?.y as usize + 1);
         let left = self.runs.iter().map(|run| run.from as usize).min()?;
@@ -113,7 +113,7 @@ impl Region {
         })
     }
 
-    /// The same with its place `left`, `top` as the origin; none of its pixels lies before that.
+    /// Translates the region so that `left`, `top` becomes the origin; none of its pixels lies before that.
     pub fn seen_from(&self, left: usize, top: usize) -> Self {
         let (left, top) = (left as u32, top as u32);
         let moved = |run: &Run| Run { y: run.y - top, from: run.from - left, to: run.to - left };

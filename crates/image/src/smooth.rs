@@ -1,9 +1,9 @@
-//! Pixel noise, and less of it.
+//! Pixel noise: estimate and reduction.
 
 use crate::levels::{Counts, percentile};
 use crate::plane::Plane;
 
-/// What is left of noise after so many passes of [`smoothed`]: the root of the sum of the squares of the weights of the binomial mean, alone and of itself.
+/// Residual noise after 0, 1 or 2 passes of [`smoothed`]: root of the sum of squared weights of the repeated binomial mean.
 pub const SMOOTHED: [f64; 3] = [1.0, 3.0 / 8.0, 35.0 / 128.0];
 
 /// Standard deviation of the pixel noise, levels: the mask of Immerkær, "Fast noise variance estimation" (1996),

@@ -1,4 +1,4 @@
-//! Few linear equations, and the straight line nearest to some places.
+//! Small linear systems, and line fitting.
 
 /// Solves n linear equations by Gaussian elimination with row pivoting; each row holds its coefficients and, behind
 /// them, the right-hand side. `None` where they are dependent.

@@ -1,4 +1,4 @@
-//! Which levels are over one.
+//! Thresholding.
 
 use crate::mask::Mask;
 use crate::plane::Plane;

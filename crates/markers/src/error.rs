@@ -25,7 +25,7 @@ pub enum SpotLost {
         /// What would stand out, %.
         least: f64,
     },
-    /// It reaches beyond the window.
+    /// The spot reaches beyond the window.
     #[error("the spot at ({:.1}, {:.1}) px reaches beyond where it is looked for; look in a larger window", .0.x, .0.y)]
     Cut(Point),
 }

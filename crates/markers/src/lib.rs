@@ -1,4 +1,4 @@
-//! What a machine looks for on a wall, in the pixels of an image of it.
+//! Detects markers and the laser spot in an image of a wall.
 //!
 //! [`find_tags`] finds printed square markers, [`find_spot`] the laser's spot: both to a few hundredths of a pixel, in the pixel
 //! frame: x right, y down, the first pixel's centre is (0.5, 0.5). Nothing here knows strokes, cameras or metres.

@@ -1,4 +1,4 @@
-//! Light from levels, and less noise on it.
+//! Linear light from grey levels, and noise reduction.
 
 use std::sync::LazyLock;
 

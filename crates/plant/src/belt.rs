@@ -63,7 +63,7 @@ impl Belted {
         }
     }
 
-    /// The same in motion: what hangs together turns together.
+    /// Sets the speed of joints and rotors alike.
     pub(crate) fn turning(mut self, rate_rad_s: PanTilt<f64>) -> Self {
         (self.rotors.rate_rad_s, self.joints.rate_rad_s) = (rate_rad_s, rate_rad_s);
         self

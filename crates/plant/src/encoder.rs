@@ -64,13 +64,13 @@ impl Encoder {
         }
     }
 
-    /// The same with a disc beside its axis, by that many counts in a direction, reading right where it is homed.
+    /// Adds an eccentric disc: amplitude in counts, direction in rad; the reading is correct at the homing position.
     pub(crate) fn eccentric(mut self, counts: f64, direction_rad: f64) -> Self {
         self.eccentricity = (counts, direction_rad);
         self
     }
 
-    /// The same with a counter that misses that share of all edges.
+    /// Adds a counter that misses this share of all edges.
     pub(crate) fn missing(mut self, share: f64, seed: u64) -> Self {
         self.lost_share = share;
         self.dice = oorandom::Rand32::new(seed);

@@ -1,4 +1,4 @@
-//! What a head stands on: a foot that may give, that somebody may bump into, and that may carry a gyroscope.
+//! The base of the head: it may sway, be bumped and carry a gyroscope.
 
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 

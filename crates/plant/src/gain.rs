@@ -1,4 +1,4 @@
-//! Amplifiers that weaken.
+//! Amplifiers with a gain that falls over time.
 
 /// An amplifier that weakens, as one does that grows too hot: it gives less and less torque for a volt.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ impl Gain {
     /// All of it, and so it stays.
     pub(crate) const FULL: Self = Self { share: 1.0, weakening: Weakening { left: 1.0, per_s: 0.0 } };
 
-    /// It weakens from now on.
+    /// Starts the weakening.
     pub(crate) const fn weaken(&mut self, weakening: Weakening) {
         self.weakening = weakening;
     }

@@ -1,4 +1,4 @@
-//! A pan/tilt laser head made of equations.
+//! A simulated pan/tilt laser head.
 //!
 //! [`Plant`] is a [`tracelight_rig::Head`]: volts and gate in, counts out, once a tick. Behind that seam it steps the
 //! nonlinear equations of motion with friction that truly sticks, quantizes what the encoders see, switches the

@@ -53,7 +53,7 @@ impl Mechanism {
         }
     }
 
-    /// The same on its belts: joints that are one with their rotors on stiff ones.
+    /// Returns the mechanism with belts. On stiff belts, rotors and joints move as one.
     pub(crate) fn on_belts(&self, state: &JointState, rotor_kg_m2: PanTilt<f64>) -> Belted {
         match *self {
             Self::Rigid(stepper) => {

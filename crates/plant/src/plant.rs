@@ -17,9 +17,9 @@ use crate::{JointState, PlantConfig, Wear};
 const SUBSTEPS: u32 = 10;
 /// Twice the mains frequency: what a rectifier leaves of it.
 const SUPPLY_HZ: f64 = 100.0;
-/// How stiff a stop is: with how many rad/s a joint would swing on it,
+/// Natural frequency of a joint on its end stop, rad/s.
 const STOP_RAD_S: f64 = 400.0;
-/// and how that is damped, as a share of critical damping.
+/// Damping of that end stop, as a share of critical damping.
 const STOP_DAMPING: f64 = 0.3;
 /// How far from straight ahead cables may hang at rest, rad.
 const CABLE_REST_RAD: f64 = 0.3;
@@ -87,7 +87,7 @@ impl Plant {
         Self::resting_at(config, PanTilt::default(), seed)
     }
 
-    /// The same at rest elsewhere, within one count of these angles, rad.
+    /// Starts at rest at other angles, within one count of `angle_rad`.
     pub fn resting_at(config: &PlantConfig, angle_rad: PanTilt<f64>, seed: u64) -> Self {
         let mut dice = Dice::new(seed);
         let wear = &config.wear;
@@ -135,7 +135,7 @@ impl Plant {
         }
     }
 
-    /// The same with joints that end at stops, lower and upper, rad.
+    /// Adds end stops to the joints, lower and upper, rad.
     #[must_use]
     pub fn between_stops(mut self, config: &PlantConfig, stops_rad: PanTilt<(f64, f64)>) -> Self {
         let inertia_kg_m2 = config.bodies.lumped().mass(0.0).own_inertia();
@@ -184,17 +184,17 @@ impl Plant {
         self.held_up_s = time_s;
     }
 
-    /// The laser's relay stays as it is from now on, whatever the gate.
+    /// Freezes the laser's relay in its present state, whatever the gate.
     pub const fn stick_laser(&mut self) {
         self.relay.stick(true);
     }
 
-    /// Somebody put in another relay.
+    /// Replaces the laser's relay by a working one.
     pub const fn free_laser(&mut self) {
         self.relay.stick(false);
     }
 
-    /// The laser's second switch stays as it is from now on, whatever the enable.
+    /// Freezes the laser's second switch in its present state, whatever the enable.
     pub const fn stick_enable(&mut self) {
         self.enable.stick(true);
     }

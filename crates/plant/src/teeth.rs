@@ -1,4 +1,4 @@
-//! Belts that jump teeth.
+//! Belts that skip teeth.
 
 /// A toothed belt that is too slack: where it carries too much, its teeth climb out of their gaps and fall into the next ones (ratcheting:
 /// Collins, *What is ratcheting in synchronous belt drives?*, Linear Motion Tips, 2017).
@@ -22,7 +22,7 @@ pub(crate) struct Teeth {
 /// What a belt does at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Mesh {
-    /// It carries a torque, N m.
+    /// The belt is engaged and carries this torque, N m.
     Carries(f64),
     /// Its teeth have just fallen into the next gaps: what turned at two speeds turns at one.
     Lands,

@@ -1,6 +1,6 @@
-//! How a real head differs from its equations.
+//! Deviations of a real head from its equations.
 
-/// How a real head differs from its equations. [`Wear::NONE`] is a head as good as new.
+/// Deviations of a real head from its equations. [`Wear::NONE`] is a head as good as new.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wear {
     /// Break-away over Coulomb friction, ≥ 1.
@@ -17,12 +17,11 @@ pub struct Wear {
     pub gain_spread: f64,
     /// With how many Hz what a joint carries swings on its belt; zero for belts that do not give.
     pub belt_resonance_hz: f64,
-    /// How that is damped, as a share of critical damping.
+    /// Backlash between encoder and beam, rad: the beam lags by half of it either way.
     pub belt_damping: f64,
     /// Whether encoders sit on the motors' side of the belts and read the rotors; else they read the joints.
     pub encoders_at_motors: bool,
-    /// By how much an encoder's disc sits beside its axis: amplitude of what it reads wrong over a turn, counts; drawn from the
-    /// seed is in which direction.
+    /// Amplitude of the reading error of an off-centre encoder disc, with one period a turn, counts. The seed determines the phase.
     pub eccentricity_counts: f64,
     /// Time constant with which an amplifier's current follows its command, s.
     pub current_lag_s: f64,

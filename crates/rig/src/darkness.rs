@@ -1,4 +1,4 @@
-//! Reasons to be dark in a tick, and the one table that knows all of them.
+//! Reasons for darkness in a tick, and the table that lists them all.
 
 /// One row of [`Darkness::TABLE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub struct DarknessRow {
     pub code: &'static str,
     /// When it holds, one sentence.
     pub what: &'static str,
-    /// What it was, told afterwards, for `explain` and reports.
+    /// Description in the past tense, for `explain` and reports.
     pub words: &'static str,
     /// What a user can do about it, for `explain`.
     pub advice: &'static str,
@@ -154,7 +154,7 @@ impl Darkness {
         Self::ALL.into_iter().find(|reason| reason.code() == code)
     }
 
-    /// What it was, told afterwards.
+    /// Description of the reason in the past tense.
     pub const fn words(self) -> &'static str {
         self.row().words
     }

@@ -1,4 +1,4 @@
-//! What a head says, and what is done to it, in a tick.
+//! Sensor values and actuation of one tick.
 
 use crate::{Inputs, PanTilt};
 

@@ -1,4 +1,4 @@
-//! Faults, and the one table that knows all of them.
+//! Faults, and the table that lists them all.
 
 mod row;
 
@@ -369,7 +369,7 @@ impl Fault {
         BLIND & (1 << self.number()) != 0
     }
 
-    /// Whether counts may have been lost or made up, so that nobody knows where the head stands.
+    /// Whether counts may have been lost or invented, so that the head's position is unknown.
     pub const fn loses_counts(self) -> bool {
         LOSES_COUNTS & (1 << self.number()) != 0
     }

@@ -1,4 +1,4 @@
-//! Inputs by which a rig's surroundings forbid light: switches in a loop that opens, lines of amplifiers and supplies.
+//! External safety inputs that forbid light: switches in a loop, status lines of amplifiers and supplies.
 
 use crate::{Fault, Joint};
 
@@ -23,11 +23,11 @@ pub enum Input {
 /// What an input says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum InputState {
-    /// The rig does not have it: nobody knows.
+    /// The rig does not have this input.
     Absent,
-    /// It is there, and nothing is wrong.
+    /// The input is present and permits light.
     Fine,
-    /// It is there, and says stop; a line that is cut does, too.
+    /// The input is present and forbids light, or its line is cut.
     Open,
 }
 
@@ -80,7 +80,7 @@ impl Inputs {
     /// Of a rig that has none.
     pub const ABSENT: Inputs = Inputs { present: 0, open: 0 };
 
-    /// The same but for one.
+    /// Returns a copy with one input changed.
     #[must_use]
     pub const fn with(self, input: Input, state: InputState) -> Self {
         let (bit, others) = (input.bit(), !input.bit());

@@ -28,7 +28,7 @@ impl core::fmt::Display for Joint {
     }
 }
 
-/// The same quantity for both joints.
+/// One quantity for each of the two joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PanTilt<T> {
     /// Of the pan joint.
@@ -43,7 +43,7 @@ impl<T> PanTilt<T> {
         Self { pan, tilt }
     }
 
-    /// The same value made for each joint.
+    /// Evaluates `f` for each joint.
     pub fn from_fn(mut f: impl FnMut(Joint) -> T) -> Self {
         Self { pan: f(Joint::Pan), tilt: f(Joint::Tilt) }
     }

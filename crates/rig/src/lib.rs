@@ -1,4 +1,4 @@
-//! The words a pan/tilt laser head and its host share.
+//! Types shared by a pan/tilt laser head, its controller and its host.
 //!
 //! This crate holds types and the two seams, nothing else: no control, no physics, no allocation, no clock.
 //! Everything that crosses from the host's planner to the controller ([`Segment`], [`Command`]), from the

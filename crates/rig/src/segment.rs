@@ -64,38 +64,46 @@ fn evaluate(c: &[f32; 6], n: f32) -> Setpoint {
     }
 }
 
-/// What the host may tell a rig.
+/// Commands from the host to the rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Allow light. Without it every gate stays shut. After a fault it is forgotten, the head goes back to where its job
-    /// stopped, and on from there: in the dark where the fault [lost counts](crate::Fault::loses_counts), until it was homed again. It changes nothing at all unless it acknowledges
-    /// every fault so far, and unless the host has said of late that it is there ([`KeepAlive`](Self::KeepAlive)).
+    /// Permit light. Without it the gate stays closed.
+    ///
+    /// Effects after a fault: the fault is cleared, the head returns to where its job stopped, and the job continues. If the fault [lost
+    /// counts](crate::Fault::loses_counts), it stays dark until the rig is homed again.
+    ///
+    /// Ignored unless it acknowledges every fault so far, and unless the host has recently sent [`KeepAlive`](Self::KeepAlive).
     Arm {
-        /// [`Telemetry::fault_number`](crate::Telemetry::fault_number) of what whoever arms has read. What was on its way while a fault came acknowledges another.
+        /// Latest [`Telemetry::fault_number`](crate::Telemetry::fault_number) that the sender has read. A command sent before a fault carries an
+        /// older number.
         acknowledges: u32,
     },
-    /// Forbid light and stop the plan's clock; the head is held where that stands. Armed again, the job goes on from
-    /// there; after its end, a new one may begin at tick 0.
+    /// Forbid light and stop the plan's clock. The head holds its position. Armed again, the job continues from there; after its end, a new one
+    /// may begin at tick 0.
     Disarm,
-    /// Let light out for so many ticks while nobody is armed, where a job was stopped on a lit stroke and the head rests: a dot, for whoever
-    /// looks where it truly is. Whatever else forbids light on a stroke forbids it here; without a host that said of late that it is there it
-    /// changes nothing, and it ends when the host falls silent, or before it would stand too long.
+    /// Light the laser for this many ticks while disarmed: a dot, with which an observer locates the beam.
+    ///
+    /// Accepted while a job is stopped on a lit stroke and the head rests. All other reasons for darkness still apply. Ignored without a recent
+    /// [`KeepAlive`](Self::KeepAlive). The dot ends early if the host falls silent, or before its light would stand too long.
     Point(u16),
-    /// The joints stand where encoders that know where zero is read these counts; from now on these do. For a head that was just powered up, which has no job yet
-    /// and rests wherever it was left. Taken only while nobody is armed and the joints rest, and only of angles within their limits; the job is forgotten, the next one begins where the head
-    /// stands ([`Abandon`](Self::Abandon) takes it to zero). Until it was told, and again after a fault that loses counts, a rig is *unhomed*: it moves by counts since power-up, no further than its joints' ranges are wide, and all the light it
-    /// lets out are dots ([`Point`](Self::Point), then anywhere, of a second at most, all of them a second in any ten: one for which there is no room is not lit at all), by which somebody who looks finds where it points.
+    /// Home: declare that the joints are at these counts. Subsequent counts are relative to it.
+    ///
+    /// - Accepted only while disarmed, with the joints at rest and the angles within their limits.
+    /// - The current job is forgotten; the next one begins where the head is. [`Abandon`](Self::Abandon) moves it to zero.
+    /// - Before homing, and after a fault that loses counts, a rig is *unhomed*. It then moves by counts since power-up, over no more than the
+    ///   width of the joint ranges.
+    /// - An unhomed rig lights dots only ([`Point`](Self::Point), at any place): a second at most each, and a second in any ten altogether. A dot
+    ///   that would exceed this is not lit.
     Home(PanTilt<i32>),
-    /// What was told of where the joints stand is not so, or nobody knows any more: be unhomed from now on, and dark.
+    /// Revoke homing, because the position is wrong or unknown. The rig is unhomed and dark from now on.
     Unhome,
-    /// Forget the job: forbid light, go back to where both joints are at zero, and be ready for a new one that begins there at
-    /// tick 0. A fault stays; arm first.
+    /// Forget the job: forbid light, return both joints to zero, and accept a new job that begins there at tick 0. A fault persists; arm first.
     Abandon,
-    /// Append a segment; it must start where and when the one before it ends, and stay within the joints' limits all along.
+    /// Append a segment. Its start must join the end of the previous one, and all of it must stay within the joints' limits.
     Append(Segment),
-    /// The host is there: nothing is armed and no dot is lit without. Who has said so once must go on saying it: silence is a fault.
+    /// Signal that the host is alive. Nothing is armed and no dot is lit without it. Once sent, it must be repeated: silence is a fault.
     KeepAlive,
-    /// No further segment will come (one that does is a fault): running out of them is the end of the job, not a fault.
+    /// Declare that no further segment will come. Running out of segments is then the end of the job; a later segment is a fault.
     Finish,
 }
 

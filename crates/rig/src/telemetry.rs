@@ -54,14 +54,14 @@ pub struct Telemetry {
     /// Counts that are to be added to what the encoders read, because they lost some or made some up, as far as the
     /// observer noticed.
     pub lost_counts: PanTilt<i32>,
-    /// How far what the head stands on has turned since it last stood still, rad about the head's x, y and z (ahead, left, up); what is slow is forgotten
-    /// within a second. `None` without a gyroscope on it.
+    /// Rotation of the base since it last stood still, rad about the head's x, y and z (ahead, left, up). Slow rotation is forgotten within a
+    /// second. `None` without a gyroscope on the base.
     pub foot_turned_rad: Option<[f32; 3]>,
     /// What is done about it until the next tick.
     pub actuation: Actuation,
     /// Why the gate is shut; empty when it is open.
     pub darkness: DarknessSet,
-    /// The rig was told where its joints stand ([`Command::Home`](crate::Command::Home)), and lost neither power nor counts since.
+    /// Whether the rig was homed ([`Command::Home`](crate::Command::Home)) and has lost neither power nor counts since.
     pub homed: bool,
     /// Supervisor's state.
     pub phase: Phase,

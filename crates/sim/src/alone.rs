@@ -51,7 +51,7 @@ pub struct MotorReading {
 /// Ticks between two readings.
 pub const READ_TICKS: usize = 100;
 
-/// Holds each voltage for so many readings, one after the other, and reads the motor's current as well.
+/// Holds each voltage for this many readings, one after the other, and reads the motor's current as well.
 pub fn motor_readings(
     rig: &RigConfig,
     tested: Joint,

@@ -44,7 +44,7 @@ pub enum ArrayError {
 }
 
 impl MotionArray {
-    /// Rows are apart by so much at least, s: a microsecond, less what rounding takes.
+    /// Smallest time between rows, s: a microsecond, less rounding.
     pub const CLOSEST_S: f64 = 0.999e-6;
 
     /// From times, s, and angles, rad; the first row is the start, at whatever time.

@@ -21,13 +21,13 @@ pub(crate) struct Bench<H> {
 pub struct BenchTick {
     /// Where the joints should be.
     pub setpoint: PanTilt<Setpoint>,
-    /// Where they truly are, rad,
+    /// True joint angles, rad.
     pub angle_rad: PanTilt<f64>,
-    /// and where the beam points that they carry, rad.
+    /// Direction of the beam, rad.
     pub beam_rad: PanTilt<f64>,
     /// What the encoders read.
     pub measured: PanTilt<Measurement>,
-    /// What is believed.
+    /// Estimates of the observers.
     pub estimates: PanTilt<Estimate>,
     /// What is done about it, V.
     pub command_v: PanTilt<f32>,
@@ -39,7 +39,7 @@ impl Bench<Plant> {
         Self::nonlinear_at(rig, PanTilt::default(), seed)
     }
 
-    /// The same at rest elsewhere.
+    /// Starts the bench at rest at other angles.
     pub(crate) fn nonlinear_at(rig: &RigConfig, angle_rad: PanTilt<f64>, seed: u64) -> Self {
         let plant = Plant::resting_at(&rig.plant_config(), angle_rad, seed);
         let measured = plant.measured();
@@ -53,7 +53,7 @@ impl Bench<Plant> {
 }
 
 impl Bench<LinearHead> {
-    /// The same head linearized at rest at `pose_rad`, with an ideal encoder and amplifier; the law is told so.
+    /// Makes a bench with the head linearized at rest at `pose_rad` and an ideal encoder and amplifier. The law is configured accordingly.
     pub(crate) fn linear(rig: &RigConfig, pose_rad: PanTilt<f64>) -> Self {
         let head = LinearHead::new(rig, pose_rad);
         Self::new(head.control_config(rig), head, PanTilt::default())

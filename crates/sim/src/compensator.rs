@@ -1,4 +1,4 @@
-//! Compensators from zeros and poles as laws of the controller.
+//! Makes laws from compensators given by zeros and poles.
 
 use tracelight_control::{Biquad, Feedback, Feedforward, LawConfig, LeadLag};
 use tracelight_linear::{Complex, Discretization, LinearError, Polynomial, Time, TransferFunction, Zpk};

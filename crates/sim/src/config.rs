@@ -67,8 +67,8 @@ impl Model {
         self.bodies.rotor_kg_m2[joint] += missing;
     }
 
-    /// Moves what tilt carries so that gravity turns it by so much with the beam level, and upright, N m. A head without mass has no
-    /// weight to move.
+    /// Moves the mass that tilt carries so that gravity exerts these torques, N m, with the beam level and upright. A massless head is left
+    /// unchanged.
     pub fn set_weight(&mut self, [level_nm, upright_nm]: [f64; 2]) {
         let weight = self.bodies.tilt_body.mass_kg * self.bodies.gravity_m_s2;
         if weight > 0.0 {
@@ -87,7 +87,7 @@ impl Model {
 /// What was identified of a head besides its model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identified {
-    /// When, as year-month-day; empty where nobody said.
+    /// Date of it, as year-month-day; empty if not given.
     pub date: String,
     /// How far the model is off what it was identified from, root mean square over stretches of motion, counts.
     pub residual_counts: PanTilt<f64>,
@@ -98,14 +98,14 @@ pub struct Identified {
 /// What a joint has beyond its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quirks {
-    /// What friction has on top of its Coulomb level near standstill, N m,
+    /// Friction above its Coulomb level near standstill, N m.
     pub break_away_nm: f64,
-    /// and the speed at which that has fallen to 1/e, rad/s.
+    /// Speed at which that excess has fallen to 1/e, rad/s.
     pub break_away_rad_s: f64,
     /// How far the four kinds of encoder edges lie beyond their places, counts; edge n is the one below count n, and n mod 4
     /// its kind.
     pub edges_counts: [f64; 4],
-    /// How Coulomb friction changes along the way.
+    /// Change of Coulomb friction with the angle.
     pub ripple: Ripple,
     /// What its cables do.
     pub cable: Cable,
@@ -142,13 +142,13 @@ impl RigConfig {
         self.control.observer = observer.or(own);
     }
 
-    /// The same rig without hops: for motion that is looked at for its own sake.
+    /// Returns the rig without hops, for motion that is studied for its own sake.
     pub fn following(&self) -> Self {
         Self { control: ControlSettings { hops: false, ..self.control }, ..self.trusting() }
     }
 
-    /// The same rig that believes its encoders from the first tick on, whatever they show of its motors: for simulated trials in which that is
-    /// not the question, of single moves, or of motors that are not as believed.
+    /// Returns the rig with encoders trusted from the first tick on. For simulated trials of single moves, or of motors that
+    /// differ from the model, in which encoder faults are not the question.
     #[must_use]
     pub fn trusting(&self) -> Self {
         Self { control: ControlSettings { scale_tolerance: f64::INFINITY, ..self.control }, ..self.clone() }
@@ -198,7 +198,7 @@ pub struct MotionSettings {
     pub speed_limit_rad_s: PanTilt<f64>,
     /// Highest joint acceleration that is wished for, rad/s²; the motors decide where they allow less.
     pub acceleration_limit_rad_s2: PanTilt<f64>,
-    /// Highest jerk of each joint, from one tick to the next, rad/s³; so high that it binds nothing where there is none.
+    /// Highest jerk of each joint, from one tick to the next, rad/s³; so high that it binds nothing if no limit is set.
     pub jerk_limit_rad_s3: PanTilt<f64>,
     /// Time over which the acceleration along a lit stroke builds up, s: the S of its run-up and run-down.
     pub ramp_s: f64,

@@ -1,4 +1,4 @@
-//! How a rig's controller is set, and the law of each joint that makes.
+//! Controller settings of a rig, and the laws that follow from them.
 
 use tracelight_control::{Feedback, Feedforward, LawConfig, LeadLag, Pid, StateFeedback};
 use tracelight_rig::{Joint, PanTilt};

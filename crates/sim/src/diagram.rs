@@ -22,7 +22,7 @@ pub struct Diagram {
     pub cap_nm: PanTilt<f64>,
     /// Width of a quantum of the angle, rad; none passes it on as it is.
     pub quantum_rad: Option<f64>,
-    /// For how many ticks the angle is held on its way back; none passes it on at once.
+    /// Ticks for which the fed-back angle is held; `None` feeds it back at once.
     pub hold_ticks: Option<usize>,
 }
 
@@ -33,7 +33,7 @@ pub struct ScopeTick {
     pub set_rad: PanTilt<f64>,
     /// Where they are, rad.
     pub angle_rad: PanTilt<f64>,
-    /// What the motors are told, as torque at the joint, N m.
+    /// Motor command, as torque at the joint, N m.
     pub torque_nm: PanTilt<f64>,
 }
 

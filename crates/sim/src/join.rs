@@ -1,4 +1,4 @@
-//! What each room is told of a rig.
+//! Makes the configurations of planner, plant and controller from a rig's.
 
 use tracelight_aim::HeadPose;
 use tracelight_control::{
@@ -15,10 +15,10 @@ use crate::{LawName, Model, ObserverName, RigConfig};
 /// How far past the end of its range a joint may be before that is a fault, counts.
 const RANGE_MARGIN_COUNTS: f64 = 3.0;
 
-/// How much faster, and how much more suddenly, than the planner may ask for a joint may be told to move: between two ticks a segment
-/// goes a little beyond what the plan's ticks keep to, and whoever trims it moves it a little more.
+/// Factor by which a joint's speed may exceed the planner's limit. Between two ticks a segment
+/// goes slightly beyond the planned ticks, and trimming adds a little more.
 const MOTION_MARGIN: f64 = 1.1;
-/// The same of its acceleration: a sigmoid begins and ends with a jump of its speed, which a segment spreads over a tick or two.
+/// Factor for the acceleration: a sigmoid begins and ends with a jump of its speed, which a segment spreads over a tick or two.
 const ACCELERATION_MARGIN: f64 = 4.0;
 /// Furthest that a segment may let a joint stray, rad: 0.1 m on a target 1 m away, twice what any rig file may ask for. Routines in the dark
 /// ask for half of it.
@@ -27,9 +27,9 @@ const TOLERANCE_LIMIT_RAD: f64 = 0.1;
 /// A joint hops where fewer edges pass than that, counts/s: in the time from one to the next, 77 ms, one that is slower than its
 /// friction lets go would stall.
 const CREEP_COUNTS_S: f64 = 13.0;
-/// A reversal that lasts longer, s, either way, is hopped through;
+/// Duration from which a reversal is hopped through, s, each way.
 const TURN_S: f32 = 0.02;
-/// where the head was identified it is followed for longer than that by what is known of friction.
+/// Duration for an identified head, s: its known friction allows continuous motion for longer.
 const KNOWN_TURN_S: f32 = 0.08;
 /// Length of a hop, counts: half of it is what a joint that creeps is off, all of it what one that rests may be. 0.04 to 0.1 are alike
 /// on heads that differ.

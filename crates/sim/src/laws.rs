@@ -18,7 +18,7 @@ pub enum LawName {
     LeadLag,
     /// The 2006 report's K11 and K22, its figures read as poles and zeros, as they are typeset.
     ReportZpk,
-    /// The same, read as time constants, as its design tool displayed them.
+    /// The report's K11 and K22, read as time constants, as its design tool displayed them.
     ReportTimeConstants,
     /// The report's PD gains.
     ReportPd,
@@ -66,7 +66,7 @@ impl LawName {
         }
     }
 
-    /// How it is told to go somewhere else.
+    /// Shape of the setpoint in a step response.
     pub const fn reference(self) -> StepReference {
         if matches!(self, Self::State | Self::PidFeedforward) {
             StepReference::Move
@@ -88,16 +88,16 @@ impl LawName {
     }
 }
 
-/// How a joint is told to go somewhere else.
+/// Shape of the setpoint in a step response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepReference {
-    /// The setpoint is there at once.
+    /// The setpoint is a step.
     Jump,
-    /// It goes there as fast as the rig's limits allow.
+    /// The setpoint is a move within the rig's limits.
     Move,
 }
 
-/// A PID of one joint with gains that somebody set by hand.
+/// A PID of one joint with manually set gains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandTuned {
     /// Proportional, N m/rad.
@@ -106,9 +106,9 @@ pub struct HandTuned {
     pub ki: f64,
     /// Derivative, N m·s/rad.
     pub kd: f64,
-    /// Share of the setpoint that the proportional part sees, 0 to 1,
+    /// Setpoint weight of the proportional part, 0 to 1.
     pub position_weight: f64,
-    /// and of its velocity that the derivative part sees.
+    /// Setpoint weight of the derivative part.
     pub velocity_weight: f64,
     /// Whether the integrator rests while the amplifier is at its limit and the error would drive it further.
     pub anti_windup: bool,
@@ -167,7 +167,7 @@ impl Compensator {
 pub enum ObserverName {
     /// Kalman filter with sticking friction that learns what the head is.
     Kalman,
-    /// The same, believing the model.
+    /// Kalman filter with sticking friction and fixed parameters of the model.
     KalmanModel,
     /// Tracking loop (PLL).
     TrackingLoop,

@@ -1,4 +1,4 @@
-//! The loop closed: a rig description and a job in, one seeded run out.
+//! The closed loop: a rig configuration and a job in, one seeded run out.
 //!
 //! Plant and controller meet here, and only through the seams of [`tracelight_rig`]. Same inputs, same bytes: the
 //! crate reads no clock, starts no thread and draws nothing that its seed does not decide.

@@ -1,4 +1,4 @@
-//! What laser a rig has, how long its light may stand, and where the head turns if it does not go dark.
+//! Laser data of a rig, its exposure limit, and the direction to park in if it stays lit.
 
 use tracelight_rig::TICK_F64_S;
 
@@ -8,14 +8,13 @@ use crate::laws::ObserverName;
 const PLACE_J: f64 = 1e-3;
 /// Longest that light stands where the rig file says nothing else, s, however weak it is.
 const USUAL_S: f64 = 1.0;
-/// Radius of a place on the wall, m,
+/// Radius of a place on the wall, m.
 const PLACE_M: f64 = 1e-3;
-/// of a wall that is no nearer than this, m: 3 ft, the usual distance. Nearer the same angle is a smaller place.
+/// Distance of that wall, m: 3 ft, the usual one. On a nearer wall the angle is a smaller place.
 const USUAL_DISTANCE_M: f64 = 0.9144;
-/// How far what is believed of a joint that stays in a place may wander about where it is, counts: one that rests is believed to rest, wherever in its
-/// count; by a Kalman filter it is followed through it,
+/// Wander of the position estimate of a joint at rest under a Kalman filter, which interpolates within a count; counts.
 const FOLLOWED_COUNTS: f64 = 0.25;
-/// by other observers from count to count.
+/// Wander under the other observers, which go from count to count; counts.
 const COUNTED_COUNTS: f64 = 0.5;
 
 /// A laser, how long its light may stand in one place, and where the head turns if it does not go dark.
@@ -66,7 +65,7 @@ pub enum LaserClass {
     OneM,
     /// Visible; the blink of an eye protects.
     Two,
-    /// The same, but through lenses.
+    /// Visible; safe for the eye as long as no lens is used.
     TwoM,
     /// Some risk to an eye.
     ThreeR,

@@ -1,4 +1,4 @@
-//! Rigs that come with the program.
+//! Built-in rigs.
 
 use std::f64::consts::PI;
 
@@ -71,7 +71,7 @@ impl RigConfig {
         }
     }
 
-    /// The same rig after some years: what is believed stays, what is true has worn.
+    /// Returns the rig after some years of wear: the model is unchanged, the truth has worn.
     pub fn worn() -> Self {
         const ARCMINUTE_RAD: f64 = PI / 180.0 / 60.0;
         let wear = Wear {

@@ -3,8 +3,7 @@ use tracelight_rig::{Joint, PanTilt};
 
 use crate::{RigConfig, Tick};
 
-/// What an observer would have believed in every tick of a run: counts, edges and volts are played to it, and nothing it
-/// says has any effect.
+/// Runs an observer over the counts, edges and volts of a recorded run, open loop.
 pub fn replay(rig: &RigConfig, ticks: &[Tick], observer: ObserverConfig) -> Vec<PanTilt<Estimate>> {
     let mut config = rig.control_config();
     for joint in Joint::BOTH {

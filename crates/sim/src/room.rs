@@ -41,7 +41,7 @@ pub struct Taken {
     exposed: Exposed,
     /// When its first row began to be exposed, as its stamp says, s.
     pub stamp_s: f64,
-    /// How long each row was, as it was told to, s.
+    /// Commanded exposure of each row, s.
     pub exposure_s: f64,
 }
 
@@ -68,7 +68,7 @@ impl Taken {
 }
 
 impl Room {
-    /// `seed` draws how long images are on their way.
+    /// Makes a room; `seed` determines the delay of each image.
     pub fn new(rig: SimulatedRig, eye: SimulatedCamera, seed: u64) -> Self {
         let period_s = eye.config().period_s;
         Self {
@@ -88,7 +88,7 @@ impl Room {
         }
     }
 
-    /// The oldest image that is there and was not asked for yet.
+    /// Takes the oldest image that has arrived and was not taken yet.
     pub fn taken(&mut self) -> Option<Taken> {
         let is_there = self.sent.front().is_some_and(|(there_s, _)| *there_s <= self.now_s);
         if is_there { self.sent.pop_front().map(|(_, image)| image) } else { None }

@@ -35,7 +35,7 @@ pub struct Tick {
     pub rate_rad_s: PanTilt<f64>,
     /// Where the beam meets the target plane, m; `None` when it misses it.
     pub spot: Option<Point>,
-    /// Where the setpoint would put it, m.
+    /// Spot of the setpoint, m.
     pub asked: Option<Point>,
     /// Whether light leaves the head, after the relay.
     pub light: bool,
@@ -106,8 +106,8 @@ impl SimulatedRig {
         rig
     }
 
-    /// A rig that was just powered up where somebody left it: at rest within a count of these angles, rad, its encoders at zero there. Its joints
-    /// end at stops, a degree beyond their ranges.
+    /// Makes a rig that was just powered up: at rest within a count of these angles, rad, with its encoders at zero there. Its joints have end
+    /// stops a degree beyond their ranges.
     pub fn unhomed(config: &RigConfig, pose: HeadPose, angle_rad: PanTilt<f64>, seed: u64) -> Self {
         let plant = config.plant_config();
         let range_rad = config.truth.model.geometry.range_rad;
@@ -160,14 +160,14 @@ impl SimulatedRig {
         PanTilt::from_fn(|j| self.lines[j].off.wrapping_neg())
     }
 
-    /// The same, its ticks counted from another than 0: of a controller that has been on for long.
+    /// Starts the tick count at another number than 0, as after a long uptime.
     #[must_use]
     pub const fn counting_from(mut self, tick: u32) -> Self {
         self.state = self.state.counting_from(tick);
         self
     }
 
-    /// The same, truly standing elsewhere than is believed.
+    /// Places the head at another true pose than the one assumed.
     #[must_use]
     pub const fn standing(mut self, true_pose: HeadPose) -> Self {
         self.true_pose = true_pose;
@@ -230,7 +230,7 @@ impl SimulatedRig {
     }
 }
 
-/// A rig of which more is known than its controller tells.
+/// A rig with access to its true state.
 pub trait Simulated: Rig {
     /// One tick of the closed loop, with the truth.
     fn step(&mut self) -> Tick;
@@ -320,7 +320,7 @@ pub fn run<R: Simulated>(
     run_segments(rig, &plan.segments, dry, watch)
 }
 
-/// The same for segments that come from no plan.
+/// Runs segments that come from no plan.
 pub fn run_segments<R: Simulated>(
     rig: &mut R,
     segments: &[Segment],

@@ -9,11 +9,11 @@ use crate::{Run, Tick};
 pub struct Tracking {
     /// Spot against the plan's point of the same tick, lit ticks, root mean square, mm.
     pub rms_mm: f64,
-    /// The same, largest, mm.
+    /// Largest such distance, mm.
     pub max_mm: f64,
     /// Lit spot to the nearest point of the stroke, root mean square, mm.
     pub off_stroke_rms_mm: f64,
-    /// The same, largest, mm.
+    /// Largest such distance, mm.
     pub off_stroke_max_mm: f64,
     /// Furthest excursion past a stroke end or corner along the incoming tangent, % of that leg (legs ≥ 20 mm).
     pub overshoot_percent: f64,

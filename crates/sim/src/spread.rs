@@ -1,4 +1,4 @@
-//! Heads that differ: the same rig built again and again.
+//! Random variation of heads of one design.
 
 use tracelight_dynamics::Friction;
 use tracelight_rig::PanTilt;

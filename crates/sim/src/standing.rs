@@ -1,4 +1,4 @@
-//! Where a plan's light would stand too long, before anything is lit.
+//! Finds where a plan's light would stand too long, before anything is lit.
 
 use tracelight_control::{Config, LightBudget};
 use tracelight_maths::{cos, hypot};
@@ -18,17 +18,17 @@ const ABOUT_RADII: f64 = 2.9;
 pub struct Standing {
     /// Where on the target, m.
     pub spot: Point,
-    /// In which stroke, from 0; none on a way between two, by the relay's delay.
+    /// Number of the stroke, from 0; `None` between strokes, through the relay's delay.
     pub stroke: Option<u32>,
-    /// For how long the plan has light there in all, s,
+    /// Total time of light in this place, s.
     pub stands_s: f64,
-    /// as far about it as the head sees this, rad.
+    /// Radius of the place as the head sees it, rad.
     pub about_rad: f64,
-    /// How long it may, s.
+    /// Time allowed, s.
     pub most_s: f64,
 }
 
-/// The first place of a plan where that rig would be dark because light has stood there; of a head that has lit nothing before.
+/// Finds the first place of a plan where light would stand too long, starting from an unspent budget.
 pub fn first_standing(rig: &RigConfig, plan: &Plan) -> Option<Standing> {
     let config = rig.control_config();
     let most_s = PLANNED_SHARE * rig.light.standing_s;

@@ -15,7 +15,7 @@ use crate::truth::Truth;
 pub struct StepResponse {
     /// The head as it truly is.
     pub nonlinear: Vec<BenchTick>,
-    /// The same linearized where the step ends.
+    /// The linearization where the step ends.
     pub linear: Vec<BenchTick>,
 }
 
@@ -45,7 +45,7 @@ pub fn step_response(
     })
 }
 
-/// The same with another law for that joint: a jump, and positions as they are counted.
+/// Simulates a setpoint step with another law for the joint and with quantized positions.
 pub fn step_response_by(
     rig: &RigConfig,
     joint: Joint,
@@ -82,9 +82,9 @@ pub fn follow_array(rig: &RigConfig, array: &MotionArray, rest_s: f64, seed: u64
 pub struct Push {
     /// N m.
     pub torque_nm: f64,
-    /// From when,
+    /// Start, s.
     pub from_s: f64,
-    /// until when, s.
+    /// End, s.
     pub until_s: f64,
 }
 

@@ -45,11 +45,11 @@ pub enum Trouble {
 /// What can go wrong with a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EyeTrouble {
-    /// Somebody bumps into it: it is turned, and what the middle of its image shows moves by so much to the right, px.
+    /// Somebody bumps into the camera and turns it: the middle of its image moves by this many px to the right.
     Bump(f64),
-    /// It is unplugged: no image comes any more.
+    /// The camera is unplugged and sends no more images.
     Unplugged,
-    /// It goes on sending its last image.
+    /// The camera freezes and repeats its last image.
     Frozen,
     /// Something covers its lens.
     Black,

@@ -1,4 +1,4 @@
-//! Where a simulated head truly is, which no encoder tells.
+//! True state of a simulated head, independent of its encoders.
 
 use tracelight_plant::Plant;
 use tracelight_rig::{Head, PanTilt};

@@ -1,4 +1,4 @@
-//! From the points of a tracer to a path that a head can follow.
+//! Fits a path that a head can follow to the points of a tracer.
 //!
 //! Corners are found first and put where their sides meet; between them, straight runs become lines, round ones arcs
 //! that touch them, and the rest few cubics, each passing into the next without a break of direction. A head stops at

@@ -1,4 +1,4 @@
-//! Which stroke comes when, from which end, and where a closed one begins.
+//! Chooses the order of strokes, their directions, and the start of closed ones.
 //!
 //! The dark way between strokes is an open travelling-salesman path over strokes that may be drawn from either end
 //! (a rural postman's problem in general, NP-hard). Here: nearest neighbour, then exchanges of two and three travels
@@ -68,7 +68,7 @@ impl Effort {
 /// times as many add 0.4 %.
 const KICKS_EACH: usize = 18;
 
-/// The same where a cost is dear: what about a second is enough for. Ten times as many take another 2 to 3 % off.
+/// Kicks a stroke if the cost is expensive to evaluate: about a second of work. Ten times as many gain another 2 to 3 %.
 const DEAR_KICKS_EACH: usize = 8;
 
 /// Up to so many ports the bound gets all its rounds.
@@ -90,7 +90,7 @@ pub struct OrderOptions {
     pub seed: u64,
 }
 
-/// A drawing put in order.
+/// A drawing in its new order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ordered {
     /// The strokes in the order, direction and from the start points that were found.

@@ -32,7 +32,7 @@ pub enum Element {
 pub struct Piece {
     /// Start point.
     pub from: Point,
-    /// The way on from there.
+    /// The element that starts there.
     pub element: Element,
 }
 
@@ -163,7 +163,7 @@ impl Path {
         points
     }
 
-    /// The same line drawn from its other end.
+    /// Returns the path in the opposite direction.
     pub fn reversed(&self) -> Self {
         let pieces: Vec<_> = self.pieces().collect();
         let elements = pieces.iter().rev().map(|p| p.reversed_element());

@@ -50,7 +50,7 @@ impl Stroke {
         Self { path, kind: self.kind, pen: self.pen, layer: self.layer.clone(), colour: self.colour }
     }
 
-    /// The same stroke drawn from its other end.
+    /// Returns the stroke in the opposite direction.
     pub fn reversed(&self) -> Self {
         self.along(self.path.reversed())
     }

@@ -1,4 +1,4 @@
-//! Which limit a motion is at.
+//! Names the limit that is active in a motion.
 
 use tracelight_rig::Joint;
 

@@ -1,4 +1,4 @@
-//! Strokes cut into legs: what becomes of a break of the tangent, which is passed, rounded off, or the end of a leg.
+//! Cuts strokes into legs: a corner is passed, rounded, or ends the leg.
 
 use tracelight_maths::{sin, tan};
 use tracelight_stroke::{Path, Piece};

@@ -1,4 +1,4 @@
-//! One line or arc of the target, followed from rest to rest by any profile.
+//! Motion along one line or arc of the target from rest to rest, with any profile.
 
 mod fit;
 
@@ -24,7 +24,7 @@ use crate::travel::travel;
 /// Why a course cannot be followed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CourseError {
-    /// It has no length.
+    /// The path has no length.
     #[error("the path has no length: it begins where it ends")]
     NoLength,
     /// Part of it cannot be lit from where the head stands.
@@ -73,7 +73,7 @@ pub struct CoursePoint {
     pub spot: Point,
     /// Both joints.
     pub joints: PanTilt<JointMotion>,
-    /// Torque it takes of both motors, N m; friction is that of the way the joints turn, or are to turn.
+    /// Required torque of both motors, N m, with friction for the present or intended direction of motion.
     pub torque_nm: PanTilt<f64>,
 }
 
@@ -154,7 +154,7 @@ impl<'m> Course<'m> {
         self.leg.length_m()
     }
 
-    /// By the fastest profile of a shape within limits along the course (m/s, m/s²), whatever that asks of the motors.
+    /// Runs the course with the fastest profile of a shape within limits (m/s, m/s²), regardless of the motors.
     pub fn shaped(&self, shape: Shape, limits: &MoveLimits) -> Pace {
         Pace::shaped(Profile::new(shape, self.length_m(), limits))
     }

@@ -1,4 +1,4 @@
-//! Legs: stretches of a stroke without a corner.
+//! Legs: parts of a stroke without a corner.
 
 use tracelight_aim::{AimError, JointPath, SpotMotion};
 use tracelight_maths::sin_cos;
@@ -21,7 +21,7 @@ pub(crate) const LENGTH_TOLERANCE_M: f64 = 3e-8;
 /// What becomes of a break of the tangent between two pieces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Fate {
-    /// It is passed, no faster than this, m/s.
+    /// The corner is passed, no faster than this, m/s.
     Pass(f64),
     /// So much of both pieces, m, gives way to a curve from one to the other.
     Round(f64),

@@ -1,4 +1,4 @@
-//! Strokes and motor limits in, timed joint segments out.
+//! Plans timed joint segments from strokes and motor limits.
 //!
 //! ```text
 //! stroke ─► legs (cut at corners) ─► retime (torque, speed) ─► S-curve ─┐

@@ -40,7 +40,7 @@ pub struct Machine {
 pub struct AccelerationDemand {
     /// Which joint.
     pub joint: Joint,
-    /// Acceleration asked for, rad/s².
+    /// Requested acceleration, rad/s².
     pub asked_rad_s2: f64,
     /// Command it would need, V.
     pub needed_v: f64,

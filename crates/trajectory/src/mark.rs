@@ -1,4 +1,4 @@
-//! Lit strokes tick by tick, with the dark ways up to them and out of them.
+//! Plans lit strokes tick by tick, with their dark run-ups and run-outs.
 
 use tracelight_aim::AimError;
 use tracelight_rig::{PanTilt, TICK_F64_S};

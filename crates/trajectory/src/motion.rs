@@ -1,4 +1,4 @@
-//! How a joint moves at one time.
+//! State of motion of a joint at one time.
 
 use tracelight_rig::TICK_F64_S;
 
@@ -21,7 +21,7 @@ impl JointMotion {
         Self { position_rad, ..Self::default() }
     }
 
-    /// The quintic through position, speed and acceleration here and there, so many ticks later; coefficients per tickⁱ.
+    /// Returns the quintic that joins this state to `there` after `ticks`; coefficients per tickⁱ.
     pub fn quintic_to(&self, there: &Self, ticks: f64) -> [f64; 6] {
         let per_tick = |m: &Self| Along {
             s: m.position_rad,

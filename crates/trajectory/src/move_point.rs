@@ -1,4 +1,4 @@
-//! A move of one coordinate at one time.
+//! State of motion of one coordinate at one time.
 
 /// Place, speed and acceleration at one time of a move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,7 +12,7 @@ pub struct MovePoint {
 }
 
 impl MovePoint {
-    /// The same in a mirror.
+    /// Negates position, speed and acceleration.
     pub(crate) fn mirrored(&self) -> Self {
         Self { position: -self.position, velocity: -self.velocity, acceleration: -self.acceleration }
     }

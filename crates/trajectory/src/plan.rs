@@ -21,7 +21,7 @@ pub struct PlanPoint {
     pub limit: Option<Binding>,
     /// Whether light is to fall on the target (the gate leads it by the relay's delays).
     pub lit: bool,
-    /// Number of the stroke this tick belongs to; `None` on the way between strokes.
+    /// Number of the stroke this tick belongs to; `None` between strokes.
     pub stroke: Option<u32>,
 }
 
@@ -64,9 +64,9 @@ pub(crate) fn check_duration(needed_s: f64) -> Result<(), PlanError> {
 /// A whole job in time: what is executed is exactly this.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
-    /// What the controller is sent.
+    /// Segments that the controller is sent.
     pub segments: Vec<Segment>,
-    /// The same, tick by tick, for scoring and plots; the first is tick 0, the last the rest at the end.
+    /// Points of every tick, for scoring and plots; the first is tick 0, the last the rest at the end.
     pub points: Vec<PlanPoint>,
     /// Every corner and stroke end where the spot comes to rest, in time order.
     pub leg_ends: Vec<LegEnd>,
@@ -87,7 +87,7 @@ impl Plan {
         self.points.iter().filter(|p| p.lit).count() as f64 * TICK_F64_S
     }
 
-    /// How long the head is on its way in the dark, s; rests are left out.
+    /// Total duration of dark moves, s, without rests.
     pub fn travel_s(&self) -> f64 {
         let moving =
             |p: &&PlanPoint| p.joints.pan.velocity_rad_s != 0.0 || p.joints.tilt.velocity_rad_s != 0.0;

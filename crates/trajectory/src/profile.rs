@@ -77,7 +77,7 @@ impl Profile {
         Self { distance, duration_s: by_speed_s.max(by_acceleration_s), curve: Curve::Smooth(unit) }
     }
 
-    /// The same move in another time, s.
+    /// Rescales the move to another duration, s.
     pub(crate) fn lasting(&self, duration_s: f64) -> Self {
         let curve = match self.curve {
             Curve::Ramped(phases) => Curve::Ramped(phases.slower(duration_s / self.duration_s)),
@@ -86,7 +86,7 @@ impl Profile {
         Self { duration_s, curve, ..*self }
     }
 
-    /// The same move over another distance.
+    /// Rescales the move to another distance.
     pub(crate) fn over(&self, distance: f64) -> Self {
         let curve = match self.curve {
             Curve::Ramped(phases) => Curve::Ramped(phases.longer(distance / self.distance)),

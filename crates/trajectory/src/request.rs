@@ -1,4 +1,4 @@
-//! How a drawing, and each leg of it, is to be run.
+//! Requested motion of a drawing, and of each of its legs.
 
 use tracelight_rig::TICK_F64_S;
 
@@ -67,7 +67,7 @@ impl PlanRequest {
         self.settle_s.max(f64::from(relay_ticks(machine)) * TICK_F64_S)
     }
 
-    /// The same with time enough for the acceleration to build up within the highest jerk.
+    /// Extends the rise time so that the acceleration can build up within the highest jerk.
     pub(crate) fn within_jerk(&self, machine: &Machine) -> Self {
         Self { ramp_s: self.ramp_s.max(machine.least_ramp_s()), ..*self }
     }
@@ -95,9 +95,9 @@ const RUN_UP_S: f64 = 0.015;
 /// How the spot comes to a leg's start, or leaves its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// It rests there.
+    /// The spot rests at this end.
     Rest,
-    /// It is under way: it has run up to the start in the dark, or runs out of the end.
+    /// The spot passes this end: a dark run-up precedes the start, or a dark run-out follows the end.
     Moving,
 }
 

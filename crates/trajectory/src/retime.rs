@@ -1,4 +1,4 @@
-//! Speed along a path: as fast as asked, as slow as the motors need.
+//! Assigns speed along a path: the set speed, reduced where the motors require it.
 //!
 //! With s the place on the path, v = ṡ and u = s̈, every motor's torque is τ = a·u + b·v² + d·v + c: inertia, inertia
 //! and centrifugal forces of the bend, viscous friction, and gravity with Coulomb friction. So at each place and speed

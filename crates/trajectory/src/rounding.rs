@@ -1,4 +1,4 @@
-//! Corners rounded off.
+//! Rounds corners.
 
 use tracelight_maths::{atan2, sin, tan};
 use tracelight_stroke::{Element, Piece, Vec2};

@@ -1,4 +1,4 @@
-//! Time-optimal moves from any state to any other, jerk-limited, several joints in step.
+//! Time-optimal, jerk-limited moves between arbitrary states, with several joints synchronized.
 //!
 //! A joint's move from one speed and acceleration to another in a given time T can cover any distance between two
 //! bounds, and no other: all constraints are linear, so what can be done is convex. The bound on either side is reached
@@ -71,9 +71,9 @@ pub fn steer<const N: usize>(
     steer_no_faster(from, to, bounds, 0.0)
 }
 
-/// The same, but of the moves that take `at_least_s`.
+/// Finds the fastest move of at least `at_least_s`.
 ///
-/// It may have to take longer: who comes fast cannot wait for any time asked for.
+/// The move may take longer than asked: a fast start cannot wait for an arbitrary time.
 ///
 /// # Errors
 /// As [`steer`].
@@ -257,7 +257,7 @@ impl Problem {
         Choice { duration_s: f64::INFINITY, upper: Some(start), lower: None, share: 1.0 }
     }
 
-    /// The same within a range of durations without a gap, that begins with `start` of the `guess`ed side.
+    /// Searches one gap-free range of durations, which begins with `start` on the side `guess`.
     fn within(
         &mut self,
         distance: f64,

@@ -35,13 +35,13 @@ pub fn rest_to_rest(
     Swing::new(machine, from, to, rise_s).ticks(machine)
 }
 
-/// A swing that takes longer is none, s, unless the motors alone would already take long,
+/// Duration that every swing may take, s.
 const LONGEST_S: f64 = 5.0;
 
-/// and gravity makes it no more than so much longer,
+/// Longest swing relative to its duration without gravity and coupling.
 const SLOWER: f64 = 6.0;
 
-/// and never beyond this, s.
+/// Longest swing in any case, s.
 const LONGEST_OF_ALL_S: f64 = 60.0;
 
 /// Of a motor that can hardly move its joint, rad/s².

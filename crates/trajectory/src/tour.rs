@@ -1,4 +1,4 @@
-//! Where the spot rests and where it passes: the choice at every end of every leg.
+//! Decides at both ends of every leg whether the spot rests or passes.
 //!
 //! Each leg may be run in four ways, from rest or under way to rest or under way. What that takes, and what the dark move
 //! from one way to another takes, is estimated for all of them; the fastest sequence is found by dynamic programming; and

@@ -1,4 +1,4 @@
-//! Areas that were coloured in paler than the lines on them and about them: to these they are paper.
+//! Coloured areas, paler than the lines on and around them; treated as paper.
 //!
 //! An area is broad and of one tone, and what is darker on it is as dark as the picture's lines. It is taken out of the ink, so that its
 //! lines are left; where they do not run along its edge, that is drawn as well.
@@ -139,7 +139,7 @@ impl Picture<'_> {
         parts
     }
 
-    /// That of a broad part of a patch of ink whose lines are so dark, if it is an area.
+    /// Returns the fill of a broad part of a region, if it is a coloured area; `lines` is the darkness of its lines.
     fn fill(&self, core: &Region, levels: &Plane<u8>, lines: f64) -> Option<Fill> {
         let of_core = core.histogram(levels);
         let [least, tone, most] = [0.25, 0.5, 0.75].map(|share| percentile(&of_core, share));

@@ -1,4 +1,4 @@
-//! A line's end as a piece of a circle: how it bends some way off the ink that it shares with another.
+//! Approximates the end of a line by a circular arc, some way off the ink that it shares with another.
 //!
 //! Where two lines run into each other at a few degrees, or touch, each leans towards the ink of both for a while before
 //! that. What it is further in tells where it goes.

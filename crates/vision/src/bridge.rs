@@ -1,4 +1,4 @@
-//! What the pen did where its line cannot be seen: between two ends that belong together.
+//! Connects two line ends across a part that is not visible.
 
 use tracelight_image::Plane;
 use tracelight_image::median::median;
@@ -125,7 +125,7 @@ impl Tip {
         self.corner(other, dark, near).unwrap_or_else(|| self.smoothly_to(other))
     }
 
-    /// The same over a corner; `None` where the lines run on into each other, or meet nowhere on ink.
+    /// Bridges two tips with a corner; `None` if their lines continue each other, or meet nowhere on ink.
     pub(crate) fn corner(&self, other: &Tip, dark: &Plane<u8>, near: &[Point]) -> Option<Vec<Point>> {
         let over = other.at - self.at;
         // lines an angle θ apart meet |over|/θ ahead; nearly parallel ones nowhere in particular

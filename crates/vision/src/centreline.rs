@@ -1,4 +1,4 @@
-//! Pen lines: strokes down their middle.
+//! Traces pen lines along their middle.
 
 use tracelight_image::median::median;
 use tracelight_image::{Mask, Plane, Region, long_axis};

@@ -1,7 +1,7 @@
-//! Small figures are looked at twice as closely.
+//! Traces small figures at twice the resolution.
 //!
-//! Of a letter of ten pixels the pixels' grid leaves little: its lines are three pixels apart, its corners as long as its pen is wide,
-//! and a skeleton that goes from pixel to pixel has no direction. Between the pixels' centres the picture is smooth, and says more.
+//! A letter ten pixels high suffers from the pixel grid: its lines are three pixels apart, its corners are as long as its pen is wide, and a
+//! pixel-by-pixel skeleton has no direction. Between the pixel centres the picture is smooth, so interpolation gains detail.
 
 use tracelight_image::threshold::over;
 use tracelight_image::{Mask, Plane, Region, regions};
@@ -12,9 +12,9 @@ use crate::graph::Graph;
 use crate::parts::graphs;
 use crate::row::Row;
 
-/// No larger than this either way, px, is a small figure,
+/// Largest width and height of a small figure, px.
 const LARGEST_PX: usize = 64;
-/// and drawn with a pen no wider than this, px, and no thinner: its pixels are all there is of a hair line.
+/// Widest and thinnest pen of a small figure, px. Enlarging a hair line shows no more than its pixels.
 const WIDEST_PX: f64 = 5.0;
 const THINNEST_PX: f64 = 2.0;
 /// Where more of a figure, as a share, is too pale for the picture's threshold, its pixels are all that tells what is ink.

@@ -1,8 +1,7 @@
-//! How closely a picture is looked at: the grain that a pencil or a crayon leaves bare is finer than what they draw, and thin lines are
-//! finer than what the pixels' grid shows.
+//! Chooses the resolution of tracing. The grain of pencil or crayon is finer than the drawing, and thin lines are finer than the pixel grid.
 //!
-//! Where a mask at half the resolution, or of a smoothed plane, has a shorter border, the rest of it was the paper's grain. Where its
-//! lines are still wide enough, or all there, nothing that was drawn is lost.
+//! If a mask at half the resolution, or of a smoothed plane, has a shorter border, the difference was the paper's grain. If its lines are still
+//! wide enough, or all there, nothing drawn is lost.
 
 use tracelight_image::smooth::smoothed;
 use tracelight_image::threshold::over;
@@ -13,13 +12,13 @@ const LEAST_SIDE_PX: usize = 200;
 /// The border of ragged ink is this many times as long as half as closely. Of clean edges it is 1.00 to 1.04, of those of a
 /// crayon 1.06 to 1.6.
 const RAGGED: f64 = 1.06;
-/// Half as closely, ink is still so wide in the mean, px,
+/// Smallest mean width of the ink at half resolution, px.
 const LEAST_WIDTH_PX: f64 = 4.5;
-/// and at most this share of its length is thinner than three pixels,
+/// Largest share of its length that is thinner than three pixels.
 const MOST_THIN: f64 = 0.5;
-/// and so many times as long: of crayon 40 at least, of a silhouette, whose ragged edge is what was cut, hardly as much,
+/// Smallest ratio of its length to its width: 40 at least for crayon, hardly as much for a silhouette with a ragged edge.
 const LEAST_LONG: f64 = 30.0;
-/// and covers as much as before, within this share: of crayon 3 %.
+/// Largest relative change of its area: 3 % for crayon.
 const MOST_GROWN: f64 = 0.06;
 
 /// A picture of fewer pixels either way shows no grain: its pixels are as coarse, and smoothed its small figures run together.

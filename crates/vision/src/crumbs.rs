@@ -1,14 +1,14 @@
-//! Marks that a pencil leaves on the paper's grain beside its lines, and smudges: small, and paler than what it draws.
+//! Crumbs: small pale marks that a pencil leaves on the paper's grain beside its lines, and smudges.
 
 use tracelight_image::{Plane, Region};
 use tracelight_stroke::{Point, polyline_length};
 
 use crate::row::Row;
 
-/// A crumb is shorter than this, in widths of the drawing's pen,
+/// Largest length of a crumb, in widths of the drawing's pen.
 pub(crate) const LONGEST_PENS: f64 = 4.0;
-/// and has less than this share of the lines' darkness. Of six sketches that others scanned 7 % of the strokes are so short and pale,
-/// and none of them was meant.
+/// Largest darkness of a crumb, as a share of the lines'. In six scanned sketches by others 7 % of the strokes are so short and pale,
+/// and none of them was intended.
 pub(crate) const PALE: f64 = 0.6;
 
 /// What a pencil usually draws in one drawing, the mean over the length of its lines.

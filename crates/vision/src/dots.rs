@@ -1,4 +1,4 @@
-//! The dots of dotted paper: many small patches, as far from each other in two directions square to each other.
+//! Detects the dots of dotted paper: many small patches on a square grid.
 
 use tracelight_image::Region;
 use tracelight_image::median::middle;

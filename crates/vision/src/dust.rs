@@ -1,4 +1,4 @@
-//! Dust: what is smaller than the pen and lies by itself, or strewn all over.
+//! Detects dust: isolated or scattered patches smaller than the pen.
 
 use std::cell::OnceCell;
 

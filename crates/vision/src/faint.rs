@@ -1,8 +1,8 @@
-//! Where a pencil pressed less its line is too pale for the mask, and goes on.
+//! Continues lines where they are too pale for the mask.
 //!
-//! From every free end the line is followed ahead as long as what lies there is darker than the paper on both sides of it, by far more than
-//! that paper differs from place to place. Between two ends that face each other all of the way is seen at once: there it may be as broken
-//! as grain makes it. What is found becomes ink, and is traced with the rest.
+//! From every free end the line is followed as long as it is darker than the paper on both sides, by far more than that paper varies. Between two
+//! ends that face each other the whole gap is examined at once, and may be as broken as grain makes it. The result becomes ink and is traced with
+//! the rest.
 
 use tracelight_image::median::median;
 use tracelight_image::{Mask, Plane};
@@ -24,14 +24,15 @@ const BESIDE: f64 = 1.4;
 /// Stretches of paper either side that tell how much it differs, so many pens apart.
 const PAPERS: i32 = 5;
 const PAPERS_APART: f64 = 0.7;
-/// A line is darker than its sides by so many times what the paper differs,
+/// Smallest contrast of a line to its sides, in deviations of the paper.
 const SURE: f64 = 4.0;
-/// and by this share of what it is where it is ink; where shadows were evened out, whose edges leave a pale line, by this one.
+/// Smallest such contrast as a share of the ink's darkness; the second value holds after shadows were removed, whose edges leave a pale
+/// line.
 const LEAST_SHARE: f64 = 0.06;
 const LEAST_BY_SHADOWS: f64 = 0.3;
-/// Ink is followed over so many pens at most,
+/// Longest continuation of a line, in pens.
 const MOST_PENS: f64 = 20.0;
-/// from lines that are at least as long as this.
+/// Smallest length of a line that is continued, in pens.
 const LEAST_LENGTH: f64 = 1.5;
 /// What ends in paper is a line if so many pens of it were seen.
 const LEAST_SEEN: f64 = 3.0;

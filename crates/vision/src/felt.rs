@@ -1,4 +1,4 @@
-//! What a broad pen filled to and fro: areas of ways side by side with slits of paper between them.
+//! Detects areas filled to and fro with a broad pen, with slits of paper between the passes.
 //!
 //! Each way is a line by its width, and nobody means them. Where ways lie so close that less than half a pen's width of paper
 //! shows between them, and many of them do, the area is what was drawn: its slits are ink. Hatching leaves more paper than that.
@@ -71,12 +71,12 @@ const SLIT_LONG: f64 = 5.0;
 const SLIT_STRAIGHT: f64 = 2.0;
 const SLIT_SHORT: f64 = 2.5;
 const SLIT_ALIKE: f64 = 0.2;
-/// It leads through this share of the shape along its way,
+/// Smallest share of the shape's length that a slit spans.
 const THROUGH: f64 = 0.5;
-/// takes no more than this of it across, or so many px,
+/// Largest width of a slit, as a share of the shape's and in px.
 const SLIT_ACROSS: f64 = 0.12;
 const SLIT_PX: f64 = 2.5;
-/// and the ink on either side is so many times as wide: a way of the pen at least.
+/// Smallest width of the ink on either side, in slit widths: one pass of the pen.
 const WAY_SLITS: f64 = 1.5;
 /// A hole is no slit that is larger than this share of the picture.
 const LARGEST: usize = 50;

@@ -1,4 +1,4 @@
-//! From points found in an image to a path.
+//! Makes a path of points found in an image.
 
 use tracelight_stroke::{FitOptions, Parabola, Path, Piece, Point, fit, polyline_length, simplify};
 

@@ -1,4 +1,4 @@
-//! Gaps that were not meant: where a pen skipped, its line goes on.
+//! Closes unintended gaps where a pen skipped.
 
 use tracelight_image::Plane;
 use tracelight_image::median::median;
@@ -11,12 +11,12 @@ use crate::row::Row;
 /// Widest gap, from where the pen was lifted to where it was put down, pen widths: one of paper and the pen's two
 /// halves, and some more for what blur and threshold took.
 const WIDEST_PENS: f64 = 2.3;
-/// The same for hair lines, whose paper is at least this wide, px.
+/// Allowance added to the widest gap, px, for hair lines.
 const LEAST_PX: f64 = 1.5;
 /// Lines that go on into each other bend less than this over the gap, rad (32°): 2 pens of a curve of the smallest
 /// radius, 2 pens, would be 57°, but then its two sides lean as much.
 const BEND: f64 = 0.56;
-/// The same over what is not bare paper: there the ends' directions may be off, as their ink fades.
+/// Largest bend across pale ink, rad. Directions of ends are less exact where ink fades.
 const BEND_OF_PALE: f64 = 1.2;
 /// And over what is no longer than this share of both widths: a small ring's halves bend much at their ends.
 const BEND_OF_NEAR: f64 = 1.8;
@@ -126,9 +126,9 @@ pub(crate) fn near_pairs(ends: &[End], reach: impl Fn(&End) -> f64) -> Vec<(&End
     found
 }
 
-/// Two ends of a line that have passed each other lie beside each other by less than this, pens,
+/// Largest lateral offset of two ends that overlap, pens.
 const BESIDE: f64 = 0.6;
-/// and have passed by less than this.
+/// Largest overlap of two ends, pens.
 const PASSED: f64 = 3.0;
 /// Of a row that is drawn back this many pens stay at least.
 const STAYS: f64 = 1.5;

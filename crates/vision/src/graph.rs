@@ -49,7 +49,7 @@ impl Branch {
         polyline_length(&self.points)
     }
 
-    /// The same branch from its other end.
+    /// Returns the branch in the opposite direction.
     fn reversed(mut self) -> Self {
         self.points.reverse();
         self.radii.reverse();

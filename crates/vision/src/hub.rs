@@ -1,4 +1,4 @@
-//! Where many lines meet: their ink together is wider than any of them, and no filled shape.
+//! Hubs: junctions of many lines with more ink than any of them, which are no filled shapes.
 
 use std::collections::BTreeMap;
 
@@ -14,10 +14,10 @@ use crate::missed::paint;
 const FEWEST: usize = 3;
 /// A line is seen over so many of its widths outside the hub at least.
 const LEAST_PENS: f64 = 1.0;
-/// Carried on, a line reaches so far to either side, in half widths and px of blur,
+/// Half width covered by the extension of a line, in half widths plus px of blur.
 const REACH: f64 = 1.1;
 const REACH_PX: f64 = 0.75;
-/// and all of them cover at least this share of a hub: a disc with rays has more between them.
+/// Smallest share of a hub that the extended lines cover: a disc with rays has more area between them.
 const COVERED: f64 = 0.95;
 
 /// A line that leads into a wide part of the ink.

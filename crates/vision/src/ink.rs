@@ -1,4 +1,4 @@
-//! What is ink: polarity, even light, noise, threshold, and the gate that refuses a bad picture.
+//! Separates ink from paper: polarity, illumination, noise, threshold, refusal of bad pictures.
 
 use std::borrow::Cow;
 
@@ -81,7 +81,7 @@ impl Ink {
         Self::by(page, threshold_percent, (sheets, false))
     }
 
-    /// The same of dark lines, whatever the picture seems to be of.
+    /// Finds dark ink, regardless of the picture's polarity.
     pub(crate) fn of_dark_lines(page: &Page<'_>, sheets: bool) -> Result<Self, VisionError> {
         Self::by(page, None, (sheets, true))
     }
@@ -123,7 +123,7 @@ impl Ink {
         Ok(ink)
     }
 
-    /// The same, looked at as closely as this.
+    /// Finds the ink at a given resolution and smoothing.
     fn at(
         page: &Page<'_>,
         threshold_percent: Option<f64>,
@@ -210,7 +210,7 @@ impl Ink {
         coarse::is_thin(mask, &self.darkness, self.threshold)
     }
 
-    /// The same, looked at twice as closely.
+    /// Converts the ink to the doubled resolution.
     pub(crate) fn doubled(self) -> Self {
         Self {
             darkness: self.darkness.doubled(),

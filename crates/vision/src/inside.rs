@@ -1,4 +1,4 @@
-//! Strokes kept within the image.
+//! Clips strokes to the image.
 
 use std::f64::consts::PI;
 

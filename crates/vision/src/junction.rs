@@ -1,4 +1,4 @@
-//! Junctions: which lines run on through one another, and where the others end.
+//! Decides at junctions which lines continue through one another and which end.
 //!
 //! A skeleton is bent where lines meet: a crossing becomes two forks with a bridge, a T pulls its bar aside. So the
 //! ink about a junction is not used. The lines are carried on into it from outside, and those that carry on into
@@ -43,7 +43,7 @@ impl Port {
         self.misfit_of_bows(other, lines).map_or(tips, |bows| 0.5 * (tips + bows))
     }
 
-    /// The same by what both are further in; `None` if one of them is no bow there.
+    /// Measures the misfit of the bows further from the junction; `None` if one of the lines has none.
     fn misfit_of_bows(&self, other: &Self, lines: &[Line]) -> Option<f64> {
         let bow = |port: &Self| {
             let line = &lines[port.line];

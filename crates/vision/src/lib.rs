@@ -1,4 +1,4 @@
-//! A picture in, strokes out.
+//! Traces a picture: pixels in, strokes out.
 //!
 //! [`trace`] takes a [`Grey`](tracelight_image::Grey) image and gives the strokes that draw it, in the pixel frame: x right, y down, the
 //! image spans [0, width] × [0, height], the first pixel's centre is (0.5, 0.5). The way: find the sheet of paper

@@ -1,4 +1,4 @@
-//! Branches of the skeleton as lines on the middle of the pen.
+//! Places the branches of the skeleton on the middle of the pen line.
 
 use tracelight_image::median::median;
 use tracelight_image::{Mask, Plane};
@@ -261,7 +261,7 @@ pub(crate) fn off_the_grid(pixels: &[Point]) -> impl Iterator<Item = Point> {
     pixels.windows(MEAN_OF).map(move |some| mean(some).to_point())
 }
 
-/// The same of a branch that turns back on itself: side by side, and out to each turn and back between them.
+/// Traces a branch that turns back on itself: two parallel lines, connected at each turn.
 fn turning(dark: &Plane<u8>, branch: &Branch, (from, to): (usize, usize), radius: f64) -> (Vec<Point>, f64) {
     let (mut pixels, mut radii) = (branch.points[from..to].to_vec(), branch.radii[from..to].to_vec());
     let inside = branch.turns.iter().filter(|turn| (from..to).contains(&turn.index));

@@ -1,4 +1,4 @@
-//! The two marks on a ruler, for scale.
+//! Finds the two marks on a ruler, for scale.
 
 use tracelight_image::levels::histogram;
 use tracelight_image::threshold::over;

@@ -1,4 +1,4 @@
-//! How much of the pen's ink no stroke follows.
+//! Measures the pen's ink that no stroke follows.
 
 use tracelight_image::median::median;
 use tracelight_image::{Mask, Region};
@@ -6,7 +6,7 @@ use tracelight_stroke::{Point, Stroke, Vec2};
 
 /// How far ink may lie from its stroke, pen widths: half of one is its edge, the rest the blots of junctions.
 const NEAR_PENS: f64 = 1.2;
-/// The same for hair lines, px.
+/// Lower limit of that distance, for hair lines, px.
 const LEAST_PX: f64 = 3.0;
 
 /// How closely strokes are followed, px, and as a share of how far their ink reaches.

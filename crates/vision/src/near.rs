@@ -1,4 +1,4 @@
-//! Which of many points are near a place.
+//! Finds the points near a position.
 
 use tracelight_stroke::Point;
 

@@ -1,4 +1,4 @@
-//! No light on paper: a line that leaves its ink for longer than the widest gap is cut there.
+//! Cuts a line where it leaves its ink for longer than the widest gap.
 //!
 //! The reverse of `missed`, and the last word: whatever joined two lines, what lies between them must be ink, or a gap
 //! that a pen may have left. Only what `twice` makes of two passes comes later, and lies between their ink.

@@ -1,4 +1,4 @@
-//! How an image is traced.
+//! Options of tracing.
 
 use crate::VisionError;
 

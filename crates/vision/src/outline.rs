@@ -1,4 +1,4 @@
-//! Filled shapes: strokes along their edges, holes included.
+//! Traces filled shapes along their edges, holes included.
 
 use tracelight_image::border::{Edge, area, border};
 use tracelight_image::levels::percentile;

@@ -1,8 +1,8 @@
-//! Ink that one threshold for the whole picture does not tell: where a line pales along its way, and a pencil's lines beside a pen's.
+//! Finds ink that a single threshold misses: lines that fade, and pencil beside pen.
 //!
-//! One threshold goes between the darkest ink and all else, or between paper and all else; a pencil beside a pen is lost, or the
-//! pen's blur is ink. A line ends where it is half as dark as in its middle: what is joined to ink is ink as far as that. And what is
-//! beyond the reach of the first ink's blur is looked at by itself: what stands out from the paper there is the second ink.
+//! A single threshold lies either between the darkest ink and all else, or between paper and all else. Then pencil beside pen is lost, or the
+//! pen's blur becomes ink. A line is ink up to where it is half as dark as in its middle, as far as it is connected to ink. Beyond the blur of
+//! the first ink, whatever stands out from the paper is the second ink.
 
 use tracelight_image::levels::{histogram, percentile, sampled_blocks};
 use tracelight_image::threshold::over;

@@ -1,4 +1,4 @@
-//! Pen lines or filled shapes: each part of the ink by its own width.
+//! Separates pen lines from filled shapes, each part of the ink by its own width.
 //!
 //! Where ink is much wider than the lines it hangs together with it was filled, and its outline is meant; what is long
 //! for its own width is a line, and its middle is meant. A patch can hold both: a drawing of lines with hair filled in,
@@ -24,7 +24,7 @@ const CROSSED_PENS: f64 = 1.6;
 /// An octagon this many pens wide fits in no crossing of lines: where three cross at 60°, a disc of two pens fits, and
 /// blur and noise fill corners.
 const BULK_PENS: f64 = 3.0;
-/// The same where more than one octagon fits side by side.
+/// Width in pens of an octagon that counts as bulk if more than one fits side by side.
 const WIDE_PENS: f64 = 2.2;
 /// In a drawing of lines, what holds this much more than one octagon, as a share of its area, was filled.
 const FILLED: f64 = 1.6;

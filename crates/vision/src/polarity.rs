@@ -1,4 +1,4 @@
-//! Dark lines on light paper, or light ones on dark.
+//! Decides between dark lines on light paper and light ones on dark.
 
 use tracelight_image::Plane;
 use tracelight_image::levels::percentile;

@@ -1,4 +1,4 @@
-//! Branches that the pen's outline made and not the pen: bumps, whiskers, and the points of corners.
+//! Removes branches caused by the pen's outline: bumps, whiskers, and the points of corners.
 //!
 //! A spur between two lines is where both run together, up to the corner's point or the hairpin's turn, or it is a third
 //! line. A point goes; where the turn of a hairpin is, the two sides are told.
@@ -92,10 +92,10 @@ fn is_whisker(
     darkness(end) < crumbs::PALE * others.fold(f64::INFINITY, f64::min)
 }
 
-/// A whisker is thinner than this share of the lines that it leaves, and shorter than so many of their widths;
+/// Largest width of a whisker, as a share of the lines that it leaves, and its largest length in their widths.
 const HAIR: f64 = 0.4;
 const HAIR_PENS: f64 = 1.5;
-/// or, if it is a crumb but for the line that it touches, thinner than this share.
+/// Largest relative width of a whisker that would be a crumb without the line that it touches.
 const THINNER: f64 = 0.6;
 
 /// Half the width of the narrower of the lines beside a spur, px: where a pencil went to and fro they are wider than elsewhere. At least

@@ -1,4 +1,4 @@
-//! What a picture is worth to the tracer: figures, their bounds, and a verdict in words.
+//! Judges a picture for tracing: figures, their bounds, and a verdict in words.
 
 use crate::VisionError;
 

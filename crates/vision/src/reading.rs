@@ -1,4 +1,4 @@
-//! Line or shape: what each branch of a skeleton is, by its own width.
+//! Classifies each branch of a skeleton as line or shape, by its own width.
 //!
 //! A line is long for its own width, and changes it slowly; a shape is wide where the way through it is short. Neither
 //! needs a pen that is the same all over the picture: a brush swells, felt pen and pencil lie on one sheet.
@@ -140,10 +140,10 @@ const LIMBS: f64 = 2.0;
 /// No limb is so many times as long as wide.
 const PEN_LONG: f64 = 20.0;
 
-/// Ink is drawn if its lines together are this many times as long as it is wide at its widest,
+/// Ratio of total line length to largest width from which ink counts as drawn.
 const MANY_WIDTHS: f64 = 10.0;
-/// or if all its skeleton is so many times as long as the ink is wide in the mean, and nowhere much wider than that; the
-/// shorter, the more even it must be: a brush's stroke, or a letter of a felt pen.
+/// Ratio of skeleton length to mean width from which ink counts as drawn, with the largest ratio of widest to mean width. The
+/// shorter the ink, the more even it must be: a brush stroke, or a letter by a felt pen.
 const DRAWN: [(f64, f64); 2] = [(LONG_LINE, 1.8), (3.5, 1.4)];
 /// What is so many times as long as wide is a line for sure.
 pub(crate) const LONG_LINE: f64 = 8.0;

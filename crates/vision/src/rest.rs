@@ -1,4 +1,4 @@
-//! A second look at the ink that no row follows: what junctions and pruning left over is drawn by itself.
+//! Traces the ink that no row follows after junctions and pruning.
 //!
 //! A stub beside a junction's ink, a line that two others were taken for, the end of a hairpin: whatever the reason, ink
 //! further from every row than its pen reaches was drawn by somebody. What is left of a patch without the ink of its rows

@@ -1,4 +1,4 @@
-//! Where the middle of a pen line is between the pixels.
+//! Locates the middle of a pen line to subpixel accuracy.
 //!
 //! The centroid of the darkness along a cut across the line is the middle of the pen, whatever the pixels' grid does to
 //! its edges (sampling by pixel areas keeps first moments; Steger, "An unbiased detector of curvilinear structures",
@@ -34,7 +34,7 @@ struct Place {
 
 /// Places either side with whose median width a place's is compared: a pen's width changes slowly.
 const LOCAL: usize = 15;
-/// The same of a line that swells, and the fewest pairs that tell how wide it is between them.
+/// Pairs of places, one on each side, that give the width of a line that swells: most and fewest.
 const NEAR_PAIRS: usize = 4;
 const LEAST_PAIRS: usize = 2;
 
@@ -141,7 +141,7 @@ fn of_usual_width(places: &[Place], swells: bool) -> Vec<Place> {
     kept
 }
 
-/// The same where the line swells: those about as wide as it is in the middle between places as far before and behind.
+/// Selects the places of a swelling line that are about as wide as the mean of places equally far before and behind.
 fn of_width_between(places: &[Place]) -> Vec<Place> {
     let is_usual = |i: usize| {
         let pair = |k: usize| {

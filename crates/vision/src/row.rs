@@ -1,4 +1,4 @@
-//! What lines are before they are fitted.
+//! Lines before they are fitted.
 
 use tracelight_stroke::{Point, polyline_length};
 

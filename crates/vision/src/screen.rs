@@ -1,4 +1,4 @@
-//! Whether a picture shows a computer's screen.
+//! Detects pictures of a computer's screen.
 //!
 //! What programs show on a screen is panes, bars, buttons and fields: even to the last level, and parted exactly along rows and columns.
 //! What they write comes again pixel by pixel. No hand draws like that, and no camera sees it.

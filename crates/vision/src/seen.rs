@@ -1,4 +1,4 @@
-//! The ink of a page as it is traced: with a second look where it seems to be no drawing.
+//! Selects the ink for tracing, with a second attempt if the picture seems to be no drawing.
 
 use tracelight_image::Mask;
 use tracelight_sheet::Page;

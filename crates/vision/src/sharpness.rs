@@ -1,4 +1,4 @@
-//! How sharp a picture's edges are.
+//! Measures the sharpness of a picture's edges.
 
 use tracelight_image::median::median;
 use tracelight_image::threshold::word_over;

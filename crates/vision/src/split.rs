@@ -1,4 +1,4 @@
-//! A histogram cut in two: paper and ink.
+//! Splits a histogram into paper and ink.
 
 use tracelight_image::Plane;
 use tracelight_image::levels::{histogram, percentile};
@@ -51,7 +51,7 @@ impl Split {
         Self::at(histogram, ((first + last) / 2) as u8)
     }
 
-    /// The same, or where the two classes are hardly apart, and so both are paper, the little ink that stands out from it:
+    /// Falls back to the little ink that stands out from the paper, if the two classes are hardly apart and so both are paper:
     /// a small mark on a large sheet. `noise` is a pixel's deviation, levels.
     pub(crate) fn or_of_little(self, darkness: &Plane<u8>, noise: f64) -> Self {
         /// What is darker than the paper by less is no ink, levels.

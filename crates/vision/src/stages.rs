@@ -4,12 +4,12 @@ use crate::VisionError;
 use crate::options::Options;
 use crate::seen::Seen;
 
-/// What an image is on its way to strokes.
+/// Intermediate images between a picture and its strokes.
 #[derive(Clone, Debug)]
 pub struct Stages {
-    /// Of both planes, px: the image's, or less where it is so large that pixels are averaged.
+    /// Width of both planes, px: the image's, or less if the image is so large that pixels are averaged.
     pub width: usize,
-    /// The same.
+    /// Height of both planes, px.
     pub height: usize,
     /// Row by row: how dark each pixel is beside its paper, the light evened out and the paper's rules taken out; 0 is paper, 255 total darkness. Of light ink on dark
     /// paper, how light.

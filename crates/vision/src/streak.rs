@@ -1,4 +1,4 @@
-//! The streak that a ballpoint leaves along the middle of its lines: from near, it shines there, or leaves the paper nearly bare.
+//! Fills the pale streak along the middle of a ballpoint line.
 //!
 //! It lies between two edges as dark as ink that are no further apart than a line of the picture is wide, and it is no paper. Two lines
 //! beside each other are wider together than each of them.
@@ -9,7 +9,7 @@ use tracelight_image::{Mask, Plane, Region, regions};
 
 /// A streak is darker than this share of the ink.
 const LEAST_DARK: f64 = 0.2;
-/// It is at most so many times as wide as what is dark on either side of it.
+/// Largest width of a streak, relative to the dark ink on either side.
 const WIDEST: f64 = 1.5;
 /// With it a line is at most so many times as wide as the picture's lines are in the mean.
 const MOST_WIDE: f64 = 1.35;

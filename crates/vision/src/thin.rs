@@ -1,4 +1,4 @@
-//! Thinning: from a patch of ink to a line one pixel wide.
+//! Thins a region of ink to a line one pixel wide.
 
 use tracelight_image::{Cell, Mask};
 

@@ -1,4 +1,4 @@
-//! Whether a picture is a drawing at all.
+//! Distinguishes drawings from photographs.
 //!
 //! What is drawn is thin, or ends where paper begins. A threshold cuts broad patches out of a photograph of something else, and
 //! beside them it is neither light nor dark: their edges fade. Neither says it alone: a sheet of notes has a shadow, pencils

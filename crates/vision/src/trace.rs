@@ -26,7 +26,7 @@ pub struct Traced {
     pub width_px: usize,
     /// Rows of the image.
     pub height_px: usize,
-    /// The tracer that was asked for.
+    /// The tracer used.
     pub mode: Mode,
     /// The strokes, pixel frame.
     pub strokes: Drawing,
@@ -36,7 +36,7 @@ pub struct Traced {
     pub missed_ink: f64,
     /// What was left out on purpose.
     pub left_out: LeftOut,
-    /// Rules of ruled or squared paper, which are none of the strokes.
+    /// Rules of ruled or squared paper, which are excluded from the strokes.
     pub rules: Option<Rules>,
 }
 
@@ -51,7 +51,7 @@ pub struct LeftOut {
     pub dots: Option<Dots>,
     /// Length of the ways over paper that were cut out of strokes, px.
     pub over_paper_px: f64,
-    /// Length of what a pencil drew again beside a line, which is one with it, px.
+    /// Length of repeated pencil lines that were merged, px.
     pub again_px: f64,
     /// Lines that are the edge of a sheet, of a table or of a shadow.
     pub edges: usize,

@@ -148,9 +148,9 @@ const PAGE_PARAMETERS: usize = 5;
 /// What pages are off by of which nobody says anything, m and as a share: paper that is taped to a wall, and a printer's second page.
 pub(super) const HEIGHT_DEVIATION_M: f64 = 2e-4;
 pub(super) const LARGER_DEVIATION: f64 = 2e-4;
-/// Where black's spread stands among the parameters,
+/// Index of the spread of black among the parameters.
 const SPREAD_AT: usize = LENS_PARAMETERS;
-/// and how far it may be, px: ink that runs, and a camera whose curve is not that of most, move all edges of a blurred image.
+/// Standard deviation of the prior on that spread, px. Ink bleed, or an unusual camera curve, shifts all edges of a blurred image.
 const SPREAD_DEVIATION_PX: f64 = 0.3;
 
 impl State {

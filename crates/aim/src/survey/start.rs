@@ -1,4 +1,4 @@
-//! Where a survey starts: poses from homographies, by several guesses of the focal length.
+//! Initial values of a survey: poses from homographies, for several focal lengths.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use tracelight_maths::{acos, atan2, sin_cos};
@@ -149,7 +149,7 @@ fn place(camera: &Camera, all: &All, view: usize, page: usize) -> Option<Place> 
     Some(Place { x: by.x, y: by.y, ..turned })
 }
 
-/// The same seen by poses that lean the other way: a small plane is seen nearly alike from both (Oberkampf, DeMenthon & Davis, *Iterative
+/// Returns the mirrored poses: a small plane looks nearly alike from both (Oberkampf, DeMenthon & Davis, *Iterative
 /// pose estimation using coplanar feature points*, 1996).
 fn mirrored(state: &State) -> State {
     let mirror = |pose: &CameraPose| {

@@ -1,4 +1,4 @@
-//! The coordinates that a survey steps in.
+//! Parametrization of the steps of a survey.
 //!
 //! Of a plane seen from straight ahead nothing tells the focal length: with a longer one, from further away, leaning more, all places stay
 //! where they are in the image. A step along the focal length's coordinate therefore takes along what keeps them there, so that this valley

@@ -1,4 +1,4 @@
-//! What a law is given in a tick.
+//! Inputs of a law in one tick.
 
 use tracelight_rig::Setpoint;
 

@@ -3,7 +3,7 @@
 /// Discretized for the tick by whoever makes it; an unused section is [`Biquad::PASS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadLag {
-    /// In the order they are passed.
+    /// Sections, in signal order.
     pub sections: [Biquad; 2],
 }
 

@@ -1,4 +1,4 @@
-//! From where a joint is and where it should be to torque.
+//! Control laws: from estimate and setpoint to torque.
 
 mod feedforward;
 mod input;
@@ -45,7 +45,7 @@ pub enum Feedforward {
     Gravity,
     /// All the motion asks for by the model: inertia, Coriolis, gravity, friction.
     Model,
-    /// The same by what the head has shown to be, and against the load that was found.
+    /// Feedforward with the learned parameters, and against the learned load.
     Learned,
 }
 

@@ -1,11 +1,11 @@
-//! Which observer a joint has.
+//! Configuration of a joint's observer.
 
 use super::tuning::KalmanTuning;
 
 /// Longest interval of [`ObserverConfig::Differences`] and [`ObserverConfig::EdgeTimes`], ticks.
 pub const LONGEST_INTERVAL_TICKS: usize = 64;
 
-/// How position and velocity are told from counts.
+/// Method that estimates position and velocity from counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ObserverConfig {
     /// Counts gained over this many ticks, at most [`LONGEST_INTERVAL_TICKS`].

@@ -224,9 +224,9 @@ impl Kalman {
     /// Who pushes surprises some edges; a count that was lost makes every edge one of another kind than it is taken for, and
     /// surprises for ever. Then nothing is known of where edges lie any more.
     fn doubt_edges(&mut self, surprised: bool) {
-        /// An edge counts for that share of the one after it,
+        /// Weight of an edge relative to the one after it.
         const FADES: f32 = 0.9;
-        /// so that this is reached when some ten of the last fifteen surprise.
+        /// Threshold for lost counts, reached when some ten of the last fifteen edges surprise.
         const LOST: f32 = 6.5;
         /// How far misplaced an edge may be, deviations of one of which nothing is known.
         const ANYWHERE: f32 = 2.0;
@@ -292,9 +292,9 @@ impl Kalman {
 /// How what an encoder says fits what was expected.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
-    /// The edge that came,
+    /// Misfit of the edge that came.
     pub(super) edge: Option<Misfit>,
-    /// and the one that should have come and did not.
+    /// Misfit of the edge that is overdue.
     pub(super) overdue: Option<Misfit>,
 }
 

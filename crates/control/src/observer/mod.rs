@@ -1,4 +1,4 @@
-//! Position, velocity and acceleration of a joint from what an incremental encoder says.
+//! Observers: position, velocity and acceleration of a joint from an incremental encoder.
 //!
 //! Plain differences of counts say little: one count of 4096 a turn in one tick of a millisecond is 1.5 rad/s. Five
 //! ways out, from the oldest to the best, behind one interface:
@@ -85,7 +85,7 @@ impl Observer {
         }
     }
 
-    /// What is believed now.
+    /// Returns the current estimate.
     pub fn estimate(&self, axis: &AxisConfig) -> Estimate {
         match &self.0 {
             Kind::Differences(observer) => observer.estimate(axis.count_rad),

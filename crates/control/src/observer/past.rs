@@ -11,7 +11,7 @@ pub(super) struct Past<T> {
 }
 
 impl<T: Copy> Past<T> {
-    /// It has always been `value`.
+    /// Fills the whole history with `value`.
     pub(super) const fn constant(value: T) -> Self {
         Self { kept: [value; KEPT], now: 0 }
     }

@@ -31,7 +31,7 @@ struct Hypothesis {
 #[derive(Clone, Copy, Debug)]
 struct Contest {
     rival: Hypothesis,
-    /// It was believed, and may win that back.
+    /// Whether this hypothesis was believed before and may be restored.
     was_believed: bool,
     ticks: u32,
     edges: u32,
@@ -51,7 +51,7 @@ impl Recount {
         Self { believed: Hypothesis { filter, lost: 0, overdue: 0.0 }, contest: None }
     }
 
-    /// The same, of an encoder that has lost so many counts.
+    /// Takes `lost_counts` counts to be lost.
     pub(super) fn with_lost(mut self, lost_counts: i32) -> Self {
         let Hypothesis { filter, lost, .. } = &mut self.believed;
         filter.renumber(filter.count().wrapping_add(lost_counts.wrapping_sub(*lost)));

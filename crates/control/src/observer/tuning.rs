@@ -1,4 +1,4 @@
-//! How far the Kalman filter trusts model and encoder.
+//! Noise parameters of the Kalman filter.
 
 /// How far the filter trusts model and encoder. Shares are of [`AxisConfig::unknown_nm`](crate::AxisConfig::unknown_nm).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct KalmanTuning {
     pub load: Unknown,
     /// Coulomb friction.
     pub friction: Unknown,
-    /// How friction changes along the way, share²/rad.
+    /// Random change of friction with the angle, share²/rad.
     pub friction_change: f32,
     /// Excess of friction near standstill.
     pub break_away: Unknown,

@@ -7,14 +7,13 @@ use crate::limit::within;
 /// Share of Coulomb friction that must be overcome before a joint is expected to move: stiction and ripple of worn
 /// heads stay under it.
 const BREAK_AWAY_MARGIN: f32 = 1.6;
-/// Standard deviations of what load and friction were taken for that must be overcome besides: who pushed a moment ago may
-/// push otherwise now.
+/// Further margin over the estimated load and friction, standard deviations: somebody who pushed a moment ago may push differently now.
 const LOAD_DEVIATIONS: f32 = 2.0;
-/// but never more than this share of the motor's torque, or a line that is cut after a push would not be missed.
+/// Upper limit of all these margins, as a share of the motor's torque, so that a line cut after a push is still detected.
 const MOST_HOLDING: f32 = 0.6;
-/// Predicted motion without any edge that makes an encoder doubtful, counts,
+/// Predicted motion without any edge that makes an encoder doubtful, counts.
 const DOUBT_COUNTS: f32 = 4.0;
-/// and how long it may be so before it is taken for dead, ticks: somebody who holds the head looks the same.
+/// Ticks of doubt after which the encoder counts as dead. Somebody who holds the head looks alike.
 pub(super) const DOUBT_TICKS: u32 = 20;
 /// Counts beside where the joint can be that mean it jumped: a kick that moves a joint by one count within a tick
 /// gives it 3000 rad/s², and breaks it. An observer that knows no more than the count is half a count off by itself, and

@@ -1,19 +1,19 @@
-//! Whether what the head stands on stands, by a gyroscope that is fixed to it.
+//! Detects motion of the head's base with a gyroscope fixed to it.
 
 use tracelight_rig::{Fault, Joint, PanTilt, TICK_S};
 
-/// What is known of the foot and asked of it.
+/// Limits and model of the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
-    /// It is being bumped from that rate on, rad/s.
+    /// Rate that counts as a bump, rad/s.
     pub jolt_rad_s: f32,
-    /// It stands where it stood as long as it has turned by no more, rad.
+    /// Largest turn after which the foot counts as undisplaced, rad.
     pub turned_rad: f32,
-    /// How it gives way to the head's own motion; `None` where it stands firm.
+    /// Sway of the base under the head's own motion; `None` if the base is rigid.
     pub sway: Option<Sway>,
 }
 
-/// How a foot swings that gives way when the joints speed up.
+/// Oscillation of a base that yields when the joints accelerate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sway {
     /// Inertia of what a joint carries, of that of foot and head together.
@@ -36,15 +36,15 @@ const FOLLOWED_TICKS: u32 = 5000;
 const UNSURE_BIAS_RAD_S: f32 = 3e-4;
 /// Time constant with which a turn is forgotten while nothing bumps, s: what is slower is bias.
 const TURN_S: f32 = 1.0;
-/// Time constant over which a foot is looked at for whether it is quiet, s,
+/// Time constant of the test for standstill of the foot, s.
 const QUIET_S: f32 = 0.01;
-/// how quiet, as a share of the rate of a jolt,
+/// Largest rate at standstill, as a share of the rate of a jolt.
 const QUIET_SHARE: f32 = 0.2;
-/// and for how long it has to be, ticks.
+/// Ticks of standstill required.
 const QUIET_TICKS: u32 = 200;
-/// By how much what is known of its sway may be wrong, as a share,
+/// Error allowed in the predicted sway, as a share of its recent peak.
 const SWAY_SHARE: f32 = 0.5;
-/// of what it was at most of late, s.
+/// Time over which that peak is remembered, s.
 const SWAY_S: f32 = 0.5;
 
 /// Watch on the foot. It learns what the gyroscope reads at rest, slowly, and nothing else.

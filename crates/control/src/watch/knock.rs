@@ -1,4 +1,4 @@
-//! Whether somebody bumped into what the head stands on, by what encoders feel of it.
+//! Detects bumps of the head's base from the encoders.
 
 use tracelight_rig::{Measurement, TICK_S};
 
@@ -11,20 +11,20 @@ use crate::limit::within;
 const KEPT: usize = 128;
 /// Ticks from a surprise to the verdict on it.
 const VERDICT_TICKS: u32 = 65;
-/// What is held against each other: the ticks from 60 to 20 before the surprise,
+/// Window before the surprise that serves as the reference, ticks.
 const BEFORE: (i32, i32) = (-60, -20);
-/// and those from 30 to 65 after it, when a bump is over.
+/// Window after the surprise that is compared with it, when a bump is over, ticks.
 const AFTER: (i32, i32) = (30, 65);
-/// When it was, in the middle of a bump, ticks after the surprise,
+/// Time at which the positions are compared, in the middle of a bump, ticks after the surprise.
 const BUMPED_AT: f32 = 8.0;
-/// and when it is over.
+/// Time at which the speeds are compared, after the bump, ticks after the surprise.
 const OVER_AT: f32 = 47.5;
-/// A surprise of so many deviations is looked into.
+/// Surprise from which a throw is considered, deviations.
 const SURPRISE: f32 = 4.0;
-/// A joint is thrown by so many counts at least: one an encoder may lose, or make up,
+/// Smallest throw of a joint, counts: more than a single lost or spurious count.
 const LEAST_COUNTS: f32 = 1.25;
-/// and is afterwards no faster than before, as a share of that way in 30 ms: whoever pushes a joint leaves it with the speed he gave it, or is still
-/// pushing.
+/// Largest change of speed in a throw, over 30 ms and as a share of the throw. A push at the joint itself leaves it with a different speed, or
+/// still accelerates it.
 const MOST_FASTER: f32 = 0.75;
 /// How long that takes, ticks.
 const BUMP_TICKS: f32 = 30.0;

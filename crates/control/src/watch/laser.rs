@@ -1,4 +1,4 @@
-//! Whether the laser's two switches do what they are told, as far as something sees it.
+//! Checks that the laser's two switches follow their commands, as far as sensors show it.
 
 use tracelight_rig::{Actuation, Fault, Sensed};
 

@@ -1,7 +1,7 @@
-//! Watches: what goes wrong with encoders, motors, the laser and the host, and how soon it is seen.
+//! Watches: detect faults of encoders, motors, the laser and the host.
 //!
-//! When each fault is seen, how soon, and what is done then stands in [`Fault::TABLE`], which `docs/faults.md` is printed from; a test
-//! below holds its bounds against the constants here.
+//! [`Fault::TABLE`] lists when and how soon each fault is detected and what follows; `docs/faults.md` is printed from it. A test
+//! below compares its bounds with the constants here.
 
 mod encoder;
 mod foot;
@@ -122,7 +122,7 @@ impl Watch {
         Joint::BOTH.into_iter().for_each(|j| self.scales[j].begin_test(&config.axes[j]));
     }
 
-    /// It has made it; the fault that showed, if any.
+    /// Ends the test move and returns the fault it showed, if any.
     pub(crate) fn end_test(&mut self, config: &Config) -> Option<Fault> {
         let faults = PanTilt::from_fn(|j| self.scales[j].end_test(&config.axes[j]));
         faults.pan.or(faults.tilt)

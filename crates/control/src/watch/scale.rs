@@ -1,4 +1,4 @@
-//! Whether an encoder shows what its joint turns.
+//! Checks that an encoder shows the angle its joint turns.
 
 use tracelight_rig::{Fault, Measurement};
 
@@ -7,9 +7,9 @@ use crate::axis::AxisConfig;
 use crate::estimate::{Effort, Estimate};
 use crate::limit::within;
 
-/// Standard deviation within which a scale counts as known.
+/// Standard deviation up to which a scale counts as known.
 const KNOWN: f32 = 0.045;
-/// and the one found first as well known.
+/// Standard deviation up to which the first scale counts as well known.
 const WELL: f32 = 0.012;
 /// How far from its first value it may turn out to be, deviations.
 const LIKELY: f32 = 2.0;
@@ -17,24 +17,24 @@ const LIKELY: f32 = 2.0;
 const CLEAN: f32 = 2.5;
 /// An edge counts for that share of the mean.
 const MEAN_SHARE: f32 = 0.1;
-/// By how much a scale may differ from the one that was found first, as a share: inertia and motors do not change by that.
+/// Largest difference between a scale and the one found first, as a share: inertia and motors do not change by that.
 const CHANGED: f32 = 0.1;
-/// and how sure that has to be, deviations.
+/// Significance required of such a difference, deviations.
 const SURE: f32 = 3.0;
 /// How sure the first verdict has to be, deviations.
 const DEVIATIONS: f32 = 3.0;
-/// Scales of two tests that differ by less are the same, as a share,
+/// Largest difference between two tests that show one scale, as a share.
 const SAME: f32 = 0.15;
-/// and so many the same in a row are a fault.
+/// Consecutive tests with one scale that are a fault.
 const TESTS: u32 = 5;
-/// Surprises in one direction add up (a cumulative sum; Page, *Continuous inspection schemes*, Biometrika 1954): each above
-/// this counts, deviations,
+/// Deviation allowed per surprise in a cumulative sum (Page, *Continuous inspection schemes*, Biometrika 1954). Surprises in one
+/// direction add up; each counts only what exceeds this.
 const ALLOWED: f32 = 0.7;
-/// none for more than that,
+/// Largest contribution of one surprise, deviations.
 const MOST_OF_ONE: f32 = 4.0;
-/// and at so much something is wrong: healthy heads come to 2, worn ones to 5.
+/// Threshold of the cumulative sum, deviations: healthy heads come to 2, worn ones to 5.
 const ENOUGH: f32 = 8.0;
-/// So many counts that were lost or made up close upon each other are no accident; each is forgotten over 20 edges.
+/// Threshold of lost or spurious counts in close succession; each is forgotten over 20 edges.
 const MISCOUNTS: f32 = 2.5;
 const MISCOUNT_FADES: f32 = 0.05;
 
@@ -62,9 +62,9 @@ pub(super) struct ScaleWatch {
 /// What is held of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Trust {
-    /// It was not seen to follow its motor yet.
+    /// The encoder has not yet been seen to follow its motor.
     Untested,
-    /// It was, and nothing spoke against it since.
+    /// The encoder has followed its motor, without contrary evidence since.
     Tested,
     /// Something spoke against it. There were so many tests since, and so many of them in a row have shown this scale, which is not its own.
     Doubted { tests: u32, shown: f32, times: u32 },
@@ -92,7 +92,7 @@ impl ScaleWatch {
         }
     }
 
-    /// The same of an encoder whose scale was found once.
+    /// Keeps the first scale that was found, from the state `before`.
     pub(super) const fn with_first(mut self, before: &Self) -> Self {
         self.first = before.first;
         self.may_be = before.may_be;
@@ -149,7 +149,7 @@ impl ScaleWatch {
         }
     }
 
-    /// That move is over; the fault it has shown, if any. Several have to show the same: somebody may have pushed, or the supply may
+    /// Ends the test move and returns the fault it showed, if any. Several tests must agree: somebody may have pushed, or the supply may
     /// have been weak for a moment.
     pub(super) fn end_test(&mut self, axis: &AxisConfig) -> Option<Fault> {
         if self.is_tested() {

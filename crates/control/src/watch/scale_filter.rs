@@ -1,4 +1,4 @@
-//! A joint whose encoder may show another angle than it turns.
+//! Estimates the scale between an encoder's angle and its joint's.
 
 use tracelight_rig::{Measurement, TICK_S};
 
@@ -18,18 +18,18 @@ type Row = [f32; STATES];
 
 /// Standard deviation of where an edge lies, counts.
 const EDGE_COUNTS: f32 = 0.07;
-/// Spectral density of accelerations that nothing explains, (rad/s²)²·s,
+/// Spectral density of unexplained accelerations, (rad/s²)²·s.
 const ANY_ACCELERATION: f32 = 7.5e-4;
-/// and of what belts and inertia that is not known make of those that are planned: a share of them that lasts some ticks, s.
+/// Share of planned accelerations that belts and unknown inertia may add, and how long it lasts, s.
 const SWINGING_SHARE: f32 = 0.08;
 const SWINGING_S: f32 = 0.01;
-/// How the torque that is not known drifts, in shares² of the unknown torque: a second,
+/// Drift of the unknown torque per second, in shares² of that torque.
 const LOAD_DRIFT: f32 = 5e-4;
-/// a radian of way,
+/// Drift per radian of motion.
 const LOAD_CHANGE: f32 = 0.2;
-/// a second near standstill, where friction may be anything between sliding and break-away,
+/// Drift per second near standstill, where friction lies anywhere between sliding and break-away.
 const LOAD_STICKING: f32 = 4.0;
-/// and at each reversal, where an error of friction changes its sign.
+/// Drift at each reversal, where a friction error changes its sign.
 const LOAD_REVERSED: f32 = 0.4;
 /// Near standstill: slower than that, rad/s.
 const STICKING_RAD_S: f32 = 0.06;
@@ -78,7 +78,7 @@ pub(super) enum Surprise {
     Placed,
     /// An edge came, or is overdue, by so many standard deviations ahead of where it was expected.
     Edge(f32),
-    /// The same of a joint that creeps: friction is what it is.
+    /// An edge came, or is overdue, while the joint creeps and its friction is unpredictable.
     Creeping(f32),
     /// An edge came a whole count beside where it was expected, and is taken for its neighbour.
     Count,
@@ -249,9 +249,9 @@ impl ScaleFilter {
 
     /// No edge in this tick: the joint is still within its count.
     fn see_none(&mut self, axis: &AxisConfig, known: bool) -> Surprise {
-        /// How far the model may run past an edge that did not come, counts: near standstill, where it often does,
+        /// Slack for an overdue edge near standstill, counts: edges are often late there.
         const SLACK_COUNTS: f32 = 0.1;
-        /// and in motion, where a single count may be lost.
+        /// Slack in motion, counts, so that one lost count is tolerated.
         const FAST_SLACK_COUNTS: f32 = 1.3;
         /// Standard deviation of what that says, counts.
         const OVERDUE_COUNTS: f32 = 0.3;

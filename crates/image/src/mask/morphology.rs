@@ -1,4 +1,4 @@
-//! Masks made thinner and thicker by squares and octagons, 64 pixels at a time.
+//! Erosion and dilation of masks by squares and octagons, 64 pixels at a time.
 
 use super::{Mask, WORD, span};
 
@@ -67,7 +67,7 @@ impl Mask {
         self.dilated(side)
     }
 
-    /// All within the upright squares of `reach` px either way about each ink pixel.
+    /// Dilates by an upright square of `reach` px either way.
     pub fn dilated_by(self, reach: usize) -> Self {
         let mut grown = self.dilated(reach + 1);
         for row in grown.inked_rows() {
@@ -210,7 +210,7 @@ impl Slant {
         }
     }
 
-    /// The same, moved against it.
+    /// Shifts the middle word's row by `by` bits against the slant.
     fn moved_back(self, three: &[u64], by: usize) -> u64 {
         match self {
             Slant::Right => shifted_down(three[1], three[2], by),

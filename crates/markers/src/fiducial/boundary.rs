@@ -1,4 +1,4 @@
-//! Where black meets white in a marker whose cells are known, placed on the grey levels.
+//! Locates the black–white boundary of a marker with known cells on the grey levels.
 //!
 //! Across the middle of each boundary between a black cell and a white one the light is what the cells about it are, blurred; how far
 //! the boundary is off from where it is thought to be is what fits the light there best, together with its brightness, its contrast
@@ -22,9 +22,9 @@ const REACH_CELLS: f64 = 1.25;
 /// Transitions between cells that reach into the samples, either way.
 const NEAR: isize = 2;
 const TRANSITIONS: usize = 2 * NEAR as usize + 1;
-/// What blur is thought to be at first: standard deviation, px,
+/// Initial blur: standard deviation, px.
 const FIRST_BLUR_PX: f64 = 1.0;
-/// least and most that it can be told to be.
+/// Smallest and largest blur that is estimated, px.
 const BLUR_PX: (f64, f64) = (0.4, 4.0);
 /// How far off a boundary can be placed, px.
 const FURTHEST_PX: f64 = 1.5;

@@ -1,4 +1,4 @@
-//! The cells of a marker, read and looked up.
+//! Reads the cells of a marker and looks them up.
 
 use tracelight_image::Plane;
 use tracelight_image::solve::linear;

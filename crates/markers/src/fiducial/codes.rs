@@ -1,4 +1,4 @@
-//! The AprilTag family 36h11: what each id's 36 inner cells are.
+//! Codes of the AprilTag family 36h11: the 36 inner cells of each id.
 //!
 //! Cell by cell, row by row from the upper left as printed, the first in the highest bit; 1 is white. Wang & Olson, *AprilTag 2:
 //! Efficient and robust fiducial detection*, IROS 2016. The family is a lexicode (Olson, *AprilTag*, ICRA 2011, §V): of

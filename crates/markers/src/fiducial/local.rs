@@ -1,4 +1,4 @@
-//! Dark from light, each place by what is about it.
+//! Adaptive threshold: separates dark from light by the local surroundings.
 
 use tracelight_image::threshold::word_of;
 use tracelight_image::{Mask, Plane};

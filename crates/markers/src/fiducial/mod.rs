@@ -1,4 +1,4 @@
-//! Square markers of the AprilTag family 36h11: where they are, to a few hundredths of a pixel, and which.
+//! Detects square markers of the AprilTag family 36h11, to a few hundredths of a pixel.
 //!
 //! What is darker than halfway between the darkest and the brightest about it is cut from the rest (`local`), its patches with
 //! four straight sides are found (`quad`), the cells between them are read and looked up (`cells`, `codes`), and every boundary between
@@ -31,7 +31,7 @@ pub struct Tag {
     pub places: Vec<TagPlace>,
     /// Standard deviation of these places across their boundaries, px.
     pub deviation_px: f64,
-    /// Cells that had to be put right.
+    /// Number of corrected cells.
     pub wrong_cells: u8,
 }
 
@@ -134,8 +134,8 @@ mod tests {
         Grey::new(SIZE, SIZE, (0..SIZE * SIZE).map(|i| noisy(level(i))).collect()).unwrap()
     }
 
-    /// The same through a sensor of one colour a pixel whose others are filled in from the nearest: brightness as video has it. Levels are to the power
-    /// of 1/2.2, what is filled in is light.
+    /// Renders an image as a single-chip colour sensor with nearest-neighbour interpolation shows it, in video brightness. Levels are gamma-coded
+    /// (1/2.2); the interpolation is linear in light.
     fn through_mosaic(image: &Grey) -> Grey {
         let (width, height) = (image.width(), image.height());
         let light = |x: isize, y: isize| {

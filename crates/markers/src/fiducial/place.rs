@@ -1,4 +1,4 @@
-//! Where a marker's black meets its white.
+//! A point on the boundary between a marker's black and white.
 
 use tracelight_stroke::Point;
 

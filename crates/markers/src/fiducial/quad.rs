@@ -1,4 +1,4 @@
-//! Patches with four straight sides.
+//! Finds regions with four straight sides.
 
 use tracelight_image::border::{Edge, area, border};
 use tracelight_image::{Mask, Region};
@@ -7,9 +7,9 @@ use tracelight_stroke::{Point, Vec2};
 
 /// Shortest side of a marker that can be read, px: a pixel and a half a cell.
 const LEAST_SIDE_PX: f64 = 12.0;
-/// How far places on a side may lie from a straight line, root of the mean square: what pixels' edges are off by, px,
+/// Largest deviation of a side from a straight line, root mean square: error of the pixel edges, px.
 const MOST_OFF_PX: f64 = 0.75;
-/// and what a lens bends, as a share of the side's length.
+/// Further deviation for lens distortion, as a share of the side's length.
 const MOST_BENT: f64 = 0.01;
 /// Share of a side at each of its ends where blur has rounded the corner off.
 const ROUNDED: f64 = 0.12;

@@ -1,4 +1,4 @@
-//! A marker's cells in the image.
+//! Maps a marker's cells to the image.
 
 use tracelight_image::Projection;
 use tracelight_image::solve::linear;
@@ -25,7 +25,7 @@ impl Square {
         self.0.at(x, y)
     }
 
-    /// The same, and how far a cell across and a cell down go there, px.
+    /// Maps a position, and gives the steps of one cell across and one cell down there, px.
     pub(super) fn with_slopes(&self, x: f64, y: f64) -> Option<(Point, Vec2, Vec2)> {
         self.0.with_slopes(x, y)
     }

@@ -1,4 +1,4 @@
-//! A round spot's light: the bell that fits it best.
+//! Fits a bell-shaped light distribution to a round spot.
 
 use std::ops::Range;
 

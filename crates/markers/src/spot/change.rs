@@ -1,4 +1,4 @@
-//! What is brighter in one image than in another.
+//! Finds what is brighter in one image than in another.
 
 use std::ops::Range;
 

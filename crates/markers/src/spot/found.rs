@@ -1,4 +1,4 @@
-//! What is told of a spot.
+//! Result of a spot search.
 
 use tracelight_stroke::{Point, Vec2};
 

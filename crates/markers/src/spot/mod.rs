@@ -1,4 +1,4 @@
-//! The laser's spot: what is brighter where it is on than where it is off.
+//! Detects the laser spot from an image with light and one without.
 //!
 //! Of the difference of two images a window about where the spot is awaited is looked at, in light: lamps and the drawing are in both and
 //! fall away. A round spot is placed by the bell of light that fits best, over what was not full; a streak, which a moving spot leaves, by the

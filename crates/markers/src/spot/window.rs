@@ -1,8 +1,8 @@
-//! Where a spot is awaited.
+//! Search window of the spot.
 
 use tracelight_stroke::Point;
 
-/// Where a spot is looked for.
+/// Search window of the spot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotWindow {
     /// Its middle, px.

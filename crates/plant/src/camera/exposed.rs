@@ -1,4 +1,4 @@
-//! What falls on a sensor while an image is taken.
+//! Light on a sensor during one exposure.
 
 use tracelight_stroke::Point;
 

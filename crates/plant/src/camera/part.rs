@@ -19,7 +19,7 @@ impl Part {
         Self { left: 0, top: 0, width, height }
     }
 
-    /// The same with one more pixel around, as far as the image goes.
+    /// Extends the part by one pixel on each side, within the image.
     pub(super) fn wider(&self, [width, height]: [usize; 2]) -> Self {
         let (left, top) = (self.left.saturating_sub(1), self.top.saturating_sub(1));
         let right = (self.left + self.width + 1).min(width);

@@ -1,4 +1,4 @@
-//! Numbers that look drawn, from a place and a seed alone.
+//! Pseudo-random numbers that depend only on a position and a seed.
 
 /// 2⁶⁴ by the golden ratio: numbers that follow each other are far apart.
 pub(super) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;

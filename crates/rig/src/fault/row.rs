@@ -1,4 +1,4 @@
-//! Words of the table of faults: how soon, what becomes of the motors, what clears it.
+//! Columns of the fault table: detection time, effect on the motors, how the fault is cleared.
 
 /// How soon a fault is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

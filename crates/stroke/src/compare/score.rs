@@ -31,7 +31,7 @@ const TOLERANCES_PER_BIN: f64 = 4.0;
 /// beyond the truth's end has 1.25.
 const DOUBLED_BIN: f64 = 1.5;
 
-/// How well strokes that were drawn answer the strokes that are true. Lengths in plane units, shares in [0, 1].
+/// Agreement of drawn strokes with true strokes. Lengths in plane units, shares in [0, 1].
 ///
 /// [`Comparison`](super::Comparison) asks whether the same ink was drawn; this also asks whether it was drawn in the
 /// same strokes. Counts alone cannot tell: one stroke broken and another one missing leave them right, so
@@ -47,7 +47,7 @@ pub struct Score {
     pub matched: usize,
     /// Distance of the drawn strokes to the truth, root of the mean square along them.
     pub rms: f64,
-    /// The same, largest.
+    /// Largest distance of the drawn strokes to the truth.
     pub max: f64,
     /// Share of the truth's length that is further than the tolerance from everything drawn.
     pub missed: f64,

@@ -1,4 +1,4 @@
-//! One arc through many points.
+//! Fits one arc to many points.
 
 use kurbo::Point;
 

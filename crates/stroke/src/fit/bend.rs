@@ -1,4 +1,4 @@
-//! What bends between straight lines: arcs, where it is made of arcs.
+//! Fits the bend between two straight lines, with arcs if possible.
 
 use kurbo::Point;
 use tracelight_maths::{cos, powi};

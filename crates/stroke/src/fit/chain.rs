@@ -1,4 +1,4 @@
-//! A curved stretch as few cubics that share their directions where they join.
+//! Fits a curved section with few cubics that share their tangents at the joints.
 
 use kurbo::{CubicBez, Point, Vec2};
 
@@ -7,7 +7,7 @@ use super::window::{Parabola, turn, unit};
 
 /// Samples either side from which a joint's place and direction are taken: as many as lie on a parabola.
 const WINDOWS: [usize; 6] = [7, 10, 14, 20, 28, 40];
-/// The same, both sides and the sample itself.
+/// Samples in such a window on both sides, with the sample itself.
 const BOTH: [usize; 6] = [15, 21, 29, 41, 57, 81];
 /// Directions are looked at this often, in steps; between, the turning is even.
 const STRIDE: usize = 6;

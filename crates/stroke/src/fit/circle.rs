@@ -1,4 +1,4 @@
-//! Whole circles.
+//! Detects whole circles.
 
 use kurbo::{Point, Vec2};
 

@@ -1,4 +1,4 @@
-//! The straight lines in a row of points.
+//! Finds the straight lines in a point sequence.
 
 use kurbo::Point;
 

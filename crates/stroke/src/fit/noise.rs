@@ -1,4 +1,4 @@
-//! Whether what is left over by a fit is noise, or a shape that the fit could not follow.
+//! Decides whether the residual of a fit is noise or unfitted shape.
 
 use std::f64::consts::PI;
 

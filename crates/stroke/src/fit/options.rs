@@ -1,4 +1,4 @@
-//! How a fit treats its points.
+//! Options of a fit.
 
 /// How [`fit`](crate::fit) treats its points.
 #[derive(Clone, Copy, Debug, PartialEq)]

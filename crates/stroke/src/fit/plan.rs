@@ -1,4 +1,4 @@
-//! Which lines and arcs a row is to be made of, and how they hang together.
+//! Plans the lines and arcs of a point sequence and their connections.
 
 use kurbo::Point;
 

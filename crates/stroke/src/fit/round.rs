@@ -1,4 +1,4 @@
-//! Circular runs in a row of points.
+//! Finds circular runs in a point sequence.
 
 use std::ops::RangeInclusive;
 
@@ -80,7 +80,7 @@ struct Roundness<'a> {
     /// Sums of x, y, xx, xy, yy, xz, yz and zz, where z is xx + yy.
     sums: Vec<[f64; 8]>,
     rms: f64,
-    /// The same, where several arcs are to be told from each other: no more than the noise needs.
+    /// Tolerance for separating several arcs: no more than the noise requires.
     tight: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A stretch between corners as straight lines, arcs and cubics that pass smoothly into each other.
+//! Fits a section between corners with lines, arcs and cubics that join smoothly.
 
 use kurbo::{CubicBez, Point, Vec2};
 

@@ -1,4 +1,4 @@
-//! Symmetric linear equations in which most unknowns meet only their neighbours.
+//! Symmetric linear systems with a skyline (mostly banded) matrix.
 
 /// The lower half of a symmetric matrix, each row from its first entry that is not zero to the diagonal.
 #[derive(Default)]

@@ -1,4 +1,4 @@
-//! Straight runs in a row of points.
+//! Finds straight runs in a point sequence.
 
 use kurbo::{Point, Vec2};
 

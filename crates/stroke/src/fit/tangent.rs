@@ -1,4 +1,4 @@
-//! Lines and arcs that pass into each other without a break of direction, as near to their points as they can be.
+//! Fits tangent-continuous lines and arcs to points by least squares.
 //!
 //! Each line has two unknowns (direction, offset), each circle three (centre, radius). That neighbours touch is one
 //! equation a joint, that an end stays where it is one more; the sum of squared distances is made least under them by

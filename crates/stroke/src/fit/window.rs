@@ -1,4 +1,4 @@
-//! Local regression: what a stretch of samples says about place, direction and bend.
+//! Local regression: position, direction and curvature from a window of samples.
 
 use kurbo::{Point, Vec2};
 use tracelight_maths::atan2;

@@ -1,4 +1,4 @@
-//! Sets that are joined.
+//! Disjoint sets (union–find).
 
 /// Disjoint sets with path halving (Tarjan & van Leeuwen, 1984).
 pub(super) struct Forest(Vec<u32>);

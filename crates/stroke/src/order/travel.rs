@@ -25,7 +25,7 @@ pub trait Travel {
     fn cost(&self, from: &Self::Place, to: &Self::Place) -> f64;
 }
 
-/// Where a stroke may be entered or left, and the way it leads there.
+/// A point where a stroke may be entered or left, and the stroke's direction there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokeEnd {
     /// Place.

@@ -1,4 +1,4 @@
-//! The fastest profile of a shape that the motors can follow.
+//! Finds the fastest profile of a given shape that the motors can follow.
 //!
 //! Run w times as fast, a motion asks of a motor A·w² + D·w + C: inertia and the bend's forces, viscous friction,
 //! gravity and Coulomb friction. So at each place the highest w is a root, and the least of them all makes the shape as

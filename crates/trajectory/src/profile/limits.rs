@@ -1,4 +1,4 @@
-//! What a move may do, and the most of what it does.
+//! Limits of a move, and its peak values.
 
 /// What a move may do, in whatever unit its distance has.
 #[derive(Clone, Copy, Debug, PartialEq)]

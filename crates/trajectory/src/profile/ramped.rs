@@ -1,4 +1,4 @@
-//! Seven phases of constant jerk: trapezoids and S-curves of velocity.
+//! Profiles of seven phases with constant jerk: trapezoids and S-curves of velocity.
 
 use super::limits::{MoveLimits, Peaks};
 use crate::move_point::MovePoint;
@@ -76,7 +76,7 @@ impl Phases {
         self.accelerate_s + self.cruise_s + self.decelerate_s
     }
 
-    /// The same way, taking `factor` times as long.
+    /// Stretches the duration by `factor` over an unchanged distance.
     pub(super) fn slower(&self, factor: f64) -> Self {
         Self {
             accelerate_s: factor * self.accelerate_s,

@@ -1,4 +1,4 @@
-//! Shapes without phases: closed forms of the share of the way over the share of the time.
+//! Profiles without phases: closed forms of distance over time, both normalized.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! The fastest motion along a path with bounded jerk.
+//! Time-optimal motion along a path with bounded jerk.
 
 mod band;
 mod cells;

@@ -1,4 +1,4 @@
-//! What one joint's move keeps to.
+//! Bounds of one joint's move.
 
 /// Limits of one joint's move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The same in both directions.
+    /// Makes bounds that are equal in both directions.
     pub const fn symmetric(velocity: f64, acceleration: f64, jerk: f64) -> Self {
         Self { velocity: [-velocity, velocity], acceleration: [-acceleration, acceleration], jerk }
     }

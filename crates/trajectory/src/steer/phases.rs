@@ -34,7 +34,7 @@ impl Phases {
         self.each[..self.count].iter().map(|stretch| stretch.time_s)
     }
 
-    /// The same in a mirror.
+    /// Negates the motion.
     pub(super) fn mirrored(mut self) -> Self {
         for stretch in &mut self.each {
             stretch.jerk = -stretch.jerk;

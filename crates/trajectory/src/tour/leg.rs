@@ -1,4 +1,4 @@
-//! A leg of the tour in all the ways it may be run.
+//! A leg of the tour with all its possible runs.
 
 use tracelight_rig::{PanTilt, TICK_F64_S};
 
@@ -18,11 +18,11 @@ pub(crate) struct TourLeg {
     pub(crate) leg: Leg,
     /// Number of its stroke, from 0.
     pub(crate) stroke: usize,
-    /// It begins where the one before ends: resting there the light may stay on.
+    /// Whether the leg begins where the previous one ends. At rest there, the light may stay on.
     pub(crate) joined: bool,
-    /// Seconds it takes, run in each way; infinite where it cannot be.
+    /// Duration of the leg for each run, s; infinite if infeasible.
     pub(super) drawn_s: [f64; Run::COUNT],
-    /// The same tick by tick, of those that were looked at.
+    /// Ticks of the runs that were planned so far.
     marked: [Option<Marked>; Run::COUNT],
     /// About where the joints are at first and last, by how it starts and ends; `None` where that is out of reach.
     pub(super) starts: [Option<PanTilt<JointMotion>>; 2],
@@ -64,7 +64,7 @@ impl TourLeg {
         Ok(Self { leg, stroke, joined, drawn_s, marked: Default::default(), starts, ends })
     }
 
-    /// The same tick by tick, if it was run so.
+    /// Returns the planned ticks of a run, if there are any.
     pub(super) fn marked(&self, run: Run) -> Option<&Marked> {
         self.marked[run.index()].as_ref()
     }

@@ -1,4 +1,4 @@
-//! The dark moves between legs: estimated for every choice, timed tick by tick for those that are made.
+//! Dark moves between legs: estimated for every choice, planned tick by tick for the chosen ones.
 
 use tracelight_rig::{PanTilt, TICK_F64_S};
 

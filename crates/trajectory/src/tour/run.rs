@@ -1,4 +1,4 @@
-//! How a leg is run: from rest or under way, to rest or under way.
+//! End conditions of a leg: at rest or in motion, at either end.
 
 use crate::request::End;
 

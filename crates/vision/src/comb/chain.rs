@@ -1,4 +1,4 @@
-//! Lines across a page that follow each other at equal distances and look alike: rules, numbered.
+//! Numbers equally spaced, similar lines across a page as rules.
 
 use super::strips::{Peak, Strips};
 use super::track::Track;

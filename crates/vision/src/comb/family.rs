@@ -1,4 +1,4 @@
-//! Which of the lines that cross a page are its rules: equally spaced, alike, all over it, from border to border.
+//! Selects the lines of a page that are its rules: equally spaced, similar, from border to border.
 
 use tracelight_maths::planar;
 use tracelight_stroke::Point;

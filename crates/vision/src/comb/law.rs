@@ -1,4 +1,4 @@
-//! Where each rule of a family is by its number: the law that the family keeps to.
+//! The model of a family of rules: the position of each rule by its number.
 
 use tracelight_image::solve;
 use tracelight_maths::powi;

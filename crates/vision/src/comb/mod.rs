@@ -1,4 +1,4 @@
-//! Ruled, squared paper: its rules found, told of, and taken out from under the ink.
+//! Detects the rules of ruled and squared paper and removes them from under the ink.
 //!
 //! Printed rules are thin, straight but for the page's own bend, parallel, equally spaced, of one darkness, and run from border to border
 //! all over the page; a drawing's lines rarely do one of these things and never all. On a sheet laid square (`paper`) `strips` finds thin lines in narrow strips
@@ -94,9 +94,9 @@ pub(crate) fn without_rules(
     })
 }
 
-/// What is left where two rules cross lies alone: so far from them there is paper all round, px,
+/// Width of the bare paper that surrounds a remnant where two rules cross, px.
 const ROUND_CROSSING: usize = 2;
-/// or what is paler than this share of the ink.
+/// Largest darkness in that border, as a share of the ink's.
 const LEFT: f32 = 0.3;
 
 /// Clears what rules left where they cross, level ones and upright ones each known by how dark they were, and nothing else is drawn.
@@ -119,9 +119,9 @@ fn crossings_off(plane: &mut Plane<u8>, level: &Plane<u8>, upright: &Plane<u8>, 
     }
 }
 
-/// Squares that end anywhere are paper's if there are at least so many rules either way,
+/// Fewest rules in each direction of squared paper that does not fill the sheet.
 const FEWEST_SQUARED: usize = 12;
-/// and they are paler than this share of the strongest ink: a board is drawn in it.
+/// Largest darkness of such rules, as a share of the strongest ink: a drawn board is as dark as the ink.
 const PALER: f64 = 0.8;
 
 /// The rules of either direction; `None` where there are none at all. The strongest ink is so dark.

@@ -17,9 +17,9 @@ pub(crate) struct Lie<'a> {
 
 /// A side moves across its way by no more than this share of it where the sheet lies square as it is.
 const SQUARE: f64 = 0.01;
-/// A sheet laid square has at most so many times the pixels of the plane,
+/// Largest enlargement of a sheet laid square, in pixels per pixel of the plane.
 const MOST_ENLARGED: f64 = 2.0;
-/// and where there are more of them than this, two either way are averaged into one: a rule is wider there.
+/// Pixel count beyond which pixels are averaged two by two: a rule is wider there.
 const MOST_PX: f64 = 3e6;
 
 /// A sheet laid square.

@@ -1,4 +1,4 @@
-//! The rules of paper, as told.
+//! Description of the paper's rules for reports.
 
 /// Rules of paper that were taken out of an image.
 #[derive(Clone, Debug, PartialEq)]

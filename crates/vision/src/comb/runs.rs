@@ -1,4 +1,4 @@
-//! Stretches of ink in a row beside a rule, and which of them belong together across it.
+//! Finds runs of ink on both sides of a rule and pairs those that belong together.
 
 /// A stretch of ink in a row of pixels.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! Where thin dark lines cross narrow strips of a plane.
+//! Finds where thin dark lines cross narrow strips of a plane.
 
 use tracelight_image::Plane;
 

@@ -1,4 +1,4 @@
-//! Where rules lay that were taken off, and what they left there.
+//! Records where rules were removed and what they left there.
 
 use tracelight_image::threshold::over;
 use tracelight_image::{Mask, Plane, Region};
@@ -63,7 +63,7 @@ impl TakenOff {
         Self { rules, level, upright }
     }
 
-    /// The same of a plane of four pixels for each.
+    /// Converts the rules to the doubled resolution.
     pub(crate) fn doubled(self) -> Self {
         let twice = |mask: Mask| mask.doubled_to(2 * mask.width(), 2 * mask.height());
         let [level, upright] =

@@ -1,4 +1,4 @@
-//! What a rule looks like across, and how dark it is along.
+//! Cross profile of a rule, and its darkness along its length.
 
 use tracelight_image::Plane;
 
@@ -49,7 +49,7 @@ impl Template {
         Some(template)
     }
 
-    /// The same across it only: as dark all along, without a deviation.
+    /// Measures the cross profile only, uniform along the rule and without a deviation.
     pub(super) fn profile(dark: &Plane<u8>, centre: &[f32], reach: usize) -> Option<Self> {
         let every = sampled_every(dark);
         let mut bins: Vec<Vec<u8>> = vec![Vec::new(); 2 * reach * BINS as usize + 1];

@@ -1,4 +1,4 @@
-//! Thin lines followed from strip to strip, right across the page.
+//! Follows thin lines from strip to strip across the page.
 
 use tracelight_image::solve;
 use tracelight_maths::powi;

@@ -1,4 +1,4 @@
-//! One rule taken off a plane: what is only rule becomes paper, what is drawn across it goes through.
+//! Removes one rule from a plane; ink that crosses it remains.
 //!
 //! Where ink is much darker than the rule, how much of a pixel it covers follows from how dark the pixel is. Where it is not, the rows
 //! just beside the rule tell: what leaves the rule on one side is matched with what leaves it on the other where its slope leads,

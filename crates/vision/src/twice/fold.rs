@@ -1,4 +1,4 @@
-//! A pencil that turns at a line's end and goes back beside it.
+//! Detects a pencil that turns at a line's end and returns beside it.
 
 use tracelight_image::Plane;
 

@@ -1,4 +1,4 @@
-//! How two passes become one line.
+//! Merges two passes into one line.
 
 use tracelight_image::Plane;
 use tracelight_stroke::{Point, Vec2, polyline_length};

@@ -1,4 +1,4 @@
-//! A line that was sketched twice is one line.
+//! Merges lines that were sketched twice.
 //!
 //! Who sketches with a pencil goes over a line again, a little beside it. Where two rows run side by side, nearer to each other than two
 //! lines would be drawn, both are passes of one line: between them, nearer to the darker one. Either the slit between them is no paper,

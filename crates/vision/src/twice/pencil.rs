@@ -1,4 +1,4 @@
-//! Whether lines are a pencil's sketch.
+//! Decides whether lines are a pencil sketch.
 
 use tracelight_image::Plane;
 use tracelight_image::median::median;

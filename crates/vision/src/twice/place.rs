@@ -1,4 +1,4 @@
-//! Places on rows, and which lie beside each other.
+//! Places on rows, and neighbouring places of other rows.
 
 use tracelight_maths::sin;
 use tracelight_stroke::{Point, Vec2};

@@ -1,4 +1,4 @@
-//! The rows of a sketch by what lies beside them, and which of them are a second pass of others.
+//! The rows of a sketch with their neighbours, and which of them are a second pass of others.
 
 use tracelight_image::Plane;
 
@@ -64,9 +64,9 @@ pub(super) struct Run {
 #[derive(Clone, Copy, Debug)]
 struct Pair {
     number: usize,
-    /// Whether no paper is between them,
+    /// Whether there is no paper between them.
     is_one: bool,
-    /// and whether they are so near that they touch.
+    /// Whether they are so close that they touch.
     touches: bool,
 }
 

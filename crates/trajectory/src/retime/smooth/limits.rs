@@ -1,4 +1,4 @@
-//! What each joint keeps to along a smooth path.
+//! Limits of each joint along a smooth path.
 
 /// Limits of a joint's motion, the same both ways.
 #[derive(Clone, Copy, Debug, PartialEq)]
