@@ -7,6 +7,7 @@ pub(crate) mod choosing;
 mod completions;
 mod doctor;
 pub(crate) mod driving;
+pub(crate) mod ending;
 mod explain;
 pub(crate) mod eyes;
 mod lab;
@@ -74,10 +75,12 @@ pub(crate) fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(failure) => return report(terminal, json, json, &failure),
     };
-    let parsed = program.try_get_matches_from(arguments).and_then(|found| Cli::from_arg_matches(&found));
-    let cli = match parsed {
+    let parsed = program.clone().try_get_matches_from(&arguments);
+    let cli = match parsed.and_then(|found| Cli::from_arg_matches(&found)) {
         Ok(cli) => cli,
-        Err(error) => return refuse(terminal, &error, json),
+        Err(error) => {
+            return refuse(terminal, &error, json, &advice::more(&error, &program, &arguments));
+        }
     };
     let (voice, result) = perform(&cli.command, &interrupt::listen());
     finish(terminal, &cli.command, voice, result)
@@ -156,14 +159,22 @@ fn report(terminal: Terminal, json: bool, on_stdout: bool, failure: &Failure) ->
     // of a wrong command line there is no more to be told than its message does
     let tells_more = !json && failure.code != "usage";
     let hint =
-        if tells_more { format!(" (see `tracelight explain {}`)", failure.code) } else { String::new() };
-    eprintln!("{} {}{hint}", terminal.alarm("error:"), failure.message);
+        if tells_more { format!("(see `tracelight explain {}`)", failure.code) } else { String::new() };
+    // below a caret a hint has its own line
+    let gap = if !tells_more {
+        ""
+    } else if failure.message.contains('\n') {
+        "\n"
+    } else {
+        " "
+    };
+    eprintln!("{} {}{gap}{hint}", terminal.alarm("error:"), failure.message);
     ExitCode::from(failure.status.code())
 }
 
 /// Wrong command lines: help and version are no errors; the rest is said on stderr, and as JSON where asked for.
 #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
-fn refuse(terminal: Terminal, error: &clap::Error, json: bool) -> ExitCode {
+fn refuse(terminal: Terminal, error: &clap::Error, json: bool, more: &[String]) -> ExitCode {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
         let help = error.render();
         let text = if terminal.colours_output() { help.ansi().to_string() } else { help.to_string() };
@@ -181,9 +192,18 @@ fn refuse(terminal: Terminal, error: &clap::Error, json: bool) -> ExitCode {
         drop(print(&Failure::usage("usage", first).json()));
     }
     let message = error.render();
-    match terminal.colours_errors() {
-        true => eprint!("{}", message.ansi()),
-        false => eprint!("{message}"),
-    }
+    let message = if terminal.colours_errors() { message.ansi().to_string() } else { message.to_string() };
+    eprint!("{}", with_more(message, more));
     ExitCode::from(Status::Usage.code())
+}
+
+/// What the parser says, with lines of ours before its last paragraph, which sends on to the help.
+fn with_more(message: String, more: &[String]) -> String {
+    let more: String = more.iter().map(|line| format!("  {line}\n")).collect();
+    match message.rsplit_once("\n\n") {
+        Some((before, last)) if !more.is_empty() && last.starts_with("For more") => {
+            format!("{before}\n\n{more}\n{last}")
+        }
+        _ => message,
+    }
 }

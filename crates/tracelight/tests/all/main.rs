@@ -35,3 +35,4 @@ mod sizes;
 mod standing;
 mod support;
 mod whole_rig;
+mod wrong_lines;
