@@ -10,6 +10,7 @@ pub(crate) mod driving;
 pub(crate) mod ending;
 mod explain;
 pub(crate) mod eyes;
+mod failing;
 mod lab;
 pub(crate) mod laws;
 mod meant;
@@ -143,7 +144,7 @@ fn finish(terminal: Terminal, command: &Command, voice: Voice, result: Result<An
 
 /// The figures of work that went wrong, with what went wrong: one object still.
 fn with_error(json: &str, failure: &Failure) -> String {
-    let error = failure.json();
+    let error = failing::json(failure);
     match (json.strip_suffix('}'), error.strip_prefix('{')) {
         (Some(figures), Some(error)) => format!("{},{error}", figures.trim_end()),
         _ => error,
@@ -154,7 +155,7 @@ fn with_error(json: &str, failure: &Failure) -> String {
 fn report(terminal: Terminal, json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
     if on_stdout {
         // the message below says it too
-        drop(print(&failure.json()));
+        drop(print(&failing::json(failure)));
     }
     // of a wrong command line there is no more to be told than its message does
     let tells_more = !json && failure.code != "usage";
@@ -187,9 +188,7 @@ fn refuse(terminal: Terminal, error: &clap::Error, json: bool, more: &[String]) 
         return report(terminal, json, json, &failure);
     }
     if json {
-        let text = error.render().to_string();
-        let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-        drop(print(&Failure::usage("usage", first).json()));
+        drop(print(&failing::refused_json(error, more)));
     }
     let message = error.render();
     let message = if terminal.colours_errors() { message.ansi().to_string() } else { message.to_string() };

@@ -172,7 +172,7 @@ fn text(schedule: &Schedule, shortest: bool) -> String {
 fn json(placed: &Placed, schedule: &Schedule, timing: &serde_json::Value) -> String {
     let (ordered, plan) = (&schedule.ordered, &schedule.plan);
     let limits: serde_json::Map<_, _> =
-        plan.limit_shares().into_iter().map(|(limit, share)| (limit.to_string(), share.into())).collect();
+        plan.limit_shares().into_iter().map(|(limit, share)| (key(&limit), share.into())).collect();
     serde_json::json!({
         "target": { "width_m": placed.size_m.0, "height_m": placed.size_m.1 },
         "strokes": StrokeFigures::of(&ordered.drawing, plan),
@@ -187,6 +187,11 @@ fn json(placed: &Placed, schedule: &Schedule, timing: &serde_json::Value) -> Str
         "timing_ms": timing,
     })
     .to_string()
+}
+
+/// A limit's name as a key.
+fn key(limit: &impl ToString) -> String {
+    limit.to_string().replace(' ', "_")
 }
 
 fn csv(plan: &Plan) -> String {

@@ -11,6 +11,7 @@ mod circles;
 mod command_lines;
 mod contract;
 mod device;
+mod every_command;
 mod examples;
 mod fault_page;
 mod formats;

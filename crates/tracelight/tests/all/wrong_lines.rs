@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde_json::Value;
+
 use crate::support::{folder, program};
 
 /// A line as it is typed in a shell, its exit status, and words of what is said; `@` is a folder with the files of [`files`].
@@ -212,6 +214,36 @@ fn every_wrong_line_is_answered_with_what_to_do() {
     let left: Vec<_> = std::fs::read_dir(&dir).unwrap().map(|file| file.unwrap().file_name()).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert_eq!(left.len(), 17, "a refused line wrote a file: {left:?}");
+}
+
+/// With `--json` every one of them is one object, which says what to do too, and where where that is known.
+#[test]
+fn every_wrong_line_is_an_object_for_scripts() {
+    let dir = folder("wrong-objects");
+    files(&dir);
+    for (line, status, _) in [NAMES, FLAGS, VALUES, QUANTITIES, RIGS, FILES].concat() {
+        if status == 0 {
+            continue;
+        }
+        let mut words = words(&line.replace('@', dir.to_str().unwrap()));
+        words.push("--json".to_owned());
+        let output = program().args(&words).output().unwrap();
+        let object: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{line}: {e}"));
+        let error = &object["error"];
+        let text = |key: &str| error[key].as_str().unwrap_or_default();
+        assert!(["code", "message", "help"].into_iter().all(|key| !text(key).is_empty()), "{line}: {object}");
+        assert_eq!(
+            (error["exit"].as_i64(), output.status.code()),
+            (Some(status.into()), Some(status)),
+            "{line}"
+        );
+        assert!(error.as_object().unwrap().contains_key("where"), "{line}: {object}");
+        if line.contains("near.toml") {
+            let place = &error["where"];
+            assert!(place["file"].as_str().unwrap().ends_with("near.toml"), "{object}");
+            assert_eq!((place["line"].as_u64(), place["column"].as_u64()), (Some(3), Some(1)), "{object}");
+        }
+    }
 }
 
 /// The width and the distance that a picture out of reach is answered with are in reach, and not much more is.
