@@ -1,9 +1,10 @@
-//! What holds of every command: its JSON is one object whose keys have no spaces.
+//! What holds of every command: its lines fit a terminal of eighty columns, its JSON is one object whose keys have no spaces.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde_json::Value;
+use unicode_width::UnicodeWidthStr;
 
 use crate::support::{folder, program, run};
 
@@ -87,6 +88,24 @@ fn no_command_is_left_out() {
         let is_below = command.ends_with("show");
         assert!(is_run || is_left_out || is_below, "no line of {command:?}");
     }
+}
+
+#[test]
+fn what_a_command_prints_fits_eighty_columns() {
+    const COLUMNS: usize = 80;
+    let dir = folder("eighty");
+    let mut wide = Vec::new();
+    // what becomes a file keeps its lines
+    for line in LINES.iter().filter(|line| !line.starts_with("completions") && !line.starts_with("rigs show"))
+    {
+        let output = program().args(words(line, &dir)).env("COLUMNS", COLUMNS.to_string()).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(!text.is_empty(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+        // a path is as long as it is
+        let rows = text.lines().filter(|row| !row.contains(dir.to_str().unwrap()));
+        wide.extend(rows.filter(|row| row.width() > COLUMNS).map(|row| format!("{line}: {row}")));
+    }
+    assert!(wide.is_empty(), "{}", wide.join("\n"));
 }
 
 /// Keys of an object and all below it.
