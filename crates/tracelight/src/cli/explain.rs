@@ -225,7 +225,8 @@ fn json(codes: &[(&'static str, String)]) -> String {
     serde_json::json!({ "codes": entries }).to_string()
 }
 
-fn codes() -> Vec<(&'static str, String)> {
+/// All codes, with what they mean and what to do.
+pub(crate) fn codes() -> Vec<(&'static str, String)> {
     let own = MESSAGES.iter().map(|&(code, words)| (code, words.to_owned()));
     let faults = Fault::ALL.map(|fault| (fault.code(), fault.words().to_owned()));
     let darkness = Darkness::TABLE.map(|row| (row.code, format!("{} {}", row.words, row.advice)));

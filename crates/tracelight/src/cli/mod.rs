@@ -3,6 +3,7 @@
 mod advice;
 pub(crate) mod answer;
 mod calibrate;
+mod candidates;
 pub(crate) mod choosing;
 mod completions;
 mod doctor;
@@ -13,6 +14,7 @@ pub(crate) mod eyes;
 mod failing;
 mod lab;
 pub(crate) mod laws;
+mod man;
 mod meant;
 pub(crate) mod nearest;
 pub(crate) mod placing;
@@ -26,6 +28,7 @@ mod terminal;
 mod trace;
 pub(crate) mod tracing;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -65,11 +68,16 @@ enum Command {
     Recover(recover::RecoverArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
+    Man(man::ManArgs),
 }
 
 /// Runs the program on the process's arguments.
 pub(crate) fn main() -> ExitCode {
-    let (terminal, typed) = Terminal::of(std::env::args_os().collect());
+    let arguments: Vec<_> = std::env::args_os().collect();
+    if let Some(status) = offered(&arguments) {
+        return status;
+    }
+    let (terminal, typed) = Terminal::of(arguments);
     let json = typed.iter().any(|argument| argument == "--json");
     let program = Cli::command().styles(terminal::STYLES).term_width(terminal::width_of_help());
     let arguments = match meant::meant(typed, &program) {
@@ -87,6 +95,16 @@ pub(crate) fn main() -> ExitCode {
     finish(terminal, &cli.command, voice, result)
 }
 
+/// Answers a shell that asks what to offer; `None` where none does.
+fn offered(arguments: &[OsString]) -> Option<ExitCode> {
+    match candidates::offer(Cli::command, arguments) {
+        Ok(false) => None,
+        Ok(true) => Some(ExitCode::SUCCESS),
+        // whoever types sees nothing offered, and no message between the words
+        Err(_) => Some(ExitCode::FAILURE),
+    }
+}
+
 fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
     match command {
         Command::Trace(args) => (args.voice, trace::run(args, stop)),
@@ -98,7 +116,8 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Rigs(args) => (args.voice, rigs::run(args)),
         Command::Recover(args) => (args.voice, recover::run(args)),
         Command::Explain(args) => (args.voice, explain::run(args)),
-        Command::Completions(args) => (args.voice, Ok(completions::run::<Cli>(args))),
+        Command::Completions(args) => (args.voice, completions::run(args)),
+        Command::Man(args) => (args.voice, man::run(args, Cli::command())),
     }
 }
 

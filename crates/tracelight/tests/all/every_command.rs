@@ -16,6 +16,7 @@ const LINES: &[&str] = &[
     "explain",
     "explain rig-file",
     "completions bash",
+    "man -o @/man",
     "strokes examples/star.png",
     "strokes examples/star.png examples/house.png",
     "plan examples/star.png",

@@ -9,6 +9,7 @@ mod calibrate;
 mod camera;
 mod circles;
 mod command_lines;
+mod completing;
 mod contract;
 mod device;
 mod every_command;
