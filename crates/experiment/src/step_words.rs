@@ -10,17 +10,32 @@ use tracelight_sim::RigConfig;
 pub(crate) fn heading(rig: &RigConfig, joint: Joint, to_rad: f64) -> String {
     format!(
         "{joint} from rest at 0 to {:.4} rad ({:.2}°) on rig {}; settled: within 2 %\n\n\
-         law         overshoot, %  settles, s  final error, mm  counts    linear: overshoot, %  settles, s",
+         {:10} {:>10} {:>8} {:>10} {:>7} {:>17} {:>8}\n\
+         {:10} {:>10} {:>8} {:>10} {:>7} {:>17} {:>8}",
         to_rad,
         to_rad.to_degrees(),
-        rig.name
+        rig.name,
+        "",
+        "overshoot",
+        "settles",
+        "at rest",
+        "",
+        "linear: overshoot",
+        "settles",
+        "law",
+        "%",
+        "s",
+        "mm",
+        "counts",
+        "%",
+        "s",
     )
 }
 
 /// A law's row: the head as it is, and linearized.
 pub(crate) fn row(law: &str, is: &StepFigures, linear: &StepFigures, rig: &RigConfig) -> String {
     format!(
-        "\n{law:10} {:13.2} {:>11} {:16.3} {:7.2} {:22.2} {:>11}",
+        "\n{law:10} {:10.2} {:>8} {:10.3} {:7.2} {:17.2} {:>8}",
         is.overshoot_percent,
         seconds(is.settle_s),
         error_mm(is),

@@ -101,8 +101,22 @@ pub(crate) fn controller(text: &str) -> Result<Zpk, Failure> {
 
 /// A formula read; what is wrong with it is pointed at.
 fn parsed(text: &str, time: Time, named: &Names<'_>) -> Result<TransferFunction, Failure> {
-    let pointed = |e: FormulaError| format!("{e}\n  {text}\n  {}^", " ".repeat(e.at));
+    let pointed = |e: FormulaError| {
+        let names = names_instead(text, e.at, named);
+        format!("{e}{names}\n  {text}\n  {}^", " ".repeat(e.at))
+    };
     TransferFunction::parse_with(text, time, named).map_err(|e| Failure::usage("bad-formula", pointed(e)))
+}
+
+/// Which names there are, where a name stands that is none of them.
+fn names_instead(text: &str, at: usize, named: &Names<'_>) -> String {
+    const NAMES: [&str; 6] = ["G11", "G22", "K11", "K22", "K11t", "K22t"];
+    let word: String = text.chars().skip(at).take_while(|c| c.is_alphanumeric()).collect();
+    if word.chars().count() < 2 || word.starts_with(|c: char| c.is_ascii_digit()) || named(&word).is_some() {
+        return String::new();
+    }
+    let known: Vec<_> = NAMES.into_iter().filter(|name| named(name).is_some()).collect();
+    format!("; the names are {}", known.join(", "))
 }
 
 /// The report's compensators by name.

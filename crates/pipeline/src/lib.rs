@@ -7,6 +7,8 @@ mod driving;
 mod paper;
 mod placed;
 mod quality;
+mod reach;
+mod refused;
 mod schedule;
 mod sheet;
 mod sketch;
@@ -18,7 +20,8 @@ pub use driving::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, Driving, REACHED
 pub use paper::Paper;
 pub use placed::{Page, Placed, Placing, place, sketch};
 pub use quality::QualityFigures;
-pub use schedule::{OrderBy, Schedule, check_speed, check_standing, refused, schedule};
+pub use refused::refused;
+pub use schedule::{OrderBy, Schedule, check_speed, check_standing, schedule};
 pub use sheet::{PaperSeen, Straight, clockwise, page};
 pub use sketch::{Sketch, sketch_at};
 pub use tracing::{LeastLength, Straighten, Tracing};

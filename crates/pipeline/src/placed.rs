@@ -96,6 +96,11 @@ impl Placed {
         }
     }
 
+    /// Where the sheet's centre lies, m.
+    pub(crate) fn centre(&self) -> Point {
+        self.corners_m[0].midpoint(self.corners_m[2])
+    }
+
     /// Its strokes as an SVG of true size.
     #[must_use]
     pub fn svg(&self, drawing: &Drawing) -> String {

@@ -3,10 +3,12 @@
 use tracelight_sim::first_standing;
 use tracelight_stroke::{Effort, OrderOptions, Ordered, Point, order};
 use tracelight_task::Failure;
-use tracelight_trajectory::{Plan, PlanError, TravelTime, plan};
+use tracelight_trajectory::{Plan, TravelTime, plan};
 
 use crate::driving::{Driving, REACHED};
 use crate::placed::Placed;
+use crate::reach::check_reach;
+use crate::refused::refused;
 
 /// What the order is to save.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,20 +54,6 @@ pub fn schedule(
     Ok(Schedule { ordered, plan })
 }
 
-/// A look at a few places of every piece; planning looks at all of them.
-fn check_reach(placed: &Placed, driving: &Driving) -> Result<(), Failure> {
-    const PLACES: [f64; 5] = [0.0, 1.0, 0.5, 0.25, 0.75];
-    for (index, stroke) in placed.drawing.strokes.iter().enumerate() {
-        for piece in stroke.path.pieces() {
-            for place in PLACES {
-                let aimed = driving.machine.angles(piece.at(place));
-                aimed.map_err(|source| refused(PlanError::Aim { stroke: index + 1, source }))?;
-            }
-        }
-    }
-    Ok(())
-}
-
 /// A speed that is asked for and reached nowhere is refused; slowing down here and there is no error.
 ///
 /// # Errors
@@ -104,18 +92,4 @@ pub fn check_standing(plan: &Plan, driving: &Driving) -> Result<(), Failure> {
         light.standing_s,
     );
     Err(Failure::failed("standing-light", message))
-}
-
-/// Why there is no plan, with its code.
-#[must_use]
-pub fn refused(error: PlanError) -> Failure {
-    let code = match error {
-        PlanError::Empty => "no-strokes",
-        PlanError::Aim { .. } => "unreachable",
-        PlanError::TooWeak { .. } => "motor-too-weak",
-        PlanError::TooLong { .. } => "too-long",
-        PlanError::NoWayAtSpeed { .. } => "no-way-at-speed",
-        PlanError::TooBent { .. } => "too-bent",
-    };
-    Failure::failed(code, error)
 }

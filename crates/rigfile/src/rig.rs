@@ -160,16 +160,42 @@ fn flatten<'a>(prefix: &str, table: &'a dyn TableLike, into: &mut Vec<Entry<'a>>
 }
 
 fn unknown(file: &str, text: &str, entry: &Entry<'_>) -> String {
+    const MOST_AWAY: usize = 2; // letters that are wrong, missing, too many, or in each other's place
     const LONGEST: usize = 80; // no key is longer, and comparing takes the product of the lengths
     let place = Mark { file, text, span: entry.key_span.clone() };
     if entry.path.len() > LONGEST {
         let start: String = entry.path.chars().take(LONGEST).collect();
         return place.message(&format!("unknown key {start}…"));
     }
-    let nearest =
-        known_paths().into_iter().map(|path| (strsim::damerau_levenshtein(&entry.path, &path), path)).min();
-    let hint = nearest.map_or_else(String::new, |(_, path)| format!("; did you mean {path}?"));
-    place.message(&format!("unknown key {}{hint}", entry.path))
+    let near = known_paths().into_iter().map(|path| (strsim::damerau_levenshtein(&entry.path, &path), path));
+    let hint = match near.filter(|(away, _)| *away <= MOST_AWAY).min() {
+        Some((_, path)) => format!("did you mean {path}?"),
+        None => members(&entry.path),
+    };
+    place.message(&format!("unknown key {}; {hint}", entry.path))
+}
+
+/// What stands in the table that a key is in, or in the last of the tables around it that there is.
+fn members(path: &str) -> String {
+    let known = known_paths();
+    let mut table = path;
+    loop {
+        table = table.rsplit_once('.').map_or("", |(table, _)| table);
+        let prefix = if table.is_empty() { String::new() } else { format!("{table}.") };
+        let inside = known.iter().filter_map(|path| path.strip_prefix(&prefix));
+        let mut names: Vec<&str> = inside.map(|rest| rest.split('.').next().unwrap_or(rest)).collect();
+        names.sort_unstable();
+        names.dedup();
+        if names.is_empty() && !table.is_empty() {
+            continue;
+        }
+        let names = names.join(", ");
+        return if table.is_empty() {
+            format!("there are {names}")
+        } else {
+            format!("[{table}] has {names}")
+        };
+    }
 }
 
 fn known_paths() -> Vec<String> {

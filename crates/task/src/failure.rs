@@ -4,6 +4,8 @@ use std::fmt::Display;
 
 use tracelight_rig::Fault;
 
+use crate::place::Place;
+
 /// How a command that did not succeed ends the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -71,9 +73,26 @@ impl Failure {
         Self { status: Status::Fault, code: fault.code(), message }
     }
 
-    /// `{"error":{"code","message"}}`.
+    /// Where in a file something is wrong, if the message begins with that: `rig.toml:3:1: …` or `plan.dxf: line 12, column 4: …`.
     #[must_use]
-    pub fn json(&self) -> String {
-        serde_json::json!({"error": {"code": self.code, "message": self.message}}).to_string()
+    pub fn place(&self) -> Option<Place> {
+        Place::before(self.message.lines().next()?)
+    }
+
+    /// `{"error":{"code","message","where","help","exit"}}`; `where` is `{"file","line","column"}`, null where no place is known, and so is
+    /// the column. `help` is what to do.
+    #[must_use]
+    pub fn json(&self, help: &str) -> String {
+        let place = self.place().map(
+            |Place { file, line, column }| serde_json::json!({"file": file, "line": line, "column": column}),
+        );
+        serde_json::json!({"error": {
+            "code": self.code,
+            "message": self.message,
+            "where": place,
+            "help": help,
+            "exit": self.status.code(),
+        }})
+        .to_string()
     }
 }

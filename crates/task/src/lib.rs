@@ -4,12 +4,14 @@
 
 mod failure;
 mod fan;
+mod place;
 mod progress;
 mod stop;
 mod words;
 
 pub use failure::{Failure, Status};
 pub use fan::on_all_cores;
+pub use place::Place;
 pub use progress::{NoProgress, Progress, Task};
 pub use stop::{Kept, Stop};
 pub use words::{counted, phase_word};

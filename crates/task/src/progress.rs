@@ -4,7 +4,7 @@ use crate::{Failure, Stop};
 
 /// Who is told how far a piece of work is.
 pub trait Progress: Sync {
-    /// A stage of `steps` steps begins.
+    /// A stage of `steps` steps begins; of one step where nobody knows how far it is until it ends.
     fn stage(&self, name: &'static str, steps: u64);
 
     /// So many steps of the stage are done.

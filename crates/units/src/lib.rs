@@ -1,7 +1,8 @@
 //! Quantities as people type them: a number with its unit.
 //!
 //! `24in`, `0.6m`, `1ft/s`, `15deg`: each quantity has a type that parses its units and nothing else, holds SI, and
-//! prints SI. A bare number is an error that says which units fit. Signs and words are read too: `24"`, `5'6"`, `15°`, `3 feet`.
+//! prints SI. A bare number is an error that says which units fit. Signs and words are read too: `24"`, `5'6"`, `15°`, `3 feet`, and
+//! fractions: `5 1/2in`.
 
 mod written;
 
@@ -105,8 +106,11 @@ pub fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError> {
     if let Some(feet) = units.iter().find(|u| u.0 == "in").zip(written::feet_and_inches(text)) {
         return Ok(feet.1 * feet.0.1);
     }
-    let (number, unit) = split(text);
-    let Ok(value) = number.parse::<f64>() else {
+    let plain = || {
+        let (number, unit) = split(text);
+        number.parse::<f64>().ok().map(|value| (value, unit))
+    };
+    let Some((value, unit)) = written::fraction(text).or_else(plain) else {
         return Err(UnitError::Number { text: text.into(), units: names(), first });
     };
     if !value.is_finite() {
@@ -310,10 +314,19 @@ mod tests {
             ("2 metres", 2.0),
             ("250µm", 2.5e-4),
             ("250um", 2.5e-4),
+            ("1/2in", 0.0127),
+            ("5 1/2in", 0.1397),
+            ("5-1/2\"", 0.1397),
+            ("-3/4 ft", -0.2286),
+            ("5'6 1/2\"", 1.6891),
+            ("5' 1/2 in", 1.5367),
         ] {
             assert!((length(text) - metres).abs() < 1e-12, "{text}");
         }
-        for text in ["5'13\"", "5ft6", "5.5'6\"", "5'6m", "5'6'", "1\"2'", "'", "\"", "5''6"] {
+        for text in [
+            "5'13\"", "5ft6", "5.5'6\"", "5'6m", "5'6'", "1\"2'", "'", "\"", "5''6", "1/0in", "1/2", "1/in",
+            "/2in", "5/1 2in", "1/2/3in",
+        ] {
             assert!(text.parse::<Length>().is_err(), "{text}");
         }
         assert!(("15°".parse::<Angle>().unwrap().0 - 15.0 * DEG).abs() < 1e-15);

@@ -46,11 +46,35 @@ pub(crate) fn feet_and_inches(text: &str) -> Option<f64> {
     let rest = digits[end..].trim_start();
     let mark = ["feet", "foot", "ft", "'", "′", "’"].into_iter().find(|mark| rest.starts_with(mark))?;
     let rest = rest[mark.len()..].trim();
-    let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
-    let inches: f64 = rest[..end].parse().ok()?;
-    let unit = &rest[end..];
+    let plain = || {
+        let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
+        Some((rest[..end].parse().ok()?, &rest[end..]))
+    };
+    let (inches, unit): (f64, &str) =
+        fraction(rest).filter(|_| rest.starts_with(|c: char| c.is_ascii_digit())).or_else(plain)?;
     let is_inches = unit.is_empty() && mark.chars().count() == 1 || single(unit) == Some(("in", 1.0));
     (is_inches && inches < FOOT_IN).then_some(sign * (feet * FOOT_IN + inches))
+}
+
+/// A fraction, with a whole number before it or without, and what follows: `5 1/2in`, `5-1/2in` and `1/2 in`. `None` where a text begins with none.
+pub(crate) fn fraction(text: &str) -> Option<(f64, &str)> {
+    let sign = if text.starts_with('-') { -1.0 } else { 1.0 };
+    let (first, rest) = digits(text.strip_prefix(['-', '+']).unwrap_or(text))?;
+    let (whole, above, rest) = match rest.strip_prefix('/') {
+        Some(rest) => (0.0, first, rest),
+        None => {
+            let (above, rest) = digits(rest.strip_prefix([' ', '-'])?.trim_start())?;
+            (first, above, rest.strip_prefix('/')?)
+        }
+    };
+    let (below, rest) = digits(rest)?;
+    (below > 0.0).then(|| (sign * (whole + above / below), rest.trim_start()))
+}
+
+/// The digits that a text begins with, as a number, and what follows.
+fn digits(text: &str) -> Option<(f64, &str)> {
+    let (number, rest) = text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()));
+    number.parse().ok().map(|number| (number, rest))
 }
 
 /// What was meant by a number with a comma in it, with a point; and without either, where it may part thousands.

@@ -30,7 +30,7 @@ impl finding::Finding for Finding {
             // writing to a String cannot fail
             let _ = write!(
                 text,
-                "\n\n{:24} {:>18} {:>18} {:>18}",
+                "\n\n{:23} {:>18} {:>18} {:>18}",
                 joint.name(),
                 "mrad",
                 "mm on the target",
@@ -46,7 +46,7 @@ impl finding::Finding for Finding {
                     |scale: f64| format!("{} ± {:.3}", rounded(scale * rad.value, 3), scale * rad.within);
                 let _ = write!(
                     text,
-                    "\n{what:24} {:>18} {:>18} {:>18}",
+                    "\n{what:23} {:>18} {:>18} {:>18}",
                     cell(1e3),
                     cell(1e3 * self.of.distance_m),
                     cell(1.0 / count_rad)

@@ -16,7 +16,7 @@ use crate::finding::{self, Plotted};
 impl finding::Finding for Finding {
     fn text(&self) -> String {
         let mut text = format!(
-            "{}\n\n{:>10} {:>14} {:>10} {:>12} {:>10} {:>11} {:>12}",
+            "{}\n\n{:>9} {:>13} {:>10} {:>10} {:>9} {:>10} {:>12}",
             self.in_words(),
             "rad/s",
             "amplified, dB",
@@ -30,7 +30,7 @@ impl finding::Finding for Finding {
             // writing to a String cannot fail
             let _ = write!(
                 text,
-                "\n{:10.3} {:14.2} {:10.2} {:12.1} {:10.1} {:11.4} {:12.2}",
+                "\n{:9.3} {:13.2} {:10.2} {:10.1} {:9.1} {:10.4} {:12.2}",
                 point.rad_s,
                 decibels(complex::norm(point.response)),
                 decibels(complex::norm(self.model.values[number])),

@@ -90,9 +90,9 @@ fn table(rig: &RigConfig, one: &Found) -> String {
     };
     let line = |row: &[String; 4]| {
         let cell = |column: usize| match column {
-            0 => format!("{:24}", row[0]),
+            0 => format!("{:23}", row[0]),
             3 => format!("{:>17}", row[3]),
-            _ => format!("{:>22}", row[column]),
+            _ => format!("{:>20}", row[column]),
         };
         (0..4).filter(|&column| shown(column)).map(cell).collect::<String>()
     };

@@ -64,12 +64,20 @@ fn about(lesson: &Lesson) -> Value {
     })
 }
 
+/// Columns of what is checked.
+const NAME_COLUMNS: usize = 36;
+
 fn table(lesson: &Lesson, graded: &Graded) -> String {
     let mut text =
-        format!("Lesson {}: {}\n\n{:48} {:>10}  {:22}", lesson.number, lesson.title, "", "is", "must be");
+        format!("Lesson {}: {}\n\n{:36} {:>10}  {:22}", lesson.number, lesson.title, "", "is", "must be");
     for check in &graded.checks {
         let mark = if check.is_met() { "ok" } else { "not yet" };
-        let _ = write!(text, "\n{:48} {:>10}  {:22} {mark}", check.what, shown(check.value), bounds(check));
+        // a name too long for its column stands above
+        let name = match check.what.chars().count() > NAME_COLUMNS {
+            true => format!("{}\n{:NAME_COLUMNS$}", check.what, ""),
+            false => format!("{:NAME_COLUMNS$}", check.what),
+        };
+        let _ = write!(text, "\n{name} {:>10}  {:22} {mark}", shown(check.value), bounds(check));
         if !check.is_met() {
             let _ = write!(text, "\n    {}", check.hint());
         }

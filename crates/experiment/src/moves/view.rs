@@ -17,8 +17,9 @@ impl finding::Finding for Finding {
     fn text(&self) -> String {
         let limits = &self.wish.limits;
         let mut text = format!(
-            "{}\n{:.1} mm, at most {:.4} m/s, {:.4} m/s² speeding up, {:.4} m/s² braking\n",
+            "{}, rig {}\n{:.1} mm, at most {:.4} m/s, {:.4} m/s² speeding up, {:.4} m/s² braking\n",
             self.wish.title,
+            self.rig.name,
             1e3 * self.length_m,
             limits.speed,
             limits.acceleration,
@@ -95,13 +96,9 @@ fn asked(text: &mut String, finding: &Finding) {
         .filter_map(|e| e.asked.as_ref().map(|(pace, torque)| (e, pace, torque)))
         .collect();
     let trapezoid = duration_of(&rows.iter().map(|row| (row.0.name, row.1)).collect::<Vec<_>>());
-    // writing to a String cannot fail
-    let _ = writeln!(
-        text,
-        "\nas asked    duration, s  over the trapezoid  peak, m/s  peak, m/s²  takes of the motors (rig {})",
-        finding.rig.name
-    );
+    *text += &heads("as asked", ["takes of the motors", ""]);
     for (entry, pace, torque) in &rows {
+        // writing to a String cannot fail
         let _ = writeln!(text, "{}  {}", columns(entry.name, pace, trapezoid), demand(finding, torque));
     }
     if let Some(verdict) = verdict(finding, &rows) {
@@ -113,10 +110,7 @@ fn on_rig(text: &mut String, finding: &Finding) {
     let rows: Vec<(&Entry, &OnRig)> =
         finding.entries.iter().filter_map(|e| Some((e, e.on_rig.as_ref()?))).collect();
     let trapezoid = duration_of(&rows.iter().map(|row| (row.0.name, &row.1.pace)).collect::<Vec<_>>());
-    let _ = writeln!(
-        text,
-        "\non the rig  duration, s  over the trapezoid  peak, m/s  peak, m/s²  error of the spot, mm: rms / max / at rest"
-    );
+    *text += &heads("on the rig", ["error of the spot, mm", "rms / max / at rest"]);
     for (entry, OnRig { pace, tracking, held, .. }) in rows {
         let _ = writeln!(
             text,
@@ -125,16 +119,28 @@ fn on_rig(text: &mut String, finding: &Finding) {
             tracking.rms_mm,
             tracking.max_mm,
             tracking.final_error_mm,
-            if *held { "  left its course, and went back dark" } else { "" }
+            if *held { "\n           left its course, and went back dark" } else { "" }
         );
     }
+}
+
+/// Two lines above a table whose last column has these heads.
+fn heads(what: &str, last: [&str; 2]) -> String {
+    let lines = [
+        [what, "duration", "over the", "peak", "peak", last[0]],
+        ["", "s", "trapezoid", "m/s", "m/s²", last[1]],
+    ];
+    let line = |[a, b, c, d, e, f]: [&str; 6]| {
+        format!("{a:10} {b:>8} {c:>10} {d:>9} {e:>9}  {f}").trim_end().to_owned()
+    };
+    format!("\n{}\n{}\n", line(lines[0]), line(lines[1]))
 }
 
 /// What both tables begin with.
 fn columns(name: ProfileName, pace: &Pace, trapezoid_s: Option<f64>) -> String {
     let Peaks { speed, acceleration, deceleration, .. } = *pace.peaks();
     format!(
-        "{:10} {:12.4} {:>19} {:10.4} {:11.3}",
+        "{:10} {:8.4} {:>10} {:9.4} {:9.3}",
         name.name(),
         pace.duration_s(),
         over(pace.duration_s(), trapezoid_s),
@@ -163,9 +169,9 @@ fn demand(finding: &Finding, torque_nm: &PanTilt<f64>) -> String {
     let motor = &finding.machine.motors[joint];
     let words = format!("{:.1} V on {joint}", motor.volts_for(torque_nm[joint]));
     if share[joint] > 1.0 {
-        format!("{words}, which has {} V: not possible", motor.limit_v)
+        format!("{words}: {} at most", motor.limit_v)
     } else {
-        format!("{words}, of {} V", motor.limit_v)
+        format!("{words}, of {}", motor.limit_v)
     }
 }
 

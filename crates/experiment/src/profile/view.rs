@@ -33,11 +33,16 @@ impl finding::Finding for Finding {
                 peaks.acceleration.max(peaks.deceleration),
                 trimmed(&jerk),
             );
-            if peaks.speed_jump > 0.0 {
-                let _ = write!(text, "  starts and stops with a jump of {:.3} rad/s", peaks.speed_jump);
+        }
+        text += "\n";
+        for (name, profile) in &self.all {
+            let Peaks { speed_jump, .. } = profile.peaks();
+            if speed_jump > 0.0 {
+                let _ =
+                    write!(text, "\n{} starts and stops with a jump of {speed_jump:.3} rad/s.", name.name());
             }
         }
-        text + "\n\n–: the acceleration jumps, so the jerk has no bound."
+        text + "\n–: the acceleration jumps, so the jerk has no bound."
     }
 
     fn json(&self) -> String {

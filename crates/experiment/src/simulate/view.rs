@@ -28,12 +28,12 @@ impl finding::Finding for Finding {
             (false, false) => "seen as they are, at once",
         };
         let mut text = format!(
-            "{what}, {:.3} s and {} s of rest, on rig {}, angles {seen}\n\n{:28} {:>16} {:>16} {:>16} {:>10}",
+            "{what}, {:.3} s and {} s of rest, on rig {}, angles {seen}\n\n{:28} {:>10} {:>14} {:>14} {:>10}",
             self.array.length_s(),
             of.rest_s,
             of.rig.name,
-            "",
-            "error rms, mrad",
+            "error",
+            "rms, mrad",
             "at most, mrad",
             "at rest, mrad",
             "capped, %"
@@ -72,7 +72,7 @@ fn row(entry: &Entry, joint: Joint) -> String {
     let name = format!("{joint}, {}", entry.by[joint]);
     let shown = if name.chars().count() > 28 { format!("{name}\n{:28}", "") } else { format!("{name:28}") };
     format!(
-        "\n{shown} {:16.3} {:16.3} {:16.3} {:10.1}",
+        "\n{shown} {:10.3} {:14.3} {:14.3} {:10.1}",
         1e3 * figures.rms_rad,
         1e3 * figures.max_rad,
         1e3 * figures.final_rad,

@@ -17,7 +17,7 @@ impl finding::Finding for Finding {
     fn text(&self) -> String {
         let choice = &self.choice;
         let mut text = format!(
-            "{} on rig {}; motors ×{m} and ÷{m}, currents {} ms late; {} heads that differ\n\n{:14} {:>18} {:>24} {:>22}",
+            "{} on rig {}; motors ×{m} and ÷{m}, currents {} ms late; {} heads that differ\n\n{:14} {:>17} {:>24} {:>22}",
             self.shape,
             self.rig.name,
             1e3 * choice.lag_s,
@@ -79,7 +79,7 @@ fn row(name: &str, tried: &Tried) -> String {
         tried.errors_mm.map_or("bears not what is asked".to_owned(), |e| format!("{:.3}", value(e)))
     };
     let rms = tried.errors_mm.map_or(String::new(), |e| format!("{:.3}", e.rms_median));
-    let line = format!("\n{name:14} {bandwidth:>18} {:>24} {rms:>22}", error(|e| e.max_p95));
+    let line = format!("\n{name:14} {bandwidth:>17} {:>24} {rms:>22}", error(|e| e.max_p95));
     line.trim_end().to_owned()
 }
 

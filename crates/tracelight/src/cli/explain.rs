@@ -185,7 +185,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "A head could not be linearized: its masses or its friction are no numbers that move. Check the rig file.",
     ),
     ("cannot-write", "A result could not be written. Check the folder, its permissions and the free space."),
-    ("usage", "The command line is wrong. `tracelight --help` shows what there is."),
+    (
+        "usage",
+        "The command line is wrong: a command, a flag or a value that there is not, or one too many, or too few. The message says which, and what to type instead. `tracelight COMMAND --help` lists a command's flags with their units, and ends with an example; `tracelight --help` lists the commands. Quantities have units (24in, 0.6m, 15deg, 1ft/s). With --json the same is said as {\"error\": {\"code\", \"message\", \"where\", \"help\", \"exit\"}}. The exit status is 2.",
+    ),
     (
         "unfinished",
         "The run was given up: it took far longer than its plan, holding again and again. The report shows where.",
@@ -212,12 +215,18 @@ pub(crate) fn run(args: &ExplainArgs) -> Result<Answer, Failure> {
     Ok(Answer::new(words, json(&found)))
 }
 
+/// What a code means, and what to do.
+pub(crate) fn meaning(code: &str) -> Option<String> {
+    codes().into_iter().find(|(known, _)| *known == code).map(|(_, words)| words)
+}
+
 fn json(codes: &[(&'static str, String)]) -> String {
     let entries: Vec<_> = codes.iter().map(|(c, w)| serde_json::json!({ "code": c, "meaning": w })).collect();
     serde_json::json!({ "codes": entries }).to_string()
 }
 
-fn codes() -> Vec<(&'static str, String)> {
+/// All codes, with what they mean and what to do.
+pub(crate) fn codes() -> Vec<(&'static str, String)> {
     let own = MESSAGES.iter().map(|&(code, words)| (code, words.to_owned()));
     let faults = Fault::ALL.map(|fault| (fault.code(), fault.words().to_owned()));
     let darkness = Darkness::TABLE.map(|row| (row.code, format!("{} {}", row.words, row.advice)));

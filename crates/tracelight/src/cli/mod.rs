@@ -3,14 +3,18 @@
 mod advice;
 pub(crate) mod answer;
 mod calibrate;
+mod candidates;
 pub(crate) mod choosing;
 mod completions;
 mod doctor;
 pub(crate) mod driving;
+pub(crate) mod ending;
 mod explain;
 pub(crate) mod eyes;
+mod failing;
 mod lab;
 pub(crate) mod laws;
+mod man;
 mod meant;
 pub(crate) mod nearest;
 pub(crate) mod placing;
@@ -24,6 +28,7 @@ mod terminal;
 mod trace;
 pub(crate) mod tracing;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -63,24 +68,41 @@ enum Command {
     Recover(recover::RecoverArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
+    Man(man::ManArgs),
 }
 
 /// Runs the program on the process's arguments.
 pub(crate) fn main() -> ExitCode {
-    let (terminal, typed) = Terminal::of(std::env::args_os().collect());
+    let arguments: Vec<_> = std::env::args_os().collect();
+    if let Some(status) = offered(&arguments) {
+        return status;
+    }
+    let (terminal, typed) = Terminal::of(arguments);
     let json = typed.iter().any(|argument| argument == "--json");
     let program = Cli::command().styles(terminal::STYLES).term_width(terminal::width_of_help());
     let arguments = match meant::meant(typed, &program) {
         Ok(arguments) => arguments,
         Err(failure) => return report(terminal, json, json, &failure),
     };
-    let parsed = program.try_get_matches_from(arguments).and_then(|found| Cli::from_arg_matches(&found));
-    let cli = match parsed {
+    let parsed = program.clone().try_get_matches_from(&arguments);
+    let cli = match parsed.and_then(|found| Cli::from_arg_matches(&found)) {
         Ok(cli) => cli,
-        Err(error) => return refuse(terminal, &error, json),
+        Err(error) => {
+            return refuse(terminal, &error, json, &advice::more(&error, &program, &arguments));
+        }
     };
     let (voice, result) = perform(&cli.command, &interrupt::listen());
     finish(terminal, &cli.command, voice, result)
+}
+
+/// Answers a shell that asks what to offer; `None` where none does.
+fn offered(arguments: &[OsString]) -> Option<ExitCode> {
+    match candidates::offer(Cli::command, arguments) {
+        Ok(false) => None,
+        Ok(true) => Some(ExitCode::SUCCESS),
+        // whoever types sees nothing offered, and no message between the words
+        Err(_) => Some(ExitCode::FAILURE),
+    }
 }
 
 fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
@@ -94,7 +116,8 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Rigs(args) => (args.voice, rigs::run(args)),
         Command::Recover(args) => (args.voice, recover::run(args)),
         Command::Explain(args) => (args.voice, explain::run(args)),
-        Command::Completions(args) => (args.voice, Ok(completions::run::<Cli>(args))),
+        Command::Completions(args) => (args.voice, completions::run(args)),
+        Command::Man(args) => (args.voice, man::run(args, Cli::command())),
     }
 }
 
@@ -140,7 +163,7 @@ fn finish(terminal: Terminal, command: &Command, voice: Voice, result: Result<An
 
 /// The figures of work that went wrong, with what went wrong: one object still.
 fn with_error(json: &str, failure: &Failure) -> String {
-    let error = failure.json();
+    let error = failing::json(failure);
     match (json.strip_suffix('}'), error.strip_prefix('{')) {
         (Some(figures), Some(error)) => format!("{},{error}", figures.trim_end()),
         _ => error,
@@ -151,19 +174,27 @@ fn with_error(json: &str, failure: &Failure) -> String {
 fn report(terminal: Terminal, json: bool, on_stdout: bool, failure: &Failure) -> ExitCode {
     if on_stdout {
         // the message below says it too
-        drop(print(&failure.json()));
+        drop(print(&failing::json(failure)));
     }
     // of a wrong command line there is no more to be told than its message does
     let tells_more = !json && failure.code != "usage";
     let hint =
-        if tells_more { format!(" (see `tracelight explain {}`)", failure.code) } else { String::new() };
-    eprintln!("{} {}{hint}", terminal.alarm("error:"), failure.message);
+        if tells_more { format!("(see `tracelight explain {}`)", failure.code) } else { String::new() };
+    // below a caret a hint has its own line
+    let gap = if !tells_more {
+        ""
+    } else if failure.message.contains('\n') {
+        "\n"
+    } else {
+        " "
+    };
+    eprintln!("{} {}{gap}{hint}", terminal.alarm("error:"), failure.message);
     ExitCode::from(failure.status.code())
 }
 
 /// Wrong command lines: help and version are no errors; the rest is said on stderr, and as JSON where asked for.
 #[expect(clippy::print_stderr, reason = "messages to people go to stderr")]
-fn refuse(terminal: Terminal, error: &clap::Error, json: bool) -> ExitCode {
+fn refuse(terminal: Terminal, error: &clap::Error, json: bool, more: &[String]) -> ExitCode {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
         let help = error.render();
         let text = if terminal.colours_output() { help.ansi().to_string() } else { help.to_string() };
@@ -176,14 +207,21 @@ fn refuse(terminal: Terminal, error: &clap::Error, json: bool) -> ExitCode {
         return report(terminal, json, json, &failure);
     }
     if json {
-        let text = error.render().to_string();
-        let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-        drop(print(&Failure::usage("usage", first).json()));
+        drop(print(&failing::refused_json(error, more)));
     }
     let message = error.render();
-    match terminal.colours_errors() {
-        true => eprint!("{}", message.ansi()),
-        false => eprint!("{message}"),
-    }
+    let message = if terminal.colours_errors() { message.ansi().to_string() } else { message.to_string() };
+    eprint!("{}", with_more(message, more));
     ExitCode::from(Status::Usage.code())
+}
+
+/// What the parser says, with lines of ours before its last paragraph, which sends on to the help.
+fn with_more(message: String, more: &[String]) -> String {
+    let more: String = more.iter().map(|line| format!("  {line}\n")).collect();
+    match message.rsplit_once("\n\n") {
+        Some((before, last)) if !more.is_empty() && last.starts_with("For more") => {
+            format!("{before}\n\n{more}\n{last}")
+        }
+        _ => message,
+    }
 }

@@ -12,6 +12,7 @@ use tracelight_trajectory::{LitSpeed, Plan};
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
+use crate::cli::ending::ends_in;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::named;
@@ -23,10 +24,10 @@ pub(crate) struct PlanArgs {
     /// A drawing (SVG, DXF, JSON, CSV) or a picture; - is standard input
     drawing: String,
     /// Write the plan, a row a millisecond, to this CSV file
-    #[arg(help_heading = "Output", short, long, value_name = "FILE.csv")]
+    #[arg(help_heading = "Output", short, long, value_name = "FILE.csv", value_parser = table)]
     out: Option<String>,
     /// Draw the plan, its lit way in colours, into this SVG
-    #[arg(help_heading = "Output", long, value_name = "FILE.svg")]
+    #[arg(help_heading = "Output", long, value_name = "FILE.svg", value_parser = picture)]
     preview: Option<String>,
     /// What the colours of the preview say
     #[arg(help_heading = "Output", long, value_enum, default_value_t, requires = "preview")]
@@ -110,6 +111,15 @@ impl OrderEffortName {
     }
 }
 
+fn table(text: &str) -> Result<String, String> {
+    let way = "a plan is a table: end it in .csv; the strokes as G-code, SVG or DXF: `tracelight strokes DRAWING -o FILE`";
+    ends_in(text, "csv", way)
+}
+
+fn picture(text: &str) -> Result<String, String> {
+    ends_in(text, "svg", "a preview is an SVG: end it in .svg")
+}
+
 pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let bar = Bar::new(args.voice.quiet);
     let task = Task { progress: &bar, stop };
@@ -162,7 +172,7 @@ fn text(schedule: &Schedule, shortest: bool) -> String {
 fn json(placed: &Placed, schedule: &Schedule, timing: &serde_json::Value) -> String {
     let (ordered, plan) = (&schedule.ordered, &schedule.plan);
     let limits: serde_json::Map<_, _> =
-        plan.limit_shares().into_iter().map(|(limit, share)| (limit.to_string(), share.into())).collect();
+        plan.limit_shares().into_iter().map(|(limit, share)| (key(&limit), share.into())).collect();
     serde_json::json!({
         "target": { "width_m": placed.size_m.0, "height_m": placed.size_m.1 },
         "strokes": StrokeFigures::of(&ordered.drawing, plan),
@@ -177,6 +187,11 @@ fn json(placed: &Placed, schedule: &Schedule, timing: &serde_json::Value) -> Str
         "timing_ms": timing,
     })
     .to_string()
+}
+
+/// A limit's name as a key.
+fn key(limit: &impl ToString) -> String {
+    limit.to_string().replace(' ', "_")
 }
 
 fn csv(plan: &Plan) -> String {

@@ -8,6 +8,7 @@ use tracelight_report::recover;
 use tracelight_task::Failure;
 
 use crate::cli::answer::{Answer, Voice};
+use crate::cli::ending::ends_in;
 
 /// Make the run log of a program that was killed whole: every usual viewer opens it then
 ///
@@ -19,10 +20,14 @@ pub(crate) struct RecoverArgs {
     #[arg(value_name = "RUN.mcap")]
     log: String,
     /// Where the whole one goes [default: in its place]
-    #[arg(short, long, value_name = "FILE.mcap")]
+    #[arg(short, long, value_name = "FILE.mcap", value_parser = log)]
     output: Option<String>,
     #[command(flatten)]
     pub(crate) voice: Voice,
+}
+
+fn log(text: &str) -> Result<String, String> {
+    ends_in(text, "mcap", "a run log is an MCAP file: end it in .mcap")
 }
 
 pub(crate) fn run(args: &RecoverArgs) -> Result<Answer, Failure> {

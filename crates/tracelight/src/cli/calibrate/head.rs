@@ -16,6 +16,7 @@ use tracelight_task::{Failure, Stop, Task};
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
+use crate::cli::ending::toml;
 use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::named;
@@ -41,7 +42,7 @@ pub(super) struct HeadArgs {
     #[arg(long, value_name = "FILE.toml", requires = "home", conflicts_with = "output")]
     head: Option<String>,
     /// File for what is found
-    #[arg(short, long, value_name = "FILE.toml", default_value = "head.toml")]
+    #[arg(short, long, value_name = "FILE.toml", default_value = "head.toml", value_parser = toml)]
     output: String,
     /// What a simulated room is like is drawn from this seed
     #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]

@@ -20,6 +20,7 @@ use tracelight_task::{Failure, Stop};
 use tracelight_units::Length;
 
 use crate::cli::answer::{Answer, Voice};
+use crate::cli::ending::toml;
 use crate::cli::eyes::{ImageSize, SimulatedEyeName};
 use crate::cli::placing::positive_length;
 use crate::named;
@@ -54,7 +55,7 @@ pub(super) struct MarkersArgs {
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
     bar: Option<Length>,
     /// File for what is found
-    #[arg(short, long, value_name = "FILE.toml", default_value = "camera.toml")]
+    #[arg(short, long, value_name = "FILE.toml", default_value = "camera.toml", value_parser = toml)]
     output: String,
     #[command(flatten)]
     pub(super) voice: Voice,
@@ -75,7 +76,7 @@ pub(super) struct LensArgs {
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
     bar: Option<Length>,
     /// File for what is found
-    #[arg(short, long, value_name = "FILE.toml", default_value = "lens.toml")]
+    #[arg(short, long, value_name = "FILE.toml", default_value = "lens.toml", value_parser = toml)]
     output: String,
     #[command(flatten)]
     pub(super) voice: Voice,

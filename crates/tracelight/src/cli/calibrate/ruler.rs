@@ -21,7 +21,7 @@ pub(super) struct RulerArgs {
     /// Distance between the two marks
     #[arg(long, value_name = "LENGTH", default_value = "4in", allow_hyphen_values = true, value_parser = positive_length)]
     marks: Length,
-    /// From the camera to the target [default: 3ft]
+    /// From the camera to the target
     #[arg(long, value_name = "LENGTH", default_value = "3ft", allow_hyphen_values = true, value_parser = positive_length)]
     distance: Length,
     /// A field that should be seen whole, width and height, such as 3ft,3ft: how far must the camera go?
