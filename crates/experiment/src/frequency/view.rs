@@ -81,7 +81,7 @@ impl Plotted for Finding {
         let dots = |value: &dyn Fn(usize) -> f64| -> Vec<Mark> {
             numbers
                 .clone()
-                .map(|k| Mark { colour: Colour::Blue, sign: Sign::Dot, at: (rad_s(k), value(k)) })
+                .map(|k| Mark { colour: Colour::Violet, sign: Sign::Dot, at: (rad_s(k), value(k)) })
                 .collect()
         };
         let line = |value: &dyn Fn(usize) -> f64| {
@@ -107,13 +107,13 @@ impl Plotted for Finding {
             panel(
                 "coherence",
                 dots(&coherence),
-                vec![Curve { colour: Colour::Blue, ..line(&coherence).remove(0) }],
+                vec![Curve { colour: Colour::Violet, ..line(&coherence).remove(0) }],
             ),
         ];
         Ok(Figure {
             title: format!("Frequency response of {}, rig {}", self.of.joint, self.of.rig.name),
             legend: vec![
-                Key::new(Colour::Blue, "dots: measured"),
+                Key::new(Colour::Violet, "dots: measured"),
                 Key::new(Colour::Black, "dashed: the rig file's model"),
             ],
             panels,
