@@ -60,7 +60,8 @@ fn under_the_sheet(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {
     CHALK.text(chalk, &name, LARGE, Point::new(middle, y), Align::Middle);
     let size = job.picture.map(|p| format!("{} × {} px", p.raster.width(), p.raster.height()));
     let size = size.unwrap_or_else(|| counted(job.drawing.strokes.len(), "stroke"));
-    FAINT.text(chalk, &size, SMALL, Point::new(middle, y + 24.0), Align::Middle);
+    let scale = if layout.sheet_to_scale { "on A4" } else { "not to scale" };
+    FAINT.text(chalk, &format!("{size}, {scale}"), SMALL, Point::new(middle, y + 24.0), Align::Middle);
 }
 
 fn size_label(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {
@@ -72,11 +73,14 @@ fn size_label(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {
         format!("{} × {} cm", short(w * 100.0), short(h * 100.0))
     };
     CHALK.text(chalk, &metric, LARGE, at, Align::Left);
-    let inches = format!("{} × {} in", short(w / INCH_M), short(h / INCH_M));
+    // nobody counts ten feet in inches
+    let (unit_m, unit) = if w.max(h) >= 10.0 * FOOT_M { (FOOT_M, "ft") } else { (INCH_M, "in") };
+    let inches = format!("{} × {} {unit}", short(w / unit_m), short(h / unit_m));
     FAINT.text(chalk, &inches, SMALL, at + Vec2::new(0.0, 24.0), Align::Left);
 }
 
 const INCH_M: f64 = 0.0254;
+const FOOT_M: f64 = 12.0 * INCH_M;
 
 /// Centimetres above the line, inches below it, both from its left end.
 fn scale_bar(chalk: &mut Plane, layout: &Layout) {

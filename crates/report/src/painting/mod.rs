@@ -12,6 +12,7 @@ mod plane;
 mod sheet;
 mod wall;
 
+use tracelight_chart::LIGHT_LINEAR;
 use tracelight_maths::single;
 use tracelight_picture::Raster;
 
@@ -23,8 +24,6 @@ use self::sheet::Sheet;
 use self::wall::Wall;
 use crate::finished::Finished;
 
-/// 650 nm as a camera's three channels see it: overexposed red spills into the others and whitens.
-const LASER: [f32; 3] = [1.0, 0.034, 0.040];
 /// What is left of the day in the room, and its colour.
 const ROOM: [f32; 3] = [0.050, 0.057, 0.068];
 /// The lamp on the sheet, where it shines brightest.
@@ -72,13 +71,13 @@ impl Scene {
         let (share, unshadowed) = cover.as_ref().map_or((0.0, 1.0), |c| (c.share, c.unshadowed));
         let chalk = self.chalk.row(y)[x] * (0.72 + 0.28 * texture) * (1.0 - share);
         std::array::from_fn(|c| {
-            let falls = LAMP[c] * lamp * unshadowed + ROOM[c] * room + LASER[c] * light.wall;
+            let falls = LAMP[c] * lamp * unshadowed + ROOM[c] * room + LIGHT_LINEAR[c] * light.wall;
             let wall = PLASTER * texture * falls;
-            let on_sheet = LAMP[c] * lamp + ROOM[c] * room + LASER[c] * light.wall;
+            let on_sheet = LAMP[c] * lamp + ROOM[c] * room + LIGHT_LINEAR[c] * light.wall;
             let sheet = cover.as_ref().map_or(0.0, |cover| cover.albedo[c] * on_sheet);
             let written = CHALK[c] * (0.3 + 0.7 * room) * chalk;
             let matter = wall * (1.0 - share) + sheet * share;
-            matter * (1.0 - chalk) + written + LASER[c] * light.lens
+            matter * (1.0 - chalk) + written + LIGHT_LINEAR[c] * light.lens
         })
     }
 
