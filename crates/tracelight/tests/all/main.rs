@@ -22,6 +22,7 @@ mod identify_parts;
 mod lab;
 mod lesson;
 mod linear;
+mod looks;
 mod paper;
 mod preview;
 mod quality;
