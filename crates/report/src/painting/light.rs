@@ -1,3 +1,4 @@
+use tracelight_maths::single;
 use tracelight_sim::Run;
 use tracelight_stroke::Point;
 
@@ -31,7 +32,9 @@ pub(super) struct Light {
 
 // Brightness where a line drawn at the set speed has its middle, in units of the film's white. A Gaussian's peak is
 // 0.4/σ, so each gain below is the wished peak times σ/0.4; the peaks were chosen by eye.
-const CORE_PEAK: f32 = 24.0;
+/// A line of a pixel or two is bright enough to be one; a broad one ends where a camera sees the spot end, two deviations from its middle.
+const CORE_PEAKS: (f32, f32) = (4.0, 24.0);
+const FINE_PX: f32 = 1.5;
 /// Standard deviation of the spot on the wall, m: that of the laser which simulated cameras see.
 const SPOT_M: f64 = 1e-3;
 /// A finer spot is as wide as the lens draws it.
@@ -58,9 +61,10 @@ impl Exposure {
         };
         let core_px = ((SPOT_M * layout.px_per_m) as f32).max(FINEST_PX).min(WIDTH as f32 / 16.0);
         let halo_px = HALO_SIGMA_PX.max(2.5 * core_px);
+        let peak = (CORE_PEAKS.1 * single::powf(FINE_PX / core_px, 1.3)).clamp(CORE_PEAKS.0, CORE_PEAKS.1);
         let (core_level, halo_level) = (level(core_px), level(halo_px).max(1));
         Self {
-            core_gain: CORE_PEAK * core_px / 0.4,
+            core_gain: peak * core_px / 0.4,
             core_level,
             halo: blurred(dose.reduced(halo_level), halo_px, halo_level),
             halo_level,

@@ -15,6 +15,7 @@ mod wall;
 use tracelight_chart::LIGHT_LINEAR;
 use tracelight_maths::single;
 use tracelight_picture::Raster;
+use tracelight_stroke::Vec2;
 
 use self::film::Film;
 use self::layout::{Layout, WIDTH};
@@ -83,8 +84,11 @@ impl Scene {
 
     /// Light of the lamp: a pool about the sheet.
     fn lamp(&self, x: usize, y: usize) -> f32 {
-        let (dx, dy) = self.away(x, y, self.layout.sheet_middle.x - 20.0, self.layout.sheet_middle.y - 40.0);
-        let reach = (self.layout.sheet_size.x.max(self.layout.sheet_size.y) * 0.66) as f32;
+        let longest = self.layout.sheet_size.x.max(self.layout.sheet_size.y);
+        let middle = self.layout.sheet_middle - Vec2::new(0.05, 0.1) * longest;
+        let (dx, dy) = self.away(x, y, middle.x, middle.y);
+        // a small sheet still hangs in a pool of light
+        let reach = (longest * 0.66).max(110.0) as f32;
         let square = (dx * dx + dy * dy) / (reach * reach);
         1.0 / (1.0 + square * (0.55 + square * 0.9))
     }
