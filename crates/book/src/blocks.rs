@@ -29,10 +29,19 @@ pub(crate) fn svg(name: &str, blocks: &[Block], arrows: &[Arrow]) -> String {
     let columns = blocks.iter().map(|b| b.at.0).max().unwrap_or(0);
     let rows = blocks.iter().map(|b| b.at.1).max().unwrap_or(0);
     let (width, height) = (columns * ACROSS + WIDTH + 2 * EDGE, rows * DOWN + HEIGHT + 2 * EDGE);
+    let boxes: Vec<&str> = blocks.iter().map(|b| b.name).collect();
+    let way = |arrow: &Arrow| {
+        let passes = if arrow.what.is_empty() { String::new() } else { format!(" by {}", arrow.what) };
+        format!("{} to {}{passes}", blocks[arrow.from].name, blocks[arrow.to].name)
+    };
+    let ways: Vec<String> = arrows.iter().map(way).collect();
     let mut text = format!(
-        "<svg class=\"blocks\" viewBox=\"0 0 {width} {height}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\">\
+        "<svg class=\"blocks\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" role=\"img\" \
+         xmlns=\"http://www.w3.org/2000/svg\"><title>{}</title><desc>{}</desc>\
          <defs><marker id=\"tip-{name}\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"8\" markerHeight=\"8\" orient=\"auto\">\
-         <path d=\"M0 0L8 4L0 8Z\"/></marker></defs>"
+         <path d=\"M0 0L8 4L0 8Z\"/></marker></defs>",
+        escaped(&format!("Block diagram: {}", boxes.join(", "))),
+        escaped(&ways.join("; "))
     );
     for arrow in arrows {
         text += &line(&blocks[arrow.from], &blocks[arrow.to], arrow.what, name);

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use serde_json::Value;
+use tracelight_chart::page_colours;
 use tracelight_maths::log10;
 use tracelight_report::html::escaped;
 
@@ -21,7 +22,7 @@ pub(crate) fn page(chapters: &[Chapter], done: &[(Value, Option<String>)]) -> St
             body += &match part {
                 Part::Text(text) => format!("<p>{}</p>", escaped(text)),
                 Part::Drawing(caption, svg) => figure(caption, None, svg),
-                Part::Facts(facts) => table(facts),
+                Part::Facts(facts) => table(chapter.title, facts),
                 Part::Run(run) => done
                     .next()
                     .map_or(String::new(), |(answer, figure)| shown(run, answer, figure.as_deref())),
@@ -30,7 +31,7 @@ pub(crate) fn page(chapters: &[Chapter], done: &[(Value, Option<String>)]) -> St
     }
     format!(
         include_str!("page.html"),
-        style = include_str!("style.css"),
+        style = page_colours() + include_str!("style.css"),
         contents = contents,
         body = body,
         version = env!("CARGO_PKG_VERSION"),
@@ -74,7 +75,7 @@ fn shown(run: &Run, answer: &Value, svg: Option<&str>) -> String {
     let command =
         format!("tracelight {}", run.arguments.iter().map(|a| quoted(a)).collect::<Vec<_>>().join(" "));
     let facts: Vec<Compared> = run.facts.iter().map(|fact| fact.compared(answer)).collect();
-    let facts = if facts.is_empty() { String::new() } else { table(&facts) };
+    let facts = if facts.is_empty() { String::new() } else { table(&run.caption, &facts) };
     // a figure is part of the page: what stands before its root element is of files
     let inner = svg.map_or(String::new(), |svg| {
         svg[svg.find("<svg").unwrap_or(0)..].replace(" id=\"stroke-", " data-id=\"stroke-")
@@ -89,8 +90,33 @@ fn command_of(run: &Run) -> String {
 
 fn figure(caption: &str, command: Option<&str>, svg: &str) -> String {
     let command = command.map_or(String::new(), |command| format!("<code>{}</code>", escaped(command)));
-    let picture = if svg.is_empty() { String::new() } else { format!("<div class=\"plot\">{svg}</div>") };
+    let picture = if svg.is_empty() { String::new() } else { framed(caption, svg) };
     format!("<figure><figcaption>{}{command}</figcaption>{picture}</figure>", escaped(caption))
+}
+
+/// What of its own width a figure keeps, so that its smallest letters, 12 high, are never below 11; what is wider than the page scrolls.
+const LEAST: f64 = 11.0 / 12.0;
+
+/// A drawing in a box of its own, which the keyboard reaches. A plot is in the page's colours; what has none of its own for the dark
+/// hangs on white.
+fn framed(caption: &str, svg: &str) -> String {
+    let is_plot = svg.contains("class=\"blocks\"") || svg.contains("prefers-color-scheme");
+    let class = if is_plot { "plot" } else { "plot light-wall" };
+    let width = width_px(svg).filter(|_| is_plot);
+    let sizes = width.map_or(String::new(), |px| {
+        format!(" style=\"--least:{:.0}px;--most:{:.0}px\"", (px * LEAST).ceil(), px * 1.2)
+    });
+    let caption = escaped(caption);
+    format!(
+        "<div class=\"{class}\"{sizes} tabindex=\"0\" role=\"group\" aria-label=\"{caption}, drawn\">{svg}</div>"
+    )
+}
+
+/// How wide a drawing is by itself, if it says so in pixels.
+fn width_px(svg: &str) -> Option<f64> {
+    let root = svg.split_once('>')?.0;
+    let value = root.split_once(" width=\"")?.1.split_once('"')?.0;
+    value.parse().ok()
 }
 
 /// An argument as a shell takes it.
@@ -104,10 +130,15 @@ fn quoted(argument: &str) -> String {
 }
 
 /// The report's number, ours, by how much they differ, why; ours alone where the report has none.
-fn table(facts: &[Compared]) -> String {
+fn table(caption: &str, facts: &[Compared]) -> String {
     let with_report = facts.iter().any(|fact| fact.report.is_some());
-    let heads = if with_report { "<th>report</th><th>here</th><th>difference</th>" } else { "<th>here</th>" };
-    let mut text = format!("<div class=\"scroll\"><table><tr><th></th>{heads}<th></th></tr>");
+    let of = if with_report { &["report", "here", "difference"][..] } else { &["here"] };
+    let heads: String = of.iter().map(|head| format!("<th scope=\"col\" class=\"n\">{head}</th>")).collect();
+    let mut text = format!(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}, in numbers\"><table>\
+         <tr><th scope=\"col\">number</th>{heads}<th scope=\"col\">why</th></tr>",
+        escaped(caption)
+    );
     for fact in facts {
         let cell =
             |text: Option<String>| format!("<td class=\"n\">{}</td>", text.unwrap_or_else(|| "–".to_owned()));
@@ -170,6 +201,15 @@ mod tests {
         assert_eq!(difference(&of(1.0, 3.4)), Some("+240 %".to_owned()));
         assert_eq!(difference(&of(13.16, 13.1603)), Some("0.00 %".to_owned()));
         assert_eq!(difference(&of(0.0, 0.5)), Some("0.5".to_owned()));
+    }
+
+    #[test]
+    fn a_plot_keeps_its_letters_and_a_drawing_its_paper() {
+        let plot =
+            framed("A step", "<svg width=\"1200\" height=\"2\"><style>prefers-color-scheme</style></svg>");
+        assert!(plot.contains("--least:1100px") && plot.contains("tabindex=\"0\""), "{plot}");
+        let drawing = framed("A star", "<svg width=\"609.6mm\" viewBox=\"0 0 1 1\"></svg>");
+        assert!(drawing.contains("light-wall") && !drawing.contains("--least"), "{drawing}");
     }
 
     #[test]

@@ -5,15 +5,18 @@ use plotters::coord::Shift;
 use plotters::coord::ranged1d::{Ranged, ValueFormatter};
 use plotters::prelude::{
     Cartesian2d, ChartBuilder, Circle, DashedLineSeries, DrawingArea, EmptyElement, IntoDrawingArea,
-    IntoFont, IntoLogRange, LineSeries, PathElement, RGBColor, SVGBackend, Text,
+    IntoFont, IntoLogRange, LineSeries, PathElement, SVGBackend, Text,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, TextStyle};
 
 use crate::colour::Colour;
+use crate::legend;
 use crate::linear::Linear;
 use crate::range::{Range, inside};
+use crate::rgb::Rgb;
 use crate::theme::Theme;
+use crate::words::{Words, told};
 
 /// A page of panels.
 #[derive(Clone, Debug)]
@@ -142,10 +145,12 @@ pub enum Pen {
 const FINE: i32 = 8;
 /// What is above all panels, pixels.
 const TITLE: i32 = 40;
-const LEGEND_ROW: i32 = 22;
-/// The least room for an entry of the legend, and for each of its letters.
-const KEY_WIDTH: i32 = 200;
-const LETTER_WIDTH: i32 = 8;
+/// What is written, pixels. Where a page has too little room its figures shrink to eleven twelfths and no further: no letters below 11.
+const LARGE: i32 = 16;
+const NORMAL: i32 = 13;
+const SMALL: i32 = 12;
+/// The drawing library takes the height of a font's box, and writes the font's size as this much less.
+const BOX: f64 = 1.24;
 
 /// Nothing goes wrong in drawing into a text; the backend's interface says it might.
 type Drawn = Result<(), Box<dyn std::error::Error>>;
@@ -163,44 +168,50 @@ impl Figure {
         let columns = self.columns.clamp(1, self.panels.len().max(1));
         let rows = self.panels.len().div_ceil(columns).max(1);
         let width = self.panel.0 * columns as i32;
-        let longest = self.legend.iter().map(|key| key.name.chars().count() as i32).max().unwrap_or(0);
-        let key_width = KEY_WIDTH.max(50 + LETTER_WIDTH * longest);
-        let keys_a_row = (width / key_width).max(1);
-        let legend_rows = (self.legend.len() as i32 + keys_a_row - 1) / keys_a_row;
-        let head = TITLE + LEGEND_ROW * legend_rows;
+        let names: Vec<&str> = self.legend.iter().map(|key| key.name.as_str()).collect();
+        let keys = legend::places(&names, width);
+        let legend_rows = keys.last().map_or(0, |place| place.1 + 1);
+        let head = TITLE + legend::ROW * legend_rows;
         let height = head + self.panel.1 * rows as i32;
         let mut text = String::new();
         {
             let size = ((FINE * width) as u32, (FINE * height) as u32);
             let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
-            root.fill(&self.theme.ground())?;
+            root.fill(&self.theme.ground().plotted())?;
             let (top, rest) = root.split_vertically(FINE * head);
-            self.head(&top, keys_a_row, key_width)?;
-            for (panel, area) in self.panels.iter().zip(rest.split_evenly((rows, columns))) {
-                panel.draw(&area, self.panel, self.theme)?;
+            self.head(&top, &keys)?;
+            let areas = rest.split_evenly((rows, columns));
+            for (number, (panel, area)) in self.panels.iter().zip(areas).enumerate() {
+                // of diagrams below each other the lowest names the axis they have in common
+                let below = self.panels.get(number + columns);
+                let names_x = below.is_none_or(|below| below.x_title != panel.x_title);
+                panel.draw(&area, self.panel, (self.theme, names_x))?;
             }
             root.present()?;
         }
         let fine = format!(r#"width="{}" height="{}""#, FINE * width, FINE * height);
-        Ok(text.replacen(&fine, &format!(r#"width="{width}" height="{height}""#), 1))
+        let sized = text.replacen(&fine, &format!(r#"width="{width}" height="{height}""#), 1);
+        let axes = self.panels.iter().map(|p| (p.x_title.as_str(), p.y_title.as_str())).collect();
+        Ok(told(&sized, &Words { title: &self.title, axes, names }, self.theme == Theme::Light))
     }
 
-    fn head(&self, area: &Area<'_>, keys_a_row: i32, key_width: i32) -> Drawn {
-        let title = lettering(17, self.theme.ink()).pos(Pos::new(HPos::Left, VPos::Center));
-        area.draw(&Text::new(self.title.as_str(), (FINE * 12, FINE * 20), title))?;
-        for (i, key) in (0..).zip(&self.legend) {
-            let (x, y) = (12 + key_width * (i % keys_a_row), TITLE + LEGEND_ROW * (i / keys_a_row));
-            let line = [(FINE * x, FINE * y), (FINE * (x + 22), FINE * y)];
-            area.draw(&PathElement::new(line, key.colour.rgb(self.theme).stroke_width(2 * FINE as u32)))?;
-            let name = lettering(14, self.theme.ink()).pos(Pos::new(HPos::Left, VPos::Center));
-            area.draw(&Text::new(key.name.as_str(), (FINE * (x + 30), FINE * y), name))?;
+    fn head(&self, area: &Area<'_>, keys: &[(i32, i32)]) -> Drawn {
+        let title = lettering(LARGE, self.theme.ink()).pos(Pos::new(HPos::Left, VPos::Center));
+        area.draw(&Text::new(self.title.as_str(), (FINE * legend::EDGE, FINE * 20), title))?;
+        for (&(x, row), key) in keys.iter().zip(&self.legend) {
+            let y = TITLE + legend::ROW * row;
+            let line = [(FINE * x, FINE * y), (FINE * (x + legend::LINE), FINE * y)];
+            let style = key.colour.rgb(self.theme).plotted().stroke_width(2 * FINE as u32);
+            area.draw(&PathElement::new(line, style))?;
+            let name = lettering(NORMAL, self.theme.ink()).pos(Pos::new(HPos::Left, VPos::Center));
+            area.draw(&Text::new(key.name.as_str(), (FINE * (x + legend::TO_NAME), FINE * y), name))?;
         }
         Ok(())
     }
 }
 
-fn lettering<'a>(pixels: i32, colour: RGBColor) -> TextStyle<'a> {
-    ("sans-serif", FINE * pixels).into_font().color(&colour)
+fn lettering<'a>(pixels: i32, colour: Rgb) -> TextStyle<'a> {
+    ("sans-serif", BOX * f64::from(FINE * pixels)).into_font().color(&colour.plotted())
 }
 
 impl Curve {
@@ -209,7 +220,7 @@ impl Curve {
         X: Ranged<ValueType = f64>,
         Y: Ranged<ValueType = f64>,
     {
-        let style = self.colour.rgb(theme).stroke_width((3 * FINE / 2) as u32);
+        let style = self.colour.rgb(theme).plotted().stroke_width((3 * FINE / 2) as u32);
         let dot = |&at: &(f64, f64)| EmptyElement::at(at) + Circle::new((0, 0), FINE * 2, style.filled());
         if self.pen == Pen::Dots {
             let shown = |p: &&(f64, f64)| x.holds(p.0) && y.holds(p.1);
@@ -229,7 +240,7 @@ impl Curve {
 }
 
 impl Panel {
-    fn draw(&self, area: &Area<'_>, size: (i32, i32), theme: Theme) -> Drawn {
+    fn draw(&self, area: &Area<'_>, size: (i32, i32), how: (Theme, bool)) -> Drawn {
         let (x, y) = self.ranges(size);
         let (x, y) =
             (x.sane(matches!(self.scale, Scale::Log | Scale::LogX)), y.sane(self.scale == Scale::Log));
@@ -238,40 +249,45 @@ impl Panel {
             .margin(FINE * 8)
             .margin_right(FINE * 20)
             .x_label_area_size(FINE * 40)
-            .y_label_area_size(FINE * 64);
+            .y_label_area_size(FINE * 70);
         let shown = (x, y);
         let (across, up) = (x.low..x.high, Linear::new(y, self.y_step));
         match self.scale {
             Scale::Log => {
                 let up = (y.low..y.high).log_scale();
-                self.fill(chart.build_cartesian_2d(across.log_scale(), up)?, shown, theme)
+                self.fill(chart.build_cartesian_2d(across.log_scale(), up)?, shown, how)
             }
-            Scale::LogX => self.fill(chart.build_cartesian_2d(across.log_scale(), up)?, shown, theme),
-            Scale::Free | Scale::Even => self.fill(chart.build_cartesian_2d(across, up)?, shown, theme),
+            Scale::LogX => self.fill(chart.build_cartesian_2d(across.log_scale(), up)?, shown, how),
+            Scale::Free | Scale::Even => self.fill(chart.build_cartesian_2d(across, up)?, shown, how),
         }
     }
 
-    fn fill<X, Y>(&self, mut chart: Chart<'_, X, Y>, shown: (Range, Range), theme: Theme) -> Drawn
+    fn fill<X, Y>(
+        &self,
+        mut chart: Chart<'_, X, Y>,
+        shown: (Range, Range),
+        (theme, names_x): (Theme, bool),
+    ) -> Drawn
     where
         X: Ranged<ValueType = f64> + ValueFormatter<f64>,
         Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
-        let (ink, faint) = (theme.ink(), theme.faint());
+        let (ink, grid) = (theme.ink().plotted(), theme.grid().plotted());
         chart
             .configure_mesh()
             .x_labels(6)
             .y_labels(if self.y_step.is_some() { 12 } else { 6 })
             .x_max_light_lines(if self.scale == Scale::LogX { 9 } else { 0 })
             .y_max_light_lines(0)
-            .bold_line_style(faint.stroke_width(FINE as u32))
-            .light_line_style(theme.fainter().stroke_width(FINE as u32))
+            .bold_line_style(grid.stroke_width(FINE as u32))
+            .light_line_style(theme.fainter().plotted().stroke_width(FINE as u32))
             .axis_style(ink.stroke_width(FINE as u32))
-            .label_style(lettering(13, ink))
-            .axis_desc_style(lettering(14, ink))
+            .label_style(lettering(SMALL, theme.ink()))
+            .axis_desc_style(lettering(NORMAL, theme.ink()))
             .x_label_formatter(&|v| label(*v))
             .y_label_formatter(&|v| label(*v))
             .set_all_tick_mark_size(FINE * 4)
-            .x_desc(self.x_title.as_str())
+            .x_desc(if names_x { self.x_title.as_str() } else { "" })
             .y_desc(self.y_title.as_str())
             .draw()?;
         for guide in &self.guides {
@@ -307,7 +323,7 @@ impl Panel {
             (x, y) = (x.decades(), y.decades());
         } else if self.scale == Scale::Even {
             // what is left of a panel for its curves
-            let (width, height) = (f64::from(size.0 - 90), f64::from(size.1 - 54));
+            let (width, height) = (f64::from(size.0 - 98), f64::from(size.1 - 54));
             let unit = f64::max(x.span() / width, y.span() / height);
             x.widen(unit * width);
             y.widen(unit * height);
@@ -340,13 +356,13 @@ impl Guide {
         let runs = inside(&self.points, x, y);
         let end = runs.last().and_then(|run| run.last()).copied();
         for run in runs {
-            chart.draw_series(LineSeries::new(run, theme.faint().stroke_width(FINE as u32)))?;
+            chart.draw_series(LineSeries::new(run, theme.rule().plotted().stroke_width(FINE as u32)))?;
         }
         if let Some(end) = end.filter(|_| !self.label.is_empty()) {
             // inwards from the edge it leaves at
             let across = if end.0 > 0.5 * (x.low + x.high) { HPos::Right } else { HPos::Left };
             let along = if end.1 > 0.5 * (y.low + y.high) { VPos::Top } else { VPos::Bottom };
-            let style = lettering(11, theme.dim()).pos(Pos::new(across, along));
+            let style = lettering(SMALL, theme.soft()).pos(Pos::new(across, along));
             chart.draw_series(std::iter::once(Text::new(self.label.clone(), end, style)))?;
         }
         Ok(())
@@ -360,7 +376,7 @@ impl Mark {
         Y: Ranged<ValueType = f64>,
     {
         const SIZE: i32 = 5;
-        let style = self.colour.rgb(theme).stroke_width((2 * FINE) as u32);
+        let style = self.colour.rgb(theme).plotted().stroke_width((2 * FINE) as u32);
         let here = || EmptyElement::at(self.at);
         let arm = |way: i32| {
             PathElement::new([(-SIZE * FINE, -way * SIZE * FINE), (SIZE * FINE, way * SIZE * FINE)], style)
@@ -394,7 +410,7 @@ mod tests {
     use super::*;
 
     fn panel(points: Vec<(f64, f64)>) -> Panel {
-        let curve = Curve { colour: Colour::Blue, pen: Pen::Solid, points };
+        let curve = Curve { colour: Colour::Violet, pen: Pen::Solid, points };
         Panel {
             x_title: "t, s".into(),
             y_title: "<v>".into(),
@@ -405,7 +421,7 @@ mod tests {
     }
 
     fn svg(panels: Vec<Panel>) -> String {
-        let legend = vec![Key { colour: Colour::Blue, name: "a & b".into() }];
+        let legend = vec![Key { colour: Colour::Violet, name: "a & b".into() }];
         Figure { title: "A title".into(), legend, panels, columns: 2, panel: (400, 250), theme: Theme::Light }
             .svg()
             .unwrap()
@@ -415,6 +431,8 @@ mod tests {
     fn a_figure_is_one_svg_with_its_words_escaped() {
         let svg = svg(vec![panel(vec![(0.0, 0.0), (1.0, 2.0)]), panel(vec![(0.0, 1.0), (1.0, 1.0)])]);
         assert!(svg.starts_with("<svg width=\"800\""), "{}", &svg[..80]);
+        assert!(svg.contains("<title>A title</title>\n<desc>Diagrams: &lt;v&gt; over t, s; &lt;v&gt; over t, s. Curves: a &amp; b.</desc>"));
+        assert!(svg.contains("prefers-color-scheme:dark") && svg.contains("role=\"img\""));
         assert!(svg.contains("a &amp; b") && svg.contains("&lt;v&gt;") && svg.trim_end().ends_with("</svg>"));
     }
 

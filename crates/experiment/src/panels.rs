@@ -1,7 +1,7 @@
 //! Panels that several plots have.
 
 use tracelight_chart::{Colour, Curve, Panel, Pen, Scale};
-use tracelight_rig::TICK_F64_S;
+use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::BenchTick;
 
 /// A panel of curves over time.
@@ -25,4 +25,12 @@ pub(crate) fn curve(
 ) -> Curve {
     let points = ticks.iter().enumerate().map(|(k, tick)| (k as f64 * TICK_F64_S, value(tick)));
     Curve { colour, pen, points: points.collect() }
+}
+
+/// The colour of what belongs to one joint, in every plot.
+pub(crate) const fn of_joint(joint: Joint) -> Colour {
+    match joint {
+        Joint::Pan => Colour::Pan,
+        Joint::Tilt => Colour::Tilt,
+    }
 }

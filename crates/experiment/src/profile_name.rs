@@ -90,11 +90,11 @@ impl ProfileName {
     /// Its colour in every plot.
     pub(crate) const fn colour(self) -> Colour {
         match self {
-            Self::Trapezoid => Colour::Vermilion,
-            Self::SCurve => Colour::Blue,
+            Self::Trapezoid => Colour::Ochre,
+            Self::SCurve => Colour::Violet,
             Self::Sine => Colour::Green,
-            Self::Cycloid => Colour::Purple,
-            Self::Sigmoid => Colour::Orange,
+            Self::Cycloid => Colour::Olive,
+            Self::Sigmoid => Colour::Slate,
             Self::Quintic => Colour::Sky,
             Self::Optimal => Colour::Black,
         }

@@ -45,7 +45,7 @@ impl Trial {
     pub(crate) fn panels(&self) -> [Panel; 2] {
         let angle = |tick: &BenchTick| tick.angle_rad[self.joint].to_degrees();
         let volts = |tick: &BenchTick| f64::from(tick.command_v[self.joint]);
-        let curve = |ticks, pen, value| curve(Colour::Vermilion, ticks, pen, value);
+        let curve = |ticks, pen, value| curve(Colour::Ochre, ticks, pen, value);
         let angles = vec![
             curve(&self.response.nonlinear, Pen::Solid, &angle),
             curve(&self.response.linear, Pen::Dashed, &angle),

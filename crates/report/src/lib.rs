@@ -25,6 +25,7 @@ mod events;
 mod finished;
 #[cfg(test)]
 mod fixture;
+mod limit;
 mod log;
 mod page;
 mod painting;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::io::Cursor;
 
 use image::{GrayImage, ImageFormat};
-use tracelight_chart::{Colour, Curve, Figure, Panel, Pen, Theme};
+use tracelight_chart::{Colour, Curve, Figure, Panel, Pen, Theme, dark_style};
 use tracelight_image::Grey;
 use tracelight_maths::log10;
 use tracelight_task::Failure;
@@ -37,11 +37,14 @@ pub fn figure(name: &str, grey: &Grey, stages: &Stages) -> Result<String, Failur
         if high > 2.0 * PANEL { (PANEL * 2.0 * PANEL / high, 2.0 * PANEL) } else { (PANEL, high) };
     let row = TITLE + high.max(0.55 * PANEL) + GAP;
     let (width, height) = (2.0 * PANEL + 3.0 * GAP, 2.0 * row + 2.0 * GAP);
+    let (ground, ink, soft) = (Theme::Light.ground(), Theme::Light.ink(), Theme::Light.soft());
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
-         font-family=\"sans-serif\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
-         <text x=\"{GAP}\" y=\"{GAP}\" font-size=\"18\" fill=\"#202020\">{}: from grey to ink</text>\n",
-        escaped(name)
+         font-family=\"sans-serif\" role=\"img\">\n\
+         <title>{name}: from grey to ink</title>\n\
+         <desc>The picture as grey levels, with light and paper evened out, the histogram of its darkness, and its ink.</desc>\n<rect width=\"100%\" height=\"100%\" fill=\"{ground}\"/>\n\
+         <text x=\"{GAP}\" y=\"{GAP}\" font-size=\"18\" fill=\"{ink}\">{name}: from grey to ink</text>\n",
+        name = escaped(name)
     );
     let place =
         |number: usize| (GAP + (PANEL + GAP) * (number % 2) as f64, 1.6 * GAP + row * (number / 2) as f64);
@@ -51,9 +54,9 @@ pub fn figure(name: &str, grey: &Grey, stages: &Stages) -> Result<String, Failur
         // writing to a String cannot fail
         let _ = write!(
             svg,
-            "<text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"14\" fill=\"#202020\">{title}</text>\n\
+            "<text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"14\" fill=\"{ink}\">{title}</text>\n\
              <image x=\"{x:.1}\" y=\"{top:.1}\" width=\"{wide:.1}\" height=\"{high:.1}\" href=\"{png}\"/>\n\
-             <rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"{wide:.1}\" height=\"{high:.1}\" fill=\"none\" stroke=\"#808080\"/>\n",
+             <rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"{wide:.1}\" height=\"{high:.1}\" fill=\"none\" stroke=\"{soft}\"/>\n",
             y + 0.6 * TITLE
         );
     }
@@ -61,7 +64,8 @@ pub fn figure(name: &str, grey: &Grey, stages: &Stages) -> Result<String, Failur
     let histogram = histogram(stages)?;
     let nested = histogram.replacen("<svg ", &format!("<svg x=\"{:.1}\" y=\"{:.1}\" ", x - 0.25 * GAP, y), 1);
     let _ = write!(svg, "{nested}\n</svg>\n");
-    Ok(svg)
+    let style = dark_style(&svg);
+    Ok(svg.replacen("</desc>\n", &format!("</desc>\n{style}\n"), 1))
 }
 
 /// Grey levels as a PNG in a link.
@@ -90,9 +94,9 @@ fn histogram(stages: &Stages) -> Result<String, Failure> {
             x_title: "0: paper, 255: total darkness".into(),
             y_title: "pixels, powers of ten".into(),
             curves: vec![
-                Curve { colour: Colour::Blue, pen: Pen::Solid, points: steps.collect() },
+                Curve { colour: Colour::Violet, pen: Pen::Solid, points: steps.collect() },
                 Curve {
-                    colour: Colour::Vermilion,
+                    colour: Colour::Limit,
                     pen: Pen::Dashed,
                     points: vec![(threshold, 0.0), (threshold, most)],
                 },

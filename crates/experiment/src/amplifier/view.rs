@@ -116,9 +116,9 @@ impl Finding {
                 x_title: format!("{joint}: volts"),
                 y_title: "mA".into(),
                 curves: vec![
-                    Curve { colour: Colour::Vermilion, pen: Pen::Dots, points: dots(&|p| p.amperes) },
-                    Curve { colour: Colour::Blue, pen: Pen::Dots, points: dots(&still) },
-                    Curve { colour: Colour::Blue, pen: Pen::Solid, points: line.to_vec() },
+                    Curve { colour: Colour::Ochre, pen: Pen::Dots, points: dots(&|p| p.amperes) },
+                    Curve { colour: Colour::Violet, pen: Pen::Dots, points: dots(&still) },
+                    Curve { colour: Colour::Violet, pen: Pen::Solid, points: line.to_vec() },
                 ],
                 ..Panel::default()
             }
@@ -126,8 +126,8 @@ impl Finding {
         Figure {
             title: format!("Amplifiers of rig {}", self.of.rig.name),
             legend: vec![
-                Key::new(Colour::Vermilion, "as read, the motor turning or not"),
-                Key::new(Colour::Blue, "as with the motor at rest; line: A/V found"),
+                Key::new(Colour::Ochre, "as read, the motor turning or not"),
+                Key::new(Colour::Violet, "as with the motor at rest; line: A/V found"),
             ],
             panels: self.joints.iter().map(panel).collect(),
             columns: self.joints.len(),

@@ -112,7 +112,7 @@ impl Finding {
     fn figure(&self) -> Figure {
         let panel = |Found { joint, seen: readings, told: backlash }: &Found| {
             let mark = |(number, (reading, beside)): (usize, (&Reading, &Option<f64>))| {
-                let colour = if reading.way > 0 { Colour::Blue } else { Colour::Vermilion };
+                let colour = if reading.way > 0 { Colour::Violet } else { Colour::Ochre };
                 let at = (number as f64 + 1.0, 1e3 * self.of.distance_m * (*beside)?);
                 Some(Mark { colour, sign: Sign::Dot, at })
             };
@@ -129,8 +129,8 @@ impl Finding {
         Figure {
             title: format!("Play and slip of rig {}", self.of.rig.name),
             legend: vec![
-                Key::new(Colour::Blue, "come turning positively"),
-                Key::new(Colour::Vermilion, "come turning negatively"),
+                Key::new(Colour::Violet, "come turning positively"),
+                Key::new(Colour::Ochre, "come turning negatively"),
             ],
             panels: self.joints.iter().map(panel).collect(),
             columns: self.joints.len(),

@@ -91,7 +91,7 @@ impl finding::Finding for Finding {
 impl Plotted for Finding {
     fn figure(&self) -> Result<Figure, Failure> {
         let curve = |response: &Response| Curve {
-            colour: Colour::Blue,
+            colour: Colour::Violet,
             pen: Pen::Solid,
             points: (0..).zip(&response.values).map(|(k, y)| (f64::from(k) * response.step_s, *y)).collect(),
         };
@@ -105,10 +105,10 @@ impl Plotted for Finding {
         let modulus =
             self.margins.modulus.map_or(String::new(), |m| format!(", modulus {}", four(m.distance)));
         let mut panels = vec![panel("output", 1.0, &self.step), panel("input", 0.0, &self.input)];
-        let mut legend = vec![Key { colour: Colour::Blue, name: format!("a step of 1{phase}{modulus}") }];
+        let mut legend = vec![Key { colour: Colour::Violet, name: format!("a step of 1{phase}{modulus}") }];
         if let Some(trial) = &self.trial {
             panels.extend(trial.panels());
-            legend.push(Key { colour: Colour::Vermilion, name: trial.name() });
+            legend.push(Key { colour: Colour::Ochre, name: trial.name() });
         }
         Ok(Figure {
             title: match self.controller.to_string() {

@@ -117,7 +117,7 @@ impl Finding {
     fn figure(&self) -> Figure {
         let panel = |Found { joint, told: table, .. }: &Found| {
             let marks = table.kinds_counts.iter().enumerate().flat_map(|(kind, edge)| {
-                let at = |value: f64, sign| Mark { colour: Colour::Blue, sign, at: (kind as f64, value) };
+                let at = |value: f64, sign| Mark { colour: Colour::Violet, sign, at: (kind as f64, value) };
                 [
                     at(edge.value, Sign::Dot),
                     at(edge.value - edge.within, Sign::Cross),
@@ -136,7 +136,7 @@ impl Finding {
         };
         Figure {
             title: format!("Encoder edges of rig {}", self.of.rig.name),
-            legend: vec![Key::new(Colour::Blue, "found (crosses: 95 of 100 cases)")],
+            legend: vec![Key::new(Colour::Violet, "found (crosses: 95 of 100 cases)")],
             panels: self.joints.iter().map(panel).collect(),
             columns: self.joints.len(),
             panel: (520, 340),

@@ -12,6 +12,7 @@ use tracelight_task::Failure;
 
 use super::{Finding, Measured};
 use crate::finding::{self, Plotted};
+use crate::panels::of_joint;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
@@ -76,13 +77,11 @@ impl finding::Finding for Finding {
 
 impl Plotted for Finding {
     fn figure(&self) -> Result<Figure, Failure> {
+        let own = of_joint(self.of.joint);
         let numbers = 0..self.points.len();
         let rad_s = |number: usize| self.points[number].rad_s;
         let dots = |value: &dyn Fn(usize) -> f64| -> Vec<Mark> {
-            numbers
-                .clone()
-                .map(|k| Mark { colour: Colour::Blue, sign: Sign::Dot, at: (rad_s(k), value(k)) })
-                .collect()
+            numbers.clone().map(|k| Mark { colour: own, sign: Sign::Dot, at: (rad_s(k), value(k)) }).collect()
         };
         let line = |value: &dyn Fn(usize) -> f64| {
             let points = numbers.clone().map(|k| (rad_s(k), value(k))).collect();
@@ -104,16 +103,12 @@ impl Plotted for Finding {
                 line(&|k| decibels(complex::norm(self.model.values[k]))),
             ),
             panel("phase, °", dots(&|k| self.phase_deg(k)), line(&|k| self.model.phases_rad[k].to_degrees())),
-            panel(
-                "coherence",
-                dots(&coherence),
-                vec![Curve { colour: Colour::Blue, ..line(&coherence).remove(0) }],
-            ),
+            panel("coherence", dots(&coherence), vec![Curve { colour: own, ..line(&coherence).remove(0) }]),
         ];
         Ok(Figure {
             title: format!("Frequency response of {}, rig {}", self.of.joint, self.of.rig.name),
             legend: vec![
-                Key::new(Colour::Blue, "dots: measured"),
+                Key::new(own, "dots: measured"),
                 Key::new(Colour::Black, "dashed: the rig file's model"),
             ],
             panels,

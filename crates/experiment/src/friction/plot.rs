@@ -22,9 +22,11 @@ pub(super) fn figure(rig: &RigConfig, found: &[Found]) -> Figure {
     let with_motion = found.iter().any(|one| one.curves.is_some());
     let mut legend = Vec::new();
     if with_motion {
-        legend
-            .push(Key::new(Colour::Blue, "forwards; dots: a second each, less what speeds it up and weighs"));
-        legend.push(Key::new(Colour::Vermilion, "backwards"));
+        legend.push(Key::new(
+            Colour::Violet,
+            "forwards; dots: a second each, less what speeds it up and weighs",
+        ));
+        legend.push(Key::new(Colour::Ochre, "backwards"));
     }
     if found.iter().any(|one| !one.steady.points.is_empty()) {
         legend.push(Key::new(
@@ -47,7 +49,7 @@ fn speeds(one: &Found) -> Panel {
         let speeds = trial.speeds(one.subject.believed.count_rad, OVER_S);
         let furthest =
             speeds.iter().map(|(_, rate)| *rate).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
-        let colour = if furthest > 0.0 { Colour::Blue } else { Colour::Vermilion };
+        let colour = if furthest > 0.0 { Colour::Violet } else { Colour::Ochre };
         let every = (speeds.len() / POINTS).max(1);
         Curve { colour, pen: Pen::Solid, points: speeds.into_iter().step_by(every).collect() }
     };
@@ -72,7 +74,7 @@ fn torques(one: &Found) -> Panel {
         };
         Curve { colour, pen, points: vec![at(0.0), at(to)] }
     };
-    let ways = [(0, 1.0, Colour::Blue), (1, -1.0, Colour::Vermilion)];
+    let ways = [(0, 1.0, Colour::Violet), (1, -1.0, Colour::Ochre)];
     for (side, way, colour) in ways {
         let to = furthest(way);
         if let Some(found) = &one.curves {

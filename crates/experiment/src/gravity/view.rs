@@ -78,15 +78,15 @@ impl Finding {
         Figure {
             title: format!("What holds tilt of rig {} against its weight", self.rig().name),
             legend: vec![
-                Key::new(Colour::Blue, "found (dots: a second each, less friction and what speeds it up)"),
+                Key::new(Colour::Tilt, "found (dots: a second each, less friction and what speeds it up)"),
                 Key::new(Colour::Black, "dashed: the rig file has"),
             ],
             panels: vec![Panel {
                 x_title: "tilt, ° (positive: the beam down)".into(),
                 y_title: "torque, mN m".into(),
                 curves: vec![
-                    Curve { colour: Colour::Blue, pen: Pen::Dots, points: dots },
-                    Curve { colour: Colour::Blue, pen: Pen::Solid, points: along(&found) },
+                    Curve { colour: Colour::Tilt, pen: Pen::Dots, points: dots },
+                    Curve { colour: Colour::Tilt, pen: Pen::Solid, points: along(&found) },
                     Curve { colour: Colour::Black, pen: Pen::Dashed, points: along(&believed) },
                 ],
                 ..Panel::default()

@@ -17,7 +17,7 @@ struct Entry {
 pub(super) fn figure(lesson: &Lesson, graded: Option<&Graded>) -> Figure {
     let mut colours = Colour::in_turn();
     // blue is the answer's, whether there is one or not
-    let mine = colours.next().unwrap_or(Colour::Blue);
+    let mine = colours.next().unwrap_or(Colour::Violet);
     let mut entries: Vec<Entry> = lesson
         .examples
         .iter()

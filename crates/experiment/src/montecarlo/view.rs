@@ -77,13 +77,13 @@ impl Plotted for Finding {
         Ok(Figure {
             title: format!("{} on {} heads that differ", self.shape, self.trials.len()),
             legend: vec![
-                Key { colour: Colour::Blue, name: "at most".into() },
-                Key { colour: Colour::Vermilion, name: "rms".into() },
+                Key { colour: Colour::Violet, name: "at most".into() },
+                Key { colour: Colour::Ochre, name: "rms".into() },
             ],
             panels: vec![Panel {
                 x_title: "share of the heads, %".into(),
                 y_title: "error not above, mm".into(),
-                curves: vec![sorted(Colour::Blue, FIGURES[1].2), sorted(Colour::Vermilion, FIGURES[0].2)],
+                curves: vec![sorted(Colour::Violet, FIGURES[1].2), sorted(Colour::Ochre, FIGURES[0].2)],
                 levels: vec![0.0],
                 scale: Scale::Free,
                 ..Panel::default()

@@ -87,11 +87,11 @@ impl Plotted for Finding {
         let swung = |value: &dyn Fn(&(f64, f64)) -> f64| {
             let ticks = self.swing.ticks.iter().enumerate();
             let points = ticks.map(|(k, tick)| (k as f64 * TICK_F64_S, value(tick))).collect();
-            vec![Curve { colour: Colour::Blue, pen: Pen::Solid, points }]
+            vec![Curve { colour: Colour::Violet, pen: Pen::Solid, points }]
         };
         let angle = |tick: &BenchTick| tick.angle_rad[joint].to_degrees();
         let volts = |tick: &BenchTick| f64::from(tick.command_v[joint]);
-        let of = |ticks, pen, value| curve(Colour::Vermilion, ticks, pen, value);
+        let of = |ticks, pen, value| curve(Colour::Ochre, ticks, pen, value);
         let tried = vec![
             of(&self.response.nonlinear, Pen::Solid, &angle),
             of(&self.response.linear, Pen::Dashed, &angle),
@@ -99,8 +99,8 @@ impl Plotted for Finding {
         Ok(Figure {
             title: format!("{joint} of rig {}: swung by a relay, tuned, tried", self.of.rig.name),
             legend: vec![
-                Key::new(Colour::Blue, "by the relay"),
-                Key::new(Colour::Vermilion, "by the PID tuned from it (dashed: linearized)"),
+                Key::new(Colour::Violet, "by the relay"),
+                Key::new(Colour::Ochre, "by the PID tuned from it (dashed: linearized)"),
             ],
             panels: vec![
                 over_time("angle, °", vec![0.0], swung(&|(_, angle)| angle.to_degrees())),

@@ -103,13 +103,13 @@ impl Plotted for Finding {
 /// The colour of a law in every plot.
 const fn colour(law: LawName) -> Colour {
     match law {
-        LawName::State => Colour::Blue,
+        LawName::State => Colour::Violet,
         LawName::PidFeedforward => Colour::Green,
         LawName::Pid => Colour::Sky,
         LawName::HandTuned => Colour::Grey,
-        LawName::LeadLag => Colour::Purple,
-        LawName::ReportZpk => Colour::Vermilion,
-        LawName::ReportTimeConstants => Colour::Orange,
+        LawName::LeadLag => Colour::Olive,
+        LawName::ReportZpk => Colour::Ochre,
+        LawName::ReportTimeConstants => Colour::Slate,
         LawName::ReportPd => Colour::Black,
     }
 }

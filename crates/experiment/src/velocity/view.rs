@@ -168,6 +168,6 @@ fn in_words(speed_m_s: f64) -> String {
 /// The colour of a speed, slowest first.
 const fn colour(number: usize) -> Colour {
     const COLOURS: [Colour; 6] =
-        [Colour::Black, Colour::Blue, Colour::Green, Colour::Orange, Colour::Vermilion, Colour::Purple];
+        [Colour::Black, Colour::Violet, Colour::Green, Colour::Slate, Colour::Ochre, Colour::Olive];
     COLOURS[number % COLOURS.len()]
 }

@@ -1,11 +1,14 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
+use super::cells::Cells;
 
 /// Side of a plot's own coordinates; it is stretched to whatever room the page has.
 pub(super) const SIDE: f64 = 1000.0;
 /// Columns a curve is thinned to.
 const COLUMNS: f64 = 1000.0;
+/// Columns of a band: about the pixels of a diagram that has another beside it.
+const BAND_COLUMNS: f64 = 500.0;
 
 /// What a column of a curve holds: two values, in the order they came.
 #[derive(Clone, Copy)]
@@ -16,9 +19,54 @@ struct Column {
     count: u32,
 }
 
+/// A curve over time.
+pub(super) struct Curve {
+    /// Path data of the whole.
+    pub(super) path: String,
+    /// Its values, for who looks closer.
+    pub(super) cells: Cells,
+}
+
+/// A curve over time.
+pub(super) fn curve(points: impl Iterator<Item = (f64, Option<f64>)>, x: &Axis, y: &Axis) -> Curve {
+    let points: Vec<_> = points.collect();
+    Curve { path: path(points.iter().copied(), x, y), cells: Cells::new(&points, x, y) }
+}
+
+/// A band from the lowest to the highest of its values, and their mean: what swings faster than pixels follow each other.
+pub(super) struct Band {
+    /// The band, with the values.
+    pub(super) spread: Curve,
+    /// Path data of the mean.
+    pub(super) mean: String,
+}
+
+/// A band over time; a `None` ends a piece of it.
+pub(super) fn band(points: impl Iterator<Item = (f64, Option<f64>)>, x: &Axis, y: &Axis) -> Band {
+    let points: Vec<_> = points.map(|(at, value)| (at, value.filter(|v| v.is_finite()))).collect();
+    let (mut path, mut mean) = (String::new(), String::new());
+    let column = |at: f64| (x.share(at) * BAND_COLUMNS).floor() as i64;
+    let height = |value: f64| tenth((1.0 - y.share(value)) * SIDE);
+    for piece in points.chunk_by(|a, b| a.1.is_some() == b.1.is_some()).filter(|piece| piece[0].1.is_some()) {
+        let mut back = Vec::new();
+        for run in piece.chunk_by(|a, b| column(a.0) == column(b.0)) {
+            let at = tenth(column(run[0].0) as f64 * SIDE / BAND_COLUMNS);
+            let values = || run.iter().filter_map(|p| p.1);
+            let letter = if back.is_empty() { 'M' } else { 'L' };
+            // writing to a String cannot fail
+            let _ = write!(mean, "{letter}{at} {}", height(values().sum::<f64>() / run.len() as f64));
+            let _ = write!(path, "{letter}{at} {}", height(values().fold(f64::NEG_INFINITY, f64::max)));
+            back.push(format!("L{at} {}", height(values().fold(f64::INFINITY, f64::min))));
+        }
+        path.extend(back.into_iter().rev());
+        path.push('Z');
+    }
+    Band { spread: Curve { path, cells: Cells::new(&points, x, y) }, mean }
+}
+
 /// SVG path data of a curve over time, thinned so that no peak is lost: each column keeps its lowest and its highest
 /// value. A `None` lifts the pen.
-pub(super) fn curve(points: impl Iterator<Item = (f64, Option<f64>)>, x: &Axis, y: &Axis) -> String {
+fn path(points: impl Iterator<Item = (f64, Option<f64>)>, x: &Axis, y: &Axis) -> String {
     let mut out = String::new();
     let mut column: Option<Column> = None;
     let mut pen_down = false;
@@ -90,19 +138,19 @@ pub(super) fn strip(points: impl Iterator<Item = (f64, bool)>, x: &Axis, heights
             (None, true) => Some((place, place)),
             (Some((from, _)), true) => Some((from, place)),
             (Some((from, to)), false) if place - to > SIDE / COLUMNS => {
-                band(&mut out, from, to, heights);
+                rectangle(&mut out, from, to, heights);
                 None
             }
             (open, _) => open,
         };
     }
     if let Some((from, to)) = open {
-        band(&mut out, from, to, heights);
+        rectangle(&mut out, from, to, heights);
     }
     out
 }
 
-fn band(out: &mut String, from: f64, to: f64, [top, bottom]: [f64; 2]) {
+fn rectangle(out: &mut String, from: f64, to: f64, [top, bottom]: [f64; 2]) {
     let _ = write!(out, "M{} {top}H{}V{bottom}H{}Z", tenth(from), tenth(to), tenth(from));
 }
 
@@ -115,7 +163,7 @@ mod tests {
         let x = Axis::new(0.0, 100.0, 5);
         let y = Axis::new(-1.0, 3.0, 4);
         let spike = |i: u32| if i == 77_777 { 3.0 } else { f64::from(i % 2) };
-        let path = curve((0..100_000).map(|i| (f64::from(i) * 1e-3, Some(spike(i)))), &x, &y);
+        let path = path((0..100_000).map(|i| (f64::from(i) * 1e-3, Some(spike(i)))), &x, &y);
         assert!(path.contains(" 0L"), "the spike reaches the top");
         assert!(path.matches(['M', 'L']).count() <= 2002);
         assert_eq!(path.matches('M').count(), 1);
@@ -127,7 +175,17 @@ mod tests {
         let y = Axis::new(0.0, 1.0, 2);
         let points =
             [(0.0, Some(0.0)), (1.0, Some(1.0)), (1.5, None), (2.0, Some(1.0)), (3.0, Some(f64::NAN))];
-        assert_eq!(curve(points.into_iter(), &x, &y), "M0 1000L333 0M666 0");
+        assert_eq!(path(points.into_iter(), &x, &y), "M0 1000L333 0M666 0");
+    }
+
+    #[test]
+    fn a_band_reaches_from_the_lowest_to_the_highest() {
+        let (x, y) = (Axis::new(0.0, 1.0, 3), Axis::new(0.0, 1.0, 2));
+        let swings = band((0..1000).map(|i| (f64::from(i) * 1e-3, Some(f64::from(i % 2)))), &x, &y);
+        assert!(
+            swings.spread.path.starts_with("M0 0L2 0") && swings.spread.path.ends_with("L2 1000L0 1000Z")
+        );
+        assert!(swings.mean.starts_with("M0 500L2 500"));
     }
 
     #[test]

@@ -3,10 +3,11 @@ use tracelight_stroke::Point;
 use tracelight_trajectory::Binding;
 
 use super::axis::Axis;
-use super::curve::{bands, curve, strip};
+use super::curve::{Band, Curve, band, bands, curve, strip};
 use super::html::number;
 use super::plot::Plot;
 use crate::finished::Finished;
+use crate::limit;
 use crate::sample::{Sample, samples};
 
 /// Marks along the time axis; on a phone their labels still stand apart.
@@ -40,8 +41,32 @@ impl Over<'_> {
         Plot::new(title, y_title, self.time, y).area("lit", &self.lit, Some("light on"))
     }
 
-    fn curve(&self, y: &Axis, value: impl Fn(&Sample<'_>) -> Option<f64>) -> String {
+    fn curve(&self, y: &Axis, value: impl Fn(&Sample<'_>) -> Option<f64>) -> Curve {
         curve(self.samples.iter().map(|s| (s.t_s, value(s))), &self.time, y)
+    }
+
+    fn band(&self, y: &Axis, value: impl Fn(&Sample<'_>) -> Option<f64>) -> Band {
+        band(self.samples.iter().map(|s| (s.t_s, value(s))), &self.time, y)
+    }
+
+    /// The largest of something that errs while light falls.
+    fn largest_lit(&self, size: impl Fn(&Sample<'_>) -> f64) -> f64 {
+        let sizes = self.samples.iter().filter(|s| s.tick.light).map(size);
+        sizes.filter(|size| size.is_finite()).fold(0.0, f64::max)
+    }
+
+    /// Says what of the dark is above a diagram that ends at `top`; nothing where nothing is.
+    fn dark_note(&self, top: f64, unit: &str, size: impl Fn(&Sample<'_>) -> f64) -> String {
+        let dark = self.samples.iter().filter(|s| !s.tick.light).map(|s| (s.t_s, size(s)));
+        let Some((at_s, most)) = dark.filter(|d| d.1.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1)) else {
+            return String::new();
+        };
+        if most <= top {
+            return String::new();
+        }
+        let first_light_s = self.samples.iter().find(|s| s.tick.light).map_or(f64::INFINITY, |s| s.t_s);
+        let when = if at_s < first_light_s { "Dark start" } else { "While dark up to" };
+        format!("{when} {} {unit}, not shown.", number(most, 3))
     }
 
     fn axis(&self, value: impl Fn(&Sample<'_>) -> f64, marks: usize) -> Axis {
@@ -61,21 +86,24 @@ fn lit_bands(samples: &[Sample<'_>]) -> String {
 fn error(over: &Over<'_>) -> Plot {
     let limit = over.job.tolerance_mm;
     let lit_error = |s: &Sample<'_>| s.error_mm().filter(|_| s.tick.light);
-    let largest = over.samples.iter().filter_map(lit_error).fold(0.0, f64::max);
+    let size = |s: &Sample<'_>| s.error_mm().unwrap_or(f64::NAN);
+    let largest = over.largest_lit(size);
     // the limit is shown where the curve would still be readable beside it
     let in_view = largest > limit / 6.0;
     let top = if in_view { largest.max(limit) * 1.08 } else { (largest * 1.25).max(1e-3) };
     let y = Axis::around([0.0, top].into_iter(), 4);
-    let dark_error = |s: &Sample<'_>| s.error_mm().filter(|_| !s.tick.light);
+    let dark_error = |s: &Sample<'_>| s.error_mm().filter(|&e| !s.tick.light && e <= y.high());
+    let dark = over.dark_note(y.high(), "mm", size);
     let plot = over
         .plot("Tracking error", "spot to its planned place, mm", y)
         .line("dark", &over.curve(&y, dark_error), Some("while dark"))
-        .line("error", &over.curve(&y, lit_error), Some("while lit"));
+        .band("error", &over.band(&y, lit_error), Some("while lit: mean, and lowest to highest"));
     let name = format!("limit {} mm", number(limit, 2));
     if in_view {
-        plot.level("limit", limit, Some(&name))
+        plot.level("limit", limit, Some(&name)).note(&dark)
     } else {
-        plot.note(&format!("The laser darkens at {} mm, above this diagram.", number(limit, 2)))
+        let above = format!("The laser darkens at {} mm, above this diagram.", number(limit, 2));
+        plot.note(format!("{above} {dark}").trim_end())
     }
 }
 
@@ -97,12 +125,16 @@ fn following_error(over: &Over<'_>) -> Plot {
         (f64::from(s.tick.telemetry.setpoint[joint].position_rad) - s.tick.angle_rad[joint]) * 1e3
     };
     let largest = |s: &Sample<'_>| error(s, Joint::Pan).abs().max(error(s, Joint::Tilt).abs());
-    let reach = over.samples.iter().map(largest).fold(0.0, f64::max).max(1e-3);
+    // what light shows decides; a job that is never lit is shown whole
+    let lit = over.largest_lit(largest);
+    let all = over.samples.iter().map(largest).fold(0.0, f64::max);
+    let reach = if lit > 0.0 { lit * 1.15 } else { all }.max(1e-3);
     let y = Axis::around([-reach, reach].into_iter(), 4);
-    let curve = |joint: Joint| over.curve(&y, |s| Some(error(s, joint)));
+    let curve = |joint: Joint| over.curve(&y, |s| Some(error(s, joint)).filter(|e| e.abs() <= y.high()));
     over.plot("Following error of the joints", "desired − actual, mrad", y)
         .line("pan", &curve(Joint::Pan), Some("pan"))
         .line("tilt", &curve(Joint::Tilt), Some("tilt"))
+        .note(&over.dark_note(y.high(), "mrad", largest))
 }
 
 fn torque(over: &Over<'_>, joint: Joint) -> Plot {
@@ -116,8 +148,12 @@ fn torque(over: &Over<'_>, joint: Joint) -> Plot {
     };
     let limit = format!("limit ±{} N m", number(over.job.torque_limit_nm[joint], 3));
     over.plot(title, "share of the limit, %", y)
-        .line(&format!("wanted {joint}"), &over.curve(&y, |s| Some(planned(s))), Some("planned"))
-        .line(&joint.to_string(), &over.curve(&y, |s| Some(used(s))), Some("commanded"))
+        .line("planned", &over.curve(&y, |s| Some(planned(s))), Some("planned"))
+        .band(
+            &joint.to_string(),
+            &over.band(&y, |s| Some(used(s))),
+            Some("commanded: mean, and lowest to highest"),
+        )
         .level("limit", 100.0, Some(&limit))
         .level("limit", -100.0, None)
 }
@@ -135,46 +171,59 @@ pub(super) fn schedule(job: &Finished<'_>) -> String {
         strip(points().map(|(t, p)| (t, p.lit && belongs(p.stroke))), &time, STRIP)
     };
     let lit = bands(points().map(|(t, p)| (t, p.lit)), &time);
+    // what is faster ends below the strips
+    let shown = |value: &f64| y.share(*value) <= 1.0 - BELOW_STRIPS / 1000.0;
+    let speeds = |points: &mut dyn Iterator<Item = (f64, Option<f64>)>| {
+        curve(points.map(|(t, speed)| (t, speed.filter(shown))), &time, &y)
+    };
     let plot = Plot::new("Time plan and speed", "speed of the spot, m/s", time, y)
         .over("time of the plan, s")
+        .shifted(begun_s(job))
         .height(13.0)
         .area("lit", &lit, None)
         .area("stroke-odd", &strokes(false), Some("strokes, by number"))
         .area("stroke-even", &strokes(true), None);
     let plot = limits(job, &time)
         .into_iter()
-        .fold(plot, |plot, (class, data, name)| plot.area(class, &data, Some(&name)))
-        .line("wanted speed", &curve(planned_speed(job), &time, &y), Some("planned"))
-        .line("speed", &curve(actual_speed(job), &time, &y), Some("actual"))
+        .fold(plot, |plot, (class, data, name)| plot.area(&class, &data, Some(&name)))
+        .line("wanted speed", &speeds(&mut planned_speed(job)), Some("planned"))
+        .line("speed", &speeds(&mut actual_speed(job)), Some("actual"))
         .level("set", job.set_speed_m_s, Some(&format!("set speed {} m/s", number(job.set_speed_m_s, 4))));
-    let plot = numbers(job).into_iter().fold(plot, |plot, (at, number)| plot.label(at, &number));
+    let wide = job.plan.duration_s() * 0.045;
+    let plot = numbers(job)
+        .into_iter()
+        .fold(plot, |plot, (span, number)| plot.label(span, span.1 - span.0 < wide, &number));
     plot.note(&cut_note(job, &y)).html()
 }
 
-/// Heights of the strip of strokes and of the one of limits below it, of 1000 from the top.
+/// Heights of the strip of strokes and of the one of limits below it, of 1000 from the top; what is pan's alone lies in the upper half of
+/// the latter, what is tilt's in its lower half.
 const STRIP: [f64; 2] = [0.0, 95.0];
-const LIMIT_STRIP: [f64; 2] = [103.0, 143.0];
+const LIMIT_STRIP: [f64; 2] = [105.0, 149.0];
+/// Where the curves begin.
+const BELOW_STRIPS: f64 = 160.0;
 
-/// What holds the motion back, over time: for each limit that does its class, its spans and its name.
-fn limits(job: &Finished<'_>, time: &Axis) -> Vec<(&'static str, String, String)> {
-    let points = || job.plan.points.iter().enumerate().map(|(i, p)| (i as f64 * TICK_F64_S, p.limit));
-    let spans = |limit: Binding| strip(points().map(|(t, l)| (t, l == Some(limit))), time, LIMIT_STRIP);
-    let all = Binding::ALL.into_iter().map(|limit| (limit_class(limit), spans(limit), limit.to_string()));
-    all.filter(|(_, data, _)| !data.is_empty()).collect()
+const fn lane(limit: Binding) -> [f64; 2] {
+    let [top, bottom] = LIMIT_STRIP;
+    let middle = 0.5 * (top + bottom);
+    match limit::joint(limit) {
+        None => LIMIT_STRIP,
+        Some(Joint::Pan) => [top, middle],
+        Some(Joint::Tilt) => [middle, bottom],
+    }
 }
 
-const fn limit_class(limit: Binding) -> &'static str {
-    match limit {
-        Binding::SpeedCap => "binds-cap",
-        Binding::Torque(Joint::Pan) => "binds-torque-pan",
-        Binding::Torque(Joint::Tilt) => "binds-torque-tilt",
-        Binding::Acceleration(Joint::Pan) => "binds-acceleration-pan",
-        Binding::Acceleration(Joint::Tilt) => "binds-acceleration-tilt",
-        Binding::Jerk(Joint::Pan) => "binds-jerk-pan",
-        Binding::Jerk(Joint::Tilt) => "binds-jerk-tilt",
-        Binding::JointSpeed(Joint::Pan) => "binds-speed-pan",
-        Binding::JointSpeed(Joint::Tilt) => "binds-speed-tilt",
-    }
+/// What holds the motion back, over time: for each limit that does its class, its spans and its name.
+fn limits(job: &Finished<'_>, time: &Axis) -> Vec<(String, String, String)> {
+    let points = || job.plan.points.iter().enumerate().map(|(i, p)| (i as f64 * TICK_F64_S, p.limit));
+    let spans = |limit: Binding| strip(points().map(|(t, l)| (t, l == Some(limit))), time, lane(limit));
+    let named = |limit: Binding| match limit::joint(limit) {
+        None => limit.to_string(),
+        Some(Joint::Pan) => format!("{limit} (above)"),
+        Some(Joint::Tilt) => format!("{limit} (below)"),
+    };
+    let all = Binding::ALL.into_iter().map(|limit| (limit::class(limit), spans(limit), named(limit)));
+    all.filter(|(_, data, _)| !data.is_empty()).collect()
 }
 
 /// Half of the ticks a speed is taken over.
@@ -211,7 +260,7 @@ const MOST_SET_SPEEDS: f64 = 2.0;
 fn speed_axis(job: &Finished<'_>) -> Axis {
     let fastest = fastest(job);
     let top = fastest.min(job.set_speed_m_s * MOST_SET_SPEEDS).max(job.set_speed_m_s * 1.1);
-    Axis::new(0.0, top * 1.2, 4) // air for the strips of strokes and limits
+    Axis::new(0.0, top / (1.0 - BELOW_STRIPS / 1000.0) * 1.001, 4)
 }
 
 fn fastest(job: &Finished<'_>) -> f64 {
@@ -220,21 +269,27 @@ fn fastest(job: &Finished<'_>) -> f64 {
 
 fn cut_note(job: &Finished<'_>, y: &Axis) -> String {
     let fastest = fastest(job);
-    if fastest <= y.high() {
+    if y.share(fastest) <= 1.0 - BELOW_STRIPS / 1000.0 {
         return String::new();
     }
     format!("Travel reaches {} m/s, above this diagram.", number(fastest, 3))
 }
 
-/// Strokes wide enough for their number: the middle of their span and the number, from one.
-fn numbers(job: &Finished<'_>) -> Vec<(f64, String)> {
-    let wide = job.plan.duration_s() * 0.045;
+/// When the run began with the plan, s.
+fn begun_s(job: &Finished<'_>) -> f64 {
+    let mut all = samples(job.plan, job.run);
+    let first = all.find(Sample::is_tracing);
+    first.map_or(0.0, |s| s.t_s - f64::from(s.tick.telemetry.plan_tick) * TICK_F64_S)
+}
+
+/// Each stroke's span of the plan and its number, from one.
+fn numbers(job: &Finished<'_>) -> Vec<((f64, f64), String)> {
     let mut found = Vec::new();
     let mut start = 0;
     for span in job.plan.points.chunk_by(|a, b| a.stroke == b.stroke) {
-        let (from, length) = (start as f64 * TICK_F64_S, span.len() as f64 * TICK_F64_S);
-        if let (Some(stroke), true) = (span[0].stroke, length >= wide) {
-            found.push((from + length / 2.0, (u64::from(stroke) + 1).to_string()));
+        let (from, to) = (start as f64 * TICK_F64_S, (start + span.len()) as f64 * TICK_F64_S);
+        if let Some(stroke) = span[0].stroke {
+            found.push(((from, to), (u64::from(stroke) + 1).to_string()));
         }
         start += span.len();
     }

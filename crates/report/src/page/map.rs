@@ -1,16 +1,15 @@
 use std::fmt::Write;
 
+use tracelight_chart::{ERROR_STEPS_MM, STEPS, error_step};
 use tracelight_stroke::{Affine, Point};
 
-use super::axis::{Axis, round_step};
+use super::axis::round_step;
 use super::curve::tenth;
 use super::html::{escaped, jpeg_uri, number};
 use crate::error::EncodeError;
 use crate::finished::Finished;
 use crate::sample::{Sample, samples};
 
-/// Steps of the error's colours; the style sheet has a class for each.
-pub(super) const COLOURS: usize = 8;
 /// The longer side of the map in its own units; a tenth of one is kept.
 const SIDE: f64 = 1000.0;
 /// Ways shorter than this many units are joined: a third of a pixel on a large screen.
@@ -22,9 +21,7 @@ const NUMBERED: usize = 24;
 pub(super) fn map(job: &Finished<'_>) -> Result<String, EncodeError> {
     let place = Place::new(job);
     let samples = || samples(job.plan, job.run);
-    let largest = samples().filter(|s| s.tick.light).filter_map(|s| s.error_mm()).fold(0.0, f64::max);
-    let scale = Axis::around([0.0, largest.max(0.01)].into_iter(), 4).high();
-    let mut drawn = Trace { bins: Default::default(), travel: String::new(), place: &place, scale };
+    let mut drawn = Trace { bins: Default::default(), travel: String::new(), place: &place };
     drawn.follow(samples());
     let mut layers = picture(job, &place)?;
     let _ = write!(layers, r#"<path class="travel" d="{}"/>"#, drawn.travel);
@@ -34,24 +31,17 @@ pub(super) fn map(job: &Finished<'_>) -> Result<String, EncodeError> {
         width = place.width,
         height = place.height,
         layers = layers,
-        numbers = numbers(job, &place),
+        numbers = numbers(job, &place) + &worst(job, &place),
         bar = bar(&place),
-        swatches = swatches(),
-        half = number(scale / 2.0, 3),
-        top = number(scale, 3),
+        scale = scale("tracking error"),
         name = escaped(&job.title()),
     ))
 }
 
 /// Path data as paths, each in its error's colour.
-pub(super) fn coloured(bins: &[String; COLOURS]) -> String {
+pub(super) fn coloured(bins: &[String; STEPS]) -> String {
     let drawn = bins.iter().enumerate().filter(|(_, data)| !data.is_empty());
     drawn.map(|(bin, data)| format!(r#"<path class="trace e{bin}" d="{data}"/>"#)).collect()
-}
-
-/// The colour of an error, of those up to a scale.
-pub(super) fn bin_of(error_mm: f64, scale_mm: f64) -> usize {
-    ((error_mm / scale_mm * COLOURS as f64) as usize).min(COLOURS - 1)
 }
 
 /// From target metres to the map's units, y down.
@@ -91,10 +81,9 @@ impl Place {
 
 /// Path data of what was drawn, growing tick by tick.
 struct Trace<'a> {
-    bins: [String; COLOURS],
+    bins: [String; STEPS],
     travel: String,
     place: &'a Place,
-    scale: f64,
 }
 
 /// Where the last piece of path data ended.
@@ -138,7 +127,7 @@ impl Trace<'_> {
             push(&mut self.travel, 'L', at);
             return Pen { at, bin: None, worst_mm: 0.0 };
         }
-        let bin = bin_of(worst_mm, self.scale);
+        let bin = error_step(worst_mm);
         if before.bin != Some(bin) {
             push(&mut self.bins[bin], 'M', before.at);
         }
@@ -187,6 +176,17 @@ fn numbers(job: &Finished<'_>, place: &Place) -> String {
     strokes.iter().map(|s| place.at(s.path.start())).enumerate().map(number).collect()
 }
 
+/// A flag where the lit spot was furthest from its planned place.
+fn worst(job: &Finished<'_>, place: &Place) -> String {
+    let lit = samples(job.plan, job.run).filter(|s| s.tick.light);
+    let errors = lit.filter_map(|s| Some((place.at(s.tick.spot?), s.error_mm()?)));
+    let worst = errors.filter(|e| e.1.is_finite() && place.shows(e.0)).max_by(|a, b| a.1.total_cmp(&b.1));
+    let Some((p, error_mm)) = worst else { return String::new() };
+    let (left, top) = (p.x / place.width * 100.0, p.y / place.height * 100.0);
+    let side = if left > 70.0 { "worst left" } else { "worst" };
+    format!(r#"<i class="{side}" style="left:{left:.2}%;top:{top:.2}%">⚑ {} mm</i>"#, number(error_mm, 4))
+}
+
 /// A scale bar of a round length.
 pub(super) fn bar(place: &Place) -> String {
     let length_mm = round_step(place.width / place.units_per_m * 1e3 * 0.1);
@@ -201,8 +201,15 @@ pub(super) fn bar(place: &Place) -> String {
     format!(r#"<div class="bar" style="width:{share:.2}%"><span>{text}</span></div>"#)
 }
 
-pub(super) fn swatches() -> String {
-    (0..COLOURS).map(|i| format!(r#"<i class="e{i}"></i>"#)).collect()
+/// What the colours say: where each begins, the same on every page.
+pub(super) fn scale(of: &str) -> String {
+    let swatches: String = (0..STEPS).map(|i| format!(r#"<i class="e{i}"></i>"#)).collect();
+    let from =
+        |mm: &f64| format!("<i>{}</i>", number(*mm, if *mm < 1.0 { 3 } else { 1 }).trim_end_matches('0'));
+    let marks: String = ERROR_STEPS_MM.iter().map(from).collect();
+    format!(
+        r#"<div class="scale"><span>{of}, mm</span><span class="swatches">{swatches}</span><span class="scale-marks">{marks}</span></div>"#
+    )
 }
 
 #[cfg(test)]
@@ -215,7 +222,7 @@ mod tests {
         let fixture = fixture::star();
         let job = fixture.job();
         let place = Place::new(&job);
-        let mut drawn = Trace { bins: Default::default(), travel: String::new(), place: &place, scale: 0.5 };
+        let mut drawn = Trace { bins: Default::default(), travel: String::new(), place: &place };
         drawn.follow(samples(job.plan, job.run));
         let length: f64 = drawn.bins.iter().map(|data| way(data)).sum();
         let wanted = job.drawing.length(1e-6) * place.units_per_m;

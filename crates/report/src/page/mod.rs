@@ -1,9 +1,10 @@
 //! `report.html`: the whole job on one page that needs nothing but itself.
 //!
-//! No request leaves the page (its own policy forbids it); the script only moves a cursor. Everything that came from
+//! No request leaves the page (its own policy forbids it); the script only looks closer, plays, and darkens the wall. Everything that came from
 //! outside, names above all, is escaped.
 
 mod axis;
+mod cells;
 mod curve;
 mod diagrams;
 pub mod html;
@@ -33,8 +34,8 @@ pub fn page(job: &Finished<'_>, figures: &Summary, painting: &Raster) -> Result<
     let (class, verdict) = tables::verdict(job);
     Ok(format!(
         include_str!("page.html"),
-        style = include_str!("style.css"),
-        script = include_str!("cursor.js"),
+        style = tracelight_chart::page_colours() + include_str!("style.css"),
+        script = include_str!("run.js"),
         track = track(job),
         title = escaped(&job.title()),
         subtitle = tables::subtitle(job),
@@ -58,7 +59,7 @@ pub fn page(job: &Finished<'_>, figures: &Summary, painting: &Raster) -> Result<
 
 /// Where the spot was, thinned, for the cursor: `[[t_s, x_mm, y_mm, error_mm, lit], …]`, and the map's frame.
 fn track(job: &Finished<'_>) -> String {
-    const MOST: usize = 1500;
+    const MOST: usize = 4000;
     let every = job.run.ticks.len().div_ceil(MOST).max(1);
     let mut rows = String::new();
     for sample in samples(job.plan, job.run).step_by(every) {

@@ -1,7 +1,7 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
-use super::curve::SIDE;
+use super::curve::{Band, Curve, SIDE};
 use super::html::escaped;
 
 /// One diagram over time. Its curves are an SVG stretched to the room there is; its words and numbers are text of the
@@ -13,6 +13,7 @@ pub(super) struct Plot {
     x: Axis,
     y: Axis,
     height_rem: f64,
+    shift_s: f64,
     layers: String,
     legend: String,
     labels: String,
@@ -29,6 +30,7 @@ impl Plot {
             x,
             y,
             height_rem: 11.0,
+            shift_s: 0.0,
             layers: String::new(),
             legend: String::new(),
             labels: String::new(),
@@ -48,6 +50,12 @@ impl Plot {
         self
     }
 
+    /// What its time is behind the run's, s.
+    pub(super) const fn shifted(mut self, shift_s: f64) -> Self {
+        self.shift_s = shift_s;
+        self
+    }
+
     /// Adds an area of a class of the style sheet, from path data.
     pub(super) fn area(mut self, class: &str, data: &str, legend: Option<&str>) -> Self {
         if !data.is_empty() {
@@ -57,25 +65,46 @@ impl Plot {
         self
     }
 
-    /// Adds a curve of a class of the style sheet, from path data.
-    pub(super) fn line(mut self, class: &str, data: &str, legend: Option<&str>) -> Self {
-        if !data.is_empty() {
-            let _ = write!(self.layers, r#"<path class="line {class}" d="{data}"/>"#);
+    /// Adds a curve of a class of the style sheet.
+    pub(super) fn line(mut self, class: &str, curve: &Curve, legend: Option<&str>) -> Self {
+        if !curve.path.is_empty() {
+            let (path, values) = (&curve.path, curve.cells.attributes());
+            let _ = write!(self.layers, r#"<path class="line {class}" d="{path}"{values}/>"#);
         }
         self.explain(class, "dash", legend);
         self
     }
 
-    /// Adds a level line across the diagram.
-    pub(super) fn level(self, class: &str, value: f64, legend: Option<&str>) -> Self {
-        let height = (1.0 - self.y.share(value)) * SIDE;
-        self.line(class, &format!("M0 {height:.1}H{SIDE}"), legend)
+    /// Adds a band of a class of the style sheet, and its mean as a line.
+    pub(super) fn band(mut self, class: &str, band: &Band, legend: Option<&str>) -> Self {
+        let Band { spread: Curve { path, cells }, mean } = band;
+        let values = cells.attributes();
+        let _ = write!(
+            self.layers,
+            r#"<path class="band {class}" d="{path}" data-band{values}/><path class="line {class}" d="{mean}"/>"#
+        );
+        self.explain(class, "dash", legend);
+        self
     }
 
-    /// Adds a short text at a place of the horizontal axis, near the top.
-    pub(super) fn label(mut self, at: f64, text: &str) -> Self {
-        let left = self.x.share(at) * 100.0;
-        let _ = write!(self.labels, r#"<b style="left:{left:.2}%">{}</b>"#, escaped(text));
+    /// Adds a level line across the diagram.
+    pub(super) fn level(mut self, class: &str, value: f64, legend: Option<&str>) -> Self {
+        let height = (1.0 - self.y.share(value)) * SIDE;
+        let _ = write!(self.layers, r#"<path class="line {class}" d="M0 {height:.1}H{SIDE}"/>"#);
+        self.explain(class, "dash", legend);
+        self
+    }
+
+    /// Adds a short text to a stretch of the horizontal axis, near the top; one that is `narrow` is seen by who looks closer.
+    pub(super) fn label(mut self, (from, to): (f64, f64), narrow: bool, text: &str) -> Self {
+        let (a, b) = (self.x.share(from), self.x.share(to));
+        let class = if narrow { r#" class="narrow""# } else { "" };
+        let _ = write!(
+            self.labels,
+            r#"<b{class} data-from="{a:.5}" data-to="{b:.5}" style="left:{:.2}%">{}</b>"#,
+            50.0 * (a + b),
+            escaped(text)
+        );
         self
     }
 
@@ -124,6 +153,7 @@ impl Plot {
             height = self.height_rem,
             from = self.x.low(),
             to = self.x.high(),
+            shift = self.shift_s,
             grid = grid,
             texts_x = texts_x,
             texts_y = texts_y,

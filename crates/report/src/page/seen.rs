@@ -1,11 +1,12 @@
 use std::fmt::Write;
 
+use tracelight_chart::{STEPS, error_step};
 use tracelight_eye::seen::SeenLight;
 use tracelight_maths::{log10, powf};
 
 use super::axis::Axis;
-use super::html::{escaped, jpeg_uri, number};
-use super::map::{COLOURS, Place, bar, bin_of, coloured, picture, swatches};
+use super::html::{escaped, jpeg_uri};
+use super::map::{Place, bar, coloured, picture, scale};
 use crate::error::EncodeError;
 use crate::finished::Finished;
 
@@ -47,22 +48,16 @@ fn marks(job: &Finished<'_>, seen: &SeenLight) -> Result<String, EncodeError> {
     sorted.sort_by(f64::total_cmp);
     // a spot that was lost for a moment must not make all others points
     let usual = sorted[(sorted.len() - 1) * 99 / 100];
-    let scale = Axis::around([0.0, usual.max(0.01)].into_iter(), 4).high();
-    let times = round_times(0.03 * place.width / (scale * 1e-3 * place.units_per_m));
-    let mut bins: [String; COLOURS] = Default::default();
+    let longest = Axis::around([0.0, usual.max(0.01)].into_iter(), 4).high();
+    let times = round_times(0.03 * place.width / (longest * 1e-3 * place.units_per_m));
+    let mut bins: [String; STEPS] = Default::default();
     for mark in &seen.marks {
         let (from, to) = (place.at(mark.asked), place.at(mark.asked + (mark.seen - mark.asked) * times));
         if !(place.shows(from) && place.shows(to)) {
             continue;
         }
-        let _ = write!(
-            bins[bin_of(mark.off_mm(), scale)],
-            "M{:.1} {:.1}L{:.1} {:.1}",
-            from.x,
-            from.y,
-            to.x,
-            to.y
-        );
+        let _ =
+            write!(bins[error_step(mark.off_mm())], "M{:.1} {:.1}L{:.1} {:.1}", from.x, from.y, to.x, to.y);
     }
     let layers = picture(job, &place)? + &coloured(&bins);
     Ok(format!(
@@ -71,10 +66,8 @@ fn marks(job: &Finished<'_>, seen: &SeenLight) -> Result<String, EncodeError> {
         height = place.height,
         layers = layers,
         bar = bar(&place),
-        swatches = swatches(),
+        scale = scale("seen from asked"),
         times = times,
-        half = number(scale / 2.0, 3),
-        top = number(scale, 3),
         name = escaped(&job.title()),
     ))
 }

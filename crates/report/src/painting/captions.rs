@@ -60,7 +60,8 @@ fn under_the_sheet(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {
     CHALK.text(chalk, &name, LARGE, Point::new(middle, y), Align::Middle);
     let size = job.picture.map(|p| format!("{} × {} px", p.raster.width(), p.raster.height()));
     let size = size.unwrap_or_else(|| counted(job.drawing.strokes.len(), "stroke"));
-    FAINT.text(chalk, &size, SMALL, Point::new(middle, y + 24.0), Align::Middle);
+    let scale = if layout.sheet_to_scale { "on A4" } else { "not to scale" };
+    FAINT.text(chalk, &format!("{size}, {scale}"), SMALL, Point::new(middle, y + 24.0), Align::Middle);
 }
 
 fn size_label(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {
@@ -72,19 +73,23 @@ fn size_label(chalk: &mut Plane, job: &Finished<'_>, layout: &Layout) {
         format!("{} × {} cm", short(w * 100.0), short(h * 100.0))
     };
     CHALK.text(chalk, &metric, LARGE, at, Align::Left);
-    let inches = format!("{} × {} in", short(w / INCH_M), short(h / INCH_M));
+    // nobody counts ten feet in inches
+    let (unit_m, unit) = if w.max(h) >= 10.0 * FOOT_M { (FOOT_M, "ft") } else { (INCH_M, "in") };
+    let inches = format!("{} × {} {unit}", short(w / unit_m), short(h / unit_m));
     FAINT.text(chalk, &inches, SMALL, at + Vec2::new(0.0, 24.0), Align::Left);
 }
 
 const INCH_M: f64 = 0.0254;
+const FOOT_M: f64 = 12.0 * INCH_M;
 
 /// Centimetres above the line, inches below it, both from its left end.
 fn scale_bar(chalk: &mut Plane, layout: &Layout) {
     let width_m = (layout.wall.1.x - layout.wall.0.x) / layout.px_per_m;
     let metric = round_length(width_m * 0.28, &[5.0, 2.0, 1.0]);
-    // 4 in beside 10 cm is 1.6 % longer, and the neighbour people expect
-    let inches = round_length(metric / INCH_M * 1.02, &[8.0, 4.0, 2.0, 1.0]) * INCH_M;
-    let longest = metric.max(inches) * layout.px_per_m;
+    // 4 in beside 10 cm is 1.6 % longer, and the neighbour people expect; beside metres it is feet
+    let (foot_or_inch_m, foot_or_inch) = if metric >= 1.0 { (FOOT_M, "ft") } else { (INCH_M, "in") };
+    let imperial = round_length(metric / foot_or_inch_m * 1.02, &[8.0, 6.0, 4.0, 2.0, 1.0]) * foot_or_inch_m;
+    let longest = metric.max(imperial) * layout.px_per_m;
     // a narrow trace has no room beside its size label
     let beside = layout.wall.1.x - layout.wall.0.x > 420.0;
     let left = if beside { layout.wall.1.x - longest } else { layout.wall.1.x + 40.0 };
@@ -93,8 +98,8 @@ fn scale_bar(chalk: &mut Plane, layout: &Layout) {
     let unit = if metric >= 1.0 { (1.0, "m") } else { (0.01, "cm") };
     let label = format!("{} {}", short(metric / unit.0), unit.1);
     tick_marks(chalk, Point::new(left, y), metric * layout.px_per_m, -1.0, &label);
-    let label = format!("{} in", short(inches / INCH_M));
-    tick_marks(chalk, Point::new(left, y), inches * layout.px_per_m, 1.0, &label);
+    let label = format!("{} {foot_or_inch}", short(imperial / foot_or_inch_m));
+    tick_marks(chalk, Point::new(left, y), imperial * layout.px_per_m, 1.0, &label);
 }
 
 /// Marks at both ends and the middle of a scale, `side` −1 above it and 1 below, and its label.

@@ -1,3 +1,4 @@
+use tracelight_maths::single;
 use tracelight_sim::Run;
 use tracelight_stroke::Point;
 
@@ -7,10 +8,14 @@ use crate::finished::Finished;
 
 /// What an open shutter collects of the spot: the line itself, and what lens and wall scatter of it.
 pub(super) struct Exposure {
-    /// The line, at full size.
+    /// The line, as wide as the spot is at this scale; reduced so often.
     core: Plane,
-    /// Scatter in the lens close by, reduced once.
+    core_level: u32,
+    core_gain: f32,
+    /// Scatter in the lens close by, reduced once or more.
     halo: Plane,
+    halo_level: u32,
+    halo_gain: f32,
     /// Veil in the lens, reduced three times.
     veil: Plane,
     /// Light the room sends back to the wall, reduced four times.
@@ -27,10 +32,15 @@ pub(super) struct Light {
 
 // Brightness where a line drawn at the set speed has its middle, in units of the film's white. A Gaussian's peak is
 // 0.4/σ, so each gain below is the wished peak times σ/0.4; the peaks were chosen by eye.
-const CORE_SIGMA_PX: f32 = 1.05;
-const CORE_GAIN: f32 = 24.0 * CORE_SIGMA_PX / 0.4;
+/// A line of a pixel or two is bright enough to be one; a broad one ends where a camera sees the spot end, two deviations from its middle.
+const CORE_PEAKS: (f32, f32) = (4.0, 24.0);
+const FINE_PX: f32 = 1.5;
+/// Standard deviation of the spot on the wall, m: that of the laser which simulated cameras see.
+const SPOT_M: f64 = 1e-3;
+/// A finer spot is as wide as the lens draws it.
+const FINEST_PX: f32 = 0.6;
 const HALO_SIGMA_PX: f32 = 5.0;
-const HALO_GAIN: f32 = 0.36 * HALO_SIGMA_PX / 0.4;
+const HALO_PEAK: f32 = 0.36;
 const VEIL_SIGMA_PX: f32 = 26.0;
 const VEIL_GAIN: f32 = 0.032 * VEIL_SIGMA_PX / 0.4;
 const BOUNCE_SIGMA_PX: f32 = 85.0;
@@ -49,22 +59,37 @@ impl Exposure {
             let sigma = sigma / (1 << level) as f32;
             plane.blurred(sigma, sigma)
         };
+        let core_px = ((SPOT_M * layout.px_per_m) as f32).max(FINEST_PX).min(WIDTH as f32 / 16.0);
+        let halo_px = HALO_SIGMA_PX.max(2.5 * core_px);
+        let peak = (CORE_PEAKS.1 * single::powf(FINE_PX / core_px, 1.3)).clamp(CORE_PEAKS.0, CORE_PEAKS.1);
+        let (core_level, halo_level) = (level(core_px), level(halo_px).max(1));
         Self {
-            halo: blurred(dose.reduced(1), HALO_SIGMA_PX, 1),
+            core_gain: peak * core_px / 0.4,
+            core_level,
+            halo: blurred(dose.reduced(halo_level), halo_px, halo_level),
+            halo_level,
+            halo_gain: HALO_PEAK * halo_px / 0.4,
             veil: blurred(dose.reduced(3), VEIL_SIGMA_PX, 3),
             bounce: blurred(dose.reduced(4), BOUNCE_SIGMA_PX, 4),
-            core: blurred(dose, CORE_SIGMA_PX, 0),
+            core: blurred(dose.reduced(core_level), core_px, core_level),
         }
     }
 
     /// Light at the pixel in column `x`, row `y`.
     pub(super) fn at(&self, x: usize, y: usize) -> Light {
         let (u, v) = (x as f32 + 0.5, y as f32 + 0.5);
-        let line = self.core.row(y)[x] * CORE_GAIN;
-        let halo = self.halo.sample(u, v, 1) * HALO_GAIN;
+        let core =
+            if self.core_level == 0 { self.core.row(y)[x] } else { self.core.sample(u, v, self.core_level) };
+        let line = core * self.core_gain;
+        let halo = self.halo.sample(u, v, self.halo_level) * self.halo_gain;
         let veil = self.veil.sample(u, v, 3) * VEIL_GAIN;
         Light { lens: line + 0.4 * halo + veil, wall: 1.6 * halo + self.bounce.sample(u, v, 4) * BOUNCE_GAIN }
     }
+}
+
+/// How often a plane is reduced before it is blurred: five pixels of deviation are wide enough to be smooth.
+fn level(sigma_px: f32) -> u32 {
+    (0..6).find(|&level| sigma_px <= 5.0 * (1 << level) as f32).unwrap_or(6)
 }
 
 /// Adds a run's lit way to the dose, `energy` a tick.

@@ -12,8 +12,10 @@ mod plane;
 mod sheet;
 mod wall;
 
+use tracelight_chart::LIGHT_LINEAR;
 use tracelight_maths::single;
 use tracelight_picture::Raster;
+use tracelight_stroke::Vec2;
 
 use self::film::Film;
 use self::layout::{Layout, WIDTH};
@@ -23,8 +25,6 @@ use self::sheet::Sheet;
 use self::wall::Wall;
 use crate::finished::Finished;
 
-/// 650 nm as a camera's three channels see it: overexposed red spills into the others and whitens.
-const LASER: [f32; 3] = [1.0, 0.034, 0.040];
 /// What is left of the day in the room, and its colour.
 const ROOM: [f32; 3] = [0.050, 0.057, 0.068];
 /// The lamp on the sheet, where it shines brightest.
@@ -72,20 +72,23 @@ impl Scene {
         let (share, unshadowed) = cover.as_ref().map_or((0.0, 1.0), |c| (c.share, c.unshadowed));
         let chalk = self.chalk.row(y)[x] * (0.72 + 0.28 * texture) * (1.0 - share);
         std::array::from_fn(|c| {
-            let falls = LAMP[c] * lamp * unshadowed + ROOM[c] * room + LASER[c] * light.wall;
+            let falls = LAMP[c] * lamp * unshadowed + ROOM[c] * room + LIGHT_LINEAR[c] * light.wall;
             let wall = PLASTER * texture * falls;
-            let on_sheet = LAMP[c] * lamp + ROOM[c] * room + LASER[c] * light.wall;
+            let on_sheet = LAMP[c] * lamp + ROOM[c] * room + LIGHT_LINEAR[c] * light.wall;
             let sheet = cover.as_ref().map_or(0.0, |cover| cover.albedo[c] * on_sheet);
             let written = CHALK[c] * (0.3 + 0.7 * room) * chalk;
             let matter = wall * (1.0 - share) + sheet * share;
-            matter * (1.0 - chalk) + written + LASER[c] * light.lens
+            matter * (1.0 - chalk) + written + LIGHT_LINEAR[c] * light.lens
         })
     }
 
     /// Light of the lamp: a pool about the sheet.
     fn lamp(&self, x: usize, y: usize) -> f32 {
-        let (dx, dy) = self.away(x, y, self.layout.sheet_middle.x - 20.0, self.layout.sheet_middle.y - 40.0);
-        let reach = (self.layout.sheet_size.x.max(self.layout.sheet_size.y) * 0.66) as f32;
+        let longest = self.layout.sheet_size.x.max(self.layout.sheet_size.y);
+        let middle = self.layout.sheet_middle - Vec2::new(0.05, 0.1) * longest;
+        let (dx, dy) = self.away(x, y, middle.x, middle.y);
+        // a small sheet still hangs in a pool of light
+        let reach = (longest * 0.66).max(110.0) as f32;
         let square = (dx * dx + dy * dy) / (reach * reach);
         1.0 / (1.0 + square * (0.55 + square * 0.9))
     }

@@ -3,7 +3,7 @@ use tracelight_picture::Raster;
 use tracelight_stroke::{Affine, Point, Vec2};
 
 use super::film::linear_from_srgb;
-use super::layout::Layout;
+use super::layout::{Layout, SHEET_OVER_PICTURE};
 use super::lettering::Pen;
 use super::plane::Plane;
 use crate::finished::{DISPLAY_TOLERANCE_M, Finished};
@@ -18,6 +18,8 @@ pub(super) struct Sheet {
     picture_half: Vec2,
     /// Half of the sheet's.
     half: Vec2,
+    /// Its size over that of a sheet as large as there is room for: of pin and shadow too.
+    scale: f64,
 }
 
 /// What the sheet does to a pixel of the wall.
@@ -34,6 +36,8 @@ pub(super) struct Cover {
 const TILT_RAD: f64 = -0.022;
 const PAPER: [f32; 3] = [0.86, 0.83, 0.76];
 const SHADOW_OFFSET_PX: Vec2 = Vec2::new(7.0, 12.0);
+/// The longer side of the picture on a sheet for which the sizes here are.
+const FULL_PX: f64 = 400.0;
 const SHADOW_SOFT_PX: f64 = 22.0;
 const PIN_RADIUS_PX: f64 = 6.5;
 
@@ -43,30 +47,34 @@ impl Sheet {
         // twice the size it is shown at: sharp under the slight turn
         let side = (layout.sheet_size.x.max(layout.sheet_size.y) * 2.0) as u32;
         let picture_half = layout.sheet_size / 2.0;
-        let margin = 0.09 * layout.sheet_size.x.max(layout.sheet_size.y);
+        let longest = layout.sheet_size.x.max(layout.sheet_size.y);
+        let margin = 0.5 * (SHEET_OVER_PICTURE - 1.0) * longest;
         Self {
             picture: job.picture.map_or_else(|| drawn(job, layout), |p| p.raster.shrunk(side)),
             linear: std::array::from_fn(|i| linear_from_srgb(i as u8)),
             sheet_from_pixel: planar::rotation(-TILT_RAD) * Affine::translate(-layout.sheet_middle.to_vec2()),
             picture_half,
-            half: picture_half + Vec2::new(margin, margin * 1.15),
+            half: picture_half + Vec2::new(margin, margin),
+            scale: (longest / FULL_PX).clamp(0.02, 1.0),
         }
     }
 
     /// What lies at a pixel; `None` where neither the sheet nor its shadow reaches.
     pub(super) fn at(&self, x: usize, y: usize) -> Option<Cover> {
         let p = self.sheet_from_pixel * Point::new(x as f64 + 0.5, y as f64 + 0.5);
-        let shadow_edge = outside(p - SHADOW_OFFSET_PX, self.half);
-        if shadow_edge > 3.0 * SHADOW_SOFT_PX {
+        let (offset, soft) = (SHADOW_OFFSET_PX * self.scale, SHADOW_SOFT_PX * self.scale);
+        let shadow_edge = outside(p - offset, self.half);
+        if shadow_edge > 3.0 * soft {
             return None;
         }
         let share = (0.5 - outside(p, self.half)).clamp(0.0, 1.0) as f32;
-        let shadow = 1.0 / (1.0 + exp((shadow_edge + 4.0) / (0.3 * SHADOW_SOFT_PX)));
+        let shadow = 1.0 / (1.0 + exp((shadow_edge + 4.0 * self.scale) / (0.3 * soft)));
         Some(Cover { share, albedo: self.albedo(p), unshadowed: 1.0 - 0.8 * shadow as f32 })
     }
 
     fn albedo(&self, p: Point) -> [f32; 3] {
-        let pin = p - Point::new(0.0, -self.half.y + 15.0);
+        // as it is on a sheet of full size
+        let pin = (p - Point::new(0.0, -self.half.y + 15.0 * self.scale)) / self.scale;
         let pin_shadow = 1.0 - 0.45 * falloff((pin - Vec2::new(4.0, 6.0)).hypot(), PIN_RADIUS_PX + 1.0, 3.0);
         let curl = 1.0 - 0.10 * powi((p.y / self.half.y + 1.0) / 2.0, 3) as f32;
         let shade = pin_shadow as f32 * curl;
@@ -74,7 +82,7 @@ impl Sheet {
         let ink = (0.5 - inside).clamp(0.0, 1.0) as f32;
         let bevel = 1.0 - 0.16 * falloff((inside - 2.0).abs(), 0.6, 0.8) as f32;
         let print = self.print(p);
-        let on_pin = falloff(pin.hypot(), PIN_RADIUS_PX, 0.7) as f32;
+        let on_pin = falloff(pin.hypot(), PIN_RADIUS_PX, 0.7 / self.scale) as f32;
         let pin = pin_colour(pin);
         std::array::from_fn(|c| {
             let paper = PAPER[c] * shade * (print[c] * ink + bevel * (1.0 - ink));

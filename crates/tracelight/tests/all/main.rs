@@ -25,6 +25,7 @@ mod lab;
 mod lesson;
 mod licences;
 mod linear;
+mod looks;
 mod net_camera;
 mod paper;
 mod preview;
