@@ -22,6 +22,10 @@ mod identify_parts;
 mod lab;
 mod lesson;
 mod linear;
+mod made_examples;
+#[path = "../../examples/make_examples/main.rs"]
+#[allow(dead_code, reason = "its `main` writes the files")]
+mod make_examples;
 mod paper;
 mod preview;
 mod quality;
