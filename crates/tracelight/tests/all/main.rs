@@ -29,6 +29,8 @@ mod make_examples;
 mod paper;
 mod preview;
 mod quality;
+#[cfg(unix)]
+mod readme_commands;
 mod readmes;
 mod reproduce;
 mod results;
