@@ -22,9 +22,11 @@ use crate::named;
 
 /// Find the strokes of pictures, without a rig
 #[derive(Args, Debug)]
-#[command(after_help = "Examples: tracelight strokes drawing.jpg -o drawing.svg --width 60cm\n          \
-                        tracelight strokes *.png -o out/\n          \
-                        tracelight strokes photos/ --recursive -o out/ --format json")]
+#[command(
+    after_help = "Examples: tracelight strokes examples/sheet.jpg -o sheet.svg --width 60cm\n          \
+                        tracelight strokes examples/*.png -o out/\n          \
+                        tracelight strokes examples/ --recursive -o out/ --format json"
+)]
 pub(crate) struct StrokesArgs {
     /// Pictures or drawings, or folders of pictures; - is standard input
     #[arg(required = true, value_name = "PICTURE")]

@@ -26,10 +26,16 @@ mod lesson;
 mod licences;
 mod linear;
 mod looks;
+mod made_examples;
+#[path = "../../examples/make_examples/main.rs"]
+#[allow(dead_code, reason = "its `main` writes the files")]
+mod make_examples;
 mod net_camera;
 mod paper;
 mod preview;
 mod quality;
+#[cfg(unix)]
+mod readme_commands;
 mod readmes;
 mod reproduce;
 mod results;

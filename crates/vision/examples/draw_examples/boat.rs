@@ -1,6 +1,6 @@
 use tracelight_stroke::{Drawing, Element, Path, Point};
 
-use crate::{
+use super::{
     figures::{PEN_PX, curve, line, pen},
     spline::cornered,
 };

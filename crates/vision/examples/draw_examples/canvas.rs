@@ -1,6 +1,6 @@
 use tracelight_stroke::{Drawing, Path, Point, StrokeKind};
 
-use crate::{TOLERANCE_PX, pen};
+use super::{TOLERANCE_PX, pen};
 
 /// Scan lines a pixel when a shape is filled. Along each the coverage is exact; across them a level edge comes out at
 /// most 1/32 px from where it is.

@@ -1,6 +1,6 @@
 use tracelight_stroke::{Drawing, Stroke, StrokeKind};
 
-use crate::spline::cornered;
+use super::spline::cornered;
 
 /// A sitting cat; the light shines through between its front legs and its haunch.
 pub(crate) fn cat() -> Drawing {

@@ -3,7 +3,7 @@ use std::f64::consts::{PI, TAU};
 use tracelight_maths::{planar, sin};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, Vec2};
 
-use crate::spline::{points, through};
+use super::spline::{points, through};
 
 /// Width of the pen in all line drawings but the house, pixels.
 pub(crate) const PEN_PX: f64 = 5.0;

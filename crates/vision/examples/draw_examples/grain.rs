@@ -6,7 +6,8 @@ pub(crate) fn grain(u: usize, v: usize, seed: u64) -> f64 {
     0.8 * fine + 0.8 * coarse
 }
 
-fn smooth(x: f64, y: f64, seed: u64) -> f64 {
+/// Noise that is smooth between the points of a lattice of side one, mean zero; the same for equal arguments.
+pub(crate) fn smooth(x: f64, y: f64, seed: u64) -> f64 {
     let (u, v) = (x.floor(), y.floor());
     let (s, t) = (x - u, y - v);
     let at = |du, dv| noise(u as usize + du, v as usize + dv, seed);

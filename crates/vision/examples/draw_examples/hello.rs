@@ -1,6 +1,6 @@
 use tracelight_stroke::{Drawing, Path, Point};
 
-use crate::{
+use super::{
     figures::{PEN_PX, curve, pen},
     spline::through,
 };

@@ -3,7 +3,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use tracelight_maths::planar;
 use tracelight_stroke::{Drawing, Element, Path, Point};
 
-use crate::figures::{circle, curve, line, pen, polygon, ring};
+use super::figures::{circle, curve, line, pen, polygon, ring};
 
 const PEN_PX: f64 = 4.5;
 

@@ -50,24 +50,35 @@ fn pictures() -> [Picture; 6] {
     ]
 }
 
+/// A file's path below `examples/`, and its bytes.
+pub(crate) type Example = (String, Vec<u8>);
+
+/// All files that this program makes.
+pub(crate) fn files() -> Result<Vec<Example>, Box<dyn Error>> {
+    let mut files = Vec::new();
+    for picture in pictures() {
+        let coverage = Canvas::inked(SIZE, &picture.drawing);
+        let truth = truth::of_drawing(SIZE, &picture.drawing);
+        files.extend(pair(picture.name, picture.sheet.png(&coverage)?, truth));
+    }
+    for ruler in ruler::RULERS {
+        files.extend(pair(ruler.name, ruler.png()?, truth::of_marks(ruler.marks())));
+    }
+    Ok(files)
+}
+
+/// A picture and its truth.
+fn pair(name: &str, png: Vec<u8>, truth: String) -> [Example; 2] {
+    [(format!("{name}.png"), png), (format!("truth/{name}.json"), truth.into_bytes())]
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let folder =
         std::env::args_os().nth(1).ok_or("name the folder for the pictures, for example `examples`")?;
     let folder = Path::new(&folder);
     fs::create_dir_all(folder.join("truth"))?;
-    for picture in pictures() {
-        let coverage = Canvas::inked(SIZE, &picture.drawing);
-        let truth = truth::of_drawing(SIZE, &picture.drawing);
-        save(folder, picture.name, &picture.sheet.png(&coverage)?, &truth)?;
+    for (name, bytes) in files()? {
+        fs::write(folder.join(name), bytes)?;
     }
-    for ruler in ruler::RULERS {
-        save(folder, ruler.name, &ruler.png()?, &truth::of_marks(ruler.marks()))?;
-    }
-    Ok(())
-}
-
-fn save(folder: &Path, name: &str, png: &[u8], truth: &str) -> Result<(), Box<dyn Error>> {
-    fs::write(folder.join(name).with_extension("png"), png)?;
-    fs::write(folder.join("truth").join(name).with_extension("json"), truth)?;
     Ok(())
 }

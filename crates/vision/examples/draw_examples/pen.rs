@@ -1,7 +1,7 @@
 use tracelight_maths::{atan2, cos};
 use tracelight_stroke::{Path, Point, Vec2};
 
-use crate::{TOLERANCE_PX, canvas::Canvas};
+use super::{TOLERANCE_PX, canvas::Canvas};
 
 /// A join turning further than this is round: at 150° a mitre is already 1/cos 75° = 3.9 half widths long.
 const MITRE_TURN_RAD: f64 = 150.0 / 180.0 * std::f64::consts::PI;

@@ -1,6 +1,6 @@
 use tracelight_stroke::{Path, Point};
 
-use crate::{canvas::Canvas, figures::polygon, sheet::Sheet};
+use super::{canvas::Canvas, figures::polygon, sheet::Sheet};
 
 /// Size of the two pictures, pixels.
 const SIZE: [usize; 2] = [320, 240];

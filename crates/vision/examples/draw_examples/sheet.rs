@@ -1,6 +1,6 @@
 use tracelight_maths::hypot;
 
-use crate::{canvas::Canvas, grain::grain};
+use super::{canvas::Canvas, grain::grain};
 
 /// What is drawn on, and with what.
 ///

@@ -2,7 +2,7 @@ use std::fmt::Write;
 
 use tracelight_stroke::{Drawing, Point, Stroke};
 
-use crate::TOLERANCE_PX;
+use super::TOLERANCE_PX;
 
 /// A drawing as `strokes --json` writes it; a closed stroke's last point is its first.
 pub(crate) fn of_drawing([width, height]: [usize; 2], drawing: &Drawing) -> String {

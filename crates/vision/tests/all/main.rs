@@ -7,10 +7,14 @@ mod any_image;
 mod arcs;
 mod border;
 mod corners;
+#[path = "../../examples/draw_examples/main.rs"]
+#[allow(dead_code, reason = "its `main` writes the files")]
+mod draw_examples;
 #[path = "../../../stroke/tests/all/support/drawn.rs"]
 #[allow(dead_code, reason = "these tests use a part of it")]
 mod drawn;
 mod examples;
+mod examples_again;
 mod faint;
 mod figures;
 mod marks;

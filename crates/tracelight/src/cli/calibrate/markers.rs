@@ -27,7 +27,7 @@ use crate::named;
 
 /// The camera in front of the wall, from an image of printed markers on it: lens, pose, scale
 #[derive(Args, Debug)]
-#[command(after_help = "Example: tracelight calibrate markers wall.jpg -o camera.toml\n\n\
+#[command(after_help = "Example: tracelight calibrate markers examples/lens/near.jpg -o camera.toml\n\n\
                   `tracelight calibrate sheet` prints the pages. Stick them on the wall near the corners of where you will draw, take an image that shows them \
                   all, sharp and not glared at, and leave the camera where it is. Perspective and the lens's distortion are found from that one image; \
                   a lens that was calibrated before (--lens) makes it surer, above all with one page. The target's frame is that of the first page: \
@@ -64,7 +64,7 @@ pub(super) struct MarkersArgs {
 /// A camera's lens, from images of printed markers from several sides
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Example: tracelight calibrate lens left.jpg right.jpg above.jpg below.jpg near.jpg -o lens.toml\n\n\
+    after_help = "Example: tracelight calibrate lens examples/lens/left.jpg examples/lens/right.jpg examples/lens/above.jpg -o lens.toml\n\n\
                   `tracelight calibrate sheet` prints the pages. Leave them where they are and take at least three images from several sides, the pages \
                   large and out in the corners, too; zoom and focus as they will be. The first is as good as any."
 )]

@@ -16,12 +16,14 @@ use crate::named;
 
 /// Identify what an amplifier makes of a volt, and what the turning motor's own voltage takes away
 #[derive(Args, Debug)]
-#[command(after_help = "Example: tracelight lab amplifier readings.csv --rig my-rig.toml --save\n\n\
+#[command(
+    after_help = "Example: tracelight lab amplifier examples/amplifier.csv --rig examples/rig.toml\n\n\
                   A log has a row each reading: axis,volt,ampere, and velocity_rad_s if somebody looked at the speed: volts at the amplifier's input, \
                   amperes through the motor. Who divides amperes by volts with the motor turning reads too little: its own voltage (back-EMF) \
                   works against the amplifier. Given the speeds, both are told apart. Given no log, the simulated head is tried in a \
                   fixture, each axis upright and free. The folder gets amplifier.svg, readings.csv, if the head was tried, and rig.toml, its torque per \
-                  volt that of the amperes.")]
+                  volt that of the amperes."
+)]
 pub(crate) struct AmplifierArgs {
     /// Logs of readings: axis,volt,ampere[,velocity_rad_s]
     #[arg(value_name = "LOG.csv")]

@@ -14,7 +14,7 @@ use crate::named;
 
 /// Identify what an encoder reads wrong: where its four kinds of edges lie, a disc beside its axis, counts it lost
 #[derive(Args, Debug)]
-#[command(after_help = "Example: tracelight lab encoder --rig worn\n\n\
+#[command(after_help = "Example: tracelight lab encoder examples/edges.csv\n\n\
                   A joint turns evenly, once each way, and every edge is stamped with its time; a smooth motion through the edges about an edge tells \
                   how far that one lies beside its place. Misplaced edges repeat every four counts, a disc that sits beside its axis every turn; counts \
                   that are lost shift all that follow. A log has a row each edge: axis,time_s,count: when it came, and what the counter said then; a \

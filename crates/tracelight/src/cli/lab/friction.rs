@@ -13,7 +13,7 @@ use crate::cli::answer::{Answer, Voice};
 
 /// Identify friction as the 2006 report did, by voltages held, say what is wrong with that, and identify it from the whole curves
 #[derive(Args, Debug)]
-#[command(after_help = "Example: tracelight lab friction --fixture --out out/friction\n\n\
+#[command(after_help = "Example: tracelight lab friction examples/motor.csv --out out/friction\n\n\
                   The report gives a joint −1 to 1 V in steps of 0.05 V, 30 s each after a pulse of 1 V, takes the last speeds for \
                   steady, and lays a line through torque over speed for each direction: viscous friction its slope, Coulomb friction \
                   its intercept. Both are shown: that, and what the whole of each curve tells, steady or not. With --fixture each \

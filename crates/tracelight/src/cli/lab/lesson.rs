@@ -12,7 +12,7 @@ use crate::cli::answer::{Answer, Voice};
 /// Learn control on the simulated head: eight lessons, each a text, a command to try, a plot and a question that the simulator grades
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab lesson 1\n\
-                  Example: tracelight lab lesson 1 --answer kp=10,sticks=4 -o mine.svg\n\n\
+                  Example: tracelight lab lesson 1 --answer kp=10,sticks=4 -o mine.svg   # not right yet: exit status 1\n\n\
                   Without a number: what lessons there are. An answer that is not right yet ends with exit status 1, and says by how much and \
                   what helps; with --json, in figures.")]
 pub(crate) struct LessonArgs {

@@ -18,7 +18,7 @@ use crate::named;
 /// Let a relay swing a joint, and tune a PID from how it swings: no model needed
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab relay --axis tilt -o tilt.svg\n\
-                  Example: tracelight lab relay --axis pan --rig my-rig.toml --save\n\n\
+                  Example: tracelight lab relay --axis pan --rig examples/rig.toml\n\n\
                   In place of a controller a relay: so many volts one way until the joint is a little beyond its middle, then as many the other way. \
                   Amplitude and period of the swing are a point of the joint's frequency response; the PID takes that point to the phase margin, \
                   and crosses 1 there. Fewer volts swing slower, less hysteresis faster, and tune so; --crossover tunes faster than it swings. Friction damps a small \

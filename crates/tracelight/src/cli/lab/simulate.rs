@@ -17,7 +17,7 @@ use crate::named;
 /// Run an array of times and angles through the nonlinear loop: desired, actual and error, as the 2006 report's simulation
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab simulate --random --law state,report-pd -o scopes.svg\n\
-                  Example: tracelight lab simulate path.csv --controller '2 + 10 s/(1 + s/50)' '2 + 5 s/(1 + s/50)' --hold off --cap 500Nm\n\n\
+                  Example: tracelight lab simulate docs/simulate/nod.csv --controller '2 + 10 s/(1 + s/50)' '2 + 5 s/(1 + s/50)' --hold off --cap 500Nm\n\n\
                   A row of the array is t,pan,tilt: seconds and radians, with or without names above; pan_deg,tilt_deg are degrees, and a \
                   run's own trace.csv or a plan's CSV does as well. Between rows goes a spline, or lines. The head starts at rest where \
                   the array does.\n\n\
