@@ -12,10 +12,12 @@ use crate::binary::join;
 use crate::polynomial::Polynomial;
 use crate::roots::accurate_value;
 use crate::stability::{Stability, stabilities};
+use crate::transient::closed_form::Transient;
 use crate::transient::clusters::{Cluster, clusters};
+use crate::transient::ending::{Ending, Input};
 use crate::transient::taylor::LEVELS;
 use crate::transient::term::{Sum, Term};
-use crate::transient::{Ending, Input, Transient};
+
 use crate::{Complex, LinearError, Time, TransferFunction};
 
 /// −ln of what is left out: less than the rounding of a number.

@@ -1,8 +1,9 @@
 //! What a response to a step is judged by.
 
 use crate::LinearError;
+use crate::transient::closed_form::Transient;
+use crate::transient::ending::Ending;
 use crate::transient::sweep::Sweep;
-use crate::transient::{Ending, Transient};
 
 /// A largest or smallest value.
 #[derive(Clone, Copy, Debug, PartialEq)]

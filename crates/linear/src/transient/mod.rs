@@ -2,6 +2,8 @@
 //!
 //! | part | what |
 //! |---|---|
+//! | `ending` | what comes in, what the output does in the long run |
+//! | `closed_form` | the output as a sum of its modes |
 //! | `clusters` | poles in groups: each alone, or several that are too close together to be told apart |
 //! | `term` | what a group contributes to the output |
 //! | `expansion` | contributions from the coefficients of a transfer function |
@@ -10,7 +12,9 @@
 //! | `figures` | rise time, settling time, overshoot and the like |
 //! | `sampled` | the same of a sampled system |
 
+mod closed_form;
 mod clusters;
+mod ending;
 mod expansion;
 mod figures;
 mod sampled;
@@ -18,60 +22,11 @@ mod sweep;
 mod taylor;
 mod term;
 
-use crate::transient::term::Sum;
-use crate::{Complex, LinearError, Time, TransferFunction};
+use crate::{LinearError, Time, TransferFunction};
 
+pub use closed_form::Transient;
+pub use ending::{Ending, Input};
 pub use figures::{Extreme, StepInfo};
-
-/// What comes in, from rest at time 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Input {
-    /// 1 from then on.
-    Step,
-    /// Its integral over time is 1; of samples one sample of 1.
-    Impulse,
-    /// Rising by 1 a second.
-    Ramp,
-}
-
-/// What an output does in the long run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ending {
-    /// It converges to this value.
-    Converges(f64),
-    /// It grows without bounds.
-    Diverges,
-    /// It oscillates for ever `about` a value, by no more than `by`.
-    Oscillates {
-        /// Mean value.
-        about: f64,
-        /// Sum of the amplitudes of all modes that do not die out.
-        by: f64,
-    },
-    /// A pole is nearer to the edge of stability than the rounding of the coefficients: nobody can tell.
-    Undecided,
-}
-
-impl Ending {
-    /// The final value, if there is one.
-    pub const fn value(self) -> Option<f64> {
-        match self {
-            Self::Converges(value) => Some(value),
-            Self::Diverges | Self::Oscillates { .. } | Self::Undecided => None,
-        }
-    }
-}
-
-/// The output of a system in continuous time in closed form.
-#[derive(Clone, Debug)]
-pub struct Transient {
-    ending: Ending,
-    /// Area of the impulse at time 0 that an impulse passes through a system with as many zeros as poles; 0 of all others.
-    impulse: f64,
-    /// Poles that the output does not show, because a zero is at the same place.
-    hidden: Vec<Complex>,
-    sum: Sum,
-}
 
 impl TransferFunction {
     /// What this system in continuous time answers from rest.
@@ -108,27 +63,5 @@ impl TransferFunction {
             Time::Sampled(period_s) => sampled::lasts_s(self, period_s),
         };
         if lasts_s > 0.0 { lasts_s } else { 1.0 }
-    }
-}
-
-impl Transient {
-    /// What the output does in the long run.
-    pub const fn ending(&self) -> Ending {
-        self.ending
-    }
-
-    /// Area of the impulse in the output at time 0, which [`at`](Self::at) leaves out.
-    pub const fn impulse(&self) -> f64 {
-        self.impulse
-    }
-
-    /// Poles that the output does not show, because a zero is at the same place.
-    pub fn hidden(&self) -> &[Complex] {
-        &self.hidden
-    }
-
-    /// Output at a time, s, right of any jump.
-    pub fn at(&self, time_s: f64) -> f64 {
-        self.sum.at(time_s)
     }
 }

@@ -3,7 +3,8 @@
 use tracelight_maths::{complex, ln};
 
 use crate::stability::{Stability, stabilities};
-use crate::transient::{Ending, Extreme, StepInfo};
+use crate::transient::ending::Ending;
+use crate::transient::figures::{Extreme, StepInfo};
 use crate::{Complex, LinearError, Response, TransferFunction};
 
 /// Most samples that are looked at.

@@ -35,7 +35,7 @@ impl Taylor {
         self.derivatives[1]
     }
 
-    /// Its `level`-th derivative for `span` from here on; the last one is no more than `most_last`.
+    /// The `level`-th derivative for `span` from here on; the last one is no more than `most_last`.
     pub(super) fn over(&self, span: f64, level: usize, most_last: f64) -> Bernstein {
         let count = LEVELS - level;
         let mut coefficients = [0.0; LEVELS];
@@ -65,12 +65,12 @@ impl Bernstein {
         self.coefficients[..self.count].iter().copied()
     }
 
-    /// It is nowhere more than that.
+    /// An upper bound of the function, times `sign`.
     pub(super) fn most(&self, sign: f64) -> f64 {
         self.coefficients().map(|b| sign * b).fold(f64::NEG_INFINITY, f64::max) + self.error
     }
 
-    /// Whether it has one sign all the time, and is not zero.
+    /// Whether the function has one sign all the time, and is not zero.
     pub(super) fn has_one_sign(&self) -> bool {
         self.most(1.0) < 0.0 || self.most(-1.0) < 0.0
     }
