@@ -69,6 +69,8 @@ pub struct Finding {
     controller: Zpk,
     /// The controller in its own figures.
     remark: String,
+    /// The open loop, the closed one, and the margins between them.
+    open: TransferFunction,
     closed: TransferFunction,
     margins: Margins,
     /// What comes out, and what the controller puts in, after a step of what is wished.
@@ -179,6 +181,7 @@ impl Finding {
             plant,
             controller,
             remark,
+            open,
             closed,
             margins,
             step,

@@ -1,13 +1,19 @@
 //! Margins, as they are shown.
 
 use serde_json::{Value, json};
-use tracelight_linear::{GainMargin, Margins, PhaseMargin, decibels};
+use tracelight_linear::{DelayMargin, GainMargin, Margins, PhaseMargin, TransferFunction, decibels};
 
 use crate::numbers::four;
 
-/// Margins for people, a line each.
-pub(crate) fn margin_lines(margins: &Margins) -> String {
+/// Margins of an open loop for people, a line each.
+pub(crate) fn margin_lines(open: &TransferFunction, margins: &Margins) -> String {
     let mut lines = Vec::new();
+    let delay = open.delay_margin(margins);
+    if delay == DelayMargin::Unstable {
+        lines.push(
+            "    the closed loop is not stable: gain and phase say how far from stable it is".to_owned(),
+        );
+    }
     lines.push(match margins.least_gain() {
         Some(margin) => format!(
             "    gain margin     {} dB (factor {}) at {} rad/s",
@@ -29,13 +35,16 @@ pub(crate) fn margin_lines(margins: &Margins) -> String {
         }
         None => "    phase margin    none: its gain is nowhere 1".to_owned(),
     });
-    if let Some(margin) = margins.least_delay() {
-        lines.push(format!(
-            "    delay margin    {} ms at {} rad/s",
-            four(1e3 * margin.delay_s),
-            four(margin.rad_s)
-        ));
-    }
+    lines.push(match delay {
+        DelayMargin::Delay { delay_s, rad_s } => {
+            format!("    delay margin    {} ms at {} rad/s", four(1e3 * delay_s), four(rad_s))
+        }
+        DelayMargin::Zero => {
+            "    delay margin    0: any delay makes it unstable, as its gain at infinite frequency is 1 or more".to_owned()
+        }
+        DelayMargin::Unlimited => "    delay margin    none: no delay makes it unstable".to_owned(),
+        DelayMargin::Unstable => "    delay margin    none: it is unstable without a delay".to_owned(),
+    });
     if let Some(margin) = margins.modulus {
         lines.push(format!(
             "    modulus margin  {} at {} rad/s: sensitivity at most {}",
@@ -47,8 +56,8 @@ pub(crate) fn margin_lines(margins: &Margins) -> String {
     lines.join("\n")
 }
 
-/// Margins for scripts.
-pub(crate) fn margins_json(margins: &Margins) -> Value {
+/// Margins of an open loop for scripts.
+pub(crate) fn margins_json(open: &TransferFunction, margins: &Margins) -> Value {
     let gain = |m: &GainMargin| json!({"rad_s": m.rad_s, "factor": m.factor, "db": decibels(m.factor)});
     let phase = |m: &PhaseMargin| json!({"rad_s": m.rad_s, "deg": m.degrees(), "delay_s": m.delay_s});
     let modulus = margins.modulus.map(|m| {
@@ -58,7 +67,7 @@ pub(crate) fn margins_json(margins: &Margins) -> Value {
     json!({
         "gain": margins.least_gain().as_ref().map(gain),
         "phase": margins.least_phase().as_ref().map(phase),
-        "delay_s": margins.least_delay().map(|m| m.delay_s),
+        "delay_s": open.delay_margin(margins).delay_s(),
         "modulus": modulus,
         "every_gain": margins.gain.iter().map(gain).collect::<Vec<_>>(),
         "every_phase": margins.phase.iter().map(phase).collect::<Vec<_>>(),

@@ -12,6 +12,7 @@ mod binary;
 mod cascade;
 mod convert;
 mod damped;
+mod delay;
 mod design;
 mod discretize;
 mod eigen;
@@ -41,6 +42,7 @@ pub type Complex = nalgebra::Complex<f64>;
 pub type Matrix = nalgebra::DMatrix<f64>;
 
 pub use damped::DampedGains;
+pub use delay::DelayMargin;
 pub use design::{Estimator, LeadLagWish, LqgWish, Pid, PidWish, Regulator};
 pub use discretize::Discretization;
 pub use eigen::eigenvalues;

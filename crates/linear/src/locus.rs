@@ -15,10 +15,12 @@ pub struct RootLocus {
 /// Where branches of a root locus meet and part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Breakaway {
-    /// The double pole.
+    /// The multiple pole.
     pub pole: Complex,
     /// Gain that makes it.
     pub gain: f64,
+    /// How many branches meet there.
+    pub branches: usize,
 }
 
 /// Where branches go as the gain rises without end: from one point in directions that share out the turn.
@@ -115,9 +117,9 @@ impl TransferFunction {
             }
             let gain = -below.at(pole) / above.at(pole);
             let real = gain.im.abs() < 1e-6 * gain.re.abs();
-            (real && gain.re > 0.0 && gain.re.is_finite()).then_some(Breakaway { pole, gain: gain.re })
+            (real && gain.re > 0.0 && gain.re.is_finite()).then_some((meeting, gain.re))
         };
-        let mut found: Vec<Breakaway> = meeting.roots().into_iter().filter_map(place).collect();
+        let mut found = together(meeting.roots().into_iter().filter_map(place).collect());
         found.sort_by(|a, b| a.gain.total_cmp(&b.gain));
         found
     }
@@ -141,6 +143,33 @@ impl TransferFunction {
     pub fn oscillating_gains(&self) -> Vec<(f64, f64)> {
         self.margins().gain.into_iter().map(|margin| (margin.factor, margin.rad_s)).collect()
     }
+}
+
+/// Places where branches meet, with their gains: those that rounding cannot tell apart are one, where more branches meet.
+fn together(found: Vec<(Root, f64)>) -> Vec<Breakaway> {
+    /// Share of a place's size within which roots of a multiple one scatter.
+    const SCATTER: f64 = 1e-3;
+    let mut groups: Vec<Vec<(Root, f64)>> = Vec::new();
+    for (root, gain) in found {
+        let reach = |root: &Root| root.radius.min(SCATTER * complex::norm(root.value));
+        let is_same = |(other, other_gain): &(Root, f64)| {
+            complex::norm(root.value - other.value) <= reach(&root) + reach(other)
+                && (gain - other_gain).abs() <= SCATTER * gain
+        };
+        match groups.iter_mut().find(|group| group.iter().any(is_same)) {
+            Some(group) => group.push((root, gain)),
+            None => groups.push(vec![(root, gain)]),
+        }
+    }
+    let one = |group: Vec<(Root, f64)>| {
+        let count = group.len() as f64;
+        let middle = group.iter().map(|(root, _)| root.value).sum::<Complex>() / count;
+        let radius = group.iter().map(|(root, _)| root.radius).fold(0.0, f64::max);
+        let pole = if middle.im.abs() <= radius { middle.re.into() } else { middle };
+        let gain = group.iter().map(|(_, gain)| gain).sum::<f64>() / count;
+        Breakaway { pole, gain, branches: group.len() + 1 }
+    };
+    groups.into_iter().map(one).collect()
 }
 
 /// Poles from gain to gain.

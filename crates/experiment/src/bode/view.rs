@@ -18,7 +18,7 @@ impl finding::Finding for Finding {
         for Entry { named, margins, closed, .. } in &self.entries {
             // writing to a String cannot fail
             let _ = writeln!(text, "{} = {}", named.name, named.system);
-            let _ = writeln!(text, "{}", margin_lines(margins));
+            let _ = writeln!(text, "{}", margin_lines(&named.system, margins));
             let closed = match closed {
                 Some(Stability::Stable) => "is stable",
                 Some(Stability::Marginal) => {
@@ -35,7 +35,7 @@ impl finding::Finding for Finding {
     fn json(&self) -> String {
         let one = |entry: &Entry| {
             let mut object = system_json(&entry.named.name, &entry.named.system);
-            object["margins"] = margins_json(&entry.margins);
+            object["margins"] = margins_json(&entry.named.system, &entry.margins);
             object["closed_stable"] = entry.closed.map(|closed| closed == Stability::Stable).into();
             object["closed_stability"] = entry.closed.map(stability_name).into();
             object["bandwidth_rad_s"] = entry.named.system.bandwidth().into();

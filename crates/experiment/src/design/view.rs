@@ -23,7 +23,7 @@ impl finding::Finding for Finding {
             text += &format!("    {remark}\n");
         }
         // writing to a String cannot fail
-        let _ = writeln!(text, "\nthe loop\n{}", margin_lines(margins));
+        let _ = writeln!(text, "\nthe loop\n{}", margin_lines(&self.open, margins));
         if let Some(value) = info.ending.value() {
             let _ = writeln!(
                 text,
@@ -68,7 +68,7 @@ impl finding::Finding for Finding {
                 "num": zpk.transfer().numerator().coefficients(),
                 "den": zpk.transfer().denominator().coefficients(),
             },
-            "margins": margins_json(&self.margins),
+            "margins": margins_json(&self.open, &self.margins),
             "closed_poles": pairs(&self.closed.poles()),
             "closed_stable": stable,
             "closed_stability": stability_name(self.stability),

@@ -22,7 +22,8 @@ impl finding::Finding for Finding {
             for apart in system.breakaways().iter().filter(|b| b.pole.im >= 0.0) {
                 let _ = writeln!(
                     text,
-                    "    branches meet at {} for a factor of {}",
+                    "    {} branches meet at {} for a factor of {}",
+                    apart.branches,
                     place(apart.pole),
                     four(apart.gain)
                 );
@@ -65,7 +66,7 @@ impl finding::Finding for Finding {
             object["breakaways"] = system
                 .breakaways()
                 .iter()
-                .map(|b| json!({"pole": [b.pole.re, b.pole.im], "gain": b.gain}))
+                .map(|b| json!({"pole": [b.pole.re, b.pole.im], "gain": b.gain, "branches": b.branches}))
                 .collect();
             object["oscillating"] = system
                 .oscillating_gains()

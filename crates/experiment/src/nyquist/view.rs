@@ -24,7 +24,7 @@ impl finding::Finding for Finding {
                 "{} = {}\n{}",
                 entry.named.name,
                 entry.named.system,
-                margin_lines(&entry.margins)
+                margin_lines(&entry.named.system, &entry.margins)
             );
             let open = entry.open_unstable;
             let _ = match entry.closed_unstable {
@@ -43,7 +43,7 @@ impl finding::Finding for Finding {
     fn json(&self) -> String {
         let one = |entry: &Entry| {
             let mut object = system_json(&entry.named.name, &entry.named.system);
-            object["margins"] = margins_json(&entry.margins);
+            object["margins"] = margins_json(&entry.named.system, &entry.margins);
             object["open_unstable"] = entry.open_unstable.into();
             object["closed_unstable"] = entry.closed_unstable.into();
             object["values"] = entry.values.iter().map(|z| json!([z.re, z.im])).collect();

@@ -31,6 +31,9 @@ pub(crate) fn meant(arguments: Vec<OsString>, program: &clap::Command) -> Result
         check_help(&arguments[first + 1..], program)?;
         return Ok(arguments);
     }
+    if text == "lab" {
+        return Ok(formulas_kept(arguments));
+    }
     if program.find_subcommand(&text).is_some() {
         return Ok(arguments);
     }
@@ -42,6 +45,29 @@ pub(crate) fn meant(arguments: Vec<OsString>, program: &clap::Command) -> Result
     }
     Err(neither(&text, program))
 }
+
+/// A space in front of formulas that begin with a minus, which would be read as flags: `-2/(s+1)`. What a flag takes is left alone.
+fn formulas_kept(mut arguments: Vec<OsString>) -> Vec<OsString> {
+    for i in 1..arguments.len() {
+        let [before, text] = [i - 1, i].map(|at| arguments[at].to_string_lossy().into_owned());
+        let is_taken =
+            before.starts_with('-') && !before.contains('=') && !TAKES_NOTHING.contains(&before.as_str());
+        if is_formula(&text) && !is_taken {
+            arguments[i] = format!(" {text}").into();
+        }
+    }
+    arguments
+}
+
+/// Whether a word that begins with a minus is a formula, and no flag.
+fn is_formula(text: &str) -> bool {
+    let Some(rest) = text.strip_prefix(['-', '−']) else { return false };
+    let is_alone = matches!(rest, "s" | "z");
+    !rest.starts_with('-') && (is_alone || rest.contains(['(', '/', '^', '*']) || rest.parse::<f64>().is_ok())
+}
+
+/// Flags of systems that take no value: what follows them may be a formula.
+const TAKES_NOTHING: [&str; 4] = ["--closed", "--dark", "--json", "--quiet"];
 
 /// What may stand before a command's name: of `trace` it may stand behind it as well.
 fn is_voice(argument: &OsStr) -> bool {
@@ -112,6 +138,18 @@ mod tests {
         let meant = meant(words.map(OsString::from).collect(), &program).map_err(|e| e.message)?;
         let meant: Vec<_> = meant.iter().skip(1).map(|word| word.to_string_lossy()).collect();
         Ok(meant.join(" "))
+    }
+
+    #[test]
+    fn a_formula_may_begin_with_a_minus() {
+        for (typed, wanted) in [
+            ("lab bode -2/(s+1) -o x.svg", "lab bode  -2/(s+1) -o x.svg"),
+            ("lab bode --json -s/(s+1)", "lab bode --json  -s/(s+1)"),
+            ("lab move line --angle -90deg/2", "lab move line --angle -90deg/2"),
+            ("lab locus G11 -o out/(1).svg", "lab locus G11 -o out/(1).svg"),
+        ] {
+            assert_eq!(told(typed).as_deref(), Ok(wanted), "{typed}");
+        }
     }
 
     #[test]
