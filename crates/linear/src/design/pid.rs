@@ -20,12 +20,21 @@ pub struct Pid {
     pub filter_rad_s: f64,
 }
 
+/// The same wish with wider and wider phase margins.
+fn wider(wish: &PidWish) -> impl Iterator<Item = PidWish> {
+    const STEP_RAD: f64 = 5.0 * PI / 180.0;
+    const STEPS: u32 = 12;
+    let wish = *wish;
+    let wider = (0..=STEPS).map(move |k| wish.phase_margin_rad + f64::from(k) * STEP_RAD);
+    wider.filter(|rad| *rad < PI).map(move |phase_margin_rad| PidWish { phase_margin_rad, ..wish })
+}
+
 /// What a PID is to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PidWish {
     /// Where the loop's gain is 1, rad/s; none: where the integral can be largest.
     pub crossover_rad_s: Option<f64>,
-    /// Its phase margin there, rad.
+    /// Its least phase margin, rad.
     pub phase_margin_rad: f64,
     /// The least distance of the loop from −1: one over the largest sensitivity.
     pub modulus: f64,
@@ -50,11 +59,14 @@ impl Pid {
 }
 
 impl TransferFunction {
-    /// The PID with the largest integral gain, which rejects a load best, of those that give the open loop that crossover and phase
-    /// margin exactly, keep it that far from −1 and have real zeros (the criterion of Åström & Hägglund, *Advanced PID Control*, 2006, §6.8, with the
-    /// phase margin given).
+    /// The PID with the largest integral gain, which rejects a load best, of those that give the open loop that crossover, at least that
+    /// phase margin and that distance from −1, and have real zeros (the criterion of Åström & Hägglund, *Advanced PID Control*, 2006,
+    /// §6.8).
     ///
     /// Where no positive gains do, all of them may be negative.
+    ///
+    /// # Errors
+    /// [`LinearError::Wish`] where there is none, with the nearest margins that can be had.
     pub fn pid(&self, wish: PidWish) -> Result<Pid, LinearError> {
         let negative = || {
             let Pid { kp, ki, kd, filter_rad_s } = self.scaled(-1.0).positive_pid(wish).ok()?;
@@ -80,32 +92,93 @@ impl TransferFunction {
             )));
         }
         match wish.crossover_rad_s {
-            Some(w) => self.pid_at(positive("the crossover, rad/s,", w)?, &wish).ok_or_else(|| {
-                LinearError::Wish(format!(
-                    "no PID gives a crossover of {} rad/s, {:.1}° of phase margin there, and a modulus margin of {modulus}: ask for another \
-                     crossover or for less margin",
-                    four_digits(w),
-                    phase_margin_rad.to_degrees()
-                ))
-            }),
+            Some(w) => {
+                let w = positive("the crossover, rad/s,", w)?;
+                self.largest_at(w, &wish).ok_or_else(|| {
+                    let what = format!("a crossover of {} rad/s, ", four_digits(w));
+                    self.nearest_margins(&wish, &what, |wish| self.largest_at(w, wish).is_some())
+                })
+            }
             None => self.best_pid(&wish),
         }
     }
 
-    /// Of the crossovers the one whose integral gain is largest.
+    /// At that crossover the largest integral gain of all phase margins that are wide enough.
+    fn largest_at(&self, w: f64, wish: &PidWish) -> Option<Pid> {
+        let all = wider(wish).filter_map(|wish| self.pid_at(w, &wish));
+        all.max_by(|a, b| a.ki.total_cmp(&b.ki))
+    }
+
+    /// Why there is none, with the largest share of both margins that there is.
+    fn nearest_margins(&self, wish: &PidWish, what: &str, has: impl Fn(&PidWish) -> bool) -> LinearError {
+        /// Halvings of the range of shares.
+        const HALVINGS: usize = 6;
+        let less = |share: f64| PidWish {
+            phase_margin_rad: share * wish.phase_margin_rad,
+            modulus: share * wish.modulus,
+            ..*wish
+        };
+        let (mut good, mut bad) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (good + bad);
+            if has(&less(middle)) { good = middle } else { bad = middle }
+        }
+        let asked = format!(
+            "no PID gives {what}{:.1}° of phase margin and a modulus margin of {}",
+            wish.phase_margin_rad.to_degrees(),
+            four_digits(wish.modulus)
+        );
+        let nearest = less(good);
+        LinearError::Wish(if good > 0.0 {
+            format!(
+                "{asked}; {:.1}° and {} can be had: ask for these or less{}",
+                nearest.phase_margin_rad.to_degrees(),
+                four_digits(nearest.modulus),
+                if what.is_empty() { "" } else { ", or for another crossover" }
+            )
+        } else {
+            format!(
+                "{asked}, nor a hundredth of these: {}",
+                if what.is_empty() { "no PID will do" } else { "ask for another crossover" }
+            )
+        })
+    }
+
+    /// Of all crossovers and phase margins those whose integral gain is largest.
     fn best_pid(&self, wish: &PidWish) -> Result<Pid, LinearError> {
+        const FEW: usize = 24;
+        let is_possible =
+            |wish: &PidWish| self.crossovers(FEW).iter().any(|&w| self.largest_at(w, wish).is_some());
+        let mut best: Option<Pid> = None;
+        for wish in wider(wish) {
+            match self.best_with(&wish) {
+                Ok(pid) if best.is_none_or(|best| pid.ki > best.ki) => best = Some(pid),
+                Err(why)
+                    if best.is_none() && !matches!(&why, LinearError::Wish(words) if words.is_empty()) =>
+                {
+                    return Err(why);
+                }
+                // wider still is no better
+                _ if best.is_some() => break,
+                _ => {}
+            }
+        }
+        best.ok_or_else(|| self.nearest_margins(wish, "", is_possible))
+    }
+
+    fn crossovers(&self, count: usize) -> Vec<f64> {
+        crate::logspace(self.band(), count)
+    }
+
+    /// Of the crossovers the one whose integral gain is largest, with just that phase margin; a wish without words where there is none.
+    fn best_with(&self, wish: &PidWish) -> Result<Pid, LinearError> {
         const CROSSOVERS: usize = 80;
-        let (low, high) = self.band();
-        let crossovers = crate::logspace((low, high), CROSSOVERS);
+        let crossovers = self.crossovers(CROSSOVERS);
         let all: Vec<Option<Pid>> = crossovers.iter().map(|&w| self.pid_at(w, wish)).collect();
         let ki = |i: usize| all[i].map_or(f64::NEG_INFINITY, |pid| pid.ki);
         let best = (0..CROSSOVERS).max_by(|&a, &b| ki(a).total_cmp(&ki(b))).filter(|&i| all[i].is_some());
-        let Some(best) = best else {
-            return Err(LinearError::Wish(
-                "no PID gives that phase and that modulus margin at any crossover: ask for less margin"
-                    .into(),
-            ));
-        };
+        let Some(best) = best else { return Err(LinearError::Wish(String::new())) };
+        let high = crossovers[CROSSOVERS - 1];
         if best + 1 == CROSSOVERS {
             return Err(LinearError::Wish(format!(
                 "the faster the better, up to {} rad/s and beyond: nothing in the system bounds the crossover; choose one",
