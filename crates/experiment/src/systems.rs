@@ -70,7 +70,7 @@ impl Systems {
     /// All systems, as they are to be plotted.
     pub(crate) fn systems(&self) -> Result<Vec<Named>, Failure> {
         let reader = self.how.reader()?;
-        let all = self.formulas.iter().zip(Colour::in_turn());
+        let all = self.formulas.iter().map(|text| text.trim()).zip(Colour::in_turn());
         all.map(|(text, colour)| {
             let (mut name, mut system) = reader.read(text)?;
             if self.closed {
@@ -86,7 +86,7 @@ impl Systems {
 impl OneSystem {
     /// Its name and what it is.
     pub(crate) fn system(&self) -> Result<(String, TransferFunction), Failure> {
-        self.how.reader()?.read(&self.formula)
+        self.how.reader()?.read(self.formula.trim())
     }
 }
 

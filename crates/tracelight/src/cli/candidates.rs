@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use clap::Command;
+use clap::{Arg, Command, ValueHint};
 use clap_complete::engine::{
     ArgValueCandidates, ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter as _,
 };
@@ -39,9 +39,17 @@ fn offered(command: Command) -> Command {
         (_, "camera") => arg.add(ArgValueCompleter::new(cameras)),
         (_, "layer") => arg.add(ArgValueCandidates::new(layers)),
         ("explain", "code") => arg.add(ArgValueCandidates::new(codes)),
+        _ if is_unhinted_file(&arg) => arg.value_hint(ValueHint::AnyPath),
         _ => arg,
     });
     command.mut_subcommands(offered)
+}
+
+/// Whether an argument is the name of a file, and nothing else is known of it: what has no flag is one, or may be.
+fn is_unhinted_file(arg: &Arg) -> bool {
+    let names = arg.get_value_names().unwrap_or_default();
+    let is_file = arg.is_positional() || names.iter().any(|name| name.starts_with("FILE"));
+    is_file && arg.get_value_hint() == ValueHint::Unknown
 }
 
 /// Presets, and rig files.

@@ -47,6 +47,7 @@ fn what_there_is_is_offered() {
     check(&["trace", &at("plan.json"), "--layer", ""], &["studs", "walls"], &[]);
     check(&["trace", &at("plan.json"), "--layer", "wa"], &["walls"], &["studs"]);
     check(&["trace", "examples/st"], &["examples/star.png"], &[]);
+    check(&["trace", "--calibration", &at("my.t")], &[&at("my.toml")], &[&at("my.png")]);
 }
 
 /// Where there is a bash, it takes the script and asks.
