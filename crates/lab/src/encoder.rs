@@ -3,10 +3,10 @@
 
 use std::f64::consts::TAU;
 
-use tracelight_maths::{atan2, cos, hypot, sin};
 use tracelight_rig::{Actuation, Head, Joint, TICK_F64_S};
 
-use crate::regression::{Uncertain, regression};
+use crate::eccentric::{Crossing, eccentricity};
+use crate::regression::Uncertain;
 use crate::start::come_to_speed;
 
 /// An edge, and when it was crossed.
@@ -40,7 +40,7 @@ pub struct EncoderTable {
     pub edges: usize,
     /// How far the edges below counts n with n mod 4 = 0 … 3 lie beyond their places, counts; their mean is none.
     pub kinds_counts: [Uncertain; PHASES],
-    /// What the disc reads wrong over a turn, counts, and at which angle it reads most too much, rad; `None` of less than two turns each run.
+    /// Error of the disc over a turn, counts, and at which angle it is largest, rad; `None` if no run has two turns of even motion.
     pub eccentricity: Option<(Uncertain, f64)>,
     /// Where counts were lost, or made up.
     pub lost: Vec<Lost>,
@@ -115,7 +115,9 @@ pub fn encoder_table(runs: &[Vec<EdgeTime>], count_rad: f64) -> Option<EncoderTa
     Some(EncoderTable {
         edges: runs.iter().map(|run| run.edges.len()).sum(),
         kinds_counts,
-        eccentricity: eccentricity(&runs, &table, count_rad),
+        eccentricity: eccentricity(
+            &runs.iter().map(|run| run.crossings(&table, count_rad)).collect::<Vec<_>>(),
+        ),
         lost,
         left_counts: f64::sqrt(squares / f64::max(count, 1.0)),
     })
@@ -199,6 +201,17 @@ impl Run {
         at(k - SIDE..k).zip(at(k..k + SIDE)).map_or(0.0, |(before, after)| before - after)
     }
 
+    /// Its edges as a disc is judged by them.
+    fn crossings(&self, table: &[f64; PHASES], count_rad: f64) -> Vec<Crossing> {
+        let first = self.edges.first().map_or(0, |edge| edge.edge);
+        let crossing = |(k, edge): (usize, &EdgeTime)| Crossing {
+            time_s: edge.time_s,
+            angle_rad: f64::from(edge.edge) * count_rad,
+            counts: f64::from(edge.edge - first) + table[self.kind(k)],
+        };
+        self.edges.iter().enumerate().map(crossing).collect()
+    }
+
     fn kind(&self, number: usize) -> usize {
         self.edges[number].edge.rem_euclid(PHASES as i32) as usize
     }
@@ -257,48 +270,6 @@ fn kinds(runs: &[Run]) -> Option<[Uncertain; PHASES]> {
     });
     let mean = each.iter().map(|kind| kind.value).sum::<f64>() / PHASES as f64;
     Some(each.map(|kind| Uncertain { value: kind.value - mean, ..kind }))
-}
-
-/// What repeats with a turn: runs of both ways count alike, so that what friction does over a turn, which turns round with the way,
-/// drops out.
-fn eccentricity(runs: &[Run], table: &[f64; PHASES], count_rad: f64) -> Option<(Uncertain, f64)> {
-    const LEAST_TURNS: f64 = 2.0;
-    const POWERS: usize = 6;
-    let of = |run: &Run| {
-        let (first, last) = (run.edges.first()?, run.edges.last()?);
-        if f64::from((last.edge - first.edge).abs()) * count_rad < LEAST_TURNS * TAU {
-            return None;
-        }
-        let middle_s = 0.5 * (first.time_s + last.time_s);
-        let half_s = 0.5 * (last.time_s - first.time_s);
-        let mut columns = vec![Vec::new(); POWERS + 2];
-        let mut wanted = Vec::with_capacity(run.edges.len());
-        for (k, edge) in run.edges.iter().enumerate() {
-            let (x, angle) = ((edge.time_s - middle_s) / half_s, f64::from(edge.edge) * count_rad);
-            // Chebyshev's polynomials stay apart
-            let (mut one, mut two) = (1.0, x);
-            for column in &mut columns[..POWERS] {
-                column.push(one);
-                (one, two) = (two, 2.0 * x * two - one);
-            }
-            columns[POWERS].push(sin(angle));
-            columns[POWERS + 1].push(cos(angle));
-            // the middle of the run as base keeps the digits
-            wanted.push(f64::from(edge.edge - first.edge) + table[run.kind(k)]);
-        }
-        let found = regression(&columns, &wanted)?;
-        Some([found.factors[POWERS], found.factors[POWERS + 1]])
-    };
-    let found: Vec<[Uncertain; 2]> = runs.iter().filter_map(of).collect();
-    if found.is_empty() {
-        return None;
-    }
-    let count = found.len() as f64;
-    let mean = |i: usize| found.iter().map(|pair| pair[i].value).sum::<f64>() / count;
-    let (sine, cosine) = (mean(0), mean(1));
-    let within = found.iter().map(|pair| hypot(pair[0].within, pair[1].within)).sum::<f64>() / count;
-    let amplitude = Uncertain { value: hypot(sine, cosine), within };
-    Some((amplitude, atan2(sine, cosine)))
 }
 
 #[cfg(test)]

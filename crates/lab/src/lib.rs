@@ -9,6 +9,7 @@
 
 mod amplifier;
 mod backlash;
+mod eccentric;
 mod encoder;
 mod frequency;
 mod friction;
