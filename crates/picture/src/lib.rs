@@ -1,6 +1,8 @@
 //! Bytes of a picture or a drawing to upright pixels or strokes, and pixels back to bytes. What a file is, its content says.
 
+mod cost;
 mod decode;
+mod jpeg;
 mod quiet;
 mod raster;
 
