@@ -5,7 +5,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbImage, RgbaImage};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
 use tracelight_formats::{FormatError, Reading, Sheet, csv, dxf, json, svg};
 use tracelight_image::Grey;
 use tracelight_stroke::{Affine, Drawing, Vec2};
@@ -14,6 +14,7 @@ use tracelight_task::Failure;
 use crate::cost::{self, Declared, MOST_DECODED_BYTES, too_large};
 use crate::quiet::unless_it_panics;
 use crate::raster::Raster;
+use crate::turned::turned;
 
 /// What a decoder may allocate, bytes: the pixels of the largest picture, and as much again.
 const MOST_DECODER_BYTES: u64 = 2 * MOST_DECODED_BYTES;
@@ -203,17 +204,14 @@ pub fn jpeg_is_whole(bytes: &[u8]) -> bool {
 /// Alpha on paper, 8 bit, upright, and the luma of it. Turned when it is 8-bit colour: a copy of what was decoded may be
 /// three times as large.
 fn pixels(path: &str, image: DynamicImage, upright: Orientation) -> Result<Pixels, Failure> {
-    let nothing = || Failure::usage("malformed", format!("{path} has no pixels"));
-    let (width, height) = (image.width(), image.height());
+    let size = (image.width() as usize, image.height() as usize);
     let rgb = if image.color().has_alpha() { on_paper(image) } else { image.into_rgb8().into_raw() };
-    let mut turned = DynamicImage::ImageRgb8(RgbImage::from_raw(width, height, rgb).ok_or_else(nothing)?);
-    turned.apply_orientation(upright);
-    let (width, height) = (turned.width(), turned.height());
-    let rgb = turned.into_rgb8().into_raw();
+    let ((width, height), rgb) = turned(size, rgb, upright);
     let luma = rgb.chunks_exact(3).map(luma).collect();
-    let grey = Grey::new(width as usize, height as usize, luma)
+    let grey = Grey::new(width, height, luma)
         .map_err(|e| Failure::failed("no-strokes-found", format!("{path}: {e}")))?;
-    let colour = Raster::new(width, height, rgb).ok_or_else(nothing)?;
+    let colour = Raster::new(width as u32, height as u32, rgb)
+        .ok_or_else(|| Failure::usage("malformed", format!("{path} has no pixels")))?;
     Ok(Pixels { colour, grey })
 }
 

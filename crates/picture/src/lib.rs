@@ -5,6 +5,7 @@ mod decode;
 mod jpeg;
 mod quiet;
 mod raster;
+mod turned;
 
 pub use decode::{Pixels, Source, decode, jpeg_is_whole};
 pub use quiet::unless_it_panics;
