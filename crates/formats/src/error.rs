@@ -4,12 +4,14 @@ use crate::limit::MAX_COORDINATE;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FormatError {
     /// More of something than is read.
-    #[error("the {what} has {found}, and at most {limit} are read: simplify or split the drawing")]
+    #[error("the {what} has {} {unit}, at most {limit} are read: simplify or split the drawing", counted(*.found))]
     TooLarge {
-        /// Of what, in which unit.
+        /// Of what.
         what: &'static str,
-        /// How many.
+        /// How many; [`usize::MAX`] for more than can be counted.
         found: usize,
+        /// In which unit: bytes, elements.
+        unit: &'static str,
         /// How many at most.
         limit: usize,
     },
@@ -44,7 +46,7 @@ pub enum FormatError {
         expected: &'static str,
     },
     /// A point beyond what is drawn.
-    #[error("{place}: the point ({x}, {y}) lies beyond ±{MAX_COORDINATE}: check the file's numbers and unit")]
+    #[error("{place}: the point ({}, {}) lies beyond ±{MAX_COORDINATE}: check the file's numbers and unit", short(*.x), short(*.y))]
     Far {
         /// Stroke and point.
         place: String,
@@ -67,4 +69,21 @@ pub enum FormatError {
         /// What to do instead.
         instead: &'static str,
     },
+}
+
+/// A number of things in a sentence.
+fn counted(found: usize) -> String {
+    if found == usize::MAX { "countless".to_owned() } else { found.to_string() }
+}
+
+/// A coordinate as people read it: of one with hundreds of digits the first few, and how many there are.
+fn short(value: f64) -> String {
+    const MOST: usize = 24;
+    const SHOWN: usize = 10;
+    let digits = value.to_string();
+    match digits.len() {
+        ..=MOST => digits,
+        _ if value.abs() < 1.0 => format!("{value:e}"),
+        length => format!("{}… ({} digits)", &digits[..SHOWN], length - usize::from(value < 0.0)),
+    }
 }

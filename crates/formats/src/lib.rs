@@ -71,7 +71,9 @@ pub fn colour_of(text: &str) -> Option<Colour> {
 
 fn check_size(bytes: &[u8]) -> Result<(), FormatError> {
     match bytes.len() > MAX_BYTES {
-        true => Err(FormatError::TooLarge { what: "file", found: bytes.len(), limit: MAX_BYTES }),
+        true => {
+            Err(FormatError::TooLarge { what: "file", found: bytes.len(), unit: "bytes", limit: MAX_BYTES })
+        }
         false => Ok(()),
     }
 }

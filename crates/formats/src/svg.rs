@@ -3,7 +3,9 @@
 mod guard;
 mod names;
 mod read;
+mod style;
 mod swell;
+mod tags;
 mod write;
 
 pub use read::read;

@@ -4,19 +4,20 @@ use std::fmt::Display;
 use std::io::Cursor;
 use std::path::Path;
 
+use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
 use tracelight_formats::{FormatError, Reading, Sheet, csv, dxf, json, svg};
 use tracelight_image::Grey;
 use tracelight_stroke::{Affine, Drawing, Vec2};
 use tracelight_task::Failure;
 
+use crate::cost::{self, Declared, MOST_DECODED_BYTES, too_large};
 use crate::quiet::unless_it_panics;
 use crate::raster::Raster;
+use crate::turned::turned;
 
-/// Largest picture, pixels: 100 megapixels.
-const MOST_PIXELS: u64 = 100_000_000;
-/// What a decoder may allocate, bytes: the pixels of such a picture at 8 bit and four channels, and as much again.
-const MOST_DECODER_BYTES: u64 = 8 * MOST_PIXELS;
+/// What a decoder may allocate, bytes: the pixels of the largest picture, and as much again.
+const MOST_DECODER_BYTES: u64 = 2 * MOST_DECODED_BYTES;
 
 /// What a file holds.
 #[derive(Clone, Debug)]
@@ -160,10 +161,11 @@ fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
     };
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|_| not_a_picture())?;
-    if reader.format().is_none() {
+    let format = reader.format();
+    if format.is_none() {
         return Err(not_a_picture());
     }
-    if reader.format() == Some(ImageFormat::Jpeg) && !jpeg_is_whole(bytes) {
+    if format == Some(ImageFormat::Jpeg) && !jpeg_is_whole(bytes) {
         return Err(Failure::usage(
             "malformed",
             format!("{path} is cut off: its picture has no end; save it again"),
@@ -174,15 +176,10 @@ fn decode_image(path: &str, bytes: &[u8]) -> Result<Pixels, Failure> {
     reader.limits(limits);
     let mut decoder = reader.into_decoder().map_err(unread)?;
     let (width, height) = decoder.dimensions();
-    if u64::from(width) * u64::from(height) > MOST_PIXELS {
-        return Err(too_large(path, &format!("{width} × {height} pixels")));
-    }
+    cost::check(path, Declared { format, width, height, colour: decoder.color_type() }, bytes)?;
     let upright = decoder.orientation().ok();
-    let mut image = DynamicImage::from_decoder(decoder).map_err(unread)?;
-    if let Some(orientation) = upright {
-        image.apply_orientation(orientation);
-    }
-    pixels(path, image)
+    let image = DynamicImage::from_decoder(decoder).map_err(unread)?;
+    pixels(path, image, upright.unwrap_or(Orientation::NoTransforms))
 }
 
 /// What a decoder says, cut off where it goes on to repeat the file.
@@ -204,27 +201,21 @@ pub fn jpeg_is_whole(bytes: &[u8]) -> bool {
     start_of_scan.is_none() || end_of_image > start_of_scan
 }
 
-fn too_large(path: &str, what: &str) -> Failure {
-    let most = MOST_PIXELS / 1_000_000;
-    Failure::usage(
-        "too-large",
-        format!("{path} declares {what}; at most {most} megapixels are traced: scale it down"),
-    )
-}
-
-/// Alpha on paper, 8 bit, and the luma of it.
-fn pixels(path: &str, image: DynamicImage) -> Result<Pixels, Failure> {
-    let (width, height) = (image.width(), image.height());
+/// Alpha on paper, 8 bit, upright, and the luma of it. Turned when it is 8-bit colour: a copy of what was decoded may be
+/// three times as large.
+fn pixels(path: &str, image: DynamicImage, upright: Orientation) -> Result<Pixels, Failure> {
+    let size = (image.width() as usize, image.height() as usize);
     let rgb = if image.color().has_alpha() { on_paper(image) } else { image.into_rgb8().into_raw() };
+    let ((width, height), rgb) = turned(size, rgb, upright);
     let luma = rgb.chunks_exact(3).map(luma).collect();
-    let grey = Grey::new(width as usize, height as usize, luma)
+    let grey = Grey::new(width, height, luma)
         .map_err(|e| Failure::failed("no-strokes-found", format!("{path}: {e}")))?;
-    let colour = Raster::new(width, height, rgb)
+    let colour = Raster::new(width as u32, height as u32, rgb)
         .ok_or_else(|| Failure::usage("malformed", format!("{path} has no pixels")))?;
     Ok(Pixels { colour, grey })
 }
 
-/// Alpha on white paper, or on black where hardly anything that is seen would show on white.
+/// Alpha on white paper, or on black where hardly anything that is seen would show on white; in the picture's own bytes.
 fn on_paper(image: DynamicImage) -> Vec<u8> {
     let rgba = image.into_rgba8();
     let paper = if is_light(&rgba) { 0 } else { 255 };
@@ -232,7 +223,17 @@ fn on_paper(image: DynamicImage) -> Vec<u8> {
         let (c, a) = (u32::from(c), u32::from(a));
         ((c * a + paper * (255 - a) + 127) / 255) as u8
     };
-    rgba.pixels().flat_map(|p| [0, 1, 2].map(|i| blend(p.0[i], p.0[3]))).collect()
+    let mut bytes = rgba.into_raw();
+    let pixels = bytes.len() / 4;
+    for pixel in 0..pixels {
+        let alpha = bytes[4 * pixel + 3];
+        for channel in 0..3 {
+            bytes[3 * pixel + channel] = blend(bytes[4 * pixel + channel], alpha);
+        }
+    }
+    bytes.truncate(3 * pixels);
+    bytes.shrink_to_fit();
+    bytes
 }
 
 /// Whether what is seen of a picture is light ink: light in the mean, and hardly any of it dark. A light figure with

@@ -4,6 +4,7 @@
 mod carried;
 mod choice;
 mod driving;
+mod hopeless;
 mod paper;
 mod placed;
 mod quality;

@@ -6,6 +6,7 @@ use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, TravelTime, plan};
 
 use crate::driving::{Driving, REACHED};
+use crate::hopeless;
 use crate::placed::Placed;
 use crate::reach::check_reach;
 use crate::refused::refused;
@@ -40,6 +41,7 @@ pub fn schedule(
     effort: Effort,
 ) -> Result<Schedule, Failure> {
     check_reach(placed, driving)?;
+    hopeless::check(&placed.drawing, driving)?;
     let start = driving.machine.geometry.spot(&driving.pose, Default::default()).unwrap_or(Point::ORIGIN);
     let options = OrderOptions { effort, seed: 0 };
     let ordered = match by {

@@ -143,6 +143,17 @@ pub fn order<C: Travel>(drawing: &Drawing, start: Point, options: OrderOptions, 
     }
 }
 
+/// What the travels of any order cost at least, in the unit of `cost`: each end of a stroke has one travel, and half of that
+/// is no less than half of the cheapest to any end near it. Takes a small part of what [`order`] does.
+///
+/// As valid as what lies near an end is cheap: the ends looked at are those that [`order`] looks at. Of closed strokes the
+/// joint that the nearest-neighbour order enters stands for all.
+pub fn least_cost<C: Travel>(drawing: &Drawing, start: Point, cost: &C) -> f64 {
+    let ports = Ports::of(drawing);
+    let stops = greedy::nearest_neighbour(&ports, start);
+    Route { stops, ports: &ports, start, cost }.least_cost()
+}
+
 fn travel_cost(drawing: &Drawing, start: Point, cost: &impl Travel) -> f64 {
     let mut at = StrokeEnd::resting(start);
     let mut sum = 0.0;

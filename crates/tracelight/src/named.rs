@@ -1,5 +1,7 @@
 //! What is in the files that the user named.
 
+use std::ffi::OsString;
+
 use tracelight_files as files;
 use tracelight_picture::{Pixels, Raster, Source, decode};
 use tracelight_rigfile as rigfile;
@@ -9,6 +11,23 @@ use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
 use crate::cli::nearest::nearest;
+
+/// Whether all that was typed is text: names of files go into messages, tables and results.
+///
+/// # Errors
+/// `usage`, with the name as it is.
+pub(crate) fn in_text(arguments: &[OsString]) -> Result<(), Failure> {
+    match arguments.iter().find(|argument| argument.to_str().is_none()) {
+        Some(name) => {
+            let message = format!(
+                "the name {name:?} is not UTF-8 text, as names of files have to be: rename the file, or give a link to it \
+                 (ln -s)"
+            );
+            Err(Failure::usage("usage", message))
+        }
+        None => Ok(()),
+    }
+}
 
 /// A picture or a drawing; `-` is standard input. What it is, its content says, not its name.
 pub(crate) fn picture(path: &str) -> Result<Source, Failure> {

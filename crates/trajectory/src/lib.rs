@@ -43,7 +43,7 @@ pub use error::PlanError;
 pub use machine::{AccelerationDemand, Machine};
 pub use motion::JointMotion;
 pub use move_point::MovePoint;
-pub use plan::{LegEnd, Plan, PlanPoint, Tightest};
+pub use plan::{LONGEST_S, LegEnd, Plan, PlanPoint, Tightest};
 pub use planner::plan;
 pub use profile::limits::{MoveLimits, Peaks};
 pub use profile::{Profile, Ramps, Shape};

@@ -6,7 +6,7 @@ use crate::error::PlanError;
 use crate::motion::JointMotion;
 
 /// Longest job, s: its ticks are kept in memory, planned and run, at about 350 bytes each.
-const LONGEST_S: f64 = 1800.0;
+pub const LONGEST_S: f64 = 1800.0;
 
 /// Where everything is to be at one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]

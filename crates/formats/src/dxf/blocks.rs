@@ -63,7 +63,7 @@ impl Unfolding<'_> {
     fn items(&mut self, items: &[Item], at: Setting) -> Result<(), FormatError> {
         for item in items {
             self.visits += 1;
-            check("DXF, its blocks repeated, in entities", self.visits, MAX_VISITS)?;
+            check("DXF, its blocks repeated,", [self.visits, MAX_VISITS], "entities")?;
             match item {
                 Item::Shape(shape) => self.shape(shape, at)?,
                 Item::Insert(insert) => self.insert(insert, at)?,
@@ -84,7 +84,7 @@ impl Unfolding<'_> {
             _ => moved(&shape.path, at.world_from_block),
         };
         self.elements += path.elements().len().max(super::LEAST_ELEMENTS);
-        check("DXF, its blocks repeated, in path segments", self.elements, super::MAX_ELEMENTS)?;
+        check("DXF, its blocks repeated,", [self.elements, super::MAX_ELEMENTS], "path segments")?;
         self.check_place(&path)?;
         if has_length(&path) {
             self.drawn.push(Drawn { path, layer, colour });
@@ -117,11 +117,11 @@ impl Unfolding<'_> {
             self.skipped.missing_blocks += 1;
             return Ok(());
         };
-        check("DXF's nesting of blocks (one may hold itself)", at.depth + 1, MAX_DEPTH)?;
+        check("DXF's nesting of blocks (one may hold itself)", [at.depth + 1, MAX_DEPTH], "levels")?;
         let own = at.world_from_block * insert.place * Affine::translate(-block.base.to_vec2());
         for (row, column) in (0..insert.rows).flat_map(|r| (0..insert.columns).map(move |c| (r, c))) {
             self.visits += 1 + block.skipped.kinds();
-            check("DXF, its blocks repeated, in inserts", self.visits, MAX_VISITS)?;
+            check("DXF, its blocks repeated,", [self.visits, MAX_VISITS], "inserts")?;
             let step = insert.steps[0] * f64::from(column) + insert.steps[1] * f64::from(row);
             let step = at.world_from_block * step.to_point() - at.world_from_block * Point::ORIGIN;
             let world_from_block = Affine::translate(step) * own;
@@ -142,9 +142,9 @@ impl Unfolding<'_> {
     }
 }
 
-fn check(what: &'static str, found: usize, limit: usize) -> Result<(), FormatError> {
+fn check(what: &'static str, [found, limit]: [usize; 2], unit: &'static str) -> Result<(), FormatError> {
     match found > limit {
-        true => Err(FormatError::TooLarge { what, found, limit }),
+        true => Err(FormatError::TooLarge { what, found, unit, limit }),
         false => Ok(()),
     }
 }

@@ -72,8 +72,9 @@ impl<'a> Records<'a> {
             if record.groups.len() > MAX_GROUPS {
                 let found = record.groups.len();
                 return Err(FormatError::TooLarge {
-                    what: "DXF's entity in groups",
+                    what: "DXF's entity",
                     found,
+                    unit: "groups",
                     limit: MAX_GROUPS,
                 });
             }

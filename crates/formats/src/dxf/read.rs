@@ -53,7 +53,12 @@ fn check_kind(bytes: &[u8]) -> Result<(), FormatError> {
         return Err(FormatError::Refused { what: "DWG", instead });
     }
     match bytes.len() > super::MAX_BYTES {
-        true => Err(FormatError::TooLarge { what: "file", found: bytes.len(), limit: super::MAX_BYTES }),
+        true => Err(FormatError::TooLarge {
+            what: "file",
+            found: bytes.len(),
+            unit: "bytes",
+            limit: super::MAX_BYTES,
+        }),
         false => Ok(()),
     }
 }
@@ -139,8 +144,9 @@ impl Place {
         self.elements += self.entities.elements.saturating_sub(before);
         match self.elements > super::MAX_ELEMENTS {
             true => Err(FormatError::TooLarge {
-                what: "DXF's path segments",
+                what: "DXF",
                 found: self.elements,
+                unit: "path segments",
                 limit: super::MAX_ELEMENTS,
             }),
             false => Ok(()),

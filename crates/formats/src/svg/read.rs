@@ -38,7 +38,7 @@ const MAX_NODES: u32 = 2_000_000;
 pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
     check_size(bytes)?;
     let text = text(bytes)?;
-    guard::check_entities(text)?;
+    guard::check_text(text)?;
     let options =
         usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };
     let xml = Document::parse_with_options(text, options).map_err(syntax)?;
@@ -170,7 +170,12 @@ impl Collector {
     fn check(&self, path: &Path) -> Result<(), FormatError> {
         if self.elements > MAX_ELEMENTS {
             let found = self.elements;
-            return Err(FormatError::TooLarge { what: "SVG's path segments", found, limit: MAX_ELEMENTS });
+            return Err(FormatError::TooLarge {
+                what: "SVG",
+                found,
+                unit: "path segments",
+                limit: MAX_ELEMENTS,
+            });
         }
         match controls(path).find(|&p| !is_sound(p)) {
             Some(Point { x, y }) => {

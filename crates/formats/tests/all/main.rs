@@ -8,3 +8,4 @@ mod machines;
 mod mutations;
 #[path = "support/plate.rs"]
 mod plate;
+mod small_and_slow;

@@ -67,14 +67,21 @@ impl<C: Travel> Route<'_, C> {
         self.search(&runs, kicks, seed);
     }
 
+    /// Where a run of stops is entered and left.
+    fn ends(&self, run: &std::ops::Range<usize>) -> (StrokeEnd, StrokeEnd) {
+        let (first, last) = (self.stops[run.start], self.stops[run.end - 1]);
+        (self.ports.end(first.entry), self.ports.end(self.ports.exit(last.entry)))
+    }
+
+    /// See [`least_cost`](super::least_cost).
+    pub(super) fn least_cost(&self) -> f64 {
+        let strokes: Vec<_> = (0..self.stops.len()).map(|i| self.ends(&(i..i + 1))).collect();
+        Search::new(&strokes, self.start, self.cost).least()
+    }
+
     /// Improves the order of runs of stops.
     fn search(&mut self, runs: &[std::ops::Range<usize>], kicks: usize, seed: u64) {
-        let at = |port: u32| self.ports.end(port);
-        let ends = |run: &std::ops::Range<usize>| {
-            let (first, last) = (self.stops[run.start], self.stops[run.end - 1]);
-            (at(first.entry), at(self.ports.exit(last.entry)))
-        };
-        let strokes: Vec<_> = runs.iter().map(ends).collect();
+        let strokes: Vec<_> = runs.iter().map(|run| self.ends(run)).collect();
         let mut search = Search::new(&strokes, self.start, self.cost);
         search.settle();
         search.kick(kicks, seed);

@@ -77,6 +77,13 @@ impl<'a, T: Travel> Search<'a, T> {
         search
     }
 
+    /// What all travels together cost at least; the last one leads nowhere and is free.
+    pub(super) fn least(&self) -> f64 {
+        let of_strokes = &self.shares[..self.nowhere() as usize];
+        let dearest = of_strokes.iter().copied().fold(0.0, f64::max);
+        (of_strokes.iter().sum::<f64>() - dearest).max(0.0)
+    }
+
     /// Improves until no move does; returns what was gained.
     pub(super) fn settle(&mut self) -> f64 {
         self.ends_anywhere = true;

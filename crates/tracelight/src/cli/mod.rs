@@ -38,6 +38,7 @@ use tracelight_task::{Failure, Status, Stop};
 use self::answer::{Answer, Voice, print};
 use self::terminal::Terminal;
 use crate::interrupt;
+use crate::named;
 
 /// Give it a picture: a pan/tilt laser head draws it on the wall, to scale.
 #[derive(Parser, Debug)]
@@ -80,7 +81,7 @@ pub(crate) fn main() -> ExitCode {
     let (terminal, typed) = Terminal::of(arguments);
     let json = typed.iter().any(|argument| argument == "--json");
     let program = Cli::command().styles(terminal::STYLES).term_width(terminal::width_of_help());
-    let arguments = match meant::meant(typed, &program) {
+    let arguments = match named::in_text(&typed).and_then(|()| meant::meant(typed, &program)) {
         Ok(arguments) => arguments,
         Err(failure) => return report(terminal, json, json, &failure),
     };

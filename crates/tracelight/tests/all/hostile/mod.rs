@@ -1,6 +1,8 @@
 //! Broken and hostile inputs to the real program: each ends with exit status 1 or 2 and one clear message, within ten
 //! seconds and 1.5 GiB. All files are made here.
 
+#[cfg(target_os = "linux")]
+mod bounds;
 mod drawings;
 mod exchange;
 mod pictures;

@@ -119,7 +119,7 @@ fn with_bytes(file: &[u8], at: usize, bytes: &[u8]) -> Vec<u8> {
 }
 
 /// The header's size replaced and its checksum made right again: signature 8, length 4, `IHDR` and 13 bytes, CRC.
-fn with_png_size(png: &[u8], width: u32, height: u32) -> Vec<u8> {
+pub(crate) fn with_png_size(png: &[u8], width: u32, height: u32) -> Vec<u8> {
     let sized = with_bytes(&with_bytes(png, 16, &width.to_be_bytes()), 20, &height.to_be_bytes());
     let checksum = crc32(&sized[12..29]);
     with_bytes(&sized, 29, &checksum.to_be_bytes())
@@ -168,7 +168,7 @@ fn tiff_of(width: u32, height: u32) -> Vec<u8> {
 }
 
 /// A JPEG whose frame header declares another size than its data fill.
-fn jpeg_of(width: u16, height: u16) -> Vec<u8> {
+pub(crate) fn jpeg_of(width: u16, height: u16) -> Vec<u8> {
     let jpeg = encoded(&drawing(), ImageFormat::Jpeg);
     let frame = find(&jpeg, &[0xff, 0xc0]);
     let sized = with_bytes(&jpeg, frame + 5, &height.to_be_bytes());
