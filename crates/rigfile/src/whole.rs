@@ -167,7 +167,10 @@ mod tests {
         assert_eq!((wide.truth, wide.motion), (worn.truth, worn.motion));
         assert_ne!(wide.truth.wear, Wear::NONE);
         let none = parse("my.toml", "base = \"brand-new\"\n").unwrap_err();
-        assert!(none.contains("my.toml:1:8") && none.contains("one of the presets report, worn"), "{none}");
+        assert!(
+            none.contains("my.toml:1:8") && none.contains("one of the presets report, report-b, worn"),
+            "{none}"
+        );
         assert!(parse("my.toml", "base = 3\n").unwrap_err().contains("base must be text"));
     }
 

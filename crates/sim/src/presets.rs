@@ -25,7 +25,7 @@ const COMMAND_LIMIT_V: f64 = 10.0;
 impl RigConfig {
     /// Every preset, in the order they are listed.
     pub fn presets() -> Vec<Self> {
-        vec![Self::report(), Self::worn()]
+        vec![Self::report(), Self::report_b(), Self::worn()]
     }
 
     /// The preset of that name.
@@ -68,6 +68,20 @@ impl RigConfig {
             },
             light: LightSettings::POINTER,
             safety: SafetySettings::USUAL,
+        }
+    }
+
+    /// Returns the rig of the 2006 report with parameter set B, the one of its simulation's start file: rotor inertias as the encoder feels
+    /// them, 20 times less. The report's own friction protocol gives its own tables on this set.
+    pub fn report_b() -> Self {
+        let report = Self::report();
+        let model = Model { bodies: HeadBodies::set_b(), ..report.model };
+        Self {
+            name: "report-b".into(),
+            description: "the rig of the 2006 report with the masses of its simulation's start file".into(),
+            model,
+            truth: Truth { model, ..report.truth },
+            ..report
         }
     }
 

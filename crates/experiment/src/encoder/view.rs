@@ -43,7 +43,9 @@ impl finding::Finding for Finding {
                     let what = format!("disc beside its axis: most at {:.0}°", at_rad.to_degrees());
                     let _ = write!(text, "\n{what:44} {cell:>18}");
                 }
-                None => text += "\nthe joint did not turn evenly for two turns one way: nothing is known of a disc beside its axis",
+                None => {
+                    text += "\nthe joint did not turn evenly for two turns one way: nothing is known of a disc beside its axis"
+                }
             }
             let _ =
                 write!(text, "\n{} edges, {:.4} counts rms beside this. ", table.edges, table.left_counts);

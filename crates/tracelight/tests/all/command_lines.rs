@@ -174,9 +174,12 @@ fn wrong_flags_and_names_are_answered_with_what_to_type() {
         (&["trace", "--text", "hello"], &["text is not drawn yet", "Object to Path"]),
         (
             &["plan", "examples/star.png", "--rig", "reprot"],
-            &["no preset (report, worn)", "did you mean report?"],
+            &["no preset (report, report-b, worn)", "did you mean report?"],
         ),
-        (&["plan", "examples/star.png", "--rig", "banana"], &["no preset (report, worn) and no rig file"]),
+        (
+            &["plan", "examples/star.png", "--rig", "banana"],
+            &["no preset (report, report-b, worn) and no rig file"],
+        ),
         (&["plan", "examples/star.png", "--rig", "/dev/ttyUSB0"], &["no real head can be driven yet"]),
         (&["plan", "examples/star.png", "--rig", "COM3"], &["no real head can be driven yet"]),
         (&["explain", "following-eror"], &["did you mean following-error?"]),

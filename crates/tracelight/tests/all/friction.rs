@@ -49,6 +49,17 @@ fn the_reports_tables_come_back_and_its_protocol_is_biased() {
 }
 
 #[test]
+fn on_parameter_set_b_the_reports_protocol_gives_the_reports_tables() {
+    let out = folder("lab-friction-b");
+    let found = lab(&["friction", "--fixture", "--rig", "report-b", "--out", out.to_str().unwrap()]);
+    for (joint, table) in TABLES {
+        for (name, value) in NAMES.into_iter().zip(table) {
+            near(&found[joint]["steady"][name], value, 0.002 * value.abs());
+        }
+    }
+}
+
+#[test]
 fn on_its_feet_a_head_tells_friction_and_weight_within_its_range() {
     let out = folder("lab-friction-standing");
     let found = lab(&["friction", "--out", out.to_str().unwrap()]);

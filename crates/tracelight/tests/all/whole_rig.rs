@@ -50,7 +50,10 @@ fn a_rig_file_with_a_base_needs_only_what_differs() {
     let (code, said) = planned(&dir, "bare.toml", &text.replace("base = \"worn\"\n", ""), &[]);
     assert!(code == Some(2) && said.contains("has no model.gravity"), "{said}");
     let (code, said) = planned(&dir, "none.toml", &text.replace("worn", "old"), &[]);
-    assert!(code == Some(2) && said.contains("base: must be one of the presets report, worn"), "{said}");
+    assert!(
+        code == Some(2) && said.contains("base: must be one of the presets report, report-b, worn"),
+        "{said}"
+    );
 }
 
 #[test]
