@@ -57,7 +57,7 @@ pub(crate) fn quadratic(variable: &str, linear: f64, constant: f64) -> String {
     format!("({})", polynomial(&Polynomial::new([1.0, linear, constant]), variable))
 }
 
-fn power(variable: &str, power: usize) -> String {
+pub(crate) fn power(variable: &str, power: usize) -> String {
     match power {
         0 => String::new(),
         1 => variable.to_owned(),

@@ -4,7 +4,7 @@ use tracelight_maths::complex;
 
 use crate::Complex;
 use crate::error::LinearError;
-use crate::notation::{four_digits, quadratic};
+use crate::notation::{four_digits, power, quadratic};
 use crate::polynomial::are_paired;
 use crate::time::Time;
 
@@ -91,9 +91,21 @@ fn constants(roots: &[Complex]) -> f64 {
     nonzero.map(|root| -root).product::<Complex>().re
 }
 
+/// Factors that are the same, side by side, as one with a power.
+fn powers(factors: Vec<String>) -> Vec<String> {
+    let mut runs: Vec<(String, usize)> = Vec::new();
+    for factor in factors {
+        match runs.last_mut() {
+            Some((last, count)) if *last == factor => *count += 1,
+            _ => runs.push((factor, 1)),
+        }
+    }
+    runs.into_iter().map(|(factor, count)| power(&factor, count)).collect()
+}
+
 /// The gain and a factor for each root or pair.
 fn quotient(gain: f64, zeros: &[Complex], poles: &[Complex], factor: &dyn Fn(&Complex) -> String) -> String {
-    let factors = |roots: &[Complex]| roots.iter().filter(|r| r.im >= 0.0).map(factor).collect::<Vec<_>>();
+    let factors = |roots: &[Complex]| powers(roots.iter().filter(|r| r.im >= 0.0).map(factor).collect());
     let (above, below) = (factors(zeros), factors(poles));
     let top = match (gain, above.is_empty()) {
         (1.0, false) => above.concat(),
@@ -148,6 +160,9 @@ mod tests {
         let zpk = Zpk::new(10.0, vec![], poles, Time::Continuous).unwrap();
         assert_eq!(zpk.to_string(), "10 / (s(s² + 2 s + 5))");
         assert_eq!(zpk.transfer().denominator().coefficients(), [1.0, 2.0, 5.0, 0.0]);
+        let double =
+            Zpk::new(3.0, real(&[-1.0, -1.0, -1.0]), real(&[0.0, 0.0, -9.0, -9.0]), Time::Continuous);
+        assert_eq!(double.unwrap().to_string(), "3 (s + 1)³ / (s²(s + 9)²)");
         let lonely = Zpk::new(1.0, vec![], pair[..1].to_vec(), Time::Continuous);
         assert!(matches!(lonely, Err(LinearError::Unpaired(_))));
     }
