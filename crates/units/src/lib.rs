@@ -88,6 +88,9 @@ pub const TORQUE_CONSTANTS: &[Unit] = &[("Nm/A", 1.0), ("mNm/A", 1e-3)];
 pub const TORQUES: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
 /// See [`LENGTHS`].
 pub const ANGULAR_SPEEDS: &[Unit] = &[("rad/s", 1.0), ("deg/s", DEG)];
+/// Frequencies, as angular ones: 1 Hz is 2π rad/s.
+pub const FREQUENCIES: &[Unit] =
+    &[("rad/s", 1.0), ("Hz", std::f64::consts::TAU), ("kHz", 1e3 * std::f64::consts::TAU), ("deg/s", DEG)];
 /// See [`LENGTHS`].
 pub const ANGULAR_ACCELERATIONS: &[Unit] = &[("rad/s2", 1.0), ("deg/s2", DEG)];
 /// See [`LENGTHS`].

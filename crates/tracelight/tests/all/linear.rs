@@ -309,3 +309,13 @@ fn systems_on_paper_answer_as_the_textbook_says() {
         assert!(!refused.status.success() && message.contains(words), "{message}");
     }
 }
+
+#[test]
+fn frequencies_are_in_hertz_or_in_radians_a_second() {
+    let [hertz, radians] = [["1Hz", "0.01kHz"], ["6.283185307179586rad/s", "62.83185307179586rad/s"]]
+        .map(|[from, to]| lab(&["bode", "G11", "--from", from, "--to", to])["rad_s"].clone());
+    near(&hertz[0], std::f64::consts::TAU, 1e-12);
+    assert_eq!(hertz.as_array().unwrap().len(), radians.as_array().unwrap().len());
+    let sampled = lab(&["pzmap", "1/(s+1)", "--sample", "10Hz"]);
+    near(&sampled["systems"][0]["poles"][0][0], (-0.1_f64).exp(), 1e-12);
+}

@@ -2,7 +2,7 @@ use clap::Args;
 use tracelight_experiment::bode::Request;
 use tracelight_experiment::frequencies::Frequencies;
 use tracelight_task::{Failure, Stop};
-use tracelight_units::ANGULAR_SPEEDS;
+use tracelight_units::FREQUENCIES;
 
 use super::bounds::above_zero;
 use super::command::{self, LabCommand, OutFile, out_file};
@@ -48,7 +48,7 @@ struct BandArgs {
 }
 
 pub(super) fn frequency(text: &str) -> Result<f64, String> {
-    above_zero(text, ANGULAR_SPEEDS)
+    above_zero(text, FREQUENCIES)
 }
 
 impl FrequencyArgs {

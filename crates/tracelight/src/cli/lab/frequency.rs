@@ -4,7 +4,7 @@ use clap::Args;
 use tracelight_experiment::frequency::Request;
 use tracelight_files as files;
 use tracelight_task::{Failure, Stop};
-use tracelight_units::{ANGULAR_SPEEDS, TIMES};
+use tracelight_units::{ANGULAR_SPEEDS, FREQUENCIES, TIMES};
 
 use super::bounds::{above_zero, voltage};
 use super::command::{self, LabCommand, OutFile, log, out_file};
@@ -72,7 +72,7 @@ pub(crate) struct FrequencyTrialArgs {
 
 fn frequency(text: &str) -> Result<f64, String> {
     const MOST_RAD_S: f64 = 1500.0; // four ticks a period
-    let rad_s = above_zero(text, ANGULAR_SPEEDS)?;
+    let rad_s = above_zero(text, FREQUENCIES)?;
     if rad_s <= MOST_RAD_S {
         Ok(rad_s)
     } else {

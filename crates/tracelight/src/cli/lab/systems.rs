@@ -1,9 +1,11 @@
+use std::f64::consts::TAU;
+
 use clap::{Args, ValueEnum};
 use tracelight_chart::Theme;
 use tracelight_experiment::systems::{OneSystem, Reading, Systems};
 use tracelight_linear::Discretization;
 use tracelight_task::Failure;
-use tracelight_units::{TIMES, parse};
+use tracelight_units::{FREQUENCIES, TIMES, parse};
 
 use super::head::HeadArgs;
 
@@ -77,7 +79,11 @@ impl Method {
 }
 
 fn period(text: &str) -> Result<f64, String> {
-    let period_s = parse(text, TIMES).map_err(|e| e.to_string())?;
+    // as a time, or as how often a second
+    let rate_hz =
+        text.strip_suffix("Hz").and_then(|_| parse(text, FREQUENCIES).ok()).map(|rad_s| rad_s / TAU);
+    let period_s =
+        rate_hz.map_or_else(|| parse(text, TIMES).map_err(|e| e.to_string()), |hz| Ok(1.0 / hz))?;
     if period_s > 0.0 { Ok(period_s) } else { Err(format!("{text} is no time between samples")) }
 }
 

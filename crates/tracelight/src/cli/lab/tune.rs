@@ -4,7 +4,7 @@ use clap::Args;
 use tracelight_experiment::tune::{Choice, Request};
 use tracelight_sim::LawName;
 use tracelight_task::{Failure, Stop};
-use tracelight_units::{ANGULAR_SPEEDS, TIMES};
+use tracelight_units::{FREQUENCIES, TIMES};
 
 use super::bounds::above_zero;
 use super::command::{self, LabCommand};
@@ -71,7 +71,7 @@ fn lag(text: &str) -> Result<f64, String> {
 }
 
 fn bandwidth(text: &str) -> Result<f64, String> {
-    let rad_s = above_zero(text, ANGULAR_SPEEDS)?;
+    let rad_s = above_zero(text, FREQUENCIES)?;
     if (0.1..=500.0).contains(&rad_s) {
         Ok(rad_s)
     } else {
