@@ -8,7 +8,7 @@ use tracelight_trajectory::{DarkMove, Ramps, Shape};
 pub enum ProfileName {
     /// Constant acceleration and deceleration.
     Trapezoid,
-    /// Acceleration that builds up and fades over a fifth of its phase.
+    /// Jerk-limited: acceleration ramps up and down over a fifth of each phase.
     SCurve,
     /// Half a sine of velocity.
     Sine,
@@ -18,7 +18,7 @@ pub enum ProfileName {
     Sigmoid,
     /// Polynomial of fifth degree.
     Quintic,
-    /// As fast as the motors can; dark moves limited in jerk.
+    /// As fast as the motors allow; dark moves with limited jerk.
     Optimal,
 }
 
@@ -49,12 +49,12 @@ impl ProfileName {
     const fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Trapezoid => ("trapezoid", "Constant acceleration and deceleration"),
-            Self::SCurve => ("s-curve", "Acceleration that builds up and fades over a fifth of its phase"),
+            Self::SCurve => ("s-curve", "Jerk-limited: acceleration ramps up and down over a fifth of each phase"),
             Self::Sine => ("sine", "Half a sine of velocity"),
             Self::Cycloid => ("cycloid", "A whole sine of acceleration"),
             Self::Sigmoid => ("sigmoid", "Logistic position"),
             Self::Quintic => ("quintic", "Polynomial of fifth degree"),
-            Self::Optimal => ("optimal", "As fast as the motors can; dark moves limited in jerk"),
+            Self::Optimal => ("optimal", "As fast as the motors allow; dark moves with limited jerk"),
         }
     }
 

@@ -14,17 +14,17 @@ use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::eyes::ImageSize;
 
-/// Look at what is plugged in: cameras, what they can, how fast and how late their images come
+/// List connected cameras: their modes, frame rate and latency
 #[derive(Args, Debug)]
 #[command(after_help = "Examples: tracelight doctor\n          \
                   tracelight doctor --camera /dev/video2 --camera-size 640x480\n          \
                   tracelight doctor --camera http://192.168.1.20:8080/video\n\n\
-                  Each camera is used for about three seconds. What is changed of it, exposure and gain, is put back.")]
+                  Each camera is used for about three seconds. Its exposure and gain are changed during the test and restored afterwards.")]
 pub(crate) struct DoctorArgs {
-    /// Look at this camera only: /dev/video0, or http://… one on the net. Without it, at all that are plugged in
+    /// Look at this camera only: /dev/video0, or an http:// network camera [default: all connected cameras]
     #[arg(long, value_name = "SOURCE")]
     camera: Option<String>,
-    /// Columns and rows of its images; without it about 1280x720
+    /// Columns and rows of its images [default: about 1280x720]
     #[arg(long, value_name = "WxH")]
     camera_size: Option<ImageSize>,
     #[command(flatten)]

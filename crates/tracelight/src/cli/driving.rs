@@ -31,7 +31,7 @@ pub(crate) struct DrivingArgs {
     /// Shape of the dark moves between strokes
     #[arg(help_heading = "Time and order", long, default_value = ProfileName::SCurve.name(), value_parser = profile())]
     pub(crate) profile: ProfileName,
-    /// Highest joint acceleration wished for, such as 100rad/s2; the motors decide where they allow less
+    /// Upper limit for the joint acceleration, such as 100rad/s2; lower where the motors cannot reach it
     #[arg(help_heading = "Time and order", long, value_name = "ACCELERATION", allow_hyphen_values = true, value_parser = positive_acceleration)]
     pub(crate) amax: Option<AngularAcceleration>,
 }
@@ -39,11 +39,11 @@ pub(crate) struct DrivingArgs {
 /// What becomes of the speed at corners, stroke ends and tight curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum LitSpeedName {
-    /// Whatever is quicker at each: to rest there, or past it, with a dark run-up
+    /// At each corner and stroke end, the quicker of stopping there or passing with a dark run-up
     Fastest,
-    /// One speed for all that is lit, which the tightest curve permits; corners get dark loops
+    /// One constant speed on all lit lines, limited by the tightest curve; corners get dark loops
     Exact,
-    /// To rest at every corner and stroke end
+    /// Stop at every corner and stroke end
     Stops,
 }
 

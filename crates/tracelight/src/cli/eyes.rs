@@ -14,19 +14,26 @@ use crate::named;
 /// Which camera looks at the wall.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct EyeArgs {
-    /// Camera: sim:PICTURE is a simulated one in front of a simulated wall with PICTURE on it; /dev/video0 one that is plugged in (`tracelight
-    /// doctor` lists them); http://… one on the net, that sends a stream (MJPEG) or an image each time; or an image, a folder of them, or a film of them (Motion JPEG: .mjpeg,
-    /// .avi, .mkv, .mov)
-    #[arg(long, value_name = "SOURCE")]
+    /// Source of images: a camera, simulated or real, or recorded images
+    ///
+    /// sim:PICTURE  a simulated camera, in front of a simulated wall with
+    ///              PICTURE on it
+    /// /dev/video0  a connected camera (`tracelight doctor` lists them)
+    /// http://…     a network camera that sends an MJPEG stream, or an image
+    ///              per request
+    /// FILE         an image, or a video (Motion JPEG: .mjpeg, .avi, .mkv,
+    ///              .mov)
+    /// FOLDER       a folder of images
+    #[arg(long, value_name = "SOURCE", verbatim_doc_comment)]
     pub(crate) camera: Option<String>,
-    /// Columns and rows of the images of a camera that is plugged in: those it was calibrated for, or else about 1280x720
+    /// Columns and rows of the images of a connected camera [default: those it was calibrated for, or else about 1280x720]
     #[arg(long, value_name = "WxH", requires = "camera")]
     pub(crate) camera_size: Option<ImageSize>,
     /// Which camera is simulated
     #[arg(help_heading = "Simulation", long, value_enum, default_value_t, requires = "camera")]
     pub(crate) sim_camera: SimulatedEyeName,
-    /// What is known of the camera: a file that `calibrate markers` or `calibrate lens` has written. Where no markers are in sight, the
-    /// camera is believed to stand where it stood
+    /// What is known of the camera: a file that `calibrate markers` or `calibrate lens` has written. If no markers are in sight, the
+    /// camera is assumed not to have moved
     #[arg(long, value_name = "FILE.toml", requires = "camera")]
     pub(crate) calibration: Option<String>,
 }
@@ -53,14 +60,32 @@ impl SimulatedEyeName {
 /// How a camera follows the spot while it draws.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct FollowArgs {
-    /// What the camera sees while the laser draws is told, but nothing is made of it: nothing is trimmed, and a head that was bumped is not
-    /// found again
+    /// What the camera sees while the laser draws is reported but not used: no aim correction, no recovery of a bumped head
     #[arg(long, requires = "camera")]
     pub(crate) open_loop: bool,
-    /// Lets something go wrong in a simulated room, to see what is made of it: pan-slip=20@5 is an encoder that slips by 20 counts 5 s
-    /// after drawing began; also tilt-slip=COUNTS, head-bump=DEGREES, power-loss, drift=PERCENT, camera-bump=PX, camera-unplugged, camera-frozen,
-    /// camera-black, camera-slow=IMAGES_A_SECOND, camera-stamps=SECONDS. May be given more than once
-    #[arg(help_heading = "Simulation", long, value_name = "TROUBLE", requires = "camera")]
+    /// Inject a fault in the simulated room: FAULT@SECONDS after drawing began; repeatable
+    ///
+    /// pan-slip=COUNTS        the pan encoder slips by so many counts
+    /// tilt-slip=COUNTS       the tilt encoder does
+    /// head-bump=DEGREES      a bump turns the head by that angle
+    /// power-loss             the rig loses power
+    /// drift=PERCENT          the beam turns further than it should, by that
+    ///                        share when the job ends
+    /// camera-bump=PX         the middle of the image moves by so many px
+    /// camera-unplugged       the camera sends no more images
+    /// camera-frozen          the camera repeats its last image
+    /// camera-black           something covers the lens
+    /// camera-slow=HZ         the camera sends so many images per second
+    /// camera-stamps=SECONDS  time stamps of images are off by up to that
+    ///
+    /// pan-slip=20@5: the pan encoder slips by 20 counts after 5 s.
+    #[arg(
+        help_heading = "Simulation",
+        long,
+        value_name = "TROUBLE",
+        requires = "camera",
+        verbatim_doc_comment
+    )]
     pub(crate) sim_trouble: Vec<TroubleAt>,
 }
 

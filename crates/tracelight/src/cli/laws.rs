@@ -1,15 +1,14 @@
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use tracelight_sim::{LawName, ObserverName, RigConfig};
 
 /// By what the head is held to its plan.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct LawArgs {
-    /// Control law [default: the rig's]: state feedback with what disturbs estimated, PID with or without feedforward,
-    /// lead-lag, or the 2006 report's: its compensators read as poles and zeros or as time constants, its PD gains
+    /// Control law [default: the rig's]
     #[arg(long, value_name = "LAW", value_parser = law())]
     pub(crate) law: Option<LawName>,
-    /// How counts become position and speed [default: as the law is meant]
+    /// How counts become position and speed [default: the observer the law was designed with]
     #[arg(long, value_name = "OBSERVER", value_parser = observer())]
     pub(crate) observer: Option<ObserverName>,
 }
@@ -23,8 +22,24 @@ impl LawArgs {
 
 /// Names of laws on the command line.
 pub(crate) fn law() -> impl TypedValueParser<Value = LawName> {
-    PossibleValuesParser::new(LawName::ALL.map(LawName::name))
+    PossibleValuesParser::new(LawName::ALL.map(|law| PossibleValue::new(law.name()).help(about(law))))
         .map(|name| LawName::named(&name).unwrap_or(LawName::State))
+}
+
+/// A law in one line of help.
+const fn about(law: LawName) -> &'static str {
+    match law {
+        LawName::State => "State feedback with disturbance estimation; feedforward from the identified head",
+        LawName::PidFeedforward => {
+            "PID with model feedforward of inertia, Coriolis torque, gravity and friction"
+        }
+        LawName::Pid => "PID with gravity compensation",
+        LawName::HandTuned => "PID with gains set by hand in the rig file",
+        LawName::LeadLag => "Lead-lag compensator with gravity compensation",
+        LawName::ReportZpk => "The 2006 report's compensators, their numbers read as poles and zeros",
+        LawName::ReportTimeConstants => "The same compensators, their numbers read as time constants",
+        LawName::ReportPd => "The 2006 report's PD gains",
+    }
 }
 
 /// Names of observers on the command line.

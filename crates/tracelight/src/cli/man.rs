@@ -8,7 +8,7 @@ use tracelight_task::{Failure, counted};
 
 use crate::cli::answer::{Answer, Voice};
 
-/// Write manual pages, one a command, for `man`
+/// Write manual pages for `man`, one per command
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight man -o ~/.local/share/man/man1")]
 pub(crate) struct ManArgs {

@@ -46,13 +46,13 @@ use crate::named;
     name = "tracelight",
     version,
     after_help = "Example: tracelight trace examples/house.png --width 24in --open\n\
-                  A picture alone is traced: tracelight examples/house.png\n\n\
+                  With a picture and no command, trace is assumed: tracelight examples/house.png\n\n\
                   Without hardware everything runs on a simulated rig (see `tracelight rigs`)."
 )]
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// When help and messages are coloured; NO_COLOR in the environment is never
+    /// When help and messages are coloured; auto never does if NO_COLOR is set
     #[arg(long, value_enum, value_name = "WHEN", default_value_t)]
     color: ColorChoice,
 }

@@ -8,15 +8,15 @@ use crate::cli::choosing::ChoiceArgs;
 /// What of a picture is drawn, where and how large it lies on the target.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct PlacementArgs {
-    /// Width on the target, such as 24in or 0.6m; the height follows. Without it, a drawing of true size keeps it,
-    /// everything else is 24in wide
+    /// Width on the target, such as 24in or 0.6m; the height follows [default: the drawing's own size if the file has one, otherwise
+    /// 24in]
     #[arg(long, value_name = "LENGTH", conflicts_with = "height", allow_hyphen_values = true,
           value_parser = positive_length)]
     pub(crate) width: Option<Length>,
     /// Height on the target; the width follows
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
     pub(crate) height: Option<Length>,
-    /// Where the picture's centre goes, right and up of the target's: 10cm,-2in
+    /// Offset of the picture's centre from the target's centre, right and up: 10cm,-2in
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub(crate) offset: Option<Offset>,
     /// Turn the picture anticlockwise: 15deg

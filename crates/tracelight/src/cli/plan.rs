@@ -23,16 +23,16 @@ use crate::named;
 pub(crate) struct PlanArgs {
     /// A drawing (SVG, DXF, JSON, CSV) or a picture; - is standard input
     drawing: String,
-    /// Write the plan, a row a millisecond, to this CSV file
+    /// Write the plan to this CSV file, one row per millisecond
     #[arg(help_heading = "Output", short, long, value_name = "FILE.csv", value_parser = table)]
     out: Option<String>,
-    /// Draw the plan, its lit way in colours, into this SVG
+    /// Write a preview of the plan as SVG, its lit path coloured
     #[arg(help_heading = "Output", long, value_name = "FILE.svg", value_parser = picture)]
     preview: Option<String>,
     /// What the colours of the preview say
     #[arg(help_heading = "Output", long, value_enum, default_value_t, requires = "preview")]
     colour_by: ColourByName,
-    /// What the order is to save
+    /// What the drawing order minimizes
     #[arg(help_heading = "Time and order", long, value_enum, default_value_t)]
     order_by: OrderByName,
     /// How much work goes into the order; the same amount gives the same order
@@ -70,7 +70,7 @@ impl ColourByName {
     }
 }
 
-/// What the order is to save.
+/// What the drawing order minimizes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum OrderByName {
     /// Seconds of dark moves
@@ -83,7 +83,7 @@ enum OrderByName {
 /// How much work goes into the order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum OrderEffortName {
-    /// No single move improves it
+    /// Stop at the first local optimum
     Quick,
     /// About a second for 5000 strokes
     #[default]

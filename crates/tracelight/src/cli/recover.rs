@@ -10,7 +10,7 @@ use tracelight_task::Failure;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::ending::ends_in;
 
-/// Make the run log of a program that was killed whole: every usual viewer opens it then
+/// Repair the run log of a killed program, so that every MCAP viewer opens it
 ///
 /// A log grows record by record, and gets its index, which viewers ask for, when its run ends. All whole records stay, in their order.
 #[derive(Args, Debug)]

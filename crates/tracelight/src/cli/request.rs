@@ -35,19 +35,19 @@ pub(crate) struct TraceArgs {
     /// The head as `calibrate head` has found it; without it the laser draws dots first, and the camera finds it
     #[arg(help_heading = "Camera", long, value_name = "FILE.toml", requires = "camera")]
     pub(crate) head: Option<String>,
-    /// The head was just powered up, or lost count: it finds out where it points before it draws, by dots that the camera sees, as with `calibrate head --home`. They may fall
-    /// anywhere: keep eyes away. A simulated head is then powered up wherever somebody left it
+    /// Home first, for a head that was just powered up or lost count: it draws dots that the camera sees and finds out where it points,
+    /// as with `calibrate head --home`. The dots may fall anywhere: keep eyes away. A simulated head then starts at a random position
     #[arg(help_heading = "Camera", long, requires = "camera", conflicts_with = "dry_run")]
     pub(crate) home: bool,
-    /// Most further images of the camera that are taken where one shows no markers or no figure
+    /// Maximum number of further images to take if one shows no markers or no figure
     #[arg(help_heading = "Camera", long, value_name = "N", default_value_t = 5, requires = "camera", allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) retakes: u32,
     #[command(flatten, next_help_heading = "Camera")]
     pub(crate) follow: FollowArgs,
-    /// Draw it that many times, each from power-up, the head identified between them; the figures are the last lap's
+    /// Draw N times, powering up anew each time and re-identifying the head between laps; the last lap is reported
     #[arg(help_heading = "Time and order", long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) laps: u32,
-    /// What differs from head to head is drawn from this seed
+    /// Random seed for the differences between simulated heads
     #[arg(
         help_heading = "Simulation",
         long,
@@ -56,7 +56,7 @@ pub(crate) struct TraceArgs {
         allow_hyphen_values = true
     )]
     pub(crate) seed: u64,
-    /// The simulated head was just powered up and nobody homed it: to see that nothing is drawn then
+    /// Start the simulated head unhomed, to check that it refuses to draw
     #[arg(help_heading = "Simulation", long)]
     pub(crate) sim_unhomed: bool,
     /// Folder for the results [default: out/<the picture's name>/]

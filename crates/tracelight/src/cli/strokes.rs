@@ -31,20 +31,19 @@ pub(crate) struct StrokesArgs {
     /// Pictures or drawings, or folders of pictures; - is standard input
     #[arg(required = true, value_name = "PICTURE")]
     pictures: Vec<String>,
-    /// Write the strokes here: .svg, .dxf, .gcode (GRBL laser) or .hpgl in true size, .ild (ILDA, over its whole
-    /// range), .csv (metres), .json (pixels); a folder, with / at its end, for several pictures. What is done there
-    /// already is kept
+    /// Write the strokes here: .svg, .dxf, .gcode (GRBL laser) or .hpgl in true size, .ild (ILDA, scaled to the full coordinate range),
+    /// .csv (metres), .json (pixels); a folder, with / at its end, for several pictures. Pictures already done in that folder are skipped
     #[arg(help_heading = "Output", short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Format of the files in a folder
     #[arg(help_heading = "Output", long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(FORMATS))]
     format: Option<String>,
-    /// Show in an SVG how the picture becomes ink: grey, light evened out, histogram and threshold, ink; of one picture
+    /// Write the processing stages as an SVG: grey, illumination evened out, histogram and threshold, ink; one picture only
     #[arg(help_heading = "Output", long, value_name = "FILE.svg", value_parser = svg_file)]
     stages: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Picture")]
     tracing: TracingArgs,
-    /// Also the pictures in the folders of a folder
+    /// Include subfolders
     #[arg(help_heading = "Output", short, long)]
     recursive: bool,
     /// Pictures that are traced at the same time [default: as many as there are processors]

@@ -15,11 +15,11 @@ pub(crate) struct TracingArgs {
     /// How pixels become strokes
     #[arg(long, value_enum, default_value_t)]
     pub(crate) mode: ModeName,
-    /// What is ink: at least so much darker than its paper, % of the paper's brightness, such as 30 (on dark paper,
-    /// lighter, counted from white)
+    /// Ink threshold: ink is darker than the paper by at least this percentage of the paper's brightness, such as 30; on dark paper,
+    /// lighter, as a percentage of the paper's distance from white
     #[arg(long, value_name = "auto|PERCENT", default_value = "auto", allow_hyphen_values = true, value_parser = threshold)]
     pub(crate) threshold: OrAuto,
-    /// Smallest patch of ink that is kept, in square pixels, such as 20; 0 keeps all, and each pass of a pencil's line
+    /// Smallest patch of ink that is kept, in square pixels, such as 20; 0 keeps everything, also each pass of a repeated pencil line
     #[arg(long, value_name = "auto|AREA", default_value = "auto", allow_hyphen_values = true, value_parser = despeckle)]
     pub(crate) despeckle: OrAuto,
     /// Drop strokes shorter than this, in the picture (8px) or on the target (5mm, 0.2in)
@@ -28,20 +28,20 @@ pub(crate) struct TracingArgs {
     /// Furthest a stroke may be from the ink's middle or edge
     #[arg(long, value_name = "LENGTH", default_value = "0.35px", allow_hyphen_values = true, value_parser = tolerance)]
     pub(crate) tolerance: Pixels,
-    /// Change of direction from which on a break is a corner and stays sharp
+    /// Corner angle: bends of at least this angle stay sharp corners
     #[arg(long, value_name = "ANGLE", default_value = "25deg", allow_hyphen_values = true, value_parser = corner_angle)]
     pub(crate) corner_angle: Angle,
-    /// Sheets of paper lie or hang in the picture, as in a photograph of a wall or a table: their edges are no lines
+    /// Do not trace the edges of sheets of paper in the picture, as in a photograph of a wall or a table
     #[arg(long)]
     pub(crate) sheets: bool,
-    /// All of the picture is drawing, even beside a sheet of paper that is seen in it
+    /// Trace the whole picture, also outside a detected sheet of paper
     #[arg(long)]
     pub(crate) whole: bool,
-    /// Lay a sheet of paper that was photographed at a slant square, by its corners: those that are found, or four that are
-    /// given, in the picture's pixels from its upper left, such as "52,19 583,6 599,368 100,447"; off leaves it as it is
+    /// Correct the perspective of a sheet photographed at an angle: auto finds its corners; off leaves the picture as it is; or four
+    /// corners in pixels from the picture's upper left, such as "52,19 583,6 599,368 100,447"
     #[arg(long, value_name = "auto|off|X,Y …", default_value = "auto", allow_hyphen_values = true, value_parser = straighten)]
     pub(crate) straighten: Straighten,
-    /// The sheet's size, for a drawing to scale: its true width is what is drawn unless --width or --height says otherwise
+    /// Size of the sheet; the drawing keeps its true size on it unless --width or --height is given
     #[arg(long, value_enum, value_name = "SIZE")]
     pub(crate) paper: Option<PaperName>,
     /// Trace also a photograph or a screenshot that looks like no drawing

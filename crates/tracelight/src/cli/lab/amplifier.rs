@@ -14,7 +14,7 @@ use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
-/// Identify what an amplifier makes of a volt, and what the turning motor's own voltage takes away
+/// Identify an amplifier's gain and its motor's back-EMF
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: tracelight lab amplifier examples/amplifier.csv --rig examples/rig.toml\n\n\
@@ -43,7 +43,7 @@ pub(crate) struct AmplifierArgs {
     /// What the ammeter shows: its last digit
     #[arg(long, value_name = "CURRENT", default_value = "1mA", value_parser = current)]
     ammeter: f64,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Folder for what is found

@@ -39,7 +39,7 @@ pub(crate) struct BacklashArgs {
     /// How often each place is gone to from either side
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=50))]
     cycles: u32,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Folder for what is found

@@ -9,10 +9,10 @@ use super::command::{self, LabCommand, OutFile, out_file};
 use super::systems::SystemArgs;
 use crate::cli::answer::{Answer, Voice};
 
-/// Amplification and phase over frequency, gain, phase, delay and modulus margins
+/// Bode plot, with gain, phase, delay and modulus margins
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab bode \"K11 G11\" \"K11t G11\" -o loop.svg\n\n\
-                  Margins are of the open loop as it stands, closed by negative feedback. Crossings are computed, not read from the \
+                  The given system is the open loop; margins assume unity negative feedback. Crossings are computed, not read from the \
                   curve; the plot marks them.")]
 pub(crate) struct BodeArgs {
     #[command(flatten)]
@@ -26,7 +26,7 @@ pub(super) struct FrequencyArgs {
     systems: SystemArgs,
     #[command(flatten)]
     band: BandArgs,
-    /// Plot into an SVG or PNG, or write a row a frequency to a CSV; may be given again
+    /// Plot into an SVG or PNG, or write a CSV with one row per frequency; may be given again
     #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     pub(super) out: Vec<OutFile>,
     #[command(flatten)]

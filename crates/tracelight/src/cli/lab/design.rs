@@ -12,7 +12,7 @@ use super::systems::OneSystemArgs;
 use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
-/// A controller from wishes, and the loop it makes: margins, step, poles
+/// Design a controller from a specification: its loop's margins, step response and poles
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: tracelight lab design pid G11 --crossover 60rad/s --phase-margin 55deg -o loop.svg\n\n\
@@ -117,7 +117,7 @@ struct LoopArgs {
     /// How far it jumps
     #[arg(long, value_name = "ANGLE", default_value = "1deg", allow_hyphen_values = true, requires = "tried", value_parser = step)]
     to: Angle,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0, requires = "tried")]
     seed: u64,
     /// Plot step and input into an SVG or PNG, or write them to a CSV; may be given again

@@ -12,7 +12,7 @@ use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
-/// Identify what an encoder reads wrong: where its four kinds of edges lie, a disc beside its axis, counts it lost
+/// Identify encoder errors: positions of the four quadrature edges, disc eccentricity, lost counts
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab encoder examples/edges.csv\n\n\
                   A joint turns evenly, once each way, and every edge is stamped with its time; a smooth motion through the edges about an edge tells \
@@ -37,7 +37,7 @@ pub(crate) struct EncoderArgs {
     /// How many turns each way
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=200))]
     turns: u32,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Folder for what is found

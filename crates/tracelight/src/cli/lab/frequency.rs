@@ -12,7 +12,7 @@ use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
 use crate::named;
 
-/// Measure a joint's frequency response with many sines at once, its coherence, and hold it against the model
+/// Measure a joint's frequency response and coherence with a multisine, and compare them with the model
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab frequency --axis tilt -o tilt.svg\n\n\
                   The joint stands in a fixture, its axis upright and free, and turns one way under a steady voltage: friction that does not change \
@@ -54,7 +54,7 @@ pub(crate) struct FrequencyTrialArgs {
     /// Periods that are watched, after one that is not
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(2..=200))]
     periods: u32,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Write a period of the volts, t_s,volt, to be played to a head

@@ -11,7 +11,7 @@ use super::rig_out;
 use super::trials::{TrialArgs, leave_log};
 use crate::cli::answer::{Answer, Voice};
 
-/// Identify friction as the 2006 report did, by voltages held, say what is wrong with that, and identify it from the whole curves
+/// Identify friction from constant-voltage tests as in the 2006 report, show the flaw of that method, and fit the full curves instead
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab friction examples/motor.csv --out out/friction\n\n\
                   The report gives a joint −1 to 1 V in steps of 0.05 V, 30 s each after a pulse of 1 V, takes the last speeds for \

@@ -11,20 +11,21 @@ use crate::named;
 /// Which head is linearized, and where.
 #[derive(Args, Debug)]
 pub(crate) struct HeadArgs {
-    /// Masses: the 2006 report's parameter set, with its viscous friction of 0.01 N m s/rad and g = 9.8 m/s² [default: A]
+    /// Which of the 2006 report's two parameter sets gives the masses; with its viscous friction of 0.01 N m s/rad and g = 9.8 m/s²
+    /// [default: A]
     #[arg(long, value_name = "A|B", value_enum, ignore_case = true, conflicts_with = "rig")]
     set: Option<Set>,
-    /// Masses, viscous friction (the mean of both directions) and gravity of what is believed of a rig: a preset's name or a rig
-    /// file, instead of a set
+    /// Masses, viscous friction (mean of both directions) and gravity from the [model] of this rig, a preset's name or a rig file,
+    /// instead of a set
     #[arg(long, value_name = "RIG.toml|PRESET")]
     pub(super) rig: Option<String>,
-    /// Where it stands [default: 26.565deg,26.565deg, half the report's range of motion]
+    /// Joint angles at which it is linearized [default: 26.565deg,26.565deg, half the report's range of motion]
     #[arg(long, value_name = "PAN,TILT", allow_hyphen_values = true)]
     at: Option<Pair<Angle>>,
-    /// How fast it turns, steadily [default: at rest]
+    /// Joint rates at which it is linearized [default: at rest]
     #[arg(long, value_name = "PAN,TILT", allow_hyphen_values = true)]
     rates: Option<Pair<AngularSpeed>>,
-    /// Keep poles that a zero takes back but for a ten thousandth
+    /// Keep pole-zero pairs that cancel within 1e-4 of their size
     #[arg(long)]
     keep_cancellations: bool,
 }
@@ -32,10 +33,10 @@ pub(crate) struct HeadArgs {
 /// One of the report's parameter sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Set {
-    /// The model file's
+    /// From the report's model file
     #[value(name = "A")]
     A,
-    /// The simulation's start file's
+    /// From its simulation start-up file
     #[value(name = "B")]
     B,
 }

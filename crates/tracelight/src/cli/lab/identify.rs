@@ -12,15 +12,15 @@ use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::LawArgs;
 use crate::named;
 
-/// Identify what the head is made of: inertia, friction, weight, amplifier, where its encoders' edges lie
+/// Identify the head's parameters: inertia, friction, weight, amplifier, positions of its encoders' edges
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab identify --rig worn --out out/worn\n\n\
                   Without a RECORD.csv the rig moves for some 45 s in the dark, both joints through ±26° or what their range \
-                  allows. What is found goes to rig.toml in --out, for --rig of all commands. A fit that explains a third of \
-                  the motion, kept from it, worse than what is believed already is refused.\n\n\
-                  Counts and volts tell ratios only: twice the inertia, friction and weight with twice the torque per volt \
-                  move alike. What that leaves open is shared out as if inertia and weight were known within 5 %, the torque \
-                  per volt within 20 %. Play between encoder and beam cannot be seen by an encoder.")]
+                  allows. What is found goes to rig.toml in --out, for --rig of all commands. One third of \
+                  the data is held out; a fit that predicts it worse than the current model is refused.\n\n\
+                  Only ratios are observable from counts and volts: doubling inertia, friction and weight together with the torque \
+                  per volt changes nothing that is measured. The common scale is fixed by assuming that inertia and weight are known \
+                  within 5 %, the torque per volt within 20 %. Play between encoder and beam cannot be seen by an encoder.")]
 pub(crate) struct IdentifyArgs {
     /// Records of what the rig did, such as a trace.csv; given none, the rig moves
     #[arg(value_name = "RECORD.csv")]
@@ -30,7 +30,7 @@ pub(crate) struct IdentifyArgs {
     rig: String,
     #[command(flatten)]
     law: LawArgs,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Folder for rig.toml, and for record.csv where the rig moved

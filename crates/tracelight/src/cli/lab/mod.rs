@@ -40,7 +40,7 @@ use tracelight_task::{Failure, Stop};
 use self::command::LabCommand;
 use crate::cli::answer::{Answer, Performs, Voice};
 
-/// The control engineer's bench: profiles, moves, steps, friction and all else a head is made of, linear models, Bode, Nyquist and locus, controllers designed, many heads at once
+/// Control-engineering tools: motion profiles, step tests, identification, linear models and plots, controller design, Monte Carlo
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab profile --distance 180deg -o profiles.svg")]
 pub(crate) struct LabArgs {

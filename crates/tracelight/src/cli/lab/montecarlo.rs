@@ -6,7 +6,7 @@ use super::command::{self, LabCommand, OutFile, out_file};
 use super::shape::ShapeArgs;
 use crate::cli::answer::{Answer, Voice};
 
-/// Draw the same on many heads that differ: how exact it is on the middle one, on 95 of 100, on the worst
+/// Draw the same on many heads with varied parameters: median, 95th percentile and worst error
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab montecarlo --plants 1000 --shape circle -o heads.svg\n\n\
                   What is believed of the rig stays; what each head truly is differs: Coulomb friction by up to 15 %, viscous \

@@ -20,7 +20,7 @@ use crate::cli::placing::positive_length;
 use crate::cli::shapes::{profile, ramps};
 use crate::named;
 
-/// Follow a line or an arc of the target from rest to rest: every profile as asked, and as the motors can
+/// Follow a line or an arc on the target from rest to rest: each profile as requested, and as limited by the motors
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab move arc --start 10in,0in --angle 90deg -o arc.svg")]
 pub(crate) struct MoveArgs {
@@ -101,7 +101,7 @@ struct PaceArgs {
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     rig: String,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Plot the moves into an SVG or PNG, or write one, a row a millisecond, to a CSV; may be given again

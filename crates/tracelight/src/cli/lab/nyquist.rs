@@ -6,7 +6,7 @@ use super::bode::FrequencyArgs;
 use super::command::{self, LabCommand};
 use crate::cli::answer::{Answer, Voice};
 
-/// The open loop's values over all frequencies in the complex plane, how often they turn round −1, and what is left of stability
+/// Nyquist plot of the open loop: encirclements of −1, margins
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab nyquist \"K11 G11\" -o nyquist.svg")]
 pub(crate) struct NyquistArgs {
@@ -14,7 +14,7 @@ pub(crate) struct NyquistArgs {
     over: FrequencyArgs,
 }
 
-/// Amplification over phase of the open loop, with lines of what it is closed
+/// Nichols chart of the open loop, with contours of the closed loop
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab nichols \"K11 G11\" -o nichols.svg")]
 pub(crate) struct NicholsArgs {

@@ -55,7 +55,7 @@ pub(crate) struct RelayArgs {
     /// How far the tuned joint is sent to try it
     #[arg(long, value_name = "ANGLE", default_value = "5deg", allow_hyphen_values = true, value_parser = step)]
     to: Angle,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Plot swing and step into an SVG or PNG, or write the swing, a row a millisecond, to a CSV; may be given again

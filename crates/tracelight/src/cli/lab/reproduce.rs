@@ -9,7 +9,7 @@ use super::command::make_folder;
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Performs, Voice};
 
-/// Make every figure and table of the 2006 report again that can be: one page, its numbers beside ours, and what explains the difference
+/// Reproduce the figures and tables of the 2006 report on one page, its numbers beside ours, with what explains each difference
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab reproduce -o book\n\n\
                   The folder gets index.html, which needs nothing but itself, the figures by themselves, and the arrays and pictures that its \

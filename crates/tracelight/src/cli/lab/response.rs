@@ -8,23 +8,23 @@ use super::command::{self, LabCommand, OutFile, out_file};
 use super::systems::SystemArgs;
 use crate::cli::answer::{Answer, Voice};
 
-/// What transfer functions answer to a step, an impulse or a ramp: overshoot, rise, settling
+/// Response of transfer functions to a step, an impulse or a ramp: overshoot, rise time, settling time
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab response \"K11 G11\" \"K11t G11\" --closed -o steps.svg\n\n\
                   This is of systems on paper; lab step is of a rig, with friction, counts and limits.")]
 pub(crate) struct ResponseArgs {
     #[command(flatten)]
     systems: SystemArgs,
-    /// What comes in, from rest at time 0
+    /// Input, from rest at time 0
     #[arg(long, value_enum, default_value = "step")]
     input: Input,
-    /// For how long [default: until the slowest that dies out has done so]
+    /// For how long [default: until the slowest decaying mode has settled]
     #[arg(long, value_name = "TIME", value_parser = duration)]
     duration: Option<f64>,
-    /// How many values, evenly over that time; of samples each of them counts instead
+    /// Number of values, evenly over that time; discrete systems show every sample instead
     #[arg(long, value_name = "N", default_value_t = 2001, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     points: u32,
-    /// Plot into an SVG or PNG, or write a row a moment to a CSV; may be given again
+    /// Plot into an SVG or PNG, or write a CSV with one row per time step; may be given again
     #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
@@ -34,11 +34,11 @@ pub(crate) struct ResponseArgs {
 /// What comes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Input {
-    /// 1 from then on
+    /// Unit step
     Step,
-    /// All at once, its integral over time 1; of samples one sample of 1
+    /// Unit impulse (area 1); for discrete systems one sample of 1
     Impulse,
-    /// Rising by 1 a second
+    /// Unit ramp: rises by 1 per second
     Ramp,
 }
 

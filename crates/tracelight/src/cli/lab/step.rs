@@ -11,7 +11,7 @@ use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::{law, observer};
 use crate::named;
 
-/// Send one joint from rest at zero to an angle: overshoot, settling, what stays, on the head as it is and linearized
+/// Send one joint from rest at zero to an angle: overshoot, settling time and steady-state error, on the nonlinear head and linearized
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: tracelight lab step --axis tilt --to 15deg --law state,report-zpk -o steps.svg\n\
@@ -30,7 +30,7 @@ pub(crate) struct StepArgs {
     /// Laws, the first of them first in --json and alone in the CSV [default: the rig's]
     #[arg(long, value_name = "LAW", value_delimiter = ',', value_parser = law())]
     law: Vec<LawName>,
-    /// How counts become position and speed [default: as each law is meant]
+    /// How counts become position and speed [default: the observer each law was designed with]
     #[arg(long, value_name = "OBSERVER", value_parser = observer())]
     observer: Option<ObserverName>,
     /// How the joint is told [default: as each law is meant]
@@ -41,7 +41,7 @@ pub(crate) struct StepArgs {
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     rig: String,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Plot the responses into an SVG or PNG, or write the first, a row a millisecond, to a CSV; may be given again

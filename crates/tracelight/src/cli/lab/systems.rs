@@ -12,14 +12,14 @@ use super::head::HeadArgs;
 /// Systems to plot.
 #[derive(Args, Debug)]
 pub(crate) struct SystemArgs {
-    /// Systems, each a formula: numbers, s, + − * / ^, brackets; what stands side by side is multiplied. G11 and G22 are the head
-    /// linearized (see `tracelight lab linearize`), K11 and K22 the 2006 report's compensators as typeset, K11t and K22t the same read
-    /// as time constants
+    /// Systems, each a formula: numbers, s, + − * / ^, brackets; factors side by side are multiplied. G11 and G22 are the linearized head
+    /// (see `tracelight lab linearize`). K11 and K22 are the 2006 report's compensators as printed (poles and zeros); K11t and K22t take
+    /// the same numbers as time constants
     #[arg(value_name = "SYSTEM", required = true)]
     systems: Vec<String>,
     #[command(flatten)]
     how: HowArgs,
-    /// Close each by negative feedback of its output, after it is sampled
+    /// Close each by unity negative feedback of its output, after it is discretized
     #[arg(long)]
     closed: bool,
     /// Light lines on dark ground
@@ -30,7 +30,7 @@ pub(crate) struct SystemArgs {
 /// One system.
 #[derive(Args, Debug)]
 pub(super) struct OneSystemArgs {
-    /// The system, a formula: numbers, s, + − * / ^, brackets; what stands side by side is multiplied. G11 and G22 are the head linearized
+    /// The system, a formula: numbers, s, + − * / ^, brackets; factors side by side are multiplied. G11 and G22 are the linearized head
     /// (see `tracelight lab linearize`)
     #[arg(value_name = "SYSTEM")]
     system: String,
@@ -46,13 +46,13 @@ pub(super) struct OneSystemArgs {
 struct HowArgs {
     #[command(flatten)]
     head: HeadArgs,
-    /// The formula is of samples so far apart, its variable is z
+    /// The formula is discrete-time, in z, with this sample period
     #[arg(long, value_name = "TIME", value_parser = period, conflicts_with = "sample")]
     period: Option<f64>,
-    /// Sample it, so often
+    /// Discretize with this sample period
     #[arg(long, value_name = "TIME", value_parser = period)]
     sample: Option<f64>,
-    /// How it is sampled
+    /// How it is discretized
     #[arg(long, value_enum, default_value = "hold", requires = "sample")]
     method: Method,
 }
@@ -60,11 +60,11 @@ struct HowArgs {
 /// A way to sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Method {
-    /// The input is held from sample to sample: a plant behind a converter
+    /// Zero-order hold, for plants
     Hold,
-    /// Tustin's rule: a controller
+    /// Tustin's bilinear rule, for controllers
     Tustin,
-    /// Poles and zeros by z = e^(sT)
+    /// Poles and zeros mapped by z = e^(sT)
     Matched,
 }
 

@@ -43,7 +43,7 @@ pub(super) struct TrialArgs {
     /// How long that is given
     #[arg(long, value_name = "TIME", default_value = "1s", value_parser = time)]
     pulse_time: f64,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
 }

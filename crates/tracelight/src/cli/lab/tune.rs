@@ -13,7 +13,7 @@ use super::shape::ShapeArgs;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::law;
 
-/// Pick the control law of a rig and how fast its loops are: the smallest error on heads that differ, of all that bear what is asked
+/// Choose a rig's control law and bandwidth: the smallest error over varied heads among those that meet the robustness requirement
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab tune --laws state,pid-ff --gain-margin 1.3\n\n\
                   Every law at every bandwidth must first bear the demand: draw the shape, without once stopping to find its way back, \

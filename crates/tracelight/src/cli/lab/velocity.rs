@@ -11,7 +11,7 @@ use super::shape::ShapeArgs;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::positive_speed;
 
-/// Ask of each way to tell velocity and acceleration from counts how far off it is, by interval and speed
+/// Compare the errors of velocity and acceleration estimators from encoder counts, by interval and speed
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab velocity --speeds 0.1ft/s,1ft/s,3ft/s -o velocity.svg\n\n\
                   The head draws the shape once at each speed; its counts, edges and volts are then played to every observer, and \
@@ -26,7 +26,7 @@ pub(crate) struct VelocityArgs {
     /// Intervals, whole milliseconds
     #[arg(long, value_name = "TIME,…", value_delimiter = ',', default_value = "1ms,2ms,5ms,10ms,20ms,40ms,64ms", value_parser = interval)]
     intervals: Vec<usize>,
-    /// Seed of what differs from head to head
+    /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Plot the errors over interval and speed into an SVG or PNG, or write a row each to a CSV; may be given again
