@@ -49,7 +49,9 @@ impl ProfileName {
     const fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Trapezoid => ("trapezoid", "Constant acceleration and deceleration"),
-            Self::SCurve => ("s-curve", "Jerk-limited: acceleration ramps up and down over a fifth of each phase"),
+            Self::SCurve => {
+                ("s-curve", "Jerk-limited: acceleration ramps up and down over a fifth of each phase")
+            }
             Self::Sine => ("sine", "Half a sine of velocity"),
             Self::Cycloid => ("cycloid", "A whole sine of acceleration"),
             Self::Sigmoid => ("sigmoid", "Logistic position"),

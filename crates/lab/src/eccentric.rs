@@ -40,9 +40,10 @@ pub(crate) fn eccentricity(runs: &[Vec<Crossing>]) -> Option<(Uncertain, f64)> {
 fn even(run: &[Crossing]) -> Option<&[Crossing]> {
     /// Speed is taken over so many parts of a turn, and a part is even within that share of the median speed.
     const PARTS: f64 = 32.0;
-    const EVEN: f64 = 0.1;
-    /// At its ends the speed is that of a turn further inside, within that share.
+    const EVEN: f64 = 0.25;
+    /// At its ends the speed is that of a turn further inside, within that share, or within that many times what is usual of the run.
     const ENDS: f64 = 0.01;
+    const USUAL: f64 = 3.0;
     let turns = (run.last()?.angle_rad - run.first()?.angle_rad).abs() / TAU;
     let a_turn = (run.len() as f64 / turns) as usize;
     let half = (a_turn as f64 / PARTS) as usize;
@@ -59,7 +60,12 @@ fn even(run: &[Crossing]) -> Option<&[Crossing]> {
     let median = sorted[sorted.len() / 2];
     let is_even = |v: &f64| (v - median).abs() <= EVEN * median;
     let (mut start, mut end) = longest(&speeds, is_even);
-    let differs = |a: usize, b: usize| (speeds[a] - speeds[b]).abs() > ENDS * speeds[b];
+    let change = |a: usize, b: usize| (speeds[a] - speeds[b]).abs() / speeds[b];
+    let mut changes: Vec<f64> =
+        (start..end.saturating_sub(a_turn)).step_by(half).map(|i| change(i, i + a_turn)).collect();
+    changes.sort_by(f64::total_cmp);
+    let most = ENDS.max(USUAL * changes.get(changes.len() / 2).copied().unwrap_or_default());
+    let differs = |a: usize, b: usize| change(a, b) > most;
     while start + a_turn < end && differs(start, start + a_turn) {
         start += half;
     }
