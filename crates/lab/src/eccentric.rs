@@ -113,11 +113,26 @@ fn of_run(run: &[Crossing]) -> Option<[Uncertain; 2]> {
     }
     let wanted: Vec<f64> = run.iter().map(|crossing| crossing.counts - first.counts).collect();
     let found = regression(&columns, &wanted)?;
-    // what is left of a motion that is not smooth changes slowly: no more than two values a turn are independent
+    let left = |row: usize| {
+        let explained = columns.iter().zip(&found.factors).map(|(column, factor)| column[row] * factor.value);
+        wanted[row] - explained.sum::<f64>()
+    };
     let turns = (last.angle_rad - first.angle_rad).abs() / TAU;
-    let slow = DEVIATIONS * found.left / turns.sqrt();
+    let slow = DEVIATIONS * slow_deviation(&(0..run.len()).map(left).collect::<Vec<_>>(), turns);
     let factor = |k: usize| Uncertain { within: found.factors[k].within.max(slow), ..found.factors[k] };
     Some([factor(POWERS), factor(POWERS + 1)])
+}
+
+/// Standard deviation of an amplitude over a turn by what is left, if that changes no sooner than within a quarter of a turn: edges
+/// beside each other may all be off alike where a motion is not smooth.
+fn slow_deviation(left: &[f64], turns: f64) -> f64 {
+    const PARTS: f64 = 4.0;
+    let size = (left.len() as f64 / (PARTS * turns)) as usize;
+    let means = left.chunks_exact(size.max(1)).map(|part| part.iter().sum::<f64>() / part.len() as f64);
+    let (count, squares) =
+        means.fold((0.0, 0.0), |(count, squares), mean| (count + 1.0, squares + mean * mean));
+    // half of a sine's square is its mean
+    (2.0 * squares).sqrt() / f64::max(count, 1.0)
 }
 
 #[cfg(test)]

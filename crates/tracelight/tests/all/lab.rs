@@ -299,7 +299,7 @@ fn what_makes_no_sense_is_refused_in_a_sentence() {
         ("bode", 2, "SYSTEM"),
         ("bode s --sample 1ms", 1, "more zeros than poles"),
         ("bode 1/s --from 10rad/s --to 1rad/s", 2, "not below"),
-        ("bode 1/s --from 10Hz", 2, "rad/s"),
+        ("bode 1/s --from 10m", 2, "rad/s"),
         ("nyquist 1/z", 2, "how far apart"),
         ("locus 1/(s-1)^2 --damping 0.5", 1, "no factor leaves"),
         ("locus 1/s --damping 2", 2, "between 0 and 1"),
