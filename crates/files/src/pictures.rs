@@ -146,7 +146,7 @@ mod tests {
     fn a_folder_stands_for_its_pictures_by_name_and_for_nothing_else() {
         let found = find(&[example("")], false).unwrap().pictures;
         assert!(found.len() >= 8 && found.is_sorted_by(|a, b| a.name < b.name), "{found:?}");
-        assert!(found.iter().all(|p| p.name.ends_with(".png")), "{found:?}");
+        assert!(found.iter().all(|p| [".png", ".jpg"].iter().any(|end| p.name.ends_with(end))), "{found:?}");
     }
 
     #[test]
