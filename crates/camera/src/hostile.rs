@@ -195,6 +195,14 @@ fn a_redirect_is_followed_on_the_host_and_nowhere_else() {
 }
 
 #[test]
+fn a_camera_that_answers_one_question_a_connection_is_asked_on_a_new_one() {
+    let (port, asked) =
+        camera(|path, to| sends_on(path, to).and_then(|()| stall(to)).and_then(|()| stall(to)));
+    assert_eq!(look(&format!("http://127.0.0.1:{port}/a?to=/image")), Ok(()));
+    assert_eq!(asked.try_iter().count(), 4);
+}
+
+#[test]
 fn redirects_end_however_many_and_slow_they_are() {
     check_refused(
         |_, to| write!(to, "HTTP/1.1 301 Moved\r\nLocation: /again\r\nContent-Length: 0\r\n\r\n"),

@@ -83,6 +83,8 @@ impl Net {
             // followed here, within the host
             .max_redirects(0)
             .max_redirects_will_error(false)
+            // small cameras say that they keep a connection, and close it: the next question would meet a reset
+            .max_idle_connections(0)
             .timeout_per_read(Some(limits.silence));
         Self { url: url.to_owned(), agent: config.build().into(), limits }
     }
