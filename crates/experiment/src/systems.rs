@@ -6,8 +6,10 @@ use serde_json::{Value, json};
 use tracelight_chart::{Colour, Theme};
 use tracelight_lab::Linearization;
 use tracelight_linear::{
-    Complex, Discretization, FormulaError, LinearError, Mode, Names, Stability, Time, TransferFunction, Zpk,
+    Complex, Discretization, DistinctRoot, FormulaError, LinearError, Mode, Names, Stability, Time,
+    TransferFunction, Zpk,
 };
+use tracelight_maths::complex;
 use tracelight_rig::Joint;
 use tracelight_sim::Compensator;
 use tracelight_task::Failure;
@@ -195,27 +197,48 @@ fn compensator(joint: Joint, time_constants: bool) -> Option<TransferFunction> {
 
 /// A pole or zero and its mirror, for people.
 pub(crate) fn place(root: Complex) -> String {
-    if root.im == 0.0 { four(root.re) } else { format!("{} ± {}j", four(root.re), four(root.im.abs())) }
+    match (root.re, root.im) {
+        (re, 0.0) => four(re),
+        (0.0, im) => format!("±{}j", four(im.abs())),
+        (re, im) => format!("{} ± {}j", four(re), four(im.abs())),
+    }
 }
 
-/// Poles for people: a line each, with natural frequency and damping.
-pub(crate) fn pole_lines(poles: &[Complex], time: Time) -> String {
+/// Poles for people: a line each, with natural frequency and damping; how often one is a pole, and how well it is known where fewer
+/// digits are than are shown.
+pub(crate) fn pole_lines(poles: &[DistinctRoot], time: Time) -> String {
+    /// Share of a pole's size that four digits cannot show.
+    const SHOWN: f64 = 5e-4;
     let mut text = format!("    {:28} {:>16} {:>10}\n", "pole", "natural, rad/s", "damping");
-    for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
-        let Mode { natural_rad_s, damping, .. } = Mode::of(*pole, time);
+    for DistinctRoot { value, radius, count } in poles.iter().filter(|pole| pole.value.im >= 0.0) {
+        let Mode { natural_rad_s, damping, .. } = Mode::of(*value, time);
         let damping = match natural_rad_s {
             0.0 => "–".to_owned(),
-            _ => format!("{damping:.4}").replace('-', "−"),
+            // without the sign that a zero may have
+            _ => format!("{:.4}", damping + 0.0).replace('-', "−"),
+        };
+        let times = if *count > 1 { format!("  {count} times") } else { String::new() };
+        let size = complex::norm(*value);
+        let within = match size > 0.0 && *radius > SHOWN * size {
+            true if *count > 1 => format!(", all within {}", four(*radius)),
+            true => format!("  within {}", four(*radius)),
+            false => String::new(),
         };
         // writing to a String cannot fail
-        let _ = writeln!(text, "    {:28} {:>16} {damping:>10}", place(*pole), four(natural_rad_s));
+        let _ = writeln!(
+            text,
+            "    {:28} {:>16} {damping:>10}{times}{within}",
+            place(*value),
+            four(natural_rad_s)
+        );
     }
     text
 }
 
 /// A complex number for scripts.
 pub(crate) fn pairs(values: &[Complex]) -> Vec<[f64; 2]> {
-    values.iter().map(|z| [z.re, z.im]).collect()
+    // without the sign that a zero may have
+    values.iter().map(|z| [z.re + 0.0, z.im + 0.0]).collect()
 }
 
 /// A system for scripts.

@@ -55,7 +55,7 @@ pub use notation::four_digits;
 pub use peak::Peak;
 pub use polynomial::Polynomial;
 pub use response::{Mode, Response};
-pub use roots::Root;
+pub use roots::{DistinctRoot, Root};
 pub use stability::Stability;
 pub use state_space::StateSpace;
 pub use time::Time;

@@ -41,7 +41,7 @@ impl TransferFunction {
         let mut last = self.closed_at(first).root_values();
         let mut follower = Follower::new(self);
         for &gain in &gains {
-            let followed = if poles.is_empty() { None } else { follower.follow(gain, &last) };
+            let followed = if poles.is_empty() { None } else { follower.follow_in_turn(gain, &last) };
             let next = followed.unwrap_or_else(|| {
                 let closed = self.closed_at(gain);
                 // with more digits, or all anew
@@ -181,6 +181,8 @@ struct Follower {
     moved: Option<(Vec<Complex>, f64)>,
     /// Logarithm of the last gain.
     at: f64,
+    /// Gains that are left to those who have more digits, as these were too few.
+    resting: u32,
 }
 
 impl Follower {
@@ -193,6 +195,7 @@ impl Follower {
             coefficients: vec![0.0; size],
             moved: None,
             at: f64::NAN,
+            resting: 0,
         }
     }
 
@@ -222,6 +225,18 @@ impl Follower {
         self.moved = (last.len() == next.len() && by.is_finite())
             .then(|| (next.iter().zip(last).map(|(next, last)| next - last).collect(), by));
         self.at = at;
+    }
+
+    /// As [`follow`](Self::follow), but not for some gains after one at which they were not found.
+    fn follow_in_turn(&mut self, gain: f64, last: &[Complex]) -> Option<Vec<Complex>> {
+        const REST: u32 = 7;
+        if self.resting > 0 {
+            self.resting -= 1;
+            return None;
+        }
+        let found = self.follow(gain, last);
+        self.resting = if found.is_none() { REST } else { 0 };
+        found
     }
 
     /// The poles at a gain, near those at another; none if they are not found in some rounds.
@@ -358,6 +373,21 @@ mod tests {
                     pair[0].iter().zip(&pair[1]).map(|(a, b)| complex::norm(a - b)).fold(0.0, f64::max);
                 assert!(moved < 0.1 * far, "{text}: {moved} of {far}");
             }
+        }
+    }
+
+    /// Where plain digits leave nothing of a derivative.
+    #[test]
+    fn poles_are_followed_where_coefficients_cancel() {
+        let open = parse("(s+1)^60");
+        let gains = crate::logspace((1e-9, 1e2), 60);
+        let locus = open.root_locus(gains);
+        for (gain, poles) in locus.gains.iter().zip(&locus.poles) {
+            let closed = open.closed_at(*gain);
+            assert!(poles.iter().all(|pole| closed.may_vanish_at(*pole)), "{gain}");
+            let near = closed.roots_near(poles).unwrap();
+            let moved = |(a, b): (&Complex, &Complex)| complex::norm(a - b) < 1e-6;
+            assert!(near.iter().zip(poles).all(moved), "{gain}");
         }
     }
 

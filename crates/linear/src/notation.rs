@@ -36,7 +36,11 @@ impl fmt::Display for Polynomial {
 
 /// Four digits, without idle zeros.
 pub fn four_digits(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
+    if value == 0.0 {
+        // without the sign that a zero may have
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
         return value.to_string();
     }
     let exponent = log10(value.abs()).floor() as i32;
@@ -80,6 +84,6 @@ mod tests {
         assert_eq!(text(&[1.0, 0.13331, 0.78215]), "s² + 0.1333 s + 0.7822");
         assert_eq!(text(&[-1.0, 0.0, 1.5e-9]), "−s² + 1.5e-9");
         assert_eq!(text(&[]), "0");
-        assert_eq!([0.0, 100.0, 1e7, -0.5].map(four_digits), ["0", "100", "1e7", "-0.5"]);
+        assert_eq!([-0.0, 100.0, 1e7, -0.5].map(four_digits), ["0", "100", "1e7", "-0.5"]);
     }
 }

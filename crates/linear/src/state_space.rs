@@ -1,7 +1,9 @@
+use tracelight_maths::complex;
+
 use crate::eigen::eigenvalues;
 use crate::error::LinearError;
 use crate::time::Time;
-use crate::{Complex, Matrix};
+use crate::{Complex, DistinctRoot, Matrix, Root};
 
 /// ẋ = A x + B u, y = C x + D u; of samples, the next x instead of ẋ.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +66,19 @@ impl StateSpace {
     /// Eigenvalues of A.
     pub fn poles(&self) -> Result<Vec<Complex>, LinearError> {
         eigenvalues(&self.a)
+    }
+
+    /// Eigenvalues of A as they can be told apart, the smallest first: what rounding alone moves off an axis is on it.
+    ///
+    /// # Errors
+    /// As [`eigenvalues`].
+    pub fn distinct_poles(&self) -> Result<Vec<DistinctRoot>, LinearError> {
+        let mut poles = self.poles()?;
+        poles.sort_by(|a, b| complex::norm(*a).total_cmp(&complex::norm(*b)));
+        let rounding = 4.0 * self.order() as f64 * f64::EPSILON;
+        let largest = poles.last().map_or(0.0, |pole| complex::norm(*pole));
+        let root = |value: &Complex| Root { value: *value, radius: rounding * largest };
+        Ok(poles.iter().map(root).map(|root| DistinctRoot::alone(&root)).collect())
     }
 
     /// One input to one output, the others left alone.
@@ -189,8 +204,6 @@ pub(crate) fn stack(rows: &[&[&Matrix]]) -> Matrix {
 
 #[cfg(test)]
 mod tests {
-    use tracelight_maths::complex;
-
     use super::*;
     use crate::polynomial::Polynomial;
     use crate::transfer::TransferFunction;

@@ -5,8 +5,9 @@ use tracelight_maths::complex;
 use crate::Complex;
 use crate::error::LinearError;
 use crate::notation::{four_digits, power, quadratic};
-use crate::polynomial::are_paired;
+use crate::polynomial::{Polynomial, are_paired};
 use crate::time::Time;
+use crate::transfer::TransferFunction;
 
 /// A transfer function by its gain, zeros and poles: gain · Π(s − zᵢ) / Π(s − pᵢ).
 #[derive(Clone, Debug, PartialEq)]
@@ -92,12 +93,12 @@ fn constants(roots: &[Complex]) -> f64 {
 }
 
 /// Factors that are the same, side by side, as one with a power.
-fn powers(factors: Vec<String>) -> Vec<String> {
+fn powers(factors: impl Iterator<Item = (String, usize)>) -> Vec<String> {
     let mut runs: Vec<(String, usize)> = Vec::new();
-    for factor in factors {
+    for (factor, times) in factors {
         match runs.last_mut() {
-            Some((last, count)) if *last == factor => *count += 1,
-            _ => runs.push((factor, 1)),
+            Some((last, count)) if *last == factor => *count += times,
+            _ => runs.push((factor, times)),
         }
     }
     runs.into_iter().map(|(factor, count)| power(&factor, count)).collect()
@@ -105,17 +106,32 @@ fn powers(factors: Vec<String>) -> Vec<String> {
 
 /// The gain and a factor for each root or pair.
 fn quotient(gain: f64, zeros: &[Complex], poles: &[Complex], factor: &dyn Fn(&Complex) -> String) -> String {
-    let factors = |roots: &[Complex]| powers(roots.iter().filter(|r| r.im >= 0.0).map(factor).collect());
-    let (above, below) = (factors(zeros), factors(poles));
+    let factors = |roots: &[Complex]| powers(roots.iter().filter(|r| r.im >= 0.0).map(|r| (factor(r), 1)));
+    fraction(gain, &factors(zeros), &factors(poles))
+}
+
+/// The gain and factors above and below a line.
+fn fraction(gain: f64, above: &[String], below: &[String]) -> String {
     let top = match (gain, above.is_empty()) {
         (1.0, false) => above.concat(),
         (_, true) => four_digits(gain).replace('-', "−"),
         _ => format!("{} {}", four_digits(gain).replace('-', "−"), above.concat()),
     };
-    match &below[..] {
+    match below {
         [] => top,
         [one] => format!("{top} / {one}"),
         several => format!("{top} / ({})", several.concat()),
+    }
+}
+
+/// `(s + 32.9)`, of a pair `(s² + 2 s + 5)`.
+fn factor(root: Complex, variable: &str) -> String {
+    match (root.re, root.im) {
+        (0.0, 0.0) => variable.to_owned(),
+        (re, 0.0) => {
+            format!("({variable} {} {})", if re > 0.0 { '−' } else { '+' }, four_digits(re.abs()))
+        }
+        (re, _) => quadratic(variable, -2.0 * re, root.norm_sqr()),
     }
 }
 
@@ -123,14 +139,19 @@ impl fmt::Display for Zpk {
     /// `281 (s + 32.9)(s + 97.8) / ((s + 250)(s + 177))`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let variable = self.time.variable();
-        let factor = |root: &Complex| match (root.re, root.im) {
-            (0.0, 0.0) => variable.to_owned(),
-            (re, 0.0) => {
-                format!("({variable} {} {})", if re > 0.0 { '−' } else { '+' }, four_digits(re.abs()))
-            }
-            (re, _) => quadratic(variable, -2.0 * re, root.norm_sqr()),
+        f.write_str(&quotient(self.gain, &self.zeros, &self.poles, &|root| factor(*root, variable)))
+    }
+}
+
+impl TransferFunction {
+    /// In factors: `281 (s + 32.9)(s + 97.8) / (s²(s + 250)³)`. Roots that cannot be told apart are one with a power.
+    pub fn factored(&self) -> String {
+        let variable = self.time().variable();
+        let factors = |polynomial: &Polynomial| {
+            let roots = polynomial.distinct_roots().into_iter().filter(|root| root.value.im >= 0.0);
+            powers(roots.map(|root| (factor(root.value, variable), root.count)))
         };
-        f.write_str(&quotient(self.gain, &self.zeros, &self.poles, &factor))
+        fraction(self.numerator().leading(), &factors(self.numerator()), &factors(self.denominator()))
     }
 }
 
@@ -163,6 +184,9 @@ mod tests {
         let double =
             Zpk::new(3.0, real(&[-1.0, -1.0, -1.0]), real(&[0.0, 0.0, -9.0, -9.0]), Time::Continuous);
         assert_eq!(double.unwrap().to_string(), "3 (s + 1)³ / (s²(s + 9)²)");
+        let repeated =
+            TransferFunction::parse("3 (s+1)^3/(s^2 (s+9)^2 (s^2+4)^2)", Time::Continuous).unwrap();
+        assert_eq!(repeated.factored(), "3 (s + 1)³ / (s²(s² + 4)²(s + 9)²)");
         let lonely = Zpk::new(1.0, vec![], pair[..1].to_vec(), Time::Continuous);
         assert!(matches!(lonely, Err(LinearError::Unpaired(_))));
     }

@@ -46,7 +46,11 @@ impl finding::Finding for Finding {
             Stability::Marginal => "at the edge of stability, or nearer to it than rounding lets tell",
             Stability::Growing => "NOT stable: it grows",
         };
-        let _ = write!(text, "\nclosed it is {closed_is}\n{}", pole_lines(&closed.poles(), closed.time()));
+        let _ = write!(
+            text,
+            "\nclosed it is {closed_is}\n{}",
+            pole_lines(&closed.denominator().distinct_roots(), closed.time())
+        );
         if let Some(trial) = &self.trial {
             text += &format!("\n{}", trial.text());
         }

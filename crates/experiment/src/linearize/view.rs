@@ -26,7 +26,7 @@ impl finding::Finding for Finding {
             let Own { transfer, cancelled } = &both[joint];
             // writing to a String cannot fail
             let _ = writeln!(text, "\n{name}, {joint} angle over {joint} torque, rad/(N m)\n    {transfer}");
-            let factors = transfer.zpk().to_string();
+            let factors = transfer.factored();
             if factors != transfer.to_string() {
                 let _ = writeln!(text, "    = {factors}");
             }
@@ -37,8 +37,11 @@ impl finding::Finding for Finding {
                     writeln!(text, "    cancelled: {} (kept with --keep-cancellations)", places.join(", "));
             }
         }
-        let _ =
-            write!(text, "\n{}", pole_lines(&linear.system.poles().unwrap_or_default(), Time::Continuous));
+        let _ = write!(
+            text,
+            "\n{}",
+            pole_lines(&linear.system.distinct_poles().unwrap_or_default(), Time::Continuous)
+        );
         let _ = write!(
             text,
             "\nx = (pan, tilt, pan rate, tilt rate), u = (pan torque, tilt torque), y = (pan, tilt)\n\nA =\n{}\nB =\n{}",

@@ -15,10 +15,10 @@ use crate::systems::{pairs, place, pole_lines, system_json};
 impl finding::Finding for Finding {
     fn text(&self) -> String {
         let mut text = String::new();
-        for Entry { named, gain, closed, .. } in &self.entries {
+        for Entry { named, gain, .. } in &self.entries {
             let system = &named.system;
             // writing to a String cannot fail
-            let _ = writeln!(text, "{} = {}", named.name, system.zpk());
+            let _ = writeln!(text, "{} = {}", named.name, system.factored());
             for apart in system.breakaways().iter().filter(|b| b.pole.im >= 0.0) {
                 let _ = writeln!(
                     text,
@@ -52,7 +52,8 @@ impl finding::Finding for Finding {
                 Marked::Damping(least) => format!(", the largest that leaves a damping of {least},"),
             };
             let _ = writeln!(text, "    with a factor of {}{why} the closed poles are", four(*gain));
-            let _ = writeln!(text, "{}", pole_lines(closed, system.time()));
+            let _ =
+                writeln!(text, "{}", pole_lines(&system.closed_at(*gain).distinct_roots(), system.time()));
         }
         text.trim_end().to_owned()
     }

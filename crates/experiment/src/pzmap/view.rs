@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::json;
 use tracelight_chart::{Figure, Key};
-use tracelight_linear::Mode;
+use tracelight_linear::{DistinctRoot, Mode};
 use tracelight_task::Failure;
 
 use super::Finding;
@@ -12,20 +12,26 @@ use crate::finding::{self, Plotted};
 use crate::plane::{draw, plane, signs};
 use crate::systems::{Named, place, pole_lines, system_json};
 
+/// A zero and how often it is one.
+fn zero(root: &DistinctRoot) -> String {
+    let times = if root.count > 1 { format!(" ({} times)", root.count) } else { String::new() };
+    place(root.value) + &times
+}
+
 impl finding::Finding for Finding {
     fn text(&self) -> String {
         let mut text = String::new();
         for Named { name, system, .. } in &self.systems {
             let zeros: Vec<String> =
-                system.zeros().iter().filter(|z| z.im >= 0.0).map(|z| place(*z)).collect();
+                system.numerator().distinct_roots().iter().filter(|z| z.value.im >= 0.0).map(zero).collect();
             // writing to a String cannot fail
-            let _ = writeln!(text, "{name} = {}\n    = {}", system.zpk(), system);
+            let _ = writeln!(text, "{name} = {}\n    = {}", system.factored(), system);
             let _ = writeln!(
                 text,
                 "    zeros: {}",
                 if zeros.is_empty() { "none".to_owned() } else { zeros.join(", ") }
             );
-            let _ = writeln!(text, "{}", pole_lines(&system.poles(), system.time()));
+            let _ = writeln!(text, "{}", pole_lines(&system.denominator().distinct_roots(), system.time()));
         }
         text.trim_end().to_owned()
     }

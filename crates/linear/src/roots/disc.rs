@@ -33,7 +33,7 @@ pub(super) fn disc(scaled: &Scaled, place: Complex) -> f64 {
 }
 
 /// Terms of p(z (1 + h)) / max(1, |z|)ⁿ as powers of h, the lowest first, and of the same with all signs alike.
-fn expansion(scaled: &Scaled, place: Complex) -> (Vec<Complex>, Vec<f64>) {
+pub(super) fn expansion(scaled: &Scaled, place: Complex) -> (Vec<Complex>, Vec<f64>) {
     let (coefficients, place) = scaled.near(place);
     let degree = scaled.degree();
     let outside = place.norm_sqr() > 1.0;

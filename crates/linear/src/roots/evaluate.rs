@@ -146,27 +146,63 @@ fn plain(coefficients: &[f64], at: Complex) -> Value {
     })
 }
 
+/// The same in twice the digits; the derivative only where plain digits leave less than three of it.
+fn compensated(coefficients: &[f64], at: Complex) -> Value {
+    /// Share of a derivative that rounding may be: a Newton step needs no more.
+    const ENOUGH: f64 = 1e-3;
+    let found = compensated_value(coefficients, at);
+    let degree = coefficients.len() as f64;
+    let rounding = degree * degree * f64::EPSILON * found.size;
+    if rounding <= ENOUGH * complex::norm(found.derivative) * complex::norm(at) {
+        return found;
+    }
+    Value { derivative: compensated_derivative(coefficients, at), ..found }
+}
+
 /// Horner's scheme that also sums what each rounding lost (Graillat & Langlois, *Compensated Horner scheme in complex floating
 /// point arithmetic*, 2008).
-fn compensated(coefficients: &[f64], at: Complex) -> Value {
+fn compensated_value(coefficients: &[f64], at: Complex) -> Value {
     let Value { mut value, derivative, size } = plain(&[], at);
     let (mut derivative, mut size, mut lost) = (derivative, size, Complex::ZERO);
     let norm = complex::norm(at);
     for &c in coefficients {
         derivative = derivative * at + value;
         size = size * norm + c.abs();
-        let (rr, rr_lost) = product(value.re, at.re);
-        let (ii, ii_lost) = product(value.im, at.im);
-        let (ri, ri_lost) = product(value.re, at.im);
-        let (ir, ir_lost) = product(value.im, at.re);
-        let (difference, difference_lost) = sum(rr, -ii);
-        let (re, re_lost) = sum(difference, c);
-        let (im, im_lost) = sum(ri, ir);
-        value = Complex::new(re, im);
-        lost = lost * at
-            + Complex::new(rr_lost - ii_lost + difference_lost + re_lost, ri_lost + ir_lost + im_lost);
+        let (next, rounded) = multiplied_and_added(value, at, c.into());
+        value = next;
+        lost = lost * at + rounded;
     }
     Value { value: value + lost, derivative, size }
+}
+
+/// The derivative by the same scheme: what the value lost is missing in the derivative, too.
+fn compensated_derivative(coefficients: &[f64], at: Complex) -> Complex {
+    let (mut value, mut lost) = (Complex::ZERO, Complex::ZERO);
+    let (mut derivative, mut derivative_lost) = (Complex::ZERO, Complex::ZERO);
+    for &c in coefficients {
+        let (next, rounded) = multiplied_and_added(derivative, at, value);
+        derivative = next;
+        derivative_lost = derivative_lost * at + rounded + lost;
+        let (next, rounded) = multiplied_and_added(value, at, c.into());
+        value = next;
+        lost = lost * at + rounded;
+    }
+    derivative + derivative_lost
+}
+
+/// a · b + c and what rounding lost of it.
+fn multiplied_and_added(a: Complex, b: Complex, c: Complex) -> (Complex, Complex) {
+    let (rr, rr_lost) = product(a.re, b.re);
+    let (ii, ii_lost) = product(a.im, b.im);
+    let (ri, ri_lost) = product(a.re, b.im);
+    let (ir, ir_lost) = product(a.im, b.re);
+    let (difference, difference_lost) = sum(rr, -ii);
+    let (re, re_lost) = sum(difference, c.re);
+    let (cross, cross_lost) = sum(ri, ir);
+    let (im, im_lost) = sum(cross, c.im);
+    let lost =
+        Complex::new(rr_lost - ii_lost + difference_lost + re_lost, ri_lost + ir_lost + cross_lost + im_lost);
+    (Complex::new(re, im), lost)
 }
 
 /// a + b and what rounding lost of it (Knuth).
@@ -200,5 +236,7 @@ mod tests {
         let truth = (at.re - 1.0).powi(8);
         let value = compensated(&coefficients, at).value.re;
         assert!((value - truth).abs() < 1e-6 * truth, "{value:e} {truth:e}");
+        let derivative = compensated(&coefficients, at).derivative.re;
+        assert!((derivative / (8e3 * truth) - 1.0).abs() < 1e-6, "{derivative:e}");
     }
 }

@@ -1,6 +1,7 @@
 //! Roots of a polynomial, all at once, in bounded time.
 
 mod disc;
+mod distinct;
 mod evaluate;
 mod start;
 
@@ -10,6 +11,7 @@ use crate::{Complex, Polynomial};
 use disc::disc;
 use evaluate::{Scaled, Step};
 
+pub use distinct::DistinctRoot;
 pub(crate) use evaluate::accurate_value;
 use start::starts;
 
