@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use tracelight_chart::{Colour, Theme};
 use tracelight_lab::Linearization;
 use tracelight_linear::{
-    Complex, Discretization, DistinctRoot, FormulaError, LinearError, Mode, Names, Stability, Time,
+    Complex, Delayed, Discretization, DistinctRoot, FormulaError, LinearError, Mode, Names, Stability, Time,
     TransferFunction, Zpk,
 };
 use tracelight_maths::complex;
@@ -122,14 +122,15 @@ fn names_instead(text: &str, at: usize, named: &Names<'_>) -> String {
 }
 
 /// The report's compensators by name.
-fn the_reports(name: &str) -> Option<TransferFunction> {
-    match name {
+fn the_reports(name: &str) -> Option<Delayed> {
+    let system = match name {
         "K11" => compensator(Joint::Pan, false),
         "K22" => compensator(Joint::Tilt, false),
         "K11t" => compensator(Joint::Pan, true),
         "K22t" => compensator(Joint::Tilt, true),
         _ => None,
-    }
+    };
+    system.map(Delayed::from)
 }
 
 /// What formulas are read with.
@@ -146,15 +147,15 @@ impl Reading {
 
 impl Reader<'_> {
     /// The system that a formula names.
-    fn named(&self, name: &str) -> Option<TransferFunction> {
+    fn named(&self, name: &str) -> Option<Delayed> {
         let keep = self.how.head.keep_cancellations;
         let own = |joint: Joint| match keep {
             true => self.head.transfer(joint).ok(),
             false => self.head.own_transfer(joint).ok().map(|own| own.0),
         };
         match name {
-            "G11" => own(Joint::Pan),
-            "G22" => own(Joint::Tilt),
+            "G11" => own(Joint::Pan).map(Delayed::from),
+            "G22" => own(Joint::Tilt).map(Delayed::from),
             _ => the_reports(name),
         }
     }

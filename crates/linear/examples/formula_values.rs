@@ -7,8 +7,8 @@ use tracelight_linear::{Complex, Time, TransferFunction};
 fn main() -> std::io::Result<()> {
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     let named = |name: &str| match name {
-        "G1" => TransferFunction::parse("2/(s+3)", Time::Continuous).ok(),
-        "K2" => TransferFunction::parse("(s+1)/(s^2+4)", Time::Continuous).ok(),
+        "G1" => TransferFunction::parse("2/(s+3)", Time::Continuous).ok().map(Into::into),
+        "K2" => TransferFunction::parse("(s+1)/(s^2+4)", Time::Continuous).ok().map(Into::into),
         _ => None,
     };
     for line in std::io::stdin().lock().lines() {

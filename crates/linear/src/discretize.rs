@@ -158,7 +158,7 @@ impl StateSpace {
 ///
 /// Padé's quotient would be as good beside the largest entry. Here small entries count: at the end of a chain of integrators one is
 /// a high power of the time, and the series has it to all digits.
-fn exponential(a: &Matrix) -> Matrix {
+pub(crate) fn exponential(a: &Matrix) -> Matrix {
     /// 1/28! of a norm of at most 1 is less than rounding in twice the digits.
     const TERMS: usize = 28;
     let n = a.nrows();

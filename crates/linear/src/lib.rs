@@ -12,6 +12,7 @@ mod binary;
 mod cascade;
 mod convert;
 mod damped;
+mod dead_time;
 mod delay;
 mod design;
 mod discretize;
@@ -42,6 +43,7 @@ pub type Complex = nalgebra::Complex<f64>;
 pub type Matrix = nalgebra::DMatrix<f64>;
 
 pub use damped::DampedGains;
+pub use dead_time::{Answer, Delayed, GrowingPoles};
 pub use delay::DelayMargin;
 pub use design::{Estimator, LeadLagWish, LqgWish, Pid, PidWish, Regulator};
 pub use discretize::Discretization;

@@ -216,6 +216,11 @@ impl Along {
         found
     }
 
+    /// Its unit of ν is 2 to this power.
+    pub(crate) const fn unit(&self) -> i32 {
+        self.unit
+    }
+
     fn is_always_real(&self) -> bool {
         let ((pe, po), (qe, qo)) = (halves(&self.above), halves(&self.below));
         are_same(&(&po * &qe), &(&pe * &qo))
@@ -251,7 +256,7 @@ fn are_same(a: &Polynomial, b: &Polynomial) -> bool {
 }
 
 /// p(jω) = e(ω²) + jω o(ω²).
-fn halves(p: &Polynomial) -> (Polynomial, Polynomial) {
+pub(crate) fn halves(p: &Polynomial) -> (Polynomial, Polynomial) {
     let sign = |power: usize| if power % 4 < 2 { 1.0 } else { -1.0 };
     let half = |odd: usize| {
         let count = (p.coefficients().len() + 1 - odd) / 2;

@@ -33,7 +33,7 @@ pub struct StepInfo {
 
 impl StepInfo {
     /// Of what has no final value.
-    pub(super) const fn none(ending: Ending) -> Self {
+    pub(crate) const fn none(ending: Ending) -> Self {
         Self {
             ending,
             rise_s: None,
