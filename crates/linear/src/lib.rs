@@ -11,6 +11,7 @@
 mod binary;
 mod cascade;
 mod convert;
+mod crossings;
 mod damped;
 mod delay;
 mod design;
@@ -22,6 +23,7 @@ mod frequency;
 mod locus;
 mod margins;
 mod notation;
+mod nyquist;
 mod peak;
 mod polynomial;
 mod response;
@@ -41,6 +43,7 @@ pub type Complex = nalgebra::Complex<f64>;
 /// A matrix of any size.
 pub type Matrix = nalgebra::DMatrix<f64>;
 
+pub use crossings::{LocusCrossing, RealCrossing};
 pub use damped::DampedGains;
 pub use delay::DelayMargin;
 pub use design::{Estimator, LeadLagWish, LqgWish, Pid, PidWish, Regulator};
@@ -52,6 +55,7 @@ pub use frequency::{FrequencyResponse, decibels, logspace};
 pub use locus::{Asymptotes, Breakaway, RootLocus};
 pub use margins::{GainMargin, Margins, ModulusMargin, PhaseMargin};
 pub use notation::four_digits;
+pub use nyquist::{InfiniteArc, NyquistCurve, NyquistPart};
 pub use peak::Peak;
 pub use polynomial::Polynomial;
 pub use response::{Mode, Response};
