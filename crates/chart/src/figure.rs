@@ -1,20 +1,21 @@
 //! Panels of curves, and how they are drawn.
 
-use plotters::chart::ChartContext;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{Ranged, ValueFormatter};
 use plotters::prelude::{
-    Cartesian2d, ChartBuilder, Circle, DashedLineSeries, DrawingArea, EmptyElement, IntoDrawingArea,
-    IntoFont, IntoLogRange, LineSeries, PathElement, SVGBackend, Text,
+    ChartBuilder, DashedLineSeries, DrawingArea, IntoDrawingArea, IntoLogRange, PathElement, SVGBackend, Text,
 };
+use plotters::style::Color;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, TextStyle};
 
+use crate::arrow::{self, Arrows};
 use crate::colour::Colour;
+use crate::label::{self, Label, Rect, Taken};
 use crate::legend;
+use crate::lettering::{FINE, LARGE, NORMAL, SMALL, lettering};
 use crate::linear::Linear;
 use crate::range::{Range, inside};
-use crate::rgb::Rgb;
+use crate::shape::{Band, Chart, Curve, Drawn, Guide, Mark, Pen, pixel};
 use crate::theme::Theme;
 use crate::words::{Words, told};
 
@@ -68,41 +69,16 @@ pub struct Panel {
     pub guides: Vec<Guide>,
     /// Single places.
     pub marks: Vec<Mark>,
+    /// Ranges of y that are shaded.
+    pub bands: Vec<Band>,
+    /// Which way lines are gone along.
+    pub arrows: Vec<Arrows>,
+    /// Words beside places; those that matter most first.
+    pub labels: Vec<Label>,
     /// What is shown: from and to on x, and on y; otherwise all there is.
     pub view: Option<[(f64, f64); 2]>,
     /// Distance of the lines across, where it should be another than the usual.
     pub y_step: Option<f64>,
-}
-
-/// A line of a grid that is not straight.
-#[derive(Clone, Debug)]
-pub struct Guide {
-    /// Its way.
-    pub points: Vec<(f64, f64)>,
-    /// At the last of its points that is shown; empty for none.
-    pub label: String,
-}
-
-/// A single place.
-#[derive(Clone, Debug)]
-pub struct Mark {
-    /// Of the sign.
-    pub colour: Colour,
-    /// What is put there.
-    pub sign: Sign,
-    /// x and y.
-    pub at: (f64, f64),
-}
-
-/// What a place is marked with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    /// A pole.
-    Cross,
-    /// A zero.
-    Ring,
-    /// What was measured.
-    Dot,
 }
 
 /// How values become places.
@@ -119,45 +95,10 @@ pub enum Scale {
     LogX,
 }
 
-/// One line of a diagram.
-#[derive(Clone, Debug)]
-pub struct Curve {
-    /// As in the legend.
-    pub colour: Colour,
-    /// How it is drawn.
-    pub pen: Pen,
-    /// NaN lifts the pen.
-    pub points: Vec<(f64, f64)>,
-}
-
-/// How a curve is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pen {
-    /// A line.
-    Solid,
-    /// A broken line.
-    Dashed,
-    /// Points, not joined.
-    Dots,
-}
-
-/// The backend rounds to whole units: so many of them make a pixel.
-const FINE: i32 = 8;
 /// What is above all panels, pixels.
 const TITLE: i32 = 40;
-/// What is written, pixels. Where a page has too little room its figures shrink to eleven twelfths and no further: no letters below 11.
-const LARGE: i32 = 16;
-const NORMAL: i32 = 13;
-const SMALL: i32 = 12;
-/// The drawing library takes the height of a font's box, and writes the font's size as this much less.
-const BOX: f64 = 1.24;
-
-/// Nothing goes wrong in drawing into a text; the backend's interface says it might.
-type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-type Chart<'a, X, Y> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>;
 
 impl Figure {
     /// The figure as an SVG file.
@@ -192,7 +133,8 @@ impl Figure {
         let fine = format!(r#"width="{}" height="{}""#, FINE * width, FINE * height);
         let sized = text.replacen(&fine, &format!(r#"width="{width}" height="{height}""#), 1);
         let axes = self.panels.iter().map(|p| (p.x_title.as_str(), p.y_title.as_str())).collect();
-        Ok(told(&sized, &Words { title: &self.title, axes, names }, self.theme == Theme::Light))
+        let marked = self.panels.iter().flat_map(|p| &p.labels).map(|label| label.text.as_str()).collect();
+        Ok(told(&sized, &Words { title: &self.title, axes, names, marked }, self.theme == Theme::Light))
     }
 
     fn head(&self, area: &Area<'_>, keys: &[(i32, i32)]) -> Drawn {
@@ -205,35 +147,6 @@ impl Figure {
             area.draw(&PathElement::new(line, style))?;
             let name = lettering(NORMAL, self.theme.ink()).pos(Pos::new(HPos::Left, VPos::Center));
             area.draw(&Text::new(key.name.as_str(), (FINE * (x + legend::TO_NAME), FINE * y), name))?;
-        }
-        Ok(())
-    }
-}
-
-fn lettering<'a>(pixels: i32, colour: Rgb) -> TextStyle<'a> {
-    ("sans-serif", BOX * f64::from(FINE * pixels)).into_font().color(&colour.plotted())
-}
-
-impl Curve {
-    fn draw<X, Y>(&self, chart: &mut Chart<'_, X, Y>, (x, y): (Range, Range), theme: Theme) -> Drawn
-    where
-        X: Ranged<ValueType = f64>,
-        Y: Ranged<ValueType = f64>,
-    {
-        let style = self.colour.rgb(theme).plotted().stroke_width((3 * FINE / 2) as u32);
-        let dot = |&at: &(f64, f64)| EmptyElement::at(at) + Circle::new((0, 0), FINE * 2, style.filled());
-        if self.pen == Pen::Dots {
-            let shown = |p: &&(f64, f64)| x.holds(p.0) && y.holds(p.1);
-            chart.draw_series(self.points.iter().filter(shown).map(dot))?;
-            return Ok(());
-        }
-        for run in inside(&self.points, x, y) {
-            let run = run.into_iter();
-            if self.pen == Pen::Dashed {
-                chart.draw_series(DashedLineSeries::new(run, FINE * 5, FINE * 3, style))?;
-            } else {
-                chart.draw_series(LineSeries::new(run, style))?;
-            }
         }
         Ok(())
     }
@@ -290,8 +203,15 @@ impl Panel {
             .x_desc(if names_x { self.x_title.as_str() } else { "" })
             .y_desc(self.y_title.as_str())
             .draw()?;
+        for band in &self.bands {
+            band.draw(&mut chart, shown, theme)?;
+        }
+        let mut written: Vec<Rect> = Vec::new();
         for guide in &self.guides {
-            guide.draw(&mut chart, shown, theme)?;
+            let place = guide.words(&chart, shown);
+            let is_free = place.is_some_and(|place| written.iter().all(|other| !other.meets(&place)));
+            written.extend(place.filter(|_| is_free));
+            guide.draw(&mut chart, shown, (theme, is_free))?;
         }
         let (x, y) = shown;
         for &level in self.levels.iter().filter(|level| y.holds(**level)) {
@@ -306,7 +226,51 @@ impl Panel {
         for mark in marks {
             mark.draw(&mut chart, theme)?;
         }
-        Ok(())
+        self.explain(&chart, shown, (theme, written))
+    }
+
+    /// Arrows, and words where they cover nothing.
+    fn explain<X, Y>(
+        &self,
+        chart: &Chart<'_, X, Y>,
+        (x, y): (Range, Range),
+        (theme, written): (Theme, Vec<Rect>),
+    ) -> Drawn
+    where
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        if self.arrows.is_empty() && self.labels.is_empty() {
+            return Ok(());
+        }
+        let area = chart.plotting_area();
+        let (across, down) = area.get_pixel_range();
+        let pixel = |at: &(f64, f64)| pixel(chart, *at);
+        let pixels = |points: &[(f64, f64)]| -> Vec<Vec<(f64, f64)>> {
+            inside(points, x, y).iter().map(|run| run.iter().map(pixel).collect()).collect()
+        };
+        let length = |range: &std::ops::Range<i32>| f64::from(range.end - range.start) / f64::from(FINE);
+        let mut taken = Taken::new((length(&across), length(&down)));
+        for curve in self.curves.iter().filter(|curve| curve.pen != Pen::Dots) {
+            pixels(&curve.points).iter().for_each(|run| taken.line(run));
+        }
+        let shown = |at: &(f64, f64)| x.holds(at.0) && y.holds(at.1);
+        for mark in self.marks.iter().filter(|mark| shown(&mark.at)) {
+            taken.rect(Rect::about(pixel(&mark.at), 5.0));
+        }
+        for &level in &self.levels {
+            pixels(&[(x.low, level), (x.high, level)]).iter().for_each(|run| taken.line(run));
+        }
+        written.into_iter().for_each(|words| taken.rect(words));
+        let plain = area.strip_coord_spec();
+        for arrows in &self.arrows {
+            let heads = arrow::heads(&pixels(&arrows.points), arrows.count);
+            heads.iter().for_each(|head| taken.rect(Rect::about(head.middle, 4.0)));
+            arrow::draw(&plain, &heads, arrows, theme)?;
+        }
+        let labels = self.labels.iter().filter(|label| shown(&label.at));
+        let labels: Vec<_> = labels.map(|label| (pixel(&label.at), label.text.as_str())).collect();
+        label::draw(&plain, &labels, &mut taken, theme)
     }
 
     fn ranges(&self, size: (i32, i32)) -> (Range, Range) {
@@ -344,57 +308,6 @@ impl Panel {
             }
         }
         (x, y)
-    }
-}
-
-impl Guide {
-    fn draw<X, Y>(&self, chart: &mut Chart<'_, X, Y>, (x, y): (Range, Range), theme: Theme) -> Drawn
-    where
-        X: Ranged<ValueType = f64>,
-        Y: Ranged<ValueType = f64>,
-    {
-        let runs = inside(&self.points, x, y);
-        let end = runs.last().and_then(|run| run.last()).copied();
-        for run in runs {
-            chart.draw_series(LineSeries::new(run, theme.rule().plotted().stroke_width(FINE as u32)))?;
-        }
-        if let Some(end) = end.filter(|_| !self.label.is_empty()) {
-            // inwards from the edge it leaves at
-            let across = if end.0 > 0.5 * (x.low + x.high) { HPos::Right } else { HPos::Left };
-            let along = if end.1 > 0.5 * (y.low + y.high) { VPos::Top } else { VPos::Bottom };
-            let style = lettering(SMALL, theme.soft()).pos(Pos::new(across, along));
-            chart.draw_series(std::iter::once(Text::new(self.label.clone(), end, style)))?;
-        }
-        Ok(())
-    }
-}
-
-impl Mark {
-    fn draw<X, Y>(&self, chart: &mut Chart<'_, X, Y>, theme: Theme) -> Drawn
-    where
-        X: Ranged<ValueType = f64>,
-        Y: Ranged<ValueType = f64>,
-    {
-        const SIZE: i32 = 5;
-        let style = self.colour.rgb(theme).plotted().stroke_width((2 * FINE) as u32);
-        let here = || EmptyElement::at(self.at);
-        let arm = |way: i32| {
-            PathElement::new([(-SIZE * FINE, -way * SIZE * FINE), (SIZE * FINE, way * SIZE * FINE)], style)
-        };
-        match self.sign {
-            Sign::Cross => {
-                chart.draw_series(std::iter::once(here() + arm(1) + arm(-1)))?;
-            }
-            Sign::Ring => {
-                let ring = Circle::new((0, 0), SIZE * FINE, style);
-                chart.draw_series(std::iter::once(here() + ring))?;
-            }
-            Sign::Dot => {
-                let dot = Circle::new((0, 0), (SIZE - 1) * FINE, style.filled());
-                chart.draw_series(std::iter::once(here() + dot))?;
-            }
-        }
-        Ok(())
     }
 }
 

@@ -9,6 +9,8 @@ pub(crate) struct Words<'a> {
     pub(crate) axes: Vec<(&'a str, &'a str)>,
     /// Of the curves.
     pub(crate) names: Vec<&'a str>,
+    /// What is written beside places.
+    pub(crate) marked: Vec<&'a str>,
 }
 
 /// The drawing with its words, and, if it was drawn for a light screen alone, with what shows it on a dark one.
@@ -30,6 +32,9 @@ fn description(words: &Words<'_>) -> String {
     let mut text = format!("Diagrams: {}.", diagrams.join("; "));
     if !words.names.is_empty() {
         text += &format!(" Curves: {}.", words.names.join("; "));
+    }
+    if !words.marked.is_empty() {
+        text += &format!(" Marked: {}.", words.marked.join("; "));
     }
     text
 }

@@ -3,7 +3,7 @@
 mod view;
 
 use tracelight_chart::Theme;
-use tracelight_linear::{FrequencyResponse, Margins, Stability};
+use tracelight_linear::{FrequencyResponse, Margins, Peak, Stability};
 use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
@@ -24,9 +24,42 @@ pub struct Finding {
 struct Entry {
     named: Named,
     response: FrequencyResponse,
-    margins: Margins,
-    /// What its closed loop does; none where that is not defined.
-    closed: Option<Stability>,
+    /// Where it is 3 dB below what it is at rest, rad/s.
+    bandwidth_rad_s: Option<f64>,
+    resonance: Option<Peak>,
+    kind: Kind,
+}
+
+/// What a system is.
+enum Kind {
+    /// An open loop.
+    Open {
+        margins: Margins,
+        /// What its closed loop does; none where that is not defined.
+        closed: Option<Stability>,
+    },
+    /// A loop that is closed already: it has no margins. What it does.
+    Closed(Stability),
+}
+
+impl Entry {
+    fn of(named: Named, rad_s: &[f64], is_closed: bool) -> Self {
+        let system = &named.system;
+        let kind = match is_closed {
+            true => Kind::Closed(system.stability()),
+            false => Kind::Open {
+                margins: system.margins(),
+                closed: system.closed().ok().map(|closed| closed.stability()),
+            },
+        };
+        Self {
+            response: system.frequency_response(rad_s.to_vec()),
+            bandwidth_rad_s: system.bandwidth(),
+            resonance: system.resonance(),
+            kind,
+            named,
+        }
+    }
 }
 
 impl Experiment for Request {
@@ -34,13 +67,8 @@ impl Experiment for Request {
 
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
         let (systems, rad_s) = self.0.read()?;
-        let entry = |named: Named| Entry {
-            response: named.system.frequency_response(rad_s.clone()),
-            margins: named.system.margins(),
-            closed: named.system.closed().ok().map(|closed| closed.stability()),
-            named,
-        };
-        let entries = systems.into_iter().map(entry).collect();
+        let is_closed = self.0.systems.closed;
+        let entries = systems.into_iter().map(|named| Entry::of(named, &rad_s, is_closed)).collect();
         Ok(Finding { theme: self.0.systems.theme, entries })
     }
 }

@@ -1,6 +1,6 @@
 //! Frequencies over which systems are asked.
 
-use tracelight_linear::logspace;
+use tracelight_linear::{TransferFunction, logspace};
 use tracelight_task::Failure;
 
 use crate::systems::{Named, Systems, bounded};
@@ -10,9 +10,9 @@ use crate::systems::{Named, Systems, bounded};
 pub struct Frequencies {
     /// The systems.
     pub systems: Systems,
-    /// From this one, rad/s; if not given, a decade below the slowest pole or zero.
+    /// From this one, rad/s; if not given, a decade below the slowest pole or zero, and well below every crossover.
     pub from_rad_s: Option<f64>,
-    /// To this one, rad/s; if not given, a decade above the fastest.
+    /// To this one, rad/s; if not given, a decade above the fastest, and well above every crossover.
     pub to_rad_s: Option<f64>,
     /// How many, evenly on a logarithmic scale.
     pub points: u32,
@@ -25,7 +25,7 @@ impl Frequencies {
         bounded(self.points, systems.len())?;
         let (low, high) = systems
             .iter()
-            .map(|named| named.system.band())
+            .map(|named| band(&named.system))
             .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
             .unwrap_or((0.1, 10.0));
         // a bound that is typed moves the other, if that is not typed
@@ -43,5 +43,51 @@ impl Frequencies {
             return Err(Failure::usage("usage", format!("--from {from} rad/s is not below --to {to} rad/s")));
         }
         Ok((systems, logspace((from, to), self.points as usize)))
+    }
+}
+
+/// What a plot of a system has to show, rad/s: its poles and zeros, and every frequency that is told of it.
+fn band(system: &TransferFunction) -> (f64, f64) {
+    /// Half a decade and more beyond a crossover its slope is seen.
+    const BEYOND: f64 = 5.0;
+    let end = system.time().nyquist_rad_s();
+    let (low, high) = system.band();
+    let margins = system.margins();
+    let crossovers = margins.phase.iter().map(|m| m.rad_s).chain(margins.gain.iter().map(|m| m.rad_s));
+    let own = system.bandwidth().into_iter().chain(system.resonance().map(|peak| peak.rad_s));
+    let all = crossovers.chain(own).filter(|w| *w > 0.0 && *w <= end);
+    let wide = |(low, high): (f64, f64), w: f64| (low.min(w / BEYOND), high.max((w * BEYOND).min(end)));
+    all.fold((low, high), wide)
+}
+
+#[cfg(test)]
+mod tests {
+    use tracelight_linear::Time;
+
+    use super::*;
+
+    #[test]
+    fn a_plot_holds_every_crossover() {
+        for (text, period_s) in [
+            ("13.16/(s(s+0.1316))", None),
+            ("1e6/(s+1)", None),
+            ("1e-6/s", None),
+            ("1e9/s^2", None),
+            ("100(s+1)^2/s^3", None),
+            ("1/(s^2+0.001s+1)", None),
+            ("7", None),
+            ("0.001/(z-1)", Some(0.1)),
+            ("3/(z-0.5)", Some(0.1)),
+        ] {
+            let time = period_s.map_or(Time::Continuous, Time::Sampled);
+            let system = TransferFunction::parse(text, time).unwrap();
+            let (low, high) = band(&system);
+            let margins = system.margins();
+            let phase = margins.phase.iter().map(|m| m.rad_s);
+            let gain = margins.gain.iter().map(|m| m.rad_s).filter(|w| *w > 0.0);
+            for w in phase.chain(gain).chain(system.bandwidth()) {
+                assert!(low <= w && w <= high * (1.0 + 1e-12), "{text}: {w} is not in {low} … {high}");
+            }
+        }
     }
 }

@@ -1,8 +1,9 @@
 //! Where the poles of the closed loop go as the open loop's gain rises.
 
+mod figure;
 mod view;
 
-use tracelight_linear::{Complex, DampedGains, RootLocus};
+use tracelight_linear::{Breakaway, Complex, DampedGains, LocusCrossing, RootLocus, TransferFunction};
 use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
@@ -19,6 +20,8 @@ pub struct Request {
     pub marked: Marked,
     /// How many gains at least.
     pub points: u32,
+    /// Whether a damping that no largest factor leaves is a failure; otherwise that is told, and the rest is found all the same.
+    pub must_have_gain: bool,
 }
 
 /// The factor on the open loop whose closed poles are marked.
@@ -40,9 +43,17 @@ pub struct Finding {
 struct Entry {
     named: Named,
     locus: RootLocus,
-    /// The gain whose poles are marked, and those.
-    gain: f64,
-    closed: Vec<Complex>,
+    chosen: Chosen,
+    crossings: Vec<LocusCrossing>,
+    breakaways: Vec<Breakaway>,
+}
+
+/// The gain whose closed poles are marked.
+enum Chosen {
+    /// This one, with its closed poles.
+    Gain(f64, Vec<Complex>),
+    /// There is none, and why.
+    None(String),
 }
 
 impl Experiment for Request {
@@ -56,36 +67,45 @@ impl Experiment for Request {
         let mut entries = Vec::new();
         for named in systems {
             task.check()?;
-            entries.push(self.entry(named)?);
+            let entry = self.entry(named);
+            if let (true, Chosen::None(why)) = (self.must_have_gain, &entry.chosen) {
+                return Err(Failure::failed("no-such-gain", format!("{}: {why}", entry.named.name)));
+            }
+            entries.push(entry);
         }
         Ok(Finding { of: self, entries })
     }
 }
 
 impl Request {
-    fn entry(&self, named: Named) -> Result<Entry, Failure> {
+    fn entry(&self, named: Named) -> Entry {
+        let system = &named.system;
         let gain = match self.marked {
-            Marked::Gain(gain) => gain,
-            Marked::Damping(damping) => damped_gain(&named, damping)?,
+            Marked::Gain(gain) => Ok(gain),
+            Marked::Damping(damping) => damped_gain(system, damping),
         };
-        let locus = named.system.root_locus(named.system.locus_gains(self.points as usize));
-        let closed = named.system.closed_at(gain).root_values();
-        Ok(Entry { named, locus, gain, closed })
+        let chosen = match gain {
+            Ok(gain) => Chosen::Gain(gain, system.closed_at(gain).root_values()),
+            Err(why) => Chosen::None(why),
+        };
+        Entry {
+            locus: system.root_locus(system.telling_gains(self.points as usize)),
+            crossings: system.locus_crossings(),
+            breakaways: system.breakaways(),
+            chosen,
+            named,
+        }
     }
 }
 
-fn damped_gain(named: &Named, damping: f64) -> Result<f64, Failure> {
-    let name = &named.name;
-    let message = match named.system.damped_gains(damping) {
-        DampedGains::UpTo(gain) => return Ok(gain),
-        DampedGains::None => {
-            format!("{name}: no factor leaves every closed pole with a damping of {damping}")
-        }
-        DampedGains::Beyond(from) => format!(
-            "{name}: every factor above {} leaves every closed pole with a damping of {damping}, so there is no largest; choose one \
-             with --gain",
+/// The gain that leaves a damping, or why there is none.
+fn damped_gain(system: &TransferFunction, damping: f64) -> Result<f64, String> {
+    match system.damped_gains(damping) {
+        DampedGains::UpTo(gain) => Ok(gain),
+        DampedGains::None => Err(format!("no factor leaves every closed pole with a damping of {damping}")),
+        DampedGains::Beyond(from) => Err(format!(
+            "every factor above {} leaves every closed pole with a damping of {damping}, so there is no largest; choose one with --gain",
             four(from)
-        ),
-    };
-    Err(Failure::failed("no-such-gain", message))
+        )),
+    }
 }

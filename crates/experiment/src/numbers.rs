@@ -2,7 +2,7 @@
 
 use tracelight_lab::Uncertain;
 use tracelight_linear::four_digits;
-use tracelight_maths::log10;
+use tracelight_maths::{log10, powf};
 use tracelight_rig::Fault;
 
 /// To so many digits, and without a sign where that is none.
@@ -35,6 +35,17 @@ pub(crate) fn four(value: f64) -> String {
     if value.is_infinite() { "∞".to_owned() } else { four_digits(value).replace('-', "−") }
 }
 
+/// A positive number to two digits.
+pub(crate) fn two_digits(value: f64) -> f64 {
+    let unit = powf(10.0, log10(value).floor() - 1.0);
+    // a power of ten below 1 is not exact: its inverse is
+    if unit < 1.0 {
+        (value / unit).round() / (1.0 / unit).round()
+    } else {
+        (value / unit).round() * unit.round()
+    }
+}
+
 /// A time, for people.
 pub(crate) fn seconds(seconds: Option<f64>) -> String {
     seconds.map_or("never".to_owned(), |s| format!("{} s", four(s)))
@@ -48,4 +59,15 @@ pub(crate) fn percent(value: Option<f64>) -> String {
 /// Why a run is not done, given the fault it ended with.
 pub(crate) fn why_unfinished(fault: Option<Fault>) -> &'static str {
     fault.map_or("held again and again", |fault| fault.code())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_digits_are_left() {
+        let rounded = [0.012_345, 0.999, 1.26, 98.7, 123_456.0].map(two_digits);
+        assert_eq!(rounded, [0.012, 1.0, 1.3, 99.0, 120_000.0]);
+    }
 }

@@ -1,9 +1,11 @@
 //! The open loop's values over all frequencies in the complex plane, and on Nichols's chart.
 
+mod figure;
+mod nichols;
 mod view;
 
 use tracelight_chart::Theme;
-use tracelight_linear::{Complex, Margins};
+use tracelight_linear::{Complex, Margins, RealCrossing};
 use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
@@ -17,6 +19,8 @@ pub struct Request {
     pub over: Frequencies,
     /// On which chart they are plotted.
     pub chart: Chart,
+    /// How far from zero Nyquist's plot goes; if not given, as far as everything that is finite.
+    pub reach: Option<f64>,
 }
 
 /// A chart of open loops.
@@ -32,6 +36,9 @@ pub enum Chart {
 pub struct Finding {
     theme: Theme,
     chart: Chart,
+    reach: Option<f64>,
+    /// The frequencies that were asked for, rad/s: from and to; all of them where a bound is not given.
+    asked_rad_s: (f64, f64),
     entries: Vec<Entry>,
 }
 
@@ -42,6 +49,8 @@ struct Entry {
     values: Vec<Complex>,
     phases_deg: Vec<f64>,
     margins: Margins,
+    /// Where it is real, and finite.
+    crossings: Vec<RealCrossing>,
     /// Poles of the open loop that grow, and of the closed one.
     open_unstable: usize,
     closed_unstable: Option<usize>,
@@ -55,6 +64,7 @@ impl Entry {
             phases_deg: response.phases_deg().collect(),
             values: response.values,
             margins: named.system.margins(),
+            crossings: named.system.real_crossings(),
             open_unstable: named.system.growing_poles(),
             closed_unstable: named.system.closed().ok().map(|closed| closed.growing_poles()),
             named,
@@ -68,6 +78,12 @@ impl Experiment for Request {
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
         let (systems, rad_s) = self.over.read()?;
         let entries = systems.into_iter().map(|named| Entry::of(named, &rad_s)).collect();
-        Ok(Finding { theme: self.over.systems.theme, chart: self.chart, entries })
+        Ok(Finding {
+            theme: self.over.systems.theme,
+            chart: self.chart,
+            reach: self.reach,
+            asked_rad_s: (self.over.from_rad_s.unwrap_or(0.0), self.over.to_rad_s.unwrap_or(f64::INFINITY)),
+            entries,
+        })
     }
 }

@@ -1,11 +1,15 @@
 //! What transfer functions answer to a step, an impulse or a ramp.
 
+mod figure;
 mod view;
 
-use tracelight_linear::{Complex, Ending, Extreme, LinearError, Response, StepInfo, Time, TransferFunction};
+use tracelight_linear::{
+    Complex, Ending, Extreme, LinearError, Response, StepInfo, Time, TransferFunction, Transient, logspace,
+};
 use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
+use crate::numbers::two_digits;
 use crate::systems::{Named, Systems, bounded};
 
 /// Systems and what comes into them.
@@ -15,7 +19,7 @@ pub struct Request {
     pub systems: Systems,
     /// What comes in, from rest at time 0.
     pub input: Input,
-    /// For how long, s; if not given, until the slowest that dies out has done so.
+    /// For how long, s; if not given, until all have settled and somewhat longer.
     pub duration_s: Option<f64>,
     /// How many values, evenly over that time; of samples each of them counts instead.
     pub points: u32,
@@ -43,6 +47,8 @@ struct Entry {
     named: Named,
     /// What is plotted.
     response: Response,
+    /// Some values between those at its beginning, where much happens between them: times and values.
+    early: Vec<(f64, f64)>,
     /// What it ends in, where that is known.
     ending: Option<Ending>,
     /// Its value furthest from zero, of all time.
@@ -71,8 +77,8 @@ impl Experiment for Request {
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
         let systems = self.systems.systems()?;
         bounded(self.points, systems.len())?;
-        let own = systems.iter().map(|named| named.system.lasts_s()).fold(0.0, f64::max);
-        let duration_s = self.duration_s.unwrap_or(own);
+        let own = || systems.iter().map(|named| shown_s(&named.system, self.input)).fold(0.0, f64::max);
+        let duration_s = self.duration_s.unwrap_or_else(own);
         let entries =
             systems.into_iter().map(|named| self.entry(named, duration_s)).collect::<Result<_, _>>()?;
         Ok(Finding { of: self, entries })
@@ -101,6 +107,51 @@ impl Request {
     }
 }
 
+/// For how long an answer is shown, s: until it has settled, and some more to see that it has; what does not settle as long as its modes
+/// last.
+fn shown_s(system: &TransferFunction, input: Input) -> f64 {
+    const MORE: f64 = 1.35;
+    let lasts_s = system.lasts_s();
+    let settled_s = match input {
+        Input::Step => system.step_info(BAND).ok().and_then(|info| info.settle_s),
+        Input::Impulse => still_s(system, lasts_s),
+        Input::Ramp => None,
+    };
+    let least_s = match system.time() {
+        Time::Continuous => 0.0,
+        // as many samples as show its order
+        Time::Sampled(period_s) => period_s * (2 * system.denominator().degree() + 2) as f64,
+    };
+    match settled_s {
+        Some(s) if s > 0.0 => two_digits_up(MORE * s).max(least_s),
+        _ => lasts_s,
+    }
+}
+
+/// From when on the answer to an impulse stays within a share of its largest value, s; none if it does not, within a time.
+fn still_s(system: &TransferFunction, within_s: f64) -> Option<f64> {
+    const COUNT: u32 = 2000;
+    let values: Vec<f64> = match system.time() {
+        Time::Continuous => {
+            let transient = system.transient(tracelight_linear::Input::Impulse).ok()?;
+            (0..=COUNT).map(|k| transient.at(within_s * f64::from(k) / f64::from(COUNT))).collect()
+        }
+        Time::Sampled(period_s) => {
+            samples(system, Input::Impulse, (within_s / period_s).clamp(2.0, 1e5) as usize).ok()?.values
+        }
+    };
+    let most = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    let last = values.iter().rposition(|value| value.abs() > BAND * most)?;
+    let share = (last + 1) as f64 / values.len() as f64;
+    (share < 0.9).then_some(share * within_s)
+}
+
+/// The next number of two digits, not below.
+fn two_digits_up(value: f64) -> f64 {
+    let nearest = two_digits(value);
+    if nearest >= value { nearest } else { two_digits(1.05 * value) }
+}
+
 /// Within this share of its final value it is settled.
 const BAND: f64 = 0.02;
 
@@ -109,6 +160,7 @@ fn continuous(named: Named, input: Input, step_s: f64, count: usize) -> Result<E
     let values = (0..count).map(|k| transient.at(k as f64 * step_s)).collect();
     let info = if input == Input::Step { Some(transient.step_info(BAND)?) } else { None };
     Ok(Entry {
+        early: early(&transient, info, step_s),
         response: Response { step_s, values },
         ending: Some(transient.ending()),
         peak: info.map_or_else(|| transient.peak(), |info| Ok(info.peak))?,
@@ -119,11 +171,25 @@ fn continuous(named: Named, input: Input, step_s: f64, count: usize) -> Result<E
     })
 }
 
+/// Values at its beginning, evenly on a logarithmic scale, where it rises or peaks within some steps.
+fn early(transient: &Transient, info: Option<StepInfo>, step_s: f64) -> Vec<(f64, f64)> {
+    const STEPS: f64 = 20.0;
+    const BEFORE: f64 = 0.05;
+    const COUNT: usize = 2000;
+    let peak_s = info.and_then(|info| info.peak).and_then(|peak| peak.time_s);
+    let rise_s = info.and_then(|info| info.rise_s);
+    let first_s = peak_s.into_iter().chain(rise_s).filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min);
+    if first_s > STEPS * step_s {
+        return Vec::new();
+    }
+    logspace((BEFORE * first_s, STEPS * step_s), COUNT).into_iter().map(|s| (s, transient.at(s))).collect()
+}
+
 fn sampled(named: Named, input: Input, count: usize) -> Result<Entry, LinearError> {
     let response = samples(&named.system, input, count)?;
     let info = if input == Input::Step { Some(named.system.step_info(BAND)?) } else { None };
     let (ending, peak) = (info.map(|info| info.ending), info.and_then(|info| info.peak));
-    Ok(Entry { named, response, ending, peak, info, impulse: 0.0, hidden: Vec::new() })
+    Ok(Entry { named, response, early: Vec::new(), ending, peak, info, impulse: 0.0, hidden: Vec::new() })
 }
 
 fn samples(system: &TransferFunction, input: Input, count: usize) -> Result<Response, LinearError> {
@@ -138,4 +204,26 @@ fn samples(system: &TransferFunction, input: Input, count: usize) -> Result<Resp
         Input::Ramp => k as f64 * period_s,
     };
     system.response(period_s, &(0..count).map(input).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(text: &str) -> f64 {
+        shown_s(&TransferFunction::parse(text, Time::Continuous).unwrap(), Input::Step)
+    }
+
+    #[test]
+    fn an_answer_is_shown_until_it_has_settled_and_not_much_longer() {
+        for text in ["1/(s+1)", "1/(s^2+0.4s+1)", "1/((s+1)(s+50))", "(1-s)/(s+1)^2", "100/(s+7)^3"] {
+            let system = TransferFunction::parse(text, Time::Continuous).unwrap();
+            let settled = system.step_info(BAND).unwrap().settle_s.unwrap();
+            let share = settled / shown(text);
+            assert!((0.65..0.8).contains(&share), "{text}: {share}");
+        }
+        // what grows, and what is constant
+        assert!(shown("1/s") > 0.0 && shown("1/(s-1)") > 1.0 && shown("7") > 0.0);
+        assert!((two_digits_up(1.21) - 1.3).abs() < 1e-12 && (two_digits_up(0.0999) - 0.1).abs() < 1e-12);
+    }
 }

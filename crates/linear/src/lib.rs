@@ -11,6 +11,7 @@
 mod binary;
 mod cascade;
 mod convert;
+mod crossings;
 mod damped;
 mod dead_time;
 mod delay;
@@ -23,6 +24,7 @@ mod frequency;
 mod locus;
 mod margins;
 mod notation;
+mod nyquist;
 mod peak;
 mod polynomial;
 mod response;
@@ -42,6 +44,7 @@ pub type Complex = nalgebra::Complex<f64>;
 /// A matrix of any size.
 pub type Matrix = nalgebra::DMatrix<f64>;
 
+pub use crossings::{LocusCrossing, RealCrossing};
 pub use damped::DampedGains;
 pub use dead_time::{Answer, Delayed, GrowingPoles};
 pub use delay::DelayMargin;
@@ -54,6 +57,7 @@ pub use frequency::{FrequencyResponse, decibels, logspace};
 pub use locus::{Asymptotes, Breakaway, RootLocus};
 pub use margins::{GainMargin, Margins, ModulusMargin, PhaseMargin};
 pub use notation::four_digits;
+pub use nyquist::{InfiniteArc, NyquistCurve, NyquistPart};
 pub use peak::Peak;
 pub use polynomial::Polynomial;
 pub use response::{Mode, Response};

@@ -112,7 +112,12 @@ impl TransferFunction {
         self.gain_crossings_along(along).into_iter().filter(|w| *w > 0.0).map(margin).collect()
     }
 
-    fn gain_margins(&self, along: &Along) -> Vec<GainMargin> {
+    /// Frequencies at which the value is real, rad/s, rising, the ends included; the ends alone where it is always real.
+    pub(crate) fn real_frequencies(&self) -> Vec<f64> {
+        self.real_frequencies_along(&Along::of(self))
+    }
+
+    fn real_frequencies_along(&self, along: &Along) -> Vec<f64> {
         // the ends, where every value is real, and the real values between
         let most = self.time().nyquist_rad_s();
         let ends = [0.0, most].into_iter().filter(|w| w.is_finite());
@@ -123,12 +128,16 @@ impl TransferFunction {
         let mut all: Vec<f64> = ends.chain(refined).collect();
         all.sort_by(f64::total_cmp);
         all.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * *b);
+        all
+    }
+
+    fn gain_margins(&self, along: &Along) -> Vec<GainMargin> {
         let margin = |rad_s: f64| {
             let value = self.value(rad_s);
             let negative = value.is_finite() && value.re < 0.0 && value.im.abs() < 1e-6 * value.re.abs();
             negative.then(|| GainMargin { rad_s, factor: -1.0 / value.re })
         };
-        all.into_iter().filter_map(margin).collect()
+        self.real_frequencies_along(along).into_iter().filter_map(margin).collect()
     }
 
     fn modulus_margin(&self, along: &Along) -> Option<ModulusMargin> {

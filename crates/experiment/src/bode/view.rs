@@ -2,43 +2,71 @@
 
 use std::fmt::Write;
 
-use serde_json::json;
-use tracelight_chart::{Curve, Figure, Key, Mark, Panel, Pen, Scale, Sign};
-use tracelight_linear::{Stability, decibels};
+use serde_json::{Value, json};
+use tracelight_chart::{Curve, Figure, Key, Label, Mark, Panel, Pen, Scale, Sign};
+use tracelight_linear::{Margins, Peak, Stability, decibels};
+use tracelight_maths::complex;
 use tracelight_task::Failure;
 
-use super::{Entry, Finding};
+use super::{Entry, Finding, Kind};
 use crate::finding::{self, Plotted};
 use crate::margins::{margin_lines, margins_json, summary};
+use crate::numbers::four;
 use crate::systems::{stability_name, system_json};
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
         let mut text = String::new();
-        for Entry { named, margins, closed, .. } in &self.entries {
+        for entry in &self.entries {
+            let system = &entry.named.system;
             // writing to a String cannot fail
-            let _ = writeln!(text, "{} = {}", named.name, named.system);
-            let _ = writeln!(text, "{}", margin_lines(&named.system, margins));
-            let closed = match closed {
-                Some(Stability::Stable) => "is stable",
-                Some(Stability::Marginal) => {
-                    "is at the edge of stability, or nearer to it than rounding lets tell"
+            let _ = writeln!(text, "{} = {system}", entry.named.name);
+            if let Kind::Open { margins, .. } = &entry.kind {
+                let _ = writeln!(text, "{}", margin_lines(system, margins));
+            }
+            if let Some(rad_s) = entry.bandwidth_rad_s {
+                let _ =
+                    writeln!(text, "    bandwidth       {} rad/s: 3 dB below its gain at rest", four(rad_s));
+            }
+            if let Some(Peak { rad_s, gain }) = entry.resonance {
+                let _ = writeln!(
+                    text,
+                    "    resonance       {} dB (factor {}) at {} rad/s",
+                    four(decibels(gain)),
+                    four(gain),
+                    four(rad_s)
+                );
+            }
+            let _ = match entry.kind {
+                Kind::Open { closed: Some(closed), .. } => {
+                    writeln!(text, "    closed by negative feedback it {}\n", is(closed))
                 }
-                Some(Stability::Growing) => "is not stable",
-                None => "is not defined: 1 + G is zero at infinite frequency",
+                Kind::Open { closed: None, .. } => writeln!(
+                    text,
+                    "    closed by negative feedback it is not defined: 1 + G is zero at infinite frequency\n"
+                ),
+                Kind::Closed(stability) => writeln!(text, "    it {}\n", is(stability)),
             };
-            let _ = writeln!(text, "    closed by negative feedback it {closed}\n");
         }
         text.trim_end().to_owned()
     }
 
     fn json(&self) -> String {
         let one = |entry: &Entry| {
-            let mut object = system_json(&entry.named.name, &entry.named.system);
-            object["margins"] = margins_json(&entry.named.system, &entry.margins);
-            object["closed_stable"] = entry.closed.map(|closed| closed == Stability::Stable).into();
-            object["closed_stability"] = entry.closed.map(stability_name).into();
-            object["bandwidth_rad_s"] = entry.named.system.bandwidth().into();
+            let system = &entry.named.system;
+            let mut object = system_json(&entry.named.name, system);
+            let (margins, closed) = match &entry.kind {
+                Kind::Open { margins, closed } => (margins_json(system, margins), *closed),
+                Kind::Closed(stability) => (Value::Null, Some(*stability)),
+            };
+            object["margins"] = margins;
+            object["closed_stable"] = closed.map(|closed| closed == Stability::Stable).into();
+            object["closed_stability"] = closed.map(stability_name).into();
+            object["bandwidth_rad_s"] = entry.bandwidth_rad_s.into();
+            object["resonance"] = entry
+                .resonance
+                .map(|peak| json!({"rad_s": peak.rad_s, "factor": peak.gain, "db": decibels(peak.gain)}))
+                .into();
             object["magnitude_db"] = entry.response.magnitudes_db().collect();
             object["phase_deg"] = entry.response.phases_deg().collect();
             object
@@ -80,12 +108,8 @@ impl Plotted for Finding {
             mark(entry, &mut magnitude, &mut phase);
         }
         Ok(Figure {
-            title: "Bode plot, margins marked".into(),
-            legend: self
-                .entries
-                .iter()
-                .map(|e| Key { colour: e.named.colour, name: summary(&e.named.name, &e.margins) })
-                .collect(),
+            title: "Bode plot".into(),
+            legend: self.entries.iter().map(key).collect(),
             panels: vec![magnitude, phase],
             columns: 1,
             panel: (820, 300),
@@ -114,24 +138,72 @@ impl Plotted for Finding {
     }
 }
 
-/// Lines from the levels to the curves where the margins are.
+const fn is(stability: Stability) -> &'static str {
+    match stability {
+        Stability::Stable => "is stable",
+        Stability::Marginal => "is at the edge of stability, or nearer to it than rounding lets tell",
+        Stability::Growing => "is not stable",
+    }
+}
+
+fn key(entry: &Entry) -> Key {
+    let name = match &entry.kind {
+        Kind::Open { margins, .. } => summary(&entry.named.name, margins),
+        Kind::Closed(_) => entry.named.name.clone(),
+    };
+    Key { colour: entry.named.colour, name }
+}
+
+/// What stands out, at the curves where it is.
 fn mark(entry: &Entry, magnitude: &mut Panel, phase: &mut Panel) {
+    match &entry.kind {
+        Kind::Open { margins, .. } => mark_margins(entry, margins, magnitude, phase),
+        Kind::Closed(_) => mark_closed(entry, magnitude),
+    }
+}
+
+/// Lines from the levels to the curves where the margins are.
+fn mark_margins(entry: &Entry, margins: &Margins, magnitude: &mut Panel, phase: &mut Panel) {
     let colour = entry.named.colour;
     let rad_s = &entry.response.rad_s;
-    let band = rad_s.first().copied().unwrap_or(0.0)..=rad_s.last().copied().unwrap_or(0.0);
-    let line = |panel: &mut Panel, rad_s: f64, from: f64, to: f64| {
+    // logarithms round at the ends
+    let (low, high) = (rad_s.first().copied().unwrap_or(0.0), rad_s.last().copied().unwrap_or(0.0));
+    let band = low * (1.0 - 1e-9)..=high * (1.0 + 1e-9);
+    let line = |panel: &mut Panel, rad_s: f64, (from, to): (f64, f64), words: String| {
         if !band.contains(&rad_s) {
             return;
         }
+        let rad_s = rad_s.clamp(low, high);
         panel.curves.push(Curve { colour, pen: Pen::Dashed, points: vec![(rad_s, from), (rad_s, to)] });
         panel.marks.push(Mark { colour, sign: Sign::Dot, at: (rad_s, to) });
+        panel.labels.push(Label::new((rad_s, to), words));
     };
-    if let Some(margin) = entry.margins.least_gain().filter(|margin| margin.rad_s > 0.0) {
-        line(magnitude, margin.rad_s, 0.0, -decibels(margin.factor));
+    if let Some(margin) = margins.least_gain().filter(|margin| margin.rad_s > 0.0) {
+        let db = decibels(margin.factor);
+        let words = format!("gain margin {} dB at {} rad/s", four(db), four(margin.rad_s));
+        line(magnitude, margin.rad_s, (0.0, -db), words);
     }
-    if let Some(margin) = entry.margins.least_phase() {
+    if let Some(margin) = margins.least_phase() {
         // −180°, or that a whole number of turns further
         let shown = entry.named.system.phase(margin.rad_s).to_degrees();
-        line(phase, margin.rad_s, shown - margin.degrees(), shown);
+        let words = format!("phase margin {}° at {} rad/s", four(margin.degrees()), four(margin.rad_s));
+        line(phase, margin.rad_s, (shown - margin.degrees(), shown), words);
+    }
+}
+
+/// Bandwidth and resonance of a closed loop.
+fn mark_closed(entry: &Entry, magnitude: &mut Panel) {
+    let system = &entry.named.system;
+    let mut dot = |rad_s: f64, words: String| {
+        let gain = complex::norm(system.at(system.time().at_frequency(rad_s)));
+        let at = (rad_s, decibels(gain));
+        magnitude.marks.push(Mark { colour: entry.named.colour, sign: Sign::Dot, at });
+        magnitude.labels.push(Label::new(at, words));
+    };
+    if let Some(Peak { rad_s, gain }) = entry.resonance {
+        dot(rad_s, format!("resonance {} dB at {} rad/s", four(decibels(gain)), four(rad_s)));
+    }
+    if let Some(rad_s) = entry.bandwidth_rad_s {
+        dot(rad_s, format!("bandwidth {} rad/s", four(rad_s)));
     }
 }

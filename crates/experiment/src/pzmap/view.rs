@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use serde_json::json;
 use tracelight_chart::{Figure, Key};
-use tracelight_linear::{DistinctRoot, Mode};
+use tracelight_linear::{DistinctRoot, Mode, Time};
 use tracelight_task::Failure;
 
 use super::Finding;
 use crate::finding::{self, Plotted};
-use crate::plane::{draw, plane, signs};
+use crate::plane::{Extent, draw, plane, signs};
 use crate::systems::{Named, place, pole_lines, system_json};
 
 /// A zero and how often it is one.
@@ -45,7 +45,10 @@ impl finding::Finding for Finding {
 impl Plotted for Finding {
     fn figure(&self) -> Result<Figure, Failure> {
         let systems = &self.systems;
-        let mut panel = plane(systems.iter().map(|named| (&named.system, &[][..])), self.of.reach);
+        let time = systems.first().map_or(Time::Continuous, |named| named.system.time());
+        let places =
+            systems.iter().flat_map(|named| named.system.poles().into_iter().chain(named.system.zeros()));
+        let mut panel = plane(&Extent::all(time, places.collect()), self.of.reach);
         systems.iter().for_each(|named| panel.marks.extend(signs(named)));
         let legend =
             systems.iter().map(|named| Key { colour: named.colour, name: named.name.clone() }).collect();

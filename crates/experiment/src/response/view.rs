@@ -3,14 +3,13 @@
 use std::fmt::Write;
 
 use serde_json::{Value, json};
-use tracelight_chart::{Curve, Figure, Key, Mark, Panel, Pen, Sign};
-use tracelight_linear::{Complex, Ending, Extreme, Time};
+use tracelight_chart::Figure;
+use tracelight_linear::{Complex, Ending, Extreme};
 use tracelight_task::Failure;
 
 use super::{Entry, Finding, Input};
 use crate::finding::{self, Plotted};
 use crate::numbers::{four, percent};
-use crate::panels::over_time;
 use crate::systems::pairs;
 
 impl finding::Finding for Finding {
@@ -30,7 +29,7 @@ impl finding::Finding for Finding {
 
     fn json(&self) -> String {
         let one = |entry: &Entry| -> Value {
-            let Entry { named, response, ending, peak, info, impulse, hidden } = entry;
+            let Entry { named, response, ending, peak, info, impulse, hidden, .. } = entry;
             json!({
                 "name": named.name,
                 "step_s": response.step_s,
@@ -40,6 +39,7 @@ impl finding::Finding for Finding {
                 "overshoot_percent": info.and_then(|info| info.overshoot_percent),
                 "undershoot_percent": info.and_then(|info| info.undershoot_percent),
                 "rise_s": info.and_then(|info| info.rise_s),
+                "rise_from_s": info.and_then(|info| info.rise_from_s),
                 "settle_s": info.and_then(|info| info.settle_s),
                 "peak": peak.map(|peak| peak.value),
                 "peak_s": peak.and_then(|peak| peak.time_s),
@@ -53,47 +53,7 @@ impl finding::Finding for Finding {
 
 impl Plotted for Finding {
     fn figure(&self) -> Result<Figure, Failure> {
-        let curve = |Entry { named, response, .. }: &Entry| {
-            let times = (0..).map(|k| f64::from(k) * response.step_s);
-            let points: Vec<(f64, f64)> = match named.system.time() {
-                Time::Continuous => times.zip(response.values.iter().copied()).collect(),
-                // a sample holds until the next
-                Time::Sampled(period_s) => {
-                    times.zip(&response.values).flat_map(|(t, &y)| [(t, y), (t + period_s, y)]).collect()
-                }
-            };
-            Curve { colour: named.colour, pen: Pen::Solid, points }
-        };
-        let settled = |Entry { named, response, info, .. }: &Entry| {
-            let at_s = info.and_then(|info| info.settle_s)?;
-            let value = response.values.get((at_s / response.step_s).round() as usize)?;
-            Some(Mark { colour: named.colour, sign: Sign::Dot, at: (at_s, *value) })
-        };
-        let key = |Entry { named, info, .. }: &Entry| {
-            let more = info.and_then(|info| Some((info.overshoot_percent?, info.settle_s?)));
-            let more = more.map_or(String::new(), |(over, s)| {
-                format!(": {} % over, settled after {} s", four(over), four(s))
-            });
-            Key { colour: named.colour, name: format!("{}{more}", named.name) }
-        };
-        let goals = self.entries.iter().filter_map(|entry| entry.info).filter_map(|info| info.ending.value());
-        let mut levels: Vec<f64> = goals.collect();
-        levels.sort_by(f64::total_cmp);
-        levels.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
-        Ok(Figure {
-            title: match self.of.input {
-                Input::Step => "Step responses; dots: within 2 % from here on".into(),
-                other => format!("Answers to {}", words(other)),
-            },
-            legend: self.entries.iter().map(key).collect(),
-            panels: vec![Panel {
-                marks: self.entries.iter().filter_map(settled).collect(),
-                ..over_time("output", levels, self.entries.iter().map(curve).collect())
-            }],
-            columns: 1,
-            panel: (820, 420),
-            theme: self.of.systems.theme,
-        })
+        Ok(self.plot())
     }
 
     /// A time and a value for each, since samples have their own times.
@@ -190,7 +150,7 @@ const fn ending_name(ending: Ending) -> &'static str {
     }
 }
 
-const fn words(input: Input) -> &'static str {
+pub(super) const fn words(input: Input) -> &'static str {
     match input {
         Input::Step => "a step",
         Input::Impulse => "an impulse",

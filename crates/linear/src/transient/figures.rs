@@ -21,6 +21,8 @@ pub struct StepInfo {
     pub ending: Ending,
     /// From the first 10 % to the first 90 % of the final value, s; none of a final value of 0.
     pub rise_s: Option<f64>,
+    /// When it first is at 10 % of the final value, s: where the rise begins; none of a final value of 0.
+    pub rise_from_s: Option<f64>,
     /// Last moment at which it is not within the band about the final value, s; none of a final value of 0.
     pub settle_s: Option<f64>,
     /// Furthest excursion beyond the final value, % of it; none of a final value of 0.
@@ -37,6 +39,7 @@ impl StepInfo {
         Self {
             ending,
             rise_s: None,
+            rise_from_s: None,
             settle_s: None,
             overshoot_percent: None,
             undershoot_percent: None,
@@ -61,7 +64,9 @@ impl Transient {
         if goal != 0.0 {
             info.overshoot_percent = Some(100.0 * (beyond.value / goal - 1.0).max(0.0));
             info.undershoot_percent = Some(100.0 * (-below.value / goal).max(0.0));
-            info.rise_s = Some(self.first_at(0.9 * goal)? - self.first_at(0.1 * goal)?);
+            let from_s = self.first_at(0.1 * goal)?;
+            info.rise_s = Some(self.first_at(0.9 * goal)? - from_s);
+            info.rise_from_s = Some(from_s);
             info.settle_s = Some(self.last_at(band)?);
         }
         Ok(info)

@@ -87,6 +87,7 @@ fn figures(response: &Response, ending: Ending, goal: f64, band: f64) -> StepInf
     let first = |level: f64| response.first(|value| value / goal - level);
     let outside = values.iter().rposition(|value| (value / goal - 1.0).abs() > band);
     info.rise_s = first(0.9).zip(first(0.1)).map(|(high, low)| high - low);
+    info.rise_from_s = first(0.1);
     info.settle_s = Some(outside.map_or(0.0, |place| (place + 1) as f64 * step_s));
     info.overshoot_percent = Some(100.0 * (shares().fold(0.0, f64::max) - 1.0).max(0.0));
     info.undershoot_percent = Some(100.0 * (-shares().fold(0.0, f64::min)).max(0.0));

@@ -84,6 +84,7 @@ fn what_has_no_final_value_has_no_figures() {
     let none = |ending| StepInfo {
         ending,
         rise_s: None,
+        rise_from_s: None,
         settle_s: None,
         overshoot_percent: None,
         undershoot_percent: None,

@@ -136,6 +136,70 @@ fn a_locus_ends_at_the_damping_that_is_asked_for() {
     assert!(String::from_utf8_lossy(&huge.stderr).contains("16666 is the most"));
 }
 
+/// A damping that no largest gain leaves is told, and the plot is made all the same.
+#[test]
+fn a_locus_without_the_damping_is_plotted_all_the_same() {
+    let svg = folder("locus-without-damping").join("locus.svg");
+    let out = run(&["lab", "locus", "1/(s-1)^2", "--damping", "0.5", "-o", svg.to_str().unwrap()]);
+    let text = String::from_utf8(out.stdout).unwrap();
+    assert!(out.status.success() && text.contains("no factor leaves"), "{text}");
+    assert!(std::fs::read_to_string(svg).unwrap().contains("Root locus"));
+}
+
+/// What a plot proves is in it, in words that are read aloud too.
+#[test]
+fn plots_tell_what_matters() {
+    let svg = folder("plots-that-tell").join("plot.svg");
+    let plot = |arguments: &[&str]| {
+        lab(&[arguments, &["-o", svg.to_str().unwrap()]].concat());
+        std::fs::read_to_string(&svg).unwrap()
+    };
+    for (arguments, words) in [
+        (&["nyquist", "3(s+6)^2/(s(s+1)^2)"][..], &["−4.5 at 3 rad/s", "½ turn clockwise", "near −1"][..]),
+        (&["nyquist", "1/(s^4+s^3)"], &["ω = 0: 1½ turns clockwise"]),
+        (&["nyquist", "1/s", "--reach", "5"], &["phase margin 90°"]),
+        (&["bode", "G11"], &["phase margin 2.078° at 3.627 rad/s"]),
+        (&["bode", "4/(s^2+0.5s)", "--closed"], &["resonance 12.11 dB", "bandwidth 3.073 rad/s"]),
+        (&["nichols", "5/(s+1)^3"], &["gain margin 4.082 dB at 1.732 rad/s"]),
+        (
+            &["locus", "1/(s(s+1)(s+2)(s+10000))"],
+            &["outside: pole −10000", "k = 3849", "k = 59982, 1.414 rad/s"],
+        ),
+        (&["response", "1/(s^2+0.4s+1)"], &["peak 1.527", "rise (10–90 %)", "settled (2 %)"]),
+    ] {
+        let drawn = plot(arguments);
+        for word in words {
+            // in the plot, and in its description
+            assert!(
+                drawn.matches(word).count() >= 2 || drawn.contains(&format!("{word})")),
+                "{arguments:?}: {word}"
+            );
+        }
+    }
+}
+
+/// A loop that is closed has no margins; where it has a bandwidth and a resonance they are told.
+#[test]
+fn a_closed_loop_has_a_bandwidth_and_a_resonance_but_no_margins() {
+    let text = |arguments: &[&str]| {
+        String::from_utf8(run(&[&["lab", "bode"][..], arguments].concat()).stdout).unwrap()
+    };
+    let closed = text(&["4/(s^2+0.5s)", "--closed"]);
+    assert!(closed.contains("bandwidth") && closed.contains("resonance"), "{closed}");
+    assert!(!closed.contains("margin") && !closed.contains("closed by negative feedback"), "{closed}");
+    let json = lab(&["bode", "4/(s^2+0.5s)", "--closed"]);
+    let system = &json["systems"][0];
+    // 1 / (2 ζ √(1 − ζ²)) at ω √(1 − 2 ζ²), ζ = 1/8, ω = 2
+    near(&system["resonance"]["factor"], 4.0 / (1.0_f64 - 1.0 / 64.0).sqrt(), 1e-9);
+    near(&system["resonance"]["rad_s"], 2.0 * (1.0_f64 - 1.0 / 32.0).sqrt(), 1e-9);
+    assert_eq!((&system["margins"], &system["closed_stability"]), (&Value::Null, &json!("stable")));
+    let open = text(&["1/s"]);
+    assert!(
+        !open.contains("bandwidth") && !open.contains("resonance") && open.contains("phase margin"),
+        "{open}"
+    );
+}
+
 #[test]
 fn a_bound_moves_the_other_if_that_is_not_typed() {
     let bode = lab(&["bode", "1/s", "--from", "100rad/s", "--points", "2"]);

@@ -12,8 +12,8 @@ use crate::cli::answer::{Answer, Voice};
 /// Bode plot, with gain, phase, delay and modulus margins
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab bode \"K11 G11\" \"K11t G11\" -o loop.svg\n\n\
-                  The given system is the open loop; margins assume unity negative feedback. Crossings are computed, not read from the \
-                  curve; the plot marks them.")]
+                  The given system is the open loop; margins assume unity negative feedback. With --closed it is the closed loop, which has a \
+                  bandwidth and may have a resonance, but no margins. Crossings are computed, not read from the curve; the plot marks them.")]
 pub(crate) struct BodeArgs {
     #[command(flatten)]
     over: FrequencyArgs,
@@ -36,10 +36,10 @@ pub(super) struct FrequencyArgs {
 /// Which frequencies.
 #[derive(Args, Debug)]
 struct BandArgs {
-    /// From this frequency [default: a decade below the slowest pole or zero]
+    /// From this frequency [default: below the slowest pole or zero and every crossover]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
     from: Option<f64>,
-    /// To this frequency [default: a decade above the fastest]
+    /// To this frequency [default: above the fastest and every crossover]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
     to: Option<f64>,
     /// How many, evenly on a logarithmic scale

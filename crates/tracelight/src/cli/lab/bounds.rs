@@ -25,3 +25,11 @@ pub(super) fn within<T>(text: &str, value: T, number: f64, units: &[Unit]) -> Re
         Err(format!("{text} is not between {LEAST} and {MOST} {unit}"))
     }
 }
+
+/// How far from zero a plane is shown.
+pub(super) fn reach(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (1e-9..=1e9).contains(&value) => Ok(value),
+        _ => Err(format!("{text} is no number between 1e-9 and 1e9")),
+    }
+}

@@ -4,6 +4,7 @@ use tracelight_experiment::plane::Plane;
 use tracelight_experiment::pzmap;
 use tracelight_task::{Failure, Stop};
 
+use super::bounds::reach;
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::systems::SystemArgs;
 use crate::cli::answer::{Answer, Voice};
@@ -12,14 +13,16 @@ use crate::cli::answer::{Answer, Voice};
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab locus \"K11 G11\" --damping 0.7 -o locus.svg\n\n\
                   Crosses are the open loop's poles, rings its zeros, dots the closed loop's poles with the gain as it is, or with \
-                  --gain, or with the one --damping finds.")]
+                  --gain, or with the one --damping finds. Arrows point to higher gains; k is the gain where branches meet and where they \
+                  become stable or unstable.")]
 pub(crate) struct LocusArgs {
     #[command(flatten)]
     plane: PlaneArgs,
     /// Factor on the open loop whose closed poles are marked
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, conflicts_with = "damping", value_parser = finite)]
     gain: Option<f64>,
-    /// Find the largest factor that leaves every closed pole at least so damped, 0 to 1
+    /// Find the largest factor that leaves every closed pole at least so damped, 0 to 1; if there is none, plots and tables are made
+    /// without it
     #[arg(long, value_name = "DAMPING", value_parser = damping)]
     damping: Option<f64>,
     /// How many gains at least
@@ -40,21 +43,15 @@ pub(crate) struct PzmapArgs {
 pub(super) struct PlaneArgs {
     #[command(flatten)]
     systems: SystemArgs,
-    /// Show so far from zero, in 1/s (of samples: of z) [default: all poles and zeros, and the unit circle]
-    #[arg(long, value_name = "REACH", value_parser = positive)]
+    /// Show so far from zero, in 1/s (of samples: of z) [default: all poles and zeros, and the unit circle; a locus without poles far
+    /// from all others]
+    #[arg(long, value_name = "REACH", value_parser = reach)]
     reach: Option<f64>,
     /// Plot into an SVG or PNG, or write a row a gain (the first system), or a pole or zero, to a CSV; may be given again
     #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
     voice: Voice,
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if (1e-9..=1e9).contains(&value) => Ok(value),
-        _ => Err(format!("{text} is no number between 1e-9 and 1e9")),
-    }
 }
 
 fn finite(text: &str) -> Result<f64, String> {
@@ -88,7 +85,10 @@ impl LabCommand for LocusArgs {
             (None, Some(least)) => Marked::Damping(least),
             (None, None) => Marked::Gain(1.0),
         };
-        let request = locus::Request { plane: self.plane.plane()?, marked, points: self.points };
+        // a plot is of use without the gain too
+        let must_have_gain = self.plane.out.is_empty();
+        let request =
+            locus::Request { plane: self.plane.plane()?, marked, points: self.points, must_have_gain };
         command::plotted(request, &self.plane.out, self.plane.voice, stop)
     }
 }

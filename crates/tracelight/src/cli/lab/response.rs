@@ -18,7 +18,7 @@ pub(crate) struct ResponseArgs {
     /// Input, from rest at time 0
     #[arg(long, value_enum, default_value = "step")]
     input: Input,
-    /// For how long [default: until the slowest decaying mode has settled]
+    /// For how long [default: until all have settled, and a third longer]
     #[arg(long, value_name = "TIME", value_parser = duration)]
     duration: Option<f64>,
     /// Number of values, evenly over that time; discrete systems show every sample instead
