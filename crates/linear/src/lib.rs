@@ -43,7 +43,9 @@ pub type Matrix = nalgebra::DMatrix<f64>;
 
 pub use damped::DampedGains;
 pub use delay::DelayMargin;
-pub use design::{Estimator, LeadLagWish, LqgWish, Pid, PidWish, Regulator};
+pub use design::{
+    Estimator, IdealForm, LeadLagWish, LqgWish, Pid, PidWish, Regulator, SeriesForm, SetpointWeights, Terms,
+};
 pub use discretize::Discretization;
 pub use eigen::eigenvalues;
 pub use error::LinearError;
