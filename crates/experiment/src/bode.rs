@@ -8,7 +8,7 @@ use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
 use crate::frequencies::Frequencies;
-use crate::systems::Named;
+use crate::named::Named;
 
 /// Systems over frequencies.
 #[derive(Clone, Debug)]
@@ -44,18 +44,14 @@ enum Kind {
 
 impl Entry {
     fn of(named: Named, rad_s: &[f64], is_closed: bool) -> Self {
-        let system = &named.system;
         let kind = match is_closed {
-            true => Kind::Closed(system.stability()),
-            false => Kind::Open {
-                margins: system.margins(),
-                closed: system.closed().ok().map(|closed| closed.stability()),
-            },
+            true => Kind::Closed(named.stability()),
+            false => Kind::Open { margins: named.margins(), closed: named.closed_stability() },
         };
         Self {
-            response: system.frequency_response(rad_s.to_vec()),
-            bandwidth_rad_s: system.bandwidth(),
-            resonance: system.resonance(),
+            response: named.frequency_response(rad_s.to_vec()),
+            bandwidth_rad_s: named.bandwidth(),
+            resonance: named.resonance(),
             kind,
             named,
         }

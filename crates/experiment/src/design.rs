@@ -1,19 +1,23 @@
 //! A controller from wishes, and the loop it makes: margins, step, poles.
 
+pub mod lqr;
+mod lqr_view;
+pub mod pid;
 mod view;
 
 use tracelight_chart::Theme;
 use tracelight_linear::{
-    Complex, Input, LeadLagWish, LinearError, LqgWish, Margins, PidWish, Response, Stability, StepInfo, Time,
-    TransferFunction, Zpk,
+    Complex, DelayMargin, Delayed, Input, LeadLagWish, LinearError, LqgWish, Margins, Response, Stability,
+    StepInfo, Time, TransferFunction, Zpk, four_digits,
 };
 use tracelight_maths::complex;
 use tracelight_rig::Joint;
 use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Task};
 
+use crate::design::pid::{PidDesign, PidRequest, Weighted};
 use crate::finding::Experiment;
-use crate::numbers::four;
+use crate::named::Named;
 use crate::systems::OneSystem;
 use crate::trial::Trial;
 
@@ -33,8 +37,8 @@ pub struct Request {
 pub enum Method {
     /// As many leads as the phase margin asks for, and a lag.
     LeadLag(LeadLagWish),
-    /// The PID with the largest integral gain that keeps the margins.
-    Pid(PidWish),
+    /// The P, PI, PD or PID with the largest gain that keeps the margins.
+    Pid(PidRequest),
     /// State feedback that costs least, the state estimated by a Kalman filter.
     Lqg(LqgWish),
     /// State feedback and an estimator with these poles, pairs complete.
@@ -67,12 +71,14 @@ pub struct Finding {
     name: String,
     plant: TransferFunction,
     controller: Zpk,
-    /// The controller in its own figures.
-    remark: String,
-    /// The open loop, the closed one, and the margins between them.
-    open: TransferFunction,
+    /// The controller in its own figures, and what its setpoint weights do, if it is a PID.
+    pid: Option<(PidDesign, Weighted)>,
+    /// The closed loop, and the margins of the open one.
     closed: TransferFunction,
     margins: Margins,
+    delay_margin: DelayMargin,
+    /// What rational figures of it are worth, if it has a dead time.
+    note: String,
     /// What comes out, and what the controller puts in, after a step of what is wished.
     step: Response,
     input: Response,
@@ -89,7 +95,8 @@ impl Experiment for Request {
     type Finding = Finding;
 
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
-        let (name, plant) = self.system.system()?;
+        let named = self.system.system()?;
+        let (name, plant) = (named.name.clone(), named.system.clone());
         let order = plant.denominator().degree().max(plant.numerator().degree());
         if order > MOST_ORDER {
             let message = format!(
@@ -97,35 +104,39 @@ impl Experiment for Request {
             );
             return Err(Failure::failed("no-such-design", message));
         }
-        let failed = |e: LinearError| Failure::failed("no-such-design", format!("{name}: {e}"));
-        let (controller, remark) = self.method.controller(&plant).map_err(failed)?;
-        let tried = |on: TriedOn| Trial::of(on.rig, on.joint, (on.to_rad, on.seed), &controller);
-        let trial = self.tried.map(tried).transpose()?;
-        let designed = Designed { name: name.clone(), plant, controller, remark };
+        let failed = |e: LinearError| {
+            let remedy = match e {
+                LinearError::Unbounded { offer_rad_s, .. } => {
+                    format!(": the missing wish is --crossover {}rad/s", four_digits(offer_rad_s))
+                }
+                _ => String::new(),
+            };
+            Failure::failed("no-such-design", format!("{name}: {e}{remedy}"))
+        };
+        let tried_with = |joint: Joint, on: TriedOn, controller: &Zpk, pid: Option<&PidDesign>| match pid {
+            Some(pid) => Trial::by_pid(on.rig, joint, (on.to_rad, on.seed), (pid, &plant)),
+            None => Trial::of(on.rig, joint, (on.to_rad, on.seed), controller),
+        };
+        let (controller, pid) = self.method.controller(&plant).map_err(failed)?;
+        let trial = self.tried.map(|on| tried_with(on.joint, on, &controller, pid.as_ref())).transpose()?;
+        let designed = Designed { named, controller, pid };
         Finding::of(designed, trial, self.system.theme).map_err(failed)
     }
 }
 
 impl Method {
-    fn controller(&self, plant: &TransferFunction) -> Result<(Zpk, String), LinearError> {
+    fn controller(&self, plant: &TransferFunction) -> Result<(Zpk, Option<PidDesign>), LinearError> {
         match self {
-            Self::LeadLag(wish) => Ok((plant.lead_lag(*wish)?, String::new())),
-            Self::Pid(wish) => {
-                let pid = plant.pid(*wish)?;
-                let remark = format!(
-                    "kp = {}, ki = {} 1/s, kd = {} s, derivative up to {} rad/s",
-                    four(pid.kp),
-                    four(pid.ki),
-                    four(pid.kd),
-                    four(pid.filter_rad_s)
-                );
-                Ok((pid.transfer().zpk(), remark))
+            Self::LeadLag(wish) => Ok((plant.lead_lag(*wish)?, None)),
+            Self::Pid(request) => {
+                let design = request.design(plant)?;
+                Ok((design.pid.transfer_in(plant.time())?.zpk(), Some(design)))
             }
-            Self::Lqg(wish) => Ok((plant.lqg(wish)?, String::new())),
+            Self::Lqg(wish) => Ok((plant.lqg(wish)?, None)),
             Self::Place { regulator, estimator } => {
                 let own = || faster(regulator, plant);
                 let estimator = estimator.clone().unwrap_or_else(own);
-                Ok((plant.placed(regulator, &estimator)?, String::new()))
+                Ok((plant.placed(regulator, &estimator)?, None))
             }
         }
     }
@@ -156,32 +167,44 @@ fn faster(poles: &[Complex], plant: &TransferFunction) -> Vec<Complex> {
 
 /// A controller for a plant.
 struct Designed {
-    name: String,
-    plant: TransferFunction,
+    named: Named,
     controller: Zpk,
-    remark: String,
+    pid: Option<PidDesign>,
 }
 
 impl Finding {
     fn of(designed: Designed, trial: Option<Trial>, theme: Theme) -> Result<Self, LinearError> {
-        let Designed { name, plant, controller, remark } = designed;
-        let k = controller.transfer();
+        let Designed { named, controller, pid } = designed;
+        let plant = named.system.clone();
+        let k = match &pid {
+            Some(design) => design.pid.transfer_in(plant.time())?,
+            None => controller.transfer(),
+        };
         let open = k.series(&plant)?;
         let closed = open.closed()?;
         let to_input = k.feedback(&plant)?;
         let stability = closed.stability();
+        let weigh = |design: PidDesign| design.weighted(&plant).map(|weighted| (design, weighted));
+        let pid = pid.map(weigh).transpose()?;
         let (step, info) = settled_step(&closed)?;
         // what a derivative without an end puts in is an impulse: it has no step
         let input = to_input.step_response(step.step_s, step.values.len()).unwrap_or_default();
         let peak = input_peak(&to_input, &input);
         let [step, input] = [step, input].map(shown);
-        let margins = open.margins();
+        // what the dead time leaves exactly
+        let exact = match &named.late {
+            Some(late) => late.open.series(&k.into())?,
+            None => Delayed::from(open),
+        };
+        let margins = exact.margins();
+        let delay_margin = exact.delay_margin(&margins);
         Ok(Self {
-            name,
+            note: named.approximated(),
+            name: named.name,
+            delay_margin,
             plant,
             controller,
-            remark,
-            open,
+            pid,
             closed,
             margins,
             step,

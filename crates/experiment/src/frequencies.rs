@@ -1,9 +1,10 @@
 //! Frequencies over which systems are asked.
 
-use tracelight_linear::{TransferFunction, logspace};
+use tracelight_linear::logspace;
 use tracelight_task::Failure;
 
-use crate::systems::{Named, Systems, bounded};
+use crate::named::Named;
+use crate::systems::{Systems, bounded};
 
 /// Systems over frequencies.
 #[derive(Clone, Debug)]
@@ -23,11 +24,8 @@ impl Frequencies {
     pub(crate) fn read(&self) -> Result<(Vec<Named>, Vec<f64>), Failure> {
         let systems = self.systems.systems()?;
         bounded(self.points, systems.len())?;
-        let (low, high) = systems
-            .iter()
-            .map(|named| band(&named.system))
-            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-            .unwrap_or((0.1, 10.0));
+        let (low, high) =
+            systems.iter().map(band).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((0.1, 10.0));
         // a bound that is typed moves the other, if that is not typed
         let (from, to) = match (self.from_rad_s, self.to_rad_s) {
             (Some(from), Some(to)) => (from, to),
@@ -47,22 +45,28 @@ impl Frequencies {
 }
 
 /// What a plot of a system has to show, rad/s: its poles and zeros, and every frequency that is told of it.
-fn band(system: &TransferFunction) -> (f64, f64) {
+fn band(named: &Named) -> (f64, f64) {
     /// Half a decade and more beyond a crossover its slope is seen.
     const BEYOND: f64 = 5.0;
-    let end = system.time().nyquist_rad_s();
-    let (low, high) = system.band();
-    let margins = system.margins();
-    let crossovers = margins.phase.iter().map(|m| m.rad_s).chain(margins.gain.iter().map(|m| m.rad_s));
-    let own = system.bandwidth().into_iter().chain(system.resonance().map(|peak| peak.rad_s));
-    let all = crossovers.chain(own).filter(|w| *w > 0.0 && *w <= end);
+    let end = named.system.time().nyquist_rad_s();
+    let (low, high) = named.band();
+    let margins = named.margins();
+    // a dead time crosses again and again
+    let gain: Vec<f64> = match &named.late {
+        Some(_) => margins.least_gain().map(|m| m.rad_s).into_iter().collect(),
+        None => margins.gain.iter().map(|m| m.rad_s).collect(),
+    };
+    let crossovers = margins.phase.iter().map(|m| m.rad_s).chain(gain);
+    let own = named.bandwidth().into_iter().chain(named.resonance().map(|peak| peak.rad_s));
+    let all = crossovers.chain(own).filter(|w| *w > 0.0 && *w <= end && w.is_finite());
     let wide = |(low, high): (f64, f64), w: f64| (low.min(w / BEYOND), high.max((w * BEYOND).min(end)));
     all.fold((low, high), wide)
 }
 
 #[cfg(test)]
 mod tests {
-    use tracelight_linear::Time;
+    use tracelight_chart::Colour;
+    use tracelight_linear::{Time, TransferFunction};
 
     use super::*;
 
@@ -81,7 +85,9 @@ mod tests {
         ] {
             let time = period_s.map_or(Time::Continuous, Time::Sampled);
             let system = TransferFunction::parse(text, time).unwrap();
-            let (low, high) = band(&system);
+            let named =
+                Named { name: text.into(), system: system.clone(), late: None, colour: Colour::Black };
+            let (low, high) = band(&named);
             let margins = system.margins();
             let phase = margins.phase.iter().map(|m| m.rad_s);
             let gain = margins.gain.iter().map(|m| m.rad_s).filter(|w| *w > 0.0);

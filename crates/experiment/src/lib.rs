@@ -26,6 +26,7 @@ pub mod locus;
 mod margins;
 pub mod montecarlo;
 pub mod moves;
+mod named;
 mod numbers;
 pub mod nyquist;
 mod panels;

@@ -7,9 +7,10 @@ use tracelight_linear::{Breakaway, Complex, DampedGains, LocusCrossing, RootLocu
 use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
+use crate::named::Named;
 use crate::numbers::four;
 use crate::plane::Plane;
-use crate::systems::{Named, bounded};
+use crate::systems::bounded;
 
 /// Open loops whose gain rises.
 #[derive(Clone, Debug)]

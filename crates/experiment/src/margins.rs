@@ -1,14 +1,13 @@
 //! Margins, as they are shown.
 
 use serde_json::{Value, json};
-use tracelight_linear::{DelayMargin, GainMargin, Margins, PhaseMargin, TransferFunction, decibels};
+use tracelight_linear::{DelayMargin, GainMargin, Margins, PhaseMargin, decibels};
 
 use crate::numbers::four;
 
 /// Margins of an open loop for people, a line each.
-pub(crate) fn margin_lines(open: &TransferFunction, margins: &Margins) -> String {
+pub(crate) fn margin_lines(delay: DelayMargin, margins: &Margins) -> String {
     let mut lines = Vec::new();
-    let delay = open.delay_margin(margins);
     if delay == DelayMargin::Unstable {
         lines.push(
             "    the closed loop is not stable: gain and phase say how far from stable it is".to_owned(),
@@ -57,7 +56,7 @@ pub(crate) fn margin_lines(open: &TransferFunction, margins: &Margins) -> String
 }
 
 /// Margins of an open loop for scripts.
-pub(crate) fn margins_json(open: &TransferFunction, margins: &Margins) -> Value {
+pub(crate) fn margins_json(delay: DelayMargin, margins: &Margins) -> Value {
     let gain = |m: &GainMargin| json!({"rad_s": m.rad_s, "factor": m.factor, "db": decibels(m.factor)});
     let phase = |m: &PhaseMargin| json!({"rad_s": m.rad_s, "deg": m.degrees(), "delay_s": m.delay_s});
     let modulus = margins.modulus.map(|m| {
@@ -67,7 +66,7 @@ pub(crate) fn margins_json(open: &TransferFunction, margins: &Margins) -> Value 
     json!({
         "gain": margins.least_gain().as_ref().map(gain),
         "phase": margins.least_phase().as_ref().map(phase),
-        "delay_s": open.delay_margin(margins).delay_s(),
+        "delay_s": delay.delay_s(),
         "modulus": modulus,
         "every_gain": margins.gain.iter().map(gain).collect::<Vec<_>>(),
         "every_phase": margins.phase.iter().map(phase).collect::<Vec<_>>(),

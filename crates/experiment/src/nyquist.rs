@@ -10,7 +10,7 @@ use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
 use crate::frequencies::Frequencies;
-use crate::systems::Named;
+use crate::named::Named;
 
 /// Open loops over frequencies.
 #[derive(Clone, Debug)]
@@ -58,15 +58,15 @@ struct Entry {
 
 impl Entry {
     fn of(named: Named, rad_s: &[f64]) -> Self {
-        let response = named.system.frequency_response(rad_s.to_vec());
+        let response = named.frequency_response(rad_s.to_vec());
         Self {
             rad_s: response.rad_s.clone(),
             phases_deg: response.phases_deg().collect(),
             values: response.values,
-            margins: named.system.margins(),
-            crossings: named.system.real_crossings(),
+            margins: named.margins(),
+            crossings: named.real_crossings(),
             open_unstable: named.system.growing_poles(),
-            closed_unstable: named.system.closed().ok().map(|closed| closed.growing_poles()),
+            closed_unstable: named.closed_growing(),
             named,
         }
     }

@@ -6,8 +6,9 @@ use tracelight_chart::{Figure, Guide, Key, Mark, Panel, Scale, Sign, Theme};
 use tracelight_linear::{Complex, Time};
 use tracelight_maths as maths;
 
+use crate::named::Named;
 use crate::numbers::four;
-use crate::systems::{Named, Systems};
+use crate::systems::Systems;
 
 /// Systems in the complex plane.
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@ mod view;
 use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
+use crate::named::Named;
 use crate::plane::Plane;
-use crate::systems::Named;
 
 /// Systems, and how much of the plane is shown.
 #[derive(Clone, Debug)]

@@ -4,13 +4,15 @@ mod figure;
 mod view;
 
 use tracelight_linear::{
-    Complex, Ending, Extreme, LinearError, Response, StepInfo, Time, TransferFunction, Transient, logspace,
+    Answer, Complex, Delayed, Ending, Extreme, LinearError, Response, StepInfo, Time, TransferFunction,
+    logspace,
 };
 use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
+use crate::named::Named;
 use crate::numbers::two_digits;
-use crate::systems::{Named, Systems, bounded};
+use crate::systems::{Systems, bounded};
 
 /// Systems and what comes into them.
 #[derive(Clone, Debug)]
@@ -77,7 +79,7 @@ impl Experiment for Request {
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
         let systems = self.systems.systems()?;
         bounded(self.points, systems.len())?;
-        let own = || systems.iter().map(|named| shown_s(&named.system, self.input)).fold(0.0, f64::max);
+        let own = || systems.iter().map(|named| shown(named, self.input)).fold(0.0, f64::max);
         let duration_s = self.duration_s.unwrap_or_else(own);
         let entries =
             systems.into_iter().map(|named| self.entry(named, duration_s)).collect::<Result<_, _>>()?;
@@ -104,6 +106,20 @@ impl Request {
             Time::Sampled(_) => sampled(named, self.input, count as usize),
         };
         entry.map_err(|e| failed(e.to_string()))
+    }
+}
+
+/// For how long the answer of a system is shown, s; with a dead time so much longer.
+fn shown(named: &Named, input: Input) -> f64 {
+    match (&named.late, named.closed_late()) {
+        (_, Some(open)) => {
+            let lasts_s = open.closed_lasts_s();
+            let settled =
+                open.closed_answer(input.input(), lasts_s).and_then(|answer| answer.step_info(BAND));
+            settled.ok().and_then(|info| info.settle_s).map_or(lasts_s, |s| two_digits_up(1.35 * s))
+        }
+        (Some(late), None) => late.open.delay_s() + shown_s(late.open.rational(), input),
+        (None, None) => shown_s(&named.system, input),
     }
 }
 
@@ -156,23 +172,28 @@ fn two_digits_up(value: f64) -> f64 {
 const BAND: f64 = 0.02;
 
 fn continuous(named: Named, input: Input, step_s: f64, count: usize) -> Result<Entry, LinearError> {
-    let transient = named.system.transient(input.input())?;
-    let values = (0..count).map(|k| transient.at(k as f64 * step_s)).collect();
-    let info = if input == Input::Step { Some(transient.step_info(BAND)?) } else { None };
+    let duration_s = count as f64 * step_s;
+    let answer = match (&named.late, named.closed_late()) {
+        (_, Some(open)) => open.closed_answer(input.input(), duration_s.max(open.closed_lasts_s()))?,
+        (Some(late), None) => late.open.answer(input.input())?,
+        (None, None) => Delayed::from(named.system.clone()).answer(input.input())?,
+    };
+    let values = (0..count).map(|k| answer.at(k as f64 * step_s)).collect();
+    let info = if input == Input::Step { Some(answer.step_info(BAND)?) } else { None };
     Ok(Entry {
-        early: early(&transient, info, step_s),
+        early: early(&answer, info, step_s),
         response: Response { step_s, values },
-        ending: Some(transient.ending()),
-        peak: info.map_or_else(|| transient.peak(), |info| Ok(info.peak))?,
+        ending: Some(answer.ending()),
+        peak: info.map_or_else(|| answer.peak(), |info| Ok(info.peak))?,
         info,
-        impulse: transient.impulse(),
-        hidden: transient.hidden().to_vec(),
+        impulse: answer.impulse(),
+        hidden: answer.hidden().to_vec(),
         named,
     })
 }
 
 /// Values at its beginning, evenly on a logarithmic scale, where it rises or peaks within some steps.
-fn early(transient: &Transient, info: Option<StepInfo>, step_s: f64) -> Vec<(f64, f64)> {
+fn early(answer: &Answer, info: Option<StepInfo>, step_s: f64) -> Vec<(f64, f64)> {
     const STEPS: f64 = 20.0;
     const BEFORE: f64 = 0.05;
     const COUNT: usize = 2000;
@@ -182,7 +203,7 @@ fn early(transient: &Transient, info: Option<StepInfo>, step_s: f64) -> Vec<(f64
     if first_s > STEPS * step_s {
         return Vec::new();
     }
-    logspace((BEFORE * first_s, STEPS * step_s), COUNT).into_iter().map(|s| (s, transient.at(s))).collect()
+    logspace((BEFORE * first_s, STEPS * step_s), COUNT).into_iter().map(|s| (s, answer.at(s))).collect()
 }
 
 fn sampled(named: Named, input: Input, count: usize) -> Result<Entry, LinearError> {
@@ -210,7 +231,7 @@ fn samples(system: &TransferFunction, input: Input, count: usize) -> Result<Resp
 mod tests {
     use super::*;
 
-    fn shown(text: &str) -> f64 {
+    fn shown_of(text: &str) -> f64 {
         shown_s(&TransferFunction::parse(text, Time::Continuous).unwrap(), Input::Step)
     }
 
@@ -219,11 +240,11 @@ mod tests {
         for text in ["1/(s+1)", "1/(s^2+0.4s+1)", "1/((s+1)(s+50))", "(1-s)/(s+1)^2", "100/(s+7)^3"] {
             let system = TransferFunction::parse(text, Time::Continuous).unwrap();
             let settled = system.step_info(BAND).unwrap().settle_s.unwrap();
-            let share = settled / shown(text);
+            let share = settled / shown_of(text);
             assert!((0.65..0.8).contains(&share), "{text}: {share}");
         }
         // what grows, and what is constant
-        assert!(shown("1/s") > 0.0 && shown("1/(s-1)") > 1.0 && shown("7") > 0.0);
+        assert!(shown_of("1/s") > 0.0 && shown_of("1/(s-1)") > 1.0 && shown_of("7") > 0.0);
         assert!((two_digits_up(1.21) - 1.3).abs() < 1e-12 && (two_digits_up(0.0999) - 0.1).abs() < 1e-12);
     }
 }

@@ -15,6 +15,7 @@ use tracelight_sim::Compensator;
 use tracelight_task::Failure;
 
 use crate::head::HeadChoice;
+use crate::named::{Late, Named};
 use crate::numbers::four;
 
 /// Systems to plot.
@@ -50,6 +51,9 @@ pub struct Reading {
     pub period_s: Option<f64>,
     /// Sample it: how often, s, and how.
     pub sampling: Option<(f64, Discretization)>,
+    /// Order in which a dead time is approximated where only a rational system will do, 1 to 15; if not given, the least whose phase is
+    /// off by no more than a degree where it matters.
+    pub pade: Option<usize>,
 }
 
 const fn words(method: Discretization) -> &'static str {
@@ -60,26 +64,21 @@ const fn words(method: Discretization) -> &'static str {
     }
 }
 
-/// A system and what it is called.
-pub(crate) struct Named {
-    /// As typed, and what was made of it.
-    pub(crate) name: String,
-    pub(crate) system: TransferFunction,
-    pub(crate) colour: Colour,
-}
-
 impl Systems {
     /// All systems, as they are to be plotted.
     pub(crate) fn systems(&self) -> Result<Vec<Named>, Failure> {
         let reader = self.how.reader()?;
         let all = self.formulas.iter().map(|text| text.trim()).zip(Colour::in_turn());
         all.map(|(text, colour)| {
-            let (mut name, mut system) = reader.read(text)?;
+            let mut named = reader.read(text, colour)?;
             if self.closed {
-                system = system.closed().map_err(|e| no_such_system(text, &e))?;
-                name += ", closed";
+                named.system = named.system.closed().map_err(|e| no_such_system(text, &e))?;
+                named.name += ", closed";
+                if let Some(late) = &mut named.late {
+                    late.closed = true;
+                }
             }
-            Ok(Named { name, system, colour })
+            Ok(named)
         })
         .collect()
     }
@@ -87,8 +86,8 @@ impl Systems {
 
 impl OneSystem {
     /// Its name and what it is.
-    pub(crate) fn system(&self) -> Result<(String, TransferFunction), Failure> {
-        self.how.reader()?.read(self.formula.trim())
+    pub(crate) fn system(&self) -> Result<Named, Failure> {
+        self.how.reader()?.read(self.formula.trim(), Colour::Black)
     }
 }
 
@@ -98,16 +97,25 @@ fn no_such_system(text: &str, error: &LinearError) -> Failure {
 
 /// A controller in continuous time: a formula, in which K11, K22, K11t and K22t are the report's.
 pub(crate) fn controller(text: &str) -> Result<Zpk, Failure> {
-    Ok(parsed(text, Time::Continuous, &the_reports)?.zpk())
+    let read = parsed(text, Time::Continuous, &the_reports)?;
+    match read.delay_s() {
+        0.0 => Ok(read.rational().zpk()),
+        delay_s => {
+            let message = format!(
+                "{text}: a controller has no dead time of {delay_s} s; approximate it by pade({delay_s}, 2)"
+            );
+            Err(Failure::usage("bad-formula", message))
+        }
+    }
 }
 
 /// A formula read; what is wrong with it is pointed at.
-fn parsed(text: &str, time: Time, named: &Names<'_>) -> Result<TransferFunction, Failure> {
+fn parsed(text: &str, time: Time, named: &Names<'_>) -> Result<Delayed, Failure> {
     let pointed = |e: FormulaError| {
         let names = names_instead(text, e.at, named);
         format!("{e}{names}\n  {text}\n  {}^", " ".repeat(e.at))
     };
-    TransferFunction::parse_with(text, time, named).map_err(|e| Failure::usage("bad-formula", pointed(e)))
+    Delayed::parse_with(text, time, named).map_err(|e| Failure::usage("bad-formula", pointed(e)))
 }
 
 /// Which names there are, where a name stands that is none of them.
@@ -161,15 +169,21 @@ impl Reader<'_> {
     }
 
     /// What a formula is, and what was made of it.
-    fn read(&self, text: &str) -> Result<(String, TransferFunction), Failure> {
+    fn read(&self, text: &str, colour: Colour) -> Result<Named, Failure> {
         let time = self.how.period_s.map_or(Time::Continuous, Time::Sampled);
-        let mut system = parsed(text, time, &|name| self.named(name))?;
+        let read = parsed(text, time, &|name| self.named(name))?;
         let mut name = text.to_owned();
         if let Some((period_s, method)) = self.how.sampling {
-            system = system.sampled(period_s, method).map_err(|e| no_such_system(text, &e))?;
+            let system = read.sampled(period_s, method).map_err(|e| no_such_system(text, &e))?;
             name += &format!(", sampled every {} ms by {}", four(1e3 * period_s), words(method));
+            return Ok(Named { name, system, late: None, colour });
         }
-        Ok((name, system))
+        if read.delay_s() == 0.0 {
+            return Ok(Named { name, system: read.rational().clone(), late: None, colour });
+        }
+        let late = Late::of(read, self.how.pade);
+        let system = late.open.approximated(late.order).map_err(|e| no_such_system(text, &e))?;
+        Ok(Named { name, system, late: Some(late), colour })
     }
 }
 

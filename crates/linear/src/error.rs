@@ -1,5 +1,7 @@
 use thiserror::Error;
 
+use crate::notation::four_digits;
+
 /// Why there is no such system, or no such figure of it.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
@@ -57,6 +59,18 @@ pub enum LinearError {
     /// What is wished for cannot be had.
     #[error("{0}")]
     Wish(String),
+    /// The faster the better: a crossover has to be chosen.
+    #[error(
+        "the faster the better, up to {} rad/s and beyond: nothing in the system bounds the crossover; choose one, such as {} rad/s",
+        four_digits(*to_rad_s),
+        four_digits(*offer_rad_s)
+    )]
+    Unbounded {
+        /// How far it was looked for, rad/s.
+        to_rad_s: f64,
+        /// One that will do, rad/s.
+        offer_rad_s: f64,
+    },
     /// An iteration did not end where it should.
     #[error("an iteration did not converge")]
     NotConverged,

@@ -48,7 +48,9 @@ pub use crossings::{LocusCrossing, RealCrossing};
 pub use damped::DampedGains;
 pub use dead_time::{Answer, Delayed, GrowingPoles};
 pub use delay::DelayMargin;
-pub use design::{Estimator, LeadLagWish, LqgWish, Pid, PidWish, Regulator};
+pub use design::{
+    Estimator, IdealForm, LeadLagWish, LqgWish, Pid, PidWish, Regulator, SeriesForm, SetpointWeights, Terms,
+};
 pub use discretize::Discretization;
 pub use eigen::eigenvalues;
 pub use error::LinearError;

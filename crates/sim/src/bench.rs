@@ -4,6 +4,7 @@ use tracelight_rig::{Actuation, Joint, Measurement, PanTilt, Setpoint};
 
 use crate::config::RigConfig;
 use crate::linear::LinearHead;
+use crate::pid_law::{PidLaw, PidMemory};
 use crate::truth::Truth;
 
 /// Observers and laws on a head, without plan, supervisor and light: what a control engineer puts on the bench.
@@ -73,13 +74,44 @@ impl<H: Truth> Bench<H> {
 
     /// One tick.
     pub(crate) fn step(&mut self, reference: &Reference) -> BenchTick {
+        self.step_with(reference, |_, volts| volts)
+    }
+
+    /// One tick, one joint driven by a PID beside what its own law adds.
+    pub(crate) fn step_by_pid(
+        &mut self,
+        reference: &Reference,
+        joint: Joint,
+        (law, memory): (&PidLaw, &mut PidMemory),
+    ) -> BenchTick {
+        self.step_with(reference, |bench, mut command_v| {
+            let axis = &bench.config.axes[joint];
+            let angle_rad = f64::from(bench.measured[joint].count) * f64::from(axis.count_rad);
+            let setpoint_rad = f64::from(reference.now[joint].position_rad);
+            let (nm_per_v, limit_v) = (f64::from(axis.torque_nm_per_v), f64::from(axis.limit_v));
+            let asked_v =
+                f64::from(command_v[joint]) + law.torque_nm(memory, setpoint_rad, angle_rad) / nm_per_v;
+            let given_v = asked_v.clamp(-limit_v, limit_v);
+            law.settle(memory, (given_v - asked_v) * nm_per_v);
+            command_v[joint] = given_v as f32;
+            bench.servo.apply(&bench.config, command_v);
+            command_v
+        })
+    }
+
+    fn step_with(
+        &mut self,
+        reference: &Reference,
+        decide: impl FnOnce(&mut Self, PanTilt<f32>) -> PanTilt<f32>,
+    ) -> BenchTick {
         if self.begun {
             self.servo.observe(&self.config, &self.measured);
         }
         self.begun = true;
         let (angle_rad, beam_rad) = (self.head.angle_rad(), self.head.beam_rad());
         let estimates = *self.servo.estimates();
-        let command_v = self.servo.drive(&self.config, reference);
+        let driven_v = self.servo.drive(&self.config, reference);
+        let command_v = decide(self, driven_v);
         let measured = self.measured;
         self.measured = self.head.exchange(&Actuation { command_v, ..Actuation::default() }).encoders;
         BenchTick { setpoint: reference.now, angle_rad, beam_rad, measured, estimates, command_v }

@@ -10,6 +10,14 @@ use tracelight_rig::TICK_F64_S;
 pub struct CompensatorLaw(LawConfig);
 
 impl CompensatorLaw {
+    /// What holds the head against gravity, and nothing that acts on an error.
+    pub(crate) const NOTHING: Self = Self(LawConfig {
+        feedback: Feedback::LeadLag(LeadLag {
+            sections: [Biquad { numerator: [0.0; 3], denominator: [0.0; 2] }, Biquad::PASS],
+        }),
+        feedforward: Feedforward::Gravity,
+    });
+
     /// Poles that a law has room for.
     pub const MOST_POLES: usize = 4;
 

@@ -20,6 +20,7 @@ mod laws;
 mod lead_lag;
 mod light_settings;
 mod linear;
+mod pid_law;
 mod presets;
 mod replay;
 mod room;
@@ -41,6 +42,7 @@ pub use control_settings::ControlSettings;
 pub use diagram::{Diagram, ScopeTick};
 pub use laws::{Compensator, HandTuned, LawName, ObserverName, StepReference};
 pub use light_settings::{LaserClass, LightSettings};
+pub use pid_law::PidLaw;
 pub use replay::replay;
 pub use room::{Room, Taken};
 pub use run::{Feeder, Run, Simulated, SimulatedRig, Tick, arm, darken, run, run_segments};
@@ -48,7 +50,9 @@ pub use safety_settings::SafetySettings;
 pub use score::{Tracking, score};
 pub use spread::Spread;
 pub use standing::{Standing, first_standing};
-pub use step::{Push, StepResponse, follow_array, push_response, step_response, step_response_by};
+pub use step::{
+    Push, StepResponse, follow_array, push_response, step_response, step_response_by, step_response_by_pid,
+};
 pub use tracelight_control::{Feedforward, LONGEST_INTERVAL_TICKS};
 pub use tracelight_plant::{LooseBelt, Weakening};
 pub use trouble::{EyeTrouble, Trouble};

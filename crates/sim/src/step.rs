@@ -8,6 +8,7 @@ use crate::bench::{Bench, BenchTick};
 use crate::compensator::CompensatorLaw;
 use crate::config::RigConfig;
 use crate::laws::{LawName, ObserverName, StepReference};
+use crate::pid_law::{PidLaw, PidMemory};
 use crate::truth::Truth;
 
 /// What a joint does when it is sent somewhere else, for [`StepResponse::LENGTH_S`].
@@ -63,6 +64,41 @@ pub fn step_response_by(
         nonlinear: follow(Bench::nonlinear(&rig, seed).driven_by(joint, law), &references),
         linear: follow(Bench::linear(&rig, to).driven_by(joint, law), &references),
     })
+}
+
+/// Simulates a setpoint step with a designed PID for the joint and with quantized positions.
+pub fn step_response_by_pid(
+    rig: &RigConfig,
+    joint: Joint,
+    law: &PidLaw,
+    to_rad: f64,
+    seed: u64,
+) -> Option<StepResponse> {
+    let mut rig = rig.clone();
+    (rig.control.law, rig.control.observer) = (LawName::LeadLag, Some(ObserverName::Counts));
+    let mut to = PanTilt::default();
+    to[joint] = to_rad;
+    let references = jump(&rig, to)?;
+    // gravity alone
+    let nothing = CompensatorLaw::NOTHING.config();
+    let (nonlinear, linear) = (
+        Bench::nonlinear(&rig, seed).driven_by(joint, nothing),
+        Bench::linear(&rig, to).driven_by(joint, nothing),
+    );
+    Some(StepResponse {
+        nonlinear: follow_by_pid(nonlinear, joint, law, &references),
+        linear: follow_by_pid(linear, joint, law, &references),
+    })
+}
+
+fn follow_by_pid<H: Truth>(
+    mut bench: Bench<H>,
+    joint: Joint,
+    law: &PidLaw,
+    references: &[Reference],
+) -> Vec<BenchTick> {
+    let mut memory = PidMemory::default();
+    references.iter().map(|reference| bench.step_by_pid(reference, joint, (law, &mut memory))).collect()
 }
 
 /// Follows an array with the rig's law from rest where it begins, and stays at its end for `rest_s`; a tick each.

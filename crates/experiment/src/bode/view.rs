@@ -12,17 +12,17 @@ use super::{Entry, Finding, Kind};
 use crate::finding::{self, Plotted};
 use crate::margins::{margin_lines, margins_json, summary};
 use crate::numbers::four;
-use crate::systems::{stability_name, system_json};
+use crate::systems::stability_name;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
         let mut text = String::new();
         for entry in &self.entries {
-            let system = &entry.named.system;
+            let named = &entry.named;
             // writing to a String cannot fail
-            let _ = writeln!(text, "{} = {system}", entry.named.name);
+            let _ = writeln!(text, "{} = {}", named.name, named.text());
             if let Kind::Open { margins, .. } = &entry.kind {
-                let _ = writeln!(text, "{}", margin_lines(system, margins));
+                let _ = writeln!(text, "{}", margin_lines(named.delay_margin(margins), margins));
             }
             if let Some(rad_s) = entry.bandwidth_rad_s {
                 let _ =
@@ -53,10 +53,12 @@ impl finding::Finding for Finding {
 
     fn json(&self) -> String {
         let one = |entry: &Entry| {
-            let system = &entry.named.system;
-            let mut object = system_json(&entry.named.name, system);
+            let named = &entry.named;
+            let mut object = named.json();
             let (margins, closed) = match &entry.kind {
-                Kind::Open { margins, closed } => (margins_json(system, margins), *closed),
+                Kind::Open { margins, closed } => {
+                    (margins_json(named.delay_margin(margins), margins), *closed)
+                }
                 Kind::Closed(stability) => (Value::Null, Some(*stability)),
             };
             object["margins"] = margins;
@@ -178,14 +180,15 @@ fn mark_margins(entry: &Entry, margins: &Margins, magnitude: &mut Panel, phase: 
         panel.marks.push(Mark { colour, sign: Sign::Dot, at: (rad_s, to) });
         panel.labels.push(Label::new((rad_s, to), words));
     };
-    if let Some(margin) = margins.least_gain().filter(|margin| margin.rad_s > 0.0) {
+    if let Some(margin) = margins.least_gain().filter(|margin| margin.rad_s > 0.0 && margin.rad_s.is_finite())
+    {
         let db = decibels(margin.factor);
         let words = format!("gain margin {} dB at {} rad/s", four(db), four(margin.rad_s));
         line(magnitude, margin.rad_s, (0.0, -db), words);
     }
     if let Some(margin) = margins.least_phase() {
         // −180°, or that a whole number of turns further
-        let shown = entry.named.system.phase(margin.rad_s).to_degrees();
+        let shown = entry.named.phase(margin.rad_s).to_degrees();
         let words = format!("phase margin {}° at {} rad/s", four(margin.degrees()), four(margin.rad_s));
         line(phase, margin.rad_s, (shown - margin.degrees(), shown), words);
     }
@@ -193,9 +196,8 @@ fn mark_margins(entry: &Entry, margins: &Margins, magnitude: &mut Panel, phase: 
 
 /// Bandwidth and resonance of a closed loop.
 fn mark_closed(entry: &Entry, magnitude: &mut Panel) {
-    let system = &entry.named.system;
     let mut dot = |rad_s: f64, words: String| {
-        let gain = complex::norm(system.at(system.time().at_frequency(rad_s)));
+        let gain = complex::norm(entry.named.at(rad_s));
         let at = (rad_s, decibels(gain));
         magnitude.marks.push(Mark { colour: entry.named.colour, sign: Sign::Dot, at });
         magnitude.labels.push(Label::new(at, words));

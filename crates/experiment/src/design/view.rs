@@ -17,13 +17,13 @@ use crate::trial::Trial;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
-        let Self { name, plant, controller, remark, closed, margins, info, .. } = self;
-        let mut text = format!("{name} = {plant}\n\nK = {controller}\n");
-        if !remark.is_empty() {
-            text += &format!("    {remark}\n");
+        let Self { name, plant, controller, closed, margins, info, .. } = self;
+        let mut text = format!("{name} = {plant}\n{}\nK = {controller}\n", self.note);
+        if let Some((design, _)) = &self.pid {
+            text += &design.lines();
         }
         // writing to a String cannot fail
-        let _ = writeln!(text, "\nthe loop\n{}", margin_lines(&self.open, margins));
+        let _ = writeln!(text, "\nthe loop\n{}", margin_lines(self.delay_margin, margins));
         if let Some(value) = info.ending.value() {
             let _ = writeln!(
                 text,
@@ -40,6 +40,9 @@ impl finding::Finding for Finding {
                     "for a step of 1 the input has no largest value: it is an impulse, or grows"
                 ),
             };
+        }
+        if let Some((design, weighted)) = &self.pid {
+            text += &design.step_lines(weighted);
         }
         let closed_is = match self.stability {
             Stability::Stable => "stable",
@@ -72,7 +75,7 @@ impl finding::Finding for Finding {
                 "num": zpk.transfer().numerator().coefficients(),
                 "den": zpk.transfer().denominator().coefficients(),
             },
-            "margins": margins_json(&self.open, &self.margins),
+            "margins": margins_json(self.delay_margin, &self.margins),
             "closed_poles": pairs(&self.closed.poles()),
             "closed_stable": stable,
             "closed_stability": stability_name(self.stability),
@@ -85,6 +88,7 @@ impl finding::Finding for Finding {
                 "rise_s": info.rise_s,
                 "settle_s": info.settle_s,
             })),
+            "pid": self.pid.as_ref().map(|(design, weighted)| design.json(weighted)),
             "trial": self.trial.as_ref().map(Trial::json),
             "input_peak": self.peak.filter(|_| stable),
         })

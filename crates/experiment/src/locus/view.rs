@@ -9,7 +9,7 @@ use tracelight_task::Failure;
 use super::{Chosen, Entry, Finding, Marked};
 use crate::finding::{self, Plotted};
 use crate::numbers::four;
-use crate::systems::{pairs, place, pole_lines, system_json};
+use crate::systems::{pairs, place, pole_lines};
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
@@ -17,6 +17,7 @@ impl finding::Finding for Finding {
         for entry in &self.entries {
             // writing to a String cannot fail
             let _ = writeln!(text, "{} = {}", entry.named.name, entry.named.system.factored());
+            text += &entry.named.approximated();
             text += &entry.course();
             match &entry.chosen {
                 Chosen::Gain(gain, _) => {
@@ -38,7 +39,7 @@ impl finding::Finding for Finding {
 
     fn json(&self) -> String {
         let one = |entry: &Entry| {
-            let mut object = system_json(&entry.named.name, &entry.named.system);
+            let mut object = entry.named.approximated_json();
             let (gain, closed) = match &entry.chosen {
                 Chosen::Gain(gain, closed) => (Some(*gain), &closed[..]),
                 Chosen::None(_) => (None, &[][..]),

@@ -49,12 +49,12 @@ impl Window {
 impl Entry {
     /// Beyond what the curve only runs off to infinity.
     pub(super) fn level(&self) -> f64 {
-        BEYOND * self.named.system.largest_finite_gain().max(1.15)
+        BEYOND * self.named.largest_finite_gain().max(1.15)
     }
 
     pub(super) fn curve(&self, level: f64) -> NyquistCurve {
         const TOLERANCE: f64 = 5e-4;
-        self.named.system.nyquist_curve(level, TOLERANCE)
+        self.named.nyquist_curve(level, TOLERANCE)
     }
 
     /// Where it crosses the negative real axis between the ends.
@@ -64,7 +64,7 @@ impl Entry {
     }
 
     fn at(&self, rad_s: f64) -> Complex {
-        self.named.system.at(self.named.system.time().at_frequency(rad_s))
+        self.named.at(rad_s)
     }
 }
 
@@ -316,12 +316,12 @@ mod tests {
     use tracelight_linear::{Time, TransferFunction};
 
     use super::*;
+    use crate::named::Named;
     use crate::nyquist::Chart;
-    use crate::systems::Named;
 
     fn window(text: &str, reach: Option<f64>) -> Window {
         let system = TransferFunction::parse(text, Time::Continuous).unwrap();
-        let named = Named { name: text.into(), system, colour: Colour::Violet };
+        let named = Named { name: text.into(), system, late: None, colour: Colour::Violet };
         let entry = Entry::of(named, &[1.0]);
         let finding = Finding {
             theme: tracelight_chart::Theme::Light,

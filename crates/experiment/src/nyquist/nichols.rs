@@ -70,16 +70,16 @@ impl Finding {
 /// Margins, the direction of rising frequency, and some frequencies.
 fn explain(entry: &Entry, panel: &mut Panel) {
     const COUNT: usize = 4;
-    let system = &entry.named.system;
+    let named = &entry.named;
     let colour = entry.named.colour;
-    let at = |w: f64| {
-        (system.phase(w).to_degrees(), decibels(complex::norm(system.at(system.time().at_frequency(w)))))
-    };
+    let at = |w: f64| (named.phase(w).to_degrees(), decibels(complex::norm(named.at(w))));
     let mut mark = |sign: Sign, w: f64, words: String| {
         panel.marks.push(Mark { colour, sign, at: at(w) });
         panel.labels.push(Label::new(at(w), words));
     };
-    if let Some(margin) = entry.margins.least_gain().filter(|margin| margin.rad_s > 0.0) {
+    if let Some(margin) =
+        entry.margins.least_gain().filter(|margin| margin.rad_s > 0.0 && margin.rad_s.is_finite())
+    {
         let words =
             format!("gain margin {} dB at {} rad/s", four(decibels(margin.factor)), four(margin.rad_s));
         mark(Sign::Dot, margin.rad_s, words);

@@ -11,7 +11,6 @@ use super::{Chart, Entry, Finding};
 use crate::finding::{self, Plotted};
 use crate::margins::{margin_lines, margins_json};
 use crate::numbers::four;
-use crate::systems::system_json;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
@@ -22,8 +21,8 @@ impl finding::Finding for Finding {
                 text,
                 "{} = {}\n{}",
                 entry.named.name,
-                entry.named.system,
-                margin_lines(&entry.named.system, &entry.margins)
+                entry.named.text(),
+                margin_lines(entry.named.delay_margin(&entry.margins), &entry.margins)
             );
             text += &entry.course();
             let open = entry.open_unstable;
@@ -45,8 +44,8 @@ impl finding::Finding for Finding {
 
     fn json(&self) -> String {
         let one = |entry: &Entry| {
-            let mut object = system_json(&entry.named.name, &entry.named.system);
-            object["margins"] = margins_json(&entry.named.system, &entry.margins);
+            let mut object = entry.named.json();
+            object["margins"] = margins_json(entry.named.delay_margin(&entry.margins), &entry.margins);
             object["open_unstable"] = entry.open_unstable.into();
             object["closed_unstable"] = entry.closed_unstable.into();
             object["real_crossings"] =

@@ -9,8 +9,9 @@ use tracelight_task::Failure;
 
 use super::Finding;
 use crate::finding::{self, Plotted};
+use crate::named::Named;
 use crate::plane::{Extent, draw, plane, signs};
-use crate::systems::{Named, place, pole_lines, system_json};
+use crate::systems::{place, pole_lines};
 
 /// A zero and how often it is one.
 fn zero(root: &DistinctRoot) -> String {
@@ -21,11 +22,13 @@ fn zero(root: &DistinctRoot) -> String {
 impl finding::Finding for Finding {
     fn text(&self) -> String {
         let mut text = String::new();
-        for Named { name, system, .. } in &self.systems {
+        for named in &self.systems {
+            let Named { name, system, .. } = named;
             let zeros: Vec<String> =
                 system.numerator().distinct_roots().iter().filter(|z| z.value.im >= 0.0).map(zero).collect();
             // writing to a String cannot fail
             let _ = writeln!(text, "{name} = {}\n    = {}", system.factored(), system);
+            text += &named.approximated();
             let _ = writeln!(
                 text,
                 "    zeros: {}",
@@ -37,7 +40,7 @@ impl finding::Finding for Finding {
     }
 
     fn json(&self) -> String {
-        let all: Vec<_> = self.systems.iter().map(|named| system_json(&named.name, &named.system)).collect();
+        let all: Vec<_> = self.systems.iter().map(Named::approximated_json).collect();
         json!({ "systems": all }).to_string()
     }
 }

@@ -17,7 +17,7 @@ impl finding::Finding for Finding {
         let mut text = String::new();
         for entry in &self.entries {
             // writing to a String cannot fail
-            let _ = writeln!(text, "{} = {}", entry.named.name, entry.named.system);
+            let _ = writeln!(text, "{} = {}", entry.named.name, entry.named.text());
             text += &entry.lines(self.of.input);
             text += "\n";
         }

@@ -4,18 +4,23 @@
 //! |---|---|
 //! | `margins` | gain, phase and modulus margins, the delay that is left |
 //! | `stability` | how many poles of the closed loop grow |
+//! | `curve` | Nyquist's curve, the closed loop's frequency response |
 //! | `pade` | rational systems that are nearly the same, and by how much not |
 //! | `steps` | what the closed loop answers, from dead time to dead time |
 //! | `answer` | what the system or its closed loop answers, and its figures |
 
 mod answer;
+mod curve;
 mod margins;
 mod pade;
 mod stability;
 mod steps;
 
+use std::fmt;
+
 use tracelight_maths::complex;
 
+use crate::notation::four_digits;
 use crate::turns::Turns;
 use crate::{Complex, FrequencyResponse, LinearError, Time, TransferFunction};
 
@@ -108,6 +113,17 @@ impl Delayed {
     /// Slope of ln L over the frequency: its real part is that of ln |L|, its imaginary part that of the phase, s.
     fn logarithmic_slope(&self, rad_s: f64) -> Complex {
         self.rational.logarithmic_slope(rad_s) - Complex::new(0.0, self.delay_s)
+    }
+}
+
+impl fmt::Display for Delayed {
+    /// `exp(−0.2 s) 2 / (s + 1)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.delay_s > 0.0 {
+            let delay = if self.delay_s == 1.0 { String::new() } else { four_digits(self.delay_s) + " " };
+            write!(f, "exp(−{delay}s) ")?;
+        }
+        self.rational.fmt(f)
     }
 }
 

@@ -78,6 +78,12 @@ fn has_so_many(scaled: &Scaled, place: Complex, count: usize) -> bool {
     place != Complex::ZERO && (0..count).all(|k| complex::norm(terms[k]) <= rounding * sizes[k])
 }
 
+impl From<Root> for DistinctRoot {
+    fn from(root: Root) -> Self {
+        Self::alone(&root)
+    }
+}
+
 /// Groups of roots with discs that overlap, in the order of their first.
 fn overlapping(roots: &[Root]) -> Vec<Vec<Root>> {
     let mut groups: Vec<Vec<Root>> = Vec::new();

@@ -4,5 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")]
 
 mod goldens;
+mod pids;
+mod regulators;
 mod roots;
 mod transients;

@@ -277,6 +277,12 @@ fn what_cannot_be_designed_is_refused_in_a_sentence() {
     for (arguments, words) in [
         ("pid 1/s --modulus 0.95", "at most"),
         ("pid 1/(s(s+1))", "choose one"),
+        ("pid 1/(10s+1)", "the missing wish is --crossover 0.3rad/s"),
+        ("pid 1/s^2 --type pi", "try a PID"),
+        ("pid 1/s^2 --type pd --crossover 2rad/s --overshoot 5", "without an integral"),
+        ("lqr G11 --q 1", "1 numbers for 2 states"),
+        ("lqr G11 --q z=1", "the states are y, dy"),
+        ("lqr G11 --q 0,0", "give the first state a weight"),
         ("lead-lag 1/(s+1)^6 --crossover 10rad/s --phase-margin 60deg", "of phase are missing"),
         ("place G11 --poles=-1", "give as many"),
         ("place G11 --poles=-1,x", "is no pole"),
@@ -382,4 +388,43 @@ fn frequencies_are_in_hertz_or_in_radians_a_second() {
     assert_eq!(hertz.as_array().unwrap().len(), radians.as_array().unwrap().len());
     let sampled = lab(&["pzmap", "1/(s+1)", "--sample", "10Hz"]);
     near(&sampled["systems"][0]["poles"][0][0], (-0.1_f64).exp(), 1e-12);
+}
+
+/// Large jumps keep the amplifier at its limit: back-calculation keeps the integral from winding up meanwhile.
+#[test]
+fn a_designed_pid_is_tried_with_anti_windup_and_without() {
+    let design = lab(&["design", "pid", "G11", "--crossover", "40rad/s", "--try", "pan", "--to", "40deg"]);
+    let trial = &design["trial"];
+    let number = |value: &Value| value.as_f64().unwrap();
+    let (kept, wound) =
+        (number(&trial["overshoot_percent"]), number(&trial["without_anti_windup"]["overshoot_percent"]));
+    assert!(kept < 40.0 && wound > 3.0 * kept, "{trial}");
+    assert!((0.05..0.95).contains(&number(&trial["limited_share"])), "{trial}");
+    near(&trial["tracking_s"], (number(&design["pid"]["kd"]) / number(&design["pid"]["ki"])).sqrt(), 1e-9);
+    // the head linearized overshoots as the paper says, but for the ticks
+    near(&trial["linear"]["overshoot_percent"], number(&design["step"]["overshoot_percent"]), 1.5);
+    // and at its ticks it keeps nearly the margins
+    near(&trial["sampled"]["phase_margin_deg"], 55.0, 1.5);
+    let weighted = lab(&["design", "pid", "G11", "--crossover", "40rad/s", "--overshoot", "10"]);
+    near(&weighted["pid"]["weighted_step"]["overshoot_percent"], 10.0, 1e-3);
+    assert_eq!(weighted["pid"]["load"], design["pid"]["load"]);
+    assert_eq!(weighted["step"], design["step"]);
+}
+
+#[test]
+fn states_are_weighed_one_by_one_by_name_or_by_what_is_allowed() {
+    let each = lab(&["design", "lqr", "G11", "--q", "1000,1"]);
+    assert_eq!(each["gain"], lab(&["design", "lqr", "G11", "--q", "dy=1,y=1000"])["gain"]);
+    assert!(each["margins"]["phase"]["deg"].as_f64().is_some_and(|deg| deg >= 60.0), "{each}");
+    // b² k1² = b² q1/r: from Riccati's equation of a chain
+    near(&each["gain"][0], 1000_f64.sqrt(), 1e-6);
+    let most = ["design", "lqr", "G11", "--most", "y=0.02", "--most-input", "0.6", "--integral", "0.01"];
+    let allowed = lab(&most);
+    let reached = &allowed["allowed"]["reached"];
+    assert!(reached[3].as_f64().unwrap() > 0.6, "{reached}");
+    let r = allowed["allowed"]["nearest_r"].as_f64().unwrap().to_string();
+    let nearest = lab(&["design", "lqr", "G11", "--q", "2500,0", "--r", &r, "--integral", "10000"]);
+    // the first moment is its largest, where the input is the first gain times the deviation
+    near(&nearest["gain"][0], 0.6 / 0.02, 1e-3);
+    near(&nearest["step"]["final"], 1.0, 1e-6);
 }

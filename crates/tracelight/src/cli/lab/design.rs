@@ -1,10 +1,13 @@
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
+use tracelight_experiment::design::lqr;
+use tracelight_experiment::design::pid::{AntiWindup, PidRequest, SetpointWish};
 use tracelight_experiment::design::{Method, Request, TriedOn};
-use tracelight_linear::{LeadLagWish, LqgWish, PidWish};
+use tracelight_linear::{LeadLagWish, LqgWish, PidWish, SetpointWeights, Terms};
 use tracelight_task::{Failure, Stop};
-use tracelight_units::Angle;
+use tracelight_units::{Angle, TIMES, parse};
 
 use super::bode::frequency;
+use super::by_hand::{number, settings};
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::poles::{Poles, poles};
 use super::step::{Axis, step};
@@ -32,6 +35,7 @@ enum MethodArgs {
     Pid(PidArgs),
     Lqg(LqgArgs),
     Place(PlaceArgs),
+    Lqr(LqrArgs),
 }
 
 /// As many leads as the phase margin asks for, and a lag
@@ -50,23 +54,161 @@ struct LeadLagArgs {
     lag: f64,
 }
 
-/// The PID with the largest integral gain that keeps the margins
+/// The P, PI, PD or PID with the largest gain, of the integral if there is one, that keeps the margins
 #[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight lab design pid \"1/(s+1)^3\" --type pi --overshoot 5\n\
+                  Example: tracelight lab design pid G11 --sample 1ms --crossover 40rad/s --try pan --to 20deg\n\n\
+                  Margins are kept at least; where they cannot be had, the nearest that can are named. With --sample the margins are those of \
+                  the sampled loop. On a rig (--try) the integral is brought back while the amplifier is at its limit (back-calculation).")]
 struct PidArgs {
     #[command(flatten)]
     loops: LoopArgs,
-    /// Where the loop's gain is 1 [default: where the integral can be largest]
+    /// Which terms it has
+    #[arg(long = "type", value_name = "TYPE", value_enum, default_value = "pid")]
+    terms: TermsArg,
+    /// Where the loop's gain is 1 [default: where the gain can be largest; needed where nothing bounds that]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
     crossover: Option<f64>,
-    /// Phase margin there
+    /// Least phase margin
     #[arg(long, value_name = "ANGLE", default_value = "55deg")]
     phase_margin: Angle,
     /// Least distance of the loop from −1: one over the largest sensitivity
     #[arg(long, value_name = "DISTANCE", default_value_t = 0.6)]
     modulus: f64,
-    /// How many times the crossover the derivative ends at
+    /// How many times the crossover the derivative ends at; sampled, at 2/T at most
     #[arg(long, value_name = "FACTOR", default_value_t = 10.0)]
     filter: f64,
+    /// Let its zeros be complex: more integral, closed poles that swing
+    #[arg(long)]
+    complex_zeros: bool,
+    /// Setpoint weights: the shares of the setpoint that the proportional term (b) and the derivative (c) see; what a disturbance does stays as it
+    /// is
+    #[arg(long, value_name = "b=0.6,c=0", value_parser = weights, conflicts_with = "overshoot")]
+    weights: Option<SetpointWeights>,
+    /// Choose the largest setpoint weight b, with c = 0, that leaves at most this overshoot, %
+    #[arg(long, value_name = "PERCENT", value_parser = share)]
+    overshoot: Option<f64>,
+    /// Time constant of the anti-windup on the rig, or off [default: √(Ti Td), of a PI Ti]
+    #[arg(long, value_name = "TIME|off", requires = "tried", value_parser = tracking)]
+    tracking: Option<AntiWindup>,
+}
+
+/// The terms of a controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TermsArg {
+    /// Proportional
+    P,
+    /// Proportional and integral
+    Pi,
+    /// Proportional and derivative
+    Pd,
+    /// All three
+    Pid,
+}
+
+impl TermsArg {
+    const fn terms(self) -> Terms {
+        match self {
+            Self::P => Terms::P,
+            Self::Pi => Terms::Pi,
+            Self::Pd => Terms::Pd,
+            Self::Pid => Terms::Pid,
+        }
+    }
+}
+
+fn weights(text: &str) -> Result<SetpointWeights, String> {
+    let mut weights = SetpointWeights { proportional: 1.0, derivative: 0.0 };
+    for (name, value) in settings(text)? {
+        let field = match name {
+            "b" => &mut weights.proportional,
+            "c" => &mut weights.derivative,
+            _ => return Err(format!("{name} is neither b nor c")),
+        };
+        *field = number(name, value, 0.0, 1.0)?;
+    }
+    Ok(weights)
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    number("the overshoot, %,", text.trim_end_matches('%').trim(), 0.0, 100.0)
+}
+
+fn tracking(text: &str) -> Result<AntiWindup, String> {
+    if text == "off" {
+        return Ok(AntiWindup::Off);
+    }
+    let tracking_s = parse(text, TIMES).map_err(|e| e.to_string())?;
+    if tracking_s > 0.0 {
+        Ok(AntiWindup::Tracking(tracking_s))
+    } else {
+        Err(format!("{text} is no time constant"))
+    }
+}
+
+/// State feedback that costs least, with weights on the states
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight lab design lqr G11 --q 1000,1 --r 1\n\
+                  Example: tracelight lab design lqr G11 --most y=0.02 --most-input 0.6 --integral 0.01\n\n\
+                  The states are the output and its derivatives (y, dy, d2y, …); of a system with zeros x1, x2, …, each the derivative of the one \
+                  before. --most is Bryson's rule: weights of 1 over the square of the largest allowed deviation; what is reached from the first \
+                  of them is told, and if the input needs more than allowed, the nearest that keeps it.")]
+struct LqrArgs {
+    #[command(flatten)]
+    system: OneSystemArgs,
+    /// Weights of the states, each or by name
+    #[arg(long, value_name = "1,0,10|y=1", value_parser = entries, required_unless_present = "most")]
+    q: Option<Entries>,
+    /// Weight of the input
+    #[arg(long, value_name = "WEIGHT", default_value_t = 1.0, conflicts_with = "most", value_parser = above_zero)]
+    r: f64,
+    /// Largest allowed deviations of the states, each or by name (0: not weighed)
+    #[arg(long, value_name = "0.02,1|y=0.02", value_parser = entries, conflicts_with = "q", requires = "most_input")]
+    most: Option<Entries>,
+    /// Largest allowed deviation of the input
+    #[arg(long, value_name = "SIZE", requires = "most", value_parser = above_zero)]
+    most_input: Option<f64>,
+    /// Weight of the output's integral, with --most its largest allowed value; given, nothing constant leaves an error
+    #[arg(long, value_name = "WEIGHT|SIZE", value_parser = above_zero)]
+    integral: Option<f64>,
+    /// Plot step and input into an SVG or PNG, or write them to a CSV; may be given again
+    #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
+    out: Vec<OutFile>,
+    #[command(flatten)]
+    voice: Voice,
+}
+
+/// Numbers of states.
+#[derive(Clone, Debug)]
+struct Entries(Vec<lqr::Entry>);
+
+fn entries(text: &str) -> Result<Entries, String> {
+    const MOST: f64 = 1e30;
+    if text.contains('=') {
+        let named = settings(text)?.into_iter();
+        return named
+            .map(|(name, value)| Ok((Some(name.to_owned()), number(name, value, 0.0, MOST)?)))
+            .collect::<Result<_, String>>()
+            .map(Entries);
+    }
+    let each = text.split(',').map(|value| Ok((None, number("a state", value.trim(), 0.0, MOST)?)));
+    each.collect::<Result<_, String>>().map(Entries)
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    number("it", text, f64::MIN_POSITIVE, 1e30).map_err(|_| format!("{text} is not more than zero"))
+}
+
+impl LqrArgs {
+    fn request(&self) -> Result<lqr::Request, Failure> {
+        let entries =
+            |entries: &Option<Entries>| entries.as_ref().map(|all| all.0.clone()).unwrap_or_default();
+        let weights = match self.most_input {
+            Some(most_input) => lqr::Weights::Largest(entries(&self.most), most_input),
+            None => lqr::Weights::Given(entries(&self.q), self.r),
+        };
+        Ok(lqr::Request { system: self.system.system()?, weights, integral: self.integral })
+    }
 }
 
 /// State feedback that costs least, the state estimated by a Kalman filter
@@ -129,14 +271,26 @@ struct LoopArgs {
 
 impl LabCommand for DesignArgs {
     fn voice(&self) -> Voice {
-        self.method.loops().voice
+        match &self.method {
+            MethodArgs::Lqr(args) => args.voice,
+            MethodArgs::LeadLag(LeadLagArgs { loops, .. })
+            | MethodArgs::Pid(PidArgs { loops, .. })
+            | MethodArgs::Lqg(LqgArgs { loops, .. })
+            | MethodArgs::Place(PlaceArgs { loops, .. }) => loops.voice,
+        }
     }
 
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
-        let loops = self.method.loops();
+        let (loops, method) = match &self.method {
+            MethodArgs::Lqr(args) => return command::plotted(args.request()?, &args.out, args.voice, stop),
+            MethodArgs::LeadLag(args) => (&args.loops, args.method()),
+            MethodArgs::Pid(args) => (&args.loops, args.method()),
+            MethodArgs::Lqg(args) => (&args.loops, args.method()),
+            MethodArgs::Place(args) => (&args.loops, args.method()),
+        };
         let request = Request {
             system: loops.system.system()?,
-            method: self.method.method(),
+            method,
             tried: loops.tried.map(|axis| loops.tried_on(axis)).transpose()?,
         };
         command::plotted(request, &loops.out, loops.voice, stop)
@@ -150,40 +304,55 @@ impl LoopArgs {
     }
 }
 
-impl MethodArgs {
-    const fn loops(&self) -> &LoopArgs {
-        match self {
-            Self::LeadLag(args) => &args.loops,
-            Self::Pid(args) => &args.loops,
-            Self::Lqg(args) => &args.loops,
-            Self::Place(args) => &args.loops,
-        }
+impl LeadLagArgs {
+    const fn method(&self) -> Method {
+        Method::LeadLag(LeadLagWish {
+            crossover_rad_s: self.crossover,
+            phase_margin_rad: self.phase_margin.0,
+            lag: self.lag,
+        })
     }
+}
 
+impl PidArgs {
     fn method(&self) -> Method {
-        match self {
-            Self::LeadLag(args) => Method::LeadLag(LeadLagWish {
-                crossover_rad_s: args.crossover,
-                phase_margin_rad: args.phase_margin.0,
-                lag: args.lag,
-            }),
-            Self::Pid(args) => Method::Pid(PidWish {
-                crossover_rad_s: args.crossover,
-                phase_margin_rad: args.phase_margin.0,
-                modulus: args.modulus,
-                filter: args.filter,
-            }),
-            Self::Lqg(args) => Method::Lqg(LqgWish {
-                output: args.output,
-                input: args.input,
-                integral: args.integral,
-                disturbance: args.disturbance,
-                noise: args.noise,
-            }),
-            Self::Place(args) => Method::Place {
-                regulator: args.poles.0.clone(),
-                estimator: args.estimator.as_ref().map(|poles| poles.0.clone()),
+        let setpoint = match (self.weights, self.overshoot) {
+            (Some(weights), _) => SetpointWish::Given(weights),
+            (None, Some(most_percent)) => SetpointWish::Overshoot(most_percent),
+            (None, None) => SetpointWish::Error,
+        };
+        Method::Pid(PidRequest {
+            wish: PidWish {
+                terms: self.terms.terms(),
+                crossover_rad_s: self.crossover,
+                phase_margin_rad: self.phase_margin.0,
+                modulus: self.modulus,
+                filter: self.filter,
+                any_zeros: self.complex_zeros,
             },
+            setpoint,
+            anti_windup: self.tracking.unwrap_or(AntiWindup::Usual),
+        })
+    }
+}
+
+impl LqgArgs {
+    const fn method(&self) -> Method {
+        Method::Lqg(LqgWish {
+            output: self.output,
+            input: self.input,
+            integral: self.integral,
+            disturbance: self.disturbance,
+            noise: self.noise,
+        })
+    }
+}
+
+impl PlaceArgs {
+    fn method(&self) -> Method {
+        Method::Place {
+            regulator: self.poles.0.clone(),
+            estimator: self.estimator.as_ref().map(|poles| poles.0.clone()),
         }
     }
 }

@@ -12,7 +12,7 @@ use super::head::HeadArgs;
 /// Systems to plot.
 #[derive(Args, Debug)]
 pub(crate) struct SystemArgs {
-    /// Systems, each a formula: numbers, s, + − * / ^, brackets; factors side by side are multiplied. G11 and G22 are the linearized head
+    /// Systems, each a formula: numbers, s, + − * / ^, brackets, dead times as exp(-0.2s) or pade(0.2, 3); factors side by side are multiplied. G11 and G22 are the linearized head
     /// (see `tracelight lab linearize`). K11 and K22 are the 2006 report's compensators as printed (poles and zeros); K11t and K22t take
     /// the same numbers as time constants
     #[arg(value_name = "SYSTEM", required = true)]
@@ -30,7 +30,7 @@ pub(crate) struct SystemArgs {
 /// One system.
 #[derive(Args, Debug)]
 pub(super) struct OneSystemArgs {
-    /// The system, a formula: numbers, s, + − * / ^, brackets; factors side by side are multiplied. G11 and G22 are the linearized head
+    /// The system, a formula: numbers, s, + − * / ^, brackets, dead times as exp(-0.2s) or pade(0.2, 3); factors side by side are multiplied. G11 and G22 are the linearized head
     /// (see `tracelight lab linearize`)
     #[arg(value_name = "SYSTEM")]
     system: String,
@@ -52,6 +52,9 @@ struct HowArgs {
     /// Discretize with this sample period
     #[arg(long, value_name = "TIME", value_parser = period)]
     sample: Option<f64>,
+    /// Approximate a dead time in this order, 1 to 15, where only a rational system will do [default: the least whose phase is right to 1°]
+    #[arg(long, value_name = "ORDER", value_parser = clap::value_parser!(u8).range(1..=15))]
+    pade: Option<u8>,
     /// How it is discretized
     #[arg(long, value_enum, default_value = "hold", requires = "sample")]
     method: Method,
@@ -118,6 +121,7 @@ impl HowArgs {
         Ok(Reading {
             head: self.head.choice()?,
             period_s: self.period,
+            pade: self.pade.map(usize::from),
             sampling: self.sample.map(|period_s| (period_s, self.method.discretization())),
         })
     }

@@ -1,0 +1,218 @@
+//! A system as it was typed: rational, or with a dead time, of which rational figures are those of an approximation.
+
+use serde_json::Value;
+use tracelight_chart::Colour;
+use tracelight_linear::{
+    Complex, DelayMargin, Delayed, FrequencyResponse, GrowingPoles, Margins, NyquistCurve, Peak,
+    RealCrossing, Stability, TransferFunction,
+};
+
+use crate::numbers::four;
+use crate::systems::system_json;
+
+/// A system and what it is called.
+pub(crate) struct Named {
+    /// As typed, and what was made of it.
+    pub(crate) name: String,
+    /// The system; with a dead time nearly the same.
+    pub(crate) system: TransferFunction,
+    /// What it is exactly, if it has a dead time.
+    pub(crate) late: Option<Late>,
+    pub(crate) colour: Colour,
+}
+
+/// A system with a dead time.
+#[derive(Clone, Debug)]
+pub(crate) struct Late {
+    /// Before it is closed, if it is.
+    pub(crate) open: Delayed,
+    /// Whether it is closed by negative feedback.
+    pub(crate) closed: bool,
+    /// Order of Padé's approximation in the rational one.
+    pub(crate) order: usize,
+    /// Up to this frequency, rad/s, its phase is off by no more than that, rad.
+    pub(crate) good_to: (f64, f64),
+}
+
+impl Late {
+    /// Approximated in that order, or the least whose phase is off by no more than a degree up to where it matters.
+    pub(crate) fn of(open: Delayed, order: Option<usize>) -> Self {
+        /// A degree, rad.
+        const WITHIN: f64 = 0.0175;
+        /// How far beyond a crossover it matters.
+        const BEYOND: f64 = 3.0;
+        let margins = open.margins();
+        let crossing = margins.phase.iter().map(|margin| margin.rad_s).fold(0.0, f64::max);
+        let real = margins.least_gain().map_or(0.0, |margin| margin.rad_s);
+        let band = open.rational().band();
+        let real = if real.is_finite() { real } else { 0.0 };
+        let matters =
+            if crossing.max(real) > 0.0 { BEYOND * crossing.max(real) } else { (band.0 * band.1).sqrt() };
+        let order = order.unwrap_or_else(|| open.approximation_order(matters, WITHIN));
+        let good_to = (matters, open.approximation_error_rad(order, matters));
+        Self { open, closed: false, order, good_to }
+    }
+
+    /// What the rational figures are worth.
+    pub(crate) fn note(&self) -> String {
+        format!(
+            "    the dead time of {} s is approximated (Padé, order {}): its phase is off by at most {}° up to {} rad/s",
+            four(self.open.delay_s()),
+            self.order,
+            four(self.good_to.1.to_degrees()),
+            four(self.good_to.0)
+        )
+    }
+}
+
+impl Named {
+    /// What it is exactly, of an open system with a dead time.
+    fn exact(&self) -> Option<&Delayed> {
+        self.late.as_ref().filter(|late| !late.closed).map(|late| &late.open)
+    }
+
+    /// What it is exactly before it is closed, of a closed one with a dead time.
+    pub(crate) fn closed_late(&self) -> Option<&Delayed> {
+        self.late.as_ref().filter(|late| late.closed).map(|late| &late.open)
+    }
+
+    /// What it is, for people.
+    pub(crate) fn text(&self) -> String {
+        match &self.late {
+            None => self.system.to_string(),
+            Some(Late { open, closed: false, .. }) => open.to_string(),
+            Some(Late { open, .. }) => format!("L / (1 + L), L = {open}"),
+        }
+    }
+
+    /// What rational figures of it are worth, a line; nothing where they are exact.
+    pub(crate) fn approximated(&self) -> String {
+        self.late.as_ref().map_or(String::new(), |late| late.note() + "\n")
+    }
+
+    /// Value at a frequency, rad/s.
+    pub(crate) fn at(&self, rad_s: f64) -> Complex {
+        match (self.exact(), self.closed_late()) {
+            (Some(exact), _) => exact.at_frequency(rad_s),
+            (_, Some(open)) => open.closed_at_frequency(rad_s),
+            _ => self.system.at(self.system.time().at_frequency(rad_s)),
+        }
+    }
+
+    /// Phase at a frequency, rad.
+    pub(crate) fn phase(&self, rad_s: f64) -> f64 {
+        self.exact().map_or_else(|| self.system.phase(rad_s), |exact| exact.phase(rad_s))
+    }
+
+    pub(crate) fn frequency_response(&self, rad_s: Vec<f64>) -> FrequencyResponse {
+        match (self.exact(), self.closed_late()) {
+            (Some(exact), _) => exact.frequency_response(rad_s),
+            (_, Some(open)) => open.closed_frequency_response(rad_s),
+            _ => self.system.frequency_response(rad_s),
+        }
+    }
+
+    /// Margins of it as an open loop.
+    pub(crate) fn margins(&self) -> Margins {
+        self.exact().map_or_else(|| self.system.margins(), Delayed::margins)
+    }
+
+    pub(crate) fn delay_margin(&self, margins: &Margins) -> DelayMargin {
+        self.exact().map_or_else(|| self.system.delay_margin(margins), |exact| exact.delay_margin(margins))
+    }
+
+    /// What it does by itself.
+    pub(crate) fn stability(&self) -> Stability {
+        match self.closed_late() {
+            Some(open) => open.closed_growing().stability().unwrap_or(Stability::Growing),
+            None => self.system.stability(),
+        }
+    }
+
+    /// What becomes of it once it is closed; none where that is not defined.
+    pub(crate) fn closed_stability(&self) -> Option<Stability> {
+        match self.exact() {
+            Some(exact) => exact.closed_growing().stability(),
+            None => self.system.closed().ok().map(|closed| closed.stability()),
+        }
+    }
+
+    /// How many poles grow once it is closed; none where that is not defined or has no end.
+    pub(crate) fn closed_growing(&self) -> Option<usize> {
+        match self.exact().map(Delayed::closed_growing) {
+            None => self.system.closed().ok().map(|closed| closed.growing_poles()),
+            Some(GrowingPoles::Count(count) | GrowingPoles::Edge(count)) => Some(count),
+            Some(_) => None,
+        }
+    }
+
+    pub(crate) fn real_crossings(&self) -> Vec<RealCrossing> {
+        self.exact().map_or_else(|| self.system.real_crossings(), Delayed::real_crossings)
+    }
+
+    pub(crate) fn nyquist_curve(&self, level: f64, tolerance: f64) -> NyquistCurve {
+        match self.exact() {
+            Some(exact) => exact.nyquist_curve(level, tolerance),
+            None => self.system.nyquist_curve(level, tolerance),
+        }
+    }
+
+    /// A dead time turns, and leaves the gain.
+    pub(crate) fn largest_finite_gain(&self) -> f64 {
+        self.exact().map_or(&self.system, Delayed::rational).largest_finite_gain()
+    }
+
+    pub(crate) fn bandwidth(&self) -> Option<f64> {
+        match self.closed_late() {
+            Some(open) => open.closed_bandwidth(),
+            None => self.exact().map_or(&self.system, Delayed::rational).bandwidth(),
+        }
+    }
+
+    pub(crate) fn resonance(&self) -> Option<Peak> {
+        match self.closed_late() {
+            Some(open) => open.closed_resonance(),
+            None => self.exact().map_or(&self.system, Delayed::rational).resonance(),
+        }
+    }
+
+    /// From a decade below the slowest pole or zero to a decade above the fastest, rad/s; of a dead time those of the rational part.
+    pub(crate) fn band(&self) -> (f64, f64) {
+        match &self.late {
+            Some(late) => {
+                let (low, high) = late.open.rational().band();
+                // where it turns by a quarter of a turn, and some turns more
+                (low.min(0.1 / late.open.delay_s()), high.max(10.0 / late.open.delay_s()))
+            }
+            None => self.system.band(),
+        }
+    }
+
+    /// It, for scripts: of a dead time the rational part, and how late it is.
+    pub(crate) fn json(&self) -> Value {
+        let Some(late) = &self.late else { return system_json(&self.name, &self.system) };
+        let mut object = system_json(&self.name, late.open.rational());
+        object["delay_s"] = late.open.delay_s().into();
+        if late.closed {
+            object["closed"] = true.into();
+            let stability = self.stability();
+            object["stable"] = (stability == Stability::Stable).into();
+            object["stability"] = crate::systems::stability_name(stability).into();
+        }
+        object
+    }
+
+    /// It, for scripts, as it is approximated.
+    pub(crate) fn approximated_json(&self) -> Value {
+        let mut object = system_json(&self.name, &self.system);
+        if let Some(late) = &self.late {
+            object["pade"] = serde_json::json!({
+                "delay_s": late.open.delay_s(),
+                "order": late.order,
+                "error_deg": late.good_to.1.to_degrees(),
+                "up_to_rad_s": late.good_to.0,
+            });
+        }
+        object
+    }
+}
