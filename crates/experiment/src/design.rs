@@ -186,16 +186,17 @@ impl Finding {
         let stability = closed.stability();
         let weigh = |design: PidDesign| design.weighted(&plant).map(|weighted| (design, weighted));
         let pid = pid.map(weigh).transpose()?;
-        let (step, info) = settled_step(&closed)?;
+        // what the dead time leaves exactly
+        let exact = match &named.late {
+            Some(late) => late.open.series(&k.clone().into())?,
+            None => Delayed::from(open),
+        };
+        let (step, info) =
+            if named.late.is_some() { settled_exactly(&exact)? } else { settled_step(&closed)? };
         // what a derivative without an end puts in is an impulse: it has no step
         let input = to_input.step_response(step.step_s, step.values.len()).unwrap_or_default();
         let peak = input_peak(&to_input, &input);
         let [step, input] = [step, input].map(shown);
-        // what the dead time leaves exactly
-        let exact = match &named.late {
-            Some(late) => late.open.series(&k.into())?,
-            None => Delayed::from(open),
-        };
         let margins = exact.margins();
         let delay_margin = exact.delay_margin(&margins);
         Ok(Self {
@@ -218,15 +219,28 @@ impl Finding {
     }
 }
 
+/// Rows of a step in continuous time.
+const ROWS: usize = 2000;
+/// Within this share of the final value it is settled.
+const BAND: f64 = 0.02;
+/// Times the settling time: some rest after it shows that it is one.
+const SHOWN: f64 = 1.6;
+
+/// The step of a loop with a dead time, of which this is the open one.
+fn settled_exactly(open: &Delayed) -> Result<(Response, StepInfo), LinearError> {
+    let lasts_s = open.closed_lasts_s();
+    let answer = open.closed_answer(Input::Step, SHOWN * lasts_s)?;
+    let info = answer.step_info(BAND)?;
+    let duration_s = info.settle_s.filter(|s| *s > 0.0).map_or(lasts_s, |s| SHOWN * s.min(lasts_s));
+    let step_s = duration_s / ROWS as f64;
+    let values = (0..=ROWS).map(|k| answer.at(k as f64 * step_s)).collect();
+    Ok((Response { step_s, values }, info))
+}
+
 /// A step, watched until it has settled; what it is judged by.
 fn settled_step(closed: &TransferFunction) -> Result<(Response, StepInfo), LinearError> {
-    /// Rows of a step in continuous time, fewest and most samples.
-    const ROWS: usize = 2000;
+    /// Fewest and most samples.
     const SAMPLES: (f64, f64) = (20.0, 60_000.0);
-    /// Within this share of the final value it is settled.
-    const BAND: f64 = 0.02;
-    /// Times the settling time: some rest after it shows that it is one.
-    const SHOWN: f64 = 1.6;
     let info = closed.step_info(BAND)?;
     let duration_s = info.settle_s.filter(|s| *s > 0.0).map_or_else(|| closed.lasts_s(), |s| SHOWN * s);
     let step = match closed.time() {

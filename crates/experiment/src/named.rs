@@ -147,7 +147,13 @@ impl Named {
     }
 
     pub(crate) fn real_crossings(&self) -> Vec<RealCrossing> {
-        self.exact().map_or_else(|| self.system.real_crossings(), Delayed::real_crossings)
+        /// A dead time crosses without end: what is that much smaller than the largest is not told.
+        const TOLD: f64 = 0.02;
+        let Some(exact) = self.exact() else { return self.system.real_crossings() };
+        let mut all = exact.real_crossings();
+        let most = all.iter().map(|crossing| crossing.value.abs()).fold(0.0, f64::max);
+        all.retain(|crossing| crossing.value.abs() >= TOLD * most);
+        all
     }
 
     pub(crate) fn nyquist_curve(&self, level: f64, tolerance: f64) -> NyquistCurve {
