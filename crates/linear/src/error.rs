@@ -57,6 +57,9 @@ pub enum LinearError {
     /// What is wished for cannot be had.
     #[error("{0}")]
     Wish(String),
+    /// Data that are no frequency response, or do not tell what is asked: with the point, its value and the bound.
+    #[error("{0}")]
+    Data(String),
     /// An iteration did not end where it should.
     #[error("an iteration did not converge")]
     NotConverged,

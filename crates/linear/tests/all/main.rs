@@ -4,5 +4,6 @@
 #![allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")]
 
 mod goldens;
+mod mimo;
 mod roots;
 mod transients;

@@ -62,6 +62,10 @@ struct HowArgs {
 enum Method {
     /// Zero-order hold, for plants
     Hold,
+    /// First-order (triangle) hold, for inputs that are smooth
+    Foh,
+    /// Impulse response sampled
+    Impulse,
     /// Tustin's bilinear rule, for controllers
     Tustin,
     /// Poles and zeros mapped by z = e^(sT)
@@ -72,6 +76,8 @@ impl Method {
     const fn discretization(self) -> Discretization {
         match self {
             Self::Hold => Discretization::ZeroOrderHold,
+            Self::Foh => Discretization::FirstOrderHold,
+            Self::Impulse => Discretization::Impulse,
             Self::Tustin => Discretization::Tustin(None),
             Self::Matched => Discretization::Matched,
         }
