@@ -32,6 +32,7 @@ pub mod nyquist;
 mod panels;
 mod parts;
 pub mod plane;
+pub mod plant_file;
 pub mod profile;
 pub mod profile_name;
 pub mod pzmap;

@@ -3,7 +3,7 @@
 mod view;
 
 use tracelight_lab::Linearization;
-use tracelight_linear::{Complex, LinearError, TransferFunction};
+use tracelight_linear::{Complex, LinearError, StateSpace, TransferFunction};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_task::{Failure, Task};
 
@@ -37,6 +37,14 @@ impl Experiment for Request {
         let failed = |e: LinearError| Failure::failed("no-linear-model", e);
         let both = PanTilt::new(own(Joint::Pan).map_err(failed)?, own(Joint::Tilt).map_err(failed)?);
         Ok(Finding { head, linear, both })
+    }
+}
+
+impl Finding {
+    /// Angles of pan and tilt from their torques.
+    #[must_use]
+    pub const fn system(&self) -> &StateSpace {
+        &self.linear.system
     }
 }
 

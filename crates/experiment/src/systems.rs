@@ -60,6 +60,8 @@ const fn words(method: Discretization) -> &'static str {
     match method {
         Discretization::ZeroOrderHold => "a hold",
         Discretization::Tustin(_) => "Tustin's rule",
+        Discretization::FirstOrderHold => "a first-order hold",
+        Discretization::Impulse => "its impulse response",
         Discretization::Matched => "matching",
     }
 }
@@ -261,6 +263,10 @@ pub(crate) fn system_json(name: &str, system: &TransferFunction) -> Value {
     let (gain, stability) = (system.dc_gain(), system.stability());
     json!({
         "name": name,
+        "period_s": match system.time() {
+            Time::Continuous => None,
+            Time::Sampled(period_s) => Some(period_s),
+        },
         "num": system.numerator().coefficients(),
         "den": system.denominator().coefficients(),
         "zeros": pairs(&system.zeros()),

@@ -12,6 +12,10 @@ pub enum Discretization {
     Tustin(Option<f64>),
     /// Its input is held from sample to sample: exact for a plant behind a converter.
     ZeroOrderHold,
+    /// Its input goes straight from sample to sample: exact for what is piecewise linear, and nearer to a smooth input.
+    FirstOrderHold,
+    /// Its impulse response is sampled, times T; only of what lets nothing straight through.
+    Impulse,
     /// Poles and zeros go by z = e^(sT); a zero at infinity, all but one, to −1; gains agree where nothing changes.
     Matched,
 }
@@ -25,6 +29,7 @@ impl TransferFunction {
         match how {
             Discretization::Tustin(prewarp) => self.tustin(tustin_rate(period_s, prewarp)?, time),
             Discretization::ZeroOrderHold => self.held(period_s, time),
+            Discretization::FirstOrderHold | Discretization::Impulse => self.by_states(period_s, how, time),
             Discretization::Matched => self.matched(period_s, time),
         }
     }
@@ -39,11 +44,27 @@ impl TransferFunction {
 
     fn held(&self, period_s: f64, time: Time) -> Result<Self, LinearError> {
         let system = self.zpk().cascade("zero-order hold")?;
-        let order = system.order();
-        let poles = mapped(&self.poles(), period_s)?;
-        let denominator = Polynomial::from_roots(1.0, &poles);
+        let impulse = system.impulse_samples(period_s, system.order() + 1)?;
+        self.with_samples(&impulse, period_s, time)
+    }
+
+    /// Sampled in state space.
+    fn by_states(&self, period_s: f64, how: Discretization, time: Time) -> Result<Self, LinearError> {
+        let system = self.zpk().cascade("samples")?.sampled(period_s, how)?;
+        let mut impulse = vec![system.d()[(0, 0)]];
+        let mut x = system.b().clone();
+        while impulse.len() <= system.order() {
+            impulse.push((system.c() * &x)[(0, 0)]);
+            x = system.a() * x;
+        }
+        self.with_samples(&impulse, period_s, time)
+    }
+
+    /// Of those first samples of its impulse response, one more than its order.
+    fn with_samples(&self, impulse: &[f64], period_s: f64, time: Time) -> Result<Self, LinearError> {
+        let order = impulse.len() - 1;
+        let denominator = Polynomial::from_roots(1.0, &mapped(&self.poles(), period_s)?);
         // the numerator is what makes the first samples of the impulse response right
-        let impulse = system.impulse_samples(period_s, order + 1)?;
         let numerator: Vec<f64> = (0..=order)
             .map(|k| (0..=k).map(|j| denominator.coefficients()[j] * impulse[k - j]).sum())
             .collect();
@@ -102,6 +123,17 @@ impl StateSpace {
                 Self::new(a, b, self.c().clone(), self.d().clone(), time)
             }
             Discretization::Tustin(prewarp) => self.tustin(tustin_rate(period_s, prewarp)?, time),
+            Discretization::FirstOrderHold => self.ramped(period_s, time),
+            Discretization::Impulse => {
+                if self.d().iter().any(|entry| *entry != 0.0) {
+                    return Err(LinearError::Shape(
+                        "what goes straight through has an impulse that no sample can be: hold it instead",
+                    ));
+                }
+                let (a, _) = self.held_over(period_s);
+                let b = &a * self.b() * period_s;
+                Self::new(a, b, self.c().clone(), self.c() * self.b() * period_s, time)
+            }
             Discretization::Matched => Err(LinearError::Shape("only a transfer function is matched")),
         }
     }
@@ -118,6 +150,24 @@ impl StateSpace {
         let b = &inverse * self.b() * root;
         let c = self.c() * &inverse * root;
         Self::new(a, b, c, self.d() + self.c() * &inverse * self.b(), time)
+    }
+
+    /// With the slope of the input as one more state: e of [A, B, 0; 0, 0, 1/T; 0, 0, 0] T (Franklin, Powell & Workman, *Digital Control of
+    /// Dynamic Systems*, §6.3.2), then in states that do not need the next input.
+    fn ramped(&self, period_s: f64, time: Time) -> Result<Self, LinearError> {
+        let (n, inputs) = (self.order(), self.b().ncols());
+        let mut a = Matrix::zeros(n + inputs, n + inputs);
+        a.view_mut((0, 0), (n, n)).copy_from(self.a());
+        a.view_mut((0, n), (n, inputs)).copy_from(self.b());
+        let mut b = Matrix::zeros(n + inputs, inputs);
+        b.view_mut((n, 0), (inputs, inputs)).copy_from(&(Matrix::identity(inputs, inputs) / period_s));
+        let whole =
+            Self::new(a, b, Matrix::zeros(1, n + inputs), Matrix::zeros(1, inputs), Time::Continuous)?;
+        let (on, rise) = whole.held_over(period_s);
+        let a = on.view((0, 0), (n, n)).into_owned();
+        let (held, risen) = (on.view((0, n), (n, inputs)).into_owned(), rise.rows(0, n).into_owned());
+        let b = &a * &risen + held - &risen;
+        Self::new(a, b, self.c().clone(), self.d() + self.c() * risen, time)
     }
 
     /// e^(A t) and ∫ e^(A τ) B dτ from 0 to t: both from one exponential (Van Loan, *Computing integrals involving the matrix
@@ -226,6 +276,31 @@ mod tests {
         near(through.numerator(), &[1.0, 1.5 * (1.0 - e) - e], "what goes straight through");
     }
 
+    /// A ramp is met at every sample, and a lag is what the textbook's triangle hold makes of it.
+    #[test]
+    fn a_first_order_hold_is_exact_for_straight_inputs() {
+        let g = parse("(2s+7)/((s+1)(s^2+s+4))");
+        let (period, slope) = (0.3, 0.8);
+        let ramp: Vec<f64> = (0..40).map(|k| slope * period * f64::from(k)).collect();
+        let ours =
+            g.sampled(period, Discretization::FirstOrderHold).unwrap().response(period, &ramp).unwrap();
+        let truth = g.series(&parse("0.8/s")).unwrap().step_response(period, 40).unwrap();
+        for (a, b) in ours.values.iter().zip(&truth.values) {
+            assert!((a - b).abs() < 1e-12 * (1.0 + b.abs()), "{a} {b}");
+        }
+        let lag = parse("1/(s+1)").sampled(1.0, Discretization::FirstOrderHold).unwrap();
+        let e = (-1.0_f64).exp();
+        near(lag.numerator(), &[e, 1.0 - 2.0 * e], "lag");
+    }
+
+    #[test]
+    fn an_invariant_impulse_is_that_of_the_samples() {
+        let sampled = parse("3/(s+2)").sampled(0.1, Discretization::Impulse).unwrap();
+        near(sampled.numerator(), &[0.3, 0.0], "lag");
+        near(sampled.denominator(), &[1.0, -(-0.2_f64).exp()], "lag");
+        assert!(parse("(s+5)/(s+2)").sampled(0.1, Discretization::Impulse).is_err());
+    }
+
     #[test]
     fn a_pre_warp_makes_one_frequency_agree() {
         let g = parse("100 (s+1)/(s^2 + 2 s + 100)");
@@ -239,9 +314,13 @@ mod tests {
     #[test]
     fn state_space_and_transfer_functions_agree() {
         let g = parse("7 (s+3)/((s+1)(s^2 + s + 4))");
-        for how in
-            [Discretization::ZeroOrderHold, Discretization::Tustin(None), Discretization::Tustin(Some(2.0))]
-        {
+        for how in [
+            Discretization::ZeroOrderHold,
+            Discretization::FirstOrderHold,
+            Discretization::Tustin(None),
+            Discretization::Tustin(Some(2.0)),
+            Discretization::Impulse,
+        ] {
             let one = g.sampled(0.2, how).unwrap();
             let other =
                 g.state_space().unwrap().sampled(0.2, how).unwrap().transfer(0, 0).unwrap().transfer();

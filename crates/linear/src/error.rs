@@ -71,6 +71,9 @@ pub enum LinearError {
         /// One that will do, rad/s.
         offer_rad_s: f64,
     },
+    /// Data that are no frequency response, or do not tell what is asked: with the point, its value and the bound.
+    #[error("{0}")]
+    Data(String),
     /// An iteration did not end where it should.
     #[error("an iteration did not converge")]
     NotConverged,

@@ -88,7 +88,7 @@ impl fmt::Display for Time {
     }
 }
 
-/// That value, if it is positive and finite.
+/// Checks that a value is positive and finite, and returns it.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, LinearError> {
     if value > 0.0 && value.is_finite() {
         Ok(value)

@@ -78,6 +78,10 @@ impl finding::Finding for Finding {
             "B": rows(system.b()),
             "C": rows(system.c()),
             "D": rows(system.d()),
+            "period_s": null,
+            "states": ["pan_rad", "tilt_rad", "pan_rad_s", "tilt_rad_s"],
+            "inputs": ["pan_nm", "tilt_nm"],
+            "outputs": ["pan_rad", "tilt_rad"],
         })
         .to_string()
     }

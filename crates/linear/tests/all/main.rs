@@ -4,6 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")]
 
 mod goldens;
+mod mimo;
 mod pids;
 mod regulators;
 mod roots;

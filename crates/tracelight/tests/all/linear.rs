@@ -1,6 +1,9 @@
 //! Linear models from the command line, held against the 2006 report and other tools.
 
 use serde_json::{Value, json};
+use tracelight_experiment::plant_file::{PlantFile, read};
+use tracelight_experiment::table::Log;
+use tracelight_linear::Time;
 
 use crate::support::{folder, lab, near, run};
 
@@ -26,6 +29,32 @@ fn a_linear_head_is_the_reports_to_every_digit() {
     let rig = lab(&["linearize", "--rig", "report", "--at", "0deg,0deg"]);
     near(&rig["A"][3][3], -0.0018 / 0.0750286, 1e-6);
     near(&rig["holding_nm"][1], -0.149_679, 1e-5);
+}
+
+#[test]
+fn a_linear_head_is_written_and_read_back_to_the_bit() {
+    let folder = folder("linearize_out");
+    let whole = lab(&["linearize", "--at", "10deg,20deg"]);
+    for name in ["head.toml", "head.json", "head.csv", "head.mat"] {
+        let path = folder.join(name).display().to_string();
+        assert_eq!(lab(&["linearize", "--at", "10deg,20deg", "-o", &path]), whole);
+        let file = Log { name: name.into(), bytes: std::fs::read(&path).unwrap() };
+        let PlantFile::StateSpace(system) = read(&file, None).unwrap().system else { panic!("{name}") };
+        for (matrix, of) in [(system.a(), "A"), (system.b(), "B"), (system.c(), "C"), (system.d(), "D")] {
+            for i in 0..matrix.nrows() {
+                let row: Vec<f64> = matrix.row(i).iter().copied().collect();
+                assert_eq!(json!(row), whole[of][i], "{name}: row {i} of {of}");
+            }
+        }
+    }
+    for arguments in
+        [&["linearize"][..], &["bode", "G11"], &["pzmap", "G11", "--sample", "10ms", "--method", "foh"]]
+    {
+        let file = Log { name: "printed.json".into(), bytes: lab(arguments).to_string().into_bytes() };
+        let printed = read(&file, None).unwrap().system;
+        let sampled = matches!(&printed, PlantFile::Transfer(system) if system.time() == Time::Sampled(0.01));
+        assert_eq!(sampled, arguments.contains(&"--sample"), "{arguments:?}: {printed:?}");
+    }
 }
 
 #[test]

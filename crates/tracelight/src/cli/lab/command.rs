@@ -18,12 +18,7 @@ pub(super) trait LabCommand {
     fn run(&self, stop: &Stop) -> Result<Answer, Failure>;
 }
 
-/// Has it tried, and answers.
-pub(super) fn told<E: Experiment>(request: E, voice: Voice, stop: &Stop) -> Result<Answer, Failure> {
-    Ok(answer(&tried(request, voice, stop)?, voice))
-}
-
-/// The same, and writes every plot and table that was asked for.
+/// Has it tried, writes every plot and table that was asked for, and answers.
 pub(super) fn plotted<E: Experiment<Finding: Plotted>>(
     request: E,
     out: &[OutFile],
@@ -35,7 +30,7 @@ pub(super) fn plotted<E: Experiment<Finding: Plotted>>(
     Ok(answer(&finding, voice))
 }
 
-/// The same, and leaves its files in a folder, which is made if missing.
+/// Has it tried, leaves its files in a folder, which is made if missing, and answers.
 pub(super) fn filed<E: Experiment<Finding: Filed>>(
     request: E,
     out: &Path,

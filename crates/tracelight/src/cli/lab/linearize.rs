@@ -1,5 +1,7 @@
 use clap::Args;
 use tracelight_experiment::linearize::Request;
+use tracelight_experiment::plant_file::{PlantFormat, write};
+use tracelight_files as files;
 use tracelight_task::{Failure, Stop};
 
 use super::command::{self, LabCommand};
@@ -14,8 +16,18 @@ use crate::cli::answer::{Answer, Voice};
 pub(crate) struct LinearizeArgs {
     #[command(flatten)]
     head: HeadArgs,
+    /// Write A, B, C and D there, read back to the bit: .toml, .json, .csv (blocks of rows under A, B, C, D) or .mat (MATLAB's version 5).
+    /// May be given several times
+    #[arg(short, long, value_name = "FILE.toml|FILE.json|FILE.csv|FILE.mat", value_parser = system_file)]
+    out: Vec<(String, PlantFormat)>,
     #[command(flatten)]
     voice: Voice,
+}
+
+fn system_file(text: &str) -> Result<(String, PlantFormat), String> {
+    let format = PlantFormat::of(text);
+    let format = format.ok_or_else(|| format!("{text} ends in none of .toml, .json, .csv and .mat"))?;
+    Ok((text.to_owned(), format))
 }
 
 impl LabCommand for LinearizeArgs {
@@ -24,6 +36,10 @@ impl LabCommand for LinearizeArgs {
     }
 
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
-        command::told(Request(self.head.choice()?), self.voice, stop)
+        let finding = command::tried(Request(self.head.choice()?), self.voice, stop)?;
+        self.out
+            .iter()
+            .try_for_each(|(path, format)| files::write(path, write(finding.system(), *format)))?;
+        Ok(command::answer(&finding, self.voice))
     }
 }

@@ -65,6 +65,10 @@ struct HowArgs {
 enum Method {
     /// Zero-order hold, for plants
     Hold,
+    /// First-order (triangle) hold, for inputs that are smooth
+    Foh,
+    /// Impulse response sampled
+    Impulse,
     /// Tustin's bilinear rule, for controllers
     Tustin,
     /// Poles and zeros mapped by z = e^(sT)
@@ -75,6 +79,8 @@ impl Method {
     const fn discretization(self) -> Discretization {
         match self {
             Self::Hold => Discretization::ZeroOrderHold,
+            Self::Foh => Discretization::FirstOrderHold,
+            Self::Impulse => Discretization::Impulse,
             Self::Tustin => Discretization::Tustin(None),
             Self::Matched => Discretization::Matched,
         }

@@ -1,0 +1,8 @@
+//! A frequency response that was measured, or came in a file: values at some frequencies, and what can be said between them.
+
+mod curve;
+mod data;
+mod encirclement;
+mod figures;
+
+pub use data::{FrequencyData, Spacing};

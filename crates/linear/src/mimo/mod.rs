@@ -1,0 +1,15 @@
+//! Systems of several inputs and outputs: singular values, norms, zeros, what is not controllable or not observable, disk margins.
+
+mod compressed;
+mod disk;
+mod gain;
+mod minimal;
+mod norms;
+mod responses;
+mod singular;
+mod zeros;
+
+pub use disk::{DiskMargin, DiskMargins};
+pub use gain::ComplexMatrix;
+pub use minimal::Minimal;
+pub use singular::singular_values;
