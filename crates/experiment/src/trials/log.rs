@@ -6,6 +6,8 @@ use tracelight_lab::{Sample, SteadyPoint, Trial};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_task::Failure;
 
+use super::foreign;
+use crate::columns::Columns as Told;
 use crate::record::MOST_V;
 use crate::table::{self, Log, Names, Row};
 
@@ -19,6 +21,20 @@ const LONGEST_GAP_S: f64 = 10.0;
 pub(super) struct Logged {
     pub(super) trials: PanTilt<Vec<Trial>>,
     pub(super) points: PanTilt<Vec<SteadyPoint>>,
+    /// What is known of motion that others wrote down; `None` where there is none.
+    pub(super) foreign: PanTilt<Option<foreign::Known>>,
+    /// What was taken for what, and in which logs.
+    said: Vec<(Vec<String>, String)>,
+}
+
+/// What is told of logs that are not this program's.
+pub(super) struct How<'a> {
+    pub(super) told: &'a Told,
+    /// The joint that they are of, where no column says.
+    pub(super) axis: Option<Joint>,
+    /// Width of a count, rad, and torque a volt of each joint, N m.
+    pub(super) count_rad: f64,
+    pub(super) torque_nm_per_v: PanTilt<f64>,
 }
 
 /// Which columns hold what.
@@ -45,9 +61,28 @@ fn columns(names: &Names) -> Result<(usize, Columns), String> {
 }
 
 impl Logged {
-    /// Reads one more log.
-    pub(super) fn read(&mut self, log: &Log) -> Result<(), Failure> {
-        self.parse(&log.bytes).map_err(|what| Failure::usage("friction-log", format!("{}{what}", log.name)))
+    /// Reads one more log, whose columns are this program's or told.
+    pub(super) fn read(&mut self, log: &Log, how: &How<'_>) -> Result<(), Failure> {
+        const OWN: [&str; 6] = ["axis", "volt", "time_s", "count", "torque_nm", "velocity_rad_s"];
+        if how.told.is_empty() && table::is_own(log, &OWN, |names| columns(names).is_ok()) {
+            return self
+                .parse(&log.bytes)
+                .map_err(|what| Failure::usage("friction-log", format!("{}{what}", log.name)));
+        }
+        foreign::read(self, log, how)
+    }
+
+    /// Puts down what was taken for what in a log.
+    pub(super) fn say(&mut self, name: &str, what: &str) {
+        match self.said.iter_mut().find(|(_, said)| said == what) {
+            Some((names, _)) => names.push(name.to_owned()),
+            None => self.said.push((vec![name.to_owned()], what.to_owned())),
+        }
+    }
+
+    /// What was taken for what, a line each.
+    pub(super) fn lines(&self) -> impl Iterator<Item = String> {
+        self.said.iter().map(|(names, what)| format!("{}: {what}", table::few(names)))
     }
 
     fn parse(&mut self, bytes: &[u8]) -> Result<(), String> {
@@ -63,7 +98,8 @@ impl Logged {
         match *columns {
             Columns::Counted { volt, time_s, count } => {
                 let volts = row.up_to(volt, MOST_V, "any amplifier takes, V")?;
-                let sample = Sample { time_s: row.number(time_s)?, volts, count: row.whole(count)? };
+                let sample =
+                    Sample { time_s: row.number(time_s)?, volts, count: f64::from(row.whole(count)?) };
                 self.put(joint, sample);
                 if self.trials[joint].len() > MOST_TRIALS {
                     return Err(format!(
@@ -118,7 +154,7 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        let sample = |k: i32| Sample { time_s: 0.01 * f64::from(k), volts: 0.75, count: k * k };
+        let sample = |k: i32| Sample { time_s: 0.01 * f64::from(k), volts: 0.75, count: f64::from(k * k) };
         let trial = |joint| Trial { joint, samples: (0..5).map(sample).collect() };
         let all = [trial(Joint::Pan), trial(Joint::Pan), trial(Joint::Tilt)];
         let log = parsed(&write(all.iter())).unwrap();
