@@ -47,8 +47,12 @@ pub struct Finding {
 }
 
 /// What somebody else's log has.
-const KIND: Kind =
-    Kind { code: "amplifier-log", must: &[&[Quantity::Volt], &[Quantity::Ampere]], may: &[Quantity::Speed] };
+const KIND: Kind = Kind {
+    code: "amplifier-log",
+    must: &[&[Quantity::Volt], &[Quantity::Ampere]],
+    may: &[Quantity::Speed],
+    own: "axis,volt,ampere[,velocity_rad_s]",
+};
 /// What this program's has.
 const OWN: [&str; 4] = ["axis", "volt", "ampere", "velocity_rad_s"];
 

@@ -45,8 +45,12 @@ pub struct Finding {
 }
 
 /// What somebody else's log has.
-const KIND: Kind =
-    Kind { code: "backlash-log", must: &[&[Quantity::Count], &[Quantity::Way], &[Quantity::Spot]], may: &[] };
+const KIND: Kind = Kind {
+    code: "backlash-log",
+    must: &[&[Quantity::Count], &[Quantity::Way], &[Quantity::Spot]],
+    may: &[],
+    own: "axis,count,way,spot_m",
+};
 
 /// A reading: what a log's row says.
 #[derive(Clone, Copy)]

@@ -40,7 +40,12 @@ pub struct Finding {
 }
 
 /// What somebody else's log has.
-const KIND: Kind = Kind { code: "encoder-log", must: &[&[Quantity::Time], &[Quantity::Count]], may: &[] };
+const KIND: Kind = Kind {
+    code: "encoder-log",
+    must: &[&[Quantity::Time], &[Quantity::Count]],
+    may: &[],
+    own: "axis,time_s,count",
+};
 
 /// A joint's runs one way, and what they say.
 type Found = parts::Found<Vec<EdgeTime>, EncoderTable>;

@@ -14,7 +14,7 @@ use tracelight_rig::{Joint, PanTilt};
 use tracelight_sim::{Mounting, RigConfig, head_alone};
 use tracelight_task::{Failure, Task, counted, on_all_cores};
 
-use self::log::{How, Logged};
+use self::log::{How, Known, Logged};
 use crate::columns::Columns;
 use crate::parts::joints;
 use crate::table::{self, Log};
@@ -119,7 +119,7 @@ impl Trials {
     /// What logs have of each joint that is asked for, and what was taken for what.
     fn logged(&self) -> Result<(Vec<Subject>, Vec<String>), Failure> {
         let mut asked = self.asked();
-        let mut log = Logged::default();
+        let mut all = Logged::default();
         let model = &self.rig.model;
         let how = How {
             told: &self.columns,
@@ -127,11 +127,17 @@ impl Trials {
             count_rad: model.encoder.count_rad(),
             torque_nm_per_v: PanTilt::from_fn(|joint| model.motors[joint].torque_nm_per_v),
         };
-        self.logs.iter().try_for_each(|one| log.read(one, &how))?;
+        for one in &self.logs {
+            if self.columns.is_empty() && log::is_own(one) {
+                all.read(one)?;
+            } else {
+                foreign::read(&mut all, one, &how)?;
+            }
+        }
         for subject in &mut asked {
-            subject.trials = std::mem::take(&mut log.trials[subject.joint]);
-            subject.points = std::mem::take(&mut log.points[subject.joint]);
-            subject.foreign(log.foreign[subject.joint])?;
+            subject.trials = std::mem::take(&mut all.trials[subject.joint]);
+            subject.points = std::mem::take(&mut all.points[subject.joint]);
+            subject.foreign(all.foreign[subject.joint])?;
             subject.leave_out_saturated();
             subject.divide();
         }
@@ -149,7 +155,7 @@ impl Trials {
             let message = format!("{logs}: {} has motion and measured torques; give one kind", both.joint);
             return Err(Failure::usage("friction-log", message));
         }
-        Ok((asked, log.lines().collect()))
+        Ok((asked, all.lines().collect()))
     }
 
     fn subject(&self, joint: Joint) -> Subject {
@@ -273,7 +279,7 @@ impl Seen {
 
 impl Subject {
     /// Takes in what is known of motion that somebody else wrote down.
-    fn foreign(&mut self, known: Option<foreign::Known>) -> Result<(), Failure> {
+    fn foreign(&mut self, known: Option<Known>) -> Result<(), Failure> {
         let Some(known) = known else { return Ok(()) };
         self.foreign = true;
         self.believed.another = true;

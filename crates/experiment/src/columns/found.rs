@@ -63,7 +63,12 @@ pub(crate) fn read(log: &Log, columns: &Columns, axis: Option<Joint>, kind: &Kin
     Table::of(&text)
         .and_then(|table| table.resolved(columns, axis, kind))
         .and_then(|taken| taken.found(&text))
-        .map_err(|what| Failure::usage(kind.code, format!("{}{what}", log.name)))
+        .map_err(|what| {
+            // who said nothing of columns may mean this program's
+            let own =
+                if columns.is_empty() { format!("; this program's are {}", kind.own) } else { String::new() };
+            Failure::usage(kind.code, format!("{}{what}{own}", log.name))
+        })
 }
 
 /// What was left out of a log, and why.
@@ -244,6 +249,7 @@ mod tests {
         code: "log",
         must: &[&[Quantity::Time], &[Quantity::Volt], &[Quantity::Count, Quantity::Angle, Quantity::Speed]],
         may: &[],
+        own: "axis,volt,time_s,count",
     };
 
     fn found(text: &str, columns: &str, axis: Option<Joint>) -> Result<Found, String> {

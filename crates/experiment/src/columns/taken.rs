@@ -22,6 +22,8 @@ pub(crate) struct Kind {
     pub(crate) must: &'static [&'static [Quantity]],
     /// Any of these.
     pub(crate) may: &'static [Quantity],
+    /// This program's columns of such a log, for people.
+    pub(crate) own: &'static str,
 }
 
 /// Whether a quantity was spoken of, or a log's header tells it.

@@ -13,6 +13,7 @@ const KIND: Kind = Kind {
     code: "frequency-log",
     must: &[&[Quantity::Time], &[Quantity::Volt], &[Quantity::Count, Quantity::Angle, Quantity::Speed]],
     may: &[],
+    own: "axis,time_s,volt,count",
 };
 /// This program's columns.
 const OWN: [&str; 4] = ["axis", "time_s", "volt", "count"];

@@ -8,8 +8,12 @@ use crate::columns::{self, Columns, Kind, Quantity, Reading};
 use crate::table::Log;
 
 /// What somebody else's log has.
-const KIND: Kind =
-    Kind { code: "record", must: &[&[Quantity::Time], &[Quantity::Volt], &[Quantity::Count]], may: &[] };
+const KIND: Kind = Kind {
+    code: "record",
+    must: &[&[Quantity::Time], &[Quantity::Volt], &[Quantity::Count]],
+    may: &[],
+    own: "t_s,pan_count,tilt_count,pan_v,tilt_v, as trace.csv has",
+};
 /// A row is in its tick within that share of it.
 const IN_TICK: f64 = 0.3;
 /// Most ticks without a row that are filled in: an edge among them is known a little worse.

@@ -100,6 +100,8 @@ fn parts(run: &[Sample], still: f64) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
+    use tracelight_maths::sin;
+
     use super::*;
 
     /// A row each 10 ms.
@@ -119,7 +121,7 @@ mod tests {
         // noisy, as it is measured; what lasts for a tenth of a second is no trial
         let volts = |t: f64| match t {
             t if t < 2.0 => 0.0,
-            t if t < 5.0 => 4.0 + 0.01 * (90.0 * t).sin(),
+            t if t < 5.0 => 4.0 + 0.01 * sin(90.0 * t),
             t if t < 5.1 => 9.0,
             _ => 6.0,
         };
@@ -138,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_drive_that_never_holds_is_cut_into_parts_and_at_standstills() {
-        let swings = |t: f64| 5.0 * (3.0 * t).sin();
+        let swings = |t: f64| 5.0 * sin(3.0 * t);
         let parts = cut(&run(swings, |t| 100.0 * t), 1.0);
         assert_eq!(parts.len(), 8);
         let stands = |t: f64| {

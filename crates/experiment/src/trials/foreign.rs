@@ -5,7 +5,7 @@ use tracelight_rig::Joint;
 use tracelight_task::Failure;
 
 use super::cut::{cut, largest};
-use super::log::{How, Logged};
+use super::log::{How, Known, Logged};
 use crate::columns::{self, Found, Kind, Quantity, Reading};
 use crate::table::Log;
 
@@ -14,10 +14,15 @@ const MOTION: Kind = Kind {
     code: "friction-log",
     must: &[&[Quantity::Time], &[Quantity::Volt], &[Quantity::Count, Quantity::Angle, Quantity::Speed]],
     may: &[],
+    own: "axis,volt,time_s,count or axis,torque_nm,velocity_rad_s",
 };
 /// Speeds that volts or torques come to.
-const STEADY: Kind =
-    Kind { code: "friction-log", must: &[&[Quantity::Torque, Quantity::Volt], &[Quantity::Speed]], may: &[] };
+const STEADY: Kind = Kind {
+    code: "friction-log",
+    must: &[&[Quantity::Torque, Quantity::Volt], &[Quantity::Speed]],
+    may: &[],
+    own: "axis,volt,time_s,count or axis,torque_nm,velocity_rad_s",
+};
 /// Rows that are further apart tell speeds, but not how they change, s.
 const SPARSE_S: f64 = 0.25;
 /// A pause is longer than so many times what rows are usually apart, and than that, s.
@@ -25,17 +30,6 @@ const PAUSE_ROWS: f64 = 25.0;
 const PAUSE_S: f64 = 0.5;
 /// Time over which a speed's steps blur a place, s: half of that over which motion is judged.
 const BLUR_S: f64 = 0.05;
-
-/// What is known of motion that others wrote down.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::trials) struct Known {
-    /// How finely places are known, rad.
-    pub(in crate::trials) step_rad: f64,
-    /// Speeds were seen, and no places: where the joint stood is not known.
-    pub(in crate::trials) speeds_alone: bool,
-    /// Turned by more than a turn, so that no cable holds it.
-    pub(in crate::trials) free: bool,
-}
 
 /// Reads one more log into what logs have.
 pub(super) fn read(all: &mut Logged, log: &Log, how: &How<'_>) -> Result<(), Failure> {
@@ -73,17 +67,6 @@ pub(super) fn read(all: &mut Logged, log: &Log, how: &How<'_>) -> Result<(), Fai
     }
     all.say(&log.name, &said);
     Ok(())
-}
-
-impl Known {
-    /// What is known of both.
-    const fn with(self, other: Self) -> Self {
-        Self {
-            step_rad: self.step_rad.max(other.step_rad),
-            speeds_alone: self.speeds_alone || other.speeds_alone,
-            free: self.free || other.free,
-        }
-    }
 }
 
 fn point(found: &Found, reading: &Reading, joint: Joint, how: &How<'_>) -> SteadyPoint {

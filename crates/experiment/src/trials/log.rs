@@ -6,7 +6,6 @@ use tracelight_lab::{Sample, SteadyPoint, Trial};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_task::Failure;
 
-use super::foreign;
 use crate::columns::Columns as Told;
 use crate::record::MOST_V;
 use crate::table::{self, Log, Names, Row};
@@ -16,15 +15,43 @@ const MOST_TRIALS: usize = 10_000;
 /// A longer time between two rows is a new trial, s.
 const LONGEST_GAP_S: f64 = 10.0;
 
+/// Whether a log has this program's columns.
+pub(super) fn is_own(log: &Log) -> bool {
+    const OWN: [&str; 6] = ["axis", "volt", "time_s", "count", "torque_nm", "velocity_rad_s"];
+    table::is_own(log, &OWN, |names| columns(names).is_ok())
+}
+
 /// What logs have of each joint.
 #[derive(Default)]
 pub(super) struct Logged {
     pub(super) trials: PanTilt<Vec<Trial>>,
     pub(super) points: PanTilt<Vec<SteadyPoint>>,
     /// What is known of motion that others wrote down; `None` where there is none.
-    pub(super) foreign: PanTilt<Option<foreign::Known>>,
+    pub(super) foreign: PanTilt<Option<Known>>,
     /// What was taken for what, and in which logs.
     said: Vec<(Vec<String>, String)>,
+}
+
+/// What is known of motion that others wrote down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Known {
+    /// How finely places are known, rad.
+    pub(super) step_rad: f64,
+    /// Speeds were seen, and no places: where the joint stood is not known.
+    pub(super) speeds_alone: bool,
+    /// Turned by more than a turn, so that no cable holds it.
+    pub(super) free: bool,
+}
+
+impl Known {
+    /// What is known of both.
+    pub(super) const fn with(self, other: Self) -> Self {
+        Self {
+            step_rad: self.step_rad.max(other.step_rad),
+            speeds_alone: self.speeds_alone || other.speeds_alone,
+            free: self.free || other.free,
+        }
+    }
 }
 
 /// What is told of logs that are not this program's.
@@ -61,15 +88,9 @@ fn columns(names: &Names) -> Result<(usize, Columns), String> {
 }
 
 impl Logged {
-    /// Reads one more log, whose columns are this program's or told.
-    pub(super) fn read(&mut self, log: &Log, how: &How<'_>) -> Result<(), Failure> {
-        const OWN: [&str; 6] = ["axis", "volt", "time_s", "count", "torque_nm", "velocity_rad_s"];
-        if how.told.is_empty() && table::is_own(log, &OWN, |names| columns(names).is_ok()) {
-            return self
-                .parse(&log.bytes)
-                .map_err(|what| Failure::usage("friction-log", format!("{}{what}", log.name)));
-        }
-        foreign::read(self, log, how)
+    /// Reads one more log with this program's columns.
+    pub(super) fn read(&mut self, log: &Log) -> Result<(), Failure> {
+        self.parse(&log.bytes).map_err(|what| Failure::usage("friction-log", format!("{}{what}", log.name)))
     }
 
     /// Puts down what was taken for what in a log.

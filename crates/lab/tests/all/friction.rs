@@ -100,7 +100,7 @@ fn a_head_with_stops_tells_the_same_within_its_range() {
         let shuttle = Shuttle { protocol: &protocol, travel, believed: &believed, limit_v: 10.0 };
         let mut head = head_alone(&rig, joint, Mounting::Standing, 0);
         let trials = shuttle.trials(&mut head, joint, |_| ControlFlow::Continue(()));
-        let counts = trials.iter().flat_map(|t| t.samples.iter().map(|s| f64::from(s.count)));
+        let counts = trials.iter().flat_map(|t| t.samples.iter().map(|s| s.count));
         let reach = counts.fold(0.0, |most, c| f64::max(most, c.abs())) * believed.count_rad;
         assert!(reach < upper_rad && reach > 0.7 * upper_rad, "{joint}: {reach}");
         let trials: Vec<&Trial> = trials.iter().collect();
