@@ -2,15 +2,16 @@
 
 mod view;
 
-use tracelight_lab::{Amplifier, CurrentPoint, amplifier};
+use tracelight_lab::{Amplifier, CurrentPoint, Plateau, amplifier, plateau};
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{MotorReading, Mounting, READ_TICKS, RigConfig, motor_readings};
 use tracelight_task::{Failure, Task};
 
+use crate::columns::{self, Columns, Kind, Quantity};
 use crate::finding::{Experiment, Improved};
 use crate::parts::{self, tell_each};
 use crate::record::MOST_V;
-use crate::table::{self, Log};
+use crate::table::{self, Log, Names};
 
 /// Volts at amplifiers and amperes through motors: as logs have them, or tried with a simulated head.
 #[derive(Clone, Debug)]
@@ -20,7 +21,9 @@ pub struct Request {
     /// Logs with a row each reading: `axis,volt,ampere`, and `velocity_rad_s` if somebody looked at the speed; if none, the simulated
     /// head is tried in a fixture.
     pub logs: Vec<Log>,
-    /// Only this joint.
+    /// Which columns of the logs hold what, where they are not this program's.
+    pub columns: Columns,
+    /// Only this joint, and the joint of logs that say none.
     pub only: Option<Joint>,
     /// Torque at the joint for each ampere: the motor's constant times its gears and belt, N m/A.
     pub torque_nm_per_a: f64,
@@ -37,7 +40,21 @@ pub struct Finding {
     of: Request,
     joints: Vec<Found>,
     better: RigConfig,
+    /// What was taken for what in logs, a line each.
+    said: Vec<String>,
+    /// Readings of each joint that were left out: its current or its speed stands at a limit.
+    left_out: PanTilt<Vec<Plateau>>,
 }
+
+/// What somebody else's log has.
+const KIND: Kind = Kind {
+    code: "amplifier-log",
+    must: &[&[Quantity::Volt], &[Quantity::Ampere]],
+    may: &[Quantity::Speed],
+    own: "axis,volt,ampere[,velocity_rad_s]",
+};
+/// What this program's has.
+const OWN: [&str; 4] = ["axis", "volt", "ampere", "velocity_rad_s"];
 
 /// A joint's readings and what they say.
 type Found = parts::Found<CurrentPoint, Amplifier>;
@@ -46,7 +63,9 @@ impl Experiment for Request {
     type Finding = Finding;
 
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
-        let readings = if self.logs.is_empty() { self.tried() } else { self.logged()? };
+        let (mut readings, said) =
+            if self.logs.is_empty() { (self.tried(), Vec::new()) } else { self.logged()? };
+        let left_out = PanTilt::from_fn(|joint| limited(&mut readings[joint]));
         let tell = |joint: Joint, points: &[CurrentPoint]| {
             amplifier(points).ok_or_else(|| {
                 let count = points.len();
@@ -65,7 +84,7 @@ impl Experiment for Request {
         for Found { joint, told: amplifier, .. } in &joints {
             better.model.motors[*joint].torque_nm_per_v = amplifier.gain.value * self.torque_nm_per_a;
         }
-        Ok(Finding { of: self, joints, better })
+        Ok(Finding { of: self, joints, better, said, left_out })
     }
 }
 
@@ -92,11 +111,18 @@ impl Request {
         })
     }
 
-    fn logged(&self) -> Result<PanTilt<Vec<CurrentPoint>>, Failure> {
+    /// What logs have of each joint, and what was taken for what.
+    fn logged(&self) -> Result<(PanTilt<Vec<CurrentPoint>>, Vec<String>), Failure> {
         /// More than any motor of such a head takes, A, and turns with, rad/s.
         const MOST: f64 = 1e4;
         let mut points: PanTilt<Vec<CurrentPoint>> = PanTilt::default();
+        let mut said = Vec::new();
         for log in &self.logs {
+            let fits = |names: &Names| names.all(["axis", "volt", "ampere"]).is_ok();
+            if !(self.columns.is_empty() && table::is_own(log, &OWN, fits)) {
+                said.push(self.told(log, &mut points)?);
+                continue;
+            }
             table::read(
                 log,
                 "amplifier-log",
@@ -125,8 +151,34 @@ impl Request {
                 return Err(Failure::usage("amplifier-log", message));
             }
         }
-        Ok(points)
+        Ok((points, said))
     }
+
+    /// Reads one of somebody else's logs; what was taken for what.
+    fn told(&self, log: &Log, points: &mut PanTilt<Vec<CurrentPoint>>) -> Result<String, Failure> {
+        let found = columns::read(log, &self.columns, self.only, &KIND)?;
+        for reading in &found.readings {
+            points[reading.joint].push(CurrentPoint {
+                volts: reading.get(Quantity::Volt),
+                amperes: reading.get(Quantity::Ampere),
+                rate_rad_s: found.has(Quantity::Speed).then(|| reading.get(Quantity::Speed)),
+            });
+        }
+        Ok(format!("{}: {}", log.name, found.said))
+    }
+}
+
+/// Leaves out readings at a limit: of those with the highest volts all have the same current, or the same speed.
+fn limited(points: &mut Vec<CurrentPoint>) -> Vec<Plateau> {
+    let of = |value: &dyn Fn(&CurrentPoint) -> f64| {
+        plateau(&points.iter().map(|point| (point.volts, value(point))).collect::<Vec<_>>(), 0.0)
+    };
+    let currents = of(&|point| point.amperes);
+    let found =
+        if currents.is_empty() { of(&|point| point.rate_rad_s.unwrap_or_default()) } else { currents };
+    let on = |number: usize| found.iter().any(|plateau| plateau.points.contains(&number));
+    *points = points.iter().enumerate().filter(|(number, _)| !on(*number)).map(|(_, point)| *point).collect();
+    found
 }
 
 impl Improved for Finding {

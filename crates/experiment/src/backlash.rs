@@ -10,6 +10,7 @@ use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_sim::{Between, LawName, MotionArray, RigConfig, follow_array};
 use tracelight_task::{Failure, Task};
 
+use crate::columns::{self, Columns, Kind, Quantity};
 use crate::finding::Experiment;
 use crate::parts::{self, tell_each};
 use crate::table::{self, Log};
@@ -21,7 +22,9 @@ pub struct Request {
     pub rig: RigConfig,
     /// Logs with a row each reading: `axis,count,way,spot_m`; if none, the simulated head is tried.
     pub logs: Vec<Log>,
-    /// Only this joint.
+    /// Which columns of the logs hold what, where they are not this program's.
+    pub columns: Columns,
+    /// Only this joint, and the joint of logs that say none.
     pub only: Option<Joint>,
     /// From the head to the target, square-on, m.
     pub distance_m: f64,
@@ -37,7 +40,17 @@ pub struct Request {
 pub struct Finding {
     of: Request,
     joints: Vec<Found>,
+    /// What was taken for what in logs, a line each.
+    said: Vec<String>,
 }
+
+/// What somebody else's log has.
+const KIND: Kind = Kind {
+    code: "backlash-log",
+    must: &[&[Quantity::Count], &[Quantity::Way], &[Quantity::Spot]],
+    may: &[],
+    own: "axis,count,way,spot_m",
+};
 
 /// A reading: what a log's row says.
 #[derive(Clone, Copy)]
@@ -56,8 +69,11 @@ impl Experiment for Request {
         if self.distance_m <= 0.0 {
             return Err(Failure::usage("usage", "--distance must be above zero"));
         }
-        let readings =
-            if self.logs.is_empty() { PanTilt::from_fn(|joint| self.tried(joint)) } else { self.logged()? };
+        let (readings, said) = if self.logs.is_empty() {
+            (PanTilt::from_fn(|joint| self.tried(joint)), Vec::new())
+        } else {
+            self.logged()?
+        };
         let count_rad = self.rig.model.encoder.count_rad();
         let tell = |joint: Joint, readings: &[Reading]| {
             let points: Vec<SpotPoint> = readings.iter().map(|r| point(r, count_rad)).collect();
@@ -74,7 +90,7 @@ impl Experiment for Request {
             Failure::usage("backlash-log", message)
         };
         let joints = tell_each(self.only, readings, tell, nothing)?;
-        Ok(Finding { of: self, joints })
+        Ok(Finding { of: self, joints, said })
     }
 }
 
@@ -135,14 +151,21 @@ impl Request {
         rests.iter().filter_map(read).collect()
     }
 
-    fn logged(&self) -> Result<PanTilt<Vec<Reading>>, Failure> {
+    /// Readings of each joint, and what was taken for what.
+    fn logged(&self) -> Result<(PanTilt<Vec<Reading>>, Vec<String>), Failure> {
+        const OWN: [&str; 4] = ["axis", "count", "way", "spot_m"];
         const MOST_M: f64 = 1e3;
         let mut readings: PanTilt<Vec<Reading>> = PanTilt::default();
+        let mut said = Vec::new();
         for log in &self.logs {
+            if !(self.columns.is_empty() && table::is_own(log, &OWN, |names| names.all(OWN).is_ok())) {
+                said.push(self.told(log, &mut readings)?);
+                continue;
+            }
             table::read(
                 log,
                 "backlash-log",
-                |names| names.all(["axis", "count", "way", "spot_m"]),
+                |names| names.all(OWN),
                 |&[axis, count, way, spot], row| {
                     let came = row.whole(way)?;
                     if came.abs() != 1 {
@@ -157,7 +180,25 @@ impl Request {
                 },
             )?;
         }
-        Ok(readings)
+        Ok((readings, said))
+    }
+
+    /// Reads one of somebody else's logs; what was taken for what.
+    fn told(&self, log: &Log, readings: &mut PanTilt<Vec<Reading>>) -> Result<String, Failure> {
+        let found = columns::read(log, &self.columns, self.only, &KIND)?;
+        for reading in &found.readings {
+            let (count, way) = (reading.get(Quantity::Count), reading.get(Quantity::Way));
+            if count.fract() != 0.0 || count.abs() > f64::from(i32::MAX) || way.abs() != 1.0 {
+                let message = format!(
+                    "{}:{}: count {count} and way {way} are not a whole number and 1 or -1",
+                    log.name, reading.line
+                );
+                return Err(Failure::usage(KIND.code, message));
+            }
+            let spot_m = reading.get(Quantity::Spot);
+            readings[reading.joint].push(Reading { count: count as i32, way: way as i32, spot_m });
+        }
+        Ok(format!("{}: {}", log.name, found.said))
     }
 
     /// The logs' names.

@@ -1,16 +1,20 @@
 //! A joint's frequency response, measured with many sines at once, its coherence, and what the model says.
 
+mod logged;
 mod view;
 
-use tracelight_lab::{Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response};
+use tracelight_lab::{
+    Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response, frequency_response_of_speeds,
+};
 use tracelight_linear::{Discretization, FrequencyResponse, LinearError, Polynomial, Time, TransferFunction};
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_sim::{Mounting, RigConfig, head_alone};
 use tracelight_task::{Failure, Task};
 
+use self::logged::{How, Logged, logged};
+use crate::columns::Columns;
 use crate::finding::Experiment;
-use crate::record::MOST_V;
-use crate::table::{self, Log};
+use crate::table::Log;
 
 /// A joint that turns one way under a steady voltage, with sines on top: as a log has it, or tried with a simulated head.
 #[derive(Clone, Debug)]
@@ -19,6 +23,10 @@ pub struct Request {
     pub rig: RigConfig,
     /// Which joint.
     pub joint: Joint,
+    /// The joint of a log that says none, if that was said.
+    pub axis: Option<Joint>,
+    /// Which columns of the log hold what, where they are not this program's.
+    pub columns: Columns,
     /// What a head did: `axis,time_s,volt,count`, a row a millisecond; if not given, the simulated head is tried in a fixture.
     pub log: Option<Log>,
     /// Lowest frequency, rad/s.
@@ -53,6 +61,12 @@ struct Measured {
     seen: Excited,
     /// The voltage that held the speed, V.
     bias_v: f64,
+    /// What was seen are speeds, rad/s, in place of angles.
+    speeds: bool,
+    /// From one row to the next, s.
+    tick_s: f64,
+    /// What was taken for what in a log, filled in and left out, a line each.
+    said: Vec<String>,
 }
 
 impl Experiment for Request {
@@ -63,10 +77,11 @@ impl Experiment for Request {
             Some(log) => self.logged(log)?,
             None => self.measured()?,
         };
-        let Measured { multisine, seen, bias_v } = &measured;
-        let model = model(&self.rig, self.joint, self.speed_rad_s.copysign(*bias_v))
+        let Measured { multisine, seen, bias_v, speeds, tick_s, .. } = &measured;
+        let model = model(&self.rig, self.joint, self.speed_rad_s.copysign(*bias_v), *tick_s)
             .map_err(|e| Failure::failed("no-linear-model", format!("rig {}: {e}", self.rig.name)))?;
-        let points = frequency_response(multisine, &seen.angles_rad);
+        let response = if *speeds { frequency_response_of_speeds } else { frequency_response };
+        let points = response(multisine, &seen.angles_rad);
         let model = model.frequency_response(multisine.rad_s().collect());
         Ok(Finding { of: self, measured, points, model })
     }
@@ -121,67 +136,45 @@ impl Request {
         };
         let mut head = head_alone(rig, joint, Mounting::Fixture, self.seed);
         let seen = excite(&mut head, joint, &multisine, &how);
-        Ok(Measured { multisine, seen, bias_v })
+        Ok(Measured { multisine, seen, bias_v, speeds: false, tick_s: TICK_F64_S, said: Vec::new() })
     }
 
     /// What a log says.
     fn logged(&self, log: &Log) -> Result<Measured, Failure> {
-        const CODE: &str = "frequency-log";
-        let joint = self.joint;
-        let count_rad = self.rig.model.encoder.count_rad();
-        let mut seen = Excited { angles_rad: Vec::new(), volts: Vec::new(), one_way: true };
-        let mut last_s = None;
-        table::read(
-            log,
-            CODE,
-            |names| names.all(["axis", "time_s", "volt", "count"]),
-            |&[axis, time, volt, count], row| {
-                let time_s = row.number(time)?;
-                if row.joint(axis)? != joint {
-                    return Ok(());
-                }
-                if let Some(before) = last_s.replace(time_s)
-                    && (time_s - before - TICK_F64_S).abs() > 0.01 * TICK_F64_S
-                {
-                    let (line, apart) = (row.line, 1e3 * (time_s - before));
-                    return Err(format!(
-                        ":{line}: {time_s} s comes {apart:.4} ms after the row before; rows must be 1 ms apart"
-                    ));
-                }
-                seen.volts.push(row.up_to(volt, MOST_V, "any amplifier takes, V")?);
-                seen.angles_rad.push(f64::from(row.whole(count)?) * count_rad);
-                Ok(())
-            },
-        )?;
-        let period_ticks = (self.period_s / TICK_F64_S).round() as usize;
-        const LONGEST_TICKS: usize = 20_000; // its sines are told one by one
-        if period_ticks > LONGEST_TICKS {
-            let message =
-                format!("a log's --period may have {} s at most", LONGEST_TICKS as f64 * TICK_F64_S);
-            return Err(Failure::usage("usage", message));
-        }
+        let how = How {
+            joint: self.joint,
+            axis: self.axis,
+            columns: &self.columns,
+            count_rad: self.rig.model.encoder.count_rad(),
+            period_s: self.period_s,
+        };
+        let Logged { seen, speeds, tick_s, period_ticks, said } = logged(log, &how)?;
         let multisine = Multisine::in_record(period_ticks, &seen.volts).ok_or_else(|| {
             let message = format!(
-                "{}: {} rows of {joint} hold no two periods of {} s of volts that change: give a longer log, or its own --period",
+                "{}: {} rows of {} hold no two periods of {} s of volts that change: give a longer log, or its own --period",
                 log.name,
                 seen.volts.len(),
+                self.joint,
                 self.period_s
             );
-            Failure::usage(CODE, message)
+            Failure::usage("frequency-log", message)
         })?;
+        let multisine = multisine.with_tick(tick_s);
         let bias_v = seen.volts.iter().sum::<f64>() / seen.volts.len() as f64;
-        // over a twentieth of a second, as the simulated head is watched
-        let turned = seen.angles_rad.windows(51).step_by(50).map(|span| span[50] - span[0]);
-        seen.one_way = turned.into_iter().all(|rad| rad * bias_v > 0.0);
-        Ok(Measured { multisine, seen, bias_v })
+        Ok(Measured { multisine, seen, bias_v, speeds, tick_s, said })
     }
 }
 
 /// From volts to the angle, as counts see it.
-fn model(rig: &RigConfig, joint: Joint, speed_rad_s: f64) -> Result<TransferFunction, LinearError> {
+fn model(
+    rig: &RigConfig,
+    joint: Joint,
+    speed_rad_s: f64,
+    tick_s: f64,
+) -> Result<TransferFunction, LinearError> {
     let friction = &rig.model.friction[joint];
     let viscous = if speed_rad_s > 0.0 { friction.viscous_pos } else { friction.viscous_neg };
     let above = Polynomial::new(vec![rig.model.motors[joint].torque_nm_per_v]);
     let below = Polynomial::new(vec![rig.model.own_inertia_kg_m2()[joint], viscous, 0.0]);
-    TransferFunction::new(above, below, Time::Continuous)?.sampled(TICK_F64_S, Discretization::ZeroOrderHold)
+    TransferFunction::new(above, below, Time::Continuous)?.sampled(tick_s, Discretization::ZeroOrderHold)
 }

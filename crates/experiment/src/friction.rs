@@ -16,6 +16,8 @@ pub struct Request(pub Seen);
 /// Friction of each joint.
 pub struct Finding {
     trials: Trials,
+    /// What was taken for what in logs, a line each.
+    said: Vec<String>,
     joints: Vec<Found>,
     better: RigConfig,
 }
@@ -27,20 +29,33 @@ struct Found {
     steady: Steady,
     /// `None` where torques and speeds were given, not motion.
     curves: Option<Curves>,
+    /// Share of the speeds' variance that the volts alone explain; of motors that somebody else measured.
+    replayed: Option<f64>,
+}
+
+/// A direction's friction and inertia by volts and speeds alone.
+#[derive(Clone, Copy)]
+struct Unscaled {
+    /// Speed for each volt beyond what friction takes.
+    rad_s_per_v: f64,
+    /// Volts that Coulomb friction takes, negative backwards.
+    beyond_v: f64,
+    /// `None` where its inertia is not told.
+    time_constant_s: Option<f64>,
 }
 
 impl Experiment for Request {
     type Finding = Finding;
 
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
-        let Seen { of: trials, subjects } = self.0;
+        let Seen { of: trials, subjects, said } = self.0;
         let joints = subjects
             .into_iter()
             .map(|subject| found(subject, trials.holds()))
             .collect::<Result<Vec<_>, _>>()?;
         let mut better = trials.rig.clone();
         joints.iter().for_each(|one| one.tell(&mut better));
-        Ok(Finding { trials, joints, better })
+        Ok(Finding { trials, said, joints, better })
     }
 }
 
@@ -67,12 +82,13 @@ fn found(subject: Subject, holds: bool) -> Result<Found, Failure> {
             );
             return Err(Failure::failed("friction", message));
         }
-        return Ok(Found { steady, curves: None, subject });
+        return Ok(Found { steady, curves: None, subject, replayed: None });
     }
     let held = if holds { trials.as_slice() } else { &[] };
     let steady = steady(held, believed.torque_nm_per_v, believed.count_rad);
     let curves = subject.curves()?;
-    Ok(Found { steady, curves: Some(curves), subject })
+    let replayed = subject.replayed(&curves);
+    Ok(Found { steady, curves: Some(curves), subject, replayed })
 }
 
 impl Found {
@@ -95,10 +111,26 @@ impl Found {
         self.curves.as_ref().map_or_else(|| lines.map(|l| l.r2).fold(1.0, f64::min), |curves| curves.r2)
     }
 
+    /// What does not depend on the torque per volt that the rig file believes, forwards and backwards; of other people's motors.
+    fn unscaled(&self) -> Option<[Option<Unscaled>; 2]> {
+        let torque = self.subject.believed.torque_nm_per_v;
+        let inertia =
+            self.curves.as_ref().and_then(|curves| curves.inertia_kg_m2).map(|inertia| inertia.value);
+        let of = |side: Side| Unscaled {
+            rad_s_per_v: torque / side.viscous.value,
+            beyond_v: side.coulomb_nm.value / torque,
+            time_constant_s: inertia.map(|inertia| inertia / side.viscous.value),
+        };
+        // what may as well be nothing is no slope to divide by
+        let told = |side: &Side| side.viscous.value > side.viscous.within;
+        self.subject.foreign.then(|| self.sides().map(|side| side.filter(told).map(of)))
+    }
+
     /// Time in which a speed comes to what its voltage allows but for 1/e, s.
     fn time_constant_s(&self) -> Option<f64> {
         let curves = self.curves.as_ref()?;
-        let inertia = curves.inertia_kg_m2.map_or(self.subject.believed.inertia_kg_m2, |j| j.value);
+        let believed = (!self.subject.foreign).then_some(self.subject.believed.inertia_kg_m2);
+        let inertia = curves.inertia_kg_m2.map(|inertia| inertia.value).or(believed)?;
         let viscous = [curves.pos, curves.neg].into_iter().flatten().map(|side| side.viscous.value);
         let slowest = viscous.fold(f64::INFINITY, f64::min);
         (slowest > 0.0).then_some(inertia / slowest)

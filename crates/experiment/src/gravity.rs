@@ -16,6 +16,8 @@ pub struct Request(pub Seen);
 /// What tilt weighs.
 pub struct Finding {
     trials: Trials,
+    /// What was taken for what in logs, a line each.
+    said: Vec<String>,
     subject: Subject,
     curves: Curves,
     weight: Weight,
@@ -43,7 +45,7 @@ impl Experiment for Request {
     type Finding = Finding;
 
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
-        let Seen { of: trials, subjects } = self.0;
+        let Seen { of: trials, subjects, said } = self.0;
         let subject = subjects
             .into_iter()
             .find(|subject| subject.joint == Joint::Tilt)
@@ -55,7 +57,7 @@ impl Experiment for Request {
         let mut better = trials.rig.clone();
         better.model.set_weight(weight.nm.map(|u| u.value));
         better.model.set_own_inertia(Joint::Tilt, subject.believed.inertia_kg_m2);
-        Ok(Finding { trials, subject, curves, weight, better })
+        Ok(Finding { trials, said, subject, curves, weight, better })
     }
 }
 

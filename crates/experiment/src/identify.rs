@@ -1,16 +1,19 @@
 //! What the head is made of: inertia, friction, weight, amplifier, where its encoders' edges lie.
 
+mod one_joint;
 mod view;
 
 use std::ops::ControlFlow;
 
 use tracelight_aim::HeadPose;
-use tracelight_lab::{Identification, identify, routine};
+use tracelight_lab::{Identification, identify, identify_one, routine};
 use tracelight_pipeline::DEFAULT_DISTANCE_M;
 use tracelight_rig::{Joint, Telemetry};
 use tracelight_sim::{RigConfig, SimulatedRig, run_segments};
 use tracelight_task::{Failure, Task};
 
+use self::one_joint::{OneJoint, one_joint};
+use crate::columns::Columns;
 use crate::finding::{Experiment, Improved};
 use crate::numbers::why_unfinished;
 use crate::record;
@@ -26,6 +29,10 @@ pub struct Request {
     pub rig: RigConfig,
     /// Records of what the rig did, see [`crate::record`]; if none, the simulated rig moves in the dark.
     pub records: Vec<Log>,
+    /// Which columns of the records hold what, where they are not this program's: then they are of one joint.
+    pub columns: Columns,
+    /// The joint of records that say none.
+    pub axis: Option<Joint>,
     /// Of what differs from head to head.
     pub seed: u64,
     /// Which day it is, such as 2026-11-23: the better rig is of that day.
@@ -37,24 +44,48 @@ pub struct Finding {
     of: Request,
     records: Vec<Vec<Telemetry>>,
     found: Identification,
+    /// The joints that were identified.
+    joints: Vec<Joint>,
+    /// What was taken for what in records, a line each.
+    said: Vec<String>,
 }
 
 impl Experiment for Request {
     type Finding = Finding;
 
     fn run(self, task: Task<'_>) -> Result<Finding, Failure> {
-        let records = if self.records.is_empty() { vec![self.moved(task)?] } else { self.recorded()? };
-        let mut found = identify(&self.rig, &records).map_err(|e| Failure::failed("identify", e))?;
+        let (records, one) = self.seen(task)?;
+        let found = one.as_ref().map_or_else(
+            || identify(&self.rig, &records),
+            |one| identify_one(&self.rig, &one.records, one.joint),
+        );
+        let mut found = found.map_err(|e| Failure::failed("identify", e))?;
         if Joint::BOTH.iter().any(|&j| found.joints[j].taken)
             && let Some(identified) = &mut found.rig.identified
         {
             identified.date.clone_from(&self.day);
         }
-        Ok(Finding { of: self, records, found })
+        let Some(OneJoint { joint, records, said }) = one else {
+            return Ok(Finding { of: self, records, found, joints: Joint::BOTH.into(), said: Vec::new() });
+        };
+        Ok(Finding { of: self, records, found, joints: vec![joint], said })
     }
 }
 
 impl Request {
+    /// Records of both joints, or of one by somebody else's logs.
+    fn seen(&self, task: Task<'_>) -> Result<(Vec<Vec<Telemetry>>, Option<OneJoint>), Failure> {
+        if self.records.is_empty() {
+            return Ok((vec![self.moved(task)?], None));
+        }
+        let own = |log: &Log| self.columns.is_empty() && record::is_own(log);
+        if self.records.iter().all(own) {
+            return Ok((self.recorded()?, None));
+        }
+        let count_rad = self.rig.model.encoder.count_rad();
+        Ok((Vec::new(), Some(one_joint(&self.records, &self.columns, self.axis, count_rad)?)))
+    }
+
     fn recorded(&self) -> Result<Vec<Vec<Telemetry>>, Failure> {
         let count_rad = self.rig.model.encoder.count_rad();
         let mut all = Vec::new();

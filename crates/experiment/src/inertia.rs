@@ -15,6 +15,8 @@ pub struct Request(pub Seen);
 /// Inertia of each joint.
 pub struct Finding {
     trials: Trials,
+    /// What was taken for what in logs, a line each.
+    said: Vec<String>,
     /// Each joint, and its inertia, kg m².
     joints: Vec<(Subject, Uncertain)>,
     better: RigConfig,
@@ -24,7 +26,7 @@ impl Experiment for Request {
     type Finding = Finding;
 
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
-        let Seen { of: trials, subjects } = self.0;
+        let Seen { of: trials, subjects, said } = self.0;
         let curves = subjects.iter().map(Subject::curves).collect::<Result<Vec<_>, Failure>>()?;
         let joints = subjects
             .into_iter()
@@ -35,7 +37,7 @@ impl Experiment for Request {
         for (subject, inertia) in &joints {
             better.model.set_own_inertia(subject.joint, inertia.value);
         }
-        Ok(Finding { trials, joints, better })
+        Ok(Finding { trials, said, joints, better })
     }
 }
 

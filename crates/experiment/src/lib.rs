@@ -10,6 +10,7 @@ pub mod backlash;
 pub mod better;
 pub mod bode;
 pub mod by_hand;
+pub mod columns;
 pub mod design;
 pub mod encoder;
 mod finding;

@@ -17,6 +17,11 @@ pub(crate) fn rounded(value: f64, digits: usize) -> String {
 /// What the intervals of a table mean.
 pub(crate) const HOW_SURE: &str = "\n\n± has the true value in 95 of 100 cases, if the model is right.";
 
+/// Lines of their own, each after the end of the one before.
+pub(crate) fn lines(said: &[String]) -> String {
+    said.iter().map(|line| format!("\n{line}")).collect()
+}
+
 /// A value and its interval, times a thousand.
 pub(crate) fn milli(value: Option<Uncertain>) -> String {
     value.map_or("–".to_owned(), |u| {

@@ -26,6 +26,13 @@ pub fn read(log: &Log, count_rad: f64) -> Result<Vec<Vec<Telemetry>>, Failure> {
     parse(&log.bytes, count_rad).map_err(|what| Failure::usage("record", format!("{}{what}", log.name)))
 }
 
+/// Whether a log has the columns of a record, or some of them.
+pub(crate) fn is_own(log: &Log) -> bool {
+    table::begins(log, |names| {
+        names.find("t_s").is_some() && names.find("pan_count").or(names.find("tilt_count")).is_some()
+    })
+}
+
 /// Where each column is.
 struct Columns {
     time: usize,

@@ -20,6 +20,15 @@ pub(crate) fn names(logs: &[Log]) -> String {
     logs.iter().map(|log| log.name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
+/// What many logs are called, as one.
+pub(crate) fn few(names: &[String]) -> String {
+    const FEW: usize = 3;
+    match names {
+        [first, rest @ ..] if names.len() > FEW => format!("{first} and {} more", rest.len()),
+        all => all.join(", "),
+    }
+}
+
 /// The names above the columns.
 pub(crate) struct Names(csv::ByteRecord);
 
@@ -39,6 +48,21 @@ impl Names {
         }
         Ok(places)
     }
+}
+
+/// Whether a log has columns as this program names them, so that nothing needs to be told of them: those that `fits` asks for, or none but
+/// `own` ones, of which some are missing.
+pub(crate) fn is_own(log: &Log, own: &[&str], fits: impl FnOnce(&Names) -> bool) -> bool {
+    begins(log, |names| {
+        let all_own = || names.0.iter().all(|name| own.iter().any(|own| own.as_bytes() == name.trim_ascii()));
+        names.find("axis").is_some() && (fits(names) || all_own())
+    })
+}
+
+/// Whether a log begins with such names.
+pub(crate) fn begins(log: &Log, fits: impl FnOnce(&Names) -> bool) -> bool {
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(log.bytes.as_slice());
+    reader.byte_headers().is_ok_and(|header| fits(&Names(header.clone())))
 }
 
 /// Reads a log's columns and then each row; what is wrong is told with its name and the line under that code.

@@ -1,15 +1,21 @@
 //! Joints under voltages: on the simulated head, or from a log. Friction, inertia and gravity are told from what they do.
 
+mod cut;
+mod foreign;
 mod log;
 
 use std::ops::ControlFlow;
 
-use tracelight_lab::{Believed, Curves, Protocol, Shuttle, SteadyPoint, Travel, Trial, curves, free_trial};
-use tracelight_rig::Joint;
+use tracelight_lab::{
+    Believed, Curves, Plateau, Protocol, Shuttle, SteadyPoint, Travel, Trial, curves, free_trial, plateau,
+    replayed, saturated,
+};
+use tracelight_rig::{Joint, PanTilt};
 use tracelight_sim::{Mounting, RigConfig, head_alone};
-use tracelight_task::{Failure, Task, on_all_cores};
+use tracelight_task::{Failure, Task, counted, on_all_cores};
 
-use self::log::Logged;
+use self::log::{How, Known, Logged};
+use crate::columns::Columns;
 use crate::parts::joints;
 use crate::table::{self, Log};
 
@@ -25,7 +31,9 @@ pub struct Trials {
     pub rig: RigConfig,
     /// Logs of what a head did: `axis,volt,time_s,count` or `axis,torque_nm,velocity_rad_s`; if none, the simulated head is tried.
     pub logs: Vec<Log>,
-    /// Only this joint.
+    /// Which columns of the logs hold what, where they are not this program's.
+    pub columns: Columns,
+    /// Only this joint, and the joint of logs that say none.
     pub only: Option<Joint>,
     /// The head is in a fixture: the tested axis upright, so that gravity does not turn it, and free to turn on and on.
     pub fixture: bool,
@@ -43,10 +51,22 @@ pub struct Trials {
     pub seed: u64,
 }
 
+/// Drops all that lie on some plateau.
+fn drop_all<T>(all: &mut Vec<T>, plateaus: &[Plateau]) {
+    let on = |k: usize| plateaus.iter().any(|plateau| plateau.points.contains(&k));
+    let mut number = 0;
+    all.retain(|_| {
+        number += 1;
+        !on(number - 1)
+    });
+}
+
 /// What joints did that were put through it.
 pub struct Seen {
     pub(crate) of: Trials,
     pub(crate) subjects: Vec<Subject>,
+    /// What was taken for what in logs that are not this program's, a line each.
+    pub(crate) said: Vec<String>,
 }
 
 /// A joint and what was seen of it.
@@ -56,6 +76,10 @@ pub(crate) struct Subject {
     pub(crate) trials: Vec<Trial>,
     /// Torques and speeds that somebody measured.
     pub(crate) points: Vec<SteadyPoint>,
+    /// Whether somebody else measured it, perhaps on another motor.
+    pub(crate) foreign: bool,
+    /// Trials, or points, that were left out: their speed stands at the amplifier's limit.
+    pub(crate) plateaus: Vec<Plateau>,
 }
 
 impl Trials {
@@ -65,8 +89,9 @@ impl Trials {
     /// `friction-log`: a log that cannot be read, or holds nothing of the joint; voltages that are too many or more than the
     /// amplifier's; or [`Failure::interrupted`].
     pub fn seen(self, task: Task<'_>) -> Result<Seen, Failure> {
-        let subjects = if self.logs.is_empty() { self.conducted(task)? } else { self.logged()? };
-        Ok(Seen { of: self, subjects })
+        let (subjects, said) =
+            if self.logs.is_empty() { (self.conducted(task)?, Vec::new()) } else { self.logged()? };
+        Ok(Seen { of: self, subjects, said })
     }
 
     /// The same of one joint, if no other was asked for.
@@ -91,13 +116,30 @@ impl Trials {
         Ok(asked)
     }
 
-    fn logged(&self) -> Result<Vec<Subject>, Failure> {
+    /// What logs have of each joint that is asked for, and what was taken for what.
+    fn logged(&self) -> Result<(Vec<Subject>, Vec<String>), Failure> {
         let mut asked = self.asked();
-        let mut log = Logged::default();
-        self.logs.iter().try_for_each(|one| log.read(one))?;
+        let mut all = Logged::default();
+        let model = &self.rig.model;
+        let how = How {
+            told: &self.columns,
+            axis: self.only,
+            count_rad: model.encoder.count_rad(),
+            torque_nm_per_v: PanTilt::from_fn(|joint| model.motors[joint].torque_nm_per_v),
+        };
+        for one in &self.logs {
+            if self.columns.is_empty() && log::is_own(one) {
+                all.read(one)?;
+            } else {
+                foreign::read(&mut all, one, &how)?;
+            }
+        }
         for subject in &mut asked {
-            subject.trials = std::mem::take(&mut log.trials[subject.joint]);
-            subject.points = std::mem::take(&mut log.points[subject.joint]);
+            subject.trials = std::mem::take(&mut all.trials[subject.joint]);
+            subject.points = std::mem::take(&mut all.points[subject.joint]);
+            subject.foreign(all.foreign[subject.joint])?;
+            subject.leave_out_saturated();
+            subject.divide();
         }
         asked.retain(|subject| !subject.trials.is_empty() || !subject.points.is_empty());
         let logs = table::names(&self.logs);
@@ -113,7 +155,7 @@ impl Trials {
             let message = format!("{logs}: {} has motion and measured torques; give one kind", both.joint);
             return Err(Failure::usage("friction-log", message));
         }
-        Ok(asked)
+        Ok((asked, all.lines().collect()))
     }
 
     fn subject(&self, joint: Joint) -> Subject {
@@ -123,11 +165,14 @@ impl Trials {
         let believed = Believed {
             torque_nm_per_v: rig.model.motors[joint].torque_nm_per_v,
             count_rad: rig.model.encoder.count_rad(),
+            step_rad: rig.model.encoder.count_rad(),
             inertia_kg_m2: rig.model.own_inertia_kg_m2()[joint],
+            another: false,
             gravity_nm: falls.then_some([lumped.gravity_c, lumped.gravity_s]),
             cables: !self.fixture,
         };
-        Subject { joint, believed, trials: Vec::new(), points: Vec::new() }
+        let (trials, points, plateaus) = (Vec::new(), Vec::new(), Vec::new());
+        Subject { joint, believed, trials, points, foreign: false, plateaus }
     }
 
     fn protocol(&self, limit_v: f64) -> Result<Protocol, Failure> {
@@ -193,10 +238,18 @@ impl Trials {
         self.fixture || !self.logs.is_empty()
     }
 
+    /// The logs' names; of many that somebody else wrote the first.
+    fn log_names(&self) -> String {
+        if self.columns.is_empty() {
+            return table::names(&self.logs);
+        }
+        table::few(&self.logs.iter().map(|log| log.name.clone()).collect::<Vec<_>>())
+    }
+
     /// What was done, in words.
     pub(crate) fn in_words(&self) -> String {
         if !self.logs.is_empty() {
-            return table::names(&self.logs);
+            return self.log_names();
         }
         let held = if self.fixture {
             "in a fixture, each axis upright and free"
@@ -225,6 +278,66 @@ impl Seen {
 }
 
 impl Subject {
+    /// Takes in what is known of motion that somebody else wrote down.
+    fn foreign(&mut self, known: Option<Known>) -> Result<(), Failure> {
+        let Some(known) = known else { return Ok(()) };
+        self.foreign = true;
+        self.believed.another = true;
+        self.believed.step_rad = known.step_rad;
+        if known.speeds_alone && self.believed.gravity_nm.is_some() {
+            let message = format!(
+                "{}: weight turns it by its angle, and a log of speeds tells no angle: give positions (count= or angle= in --columns), \
+                 or --fixture if its axis stood upright",
+                self.joint
+            );
+            return Err(Failure::usage("friction-log", message));
+        }
+        // cables act by the angle, and hold nothing that turns on and on
+        self.believed.cables &= !known.speeds_alone && !known.free;
+        Ok(())
+    }
+
+    /// Leaves out trials and points whose speed stands at one value whatever the volts.
+    fn leave_out_saturated(&mut self) {
+        let by_motion = saturated(&self.trials, self.believed.count_rad, self.believed.step_rad);
+        let volts: Vec<(f64, f64)> =
+            self.points.iter().map(|p| (p.volts.unwrap_or_default(), p.rate_rad_s)).collect();
+        let by_points = plateau(&volts, 0.0);
+        drop_all(&mut self.trials, &by_motion);
+        drop_all(&mut self.points, &by_points);
+        self.plateaus = by_motion.into_iter().chain(by_points).collect();
+    }
+
+    /// Divides trials of somebody else's motor of which there are too few to tell how sure they are.
+    fn divide(&mut self) {
+        const FEW: usize = 6;
+        const PARTS: usize = 4;
+        if self.foreign && self.trials.len() < FEW {
+            let joint = self.joint;
+            let parts = self.trials.iter().flat_map(|trial| cut::divided(&trial.samples, PARTS));
+            self.trials = parts.map(|samples| Trial { joint, samples }).collect();
+        }
+    }
+
+    /// What was left out and why, a sentence each, after a line's end.
+    pub(crate) fn left_out(&self) -> String {
+        let one = |plateau: &Plateau| {
+            let (count, from) = (plateau.points.len(), plateau.from_v);
+            format!(
+                "\n{} left out: {} stands at {:.1} rad/s from {from:.2} V on, whatever the volts: the amplifier's limit.",
+                counted(count, "trial"),
+                if count == 1 { "its speed" } else { "their speed" },
+                plateau.value
+            )
+        };
+        self.plateaus.iter().map(one).collect()
+    }
+
+    /// Share of the speeds' variance that what was found makes of the volts alone; of motors that somebody else measured.
+    pub(crate) fn replayed(&self, found: &Curves) -> Option<f64> {
+        replayed(&self.trials, &self.believed, found).filter(|_| self.foreign)
+    }
+
     /// What the whole of its motion tells.
     pub(crate) fn curves(&self) -> Result<Curves, Failure> {
         if self.trials.is_empty() {

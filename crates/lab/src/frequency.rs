@@ -12,6 +12,8 @@ use crate::start::{OVER_TICKS, come_to_speed};
 pub struct Multisine {
     /// Ticks of a period.
     period_ticks: usize,
+    /// Length of a tick, s.
+    tick_s: f64,
     /// How many periods each sine has in it, rising.
     harmonics: Vec<usize>,
     /// Amplitude and phase of each sine, V.
@@ -76,7 +78,7 @@ impl Multisine {
         // such that they are not all at their top at once (Schroeder, *IEEE Trans. Inf. Theory* 16, 1970)
         let phase = |number: usize| -PI * (number * (number + 1)) as f64 / harmonics.len() as f64;
         let sines_v = (0..harmonics.len()).map(|number| complex::from_polar(each_v, phase(number))).collect();
-        Self { period_ticks, harmonics, sines_v }
+        Self { period_ticks, tick_s: TICK_F64_S, harmonics, sines_v }
     }
 
     /// What a record of volts, a tick each, has of sines with whole periods in `period_ticks`: all that are not small beside the largest, up to
@@ -91,7 +93,9 @@ impl Multisine {
         let mean =
             |tick: usize| volts.chunks_exact(period_ticks).map(|period| period[tick]).sum::<f64>() / count;
         let period: Vec<f64> = (0..period_ticks).map(mean).collect();
-        let all = Self { period_ticks, harmonics: (1..=period_ticks / 4).collect(), sines_v: Vec::new() };
+        let tick_s = TICK_F64_S;
+        let all =
+            Self { period_ticks, tick_s, harmonics: (1..=period_ticks / 4).collect(), sines_v: Vec::new() };
         let sines_v = amplitudes(&all, &period);
         let largest = sines_v.iter().map(|sine| complex::norm(*sine)).fold(0.0, f64::max);
         // what rounding leaves of a steady voltage is none
@@ -99,13 +103,19 @@ impl Multisine {
         let least = (SMALL * largest).max(rounding).max(f64::MIN_POSITIVE);
         let (harmonics, sines_v) =
             all.harmonics.into_iter().zip(sines_v).filter(|(_, sine)| complex::norm(*sine) >= least).unzip();
-        let found = Self { period_ticks, harmonics, sines_v };
+        let found = Self { period_ticks, tick_s, harmonics, sines_v };
         (!found.harmonics.is_empty()).then_some(found)
+    }
+
+    /// Sets the length of a tick, s.
+    #[must_use]
+    pub fn with_tick(self, tick_s: f64) -> Self {
+        Self { tick_s, ..self }
     }
 
     /// Its frequencies, rad/s.
     pub fn rad_s(&self) -> impl Iterator<Item = f64> + '_ {
-        let period_s = self.period_ticks as f64 * TICK_F64_S;
+        let period_s = self.period_ticks as f64 * self.tick_s;
         self.harmonics.iter().map(move |&k| TAU * k as f64 / period_s)
     }
 
@@ -175,6 +185,15 @@ pub fn frequency_response(multisine: &Multisine, angles_rad: &[f64]) -> Vec<Freq
         FrequencyPoint { rad_s, response: mean / volts, coherence, deviation: left.sqrt() }
     };
     multisine.rad_s().enumerate().map(point).collect()
+}
+
+/// What each sine of a voltage does to the angle, from speeds, rad/s: a speed is an angle times jω. See [`frequency_response`].
+pub fn frequency_response_of_speeds(multisine: &Multisine, rates_rad_s: &[f64]) -> Vec<FrequencyPoint> {
+    let angle = |point: FrequencyPoint| FrequencyPoint {
+        response: point.response / Complex::new(0.0, point.rad_s),
+        ..point
+    };
+    frequency_response(multisine, rates_rad_s).into_iter().map(angle).collect()
 }
 
 /// Sines, which are orthogonal over a period, and powers of time, which are not.

@@ -18,6 +18,7 @@ mod lesson;
 mod linearize;
 mod regression;
 mod relay;
+mod standing;
 mod start;
 mod statistics;
 mod step;
@@ -27,16 +28,19 @@ mod velocity;
 pub use amplifier::{Amplifier, CurrentPoint, amplifier};
 pub use backlash::{Backlash, SpotPoint, backlash};
 pub use encoder::{EdgeTime, EncoderTable, Lost, Spin, encoder_table, spin};
-pub use frequency::{Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response};
-pub use friction::{
-    Believed, Curves, FrictionError, Line, Part, Protocol, Sample, Shuttle, Side, Steady, SteadyPoint,
-    Travel, Trial, curves, free_trial, steady, steady_of,
+pub use frequency::{
+    Excitation, Excited, FrequencyPoint, Multisine, excite, frequency_response, frequency_response_of_speeds,
 };
-pub use identify::{Identification, IdentifyError, JointFit, LAPS_WORTH, identify, routine};
+pub use friction::{
+    Believed, Curves, FrictionError, Line, Part, Plateau, Protocol, Sample, Shuttle, Side, Steady,
+    SteadyPoint, Travel, Trial, curves, free_trial, plateau, replayed, saturated, steady, steady_of,
+};
+pub use identify::{Identification, IdentifyError, JointFit, LAPS_WORTH, identify, identify_one, routine};
 pub use lesson::{Ask, Check, Experiment, Graded, Lesson, Quantity};
 pub use linearize::{Linearization, Operation};
 pub use regression::Uncertain;
 pub use relay::{Degrees, Relay, RelayError, RelayPid, Swing, swing};
+pub use standing::standing;
 pub use statistics::Quantiles;
 pub use step::StepFigures;
 pub use tune::{Demand, Setting, around, coarse};

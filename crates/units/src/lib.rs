@@ -91,6 +91,19 @@ pub const ANGULAR_SPEEDS: &[Unit] = &[("rad/s", 1.0), ("deg/s", DEG)];
 /// Frequencies, as angular ones: 1 Hz is 2π rad/s.
 pub const FREQUENCIES: &[Unit] =
     &[("rad/s", 1.0), ("Hz", std::f64::consts::TAU), ("kHz", 1e3 * std::f64::consts::TAU), ("deg/s", DEG)];
+/// Times as logs have them, which count milliseconds or microseconds since a board woke up.
+pub const STAMPS: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0)];
+/// Speeds of shafts as logs have them.
+pub const SHAFT_SPEEDS: &[Unit] = &[
+    ("rad/s", 1.0),
+    ("deg/s", DEG),
+    ("rpm", std::f64::consts::TAU / 60.0),
+    ("turn/s", std::f64::consts::TAU),
+    ("turn/min", std::f64::consts::TAU / 60.0),
+];
+/// Angles of shafts as logs have them.
+pub const SHAFT_ANGLES: &[Unit] =
+    &[("rad", 1.0), ("mrad", 1e-3), ("deg", DEG), ("turn", std::f64::consts::TAU)];
 /// See [`LENGTHS`].
 pub const ANGULAR_ACCELERATIONS: &[Unit] = &[("rad/s2", 1.0), ("deg/s2", DEG)];
 /// See [`LENGTHS`].
@@ -131,8 +144,9 @@ pub fn parse(text: &str, units: &'static [Unit]) -> Result<f64, UnitError> {
     })
 }
 
-/// What one of a unit is in SI, however it is written.
-fn factor(unit: &str, units: &[Unit]) -> Option<f64> {
+/// What one of a unit is in SI, however it is written; `None` if it is none of these.
+#[must_use]
+pub fn factor(unit: &str, units: &[Unit]) -> Option<f64> {
     let named = |name: &str| units.iter().find(|u| u.0 == name).map(|u| u.1);
     named(unit).or_else(|| {
         let (name, share) = written::meant(unit)?;

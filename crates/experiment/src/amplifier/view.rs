@@ -5,11 +5,11 @@ use std::fmt::Write;
 use serde_json::json;
 use tracelight_chart::{Colour, Curve, Figure, Key, Panel, Pen, Theme};
 use tracelight_lab::{CurrentPoint, Uncertain};
-use tracelight_task::Failure;
+use tracelight_task::{Failure, counted};
 
 use super::{Finding, Found};
 use crate::finding::{self, Filed, svg};
-use crate::numbers::{HOW_SURE, milli};
+use crate::numbers::{HOW_SURE, lines, milli};
 use crate::parts::by_joint;
 use crate::table;
 
@@ -25,6 +25,7 @@ impl finding::Finding for Finding {
         } else {
             format!("{}, on rig {}", table::names(&self.of.logs), self.of.rig.name)
         };
+        text += &lines(&self.said);
         for Found { joint, told: amplifier, .. } in &self.joints {
             let had = self.of.rig.model.motors[*joint].torque_nm_per_v;
             let torque = self.of.torque_nm_per_a;
@@ -50,6 +51,12 @@ impl finding::Finding for Finding {
                 1e3 * amplifier.left_a,
                 amplifier.r2
             );
+            for limit in &self.left_out[*joint] {
+                let (readings, from_v) = (counted(limit.points.len(), "reading"), limit.from_v);
+                text += &format!(
+                    "\n{readings} left out: from {from_v:.2} V on nothing rises any more, whatever the volts: the amplifier's limit."
+                );
+            }
             if amplifier.back_emf.is_none() {
                 text += " No speeds tell the back-EMF: with the motor turning the amplifier looks weaker than it is.";
             }
@@ -59,7 +66,7 @@ impl finding::Finding for Finding {
 
     fn json(&self) -> String {
         let one = |Found { joint, told: amplifier, .. }: &Found| {
-            let object = json!({
+            let mut object = json!({
                 "a_per_v": amplifier.gain.value,
                 "back_emf_a_s_per_rad": amplifier.back_emf.map(|u| u.value),
                 "offset_a": amplifier.offset.value,
@@ -73,6 +80,13 @@ impl finding::Finding for Finding {
                     "offset_a": amplifier.offset.within,
                 },
             });
+            if !self.left_out[*joint].is_empty() {
+                let counts = self.left_out[*joint].iter().map(|limit| limit.points.len());
+                object["left_out"] = counts.sum::<usize>().into();
+            }
+            if !self.said.is_empty() {
+                object["read_as"] = self.said.clone().into();
+            }
             (*joint, object)
         };
         by_joint(self.joints.iter().map(one))

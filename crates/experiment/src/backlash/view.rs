@@ -9,7 +9,7 @@ use tracelight_task::Failure;
 
 use super::{Finding, Found, Reading};
 use crate::finding::{self, Filed, svg};
-use crate::numbers::{HOW_SURE, rounded};
+use crate::numbers::{HOW_SURE, lines, rounded};
 use crate::parts::by_joint;
 
 impl finding::Finding for Finding {
@@ -26,6 +26,7 @@ impl finding::Finding for Finding {
         } else {
             format!("{}, on rig {}", self.of.names(), self.of.rig.name)
         };
+        text += &lines(&self.said);
         for Found { joint, told: backlash, seen: readings } in &self.joints {
             // writing to a String cannot fail
             let _ = write!(
@@ -66,7 +67,7 @@ impl finding::Finding for Finding {
     fn json(&self) -> String {
         let count_rad = self.of.rig.model.encoder.count_rad();
         let one = |Found { joint, told: backlash, seen: readings }: &Found| {
-            let object = json!({
+            let mut object = json!({
                 "play_rad": backlash.play_rad.value,
                 "play_mm": 1e3 * self.of.distance_m * backlash.play_rad.value,
                 "zero_rad": backlash.zero_rad.value,
@@ -81,6 +82,9 @@ impl finding::Finding for Finding {
                     "slip_rad": backlash.slip_rad.within,
                 },
             });
+            if !self.said.is_empty() {
+                object["read_as"] = self.said.clone().into();
+            }
             (*joint, object)
         };
         by_joint(self.joints.iter().map(one))

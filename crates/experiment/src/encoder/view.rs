@@ -9,7 +9,7 @@ use tracelight_task::{Failure, counted};
 
 use super::{Finding, Found};
 use crate::finding::{self, Filed, svg};
-use crate::numbers::{HOW_SURE, rounded};
+use crate::numbers::{HOW_SURE, lines, rounded};
 use crate::parts::by_joint;
 use crate::table::names;
 
@@ -26,6 +26,7 @@ impl finding::Finding for Finding {
         } else {
             format!("{}, on rig {}", names(&self.of.logs), self.of.rig.name)
         };
+        text += &lines(&self.said);
         for Found { joint, told: table, .. } in &self.joints {
             // writing to a String cannot fail
             let _ = write!(text, "\n\n{:44} {:>18}", joint.name(), "found, counts");
@@ -57,7 +58,7 @@ impl finding::Finding for Finding {
     fn json(&self) -> String {
         let one = |Found { joint, told: table, .. }: &Found| {
             let lost = |lost: &Lost| json!({"t_s": lost.time_s, "count": lost.count, "counts": lost.counts});
-            let object = json!({
+            let mut object = json!({
                 "edges": table.edges,
                 "kinds_counts": table.kinds_counts.map(|u| u.value),
                 "eccentricity_counts": table.eccentricity.map(|(u, _)| u.value),
@@ -69,6 +70,9 @@ impl finding::Finding for Finding {
                     "eccentricity_counts": table.eccentricity.map(|(u, _)| u.within),
                 },
             });
+            if !self.said.is_empty() {
+                object["read_as"] = self.said.clone().into();
+            }
             (*joint, object)
         };
         by_joint(self.joints.iter().map(one))

@@ -12,6 +12,7 @@ use tracelight_task::Failure;
 
 use super::{Finding, Measured};
 use crate::finding::{self, Plotted};
+use crate::numbers::lines;
 use crate::panels::of_joint;
 
 impl finding::Finding for Finding {
@@ -64,14 +65,17 @@ impl finding::Finding for Finding {
                 "model_phase_deg": self.model.phases_rad[number].to_degrees(),
             })
         };
-        json!({
+        let mut object = json!({
             "axis": self.of.joint.name(),
             "bias_v": self.measured.bias_v,
             "one_way": self.measured.seen.one_way,
             "coherent_to_rad_s": self.coherent_to(),
             "points": self.points.iter().enumerate().map(one).collect::<Vec<_>>(),
-        })
-        .to_string()
+        });
+        if !self.measured.said.is_empty() {
+            object["read_as"] = self.measured.said.clone().into();
+        }
+        object.to_string()
     }
 }
 
@@ -182,10 +186,13 @@ impl Finding {
     fn in_words(&self) -> String {
         let (joint, sines) = (self.of.joint, self.points.len());
         match &self.of.log {
-            Some(log) => format!(
-                "{joint} by {}, on rig {}: {sines} sines that repeat each {} s, about {:.3} V",
-                log.name, self.of.rig.name, self.of.period_s, self.measured.bias_v
-            ),
+            Some(log) => {
+                let by = format!(
+                    "{joint} by {}, on rig {}: {sines} sines that repeat each {} s, about {:.3} V",
+                    log.name, self.of.rig.name, self.of.period_s, self.measured.bias_v
+                );
+                by + &lines(&self.measured.said)
+            }
             None => format!(
                 "{joint} of rig {} in a fixture, turning with {} rad/s under {:.3} V, {sines} sines together like one of {} V, {} periods of {} s",
                 self.of.rig.name,

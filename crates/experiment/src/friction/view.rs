@@ -10,17 +10,18 @@ use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
 use super::plot::figure;
-use super::{Finding, Found};
+use super::{Finding, Found, Unscaled};
 use crate::finding::{self, Filed, Improved, svg};
-use crate::numbers::{HOW_SURE, milli};
+use crate::numbers::{HOW_SURE, four, lines, milli};
 use crate::parts::by_joint;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
         let rig = self.rig();
-        let mut text = self.trials.in_words();
+        let mut text = self.trials.in_words() + &lines(&self.said);
         for one in &self.joints {
             text += &table(rig, one);
+            text += &one.subject.left_out();
             if let Some(curves) = &one.curves {
                 let trials = one.subject.trials.len();
                 // writing to a String cannot fail
@@ -28,13 +29,21 @@ impl finding::Finding for Finding {
                 text += &verdict(one).map_or(String::new(), |verdict| format!(" {verdict}"));
                 text += &against_gravity(rig, one);
                 text += &below_nothing(one);
+                text += &unscaled(one);
             }
         }
         text + HOW_SURE
     }
 
     fn json(&self) -> String {
-        by_joint(self.joints.iter().map(|one| (one.subject.joint, joint_json(one))))
+        let object = |one: &Found| {
+            let mut object = joint_json(one);
+            if !self.said.is_empty() {
+                object["read_as"] = self.said.clone().into();
+            }
+            (one.subject.joint, object)
+        };
+        by_joint(self.joints.iter().map(object))
     }
 }
 
@@ -71,7 +80,7 @@ fn table(rig: &RigConfig, one: &Found) -> String {
         let mut known = |words: &str, value: Option<Uncertain>, had: f64| {
             rows.push([words.into(), String::new(), milli(value), format!("{:.4}", 1e3 * had)]);
         };
-        known("inertia, g m²", curves.inertia_kg_m2, believed.inertia_kg_m2);
+        known("inertia, g m²", curves.inertia_kg_m2, rig.model.own_inertia_kg_m2()[one.subject.joint]);
         if let Some([level, upright]) = believed.gravity_nm {
             known("weight, beam level, mNm", curves.gravity_nm.map(|g| g[0]), level);
             known("weight, upright, mNm", curves.gravity_nm.map(|g| g[1]), upright);
@@ -106,14 +115,33 @@ fn verdict(one: &Found) -> Option<String> {
     let pairs = of(one.as_the_report()).into_iter().zip(of(one.sides()));
     let steep = pairs.filter_map(|(last, whole)| Some(last? / whole?)).find(|steep| steep.is_finite())?;
     let constant_s = one.time_constant_s()?;
-    let said =
-        format!("Within J/Fv = {constant_s:.0} s a speed comes to all but 1/e of what a voltage allows");
+    let constant = if constant_s < 1.0 { four(constant_s) } else { format!("{constant_s:.0}") };
+    let said = format!("Within J/Fv = {constant} s a speed comes to all but 1/e of what a voltage allows");
     if (1.0 / AS_GOOD..AS_GOOD).contains(&steep) {
         return Some(format!("{said}: the last speeds\nare as good as steady."));
     }
     Some(format!(
         "{said}: the last speeds\nare not steady, and a line through them, straight as it is, is {steep:.1} times too steep."
     ))
+}
+
+/// What does not depend on the rig file's torque per volt, and how well the volts alone make the speeds.
+fn unscaled(one: &Found) -> String {
+    let Some(sides) = one.unscaled() else { return String::new() };
+    let side = |(side, way): (Option<Unscaled>, &str)| {
+        let Unscaled { rad_s_per_v, beyond_v, time_constant_s } = side?;
+        let constant = time_constant_s.map_or(String::new(), |s| format!(", time constant {} s", four(s)));
+        Some(format!("{way} {} rad/s a volt beyond {} V{constant}", four(rad_s_per_v), four(beyond_v)))
+    };
+    let known: Vec<String> = sides.into_iter().zip(["forwards", "backwards"]).filter_map(side).collect();
+    let mut text = String::new();
+    if !known.is_empty() {
+        text += &format!("\nWhatever the torque per volt: {}.", known.join("; "));
+    }
+    if let Some(r2) = one.replayed {
+        text += &format!("\nFrom the volts alone the model makes its speeds with r² {r2:.4}.");
+    }
+    text
 }
 
 /// What is found below nothing and cannot be written so.
@@ -162,6 +190,17 @@ fn joint_json(one: &Found) -> Value {
         object["cable_spring_nm_per_rad"] = curves.spring_nm_per_rad.map(|u| u.value).into();
         object["trials"] = one.subject.trials.len().into();
         object["turned"] = curves.trials.into();
+    }
+    if let Some(sides) = one.unscaled() {
+        let each = |of: fn(Unscaled) -> Option<f64>| sides.map(|side| side.and_then(of));
+        object["rad_s_per_v"] = json!(each(|side| Some(side.rad_s_per_v)));
+        object["coulomb_v"] = json!(each(|side| Some(side.beyond_v)));
+        object["time_constants_s"] = json!(each(|side| side.time_constant_s));
+        object["replayed_r2"] = one.replayed.into();
+    }
+    if !one.subject.plateaus.is_empty() {
+        object["left_out"] =
+            one.subject.plateaus.iter().map(|plateau| plateau.points.len()).sum::<usize>().into();
     }
     object
 }

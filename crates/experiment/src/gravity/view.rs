@@ -9,7 +9,7 @@ use tracelight_task::Failure;
 
 use super::Finding;
 use crate::finding::{self, Filed, Improved, svg};
-use crate::numbers::{HOW_SURE, milli};
+use crate::numbers::{HOW_SURE, lines, milli};
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
@@ -19,10 +19,12 @@ impl finding::Finding for Finding {
             format!("\n{words:26} {:>22} {:>17.4}", milli(found), 1e3 * had)
         };
         self.trials.in_words()
+            + &lines(&self.said)
             + &format!("\n\n{:26} {:>22} {:>17}", "tilt", "found", "the rig file has")
             + &row("weight, beam level, mNm", Some(self.weight.nm[0]), believed[0])
             + &row("weight, beam upright, mNm", Some(self.weight.nm[1]), believed[1])
             + &row("cables, mNm/rad", self.weight.spring_nm_per_rad, spring)
+            + &self.subject.left_out()
             + HOW_SURE
     }
 

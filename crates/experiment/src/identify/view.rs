@@ -11,6 +11,7 @@ use tracelight_task::Failure;
 
 use super::Finding;
 use crate::finding::{self, Filed, Improved};
+use crate::numbers::lines;
 use crate::record;
 
 /// A figure of a joint.
@@ -51,6 +52,9 @@ fn weight(rig: &RigConfig, joint: Joint) -> (f64, f64) {
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
+        if let &[joint] = self.joints.as_slice() {
+            return self.one_joint(joint);
+        }
         let (rig, found) = (self.rig(), &self.found);
         let ticks: usize = self.records.iter().map(Vec::len).sum();
         let JointFit { stretches, edges, .. } = found.joints.pan;
@@ -117,7 +121,49 @@ impl finding::Finding for Finding {
                 "found": figures(&found.rig),
             })
         };
-        json!({ "pan": joint(Joint::Pan), "tilt": joint(Joint::Tilt) }).to_string()
+        let mut all: serde_json::Map<String, Value> =
+            self.joints.iter().map(|&j| (j.name().to_owned(), joint(j))).collect();
+        if !self.said.is_empty() {
+            all.insert("read_as".into(), self.said.clone().into());
+        }
+        Value::Object(all).to_string()
+    }
+}
+
+impl Finding {
+    /// The table of one joint, by records of nothing else.
+    fn one_joint(&self, joint: Joint) -> String {
+        let (rig, found, fit) = (self.rig(), &self.found, &self.found.joints[joint]);
+        let ticks: usize = self.records.iter().map(Vec::len).sum();
+        let mut text = format!(
+            "{}: {joint} identified from {:.1} s: {} stretches of its motion with {} edges{}\n\n{:34} {:>10} {:>10}",
+            rig.name,
+            ticks as f64 * TICK_F64_S,
+            fit.stretches,
+            fit.edges,
+            lines(&self.said),
+            "",
+            format!("{joint} was"),
+            "is"
+        );
+        for (_, words, times, value) in FIGURES {
+            // writing to a String cannot fail
+            let _ = write!(
+                text,
+                "\n{words:34} {:10.3} {:10.3}",
+                times * value(rig, joint),
+                times * value(&found.rig, joint)
+            );
+        }
+        let _ = write!(
+            text,
+            "\n{:34} {:10.3} {:10.3}\n",
+            "edges off the model, counts rms", fit.before_counts, fit.after_counts
+        );
+        if !fit.taken {
+            text += "\nwhat was found explains its motion no better; what was believed is kept";
+        }
+        text
     }
 }
 

@@ -7,13 +7,13 @@ use tracelight_lab::Uncertain;
 
 use super::Finding;
 use crate::finding::{self, Improved};
-use crate::numbers::{HOW_SURE, milli};
+use crate::numbers::{HOW_SURE, lines, milli};
 use crate::parts::by_joint;
 use crate::trials::Subject;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
-        let mut text = self.trials.in_words();
+        let mut text = self.trials.in_words() + &lines(&self.said);
         let _ = write!(
             text,
             "\n\n{:10} {:>22} {:>17} {:>17}",
@@ -21,7 +21,8 @@ impl finding::Finding for Finding {
         );
         for (subject, inertia) in &self.joints {
             let rotor = self.rig().model.bodies.rotor_kg_m2[subject.joint];
-            let (had, cell) = (subject.believed.inertia_kg_m2, milli(Some(*inertia)));
+            let had = self.rig().model.own_inertia_kg_m2()[subject.joint];
+            let cell = milli(Some(*inertia));
             // writing to a String cannot fail
             let _ = write!(
                 text,
@@ -31,6 +32,7 @@ impl finding::Finding for Finding {
                 1e3 * rotor
             );
         }
+        text += &self.joints.iter().map(|(subject, _)| subject.left_out()).collect::<String>();
         text + HOW_SURE
     }
 
@@ -39,7 +41,7 @@ impl finding::Finding for Finding {
             let object = json!({
                 "inertia_kg_m2": inertia.value,
                 "within": inertia.within,
-                "believed_kg_m2": subject.believed.inertia_kg_m2,
+                "believed_kg_m2": self.rig().model.own_inertia_kg_m2()[subject.joint],
             });
             (subject.joint, object)
         };

@@ -6,6 +6,7 @@ use tracelight_lab::{Sample, SteadyPoint, Trial};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_task::Failure;
 
+use crate::columns::Columns as Told;
 use crate::record::MOST_V;
 use crate::table::{self, Log, Names, Row};
 
@@ -14,11 +15,53 @@ const MOST_TRIALS: usize = 10_000;
 /// A longer time between two rows is a new trial, s.
 const LONGEST_GAP_S: f64 = 10.0;
 
+/// Whether a log has this program's columns.
+pub(super) fn is_own(log: &Log) -> bool {
+    const OWN: [&str; 6] = ["axis", "volt", "time_s", "count", "torque_nm", "velocity_rad_s"];
+    table::is_own(log, &OWN, |names| columns(names).is_ok())
+}
+
 /// What logs have of each joint.
 #[derive(Default)]
 pub(super) struct Logged {
     pub(super) trials: PanTilt<Vec<Trial>>,
     pub(super) points: PanTilt<Vec<SteadyPoint>>,
+    /// What is known of motion that others wrote down; `None` where there is none.
+    pub(super) foreign: PanTilt<Option<Known>>,
+    /// What was taken for what, and in which logs.
+    said: Vec<(Vec<String>, String)>,
+}
+
+/// What is known of motion that others wrote down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Known {
+    /// How finely places are known, rad.
+    pub(super) step_rad: f64,
+    /// Speeds were seen, and no places: where the joint stood is not known.
+    pub(super) speeds_alone: bool,
+    /// Turned by more than a turn, so that no cable holds it.
+    pub(super) free: bool,
+}
+
+impl Known {
+    /// What is known of both.
+    pub(super) const fn with(self, other: Self) -> Self {
+        Self {
+            step_rad: self.step_rad.max(other.step_rad),
+            speeds_alone: self.speeds_alone || other.speeds_alone,
+            free: self.free || other.free,
+        }
+    }
+}
+
+/// What is told of logs that are not this program's.
+pub(super) struct How<'a> {
+    pub(super) told: &'a Told,
+    /// The joint that they are of, where no column says.
+    pub(super) axis: Option<Joint>,
+    /// Width of a count, rad, and torque a volt of each joint, N m.
+    pub(super) count_rad: f64,
+    pub(super) torque_nm_per_v: PanTilt<f64>,
 }
 
 /// Which columns hold what.
@@ -45,9 +88,22 @@ fn columns(names: &Names) -> Result<(usize, Columns), String> {
 }
 
 impl Logged {
-    /// Reads one more log.
+    /// Reads one more log with this program's columns.
     pub(super) fn read(&mut self, log: &Log) -> Result<(), Failure> {
         self.parse(&log.bytes).map_err(|what| Failure::usage("friction-log", format!("{}{what}", log.name)))
+    }
+
+    /// Puts down what was taken for what in a log.
+    pub(super) fn say(&mut self, name: &str, what: &str) {
+        match self.said.iter_mut().find(|(_, said)| said == what) {
+            Some((names, _)) => names.push(name.to_owned()),
+            None => self.said.push((vec![name.to_owned()], what.to_owned())),
+        }
+    }
+
+    /// What was taken for what, a line each.
+    pub(super) fn lines(&self) -> impl Iterator<Item = String> {
+        self.said.iter().map(|(names, what)| format!("{}: {what}", table::few(names)))
     }
 
     fn parse(&mut self, bytes: &[u8]) -> Result<(), String> {
@@ -63,7 +119,8 @@ impl Logged {
         match *columns {
             Columns::Counted { volt, time_s, count } => {
                 let volts = row.up_to(volt, MOST_V, "any amplifier takes, V")?;
-                let sample = Sample { time_s: row.number(time_s)?, volts, count: row.whole(count)? };
+                let sample =
+                    Sample { time_s: row.number(time_s)?, volts, count: f64::from(row.whole(count)?) };
                 self.put(joint, sample);
                 if self.trials[joint].len() > MOST_TRIALS {
                     return Err(format!(
@@ -118,7 +175,7 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        let sample = |k: i32| Sample { time_s: 0.01 * f64::from(k), volts: 0.75, count: k * k };
+        let sample = |k: i32| Sample { time_s: 0.01 * f64::from(k), volts: 0.75, count: f64::from(k * k) };
         let trial = |joint| Trial { joint, samples: (0..5).map(sample).collect() };
         let all = [trial(Joint::Pan), trial(Joint::Pan), trial(Joint::Tilt)];
         let log = parsed(&write(all.iter())).unwrap();

@@ -89,10 +89,14 @@ pub fn curves(joint: Joint, trials: &[&Trial], believed: &Believed) -> Result<Cu
     {
         return Err(FrictionError::Impossible { joint, inertia_kg_m2: inertia.value });
     }
+    let reach = Reach::of(trials, &used, believed);
     let side = |s: usize| {
-        let (viscous, coulomb_nm) = (fit.value(VISCOUS[s])?, fit.value(COULOMB[s])?);
-        Some(Side { viscous, coulomb_nm })
+        let found = Side { viscous: fit.value(VISCOUS[s])?, coulomb_nm: fit.value(COULOMB[s])? };
+        reach.tells(&found, s).then_some(found)
     };
+    if side(0).is_none() && side(1).is_none() {
+        return Err(FrictionError::Alike { joint });
+    }
     let gravity = fit.value(GRAVITY[0]).zip(fit.value(GRAVITY[1]));
     let mut found = Curves {
         inertia_kg_m2: fit.value(INERTIA),
@@ -106,6 +110,39 @@ pub fn curves(joint: Joint, trials: &[&Trial], believed: &Believed) -> Result<Cu
     };
     found.parts = parts(trials, believed, &found);
     Ok(found)
+}
+
+/// How strong the motor was in all trials, and how fast it turned each way: what is known of friction to no less than that is not known.
+struct Reach {
+    torque_nm: f64,
+    /// Lowest and highest.
+    rates_rad_s: [(f64, f64); 2],
+}
+
+impl Reach {
+    fn of(trials: &[&Trial], pieces: &[&Piece], believed: &Believed) -> Self {
+        let volts = trials.iter().flat_map(|trial| &trial.samples).map(|sample| sample.volts.abs());
+        let rate = |side: usize| {
+            let own = pieces.iter().filter(|piece| piece.side == side).map(|piece| piece.rate_rad_s.abs());
+            own.fold((f64::INFINITY, 0.0_f64), |(low, high), rate| (low.min(rate), high.max(rate)))
+        };
+        Self {
+            torque_nm: believed.torque_nm_per_v * volts.fold(0.0, f64::max),
+            rates_rad_s: [rate(0), rate(1)],
+        }
+    }
+
+    fn tells(&self, found: &Side, side: usize) -> bool {
+        /// Shares of the highest speed by which speeds differ at least: at one speed nothing tells viscous from Coulomb friction.
+        const VARIED: f64 = 0.02;
+        let (low, high) = self.rates_rad_s[side];
+        // three trials of one kind tell no interval, and that is said where it is shown
+        let within = |u: Uncertain| if u.within.is_finite() { u.within } else { 0.0 };
+        let viscous_nm = within(found.viscous) * high;
+        high - low > VARIED * high
+            && viscous_nm <= self.torque_nm
+            && within(found.coulomb_nm) <= self.torque_nm
+    }
 }
 
 /// What is left of the motor's torque on each short stretch.

@@ -33,10 +33,16 @@ pub(super) fn fit(pieces: &[&Piece], unknowns: Vec<usize>, believed: &Believed) 
     let all = Equations::new(pieces, unknowns, believed);
     let (each, sum) = all.normal();
     let counting = TOLD * all.counting(pieces);
-    if inverse(&sum.matrix).is_some_and(|inverse| 1.0 > counting * inverse[(0, 0)]) {
-        return all.solve(each, sum);
+    let rest = all.unknowns.iter().copied().filter(|&k| k != INERTIA).collect();
+    // an inertia that comes out below nothing, and may as well be above, is not told
+    if inverse(&sum.matrix).is_some_and(|inverse| 1.0 > counting * inverse[(0, 0)])
+        && let Some(found) = all.solve(each, sum)
+        && found
+            .value(INERTIA)
+            .is_none_or(|inertia| inertia.value > 0.0 || inertia.value + inertia.within < 0.0)
+    {
+        return Some(found);
     }
-    let rest = all.unknowns.into_iter().filter(|&k| k != INERTIA).collect();
     let rest = Equations::new(pieces, rest, believed);
     let (each, sum) = rest.normal();
     rest.solve(each, sum)
@@ -54,7 +60,7 @@ struct Equations<'a> {
 impl<'a> Equations<'a> {
     fn new(pieces: &'a [&'a Piece], unknowns: Vec<usize>, believed: &'a Believed) -> Self {
         let mut known = [0.0; UNKNOWNS];
-        if !unknowns.contains(&INERTIA) {
+        if !unknowns.contains(&INERTIA) && !believed.another {
             known[INERTIA] = believed.inertia_kg_m2;
         }
         Self { pieces, unknowns, known, believed }
@@ -66,7 +72,7 @@ impl<'a> Equations<'a> {
 
     /// Variance of a count's place, rad².
     fn count_variance(&self) -> f64 {
-        self.believed.count_rad * self.believed.count_rad / 12.0
+        self.believed.step_rad * self.believed.step_rad / 12.0
     }
 
     /// What counting adds to the square of the inertia's column, rad²: place and speed at the start are free.

@@ -16,6 +16,8 @@ mod fit;
 mod line;
 mod pieces;
 mod protocol;
+mod replay;
+mod saturated;
 mod steady;
 
 use tracelight_rig::Joint;
@@ -24,6 +26,8 @@ pub use curves::{Curves, Part, curves};
 pub use error::FrictionError;
 pub use line::{Line, Side};
 pub use protocol::{Protocol, Shuttle, Travel, free_trial};
+pub use replay::replayed;
+pub use saturated::{Plateau, plateau, saturated};
 pub use steady::{Steady, SteadyPoint, steady, steady_of};
 
 /// Reading of a joint under a voltage.
@@ -33,8 +37,8 @@ pub struct Sample {
     pub time_s: f64,
     /// Mean voltage from here to the next sample, V.
     pub volts: f64,
-    /// What the encoder counted.
-    pub count: i32,
+    /// What the encoder counted; between counts where a finer place is known.
+    pub count: f64,
 }
 
 /// A joint's motion under a voltage.
@@ -53,8 +57,12 @@ pub struct Believed {
     pub torque_nm_per_v: f64,
     /// Width of a count, rad.
     pub count_rad: f64,
+    /// How finely places are known, rad: a count's width where they are counted.
+    pub step_rad: f64,
     /// kg m²; kept where no motion tells it.
     pub inertia_kg_m2: f64,
+    /// Whether the motor is another than the one that this is believed of: where motion tells no inertia, it has none.
+    pub another: bool,
     /// Gravity with cos and sin of the angle, N m; none where it does not turn the joint.
     pub gravity_nm: Option<[f64; 2]>,
     /// Whether cables may pull at it, the more the further it turns.
@@ -64,7 +72,7 @@ pub struct Believed {
 impl Trial {
     /// What the joint turned by, rad, at each sample.
     fn angles(&self, count_rad: f64) -> Vec<f64> {
-        self.samples.iter().map(|s| f64::from(s.count) * count_rad).collect()
+        self.samples.iter().map(|s| s.count * count_rad).collect()
     }
 
     /// Time from the first sample to the last, s.

@@ -28,6 +28,8 @@ pub(super) struct Piece {
     pub(super) side: usize,
     /// Where the joint was in its middle, rad.
     pub(super) angle_rad: f64,
+    /// Its mean speed, rad/s.
+    pub(super) rate_rad_s: f64,
     /// One a sample.
     pub(super) rows: Vec<Row>,
 }
@@ -49,7 +51,7 @@ pub(super) fn trials_of<'a>(pieces: impl Iterator<Item = &'a Piece>) -> usize {
 /// A trial's motion one way in pieces of equal length.
 pub(super) fn pieces(number: usize, trial: &Trial, believed: &Believed, longest_s: f64) -> Vec<Piece> {
     let angles = trial.angles(believed.count_rad);
-    let cut = stretches(trial, believed.count_rad).into_iter().flat_map(|(from, to, side)| {
+    let cut = stretches(trial, believed).into_iter().flat_map(|(from, to, side)| {
         let length_s = trial.samples[to - 1].time_s - trial.samples[from].time_s;
         let parts = (length_s / longest_s).ceil().max(1.0) as usize;
         let end = move |part: usize| from + (to - 1 - from) * part / parts;
@@ -57,17 +59,19 @@ pub(super) fn pieces(number: usize, trial: &Trial, believed: &Believed, longest_
     });
     let piece = |(from, to, side): (usize, usize, usize)| {
         let rows = rows(&trial.samples[from..to], &angles[from..to], believed, side);
-        Piece { trial: number, side, angle_rad: angles[(from + to) / 2], rows }
+        let lasts_s = trial.samples[to - 1].time_s - trial.samples[from].time_s;
+        let rate_rad_s = (angles[to - 1] - angles[from]) / lasts_s;
+        Piece { trial: number, side, angle_rad: angles[(from + to) / 2], rate_rad_s, rows }
     };
     cut.map(piece).collect()
 }
 
 /// From, to (not in it) and side of each stretch of motion.
-fn stretches(trial: &Trial, count_rad: f64) -> Vec<(usize, usize, usize)> {
-    let least = LEAST_RAD_S.max(LEAST_COUNTS * count_rad / JUDGED_S);
+fn stretches(trial: &Trial, believed: &Believed) -> Vec<(usize, usize, usize)> {
+    let least = LEAST_RAD_S.max(LEAST_COUNTS * believed.step_rad / JUDGED_S);
     let way = |rate: f64| if rate.abs() < least { None } else { Some(usize::from(rate < 0.0)) };
     let ways: Vec<Option<usize>> =
-        trial.speeds(count_rad, JUDGED_S).into_iter().map(|(_, rate)| way(rate)).collect();
+        trial.speeds(believed.count_rad, JUDGED_S).into_iter().map(|(_, rate)| way(rate)).collect();
     let mut found = Vec::new();
     let mut from = 0;
     for run in ways.chunk_by(|a, b| a == b) {

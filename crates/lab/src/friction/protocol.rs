@@ -136,7 +136,7 @@ impl<'a, H: Head> Drive<'a, H> {
         if self.ticks.is_multiple_of(EVERY_TICKS) {
             self.close_sample();
             let time_s = self.ticks as f64 * TICK_F64_S;
-            self.samples.push(Sample { time_s, volts: 0.0, count: self.count() });
+            self.samples.push(Sample { time_s, volts: 0.0, count: f64::from(self.count()) });
         }
         let mut actuation = Actuation::default();
         actuation.command_v[self.joint] = volts as f32;
@@ -163,7 +163,7 @@ impl<'a, H: Head> Drive<'a, H> {
             self.close_sample();
             let time_s = self.ticks as f64 * TICK_F64_S;
             let volts = self.samples.last().map_or(0.0, |s| s.volts);
-            self.samples.push(Sample { time_s, volts, count: self.count() });
+            self.samples.push(Sample { time_s, volts, count: f64::from(self.count()) });
         }
         self.ticks = 0;
         Trial { joint: self.joint, samples: std::mem::take(&mut self.samples) }

@@ -39,7 +39,7 @@ pub fn steady(trials: &[&Trial], torque_nm_per_v: f64, count_rad: f64) -> Steady
         let last = hold[hold.len() - 1];
         let span_s = END_S.min(0.5 * length(hold));
         let from = hold.partition_point(|s| s.time_s < last.time_s - span_s - 1e-9).min(hold.len() - 2);
-        let turned = f64::from(last.count - hold[from].count) * count_rad;
+        let turned = (last.count - hold[from].count) * count_rad;
         SteadyPoint {
             volts: Some(hold[0].volts),
             torque_nm: torque_nm_per_v * hold[0].volts,

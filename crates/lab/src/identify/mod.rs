@@ -52,8 +52,8 @@ const BETTER: f64 = 0.98;
 /// Laps that are worth keeping to identify a head from: what the last of them do not tell, more do not.
 pub const LAPS_WORTH: usize = 3;
 
-/// One joint's identification.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// One joint's identification; all zero of a joint that was not asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointFit {
     /// Stretches of motion it was identified from.
     pub stretches: usize,
@@ -100,18 +100,36 @@ pub fn identify<R: AsRef<[Telemetry]>>(
 ) -> Result<Identification, IdentifyError> {
     let records: &[&[Telemetry]] = &records.iter().map(AsRef::as_ref).collect::<Vec<_>>();
     let found = PanTilt::new(joint(rig, records, Joint::Pan)?, joint(rig, records, Joint::Tilt)?);
-    let mut joints = found.map(|(_, fit)| fit);
+    Ok(told(rig, found.map(Some)))
+}
+
+/// Identifies one joint of a rig alone; the other stood at zero.
+pub fn identify_one<R: AsRef<[Telemetry]>>(
+    rig: &RigConfig,
+    records: &[R],
+    only: Joint,
+) -> Result<Identification, IdentifyError> {
+    let records: &[&[Telemetry]] = &records.iter().map(AsRef::as_ref).collect::<Vec<_>>();
+    let mut found = PanTilt::new(None, None);
+    found[only] = Some(joint(rig, records, only)?);
+    Ok(told(rig, found))
+}
+
+/// The rig with what is better of what was found.
+fn told(rig: &RigConfig, found: PanTilt<Option<(Equations, JointFit)>>) -> Identification {
+    let mut joints = found.map(|one| one.map_or_else(JointFit::default, |(_, fit)| fit));
     let mut changed = rig.clone();
     // tilt first: where its body's weight sits is part of what pan turns
     for j in [Joint::Tilt, Joint::Pan] {
+        let Some((equations, _)) = &found[j] else { continue };
         let mut told = changed.clone();
-        found[j].0.tell(&mut told, j, joints[j].after_counts);
+        equations.tell(&mut told, j, joints[j].after_counts);
         joints[j].taken &= told.model.bodies.rotor_kg_m2[j] >= 0.0;
         if joints[j].taken {
             changed = told;
         }
     }
-    Ok(Identification { rig: changed, joints })
+    Identification { rig: changed, joints }
 }
 
 /// One joint's equations as they fit best, and whether they are better than those that are believed.

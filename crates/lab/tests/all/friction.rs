@@ -15,7 +15,9 @@ fn believed(rig: &RigConfig, joint: Joint, mounting: Mounting) -> Believed {
     Believed {
         torque_nm_per_v: rig.model.motors[joint].torque_nm_per_v,
         count_rad: rig.model.encoder.count_rad(),
+        step_rad: rig.model.encoder.count_rad(),
         inertia_kg_m2: rig.model.own_inertia_kg_m2()[joint],
+        another: false,
         gravity_nm: falls.then_some([lumped.gravity_c, lumped.gravity_s]),
         cables: mounting == Mounting::Standing,
     }
@@ -98,7 +100,7 @@ fn a_head_with_stops_tells_the_same_within_its_range() {
         let shuttle = Shuttle { protocol: &protocol, travel, believed: &believed, limit_v: 10.0 };
         let mut head = head_alone(&rig, joint, Mounting::Standing, 0);
         let trials = shuttle.trials(&mut head, joint, |_| ControlFlow::Continue(()));
-        let counts = trials.iter().flat_map(|t| t.samples.iter().map(|s| f64::from(s.count)));
+        let counts = trials.iter().flat_map(|t| t.samples.iter().map(|s| s.count));
         let reach = counts.fold(0.0, |most, c| f64::max(most, c.abs())) * believed.count_rad;
         assert!(reach < upper_rad && reach > 0.7 * upper_rad, "{joint}: {reach}");
         let trials: Vec<&Trial> = trials.iter().collect();
@@ -130,7 +132,9 @@ fn steady_logs_are_enough() {
     let believed = Believed {
         torque_nm_per_v: 0.08,
         count_rad: 1.534e-3,
+        step_rad: 1.534e-3,
         inertia_kg_m2: 0.076,
+        another: false,
         gravity_nm: None,
         cables: false,
     };
@@ -138,11 +142,7 @@ fn steady_logs_are_enough() {
         let volts = truth.torque(rate) / believed.torque_nm_per_v;
         let samples = (0..500).map(|k| {
             let time_s = 0.02 * f64::from(k);
-            tracelight_lab::Sample {
-                time_s,
-                volts,
-                count: (rate * time_s / believed.count_rad).round() as i32,
-            }
+            tracelight_lab::Sample { time_s, volts, count: (rate * time_s / believed.count_rad).round() }
         });
         Trial { joint: Joint::Pan, samples: samples.collect() }
     };
@@ -240,10 +240,10 @@ fn what_no_joint_can_be_is_refused() {
 
 #[test]
 fn times_that_hardly_differ_and_holds_of_two_samples_are_borne() {
-    let sample = |time_s: f64, count: i32| tracelight_lab::Sample { time_s, volts: 1.0, count };
+    let sample = |time_s: f64, count: f64| tracelight_lab::Sample { time_s, volts: 1.0, count };
     let odd = [
-        Trial { joint: Joint::Pan, samples: vec![sample(0.0, 0), sample(1e-300, 5)] },
-        Trial { joint: Joint::Pan, samples: vec![sample(0.0, 0), sample(1.0, 700)] },
+        Trial { joint: Joint::Pan, samples: vec![sample(0.0, 0.0), sample(1e-300, 5.0)] },
+        Trial { joint: Joint::Pan, samples: vec![sample(0.0, 0.0), sample(1.0, 700.0)] },
     ];
     let odd: Vec<&Trial> = odd.iter().collect();
     assert_eq!(odd[0].speeds(1.5e-3, 0.1).len(), 2);

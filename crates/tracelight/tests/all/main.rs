@@ -31,6 +31,7 @@ mod made_examples;
 #[allow(dead_code, reason = "its `main` writes the files")]
 mod make_examples;
 mod net_camera;
+mod own_logs;
 mod paper;
 mod preview;
 mod quality;

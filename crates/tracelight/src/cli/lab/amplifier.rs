@@ -8,6 +8,7 @@ use tracelight_task::{Failure, Stop};
 use tracelight_units::{CURRENTS, TORQUE_CONSTANTS};
 
 use super::bounds::{above_zero, voltage};
+use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, logs};
 use super::rig_out;
 use super::step::Axis;
@@ -31,7 +32,9 @@ pub(crate) struct AmplifierArgs {
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     rig: String,
-    /// Only this joint [default: both]
+    #[command(flatten)]
+    columns: ColumnArgs,
+    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// Torque at the joint for each ampere: the motor's constant times its gears and belt [default: the 2006 report's]
@@ -84,6 +87,7 @@ impl AmplifierArgs {
         Ok(Request {
             rig,
             logs: logs(&self.logs)?,
+            columns: self.columns.columns(),
             only: self.axis.map(Axis::joint),
             torque_nm_per_a: self.torque_per_ampere,
             most_v: self.most,

@@ -6,6 +6,7 @@ use tracelight_task::{Failure, Stop};
 use tracelight_units::{LENGTHS, Length};
 
 use super::bounds::above_zero;
+use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, logs};
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
@@ -27,7 +28,9 @@ pub(crate) struct BacklashArgs {
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     rig: String,
-    /// Only this joint [default: both]
+    #[command(flatten)]
+    columns: ColumnArgs,
+    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// From the head to the target, square-on
@@ -68,6 +71,7 @@ impl BacklashArgs {
         Ok(Request {
             rig: named::rig(&self.rig)?,
             logs: logs(&self.logs)?,
+            columns: self.columns.columns(),
             only: self.axis.map(Axis::joint),
             distance_m: self.distance.0,
             ruler_m: self.ruler,

@@ -7,6 +7,7 @@ use tracelight_experiment::encoder::Request;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{ANGULAR_SPEEDS, parse};
 
+use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, logs};
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
@@ -28,7 +29,9 @@ pub(crate) struct EncoderArgs {
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     rig: String,
-    /// Only this joint [default: both]
+    #[command(flatten)]
+    columns: ColumnArgs,
+    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// How fast the simulated head turns
@@ -71,6 +74,7 @@ impl EncoderArgs {
         Ok(Request {
             rig: named::rig(&self.rig)?,
             logs: logs(&self.logs)?,
+            columns: self.columns.columns(),
             only: self.axis.map(Axis::joint),
             speed_rad_s: self.speed,
             turns: self.turns,

@@ -3,10 +3,12 @@
 use clap::Args;
 use tracelight_experiment::frequency::Request;
 use tracelight_files as files;
+use tracelight_rig::Joint;
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{ANGULAR_SPEEDS, FREQUENCIES, TIMES};
 
 use super::bounds::{above_zero, voltage};
+use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, OutFile, log, out_file};
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
@@ -22,14 +24,17 @@ use crate::named;
                   per volt, sampled behind a hold as the counts are.\n\n\
                   A real head is measured by --volts: a period of the sines on top of the steady voltage, to be played again and again while the \
                   head turns; its log, axis,time_s,volt,count, a row a millisecond from when it turns evenly, is then given here, with the same --period. Any \
-                  volts that repeat with the period do.")]
+                  volts that repeat with the period do. Rows may be missing here and there; a log of other columns may have a row each so much time, \
+                  and speeds in place of counts.")]
 pub(crate) struct FrequencyTrialArgs {
     /// Log of what a head did: axis,time_s,volt,count; given none, the simulated head is tried
     #[arg(value_name = "LOG.csv")]
     log: Option<String>,
-    /// Which joint
-    #[arg(long, value_enum, default_value = "pan")]
-    axis: Axis,
+    #[command(flatten)]
+    columns: ColumnArgs,
+    /// Which joint [default: pan]; to be given for a log that has no column axis
+    #[arg(long, value_enum)]
+    axis: Option<Axis>,
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     rig: String,
@@ -120,7 +125,9 @@ impl FrequencyTrialArgs {
     fn request(&self) -> Result<Request, Failure> {
         Ok(Request {
             rig: named::rig(&self.rig)?,
-            joint: self.axis.joint(),
+            joint: self.axis.map_or(Joint::Pan, Axis::joint),
+            axis: self.axis.map(Axis::joint),
+            columns: self.columns.columns(),
             log: self.log.as_deref().map(log).transpose()?,
             from_rad_s: self.from,
             to_rad_s: self.to,

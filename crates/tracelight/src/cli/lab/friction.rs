@@ -13,7 +13,8 @@ use crate::cli::answer::{Answer, Voice};
 
 /// Identify friction from constant-voltage tests as in the 2006 report, show the flaw of that method, and fit the full curves instead
 #[derive(Args, Debug)]
-#[command(after_help = "Example: tracelight lab friction examples/motor.csv --out out/friction\n\n\
+#[command(after_help = "Example: tracelight lab friction examples/motor.csv --out out/friction\n\
+                  Example: tracelight lab friction examples/board.csv --axis pan --fixture --columns volt=PWM*3/255\n\n\
                   The report gives a joint −1 to 1 V in steps of 0.05 V, 30 s each after a pulse of 1 V, takes the last speeds for \
                   steady, and lays a line through torque over speed for each direction: viscous friction its slope, Coulomb friction \
                   its intercept. Both are shown: that, and what the whole of each curve tells, steady or not. With --fixture each \

@@ -6,8 +6,10 @@ use clap::Args;
 use tracelight_experiment::identify::Request;
 use tracelight_task::{Failure, Stop};
 
+use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, logs};
 use super::rig_out;
+use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::LawArgs;
 use crate::named;
@@ -28,6 +30,11 @@ pub(crate) struct IdentifyArgs {
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     rig: String,
+    #[command(flatten)]
+    columns: ColumnArgs,
+    /// The joint of a record of somebody else's, which tells one joint alone
+    #[arg(long, value_enum)]
+    axis: Option<Axis>,
     #[command(flatten)]
     law: LawArgs,
     /// Random seed for the differences between simulated heads
@@ -60,6 +67,13 @@ impl IdentifyArgs {
         let mut rig = named::rig(&self.rig)?;
         rig_out::may_save(&self.rig, self.save)?;
         self.law.apply(&mut rig);
-        Ok(Request { rig, records: logs(&self.records)?, seed: self.seed, day: named::today() })
+        Ok(Request {
+            rig,
+            records: logs(&self.records)?,
+            columns: self.columns.columns(),
+            axis: self.axis.map(Axis::joint),
+            seed: self.seed,
+            day: named::today(),
+        })
     }
 }

@@ -5,6 +5,7 @@ mod backlash;
 mod bode;
 mod bounds;
 mod by_hand;
+mod columns;
 mod command;
 mod design;
 mod encoder;

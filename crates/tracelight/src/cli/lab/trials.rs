@@ -9,6 +9,7 @@ use tracelight_task::Failure;
 use tracelight_units::TIMES;
 
 use super::bounds::{above_zero, voltage};
+use super::columns::ColumnArgs;
 use super::command::{logs, make_folder};
 use super::step::Axis;
 use crate::named;
@@ -22,7 +23,9 @@ pub(super) struct TrialArgs {
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     pub(super) rig: String,
-    /// Only this joint [default: both]
+    #[command(flatten)]
+    columns: ColumnArgs,
+    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// The head is in a fixture: the tested axis upright, so that gravity does not turn it, and free to turn on and on
@@ -61,6 +64,7 @@ impl TrialArgs {
         Ok(Trials {
             rig: named::rig(&self.rig)?,
             logs: logs(&self.logs)?,
+            columns: self.columns.columns(),
             only: self.axis.map(Axis::joint),
             fixture: self.fixture,
             most_v: self.most,
