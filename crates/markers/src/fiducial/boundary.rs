@@ -8,12 +8,11 @@ use std::sync::LazyLock;
 
 use tracelight_image::Plane;
 use tracelight_image::solve::symmetric;
-use tracelight_maths::{exp, powi};
+use tracelight_maths::exp;
 use tracelight_stroke::{Point, Vec2};
 
-use super::place::TagPlace;
-use super::square::{Off, SIDE, Square};
-use crate::light::{Border, light_of_levels, smooth};
+use super::part::{Closeness, Part};
+use super::square::{SIDE, Square};
 
 /// Samples across a boundary.
 const SAMPLES: usize = 11;
@@ -22,21 +21,15 @@ const REACH_CELLS: f64 = 1.25;
 /// Transitions between cells that reach into the samples, either way.
 const NEAR: isize = 2;
 const TRANSITIONS: usize = 2 * NEAR as usize + 1;
-/// Initial blur: standard deviation, px.
-const FIRST_BLUR_PX: f64 = 1.0;
 /// Smallest and largest blur that is estimated, px.
 const BLUR_PX: (f64, f64) = (0.4, 4.0);
 /// How far off a boundary can be placed, px.
-const FURTHEST_PX: f64 = 1.5;
+pub(super) const FURTHEST_PX: f64 = 1.5;
 /// Least contrast of a boundary, as a share of the brightest there can be.
 const LEAST_CONTRAST: f64 = 0.004;
-/// Fewest boundaries that place a marker.
-const FEWEST: usize = 24;
 
 /// What is looked up rather than worked out each time.
-pub(super) struct Tables {
-    /// Light from levels: halfway up a blurred edge in levels is not where the edge is.
-    light: &'static [f32; 256],
+struct Tables {
     /// The normal distribution, in steps of 1/[`STEPS`] of a deviation from −[`TAILS`] on, and its density.
     below: [f32; 2 * TAILS * STEPS + 1],
     bell: [f32; 2 * TAILS * STEPS + 1],
@@ -46,7 +39,7 @@ const STEPS: usize = 64;
 const TAILS: usize = 5;
 
 impl Tables {
-    pub(super) fn get() -> &'static Self {
+    fn get() -> &'static Self {
         static TABLES: LazyLock<Tables> = LazyLock::new(Tables::new);
         &TABLES
     }
@@ -63,7 +56,7 @@ impl Tables {
             sum += (density(a) + 4.0 * density(f64::midpoint(a, b)) + density(b)) / (6.0 * STEPS as f64);
             *v = sum as f32;
         }
-        Self { light: light_of_levels(), below, bell }
+        Self { below, bell }
     }
 
     /// The normal distribution at `z` deviations.
@@ -81,81 +74,6 @@ impl Tables {
         let k = place as i32;
         let (low, high) = (table[k as usize], table[k as usize + 1]);
         low + (high - low) * (place - k as f32)
-    }
-}
-
-/// How closely a marker is looked at.
-#[derive(Clone, Copy)]
-struct Closeness {
-    /// How many times its light is smoothed. What a sensor of one colour a pixel fills in goes away by it, which is different from pixel to
-    /// pixel, and what is left bends so little from pixel to pixel that a straight line between them is true.
-    smoothings: usize,
-    /// Furthest sample across a boundary, px.
-    reach_px: f64,
-}
-
-impl Closeness {
-    /// Of a marker by the side of its smallest cells, px. The smallest have no sharpness to spare: with all smoothed once, corners of eighty
-    /// markers down to 19 px a side are found to 0.055 px, with none 0.053, so 0.048. Large ones have room for more: looked at as those of
-    /// middle size are, four pages of four put the wall 0.039 mm off, so 0.026.
-    const fn for_cells(side_px: f64) -> Self {
-        let (smoothings, reach_px) = match side_px {
-            ..3.0 => (0, 2.5),
-            ..6.0 => (1, 2.5),
-            _ => (2, MOST_REACH_PX),
-        };
-        Self { smoothings, reach_px }
-    }
-
-    fn of(corners: &[Point; 4]) -> Self {
-        let sides = (0..4).map(|k| corners[k].distance(corners[(k + 1) % 4]));
-        Self::for_cells(sides.fold(f64::MAX, f64::min) / SIDE as f64)
-    }
-}
-
-const MOST_REACH_PX: f64 = 3.5;
-
-/// The light of a part of an image.
-struct Part {
-    /// Its upper left, px.
-    corner: Vec2,
-    light: Plane<f32>,
-}
-
-impl Part {
-    /// About a square and what is looked at beside it.
-    fn about(plane: &Plane<u8>, tables: &Tables, corners: &[Point; 4], smoothings: usize) -> Self {
-        const MARGIN: f64 = 2.0 * FURTHEST_PX + MOST_REACH_PX + 2.0;
-        let range = |of: fn(&Point) -> f64, size: usize| {
-            let least = corners.iter().map(of).fold(f64::MAX, f64::min) - MARGIN;
-            let most = corners.iter().map(of).fold(f64::MIN, f64::max) + MARGIN;
-            let place = |v: f64| v.clamp(0.0, size as f64) as usize;
-            (place(least), place(most.ceil()))
-        };
-        let ((left, right), (top, bottom)) = (range(|p| p.x, plane.width), range(|p| p.y, plane.height));
-        let mut values = Vec::with_capacity((right - left) * (bottom - top));
-        for y in top..bottom {
-            values.extend(plane.row(y)[left..right].iter().map(|&v| tables.light[usize::from(v)]));
-        }
-        let mut light = Plane { width: right - left, height: bottom - top, values };
-        (0..smoothings).for_each(|_| smooth(&mut light, Border::Stays));
-        let corner = Vec2::new(left as f64, top as f64);
-        Self { corner, light }
-    }
-
-    /// Light at equal steps from a place on, bilinear; `None` where a step leads out of the part.
-    fn along(&self, from: Point, step: Vec2, light: &mut [f32]) -> Option<()> {
-        let steps = self.light.steps(from - self.corner, step, light.len())?;
-        let share = |v: i32| v as f32 * (1.0 / 65536.0);
-        for (v, (first, x, y)) in light.iter_mut().zip(steps) {
-            let mix = |first: usize| match self.light.values.get(first..first + 2) {
-                Some(&[a, b]) => a + (b - a) * share(x),
-                _ => 0.0,
-            };
-            let (above, below) = (mix(first), mix(first + self.light.width));
-            *v = above + (below - above) * share(y);
-        }
-        Some(())
     }
 }
 
@@ -199,92 +117,100 @@ impl Boundary {
     }
 }
 
-/// Boundaries between black and white: those of the border, or all.
-fn boundaries(cells: &Cells, all: bool) -> impl Iterator<Item = Boundary> + '_ {
+/// Boundaries between black and white.
+fn boundaries(cells: &Cells, which: Which) -> impl Iterator<Item = Boundary> + '_ {
     let side = SIDE as isize;
-    let of_line = move |before: isize| all || before < 0 || before + 1 == side;
+    let of_line = move |before: isize| which == Which::All || before < 0 || before + 1 == side;
     let both = [true, false].into_iter().flat_map(move |upright| {
         let lines = (-1..side).filter(move |&before| of_line(before));
-        lines.flat_map(move |before| (0..side).map(move |lane| Boundary { upright, before, lane }))
+        lines.flat_map(move |before| {
+            (0..side).step_by(if which == Which::Few { 2 } else { 1 }).map(move |lane| Boundary {
+                upright,
+                before,
+                lane,
+            })
+        })
     });
     both.filter(|b| b.white(cells, 0, 0) != b.white(cells, 1, 0))
 }
 
-/// A marker placed: its square, its boundaries, and their scatter, px.
-pub(super) struct Placed {
-    pub(super) square: Square,
-    pub(super) places: Vec<TagPlace>,
-    pub(super) deviation_px: f64,
-}
-
-/// Places a marker that is thought to be at `square`, to a pixel or so.
-pub(super) fn placed(plane: &Plane<u8>, tables: &Tables, cells: &Cells, square: &Square) -> Option<Placed> {
-    let corners = square.corners()?;
-    let Closeness { smoothings, reach_px } = Closeness::of(&corners);
-    let part = Part::about(plane, tables, &corners, smoothings);
-    let mut view = View { part, tables, cells, square: *square, blur_px: FIRST_BLUR_PX, reach_px };
-    for _ in 0..2 {
-        let found = view.look(false)?;
-        let wider = found.iter().map(|f| f.wider_px).sum::<f64>() / found.len() as f64;
-        let near = (0.5 * view.blur_px, 2.0 * view.blur_px);
-        view.blur_px = (view.blur_px + wider).clamp(near.0, near.1).clamp(BLUR_PX.0, BLUR_PX.1);
-        view.square = view.square.moved(&offs(&found))?;
-    }
-    let found = view.look(true)?;
-    let square = view.square.moved(&offs(&found))?;
-    let mut squares = 0.0;
-    let mut places = Vec::with_capacity(found.len());
-    for f in &found {
-        let Found { cell, upright, black_behind, .. } = *f;
-        let at = view.square.at(cell.x, cell.y)? + f.normal * f.off_px;
-        squares += powi((at - square.at(cell.x, cell.y)?).dot(f.normal), 2);
-        places.push(TagPlace { cell, upright, black_behind, at });
-    }
-    // eight of them it takes to place the square
-    let deviation_px = (squares / (found.len() - 8) as f64).sqrt();
-    Some(Placed { square, places, deviation_px })
-}
-
-fn offs(found: &[Found]) -> Vec<Off> {
-    found.iter().map(|f| (f.cell, f.off_px, f.normal)).collect()
-}
-
 /// What the light across a boundary says.
-struct Found {
-    cell: Point,
-    upright: bool,
-    black_behind: bool,
-    off_px: f64,
-    normal: Vec2,
+pub(super) struct Found {
+    pub(super) cell: Point,
+    pub(super) upright: bool,
+    pub(super) black_behind: bool,
+    pub(super) off_px: f64,
+    pub(super) normal: Vec2,
     /// How much wider the blur is than thought, px.
-    wider_px: f64,
+    pub(super) wider_px: f64,
+}
+
+/// Which boundaries are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Which {
+    /// Every other one of the border.
+    Few,
+    /// Those of the border.
+    Border,
+    All,
 }
 
 /// A marker in an image, where it is thought to be.
-struct View<'a> {
+pub(super) struct View<'a> {
     part: Part,
     tables: &'a Tables,
     cells: &'a Cells,
-    square: Square,
-    blur_px: f64,
+    pub(super) square: Square,
+    /// Standard deviation of the blur, px.
+    pub(super) blur_px: f64,
     /// Furthest sample across a boundary.
     reach_px: f64,
 }
 
-impl View<'_> {
-    /// Looks across the boundaries of the border, or all.
-    fn look(&self, all: bool) -> Option<Vec<Found>> {
+impl<'a> View<'a> {
+    /// About these corners.
+    pub(super) fn of(
+        plane: &Plane<u8>,
+        cells: &'a Cells,
+        corners: &[Point; 4],
+        blur_px: f64,
+    ) -> Option<Self> {
+        let closeness = Closeness::of(corners);
+        Some(Self {
+            part: Part::about(plane, corners, closeness),
+            tables: Tables::get(),
+            cells,
+            square: Square::of(corners)?,
+            blur_px,
+            reach_px: closeness.reach_px,
+        })
+    }
+
+    /// What is seen at boundaries, and how many of them were looked at; how wide the blur is as well, unless that is known.
+    pub(super) fn look(&self, which: Which, blur_known: bool) -> (Vec<Found>, usize) {
         let mut profiles: [Option<Profile>; 2 * (SIDE + 1)] = [None; 2 * (SIDE + 1)];
         let mut found = Vec::with_capacity(96);
-        for boundary in boundaries(self.cells, all) {
+        let mut asked = 0;
+        for boundary in boundaries(self.cells, which) {
+            asked += 1;
             let number = usize::from(boundary.upright) * (SIDE + 1) + (boundary.before + 1) as usize;
             let profile = match &profiles[number] {
                 Some(profile) => profile,
-                None => profiles[number].insert(Profile::of(self, &boundary)?),
+                None => match Profile::of(self, &boundary) {
+                    Some(profile) => profiles[number].insert(profile),
+                    None => continue,
+                },
             };
-            found.extend(profile.across(self, &boundary, all));
+            found.extend(profile.across(self, &boundary, blur_known));
         }
-        (found.len() >= FEWEST).then_some(found)
+        (found, asked)
+    }
+
+    /// Takes the blur to be as wide as boundaries say, on the whole; no more than twice or half as wide as it was thought.
+    pub(super) fn blur_by(&mut self, found: &[Found]) {
+        let wider = found.iter().map(|f| f.wider_px).sum::<f64>() / found.len() as f64;
+        let near = (0.5 * self.blur_px, 2.0 * self.blur_px);
+        self.blur_px = (self.blur_px + wider).clamp(near.0, near.1).clamp(BLUR_PX.0, BLUR_PX.1);
     }
 }
 
@@ -299,8 +225,7 @@ struct Profile {
     /// Share of light from behind each transition.
     behind: [Row; TRANSITIONS],
     /// How that of the boundary itself falls if it moves, 1/px, and if the blur widens.
-    moved: Row,
-    widened: Row,
+    changes: Changes,
     /// Share of the samples' light that comes from the lane itself; half of what is left from either side.
     own: f32,
 }
@@ -320,21 +245,22 @@ impl Profile {
         let mut profile = Self {
             step_px,
             behind: [[0.0; 12]; TRANSITIONS],
-            moved: [0.0; 12],
-            widened: [0.0; 12],
+            changes: Changes::default(),
             own: 2.0 * view.tables.normal((0.5 * lane_px / view.blur_px) as f32) - 1.0,
         };
+        let (mut moved, mut widened): (Row, Row) = ([0.0; 12], [0.0; 12]);
         for j in 0..SAMPLES {
             let place = (j as f64 - (SAMPLES / 2) as f64) * step_px;
             for k in 0..TRANSITIONS {
                 let far = ((place - (k as f64 - NEAR as f64) * cell_px) / view.blur_px) as f32;
                 profile.behind[k][j] = view.tables.normal(far);
                 if k == NEAR as usize {
-                    profile.moved[j] = -view.tables.density(far) / view.blur_px as f32;
-                    profile.widened[j] = profile.moved[j] * far;
+                    moved[j] = -view.tables.density(far) / view.blur_px as f32;
+                    widened[j] = moved[j] * far;
                 }
             }
         }
+        profile.changes = Changes::of([moved, widened]);
         Some(profile)
     }
 
@@ -349,21 +275,22 @@ impl Profile {
         let reach = self.step_px * (SAMPLES / 2) as f64;
         view.part.along(at - normal * reach, normal * self.step_px, &mut light[..SAMPLES])?;
         let (model, own) = self.model(view.cells, boundary);
-        let [moved, widened] = [self.moved, self.widened].map(|row| row.map(|v| own * v));
         let (contrast, off, wider) = if blur_known {
-            let [model, moved] = shares(&light, [&model, &moved])?;
+            let [model, moved] = shares(&light, &model, &self.changes)?;
             (model, moved, 0.0)
         } else {
-            shares(&light, [&model, &moved, &widened])?.into()
+            shares::<3>(&light, &model, &self.changes)?.into()
         };
-        let off_px = off / contrast;
+        // a step of one at the boundary would make a change of its own size; this one is as large as the model's, and up or down
+        let step = contrast * f64::from(own);
+        let off_px = off / step;
         (contrast > LEAST_CONTRAST && off_px.abs() < FURTHEST_PX).then(|| Found {
             cell,
             upright: boundary.upright,
             black_behind: boundary.white(view.cells, 1, 0) == 0.0,
             off_px,
             normal,
-            wider_px: (wider / contrast).clamp(-1.0, 1.0),
+            wider_px: (wider / step).clamp(-1.0, 1.0),
         })
     }
 
@@ -388,21 +315,42 @@ impl Profile {
 /// One at every sample.
 const ONES: Row = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0];
 
-/// Light as a brightness and shares of rows, by least squares: the shares. `None` where the rows look alike.
-fn shares<const N: usize>(light: &Row, rows: [&Row; N]) -> Option<[f64; N]> {
-    let sums = rows.map(|row| dot(&ONES, row));
-    let sum = dot(&ONES, light);
-    // what is left of the products without the means
-    let left =
-        |a: &Row, b: &Row, sum_a: f32, sum_b: f32| f64::from(dot(a, b) - sum_a * sum_b / SAMPLES as f32);
-    let mut products = [[0.0; N]; N];
-    for i in 0..N {
-        for j in 0..=i {
-            products[i][j] = left(rows[i], rows[j], sums[i], sums[j]);
-            products[j][i] = products[i][j];
-        }
+/// Rows that are the same for all boundaries of a line, with what least squares need of them.
+#[derive(Clone, Copy, Default)]
+struct Changes {
+    rows: [Row; 2],
+    sums: [f32; 2],
+    products: [[f64; 2]; 2],
+}
+
+impl Changes {
+    fn of(rows: [Row; 2]) -> Self {
+        let sums = rows.map(|row| dot(&ONES, &row));
+        let product = |i: usize, j: usize| left(&rows[i], &rows[j], sums[i], sums[j]);
+        let both = product(0, 1);
+        Self { rows, sums, products: [[product(0, 0), both], [both, product(1, 1)]] }
     }
-    symmetric(products, std::array::from_fn(|i| left(rows[i], light, sums[i], sum)))
+}
+
+/// Light as a brightness and shares of a model and of the first of the changes, by least squares: the shares. `None` where these look alike.
+fn shares<const N: usize>(light: &Row, model: &Row, changes: &Changes) -> Option<[f64; N]> {
+    let (sum, own) = (dot(&ONES, light), dot(&ONES, model));
+    let (mut products, mut right) = ([[0.0; N]; N], [0.0; N]);
+    (products[0][0], right[0]) = (left(model, model, own, own), left(model, light, own, sum));
+    for i in 1..N {
+        let (row, its) = (&changes.rows[i - 1], changes.sums[i - 1]);
+        right[i] = left(row, light, its, sum);
+        products[i][0] = left(row, model, its, own);
+        products[0][i] = products[i][0];
+        products[i][1..].copy_from_slice(&changes.products[i - 1][..N - 1]);
+    }
+    symmetric(products, right)
+}
+
+/// What is left of the product of two rows without their means, by their sums.
+#[inline]
+fn left(a: &Row, b: &Row, sum_a: f32, sum_b: f32) -> f64 {
+    f64::from(dot(a, b) - sum_a * sum_b / SAMPLES as f32)
 }
 
 /// Sum of the products, four lanes at a time.

@@ -22,42 +22,75 @@ pub(super) struct Read {
     pub(super) wrong: u8,
 }
 
-/// Reads the cells of a square.
-pub(super) fn read(plane: &Plane<u8>, square: &Square) -> Option<Read> {
-    let level = |column: f64, row: f64| square.at(column, row).map(|p| plane.at(p));
-    let cell = |column: isize, row: isize| mean(plane, square, column, row);
-    // white about the border, black on it: both vary with the light
-    let (mut white, mut black) = (Vec::new(), Vec::new());
-    for k in 0..SIDE as isize {
-        let far = SIDE as isize;
-        for (column, row) in [(k, -1), (k, far), (-1, k), (far, k)] {
-            let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
-            white.push((x, y, level(x, y)?));
+/// Cells of a side with the white about them.
+const ALL: usize = SIDE + 2;
+
+/// Mean levels of a square's cells and of those about it, row by row.
+#[derive(Clone)]
+pub(super) struct Levels([[f64; ALL]; ALL]);
+
+impl Levels {
+    /// Of a square in an image; `None` where it is not all in front of the camera.
+    pub(super) fn of(plane: &Plane<u8>, square: &Square) -> Option<Self> {
+        let mut levels = [[0.0; ALL]; ALL];
+        for (row, levels) in levels.iter_mut().enumerate() {
+            for (column, v) in levels.iter_mut().enumerate() {
+                let is_inside = |v: usize| (1..=SIDE).contains(&v);
+                let (x, y) = (column as f64 - 0.5, row as f64 - 0.5);
+                // there may be less white about it than a cell
+                *v = match is_inside(column) && is_inside(row) {
+                    true => mean(plane, square, x, y)?,
+                    false => plane.at(square.at(x, y)?),
+                };
+            }
         }
-        for (column, row) in [(k, 0), (k, far - 1), (0, k), (far - 1, k)] {
-            black.push((column as f64 + 0.5, row as f64 + 0.5, cell(column, row)?));
+        Some(Self(levels))
+    }
+
+    /// With so much more of what each differs by from the four beside it: what blur mixed into it from them is taken out.
+    pub(super) fn sharpened(&self, share: f64) -> Self {
+        let Self(levels) = self;
+        let mut sharp = *levels;
+        for y in 1..ALL - 1 {
+            for x in 1..ALL - 1 {
+                let beside = levels[y - 1][x] + levels[y + 1][x] + levels[y][x - 1] + levels[y][x + 1];
+                sharp[y][x] += share * (4.0 * levels[y][x] - beside);
+            }
         }
+        Self(sharp)
     }
-    let (bright, dim) = (Light::through(&white)?, Light::through(&black)?);
-    let threshold = |x: f64, y: f64| f64::midpoint(bright.at(x, y), dim.at(x, y));
-    let wrong_white = white.iter().filter(|&&(x, y, v)| v <= threshold(x, y)).count();
-    let wrong_black = black.iter().filter(|&&(x, y, v)| v >= threshold(x, y)).count();
-    if wrong_white > MOST_WRONG_ABOUT
-        || wrong_black > MOST_WRONG_ABOUT
-        || bright.at(4.0, 4.0) - dim.at(4.0, 4.0) < 8.0
-    {
-        return None;
-    }
-    let (mut code, mut unclear) = (0, 0);
-    for row in 1..7 {
-        for column in 1..7 {
-            let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
-            let above = cell(column, row)? - threshold(x, y);
-            code = code << 1 | u64::from(above > 0.0);
-            unclear = unclear << 1 | u64::from(above.abs() < UNCLEAR * (bright.at(x, y) - threshold(x, y)));
+
+    /// Which marker they are.
+    pub(super) fn read(&self) -> Option<Read> {
+        let level = |x: usize, y: usize| (x as f64 - 0.5, y as f64 - 0.5, self.0[y][x]);
+        // white about the border, black on it: both vary with the light
+        let (mut white, mut black) = (Vec::with_capacity(4 * SIDE), Vec::with_capacity(4 * SIDE));
+        for k in 1..=SIDE {
+            white.extend([(k, 0), (k, SIDE + 1), (0, k), (SIDE + 1, k)].map(|(x, y)| level(x, y)));
+            black.extend([(k, 1), (k, SIDE), (1, k), (SIDE, k)].map(|(x, y)| level(x, y)));
         }
+        let (bright, dim) = (Light::through(&white)?, Light::through(&black)?);
+        let threshold = |x: f64, y: f64| f64::midpoint(bright.at(x, y), dim.at(x, y));
+        let wrong_white = white.iter().filter(|&&(x, y, v)| v <= threshold(x, y)).count();
+        let wrong_black = black.iter().filter(|&&(x, y, v)| v >= threshold(x, y)).count();
+        if wrong_white > MOST_WRONG_ABOUT
+            || wrong_black > MOST_WRONG_ABOUT
+            || bright.at(4.0, 4.0) - dim.at(4.0, 4.0) < 8.0
+        {
+            return None;
+        }
+        let (mut code, mut unclear) = (0, 0);
+        for row in 2..SIDE {
+            for column in 2..SIDE {
+                let (x, y, v) = level(column, row);
+                let above = v - threshold(x, y);
+                code = code << 1 | u64::from(above > 0.0);
+                unclear =
+                    unclear << 1 | u64::from(above.abs() < UNCLEAR * (bright.at(x, y) - threshold(x, y)));
+            }
+        }
+        look_up(code, unclear)
     }
-    look_up(code, unclear)
 }
 
 /// The id of a code as it is seen, and how it is turned; what is wrong must be among what is unclear.
@@ -81,15 +114,15 @@ fn quarter_turn(code: u64) -> u64 {
     cells.fold(0, |turned, (row, column)| turned << 1 | bit(column, 5 - row))
 }
 
-/// Mean level of the inner half of a cell.
-fn mean(plane: &Plane<u8>, square: &Square, column: isize, row: isize) -> Option<f64> {
-    let (middle, across, down) = square.with_slopes(column as f64 + 0.5, row as f64 + 0.5)?;
-    let (across, down) = (0.25 * across, 0.25 * down);
-    let mut levels = [0.0; 9];
-    for (three, k) in levels.chunks_exact_mut(3).zip([-1.0, 0.0, 1.0]) {
-        plane.along(middle - across + k * down, across, three);
+/// Mean level of the inner half of a cell, by its middle in cells.
+fn mean(plane: &Plane<u8>, square: &Square, x: f64, y: f64) -> Option<f64> {
+    let (middle, across, down) = square.with_slopes(x, y)?;
+    let (across, down) = (0.18 * across, 0.18 * down);
+    let mut levels = [0.0; 4];
+    for (two, k) in levels.chunks_exact_mut(2).zip([-1.0, 1.0]) {
+        plane.along(middle - across + k * down, 2.0 * across, two);
     }
-    Some(f64::from(levels.iter().sum::<f32>()) / 9.0)
+    Some(f64::from(levels.iter().sum::<f32>()) / 4.0)
 }
 
 /// Levels that rise evenly: a plane over the cells.

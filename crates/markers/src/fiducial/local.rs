@@ -1,5 +1,7 @@
 //! Adaptive threshold: separates dark from light by the local surroundings.
 
+use std::ops::Range;
+
 use tracelight_image::threshold::word_of;
 use tracelight_image::{Mask, Plane};
 
@@ -11,32 +13,80 @@ const LEAST_RANGE: u8 = 16;
 /// Noise never asks for more than this, levels: a picture full of texture is not noise.
 const MOST_RANGE: u8 = 64;
 
-/// How far above the darkest what is dark may be: two thirds of the range. Half of the light is there in what cameras store, and the
-/// border of a small marker, which is hardly wider than its blur, is no darker.
-const fn threshold(range: u8) -> u8 {
-    (range as u16 * 2 / 3) as u8
+/// Columns and rows of an image.
+pub(super) type Part = (Range<usize>, Range<usize>);
+
+/// The darkest and the brightest level about each place.
+pub(super) struct Surroundings {
+    /// Of the 3 × 3 squares about each square.
+    low: Plane<u8>,
+    high: Plane<u8>,
+    /// Where these differ by less there is nothing but noise.
+    least_range: u8,
 }
 
-/// What is darker than two thirds of the way from the darkest to the brightest of the 3 × 3 squares about it; nothing where these hardly differ.
-pub(super) fn darker(plane: &Plane<u8>) -> Mask {
-    let (low, high) = extremes(plane);
-    let least_range = least_range(&low, &high);
-    let (low, high) = (spread(&low, u8::min), spread(&high, u8::max));
-    let mut mask = Mask::empty(plane.width, plane.height);
-    let mut thresholds = vec![0; plane.width];
-    for row in 0..low.height {
-        for (column, some) in thresholds.chunks_mut(TILE).enumerate() {
-            // the last squares are as many pixels larger as are left over
-            let column = column.min(low.width - 1);
-            let (low, high) = (low.row(row)[column], high.row(row)[column]);
-            some.fill(if high - low < least_range { 0 } else { low + threshold(high - low) });
-        }
-        let last = row + 1 == low.height;
-        for y in row * TILE..if last { plane.height } else { (row + 1) * TILE } {
-            darker_row(plane.row(y), &thresholds, mask.row_mut(y));
+/// How far above the darkest what is dark may be, in sixths of the range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Darkness {
+    /// Two thirds: half of the light is there in what cameras store, and the border of a small marker, which is hardly wider than its blur,
+    /// is no darker.
+    Most = 4,
+    /// Half: a thin white edge between a marker and something grey, or white in the shade beside something bright, is no brighter than two
+    /// thirds.
+    Half = 3,
+}
+
+impl Darkness {
+    /// The next one down.
+    pub(super) const fn less(self) -> Option<Self> {
+        match self {
+            Self::Most => Some(Self::Half),
+            Self::Half => None,
         }
     }
-    mask
+}
+
+impl Surroundings {
+    pub(super) fn of(plane: &Plane<u8>) -> Self {
+        let (low, high) = extremes(plane);
+        let least_range = least_range(&low, &high);
+        Self { low: spread(&low, u8::min), high: spread(&high, u8::max), least_range }
+    }
+
+    /// What is darker than that share of the way from the darkest to the brightest about it, in some columns and rows of the image; nothing
+    /// where these hardly differ.
+    pub(super) fn darker(&self, plane: &Plane<u8>, darkness: Darkness, part: &Part) -> Mask {
+        let (columns, rows) = part;
+        let mut mask = Mask::empty(columns.len(), rows.len());
+        let mut thresholds = vec![0; columns.len()];
+        let mut of_row = None;
+        for y in rows.clone() {
+            // the last squares are as many pixels larger as are left over
+            let row = (y / TILE).min(self.low.height - 1);
+            if of_row.replace(row) != Some(row) {
+                self.thresholds(row, columns, darkness, &mut thresholds);
+            }
+            let levels = &plane.row(y)[columns.clone()];
+            darker_row(levels, &thresholds, mask.row_mut(y - rows.start));
+        }
+        mask
+    }
+
+    /// Of some columns in a row of squares.
+    fn thresholds(&self, row: usize, columns: &Range<usize>, darkness: Darkness, thresholds: &mut [u8]) {
+        let (low, high) = (self.low.row(row), self.high.row(row));
+        let mut left = thresholds;
+        let mut x = columns.start;
+        while !left.is_empty() {
+            let column = (x / TILE).min(low.len() - 1);
+            let count = (TILE - x % TILE).min(left.len());
+            let (some, others) = left.split_at_mut(count);
+            let range = high[column] - low[column];
+            let dark = (u16::from(range) * darkness as u16 / 6) as u8;
+            some.fill(if range < self.least_range { 0 } else { low[column] + dark });
+            (left, x) = (others, x + count);
+        }
+    }
 }
 
 fn darker_row(levels: &[u8], thresholds: &[u8], words: &mut [u64]) {

@@ -2,11 +2,12 @@
 
 use tracelight_image::border::{Edge, area, border};
 use tracelight_image::{Mask, Region};
-use tracelight_maths::{atan2, hypot, planar};
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::Point;
 
-/// Shortest side of a marker that can be read, px: a pixel and a half a cell.
-const LEAST_SIDE_PX: f64 = 12.0;
+use super::side::{self, Side, try_four};
+
+/// Shortest side of a marker that can be read, px: little more than a pixel a cell.
+pub(super) const LEAST_SIDE_PX: f64 = 9.0;
 /// Largest deviation of a side from a straight line, root mean square: error of the pixel edges, px.
 const MOST_OFF_PX: f64 = 0.75;
 /// Further deviation for lens distortion, as a share of the side's length.
@@ -16,28 +17,30 @@ const ROUNDED: f64 = 0.12;
 /// Narrowest patch, as a share of its longest side: seen at 75° from the normal.
 const NARROWEST: f64 = 0.25;
 
-/// Corners of a patch with four straight sides, clockwise as seen, to about half a pixel.
-pub(super) fn of(mask: &Mask, patch: &Region, walked: &mut Mask) -> Option<[Point; 4]> {
+/// The border of a patch that a marker may be, or be part of.
+pub(super) fn outline(mask: &Mask, patch: &Region, walked: &mut Mask) -> Option<Vec<Edge>> {
     let (width, height) = patch.extent();
-    if (width.min(height) as f64) < LEAST_SIDE_PX || patch.at_border_px(mask) > 0 {
-        return None;
-    }
-    // a ring as thin as the border of a marker has 7/16 of its square; turned by 45°, its box has twice the area
-    if (patch.area() as f64) < 0.1 * (width * height) as f64 {
+    if (width.min(height) as f64) < LEAST_SIDE_PX {
         return None;
     }
     let first = patch.runs.first()?;
-    let edges = border(mask, first.from as isize, first.y as isize, walked);
-    let points: Vec<Point> = edges.iter().map(Edge::middle).collect();
-    let corners = furthest(&points)?;
-    let sides: [Side; 4] = try_sides(|k| Side::through(&points, corners[k], corners[(k + 1) % 4]))?;
-    let found: [Point; 4] = try_sides(|k| sides[(k + 3) % 4].meet(&sides[k]))?;
-    is_like(&found, &points).then_some(found)
+    Some(border(mask, first.from as isize, first.y as isize, walked))
 }
 
-/// Four of something, or none.
-fn try_sides<T: std::fmt::Debug>(mut of: impl FnMut(usize) -> Option<T>) -> Option<[T; 4]> {
-    (0..4).map(&mut of).collect::<Option<Vec<T>>>()?.try_into().ok()
+/// Corners of a patch with four straight sides, clockwise as seen, to about half a pixel.
+pub(super) fn of(mask: &Mask, patch: &Region, edges: &[Edge]) -> Option<[Point; 4]> {
+    let (width, height) = patch.extent();
+    // a ring as thin as the border of a marker has 7/16 of its square; turned by 45°, its box has twice the area
+    if patch.at_border_px(mask) > 0 || (patch.area() as f64) < 0.1 * (width * height) as f64 {
+        return None;
+    }
+    let points: Vec<Point> = edges.iter().map(Edge::middle).collect();
+    let corners = furthest(&points)?;
+    let sides: [Side; 4] = try_four(|k| through(&points, corners[k], corners[(k + 1) % 4]))?;
+    let found = side::corners(&sides)?;
+    // with as much area as the border encloses
+    let share = area(&points) / area(&found);
+    (is_square(&found) && (0.85..1.1).contains(&share)).then_some(found)
 }
 
 /// Points of a border that are looked at for corners; the exact ones are between them.
@@ -78,58 +81,25 @@ fn furthest(points: &[Point]) -> Option<[usize; 4]> {
     apart.then_some(exact)
 }
 
-/// A straight side.
-#[derive(Clone, Copy, Debug)]
-struct Side {
-    on: Point,
-    along: Vec2,
+/// Through the points of a closed row from one number to another, but for the ends; `None` if they are on no straight line.
+fn through(points: &[Point], from: usize, to: usize) -> Option<Side> {
+    let n = points.len();
+    let count = (to + n - from) % n;
+    let skip = (ROUNDED * count as f64).ceil() as usize;
+    let length = points[from].distance(points[to]);
+    if count < 2 * skip + 4 || length < LEAST_SIDE_PX {
+        return None;
+    }
+    let between: Vec<Point> = (skip..count - skip).map(|k| points[(from + k) % n]).collect();
+    let (side, off) = Side::fit(&between)?;
+    (off <= MOST_OFF_PX + MOST_BENT * length).then_some(side)
 }
 
-impl Side {
-    /// Through the points of a closed row from one number to another, but for the ends; `None` if they are on no straight line.
-    fn through(points: &[Point], from: usize, to: usize) -> Option<Self> {
-        let n = points.len();
-        let count = (to + n - from) % n;
-        let skip = (ROUNDED * count as f64).ceil() as usize;
-        let length = points[from].distance(points[to]);
-        if count < 2 * skip + 4 || length < LEAST_SIDE_PX {
-            return None;
-        }
-        let between: Vec<Point> = (skip..count - skip).map(|k| points[(from + k) % n]).collect();
-        let (side, off) = Self::fit(&between)?;
-        (off <= MOST_OFF_PX + MOST_BENT * length).then_some(side)
-    }
-
-    /// The line of least squared distances, the way the points go, and the root of their mean.
-    fn fit(points: &[Point]) -> Option<(Self, f64)> {
-        let n = points.len() as f64;
-        let mean = points.iter().map(|p| p.to_vec2()).sum::<Vec2>() / n;
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        for p in points {
-            let off = p.to_vec2() - mean;
-            (xx, xy, yy) = (xx + off.x * off.x, xy + off.x * off.y, yy + off.y * off.y);
-        }
-        let angle = 0.5 * atan2(2.0 * xy, xx - yy);
-        let along = planar::direction(angle);
-        let across = (yy + xx - hypot(xx - yy, 2.0 * xy)).max(0.0) / 2.0;
-        let along = if along.dot(*points.last()? - *points.first()?) < 0.0 { -along } else { along };
-        Some((Self { on: mean.to_point(), along }, (across / n).sqrt()))
-    }
-
-    /// Where two cross.
-    fn meet(&self, other: &Self) -> Option<Point> {
-        let sine = self.along.cross(other.along);
-        // seen flatter than 10° no corner is known
-        (sine.abs() > 0.17).then(|| self.on + self.along * ((other.on - self.on).cross(other.along) / sine))
-    }
-}
-
-/// Whether four corners are those of a marker's border: convex, not too narrow, with as much area as the border encloses.
-fn is_like(corners: &[Point; 4], border: &[Point]) -> bool {
+/// Whether four corners can be those of a marker's border: convex, not too narrow.
+pub(super) fn is_square(corners: &[Point; 4]) -> bool {
     let side = |k: usize| corners[(k + 1) % 4] - corners[k];
     let lengths: [f64; 4] = std::array::from_fn(|k| side(k).hypot());
     let (least, most) = lengths.iter().fold((f64::MAX, 0.0_f64), |(l, m), &v| (l.min(v), m.max(v)));
     let convex = (0..4).all(|k| side(k).cross(side((k + 1) % 4)) > 0.0);
-    let share = area(border) / area(corners);
-    convex && least >= LEAST_SIDE_PX && least >= NARROWEST * most && (0.85..1.1).contains(&share)
+    convex && least >= LEAST_SIDE_PX && least >= NARROWEST * most
 }
