@@ -9,10 +9,10 @@ use tracelight_units::{CURRENTS, TORQUE_CONSTANTS};
 
 use super::bounds::{above_zero, voltage};
 use super::command::{self, LabCommand, logs};
+use super::rig::RigArgs;
 use super::rig_out;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
-use crate::named;
 
 /// Identify an amplifier's gain and its motor's back-EMF
 #[derive(Args, Debug)]
@@ -28,9 +28,8 @@ pub(crate) struct AmplifierArgs {
     /// Logs of readings: axis,volt,ampere[,velocity_rad_s]
     #[arg(value_name = "LOG.csv")]
     logs: Vec<String>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
+    #[command(flatten)]
+    rig: RigArgs,
     /// Only this joint [default: both]
     #[arg(long, value_enum)]
     axis: Option<Axis>,
@@ -73,14 +72,14 @@ impl LabCommand for AmplifierArgs {
         let request = self.request()?;
         let finding = command::tried(request, self.voice, stop)?;
         command::leave(&finding, &self.out)?;
-        rig_out::written(&finding, &self.out, &self.rig, self.save, self.voice)
+        rig_out::written(&finding, &self.out, self.rig.name(), self.save, self.voice)
     }
 }
 
 impl AmplifierArgs {
     fn request(&self) -> Result<Request, Failure> {
-        let rig = named::rig(&self.rig)?;
-        rig_out::may_save(&self.rig, self.save)?;
+        let rig = self.rig.config()?;
+        self.rig.may_save(self.save)?;
         Ok(Request {
             rig,
             logs: logs(&self.logs)?,

@@ -7,9 +7,9 @@ use tracelight_units::{LENGTHS, Length};
 
 use super::bounds::above_zero;
 use super::command::{self, LabCommand, logs};
+use super::rig::RigArgs;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
-use crate::named;
 
 /// Identify the play between encoder and beam, and whether the encoder slips, from where the spot rests on a ruler
 #[derive(Args, Debug)]
@@ -24,9 +24,8 @@ pub(crate) struct BacklashArgs {
     /// Logs of readings: axis,count,way,spot_m
     #[arg(value_name = "LOG.csv")]
     logs: Vec<String>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
+    #[command(flatten)]
+    rig: RigArgs,
     /// Only this joint [default: both]
     #[arg(long, value_enum)]
     axis: Option<Axis>,
@@ -66,7 +65,7 @@ impl LabCommand for BacklashArgs {
 impl BacklashArgs {
     fn request(&self) -> Result<Request, Failure> {
         Ok(Request {
-            rig: named::rig(&self.rig)?,
+            rig: self.rig.config()?,
             logs: logs(&self.logs)?,
             only: self.axis.map(Axis::joint),
             distance_m: self.distance.0,

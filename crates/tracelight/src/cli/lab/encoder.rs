@@ -8,9 +8,9 @@ use tracelight_task::{Failure, Stop};
 use tracelight_units::{ANGULAR_SPEEDS, parse};
 
 use super::command::{self, LabCommand, logs};
+use super::rig::RigArgs;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
-use crate::named;
 
 /// Identify encoder errors: positions of the four quadrature edges, disc eccentricity, lost counts
 #[derive(Args, Debug)]
@@ -25,9 +25,8 @@ pub(crate) struct EncoderArgs {
     /// Logs of edges: axis,time_s,count
     #[arg(value_name = "LOG.csv")]
     logs: Vec<String>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
+    #[command(flatten)]
+    rig: RigArgs,
     /// Only this joint [default: both]
     #[arg(long, value_enum)]
     axis: Option<Axis>,
@@ -69,7 +68,7 @@ impl LabCommand for EncoderArgs {
 impl EncoderArgs {
     fn request(&self) -> Result<Request, Failure> {
         Ok(Request {
-            rig: named::rig(&self.rig)?,
+            rig: self.rig.config()?,
             logs: logs(&self.logs)?,
             only: self.axis.map(Axis::joint),
             speed_rad_s: self.speed,

@@ -8,9 +8,9 @@ use tracelight_units::{ANGULAR_SPEEDS, FREQUENCIES, TIMES};
 
 use super::bounds::{above_zero, voltage};
 use super::command::{self, LabCommand, OutFile, log, out_file};
+use super::rig::RigArgs;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
-use crate::named;
 
 /// Measure a joint's frequency response and coherence with a multisine, and compare them with the model
 #[derive(Args, Debug)]
@@ -30,9 +30,8 @@ pub(crate) struct FrequencyTrialArgs {
     /// Which joint
     #[arg(long, value_enum, default_value = "pan")]
     axis: Axis,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
+    #[command(flatten)]
+    rig: RigArgs,
     /// Lowest frequency
     #[arg(long, value_name = "FREQUENCY", default_value = "0.7rad/s", value_parser = frequency)]
     from: f64,
@@ -119,7 +118,7 @@ impl LabCommand for FrequencyTrialArgs {
 impl FrequencyTrialArgs {
     fn request(&self) -> Result<Request, Failure> {
         Ok(Request {
-            rig: named::rig(&self.rig)?,
+            rig: self.rig.config()?,
             joint: self.axis.joint(),
             log: self.log.as_deref().map(log).transpose()?,
             from_rad_s: self.from,

@@ -10,8 +10,8 @@ use tracelight_units::TIMES;
 
 use super::bounds::{above_zero, voltage};
 use super::command::{logs, make_folder};
+use super::rig::RigArgs;
 use super::step::Axis;
-use crate::named;
 
 /// What joints are put through.
 #[derive(Args, Debug)]
@@ -19,9 +19,8 @@ pub(super) struct TrialArgs {
     /// Logs of what a head did: axis,volt,time_s,count or axis,torque_nm,velocity_rad_s; given none, the simulated head is tried
     #[arg(value_name = "LOG.csv")]
     logs: Vec<String>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    pub(super) rig: String,
+    #[command(flatten)]
+    pub(super) rig: RigArgs,
     /// Only this joint [default: both]
     #[arg(long, value_enum)]
     axis: Option<Axis>,
@@ -59,7 +58,7 @@ fn time(text: &str) -> Result<f64, String> {
 impl TrialArgs {
     pub(super) fn trials(&self) -> Result<Trials, Failure> {
         Ok(Trials {
-            rig: named::rig(&self.rig)?,
+            rig: self.rig.config()?,
             logs: logs(&self.logs)?,
             only: self.axis.map(Axis::joint),
             fixture: self.fixture,
