@@ -45,8 +45,15 @@ fn done(line: CommandLine<'_>, perform: Performs, stop: &Stop) -> Result<Done, F
         ..e
     };
     let answer = perform(&arguments, stop).map_err(failed)?;
+    if let Some(failure) = answer.failure.filter(|_| !line.may_fail) {
+        return Err(failed(failure));
+    }
     let value = serde_json::from_str(&answer.json).unwrap_or_default();
     let figure = line.figure.map(read).transpose()?;
+    if let Some(path) = line.figure.filter(|_| line.passing) {
+        // what stays behind where it cannot be removed harms nothing
+        let _ = std::fs::remove_file(path);
+    }
     Ok((value, figure))
 }
 
