@@ -71,9 +71,12 @@ impl Page<'_> {
 
     fn joined(&self, joined: &Joined, done: &[Done]) -> String {
         let commands: String = joined.runs.iter().map(|run| shown_command(self.book, run)).collect();
-        let count = joined.runs.len();
+        let count = match joined.runs.len() {
+            1 => "1 command".to_owned(),
+            many => format!("{many} commands"),
+        };
         format!(
-            "<figure><figcaption>{}</figcaption><details><summary>{count} commands</summary>{commands}</details>{}</figure>",
+            "<figure><figcaption>{}</figcaption><details><summary>{count}</summary>{commands}</details>{}</figure>",
             escaped(joined.caption),
             (joined.show)(done).html(joined.caption)
         )

@@ -84,6 +84,7 @@ fn the_book_has_every_figure_and_the_reports_numbers_beside_ours() {
     assert_eq!(std::fs::read_dir(dir.join("readings")).unwrap().count(), 0);
     the_readings_are_judged_one_by_one(&book);
     the_objectives_are_met_by_our_law_on_both_sets(&book);
+    a_move_that_was_left_shows_no_error(&book);
     // the same again to the byte
     let again = folder("lab-book-again");
     let output = run(&["lab", "reproduce", "-o", again.to_str().unwrap(), "--quiet"]);
@@ -140,5 +141,21 @@ fn the_objectives_are_met_by_our_law_on_both_sets(book: &Value) {
     for theirs in ["the report's PD, set A", "the report's PD, set B"] {
         assert!(cell(0, theirs).starts_with("dark: "), "{table}");
         assert!(number(7, theirs) > 10.0, "{table}");
+    }
+}
+
+/// A move's error counts only where the head stayed on its course: both rows of each command, as the command itself says.
+fn a_move_that_was_left_shows_no_error(book: &Value) {
+    let table = table(book, "error of the spot");
+    let rows = table["rows"].as_array().unwrap();
+    let line = ["move", "line", "--start=-10in,0in", "--to=10in,0in", "--profile", "trapezoid,s-curve"];
+    for set in ["A", "B"] {
+        let answer = lab(&[&line[..], &["--set", set]].concat());
+        let of_set: Vec<&Value> = rows.iter().filter(|row| row[0] == "line" && row[1] == set).collect();
+        assert_eq!(of_set.len(), 2, "{table}");
+        for (k, row) in of_set.into_iter().enumerate() {
+            let held = answer["moves"][k]["rig"]["held"].as_bool().unwrap();
+            assert_eq!(row[5].as_str().unwrap().starts_with("left its course"), held, "{row}");
+        }
     }
 }

@@ -13,7 +13,7 @@ use crate::cli::answer::{Answer, Performs, Voice};
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab reproduce -o book\n\n\
                   The folder gets index.html, which needs nothing but itself, the figures by themselves, and the arrays and pictures that its \
-                  commands are given. Beside each number stands the command that makes it.")]
+                  commands are given. Above each number stands the command that makes it, as it is typed in that folder.")]
 pub(crate) struct ReproduceArgs {
     /// Folder for the book
     #[arg(short, long, value_name = "DIR", default_value = "book")]
