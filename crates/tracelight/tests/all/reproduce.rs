@@ -72,14 +72,7 @@ fn the_book_has_every_figure_and_the_reports_numbers_beside_ours() {
     assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
     assert!(page.matches("<svg").count() >= 33);
     assert!(!page.contains(dir.to_str().unwrap()), "commands are typed in the book's own folder");
-    // chapters stand as in the report
-    let numbers: Vec<&str> = page.match_indices("<h2 id=").map(|(at, _)| &page[at..at + 20]).collect();
-    assert_eq!(numbers.len(), 12, "{numbers:?}");
-    let place =
-        |title: &str| page.rfind(&format!(">{title}")).unwrap_or_else(|| panic!("no chapter {title}"));
-    let titles =
-        ["2.1 ", "2.2 ", "2.3 ", "2.4 ", "2.5 ", "2.6.1 ", "2.6.2 ", "2.6.3 ", "2.7 ", "2.8 "].map(place);
-    assert!(titles.is_sorted(), "{titles:?}");
+    chapters_stand_as_in_the_report(&page);
     // what a table is read from is not kept
     assert_eq!(std::fs::read_dir(dir.join("readings")).unwrap().count(), 0);
     the_readings_are_judged_one_by_one(&book);
@@ -91,6 +84,16 @@ fn the_book_has_every_figure_and_the_reports_numbers_beside_ours() {
     assert!(output.status.success());
     let other = std::fs::read_to_string(again.join("index.html")).unwrap();
     assert!(page == other, "two books differ");
+}
+
+fn chapters_stand_as_in_the_report(page: &str) {
+    let numbers: Vec<&str> = page.match_indices("<h2 id=").map(|(at, _)| &page[at..at + 20]).collect();
+    assert_eq!(numbers.len(), 12, "{numbers:?}");
+    let place =
+        |title: &str| page.rfind(&format!(">{title}")).unwrap_or_else(|| panic!("no chapter {title}"));
+    let titles =
+        ["2.1 ", "2.2 ", "2.3 ", "2.4 ", "2.5 ", "2.6.1 ", "2.6.2 ", "2.6.3 ", "2.7 ", "2.8 "].map(place);
+    assert!(titles.is_sorted(), "{titles:?}");
 }
 
 /// The table that has this head.
