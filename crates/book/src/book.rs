@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use tracelight_task::{Failure, Task, on_all_cores};
 
-use crate::chapter::{Chapter, Compared, Part, Run};
+use crate::chapter::{Chapter, Done, Part, Run};
+use crate::table::Compared;
 use crate::{chapters, given, page};
 
 /// What the report has, and the commands that make it again in a folder.
@@ -19,18 +20,20 @@ pub struct Book {
 pub struct CommandLine<'a> {
     /// Its words, without the program's name.
     pub arguments: &'a [String],
-    /// Where it leaves its figure, an SVG.
+    /// The file that is read of what it leaves: a figure, as SVG, or a table, as CSV.
     pub figure: Option<&'a Path>,
+    /// Whether that file is of no use once it is read.
+    pub passing: bool,
+    /// Whether a head that stops is an answer, too, and no failure.
+    pub may_fail: bool,
 }
-
-/// What a command came to: its JSON, and its figure.
-pub type Done = (Value, Option<String>);
 
 /// A book that was made.
 pub struct Made {
     /// The whole page as HTML.
     pub page: String,
     compared: Vec<(String, String, Compared)>,
+    tables: Vec<Value>,
     figures: usize,
 }
 
@@ -43,7 +46,9 @@ impl Book {
 
     /// Folders that its commands need.
     pub fn folders(&self) -> impl Iterator<Item = PathBuf> {
-        ["figures", "arrays", "pictures", "friction"].into_iter().map(|name| self.folder.join(name))
+        ["figures", "arrays", "pictures", "friction", "friction-a", "readings", "moves", "runs"]
+            .into_iter()
+            .map(|name| self.folder.join(name))
     }
 
     /// Files that its commands read: where each belongs, and what is in it.
@@ -68,17 +73,23 @@ impl Book {
         perform: impl Fn(CommandLine<'_>) -> Result<Done, Failure> + Sync,
     ) -> Result<Made, Failure> {
         let runs: Vec<&Run> =
-            self.chapters.iter().flat_map(|c| c.parts.iter()).filter_map(Part::run).collect();
+            self.chapters.iter().flat_map(|c| c.parts.iter()).flat_map(Part::runs).collect();
         task.stage("figures", runs.len() as u64);
         let done: Vec<Result<Done, Failure>> = on_all_cores(runs.len(), task, |number| {
             let run = runs[number];
-            perform(CommandLine { arguments: &run.arguments, figure: run.figure.as_deref() })
+            perform(CommandLine {
+                arguments: &run.arguments,
+                figure: run.figure.as_deref(),
+                passing: run.passing,
+                may_fail: run.may_fail,
+            })
         });
         task.check()?;
         let done = done.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(Made {
-            page: page::page(&self.chapters, &done),
-            compared: page::all_compared(&self.chapters, &done),
+            page: page::page(&self.folder, &self.chapters, &done),
+            compared: page::all_compared(&self.folder, &self.chapters, &done),
+            tables: page::all_tables(&self.folder, &self.chapters, &done),
             figures: runs.len(),
         })
     }
@@ -89,7 +100,7 @@ impl Made {
     #[must_use]
     pub fn text(&self, index: &str) -> String {
         let numbers = self.compared.iter().filter(|(.., c)| c.report.is_some()).count();
-        format!("{index}: {} figures, {numbers} numbers of the report beside ours", self.figures)
+        format!("{index}: {} commands, {numbers} numbers of the report beside ours", self.figures)
     }
 
     /// For scripts: where the page is, and every number that is compared.
@@ -101,6 +112,11 @@ impl Made {
                 "report": c.report, "ours": c.ours, "unit": c.unit, "why": c.why,
             })
         };
-        json!({"page": index, "facts": self.compared.iter().map(one).collect::<Vec<_>>()}).to_string()
+        json!({
+            "page": index,
+            "facts": self.compared.iter().map(one).collect::<Vec<_>>(),
+            "tables": self.tables,
+        })
+        .to_string()
     }
 }

@@ -4,6 +4,11 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
+use crate::table::{Compared, Table};
+
+/// What a command came to: its JSON, and the text of its file.
+pub type Done = (Value, Option<String>);
+
 /// A part of the report.
 pub(crate) struct Chapter {
     pub(crate) title: &'static str,
@@ -16,10 +21,14 @@ pub(crate) enum Part {
     /// A paragraph.
     Text(String),
     Run(Run),
+    /// Commands whose answers stand in one table.
+    Joined(Joined),
     /// A drawing that no command makes: its caption and its SVG.
     Drawing(String, String),
-    /// Numbers that need no command.
-    Facts(Vec<Compared>),
+    /// Numbers that need no command: of what, and which.
+    Facts(&'static str, Vec<Compared>),
+    /// A list.
+    List(Vec<(&'static str, &'static str)>),
 }
 
 /// A command, and what is taken from it.
@@ -28,9 +37,23 @@ pub(crate) struct Run {
     /// What the figure is called in the report; empty where there is none.
     pub(crate) caption: String,
     pub(crate) arguments: Vec<String>,
-    /// Where it leaves its figure.
+    /// The file that is read of what it leaves: a figure, or a table.
     pub(crate) figure: Option<PathBuf>,
+    /// Whether that file is of no use once it is read.
+    pub(crate) passing: bool,
+    /// Whether a head that stops is an answer, too.
+    pub(crate) may_fail: bool,
     pub(crate) facts: Vec<Fact>,
+}
+
+/// Makes a table of what commands came to.
+pub(crate) type Show = Box<dyn Fn(&[Done]) -> Table + Send + Sync>;
+
+/// Commands, and the table of what all of them came to.
+pub(crate) struct Joined {
+    pub(crate) caption: &'static str,
+    pub(crate) runs: Vec<Run>,
+    pub(crate) show: Show,
 }
 
 /// A number of the report, and where it is in what a command answers.
@@ -47,21 +70,13 @@ pub(crate) struct Fact {
     pub(crate) why: String,
 }
 
-/// A number of the report beside ours.
-#[derive(Clone)]
-pub(crate) struct Compared {
-    pub(crate) what: String,
-    pub(crate) report: Option<f64>,
-    pub(crate) ours: Option<f64>,
-    pub(crate) unit: &'static str,
-    pub(crate) why: String,
-}
-
 impl Part {
-    pub(crate) const fn run(&self) -> Option<&Run> {
+    /// Its commands.
+    pub(crate) fn runs(&self) -> &[Run] {
         match self {
-            Self::Run(run) => Some(run),
-            _ => None,
+            Self::Run(run) => std::slice::from_ref(run),
+            Self::Joined(joined) => &joined.runs,
+            _ => &[],
         }
     }
 }

@@ -1,20 +1,25 @@
 //! What the report has, chapter by chapter, and the commands that make it again.
 
-mod identification;
+mod controller;
+mod ending;
 mod images;
+mod measured;
 mod model;
 mod motion;
+mod objectives;
 
 use std::path::Path;
 
 use crate::chapter::{Chapter, Fact, Part, Run};
+use crate::table::Compared;
 
 /// All of them, for a book in a folder.
 pub(crate) fn chapters(out: &Path) -> Vec<Chapter> {
     let book = Places { out };
     vec![
-        book.velocity(),
+        book.objectives(),
         book.friction(),
+        book.velocity(),
         book.model(),
         book.linear(),
         book.loops(),
@@ -23,6 +28,7 @@ pub(crate) fn chapters(out: &Path) -> Vec<Chapter> {
         book.moves(),
         book.images(),
         book.laser(),
+        book.missing(),
     ]
 }
 
@@ -42,6 +48,11 @@ fn command(caption: &str, arguments: &[&str]) -> Run {
 
 fn text(paragraph: &str) -> Part {
     Part::Text(paragraph.into())
+}
+
+/// A number that the book works out itself.
+fn own(what: &str, report: impl Into<Option<f64>>, ours: f64, unit: &'static str, why: &str) -> Compared {
+    Compared { what: what.into(), report: report.into(), ours: Some(ours), unit, why: why.into() }
 }
 
 impl Run {

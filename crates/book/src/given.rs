@@ -1,6 +1,6 @@
 //! What the book's commands are given: arrays of times and angles, and pictures.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
 use tracelight_maths::{cos, hypot, sin};
@@ -18,20 +18,23 @@ const PICTURES: [(&str, &[u8]); 3] = [
     ("star.png", STAR),
 ];
 
-/// How long the report's scopes go on after a move, s.
+/// Rest after a move that the report does not show, s.
 const HOLD_S: f64 = 1.5;
+/// Length of the time axis of the report's figures 14 and 15, s.
+const SCOPE_S: f64 = 7.0;
+/// Limits of the report's start file.
+const FAST: MoveLimits = MoveLimits { speed: 24.0, acceleration: 100.0, deceleration: 100.0 };
 
 /// A file that a command reads: its folder, its name, what is in it.
 type Given = (&'static str, &'static str, Vec<u8>);
 
 pub(crate) fn files() -> Result<Vec<Given>, Failure> {
-    let fast = MoveLimits { speed: 24.0, acceleration: 100.0, deceleration: 100.0 };
     let slow = MoveLimits { speed: 5.0, acceleration: 4.0, deceleration: 1.0 };
     let mut files: Vec<Given> =
         PICTURES.into_iter().map(|(name, bytes)| ("pictures", name, bytes.to_vec())).collect();
     files.push(("pictures", "ring.png", ring()?));
-    files.push(("arrays", "trapezoid.csv", half_turn(&fast).into_bytes()));
-    files.push(("arrays", "feasible.csv", half_turn(&slow).into_bytes()));
+    files.push(("arrays", "trapezoid.csv", half_turn(&FAST, |move_s| SCOPE_S - move_s).into_bytes()));
+    files.push(("arrays", "feasible.csv", half_turn(&slow, |_| HOLD_S).into_bytes()));
     files.push(("arrays", "circle.csv", circle().into_bytes()));
     Ok(files)
 }
@@ -57,12 +60,28 @@ fn ring() -> Result<Vec<u8>, Failure> {
     Ok(bytes.into_inner())
 }
 
-/// Pan from 0 to π while tilt goes from 0 to π/2, by a trapezoid, each as fast as its limits allow, then rest.
-fn half_turn(limits: &MoveLimits) -> String {
-    let [pan, tilt] =
-        [PI, FRAC_PI_2].map(|distance| Profile::new(Shape::Ramped(Ramps::NONE), distance, limits));
-    let length_s = pan.duration_s().max(tilt.duration_s()) + HOLD_S;
-    rows(length_s, &|t| [&pan, &tilt].map(|profile| profile.at(t.min(profile.duration_s())).position))
+/// Pan from 0 to π by a trapezoid and tilt by half of that, as the report's start file has it (`angle2=(x/2)'`), then rest.
+fn half_turn(limits: &MoveLimits, rest_s: impl Fn(f64) -> f64) -> String {
+    let pan = trapezoid(limits);
+    let length_s = pan.duration_s() + rest_s(pan.duration_s());
+    rows(length_s, &|t| {
+        let x = pan.at(t.min(pan.duration_s())).position;
+        [x, 0.5 * x]
+    })
+}
+
+fn trapezoid(limits: &MoveLimits) -> Profile {
+    Profile::new(Shape::Ramped(Ramps::NONE), PI, limits)
+}
+
+/// Pan's angle at the end of figure 14's time, rad, if the array is carried on by its last two rows, as Simulink does unless told otherwise.
+pub(crate) fn carried_on_rad() -> f64 {
+    /// Rows of the start file.
+    const ROWS: f64 = 600.0;
+    let pan = trapezoid(&FAST);
+    let (end_s, step_s) = (pan.duration_s(), pan.duration_s() / ROWS);
+    let speed = (PI - pan.at(end_s - step_s).position) / step_s;
+    PI + speed * (SCOPE_S - end_s)
 }
 
 /// As figures 16 and 17 show it: pan between 0 and 1 rad from 100 to 800 ms, tilt within ±1 rad from 50 to 550 ms.

@@ -7,7 +7,11 @@ mod blocks;
 mod book;
 mod chapter;
 mod chapters;
+mod counts;
 mod given;
 mod page;
+mod readings;
+mod table;
 
-pub use book::{Book, CommandLine, Done, Made};
+pub use book::{Book, CommandLine, Made};
+pub use chapter::Done;

@@ -1,97 +1,168 @@
 //! The book as one page.
 
 use std::fmt::Write;
+use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use tracelight_chart::page_colours;
-use tracelight_maths::log10;
 use tracelight_report::html::escaped;
 
-use crate::chapter::{Chapter, Compared, Fact, Part, Run};
+use crate::chapter::{Chapter, Done, Fact, Joined, Part, Run};
+use crate::table::{self, Cell, Compared};
 
 /// The page, from chapters and what their commands came to, in order.
-pub(crate) fn page(chapters: &[Chapter], done: &[(Value, Option<String>)]) -> String {
-    let mut done = done.iter();
-    let mut body = String::new();
+pub(crate) fn page(book: &Path, chapters: &[Chapter], done: &[Done]) -> String {
+    let mut page = Page { book, left: done, figures: 0, body: String::new() };
     let mut contents = String::new();
     for (number, chapter) in chapters.iter().enumerate() {
         // writing to a String cannot fail
         let _ = write!(contents, "<li><a href=\"#c{number}\">{}</a></li>", escaped(chapter.title));
-        let _ = write!(body, "<h2 id=\"c{number}\">{}</h2>", escaped(chapter.title));
-        for part in &chapter.parts {
-            body += &match part {
-                Part::Text(text) => format!("<p>{}</p>", escaped(text)),
-                Part::Drawing(caption, svg) => figure(caption, None, svg),
-                Part::Facts(facts) => table(chapter.title, facts),
-                Part::Run(run) => done
-                    .next()
-                    .map_or(String::new(), |(answer, figure)| shown(run, answer, figure.as_deref())),
-            };
-        }
+        let _ = write!(page.body, "<h2 id=\"c{number}\">{}</h2>", escaped(chapter.title));
+        chapter.parts.iter().for_each(|part| page.add(part));
     }
     format!(
         include_str!("page.html"),
         style = page_colours() + include_str!("style.css"),
         contents = contents,
-        body = body,
+        body = page.body,
         version = env!("CARGO_PKG_VERSION"),
     )
 }
 
+/// A page that is being filled.
+struct Page<'a> {
+    book: &'a Path,
+    /// What the commands came to that are still to be shown.
+    left: &'a [Done],
+    /// How many can be enlarged.
+    figures: usize,
+    body: String,
+}
+
+impl Page<'_> {
+    fn add(&mut self, part: &Part) {
+        let (done, left) = self.left.split_at(part.runs().len().min(self.left.len()));
+        self.left = left;
+        let shown = match part {
+            Part::Text(text) => format!("<p>{}</p>", escaped(text)),
+            Part::Drawing(caption, svg) => self.figure(caption, "", svg),
+            Part::Facts(caption, facts) => {
+                format!("<h3>{}</h3>{}", escaped(caption), table::compared(caption, facts))
+            }
+            Part::List(items) => list(items),
+            Part::Run(run) => done.first().map_or(String::new(), |done| self.run(run, done)),
+            Part::Joined(joined) => self.joined(joined, done),
+        };
+        self.body += &shown;
+    }
+
+    fn run(&mut self, run: &Run, (answer, file): &Done) -> String {
+        let facts: Vec<Compared> = run.facts.iter().map(|fact| fact.compared(answer)).collect();
+        let facts = if facts.is_empty() { String::new() } else { table::compared(&run.caption, &facts) };
+        // a figure is part of the page: what stands before its root element is of files
+        let inner = file.as_deref().and_then(|text| text.find("<svg").map(|at| &text[at..]));
+        // titles name files as their command does
+        let folder = format!("{}/", self.book.display());
+        let inner = inner.map_or(String::new(), |svg| {
+            svg.replace(" id=\"stroke-", " data-id=\"stroke-").replace(&folder, "")
+        });
+        self.figure(&run.caption, &shown_command(self.book, run), &inner) + &facts
+    }
+
+    fn joined(&self, joined: &Joined, done: &[Done]) -> String {
+        let commands: String = joined.runs.iter().map(|run| shown_command(self.book, run)).collect();
+        let count = match joined.runs.len() {
+            1 => "1 command".to_owned(),
+            many => format!("{many} commands"),
+        };
+        format!(
+            "<figure><figcaption>{}</figcaption><details><summary>{count}</summary>{commands}</details>{}</figure>",
+            escaped(joined.caption),
+            (joined.show)(done).html(joined.caption)
+        )
+    }
+
+    fn figure(&mut self, caption: &str, command: &str, svg: &str) -> String {
+        let picture = if svg.is_empty() {
+            String::new()
+        } else {
+            self.figures += 1;
+            let id = self.figures;
+            let what = escaped(caption);
+            format!(
+                "<input type=\"checkbox\" class=\"larger\" id=\"f{id}\" aria-label=\"enlarge: {what}\"><label for=\"f{id}\" \
+                 aria-hidden=\"true\"></label>{}",
+                framed(caption, svg)
+            )
+        };
+        format!("<figure><figcaption>{}{command}</figcaption>{picture}</figure>", escaped(caption))
+    }
+}
+
+fn list(items: &[(&str, &str)]) -> String {
+    let one = |(what, why): &(&str, &str)| format!("<dt>{}</dt><dd>{}</dd>", escaped(what), escaped(why));
+    format!("<dl>{}</dl>", items.iter().map(one).collect::<String>())
+}
+
 /// Every number that is compared, in order, with its figure and its command.
 pub(crate) fn all_compared(
+    book: &Path,
     chapters: &[Chapter],
-    done: &[(Value, Option<String>)],
+    done: &[Done],
 ) -> Vec<(String, String, Compared)> {
-    let mut done = done.iter();
+    let mut left = done;
     let mut all = Vec::new();
-    for chapter in chapters {
-        for part in &chapter.parts {
-            match part {
-                Part::Run(run) => {
-                    let answer = done.next();
-                    let one = |(fact, answer): (&Fact, &Value)| {
-                        (run.caption.clone(), command_of(run), fact.compared(answer))
-                    };
-                    all.extend(
-                        answer
-                            .into_iter()
-                            .flat_map(|(answer, _)| run.facts.iter().map(move |f| one((f, answer)))),
-                    );
-                }
-                Part::Facts(facts) => {
-                    all.extend(
-                        facts.iter().map(|fact| (chapter.title.to_owned(), String::new(), fact.clone())),
-                    );
-                }
-                Part::Text(_) | Part::Drawing(..) => {}
+    for part in chapters.iter().flat_map(|chapter| &chapter.parts) {
+        let (of_part, rest) = left.split_at(part.runs().len().min(left.len()));
+        left = rest;
+        match part {
+            Part::Run(run) => {
+                let Some((answer, _)) = of_part.first() else { continue };
+                let one = |fact: &Fact| (run.caption.clone(), command(book, run), fact.compared(answer));
+                all.extend(run.facts.iter().map(one));
             }
+            Part::Facts(caption, facts) => {
+                all.extend(facts.iter().map(|fact| ((*caption).to_owned(), String::new(), fact.clone())));
+            }
+            _ => {}
         }
     }
     all
 }
 
-fn shown(run: &Run, answer: &Value, svg: Option<&str>) -> String {
-    let command =
-        format!("tracelight {}", run.arguments.iter().map(|a| quoted(a)).collect::<Vec<_>>().join(" "));
-    let facts: Vec<Compared> = run.facts.iter().map(|fact| fact.compared(answer)).collect();
-    let facts = if facts.is_empty() { String::new() } else { table(&run.caption, &facts) };
-    // a figure is part of the page: what stands before its root element is of files
-    let inner = svg.map_or(String::new(), |svg| {
-        svg[svg.find("<svg").unwrap_or(0)..].replace(" id=\"stroke-", " data-id=\"stroke-")
+/// Every table that several commands fill, for scripts.
+pub(crate) fn all_tables(book: &Path, chapters: &[Chapter], done: &[Done]) -> Vec<Value> {
+    let mut left = done;
+    let mut all = Vec::new();
+    for part in chapters.iter().flat_map(|chapter| &chapter.parts) {
+        let (of_part, rest) = left.split_at(part.runs().len().min(left.len()));
+        left = rest;
+        if let Part::Joined(joined) = part {
+            let table = (joined.show)(of_part);
+            let row = |row: &Vec<Cell>| row.iter().map(|cell| cell.text.clone()).collect::<Vec<_>>();
+            all.push(json!({
+                "caption": joined.caption,
+                "commands": joined.runs.iter().map(|run| command(book, run)).collect::<Vec<_>>(),
+                "heads": table.heads,
+                "rows": table.rows.iter().map(row).collect::<Vec<_>>(),
+                "finding": table.finding,
+            }));
+        }
+    }
+    all
+}
+
+/// As it is typed in the book's own folder.
+fn command(book: &Path, run: &Run) -> String {
+    let words = run.arguments.iter().map(|argument| {
+        let inside = Path::new(argument).strip_prefix(book).ok().filter(|_| !book.as_os_str().is_empty());
+        quoted(&inside.map_or_else(|| argument.clone(), |path| path.display().to_string()))
     });
-    figure(&run.caption, Some(&command), &inner) + &facts
+    format!("tracelight {}", words.collect::<Vec<_>>().join(" "))
 }
 
-/// As it is typed.
-fn command_of(run: &Run) -> String {
-    format!("tracelight {}", run.arguments.iter().map(|a| quoted(a)).collect::<Vec<_>>().join(" "))
-}
-
-fn figure(caption: &str, command: Option<&str>, svg: &str) -> String {
-    let command = command.map_or(String::new(), |command| format!("<code>{}</code>", escaped(command)));
-    let picture = if svg.is_empty() { String::new() } else { framed(caption, svg) };
-    format!("<figure><figcaption>{}{command}</figcaption>{picture}</figure>", escaped(caption))
+fn shown_command(book: &Path, run: &Run) -> String {
+    format!("<code>{}</code>", escaped(&command(book, run)))
 }
 
 /// What of its own width a figure keeps, so that its smallest letters, 12 high, are never below 11; what is wider than the page scrolls.
@@ -129,79 +200,9 @@ fn quoted(argument: &str) -> String {
     }
 }
 
-/// The report's number, ours, by how much they differ, why; ours alone where the report has none.
-fn table(caption: &str, facts: &[Compared]) -> String {
-    let with_report = facts.iter().any(|fact| fact.report.is_some());
-    let of = if with_report { &["report", "here", "difference"][..] } else { &["here"] };
-    let heads: String = of.iter().map(|head| format!("<th scope=\"col\" class=\"n\">{head}</th>")).collect();
-    let mut text = format!(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"{}, in numbers\"><table>\
-         <tr><th scope=\"col\">number</th>{heads}<th scope=\"col\">why</th></tr>",
-        escaped(caption)
-    );
-    for fact in facts {
-        let cell =
-            |text: Option<String>| format!("<td class=\"n\">{}</td>", text.unwrap_or_else(|| "–".to_owned()));
-        let number = |value: Option<f64>| value.map(|v| format!("{} {}", digits(v), escaped(fact.unit)));
-        let numbers = if with_report {
-            cell(number(fact.report)) + &cell(number(fact.ours)) + &cell(difference(fact))
-        } else {
-            cell(number(fact.ours))
-        };
-        let (what, why) = (escaped(&fact.what), escaped(&fact.why));
-        // writing to a String cannot fail
-        let _ = write!(text, "<tr><td>{what}</td>{numbers}<td>{why}</td></tr>");
-    }
-    text + "</table></div>"
-}
-
-/// By how much ours is more than the report's.
-fn difference(fact: &Compared) -> Option<String> {
-    let (report, ours) = fact.report.zip(fact.ours)?;
-    if report == 0.0 {
-        return Some(digits(ours));
-    }
-    let percent = 100.0 * (ours / report - 1.0);
-    Some(match percent.abs() {
-        p if p < 0.005 => "0.00 %".to_owned(),
-        p if p < 10.0 => format!("{percent:+.2} %").replace('-', "−"),
-        _ => format!("{percent:+.0} %").replace('-', "−"),
-    })
-}
-
-/// Five digits, without idle zeros.
-fn digits(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let whole = log10(value.abs()).floor() as i32;
-    let after = (4 - whole).clamp(0, 8) as usize;
-    let text = format!("{value:.after$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    text.replace('-', "−")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_and_differences_read_well() {
-        assert_eq!(digits(0.000_900_14), "0.00090014");
-        assert_eq!(digits(-13.160_448), "−13.16");
-        assert_eq!(digits(281.0), "281");
-        let of = |report: f64, ours: f64| Compared {
-            what: String::new(),
-            report: Some(report),
-            ours: Some(ours),
-            unit: "",
-            why: String::new(),
-        };
-        assert_eq!(difference(&of(2.0, 2.1)), Some("+5.00 %".to_owned()));
-        assert_eq!(difference(&of(1.0, 3.4)), Some("+240 %".to_owned()));
-        assert_eq!(difference(&of(13.16, 13.1603)), Some("0.00 %".to_owned()));
-        assert_eq!(difference(&of(0.0, 0.5)), Some("0.5".to_owned()));
-    }
 
     #[test]
     fn a_plot_keeps_its_letters_and_a_drawing_its_paper() {
@@ -210,6 +211,16 @@ mod tests {
         assert!(plot.contains("--least:1100px") && plot.contains("tabindex=\"0\""), "{plot}");
         let drawing = framed("A star", "<svg width=\"609.6mm\" viewBox=\"0 0 1 1\"></svg>");
         assert!(drawing.contains("light-wall") && !drawing.contains("--least"), "{drawing}");
+    }
+
+    #[test]
+    fn a_command_is_typed_in_the_books_own_folder() {
+        let arguments = ["lab", "simulate", "/a b/book/arrays/circle.csv", "--controller", "2 s"];
+        let run = Run { arguments: arguments.map(str::to_owned).to_vec(), ..Run::default() };
+        assert_eq!(
+            command(Path::new("/a b/book"), &run),
+            "tracelight lab simulate arrays/circle.csv --controller '2 s'"
+        );
     }
 
     #[test]

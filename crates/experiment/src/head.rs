@@ -47,6 +47,20 @@ impl Set {
         }
     }
 
+    /// Returns a rig with these masses and rotor inertias, believed and true, and otherwise unchanged.
+    #[must_use]
+    pub fn on(self, mut rig: RigConfig) -> RigConfig {
+        for bodies in [&mut rig.model.bodies, &mut rig.truth.model.bodies] {
+            // gravity is the place's, not the set's
+            *bodies = HeadBodies { gravity_m_s2: bodies.gravity_m_s2, ..self.bodies() };
+        }
+        rig.name += match self {
+            Self::A => ", set A",
+            Self::B => ", set B",
+        };
+        rig
+    }
+
     const fn name(self) -> &'static str {
         match self {
             Self::A => "parameter set A",

@@ -13,7 +13,6 @@ use tracelight_task::{Failure, Task};
 
 use crate::by_hand::ByHand;
 use crate::finding::Experiment;
-use crate::head::Set;
 use crate::systems::controller;
 use crate::table::Log;
 
@@ -24,8 +23,6 @@ pub use rows::LONGEST_S;
 pub struct Request {
     /// The rig.
     pub rig: RigConfig,
-    /// Masses of one of the report's parameter sets, instead of the rig's.
-    pub set: Option<Set>,
     /// Where the joints are to be.
     pub motion: Motion,
     /// By what it is followed.
@@ -112,10 +109,6 @@ impl Request {
     /// Makes the rig what is to be simulated.
     fn set_up(&mut self) {
         let rig = &mut self.rig;
-        if let Some(set) = self.set {
-            (rig.model.bodies, rig.truth.model.bodies) = (set.bodies(), set.bodies());
-            rig.name += if set == Set::A { ", set A" } else { ", set B" };
-        }
         for model in [&mut rig.model, &mut rig.truth.model] {
             if !self.quantizer {
                 model.encoder.counts_per_rev = FINE_COUNTS;

@@ -1,5 +1,5 @@
-use super::{MILLI, Places, command, text};
-use crate::chapter::{Chapter, Compared, Part, Run};
+use super::{MILLI, Places, command, own, text};
+use crate::chapter::{Chapter, Part, Run};
 use crate::given;
 
 impl Places<'_> {
@@ -45,7 +45,7 @@ impl Places<'_> {
         };
         let sweep = ["--mode", "sweep"];
         Chapter {
-            title: "2.7 Images",
+            title: "2.7 Image processing",
             parts: vec![
                 text(
                     "Grey, histogram, threshold, the first white pixel, then from point to point at a radius of 5 px, sweeping clockwise from the last direction: \
@@ -86,43 +86,34 @@ impl Places<'_> {
     }
 
     pub(super) fn laser(&self) -> Chapter {
-        let fact = |what: &str, ours: f64, unit: &'static str, why: &str| Compared {
-            what: what.into(),
-            report: None,
-            ours: Some(ours),
-            unit,
-            why: why.into(),
-        };
         let preset = tracelight_sim::RigConfig::report().model;
         Chapter {
-            title: "2.8 Laser and encoder",
+            title: "2.8 Laser control",
             parts: vec![
                 text(
                     "A 650 nm pointer of 4.5 V and about 50 mA, switched by a relay with a 5 V coil from a supply of 5 V and 0.2 A. The digital output gives at most \
                       2 mA, and no such coil needs so little: a driver transistor must stand between them. The relay closes 5 ms and opens 3 ms after its gate here, \
                       and each lit stroke is run up to and out of, so that the light is where it should be when it comes.",
                 ),
-                Part::Facts(vec![
-                    fact("count of the encoder", MILLI * preset.encoder.count_rad(), "mrad", "2π/4096"),
-                    fact(
-                        "the same on the target at 3 ft",
-                        MILLI * 0.9144 * preset.encoder.count_rad(),
-                        "mm",
-                        "the light is held to a thirtieth of it",
-                    ),
-                    fact(
-                        "torque a volt at tilt",
-                        preset.motors.tilt.torque_nm_per_v,
-                        "N m/V",
-                        "0.1 A/V × 0.0432 N m/A × 6.3 × 2.8435",
-                    ),
-                    fact(
-                        "torque a volt at pan",
-                        preset.motors.pan.torque_nm_per_v,
-                        "N m/V",
-                        "its amplifier gave 0.08 A/V with the motor turning",
-                    ),
-                ]),
+                Part::Facts(
+                    "Encoder",
+                    vec![
+                        own(
+                            "count of the encoder",
+                            None,
+                            MILLI * preset.encoder.count_rad(),
+                            "mrad",
+                            "2π/4096",
+                        ),
+                        own(
+                            "the same on the target at 3 ft",
+                            None,
+                            MILLI * 0.9144 * preset.encoder.count_rad(),
+                            "mm",
+                            "the light is held to a thirtieth of it",
+                        ),
+                    ],
+                ),
             ],
         }
     }

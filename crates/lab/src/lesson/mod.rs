@@ -8,6 +8,7 @@ mod counts;
 mod experiment;
 mod feedforward;
 mod friction;
+mod jumps;
 mod overshoot;
 mod pd;
 mod proportional;

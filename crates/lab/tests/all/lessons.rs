@@ -89,6 +89,38 @@ fn examples_show_something_and_do_not_give_the_answer_away() {
     }
 }
 
+/// What a student computes is right wherever in a count the joint comes to rest, and a spring that is too weak is not, however lucky.
+#[test]
+fn jumps_are_graded_by_their_worst_not_by_luck() {
+    let rig = RigConfig::report();
+    let (inertia, friction) = (rig.model.own_inertia_kg_m2().pan, rig.model.friction.pan.coulomb_pos_nm);
+    let torque = rig.model.motors.pan.torque_limit_nm();
+    let [pd, pid] = [&Lesson::ALL[2], &Lesson::ALL[3]];
+    // half of 30 degrees speeding up, half slowing down: the highest speed, and the distance it takes to stop
+    let (faster, slower) = ((torque - friction) / inertia, (torque + friction) / inertia);
+    let speed = (2.0 * 30.0_f64.to_radians() / (1.0 / faster + 1.0 / slower)).sqrt();
+    let creep_s = speed / (2.0 * slower);
+    let count_mm = 914.4 * rig.model.encoder.count_rad();
+    let least_kp = 914.4 * friction / (2.5 - count_mm);
+    for more in [1.0, 1.05, 1.1, 1.2, 1.3] {
+        let kp = more * least_kp;
+        let graded = pd.grade(&[kp, 1.03 * creep_s * kp]);
+        assert!(graded.is_right(), "kp = {kp}: {:?}", graded.checks);
+    }
+    assert!(pd.grade(&[38.0, 4.6]).is_right());
+    for ki in [80.0, 90.0, 100.0] {
+        let graded = pid.grade(&[50.0, ki, 6.5, 1.0]);
+        assert!(graded.is_right(), "ki = {ki}: {:?}", graded.checks);
+    }
+    for kp in [15.0, 18.0, 20.0] {
+        assert!(!pd.grade(&[kp, creep_s * kp]).is_right(), "kp = {kp}");
+    }
+    // without an integral no spring is stiff enough that the damper still bears
+    for kp in [40.0, 60.0, 80.0, 100.0] {
+        assert!(!pid.grade(&[kp, 0.0, 0.15 * kp, 1.0]).is_right(), "kp = {kp}");
+    }
+}
+
 /// The eighth lesson's point: with one degree of freedom none of these is stiff and gentle at once.
 #[test]
 fn one_degree_of_freedom_is_not_enough() {

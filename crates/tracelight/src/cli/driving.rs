@@ -2,6 +2,7 @@ use clap::{Args, ValueEnum};
 use tracelight_aim::HeadPose;
 use tracelight_experiment::profile_name::ProfileName;
 use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, Driving, request_of};
+use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 use tracelight_trajectory::{LitSpeed, PlanRequest};
 use tracelight_units::{AngularAcceleration, Length, Speed};
@@ -68,7 +69,11 @@ impl LitSpeedName {
 impl DrivingArgs {
     /// Reads the rig and gathers the rest.
     pub(crate) fn resolve(&self) -> Result<Driving, Failure> {
-        let mut rig = named::rig(&self.rig)?;
+        Ok(self.resolve_on(named::rig(&self.rig)?))
+    }
+
+    /// Gathers the rest for a rig that was read: a plan is made for its masses.
+    pub(crate) fn resolve_on(&self, mut rig: RigConfig) -> Driving {
         if let Some(wish) = self.amax {
             rig.motion.acceleration_limit_rad_s2 = rig.motion.acceleration_limit_rad_s2.map(|_| wish.0);
         }
@@ -81,7 +86,7 @@ impl DrivingArgs {
             ..request_of(&rig)
         };
         let asked = Asked { speed: self.speed.is_some(), acceleration: self.amax.is_some() };
-        Ok(Driving::new(rig, pose, request, asked))
+        Driving::new(rig, pose, request, asked)
     }
 }
 

@@ -122,15 +122,11 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
     }
 }
 
-/// Does what a command line says, in this process, and returns what would be printed.
+/// Does what a command line says, in this process, and returns what would be printed, with the failure of what it worked on, if any.
 fn answer_to(arguments: &[&str], stop: &Stop) -> Result<Answer, Failure> {
     let all = std::iter::once("tracelight").chain(arguments.iter().copied());
     let cli = Cli::try_parse_from(all).map_err(|e| Failure::failed("internal", e))?;
-    let answer = perform(&cli.command, stop).1?;
-    match answer.failure {
-        Some(failure) => Err(failure),
-        None => Ok(answer),
-    }
+    perform(&cli.command, stop).1
 }
 
 impl Command {

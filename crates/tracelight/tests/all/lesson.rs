@@ -65,7 +65,7 @@ fn a_right_answer_succeeds_and_a_wrong_one_says_what_helps() {
     assert!(text.contains("Right. Next: `tracelight lab lesson 4`"), "{text}");
     assert!(std::fs::read_to_string(&svg).unwrap().contains("your answer: right"));
     let rows = std::fs::read_to_string(&csv).unwrap();
-    assert_eq!(rows.lines().count(), 1 + 2 * 3000, "two jumps of 3 s");
+    assert_eq!(rows.lines().count(), 1 + 14 * 3000, "seven small jumps and seven large ones of 3 s");
 
     let wrong = run(&["lab", "lesson", "3", "--answer", " kd = 1 , kp=20", "--json"]);
     assert_eq!(wrong.status.code(), Some(1));

@@ -40,6 +40,7 @@ mod readme_commands;
 mod readmes;
 mod reproduce;
 mod results;
+mod sets;
 mod simulate;
 mod sizes;
 mod standing;

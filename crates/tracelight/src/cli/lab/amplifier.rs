@@ -10,10 +10,10 @@ use tracelight_units::{CURRENTS, TORQUE_CONSTANTS};
 use super::bounds::{above_zero, voltage};
 use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, logs};
+use super::rig::RigArgs;
 use super::rig_out;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
-use crate::named;
 
 /// Identify an amplifier's gain and its motor's back-EMF
 #[derive(Args, Debug)]
@@ -35,6 +35,9 @@ pub(crate) struct AmplifierArgs {
     #[command(flatten)]
     columns: ColumnArgs,
     /// Only this joint [default: both]; the joint of a log that has no column axis
+    #[command(flatten)]
+    rig: RigArgs,
+    /// Only this joint [default: both]
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// Torque at the joint for each ampere: the motor's constant times its gears and belt [default: the 2006 report's]
@@ -76,14 +79,14 @@ impl LabCommand for AmplifierArgs {
         let request = self.request()?;
         let finding = command::tried(request, self.voice, stop)?;
         command::leave(&finding, &self.out)?;
-        rig_out::written(&finding, &self.out, &self.rig, self.save, self.voice)
+        rig_out::written(&finding, &self.out, self.rig.name(), self.save, self.voice)
     }
 }
 
 impl AmplifierArgs {
     fn request(&self) -> Result<Request, Failure> {
-        let rig = named::rig(&self.rig)?;
-        rig_out::may_save(&self.rig, self.save)?;
+        let rig = self.rig.config()?;
+        self.rig.may_save(self.save)?;
         Ok(Request {
             rig,
             logs: logs(&self.logs)?,

@@ -8,9 +8,9 @@ use tracelight_units::{LENGTHS, Length};
 use super::bounds::above_zero;
 use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, logs};
+use super::rig::RigArgs;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
-use crate::named;
 
 /// Identify the play between encoder and beam, and whether the encoder slips, from where the spot rests on a ruler
 #[derive(Args, Debug)]
@@ -31,6 +31,9 @@ pub(crate) struct BacklashArgs {
     #[command(flatten)]
     columns: ColumnArgs,
     /// Only this joint [default: both]; the joint of a log that has no column axis
+    #[command(flatten)]
+    rig: RigArgs,
+    /// Only this joint [default: both]
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// From the head to the target, square-on
@@ -69,7 +72,7 @@ impl LabCommand for BacklashArgs {
 impl BacklashArgs {
     fn request(&self) -> Result<Request, Failure> {
         Ok(Request {
-            rig: named::rig(&self.rig)?,
+            rig: self.rig.config()?,
             logs: logs(&self.logs)?,
             columns: self.columns.columns(),
             only: self.axis.map(Axis::joint),

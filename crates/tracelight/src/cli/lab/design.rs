@@ -13,7 +13,6 @@ use super::poles::{Poles, poles};
 use super::step::{Axis, step};
 use super::systems::OneSystemArgs;
 use crate::cli::answer::{Answer, Voice};
-use crate::named;
 
 /// Design a controller from a specification: its loop's margins, step response and poles
 #[derive(Args, Debug)]
@@ -253,7 +252,7 @@ struct LoopArgs {
     #[command(flatten)]
     system: OneSystemArgs,
     /// Drive this joint of a simulated rig by it, too, from a jump of its setpoint: the head as it is beside the head linearized. The
-    /// rig is that of --rig, or report
+    /// rig is that of --rig; without it, report, with the masses of --set
     #[arg(long = "try", value_name = "JOINT", value_enum)]
     tried: Option<Axis>,
     /// How far it jumps
@@ -299,7 +298,7 @@ impl LabCommand for DesignArgs {
 
 impl LoopArgs {
     fn tried_on(&self, axis: Axis) -> Result<TriedOn, Failure> {
-        let rig = named::rig(self.system.rig().unwrap_or("report"))?;
+        let rig = self.system.tried_rig()?;
         Ok(TriedOn { rig, joint: axis.joint(), to_rad: self.to.0, seed: self.seed })
     }
 }

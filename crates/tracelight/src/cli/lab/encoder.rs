@@ -9,9 +9,9 @@ use tracelight_units::{ANGULAR_SPEEDS, parse};
 
 use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, logs};
+use super::rig::RigArgs;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
-use crate::named;
 
 /// Identify encoder errors: positions of the four quadrature edges, disc eccentricity, lost counts
 #[derive(Args, Debug)]
@@ -32,6 +32,9 @@ pub(crate) struct EncoderArgs {
     #[command(flatten)]
     columns: ColumnArgs,
     /// Only this joint [default: both]; the joint of a log that has no column axis
+    #[command(flatten)]
+    rig: RigArgs,
+    /// Only this joint [default: both]
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// How fast the simulated head turns
@@ -72,7 +75,7 @@ impl LabCommand for EncoderArgs {
 impl EncoderArgs {
     fn request(&self) -> Result<Request, Failure> {
         Ok(Request {
-            rig: named::rig(&self.rig)?,
+            rig: self.rig.config()?,
             logs: logs(&self.logs)?,
             columns: self.columns.columns(),
             only: self.axis.map(Axis::joint),

@@ -10,9 +10,9 @@ use tracelight_units::{ANGULAR_SPEEDS, FREQUENCIES, TIMES};
 use super::bounds::{above_zero, voltage};
 use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, OutFile, log, out_file};
+use super::rig::RigArgs;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
-use crate::named;
 
 /// Measure a joint's frequency response and coherence with a multisine, and compare them with the model
 #[derive(Args, Debug)]
@@ -38,6 +38,11 @@ pub(crate) struct FrequencyTrialArgs {
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file
     #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
     rig: String,
+    /// Which joint
+    #[arg(long, value_enum, default_value = "pan")]
+    axis: Axis,
+    #[command(flatten)]
+    rig: RigArgs,
     /// Lowest frequency
     #[arg(long, value_name = "FREQUENCY", default_value = "0.7rad/s", value_parser = frequency)]
     from: f64,
@@ -128,6 +133,8 @@ impl FrequencyTrialArgs {
             joint: self.axis.map_or(Joint::Pan, Axis::joint),
             axis: self.axis.map(Axis::joint),
             columns: self.columns.columns(),
+            rig: self.rig.config()?,
+            joint: self.axis.joint(),
             log: self.log.as_deref().map(log).transpose()?,
             from_rad_s: self.from,
             to_rad_s: self.to,

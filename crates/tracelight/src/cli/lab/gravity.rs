@@ -37,11 +37,11 @@ impl LabCommand for GravityArgs {
 
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         let trials = of_tilt(self.trials.trials()?)?;
-        rig_out::may_save(&self.trials.rig, self.save)?;
+        self.trials.rig.may_save(self.save)?;
         let seen = command::watched(self.voice, stop, |task| trials.seen(task))?;
         leave_log(&seen, &self.out)?;
         let finding = command::tried(Request(seen), self.voice, stop)?;
         command::leave(&finding, &self.out)?;
-        rig_out::written(&finding, &self.out, &self.trials.rig, self.save, self.voice)
+        rig_out::written(&finding, &self.out, self.trials.rig.name(), self.save, self.voice)
     }
 }

@@ -3,6 +3,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use tracelight_experiment::head::{self, HeadChoice, Masses};
 use tracelight_rig::PanTilt;
+use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 use tracelight_units::{Angle, AngularSpeed};
 
@@ -11,14 +12,14 @@ use crate::named;
 /// Which head is linearized, and where.
 #[derive(Args, Debug)]
 pub(crate) struct HeadArgs {
-    /// Which of the 2006 report's two parameter sets gives the masses; with its viscous friction of 0.01 N m s/rad and g = 9.8 m/s²
-    /// [default: A]
+    /// Masses and rotor inertias of one of the 2006 report's two parameter sets, linearized as the report does: with its viscous friction
+    /// of 0.01 N m s/rad and g = 9.8 m/s² [default: A]
     #[arg(long, value_name = "A|B", value_enum, ignore_case = true, conflicts_with = "rig")]
     set: Option<Set>,
     /// Masses, viscous friction (mean of both directions) and gravity from the [model] of this rig, a preset's name or a rig file,
     /// instead of a set
     #[arg(long, value_name = "RIG.toml|PRESET")]
-    pub(super) rig: Option<String>,
+    rig: Option<String>,
     /// Joint angles at which it is linearized [default: 26.565deg,26.565deg, half the report's range of motion]
     #[arg(long, value_name = "PAN,TILT", allow_hyphen_values = true)]
     at: Option<Pair<Angle>>,
@@ -76,6 +77,17 @@ impl<T> Pair<T> {
 }
 
 impl HeadArgs {
+    /// Returns the rig of `--rig`, or the preset `report` with the masses of `--set`.
+    ///
+    /// # Errors
+    /// A rig file that is missing or wrong.
+    pub(super) fn tried_rig(&self) -> Result<RigConfig, Failure> {
+        match &self.rig {
+            Some(rig) => named::rig(rig),
+            None => Ok(self.set.map_or(RigConfig::report(), |set| set.set().on(RigConfig::report()))),
+        }
+    }
+
     pub(super) fn choice(&self) -> Result<HeadChoice, Failure> {
         let masses = match &self.rig {
             Some(rig) => Masses::Rig(Box::new(named::rig(rig)?)),

@@ -8,6 +8,7 @@ use tracelight_task::{Failure, Stop};
 
 use super::columns::ColumnArgs;
 use super::command::{self, LabCommand, logs};
+use super::rig::RigArgs;
 use super::rig_out;
 use super::step::Axis;
 use crate::cli::answer::{Answer, Voice};
@@ -27,9 +28,8 @@ pub(crate) struct IdentifyArgs {
     /// Records of what the rig did, such as a trace.csv; given none, the rig moves
     #[arg(value_name = "RECORD.csv")]
     records: Vec<String>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
+    #[command(flatten)]
+    rig: RigArgs,
     #[command(flatten)]
     columns: ColumnArgs,
     /// The joint of a record of somebody else's, which tells one joint alone
@@ -58,14 +58,14 @@ impl LabCommand for IdentifyArgs {
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         let finding = command::tried(self.request()?, self.voice, stop)?;
         command::leave(&finding, &self.out)?;
-        rig_out::written(&finding, &self.out, &self.rig, self.save, self.voice)
+        rig_out::written(&finding, &self.out, self.rig.name(), self.save, self.voice)
     }
 }
 
 impl IdentifyArgs {
     fn request(&self) -> Result<Request, Failure> {
-        let mut rig = named::rig(&self.rig)?;
-        rig_out::may_save(&self.rig, self.save)?;
+        let mut rig = self.rig.config()?;
+        self.rig.may_save(self.save)?;
         self.law.apply(&mut rig);
         Ok(Request {
             rig,

@@ -35,11 +35,11 @@ impl LabCommand for InertiaArgs {
     }
 
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
-        rig_out::may_save(&self.trials.rig, self.save)?;
+        self.trials.rig.may_save(self.save)?;
         let trials = self.trials.trials()?;
         let seen = command::watched(self.voice, stop, |task| trials.seen(task))?;
         leave_log(&seen, &self.out)?;
         let finding = command::tried(Request(seen), self.voice, stop)?;
-        rig_out::written(&finding, &self.out, &self.trials.rig, self.save, self.voice)
+        rig_out::written(&finding, &self.out, self.trials.rig.name(), self.save, self.voice)
     }
 }

@@ -26,6 +26,7 @@ mod profile;
 mod relay;
 mod reproduce;
 mod response;
+mod rig;
 mod rig_out;
 mod shape;
 mod simulate;

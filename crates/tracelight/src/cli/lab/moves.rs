@@ -15,10 +15,10 @@ use tracelight_units::{
 
 use super::bounds::within;
 use super::command::{self, LabCommand, OutFile, out_file};
+use super::rig::RigArgs;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::placing::positive_length;
 use crate::cli::shapes::{profile, ramps};
-use crate::named;
 
 /// Follow a line or an arc on the target from rest to rest: each profile as requested, and as limited by the motors
 #[derive(Args, Debug)]
@@ -98,9 +98,8 @@ struct PaceArgs {
     /// From the head to the target [default: 3ft]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
     distance: Option<Length>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
+    #[command(flatten)]
+    rig: RigArgs,
     /// Random seed for the differences between simulated heads
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -148,7 +147,7 @@ impl LabCommand for MoveArgs {
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         let (way, pace) = (self.way(), self.pace());
         let request = Request {
-            rig: named::rig(&pace.rig)?,
+            rig: pace.rig.config()?,
             pose: HeadPose::square_on(pace.distance.map_or(DEFAULT_DISTANCE_M, |d| d.0)),
             way,
             speed: pace.vmax,

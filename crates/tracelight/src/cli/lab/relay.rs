@@ -9,6 +9,7 @@ use tracelight_units::Angle;
 use super::bode::frequency;
 use super::bounds::voltage;
 use super::command::{self, LabCommand, OutFile, out_file};
+use super::rig::RigArgs;
 use super::rig_out;
 use super::step::{Axis, step};
 use crate::cli::answer::{Answer, Voice};
@@ -28,9 +29,8 @@ pub(crate) struct RelayArgs {
     /// Which joint
     #[arg(long, value_enum, default_value = "pan")]
     axis: Axis,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
+    #[command(flatten)]
+    rig: RigArgs,
     /// The relay, either way
     #[arg(long, value_name = "VOLTAGE", default_value = "4V", value_parser = voltage)]
     level: f64,
@@ -88,11 +88,11 @@ impl LabCommand for RelayArgs {
     }
 
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
-        rig_out::may_save(&self.rig, self.save)?;
+        self.rig.may_save(self.save)?;
         let finding = command::tried(self.request()?, self.voice, stop)?;
         self.out.iter().try_for_each(|file| file.write(&finding))?;
         if self.save {
-            named::save_rig(&self.rig, finding.rig(), finding.better())?;
+            named::save_rig(self.rig.name(), finding.rig(), finding.better())?;
         }
         Ok(rig_out::answer(&finding, &self.saved(), self.voice))
     }
@@ -101,7 +101,7 @@ impl LabCommand for RelayArgs {
 impl RelayArgs {
     fn request(&self) -> Result<Request, Failure> {
         Ok(Request {
-            rig: named::rig(&self.rig)?,
+            rig: self.rig.config()?,
             joint: self.axis.joint(),
             level_v: self.level,
             hysteresis_rad: self.hysteresis.map(|angle| angle.0),
@@ -124,7 +124,7 @@ impl RelayArgs {
         let other = if joint == Joint::Pan { Joint::Tilt } else { Joint::Pan };
         format!(
             " {} has law hand-tuned now, for both joints, and {joint}'s gains; {other}'s are those of control.hand_tuned.{other}: tune them as well.",
-            self.rig
+            self.rig.name()
         )
     }
 }

@@ -13,7 +13,7 @@ use crate::cli::answer::{Answer, Performs, Voice};
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab reproduce -o book\n\n\
                   The folder gets index.html, which needs nothing but itself, the figures by themselves, and the arrays and pictures that its \
-                  commands are given. Beside each number stands the command that makes it.")]
+                  commands are given. Above each number stands the command that makes it, as it is typed in that folder.")]
 pub(crate) struct ReproduceArgs {
     /// Folder for the book
     #[arg(short, long, value_name = "DIR", default_value = "book")]
@@ -45,8 +45,15 @@ fn done(line: CommandLine<'_>, perform: Performs, stop: &Stop) -> Result<Done, F
         ..e
     };
     let answer = perform(&arguments, stop).map_err(failed)?;
+    if let Some(failure) = answer.failure.filter(|_| !line.may_fail) {
+        return Err(failed(failure));
+    }
     let value = serde_json::from_str(&answer.json).unwrap_or_default();
     let figure = line.figure.map(read).transpose()?;
+    if let Some(path) = line.figure.filter(|_| line.passing) {
+        // what stays behind where it cannot be removed harms nothing
+        let _ = std::fs::remove_file(path);
+    }
     Ok((value, figure))
 }
 

@@ -5,20 +5,10 @@ use std::path::Path;
 use tracelight_experiment::better::rig_file;
 use tracelight_experiment::{Finding, Improved};
 use tracelight_files as files;
-use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
 use crate::cli::answer::{Answer, Voice};
 use crate::named;
-
-/// Refuses to write into what comes with the program.
-pub(super) fn may_save(rig: &str, save: bool) -> Result<(), Failure> {
-    if save && RigConfig::preset(rig).is_some() {
-        let message = format!("--save needs a rig file of your own; {rig} comes with the program");
-        return Err(Failure::usage("usage", message));
-    }
-    Ok(())
-}
 
 /// Writes the better rig of a finding into a folder, and into the rig file itself where that was asked; answers, and says where it is.
 pub(super) fn written(

@@ -3,6 +3,7 @@ use tracelight_experiment::shape::Shape;
 use tracelight_pipeline::Driving;
 use tracelight_task::Failure;
 
+use super::rig::SetArgs;
 use crate::cli::driving::DrivingArgs;
 use crate::cli::laws::LawArgs;
 use crate::named;
@@ -20,6 +21,8 @@ pub(super) struct ShapeArgs {
     law: LawArgs,
     #[command(flatten)]
     driving: DrivingArgs,
+    #[command(flatten)]
+    set: SetArgs,
 }
 
 pub(super) fn switch(text: &str) -> Result<bool, String> {
@@ -36,9 +39,15 @@ impl ShapeArgs {
         &self.driving.rig
     }
 
+    /// Refuses to save where that cannot be.
+    pub(super) fn may_save(&self, save: bool) -> Result<(), Failure> {
+        self.set.may_save(&self.driving.rig, save)
+    }
+
     /// The rig and what is asked of it.
     pub(super) fn driving(&self) -> Result<Driving, Failure> {
-        let mut driving = self.driving.resolve()?;
+        let rig = self.set.on(named::rig(&self.driving.rig)?);
+        let mut driving = self.driving.resolve_on(rig);
         self.law.apply(&mut driving.rig);
         if let Some(stamps) = self.edge_stamps {
             driving.rig.model.encoder.edge_stamps = stamps;

@@ -8,11 +8,10 @@ use tracelight_units::{TIMES, TORQUES};
 use super::bounds::above_zero;
 use super::by_hand::ByHandArgs;
 use super::command::{self, LabCommand, OutFile, log, out_file};
-use super::head::Set;
+use super::rig::RigArgs;
 use super::shape::switch;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::{law, observer};
-use crate::named;
 
 /// Run an array of times and angles through the nonlinear loop: desired, actual and error, as the 2006 report's simulation
 #[derive(Args, Debug)]
@@ -46,12 +45,8 @@ pub(crate) struct SimulateArgs {
     /// Transfer functions to follow it by, for pan and for tilt
     #[arg(long, num_args = 2, value_names = ["PAN", "TILT"], allow_hyphen_values = true)]
     controller: Vec<String>,
-    /// Masses of one of the report's parameter sets, instead of the rig's
-    #[arg(long, value_name = "A|B", value_enum, ignore_case = true)]
-    set: Option<Set>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
+    #[command(flatten)]
+    rig: RigArgs,
     /// Whether angles are seen in counts
     #[arg(long, value_name = "on|off", default_value = "on", value_parser = switch, action = ArgAction::Set)]
     quantizer: bool,
@@ -116,8 +111,7 @@ impl LabCommand for SimulateArgs {
 impl SimulateArgs {
     fn request(&self) -> Result<Request, Failure> {
         Ok(Request {
-            rig: named::rig(&self.rig)?,
-            set: self.set.map(Set::set),
+            rig: self.rig.config()?,
             motion: self.motion()?,
             followers: self.followers(),
             quantizer: self.quantizer,

@@ -7,9 +7,9 @@ use tracelight_units::Angle;
 
 use super::by_hand::ByHandArgs;
 use super::command::{self, LabCommand, OutFile, out_file};
+use super::rig::RigArgs;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::laws::{law, observer};
-use crate::named;
 
 /// Send one joint from rest at zero to an angle: overshoot, settling time and steady-state error, on the nonlinear head and linearized
 #[derive(Args, Debug)]
@@ -38,9 +38,8 @@ pub(crate) struct StepArgs {
     reference: Option<Told>,
     #[command(flatten)]
     by_hand: ByHandArgs,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
+    #[command(flatten)]
+    rig: RigArgs,
     /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
@@ -105,7 +104,7 @@ impl LabCommand for StepArgs {
 
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         let request = Request {
-            rig: named::rig(&self.rig)?,
+            rig: self.rig.config()?,
             joint: self.axis.joint(),
             to_rad: self.to.0,
             laws: self.law.clone(),

@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 use tracelight_chart::Theme;
 use tracelight_experiment::systems::{OneSystem, Reading, Systems};
 use tracelight_linear::Discretization;
+use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 use tracelight_units::{FREQUENCIES, TIMES, parse};
 
@@ -112,9 +113,9 @@ impl SystemArgs {
 }
 
 impl OneSystemArgs {
-    /// The rig whose masses are linearized, if one is named.
-    pub(super) fn rig(&self) -> Option<&str> {
-        self.how.head.rig.as_deref()
+    /// The rig that a design is tried on: the one that is linearized, or the preset `report` with the masses that are.
+    pub(super) fn tried_rig(&self) -> Result<RigConfig, Failure> {
+        self.how.head.tried_rig()
     }
 
     pub(super) fn system(&self) -> Result<OneSystem, Failure> {

@@ -11,8 +11,8 @@ use tracelight_units::TIMES;
 use super::bounds::{above_zero, voltage};
 use super::columns::ColumnArgs;
 use super::command::{logs, make_folder};
+use super::rig::RigArgs;
 use super::step::Axis;
-use crate::named;
 
 /// What joints are put through.
 #[derive(Args, Debug)]
@@ -26,6 +26,9 @@ pub(super) struct TrialArgs {
     #[command(flatten)]
     columns: ColumnArgs,
     /// Only this joint [default: both]; the joint of a log that has no column axis
+    #[command(flatten)]
+    pub(super) rig: RigArgs,
+    /// Only this joint [default: both]
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// The head is in a fixture: the tested axis upright, so that gravity does not turn it, and free to turn on and on
@@ -62,7 +65,7 @@ fn time(text: &str) -> Result<f64, String> {
 impl TrialArgs {
     pub(super) fn trials(&self) -> Result<Trials, Failure> {
         Ok(Trials {
-            rig: named::rig(&self.rig)?,
+            rig: self.rig.config()?,
             logs: logs(&self.logs)?,
             columns: self.columns.columns(),
             only: self.axis.map(Axis::joint),

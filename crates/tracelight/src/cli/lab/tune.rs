@@ -86,7 +86,7 @@ impl LabCommand for TuneArgs {
 
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         let (driving, rig) = (self.shape.driving()?, self.shape.rig());
-        rig_out::may_save(rig, self.save)?;
+        self.shape.may_save(self.save)?;
         let request = Request { shape: self.shape.shape()?, driving, choice: self.choice() };
         let finding = command::tried(request, self.voice, stop)?;
         command::leave(&finding, &self.out)?;
