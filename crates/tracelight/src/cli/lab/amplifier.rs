@@ -29,15 +29,11 @@ pub(crate) struct AmplifierArgs {
     /// Logs of readings: axis,volt,ampere[,velocity_rad_s]
     #[arg(value_name = "LOG.csv")]
     logs: Vec<String>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
     #[command(flatten)]
     columns: ColumnArgs,
-    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[command(flatten)]
     rig: RigArgs,
-    /// Only this joint [default: both]
+    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// Torque at the joint for each ampere: the motor's constant times its gears and belt [default: the 2006 report's]

@@ -25,15 +25,11 @@ pub(crate) struct BacklashArgs {
     /// Logs of readings: axis,count,way,spot_m
     #[arg(value_name = "LOG.csv")]
     logs: Vec<String>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
     #[command(flatten)]
     columns: ColumnArgs,
-    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[command(flatten)]
     rig: RigArgs,
-    /// Only this joint [default: both]
+    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// From the head to the target, square-on

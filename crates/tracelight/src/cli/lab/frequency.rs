@@ -35,12 +35,6 @@ pub(crate) struct FrequencyTrialArgs {
     /// Which joint [default: pan]; to be given for a log that has no column axis
     #[arg(long, value_enum)]
     axis: Option<Axis>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    rig: String,
-    /// Which joint
-    #[arg(long, value_enum, default_value = "pan")]
-    axis: Axis,
     #[command(flatten)]
     rig: RigArgs,
     /// Lowest frequency
@@ -129,12 +123,10 @@ impl LabCommand for FrequencyTrialArgs {
 impl FrequencyTrialArgs {
     fn request(&self) -> Result<Request, Failure> {
         Ok(Request {
-            rig: named::rig(&self.rig)?,
             joint: self.axis.map_or(Joint::Pan, Axis::joint),
             axis: self.axis.map(Axis::joint),
             columns: self.columns.columns(),
             rig: self.rig.config()?,
-            joint: self.axis.joint(),
             log: self.log.as_deref().map(log).transpose()?,
             from_rad_s: self.from,
             to_rad_s: self.to,

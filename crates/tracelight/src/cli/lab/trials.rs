@@ -20,15 +20,11 @@ pub(super) struct TrialArgs {
     /// Logs of what a head did: axis,volt,time_s,count or axis,torque_nm,velocity_rad_s; given none, the simulated head is tried
     #[arg(value_name = "LOG.csv")]
     logs: Vec<String>,
-    /// Rig: a preset's name (see `tracelight rigs`) or a rig file
-    #[arg(long, value_name = "RIG.toml|PRESET", default_value = "report")]
-    pub(super) rig: String,
     #[command(flatten)]
     columns: ColumnArgs,
-    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[command(flatten)]
     pub(super) rig: RigArgs,
-    /// Only this joint [default: both]
+    /// Only this joint [default: both]; the joint of a log that has no column axis
     #[arg(long, value_enum)]
     axis: Option<Axis>,
     /// The head is in a fixture: the tested axis upright, so that gravity does not turn it, and free to turn on and on
