@@ -22,10 +22,12 @@ pub struct Frequencies {
 impl Frequencies {
     /// All systems, and frequencies for them together, rad/s.
     pub(crate) fn read(&self) -> Result<(Vec<Named>, Vec<f64>), Failure> {
-        let systems = self.systems.systems()?;
+        let systems = self.systems.with_data()?;
         bounded(self.points, systems.len())?;
-        let (low, high) =
-            systems.iter().map(band).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((0.1, 10.0));
+        let own = systems.iter().map(band).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((0.1, 10.0));
+        // beyond what was measured nothing is known
+        let known = systems.iter().filter(|named| named.data.is_some()).map(Named::band);
+        let (low, high) = known.fold(own, |a, b| (a.0.max(b.0), a.1.min(b.1)));
         // a bound that is typed moves the other, if that is not typed
         let (from, to) = match (self.from_rad_s, self.to_rad_s) {
             (Some(from), Some(to)) => (from, to),
@@ -48,8 +50,11 @@ impl Frequencies {
 fn band(named: &Named) -> (f64, f64) {
     /// Half a decade and more beyond a crossover its slope is seen.
     const BEYOND: f64 = 5.0;
-    let end = named.system.time().nyquist_rad_s();
     let (low, high) = named.band();
+    if named.data.is_some() {
+        return (low, high);
+    }
+    let end = named.system.time().nyquist_rad_s();
     let margins = named.margins();
     // a dead time crosses again and again
     let gain: Vec<f64> = match &named.late {
@@ -85,8 +90,7 @@ mod tests {
         ] {
             let time = period_s.map_or(Time::Continuous, Time::Sampled);
             let system = TransferFunction::parse(text, time).unwrap();
-            let named =
-                Named { name: text.into(), system: system.clone(), late: None, colour: Colour::Black };
+            let named = Named::rational(text.into(), system.clone(), Colour::Black);
             let (low, high) = band(&named);
             let margins = system.margins();
             let phase = margins.phase.iter().map(|m| m.rad_s);

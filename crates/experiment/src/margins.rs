@@ -43,6 +43,9 @@ pub(crate) fn margin_lines(delay: DelayMargin, margins: &Margins) -> String {
         }
         DelayMargin::Unlimited => "    delay margin    none: no delay makes it unstable".to_owned(),
         DelayMargin::Unstable => "    delay margin    none: it is unstable without a delay".to_owned(),
+        DelayMargin::Unknown => {
+            "    delay margin    not known: measured data do not say whether the loop is stable".to_owned()
+        }
     });
     if let Some(margin) = margins.modulus {
         lines.push(format!(

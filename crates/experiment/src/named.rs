@@ -1,14 +1,15 @@
 //! A system as it was typed: rational, or with a dead time, of which rational figures are those of an approximation.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use tracelight_chart::Colour;
 use tracelight_linear::{
-    Complex, DelayMargin, Delayed, FrequencyResponse, GrowingPoles, Margins, NyquistCurve, Peak,
-    RealCrossing, Stability, TransferFunction,
+    Complex, DelayMargin, Delayed, FrequencyData, FrequencyResponse, GainMargin, GrowingPoles, Margins,
+    NyquistCurve, NyquistPart, Peak, RealCrossing, Stability, Time, TransferFunction,
 };
+use tracelight_maths::complex;
 
 use crate::numbers::four;
-use crate::systems::system_json;
+use crate::system_json::system_json;
 
 /// A system and what it is called.
 pub(crate) struct Named {
@@ -18,6 +19,8 @@ pub(crate) struct Named {
     pub(crate) system: TransferFunction,
     /// What it is exactly, if it has a dead time.
     pub(crate) late: Option<Late>,
+    /// What is known of it, if it was measured: then the system above stands for nothing.
+    pub(crate) data: Option<FrequencyData>,
     pub(crate) colour: Colour,
 }
 
@@ -66,6 +69,17 @@ impl Late {
 }
 
 impl Named {
+    /// A rational system.
+    pub(crate) const fn rational(name: String, system: TransferFunction, colour: Colour) -> Self {
+        Self { name, system, late: None, data: None, colour }
+    }
+
+    /// What was measured.
+    pub(crate) fn measured(name: String, data: FrequencyData, colour: Colour) -> Self {
+        let system = TransferFunction::gain(1.0, Time::Continuous);
+        Self { name, system, late: None, data: Some(data), colour }
+    }
+
     /// What it is exactly, of an open system with a dead time.
     fn exact(&self) -> Option<&Delayed> {
         self.late.as_ref().filter(|late| !late.closed).map(|late| &late.open)
@@ -78,6 +92,15 @@ impl Named {
 
     /// What it is, for people.
     pub(crate) fn text(&self) -> String {
+        if let Some(data) = &self.data {
+            let (low, high) = data.band();
+            return format!(
+                "{} measured values from {} to {} rad/s",
+                data.values().len(),
+                four(low),
+                four(high)
+            );
+        }
         match &self.late {
             None => self.system.to_string(),
             Some(Late { open, closed: false, .. }) => open.to_string(),
@@ -92,6 +115,9 @@ impl Named {
 
     /// Value at a frequency, rad/s.
     pub(crate) fn at(&self, rad_s: f64) -> Complex {
+        if let Some(data) = &self.data {
+            return data.at(rad_s).unwrap_or(Complex::new(f64::NAN, f64::NAN));
+        }
         match (self.exact(), self.closed_late()) {
             (Some(exact), _) => exact.at_frequency(rad_s),
             (_, Some(open)) => open.closed_at_frequency(rad_s),
@@ -101,10 +127,19 @@ impl Named {
 
     /// Phase at a frequency, rad.
     pub(crate) fn phase(&self, rad_s: f64) -> f64 {
+        if let Some(data) = &self.data {
+            return data.phase(rad_s).unwrap_or(f64::NAN);
+        }
         self.exact().map_or_else(|| self.system.phase(rad_s), |exact| exact.phase(rad_s))
     }
 
+    /// At each of these frequencies, rad/s; of measured data no numbers beyond them.
     pub(crate) fn frequency_response(&self, rad_s: Vec<f64>) -> FrequencyResponse {
+        if self.data.is_some() {
+            let values = rad_s.iter().map(|w| self.at(*w)).collect();
+            let phases_rad = rad_s.iter().map(|w| self.phase(*w)).collect();
+            return FrequencyResponse { rad_s, values, phases_rad };
+        }
         match (self.exact(), self.closed_late()) {
             (Some(exact), _) => exact.frequency_response(rad_s),
             (_, Some(open)) => open.closed_frequency_response(rad_s),
@@ -114,10 +149,20 @@ impl Named {
 
     /// Margins of it as an open loop.
     pub(crate) fn margins(&self) -> Margins {
+        if let Some(data) = &self.data {
+            return data.margins();
+        }
         self.exact().map_or_else(|| self.system.margins(), Delayed::margins)
     }
 
+    /// For how much longer it may be late; of measured data if the loop is stable.
     pub(crate) fn delay_margin(&self, margins: &Margins) -> DelayMargin {
+        if self.data.is_some() {
+            return margins.least_delay().map_or(DelayMargin::Unknown, |margin| DelayMargin::Delay {
+                delay_s: margin.delay_s,
+                rad_s: margin.rad_s,
+            });
+        }
         self.exact().map_or_else(|| self.system.delay_margin(margins), |exact| exact.delay_margin(margins))
     }
 
@@ -131,6 +176,9 @@ impl Named {
 
     /// What becomes of it once it is closed; none where that is not defined.
     pub(crate) fn closed_stability(&self) -> Option<Stability> {
+        if self.data.is_some() {
+            return None;
+        }
         match self.exact() {
             Some(exact) => exact.closed_growing().stability(),
             None => self.system.closed().ok().map(|closed| closed.stability()),
@@ -139,6 +187,9 @@ impl Named {
 
     /// How many poles grow once it is closed; none where that is not defined or has no end.
     pub(crate) fn closed_growing(&self) -> Option<usize> {
+        if self.data.is_some() {
+            return None;
+        }
         match self.exact().map(Delayed::closed_growing) {
             None => self.system.closed().ok().map(|closed| closed.growing_poles()),
             Some(GrowingPoles::Count(count) | GrowingPoles::Edge(count)) => Some(count),
@@ -147,6 +198,10 @@ impl Named {
     }
 
     pub(crate) fn real_crossings(&self) -> Vec<RealCrossing> {
+        if let Some(data) = &self.data {
+            let crossing = |m: GainMargin| RealCrossing { rad_s: m.rad_s, value: -1.0 / m.factor };
+            return data.margins().gain.into_iter().map(crossing).collect();
+        }
         /// A dead time crosses without end: what is that much smaller than the largest is not told.
         const TOLD: f64 = 0.02;
         let Some(exact) = self.exact() else { return self.system.real_crossings() };
@@ -156,7 +211,12 @@ impl Named {
         all
     }
 
+    /// Nyquist's curve; of measured data their polygon.
     pub(crate) fn nyquist_curve(&self, level: f64, tolerance: f64) -> NyquistCurve {
+        if let Some(data) = &self.data {
+            let part = NyquistPart::Finite { rad_s: data.rad_s().to_vec(), values: data.values().to_vec() };
+            return NyquistCurve { level, parts: vec![part] };
+        }
         match self.exact() {
             Some(exact) => exact.nyquist_curve(level, tolerance),
             None => self.system.nyquist_curve(level, tolerance),
@@ -165,10 +225,16 @@ impl Named {
 
     /// A dead time turns, and leaves the gain.
     pub(crate) fn largest_finite_gain(&self) -> f64 {
+        if let Some(data) = &self.data {
+            return data.values().iter().map(|value| complex::norm(*value)).fold(0.0, f64::max);
+        }
         self.exact().map_or(&self.system, Delayed::rational).largest_finite_gain()
     }
 
     pub(crate) fn bandwidth(&self) -> Option<f64> {
+        if let Some(data) = &self.data {
+            return data.bandwidth();
+        }
         match self.closed_late() {
             Some(open) => open.closed_bandwidth(),
             None => self.exact().map_or(&self.system, Delayed::rational).bandwidth(),
@@ -176,6 +242,9 @@ impl Named {
     }
 
     pub(crate) fn resonance(&self) -> Option<Peak> {
+        if let Some(data) = &self.data {
+            return data.resonance();
+        }
         match self.closed_late() {
             Some(open) => open.closed_resonance(),
             None => self.exact().map_or(&self.system, Delayed::rational).resonance(),
@@ -184,6 +253,9 @@ impl Named {
 
     /// From a decade below the slowest pole or zero to a decade above the fastest, rad/s; of a dead time those of the rational part.
     pub(crate) fn band(&self) -> (f64, f64) {
+        if let Some(data) = &self.data {
+            return data.band();
+        }
         match &self.late {
             Some(late) => {
                 let (low, high) = late.open.rational().band();
@@ -194,8 +266,12 @@ impl Named {
         }
     }
 
-    /// It, for scripts: of a dead time the rational part, and how late it is.
+    /// The system for scripts: of a dead time the rational part, and how late it is.
     pub(crate) fn json(&self) -> Value {
+        if let Some(data) = &self.data {
+            let (low, high) = data.band();
+            return json!({"name": self.name, "measured": data.values().len(), "from_rad_s": low, "to_rad_s": high});
+        }
         let Some(late) = &self.late else { return system_json(&self.name, &self.system) };
         let mut object = system_json(&self.name, late.open.rational());
         object["delay_s"] = late.open.delay_s().into();
@@ -203,16 +279,16 @@ impl Named {
             object["closed"] = true.into();
             let stability = self.stability();
             object["stable"] = (stability == Stability::Stable).into();
-            object["stability"] = crate::systems::stability_name(stability).into();
+            object["stability"] = crate::system_json::stability_name(stability).into();
         }
         object
     }
 
-    /// It, for scripts, as it is approximated.
+    /// The system for scripts, as it is approximated.
     pub(crate) fn approximated_json(&self) -> Value {
         let mut object = system_json(&self.name, &self.system);
         if let Some(late) = &self.late {
-            object["pade"] = serde_json::json!({
+            object["pade"] = json!({
                 "delay_s": late.open.delay_s(),
                 "order": late.order,
                 "error_deg": late.good_to.1.to_degrees(),

@@ -2,12 +2,11 @@
 
 use std::fmt::Write;
 
-use serde_json::{Value, json};
 use tracelight_chart::{Colour, Theme};
 use tracelight_lab::Linearization;
 use tracelight_linear::{
-    Complex, Delayed, Discretization, DistinctRoot, FormulaError, LinearError, Mode, Names, Stability, Time,
-    TransferFunction, Zpk,
+    Complex, Delayed, Discretization, DistinctRoot, FormulaError, FrequencyData, LinearError, Mode, Names,
+    Time, TransferFunction, Zpk,
 };
 use tracelight_maths::complex;
 use tracelight_rig::Joint;
@@ -17,6 +16,7 @@ use tracelight_task::Failure;
 use crate::head::HeadChoice;
 use crate::named::{Late, Named};
 use crate::numbers::four;
+use crate::plants::{Plants, SystemFile, Whole};
 
 /// Systems to plot.
 #[derive(Clone, Debug)]
@@ -54,6 +54,8 @@ pub struct Reading {
     /// Order in which a dead time is approximated where only a rational system will do, 1 to 15; if not given, the least whose phase is
     /// off by no more than a degree where it matters.
     pub pade: Option<usize>,
+    /// Systems from files, and what they are called.
+    pub files: Vec<SystemFile>,
 }
 
 const fn words(method: Discretization) -> &'static str {
@@ -67,13 +69,21 @@ const fn words(method: Discretization) -> &'static str {
 }
 
 impl Systems {
-    /// All systems, as they are to be plotted.
+    /// All systems, as they are to be plotted; none of them measured.
     pub(crate) fn systems(&self) -> Result<Vec<Named>, Failure> {
+        self.with_data()?.into_iter().map(not_measured).collect()
+    }
+
+    /// All systems, as they are to be plotted, measured ones among them.
+    pub(crate) fn with_data(&self) -> Result<Vec<Named>, Failure> {
         let reader = self.how.reader()?;
         let all = self.formulas.iter().map(|text| text.trim()).zip(Colour::in_turn());
         all.map(|(text, colour)| {
             let mut named = reader.read(text, colour)?;
-            if self.closed {
+            if let (true, Some(data)) = (self.closed, &named.data) {
+                named.data = Some(data.closed().map_err(|e| no_such_system(text, &e))?);
+                named.name += ", closed";
+            } else if self.closed {
                 named.system = named.system.closed().map_err(|e| no_such_system(text, &e))?;
                 named.name += ", closed";
                 if let Some(late) = &mut named.late {
@@ -89,8 +99,20 @@ impl Systems {
 impl OneSystem {
     /// Its name and what it is.
     pub(crate) fn system(&self) -> Result<Named, Failure> {
-        self.how.reader()?.read(self.formula.trim(), Colour::Black)
+        not_measured(self.how.reader()?.read(self.formula.trim(), Colour::Black)?)
     }
+}
+
+/// Refuses what was measured: it has no poles and no equations.
+fn not_measured(named: Named) -> Result<Named, Failure> {
+    if named.data.is_none() {
+        return Ok(named);
+    }
+    let message = format!(
+        "{} was measured, and has no poles and no equations; lab bode, nyquist and nichols take it",
+        named.name
+    );
+    Err(Failure::failed("no-such-system", message))
 }
 
 fn no_such_system(text: &str, error: &LinearError) -> Failure {
@@ -147,17 +169,18 @@ fn the_reports(name: &str) -> Option<Delayed> {
 struct Reader<'a> {
     how: &'a Reading,
     head: Linearization,
+    plants: Plants,
 }
 
 impl Reading {
     fn reader(&self) -> Result<Reader<'_>, Failure> {
-        Ok(Reader { how: self, head: self.head.head().linearize()? })
+        Ok(Reader { how: self, head: self.head.head().linearize()?, plants: Plants::read(&self.files)? })
     }
 }
 
 impl Reader<'_> {
-    /// The system that a formula names.
-    fn named(&self, name: &str) -> Option<Delayed> {
+    /// The system that a formula names; for what was measured stands a number.
+    fn named(&self, name: &str, measured: f64) -> Option<Delayed> {
         let keep = self.how.head.keep_cancellations;
         let own = |joint: Joint| match keep {
             true => self.head.transfer(joint).ok(),
@@ -166,27 +189,63 @@ impl Reader<'_> {
         match name {
             "G11" => own(Joint::Pan).map(Delayed::from),
             "G22" => own(Joint::Tilt).map(Delayed::from),
-            _ => the_reports(name),
+            _ => the_reports(name).or_else(|| self.plants.named(name, measured)),
         }
     }
 
-    /// What a formula is, and what was made of it.
+    /// What a formula or a file is, and what was made of it.
     fn read(&self, text: &str, colour: Colour) -> Result<Named, Failure> {
         let time = self.how.period_s.map_or(Time::Continuous, Time::Sampled);
-        let read = parsed(text, time, &|name| self.named(name))?;
+        let read = match self.plants.whole(text)? {
+            Some(Whole::System(system)) => system.into(),
+            Some(Whole::Data(data)) => return self.measured(text, data, colour),
+            None => {
+                let read = parsed(text, time, &|name| self.named(name, 1.0))?;
+                if let Some(data) = self.plants.data_in(text) {
+                    let twice = parsed(text, time, &|name| self.named(name, 2.0))?;
+                    return self.measured(text, product(text, &read, &twice, data)?, colour);
+                }
+                read
+            }
+        };
         let mut name = text.to_owned();
         if let Some((period_s, method)) = self.how.sampling {
             let system = read.sampled(period_s, method).map_err(|e| no_such_system(text, &e))?;
             name += &format!(", sampled every {} ms by {}", four(1e3 * period_s), words(method));
-            return Ok(Named { name, system, late: None, colour });
+            return Ok(Named::rational(name, system, colour));
         }
         if read.delay_s() == 0.0 {
-            return Ok(Named { name, system: read.rational().clone(), late: None, colour });
+            return Ok(Named::rational(name, read.rational().clone(), colour));
         }
         let late = Late::of(read, self.how.pade);
         let system = late.open.approximated(late.order).map_err(|e| no_such_system(text, &e))?;
-        Ok(Named { name, system, late: Some(late), colour })
+        Ok(Named { late: Some(late), ..Named::rational(name, system, colour) })
     }
+
+    fn measured(&self, text: &str, data: FrequencyData, colour: Colour) -> Result<Named, Failure> {
+        match self.how.sampling {
+            None => Ok(Named::measured(text.to_owned(), data, colour)),
+            Some(_) => {
+                let message = format!("{text} was measured: it cannot be sampled; leave --sample out");
+                Err(Failure::usage("usage", message))
+            }
+        }
+    }
+}
+
+/// Measured data times a formula, which was read with 1 and with 2 in their place.
+fn product(
+    text: &str,
+    once: &Delayed,
+    twice: &Delayed,
+    data: &FrequencyData,
+) -> Result<FrequencyData, Failure> {
+    let is_factor = twice.rational() == &once.rational().scaled(2.0) && twice.delay_s() == once.delay_s();
+    if !is_factor {
+        let message = format!("{text}: what was measured may stand in a product, once");
+        return Err(Failure::usage("bad-formula", message));
+    }
+    data.times(|rad_s| once.at_frequency(rad_s)).map_err(|e| no_such_system(text, &e))
 }
 
 /// Refuses what would take more memory than a plot is worth: so many numbers in all.
@@ -250,37 +309,4 @@ pub(crate) fn pole_lines(poles: &[DistinctRoot], time: Time) -> String {
         );
     }
     text
-}
-
-/// A complex number for scripts.
-pub(crate) fn pairs(values: &[Complex]) -> Vec<[f64; 2]> {
-    // without the sign that a zero may have
-    values.iter().map(|z| [z.re + 0.0, z.im + 0.0]).collect()
-}
-
-/// A system for scripts.
-pub(crate) fn system_json(name: &str, system: &TransferFunction) -> Value {
-    let (gain, stability) = (system.dc_gain(), system.stability());
-    json!({
-        "name": name,
-        "period_s": match system.time() {
-            Time::Continuous => None,
-            Time::Sampled(period_s) => Some(period_s),
-        },
-        "num": system.numerator().coefficients(),
-        "den": system.denominator().coefficients(),
-        "zeros": pairs(&system.zeros()),
-        "poles": pairs(&system.poles()),
-        "dc_gain": gain.is_finite().then_some(gain),
-        "stable": stability == Stability::Stable,
-        "stability": stability_name(stability),
-    })
-}
-
-pub(crate) const fn stability_name(stability: Stability) -> &'static str {
-    match stability {
-        Stability::Stable => "stable",
-        Stability::Marginal => "marginal",
-        Stability::Growing => "growing",
-    }
 }

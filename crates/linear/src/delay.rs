@@ -16,6 +16,8 @@ pub enum DelayMargin {
     Unlimited,
     /// The loop is unstable without a delay, or may be: there is no margin.
     Unstable,
+    /// Measured data do not say whether the loop is stable, and its gain is nowhere 1.
+    Unknown,
 }
 
 impl DelayMargin {
@@ -24,7 +26,7 @@ impl DelayMargin {
         match self {
             Self::Delay { delay_s, .. } => Some(delay_s),
             Self::Zero => Some(0.0),
-            Self::Unlimited | Self::Unstable => None,
+            Self::Unlimited | Self::Unstable | Self::Unknown => None,
         }
     }
 }

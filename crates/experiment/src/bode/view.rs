@@ -12,7 +12,7 @@ use super::{Entry, Finding, Kind};
 use crate::finding::{self, Plotted};
 use crate::margins::{margin_lines, margins_json, summary};
 use crate::numbers::four;
-use crate::systems::stability_name;
+use crate::system_json::stability_name;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
@@ -41,6 +41,11 @@ impl finding::Finding for Finding {
                 Kind::Open { closed: Some(closed), .. } => {
                     writeln!(text, "    closed by negative feedback it {}\n", is(closed))
                 }
+                Kind::Open { closed: None, .. } if named.data.is_some() => writeln!(
+                    text,
+                    "    whether it is stable once it is closed, measured data alone do not tell\n"
+                ),
+                Kind::Closed(_) if named.data.is_some() => writeln!(text),
                 Kind::Open { closed: None, .. } => writeln!(
                     text,
                     "    closed by negative feedback it is not defined: 1 + G is zero at infinite frequency\n"

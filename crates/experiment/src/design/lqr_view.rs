@@ -12,7 +12,8 @@ use crate::finding::{self, Plotted};
 use crate::margins::{margin_lines, margins_json};
 use crate::numbers::{four, percent, seconds};
 use crate::panels::over_time;
-use crate::systems::{pairs, pole_lines, stability_name, system_json};
+use crate::system_json::{pairs, stability_name, system_json};
+use crate::systems::pole_lines;
 
 impl Finding {
     fn feedback(&self) -> String {

@@ -9,7 +9,8 @@ use tracelight_task::Failure;
 use super::{Chosen, Entry, Finding, Marked};
 use crate::finding::{self, Plotted};
 use crate::numbers::four;
-use crate::systems::{pairs, place, pole_lines};
+use crate::system_json::pairs;
+use crate::systems::{place, pole_lines};
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {

@@ -321,7 +321,7 @@ mod tests {
 
     fn window(text: &str, reach: Option<f64>) -> Window {
         let system = TransferFunction::parse(text, Time::Continuous).unwrap();
-        let named = Named { name: text.into(), system, late: None, colour: Colour::Violet };
+        let named = Named::rational(text.into(), system, Colour::Violet);
         let entry = Entry::of(named, &[1.0]);
         let finding = Finding {
             theme: tracelight_chart::Theme::Light,

@@ -29,6 +29,14 @@ impl finding::Finding for Finding {
             if entry.margins.modulus.is_some_and(|margin| margin.distance <= THROUGH) {
                 let _ = writeln!(text, "    it goes through −1: closed it is at the edge of stability");
             }
+            if entry.named.data.is_some() {
+                let _ = writeln!(
+                    text,
+                    "    how many poles grow, measured data do not tell: if none of the open loop does, the closed loop is stable where \
+                     the curve does not turn round −1\n"
+                );
+                continue;
+            }
             let _ = match entry.closed_unstable {
                 Some(closed) => writeln!(
                     text,

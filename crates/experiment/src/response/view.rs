@@ -10,7 +10,7 @@ use tracelight_task::Failure;
 use super::{Entry, Finding, Input};
 use crate::finding::{self, Plotted};
 use crate::numbers::{four, percent};
-use crate::systems::pairs;
+use crate::system_json::pairs;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {

@@ -1,7 +1,7 @@
 //! Numbers, the variable, names, brackets, dead times.
 
+use super::part::{FormulaError, Part};
 use super::reader::Reader;
-use super::{FormulaError, Part};
 use crate::{Polynomial, Time, TransferFunction};
 
 impl Reader<'_> {

@@ -1,22 +1,13 @@
 //! Transfer functions from text: what may be read, [`reader`] how, [`atom`] what it is made of.
 
 mod atom;
+mod part;
 mod reader;
-
-use thiserror::Error;
 
 use crate::{Delayed, Time, TransferFunction};
 use reader::Reader;
 
-/// What is wrong with a formula, and where.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("{message}")]
-pub struct FormulaError {
-    /// Characters before the place.
-    pub at: usize,
-    /// What is wrong there and what would be right.
-    pub message: String,
-}
+pub use part::{FormulaError, Names};
 
 impl TransferFunction {
     /// From text like `281 (s + 32.9)(s + 97.8) / ((s + 250)(s + 177))`: numbers, the variable (s, or z of samples), + − * / ^,
@@ -66,32 +57,6 @@ impl Delayed {
         }
     }
 }
-
-/// A part of a formula: on the way a dead time may be negative.
-#[derive(Clone)]
-struct Part {
-    rational: TransferFunction,
-    delay_s: f64,
-}
-
-impl From<TransferFunction> for Part {
-    fn from(rational: TransferFunction) -> Self {
-        Self { rational, delay_s: 0.0 }
-    }
-}
-
-impl Part {
-    fn scaled(&self, by: f64) -> Self {
-        Self { rational: self.rational.scaled(by), delay_s: self.delay_s }
-    }
-
-    fn is_zero(&self) -> bool {
-        self.rational.numerator().is_zero()
-    }
-}
-
-/// Systems by name.
-pub type Names<'a> = dyn Fn(&str) -> Option<Delayed> + 'a;
 
 /// Signs as they are printed, as they are typed.
 const fn plain(c: char) -> char {

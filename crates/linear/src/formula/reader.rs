@@ -1,6 +1,6 @@
 //! Sums, products and powers.
 
-use super::{FormulaError, Names, Part};
+use super::part::{FormulaError, Names, Part};
 use crate::{LinearError, Time, TransferFunction};
 
 /// Powers a formula may reach: more is a slip, and multiplying it out would take for ever.

@@ -11,7 +11,7 @@ use tracelight_image::solve::symmetric;
 use tracelight_maths::exp;
 use tracelight_stroke::{Point, Vec2};
 
-use super::part::{Closeness, Part};
+use super::part::{Closeness, FURTHEST_PX, Part};
 use super::square::{SIDE, Square};
 
 /// Samples across a boundary.
@@ -23,8 +23,6 @@ const NEAR: isize = 2;
 const TRANSITIONS: usize = 2 * NEAR as usize + 1;
 /// Smallest and largest blur that is estimated, px.
 const BLUR_PX: (f64, f64) = (0.4, 4.0);
-/// How far off a boundary can be placed, px.
-pub(super) const FURTHEST_PX: f64 = 1.5;
 /// Least contrast of a boundary, as a share of the brightest there can be.
 const LEAST_CONTRAST: f64 = 0.004;
 

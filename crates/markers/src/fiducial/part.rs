@@ -3,9 +3,11 @@
 use tracelight_image::Plane;
 use tracelight_stroke::{Point, Vec2};
 
-use super::boundary::FURTHEST_PX;
 use super::square::SIDE;
 use crate::light::{Border, light_of_levels, smooth};
+
+/// How far off a boundary can be placed, px.
+pub(super) const FURTHEST_PX: f64 = 1.5;
 
 /// How closely a marker is looked at.
 #[derive(Clone, Copy)]

@@ -8,7 +8,8 @@ use super::boundary::Cells;
 use super::cells::{Levels, Read};
 use super::local::{Darkness, Surroundings};
 use super::square::Square;
-use super::{Tag, pieces, placing, quad, side, tag_cells};
+use super::tag::{Tag, tag_cells};
+use super::{pieces, placing, quad, side};
 
 /// What is taken out of a cell that its neighbours' light was mixed into, where it can not be read as it is.
 const SHARPENINGS: [f64; 3] = [0.0, 0.25, 0.5];

@@ -1,4 +1,5 @@
 use super::*;
+use tracelight_stroke::Point;
 use tracelight_stroke::Vec2;
 
 mod kinds;

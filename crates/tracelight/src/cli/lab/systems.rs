@@ -1,19 +1,23 @@
 use std::f64::consts::TAU;
+use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use tracelight_chart::Theme;
+use tracelight_experiment::plant_file::is_plant_name;
+use tracelight_experiment::plants::SystemFile;
 use tracelight_experiment::systems::{OneSystem, Reading, Systems};
 use tracelight_linear::Discretization;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 use tracelight_units::{FREQUENCIES, TIMES, parse};
 
+use super::command::log;
 use super::head::HeadArgs;
 
 /// Systems to plot.
 #[derive(Args, Debug)]
 pub(crate) struct SystemArgs {
-    /// Systems, each a formula: numbers, s, + − * / ^, brackets, dead times as exp(-0.2s) or pade(0.2, 3); factors side by side are multiplied. G11 and G22 are the linearized head
+    /// Systems, each a formula: numbers, s, + − * / ^, brackets, dead times as exp(-0.2s) or pade(0.2, 3); factors side by side are multiplied. Or a file with a system: .toml, .json, .csv, .mat. G11 and G22 are the linearized head
     /// (see `tracelight lab linearize`). K11 and K22 are the 2006 report's compensators as printed (poles and zeros); K11t and K22t take
     /// the same numbers as time constants
     #[arg(value_name = "SYSTEM", required = true)]
@@ -31,7 +35,7 @@ pub(crate) struct SystemArgs {
 /// One system.
 #[derive(Args, Debug)]
 pub(super) struct OneSystemArgs {
-    /// The system, a formula: numbers, s, + − * / ^, brackets, dead times as exp(-0.2s) or pade(0.2, 3); factors side by side are multiplied. G11 and G22 are the linearized head
+    /// The system, a formula: numbers, s, + − * / ^, brackets, dead times as exp(-0.2s) or pade(0.2, 3); factors side by side are multiplied. Or a file with a system: .toml, .json, .csv, .mat. G11 and G22 are the linearized head
     /// (see `tracelight lab linearize`)
     #[arg(value_name = "SYSTEM")]
     system: String,
@@ -53,12 +57,50 @@ struct HowArgs {
     /// Discretize with this sample period
     #[arg(long, value_name = "TIME", value_parser = period)]
     sample: Option<f64>,
+    /// A system from a file, and its name in formulas; P21 is output 2 from input 1 of one with several. Of several systems in a file
+    /// CHOICE names one; may be given again
+    #[arg(long = "with", value_name = "NAME=FILE[:CHOICE]", value_parser = named_file)]
+    with: Vec<NamedFile>,
     /// Approximate a dead time in this order, 1 to 15, where only a rational system will do [default: the least whose phase is right to 1°]
     #[arg(long, value_name = "ORDER", value_parser = clap::value_parser!(u8).range(1..=15))]
     pade: Option<u8>,
     /// How it is discretized
     #[arg(long, value_enum, default_value = "hold", requires = "sample")]
     method: Method,
+}
+
+/// A file and what it is called in formulas.
+#[derive(Clone, Debug)]
+struct NamedFile {
+    name: String,
+    file: String,
+}
+
+fn named_file(text: &str) -> Result<NamedFile, String> {
+    const TAKEN: [&str; 9] = ["e", "exp", "pade", "G11", "G22", "K11", "K22", "K11t", "K22t"];
+    let (name, file) = text.split_once('=').ok_or_else(|| format!("{text} is not NAME=FILE"))?;
+    let is_word = name.chars().all(char::is_alphanumeric) && name.starts_with(char::is_alphabetic);
+    if !is_word || name.starts_with(['s', 'z']) || TAKEN.contains(&name) {
+        return Err(format!(
+            "{name} cannot be a name in a formula: take a letter other than s and z, and letters and digits behind it, such as P"
+        ));
+    }
+    if file.is_empty() {
+        return Err(format!("{text} names no file"));
+    }
+    Ok(NamedFile { name: name.to_owned(), file: file.to_owned() })
+}
+
+impl NamedFile {
+    fn read(&self) -> Result<SystemFile, Failure> {
+        // a file's own name may have a colon
+        let parted = self.file.rsplit_once(':').filter(|(file, _)| is_plant_name(file));
+        let (file, choice) = match parted {
+            Some((file, choice)) if !Path::new(&self.file).exists() => (file, Some(choice.to_owned())),
+            _ => (self.file.as_str(), None),
+        };
+        Ok(SystemFile { name: self.name.clone(), log: log(file)?, choice })
+    }
 }
 
 /// A way to sample.
@@ -105,7 +147,7 @@ impl SystemArgs {
     pub(super) fn systems(&self) -> Result<Systems, Failure> {
         Ok(Systems {
             formulas: self.systems.clone(),
-            how: self.how.reading()?,
+            how: self.how.reading(&self.systems)?,
             closed: self.closed,
             theme: theme(self.dark),
         })
@@ -119,13 +161,18 @@ impl OneSystemArgs {
     }
 
     pub(super) fn system(&self) -> Result<OneSystem, Failure> {
-        Ok(OneSystem { formula: self.system.clone(), how: self.how.reading()?, theme: theme(self.dark) })
+        let how = self.how.reading(std::slice::from_ref(&self.system))?;
+        Ok(OneSystem { formula: self.system.clone(), how, theme: theme(self.dark) })
     }
 }
 
 impl HowArgs {
-    fn reading(&self) -> Result<Reading, Failure> {
+    fn reading(&self, systems: &[String]) -> Result<Reading, Failure> {
+        let own = systems.iter().map(|text| text.trim()).filter(|text| is_plant_name(text));
+        let own = own.map(|text| Ok(SystemFile { name: text.to_owned(), log: log(text)?, choice: None }));
+        let files = own.chain(self.with.iter().map(NamedFile::read)).collect::<Result<_, Failure>>()?;
         Ok(Reading {
+            files,
             head: self.head.choice()?,
             period_s: self.period,
             pade: self.pade.map(usize::from),
