@@ -84,7 +84,7 @@ impl Plants {
     }
 }
 
-/// Output 2 from input 1 for `21`; the only one for no digits.
+/// Output 2 from input 1 for `21`, the only one for no digits; without the modes that this channel neither moves nor shows.
 fn one_of(system: &StateSpace, which: &str) -> Option<TransferFunction> {
     let digits: Option<Vec<usize>> = which.chars().map(|c| c.to_digit(10).map(|d| d as usize)).collect();
     let (output, input) = match digits?[..] {
@@ -92,6 +92,52 @@ fn one_of(system: &StateSpace, which: &str) -> Option<TransferFunction> {
         [output, input] => (output, input),
         _ => return None,
     };
-    let zpk = system.transfer(output.checked_sub(1)?, input.checked_sub(1)?).ok()?;
-    Some(zpk.transfer())
+    let channel = system.channel(output.checked_sub(1)?, input.checked_sub(1)?).ok()?;
+    // what the input does not move and the output does not show would be poles that a zero hides
+    let own = channel.minimal().map_or(channel, |minimal| minimal.system);
+    Some(own.transfer(0, 0).ok()?.transfer())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(name: &str, file: &str, text: &str) -> Plants {
+        let log = Log { name: file.to_owned(), bytes: text.as_bytes().to_vec() };
+        Plants::read(&[SystemFile { name: name.to_owned(), log, choice: None }]).unwrap()
+    }
+
+    const TWO: &str =
+        "A = [[-1, 0], [0, -2]]\nB = [[1, 0], [0, 4]]\nC = [[1, 0], [0, 1]]\nD = [[0, 0], [0, 0]]\n";
+
+    #[test]
+    fn a_channel_is_named_by_its_output_and_input() {
+        let plants = read("P", "two.toml", TWO);
+        let text = |name: &str| plants.named(name, 1.0).map(|system| system.to_string());
+        // the other mode is neither moved nor seen
+        assert_eq!(text("P11").as_deref(), Some("1 / (s + 1)"));
+        assert_eq!(text("P22").as_deref(), Some("4 / (s + 2)"));
+        for none in ["P", "P1", "P31", "P10", "P111", "Q11", "Px1"] {
+            assert_eq!(text(none), None, "{none}");
+        }
+        let itself = read("two.toml", "two.toml", TWO);
+        let told = itself.whole("two.toml").err().unwrap().message;
+        assert!(told.contains("2 inputs and 2 outputs") && told.contains("--with P=two.toml"), "{told}");
+    }
+
+    #[test]
+    fn a_file_of_one_channel_stands_for_itself() {
+        let one = read("one.toml", "one.toml", "num = [2]\nden = [1, 3]\n");
+        let Ok(Some(Whole::System(system))) = one.whole("one.toml") else { panic!("it is one") };
+        assert_eq!(system.to_string(), "2 / (s + 3)");
+        assert!(one.whole("G11").unwrap().is_none());
+    }
+
+    #[test]
+    fn measured_data_are_found_by_their_name() {
+        let text = "Frequency (rad/s),Gain (dB),Phase (deg)\n1,0,-90\n2,-6,-120\n4,-12,-150\n8,-20,-180\n";
+        let data = read("P", "data.csv", text);
+        assert!(data.data_in("K11 P").is_some() && data.data_in("K11 P2").is_none());
+        assert_eq!(data.named("P", 2.0).unwrap().to_string(), "2");
+    }
 }
