@@ -2,6 +2,7 @@
 
 pub mod lqr;
 mod lqr_view;
+mod panels;
 pub mod pid;
 mod view;
 

@@ -77,8 +77,8 @@ impl StateSpace {
         poles.sort_by(|a, b| complex::norm(*a).total_cmp(&complex::norm(*b)));
         let rounding = 4.0 * self.order() as f64 * f64::EPSILON;
         let largest = poles.last().map_or(0.0, |pole| complex::norm(*pole));
-        let root = |value: &Complex| Root { value: *value, radius: rounding * largest };
-        Ok(poles.iter().map(root).map(|root| DistinctRoot::alone(&root)).collect())
+        let root = |&value: &Complex| DistinctRoot::from(Root { value, radius: rounding * largest });
+        Ok(poles.iter().map(root).collect())
     }
 
     /// One input to one output, the others left alone.

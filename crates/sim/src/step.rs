@@ -54,10 +54,7 @@ pub fn step_response_by(
     to_rad: f64,
     seed: u64,
 ) -> Option<StepResponse> {
-    let mut rig = rig.clone();
-    (rig.control.law, rig.control.observer) = (LawName::LeadLag, Some(ObserverName::Counts));
-    let mut to = PanTilt::default();
-    to[joint] = to_rad;
+    let (rig, to) = on_counts(rig, joint, to_rad);
     let references = jump(&rig, to)?;
     let law = law.config();
     Some(StepResponse {
@@ -74,10 +71,7 @@ pub fn step_response_by_pid(
     to_rad: f64,
     seed: u64,
 ) -> Option<StepResponse> {
-    let mut rig = rig.clone();
-    (rig.control.law, rig.control.observer) = (LawName::LeadLag, Some(ObserverName::Counts));
-    let mut to = PanTilt::default();
-    to[joint] = to_rad;
+    let (rig, to) = on_counts(rig, joint, to_rad);
     let references = jump(&rig, to)?;
     // gravity alone
     let nothing = CompensatorLaw::NOTHING.config();
@@ -89,6 +83,15 @@ pub fn step_response_by_pid(
         nonlinear: follow_by_pid(nonlinear, joint, law, &references),
         linear: follow_by_pid(linear, joint, law, &references),
     })
+}
+
+/// The rig with a law to be replaced, which sees counts alone; and the setpoint of a step of one joint, rad.
+fn on_counts(rig: &RigConfig, joint: Joint, to_rad: f64) -> (RigConfig, PanTilt<f64>) {
+    let mut rig = rig.clone();
+    (rig.control.law, rig.control.observer) = (LawName::LeadLag, Some(ObserverName::Counts));
+    let mut to = PanTilt::default();
+    to[joint] = to_rad;
+    (rig, to)
 }
 
 fn follow_by_pid<H: Truth>(

@@ -3,15 +3,15 @@
 use std::fmt::Write;
 
 use serde_json::json;
-use tracelight_chart::{Colour, Curve, Figure, Key, Pen};
-use tracelight_linear::{DistinctRoot, Response, Root, Stability};
+use tracelight_chart::{Colour, Figure, Key};
+use tracelight_linear::{DistinctRoot, Root, Stability};
 use tracelight_task::Failure;
 
 use super::lqr::{Allowed, Finding};
+use crate::design::panels::step_panels;
 use crate::finding::{self, Plotted};
 use crate::margins::{margin_lines, margins_json};
 use crate::numbers::{four, percent, seconds};
-use crate::panels::over_time;
 use crate::system_json::{pairs, stability_name, system_json};
 use crate::systems::pole_lines;
 
@@ -119,20 +119,12 @@ impl Allowed {
 
 impl Plotted for Finding {
     fn figure(&self) -> Result<Figure, Failure> {
-        let curve = |response: &Response| Curve {
-            colour: Colour::Violet,
-            pen: Pen::Solid,
-            points: (0..).zip(&response.values).map(|(k, y)| (f64::from(k) * response.step_s, *y)).collect(),
-        };
-        let panel = |title: &str, level: f64, response: &Response| {
-            over_time(title, vec![level], vec![curve(response)])
-        };
         Ok(Figure {
             title: format!("{} with its state fed back", self.name),
             legend: vec![Key { colour: Colour::Violet, name: "a step of 1".to_owned() }],
             columns: 1,
             panel: (820, 280),
-            panels: vec![panel("output", 1.0, &self.step), panel("input", 0.0, &self.input)],
+            panels: step_panels(&self.step, &self.input).into(),
             theme: self.theme,
         })
     }

@@ -3,15 +3,15 @@
 use std::fmt::Write;
 
 use serde_json::json;
-use tracelight_chart::{Colour, Curve, Figure, Key, Pen};
-use tracelight_linear::{Response, Stability};
+use tracelight_chart::{Colour, Figure, Key};
+use tracelight_linear::Stability;
 use tracelight_task::Failure;
 
 use super::Finding;
+use crate::design::panels::step_panels;
 use crate::finding::{self, Plotted};
 use crate::margins::{margin_lines, margins_json};
 use crate::numbers::{four, percent, seconds};
-use crate::panels::over_time;
 use crate::system_json::{pairs, stability_name, system_json};
 use crate::systems::pole_lines;
 use crate::trial::Trial;
@@ -99,21 +99,13 @@ impl finding::Finding for Finding {
 
 impl Plotted for Finding {
     fn figure(&self) -> Result<Figure, Failure> {
-        let curve = |response: &Response| Curve {
-            colour: Colour::Violet,
-            pen: Pen::Solid,
-            points: (0..).zip(&response.values).map(|(k, y)| (f64::from(k) * response.step_s, *y)).collect(),
-        };
-        let panel = |title: &str, level: f64, response: &Response| {
-            over_time(title, vec![level], vec![curve(response)])
-        };
         let phase = self
             .margins
             .least_phase()
             .map_or(String::new(), |m| format!(", {}° of phase", four(m.degrees())));
         let modulus =
             self.margins.modulus.map_or(String::new(), |m| format!(", modulus {}", four(m.distance)));
-        let mut panels = vec![panel("output", 1.0, &self.step), panel("input", 0.0, &self.input)];
+        let mut panels = Vec::from(step_panels(&self.step, &self.input));
         let mut legend = vec![Key { colour: Colour::Violet, name: format!("a step of 1{phase}{modulus}") }];
         if let Some(trial) = &self.trial {
             panels.extend(trial.panels());

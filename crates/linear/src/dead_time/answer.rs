@@ -2,6 +2,7 @@
 
 use tracelight_maths::{complex, ln};
 
+use super::search::{highest, turned};
 use super::steps::Steps;
 use super::{Delayed, GrowingPoles};
 use crate::transient::{Ending, Extreme, Input, StepInfo, Transient};
@@ -225,16 +226,7 @@ fn furthest(steps: &Steps, sign: f64, goal: f64) -> Extreme {
     let times: Vec<f64> =
         steps.nodes().skip(at.saturating_sub(1)).take(3).map(|(time_s, _)| time_s).collect();
     if let (Some(&from), Some(&to)) = (times.first(), times.last()) {
-        let (mut from, mut to) = (from, to);
-        for _ in 0..100 {
-            let third = (to - from) / 3.0;
-            if sign * steps.at(from + third) > sign * steps.at(to - third) {
-                to -= third
-            } else {
-                from += third
-            }
-        }
-        let time_s = 0.5 * (from + to);
+        let time_s = highest(|time_s| sign * steps.at(time_s), from, to);
         if sign * steps.at(time_s) > sign * best.value {
             best = Extreme { value: steps.at(time_s), time_s: Some(time_s) };
         }
@@ -247,7 +239,7 @@ fn first(steps: &Steps, holds: impl Fn(f64) -> bool) -> Option<f64> {
     let mut before = 0.0;
     for (time_s, value) in steps.nodes() {
         if holds(value) {
-            return Some(turned(steps, before, time_s, &holds));
+            return Some(turned(|time_s| holds(steps.at(time_s)), before, time_s));
         }
         before = time_s;
     }
@@ -259,20 +251,10 @@ fn last(steps: &Steps, holds: impl Fn(f64) -> bool) -> Option<f64> {
     let nodes: Vec<(f64, f64)> = steps.nodes().collect();
     match nodes.iter().rposition(|(_, value)| !holds(*value)) {
         None => Some(0.0),
-        Some(at) => nodes.get(at + 1).map(|(after, _)| turned(steps, nodes[at].0, *after, &holds)),
-    }
-}
-
-/// Where it begins to hold, between where it does not and where it does.
-fn turned(steps: &Steps, mut from: f64, mut to: f64, holds: &impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..100 {
-        let middle = 0.5 * (from + to);
-        if middle <= from || middle >= to {
-            break;
+        Some(at) => {
+            nodes.get(at + 1).map(|(after, _)| turned(|time_s| holds(steps.at(time_s)), nodes[at].0, *after))
         }
-        if holds(steps.at(middle)) { to = middle } else { from = middle }
     }
-    to
 }
 
 #[cfg(test)]

@@ -4,10 +4,12 @@ use std::f64::consts::PI;
 
 use tracelight_maths::{complex, powf};
 
+use super::search::{highest, turned};
 use super::stability::gain_at_infinity;
 use super::{Delayed, GrowingPoles};
 use crate::{
-    Complex, FrequencyResponse, InfiniteArc, NyquistCurve, NyquistPart, Peak, RealCrossing, TransferFunction,
+    Complex, FrequencyResponse, GainMargin, InfiniteArc, NyquistCurve, NyquistPart, Peak, RealCrossing,
+    TransferFunction,
 };
 
 /// Where the open loop's gain is below this share of 1, turns are no longer followed.
@@ -85,15 +87,14 @@ impl Delayed {
 
     /// Where the value is real and finite, the lowest frequency first; of infinitely many the first ones.
     pub fn real_crossings(&self) -> Vec<RealCrossing> {
-        let of = |loops: &Self, sign: f64| {
-            let gain = loops.margins().gain;
+        let of = |gain: Vec<GainMargin>, sign: f64| {
             let finite = gain.into_iter().filter(|margin| margin.rad_s.is_finite());
             finite
                 .map(|margin| RealCrossing { rad_s: margin.rad_s, value: sign / margin.factor })
                 .collect::<Vec<_>>()
         };
-        let mut all = of(self, -1.0);
-        all.extend(of(&self.scaled(-1.0), 1.0));
+        let mut all = of(self.gain_margins(), -1.0);
+        all.extend(of(self.scaled(-1.0).gain_margins(), 1.0));
         all.sort_by(|a, b| a.rad_s.total_cmp(&b.rad_s));
         all
     }
@@ -136,14 +137,10 @@ impl Delayed {
         let band = self.rational.band();
         let gain = |w: f64| complex::norm(self.closed_at_frequency(w));
         let grid = crate::logspace((band.0, band.1.max(20.0 * PI / self.delay_s)), 20_000);
-        let best = (1..grid.len() - 1).max_by(|&a, &b| gain(grid[a]).total_cmp(&gain(grid[b])))?;
-        let (mut from, mut to) = (grid[best - 1], grid[best + 1]);
-        for _ in 0..100 {
-            let third = (to - from) / 3.0;
-            if gain(from + third) > gain(to - third) { to -= third } else { from += third }
-        }
-        let rad_s = 0.5 * (from + to);
-        let at_rest = gain(0.0_f64.max(1e-9 * band.0));
+        let gains: Vec<f64> = grid.iter().map(|w| gain(*w)).collect();
+        let best = (1..grid.len() - 1).max_by(|&a, &b| gains[a].total_cmp(&gains[b]))?;
+        let rad_s = highest(gain, grid[best - 1], grid[best + 1]);
+        let at_rest = gain(1e-9 * band.0);
         (gain(rad_s) > (1.0 + 1e-6) * at_rest).then(|| Peak { rad_s, gain: gain(rad_s) })
     }
 
@@ -158,12 +155,7 @@ impl Delayed {
             |w: &f64| complex::norm(self.closed_at_frequency(*w)) < at_rest * std::f64::consts::FRAC_1_SQRT_2;
         let grid = crate::logspace((band.0 * 1e-2, band.1.max(20.0 * PI / self.delay_s)), 20_000);
         let after = grid.iter().position(&is_below).filter(|i| *i > 0)?;
-        let (mut from, mut to) = (grid[after - 1], grid[after]);
-        for _ in 0..100 {
-            let middle = 0.5 * (from + to);
-            if is_below(&middle) { to = middle } else { from = middle }
-        }
-        Some(to)
+        Some(turned(|w| is_below(&w), grid[after - 1], grid[after]))
     }
 
     /// The system with a dead time that is a whole number of samples, by a hold or another rule.

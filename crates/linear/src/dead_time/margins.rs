@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use tracelight_maths::{complex, ln, powi};
 
+use super::search::highest;
 use super::stability::gain_at_infinity;
 use super::{Delayed, GrowingPoles, Phases};
 use crate::margins::{Along, square};
@@ -22,7 +23,7 @@ impl Delayed {
         let stretches = self.stretches();
         let rational = self.rational.margins();
         Margins {
-            gain: self.gain_margins(&phases, &stretches),
+            gain: self.gain_margins_in(&phases, &stretches),
             phase: rational.phase.iter().map(|margin| self.phase_margin(margin.rad_s)).collect(),
             modulus: self.modulus_margin(&phases, &stretches),
             is_always_real: false,
@@ -76,7 +77,12 @@ impl Delayed {
         places
     }
 
-    fn gain_margins(&self, phases: &Phases<'_>, stretches: &[f64]) -> Vec<GainMargin> {
+    /// Gain margins alone.
+    pub(super) fn gain_margins(&self) -> Vec<GainMargin> {
+        self.gain_margins_in(&Phases::of(self), &self.stretches())
+    }
+
+    fn gain_margins_in(&self, phases: &Phases<'_>, stretches: &[f64]) -> Vec<GainMargin> {
         let mut found: Vec<GainMargin> = Vec::new();
         let at_rest = self.rational.dc_gain();
         if at_rest.is_finite() && at_rest < 0.0 {
@@ -127,9 +133,9 @@ impl Delayed {
                 for k in 0..=count {
                     let (left, right) = (k.saturating_sub(1), (k + 1).min(count));
                     if values[k] <= values[left] && values[k] <= values[right] && values[k] < 1.5 * best.1 {
-                        let found = least(&distance, at(left), at(right));
-                        if found.1 < best.1 {
-                            best = found;
+                        let nearest = highest(|w| -distance(w), at(left), at(right));
+                        if distance(nearest) < best.1 {
+                            best = (nearest, distance(nearest));
                         }
                     }
                 }
@@ -182,28 +188,6 @@ fn crossing(phases: &Phases<'_>, (from, to): (f64, f64), level: f64) -> f64 {
         place = next;
     }
     place
-}
-
-/// The least value between two places, and where: by golden sections.
-fn least(value: &dyn Fn(f64) -> f64, mut from: f64, mut to: f64) -> (f64, f64) {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let (mut left, mut right) = (to - GOLDEN * (to - from), from + GOLDEN * (to - from));
-    let (mut at_left, mut at_right) = (value(left), value(right));
-    while to - from > 1e-9 * to {
-        if at_left < at_right {
-            (to, right, at_right) = (right, left, at_left);
-            left = to - GOLDEN * (to - from);
-            at_left = value(left);
-        } else {
-            (from, left, at_left) = (left, right, at_right);
-            right = from + GOLDEN * (to - from);
-            at_right = value(right);
-        }
-        if left >= right {
-            break;
-        }
-    }
-    if at_left < at_right { (left, at_left) } else { (right, at_right) }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! | part | what |
 //! |---|---|
 //! | `margins` | gain, phase and modulus margins, the delay that is left |
+//! | `search` | places between two others |
 //! | `stability` | how many poles of the closed loop grow |
 //! | `curve` | Nyquist's curve, the closed loop's frequency response |
 //! | `pade` | rational systems that are nearly the same, and by how much not |
@@ -13,6 +14,7 @@ mod answer;
 mod curve;
 mod margins;
 mod pade;
+mod search;
 mod stability;
 mod steps;
 

@@ -42,12 +42,11 @@ impl Delayed {
         /// Share of a dead time that is rounding.
         const ROUNDING: f64 = 1e-10;
         let closed = self.rational.closed();
-        let at_edge = |stability: Stability| stability == Stability::Marginal;
         if self.delay_s == 0.0 {
-            return closed.map_or(GrowingPoles::Undefined, |closed| match closed.growing_poles() {
-                count if at_edge(closed.stability()) => GrowingPoles::Edge(count),
-                0 => GrowingPoles::Count(0),
-                count => GrowingPoles::Count(count),
+            return closed.map_or(GrowingPoles::Undefined, |closed| {
+                let count = closed.growing_poles();
+                let at_edge = closed.stability() == Stability::Marginal;
+                if at_edge { GrowingPoles::Edge(count) } else { GrowingPoles::Count(count) }
             });
         }
         if gain_at_infinity(self) >= 1.0 {
@@ -63,8 +62,8 @@ impl Delayed {
             // the dead time that brings a pair of poles to the axis, and again each turn later
             let first = if phase < -1e-9 { phase + TAU } else { phase.max(0.0) } / w;
             let turn = TAU / w;
-            edge |= ((self.delay_s - first) / turn - ((self.delay_s - first) / turn).round()).abs() * turn
-                <= ROUNDING * self.delay_s
+            let turns = (self.delay_s - first) / turn;
+            edge |= (turns - turns.round()).abs() * turn <= ROUNDING * self.delay_s
                 && self.delay_s >= first * (1.0 - ROUNDING);
             let times = ((self.delay_s * (1.0 - ROUNDING) - first) / turn).ceil().max(0.0) as i64;
             let falls = self.rational.logarithmic_slope(w).re < 0.0;

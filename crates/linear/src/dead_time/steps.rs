@@ -222,16 +222,14 @@ mod tests {
         let found = steps("1.3/s", 0.8, Input::Step, 8.0);
         let exact = |t: f64| -> f64 {
             let mut sum = 0.0;
-            let mut term = 1.0;
             for k in 1..=10 {
                 let late = t - 0.8 * f64::from(k);
                 if late < 0.0 {
                     break;
                 }
-                term = (1..=k).fold(1.0, |product, i| product * 1.3 * late / f64::from(i));
+                let term = (1..=k).fold(1.0, |product, i| product * 1.3 * late / f64::from(i));
                 sum += if k % 2 == 1 { term } else { -term };
             }
-            let _ = term;
             sum
         };
         for k in 0..=100 {

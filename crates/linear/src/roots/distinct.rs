@@ -27,7 +27,7 @@ impl Polynomial {
         for members in overlapping(&self.roots()) {
             match self.as_one(&members) {
                 Some(one) => found.push(one),
-                None => found.extend(members.iter().map(DistinctRoot::alone)),
+                None => found.extend(members.iter().copied().map(DistinctRoot::from)),
             }
         }
         // stable: pairs stay together
@@ -39,7 +39,7 @@ impl Polynomial {
     fn as_one(&self, members: &[Root]) -> Option<DistinctRoot> {
         let [first, others @ ..] = members else { return None };
         if others.is_empty() {
-            return Some(DistinctRoot::alone(first));
+            return Some((*first).into());
         }
         let count = members.len();
         let mean = members.iter().map(|root| root.value).sum::<Complex>() / count as f64;
@@ -79,8 +79,10 @@ fn has_so_many(scaled: &Scaled, place: Complex, count: usize) -> bool {
 }
 
 impl From<Root> for DistinctRoot {
-    fn from(root: Root) -> Self {
-        Self::alone(&root)
+    /// One root, once.
+    fn from(Root { value, radius }: Root) -> Self {
+        // a pair stays one: its imaginary parts are known to differ from 0
+        Self { value: Complex::new(part(value.re, radius), value.im), radius, count: 1 }
     }
 }
 
@@ -111,15 +113,6 @@ fn overlapping(roots: &[Root]) -> Vec<Vec<Root>> {
 const fn part(value: f64, radius: f64) -> f64 {
     // what is no number stays none
     if value.abs() <= radius { 0.0 } else { value }
-}
-
-impl DistinctRoot {
-    /// One root, once.
-    pub(crate) fn alone(root: &Root) -> Self {
-        let Root { value, radius } = *root;
-        // a pair stays one: its imaginary parts are known to differ from 0
-        Self { value: Complex::new(part(value.re, radius), value.im), radius, count: 1 }
-    }
 }
 
 #[cfg(test)]
