@@ -61,7 +61,7 @@ pub use frequency::{FrequencyResponse, decibels, logspace};
 pub use frequency_data::{FrequencyData, Spacing};
 pub use locus::{Asymptotes, Breakaway, RootLocus};
 pub use margins::{GainMargin, Margins, ModulusMargin, PhaseMargin};
-pub use mimo::{ComplexMatrix, DiskMargin, DiskMargins, Minimal, singular_values};
+pub use mimo::{ComplexMatrix, DiskMargin, DiskMargins, Hidden, Minimal, singular_values};
 pub use notation::four_digits;
 pub use nyquist::{InfiniteArc, NyquistCurve, NyquistPart};
 pub use peak::Peak;
