@@ -42,6 +42,7 @@ pub mod record;
 pub mod relay;
 pub mod response;
 pub mod shape;
+pub mod sigma;
 pub mod simulate;
 pub mod step;
 mod step_words;

@@ -6,7 +6,7 @@ use tracelight_chart::{Colour, Theme};
 use tracelight_lab::Linearization;
 use tracelight_linear::{
     Complex, Delayed, Discretization, DistinctRoot, FormulaError, FrequencyData, LinearError, Mode, Names,
-    Time, TransferFunction, Zpk,
+    StateSpace, Time, TransferFunction, Zpk,
 };
 use tracelight_maths::complex;
 use tracelight_rig::Joint;
@@ -97,10 +97,45 @@ impl Systems {
 }
 
 impl OneSystem {
+    /// Its states, of any number of inputs and outputs: of a file, of a product of files, or of a formula.
+    pub(crate) fn states(&self) -> Result<States, Failure> {
+        let reader = self.how.reader()?;
+        let text = self.formula.trim();
+        let failed = |e: LinearError| no_such_system(text, &e);
+        let Some(product) = reader.plants.product(text) else {
+            let named = not_measured(reader.read(text, Colour::Black)?)?;
+            let system = named.system.state_space().map_err(failed)?;
+            return Ok(States { note: named.approximated(), name: named.name, system });
+        };
+        let (system, name) = (product.map_err(failed)?, text.to_owned());
+        Ok(match self.how.sampling {
+            None => States { name, system, note: String::new() },
+            Some((period_s, method)) => States {
+                name: sampled_name(name, period_s, method),
+                system: system.sampled(period_s, method).map_err(failed)?,
+                note: String::new(),
+            },
+        })
+    }
+
     /// Its name and what it is.
     pub(crate) fn system(&self) -> Result<Named, Failure> {
         not_measured(self.how.reader()?.read(self.formula.trim(), Colour::Black)?)
     }
+}
+
+/// A system of any number of inputs and outputs.
+pub(crate) struct States {
+    /// As typed, and what was made of it.
+    pub(crate) name: String,
+    /// What it is; with a dead time nearly that.
+    pub(crate) system: StateSpace,
+    /// What that is worth, a line; nothing where it is exact.
+    pub(crate) note: String,
+}
+
+fn sampled_name(name: String, period_s: f64, method: Discretization) -> String {
+    name + &format!(", sampled every {} ms by {}", four(1e3 * period_s), words(method))
 }
 
 /// Refuses what was measured: it has no poles and no equations.
@@ -200,6 +235,7 @@ impl Reader<'_> {
             Some(Whole::System(system)) => system.into(),
             Some(Whole::Data(data)) => return self.measured(text, data, colour),
             None => {
+                self.plants.refuse_several(text)?;
                 let read = parsed(text, time, &|name| self.named(name, 1.0))?;
                 if let Some(data) = self.plants.data_in(text) {
                     let twice = parsed(text, time, &|name| self.named(name, 2.0))?;
@@ -208,11 +244,10 @@ impl Reader<'_> {
                 read
             }
         };
-        let mut name = text.to_owned();
+        let name = text.to_owned();
         if let Some((period_s, method)) = self.how.sampling {
             let system = read.sampled(period_s, method).map_err(|e| no_such_system(text, &e))?;
-            name += &format!(", sampled every {} ms by {}", four(1e3 * period_s), words(method));
-            return Ok(Named::rational(name, system, colour));
+            return Ok(Named::rational(sampled_name(name, period_s, method), system, colour));
         }
         if read.delay_s() == 0.0 {
             return Ok(Named::rational(name, read.rational().clone(), colour));

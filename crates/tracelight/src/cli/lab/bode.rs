@@ -35,16 +35,16 @@ pub(super) struct FrequencyArgs {
 
 /// Which frequencies.
 #[derive(Args, Debug)]
-struct BandArgs {
+pub(super) struct BandArgs {
     /// From this frequency [default: below the slowest pole or zero and every crossover]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
-    from: Option<f64>,
+    pub(super) from: Option<f64>,
     /// To this frequency [default: above the fastest and every crossover]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
-    to: Option<f64>,
+    pub(super) to: Option<f64>,
     /// How many, evenly on a logarithmic scale
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(2..=100_000))]
-    points: u32,
+    pub(super) points: u32,
 }
 
 pub(super) fn frequency(text: &str) -> Result<f64, String> {

@@ -29,6 +29,7 @@ mod response;
 mod rig;
 mod rig_out;
 mod shape;
+mod sigma;
 mod simulate;
 mod step;
 mod systems;
@@ -68,6 +69,7 @@ enum LabAction {
     Linearize(linearize::LinearizeArgs),
     Locus(locus::LocusArgs),
     Bode(bode::BodeArgs),
+    Sigma(sigma::SigmaArgs),
     Nyquist(nyquist::NyquistArgs),
     Nichols(nyquist::NicholsArgs),
     Pzmap(locus::PzmapArgs),
@@ -114,6 +116,7 @@ impl LabArgs {
             LabAction::Linearize(args) => args,
             LabAction::Locus(args) => args,
             LabAction::Bode(args) => args,
+            LabAction::Sigma(args) => args,
             LabAction::Nyquist(args) => args,
             LabAction::Nichols(args) => args,
             LabAction::Pzmap(args) => args,
