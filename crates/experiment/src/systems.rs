@@ -118,6 +118,12 @@ impl OneSystem {
         })
     }
 
+    /// Other systems, read as it is.
+    pub(crate) fn others(&self, formulas: &[String]) -> Result<Vec<Named>, Failure> {
+        let reader = self.how.reader()?;
+        formulas.iter().map(|text| not_measured(reader.read(text.trim(), Colour::Grey)?)).collect()
+    }
+
     /// Its name and what it is.
     pub(crate) fn system(&self) -> Result<Named, Failure> {
         not_measured(self.how.reader()?.read(self.formula.trim(), Colour::Black)?)

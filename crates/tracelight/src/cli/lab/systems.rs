@@ -161,7 +161,13 @@ impl OneSystemArgs {
     }
 
     pub(super) fn system(&self) -> Result<OneSystem, Failure> {
-        let how = self.how.reading(std::slice::from_ref(&self.system))?;
+        self.system_beside(&[])
+    }
+
+    /// The system, with the files of others that are read as it is.
+    pub(super) fn system_beside(&self, others: &[String]) -> Result<OneSystem, Failure> {
+        let all: Vec<String> = std::iter::once(&self.system).chain(others).cloned().collect();
+        let how = self.how.reading(&all)?;
         Ok(OneSystem { formula: self.system.clone(), how, theme: theme(self.dark) })
     }
 }
