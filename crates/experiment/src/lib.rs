@@ -21,6 +21,7 @@ pub mod gravity;
 pub mod head;
 pub mod identify;
 pub mod inertia;
+mod left_out;
 pub mod lesson;
 pub mod linearize;
 pub mod locus;

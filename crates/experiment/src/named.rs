@@ -8,6 +8,7 @@ use tracelight_linear::{
 };
 use tracelight_maths::complex;
 
+use crate::left_out;
 use crate::numbers::four;
 use crate::system_json::system_json;
 
@@ -95,10 +96,11 @@ impl Named {
         if let Some(data) = &self.data {
             let (low, high) = data.band();
             return format!(
-                "{} measured values from {} to {} rad/s",
+                "{} measured values from {} to {} rad/s{}",
                 data.values().len(),
                 four(low),
-                four(high)
+                four(high),
+                left_out::words(data)
             );
         }
         match &self.late {
@@ -270,7 +272,13 @@ impl Named {
     pub(crate) fn json(&self) -> Value {
         if let Some(data) = &self.data {
             let (low, high) = data.band();
-            return json!({"name": self.name, "measured": data.values().len(), "from_rad_s": low, "to_rad_s": high});
+            return json!({
+                "name": self.name,
+                "measured": data.values().len(),
+                "from_rad_s": low,
+                "to_rad_s": high,
+                "left_out": left_out::json(data),
+            });
         }
         let Some(late) = &self.late else { return system_json(&self.name, &self.system) };
         let mut object = system_json(&self.name, late.open.rational());

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use serde_json::{Value, json};
-use tracelight_chart::{Curve, Figure, Key, Label, Mark, Panel, Pen, Scale, Sign};
+use tracelight_chart::{Colour, Curve, Figure, Key, Label, Mark, Panel, Pen, Scale, Sign};
 use tracelight_linear::{Margins, Peak, Stability, decibels};
 use tracelight_maths::complex;
 use tracelight_task::Failure;
@@ -12,6 +12,7 @@ use super::{Entry, Finding, Kind};
 use crate::finding::{self, Plotted};
 use crate::margins::{margin_lines, margins_json, summary};
 use crate::numbers::four;
+use crate::plant_file::LEAST_COHERENCE;
 use crate::system_json::stability_name;
 
 impl finding::Finding for Finding {
@@ -112,11 +113,17 @@ impl Plotted for Finding {
             self.entries.iter().map(|e| curve(e, e.response.phases_deg().collect())).collect(),
         );
         for entry in &self.entries {
+            mark_left_out(entry, &mut magnitude, &mut phase);
             mark(entry, &mut magnitude, &mut phase);
+        }
+        let mut legend: Vec<Key> = self.entries.iter().map(key).collect();
+        if self.entries.iter().any(|entry| !entry.left_out.is_empty()) {
+            let name = format!("rings: coherence below {LEAST_COHERENCE}, left out");
+            legend.push(Key { colour: Colour::Grey, name });
         }
         Ok(Figure {
             title: "Bode plot".into(),
-            legend: self.entries.iter().map(key).collect(),
+            legend,
             panels: vec![magnitude, phase],
             columns: 1,
             panel: (820, 300),
@@ -159,6 +166,23 @@ fn key(entry: &Entry) -> Key {
         Kind::Closed(_) => entry.named.name.clone(),
     };
     Key { colour: entry.named.colour, name }
+}
+
+/// Rings where points were measured that are not trusted; their phase is on the turn that is nearest to the curve's.
+fn mark_left_out(entry: &Entry, magnitude: &mut Panel, phase: &mut Panel) {
+    let Some(data) = &entry.named.data else { return };
+    let (low, high) = data.band();
+    for &(w, value) in &entry.left_out {
+        let own = complex::arg(value).to_degrees();
+        let near = data.phase(w.clamp(low, high)).unwrap_or(0.0).to_degrees();
+        let shown = own + 360.0 * ((near - own) / 360.0).round();
+        for (panel, y) in [(&mut *magnitude, decibels(complex::norm(value))), (&mut *phase, shown)] {
+            // nothing has no decibels
+            if y.is_finite() && w > 0.0 {
+                panel.marks.push(Mark { colour: Colour::Grey, sign: Sign::Ring, at: (w, y) });
+            }
+        }
+    }
 }
 
 /// What stands out, at the curves where it is.
