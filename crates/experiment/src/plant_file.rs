@@ -96,6 +96,3 @@ fn text(bytes: &[u8]) -> String {
         Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
     }
 }
-
-#[cfg(test)]
-mod tests;
