@@ -19,6 +19,7 @@ mod meant;
 pub(crate) mod nearest;
 pub(crate) mod placing;
 mod plan;
+mod reading;
 mod recover;
 pub(crate) mod request;
 mod rigs;

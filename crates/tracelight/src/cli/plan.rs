@@ -14,6 +14,7 @@ use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
 use crate::cli::ending::ends_in;
 use crate::cli::placing::PlacementArgs;
+use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::named;
 
@@ -40,6 +41,8 @@ pub(crate) struct PlanArgs {
     order_effort: OrderEffortName,
     #[command(flatten, next_help_heading = "Picture")]
     tracing: TracingArgs,
+    #[command(flatten, next_help_heading = "Picture")]
+    reading: ReadingArgs,
     #[command(flatten, next_help_heading = "Size and place")]
     placement: PlacementArgs,
     #[command(flatten)]
@@ -125,7 +128,8 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let task = Task { progress: &bar, stop };
     let driving = args.driving.resolve()?;
     task.stage("strokes", 1);
-    let (source, placing) = (named::picture(&args.drawing)?, args.placement.placing());
+    let (source, placing) =
+        (named::drawing(&args.drawing, &args.reading.options()?)?, args.placement.placing());
     let (sketch, vision_ms) = task.timed(|| sketch(&args.drawing, source, &args.tracing.tracing(), &placing));
     let sketch = sketch?;
     let placed = place(&sketch, &placing);
