@@ -37,7 +37,17 @@ pub(crate) fn picture(path: &str) -> Result<Source, Failure> {
 
 /// As [`picture`]; a drawing is read by the options.
 pub(crate) fn drawing(path: &str, options: &ReadOptions) -> Result<Source, Failure> {
-    decode_with(path, &files::read(path)?, options)
+    let source = decode_with(path, &files::read(path)?, options)?;
+    let flag = options.unit.map(|_| "--unit").or(options.dpi.map(|_| "--dpi"));
+    match (&source, flag) {
+        (Source::Pixels(_), Some(flag)) => {
+            let message = format!(
+                "{flag} is for drawings (DXF, SVG), and {path} is a picture: --width or --height set its size"
+            );
+            Err(Failure::usage("usage", message))
+        }
+        _ => Ok(source),
+    }
 }
 
 /// A picture to hang on a simulated wall.
