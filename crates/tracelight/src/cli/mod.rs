@@ -12,6 +12,7 @@ pub(crate) mod ending;
 mod explain;
 pub(crate) mod eyes;
 mod failing;
+pub(crate) mod gcode;
 mod lab;
 pub(crate) mod laws;
 mod man;

@@ -3,6 +3,7 @@
 use clap::{ArgAction, Args, ValueEnum};
 use tracelight_files as files;
 use tracelight_formats::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
+use tracelight_report::AxisUnit;
 use tracelight_task::Failure;
 
 /// How an SVG or DXF is read. Pixels have none of this.
@@ -17,9 +18,10 @@ pub(crate) struct ReadingArgs {
     /// Draw dashed lines as dashes
     #[arg(long, value_enum, default_value_t)]
     dashes: Switch,
-    /// Unit of a DXF's numbers, in place of what the file says [default: the file's, otherwise mm]
+    /// Unit of a DXF's numbers, in place of what the file says [default: the file's, otherwise mm]; deg or rad is the unit of a board's
+    /// axes (plan --axes)
     #[arg(long, value_enum)]
-    unit: Option<UnitName>,
+    unit: Vec<UnitName>,
     /// Pixels to an inch, for an SVG whose size is in pixels, such as 96 (browsers), 90 (old Inkscape) or 72 (Illustrator)
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = dpi)]
     dpi: Option<f64>,
@@ -67,6 +69,10 @@ enum UnitName {
     In,
     /// Feet
     Ft,
+    /// Degrees, of a board's axes
+    Deg,
+    /// Radians, of a board's axes
+    Rad,
 }
 
 /// What of a hatch is drawn.
@@ -89,10 +95,18 @@ enum LettersName {
 }
 
 impl ReadingArgs {
+    /// The unit of a board's axes, if one was given.
+    ///
+    /// # Errors
+    /// Two of them.
+    pub(crate) fn axis_unit(&self) -> Result<Option<AxisUnit>, Failure> {
+        only(self.unit.iter().filter_map(|unit| unit.angle()))
+    }
+
     /// What they mean; reads the fonts.
     ///
     /// # Errors
-    /// A font file that cannot be read.
+    /// A font file that cannot be read; two units.
     pub(crate) fn options(&self) -> Result<ReadOptions, Failure> {
         let font = |name: &String| Ok(Font { name: name.clone(), bytes: files::read(name)?.into() });
         Ok(ReadOptions {
@@ -102,7 +116,7 @@ impl ReadingArgs {
             },
             crop: self.crop == Switch::On,
             dashes: self.dashes == Switch::On,
-            unit: self.unit.map(UnitName::unit),
+            unit: only(self.unit.iter().filter_map(|unit| unit.length()))?,
             dpi: self.dpi,
             hatch: match self.hatch {
                 HatchName::Boundary => Hatch::Boundary,
@@ -118,14 +132,32 @@ impl ReadingArgs {
 }
 
 impl UnitName {
-    const fn unit(self) -> LengthUnit {
+    const fn length(self) -> Option<LengthUnit> {
         match self {
-            Self::Mm => LengthUnit::Millimetre,
-            Self::Cm => LengthUnit::Centimetre,
-            Self::M => LengthUnit::Metre,
-            Self::In => LengthUnit::Inch,
-            Self::Ft => LengthUnit::Foot,
+            Self::Mm => Some(LengthUnit::Millimetre),
+            Self::Cm => Some(LengthUnit::Centimetre),
+            Self::M => Some(LengthUnit::Metre),
+            Self::In => Some(LengthUnit::Inch),
+            Self::Ft => Some(LengthUnit::Foot),
+            Self::Deg | Self::Rad => None,
         }
+    }
+
+    const fn angle(self) -> Option<AxisUnit> {
+        match self {
+            Self::Deg => Some(AxisUnit::Degrees),
+            Self::Rad => Some(AxisUnit::Radians),
+            _ => None,
+        }
+    }
+}
+
+/// The one unit of its kind, if there is any.
+fn only<T>(mut units: impl Iterator<Item = T>) -> Result<Option<T>, Failure> {
+    let first = units.next();
+    match units.next() {
+        None => Ok(first),
+        Some(_) => Err(Failure::usage("usage", "--unit is given twice for the same thing: leave one out")),
     }
 }
 

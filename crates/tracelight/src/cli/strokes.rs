@@ -17,6 +17,7 @@ use tracelight_vision::Stages;
 
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice, print_piece};
+use crate::cli::gcode::GcodeArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
@@ -43,6 +44,8 @@ pub(crate) struct StrokesArgs {
     /// Write the processing stages as an SVG: grey, illumination evened out, histogram and threshold, ink; one picture only
     #[arg(help_heading = "Output", long, value_name = "FILE.svg", value_parser = svg_file)]
     stages: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Output")]
+    gcode: GcodeArgs,
     #[command(flatten, next_help_heading = "Picture")]
     tracing: TracingArgs,
     #[command(flatten, next_help_heading = "Picture")]
@@ -92,8 +95,8 @@ fn single(args: &StrokesArgs, options: &ReadOptions, picture: &str) -> Result<An
     if let Some(doubt) = &traced.figures.doubt {
         Bar::new(args.voice.quiet).say(&format!("note: {picture}: {doubt}"));
     }
-    let verdict = traced.verdict.as_ref().map_or_else(String::new, |words| format!("\n{words}"));
-    Ok(Answer::new(line(picture, &traced) + &verdict, traced.json.unwrap_or_default()))
+    let words = traced.words.as_ref().map_or_else(String::new, |words| format!("\n{words}"));
+    Ok(Answer::new(line(picture, &traced) + &words, traced.json.unwrap_or_default()))
 }
 
 /// Every picture, past those that fail.
@@ -154,6 +157,7 @@ fn made_with(args: &StrokesArgs, options: &ReadOptions) -> String {
         tracing,
         placement,
         reading: _, // as options, with what is in its fonts
+        gcode,
         format: _,
         pictures: _,
         stages: _,
@@ -165,7 +169,7 @@ fn made_with(args: &StrokesArgs, options: &ReadOptions) -> String {
     } = args;
     let version = env!("CARGO_PKG_VERSION");
     let format = extension(args);
-    format!("{version} {format} {tracing:?} {placement:?} {options:?}")
+    format!("{version} {format} {tracing:?} {placement:?} {options:?} {gcode:?}")
 }
 
 fn one(
@@ -190,14 +194,23 @@ fn one(
     sketch.picture = None; // its colours are not needed, and large
     let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let json = (args.voice.json || path.is_some_and(is_json)).then(|| drawing::json(&sketch));
+    let mut note = None;
     if let Some(path) = path {
-        let file = drawing::file(path, &place(&sketch, &placing), json.as_deref().unwrap_or_default())?;
-        files::write(&path.display().to_string(), file)?;
+        let json = json.as_deref().unwrap_or_default();
+        let file = drawing::file(path, &place(&sketch, &placing), json, args.gcode.options().as_ref())?;
+        files::write(&path.display().to_string(), file.bytes)?;
+        sketch.remarks.extend(file.doubts);
+        note = file.note;
     }
     let figures = Figures::of(&sketch, &placing);
     Ok(Finding {
         figures,
-        verdict: sketch.quality.map(|quality| quality.words()),
+        words: sketch
+            .quality
+            .map(|quality| quality.words())
+            .into_iter()
+            .chain(note)
+            .reduce(|a, b| format!("{a}\n{b}")),
         json: json.filter(|_| args.voice.json),
         vision_ms,
     })
