@@ -18,6 +18,7 @@ pub(crate) mod laws;
 mod man;
 mod meant;
 pub(crate) mod nearest;
+pub(crate) mod ordering;
 pub(crate) mod placing;
 mod plan;
 mod reading;
