@@ -33,11 +33,13 @@ pub mod json;
 mod layers;
 mod limit;
 mod number;
+mod options;
 mod pen;
 pub mod svg;
 
 pub use error::FormatError;
 pub use limit::{MAX_BYTES, MAX_COORDINATE};
+pub use options::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
 use tracelight_stroke::{Colour, Drawing, Point};
 
 /// A drawing on its sheet, as a file has it: x right, y down, the sheet spans `[0, width] × [0, height]`.

@@ -25,6 +25,7 @@ mod events;
 mod finished;
 #[cfg(test)]
 mod fixture;
+mod head_gcode;
 mod limit;
 mod log;
 mod page;
@@ -32,6 +33,7 @@ mod painting;
 mod preview;
 mod sample;
 mod seen;
+mod sequence;
 pub mod stages;
 mod summary;
 
@@ -39,10 +41,12 @@ pub use csv::{fault_csv, trace_csv};
 pub use error::EncodeError;
 pub use events::{Event, events};
 pub use finished::{Finished, Picture, Setting, Target, Timing};
+pub use head_gcode::{AxisUnit, BoardAxis, HeadGcode, HeadProgram, head_gcode};
 pub use log::{LogMeta, LogWriter, Recovered, index, recover};
 pub use page::{html, page};
 pub use painting::paint;
 pub use preview::{ColourBy, preview};
 pub use sample::planned;
 pub use seen::seen_csv;
+pub use sequence::{DrawnStroke, sequence};
 pub use summary::{LogFigures, PlanFigures, StrokeFigures, Summary};

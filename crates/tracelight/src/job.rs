@@ -56,6 +56,7 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
 fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
+    driving.order.sequence = args.sequence.sequence();
     let request = Request {
         name: args.name(),
         tracing: args.tracing.tracing(),
@@ -69,7 +70,7 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
         },
     };
     if args.eye.camera.is_none() {
-        return prepare(&request, named::picture(args.name())?, task);
+        return prepare(&request, named::drawing(args.name(), &args.reading.options()?)?, task);
     }
     let head = args.head.as_deref().map(|path| named::head(path, &request.driving.rig)).transpose()?;
     let mut opened = args.eye.open()?;

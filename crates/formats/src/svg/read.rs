@@ -5,6 +5,7 @@ use usvg::tiny_skia_path::PathSegment;
 use super::guard;
 use super::names::{Names, Place};
 use crate::extent::controls;
+use crate::options::ReadOptions;
 use crate::pen::Pen;
 use crate::{FormatError, Reading, Sheet, check_size, is_sound, text};
 
@@ -36,6 +37,14 @@ const MAX_NODES: u32 = 2_000_000;
 /// # Errors
 /// Anything that is not an SVG, one that draws nothing, and one that is made to fill the memory.
 pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
+    read_with(bytes, &ReadOptions::default())
+}
+
+/// As [`read`], by options.
+///
+/// # Errors
+/// As there.
+pub fn read_with(bytes: &[u8], _options: &ReadOptions) -> Result<Reading, FormatError> {
     check_size(bytes)?;
     let text = text(bytes)?;
     guard::check_text(text)?;

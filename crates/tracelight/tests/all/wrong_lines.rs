@@ -141,7 +141,7 @@ const FILES: &[Row] = &[
     ("strokes nosuch.png", 2, &["cannot read nosuch.png", "check the name"]),
     ("recover examples/star.png", 2, &["is no run log", "give a run.mcap"]),
     ("lab friction examples/star.png", 2, &["axis,volt,time_s,count"]),
-    ("plan examples/star.png -o @/head.gcode", 2, &["end it in .csv", "tracelight strokes DRAWING -o"]),
+    ("plan examples/star.png -o @/head.gcode", 2, &["--axes X=pan,Y=tilt", "tracelight strokes DRAWING -o"]),
     ("plan examples/star.png --preview @/star.png", 2, &["end it in .svg"]),
     ("strokes examples/star.png -o @/star.xyz", 2, &["cannot write .xyz; use .svg, .dxf"]),
     ("strokes examples/star.png examples/house.png -o @/x.svg", 2, &["end --out with /"]),
