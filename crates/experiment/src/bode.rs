@@ -40,15 +40,18 @@ enum Kind {
         /// What its closed loop does; none where that is not defined.
         closed: Option<Stability>,
     },
-    /// A loop that is closed already: it has no margins. What it does.
-    Closed(Stability),
+    /// A loop that is closed already: it has no margins. What it does; none of measured data that do not tell.
+    Closed(Option<Stability>),
 }
 
 impl Entry {
     /// Points that are not trusted are shown from one frequency, rad/s, to the other.
     fn of(named: Named, rad_s: &[f64], shown: (f64, f64), is_closed: bool) -> Self {
         let kind = match is_closed {
-            true => Kind::Closed(named.stability()),
+            true => Kind::Closed(match (&named.data, &named.opened) {
+                (Some(_), open) => open.as_ref().and_then(|open| open.closed_stability()),
+                (None, _) => Some(named.stability()),
+            }),
             false => Kind::Open { margins: named.margins(), closed: named.closed_stability() },
         };
         let all = named.data.iter().flat_map(|data| data.left_out());

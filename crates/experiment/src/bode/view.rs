@@ -10,9 +10,10 @@ use tracelight_task::Failure;
 
 use super::{Entry, Finding, Kind};
 use crate::finding::{self, Plotted};
-use crate::margins::{margin_lines, margins_json, summary};
+use crate::margins::{counted_lines, margin_lines, margins_json, summary};
 use crate::numbers::four;
 use crate::plant_file::LEAST_COHERENCE;
+use crate::steady::{error_lines, errors_json, norm_lines, norms_json};
 use crate::system_json::stability_name;
 
 impl finding::Finding for Finding {
@@ -38,21 +39,9 @@ impl finding::Finding for Finding {
                     four(rad_s)
                 );
             }
-            let _ = match entry.kind {
-                Kind::Open { closed: Some(closed), .. } => {
-                    writeln!(text, "    closed by negative feedback it {}\n", is(closed))
-                }
-                Kind::Open { closed: None, .. } if named.data.is_some() => writeln!(
-                    text,
-                    "    whether it is stable once it is closed, measured data alone do not tell\n"
-                ),
-                Kind::Closed(_) if named.data.is_some() => writeln!(text),
-                Kind::Open { closed: None, .. } => writeln!(
-                    text,
-                    "    closed by negative feedback it is not defined: 1 + G is zero at infinite frequency\n"
-                ),
-                Kind::Closed(stability) => writeln!(text, "    it {}\n", is(stability)),
-            };
+            text += &norm_lines(named);
+            text += &entry.stability();
+            text += "\n";
         }
         text.trim_end().to_owned()
     }
@@ -65,8 +54,14 @@ impl finding::Finding for Finding {
                 Kind::Open { margins, closed } => {
                     (margins_json(named.delay_margin(margins), margins), *closed)
                 }
-                Kind::Closed(stability) => (Value::Null, Some(*stability)),
+                Kind::Closed(stability) => (Value::Null, *stability),
             };
+            let open = if let Kind::Open { .. } = entry.kind { Some(named) } else { named.opened.as_deref() };
+            object["error_constants"] = match open {
+                Some(open) if !named.is_positive => errors_json(open),
+                _ => Value::Null,
+            };
+            object["norms"] = norms_json(named);
             object["margins"] = margins;
             object["closed_stable"] = closed.map(|closed| closed == Stability::Stable).into();
             object["closed_stability"] = closed.map(stability_name).into();
@@ -149,6 +144,30 @@ impl Plotted for Finding {
             }
         }
         Ok(text + "\n")
+    }
+}
+
+impl Entry {
+    /// What becomes of the loop, a line or more.
+    fn stability(&self) -> String {
+        let named = &self.named;
+        match self.kind {
+            Kind::Open { .. } if named.data.is_some() => counted_lines(named),
+            Kind::Closed(_) if named.data.is_some() => {
+                named.opened.as_ref().map_or(String::new(), |open| counted_lines(open))
+            }
+            Kind::Open { closed: Some(closed), .. } => {
+                let errors = if named.is_positive { String::new() } else { error_lines(named) };
+                format!("{errors}    closed by {} feedback it {}\n", named.feedback(), is(closed))
+            }
+            Kind::Open { closed: None, .. } => format!(
+                "    closed by {} feedback it is not defined: 1 + G is zero at infinite frequency\n",
+                named.feedback()
+            ),
+            Kind::Closed(stability) => {
+                stability.map_or(String::new(), |is_so| format!("    it {}\n", is(is_so)))
+            }
+        }
     }
 }
 

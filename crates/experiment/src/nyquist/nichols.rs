@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use tracelight_chart::{Arrows, Colour, Curve, Figure, Guide, Key, Label, Mark, Panel, Pen, Sign};
-use tracelight_linear::decibels;
+use tracelight_linear::{Margins, decibels};
 use tracelight_maths::{complex, powf};
 
 use super::{Entry, Finding};
@@ -45,7 +45,8 @@ impl Finding {
 
     /// What is shown upwards: usually from −40 to 40 dB, and every margin.
     fn decibels(&self) -> (f64, f64) {
-        let margins = self.entries.iter().filter_map(|entry| entry.margins.least_gain());
+        let open = self.entries.iter().filter(|entry| !entry.is_closed());
+        let margins = open.filter_map(|entry| entry.margins.least_gain());
         let places = margins.map(|margin| -decibels(margin.factor));
         let (low, high) =
             places.fold((-40.0, 40.0), |(low, high): (f64, f64), db| (low.min(db), high.max(db)));
@@ -55,7 +56,13 @@ impl Finding {
     }
 
     pub(super) fn draw(&self, title: &str, panels: Vec<Panel>, size: (i32, i32)) -> Figure {
-        let key = |e: &Entry| Key { colour: e.named.colour, name: summary(&e.named.name, &e.margins) };
+        let key = |e: &Entry| Key {
+            colour: e.named.colour,
+            name: match e.is_closed() {
+                true => e.named.name.clone(),
+                false => summary(&e.named.name, &e.margins),
+            },
+        };
         Figure {
             title: title.into(),
             legend: self.entries.iter().map(key).collect(),
@@ -77,14 +84,15 @@ fn explain(entry: &Entry, panel: &mut Panel) {
         panel.marks.push(Mark { colour, sign, at: at(w) });
         panel.labels.push(Label::new(at(w), words));
     };
+    let margins = (!entry.is_closed()).then_some(&entry.margins);
     if let Some(margin) =
-        entry.margins.least_gain().filter(|margin| margin.rad_s > 0.0 && margin.rad_s.is_finite())
+        margins.and_then(Margins::least_gain).filter(|margin| margin.rad_s > 0.0 && margin.rad_s.is_finite())
     {
         let words =
             format!("gain margin {} dB at {} rad/s", four(decibels(margin.factor)), four(margin.rad_s));
         mark(Sign::Dot, margin.rad_s, words);
     }
-    if let Some(margin) = entry.margins.least_phase() {
+    if let Some(margin) = margins.and_then(Margins::least_phase) {
         let words = format!("phase margin {}° at {} rad/s", four(margin.degrees()), four(margin.rad_s));
         mark(Sign::Dot, margin.rad_s, words);
     }

@@ -157,7 +157,11 @@ impl FrequencyData {
         self.mapped(|_, value| value / (1.0 + value))
     }
 
-    fn mapped(&self, map: impl Fn(f64, Complex) -> Complex) -> Result<Self, LinearError> {
+    /// Each value as a function of its frequency, rad/s, and of itself: what a loop makes of it, say.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), where a result is 0 or no number.
+    pub fn mapped(&self, map: impl Fn(f64, Complex) -> Complex) -> Result<Self, LinearError> {
         let rest = self.at_rest.map(|gain| (0.0, map(0.0, gain.into())));
         let others = self.rad_s.iter().zip(&self.values).map(|(&w, &value)| (w, map(w, value)));
         // a rest that became 0 or infinite is no rest

@@ -75,6 +75,7 @@ fn help_fits_eighty_columns_and_breaks_no_word() {
         "lab",
         "lab simulate",
         "lab bode",
+        "lab gang",
         "lab design",
         "lab step",
         "lab montecarlo",

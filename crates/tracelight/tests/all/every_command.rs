@@ -42,6 +42,7 @@ const LINES: &[&str] = &[
     "lab encoder --rig worn --out @/encoder",
     "lab frequency --axis tilt",
     "lab friction --fixture --most 2V --step 1V --out @/friction",
+    "lab gang G11 --controller K11",
     "lab gravity --most 2V --step 0.25V --out @/gravity",
     "lab identify --rig worn --out @/identify",
     "lab inertia --fixture --most 2V --step 1V --hold 2s --out @/inertia",

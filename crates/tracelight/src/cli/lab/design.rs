@@ -6,7 +6,7 @@ use tracelight_linear::{LeadLagWish, LqgWish, PidWish, SetpointWeights, Terms};
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{Angle, TIMES, parse};
 
-use super::bode::frequency;
+use super::bounds::frequency;
 use super::by_hand::{number, settings};
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::poles::{Poles, poles};

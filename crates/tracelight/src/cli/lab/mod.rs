@@ -11,6 +11,7 @@ mod design;
 mod encoder;
 mod frequency;
 mod friction;
+mod gang;
 mod gravity;
 mod head;
 mod identify;
@@ -72,6 +73,8 @@ enum LabAction {
     Sigma(sigma::SigmaArgs),
     Nyquist(nyquist::NyquistArgs),
     Nichols(nyquist::NicholsArgs),
+    #[command(alias = "gangof4", alias = "sensitivity")]
+    Gang(gang::GangArgs),
     Pzmap(locus::PzmapArgs),
     Response(response::ResponseArgs),
     Design(design::DesignArgs),
@@ -119,6 +122,7 @@ impl LabArgs {
             LabAction::Sigma(args) => args,
             LabAction::Nyquist(args) => args,
             LabAction::Nichols(args) => args,
+            LabAction::Gang(args) => args,
             LabAction::Pzmap(args) => args,
             LabAction::Response(args) => args,
             LabAction::Design(args) => args,
