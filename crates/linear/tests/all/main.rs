@@ -6,6 +6,7 @@
 mod goldens;
 mod mimo;
 mod pids;
+mod published;
 mod regulators;
 mod roots;
 mod transients;
