@@ -7,6 +7,7 @@ mod feedback;
 mod goldens;
 mod mimo;
 mod pids;
+mod published;
 mod regulators;
 mod roots;
 mod transients;
