@@ -23,6 +23,7 @@
 
 mod circular;
 pub mod csv;
+mod doubles;
 pub mod dxf;
 mod error;
 mod extent;
@@ -33,6 +34,7 @@ pub mod json;
 mod layers;
 mod limit;
 mod number;
+mod parts;
 mod pen;
 pub mod svg;
 

@@ -4,6 +4,7 @@ use usvg::tiny_skia_path::PathSegment;
 
 use super::guard;
 use super::names::{Names, Place};
+use crate::doubles::without_doubles;
 use crate::extent::controls;
 use crate::pen::Pen;
 use crate::{FormatError, Reading, Sheet, check_size, is_sound, text};
@@ -55,8 +56,10 @@ pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
         return Err(FormatError::Nothing { hint: hint(&xml) });
     }
     let metres_per_unit = is_physical(xml.root_element()).then_some(METRES_PER_PX);
-    let sheet = Sheet { width, height, metres_per_unit, drawing: Drawing { strokes: collector.strokes } };
-    Ok(Reading { sheet, remarks: remarks(&xml) })
+    let (drawing, doubles) = without_doubles(Drawing { strokes: collector.strokes });
+    let sheet = Sheet { width, height, metres_per_unit, drawing };
+    let twice = doubles.remark(metres_per_unit);
+    Ok(Reading { sheet, remarks: remarks(&xml).into_iter().chain(twice).collect() })
 }
 
 /// Options that never open a file: links to pictures lead nowhere.
