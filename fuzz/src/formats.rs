@@ -54,7 +54,7 @@ fn check_written(sheet: &Sheet) {
     for (name, text) in [("G-code", &gcode), ("HPGL", &hpgl), ("SVG", &svg), ("DXF", &dxf), ("CSV", &csv)] {
         assert!(!text.contains("NaN") && !text.contains("inf\n"), "{name} with what is no number");
     }
-    assert!(!ild::write(&drawing, 1.0, 1.0).is_empty());
+    assert!(!ild::write(&drawing, 1.0, 1.0).bytes.is_empty());
     if segments(&drawing) <= MOST_COMPARED {
         // SVG is read in single precision, and its arcs may come back as cubics
         check_near("SVG", svg::read(svg.as_bytes()).map(|r| r.sheet), &drawing, 1e-3);

@@ -4,7 +4,9 @@
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
+use std::path::Path;
 
+use tracelight_files as files;
 use tracelight_task::Failure;
 
 use tracelight_eye::coding::as_file;
@@ -30,7 +32,7 @@ pub(crate) struct Film<R> {
 
 /// Whether a file's name says that it is a film.
 pub(crate) fn is_film(path: &str) -> bool {
-    let ending = std::path::Path::new(path).extension().and_then(|ending| ending.to_str());
+    let ending = Path::new(path).extension().and_then(|ending| ending.to_str());
     ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
@@ -42,7 +44,9 @@ impl Film<File> {
                 format!("cannot read {path}: {e}; check its name and who may read it"),
             )
         };
-        Self::of(path, File::open(path).map_err(unread)?)
+        let film = File::open(path).map_err(unread)?;
+        files::protect(Path::new(path));
+        Self::of(path, film)
     }
 }
 

@@ -39,8 +39,8 @@ pub struct Out<'a> {
 pub struct Finding {
     /// Strokes, length, what was missed.
     pub figures: Figures,
-    /// What its pixels are worth, a sentence.
-    pub verdict: Option<String>,
+    /// What to say of it where it is the only picture: what its pixels are worth, how long its frames take.
+    pub words: Option<String>,
     /// Its strokes, if they were asked for.
     pub json: Option<String>,
     /// Time from pixels to strokes, ms.
@@ -245,7 +245,7 @@ mod tests {
             doubt,
             quality: None,
         };
-        Finding { figures, verdict: None, json: None, vision_ms: 1.0 }
+        Finding { figures, words: None, json: None, vision_ms: 1.0 }
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use tracelight_task::Failure;
 
+use crate::inputs::check_no_input;
 use crate::whole::{part_name, renamed_when_whole};
 
 /// Where results of an earlier job lie until those of the next one are whole.
@@ -32,7 +33,8 @@ impl ResultFolder {
     /// what lies there under them is an earlier job's, and put aside, but for a file that is `kept`. Whatever else lies there stays.
     ///
     /// # Errors
-    /// `cannot-write` where the folder cannot be made or written, another job writes to it, or a folder has a result's name.
+    /// `cannot-write` where the folder cannot be made or written, another job writes to it, or a folder has a result's name; `usage`
+    /// where a file that this process has read has one, and is not kept.
     pub fn open(dir: &Path, names: &[&str], kept: Option<&Path>) -> Result<Self, Failure> {
         fs::create_dir_all(dir).map_err(|e| cannot_write(dir, &e))?;
         let lock = locked(dir)?;
@@ -121,6 +123,7 @@ impl ResultFolder {
             );
             return Err(Failure::failed("cannot-write", message));
         }
+        old.iter().try_for_each(|name| check_no_input(&self.path(name)))?;
         if old.is_empty() {
             return Ok(());
         }

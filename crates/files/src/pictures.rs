@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use image::ImageFormat;
 use tracelight_task::Failure;
 
+use crate::inputs::protect;
+
 /// One picture that was asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
@@ -51,6 +53,8 @@ pub fn find(arguments: &[String], recursive: bool) -> Result<Found, Failure> {
         let message = format!("{}; name pictures or a folder that has some", found.remarks.join("; "));
         return Err(Failure::usage("unreadable", message));
     }
+    // the first results are written before the last pictures are read
+    found.pictures.iter().for_each(|picture| protect(Path::new(&picture.name)));
     Ok(found)
 }
 

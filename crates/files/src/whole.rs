@@ -8,6 +8,8 @@ use std::path::Path;
 
 use tracelight_task::Failure;
 
+use crate::inputs::{check_no_input, protect};
+
 /// Largest file that is read, bytes: a picture of 100 megapixels at 16 bit and four channels, uncompressed.
 const MOST_BYTES: u64 = 800_000_000;
 
@@ -29,6 +31,7 @@ pub fn read(path: &str) -> Result<Vec<u8>, Failure> {
             return Err(Failure::usage("unreadable", format!("{path} is a folder; give a file in it")));
         }
         file.take(limit).read_to_end(&mut bytes).map_err(unreadable)?;
+        protect(Path::new(path));
     }
     if bytes.len() as u64 > MOST_BYTES {
         let most = MOST_BYTES / 1_000_000;
@@ -50,8 +53,13 @@ pub fn read(path: &str) -> Result<Vec<u8>, Failure> {
 /// may read a file that was there stays who may.
 ///
 /// # Errors
-/// `cannot-write`, with what the system says; then a file that was there is as it was.
+/// `cannot-write`, with what the system says; `usage` for a file that this process has read. Then a file that was there is as it was.
 pub fn write(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
+    check_no_input(Path::new(path))?;
+    put(path, bytes)
+}
+
+fn put(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     let failed = |e: std::io::Error| cannot_write(path, &e);
     let old = fs::metadata(path).ok();
     if old.as_ref().is_some_and(|old| !old.is_file() && !old.is_dir()) {
@@ -68,21 +76,22 @@ pub fn write(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     })
 }
 
-/// Writes what a file holds anew, as [`write`] does.
+/// Writes what a file holds anew, as [`write`] does, also one that was read.
 ///
 /// # Errors
 /// `cannot-write`, with what the system says, also where there is none.
 pub fn replace(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     fs::metadata(path).map_err(|e| cannot_write(path, &e))?;
-    write(path, bytes)
+    put(path, bytes)
 }
 
 /// Lets `write` write a file beside `path`, and gives it that name when it is whole: whoever looks sees the old file,
 /// the new one, or none, whenever the process ends. The folder is made if there is none.
 ///
 /// # Errors
-/// `cannot-write`, or what `write` fails with; then the old file stands.
+/// `cannot-write`, what `write` fails with, or `usage` for a file that this process has read; then the old file stands.
 pub fn written_whole<T>(path: &Path, write: impl FnOnce(&Path) -> Result<T, Failure>) -> Result<T, Failure> {
+    check_no_input(path)?;
     let failed = |e: std::io::Error| {
         let advice = "check the folder, its permissions and the free space";
         Failure::failed("cannot-write", format!("cannot write {}: {e}; {advice}", path.display()))

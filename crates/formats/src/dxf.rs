@@ -20,7 +20,7 @@ mod scene;
 mod spline;
 mod write;
 
-pub use read::read;
+pub use read::{read, read_with};
 pub use write::write;
 
 #[cfg(test)]

@@ -30,8 +30,9 @@ const CORNER_DWELL: usize = 3;
 /// Turns from here on are corners: 30°.
 const CORNER_RAD: f64 = 0.52;
 
-/// Points of a frame at most: its header counts them in 16 bits.
-const MOST_POINTS: usize = 65_535;
+/// Points of a frame at most, its way back left out: its header counts them in 16 bits, and the way across the whole
+/// range is 31 dark steps.
+const MOST_OWN_POINTS: usize = 65_535 - 2 * (31 + DWELL);
 
 /// Status bits.
 const LAST_POINT: u8 = 0x80;
@@ -40,57 +41,101 @@ const BLANKED: u8 = 0x40;
 /// A point of a frame; `None` is dark.
 type Dot = (Point, Option<Colour>);
 
+/// A drawing as frames for a projector.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Show {
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// How many frames it has.
+    pub frames: usize,
+    /// How many points its largest frame has.
+    pub most_points: usize,
+}
+
 /// A drawing on the target (metres, y up, origin at the centre) as an ILDA file: the sheet's larger side spans the whole
 /// range, strokes in tracing order and in their colour (white without one; black, which is ink, is white light).
 ///
+/// A player shows a frame again and again, and one after the other: each begins and ends at the same place, the start of
+/// the first stroke, and goes back there in dark steps.
+///
 /// One frame, unless it would have more than 65 535 points: then a new one begins at a stroke, or within one that is
 /// longer than that.
-pub fn write(drawing: &Drawing, width_m: f64, height_m: f64) -> Vec<u8> {
+#[must_use]
+pub fn write(drawing: &Drawing, width_m: f64, height_m: f64) -> Show {
     let larger = width_m.max(height_m);
     let scale = if larger > 0.0 { 2.0 * RANGE / larger } else { 1.0 };
     let frames = frames(&drawing.transformed(Affine::scale(scale)));
-    let mut file = Vec::new();
+    let mut bytes = Vec::new();
     for (number, dots) in frames.iter().enumerate() {
-        file.extend(header(dots.len(), number, frames.len()));
+        bytes.extend(header(dots.len(), number, frames.len()));
         for (i, dot) in dots.iter().enumerate() {
-            file.extend(record(dot, i + 1 == dots.len()));
+            bytes.extend(record(dot, i + 1 == dots.len()));
         }
     }
     // no points: the end of the file
-    file.extend(header(0, frames.len(), frames.len()));
-    file
+    bytes.extend(header(0, frames.len(), frames.len()));
+    Show { bytes, frames: frames.len(), most_points: frames.iter().map(Vec::len).max().unwrap_or(0) }
 }
 
 fn frames(drawing: &Drawing) -> Vec<Vec<Dot>> {
-    let mut frames = vec![Vec::new()];
-    let mut at = Point::ORIGIN;
+    let Some(first) = drawing.strokes.first() else { return Vec::new() };
+    let mut frames = Frames { home: within(first.path.start()), done: Vec::new(), frame: Vec::new() };
     for stroke in &drawing.strokes {
         let colour = stroke.colour.filter(|&c| c != Colour::BLACK).unwrap_or(Colour::WHITE);
-        let dots = dots(at, &stroke.path, colour);
-        let used = frames.last().map_or(0, Vec::len);
-        if used > 0 && used + dots.len() > MOST_POINTS {
-            frames.push(Vec::new());
+        let dots = dots(&stroke.path, colour);
+        if frames.frame.len() + dots.len() > MOST_OWN_POINTS && !frames.frame.is_empty() {
+            frames.close();
         }
+        frames.go_to(stroke.path.start());
         for dot in dots {
-            if frames.last().is_some_and(|f| f.len() == MOST_POINTS) {
-                frames.push(Vec::new());
+            if frames.frame.len() >= MOST_OWN_POINTS {
+                frames.close();
+                frames.go_to(dot.0);
             }
-            if let Some(frame) = frames.last_mut() {
-                frame.push(dot);
-            }
+            frames.frame.push((within(dot.0), dot.1));
         }
-        at = stroke.path.end();
     }
-    frames
+    frames.close();
+    frames.done
 }
 
-/// The dark way to a stroke and the stroke itself.
-fn dots(at: Point, path: &Path, colour: Colour) -> Vec<Dot> {
+/// Frames that are done, and one that grows.
+struct Frames {
+    /// Where each begins and ends.
+    home: Point,
+    done: Vec<Vec<Dot>>,
+    frame: Vec<Dot>,
+}
+
+impl Frames {
+    /// Goes to a place in the dark and comes to rest there.
+    fn go_to(&mut self, place: Point) {
+        let place = within(place);
+        let at = self.frame.last().map_or(self.home, |dot| dot.0);
+        if self.frame.is_empty() {
+            self.frame.push((self.home, None));
+        }
+        self.frame.extend(steps(at, place, DARK_STEP).map(|p| (p, None)));
+        self.frame.extend([(place, None); DWELL]);
+    }
+
+    /// Ends a frame where it began.
+    fn close(&mut self) {
+        self.go_to(self.home);
+        self.done.push(std::mem::take(&mut self.frame));
+    }
+}
+
+/// The nearest place within the range.
+fn within(p: Point) -> Point {
+    Point::new(p.x.clamp(-RANGE, RANGE), p.y.clamp(-RANGE, RANGE))
+}
+
+/// A stroke, from its start, where the mirrors rest, to its end.
+fn dots(path: &Path, colour: Colour) -> Vec<Dot> {
     let points = path.flatten(TOLERANCE);
     let (start, end) = (path.start(), path.end());
-    let mut dots: Vec<Dot> = steps(at, start, DARK_STEP).map(|p| (p, None)).collect();
-    dots.extend([(start, None); DWELL]);
-    dots.extend([(start, Some(colour)); CORNER_DWELL]);
+    let mut dots: Vec<Dot> = vec![(start, Some(colour)); CORNER_DWELL];
     for (i, pair) in points.windows(2).enumerate() {
         dots.extend(steps(pair[0], pair[1], LIT_STEP).map(|p| (p, Some(colour))));
         let next = points.get(i + 2);

@@ -34,12 +34,14 @@ pub mod json;
 mod layers;
 mod limit;
 mod number;
+mod options;
 mod parts;
 mod pen;
 pub mod svg;
 
 pub use error::FormatError;
 pub use limit::{MAX_BYTES, MAX_COORDINATE};
+pub use options::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
 use tracelight_stroke::{Colour, Drawing, Point};
 
 /// A drawing on its sheet, as a file has it: x right, y down, the sheet spans `[0, width] × [0, height]`.

@@ -8,7 +8,7 @@ mod swell;
 mod tags;
 mod write;
 
-pub use read::read;
+pub use read::{read, read_with};
 pub use write::write;
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
-use tracelight_formats::{FormatError, Reading, Sheet, csv, dxf, json, svg};
+use tracelight_formats::{FormatError, ReadOptions, Reading, Sheet, csv, dxf, json, svg};
 use tracelight_image::Grey;
 use tracelight_stroke::{Affine, Drawing, Vec2};
 use tracelight_task::Failure;
@@ -42,14 +42,22 @@ pub struct Pixels {
 /// # Errors
 /// What is wrong with the file: broken, cut off, too large, of a kind that is not read, or with nothing in it.
 pub fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
+    decode_with(path, bytes, &ReadOptions::default())
+}
+
+/// As [`decode`]; a drawing is read by the options, pixels have none.
+///
+/// # Errors
+/// As there.
+pub fn decode_with(path: &str, bytes: &[u8], options: &ReadOptions) -> Result<Source, Failure> {
     let malformed = |e: &FormatError| match e {
         FormatError::Nothing { .. } => Failure::failed("no-strokes", format!("{path}: {e}")),
         _ => Failure::usage("malformed", format!("{path}: {}", brief(e))),
     };
     let extension = Path::new(path).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     match kind_of(bytes, extension.as_deref()) {
-        Kind::Svg => svg::read(bytes).map(Source::Strokes).map_err(|e| malformed(&e)),
-        Kind::Dxf => dxf::read(bytes).map(Source::Strokes).map_err(|e| malformed(&e)),
+        Kind::Svg => svg::read_with(bytes, options).map(Source::Strokes).map_err(|e| malformed(&e)),
+        Kind::Dxf => dxf::read_with(bytes, options).map(Source::Strokes).map_err(|e| malformed(&e)),
         Kind::Json => json::read(bytes).map(|t| whole(t.sheet)).map_err(|e| malformed(&e)),
         Kind::Csv => csv::read(bytes).map(|d| whole(sheet_about(&d))).map_err(|e| malformed(&e)),
         Kind::Image => image(path, bytes).map(Source::Pixels),

@@ -7,6 +7,6 @@ mod quiet;
 mod raster;
 mod turned;
 
-pub use decode::{Pixels, Source, decode, jpeg_is_whole};
+pub use decode::{Pixels, Source, decode, decode_with, jpeg_is_whole};
 pub use quiet::unless_it_panics;
 pub use raster::Raster;

@@ -25,6 +25,7 @@ mod events;
 mod finished;
 #[cfg(test)]
 mod fixture;
+mod head_gcode;
 mod limit;
 mod log;
 mod page;
@@ -39,6 +40,7 @@ pub use csv::{fault_csv, trace_csv};
 pub use error::EncodeError;
 pub use events::{Event, events};
 pub use finished::{Finished, Picture, Setting, Target, Timing};
+pub use head_gcode::{AxisUnit, BoardAxis, HeadGcode, HeadProgram, head_gcode};
 pub use log::{LogMeta, LogWriter, Recovered, index, recover};
 pub use page::{html, page};
 pub use painting::paint;

@@ -3,7 +3,8 @@
 use std::ffi::OsString;
 
 use tracelight_files as files;
-use tracelight_picture::{Pixels, Raster, Source, decode};
+use tracelight_formats::ReadOptions;
+use tracelight_picture::{Pixels, Raster, Source, decode, decode_with};
 use tracelight_rigfile as rigfile;
 use tracelight_rigfile::camera::KnownCamera;
 use tracelight_rigfile::head::KnownHead;
@@ -32,6 +33,21 @@ pub(crate) fn in_text(arguments: &[OsString]) -> Result<(), Failure> {
 /// A picture or a drawing; `-` is standard input. What it is, its content says, not its name.
 pub(crate) fn picture(path: &str) -> Result<Source, Failure> {
     decode(path, &files::read(path)?)
+}
+
+/// As [`picture`]; a drawing is read by the options.
+pub(crate) fn drawing(path: &str, options: &ReadOptions) -> Result<Source, Failure> {
+    let source = decode_with(path, &files::read(path)?, options)?;
+    let flag = options.unit.map(|_| "--unit").or(options.dpi.map(|_| "--dpi"));
+    match (&source, flag) {
+        (Source::Pixels(_), Some(flag)) => {
+            let message = format!(
+                "{flag} is for drawings (DXF, SVG), and {path} is a picture: --width or --height set its size"
+            );
+            Err(Failure::usage("usage", message))
+        }
+        _ => Ok(source),
+    }
 }
 
 /// A picture to hang on a simulated wall.

@@ -73,6 +73,17 @@ pub const ANGLES: &[Unit] =
 /// See [`LENGTHS`].
 pub const SPEEDS: &[Unit] =
     &[("m/s", 1.0), ("mm/s", 1e-3), ("cm/s", 1e-2), ("in/s", 0.0254), ("ft/s", 0.3048)];
+/// Speeds as machine tools have them, too.
+pub const FEEDS: &[Unit] = &[
+    ("m/s", 1.0),
+    ("mm/s", 1e-3),
+    ("cm/s", 1e-2),
+    ("in/s", 0.0254),
+    ("ft/s", 0.3048),
+    ("mm/min", 1e-3 / 60.0),
+    ("m/min", 1.0 / 60.0),
+    ("in/min", 0.0254 / 60.0),
+];
 /// See [`LENGTHS`].
 pub const ACCELERATIONS: &[Unit] =
     &[("m/s2", 1.0), ("mm/s2", 1e-3), ("cm/s2", 1e-2), ("in/s2", 0.0254), ("ft/s2", 0.3048)];

@@ -11,6 +11,7 @@ use super::join::joined;
 use super::scene::{Block, Layers, Scene, Skipped};
 use crate::extent::extent;
 use crate::limit::MAX_COORDINATE;
+use crate::options::ReadOptions;
 use crate::{FormatError, Reading, Sheet};
 
 /// Sides of a sheet are at least so long, in its unit, or numbers with four decimals would show.
@@ -33,6 +34,14 @@ const LEAST_ASPECT: f64 = 0.01;
 /// Binary DXF and DWG; anything else that is no DXF, with its line; drawings of nothing; files that are made to fill
 /// the memory.
 pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
+    read_with(bytes, &ReadOptions::default())
+}
+
+/// As [`read`], by options.
+///
+/// # Errors
+/// As there.
+pub fn read_with(bytes: &[u8], _options: &ReadOptions) -> Result<Reading, FormatError> {
     check_kind(bytes)?;
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let (mut scene, header) = scene(bytes)?;

@@ -6,6 +6,7 @@ use super::guard;
 use super::names::{Names, Place};
 use crate::doubles::without_doubles;
 use crate::extent::controls;
+use crate::options::ReadOptions;
 use crate::pen::Pen;
 use crate::{FormatError, Reading, Sheet, check_size, is_sound, text};
 
@@ -37,6 +38,14 @@ const MAX_NODES: u32 = 2_000_000;
 /// # Errors
 /// Anything that is not an SVG, one that draws nothing, and one that is made to fill the memory.
 pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
+    read_with(bytes, &ReadOptions::default())
+}
+
+/// As [`read`], by options.
+///
+/// # Errors
+/// As there.
+pub fn read_with(bytes: &[u8], _options: &ReadOptions) -> Result<Reading, FormatError> {
     check_size(bytes)?;
     let text = text(bytes)?;
     guard::check_text(text)?;

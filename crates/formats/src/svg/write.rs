@@ -15,7 +15,7 @@ const USUAL_PEN_MM: f64 = 0.8;
 /// stroke, in tracing order. Lines stay lines, arcs arcs, cubics cubics; coordinates to 0.1 µm.
 ///
 /// Colours are kept. Where a stroke has a layer, each run of strokes of one layer is a group that Inkscape shows as a
-/// layer; a layer that tracing comes back to has several groups of its name, for the order is kept above all.
+/// layer, directly below the root, where plotter programs look for layers; a layer that tracing comes back to has several groups of its name, for the order is kept above all.
 pub fn write(drawing: &Drawing, width_m: f64, height_m: f64) -> String {
     let (w, h) = (1e3 * width_m, 1e3 * height_m);
     let millimetres = drawing.transformed(Affine::new([1e3, 0.0, 0.0, -1e3, 0.5 * w, 0.5 * h]));
@@ -24,9 +24,9 @@ pub fn write(drawing: &Drawing, width_m: f64, height_m: f64) -> String {
     let inkscape = if layered { INKSCAPE } else { "" };
     let mut svg = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-         <svg xmlns=\"http://www.w3.org/2000/svg\"{inkscape} width=\"{w}mm\" height=\"{h}mm\" viewBox=\"0 0 {w} {h}\">\n\
-         <title>{} strokes, in tracing order, {w} × {h} mm</title>\n\
-         <g fill=\"none\" stroke=\"#c8102e\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
+         <svg xmlns=\"http://www.w3.org/2000/svg\"{inkscape} width=\"{w}mm\" height=\"{h}mm\" viewBox=\"0 0 {w} {h}\" \
+         fill=\"none\" stroke=\"#c8102e\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n\
+         <title>{} strokes, in tracing order, {w} × {h} mm</title>\n",
         drawing.strokes.len()
     );
     let mut number_of = 0;
@@ -41,7 +41,7 @@ pub fn write(drawing: &Drawing, width_m: f64, height_m: f64) -> String {
         }
         svg.push_str(if layer.is_some() { "</g>\n" } else { "" });
     }
-    svg.push_str("</g>\n</svg>\n");
+    svg.push_str("</svg>\n");
     svg
 }
 

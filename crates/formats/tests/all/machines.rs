@@ -84,7 +84,7 @@ fn points(file: &[u8]) -> Vec<(i16, i16, u8, [u8; 3])> {
 
 #[test]
 fn ilda_spans_the_range_and_is_blanked_between_strokes() {
-    let file = ild::write(&drawing(), 0.1, 0.08);
+    let file = ild::write(&drawing(), 0.1, 0.08).bytes;
     assert_eq!(file[..8], *b"ILDA\0\0\0\x05");
     assert_eq!(file[28..32], [0, 1, 0, 0]);
     let points = points(&file);
@@ -101,20 +101,28 @@ fn ilda_spans_the_range_and_is_blanked_between_strokes() {
         (f64::from(a.0) - f64::from(b.0)).hypot(f64::from(a.1) - f64::from(b.1))
     };
     assert!(points.windows(2).all(|w| step(&w[0], &w[1]) <= 3001.0));
+    // nor from the last point to the first, as a player shows the frame again and again
+    let last = points[points.len() - 1];
+    assert_eq!((last.0, last.1), (points[0].0, points[0].1));
 }
 
 #[test]
 fn an_ilda_frame_never_has_more_points_than_its_header_can_say() {
     let zigzag: Vec<Point> = (0..40_000).map(|i| Point::new(f64::from(i % 2), f64::from(i) * 1e-5)).collect();
     let path = Path::polyline(&zigzag, false).unwrap();
-    let file = ild::write(&Drawing { strokes: vec![Stroke::new(path.clone()), Stroke::new(path)] }, 2.0, 1.0);
+    let file =
+        ild::write(&Drawing { strokes: vec![Stroke::new(path.clone()), Stroke::new(path)] }, 2.0, 1.0).bytes;
     let (mut at, mut frames) = (0, 0);
     loop {
         let count = usize::from(u16::from_be_bytes([file[at + 24], file[at + 25]]));
-        at += 32 + 8 * count;
         if count == 0 {
+            at += 32;
             break;
         }
+        let place = |point: usize| &file[at + 32 + 8 * point..][..4];
+        assert_eq!(place(0), place(count - 1), "frame {frames} ends where it began");
+        assert_eq!(place(0), &file[32..36], "frame {frames} begins where the first one does");
+        at += 32 + 8 * count;
         frames += 1;
     }
     assert!(at == file.len() && frames > 20, "{frames} frames, {at} of {} bytes", file.len());
@@ -127,7 +135,7 @@ fn drawings_beyond_the_sheet_and_of_nothing_are_written_too() {
     far.push(Element::Arc { centre: Point::new(1e6, 1e-9), sweep: PI });
     for drawing in [Drawing { strokes: vec![Stroke::new(far)] }, Drawing::default()] {
         for (w, h) in [(0.1, 0.1), (0.0, 0.0)] {
-            assert!(ild::write(&drawing, w, h).len() >= 32);
+            assert!(ild::write(&drawing, w, h).bytes.len() >= 32);
             assert!(gcode::write(&drawing, w, h, &GcodeOptions::default()).ends_with("M2\n"));
             assert!(hpgl::write(&drawing, w, h, 1e-5).ends_with("SP0;\n"));
             assert!(tracelight_formats::dxf::write(&drawing, w, h).ends_with("EOF\n"));

@@ -83,7 +83,10 @@ fn tags_hide_in_no_entity() {
         &document("<!DOCTYPE svg [<!ENTITY t 'a>&b;'>]>", "&t;"),
         &["an entity that names another"],
     );
-    let few = document("<!DOCTYPE svg [<!ENTITY t '<path d=\"M0 0H9\" stroke=\"red\"/>'>]>", "&t;&t;");
+    let few = document(
+        "<!DOCTYPE svg [<!ENTITY t '<path d=\"M0 0H9\" stroke=\"red\"/>'>]>",
+        "&t;<g transform='translate(0 2)'>&t;</g>",
+    );
     assert_eq!(svg::read(few.as_bytes()).unwrap().sheet.drawing.strokes.len(), 2);
 }
 

@@ -39,9 +39,6 @@ fn words(error: &clap::Error) -> Option<&'static str> {
         ErrorKind::UnknownArgument if is_about("--text") => {
             "text is not drawn yet: make an SVG of it whose letters are paths (Inkscape: Path, Object to Path) and draw that"
         }
-        ErrorKind::UnknownArgument if is_about("--unit") => {
-            "the unit of a drawing is its own yet; --width or --height set its size"
-        }
         _ => return None,
     };
     Some(words)

@@ -1,10 +1,13 @@
 use std::fmt::Write;
+use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use tracelight_files as files;
-use tracelight_pipeline::{OrderBy, Placed, Schedule, place, schedule, sketch};
-use tracelight_report::{ColourBy, PlanFigures, StrokeFigures, preview};
-use tracelight_rig::TICK_F64_S;
+use tracelight_pipeline::{Driving, OrderBy, Placed, Schedule, place, schedule, sketch};
+use tracelight_report::{
+    BoardAxis, ColourBy, HeadGcode, PlanFigures, StrokeFigures, drawing, head_gcode, preview,
+};
+use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::Effort;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::{LitSpeed, Plan};
@@ -13,7 +16,9 @@ use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
 use crate::cli::ending::ends_in;
+use crate::cli::gcode::PowerArgs;
 use crate::cli::placing::PlacementArgs;
+use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::named;
 
@@ -23,9 +28,15 @@ use crate::named;
 pub(crate) struct PlanArgs {
     /// A drawing (SVG, DXF, JSON, CSV) or a picture; - is standard input
     drawing: String,
-    /// Write the plan to this CSV file, one row per millisecond
-    #[arg(help_heading = "Output", short, long, value_name = "FILE.csv", value_parser = table)]
+    /// Write the plan: .csv, one row per millisecond; or .gcode (.gc, .nc, .ngc) for a head on a GRBL board, with --axes
+    #[arg(help_heading = "Output", short, long, value_name = "FILE.csv|FILE.gcode", value_parser = table)]
     out: Option<String>,
+    /// Which axis of a GRBL board turns which joint, a minus where the motor turns the other way: X=pan,Y=-tilt. Angles are in degrees,
+    /// or in radians with --unit rad
+    #[arg(help_heading = "Output", long, value_name = "LETTER=JOINT,…", value_parser = axes, requires = "out")]
+    axes: Option<PanTilt<BoardAxis>>,
+    #[command(flatten, next_help_heading = "Output")]
+    power: PowerArgs,
     /// Write a preview of the plan as SVG, its lit path coloured
     #[arg(help_heading = "Output", long, value_name = "FILE.svg", value_parser = picture)]
     preview: Option<String>,
@@ -40,6 +51,8 @@ pub(crate) struct PlanArgs {
     order_effort: OrderEffortName,
     #[command(flatten, next_help_heading = "Picture")]
     tracing: TracingArgs,
+    #[command(flatten, next_help_heading = "Picture")]
+    reading: ReadingArgs,
     #[command(flatten, next_help_heading = "Size and place")]
     placement: PlacementArgs,
     #[command(flatten)]
@@ -112,8 +125,40 @@ impl OrderEffortName {
 }
 
 fn table(text: &str) -> Result<String, String> {
-    let way = "a plan is a table: end it in .csv; the strokes as G-code, SVG or DXF: `tracelight strokes DRAWING -o FILE`";
+    if drawing::is_gcode(Path::new(text)) {
+        return Ok(text.to_owned());
+    }
+    let way = "a plan is a table (.csv), or with --axes G-code of the joints (.gcode); the strokes as SVG, DXF or other files: \
+               `tracelight strokes DRAWING -o FILE`";
     ends_in(text, "csv", way)
+}
+
+/// Both joints, each on an axis of its own.
+fn axes(text: &str) -> Result<PanTilt<BoardAxis>, String> {
+    let example = "such as X=pan,Y=tilt, or X=pan,Y=-tilt where a motor turns the other way";
+    let mut found: PanTilt<Option<BoardAxis>> = PanTilt::default();
+    for part in text.split(',') {
+        let (letter, joint) =
+            part.split_once('=').ok_or_else(|| format!("{part} is no LETTER=JOINT, {example}"))?;
+        let letter = match letter.trim().to_ascii_uppercase().chars().collect::<Vec<_>>()[..] {
+            [letter @ ('X' | 'Y' | 'Z' | 'A' | 'B' | 'C')] => letter,
+            _ => return Err(format!("{letter} is no axis: X, Y, Z, A, B or C, {example}")),
+        };
+        let joint = joint.trim();
+        let (reversed, name) = joint.strip_prefix('-').map_or((false, joint), |name| (true, name));
+        let joint = Joint::BOTH
+            .into_iter()
+            .find(|known| known.name().eq_ignore_ascii_case(name))
+            .ok_or_else(|| format!("{name} is no joint: pan or tilt, {example}"))?;
+        if found[joint].replace(BoardAxis { letter, reversed }).is_some() {
+            return Err(format!("{joint} has two axes: give each joint one, {example}"));
+        }
+    }
+    match (found.pan, found.tilt) {
+        (Some(pan), Some(tilt)) if pan.letter != tilt.letter => Ok(PanTilt::new(pan, tilt)),
+        (Some(_), Some(_)) => Err(format!("both joints cannot be on one axis: {example}")),
+        _ => Err(format!("give both joints, {example}")),
+    }
 }
 
 fn picture(text: &str) -> Result<String, String> {
@@ -123,9 +168,11 @@ fn picture(text: &str) -> Result<String, String> {
 pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let bar = Bar::new(args.voice.quiet);
     let task = Task { progress: &bar, stop };
+    check_out(args)?;
     let driving = args.driving.resolve()?;
     task.stage("strokes", 1);
-    let (source, placing) = (named::picture(&args.drawing)?, args.placement.placing());
+    let (source, placing) =
+        (named::drawing(&args.drawing, &args.reading.options()?)?, args.placement.placing());
     let (sketch, vision_ms) = task.timed(|| sketch(&args.drawing, source, &args.tracing.tracing(), &placing));
     let sketch = sketch?;
     let placed = place(&sketch, &placing);
@@ -140,7 +187,9 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| task.say(&format!("note: {n}")));
     if let Some(path) = &args.out {
-        files::write(path, csv(&schedule.plan))?;
+        let (bytes, note) = file(args, path, &schedule.plan, &driving)?;
+        files::write(path, bytes)?;
+        note.iter().for_each(|note| task.say(&format!("note: {note}")));
     }
     if let Some(path) = &args.preview {
         files::write(path, preview(&schedule.plan, args.colour_by.colour_by(), schedule.plan.set_speed_m_s))?;
@@ -148,6 +197,56 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let timing = serde_json::json!({ "vision": vision_ms, "plan": plan_ms });
     let shortest = args.order_by == OrderByName::Distance || driving.request.lit_speed == LitSpeed::Stops;
     Ok(Answer::new(text(&schedule, shortest), json(&placed, &schedule, &timing)))
+}
+
+/// Whether what the flags ask for goes together, before any work.
+fn check_out(args: &PlanArgs) -> Result<(), Failure> {
+    let is_gcode = args.out.as_deref().is_some_and(|path| drawing::is_gcode(Path::new(path)));
+    let unit = args.reading.axis_unit()?;
+    let wrong = match (is_gcode, args.axes) {
+        (true, None) => {
+            "G-code of a plan is in joint angles: say which axis is which joint, --axes X=pan,Y=tilt; for a flat machine, `tracelight \
+             strokes DRAWING -o FILE.gcode`"
+        }
+        (false, Some(_)) => "--axes is for G-code: end --out in .gcode",
+        (false, None) if args.power.is_given() => {
+            "--power is for G-code: end --out in .gcode, and give --axes"
+        }
+        (false, None) if unit.is_some() => {
+            "deg and rad are units of a board's axes: give --axes and --out FILE.gcode"
+        }
+        _ => return Ok(()),
+    };
+    Err(Failure::usage("usage", wrong))
+}
+
+/// Lines that a board takes a second at 115 200 baud, as GRBL's are some 35 characters long.
+const MOST_LINES_A_SECOND: usize = 300;
+
+/// Furthest that the spot of a board's head may be from the plan at the same time, m.
+const BOARD_TOLERANCE_M: f64 = 5e-5;
+
+/// A plan as the file that its name says, and what to know of it.
+fn file(
+    args: &PlanArgs,
+    path: &str,
+    plan: &Plan,
+    driving: &Driving,
+) -> Result<(String, Option<String>), Failure> {
+    let Some(axes) = args.axes else { return Ok((csv(plan), None)) };
+    let unit = args.reading.axis_unit()?.unwrap_or_default();
+    let how = HeadGcode { axes, unit, power: args.power.s_word(), tolerance_m: BOARD_TOLERANCE_M };
+    let program = head_gcode(plan, &|angle| driving.machine.geometry.spot(&driving.pose, angle), &how);
+    let (moves, most) = (counted(program.moves, "move"), program.most_moves_a_second);
+    let doubt = if most > MOST_LINES_A_SECOND {
+        "; a board at 115 200 baud takes some 300 and would stutter: draw slower (--speed), or larger"
+    } else {
+        ""
+    };
+    let note = format!(
+        "{path}: {moves}, at most {most} in a second{doubt}; open loop, as the board does not measure where the head is"
+    );
+    Ok((program.text, Some(note)))
 }
 
 fn text(schedule: &Schedule, shortest: bool) -> String {

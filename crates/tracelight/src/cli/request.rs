@@ -11,6 +11,7 @@ use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::{EyeArgs, FollowArgs, SimulatedEyeName};
 use crate::cli::laws::LawArgs;
 use crate::cli::placing::PlacementArgs;
+use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
 
 /// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
@@ -24,6 +25,8 @@ pub(crate) struct TraceArgs {
     picture: Option<String>,
     #[command(flatten, next_help_heading = "Picture")]
     pub(crate) tracing: TracingArgs,
+    #[command(flatten, next_help_heading = "Picture")]
+    pub(crate) reading: ReadingArgs,
     #[command(flatten, next_help_heading = "Size and place")]
     pub(crate) placement: PlacementArgs,
     #[command(flatten)]

@@ -7,6 +7,7 @@ use tracelight_campaign as campaign;
 use tracelight_campaign::{Batch, Figures, Finding, Out};
 use tracelight_files as files;
 use tracelight_files::{Picture, stands_for_several};
+use tracelight_formats::ReadOptions;
 use tracelight_picture::Source;
 use tracelight_pipeline::{Tracing, page, place, sketch};
 use tracelight_report as report;
@@ -16,7 +17,9 @@ use tracelight_vision::Stages;
 
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice, print_piece};
+use crate::cli::gcode::GcodeArgs;
 use crate::cli::placing::PlacementArgs;
+use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
 use crate::named;
 
@@ -41,8 +44,12 @@ pub(crate) struct StrokesArgs {
     /// Write the processing stages as an SVG: grey, illumination evened out, histogram and threshold, ink; one picture only
     #[arg(help_heading = "Output", long, value_name = "FILE.svg", value_parser = svg_file)]
     stages: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Output")]
+    gcode: GcodeArgs,
     #[command(flatten, next_help_heading = "Picture")]
     tracing: TracingArgs,
+    #[command(flatten, next_help_heading = "Picture")]
+    reading: ReadingArgs,
     /// Include subfolders
     #[arg(help_heading = "Output", short, long)]
     recursive: bool,
@@ -64,35 +71,36 @@ fn svg_file(text: &str) -> Result<PathBuf, String> {
 }
 
 pub(crate) fn run(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
+    let options = args.reading.options()?;
     match args.pictures.as_slice() {
-        [only] if !stands_for_several(only) => single(args, only),
+        [only] if !stands_for_several(only) => single(args, &options, only),
         _ if args.stages.is_some() => {
             Err(Failure::usage("usage", "--stages is of one picture: give only that"))
         }
-        _ => many(args, stop),
+        _ => many(args, &options, stop),
     }
 }
 
 /// One picture: a sentence, or its strokes as JSON.
-fn single(args: &StrokesArgs, picture: &str) -> Result<Answer, Failure> {
+fn single(args: &StrokesArgs, options: &ReadOptions, picture: &str) -> Result<Answer, Failure> {
     check_format(args)?;
     let named = Picture { name: picture.to_owned(), within: None };
     let traced = match args.out.as_deref() {
         Some(out) if is_folder(out) => {
             let files = campaign::files(&[named], out, extension(args))?;
-            files::written_whole(&out.join(&files[0]), |path| one(args, picture, Some(path)))?
+            files::written_whole(&out.join(&files[0]), |path| one(args, options, picture, Some(path)))?
         }
-        out => one(args, picture, out)?,
+        out => one(args, options, picture, out)?,
     };
     if let Some(doubt) = &traced.figures.doubt {
         Bar::new(args.voice.quiet).say(&format!("note: {picture}: {doubt}"));
     }
-    let verdict = traced.verdict.as_ref().map_or_else(String::new, |words| format!("\n{words}"));
-    Ok(Answer::new(line(picture, &traced) + &verdict, traced.json.unwrap_or_default()))
+    let words = traced.words.as_ref().map_or_else(String::new, |words| format!("\n{words}"));
+    Ok(Answer::new(line(picture, &traced) + &words, traced.json.unwrap_or_default()))
 }
 
 /// Every picture, past those that fail.
-fn many(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
+fn many(args: &StrokesArgs, options: &ReadOptions, stop: &Stop) -> Result<Answer, Failure> {
     if args.out.as_deref().is_some_and(|out| !may_become_folder(out)) {
         let message = "several pictures need a folder: end --out with / (such as -o strokes/)";
         return Err(Failure::usage("usage", message));
@@ -104,7 +112,7 @@ fn many(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
     let out = args.out.as_deref().map(|folder| Out {
         folder,
         extension: extension(args),
-        made_with: made_with(args),
+        made_with: made_with(args, options),
         again: args.again,
     });
     let jobs = args.jobs.map_or_else(processors, usize::from);
@@ -116,7 +124,7 @@ fn many(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
         }
     };
     let pieces: Option<&mut dyn FnMut(&str)> = if args.voice.json { Some(&mut print) } else { None };
-    let ended = campaign::run(&batch, &|picture, path| one(args, picture, path), task, pieces)?;
+    let ended = campaign::run(&batch, &|picture, path| one(args, options, picture, path), task, pieces)?;
     printed?;
     Ok(Answer { failure: ended.failure, ..Answer::new(ended.text, ended.json) })
 }
@@ -144,10 +152,12 @@ fn check_format(args: &StrokesArgs) -> Result<(), Failure> {
 }
 
 /// Version and options: whatever makes a difference to a written file. A flag that is added must be put on one side.
-fn made_with(args: &StrokesArgs) -> String {
+fn made_with(args: &StrokesArgs, options: &ReadOptions) -> String {
     let StrokesArgs {
         tracing,
         placement,
+        reading: _, // as options, with what is in its fonts
+        gcode,
         format: _,
         pictures: _,
         stages: _,
@@ -159,11 +169,16 @@ fn made_with(args: &StrokesArgs) -> String {
     } = args;
     let version = env!("CARGO_PKG_VERSION");
     let format = extension(args);
-    format!("{version} {format} {tracing:?} {placement:?}")
+    format!("{version} {format} {tracing:?} {placement:?} {options:?} {gcode:?}")
 }
 
-fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding, Failure> {
-    let source = named::picture(picture)?;
+fn one(
+    args: &StrokesArgs,
+    options: &ReadOptions,
+    picture: &str,
+    path: Option<&Path>,
+) -> Result<Finding, Failure> {
+    let source = named::drawing(picture, options)?;
     if let Some(path) = &args.stages {
         if path.as_path() == Path::new(picture) || args.out.as_deref() == Some(path) {
             let message =
@@ -179,14 +194,23 @@ fn one(args: &StrokesArgs, picture: &str, path: Option<&Path>) -> Result<Finding
     sketch.picture = None; // its colours are not needed, and large
     let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let json = (args.voice.json || path.is_some_and(is_json)).then(|| drawing::json(&sketch));
+    let mut note = None;
     if let Some(path) = path {
-        let file = drawing::file(path, &place(&sketch, &placing), json.as_deref().unwrap_or_default())?;
-        files::write(&path.display().to_string(), file)?;
+        let json = json.as_deref().unwrap_or_default();
+        let file = drawing::file(path, &place(&sketch, &placing), json, args.gcode.options().as_ref())?;
+        files::write(&path.display().to_string(), file.bytes)?;
+        sketch.remarks.extend(file.doubts);
+        note = file.note;
     }
     let figures = Figures::of(&sketch, &placing);
     Ok(Finding {
         figures,
-        verdict: sketch.quality.map(|quality| quality.words()),
+        words: sketch
+            .quality
+            .map(|quality| quality.words())
+            .into_iter()
+            .chain(note)
+            .reduce(|a, b| format!("{a}\n{b}")),
         json: json.filter(|_| args.voice.json),
         vision_ms,
     })

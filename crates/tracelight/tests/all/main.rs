@@ -14,6 +14,7 @@ mod contract;
 mod device;
 mod every_command;
 mod examples;
+mod extensions;
 mod fault_page;
 mod formats;
 mod friction;

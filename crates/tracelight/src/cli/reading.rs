@@ -1,0 +1,174 @@
+//! How a drawing file is read: the flags of every command that takes a drawing.
+
+use clap::{ArgAction, Args, ValueEnum};
+use tracelight_files as files;
+use tracelight_formats::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
+use tracelight_report::AxisUnit;
+use tracelight_task::Failure;
+
+/// How an SVG or DXF is read. Pixels have none of this.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ReadingArgs {
+    /// Lines that are painted over: cut draws what is seen, keep draws them too, as a template for cutting needs
+    #[arg(long, value_enum, default_value_t)]
+    hidden: HiddenName,
+    /// Cut off what lies outside an SVG's page and its clip paths
+    #[arg(long, value_enum, default_value_t)]
+    crop: Switch,
+    /// Draw dashed lines as dashes
+    #[arg(long, value_enum, default_value_t)]
+    dashes: Switch,
+    /// Unit of a DXF's numbers, in place of what the file says [default: the file's, otherwise mm]; deg or rad is the unit of a board's
+    /// axes (plan --axes)
+    #[arg(long, value_enum)]
+    unit: Vec<UnitName>,
+    /// Pixels to an inch, for an SVG whose size is in pixels, such as 96 (browsers), 90 (old Inkscape) or 72 (Illustrator)
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = dpi)]
+    dpi: Option<f64>,
+    /// A DXF's hatches: their edges, or also the lines of their patterns
+    #[arg(long, value_enum, default_value_t)]
+    hatch: HatchName,
+    /// How text is drawn: each stroke of a letter as one line, or the letters' outlines [default: line in a DXF, otherwise outline]
+    #[arg(long, value_enum)]
+    letters: Option<LettersName>,
+    /// Font for text: .ttf, .otf, or an SVG font with single-line letters; repeat it for what the first one lacks
+    #[arg(long, value_name = "FILE", action = ArgAction::Append)]
+    font: Vec<String>,
+}
+
+/// Lines that are painted over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum HiddenName {
+    /// Left out
+    #[default]
+    Cut,
+    /// Drawn
+    Keep,
+}
+
+/// Whether something is done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Switch {
+    /// Yes
+    #[default]
+    On,
+    /// No
+    Off,
+}
+
+/// Units of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum UnitName {
+    /// Millimetres
+    Mm,
+    /// Centimetres
+    Cm,
+    /// Metres
+    M,
+    /// Inches
+    In,
+    /// Feet
+    Ft,
+    /// Degrees, of a board's axes
+    Deg,
+    /// Radians, of a board's axes
+    Rad,
+}
+
+/// What of a hatch is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum HatchName {
+    /// Its edge
+    #[default]
+    Boundary,
+    /// Its edge and its pattern
+    Pattern,
+}
+
+/// How letters are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum LettersName {
+    /// Each stroke as one line
+    Line,
+    /// Their edges
+    Outline,
+}
+
+impl ReadingArgs {
+    /// The unit of a board's axes, if one was given.
+    ///
+    /// # Errors
+    /// Two of them.
+    pub(crate) fn axis_unit(&self) -> Result<Option<AxisUnit>, Failure> {
+        only(self.unit.iter().filter_map(|unit| unit.angle()))
+    }
+
+    /// What they mean; reads the fonts.
+    ///
+    /// # Errors
+    /// A font file that cannot be read; two units.
+    pub(crate) fn options(&self) -> Result<ReadOptions, Failure> {
+        let font = |name: &String| Ok(Font { name: name.clone(), bytes: files::read(name)?.into() });
+        Ok(ReadOptions {
+            hidden: match self.hidden {
+                HiddenName::Cut => Hidden::Cut,
+                HiddenName::Keep => Hidden::Keep,
+            },
+            crop: self.crop == Switch::On,
+            dashes: self.dashes == Switch::On,
+            unit: only(self.unit.iter().filter_map(|unit| unit.length()))?,
+            dpi: self.dpi,
+            hatch: match self.hatch {
+                HatchName::Boundary => Hatch::Boundary,
+                HatchName::Pattern => Hatch::Pattern,
+            },
+            letters: self.letters.map(|letters| match letters {
+                LettersName::Line => Letters::Line,
+                LettersName::Outline => Letters::Outline,
+            }),
+            fonts: self.font.iter().map(font).collect::<Result<_, Failure>>()?,
+        })
+    }
+}
+
+impl UnitName {
+    const fn length(self) -> Option<LengthUnit> {
+        match self {
+            Self::Mm => Some(LengthUnit::Millimetre),
+            Self::Cm => Some(LengthUnit::Centimetre),
+            Self::M => Some(LengthUnit::Metre),
+            Self::In => Some(LengthUnit::Inch),
+            Self::Ft => Some(LengthUnit::Foot),
+            Self::Deg | Self::Rad => None,
+        }
+    }
+
+    const fn angle(self) -> Option<AxisUnit> {
+        match self {
+            Self::Deg => Some(AxisUnit::Degrees),
+            Self::Rad => Some(AxisUnit::Radians),
+            _ => None,
+        }
+    }
+}
+
+/// The one unit of its kind, if there is any.
+fn only<T>(mut units: impl Iterator<Item = T>) -> Result<Option<T>, Failure> {
+    let first = units.next();
+    match units.next() {
+        None => Ok(first),
+        Some(_) => Err(Failure::usage("usage", "--unit is given twice for the same thing: leave one out")),
+    }
+}
+
+/// Pixels to an inch, within what screens and printers have.
+fn dpi(text: &str) -> Result<f64, String> {
+    const LEAST: f64 = 1.0;
+    const MOST: f64 = 100_000.0;
+    let number = text.trim().strip_suffix("dpi").unwrap_or(text).trim();
+    match number.parse::<f64>() {
+        Ok(value) if (LEAST..=MOST).contains(&value) => Ok(value),
+        Ok(_) => Err(format!("{text} is not between {LEAST} and {MOST} pixels to an inch")),
+        Err(_) => Err(format!("{text} is no number of pixels to an inch, such as 96")),
+    }
+}
