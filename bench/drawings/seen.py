@@ -17,6 +17,7 @@ SIDE = 400  # px, the picture's longer side
 MARGIN = 20  # px round each picture, so that nothing of a neighbour shows
 CONTRAST = 20  # of 255: less is no edge
 NEAR = 2.0  # px between a stroke and an edge of the picture, its pen aside
+RIM = 3  # px at the page's border where no edge is asked for
 UNSEEN, UNDRAWN = 0.03, 0.03  # shares of length, and of edge, that may be wrong in a file
 CHROMIUM = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--hide-scrollbars",
             "--disable-background-networking", "--disable-component-update", "--disable-sync", "--allow-file-access-from-files"]
@@ -28,7 +29,7 @@ def files_of(line, cache):
     copy = cache / repository.replace("/", "+")
     if not copy.exists():
         subprocess.run(["git", "clone", "-q", "--depth", "1", f"https://github.com/{repository}", str(copy)], check=True)
-    found = [p for p in copy.rglob("*.svg") if p.stat().st_size < 600_000 and b"<svg" in p.read_bytes()]
+    found = [p for p in copy.rglob("*.svg") if p.stat().st_size < 600_000 and b"http://www.w3.org/2000/svg" in p.read_bytes()]
     found.sort(key=lambda p: hashlib.sha1(str(p.relative_to(copy)).encode()).hexdigest())
     return found[: int(count)]
 
@@ -37,6 +38,29 @@ def strokes_of(program, file):
     """The drawing as JSON, and what the program said of it."""
     run = subprocess.run([program, "strokes", str(file), "--json"], capture_output=True, text=True, timeout=60)
     return (json.loads(run.stdout) if run.returncode == 0 else None), run.stderr.strip()
+
+
+def corners(stroke, within):
+    """Points of a stroke's exact path (its "points" are coarser), px of the file."""
+    at = np.array(stroke["path"]["start"], float)
+    points = [at]
+    for element in stroke["path"]["elements"]:
+        if "line" in element:
+            new = [np.array(element["line"], float)]
+        elif "cubic" in element:
+            c1, c2, to = (np.array(p, float) for p in element["cubic"])
+            long = sum(np.linalg.norm(b - a) for a, b in ((at, c1), (c1, c2), (c2, to)))
+            t = np.linspace(0, 1, max(2, min(200, int(long / within))) + 1)[1:, None]
+            new = list((1 - t) ** 3 * at + 3 * (1 - t) ** 2 * t * c1 + 3 * (1 - t) * t**2 * c2 + t**3 * to)
+        else:
+            centre, sweep = np.array(element["arc"]["centre"], float), element["arc"]["sweep_rad"]
+            arm = at - centre
+            count = max(2, min(400, int(np.linalg.norm(arm) * abs(sweep) / within)))
+            turns = sweep * np.arange(1, count + 1) / count
+            new = [centre + [np.cos(a) * arm[0] - np.sin(a) * arm[1], np.sin(a) * arm[0] + np.cos(a) * arm[1]] for a in turns]
+        points += new
+        at = new[-1]
+    return np.array(points)
 
 
 def pictures(chromium, sheets):
@@ -82,7 +106,7 @@ def judge(drawing, picture, scale):
     explained = np.zeros(edge.shape, bool)
     by_pen = {}
     for stroke in drawing["strokes"]:
-        points = np.array(stroke["points"], float) * scale + MARGIN
+        points = corners(stroke, 2 / scale) * scale + MARGIN
         pen = 0.5 * (stroke.get("pen_px") or 0.0) * scale
         steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
         for a, b, long in zip(points, points[1:], steps):
@@ -100,8 +124,14 @@ def judge(drawing, picture, scale):
         drawn = np.zeros(edge.shape, bool)
         for row, column in places:
             drawn[row, column] = True
-        explained |= distance_transform_edt(~drawn) <= pen + NEAR
-    return wrong / max(length, 1e-9), (edge & ~explained).sum() / edge.sum()
+        # the corner of a square end lies 1.41 half pens from the line's end
+        explained |= distance_transform_edt(~drawn) <= 1.42 * pen + NEAR
+    # where the page cuts something, no line has to be
+    height, width = (int(round(scale * drawing[key])) for key in ("height_px", "width_px"))
+    inner = np.zeros(edge.shape, bool)
+    inner[MARGIN + RIM : MARGIN + height - RIM, MARGIN + RIM : MARGIN + width - RIM] = True
+    asked = edge & inner
+    return wrong / max(length, 1e-9), (asked & ~explained).sum() / max(asked.sum(), 1)
 
 
 def overlay(folder, name, drawing, picture, scale):
@@ -109,7 +139,7 @@ def overlay(folder, name, drawing, picture, scale):
     image = Image.fromarray((255 - (255 - picture) // 3).astype(np.uint8)).resize([2 * n for n in picture.shape[1::-1]])
     draw = ImageDraw.Draw(image)
     for stroke in drawing["strokes"]:
-        draw.line([tuple(2 * (np.array(p) * scale + MARGIN)) for p in stroke["points"]], fill=(220, 0, 0))
+        draw.line([tuple(2 * (np.array(p) * scale + MARGIN)) for p in corners(stroke, 2 / scale)], fill=(220, 0, 0))
     image.save(folder / f"{name}.png")
 
 

@@ -16,13 +16,20 @@ const METRES_PER_PX: f64 = 0.0254 / 96.0;
 /// Nodes of the XML tree at most, for the memory they take.
 const MAX_NODES: u32 = 2_000_000;
 
-/// Reads the visible paths of an SVG, in document order, a stroke for each subpath.
+/// Reads an SVG as it is seen, in document order, a stroke for each connected line that is left.
 ///
 /// Shapes, `use`, CSS, transforms, `viewBox` and units are resolved. Lines stay lines and cubics cubics; quadratic
 /// curves become cubics; arcs that are circular on the sheet are arcs again, elliptical ones cubics within 3e-4 of
-/// their radius. A path with a stroke is a centreline of that width, one with a fill only is an outline. A filled
-/// rectangle that covers the whole sheet is background and left out. Clipping, masks, dashes and filters are not
-/// applied; text and pictures are not read, which a remark says.
+/// their radius. A path with a stroke is a centreline of that width, one with a fill only is an outline. Dashes are
+/// strokes of their own, and a dot is a line of the pen's width.
+///
+/// Not drawn are: a white rectangle behind everything (the paper), and what nobody sees. That is what opaque paint
+/// covers, what has on both sides the same colour (to 6 %), fills without area, opacity 0, what lies off the page,
+/// outside clip paths and nested viewports or in the dark of masks of plain shapes, and lines on earlier lines. Paths are
+/// cut at parameters of their own elements. The band of a pen hides what is below it, but no line of its colour that is
+/// more than a quarter as wide. A centreline is drawn where it is itself uncovered. What a clip path cuts off a fill ends in a stroke
+/// along the clip path. A remark says for each reason how many lines are left out and how long they are. Filters,
+/// blends, masks of other things and the lines of patterns are not applied; text and pictures are not read: remarks too.
 ///
 /// A stroke's colour is that of its line, else of its fill. Its layer is the nearest layer of the drawing program
 /// (`inkscape:groupmode="layer"`, by its label) or, outside of all of them, the nearest group with an id.
