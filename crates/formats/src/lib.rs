@@ -23,6 +23,7 @@
 
 mod circular;
 pub mod csv;
+mod doubles;
 pub mod dxf;
 mod error;
 mod extent;
@@ -34,6 +35,7 @@ mod layers;
 mod limit;
 mod number;
 mod options;
+mod parts;
 mod pen;
 pub mod svg;
 

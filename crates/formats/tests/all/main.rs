@@ -8,4 +8,5 @@ mod machines;
 mod mutations;
 #[path = "support/plate.rs"]
 mod plate;
+mod seen;
 mod small_and_slow;
