@@ -32,6 +32,7 @@ pub mod ild;
 pub mod json;
 mod layers;
 mod limit;
+mod meant;
 mod number;
 mod options;
 mod pen;
@@ -62,6 +63,23 @@ pub struct Reading {
     pub sheet: Sheet,
     /// What of the file is not in the drawing, and what to do about it: one sentence each.
     pub remarks: Vec<String>,
+    /// Why its size cannot be meant, and what to do about it: one sentence, where nobody has said how large it is to be.
+    pub doubt: Option<String>,
+}
+
+impl Reading {
+    /// A sheet that is all its file holds.
+    pub fn whole(sheet: Sheet) -> Self {
+        let doubt = sheet.doubt();
+        Self { sheet, remarks: Vec::new(), doubt }
+    }
+}
+
+impl Sheet {
+    /// Why its true size, where its file says one, cannot be meant.
+    pub(crate) fn doubt(&self) -> Option<String> {
+        self.metres_per_unit.and_then(|m| meant::doubt([self.width * m, self.height * m]))
+    }
 }
 
 /// A colour as people write it: `#rrggbb`, `#rgb`, `rgb(…)`, or one of CSS's names; `None` for anything else.

@@ -65,8 +65,8 @@ pub fn decode_with(path: &str, bytes: &[u8], options: &ReadOptions) -> Result<So
 }
 
 /// A sheet that is all its file holds.
-const fn whole(sheet: Sheet) -> Source {
-    Source::Strokes(Reading { sheet, remarks: Vec::new() })
+fn whole(sheet: Sheet) -> Source {
+    Source::Strokes(Reading::whole(sheet))
 }
 
 /// A sheet of true size whose centre is the target's origin, just large enough for a drawing in target metres.

@@ -51,7 +51,8 @@ fn nodes(drawn: &[Drawn], near: f64) -> Vec<Vec<End>> {
         return nodes;
     }
     let mut grid: HashMap<(usize, u32, i64, i64), Vec<usize>> = HashMap::new();
-    let open = (0..2 * drawn.len()).filter(|end| !drawn[end / 2].path.is_closed());
+    let is_open = |end: &End| !(drawn[end / 2].path.is_closed() || drawn[end / 2].is_dot);
+    let open = (0..2 * drawn.len()).filter(is_open);
     for end in open {
         let (own, point) = (&drawn[end / 2], point_of(end, drawn));
         let (column, row) = ((point.x / near).floor() as i64, (point.y / near).floor() as i64);
@@ -167,10 +168,10 @@ fn beginning(start: End, partners: &[Option<End>]) -> (End, bool) {
 /// One path of many, entered by the given ends in turn.
 fn one(chain: &[End], is_ring: bool, drawn: &[Drawn]) -> Drawn {
     let own = &drawn[chain[0] / 2];
-    let (layer, colour) = (own.layer, own.colour);
+    let (layer, colour, is_dot) = (own.layer, own.colour, own.is_dot);
     let ways: Vec<Path> = chain.iter().map(|&end| entered(&drawn[end / 2].path, end)).collect();
     if let ([path], false) = (ways.as_slice(), is_ring) {
-        return Drawn { path: path.clone(), layer, colour };
+        return Drawn { path: path.clone(), layer, colour, is_dot };
     }
     let start = ways[0].start();
     let mut path = Path::new(start);
@@ -183,7 +184,7 @@ fn one(chain: &[End], is_ring: bool, drawn: &[Drawn]) -> Drawn {
     if is_ring {
         path.close();
     }
-    Drawn { path, layer, colour }
+    Drawn { path, layer, colour, is_dot }
 }
 
 fn entered(path: &Path, end: End) -> Path {

@@ -9,8 +9,10 @@ use crate::options::ReadOptions;
 use crate::pen::Pen;
 use crate::{FormatError, Reading, Sheet, check_size, is_sound, text};
 
+const METRES_PER_INCH: f64 = 0.0254;
+
 /// CSS: an inch is 96 px.
-const METRES_PER_PX: f64 = 0.0254 / 96.0;
+const METRES_PER_PX: f64 = METRES_PER_INCH / 96.0;
 
 /// Elements of all strokes at most, for the memory they take.
 const MAX_ELEMENTS: usize = 2_000_000;
@@ -32,7 +34,8 @@ const MAX_NODES: u32 = 2_000_000;
 /// A stroke's colour is that of its line, else of its fill. Its layer is the nearest layer of the drawing program
 /// (`inkscape:groupmode="layer"`, by its label) or, outside of all of them, the nearest group with an id.
 ///
-/// The unit is the CSS px; a sheet with a physical size (mm, cm, in, pt, pc, Q) says how large that is.
+/// The unit is the CSS px; a sheet with a physical size (mm, cm, in, pt, pc, Q) says how large that is, else the pixels
+/// to an inch that are asked for.
 ///
 /// # Errors
 /// Anything that is not an SVG, one that draws nothing, and one that is made to fill the memory.
@@ -44,13 +47,13 @@ pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
 ///
 /// # Errors
 /// As there.
-pub fn read_with(bytes: &[u8], _options: &ReadOptions) -> Result<Reading, FormatError> {
+pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatError> {
     check_size(bytes)?;
     let text = text(bytes)?;
     guard::check_text(text)?;
-    let options =
+    let parsing =
         usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };
-    let xml = Document::parse_with_options(text, options).map_err(syntax)?;
+    let xml = Document::parse_with_options(text, parsing).map_err(syntax)?;
     guard::check_tree(&xml)?;
     let tree = usvg::Tree::from_xmltree(&xml, &resolve_nothing()).map_err(unreadable)?;
     let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
@@ -63,9 +66,10 @@ pub fn read_with(bytes: &[u8], _options: &ReadOptions) -> Result<Reading, Format
     if collector.strokes.is_empty() {
         return Err(FormatError::Nothing { hint: hint(&xml) });
     }
-    let metres_per_unit = is_physical(xml.root_element()).then_some(METRES_PER_PX);
+    let by_dpi = options.dpi.map(|dpi| METRES_PER_INCH / dpi);
+    let metres_per_unit = if is_physical(xml.root_element()) { Some(METRES_PER_PX) } else { by_dpi };
     let sheet = Sheet { width, height, metres_per_unit, drawing: Drawing { strokes: collector.strokes } };
-    Ok(Reading { sheet, remarks: remarks(&xml) })
+    Ok(Reading { remarks: remarks(&xml), ..Reading::whole(sheet) })
 }
 
 /// Options that never open a file: links to pictures lead nowhere.
