@@ -3,7 +3,7 @@
 //! | module | reads | writes | frame |
 //! |---|---|---|---|
 //! | [`svg`] | any SVG's paths | a placed drawing in true millimetres | sheet; target |
-//! | [`dxf`] | the model of an ASCII DXF | the same, release 2004 | sheet; target |
+//! | [`dxf`] | the model of a DXF | the same, release 2004 | sheet; target |
 //! | [`json`] | `strokes --json` | the same | pixels |
 //! | [`csv`] | `stroke,x_m,y_m` | the same | target |
 //! | [`gcode`] | – | GRBL in laser mode, millimetres | target |
@@ -37,11 +37,13 @@ mod number;
 mod options;
 mod pen;
 pub mod svg;
+mod unpacked;
 
 pub use error::FormatError;
 pub use limit::{MAX_BYTES, MAX_COORDINATE};
 pub use options::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
 use tracelight_stroke::{Colour, Drawing, Point};
+pub use unpacked::{head, unpacked};
 
 /// A drawing on its sheet, as a file has it: x right, y down, the sheet spans `[0, width] × [0, height]`.
 #[derive(Clone, Debug, PartialEq)]

@@ -48,8 +48,8 @@ const fn kind_of(code: i32) -> Option<Kind> {
 impl<'a> Typed<'a> {
     /// The groups behind the sentinel.
     pub(super) fn new(rest: &'a [u8]) -> Self {
-        // the first group is `0 SECTION`: with two bytes for the code, the second of them is zero too
-        let is_wide = rest.get(1) == Some(&0);
+        // the first group is `0 SECTION`, or a comment of code 999 = 0x3e7: with two bytes for the code, these two
+        let is_wide = matches!(rest, [_, 0, ..] | [0xe7, 3, ..]);
         Self { rest, length: SENTINEL.len() + rest.len(), is_wide }
     }
 

@@ -67,6 +67,7 @@ impl Entities {
             b"ARC" | b"CIRCLE" => vec![circle(record)?],
             b"ELLIPSE" => vec![ellipse(record)?],
             b"SPLINE" => one(spline::path(record)?),
+            b"HELIX" => one(helix(record)?),
             b"SOLID" | b"TRACE" => one(mesh::solid(record)?),
             b"3DFACE" => mesh::face(record)?,
             b"MESH" => mesh::mesh(record)?,
@@ -127,6 +128,13 @@ impl Entities {
 
 fn one(path: Option<Path>) -> Vec<Path> {
     path.into_iter().collect()
+}
+
+/// A helix by the spline that stands before its axis.
+fn helix(record: &Record) -> Result<Option<Path>, FormatError> {
+    let spline =
+        record.groups.split(|g| g.code == 100 && g.bytes() == b"AcDbHelix").next().unwrap_or_default();
+    spline::path(&Record { kind: record.kind, groups: spline.to_vec(), at: record.at })
 }
 
 /// An arc or a circle: a part of the unit circle, made larger and moved.

@@ -5,6 +5,7 @@
 //! by a grid, so this is linear; every choice is by place and file order, so equal files give equal strokes.
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 use tracelight_maths::atan2;
 use tracelight_stroke::{Element, Path, Piece, Point, Vec2};
@@ -26,6 +27,9 @@ const STRAIGHT_RAD: f64 = 0.1745;
 
 /// Two ends that meet and go back the way they came, to a ten-thousandth, are two lines on top of each other.
 const BACK_RAD: f64 = 1e-4;
+
+/// An arc of more than this keeps its circle where it is joined, rad: 270°.
+const NEARLY_WHOLE_RAD: f64 = 0.75 * TAU;
 
 /// An end of a path: twice its number, plus one for its last point.
 type End = usize;
@@ -196,6 +200,11 @@ fn ending_at(piece: &Piece, from: Point, to: Point) -> Element {
     match piece.element {
         Element::Line { .. } => Element::Line { to },
         Element::Cubic { c1, c2, .. } => Element::Cubic { c1, c2, to },
+        // the ends of a nearly whole circle say little of where it lies: it is moved, and closed if it returns
+        Element::Arc { centre, sweep } if sweep.abs() > NEARLY_WHOLE_RAD => {
+            let sweep = if from == to { TAU.copysign(sweep) } else { sweep };
+            Element::Arc { centre: centre + (from - piece.from), sweep }
+        }
         Element::Arc { sweep, .. } if from != piece.from || to != piece.end() => arc_between(from, to, sweep),
         arc => arc,
     }

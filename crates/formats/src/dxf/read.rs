@@ -54,7 +54,7 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     let Some(size) = sheet(&drawing, unit)? else {
         return Err(match records.cut() {
             Some(_) => records.cut_off(),
-            None => FormatError::Nothing { hint: skipped.hint() },
+            None => skipped.nothing(),
         });
     };
     let layout = is_layout.then(|| "its model is empty: the layout (paper space) is drawn".to_owned());

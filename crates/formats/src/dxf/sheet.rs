@@ -87,13 +87,16 @@ impl Unit {
     }
 }
 
-/// The sheet round a drawing: y down, the corner at the origin. `None` for a drawing of nothing.
+/// The sheet round a drawing: y down, the corner at the origin. `None` for a drawing of nothing, or of a single point.
 ///
 /// # Errors
 /// A drawing too large for numbers.
 pub(super) fn sheet(drawing: &Drawing, unit: Unit) -> Result<Option<Sized>, FormatError> {
     let Some(bounds) = extent(drawing) else { return Ok(None) };
     let size = bounds.width().max(bounds.height());
+    if size == 0.0 {
+        return Ok(None); // a single point
+    }
     let unit_m = unit.metres();
     // millimetres
     let scale = 1e3 * unit_m;

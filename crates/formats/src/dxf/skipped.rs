@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::FormatError;
+
 /// What is in a space or a block and not drawn.
 #[derive(Default)]
 pub(super) struct Skipped {
@@ -117,7 +119,16 @@ impl Skipped {
     }
 
     /// Why there is nothing to draw, by what the model holds.
-    pub(super) fn hint(&self) -> &'static str {
+    pub(super) fn nothing(&self) -> FormatError {
+        let hint = self.hint();
+        let named = self.kinds.iter().map(|(kind, n)| format!("{n} {kind}"));
+        match named.reduce(|all, one| format!("{all}, {one}")) {
+            Some(found) => FormatError::Undrawn { hint, found },
+            None => FormatError::Nothing { hint },
+        }
+    }
+
+    fn hint(&self) -> &'static str {
         let has = |why: Why| self.kinds.keys().any(|kind| Why::of(kind) == why);
         let entities: usize = self.kinds.values().sum();
         if self.hidden > 0 && self.hidden >= entities {

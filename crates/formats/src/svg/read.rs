@@ -7,7 +7,8 @@ use super::names::{Names, Place};
 use crate::extent::controls;
 use crate::options::ReadOptions;
 use crate::pen::Pen;
-use crate::{FormatError, Reading, Sheet, check_size, is_sound, text};
+use crate::unpacked::{unpacked, xml_text};
+use crate::{FormatError, Reading, Sheet, check_size, is_sound};
 
 const METRES_PER_INCH: f64 = 0.0254;
 
@@ -35,7 +36,7 @@ const MAX_NODES: u32 = 2_000_000;
 /// (`inkscape:groupmode="layer"`, by its label) or, outside of all of them, the nearest group with an id.
 ///
 /// The unit is the CSS px; a sheet with a physical size (mm, cm, in, pt, pc, Q) says how large that is, else the pixels
-/// to an inch that are asked for.
+/// to an inch that are asked for. Files may be packed with gzip (`.svgz`), and in any encoding that XML declares.
 ///
 /// # Errors
 /// Anything that is not an SVG, one that draws nothing, and one that is made to fill the memory.
@@ -48,8 +49,9 @@ pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
 /// # Errors
 /// As there.
 pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatError> {
+    let bytes = &*unpacked(bytes)?;
     check_size(bytes)?;
-    let text = text(bytes)?;
+    let text = &*xml_text(bytes)?;
     guard::check_text(text)?;
     let parsing =
         usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };

@@ -188,7 +188,8 @@ fn hints_are_about_what_the_model_holds() {
     check(&format!("{viewport}, 0 MTEXT, 1 x"), "explode the text");
     check("0 XLINE, 10 0, 20 0, 11 1, 21 0", "without an end");
     check("0 IMAGE, 10 0, 20 0", "pictures");
-    check("0 TOLERANCE, 10 0, 20 0", "not drawn here");
+    check("0 TOLERANCE, 10 0, 20 0, 0 CAMERA, 10 0", "lines and arcs (1 CAMERA, 1 TOLERANCE found)");
+    check("0 POINT, 10 5, 20 5", "no line");
     check("0 DIMENSION, 2 *D9", "blocks that it does not hold");
     check("0 LINE, 10 1, 20 1, 30 0, 11 1, 21 1, 31 9", "no length seen from above");
 }
@@ -196,18 +197,35 @@ fn hints_are_about_what_the_model_holds() {
 #[test]
 fn all_that_is_not_drawn_is_told_by_name() {
     let remarks = reading(&file(
-        "0 LINE, 11 9, 21 9, 0 RAY, 0 XLINE, 0 IMAGE, 0 WIPEOUT, 0 HELIX, 0 TOLERANCE, 0 SHAPE, 0 OLE2FRAME, 0 REGION,
+        "0 LINE, 11 9, 21 9, 0 RAY, 0 XLINE, 0 IMAGE, 0 WIPEOUT, 0 CAMERA, 0 TOLERANCE, 0 SHAPE, 0 OLE2FRAME, 0 REGION,
          0 ACAD_PROXY_ENTITY, 0 LIGHT, 0 LINE, 30 0, 31 9",
     ))
     .remarks
     .join("\n");
-    for kind in ["RAY", "XLINE", "IMAGE", "WIPEOUT", "HELIX", "TOLERANCE", "SHAPE", "OLE2FRAME", "REGION"] {
+    for kind in ["RAY", "XLINE", "IMAGE", "WIPEOUT", "CAMERA", "TOLERANCE", "SHAPE", "OLE2FRAME", "REGION"] {
         assert!(remarks.contains(&format!("1 {kind}")), "{kind}: {remarks}");
     }
     assert!(
-        remarks.contains("1 ACAD_PROXY_ENTITY, 1 HELIX") && remarks.contains("seen from above"),
+        remarks.contains("1 ACAD_PROXY_ENTITY, 1 CAMERA") && remarks.contains("seen from above"),
         "{remarks}"
     );
+}
+
+#[test]
+fn an_arc_of_nearly_a_whole_turn_is_a_circle() {
+    check(
+        "0 ARC, 10 5, 20 5, 40 2.5, 50 270, 51 269.99999427, 0 LINE, 10 0, 20 0, 11 10, 21 0",
+        &[5.0 * PI, 10.0],
+    );
+    // a line that ends near its end moves it, and leaves its radius
+    let kept = "0 ARC, 10 0, 20 0, 40 10, 50 0, 51 359.99, 0 LINE, 10 10.00015, 20 -0.0018, 11 30, 21 0";
+    assert!((lengths(kept).iter().sum::<f64>() - 20.0 * PI - 20.0).abs() < 0.01, "{:?}", lengths(kept));
+}
+
+#[test]
+fn a_helix_is_drawn_by_its_spline() {
+    let spline = "100 AcDbSpline, 71 3, 10 0, 20 0, 10 10, 20 0, 10 20, 20 0, 10 30, 20 0";
+    check(&format!("0 HELIX, {spline}, 100 AcDbHelix, 10 99, 20 99, 11 5, 21 5, 40 7"), &[30.0]);
 }
 
 #[test]
