@@ -18,6 +18,9 @@ const MAX_DEPTH: usize = 32;
 /// Items looked at, at most: blocks may repeat nothing a billion times.
 const MAX_VISITS: usize = 4_000_000;
 
+/// Elements from which on lines are drawn whole: dashes may not be why a drawing is refused.
+const MOST_DASHED: usize = super::MAX_ELEMENTS / 2;
+
 /// Points beyond this, after all scales of all inserts, are a broken file's.
 const MAX_PLACE: f64 = 1e15;
 
@@ -117,6 +120,10 @@ impl Unfolding<'_> {
         let definitions = self.definitions;
         let lengths = definitions.lines.lengths(shown.line);
         let scale = definitions.dash_scale.filter(|_| !lengths.is_empty());
+        if scale.is_some() && self.elements > MOST_DASHED {
+            self.skipped.too_fine += 1;
+            return self.push(path, shown);
+        }
         match scale.map(|scale| dashed(&path, lengths, scale * shape.look.line_scale.abs())) {
             None | Some(Dashed::Whole) => self.push(path, shown),
             Some(Dashed::TooFine) => {

@@ -39,8 +39,7 @@ pub(super) fn dashed(path: &Path, lengths: &[f64], scale: f64) -> Dashed {
     if times * lit as f64 > MOST_DASHES {
         return Dashed::TooFine;
     }
-    let spans = spans(lengths, scale, [length, period]);
-    Dashed::Parts(spans.into_iter().filter_map(|span| part(&pieces, span, tolerance)).collect())
+    Dashed::Parts(parts(&pieces, &spans(lengths, scale, [length, period]), tolerance))
 }
 
 /// Where the dashes begin and end along a path of a length.
@@ -70,22 +69,33 @@ fn spans(lengths: &[f64], scale: f64, [length, period]: [f64; 2]) -> Vec<[f64; 2
     spans
 }
 
-/// The part of a path between two lengths from its start.
-fn part(pieces: &[(Piece, f64)], [from, to]: [f64; 2], tolerance: f64) -> Option<Path> {
-    let mut path: Option<Path> = None;
+/// The parts of a path between lengths from its start, which rise.
+fn parts(pieces: &[(Piece, f64)], spans: &[[f64; 2]], tolerance: f64) -> Vec<Path> {
+    let mut rest = pieces;
     let mut before = 0.0;
-    for &(piece, length) in pieces {
-        let [start, end] = [from, to].map(|s| (s - before).clamp(0.0, length));
-        if start < end {
-            let own = if start == 0.0 && end == length { piece } else { piece.part(start, end, tolerance) };
-            path.get_or_insert_with(|| Path::new(own.from)).push(own.element);
+    let mut parts = Vec::new();
+    for &[from, to] in spans {
+        while let Some((&(_, length), after)) = rest.split_first().filter(|(own, _)| before + own.1 <= from) {
+            before += length;
+            rest = after;
         }
-        before += length;
-        if before >= to {
-            break;
+        let mut path: Option<Path> = None;
+        let mut passed = before;
+        for &(piece, length) in rest {
+            let [start, end] = [from, to].map(|s| (s - passed).clamp(0.0, length));
+            if start < end {
+                let is_whole = start == 0.0 && end == length;
+                let own = if is_whole { piece } else { piece.part(start, end, tolerance) };
+                path.get_or_insert_with(|| Path::new(own.from)).push(own.element);
+            }
+            passed += length;
+            if passed >= to {
+                break;
+            }
         }
+        parts.extend(path);
     }
-    path
+    parts
 }
 
 #[cfg(test)]
@@ -93,7 +103,7 @@ mod tests {
     use super::*;
     use tracelight_stroke::{Element, Point};
 
-    fn parts(path: &Path, lengths: &[f64], scale: f64) -> Vec<Path> {
+    fn drawn(path: &Path, lengths: &[f64], scale: f64) -> Vec<Path> {
         match dashed(path, lengths, scale) {
             Dashed::Parts(parts) => parts,
             Dashed::Whole => vec![path.clone()],
@@ -108,9 +118,9 @@ mod tests {
     #[test]
     fn a_line_begins_and_ends_with_half_a_dash_or_more() {
         let found: Vec<[f64; 2]> =
-            parts(&line(34.0), &[10.0, -5.0], 1.0).iter().map(|p| [p.start().x, p.end().x]).collect();
+            drawn(&line(34.0), &[10.0, -5.0], 1.0).iter().map(|p| [p.start().x, p.end().x]).collect();
         assert_eq!(found, [[0.0, 7.0], [12.0, 22.0], [27.0, 34.0]]);
-        let dotted = parts(&line(24.0), &[10.0, -5.0, 0.0, -5.0], 0.5);
+        let dotted = drawn(&line(24.0), &[10.0, -5.0, 0.0, -5.0], 0.5);
         let lengths: Vec<f64> = dotted.iter().map(|p| p.length(1e-9)).collect();
         assert_eq!(lengths.len(), 5, "{lengths:?}");
         assert!((lengths[1] - 0.2).abs() < 1e-9 && (lengths[2] - 5.0).abs() < 1e-9, "{lengths:?}");
@@ -120,7 +130,7 @@ mod tests {
     fn arcs_stay_arcs_and_corners_are_passed() {
         let mut path = line(12.0);
         path.push(Element::Arc { centre: Point::new(12.0, 10.0), sweep: 3.0 });
-        let parts = parts(&path, &[8.0, -4.0], 1.0);
+        let parts = drawn(&path, &[8.0, -4.0], 1.0);
         let lit: f64 = parts.iter().map(|p| p.length(1e-9)).sum();
         // three times 12 in 42: 3 × 8, and the 6 that are left over
         assert!((lit - 30.0).abs() < 1e-9, "{lit}");

@@ -14,7 +14,6 @@ use super::scene::{Dot, Insert, Item, Layers, Look, Shape};
 use super::skipped::Skipped;
 use super::spline;
 use crate::FormatError;
-use crate::options::Hatch;
 
 /// Takes the entities of a block or of a space, one record after another.
 #[derive(Default)]
@@ -31,7 +30,8 @@ pub(super) struct Around<'a> {
     pub(super) layers: &'a mut Layers,
     pub(super) lines: &'a mut Lines,
     pub(super) skipped: &'a mut Skipped,
-    pub(super) hatch: Hatch,
+    /// Crossings that are left for the patterns of hatches, if these are asked for.
+    pub(super) patterns: &'a mut Option<usize>,
 }
 
 impl Entities {
@@ -74,7 +74,7 @@ impl Entities {
             b"LEADER" => one(leader::leader(record)?),
             b"MULTILEADER" | b"MLEADER" => leader::multileader(record, around.skipped)?,
             b"MLINE" => leader::multiline(record)?,
-            b"HATCH" | b"MPOLYGON" => match hatch::paths(record, around.hatch, around.skipped)? {
+            b"HATCH" | b"MPOLYGON" => match hatch::paths(record, around.patterns, around.skipped)? {
                 Some(paths) => paths,
                 None => {
                     around.skipped.count(record.kind);

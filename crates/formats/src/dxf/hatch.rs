@@ -9,20 +9,20 @@ use super::polyline::{Vertex, through};
 use super::skipped::Skipped;
 use super::spline;
 use crate::FormatError;
-use crate::options::Hatch;
 use crate::pen::polyline;
 
 /// Flags of an edge: a polyline, and the box round a text that is left out.
 const POLYLINE: i64 = 2;
 const TEXT_BOX: i64 = 8;
 
-/// The edges, and the pattern if that is asked for; `None` for a hatch without edges.
+/// The edges, and the pattern if that is asked for by the crossings that are left for it; `None` for a hatch without
+/// edges.
 ///
 /// # Errors
 /// A value that is no number, a spline that makes no sense.
 pub(super) fn paths(
     record: &Record,
-    hatch: Hatch,
+    patterns: &mut Option<usize>,
     skipped: &mut Skipped,
 ) -> Result<Option<Vec<Path>>, FormatError> {
     let loops = loops(record)?;
@@ -32,8 +32,8 @@ pub(super) fn paths(
     let place = world_from_plane(record, record.number_or(30, 0.0)?)?;
     let is_solid = record.whole_or(70, 0)? == 1;
     let mut lines = Vec::new();
-    if hatch == Hatch::Pattern && !is_solid {
-        match pattern::lines(&loops, &families(record)?) {
+    if let (Some(left), false) = (patterns, is_solid) {
+        match pattern::lines(&loops, &families(record)?, left) {
             Some(found) => lines = found,
             None => skipped.too_dense += 1,
         }

@@ -16,6 +16,9 @@ use crate::circular::arc_between;
 /// Ends this near are together, as a share of the drawing's size: 3 µm on 300 mm.
 const NEAR: f64 = 1e-5;
 
+/// Side of a cell of the grid, in that distance: large, so that most ends lie away from its sides.
+const CELL: f64 = 8.0;
+
 /// And as a share of the shorter path, so that the small in a large drawing stays what it is.
 const NEAR_OF_LENGTH: f64 = 1e-2;
 
@@ -59,17 +62,18 @@ fn nodes(drawn: &[Drawn], near: f64) -> Vec<Vec<End>> {
     let open = (0..2 * drawn.len()).filter(is_open);
     for end in open {
         let (own, point) = (&drawn[end / 2], point_of(end, drawn));
-        let (column, row) = ((point.x / near).floor() as i64, (point.y / near).floor() as i64);
         let colour = u32::from_be_bytes([0, own.colour.r, own.colour.g, own.colour.b]);
-        let key = |dx: i64, dy: i64| (own.layer, colour, column.saturating_add(dx), row.saturating_add(dy));
-        let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
-        let known = around.filter_map(|(dx, dy)| grid.get(&key(dx, dy))).flatten().copied();
-        // a cell holds no two nodes nearer than `near`: there are few
+        let cell = |v: f64| (v / (CELL * near)).floor() as i64;
+        let around = |v: f64| cell(v - near)..=cell(v + near);
+        let cells = around(point.x).flat_map(|column| around(point.y).map(move |row| (column, row)));
+        let known = cells.filter_map(|(column, row)| grid.get(&(own.layer, colour, column, row)));
+        let known = known.flatten().copied();
+        // the nodes of a cell are `near` apart: there are few
         let known = known.filter(|&n| point_of(nodes[n][0], drawn).distance(point) <= near).min();
         match known {
             Some(node) => nodes[node].push(end),
             None => {
-                grid.entry(key(0, 0)).or_default().push(nodes.len());
+                grid.entry((own.layer, colour, cell(point.x), cell(point.y))).or_default().push(nodes.len());
                 nodes.push(vec![end]);
             }
         }

@@ -120,7 +120,8 @@ pub(super) fn multiline(record: &Record) -> Result<Vec<Path>, FormatError> {
             _ => {}
         }
     }
-    let lines = vertices.iter().map(|v| v.2.len()).max().unwrap_or(0);
+    const MOST_LINES: usize = 16; // AutoCAD's own bound
+    let lines = vertices.iter().map(|v| v.2.len()).max().unwrap_or(0).min(MOST_LINES);
     let at = |i: usize| {
         let own =
             vertices.iter().filter_map(move |(point, mitre, along)| Some(*point + *mitre * *along.get(i)?));

@@ -41,10 +41,13 @@ pub(super) fn face(record: &Record) -> Result<Vec<Path>, FormatError> {
 pub(super) fn grid(points: &[Point], [rows, columns]: [usize; 2], is_closed: [bool; 2]) -> Vec<Path> {
     // a mesh that is not complete is drawn as far as it goes
     let rows = rows.min(points.len().checked_div(columns).unwrap_or(0));
+    if rows == 0 {
+        return Vec::new();
+    }
     let row = |i: usize| points[i * columns..(i + 1) * columns].to_vec();
     let column = |j: usize| (0..rows).map(|i| points[i * columns + j]).collect::<Vec<_>>();
     let along_rows = (0..rows).filter_map(|i| polyline(&row(i), is_closed[1]));
-    let along_columns = (0..columns).filter(|_| rows > 0).filter_map(|j| polyline(&column(j), is_closed[0]));
+    let along_columns = (0..columns).filter_map(|j| polyline(&column(j), is_closed[0]));
     along_rows.chain(along_columns).collect()
 }
 

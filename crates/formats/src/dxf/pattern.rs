@@ -6,8 +6,17 @@ use tracelight_stroke::{Path, Point, Vec2};
 /// Dashes of one hatch at most; a pattern of more is not drawn.
 const MOST_DASHES: usize = 20_000;
 
-/// Crossings of lines and edges at most.
-const MOST_CROSSINGS: usize = 400_000;
+/// Crossings of lines and edges in one file at most: what comes after has no pattern.
+pub(super) const MOST_CROSSINGS: usize = 2_000_000;
+
+/// And in one hatch.
+const MOST_IN_ONE: usize = 400_000;
+
+/// Lengths of dashes in one family at most. AutoCAD takes six.
+const MOST_LENGTHS: usize = 64;
+
+/// Families of one pattern at most. Those that come with AutoCAD have up to fifteen.
+const MOST_FAMILIES: usize = 64;
 
 /// Length of a dot, as a share of the whole row of dashes.
 const DOT: f64 = 0.02;
@@ -33,8 +42,13 @@ impl Family {
     }
 }
 
-/// The parts of a pattern's lines within an area: inside an odd number of its edges. `None` for more than are drawn.
-pub(super) fn lines(edges: &[Path], families: &[Family]) -> Option<Vec<Path>> {
+/// The parts of a pattern's lines within an area: inside an odd number of its edges. `None` for more than are drawn, or
+/// more crossings than are left.
+pub(super) fn lines(edges: &[Path], families: &[Family], left: &mut usize) -> Option<Vec<Path>> {
+    let is_endless = families.len() > MOST_FAMILIES || families.iter().any(|f| f.dashes.len() > MOST_LENGTHS);
+    if is_endless || *left == 0 {
+        return None;
+    }
     let all: Vec<Point> = edges.iter().flat_map(|e| e.pieces().map(|p| p.from)).collect();
     let size = all.iter().map(|p| p.distance(all[0])).fold(0.0, f64::max);
     let tolerance = TOLERANCE * size;
@@ -44,12 +58,12 @@ pub(super) fn lines(edges: &[Path], families: &[Family]) -> Option<Vec<Path>> {
     let rings: Vec<Vec<Point>> = edges.iter().map(|e| e.flatten(tolerance)).collect();
     let mut paths = Vec::new();
     for family in families {
-        drawn(family, &rings, &mut paths)?;
+        drawn(family, &rings, left, &mut paths)?;
     }
     Some(paths)
 }
 
-fn drawn(family: &Family, rings: &[Vec<Point>], paths: &mut Vec<Path>) -> Option<()> {
+fn drawn(family: &Family, rings: &[Vec<Point>], left: &mut usize, paths: &mut Vec<Path>) -> Option<()> {
     let along = Vec2::new(cos(family.angle_rad), sin(family.angle_rad));
     let across = Vec2::new(-along.y, along.x);
     let spacing = family.offset.dot(across);
@@ -60,7 +74,12 @@ fn drawn(family: &Family, rings: &[Vec<Point>], paths: &mut Vec<Path>) -> Option
     for ring in rings {
         for (i, &from) in ring.iter().enumerate() {
             let to = ring[(i + 1) % ring.len()];
+            let before = crossings.len();
             crossed([from, to].map(|p| p - family.base), [along, across], spacing, &mut crossings)?;
+            *left = left.saturating_sub(crossings.len() - before);
+            if *left == 0 || crossings.len() > MOST_IN_ONE {
+                return None;
+            }
         }
     }
     crossings.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -93,7 +112,7 @@ fn crossed(
     // a line through a corner belongs to the edge above it alone
     let (first, last) = (low.ceil(), high.ceil() - 1.0);
     let count = last - first + 1.0;
-    if !(count <= MOST_CROSSINGS as f64 && first.abs() < 1e15) {
+    if !(count <= MOST_IN_ONE as f64 && first.abs() < 1e15) {
         return None;
     }
     for i in 0..count.max(0.0) as i64 {
@@ -101,7 +120,7 @@ fn crossed(
         let share = (number as f64 - u) / (v - u);
         crossings.push((number, edge[0].lerp(edge[1], share).dot(along)));
     }
-    (crossings.len() <= MOST_CROSSINGS).then_some(())
+    Some(())
 }
 
 /// The dashes between two places along a line.
@@ -146,9 +165,9 @@ mod tests {
     fn lines_end_at_the_edges_and_leave_holes_out() {
         let family =
             Family { offset: Vec2::new(0.0, 1.0), base: Point::new(0.0, 0.5), ..Family::at_angle(0.0) };
-        let full = lines(&[square(10.0, 0.0)], std::slice::from_ref(&family)).unwrap();
+        let full = lines(&[square(10.0, 0.0)], std::slice::from_ref(&family), &mut 1000).unwrap();
         assert_eq!((full.len(), length(&full)), (10, 100.0));
-        let holed = lines(&[square(10.0, 0.0), square(4.0, 3.0)], &[family]).unwrap();
+        let holed = lines(&[square(10.0, 0.0), square(4.0, 3.0)], &[family], &mut 1000).unwrap();
         assert_eq!((holed.len(), length(&holed)), (14, 84.0));
     }
 
@@ -160,7 +179,7 @@ mod tests {
             dashes: vec![1.0, -1.0],
             ..Family::at_angle(0.0)
         };
-        let found = lines(&[square(2.0, 0.0)], &[family]).unwrap();
+        let found = lines(&[square(2.0, 0.0)], &[family], &mut 1000).unwrap();
         let spans: Vec<_> = found.iter().map(|p| (p.start().x, p.end().x, p.start().y)).collect();
         assert_eq!(spans, [(0.0, 1.0, 0.5), (0.5, 1.5, 1.5)]);
     }
@@ -168,6 +187,11 @@ mod tests {
     #[test]
     fn patterns_too_dense_are_none() {
         let family = Family { offset: Vec2::new(0.0, 1e-9), ..Family::at_angle(0.3) };
-        assert_eq!(lines(&[square(2.0, 0.0)], &[family]), None);
+        assert_eq!(lines(&[square(2.0, 0.0)], &[family], &mut 1000), None);
+        let family = Family { offset: Vec2::new(0.0, 0.1), ..Family::at_angle(0.0) };
+        let mut left = 100;
+        assert!(lines(&[square(2.0, 0.0)], std::slice::from_ref(&family), &mut left).is_some());
+        assert_eq!(left, 60);
+        assert_eq!(lines(&[square(20.0, 0.0)], &[family], &mut left), None);
     }
 }

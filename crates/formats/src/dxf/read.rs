@@ -7,6 +7,7 @@ use super::entities::{Around, Entities};
 use super::groups::Record;
 use super::header::Header;
 use super::join::joined;
+use super::pattern;
 use super::records::{Cut, Records};
 use super::scene::{Block, Layers, Scene};
 use super::sheet::{Unit, sheet};
@@ -131,7 +132,8 @@ struct Place {
     layout: Entities,
     /// Whether the entity before was the layout's, as its vertices are.
     is_in_layout: bool,
-    hatch: Hatch,
+    /// Crossings that are left for the patterns of hatches, if these are asked for.
+    patterns: Option<usize>,
     elements: usize,
 }
 
@@ -168,7 +170,8 @@ impl Place {
     fn new(hatch: Hatch) -> Self {
         let [entities, layout] = [Entities::default(), Entities::default()];
         let (section, block) = (Section::Other, None);
-        Self { section, block, entities, layout, is_in_layout: false, hatch, elements: 0 }
+        let patterns = (hatch == Hatch::Pattern).then_some(pattern::MOST_CROSSINGS);
+        Self { section, block, entities, layout, is_in_layout: false, patterns, elements: 0 }
     }
 
     fn take(&mut self, record: &Record, scene: &mut Scene) -> Result<(), FormatError> {
@@ -210,7 +213,7 @@ impl Place {
             _ => return Ok(()),
         };
         let before = entities.elements;
-        entities.take(record, &mut Around { layers, lines, skipped, hatch: self.hatch })?;
+        entities.take(record, &mut Around { layers, lines, skipped, patterns: &mut self.patterns })?;
         self.elements += entities.elements.saturating_sub(before);
         match self.elements > super::MAX_ELEMENTS {
             true => Err(FormatError::TooLarge {

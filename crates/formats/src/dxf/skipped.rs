@@ -94,16 +94,15 @@ impl Skipped {
     /// One sentence for each reason.
     pub(super) fn remarks(&self) -> Vec<String> {
         let said = |n: usize, what: &str| (n > 0).then(|| format!("not drawn: {what} ({n} found)"));
-        let whole = (self.too_fine > 0).then(|| {
-            format!("drawn without gaps: lines of more than 5000 dashes each ({} found)", self.too_fine)
-        });
+        let whole = (self.too_fine > 0)
+            .then(|| format!("drawn without gaps: lines of too many dashes ({} found)", self.too_fine));
         let rest = [
             said(self.hidden, "what is invisible, or on a layer that is off or frozen"),
             said(self.in_paper_space, "layouts (paper space); the model is"),
             said(self.missing_blocks, "blocks that the file does not hold; bind them to it"),
             said(self.without_length, "what has no length seen from above, such as upright lines"),
             said(self.unprinted, "points on the layer Defpoints, which is never printed"),
-            said(self.too_dense, "patterns of hatches with more than 20000 dashes each; their edges are"),
+            said(self.too_dense, "patterns of hatches that have too many lines; their edges are"),
             whole,
         ];
         Why::ALL.iter().filter_map(|&why| self.named(why)).chain(rest.into_iter().flatten()).collect()

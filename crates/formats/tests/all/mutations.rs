@@ -172,8 +172,9 @@ fn check_dxf(cases: u32) {
 }
 
 fn check_binary_dxf(cases: u32) {
-    let files =
-        [dxf::write(&plate(), 0.3, 0.2), OTHERS.to_owned(), REST.to_owned()].map(|text| binary(&text));
+    // without its rows and columns: a flipped bit in a count would make a large drawing of them, which is sound and slow
+    let others = OTHERS.replace("70\n3\n71\n2\n44", "44");
+    let files = [dxf::write(&plate(), 0.3, 0.2), others, REST.to_owned()].map(|text| binary(&text));
     files.iter().for_each(|f| check_sheet(&dxf::read(f).unwrap().sheet, f));
     let damaged = |number: u32, random: &mut Rand32| nibbled(&files[number as usize % files.len()], random);
     check_damaged(cases, damaged, |bytes| dxf::read(bytes).map(|r| r.sheet));
