@@ -8,10 +8,13 @@ use super::seen::{View, seen};
 use super::{guard, remarks};
 use crate::doubles::without_doubles;
 use crate::options::{Hidden, ReadOptions};
-use crate::{FormatError, Reading, Sheet, check_size, is_sound, text};
+use crate::unpacked::{unpacked, xml_text};
+use crate::{FormatError, Reading, Sheet, check_size, is_sound};
+
+const METRES_PER_INCH: f64 = 0.0254;
 
 /// CSS: an inch is 96 px.
-const METRES_PER_PX: f64 = 0.0254 / 96.0;
+const METRES_PER_PX: f64 = METRES_PER_INCH / 96.0;
 
 /// Nodes of the XML tree at most, for the memory they take.
 const MAX_NODES: u32 = 2_000_000;
@@ -34,7 +37,8 @@ const MAX_NODES: u32 = 2_000_000;
 /// A stroke's colour is that of its line, else of its fill. Its layer is the nearest layer of the drawing program
 /// (`inkscape:groupmode="layer"`, by its label) or, outside of all of them, the nearest group with an id.
 ///
-/// The unit is the CSS px; a sheet with a physical size (mm, cm, in, pt, pc, Q) says how large that is.
+/// The unit is the CSS px; a sheet with a physical size (mm, cm, in, pt, pc, Q) says how large that is, else the pixels
+/// to an inch that are asked for. Files may be packed with gzip (`.svgz`), and in any encoding that XML declares.
 ///
 /// # Errors
 /// Anything that is not an SVG, one that draws nothing, and one that is made to fill the memory.
@@ -47,8 +51,9 @@ pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
 /// # Errors
 /// As there.
 pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatError> {
+    let bytes = &*unpacked(bytes)?;
     check_size(bytes)?;
-    let text = text(bytes)?;
+    let text = &*xml_text(bytes)?;
     guard::check_text(text)?;
     let parsing =
         usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };
@@ -68,12 +73,14 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
         let hidden: Vec<_> = painter.unseen.iter().chain(&seen.unseen).copied().collect();
         return Err(FormatError::Nothing { hint: remarks::hint(&xml, &hidden) });
     }
-    let metres_per_unit = is_physical(xml.root_element()).then_some(METRES_PER_PX);
+    let by_dpi = options.dpi.map(|dpi| METRES_PER_INCH / dpi);
+    let metres_per_unit = if is_physical(xml.root_element()) { Some(METRES_PER_PX) } else { by_dpi };
     let mut said = remarks::things(&xml, painter.told);
     said.extend(remarks::lines(&seen, &painter.unseen, hypot(width, height), metres_per_unit));
     let (drawing, doubles) = without_doubles(Drawing { strokes: seen.strokes });
     said.extend(doubles.remark(metres_per_unit));
-    Ok(Reading { sheet: Sheet { width, height, metres_per_unit, drawing }, remarks: said })
+    let sheet = Sheet { width, height, metres_per_unit, drawing };
+    Ok(Reading { remarks: said, ..Reading::whole(sheet) })
 }
 
 /// Options that never open a file: links to pictures lead nowhere.

@@ -143,7 +143,7 @@ fn broken_files_are_refused_with_their_place() {
     check(b"", "line 1");
     check(b"not a drawing", "line 1, column 1");
     check(b"\x89PNG\r\n\x1a\n", "not UTF-8");
-    check(b"\x1f\x8b\x08\x00", "not UTF-8");
+    check(b"\x1f\x8b\x08\x00", "packed with gzip, and broken or cut off");
     check(svg("width='9' height='9'", "<g>\n<path></g>").as_bytes(), "line 2");
     check(b"<html><body/></html>", "line 1");
     check(svg("width='0' height='9'", "<path d='M0 0H9' stroke='red'/>").as_bytes(), "size");
