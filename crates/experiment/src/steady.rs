@@ -68,7 +68,7 @@ pub(crate) fn norm_words(norm: Norm) -> String {
 pub(crate) fn peak_words(Peak { rad_s, gain }: Peak) -> String {
     let place = match rad_s {
         0.0 => "at rest (0 rad/s)".to_owned(),
-        w if w.is_infinite() => "as the frequency rises without end".to_owned(),
+        w if w.is_infinite() => "at infinite frequency".to_owned(),
         w => format!("at {} rad/s ({} Hz)", four(w), four(w / std::f64::consts::TAU)),
     };
     if gain > 0.0 {

@@ -79,13 +79,7 @@ impl Entry {
         }
         for member in &self.members {
             // writing to a String cannot fail
-            let _ = writeln!(
-                text,
-                "    {:3} {:35} {}",
-                short(member.which),
-                meaning(member.which),
-                member.words()
-            );
+            let _ = writeln!(text, "    {:15} {}", told(member.which), member.words());
         }
         text
     }
@@ -165,12 +159,12 @@ pub(super) const fn short(member: LoopMember) -> &'static str {
     }
 }
 
-/// What the peak of a member is called, and what the member is of.
-const fn meaning(member: LoopMember) -> &'static str {
+/// What is told of a member, with the name of its peak.
+const fn told(member: LoopMember) -> &'static str {
     match member {
-        LoopMember::Sensitivity => "disturbance at output to output, Ms",
-        LoopMember::Complementary => "setpoint to output, Mt",
-        LoopMember::Load => "disturbance at input to output",
-        LoopMember::Control => "noise or setpoint to controller",
+        LoopMember::Sensitivity => "S, peak Ms",
+        LoopMember::Complementary => "T, peak Mt",
+        LoopMember::Load => "PS",
+        LoopMember::Control => "CS",
     }
 }

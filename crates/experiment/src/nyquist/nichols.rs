@@ -26,13 +26,17 @@ impl Finding {
         // whole half turns, −180° at least among them
         let low = (phases().fold(-200.0, f64::min) / 90.0).floor() * 90.0;
         let high = (phases().fold(-90.0, f64::max) / 90.0).ceil() * 90.0;
+        // of closed loops neither −1 nor what they would become once more closed is of interest
+        let is_closed = self.entries.iter().all(Entry::is_closed);
+        let what = if is_closed { "closed" } else { "open" };
+        let critical = Mark { colour: Colour::Black, sign: Sign::Cross, at: (-180.0, 0.0) };
         let mut panel = Panel {
-            x_title: "phase of the open loop, °".into(),
-            y_title: "amplification of the open loop, dB".into(),
+            x_title: format!("phase of the {what} loop, °"),
+            y_title: format!("amplification of the {what} loop, dB"),
             curves: self.entries.iter().map(curve).collect(),
             levels: vec![0.0],
-            guides: closed_lines((low, high)),
-            marks: vec![Mark { colour: Colour::Black, sign: Sign::Cross, at: (-180.0, 0.0) }],
+            guides: if is_closed { Vec::new() } else { closed_lines((low, high)) },
+            marks: if is_closed { Vec::new() } else { vec![critical] },
             view: Some([(low, high), self.decibels()]),
             y_step: Some(10.0),
             ..Panel::default()
@@ -40,7 +44,11 @@ impl Finding {
         for entry in &self.entries {
             explain(entry, &mut panel);
         }
-        self.draw("Nichols chart: faint, what the closed loop amplifies", vec![panel], (820, 600))
+        let title = match is_closed {
+            true => "Amplification over phase of closed loops",
+            false => "Nichols chart: faint, what the closed loop amplifies",
+        };
+        self.draw(title, vec![panel], (820, 600))
     }
 
     /// What is shown upwards: usually from −40 to 40 dB, and every margin.

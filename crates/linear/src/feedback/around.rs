@@ -1,6 +1,5 @@
 //! A plant and a controller in a loop.
 
-use crate::feedback::function::LoopFunction;
 use crate::{Delayed, LinearError, Polynomial, Time, TransferFunction};
 
 /// A plant P and a controller C in a loop: u = C (r − y) and y = P (u + d), or u = C (r + y) with positive feedback.
@@ -58,11 +57,6 @@ impl FeedbackLoop {
     /// The open loop P C, of positive feedback −P C: its margins, with −1 as the point to keep away from, are the loop's.
     pub const fn open(&self) -> &Delayed {
         &self.open
-    }
-
-    /// One of its four transfer functions.
-    pub fn function(&self, member: LoopMember) -> LoopFunction {
-        LoopFunction::new(self.clone(), member)
     }
 
     /// What the member has above D + N e^(−sT), where the open loop is N e^(−sT)/D; and how late it is, s.

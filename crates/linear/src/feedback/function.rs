@@ -20,8 +20,15 @@ pub struct LoopFunction {
     rational: Option<TransferFunction>,
 }
 
+impl FeedbackLoop {
+    /// One of its four transfer functions.
+    pub fn function(&self, member: LoopMember) -> LoopFunction {
+        LoopFunction::new(self.clone(), member)
+    }
+}
+
 impl LoopFunction {
-    pub(super) fn new(of: FeedbackLoop, member: LoopMember) -> Self {
+    fn new(of: FeedbackLoop, member: LoopMember) -> Self {
         let (above, late_s) = of.above(member);
         let open = of.open.rational();
         let below = open.denominator() + open.numerator();

@@ -24,7 +24,7 @@ fn measured(name: &str, is_late: bool) -> String {
         let phase = if is_late { -w.atan() - 0.3 * w } else { w.atan() - std::f64::consts::PI };
         table += &format!("\n{w:.9e},{:.9e},{:.9e}", 20.0 * (2.0 / w.hypot(1.0)).log10(), phase.to_degrees());
     }
-    let path = folder("gang_data").join(name);
+    let path = folder(&format!("gang_{name}")).join(name);
     std::fs::write(&path, table).unwrap();
     path.display().to_string()
 }
@@ -61,7 +61,7 @@ fn a_gang_of_four_tells_its_peaks_and_is_plotted() {
     let told = text(&["gangof4", "G11", "--controller", "K11", "--controller", "K11t"]);
     assert!(
         told.contains("G11 with K11t")
-            && told.contains("Ms 6.017 dB (factor 1.999) at 17.65 rad/s (2.809 Hz)"),
+            && told.contains("S, peak Ms      6.017 dB (factor 1.999) at 17.65 rad/s (2.809 Hz)"),
         "{told}"
     );
 }
