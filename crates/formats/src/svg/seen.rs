@@ -109,11 +109,12 @@ fn look(scene: &Scene, view: View, paper: Rgb) -> Seen {
     let judge = Judge { picture: &picture, aside, crops: view.crops };
     let mut work = 0;
     for mark in &scene.marks {
-        if work > MAX_WORK {
+        let judged = judged(&judge, &edges, mark, view.tolerance(), MAX_WORK.saturating_sub(work));
+        let Some(judged) = judged else {
+            work = MAX_WORK;
             seen.leave(mark);
             continue;
-        }
-        let judged = judged(&judge, &edges, mark, view.tolerance());
+        };
         work += judged.work;
         seen.unseen.extend(judged.unseen);
         seen.strokes
