@@ -4,7 +4,7 @@ use usvg::roxmltree::{Document, Node};
 
 use super::names::Names;
 use super::paint::{Painter, do_bands_matter, page};
-use super::seen::{View, seen};
+use super::seen::{View, seen, work_of};
 use super::{guard, remarks};
 use crate::doubles::without_doubles;
 use crate::options::{Hidden, ReadOptions};
@@ -64,7 +64,12 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     if !is_sound(Point::new(width, height)) {
         return Err(FormatError::Far { place: "size of the sheet".into(), x: width, y: height });
     }
-    let view = View { page: page(width, height), hides: options.hidden == Hidden::Cut, crops: options.crop };
+    let view = View {
+        page: page(width, height),
+        hides: options.hidden == Hidden::Cut,
+        crops: options.crop,
+        work: work_of(bytes.len()),
+    };
     let bands = view.hides && do_bands_matter(tree.root());
     let mut painter = Painter::new(Names::of(&xml), view, options.dashes, bands);
     painter.paint(tree.root())?;
