@@ -5,19 +5,22 @@
 //! geometry, whatever a file declares and however its blocks repeat each other, and nothing may panic: a million
 //! broken files are read by `tests/mutations.rs`. Sections may come in any order.
 //!
-//! Read are LINE, LWPOLYLINE, POLYLINE, ARC, CIRCLE, ELLIPSE, SPLINE and INSERT in model space, seen from above.
+//! Read are LINE, LWPOLYLINE, POLYLINE, ARC, CIRCLE, ELLIPSE, SPLINE, TEXT, MTEXT, ATTRIB and INSERT in model space, seen from above.
 //! Group codes are those of Autodesk's *DXF Reference*, 2000 to 2018; older files use a part of them.
 
 mod aci;
 mod blocks;
+mod codes;
 mod curves;
 mod entities;
 mod groups;
 mod header;
 mod join;
+mod mtext;
 mod read;
 mod scene;
 mod spline;
+mod text;
 mod write;
 
 pub use read::{read, read_with};

@@ -51,7 +51,7 @@ struct Unfolding<'a> {
 /// # Errors
 /// Blocks that hold themselves, and ones that repeat each other beyond all measure.
 pub(super) fn unfolded(scene: &mut Scene) -> Result<Vec<Drawn>, FormatError> {
-    let Scene { layers, blocks, items, skipped } = scene;
+    let Scene { layers, blocks, items, skipped, styles: _ } = scene;
     let mut unfolding = Unfolding { layers, blocks, skipped, drawn: Vec::new(), elements: 0, visits: 0 };
     let world =
         Setting { world_from_block: Affine::IDENTITY, layer: LAYER_0, colour: Colour::BLACK, depth: 0 };
@@ -67,6 +67,7 @@ impl Unfolding<'_> {
             match item {
                 Item::Shape(shape) => self.shape(shape, at)?,
                 Item::Insert(insert) => self.insert(insert, at)?,
+                Item::Text(text) => text.shapes.iter().try_for_each(|shape| self.shape(shape, at))?,
             }
         }
         Ok(())

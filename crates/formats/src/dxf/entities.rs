@@ -7,6 +7,7 @@ use super::curves::{has_length, moved, unit_arc, world_from_plane};
 use super::groups::Record;
 use super::scene::{Insert, Item, Layers, Look, Paint, Shape, Skipped};
 use super::spline;
+use super::text::Text;
 use crate::FormatError;
 use crate::circular::{arc_between, sweep_of_bulge};
 use crate::pen::Pen;
@@ -77,6 +78,12 @@ impl Entities {
             b"SPLINE" => spline::path(record)?,
             b"INSERT" => {
                 self.items.push(Item::Insert(Box::new(insert(record, look)?)));
+                return Ok(());
+            }
+            b"TEXT" | b"MTEXT" | b"ATTRIB" => {
+                let text = Text::of(record, look)?.map(|text| Item::Text(Box::new(text)));
+                self.elements += super::LEAST_ELEMENTS;
+                self.items.extend(text);
                 return Ok(());
             }
             b"POLYLINE" => {

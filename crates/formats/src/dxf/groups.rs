@@ -4,7 +4,7 @@ use tracelight_stroke::Point;
 
 use crate::FormatError;
 
-/// A group code with its value, blanks trimmed.
+/// A group code with its value, blanks trimmed but of text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Group<'a> {
     pub(super) code: i32,
@@ -82,12 +82,14 @@ impl<'a> Records<'a> {
     }
 
     fn group(&mut self) -> Result<Group<'a>, FormatError> {
-        let code = self.next_line()?;
+        let code = self.next_line()?.trim_ascii();
         let code = std::str::from_utf8(code).ok().and_then(|c| c.parse().ok()).ok_or_else(|| {
             let code = String::from_utf8_lossy(&code[..code.len().min(40)]).into_owned();
             self.broken(format!("{code:?} is no group code; save the drawing again as ASCII DXF"))
         })?;
         let value = self.next_line()?;
+        // a text may begin and end with blanks; of an MTEXT's pieces each but the last one may end between two words
+        let value = if matches!(code, 1 | 3) { value } else { value.trim_ascii() };
         Ok(Group { code, value, line: self.line })
     }
 
@@ -99,7 +101,7 @@ impl<'a> Records<'a> {
         let length = self.rest.iter().position(|&b| b == self.end_of_line).unwrap_or(self.rest.len());
         let (line, rest) = self.rest.split_at(length);
         self.rest = rest.get(1..).unwrap_or_default();
-        Ok(line.trim_ascii())
+        Ok(line.strip_suffix(b"\r").unwrap_or(line))
     }
 
     fn broken(&self, message: String) -> FormatError {
@@ -201,12 +203,17 @@ impl<'a> Record<'a> {
     }
 }
 
-/// Text of any age: UTF-8, else Latin-1, with `\U+00E9` for what neither the writer's code page nor ASCII has.
+/// A name of any age: see [`characters`].
 fn text(bytes: &[u8]) -> String {
     const LONGEST: usize = 255; // AutoCAD's own bound for a name
+    characters(bytes, LONGEST)
+}
+
+/// Characters of any age, so many at most: UTF-8, else Latin-1, with `\U+00E9` for what neither the writer's code page nor ASCII has.
+pub(super) fn characters(bytes: &[u8], most: usize) -> String {
     let plain = match std::str::from_utf8(bytes) {
-        Ok(text) => text.chars().take(LONGEST).collect(),
-        Err(_) => bytes.iter().take(LONGEST).map(|&b| char::from(b)).collect::<String>(),
+        Ok(text) => text.chars().take(most).collect(),
+        Err(_) => bytes.iter().take(most).map(|&b| char::from(b)).collect::<String>(),
     };
     let mut parts = plain.split("\\U+");
     let mut out = parts.next().unwrap_or_default().to_owned();

@@ -1,5 +1,8 @@
 //! What a DXF says of itself: the size of its unit.
 
+use encoding_rs::Encoding;
+
+use super::codes;
 use super::groups::Record;
 
 /// Metres of each `$INSUNITS`, from 1 on.
@@ -35,6 +38,8 @@ const UNITS_M: [f64; 24] = [
 pub(super) struct Header {
     units: Option<i64>,
     measurement: Option<i64>,
+    /// Of texts that are no UTF-8.
+    pub(super) encoding: Option<&'static Encoding>,
 }
 
 impl Header {
@@ -48,6 +53,7 @@ impl Header {
                 (9, _) => name = group.value,
                 (70, b"$INSUNITS") => header.units = group.whole().ok(),
                 (70, b"$MEASUREMENT") => header.measurement = group.whole().ok(),
+                (3, b"$DWGCODEPAGE") => header.encoding = codes::encoding(group.value),
                 _ => {}
             }
         }

@@ -8,10 +8,12 @@ use super::entities::Entities;
 use super::groups::{Record, Records};
 use super::header::Header;
 use super::join::joined;
-use super::scene::{Block, Layers, Scene, Skipped};
+use super::scene::{Block, Item, Layers, Scene, Skipped};
+use super::text;
 use crate::extent::extent;
+use crate::lettering::faces;
 use crate::limit::MAX_COORDINATE;
-use crate::options::ReadOptions;
+use crate::options::{Letters, ReadOptions};
 use crate::{FormatError, Reading, Sheet};
 
 /// Sides of a sheet are at least so long, in its unit, or numbers with four decimals would show.
@@ -24,7 +26,7 @@ const LEAST_ASPECT: f64 = 0.01;
 ///
 /// Lines stay lines and arcs arcs, bulges become arcs, splines cubics (exact up to degree three without weights, else
 /// within 1e-5 of their size), ellipses cubics within 5e-6 of their larger half axis. Blocks are unfolded. Paths of one
-/// layer and colour that meet end to end become one stroke. Each stroke has its layer's name and the colour it shows;
+/// layer and colour that meet end to end become one stroke. Text is drawn as single lines, or as outlines where these are asked for. Each stroke has its layer's name and the colour it shows;
 /// what lies on layers that are off or frozen is left out.
 ///
 /// The sheet just holds the drawing. Its unit is the millimetre where the file names a unit (`$INSUNITS`, else
@@ -41,16 +43,31 @@ pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
 ///
 /// # Errors
 /// As there.
-pub fn read_with(bytes: &[u8], _options: &ReadOptions) -> Result<Reading, FormatError> {
+pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatError> {
     check_kind(bytes)?;
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let (mut scene, header) = scene(bytes)?;
+    let said = set_texts(&mut scene, header, options)?;
     let drawn = unfolded(&mut scene)?;
     let drawing = strokes(drawn, &scene.layers);
     match sheet(&drawing, header)? {
-        Some(sheet) => Ok(Reading { sheet, remarks: scene.skipped.remarks() }),
+        Some(sheet) => {
+            let remarks = scene.skipped.remarks().into_iter().chain(said).collect();
+            Ok(Reading { sheet, remarks })
+        }
         None => Err(FormatError::Nothing { hint: hint(&scene.skipped) }),
     }
+}
+
+/// Makes paths of all texts, and says what of them is not drawn as it should be.
+fn set_texts(scene: &mut Scene, header: Header, options: &ReadOptions) -> Result<Vec<String>, FormatError> {
+    let Scene { blocks, items, styles, .. } = scene;
+    let mut all = items.iter().chain(blocks.values().flat_map(|block| &block.items));
+    if !all.any(|item| matches!(item, Item::Text(_))) {
+        return Ok(Vec::new());
+    }
+    let setting = text::Setting { faces: faces(options, Letters::Line)?, styles, encoding: header.encoding };
+    Ok(text::set_all(items, blocks, &setting)?.remarks())
 }
 
 fn check_kind(bytes: &[u8]) -> Result<(), FormatError> {
@@ -125,6 +142,7 @@ impl Place {
     fn take(&mut self, record: &Record, scene: &mut Scene) -> Result<(), FormatError> {
         match (self.section, record.kind) {
             (Section::Tables, b"LAYER") => scene.layers.declare(record),
+            (Section::Tables, b"STYLE") => scene.styles.declare(record),
             (Section::Blocks, b"BLOCK") => {
                 self.end_block(scene);
                 let block = Block { base: record.point(10)?, ..Block::default() };

@@ -7,6 +7,7 @@ use tracelight_stroke::{Affine, Colour, Path, Point};
 
 use super::aci;
 use super::groups::Record;
+use super::text::{Styles, Text};
 use crate::FormatError;
 
 /// Everything that counts of a file.
@@ -17,6 +18,7 @@ pub(super) struct Scene {
     /// Model space.
     pub(super) items: Vec<Item>,
     pub(super) skipped: Skipped,
+    pub(super) styles: Styles,
 }
 
 /// Something that is drawn.
@@ -24,6 +26,7 @@ pub(super) struct Scene {
 pub(super) enum Item {
     Shape(Shape),
     Insert(Box<Insert>),
+    Text(Box<Text>),
 }
 
 /// An entity that is a path.

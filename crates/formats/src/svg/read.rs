@@ -2,10 +2,15 @@ use tracelight_stroke::{Colour, Drawing, Path, Point, Stroke, StrokeKind};
 use usvg::roxmltree::{Document, Node};
 use usvg::tiny_skia_path::PathSegment;
 
+use tracelight_letters::Kind;
+
 use super::guard;
+use super::lines::{Drawn, Lines};
 use super::names::{Names, Place};
+use super::text::Fonts;
 use crate::extent::controls;
-use crate::options::ReadOptions;
+use crate::lettering::{faces, kind};
+use crate::options::{Letters, ReadOptions};
 use crate::pen::Pen;
 use crate::{FormatError, Reading, Sheet, check_size, is_sound, text};
 
@@ -27,7 +32,7 @@ const MAX_NODES: u32 = 2_000_000;
 /// curves become cubics; arcs that are circular on the sheet are arcs again, elliptical ones cubics within 3e-4 of
 /// their radius. A path with a stroke is a centreline of that width, one with a fill only is an outline. A filled
 /// rectangle that covers the whole sheet is background and left out. Clipping, masks, dashes and filters are not
-/// applied; text and pictures are not read, which a remark says.
+/// applied; pictures are not read, which a remark says. Text is drawn as outlines in a given font or DejaVu Sans, or as single lines.
 ///
 /// A stroke's colour is that of its line, else of its fill. Its layer is the nearest layer of the drawing program
 /// (`inkscape:groupmode="layer"`, by its label) or, outside of all of them, the nearest group with an id.
@@ -44,33 +49,40 @@ pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
 ///
 /// # Errors
 /// As there.
-pub fn read_with(bytes: &[u8], _options: &ReadOptions) -> Result<Reading, FormatError> {
+pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatError> {
     check_size(bytes)?;
     let text = text(bytes)?;
     guard::check_text(text)?;
-    let options =
+    let parsing =
         usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };
-    let xml = Document::parse_with_options(text, options).map_err(syntax)?;
+    let xml = Document::parse_with_options(text, parsing).map_err(syntax)?;
     guard::check_tree(&xml)?;
-    let tree = usvg::Tree::from_xmltree(&xml, &resolve_nothing()).map_err(unreadable)?;
+    let fonts = Fonts::of(options)?;
+    let tree = usvg::Tree::from_xmltree(&xml, &resolving(&fonts)).map_err(unreadable)?;
     let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
     if !is_sound(Point::new(width, height)) {
         return Err(FormatError::Far { place: "size of the sheet".into(), x: width, y: height });
     }
     let names = Names::of(&xml);
-    let mut collector = Collector { width, height, names, elements: 0, strokes: Vec::new() };
+    let has_lines = kind(options, Letters::Outline)? == Kind::Line;
+    let lines = has_lines.then(|| faces(options, Letters::Outline)).transpose()?.map(Lines::new);
+    let mut collector = Collector { width, height, names, lines, elements: 0, strokes: Vec::new() };
     collector.group(tree.root())?;
     if collector.strokes.is_empty() {
         return Err(FormatError::Nothing { hint: hint(&xml) });
     }
     let metres_per_unit = is_physical(xml.root_element()).then_some(METRES_PER_PX);
     let sheet = Sheet { width, height, metres_per_unit, drawing: Drawing { strokes: collector.strokes } };
-    Ok(Reading { sheet, remarks: remarks(&xml) })
+    let text = collector.lines.as_ref().map_or_else(|| fonts.remarks(&tree), Lines::remarks);
+    Ok(Reading { sheet, remarks: remarks(&xml).into_iter().chain(text).collect() })
 }
 
-/// Options that never open a file: links to pictures lead nowhere.
-fn resolve_nothing() -> usvg::Options<'static> {
+/// Options that never open a file: links to pictures lead nowhere, fonts are those in memory.
+fn resolving(fonts: &Fonts) -> usvg::Options<'_> {
     usvg::Options {
+        font_family: "sans-serif".to_owned(),
+        fontdb: fonts.database(),
+        font_resolver: fonts.resolver(),
         image_href_resolver: usvg::ImageHrefResolver {
             resolve_data: Box::new(|_, _, _| None),
             resolve_string: Box::new(|_, _| None),
@@ -104,14 +116,12 @@ fn remarks(xml: &Document) -> Vec<String> {
         let found = count(xml, name);
         (found > 0).then(|| format!("not drawn: {what} ({found} found)"))
     };
-    let text = said("text", "text; convert it to paths in the drawing program");
-    let image = said("image", "embedded pictures; trace their own files");
-    text.into_iter().chain(image).collect()
+    said("image", "embedded pictures; trace their own files").into_iter().collect()
 }
 
 fn hint(xml: &Document) -> &'static str {
     if count(xml, "text") > 0 {
-        "the SVG holds text, not paths: convert the text to paths in the drawing program"
+        "the SVG holds text that shows no letter: give a font that has its letters (--font FILE)"
     } else if count(xml, "image") > 0 {
         "the SVG holds an embedded picture, not paths: trace the picture's own file"
     } else {
@@ -133,6 +143,8 @@ struct Collector {
     width: f64,
     height: f64,
     names: Names,
+    /// For text as single lines; outlines without.
+    lines: Option<Lines>,
     elements: usize,
     strokes: Vec<Stroke>,
 }
@@ -148,8 +160,25 @@ impl Collector {
                     left.extend(group.children().iter().rev().map(|n| (n, place.clone())));
                 }
                 usvg::Node::Path(path) => self.path(path, &around)?,
+                usvg::Node::Text(text) => match self.lines.as_mut().and_then(|lines| lines.set(text)) {
+                    Some(drawn) => self.letters(drawn, &around)?,
+                    None => {
+                        let outlines = text.flattened().children().iter().rev();
+                        left.extend(outlines.map(|n| (n, around.clone())));
+                    }
+                },
                 _ => {}
             }
+        }
+        Ok(())
+    }
+
+    fn letters(&mut self, drawn: Vec<Drawn>, place: &Place) -> Result<(), FormatError> {
+        for Drawn { path, colour, is_edge } in drawn {
+            self.elements += path.elements().len().max(LEAST_ELEMENTS);
+            self.check(&path)?;
+            let kind = if is_edge { StrokeKind::Outline } else { StrokeKind::Centreline };
+            self.strokes.push(Stroke { path, kind, pen: None, layer: place.layer.clone(), colour });
         }
         Ok(())
     }

@@ -9,3 +9,4 @@ mod mutations;
 #[path = "support/plate.rs"]
 mod plate;
 mod small_and_slow;
+mod texts;
