@@ -2,7 +2,7 @@
 
 use tracelight_formats::gcode::GcodeOptions;
 use tracelight_formats::json::Traced;
-use tracelight_formats::{FormatError, Sheet, csv, dxf, gcode, hpgl, ild, json, svg};
+use tracelight_formats::{FormatError, Hidden, ReadOptions, Sheet, csv, dxf, gcode, hpgl, ild, json, svg};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 
 use crate::sound::check_sheet;
@@ -57,7 +57,8 @@ fn check_written(sheet: &Sheet) {
     assert!(!ild::write(&drawing, 1.0, 1.0).bytes.is_empty());
     if segments(&drawing) <= MOST_COMPARED {
         // SVG is read in single precision, and its arcs may come back as cubics
-        check_near("SVG", svg::read(svg.as_bytes()).map(|r| r.sheet), &drawing, 1e-3);
+        let everything = ReadOptions { hidden: Hidden::Keep, crop: false, ..ReadOptions::default() };
+        check_near("SVG", svg::read_with(svg.as_bytes(), &everything).map(|r| r.sheet), &drawing, 1e-3);
         check_near("DXF", dxf::read(dxf.as_bytes()).map(|r| r.sheet), &drawing, 1e-4);
         let back = csv::read(csv.as_bytes());
         let back = back.map(|drawing| Sheet { width: 1.0, height: 1.0, metres_per_unit: None, drawing });

@@ -21,6 +21,8 @@ pub struct Batch<'a> {
     pub out: Option<Out<'a>>,
     /// Threads.
     pub jobs: usize,
+    /// What to do about a failure of a code, for the object of a picture that failed.
+    pub help: fn(&str) -> String,
 }
 
 /// A folder for the results.
@@ -66,7 +68,7 @@ pub fn run<'a>(
     let began_s = task.progress.clock_s();
     let files = places_of(batch)?;
     let manifest = batch.out.as_ref().map(|out| Manifest::open(out.folder)).transpose()?;
-    let mut report = Report::new(batch.pictures.len(), pieces);
+    let mut report = Report::new(batch.pictures.len(), batch.help, pieces);
     let left = keep(batch, &files, manifest.as_ref(), &mut report);
     task.progress.things(left.len() as u64);
     let work = Work { batch, files: &files, left: &left, manifest: manifest.map(Mutex::new), trace, task };
@@ -135,8 +137,7 @@ struct Made {
 
 impl Made {
     fn failed(failure: Failure) -> Self {
-        let Failure { code, message, .. } = failure;
-        Self { outcome: Outcome::Failed { code, message }, extra: Extra::default() }
+        Self { outcome: Outcome::Failed(failure), extra: Extra::default() }
     }
 
     fn fallen(picture: &str, Panicked(words): &Panicked) -> Self {
@@ -252,7 +253,7 @@ mod tests {
     fn a_picture_that_panics_is_a_row_like_any_that_fails() {
         let pictures =
             ["a.png", "b.png", "c.png"].map(|name| Picture { name: name.to_owned(), within: None }).to_vec();
-        let batch = Batch { pictures, out: None, jobs: 2 };
+        let batch = Batch { pictures, out: None, jobs: 2, help: |_| String::new() };
         let trace = |name: &str, _: Option<&Path>| {
             assert!(name != "b.png", "no such stroke");
             Ok(traced())

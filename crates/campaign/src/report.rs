@@ -30,6 +30,7 @@ pub(crate) struct Names<'a> {
 /// All pictures of a batch, filled in as they end.
 pub(crate) struct Report<'a> {
     rows: Vec<Option<Row>>,
+    help: fn(&str) -> String,
     stream: Option<Stream<'a>>,
 }
 
@@ -44,14 +45,14 @@ pub struct Ended {
 }
 
 impl<'a> Report<'a> {
-    pub(crate) fn new(pictures: usize, pieces: Option<&'a mut Pieces<'a>>) -> Self {
-        Self { rows: vec![None; pictures], stream: pieces.map(|pieces| Stream::new(pictures, pieces)) }
+    pub(crate) fn new(pictures: usize, help: fn(&str) -> String, pieces: Option<&'a mut Pieces<'a>>) -> Self {
+        Self { rows: vec![None; pictures], help, stream: pieces.map(|pieces| Stream::new(pictures, pieces)) }
     }
 
     /// Takes in what became of a picture.
     pub(crate) fn add(&mut self, index: usize, row: Row, extra: Extra) {
         if let Some(stream) = &mut self.stream {
-            stream.add(index, object(&row, extra));
+            stream.add(index, object(&row, extra, self.help));
         }
         self.rows[index] = Some(row);
     }
@@ -63,7 +64,7 @@ impl<'a> Report<'a> {
         let totals = Totals::of(&rows, timing_ms);
         let left: Vec<_> = (0..self.rows.len()).filter(|&i| self.rows[i].is_none()).collect();
         let json = self.stream.take().map(|mut stream| {
-            left.iter().for_each(|&i| stream.add(i, not_begun(names.pictures[i])));
+            left.iter().for_each(|&i| stream.add(i, not_begun(names.pictures[i], self.help)));
             stream.end(&totals)
         });
         let failure = if left.is_empty() {
@@ -87,11 +88,12 @@ fn remark(row: &Row) -> Option<String> {
     }
 }
 
-fn object(row: &Row, extra: Extra) -> String {
+fn object(row: &Row, extra: Extra, help: fn(&str) -> String) -> String {
     let picture = &row.picture;
     match &row.outcome {
-        Outcome::Failed { code, message } => {
-            json!({"picture": picture, "error": {"code": code, "message": message}}).to_string()
+        Outcome::Failed(failure) => {
+            let error = failure.object(&help(failure.code));
+            json!({"picture": picture, "error": error}).to_string()
         }
         Outcome::Done { figures, timing_ms, kept } => {
             let mut object = json!({
@@ -110,16 +112,17 @@ fn object(row: &Row, extra: Extra) -> String {
     }
 }
 
-fn not_begun(picture: &str) -> String {
-    let message = format!("{picture} was not begun: interrupted");
-    json!({"picture": picture, "error": {"code": "interrupted", "message": message}}).to_string()
+fn not_begun(picture: &str, help: fn(&str) -> String) -> String {
+    let interrupted = Failure::interrupted();
+    let failure = Failure { message: format!("{picture} was not begun: interrupted"), ..interrupted };
+    json!({"picture": picture, "error": failure.object(&help(failure.code))}).to_string()
 }
 
 fn failure(rows: &[Row], keeps: bool) -> Option<Failure> {
     const NAMED: usize = 3;
     let failed: Vec<_> = rows
         .iter()
-        .filter(|row| matches!(row.outcome, Outcome::Failed { .. }))
+        .filter(|row| matches!(row.outcome, Outcome::Failed(_)))
         .map(|row| row.picture.as_str())
         .collect();
     let names = failed.iter().take(NAMED).copied().collect::<Vec<_>>().join(", ");

@@ -1,6 +1,7 @@
 //! What became of each picture, and of all of them.
 
 use serde_json::{Value, json};
+use tracelight_task::Failure;
 use tracelight_task::counted;
 
 use crate::figures::Figures;
@@ -23,8 +24,8 @@ pub(crate) enum Outcome {
         /// By an earlier run.
         kept: bool,
     },
-    /// Its failure's code and message.
-    Failed { code: &'static str, message: String },
+    /// Why there are none.
+    Failed(Failure),
 }
 
 /// Counts over all rows.
@@ -48,7 +49,7 @@ impl Totals {
                     totals.strokes += figures.strokes;
                     *if *kept { &mut totals.kept } else { &mut totals.traced } += 1;
                 }
-                Outcome::Failed { .. } => totals.failed += 1,
+                Outcome::Failed(_) => totals.failed += 1,
             }
         }
         totals

@@ -26,7 +26,7 @@ pub(crate) fn text(rows: &[Row], totals: &Totals) -> String {
         let name = padded(&shortened(&row.picture, width), width);
         match &row.outcome {
             Outcome::Done { .. } => line(&mut text, &name, &cells(row)),
-            Outcome::Failed { message, .. } => failed(&mut text, &name, width, message),
+            Outcome::Failed(failure) => failed(&mut text, &name, width, &failure.message),
         }
     }
     text + &totals.text()
@@ -135,7 +135,7 @@ mod tests {
     }
 
     fn failed(picture: &str, message: &str) -> Row {
-        let outcome = Outcome::Failed { code: "malformed", message: message.to_owned() };
+        let outcome = Outcome::Failed(Failure::usage("malformed", message));
         Row { picture: picture.to_owned(), outcome }
     }
 

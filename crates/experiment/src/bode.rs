@@ -3,7 +3,7 @@
 mod view;
 
 use tracelight_chart::Theme;
-use tracelight_linear::{FrequencyResponse, Margins, Peak, Stability};
+use tracelight_linear::{Complex, FrequencyResponse, Margins, Peak, Stability};
 use tracelight_task::{Failure, Task};
 
 use crate::finding::Experiment;
@@ -23,6 +23,8 @@ pub struct Finding {
 /// A system and all that is known of it.
 struct Entry {
     named: Named,
+    /// Frequencies, rad/s, and values of points that were measured and are not trusted, as far as they are shown.
+    left_out: Vec<(f64, Complex)>,
     response: FrequencyResponse,
     /// Where it is 3 dB below what it is at rest, rad/s.
     bandwidth_rad_s: Option<f64>,
@@ -38,17 +40,23 @@ enum Kind {
         /// What its closed loop does; none where that is not defined.
         closed: Option<Stability>,
     },
-    /// A loop that is closed already: it has no margins. What it does.
-    Closed(Stability),
+    /// A loop that is closed already: it has no margins. What it does; none of measured data that do not tell.
+    Closed(Option<Stability>),
 }
 
 impl Entry {
-    fn of(named: Named, rad_s: &[f64], is_closed: bool) -> Self {
+    /// Points that are not trusted are shown from one frequency, rad/s, to the other.
+    fn of(named: Named, rad_s: &[f64], shown: (f64, f64), is_closed: bool) -> Self {
         let kind = match is_closed {
-            true => Kind::Closed(named.stability()),
+            true => Kind::Closed(match (&named.data, &named.opened) {
+                (Some(_), open) => open.as_ref().and_then(|open| open.closed_stability()),
+                (None, _) => Some(named.stability()),
+            }),
             false => Kind::Open { margins: named.margins(), closed: named.closed_stability() },
         };
+        let all = named.data.iter().flat_map(|data| data.left_out());
         Self {
+            left_out: all.copied().filter(|point| shown.0 <= point.0 && point.0 <= shown.1).collect(),
             response: named.frequency_response(rad_s.to_vec()),
             bandwidth_rad_s: named.bandwidth(),
             resonance: named.resonance(),
@@ -64,7 +72,8 @@ impl Experiment for Request {
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
         let (systems, rad_s) = self.0.read()?;
         let is_closed = self.0.systems.closed;
-        let entries = systems.into_iter().map(|named| Entry::of(named, &rad_s, is_closed)).collect();
+        let shown = (self.0.from_rad_s.unwrap_or(0.0), self.0.to_rad_s.unwrap_or(f64::INFINITY));
+        let entries = systems.into_iter().map(|named| Entry::of(named, &rad_s, shown, is_closed)).collect();
         Ok(Finding { theme: self.0.systems.theme, entries })
     }
 }

@@ -4,6 +4,7 @@ pub mod lqr;
 mod lqr_view;
 mod panels;
 pub mod pid;
+mod set;
 mod view;
 
 use tracelight_chart::Theme;
@@ -17,9 +18,10 @@ use tracelight_sim::RigConfig;
 use tracelight_task::{Failure, Task};
 
 use crate::design::pid::{PidDesign, PidRequest, Weighted};
+use crate::design::set::Member;
 use crate::finding::Experiment;
 use crate::named::Named;
-use crate::systems::OneSystem;
+use crate::systems::{OneSystem, controller};
 use crate::trial::Trial;
 
 /// A system and the controller that is wished for it.
@@ -27,6 +29,8 @@ use crate::trial::Trial;
 pub struct Request {
     /// What is controlled.
     pub system: OneSystem,
+    /// Others that it has to do for: of a PID the margins hold with each; other controllers are tried with each.
+    pub also: Vec<String>,
     /// How the controller is found.
     pub method: Method,
     /// A rig that it drives, too.
@@ -49,6 +53,8 @@ pub enum Method {
         /// Of the estimator; if not given, those of the regulator, four times as fast.
         estimator: Option<Vec<Complex>>,
     },
+    /// One that is given.
+    Given(Zpk),
 }
 
 /// A simulated rig whose joint a controller drives, from a jump of its setpoint.
@@ -89,6 +95,8 @@ pub struct Finding {
     /// Figures of the step.
     info: StepInfo,
     trial: Option<Trial>,
+    /// The system and the others that it has to do for; none where there are no others.
+    set: Vec<Member>,
     theme: Theme,
 }
 
@@ -97,14 +105,9 @@ impl Experiment for Request {
 
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
         let named = self.system.system()?;
+        let others = self.system.others(&self.also)?;
         let (name, plant) = (named.name.clone(), named.system.clone());
-        let order = plant.denominator().degree().max(plant.numerator().degree());
-        if order > MOST_ORDER {
-            let message = format!(
-                "{name} is of order {order}; controllers are designed for systems up to order {MOST_ORDER}"
-            );
-            return Err(Failure::failed("no-such-design", message));
-        }
+        others.iter().chain([&named]).try_for_each(check_order)?;
         let failed = |e: LinearError| {
             let remedy = match e {
                 LinearError::Unbounded { offer_rad_s, .. } => {
@@ -118,21 +121,35 @@ impl Experiment for Request {
             Some(pid) => Trial::by_pid(on.rig, joint, (on.to_rad, on.seed), (pid, &plant)),
             None => Trial::of(on.rig, joint, (on.to_rad, on.seed), controller),
         };
-        let (controller, pid) = self.method.controller(&plant).map_err(failed)?;
+        let (controller, pid) = self.method.controller(&plant, &rational(&others)).map_err(failed)?;
         let trial = self.tried.map(|on| tried_with(on.joint, on, &controller, pid.as_ref())).transpose()?;
         let designed = Designed { named, controller, pid };
-        Finding::of(designed, trial, self.system.theme).map_err(failed)
+        let finding = Finding::of(designed, trial, self.system.theme).map_err(failed)?;
+        finding.with_others(others).map_err(failed)
     }
 }
 
 impl Method {
-    fn controller(&self, plant: &TransferFunction) -> Result<(Zpk, Option<PidDesign>), LinearError> {
+    /// A controller in continuous time that is given as a formula.
+    ///
+    /// # Errors
+    /// `bad-formula`: what is wrong with it, and where.
+    pub fn given(formula: &str) -> Result<Self, Failure> {
+        controller(formula).map(Self::Given)
+    }
+
+    fn controller(
+        &self,
+        plant: &TransferFunction,
+        others: &[TransferFunction],
+    ) -> Result<(Zpk, Option<PidDesign>), LinearError> {
         match self {
             Self::LeadLag(wish) => Ok((plant.lead_lag(*wish)?, None)),
             Self::Pid(request) => {
-                let design = request.design(plant)?;
+                let design = request.design(plant, others)?;
                 Ok((design.pid.transfer_in(plant.time())?.zpk(), Some(design)))
             }
+            Self::Given(controller) => Ok((controller.clone(), None)),
             Self::Lqg(wish) => Ok((plant.lqg(wish)?, None)),
             Self::Place { regulator, estimator } => {
                 let own = || faster(regulator, plant);
@@ -164,6 +181,24 @@ fn faster(poles: &[Complex], plant: &TransferFunction) -> Vec<Complex> {
         Time::Sampled(_) => pole * pole * pole * pole,
     };
     poles.iter().map(four_times).collect()
+}
+
+/// Refuses what is of too high an order.
+fn check_order(named: &Named) -> Result<(), Failure> {
+    let order = named.system.denominator().degree().max(named.system.numerator().degree());
+    if order <= MOST_ORDER {
+        return Ok(());
+    }
+    let message = format!(
+        "{} is of order {order}; controllers are designed for systems up to order {MOST_ORDER}",
+        named.name
+    );
+    Err(Failure::failed("no-such-design", message))
+}
+
+/// Systems for a search; with a dead time nearly the same.
+fn rational(systems: &[Named]) -> Vec<TransferFunction> {
+    systems.iter().map(|named| named.system.clone()).collect()
 }
 
 /// A controller for a plant.
@@ -215,8 +250,25 @@ impl Finding {
             stability,
             info,
             trial,
+            set: Vec::new(),
             theme,
         })
+    }
+
+    /// What the controller does with other systems, too.
+    fn with_others(mut self, others: Vec<Named>) -> Result<Self, LinearError> {
+        if others.is_empty() {
+            return Ok(self);
+        }
+        let k = match &self.pid {
+            Some((design, _)) => design.pid.transfer_in(self.plant.time())?,
+            None => self.controller.transfer(),
+        };
+        self.set = vec![Member::known(&self.name, self.stability, &self.margins, self.info)];
+        for named in others {
+            self.set.push(Member::of(named, &k, &self.step)?);
+        }
+        Ok(self)
     }
 }
 

@@ -24,9 +24,19 @@ impl Frequencies {
     pub(crate) fn read(&self) -> Result<(Vec<Named>, Vec<f64>), Failure> {
         let systems = self.systems.with_data()?;
         bounded(self.points, systems.len())?;
-        let own = systems.iter().map(band).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((0.1, 10.0));
+        let rad_s = self.over(&systems.iter().collect::<Vec<_>>())?;
+        Ok((systems, rad_s))
+    }
+
+    /// Frequencies for some systems together, rad/s.
+    pub(crate) fn over(&self, systems: &[&Named]) -> Result<Vec<f64>, Failure> {
+        let own = systems
+            .iter()
+            .map(|named| band(named))
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+            .unwrap_or((0.1, 10.0));
         // beyond what was measured nothing is known
-        let known = systems.iter().filter(|named| named.data.is_some()).map(Named::band);
+        let known = systems.iter().filter(|named| named.data.is_some()).map(|named| named.band());
         let (low, high) = known.fold(own, |a, b| (a.0.max(b.0), a.1.min(b.1)));
         // a bound that is typed moves the other, if that is not typed
         let (from, to) = match (self.from_rad_s, self.to_rad_s) {
@@ -42,7 +52,7 @@ impl Frequencies {
         if from >= to {
             return Err(Failure::usage("usage", format!("--from {from} rad/s is not below --to {to} rad/s")));
         }
-        Ok((systems, logspace((from, to), self.points as usize)))
+        Ok(logspace((from, to), self.points as usize))
     }
 }
 

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 use tracelight_linear::{DelayMargin, GainMargin, Margins, PhaseMargin, decibels};
 
+use crate::named::Named;
 use crate::numbers::four;
 
 /// Margins of an open loop for people, a line each.
@@ -56,6 +57,33 @@ pub(crate) fn margin_lines(delay: DelayMargin, margins: &Margins) -> String {
         ));
     }
     lines.join("\n")
+}
+
+/// Whether the loop that a measured one becomes is stable, and what that rests on, a line.
+pub(crate) fn counted_lines(open: &Named) -> String {
+    let Some((data, unstable)) = open.data.as_ref().zip(open.unstable) else {
+        return "    whether it is stable once it is closed, measured data alone do not tell: say with --unstable how many unstable poles the \
+                open loop has\n"
+            .to_owned();
+    };
+    let (low, high) = data.band();
+    let doubt = format!(
+        "that holds if below {} rad/s the loop goes on as it begins, and above {} rad/s its gain stays below 1",
+        four(low),
+        four(high)
+    );
+    let feedback = open.feedback();
+    match data.unstable_when_closed(unstable) {
+        Ok(0) => format!(
+            "    closed by {feedback} feedback it is stable, by its turns round −1 and the open loop's unstable poles ({unstable}); {doubt}\n"
+        ),
+        Ok(count) => format!(
+            "    closed by {feedback} feedback it is not stable: {count} {}, by its turns round −1 and the open loop's unstable poles \
+             ({unstable}); {doubt}\n",
+            if count == 1 { "pole grows" } else { "poles grow" }
+        ),
+        Err(why) => format!("    whether it is stable once it is closed, the data do not tell: {why}\n"),
+    }
 }
 
 /// Margins of an open loop for scripts.

@@ -3,11 +3,13 @@
 use serde_json::{Value, json};
 use tracelight_chart::Colour;
 use tracelight_linear::{
-    Complex, DelayMargin, Delayed, FrequencyData, FrequencyResponse, GainMargin, GrowingPoles, Margins,
-    NyquistCurve, NyquistPart, Peak, RealCrossing, Stability, Time, TransferFunction,
+    Complex, DelayMargin, Delayed, FrequencyData, FrequencyResponse, GainMargin, GrowingPoles, LinearError,
+    LoopFunction, LoopMember, Margins, Norm, NyquistCurve, NyquistPart, Peak, RealCrossing, Stability, Time,
+    TransferFunction,
 };
 use tracelight_maths::complex;
 
+use crate::left_out;
 use crate::numbers::four;
 use crate::system_json::system_json;
 
@@ -21,16 +23,22 @@ pub(crate) struct Named {
     pub(crate) late: Option<Late>,
     /// What is known of it, if it was measured: then the system above stands for nothing.
     pub(crate) data: Option<FrequencyData>,
+    /// How many unstable poles an open loop that was measured has, if that was said.
+    pub(crate) unstable: Option<usize>,
+    /// The open loop, of one that was closed: what it was, times −1 if the feedback was positive.
+    pub(crate) opened: Option<Box<Named>>,
+    /// An open loop times −1: positive feedback closes it.
+    pub(crate) is_positive: bool,
     pub(crate) colour: Colour,
 }
 
 /// A system with a dead time.
 #[derive(Clone, Debug)]
 pub(crate) struct Late {
-    /// Before it is closed, if it is.
+    /// The open loop, if it is closed; otherwise the system.
     pub(crate) open: Delayed,
-    /// Whether it is closed by negative feedback.
-    pub(crate) closed: bool,
+    /// What of the closed loop it is, if it is closed.
+    pub(crate) closed: Option<LoopFunction>,
     /// Order of Padé's approximation in the rational one.
     pub(crate) order: usize,
     /// Up to this frequency, rad/s, its phase is off by no more than that, rad.
@@ -53,7 +61,7 @@ impl Late {
             if crossing.max(real) > 0.0 { BEYOND * crossing.max(real) } else { (band.0 * band.1).sqrt() };
         let order = order.unwrap_or_else(|| open.approximation_order(matters, WITHIN));
         let good_to = (matters, open.approximation_error_rad(order, matters));
-        Self { open, closed: false, order, good_to }
+        Self { open, closed: None, order, good_to }
     }
 
     /// What the rational figures are worth.
@@ -71,23 +79,48 @@ impl Late {
 impl Named {
     /// A rational system.
     pub(crate) const fn rational(name: String, system: TransferFunction, colour: Colour) -> Self {
-        Self { name, system, late: None, data: None, colour }
+        Self {
+            name,
+            system,
+            late: None,
+            data: None,
+            unstable: None,
+            opened: None,
+            is_positive: false,
+            colour,
+        }
     }
 
     /// What was measured.
     pub(crate) fn measured(name: String, data: FrequencyData, colour: Colour) -> Self {
         let system = TransferFunction::gain(1.0, Time::Continuous);
-        Self { name, system, late: None, data: Some(data), colour }
+        Self { data: Some(data), ..Self::rational(name, system, colour) }
     }
 
     /// What it is exactly, of an open system with a dead time.
     fn exact(&self) -> Option<&Delayed> {
-        self.late.as_ref().filter(|late| !late.closed).map(|late| &late.open)
+        self.late.as_ref().filter(|late| late.closed.is_none()).map(|late| &late.open)
     }
 
-    /// What it is exactly before it is closed, of a closed one with a dead time.
-    pub(crate) fn closed_late(&self) -> Option<&Delayed> {
-        self.late.as_ref().filter(|late| late.closed).map(|late| &late.open)
+    /// What it is exactly, of a closed loop with a dead time.
+    pub(crate) fn closed_late(&self) -> Option<&LoopFunction> {
+        self.late.as_ref().and_then(|late| late.closed.as_ref())
+    }
+
+    /// What it is exactly, of an open system that was not measured.
+    pub(crate) fn delayed(&self) -> Delayed {
+        self.exact().cloned().unwrap_or_else(|| self.system.clone().into())
+    }
+
+    /// What closes it as an open loop.
+    pub(crate) const fn feedback(&self) -> &'static str {
+        if self.is_positive { "positive" } else { "negative" }
+    }
+
+    /// How many poles the closed loop has that grow, of an open loop that was measured and of which it was said how many it has itself; or
+    /// why the data do not tell.
+    pub(crate) fn counted(&self) -> Option<Result<usize, LinearError>> {
+        Some(self.data.as_ref()?.unstable_when_closed(self.unstable?))
     }
 
     /// What it is, for people.
@@ -95,16 +128,26 @@ impl Named {
         if let Some(data) = &self.data {
             let (low, high) = data.band();
             return format!(
-                "{} measured values from {} to {} rad/s",
+                "{} measured values from {} to {} rad/s{}",
                 data.values().len(),
                 four(low),
-                four(high)
+                four(high),
+                left_out::words(data)
             );
         }
         match &self.late {
             None => self.system.to_string(),
-            Some(Late { open, closed: false, .. }) => open.to_string(),
-            Some(Late { open, .. }) => format!("L / (1 + L), L = {open}"),
+            Some(Late { open, closed: None, .. }) => open.to_string(),
+            Some(Late { open, closed: Some(function), .. }) => {
+                let member = match function.member() {
+                    LoopMember::Sensitivity => "1 / (1 + L)",
+                    LoopMember::Complementary if function.is_positive() => "−L / (1 + L)",
+                    LoopMember::Complementary => "L / (1 + L)",
+                    LoopMember::Load => "P / (1 + L)",
+                    LoopMember::Control => "C / (1 + L)",
+                };
+                format!("{member}, L = {open}")
+            }
         }
     }
 
@@ -120,7 +163,7 @@ impl Named {
         }
         match (self.exact(), self.closed_late()) {
             (Some(exact), _) => exact.at_frequency(rad_s),
-            (_, Some(open)) => open.closed_at_frequency(rad_s),
+            (_, Some(closed)) => closed.at_frequency(rad_s),
             _ => self.system.at(self.system.time().at_frequency(rad_s)),
         }
     }
@@ -142,7 +185,7 @@ impl Named {
         }
         match (self.exact(), self.closed_late()) {
             (Some(exact), _) => exact.frequency_response(rad_s),
-            (_, Some(open)) => open.closed_frequency_response(rad_s),
+            (_, Some(closed)) => closed.frequency_response(rad_s),
             _ => self.system.frequency_response(rad_s),
         }
     }
@@ -158,6 +201,9 @@ impl Named {
     /// For how much longer it may be late; of measured data if the loop is stable.
     pub(crate) fn delay_margin(&self, margins: &Margins) -> DelayMargin {
         if self.data.is_some() {
+            if let Some(Ok(1..)) = self.counted() {
+                return DelayMargin::Unstable;
+            }
             return margins.least_delay().map_or(DelayMargin::Unknown, |margin| DelayMargin::Delay {
                 delay_s: margin.delay_s,
                 rad_s: margin.rad_s,
@@ -169,15 +215,36 @@ impl Named {
     /// What it does by itself.
     pub(crate) fn stability(&self) -> Stability {
         match self.closed_late() {
-            Some(open) => open.closed_growing().stability().unwrap_or(Stability::Growing),
+            Some(closed) => closed.growing().stability().unwrap_or(Stability::Growing),
             None => self.system.stability(),
         }
+    }
+
+    /// The H∞ norm; none of what was measured.
+    pub(crate) fn h_infinity(&self) -> Option<Norm> {
+        if self.data.is_some() {
+            return None;
+        }
+        Some(match self.closed_late() {
+            Some(closed) => closed.h_infinity(),
+            // a dead time leaves the gain
+            None => self.exact().map_or(&self.system, Delayed::rational).h_infinity(),
+        })
+    }
+
+    /// The H2 norm, where there is one and it is known.
+    pub(crate) fn h2_norm(&self) -> Option<f64> {
+        if self.data.is_some() || self.closed_late().is_some() {
+            return None;
+        }
+        self.exact().map_or(&self.system, Delayed::rational).h2_norm().ok().flatten()
     }
 
     /// What becomes of it once it is closed; none where that is not defined.
     pub(crate) fn closed_stability(&self) -> Option<Stability> {
         if self.data.is_some() {
-            return None;
+            let stability = |count| if count == 0 { Stability::Stable } else { Stability::Growing };
+            return self.counted()?.ok().map(stability);
         }
         match self.exact() {
             Some(exact) => exact.closed_growing().stability(),
@@ -188,7 +255,7 @@ impl Named {
     /// How many poles grow once it is closed; none where that is not defined or has no end.
     pub(crate) fn closed_growing(&self) -> Option<usize> {
         if self.data.is_some() {
-            return None;
+            return self.counted()?.ok();
         }
         match self.exact().map(Delayed::closed_growing) {
             None => self.system.closed().ok().map(|closed| closed.growing_poles()),
@@ -236,7 +303,8 @@ impl Named {
             return data.bandwidth();
         }
         match self.closed_late() {
-            Some(open) => open.closed_bandwidth(),
+            Some(closed) if closed.member() == LoopMember::Complementary => closed.open().closed_bandwidth(),
+            Some(_) => None,
             None => self.exact().map_or(&self.system, Delayed::rational).bandwidth(),
         }
     }
@@ -246,7 +314,8 @@ impl Named {
             return data.resonance();
         }
         match self.closed_late() {
-            Some(open) => open.closed_resonance(),
+            Some(closed) if closed.member() == LoopMember::Complementary => closed.open().closed_resonance(),
+            Some(closed) => closed.h_infinity().peak(),
             None => self.exact().map_or(&self.system, Delayed::rational).resonance(),
         }
     }
@@ -270,12 +339,18 @@ impl Named {
     pub(crate) fn json(&self) -> Value {
         if let Some(data) = &self.data {
             let (low, high) = data.band();
-            return json!({"name": self.name, "measured": data.values().len(), "from_rad_s": low, "to_rad_s": high});
+            return json!({
+                "name": self.name,
+                "measured": data.values().len(),
+                "from_rad_s": low,
+                "to_rad_s": high,
+                "left_out": left_out::json(data),
+            });
         }
         let Some(late) = &self.late else { return system_json(&self.name, &self.system) };
         let mut object = system_json(&self.name, late.open.rational());
         object["delay_s"] = late.open.delay_s().into();
-        if late.closed {
+        if late.closed.is_some() {
             object["closed"] = true.into();
             let stability = self.stability();
             object["stable"] = (stability == Stability::Stable).into();

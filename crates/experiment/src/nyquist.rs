@@ -44,11 +44,13 @@ pub struct Finding {
 
 /// A loop and what is known of it.
 struct Entry {
+    /// What is plotted.
     named: Named,
+    /// The margins, of the open loop: of one that was closed, what it was before.
+    margins: Margins,
     rad_s: Vec<f64>,
     values: Vec<Complex>,
     phases_deg: Vec<f64>,
-    margins: Margins,
     /// Where it is real, and finite.
     crossings: Vec<RealCrossing>,
     /// Poles of the open loop that grow, and of the closed one.
@@ -57,16 +59,30 @@ struct Entry {
 }
 
 impl Entry {
+    /// The loop whose margins are told: before it was closed, if it was.
+    fn open(&self) -> &Named {
+        self.named.opened.as_deref().unwrap_or(&self.named)
+    }
+
+    /// Whether what is plotted is a closed loop.
+    const fn is_closed(&self) -> bool {
+        self.named.opened.is_some()
+    }
+
     fn of(named: Named, rad_s: &[f64]) -> Self {
+        let open = named.opened.as_deref().unwrap_or(&named);
+        let (margins, closed_unstable) = (open.margins(), open.closed_growing());
+        let open_unstable = open.unstable.filter(|_| open.data.is_some());
+        let open_unstable = open_unstable.unwrap_or_else(|| open.system.growing_poles());
         let response = named.frequency_response(rad_s.to_vec());
         Self {
             rad_s: response.rad_s.clone(),
             phases_deg: response.phases_deg().collect(),
             values: response.values,
-            margins: named.margins(),
+            margins,
             crossings: named.real_crossings(),
-            open_unstable: named.system.growing_poles(),
-            closed_unstable: named.closed_growing(),
+            open_unstable,
+            closed_unstable,
             named,
         }
     }

@@ -17,6 +17,7 @@ mod write;
 
 use tracelight_task::Failure;
 
+pub(crate) use crate::plant_file::columns::LEAST_COHERENCE;
 use crate::plant_file::node::Wrong;
 use crate::table::Log;
 
@@ -95,6 +96,3 @@ fn text(bytes: &[u8]) -> String {
         Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,6 +1,6 @@
 //! Systems from files among the names of formulas.
 
-use tracelight_linear::{Delayed, FrequencyData, StateSpace, Time, TransferFunction};
+use tracelight_linear::{Delayed, FrequencyData, LinearError, StateSpace, Time, TransferFunction};
 use tracelight_task::Failure;
 
 use crate::plant_file::{self, PlantFile};
@@ -61,17 +61,43 @@ impl Plants {
             PlantFile::Transfer(system) => Whole::System(system.clone()),
             PlantFile::Frequencies(data) => Whole::Data(data.clone()),
             PlantFile::StateSpace(system) => {
-                let (outputs, inputs) = system.d().shape();
-                let several = || {
-                    let message = format!(
-                        "{text} has {inputs} inputs and {outputs} outputs: give it a name, --with P={text}, and write P11 for output 1 \
-                         from input 1, up to P{outputs}{inputs}"
-                    );
-                    Failure::usage("no-such-system", message)
-                };
-                Whole::System(one_of(system, "").ok_or_else(several)?)
+                let named = format!("give it a name, --with P={text}, and write");
+                Whole::System(one_of(system, "").ok_or_else(|| several(text, system, ("P", &named)))?)
             }
         }))
+    }
+
+    /// Refuses a formula that names a system of several inputs or outputs as a whole.
+    ///
+    /// # Errors
+    /// `no-such-system`: how one channel is named, and which command takes all of them.
+    pub(crate) fn refuse_several(&self, text: &str) -> Result<(), Failure> {
+        let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).collect();
+        let whole = self.0.iter().find_map(|(name, plant)| match plant {
+            PlantFile::StateSpace(system) if words.contains(&name.as_str()) => Some((name, system)),
+            _ => None,
+        });
+        match whole.filter(|(_, system)| system.d().shape() != (1, 1)) {
+            Some((name, system)) => Err(several(name, system, (name, "write"))),
+            None => Ok(()),
+        }
+    }
+
+    /// The product of systems in state space, the last being the first that the input meets; none where a factor is no such system.
+    pub(crate) fn product(&self, text: &str) -> Option<Result<StateSpace, LinearError>> {
+        let of_name = |word: &str| {
+            self.0.iter().find_map(|(name, plant)| match plant {
+                PlantFile::StateSpace(system) if name == word => Some(system),
+                _ => None,
+            })
+        };
+        if let Some(whole) = of_name(text) {
+            return Some(Ok(whole.clone()));
+        }
+        let words = text.split(|c: char| c == '*' || c.is_whitespace()).filter(|word| !word.is_empty());
+        let factors: Vec<&StateSpace> = words.map(of_name).collect::<Option<_>>()?;
+        let (last, others) = factors.split_last()?;
+        Some(others.iter().rev().try_fold((*last).clone(), |first, next| first.series(next)))
     }
 
     /// Measured data that a formula names.
@@ -82,6 +108,16 @@ impl Plants {
             _ => None,
         })
     }
+}
+
+/// What is said of a system of several inputs or outputs where one of each is needed; a name for its channels and how to use that.
+fn several(text: &str, system: &StateSpace, (name, how): (&str, &str)) -> Failure {
+    let (outputs, inputs) = system.d().shape();
+    let message = format!(
+        "{text} has {inputs} inputs and {outputs} outputs: lab sigma takes all of it; for a channel {how} {name}11 for output 1 from input 1, up \
+         to {name}{outputs}{inputs}"
+    );
+    Failure::usage("no-such-system", message)
 }
 
 /// Output 2 from input 1 for `21`, the only one for no digits; without the modes that this channel neither moves nor shows.

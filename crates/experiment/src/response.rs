@@ -4,15 +4,16 @@ mod figure;
 mod view;
 
 use tracelight_linear::{
-    Answer, Complex, Delayed, Ending, Extreme, LinearError, Response, StepInfo, Time, TransferFunction,
-    logspace,
+    Answer, Complex, Delayed, Ending, Extreme, LinearError, LoopMember, Response, StepInfo, Time,
+    TransferFunction, logspace,
 };
 use tracelight_task::{Failure, Task};
 
+use crate::closing::Around;
 use crate::finding::Experiment;
 use crate::named::Named;
 use crate::numbers::two_digits;
-use crate::systems::{Systems, bounded};
+use crate::systems::{Systems, bounded, not_measured};
 
 /// Systems and what comes into them.
 #[derive(Clone, Debug)]
@@ -21,6 +22,10 @@ pub struct Request {
     pub systems: Systems,
     /// What comes in, from rest at time 0.
     pub input: Input,
+    /// A controller beside each system, which then is the plant of a loop; without one a loop that is closed has a controller of 1.
+    pub controller: Option<String>,
+    /// Where it comes in.
+    pub enters: Enters,
     /// For how long, s; if not given, until all have settled and somewhat longer.
     pub duration_s: Option<f64>,
     /// How many values, evenly over that time; of samples each of them counts instead.
@@ -36,6 +41,17 @@ pub enum Input {
     Impulse,
     /// Rising by 1 a second.
     Ramp,
+}
+
+/// Where what comes in does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Enters {
+    /// As the system's input, of a loop as its setpoint.
+    Setpoint,
+    /// As a disturbance at the plant's input: a load.
+    PlantInput,
+    /// As a disturbance at the plant's output.
+    PlantOutput,
 }
 
 /// What each system answers.
@@ -77,7 +93,7 @@ impl Experiment for Request {
     type Finding = Finding;
 
     fn run(self, _: Task<'_>) -> Result<Finding, Failure> {
-        let systems = self.systems.systems()?;
+        let systems = self.answering()?;
         bounded(self.points, systems.len())?;
         let own = || systems.iter().map(|named| shown(named, self.input)).fold(0.0, f64::max);
         let duration_s = self.duration_s.unwrap_or_else(own);
@@ -88,6 +104,42 @@ impl Experiment for Request {
 }
 
 impl Request {
+    /// The systems whose answers are asked for.
+    fn answering(&self) -> Result<Vec<Named>, Failure> {
+        if self.controller.is_none() && self.enters == Enters::Setpoint {
+            if self.systems.positive && !self.systems.closed {
+                let message = "--positive is of a loop: close it with --closed, or name a --controller";
+                return Err(Failure::usage("usage", message.to_owned()));
+            }
+            return self.systems.systems();
+        }
+        if self.controller.is_none() && !self.systems.closed {
+            let message = "--disturbance is of a loop: close it with --closed, or name a --controller";
+            return Err(Failure::usage("usage", message.to_owned()));
+        }
+        let formula = self.controller.clone().unwrap_or_else(|| "1".to_owned());
+        let (member, what) = match self.enters {
+            Enters::Setpoint => (LoopMember::Complementary, ", closed"),
+            Enters::PlantInput => (LoopMember::Load, ", disturbed at the plant's input"),
+            Enters::PlantOutput => (LoopMember::Sensitivity, ", disturbed at the plant's output"),
+        };
+        let plants = self.systems.opened()?.into_iter().map(not_measured);
+        let answering = plants.map(|plant| {
+            let plant = plant?;
+            let controllers = self.systems.controllers(std::slice::from_ref(&formula))?;
+            let controller =
+                controllers.into_iter().next().map_or_else(|| Err(no_controller()), not_measured)?;
+            let (name, open) = match &self.controller {
+                Some(formula) => {
+                    (format!("{} with {formula}{what}", plant.name), format!("{formula} {}", plant.name))
+                }
+                None => (format!("{}{what}", plant.name), plant.name.clone()),
+            };
+            Around::new(plant, controller, open, self.systems.positive)?.member(member, name)
+        });
+        answering.collect()
+    }
+
     fn entry(&self, named: Named, duration_s: f64) -> Result<Entry, Failure> {
         let name = named.name.clone();
         let failed = |message: String| Failure::failed("no-such-system", format!("{name}: {message}"));
@@ -109,13 +161,16 @@ impl Request {
     }
 }
 
+fn no_controller() -> Failure {
+    Failure::usage("usage", "--controller names none".to_owned())
+}
+
 /// For how long the answer of a system is shown, s; with a dead time so much longer.
 fn shown(named: &Named, input: Input) -> f64 {
     match (&named.late, named.closed_late()) {
-        (_, Some(open)) => {
-            let lasts_s = open.closed_lasts_s();
-            let settled =
-                open.closed_answer(input.input(), lasts_s).and_then(|answer| answer.step_info(BAND));
+        (_, Some(closed)) => {
+            let lasts_s = closed.lasts_s() + closed.late_s();
+            let settled = closed.answer(input.input(), lasts_s).and_then(|answer| answer.step_info(BAND));
             settled.ok().and_then(|info| info.settle_s).map_or(lasts_s, |s| two_digits_up(1.35 * s))
         }
         (Some(late), None) => late.open.delay_s() + shown_s(late.open.rational(), input),
@@ -174,7 +229,7 @@ const BAND: f64 = 0.02;
 fn continuous(named: Named, input: Input, step_s: f64, count: usize) -> Result<Entry, LinearError> {
     let duration_s = count as f64 * step_s;
     let answer = match (&named.late, named.closed_late()) {
-        (_, Some(open)) => open.closed_answer(input.input(), duration_s.max(open.closed_lasts_s()))?,
+        (_, Some(closed)) => closed.answer(input.input(), duration_s.max(closed.lasts_s()))?,
         (Some(late), None) => late.open.answer(input.input())?,
         (None, None) => Delayed::from(named.system.clone()).answer(input.input())?,
     };

@@ -3,10 +3,8 @@
 use std::f64::consts::TAU;
 
 use tracelight_picture::Source;
-use tracelight_pipeline::{
-    Driving, OrderBy, Placed, Placing, Tracing, check_speed, place, refused, schedule, sketch,
-};
-use tracelight_stroke::{Drawing, Effort, Element, Path, Point, Stroke};
+use tracelight_pipeline::{Driving, Placed, Placing, Tracing, check_speed, place, refused, schedule, sketch};
+use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, plan};
 
@@ -74,7 +72,7 @@ impl OnTarget {
                 check_speed(&plan, driving)?;
                 Ok(plan)
             }
-            Self::Picture(placed) => Ok(schedule(placed, driving, OrderBy::default(), Effort::Normal)?.plan),
+            Self::Picture(placed) => Ok(schedule(placed, driving)?.plan),
         }
     }
 }

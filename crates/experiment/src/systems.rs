@@ -6,15 +6,16 @@ use tracelight_chart::{Colour, Theme};
 use tracelight_lab::Linearization;
 use tracelight_linear::{
     Complex, Delayed, Discretization, DistinctRoot, FormulaError, FrequencyData, LinearError, Mode, Names,
-    Time, TransferFunction, Zpk,
+    StateSpace, Time, TransferFunction, Zpk,
 };
 use tracelight_maths::complex;
 use tracelight_rig::Joint;
 use tracelight_sim::Compensator;
 use tracelight_task::Failure;
 
+use crate::closing;
 use crate::head::HeadChoice;
-use crate::named::{Late, Named};
+use crate::named::Named;
 use crate::numbers::four;
 use crate::plants::{Plants, SystemFile, Whole};
 
@@ -25,8 +26,12 @@ pub struct Systems {
     pub formulas: Vec<String>,
     /// How they are read.
     pub how: Reading,
-    /// Close each by negative feedback of its output, after it is sampled.
+    /// Close each by feedback of its output, after it is sampled.
     pub closed: bool,
+    /// The feedback is positive: an open loop G is taken as −G, whose turns round −1 are those of G round +1.
+    pub positive: bool,
+    /// How many unstable poles each open loop has that was measured, if that is known.
+    pub unstable: Option<usize>,
     /// How they are plotted.
     pub theme: Theme,
 }
@@ -58,14 +63,18 @@ pub struct Reading {
     pub files: Vec<SystemFile>,
 }
 
-const fn words(method: Discretization) -> &'static str {
-    match method {
+fn words(method: Discretization) -> String {
+    let words = match method {
+        Discretization::Tustin(Some(rad_s)) => {
+            return format!("Tustin's rule, pre-warped at {} rad/s", four(rad_s));
+        }
         Discretization::ZeroOrderHold => "a hold",
-        Discretization::Tustin(_) => "Tustin's rule",
+        Discretization::Tustin(None) => "Tustin's rule",
         Discretization::FirstOrderHold => "a first-order hold",
         Discretization::Impulse => "its impulse response",
         Discretization::Matched => "matching",
-    }
+    };
+    words.to_owned()
 }
 
 impl Systems {
@@ -76,35 +85,106 @@ impl Systems {
 
     /// All systems, as they are to be plotted, measured ones among them.
     pub(crate) fn with_data(&self) -> Result<Vec<Named>, Failure> {
+        let all = self.opened()?.into_iter();
+        if self.closed {
+            return all.map(|named| closing::closed(named, self.positive)).collect();
+        }
+        if self.positive {
+            return all.map(closing::negated).collect();
+        }
+        Ok(all.collect())
+    }
+
+    /// All systems before they are closed.
+    ///
+    /// # Errors
+    /// As [`Systems::with_data`]; `usage` where it is said how many unstable poles what was measured has, and nothing was.
+    pub(crate) fn opened(&self) -> Result<Vec<Named>, Failure> {
+        let all = self.read()?;
+        if self.unstable.is_some() && all.iter().all(|named| named.data.is_none()) {
+            let message = "--unstable is of what was measured; of a formula the poles are known";
+            return Err(Failure::usage("usage", message.to_owned()));
+        }
+        Ok(all)
+    }
+
+    /// All systems before they are closed, beside others of which one may be what was measured.
+    pub(crate) fn beside<'a>(
+        &self,
+        mut others: impl Iterator<Item = &'a Named>,
+    ) -> Result<Vec<Named>, Failure> {
+        if others.any(|named| named.data.is_some()) { self.read() } else { self.opened() }
+    }
+
+    fn read(&self) -> Result<Vec<Named>, Failure> {
         let reader = self.how.reader()?;
         let all = self.formulas.iter().map(|text| text.trim()).zip(Colour::in_turn());
-        all.map(|(text, colour)| {
-            let mut named = reader.read(text, colour)?;
-            if let (true, Some(data)) = (self.closed, &named.data) {
-                named.data = Some(data.closed().map_err(|e| no_such_system(text, &e))?);
-                named.name += ", closed";
-            } else if self.closed {
-                named.system = named.system.closed().map_err(|e| no_such_system(text, &e))?;
-                named.name += ", closed";
-                if let Some(late) = &mut named.late {
-                    late.closed = true;
-                }
-            }
-            Ok(named)
-        })
-        .collect()
+        all.map(|(text, colour)| Ok(Named { unstable: self.unstable, ..reader.read(text, colour)? }))
+            .collect()
+    }
+
+    /// Other formulas, read as these are, but sampled by Tustin's rule: controllers.
+    pub(crate) fn controllers(&self, formulas: &[String]) -> Result<Vec<Named>, Failure> {
+        let sampling = self.how.sampling.map(|(period_s, method)| match method {
+            Discretization::Tustin(_) => (period_s, method),
+            _ => (period_s, Discretization::Tustin(None)),
+        });
+        let how = Reading { sampling, ..self.how.clone() };
+        let reader = how.reader()?;
+        formulas.iter().map(|text| reader.read(text.trim(), Colour::Black)).collect()
     }
 }
 
 impl OneSystem {
+    /// Its states, of any number of inputs and outputs: of a file, of a product of files, or of a formula.
+    pub(crate) fn states(&self) -> Result<States, Failure> {
+        let reader = self.how.reader()?;
+        let text = self.formula.trim();
+        let failed = |e: LinearError| no_such_system(text, &e);
+        let Some(product) = reader.plants.product(text) else {
+            let named = not_measured(reader.read(text, Colour::Black)?)?;
+            let system = named.system.state_space().map_err(failed)?;
+            return Ok(States { note: named.approximated(), name: named.name, system });
+        };
+        let (system, name) = (product.map_err(failed)?, text.to_owned());
+        Ok(match self.how.sampling {
+            None => States { name, system, note: String::new() },
+            Some((period_s, method)) => States {
+                name: sampled_name(name, period_s, method),
+                system: system.sampled(period_s, method).map_err(failed)?,
+                note: String::new(),
+            },
+        })
+    }
+
+    /// Other systems, read as it is.
+    pub(crate) fn others(&self, formulas: &[String]) -> Result<Vec<Named>, Failure> {
+        let reader = self.how.reader()?;
+        formulas.iter().map(|text| not_measured(reader.read(text.trim(), Colour::Grey)?)).collect()
+    }
+
     /// Its name and what it is.
     pub(crate) fn system(&self) -> Result<Named, Failure> {
         not_measured(self.how.reader()?.read(self.formula.trim(), Colour::Black)?)
     }
 }
 
+/// A system of any number of inputs and outputs.
+pub(crate) struct States {
+    /// As typed, and what was made of it.
+    pub(crate) name: String,
+    /// What it is; with a dead time nearly that.
+    pub(crate) system: StateSpace,
+    /// What that is worth, a line; nothing where it is exact.
+    pub(crate) note: String,
+}
+
+fn sampled_name(name: String, period_s: f64, method: Discretization) -> String {
+    name + &format!(", sampled every {} ms by {}", four(1e3 * period_s), words(method))
+}
+
 /// Refuses what was measured: it has no poles and no equations.
-fn not_measured(named: Named) -> Result<Named, Failure> {
+pub(crate) fn not_measured(named: Named) -> Result<Named, Failure> {
     if named.data.is_none() {
         return Ok(named);
     }
@@ -115,7 +195,7 @@ fn not_measured(named: Named) -> Result<Named, Failure> {
     Err(Failure::failed("no-such-system", message))
 }
 
-fn no_such_system(text: &str, error: &LinearError) -> Failure {
+pub(crate) fn no_such_system(text: &str, error: &LinearError) -> Failure {
     Failure::failed("no-such-system", format!("{text}: {error}"))
 }
 
@@ -200,6 +280,7 @@ impl Reader<'_> {
             Some(Whole::System(system)) => system.into(),
             Some(Whole::Data(data)) => return self.measured(text, data, colour),
             None => {
+                self.plants.refuse_several(text)?;
                 let read = parsed(text, time, &|name| self.named(name, 1.0))?;
                 if let Some(data) = self.plants.data_in(text) {
                     let twice = parsed(text, time, &|name| self.named(name, 2.0))?;
@@ -208,18 +289,15 @@ impl Reader<'_> {
                 read
             }
         };
-        let mut name = text.to_owned();
+        let name = text.to_owned();
         if let Some((period_s, method)) = self.how.sampling {
             let system = read.sampled(period_s, method).map_err(|e| no_such_system(text, &e))?;
-            name += &format!(", sampled every {} ms by {}", four(1e3 * period_s), words(method));
-            return Ok(Named::rational(name, system, colour));
+            return Ok(Named::rational(sampled_name(name, period_s, method), system, colour));
         }
         if read.delay_s() == 0.0 {
             return Ok(Named::rational(name, read.rational().clone(), colour));
         }
-        let late = Late::of(read, self.how.pade);
-        let system = late.open.approximated(late.order).map_err(|e| no_such_system(text, &e))?;
-        Ok(Named { late: Some(late), ..Named::rational(name, system, colour) })
+        closing::late(name, read, self.how.pade, colour)
     }
 
     fn measured(&self, text: &str, data: FrequencyData, colour: Colour) -> Result<Named, Failure> {

@@ -16,10 +16,16 @@ pub enum FormatError {
         limit: usize,
     },
     /// Bytes that are no UTF-8 text.
-    #[error("byte {offset} is not UTF-8 text: save the file as plain text, not compressed")]
+    #[error("byte {offset} is not UTF-8 text: save the file as UTF-8")]
     NotText {
         /// Offset of the first byte that is not.
         offset: usize,
+    },
+    /// A packed file that cannot be unpacked.
+    #[error("the file is packed with gzip, and broken or cut off ({message}): save it again")]
+    Packing {
+        /// What the unpacker says.
+        message: String,
     },
     /// The format's own grammar is broken.
     #[error("line {line}, column {column}: not valid {format}: {message}")]
@@ -60,6 +66,14 @@ pub enum FormatError {
     Nothing {
         /// Why that may be.
         hint: &'static str,
+    },
+    /// A file that is in order and holds only what is not drawn.
+    #[error("nothing to draw: {hint} ({found} found)")]
+    Undrawn {
+        /// Why that may be.
+        hint: &'static str,
+        /// What it holds, by name and number.
+        found: String,
     },
     /// A font that is not used.
     #[error(transparent)]

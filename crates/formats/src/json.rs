@@ -12,7 +12,7 @@ use crate::{FormatError, Sheet, check_size, is_sound};
 pub struct Traced {
     /// The picture's size and the strokes, px.
     pub sheet: Sheet,
-    /// The tracer's mode: `auto`, `centreline`, `outline` or `sweep`.
+    /// The tracer's mode: `auto`, `centreline`, `outline` or `sweep`; `strokes` for what was not traced.
     pub mode: String,
 }
 
@@ -22,8 +22,14 @@ struct Document {
     width_px: f64,
     #[serde(serialize_with = "whole_if_it_is")]
     height_px: f64,
+    #[serde(default = "of_strokes")]
     mode: String,
     strokes: Vec<Line>,
+}
+
+/// The mode of a drawing that does not say how it was traced.
+fn of_strokes() -> String {
+    "strokes".to_owned()
 }
 
 #[derive(Serialize, Deserialize)]

@@ -80,5 +80,5 @@ pub fn draw(
         metres_per_unit: capitals_m.map(|_| 1e-3),
         drawing: drawing.transformed(place),
     };
-    Ok(Reading { sheet, remarks })
+    Ok(Reading { sheet, remarks, doubt: None })
 }

@@ -3,7 +3,7 @@
 //! | module | reads | writes | frame |
 //! |---|---|---|---|
 //! | [`svg`] | any SVG's paths | a placed drawing in true millimetres | sheet; target |
-//! | [`dxf`] | the model of an ASCII DXF | the same, release 2004 | sheet; target |
+//! | [`dxf`] | the model of a DXF | the same, release 2004 | sheet; target |
 //! | [`json`] | `strokes --json` | the same | pixels |
 //! | [`lettering`] | words that are to be drawn | – | sheet |
 //! | [`csv`] | `stroke,x_m,y_m` | the same | target |
@@ -24,6 +24,7 @@
 
 mod circular;
 pub mod csv;
+mod doubles;
 pub mod dxf;
 mod error;
 mod extent;
@@ -34,15 +35,19 @@ pub mod json;
 mod layers;
 pub mod lettering;
 mod limit;
+mod meant;
 mod number;
 mod options;
+mod parts;
 mod pen;
 pub mod svg;
+mod unpacked;
 
 pub use error::FormatError;
 pub use limit::{MAX_BYTES, MAX_COORDINATE};
 pub use options::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
 use tracelight_stroke::{Colour, Drawing, Point};
+pub use unpacked::{head, unpacked};
 
 /// A drawing on its sheet, as a file has it: x right, y down, the sheet spans `[0, width] × [0, height]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +69,23 @@ pub struct Reading {
     pub sheet: Sheet,
     /// What of the file is not in the drawing, and what to do about it: one sentence each.
     pub remarks: Vec<String>,
+    /// Why its size cannot be meant, and what to do about it: one sentence, where nobody has said how large it is to be.
+    pub doubt: Option<String>,
+}
+
+impl Reading {
+    /// A sheet that is all its file holds.
+    pub fn whole(sheet: Sheet) -> Self {
+        let doubt = sheet.doubt();
+        Self { sheet, remarks: Vec::new(), doubt }
+    }
+}
+
+impl Sheet {
+    /// Why its true size, where its file says one, cannot be meant.
+    pub(crate) fn doubt(&self) -> Option<String> {
+        self.metres_per_unit.and_then(|m| meant::doubt([self.width * m, self.height * m]))
+    }
 }
 
 /// A colour as people write it: `#rrggbb`, `#rgb`, `rgb(…)`, or one of CSS's names; `None` for anything else.

@@ -46,11 +46,6 @@ impl Pen {
         self.push(Element::Cubic { c1, c2, to });
     }
 
-    /// Whether it is where it started, having moved.
-    pub(crate) fn is_back(&self, within: f64) -> bool {
-        !self.elements.is_empty() && self.at.distance(self.start) <= within
-    }
-
     /// A cubic; an arc where it stands for one to `noise`, joined to the arc before it where both are of one circle.
     pub(crate) fn cubic_or_arc_to(&mut self, [c1, c2, to]: [Point; 3], noise: f64) {
         let piece = Piece { from: self.at, element: Element::Cubic { c1, c2, to } };

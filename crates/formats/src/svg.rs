@@ -1,9 +1,17 @@
 //! SVG: anyone's in, ours out.
 
+mod dash;
+mod gates;
 mod guard;
+mod ink;
 mod lines;
 mod names;
+mod paint;
+mod paper;
 mod read;
+mod remarks;
+mod seen;
+mod shape;
 mod style;
 mod swell;
 mod tags;

@@ -4,9 +4,8 @@ use tracelight_eye::figures::EyeFigures;
 use tracelight_eye::room::{Furnished, left};
 use tracelight_eye::seen::SeenLight;
 use tracelight_picture::{Raster, Source};
-use tracelight_pipeline::{Driving, OrderBy, Placed, Schedule, Sketch, place, schedule, sketch};
+use tracelight_pipeline::{Driving, Placed, Schedule, Sketch, place, schedule, sketch};
 use tracelight_sim::{RigConfig, Run, SimulatedRig};
-use tracelight_stroke::Effort;
 use tracelight_task::{Failure, Stop, Task};
 use tracelight_trajectory::Plan;
 
@@ -91,7 +90,7 @@ pub(crate) fn planned(
     task: Task<'_>,
 ) -> Result<Prepared, Failure> {
     task.stage("plan", 1);
-    let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving, OrderBy::default(), Effort::Normal));
+    let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving));
     let schedule = schedule?;
     task.check()?;
     let notes: Vec<String> = sketch.notes().into_iter().chain(driving.remarks(&schedule.plan)).collect();

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
-use tracelight_formats::{FormatError, ReadOptions, Reading, Sheet, csv, dxf, json, svg};
+use tracelight_formats::{FormatError, ReadOptions, Reading, Sheet, csv, dxf, head, json, svg, unpacked};
 use tracelight_image::Grey;
 use tracelight_stroke::{Affine, Drawing, Vec2};
 use tracelight_task::Failure;
@@ -51,9 +51,12 @@ pub fn decode(path: &str, bytes: &[u8]) -> Result<Source, Failure> {
 /// As there.
 pub fn decode_with(path: &str, bytes: &[u8], options: &ReadOptions) -> Result<Source, Failure> {
     let malformed = |e: &FormatError| match e {
-        FormatError::Nothing { .. } => Failure::failed("no-strokes", format!("{path}: {e}")),
+        FormatError::Nothing { .. } | FormatError::Undrawn { .. } => {
+            Failure::failed("no-strokes", format!("{path}: {e}"))
+        }
         _ => Failure::usage("malformed", format!("{path}: {}", brief(e))),
     };
+    let bytes = &*unpacked(bytes).map_err(|e| malformed(&e))?;
     let extension = Path::new(path).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
     match kind_of(bytes, extension.as_deref()) {
         Kind::Svg => svg::read_with(bytes, options).map(Source::Strokes).map_err(|e| malformed(&e)),
@@ -65,8 +68,8 @@ pub fn decode_with(path: &str, bytes: &[u8], options: &ReadOptions) -> Result<So
 }
 
 /// A sheet that is all its file holds.
-const fn whole(sheet: Sheet) -> Source {
-    Source::Strokes(Reading { sheet, remarks: Vec::new() })
+fn whole(sheet: Sheet) -> Source {
+    Source::Strokes(Reading::whole(sheet))
 }
 
 /// A sheet of true size whose centre is the target's origin, just large enough for a drawing in target metres.
@@ -96,14 +99,13 @@ fn kind_of(bytes: &[u8], extension: Option<&str>) -> Kind {
     if image::guess_format(bytes).is_ok() {
         return Kind::Image;
     }
-    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1024)]);
-    let head = head.trim_start_matches('\u{feff}').trim_start();
+    let head = head(bytes);
     match extension {
-        _ if is_dxf(bytes, head) => Kind::Dxf,
+        _ if is_dxf(bytes, &head) => Kind::Dxf,
         _ if head.starts_with('<') => Kind::Svg,
         _ if head.starts_with('{') => Kind::Json,
-        _ if head.starts_with("stroke,") => Kind::Csv,
-        Some("svg") => Kind::Svg,
+        _ if csv::is_header(head.lines().next().unwrap_or_default()) => Kind::Csv,
+        Some("svg" | "svgz") => Kind::Svg,
         Some("dxf") => Kind::Dxf,
         Some("json") => Kind::Json,
         Some("csv") => Kind::Csv,
@@ -293,5 +295,28 @@ mod tests {
         assert_eq!(corner(bar(white, black, 8..18)), 255, "a light figure with dark lines");
         assert_eq!(corner(bar(white, black, 4..98)), 255, "a page with clear borders");
         assert_eq!(corner(bar([0; 4], [0; 4], 0..0)), 255, "nothing");
+    }
+
+    fn strokes(name: &str, bytes: &[u8]) -> Reading {
+        match decode(name, bytes) {
+            Ok(Source::Strokes(reading)) => reading,
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn drawings_are_known_by_their_content_packed_or_not() {
+        let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='9mm' height='9mm'><path d='M1 1h7' stroke='red'/></svg>";
+        let wide: Vec<u8> = format!("\u{feff}{svg}").encode_utf16().flat_map(u16::to_be_bytes).collect();
+        let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        std::io::Write::write_all(&mut packer, &wide).unwrap();
+        for bytes in [svg.as_bytes().to_vec(), wide, packer.finish().unwrap()] {
+            assert_eq!(strokes("no-extension", &bytes).sheet.drawing.strokes.len(), 1);
+        }
+        let table = strokes("no-extension", b"x_mm;y_mm\n0,5;0\n100,5;0\n");
+        assert!((table.sheet.drawing.length(1e-9) - 0.1).abs() < 1e-9);
+        let json = r#"{"width_px":4,"height_px":3,"strokes":[{"closed":false,"points":[[0,0],[3,2]]}]}"#;
+        assert_eq!(strokes("no-extension", json.as_bytes()).sheet.drawing.strokes.len(), 1);
+        assert!(strokes("map.csv", b"0,0\n250,0\n").doubt.unwrap().contains("--width"));
     }
 }

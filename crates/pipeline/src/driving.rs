@@ -6,6 +6,8 @@ use tracelight_trajectory::{
     AccelerationDemand, DarkMove, LitSpeed, Machine, Plan, PlanRequest, Ramps, Shape,
 };
 
+use crate::ordering::OrderRequest;
+
 /// 3 ft: where the original rig's camera stood.
 pub const DEFAULT_DISTANCE_M: f64 = 0.9144;
 /// 1 ft/s: what the original rig was to reach.
@@ -28,6 +30,8 @@ pub struct Driving {
     pub request: PlanRequest,
     /// What of that somebody asked for.
     pub asked: Asked,
+    /// In which order strokes are drawn.
+    pub order: OrderRequest,
 }
 
 /// What somebody asked for, and did not leave to the rig.
@@ -40,10 +44,10 @@ pub struct Asked {
 }
 
 impl Driving {
-    /// Of a rig that stands there.
+    /// Of a rig that stands there; strokes come in whatever order saves time.
     #[must_use]
     pub fn new(rig: RigConfig, pose: HeadPose, request: PlanRequest, asked: Asked) -> Self {
-        Self { machine: rig.machine(pose), rig, pose, request, asked }
+        Self { machine: rig.machine(pose), rig, pose, request, asked, order: OrderRequest::default() }
     }
 
     /// The head stands elsewhere than was told.

@@ -1,7 +1,7 @@
 //! Strokes on the target.
 
 use tracelight_aim::{Placement, SizeRequest};
-use tracelight_formats::svg;
+use tracelight_formats::{Reading, svg};
 use tracelight_picture::Source;
 use tracelight_stroke::{Affine, Drawing, Point, Vec2};
 
@@ -126,8 +126,11 @@ impl Placed {
 /// As [`sketch_at`], of a sheet that goes where `placing` says.
 ///
 /// # Errors
-/// As there.
+/// As there; and a drawing whose own size cannot be meant, if no other is asked for.
 pub fn sketch(name: &str, source: Source, tracing: &Tracing, placing: &Placing) -> Result<Sketch, Failure> {
+    if let (Source::Strokes(Reading { doubt: Some(doubt), .. }), None) = (&source, placing.size) {
+        return Err(Failure::usage("size-not-meant", format!("{name}: {doubt}")));
+    }
     let scale = |size: (f64, f64), true_width_m: Option<f64>| placing.metres_per_unit(size, true_width_m);
     sketch_at(name, source, tracing, &placing.choice, &scale)
 }

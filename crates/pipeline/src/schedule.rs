@@ -1,25 +1,16 @@
 //! Strokes on the target to a plan: order, then time.
 
 use tracelight_sim::first_standing;
-use tracelight_stroke::{Effort, OrderOptions, Ordered, Point, order};
+use tracelight_stroke::{OrderOptions, Ordered, Point, Travel, order, order_by_layer, reading_order};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, TravelTime, plan};
 
 use crate::driving::{Driving, REACHED};
 use crate::hopeless;
+use crate::ordering::{OrderBy, Sequence};
 use crate::placed::Placed;
 use crate::reach::check_reach;
 use crate::refused::refused;
-
-/// What the order is to save.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum OrderBy {
-    /// Seconds of dark moves.
-    #[default]
-    Time,
-    /// Metres of dark moves.
-    Distance,
-}
 
 /// A drawing in order, and in time.
 #[derive(Clone, Debug)]
@@ -34,26 +25,34 @@ pub struct Schedule {
 ///
 /// # Errors
 /// What cannot be reached, or not at the speed asked for.
-pub fn schedule(
-    placed: &Placed,
-    driving: &Driving,
-    by: OrderBy,
-    effort: Effort,
-) -> Result<Schedule, Failure> {
+pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure> {
     check_reach(placed, driving)?;
     hopeless::check(&placed.drawing, driving)?;
-    let start = driving.machine.geometry.spot(&driving.pose, Default::default()).unwrap_or(Point::ORIGIN);
-    let options = OrderOptions { effort, seed: 0 };
-    let ordered = match by {
-        OrderBy::Time => {
-            order(&placed.drawing, start, options, &TravelTime::new(&driving.machine, &driving.request))
-        }
-        OrderBy::Distance => order(&placed.drawing, start, options, &|a: Point, b: Point| a.distance(b)),
-    };
+    let ordered = ordered(placed, driving);
     let plan = plan(&ordered.drawing, &driving.machine, &driving.request).map_err(refused)?;
     check_speed(&plan, driving)?;
     check_standing(&plan, driving)?;
     Ok(Schedule { ordered, plan })
+}
+
+/// A drawing's strokes in the order that is asked for, from where the beam falls at rest.
+fn ordered(placed: &Placed, driving: &Driving) -> Ordered {
+    let start = driving.machine.geometry.spot(&driving.pose, Default::default()).unwrap_or(Point::ORIGIN);
+    match driving.order.by {
+        OrderBy::Time => {
+            by_cost(placed, driving, start, &TravelTime::new(&driving.machine, &driving.request))
+        }
+        OrderBy::Distance => by_cost(placed, driving, start, &|a: Point, b: Point| a.distance(b)),
+    }
+}
+
+fn by_cost(placed: &Placed, driving: &Driving, start: Point, cost: &impl Travel) -> Ordered {
+    let options = OrderOptions { effort: driving.order.effort, seed: 0 };
+    match driving.order.sequence {
+        Sequence::Free => order(&placed.drawing, start, options, cost),
+        Sequence::Layers => order_by_layer(&placed.drawing, start, options, cost),
+        Sequence::Reading => reading_order(&placed.drawing, start, cost),
+    }
 }
 
 /// A speed that is asked for and reached nowhere is refused; slowing down here and there is no error.

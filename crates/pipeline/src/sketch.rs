@@ -191,7 +191,7 @@ pub fn sketch_at(
 }
 
 /// Strokes as they are.
-fn taken(Reading { sheet, remarks }: Reading) -> Sketch {
+fn taken(Reading { sheet, remarks, .. }: Reading) -> Sketch {
     Sketch {
         size: (sheet.width, sheet.height),
         true_width_m: sheet.metres_per_unit.map(|m| m * sheet.width),

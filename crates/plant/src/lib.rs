@@ -20,7 +20,9 @@ mod gain;
 mod light;
 mod mechanism;
 mod plant;
+mod servo_joint;
 mod step;
+mod stepper_joint;
 mod teeth;
 mod wear;
 
@@ -31,6 +33,8 @@ pub use config::{EncoderConfig, PlantConfig, RelayConfig};
 pub use foot::{FootConfig, GyroscopeConfig};
 pub use gain::Weakening;
 pub use plant::Plant;
+pub use servo_joint::{ServoDrive, ServoJoint};
 pub use step::{JointState, Stepper};
+pub use stepper_joint::{StepperDemand, StepperDrive, StepperJoint};
 pub use teeth::LooseBelt;
 pub use wear::Wear;

@@ -33,6 +33,7 @@ mod painting;
 mod preview;
 mod sample;
 mod seen;
+mod sequence;
 pub mod stages;
 mod summary;
 
@@ -47,4 +48,5 @@ pub use painting::paint;
 pub use preview::{ColourBy, preview};
 pub use sample::planned;
 pub use seen::seen_csv;
+pub use sequence::{DrawnStroke, sequence};
 pub use summary::{LogFigures, PlanFigures, StrokeFigures, Summary};

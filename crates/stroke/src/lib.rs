@@ -24,7 +24,9 @@ pub use colour::Colour;
 pub use compare::{Comparison, Score, compare, compare_polylines, score, score_polylines};
 pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Rect, Vec2};
-pub use order::{Effort, OrderOptions, Ordered, StrokeEnd, Travel, least_cost, order};
+pub use order::{
+    Effort, OrderOptions, Ordered, StrokeEnd, Travel, least_cost, order, order_by_layer, reading_order,
+};
 pub use path::{Element, Path, PathPoint, Piece};
 pub use polyline::polyline_length;
 pub use simplify::simplify;

@@ -9,6 +9,7 @@
 mod ascent;
 mod bound;
 mod exchange;
+mod followed;
 mod forest;
 mod greedy;
 mod kdtree;
@@ -23,6 +24,7 @@ mod travel;
 use kurbo::Point;
 
 use crate::Drawing;
+pub use followed::{order_by_layer, reading_order};
 use ports::Ports;
 use route::Route;
 pub use travel::{StrokeEnd, Travel};

@@ -79,20 +79,25 @@ impl Failure {
         Place::before(self.message.lines().next()?)
     }
 
-    /// `{"error":{"code","message","where","help","exit"}}`; `where` is `{"file","line","column"}`, null where no place is known, and so is
-    /// the column. `help` is what to do.
+    /// `{"error":…}` with the failure's [object](Self::object).
     #[must_use]
     pub fn json(&self, help: &str) -> String {
+        serde_json::json!({ "error": self.object(help) }).to_string()
+    }
+
+    /// `{"code","message","where","help","exit"}`; `where` is `{"file","line","column"}`, null where no place is known, and so is
+    /// the column. `help` is what to do.
+    #[must_use]
+    pub fn object(&self, help: &str) -> serde_json::Value {
         let place = self.place().map(
             |Place { file, line, column }| serde_json::json!({"file": file, "line": line, "column": column}),
         );
-        serde_json::json!({"error": {
+        serde_json::json!({
             "code": self.code,
             "message": self.message,
             "where": place,
             "help": help,
             "exit": self.status.code(),
-        }})
-        .to_string()
+        })
     }
 }

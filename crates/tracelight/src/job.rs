@@ -56,6 +56,7 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
 fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
+    driving.order.sequence = args.sequence.sequence();
     let request = Request {
         name: args.name(),
         tracing: args.tracing.tracing(),

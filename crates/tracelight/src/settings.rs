@@ -21,6 +21,7 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
         ),
         ("lit speed", args.driving.lit_speed.name().into()),
         ("corners", args.driving.corner.map_or("sharp".into(), |c| format!("rounded by up to {}", mm(c.0)))),
+        ("order", args.sequence.order.name().into()),
         ("profile", args.driving.profile.name().into()),
         ("rig", format!("{} ({})", driving.rig.name, driving.rig.description)),
         ("law", law_of(&driving.rig)),

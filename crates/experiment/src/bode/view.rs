@@ -3,15 +3,17 @@
 use std::fmt::Write;
 
 use serde_json::{Value, json};
-use tracelight_chart::{Curve, Figure, Key, Label, Mark, Panel, Pen, Scale, Sign};
+use tracelight_chart::{Colour, Curve, Figure, Key, Label, Mark, Panel, Pen, Scale, Sign};
 use tracelight_linear::{Margins, Peak, Stability, decibels};
 use tracelight_maths::complex;
 use tracelight_task::Failure;
 
 use super::{Entry, Finding, Kind};
 use crate::finding::{self, Plotted};
-use crate::margins::{margin_lines, margins_json, summary};
+use crate::margins::{counted_lines, margin_lines, margins_json, summary};
 use crate::numbers::four;
+use crate::plant_file::LEAST_COHERENCE;
+use crate::steady::{error_lines, errors_json, norm_lines, norms_json};
 use crate::system_json::stability_name;
 
 impl finding::Finding for Finding {
@@ -37,21 +39,9 @@ impl finding::Finding for Finding {
                     four(rad_s)
                 );
             }
-            let _ = match entry.kind {
-                Kind::Open { closed: Some(closed), .. } => {
-                    writeln!(text, "    closed by negative feedback it {}\n", is(closed))
-                }
-                Kind::Open { closed: None, .. } if named.data.is_some() => writeln!(
-                    text,
-                    "    whether it is stable once it is closed, measured data alone do not tell\n"
-                ),
-                Kind::Closed(_) if named.data.is_some() => writeln!(text),
-                Kind::Open { closed: None, .. } => writeln!(
-                    text,
-                    "    closed by negative feedback it is not defined: 1 + G is zero at infinite frequency\n"
-                ),
-                Kind::Closed(stability) => writeln!(text, "    it {}\n", is(stability)),
-            };
+            text += &norm_lines(named);
+            text += &entry.stability();
+            text += "\n";
         }
         text.trim_end().to_owned()
     }
@@ -64,8 +54,14 @@ impl finding::Finding for Finding {
                 Kind::Open { margins, closed } => {
                     (margins_json(named.delay_margin(margins), margins), *closed)
                 }
-                Kind::Closed(stability) => (Value::Null, Some(*stability)),
+                Kind::Closed(stability) => (Value::Null, *stability),
             };
+            let open = if let Kind::Open { .. } = entry.kind { Some(named) } else { named.opened.as_deref() };
+            object["error_constants"] = match open {
+                Some(open) if !named.is_positive => errors_json(open),
+                _ => Value::Null,
+            };
+            object["norms"] = norms_json(named);
             object["margins"] = margins;
             object["closed_stable"] = closed.map(|closed| closed == Stability::Stable).into();
             object["closed_stability"] = closed.map(stability_name).into();
@@ -112,11 +108,17 @@ impl Plotted for Finding {
             self.entries.iter().map(|e| curve(e, e.response.phases_deg().collect())).collect(),
         );
         for entry in &self.entries {
+            mark_left_out(entry, &mut magnitude, &mut phase);
             mark(entry, &mut magnitude, &mut phase);
+        }
+        let mut legend: Vec<Key> = self.entries.iter().map(key).collect();
+        if self.entries.iter().any(|entry| !entry.left_out.is_empty()) {
+            let name = format!("rings: coherence below {LEAST_COHERENCE}, left out");
+            legend.push(Key { colour: Colour::Grey, name });
         }
         Ok(Figure {
             title: "Bode plot".into(),
-            legend: self.entries.iter().map(key).collect(),
+            legend,
             panels: vec![magnitude, phase],
             columns: 1,
             panel: (820, 300),
@@ -145,6 +147,30 @@ impl Plotted for Finding {
     }
 }
 
+impl Entry {
+    /// What becomes of the loop, a line or more.
+    fn stability(&self) -> String {
+        let named = &self.named;
+        match self.kind {
+            Kind::Open { .. } if named.data.is_some() => counted_lines(named),
+            Kind::Closed(_) if named.data.is_some() => {
+                named.opened.as_ref().map_or(String::new(), |open| counted_lines(open))
+            }
+            Kind::Open { closed: Some(closed), .. } => {
+                let errors = if named.is_positive { String::new() } else { error_lines(named) };
+                format!("{errors}    closed by {} feedback it {}\n", named.feedback(), is(closed))
+            }
+            Kind::Open { closed: None, .. } => format!(
+                "    closed by {} feedback it is not defined: 1 + G is zero at infinite frequency\n",
+                named.feedback()
+            ),
+            Kind::Closed(stability) => {
+                stability.map_or(String::new(), |is_so| format!("    it {}\n", is(is_so)))
+            }
+        }
+    }
+}
+
 const fn is(stability: Stability) -> &'static str {
     match stability {
         Stability::Stable => "is stable",
@@ -159,6 +185,23 @@ fn key(entry: &Entry) -> Key {
         Kind::Closed(_) => entry.named.name.clone(),
     };
     Key { colour: entry.named.colour, name }
+}
+
+/// Rings where points were measured that are not trusted; their phase is on the turn that is nearest to the curve's.
+fn mark_left_out(entry: &Entry, magnitude: &mut Panel, phase: &mut Panel) {
+    let Some(data) = &entry.named.data else { return };
+    let (low, high) = data.band();
+    for &(w, value) in &entry.left_out {
+        let own = complex::arg(value).to_degrees();
+        let near = data.phase(w.clamp(low, high)).unwrap_or(0.0).to_degrees();
+        let shown = own + 360.0 * ((near - own) / 360.0).round();
+        for (panel, y) in [(&mut *magnitude, decibels(complex::norm(value))), (&mut *phase, shown)] {
+            // nothing has no decibels
+            if y.is_finite() && w > 0.0 {
+                panel.marks.push(Mark { colour: Colour::Grey, sign: Sign::Ring, at: (w, y) });
+            }
+        }
+    }
 }
 
 /// What stands out, at the curves where it is.

@@ -64,8 +64,12 @@ pub(crate) struct Weighted {
 }
 
 impl PidRequest {
-    pub(crate) fn design(&self, plant: &TransferFunction) -> Result<PidDesign, LinearError> {
-        let pid = plant.pid(self.wish)?;
+    pub(crate) fn design(
+        &self,
+        plant: &TransferFunction,
+        others: &[TransferFunction],
+    ) -> Result<PidDesign, LinearError> {
+        let pid = plant.pid_for_all(others, self.wish)?;
         let weights = match self.setpoint {
             SetpointWish::Error => SetpointWeights::ERROR,
             SetpointWish::Given(weights) => weights,

@@ -3,12 +3,13 @@
 use std::fmt::Write;
 
 use serde_json::json;
-use tracelight_chart::{Colour, Figure, Key};
+use tracelight_chart::{Colour, Curve, Figure, Key, Pen};
 use tracelight_linear::Stability;
 use tracelight_task::Failure;
 
 use super::Finding;
 use crate::design::panels::step_panels;
+use crate::design::set;
 use crate::finding::{self, Plotted};
 use crate::margins::{margin_lines, margins_json};
 use crate::numbers::{four, percent, seconds};
@@ -55,6 +56,9 @@ impl finding::Finding for Finding {
             "\nclosed it is {closed_is}\n{}",
             pole_lines(&closed.denominator().distinct_roots(), closed.time())
         );
+        if !self.set.is_empty() {
+            text += &set::lines(&self.set);
+        }
         if let Some(trial) = &self.trial {
             text += &format!("\n{}", trial.text());
         }
@@ -90,10 +94,30 @@ impl finding::Finding for Finding {
                 "settle_s": info.settle_s,
             })),
             "pid": self.pid.as_ref().map(|(design, weighted)| design.json(weighted)),
+            "set": (!self.set.is_empty()).then(|| set::json(&self.set)),
             "trial": self.trial.as_ref().map(Trial::json),
             "input_peak": self.peak.filter(|_| stable),
         })
         .to_string()
+    }
+}
+
+impl Finding {
+    /// Steps of the other systems.
+    fn others(&self) -> impl Iterator<Item = &[f64]> {
+        self.set.iter().skip(1).map(|member| member.step.as_slice())
+    }
+}
+
+/// The step of another system, as far as a plot has room.
+fn others_curve(step: &[f64], step_s: f64) -> Curve {
+    /// What grows is shown to here.
+    const MOST: f64 = 3.0;
+    let points = (0..).zip(step).map(|(k, y)| (f64::from(k) * step_s, *y));
+    Curve {
+        colour: Colour::Grey,
+        pen: Pen::Solid,
+        points: points.take_while(|(_, y)| y.abs() <= MOST).collect(),
     }
 }
 
@@ -107,6 +131,10 @@ impl Plotted for Finding {
             self.margins.modulus.map_or(String::new(), |m| format!(", modulus {}", four(m.distance)));
         let mut panels = Vec::from(step_panels(&self.step, &self.input));
         let mut legend = vec![Key { colour: Colour::Violet, name: format!("a step of 1{phase}{modulus}") }];
+        if !self.set.is_empty() {
+            panels[0].curves.splice(..0, self.others().map(|step| others_curve(step, self.step.step_s)));
+            legend.push(Key { colour: Colour::Grey, name: "with each other system".into() });
+        }
         if let Some(trial) = &self.trial {
             panels.extend(trial.panels());
             legend.push(Key { colour: Colour::Ochre, name: trial.name() });
@@ -125,10 +153,21 @@ impl Plotted for Finding {
     }
 
     fn csv(&self) -> Result<String, Failure> {
-        let mut text = String::from("t_s,output,input\n");
+        let mut text = String::from("t_s,output,input");
+        for number in 0..self.others().count() {
+            let _ = write!(text, ",output_{}", number + 2);
+        }
+        text.push('\n');
         for (row, output) in self.step.values.iter().enumerate() {
             let input = self.input.values.get(row).map_or(String::new(), |u| format!("{u:.9e}"));
-            let _ = writeln!(text, "{:.9e},{output:.9e},{input}", row as f64 * self.step.step_s);
+            let _ = write!(text, "{:.9e},{output:.9e},{input}", row as f64 * self.step.step_s);
+            for step in self.others() {
+                let _ = match step.get(row).filter(|y| y.is_finite()) {
+                    Some(y) => write!(text, ",{y:.9e}"),
+                    None => write!(text, ","),
+                };
+            }
+            text.push('\n');
         }
         Ok(text)
     }

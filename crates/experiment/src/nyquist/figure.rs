@@ -125,9 +125,12 @@ impl Finding {
         for (entry, curve) in self.entries.iter().zip(curves) {
             draw_curve(entry.named.colour, curve, &mut panel);
         }
-        panel.marks.push(Mark { colour: Colour::Black, sign: Sign::Cross, at: (-1.0, 0.0) });
-        panel.labels.push(Label::new((-1.0, 0.0), "−1"));
-        for entry in &self.entries {
+        // closed loops do not turn round it
+        if self.entries.iter().any(|entry| !entry.is_closed()) {
+            panel.marks.push(Mark { colour: Colour::Black, sign: Sign::Cross, at: (-1.0, 0.0) });
+            panel.labels.push(Label::new((-1.0, 0.0), "−1"));
+        }
+        for entry in self.entries.iter().filter(|entry| !entry.is_closed()) {
             mark_margins(entry, window, &mut panel);
         }
         for (entry, curve) in self.entries.iter().zip(curves) {

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use tracelight_chart::{Arrows, Colour, Curve, Figure, Guide, Key, Label, Mark, Panel, Pen, Sign};
-use tracelight_linear::decibels;
+use tracelight_linear::{Margins, decibels};
 use tracelight_maths::{complex, powf};
 
 use super::{Entry, Finding};
@@ -26,13 +26,17 @@ impl Finding {
         // whole half turns, −180° at least among them
         let low = (phases().fold(-200.0, f64::min) / 90.0).floor() * 90.0;
         let high = (phases().fold(-90.0, f64::max) / 90.0).ceil() * 90.0;
+        // of closed loops neither −1 nor what they would become once more closed is of interest
+        let is_closed = self.entries.iter().all(Entry::is_closed);
+        let what = if is_closed { "closed" } else { "open" };
+        let critical = Mark { colour: Colour::Black, sign: Sign::Cross, at: (-180.0, 0.0) };
         let mut panel = Panel {
-            x_title: "phase of the open loop, °".into(),
-            y_title: "amplification of the open loop, dB".into(),
+            x_title: format!("phase of the {what} loop, °"),
+            y_title: format!("amplification of the {what} loop, dB"),
             curves: self.entries.iter().map(curve).collect(),
             levels: vec![0.0],
-            guides: closed_lines((low, high)),
-            marks: vec![Mark { colour: Colour::Black, sign: Sign::Cross, at: (-180.0, 0.0) }],
+            guides: if is_closed { Vec::new() } else { closed_lines((low, high)) },
+            marks: if is_closed { Vec::new() } else { vec![critical] },
             view: Some([(low, high), self.decibels()]),
             y_step: Some(10.0),
             ..Panel::default()
@@ -40,12 +44,17 @@ impl Finding {
         for entry in &self.entries {
             explain(entry, &mut panel);
         }
-        self.draw("Nichols chart: faint, what the closed loop amplifies", vec![panel], (820, 600))
+        let title = match is_closed {
+            true => "Amplification over phase of closed loops",
+            false => "Nichols chart: faint, what the closed loop amplifies",
+        };
+        self.draw(title, vec![panel], (820, 600))
     }
 
     /// What is shown upwards: usually from −40 to 40 dB, and every margin.
     fn decibels(&self) -> (f64, f64) {
-        let margins = self.entries.iter().filter_map(|entry| entry.margins.least_gain());
+        let open = self.entries.iter().filter(|entry| !entry.is_closed());
+        let margins = open.filter_map(|entry| entry.margins.least_gain());
         let places = margins.map(|margin| -decibels(margin.factor));
         let (low, high) =
             places.fold((-40.0, 40.0), |(low, high): (f64, f64), db| (low.min(db), high.max(db)));
@@ -55,7 +64,13 @@ impl Finding {
     }
 
     pub(super) fn draw(&self, title: &str, panels: Vec<Panel>, size: (i32, i32)) -> Figure {
-        let key = |e: &Entry| Key { colour: e.named.colour, name: summary(&e.named.name, &e.margins) };
+        let key = |e: &Entry| Key {
+            colour: e.named.colour,
+            name: match e.is_closed() {
+                true => e.named.name.clone(),
+                false => summary(&e.named.name, &e.margins),
+            },
+        };
         Figure {
             title: title.into(),
             legend: self.entries.iter().map(key).collect(),
@@ -77,14 +92,15 @@ fn explain(entry: &Entry, panel: &mut Panel) {
         panel.marks.push(Mark { colour, sign, at: at(w) });
         panel.labels.push(Label::new(at(w), words));
     };
+    let margins = (!entry.is_closed()).then_some(&entry.margins);
     if let Some(margin) =
-        entry.margins.least_gain().filter(|margin| margin.rad_s > 0.0 && margin.rad_s.is_finite())
+        margins.and_then(Margins::least_gain).filter(|margin| margin.rad_s > 0.0 && margin.rad_s.is_finite())
     {
         let words =
             format!("gain margin {} dB at {} rad/s", four(decibels(margin.factor)), four(margin.rad_s));
         mark(Sign::Dot, margin.rad_s, words);
     }
-    if let Some(margin) = entry.margins.least_phase() {
+    if let Some(margin) = margins.and_then(Margins::least_phase) {
         let words = format!("phase margin {}° at {} rad/s", four(margin.degrees()), four(margin.rad_s));
         mark(Sign::Dot, margin.rad_s, words);
     }

@@ -9,43 +9,32 @@ use tracelight_task::Failure;
 
 use super::{Chart, Entry, Finding};
 use crate::finding::{self, Plotted};
-use crate::margins::{margin_lines, margins_json};
+use crate::margins::{counted_lines, margin_lines, margins_json};
 use crate::numbers::four;
 
 impl finding::Finding for Finding {
     fn text(&self) -> String {
         let mut text = String::new();
         for entry in &self.entries {
+            let (named, open) = (&entry.named, entry.open());
             // writing to a String cannot fail
-            let _ = writeln!(
-                text,
-                "{} = {}\n{}",
-                entry.named.name,
-                entry.named.text(),
-                margin_lines(entry.named.delay_margin(&entry.margins), &entry.margins)
-            );
-            text += &entry.course();
-            let open = entry.open_unstable;
+            let _ = writeln!(text, "{} = {}", named.name, named.text());
+            if entry.is_closed() {
+                let _ = writeln!(
+                    text,
+                    "    the curve is the closed loop's; the margins are those of the loop it closes, {}",
+                    open.name
+                );
+            }
+            let _ = writeln!(text, "{}", margin_lines(open.delay_margin(&entry.margins), &entry.margins));
+            if !entry.is_closed() {
+                text += &entry.course();
+            }
             if entry.margins.modulus.is_some_and(|margin| margin.distance <= THROUGH) {
                 let _ = writeln!(text, "    it goes through −1: closed it is at the edge of stability");
             }
-            if entry.named.data.is_some() {
-                let _ = writeln!(
-                    text,
-                    "    how many poles grow, measured data do not tell: if none of the open loop does, the closed loop is stable where \
-                     the curve does not turn round −1\n"
-                );
-                continue;
-            }
-            let _ = match entry.closed_unstable {
-                Some(closed) => writeln!(
-                    text,
-                    "    growing poles: {open} open, {closed} closed: it turns {} times {}clockwise round −1\n",
-                    closed.abs_diff(open),
-                    if closed < open { "counter" } else { "" }
-                ),
-                None => writeln!(text, "    growing poles: {open} open; closed it is not defined\n"),
-            };
+            text += &entry.growing();
+            text += "\n";
         }
         text.trim_end().to_owned()
     }
@@ -53,8 +42,10 @@ impl finding::Finding for Finding {
     fn json(&self) -> String {
         let one = |entry: &Entry| {
             let mut object = entry.named.json();
-            object["margins"] = margins_json(entry.named.delay_margin(&entry.margins), &entry.margins);
-            object["open_unstable"] = entry.open_unstable.into();
+            object["margins"] = margins_json(entry.open().delay_margin(&entry.margins), &entry.margins);
+            // how many a measured loop has is known if it was said
+            let is_known = entry.open().data.is_none() || entry.open().unstable.is_some();
+            object["open_unstable"] = is_known.then_some(entry.open_unstable).into();
             object["closed_unstable"] = entry.closed_unstable.into();
             object["real_crossings"] =
                 entry.crossings.iter().map(|c| json!({"rad_s": c.rad_s, "value": c.value})).collect();
@@ -108,6 +99,30 @@ impl Plotted for Finding {
 const THROUGH: f64 = 1e-9;
 
 impl Entry {
+    /// How many poles grow, and how often the curve turns round −1, a line.
+    fn growing(&self) -> String {
+        let (open, growing) = (self.open(), self.open_unstable);
+        if open.data.is_some() && open.unstable.is_none() {
+            return "    how many poles grow, measured data do not tell: if none of the open loop does, the closed loop is stable where the curve \
+                    does not turn round −1; --unstable says how many do\n"
+                .to_owned();
+        }
+        if open.data.is_some() {
+            return counted_lines(open);
+        }
+        match self.closed_unstable {
+            Some(closed) if self.is_closed() => {
+                format!("    growing poles: {growing} open, {closed} closed\n")
+            }
+            Some(closed) => format!(
+                "    growing poles: {growing} open, {closed} closed: it turns {} times {}clockwise round −1\n",
+                closed.abs_diff(growing),
+                if closed < growing { "counter" } else { "" }
+            ),
+            None => format!("    growing poles: {growing} open; closed it is not defined\n"),
+        }
+    }
+
     /// Where it crosses the negative real axis, and how it turns at infinity.
     fn course(&self) -> String {
         const MOST: usize = 6;

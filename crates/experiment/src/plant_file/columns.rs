@@ -47,7 +47,11 @@ pub(super) struct Picked {
     pub(super) frequency: usize,
     rad_s: f64,
     values: Values,
+    coherence: Option<usize>,
 }
+
+/// Points of a smaller coherence are left out: their values are mostly noise. Of `lab frequency` the same.
+pub(crate) const LEAST_COHERENCE: f64 = 0.9;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Values {
@@ -248,7 +252,7 @@ pub(super) fn pick(names: &[&str], choice: Option<&str>) -> Result<Picked, Strin
         found.retain(|(channel, values)| is_chosen(choice, channel, names[values.first()]));
     }
     match found.as_slice() {
-        [(_, values)] => Ok(Picked { frequency, rad_s, values: values.clone() }),
+        [(_, values)] => Ok(Picked { frequency, rad_s, values: values.clone(), coherence: coherence(names) }),
         [] => Err(format!(
             "no columns are the values{}: magnitude (dB or abs) and phase (deg or rad) of one channel, or real and imaginary part; there are {}",
             choice.map_or(String::new(), |choice| format!(" of {choice:?}")),
@@ -259,6 +263,15 @@ pub(super) fn pick(names: &[&str], choice: Option<&str>) -> Result<Picked, Strin
             Err(format!("it holds {} responses: choose one of {}", several.len(), channels.join(", ")))
         }
     }
+}
+
+/// Which column is the coherence, if just one is.
+fn coherence(names: &[&str]) -> Option<usize> {
+    let is_coherence = |name: &str| {
+        name.trim().trim_matches(['#', '%', '"', '\'', ' ']).to_lowercase().starts_with("coherence")
+    };
+    let mut all = names.iter().enumerate().filter(|(_, name)| is_coherence(name)).map(|(at, _)| at);
+    all.next().filter(|_| all.next().is_none())
 }
 
 /// Which column is the frequency, and how many rad/s one of its units is.
@@ -294,11 +307,12 @@ impl Values {
 }
 
 impl Picked {
-    /// The columns that are read.
-    pub(super) fn all(&self) -> [usize; 3] {
+    /// The columns that are read; without a coherence the frequency's stands again in its place.
+    pub(super) fn all(&self) -> [usize; 4] {
+        let coherence = self.coherence.unwrap_or(self.frequency);
         match self.values {
-            Values::Polar(magnitude, _, phase, _) => [self.frequency, magnitude, phase],
-            Values::Parts(re, im) => [self.frequency, re, im],
+            Values::Polar(magnitude, _, phase, _) => [self.frequency, magnitude, phase, coherence],
+            Values::Parts(re, im) => [self.frequency, re, im, coherence],
         }
     }
 
@@ -329,7 +343,8 @@ impl Picked {
         }
     }
 
-    /// The response of so many rows, in the order of their frequencies if that falls throughout.
+    /// The response of so many rows, in the order of their frequencies if that falls throughout; without those of too small a
+    /// coherence, which go along as left out.
     pub(super) fn data(
         &self,
         number: impl Fn(usize, usize) -> Option<f64>,
@@ -342,14 +357,26 @@ impl Picked {
         for row in 0..rows {
             let get =
                 |column: usize| number(column, row).ok_or_else(|| format!("point {} has no value", row + 1));
-            let [w, first, second] = self.all().map(get);
-            points.push((w? * self.rad_s, self.value(first?, second?)));
+            let [w, first, second, coherence] = self.all().map(get);
+            // also what is no number is too small
+            let is_good = self.coherence.is_none() || coherence? >= LEAST_COHERENCE;
+            points.push((w? * self.rad_s, self.value(first?, second?), is_good));
         }
         if points.windows(2).all(|pair| pair[1].0 < pair[0].0) {
             points.reverse();
         }
-        let (rad_s, values) = points.into_iter().unzip();
-        FrequencyData::new(rad_s, values).map_err(|e| e.to_string())
+        let (good, bad): (Vec<_>, Vec<_>) = points.into_iter().partition(|(_, _, is_good)| *is_good);
+        let left_out: Vec<(f64, Complex)> = bad.into_iter().map(|(w, value, _)| (w, value)).collect();
+        if good.len() < 2 && !left_out.is_empty() {
+            return Err(format!(
+                "{} of {rows} points have a coherence below {LEAST_COHERENCE}: what is left is no response; measure with more amplitude, or \
+                 for longer",
+                left_out.len()
+            ));
+        }
+        let (rad_s, values) = good.into_iter().map(|(w, value, _)| (w, value)).unzip();
+        let data = FrequencyData::new(rad_s, values).map_err(|e| e.to_string())?;
+        Ok(data.with_left_out(left_out))
     }
 
     fn value(&self, first: f64, second: f64) -> Complex {

@@ -49,7 +49,7 @@ fn rows(
     separator: Separator,
     picked: &Picked,
     names: &[&str],
-) -> Result<Vec<[f64; 3]>, Wrong> {
+) -> Result<Vec<[f64; 4]>, Wrong> {
     let mut rows = Vec::new();
     for (at, line) in text.lines().enumerate().skip(header + 1) {
         let fields = separator.fields(line);
@@ -59,7 +59,7 @@ fn rows(
         if rows.len() >= FrequencyData::MOST {
             return Err(Wrong::new(at + 1, format!("more than {} frequencies", FrequencyData::MOST)));
         }
-        let mut row = [0.0; 3];
+        let mut row = [0.0; 4];
         for (to, column) in row.iter_mut().zip(picked.all()) {
             let field = fields.get(column).copied().unwrap_or_default();
             *to = separator.number(field).ok_or_else(|| {

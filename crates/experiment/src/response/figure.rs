@@ -20,9 +20,11 @@ impl Finding {
         let bands = levels.iter().filter(|goal| **goal != 0.0).map(|goal| band(*goal)).collect();
         let mut panel =
             Panel { bands, ..over_time("output", levels, self.entries.iter().map(Entry::curve).collect()) };
-        for entry in &self.entries {
-            entry.mark(&mut panel);
-        }
+        // what matters most first: words for which there is no room are left out
+        self.entries.iter().for_each(|entry| entry.mark_peak(&mut panel));
+        let stepped = || self.entries.iter().filter_map(|entry| Some((entry, entry.info?)));
+        stepped().for_each(|(entry, info)| entry.mark_settling(&info, &mut panel));
+        stepped().for_each(|(entry, info)| entry.mark_rise(&info, &mut panel));
         // of many there would be more words than curves
         if self.entries.len() > MOST_NAMED {
             panel.labels.clear();
@@ -48,9 +50,11 @@ fn band(goal: f64) -> Band {
 }
 
 fn key(entry: &Entry) -> Key {
-    let more = entry.info.and_then(|info| Some((info.overshoot_percent?, info.settle_s?)));
-    let more = more
-        .map_or(String::new(), |(over, s)| format!(": {} % over, settled after {} s", four(over), four(s)));
+    // all figures stand here: not all have room beside their curve
+    let more = entry.info.and_then(|info| Some((info.overshoot_percent?, info.rise_s?, info.settle_s?)));
+    let more = more.map_or(String::new(), |(over, rise_s, s)| {
+        format!(": {} % over, rise {} s, settled after {} s", four(over), four(rise_s), four(s))
+    });
     Key { colour: entry.named.colour, name: format!("{}{more}", entry.named.name) }
 }
 
@@ -87,8 +91,7 @@ impl Entry {
         }
     }
 
-    /// Peak, rise and settling, where they are.
-    fn mark(&self, panel: &mut Panel) {
+    fn mark_peak(&self, panel: &mut Panel) {
         let colour = self.named.colour;
         let end_s = self.response.step_s * self.response.values.len() as f64;
         if let Some(Extreme { value, time_s: Some(at_s) }) = self.peak
@@ -100,10 +103,6 @@ impl Entry {
             panel
                 .labels
                 .push(Label::new((at_s, value), format!("peak {}{over} at {} s", four(value), four(at_s))));
-        }
-        if let Some(info) = self.info {
-            self.mark_settling(&info, panel);
-            self.mark_rise(&info, panel);
         }
     }
 

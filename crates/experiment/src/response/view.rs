@@ -4,12 +4,14 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 use tracelight_chart::Figure;
-use tracelight_linear::{Complex, Ending, Extreme};
+use tracelight_linear::{Complex, Ending, Extreme, Stability};
 use tracelight_task::Failure;
 
-use super::{Entry, Finding, Input};
+use super::{Enters, Entry, Finding, Input, Request};
 use crate::finding::{self, Plotted};
+use crate::named::Named;
 use crate::numbers::{four, percent};
+use crate::steady::{error_lines, errors_json};
 use crate::system_json::pairs;
 
 impl finding::Finding for Finding {
@@ -19,6 +21,9 @@ impl finding::Finding for Finding {
             // writing to a String cannot fail
             let _ = writeln!(text, "{} = {}", entry.named.name, entry.named.text());
             text += &entry.lines(self.of.input);
+            if let Some(open) = entry.tracking(&self.of) {
+                text += &error_lines(open);
+            }
             text += "\n";
         }
         if self.of.input != Input::Step {
@@ -30,6 +35,7 @@ impl finding::Finding for Finding {
     fn json(&self) -> String {
         let one = |entry: &Entry| -> Value {
             let Entry { named, response, ending, peak, info, impulse, hidden, .. } = entry;
+            let open = entry.tracking(&self.of);
             json!({
                 "name": named.name,
                 "step_s": response.step_s,
@@ -45,6 +51,7 @@ impl finding::Finding for Finding {
                 "peak_s": peak.and_then(|peak| peak.time_s),
                 "impulse": impulse,
                 "hidden_poles": pairs(hidden),
+                "error_constants": open.map_or(Value::Null, errors_json),
             })
         };
         json!({"systems": self.entries.iter().map(one).collect::<Vec<_>>()}).to_string()
@@ -79,6 +86,13 @@ impl Plotted for Finding {
 }
 
 impl Entry {
+    /// The open loop whose errors are told: of a loop that negative feedback closes, and that follows its setpoint.
+    fn tracking(&self, of: &Request) -> Option<&Named> {
+        let open = self.named.opened.as_deref()?;
+        let is_asked = of.enters == Enters::Setpoint && of.input != Input::Impulse;
+        (is_asked && !open.is_positive).then_some(open)
+    }
+
     /// What there is to say of it.
     fn lines(&self, input: Input) -> String {
         let mut text = format!("    {}\n", self.ending_line(input));
@@ -118,7 +132,9 @@ impl Entry {
     fn ending_line(&self, input: Input) -> String {
         match (self.ending, self.response.values.last()) {
             (Some(Ending::Converges(value)), _) => format!("final value {}", four(value)),
-            (Some(Ending::Diverges), _) if input == Input::Ramp => {
+            (Some(Ending::Diverges), _)
+                if input == Input::Ramp && self.named.stability() == Stability::Stable =>
+            {
                 "grows without bounds, as the ramp does: no final value".to_owned()
             }
             (Some(Ending::Diverges), _) => "grows without bounds: no final value".to_owned(),

@@ -2,11 +2,13 @@
 
 use std::collections::HashMap;
 
-use tracelight_stroke::{Affine, Colour, Path, Point};
+use tracelight_stroke::{Affine, Colour, Element, Path, Point};
 
 use super::curves::{has_length, moved};
-use super::scene::Block;
-use super::scene::{Insert, Item, LAYER_0, Layer, Layers, Look, Paint, Scene, Shape, Skipped};
+use super::dashes::{Dashed, dashed};
+use super::linetype::{CONTINUOUS, LineFrom, Lines};
+use super::scene::{Block, Dot, Insert, Item, LAYER_0, Layer, Layers, Look, Paint, Shape};
+use super::skipped::Skipped;
 use crate::FormatError;
 use crate::extent::controls;
 
@@ -16,6 +18,9 @@ const MAX_DEPTH: usize = 32;
 /// Items looked at, at most: blocks may repeat nothing a billion times.
 const MAX_VISITS: usize = 4_000_000;
 
+/// Elements from which on lines are drawn whole: dashes may not be why a drawing is refused.
+const MOST_DASHED: usize = super::MAX_ELEMENTS / 2;
+
 /// Points beyond this, after all scales of all inserts, are a broken file's.
 const MAX_PLACE: f64 = 1e15;
 
@@ -24,6 +29,17 @@ pub(super) struct Drawn {
     pub(super) path: Path,
     pub(super) layer: usize,
     pub(super) colour: Colour,
+    /// A point, whose path has no length yet.
+    pub(super) is_dot: bool,
+}
+
+/// Definitions that what is drawn refers to.
+pub(super) struct Definitions<'a> {
+    pub(super) layers: &'a Layers,
+    pub(super) lines: &'a Lines,
+    pub(super) blocks: &'a HashMap<String, Block>,
+    /// Factor of the lengths of dashes; `None` draws all lines whole.
+    pub(super) dash_scale: Option<f64>,
 }
 
 /// Where the items of a block are drawn.
@@ -34,27 +50,44 @@ struct Setting {
     layer: usize,
     /// Colour of what is coloured by its block.
     colour: Colour,
+    /// Linetype of what has that of its block.
+    line: usize,
     depth: usize,
 }
 
+/// Layer, colour and linetype as they are in the end.
+#[derive(Clone, Copy)]
+struct Shown {
+    layer: usize,
+    colour: Colour,
+    line: usize,
+}
+
 struct Unfolding<'a> {
-    layers: &'a Layers,
-    blocks: &'a HashMap<String, Block>,
+    definitions: &'a Definitions<'a>,
     skipped: &'a mut Skipped,
     drawn: Vec<Drawn>,
     elements: usize,
     visits: usize,
 }
 
-/// Everything of the model that is visible, in file order.
+/// All of some items that is visible, in file order; what is not is counted.
 ///
 /// # Errors
 /// Blocks that hold themselves, and ones that repeat each other beyond all measure.
-pub(super) fn unfolded(scene: &mut Scene) -> Result<Vec<Drawn>, FormatError> {
-    let Scene { layers, blocks, items, skipped, styles: _ } = scene;
-    let mut unfolding = Unfolding { layers, blocks, skipped, drawn: Vec::new(), elements: 0, visits: 0 };
-    let world =
-        Setting { world_from_block: Affine::IDENTITY, layer: LAYER_0, colour: Colour::BLACK, depth: 0 };
+pub(super) fn unfolded(
+    items: &[Item],
+    skipped: &mut Skipped,
+    definitions: &Definitions,
+) -> Result<Vec<Drawn>, FormatError> {
+    let mut unfolding = Unfolding { definitions, skipped, drawn: Vec::new(), elements: 0, visits: 0 };
+    let world = Setting {
+        world_from_block: Affine::IDENTITY,
+        layer: LAYER_0,
+        colour: Colour::BLACK,
+        line: CONTINUOUS,
+        depth: 0,
+    };
     unfolding.items(items, world)?;
     Ok(unfolding.drawn)
 }
@@ -66,6 +99,7 @@ impl Unfolding<'_> {
             check("DXF, its blocks repeated,", [self.visits, MAX_VISITS], "entities")?;
             match item {
                 Item::Shape(shape) => self.shape(shape, at)?,
+                Item::Dot(dot) => self.dot(dot, at)?,
                 Item::Insert(insert) => self.insert(insert, at)?,
                 Item::Text(text) => text.shapes.iter().try_for_each(|shape| self.shape(shape, at))?,
             }
@@ -74,23 +108,60 @@ impl Unfolding<'_> {
     }
 
     fn shape(&mut self, shape: &Shape, at: Setting) -> Result<(), FormatError> {
-        let (layer, colour) = self.look(shape.look, at);
-        let Layer { is_off, is_frozen, .. } = *self.layers.get(layer);
-        if is_off || is_frozen {
-            self.skipped.hidden += 1;
-            return Ok(());
-        }
+        let Some(shown) = self.visible(shape.look, at) else { return Ok(()) };
         let path = match at.depth {
             0 => shape.path.clone(),
             _ => moved(&shape.path, at.world_from_block),
         };
+        self.check_place(&path)?;
+        if !has_length(&path) {
+            self.skipped.without_length += 1;
+            return Ok(());
+        }
+        let definitions = self.definitions;
+        let lengths = definitions.lines.lengths(shown.line);
+        let scale = definitions.dash_scale.filter(|_| !lengths.is_empty());
+        if scale.is_some() && self.elements > MOST_DASHED {
+            self.skipped.too_fine += 1;
+            return self.push(path, shown);
+        }
+        match scale.map(|scale| dashed(&path, lengths, scale * shape.look.line_scale.abs())) {
+            None | Some(Dashed::Whole) => self.push(path, shown),
+            Some(Dashed::TooFine) => {
+                self.skipped.too_fine += 1;
+                self.push(path, shown)
+            }
+            Some(Dashed::Parts(parts)) => parts.into_iter().try_for_each(|part| self.push(part, shown)),
+        }
+    }
+
+    fn push(&mut self, path: Path, shown: Shown) -> Result<(), FormatError> {
         self.elements += path.elements().len().max(super::LEAST_ELEMENTS);
         check("DXF, its blocks repeated,", [self.elements, super::MAX_ELEMENTS], "path segments")?;
-        self.check_place(&path)?;
-        if has_length(&path) {
-            self.drawn.push(Drawn { path, layer, colour });
-        }
+        self.drawn.push(Drawn { path, layer: shown.layer, colour: shown.colour, is_dot: false });
         Ok(())
+    }
+
+    fn dot(&mut self, dot: &Dot, at: Setting) -> Result<(), FormatError> {
+        let Some(shown) = self.visible(dot.look, at) else { return Ok(()) };
+        let to = at.world_from_block * dot.at;
+        let mut path = Path::new(to);
+        path.push(Element::Line { to });
+        self.check_place(&path)?;
+        self.push(path, shown)?;
+        self.drawn.iter_mut().last().into_iter().for_each(|own| own.is_dot = true);
+        Ok(())
+    }
+
+    /// How something looks; `None`, and counted, where its layer is not seen.
+    fn visible(&mut self, look: Look, at: Setting) -> Option<Shown> {
+        let shown = self.shown(look, at);
+        let Layer { is_off, is_frozen, .. } = *self.definitions.layers.get(shown.layer);
+        if is_off || is_frozen {
+            self.skipped.hidden += 1;
+            return None;
+        }
+        Some(shown)
     }
 
     fn check_place(&self, path: &Path) -> Result<(), FormatError> {
@@ -108,9 +179,9 @@ impl Unfolding<'_> {
     }
 
     fn insert(&mut self, insert: &Insert, at: Setting) -> Result<(), FormatError> {
-        let blocks = self.blocks; // outlives the loan of self
-        let (layer, colour) = self.look(insert.look, at);
-        if self.layers.get(layer).is_frozen {
+        let Definitions { blocks, layers, .. } = self.definitions; // outlives the loan of self
+        let Shown { layer, colour, line } = self.shown(insert.look, at);
+        if layers.get(layer).is_frozen {
             self.skipped.hidden += 1;
             return Ok(());
         }
@@ -119,27 +190,34 @@ impl Unfolding<'_> {
             return Ok(());
         };
         check("DXF's nesting of blocks (one may hold itself)", [at.depth + 1, MAX_DEPTH], "levels")?;
-        let own = at.world_from_block * insert.place * Affine::translate(-block.base.to_vec2());
+        let placed = at.world_from_block * insert.place * Affine::translate(-block.base.to_vec2());
         for (row, column) in (0..insert.rows).flat_map(|r| (0..insert.columns).map(move |c| (r, c))) {
             self.visits += 1 + block.skipped.kinds();
             check("DXF, its blocks repeated,", [self.visits, MAX_VISITS], "inserts")?;
             let step = insert.steps[0] * f64::from(column) + insert.steps[1] * f64::from(row);
             let step = at.world_from_block * step.to_point() - at.world_from_block * Point::ORIGIN;
-            let world_from_block = Affine::translate(step) * own;
+            let world_from_block = Affine::translate(step) * placed;
             self.skipped.add(&block.skipped);
-            self.items(&block.items, Setting { world_from_block, layer, colour, depth: at.depth + 1 })?;
+            let own = Setting { world_from_block, layer, colour, line, depth: at.depth + 1 };
+            self.items(&block.items, own)?;
         }
         Ok(())
     }
 
-    fn look(&self, look: Look, at: Setting) -> (usize, Colour) {
+    fn shown(&self, look: Look, at: Setting) -> Shown {
         let layer = if look.layer == LAYER_0 { at.layer } else { look.layer };
+        let own = self.definitions.layers.get(layer);
         let colour = match look.paint {
             Paint::Of(colour) => colour,
             Paint::ByBlock => at.colour,
-            Paint::ByLayer => self.layers.get(layer).colour,
+            Paint::ByLayer => own.colour,
         };
-        (layer, colour)
+        let line = match look.line {
+            LineFrom::Of(line) => line,
+            LineFrom::Block => at.line,
+            LineFrom::Layer => own.line,
+        };
+        Shown { layer, colour, line }
     }
 }
 

@@ -128,7 +128,7 @@ mod tests {
     fn a_plane_that_leans_is_foreshortened() {
         let text = b"0\nCIRCLE\n210\n0\n220\n0.6\n230\n0.8\n0\nEOF\n";
         let mut record = Record::default();
-        crate::dxf::groups::Records::new(text).read(&mut record).unwrap();
+        crate::dxf::records::Records::new(text).read(&mut record).unwrap();
         let place = world_from_plane(&record, 0.0).unwrap();
         assert!((place.determinant().abs() - 0.8).abs() < 1e-12, "{place:?}");
     }

@@ -1,18 +1,22 @@
 //! Records to items: what each entity's groups mean.
 
 use tracelight_maths::planar;
-use tracelight_stroke::{Affine, Element, Path, Point, Vec2};
+use tracelight_stroke::{Affine, Path, Point, Vec2};
 
 use super::curves::{has_length, moved, unit_arc, world_from_plane};
 use super::groups::Record;
-use super::scene::{Insert, Item, Layers, Look, Paint, Shape, Skipped};
+use super::hatch;
+use super::leader;
+use super::linetype::Lines;
+use super::mesh;
+use super::polyline::{self, Polyline};
+use super::scene::{Dot, Insert, Item, Layers, Look, Shape};
+use super::skipped::Skipped;
 use super::spline;
 use super::text::Text;
 use crate::FormatError;
-use crate::circular::{arc_between, sweep_of_bulge};
-use crate::pen::Pen;
 
-/// Takes the entities of a block or of the model, one record after another.
+/// Takes the entities of a block or of a space, one record after another.
 #[derive(Default)]
 pub(super) struct Entities {
     pub(super) items: Vec<Item>,
@@ -22,14 +26,13 @@ pub(super) struct Entities {
     open: Option<Polyline>,
 }
 
-/// A point and the bulge of the way on from it.
-type Vertex = (Point, f64);
-
-struct Polyline {
-    vertices: Vec<Vertex>,
-    is_closed: bool,
-    place: Affine,
-    look: Look,
+/// What entities refer to, and what is asked of them.
+pub(super) struct Around<'a> {
+    pub(super) layers: &'a mut Layers,
+    pub(super) lines: &'a mut Lines,
+    pub(super) skipped: &'a mut Skipped,
+    /// Crossings that are left for the patterns of hatches, if these are asked for.
+    pub(super) patterns: &'a mut Option<usize>,
 }
 
 impl Entities {
@@ -37,77 +40,107 @@ impl Entities {
     ///
     /// # Errors
     /// A value that cannot be meant.
-    pub(super) fn take(
-        &mut self,
-        record: &Record,
-        layers: &mut Layers,
-        skipped: &mut Skipped,
-    ) -> Result<(), FormatError> {
+    pub(super) fn take(&mut self, record: &Record, around: &mut Around) -> Result<(), FormatError> {
         if let (Some(open), b"VERTEX") = (&mut self.open, record.kind) {
             return open.take(record);
         }
-        self.finish();
+        self.finish(around.skipped);
         match record.kind {
-            b"SEQEND" | b"VERTEX" => return Ok(()),
-            _ if record.whole_or(67, 0)? == 1 => skipped.in_paper_space += 1,
-            _ if record.whole_or(60, 0)? == 1 => skipped.hidden += 1,
-            _ => self.visible(record, layers, skipped)?,
+            b"SEQEND" | b"VERTEX" | b"VIEWPORT" => return Ok(()),
+            _ if record.whole_or(60, 0)? == 1 => around.skipped.hidden += 1,
+            _ => self.visible(record, around)?,
         }
         Ok(())
     }
 
     /// Ends a POLYLINE that nobody ended.
-    pub(super) fn finish(&mut self) {
+    pub(super) fn finish(&mut self, skipped: &mut Skipped) {
         if let Some(open) = self.open.take() {
-            self.push(open.path(), open.look);
+            self.push(open.paths(), open.look, skipped);
         }
     }
 
-    fn visible(
-        &mut self,
-        record: &Record,
-        layers: &mut Layers,
-        skipped: &mut Skipped,
-    ) -> Result<(), FormatError> {
-        let look = Look { layer: layers.numbered(&record.text(8)), paint: Paint::of(record)? };
-        let path = match record.kind {
-            b"LINE" => Path::polyline(&[record.point(10)?, record.point(11)?], false),
-            b"LWPOLYLINE" => light_polyline(record)?,
-            b"ARC" | b"CIRCLE" => Some(circle(record)?),
-            b"ELLIPSE" => Some(ellipse(record)?),
-            b"SPLINE" => spline::path(record)?,
-            b"INSERT" => {
-                self.items.push(Item::Insert(Box::new(insert(record, look)?)));
-                return Ok(());
-            }
-            b"TEXT" | b"MTEXT" | b"ATTRIB" => {
-                let text = Text::of(record, look)?.map(|text| Item::Text(Box::new(text)));
-                self.elements += super::LEAST_ELEMENTS;
-                self.items.extend(text);
-                return Ok(());
-            }
-            b"POLYLINE" => {
-                self.open = Polyline::of(record, look)?;
-                if self.open.is_none() {
-                    skipped.count(b"POLYLINE mesh");
+    fn visible(&mut self, record: &Record, around: &mut Around) -> Result<(), FormatError> {
+        let look = Look::of(record, around.layers, around.lines)?;
+        let paths = match record.kind {
+            b"LINE" => one(Path::polyline(&[record.point(10)?, record.point(11)?], false)),
+            b"LWPOLYLINE" => one(polyline::light(record)?),
+            b"ARC" | b"CIRCLE" => vec![circle(record)?],
+            b"ELLIPSE" => vec![ellipse(record)?],
+            b"SPLINE" => one(spline::path(record)?),
+            b"HELIX" => one(helix(record)?),
+            b"SOLID" | b"TRACE" => one(mesh::solid(record)?),
+            b"3DFACE" => mesh::face(record)?,
+            b"MESH" => mesh::mesh(record)?,
+            b"LEADER" => one(leader::leader(record)?),
+            b"MULTILEADER" | b"MLEADER" => leader::multileader(record, around.skipped)?,
+            b"MLINE" => leader::multiline(record)?,
+            b"HATCH" | b"MPOLYGON" => match hatch::paths(record, around.patterns, around.skipped)? {
+                Some(paths) => paths,
+                None => {
+                    around.skipped.count(record.kind);
+                    return Ok(());
                 }
+            },
+            b"POLYLINE" => {
+                self.open = Some(Polyline::of(record, look)?);
                 return Ok(());
             }
-            other => {
-                skipped.count(other);
-                return Ok(());
-            }
+            _ => return self.other(record, look, around.skipped),
         };
-        self.push(path, look);
+        self.push(paths, look, around.skipped);
         Ok(())
     }
 
-    fn push(&mut self, path: Option<Path>, look: Look) {
-        if let Some(path) = path.filter(has_length) {
+    /// What is no path.
+    fn other(&mut self, record: &Record, look: Look, skipped: &mut Skipped) -> Result<(), FormatError> {
+        let has_block = !record.key(2).is_empty();
+        let item = match record.kind {
+            b"INSERT" => Item::Insert(Box::new(insert(record, look)?)),
+            b"DIMENSION" | b"ARC_DIMENSION" | b"LARGE_RADIAL_DIMENSION" if has_block => {
+                Item::Insert(Box::new(picture(record, look, record.point(12)?)?))
+            }
+            b"ACAD_TABLE" if has_block => Item::Insert(Box::new(picture(record, look, record.point(10)?)?)),
+            b"TEXT" | b"MTEXT" | b"ATTRIB" => {
+                let Some(text) = Text::of(record, look)? else { return Ok(()) };
+                self.elements += super::LEAST_ELEMENTS;
+                Item::Text(Box::new(text))
+            }
+            b"POINT" if record.key(8) == "defpoints" => {
+                skipped.unprinted += 1;
+                return Ok(());
+            }
+            b"POINT" => Item::Dot(Dot { at: record.point(10)?, look }),
+            kind => {
+                skipped.count(kind);
+                return Ok(());
+            }
+        };
+        self.items.push(item);
+        Ok(())
+    }
+
+    fn push(&mut self, paths: Vec<Path>, look: Look, skipped: &mut Skipped) {
+        let before = self.items.len();
+        for path in paths.into_iter().filter(has_length) {
             self.elements += path.elements().len().max(super::LEAST_ELEMENTS);
             self.items.push(Item::Shape(Shape { path, look }));
         }
+        if self.items.len() == before {
+            skipped.without_length += 1;
+        }
     }
+}
+
+fn one(path: Option<Path>) -> Vec<Path> {
+    path.into_iter().collect()
+}
+
+/// A helix by the spline that stands before its axis.
+fn helix(record: &Record) -> Result<Option<Path>, FormatError> {
+    let spline =
+        record.groups.split(|g| g.code == 100 && g.bytes() == b"AcDbHelix").next().unwrap_or_default();
+    spline::path(&Record { kind: record.kind, groups: spline.to_vec(), at: record.at })
 }
 
 /// An arc or a circle: a part of the unit circle, made larger and moved.
@@ -133,67 +166,6 @@ fn ellipse(record: &Record) -> Result<Path, FormatError> {
     Ok(moved(&arc, Affine::new([major.x, major.y, minor.x, minor.y, centre.x, centre.y])))
 }
 
-fn light_polyline(record: &Record) -> Result<Option<Path>, FormatError> {
-    let mut vertices: Vec<Vertex> = Vec::new();
-    for group in record.groups.iter().filter(|g| matches!(g.code, 10 | 20 | 42)) {
-        let value = group.number()?;
-        match (group.code, vertices.last_mut()) {
-            (10, _) => vertices.push((Point::new(value, 0.0), 0.0)),
-            (20, Some(last)) => last.0.y = value,
-            (42, Some(last)) => last.1 = value,
-            _ => {}
-        }
-    }
-    let is_closed = record.whole_or(70, 0)? & 1 != 0;
-    let place = world_from_plane(record, record.number_or(38, 0.0)?)?;
-    Ok(through(&vertices, is_closed).map(|path| moved(&path, place)))
-}
-
-/// Lines and arcs from vertex to vertex.
-fn through(vertices: &[Vertex], is_closed: bool) -> Option<Path> {
-    let (&(first, _), rest) = vertices.split_first()?;
-    let mut pen = Pen::new(first);
-    let back = is_closed.then_some(first);
-    let ends = rest.iter().map(|v| v.0).chain(back);
-    for (&(from, bulge), to) in vertices.iter().zip(ends) {
-        pen.push(match bulge {
-            0.0 => Element::Line { to },
-            _ => arc_between(from, to, sweep_of_bulge(bulge)),
-        });
-    }
-    pen.finish(is_closed)
-}
-
-impl Polyline {
-    /// Flags of a POLYLINE that is a mesh.
-    const MESH: i64 = 16 | 64;
-    /// Flag of one in space, whose points are the world's.
-    const IN_SPACE: i64 = 8;
-    /// Flag of a VERTEX that only shapes the spline and is not on it.
-    const FRAME: i64 = 16;
-
-    fn of(record: &Record, look: Look) -> Result<Option<Self>, FormatError> {
-        let flags = record.whole_or(70, 0)?;
-        let place = match flags & Self::IN_SPACE {
-            0 => world_from_plane(record, record.number_or(30, 0.0)?)?,
-            _ => Affine::IDENTITY,
-        };
-        let own = Self { vertices: Vec::new(), is_closed: flags & 1 != 0, place, look };
-        Ok((flags & Self::MESH == 0).then_some(own))
-    }
-
-    fn take(&mut self, vertex: &Record) -> Result<(), FormatError> {
-        if vertex.whole_or(70, 0)? & Self::FRAME == 0 {
-            self.vertices.push((vertex.point(10)?, vertex.number_or(42, 0.0)?));
-        }
-        Ok(())
-    }
-
-    fn path(&self) -> Option<Path> {
-        through(&self.vertices, self.is_closed).map(|path| moved(&path, self.place))
-    }
-}
-
 fn insert(record: &Record, look: Look) -> Result<Insert, FormatError> {
     let scale = [record.number_or(41, 1.0)?, record.number_or(42, 1.0)?];
     let turn = planar::rotation(record.number_or(50, 0.0)?.to_radians());
@@ -208,6 +180,19 @@ fn insert(record: &Record, look: Look) -> Result<Insert, FormatError> {
         steps: [step(record.number_or(44, 0.0)?, 0.0), step(0.0, record.number_or(45, 0.0)?)],
         columns: count(record.whole_or(70, 1)?),
         rows: count(record.whole_or(71, 1)?),
+        look,
+    })
+}
+
+/// The block that holds the picture of a dimension or a table, drawn as it is.
+fn picture(record: &Record, look: Look, to: Point) -> Result<Insert, FormatError> {
+    let world = world_from_plane(record, 0.0)?;
+    Ok(Insert {
+        block: record.key(2),
+        place: world * Affine::translate(to.to_vec2()),
+        steps: [Vec2::ZERO; 2],
+        columns: 1,
+        rows: 1,
         look,
     })
 }

@@ -1,16 +1,50 @@
-//! Bytes to groups (a code and a value on two lines), groups to records (all groups up to the next code 0).
+//! Groups (a code and a value) and records (all groups up to the next code 0), as ASCII and binary DXF both have them.
+
+use std::fmt;
 
 use tracelight_stroke::Point;
 
 use crate::FormatError;
 
-/// A group code with its value, blanks trimmed but of text.
+/// A group code with its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Group<'a> {
     pub(super) code: i32,
-    pub(super) value: &'a [u8],
-    /// The value's line, from 1.
-    line: u32,
+    pub(super) value: Value<'a>,
+    pub(super) at: At,
+}
+
+/// What a group holds: text may be a number that is yet to be read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Value<'a> {
+    /// Blanks trimmed but of text, see [`is_text`].
+    Text(&'a [u8]),
+    Number(f64),
+    Whole(i64),
+}
+
+/// Where in a file a value stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum At {
+    /// From 1.
+    Line(u32),
+    /// From 0, in a binary file.
+    Byte(u32),
+}
+
+impl Default for At {
+    fn default() -> Self {
+        Self::Line(0)
+    }
+}
+
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+        }
+    }
 }
 
 /// A record: `0 LINE` and what follows it.
@@ -19,95 +53,12 @@ pub(super) struct Record<'a> {
     /// `LINE`, `SECTION`, …
     pub(super) kind: &'a [u8],
     pub(super) groups: Vec<Group<'a>>,
-    /// Line of its name, from 1.
-    pub(super) line: u32,
+    /// Where its name stands.
+    pub(super) at: At,
 }
-
-/// The records of a file, one after another.
-pub(super) struct Records<'a> {
-    rest: &'a [u8],
-    end_of_line: u8,
-    line: u32,
-    /// The group of code 0 that ended the record before.
-    next: Option<Group<'a>>,
-}
-
-/// Groups of one record at most: a polyline of a million vertices.
-const MAX_GROUPS: usize = 4_000_000;
 
 /// Numbers beyond this are a broken file's. Maps have six digits before the point, in millimetres nine.
 const MAX_NUMBER: f64 = 1e12;
-
-impl<'a> Records<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
-        // files of old Macintoshes end their lines with a carriage return alone
-        let end_of_line = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
-        Self { rest: bytes, end_of_line, line: 0, next: None }
-    }
-
-    /// Reads the next record into `record`, whose memory is used again. `false` after `EOF`.
-    ///
-    /// # Errors
-    /// A code that is no number, a file that ends without `EOF`, a record beyond all measure.
-    pub(super) fn read(&mut self, record: &mut Record<'a>) -> Result<bool, FormatError> {
-        record.groups.clear();
-        let first = loop {
-            match self.next.take() {
-                Some(group) if group.code == 0 => break group,
-                // comments may stand before the first record
-                _ => self.next = Some(self.group()?),
-            }
-        };
-        (record.kind, record.line) = (first.value, first.line);
-        if first.value == b"EOF" {
-            return Ok(false);
-        }
-        loop {
-            let group = self.group()?;
-            if group.code == 0 {
-                self.next = Some(group);
-                return Ok(true);
-            }
-            record.groups.push(group);
-            if record.groups.len() > MAX_GROUPS {
-                let found = record.groups.len();
-                return Err(FormatError::TooLarge {
-                    what: "DXF's entity",
-                    found,
-                    unit: "groups",
-                    limit: MAX_GROUPS,
-                });
-            }
-        }
-    }
-
-    fn group(&mut self) -> Result<Group<'a>, FormatError> {
-        let code = self.next_line()?.trim_ascii();
-        let code = std::str::from_utf8(code).ok().and_then(|c| c.parse().ok()).ok_or_else(|| {
-            let code = String::from_utf8_lossy(&code[..code.len().min(40)]).into_owned();
-            self.broken(format!("{code:?} is no group code; save the drawing again as ASCII DXF"))
-        })?;
-        let value = self.next_line()?;
-        // a text may begin and end with blanks; of an MTEXT's pieces each but the last one may end between two words
-        let value = if matches!(code, 1 | 3) { value } else { value.trim_ascii() };
-        Ok(Group { code, value, line: self.line })
-    }
-
-    fn next_line(&mut self) -> Result<&'a [u8], FormatError> {
-        self.line = self.line.saturating_add(1);
-        if self.rest.is_empty() {
-            return Err(self.broken("the file is cut off, it does not end with EOF; save it again".into()));
-        }
-        let length = self.rest.iter().position(|&b| b == self.end_of_line).unwrap_or(self.rest.len());
-        let (line, rest) = self.rest.split_at(length);
-        self.rest = rest.get(1..).unwrap_or_default();
-        Ok(line.strip_suffix(b"\r").unwrap_or(line))
-    }
-
-    fn broken(&self, message: String) -> FormatError {
-        FormatError::Syntax { format: "DXF", line: self.line as usize, column: 1, message }
-    }
-}
 
 impl<'a> Group<'a> {
     /// Its value as a number.
@@ -115,7 +66,11 @@ impl<'a> Group<'a> {
     /// # Errors
     /// What is no number, not finite, or larger than any drawing.
     pub(super) fn number(&self) -> Result<f64, FormatError> {
-        let number = std::str::from_utf8(self.value).ok().and_then(|v| v.parse::<f64>().ok());
+        let number = match self.value {
+            Value::Text(text) => std::str::from_utf8(text).ok().and_then(|v| v.parse::<f64>().ok()),
+            Value::Number(number) => Some(number),
+            Value::Whole(number) => Some(number as f64),
+        };
         number.filter(|v| v.abs() <= MAX_NUMBER).ok_or_else(|| self.wrong("a number up to 1e12"))
     }
 
@@ -127,14 +82,21 @@ impl<'a> Group<'a> {
         self.number().map(|v| v as i64)
     }
 
-    fn wrong(&self, expected: &'static str) -> FormatError {
-        let shown = String::from_utf8_lossy(&self.value[..self.value.len().min(40)]).into_owned();
-        FormatError::Value {
-            place: format!("line {}", self.line),
-            field: field(self.code),
-            value: format!("{shown:?}"),
-            expected,
+    /// Its value as it stands in the file; nothing of a binary number.
+    pub(super) const fn bytes(&self) -> &'a [u8] {
+        match self.value {
+            Value::Text(text) => text,
+            Value::Number(_) | Value::Whole(_) => b"",
         }
+    }
+
+    fn wrong(&self, expected: &'static str) -> FormatError {
+        let value = match self.value {
+            Value::Text(text) => format!("{:?}", String::from_utf8_lossy(&text[..text.len().min(40)])),
+            Value::Number(number) => format!("{number:e}"),
+            Value::Whole(number) => number.to_string(),
+        };
+        FormatError::Value { place: self.at.to_string(), field: field(self.code), value, expected }
     }
 }
 
@@ -182,9 +144,33 @@ impl<'a> Record<'a> {
         Ok(Point::new(self.number_or(code, 0.0)?, self.number_or(code + 10, 0.0)?))
     }
 
+    /// All numbers of a code.
+    ///
+    /// # Errors
+    /// What is no number.
+    pub(super) fn numbers(&self, code: i32) -> Result<Vec<f64>, FormatError> {
+        self.groups.iter().filter(|g| g.code == code).map(Group::number).collect()
+    }
+
+    /// All points of x at `code` and y ten codes later.
+    ///
+    /// # Errors
+    /// What is no number.
+    pub(super) fn points(&self, code: i32) -> Result<Vec<Point>, FormatError> {
+        let mut points: Vec<Point> = Vec::new();
+        for group in &self.groups {
+            match points.last_mut() {
+                _ if group.code == code => points.push(Point::new(group.number()?, 0.0)),
+                Some(last) if group.code == code + 10 => last.y = group.number()?,
+                _ => {}
+            }
+        }
+        Ok(points)
+    }
+
     /// The text of the first group of a code; empty where there is none.
     pub(super) fn text(&self, code: i32) -> String {
-        self.first(code).map_or_else(String::new, |g| text(g.value))
+        self.first(code).map_or_else(String::new, |g| text(g.bytes()))
     }
 
     /// The text without blanks and in one case: how names are told apart.
@@ -199,14 +185,20 @@ impl<'a> Record<'a> {
     /// Something that makes no sense in this record.
     pub(super) fn wrong(&self, field: &'static str, value: String, expected: &'static str) -> FormatError {
         let kind = String::from_utf8_lossy(&self.kind[..self.kind.len().min(20)]);
-        FormatError::Value { place: format!("{kind} at line {}", self.line), field, value, expected }
+        FormatError::Value { place: format!("{kind} at {}", self.at), field, value, expected }
     }
+}
+
+/// Whether groups of a code hold text, which may begin and end with blanks: of an MTEXT's pieces each but the last one
+/// may end between two words.
+pub(super) const fn is_text(code: i32) -> bool {
+    matches!(code, 1 | 3)
 }
 
 /// A name of any age: see [`characters`].
 fn text(bytes: &[u8]) -> String {
     const LONGEST: usize = 255; // AutoCAD's own bound for a name
-    characters(bytes, LONGEST)
+    characters(bytes.trim_ascii(), LONGEST)
 }
 
 /// Characters of any age, so many at most: UTF-8, else Latin-1, with `\U+00E9` for what neither the writer's code page nor ASCII has.
@@ -236,38 +228,6 @@ pub(super) fn characters(bytes: &[u8], most: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn records_end_where_the_next_one_begins() {
-        let check = |bytes: &[u8]| {
-            let mut records = Records::new(bytes);
-            let mut record = Record::default();
-            assert!(records.read(&mut record).unwrap());
-            assert_eq!((record.kind, record.groups.len(), record.key(8)), (&b"LINE"[..], 2, "a".into()));
-            assert_eq!(record.number_or(10, 0.0).unwrap(), 1.5);
-            assert!(!records.read(&mut record).unwrap());
-        };
-        check(b"999\ncomment\n  0\nLINE\n  8\nA\n 10\n1.5\n  0\nEOF\n");
-        check(b"0\r\nLINE\r\n8\r\nA\r\n10\r\n1.5\r\n0\r\nEOF");
-        check(b"0\rLINE\r8\rA\r10\r1.5\r0\rEOF\r");
-    }
-
-    #[test]
-    fn what_is_no_number_is_named_with_its_line() {
-        let check = |bytes: &[u8], message: &str| {
-            let mut record = Record::default();
-            let found = Records::new(bytes).read(&mut record).and_then(|_| record.number_or(10, 0.0));
-            let found = found.unwrap_err().to_string();
-            assert!(found.contains(message), "{found}");
-        };
-        check(b"0\nLINE\n10\nleft\n0\nEOF\n", "line 4: an x coordinate is \"left\", expected a number");
-        check(b"0\nLINE\n10\nNaN\n0\nEOF\n", "line 4");
-        check(b"0\nLINE\n10\ninf\n0\nEOF\n", "line 4");
-        check(b"0\nLINE\n10\n1e300\n0\nEOF\n", "line 4");
-        check(b"0\nLINE\nten\n1\n", "line 3, column 1: not valid DXF: \"ten\" is no group code");
-        check(b"0\nLINE\n10\n", "line 4, column 1: not valid DXF: the file is cut off");
-        check(b"", "line 1, column 1: not valid DXF: the file is cut off");
-    }
 
     #[test]
     fn names_of_any_age_are_read() {

@@ -1,4 +1,4 @@
-//! What a DXF says of itself: the size of its unit.
+//! What a DXF says of itself: the size of its unit, and how long its dashes are, in which encoding its texts.
 
 use encoding_rs::Encoding;
 
@@ -34,12 +34,19 @@ const UNITS_M: [f64; 24] = [
 ];
 
 /// Variables of the section HEADER.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Header {
     units: Option<i64>,
-    measurement: Option<i64>,
+    /// Factor of all linetypes.
+    pub(super) linetype_scale: f64,
     /// Of texts that are no UTF-8.
     pub(super) encoding: Option<&'static Encoding>,
+}
+
+impl Default for Header {
+    fn default() -> Self {
+        Self { units: None, linetype_scale: 1.0, encoding: None }
+    }
 }
 
 impl Header {
@@ -50,25 +57,22 @@ impl Header {
         let mut name: &[u8] = b"";
         for group in &record.groups {
             match (group.code, name) {
-                (9, _) => name = group.value,
+                (9, _) => name = group.bytes(),
                 (70, b"$INSUNITS") => header.units = group.whole().ok(),
-                (70, b"$MEASUREMENT") => header.measurement = group.whole().ok(),
-                (3, b"$DWGCODEPAGE") => header.encoding = codes::encoding(group.value),
+                (3, b"$DWGCODEPAGE") => header.encoding = codes::encoding(group.bytes()),
+                (40, b"$LTSCALE") => {
+                    header.linetype_scale = group.number().ok().filter(|&s| s > 0.0).unwrap_or(1.0);
+                }
                 _ => {}
             }
         }
         header
     }
 
-    /// Size of the drawing's unit, m: `$INSUNITS`; where that is missing or says "none", inches or millimetres by
-    /// `$MEASUREMENT`; where that is missing too, nobody knows.
+    /// Size of the drawing's unit by `$INSUNITS`, m; `None` where that is missing or says "none". `$MEASUREMENT` is
+    /// about hatches and linetypes, and says nothing of the unit.
     pub(super) fn metres_per_unit(self) -> Option<f64> {
         let number = self.units.and_then(|u| usize::try_from(u).ok()).unwrap_or(0);
-        let named = number.checked_sub(1).and_then(|i| UNITS_M.get(i).copied());
-        named.or(match self.measurement {
-            Some(0) => Some(0.0254),
-            Some(1) => Some(1e-3),
-            _ => None,
-        })
+        number.checked_sub(1).and_then(|i| UNITS_M.get(i).copied())
     }
 }

@@ -5,6 +5,7 @@
 //! by a grid, so this is linear; every choice is by place and file order, so equal files give equal strokes.
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 use tracelight_maths::atan2;
 use tracelight_stroke::{Element, Path, Piece, Point, Vec2};
@@ -14,6 +15,9 @@ use crate::circular::arc_between;
 
 /// Ends this near are together, as a share of the drawing's size: 3 µm on 300 mm.
 const NEAR: f64 = 1e-5;
+
+/// Side of a cell of the grid, in that distance: large, so that most ends lie away from its sides.
+const CELL: f64 = 8.0;
 
 /// And as a share of the shorter path, so that the small in a large drawing stays what it is.
 const NEAR_OF_LENGTH: f64 = 1e-2;
@@ -26,6 +30,9 @@ const STRAIGHT_RAD: f64 = 0.1745;
 
 /// Two ends that meet and go back the way they came, to a ten-thousandth, are two lines on top of each other.
 const BACK_RAD: f64 = 1e-4;
+
+/// An arc of more than this keeps its circle where it is joined, rad: 270°.
+const NEARLY_WHOLE_RAD: f64 = 0.75 * TAU;
 
 /// An end of a path: twice its number, plus one for its last point.
 type End = usize;
@@ -51,20 +58,22 @@ fn nodes(drawn: &[Drawn], near: f64) -> Vec<Vec<End>> {
         return nodes;
     }
     let mut grid: HashMap<(usize, u32, i64, i64), Vec<usize>> = HashMap::new();
-    let open = (0..2 * drawn.len()).filter(|end| !drawn[end / 2].path.is_closed());
+    let is_open = |end: &End| !(drawn[end / 2].path.is_closed() || drawn[end / 2].is_dot);
+    let open = (0..2 * drawn.len()).filter(is_open);
     for end in open {
         let (own, point) = (&drawn[end / 2], point_of(end, drawn));
-        let (column, row) = ((point.x / near).floor() as i64, (point.y / near).floor() as i64);
         let colour = u32::from_be_bytes([0, own.colour.r, own.colour.g, own.colour.b]);
-        let key = |dx: i64, dy: i64| (own.layer, colour, column.saturating_add(dx), row.saturating_add(dy));
-        let around = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
-        let known = around.filter_map(|(dx, dy)| grid.get(&key(dx, dy))).flatten().copied();
-        // a cell holds no two nodes nearer than `near`: there are few
+        let cell = |v: f64| (v / (CELL * near)).floor() as i64;
+        let around = |v: f64| cell(v - near)..=cell(v + near);
+        let cells = around(point.x).flat_map(|column| around(point.y).map(move |row| (column, row)));
+        let known = cells.filter_map(|(column, row)| grid.get(&(own.layer, colour, column, row)));
+        let known = known.flatten().copied();
+        // the nodes of a cell are `near` apart: there are few
         let known = known.filter(|&n| point_of(nodes[n][0], drawn).distance(point) <= near).min();
         match known {
             Some(node) => nodes[node].push(end),
             None => {
-                grid.entry(key(0, 0)).or_default().push(nodes.len());
+                grid.entry((own.layer, colour, cell(point.x), cell(point.y))).or_default().push(nodes.len());
                 nodes.push(vec![end]);
             }
         }
@@ -167,10 +176,10 @@ fn beginning(start: End, partners: &[Option<End>]) -> (End, bool) {
 /// One path of many, entered by the given ends in turn.
 fn one(chain: &[End], is_ring: bool, drawn: &[Drawn]) -> Drawn {
     let own = &drawn[chain[0] / 2];
-    let (layer, colour) = (own.layer, own.colour);
+    let (layer, colour, is_dot) = (own.layer, own.colour, own.is_dot);
     let ways: Vec<Path> = chain.iter().map(|&end| entered(&drawn[end / 2].path, end)).collect();
     if let ([path], false) = (ways.as_slice(), is_ring) {
-        return Drawn { path: path.clone(), layer, colour };
+        return Drawn { path: path.clone(), layer, colour, is_dot };
     }
     let start = ways[0].start();
     let mut path = Path::new(start);
@@ -183,7 +192,7 @@ fn one(chain: &[End], is_ring: bool, drawn: &[Drawn]) -> Drawn {
     if is_ring {
         path.close();
     }
-    Drawn { path, layer, colour }
+    Drawn { path, layer, colour, is_dot }
 }
 
 fn entered(path: &Path, end: End) -> Path {
@@ -195,6 +204,11 @@ fn ending_at(piece: &Piece, from: Point, to: Point) -> Element {
     match piece.element {
         Element::Line { .. } => Element::Line { to },
         Element::Cubic { c1, c2, .. } => Element::Cubic { c1, c2, to },
+        // the ends of a nearly whole circle say little of where it lies: it is moved, and closed if it returns
+        Element::Arc { centre, sweep } if sweep.abs() > NEARLY_WHOLE_RAD => {
+            let sweep = if from == to { TAU.copysign(sweep) } else { sweep };
+            Element::Arc { centre: centre + (from - piece.from), sweep }
+        }
         Element::Arc { sweep, .. } if from != piece.from || to != piece.end() => arc_between(from, to, sweep),
         arc => arc,
     }

@@ -1,40 +1,42 @@
 //! The whole way from bytes to a sheet.
 
-use tracelight_maths::{log10, powf};
-use tracelight_stroke::{Affine, Drawing, Stroke};
+use tracelight_stroke::{Drawing, Element, Path, Stroke, Vec2};
 
-use super::blocks::{Drawn, unfolded};
-use super::entities::Entities;
-use super::groups::{Record, Records};
+use super::blocks::{Definitions, Drawn, unfolded};
+use super::entities::{Around, Entities};
+use super::groups::Record;
 use super::header::Header;
 use super::join::joined;
-use super::scene::{Block, Item, Layers, Scene, Skipped};
+use super::pattern;
+use super::records::{Cut, Records};
+use super::scene::{Block, Item, Layers, Scene};
+use super::sheet::{Unit, sheet};
+use super::skipped::Skipped;
 use super::text;
 use crate::extent::extent;
 use crate::lettering::faces;
-use crate::limit::MAX_COORDINATE;
-use crate::options::{Letters, ReadOptions};
-use crate::{FormatError, Reading, Sheet};
+use crate::options::{Hatch, Letters, ReadOptions};
+use crate::{FormatError, Reading};
 
-/// Sides of a sheet are at least so long, in its unit, or numbers with four decimals would show.
-const LEAST_SIDE: f64 = 10.0;
+/// Length of the line that stands for a point, as a share of the drawing's longer side: 1 mm on a wall of half a metre.
+const DOT: f64 = 0.002;
 
-/// A side of a drawing without width or height, as a share of the other.
-const LEAST_ASPECT: f64 = 0.01;
-
-/// Reads the model space of an ASCII DXF, seen from above, in file order.
+/// Reads the model space of a DXF, ASCII or binary, seen from above, in file order.
 ///
 /// Lines stay lines and arcs arcs, bulges become arcs, splines cubics (exact up to degree three without weights, else
-/// within 1e-5 of their size), ellipses cubics within 5e-6 of their larger half axis. Blocks are unfolded. Paths of one
-/// layer and colour that meet end to end become one stroke. Text is drawn as single lines, or as outlines where these are asked for. Each stroke has its layer's name and the colour it shows;
-/// what lies on layers that are off or frozen is left out.
+/// within 1e-5 of their size), ellipses cubics within 5e-6 of their larger half axis. Blocks are unfolded, dimensions
+/// drawn by theirs; faces and meshes by their edges; hatches by the edges of their areas, and by their pattern if that is
+/// asked for; a point as a level line of 1/500 of the drawing's longer side. Text is drawn as single
+/// lines, or as outlines where these are asked for. Linetypes make dashes, half a dash or more at either end of a path. Paths of one layer and colour that meet end to end become one stroke. Each stroke has its
+/// layer's name and the colour it shows; what lies on layers that are off or frozen is left out. Where the model is
+/// empty, the layout is drawn. Whatever is not drawn is counted by name in a remark.
 ///
-/// The sheet just holds the drawing. Its unit is the millimetre where the file names a unit (`$INSUNITS`, else
-/// `$MEASUREMENT`), else the file's own, times a power of ten where that makes numbers of a usual size.
+/// The sheet just holds the drawing, in millimetres, times a power of ten where that makes numbers of a usual size. Its
+/// unit is the one asked for, else `$INSUNITS`, else the millimetre, which a remark says. A size that cannot be meant is
+/// doubted, see [`Reading::doubt`].
 ///
 /// # Errors
-/// Binary DXF and DWG; anything else that is no DXF, with its line; drawings of nothing; files that are made to fill
-/// the memory.
+/// DWG; anything else that is no DXF, with its line; drawings of nothing; files that are made to fill the memory.
 pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
     read_with(bytes, &ReadOptions::default())
 }
@@ -46,36 +48,77 @@ pub fn read(bytes: &[u8]) -> Result<Reading, FormatError> {
 pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatError> {
     check_kind(bytes)?;
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    let (mut scene, header) = scene(bytes)?;
-    let said = set_texts(&mut scene, header, options)?;
-    let drawn = unfolded(&mut scene)?;
+    let mut records = Records::new(bytes);
+    let (mut scene, header) = scene(&mut records, options.hatch)?;
+    let lettered = set_texts(&mut scene, header, options)?;
+    let dash_scale = options.dashes.then_some(header.linetype_scale);
+    let (drawn, skipped, is_layout) = space(&scene, dash_scale)?;
     let drawing = strokes(drawn, &scene.layers);
-    match sheet(&drawing, header)? {
-        Some(sheet) => {
-            let remarks = scene.skipped.remarks().into_iter().chain(said).collect();
-            Ok(Reading { sheet, remarks })
-        }
-        None => Err(FormatError::Nothing { hint: hint(&scene.skipped) }),
-    }
+    let unit = Unit::of(options.unit, header.metres_per_unit());
+    let Some(size) = sheet(&drawing, unit)? else {
+        return Err(match records.cut() {
+            Some(_) => records.cut_off(),
+            None => skipped.nothing(),
+        });
+    };
+    let layout = is_layout.then(|| "its model is empty: the layout (paper space) is drawn".to_owned());
+    let cut = records.cut().map(|cut| cut_remark(cut).to_owned());
+    let before = [size.remark, layout, cut].into_iter().flatten();
+    Ok(Reading {
+        sheet: size.sheet,
+        remarks: before.chain(skipped.remarks()).chain(lettered).collect(),
+        doubt: size.doubt,
+    })
 }
 
 /// Makes paths of all texts, and says what of them is not drawn as it should be.
 fn set_texts(scene: &mut Scene, header: Header, options: &ReadOptions) -> Result<Vec<String>, FormatError> {
-    let Scene { blocks, items, styles, .. } = scene;
-    let mut all = items.iter().chain(blocks.values().flat_map(|block| &block.items));
-    if !all.any(|item| matches!(item, Item::Text(_))) {
+    let Scene { model, layout, blocks, styles, .. } = scene;
+    let spaces = model.items.iter_mut().chain(&mut layout.items);
+    let blocks = blocks.values_mut().flat_map(|block| &mut block.items);
+    let mut texts = spaces.chain(blocks).filter(|item| matches!(item, Item::Text(_))).peekable();
+    if texts.peek().is_none() {
         return Ok(Vec::new());
     }
     let setting = text::Setting { faces: faces(options, Letters::Line)?, styles, encoding: header.encoding };
-    Ok(text::set_all(items, blocks, &setting)?.remarks())
+    Ok(text::set_all(texts, &setting)?.remarks())
+}
+
+const fn cut_remark(cut: Cut) -> &'static str {
+    match cut {
+        Cut::Between => "the file ends without EOF: what it holds is drawn, more of it may be missing",
+        Cut::Within => "the file is cut off: what stands before is drawn, its last entity is not",
+    }
+}
+
+/// What is drawn of a scene, what is not, and whether that is a layout: the model, unless it is empty.
+fn space(scene: &Scene, dash_scale: Option<f64>) -> Result<(Vec<Drawn>, Skipped, bool), FormatError> {
+    let Scene { layers, lines, blocks, model, layout, in_layouts, styles: _ } = scene;
+    let definitions = Definitions { layers, lines, blocks, dash_scale };
+    let drawn = |items, skipped: &Skipped| {
+        let mut own = Skipped::default();
+        own.add(skipped);
+        unfolded(items, &mut own, &definitions).map(|drawn| (drawn, own))
+    };
+    let (own, mut skipped) = drawn(&model.items, &model.skipped)?;
+    if model.items.is_empty() && model.skipped.is_empty() {
+        let mut others: Vec<_> = blocks.iter().filter(|(key, _)| key.starts_with("*paper_space")).collect();
+        others.sort_by(|a, b| a.0.cmp(b.0));
+        let others = others.into_iter().map(|(_, block)| (&block.items, &block.skipped));
+        for (items, skipped) in std::iter::once((&layout.items, &layout.skipped)).chain(others) {
+            let (own, skipped) = drawn(items, skipped)?;
+            if !own.is_empty() {
+                return Ok((own, skipped, true));
+            }
+        }
+    }
+    skipped.in_paper_space = *in_layouts;
+    Ok((own, skipped, false))
 }
 
 fn check_kind(bytes: &[u8]) -> Result<(), FormatError> {
-    let instead = "save it as ASCII DXF (2000 or later, or R12) in the drawing program";
-    if bytes.starts_with(b"AutoCAD Binary DXF") {
-        return Err(FormatError::Refused { what: "binary DXF", instead });
-    }
     if bytes.starts_with(b"AC10") {
+        let instead = "save it as ASCII DXF (2000 or later, or R12) in the drawing program";
         return Err(FormatError::Refused { what: "DWG", instead });
     }
     match bytes.len() > super::MAX_BYTES {
@@ -103,15 +146,20 @@ struct Place {
     section: Section,
     /// The block whose entities come, and its key.
     block: Option<(String, Block)>,
+    /// Entities of the block or of the model.
     entities: Entities,
+    /// Entities of the layout.
+    layout: Entities,
+    /// Whether the entity before was the layout's, as its vertices are.
+    is_in_layout: bool,
+    /// Crossings that are left for the patterns of hatches, if these are asked for.
+    patterns: Option<usize>,
     elements: usize,
 }
 
-fn scene(bytes: &[u8]) -> Result<(Scene, Header), FormatError> {
+fn scene(records: &mut Records, hatch: Hatch) -> Result<(Scene, Header), FormatError> {
     let (mut scene, mut header) = (Scene::default(), Header::default());
-    let entities = Entities::default();
-    let mut place = Place { section: Section::Other, block: None, entities, elements: 0 };
-    let mut records = Records::new(bytes);
+    let mut place = Place::new(hatch);
     let mut record = Record::default();
     while records.read(&mut record)? {
         match record.kind {
@@ -139,10 +187,18 @@ fn section(record: &Record) -> Section {
 }
 
 impl Place {
+    fn new(hatch: Hatch) -> Self {
+        let [entities, layout] = [Entities::default(), Entities::default()];
+        let (section, block) = (Section::Other, None);
+        let patterns = (hatch == Hatch::Pattern).then_some(pattern::MOST_CROSSINGS);
+        Self { section, block, entities, layout, is_in_layout: false, patterns, elements: 0 }
+    }
+
     fn take(&mut self, record: &Record, scene: &mut Scene) -> Result<(), FormatError> {
         match (self.section, record.kind) {
-            (Section::Tables, b"LAYER") => scene.layers.declare(record),
+            (Section::Tables, b"LAYER") => scene.layers.declare(record, &mut scene.lines),
             (Section::Tables, b"STYLE") => scene.styles.declare(record),
+            (Section::Tables, b"LTYPE") => scene.lines.declare(record),
             (Section::Blocks, b"BLOCK") => {
                 self.end_block(scene);
                 let block = Block { base: record.point(10)?, ..Block::default() };
@@ -159,16 +215,27 @@ impl Place {
     }
 
     fn entity(&mut self, record: &Record, scene: &mut Scene) -> Result<(), FormatError> {
-        let layers = &mut scene.layers;
-        let skipped = match (&mut self.block, self.section) {
-            (Some((_, block)), _) => &mut block.skipped,
-            (None, Section::Entities) => &mut scene.skipped,
+        let Scene { layers, lines, model, layout, in_layouts, .. } = scene;
+        let is_part = matches!(record.kind, b"VERTEX" | b"SEQEND");
+        let (entities, skipped) = match (&mut self.block, self.section) {
+            (Some((_, block)), _) => (&mut self.entities, &mut block.skipped),
+            (None, Section::Entities) => {
+                if !is_part {
+                    self.is_in_layout = record.whole_or(67, 0)? == 1;
+                    let is_counted = self.is_in_layout && record.kind != b"VIEWPORT";
+                    *in_layouts += usize::from(is_counted);
+                }
+                match self.is_in_layout {
+                    true => (&mut self.layout, &mut layout.skipped),
+                    false => (&mut self.entities, &mut model.skipped),
+                }
+            }
             // between two blocks there is nothing that could be meant
             _ => return Ok(()),
         };
-        let before = self.entities.elements;
-        self.entities.take(record, layers, skipped)?;
-        self.elements += self.entities.elements.saturating_sub(before);
+        let before = entities.elements;
+        entities.take(record, &mut Around { layers, lines, skipped, patterns: &mut self.patterns })?;
+        self.elements += entities.elements.saturating_sub(before);
         match self.elements > super::MAX_ELEMENTS {
             true => Err(FormatError::TooLarge {
                 what: "DXF",
@@ -182,7 +249,7 @@ impl Place {
 
     fn end_block(&mut self, scene: &mut Scene) {
         if let Some((key, mut block)) = self.block.take() {
-            self.entities.finish();
+            self.entities.finish(&mut block.skipped);
             block.items = std::mem::take(&mut self.entities).items;
             scene.blocks.insert(key, block);
         }
@@ -190,69 +257,32 @@ impl Place {
 
     fn end_section(&mut self, scene: &mut Scene) {
         self.end_block(scene);
-        self.entities.finish();
         if self.section == Section::Entities {
-            scene.items.extend(std::mem::take(&mut self.entities).items);
+            let spaces = [(&mut self.entities, &mut scene.model), (&mut self.layout, &mut scene.layout)];
+            for (entities, space) in spaces {
+                entities.finish(&mut space.skipped);
+                space.items.extend(std::mem::take(entities).items);
+            }
         }
         self.section = Section::Other;
     }
 }
 
 /// Joined where they meet, named after their layers.
-fn strokes(drawn: Vec<Drawn>, layers: &Layers) -> Drawing {
+fn strokes(mut drawn: Vec<Drawn>, layers: &Layers) -> Drawing {
     let plain = |d: &Drawn| Stroke::new(d.path.clone());
     let bounds = extent(&Drawing { strokes: drawn.iter().map(plain).collect() }).unwrap_or_default();
+    let size = bounds.width().max(bounds.height());
+    for dot in drawn.iter_mut().filter(|d| d.is_dot) {
+        let half = Vec2::new(0.5 * DOT * size, 0.0);
+        let (from, to) = (dot.path.start() - half, dot.path.start() + half);
+        dot.path = Path::new(from);
+        dot.path.push(Element::Line { to });
+    }
     let stroke = |d: Drawn| Stroke {
         layer: Some(layers.get(d.layer).name.clone()),
         colour: Some(d.colour),
         ..Stroke::new(d.path)
     };
-    let joined = joined(drawn, bounds.width().max(bounds.height()));
-    Drawing { strokes: joined.into_iter().map(stroke).collect() }
-}
-
-/// The sheet round a drawing: y down, the corner at the origin. `None` for a drawing of nothing.
-fn sheet(drawing: &Drawing, header: Header) -> Result<Option<Sheet>, FormatError> {
-    let Some(bounds) = extent(drawing) else { return Ok(None) };
-    let size = bounds.width().max(bounds.height());
-    let unit_m = header.metres_per_unit();
-    // millimetres where they are known
-    let scale = unit_m.map_or(1.0, |m| 1e3 * m);
-    let scale = scale * of_usual_size(size * scale);
-    if !(size > 0.0 && size.is_finite() && scale.is_finite() && scale > 0.0) {
-        return Err(FormatError::Far { place: "extent of the drawing".into(), x: bounds.x1, y: bounds.y1 });
-    }
-    let (width, height) = (bounds.width().max(LEAST_ASPECT * size), bounds.height().max(LEAST_ASPECT * size));
-    let (left, top) = (bounds.center().x - 0.5 * width, bounds.center().y + 0.5 * height);
-    let place = Affine::new([scale, 0.0, 0.0, -scale, -left * scale, top * scale]);
-    Ok(Some(Sheet {
-        width: width * scale,
-        height: height * scale,
-        metres_per_unit: unit_m.map(|m| m / scale),
-        drawing: drawing.transformed(place),
-    }))
-}
-
-/// The power of ten that brings a size between what four decimals and what readers can hold.
-fn of_usual_size(size: f64) -> f64 {
-    let exponent = match size {
-        s if s > MAX_COORDINATE => log10(MAX_COORDINATE / s).floor(),
-        s if s > 0.0 && s < LEAST_SIDE => log10(LEAST_SIDE / s).ceil(),
-        _ => 0.0,
-    };
-    powf(10.0, exponent)
-}
-
-fn hint(skipped: &Skipped) -> &'static str {
-    if skipped.hidden > 0 {
-        "all layers of the DXF that hold something are off or frozen: turn them on"
-    } else if skipped.in_paper_space > 0 {
-        "the DXF holds a layout, and its model is empty: export the model space"
-    } else if skipped.has(&["TEXT", "MTEXT", "ATTDEF"]) {
-        "the DXF holds text, not lines: explode the text into polylines"
-    } else if skipped.has(&["HATCH", "SOLID", "3DFACE", "MESH", "3DSOLID", "REGION", "BODY"]) {
-        "the DXF holds areas or solids, not lines: export their outlines"
-    } else {
-        "the DXF has no line, arc, polyline, ellipse or spline in its model"
-    }
+    Drawing { strokes: joined(drawn, size).into_iter().map(stroke).collect() }
 }

@@ -1,12 +1,14 @@
 //! What a DXF holds, before its blocks are unfolded.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use tracelight_stroke::{Affine, Colour, Path, Point};
 
 use super::aci;
 use super::groups::Record;
+use super::linetype::{self, LineFrom, Lines};
+use super::skipped::Skipped;
 use super::text::{Styles, Text};
 use crate::FormatError;
 
@@ -14,17 +16,29 @@ use crate::FormatError;
 #[derive(Default)]
 pub(super) struct Scene {
     pub(super) layers: Layers,
+    pub(super) lines: Lines,
     pub(super) blocks: HashMap<String, Block>,
-    /// Model space.
-    pub(super) items: Vec<Item>,
-    pub(super) skipped: Skipped,
+    pub(super) model: Space,
+    /// The layout that was open when the file was saved.
+    pub(super) layout: Space,
+    /// Entities of the layout, whether they are drawn or not.
+    pub(super) in_layouts: usize,
     pub(super) styles: Styles,
+}
+
+/// A space that is drawn in.
+#[derive(Default)]
+pub(super) struct Space {
+    pub(super) items: Vec<Item>,
+    /// What it holds and does not draw.
+    pub(super) skipped: Skipped,
 }
 
 /// Something that is drawn.
 #[derive(Debug)]
 pub(super) enum Item {
     Shape(Shape),
+    Dot(Dot),
     Insert(Box<Insert>),
     Text(Box<Text>),
 }
@@ -33,6 +47,13 @@ pub(super) enum Item {
 #[derive(Debug)]
 pub(super) struct Shape {
     pub(super) path: Path,
+    pub(super) look: Look,
+}
+
+/// An entity that is a point.
+#[derive(Debug)]
+pub(super) struct Dot {
+    pub(super) at: Point,
     pub(super) look: Look,
 }
 
@@ -59,11 +80,29 @@ pub(super) struct Block {
     pub(super) skipped: Skipped,
 }
 
-/// Layer and colour as an entity has them.
+/// Layer, colour and linetype as an entity has them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
     pub(super) layer: usize,
     pub(super) paint: Paint,
+    pub(super) line: LineFrom,
+    /// Factor of the linetype's lengths.
+    pub(super) line_scale: f64,
+}
+
+impl Look {
+    /// The look of a record.
+    ///
+    /// # Errors
+    /// A colour or factor that is no number.
+    pub(super) fn of(record: &Record, layers: &mut Layers, lines: &mut Lines) -> Result<Self, FormatError> {
+        Ok(Self {
+            layer: layers.numbered(&record.text(8)),
+            paint: Paint::of(record)?,
+            line: lines.of(&record.key(6)),
+            line_scale: record.number_or(48, 1.0)?,
+        })
+    }
 }
 
 /// Where an entity's colour comes from.
@@ -95,6 +134,8 @@ impl Paint {
 pub(super) struct Layer {
     pub(super) name: Arc<str>,
     pub(super) colour: Colour,
+    /// Number of its linetype.
+    pub(super) line: usize,
     pub(super) is_off: bool,
     pub(super) is_frozen: bool,
 }
@@ -124,6 +165,7 @@ impl Layers {
             self.all.push(Layer {
                 name: name.into(),
                 colour: Colour::BLACK,
+                line: linetype::CONTINUOUS,
                 is_off: false,
                 is_frozen: false,
             });
@@ -135,12 +177,13 @@ impl Layers {
     ///
     /// # Errors
     /// A colour or flag that is no number.
-    pub(super) fn declare(&mut self, record: &Record) -> Result<(), FormatError> {
+    pub(super) fn declare(&mut self, record: &Record, lines: &mut Lines) -> Result<(), FormatError> {
         let number = self.numbered(&record.text(2));
         let layer = &mut self.all[number];
         let colour = record.whole_or(62, 7)?;
         // a negative colour is how a layer is off
         layer.is_off = colour < 0;
+        layer.line = lines.numbered(&record.key(6));
         layer.is_frozen = record.whole_or(70, 0)? & 1 != 0;
         layer.colour = match Paint::of(record)? {
             Paint::Of(colour) => colour,
@@ -151,63 +194,5 @@ impl Layers {
 
     pub(super) fn get(&self, number: usize) -> &Layer {
         &self.all[number]
-    }
-}
-
-/// What is in a file and not drawn.
-#[derive(Default)]
-pub(super) struct Skipped {
-    kinds: BTreeMap<String, usize>,
-    /// Entities on layers that are off or frozen, or invisible themselves.
-    pub(super) hidden: usize,
-    /// Entities of layouts.
-    pub(super) in_paper_space: usize,
-    /// Inserts of blocks that are in another file, or nowhere.
-    pub(super) missing_blocks: usize,
-}
-
-impl Skipped {
-    /// Counts an entity of a kind that is not drawn.
-    pub(super) fn count(&mut self, kind: &[u8]) {
-        const MOST_KINDS: usize = 50; // more than there are: the rest is rubbish
-        let name = String::from_utf8_lossy(&kind[..kind.len().min(24)]).into_owned();
-        let name = if self.kinds.len() < MOST_KINDS { name } else { "others".into() };
-        *self.kinds.entry(name).or_default() += 1;
-    }
-
-    /// Counts what a block does not draw, once for each time it is inserted.
-    pub(super) fn add(&mut self, block: &Self) {
-        for (kind, count) in &block.kinds {
-            *self.kinds.entry(kind.clone()).or_default() += count;
-        }
-        self.hidden += block.hidden;
-    }
-
-    /// How many kinds there are: the work that [`add`](Self::add) is.
-    pub(super) fn kinds(&self) -> usize {
-        self.kinds.len()
-    }
-
-    /// Whether anything of a kind was counted.
-    pub(super) fn has(&self, kinds: &[&str]) -> bool {
-        kinds.iter().any(|k| self.kinds.contains_key(*k))
-    }
-
-    /// One sentence for each reason.
-    pub(super) fn remarks(&self) -> Vec<String> {
-        const NAMED: usize = 6;
-        let mut kinds: Vec<_> = self.kinds.iter().collect();
-        kinds.sort_by_key(|(_, n)| std::cmp::Reverse(**n));
-        let named: Vec<_> = kinds.iter().take(NAMED).map(|(kind, n)| format!("{n} {kind}")).collect();
-        let more = if kinds.len() > NAMED { ", …" } else { "" };
-        let kinds = (!named.is_empty()).then(|| {
-            let named = named.join(", ");
-            format!("not drawn: {named}{more}; explode them into lines and arcs")
-        });
-        let said = |n: usize, what: &str| (n > 0).then(|| format!("not drawn: {what} ({n} found)"));
-        let hidden = said(self.hidden, "what is invisible, or on a layer that is off or frozen");
-        let paper = said(self.in_paper_space, "layouts (paper space); the model is");
-        let missing = said(self.missing_blocks, "blocks that the file does not hold; bind them to it");
-        [kinds, hidden, paper, missing].into_iter().flatten().collect()
     }
 }

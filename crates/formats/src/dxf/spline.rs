@@ -24,10 +24,10 @@ type Weighted = [f64; 3];
 /// Counts that do not fit each other, knots that fall, weights that are not positive.
 pub(super) fn path(record: &Record) -> Result<Option<Path>, FormatError> {
     let is_closed = record.whole_or(70, 0)? & 1 != 0;
-    let controls = points(record, 10)?;
+    let controls = record.points(10)?;
     if controls.is_empty() {
         let (start, end) = (record.point(12)?.to_vec2(), record.point(13)?.to_vec2());
-        return Ok(through(points(record, 11)?, [start, end], is_closed));
+        return Ok(through(record.points(11)?, [start, end], is_closed));
     }
     let spline = Spline::of(record, controls)?;
     let path = spline.path(is_closed);
@@ -36,23 +36,6 @@ pub(super) fn path(record: &Record) -> Result<Option<Path>, FormatError> {
         true => Ok(path),
         false => Err(record.wrong("the curve", "not finite".into(), "knots and weights of one magnitude")),
     }
-}
-
-fn numbers(record: &Record, code: i32) -> Result<Vec<f64>, FormatError> {
-    record.groups.iter().filter(|g| g.code == code).map(|g| g.number()).collect()
-}
-
-/// Points of x at `code` and y ten codes later.
-fn points(record: &Record, code: i32) -> Result<Vec<Point>, FormatError> {
-    let mut points: Vec<Point> = Vec::new();
-    for group in &record.groups {
-        match points.last_mut() {
-            _ if group.code == code => points.push(Point::new(group.number()?, 0.0)),
-            Some(last) if group.code == code + 10 => last.y = group.number()?,
-            _ => {}
-        }
-    }
-    Ok(points)
 }
 
 /// A B-spline (Piegl & Tiller, *The NURBS Book*, 2nd ed., chapters 2 to 5).
@@ -73,12 +56,12 @@ impl Spline {
                 let found = format!("{degree} with {} control points", controls.len());
                 record.wrong("the degree", found, "1 to 15, and less than there are control points")
             })?;
-        let weights = numbers(record, 41)?;
+        let weights = record.numbers(41)?;
         if weights.iter().any(|&w| w <= 0.0) || !(weights.is_empty() || weights.len() == controls.len()) {
             let found = format!("{} for {} control points", weights.len(), controls.len());
             return Err(record.wrong("the list of weights", found, "a positive one for each, or none"));
         }
-        let mut knots = numbers(record, 40)?;
+        let mut knots = record.numbers(40)?;
         if knots.is_empty() {
             knots = even_knots(controls.len(), degree);
         }
@@ -107,9 +90,8 @@ impl Spline {
                 self.draw(&bezier, pen, tolerance);
             }
         }
-        let pen = pen?;
-        let returns = is_closed || pen.is_back(1e-9 * self.spread());
-        pen.finish(returns)
+        // one that returns to its start and is not closed may be a part of something: `join` closes it if it is alone
+        pen?.finish(is_closed)
     }
 
     fn spread(&self) -> f64 {
@@ -207,7 +189,7 @@ fn halves(bezier: &[Weighted], t: f64) -> (Vec<Weighted>, Vec<Weighted>) {
 
 /// A cubic spline through points, its parameter the chords' length: smooth to the second derivative, with the given
 /// end tangents, or straight at ends that have none (de Boor, *A Practical Guide to Splines*, chapter IV).
-fn through(points: Vec<Point>, tangents: [Vec2; 2], is_closed: bool) -> Option<Path> {
+pub(super) fn through(points: Vec<Point>, tangents: [Vec2; 2], is_closed: bool) -> Option<Path> {
     let points = apart(points);
     if is_closed && points.len() > 2 {
         return closed_through(&points);

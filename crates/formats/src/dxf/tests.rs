@@ -4,6 +4,10 @@ use super::*;
 use crate::{FormatError, Reading, Sheet};
 use tracelight_stroke::{Colour, Drawing, Element, Path, Point, Stroke};
 
+mod cut;
+mod more;
+mod units;
+
 /// Groups given as `code value` pairs, separated by commas.
 fn groups(pairs: &str) -> String {
     let pairs = pairs.split(',').map(str::trim).filter(|p| !p.is_empty());
@@ -210,7 +214,7 @@ fn layers_give_colours_and_hide() {
         .collect();
     let rgb = Colour::from_rgb;
     assert_eq!(looks, [("Red", rgb(0xff0000)), ("True", rgb(0x123456)), ("Red", rgb(0x0000ff))]);
-    assert_eq!(found.sheet.metres_per_unit, None);
+    assert_eq!(found.sheet.metres_per_unit, Some(1e-3));
     let remarks = found.remarks.join("; ");
     for said in [
         "2 ATTDEF, 1 HATCH",
@@ -220,28 +224,6 @@ fn layers_give_colours_and_hide() {
     ] {
         assert!(remarks.contains(said), "{said}: {remarks}");
     }
-}
-
-#[test]
-fn the_unit_is_that_of_the_header() {
-    let check = |header: &str, width_m: Option<f64>| {
-        let line = "0 LINE, 10 1000000, 20 0, 11 1000002, 21 0";
-        let text = section("HEADER", header) + &section("ENTITIES", line) + "0\nEOF\n";
-        let sheet = reading(&text).sheet;
-        let found = sheet.metres_per_unit.map(|m| m * sheet.width);
-        let same = found.zip(width_m).is_some_and(|(a, b)| (a / b - 1.0).abs() < 1e-9) || found == width_m;
-        assert!(same, "{header}: {found:?}");
-        assert!((10.0..=crate::MAX_COORDINATE).contains(&sheet.width), "{header}: {}", sheet.width);
-    };
-    check("9 $INSUNITS, 70 4", Some(0.002));
-    check("9 $INSUNITS, 70 6", Some(2.0));
-    check("9 $INSUNITS, 70 1, 9 $MEASUREMENT, 70 1", Some(0.0508));
-    check("9 $INSUNITS, 70 0, 9 $MEASUREMENT, 70 1", Some(0.002));
-    check("9 $MEASUREMENT, 70 0", Some(0.0508));
-    check("9 $INSUNITS, 70 0", None);
-    check("9 $INSUNITS, 70 99", None);
-    check("9 $INSUNITS, 70 7", Some(2000.0));
-    check("9 $ACADVER, 1 AC1009", None);
 }
 
 #[test]
@@ -287,7 +269,7 @@ fn what_is_no_dxf_is_refused_with_what_to_do() {
         let found = read(bytes).unwrap_err().to_string();
         assert!(found.contains(message), "{message}: {found}");
     };
-    check(b"AutoCAD Binary DXF\r\n\x1a\x00", "binary DXF is not read: save it as ASCII");
+    check(b"AutoCAD Binary DXF\r\n\x1a\x00", "byte 22 of a binary file: the file is cut off");
     check(b"AC1032\x00\x00", "DWG is not read: save it as ASCII");
     check(file("").as_bytes(), "nothing to draw: the DXF has no line");
     check(file("0 ATTDEF, 1 hello").as_bytes(), "explode the text");
@@ -298,10 +280,6 @@ fn what_is_no_dxf_is_refused_with_what_to_do() {
         "SPLINE at line 16: the degree is 3 with 2",
     );
     check(file("0 SPLINE, 71 1, 40 0, 10 0, 20 0, 10 1, 20 1").as_bytes(), "the list of knots is 1 for 2");
-    let text = file("0 LINE, 10 0, 20 0, 11 1, 21 1");
-    for cut in 0..text.len() - 4 {
-        assert!(read(&text.as_bytes()[..cut]).is_err(), "cut at {cut}");
-    }
 }
 
 #[test]

@@ -9,9 +9,9 @@ use tracelight_stroke::{Affine, Point, Vec2};
 
 use super::codes;
 use super::curves::world_from_plane;
-use super::groups::Record;
+use super::groups::{Group, Record};
 use super::mtext;
-use super::scene::{Block, Item, Look, Shape};
+use super::scene::{Item, Look, Shape};
 use crate::FormatError;
 
 /// Characters of one text at most.
@@ -147,7 +147,7 @@ fn raw(record: &Record) -> Vec<u8> {
     // what follows an embedded object is that object's
     let own = record.groups.iter().take_while(|group| group.code != 101);
     let is_text = |code: i32| code == 1 || code == 3 && record.kind == b"MTEXT";
-    let pieces: Vec<&[u8]> = own.filter(|group| is_text(group.code)).map(|group| group.value).collect();
+    let pieces: Vec<&[u8]> = own.filter(|group| is_text(group.code)).map(Group::bytes).collect();
     match record.kind {
         b"MTEXT" => pieces.concat(),
         _ => pieces.first().map(|first| first.to_vec()).unwrap_or_default(),
@@ -249,18 +249,16 @@ impl Said {
     }
 }
 
-/// Sets every text of the model and of the blocks.
+/// Sets every text of some items.
 ///
 /// # Errors
 /// Letters of more lines than are read.
-pub(super) fn set_all(
-    items: &mut [Item],
-    blocks: &mut HashMap<String, Block>,
+pub(super) fn set_all<'a>(
+    items: impl Iterator<Item = &'a mut Item>,
     setting: &Setting,
 ) -> Result<Said, FormatError> {
     let (mut said, mut elements) = (Said::default(), 0);
-    let all = items.iter_mut().chain(blocks.values_mut().flat_map(|block| block.items.iter_mut()));
-    for item in all {
+    for item in items {
         let Item::Text(text) = item else { continue };
         text.set(&setting.faces, setting.styles, setting.encoding, &mut said);
         let cost = |shape: &Shape| shape.path.elements().len().max(super::LEAST_ELEMENTS);

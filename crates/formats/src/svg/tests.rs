@@ -143,7 +143,7 @@ fn broken_files_are_refused_with_their_place() {
     check(b"", "line 1");
     check(b"not a drawing", "line 1, column 1");
     check(b"\x89PNG\r\n\x1a\n", "not UTF-8");
-    check(b"\x1f\x8b\x08\x00", "not UTF-8");
+    check(b"\x1f\x8b\x08\x00", "packed with gzip, and broken or cut off");
     check(svg("width='9' height='9'", "<g>\n<path></g>").as_bytes(), "line 2");
     check(b"<html><body/></html>", "line 1");
     check(svg("width='0' height='9'", "<path d='M0 0H9' stroke='red'/>").as_bytes(), "size");
@@ -225,7 +225,7 @@ fn bombs_are_refused_before_they_go_off() {
 
 #[test]
 fn what_is_just_not_too_deep_is_read() {
-    let groups = "<g opacity='.5'>".repeat(60) + "<svg>".repeat(60).as_str();
+    let groups = "<g opacity='.99'>".repeat(60) + "<svg>".repeat(60).as_str();
     let content = groups + "<use href='#p'/>" + &"</svg>".repeat(60) + &"</g>".repeat(60);
     let sheet = of(&(content + "<defs><path id='p' d='M0 0H9' stroke='red'/></defs>"));
     assert_eq!(sheet.drawing.strokes.len(), 1);
@@ -245,7 +245,7 @@ fn short_entities_of_drawing_programs_are_read() {
 #[test]
 fn a_long_path_is_read_quickly() {
     let content = format!("<path d='M0 0{}' stroke='red'/>", "l.1 .1l.1-.1".repeat(200_000));
-    let sheet = of(&content);
+    let sheet = read(svg("width='50000' height='80'", &content).as_bytes()).unwrap().sheet;
     assert_eq!(sheet.drawing.strokes[0].path.elements().len(), 400_000);
 }
 
@@ -324,5 +324,6 @@ fn a_vast_arc_is_refused_before_it_swells() {
         assert!(matches!(refused, Err(FormatError::TooLarge { .. })), "{bomb}: {refused:?}");
     }
     let many = "<path stroke='red' fill='none' d='M0 0A9 9 0 0 1 9 9a1e5 1e5 0 0 0 1 1'/><circle r='20%'/>";
-    assert_eq!(read(svg(&many.repeat(2000)).as_bytes()).unwrap().sheet.drawing.strokes.len(), 4000);
+    let read = read(svg(&many.repeat(2000)).as_bytes()).unwrap();
+    assert_eq!(read.sheet.drawing.strokes.len(), 2, "and what is drawn again is drawn once");
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use oorandom::Rand64;
 use tracelight_formats::json::Traced;
-use tracelight_formats::{Sheet, csv, dxf, json, svg};
+use tracelight_formats::{Hidden, ReadOptions, Sheet, csv, dxf, json, svg};
 use tracelight_stroke::{Affine, Colour, Drawing, Element, Path, Point, Stroke, StrokeKind};
 
 const WIDTH_M: f64 = 0.6;
@@ -90,12 +90,17 @@ fn check_near(format: &str, number: u32, written: &Drawing, read: &Drawing, with
     assert!(added <= within_m, "{format}, drawing {number}: {added} m beside it");
 }
 
+/// What is hidden or lies off the page comes back too.
+fn everything() -> ReadOptions {
+    ReadOptions { hidden: Hidden::Keep, crop: false, ..ReadOptions::default() }
+}
+
 #[test]
 fn any_drawing_comes_back_from_svg_dxf_and_csv() {
     let mut r = Rand64::new(5);
     for number in 0..60 {
         let drawing = drawing(&mut r);
-        let back = svg::read(svg::write(&drawing, WIDTH_M, HEIGHT_M).as_bytes()).unwrap();
+        let back = svg::read_with(svg::write(&drawing, WIDTH_M, HEIGHT_M).as_bytes(), &everything()).unwrap();
         // an arc may come back as a cubic that keeps to it within 3e-4 of its radius
         check_near("SVG", number, &drawing, &on_target(&back.sheet), 1e-4);
         assert_eq!(back.sheet.drawing.strokes.len(), drawing.strokes.len(), "SVG, drawing {number}");

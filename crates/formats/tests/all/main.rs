@@ -8,5 +8,6 @@ mod machines;
 mod mutations;
 #[path = "support/plate.rs"]
 mod plate;
+mod seen;
 mod small_and_slow;
 mod texts;

@@ -4,7 +4,7 @@
 use std::fmt::Write;
 use std::time::Instant;
 
-use tracelight_formats::{FormatError, svg};
+use tracelight_formats::{FormatError, Hidden, ReadOptions, svg};
 
 const LINE: &str = "<path d='M0 0H9' stroke='red'/>";
 
@@ -83,7 +83,10 @@ fn tags_hide_in_no_entity() {
         &document("<!DOCTYPE svg [<!ENTITY t 'a>&b;'>]>", "&t;"),
         &["an entity that names another"],
     );
-    let few = document("<!DOCTYPE svg [<!ENTITY t '<path d=\"M0 0H9\" stroke=\"red\"/>'>]>", "&t;&t;");
+    let few = document(
+        "<!DOCTYPE svg [<!ENTITY t '<path d=\"M0 0H9\" stroke=\"red\"/>'>]>",
+        "&t;<g transform='translate(0 2)'>&t;</g>",
+    );
     assert_eq!(svg::read(few.as_bytes()).unwrap().sheet.drawing.strokes.len(), 2);
 }
 
@@ -105,7 +108,9 @@ fn a_map_of_a_hundred_thousand_elements_and_hundreds_of_rules_is_read() {
     let body = format!(
         "<style type='text/css'>{rules}</style><g xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'>{comments}{roads}</g>"
     );
-    let read = svg::read(document("<?xml version='1.0'?>\n", &body).as_bytes()).unwrap();
+    let text = document("<?xml version='1.0'?>\n", &body);
+    let all_of_it = ReadOptions { hidden: Hidden::Keep, crop: false, ..ReadOptions::default() };
+    let read = svg::read_with(text.as_bytes(), &all_of_it).unwrap();
     assert_eq!(read.sheet.drawing.strokes.len(), 100_000);
 }
 

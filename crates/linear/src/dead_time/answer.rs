@@ -2,6 +2,7 @@
 
 use tracelight_maths::{complex, ln};
 
+use super::chain::{Chain, Parts};
 use super::search::{highest, turned};
 use super::steps::Steps;
 use super::{Delayed, GrowingPoles};
@@ -45,7 +46,18 @@ impl Delayed {
             return Self::from(self.rational.closed()?).answer(input);
         }
         let ending = self.closed_ending(input);
-        Ok(Answer { form: Form::Steps(Steps::closed(self, input, duration_s)?), ending })
+        Ok(Answer { form: Form::Steps(Steps::closed(&Chain::of(self)?, input, duration_s)?), ending })
+    }
+
+    /// What a loop of two parts with a dead time answers, and ends in, for that long, s; as [`closed_answer`](Self::closed_answer).
+    pub(crate) fn loop_answer(
+        parts: Parts<'_>,
+        input: Input,
+        ending: Ending,
+        duration_s: f64,
+    ) -> Result<Answer, LinearError> {
+        let steps = Steps::closed(&Chain::of_parts(parts)?, input, duration_s)?;
+        Ok(Answer { form: Form::Steps(steps), ending })
     }
 
     fn closed_ending(&self, input: Input) -> Ending {
@@ -144,11 +156,11 @@ impl Answer {
         }
     }
 
-    /// Area of the impulse that goes straight through, of an open system.
+    /// Area of the impulse that goes straight through.
     pub fn impulse(&self) -> f64 {
         match &self.form {
             Form::Late(transient, _) => transient.impulse(),
-            Form::Steps(_) => 0.0,
+            Form::Steps(steps) => steps.impulse,
         }
     }
 

@@ -53,7 +53,7 @@ impl Delayed {
 
     /// Frequencies, rad/s, rising, between which gain and phase each only rise or only fall, to where the last one is followed by some
     /// whole turns.
-    fn stretches(&self) -> Vec<f64> {
+    pub(crate) fn stretches(&self) -> Vec<f64> {
         let along = Along::of(&self.rational);
         let (above, below) = (square(&along.above), square(&along.below));
         let (above_turns, below_turns) = (turning(&along.above), turning(&along.below));

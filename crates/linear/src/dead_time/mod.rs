@@ -8,9 +8,11 @@
 //! | `curve` | Nyquist's curve, the closed loop's frequency response |
 //! | `pade` | rational systems that are nearly the same, and by how much not |
 //! | `steps` | what the closed loop answers, from dead time to dead time |
+//! | `chain` | what a signal goes through once round a loop |
 //! | `answer` | what the system or its closed loop answers, and its figures |
 
 mod answer;
+mod chain;
 mod curve;
 mod margins;
 mod pade;
@@ -27,6 +29,8 @@ use crate::turns::Turns;
 use crate::{Complex, FrequencyResponse, LinearError, Time, TransferFunction};
 
 pub use answer::Answer;
+pub(crate) use chain::{Parts, Place};
+pub(crate) use search::highest;
 pub use stability::GrowingPoles;
 
 /// A rational system in series with a dead time, s.
@@ -113,7 +117,7 @@ impl Delayed {
     }
 
     /// Slope of ln L over the frequency: its real part is that of ln |L|, its imaginary part that of the phase, s.
-    fn logarithmic_slope(&self, rad_s: f64) -> Complex {
+    pub(crate) fn logarithmic_slope(&self, rad_s: f64) -> Complex {
         self.rational.logarithmic_slope(rad_s) - Complex::new(0.0, self.delay_s)
     }
 }

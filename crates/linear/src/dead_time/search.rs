@@ -1,7 +1,7 @@
 //! Places between two others, by halves and thirds.
 
 /// The place of the largest value between two, where it has one peak.
-pub(super) fn highest(value: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
+pub(crate) fn highest(value: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
     for _ in 0..100 {
         let third = (to - from) / 3.0;
         if value(from + third) > value(to - third) {

@@ -3,7 +3,7 @@
 //! What comes into the rational part is known one dead time ahead. A dead time is cut into cells; in each the input is the polynomial
 //! through its values, and the rational part answers to that exactly, by the exponential of its matrix. Jumps fall between cells.
 
-use super::Delayed;
+use super::chain::Chain;
 use crate::discretize::exponential;
 use crate::transient::Input;
 use crate::{LinearError, Matrix};
@@ -19,6 +19,10 @@ const ENOUGH: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Steps {
     cell_s: f64,
+    /// When its first value comes out, s: before it there is nothing.
+    late_s: f64,
+    /// Area of the impulse that goes straight through at that moment.
+    pub(super) impulse: f64,
     /// A cell after the other, so many values each.
     values: Vec<f64>,
     /// Share of the largest value by which a run twice as fine differed.
@@ -30,22 +34,22 @@ impl Steps {
     ///
     /// # Errors
     /// [`LinearError::Improper`] with more zeros than poles; [`LinearError::Wish`] where a dead time is too short a part of that time.
-    pub(super) fn closed(of: &Delayed, input: Input, duration_s: f64) -> Result<Self, LinearError> {
+    pub(super) fn closed(of: &Chain, input: Input, duration_s: f64) -> Result<Self, LinearError> {
         let mut cells = 1;
+        let delays = (duration_s / of.round_s).ceil().max(1.0);
         let mut last: Option<Self> = None;
         loop {
-            let whole = (duration_s / of.delay_s).ceil().max(1.0) * cells as f64 * NODES as f64;
+            let whole = delays * cells as f64 * NODES as f64;
             if whole > MOST_VALUES as f64 {
                 let too_short = || {
                     LinearError::Wish(format!(
                         "a dead time of {} s is too small a part of {duration_s} s: choose a shorter time, or approximate it by pade({}, 3)",
-                        of.delay_s, of.delay_s
+                        of.round_s, of.round_s
                     ))
                 };
                 return last.ok_or_else(too_short);
             }
-            let mut next =
-                Run::new(of, input, cells)?.run((duration_s / of.delay_s).ceil().max(1.0) as usize);
+            let mut next = Run::new(of, input, cells).run(delays as usize);
             if let Some(last) = &last {
                 next.accuracy = next.apart(last);
             }
@@ -64,13 +68,16 @@ impl Steps {
 
     fn node_s(&self, i: usize) -> f64 {
         let (cell, node) = (i / NODES, i % NODES);
-        self.cell_s * (cell as f64 + node as f64 / (NODES - 1) as f64)
+        self.late_s + self.cell_s * (cell as f64 + node as f64 / (NODES - 1) as f64)
     }
 
     /// The output at a moment, s; the last value behind the end. Where it jumps, the value after the jump.
     pub(super) fn at(&self, time_s: f64) -> f64 {
+        if time_s < self.late_s {
+            return 0.0;
+        }
         let cells = self.values.len() / NODES;
-        let place = (time_s / self.cell_s).max(0.0);
+        let place = ((time_s - self.late_s) / self.cell_s).max(0.0);
         let cell = (place.floor() as usize).min(cells - 1);
         let at = ((place - cell as f64) * (NODES - 1) as f64).min((NODES - 1) as f64);
         interpolated(&self.values[cell * NODES..(cell + 1) * NODES], at)
@@ -103,75 +110,65 @@ fn interpolated(values: &[f64], at: f64) -> f64 {
     above / below
 }
 
-/// The rational part, from value to value of a cell.
-struct Run {
+/// The chain, from value to value of a cell.
+struct Run<'a> {
+    of: &'a Chain,
     cells_per_delay: usize,
     cell_s: f64,
     input: Input,
     /// What is left of the state from one value to the next.
     keeps: Matrix,
-    /// For each value but the last of a cell: what each of the cell's inputs adds to the state until the next.
-    adds: Vec<Matrix>,
-    b: Matrix,
-    c: Matrix,
-    d: f64,
+    /// For each value but the last of a cell: what each of the cell's values that come round adds to the state until the next.
+    adds_round: Vec<Matrix>,
+    /// What each of those that come in adds.
+    adds_in: Vec<Matrix>,
 }
 
-impl Run {
-    fn new(of: &Delayed, input: Input, cells_per_delay: usize) -> Result<Self, LinearError> {
-        let system = of.rational.zpk().cascade("answer of a closed loop")?;
-        let cell_s = of.delay_s / cells_per_delay as f64;
-        let order = system.order();
+impl<'a> Run<'a> {
+    fn new(of: &'a Chain, input: Input, cells_per_delay: usize) -> Self {
+        let cell_s = of.round_s / cells_per_delay as f64;
         let step_s = cell_s / (NODES - 1) as f64;
-        // x′ = A x + B Σ uᵢ τⁱ/i!: powers of the time are states that feed each other
-        let mut whole = Matrix::zeros(order + NODES, order + NODES);
-        whole.view_mut((0, 0), (order, order)).copy_from(&(system.a() * step_s));
-        whole.view_mut((0, order), (order, 1)).copy_from(&(system.b() * step_s));
-        for i in 0..NODES - 1 {
-            whole[(order + i, order + i + 1)] = 1.0;
-        }
-        let whole = exponential(&whole);
-        let keeps = whole.view((0, 0), (order, order)).into_owned();
-        // column i: what uᵢ of u = Σ uᵢ τⁱ/i!, τ from 0 to 1, adds
-        let moments = whole.view((0, order), (order, NODES)).into_owned();
-        let adds = (0..NODES - 1).map(|node| &moments * derivatives(node)).collect();
-        let (b, c) = (system.b().clone(), system.c().clone());
-        Ok(Self { cells_per_delay, cell_s, input, keeps, adds, b, c, d: system.d()[(0, 0)] })
+        let (keeps, adds_round) = adds(&of.a, &of.round.b, step_s);
+        let (_, adds_in) = adds(&of.a, &of.input.b, step_s);
+        Self { of, cells_per_delay, cell_s, input, keeps, adds_round, adds_in }
     }
 
     fn run(&self, delays: usize) -> Steps {
+        let Chain { c, round, input, .. } = self.of;
         let cells = delays * self.cells_per_delay;
         let mut values = Vec::with_capacity(cells * NODES);
-        let mut state = Matrix::zeros(self.b.nrows(), 1);
+        let first = if self.input == Input::Impulse { 1.0 } else { 0.0 };
+        let mut state = &input.b * first;
         // the impulse that goes round
-        let mut impulse = if self.input == Input::Impulse { 1.0 } else { 0.0 };
-        let mut inputs = Matrix::zeros(NODES, 1);
+        let mut impulse = input.d * first;
+        let through = impulse;
+        let (mut rounds, mut inputs) = (Matrix::zeros(NODES, 1), Matrix::zeros(NODES, 1));
         for cell in 0..cells {
             if cell % self.cells_per_delay == 0 && cell > 0 {
-                state += &self.b * impulse;
-                impulse *= -self.d;
+                impulse *= -self.of.sign;
+                state += &round.b * impulse;
+                impulse *= round.d;
             }
-            match cell.checked_sub(self.cells_per_delay) {
-                None => inputs.fill(0.0),
-                Some(before) => {
-                    for node in 0..NODES {
-                        inputs[(node, 0)] = self.wanted(before, node) - values[before * NODES + node];
-                    }
+            for node in 0..NODES {
+                inputs[(node, 0)] = self.wanted(cell, node);
+                if let Some(before) = cell.checked_sub(self.cells_per_delay) {
+                    rounds[(node, 0)] = -self.of.sign * values[before * NODES + node];
                 }
             }
             for node in 0..NODES {
-                let output =
-                    if state.nrows() > 0 { self.c.row(0).dot(&state.column(0).transpose()) } else { 0.0 };
-                values.push(output + self.d * inputs[(node, 0)]);
-                if let Some(adds) = self.adds.get(node) {
-                    state = &self.keeps * &state + adds * &inputs;
+                let output = if state.nrows() > 0 { c.row(0).dot(&state.column(0).transpose()) } else { 0.0 };
+                values.push(output + round.d * rounds[(node, 0)] + input.d * inputs[(node, 0)]);
+                if let (Some(adds_round), Some(adds_in)) = (self.adds_round.get(node), self.adds_in.get(node))
+                {
+                    state = &self.keeps * &state + adds_round * &rounds + adds_in * &inputs;
                 }
             }
         }
-        Steps { cell_s: self.cell_s, values, accuracy: f64::INFINITY }
+        let late_s = self.of.late_s;
+        Steps { cell_s: self.cell_s, late_s, impulse: through, values, accuracy: f64::INFINITY }
     }
 
-    /// What comes into the loop.
+    /// What comes in.
     fn wanted(&self, cell: usize, node: usize) -> f64 {
         match self.input {
             Input::Step => 1.0,
@@ -179,6 +176,24 @@ impl Run {
             Input::Ramp => self.cell_s * (cell as f64 + node as f64 / (NODES - 1) as f64),
         }
     }
+}
+
+/// What is left of a state after a step, and for each value but the last what each value of an input adds to it until the next.
+fn adds(a: &Matrix, b: &Matrix, step_s: f64) -> (Matrix, Vec<Matrix>) {
+    let order = a.nrows();
+    // x′ = A x + B Σ uᵢ τⁱ/i!: powers of the time are states that feed each other
+    let mut whole = Matrix::zeros(order + NODES, order + NODES);
+    whole.view_mut((0, 0), (order, order)).copy_from(&(a * step_s));
+    whole.view_mut((0, order), (order, 1)).copy_from(&(b * step_s));
+    for i in 0..NODES - 1 {
+        whole[(order + i, order + i + 1)] = 1.0;
+    }
+    let whole = exponential(&whole);
+    let keeps = whole.view((0, 0), (order, order)).into_owned();
+    // column i: what uᵢ of u = Σ uᵢ τⁱ/i!, τ from 0 to 1, adds
+    let moments = whole.view((0, order), (order, NODES)).into_owned();
+    let adds = (0..NODES - 1).map(|node| &moments * derivatives(node)).collect();
+    (keeps, adds)
 }
 
 /// Derivatives at one of the places 0, 1, 2 … of the polynomial through values there: a row each, the value itself first.
@@ -209,11 +224,12 @@ fn derivatives(at: usize) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Time, TransferFunction};
+    use crate::{Delayed, Time, TransferFunction};
 
     fn steps(text: &str, delay_s: f64, input: Input, duration_s: f64) -> Steps {
         let rational = TransferFunction::parse(text, Time::Continuous).unwrap();
-        Steps::closed(&Delayed::new(rational, delay_s).unwrap(), input, duration_s).unwrap()
+        Steps::closed(&Chain::of(&Delayed::new(rational, delay_s).unwrap()).unwrap(), input, duration_s)
+            .unwrap()
     }
 
     /// y′(t) = k (1 − y(t − T)): from dead time to dead time a polynomial of one degree more.
@@ -259,7 +275,7 @@ mod tests {
     fn a_dead_time_that_is_next_to_nothing_is_told() {
         let rational = TransferFunction::parse("1/s", Time::Continuous).unwrap();
         let loops = Delayed::new(rational, 1e-7).unwrap();
-        let told = Steps::closed(&loops, Input::Step, 10.0).unwrap_err();
+        let told = Steps::closed(&Chain::of(&loops).unwrap(), Input::Step, 10.0).unwrap_err();
         assert!(told.to_string().contains("pade(0.0000001, 3)"), "{told}");
     }
 }

@@ -135,6 +135,30 @@ mod tests {
         }
     }
 
+    /// With one system alone the margins of the others fall below what is wished; with all of them none does.
+    #[test]
+    fn a_controller_for_several_systems_keeps_its_margins_with_each() {
+        let plant = parse("1/(s+1)^3");
+        let others = ["1.5/(s+1)^3", "0.7/(s+1)^3", "1/((s+1)^2(1.4s+1))"].map(parse);
+        let keeps = |pid: &Pid, plant: &TransferFunction| {
+            let open = plant.series(&pid.transfer()).unwrap();
+            let margins = open.margins();
+            let phase = margins.least_phase().map_or(180.0, |m| m.degrees());
+            open.closes_stable() && phase >= 55.0 - 1e-4 && margins.modulus.unwrap().distance >= 0.6 - 1e-9
+        };
+        for crossover in [None, Some(0.4)] {
+            let alone = plant.pid(wish(crossover)).unwrap();
+            assert!(keeps(&alone, &plant) && !others.iter().all(|other| keeps(&alone, other)), "{alone:?}");
+            let all = plant.pid_for_all(&others, wish(crossover)).unwrap();
+            assert!(others.iter().chain([&plant]).all(|one| keeps(&all, one)), "{crossover:?}: {all:?}");
+            // what more has to be kept costs some
+            assert!(all.ki < alone.ki && all.ki > 0.1 * alone.ki, "{all:?} {alone:?}");
+        }
+        // a motor that turns the other way cannot be driven by the same controller
+        let refused = plant.pid_for_all(&[parse("-1/(s+1)^3")], wish(Some(0.8)));
+        assert!(refused.is_err_and(|e| e.to_string().contains("with every system")));
+    }
+
     #[test]
     fn the_best_crossover_has_no_better_neighbour() {
         let plant = parse("1/(s+1)^4");

@@ -25,8 +25,21 @@ impl TransferFunction {
     /// [`LinearError::Wish`] where there is none, with the nearest margins that can be had; [`LinearError::Unbounded`] if no crossover
     /// is wished and none is too high, with one that will do.
     pub fn pid(&self, wish: PidWish) -> Result<Pid, LinearError> {
-        let negative = || Search { plant: &self.scaled(-1.0), wish }.found().ok().map(Pid::negative);
-        Search { plant: self, wish }.found().or_else(|why| match why {
+        self.pid_for_all(&[], wish)
+    }
+
+    /// The controller of [`pid`](Self::pid) that keeps the margins, and the loop stable, with every other system, too. The crossover is
+    /// that of this one; what has a gain below 1 everywhere has any phase margin.
+    ///
+    /// # Errors
+    /// As [`pid`](Self::pid), the nearest margins being those that can be had with every system.
+    pub fn pid_for_all(&self, others: &[Self], wish: PidWish) -> Result<Pid, LinearError> {
+        let negative = || {
+            let others: Vec<Self> = others.iter().map(|other| other.scaled(-1.0)).collect();
+            let search = Search { plant: &self.scaled(-1.0), others: &others, wish };
+            search.found().ok().map(Pid::negative)
+        };
+        Search { plant: self, others, wish }.found().or_else(|why| match why {
             LinearError::Unbounded { .. } => Err(why),
             why => negative().ok_or(why),
         })
@@ -37,6 +50,8 @@ impl TransferFunction {
 #[derive(Clone, Copy)]
 struct Search<'a> {
     plant: &'a TransferFunction,
+    /// Systems that it has to do for as well.
+    others: &'a [TransferFunction],
     wish: PidWish,
 }
 
@@ -148,9 +163,10 @@ impl Search<'_> {
         }
         let terms = self.wish.terms;
         let asked = format!(
-            "no {terms} gives {what}{:.1}° of phase margin and a modulus margin of {}",
+            "no {terms} gives {what}{:.1}° of phase margin and a modulus margin of {}{}",
             self.wish.phase_margin_rad.to_degrees(),
-            four_digits(self.wish.modulus)
+            four_digits(self.wish.modulus),
+            if self.others.is_empty() { "" } else { " with every system" }
         );
         let nearest = less(good);
         LinearError::Wish(if good > 0.0 {
@@ -240,7 +256,7 @@ impl Search<'_> {
         let is_calm = |factor: f64| {
             let loops = open.scaled(factor);
             let far = loops.margins().modulus.is_some_and(|m| m.distance >= self.wish.modulus);
-            far && loops.closes_stable()
+            far && loops.closes_stable() && self.is_calm_with_others(&times(factor))
         };
         let (mut good, mut bad) = (0.0, 1.0 / peak.gain);
         for _ in 0..HALVINGS {
@@ -331,7 +347,19 @@ impl Search<'_> {
         let far = margins.modulus.is_some_and(|m| m.distance >= self.wish.modulus);
         let least_rad = self.wish.phase_margin_rad - 1e-6;
         let late = margins.least_phase().is_some_and(|m| m.phase_rad.abs() >= least_rad);
-        far && late && open.closes_stable()
+        far && late && open.closes_stable() && self.is_calm_with_others(pid)
+    }
+
+    /// Whether the same holds with every other system; one whose gain is below 1 everywhere is never late.
+    fn is_calm_with_others(&self, pid: &Pid) -> bool {
+        let least_rad = self.wish.phase_margin_rad - 1e-6;
+        self.others.iter().all(|other| {
+            let Ok(open) = pid.transfer_in(other.time()).and_then(|k| other.series(&k)) else { return false };
+            let margins = open.margins();
+            let far = margins.modulus.is_some_and(|m| m.distance >= self.wish.modulus);
+            let late = margins.least_phase().is_none_or(|m| m.phase_rad.abs() >= least_rad);
+            far && late && open.closes_stable()
+        })
     }
 }
 

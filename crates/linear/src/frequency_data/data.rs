@@ -14,6 +14,8 @@ pub struct FrequencyData {
     rad_s: Vec<f64>,
     values: Vec<Complex>,
     at_rest: Option<f64>,
+    /// Points that were measured and are not trusted.
+    left_out: Vec<(f64, Complex)>,
     /// ln |G| and phase, rad, over ln ω.
     pub(super) size: Curve,
     pub(super) phase: Curve,
@@ -63,7 +65,18 @@ impl FrequencyData {
         }
         let size = Curve::new(at.clone(), values.iter().map(|value| ln(complex::norm(*value))).collect());
         let phase = Curve::new(at, unwrapped(&values));
-        Ok(Self { rad_s, values, at_rest, size, phase })
+        Ok(Self { rad_s, values, at_rest, left_out: Vec::new(), size, phase })
+    }
+
+    /// The data with points that were measured as well, rad/s and value, and are not trusted: they go along, and no figure is of them.
+    #[must_use]
+    pub fn with_left_out(self, left_out: Vec<(f64, Complex)>) -> Self {
+        Self { left_out, ..self }
+    }
+
+    /// Points that were measured and are not trusted: frequency, rad/s, and value.
+    pub fn left_out(&self) -> &[(f64, Complex)] {
+        &self.left_out
     }
 
     /// The frequencies, rad/s, rising, more than 0.
@@ -144,13 +157,19 @@ impl FrequencyData {
         self.mapped(|_, value| value / (1.0 + value))
     }
 
-    fn mapped(&self, map: impl Fn(f64, Complex) -> Complex) -> Result<Self, LinearError> {
+    /// Each value as a function of its frequency, rad/s, and of itself: what a loop makes of it, say.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), where a result is 0 or no number.
+    pub fn mapped(&self, map: impl Fn(f64, Complex) -> Complex) -> Result<Self, LinearError> {
         let rest = self.at_rest.map(|gain| (0.0, map(0.0, gain.into())));
         let others = self.rad_s.iter().zip(&self.values).map(|(&w, &value)| (w, map(w, value)));
         // a rest that became 0 or infinite is no rest
         let rest = rest.filter(|(_, value)| value.re != 0.0 && value.is_finite());
         let (rad_s, values) = rest.into_iter().chain(others).unzip();
-        Self::new(rad_s, values)
+        let left_out = self.left_out.iter().map(|&(w, value)| (w, map(w, value)));
+        let left_out = left_out.filter(|(_, value)| value.is_finite()).collect();
+        Ok(Self::new(rad_s, values)?.with_left_out(left_out))
     }
 
     /// The value at a place on the scale of ln ω.

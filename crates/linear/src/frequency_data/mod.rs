@@ -4,5 +4,7 @@ mod curve;
 mod data;
 mod encirclement;
 mod figures;
+mod highest;
 
 pub use data::{FrequencyData, Spacing};
+pub use highest::DataPeak;

@@ -24,20 +24,29 @@ impl StateSpace {
     /// As [`eigenvalues`].
     pub fn minimal(&self) -> Result<Minimal, LinearError> {
         let (a, b, c) = balanced_states(self);
-        let (a, b, c, uncontrollable) = moved(a, b, c)?;
-        let (a, c, b, unobservable) = moved(a.transpose(), c.transpose(), b.transpose())?;
-        let system = Self::new(a.transpose(), b.transpose(), c.transpose(), self.d().clone(), self.time())?;
-        Ok(Minimal { system, uncontrollable, unobservable })
+        let reached = moved(a, b, c)?;
+        let shown = moved(reached.a.transpose(), reached.c.transpose(), reached.b.transpose())?;
+        let (a, b, c) = (shown.a.transpose(), shown.c.transpose(), shown.b.transpose());
+        let system = Self::new(a, b, c, self.d().clone(), self.time())?;
+        Ok(Minimal { system, uncontrollable: reached.rest, unobservable: shown.rest })
     }
 }
 
-/// The part that inputs move, and the poles of the rest.
-fn moved(
-    mut a: Matrix,
-    mut b: Matrix,
-    mut c: Matrix,
-) -> Result<(Matrix, Matrix, Matrix, Vec<Complex>), LinearError> {
+/// The part of a system that its inputs move.
+pub(super) struct Moved {
+    a: Matrix,
+    b: Matrix,
+    c: Matrix,
+    /// Poles of the rest.
+    pub(super) rest: Vec<Complex>,
+    /// Directions of the rest, a row each, at right angles.
+    pub(super) directions: Matrix,
+}
+
+/// Parts what inputs move from what they do not.
+pub(super) fn moved(mut a: Matrix, mut b: Matrix, mut c: Matrix) -> Result<Moved, LinearError> {
     let n = a.nrows();
+    let mut all = Matrix::identity(n, n);
     let (size_a, size_b) = (a.norm(), b.norm());
     let mut block = b.clone();
     let (mut start, mut least) = (0, NOTHING * size_b);
@@ -52,17 +61,19 @@ fn moved(
         a = &whole * a * whole.transpose();
         b = &whole * b;
         c *= whole.transpose();
+        all = whole * all;
         let next = start + rank;
         block = a.view((next, start), (n - next, rank)).into_owned();
         (start, least) = (next, NOTHING * size_a);
     }
     let rest = eigenvalues(&a.view((start, start), (n - start, n - start)).into_owned())?;
-    let kept = (
-        a.view((0, 0), (start, start)).into_owned(),
-        b.rows(0, start).into_owned(),
-        c.columns(0, start).into_owned(),
-    );
-    Ok((kept.0, kept.1, kept.2, rest))
+    Ok(Moved {
+        a: a.view((0, 0), (start, start)).into_owned(),
+        b: b.rows(0, start).into_owned(),
+        c: c.columns(0, start).into_owned(),
+        rest,
+        directions: all.rows(start, n - start).into_owned(),
+    })
 }
 
 #[cfg(test)]

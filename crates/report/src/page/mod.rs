@@ -11,6 +11,7 @@ pub mod html;
 mod map;
 mod plot;
 mod seen;
+mod strokes;
 mod tables;
 
 use std::fmt::Write;
@@ -53,6 +54,7 @@ pub fn page(job: &Finished<'_>, figures: &Summary, painting: &Raster) -> Result<
         schedule = diagrams::schedule(job),
         figures = tables::figures(job, figures),
         settings = tables::settings(job),
+        strokes = strokes::section(job),
         version = env!("CARGO_PKG_VERSION"),
     ))
 }

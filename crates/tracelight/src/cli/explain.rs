@@ -43,6 +43,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "usable",
         "The verdict on a picture that was traced although a figure of it is weak: strokes may be missing or wrong there. The verdict names the figure, its value, its bound and what to do; `good` is a picture without any.",
     ),
+    (
+        "size-not-meant",
+        "By its file a drawing is larger than 100 m or smaller than 1 mm, which nobody means: its numbers are in another unit. Say which (--unit for a DXF, --dpi for an SVG in pixels) or how large it is to be (--width, --height).",
+    ),
     ("no-strokes", "A drawing has no strokes to plan."),
     (
         "unreachable",

@@ -67,7 +67,7 @@ fn is_formula(text: &str) -> bool {
 }
 
 /// Flags of systems that take no value: what follows them may be a formula.
-const TAKES_NOTHING: [&str; 4] = ["--closed", "--dark", "--json", "--quiet"];
+const TAKES_NOTHING: [&str; 5] = ["--closed", "--dark", "--json", "--positive", "--quiet"];
 
 /// What may stand before a command's name: of `trace` it may stand behind it as well.
 fn is_voice(argument: &OsStr) -> bool {

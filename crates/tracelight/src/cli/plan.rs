@@ -3,9 +3,9 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use tracelight_files as files;
-use tracelight_pipeline::{Driving, OrderBy, Placed, Schedule, place, schedule, sketch};
+use tracelight_pipeline::{Driving, OrderBy, OrderRequest, Placed, Schedule, place, schedule, sketch};
 use tracelight_report::{
-    BoardAxis, ColourBy, HeadGcode, PlanFigures, StrokeFigures, drawing, head_gcode, preview,
+    BoardAxis, ColourBy, HeadGcode, PlanFigures, StrokeFigures, drawing, head_gcode, preview, sequence,
 };
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::Effort;
@@ -18,6 +18,7 @@ use crate::cli::driving::DrivingArgs;
 use crate::cli::ending::ends_in;
 use crate::cli::gcode::PowerArgs;
 use crate::cli::lettering::LetteringArgs;
+use crate::cli::ordering::SequenceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
@@ -45,6 +46,8 @@ pub(crate) struct PlanArgs {
     /// What the colours of the preview say
     #[arg(help_heading = "Output", long, value_enum, default_value_t, requires = "preview")]
     colour_by: ColourByName,
+    #[command(flatten, next_help_heading = "Time and order")]
+    sequence: SequenceArgs,
     /// What the drawing order minimizes
     #[arg(help_heading = "Time and order", long, value_enum, default_value_t)]
     order_by: OrderByName,
@@ -173,7 +176,12 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let bar = Bar::new(args.voice.quiet);
     let task = Task { progress: &bar, stop };
     check_out(args)?;
-    let driving = args.driving.resolve()?;
+    let mut driving = args.driving.resolve()?;
+    driving.order = OrderRequest {
+        sequence: args.sequence.sequence(),
+        by: args.order_by.order_by(),
+        effort: args.order_effort.effort(),
+    };
     task.stage("strokes", 1);
     let name = args.drawing.as_deref().or(args.lettering.name()).unwrap_or_default();
     let source = named::source(name, &args.reading.options()?, &args.lettering)?;
@@ -183,8 +191,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let placed = place(&sketch, &placing);
     stop.check()?;
     task.stage("plan", 1);
-    let (by, effort) = (args.order_by.order_by(), args.order_effort.effort());
-    let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving, by, effort));
+    let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving));
     let schedule = schedule?;
     sketch
         .notes()
@@ -288,6 +295,7 @@ fn json(placed: &Placed, schedule: &Schedule, timing: &serde_json::Value) -> Str
             "gap_percent": ordered.gap_percent(),
         },
         "limits": limits,
+        "sequence": sequence(&ordered.drawing, plan),
         "timing_ms": timing,
     })
     .to_string()

@@ -11,6 +11,7 @@ use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::{EyeArgs, FollowArgs, SimulatedEyeName};
 use crate::cli::laws::LawArgs;
 use crate::cli::lettering::LetteringArgs;
+use crate::cli::ordering::SequenceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
@@ -50,6 +51,8 @@ pub(crate) struct TraceArgs {
     pub(crate) retakes: u32,
     #[command(flatten, next_help_heading = "Camera")]
     pub(crate) follow: FollowArgs,
+    #[command(flatten, next_help_heading = "Time and order")]
+    pub(crate) sequence: SequenceArgs,
     /// Draw N times, powering up anew each time and re-identifying the head between laps; the last lap is reported
     #[arg(help_heading = "Time and order", long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) laps: u32,

@@ -17,6 +17,7 @@ use tracelight_vision::Stages;
 
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice, print_piece};
+use crate::cli::explain::meaning;
 use crate::cli::gcode::GcodeArgs;
 use crate::cli::lettering::LetteringArgs;
 use crate::cli::placing::PlacementArgs;
@@ -122,7 +123,7 @@ fn many(args: &StrokesArgs, options: &ReadOptions, stop: &Stop) -> Result<Answer
         again: args.again,
     });
     let jobs = args.jobs.map_or_else(processors, usize::from);
-    let batch = Batch { pictures: found.pictures, out, jobs };
+    let batch = Batch { pictures: found.pictures, out, jobs, help: |code| meaning(code).unwrap_or_default() };
     let mut printed = Ok(());
     let mut print = |piece: &str| {
         if printed.is_ok() {

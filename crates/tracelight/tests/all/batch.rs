@@ -111,6 +111,10 @@ fn a_batch_goes_on_past_bad_files_and_says_what_is_wrong_with_each() {
     assert_eq!(names(&dir.join("out")), ["shapes.svg", "star.svg"]);
     let (code, told) = told(&dir, asked);
     assert_eq!((code, &told["error"]["code"]), (1, &Value::from("pictures-failed")));
+    for error in told["pictures"].as_array().unwrap().iter().map(|p| &p["error"]).filter(|e| !e.is_null()) {
+        assert_eq!(error["exit"], 2, "{error}");
+        assert!(error["help"].as_str().is_some_and(|help| help.len() > 20), "{error}");
+    }
     let codes = told["pictures"].as_array().unwrap().iter().map(|p| p["error"]["code"].as_str());
     assert_eq!(
         codes.collect::<Vec<_>>(),

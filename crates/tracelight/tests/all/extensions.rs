@@ -27,6 +27,7 @@ const COMMANDS: &[&str] = &[
     "lab locus G11 -o",
     "lab bode G11 -o",
     "lab nyquist G11 -o",
+    "lab gang G11 --controller K11 -o",
     "lab nichols G11 -o",
     "lab pzmap G11 -o",
     "lab response G11 -o",

@@ -113,6 +113,7 @@ fn every_figure_says_what_it_is_and_can_be_read() {
         "lab step --axis tilt -o FILE",
         "lab bode G11 -o FILE",
         "lab nichols G11 -o FILE",
+        "lab gang G11 --controller K11 -o FILE",
         "lab locus G11 -o FILE",
         "lab profile --distance 180deg -o FILE",
         "lab move arc --start 10in,0in --angle 90deg -o FILE",

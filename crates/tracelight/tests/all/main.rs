@@ -18,6 +18,7 @@ mod extensions;
 mod fault_page;
 mod formats;
 mod friction;
+mod gang;
 mod homing;
 mod hostile;
 mod house_rules;

@@ -1,10 +1,10 @@
 use clap::Args;
 use tracelight_experiment::bode::Request;
 use tracelight_experiment::frequencies::Frequencies;
+use tracelight_experiment::systems::Systems;
 use tracelight_task::{Failure, Stop};
-use tracelight_units::FREQUENCIES;
 
-use super::bounds::above_zero;
+use super::bounds::frequency;
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::systems::SystemArgs;
 use crate::cli::answer::{Answer, Voice};
@@ -26,6 +26,9 @@ pub(super) struct FrequencyArgs {
     systems: SystemArgs,
     #[command(flatten)]
     band: BandArgs,
+    /// Of a measured open loop: so many unstable poles it has (0 for most); its turns round −1 then tell whether the closed loop is stable
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=100))]
+    unstable: Option<u8>,
     /// Plot into an SVG or PNG, or write a CSV with one row per frequency; may be given again
     #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     pub(super) out: Vec<OutFile>,
@@ -35,26 +38,22 @@ pub(super) struct FrequencyArgs {
 
 /// Which frequencies.
 #[derive(Args, Debug)]
-struct BandArgs {
+pub(super) struct BandArgs {
     /// From this frequency [default: below the slowest pole or zero and every crossover]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
-    from: Option<f64>,
+    pub(super) from: Option<f64>,
     /// To this frequency [default: above the fastest and every crossover]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
-    to: Option<f64>,
+    pub(super) to: Option<f64>,
     /// How many, evenly on a logarithmic scale
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(2..=100_000))]
-    points: u32,
-}
-
-pub(super) fn frequency(text: &str) -> Result<f64, String> {
-    above_zero(text, FREQUENCIES)
+    pub(super) points: u32,
 }
 
 impl FrequencyArgs {
     pub(super) fn frequencies(&self) -> Result<Frequencies, Failure> {
         Ok(Frequencies {
-            systems: self.systems.systems()?,
+            systems: Systems { unstable: self.unstable.map(usize::from), ..self.systems.systems()? },
             from_rad_s: self.band.from,
             to_rad_s: self.band.to,
             points: self.band.points,

@@ -1,11 +1,15 @@
 //! Quantities on the bench's command lines that must be above zero or within reason.
 
-use tracelight_units::{Unit, VOLTAGES, parse};
+use tracelight_units::{FREQUENCIES, Unit, VOLTAGES, parse};
 
 /// A value with its unit, in SI, that is more than none.
 pub(super) fn above_zero(text: &str, units: &'static [Unit]) -> Result<f64, String> {
     let value = parse(text, units).map_err(|e| e.to_string())?;
     if value > 0.0 { Ok(value) } else { Err(format!("{text} is not above zero")) }
+}
+
+pub(super) fn frequency(text: &str) -> Result<f64, String> {
+    above_zero(text, FREQUENCIES)
 }
 
 pub(super) fn voltage(text: &str) -> Result<f64, String> {

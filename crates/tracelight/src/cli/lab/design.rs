@@ -6,7 +6,7 @@ use tracelight_linear::{LeadLagWish, LqgWish, PidWish, SetpointWeights, Terms};
 use tracelight_task::{Failure, Stop};
 use tracelight_units::{Angle, TIMES, parse};
 
-use super::bode::frequency;
+use super::bounds::frequency;
 use super::by_hand::{number, settings};
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::poles::{Poles, poles};
@@ -17,7 +17,8 @@ use crate::cli::answer::{Answer, Voice};
 /// Design a controller from a specification: its loop's margins, step response and poles
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Example: tracelight lab design pid G11 --crossover 60rad/s --phase-margin 55deg -o loop.svg\n\n\
+    after_help = "Example: tracelight lab design pid G11 --crossover 60rad/s --phase-margin 55deg -o loop.svg\n\
+                  Example: tracelight lab design pid G22 --crossover 20rad/s --also 0.7*G22 --also 1.4*G22\n\n\
                   The controller acts on the error: from what is measured, subtracted from what is wished, to the system's input. Its formula \
                   can be pasted into lab bode, locus, pzmap (of samples four digits are too few for that: --json has all).\n\n\
                   On a rig (--try) motors have a limit, joints stick, and a controller that integrates winds up while a motor is at its limit: \
@@ -34,6 +35,7 @@ enum MethodArgs {
     Pid(PidArgs),
     Lqg(LqgArgs),
     Place(PlaceArgs),
+    Given(GivenArgs),
     Lqr(LqrArgs),
 }
 
@@ -246,11 +248,26 @@ struct PlaceArgs {
     estimator: Option<Poles>,
 }
 
+/// Nothing: a controller that is given, tried with the system and others
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight lab design given K11t G11 --also 0.8*G11 --also 1.2*G11")]
+struct GivenArgs {
+    /// The controller, a formula in continuous time; K11, K22, K11t and K22t are the 2006 report's
+    #[arg(value_name = "CONTROLLER")]
+    controller: String,
+    #[command(flatten)]
+    loops: LoopArgs,
+}
+
 /// The system, and where results go.
 #[derive(Args, Debug)]
 struct LoopArgs {
     #[command(flatten)]
     system: OneSystemArgs,
+    /// Another system that the controller has to do for, a formula or a file; may be given again. A PID keeps its margins with every one
+    /// (the crossover is that of SYSTEM); other controllers are made for SYSTEM and tried with each
+    #[arg(long, value_name = "SYSTEM")]
+    also: Vec<String>,
     /// Drive this joint of a simulated rig by it, too, from a jump of its setpoint: the head as it is beside the head linearized. The
     /// rig is that of --rig; without it, report, with the masses of --set
     #[arg(long = "try", value_name = "JOINT", value_enum)]
@@ -275,7 +292,8 @@ impl LabCommand for DesignArgs {
             MethodArgs::LeadLag(LeadLagArgs { loops, .. })
             | MethodArgs::Pid(PidArgs { loops, .. })
             | MethodArgs::Lqg(LqgArgs { loops, .. })
-            | MethodArgs::Place(PlaceArgs { loops, .. }) => loops.voice,
+            | MethodArgs::Place(PlaceArgs { loops, .. })
+            | MethodArgs::Given(GivenArgs { loops, .. }) => loops.voice,
         }
     }
 
@@ -286,9 +304,11 @@ impl LabCommand for DesignArgs {
             MethodArgs::Pid(args) => (&args.loops, args.method()),
             MethodArgs::Lqg(args) => (&args.loops, args.method()),
             MethodArgs::Place(args) => (&args.loops, args.method()),
+            MethodArgs::Given(args) => (&args.loops, Method::given(&args.controller)?),
         };
         let request = Request {
-            system: loops.system.system()?,
+            system: loops.system.system_beside(&loops.also)?,
+            also: loops.also.clone(),
             method,
             tried: loops.tried.map(|axis| loops.tried_on(axis)).transpose()?,
         };

@@ -11,6 +11,7 @@ mod design;
 mod encoder;
 mod frequency;
 mod friction;
+mod gang;
 mod gravity;
 mod head;
 mod identify;
@@ -29,6 +30,7 @@ mod response;
 mod rig;
 mod rig_out;
 mod shape;
+mod sigma;
 mod simulate;
 mod step;
 mod systems;
@@ -68,8 +70,11 @@ enum LabAction {
     Linearize(linearize::LinearizeArgs),
     Locus(locus::LocusArgs),
     Bode(bode::BodeArgs),
+    Sigma(sigma::SigmaArgs),
     Nyquist(nyquist::NyquistArgs),
     Nichols(nyquist::NicholsArgs),
+    #[command(alias = "gangof4", alias = "sensitivity")]
+    Gang(gang::GangArgs),
     Pzmap(locus::PzmapArgs),
     Response(response::ResponseArgs),
     Design(design::DesignArgs),
@@ -114,8 +119,10 @@ impl LabArgs {
             LabAction::Linearize(args) => args,
             LabAction::Locus(args) => args,
             LabAction::Bode(args) => args,
+            LabAction::Sigma(args) => args,
             LabAction::Nyquist(args) => args,
             LabAction::Nichols(args) => args,
+            LabAction::Gang(args) => args,
             LabAction::Pzmap(args) => args,
             LabAction::Response(args) => args,
             LabAction::Design(args) => args,

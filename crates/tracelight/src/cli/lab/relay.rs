@@ -6,8 +6,7 @@ use tracelight_sim::{Mounting, ObserverName};
 use tracelight_task::{Failure, Stop};
 use tracelight_units::Angle;
 
-use super::bode::frequency;
-use super::bounds::voltage;
+use super::bounds::{frequency, voltage};
 use super::command::{self, LabCommand, OutFile, out_file};
 use super::rig::RigArgs;
 use super::rig_out;

@@ -1,5 +1,5 @@
 use clap::{Args, ValueEnum};
-use tracelight_experiment::response::{self, Request};
+use tracelight_experiment::response::{self, Enters, Request};
 use tracelight_task::{Failure, Stop};
 use tracelight_units::TIMES;
 
@@ -11,6 +11,8 @@ use crate::cli::answer::{Answer, Voice};
 /// Response of transfer functions to a step, an impulse or a ramp: overshoot, rise time, settling time
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab response \"K11 G11\" \"K11t G11\" --closed -o steps.svg\n\n\
+                  With --controller, or --closed, the response is that of the loop: to its setpoint, or to a --disturbance. A closed loop's error constants and \
+                  steady-state errors are told.\n\n\
                   This is of systems on paper; lab step is of a rig, with friction, counts and limits.")]
 pub(crate) struct ResponseArgs {
     #[command(flatten)]
@@ -18,6 +20,12 @@ pub(crate) struct ResponseArgs {
     /// Input, from rest at time 0
     #[arg(long, value_enum, default_value = "step")]
     input: Input,
+    /// A controller C, a formula as the systems are: each system is a plant in a loop with it
+    #[arg(long, value_name = "CONTROLLER", allow_hyphen_values = true)]
+    controller: Option<String>,
+    /// The input is a disturbance of the loop: at the plant's input (a load, P/(1 + PC)), or at its output (1/(1 + PC))
+    #[arg(long, value_enum)]
+    disturbance: Option<Disturbance>,
     /// For how long [default: until all have settled, and a third longer]
     #[arg(long, value_name = "TIME", value_parser = duration)]
     duration: Option<f64>,
@@ -42,6 +50,15 @@ enum Input {
     Ramp,
 }
 
+/// Where a disturbance acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Disturbance {
+    /// Added to the plant's input: a load
+    Input,
+    /// Added to the plant's output
+    Output,
+}
+
 fn duration(text: &str) -> Result<f64, String> {
     above_zero(text, TIMES)
 }
@@ -63,8 +80,14 @@ impl LabCommand for ResponseArgs {
 
     fn run(&self, stop: &Stop) -> Result<Answer, Failure> {
         let request = Request {
-            systems: self.systems.systems()?,
+            systems: self.systems.systems_beside(self.controller.as_slice())?,
             input: self.input.input(),
+            controller: self.controller.clone(),
+            enters: match self.disturbance {
+                None => Enters::Setpoint,
+                Some(Disturbance::Input) => Enters::PlantInput,
+                Some(Disturbance::Output) => Enters::PlantOutput,
+            },
             duration_s: self.duration,
             points: self.points,
         };

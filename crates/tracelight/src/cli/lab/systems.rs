@@ -11,6 +11,7 @@ use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 use tracelight_units::{FREQUENCIES, TIMES, parse};
 
+use super::bounds::frequency;
 use super::command::log;
 use super::head::HeadArgs;
 
@@ -24,9 +25,29 @@ pub(crate) struct SystemArgs {
     systems: Vec<String>,
     #[command(flatten)]
     how: HowArgs,
-    /// Close each by unity negative feedback of its output, after it is discretized
+    /// Close each by unity feedback of its output, negative unless --positive is given, after it is discretized
     #[arg(long)]
     closed: bool,
+    /// The feedback is positive: an open loop G is shown as −G, of which −1 is the critical point
+    #[arg(long)]
+    positive: bool,
+    /// Light lines on dark ground
+    #[arg(long)]
+    dark: bool,
+}
+
+/// Plants of loops.
+#[derive(Args, Debug)]
+pub(super) struct PlantArgs {
+    /// Plants, each a formula: numbers, s, + − * / ^, brackets, dead times as exp(-0.2s) or pade(0.2, 3); factors side by side are multiplied. Or a file with a system or a measured frequency response: .toml, .json, .csv, .mat.
+    /// G11 and G22 are the linearized head (see `tracelight lab linearize`)
+    #[arg(value_name = "PLANT", required = true)]
+    plants: Vec<String>,
+    #[command(flatten)]
+    how: HowArgs,
+    /// The feedback is positive: 1 − PC stands for 1 + PC
+    #[arg(long)]
+    positive: bool,
     /// Light lines on dark ground
     #[arg(long)]
     dark: bool,
@@ -67,6 +88,9 @@ struct HowArgs {
     /// How it is discretized
     #[arg(long, value_enum, default_value = "hold", requires = "sample")]
     method: Method,
+    /// Frequency at which --method tustin keeps the value exactly (pre-warping), below half the sampling frequency
+    #[arg(long, value_name = "FREQUENCY", value_parser = frequency, requires = "sample")]
+    prewarp: Option<f64>,
 }
 
 /// A file and what it is called in formulas.
@@ -119,12 +143,12 @@ enum Method {
 }
 
 impl Method {
-    const fn discretization(self) -> Discretization {
+    const fn discretization(self, prewarp: Option<f64>) -> Discretization {
         match self {
             Self::Hold => Discretization::ZeroOrderHold,
             Self::Foh => Discretization::FirstOrderHold,
             Self::Impulse => Discretization::Impulse,
-            Self::Tustin => Discretization::Tustin(None),
+            Self::Tustin => Discretization::Tustin(prewarp),
             Self::Matched => Discretization::Matched,
         }
     }
@@ -145,10 +169,32 @@ const fn theme(dark: bool) -> Theme {
 
 impl SystemArgs {
     pub(super) fn systems(&self) -> Result<Systems, Failure> {
+        self.systems_beside(&[])
+    }
+
+    /// The systems; others may be files as well.
+    pub(super) fn systems_beside(&self, others: &[String]) -> Result<Systems, Failure> {
+        let all: Vec<String> = self.systems.iter().chain(others).cloned().collect();
         Ok(Systems {
             formulas: self.systems.clone(),
-            how: self.how.reading(&self.systems)?,
+            how: self.how.reading(&all)?,
             closed: self.closed,
+            positive: self.positive,
+            unstable: None,
+            theme: theme(self.dark),
+        })
+    }
+}
+
+impl PlantArgs {
+    pub(super) fn systems(&self, controllers: &[String]) -> Result<Systems, Failure> {
+        let all: Vec<String> = self.plants.iter().chain(controllers).cloned().collect();
+        Ok(Systems {
+            formulas: self.plants.clone(),
+            how: self.how.reading(&all)?,
+            closed: false,
+            positive: self.positive,
+            unstable: None,
             theme: theme(self.dark),
         })
     }
@@ -161,13 +207,23 @@ impl OneSystemArgs {
     }
 
     pub(super) fn system(&self) -> Result<OneSystem, Failure> {
-        let how = self.how.reading(std::slice::from_ref(&self.system))?;
+        self.system_beside(&[])
+    }
+
+    /// The system, with the files of others that are read as it is.
+    pub(super) fn system_beside(&self, others: &[String]) -> Result<OneSystem, Failure> {
+        let all: Vec<String> = std::iter::once(&self.system).chain(others).cloned().collect();
+        let how = self.how.reading(&all)?;
         Ok(OneSystem { formula: self.system.clone(), how, theme: theme(self.dark) })
     }
 }
 
 impl HowArgs {
     fn reading(&self, systems: &[String]) -> Result<Reading, Failure> {
+        if self.prewarp.is_some() && self.method != Method::Tustin {
+            let message = "--prewarp is of --method tustin; the other methods keep no frequency";
+            return Err(Failure::usage("usage", message.to_owned()));
+        }
         let own = systems.iter().map(|text| text.trim()).filter(|text| is_plant_name(text));
         let own = own.map(|text| Ok(SystemFile { name: text.to_owned(), log: log(text)?, choice: None }));
         let files = own.chain(self.with.iter().map(NamedFile::read)).collect::<Result<_, Failure>>()?;
@@ -176,7 +232,7 @@ impl HowArgs {
             head: self.head.choice()?,
             period_s: self.period,
             pade: self.pade.map(usize::from),
-            sampling: self.sample.map(|period_s| (period_s, self.method.discretization())),
+            sampling: self.sample.map(|period_s| (period_s, self.method.discretization(self.prewarp))),
         })
     }
 }

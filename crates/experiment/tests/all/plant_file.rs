@@ -1,10 +1,9 @@
 //! Files as people have them, and as nobody should.
 
+use tracelight_experiment::plant_file::{Plant, PlantFile, PlantFormat, read, write};
+use tracelight_experiment::table::Log;
 use tracelight_linear::{Complex, Matrix, StateSpace, Time, TransferFunction};
 use tracelight_maths::{complex, log10, powi};
-
-use super::{Plant, PlantFile, PlantFormat, read, write};
-use crate::table::Log;
 
 fn of(name: &str, bytes: &[u8], choice: Option<&str>) -> Result<Plant, String> {
     read(&Log { name: name.into(), bytes: bytes.to_vec() }, choice).map_err(|failure| {
@@ -135,7 +134,7 @@ fn mat_files_of_scipy_are_read() {
     let sampled = motor(Time::Sampled(0.01));
     macro_rules! mat {
         ($name:literal) => {
-            of(concat!($name, ".mat"), include_bytes!(concat!("../../tests/plants/", $name, ".mat")), None)
+            of(concat!($name, ".mat"), include_bytes!(concat!("../plants/", $name, ".mat")), None)
                 .map(|plant| plant.system)
         };
     }
@@ -362,10 +361,10 @@ fn broken_files_end_in_a_sentence() {
         ("p.json", write(&system, PlantFormat::Json)),
         ("p.csv", write(&system, PlantFormat::Csv)),
         ("p.mat", write(&system, PlantFormat::Mat)),
-        ("p.mat", include_bytes!("../../tests/plants/compressed.mat").to_vec()),
-        ("p.mat", include_bytes!("../../tests/plants/structure.mat").to_vec()),
-        ("p.mat", include_bytes!("../../tests/plants/four.mat").to_vec()),
-        ("p.mat", include_bytes!("../../tests/plants/cells.mat").to_vec()),
+        ("p.mat", include_bytes!("../plants/compressed.mat").to_vec()),
+        ("p.mat", include_bytes!("../plants/structure.mat").to_vec()),
+        ("p.mat", include_bytes!("../plants/four.mat").to_vec()),
+        ("p.mat", include_bytes!("../plants/cells.mat").to_vec()),
         ("f.csv", b"Frequency (Hz),Gain (dB),Phase (\xb0)\n1,2,3\n2,3,4\n5,6,7\n".to_vec()),
         (
             "g.json",

@@ -1,0 +1,6 @@
+//! All integration tests of the crate in one program: linked once.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking, in its helpers too")]
+#![allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")]
+
+mod plant_file;

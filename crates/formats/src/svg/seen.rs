@@ -1,0 +1,141 @@
+//! What of a drawing is seen: lines without those that something hides.
+//!
+//! A [`Scene`] is regions in the order in which they are painted, and lines (marks) that could be drawn of them. Each line
+//! is divided where it meets the edge of a region, for only there can change what is seen of it. In between it is looked
+//! at once, from a small distance on both sides: what is painted there, from the top down to the first thing that hides
+//! the rest. The edge of a fill is seen if the colours on its sides differ and no fill above ends there too; the middle
+//! of a pen's band if nothing covers it and it has another colour than what lies around it. So covered lines, seams
+//! inside one colour, white on white and fills without area all fall out of one rule.
+
+mod colour;
+mod crossings;
+mod flat;
+mod grid;
+mod judged;
+mod picture;
+mod region;
+pub(super) mod scene;
+mod tiles;
+mod verdict;
+
+use tracelight_stroke::{Rect, Stroke};
+
+use self::colour::Rgb;
+use self::crossings::Edges;
+use self::judged::judged;
+use self::picture::Picture;
+use self::scene::{Mark, MarkKind, Scene};
+use self::verdict::Judge;
+
+pub(super) use self::flat::chords;
+pub(super) use self::region::Region;
+pub(super) use self::verdict::Reason;
+
+/// Whether an item is white or nearly so.
+pub(super) fn is_whitish(item: &scene::Item) -> bool {
+    matches!(item.ink, scene::Ink::Plain(colour) if Rgb::from(colour).is_whitish())
+}
+
+/// How a scene is looked at.
+#[derive(Clone, Copy)]
+pub(super) struct View {
+    /// The page.
+    pub(super) page: Rect,
+    /// Whether what is painted hides what is below.
+    pub(super) hides: bool,
+    /// Whether what lies off the page is cut.
+    pub(super) crops: bool,
+}
+
+/// What is seen, and what is not.
+pub(super) struct Seen {
+    pub(super) strokes: Vec<Stroke>,
+    /// For each line not or not wholly seen, why and how much.
+    pub(super) unseen: Vec<(Reason, f64)>,
+    /// Lines that were not looked at because too much lies on the way.
+    pub(super) unjudged: usize,
+    /// Everything is as white as the paper, and therefore was looked at on a black one.
+    pub(super) on_black: bool,
+}
+
+/// Edges and segments looked at, at most: well below a second.
+const MAX_WORK: usize = 60_000_000;
+
+/// Distance from which lines are looked at, as a share of the page's diagonal, and at most, px.
+const ASIDE: f64 = 1e-4;
+const MOST_ASIDE: f64 = 0.1;
+
+/// Below this share of the page's diagonal lies the noise of the single precision in which paths are resolved.
+const NOISE: f64 = 1e-6;
+
+impl View {
+    /// Distance from which lines are looked at.
+    fn aside(&self) -> f64 {
+        let diagonal = (self.page.size().to_vec2()).hypot();
+        (ASIDE * diagonal).min(MOST_ASIDE).max(NOISE * diagonal)
+    }
+
+    /// How closely chords follow curves.
+    pub(super) fn tolerance(&self) -> f64 {
+        0.25 * self.aside()
+    }
+}
+
+/// Looks at a scene.
+pub(super) fn seen(scene: &Scene, view: View) -> Seen {
+    let on_white = look(scene, view, Rgb::WHITE);
+    let is_blank =
+        on_white.strokes.is_empty() && on_white.unseen.iter().any(|(reason, _)| *reason == Reason::OneColour);
+    if !is_blank {
+        return on_white;
+    }
+    let on_black = look(scene, view, Rgb::BLACK);
+    if on_black.strokes.is_empty() { on_white } else { Seen { on_black: true, ..on_black } }
+}
+
+fn look(scene: &Scene, view: View, paper: Rgb) -> Seen {
+    let aside = view.aside();
+    let margin = 8.0 * aside + 0.01 * (view.page.width() + view.page.height());
+    let boxes = scene.items.iter().map(|item| item.region.bounds());
+    let all = boxes.fold(view.page, |all, bounds| if view.crops { all } else { all.union(bounds) });
+    let within = all.inflate(margin, margin);
+    let mut seen = Seen { strokes: Vec::new(), unseen: Vec::new(), unjudged: 0, on_black: false };
+    let Some(mut picture) = Picture::new(scene, view.page, within, view.hides) else {
+        scene.marks.iter().for_each(|mark| seen.leave(mark));
+        return seen;
+    };
+    picture.paper = paper;
+    let edges = Edges::new(scene, view.page, within, 0.5 * aside);
+    let judge = Judge { picture: &picture, aside, crops: view.crops };
+    let mut work = 0;
+    for mark in &scene.marks {
+        if work > MAX_WORK {
+            seen.leave(mark);
+            continue;
+        }
+        let judged = judged(&judge, &edges, mark, view.tolerance());
+        work += judged.work;
+        seen.unseen.extend(judged.unseen);
+        seen.strokes
+            .extend(judged.seen.into_iter().map(|(path, item)| looking_like(scene, mark, item, path)));
+    }
+    seen
+}
+
+impl Seen {
+    /// A line that is drawn without being looked at.
+    fn leave(&mut self, mark: &Mark) {
+        if !matches!(mark.kind, MarkKind::Cut(_)) {
+            self.unjudged += 1;
+            self.strokes.push(mark.stroke.clone());
+        }
+    }
+}
+
+/// A part of a line, with the looks of the item that it is the edge of.
+fn looking_like(scene: &Scene, mark: &Mark, item: u32, path: tracelight_stroke::Path) -> Stroke {
+    match mark.kind {
+        MarkKind::Cut(_) => scene.items[item as usize].looks.along(path),
+        _ => mark.stroke.along(path),
+    }
+}

@@ -1,0 +1,188 @@
+//! A line cut into what is seen of it and what is not.
+
+use tracelight_stroke::{Path, Vec2};
+
+use super::crossings::{Edges, Own, Owner};
+use super::flat::{Corner, chords};
+use super::scene::{Mark, MarkKind, Number};
+use super::verdict::{Judge, Place, Reason, Verdict};
+use crate::parts::{Span, parts};
+
+/// Stretches shorter than so many times the distance from which lines are looked at are not cut, nor drawn alone.
+const LEAST: f64 = 5.0;
+
+/// A stretch of a chord with one verdict.
+#[derive(Clone, Copy)]
+struct Stretch {
+    chord: usize,
+    from: f64,
+    to: f64,
+    length: f64,
+}
+
+/// What became of a line.
+pub(crate) struct Judged {
+    /// What is seen, each with the item whose looks it has.
+    pub(crate) seen: Vec<(Path, Number)>,
+    /// Lengths of what is not.
+    pub(crate) unseen: Vec<(Reason, f64)>,
+    /// Edges and segments looked at.
+    pub(crate) work: usize,
+}
+
+/// Judges a line all along; its chords lie within `tolerance` of it.
+pub(crate) fn judged(judge: &Judge, edges: &Edges, mark: &Mark, tolerance: f64) -> Judged {
+    let corners = chords(&mark.stroke.path, tolerance);
+    let before = judge.picture.work.get();
+    let (runs, met) = runs(judge, edges, mark, &corners);
+    let least = LEAST * judge.aside;
+    let runs = smoothed(runs, least, mark.stroke.path.is_closed());
+    let mut judged = Judged { seen: Vec::new(), unseen: Vec::new(), work: met };
+    let mut left: Vec<Number> = Vec::new();
+    for run in &runs {
+        match run.verdict {
+            Verdict::Seen(item) if !left.contains(&item) => left.push(item),
+            Verdict::Unseen(Some(reason)) => judged.unseen.push((reason, run.length())),
+            _ => {}
+        }
+    }
+    for item in left {
+        let own = runs.iter().filter(|run| run.verdict == Verdict::Seen(item));
+        let spans = spans(&corners, own.flat_map(|run| &run.stretches));
+        judged.seen.extend(parts(&mark.stroke.path, &spans).into_iter().map(|path| (path, item)));
+    }
+    judged.work += judge.picture.work.get() - before;
+    judged
+}
+
+/// Stretches that follow each other and share a verdict.
+struct Run {
+    verdict: Verdict,
+    stretches: Vec<Stretch>,
+}
+
+impl Run {
+    fn length(&self) -> f64 {
+        self.stretches.iter().map(|s| s.length).sum()
+    }
+}
+
+fn runs(judge: &Judge, edges: &Edges, mark: &Mark, corners: &[Corner]) -> (Vec<Run>, usize) {
+    let own = Own(mark.kind, mark.item);
+    let counts = |owner: Owner| does_count(judge, mark, owner);
+    let (mut runs, mut pending, mut work): (Vec<Run>, Vec<Stretch>, usize) = (Vec::new(), Vec::new(), 0);
+    let mut end = |pending: &mut Vec<Stretch>| {
+        let stretches = std::mem::take(pending);
+        let longest = stretches.iter().max_by(|a, b| a.length.total_cmp(&b.length));
+        let Some(longest) = longest else { return };
+        let is_short = stretches.iter().map(|s| s.length).sum::<f64>() < judge.aside;
+        match runs.last_mut() {
+            // too short to look at: as what is before it
+            Some(before) if is_short => before.stretches.extend(stretches),
+            last => {
+                let verdict = judge.verdict(mark, middle(corners, longest));
+                match last.filter(|run| run.verdict == verdict) {
+                    Some(run) => run.stretches.extend(stretches),
+                    None => runs.push(Run { verdict, stretches }),
+                }
+            }
+        }
+    };
+    for (chord, pair) in corners.windows(2).enumerate() {
+        let ends = [pair[0].point, pair[1].point];
+        let length = ends[0].distance(ends[1]);
+        let (met, looked) = edges.met(ends, own, &counts);
+        work += looked;
+        let mut from = 0.0;
+        for to in met {
+            if to > from {
+                pending.push(Stretch { chord, from, to, length: (to - from) * length });
+                from = to;
+            }
+            end(&mut pending);
+        }
+        if from < 1.0 {
+            pending.push(Stretch { chord, from, to: 1.0, length: (1.0 - from) * length });
+        }
+    }
+    end(&mut pending);
+    (runs, work)
+}
+
+/// Whether what owns an edge could change the verdict on a line.
+fn does_count(judge: &Judge, mark: &Mark, owner: Owner) -> bool {
+    let Owner::Item(number) = owner else { return true };
+    if !judge.picture.hides {
+        return matches!(mark.kind, MarkKind::Cut(_));
+    }
+    let items = &judge.picture.scene.items;
+    let (item, own) = (&items[number as usize], &items[mark.item as usize]);
+    match mark.kind {
+        MarkKind::Middle => {
+            item.source != own.source && (item.pen.is_none() || item.ink != own.ink || item.pen > own.pen)
+        }
+        _ => true,
+    }
+}
+
+fn middle(corners: &[Corner], stretch: &Stretch) -> Place {
+    let [a, b] = [corners[stretch.chord].point, corners[stretch.chord + 1].point];
+    let along = (b - a) / (b - a).hypot().max(f64::MIN_POSITIVE);
+    Place { point: a.lerp(b, 0.5 * (stretch.from + stretch.to)), normal: Vec2::new(-along.y, along.x) }
+}
+
+/// Short gaps closed and short rests left out; round a closed line the last run and the first are one.
+fn smoothed(runs: Vec<Run>, least: f64, is_closed: bool) -> Vec<Run> {
+    let is_seen = |run: &Run| matches!(run.verdict, Verdict::Seen(_));
+    let runs = merged(runs, |run, before, after| {
+        let is_gap =
+            !is_seen(run) && run.length() < least && is_seen(before) && before.verdict == after.verdict;
+        is_gap.then_some(before.verdict)
+    });
+    if runs.len() < 2 {
+        return runs;
+    }
+    let count = runs.len();
+    let joined = is_closed && runs[0].verdict == runs[count - 1].verdict;
+    let round = if joined { runs[0].length() + runs[count - 1].length() } else { 0.0 };
+    let whole = |i: usize| if joined && (i == 0 || i + 1 == count) { round } else { runs[i].length() };
+    let is_rest: Vec<bool> = (0..count).map(|i| is_seen(&runs[i]) && whole(i) < least).collect();
+    let rests = runs.into_iter().zip(is_rest);
+    rests
+        .map(|(run, is_rest)| if is_rest { Run { verdict: Verdict::Unseen(None), ..run } } else { run })
+        .collect()
+}
+
+/// Runs with the verdict of their neighbours where the function, asked of each and those beside it, says so.
+fn merged(runs: Vec<Run>, verdict: impl Fn(&Run, &Run, &Run) -> Option<Verdict>) -> Vec<Run> {
+    let new: Vec<Option<Verdict>> = (0..runs.len())
+        .map(|i| {
+            (i > 0 && i + 1 < runs.len()).then(|| verdict(&runs[i], &runs[i - 1], &runs[i + 1])).flatten()
+        })
+        .collect();
+    let mut done: Vec<Run> = Vec::new();
+    for (run, new) in runs.into_iter().zip(new) {
+        let verdict = new.unwrap_or(run.verdict);
+        match done.last_mut().filter(|before| before.verdict == verdict) {
+            Some(before) => before.stretches.extend(run.stretches),
+            None => done.push(Run { verdict, ..run }),
+        }
+    }
+    done
+}
+
+/// Stretches of chords as stretches of the elements that the chords stand for.
+fn spans<'a>(corners: &[Corner], stretches: impl Iterator<Item = &'a Stretch>) -> Vec<Span> {
+    let mut spans: Vec<Span> = Vec::new();
+    for stretch in stretches {
+        let (start, end) = (corners[stretch.chord], corners[stretch.chord + 1]);
+        let first = if start.element == end.element { start.t } else { 0.0 };
+        let at = |u: f64| if u >= 1.0 { end.t } else { first + (end.t - first) * u };
+        let (element, from, to) = (end.element as usize, at(stretch.from), at(stretch.to));
+        match spans.last_mut().filter(|last| last.element == element && last.to == from) {
+            Some(last) => last.to = to,
+            None => spans.push(Span { element, from, to }),
+        }
+    }
+    spans
+}

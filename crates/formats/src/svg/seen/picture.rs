@@ -1,0 +1,180 @@
+//! What colour is seen at a point, and what makes it.
+
+use std::cell::Cell;
+
+use tracelight_stroke::{Point, Rect};
+
+use super::colour::{Look, Rgb};
+use super::scene::{GateKind, Ink, Item, Number, Scene};
+use super::tiles::Tiles;
+
+/// Coverage below this share lets nothing pass that could be seen; opacity above one minus it hides.
+pub(crate) const FAINT: f64 = 0.02;
+
+/// A scene on its paper, ready to be looked at.
+pub(crate) struct Picture<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) page: Rect,
+    /// Colour below everything.
+    pub(crate) paper: Rgb,
+    /// Whether what is painted hides what is below.
+    pub(crate) hides: bool,
+    tiles: Tiles,
+    /// Segments looked at so far.
+    pub(crate) work: Cell<usize>,
+}
+
+/// Something that is seen at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Layer {
+    pub(crate) item: Number,
+    /// How much of it is seen through its own opacity, groups and masks.
+    pub(crate) alpha: f64,
+}
+
+impl<'a> Picture<'a> {
+    /// A scene as it is seen within a rectangle; `None` if it is too intricate to look at.
+    pub(crate) fn new(scene: &'a Scene, page: Rect, within: Rect, hides: bool) -> Option<Self> {
+        let tiles = Tiles::new(&scene.items, within, |item| {
+            let bounds = item.gate.map_or(within, |gate| scene.gates[gate as usize].bounds);
+            let is_cover =
+                hides && item.gate.is_none() && item.veil.is_none() && is_opaque(item, item.opacity);
+            (bounds, is_cover)
+        })?;
+        Some(Self { scene, page, paper: Rgb::WHITE, hides, tiles, work: Cell::new(0) })
+    }
+
+    /// What is seen at a point of the items that count, the topmost first.
+    pub(crate) fn stack(&self, p: Point, counts: impl Fn(Number, &Item) -> bool) -> Vec<Layer> {
+        let mut layers = Vec::new();
+        let mut closed: Vec<Number> = Vec::new();
+        for (number, is_full) in self.tiles.at(p) {
+            let item = &self.scene.items[number as usize];
+            self.add_work(1);
+            if !counts(number, item) || self.veils(item).any(|veil| closed.contains(&veil)) {
+                continue;
+            }
+            if !is_full && !self.is_inside(item, p) {
+                continue;
+            }
+            let own = item.opacity * self.gate(item.gate, p);
+            if own <= FAINT {
+                continue;
+            }
+            let veils: f64 = self.veils(item).map(|veil| self.scene.veils[veil as usize].opacity).product();
+            layers.push(Layer { item: number, alpha: own * veils });
+            if self.hides && is_opaque(item, own) {
+                match item.veil {
+                    None => break,
+                    Some(veil) => closed.push(veil),
+                }
+            }
+        }
+        layers
+    }
+
+    /// Whether something painted after an item hides it at a point, of the items that count.
+    pub(crate) fn is_covered(&self, of: Number, p: Point, counts: impl Fn(&Item) -> bool) -> bool {
+        let item = &self.scene.items[of as usize];
+        let mut above = self.tiles.at(p).take_while(|&(number, _)| number > of);
+        above.any(|(number, is_full)| {
+            self.add_work(1);
+            let cover = &self.scene.items[number as usize];
+            let is_within = cover.veil.is_none_or(|veil| self.veils(item).any(|own| own == veil));
+            counts(cover)
+                && is_within
+                && is_opaque(cover, cover.opacity)
+                && (is_full || self.is_inside(cover, p))
+                && is_opaque(cover, cover.opacity * self.gate(cover.gate, p))
+        })
+    }
+
+    /// The colour that layers make on the paper.
+    pub(crate) fn look(&self, layers: &[Layer]) -> Look {
+        let mut look = Look::of(self.paper);
+        for layer in layers.iter().rev() {
+            match self.scene.items[layer.item as usize].ink {
+                Ink::Plain(colour) => look.paint(Rgb::from(colour), layer.alpha),
+                Ink::Mixed { .. } => look.mix(layer.item, layer.alpha),
+            }
+        }
+        look
+    }
+
+    /// Whether a point lies in an item's own region, gates aside.
+    pub(crate) fn is_inside(&self, item: &Item, p: Point) -> bool {
+        let (inside, work) = item.region.contains(p);
+        self.add_work(work);
+        inside
+    }
+
+    /// How much a gate and those around it let pass at a point, 0 to 1.
+    pub(crate) fn gate(&self, gate: Option<Number>, p: Point) -> f64 {
+        let mut passed = 1.0;
+        let mut next = gate;
+        while let Some(number) = next.filter(|_| passed > FAINT) {
+            passed *= self.own_gate(number, p);
+            next = self.scene.gates[number as usize].around;
+        }
+        passed
+    }
+
+    /// The innermost gate that does not let pass at a point.
+    pub(crate) fn shut(&self, gate: Option<Number>, p: Point) -> Option<Number> {
+        let around = |&number: &Number| self.scene.gates[number as usize].around;
+        std::iter::successors(gate, around).find(|&number| self.own_gate(number, p) <= FAINT)
+    }
+
+    fn own_gate(&self, number: Number, p: Point) -> f64 {
+        let gate = &self.scene.gates[number as usize];
+        self.add_work(1);
+        if !is_within(gate.bounds, p) {
+            return 0.0;
+        }
+        match &gate.kind {
+            GateKind::Unknown => 0.5,
+            GateKind::Clip(regions) => {
+                let passes = |(region, own): &(super::region::Region, Option<Number>)| {
+                    let (inside, work) = region.contains(p);
+                    self.add_work(work);
+                    inside && self.gate(*own, p) > FAINT
+                };
+                f64::from(u8::from(regions.iter().any(passes)))
+            }
+            GateKind::Mask { luminance, items } => self.masked(*luminance, items, p),
+        }
+    }
+
+    fn masked(&self, by_luminance: bool, items: &[Item], p: Point) -> f64 {
+        let (mut light, mut cover) = (0.0, 0.0);
+        for item in items {
+            if !self.is_inside(item, p) {
+                continue;
+            }
+            let Ink::Plain(colour) = item.ink else { continue };
+            let veils: f64 = self.veils(item).map(|veil| self.scene.veils[veil as usize].opacity).product();
+            let alpha = item.opacity * veils * self.gate(item.gate, p);
+            light = light * (1.0 - alpha) + Rgb::from(colour).luminance() * alpha;
+            cover = cover * (1.0 - alpha) + alpha;
+        }
+        if by_luminance { light } else { cover }
+    }
+
+    fn veils(&self, item: &Item) -> impl Iterator<Item = Number> + '_ {
+        std::iter::successors(item.veil, |&veil| self.scene.veils[veil as usize].around)
+    }
+
+    fn add_work(&self, segments: usize) {
+        self.work.set(self.work.get() + segments);
+    }
+}
+
+/// Whether nothing shines through an item at that opacity.
+pub(crate) fn is_opaque(item: &Item, opacity: f64) -> bool {
+    opacity >= 1.0 - FAINT && !matches!(item.ink, Ink::Mixed { hides: false })
+}
+
+/// Whether a point lies in a rectangle, its edge included.
+pub(crate) fn is_within(rect: Rect, p: Point) -> bool {
+    p.x >= rect.x0 && p.x <= rect.x1 && p.y >= rect.y0 && p.y <= rect.y1
+}

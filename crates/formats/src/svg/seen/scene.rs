@@ -1,0 +1,96 @@
+//! What a drawing paints, and in which order.
+
+use tracelight_stroke::{Colour, Rect, Stroke};
+
+use super::region::Region;
+
+/// Everything that is painted, bottom first, and the lines that could be drawn of it.
+#[derive(Default)]
+pub(crate) struct Scene {
+    pub(crate) items: Vec<Item>,
+    pub(crate) veils: Vec<Veil>,
+    pub(crate) gates: Vec<Gate>,
+    pub(crate) marks: Vec<Mark>,
+}
+
+/// A number that says where in its list a [`Veil`] or [`Gate`] is.
+pub(crate) type Number = u32;
+
+/// One painted region: a fill, or the band of a pen.
+pub(crate) struct Item {
+    pub(crate) region: Region,
+    pub(crate) ink: Ink,
+    /// Own opacity, 0 to 1.
+    pub(crate) opacity: f64,
+    /// The innermost group around it that lets what is below shine through.
+    pub(crate) veil: Option<Number>,
+    /// The innermost clip path or mask around it.
+    pub(crate) gate: Option<Number>,
+    /// Width of the pen, if this is its band.
+    pub(crate) pen: Option<f64>,
+    /// Number of the path that it is of.
+    pub(crate) source: u32,
+    /// Looks of what is drawn of its edge, where something else cuts it: its colour and layer.
+    pub(crate) looks: Stroke,
+}
+
+/// What an item is painted with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Ink {
+    /// One colour.
+    Plain(Colour),
+    /// Several: a gradient, or a blend with what is below.
+    Mixed {
+        /// Whether it hides what is below.
+        hides: bool,
+    },
+}
+
+/// A group that is translucent as a whole: what is in it hides other things in it, and nothing below.
+pub(crate) struct Veil {
+    pub(crate) around: Option<Number>,
+    pub(crate) opacity: f64,
+}
+
+/// A clip path or a mask: where it lets pass.
+pub(crate) struct Gate {
+    pub(crate) around: Option<Number>,
+    pub(crate) kind: GateKind,
+    /// The smallest upright rectangle round where it lets pass.
+    pub(crate) bounds: Rect,
+}
+
+/// How a gate tells where it lets pass.
+pub(crate) enum GateKind {
+    /// Where any of the regions is, each with a gate of its own.
+    Clip(Vec<(Region, Option<Number>)>),
+    /// Where its own picture is opaque (and bright, if by luminance).
+    Mask {
+        /// By brightness, not only by opacity.
+        luminance: bool,
+        /// What it paints, bottom first.
+        items: Vec<Item>,
+    },
+    /// A mask whose picture is no plain shapes: lets everything pass, as if half-transparent.
+    Unknown,
+}
+
+/// A line that could be drawn.
+pub(crate) struct Mark {
+    pub(crate) kind: MarkKind,
+    /// The item that it is of; of a clip's edge, any.
+    pub(crate) item: Number,
+    /// The line with its looks.
+    pub(crate) stroke: Stroke,
+}
+
+/// What a line is of the thing painted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum MarkKind {
+    /// The middle of a pen's band.
+    Middle,
+    /// The edge of a fill.
+    Edge,
+    /// The edge of that gate's clip path, which becomes one of whatever it cuts.
+    Cut(Number),
+}

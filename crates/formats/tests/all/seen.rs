@@ -1,0 +1,155 @@
+//! An SVG is drawn as it is seen, and what is left out is said with its length.
+
+use tracelight_formats::{Hidden, ReadOptions, Reading, svg};
+use tracelight_stroke::Element;
+
+fn read(content: &str, options: &ReadOptions) -> Reading {
+    let text = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm' viewBox='0 0 100 100'>{content}</svg>"
+    );
+    svg::read_with(text.as_bytes(), options).unwrap()
+}
+
+fn length_mm(reading: &Reading) -> f64 {
+    1e3 * reading.sheet.metres_per_unit.unwrap() * reading.sheet.drawing.length(1e-6)
+}
+
+/// Strokes and length that are drawn, and words that one of the remarks holds; no remark where there are no words.
+#[track_caller]
+fn check(content: &str, strokes: usize, wanted_mm: f64, words: &str) {
+    let found = read(content, &ReadOptions::default());
+    let (drawn, long) = (found.sheet.drawing.strokes.len(), length_mm(&found));
+    assert!(drawn == strokes && (long - wanted_mm).abs() < 0.1, "{drawn} strokes, {long} mm: {content}");
+    let is_said = found.remarks.iter().any(|remark| remark.contains(words));
+    assert!(is_said != words.is_empty(), "{:?}: {content}", found.remarks);
+}
+
+const PLATE: &str = "<path d='M30 30H70V70H30z' fill='#fff' stroke='#000' stroke-width='2'/>";
+
+#[test]
+fn what_is_painted_above_hides_what_is_below() {
+    let line = "<path d='M0 50H100' stroke='#f00'/>";
+    // the plate's own band hides a millimetre more on each side
+    check(&format!("{line}{PLATE}"), 3, 58.0 + 160.0, "covered by what is painted above");
+    check(&format!("{PLATE}{line}"), 3, 258.0, "covered by what is painted above");
+    let glass = PLATE.replace("fill='#fff'", "fill='#fff' fill-opacity='.5'");
+    check(&format!("{line}{glass}"), 4, 256.0, "covered");
+    let group = format!("<g opacity='.5'>{line}{PLATE}</g>");
+    check(&group, 3, 218.0, "covered");
+}
+
+#[test]
+fn lines_of_one_colour_and_width_do_not_cut_each_other() {
+    check("<g stroke='#000'><path d='M10 50H90'/><path d='M50 10V90'/></g>", 2, 160.0, "");
+    check(
+        "<rect x='1' y='1' width='9' height='9'/><g stroke='#000'><path d='M10 50H90'/><path d='M50 10V90'/></g>",
+        3,
+        196.0,
+        "",
+    );
+}
+
+#[test]
+fn seams_and_white_on_white_are_not_drawn() {
+    let bars = "<rect x='10' y='40' width='40' height='20'/><rect x='50' y='40' width='40' height='20'/>";
+    check(bars, 2, 200.0, "in the colour of what lies around");
+    check(&format!("<circle cx='50' cy='50' r='9' fill='#fff'/>{bars}"), 2, 200.0, "covered");
+    check("<path d='M10 10H90' stroke='#fff'/><path d='M10 50H90' stroke='#00f'/>", 1, 80.0, "in the colour");
+    check("<path d='M10 10H90' stroke='#fff'/>", 1, 80.0, "on black");
+}
+
+#[test]
+fn an_edge_of_two_fills_is_drawn_once() {
+    let two = "<rect x='10' y='40' width='40' height='20' fill='red'/><rect x='50' y='40' width='40' height='20' fill='blue'/>";
+    check(two, 2, 220.0, "where shapes above them have an edge");
+}
+
+#[test]
+fn clip_paths_and_masks_keep_a_region_and_arcs_stay_arcs() {
+    let clip = "<clipPath id='c'><circle cx='50' cy='50' r='20'/></clipPath>";
+    check(
+        &format!("{clip}<path clip-path='url(#c)' d='M0 50H100' stroke='#000'/>"),
+        1,
+        40.0,
+        "outside clip paths",
+    );
+    // what a clip cuts ends where the clip does
+    let plate = "<rect x='0' y='0' width='100' height='100' fill='teal'/>";
+    check(
+        &format!("{clip}<g clip-path='url(#c)'>{plate}</g>"),
+        1,
+        40.0 * std::f64::consts::PI,
+        "outside clip paths",
+    );
+    let nested =
+        "<clipPath id='d' clip-path='url(#c)'><rect x='50' y='0' width='50' height='100'/></clipPath>";
+    check(
+        &format!("{clip}{nested}<path clip-path='url(#d)' d='M0 50H100' stroke='#000'/>"),
+        1,
+        20.0,
+        "outside clip",
+    );
+    let mask = "<mask id='m' maskUnits='userSpaceOnUse' x='0' y='0' width='100' height='100'>
+        <rect x='30' y='30' width='40' height='40' fill='#fff'/><rect x='45' y='0' width='10' height='100'/></mask>";
+    check(&format!("{mask}<path mask='url(#m)' d='M0 50H100' stroke='#000'/>"), 2, 30.0, "hidden by masks");
+    let arc = read(
+        &format!("<circle cx='50' cy='20' r='20' fill='none' stroke='red'/>{PLATE}"),
+        &ReadOptions::default(),
+    );
+    let is_arc = |e: &Element| matches!(e, Element::Arc { .. });
+    assert!(arc.sheet.drawing.strokes[0].path.elements().iter().all(is_arc));
+}
+
+#[test]
+fn what_lies_off_the_page_or_has_no_area_or_opacity_is_not_drawn() {
+    check("<path d='M50 50H1000' stroke='#000'/>", 1, 50.0, "off the page; --crop off");
+    check("<path d='M10 10H90'/><path d='M10 50H90' stroke='#000'/>", 1, 80.0, "no area");
+    check(
+        "<g opacity='0'><path d='M10 10H90' stroke='red'/></g><path d='M10 50H90' stroke='#000'/>",
+        1,
+        80.0,
+        "opacity 0",
+    );
+}
+
+#[test]
+fn only_a_white_rectangle_with_something_on_it_is_paper() {
+    let line = "<path d='M10 50H90' stroke='#000'/>";
+    check(&format!("<rect width='100' height='100' fill='#fff'/>{line}"), 1, 80.0, "the paper");
+    check(&format!("<rect width='100' height='100' fill='#08c'/>{line}"), 2, 480.0, "");
+    check(
+        &format!("<circle cx='50' cy='50' r='50' fill='#08c'/>{line}"),
+        2,
+        80.0 + 100.0 * std::f64::consts::PI,
+        "",
+    );
+    check("<path d='M0 0H100V100H0z' fill='lightgray'/>", 1, 400.0, "");
+}
+
+#[test]
+fn dashes_and_dots_are_drawn_as_they_are() {
+    let dashed = "<path stroke-dasharray='10 10' d='M0 50H100' stroke='#000'/>";
+    check(dashed, 5, 50.0, "");
+    let solid = read(dashed, &ReadOptions { dashes: false, ..ReadOptions::default() });
+    assert!((length_mm(&solid) - 100.0).abs() < 1e-3);
+    check("<path d='M50 50h0' stroke='#000' stroke-width='3' stroke-linecap='round'/>", 1, 3.0, "");
+}
+
+#[test]
+fn a_template_for_cutting_keeps_what_is_hidden() {
+    let all = ReadOptions { hidden: Hidden::Keep, ..ReadOptions::default() };
+    let found = read(&format!("<path d='M0 50H100' stroke='#f00'/>{PLATE}"), &all);
+    assert!((length_mm(&found) - 260.0).abs() < 1e-3 && found.remarks.is_empty());
+    let open = ReadOptions { crop: false, ..ReadOptions::default() };
+    assert!((length_mm(&read("<path d='M50 50H1000' stroke='#000'/>", &open)) - 950.0).abs() < 1e-2);
+}
+
+#[test]
+fn lines_drawn_twice_are_drawn_once() {
+    check(
+        "<path d='M10 60H90' stroke='#000'/><path d='M90 60H10' stroke='#000'/>",
+        1,
+        80.0,
+        "on top of earlier lines",
+    );
+}
