@@ -1,7 +1,7 @@
 //! The resolved tree as a scene: what it paints, in order, and the lines that could be drawn of it.
 
 use kurbo::Affine;
-use tracelight_stroke::{Colour, Path, Point, Rect, Stroke, StrokeKind};
+use tracelight_stroke::{Colour, Drawing, Path, Point, Rect, Stroke, StrokeKind};
 
 use super::dash::{Dashes, MAX_DASHES, dot, moved};
 use super::gates::Gates;
@@ -12,6 +12,7 @@ use super::paper::is_paper;
 use super::seen::scene::{Ink, Item, Mark, MarkKind, Number, Scene};
 use super::seen::{Reason, Region, View};
 use super::shape::{affine, band, filled, lines, own_lines, scale};
+use crate::doubles::without_doubles;
 use crate::extent::controls;
 use crate::{FormatError, is_sound};
 
@@ -158,15 +159,20 @@ impl Painter {
     fn letters(&mut self, drawn: Vec<Drawn>, around: &Around) -> Result<(), FormatError> {
         self.paths += 1;
         let mut item: Option<(Option<Colour>, Number)> = None;
-        for Drawn { path, colour, is_edge } in drawn {
-            self.check(&path)?;
-            if around.opacity <= NOTHING {
-                self.leave_out(Reason::Invisible, &path);
-                continue;
-            }
-            self.count(&path);
+        drawn.iter().try_for_each(|letter| self.check(&letter.path))?;
+        if around.opacity <= NOTHING {
+            drawn.iter().for_each(|letter| self.leave_out(Reason::Invisible, &letter.path));
+            return Ok(());
+        }
+        let stroke = |Drawn { path, colour, is_edge }| {
             let kind = if is_edge { StrokeKind::Outline } else { StrokeKind::Centreline };
-            let stroke = Stroke { kind, colour, layer: around.place.layer.clone(), ..Stroke::new(path) };
+            Stroke { kind, colour, layer: around.place.layer.clone(), ..Stroke::new(path) }
+        };
+        // pens go back over some lines of single-line letters
+        let (letters, _) = without_doubles(Drawing { strokes: drawn.into_iter().map(stroke).collect() });
+        for stroke in letters.strokes {
+            self.count(&stroke.path);
+            let colour = stroke.colour;
             let of_colour = item.filter(|(before, _)| *before == colour).map(|(_, number)| number);
             let number = of_colour.unwrap_or_else(|| {
                 let ink = Ink::Plain(colour.unwrap_or(Colour::BLACK));

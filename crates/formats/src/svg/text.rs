@@ -82,6 +82,8 @@ impl Fonts {
         const WEIGHTS_APART: u16 = 150;
         let Ok(mut replaced) = self.replaced.lock() else { return };
         match font.families().first() {
+            // what a text has that names none
+            Some(FontFamily::Named(name)) if name == "sans-serif" => false,
             Some(FontFamily::Named(name)) if !has_family => replaced.insert(name.clone()),
             Some(FontFamily::Serif) if !has_family => replaced.insert("serif".to_owned()),
             Some(FontFamily::Monospace) if !has_family => replaced.insert("monospace".to_owned()),
