@@ -6,13 +6,14 @@
 //! broken files are read by `tests/mutations.rs`. Sections may come in any order.
 //!
 //! Read is whatever has lines in model space, seen from above: LINE, LWPOLYLINE, POLYLINE, ARC, CIRCLE, ELLIPSE, SPLINE,
-//! POINT, SOLID, TRACE, 3DFACE, MESH, MLINE, LEADER, MULTILEADER, HATCH, INSERT and DIMENSION. All else is counted.
+//! POINT, SOLID, TRACE, 3DFACE, MESH, MLINE, LEADER, MULTILEADER, HATCH, TEXT, MTEXT, ATTRIB, INSERT and DIMENSION. All else is counted.
 //! Group codes are those of Autodesk's *DXF Reference*, 2000 to 2018; older files use a part of them.
 
 mod aci;
 mod ascii;
 mod binary;
 mod blocks;
+mod codes;
 mod curves;
 mod dashes;
 mod entities;
@@ -23,6 +24,7 @@ mod join;
 mod leader;
 mod linetype;
 mod mesh;
+mod mtext;
 mod pattern;
 mod polyline;
 mod read;
@@ -31,6 +33,7 @@ mod scene;
 mod sheet;
 mod skipped;
 mod spline;
+mod text;
 mod write;
 
 pub use read::{read, read_with};

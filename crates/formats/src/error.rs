@@ -75,6 +75,9 @@ pub enum FormatError {
         /// What it holds, by name and number.
         found: String,
     },
+    /// A font that is not used.
+    #[error(transparent)]
+    Font(#[from] tracelight_letters::LettersError),
     /// Something that is in order and not read, because it can be made to fill the memory.
     #[error("{what} is not read: {instead}")]
     Refused {

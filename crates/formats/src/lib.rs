@@ -5,6 +5,7 @@
 //! | [`svg`] | any SVG's paths | a placed drawing in true millimetres | sheet; target |
 //! | [`dxf`] | the model of a DXF | the same, release 2004 | sheet; target |
 //! | [`json`] | `strokes --json` | the same | pixels |
+//! | [`lettering`] | words that are to be drawn | – | sheet |
 //! | [`csv`] | `stroke,x_m,y_m` | the same | target |
 //! | [`gcode`] | – | GRBL in laser mode, millimetres | target |
 //! | [`hpgl`] | – | HPGL, plotter units | target |
@@ -32,6 +33,7 @@ pub mod hpgl;
 pub mod ild;
 pub mod json;
 mod layers;
+pub mod lettering;
 mod limit;
 mod meant;
 mod number;

@@ -4,6 +4,7 @@ mod dash;
 mod gates;
 mod guard;
 mod ink;
+mod lines;
 mod names;
 mod paint;
 mod paper;
@@ -14,6 +15,7 @@ mod shape;
 mod style;
 mod swell;
 mod tags;
+mod text;
 mod write;
 
 pub use read::{read, read_with};

@@ -70,7 +70,11 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
         },
     };
     if args.eye.camera.is_none() {
-        return prepare(&request, named::drawing(args.name(), &args.reading.options()?)?, task);
+        return prepare(
+            &request,
+            named::source(args.name(), &args.reading.options()?, &args.lettering)?,
+            task,
+        );
     }
     let head = args.head.as_deref().map(|path| named::head(path, &request.driving.rig)).transpose()?;
     let mut opened = args.eye.open()?;

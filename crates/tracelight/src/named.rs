@@ -11,6 +11,7 @@ use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
+use crate::cli::lettering::LetteringArgs;
 use crate::cli::nearest::nearest;
 
 /// Whether all that was typed is text: names of files go into messages, tables and results.
@@ -48,6 +49,11 @@ pub(crate) fn drawing(path: &str, options: &ReadOptions) -> Result<Source, Failu
         }
         _ => Ok(source),
     }
+}
+
+/// The words that are to be drawn, else a picture as in [`drawing`].
+pub(crate) fn source(path: &str, options: &ReadOptions, words: &LetteringArgs) -> Result<Source, Failure> {
+    words.source(options)?.map_or_else(|| drawing(path, options), Ok)
 }
 
 /// A picture to hang on a simulated wall.

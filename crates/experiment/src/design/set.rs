@@ -88,8 +88,8 @@ impl Figure {
             Self::Gain => "gain, dB",
             Self::Sensitivity => "Ms",
             Self::Crossover => "at, rad/s",
-            Self::Overshoot => "overshoot, %",
-            Self::Settling => "settles, s",
+            Self::Overshoot => "over, %",
+            Self::Settling => "settle, s",
         }
     }
 
@@ -126,7 +126,7 @@ pub(super) fn lines(members: &[Member]) -> String {
     let width = members.iter().map(|member| member.name.chars().count()).max().unwrap_or(0).max(6);
     let mut text = format!("\nwith each system\n    {:width$}", "system");
     for figure in Figure::ALL {
-        text += &format!("  {:>13}", figure.title());
+        text += &format!(" {:>9}", figure.title());
     }
     for (number, member) in members.iter().enumerate() {
         text += &format!("\n    {:width$}", member.name);
@@ -137,7 +137,7 @@ pub(super) fn lines(members: &[Member]) -> String {
         for figure in Figure::ALL {
             let mark = if figure.worst(members) == Some(number) { "*" } else { " " };
             let value = member.figure(figure).map_or("–".to_owned(), four);
-            text += &format!("  {:>13}", value + mark);
+            text += &format!(" {:>9}", value + mark);
         }
     }
     text + "\n    * the worst of all systems\n"

@@ -13,7 +13,7 @@ pub(super) enum Disk {
     Margins(DiskMargins),
     /// Nothing: closed it is not stable.
     Unstable,
-    /// It is no loop: it has not as many outputs as inputs.
+    /// Not a loop: the system has not as many outputs as inputs.
     NotSquare,
     /// Closed it is not defined.
     Undefined,

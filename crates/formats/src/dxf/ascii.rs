@@ -1,6 +1,6 @@
 //! Groups of ASCII DXF: a code and a value on two lines.
 
-use super::groups::{At, Group, Value};
+use super::groups::{At, Group, Value, is_text};
 use crate::FormatError;
 
 /// The groups of an ASCII file.
@@ -26,12 +26,13 @@ impl<'a> Lines<'a> {
     /// # Errors
     /// A code that is no number.
     pub(super) fn group(&mut self) -> Result<Option<Group<'a>>, FormatError> {
-        let Some(code) = self.next_line() else { return Ok(None) };
+        let Some(code) = self.next_line().map(<[u8]>::trim_ascii) else { return Ok(None) };
         let code = std::str::from_utf8(code).ok().and_then(|c| c.parse().ok()).ok_or_else(|| {
             let code = String::from_utf8_lossy(&code[..code.len().min(40)]).into_owned();
             self.broken(format!("{code:?} is no group code; save the drawing again as ASCII DXF"))
         })?;
         let Some(value) = self.next_line() else { return Ok(None) };
+        let value = if is_text(code) { value } else { value.trim_ascii() };
         let value = match self.has_commas && is_real(code) {
             true => with_comma(value).map_or(Value::Text(value), Value::Number),
             false => Value::Text(value),
@@ -51,7 +52,7 @@ impl<'a> Lines<'a> {
         let length = self.rest.iter().position(|&b| b == self.end_of_line).unwrap_or(self.rest.len());
         let (line, rest) = self.rest.split_at(length);
         self.rest = rest.get(1..).unwrap_or_default();
-        Some(line.trim_ascii())
+        Some(line.strip_suffix(b"\r").unwrap_or(line))
     }
 
     /// Whether some real number of the file has a comma, and none a point: most files are known by their first number.
@@ -59,12 +60,12 @@ impl<'a> Lines<'a> {
         let mut ahead = Self { rest: self.rest, line: 0, ..*self };
         let mut commas = false;
         while let (Some(code), Some(value)) = (ahead.next_line(), ahead.next_line()) {
-            let code = std::str::from_utf8(code).ok().and_then(|c| c.parse().ok());
+            let code = std::str::from_utf8(code.trim_ascii()).ok().and_then(|c| c.parse().ok());
             if code.is_some_and(is_real) {
                 if value.contains(&b'.') {
                     return false;
                 }
-                commas |= with_comma(value).is_some();
+                commas |= with_comma(value.trim_ascii()).is_some();
             }
         }
         commas

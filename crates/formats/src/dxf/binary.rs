@@ -1,7 +1,7 @@
 //! Groups of binary DXF: a code of one or two bytes, and a value whose kind the code says (Autodesk's *DXF Reference*,
 //! "Binary DXF Files" and "Group Code Value Types").
 
-use super::groups::{At, Group, Value};
+use super::groups::{At, Group, Value, is_text};
 use crate::FormatError;
 
 /// How a binary file begins.
@@ -62,7 +62,7 @@ impl<'a> Typed<'a> {
         let at = At::Byte(u32::try_from(self.offset()).unwrap_or(u32::MAX));
         let kind = kind_of(code)
             .ok_or_else(|| self.broken(format!("{code} is no group code; save the drawing again")))?;
-        let value = self.value(kind);
+        let value = self.value(kind, code);
         if value.is_none() {
             self.rest = &[]; // what is left is a part of a value
         }
@@ -90,12 +90,13 @@ impl<'a> Typed<'a> {
         }
     }
 
-    fn value(&mut self, kind: Kind) -> Option<Value<'a>> {
+    fn value(&mut self, kind: Kind, code: i32) -> Option<Value<'a>> {
         match kind {
             Kind::Text => {
                 let length = self.rest.iter().position(|&b| b == 0)?;
                 let text = self.take(length + 1)?;
-                Some(Value::Text(text[..length].trim_ascii()))
+                let text = &text[..length];
+                Some(Value::Text(if is_text(code) { text } else { text.trim_ascii() }))
             }
             Kind::Chunk => {
                 let length = usize::from(self.take(1)?[0]);

@@ -101,6 +101,7 @@ impl Unfolding<'_> {
                 Item::Shape(shape) => self.shape(shape, at)?,
                 Item::Dot(dot) => self.dot(dot, at)?,
                 Item::Insert(insert) => self.insert(insert, at)?,
+                Item::Text(text) => text.shapes.iter().try_for_each(|shape| self.shape(shape, at))?,
             }
         }
         Ok(())

@@ -13,6 +13,7 @@ use super::polyline::{self, Polyline};
 use super::scene::{Dot, Insert, Item, Layers, Look, Shape};
 use super::skipped::Skipped;
 use super::spline;
+use super::text::Text;
 use crate::FormatError;
 
 /// Takes the entities of a block or of a space, one record after another.
@@ -100,6 +101,11 @@ impl Entities {
                 Item::Insert(Box::new(picture(record, look, record.point(12)?)?))
             }
             b"ACAD_TABLE" if has_block => Item::Insert(Box::new(picture(record, look, record.point(10)?)?)),
+            b"TEXT" | b"MTEXT" | b"ATTRIB" => {
+                let Some(text) = Text::of(record, look)? else { return Ok(()) };
+                self.elements += super::LEAST_ELEMENTS;
+                Item::Text(Box::new(text))
+            }
             b"POINT" if record.key(8) == "defpoints" => {
                 skipped.unprinted += 1;
                 return Ok(());

@@ -17,7 +17,7 @@ pub(super) struct Group<'a> {
 /// What a group holds: text may be a number that is yet to be read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Value<'a> {
-    /// Blanks trimmed.
+    /// Blanks trimmed but of text, see [`is_text`].
     Text(&'a [u8]),
     Number(f64),
     Whole(i64),
@@ -189,12 +189,23 @@ impl<'a> Record<'a> {
     }
 }
 
-/// Text of any age: UTF-8, else Latin-1, with `\U+00E9` for what neither the writer's code page nor ASCII has.
+/// Whether groups of a code hold text, which may begin and end with blanks: of an MTEXT's pieces each but the last one
+/// may end between two words.
+pub(super) const fn is_text(code: i32) -> bool {
+    matches!(code, 1 | 3)
+}
+
+/// A name of any age: see [`characters`].
 fn text(bytes: &[u8]) -> String {
     const LONGEST: usize = 255; // AutoCAD's own bound for a name
+    characters(bytes.trim_ascii(), LONGEST)
+}
+
+/// Characters of any age, so many at most: UTF-8, else Latin-1, with `\U+00E9` for what neither the writer's code page nor ASCII has.
+pub(super) fn characters(bytes: &[u8], most: usize) -> String {
     let plain = match std::str::from_utf8(bytes) {
-        Ok(text) => text.chars().take(LONGEST).collect(),
-        Err(_) => bytes.iter().take(LONGEST).map(|&b| char::from(b)).collect::<String>(),
+        Ok(text) => text.chars().take(most).collect(),
+        Err(_) => bytes.iter().take(most).map(|&b| char::from(b)).collect::<String>(),
     };
     let mut parts = plain.split("\\U+");
     let mut out = parts.next().unwrap_or_default().to_owned();

@@ -1,5 +1,8 @@
-//! What a DXF says of itself: the size of its unit, and how long its dashes are.
+//! What a DXF says of itself: the size of its unit, and how long its dashes are, in which encoding its texts.
 
+use encoding_rs::Encoding;
+
+use super::codes;
 use super::groups::Record;
 
 /// Metres of each `$INSUNITS`, from 1 on.
@@ -36,11 +39,13 @@ pub(super) struct Header {
     units: Option<i64>,
     /// Factor of all linetypes.
     pub(super) linetype_scale: f64,
+    /// Of texts that are no UTF-8.
+    pub(super) encoding: Option<&'static Encoding>,
 }
 
 impl Default for Header {
     fn default() -> Self {
-        Self { units: None, linetype_scale: 1.0 }
+        Self { units: None, linetype_scale: 1.0, encoding: None }
     }
 }
 
@@ -54,6 +59,7 @@ impl Header {
             match (group.code, name) {
                 (9, _) => name = group.bytes(),
                 (70, b"$INSUNITS") => header.units = group.whole().ok(),
+                (3, b"$DWGCODEPAGE") => header.encoding = codes::encoding(group.bytes()),
                 (40, b"$LTSCALE") => {
                     header.linetype_scale = group.number().ok().filter(|&s| s > 0.0).unwrap_or(1.0);
                 }

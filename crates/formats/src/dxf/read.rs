@@ -9,11 +9,13 @@ use super::header::Header;
 use super::join::joined;
 use super::pattern;
 use super::records::{Cut, Records};
-use super::scene::{Block, Layers, Scene};
+use super::scene::{Block, Item, Layers, Scene};
 use super::sheet::{Unit, sheet};
 use super::skipped::Skipped;
+use super::text;
 use crate::extent::extent;
-use crate::options::{Hatch, ReadOptions};
+use crate::lettering::faces;
+use crate::options::{Hatch, Letters, ReadOptions};
 use crate::{FormatError, Reading};
 
 /// Length of the line that stands for a point, as a share of the drawing's longer side: 1 mm on a wall of half a metre.
@@ -24,8 +26,8 @@ const DOT: f64 = 0.002;
 /// Lines stay lines and arcs arcs, bulges become arcs, splines cubics (exact up to degree three without weights, else
 /// within 1e-5 of their size), ellipses cubics within 5e-6 of their larger half axis. Blocks are unfolded, dimensions
 /// drawn by theirs; faces and meshes by their edges; hatches by the edges of their areas, and by their pattern if that is
-/// asked for; a point as a level line of 1/500 of the drawing's longer side. Linetypes make dashes, half a dash or more
-/// at either end of a path. Paths of one layer and colour that meet end to end become one stroke. Each stroke has its
+/// asked for; a point as a level line of 1/500 of the drawing's longer side. Text is drawn as single
+/// lines, or as outlines where these are asked for. Linetypes make dashes, half a dash or more at either end of a path. Paths of one layer and colour that meet end to end become one stroke. Each stroke has its
 /// layer's name and the colour it shows; what lies on layers that are off or frozen is left out. Where the model is
 /// empty, the layout is drawn. Whatever is not drawn is counted by name in a remark.
 ///
@@ -47,7 +49,8 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     check_kind(bytes)?;
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let mut records = Records::new(bytes);
-    let (scene, header) = scene(&mut records, options.hatch)?;
+    let (mut scene, header) = scene(&mut records, options.hatch)?;
+    let lettered = set_texts(&mut scene, header, options)?;
     let dash_scale = options.dashes.then_some(header.linetype_scale);
     let (drawn, skipped, is_layout) = space(&scene, dash_scale)?;
     let drawing = strokes(drawn, &scene.layers);
@@ -61,7 +64,24 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     let layout = is_layout.then(|| "its model is empty: the layout (paper space) is drawn".to_owned());
     let cut = records.cut().map(|cut| cut_remark(cut).to_owned());
     let before = [size.remark, layout, cut].into_iter().flatten();
-    Ok(Reading { sheet: size.sheet, remarks: before.chain(skipped.remarks()).collect(), doubt: size.doubt })
+    Ok(Reading {
+        sheet: size.sheet,
+        remarks: before.chain(skipped.remarks()).chain(lettered).collect(),
+        doubt: size.doubt,
+    })
+}
+
+/// Makes paths of all texts, and says what of them is not drawn as it should be.
+fn set_texts(scene: &mut Scene, header: Header, options: &ReadOptions) -> Result<Vec<String>, FormatError> {
+    let Scene { model, layout, blocks, styles, .. } = scene;
+    let spaces = model.items.iter_mut().chain(&mut layout.items);
+    let blocks = blocks.values_mut().flat_map(|block| &mut block.items);
+    let mut texts = spaces.chain(blocks).filter(|item| matches!(item, Item::Text(_))).peekable();
+    if texts.peek().is_none() {
+        return Ok(Vec::new());
+    }
+    let setting = text::Setting { faces: faces(options, Letters::Line)?, styles, encoding: header.encoding };
+    Ok(text::set_all(texts, &setting)?.remarks())
 }
 
 const fn cut_remark(cut: Cut) -> &'static str {
@@ -73,7 +93,7 @@ const fn cut_remark(cut: Cut) -> &'static str {
 
 /// What is drawn of a scene, what is not, and whether that is a layout: the model, unless it is empty.
 fn space(scene: &Scene, dash_scale: Option<f64>) -> Result<(Vec<Drawn>, Skipped, bool), FormatError> {
-    let Scene { layers, lines, blocks, model, layout, in_layouts } = scene;
+    let Scene { layers, lines, blocks, model, layout, in_layouts, styles: _ } = scene;
     let definitions = Definitions { layers, lines, blocks, dash_scale };
     let drawn = |items, skipped: &Skipped| {
         let mut own = Skipped::default();
@@ -177,6 +197,7 @@ impl Place {
     fn take(&mut self, record: &Record, scene: &mut Scene) -> Result<(), FormatError> {
         match (self.section, record.kind) {
             (Section::Tables, b"LAYER") => scene.layers.declare(record, &mut scene.lines),
+            (Section::Tables, b"STYLE") => scene.styles.declare(record),
             (Section::Tables, b"LTYPE") => scene.lines.declare(record),
             (Section::Blocks, b"BLOCK") => {
                 self.end_block(scene);

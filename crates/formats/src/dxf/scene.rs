@@ -9,6 +9,7 @@ use super::aci;
 use super::groups::Record;
 use super::linetype::{self, LineFrom, Lines};
 use super::skipped::Skipped;
+use super::text::{Styles, Text};
 use crate::FormatError;
 
 /// Everything that counts of a file.
@@ -22,6 +23,7 @@ pub(super) struct Scene {
     pub(super) layout: Space,
     /// Entities of the layout, whether they are drawn or not.
     pub(super) in_layouts: usize,
+    pub(super) styles: Styles,
 }
 
 /// A space that is drawn in.
@@ -38,6 +40,7 @@ pub(super) enum Item {
     Shape(Shape),
     Dot(Dot),
     Insert(Box<Insert>),
+    Text(Box<Text>),
 }
 
 /// An entity that is a path.

@@ -40,7 +40,7 @@ impl Why {
 
     fn of(kind: &str) -> Self {
         match kind {
-            "TEXT" | "MTEXT" | "ATTRIB" | "ATTDEF" | "RTEXT" | "ARCALIGNEDTEXT" => Self::Text,
+            "ATTDEF" | "RTEXT" | "ARCALIGNEDTEXT" => Self::Text,
             "RAY" | "XLINE" => Self::Endless,
             "IMAGE" | "WIPEOUT" | "OLEFRAME" | "OLE2FRAME" | "PDFUNDERLAY" | "DWFUNDERLAY"
             | "DGNUNDERLAY" => Self::Picture,

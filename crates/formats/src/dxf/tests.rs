@@ -202,7 +202,7 @@ fn layers_give_colours_and_hide() {
         line("red", "420 255,"),
         line("red", "60 1,"),
         line("red", "67 1,"),
-        "0 TEXT, 8 0, 1 hello, 0 TEXT, 8 0, 1 again, 0 HATCH, 8 0, 0 INSERT, 2 nowhere".into(),
+        "0 ATTDEF, 8 0, 1 hello, 0 ATTDEF, 8 0, 1 again, 0 HATCH, 8 0, 0 INSERT, 2 nowhere".into(),
     ];
     let found = reading(&(tables + &section("ENTITIES", &entities.concat()) + "0\nEOF\n"));
     let looks: Vec<_> = found
@@ -217,7 +217,7 @@ fn layers_give_colours_and_hide() {
     assert_eq!(found.sheet.metres_per_unit, Some(1e-3));
     let remarks = found.remarks.join("; ");
     for said in [
-        "2 TEXT, 1 HATCH",
+        "2 ATTDEF, 1 HATCH",
         "is off or frozen (3 found)",
         "the model is (1 found)",
         "bind them to it (1 found)",
@@ -272,7 +272,7 @@ fn what_is_no_dxf_is_refused_with_what_to_do() {
     check(b"AutoCAD Binary DXF\r\n\x1a\x00", "byte 22 of a binary file: the file is cut off");
     check(b"AC1032\x00\x00", "DWG is not read: save it as ASCII");
     check(file("").as_bytes(), "nothing to draw: the DXF has no line");
-    check(file("0 TEXT, 1 hello").as_bytes(), "explode the text");
+    check(file("0 ATTDEF, 1 hello").as_bytes(), "explode the text");
     check(file("0 LINE, 10 1, 20 1, 11 1, 21 1").as_bytes(), "nothing to draw");
     check(file("0 LINE, 10 1, 20 1, 11 nan, 21 1").as_bytes(), "line 22: an x coordinate is \"nan\"");
     check(

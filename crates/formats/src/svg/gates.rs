@@ -93,6 +93,7 @@ impl Gates<'_> {
                     regions.push((filled(&paths, rule, self.tolerance), within.gate));
                     outlines.extend(paths);
                 }
+                usvg::Node::Text(text) => self.clip_shapes(text.flattened(), within, regions, outlines),
                 _ => {}
             }
         }
@@ -150,6 +151,7 @@ impl Gates<'_> {
                     self.mask_path(path, within, picture, outlines)
                 }
                 usvg::Node::Path(_) => {}
+                usvg::Node::Text(text) => self.mask_shapes(text.flattened(), within, picture, outlines),
                 _ => picture.is_plain = false,
             }
         }

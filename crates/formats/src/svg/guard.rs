@@ -170,12 +170,20 @@ struct Weights<'a> {
     known: HashMap<NodeId, u64>,
     /// See [`swell::largest_size`].
     largest: f64,
+    /// An element shows another one's text.
+    has_tref: bool,
 }
 
 impl<'a> Weights<'a> {
     fn of(document: &'a Document<'a>) -> Self {
+        let has_tref = document.descendants().any(|n| n.tag_name().name() == "tref");
         let named = document.descendants().filter_map(|n| n.attribute("id").map(|id| (id, n)));
-        Self { by_id: named.collect(), known: HashMap::new(), largest: swell::largest_size(document) }
+        Self {
+            by_id: named.collect(),
+            known: HashMap::new(),
+            largest: swell::largest_size(document),
+            has_tref,
+        }
     }
 
     /// Of the element, its children, and whatever it shows by reference. References are followed as deep as the
@@ -190,6 +198,7 @@ impl<'a> Weights<'a> {
         // an element takes memory without attributes too
         let mut weight = 16 + node.attributes().map(|a| a.value().len() as u64).sum::<u64>();
         weight = weight.saturating_add(swell::weight(node, self.largest));
+        weight = weight.saturating_add(self.letters(node));
         let children: Vec<_> = node.children().filter(Node::is_element).collect();
         for part in children.into_iter().chain(self.shown_by(node)) {
             // enough is enough: two groups of many uses of each other would take for ever to weigh
@@ -199,6 +208,18 @@ impl<'a> Weights<'a> {
         }
         self.known.insert(node.id(), weight);
         weight
+    }
+
+    /// Of the letters that stand in an element: each becomes an outline of some tens of segments.
+    fn letters(&self, node: Node) -> u64 {
+        const OF_LETTER: u64 = 100;
+        // any element's text may be shown by a `tref`
+        let is_shown =
+            self.has_tref || matches!(node.tag_name().name(), "text" | "tspan" | "textPath" | "a" | "tref");
+        let texts =
+            node.children().filter(|child| is_shown && child.is_text()).filter_map(|child| child.text());
+        texts.map(|text| text.split_whitespace().map(|word| word.len() as u64).sum::<u64>()).sum::<u64>()
+            * OF_LETTER
     }
 
     /// What an element refers to: by `href`, and by `url(#…)` in any attribute (patterns, clips, masks, markers).

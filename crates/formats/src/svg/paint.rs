@@ -3,16 +3,18 @@
 use std::collections::HashMap;
 
 use kurbo::Affine;
-use tracelight_stroke::{Path, Point, Rect, Stroke, StrokeKind};
+use tracelight_stroke::{Colour, Drawing, Path, Point, Rect, Stroke, StrokeKind};
 
 use super::dash::{Dashes, MAX_DASHES, dot, moved};
 use super::gates::{Gates, Key};
 use super::ink::{adds_only, colour_of, ink_of};
+use super::lines::{Drawn, Lines};
 use super::names::{Names, Place};
 use super::paper::is_paper;
 use super::seen::scene::{Ink, Item, Mark, MarkKind, Number, Scene};
 use super::seen::{Reason, Region, View};
 use super::shape::{affine, band, filled, lines, own_lines, scale};
+use crate::doubles::without_doubles;
 use crate::extent::controls;
 use crate::{FormatError, is_sound};
 
@@ -43,6 +45,8 @@ pub(super) struct Painter {
     pub(super) dashes: bool,
     /// Whether bands of pens matter: without other colours or widths, and without fills, no line hides another.
     pub(super) bands: bool,
+    /// For text as single lines; outlines without.
+    pub(super) letters: Option<Lines>,
     pub(super) scene: Scene,
     pub(super) told: Told,
     /// What is not even looked at, why and how long.
@@ -74,12 +78,13 @@ enum Task<'a> {
 }
 
 impl Painter {
-    pub(super) fn new(names: Names, view: View, dashes: bool, bands: bool) -> Self {
+    pub(super) fn new(names: Names, view: View, dashes: bool, bands: bool, letters: Option<Lines>) -> Self {
         Self {
             names,
             view,
             dashes,
             bands,
+            letters,
             scene: Scene::default(),
             told: Told::default(),
             unseen: Vec::new(),
@@ -101,6 +106,7 @@ impl Painter {
             match task {
                 Task::Node(usvg::Node::Group(group), around) => self.group(group, around, &mut left),
                 Task::Node(usvg::Node::Path(path), around) => self.path(path, &around)?,
+                Task::Node(usvg::Node::Text(text), around) => self.text(text, around, &mut left)?,
                 Task::Node(..) => {}
                 Task::Cuts(gate, outlines) => {
                     outlines.into_iter().try_for_each(|path| self.cut(gate, path))?
@@ -135,6 +141,51 @@ impl Painter {
             left.push(Task::Cuts(one.gate, one.outlines));
         }
         left.extend(group.children().iter().rev().map(|node| Task::Node(node, inner.clone())));
+    }
+
+    fn text<'a>(
+        &mut self,
+        text: &'a usvg::Text,
+        around: Around,
+        left: &mut Vec<Task<'a>>,
+    ) -> Result<(), FormatError> {
+        match self.letters.as_mut().and_then(|letters| letters.set(text)) {
+            Some(drawn) => self.letters(drawn, &around),
+            None => {
+                let outlines = text.flattened().children().iter().rev();
+                left.extend(outlines.map(|node| Task::Node(node, around.clone())));
+                Ok(())
+            }
+        }
+    }
+
+    /// Letters without width: they hide nothing, and others may hide them.
+    fn letters(&mut self, drawn: Vec<Drawn>, around: &Around) -> Result<(), FormatError> {
+        self.paths += 1;
+        let mut item: Option<(Option<Colour>, Number)> = None;
+        drawn.iter().try_for_each(|letter| self.check(&letter.path))?;
+        if around.opacity <= NOTHING {
+            drawn.iter().for_each(|letter| self.leave_out(Reason::Invisible, &letter.path));
+            return Ok(());
+        }
+        let stroke = |Drawn { path, colour, is_edge }| {
+            let kind = if is_edge { StrokeKind::Outline } else { StrokeKind::Centreline };
+            Stroke { kind, colour, layer: around.place.layer.clone(), ..Stroke::new(path) }
+        };
+        // pens go back over some lines of single-line letters
+        let (letters, _) = without_doubles(Drawing { strokes: drawn.into_iter().map(stroke).collect() });
+        for stroke in letters.strokes {
+            self.count(&stroke.path);
+            let colour = stroke.colour;
+            let of_colour = item.filter(|(before, _)| *before == colour).map(|(_, number)| number);
+            let number = of_colour.unwrap_or_else(|| {
+                let ink = Ink::Plain(colour.unwrap_or(Colour::BLACK));
+                self.item(Region::default(), ink, usvg::Opacity::ONE, &stroke, around)
+            });
+            item = Some((colour, number));
+            self.scene.marks.push(Mark { kind: MarkKind::Middle, item: number, stroke });
+        }
+        self.check_count()
     }
 
     fn path(&mut self, path: &usvg::Path, around: &Around) -> Result<(), FormatError> {
@@ -317,7 +368,7 @@ fn dashed_askew(path: &usvg::Path, stroke: &usvg::Stroke, at: Affine) -> Vec<Pat
     own_lines(path).iter().flat_map(|line| dashes.along(line)).map(|dash| moved(&dash, at)).collect()
 }
 
-/// Whether any line of a tree could hide another: there are fills, several colours, or very different pens.
+/// Whether any line of a tree could hide another: there are fills, text, several colours, or very different pens.
 pub(super) fn do_bands_matter(root: &usvg::Group) -> bool {
     const ALIKE: f64 = 4.0;
     let mut left: Vec<&usvg::Node> = root.children().iter().collect();
@@ -335,7 +386,8 @@ pub(super) fn do_bands_matter(root: &usvg::Group) -> bool {
                 }
                 one = Some((paint, [least, most]));
             }
-            _ => {}
+            usvg::Node::Text(_) => return true,
+            usvg::Node::Image(_) => {}
         }
     }
     false

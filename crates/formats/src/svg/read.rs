@@ -1,13 +1,17 @@
+use tracelight_letters::Kind;
 use tracelight_maths::hypot;
 use tracelight_stroke::{Drawing, Point};
 use usvg::roxmltree::{Document, Node};
 
+use super::lines::Lines;
 use super::names::Names;
 use super::paint::{Painter, do_bands_matter, page};
 use super::seen::{View, seen, work_of};
+use super::text::Fonts;
 use super::{guard, remarks};
 use crate::doubles::without_doubles;
-use crate::options::{Hidden, ReadOptions};
+use crate::lettering::{faces, kind};
+use crate::options::{Hidden, Letters, ReadOptions};
 use crate::unpacked::{unpacked, xml_text};
 use crate::{FormatError, Reading, Sheet, check_size, is_sound};
 
@@ -32,7 +36,8 @@ const MAX_NODES: u32 = 2_000_000;
 /// cut at parameters of their own elements. The band of a pen hides what is below it, but no line of its colour that is
 /// more than a quarter as wide. A centreline is drawn where it is itself uncovered. What a clip path cuts off a fill ends in a stroke
 /// along the clip path. A remark says for each reason how many lines are left out and how long they are. Filters,
-/// blends, masks of other things and the lines of patterns are not applied; text and pictures are not read: remarks too.
+/// blends, masks of other things and the lines of patterns are not applied; pictures are not read: remarks too. Text is drawn as outlines
+/// in a given font or DejaVu Sans, or as single lines.
 ///
 /// A stroke's colour is that of its line, else of its fill. Its layer is the nearest layer of the drawing program
 /// (`inkscape:groupmode="layer"`, by its label) or, outside of all of them, the nearest group with an id.
@@ -59,7 +64,8 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
         usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };
     let xml = Document::parse_with_options(text, parsing).map_err(syntax)?;
     guard::check_tree(&xml)?;
-    let tree = usvg::Tree::from_xmltree(&xml, &resolve_nothing()).map_err(unreadable)?;
+    let fonts = Fonts::of(options)?;
+    let tree = usvg::Tree::from_xmltree(&xml, &resolving(&fonts)).map_err(unreadable)?;
     let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
     if !is_sound(Point::new(width, height)) {
         return Err(FormatError::Far { place: "size of the sheet".into(), x: width, y: height });
@@ -71,7 +77,9 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
         work: work_of(bytes.len()),
     };
     let bands = view.hides && do_bands_matter(tree.root());
-    let mut painter = Painter::new(Names::of(&xml), view, options.dashes, bands);
+    let has_lines = kind(options, Letters::Outline)? == Kind::Line;
+    let letters = has_lines.then(|| faces(options, Letters::Outline)).transpose()?.map(Lines::new);
+    let mut painter = Painter::new(Names::of(&xml), view, options.dashes, bands, letters);
     painter.paint(tree.root())?;
     let seen = seen(&painter.scene, view);
     if seen.strokes.is_empty() {
@@ -84,13 +92,17 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     said.extend(remarks::lines(&seen, &painter.unseen, hypot(width, height), metres_per_unit));
     let (drawing, doubles) = without_doubles(Drawing { strokes: seen.strokes });
     said.extend(doubles.remark(metres_per_unit));
+    said.extend(painter.letters.as_ref().map_or_else(|| fonts.remarks(&tree), Lines::remarks));
     let sheet = Sheet { width, height, metres_per_unit, drawing };
     Ok(Reading { remarks: said, ..Reading::whole(sheet) })
 }
 
-/// Options that never open a file: links to pictures lead nowhere.
-fn resolve_nothing() -> usvg::Options<'static> {
+/// Options that never open a file: links to pictures lead nowhere, fonts are those in memory.
+fn resolving(fonts: &Fonts) -> usvg::Options<'_> {
     usvg::Options {
+        font_family: "sans-serif".to_owned(),
+        fontdb: fonts.database(),
+        font_resolver: fonts.resolver(),
         image_href_resolver: usvg::ImageHrefResolver {
             resolve_data: Box::new(|_, _, _| None),
             resolve_string: Box::new(|_, _| None),

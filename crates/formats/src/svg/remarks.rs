@@ -20,13 +20,12 @@ fn count(xml: &Document, name: &str) -> usize {
 /// What is left out of a drawing that has strokes, of things that are no lines.
 pub(super) fn things(xml: &Document, told: Told) -> Vec<String> {
     let said = |found: usize, what: &str| (found > 0).then(|| format!("{what} ({found} found)"));
-    let text = said(count(xml, "text"), "not drawn: text; convert it to paths in the drawing program");
     let image = said(count(xml, "image"), "not drawn: embedded pictures; trace their own files");
     let patterns = said(told.patterns, "not drawn: the lines of patterns, only the edges of what they fill");
     let filters = said(told.filters, "not applied: filters; shapes are drawn as they are without");
     let masks = said(told.masks, "not applied: masks of gradients or pictures; all that they mask is drawn");
     let dashes = said(told.undashed, "drawn as whole lines: dashed lines of too many dashes");
-    [text, image, patterns, filters, masks, dashes].into_iter().flatten().collect()
+    [image, patterns, filters, masks, dashes].into_iter().flatten().collect()
 }
 
 /// What is left out of what is painted, a sentence for each reason, with its length.
@@ -77,14 +76,14 @@ fn sentence(reason: Reason, count: usize, length: &str) -> String {
 /// Why a drawing has no strokes.
 pub(super) fn hint(xml: &Document, hidden: &[(Reason, f64)]) -> &'static str {
     let is_cut = |reason: &Reason| matches!(reason, Reason::OffPage | Reason::Clipped | Reason::Masked);
-    if count(xml, "text") > 0 {
-        "the SVG holds text, not paths: convert the text to paths in the drawing program"
-    } else if count(xml, "image") > 0 {
+    if count(xml, "image") > 0 {
         "the SVG holds an embedded picture, not paths: trace the picture's own file"
     } else if hidden.iter().any(|(reason, _)| is_cut(reason)) {
         "all paths of the SVG lie off its page, outside its clip paths or behind its masks: --crop off draws them"
     } else if hidden.iter().any(|(reason, _)| !matches!(reason, Reason::Invisible)) {
         "no path of the SVG can be seen: --hidden keep draws what is hidden"
+    } else if count(xml, "text") > 0 {
+        "the SVG holds text that shows no letter: give a font that has its letters (--font FILE)"
     } else {
         "the SVG has no visible path"
     }

@@ -129,7 +129,7 @@ fn a_file_that_draws_nothing_says_why() {
         assert!(found.contains(message), "{content}: {found}");
     };
     check("", "no visible path");
-    check("<text x='1' y='5'>hello</text>", "convert the text to paths");
+    check("<text x='1' y='5' fill='none'>hello</text>", "text that shows no letter");
     check("<image href='/etc/passwd' width='9' height='9'/>", "embedded picture");
     check("<path d='M5 5L5 5' stroke='red'/>", "no visible path");
 }
@@ -297,10 +297,12 @@ fn layers_and_colours_are_kept() {
 
 #[test]
 fn what_is_left_out_is_said() {
-    let found =
-        read(svg("width='9' height='9'", "<path d='M0 0H9' stroke='red'/><text>hi</text><text/>").as_bytes());
+    let found = read(
+        svg("width='9' height='9'", "<path d='M0 0H9' stroke='red'/><image width='3' height='3'/><text/>")
+            .as_bytes(),
+    );
     let remarks = found.unwrap().remarks;
-    assert_eq!(remarks, ["not drawn: text; convert it to paths in the drawing program (1 found)"]);
+    assert_eq!(remarks, ["not drawn: embedded pictures; trace their own files (1 found)"]);
 }
 
 #[test]

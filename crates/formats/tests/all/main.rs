@@ -10,3 +10,4 @@ mod mutations;
 mod plate;
 mod seen;
 mod small_and_slow;
+mod texts;

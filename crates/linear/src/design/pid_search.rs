@@ -34,12 +34,13 @@ impl TransferFunction {
     /// # Errors
     /// As [`pid`](Self::pid), the nearest margins being those that can be had with every system.
     pub fn pid_for_all(&self, others: &[Self], wish: PidWish) -> Result<Pid, LinearError> {
+        let least_rad = wish.phase_margin_rad;
         let negative = || {
             let others: Vec<Self> = others.iter().map(|other| other.scaled(-1.0)).collect();
-            let search = Search { plant: &self.scaled(-1.0), others: &others, wish };
+            let search = Search { plant: &self.scaled(-1.0), others: &others, least_rad, wish };
             search.found().ok().map(Pid::negative)
         };
-        Search { plant: self, others, wish }.found().or_else(|why| match why {
+        Search { plant: self, others, least_rad, wish }.found().or_else(|why| match why {
             LinearError::Unbounded { .. } => Err(why),
             why => negative().ok_or(why),
         })
@@ -52,6 +53,8 @@ struct Search<'a> {
     plant: &'a TransferFunction,
     /// Systems that it has to do for as well.
     others: &'a [TransferFunction],
+    /// Phase margin with each of those, rad: what was wished, while wider ones are tried with the first.
+    least_rad: f64,
     wish: PidWish,
 }
 
@@ -159,7 +162,8 @@ impl Search<'_> {
         let (mut good, mut bad) = (0.0, 1.0);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (good + bad);
-            if has(&Self { wish: less(middle), ..*self }) { good = middle } else { bad = middle }
+            let (least_rad, wish) = (middle * self.least_rad, less(middle));
+            if has(&Self { least_rad, wish, ..*self }) { good = middle } else { bad = middle }
         }
         let terms = self.wish.terms;
         let asked = format!(
@@ -352,7 +356,7 @@ impl Search<'_> {
 
     /// Whether the same holds with every other system; one whose gain is below 1 everywhere is never late.
     fn is_calm_with_others(&self, pid: &Pid) -> bool {
-        let least_rad = self.wish.phase_margin_rad - 1e-6;
+        let least_rad = self.least_rad - 1e-6;
         self.others.iter().all(|other| {
             let Ok(open) = pid.transfer_in(other.time()).and_then(|k| other.series(&k)) else { return false };
             let margins = open.margins();

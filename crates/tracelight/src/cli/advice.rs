@@ -36,8 +36,8 @@ fn words(error: &clap::Error) -> Option<&'static str> {
         ErrorKind::ArgumentConflict if are_both("--width", "--height") => {
             "either --width or --height: the other one follows from the picture's shape"
         }
-        ErrorKind::UnknownArgument if is_about("--text") => {
-            "text is not drawn yet: make an SVG of it whose letters are paths (Inkscape: Path, Object to Path) and draw that"
+        ErrorKind::ArgumentConflict if are_both("--text", "PICTURE") || are_both("--text", "DRAWING") => {
+            "what is to be drawn? Either a picture, or the words of --text"
         }
         _ => return None,
     };

@@ -15,6 +15,7 @@ mod failing;
 pub(crate) mod gcode;
 mod lab;
 pub(crate) mod laws;
+pub(crate) mod lettering;
 mod man;
 mod meant;
 pub(crate) mod nearest;

@@ -17,6 +17,7 @@ use crate::cli::answer::{Answer, Voice};
 use crate::cli::driving::DrivingArgs;
 use crate::cli::ending::ends_in;
 use crate::cli::gcode::PowerArgs;
+use crate::cli::lettering::LetteringArgs;
 use crate::cli::ordering::SequenceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::reading::ReadingArgs;
@@ -28,7 +29,8 @@ use crate::named;
 #[command(after_help = "Example: tracelight plan examples/star.png -o star.csv --order-by time")]
 pub(crate) struct PlanArgs {
     /// A drawing (SVG, DXF, JSON, CSV) or a picture; - is standard input
-    drawing: String,
+    #[arg(required_unless_present = "text", conflicts_with = "text")]
+    drawing: Option<String>,
     /// Write the plan: .csv, one row per millisecond; or .gcode (.gc, .nc, .ngc) for a head on a GRBL board, with --axes
     #[arg(help_heading = "Output", short, long, value_name = "FILE.csv|FILE.gcode", value_parser = table)]
     out: Option<String>,
@@ -56,6 +58,8 @@ pub(crate) struct PlanArgs {
     tracing: TracingArgs,
     #[command(flatten, next_help_heading = "Picture")]
     reading: ReadingArgs,
+    #[command(flatten, next_help_heading = "Picture")]
+    lettering: LetteringArgs,
     #[command(flatten, next_help_heading = "Size and place")]
     placement: PlacementArgs,
     #[command(flatten)]
@@ -179,9 +183,10 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
         effort: args.order_effort.effort(),
     };
     task.stage("strokes", 1);
-    let (source, placing) =
-        (named::drawing(&args.drawing, &args.reading.options()?)?, args.placement.placing());
-    let (sketch, vision_ms) = task.timed(|| sketch(&args.drawing, source, &args.tracing.tracing(), &placing));
+    let name = args.drawing.as_deref().or(args.lettering.name()).unwrap_or_default();
+    let source = named::source(name, &args.reading.options()?, &args.lettering)?;
+    let placing = args.placement.placing();
+    let (sketch, vision_ms) = task.timed(|| sketch(name, source, &args.tracing.tracing(), &placing));
     let sketch = sketch?;
     let placed = place(&sketch, &placing);
     stop.check()?;

@@ -1,8 +1,11 @@
 //! How a drawing file is read: the flags of every command that takes a drawing.
 
+use std::sync::Arc;
+
 use clap::{ArgAction, Args, ValueEnum};
 use tracelight_files as files;
 use tracelight_formats::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
+use tracelight_letters::{bundled, kind_of};
 use tracelight_report::AxisUnit;
 use tracelight_task::Failure;
 
@@ -31,7 +34,8 @@ pub(crate) struct ReadingArgs {
     /// How text is drawn: each stroke of a letter as one line, or the letters' outlines [default: line in a DXF, otherwise outline]
     #[arg(long, value_enum)]
     letters: Option<LettersName>,
-    /// Font for text: .ttf, .otf, or an SVG font with single-line letters; repeat it for what the first one lacks
+    /// Font for text: .ttf, .otf, or an SVG font with single-line letters; or one in the program, ems or hershey (single lines) or dejavu
+    /// (outlines); repeat it for what the first one lacks
     #[arg(long, value_name = "FILE", action = ArgAction::Append)]
     font: Vec<String>,
 }
@@ -108,7 +112,6 @@ impl ReadingArgs {
     /// # Errors
     /// A font file that cannot be read; two units.
     pub(crate) fn options(&self) -> Result<ReadOptions, Failure> {
-        let font = |name: &String| Ok(Font { name: name.clone(), bytes: files::read(name)?.into() });
         Ok(ReadOptions {
             hidden: match self.hidden {
                 HiddenName::Cut => Hidden::Cut,
@@ -150,6 +153,16 @@ impl UnitName {
             _ => None,
         }
     }
+}
+
+/// A font in the program, or in a file, which must be one.
+fn font(name: &String) -> Result<Font, Failure> {
+    let bytes: Arc<[u8]> = match bundled(name) {
+        Some(bytes) => bytes.into(),
+        None => files::read(name)?.into(),
+    };
+    kind_of(name, &bytes).map_err(|e| Failure::usage("malformed", e.to_string()))?;
+    Ok(Font { name: name.clone(), bytes })
 }
 
 /// The one unit of its kind, if there is any.

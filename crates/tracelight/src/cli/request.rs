@@ -10,6 +10,7 @@ use crate::cli::answer::Voice;
 use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::{EyeArgs, FollowArgs, SimulatedEyeName};
 use crate::cli::laws::LawArgs;
+use crate::cli::lettering::LetteringArgs;
 use crate::cli::ordering::SequenceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::reading::ReadingArgs;
@@ -22,12 +23,14 @@ use crate::cli::tracing::TracingArgs;
 pub(crate) struct TraceArgs {
     /// PNG, JPEG, WebP, BMP, GIF, PNM, TIFF; or SVG, DXF, JSON, CSV with strokes to be taken as they are; - is
     /// standard input
-    #[arg(required_unless_present = "camera", conflicts_with = "camera")]
+    #[arg(required_unless_present_any = ["camera", "text"], conflicts_with_all = ["camera", "text"])]
     picture: Option<String>,
     #[command(flatten, next_help_heading = "Picture")]
     pub(crate) tracing: TracingArgs,
     #[command(flatten, next_help_heading = "Picture")]
     pub(crate) reading: ReadingArgs,
+    #[command(flatten, next_help_heading = "Picture")]
+    pub(crate) lettering: LetteringArgs,
     #[command(flatten, next_help_heading = "Size and place")]
     pub(crate) placement: PlacementArgs,
     #[command(flatten)]
@@ -137,6 +140,6 @@ impl TraceArgs {
 
     /// The picture's name, or the camera's.
     pub(crate) fn name(&self) -> &str {
-        self.picture.as_deref().or(self.eye.camera.as_deref()).unwrap_or_default()
+        self.picture.as_deref().or(self.lettering.name()).or(self.eye.camera.as_deref()).unwrap_or_default()
     }
 }

@@ -19,6 +19,7 @@ use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice, print_piece};
 use crate::cli::explain::meaning;
 use crate::cli::gcode::GcodeArgs;
+use crate::cli::lettering::LetteringArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
@@ -33,7 +34,7 @@ use crate::named;
 )]
 pub(crate) struct StrokesArgs {
     /// Pictures or drawings, or folders of pictures; - is standard input
-    #[arg(required = true, value_name = "PICTURE")]
+    #[arg(required_unless_present = "text", conflicts_with = "text", value_name = "PICTURE")]
     pictures: Vec<String>,
     /// Write the strokes here: .svg, .dxf, .gcode (GRBL laser) or .hpgl in true size, .ild (ILDA, scaled to the full coordinate range),
     /// .csv (metres), .json (pixels); a folder, with / at its end, for several pictures. Pictures already done in that folder are skipped
@@ -51,6 +52,8 @@ pub(crate) struct StrokesArgs {
     tracing: TracingArgs,
     #[command(flatten, next_help_heading = "Picture")]
     reading: ReadingArgs,
+    #[command(flatten, next_help_heading = "Picture")]
+    lettering: LetteringArgs,
     /// Include subfolders
     #[arg(help_heading = "Output", short, long)]
     recursive: bool,
@@ -73,6 +76,9 @@ fn svg_file(text: &str) -> Result<PathBuf, String> {
 
 pub(crate) fn run(args: &StrokesArgs, stop: &Stop) -> Result<Answer, Failure> {
     let options = args.reading.options()?;
+    if let Some(name) = args.lettering.name() {
+        return single(args, &options, name);
+    }
     match args.pictures.as_slice() {
         [only] if !stands_for_several(only) => single(args, &options, only),
         _ if args.stages.is_some() => {
@@ -157,6 +163,7 @@ fn made_with(args: &StrokesArgs, options: &ReadOptions) -> String {
     let StrokesArgs {
         tracing,
         placement,
+        lettering,
         reading: _, // as options, with what is in its fonts
         gcode,
         format: _,
@@ -170,7 +177,7 @@ fn made_with(args: &StrokesArgs, options: &ReadOptions) -> String {
     } = args;
     let version = env!("CARGO_PKG_VERSION");
     let format = extension(args);
-    format!("{version} {format} {tracing:?} {placement:?} {options:?} {gcode:?}")
+    format!("{version} {format} {tracing:?} {placement:?} {options:?} {gcode:?} {lettering:?}")
 }
 
 fn one(
@@ -179,7 +186,7 @@ fn one(
     picture: &str,
     path: Option<&Path>,
 ) -> Result<Finding, Failure> {
-    let source = named::drawing(picture, options)?;
+    let source = named::source(picture, options, &args.lettering)?;
     if let Some(path) = &args.stages {
         if path.as_path() == Path::new(picture) || args.out.as_deref() == Some(path) {
             let message =

@@ -172,7 +172,7 @@ fn wrong_flags_and_names_are_answered_with_what_to_type() {
             &["Either a PICTURE, or what a camera sees", "--camera sim:PICTURE"],
         ),
         (&["trace", "--camera", "sim", "examples/star.png"], &["Either a PICTURE, or what a camera sees"]),
-        (&["trace", "--text", "hello"], &["text is not drawn yet", "Object to Path"]),
+        (&["plan", "examples/star.png", "--text", "hello"], &["Either a picture, or the words of --text"]),
         (
             &["plan", "examples/star.png", "--rig", "reprot"],
             &["no preset (report, report-b, worn)", "did you mean report?"],

@@ -19,6 +19,8 @@ const PLATFORM: &str = "x86_64-unknown-linux-gnu";
 const OWN: [&str; 2] = ["MIT", "Apache-2.0"];
 /// Letters that a package carries, with a licence of their own.
 const FONTS: [(&str, &str); 1] = [("dejavu", "assets/dejavu-fonts-ttf-2.37/LICENSE")];
+/// Letters that are in the tree, with the licences of their own.
+const OWN_FONTS: &str = "crates/letters/fonts/LICENSE";
 const HEAD: &str = "\
 Tracelight is made with the packages below, each under its own licence, as it is built for Linux on x86-64; builds for other systems
 have a few more. Where a package leaves the choice, Tracelight takes MIT or Apache-2.0, whose texts are in LICENSE-MIT and
@@ -196,6 +198,7 @@ fn notice(metadata: &Metadata) -> String {
         }
     }
     all + &whole
+        + &titled("the single-line fonts in crates/letters/fonts", &words_of(&root().join(OWN_FONTS)))
 }
 
 fn titled(title: &str, text: &str) -> String {

@@ -43,6 +43,7 @@ mod readmes;
 mod reproduce;
 mod results;
 mod sets;
+mod several;
 mod simulate;
 mod sizes;
 mod standing;

@@ -55,7 +55,7 @@ const FLAGS: &[Row] = &[
     ("plan examples/star.png --width 24in --height 3m", 2, &["either --width or --height"]),
     ("examples/star.png --camera sim", 2, &["Either a PICTURE, or what a camera sees", "sim:PICTURE"]),
     ("trace examples/star.png --head x.toml", 2, &["--head", "give --camera"]),
-    ("trace --text hello", 2, &["text is not drawn yet", "Object to Path"]),
+    ("trace examples/star.png --text hello", 2, &["Either a picture, or the words of --text"]),
     ("trace examples/star.png --unit mm", 2, &["--width or --height set its size"]),
     ("trace --camera 0", 2, &["sim:PICTURE", "/dev/video0"]),
     ("trace --camera /dev/video97", 1, &["no such device", "tracelight doctor"]),

@@ -185,7 +185,7 @@ fn hints_are_about_what_the_model_holds() {
     let viewport = "0 VIEWPORT, 67 1, 10 5, 20 5";
     check(viewport, "no line, arc, polyline, ellipse or spline in its model");
     check(&format!("{viewport}, 0 3DSOLID, 1 x"), "solids or surfaces");
-    check(&format!("{viewport}, 0 MTEXT, 1 x"), "explode the text");
+    check(&format!("{viewport}, 0 RTEXT, 1 x"), "explode the text");
     check("0 XLINE, 10 0, 20 0, 11 1, 21 0", "without an end");
     check("0 IMAGE, 10 0, 20 0", "pictures");
     check("0 TOLERANCE, 10 0, 20 0, 0 CAMERA, 10 0", "lines and arcs (1 CAMERA, 1 TOLERANCE found)");

@@ -10,9 +10,9 @@ pub(crate) fn files() -> Vec<File> {
     vec![
         ("empty.dxf", vec![], Wrong),
         ("bare.dxf", file(""), Refused),
-        ("words.dxf", file("0\nTEXT\n1\nonly words\n"), Refused),
+        ("words.dxf", file("0\nATTDEF\n1\nonly words\n"), Refused),
         ("still.dxf", file("0\nCIRCLE\n10\n1\n20\n1\n40\n0\n"), Refused),
-        ("cut.dxf", format!("0\nSECTION\n2\nENTITIES\n{line}0\nLI").into(), Wrong),
+        ("cut.dxf", "0\nSECTION\n2\nENTITIES\n0\nLI".into(), Wrong),
         ("binary.dxf", b"AutoCAD Binary DXF\r\n\x1a\x00\x00\x00SECTION\x00".to_vec(), Wrong),
         ("plan.dwg", b"AC1032\x00\x00\x00\x00\x00".to_vec(), Wrong),
         ("codes.dxf", file("0\nLINE\nten\n0\n"), Wrong),

@@ -1,0 +1,90 @@
+//! Letters that a single-line face lacks, composed of what it has.
+
+use tracelight_stroke::{Affine, Vec2};
+use unicode_normalization::char::{decompose_canonical, decompose_compatible, is_combining_mark};
+
+use crate::drawn;
+use crate::glyph::Glyph;
+use crate::line_face::LineFace;
+use crate::marks::{Mark, Place, mark};
+
+/// Space between a letter and its marks, as a share of the height of capitals.
+const GAP: f64 = 0.10;
+
+/// A letter of a face: its own, drawn from its parts, or of a base and marks; `None` where it has not even the parts.
+pub(crate) fn glyph(face: &LineFace, letter: char) -> Option<Glyph> {
+    if let Some(own) = face.own(letter) {
+        return Some(own.clone());
+    }
+    if let Some(drawn) = drawn::letter(face, letter) {
+        return Some(drawn);
+    }
+    let mut parts = Vec::new();
+    decompose_canonical(letter, |part| parts.push(part));
+    let (&base, marks) = parts.split_first()?;
+    if base != letter {
+        return marked(face, base, marks);
+    }
+    similar(face, letter)
+}
+
+/// A base with its marks.
+pub(crate) fn marked(face: &LineFace, base: char, marks: &[char]) -> Option<Glyph> {
+    let is_above = |mark: &char| matches!(*mark, '\u{300}'..='\u{315}');
+    let mut all = match base {
+        'i' | 'j' if marks.iter().any(is_above) => drawn::without_dot(face, base)?,
+        _ => glyph(face, base)?,
+    };
+    for &combining in marks {
+        all = attached(face, all, &mark(combining, base, face.dot())?);
+    }
+    Some(all)
+}
+
+fn attached(face: &LineFace, letter: Glyph, mark: &Mark) -> Glyph {
+    let c = face.capital;
+    let Some(bounds) = letter.bounds() else { return letter };
+    let (upper, lower) = (bounds.y1 - 0.3 * bounds.height(), bounds.y0 + 0.12 * bounds.height());
+    let top = letter.above(upper).unwrap_or(bounds);
+    let foot = letter.below(lower).unwrap_or(bounds);
+    let at = match mark.place {
+        Place::Above => (top.center().x, bounds.y1 + GAP * c),
+        Place::Below => (foot.center().x, bounds.y0 - GAP * c),
+        Place::Foot => (foot.center().x, bounds.y0),
+        Place::RightFoot => right_foot(&letter, foot.x0 + 0.8 * foot.width(), lower),
+        Place::Beside => (top.x1 + 0.14 * c, bounds.y1),
+    };
+    let place = Affine::translate(Vec2::from(at)) * Affine::scale(c);
+    let wider = if mark.place == Place::Beside { 0.12 * c } else { 0.0 };
+    let advance = letter.advance + wider;
+    Glyph { advance, ..letter }.with(mark.paths.iter().map(|path| path.transformed(place)))
+}
+
+/// The point of a letter's foot that is nearest to `x`: what is joined there touches ink.
+fn right_foot(letter: &Glyph, x: f64, lower: f64) -> (f64, f64) {
+    let points = letter.points().filter(|point| point.y <= lower);
+    let nearest = points.min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()));
+    nearest.map_or((x, 0.0), |point| (point.x, point.y))
+}
+
+/// Something that reads alike: `…` as three dots, `ﬁ` as two letters, a non-breaking space as a space.
+fn similar(face: &LineFace, letter: char) -> Option<Glyph> {
+    let mut parts = Vec::new();
+    decompose_compatible(letter, |part| parts.push(part));
+    if parts == [letter] || parts.iter().any(|&part| is_combining_mark(part)) {
+        return None;
+    }
+    let mut all = Glyph::default();
+    for part in parts {
+        let own = face.own(part).cloned().or_else(|| drawn::letter(face, part))?;
+        all = beside(all, own);
+    }
+    Some(all)
+}
+
+/// One glyph and another after it.
+pub(crate) fn beside(first: Glyph, second: Glyph) -> Glyph {
+    let advance = first.advance + second.advance;
+    let moved = second.shifted(first.advance, 0.0);
+    Glyph { advance, ..first }.with(moved.paths)
+}
