@@ -119,6 +119,7 @@ fn padded(name: &str, width: usize) -> String {
 mod tests {
     use super::*;
     use crate::figures::{Figures, Unit};
+    use tracelight_task::Failure;
 
     fn done(picture: &str, kept: bool, doubt: Option<&str>) -> Row {
         let figures = Figures {

@@ -1,5 +1,7 @@
 //! Clip paths and masks of the resolved tree as gates of a scene.
 
+use std::collections::HashMap;
+
 use kurbo::Affine;
 use tracelight_stroke::{Path, Rect, Stroke};
 use usvg::FillRule;
@@ -21,7 +23,12 @@ pub(super) struct Made {
 pub(super) struct Gates<'a> {
     pub(super) scene: &'a mut Scene,
     pub(super) tolerance: f64,
+    /// Clip paths made already: many groups share one.
+    pub(super) made: &'a mut HashMap<Key, Number>,
 }
+
+/// A clip path of the tree, where it is, and the gate around it.
+pub(super) type Key = (usize, [u64; 6], Option<Number>);
 
 /// Where in a gate's own picture a node is.
 #[derive(Clone, Copy)]
@@ -40,6 +47,10 @@ impl Gates<'_> {
 
     /// A clip path of a group at `at`.
     pub(super) fn clip(&mut self, clip: &usvg::ClipPath, at: Affine, around: Option<Number>) -> Made {
+        let key = (std::ptr::from_ref(clip).addr(), at.as_coeffs().map(f64::to_bits), around);
+        if let Some(&gate) = self.made.get(&key) {
+            return Made { gate, outlines: Vec::new(), is_unknown: false };
+        }
         let mut outlines = Vec::new();
         let around = match clip.clip_path() {
             Some(outer) => {
@@ -54,6 +65,7 @@ impl Gates<'_> {
         self.clip_shapes(clip.root(), within, &mut regions, &mut outlines);
         let bounds = regions.iter().map(|(region, _)| region.bounds()).reduce(|a, b| a.union(b));
         let gate = self.add(GateKind::Clip(regions), bounds.unwrap_or(NOWHERE), around);
+        self.made.insert(key, gate);
         Made { gate, outlines, is_unknown: false }
     }
 

@@ -1,10 +1,12 @@
 //! The resolved tree as a scene: what it paints, in order, and the lines that could be drawn of it.
 
+use std::collections::HashMap;
+
 use kurbo::Affine;
 use tracelight_stroke::{Colour, Drawing, Path, Point, Rect, Stroke, StrokeKind};
 
 use super::dash::{Dashes, MAX_DASHES, dot, moved};
-use super::gates::Gates;
+use super::gates::{Gates, Key};
 use super::ink::{adds_only, colour_of, ink_of};
 use super::lines::{Drawn, Lines};
 use super::names::{Names, Place};
@@ -52,6 +54,7 @@ pub(super) struct Painter {
     elements: usize,
     dashed: usize,
     paths: u32,
+    clips: HashMap<Key, Number>,
     /// The mark that is paper if something is painted on it.
     paper: Option<Mark>,
 }
@@ -88,6 +91,7 @@ impl Painter {
             elements: 0,
             dashed: 0,
             paths: 0,
+            clips: HashMap::new(),
             paper: None,
         }
     }
@@ -123,7 +127,7 @@ impl Painter {
         let mut inner = Around { place: self.names.within(&around.place, group.id()), ..around };
         inner.opacity *= f64::from(group.opacity().get());
         let (is_crop, tolerance) = (self.view.crops, self.view.tolerance());
-        let mut gates = Gates { scene: &mut self.scene, tolerance };
+        let mut gates = Gates { scene: &mut self.scene, tolerance, made: &mut self.clips };
         inner.veil = gates.veil(group, inner.veil);
         let made = match is_crop && inner.opacity > NOTHING {
             true => gates.gates_of(group, affine(group.abs_transform()), inner.gate),

@@ -6,7 +6,7 @@ use usvg::roxmltree::{Document, Node};
 use super::lines::Lines;
 use super::names::Names;
 use super::paint::{Painter, do_bands_matter, page};
-use super::seen::{View, seen};
+use super::seen::{View, seen, work_of};
 use super::text::Fonts;
 use super::{guard, remarks};
 use crate::doubles::without_doubles;
@@ -70,7 +70,12 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     if !is_sound(Point::new(width, height)) {
         return Err(FormatError::Far { place: "size of the sheet".into(), x: width, y: height });
     }
-    let view = View { page: page(width, height), hides: options.hidden == Hidden::Cut, crops: options.crop };
+    let view = View {
+        page: page(width, height),
+        hides: options.hidden == Hidden::Cut,
+        crops: options.crop,
+        work: work_of(bytes.len()),
+    };
     let bands = view.hides && do_bands_matter(tree.root());
     let has_lines = kind(options, Letters::Outline)? == Kind::Line;
     let letters = has_lines.then(|| faces(options, Letters::Outline)).transpose()?.map(Lines::new);

@@ -45,6 +45,8 @@ pub(super) struct View {
     pub(super) hides: bool,
     /// Whether what lies off the page is cut.
     pub(super) crops: bool,
+    /// Edges and segments looked at, at most; see [`work_of`].
+    pub(super) work: usize,
 }
 
 /// What is seen, and what is not.
@@ -58,8 +60,16 @@ pub(super) struct Seen {
     pub(super) on_black: bool,
 }
 
-/// Edges and segments looked at, at most: well below a second.
+/// Edges and segments looked at, at most: of any file, for each of its bytes, and of the largest. A small file that is
+/// made to take long takes about a second and a half; what somebody drew takes some tens for a byte.
+const OWN_WORK: usize = 10_000_000;
+const WORK_A_BYTE: usize = 30;
 const MAX_WORK: usize = 60_000_000;
+
+/// How much may be looked at of a file of so many bytes.
+pub(super) fn work_of(bytes: usize) -> usize {
+    bytes.saturating_mul(WORK_A_BYTE).saturating_add(OWN_WORK).min(MAX_WORK)
+}
 
 /// Distance from which lines are looked at, as a share of the page's diagonal, and at most, px.
 const ASIDE: f64 = 1e-4;
@@ -109,11 +119,12 @@ fn look(scene: &Scene, view: View, paper: Rgb) -> Seen {
     let judge = Judge { picture: &picture, aside, crops: view.crops };
     let mut work = 0;
     for mark in &scene.marks {
-        if work > MAX_WORK {
+        let judged = judged(&judge, &edges, mark, view.tolerance(), view.work.saturating_sub(work));
+        let Some(judged) = judged else {
+            work = view.work;
             seen.leave(mark);
             continue;
-        }
-        let judged = judged(&judge, &edges, mark, view.tolerance());
+        };
         work += judged.work;
         seen.unseen.extend(judged.unseen);
         seen.strokes

@@ -31,28 +31,35 @@ pub(crate) struct Judged {
 }
 
 /// Judges a line all along; its chords lie within `tolerance` of it.
-pub(crate) fn judged(judge: &Judge, edges: &Edges, mark: &Mark, tolerance: f64) -> Judged {
+/// `None` if that takes more work than is left.
+pub(crate) fn judged(
+    judge: &Judge,
+    edges: &Edges,
+    mark: &Mark,
+    tolerance: f64,
+    left: usize,
+) -> Option<Judged> {
     let corners = chords(&mark.stroke.path, tolerance);
     let before = judge.picture.work.get();
-    let (runs, met) = runs(judge, edges, mark, &corners);
+    let (runs, met) = runs(judge, edges, mark, &corners, before.saturating_add(left))?;
     let least = LEAST * judge.aside;
     let runs = smoothed(runs, least, mark.stroke.path.is_closed());
     let mut judged = Judged { seen: Vec::new(), unseen: Vec::new(), work: met };
-    let mut left: Vec<Number> = Vec::new();
+    let mut items: Vec<Number> = Vec::new();
     for run in &runs {
         match run.verdict {
-            Verdict::Seen(item) if !left.contains(&item) => left.push(item),
+            Verdict::Seen(item) if !items.contains(&item) => items.push(item),
             Verdict::Unseen(Some(reason)) => judged.unseen.push((reason, run.length())),
             _ => {}
         }
     }
-    for item in left {
+    for item in items {
         let own = runs.iter().filter(|run| run.verdict == Verdict::Seen(item));
         let spans = spans(&corners, own.flat_map(|run| &run.stretches));
         judged.seen.extend(parts(&mark.stroke.path, &spans).into_iter().map(|path| (path, item)));
     }
     judged.work += judge.picture.work.get() - before;
-    judged
+    Some(judged)
 }
 
 /// Stretches that follow each other and share a verdict.
@@ -67,7 +74,13 @@ impl Run {
     }
 }
 
-fn runs(judge: &Judge, edges: &Edges, mark: &Mark, corners: &[Corner]) -> (Vec<Run>, usize) {
+fn runs(
+    judge: &Judge,
+    edges: &Edges,
+    mark: &Mark,
+    corners: &[Corner],
+    most: usize,
+) -> Option<(Vec<Run>, usize)> {
     let own = Own(mark.kind, mark.item);
     let counts = |owner: Owner| does_count(judge, mark, owner);
     let (mut runs, mut pending, mut work): (Vec<Run>, Vec<Stretch>, usize) = (Vec::new(), Vec::new(), 0);
@@ -93,6 +106,9 @@ fn runs(judge: &Judge, edges: &Edges, mark: &Mark, corners: &[Corner]) -> (Vec<R
         let length = ends[0].distance(ends[1]);
         let (met, looked) = edges.met(ends, own, &counts);
         work += looked;
+        if work.saturating_add(judge.picture.work.get()) > most {
+            return None;
+        }
         let mut from = 0.0;
         for to in met {
             if to > from {
@@ -106,7 +122,7 @@ fn runs(judge: &Judge, edges: &Edges, mark: &Mark, corners: &[Corner]) -> (Vec<R
         }
     }
     end(&mut pending);
-    (runs, work)
+    Some((runs, work))
 }
 
 /// Whether what owns an edge could change the verdict on a line.

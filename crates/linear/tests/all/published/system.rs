@@ -122,10 +122,10 @@ pub(super) fn numbers(text: &str) -> Vec<Complex> {
     let number = |word: &str| {
         let Some(both) = word.strip_suffix('j') else { return Complex::from(word.parse::<f64>().unwrap()) };
         // the sign between the parts, not one of an exponent
-        let signs = both
+        let mut signs = both
             .char_indices()
             .filter(|(at, c)| matches!(c, '+' | '-') && *at > 0 && !both[..*at].ends_with(['e', 'E']));
-        match signs.last() {
+        match signs.next_back() {
             Some((at, _)) => Complex::new(both[..at].parse().unwrap(), both[at..].parse().unwrap()),
             None => Complex::new(0.0, both.parse().unwrap()),
         }
