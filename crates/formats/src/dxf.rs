@@ -23,6 +23,7 @@ mod header;
 mod join;
 mod leader;
 mod linetype;
+mod look;
 mod mesh;
 mod mtext;
 mod pattern;
@@ -33,6 +34,7 @@ mod scene;
 mod sheet;
 mod skipped;
 mod spline;
+mod styles;
 mod text;
 mod write;
 

@@ -4,12 +4,34 @@ use tracelight_stroke::{Affine, Vec2};
 use unicode_normalization::char::{decompose_canonical, decompose_compatible, is_combining_mark};
 
 use crate::drawn;
-use crate::glyph::Glyph;
+use crate::glyph::{Glyph, beside};
+use crate::letter::Letter;
 use crate::line_face::LineFace;
 use crate::marks::{Mark, Place, mark};
 
 /// Space between a letter and its marks, as a share of the height of capitals.
 const GAP: f64 = 0.10;
+
+/// The letter that a text begins with, how many characters of it that is, and the character before kerning is asked for; `None`
+/// where the face has no such letter.
+pub(crate) fn letter(face: &LineFace, text: &[char], before: Option<char>) -> Option<(Letter, f64)> {
+    let &first = text.first()?;
+    let kern = before.and_then(|before| face.kerns.get(&(before, first))).copied().unwrap_or(0.0);
+    let (glyph, chars) = face.longest_own(text).map_or_else(|| composed(face, text), Some)?;
+    let has_outlines = face.has_outlines;
+    Some((Letter { at: 0.0, chars, advance: glyph.advance, paths: glyph.paths, has_outlines }, kern))
+}
+
+fn composed(face: &LineFace, text: &[char]) -> Option<(Glyph, usize)> {
+    const MOST_MARKS: usize = 4;
+    let marks = text[1..].iter().take_while(|c| is_combining_mark(**c)).count();
+    let all = &text[1..=marks];
+    let glyph = match all {
+        [] => glyph(face, text[0]),
+        marks => marked(face, text[0], &marks[..marks.len().min(MOST_MARKS)]),
+    };
+    glyph.map(|glyph| (glyph, 1 + marks))
+}
 
 /// A letter of a face: its own, drawn from its parts, or of a base and marks; `None` where it has not even the parts.
 pub(crate) fn glyph(face: &LineFace, letter: char) -> Option<Glyph> {
@@ -80,11 +102,4 @@ fn similar(face: &LineFace, letter: char) -> Option<Glyph> {
         all = beside(all, own);
     }
     Some(all)
-}
-
-/// One glyph and another after it.
-pub(crate) fn beside(first: Glyph, second: Glyph) -> Glyph {
-    let advance = first.advance + second.advance;
-    let moved = second.shifted(first.advance, 0.0);
-    Glyph { advance, ..first }.with(moved.paths)
 }

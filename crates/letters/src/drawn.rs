@@ -2,8 +2,7 @@
 
 use tracelight_stroke::{Affine, Path, Rect};
 
-use crate::composed::beside;
-use crate::glyph::{Glyph, curve, line};
+use crate::glyph::{Glyph, beside, curve, line};
 use crate::line_face::LineFace;
 use crate::marks::{HALF_TURN, ring, tick};
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use unicode_normalization::UnicodeNormalization;
 
+use crate::composed::letter;
 use crate::error::LettersError;
 use crate::letter::Letter;
 use crate::line_face::LineFace;
@@ -74,7 +75,7 @@ pub fn kind_of(name: &str, bytes: &Arc<[u8]>) -> Result<Kind, LettersError> {
 /// A line of text in its faces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
-    /// In the order of the pen.
+    /// Its letters, in the order of the pen.
     pub letters: Vec<Letter>,
     /// Of the whole line, em.
     pub advance: f64,
@@ -171,7 +172,7 @@ impl Faces {
 
 fn set_line(face: &LineFace, text: &[char], at: usize, run: &mut Run) -> usize {
     let before = at.checked_sub(1).map(|before| text[before]);
-    let Some((mut letter, kern)) = face.letter(&text[at..], before) else { return 0 };
+    let Some((mut letter, kern)) = letter(face, &text[at..], before) else { return 0 };
     letter.at = run.advance - kern;
     run.advance = letter.at + letter.advance;
     let chars = letter.chars;

@@ -68,3 +68,10 @@ pub(crate) fn curve([from, c1, c2, to]: [(f64, f64); 4]) -> Path {
     path.push(tracelight_stroke::Element::Cubic { c1: c1.into(), c2: c2.into(), to: to.into() });
     path
 }
+
+/// One glyph and another after it.
+pub(crate) fn beside(first: Glyph, second: Glyph) -> Glyph {
+    let advance = first.advance + second.advance;
+    let moved = second.shifted(first.advance, 0.0);
+    Glyph { advance, ..first }.with(moved.paths)
+}

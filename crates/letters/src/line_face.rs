@@ -4,16 +4,14 @@ use std::collections::{BTreeMap, HashMap};
 
 use unicode_normalization::char::is_combining_mark;
 
-use crate::composed;
 use crate::error::LettersError;
 use crate::glyph::{Glyph, line};
-use crate::letter::Letter;
 use crate::svg_font::SvgFont;
 
 /// A face of an SVG font.
 pub(crate) struct LineFace {
     glyphs: BTreeMap<String, Glyph>,
-    kerns: HashMap<(char, char), f64>,
+    pub(crate) kerns: HashMap<(char, char), f64>,
     longest: usize,
     /// The edges of letters, not their strokes.
     pub(crate) has_outlines: bool,
@@ -53,17 +51,8 @@ impl LineFace {
         &self.dot
     }
 
-    /// The letter that a text begins with, how many characters of it that is, and the character before kerning is asked for; `None`
-    /// where the face has no such letter.
-    pub(crate) fn letter(&self, text: &[char], before: Option<char>) -> Option<(Letter, f64)> {
-        let &first = text.first()?;
-        let kern = before.and_then(|before| self.kerns.get(&(before, first))).copied().unwrap_or(0.0);
-        let (glyph, chars) = self.longest_own(text).map_or_else(|| self.composed(text), Some)?;
-        let has_outlines = self.has_outlines;
-        Some((Letter { at: 0.0, chars, advance: glyph.advance, paths: glyph.paths, has_outlines }, kern))
-    }
-
-    fn longest_own(&self, text: &[char]) -> Option<(Glyph, usize)> {
+    /// The longest glyph of the font's own that a text begins with, and how many characters of it that is.
+    pub(crate) fn longest_own(&self, text: &[char]) -> Option<(Glyph, usize)> {
         let marks = text[1..].iter().take_while(|c| is_combining_mark(**c)).count();
         let ligature = (2..=self.longest.min(text.len())).rev().find_map(|chars| {
             let glyph = self.glyphs.get(&text[..chars].iter().collect::<String>())?;
@@ -71,17 +60,6 @@ impl LineFace {
         });
         let single = || self.own(text[0]).filter(|_| marks == 0).map(|glyph| (glyph.clone(), 1));
         ligature.or_else(single)
-    }
-
-    fn composed(&self, text: &[char]) -> Option<(Glyph, usize)> {
-        const MOST_MARKS: usize = 4;
-        let marks = text[1..].iter().take_while(|c| is_combining_mark(**c)).count();
-        let all = &text[1..=marks];
-        let glyph = match all {
-            [] => composed::glyph(self, text[0]),
-            marks => composed::marked(self, text[0], &marks[..marks.len().min(MOST_MARKS)]),
-        };
-        glyph.map(|glyph| (glyph, 1 + marks))
     }
 }
 

@@ -5,7 +5,7 @@ use tracelight_stroke::{Affine, Vec2};
 
 use super::codes;
 use super::groups::Record;
-use super::text::{Styles, slanted};
+use super::styles::{Styles, slanted};
 use crate::FormatError;
 
 /// What an MTEXT says of its place and form.

@@ -4,8 +4,8 @@ use tracelight_stroke::{Affine, Element, Path, Point};
 
 use super::curves::{moved, world_from_plane};
 use super::groups::Record;
+use super::look::Look;
 use super::mesh::{edges, grid};
-use super::scene::Look;
 use crate::FormatError;
 use crate::circular::{arc_between, sweep_of_bulge};
 use crate::pen::Pen;

@@ -7,9 +7,10 @@ use super::entities::{Around, Entities};
 use super::groups::Record;
 use super::header::Header;
 use super::join::joined;
+use super::look::Layers;
 use super::pattern;
 use super::records::{Cut, Records};
-use super::scene::{Block, Item, Layers, Scene};
+use super::scene::{Block, Item, Scene};
 use super::sheet::{Unit, sheet};
 use super::skipped::Skipped;
 use super::text;
@@ -76,7 +77,7 @@ fn set_texts(scene: &mut Scene, header: Header, options: &ReadOptions) -> Result
     let Scene { model, layout, blocks, styles, .. } = scene;
     let spaces = model.items.iter_mut().chain(&mut layout.items);
     let blocks = blocks.values_mut().flat_map(|block| &mut block.items);
-    let mut texts = spaces.chain(blocks).filter(|item| matches!(item, Item::Text(_))).peekable();
+    let mut texts = spaces.chain(blocks).filter_map(Item::text).peekable();
     if texts.peek().is_none() {
         return Ok(Vec::new());
     }

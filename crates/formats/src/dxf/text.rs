@@ -1,17 +1,18 @@
 //! Text of a DXF: TEXT, ATTRIB and MTEXT as paths.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 use encoding_rs::Encoding;
 use tracelight_letters::{Faces, Run};
-use tracelight_maths::{hypot, planar, tan};
+use tracelight_maths::{hypot, planar};
 use tracelight_stroke::{Affine, Point, Vec2};
 
 use super::codes;
 use super::curves::world_from_plane;
 use super::groups::{Group, Record};
+use super::look::{Look, Shape};
 use super::mtext;
-use super::scene::{Item, Look, Shape};
+use super::styles::{Styles, slanted, width_factor};
 use crate::FormatError;
 
 /// Characters of one text at most.
@@ -55,32 +56,6 @@ struct LineText {
     oblique_rad: f64,
     is_backward: bool,
     is_upside_down: bool,
-}
-
-/// Forms of text that MTEXT refers to: width factor and slant, by the style's name.
-#[derive(Debug, Default)]
-pub(super) struct Styles(HashMap<String, (f64, f64)>);
-
-impl Styles {
-    /// Takes a record STYLE of the table.
-    ///
-    /// # Errors
-    /// A factor or angle that is no number.
-    pub(super) fn declare(&mut self, record: &Record) -> Result<(), FormatError> {
-        let form = (width_factor(record)?, record.number_or(50, 0.0)?.to_radians());
-        self.0.insert(record.key(2), form);
-        Ok(())
-    }
-
-    pub(super) fn get(&self, key: &str) -> (f64, f64) {
-        self.0.get(key).copied().unwrap_or((1.0, 0.0))
-    }
-}
-
-/// A factor of width; what cannot be one is 1.
-fn width_factor(record: &Record) -> Result<f64, FormatError> {
-    let factor = record.number_or(41, 1.0)?;
-    Ok(if factor > 0.0 { factor } else { 1.0 })
 }
 
 impl Text {
@@ -225,12 +200,6 @@ impl LineText {
     }
 }
 
-/// Leaning to the right.
-pub(super) fn slanted(angle_rad: f64) -> Affine {
-    const MOST_RAD: f64 = 1.4; // beyond, a line of text is as flat as a line
-    Affine::new([1.0, 0.0, tan(angle_rad.clamp(-MOST_RAD, MOST_RAD)), 1.0, 0.0, 0.0])
-}
-
 fn too_long(found: usize) -> FormatError {
     FormatError::TooLarge { what: "DXF's text", found, unit: "characters", limit: MAX_CHARACTERS }
 }
@@ -249,17 +218,16 @@ impl Said {
     }
 }
 
-/// Sets every text of some items.
+/// Sets texts.
 ///
 /// # Errors
 /// Letters of more lines than are read.
 pub(super) fn set_all<'a>(
-    items: impl Iterator<Item = &'a mut Item>,
+    texts: impl Iterator<Item = &'a mut Text>,
     setting: &Setting,
 ) -> Result<Said, FormatError> {
     let (mut said, mut elements) = (Said::default(), 0);
-    for item in items {
-        let Item::Text(text) = item else { continue };
+    for text in texts {
         text.set(&setting.faces, setting.styles, setting.encoding, &mut said);
         let cost = |shape: &Shape| shape.path.elements().len().max(super::LEAST_ELEMENTS);
         elements += text.shapes.iter().map(cost).sum::<usize>();

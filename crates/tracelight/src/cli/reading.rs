@@ -129,7 +129,7 @@ impl ReadingArgs {
                 LettersName::Line => Letters::Line,
                 LettersName::Outline => Letters::Outline,
             }),
-            fonts: self.font.iter().map(font).collect::<Result<_, Failure>>()?,
+            fonts: self.font.iter().map(|name| font(name)).collect::<Result<_, Failure>>()?,
         })
     }
 }
@@ -156,13 +156,13 @@ impl UnitName {
 }
 
 /// A font in the program, or in a file, which must be one.
-fn font(name: &String) -> Result<Font, Failure> {
+fn font(name: &str) -> Result<Font, Failure> {
     let bytes: Arc<[u8]> = match bundled(name) {
         Some(bytes) => bytes.into(),
         None => files::read(name)?.into(),
     };
     kind_of(name, &bytes).map_err(|e| Failure::usage("malformed", e.to_string()))?;
-    Ok(Font { name: name.clone(), bytes })
+    Ok(Font { name: name.to_owned(), bytes })
 }
 
 /// The one unit of its kind, if there is any.

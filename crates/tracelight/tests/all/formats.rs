@@ -30,7 +30,7 @@ fn written(folder: &Path, name: &str, more: &[&str]) -> String {
 fn layers_and_colours_choose_what_is_traced() {
     let (all, said) = strokes(&[PLATE]);
     assert_eq!(count(&all), 8);
-    assert!(said.contains("convert it to paths"), "{said}");
+    assert!(said.contains("trace their own files"), "{said}");
     assert_eq!(all["strokes"][0]["layer"], "Cut & drill");
     assert_eq!(all["strokes"][0]["colour"], "#ff0000");
     let check =
