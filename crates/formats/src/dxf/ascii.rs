@@ -8,7 +8,7 @@ pub(super) struct Lines<'a> {
     rest: &'a [u8],
     end_of_line: u8,
     line: u32,
-    /// That all its numbers have a comma before their decimals.
+    /// Whether all its numbers have a comma before their decimals.
     has_commas: bool,
 }
 

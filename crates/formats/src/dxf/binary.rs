@@ -12,7 +12,7 @@ pub(super) struct Typed<'a> {
     rest: &'a [u8],
     /// Length of the file, bytes, the sentinel with it.
     length: usize,
-    /// That codes take two bytes, as from release 13 on.
+    /// Whether codes take two bytes, as from release 13 on.
     is_wide: bool,
 }
 

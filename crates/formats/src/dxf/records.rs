@@ -10,7 +10,7 @@ pub(super) struct Records<'a> {
     groups: Groups<'a>,
     /// The group of code 0 that ended the record before.
     next: Option<Group<'a>>,
-    /// That the file ended before its EOF.
+    /// How the file ended before its EOF, if it did.
     cut: Option<Cut>,
 }
 

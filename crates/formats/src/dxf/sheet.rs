@@ -53,7 +53,7 @@ impl Unit {
         }
     }
 
-    /// That the unit is a guess, and what it makes of a drawing of that size in units.
+    /// Says that the unit is a guess, and what it makes of a drawing of that size in units.
     fn remark(self, size: [f64; 2]) -> Option<String> {
         (self == Self::Guessed).then(|| {
             let size = lengths(size.map(|s| s * self.metres()));

@@ -5,7 +5,7 @@ use tracelight_experiment::plant_file::{PlantFile, read};
 use tracelight_experiment::table::Log;
 use tracelight_linear::Time;
 
-use crate::support::{folder, lab, near, root, run};
+use crate::support::{folder, lab, near, run};
 
 /// To the last digit the report printed.
 fn printed_as(value: &Value, digits: &[f64], places: &[i32]) {

@@ -1,6 +1,6 @@
 //! Systems of several inputs and outputs, and controllers for several systems, from the command line.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::support::{folder, lab, near, root, run};
 

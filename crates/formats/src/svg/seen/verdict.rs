@@ -9,7 +9,7 @@ use super::scene::{GateKind, Ink, Item, Mark, MarkKind, Number};
 /// Why something is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Reason {
-    /// It is the paper.
+    /// Paper: a white rectangle behind everything.
     Paper,
     /// Opacity 0.
     Invisible,
@@ -23,7 +23,7 @@ pub(crate) enum Reason {
     Masked,
     /// Below something opaque.
     Covered,
-    /// The same colour on both sides.
+    /// One colour on both sides.
     OneColour,
     /// The edge of something painted above runs here too.
     Again,
@@ -52,7 +52,7 @@ const WIDE: f64 = 4.0;
 /// Looks at a line from a small distance on both sides.
 pub(crate) struct Judge<'a> {
     pub(crate) picture: &'a Picture<'a>,
-    /// That distance.
+    /// Distance from the line, in the drawing's unit.
     pub(crate) aside: f64,
     /// Whether what lies off the page and outside clip paths is cut.
     pub(crate) crops: bool,
