@@ -103,8 +103,10 @@ impl Disk {
 }
 
 fn gains(margin: &DiskMargin) -> String {
+    /// Factors beyond this are rounding of none at all: margins are known to some ten digits.
+    const BOUNDLESS: f64 = 1e9;
     let (low, high) = margin.gain;
-    match (low > 0.0, high.is_finite()) {
+    match (low > 1.0 / BOUNDLESS, high < BOUNDLESS) {
         (false, false) => "any".to_owned(),
         (false, true) => format!("up to {}", four(decibels(high))),
         (true, false) => format!("from {} up", four(decibels(low))),
