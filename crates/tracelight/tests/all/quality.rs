@@ -138,7 +138,7 @@ fn a_pictures_way_to_ink_can_be_looked_at() {
     let drawing = dir.join("line.svg").to_str().unwrap().to_owned();
     std::fs::write(
         &drawing,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9mm\" height=\"9mm\" viewBox=\"0 0 9 9\"><path d=\"M1 1L8 8\"/></svg>",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9mm\" height=\"9mm\" viewBox=\"0 0 9 9\"><path d=\"M1 1L8 8\" stroke=\"#000\"/></svg>",
     )
     .unwrap();
     for (pictures, what) in [
