@@ -71,7 +71,7 @@ impl Around {
             None => Named::measured(name.clone(), self.measured(member).map_err(failed)?, colour),
             Some(of) => function(of.function(member), name.clone(), self.open.late.as_ref(), colour)?,
         };
-        Ok(Named { opened: Some(Box::new(copy(&self.open))), ..named })
+        Ok(Named { opened: Some(Box::new(self.open.clone())), ..named })
     }
 
     /// The value of a member where the open loop and what stands before it are known.
@@ -161,19 +161,5 @@ pub(crate) fn negated(named: Named) -> Result<Named, Failure> {
             let system = late(name, named.delayed().scaled(-1.0), order, named.colour)?;
             Ok(Named { is_positive: true, ..system })
         }
-    }
-}
-
-/// An open loop once more.
-fn copy(open: &Named) -> Named {
-    Named {
-        name: open.name.clone(),
-        system: open.system.clone(),
-        late: open.late.clone(),
-        data: open.data.clone(),
-        unstable: open.unstable,
-        opened: None,
-        is_positive: open.is_positive,
-        colour: open.colour,
     }
 }

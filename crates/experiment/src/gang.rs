@@ -91,12 +91,12 @@ impl Request {
         let systems = &self.plants.systems;
         let mut loops = Vec::new();
         for formula in &self.controllers {
-            let controllers = || systems.controllers(std::slice::from_ref(formula));
-            for plant in systems.beside(controllers()?.iter())? {
-                let controller = controllers()?.into_iter().next();
-                let Some(controller) = controller else { continue };
+            let controllers = systems.controllers(std::slice::from_ref(formula))?;
+            let plants = systems.beside(controllers.iter())?;
+            let Some(controller) = controllers.into_iter().next() else { continue };
+            for plant in plants {
                 let name = format!("{} with {}", plant.name, formula.trim());
-                loops.push(Around::new(plant, controller, name, systems.positive)?);
+                loops.push(Around::new(plant, controller.clone(), name, systems.positive)?);
             }
         }
         Ok(loops)

@@ -14,6 +14,7 @@ use crate::numbers::four;
 use crate::system_json::system_json;
 
 /// A system and what it is called.
+#[derive(Clone)]
 pub(crate) struct Named {
     /// As typed, and what was made of it.
     pub(crate) name: String,

@@ -45,6 +45,7 @@ mod unpacked;
 
 pub use error::FormatError;
 pub use limit::{MAX_BYTES, MAX_COORDINATE};
+pub use number::fixed;
 pub use options::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
 use tracelight_stroke::{Colour, Drawing, Point};
 pub use unpacked::{head, unpacked};

@@ -1,4 +1,5 @@
-//! Parts of paths between parameters of their own elements, so that arcs stay arcs and lines lines.
+//! Parts of paths between parameters of their own elements, or between lengths from their start, so that arcs stay arcs
+//! and lines lines.
 
 use kurbo::{CubicBez, ParamCurve};
 use tracelight_stroke::{Element, Path, Piece};
@@ -76,6 +77,55 @@ fn follows(before: &Span, span: &Span, elements: usize, round: bool) -> bool {
     let is_next = next == span.element || (round && next == elements && span.element == 0);
     (is_next && before.to >= 1.0 && span.from <= 0.0)
         || (before.element == span.element && before.to == span.from)
+}
+
+/// A path with the lengths of its pieces.
+pub(crate) struct Measured {
+    pieces: Vec<(Piece, f64)>,
+    tolerance: f64,
+}
+
+impl Measured {
+    /// The path, its lengths to a tolerance.
+    pub(crate) fn of(path: &Path, tolerance: f64) -> Self {
+        Self { pieces: path.pieces().map(|piece| (piece, piece.length(tolerance))).collect(), tolerance }
+    }
+
+    /// Length of all of it.
+    pub(crate) fn length(&self) -> f64 {
+        self.pieces.iter().map(|(_, length)| length).sum()
+    }
+
+    /// The parts of the path between lengths from its start, which rise.
+    pub(crate) fn stretches(&self, spans: &[[f64; 2]]) -> Vec<Path> {
+        let mut rest = self.pieces.as_slice();
+        let mut before = 0.0;
+        let mut parts = Vec::new();
+        for &[from, to] in spans {
+            while let Some((&(_, length), after)) =
+                rest.split_first().filter(|(own, _)| before + own.1 <= from)
+            {
+                before += length;
+                rest = after;
+            }
+            let mut path: Option<Path> = None;
+            let mut passed = before;
+            for &(piece, length) in rest {
+                let [start, end] = [from, to].map(|s| (s - passed).clamp(0.0, length));
+                if start < end {
+                    let is_whole = start == 0.0 && end == length;
+                    let own = if is_whole { piece } else { piece.part(start, end, self.tolerance) };
+                    path.get_or_insert_with(|| Path::new(own.from)).push(own.element);
+                }
+                passed += length;
+                if passed >= to {
+                    break;
+                }
+            }
+            parts.extend(path);
+        }
+        parts
+    }
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ mod feedback;
 mod formula;
 mod frequency;
 mod frequency_data;
+mod golden;
 mod locus;
 mod margins;
 mod mimo;

@@ -6,6 +6,7 @@
 
 use std::fmt::Write;
 
+use tracelight_formats::fixed;
 use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
 use tracelight_stroke::Point;
 use tracelight_trajectory::{Plan, PlanPoint};
@@ -84,13 +85,13 @@ pub fn head_gcode(plan: &Plan, spot: &dyn Fn(PanTilt<f64>) -> Option<Point>, how
     for chord in &chords {
         let next = how.place(&plan.points[chord.to]);
         let s = chord.ticks as f64 * TICK_F64_S;
-        let wanted = if chord.lit { format!(" S{}", trimmed(how.power, 3)) } else { " S0".to_owned() };
+        let wanted = if chord.lit { format!(" S{}", fixed(how.power, 3)) } else { " S0".to_owned() };
         let word = if wanted == power { String::new() } else { wanted.clone() };
         if next == place {
             // a board forgets moves that lead nowhere, and their time
-            let _ = writeln!(text, "G4 P{}{word}", trimmed(s, 3));
+            let _ = writeln!(text, "G4 P{}{word}", fixed(s, 3));
         } else {
-            let _ = writeln!(text, "G1 {next} F{}{word}", trimmed(60.0 / s, 4));
+            let _ = writeln!(text, "G1 {next} F{}{word}", fixed(60.0 / s, 4));
         }
         power = wanted;
         place = next;
@@ -111,8 +112,8 @@ fn header(plan: &Plan, how: &HeadGcode) -> String {
         let acceleration = most(&|p| p.joints[joint].acceleration_rad_s2.abs()) * per_rad;
         format!(
             "; {joint} needs {} {unit}/min and {} {unit}/s^2",
-            trimmed(speed.ceil(), 0),
-            trimmed(acceleration.ceil(), 0)
+            fixed(speed.ceil(), 0),
+            fixed(acceleration.ceil(), 0)
         )
     };
     format!(
@@ -123,8 +124,8 @@ fn header(plan: &Plan, how: &HeadGcode) -> String {
          G21 G90 G17\nM5\nM4 S0\n",
         axis(Joint::Pan),
         axis(Joint::Tilt),
-        trimmed(plan.duration_s(), 3),
-        trimmed(how.power, 3),
+        fixed(plan.duration_s(), 3),
+        fixed(how.power, 3),
         needs(Joint::Pan),
         needs(Joint::Tilt),
     )
@@ -152,19 +153,12 @@ impl HeadGcode {
             .map(|joint| {
                 let BoardAxis { letter, reversed } = self.axes[joint];
                 let angle = point.joints[joint].position_rad * per_rad;
-                format!("{letter}{}", trimmed(if reversed { -angle } else { angle }, decimals))
+                format!("{letter}{}", fixed(if reversed { -angle } else { angle }, decimals))
             })
             .into();
         words.sort();
         words.join(" ")
     }
-}
-
-/// A number with so many decimals at most, without `-0`.
-fn trimmed(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 fn chords(

@@ -5,6 +5,8 @@ use tracelight_rig::TICK_F64_S;
 use tracelight_stroke::{Drawing, Point};
 use tracelight_trajectory::Plan;
 
+use crate::summary::round;
+
 /// A stroke as it is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DrawnStroke {
@@ -39,25 +41,20 @@ pub fn sequence(drawing: &Drawing, plan: &Plan) -> Vec<DrawnStroke> {
         }
     }
     let seconds = |tick: usize| (tick as f64 * TICK_F64_S * 1e3).round() / 1e3;
-    let place = |p: Point| [rounded(p.x), rounded(p.y)];
+    let place = |p: Point| [round(p.x), round(p.y)];
     let strokes = drawing.strokes.iter().zip(lit).enumerate();
     strokes
         .map(|(i, (stroke, lit))| DrawnStroke {
             number: i + 1,
             layer: stroke.layer.as_deref().map(str::to_owned),
             colour: stroke.colour.map(|colour| colour.to_string()),
-            length_m: rounded(stroke.path.length(LENGTH_TOLERANCE_M)),
+            length_m: round(stroke.path.length(LENGTH_TOLERANCE_M)),
             from_m: place(stroke.path.start()),
             to_m: place(stroke.path.end()),
             lit_from_s: lit.map(|(first, _)| seconds(first)),
             lit_to_s: lit.map(|(_, last)| seconds(last)),
         })
         .collect()
-}
-
-/// To a micrometre.
-fn rounded(m: f64) -> f64 {
-    (m * 1e6).round() / 1e6
 }
 
 #[cfg(test)]

@@ -281,7 +281,7 @@ fn tracking(job: &Finished<'_>) -> TrackingFigures {
 }
 
 /// Six decimals: a micrometre, a nanometre in mm, a microsecond.
-fn round(value: f64) -> f64 {
+pub(crate) fn round(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
 

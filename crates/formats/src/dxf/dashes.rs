@@ -1,6 +1,8 @@
 //! Paths cut into the dashes of a linetype.
 
-use tracelight_stroke::{Path, Piece};
+use tracelight_stroke::Path;
+
+use crate::parts::Measured;
 
 /// Dashes of one path at most; a line of more is drawn whole.
 const MOST_DASHES: f64 = 5_000.0;
@@ -29,8 +31,8 @@ pub(super) fn dashed(path: &Path, lengths: &[f64], scale: f64) -> Dashed {
         return Dashed::Whole;
     }
     let tolerance = TOLERANCE * period;
-    let pieces: Vec<(Piece, f64)> = path.pieces().map(|p| (p, p.length(tolerance))).collect();
-    let length: f64 = pieces.iter().map(|(_, length)| length).sum();
+    let measured = Measured::of(path, tolerance);
+    let length = measured.length();
     let times = (length / period).floor();
     if times < 1.0 {
         return Dashed::Whole;
@@ -39,7 +41,7 @@ pub(super) fn dashed(path: &Path, lengths: &[f64], scale: f64) -> Dashed {
     if times * lit as f64 > MOST_DASHES {
         return Dashed::TooFine;
     }
-    Dashed::Parts(parts(&pieces, &spans(lengths, scale, [length, period]), tolerance))
+    Dashed::Parts(measured.stretches(&spans(lengths, scale, [length, period])))
 }
 
 /// Where the dashes begin and end along a path of a length.
@@ -67,35 +69,6 @@ fn spans(lengths: &[f64], scale: f64, [length, period]: [f64; 2]) -> Vec<[f64; 2
         }
     }
     spans
-}
-
-/// The parts of a path between lengths from its start, which rise.
-fn parts(pieces: &[(Piece, f64)], spans: &[[f64; 2]], tolerance: f64) -> Vec<Path> {
-    let mut rest = pieces;
-    let mut before = 0.0;
-    let mut parts = Vec::new();
-    for &[from, to] in spans {
-        while let Some((&(_, length), after)) = rest.split_first().filter(|(own, _)| before + own.1 <= from) {
-            before += length;
-            rest = after;
-        }
-        let mut path: Option<Path> = None;
-        let mut passed = before;
-        for &(piece, length) in rest {
-            let [start, end] = [from, to].map(|s| (s - passed).clamp(0.0, length));
-            if start < end {
-                let is_whole = start == 0.0 && end == length;
-                let own = if is_whole { piece } else { piece.part(start, end, tolerance) };
-                path.get_or_insert_with(|| Path::new(own.from)).push(own.element);
-            }
-            passed += length;
-            if passed >= to {
-                break;
-            }
-        }
-        parts.extend(path);
-    }
-    parts
 }
 
 #[cfg(test)]

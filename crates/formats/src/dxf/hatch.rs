@@ -5,7 +5,7 @@ use tracelight_stroke::{Affine, Path, Point, Vec2};
 use super::curves::{moved, unit_arc, world_from_plane};
 use super::groups::{Group, Record};
 use super::pattern::{self, Family};
-use super::polyline::{Vertex, through};
+use super::polyline::{through, vertices};
 use super::skipped::Skipped;
 use super::spline;
 use crate::FormatError;
@@ -62,18 +62,8 @@ fn loops(record: &Record) -> Result<Vec<Path>, FormatError> {
 
 /// An edge of vertices and bulges.
 fn course(groups: &[Group]) -> Result<Option<Path>, FormatError> {
-    let mut vertices: Vec<Vertex> = Vec::new();
-    for group in groups.iter().filter(|g| matches!(g.code, 10 | 20 | 42)) {
-        let value = group.number()?;
-        match (group.code, vertices.last_mut()) {
-            (10, _) => vertices.push((Point::new(value, 0.0), 0.0)),
-            (20, Some(last)) => last.0.y = value,
-            (42, Some(last)) => last.1 = value,
-            _ => {}
-        }
-    }
     // an area's edge is closed, whatever its flag says
-    Ok(through(&vertices, true))
+    Ok(through(&vertices(groups)?, true))
 }
 
 /// The pieces of an edge, each as it stands.

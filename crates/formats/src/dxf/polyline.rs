@@ -3,7 +3,7 @@
 use tracelight_stroke::{Affine, Element, Path, Point};
 
 use super::curves::{moved, world_from_plane};
-use super::groups::Record;
+use super::groups::{Group, Record};
 use super::look::Look;
 use super::mesh::{edges, grid};
 use crate::FormatError;
@@ -13,13 +13,13 @@ use crate::pen::Pen;
 /// A point and the bulge of the way on from it.
 pub(super) type Vertex = (Point, f64);
 
-/// The path of a LWPOLYLINE.
+/// Vertices and bulges, as a LWPOLYLINE and the edge of a hatch have them.
 ///
 /// # Errors
 /// A value that is no number.
-pub(super) fn light(record: &Record) -> Result<Option<Path>, FormatError> {
+pub(super) fn vertices(groups: &[Group]) -> Result<Vec<Vertex>, FormatError> {
     let mut vertices: Vec<Vertex> = Vec::new();
-    for group in record.groups.iter().filter(|g| matches!(g.code, 10 | 20 | 42)) {
+    for group in groups.iter().filter(|g| matches!(g.code, 10 | 20 | 42)) {
         let value = group.number()?;
         match (group.code, vertices.last_mut()) {
             (10, _) => vertices.push((Point::new(value, 0.0), 0.0)),
@@ -28,6 +28,15 @@ pub(super) fn light(record: &Record) -> Result<Option<Path>, FormatError> {
             _ => {}
         }
     }
+    Ok(vertices)
+}
+
+/// The path of a LWPOLYLINE.
+///
+/// # Errors
+/// A value that is no number.
+pub(super) fn light(record: &Record) -> Result<Option<Path>, FormatError> {
+    let vertices = vertices(&record.groups)?;
     let is_closed = record.whole_or(70, 0)? & 1 != 0;
     let place = world_from_plane(record, record.number_or(38, 0.0)?)?;
     Ok(through(&vertices, is_closed).map(|path| moved(&path, place)))

@@ -3,6 +3,8 @@
 use kurbo::Affine;
 use tracelight_stroke::{Element, Path, Piece, Point};
 
+use crate::parts::Measured;
+
 /// Dashes of a drawing at most; what has more is drawn as whole lines.
 pub(super) const MAX_DASHES: usize = 100_000;
 
@@ -46,26 +48,19 @@ impl Dashes {
     pub(super) fn along(&self, path: &Path) -> Vec<Path> {
         let mut pattern = Pattern::at(self);
         let starts_lit = pattern.is_lit();
-        let mut done: Vec<Path> = Vec::new();
-        let mut open: Option<Path> = None;
-        let accuracy = ACCURACY * self.period();
-        for piece in path.pieces() {
-            let whole = piece.length(accuracy);
-            let mut at = 0.0;
-            while at < whole {
-                let to = (at + pattern.left).min(whole);
-                if pattern.is_lit() && to > at {
-                    let part = if at == 0.0 && to == whole { piece } else { piece.part(at, to, accuracy) };
-                    open.get_or_insert_with(|| Path::new(part.from)).push(part.element);
-                }
-                if pattern.go(to - at) {
-                    done.extend(open.take());
-                }
-                at = to;
+        let measured = Measured::of(path, ACCURACY * self.period());
+        let whole = measured.length();
+        let (mut at, mut ends_lit, mut spans) = (0.0, false, Vec::new());
+        while at < whole {
+            let to = (at + pattern.left).min(whole);
+            let is_drawn = pattern.is_lit() && to > at;
+            if is_drawn {
+                spans.push([at, to]);
             }
+            ends_lit = !pattern.go(to - at) && is_drawn;
+            at = to;
         }
-        let ends_lit = open.is_some();
-        done.extend(open);
+        let done = measured.stretches(&spans);
         match done.len() {
             1 if ends_lit && starts_lit && path.is_closed() => vec![path.clone()],
             2.. if ends_lit && starts_lit && path.is_closed() => joined(done),

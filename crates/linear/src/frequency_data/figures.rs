@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 use tracelight_maths::{complex, exp, ln};
 
 use crate::frequency_data::data::FrequencyData;
+use crate::golden::lowest;
 use crate::{Complex, GainMargin, Margins, ModulusMargin, Peak, PhaseMargin};
 
 /// Places near −1 that are searched between points.
@@ -102,7 +103,7 @@ impl FrequencyData {
         for i in lows.into_iter().take(MOST_NEAR) {
             let own = (places[i], at_points[i]);
             let ends = [(i.saturating_sub(1), i), (i, (i + 1).min(last))];
-            let inside = ends.map(|(from, to)| lowest(&distance, places[from], places[to]));
+            let inside = ends.map(|(from, to)| lowest(&distance, (places[from], places[to]), SECTIONS));
             for found in [own].into_iter().chain(inside) {
                 if found.1 < best.1 {
                     best = found;
@@ -113,28 +114,11 @@ impl FrequencyData {
     }
 }
 
+/// Sections of a search: to half the digits, as further on rounding decides.
+const SECTIONS: usize = 45;
+
 /// Of 1 in ln.
 const DECIBELS: f64 = 20.0 / std::f64::consts::LN_10;
-
-/// The lowest value between two places, by the golden section, and where.
-fn lowest(value: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> (f64, f64) {
-    const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut at_a, mut at_b) = (value(a), value(b));
-    // to half the digits: further on rounding decides
-    for _ in 0..45 {
-        if at_a < at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = high - GOLDEN * (high - low);
-            at_a = value(a);
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = low + GOLDEN * (high - low);
-            at_b = value(b);
-        }
-    }
-    if at_a < at_b { (a, at_a) } else { (b, at_b) }
-}
 
 #[cfg(test)]
 mod tests {

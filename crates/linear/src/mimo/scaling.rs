@@ -1,5 +1,6 @@
 use tracelight_maths::{exp, ln};
 
+use crate::golden::lowest;
 use crate::mimo::gain::ComplexMatrix;
 use crate::mimo::singular::singular_values;
 use crate::{Complex, LinearError, Matrix, Peak, StateSpace};
@@ -8,6 +9,8 @@ use crate::{Complex, LinearError, Matrix, Peak, StateSpace};
 const MOST_SETS: usize = 12;
 /// Largest logarithm of a scale: beyond it digits run out.
 const MOST: f64 = 10.0;
+/// Sections of the search for each.
+const SECTIONS: usize = 60;
 
 impl StateSpace {
     /// The least H∞ norm of D G D⁻¹ that was found over constant diagonal D, and where it is: a bound on what changes of each channel in
@@ -83,10 +86,11 @@ fn choose(values: &[ComplexMatrix], logs: &mut [f64]) -> f64 {
         let before = reached;
         for i in 1..logs.len() {
             let old = logs[i];
-            let new = golden(|log| {
+            let value = |log| {
                 logs[i] = log;
                 largest(values, logs)
-            });
+            };
+            let new = lowest(value, (-MOST, MOST), SECTIONS);
             logs[i] = if new.1 < reached { new.0 } else { old };
             reached = reached.min(new.1);
         }
@@ -117,25 +121,4 @@ fn balance(values: &[ComplexMatrix], logs: &mut [f64]) {
         let first = logs[0];
         logs.iter_mut().for_each(|log| *log = (*log - first).clamp(-MOST, MOST));
     }
-}
-
-/// Where a convex function is least, and its value.
-fn golden(mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    const SECTIONS: usize = 60;
-    let (mut low, mut high) = (-MOST, MOST);
-    let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut at_a, mut at_b) = (f(a), f(b));
-    for _ in 0..SECTIONS {
-        if at_a < at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = high - GOLDEN * (high - low);
-            at_a = f(a);
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = low + GOLDEN * (high - low);
-            at_b = f(b);
-        }
-    }
-    if at_a < at_b { (a, at_a) } else { (b, at_b) }
 }
