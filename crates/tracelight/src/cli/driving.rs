@@ -14,16 +14,16 @@ use crate::named;
 /// With what and how a drawing is run.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct DrivingArgs {
-    /// From the head to the target [default: 3ft]
+    /// Distance from the head to the target [default: 3ft]
     #[arg(help_heading = "Size and place", long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
     pub(crate) distance: Option<Length>,
     /// Speed of the lit spot on the target [default: 1ft/s]
     #[arg(help_heading = "Time and order", long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed)]
     pub(crate) speed: Option<Speed>,
-    /// How the lit spot keeps to that speed
+    /// How the lit spot keeps this speed
     #[arg(help_heading = "Time and order", long, value_enum, default_value_t = LitSpeedName::Fastest)]
     pub(crate) lit_speed: LitSpeedName,
-    /// How far corners may be rounded off where that is faster than to stop there, such as 0.2mm [default: not at all]
+    /// Largest rounding of corners, such as 0.2mm; used where it is faster than a stop [default: none]
     #[arg(help_heading = "Time and order", long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = rounding)]
     pub(crate) corner: Option<Length>,
     /// Rig: a preset's name (see `tracelight rigs`) or a rig file

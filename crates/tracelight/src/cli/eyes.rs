@@ -29,7 +29,7 @@ pub(crate) struct EyeArgs {
     /// Columns and rows of the images of a connected camera [default: those it was calibrated for, or else about 1280x720]
     #[arg(long, value_name = "WxH", requires = "camera")]
     pub(crate) camera_size: Option<ImageSize>,
-    /// Which camera is simulated
+    /// Simulated camera
     #[arg(help_heading = "Simulation", long, value_enum, default_value_t, requires = "camera")]
     pub(crate) sim_camera: SimulatedEyeName,
     /// What is known of the camera: a file that `calibrate markers` or `calibrate lens` has written. If no markers are in sight, the
@@ -69,8 +69,8 @@ pub(crate) struct FollowArgs {
     /// tilt-slip=COUNTS       the tilt encoder does
     /// head-bump=DEGREES      a bump turns the head by that angle
     /// power-loss             the rig loses power
-    /// drift=PERCENT          the beam turns further than it should, by that
-    ///                        share when the job ends
+    /// drift=PERCENT          the scale of both axes grows linearly, by that
+    ///                        share until the end of the job
     /// camera-bump=PX         the middle of the image moves by so many px
     /// camera-unplugged       the camera sends no more images
     /// camera-frozen          the camera repeats its last image

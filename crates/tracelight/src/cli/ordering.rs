@@ -4,21 +4,20 @@ use tracelight_pipeline::Sequence;
 /// In which order the strokes are drawn.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SequenceArgs {
-    /// Order that somebody at the wall can follow: time takes the shortest; layer draws one layer of the drawing after the other;
-    /// reading goes row by row from the top left
+    /// Order of the strokes: time (fastest), layer (one layer after the other), reading (row by row from the top left)
     #[arg(long, value_enum, default_value_t)]
     pub(crate) order: SequenceName,
 }
 
-/// What may come after what.
+/// Orders of strokes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SequenceName {
-    /// The least time between strokes
+    /// Least travel time between strokes
     #[default]
     Time,
-    /// Layer by layer
+    /// One layer after the other
     Layer,
-    /// As a page is read
+    /// Row by row from the top left
     Reading,
 }
 

@@ -12,30 +12,29 @@ use tracelight_task::Failure;
 /// How an SVG or DXF is read. Pixels have none of this.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ReadingArgs {
-    /// Lines that are painted over: cut draws what is seen, keep draws them too, as a template for cutting needs
+    /// Lines covered by other shapes of the drawing: cut (not drawn) or keep (drawn, as for a cutting template)
     #[arg(long, value_enum, default_value_t)]
     hidden: HiddenName,
-    /// Cut off what lies outside an SVG's page and its clip paths
+    /// Crop to the SVG's page and to its clip paths
     #[arg(long, value_enum, default_value_t)]
     crop: Switch,
     /// Draw dashed lines as dashes
     #[arg(long, value_enum, default_value_t)]
     dashes: Switch,
-    /// Unit of a DXF's numbers, in place of what the file says [default: the file's, otherwise mm]; deg or rad is the unit of a board's
-    /// axes (plan --axes)
+    /// Unit of the numbers in a DXF [default: the file's, otherwise mm]. With plan --axes, deg or rad is the unit of the board's axes
     #[arg(long, value_enum)]
     unit: Vec<UnitName>,
-    /// Pixels to an inch, for an SVG whose size is in pixels, such as 96 (browsers), 90 (old Inkscape) or 72 (Illustrator)
+    /// Pixels per inch of an SVG whose size is in pixels: 96 (browsers), 90 (old Inkscape), 72 (Illustrator)
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = dpi)]
     dpi: Option<f64>,
-    /// A DXF's hatches: their edges, or also the lines of their patterns
+    /// Hatches of a DXF: boundary only, or also the lines of the pattern
     #[arg(long, value_enum, default_value_t)]
     hatch: HatchName,
-    /// How text is drawn: each stroke of a letter as one line, or the letters' outlines [default: line in a DXF, otherwise outline]
+    /// How letters are drawn: as single lines or as outlines [default: line in a DXF, otherwise outline]
     #[arg(long, value_enum)]
     letters: Option<LettersName>,
-    /// Font for text: .ttf, .otf, or an SVG font with single-line letters; or one in the program, ems or hershey (single lines) or dejavu
-    /// (outlines); repeat it for what the first one lacks
+    /// Font for text: a file (.ttf, .otf, or an SVG font with single-line letters) or a built-in font: ems, hershey (single lines), dejavu
+    /// (outlines). Repeatable; later fonts supply missing letters
     #[arg(long, value_name = "FILE", action = ArgAction::Append)]
     font: Vec<String>,
 }

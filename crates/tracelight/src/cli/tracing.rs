@@ -15,11 +15,11 @@ pub(crate) struct TracingArgs {
     /// How pixels become strokes
     #[arg(long, value_enum, default_value_t)]
     pub(crate) mode: ModeName,
-    /// Ink threshold: ink is darker than the paper by at least this percentage of the paper's brightness, such as 30; on dark paper,
-    /// lighter, as a percentage of the paper's distance from white
+    /// Smallest contrast of ink, as a percentage of the paper's brightness, such as 30. On dark paper: as a percentage of the difference
+    /// between paper and white
     #[arg(long, value_name = "auto|PERCENT", default_value = "auto", allow_hyphen_values = true, value_parser = threshold)]
     pub(crate) threshold: OrAuto,
-    /// Smallest patch of ink that is kept, in square pixels, such as 20; 0 keeps everything, also each pass of a repeated pencil line
+    /// Smallest patch of ink that is kept, in square pixels, such as 20. With 0 everything is kept; repeated pencil lines are not merged
     #[arg(long, value_name = "auto|AREA", default_value = "auto", allow_hyphen_values = true, value_parser = despeckle)]
     pub(crate) despeckle: OrAuto,
     /// Drop strokes shorter than this, in the picture (8px) or on the target (5mm, 0.2in)

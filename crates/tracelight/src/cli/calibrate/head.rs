@@ -21,7 +21,7 @@ use crate::cli::eyes::EyeArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::named;
 
-/// Where the head stands and points, from dots that it draws and a camera sees
+/// Position and direction of the head, from dots that it draws and a camera sees
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight calibrate head --camera sim -o head.toml\n\n\
                   Put the head up by eye in front of the middle of the wall, pages of markers on the wall in the camera's sight. The laser draws 25 dots, small circles; \
@@ -34,17 +34,17 @@ pub(super) struct HeadArgs {
     placement: PlacementArgs,
     #[command(flatten)]
     driving: DrivingArgs,
-    /// The head was just powered up, or lost count: find out where it points first. It goes round in the dark and lights a dot of a third of a second here and there,
-    /// wherever that falls, until the camera sees one: keep eyes away. A simulated head is then powered up wherever somebody left it
+    /// First find out where the head points, after power-up or a lost count. The head moves in the dark and lights dots of a third of a second in
+    /// unknown places until the camera sees one: keep eyes away. A simulated head starts in a random position
     #[arg(long)]
     home: bool,
-    /// Home a head that was found before, by a file that this command has written, so that the file holds again; nothing is found anew and nothing is written
+    /// Home a head that was calibrated before, so that its head file is valid again. The file is one that this command has written; it is not changed
     #[arg(long, value_name = "FILE.toml", requires = "home", conflicts_with = "output")]
     head: Option<String>,
-    /// File for what is found
+    /// Head file to write
     #[arg(short, long, value_name = "FILE.toml", default_value = "head.toml", value_parser = toml)]
     output: String,
-    /// What a simulated room is like is drawn from this seed
+    /// Random seed for the simulated room
     #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
     seed: u64,
     #[command(flatten)]

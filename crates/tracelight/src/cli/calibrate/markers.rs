@@ -25,7 +25,7 @@ use crate::cli::eyes::{ImageSize, SimulatedEyeName};
 use crate::cli::placing::positive_length;
 use crate::named;
 
-/// The camera in front of the wall, from an image of printed markers on it: lens, pose, scale
+/// Camera in front of the wall, from an image of printed markers on it: lens, pose and scale
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight calibrate markers examples/lens/near.jpg -o camera.toml\n\n\
                   `tracelight calibrate sheet` prints the pages. Stick them on the wall near the corners of where you will draw, take an image that shows them \
@@ -33,35 +33,35 @@ use crate::named;
                   a lens that was calibrated before (--lens) makes it surer, above all with one page. The target's frame is that of the first page: \
                   origin in the middle of its markers, x to its right. What is likely to be off is told in mm.")]
 pub(super) struct MarkersArgs {
-    /// Image of the wall with the pages on it
+    /// Image of the wall with the marker pages on it
     #[arg(required_unless_present = "camera", conflicts_with = "camera")]
     image: Option<String>,
-    /// Take the image with a camera: sim is a simulated one, /dev/video0 one that is plugged in, http://… one on the net
+    /// Camera that takes the image: sim (simulated), /dev/video0 (connected), http://… (network camera)
     #[arg(long, value_name = "SOURCE")]
     camera: Option<String>,
-    /// Columns and rows of the images of a camera that is plugged in: those of the lens that is given, or else about 1280x720
+    /// Columns and rows of the images of a connected camera [default: those of --lens, or else about 1280x720]
     #[arg(long, value_name = "WxH", requires = "camera")]
     camera_size: Option<ImageSize>,
-    /// Which camera is simulated
+    /// Simulated camera
     #[arg(long, value_enum, default_value_t, requires = "camera")]
     sim_camera: SimulatedEyeName,
-    /// What a simulated room is like is drawn from this seed
+    /// Random seed for the simulated room
     #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true, requires = "camera")]
     seed: u64,
-    /// Lens that was calibrated before: a file that `calibrate lens` or `calibrate markers` has written
+    /// Calibrated lens: a file that `calibrate lens` or `calibrate markers` has written
     #[arg(long, value_name = "FILE.toml")]
     lens: Option<String>,
-    /// How long the bar at a page's foot is as printed, if not 150 mm
+    /// Printed length of the bar at the foot of a page [default: 150mm]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
     bar: Option<Length>,
-    /// File for what is found
+    /// Camera file to write
     #[arg(short, long, value_name = "FILE.toml", default_value = "camera.toml", value_parser = toml)]
     output: String,
     #[command(flatten)]
     pub(super) voice: Voice,
 }
 
-/// A camera's lens, from images of printed markers from several sides
+/// Camera's lens, from images of printed markers taken from several sides
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: tracelight calibrate lens examples/lens/left.jpg examples/lens/right.jpg examples/lens/above.jpg -o lens.toml\n\n\
@@ -72,10 +72,10 @@ pub(super) struct LensArgs {
     /// Images of the same pages
     #[arg(required = true, num_args = 1..)]
     images: Vec<String>,
-    /// How long the bar at a page's foot is as printed, if not 150 mm
+    /// Printed length of the bar at the foot of a page [default: 150mm]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
     bar: Option<Length>,
-    /// File for what is found
+    /// Camera file to write
     #[arg(short, long, value_name = "FILE.toml", default_value = "lens.toml", value_parser = toml)]
     output: String,
     #[command(flatten)]

@@ -8,7 +8,7 @@ use tracelight_task::{Failure, Stop};
 
 use crate::cli::answer::{Answer, Voice};
 
-/// Find out what a camera's pixels mean on the target
+/// Calibrate camera and head: scale, lens and position of the camera; position of the head
 #[derive(Args, Debug)]
 pub(crate) struct CalibrateArgs {
     #[command(subcommand)]

@@ -7,7 +7,7 @@ use crate::cli::answer::{Answer, Voice};
 use crate::cli::placing::positive_length;
 use crate::named;
 
-/// Scale from two pictures of a ruler with two marks: once upright, once level
+/// Scale of a camera, from two pictures of a ruler with two marks: one upright, one level
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: tracelight calibrate ruler examples/ruler-upright.png examples/ruler-level.png --marks 4in \
@@ -21,10 +21,10 @@ pub(super) struct RulerArgs {
     /// Distance between the two marks
     #[arg(long, value_name = "LENGTH", default_value = "4in", allow_hyphen_values = true, value_parser = positive_length)]
     marks: Length,
-    /// From the camera to the target
+    /// Distance from the camera to the target
     #[arg(long, value_name = "LENGTH", default_value = "3ft", allow_hyphen_values = true, value_parser = positive_length)]
     distance: Length,
-    /// A field that should be seen whole, width and height, such as 3ft,3ft: how far must the camera go?
+    /// Width and height of an area that the camera should see, such as 3ft,3ft: prints the distance this needs
     #[arg(long, value_name = "WIDTH,HEIGHT", allow_hyphen_values = true, value_parser = field)]
     wish: Option<Offset>,
     #[command(flatten)]

@@ -8,26 +8,26 @@ use tracelight_task::Failure;
 
 use crate::cli::answer::{Answer, Voice};
 
-/// Pages of printed markers, to be stuck on the wall where a camera sees them
+/// Print pages of markers, to be put on the wall where a camera sees them
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight calibrate sheet -o pages.pdf --paper a4 --pages 4\n\n\
                   Print at 100 % (no \"fit to page\"), measure the bar at the foot of a page, and stick the pages flat on the wall, near the corners \
                   of where you will draw, turned as you like. Then take a picture: `tracelight calibrate markers`. Each page has markers of its own, of \
                   the AprilTag family 36h11: print no page twice.")]
 pub(super) struct SheetArgs {
-    /// File: .pdf, or .svg for one page
+    /// File to write: .pdf, or .svg for one page
     #[arg(short, long, value_name = "FILE")]
     output: String,
-    /// Paper
+    /// Paper size
     #[arg(long, value_enum, default_value_t = PaperName::A4)]
     paper: PaperName,
     /// fine: 20 markers of 40 mm a page; coarse: 4 of 84 mm, for cameras of few pixels or far away
     #[arg(long, value_enum, default_value_t = BoardName::Fine)]
     board: BoardName,
-    /// How many pages [default: 4, or 1 as SVG]
+    /// Number of pages [default: 4, or 1 as SVG]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=26))]
     pages: Option<u16>,
-    /// The first of them
+    /// Number of the first page
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=26))]
     first: u16,
     #[command(flatten)]

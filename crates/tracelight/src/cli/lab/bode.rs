@@ -26,10 +26,10 @@ pub(super) struct FrequencyArgs {
     systems: SystemArgs,
     #[command(flatten)]
     band: BandArgs,
-    /// Of a measured open loop: so many unstable poles it has (0 for most); its turns round −1 then tell whether the closed loop is stable
+    /// Number of unstable poles of a measured open loop, 0 for most. The Nyquist criterion then decides whether the closed loop is stable
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=100))]
     unstable: Option<u8>,
-    /// Plot into an SVG or PNG, or write a CSV with one row per frequency; may be given again
+    /// Output file: a plot (.svg, .png) or one row per frequency (.csv); repeatable
     #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     pub(super) out: Vec<OutFile>,
     #[command(flatten)]
@@ -39,13 +39,13 @@ pub(super) struct FrequencyArgs {
 /// Which frequencies.
 #[derive(Args, Debug)]
 pub(super) struct BandArgs {
-    /// From this frequency [default: below the slowest pole or zero and every crossover]
+    /// Lowest frequency [default: below every pole, zero and crossover]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
     pub(super) from: Option<f64>,
-    /// To this frequency [default: above the fastest and every crossover]
+    /// Highest frequency [default: above every pole, zero and crossover]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
     pub(super) to: Option<f64>,
-    /// How many, evenly on a logarithmic scale
+    /// Number of frequencies, evenly spaced on a logarithmic scale
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     pub(super) points: u32,
 }

@@ -39,23 +39,23 @@ enum MethodArgs {
     Lqr(LqrArgs),
 }
 
-/// As many leads as the phase margin asks for, and a lag
+/// Lead and lag compensator; as many leads as the phase margin needs
 #[derive(Args, Debug)]
 struct LeadLagArgs {
     #[command(flatten)]
     loops: LoopArgs,
-    /// Where the loop's gain is 1
+    /// Crossover: the frequency at which the loop gain is 1
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
     crossover: f64,
-    /// Phase margin there
+    /// Phase margin at the crossover
     #[arg(long, value_name = "ANGLE")]
     phase_margin: Angle,
-    /// How many times more it amplifies what hardly changes
+    /// Factor by which the lag raises the gain at low frequencies
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     lag: f64,
 }
 
-/// The P, PI, PD or PID with the largest gain, of the integral if there is one, that keeps the margins
+/// P, PI, PD or PID with the largest gain that keeps the margins; with an integral term, the largest integral gain
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab design pid \"1/(s+1)^3\" --type pi --overshoot 5\n\
                   Example: tracelight lab design pid G11 --sample 1ms --crossover 40rad/s --try pan --to 20deg\n\n\
@@ -64,29 +64,29 @@ struct LeadLagArgs {
 struct PidArgs {
     #[command(flatten)]
     loops: LoopArgs,
-    /// Which terms it has
+    /// Terms of the controller
     #[arg(long = "type", value_name = "TYPE", value_enum, default_value = "pid")]
     terms: TermsArg,
-    /// Where the loop's gain is 1 [default: where the gain can be largest; needed where nothing bounds that]
+    /// Crossover: the frequency at which the loop gain is 1 [default: the one with the largest gain; required if the margins leave the gain unbounded]
     #[arg(long, value_name = "FREQUENCY", value_parser = frequency)]
     crossover: Option<f64>,
-    /// Least phase margin
+    /// Smallest phase margin
     #[arg(long, value_name = "ANGLE", default_value = "55deg")]
     phase_margin: Angle,
-    /// Least distance of the loop from −1: one over the largest sensitivity
+    /// Smallest modulus margin: distance of the Nyquist curve from −1, which is 1/Ms
     #[arg(long, value_name = "DISTANCE", default_value_t = 0.6)]
     modulus: f64,
-    /// How many times the crossover the derivative ends at; sampled, at 2/T at most
+    /// Corner frequency of the derivative's filter, as a multiple of the crossover; for a sampled controller at most 2/T
     #[arg(long, value_name = "FACTOR", default_value_t = 10.0)]
     filter: f64,
-    /// Let its zeros be complex: more integral, closed poles that swing
+    /// Allow complex zeros: more integral gain, but an oscillating closed loop
     #[arg(long)]
     complex_zeros: bool,
-    /// Setpoint weights: the shares of the setpoint that the proportional term (b) and the derivative (c) see; what a disturbance does stays as it
-    /// is
+    /// Setpoint weights b,c: the share of the setpoint in the proportional and in the derivative term. The response to disturbances does not
+    /// change
     #[arg(long, value_name = "b=0.6,c=0", value_parser = weights, conflicts_with = "overshoot")]
     weights: Option<SetpointWeights>,
-    /// Choose the largest setpoint weight b, with c = 0, that leaves at most this overshoot, %
+    /// Choose the largest setpoint weight b (with c = 0) whose overshoot is at most this, %
     #[arg(long, value_name = "PERCENT", value_parser = share)]
     overshoot: Option<f64>,
     /// Time constant of the anti-windup on the rig, or off [default: √(Ti Td), of a PI Ti]
@@ -147,7 +147,7 @@ fn tracking(text: &str) -> Result<AntiWindup, String> {
     }
 }
 
-/// State feedback that costs least, with weights on the states
+/// State feedback by LQR, with weights on the states
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab design lqr G11 --q 1000,1 --r 1\n\
                   Example: tracelight lab design lqr G11 --most y=0.02 --most-input 0.6 --integral 0.01\n\n\
@@ -157,22 +157,22 @@ fn tracking(text: &str) -> Result<AntiWindup, String> {
 struct LqrArgs {
     #[command(flatten)]
     system: OneSystemArgs,
-    /// Weights of the states, each or by name
+    /// Weight of each state, or of states by name
     #[arg(long, value_name = "1,0,10|y=1", value_parser = entries, required_unless_present = "most")]
     q: Option<Entries>,
     /// Weight of the input
     #[arg(long, value_name = "WEIGHT", default_value_t = 1.0, conflicts_with = "most", value_parser = above_zero)]
     r: f64,
-    /// Largest allowed deviations of the states, each or by name (0: not weighed)
+    /// Largest allowed deviation of each state, or of states by name (0: no weight)
     #[arg(long, value_name = "0.02,1|y=0.02", value_parser = entries, conflicts_with = "q", requires = "most_input")]
     most: Option<Entries>,
     /// Largest allowed deviation of the input
     #[arg(long, value_name = "SIZE", requires = "most", value_parser = above_zero)]
     most_input: Option<f64>,
-    /// Weight of the output's integral, with --most its largest allowed value; given, nothing constant leaves an error
+    /// Weight of the output's integral, or with --most its largest allowed value. With it a constant disturbance leaves no error
     #[arg(long, value_name = "WEIGHT|SIZE", value_parser = above_zero)]
     integral: Option<f64>,
-    /// Plot step and input into an SVG or PNG, or write them to a CSV; may be given again
+    /// Output file: step response and input as a plot (.svg, .png) or a table (.csv); repeatable
     #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
@@ -212,73 +212,73 @@ impl LqrArgs {
     }
 }
 
-/// State feedback that costs least, the state estimated by a Kalman filter
+/// LQG: state feedback by LQR, with the state estimated by a Kalman filter
 #[derive(Args, Debug)]
 struct LqgArgs {
     #[command(flatten)]
     loops: LoopArgs,
-    /// An error of the output so large costs as much as …
+    /// Output error that costs as much as the input of --input
     #[arg(long, value_name = "SIZE", default_value_t = 0.001)]
     output: f64,
-    /// … an input so large
+    /// Input that costs as much as the output error of --output
     #[arg(long, value_name = "SIZE", default_value_t = 1.0)]
     input: f64,
-    /// … or an integral of the output so large; given, nothing constant leaves an error
+    /// Integral of the output that costs as much as these. With it a constant disturbance leaves no error
     #[arg(long, value_name = "SIZE")]
     integral: Option<f64>,
-    /// The estimator takes the input to be disturbed by so much …
+    /// Disturbance of the input that the estimator assumes, as a standard deviation
     #[arg(long, value_name = "SIZE", default_value_t = 1.0)]
     disturbance: f64,
-    /// … and the output to be noisy by so much
+    /// Noise of the output that the estimator assumes, as a standard deviation
     #[arg(long, value_name = "SIZE", default_value_t = 0.0001)]
     noise: f64,
 }
 
-/// State feedback and an estimator with these poles
+/// State feedback and an estimator by pole placement
 #[derive(Args, Debug)]
 struct PlaceArgs {
     #[command(flatten)]
     loops: LoopArgs,
-    /// Poles of the regulator, such as -30,-40+20j, of samples in z; a complex one stands for its pair. As many as the system has, or one more: then it
-    /// integrates
+    /// Closed-loop poles of the regulator, such as -30,-40+20j; for a sampled system in z. A complex pole stands for the pair. One pole per state; one more
+    /// adds an integrator
     #[arg(long, value_name = "POLES", allow_hyphen_values = true, value_parser = poles)]
     poles: Poles,
-    /// Poles of the estimator, as many as the system has [default: those of the regulator, four times as fast]
+    /// Poles of the estimator, one per state [default: the regulator's, four times as fast]
     #[arg(long, value_name = "POLES", allow_hyphen_values = true, value_parser = poles)]
     estimator: Option<Poles>,
 }
 
-/// Nothing: a controller that is given, tried with the system and others
+/// Test a given controller with the system and with others
 #[derive(Args, Debug)]
 #[command(after_help = "Example: tracelight lab design given K11t G11 --also 0.8*G11 --also 1.2*G11")]
 struct GivenArgs {
-    /// The controller, a formula in continuous time; K11, K22, K11t and K22t are the 2006 report's
+    /// Controller, a formula in s. K11, K22, K11t and K22t are those of the 2006 report
     #[arg(value_name = "CONTROLLER")]
     controller: String,
     #[command(flatten)]
     loops: LoopArgs,
 }
 
-/// The system, and where results go.
+/// The system, and the output files.
 #[derive(Args, Debug)]
 struct LoopArgs {
     #[command(flatten)]
     system: OneSystemArgs,
-    /// Another system that the controller has to do for, a formula or a file; may be given again. A PID keeps its margins with every one
-    /// (the crossover is that of SYSTEM); other controllers are made for SYSTEM and tried with each
+    /// Further system, a formula or a file; repeatable. A PID keeps its margins with all of them (the crossover is that of SYSTEM). Other
+    /// controllers are designed for SYSTEM and tested with each
     #[arg(long, value_name = "SYSTEM")]
     also: Vec<String>,
-    /// Drive this joint of a simulated rig by it, too, from a jump of its setpoint: the head as it is beside the head linearized. The
-    /// rig is that of --rig; without it, report, with the masses of --set
+    /// Also apply a setpoint step to this joint of a simulated rig, and compare the nonlinear with the linearized response. The rig is
+    /// that of --rig; otherwise report, with the masses of --set
     #[arg(long = "try", value_name = "JOINT", value_enum)]
     tried: Option<Axis>,
-    /// How far it jumps
+    /// Size of that step
     #[arg(long, value_name = "ANGLE", default_value = "1deg", allow_hyphen_values = true, requires = "tried", value_parser = step)]
     to: Angle,
     /// Random seed for the differences between simulated heads
     #[arg(long, value_name = "N", default_value_t = 0, requires = "tried")]
     seed: u64,
-    /// Plot step and input into an SVG or PNG, or write them to a CSV; may be given again
+    /// Output file: step response and input as a plot (.svg, .png) or a table (.csv); repeatable
     #[arg(short, long, value_name = "FILE.svg|FILE.png|FILE.csv", value_parser = out_file)]
     out: Vec<OutFile>,
     #[command(flatten)]
