@@ -13,6 +13,7 @@ mod faults;
 mod homing;
 mod inputs;
 mod jolts;
+mod paces;
 mod recovery;
 mod segments;
 mod shapes;

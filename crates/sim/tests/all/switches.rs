@@ -254,6 +254,7 @@ fn a_plan_that_begins_with_light_waits_until_the_switches_were_tried_and_a_dry_o
         coefficients: PanTilt::default(),
         tolerance_rad: PanTilt::new(0.01, 0.01),
         gate: true,
+        rate_limit: tracelight_rig::RateLimit::PLANNED,
     };
     for dark in [false, true] {
         let mut rig = SimulatedRig::new(&config, POSE, 0);

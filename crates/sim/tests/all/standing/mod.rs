@@ -23,6 +23,7 @@ fn rest(start_tick: u32) -> Segment {
         coefficients: PanTilt::new([0.0; 6], [0.0; 6]),
         tolerance_rad: PanTilt::new(0.003, 0.003),
         gate: true,
+        rate_limit: tracelight_rig::RateLimit::PLANNED,
     }
 }
 
