@@ -16,6 +16,7 @@ mod jolts;
 mod paces;
 mod recovery;
 mod segments;
+mod session;
 mod shapes;
 mod slips;
 mod standing;

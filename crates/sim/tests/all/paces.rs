@@ -5,7 +5,8 @@
 use std::ops::ControlFlow;
 
 use tracelight_rig::{Command, PanTilt, Phase, Rig};
-use tracelight_sim::{Feeder, RigConfig, Run, Simulated, SimulatedRig, Tick, arm, run, score};
+use tracelight_session::Feeder;
+use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, arm, run, score};
 use tracelight_trajectory::Plan;
 
 use crate::shapes::ink::{Ink, ink};
@@ -37,7 +38,7 @@ fn plans(config: &RigConfig) -> [(&'static str, Plan); 3] {
 /// A run whose clock is asked for another rate where it reaches these ticks of the plan; ten times as long as planned at most.
 fn at_speeds(config: &RigConfig, plan: &Plan, speeds: &[(u32, f32)]) -> Run {
     let mut rig = SimulatedRig::new(config, POSE, 1);
-    let mut feeder = Feeder::new(&plan.segments, false);
+    let mut feeder = Feeder::new(plan.segments.as_slice(), false);
     assert!(arm(&mut rig));
     let (mut next, mut ran) = (0, Run::default());
     while !ran.is_done() && ran.fault().is_none() && ran.ticks.len() < 11 * plan.points.len() {
