@@ -37,6 +37,7 @@ impl Strokes {
             coefficients,
             tolerance_rad: PanTilt::new(3.3e-3, 3.3e-3),
             gate,
+            rate_limit: tracelight_rig::RateLimit::PLANNED,
         });
         self.last
     }

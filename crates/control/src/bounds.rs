@@ -52,11 +52,14 @@ impl Config {
             let limits = &self.axes[j].limits;
             let position = self.range_rad(j, homed);
             let [angle, speed, acceleration] = motions(&segment.coefficients[j], f32::from(segment.ticks));
+            // as fast as its clock may run
+            let rate = segment.rate_limit.most();
             tolerance_rad > 0.0
+                && segment.rate_limit.is_valid()
                 && tolerance_rad <= self.tolerance_limit_rad
                 && Bounds { lower: position.0, upper: position.1 }.hold(&angle, MOST_HALVINGS)
-                && Bounds::both_ways(limits.speed_rad_s * TICK_S).hold(&speed, MOST_HALVINGS)
-                && Bounds::both_ways(limits.acceleration_rad_s2 * TICK_S * TICK_S)
+                && Bounds::both_ways(limits.speed_rad_s * TICK_S / rate).hold(&speed, MOST_HALVINGS)
+                && Bounds::both_ways(limits.acceleration_rad_s2 * TICK_S * TICK_S / (rate * rate))
                     .hold(&acceleration, MOST_HALVINGS)
         })
     }

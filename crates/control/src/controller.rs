@@ -89,10 +89,10 @@ impl Controller {
     pub fn accept(&self, state: &mut State, command: Command) -> Result<(), Command> {
         match command {
             Command::Arm { acknowledges } => self.arm(state, acknowledges),
-            Command::Disarm => {
-                state.supervisor.disarm();
-                state.player.hold();
-            }
+            Command::Disarm => self.disarm(state),
+            Command::Pause if state.supervisor.phase == Phase::Tracing => state.player.pause(true),
+            Command::Pause => self.disarm(state),
+            Command::Speed(rate) => state.player.ask_rate(rate),
             Command::Point(_) if !state.watch.hears_host(&self.config) => {}
             Command::Point(ticks) => self.point(state, u32::from(ticks)),
             Command::Home(counts) if !self.may_home(state, counts) => return Err(command),
@@ -135,9 +135,22 @@ impl Controller {
             state.way_back = Some(ReturnPath::from(state.servo.estimates()));
         }
         if state.supervisor.phase != Phase::Tracing {
+            state.player.stop_in(0);
             state.player.reopen();
         }
+        state.player.pause(false);
         state.supervisor.arm();
+    }
+
+    /// Forbids light, and stops the plan's clock once what is still on its way out has fallen on its stroke.
+    fn disarm(&self, state: &mut State) {
+        let is_on_stroke = state.supervisor.phase == Phase::Tracing && state.watch.laser.lights();
+        state.supervisor.disarm();
+        if !state.player.runs_on() {
+            // both switches open, and the faster one ends it
+            let on_its_way = self.config.laser_off_ticks.min(self.config.enable_off_ticks);
+            state.player.stop_in(if is_on_stroke { on_its_way } else { 0 });
+        }
     }
 
     /// A dot; of a head that is not homed, one that there is room for, or none.
@@ -173,7 +186,7 @@ impl Controller {
         }
         state.servo = Servo::at_rest(&self.config, &state.sensed.encoders);
         state.watch.rearm(&self.config, &state.sensed, state.servo.estimates());
-        state.player = Player::resting_at(state.servo.position_rad());
+        state.player = state.player.resting_anew(state.servo.position_rad());
         state.way_back = None;
         state.test_move = None;
         state.paces = PanTilt::default();
@@ -186,6 +199,9 @@ impl Controller {
     pub fn tick(&self, state: &mut State, sensed: &Sensed) -> Telemetry {
         let sensed = &from_home(sensed, &state.home);
         self.observe(state, sensed);
+        if state.supervisor.phase == Phase::Tracing && state.player.may_pause(self.config.laser_off_ticks) {
+            self.disarm(state);
+        }
         let played = state.player.play();
         let estimates = *state.servo.estimates();
         let situation = self.situation(state, &played);
@@ -280,6 +296,7 @@ impl Controller {
             steady: state.watch.is_steady(),
             tried: state.supervisor.are_tried(&state.sensed, state.player.has_light()),
             host_silent: !state.watch.hears_host(&self.config),
+            planned: state.player.wants_light(self.config.laser_on_ticks, self.config.laser_off_ticks),
             light_due: state.player.light_is_due(self.config.laser_on_ticks),
             begun: state.player.has_begun(),
             starved: state.player.is_empty() && !state.player.is_done(),
@@ -310,7 +327,8 @@ impl Controller {
         let stands = match state.supervisor.phase {
             Phase::Holding | Phase::Testing | Phase::Faulted => true,
             Phase::Dark | Phase::Armed => {
-                state.way_back.is_some() || (state.player.has_begun() && played.segment.is_some())
+                !state.player.runs_on()
+                    && (state.way_back.is_some() || (state.player.has_begun() && played.segment.is_some()))
             }
             Phase::Tracing | Phase::Done => false,
         };
@@ -384,6 +402,6 @@ fn run_clock(player: &mut Player, clock: Clock) {
     match clock {
         Clock::Run => player.advance(),
         Clock::Stop => player.hold(),
-        Clock::Wait => {}
+        Clock::Wait => player.run_on(),
     }
 }

@@ -1,14 +1,7 @@
-use tracelight_rig::{PanTilt, Segment, Setpoint, TICK_S};
+use tracelight_rig::{PanTilt, SPEED_RANGE, Segment, Setpoint, TICK_S, ease_within};
 
 /// Segments the controller can hold ahead of time.
 pub const QUEUE_LENGTH: usize = 64;
-
-/// Shortest time in which the plan's clock returns to full speed after a hold, s.
-const RESUME_S: f32 = 0.15;
-
-/// Acceleration that makes this time longer for fast motion: a quarter of what the weaker motor can do, rad/s². At 1 ft/s on a target
-/// 3 ft away both times are alike.
-const RESUME_RAD_S2: f32 = 2.2;
 
 /// Largest step between the end of one segment and the start of the next that still counts as joined, rad.
 const JOIN_RAD: f32 = 2e-4;
@@ -25,12 +18,20 @@ pub(crate) struct Player {
     /// Plan time: whole ticks and a fraction.
     tick: u32,
     fraction: f32,
-    /// Speed of the plan's clock, 0 to 1.
+    /// Rate of the plan's clock that is asked for.
+    asked_rate: f32,
+    /// Rate of the plan's clock now.
     rate: f32,
-    /// Change of `rate`, 1/s.
+    /// How `rate` changes until the next tick, 1/s.
     rate_slope: f32,
     /// Plan tick in which the gate rose that is open now.
     gate_rose: Option<u32>,
+    /// Plan tick in which it fell that is shut now.
+    gate_fell: Option<u32>,
+    /// Whether the clock is to stop at the end of the stroke that is lit.
+    pausing: bool,
+    /// Ticks for which the clock runs on, so that light that is still on its way out falls on its stroke.
+    runs_on_ticks: u32,
     /// Where the joints rest while there is nothing to play.
     rest: PanTilt<Setpoint>,
     /// End of the newest segment: tick, and position.
@@ -57,12 +58,21 @@ impl Player {
             finished: false,
             tick: 0,
             fraction: 0.0,
+            asked_rate: 1.0,
             rate: 1.0,
             rate_slope: 0.0,
             gate_rose: None,
+            gate_fell: None,
+            pausing: false,
+            runs_on_ticks: 0,
             rest: position_rad.map(at_rest),
             end: None,
         }
+    }
+
+    /// The same without a job, at rest somewhere; the speed that was asked for stays.
+    pub(crate) fn resting_anew(&self, position_rad: PanTilt<f32>) -> Self {
+        Self { asked_rate: self.asked_rate, ..Self::resting_at(position_rad) }
     }
 
     /// Whether another segment fits.
@@ -102,14 +112,22 @@ impl Player {
             self.fraction = 0.0;
             self.rate = 1.0;
             self.rate_slope = 0.0;
+            self.gate_fell = None;
             self.finished = false;
             self.end = None;
         }
     }
 
+    /// Sets the rate of the plan's clock, within its bounds.
+    pub(crate) fn ask_rate(&mut self, rate: f32) {
+        if !rate.is_nan() {
+            self.asked_rate = rate.clamp(SPEED_RANGE.0, SPEED_RANGE.1);
+        }
+    }
+
     /// Forgets what is queued; from now on the joints are to rest at zero.
     pub(crate) fn abandon(&mut self) {
-        *self = Self { finished: true, ..Self::resting_at(PanTilt::default()) };
+        *self = Self { finished: true, ..self.resting_anew(PanTilt::default()) };
     }
 
     /// Whether the plan's clock has left its start.
@@ -121,11 +139,69 @@ impl Player {
         self.tick
     }
 
-    /// Whether light that follows the gate after `delay_ticks` falls where it is wanted. A plan's gate rises that much before its
-    /// stroke; a clock that gets under way from within that lead is too slow for it, and the gate has to wait.
+    /// Whether light that follows the gate after `delay_ticks` falls where it is wanted.
     pub(crate) fn light_is_due(&self, delay_ticks: u32) -> bool {
-        let Some(rose) = self.gate_rose else { return true };
-        self.since(rose) + self.rate * delay_ticks as f32 >= delay_ticks as f32
+        self.gate_rose.is_none_or(|rose| self.since(rose) >= self.later(delay_ticks))
+    }
+
+    /// Whether the gate is to be open, of a plan whose gate leads its light by these delays at the plan's own speed. What opens later than the plan's own gate has
+    /// to wait for [`light_is_due`](Self::light_is_due).
+    pub(crate) fn wants_light(&self, on_ticks: u32, off_ticks: u32) -> bool {
+        let Some(segment) = self.current() else { return false };
+        if self.rate == 0.0 {
+            return segment.gate;
+        }
+        if segment.gate {
+            return !self.changes_within(-self.later(off_ticks));
+        }
+        let shuts_late = self.gate_fell.is_some_and(|fell| self.since(fell) < self.later(off_ticks));
+        shuts_late || self.changes_within(-self.later(on_ticks))
+    }
+
+    /// How much later than in the plan, in plan time, the gate changes whose light follows after a delay, ticks. A clock that runs faster needs a longer lead, one that
+    /// runs slower a shorter one. The gate changes only at a tick: at the nearest.
+    fn later(&self, delay_ticks: u32) -> f32 {
+        delay_ticks as f32 * (1.0 - self.rate) - 0.5 * self.rate
+    }
+
+    /// Whether the plan's gate changes within so many ticks of its clock.
+    fn changes_within(&self, ticks: f32) -> bool {
+        let queued = (0..self.length).filter_map(|i| self.queue[(self.head + i) % QUEUE_LENGTH]);
+        let mut soon = queued.take_while(|segment| -self.since(segment.start_tick) <= ticks);
+        soon.next().is_some_and(|now| soon.any(|next| next.gate != now.gate))
+    }
+
+    /// Asks the clock to stop at the end of the stroke that is lit, or takes that back.
+    pub(crate) fn pause(&mut self, pausing: bool) {
+        self.pausing = pausing;
+    }
+
+    /// Whether it was asked to stop, and no light of a stroke is on its way out any more.
+    pub(crate) fn may_pause(&self, off_ticks: u32) -> bool {
+        let is_out = self.gate_fell.is_none_or(|fell| self.since(fell) >= off_ticks as f32);
+        self.pausing && is_out && self.current().is_some_and(|segment| !segment.gate)
+    }
+
+    /// Stops the clock in so many ticks.
+    pub(crate) fn stop_in(&mut self, ticks: u32) {
+        self.pausing = false;
+        self.runs_on_ticks = ticks;
+        if ticks == 0 {
+            self.hold();
+        }
+    }
+
+    /// Whether it is about to stop.
+    pub(crate) const fn runs_on(&self) -> bool {
+        self.runs_on_ticks > 0
+    }
+
+    /// A tick of a clock that is about to stop.
+    pub(crate) fn run_on(&mut self) {
+        if self.runs_on_ticks > 0 {
+            self.advance();
+            self.stop_in(self.runs_on_ticks - 1);
+        }
     }
 
     /// Nothing left to play and nothing to come.
@@ -165,43 +241,64 @@ impl Player {
         })
     }
 
-    /// Stops the plan's clock on the spot. One that has not left its start keeps its full speed for it.
+    /// Stops the plan's clock on the spot. One that has not left its start keeps its speed for it.
     pub(crate) fn hold(&mut self) {
+        self.runs_on_ticks = 0;
         if self.has_begun() {
             self.rate = 0.0;
             self.rate_slope = 0.0;
         }
     }
 
-    /// Lets one tick of true time pass; after a hold the plan's clock speeds up gently.
+    /// Lets one tick of true time pass; the rate of the plan's clock eases to what is asked.
     pub(crate) fn advance(&mut self) {
         if self.length == 0 {
             return;
         }
-        let before = self.rate;
-        if before == 0.0 {
-            self.rate_slope = 1.0 / RESUME_S.max(self.planned_rad_s() / RESUME_RAD_S2);
-        }
-        self.rate += self.rate_slope * TICK_S;
-        if self.rate >= 1.0 {
-            self.rate = 1.0;
+        if !self.has_begun() {
+            // whatever the rate, it begins at rest
+            self.rate = self.highest_rate();
             self.rate_slope = 0.0;
+        } else if self.rate == 0.0 {
+            self.rate_slope = self.slope();
+        }
+        let before = self.rate;
+        self.rate = before + self.rate_slope * TICK_S;
+        if (self.rate - self.asked_rate).abs() < 1e-6 {
+            self.rate = self.asked_rate;
         }
         self.fraction += 0.5 * (before + self.rate);
         // back on whole ticks once at full speed would jump; the fraction simply stays
-        if self.fraction >= 1.0 {
+        while self.fraction >= 1.0 {
             self.fraction -= 1.0;
             self.tick = self.tick.saturating_add(1);
         }
         self.drop_passed();
         self.watch_gate();
+        self.rate_slope = self.slope();
     }
 
-    /// Speed of the faster joint where the plan stands, rad/s.
-    fn planned_rad_s(&self) -> f32 {
+    /// How the rate changes until the next tick, 1/s.
+    fn slope(&self) -> f32 {
+        let wanted = self.highest_rate();
+        if wanted == self.rate {
+            return 0.0;
+        }
         let Some(segment) = self.current() else { return 0.0 };
         let planned = segment.sample(self.since(segment.start_tick));
-        planned.pan.velocity_rad_s.abs().max(planned.tilt.velocity_rad_s.abs())
+        let most = ease_within(&planned, self.rate, wanted > self.rate);
+        ((wanted - self.rate) / TICK_S).clamp(-most, most)
+    }
+
+    /// The rate that is asked for, or the most that is allowed where the clock will be in a tick.
+    fn highest_rate(&self) -> f32 {
+        if self.asked_rate <= 1.0 {
+            return self.asked_rate;
+        }
+        let limit = self.current().map_or(1.0, |segment| {
+            libm::sqrtf(segment.rate_limit_squared(self.since(segment.start_tick) + self.rate))
+        });
+        self.asked_rate.min(limit)
     }
 
     fn drop_passed(&mut self) {
@@ -218,15 +315,21 @@ impl Player {
     }
 
     fn watch_gate(&mut self) {
-        self.gate_rose = match self.current() {
-            Some(segment) if segment.gate => self.gate_rose.or(Some(segment.start_tick)),
-            _ => None,
+        let Some(segment) = self.current() else {
+            self.gate_rose = None;
+            return;
         };
+        if segment.gate {
+            self.gate_rose = self.gate_rose.or(Some(segment.start_tick));
+            self.gate_fell = None;
+        } else if self.gate_rose.take().is_some() {
+            self.gate_fell = Some(segment.start_tick);
+        }
     }
 
-    /// Plan time since a tick that has begun, ticks.
+    /// Plan time since a tick, ticks; negative before it.
     fn since(&self, tick: u32) -> f32 {
-        (self.tick - tick) as f32 + self.fraction
+        self.tick.wrapping_sub(tick).cast_signed() as f32 + self.fraction
     }
 
     fn current(&self) -> Option<Segment> {
@@ -252,6 +355,7 @@ mod tests {
             coefficients: PanTilt::default(),
             tolerance_rad,
             gate: false,
+            rate_limit: tracelight_rig::RateLimit::PLANNED,
         };
         let near_the_end = Player { tick: u32::MAX - 8, ..Player::resting_at(PanTilt::default()) };
         for (ticks, fits) in [(8, true), (9, false), (u16::MAX, false)] {

@@ -63,6 +63,8 @@ pub(crate) struct Situation<'a> {
     pub(crate) tried: bool,
     /// No host has said of late that it is there.
     pub(crate) host_silent: bool,
+    /// The plan wants the gate open, at the rate of its clock.
+    pub(crate) planned: bool,
     /// What the gate lets through now falls where the plan wants light, however slowly its clock runs.
     pub(crate) light_due: bool,
     /// The plan's clock has left its start.
@@ -249,8 +251,7 @@ impl Supervisor {
         let points = waits && (at.begun || !self.homed);
         // no plan knows where that falls
         let seeks = points && !self.homed;
-        let planned = at.segment.is_some_and(|s| s.gate);
-        reasons.insert_if(!planned && !seeks, Darkness::Planned);
+        reasons.insert_if(!at.planned && !seeks, Darkness::Planned);
         reasons.insert_if(!self.homed && !seeks, Darkness::Unhomed);
         reasons.insert_if(self.phase == Phase::Dark && !points, Darkness::Disarmed);
         reasons.insert_if(beyond_tolerance(at), Darkness::FollowingError);

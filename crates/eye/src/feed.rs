@@ -143,6 +143,7 @@ mod tests {
                     coefficients: PanTilt::new(c, c),
                     tolerance_rad: PanTilt::new(1e-3, 1e-3),
                     gate: true,
+                    rate_limit: tracelight_rig::RateLimit::PLANNED,
                 }
             })
             .collect()

@@ -13,6 +13,7 @@
 #![doc = include_str!("../examples/picture_to_figures.rs")]
 //! ```
 
+mod by_hand;
 mod keep;
 mod kept;
 mod lap;
@@ -24,6 +25,7 @@ mod seen;
 mod wall;
 mod watched;
 
+pub use by_hand::Hands;
 pub use keep::{Keep, KeepNothing};
 pub use prepared::{Prepared, Ran, prepare};
 pub use request::{Request, RunRequest, Scene, Wall};

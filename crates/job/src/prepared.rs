@@ -9,6 +9,7 @@ use tracelight_sim::{RigConfig, Run, SimulatedRig};
 use tracelight_task::{Failure, Stop, Task};
 use tracelight_trajectory::Plan;
 
+use crate::by_hand::{Hands, run_lap_by_hand};
 use crate::keep::Keep;
 use crate::lap::{Learned, learn, run_lap};
 use crate::request::{Request, RunRequest};
@@ -132,7 +133,29 @@ impl Prepared {
     /// # Errors
     /// Where a tick cannot be kept, or the head was never homed. What ends a lap early is no error: see [`Ran::failure`].
     pub fn run(&self, keep: &mut dyn Keep, task: Task<'_>) -> Result<Ran, Failure> {
-        let (laps, run_ms) = task.timed(|| self.run_laps(keep, task));
+        self.run_with(keep, None, task)
+    }
+
+    /// The same with somebody at the wall, who may pause and stop each lap, and let it go on. A job that a camera follows has no use for `hands`.
+    ///
+    /// # Errors
+    /// As of [`run`](Self::run).
+    pub fn run_by_hand(
+        &self,
+        keep: &mut dyn Keep,
+        hands: &mut dyn Hands,
+        task: Task<'_>,
+    ) -> Result<Ran, Failure> {
+        self.run_with(keep, Some(hands), task)
+    }
+
+    fn run_with(
+        &self,
+        keep: &mut dyn Keep,
+        hands: Option<&mut dyn Hands>,
+        task: Task<'_>,
+    ) -> Result<Ran, Failure> {
+        let (laps, run_ms) = task.timed(|| self.run_laps(keep, hands, task));
         let Laps { earlier, last, learned, watched, failure, simulated } = laps?;
         learned.notes.iter().for_each(|note| task.say(&format!("note: {note}")));
         let follow = watched.as_ref().map(|watched| watched.figures.clone());
@@ -145,7 +168,12 @@ impl Prepared {
         Ok(Ran { earlier, last, plan, identified, eye, seen, notes, failure, simulated, run_ms })
     }
 
-    fn run_laps(&self, keep: &mut dyn Keep, task: Task<'_>) -> Result<Laps, Failure> {
+    fn run_laps(
+        &self,
+        keep: &mut dyn Keep,
+        mut hands: Option<&mut dyn Hands>,
+        task: Task<'_>,
+    ) -> Result<Laps, Failure> {
         let RunRequest { laps: wanted, seed, dry, powered_up } = self.how;
         let plan = &self.schedule.plan;
         let mut laps: Vec<Run> = Vec::new();
@@ -160,7 +188,14 @@ impl Prepared {
             let Some(looks) = self.watched() else {
                 let put_up = if powered_up { left } else { SimulatedRig::new };
                 let mut rig = put_up(&learned.rig, self.driving.pose, seed);
-                let (lap, why) = run_lap(&mut rig, plan, dry, keep, task)?;
+                let (lap, why) = match &mut hands {
+                    Some(hands) => {
+                        let done = run_lap_by_hand(&mut rig, plan, dry, (keep, &mut **hands), task)?;
+                        learned.notes.extend(done.notes);
+                        (done.run, done.failure)
+                    }
+                    None => run_lap(&mut rig, plan, dry, keep, task)?,
+                };
                 laps.push(lap);
                 failure = why;
                 continue;

@@ -31,3 +31,14 @@ pub trait Rig {
     /// Waits for the next tick's telemetry; `None` once the rig is gone.
     fn next(&mut self) -> Option<Telemetry>;
 }
+
+/// Whoever borrows a rig drives it.
+impl<R: Rig + ?Sized> Rig for &mut R {
+    fn send(&mut self, command: Command) -> Result<(), Command> {
+        (**self).send(command)
+    }
+
+    fn next(&mut self) -> Option<Telemetry> {
+        (**self).next()
+    }
+}

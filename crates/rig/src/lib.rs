@@ -19,6 +19,7 @@ mod fault;
 mod head;
 mod inputs;
 mod joint;
+mod pace;
 mod segment;
 mod telemetry;
 
@@ -28,6 +29,7 @@ pub use fault::{Clears, Fault, FaultRow, Motors, Soon};
 pub use head::{Head, Rig};
 pub use inputs::{Input, InputState, Inputs};
 pub use joint::{Joint, JointLimits, PanTilt};
+pub use pace::{RateLimit, SPEED_RANGE, ease_per_s, ease_within};
 pub use segment::{Command, Segment, Setpoint};
 pub use telemetry::{Phase, Telemetry};
 

@@ -1,4 +1,4 @@
-use crate::PanTilt;
+use crate::{PanTilt, RateLimit};
 
 /// Where one joint should be at one instant.
 ///
@@ -31,6 +31,8 @@ pub struct Segment {
     /// Whether the laser's switch is to be on. The planner shifts it by the relay's delays, so that *light* falls
     /// on the stroke.
     pub gate: bool,
+    /// Fastest that the plan's clock may run along it.
+    pub rate_limit: RateLimit,
 }
 
 impl Segment {
@@ -78,9 +80,15 @@ pub enum Command {
         /// older number.
         acknowledges: u32,
     },
-    /// Forbid light and stop the plan's clock. The head holds its position. Armed again, the job continues from there; after its end, a new one
-    /// may begin at tick 0.
+    /// Forbid light and stop the plan's clock, as soon as light that is still on its way out has fallen on its stroke. The head holds its
+    /// position. Armed again, the job continues from there; after its end, a new one may begin at tick 0.
     Disarm,
+    /// Disarm at the end of the stroke that is lit: no line is interrupted. In the dark it is the same as [`Disarm`](Self::Disarm), and
+    /// [`Arm`](Self::Arm) before that end takes it back.
+    Pause,
+    /// Run the plan's clock at this share of the plan's own speed, until another is asked for. What is beyond [`SPEED_RANGE`](crate::SPEED_RANGE) counts as its
+    /// end; what is not a number changes nothing. The rate eases there, and is never faster than a segment's [`RateLimit`] allows.
+    Speed(f32),
     /// Light the laser for this many ticks while disarmed: a dot, with which an observer locates the beam.
     ///
     /// Accepted while a job is stopped on a lit stroke and the head rests. All other reasons for darkness still apply. Ignored without a recent
@@ -120,6 +128,7 @@ mod tests {
             coefficients: PanTilt::new(c, [0.0; 6]),
             tolerance_rad: PanTilt::default(),
             gate: false,
+            rate_limit: RateLimit::PLANNED,
         };
         let pan = segment.sample(10.0).pan;
         assert!((pan.position_rad - 0.1102).abs() < 1e-6);
@@ -132,7 +141,14 @@ mod tests {
     fn a_segment_whose_end_cannot_be_counted_does_not_fit() {
         let coefficients = PanTilt::default();
         let tolerance_rad = PanTilt::default();
-        let of = |start_tick| Segment { start_tick, ticks: 10, coefficients, tolerance_rad, gate: false };
+        let of = |start_tick| Segment {
+            start_tick,
+            ticks: 10,
+            coefficients,
+            tolerance_rad,
+            gate: false,
+            rate_limit: RateLimit::PLANNED,
+        };
         assert!(of(u32::MAX - 10).fits() && of(u32::MAX - 10).end_tick() == u32::MAX);
         assert!(!of(u32::MAX - 9).fits() && of(u32::MAX - 9).end_tick() == u32::MAX);
     }

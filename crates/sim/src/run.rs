@@ -6,6 +6,7 @@ use tracelight_plant::Plant;
 use tracelight_rig::{
     Command, Fault, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S, Telemetry,
 };
+use tracelight_session::{Feeder, Job, StrokeTicks};
 use tracelight_stroke::Point;
 use tracelight_trajectory::Plan;
 
@@ -266,33 +267,17 @@ impl Rig for SimulatedRig {
     }
 }
 
-/// Feeds a plan's segments to a rig as it takes them.
-pub struct Feeder<'a> {
-    segments: &'a [Segment],
-    dark: bool,
-    next: usize,
-    finished: bool,
-}
-
-impl<'a> Feeder<'a> {
-    /// `dark` shuts every segment's gate: a dry run.
-    pub const fn new(segments: &'a [Segment], dark: bool) -> Self {
-        Self { segments, dark, next: 0, finished: false }
-    }
-
-    /// Sends as many segments as the rig takes now, then the end of the job.
-    pub fn feed(&mut self, rig: &mut impl Rig) {
-        while let Some(&segment) = self.segments.get(self.next) {
-            let segment = Segment { gate: segment.gate && !self.dark, ..segment };
-            if rig.send(Command::Append(segment)).is_err() {
-                return;
-            }
-            self.next += 1;
-        }
-        if !self.finished {
-            self.finished = rig.send(Command::Finish).is_ok();
+/// Returns a plan as a session takes it; a dry one is traced in the dark.
+pub fn job_of(plan: &Plan, dry: bool) -> Job {
+    let mut strokes: Vec<StrokeTicks> = Vec::new();
+    for (tick, point) in (0..).zip(&plan.points) {
+        let Some(stroke) = point.stroke else { continue };
+        match strokes.get_mut(stroke as usize) {
+            Some(ticks) => ticks.end = tick + 1,
+            None => strokes.push(StrokeTicks { start: tick, end: tick + 1 }),
         }
     }
+    Job { segments: plan.segments.clone(), strokes, dry }
 }
 
 /// Arms a rig: the host is there, and has read every fault that the rig told of. False where the rig does not take it.

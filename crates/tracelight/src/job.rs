@@ -11,6 +11,7 @@ use tracelight_rigfile as rigfile;
 use tracelight_sim::{Tracking, score};
 use tracelight_task::{Failure, Stop, Task};
 
+use crate::at_wall::AtWall;
 use crate::bar::Bar;
 use crate::cli::eyes::SimulatedEyeName;
 use crate::cli::request::TraceArgs;
@@ -40,7 +41,10 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
     let meta = LogMeta { picture_path: args.name(), settings: &settings, seed: args.seed };
     let mut log = RunLog::open(&folder, &meta)?;
-    let mut ran = prepared.run(&mut log, task)?;
+    let mut ran = match AtWall::of(&args.by_hand, task, stop) {
+        Some(mut hands) => prepared.run_by_hand(&mut log, &mut hands, task)?,
+        None => prepared.run(&mut log, task)?,
+    };
     if let Some(remark) = log.finish()? {
         task.say(&format!("note: {remark}"));
         ran.notes.push(remark);

@@ -1,9 +1,11 @@
 //! Tracelight: give it a picture, and a pan/tilt laser head draws it on the wall, to scale.
 
+mod at_wall;
 mod bar;
 mod cli;
 mod interrupt;
 mod job;
+mod keys;
 mod named;
 mod results;
 mod settings;

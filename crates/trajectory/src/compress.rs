@@ -1,5 +1,6 @@
-use tracelight_rig::{Joint, PanTilt, Segment};
+use tracelight_rig::{Joint, PanTilt, RateLimit, Segment};
 
+use crate::headroom::limit_rates;
 use crate::machine::Machine;
 use crate::plan::PlanPoint;
 
@@ -24,9 +25,11 @@ pub(crate) fn compress(points: &[PlanPoint], machine: &Machine, tolerance_m: f64
             coefficients: coefficients.map(|c| c.map(|v| v as f32)),
             tolerance_rad: machine.joint_tolerance(angle, tolerance_m),
             gate: gates[start],
+            rate_limit: RateLimit::PLANNED,
         });
         start += length;
     }
+    limit_rates(&mut segments, points, machine);
     segments
 }
 

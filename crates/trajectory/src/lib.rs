@@ -20,6 +20,7 @@ mod compress;
 mod corner;
 mod course;
 mod error;
+mod headroom;
 mod leg;
 mod machine;
 mod mark;

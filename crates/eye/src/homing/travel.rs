@@ -1,6 +1,6 @@
 //! How a head goes round of which nobody knows where it points: gently, a joint at a time, and back from whatever is in its way.
 
-use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, Segment, TICK_F64_S, Telemetry};
+use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, RateLimit, Segment, TICK_F64_S, Telemetry};
 use tracelight_sim::{Simulated, arm};
 use tracelight_task::Failure;
 use tracelight_trajectory::JointMotion;
@@ -119,8 +119,15 @@ impl<R: Simulated + Eye> Homing<'_, R> {
             JointMotion::at_rest(from[j]).quintic_to(&JointMotion::at_rest(to[j]), ticks).map(|c| c as f32)
         });
         let tolerance_rad = PanTilt::new(STRAY_RAD, STRAY_RAD);
-        let segment =
-            Segment { start_tick: 0, ticks: ticks as u16, coefficients, tolerance_rad, gate: false };
+        let rate_limit = RateLimit::PLANNED;
+        let segment = Segment {
+            start_tick: 0,
+            ticks: ticks as u16,
+            coefficients,
+            tolerance_rad,
+            gate: false,
+            rate_limit,
+        };
         arm(self.rig);
         for command in [Command::Append(segment), Command::Finish] {
             let _ = self.rig.send(command);

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use tracelight_maths::{hypot, powi, sin};
-use tracelight_rig::{Joint, PanTilt, Segment, TICK_F64_S};
+use tracelight_rig::{Joint, PanTilt, RateLimit, Segment, TICK_F64_S};
 use tracelight_sim::{Model, RigConfig};
 
 /// Length of a segment, ticks: short against the fastest swing.
@@ -53,6 +53,7 @@ pub fn routine(rig: &RigConfig) -> Vec<Segment> {
                 coefficients: PanTilt::from_fn(joint),
                 tolerance_rad: PanTilt::new(TOLERANCE_RAD as f32, TOLERANCE_RAD as f32),
                 gate: false,
+                rate_limit: RateLimit::PLANNED,
             });
             start_tick += u32::from(SEGMENT_TICKS);
         }

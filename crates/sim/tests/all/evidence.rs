@@ -10,7 +10,8 @@
 use std::ops::ControlFlow;
 
 use tracelight_rig::{Command, Darkness, Fault, Joint, PanTilt, Phase, Rig, Segment, Telemetry};
-use tracelight_sim::{Feeder, RigConfig, Simulated, SimulatedRig, Tick, Trouble, arm, run};
+use tracelight_session::Feeder;
+use tracelight_sim::{RigConfig, Simulated, SimulatedRig, Tick, Trouble, arm, run};
 use tracelight_trajectory::Plan;
 
 use crate::shapes::{POSE, alive, circle, lit_ticks, off_mm, plan_of, true_counts};
@@ -30,9 +31,14 @@ fn moments(plan: &Plan, seed: u64, count: usize) -> Vec<(u32, Joint)> {
 }
 
 /// A rig on its way along a plan, up to a tick of it.
-fn under_way<'a>(plan: &'a Plan, ticks: u32, from_tick: u32, seed: u64) -> (SimulatedRig, Feeder<'a>) {
+fn under_way<'a>(
+    plan: &'a Plan,
+    ticks: u32,
+    from_tick: u32,
+    seed: u64,
+) -> (SimulatedRig, Feeder<&'a [Segment]>) {
     let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, seed).counting_from(from_tick);
-    let mut feeder = Feeder::new(&plan.segments, false);
+    let mut feeder = Feeder::new(plan.segments.as_slice(), false);
     assert!(arm(&mut rig));
     for _ in 0..ticks {
         fed(&mut rig, &mut feeder);
@@ -40,7 +46,7 @@ fn under_way<'a>(plan: &'a Plan, ticks: u32, from_tick: u32, seed: u64) -> (Simu
     (rig, feeder)
 }
 
-fn fed(rig: &mut SimulatedRig, feeder: &mut Feeder<'_>) -> Tick {
+fn fed(rig: &mut SimulatedRig, feeder: &mut Feeder<&[Segment]>) -> Tick {
     feeder.feed(rig);
     alive(rig)
 }

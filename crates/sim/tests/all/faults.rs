@@ -291,7 +291,7 @@ fn a_host_that_falls_silent_is_missed_after_50_ms() {
         let (when, _) = moment(&plan, seed);
         let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, seed);
         assert!(arm(&mut rig));
-        let mut feeder = tracelight_sim::Feeder::new(&plan.segments, false);
+        let mut feeder = tracelight_session::Feeder::new(plan.segments.as_slice(), false);
         let step = |number: u32| {
             if number < when {
                 rig.send(Command::KeepAlive).unwrap();
@@ -315,7 +315,7 @@ fn after_a_fault_only_arming_lights_again_and_no_ink_is_missing() {
         let (when, _) = moment(&plan, seed);
         let mut rig = SimulatedRig::new(&config, POSE, seed);
         let mut ticks = Vec::new();
-        let mut feeder = tracelight_sim::Feeder::new(&plan.segments, false);
+        let mut feeder = tracelight_session::Feeder::new(plan.segments.as_slice(), false);
         assert!(arm(&mut rig));
         while ticks.last().is_none_or(|t: &Tick| t.telemetry.phase != Phase::Done) && ticks.len() < 20_000 {
             let since = (ticks.len() as u32).wrapping_sub(when);
@@ -373,7 +373,7 @@ fn an_encoder_that_jumps_after_another_fault_still_gets_its_motor_switched_off()
         let (when, joint) = moment(&plan, seed);
         let mut rig = SimulatedRig::new(&config, POSE, seed);
         assert!(arm(&mut rig));
-        let mut feeder = tracelight_sim::Feeder::new(&plan.segments, false);
+        let mut feeder = tracelight_session::Feeder::new(plan.segments.as_slice(), false);
         let mut last = None;
         for number in 0..when + 800 {
             if number < when {

@@ -138,6 +138,7 @@ fn an_unhomed_head_goes_as_far_round_as_its_range_is_wide_and_ends_at_its_stops(
             coefficients: PanTilt::new(pan, [0.0; 6]),
             tolerance_rad: PanTilt::new(0.05, 0.05),
             gate: false,
+            rate_limit: tracelight_rig::RateLimit::PLANNED,
         };
         run_segments(&mut rig, &[segment], false, |_, _| ControlFlow::Continue(()))
     };

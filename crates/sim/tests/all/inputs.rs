@@ -8,7 +8,8 @@
 )]
 
 use tracelight_rig::{Command, Fault, Input, InputState, Motors, PanTilt, Phase, Rig};
-use tracelight_sim::{Feeder, RigConfig, Simulated, SimulatedRig, Tick, Trouble};
+use tracelight_session::Feeder;
+use tracelight_sim::{RigConfig, Simulated, SimulatedRig, Tick, Trouble};
 use tracelight_trajectory::Plan;
 
 use crate::shapes::{POSE, alive, circle, lit_ticks, off_mm, plan_of};
@@ -30,7 +31,7 @@ fn run_with(
     mut meddle: impl FnMut(&mut SimulatedRig, &Tick),
 ) -> Vec<Tick> {
     let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, seed);
-    let mut feeder = Feeder::new(&plan.segments, false);
+    let mut feeder = Feeder::new(plan.segments.as_slice(), false);
     let mut ticks: Vec<Tick> = Vec::new();
     rig.send(Command::KeepAlive).unwrap();
     rig.send(Command::Arm { acknowledges: 0 }).unwrap();

@@ -1,7 +1,8 @@
 //! What a host needs to find a head again while a job waits: a dot where it stands, and the job forgotten.
 
 use tracelight_rig::{Command, Fault, Joint, PanTilt, Phase, Rig};
-use tracelight_sim::{Feeder, RigConfig, SimulatedRig, Tick, Trouble, arm, run_segments};
+use tracelight_session::Feeder;
+use tracelight_sim::{RigConfig, SimulatedRig, Tick, Trouble, arm, run_segments};
 use tracelight_trajectory::Plan;
 
 use crate::shapes::{POSE, alive, circle, lit_ticks, plan_of, true_counts};
@@ -9,7 +10,7 @@ use crate::shapes::{POSE, alive, circle, lit_ticks, plan_of, true_counts};
 /// A rig stopped in the middle of a lit circle and come to rest there.
 fn stopped(plan: &Plan) -> SimulatedRig {
     let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, 3);
-    let mut feeder = Feeder::new(&plan.segments, false);
+    let mut feeder = Feeder::new(plan.segments.as_slice(), false);
     let middle = lit_ticks(plan)[lit_ticks(plan).len() / 2];
     assert!(arm(&mut rig));
     for _ in 0..middle {
@@ -37,7 +38,7 @@ fn a_dot_is_lit_where_the_head_waits_and_the_job_goes_on_after_it() {
     assert!(lit.iter().all(|t| t.spot.unwrap().distance(t.asked.unwrap()) < 2e-3));
     assert!(dot.iter().all(|t| t.telemetry.plan_tick == dot[0].telemetry.plan_tick));
     assert!(arm(&mut rig));
-    let mut feeder = Feeder::new(&[], false);
+    let mut feeder = Feeder::new([], false);
     feeder.feed(&mut rig);
     let rest = ticks(&mut rig, 3000);
     assert!(rest.iter().any(|t| t.light && t.telemetry.phase == Phase::Tracing));

@@ -21,6 +21,7 @@ fn there_and_back(to_rad: f32, ticks: u16) -> Segment {
         coefficients: PanTilt::new([0.0, 4.0 * bend * n, -4.0 * bend, 0.0, 0.0, 0.0], [0.0; 6]),
         tolerance_rad: PanTilt::new(0.003, 0.003),
         gate: true,
+        rate_limit: tracelight_rig::RateLimit::PLANNED,
     }
 }
 

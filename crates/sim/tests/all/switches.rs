@@ -8,7 +8,8 @@ use tracelight_plant::Plant;
 use tracelight_rig::{
     Actuation, Command, Darkness, Fault, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, Telemetry,
 };
-use tracelight_sim::{Feeder, RigConfig, SimulatedRig, Tick, Trouble};
+use tracelight_session::Feeder;
+use tracelight_sim::{RigConfig, SimulatedRig, Tick, Trouble};
 use tracelight_trajectory::Plan;
 
 use crate::shapes::{POSE, alive, circle, lit_ticks, plan_of};
@@ -31,7 +32,7 @@ fn run_with(
     mut meddle: impl FnMut(&mut SimulatedRig, usize),
 ) -> Vec<Tick> {
     let mut rig = SimulatedRig::new(config, POSE, seed);
-    let mut feeder = Feeder::new(&plan.segments, false);
+    let mut feeder = Feeder::new(plan.segments.as_slice(), false);
     let mut ticks: Vec<Tick> = Vec::new();
     rig.send(Command::KeepAlive).unwrap();
     rig.send(Command::Arm { acknowledges: 0 }).unwrap();
@@ -151,7 +152,7 @@ impl Partly {
 
     /// The first ticks of a plan, by a host that arms as often as it hears of a fault.
     fn draw(&mut self, plan: &Plan) -> Vec<(Telemetry, bool)> {
-        let mut feeder = Feeder::new(&plan.segments, false);
+        let mut feeder = Feeder::new(plan.segments.as_slice(), false);
         let mut ticks: Vec<(Telemetry, bool)> = Vec::new();
         while ticks.len() < 2000 {
             let acknowledges = ticks.last().map_or(0, |(t, _)| t.fault_number);
@@ -254,11 +255,12 @@ fn a_plan_that_begins_with_light_waits_until_the_switches_were_tried_and_a_dry_o
         coefficients: PanTilt::default(),
         tolerance_rad: PanTilt::new(0.01, 0.01),
         gate: true,
+        rate_limit: tracelight_rig::RateLimit::PLANNED,
     };
     for dark in [false, true] {
         let mut rig = SimulatedRig::new(&config, POSE, 0);
         let segments = [still(0), still(200)];
-        let mut feeder = Feeder::new(&segments, dark);
+        let mut feeder = Feeder::new(segments, dark);
         rig.send(Command::KeepAlive).unwrap();
         rig.send(Command::Arm { acknowledges: 0 }).unwrap();
         let ticks: Vec<Tick> = (0..600)
@@ -361,7 +363,7 @@ fn what_was_stuck_is_tried_again_before_the_job_goes_on() {
     let when = lit_ticks(&plan)[500];
     let mut dark = None;
     let mut rig = SimulatedRig::new(&config, POSE, 5);
-    let mut feeder = Feeder::new(&plan.segments, false);
+    let mut feeder = Feeder::new(plan.segments.as_slice(), false);
     rig.send(Command::KeepAlive).unwrap();
     rig.send(Command::Arm { acknowledges: 0 }).unwrap();
     let mut ticks: Vec<Tick> = Vec::new();

@@ -2,6 +2,7 @@
 
 mod advice;
 pub(crate) mod answer;
+pub(crate) mod by_hand;
 mod calibrate;
 mod candidates;
 pub(crate) mod choosing;

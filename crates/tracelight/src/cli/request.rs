@@ -7,6 +7,7 @@ use tracelight_camera::Source;
 use tracelight_task::Failure;
 
 use crate::cli::answer::Voice;
+use crate::cli::by_hand::ByHandArgs;
 use crate::cli::driving::DrivingArgs;
 use crate::cli::eyes::{EyeArgs, FollowArgs, SimulatedEyeName};
 use crate::cli::laws::LawArgs;
@@ -68,6 +69,8 @@ pub(crate) struct TraceArgs {
     /// Start the simulated head unhomed, to check that it refuses to draw
     #[arg(help_heading = "Simulation", long)]
     pub(crate) sim_unhomed: bool,
+    #[command(flatten, next_help_heading = "At the wall")]
+    pub(crate) by_hand: ByHandArgs,
     /// Folder for the results [default: out/<the picture's name>/]
     #[arg(help_heading = "Output", long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

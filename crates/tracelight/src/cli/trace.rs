@@ -11,8 +11,12 @@ pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
     if args.open {
         open(&dir.join("report.html"));
     }
-    let text = format!("{}\nreport: {}", text(&summary), dir.join("report.html").display());
-    Ok(Answer { text, json: summary.json(), failure })
+    let json = summary.json();
+    let text = match args.by_hand.events {
+        true => serde_json::json!({ "event": "summary", "summary": json }).to_string(),
+        false => format!("{}\nreport: {}", text(&summary), dir.join("report.html").display()),
+    };
+    Ok(Answer { text, json, failure })
 }
 
 fn text(s: &Summary) -> String {

@@ -4,6 +4,8 @@
 #![allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")]
 
 mod arrows;
+#[cfg(unix)]
+mod at_wall;
 mod batch;
 mod calibrate;
 mod camera;

@@ -1,5 +1,7 @@
 //! Shapes to trace, 3 ft in front of the head.
 
+pub(crate) mod ink;
+
 use std::ops::ControlFlow;
 
 use tracelight_aim::HeadPose;

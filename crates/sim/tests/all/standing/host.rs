@@ -128,6 +128,7 @@ impl Host {
             coefficients: PanTilt::new(quintic(self.at.pan, to.pan), quintic(self.at.tilt, to.tilt)),
             tolerance_rad: PanTilt::new(0.01, 0.01),
             gate: !dice.one_in(4),
+            rate_limit: tracelight_rig::RateLimit::PLANNED,
         };
         if rig.send(Command::Append(segment)).is_ok() {
             self.next += u32::from(ticks);

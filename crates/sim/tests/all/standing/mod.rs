@@ -5,7 +5,8 @@ mod host;
 mod places;
 
 use tracelight_rig::{Command, Darkness, Fault, PanTilt, Rig, Segment};
-use tracelight_sim::{Feeder, RigConfig, Simulated, SimulatedRig, Tick, first_standing};
+use tracelight_session::Feeder;
+use tracelight_sim::{RigConfig, Simulated, SimulatedRig, Tick, first_standing};
 use tracelight_stroke::Point;
 
 use crate::shapes::{POSE, circle, lit_ticks, plan_of, star};
@@ -23,6 +24,7 @@ fn rest(start_tick: u32) -> Segment {
         coefficients: PanTilt::new([0.0; 6], [0.0; 6]),
         tolerance_rad: PanTilt::new(0.003, 0.003),
         gate: true,
+        rate_limit: tracelight_rig::RateLimit::PLANNED,
     }
 }
 
@@ -82,7 +84,7 @@ fn a_dot_of_a_stopped_job_does_not_stand_however_long_and_often_it_is_asked_for(
         };
         rig.send(Command::KeepAlive).unwrap();
         rig.send(Command::Arm { acknowledges: 0 }).unwrap();
-        let mut feeder = Feeder::new(&plan.segments, false);
+        let mut feeder = Feeder::new(plan.segments.as_slice(), false);
         for _ in 0..lit_ticks[lit_ticks.len() / 3] {
             feeder.feed(&mut rig);
             step(&mut rig, true);

@@ -1,0 +1,64 @@
+use tracelight_rig::{Command, Rig, Segment};
+
+/// Ticks of the plan in which a stroke is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StrokeTicks {
+    /// The first tick.
+    pub start: u32,
+    /// The tick after the last.
+    pub end: u32,
+}
+
+/// A plan as a session needs it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Job {
+    /// Segments of the plan; the first begins at tick 0, where the head rests.
+    pub segments: Vec<Segment>,
+    /// Its strokes, in time order.
+    pub strokes: Vec<StrokeTicks>,
+    /// Whether it is traced in the dark.
+    pub dry: bool,
+}
+
+impl Job {
+    /// Returns the length of the job, ticks.
+    pub fn ticks(&self) -> u32 {
+        self.segments.last().map_or(0, Segment::end_tick)
+    }
+}
+
+/// Returns the number of the stroke that is drawn at a tick of the plan, or comes next.
+pub(crate) fn stroke_at(strokes: &[StrokeTicks], plan_tick: u32) -> Option<u32> {
+    let number = strokes.partition_point(|stroke| stroke.end <= plan_tick);
+    (number < strokes.len()).then_some(number as u32)
+}
+
+/// Feeds a plan's segments to a rig as it takes them.
+#[derive(Clone, Debug)]
+pub struct Feeder<S> {
+    segments: S,
+    dark: bool,
+    next: usize,
+    finished: bool,
+}
+
+impl<S: AsRef<[Segment]>> Feeder<S> {
+    /// `dark` shuts every segment's gate: a dry run.
+    pub const fn new(segments: S, dark: bool) -> Self {
+        Self { segments, dark, next: 0, finished: false }
+    }
+
+    /// Sends as many segments as the rig takes now, then the end of the job.
+    pub fn feed(&mut self, rig: &mut impl Rig) {
+        while let Some(&segment) = self.segments.as_ref().get(self.next) {
+            let segment = Segment { gate: segment.gate && !self.dark, ..segment };
+            if rig.send(Command::Append(segment)).is_err() {
+                return;
+            }
+            self.next += 1;
+        }
+        if !self.finished {
+            self.finished = rig.send(Command::Finish).is_ok();
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! One rig and at most one job, as somebody at the wall has them in hand.
+//!
+//! Whoever drives a rig, be it a terminal, a web page or a script, sends it [`Request`]s and lets it [`tick`](Session::tick). The session feeds the job's
+//! segments, says in which [`State`] it is, and tells [`Event`]s.
+
+mod event;
+mod job;
+mod request;
+mod session;
+mod state;
+
+pub use event::{Event, Snapshot};
+pub use job::{Feeder, Job, StrokeTicks};
+pub use request::{Refused, Request, When};
+pub use session::{ARMED_TICKS, PAUSED_TICKS, Session};
+pub use state::State;

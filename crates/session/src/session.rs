@@ -1,0 +1,420 @@
+use std::collections::VecDeque;
+
+use tracelight_rig::{Command, PanTilt, Phase, Rig, SPEED_RANGE, Segment, Telemetry};
+
+use crate::event::{Event, Snapshot};
+use crate::job::{Feeder, Job, StrokeTicks, stroke_at};
+use crate::request::{Refused, Request, When};
+use crate::state::State;
+
+/// How long a session stays armed before a job begins: 10 s.
+pub const ARMED_TICKS: u32 = 10_000;
+/// How long a paused job goes on without arming anew: 60 s.
+pub const PAUSED_TICKS: u32 = 60_000;
+/// A head within this of where a job begins is there, rad: a little less than the controller allows.
+const THERE_RAD: f32 = 1.5e-3;
+/// Slower than this a head rests, rad/s.
+const REST_RAD_S: f32 = 5e-3;
+/// Commands that may wait for a rig which takes none.
+const MOST_WAITING: usize = 16;
+/// How long a rig may take to say that it is armed, ticks: a wire and a queue in between.
+const ANSWER_TICKS: u32 = 250;
+/// Events that are kept for whoever does not fetch them; older ones go.
+const MOST_EVENTS: usize = 4096;
+
+/// The job in hand.
+#[derive(Clone, Debug)]
+struct Running {
+    feeder: Feeder<Vec<Segment>>,
+    strokes: Vec<StrokeTicks>,
+    ticks: u32,
+    dry: bool,
+    plan_tick: u32,
+    stroke: Option<u32>,
+    /// Whether the rig has said that it is armed since it was asked to be: what it says before is of something else.
+    answered: bool,
+}
+
+/// One rig and at most one job.
+#[derive(Clone, Debug)]
+pub struct Session<R> {
+    rig: R,
+    state: State,
+    /// The state in which it was armed, which comes back when that is over.
+    armed_in: State,
+    /// Tick in which it was armed, or paused, or the rig was asked to go on.
+    since: u32,
+    running: Option<Running>,
+    speed: f32,
+    told: Telemetry,
+    /// Commands that the rig did not take yet, in order.
+    outbox: VecDeque<Command>,
+    events: VecDeque<Event>,
+}
+
+impl<R: Rig> Session<R> {
+    /// Takes over a rig, which is darkened. Before its first tick nothing is known of it.
+    pub fn new(rig: R) -> Self {
+        let mut session = Self {
+            rig,
+            state: State::Unhomed,
+            armed_in: State::Unhomed,
+            since: 0,
+            running: None,
+            speed: 1.0,
+            told: Telemetry::default(),
+            outbox: VecDeque::new(),
+            events: VecDeque::new(),
+        };
+        session.send(Command::Disarm);
+        session
+    }
+
+    /// The rig.
+    pub const fn rig(&self) -> &R {
+        &self.rig
+    }
+
+    /// The rig, for what is no command: a simulated one suffers faults, for instance.
+    pub const fn rig_mut(&mut self) -> &mut R {
+        &mut self.rig
+    }
+
+    /// What it does.
+    pub const fn state(&self) -> State {
+        self.state
+    }
+
+    /// The rig's last telemetry.
+    pub const fn told(&self) -> &Telemetry {
+        &self.told
+    }
+
+    /// The next event that was not fetched yet.
+    pub fn event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    /// Where it stands.
+    pub fn snapshot(&self) -> Snapshot {
+        let job = self.running.as_ref();
+        let armed = if self.state == State::Armed { ARMED_TICKS.saturating_sub(self.waited()) } else { 0 };
+        Snapshot {
+            state: self.state,
+            tick: self.told.tick,
+            homed: self.told.homed,
+            gate: self.told.actuation.lights(),
+            speed: self.speed,
+            plan_tick: job.map_or(0, |running| running.plan_tick),
+            plan_ticks: job.map_or(0, |running| running.ticks),
+            stroke: job.and_then(|running| stroke_at(&running.strokes, running.plan_tick)),
+            strokes: job.map_or(0, |running| running.strokes.len() as u32),
+            armed_ticks: armed,
+        }
+    }
+
+    /// Does what is asked, from the next tick on.
+    ///
+    /// # Errors
+    /// Why it is refused; nothing has changed then.
+    pub fn request(&mut self, request: Request) -> Result<(), Refused> {
+        use State::{
+            Armed, Done, Fault, Parking, Paused, Pausing, Ready, Returning, Stopped, Tracing, Unhomed,
+        };
+        if self.outbox.len() >= MOST_WAITING && request != Request::Stop {
+            return Err(Refused::Busy);
+        }
+        match (request, self.state) {
+            (Request::Stop, _) => self.stop(),
+            (Request::Speed(rate), _) => self.set_speed(rate)?,
+            (Request::Home(counts), Unhomed | Ready | Done) => self.home(counts)?,
+            (Request::Arm, Ready | Done | Stopped | Paused) => {
+                self.armed_in = self.state;
+                self.since = self.told.tick;
+                self.enter(Armed);
+            }
+            (Request::Disarm, Armed) => self.let_arming_go(),
+            (Request::Trace(job), Ready | Done | Armed) if self.state != Armed || !self.is_resumable() => {
+                self.begin(job)?;
+            }
+            (Request::Resume, Armed) if self.is_resumable() => self.go_on(),
+            (Request::Resume, Paused | Stopped) => {
+                self.check_resume()?;
+                self.go_on();
+            }
+            (Request::Pause(when), Tracing | Returning) => {
+                self.send(if when == When::AtOnce { Command::Disarm } else { Command::Pause });
+                self.enter(Pausing);
+            }
+            (Request::Pause(When::AtOnce), Pausing) => self.send(Command::Disarm),
+            (Request::Clear, Fault) => {
+                let acknowledges = self.told.fault_number;
+                [Command::KeepAlive, Command::Arm { acknowledges }, Command::Disarm]
+                    .into_iter()
+                    .for_each(|command| self.send(command));
+            }
+            (Request::Park, Ready | Done | Stopped | Paused) => {
+                self.running = None;
+                self.send(Command::Abandon);
+                self.enter(Parking);
+            }
+            (request, state) => {
+                return Err(Refused::State { request: request.name(), state, advice: advice(state) });
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets the rig run for a tick; `None` once it is gone.
+    pub fn tick(&mut self) -> Option<Telemetry> {
+        self.tick_by(R::next, |telemetry| telemetry)
+    }
+
+    /// The same for a rig that tells more of a tick than its telemetry.
+    pub fn tick_by<T>(
+        &mut self,
+        step: impl FnOnce(&mut R) -> Option<T>,
+        telemetry: impl FnOnce(&T) -> &Telemetry,
+    ) -> Option<T> {
+        if self.state != State::Lost {
+            self.send(Command::KeepAlive);
+            if let Some(running) = &mut self.running
+                && self.outbox.is_empty()
+            {
+                running.feeder.feed(&mut self.rig);
+            }
+        }
+        let Some(tick) = step(&mut self.rig) else {
+            self.running = None;
+            self.outbox.clear();
+            self.enter(State::Lost);
+            return None;
+        };
+        self.told = *telemetry(&tick);
+        self.follow();
+        Some(tick)
+    }
+
+    /// Sends a command, behind those that the rig did not take yet.
+    fn send(&mut self, command: Command) {
+        if command == Command::Disarm {
+            // nothing that was asked before may come after it
+            self.outbox.clear();
+        }
+        match self.outbox.back_mut() {
+            // the newer one counts, and the same again adds nothing
+            Some(last) if std::mem::discriminant(last) == std::mem::discriminant(&command) => *last = command,
+            _ => self.outbox.push_back(command),
+        }
+        while let Some(&command) = self.outbox.front() {
+            if self.rig.send(command).is_err() {
+                return;
+            }
+            self.outbox.pop_front();
+        }
+    }
+
+    fn enter(&mut self, to: State) {
+        let from = std::mem::replace(&mut self.state, to);
+        if from != to {
+            self.tell(Event::State { tick: self.told.tick, from, to });
+        }
+    }
+
+    fn tell(&mut self, event: Event) {
+        if self.events.len() >= MOST_EVENTS {
+            self.events.pop_front();
+        }
+        self.events.push_back(event);
+    }
+
+    /// Ticks since it was armed, or paused, or the rig was asked to go on.
+    const fn waited(&self) -> u32 {
+        self.told.tick.wrapping_sub(self.since)
+    }
+
+    const fn is_resumable(&self) -> bool {
+        matches!(self.armed_in, State::Stopped | State::Paused)
+    }
+
+    fn let_arming_go(&mut self) {
+        self.enter(self.armed_in);
+        self.since = self.told.tick;
+    }
+
+    fn stop(&mut self) {
+        self.send(Command::Disarm);
+        match self.state {
+            State::Tracing | State::Returning | State::Pausing | State::Paused => self.enter(State::Stopped),
+            State::Armed if self.is_resumable() => self.enter(State::Stopped),
+            State::Armed => self.enter(State::Ready),
+            _ => {}
+        }
+    }
+
+    fn set_speed(&mut self, rate: f32) -> Result<(), Refused> {
+        if !(SPEED_RANGE.0..=SPEED_RANGE.1).contains(&rate) {
+            return Err(Refused::Speed { asked: rate });
+        }
+        self.speed = rate;
+        if self.state != State::Lost {
+            self.send(Command::Speed(rate));
+        }
+        Ok(())
+    }
+
+    fn home(&mut self, counts: PanTilt<i32>) -> Result<(), Refused> {
+        if !self.outbox.is_empty() || self.rig.send(Command::Home(counts)).is_err() {
+            return Err(Refused::Rig);
+        }
+        self.running = None;
+        Ok(())
+    }
+
+    fn begin(&mut self, job: Job) -> Result<(), Refused> {
+        let Some(first) = job.segments.first() else { return Err(Refused::Empty) };
+        if !job.dry && self.state != State::Armed {
+            return Err(Refused::NotArmed);
+        }
+        let start = first.sample(0.0);
+        let off = PanTilt::from_fn(|j| (start[j].position_rad - self.told.position_rad[j]).abs());
+        let off_rad = off.pan.max(off.tilt);
+        // what is not a number is nowhere
+        if off_rad > THERE_RAD || off_rad.is_nan() || !self.rests() {
+            return Err(Refused::Elsewhere { off_rad });
+        }
+        let (ticks, Job { segments, strokes, dry }) = (job.ticks(), job);
+        let feeder = Feeder::new(segments, dry);
+        self.running =
+            Some(Running { feeder, strokes, ticks, dry, plan_tick: 0, stroke: None, answered: false });
+        self.go_on();
+        Ok(())
+    }
+
+    fn check_resume(&self) -> Result<(), Refused> {
+        let is_dry = self.running.as_ref().is_some_and(|running| running.dry);
+        match self.state {
+            _ if is_dry => Ok(()),
+            State::Paused if self.waited() > PAUSED_TICKS => Err(Refused::PausedLong),
+            State::Stopped => Err(Refused::NotArmed),
+            _ => Ok(()),
+        }
+    }
+
+    /// Arms the rig: a job begins, or goes on.
+    fn go_on(&mut self) {
+        let acknowledges = self.told.fault_number;
+        self.send(Command::KeepAlive);
+        self.send(Command::Arm { acknowledges });
+        self.since = self.told.tick;
+        if let Some(running) = &mut self.running {
+            running.answered = false;
+        }
+        self.enter(State::Tracing);
+    }
+
+    fn rests(&self) -> bool {
+        let PanTilt { pan, tilt } = self.told.velocity_rad_s;
+        pan.abs().max(tilt.abs()) < REST_RAD_S
+    }
+
+    /// What the last tick means for the state.
+    fn follow(&mut self) {
+        let Telemetry { tick, fault, homed, .. } = self.told;
+        if let Some(fault) = fault {
+            if self.state != State::Fault {
+                self.tell(Event::Fault { tick, fault });
+                self.enter(State::Fault);
+            }
+            return;
+        }
+        if !homed {
+            self.running = None;
+            self.enter(State::Unhomed);
+            return;
+        }
+        self.follow_job();
+        match self.next_state() {
+            State::Ready => {
+                self.running = None;
+                self.enter(State::Ready);
+            }
+            State::Paused if self.state == State::Pausing => {
+                self.since = tick;
+                self.enter(State::Paused);
+            }
+            next => self.enter(next),
+        }
+    }
+
+    /// The state after a tick without a fault of a rig that is homed.
+    fn next_state(&self) -> State {
+        let phase = self.told.phase;
+        let answered = self.running.as_ref().is_some_and(|running| running.answered);
+        match self.state {
+            State::Unhomed => State::Ready,
+            State::Fault if self.has_begun() => State::Stopped,
+            State::Fault => State::Ready,
+            State::Armed if self.waited() >= ARMED_TICKS => self.armed_in,
+            State::Tracing | State::Returning | State::Pausing if answered && phase == Phase::Done => {
+                State::Done
+            }
+            // an open interlock, for instance, keeps it from arming
+            State::Tracing | State::Returning
+                if phase == Phase::Dark && (answered || self.waited() > ANSWER_TICKS) =>
+            {
+                State::Stopped
+            }
+            State::Tracing if matches!(phase, Phase::Holding | Phase::Testing) => State::Returning,
+            State::Returning if phase == Phase::Tracing => State::Tracing,
+            State::Pausing if phase == Phase::Dark => State::Paused,
+            State::Parking if self.is_parked() => State::Ready,
+            state => state,
+        }
+    }
+
+    fn has_begun(&self) -> bool {
+        self.running.as_ref().is_some_and(|running| running.plan_tick > 0)
+    }
+
+    fn is_parked(&self) -> bool {
+        let PanTilt { pan, tilt } = self.told.position_rad;
+        pan.abs().max(tilt.abs()) < THERE_RAD && self.rests()
+    }
+
+    /// Where the job is now.
+    fn follow_job(&mut self) {
+        let Telemetry { tick, plan_tick, phase, .. } = self.told;
+        let is_on = matches!(self.state, State::Tracing | State::Returning | State::Pausing);
+        let Some(running) = self.running.as_mut().filter(|_| is_on) else { return };
+        running.answered |= !matches!(phase, Phase::Dark | Phase::Done | Phase::Faulted);
+        if !running.answered {
+            return;
+        }
+        running.plan_tick = plan_tick;
+        let stroke = stroke_at(&running.strokes, plan_tick);
+        let of = running.strokes.len() as u32;
+        let begins = stroke
+            .filter(|&now| running.strokes.get(now as usize).is_some_and(|stroke| plan_tick >= stroke.start));
+        if begins.is_some() && begins != running.stroke {
+            running.stroke = begins;
+            let stroke = begins.unwrap_or_default();
+            self.tell(Event::Stroke { tick, stroke, of });
+        }
+    }
+}
+
+/// What may be asked in a state.
+const fn advice(state: State) -> &'static str {
+    match state {
+        State::Unhomed => "home the head first",
+        State::Ready | State::Done => "arm, then trace",
+        State::Armed => "trace or resume, or disarm",
+        State::Tracing | State::Returning | State::Pausing => "pause or stop it first",
+        State::Paused => "resume, stop or park",
+        State::Stopped => "arm and resume, or park",
+        State::Parking => "wait until it is at zero",
+        State::Fault => "clear the fault first",
+        State::Lost => "connect the rig again",
+    }
+}

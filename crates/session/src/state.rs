@@ -1,0 +1,83 @@
+/// What a session does.
+///
+/// ```text
+///              homed            Arm               Trace            gate shut
+///  Unhomed ───────────► Ready ◄─────► Armed ───────────► Tracing ◄──────────► Returning
+///     ▲                  ▲ ▲   10 s     ▲                 │  │ ▲   off its stroke
+///     │ counts lost      │ │            │           Pause │  │ └───── Resume ─────┐
+///     │                  │ └─ Parking ◄─┼── Park ──┐      ▼  └──► Done            │
+///     │                  │              │          │   Pausing ───────────────► Paused
+///     │     no job begun │              │ Arm      │              at rest, dark   │
+///   Fault ◄─ any         └── Stopped ◄──┴──────────┴──── Stop, from anywhere ─────┘
+///     └── Clear ──────────────►┘
+/// ```
+///
+/// A dry job needs no arming: it goes from `Ready`, `Done`, `Stopped` or `Paused` to `Tracing`. `Lost` is entered from anywhere, and never left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum State {
+    /// The rig does not know where it points.
+    Unhomed,
+    /// Dark, at rest, without a job.
+    Ready,
+    /// Somebody armed: a job may begin, or go on, within [`ARMED_TICKS`](crate::ARMED_TICKS). Still dark.
+    Armed,
+    /// The plan's clock runs.
+    Tracing,
+    /// The plan's clock stands until the head is back on its stroke. Dark.
+    Returning,
+    /// The stroke that is lit is drawn to its end.
+    Pausing,
+    /// Dark on the way of a job that goes on by [`Request::Resume`](crate::Request::Resume).
+    Paused,
+    /// Dark on the way of a job that was stopped. It goes on only after somebody has armed again.
+    Stopped,
+    /// Returns to zero in the dark; the job is forgotten.
+    Parking,
+    /// The job is done.
+    Done,
+    /// A fault is latched. Dark until it is cleared.
+    Fault,
+    /// The rig is gone. It darkens by itself.
+    Lost,
+}
+
+impl State {
+    /// Every state.
+    pub const ALL: [Self; 12] = [
+        Self::Unhomed,
+        Self::Ready,
+        Self::Armed,
+        Self::Tracing,
+        Self::Returning,
+        Self::Pausing,
+        Self::Paused,
+        Self::Stopped,
+        Self::Parking,
+        Self::Done,
+        Self::Fault,
+        Self::Lost,
+    ];
+
+    /// Stable name for scripts.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Unhomed => "unhomed",
+            Self::Ready => "ready",
+            Self::Armed => "armed",
+            Self::Tracing => "tracing",
+            Self::Returning => "returning",
+            Self::Pausing => "pausing",
+            Self::Paused => "paused",
+            Self::Stopped => "stopped",
+            Self::Parking => "parking",
+            Self::Done => "done",
+            Self::Fault => "fault",
+            Self::Lost => "lost",
+        }
+    }
+
+    /// Whether light may leave the head.
+    pub const fn may_light(self) -> bool {
+        matches!(self, Self::Tracing | Self::Pausing)
+    }
+}

@@ -1,0 +1,24 @@
+use clap::Args;
+
+/// Whoever stands at the wall while the job runs.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct ByHandArgs {
+    /// Run the simulated rig in real time, or FACTOR times as fast, from 0.25 to 8. In a terminal keys pause, stop and change the speed; ? lists
+    /// them
+    #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1", value_parser = factor,
+          allow_hyphen_values = true, conflicts_with = "camera")]
+    pub(crate) real_time: Option<f64>,
+    /// Print one JSON object per line while the job runs: states, strokes, faults, progress
+    #[arg(long, conflicts_with_all = ["json", "camera"])]
+    pub(crate) events: bool,
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    const RANGE: std::ops::RangeInclusive<f64> = 0.25..=8.0;
+    let factor = text.parse().map_err(|_| format!("{text} is not a number; give one such as 2"))?;
+    if RANGE.contains(&factor) {
+        Ok(factor)
+    } else {
+        Err(format!("{text} is not between {} and {}; 1 is real time", RANGE.start(), RANGE.end()))
+    }
+}

@@ -1,0 +1,124 @@
+//! Somebody at the wall: keys in a terminal, and what the program tells while a job runs.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, Command, Stdio};
+
+use serde_json::Value;
+
+use crate::support::{folder, program, rows, run};
+
+/// A program with a terminal of its own as standard input, whose events are read.
+struct Terminal {
+    keyboard: File,
+    child: Child,
+    events: Box<dyn Iterator<Item = Value>>,
+}
+
+impl Terminal {
+    fn of(mut command: Command) -> Self {
+        let pty = nix::pty::openpty(None, None).unwrap();
+        let mut child = command
+            .stdin(File::from(pty.slave))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let events = lines.map(|line| serde_json::from_str(&line.unwrap()).unwrap());
+        Self { keyboard: File::from(pty.master), child, events: Box::new(events) }
+    }
+
+    fn press(&mut self, keys: &str) {
+        self.keyboard.write_all(keys.as_bytes()).unwrap();
+    }
+
+    /// Reads on to an event that is wanted.
+    fn until(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+        let mut seen = Vec::new();
+        for event in &mut self.events {
+            if wanted(&event) {
+                return event;
+            }
+            seen.push(event);
+        }
+        panic!("it ended: {seen:#?}");
+    }
+
+    fn until_state(&mut self, state: &str) {
+        self.until(|event| event["event"] == "state" && event["to"] == state);
+    }
+}
+
+fn traced(out: &std::path::Path) -> Command {
+    let mut command = program();
+    command.args(["trace", "examples/house.png", "--events", "--real-time", "8", "--out"]).arg(out);
+    command
+}
+
+#[test]
+fn keys_pause_and_stop_a_job_and_let_it_go_on() {
+    let dir = folder("keys");
+    let mut wall = Terminal::of(traced(&dir));
+    wall.until(|event| event["event"] == "stroke" && event["stroke"] == 2);
+    wall.press("-");
+    wall.until(|event| event["event"] == "progress" && event["speed"] == 0.75);
+    wall.press("=p");
+    wall.until_state("paused");
+    // in the dark, and its clock stands
+    let one = wall.until(|event| event["event"] == "progress");
+    let other = wall.until(|event| event["event"] == "progress");
+    assert!(one["gate"] == false && one["plan_s"] == other["plan_s"], "{one} {other}");
+    wall.press(" ");
+    wall.until_state("tracing");
+    wall.press(" ");
+    wall.until_state("pausing");
+    wall.until_state("paused");
+    wall.press(" ");
+    wall.until_state("tracing");
+    wall.press("\x1b");
+    wall.until_state("stopped");
+    // light again needs two acts
+    wall.press("\r");
+    wall.until(|event| {
+        event["event"] == "refused" && event["message"].as_str().unwrap().contains("arm first")
+    });
+    wall.press("a\r");
+    wall.until_state("tracing");
+    wall.until_state("done");
+    let summary = wall.until(|event| event["event"] == "summary");
+    assert!(summary["summary"]["tracking"]["max_mm"].as_f64().unwrap() < 0.3, "{summary}");
+    assert_eq!(wall.child.wait().unwrap().code(), Some(0));
+    let report = std::fs::read_to_string(dir.join("report.html")).unwrap();
+    assert!(report.contains("paused after") && report.contains("stopped after"), "the report tells of them");
+}
+
+#[test]
+fn the_first_ctrl_c_pauses_and_the_second_ends() {
+    let dir = folder("ctrl-c");
+    let mut wall = Terminal::of(traced(&dir));
+    wall.until(|event| event["event"] == "stroke" && event["stroke"] == 2);
+    wall.press("\x03");
+    wall.until_state("paused");
+    wall.press("\x03");
+    wall.until_state("stopped");
+    assert_eq!(wall.child.wait().unwrap().code(), Some(130));
+    assert!(!rows(&dir).last().unwrap().lit, "the last tick is dark");
+}
+
+#[test]
+fn without_a_terminal_a_paced_job_runs_to_its_end_and_events_need_no_pace() {
+    let dir = folder("events");
+    let out = dir.to_string_lossy().into_owned();
+    let output = run(&["trace", "examples/star.png", "--events", "--out", &out]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let events: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let states: Vec<_> =
+        events.iter().filter(|e| e["event"] == "state").map(|e| e["to"].as_str().unwrap()).collect();
+    assert_eq!(states, ["ready", "armed", "tracing", "done"]);
+    assert_eq!(events.last().unwrap()["event"], "summary");
+    let wrong = run(&["trace", "examples/star.png", "--real-time", "0.1"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("between 0.25 and 8"));
+}

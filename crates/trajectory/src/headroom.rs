@@ -1,0 +1,79 @@
+//! How much faster than planned the plan's clock may run.
+
+use tracelight_rig::{Joint, PanTilt, RateLimit, SPEED_RANGE, Segment};
+
+use crate::machine::Machine;
+use crate::motion::JointMotion;
+use crate::plan::PlanPoint;
+
+/// Steps in which the largest rate of a tick is sought between 1 and the most a host may ask for: to 2 %.
+const HALVINGS: u32 = 6;
+
+/// Sets each segment's limit on the rate of the plan's clock: what the motors, joint speeds and accelerations of its ticks allow, and slow enough that the clock
+/// comes down in time for what follows.
+pub(crate) fn limit_rates(segments: &mut [Segment], points: &[PlanPoint], machine: &Machine) {
+    let mut next = 1.0_f32;
+    for segment in segments.iter_mut().rev() {
+        let ticks = segment.start_tick as usize..=segment.end_tick() as usize;
+        let points = points.get(ticks).unwrap_or_default();
+        let own = points.iter().map(|point| largest_rate(machine, point)).fold(SPEED_RANGE.1, f32::min);
+        let fastest = points.iter().map(speed_rad_s).fold(0.0, f64::max) as f32;
+        let end = own.min(next);
+        let start = own.min(segment.braked_from_squared(end, fastest).sqrt());
+        segment.rate_limit = RateLimit { start, end };
+        next = start;
+    }
+}
+
+fn speed_rad_s(point: &PlanPoint) -> f64 {
+    point.joints.pan.velocity_rad_s.abs().max(point.joints.tilt.velocity_rad_s.abs())
+}
+
+/// The largest rate at which a tick of the plan keeps to the limits that it was planned for; 1 at least.
+fn largest_rate(machine: &Machine, point: &PlanPoint) -> f32 {
+    let (mut lower, mut upper) = (1.0, f64::from(SPEED_RANGE.1));
+    if is_within(machine, point, upper) {
+        return SPEED_RANGE.1;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (lower + upper);
+        if is_within(machine, point, middle) {
+            lower = middle;
+        } else {
+            upper = middle;
+        }
+    }
+    lower as f32
+}
+
+/// Whether a tick keeps to the limits when the clock runs at a rate, and may be changing it.
+fn is_within(machine: &Machine, point: &PlanPoint, rate: f64) -> bool {
+    let joints = point.joints.map(|joint| JointMotion {
+        position_rad: joint.position_rad,
+        velocity_rad_s: joint.velocity_rad_s * rate,
+        acceleration_rad_s2: joint.acceleration_rad_s2 * rate * rate,
+    });
+    [-1.0, 0.0, 1.0].into_iter().all(|ease| {
+        let joints = eased(&joints, &point.joints, ease);
+        let share = machine.fraction_of(&joints);
+        Joint::BOTH.into_iter().all(|j| {
+            let JointMotion { velocity_rad_s, acceleration_rad_s2, .. } = joints[j];
+            share[j].abs() <= machine.torque_share
+                && velocity_rad_s.abs() <= machine.speed_limit_rad_s[j]
+                && acceleration_rad_s2.abs() <= machine.acceleration_limit_rad_s2[j]
+        })
+    })
+}
+
+/// Motion of joints while the rate of the clock rises (1), falls (−1) or stays (0): each joint in proportion to its planned speed.
+fn eased(joints: &PanTilt<JointMotion>, planned: &PanTilt<JointMotion>, ease: f64) -> PanTilt<JointMotion> {
+    let fastest = planned.pan.velocity_rad_s.abs().max(planned.tilt.velocity_rad_s.abs());
+    if fastest == 0.0 {
+        return *joints;
+    }
+    let ease_per_s = ease * f64::from(tracelight_rig::ease_per_s(fastest as f32));
+    PanTilt::from_fn(|j| JointMotion {
+        acceleration_rad_s2: joints[j].acceleration_rad_s2 + planned[j].velocity_rad_s * ease_per_s,
+        ..joints[j]
+    })
+}
