@@ -2,6 +2,7 @@
 
 mod bar;
 mod cli;
+mod fonts;
 mod interrupt;
 mod job;
 mod named;
