@@ -132,9 +132,12 @@ impl fmt::Debug for Font {
     }
 }
 
+/// Finds the fonts of a family by its name.
+type Find = dyn Fn(&str) -> Vec<Font> + Send + Sync;
+
 /// Way to the fonts of a family, such as those of a computer.
 #[derive(Clone)]
-pub struct FontFinder(Arc<dyn Fn(&str) -> Vec<Font> + Send + Sync>);
+pub struct FontFinder(Arc<Find>);
 
 impl FontFinder {
     /// A finder that calls `find` with the name of a family.

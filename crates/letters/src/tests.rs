@@ -186,10 +186,11 @@ fn an_accent_is_of_one_design_on_the_letters_that_a_font_has_and_on_those_that_i
             let lowest =
                 |points: &[tracelight_stroke::Point]| points.iter().map(|p| p.y).fold(f64::MAX, f64::min);
             let (from, to) = (lowest(&own), lowest(&composed));
+            // a font rounds its own points to a thousandth of its em
             let is_alike = own
                 .iter()
                 .zip(&composed)
-                .all(|(a, b)| (a.x - b.x).abs() < 1e-9 && ((a.y - from) - (b.y - to)).abs() < 1e-9);
+                .all(|(a, b)| (a.x - b.x).abs() < 2e-3 && ((a.y - from) - (b.y - to)).abs() < 2e-3);
             assert!(is_alike && !own.is_empty(), "{name}: {own:?} against {composed:?}");
             // a font's own letters are not all of one height
             assert!((from - to).abs() < 0.06, "{name}: {from} em over {base}, {to} em over {other}");
