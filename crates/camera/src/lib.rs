@@ -9,8 +9,10 @@ mod hostile;
 mod latest;
 mod net;
 mod redirect;
+mod shown;
 mod source;
 mod stream;
 
 pub use devices::devices;
+pub use shown::shown;
 pub use source::{Opened, Source};

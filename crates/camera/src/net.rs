@@ -11,6 +11,7 @@ use ureq::{Agent, Body, Error, Timeout};
 
 use crate::latest::PATIENCE;
 use crate::redirect;
+use crate::shown::shown;
 
 /// Largest image that is taken, bytes.
 pub(crate) const MOST_BYTES: u64 = MOST_IMAGE_BYTES as u64;
@@ -89,8 +90,9 @@ impl Net {
         Self { url: url.to_owned(), agent: config.build().into(), limits }
     }
 
-    pub(crate) fn url(&self) -> &str {
-        &self.url
+    /// The address as it may be shown: without a password.
+    pub(crate) fn shown(&self) -> String {
+        shown(&self.url)
     }
 
     /// An answer whose body may go on for ever.
@@ -141,7 +143,7 @@ impl Net {
                 place.ok_or_else(|| format!("it redirects (status {status}) and does not say where to"))?,
             )?;
         }
-        Err(format!("it redirects more than {MOST_REDIRECTS} times, and would next to {url}"))
+        Err(format!("it redirects more than {MOST_REDIRECTS} times, and would next to {}", shown(&url)))
     }
 
     fn ask_once(&self, url: &str, bounded: Bounded, until: Instant) -> Result<Response<Body>, String> {

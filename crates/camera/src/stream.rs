@@ -47,7 +47,7 @@ impl Stream {
     }
 
     fn failed(&self, why: &str) -> Failure {
-        Failure::failed("no-image", format!("the camera at {}: {why}", self.net.url()))
+        Failure::failed("no-image", format!("the camera at {}: {why}", self.net.shown()))
     }
 }
 
@@ -58,7 +58,7 @@ impl Looks for Stream {
             Some(latest) => latest.next(self.limits.patience),
         };
         let bytes = bytes.map_err(|why| self.failed(&why))?;
-        Ok(Shot::encoded(self.net.url(), bytes, self.opened.elapsed().as_secs_f64()))
+        Ok(Shot::encoded(&self.net.shown(), bytes, self.opened.elapsed().as_secs_f64()))
     }
 
     fn longest(&self) -> Option<f64> {

@@ -49,13 +49,19 @@ pub fn read(path: &str) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// Writes a file the user named, whole or not at all; into a pipe or a device as it comes. What a link leads to is changed, not the link, and who
-/// may read a file that was there stays who may.
+/// Writes a file the user named, whole or not at all; into a pipe or a device as it comes. Its folder is made if there is none. What a
+/// link leads to is changed, not the link, and who may read a file that was there stays who may.
 ///
 /// # Errors
 /// `cannot-write`, with what the system says; `usage` for a file that this process has read. Then a file that was there is as it was.
 pub fn write(path: &str, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     check_no_input(Path::new(path))?;
+    if let Some(folder) = Path::new(path).parent() {
+        fs::create_dir_all(folder).map_err(|e| {
+            let advice = "name a folder that is there, or that can be made";
+            Failure::failed("cannot-write", format!("cannot write {path}: its folder: {e}; {advice}"))
+        })?;
+    }
     put(path, bytes)
 }
 

@@ -26,6 +26,7 @@ mod linetype;
 mod look;
 mod mesh;
 mod mtext;
+mod origin;
 mod pattern;
 mod polyline;
 mod read;
@@ -36,6 +37,7 @@ mod skipped;
 mod spline;
 mod styles;
 mod text;
+mod twice;
 mod write;
 
 pub use read::{read, read_with};

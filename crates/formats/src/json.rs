@@ -1,7 +1,9 @@
 //! Strokes in pixels as JSON: what `strokes --json` prints.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
-use tracelight_stroke::{Colour, Drawing, Element, Path, Point, Stroke, StrokeKind};
+use tracelight_stroke::{Colour, Drawing, Element, Entity, Path, Point, Stroke, StrokeKind};
 
 use crate::layers::Layers;
 use crate::pen::polyline;
@@ -48,6 +50,25 @@ struct Line {
     /// `#rrggbb`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     colour: Option<String>,
+    /// What of a drawing file it comes from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    entity: Option<Thing>,
+}
+
+/// An entity of a DXF or an element of an SVG.
+#[derive(Serialize, Deserialize)]
+struct Thing {
+    kind: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    id: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    line: Option<u32>,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    more: usize,
+}
+
+const fn is_zero(number: &usize) -> bool {
+    *number == 0
 }
 
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
@@ -108,6 +129,12 @@ fn line_of(stroke: &Stroke, tolerance_px: f64) -> Line {
         }),
         layer: stroke.layer.as_deref().map(str::to_owned),
         colour: stroke.colour.map(|c| c.to_string()),
+        entity: stroke.entity.as_deref().map(|entity| Thing {
+            kind: entity.kind.as_ref().to_owned(),
+            id: entity.id.as_deref().map(str::to_owned),
+            line: entity.line,
+            more: entity.more,
+        }),
     }
 }
 
@@ -184,7 +211,12 @@ fn stroke_of(line: &Line, number: usize, layers: &mut Layers) -> Result<Stroke, 
         Kind::Outline => StrokeKind::Outline,
     };
     let colour = line.colour.as_deref().map(|text| colour_of(text, &place)).transpose()?;
-    Ok(Stroke { path, kind, pen: line.pen_px, layer: line.layer.as_deref().map(|l| layers.named(l)), colour })
+    let layer = line.layer.as_deref().map(|l| layers.named(l));
+    let entity = line.entity.as_ref().map(|thing| {
+        let id = thing.id.as_deref().map(Into::into);
+        Arc::new(Entity { kind: thing.kind.as_str().into(), id, line: thing.line, more: thing.more })
+    });
+    Ok(Stroke { path, kind, pen: line.pen_px, layer, colour, entity })
 }
 
 fn colour_of(text: &str, place: &str) -> Result<Colour, FormatError> {

@@ -3,10 +3,8 @@
 use std::sync::Arc;
 
 use tracelight_letters::{Align, Faces, Kind, block, kind_of, remarks};
-use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind};
+use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, extent};
 
-use crate::doubles::without_doubles;
-use crate::extent::extent;
 use crate::options::{Letters, ReadOptions};
 use crate::{FormatError, Reading, Sheet};
 
@@ -66,8 +64,7 @@ pub fn draw(
         let kind = if is_edge { StrokeKind::Outline } else { StrokeKind::Centreline };
         Stroke { kind, ..Stroke::new(path) }
     };
-    // pens go back over some lines of single-line letters
-    let (drawing, _) = without_doubles(Drawing { strokes: set.paths.into_iter().map(stroke).collect() });
+    let drawing = Drawing { strokes: set.paths.into_iter().map(stroke).collect() };
     let hint = "the text has no letter that a font here has";
     let bounds = extent(&drawing).filter(|bounds| bounds.width().max(bounds.height()) > 0.0);
     let bounds = bounds.ok_or(FormatError::Nothing { hint })?;
@@ -82,5 +79,5 @@ pub fn draw(
         metres_per_unit: capitals_m.map(|_| 1e-3),
         drawing: drawing.transformed(place),
     };
-    Ok(Reading { sheet, remarks, doubt: None })
+    Ok(Reading { sheet, remarks, doubt: None, is_list: false })
 }

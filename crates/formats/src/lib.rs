@@ -23,11 +23,10 @@
 )]
 
 mod circular;
+mod controls;
 pub mod csv;
-mod doubles;
 pub mod dxf;
 mod error;
-mod extent;
 pub mod gcode;
 pub mod hpgl;
 pub mod ild;
@@ -38,15 +37,14 @@ mod limit;
 mod meant;
 mod number;
 mod options;
-mod parts;
 mod pen;
 pub mod svg;
 mod unpacked;
 
 pub use error::FormatError;
 pub use limit::{MAX_BYTES, MAX_COORDINATE};
-pub use number::fixed;
-pub use options::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
+pub use number::{fixed, length};
+pub use options::{Font, FontFinder, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
 use tracelight_stroke::{Colour, Drawing, Point};
 pub use unpacked::{head, unpacked};
 
@@ -72,13 +70,15 @@ pub struct Reading {
     pub remarks: Vec<String>,
     /// Why its size cannot be meant, and what to do about it: one sentence, where nobody has said how large it is to be.
     pub doubt: Option<String>,
+    /// A list of strokes that somebody made one by one, as JSON and CSV are: lines that are in it twice are meant twice.
+    pub is_list: bool,
 }
 
 impl Reading {
-    /// A sheet that is all its file holds.
-    pub fn whole(sheet: Sheet) -> Self {
+    /// A sheet whose strokes are all that its file lists.
+    pub fn of_list(sheet: Sheet) -> Self {
         let doubt = sheet.doubt();
-        Self { sheet, remarks: Vec::new(), doubt }
+        Self { sheet, remarks: Vec::new(), doubt, is_list: true }
     }
 }
 

@@ -9,8 +9,9 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     if text == "-0" { "0".into() } else { text.into() }
 }
 
-/// A length of a drawing as remarks say it: in millimetres where the drawing's unit has a size, else in its own unit.
-pub(crate) fn length(units: f64, metres_per_unit: Option<f64>) -> String {
+/// Length of a drawing as remarks say it: in millimetres where the drawing's unit has a size, else in its own unit.
+#[must_use]
+pub fn length(units: f64, metres_per_unit: Option<f64>) -> String {
     let (value, unit) = metres_per_unit.map_or((units, "units"), |metres| (1e3 * metres * units, "mm"));
     let decimals = if value < 1.0 { 3 } else { usize::from(value < 100.0) };
     format!("{} {unit}", fixed(value, decimals))

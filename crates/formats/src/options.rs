@@ -20,6 +20,8 @@ pub struct ReadOptions {
     pub letters: Option<Letters>,
     /// Fonts for the drawing's text, the first that has a glyph is taken.
     pub fonts: Vec<Font>,
+    /// Where fonts are found that an SVG's text names, if that is asked for.
+    pub finder: Option<FontFinder>,
 }
 
 impl Default for ReadOptions {
@@ -33,6 +35,7 @@ impl Default for ReadOptions {
             hatch: Hatch::Boundary,
             letters: None,
             fonts: Vec::new(),
+            finder: None,
         }
     }
 }
@@ -126,5 +129,37 @@ impl fmt::Debug for Font {
         const PRIME: u64 = 0x0000_0100_0000_01b3;
         let sum = self.bytes.iter().fold(BASIS, |sum, &byte| (sum ^ u64::from(byte)).wrapping_mul(PRIME));
         write!(f, "Font({}, {sum:016x})", self.name)
+    }
+}
+
+/// Finds the fonts of a family by its name.
+type Find = dyn Fn(&str) -> Vec<Font> + Send + Sync;
+
+/// Way to the fonts of a family, such as those of a computer.
+#[derive(Clone)]
+pub struct FontFinder(Arc<Find>);
+
+impl FontFinder {
+    /// A finder that calls `find` with the name of a family.
+    pub fn new(find: impl Fn(&str) -> Vec<Font> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(find))
+    }
+
+    /// The fonts of a family; none where it is not there.
+    #[must_use]
+    pub fn find(&self, family: &str) -> Vec<Font> {
+        (self.0)(family)
+    }
+}
+
+impl PartialEq for FontFinder {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl fmt::Debug for FontFinder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("FontFinder")
     }
 }

@@ -1,13 +1,14 @@
 //! Letters that a single-line face lacks, composed of what it has.
 
-use tracelight_stroke::{Affine, Vec2};
+use tracelight_stroke::{Affine, Rect, Vec2};
 use unicode_normalization::char::{decompose_canonical, decompose_compatible, is_combining_mark};
 
 use crate::drawn;
 use crate::glyph::{Glyph, beside};
 use crate::letter::Letter;
 use crate::line_face::LineFace;
-use crate::marks::{Mark, Place, mark};
+use crate::marks::{HIGH, Place, has_mark_beside, mark};
+use crate::own_marks::top;
 
 /// Space between a letter and its marks, as a share of the height of capitals.
 const GAP: f64 = 0.10;
@@ -30,7 +31,8 @@ fn composed(face: &LineFace, text: &[char]) -> Option<(Glyph, usize)> {
         [] => glyph(face, text[0]),
         marks => marked(face, text[0], &marks[..marks.len().min(MOST_MARKS)]),
     };
-    glyph.map(|glyph| (glyph, 1 + marks))
+    // parts may share a line
+    glyph.map(|glyph| (if face.has_outlines { glyph } else { glyph.once() }, 1 + marks))
 }
 
 /// A letter of a face: its own, drawn from its parts, or of a base and marks; `None` where it has not even the parts.
@@ -58,28 +60,67 @@ pub(crate) fn marked(face: &LineFace, base: char, marks: &[char]) -> Option<Glyp
         _ => glyph(face, base)?,
     };
     for &combining in marks {
-        all = attached(face, all, &mark(combining, base, face.dot())?);
+        all = attached(face, all, (combining, base))?;
     }
     Some(all)
 }
 
-fn attached(face: &LineFace, letter: Glyph, mark: &Mark) -> Glyph {
+/// A letter with one more mark: the face's own where it has that, else one drawn here, of the size of the face's own.
+fn attached(face: &LineFace, letter: Glyph, (combining, base): (char, char)) -> Option<Glyph> {
     let c = face.capital;
-    let Some(bounds) = letter.bounds() else { return letter };
-    let (upper, lower) = (bounds.y1 - 0.3 * bounds.height(), bounds.y0 + 0.12 * bounds.height());
-    let top = letter.above(upper).unwrap_or(bounds);
+    let (Some(bounds), Some(top)) = (letter.bounds(), top(&letter)) else { return Some(letter) };
+    if let Some(own) = own_mark(face, combining, base) {
+        return Some(letter.with(own.shifted(top.x, top.y).paths));
+    }
+    let mark = mark(combining, base, face.dot())?;
+    let lower = bounds.y0 + 0.12 * bounds.height();
     let foot = letter.below(lower).unwrap_or(bounds);
+    let (gap, size) = if mark.place == Place::Above { usual(face, base) } else { (GAP * c, c) };
     let at = match mark.place {
-        Place::Above => (top.center().x, bounds.y1 + GAP * c),
-        Place::Below => (foot.center().x, bounds.y0 - GAP * c),
+        Place::Above => (top.x, top.y + gap),
+        Place::Below => (foot.center().x, bounds.y0 - gap),
         Place::Foot => (foot.center().x, bounds.y0),
         Place::RightFoot => right_foot(&letter, foot.x0 + 0.8 * foot.width(), lower),
-        Place::Beside => (top.x1 + 0.14 * c, bounds.y1),
+        Place::Beside => (top_right(&letter, bounds) + 0.14 * c, bounds.y1),
     };
-    let place = Affine::translate(Vec2::from(at)) * Affine::scale(c);
+    let place = Affine::translate(Vec2::from(at)) * Affine::scale(size);
     let wider = if mark.place == Place::Beside { 0.12 * c } else { 0.0 };
     let advance = letter.advance + wider;
-    Glyph { advance, ..letter }.with(mark.paths.iter().map(|path| path.transformed(place)))
+    Some(Glyph { advance, ..letter }.with(mark.paths.iter().map(|path| path.transformed(place))))
+}
+
+/// The face's own mark about the top of a letter, or one made of its own: a caron is a circumflex upside down, a double acute is two.
+fn own_mark(face: &LineFace, combining: char, base: char) -> Option<Glyph> {
+    const APART: f64 = 0.1; // of the height of capitals, either way
+    let own = |mark: char| face.marks.get(mark, base.is_uppercase()).cloned();
+    match combining {
+        '\u{30c}' if !has_mark_beside(base) => own(combining).or_else(|| {
+            let circumflex = own('\u{302}')?;
+            let bounds = circumflex.bounds()?;
+            Some(circumflex.mapped(Affine::new([1.0, 0.0, 0.0, -1.0, 0.0, bounds.y0 + bounds.y1])))
+        }),
+        '\u{30b}' => own(combining).or_else(|| {
+            let acute = own('\u{301}')?;
+            let second = acute.clone().shifted(APART * face.capital, 0.0);
+            Some(acute.shifted(-APART * face.capital, 0.0).with(second.paths))
+        }),
+        '\u{30c}' => None,
+        _ => own(combining),
+    }
+}
+
+/// The space below marks that are drawn here, and the size of what is drawn for capitals of height 1, em: as the face's own acute has them.
+fn usual(face: &LineFace, base: char) -> (f64, f64) {
+    let c = face.capital;
+    let acute = face.marks.get('\u{301}', base.is_uppercase()).and_then(Glyph::bounds);
+    acute.map_or((GAP * c, c), |acute| {
+        (acute.y0.clamp(0.05 * c, 0.3 * c), (acute.height() / HIGH).clamp(0.6 * c, 1.4 * c))
+    })
+}
+
+/// The right edge of a letter's upper part.
+fn top_right(letter: &Glyph, bounds: Rect) -> f64 {
+    letter.above(bounds.y1 - 0.3 * bounds.height()).unwrap_or(bounds).x1
 }
 
 /// The point of a letter's foot that is nearest to `x`: what is joined there touches ink.

@@ -22,6 +22,7 @@ pub(crate) fn letter(face: &LineFace, letter: char) -> Option<Glyph> {
         'Ŀ' => Some(beside(own('L')?, own('·')?)),
         'ŉ' => Some(beside(quote(face, false), own('n')?)),
         'ẞ' => own('ß'),
+        'Ə' | 'ə' | 'Ʒ' | 'ʒ' | 'Ǥ' | 'ǥ' => turned(face, letter),
         'ß' | 'ſ' | 'Þ' | 'þ' | 'ð' | 'ŋ' | 'Ŋ' | 'ĸ' | 'µ' | 'μ' => other(face, letter),
         _ => sign(face, letter),
     }
@@ -161,6 +162,30 @@ fn barred(face: &LineFace, letter: char) -> Option<Glyph> {
         _ => (stem - 0.15 * c, stem + 0.15 * c, 0.55 * face.small),
     };
     Some(glyph.with([line(&[(from, y), (to, y)])]))
+}
+
+/// Letters of Azerbaijani and Sami: e turned about, 3 as a letter, G and g with a line.
+fn turned(face: &LineFace, letter: char) -> Option<Glyph> {
+    let (c, x) = (face.capital, face.small);
+    let own = |letter: char| face.own(letter).cloned();
+    match letter {
+        'Ə' | 'ə' => {
+            let e = own('e')?;
+            let (middle, advance) = (e.bounds()?.center(), e.advance);
+            let about = Affine::translate(middle.to_vec2() * 2.0) * HALF_TURN;
+            let schwa = e.mapped(about);
+            let size = if letter == 'Ə' { c / x } else { 1.0 };
+            Some(Glyph { advance, ..schwa.mapped(Affine::scale(size)) }.scaled_advance(size))
+        }
+        'Ʒ' => own('3'),
+        'ʒ' => own('3').map(|three| three.shifted(0.0, x - c)),
+        _ => {
+            let g = own(if letter == 'Ǥ' { 'G' } else { 'g' })?;
+            let right = g.bounds()?.x1;
+            let y = if letter == 'Ǥ' { 0.22 * c } else { -0.12 * c };
+            Some(g.with([line(&[(right - 0.24 * c, y), (right + 0.12 * c, y)])]))
+        }
+    }
 }
 
 /// Two letters that share a side.

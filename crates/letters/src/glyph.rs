@@ -1,4 +1,4 @@
-use tracelight_stroke::{Affine, Path, Point, Rect, Vec2};
+use tracelight_stroke::{Affine, Path, Point, Rect, Vec2, doubles};
 
 /// A letter as paths: in units of the em, the baseline at y = 0, y up, the pen's start at x = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,6 +31,18 @@ impl Glyph {
     /// The box of the ink below a height.
     pub(crate) fn below(&self, y: f64) -> Option<Rect> {
         bounds_of(self.points().filter(|point| point.y <= y))
+    }
+
+    /// Without the lines that its pen goes back over.
+    pub(crate) fn once(mut self) -> Self {
+        let paths: Vec<&Path> = self.paths.iter().collect();
+        let (splits, _) = doubles(&paths);
+        if splits.iter().any(Option::is_some) {
+            let parts = splits.into_iter().zip(self.paths);
+            self.paths =
+                parts.flat_map(|(split, path)| split.map_or(vec![path], |split| split.once)).collect();
+        }
+        self
     }
 
     pub(crate) fn mapped(mut self, by: Affine) -> Self {

@@ -17,6 +17,7 @@ mod letter;
 mod line_face;
 mod marks;
 mod outline_face;
+mod own_marks;
 mod remarks;
 mod slug;
 mod svg_font;

@@ -6,6 +6,7 @@ use unicode_normalization::char::is_combining_mark;
 
 use crate::error::LettersError;
 use crate::glyph::{Glyph, line};
+use crate::own_marks::OwnMarks;
 use crate::svg_font::SvgFont;
 
 /// A face of an SVG font.
@@ -21,6 +22,8 @@ pub(crate) struct LineFace {
     pub(crate) small: f64,
     /// Its full stop about the origin.
     dot: Glyph,
+    /// Its own accents.
+    pub(crate) marks: OwnMarks,
 }
 
 impl LineFace {
@@ -30,7 +33,12 @@ impl LineFace {
     /// See [`SvgFont::read`].
     pub(crate) fn read(name: &str, bytes: &[u8]) -> Result<Self, LettersError> {
         let SvgFont { mut glyphs, kerns, longest, has_outlines } = SvgFont::read(name, bytes)?;
+        if !has_outlines {
+            // pens go back over some of their lines
+            glyphs.values_mut().for_each(|glyph| *glyph = std::mem::take(glyph).once());
+        }
         stand_on_baseline(&mut glyphs);
+        let marks = OwnMarks::take(&mut glyphs);
         let top = |letter: &str| glyphs.get(letter).and_then(Glyph::bounds).map(|bounds| bounds.y1);
         // what fonts say of their heights is often wrong: measured
         let sound = |height: &f64| *height > 0.05 && *height < 5.0;
@@ -38,7 +46,7 @@ impl LineFace {
         let capital = capital.unwrap_or(0.7);
         let small = top("x").filter(sound).unwrap_or(0.7 * capital);
         let dot = dot(&glyphs, 0.06 * capital);
-        Ok(Self { glyphs, kerns, longest, has_outlines, capital, small, dot })
+        Ok(Self { glyphs, kerns, longest, has_outlines, capital, small, dot, marks })
     }
 
     /// The font's own glyph of a letter.

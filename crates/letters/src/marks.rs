@@ -26,7 +26,7 @@ pub(crate) struct Mark {
 }
 
 /// Height of most marks.
-const HIGH: f64 = 0.19;
+pub(crate) const HIGH: f64 = 0.19;
 
 /// The mark of a combining character on a base; `None` for one that is not drawn here. `dot` is the face's own dot about the origin.
 pub(crate) fn mark(combining: char, base: char, dot: &Glyph) -> Option<Mark> {
@@ -43,10 +43,8 @@ pub(crate) fn mark(combining: char, base: char, dot: &Glyph) -> Option<Mark> {
         '\u{308}' => above(dots(dot, &[-0.13, 0.13])),
         '\u{30a}' => above(ring(0.095)),
         '\u{30b}' => above(vec![acute(-0.08), acute(0.12)]),
-        '\u{30c}' => match base {
-            'd' | 'l' | 'L' | 't' => Some(Mark { place: Place::Beside, paths: vec![tick()] }),
-            _ => above(vec![line(&[(-0.13, HIGH), (0.0, 0.0), (0.13, HIGH)])]),
-        },
+        '\u{30c}' if has_mark_beside(base) => Some(Mark { place: Place::Beside, paths: vec![tick()] }),
+        '\u{30c}' => above(vec![line(&[(-0.13, HIGH), (0.0, 0.0), (0.13, HIGH)])]),
         '\u{30f}' => above(vec![line(&[(-0.18, HIGH), (-0.06, 0.0)]), line(&[(0.0, HIGH), (0.12, 0.0)])]),
         '\u{311}' => above(vec![curve([(-0.14, 0.0), (-0.11, 0.20), (0.11, 0.20), (0.14, 0.0)])]),
         '\u{323}' => below(dots(dot, &[0.0]).iter().map(|path| path.transformed(flipped())).collect()),
@@ -61,6 +59,11 @@ pub(crate) fn mark(combining: char, base: char, dot: &Glyph) -> Option<Mark> {
         '\u{331}' => below(vec![line(&[(-0.15, -0.06), (0.15, -0.06)])]),
         _ => None,
     }
+}
+
+/// Whether the caron of a letter stands beside it, like an apostrophe.
+pub(crate) const fn has_mark_beside(base: char) -> bool {
+    matches!(base, 'd' | 'l' | 'L' | 't')
 }
 
 /// Turned upside down.

@@ -69,7 +69,7 @@ pub fn decode_with(path: &str, bytes: &[u8], options: &ReadOptions) -> Result<So
 
 /// A sheet that is all its file holds.
 fn whole(sheet: Sheet) -> Source {
-    Source::Strokes(Reading::whole(sheet))
+    Source::Strokes(Reading::of_list(sheet))
 }
 
 /// A sheet of true size whose centre is the target's origin, just large enough for a drawing in target metres.

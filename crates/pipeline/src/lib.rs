@@ -15,6 +15,7 @@ mod schedule;
 mod sheet;
 mod sketch;
 mod tracing;
+mod twice;
 
 pub use carried::{carried, has_corner};
 pub use choice::Choice;

@@ -2,13 +2,14 @@
 
 use tracelight_formats::Reading;
 use tracelight_picture::{Pixels, Raster, Source};
-use tracelight_stroke::Drawing;
+use tracelight_stroke::{Drawing, without_doubles};
 use tracelight_task::{Failure, counted};
 use tracelight_vision::{Comb, Dots, Quality, Traced, VisionError};
 
 use crate::choice::Choice;
 use crate::sheet::{self, PaperSeen};
 use crate::tracing::Tracing;
+use crate::twice;
 
 /// Strokes on the sheet they came from.
 #[derive(Clone, Debug)]
@@ -49,6 +50,14 @@ impl Sketch {
             let drawing = straight.drawing(&self.drawing);
             *slanted = Some(std::mem::replace(&mut self.drawing, drawing));
         }
+    }
+
+    /// Leaves out what lies on earlier lines, and says so.
+    fn draw_once(&mut self) {
+        let (drawing, doubles) = without_doubles(std::mem::take(&mut self.drawing));
+        self.drawing = drawing;
+        let metres_per_unit = self.true_width_m.map(|width_m| width_m / self.size.0);
+        self.remarks.extend(twice::remarks(&doubles, metres_per_unit));
     }
 
     /// With the picture as its strokes lie on it: of a sheet that is laid square, from straight ahead. That takes longer than all else,
@@ -157,7 +166,7 @@ fn outlined(drawing: &Drawing) -> Option<String> {
 /// Chords that measure a share of the light stay this close to their path, px.
 const CHORDS_PX: f64 = 0.1;
 
-/// Traces pixels, takes strokes as they are; of these, the chosen ones that are long enough. `metres_per_unit` says how long the unit of
+/// Traces pixels, takes strokes as they are; of these, the chosen ones that are long enough, each line of a drawing once. `metres_per_unit` says how long the unit of
 /// a sheet is on the target, by its size and its true width, such as [`Placing::metres_per_unit`](crate::Placing::metres_per_unit).
 ///
 /// # Errors
@@ -169,11 +178,16 @@ pub fn sketch_at(
     choice: &Choice,
     metres_per_unit: &dyn Fn((f64, f64), Option<f64>) -> f64,
 ) -> Result<Sketch, Failure> {
+    let is_drawing = matches!(source, Source::Strokes(Reading { is_list: false, .. }));
     let mut sketch = match source {
         Source::Strokes(reading) => taken(reading),
         Source::Pixels(pixels) => traced(name, pixels, tracing, metres_per_unit)?,
     };
     sketch.drawing = choice.of(name, sketch.drawing)?;
+    // after the choice: a line that two layers have is needed where only one of them is drawn
+    if is_drawing {
+        sketch.draw_once();
+    }
     sketch.lay_square();
     let refused = |why: &str| Err(Failure::failed("no-strokes-found", format!("{name}: {why}")));
     if sketch.drawing.strokes.is_empty() {

@@ -18,6 +18,9 @@ pub struct DrawnStroke {
     /// Colour it had, where the drawing has colours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub colour: Option<String>,
+    /// What of the drawing file it comes from, such as `LINE 2F`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub entity: Option<String>,
     /// How long it is, m.
     pub length_m: f64,
     /// Where it begins on the target, m.
@@ -48,6 +51,7 @@ pub fn sequence(drawing: &Drawing, plan: &Plan) -> Vec<DrawnStroke> {
             number: i + 1,
             layer: stroke.layer.as_deref().map(str::to_owned),
             colour: stroke.colour.map(|colour| colour.to_string()),
+            entity: stroke.entity.as_ref().map(ToString::to_string),
             length_m: round(stroke.path.length(LENGTH_TOLERANCE_M)),
             from_m: place(stroke.path.start()),
             to_m: place(stroke.path.end()),

@@ -13,8 +13,11 @@
 
 mod colour;
 mod compare;
+mod doubles;
+mod extent;
 mod fit;
 mod order;
+mod parts;
 mod path;
 mod polyline;
 mod simplify;
@@ -22,15 +25,18 @@ mod stroke;
 
 pub use colour::Colour;
 pub use compare::{Comparison, Score, compare, compare_polylines, score, score_polylines};
+pub use doubles::{Doubles, Split, doubles, without_doubles};
+pub use extent::extent;
 pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Rect, Vec2};
 pub use order::{
     Effort, OrderOptions, Ordered, StrokeEnd, Travel, least_cost, order, order_by_layer, reading_order,
 };
+pub use parts::{Measured, Span, parts};
 pub use path::{Element, Path, PathPoint, Piece};
 pub use polyline::polyline_length;
 pub use simplify::simplify;
-pub use stroke::{Drawing, Stroke, StrokeKind};
+pub use stroke::{Drawing, Entity, Stroke, StrokeKind};
 
 /// The examples of `README.md`, as tests.
 #[cfg(doctest)]

@@ -148,6 +148,11 @@ impl Path {
         self.pieces().map(|p| p.length(tolerance)).sum()
     }
 
+    /// Arc length, of a cubic that of its control polygon: a little too long, and quick.
+    pub fn rough_length(&self) -> f64 {
+        self.pieces().map(|p| p.rough_length()).sum()
+    }
+
     /// Points of a polyline that stays within `tolerance` of the path; the first point is the start, the last one
     /// the end (for a closed path: the start again).
     pub fn flatten(&self, tolerance: f64) -> Vec<Point> {
@@ -230,6 +235,14 @@ impl Piece {
             Element::Line { to } => self.from.distance(to),
             Element::Arc { centre, sweep } => self.from.distance(centre) * sweep.abs(),
             Element::Cubic { c1, c2, to } => CubicBez::new(self.from, c1, c2, to).arclen(tolerance),
+        }
+    }
+
+    /// Arc length, of a cubic that of its control polygon: a little too long, and quick.
+    pub fn rough_length(&self) -> f64 {
+        match self.element {
+            Element::Cubic { c1, c2, to } => self.from.distance(c1) + c1.distance(c2) + c2.distance(to),
+            _ => self.length(0.0),
         }
     }
 

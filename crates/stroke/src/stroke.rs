@@ -1,3 +1,4 @@
+use std::fmt;
 use std::sync::Arc;
 
 use kurbo::{Affine, Point};
@@ -24,6 +25,32 @@ impl StrokeKind {
     }
 }
 
+/// What a drawing file calls the thing that a stroke comes from, to find it there again.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Entity {
+    /// Kind of thing: `LINE` or `INSERT` of a DXF, `path` or `text` of an SVG.
+    pub kind: Arc<str>,
+    /// Handle in a DXF, id in an SVG, where it has one.
+    pub id: Option<Arc<str>>,
+    /// Line of the file at which it begins, from 1, where the file is text.
+    pub line: Option<u32>,
+    /// Further entities that meet it end to end and are one stroke with it.
+    pub more: usize,
+}
+
+impl fmt::Display for Entity {
+    /// Such as `LINE 2F`, `path at line 12`, `LINE 2F and 3 more`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.kind)?;
+        match (&self.id, self.line) {
+            (Some(id), _) => write!(f, " {id}")?,
+            (None, Some(line)) => write!(f, " at line {line}")?,
+            (None, None) => {}
+        }
+        if self.more > 0 { write!(f, " and {} more", self.more) } else { Ok(()) }
+    }
+}
+
 /// A path drawn lit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stroke {
@@ -37,17 +64,26 @@ pub struct Stroke {
     pub layer: Option<Arc<str>>,
     /// Colour it had, where the drawing has colours.
     pub colour: Option<Colour>,
+    /// What of a drawing file it comes from, where it comes from one.
+    pub entity: Option<Arc<Entity>>,
 }
 
 impl Stroke {
     /// A centreline of unknown pen width, on no layer, of no colour.
     pub const fn new(path: Path) -> Self {
-        Self { path, kind: StrokeKind::Centreline, pen: None, layer: None, colour: None }
+        Self { path, kind: StrokeKind::Centreline, pen: None, layer: None, colour: None, entity: None }
     }
 
     /// A stroke with everything of this one but its path.
     pub fn along(&self, path: Path) -> Self {
-        Self { path, kind: self.kind, pen: self.pen, layer: self.layer.clone(), colour: self.colour }
+        Self {
+            path,
+            kind: self.kind,
+            pen: self.pen,
+            layer: self.layer.clone(),
+            colour: self.colour,
+            entity: self.entity.clone(),
+        }
     }
 
     /// Returns the stroke in the opposite direction.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use tracelight_camera::Opened;
+use tracelight_camera::{Opened, shown};
 use tracelight_files::{self as files, ResultFolder};
 use tracelight_job::{Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
 use tracelight_report::{Finished, LogMeta, Picture, Setting, Summary, Target, Timing};
@@ -39,7 +39,8 @@ pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
     let _kept = stop.keep();
     let folder = results::open(&dir, &args.driving.rig)?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
-    let meta = LogMeta { picture_path: args.name(), settings: &settings, seed: args.seed };
+    let name = shown(args.name());
+    let meta = LogMeta { picture_path: &name, settings: &settings, seed: args.seed };
     let mut log = RunLog::open(&folder, &meta)?;
     let mut ran = match AtWall::of(&args.by_hand, task, stop) {
         Some(mut hands) => prepared.run_by_hand(&mut log, &mut hands, task)?,
@@ -139,8 +140,9 @@ fn write(
     let plan = ran.plan(prepared);
     let tracking: Tracking = score(plan, &ran.last, plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
+    let name = shown(args.name());
     let job = Finished {
-        picture_path: args.name(),
+        picture_path: &name,
         picture: sketch
             .picture
             .as_ref()

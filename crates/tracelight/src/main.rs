@@ -3,6 +3,7 @@
 mod at_wall;
 mod bar;
 mod cli;
+mod fonts;
 mod interrupt;
 mod job;
 mod keys;

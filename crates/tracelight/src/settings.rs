@@ -1,6 +1,7 @@
 //! What a job was asked to do, in words: the report's and the log's table.
 
 use crate::cli::request::TraceArgs;
+use tracelight_camera::shown;
 use tracelight_pipeline::{Driving, Placed};
 use tracelight_report::Setting;
 use tracelight_sim::RigConfig;
@@ -9,7 +10,7 @@ use tracelight_sim::RigConfig;
 pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Setting> {
     let mm = |m: f64| format!("{:.1} mm", m * 1e3);
     let rows = [
-        (if args.eye.camera.is_some() { "camera" } else { "picture" }, args.name().to_owned()),
+        (if args.eye.camera.is_some() { "camera" } else { "picture" }, shown(args.name())),
         ("size", format!("{} × {}", mm(placed.size_m.0), mm(placed.size_m.1))),
         ("offset", args.placement.offset.map_or("none".into(), |o| format!("{}, {}", o.0, o.1))),
         ("rotate", args.placement.rotate.map_or("none".into(), |a| a.to_string())),

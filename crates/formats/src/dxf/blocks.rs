@@ -8,10 +8,11 @@ use super::curves::{has_length, moved};
 use super::dashes::{Dashed, dashed};
 use super::linetype::{CONTINUOUS, LineFrom, Lines};
 use super::look::{LAYER_0, Layer, Layers, Look, Paint, Shape};
+use super::origin::Origin;
 use super::scene::{Block, Dot, Insert, Item};
 use super::skipped::Skipped;
 use crate::FormatError;
-use crate::extent::controls;
+use crate::controls::controls;
 
 /// Inserts within inserts. Nobody nests this deep; circles do.
 const MAX_DEPTH: usize = 32;
@@ -32,6 +33,17 @@ pub(super) struct Drawn {
     pub(super) colour: Colour,
     /// A point, whose path has no length yet.
     pub(super) is_dot: bool,
+    /// Entity of the space that draws it: of a block's lines, the insert.
+    pub(super) origin: Origin,
+    /// Further entities that are one path with it.
+    pub(super) more: usize,
+}
+
+impl Drawn {
+    /// Another path with everything else of this one.
+    pub(super) const fn along(&self, path: Path) -> Self {
+        Self { path, ..*self }
+    }
 }
 
 /// Definitions that what is drawn refers to.
@@ -53,15 +65,18 @@ struct Setting {
     colour: Colour,
     /// Linetype of what has that of its block.
     line: usize,
+    /// Entity of the space that draws the block.
+    origin: Option<Origin>,
     depth: usize,
 }
 
-/// Layer, colour and linetype as they are in the end.
+/// Layer, colour and linetype as they are in the end, and the entity that is found there.
 #[derive(Clone, Copy)]
 struct Shown {
     layer: usize,
     colour: Colour,
     line: usize,
+    origin: Origin,
 }
 
 struct Unfolding<'a> {
@@ -87,6 +102,7 @@ pub(super) fn unfolded(
         layer: LAYER_0,
         colour: Colour::BLACK,
         line: CONTINUOUS,
+        origin: None,
         depth: 0,
     };
     unfolding.items(items, world)?;
@@ -139,7 +155,8 @@ impl Unfolding<'_> {
     fn push(&mut self, path: Path, shown: Shown) -> Result<(), FormatError> {
         self.elements += path.elements().len().max(super::LEAST_ELEMENTS);
         check("DXF, its blocks repeated,", [self.elements, super::MAX_ELEMENTS], "path segments")?;
-        self.drawn.push(Drawn { path, layer: shown.layer, colour: shown.colour, is_dot: false });
+        let Shown { layer, colour, origin, .. } = shown;
+        self.drawn.push(Drawn { path, layer, colour, is_dot: false, origin, more: 0 });
         Ok(())
     }
 
@@ -181,7 +198,7 @@ impl Unfolding<'_> {
 
     fn insert(&mut self, insert: &Insert, at: Setting) -> Result<(), FormatError> {
         let Definitions { blocks, layers, .. } = self.definitions; // outlives the loan of self
-        let Shown { layer, colour, line } = self.shown(insert.look, at);
+        let Shown { layer, colour, line, origin } = self.shown(insert.look, at);
         if layers.get(layer).is_frozen {
             self.skipped.hidden += 1;
             return Ok(());
@@ -199,7 +216,8 @@ impl Unfolding<'_> {
             let step = at.world_from_block * step.to_point() - at.world_from_block * Point::ORIGIN;
             let world_from_block = Affine::translate(step) * placed;
             self.skipped.add(&block.skipped);
-            let own = Setting { world_from_block, layer, colour, line, depth: at.depth + 1 };
+            let own =
+                Setting { world_from_block, layer, colour, line, origin: Some(origin), depth: at.depth + 1 };
             self.items(&block.items, own)?;
         }
         Ok(())
@@ -218,7 +236,8 @@ impl Unfolding<'_> {
             LineFrom::Block => at.line,
             LineFrom::Layer => own.line,
         };
-        Shown { layer, colour, line }
+        // whoever looks for a block's lines finds the insert
+        Shown { layer, colour, line, origin: at.origin.unwrap_or(look.origin) }
     }
 }
 

@@ -1,8 +1,6 @@
 //! Paths cut into the dashes of a linetype.
 
-use tracelight_stroke::Path;
-
-use crate::parts::Measured;
+use tracelight_stroke::{Measured, Path};
 
 /// Dashes of one path at most; a line of more is drawn whole.
 const MOST_DASHES: f64 = 5_000.0;

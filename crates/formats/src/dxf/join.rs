@@ -4,7 +4,7 @@
 //! two at the very same point; else, where more meet, those that go straight on, the straightest first. Ends are found
 //! by a grid, so this is linear; every choice is by place and file order, so equal files give equal strokes.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::TAU;
 
 use tracelight_maths::atan2;
@@ -113,17 +113,9 @@ fn is_alone(a: End, b: End, node: &[End], drawn: &[Drawn]) -> bool {
 }
 
 fn is_near(a: End, b: End, drawn: &[Drawn]) -> bool {
-    let length = |end: End| drawn[end / 2].path.pieces().map(|p| rough_length(&p)).sum::<f64>();
+    let length = |end: End| drawn[end / 2].path.rough_length();
     let gap = point_of(a, drawn).distance(point_of(b, drawn));
     gap == 0.0 || gap <= NEAR_OF_LENGTH * length(a).min(length(b))
-}
-
-/// Length of a piece, a cubic's by its control points: enough for a bound.
-fn rough_length(piece: &Piece) -> f64 {
-    match piece.element {
-        Element::Cubic { c1, c2, to } => piece.from.distance(c1) + c1.distance(c2) + c2.distance(to),
-        _ => piece.length(0.0),
-    }
 }
 
 /// The change of direction on the way in by one end and out by the other, rad.
@@ -176,10 +168,9 @@ fn beginning(start: End, partners: &[Option<End>]) -> (End, bool) {
 /// One path of many, entered by the given ends in turn.
 fn one(chain: &[End], is_ring: bool, drawn: &[Drawn]) -> Drawn {
     let own = &drawn[chain[0] / 2];
-    let (layer, colour, is_dot) = (own.layer, own.colour, own.is_dot);
     let ways: Vec<Path> = chain.iter().map(|&end| entered(&drawn[end / 2].path, end)).collect();
     if let ([path], false) = (ways.as_slice(), is_ring) {
-        return Drawn { path: path.clone(), layer, colour, is_dot };
+        return own.along(path.clone());
     }
     let start = ways[0].start();
     let mut path = Path::new(start);
@@ -192,7 +183,8 @@ fn one(chain: &[End], is_ring: bool, drawn: &[Drawn]) -> Drawn {
     if is_ring {
         path.close();
     }
-    Drawn { path, layer, colour, is_dot }
+    let entities: BTreeSet<_> = chain.iter().map(|end| drawn[end / 2].origin).collect();
+    Drawn { more: entities.len() - 1, ..own.along(path) }
 }
 
 fn entered(path: &Path, end: End) -> Path {

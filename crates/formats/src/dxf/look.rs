@@ -8,6 +8,7 @@ use tracelight_stroke::{Colour, Path};
 use super::aci;
 use super::groups::Record;
 use super::linetype::{self, LineFrom, Lines};
+use super::origin::Origin;
 use crate::FormatError;
 
 /// An entity that is a path.
@@ -17,7 +18,7 @@ pub(super) struct Shape {
     pub(super) look: Look,
 }
 
-/// Layer, colour and linetype as an entity has them.
+/// Layer, colour and linetype as an entity has them, and which one it is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
     pub(super) layer: usize,
@@ -25,6 +26,8 @@ pub(super) struct Look {
     pub(super) line: LineFrom,
     /// Factor of the linetype's lengths.
     pub(super) line_scale: f64,
+    /// Which entity that is.
+    pub(super) origin: Origin,
 }
 
 impl Look {
@@ -38,6 +41,7 @@ impl Look {
             paint: Paint::of(record)?,
             line: lines.of(&record.key(6)),
             line_scale: record.number_or(48, 1.0)?,
+            origin: Origin::of(record),
         })
     }
 }

@@ -1,6 +1,8 @@
 //! The whole way from bytes to a sheet.
 
-use tracelight_stroke::{Drawing, Element, Path, Stroke, Vec2};
+use std::sync::Arc;
+
+use tracelight_stroke::{Drawing, Element, Path, Stroke, Vec2, extent};
 
 use super::blocks::{Definitions, Drawn, unfolded};
 use super::entities::{Around, Entities};
@@ -14,7 +16,7 @@ use super::scene::{Block, Item, Scene};
 use super::sheet::{Unit, sheet};
 use super::skipped::Skipped;
 use super::text;
-use crate::extent::extent;
+use super::twice::apart;
 use crate::lettering::faces;
 use crate::options::{Hatch, Letters, ReadOptions};
 use crate::{FormatError, Reading};
@@ -28,8 +30,8 @@ const DOT: f64 = 0.002;
 /// within 1e-5 of their size), ellipses cubics within 5e-6 of their larger half axis. Blocks are unfolded, dimensions
 /// drawn by theirs; faces and meshes by their edges; hatches by the edges of their areas, and by their pattern if that is
 /// asked for; a point as a level line of 1/500 of the drawing's longer side. Text is drawn as single
-/// lines, or as outlines where these are asked for. Linetypes make dashes, half a dash or more at either end of a path. Paths of one layer and colour that meet end to end become one stroke. Each stroke has its
-/// layer's name and the colour it shows; what lies on layers that are off or frozen is left out. Where the model is
+/// lines, or as outlines where these are asked for. Linetypes make dashes, half a dash or more at either end of a path. Paths of one layer and colour that meet end to end become one stroke; what
+/// lies on earlier lines of its layer and colour comes last. Each stroke has its layer's name, the colour it shows and its entity, of a block's lines the insert; what lies on layers that are off or frozen is left out. Where the model is
 /// empty, the layout is drawn. Whatever is not drawn is counted by name in a remark.
 ///
 /// The sheet just holds the drawing, in millimetres, times a power of ten where that makes numbers of a usual size. Its
@@ -69,6 +71,7 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
         sheet: size.sheet,
         remarks: before.chain(skipped.remarks()).chain(lettered).collect(),
         doubt: size.doubt,
+        is_list: false,
     })
 }
 
@@ -77,7 +80,8 @@ fn set_texts(scene: &mut Scene, header: Header, options: &ReadOptions) -> Result
     let Scene { model, layout, blocks, styles, .. } = scene;
     let spaces = model.items.iter_mut().chain(&mut layout.items);
     let blocks = blocks.values_mut().flat_map(|block| &mut block.items);
-    let mut texts = spaces.chain(blocks).filter_map(Item::text).peekable();
+    let of = |is_in_block: bool| move |item| Item::text(item).map(|text| (text, is_in_block));
+    let mut texts = spaces.filter_map(of(false)).chain(blocks.filter_map(of(true))).peekable();
     if texts.peek().is_none() {
         return Ok(Vec::new());
     }
@@ -283,7 +287,9 @@ fn strokes(mut drawn: Vec<Drawn>, layers: &Layers) -> Drawing {
     let stroke = |d: Drawn| Stroke {
         layer: Some(layers.get(d.layer).name.clone()),
         colour: Some(d.colour),
+        entity: Some(Arc::new(d.origin.entity(d.more))),
         ..Stroke::new(d.path)
     };
-    Drawing { strokes: joined(drawn, size).into_iter().map(stroke).collect() }
+    let [once, again] = apart(drawn);
+    Drawing { strokes: joined(once, size).into_iter().chain(again).map(stroke).collect() }
 }

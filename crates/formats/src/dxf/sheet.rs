@@ -1,9 +1,8 @@
 //! The sheet round a drawing, and how large it truly is.
 
 use tracelight_maths::{ln, log10, powf};
-use tracelight_stroke::{Affine, Drawing};
+use tracelight_stroke::{Affine, Drawing, extent};
 
-use crate::extent::extent;
 use crate::limit::MAX_COORDINATE;
 use crate::meant::{is_meant, lengths};
 use crate::options::LengthUnit;

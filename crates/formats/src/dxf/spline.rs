@@ -31,7 +31,7 @@ pub(super) fn path(record: &Record) -> Result<Option<Path>, FormatError> {
     }
     let spline = Spline::of(record, controls)?;
     let path = spline.path(is_closed);
-    let is_sound = path.as_ref().is_none_or(|p| crate::extent::controls(p).all(Point::is_finite));
+    let is_sound = path.as_ref().is_none_or(|p| crate::controls::controls(p).all(Point::is_finite));
     match is_sound {
         true => Ok(path),
         false => Err(record.wrong("the curve", "not finite".into(), "knots and weights of one magnitude")),

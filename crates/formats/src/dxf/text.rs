@@ -1,9 +1,10 @@
 //! Text of a DXF: TEXT, ATTRIB and MTEXT as paths.
 
 use std::collections::BTreeSet;
+use std::fmt;
 
 use encoding_rs::Encoding;
-use tracelight_letters::{Faces, Run};
+use tracelight_letters::{Faces, Run, named, remarks};
 use tracelight_maths::{hypot, planar};
 use tracelight_stroke::{Affine, Point, Vec2};
 
@@ -12,8 +13,10 @@ use super::curves::world_from_plane;
 use super::groups::{Group, Record};
 use super::look::{Look, Shape};
 use super::mtext;
+use super::origin::Origin;
 use super::styles::{Styles, slanted, width_factor};
 use crate::FormatError;
+use crate::number::fixed;
 
 /// Characters of one text at most.
 const MAX_CHARACTERS: usize = 100_000;
@@ -93,8 +96,9 @@ impl Text {
     }
 
     /// Makes paths of the letters.
-    fn set(&mut self, faces: &Faces, styles: &Styles, encoding: Option<&'static Encoding>, said: &mut Said) {
-        let text = codes::decoded(&self.raw, encoding);
+    fn set(&mut self, setting: &Setting, is_in_block: bool, said: &mut Said) {
+        let Setting { faces, styles, encoding } = setting;
+        let text = codes::decoded(&self.raw, *encoding);
         let frame = self.world * Affine::translate(self.at.to_vec2());
         let placed = match &self.layout {
             Layout::Line(line) => vec![line.set(&text, self, faces)],
@@ -104,6 +108,7 @@ impl Text {
                 all.into_iter().map(|(run, place)| (run, turn * place)).collect()
             }
         };
+        let mut lacking = BTreeSet::new();
         for (run, place) in placed {
             for letter in &run.letters {
                 let place = place * Affine::translate(Vec2::new(letter.at, 0.0));
@@ -111,8 +116,16 @@ impl Text {
                 let paths = letter.paths.iter().map(|path| path.transformed(place));
                 self.shapes.extend(paths.map(|path| Shape { path, look: self.look }));
             }
-            said.missing.extend(run.missing);
             said.outlined.extend(run.outlined);
+            lacking.extend(run.missing);
+        }
+        if !lacking.is_empty() {
+            said.missing.extend(lacking);
+            said.lacking += 1;
+            let place = (!is_in_block).then(|| self.world * self.at);
+            let own = Lacking { origin: self.look.origin, place, words: excerpt(&text) };
+            let is_first = said.first.as_ref().is_none_or(|first| own.order() < first.order());
+            said.first = if is_first { Some(own) } else { said.first.take() };
         }
     }
 }
@@ -204,31 +217,75 @@ fn too_long(found: usize) -> FormatError {
     FormatError::TooLarge { what: "DXF's text", found, unit: "characters", limit: MAX_CHARACTERS }
 }
 
+/// A text of which letters are not drawn.
+struct Lacking {
+    origin: Origin,
+    /// Where it is in the drawing's own numbers, unless a block holds it.
+    place: Option<Point>,
+    words: String,
+}
+
+impl Lacking {
+    /// Texts of the drawing before those of blocks, as the file has them.
+    fn order(&self) -> (bool, Option<u32>, Origin) {
+        (self.place.is_none(), self.origin.line(), self.origin)
+    }
+}
+
+impl fmt::Display for Lacking {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} \"{}\"", self.origin.entity(0), self.words)?;
+        match self.place {
+            Some(Point { x, y }) => write!(f, " at x {}, y {}", fixed(x, 3), fixed(y, 3)),
+            None => write!(f, " in a block"),
+        }
+    }
+}
+
+/// The beginning of a text, to know it by.
+fn excerpt(text: &str) -> String {
+    const MOST: usize = 24;
+    let short: String = text.chars().take(MOST).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if text.chars().count() > MOST { short + "…" } else { short }
+}
+
 /// What was found out on the way.
 #[derive(Default)]
 pub(super) struct Said {
     missing: BTreeSet<char>,
     outlined: BTreeSet<char>,
+    /// Texts with letters that are missing.
+    lacking: usize,
+    first: Option<Lacking>,
 }
 
 impl Said {
     /// One sentence for each reason.
     pub(super) fn remarks(&self) -> Vec<String> {
-        tracelight_letters::remarks(&self.missing, &self.outlined)
+        let missing = self.first.as_ref().map(|first| {
+            let more = match self.lacking - 1 {
+                0 => String::new(),
+                1 => " and 1 more text".to_owned(),
+                more => format!(" and {more} more texts"),
+            };
+            let letters = named(&self.missing);
+            format!("not drawn: {letters}, which no font here has, in {first}{more}; --font FILE adds one")
+        });
+        missing.into_iter().chain(remarks(&BTreeSet::new(), &self.outlined)).collect()
     }
 }
 
-/// Sets texts.
+/// Sets texts, each with whether a block holds it.
 ///
 /// # Errors
 /// Letters of more lines than are read.
 pub(super) fn set_all<'a>(
-    texts: impl Iterator<Item = &'a mut Text>,
+    texts: impl Iterator<Item = (&'a mut Text, bool)>,
     setting: &Setting,
 ) -> Result<Said, FormatError> {
     let (mut said, mut elements) = (Said::default(), 0);
-    for text in texts {
-        text.set(&setting.faces, setting.styles, setting.encoding, &mut said);
+    for (text, is_in_block) in texts {
+        text.set(setting, is_in_block, &mut said);
         let cost = |shape: &Shape| shape.path.elements().len().max(super::LEAST_ELEMENTS);
         elements += text.shapes.iter().map(cost).sum::<usize>();
         if elements > super::MAX_ELEMENTS {

@@ -6,10 +6,9 @@ use std::fmt::{Display, Write};
 
 use kurbo::Rect;
 use tracelight_maths::tan;
-use tracelight_stroke::{Affine, Colour, Drawing, Element, Path, Piece, Point, Stroke};
+use tracelight_stroke::{Affine, Colour, Drawing, Element, Path, Piece, Point, Stroke, extent};
 
 use super::aci;
-use crate::extent::extent;
 use crate::number::fixed;
 
 /// Handle of the model's block record: the owner of every entity.

@@ -1,9 +1,7 @@
 //! Dashed lines as their dashes.
 
 use kurbo::Affine;
-use tracelight_stroke::{Element, Path, Piece, Point};
-
-use crate::parts::Measured;
+use tracelight_stroke::{Element, Measured, Path, Piece, Point};
 
 /// Dashes of a drawing at most; what has more is drawn as whole lines.
 pub(super) const MAX_DASHES: usize = 100_000;

@@ -1,9 +1,10 @@
 //! The resolved tree as a scene: what it paints, in order, and the lines that could be drawn of it.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use kurbo::Affine;
-use tracelight_stroke::{Colour, Drawing, Path, Point, Rect, Stroke, StrokeKind};
+use tracelight_stroke::{Colour, Entity, Path, Point, Rect, Stroke, StrokeKind};
 
 use super::dash::{Dashes, MAX_DASHES, dot, moved};
 use super::gates::{Gates, Key};
@@ -14,8 +15,7 @@ use super::paper::is_paper;
 use super::seen::scene::{Ink, Item, Mark, MarkKind, Number, Scene};
 use super::seen::{Reason, Region, View};
 use super::shape::{affine, band, filled, lines, own_lines, scale};
-use crate::doubles::without_doubles;
-use crate::extent::controls;
+use crate::controls::controls;
 use crate::{FormatError, is_sound};
 
 /// Elements of all strokes at most, for the memory they take.
@@ -63,6 +63,8 @@ pub(super) struct Painter {
 #[derive(Clone)]
 struct Around {
     place: Place,
+    /// The text whose letters the paths are.
+    entity: Option<Arc<Entity>>,
     veil: Option<Number>,
     gate: Option<Number>,
     /// Share of its own opacity that groups leave.
@@ -98,8 +100,14 @@ impl Painter {
 
     /// Paints all of a tree.
     pub(super) fn paint(&mut self, root: &usvg::Group) -> Result<(), FormatError> {
-        let around =
-            Around { place: Place::default(), veil: None, gate: None, opacity: 1.0, is_mixed: false };
+        let around = Around {
+            place: Place::default(),
+            entity: None,
+            veil: None,
+            gate: None,
+            opacity: 1.0,
+            is_mixed: false,
+        };
         let mut left = Vec::new();
         self.group(root, around, &mut left);
         while let Some(task) = left.pop() {
@@ -150,8 +158,10 @@ impl Painter {
         left: &mut Vec<Task<'a>>,
     ) -> Result<(), FormatError> {
         match self.letters.as_mut().and_then(|letters| letters.set(text)) {
-            Some(drawn) => self.letters(drawn, &around),
+            Some(drawn) => self.letters(drawn, text.id(), &around),
             None => {
+                let entity = self.names.entity(&around.place, text.id());
+                let around = Around { entity, ..around };
                 let outlines = text.flattened().children().iter().rev();
                 left.extend(outlines.map(|node| Task::Node(node, around.clone())));
                 Ok(())
@@ -160,7 +170,7 @@ impl Painter {
     }
 
     /// Letters without width: they hide nothing, and others may hide them.
-    fn letters(&mut self, drawn: Vec<Drawn>, around: &Around) -> Result<(), FormatError> {
+    fn letters(&mut self, drawn: Vec<Drawn>, id: &str, around: &Around) -> Result<(), FormatError> {
         self.paths += 1;
         let mut item: Option<(Option<Colour>, Number)> = None;
         drawn.iter().try_for_each(|letter| self.check(&letter.path))?;
@@ -168,13 +178,13 @@ impl Painter {
             drawn.iter().for_each(|letter| self.leave_out(Reason::Invisible, &letter.path));
             return Ok(());
         }
+        let entity = self.names.entity(&around.place, id);
         let stroke = |Drawn { path, colour, is_edge }| {
             let kind = if is_edge { StrokeKind::Outline } else { StrokeKind::Centreline };
-            Stroke { kind, colour, layer: around.place.layer.clone(), ..Stroke::new(path) }
+            let (layer, entity) = (around.place.layer.clone(), entity.clone());
+            Stroke { kind, colour, layer, entity, ..Stroke::new(path) }
         };
-        // pens go back over some lines of single-line letters
-        let (letters, _) = without_doubles(Drawing { strokes: drawn.into_iter().map(stroke).collect() });
-        for stroke in letters.strokes {
+        for stroke in drawn.into_iter().map(stroke) {
             self.count(&stroke.path);
             let colour = stroke.colour;
             let of_colour = item.filter(|(before, _)| *before == colour).map(|(_, number)| number);
@@ -192,6 +202,8 @@ impl Painter {
         if !path.is_visible() {
             return Ok(());
         }
+        let entity = around.entity.clone().or_else(|| self.names.entity(&around.place, path.id()));
+        let around = &Around { entity, ..around.clone() };
         self.paths += 1;
         let shown = |opacity: usvg::Opacity| f64::from(opacity.get()) * around.opacity > NOTHING;
         let stroke = path.stroke().filter(|s| shown(s.opacity()));
@@ -350,7 +362,8 @@ impl Painter {
 
 fn looks(kind: StrokeKind, pen: Option<f64>, paint: &usvg::Paint, around: &Around) -> Stroke {
     let path = Path::new(Point::ORIGIN);
-    Stroke { kind, pen, colour: colour_of(paint), layer: around.place.layer.clone(), ..Stroke::new(path) }
+    let (layer, entity) = (around.place.layer.clone(), around.entity.clone());
+    Stroke { kind, pen, colour: colour_of(paint), layer, entity, ..Stroke::new(path) }
 }
 
 /// Whether lengths grow alike in all directions.

@@ -9,7 +9,6 @@ use super::paint::{Painter, do_bands_matter, page};
 use super::seen::{View, seen, work_of};
 use super::text::Fonts;
 use super::{guard, remarks};
-use crate::doubles::without_doubles;
 use crate::lettering::{faces, kind};
 use crate::options::{Hidden, Letters, ReadOptions};
 use crate::unpacked::{unpacked, xml_text};
@@ -32,7 +31,7 @@ const MAX_NODES: u32 = 2_000_000;
 ///
 /// Not drawn are: a white rectangle behind everything (the paper), and what nobody sees. That is what opaque paint
 /// covers, what has on both sides the same colour (to 6 %), fills without area, opacity 0, what lies off the page,
-/// outside clip paths and nested viewports or in the dark of masks of plain shapes, and lines on earlier lines. Paths are
+/// outside clip paths and nested viewports or in the dark of masks of plain shapes. Paths are
 /// cut at parameters of their own elements. The band of a pen hides what is below it, but no line of its colour that is
 /// more than a quarter as wide. A centreline is drawn where it is itself uncovered. What a clip path cuts off a fill ends in a stroke
 /// along the clip path. A remark says for each reason how many lines are left out and how long they are. Filters,
@@ -40,7 +39,8 @@ const MAX_NODES: u32 = 2_000_000;
 /// in a given font or DejaVu Sans, or as single lines.
 ///
 /// A stroke's colour is that of its line, else of its fill. Its layer is the nearest layer of the drawing program
-/// (`inkscape:groupmode="layer"`, by its label) or, outside of all of them, the nearest group with an id.
+/// (`inkscape:groupmode="layer"`, by its label) or, outside of all of them, the nearest group with an id. Its entity is the element
+/// that it is of: a shape, a text, or the `use` by which that is drawn.
 ///
 /// The unit is the CSS px; a sheet with a physical size (mm, cm, in, pt, pc, Q) says how large that is, else the pixels
 /// to an inch that are asked for. Files may be packed with gzip (`.svgz`), and in any encoding that XML declares.
@@ -60,12 +60,13 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     check_size(bytes)?;
     let text = &*xml_text(bytes)?;
     guard::check_text(text)?;
-    let parsing =
-        usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };
-    let xml = Document::parse_with_options(text, parsing).map_err(syntax)?;
+    let xml = document(text).map_err(syntax)?;
     guard::check_tree(&xml)?;
     let fonts = Fonts::of(options)?;
-    let tree = usvg::Tree::from_xmltree(&xml, &resolving(&fonts)).map_err(unreadable)?;
+    let (names, with_ids) = Names::of(text, &xml);
+    let with_ids = with_ids.as_deref().and_then(|text| document(text).ok());
+    let tree = usvg::Tree::from_xmltree(with_ids.as_ref().unwrap_or(&xml), &resolving(&fonts));
+    let tree = tree.map_err(unreadable)?;
     let (width, height) = (f64::from(tree.size().width()), f64::from(tree.size().height()));
     if !is_sound(Point::new(width, height)) {
         return Err(FormatError::Far { place: "size of the sheet".into(), x: width, y: height });
@@ -79,7 +80,7 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     let bands = view.hides && do_bands_matter(tree.root());
     let has_lines = kind(options, Letters::Outline)? == Kind::Line;
     let letters = has_lines.then(|| faces(options, Letters::Outline)).transpose()?.map(Lines::new);
-    let mut painter = Painter::new(Names::of(&xml), view, options.dashes, bands, letters);
+    let mut painter = Painter::new(names, view, options.dashes, bands, letters);
     painter.paint(tree.root())?;
     let seen = seen(&painter.scene, view);
     if seen.strokes.is_empty() {
@@ -90,11 +91,15 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     let metres_per_unit = if is_physical(xml.root_element()) { Some(METRES_PER_PX) } else { by_dpi };
     let mut said = remarks::things(&xml, painter.told);
     said.extend(remarks::lines(&seen, &painter.unseen, hypot(width, height), metres_per_unit));
-    let (drawing, doubles) = without_doubles(Drawing { strokes: seen.strokes });
-    said.extend(doubles.remark(metres_per_unit));
     said.extend(painter.letters.as_ref().map_or_else(|| fonts.remarks(&tree), Lines::remarks));
-    let sheet = Sheet { width, height, metres_per_unit, drawing };
-    Ok(Reading { remarks: said, ..Reading::whole(sheet) })
+    let sheet = Sheet { width, height, metres_per_unit, drawing: Drawing { strokes: seen.strokes } };
+    Ok(Reading { doubt: sheet.doubt(), sheet, remarks: said, is_list: false })
+}
+
+fn document(text: &str) -> Result<Document<'_>, usvg::roxmltree::Error> {
+    let options =
+        usvg::roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: MAX_NODES, ..Default::default() };
+    Document::parse_with_options(text, options)
 }
 
 /// Options that never open a file: links to pictures lead nowhere, fonts are those in memory.

@@ -2,7 +2,9 @@ use std::f64::consts::{PI, TAU};
 
 use super::*;
 use crate::{FormatError, Sheet};
-use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, StrokeKind, compare};
+use tracelight_stroke::{
+    Affine, Drawing, Element, Path, Point, Stroke, StrokeKind, compare, without_doubles,
+};
 
 fn svg(attributes: &str, content: &str) -> String {
     format!(
@@ -325,5 +327,47 @@ fn a_vast_arc_is_refused_before_it_swells() {
     }
     let many = "<path stroke='red' fill='none' d='M0 0A9 9 0 0 1 9 9a1e5 1e5 0 0 0 1 1'/><circle r='20%'/>";
     let read = read(svg(&many.repeat(2000)).as_bytes()).unwrap();
-    assert_eq!(read.sheet.drawing.strokes.len(), 2, "and what is drawn again is drawn once");
+    let (once, again) = without_doubles(read.sheet.drawing);
+    assert_eq!((once.strokes.len(), again.unsearched), (2, 0), "and what is drawn again is found");
+}
+
+#[test]
+fn strokes_know_their_layer_and_element_whatever_ids_there_are() {
+    let layer = |id: &str, label: &str, inner: &str| {
+        format!("<g inkscape:groupmode='layer' inkscape:label='{label}'{id}>\n{inner}</g>\n")
+    };
+    let inner = [
+        layer("", "cut", "<path d='M0 0H9'/><g id='part'><circle id='hole' r='4' cx='20' cy='20'/></g>"),
+        layer(" id='twin'", "fold", "<path d='M0 5H9'/>"),
+        layer(" id='twin'", "score", &layer(" id='in'", "deep", "<path d='M0 10H9'/>")),
+        layer("", "cut", "<use href='#hole' x='9'/><use id='copy' href='#part' x='30'/>"),
+    ];
+    let svg = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' \
+         width='90' height='90' fill='none' stroke='#000'>\n{}<rect id='last' width='3' height='3' y='50'/></svg>",
+        inner.concat()
+    );
+    let found: Vec<(String, String)> = read(svg.as_bytes())
+        .unwrap()
+        .sheet
+        .drawing
+        .strokes
+        .iter()
+        .map(|s| {
+            (
+                s.layer.as_deref().unwrap_or("-").to_owned(),
+                s.entity.as_ref().map_or_else(String::new, |e| e.to_string()),
+            )
+        })
+        .collect();
+    let wanted = [
+        ("cut", "path at line 3"),
+        ("cut", "circle hole"),
+        ("fold", "path at line 5"),
+        ("deep", "path at line 8"),
+        ("cut", "use at line 11"),
+        ("cut", "use copy"),
+        ("-", "rect last"),
+    ];
+    assert_eq!(found, wanted.map(|(layer, entity)| (layer.to_owned(), entity.to_owned())));
 }

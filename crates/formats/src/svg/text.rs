@@ -1,6 +1,6 @@
 //! Text of an SVG: which font it is set in, and what is said of that.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex};
 
 use tracelight_letters::{Kind, bundled, named};
@@ -9,13 +9,16 @@ use usvg::{FontFamily, FontResolver, FontStyle, Node, Tree};
 
 use crate::FormatError;
 use crate::lettering::kind;
-use crate::options::{Letters, ReadOptions};
+use crate::options::{FontFinder, Letters, ReadOptions};
 
-/// Fonts that outlines come from: the given ones, and DejaVu Sans for what these lack.
+/// Fonts that outlines come from: the given ones, those that are found by their names, and DejaVu Sans for what these lack.
 pub(super) struct Fonts {
     all: Arc<Database>,
     given: Vec<ID>,
     bundled: Option<ID>,
+    finder: Option<FontFinder>,
+    /// Families that were looked for, by the name in small letters, with what was found.
+    found: Mutex<BTreeMap<String, Vec<ID>>>,
     /// Given fonts without outlines, by name.
     unused: Vec<String>,
     /// What the drawing asks for and does not get.
@@ -39,46 +42,51 @@ impl Fonts {
         }
         let dejavu = bundled("dejavu").unwrap_or_default();
         let bundled = all.load_font_source(Source::Binary(Arc::new(dejavu))).first().copied();
-        Ok(Self { all: Arc::new(all), given, bundled, unused, replaced: Mutex::default() })
+        let finder = options.finder.clone();
+        let (found, replaced) = (Mutex::default(), Mutex::default());
+        Ok(Self { all: Arc::new(all), given, bundled, finder, found, unused, replaced })
     }
 
     pub(super) fn database(&self) -> Arc<Database> {
         self.all.clone()
     }
 
-    /// A font of the family that is asked for, of the nearest weight; else the first given one; else DejaVu Sans.
+    /// A font of the family that is asked for, of the nearest weight: of the given ones, else of those that can be found. Else the
+    /// first given one; else DejaVu Sans.
     pub(super) fn resolver(&self) -> FontResolver<'_> {
         FontResolver {
-            select_font: Box::new(|font, _| self.select(font)),
+            select_font: Box::new(|font, all| self.select(font, all)),
             select_fallback: FontResolver::default_fallback_selector(),
         }
     }
 
-    fn select(&self, font: &usvg::Font) -> Option<ID> {
-        let has_name = |id: &ID, wanted: &str| {
-            let face = self.all.face(*id);
-            face.is_some_and(|face| face.families.iter().any(|(name, _)| name.eq_ignore_ascii_case(wanted)))
-        };
+    fn select(&self, font: &usvg::Font, all: &mut Arc<Database>) -> Option<ID> {
         let by_name = |family: &FontFamily| {
             let FontFamily::Named(wanted) = family else { return None };
-            let known = self.given.iter().chain(&self.bundled).filter(|id| has_name(id, wanted));
-            known.copied().min_by_key(|id| self.difference(*id, font))
+            let known = self.given.iter().chain(&self.bundled).filter(|id| has_name(all, **id, wanted));
+            let known: Vec<ID> = known.copied().collect();
+            let known = if known.is_empty() { self.find(wanted, all) } else { known };
+            known.into_iter().min_by_key(|id| difference(all, *id, font))
         };
         let by_name = font.families().iter().find_map(by_name);
         let id = by_name.or_else(|| self.given.first().copied()).or(self.bundled)?;
-        self.note(font, id, by_name.is_some());
+        self.note(font, difference(all, id, font), by_name.is_some());
         Some(id)
     }
 
-    /// How far a face is from what is asked for: slant, then weight.
-    fn difference(&self, id: ID, font: &usvg::Font) -> (bool, u16) {
-        self.all.face(id).map_or((true, u16::MAX), |face| {
-            let is_slanted = face.style != Style::Normal;
-            (is_slanted != (font.style() != FontStyle::Normal), face.weight.0.abs_diff(font.weight()))
-        })
+    /// The faces of a family that is neither given nor in the program, each family looked for once.
+    fn find(&self, wanted: &str, all: &mut Arc<Database>) -> Vec<ID> {
+        let (Some(finder), Ok(mut found)) = (&self.finder, self.found.lock()) else { return Vec::new() };
+        let faces = found.entry(wanted.to_lowercase()).or_insert_with(|| {
+            let sources = finder.find(wanted).into_iter().map(|font| Source::Binary(Arc::new(font.bytes)));
+            let all = Arc::make_mut(all);
+            let faces: Vec<ID> = sources.flat_map(|source| all.load_font_source(source)).collect();
+            faces.into_iter().filter(|id| has_name(all, *id, wanted)).collect()
+        });
+        faces.clone()
     }
 
-    fn note(&self, font: &usvg::Font, id: ID, has_family: bool) {
+    fn note(&self, font: &usvg::Font, (slant_differs, weights): (bool, u16), has_family: bool) {
         const WEIGHTS_APART: u16 = 150;
         let Ok(mut replaced) = self.replaced.lock() else { return };
         match font.families().first() {
@@ -89,7 +97,6 @@ impl Fonts {
             Some(FontFamily::Monospace) if !has_family => replaced.insert("monospace".to_owned()),
             _ => false,
         };
-        let (slant_differs, weights) = self.difference(id, font);
         if slant_differs && font.style() != FontStyle::Normal {
             replaced.insert("italic".to_owned());
         }
@@ -108,7 +115,8 @@ impl Fonts {
         let fonts = (!replaced.is_empty()).then(|| {
             let more = if replaced.len() > NAMED { ", …" } else { "" };
             let names = replaced.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
-            format!("text in {names}{more} is drawn in {by}; --font FILE draws it in another font")
+            let found = if self.finder.is_none() { ", --system-fonts in one of this computer" } else { "" };
+            format!("text in {names}{more} is drawn in {by}; --font FILE draws it in another font{found}")
         });
         let (mut missing, mut has_text) = (BTreeSet::new(), false);
         each_text(tree, &mut |text| {
@@ -127,6 +135,19 @@ impl Fonts {
         });
         fonts.into_iter().chain(missing).chain(unused).collect()
     }
+}
+
+fn has_name(all: &Database, id: ID, wanted: &str) -> bool {
+    let is_own = |(name, _): &(String, _)| name.eq_ignore_ascii_case(wanted);
+    all.face(id).is_some_and(|face| face.families.iter().any(is_own))
+}
+
+/// How far a face is from what is asked for: slant, then weight.
+fn difference(all: &Database, id: ID, font: &usvg::Font) -> (bool, u16) {
+    all.face(id).map_or((true, u16::MAX), |face| {
+        let is_slanted = face.style != Style::Normal;
+        (is_slanted != (font.style() != FontStyle::Normal), face.weight.0.abs_diff(font.weight()))
+    })
 }
 
 /// Shows every text of a tree.

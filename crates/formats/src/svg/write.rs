@@ -14,7 +14,7 @@ const USUAL_PEN_MM: f64 = 0.8;
 /// A drawing on the target (metres, y up, origin at the centre) as an SVG of true size: millimetres, one path a
 /// stroke, in tracing order. Lines stay lines, arcs arcs, cubics cubics; coordinates to 0.1 µm.
 ///
-/// Colours are kept. Where a stroke has a layer, each run of strokes of one layer is a group that Inkscape shows as a
+/// Colours are kept, and what a stroke comes from is its title. Where a stroke has a layer, each run of strokes of one layer is a group that Inkscape shows as a
 /// layer, directly below the root, where plotter programs look for layers; a layer that tracing comes back to has several groups of its name, for the order is kept above all.
 pub fn write(drawing: &Drawing, width_m: f64, height_m: f64) -> String {
     let (w, h) = (1e3 * width_m, 1e3 * height_m);
@@ -70,11 +70,19 @@ fn write_stroke(svg: &mut String, number_of: usize, stroke: &Stroke) {
     let pen = number(stroke.pen.unwrap_or(USUAL_PEN_MM));
     let kind = stroke.kind.name();
     let colour = stroke.colour.map_or_else(String::new, |c| format!(" stroke=\"{c}\""));
-    let _ = writeln!(
+    let _ = write!(
         svg,
-        "<path id=\"stroke-{number_of}\" data-kind=\"{kind}\"{colour} stroke-width=\"{pen}\" d=\"{}\"/>",
+        "<path id=\"stroke-{number_of}\" data-kind=\"{kind}\"{colour} stroke-width=\"{pen}\" d=\"{}\"",
         path_data(&stroke.path)
     );
+    let _ = match &stroke.entity {
+        // a browser shows the title of what the pointer is on
+        Some(entity) => {
+            let entity = escaped(&entity.to_string());
+            writeln!(svg, " data-entity=\"{entity}\"><title>{number_of}: {entity}</title></path>")
+        }
+        None => writeln!(svg, "/>"),
+    };
 }
 
 fn path_data(path: &Path) -> String {

@@ -36,6 +36,23 @@ const REST: &str = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n9\n$LTSCALE\n40\
     0\nMLINE\n71\n1\n72\n2\n11\n0\n21\n0\n13\n0\n23\n1\n74\n1\n41\n0.5\n11\n9\n21\n0\n13\n0\n23\n1\n74\n1\n41\n0.5\n\
     0\nPOINT\n10\n4\n20\n4\n0\nLINE\n8\nL\n48\n0.7\n11\n40\n21\n3\n0\nDIMENSION\n2\n*D1\n0\nLINE\n67\n1\n11\n3\n21\n4\n0\nENDSEC\n0\nEOF\n";
 
+/// A DXF with texts of all kinds, and with lines that lie on each other.
+const TEXTS: &str = "0\nSECTION\n2\nTABLES\n0\nSTYLE\n2\nS\n41\n0.8\n50\n15\n0\nENDSEC\n0\nSECTION\n2\nBLOCKS\n0\nBLOCK\n2\nB\n\
+    0\nTEXT\n5\n1A\n40\n2\n1\n%%c12 \\U+00E9\n0\nENDBLK\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n\
+    0\nTEXT\n5\n2F\n8\nT\n10\n1\n20\n2\n40\n5\n50\n30\n41\n0.7\n51\n12\n1\nCaf\u{e9} 12\n7\nS\n72\n1\n73\n2\n11\n20\n21\n9\n\
+    0\nTEXT\n40\n3\n1\nfit\n72\n5\n10\n0\n20\n0\n11\n50\n21\n5\n0\nATTRIB\n40\n3\n1\nA\n2\nTAG\n70\n0\n74\n2\n11\n9\n21\n9\n\
+    0\nMTEXT\n10\n0\n20\n60\n40\n4\n41\n30\n44\n1.2\n71\n5\n7\nS\n3\n{\\fArial|b0;\\H2x;two} \n1\nlines\\P\\S1/2; \\W1.5;wide\n11\n1\n21\n0.2\n\
+    0\nINSERT\n2\nB\n10\n70\n20\n0\n41\n2\n0\nLINE\n8\nT\n10\n0\n20\n0\n11\n90\n21\n0\n0\nLINE\n8\nT\n10\n80\n20\n0\n11\n40\n21\n0\n\
+    0\nARC\n8\nT\n10\n0\n20\n0\n40\n9\n50\n10\n51\n200\n0\nCIRCLE\n8\nT\n10\n0\n20\n0\n40\n9\n0\nENDSEC\n0\nEOF\n";
+
+/// An SVG with what drawing programs write: styles, clip paths, masks, clones, dashes, layers, text.
+const RICH: &str = "<svg xmlns='http://www.w3.org/2000/svg' xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape'\nwidth='90mm'\nheight='60mm'\n\
+    viewBox='0 0 90 60'>\n<style>\n.a{fill:none;stroke:#f00}\n#b{stroke-width:2}\n</style>\n<defs>\n<clipPath id='c'>\n<circle cx='20'\ncy='20'\nr='15'/>\n\
+    </clipPath>\n<mask id='m'>\n<rect width='50'\nheight='50' fill='#fff'/>\n</mask>\n<g id='s'>\n<path d='M0 0\nh9\nv9z'/>\n</g>\n</defs>\n\
+    <rect width='90' height='60' fill='#fff'/>\n<g inkscape:groupmode='layer'\ninkscape:label='one'>\n<rect class='a' id='b'\nx='5' y='5' width='60' height='30'\n\
+    clip-path='url(#c)'/>\n<use href='#s'\nx='30'\ny='9'\ntransform='rotate(20)'/>\n<g mask='url(#m)'\nopacity='0.5'>\n<ellipse cx='40' cy='30'\nrx='20' ry='9'/>\n</g>\n\
+    <path class='a' stroke-dasharray='3 2'\nd='M0 50\nA9 5 30 0 1 80 50\nQ1 2 3 4\nt9 9'/>\n<text x='9' y='40'\nfont-size='8'>Abc\n<tspan dy='3'>\u{e9}</tspan>\n</text>\n</g>\n</svg>";
+
 /// Numbers that break things.
 const NASTY: [&str; 14] = [
     "0",
@@ -164,11 +181,11 @@ fn check_damaged(
 }
 
 fn check_dxf(cases: u32) {
-    let texts = [dxf::write(&plate(), 0.3, 0.2), OTHERS.to_owned(), REST.to_owned()];
+    let texts = [dxf::write(&plate(), 0.3, 0.2), OTHERS.to_owned(), REST.to_owned(), TEXTS.to_owned()];
     texts.iter().for_each(|t| check_sheet(&dxf::read(t.as_bytes()).unwrap().sheet, t.as_bytes()));
     check(cases, &texts, |bytes| dxf::read(bytes).map(|r| r.sheet));
     let options = ReadOptions { hatch: Hatch::Pattern, ..ReadOptions::default() };
-    check(cases / 3, &texts[2..], |bytes| dxf::read_with(bytes, &options).map(|r| r.sheet));
+    check(cases / 3, &texts[2..3], |bytes| dxf::read_with(bytes, &options).map(|r| r.sheet));
 }
 
 fn check_binary_dxf(cases: u32) {
@@ -195,6 +212,7 @@ fn check_svg(cases: u32) {
     // a line an attribute, so that lines are what is broken
     let text = svg::write(&plate(), 0.3, 0.2).replace("\" ", "\"\n").replace('M', "\nM").replace('A', "\nA");
     check(cases, &[text], |bytes| svg::read(bytes).map(|r| r.sheet));
+    check(cases, &[RICH.to_owned()], |bytes| svg::read(bytes).map(|r| r.sheet));
 }
 
 #[test]

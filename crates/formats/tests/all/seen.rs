@@ -143,13 +143,3 @@ fn a_template_for_cutting_keeps_what_is_hidden() {
     let open = ReadOptions { crop: false, ..ReadOptions::default() };
     assert!((length_mm(&read("<path d='M50 50H1000' stroke='#000'/>", &open)) - 950.0).abs() < 1e-2);
 }
-
-#[test]
-fn lines_drawn_twice_are_drawn_once() {
-    check(
-        "<path d='M10 60H90' stroke='#000'/><path d='M90 60H10' stroke='#000'/>",
-        1,
-        80.0,
-        "on top of earlier lines",
-    );
-}

@@ -11,31 +11,34 @@ const MOST: usize = 500;
 pub(super) fn section(job: &Finished<'_>) -> String {
     let all = sequence(job.drawing, job.plan);
     let has_layers = all.iter().any(|stroke| stroke.layer.is_some());
-    let layer_head = if has_layers { "<th>layer</th>" } else { "" };
-    let rows: String = all.iter().take(MOST).map(|stroke| row(stroke, has_layers)).collect();
+    let has_entities = all.iter().any(|stroke| stroke.entity.is_some());
+    let head = |has: bool, name: &str| if has { format!("<th>{name}</th>") } else { String::new() };
+    let heads = head(has_layers, "layer") + &head(has_entities, "comes from");
+    let rows: String = all.iter().take(MOST).map(|stroke| row(stroke, [has_layers, has_entities])).collect();
     let rest = match all.len().saturating_sub(MOST) {
         0 => String::new(),
         more => format!("<p class=\"note\">and {more} more, all of them in plan --json</p>"),
     };
     format!(
-        "<section><h2>Strokes in their order</h2><details><summary>{} {}</summary><div class=\"wide\" role=\"region\" aria-label=\"Strokes in their order\" tabindex=\"0\"><table class=\"list\"><thead><tr><th>number</th>{layer_head}\
+        "<section><h2>Strokes in their order</h2><details><summary>{} {}</summary><div class=\"wide\" role=\"region\" aria-label=\"Strokes in their order\" tabindex=\"0\"><table class=\"list\"><thead><tr><th>number</th>{heads}\
          <th>length, mm</th><th>begins at, mm</th><th>ends at, mm</th><th>lit, s</th></tr></thead><tbody>{rows}</tbody></table></div>{rest}</details></section>",
         all.len(),
         if all.len() == 1 { "stroke" } else { "strokes" },
     )
 }
 
-fn row(stroke: &DrawnStroke, has_layers: bool) -> String {
+fn row(stroke: &DrawnStroke, [has_layers, has_entities]: [bool; 2]) -> String {
     let mm = |m: f64| format!("{:.1}", m * 1e3 + 0.0).replace('-', "−");
     let place = |[x, y]: [f64; 2]| format!("{}, {}", mm(x), mm(y));
     let time = stroke.lit_from_s.zip(stroke.lit_to_s);
     let lit = time.map_or_else(|| "–".to_owned(), |(from, to)| format!("{from:.2} to {to:.2}"));
-    let layer = match has_layers {
-        true => format!("<td>{}</td>", escaped(stroke.layer.as_deref().unwrap_or("–"))),
+    let cell = |has: bool, name: Option<&str>| match has {
+        true => format!("<td>{}</td>", escaped(name.unwrap_or("–"))),
         false => String::new(),
     };
+    let names = cell(has_layers, stroke.layer.as_deref()) + &cell(has_entities, stroke.entity.as_deref());
     format!(
-        "<tr><th>{}</th>{layer}<td>{}</td><td>{}</td><td>{}</td><td>{lit}</td></tr>",
+        "<tr><th>{}</th>{names}<td>{}</td><td>{}</td><td>{}</td><td>{lit}</td></tr>",
         stroke.number,
         mm(stroke.length_m),
         place(stroke.from_m),

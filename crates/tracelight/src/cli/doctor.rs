@@ -2,7 +2,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use serde_json::{Value, json};
-use tracelight_camera::{Opened, Source, devices};
+use tracelight_camera::{Opened, Source, devices, shown};
 use tracelight_eye::about::{About, Stamps};
 use tracelight_eye::figure::histogram;
 use tracelight_eye::wall::{markers, well_exposed};
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &DoctorArgs, stop: &Stop) -> Result<Answer, Failure> {
         // a second device of a camera is no news
         let is_other = seen.as_ref().is_err_and(|failure| failure.code == "not-a-camera");
         if args.camera.is_some() || !is_other {
-            cameras.push((name, seen));
+            cameras.push((shown(&name), seen));
         }
     }
     stop.check()?;

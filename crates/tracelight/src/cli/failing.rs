@@ -1,5 +1,6 @@
 //! What a failure is for scripts: one object, with what to do.
 
+use tracelight_camera::shown;
 use tracelight_task::Failure;
 
 use crate::cli::explain::meaning;
@@ -7,7 +8,7 @@ use crate::cli::explain::meaning;
 /// A failure as JSON; what to do is what its code means, as `explain` has it.
 pub(crate) fn json(failure: &Failure) -> String {
     let help = meaning(failure.code).unwrap_or_default();
-    failure.json(&help)
+    shown(&failure.json(&help))
 }
 
 /// A command line that the parser refused: what it says first is the message, the rest and what is known beside it is what to do.

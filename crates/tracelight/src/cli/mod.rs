@@ -190,7 +190,7 @@ fn report(terminal: Terminal, json: bool, on_stdout: bool, failure: &Failure) ->
     } else {
         " "
     };
-    eprintln!("{} {}{gap}{hint}", terminal.alarm("error:"), failure.message);
+    eprintln!("{} {}{gap}{hint}", terminal.alarm("error:"), tracelight_camera::shown(&failure.message));
     ExitCode::from(failure.status.code())
 }
 

@@ -1,13 +1,16 @@
 //! How a drawing file is read: the flags of every command that takes a drawing.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use clap::{ArgAction, Args, ValueEnum};
 use tracelight_files as files;
-use tracelight_formats::{Font, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
+use tracelight_formats::{Font, FontFinder, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
 use tracelight_letters::{bundled, kind_of};
 use tracelight_report::AxisUnit;
 use tracelight_task::Failure;
+
+use crate::fonts::SystemFonts;
 
 /// How an SVG or DXF is read. Pixels have none of this.
 #[derive(Args, Clone, Debug)]
@@ -37,6 +40,10 @@ pub(crate) struct ReadingArgs {
     /// (outlines). Repeatable; later fonts supply missing letters
     #[arg(long, value_name = "FILE", action = ArgAction::Append)]
     font: Vec<String>,
+    /// Also take fonts of this computer, where a text or --font names their family, such as --font "Comic Neue"; another computer may have
+    /// others, so that the drawing may differ there
+    #[arg(long)]
+    system_fonts: bool,
 }
 
 /// Lines that are painted over.
@@ -111,6 +118,8 @@ impl ReadingArgs {
     /// # Errors
     /// A font file that cannot be read; two units.
     pub(crate) fn options(&self) -> Result<ReadOptions, Failure> {
+        let system = self.system_fonts.then(|| Arc::new(SystemFonts::look()));
+        let fonts = self.font.iter().map(|name| font(name, system.as_deref()));
         Ok(ReadOptions {
             hidden: match self.hidden {
                 HiddenName::Cut => Hidden::Cut,
@@ -128,7 +137,8 @@ impl ReadingArgs {
                 LettersName::Line => Letters::Line,
                 LettersName::Outline => Letters::Outline,
             }),
-            fonts: self.font.iter().map(|name| font(name)).collect::<Result<_, Failure>>()?,
+            fonts: fonts.collect::<Result<_, Failure>>()?,
+            finder: system.map(|system| FontFinder::new(move |family| system.find(family))),
         })
     }
 }
@@ -154,11 +164,15 @@ impl UnitName {
     }
 }
 
-/// A font in the program, or in a file, which must be one.
-fn font(name: &str) -> Result<Font, Failure> {
+/// A font in the program, in a file, which must be one, or of a family that the system has.
+fn font(name: &str, system: Option<&SystemFonts>) -> Result<Font, Failure> {
+    let of_system = || system.filter(|_| !Path::new(name).exists())?.find(name).into_iter().next();
     let bytes: Arc<[u8]> = match bundled(name) {
         Some(bytes) => bytes.into(),
-        None => files::read(name)?.into(),
+        None => match of_system() {
+            Some(font) => return Ok(font),
+            None => files::read(name)?.into(),
+        },
     };
     kind_of(name, &bytes).map_err(|e| Failure::usage("malformed", e.to_string()))?;
     Ok(Font { name: name.to_owned(), bytes })

@@ -142,6 +142,25 @@ fn a_moves_rows_are_on_its_course_and_count_what_an_encoder_would() {
 }
 
 /// Every `$ tracelight …` on a page of `docs` prints what stands below it. With `RENEW_DOCS` set, it is written there.
+/// The words of a command as a shell would take them. What a shell would not take as it stands is refused.
+fn words(command: &str) -> Vec<String> {
+    let (mut words, mut is_quoted) = (vec![String::new()], false);
+    for c in command.chars() {
+        match c {
+            '"' => is_quoted = !is_quoted,
+            ' ' if !is_quoted => words.push(String::new()),
+            c => {
+                assert!(
+                    is_quoted || !"()*^&;<>|$`?![]{}".contains(c),
+                    "{command}: a shell takes {c} for its own"
+                );
+                words.last_mut().unwrap().push(c);
+            }
+        }
+    }
+    words
+}
+
 fn check_page(name: &str, commands: usize) {
     const BEGIN: &str = "```text\n$ tracelight ";
     let path = support::root().join("docs").join(name);
@@ -155,7 +174,8 @@ fn check_page(name: &str, commands: usize) {
         let rest = format!("\n{rest}");
         let (shown, after) = rest.split_once("\n```").unwrap();
         let shown = shown.trim_start_matches('\n');
-        let output = run(&command.split(' ').collect::<Vec<_>>());
+        let words = words(command);
+        let output = run(&words.iter().map(String::as_str).collect::<Vec<_>>());
         let printed = String::from_utf8(output.stdout).unwrap();
         renewed += &format!("{BEGIN}{command}\n{}\n```{after}", printed.trim_end());
         if std::env::var_os("RENEW_DOCS").is_none() {

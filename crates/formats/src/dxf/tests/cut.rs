@@ -35,11 +35,15 @@ fn binary_files_are_read_as_ascii_ones() {
     let text = file(&format!(
         "{ENTITIES}, 290 1, 310 chunk, 0 LINE, 1000 note, 1070 -3, 1040 0.5, 420 255, 10 1, 20 1, 11 -2.5, 21 7"
     ));
-    let wanted = reading(&text);
+    let unnumbered = |mut reading: Reading| {
+        reading.sheet.drawing.strokes.iter_mut().for_each(|stroke| stroke.entity = None);
+        reading
+    };
+    let wanted = unnumbered(reading(&text));
     assert_eq!(wanted.sheet.drawing.strokes.len(), 4);
     for is_wide in [false, true] {
         let bytes = binary(&text, is_wide);
-        assert_eq!(read(&bytes).unwrap(), wanted);
+        assert_eq!(unnumbered(read(&bytes).unwrap()), wanted, "but for the lines of a text");
         // cut anywhere, it is refused, or what is whole is drawn
         for cut in 0..bytes.len() - 3 {
             if let Ok(part) = read(&bytes[..cut]) {

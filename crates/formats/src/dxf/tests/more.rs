@@ -236,3 +236,20 @@ fn a_spline_that_returns_is_closed_only_if_nothing_else_meets_it() {
     let strokes = sheet(&burnt).drawing.strokes;
     assert_eq!(strokes.len(), 1, "line, loop and line are one");
 }
+
+#[test]
+fn strokes_know_the_entities_that_they_come_from() {
+    let found = sheet(
+        "0 LINE, 5 2F, 10 0, 20 0, 11 9, 21 0, 0 LINE, 5 30, 10 9, 20 0, 11 9, 21 9, 0 CIRCLE, 10 50, 20 50, 40 2,
+         0 TEXT, 5 a1, 10 70, 20 0, 40 5, 1 L",
+    );
+    let named: Vec<String> =
+        found.drawing.strokes.iter().map(|s| s.entity.as_ref().unwrap().to_string()).collect();
+    assert_eq!(named[0], "LINE 2F and 1 more");
+    assert!(named[1].starts_with("CIRCLE at line "), "{named:?}");
+    assert_eq!(named[2], "TEXT A1");
+    let block = "0 BLOCK, 2 b, 10 0, 20 0, 0 LINE, 5 7, 11 5, 21 5, 0 ENDBLK";
+    let text = section("BLOCKS", block) + &file("0 INSERT, 5 3C, 2 b, 10 1, 20 1");
+    let found = reading(&text).sheet.drawing;
+    assert_eq!(found.strokes[0].entity.as_ref().unwrap().to_string(), "INSERT 3C");
+}

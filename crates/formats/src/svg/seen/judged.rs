@@ -1,12 +1,11 @@
 //! A line cut into what is seen of it and what is not.
 
-use tracelight_stroke::{Path, Vec2};
+use tracelight_stroke::{Path, Span, Vec2, parts};
 
 use super::crossings::{Edges, Own, Owner};
 use super::flat::{Corner, chords};
 use super::scene::{Mark, MarkKind, Number};
 use super::verdict::{Judge, Place, Reason, Verdict};
-use crate::parts::{Span, parts};
 
 /// Stretches shorter than so many times the distance from which lines are looked at are not cut, nor drawn alone.
 const LEAST: f64 = 5.0;

@@ -2,21 +2,22 @@
 //! and lines lines.
 
 use kurbo::{CubicBez, ParamCurve};
-use tracelight_stroke::{Element, Path, Piece};
+
+use crate::path::{Element, Path, Piece};
 
 /// A stretch of one element of a path, by that element's parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Span {
+pub struct Span {
     /// Number of the element.
-    pub(crate) element: usize,
+    pub element: usize,
     /// Where it begins, 0 to 1.
-    pub(crate) from: f64,
+    pub from: f64,
     /// Where it ends, `from` to 1.
-    pub(crate) to: f64,
+    pub to: f64,
 }
 
-/// The part of a piece between two of its parameters.
-pub(crate) fn between(piece: &Piece, from: f64, to: f64) -> Piece {
+/// Part of a piece between two of its parameters.
+fn between(piece: &Piece, from: f64, to: f64) -> Piece {
     if from <= 0.0 && to >= 1.0 {
         return *piece;
     }
@@ -34,7 +35,8 @@ pub(crate) fn between(piece: &Piece, from: f64, to: f64) -> Piece {
 
 /// The parts of a path that the spans name, which are in the path's order. Spans that follow each other without a gap
 /// make one part; on a closed path the last and the first do too. The whole of a closed path stays closed.
-pub(crate) fn parts(path: &Path, spans: &[Span]) -> Vec<Path> {
+#[must_use]
+pub fn parts(path: &Path, spans: &[Span]) -> Vec<Path> {
     let elements = path.elements().len();
     let is_whole = spans.len() == elements
         && spans.iter().enumerate().all(|(i, s)| (s.element, s.from, s.to) == (i, 0.0, 1.0));
@@ -80,24 +82,27 @@ fn follows(before: &Span, span: &Span, elements: usize, round: bool) -> bool {
 }
 
 /// A path with the lengths of its pieces.
-pub(crate) struct Measured {
+pub struct Measured {
     pieces: Vec<(Piece, f64)>,
     tolerance: f64,
 }
 
 impl Measured {
     /// The path, its lengths to a tolerance.
-    pub(crate) fn of(path: &Path, tolerance: f64) -> Self {
+    #[must_use]
+    pub fn of(path: &Path, tolerance: f64) -> Self {
         Self { pieces: path.pieces().map(|piece| (piece, piece.length(tolerance))).collect(), tolerance }
     }
 
     /// Length of all of it.
-    pub(crate) fn length(&self) -> f64 {
+    #[must_use]
+    pub fn length(&self) -> f64 {
         self.pieces.iter().map(|(_, length)| length).sum()
     }
 
     /// The parts of the path between lengths from its start, which rise.
-    pub(crate) fn stretches(&self, spans: &[[f64; 2]]) -> Vec<Path> {
+    #[must_use]
+    pub fn stretches(&self, spans: &[[f64; 2]]) -> Vec<Path> {
         let mut rest = self.pieces.as_slice();
         let mut before = 0.0;
         let mut parts = Vec::new();
@@ -131,7 +136,7 @@ impl Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tracelight_stroke::Point;
+    use kurbo::Point;
 
     #[test]
     fn a_closed_path_is_not_cut_where_it_starts() {

@@ -1,11 +1,18 @@
-use kurbo::{CubicBez, ParamCurveExtrema, Rect};
+use kurbo::{CubicBez, ParamCurveExtrema, Rect, Vec2};
 use tracelight_maths::atan2;
-use tracelight_stroke::{Drawing, Element, Piece, Point, Vec2};
+
+use crate::path::{Element, Path, Piece};
+use crate::stroke::Drawing;
 
 /// The smallest upright rectangle round a drawing, exact for lines, arcs and cubics; `None` for an empty one.
-pub(crate) fn extent(drawing: &Drawing) -> Option<Rect> {
-    let pieces = drawing.strokes.iter().flat_map(|s| s.path.pieces());
-    pieces.map(|p| of_piece(&p)).reduce(|a, b| a.union(b))
+#[must_use]
+pub fn extent(drawing: &Drawing) -> Option<Rect> {
+    of_paths(drawing.strokes.iter().map(|stroke| &stroke.path))
+}
+
+/// The smallest upright rectangle round paths.
+pub(crate) fn of_paths<'a>(paths: impl Iterator<Item = &'a Path>) -> Option<Rect> {
+    paths.flat_map(Path::pieces).map(|piece| of_piece(&piece)).reduce(|a, b| a.union(b))
 }
 
 fn of_piece(piece: &Piece) -> Rect {
@@ -28,21 +35,12 @@ fn is_passed(arm: Vec2, direction: Vec2, sweep: f64) -> bool {
     ahead.rem_euclid(std::f64::consts::TAU) <= sweep.abs()
 }
 
-/// Every point that says where a path's elements go, its start first.
-pub(crate) fn controls(path: &tracelight_stroke::Path) -> impl Iterator<Item = Point> + '_ {
-    let of = |element: &Element| match *element {
-        Element::Line { to } => [to; 3],
-        Element::Arc { centre, .. } => [centre; 3],
-        Element::Cubic { c1, c2, to } => [c1, c2, to],
-    };
-    std::iter::once(path.start()).chain(path.elements().iter().flat_map(of))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stroke::Stroke;
+    use kurbo::Point;
     use std::f64::consts::PI;
-    use tracelight_stroke::{Path, Stroke};
 
     #[test]
     fn an_arc_reaches_as_far_as_its_circle_does() {

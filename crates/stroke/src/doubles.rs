@@ -1,33 +1,33 @@
 //! Lines that are drawn twice: in light they would be twice as bright.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
-use kurbo::Rect;
+use kurbo::{Point, Rect};
 use tracelight_maths::{atan2, hypot};
-use tracelight_stroke::{Drawing, Element, Path, Piece, Point, Stroke};
 
-use crate::extent::extent;
-use crate::number::length;
+use crate::extent::of_paths;
 use crate::parts::{Span, parts};
+use crate::path::{Element, Path, Piece};
+use crate::stroke::Drawing;
 
 /// What was left out because it lies on an earlier line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Doubles {
+pub struct Doubles {
     /// Strokes of which a part or all was left out.
-    pub(crate) strokes: usize,
+    pub strokes: usize,
     /// Length left out, in the drawing's unit.
-    pub(crate) length: f64,
+    pub length: f64,
+    /// Strokes that were not looked at: too many lines lie close together.
+    pub unsearched: usize,
 }
 
-impl Doubles {
-    /// Says what was left out; `None` for nothing. The length is in millimetres where the drawing's unit has a size.
-    pub(crate) fn remark(&self, metres_per_unit: Option<f64>) -> Option<String> {
-        let length = length(self.length, metres_per_unit);
-        let lines = if self.strokes == 1 { "line" } else { "lines" };
-        let strokes = self.strokes;
-        (strokes > 0)
-            .then(|| format!("not drawn again: {strokes} {lines}, {length}, on top of earlier lines"))
-    }
+/// A path of which a part lies on earlier ones, or on itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Split {
+    /// Parts that are drawn for the first time.
+    pub once: Vec<Path>,
+    /// Parts that lie on earlier lines.
+    pub again: Vec<Path>,
 }
 
 /// How far apart lines are one line, as a share of the drawing's diagonal.
@@ -36,38 +36,59 @@ const WITHIN: f64 = 1e-5;
 /// Rests shorter than so many times that distance are none.
 const LEAST_REST: f64 = 10.0;
 
-/// Comparisons of pieces at most, a good tenth of a second of them; what comes after stays as it is.
-const MAX_WORK: usize = 50_000_000;
+/// Comparisons of pieces at most, less than a tenth of a second of them; what comes after stays as it is.
+const MAX_WORK: usize = 20_000_000;
 
 /// Leaves out what lies on an earlier line of the drawing, either way round, to 1e-5 of the drawing's diagonal: parts of
 /// lines and of arcs, and cubics that are whole cubics drawn again. The rests of a stroke keep its looks; what is not
 /// drawn twice stays as it is.
-pub(crate) fn without_doubles(drawing: Drawing) -> (Drawing, Doubles) {
-    let Some(box_) = extent(&drawing) else { return (drawing, Doubles::default()) };
-    let mut known = Known::over(box_, &drawing);
-    let mut doubles = Doubles::default();
+#[must_use]
+pub fn without_doubles(drawing: Drawing) -> (Drawing, Doubles) {
+    let paths: Vec<&Path> = drawing.strokes.iter().map(|stroke| &stroke.path).collect();
+    let (splits, unsearched) = doubles(&paths);
+    let mut doubles = Doubles { unsearched, ..Doubles::default() };
     let mut strokes = Vec::with_capacity(drawing.strokes.len());
-    for stroke in drawing.strokes {
-        match known.rest(&stroke.path) {
+    for (stroke, split) in drawing.strokes.into_iter().zip(splits) {
+        match split {
             None => strokes.push(stroke),
-            Some(rests) => {
-                let left: f64 = rests.iter().map(|p| p.length(known.within)).sum();
+            Some(Split { once, again }) => {
+                let tolerance = 1e-6 * again.iter().map(Path::rough_length).sum::<f64>();
                 doubles.strokes += 1;
-                doubles.length += (stroke.path.length(known.within) - left).max(0.0);
-                strokes.extend(rests.into_iter().map(|path| Stroke { path, ..stroke.clone() }));
+                doubles.length += again.iter().map(|path| path.length(tolerance)).sum::<f64>();
+                strokes.extend(once.into_iter().map(|path| stroke.along(path)));
             }
         }
     }
     (Drawing { strokes }, doubles)
 }
 
+/// For each path its parts, where any of it lies on earlier ones or on itself, to 1e-5 of the diagonal of them all; and how many
+/// paths were not looked at.
+#[must_use]
+pub fn doubles(paths: &[&Path]) -> (Vec<Option<Split>>, usize) {
+    let Some(bounds) = of_paths(paths.iter().copied()) else { return (vec![None; paths.len()], 0) };
+    let mut known = Known::over(bounds, paths);
+    let mut unsearched = 0;
+    let mut split = |path: &&Path| {
+        let split = known.split(path);
+        unsearched += usize::from(known.work > MAX_WORK);
+        split
+    };
+    let splits = paths.iter().map(&mut split).collect();
+    (splits, unsearched)
+}
+
+/// A piece in a cell: its heading, if it is a line, and its number.
+type Entry = (f32, u32);
+
 /// The pieces met so far, by the cells of a grid that they pass.
 struct Known {
     within: f64,
     corner: Point,
     cell: f64,
-    side: usize,
-    cells: Vec<Vec<u32>>,
+    columns: usize,
+    rows: usize,
+    cells: Vec<Vec<Entry>>,
     pieces: Vec<Piece>,
     /// The piece that last asked about each known one, for a pair may meet in many cells.
     asked: Vec<u32>,
@@ -76,21 +97,23 @@ struct Known {
 }
 
 impl Known {
-    fn over(box_: Rect, drawing: &Drawing) -> Self {
-        let extent = box_.width().max(box_.height()).max(f64::MIN_POSITIVE);
-        let within = WITHIN * hypot(box_.width(), box_.height());
-        let pieces = drawing.strokes.iter().flat_map(|s| s.path.pieces());
-        let (count, length) = pieces.fold((0.0, 0.0), |(n, sum), p| (n + 1.0, sum + reach(&p) / extent));
-        // long lines pass many cells: about six a piece in all
-        let side =
-            (6.0 * count / f64::max(length, 1e-9)).min(2.0 * f64::sqrt(count)).clamp(4.0, 512.0) as usize;
-        let cell = extent / side as f64 * (1.0 + 1e-9);
-        let cells = vec![Vec::new(); side * side];
+    fn over(bounds: Rect, paths: &[&Path]) -> Self {
+        let (width, height) = (bounds.width(), bounds.height());
+        let extent = width.max(height).max(f64::MIN_POSITIVE);
+        let within = WITHIN * hypot(width, height);
+        let count = paths.iter().map(|path| path.elements().len()).sum::<usize>().max(1) as f64;
+        let length: f64 = paths.iter().map(|path| path.rough_length()).sum();
+        // about six cells a piece, and no more cells than four a piece, however long and narrow the drawing is
+        let side = (length / (6.0 * count)).max((width * height).sqrt() / (2.0 * count.sqrt()).min(512.0));
+        let cell = side.clamp(extent / (16.0 * count).min(20_000.0), extent / 4.0) * (1.0 + 1e-9);
+        let [columns, rows] = [width, height].map(|length| (length / cell) as usize + 1);
+        let cells = vec![Vec::new(); columns * rows];
         Self {
             within,
-            corner: box_.origin(),
+            corner: bounds.origin(),
             cell,
-            side,
+            columns,
+            rows,
             cells,
             pieces: Vec::new(),
             asked: Vec::new(),
@@ -99,41 +122,46 @@ impl Known {
         }
     }
 
-    /// What of a path is not known yet; `None` if all of it. The path is known from then on.
-    fn rest(&mut self, path: &Path) -> Option<Vec<Path>> {
-        let mut spans = Vec::with_capacity(path.elements().len());
-        let mut is_cut = false;
+    /// The parts of a path, where any of it is known. All of it is known from then on.
+    fn split(&mut self, path: &Path) -> Option<Split> {
+        let mut once = Vec::with_capacity(path.elements().len());
+        let mut again = Vec::new();
         for (element, piece) in path.pieces().enumerate() {
+            let span = |(from, to)| Span { element, from, to };
             let cells = self.cells_of(&piece);
             let covered = self.covered(&piece, &cells);
-            is_cut |= !covered.is_empty();
-            let least = LEAST_REST * self.within / reach(&piece).max(f64::MIN_POSITIVE);
-            let rests = rests(covered, least);
+            let least = LEAST_REST * self.within / piece.rough_length().max(f64::MIN_POSITIVE);
+            let (rests, gaps) = rests(covered, least);
             if !rests.is_empty() {
                 self.add(piece, &cells);
             }
-            spans.extend(rests.into_iter().map(|(from, to)| Span { element, from, to }));
+            once.extend(rests.into_iter().map(span));
+            again.extend(gaps.into_iter().map(span));
         }
-        is_cut.then(|| parts(path, &spans))
+        (!again.is_empty()).then(|| Split { once: parts(path, &once), again: parts(path, &again) })
     }
 
     fn add(&mut self, piece: Piece, cells: &[usize]) {
         let number = self.pieces.len() as u32;
         self.pieces.push(piece);
         self.asked.push(u32::MAX);
-        cells.iter().for_each(|&at| self.cells[at].push(number));
+        let heading = heading(&piece);
+        cells.iter().for_each(|&at| self.cells[at].push((heading, number)));
     }
 
     /// Parameters between which a piece lies on known ones.
     fn covered(&mut self, piece: &Piece, cells: &[usize]) -> Vec<(f64, f64)> {
         let mut covered = Vec::new();
         self.asker = self.asker.wrapping_add(1);
-        let asking = self.asker;
+        let (asking, own) = (self.asker, heading(piece));
         for &at in cells {
-            for &number in &self.cells[at] {
+            for &(heading, number) in &self.cells[at] {
                 self.work += 1;
                 if self.work > MAX_WORK {
                     return covered;
+                }
+                if are_apart(own, heading) {
+                    continue;
                 }
                 let number = number as usize;
                 if std::mem::replace(&mut self.asked[number], asking) != asking {
@@ -146,7 +174,7 @@ impl Known {
 
     /// The cells that a piece passes, and those beside them where it runs along their edge.
     fn cells_of(&self, piece: &Piece) -> Vec<usize> {
-        let steps = (2.0 * reach(piece) / self.cell).ceil().clamp(1.0, 4096.0) as usize;
+        let steps = (2.0 * piece.rough_length() / self.cell).ceil().clamp(1.0, 4096.0) as usize;
         let mut cells = Vec::new();
         let mut from = piece.from;
         for i in 1..=steps {
@@ -155,10 +183,10 @@ impl Known {
             let slack = self.within
                 + if matches!(piece.element, Element::Line { .. }) { 0.0 } else { 0.2 * self.cell };
             let box_ = Rect::from_points(from, to).inflate(slack, slack);
-            let [x0, x1] = [box_.x0, box_.x1].map(|x| self.index(x - self.corner.x));
-            let [y0, y1] = [box_.y0, box_.y1].map(|y| self.index(y - self.corner.y));
+            let [x0, x1] = [box_.x0, box_.x1].map(|x| self.index(x - self.corner.x, self.columns));
+            let [y0, y1] = [box_.y0, box_.y1].map(|y| self.index(y - self.corner.y, self.rows));
             for y in y0..=y1 {
-                cells.extend((x0..=x1).map(|x| y * self.side + x));
+                cells.extend((x0..=x1).map(|x| y * self.columns + x));
             }
             from = to;
         }
@@ -167,18 +195,25 @@ impl Known {
         cells
     }
 
-    fn index(&self, offset: f64) -> usize {
-        ((offset / self.cell).max(0.0) as usize).min(self.side - 1)
+    fn index(&self, offset: f64, count: usize) -> usize {
+        ((offset / self.cell).max(0.0) as usize).min(count - 1)
     }
 }
 
-/// About how long a piece is; never shorter.
-fn reach(piece: &Piece) -> f64 {
+/// The heading of a line either way, 0 to π rad; not a number for what bends.
+fn heading(piece: &Piece) -> f32 {
     match piece.element {
-        Element::Line { to } => piece.from.distance(to),
-        Element::Arc { centre, sweep } => piece.from.distance(centre) * sweep.abs(),
-        Element::Cubic { c1, c2, to } => piece.from.distance(c1) + c1.distance(c2) + c2.distance(to),
+        Element::Line { to } => atan2(to.y - piece.from.y, to.x - piece.from.x).rem_euclid(PI) as f32,
+        _ => f32::NAN,
     }
+}
+
+/// Whether lines of two headings can lie on each other nowhere: not even for [`LEAST_REST`] times the distance within which they
+/// would be one line.
+fn are_apart(a: f32, b: f32) -> bool {
+    const APART_RAD: f32 = 2.5 / LEAST_REST as f32;
+    let turn = (a - b).abs();
+    turn > APART_RAD && turn < PI as f32 - APART_RAD
 }
 
 /// Parameters of a piece between which it lies on another.
@@ -201,6 +236,12 @@ fn on(piece: &Piece, other: &Piece, within: f64) -> Vec<(f64, f64)> {
 fn line_on([from, to]: [Point; 2], [start, end]: [Point; 2], within: f64) -> Option<(f64, f64)> {
     let along = to - from;
     let length2 = along.hypot2();
+    // the very same line counts however short it is
+    let near = within.min(1e-3 * length2.sqrt());
+    let is_same = |a: Point, b: Point| from.distance(a) <= near && to.distance(b) <= near;
+    if is_same(start, end) || is_same(end, start) {
+        return Some((0.0, 1.0));
+    }
     let place = |p: Point| (p - from).dot(along) / length2;
     let (a, b) = (place(start), place(end));
     let (first, last) = (a.min(b).max(0.0), a.max(b).min(1.0));
@@ -242,28 +283,36 @@ fn arc_on(piece: &Piece, other: &Piece, within: f64) -> Vec<(f64, f64)> {
     [0.0, TAU].into_iter().filter_map(stretch).collect()
 }
 
-/// What is left of 0 to 1 without the covered stretches; rests shorter than the least are none.
-fn rests(mut covered: Vec<(f64, f64)>, least: f64) -> Vec<(f64, f64)> {
+/// Stretches of a piece's parameter.
+type Stretches = Vec<(f64, f64)>;
+
+/// What is left of 0 to 1 without the covered stretches, and what lies between; rests shorter than the least are none.
+fn rests(mut covered: Stretches, least: f64) -> (Stretches, Stretches) {
     covered.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut left = Vec::new();
+    let (mut left, mut gaps) = (Vec::new(), Stretches::new());
     let mut at = 0.0;
-    let had_none = covered.is_empty();
     for (from, to) in covered {
-        if from - at > least {
+        let is_rest = from - at > least;
+        if is_rest {
             left.push((at, from));
+        }
+        match gaps.last_mut().filter(|_| !is_rest) {
+            Some(gap) => gap.1 = f64::max(gap.1, to),
+            None => gaps.push((if is_rest { from } else { 0.0 }, to)),
         }
         at = f64::max(at, to);
     }
-    if had_none || 1.0 - at > least {
-        left.push((at, 1.0));
+    match gaps.last_mut().filter(|_| 1.0 - at <= least) {
+        Some(gap) => gap.1 = 1.0,
+        None => left.push((at, 1.0)),
     }
-    left
+    (left, gaps)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::PI;
+    use crate::stroke::Stroke;
 
     fn line(points: &[(f64, f64)]) -> Stroke {
         let points: Vec<Point> = points.iter().map(|&p| p.into()).collect();
@@ -314,6 +363,18 @@ mod tests {
         check(vec![arc(0.0, PI), arc(2.0, 2.0)], &[PI, 4.0 - PI], PI - 2.0);
         check(vec![arc(0.0, PI), arc(PI, PI)], &[PI, PI], 0.0);
         check(vec![arc(0.0, PI), arc(0.0, -PI)], &[PI, PI], 0.0);
+    }
+
+    #[test]
+    fn a_long_and_narrow_drawing_is_looked_through_too() {
+        let step = |i: i32| {
+            let at = |i: i32| (f64::from(i) * 0.1, f64::from(i % 20) * 0.1);
+            line(&[at(i), at(i + 1)])
+        };
+        let strokes: Vec<Stroke> = (0..40_000).chain(0..40_000).map(step).collect();
+        let (found, doubles) = without_doubles(Drawing { strokes });
+        assert_eq!((doubles.strokes, doubles.unsearched), (40_000, 0));
+        assert_eq!(found.strokes.len(), 40_000);
     }
 
     #[test]
