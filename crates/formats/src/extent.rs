@@ -1,10 +1,15 @@
 use kurbo::{CubicBez, ParamCurveExtrema, Rect};
 use tracelight_maths::atan2;
-use tracelight_stroke::{Drawing, Element, Piece, Point, Vec2};
+use tracelight_stroke::{Drawing, Element, Path, Piece, Point, Vec2};
 
 /// The smallest upright rectangle round a drawing, exact for lines, arcs and cubics; `None` for an empty one.
 pub(crate) fn extent(drawing: &Drawing) -> Option<Rect> {
-    let pieces = drawing.strokes.iter().flat_map(|s| s.path.pieces());
+    extent_of(drawing.strokes.iter().map(|stroke| &stroke.path))
+}
+
+/// The smallest upright rectangle round paths; `None` for none.
+pub(crate) fn extent_of<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Option<Rect> {
+    let pieces = paths.into_iter().flat_map(Path::pieces);
     pieces.map(|p| of_piece(&p)).reduce(|a, b| a.union(b))
 }
 
@@ -29,7 +34,7 @@ fn is_passed(arm: Vec2, direction: Vec2, sweep: f64) -> bool {
 }
 
 /// Every point that says where a path's elements go, its start first.
-pub(crate) fn controls(path: &tracelight_stroke::Path) -> impl Iterator<Item = Point> + '_ {
+pub(crate) fn controls(path: &Path) -> impl Iterator<Item = Point> + '_ {
     let of = |element: &Element| match *element {
         Element::Line { to } => [to; 3],
         Element::Arc { centre, .. } => [centre; 3],
@@ -42,7 +47,7 @@ pub(crate) fn controls(path: &tracelight_stroke::Path) -> impl Iterator<Item = P
 mod tests {
     use super::*;
     use std::f64::consts::PI;
-    use tracelight_stroke::{Path, Stroke};
+    use tracelight_stroke::Stroke;
 
     #[test]
     fn an_arc_reaches_as_far_as_its_circle_does() {

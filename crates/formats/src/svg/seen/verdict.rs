@@ -4,7 +4,7 @@ use tracelight_stroke::{Point, Vec2};
 
 use super::colour::Rgb;
 use super::picture::{FAINT, Layer, Picture, is_within};
-use super::scene::{GateKind, Ink, Item, Mark, MarkKind, Number};
+use super::scene::{Gate, GateKind, Ink, Item, Mark, MarkKind, Number};
 
 /// Why something is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -59,8 +59,8 @@ pub(crate) struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    pub(crate) fn verdict(&self, mark: &Mark, place: Place) -> Verdict {
-        let sides = [-1.0, 1.0].map(|side| place.point + place.normal * (side * self.aside));
+    pub(crate) fn verdict(&self, mark: Mark, place: Place) -> Verdict {
+        let sides = self.sides(place);
         let is_off = sides.map(|p| self.crops && !is_within(self.picture.page, p));
         match mark.kind {
             MarkKind::Cut(_) if is_off[0] || is_off[1] => Verdict::Unseen(None),
@@ -71,7 +71,29 @@ impl Judge<'_> {
         }
     }
 
-    fn item(&self, number: Number) -> &Item {
+    /// What surely covers a line at one of its places.
+    pub(crate) fn cover(&self, mark: Mark, place: Place) -> Option<Number> {
+        match mark.kind {
+            MarkKind::Cut(_) => None,
+            _ => self.picture.cover(mark.item, self.sides(place)),
+        }
+    }
+
+    fn sides(&self, place: Place) -> [Point; 2] {
+        [-1.0, 1.0].map(|side| place.point + place.normal * (side * self.aside))
+    }
+
+    /// Why nothing of a line is seen at a place where something surely covers it, or no gate lets it pass.
+    pub(crate) fn hidden(&self, mark: Mark, p: Point) -> Verdict {
+        let gate = self.item(mark.item).gate.map(|gate| &self.picture.scene.gates[gate as usize]);
+        Verdict::Unseen(match mark.kind {
+            MarkKind::Cut(_) => None,
+            _ if self.crops && !is_within(self.picture.page, p) => Some(Reason::OffPage),
+            _ => Some(gate.filter(|gate| !is_within(gate.bounds, p)).map_or(Reason::Covered, shut_by)),
+        })
+    }
+
+    fn item(&self, number: Number) -> &Item<'_> {
         &self.picture.scene.items[number as usize]
     }
 
@@ -79,10 +101,7 @@ impl Judge<'_> {
     fn shut(&self, item: &Item, sides: [Point; 2]) -> Option<Reason> {
         let [left, right] = sides.map(|p| self.picture.shut(item.gate, p));
         let gate = left.filter(|_| right.is_some())?;
-        Some(match self.picture.scene.gates[gate as usize].kind {
-            GateKind::Clip(_) => Reason::Clipped,
-            _ => Reason::Masked,
-        })
+        Some(shut_by(&self.picture.scene.gates[gate as usize]))
     }
 
     fn edge(&self, number: Number, sides: [Point; 2]) -> Verdict {
@@ -98,7 +117,7 @@ impl Judge<'_> {
         let is_there = [holds(&left), holds(&right)];
         let reason = if self.picture.look(&left).is_like(&self.picture.look(&right)) {
             match is_there {
-                [false, false] if sides.iter().all(|&p| !self.picture.is_inside(item, p)) => Reason::NoArea,
+                [false, false] if sides.iter().all(|&p| !self.picture.is_inside(number, p)) => Reason::NoArea,
                 [false, false] => Reason::Covered,
                 _ => Reason::OneColour,
             }
@@ -131,12 +150,12 @@ impl Judge<'_> {
         let is_cut = |&number: &Number| {
             let item = self.item(number);
             let shut = sides.into_iter().find_map(|p| self.picture.shut(item.gate, p));
-            shut == Some(gate) && sides.iter().all(|&p| self.picture.is_inside(item, p))
+            shut == Some(gate) && sides.iter().all(|&p| self.picture.is_inside(number, p))
         };
         edge.filter(is_cut).map_or(Verdict::Unseen(None), Verdict::Seen)
     }
 
-    fn middle(&self, mark: &Mark, place: Place, sides: [Point; 2]) -> Verdict {
+    fn middle(&self, mark: Mark, place: Place, sides: [Point; 2]) -> Verdict {
         let item = self.item(mark.item);
         if let Some(reason) = self.shut(item, sides) {
             return Verdict::Unseen(Some(reason));
@@ -176,5 +195,12 @@ impl Judge<'_> {
         let beside = [-1.0, 1.0].map(|side| place.point + place.normal * (side * reach));
         let around = |p: Point| self.picture.stack(p, |other, i| other != number && self.is_area(item, i));
         beside.into_iter().all(|p| self.picture.look(&around(p)).is_plain(ink))
+    }
+}
+
+const fn shut_by(gate: &Gate) -> Reason {
+    match gate.kind {
+        GateKind::Clip(_) => Reason::Clipped,
+        _ => Reason::Masked,
     }
 }
