@@ -50,7 +50,7 @@ impl Draw {
         if number.is_multiple_of(5) {
             let radius = self.between(60.0, 150.0);
             let circle = format!("<circle cx='{x:.1}' cy='{y:.1}' r='{radius:.1}'/>");
-            write!(text, "<clipPath id='c{number}'>{circle}</clipPath>\n").unwrap_or_default();
+            writeln!(text, "<clipPath id='c{number}'>{circle}</clipPath>").unwrap_or_default();
             looks = format!(" clip-path='url(#c{number})'");
         }
         if number % 20 == 19 {

@@ -160,7 +160,7 @@ impl Gates<'_, '_> {
         let at = within.at * affine(path.abs_transform());
         let light = |region: Region, paint: &usvg::Paint, opacity: usvg::Opacity| Light {
             region,
-            ink: ink_of(paint),
+            ink: ink_of(paint, at),
             opacity: f64::from(opacity.get()),
             veil: within.veil,
             gate: within.gate,
@@ -174,7 +174,7 @@ impl Gates<'_, '_> {
         let stroke = path.stroke().map(|stroke| {
             light(band(path, stroke, at, self.tolerance, true), stroke.paint(), stroke.opacity())
         });
-        let is_plain = |light: &Light| matches!(light.ink, Ink::Plain(_));
+        let is_plain = |light: &Light| !matches!(light.ink, Ink::Mixed { .. });
         picture.is_plain &= fill.iter().chain(&stroke).all(is_plain);
         match path.paint_order() {
             usvg::PaintOrder::FillAndStroke => picture.lights.extend(fill.into_iter().chain(stroke)),
@@ -197,7 +197,7 @@ struct MaskPicture {
     lights: Vec<Light>,
     outlines: Vec<Path>,
     new: Vec<Number>,
-    /// Only shapes of one colour each.
+    /// Only shapes of colours and gradients.
     is_plain: bool,
 }
 

@@ -236,8 +236,9 @@ impl<'a> Painter<'a> {
         let Some(fill) = fill else { return Ok(()) };
         self.told.patterns += usize::from(matches!(fill.paint(), usvg::Paint::Pattern(_)));
         let looks = looks(StrokeKind::Outline, None, fill.paint(), around);
+        let at = affine(path.abs_transform());
         let shape = Fill { path, rule: fill.rule(), tolerance: self.view.tolerance(), is_drawn };
-        let item = self.item(Box::new(shape), ink_of(fill.paint()), fill.opacity(), looks, around);
+        let item = self.item(Box::new(shape), ink_of(fill.paint(), at), fill.opacity(), looks, around);
         if is_drawn {
             self.count(path.data().len());
             self.scene.marks.push(Mark { kind: MarkKind::Edge, item });
@@ -253,14 +254,14 @@ impl<'a> Painter<'a> {
         around: &Around,
     ) -> Result<(), FormatError> {
         let Some(stroke) = stroke else { return Ok(()) };
-        let tolerance = self.view.tolerance();
+        let (at, tolerance) = (affine(path.abs_transform()), self.view.tolerance());
         let mut pen = Pen { path, stroke, tolerance, is_dashed: false, has_band: self.bands };
         let dashes = pen.dashes().filter(|_| self.dashes);
         pen.is_dashed = dashes.is_some_and(|count| self.may_dash(count));
         self.count(if pen.is_dashed { dashes.unwrap_or(0) * LEAST_ELEMENTS } else { path.data().len() });
         self.told.patterns += usize::from(matches!(stroke.paint(), usvg::Paint::Pattern(_)));
         let looks = looks(StrokeKind::Centreline, Some(pen.width()), stroke.paint(), around);
-        let item = self.item(Box::new(pen), ink_of(stroke.paint()), stroke.opacity(), looks, around);
+        let item = self.item(Box::new(pen), ink_of(stroke.paint(), at), stroke.opacity(), looks, around);
         self.scene.marks.push(Mark { kind: MarkKind::Middle, item });
         self.check_count()
     }

@@ -19,7 +19,7 @@ pub(super) fn is_paper(item: &Item, page: Rect) -> bool {
     covers
         && item.opacity >= 1.0
         && item.veil.is_none()
-        && is_whitish(item.ink)
+        && is_whitish(&item.ink)
         && matches!(item.shape.lines().as_slice(), [outline] if is_upright(outline, 1e-3 * slack))
 }
 

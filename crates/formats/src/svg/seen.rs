@@ -11,6 +11,7 @@ mod colour;
 mod coverage;
 mod crossings;
 mod flat;
+pub(super) mod gradient;
 mod grid;
 mod judged;
 mod picture;
@@ -24,20 +25,20 @@ use std::collections::BTreeMap;
 
 use tracelight_stroke::{Path, Rect, Stroke};
 
-use self::colour::Rgb;
 use self::judged::judged;
 use self::picture::{Picture, is_cover};
-use self::scene::{Mark, MarkKind, Number, Scene};
+use self::scene::{Gate, GateKind, Ink, Mark, MarkKind, Number, Scene};
 use self::tiles::{Ground, Layout, laid_out};
 use self::verdict::{Judge, Verdict};
 
+pub(super) use self::colour::Rgb;
 pub(super) use self::flat::chords;
 pub(super) use self::region::Region;
 pub(super) use self::verdict::Reason;
 
 /// Whether an ink is white or nearly so.
-pub(super) fn is_whitish(ink: scene::Ink) -> bool {
-    matches!(ink, scene::Ink::Plain(colour) if Rgb::from(colour).is_whitish())
+pub(super) fn is_whitish(ink: &Ink) -> bool {
+    matches!(ink, Ink::Plain(colour) if Rgb::from(*colour).is_whitish())
 }
 
 /// How a scene is looked at.
@@ -70,8 +71,12 @@ const OWN_WORK: usize = 10_000_000;
 const WORK_A_BYTE: usize = 30;
 const MAX_WORK: usize = 60_000_000;
 
-/// How much may be looked at of a file of so many bytes.
-pub(super) fn work_of(bytes: usize) -> usize {
+/// Bytes that a letter counts as: so many would draw its outline.
+const BYTES_A_LETTER: usize = 50;
+
+/// How much may be looked at of a file of so many bytes and letters.
+pub(super) fn work_of(bytes: usize, letters: usize) -> usize {
+    let bytes = bytes.saturating_add(letters.saturating_mul(BYTES_A_LETTER));
     bytes.saturating_mul(WORK_A_BYTE).saturating_add(OWN_WORK).min(MAX_WORK)
 }
 
@@ -122,7 +127,8 @@ fn look(scene: &Scene, view: View, paper: Rgb) -> Seen {
     };
     let mut picture = Picture::new(scene, view.page, view.hides, (tiles, regions));
     picture.paper = paper;
-    let judge = Judge { picture: &picture, aside, crops: view.crops };
+    let step = if has_gradients(scene) { STEP * view.page.size().to_vec2().hypot() } else { f64::INFINITY };
+    let judge = Judge { picture: &picture, aside, crops: view.crops, step };
     let mut work = 0;
     for &mark in &scene.marks {
         if !matches!(mark.kind, MarkKind::Cut(_)) && picture.is_unseen(mark.item) {
@@ -144,6 +150,19 @@ fn look(scene: &Scene, view: View, paper: Rgb) -> Seen {
         }
     }
     seen
+}
+
+/// How far a line is followed before it is looked at again where colours change without an edge, as a share of the page's
+/// diagonal.
+const STEP: f64 = 0.004;
+
+fn has_gradients(scene: &Scene) -> bool {
+    let is_one = |ink: &Ink| matches!(ink, Ink::Gradient(_));
+    let in_mask = |gate: &Gate| match &gate.kind {
+        GateKind::Mask { lights, .. } => lights.iter().any(|light| is_one(&light.ink)),
+        _ => false,
+    };
+    scene.items.iter().any(|item| is_one(&item.ink)) || scene.gates.iter().any(in_mask)
 }
 
 fn lines_of<'a>(scene: &'a Scene, mark: Mark) -> Cow<'a, [Path]> {

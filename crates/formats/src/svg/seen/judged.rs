@@ -107,17 +107,34 @@ impl Walk<'_> {
         let mut from = 0.0;
         for &to in &*met {
             if to > from {
-                self.pending.push(Stretch { chord, from, to, length: (to - from) * length });
+                self.follow(Stretch { chord, from, to, length: (to - from) * length });
                 from = to;
             }
             self.meet();
         }
         if from < 1.0 {
             let rest = Stretch { chord, from, to: 1.0, length: (1.0 - from) * length };
-            self.pending.push(rest);
+            self.follow(rest);
             if self.cover.is_none() && rest.length >= self.judge.aside {
                 self.cover = Some(self.judge.cover(self.mark, middle(self.corners, &rest)));
             }
+        }
+    }
+
+    /// Goes along a stretch that meets no edge, and looks again where that is long.
+    fn follow(&mut self, stretch: Stretch) {
+        const MOST: f64 = 1024.0;
+        let parts = (stretch.length / self.judge.step).ceil().clamp(1.0, MOST);
+        let is_long = |pending: &[Stretch]| {
+            self.judge.step.is_finite() && pending.iter().map(|s| s.length).sum::<f64>() >= self.judge.step
+        };
+        for i in 0..parts as usize {
+            let at = |i: usize| stretch.from + (stretch.to - stretch.from) * i as f64 / parts;
+            let [from, to] = [at(i), if i + 1 == parts as usize { stretch.to } else { at(i + 1) }];
+            if is_long(&self.pending) {
+                self.meet();
+            }
+            self.pending.push(Stretch { from, to, length: stretch.length / parts, ..stretch });
         }
     }
 

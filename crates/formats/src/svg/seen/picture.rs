@@ -120,12 +120,16 @@ impl<'a> Picture<'a> {
         })
     }
 
-    /// The colour that layers make on the paper.
-    pub(crate) fn look(&self, layers: &[Layer]) -> Look {
+    /// The colour that layers make on the paper at a point.
+    pub(crate) fn look(&self, layers: &[Layer], p: Point) -> Look {
         let mut look = Look::of(self.paper);
         for layer in layers.iter().rev() {
-            match self.scene.items[layer.item as usize].ink {
-                Ink::Plain(colour) => look.paint(Rgb::from(colour), layer.alpha),
+            match &self.scene.items[layer.item as usize].ink {
+                Ink::Plain(colour) => look.paint(Rgb::from(*colour), layer.alpha),
+                Ink::Gradient(gradient) => {
+                    let (colour, alpha) = gradient.at(p);
+                    look.paint(colour, layer.alpha * alpha);
+                }
                 Ink::Mixed { .. } => look.mix(layer.item, layer.alpha),
             }
         }
@@ -184,9 +188,13 @@ impl<'a> Picture<'a> {
             if !self.holds(&own.region, p) {
                 continue;
             }
-            let Ink::Plain(colour) = own.ink else { continue };
-            let alpha = own.opacity * self.veiled(own.veil) * self.gate(own.gate, p);
-            light = light * (1.0 - alpha) + Rgb::from(colour).luminance() * alpha;
+            let (colour, own_alpha) = match &own.ink {
+                Ink::Plain(colour) => (Rgb::from(*colour), 1.0),
+                Ink::Gradient(gradient) => gradient.at(p),
+                Ink::Mixed { .. } => continue,
+            };
+            let alpha = own_alpha * own.opacity * self.veiled(own.veil) * self.gate(own.gate, p);
+            light = light * (1.0 - alpha) + colour.luminance() * alpha;
             cover = cover * (1.0 - alpha) + alpha;
         }
         if by_luminance { light } else { cover }
@@ -208,7 +216,7 @@ impl<'a> Picture<'a> {
 
 /// Whether nothing shines through an item at that opacity.
 pub(crate) fn is_opaque(item: &Item, opacity: f64) -> bool {
-    opacity >= 1.0 - FAINT && !matches!(item.ink, Ink::Mixed { hides: false })
+    opacity >= 1.0 - FAINT && item.ink.hides()
 }
 
 /// Whether an item hides all below it where it is: a fill. Of a line's band it depends on what is below.

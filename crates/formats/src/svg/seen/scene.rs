@@ -1,7 +1,10 @@
 //! What a drawing paints, and in which order.
 
+use std::rc::Rc;
+
 use tracelight_stroke::{Colour, Path, Rect, Stroke};
 
+use super::gradient::Gradient;
 use super::region::Region;
 
 /// Everything that is painted, bottom first, and the lines that could be drawn of it.
@@ -49,15 +52,29 @@ pub(crate) struct Item<'a> {
 }
 
 /// What an item is painted with.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Ink {
     /// One colour.
     Plain(Colour),
-    /// Several: a gradient, or a blend with what is below.
+    /// Another one at each place.
+    Gradient(Rc<Gradient>),
+    /// What is not known here: a pattern, or a blend with what is below.
     Mixed {
         /// Whether it hides what is below.
         hides: bool,
     },
+}
+
+impl Ink {
+    /// Whether nothing below shines through it where it is.
+    pub(crate) fn hides(&self) -> bool {
+        const OPAQUE: f64 = 0.98;
+        match self {
+            Self::Plain(_) => true,
+            Self::Gradient(gradient) => gradient.stops.iter().all(|&(.., alpha)| alpha >= OPAQUE),
+            Self::Mixed { hides } => *hides,
+        }
+    }
 }
 
 /// A group that is translucent as a whole: what is in it hides other things in it, and nothing below.

@@ -56,6 +56,8 @@ pub(crate) struct Judge<'a> {
     pub(crate) aside: f64,
     /// Whether what lies off the page and outside clip paths is cut.
     pub(crate) crops: bool,
+    /// How far a line is followed, at most, before it is looked at again.
+    pub(crate) step: f64,
 }
 
 impl Judge<'_> {
@@ -115,7 +117,7 @@ impl Judge<'_> {
         let [left, right] = sides.map(|p| self.picture.stack(p, |_, _| true));
         let holds = |layers: &[Layer]| layers.iter().any(|layer| layer.item == number);
         let is_there = [holds(&left), holds(&right)];
-        let reason = if self.picture.look(&left).is_like(&self.picture.look(&right)) {
+        let reason = if self.picture.look(&left, sides[0]).is_like(&self.picture.look(&right, sides[1])) {
             match is_there {
                 [false, false] if sides.iter().all(|&p| !self.picture.is_inside(number, p)) => Reason::NoArea,
                 [false, false] => Reason::Covered,
@@ -144,8 +146,8 @@ impl Judge<'_> {
     /// The edge of a gate is that of what it cuts, the topmost of all that end here.
     fn cut(&self, gate: Number, sides: [Point; 2]) -> Verdict {
         let stacks = sides.map(|p| self.picture.stack(p, |_, _| true));
-        let is_same =
-            self.picture.hides && self.picture.look(&stacks[0]).is_like(&self.picture.look(&stacks[1]));
+        let is_same = self.picture.hides
+            && self.picture.look(&stacks[0], sides[0]).is_like(&self.picture.look(&stacks[1], sides[1]));
         let edge = self.topmost_edge([&stacks[0], &stacks[1]]).filter(|_| !is_same);
         let is_cut = |&number: &Number| {
             let item = self.item(number);
@@ -162,6 +164,9 @@ impl Judge<'_> {
         }
         if !self.picture.hides {
             return Verdict::Seen(mark.item);
+        }
+        if matches!(&item.ink, Ink::Gradient(gradient) if gradient.at(place.point).1 <= FAINT) {
+            return Verdict::Unseen(Some(Reason::Invisible));
         }
         let hides = |cover: &Item| self.is_area(item, cover) || cover.ink != item.ink;
         let is_hidden = |p: Point| {
@@ -185,16 +190,19 @@ impl Judge<'_> {
     /// Whether a line has the colour of what is below it and of what is beside it.
     fn is_lost(&self, number: Number, place: Place, sides: [Point; 2]) -> bool {
         let item = self.item(number);
-        let Ink::Plain(ink) = item.ink else { return false };
-        let ink = Rgb::from(ink);
+        let ink = match &item.ink {
+            Ink::Plain(ink) => Rgb::from(*ink),
+            Ink::Gradient(gradient) => gradient.at(place.point).0,
+            Ink::Mixed { .. } => return false,
+        };
         let below = |p: Point| self.picture.stack(p, |other, i| other < number && self.is_area(item, i));
-        if !sides.into_iter().all(|p| self.picture.look(&below(p)).is_plain(ink)) {
+        if !sides.into_iter().all(|p| self.picture.look(&below(p), p).is_plain(ink)) {
             return false;
         }
         let reach = 0.5 * item.pen.unwrap_or(0.0) + self.aside;
         let beside = [-1.0, 1.0].map(|side| place.point + place.normal * (side * reach));
         let around = |p: Point| self.picture.stack(p, |other, i| other != number && self.is_area(item, i));
-        beside.into_iter().all(|p| self.picture.look(&around(p)).is_plain(ink))
+        beside.into_iter().all(|p| self.picture.look(&around(p), p).is_plain(ink))
     }
 }
 
