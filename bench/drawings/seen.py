@@ -174,7 +174,7 @@ def main():
         elif shares[0] <= UNSEEN and shares[1] <= UNDRAWN:
             kind = "as seen"
         else:
-            told = "not applied" in said or "not drawn: text" in said or "pictures" in said or "patterns" in said
+            told = "not applied" in said or "not drawn: text" in said or "pictures" in said or "patterns" in said or "is drawn in" in said
             kind = "wrong, and told" if told else "wrong, not told"
         count[kind] += 1
         print(kind, *(f"{s:.3f}" for s in shares or ()), file, said.replace("\n", " | ")[:200], sep="\t")

@@ -7,6 +7,7 @@ mod ink;
 mod lines;
 mod names;
 mod paint;
+mod painted;
 mod paper;
 mod read;
 mod remarks;

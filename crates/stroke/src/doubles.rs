@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use kurbo::{Point, Rect};
 use tracelight_maths::{atan2, hypot};
 
-use crate::extent::of_paths;
+use crate::extent::extent_of;
 use crate::parts::{Span, parts};
 use crate::path::{Element, Path, Piece};
 use crate::stroke::Drawing;
@@ -66,7 +66,7 @@ pub fn without_doubles(drawing: Drawing) -> (Drawing, Doubles) {
 /// paths were not looked at.
 #[must_use]
 pub fn doubles(paths: &[&Path]) -> (Vec<Option<Split>>, usize) {
-    let Some(bounds) = of_paths(paths.iter().copied()) else { return (vec![None; paths.len()], 0) };
+    let Some(bounds) = extent_of(paths.iter().copied()) else { return (vec![None; paths.len()], 0) };
     let mut known = Known::over(bounds, paths);
     let mut unsearched = 0;
     let mut split = |path: &&Path| {

@@ -7,12 +7,13 @@ use crate::stroke::Drawing;
 /// The smallest upright rectangle round a drawing, exact for lines, arcs and cubics; `None` for an empty one.
 #[must_use]
 pub fn extent(drawing: &Drawing) -> Option<Rect> {
-    of_paths(drawing.strokes.iter().map(|stroke| &stroke.path))
+    extent_of(drawing.strokes.iter().map(|stroke| &stroke.path))
 }
 
-/// The smallest upright rectangle round paths.
-pub(crate) fn of_paths<'a>(paths: impl Iterator<Item = &'a Path>) -> Option<Rect> {
-    paths.flat_map(Path::pieces).map(|piece| of_piece(&piece)).reduce(|a, b| a.union(b))
+/// The smallest upright rectangle round paths; `None` for none.
+#[must_use]
+pub fn extent_of<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Option<Rect> {
+    paths.into_iter().flat_map(Path::pieces).map(|piece| of_piece(&piece)).reduce(|a, b| a.union(b))
 }
 
 fn of_piece(piece: &Piece) -> Rect {

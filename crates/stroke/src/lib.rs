@@ -26,7 +26,7 @@ mod stroke;
 pub use colour::Colour;
 pub use compare::{Comparison, Score, compare, compare_polylines, score, score_polylines};
 pub use doubles::{Doubles, Split, doubles, without_doubles};
-pub use extent::extent;
+pub use extent::{extent, extent_of};
 pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Rect, Vec2};
 pub use order::{

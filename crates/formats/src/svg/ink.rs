@@ -1,9 +1,15 @@
 //! Paints of the resolved tree: colours, and whether they hide what is below.
 
-use tracelight_stroke::Colour;
+use std::rc::Rc;
+
+use kurbo::Affine;
+use tracelight_stroke::{Colour, Point};
 use usvg::filter::{Input, Kind};
 
+use super::seen::Rgb;
+use super::seen::gradient::{Along, Gradient, Spread};
 use super::seen::scene::Ink;
+use super::shape::affine;
 
 /// Opacity from which on nothing shines through.
 const OPAQUE: f32 = 0.98;
@@ -16,24 +22,50 @@ pub(super) const fn colour_of(paint: &usvg::Paint) -> Option<Colour> {
     }
 }
 
-/// A paint as an ink: a gradient of one colour is that colour.
-pub(super) fn ink_of(paint: &usvg::Paint) -> Ink {
+/// A paint as an ink; `at` moves the path that it paints to the sheet.
+pub(super) fn ink_of(paint: &usvg::Paint, at: Affine) -> Ink {
     match paint {
         usvg::Paint::Color(c) => Ink::Plain(Colour::new(c.red, c.green, c.blue)),
-        usvg::Paint::LinearGradient(gradient) => gradient_ink(gradient.stops()),
-        usvg::Paint::RadialGradient(gradient) => gradient_ink(gradient.stops()),
+        usvg::Paint::LinearGradient(found) => {
+            let along = Along::Line([point(found.x1(), found.y1()), point(found.x2(), found.y2())]);
+            gradient(found, along, at)
+        }
+        usvg::Paint::RadialGradient(found) => {
+            let (focus, centre) = (point(found.fx(), found.fy()), point(found.cx(), found.cy()));
+            gradient(found, Along::Circle { focus, centre, radius: f64::from(found.r().get()) }, at)
+        }
         usvg::Paint::Pattern(pattern) => Ink::Mixed { hides: is_full(pattern) },
     }
 }
 
-fn gradient_ink(stops: &[usvg::Stop]) -> Ink {
-    let hides = stops.iter().all(|stop| stop.opacity().get() >= OPAQUE);
-    let colours = stops.iter().map(usvg::Stop::color);
-    let one = stops
-        .first()
-        .map(usvg::Stop::color)
-        .filter(|&first| hides && colours.into_iter().all(|c| c == first));
-    one.map_or(Ink::Mixed { hides }, |c| Ink::Plain(Colour::new(c.red, c.green, c.blue)))
+fn point(x: f32, y: f32) -> Point {
+    Point::new(f64::from(x), f64::from(y))
+}
+
+/// A gradient; where it has one colour throughout, or no place to change it, that colour.
+fn gradient(found: &usvg::BaseGradient, along: Along, at: Affine) -> Ink {
+    let colour = |stop: &usvg::Stop| Colour::new(stop.color().red, stop.color().green, stop.color().blue);
+    let stop = |stop: &usvg::Stop| {
+        (f64::from(stop.offset().get()), Rgb::from(colour(stop)), f64::from(stop.opacity().get()))
+    };
+    let hides = found.stops().iter().all(|stop| stop.opacity().get() >= OPAQUE);
+    let own = at * affine(found.transform());
+    match found.stops() {
+        [first, rest @ ..] if hides && rest.iter().all(|stop| stop.color() == first.color()) => {
+            Ink::Plain(colour(first))
+        }
+        _ if own.determinant() == 0.0 => Ink::Mixed { hides },
+        stops => Ink::Gradient(Rc::new(Gradient {
+            own: own.inverse(),
+            along,
+            spread: match found.spread_method() {
+                usvg::SpreadMethod::Pad => Spread::Pad,
+                usvg::SpreadMethod::Reflect => Spread::Reflect,
+                usvg::SpreadMethod::Repeat => Spread::Repeat,
+            },
+            stops: stops.iter().map(stop).collect(),
+        })),
+    }
 }
 
 /// Whether a pattern's own picture begins with something opaque that fills its tile.

@@ -3,18 +3,18 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use kurbo::Affine;
 use tracelight_stroke::{Colour, Entity, Path, Point, Rect, Stroke, StrokeKind};
 
-use super::dash::{Dashes, MAX_DASHES, dot, moved};
+use super::dash::MAX_DASHES;
 use super::gates::{Gates, Key};
 use super::ink::{adds_only, colour_of, ink_of};
 use super::lines::{Drawn, Lines};
 use super::names::{Names, Place};
+use super::painted::{Fill, Letters, Pen, points};
 use super::paper::is_paper;
-use super::seen::scene::{Ink, Item, Mark, MarkKind, Number, Scene};
-use super::seen::{Reason, Region, View};
-use super::shape::{affine, band, filled, lines, own_lines, scale};
+use super::seen::scene::{Ink, Item, Mark, MarkKind, Number, Scene, Shape};
+use super::seen::{Reason, View};
+use super::shape::{affine, lines, scale};
 use crate::controls::controls;
 use crate::{FormatError, is_sound};
 
@@ -38,7 +38,7 @@ pub(super) struct Told {
 }
 
 /// Makes a scene of a tree.
-pub(super) struct Painter {
+pub(super) struct Painter<'a> {
     pub(super) names: Names,
     pub(super) view: View,
     /// Draw dashes as dashes.
@@ -47,7 +47,7 @@ pub(super) struct Painter {
     pub(super) bands: bool,
     /// For text as single lines; outlines without.
     pub(super) letters: Option<Lines>,
-    pub(super) scene: Scene,
+    pub(super) scene: Scene<'a>,
     pub(super) told: Told,
     /// What is not even looked at, why and how long.
     pub(super) unseen: Vec<(Reason, f64)>,
@@ -55,8 +55,8 @@ pub(super) struct Painter {
     dashed: usize,
     paths: u32,
     clips: HashMap<Key, Number>,
-    /// The mark that is paper if something is painted on it.
-    paper: Option<Mark>,
+    /// Whether the lowest item is paper if something is painted on it.
+    is_on_paper: bool,
 }
 
 /// What is around a node.
@@ -75,11 +75,11 @@ struct Around {
 
 enum Task<'a> {
     Node(&'a usvg::Node, Around),
-    /// The edges of a gate whose group is done.
-    Cuts(Number, Vec<Path>),
+    /// The edges of gates whose group is done.
+    Cuts(Vec<Number>),
 }
 
-impl Painter {
+impl<'a> Painter<'a> {
     pub(super) fn new(names: Names, view: View, dashes: bool, bands: bool, letters: Option<Lines>) -> Self {
         Self {
             names,
@@ -94,12 +94,12 @@ impl Painter {
             dashed: 0,
             paths: 0,
             clips: HashMap::new(),
-            paper: None,
+            is_on_paper: false,
         }
     }
 
     /// Paints all of a tree.
-    pub(super) fn paint(&mut self, root: &usvg::Group) -> Result<(), FormatError> {
+    pub(super) fn paint(&mut self, root: &'a usvg::Group) -> Result<(), FormatError> {
         let around = Around {
             place: Place::default(),
             entity: None,
@@ -116,22 +116,35 @@ impl Painter {
                 Task::Node(usvg::Node::Path(path), around) => self.path(path, &around)?,
                 Task::Node(usvg::Node::Text(text), around) => self.text(text, around, &mut left)?,
                 Task::Node(..) => {}
-                Task::Cuts(gate, outlines) => {
-                    outlines.into_iter().try_for_each(|path| self.cut(gate, path))?
-                }
+                Task::Cuts(gates) => gates.into_iter().try_for_each(|gate| self.cut(gate))?,
             }
         }
-        if let Some(paper) = self.paper.take() {
-            if self.scene.items.len() > 1 {
-                self.leave_out(Reason::Paper, &paper.stroke.path);
-            } else {
-                self.scene.marks.insert(0, paper);
-            }
+        if self.is_on_paper && self.scene.items.len() > 1 {
+            self.scene.marks.remove(0);
+            let paper = self.scene.items[0].shape.lines();
+            paper.iter().for_each(|path| self.leave_out(Reason::Paper, path));
         }
+        self.topmost_cut();
+        self.scene.elements = self.elements;
         Ok(())
     }
 
-    fn group<'a>(&mut self, group: &'a usvg::Group, around: Around, left: &mut Vec<Task<'a>>) {
+    /// Tells the edges of gates which is the topmost item that they could cut.
+    fn topmost_cut(&mut self) {
+        let mut topmost = vec![0; self.scene.gates.len()];
+        for (number, item) in self.scene.items.iter().enumerate() {
+            let around = |&gate: &Number| self.scene.gates[gate as usize].around;
+            std::iter::successors(item.gate, around)
+                .for_each(|gate| topmost[gate as usize] = number as Number);
+        }
+        for mark in &mut self.scene.marks {
+            if let MarkKind::Cut(gate) = mark.kind {
+                mark.item = topmost[gate as usize];
+            }
+        }
+    }
+
+    fn group(&mut self, group: &'a usvg::Group, around: Around, left: &mut Vec<Task<'a>>) {
         let mut inner = Around { place: self.names.within(&around.place, group.id()), ..around };
         inner.opacity *= f64::from(group.opacity().get());
         let (is_crop, tolerance) = (self.view.crops, self.view.tolerance());
@@ -146,12 +159,12 @@ impl Painter {
         for one in made {
             inner.gate = Some(one.gate);
             self.told.masks += usize::from(one.is_unknown);
-            left.push(Task::Cuts(one.gate, one.outlines));
+            left.push(Task::Cuts(one.new));
         }
         left.extend(group.children().iter().rev().map(|node| Task::Node(node, inner.clone())));
     }
 
-    fn text<'a>(
+    fn text(
         &mut self,
         text: &'a usvg::Text,
         around: Around,
@@ -172,8 +185,7 @@ impl Painter {
     /// Letters without width: they hide nothing, and others may hide them.
     fn letters(&mut self, drawn: Vec<Drawn>, id: &str, around: &Around) -> Result<(), FormatError> {
         self.paths += 1;
-        let mut item: Option<(Option<Colour>, Number)> = None;
-        drawn.iter().try_for_each(|letter| self.check(&letter.path))?;
+        drawn.iter().try_for_each(|letter| self.check(controls(&letter.path)))?;
         if around.opacity <= NOTHING {
             drawn.iter().for_each(|letter| self.leave_out(Reason::Invisible, &letter.path));
             return Ok(());
@@ -184,27 +196,27 @@ impl Painter {
             let (layer, entity) = (around.place.layer.clone(), entity.clone());
             Stroke { kind, colour, layer, entity, ..Stroke::new(path) }
         };
-        for stroke in drawn.into_iter().map(stroke) {
-            self.count(&stroke.path);
-            let colour = stroke.colour;
-            let of_colour = item.filter(|(before, _)| *before == colour).map(|(_, number)| number);
-            let number = of_colour.unwrap_or_else(|| {
-                let ink = Ink::Plain(colour.unwrap_or(Colour::BLACK));
-                self.item(Region::default(), ink, usvg::Opacity::ONE, &stroke, around)
-            });
-            item = Some((colour, number));
-            self.scene.marks.push(Mark { kind: MarkKind::Middle, item: number, stroke });
+        let letters: Vec<Stroke> = drawn.into_iter().map(stroke).collect();
+        let is_alike = |a: &Stroke, b: &Stroke| (a.kind, a.colour) == (b.kind, b.colour);
+        for alike in letters.chunk_by(is_alike) {
+            let paths: Vec<Path> = alike.iter().map(|stroke| stroke.path.clone()).collect();
+            paths.iter().for_each(|path| self.count(path.elements().len()));
+            let looks = alike[0].along(Path::new(Point::ORIGIN));
+            let ink = Ink::Plain(looks.colour.unwrap_or(Colour::BLACK));
+            let item = self.item(Box::new(Letters(paths)), ink, usvg::Opacity::ONE, looks, around);
+            self.scene.marks.push(Mark { kind: MarkKind::Middle, item });
         }
         self.check_count()
     }
 
-    fn path(&mut self, path: &usvg::Path, around: &Around) -> Result<(), FormatError> {
+    fn path(&mut self, path: &'a usvg::Path, around: &Around) -> Result<(), FormatError> {
         if !path.is_visible() {
             return Ok(());
         }
         let entity = around.entity.clone().or_else(|| self.names.entity(&around.place, path.id()));
         let around = &Around { entity, ..around.clone() };
         self.paths += 1;
+        self.check(points(path))?;
         let shown = |opacity: usvg::Opacity| f64::from(opacity.get()) * around.opacity > NOTHING;
         let stroke = path.stroke().filter(|s| shown(s.opacity()));
         let fill = path.fill().filter(|f| shown(f.opacity()));
@@ -230,71 +242,45 @@ impl Painter {
 
     fn fill(
         &mut self,
-        path: &usvg::Path,
-        fill: Option<&usvg::Fill>,
+        path: &'a usvg::Path,
+        fill: Option<&'a usvg::Fill>,
         is_drawn: bool,
         around: &Around,
     ) -> Result<(), FormatError> {
         let Some(fill) = fill else { return Ok(()) };
-        let outlines = lines(path, affine(path.abs_transform()), true).paths;
-        outlines.iter().try_for_each(|outline| self.check(outline))?;
-        let region = filled(&outlines, fill.rule(), self.view.tolerance());
         self.told.patterns += usize::from(matches!(fill.paint(), usvg::Paint::Pattern(_)));
         let looks = looks(StrokeKind::Outline, None, fill.paint(), around);
-        let item = self.item(region, ink_of(fill.paint()), fill.opacity(), &looks, around);
-        for outline in outlines.into_iter().filter(|_| is_drawn) {
-            self.count(&outline);
-            let mark = Mark { kind: MarkKind::Edge, item, stroke: looks.along(outline) };
-            if item == 0
-                && self.paper.is_none()
-                && is_paper(&self.scene.items[0], &mark.stroke.path, self.view.page)
-            {
-                self.paper = Some(mark);
-            } else {
-                self.scene.marks.push(mark);
-            }
+        let at = affine(path.abs_transform());
+        let shape = Fill { path, rule: fill.rule(), tolerance: self.view.tolerance(), is_drawn };
+        let item = self.item(Box::new(shape), ink_of(fill.paint(), at), fill.opacity(), looks, around);
+        if is_drawn {
+            self.count(path.data().len());
+            self.scene.marks.push(Mark { kind: MarkKind::Edge, item });
+            self.is_on_paper |= item == 0 && is_paper(&self.scene.items[0], self.view.page);
         }
         self.check_count()
     }
 
     fn stroke(
         &mut self,
-        path: &usvg::Path,
-        stroke: Option<&usvg::Stroke>,
+        path: &'a usvg::Path,
+        stroke: Option<&'a usvg::Stroke>,
         around: &Around,
     ) -> Result<(), FormatError> {
         let Some(stroke) = stroke else { return Ok(()) };
-        let at = affine(path.abs_transform());
-        let pen = f64::from(stroke.width().get()) * scale(at);
-        let found = lines(path, at, false);
-        found.paths.iter().try_for_each(|line| self.check(line))?;
-        let dashes = Dashes::of(stroke, scale(at)).filter(|_| self.dashes);
-        let dashes = dashes.filter(|dashes| self.may_dash(dashes, &found.paths));
-        let is_dashed = dashes.is_some();
-        let mut drawn = match dashes {
-            Some(_) if !is_similar(at) => dashed_askew(path, stroke, at),
-            Some(dashes) => found.paths.iter().flat_map(|line| dashes.along(line)).collect(),
-            None => found.paths,
-        };
-        let is_dotted = stroke.linecap() != usvg::LineCap::Butt;
-        let dots = found.dots.into_iter().filter(|&p| is_dotted && is_sound(p));
-        drawn.extend(dots.map(|p| dot(p, pen)));
-        let region = match self.bands {
-            true => band(path, stroke, at, self.view.tolerance(), is_dashed),
-            false => Region::default(),
-        };
+        let (at, tolerance) = (affine(path.abs_transform()), self.view.tolerance());
+        let mut pen = Pen { path, stroke, tolerance, is_dashed: false, has_band: self.bands };
+        let dashes = pen.dashes().filter(|_| self.dashes);
+        pen.is_dashed = dashes.is_some_and(|count| self.may_dash(count));
+        self.count(if pen.is_dashed { dashes.unwrap_or(0) * LEAST_ELEMENTS } else { path.data().len() });
         self.told.patterns += usize::from(matches!(stroke.paint(), usvg::Paint::Pattern(_)));
-        let looks = looks(StrokeKind::Centreline, Some(pen), stroke.paint(), around);
-        let item = self.item(region, ink_of(stroke.paint()), stroke.opacity(), &looks, around);
-        for line in drawn {
-            self.count(&line);
-            self.scene.marks.push(Mark { kind: MarkKind::Middle, item, stroke: looks.along(line) });
-        }
+        let looks = looks(StrokeKind::Centreline, Some(pen.width()), stroke.paint(), around);
+        let item = self.item(Box::new(pen), ink_of(stroke.paint(), at), stroke.opacity(), looks, around);
+        self.scene.marks.push(Mark { kind: MarkKind::Middle, item });
         self.check_count()
     }
 
-    fn may_dash(&mut self, dashes: &Dashes, paths: &[Path]) -> bool {
-        let count = paths.iter().map(|path| dashes.count(path)).fold(0, usize::saturating_add);
+    fn may_dash(&mut self, count: usize) -> bool {
         let fits = self.dashed.saturating_add(count) <= MAX_DASHES;
         self.dashed += if fits { count } else { 0 };
         self.told.undashed += usize::from(!fits);
@@ -303,29 +289,31 @@ impl Painter {
 
     fn item(
         &mut self,
-        region: Region,
+        shape: Box<dyn Shape + 'a>,
         ink: Ink,
         opacity: usvg::Opacity,
-        looks: &Stroke,
+        looks: Stroke,
         around: &Around,
     ) -> Number {
         self.scene.items.push(Item {
-            region,
+            shape,
             ink: if around.is_mixed { Ink::Mixed { hides: false } } else { ink },
             opacity: f64::from(opacity.get()),
             veil: around.veil,
             gate: around.gate,
             pen: looks.pen,
             source: self.paths,
-            looks: looks.clone(),
+            looks,
         });
         (self.scene.items.len() - 1) as Number
     }
 
-    fn cut(&mut self, gate: Number, path: Path) -> Result<(), FormatError> {
-        self.check(&path)?;
-        self.count(&path);
-        self.scene.marks.push(Mark { kind: MarkKind::Cut(gate), item: 0, stroke: Stroke::new(path) });
+    fn cut(&mut self, gate: Number) -> Result<(), FormatError> {
+        let outlines = std::mem::take(&mut self.scene.gates[gate as usize].outlines);
+        outlines.iter().try_for_each(|path| self.check(controls(path)))?;
+        outlines.iter().for_each(|path| self.count(path.elements().len()));
+        self.scene.gates[gate as usize].outlines = outlines;
+        self.scene.marks.push(Mark { kind: MarkKind::Cut(gate), item: 0 });
         self.check_count()
     }
 
@@ -333,8 +321,8 @@ impl Painter {
         self.unseen.push((reason, path.length(self.view.tolerance())));
     }
 
-    fn count(&mut self, path: &Path) {
-        self.elements += path.elements().len().max(LEAST_ELEMENTS);
+    fn count(&mut self, elements: usize) {
+        self.elements += elements.max(LEAST_ELEMENTS);
     }
 
     fn check_count(&self) -> Result<(), FormatError> {
@@ -350,8 +338,8 @@ impl Painter {
         Ok(())
     }
 
-    fn check(&self, path: &Path) -> Result<(), FormatError> {
-        match controls(path).find(|&p| !is_sound(p)) {
+    fn check(&self, mut points: impl Iterator<Item = Point>) -> Result<(), FormatError> {
+        match points.find(|&p| !is_sound(p)) {
             Some(Point { x, y }) => {
                 Err(FormatError::Far { place: format!("stroke {}", self.scene.marks.len() + 1), x, y })
             }
@@ -364,21 +352,6 @@ fn looks(kind: StrokeKind, pen: Option<f64>, paint: &usvg::Paint, around: &Aroun
     let path = Path::new(Point::ORIGIN);
     let (layer, entity) = (around.place.layer.clone(), around.entity.clone());
     Stroke { kind, pen, colour: colour_of(paint), layer, entity, ..Stroke::new(path) }
-}
-
-/// Whether lengths grow alike in all directions.
-fn is_similar(at: Affine) -> bool {
-    let [a, b, c, d, ..] = at.as_coeffs();
-    let size = a.abs().max(b.abs()).max(c.abs()).max(d.abs());
-    let is_turn = (a - d).abs().max((b + c).abs()) <= 1e-4 * size;
-    let is_flip = (a + d).abs().max((b - c).abs()) <= 1e-4 * size;
-    is_turn || is_flip
-}
-
-/// Dashes measured in the path's own numbers, for lengths on the sheet depend on the direction.
-fn dashed_askew(path: &usvg::Path, stroke: &usvg::Stroke, at: Affine) -> Vec<Path> {
-    let Some(dashes) = Dashes::of(stroke, 1.0) else { return Vec::new() };
-    own_lines(path).iter().flat_map(|line| dashes.along(line)).map(|dash| moved(&dash, at)).collect()
 }
 
 /// Whether any line of a tree could hide another: there are fills, text, several colours, or very different pens.

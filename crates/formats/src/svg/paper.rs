@@ -8,11 +8,10 @@ use super::seen::scene::Item;
 /// Share of the page's width and height that paper may leave free at an edge.
 const SLACK: f64 = 0.005;
 
-/// Whether an outline, painted first, is that of paper: an upright rectangle over the whole page, white or nearly so,
-/// and opaque.
-pub(super) fn is_paper(item: &Item, outline: &Path, page: Rect) -> bool {
+/// Whether a fill, painted first, is paper: an upright rectangle over the whole page, white or nearly so, and opaque.
+pub(super) fn is_paper(item: &Item, page: Rect) -> bool {
     let slack = SLACK * (page.width() + page.height());
-    let bounds = item.region.bounds();
+    let bounds = item.shape.bounds();
     let covers = bounds.x0 <= page.x0 + slack
         && bounds.y0 <= page.y0 + slack
         && bounds.x1 >= page.x1 - slack
@@ -20,8 +19,8 @@ pub(super) fn is_paper(item: &Item, outline: &Path, page: Rect) -> bool {
     covers
         && item.opacity >= 1.0
         && item.veil.is_none()
-        && is_whitish(item)
-        && is_upright(outline, 1e-3 * slack)
+        && is_whitish(&item.ink)
+        && matches!(item.shape.lines().as_slice(), [outline] if is_upright(outline, 1e-3 * slack))
 }
 
 /// Whether a path is four sides, each along an axis.

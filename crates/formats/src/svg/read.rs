@@ -31,7 +31,8 @@ const MAX_NODES: u32 = 2_000_000;
 ///
 /// Not drawn are: a white rectangle behind everything (the paper), and what nobody sees. That is what opaque paint
 /// covers, what has on both sides the same colour (to 6 %), fills without area, opacity 0, what lies off the page,
-/// outside clip paths and nested viewports or in the dark of masks of plain shapes. Paths are
+/// outside clip paths and nested viewports or in the dark of masks of shapes and gradients. The edge of a
+/// gradient is drawn as far as it is told from what is beside it. Paths are
 /// cut at parameters of their own elements. The band of a pen hides what is below it, but no line of its colour that is
 /// more than a quarter as wide. A centreline is drawn where it is itself uncovered. What a clip path cuts off a fill ends in a stroke
 /// along the clip path. A remark says for each reason how many lines are left out and how long they are. Filters,
@@ -75,7 +76,7 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
         page: page(width, height),
         hides: options.hidden == Hidden::Cut,
         crops: options.crop,
-        work: work_of(bytes.len()),
+        work: work_of(bytes.len(), letters(&xml)),
     };
     let bands = view.hides && do_bands_matter(tree.root());
     let has_lines = kind(options, Letters::Outline)? == Kind::Line;
@@ -114,6 +115,14 @@ fn resolving(fonts: &Fonts) -> usvg::Options<'_> {
         },
         ..Default::default()
     }
+}
+
+/// How many letters the texts have.
+fn letters(xml: &Document) -> usize {
+    let texts = xml.descendants().filter(|node| node.tag_name().name() == "text");
+    let parts =
+        texts.flat_map(|text| text.descendants()).filter(Node::is_text).filter_map(|part| part.text());
+    parts.flat_map(str::chars).filter(|c| !c.is_whitespace()).count()
 }
 
 fn syntax(error: usvg::roxmltree::Error) -> FormatError {

@@ -23,7 +23,7 @@ pub(super) fn things(xml: &Document, told: Told) -> Vec<String> {
     let image = said(count(xml, "image"), "not drawn: embedded pictures; trace their own files");
     let patterns = said(told.patterns, "not drawn: the lines of patterns, only the edges of what they fill");
     let filters = said(told.filters, "not applied: filters; shapes are drawn as they are without");
-    let masks = said(told.masks, "not applied: masks of gradients or pictures; all that they mask is drawn");
+    let masks = said(told.masks, "not applied: masks of patterns or pictures; all that they mask is drawn");
     let dashes = said(told.undashed, "drawn as whole lines: dashed lines of too many dashes");
     [image, patterns, filters, masks, dashes].into_iter().flatten().collect()
 }

@@ -8,8 +8,10 @@
 //! inside one colour, white on white and fills without area all fall out of one rule.
 
 mod colour;
+mod coverage;
 mod crossings;
 mod flat;
+pub(super) mod gradient;
 mod grid;
 mod judged;
 mod picture;
@@ -18,22 +20,25 @@ pub(super) mod scene;
 mod tiles;
 mod verdict;
 
-use tracelight_stroke::{Rect, Stroke};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 
-use self::colour::Rgb;
-use self::crossings::Edges;
+use tracelight_stroke::{Path, Rect, Stroke};
+
 use self::judged::judged;
-use self::picture::Picture;
-use self::scene::{Mark, MarkKind, Scene};
-use self::verdict::Judge;
+use self::picture::{Picture, is_cover};
+use self::scene::{Gate, GateKind, Ink, Mark, MarkKind, Number, Scene};
+use self::tiles::{Ground, Layout, laid_out};
+use self::verdict::{Judge, Verdict};
 
+pub(super) use self::colour::Rgb;
 pub(super) use self::flat::chords;
 pub(super) use self::region::Region;
 pub(super) use self::verdict::Reason;
 
-/// Whether an item is white or nearly so.
-pub(super) fn is_whitish(item: &scene::Item) -> bool {
-    matches!(item.ink, scene::Ink::Plain(colour) if Rgb::from(colour).is_whitish())
+/// Whether an ink is white or nearly so.
+pub(super) fn is_whitish(ink: &Ink) -> bool {
+    matches!(ink, Ink::Plain(colour) if Rgb::from(*colour).is_whitish())
 }
 
 /// How a scene is looked at.
@@ -66,8 +71,12 @@ const OWN_WORK: usize = 10_000_000;
 const WORK_A_BYTE: usize = 30;
 const MAX_WORK: usize = 60_000_000;
 
-/// How much may be looked at of a file of so many bytes.
-pub(super) fn work_of(bytes: usize) -> usize {
+/// Bytes that a letter counts as: so many would draw its outline.
+const BYTES_A_LETTER: usize = 50;
+
+/// How much may be looked at of a file of so many bytes and letters.
+pub(super) fn work_of(bytes: usize, letters: usize) -> usize {
+    let bytes = bytes.saturating_add(letters.saturating_mul(BYTES_A_LETTER));
     bytes.saturating_mul(WORK_A_BYTE).saturating_add(OWN_WORK).min(MAX_WORK)
 }
 
@@ -87,7 +96,7 @@ impl View {
 
     /// How closely chords follow curves.
     pub(super) fn tolerance(&self) -> f64 {
-        0.25 * self.aside()
+        0.45 * self.aside()
     }
 }
 
@@ -106,47 +115,86 @@ pub(super) fn seen(scene: &Scene, view: View) -> Seen {
 fn look(scene: &Scene, view: View, paper: Rgb) -> Seen {
     let aside = view.aside();
     let margin = 8.0 * aside + 0.01 * (view.page.width() + view.page.height());
-    let boxes = scene.items.iter().map(|item| item.region.bounds());
+    let boxes = scene.items.iter().map(|item| item.shape.bounds());
     let all = boxes.fold(view.page, |all, bounds| if view.crops { all } else { all.union(bounds) });
     let within = all.inflate(margin, margin);
     let mut seen = Seen { strokes: Vec::new(), unseen: Vec::new(), unjudged: 0, on_black: false };
-    let Some(mut picture) = Picture::new(scene, view.page, within, view.hides) else {
-        scene.marks.iter().for_each(|mark| seen.leave(mark));
+    let covers = |item: Number| view.hides && is_cover(&scene.items[item as usize]);
+    let ground = Ground { page: view.page, within, slack: 0.5 * aside };
+    let Some(Layout { tiles, regions, edges }) = laid_out(scene, ground, covers) else {
+        scene.marks.iter().for_each(|&mark| seen.leave(scene, mark));
         return seen;
     };
+    let mut picture = Picture::new(scene, view.page, view.hides, (tiles, regions));
     picture.paper = paper;
-    let edges = Edges::new(scene, view.page, within, 0.5 * aside);
-    let judge = Judge { picture: &picture, aside, crops: view.crops };
+    let step = if has_gradients(scene) { STEP * view.page.size().to_vec2().hypot() } else { f64::INFINITY };
+    let judge = Judge { picture: &picture, aside, crops: view.crops, step };
     let mut work = 0;
-    for mark in &scene.marks {
-        let judged = judged(&judge, &edges, mark, view.tolerance(), view.work.saturating_sub(work));
-        let Some(judged) = judged else {
-            work = view.work;
-            seen.leave(mark);
+    for &mark in &scene.marks {
+        if !matches!(mark.kind, MarkKind::Cut(_)) && picture.is_unseen(mark.item) {
+            seen.hide(&judge, mark, view.tolerance());
             continue;
-        };
-        work += judged.work;
-        seen.unseen.extend(judged.unseen);
-        seen.strokes
-            .extend(judged.seen.into_iter().map(|(path, item)| looking_like(scene, mark, item, path)));
+        }
+        for path in &*lines_of(scene, mark) {
+            let judged =
+                judged(&judge, &edges, (mark, path), view.tolerance(), view.work.saturating_sub(work));
+            let Some(judged) = judged else {
+                work = view.work;
+                seen.leave_line(scene, mark, path);
+                continue;
+            };
+            work += judged.work;
+            seen.unseen.extend(judged.unseen);
+            let looks = |item: Number| &scene.items[item as usize].looks;
+            seen.strokes.extend(judged.seen.into_iter().map(|(path, item)| looks(item).along(path)));
+        }
     }
     seen
 }
 
-impl Seen {
-    /// A line that is drawn without being looked at.
-    fn leave(&mut self, mark: &Mark) {
-        if !matches!(mark.kind, MarkKind::Cut(_)) {
-            self.unjudged += 1;
-            self.strokes.push(mark.stroke.clone());
-        }
+/// How far a line is followed before it is looked at again where colours change without an edge, as a share of the page's
+/// diagonal.
+const STEP: f64 = 0.004;
+
+fn has_gradients(scene: &Scene) -> bool {
+    let is_one = |ink: &Ink| matches!(ink, Ink::Gradient(_));
+    let in_mask = |gate: &Gate| match &gate.kind {
+        GateKind::Mask { lights, .. } => lights.iter().any(|light| is_one(&light.ink)),
+        _ => false,
+    };
+    scene.items.iter().any(|item| is_one(&item.ink)) || scene.gates.iter().any(in_mask)
+}
+
+fn lines_of<'a>(scene: &'a Scene, mark: Mark) -> Cow<'a, [Path]> {
+    match mark.kind {
+        MarkKind::Cut(gate) => Cow::Borrowed(&scene.gates[gate as usize].outlines),
+        _ => Cow::Owned(scene.items[mark.item as usize].shape.lines()),
     }
 }
 
-/// A part of a line, with the looks of the item that it is the edge of.
-fn looking_like(scene: &Scene, mark: &Mark, item: u32, path: tracelight_stroke::Path) -> Stroke {
-    match mark.kind {
-        MarkKind::Cut(_) => scene.items[item as usize].looks.along(path),
-        _ => mark.stroke.along(path),
+impl Seen {
+    /// Lines that are drawn without being looked at.
+    fn leave(&mut self, scene: &Scene, mark: Mark) {
+        lines_of(scene, mark).iter().for_each(|path| self.leave_line(scene, mark, path));
+    }
+
+    fn leave_line(&mut self, scene: &Scene, mark: Mark, path: &Path) {
+        if !matches!(mark.kind, MarkKind::Cut(_)) {
+            self.unjudged += 1;
+            self.strokes.push(scene.items[mark.item as usize].looks.along(path.clone()));
+        }
+    }
+
+    /// Lines of an item of which nothing is seen anywhere.
+    fn hide(&mut self, judge: &Judge, mark: Mark, tolerance: f64) {
+        for path in &*lines_of(judge.picture.scene, mark) {
+            let mut lengths = BTreeMap::new();
+            for piece in path.pieces() {
+                if let Verdict::Unseen(Some(reason)) = judge.hidden(mark, piece.at(0.5)) {
+                    *lengths.entry(reason).or_insert(0.0) += piece.length(tolerance);
+                }
+            }
+            self.unseen.extend(lengths);
+        }
     }
 }

@@ -30,7 +30,8 @@ impl Rgb {
         self.0.iter().zip(other.0).all(|(a, b)| (a - b).abs() <= SAME)
     }
 
-    fn under(self, ink: Self, alpha: f64) -> Self {
+    /// The colour that another one of that opacity makes on it.
+    pub(crate) fn under(self, ink: Self, alpha: f64) -> Self {
         let [r, g, b] = [0, 1, 2].map(|i| self.0[i] * (1.0 - alpha) + ink.0[i] * alpha);
         Self([r, g, b])
     }

@@ -1,9 +1,11 @@
 //! Where a chord meets the edges of what is painted: nothing changes along it in between.
 
-use tracelight_stroke::{Point, Rect};
+use std::ops::Range;
+
+use tracelight_stroke::Point;
 
 use super::grid::Listing;
-use super::scene::{GateKind, MarkKind, Number, Scene};
+use super::scene::{MarkKind, Number};
 
 /// Whose edge a segment is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,71 +15,55 @@ pub(crate) enum Owner {
     Gate,
 }
 
-/// All edges of a scene.
+/// The edges of a scene that could be seen, by the tiles in which they could.
 pub(crate) struct Edges {
-    segments: Vec<[Point; 2]>,
-    owners: Vec<Owner>,
-    listing: Listing,
-    slack: f64,
+    pub(crate) segments: Vec<[Point; 2]>,
+    pub(crate) owners: Vec<Owner>,
+    /// Numbers of each item's segments.
+    pub(crate) of_items: Vec<Range<u32>>,
+    pub(crate) listing: Listing,
+    /// How close a line must come to an edge to meet it.
+    pub(crate) slack: f64,
 }
 
 impl Edges {
-    /// Edges within a rectangle, which meet what comes as close as `slack`.
-    pub(crate) fn new(scene: &Scene, page: Rect, within: Rect, slack: f64) -> Self {
-        let (mut segments, mut owners) = (Vec::new(), Vec::new());
-        let shown = within.inflate(slack, slack);
-        let mut add = |new: &[[Point; 2]], owner: Owner| {
-            let is_near = |&&[a, b]: &&[Point; 2]| {
-                let bounds = Rect::from_points(a, b);
-                bounds.x1 >= shown.x0
-                    && bounds.x0 <= shown.x1
-                    && bounds.y1 >= shown.y0
-                    && bounds.y0 <= shown.y1
-            };
-            let before = segments.len();
-            segments.extend(new.iter().filter(is_near));
-            owners.resize(owners.len() + segments.len() - before, owner);
-        };
-        for (number, item) in scene.items.iter().enumerate() {
-            add(item.region.segments(), Owner::Item(number as Number));
-        }
-        for gate in &scene.gates {
-            match &gate.kind {
-                GateKind::Clip(regions) => {
-                    regions.iter().for_each(|(region, _)| add(region.segments(), Owner::Gate))
-                }
-                GateKind::Mask { items, .. } => {
-                    items.iter().for_each(|item| add(item.region.segments(), Owner::Gate));
-                    add(&sides(gate.bounds), Owner::Gate);
-                }
-                GateKind::Unknown => {}
-            }
-        }
-        add(&sides(page), Owner::Gate);
-        let listing = Listing::new(within, &segments, slack);
-        Self { segments, owners, listing, slack }
-    }
-
-    /// Parameters of the chord, in order, where it meets edges that count; how many edges were looked at.
+    /// Finds the parameters of a chord, in order, where it meets edges that count. Returns how many edges were looked at.
     pub(crate) fn met(
         &self,
         chord: [Point; 2],
         own: Own,
-        counts: &dyn Fn(Owner) -> bool,
-    ) -> (Vec<f64>, usize) {
-        let (mut met, mut work) = (Vec::new(), 0);
+        counts: impl Fn(Owner) -> bool,
+        met: &mut Vec<f64>,
+    ) -> usize {
+        let mut work = 0;
+        met.clear();
         self.listing.near(chord, |number| {
             work += 1;
             let edge = self.segments[number as usize];
+            if is_apart(chord, edge, self.slack) {
+                return;
+            }
             let owner = self.owners[number as usize];
             let is_neighbour = own.is(owner) && edge.iter().any(|end| chord.contains(end));
             if !is_neighbour && counts(owner) {
-                meet(chord, edge, self.slack, &mut met);
+                meet(chord, edge, self.slack, met);
             }
         });
         met.sort_by(f64::total_cmp);
         met.dedup();
-        (met, work)
+        work
+    }
+
+    /// Whether a chord comes near the edge of an item.
+    pub(crate) fn nears(&self, chord: [Point; 2], item: Number) -> bool {
+        let slack = 2.0 * self.slack;
+        self.listing.any_near(chord, self.of_items[item as usize].clone(), |number| {
+            let (edge, mut met) = (self.segments[number as usize], Vec::new());
+            if !is_apart(chord, edge, slack) {
+                meet(chord, edge, slack, &mut met);
+            }
+            !met.is_empty()
+        })
     }
 }
 
@@ -94,9 +80,12 @@ impl Own {
     }
 }
 
-fn sides(r: Rect) -> [[Point; 2]; 4] {
-    let [a, b, c, d] = [(r.x0, r.y0), (r.x1, r.y0), (r.x1, r.y1), (r.x0, r.y1)].map(Point::from);
-    [[a, b], [b, c], [c, d], [d, a]]
+/// Whether the upright rectangles round two segments are further apart than `slack`.
+fn is_apart([a, b]: [Point; 2], [c, d]: [Point; 2], slack: f64) -> bool {
+    a.x.max(b.x) + slack < c.x.min(d.x)
+        || c.x.max(d.x) + slack < a.x.min(b.x)
+        || a.y.max(b.y) + slack < c.y.min(d.y)
+        || c.y.max(d.y) + slack < a.y.min(b.y)
 }
 
 /// Adds the parameters at which a chord crosses an edge, or comes as close to an end of it as `slack`.

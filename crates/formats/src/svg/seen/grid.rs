@@ -1,6 +1,11 @@
 //! Segments by the cells of a grid that they pass.
 
+use std::ops::Range;
+
 use tracelight_stroke::{Point, Rect};
+
+/// Cells along a side at most: a long narrow drawing has many columns and few rows.
+const MOST_ALONG: f64 = 32_768.0;
 
 /// A grid of square cells over a rectangle; what lies outside counts to the cells at its edge.
 #[derive(Clone, Copy, Debug)]
@@ -12,12 +17,13 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Cells over a rectangle, `side` of them along its longer side.
-    pub(crate) fn new(bounds: Rect, side: usize) -> Self {
-        let longer = bounds.width().max(bounds.height()).max(1e-9);
-        let side = side.max(1);
-        let cell = longer / side as f64;
-        let count = |length: f64| ((length / cell).ceil() as usize).clamp(1, side);
+    /// Square cells over a rectangle, about so many of them.
+    pub(crate) fn new(bounds: Rect, cells: usize) -> Self {
+        let [shorter, longer] = [bounds.width().min(bounds.height()), bounds.width().max(bounds.height())];
+        let longer = longer.max(1e-9);
+        let side = (cells as f64 * longer / shorter.max(1e-4 * longer)).sqrt().clamp(1.0, MOST_ALONG);
+        let cell = longer / side.floor();
+        let count = |length: f64| ((length / cell).ceil() as usize).clamp(1, side as usize);
         Self { corner: bounds.origin(), cell, columns: count(bounds.width()), rows: count(bounds.height()) }
     }
 
@@ -70,51 +76,45 @@ impl Grid {
     }
 }
 
-/// Numbers of segments by cells: those of a cell are `listed[begins[cell]..begins[cell + 1]]`.
+/// Numbers of segments by the cells of a grid: those of a cell are `listed[begins[cell]..begins[cell + 1]]`.
 pub(crate) struct Listing {
-    pub(crate) grid: Grid,
+    grid: Grid,
     begins: Vec<u32>,
     listed: Vec<u32>,
 }
 
-/// Cells that a segment passes on average, at most about.
-const PASSED: f64 = 4.0;
-
-/// Cells for each segment, about, and along a side at most: a long narrow drawing has many columns and few rows.
-const CELLS: f64 = 4.0;
-const MOST_ALONG: f64 = 32_768.0;
-
 impl Listing {
-    /// Lists segments by the cells of a grid as fine as their number allows.
-    pub(crate) fn new(bounds: Rect, segments: &[[Point; 2]], slack: f64) -> Self {
-        let count = segments.len() as f64;
-        let longer = bounds.width().max(bounds.height()).max(1e-9);
-        let shorter = bounds.width().min(bounds.height()).max(1e-4 * longer);
-        let length: f64 = segments.iter().map(|&[a, b]| a.distance(b).min(2.0 * longer)).sum();
-        let enough = (CELLS * count.min(250_000.0) * longer / shorter).sqrt();
-        let side = enough.min(PASSED * count * longer / length.max(1e-9)).clamp(8.0, MOST_ALONG);
-        let grid = Grid::new(bounds, side as usize);
+    /// Sorts pairs of a cell and a segment's number, which rises, by cells.
+    pub(crate) fn new(grid: Grid, pairs: &[(u32, u32)]) -> Self {
         let mut begins = vec![0_u32; grid.len() + 1];
-        let each = |segment: [Point; 2], visit: &mut dyn FnMut(usize)| {
-            grid.passed(segment, slack, |row, first, last| {
-                (first..=last).for_each(|column| visit(row * grid.columns() + column));
-            });
-        };
-        for &segment in segments {
-            each(segment, &mut |cell| begins[cell + 1] += 1);
+        for &(cell, _) in pairs {
+            begins[cell as usize + 1] += 1;
         }
         for cell in 0..grid.len() {
             begins[cell + 1] += begins[cell];
         }
-        let mut listed = vec![0; begins[grid.len()] as usize];
+        let mut listed = vec![0; pairs.len()];
         let mut at = begins.clone();
-        for (number, &segment) in segments.iter().enumerate() {
-            each(segment, &mut |cell| {
-                listed[at[cell] as usize] = number as u32;
-                at[cell] += 1;
-            });
+        for &(cell, segment) in pairs {
+            let place = &mut at[cell as usize];
+            listed[*place as usize] = segment;
+            *place += 1;
         }
         Self { grid, begins, listed }
+    }
+
+    /// Whether one of some segments, of numbers that follow each other, is in the cells that a segment passes and holds.
+    pub(crate) fn any_near(&self, segment: [Point; 2], of: Range<u32>, holds: impl Fn(u32) -> bool) -> bool {
+        let mut found = false;
+        self.grid.passed(segment, 0.0, |row, first, last| {
+            for cell in row * self.grid.columns() + first..=row * self.grid.columns() + last {
+                let listed = &self.listed[self.begins[cell] as usize..self.begins[cell + 1] as usize];
+                let own = &listed[listed.partition_point(|&number| number < of.start)..];
+                found =
+                    found || own.iter().take_while(|&&number| number < of.end).any(|&number| holds(number));
+            }
+        });
+        found
     }
 
     /// Segments in the cells that a segment passes; one in several cells comes up in each.

@@ -1,6 +1,6 @@
 //! A line cut into what is seen of it and what is not.
 
-use tracelight_stroke::{Path, Span, Vec2, parts};
+use tracelight_stroke::{Path, Point, Span, Vec2, parts};
 
 use super::crossings::{Edges, Own, Owner};
 use super::flat::{Corner, chords};
@@ -34,15 +34,15 @@ pub(crate) struct Judged {
 pub(crate) fn judged(
     judge: &Judge,
     edges: &Edges,
-    mark: &Mark,
+    (mark, path): (Mark, &Path),
     tolerance: f64,
     left: usize,
 ) -> Option<Judged> {
-    let corners = chords(&mark.stroke.path, tolerance);
+    let corners = chords(path, tolerance);
     let before = judge.picture.work.get();
     let (runs, met) = runs(judge, edges, mark, &corners, before.saturating_add(left))?;
     let least = LEAST * judge.aside;
-    let runs = smoothed(runs, least, mark.stroke.path.is_closed());
+    let runs = smoothed(runs, least, path.is_closed());
     let mut judged = Judged { seen: Vec::new(), unseen: Vec::new(), work: met };
     let mut items: Vec<Number> = Vec::new();
     for run in &runs {
@@ -55,7 +55,7 @@ pub(crate) fn judged(
     for item in items {
         let own = runs.iter().filter(|run| run.verdict == Verdict::Seen(item));
         let spans = spans(&corners, own.flat_map(|run| &run.stretches));
-        judged.seen.extend(parts(&mark.stroke.path, &spans).into_iter().map(|path| (path, item)));
+        judged.seen.extend(parts(path, &spans).into_iter().map(|path| (path, item)));
     }
     judged.work += judge.picture.work.get() - before;
     Some(judged)
@@ -73,59 +73,128 @@ impl Run {
     }
 }
 
+/// Runs of a line so far.
+struct Walk<'a> {
+    judge: &'a Judge<'a>,
+    edges: &'a Edges,
+    mark: Mark,
+    corners: &'a [Corner],
+    runs: Vec<Run>,
+    /// Stretches since the last edge that the line met.
+    pending: Vec<Stretch>,
+    /// What covers these stretches, once that was asked.
+    cover: Option<Option<Number>>,
+    work: usize,
+}
+
+impl Walk<'_> {
+    fn chord(&mut self, chord: usize, counts: impl Fn(Owner) -> bool, met: &mut Vec<f64>) {
+        let ends = [self.corners[chord].point, self.corners[chord + 1].point];
+        let length = ends[0].distance(ends[1]);
+        let whole = Stretch { chord, from: 0.0, to: 1.0, length };
+        if let Some(Some(cover)) = self.cover {
+            if self.stays_below(cover, ends) {
+                return self.pending.push(whole);
+            }
+            self.meet();
+        }
+        if self.judge.picture.is_hidden(self.mark.item, ends) {
+            self.meet();
+            return self.add(self.judge.hidden(self.mark, ends[0].midpoint(ends[1])), vec![whole]);
+        }
+        self.work += self.edges.met(ends, Own(self.mark.kind, self.mark.item), counts, met);
+        let mut from = 0.0;
+        for &to in &*met {
+            if to > from {
+                self.follow(Stretch { chord, from, to, length: (to - from) * length });
+                from = to;
+            }
+            self.meet();
+        }
+        if from < 1.0 {
+            let rest = Stretch { chord, from, to: 1.0, length: (1.0 - from) * length };
+            self.follow(rest);
+            if self.cover.is_none() && rest.length >= self.judge.aside {
+                self.cover = Some(self.judge.cover(self.mark, middle(self.corners, &rest)));
+            }
+        }
+    }
+
+    /// Goes along a stretch that meets no edge, and looks again where that is long.
+    fn follow(&mut self, stretch: Stretch) {
+        const MOST: f64 = 1024.0;
+        let parts = (stretch.length / self.judge.step).ceil().clamp(1.0, MOST);
+        let is_long = |pending: &[Stretch]| {
+            self.judge.step.is_finite() && pending.iter().map(|s| s.length).sum::<f64>() >= self.judge.step
+        };
+        for i in 0..parts as usize {
+            let at = |i: usize| stretch.from + (stretch.to - stretch.from) * i as f64 / parts;
+            let [from, to] = [at(i), if i + 1 == parts as usize { stretch.to } else { at(i + 1) }];
+            if is_long(&self.pending) {
+                self.meet();
+            }
+            self.pending.push(Stretch { from, to, length: stretch.length / parts, ..stretch });
+        }
+    }
+
+    /// Whether a chord stays below what covers the stretches before it. Where that is covered itself its edges are not known.
+    fn stays_below(&mut self, cover: Number, chord: [Point; 2]) -> bool {
+        self.work += 1;
+        !self.judge.picture.is_somewhere_hidden(cover, chord) && !self.edges.nears(chord, cover)
+    }
+
+    /// Ends the pending stretches where an edge is met, and looks at the longest of them.
+    fn meet(&mut self) {
+        let cover = self.cover.take();
+        let longest = self.pending.iter().max_by(|a, b| a.length.total_cmp(&b.length));
+        let Some(longest) = longest else { return };
+        let is_short = self.pending.iter().map(|s| s.length).sum::<f64>() < self.judge.aside;
+        match self.runs.last_mut() {
+            // too short to look at: as what is before it
+            Some(before) if is_short => before.stretches.append(&mut self.pending),
+            _ => {
+                let place = middle(self.corners, longest);
+                let verdict = match cover.unwrap_or_else(|| self.judge.cover(self.mark, place)) {
+                    Some(_) => self.judge.hidden(self.mark, place.point),
+                    None => self.judge.verdict(self.mark, place),
+                };
+                let stretches = std::mem::take(&mut self.pending);
+                self.add(verdict, stretches);
+            }
+        }
+    }
+
+    fn add(&mut self, verdict: Verdict, stretches: Vec<Stretch>) {
+        match self.runs.last_mut().filter(|run| run.verdict == verdict) {
+            Some(run) => run.stretches.extend(stretches),
+            None => self.runs.push(Run { verdict, stretches }),
+        }
+    }
+}
+
 fn runs(
     judge: &Judge,
     edges: &Edges,
-    mark: &Mark,
+    mark: Mark,
     corners: &[Corner],
     most: usize,
 ) -> Option<(Vec<Run>, usize)> {
-    let own = Own(mark.kind, mark.item);
     let counts = |owner: Owner| does_count(judge, mark, owner);
-    let (mut runs, mut pending, mut work): (Vec<Run>, Vec<Stretch>, usize) = (Vec::new(), Vec::new(), 0);
-    let mut end = |pending: &mut Vec<Stretch>| {
-        let stretches = std::mem::take(pending);
-        let longest = stretches.iter().max_by(|a, b| a.length.total_cmp(&b.length));
-        let Some(longest) = longest else { return };
-        let is_short = stretches.iter().map(|s| s.length).sum::<f64>() < judge.aside;
-        match runs.last_mut() {
-            // too short to look at: as what is before it
-            Some(before) if is_short => before.stretches.extend(stretches),
-            last => {
-                let verdict = judge.verdict(mark, middle(corners, longest));
-                match last.filter(|run| run.verdict == verdict) {
-                    Some(run) => run.stretches.extend(stretches),
-                    None => runs.push(Run { verdict, stretches }),
-                }
-            }
-        }
-    };
-    for (chord, pair) in corners.windows(2).enumerate() {
-        let ends = [pair[0].point, pair[1].point];
-        let length = ends[0].distance(ends[1]);
-        let (met, looked) = edges.met(ends, own, &counts);
-        work += looked;
-        if work.saturating_add(judge.picture.work.get()) > most {
+    let (runs, pending) = (Vec::new(), Vec::new());
+    let mut walk = Walk { judge, edges, mark, corners, runs, pending, cover: None, work: 0 };
+    let mut met = Vec::new();
+    for chord in 0..corners.len().saturating_sub(1) {
+        walk.chord(chord, counts, &mut met);
+        if walk.work.saturating_add(judge.picture.work.get()) > most {
             return None;
         }
-        let mut from = 0.0;
-        for to in met {
-            if to > from {
-                pending.push(Stretch { chord, from, to, length: (to - from) * length });
-                from = to;
-            }
-            end(&mut pending);
-        }
-        if from < 1.0 {
-            pending.push(Stretch { chord, from, to: 1.0, length: (1.0 - from) * length });
-        }
     }
-    end(&mut pending);
-    Some((runs, work))
+    walk.meet();
+    Some((walk.runs, walk.work))
 }
 
 /// Whether what owns an edge could change the verdict on a line.
-fn does_count(judge: &Judge, mark: &Mark, owner: Owner) -> bool {
+fn does_count(judge: &Judge, mark: Mark, owner: Owner) -> bool {
     let Owner::Item(number) = owner else { return true };
     if !judge.picture.hides {
         return matches!(mark.kind, MarkKind::Cut(_));

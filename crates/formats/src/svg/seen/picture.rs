@@ -5,7 +5,8 @@ use std::cell::Cell;
 use tracelight_stroke::{Point, Rect};
 
 use super::colour::{Look, Rgb};
-use super::scene::{GateKind, Ink, Item, Number, Scene};
+use super::region::Region;
+use super::scene::{GateKind, Ink, Item, Light, Number, Scene};
 use super::tiles::Tiles;
 
 /// Coverage below this share lets nothing pass that could be seen; opacity above one minus it hides.
@@ -13,13 +14,14 @@ pub(crate) const FAINT: f64 = 0.02;
 
 /// A scene on its paper, ready to be looked at.
 pub(crate) struct Picture<'a> {
-    pub(crate) scene: &'a Scene,
+    pub(crate) scene: &'a Scene<'a>,
     pub(crate) page: Rect,
     /// Colour below everything.
     pub(crate) paper: Rgb,
     /// Whether what is painted hides what is below.
     pub(crate) hides: bool,
     tiles: Tiles,
+    regions: Vec<Option<Region>>,
     /// Segments looked at so far.
     pub(crate) work: Cell<usize>,
 }
@@ -33,15 +35,45 @@ pub(crate) struct Layer {
 }
 
 impl<'a> Picture<'a> {
-    /// A scene as it is seen within a rectangle; `None` if it is too intricate to look at.
-    pub(crate) fn new(scene: &'a Scene, page: Rect, within: Rect, hides: bool) -> Option<Self> {
-        let tiles = Tiles::new(&scene.items, within, |item| {
-            let bounds = item.gate.map_or(within, |gate| scene.gates[gate as usize].bounds);
-            let is_cover =
-                hides && item.gate.is_none() && item.veil.is_none() && is_opaque(item, item.opacity);
-            (bounds, is_cover)
-        })?;
-        Some(Self { scene, page, paper: Rgb::WHITE, hides, tiles, work: Cell::new(0) })
+    /// A scene as it is laid out.
+    pub(crate) fn new(
+        scene: &'a Scene<'a>,
+        page: Rect,
+        hides: bool,
+        (tiles, regions): (Tiles, Vec<Option<Region>>),
+    ) -> Self {
+        Self { scene, page, paper: Rgb::WHITE, hides, tiles, regions, work: Cell::new(0) }
+    }
+
+    /// Whether nothing of an item can be seen anywhere.
+    pub(crate) fn is_unseen(&self, item: Number) -> bool {
+        self.regions[item as usize].is_none()
+    }
+
+    /// Whether an item is surely covered all along a segment.
+    pub(crate) fn is_hidden(&self, item: Number, segment: [Point; 2]) -> bool {
+        self.tiles.is_hidden(item, segment)
+    }
+
+    /// Whether an item is surely covered somewhere along a segment.
+    pub(crate) fn is_somewhere_hidden(&self, item: Number, segment: [Point; 2]) -> bool {
+        self.tiles.is_somewhere_hidden(item, segment)
+    }
+
+    /// A fill that hides an item, and everything else below, at two points.
+    pub(crate) fn cover(&self, item: Number, sides: [Point; 2]) -> Option<Number> {
+        if !self.hides {
+            return None;
+        }
+        let own = &self.scene.items[item as usize];
+        self.tiles.cover(item, sides, |number, points| {
+            self.add_work(1);
+            let cover = &self.scene.items[number as usize];
+            is_cover(cover)
+                && cover.gate.is_none()
+                && cover.source != own.source
+                && points.iter().all(|&p| self.is_inside(number, p))
+        })
     }
 
     /// What is seen at a point of the items that count, the topmost first.
@@ -51,18 +83,17 @@ impl<'a> Picture<'a> {
         for (number, is_full) in self.tiles.at(p) {
             let item = &self.scene.items[number as usize];
             self.add_work(1);
-            if !counts(number, item) || self.veils(item).any(|veil| closed.contains(&veil)) {
+            if !counts(number, item) || self.veils(item.veil).any(|veil| closed.contains(&veil)) {
                 continue;
             }
-            if !is_full && !self.is_inside(item, p) {
+            if !is_full && !self.is_inside(number, p) {
                 continue;
             }
             let own = item.opacity * self.gate(item.gate, p);
             if own <= FAINT {
                 continue;
             }
-            let veils: f64 = self.veils(item).map(|veil| self.scene.veils[veil as usize].opacity).product();
-            layers.push(Layer { item: number, alpha: own * veils });
+            layers.push(Layer { item: number, alpha: own * self.veiled(item.veil) });
             if self.hides && is_opaque(item, own) {
                 match item.veil {
                     None => break,
@@ -80,21 +111,25 @@ impl<'a> Picture<'a> {
         above.any(|(number, is_full)| {
             self.add_work(1);
             let cover = &self.scene.items[number as usize];
-            let is_within = cover.veil.is_none_or(|veil| self.veils(item).any(|own| own == veil));
+            let is_within = cover.veil.is_none_or(|veil| self.veils(item.veil).any(|own| own == veil));
             counts(cover)
                 && is_within
                 && is_opaque(cover, cover.opacity)
-                && (is_full || self.is_inside(cover, p))
+                && (is_full || self.is_inside(number, p))
                 && is_opaque(cover, cover.opacity * self.gate(cover.gate, p))
         })
     }
 
-    /// The colour that layers make on the paper.
-    pub(crate) fn look(&self, layers: &[Layer]) -> Look {
+    /// The colour that layers make on the paper at a point.
+    pub(crate) fn look(&self, layers: &[Layer], p: Point) -> Look {
         let mut look = Look::of(self.paper);
         for layer in layers.iter().rev() {
-            match self.scene.items[layer.item as usize].ink {
-                Ink::Plain(colour) => look.paint(Rgb::from(colour), layer.alpha),
+            match &self.scene.items[layer.item as usize].ink {
+                Ink::Plain(colour) => look.paint(Rgb::from(*colour), layer.alpha),
+                Ink::Gradient(gradient) => {
+                    let (colour, alpha) = gradient.at(p);
+                    look.paint(colour, layer.alpha * alpha);
+                }
                 Ink::Mixed { .. } => look.mix(layer.item, layer.alpha),
             }
         }
@@ -102,8 +137,12 @@ impl<'a> Picture<'a> {
     }
 
     /// Whether a point lies in an item's own region, gates aside.
-    pub(crate) fn is_inside(&self, item: &Item, p: Point) -> bool {
-        let (inside, work) = item.region.contains(p);
+    pub(crate) fn is_inside(&self, item: Number, p: Point) -> bool {
+        self.regions[item as usize].as_ref().is_some_and(|region| self.holds(region, p))
+    }
+
+    fn holds(&self, region: &Region, p: Point) -> bool {
+        let (inside, work) = region.contains(p);
         self.add_work(work);
         inside
     }
@@ -134,34 +173,40 @@ impl<'a> Picture<'a> {
         match &gate.kind {
             GateKind::Unknown => 0.5,
             GateKind::Clip(regions) => {
-                let passes = |(region, own): &(super::region::Region, Option<Number>)| {
-                    let (inside, work) = region.contains(p);
-                    self.add_work(work);
-                    inside && self.gate(*own, p) > FAINT
+                let passes = |(region, own): &(Region, Option<Number>)| {
+                    self.holds(region, p) && self.gate(*own, p) > FAINT
                 };
                 f64::from(u8::from(regions.iter().any(passes)))
             }
-            GateKind::Mask { luminance, items } => self.masked(*luminance, items, p),
+            GateKind::Mask { luminance, lights } => self.masked(*luminance, lights, p),
         }
     }
 
-    fn masked(&self, by_luminance: bool, items: &[Item], p: Point) -> f64 {
+    fn masked(&self, by_luminance: bool, lights: &[Light], p: Point) -> f64 {
         let (mut light, mut cover) = (0.0, 0.0);
-        for item in items {
-            if !self.is_inside(item, p) {
+        for own in lights {
+            if !self.holds(&own.region, p) {
                 continue;
             }
-            let Ink::Plain(colour) = item.ink else { continue };
-            let veils: f64 = self.veils(item).map(|veil| self.scene.veils[veil as usize].opacity).product();
-            let alpha = item.opacity * veils * self.gate(item.gate, p);
-            light = light * (1.0 - alpha) + Rgb::from(colour).luminance() * alpha;
+            let (colour, own_alpha) = match &own.ink {
+                Ink::Plain(colour) => (Rgb::from(*colour), 1.0),
+                Ink::Gradient(gradient) => gradient.at(p),
+                Ink::Mixed { .. } => continue,
+            };
+            let alpha = own_alpha * own.opacity * self.veiled(own.veil) * self.gate(own.gate, p);
+            light = light * (1.0 - alpha) + colour.luminance() * alpha;
             cover = cover * (1.0 - alpha) + alpha;
         }
         if by_luminance { light } else { cover }
     }
 
-    fn veils(&self, item: &Item) -> impl Iterator<Item = Number> + '_ {
-        std::iter::successors(item.veil, |&veil| self.scene.veils[veil as usize].around)
+    /// What groups leave of an opacity.
+    fn veiled(&self, veil: Option<Number>) -> f64 {
+        self.veils(veil).map(|veil| self.scene.veils[veil as usize].opacity).product()
+    }
+
+    fn veils(&self, innermost: Option<Number>) -> impl Iterator<Item = Number> + '_ {
+        std::iter::successors(innermost, |&veil| self.scene.veils[veil as usize].around)
     }
 
     fn add_work(&self, segments: usize) {
@@ -171,7 +216,12 @@ impl<'a> Picture<'a> {
 
 /// Whether nothing shines through an item at that opacity.
 pub(crate) fn is_opaque(item: &Item, opacity: f64) -> bool {
-    opacity >= 1.0 - FAINT && !matches!(item.ink, Ink::Mixed { hides: false })
+    opacity >= 1.0 - FAINT && item.ink.hides()
+}
+
+/// Whether an item hides all below it where it is: a fill. Of a line's band it depends on what is below.
+pub(crate) fn is_cover(item: &Item) -> bool {
+    item.pen.is_none() && item.veil.is_none() && is_opaque(item, item.opacity)
 }
 
 /// Whether a point lies in a rectangle, its edge included.

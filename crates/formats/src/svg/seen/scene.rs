@@ -1,24 +1,41 @@
 //! What a drawing paints, and in which order.
 
-use tracelight_stroke::{Colour, Rect, Stroke};
+use std::rc::Rc;
 
+use tracelight_stroke::{Colour, Path, Rect, Stroke};
+
+use super::gradient::Gradient;
 use super::region::Region;
 
 /// Everything that is painted, bottom first, and the lines that could be drawn of it.
 #[derive(Default)]
-pub(crate) struct Scene {
-    pub(crate) items: Vec<Item>,
+pub(crate) struct Scene<'a> {
+    pub(crate) items: Vec<Item<'a>>,
     pub(crate) veils: Vec<Veil>,
     pub(crate) gates: Vec<Gate>,
     pub(crate) marks: Vec<Mark>,
+    /// Elements of all paths, about.
+    pub(crate) elements: usize,
 }
 
 /// A number that says where in its list a [`Veil`] or [`Gate`] is.
 pub(crate) type Number = u32;
 
+/// The geometry of an item. It is made when it is asked for: most of a crowded drawing is hidden, and never asked.
+pub(crate) trait Shape {
+    /// An upright rectangle round the region and the lines.
+    fn bounds(&self) -> Rect;
+
+    /// What is painted.
+    fn region(&self) -> Region;
+
+    /// The lines that could be drawn.
+    fn lines(&self) -> Vec<Path>;
+}
+
 /// One painted region: a fill, or the band of a pen.
-pub(crate) struct Item {
-    pub(crate) region: Region,
+pub(crate) struct Item<'a> {
+    pub(crate) shape: Box<dyn Shape + 'a>,
     pub(crate) ink: Ink,
     /// Own opacity, 0 to 1.
     pub(crate) opacity: f64,
@@ -30,20 +47,34 @@ pub(crate) struct Item {
     pub(crate) pen: Option<f64>,
     /// Number of the path that it is of.
     pub(crate) source: u32,
-    /// Looks of what is drawn of its edge, where something else cuts it: its colour and layer.
+    /// Looks of what is drawn of it: its colour and layer.
     pub(crate) looks: Stroke,
 }
 
 /// What an item is painted with.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Ink {
     /// One colour.
     Plain(Colour),
-    /// Several: a gradient, or a blend with what is below.
+    /// Another one at each place.
+    Gradient(Rc<Gradient>),
+    /// What is not known here: a pattern, or a blend with what is below.
     Mixed {
         /// Whether it hides what is below.
         hides: bool,
     },
+}
+
+impl Ink {
+    /// Whether nothing below shines through it where it is.
+    pub(crate) fn hides(&self) -> bool {
+        const OPAQUE: f64 = 0.98;
+        match self {
+            Self::Plain(_) => true,
+            Self::Gradient(gradient) => gradient.stops.iter().all(|&(.., alpha)| alpha >= OPAQUE),
+            Self::Mixed { hides } => *hides,
+        }
+    }
 }
 
 /// A group that is translucent as a whole: what is in it hides other things in it, and nothing below.
@@ -58,6 +89,8 @@ pub(crate) struct Gate {
     pub(crate) kind: GateKind,
     /// The smallest upright rectangle round where it lets pass.
     pub(crate) bounds: Rect,
+    /// The lines along which it cuts.
+    pub(crate) outlines: Vec<Path>,
 }
 
 /// How a gate tells where it lets pass.
@@ -69,19 +102,27 @@ pub(crate) enum GateKind {
         /// By brightness, not only by opacity.
         luminance: bool,
         /// What it paints, bottom first.
-        items: Vec<Item>,
+        lights: Vec<Light>,
     },
     /// A mask whose picture is no plain shapes: lets everything pass, as if half-transparent.
     Unknown,
 }
 
-/// A line that could be drawn.
+/// One painted region of a mask's picture.
+pub(crate) struct Light {
+    pub(crate) region: Region,
+    pub(crate) ink: Ink,
+    pub(crate) opacity: f64,
+    pub(crate) veil: Option<Number>,
+    pub(crate) gate: Option<Number>,
+}
+
+/// Lines that could be drawn.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Mark {
     pub(crate) kind: MarkKind,
-    /// The item that it is of; of a clip's edge, any.
+    /// The item that they are of; of a clip's edge, the topmost that it could cut.
     pub(crate) item: Number,
-    /// The line with its looks.
-    pub(crate) stroke: Stroke,
 }
 
 /// What a line is of the thing painted.

@@ -4,7 +4,7 @@ use tracelight_stroke::{Point, Vec2};
 
 use super::colour::Rgb;
 use super::picture::{FAINT, Layer, Picture, is_within};
-use super::scene::{GateKind, Ink, Item, Mark, MarkKind, Number};
+use super::scene::{Gate, GateKind, Ink, Item, Mark, MarkKind, Number};
 
 /// Why something is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,11 +56,13 @@ pub(crate) struct Judge<'a> {
     pub(crate) aside: f64,
     /// Whether what lies off the page and outside clip paths is cut.
     pub(crate) crops: bool,
+    /// How far a line is followed, at most, before it is looked at again.
+    pub(crate) step: f64,
 }
 
 impl Judge<'_> {
-    pub(crate) fn verdict(&self, mark: &Mark, place: Place) -> Verdict {
-        let sides = [-1.0, 1.0].map(|side| place.point + place.normal * (side * self.aside));
+    pub(crate) fn verdict(&self, mark: Mark, place: Place) -> Verdict {
+        let sides = self.sides(place);
         let is_off = sides.map(|p| self.crops && !is_within(self.picture.page, p));
         match mark.kind {
             MarkKind::Cut(_) if is_off[0] || is_off[1] => Verdict::Unseen(None),
@@ -71,7 +73,29 @@ impl Judge<'_> {
         }
     }
 
-    fn item(&self, number: Number) -> &Item {
+    /// What surely covers a line at one of its places.
+    pub(crate) fn cover(&self, mark: Mark, place: Place) -> Option<Number> {
+        match mark.kind {
+            MarkKind::Cut(_) => None,
+            _ => self.picture.cover(mark.item, self.sides(place)),
+        }
+    }
+
+    fn sides(&self, place: Place) -> [Point; 2] {
+        [-1.0, 1.0].map(|side| place.point + place.normal * (side * self.aside))
+    }
+
+    /// Why nothing of a line is seen at a place where something surely covers it, or no gate lets it pass.
+    pub(crate) fn hidden(&self, mark: Mark, p: Point) -> Verdict {
+        let gate = self.item(mark.item).gate.map(|gate| &self.picture.scene.gates[gate as usize]);
+        Verdict::Unseen(match mark.kind {
+            MarkKind::Cut(_) => None,
+            _ if self.crops && !is_within(self.picture.page, p) => Some(Reason::OffPage),
+            _ => Some(gate.filter(|gate| !is_within(gate.bounds, p)).map_or(Reason::Covered, shut_by)),
+        })
+    }
+
+    fn item(&self, number: Number) -> &Item<'_> {
         &self.picture.scene.items[number as usize]
     }
 
@@ -79,10 +103,7 @@ impl Judge<'_> {
     fn shut(&self, item: &Item, sides: [Point; 2]) -> Option<Reason> {
         let [left, right] = sides.map(|p| self.picture.shut(item.gate, p));
         let gate = left.filter(|_| right.is_some())?;
-        Some(match self.picture.scene.gates[gate as usize].kind {
-            GateKind::Clip(_) => Reason::Clipped,
-            _ => Reason::Masked,
-        })
+        Some(shut_by(&self.picture.scene.gates[gate as usize]))
     }
 
     fn edge(&self, number: Number, sides: [Point; 2]) -> Verdict {
@@ -96,9 +117,9 @@ impl Judge<'_> {
         let [left, right] = sides.map(|p| self.picture.stack(p, |_, _| true));
         let holds = |layers: &[Layer]| layers.iter().any(|layer| layer.item == number);
         let is_there = [holds(&left), holds(&right)];
-        let reason = if self.picture.look(&left).is_like(&self.picture.look(&right)) {
+        let reason = if self.picture.look(&left, sides[0]).is_like(&self.picture.look(&right, sides[1])) {
             match is_there {
-                [false, false] if sides.iter().all(|&p| !self.picture.is_inside(item, p)) => Reason::NoArea,
+                [false, false] if sides.iter().all(|&p| !self.picture.is_inside(number, p)) => Reason::NoArea,
                 [false, false] => Reason::Covered,
                 _ => Reason::OneColour,
             }
@@ -125,24 +146,27 @@ impl Judge<'_> {
     /// The edge of a gate is that of what it cuts, the topmost of all that end here.
     fn cut(&self, gate: Number, sides: [Point; 2]) -> Verdict {
         let stacks = sides.map(|p| self.picture.stack(p, |_, _| true));
-        let is_same =
-            self.picture.hides && self.picture.look(&stacks[0]).is_like(&self.picture.look(&stacks[1]));
+        let is_same = self.picture.hides
+            && self.picture.look(&stacks[0], sides[0]).is_like(&self.picture.look(&stacks[1], sides[1]));
         let edge = self.topmost_edge([&stacks[0], &stacks[1]]).filter(|_| !is_same);
         let is_cut = |&number: &Number| {
             let item = self.item(number);
             let shut = sides.into_iter().find_map(|p| self.picture.shut(item.gate, p));
-            shut == Some(gate) && sides.iter().all(|&p| self.picture.is_inside(item, p))
+            shut == Some(gate) && sides.iter().all(|&p| self.picture.is_inside(number, p))
         };
         edge.filter(is_cut).map_or(Verdict::Unseen(None), Verdict::Seen)
     }
 
-    fn middle(&self, mark: &Mark, place: Place, sides: [Point; 2]) -> Verdict {
+    fn middle(&self, mark: Mark, place: Place, sides: [Point; 2]) -> Verdict {
         let item = self.item(mark.item);
         if let Some(reason) = self.shut(item, sides) {
             return Verdict::Unseen(Some(reason));
         }
         if !self.picture.hides {
             return Verdict::Seen(mark.item);
+        }
+        if matches!(&item.ink, Ink::Gradient(gradient) if gradient.at(place.point).1 <= FAINT) {
+            return Verdict::Unseen(Some(Reason::Invisible));
         }
         let hides = |cover: &Item| self.is_area(item, cover) || cover.ink != item.ink;
         let is_hidden = |p: Point| {
@@ -166,15 +190,25 @@ impl Judge<'_> {
     /// Whether a line has the colour of what is below it and of what is beside it.
     fn is_lost(&self, number: Number, place: Place, sides: [Point; 2]) -> bool {
         let item = self.item(number);
-        let Ink::Plain(ink) = item.ink else { return false };
-        let ink = Rgb::from(ink);
+        let ink = match &item.ink {
+            Ink::Plain(ink) => Rgb::from(*ink),
+            Ink::Gradient(gradient) => gradient.at(place.point).0,
+            Ink::Mixed { .. } => return false,
+        };
         let below = |p: Point| self.picture.stack(p, |other, i| other < number && self.is_area(item, i));
-        if !sides.into_iter().all(|p| self.picture.look(&below(p)).is_plain(ink)) {
+        if !sides.into_iter().all(|p| self.picture.look(&below(p), p).is_plain(ink)) {
             return false;
         }
         let reach = 0.5 * item.pen.unwrap_or(0.0) + self.aside;
         let beside = [-1.0, 1.0].map(|side| place.point + place.normal * (side * reach));
         let around = |p: Point| self.picture.stack(p, |other, i| other != number && self.is_area(item, i));
-        beside.into_iter().all(|p| self.picture.look(&around(p)).is_plain(ink))
+        beside.into_iter().all(|p| self.picture.look(&around(p), p).is_plain(ink))
+    }
+}
+
+const fn shut_by(gate: &Gate) -> Reason {
+    match gate.kind {
+        GateKind::Clip(_) => Reason::Clipped,
+        _ => Reason::Masked,
     }
 }
