@@ -31,12 +31,7 @@ fn moments(plan: &Plan, seed: u64, count: usize) -> Vec<(u32, Joint)> {
 }
 
 /// A rig on its way along a plan, up to a tick of it.
-fn under_way<'a>(
-    plan: &'a Plan,
-    ticks: u32,
-    from_tick: u32,
-    seed: u64,
-) -> (SimulatedRig, Feeder<&'a [Segment]>) {
+fn under_way(plan: &Plan, ticks: u32, from_tick: u32, seed: u64) -> (SimulatedRig, Feeder<&[Segment]>) {
     let mut rig = SimulatedRig::new(&RigConfig::report(), POSE, seed).counting_from(from_tick);
     let mut feeder = Feeder::new(plan.segments.as_slice(), false);
     assert!(arm(&mut rig));
