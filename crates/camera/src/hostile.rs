@@ -17,7 +17,7 @@ const LIMITS: Limits = Limits {
     whole: Duration::from_millis(800),
     silence: Duration::from_millis(600),
 };
-/// The same for images of which much is sent before they are refused: a busy machine takes its time.
+/// Limits for images of which much is sent before they are refused: a busy machine takes its time.
 const UNHURRIED: Limits = Limits {
     patience: Duration::from_secs(30),
     whole: Duration::from_secs(60),

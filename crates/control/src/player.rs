@@ -70,7 +70,7 @@ impl Player {
         }
     }
 
-    /// The same without a job, at rest somewhere; the speed that was asked for stays.
+    /// Returns a player without a job, at rest somewhere, with the speed that was asked for.
     pub(crate) fn resting_anew(&self, position_rad: PanTilt<f32>) -> Self {
         Self { asked_rate: self.asked_rate, ..Self::resting_at(position_rad) }
     }

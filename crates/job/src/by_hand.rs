@@ -67,6 +67,7 @@ pub(crate) fn run_lap_by_hand(
             return Err(why);
         }
         lap.push(tick, wall.state());
+        lap.diary.watch(&wall.snapshot());
         while let Some(event) = wall.event() {
             lap.diary.write(&event, &wall.snapshot());
             hands.event(&event);
@@ -142,15 +143,17 @@ struct Diary {
 }
 
 impl Diary {
-    fn write(&mut self, event: &Event, now: &Snapshot) {
-        if self.speed.is_none_or(|speed| speed != now.speed) && now.speed != self.speed.unwrap_or(1.0) {
-            self.notes.push(format!(
-                "from {:.1} s on at {:.0} % of the planned speed",
-                seconds(now.tick),
-                100.0 * now.speed
-            ));
-            self.speed = Some(now.speed);
+    /// Writes down another speed than the last one.
+    fn watch(&mut self, now: &Snapshot) {
+        let before = self.speed.replace(now.speed).unwrap_or(1.0);
+        if before != now.speed {
+            let percent = 100.0 * now.speed;
+            self.notes
+                .push(format!("from {:.1} s on at {percent:.0} % of the planned speed", seconds(now.tick)));
         }
+    }
+
+    fn write(&mut self, event: &Event, now: &Snapshot) {
         let &Event::State { tick, to, .. } = event else { return };
         let how = match to {
             State::Paused => "paused",

@@ -136,7 +136,7 @@ impl Prepared {
         self.run_with(keep, None, task)
     }
 
-    /// The same with somebody at the wall, who may pause and stop each lap, and let it go on. A job that a camera follows has no use for `hands`.
+    /// Runs the laps with somebody at the wall, who may pause and stop each of them, and let it go on. A job that a camera follows has no use for `hands`.
     ///
     /// # Errors
     /// As of [`run`](Self::run).

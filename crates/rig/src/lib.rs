@@ -21,6 +21,7 @@ mod inputs;
 mod joint;
 mod pace;
 mod segment;
+mod setpoint;
 mod telemetry;
 
 pub use darkness::{Darkness, DarknessRow, DarknessSet};
@@ -30,7 +31,8 @@ pub use head::{Head, Rig};
 pub use inputs::{Input, InputState, Inputs};
 pub use joint::{Joint, JointLimits, PanTilt};
 pub use pace::{RateLimit, SPEED_RANGE, ease_per_s, ease_within};
-pub use segment::{Command, Segment, Setpoint};
+pub use segment::{Command, Segment};
+pub use setpoint::Setpoint;
 pub use telemetry::{Phase, Telemetry};
 
 /// Length of one control tick, s. The law is discretized for it; other rates need other gains.

@@ -1,4 +1,4 @@
-use crate::{PanTilt, Segment, Setpoint, TICK_S};
+use crate::{PanTilt, Setpoint};
 
 /// Slowest and fastest rate that a host may ask of the plan's clock ([`Command::Speed`](crate::Command::Speed)): multiples of the plan's own speed.
 pub const SPEED_RANGE: (f32, f32) = (0.1, 2.0);
@@ -67,22 +67,6 @@ impl Default for RateLimit {
     }
 }
 
-impl Segment {
-    /// The square of the fastest rate of the plan's clock, `elapsed_ticks` after the segment's start.
-    pub fn rate_limit_squared(&self, elapsed_ticks: f32) -> f32 {
-        let RateLimit { start, end } = self.rate_limit;
-        let share = (elapsed_ticks / f32::from(self.ticks)).clamp(0.0, 1.0);
-        start * start + (end * end - start * start) * share
-    }
-
-    /// Square of the rate at the segment's start from which a clock slows down to this rate at its end, if nothing in it turns faster than that.
-    pub fn braked_from_squared(&self, end: f32, fastest_rad_s: f32) -> f32 {
-        /// The clock is told of it a tick late.
-        const SHARE: f32 = 0.8;
-        end * end + 2.0 * SHARE * ease_per_s(fastest_rad_s) * f32::from(self.ticks) * TICK_S
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,22 +98,5 @@ mod tests {
         // at a tenth of it, by 0.2: there is room for 2
         assert!((ease_within(&moving(1.1, 20.0), 0.1, true) - 2.0 / 1.1).abs() < 1e-5);
         assert_eq!(ease_within(&moving(1.1, 20.0), 1.5, true), 2.0);
-    }
-
-    #[test]
-    fn between_its_ends_the_square_is_linear() {
-        let segment = Segment {
-            start_tick: 0,
-            ticks: 10,
-            coefficients: PanTilt::new([0.0, 1e-3, 0.0, 0.0, 0.0, 0.0], [0.0; 6]),
-            tolerance_rad: PanTilt::default(),
-            gate: false,
-            rate_limit: RateLimit { start: 2.0, end: 1.0 },
-        };
-        for (at, squared) in [(-1.0, 4.0), (0.0, 4.0), (5.0, 2.5), (10.0, 1.0), (99.0, 1.0)] {
-            assert!((segment.rate_limit_squared(at) - squared).abs() < 1e-6, "{at}");
-        }
-        // ten milliseconds at 0.8 / 0.4545 s
-        assert!((segment.braked_from_squared(1.0, 1.0) - 1.0352).abs() < 1e-4);
     }
 }

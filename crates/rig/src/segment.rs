@@ -1,17 +1,4 @@
-use crate::{PanTilt, RateLimit};
-
-/// Where one joint should be at one instant.
-///
-/// Produced by [`Segment::sample`]; consumed by the law once per tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Setpoint {
-    /// Angle, rad; zero is the calibrated straight-ahead pose.
-    pub position_rad: f32,
-    /// Angular velocity, rad/s.
-    pub velocity_rad_s: f32,
-    /// Angular acceleration, rad/s².
-    pub acceleration_rad_s2: f32,
-}
+use crate::{PanTilt, RateLimit, Setpoint, TICK_S, ease_per_s};
 
 /// A stretch of motion of both joints: one quintic polynomial a joint over a whole number of ticks.
 ///
@@ -52,13 +39,29 @@ impl Segment {
     }
 }
 
+impl Segment {
+    /// The square of the fastest rate of the plan's clock, `elapsed_ticks` after the segment's start.
+    pub fn rate_limit_squared(&self, elapsed_ticks: f32) -> f32 {
+        let RateLimit { start, end } = self.rate_limit;
+        let share = (elapsed_ticks / f32::from(self.ticks)).clamp(0.0, 1.0);
+        start * start + (end * end - start * start) * share
+    }
+
+    /// Square of the rate at the segment's start from which a clock slows down to this rate at its end, if nothing in it turns faster than that.
+    pub fn braked_from_squared(&self, end: f32, fastest_rad_s: f32) -> f32 {
+        /// The clock is told of it a tick late.
+        const SHARE: f32 = 0.8;
+        end * end + 2.0 * SHARE * ease_per_s(fastest_rad_s) * f32::from(self.ticks) * TICK_S
+    }
+}
+
 /// Horner's rule for a quintic and its first two derivatives; ticks become seconds at the end.
 fn evaluate(c: &[f32; 6], n: f32) -> Setpoint {
     let [c0, c1, c2, c3, c4, c5] = *c;
     let position = c0 + n * (c1 + n * (c2 + n * (c3 + n * (c4 + n * c5))));
     let velocity = c1 + n * (2.0 * c2 + n * (3.0 * c3 + n * (4.0 * c4 + n * (5.0 * c5))));
     let acceleration = 2.0 * c2 + n * (6.0 * c3 + n * (12.0 * c4 + n * (20.0 * c5)));
-    const TICKS_PER_S: f32 = 1.0 / crate::TICK_S;
+    const TICKS_PER_S: f32 = 1.0 / TICK_S;
     Setpoint {
         position_rad: position,
         velocity_rad_s: velocity * TICKS_PER_S,
@@ -151,5 +154,22 @@ mod tests {
         };
         assert!(of(u32::MAX - 10).fits() && of(u32::MAX - 10).end_tick() == u32::MAX);
         assert!(!of(u32::MAX - 9).fits() && of(u32::MAX - 9).end_tick() == u32::MAX);
+    }
+
+    #[test]
+    fn between_its_ends_the_square_is_linear() {
+        let segment = Segment {
+            start_tick: 0,
+            ticks: 10,
+            coefficients: PanTilt::new([0.0, 1e-3, 0.0, 0.0, 0.0, 0.0], [0.0; 6]),
+            tolerance_rad: PanTilt::default(),
+            gate: false,
+            rate_limit: RateLimit { start: 2.0, end: 1.0 },
+        };
+        for (at, squared) in [(-1.0, 4.0), (0.0, 4.0), (5.0, 2.5), (10.0, 1.0), (99.0, 1.0)] {
+            assert!((segment.rate_limit_squared(at) - squared).abs() < 1e-6, "{at}");
+        }
+        // ten milliseconds at 0.8 / 0.4545 s
+        assert!((segment.braked_from_squared(1.0, 1.0) - 1.0352).abs() < 1e-4);
     }
 }

@@ -1,6 +1,6 @@
 use tracelight_rig::Fault;
 
-use crate::State;
+use crate::state::State;
 
 /// What happened.
 #[derive(Clone, Copy, Debug, PartialEq)]

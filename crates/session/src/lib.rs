@@ -12,5 +12,5 @@ mod state;
 pub use event::{Event, Snapshot};
 pub use job::{Feeder, Job, StrokeTicks};
 pub use request::{Refused, Request, When};
-pub use session::{ARMED_TICKS, PAUSED_TICKS, Session};
-pub use state::State;
+pub use session::Session;
+pub use state::{ARMED_TICKS, PAUSED_TICKS, State};

@@ -1,6 +1,7 @@
 use tracelight_rig::{PanTilt, SPEED_RANGE};
 
-use crate::{Job, State};
+use crate::job::Job;
+use crate::state::{ARMED_TICKS, PAUSED_TICKS, State};
 
 /// When a pause begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +58,7 @@ impl Request {
 /// Why a request is refused. Nothing has changed then.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Refused {
-    /// It makes no sense in this state.
+    /// The request makes no sense in this state.
     #[error("{request} is not possible while the session is {}: {advice}", .state.name())]
     State {
         /// Name of the request.
@@ -68,10 +69,10 @@ pub enum Refused {
         advice: &'static str,
     },
     /// Light needs somebody who arms first.
-    #[error("arm first: a job lights only within {} s after somebody armed", crate::ARMED_TICKS / 1000)]
+    #[error("arm first: a job lights only within {} s after somebody armed", ARMED_TICKS / 1000)]
     NotArmed,
     /// The job paused too long ago.
-    #[error("it has been paused for more than {} s: arm first", crate::PAUSED_TICKS / 1000)]
+    #[error("it has been paused for more than {} s: arm first", PAUSED_TICKS / 1000)]
     PausedLong,
     /// The job has nothing in it.
     #[error("the job is empty: give it at least one segment")]

@@ -5,12 +5,8 @@ use tracelight_rig::{Command, PanTilt, Phase, Rig, SPEED_RANGE, Segment, Telemet
 use crate::event::{Event, Snapshot};
 use crate::job::{Feeder, Job, StrokeTicks, stroke_at};
 use crate::request::{Refused, Request, When};
-use crate::state::State;
+use crate::state::{ARMED_TICKS, PAUSED_TICKS, State};
 
-/// How long a session stays armed before a job begins: 10 s.
-pub const ARMED_TICKS: u32 = 10_000;
-/// How long a paused job goes on without arming anew: 60 s.
-pub const PAUSED_TICKS: u32 = 60_000;
 /// A head within this of where a job begins is there, rad: a little less than the controller allows.
 const THERE_RAD: f32 = 1.5e-3;
 /// Slower than this a head rests, rad/s.
@@ -170,7 +166,7 @@ impl<R: Rig> Session<R> {
         self.tick_by(R::next, |telemetry| telemetry)
     }
 
-    /// The same for a rig that tells more of a tick than its telemetry.
+    /// Lets a rig run for a tick that tells more of it than its telemetry; `None` once it is gone.
     pub fn tick_by<T>(
         &mut self,
         step: impl FnOnce(&mut R) -> Option<T>,

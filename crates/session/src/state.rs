@@ -1,3 +1,8 @@
+/// How long a session stays armed before a job begins: 10 s.
+pub const ARMED_TICKS: u32 = 10_000;
+/// How long a paused job goes on without arming anew: 60 s.
+pub const PAUSED_TICKS: u32 = 60_000;
+
 /// What a session does.
 ///
 /// ```text

@@ -156,7 +156,7 @@ const fn words(state: State) -> Option<&'static str> {
         State::Pausing => Some("pauses after this stroke"),
         State::Paused => Some("paused, dark: Space goes on"),
         State::Stopped => Some("stopped, dark: A arms, then Enter goes on; Q ends"),
-        State::Returning => Some("off its stroke, dark: finding back"),
+        State::Returning => Some("dark, on its way back to the stroke"),
         State::Armed => Some("armed for 10 s: Enter goes on"),
         _ => None,
     }

@@ -17,12 +17,33 @@ pub(crate) fn limit_rates(segments: &mut [Segment], points: &[PlanPoint], machin
         let ticks = segment.start_tick as usize..=segment.end_tick() as usize;
         let points = points.get(ticks).unwrap_or_default();
         let own = points.iter().map(|point| largest_rate(machine, point)).fold(SPEED_RANGE.1, f32::min);
+        let own = own.min(kinematic_rate(machine, segment));
         let fastest = points.iter().map(speed_rad_s).fold(0.0, f64::max) as f32;
         let end = own.min(next);
         let start = own.min(segment.braked_from_squared(end, fastest).sqrt());
         segment.rate_limit = RateLimit { start, end };
         next = start;
     }
+}
+
+/// The largest rate at which a segment keeps to the bounds on joint speeds and accelerations between its ticks too; 1 at least.
+fn kinematic_rate(machine: &Machine, segment: &Segment) -> f32 {
+    const PER_TICK: u32 = 4;
+    /// What is left for what lies between the places that are looked at.
+    const SHARE: f64 = 0.95;
+    let at = |i: u32| segment.sample(i as f32 / PER_TICK as f32);
+    let rate = |i: u32| {
+        let planned = at(i);
+        let of_joint = |j: Joint| {
+            let (speed, acceleration) =
+                (f64::from(planned[j].velocity_rad_s.abs()), f64::from(planned[j].acceleration_rad_s2.abs()));
+            let by_speed = SHARE * machine.speed_limit_rad_s[j] / speed;
+            by_speed.min((SHARE * machine.acceleration_limit_rad_s2[j] / acceleration).sqrt())
+        };
+        of_joint(Joint::Pan).min(of_joint(Joint::Tilt))
+    };
+    let least = (0..=PER_TICK * u32::from(segment.ticks)).map(rate).fold(f64::from(SPEED_RANGE.1), f64::min);
+    least.max(1.0) as f32
 }
 
 fn speed_rad_s(point: &PlanPoint) -> f64 {

@@ -13,10 +13,16 @@ pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
     }
     let json = summary.json();
     let text = match args.by_hand.events {
-        true => serde_json::json!({ "event": "summary", "summary": json }).to_string(),
+        true => summary_event(&json),
         false => format!("{}\nreport: {}", text(&summary), dir.join("report.html").display()),
     };
     Ok(Answer { text, json, failure })
+}
+
+/// The figures as the last event.
+fn summary_event(json: &str) -> String {
+    let summary = serde_json::from_str(json).unwrap_or(serde_json::Value::Null);
+    serde_json::json!({ "event": "summary", "summary": summary }).to_string()
 }
 
 fn text(s: &Summary) -> String {

@@ -90,7 +90,12 @@ fn keys_pause_and_stop_a_job_and_let_it_go_on() {
     assert!(summary["summary"]["tracking"]["max_mm"].as_f64().unwrap() < 0.3, "{summary}");
     assert_eq!(wall.child.wait().unwrap().code(), Some(0));
     let report = std::fs::read_to_string(dir.join("report.html")).unwrap();
-    assert!(report.contains("paused after") && report.contains("stopped after"), "the report tells of them");
+    assert!(
+        ["paused after", "stopped after", "at 75 % of the planned speed"]
+            .iter()
+            .all(|note| report.contains(note)),
+        "the report tells of them"
+    );
 }
 
 #[test]

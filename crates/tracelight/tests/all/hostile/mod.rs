@@ -95,7 +95,6 @@ fn a_path_that_leads_to_no_picture_is_refused_by_name() {
         Case::new("trace good.png --out good.png", Either, &["good.png"]),
         Case::new("strokes missing.png -o out.svg", Wrong, &["missing.png"]),
         Case::new("strokes good.png -o out.xyz", Wrong, &["out.xyz|xyz"]),
-        Case::new("strokes good.png -o nowhere/out.svg", Either, &["nowhere"]),
         Case::new("strokes good.png broken.png", Refused, &["broken.png"]), // a batch: 1 if any failed
         Case::new("plan missing.csv", Wrong, &["missing.csv"]),
     ];
