@@ -154,5 +154,6 @@ fn texts_without_end_are_refused_in_time() {
     let _ = svg::read(most.as_bytes());
     let many = plate(&format!("0 TEXT, 40 1, 1 {}", "W".repeat(1_000_000)));
     assert!(dxf::read(many.as_bytes()).is_err());
-    assert!(began.elapsed().as_secs_f64() < 10.0, "{:?}", began.elapsed());
+    // 8 s on a machine that does nothing else; without bounds it would be hours
+    assert!(began.elapsed().as_secs_f64() < 60.0, "{:?}", began.elapsed());
 }
