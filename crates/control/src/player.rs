@@ -1,5 +1,7 @@
 use tracelight_rig::{PanTilt, SPEED_RANGE, Segment, Setpoint, TICK_S, ease_within};
 
+use crate::limit::within;
+
 /// Segments the controller can hold ahead of time.
 pub const QUEUE_LENGTH: usize = 64;
 
@@ -287,7 +289,7 @@ impl Player {
         let Some(segment) = self.current() else { return 0.0 };
         let planned = segment.sample(self.since(segment.start_tick));
         let most = ease_within(&planned, self.rate, wanted > self.rate);
-        ((wanted - self.rate) / TICK_S).clamp(-most, most)
+        within((wanted - self.rate) / TICK_S, most)
     }
 
     /// The rate that is asked for, or the most that is allowed where the clock will be in a tick.
