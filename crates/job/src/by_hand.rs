@@ -1,18 +1,14 @@
 //! A lap with somebody at the wall, who may pause, stop, hurry or slow it, and let it go on.
 
 use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
-use tracelight_rig::TICK_F64_S;
-use tracelight_session::{Event, Refused, Request, Session, Snapshot, State};
-use tracelight_sim::{Run, Simulated, SimulatedRig, Tick, job_of};
+use tracelight_session::{Event, Refused, Request, Session, Snapshot, State, seconds};
+use tracelight_sim::{AFTERMATH_TICKS, Run, Simulated, SimulatedRig, Tick, job_of};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
 
 use crate::keep::Keep;
+use crate::lap::GOODBYE_TICKS;
 
-/// Ticks a run goes on after a fault that nobody will clear, so that the log shows what followed: 0.2 s.
-const AFTERMATH_TICKS: u32 = 200;
-/// Ticks the head is watched after the user ended it: longer than any relay of a rig file takes to open.
-const GOODBYE_TICKS: u32 = 80;
 /// Ticks at rest that are kept in memory; the log has all.
 const REST_TICKS: u32 = 500;
 
@@ -171,8 +167,4 @@ impl Diary {
             self.notes.push(format!("{how}, for {:.1} s", at_s - since_s));
         }
     }
-}
-
-fn seconds(tick: u32) -> f64 {
-    f64::from(tick) * TICK_F64_S
 }

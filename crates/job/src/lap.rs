@@ -46,7 +46,7 @@ pub(crate) fn learn(rig: &RigConfig, laps: &[Run]) -> Learned {
 }
 
 /// Ticks the head is watched after the user stopped it: longer than any relay of a rig file takes to open.
-const GOODBYE_TICKS: u32 = 80;
+pub(crate) const GOODBYE_TICKS: u32 = 80;
 
 /// One lap, every tick kept as it happens, and why it ended if its rig lost power. Whatever ends it darkens first; Ctrl-C has the head watched for a moment.
 pub(crate) fn run_lap(

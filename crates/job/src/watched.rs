@@ -12,7 +12,7 @@ use tracelight_eye::trouble::TroubleAt;
 use tracelight_pipeline::Driving;
 use tracelight_rig::{Command, Darkness, Fault, PanTilt, Phase, Rig, TICK_F64_S, Telemetry};
 use tracelight_rigfile::camera::KnownCamera;
-use tracelight_sim::{Room, Run, Simulated, Tick, arm};
+use tracelight_sim::{AFTERMATH_TICKS, Room, Run, Simulated, Tick, arm};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
@@ -43,8 +43,6 @@ pub(crate) struct WatchedRun {
     pub(crate) failure: Option<Failure>,
 }
 
-/// Ticks the head is watched after a fault or Ctrl-C, so that the log shows what followed.
-const AFTERMATH_TICKS: u32 = 200;
 /// Ticks in which a head comes to rest in the dark, and images that show its light have arrived.
 pub(crate) const REST_TICKS: u32 = 300;
 /// Furthest that an encoder may have jumped for its head to be looked for by dots, rad: what is further off draws them who knows where.

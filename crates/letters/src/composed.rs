@@ -1,6 +1,6 @@
 //! Letters that a single-line face lacks, composed of what it has.
 
-use tracelight_stroke::{Affine, Rect, Vec2};
+use tracelight_stroke::{Affine, Vec2};
 use unicode_normalization::char::{decompose_canonical, decompose_compatible, is_combining_mark};
 
 use crate::drawn;
@@ -8,7 +8,7 @@ use crate::glyph::{Glyph, beside};
 use crate::letter::Letter;
 use crate::line_face::LineFace;
 use crate::marks::{HIGH, Place, has_mark_beside, mark};
-use crate::own_marks::top;
+use crate::own_marks::upper;
 
 /// Space between a letter and its marks, as a share of the height of capitals.
 const GAP: f64 = 0.10;
@@ -68,20 +68,21 @@ pub(crate) fn marked(face: &LineFace, base: char, marks: &[char]) -> Option<Glyp
 /// A letter with one more mark: the face's own where it has that, else one drawn here, of the size of the face's own.
 fn attached(face: &LineFace, letter: Glyph, (combining, base): (char, char)) -> Option<Glyph> {
     let c = face.capital;
-    let (Some(bounds), Some(top)) = (letter.bounds(), top(&letter)) else { return Some(letter) };
+    let (Some(bounds), Some(upper)) = (letter.bounds(), upper(&letter)) else { return Some(letter) };
+    let middle = upper.center().x;
     if let Some(own) = own_mark(face, combining, base) {
-        return Some(letter.with(own.shifted(top.x, top.y).paths));
+        return Some(letter.with(own.shifted(middle, bounds.y1).paths));
     }
     let mark = mark(combining, base, face.dot())?;
     let lower = bounds.y0 + 0.12 * bounds.height();
     let foot = letter.below(lower).unwrap_or(bounds);
     let (gap, size) = if mark.place == Place::Above { usual(face, base) } else { (GAP * c, c) };
     let at = match mark.place {
-        Place::Above => (top.x, top.y + gap),
+        Place::Above => (middle, bounds.y1 + gap),
         Place::Below => (foot.center().x, bounds.y0 - gap),
         Place::Foot => (foot.center().x, bounds.y0),
         Place::RightFoot => right_foot(&letter, foot.x0 + 0.8 * foot.width(), lower),
-        Place::Beside => (top_right(&letter, bounds) + 0.14 * c, bounds.y1),
+        Place::Beside => (upper.x1 + 0.14 * c, bounds.y1),
     };
     let place = Affine::translate(Vec2::from(at)) * Affine::scale(size);
     let wider = if mark.place == Place::Beside { 0.12 * c } else { 0.0 };
@@ -116,11 +117,6 @@ fn usual(face: &LineFace, base: char) -> (f64, f64) {
     acute.map_or((GAP * c, c), |acute| {
         (acute.y0.clamp(0.05 * c, 0.3 * c), (acute.height() / HIGH).clamp(0.6 * c, 1.4 * c))
     })
-}
-
-/// The right edge of a letter's upper part.
-fn top_right(letter: &Glyph, bounds: Rect) -> f64 {
-    letter.above(bounds.y1 - 0.3 * bounds.height()).unwrap_or(bounds).x1
 }
 
 /// The point of a letter's foot that is nearest to `x`: what is joined there touches ink.

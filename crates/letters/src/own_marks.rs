@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use tracelight_stroke::Point;
+use tracelight_stroke::{Point, Rect};
 use unicode_normalization::char::decompose_canonical;
 
 use crate::glyph::Glyph;
@@ -67,8 +67,12 @@ impl OwnMarks {
 }
 
 /// The middle of a letter's upper part, at its upper edge: accents stand above it.
-pub(crate) fn top(letter: &Glyph) -> Option<Point> {
+fn top(letter: &Glyph) -> Option<Point> {
+    upper(letter).map(|upper| Point::new(upper.center().x, upper.y1))
+}
+
+/// Where a letter's upper part is.
+pub(crate) fn upper(letter: &Glyph) -> Option<Rect> {
     let bounds = letter.bounds()?;
-    let upper = letter.above(bounds.y1 - 0.3 * bounds.height()).unwrap_or(bounds);
-    Some(Point::new(upper.center().x, bounds.y1))
+    Some(letter.above(bounds.y1 - 0.3 * bounds.height()).unwrap_or(bounds))
 }

@@ -37,13 +37,8 @@ pub struct DrawnStroke {
 #[must_use]
 pub fn sequence(drawing: &Drawing, plan: &Plan) -> Vec<DrawnStroke> {
     const LENGTH_TOLERANCE_M: f64 = 1e-6;
-    let mut lit: Vec<Option<(usize, usize)>> = vec![None; drawing.strokes.len()];
-    for (tick, point) in plan.points.iter().enumerate().filter(|(_, point)| point.lit) {
-        if let Some(of) = point.stroke.and_then(|stroke| lit.get_mut(stroke as usize)) {
-            *of = Some((of.map_or(tick, |(first, _)| first), tick));
-        }
-    }
-    let seconds = |tick: usize| (tick as f64 * TICK_F64_S * 1e3).round() / 1e3;
+    let lit = plan.lit_ticks().into_iter().chain(std::iter::repeat(None));
+    let seconds = |tick: u32| (f64::from(tick) * TICK_F64_S * 1e3).round() / 1e3;
     let place = |p: Point| [round(p.x), round(p.y)];
     let strokes = drawing.strokes.iter().zip(lit).enumerate();
     strokes
@@ -55,8 +50,8 @@ pub fn sequence(drawing: &Drawing, plan: &Plan) -> Vec<DrawnStroke> {
             length_m: round(stroke.path.length(LENGTH_TOLERANCE_M)),
             from_m: place(stroke.path.start()),
             to_m: place(stroke.path.end()),
-            lit_from_s: lit.map(|(first, _)| seconds(first)),
-            lit_to_s: lit.map(|(_, last)| seconds(last)),
+            lit_from_s: lit.map(|[first, _]| seconds(first)),
+            lit_to_s: lit.map(|[_, last]| seconds(last)),
         })
         .collect()
 }

@@ -1,6 +1,11 @@
-use tracelight_rig::Fault;
+use tracelight_rig::{Fault, TICK_F64_S};
 
 use crate::state::State;
+
+/// Ticks as seconds.
+pub fn seconds(ticks: u32) -> f64 {
+    f64::from(ticks) * TICK_F64_S
+}
 
 /// What happened.
 #[derive(Clone, Copy, Debug, PartialEq)]

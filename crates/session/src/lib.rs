@@ -9,7 +9,7 @@ mod request;
 mod session;
 mod state;
 
-pub use event::{Event, Snapshot};
+pub use event::{Event, Snapshot, seconds};
 pub use job::{Feeder, Job, StrokeTicks};
 pub use request::{Refused, Request, When};
 pub use session::Session;

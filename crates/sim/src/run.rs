@@ -14,7 +14,7 @@ use crate::RigConfig;
 use crate::trouble::{Line, Trouble};
 
 /// Ticks a run goes on after a fault, so that the log shows what followed: 0.2 s.
-const AFTERMATH_TICKS: u32 = 200;
+pub const AFTERMATH_TICKS: u32 = 200;
 
 /// Ticks a run may take beyond its plan and its longest hold before it is given up.
 const PATIENCE_TICKS: usize = 60_000;
@@ -269,14 +269,14 @@ impl Rig for SimulatedRig {
 
 /// Returns a plan as a session takes it; a dry one is traced in the dark.
 pub fn job_of(plan: &Plan, dry: bool) -> Job {
-    let mut strokes: Vec<StrokeTicks> = Vec::new();
-    for (tick, point) in (0..).zip(&plan.points) {
-        let Some(stroke) = point.stroke else { continue };
-        match strokes.get_mut(stroke as usize) {
-            Some(ticks) => ticks.end = tick + 1,
-            None => strokes.push(StrokeTicks { start: tick, end: tick + 1 }),
-        }
-    }
+    let mut end = 0;
+    // a stroke without light takes no time
+    let ticks = |lit: Option<[u32; 2]>| {
+        let start = lit.map_or(end, |[first, _]| first);
+        end = lit.map_or(end, |[_, last]| last + 1);
+        StrokeTicks { start, end }
+    };
+    let strokes = plan.lit_ticks().into_iter().map(ticks).collect();
     Job { segments: plan.segments.clone(), strokes, dry }
 }
 

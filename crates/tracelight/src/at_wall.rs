@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tracelight_job::Hands;
 use tracelight_rig::TICK_F64_S;
-use tracelight_session::{Event, Refused, Request, Snapshot, State, When};
+use tracelight_session::{Event, Refused, Request, Snapshot, State, When, seconds};
 use tracelight_task::{Stop, Task};
 
 use crate::cli::by_hand::ByHandArgs;
@@ -92,10 +92,6 @@ fn faster(speed: f32) -> f32 {
 
 fn slower(speed: f32) -> f32 {
     SPEEDS.into_iter().rev().find(|&next| next < speed - 1e-3).unwrap_or(SPEEDS[0])
-}
-
-fn seconds(tick: u32) -> f64 {
-    f64::from(tick) * TICK_F64_S
 }
 
 impl Hands for AtWall<'_> {

@@ -82,6 +82,19 @@ impl Plan {
         self.points.len().saturating_sub(1) as f64 * TICK_F64_S
     }
 
+    /// First and last lit tick of each stroke, by the stroke's number, up to the last one with light; `None` for one without.
+    pub fn lit_ticks(&self) -> Vec<Option<[u32; 2]>> {
+        let mut lit: Vec<Option<[u32; 2]>> = Vec::new();
+        for (tick, point) in (0..).zip(&self.points).filter(|(_, point)| point.lit) {
+            let Some(stroke) = point.stroke.map(|stroke| stroke as usize) else { continue };
+            if lit.len() <= stroke {
+                lit.resize(stroke + 1, None);
+            }
+            lit[stroke] = Some([lit[stroke].map_or(tick, |[first, _]| first), tick]);
+        }
+        lit
+    }
+
     /// How much of it is lit, s.
     pub fn lit_s(&self) -> f64 {
         self.points.iter().filter(|p| p.lit).count() as f64 * TICK_F64_S

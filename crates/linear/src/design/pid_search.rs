@@ -3,6 +3,7 @@ use std::f64::consts::PI;
 use tracelight_maths::{complex, exp, ln, powi, sin, tan};
 
 use super::pid::{Pid, PidWish, Terms};
+use crate::golden::lowest;
 use crate::notation::four_digits;
 use crate::time::positive;
 use crate::{Complex, LinearError, Time, TransferFunction};
@@ -129,24 +130,15 @@ impl Search<'_> {
     }
 
     /// The best between two places, by golden section.
-    fn golden(&self, (mut from, mut to): (f64, f64), pid: impl Fn(f64) -> Option<Pid>) -> Option<Pid> {
+    fn golden(&self, range: (f64, f64), pid: impl Fn(f64) -> Option<Pid>) -> Option<Pid> {
         const SECTIONS: usize = 20;
-        const GOLDEN: f64 = 0.618_033_988_749_895;
         let mut best = None;
-        let (mut low, mut high) = (to - GOLDEN * (to - from), from + GOLDEN * (to - from));
-        let (mut at_low, mut at_high) = (pid(low), pid(high));
-        for _ in 0..SECTIONS {
-            best = self.better(self.better(best, at_low), at_high);
-            if self.score_of(at_low.as_ref()) > self.score_of(at_high.as_ref()) {
-                (to, high, at_high) = (high, low, at_low);
-                low = to - GOLDEN * (to - from);
-                at_low = pid(low);
-            } else {
-                (from, low, at_low) = (low, high, at_high);
-                high = from + GOLDEN * (to - from);
-                at_high = pid(high);
-            }
-        }
+        let cost = |at: f64| {
+            let found = pid(at);
+            best = self.better(best, found);
+            -self.score_of(found.as_ref())
+        };
+        lowest(cost, range, SECTIONS);
         best
     }
 

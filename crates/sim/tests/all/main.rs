@@ -7,6 +7,7 @@ mod amplifiers;
 mod belts;
 mod by_hand;
 mod closed_loop;
+mod dice;
 mod disturbances;
 mod evidence;
 mod faults;

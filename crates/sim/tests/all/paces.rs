@@ -9,23 +9,12 @@ use tracelight_session::Feeder;
 use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, arm, run, score};
 use tracelight_trajectory::Plan;
 
+use crate::dice::Dice;
 use crate::shapes::ink::{Ink, ink};
 use crate::shapes::{POSE, SPEED_M_S, alive, circle, house, off_mm, plan_of, plan_of_all, star};
 
 /// The laser changes at a tick, at the nearest to where a line begins or ends: at 1 ft/s that is so far off, mm, and what counts places adds its step.
 const HALF_TICK_MM: f64 = 0.18;
-
-/// Seeded numbers (Marsaglia's xorshift).
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, most: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 16) as usize % most
-    }
-}
 
 fn plans(config: &RigConfig) -> [(&'static str, Plan); 3] {
     [
@@ -150,7 +139,7 @@ fn stopped_at(config: &RigConfig, plan: &Plan, when: u32, stop: Command, seed: u
 
 fn check_stops(stop: Command, most_dark_after: Option<usize>, times: usize) {
     let config = RigConfig::report();
-    let mut dice = Dice(42);
+    let mut dice = Dice::of_seed(42);
     for (name, plan) in plans(&config) {
         let mut rig = SimulatedRig::new(&config, POSE, 1);
         let before = ink(&plan, &run(&mut rig, &plan, false, |_, _| ControlFlow::Continue(())));

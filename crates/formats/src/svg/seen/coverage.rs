@@ -69,13 +69,12 @@ pub(crate) enum Coverage {
 impl Coverage {
     /// Of a gate alone, those around it aside.
     pub(crate) fn of(gate: &Gate, grid: &Grid, slack: f64, work: &mut usize) -> Self {
-        match &gate.kind {
-            GateKind::Clip(regions) => match regions.as_slice() {
-                [(region, None)] => Self::Runs(runs(region, grid, slack, work, |_, _, _, _| ())),
-                _ => Self::within(gate.bounds, grid),
-            },
-            _ => Self::within(gate.bounds, grid),
+        if let GateKind::Clip(regions) = &gate.kind
+            && let [(region, None)] = regions.as_slice()
+        {
+            return Self::Runs(runs(region, grid, slack, work, |_, _, _, _| ()));
         }
+        Self::within(gate.bounds, grid)
     }
 
     fn within(bounds: Rect, grid: &Grid) -> Self {

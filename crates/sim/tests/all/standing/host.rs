@@ -3,6 +3,7 @@
 use tracelight_rig::{Command, PanTilt, Rig, Segment, Telemetry};
 use tracelight_sim::{RigConfig, Simulated, SimulatedRig, Tick};
 
+use crate::dice::Dice;
 use crate::shapes::POSE;
 
 /// What a sequence of commands is drawn from.
@@ -27,7 +28,7 @@ const ALWAYS: u32 = u32::MAX;
 
 impl Course {
     pub(crate) fn drawn(seed: u64) -> Self {
-        let mut dice = Dice(oorandom::Rand64::new(u128::from(seed)));
+        let mut dice = Dice::of_seed(u128::from(seed));
         let mut config = if dice.one_in(4) { RigConfig::worn() } else { RigConfig::report() };
         config.light.standing_s = dice.of(&[0.03, 0.05, 0.05, 0.1, 0.1, 0.2, 0.5]);
         Self {
@@ -51,7 +52,7 @@ impl Course {
 
 /// Runs it; `watch` sees every tick.
 pub(crate) fn run(course: &Course, mut watch: impl FnMut(&Tick)) {
-    let mut dice = Dice(oorandom::Rand64::new(u128::from(course.seed) << 32 | 1));
+    let mut dice = Dice::of_seed(u128::from(course.seed) << 32 | 1);
     let mut rig = match course.homed {
         true => SimulatedRig::new(&course.config, POSE, course.seed),
         false => SimulatedRig::unhomed(&course.config, POSE, PanTilt::new(0.1, -0.05), course.seed),
@@ -66,7 +67,7 @@ pub(crate) fn run(course: &Course, mut watch: impl FnMut(&Tick)) {
         if course.alive_until.is_some_and(|until| tick < until) {
             let _ = rig.send(Command::KeepAlive);
         }
-        if dice.0.rand_float() < course.eager {
+        if dice.happens(course.eager) {
             host.command(&mut rig, course, &mut dice, &last);
         }
         let now = rig.step();
@@ -83,7 +84,7 @@ struct Host {
 
 impl Host {
     fn command(&mut self, rig: &mut SimulatedRig, course: &Course, dice: &mut Dice, last: &Telemetry) {
-        let command = match dice.0.rand_range(0..30) {
+        let command = match dice.below(30) {
             // now and then one that was on its way for long
             0..=6 => Command::Arm { acknowledges: last.fault_number.wrapping_sub(u32::from(dice.one_in(8))) },
             7..=8 => Command::Disarm,
@@ -110,8 +111,8 @@ impl Host {
 
     /// A rest, or a move from rest to rest, slow or fast, near or far; lit as a rule.
     fn append(&mut self, rig: &mut SimulatedRig, course: &Course, dice: &mut Dice) {
-        let near = |dice: &mut Dice| course.spread_rad * (2.0 * dice.0.rand_float() - 1.0);
-        let (ticks, to): (u16, _) = match dice.0.rand_range(0..4) {
+        let near = |dice: &mut Dice| course.spread_rad * dice.either_way();
+        let (ticks, to): (u16, _) = match dice.below(4) {
             0 => (dice.of(&[20, 100, 700]), self.at),
             1 => (dice.of(&[30, 60]), PanTilt::new(near(dice), near(dice))),
             _ => (dice.of(&[150, 400, 1500]), PanTilt::new(near(dice), near(dice))),
@@ -134,17 +135,5 @@ impl Host {
             self.next += u32::from(ticks);
             self.at = to;
         }
-    }
-}
-
-struct Dice(oorandom::Rand64);
-
-impl Dice {
-    fn one_in(&mut self, count: u64) -> bool {
-        self.0.rand_range(0..count) == 0
-    }
-
-    fn of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[self.0.rand_range(0..choices.len() as u64) as usize]
     }
 }
