@@ -56,7 +56,7 @@ impl Shape {
             Self::Picture { name, source } => {
                 let placing = Placing::default();
                 let sketch = sketch(&name, source, &Tracing::default(), &placing)?;
-                OnTarget::Picture(place(&sketch, &placing))
+                OnTarget::Picture(place(&sketch, &placing)?)
             }
         })
     }

@@ -3,7 +3,7 @@ use tracelight_maths::atan2;
 use tracelight_stroke::{Drawing, Element, Piece, Point, Vec2};
 
 /// The smallest upright rectangle round a drawing, exact for lines, arcs and cubics; `None` for an empty one.
-pub(crate) fn extent(drawing: &Drawing) -> Option<Rect> {
+pub fn extent(drawing: &Drawing) -> Option<Rect> {
     let pieces = drawing.strokes.iter().flat_map(|s| s.path.pieces());
     pieces.map(|p| of_piece(&p)).reduce(|a, b| a.union(b))
 }

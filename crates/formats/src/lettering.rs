@@ -8,7 +8,7 @@ use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind};
 use crate::doubles::without_doubles;
 use crate::extent::extent;
 use crate::options::{Letters, ReadOptions};
-use crate::{FormatError, Reading, Sheet};
+use crate::{Coordinates, FormatError, Reading, Sheet};
 
 /// Characters of a text at most.
 const MAX_CHARACTERS: usize = 10_000;
@@ -81,6 +81,7 @@ pub fn draw(
         height: height * scale,
         metres_per_unit: capitals_m.map(|_| 1e-3),
         drawing: drawing.transformed(place),
+        coordinates: Coordinates::Page { unit_m: capitals_m.map(|_| 1e-3) },
     };
     Ok(Reading { sheet, remarks, doubt: None })
 }

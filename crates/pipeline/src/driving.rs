@@ -7,6 +7,7 @@ use tracelight_trajectory::{
 };
 
 use crate::ordering::OrderRequest;
+use crate::standing::DistanceFrom;
 
 /// 3 ft: where the original rig's camera stood.
 pub const DEFAULT_DISTANCE_M: f64 = 0.9144;
@@ -41,6 +42,8 @@ pub struct Asked {
     pub speed: bool,
     /// An acceleration of the joints.
     pub acceleration: bool,
+    /// How far the head stands from the wall.
+    pub distance: DistanceFrom,
 }
 
 impl Driving {

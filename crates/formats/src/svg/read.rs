@@ -13,7 +13,7 @@ use crate::doubles::without_doubles;
 use crate::lettering::{faces, kind};
 use crate::options::{Hidden, Letters, ReadOptions};
 use crate::unpacked::{unpacked, xml_text};
-use crate::{FormatError, Reading, Sheet, check_size, is_sound};
+use crate::{Coordinates, FormatError, Reading, Sheet, check_size, is_sound};
 
 const METRES_PER_INCH: f64 = 0.0254;
 
@@ -93,7 +93,8 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     let (drawing, doubles) = without_doubles(Drawing { strokes: seen.strokes });
     said.extend(doubles.remark(metres_per_unit));
     said.extend(painter.letters.as_ref().map_or_else(|| fonts.remarks(&tree), Lines::remarks));
-    let sheet = Sheet { width, height, metres_per_unit, drawing };
+    let unit_m = Some(metres_per_unit.unwrap_or(METRES_PER_PX));
+    let sheet = Sheet { width, height, metres_per_unit, drawing, coordinates: Coordinates::Page { unit_m } };
     Ok(Reading { remarks: said, ..Reading::whole(sheet) })
 }
 

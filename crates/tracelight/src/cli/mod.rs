@@ -31,6 +31,7 @@ mod strokes;
 mod terminal;
 mod trace;
 pub(crate) mod tracing;
+pub(crate) mod wall;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
