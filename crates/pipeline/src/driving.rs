@@ -6,8 +6,8 @@ use tracelight_trajectory::{
     AccelerationDemand, DarkMove, LitSpeed, Machine, Plan, PlanRequest, Ramps, Shape,
 };
 
+use crate::distance::DistanceFrom;
 use crate::ordering::OrderRequest;
-use crate::standing::DistanceFrom;
 
 /// 3 ft: where the original rig's camera stood.
 pub const DEFAULT_DISTANCE_M: f64 = 0.9144;

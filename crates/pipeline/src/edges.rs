@@ -71,7 +71,7 @@ impl Corner {
 }
 
 impl Origin {
-    /// That nobody says where the corner is.
+    /// Says that nobody told where the corner is.
     pub(crate) fn remark(&self) -> Option<String> {
         (self.at.is_none() && self.corner != Corner::Centre).then(|| {
             format!(

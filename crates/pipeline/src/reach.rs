@@ -6,10 +6,10 @@ use tracelight_stroke::{Point, Vec2};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Machine, PlanError};
 
+use crate::distance::DistanceFrom;
 use crate::driving::Driving;
 use crate::placed::Placed;
 use crate::refused::refused;
-use crate::standing::DistanceFrom;
 
 /// Where a piece of a stroke is looked at, as shares of it.
 pub(crate) const PLACES: [f64; 5] = [0.0, 1.0, 0.5, 0.25, 0.75];

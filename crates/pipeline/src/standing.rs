@@ -5,6 +5,7 @@ use tracelight_aim::HeadPose;
 use tracelight_maths::{atan, cos, hypot, tan};
 use tracelight_stroke::{Drawing, Point};
 
+use crate::distance::DistanceFrom;
 use crate::driving::Driving;
 use crate::reach::PLACES;
 
@@ -19,21 +20,6 @@ const BEAM_M: f64 = 2e-3;
 
 /// By how much that widens, rad: what pointers have, by their data sheets.
 const DIVERGENCE_RAD: f64 = 1e-3;
-
-/// Who says how far a head stands from the wall.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum DistanceFrom {
-    /// Nobody: 3 ft are taken for a simulated rig.
-    #[default]
-    Assumed,
-    /// The user.
-    Asked,
-    /// A head file.
-    File,
-    /// A camera.
-    Camera,
-}
 
 /// How a head stands to a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
