@@ -1,3 +1,4 @@
+use nalgebra::Vector3;
 use tracelight_maths::{atan2, hypot, sin_cos};
 use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::{Point, Vec2};
@@ -135,21 +136,30 @@ impl HeadGeometry {
         [cl * cd, sl * cd, -sd]
     }
 
-    /// Forward kinematics: the ray from the laser, Rz(pan) Rx(skew) Ry(tilt), cut with the target plane z = 0.
-    fn meet<S: Scalar + Value>(&self, pose: &HeadPose, angle: PanTilt<S>) -> Option<[S; 2]> {
+    /// Which way the beam goes in the head's frame.
+    pub(crate) fn ray(&self, angle: PanTilt<f64>) -> Vector3<f64> {
+        Vector3::from(self.turns(angle)(self.beam()))
+    }
+
+    /// From the tilt body's frame to the head's: Rz(pan) Rx(skew) Ry(tilt).
+    fn turns<S: Scalar + Value>(&self, angle: PanTilt<S>) -> impl Fn([f64; 3]) -> [S; 3] {
         let (s1, c1) = angle.pan.sin_cos();
         let (s2, c2) = angle.tilt.sin_cos();
         let square = self.axis_skew_rad == 0.0;
         let (skew_sin, skew_cos) = sin_cos(self.axis_skew_rad);
         let (skew_sin, skew_cos) = (S::constant(skew_sin), S::constant(skew_cos));
-        let turn = |[x, y, z]: [f64; 3]| {
+        move |[x, y, z]: [f64; 3]| {
             let (x, y, z) = (S::constant(x), S::constant(y), S::constant(z));
             let (forward, up) = (c2 * x + s2 * z, c2 * z - s2 * x);
             let (left, up) =
                 if square { (y, up) } else { (skew_cos * y - skew_sin * up, skew_sin * y + skew_cos * up) };
             [c1 * forward - s1 * left, s1 * forward + c1 * left, up]
-        };
-        let [direction, origin] = [self.beam(), self.laser_offset_m].map(turn);
+        }
+    }
+
+    /// Forward kinematics: the ray from the laser, cut with the target plane z = 0.
+    fn meet<S: Scalar + Value>(&self, pose: &HeadPose, angle: PanTilt<S>) -> Option<[S; 2]> {
+        let [direction, origin] = [self.beam(), self.laser_offset_m].map(self.turns(angle));
         let rows = pose.rotation().map(|r| r.map(S::constant));
         let across = |v: [S; 3]| rows.map(|r| r[0] * v[0] + r[1] * v[1] + r[2] * v[2]);
         let (direction, origin) = (across(direction), across(origin));

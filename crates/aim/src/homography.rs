@@ -1,5 +1,5 @@
 use nalgebra::{DMatrix, Matrix2, Matrix3, SMatrix, SVector, Vector3};
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::{Affine, Point, Vec2};
 
 use crate::camera::Uncertain;
 
@@ -53,6 +53,17 @@ impl Homography {
         ))
     }
 
+    /// How many times as far as the origin a point lies from whoever sees the map as a plane at a slant: what the map shrinks lengths by, about, and
+    /// negative beyond the horizon.
+    pub(crate) fn depth(&self, p: Point) -> f64 {
+        (self.matrix * Vector3::new(p.x, p.y, 1.0)).z
+    }
+
+    /// Whether a point lies on the origin's side of the horizon.
+    pub(crate) fn is_before_horizon(&self, p: Point) -> bool {
+        self.depth(p) > 0.0
+    }
+
     /// Returns the inverse; `None` for a singular map. Its covariance is propagated to first order.
     pub fn inverse(&self) -> Option<Self> {
         let inverse = self.matrix.try_inverse()?;
@@ -67,6 +78,14 @@ impl Homography {
             (0..8).for_each(|i| by[(i, k)] = change[(i / 3, i % 3)]);
         }
         (scale.abs() > 1e-300).then(|| Self { matrix, covariance: by * self.covariance * by.transpose() })
+    }
+
+    /// Another map first, and then this one; without what is known of its uncertainty.
+    pub(crate) fn after(&self, first: Affine) -> Option<Self> {
+        let [a, b, c, d, e, f] = first.as_coeffs();
+        let matrix = self.matrix * Matrix3::new(a, c, e, b, d, f, 0.0, 0.0, 1.0);
+        let matrix = matrix / matrix[(2, 2)];
+        matrix.iter().all(|v| v.is_finite()).then(|| Self { matrix, covariance: SMatrix::zeros() })
     }
 
     /// The nine entries, row by row, the last of them one.

@@ -29,7 +29,7 @@ pub(crate) enum OnTarget {
     /// A stroke, drawn as it is.
     Path(Path),
     /// Strokes, to be put in order.
-    Picture(Placed),
+    Picture(Box<Placed>),
 }
 
 /// Radius of the circle, m.
@@ -56,7 +56,7 @@ impl Shape {
             Self::Picture { name, source } => {
                 let placing = Placing::default();
                 let sketch = sketch(&name, source, &Tracing::default(), &placing)?;
-                OnTarget::Picture(place(&sketch, &placing))
+                OnTarget::Picture(Box::new(place(&sketch, &placing)?))
             }
         })
     }

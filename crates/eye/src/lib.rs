@@ -38,6 +38,7 @@ pub mod homing;
 mod looks;
 mod pages;
 pub mod painted;
+pub mod pointed;
 pub mod power;
 pub mod room;
 pub mod seen;

@@ -6,7 +6,7 @@ use tracelight_letters::{Align, Faces, Kind, block, kind_of, remarks};
 use tracelight_stroke::{Affine, Drawing, Stroke, StrokeKind, extent};
 
 use crate::options::{Letters, ReadOptions};
-use crate::{FormatError, Reading, Sheet};
+use crate::{Coordinates, FormatError, Reading, Sheet};
 
 /// Characters of a text at most.
 const MAX_CHARACTERS: usize = 10_000;
@@ -78,6 +78,7 @@ pub fn draw(
         height: height * scale,
         metres_per_unit: capitals_m.map(|_| 1e-3),
         drawing: drawing.transformed(place),
+        coordinates: Coordinates::Page { unit_m: capitals_m.map(|_| 1e-3) },
     };
     Ok(Reading { sheet, remarks, doubt: None, is_list: false })
 }

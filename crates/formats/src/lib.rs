@@ -45,7 +45,7 @@ pub use error::FormatError;
 pub use limit::{MAX_BYTES, MAX_COORDINATE};
 pub use number::{fixed, length};
 pub use options::{Font, FontFinder, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
-use tracelight_stroke::{Colour, Drawing, Point};
+use tracelight_stroke::{Affine, Colour, Drawing, Point};
 pub use unpacked::{head, unpacked};
 
 /// A drawing on its sheet, as a file has it: x right, y down, the sheet spans `[0, width] × [0, height]`.
@@ -59,6 +59,37 @@ pub struct Sheet {
     pub metres_per_unit: Option<f64>,
     /// What is drawn, in the file's unit and order.
     pub drawing: Drawing,
+    /// In which coordinates people say where a place of it is.
+    pub coordinates: Coordinates,
+}
+
+/// In which coordinates people say where a place of a drawing is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Coordinates {
+    /// Those of the file itself, x right, y up, in metres: by this map to the sheet (DXF, CSV).
+    File(Affine),
+    /// From the sheet's top left corner, in its units, which are pixels to people, or in lengths where one is known to be so many metres.
+    Page {
+        /// Length of a unit, m.
+        unit_m: Option<f64>,
+    },
+}
+
+impl Coordinates {
+    /// Whether people measure in pixels there.
+    #[must_use]
+    pub const fn has_pixels(&self) -> bool {
+        matches!(self, Self::Page { .. })
+    }
+
+    /// Where on the sheet a place is that is so many metres right, and up or down as theirs are; `None` where nothing says how long a unit is.
+    #[must_use]
+    pub fn on_sheet(&self, metres: Point) -> Option<Point> {
+        match *self {
+            Self::File(sheet_from_file) => Some(sheet_from_file * metres),
+            Self::Page { unit_m } => unit_m.map(|m| (metres.to_vec2() / m).to_point()),
+        }
+    }
 }
 
 /// What a reader made of a file, and what it left out.

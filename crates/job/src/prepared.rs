@@ -78,7 +78,7 @@ pub fn prepare(request: &Request<'_>, source: Source, task: Task<'_>) -> Result<
     let (sketch, vision_ms) = task.timed(|| sketch(name, source, tracing, placing));
     let sketch = sketch?;
     task.check()?;
-    let placed = place(&sketch, placing);
+    let placed = place(&sketch, placing)?;
     planned((sketch.shown(), vision_ms), placed, driving.clone(), (*run, None), task)
 }
 
@@ -94,7 +94,12 @@ pub(crate) fn planned(
     let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving));
     let schedule = schedule?;
     task.check()?;
-    let notes: Vec<String> = sketch.notes().into_iter().chain(driving.remarks(&schedule.plan)).collect();
+    let notes: Vec<String> = sketch
+        .notes()
+        .into_iter()
+        .chain(placed.notes.iter().cloned())
+        .chain(driving.remarks(&schedule.plan))
+        .collect();
     notes.iter().for_each(|n| task.say(&format!("note: {n}")));
     check_laps(how.laps, &schedule.plan)?;
     Ok(Prepared { sketch, placed, driving, schedule, notes, vision_ms, plan_ms, how, seen })

@@ -10,7 +10,7 @@ use tracelight_eye::homing::home_head;
 use tracelight_eye::power::check_homed;
 use tracelight_eye::room::{Furnished, RoomRequest};
 use tracelight_picture::{Pixels, Source};
-use tracelight_pipeline::{Driving, sketch};
+use tracelight_pipeline::{DistanceFrom, Driving, sketch};
 use tracelight_rig::PanTilt;
 use tracelight_rigfile::Timing;
 use tracelight_rigfile::head::KnownHead;
@@ -47,6 +47,11 @@ pub fn prepare_wall(request: &Request<'_>, wall: Wall<'_>, task: Task<'_>) -> Re
     task.check()?;
     let camera = wall.camera.camera;
     stand_before(&mut driving, &wall, known.as_ref())?;
+    driving.asked.distance = match (&known, &stage) {
+        (Some(_), _) => DistanceFrom::File,
+        (None, Stage::Room(_)) => DistanceFrom::Camera,
+        (None, Stage::Camera(_)) => driving.asked.distance,
+    };
     let head = match &mut stage {
         Stage::Room(staged) => {
             let Staged { rig, room, .. } = staged.as_mut();
@@ -149,7 +154,8 @@ struct HeadSeen {
 impl HeadSeen {
     /// Of one that was found before, or that nobody looked at.
     fn believed(known: Option<&KnownHead>, camera: &Camera) -> Self {
-        let (timing, exposure_s) = known.map_or((Timing::USUAL, SPOT_EXPOSURE_S), KnownHead::images);
+        let (timing, exposure_s) =
+            known.and_then(KnownHead::images).unwrap_or((Timing::USUAL, SPOT_EXPOSURE_S));
         Self {
             timing,
             exposure_s,
@@ -179,7 +185,7 @@ fn head_of(
 ) -> Result<HeadSeen, Failure> {
     let believed = HeadSeen::believed(known.as_ref(), camera);
     let homed = if home {
-        let homed = home_head(rig, camera, driving, known.as_ref().map(KnownHead::images), task)?;
+        let homed = home_head(rig, camera, driving, known.as_ref().and_then(KnownHead::images), task)?;
         room.homed(rig, &homed);
         Some(homed.figures())
     } else {

@@ -6,7 +6,9 @@ use std::path::Path;
 
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, RgbaImage};
-use tracelight_formats::{FormatError, ReadOptions, Reading, Sheet, csv, dxf, head, json, svg, unpacked};
+use tracelight_formats::{
+    Coordinates, FormatError, ReadOptions, Reading, Sheet, csv, dxf, head, json, svg, unpacked,
+};
 use tracelight_image::Grey;
 use tracelight_stroke::{Affine, Drawing, Vec2};
 use tracelight_task::Failure;
@@ -78,11 +80,13 @@ fn sheet_about(drawing: &Drawing) -> Sheet {
     let points = drawing.strokes.iter().flat_map(|s| s.path.flatten(LEAST_M));
     let reach =
         points.fold(Vec2::new(LEAST_M, LEAST_M), |r, p| Vec2::new(r.x.max(p.x.abs()), r.y.max(p.y.abs())));
+    let sheet_from_file = Affine::FLIP_Y.then_translate(reach);
     Sheet {
         width: 2.0 * reach.x,
         height: 2.0 * reach.y,
         metres_per_unit: Some(1.0),
-        drawing: drawing.transformed(Affine::FLIP_Y.then_translate(reach)),
+        drawing: drawing.transformed(sheet_from_file),
+        coordinates: Coordinates::File(sheet_from_file),
     }
 }
 

@@ -10,36 +10,51 @@ pub struct Choice {
     pub layers: Vec<String>,
     /// Only strokes of these colours.
     pub colours: Vec<Colour>,
+    /// Layers whose closed paths light keeps out of; they are not drawn.
+    pub no_go: Vec<String>,
 }
 
 /// Names in a message at most.
 const MOST_NAMES: usize = 20;
 
 impl Choice {
-    /// The strokes on one of the layers asked for and of one of the colours asked for; all where nothing is asked.
-    /// Names of layers differ in more than case.
+    /// The strokes on one of the layers asked for and of one of the colours asked for, all where nothing is asked; and the closed paths that light
+    /// keeps out of. Names of layers differ in more than case.
     ///
     /// # Errors
-    /// A layer or colour that no stroke has, with those there are; and strokes of both that are none.
-    pub fn of(&self, name: &str, drawing: Drawing) -> Result<Drawing, Failure> {
+    /// A layer or colour that no stroke has, with those there are; strokes of both that are none; and a path to keep out of that is not closed.
+    pub fn of(&self, name: &str, drawing: Drawing) -> Result<(Drawing, Drawing), Failure> {
         let refused = |message| Failure::failed("no-strokes", format!("{name}: {message}"));
-        for layer in &self.layers {
+        let layers = self.layers.iter().map(|layer| ("layer", layer));
+        for (flag, layer) in layers.chain(self.no_go.iter().map(|layer| ("no-go", layer))) {
             if !drawing.strokes.iter().any(|s| is_on(s, layer)) {
                 let known =
                     names(drawing.strokes.iter().filter_map(|s| s.layer.as_deref().map(str::to_owned)));
-                return Err(refused(missing("layer", layer, &known)));
+                return Err(refused(missing("layer", flag, layer, &known)));
             }
         }
         for colour in &self.colours {
             if !drawing.strokes.iter().any(|s| s.colour == Some(*colour)) {
                 let known = names(drawing.strokes.iter().filter_map(|s| s.colour.map(|c| c.to_string())));
-                return Err(refused(missing("colour", &colour.to_string(), &known)));
+                return Err(refused(missing("colour", "colour", &colour.to_string(), &known)));
             }
         }
-        let strokes: Vec<Stroke> = drawing.strokes.into_iter().filter(|s| self.takes(s)).collect();
+        let is_no_go = |stroke: &Stroke| self.no_go.iter().any(|layer| is_on(stroke, layer));
+        let (no_go, drawn): (Vec<Stroke>, Vec<Stroke>) = drawing.strokes.into_iter().partition(is_no_go);
+        if let Some(open) = no_go.iter().find(|stroke| !stroke.path.is_closed()) {
+            let layer = open.layer.as_deref().unwrap_or_default();
+            let start = open.path.start();
+            return Err(refused(format!(
+                "--no-go {layer}: a path of this layer is not closed, it begins at ({:.1}, {:.1}) on its sheet: close it, or give the area by \
+                 its place and size, such as --no-go 10cm,20cm,8cm,8cm",
+                start.x, start.y
+            )));
+        }
+        let no_go = Drawing { strokes: no_go };
+        let strokes: Vec<Stroke> = drawn.into_iter().filter(|s| self.takes(s)).collect();
         match strokes.is_empty() && !(self.layers.is_empty() && self.colours.is_empty()) {
             true => Err(refused("no stroke is on these layers and of these colours; ask for less".into())),
-            false => Ok(Drawing { strokes }),
+            false => Ok((Drawing { strokes }, no_go)),
         }
     }
 
@@ -59,9 +74,9 @@ fn names(all: impl Iterator<Item = String>) -> Vec<String> {
     all.filter(|name| seen.insert(name.clone())).collect()
 }
 
-fn missing(what: &str, asked: &str, known: &[String]) -> String {
+fn missing(what: &str, flag: &str, asked: &str, known: &[String]) -> String {
     if known.is_empty() {
-        return format!("it has no {what}s; leave --{what} {asked} out");
+        return format!("it has no {what}s; leave --{flag} {asked} out");
     }
     let shown = known[..known.len().min(MOST_NAMES)].join(", ");
     let more = if known.len() > MOST_NAMES { ", …" } else { "" };
@@ -91,8 +106,8 @@ mod tests {
     fn chosen(layers: &[&str], colours: &[&str]) -> Result<usize, String> {
         let layers = layers.iter().map(|&l| l.to_owned()).collect();
         let colours = colours.iter().map(|c| tracelight_formats::colour_of(c).unwrap()).collect();
-        let chosen = Choice { layers, colours }.of("a.svg", drawing());
-        chosen.map(|d| d.strokes.len()).map_err(|failure| failure.message)
+        let chosen = Choice { layers, colours, no_go: vec![] }.of("a.svg", drawing());
+        chosen.map(|(drawn, _)| drawn.strokes.len()).map_err(|failure| failure.message)
     }
 
     #[test]
@@ -113,7 +128,7 @@ mod tests {
         let message = chosen(&[], &["lime"]).unwrap_err();
         assert_eq!(message, "a.svg: no stroke has the colour #00ff00; there are: #ff0000, #0000ff");
         assert!(chosen(&["Cut"], &["blue"]).unwrap_err().contains("ask for less"));
-        let bare = Choice { layers: vec!["Cut".into()], colours: vec![] }.of("a.png", Drawing::default());
+        let bare = Choice { layers: vec!["Cut".into()], ..Choice::default() }.of("a.png", Drawing::default());
         assert!(bare.unwrap_err().message.contains("it has no layers"));
     }
 }

@@ -6,6 +6,7 @@ use tracelight_trajectory::{
     AccelerationDemand, DarkMove, LitSpeed, Machine, Plan, PlanRequest, Ramps, Shape,
 };
 
+use crate::distance::DistanceFrom;
 use crate::ordering::OrderRequest;
 
 /// 3 ft: where the original rig's camera stood.
@@ -41,6 +42,8 @@ pub struct Asked {
     pub speed: bool,
     /// An acceleration of the joints.
     pub acceleration: bool,
+    /// How far the head stands from the wall.
+    pub distance: DistanceFrom,
 }
 
 impl Driving {

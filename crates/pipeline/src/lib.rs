@@ -1,10 +1,15 @@
 //! From a picture or a drawing to a plan: strokes on their sheet, on the target, in order, in time. Values in, values out: no flag,
 //! no file, no clock.
 
+mod align;
+mod bent;
 mod carried;
 mod choice;
+mod distance;
 mod driving;
+mod edges;
 mod hopeless;
+mod no_go;
 mod ordering;
 mod paper;
 mod placed;
@@ -14,18 +19,24 @@ mod refused;
 mod schedule;
 mod sheet;
 mod sketch;
+mod standing;
 mod tracing;
 mod twice;
 
+pub use align::{AlignFigures, AskedMark, MarkedAt};
 pub use carried::{carried, has_corner};
 pub use choice::Choice;
+pub use distance::DistanceFrom;
 pub use driving::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, Driving, REACHED, request_of};
+pub use edges::{Corner, Origin};
+pub use no_go::LeftOut;
 pub use ordering::{OrderBy, OrderRequest, Sequence};
 pub use paper::Paper;
-pub use placed::{Page, Placed, Placing, place, sketch};
+pub use placed::{Fit, Page, Placed, Placing, place, sketch};
 pub use quality::QualityFigures;
 pub use refused::refused;
 pub use schedule::{Schedule, check_speed, check_standing, schedule};
 pub use sheet::{PaperSeen, Straight, clockwise, page};
 pub use sketch::{Sketch, sketch_at};
+pub use standing::{Standing, spot_radius_m};
 pub use tracing::{LeastLength, Straighten, Tracing};

@@ -6,12 +6,13 @@ use tracelight_stroke::{Point, Vec2};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Machine, PlanError};
 
+use crate::distance::DistanceFrom;
 use crate::driving::Driving;
 use crate::placed::Placed;
 use crate::refused::refused;
 
 /// Where a piece of a stroke is looked at, as shares of it.
-const PLACES: [f64; 5] = [0.0, 1.0, 0.5, 0.25, 0.75];
+pub(crate) const PLACES: [f64; 5] = [0.0, 1.0, 0.5, 0.25, 0.75];
 /// Directions about a drawing's centre, in each of which its furthest point counts.
 const DIRECTIONS: usize = 720;
 /// Smallest width that is named, m.
@@ -38,19 +39,23 @@ pub(crate) fn check_reach(placed: &Placed, driving: &Driving) -> Result<(), Fail
     Ok(())
 }
 
-/// The two numbers that work, in words; nothing of a head whose place a camera found, which no flag moves.
+/// The two numbers that work, in words; nothing of a head whose place a camera found, which no flag moves. Several marks tell the width: no other is
+/// named then.
 fn ways_out(placed: &Placed, driving: &Driving) -> String {
-    let distance_m = driving.pose.distance_m;
-    if driving.pose != HeadPose::square_on(distance_m) {
+    if driving.asked.distance == DistanceFrom::Camera {
         return String::new();
     }
+    let distance_m = driving.pose.distance_m;
     let reach = Reach::of(placed);
     let mut words = String::new();
-    if let Some(width_m) = reach.largest_width_m(placed.size_m.0, &driving.machine) {
+    let is_sized_by_marks = placed.align.as_ref().is_some_and(|align| align.residual_mm.len() > 1);
+    let width_m = reach.largest_width_m(placed.size_m.0, &driving.machine).filter(|_| !is_sized_by_marks);
+    if let Some(width_m) = width_m {
         words += &format!("; from {} away up to --width {}", metres(distance_m), metres(width_m));
     }
     if let Some(least_m) = reach.least_distance_m(driving) {
-        words += &format!("; for {} from --distance {}", metres(placed.size_m.0), metres(least_m));
+        let how = if driving.asked.distance == DistanceFrom::File { "a distance of" } else { "--distance" };
+        words += &format!("; for {} from {how} {}", metres(placed.size_m.0), metres(least_m));
     }
     words
 }
@@ -96,7 +101,8 @@ impl Reach {
 
     /// Rounded up to a hundredth of itself.
     fn least_distance_m(&self, driving: &Driving) -> Option<f64> {
-        let is_in = |m: f64| self.is_in(&driving.rig.machine(HeadPose::square_on(m)), 1.0);
+        let is_in =
+            |m: f64| self.is_in(&driving.rig.machine(HeadPose { distance_m: m, ..driving.pose }), 1.0);
         let m = boundary(MOST_DISTANCE_M, driving.pose.distance_m, is_in)?;
         Some(rounded(m, f64::ceil)).filter(|m| *m <= MOST_DISTANCE_M)
     }

@@ -52,6 +52,11 @@ impl Straight {
         })
     }
 
+    /// Where on the sheet a pixel of the picture is.
+    pub(crate) fn on_sheet(&self, pixel: Point) -> Option<Point> {
+        self.from_picture.apply(pixel)
+    }
+
     /// Strokes of the picture, on the sheet.
     #[must_use]
     pub fn drawing(&self, drawing: &Drawing) -> Drawing {

@@ -1,8 +1,8 @@
 //! From a source to strokes on their sheet.
 
-use tracelight_formats::Reading;
+use tracelight_formats::{Coordinates, Reading};
 use tracelight_picture::{Pixels, Raster, Source};
-use tracelight_stroke::{Drawing, without_doubles};
+use tracelight_stroke::{Drawing, Point, without_doubles};
 use tracelight_task::{Failure, counted};
 use tracelight_vision::{Comb, Dots, Quality, Traced, VisionError};
 
@@ -22,6 +22,10 @@ pub struct Sketch {
     pub paper: Option<PaperSeen>,
     /// The sheet's true width, m, where the file says it.
     pub true_width_m: Option<f64>,
+    /// In which coordinates people say where a place of the sheet is.
+    pub coordinates: Coordinates,
+    /// Closed paths that light keeps out of.
+    pub no_go: Drawing,
     /// The picture as it was read, for display: see [`Self::shown`].
     pub picture: Option<Raster>,
     /// How it was traced.
@@ -41,6 +45,14 @@ impl Sketch {
         match &self.paper {
             Some(PaperSeen { picture_px, slanted: Some(slanted), .. }) => (slanted, *picture_px),
             _ => (&self.drawing, self.size),
+        }
+    }
+
+    /// Where on the sheet a pixel of the picture is.
+    pub(crate) fn straightened(&self, pixel: Point) -> Option<Point> {
+        match self.paper.as_ref().and_then(|paper| paper.straight.as_ref()) {
+            Some(straight) => straight.on_sheet(pixel),
+            None => Some(pixel),
         }
     }
 
@@ -183,7 +195,7 @@ pub fn sketch_at(
         Source::Strokes(reading) => taken(reading),
         Source::Pixels(pixels) => traced(name, pixels, tracing, metres_per_unit)?,
     };
-    sketch.drawing = choice.of(name, sketch.drawing)?;
+    (sketch.drawing, sketch.no_go) = choice.of(name, sketch.drawing)?;
     // after the choice: a line that two layers have is needed where only one of them is drawn
     if is_drawing {
         sketch.draw_once();
@@ -210,6 +222,8 @@ fn taken(Reading { sheet, remarks, .. }: Reading) -> Sketch {
         size: (sheet.width, sheet.height),
         true_width_m: sheet.metres_per_unit.map(|m| m * sheet.width),
         drawing: sheet.drawing,
+        coordinates: sheet.coordinates,
+        no_go: Drawing::default(),
         paper: None,
         picture: None,
         mode: "strokes",
@@ -245,6 +259,8 @@ fn traced(
     Ok(Sketch {
         size,
         true_width_m,
+        coordinates: Coordinates::Page { unit_m: true_width_m.map(|m| m / size.0) },
+        no_go: Drawing::default(),
         remarks,
         drawing: traced.strokes,
         paper: page.sheet.map(|sheet| PaperSeen { sheet, picture_px, straight, slanted: None }),

@@ -31,7 +31,7 @@ mod tests {
     use crate::tracing::Tracing;
 
     fn sketch(name: &str, bytes: &str, layers: &[&str]) -> Sketch {
-        let choice = Choice { layers: layers.iter().map(|&l| l.to_owned()).collect(), colours: Vec::new() };
+        let choice = Choice { layers: layers.iter().map(|&l| l.to_owned()).collect(), ..Choice::default() };
         let source = decode(name, bytes.as_bytes()).unwrap();
         sketch_at(name, source, &Tracing::default(), &choice, &|_, _| 1e-3).unwrap()
     }

@@ -5,6 +5,7 @@ use std::path::Path;
 use tracelight_eye::figures::EyeFigures;
 use tracelight_eye::seen::SeenLight;
 use tracelight_picture::Raster;
+use tracelight_pipeline::{AlignFigures, LeftOut, Standing};
 use tracelight_rig::PanTilt;
 use tracelight_sim::{Run, Tracking};
 use tracelight_stroke::{Affine, Drawing, Point};
@@ -21,6 +22,12 @@ pub struct Finished<'a> {
     pub quality: Option<&'a Quality>,
     /// Where and how large the job is drawn.
     pub target: Target,
+    /// How the head stands to it.
+    pub standing: Standing,
+    /// How it lies by its marks, where there are any.
+    pub align: Option<&'a AlignFigures>,
+    /// What of it is left out, where it is to keep out of something.
+    pub left_out: Option<LeftOut>,
     /// The strokes in target metres, in tracing order.
     pub drawing: &'a Drawing,
     /// The same in time.
@@ -73,6 +80,8 @@ pub struct Target {
     pub width_m: f64,
     /// Height of the picture on it, m.
     pub height_m: f64,
+    /// Where the picture's middle lies on it, m.
+    pub middle: Point,
     /// From the head to the plane, m.
     pub distance_m: f64,
 }
@@ -103,7 +112,9 @@ impl Finished<'_> {
     /// The rectangle all outputs show, target m: the picture with every stroke, `(lower left, upper right)`.
     pub(crate) fn bounds(&self) -> (Point, Point) {
         let half = Point::new(self.target.width_m / 2.0, self.target.height_m / 2.0);
-        let corners = self.picture.map_or(vec![Point::new(-half.x, -half.y), half], |p| p.corners().to_vec());
+        let middle = self.target.middle;
+        let about = || vec![middle - half.to_vec2(), middle + half.to_vec2()];
+        let corners = self.picture.map_or_else(about, |p| p.corners().to_vec());
         let strokes = self.drawing.strokes.iter().flat_map(|s| s.path.flatten(DISPLAY_TOLERANCE_M));
         let all = corners.into_iter().chain(strokes).filter(|p| p.is_finite());
         let none =

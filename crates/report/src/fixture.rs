@@ -2,6 +2,7 @@
 
 use tracelight_maths::planar;
 use tracelight_picture::Raster;
+use tracelight_pipeline::{DistanceFrom, Standing};
 use tracelight_rig::{
     Actuation, Darkness, DarknessSet, Inputs, Measurement, PanTilt, Phase, Setpoint, TICK_F64_S, Telemetry,
 };
@@ -15,7 +16,16 @@ use crate::{Finished, Picture, Setting, Target, Timing};
 /// Speed along the strokes, m/s.
 pub(crate) const SPEED_M_S: f64 = 0.3048;
 const TRAVEL_M_S: f64 = 1.0;
-const TARGET: Target = Target { width_m: 0.6096, height_m: 0.4572, distance_m: 0.9144 };
+const STANDING: Standing = Standing {
+    distance_m: 0.9144,
+    from: DistanceFrom::Asked,
+    largest_angle_deg: 22.6,
+    spot_mm: 2.9,
+    longest_spot_mm: 3.2,
+    best_distance_m: 0.66,
+};
+const TARGET: Target =
+    Target { width_m: 0.6096, height_m: 0.4572, middle: Point::ORIGIN, distance_m: 0.9144 };
 
 /// Owns what a [`Finished`] borrows.
 pub(crate) struct Fixture {
@@ -38,6 +48,9 @@ impl Fixture {
             picture: self.raster.as_ref().map(|raster| Picture { raster, target_from_pixel: place }),
             quality: self.quality.as_ref(),
             target: TARGET,
+            standing: STANDING,
+            align: None,
+            left_out: None,
             drawing: &self.drawing,
             plan: &self.plan,
             run: &self.run,

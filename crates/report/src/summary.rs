@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use tracelight_eye::figures::EyeFigures;
-use tracelight_pipeline::QualityFigures;
+use tracelight_pipeline::{AlignFigures, LeftOut, QualityFigures, Standing};
 use tracelight_rig::TICK_F64_S;
 use tracelight_sim::Run;
 use tracelight_stroke::Drawing;
@@ -21,6 +21,14 @@ pub struct Summary {
     pub quality: Option<QualityFigures>,
     /// Where.
     pub target: TargetFigures,
+    /// How the head stands to it.
+    pub head: Standing,
+    /// How it lies by its marks; not there without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub align: Option<AlignFigures>,
+    /// What of it is left out of no-go areas; not there without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_go: Option<LeftOut>,
     /// What it became.
     pub strokes: StrokeFigures,
     /// What was meant to happen.
@@ -168,6 +176,9 @@ impl Summary {
                 height_m: round(job.target.height_m),
                 distance_m: round(job.target.distance_m),
             },
+            head: job.standing,
+            align: job.align.cloned(),
+            no_go: job.left_out,
             strokes: StrokeFigures::of(job.drawing, job.plan),
             plan: PlanFigures::of(job.plan),
             run: RunFigures::of(job.run),

@@ -1,7 +1,7 @@
 //! What is known of a head in front of a wall, as a file.
 
 use serde::{Deserialize, Serialize};
-use tracelight_aim::{Aligned, Alignment, HeadGeometry, HeadPose, PlacedPage};
+use tracelight_aim::{HeadGeometry, HeadPose, PlacedPage};
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
@@ -25,8 +25,13 @@ pub struct HeadFile {
     page: String,
     pose: PoseTable,
     built: BuiltTable,
-    images: ImagesTable,
+    /// Not there where no camera found it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    images: Option<ImagesTable>,
     score: ScoreTable,
+    /// The rectangle by whose corners it was found, about the target's middle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    area: Option<AreaTable>,
     /// Pages that were in sight then, where they hung.
     #[serde(default)]
     pages: Vec<PageTable>,
@@ -54,8 +59,16 @@ struct BuiltTable {
     axis_skew_rad: f64,
 }
 
+/// A rectangle about the target's middle.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AreaTable {
+    width_m: f64,
+    height_m: f64,
+}
+
 /// When images are taken, by their stamps.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ImagesTable {
     late_s: f64,
@@ -87,17 +100,16 @@ pub struct KnownHead {
     pub geometry: HeadGeometry,
     /// target_from_head.
     pub pose: HeadPose,
-    /// How its camera's stamps related to the rig's ticks then.
-    pub timing: Timing,
-    /// How long rows were exposed, s.
-    pub exposure_s: f64,
+    /// Width and height of the rectangle about the target's middle by whose corners it was found, m; `None` of one that a camera found.
+    pub area_m: Option<(f64, f64)>,
+    images: Option<(Timing, f64)>,
 }
 
 impl KnownHead {
-    /// How its camera's stamps related to the rig's ticks, and how long rows were exposed, s.
+    /// How its camera's stamps related to the rig's ticks, and how long rows were exposed, s; `None` of one that no camera found.
     #[must_use]
-    pub const fn images(&self) -> (Timing, f64) {
-        (self.timing, self.exposure_s)
+    pub const fn images(&self) -> Option<(Timing, f64)> {
+        self.images
     }
 }
 
@@ -108,41 +120,53 @@ pub struct NewHead<'a> {
     pub date: &'a str,
     /// Name of the rig.
     pub rig: &'a str,
-    /// Where it stands and how it is built, and how well that is known.
-    pub aligned: &'a Aligned,
-    /// How its camera's stamps related to the rig's ticks.
-    pub timing: Timing,
-    /// Exposure in which the spot is not full, s.
-    pub exposure_s: f64,
+    /// How it is built.
+    pub geometry: HeadGeometry,
+    /// Where it stands.
+    pub pose: HeadPose,
+    /// How well that fits what was seen.
+    pub score: HeadScore,
+    /// How its camera's stamps related to the rig's ticks, and the exposure in which the spot is not full, s; none without a camera.
+    pub images: Option<(Timing, f64)>,
+    /// Width and height of the rectangle by whose corners it was found, m.
+    pub area_m: Option<(f64, f64)>,
     /// The page whose frame the wall's is.
     pub frame: Option<PageName>,
     /// Pages that were in sight, in the wall's frame.
     pub pages: &'a [PlacedPage],
 }
 
+/// How well a head fits what it was found by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadScore {
+    /// How far spots were seen from where it has them, root mean square, m.
+    pub rms_m: f64,
+    /// How many spots.
+    pub spots: usize,
+    /// How many of them do not count.
+    pub outliers: usize,
+}
+
 impl HeadFile {
     /// Of a head that was found.
     #[must_use]
     pub fn of(found: &NewHead<'_>) -> Self {
-        let Alignment { geometry, pose, .. } = found.aligned.alignment;
-        let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = pose;
-        let HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, .. } = geometry;
+        let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = found.pose;
+        let HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, .. } = found.geometry;
+        let HeadScore { rms_m, spots, outliers } = found.score;
         Self {
             date: found.date.to_owned(),
             rig: found.rig.to_owned(),
             page: named(found.frame),
             pose: PoseTable { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
             built: BuiltTable { laser_offset_m, beam_off_rad, axis_skew_rad },
-            images: ImagesTable {
-                late_s: found.timing.late_s,
-                readout_s: found.timing.readout_s,
-                exposure_s: found.exposure_s,
-            },
-            score: ScoreTable {
-                rms_mm: 1e3 * found.aligned.rms_m,
-                spots: found.aligned.spots,
-                outliers: found.aligned.outliers,
-            },
+            images: found.images.map(|(timing, exposure_s)| ImagesTable {
+                late_s: timing.late_s,
+                readout_s: timing.readout_s,
+                exposure_s,
+            }),
+            score: ScoreTable { rms_mm: 1e3 * rms_m, spots, outliers },
+            area: found.area_m.map(|(width_m, height_m)| AreaTable { width_m, height_m }),
             pages: found.pages.iter().map(PageTable::of).collect(),
         }
     }
@@ -192,8 +216,7 @@ impl HeadFile {
             beam_off_rad: [points_left, points_down],
             axis_skew_rad,
         } = &self.built;
-        let ImagesTable { late_s, readout_s, exposure_s } = &self.images;
-        let fields = [
+        let mut fields = vec![
             ("pose.distance_m", distance_m, 0.01, 1e3),
             ("pose.right_m", right_m, -1e3, 1e3),
             ("pose.up_m", up_m, -1e3, 1e3),
@@ -206,10 +229,17 @@ impl HeadFile {
             ("built.beam_off_rad, left", points_left, -0.5, 0.5),
             ("built.beam_off_rad, down", points_down, -0.5, 0.5),
             ("built.axis_skew_rad", axis_skew_rad, -0.5, 0.5),
-            ("images.late_s", late_s, -1.0, 1.0),
-            ("images.readout_s", readout_s, -1.0, 1.0),
-            ("images.exposure_s", exposure_s, 1e-6, 10.0),
         ];
+        if let Some(ImagesTable { late_s, readout_s, exposure_s }) = &self.images {
+            fields.extend([
+                ("images.late_s", late_s, -1.0, 1.0),
+                ("images.readout_s", readout_s, -1.0, 1.0),
+                ("images.exposure_s", exposure_s, 1e-6, 10.0),
+            ]);
+        }
+        if let Some(AreaTable { width_m, height_m }) = &self.area {
+            fields.extend([("area.width_m", width_m, 1e-3, 1e3), ("area.height_m", height_m, 1e-3, 1e3)]);
+        }
         for (name, &value, least, most) in fields {
             if !(least..=most).contains(&value) {
                 return Err(format!(
@@ -226,12 +256,10 @@ impl HeadFile {
         KnownHead {
             geometry: HeadGeometry { laser_offset_m, beam_off_rad, axis_skew_rad, range_rad: told.range_rad },
             pose: HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad },
-            timing: Timing {
-                late_s: self.images.late_s,
-                readout_s: self.images.readout_s,
-                unsure_s: Timing::USUAL.unsure_s,
-            },
-            exposure_s: self.images.exposure_s,
+            area_m: self.area.map(|area| (area.width_m, area.height_m)),
+            images: self.images.map(|ImagesTable { late_s, readout_s, exposure_s }| {
+                (Timing { late_s, readout_s, unsure_s: Timing::USUAL.unsure_s }, exposure_s)
+            }),
             path: path.to_owned(),
             page: self.page.clone(),
             pages: self.pages.clone(),
@@ -248,6 +276,14 @@ impl KnownHead {
         let again = |why: String| {
             Failure::usage("head-file", format!("{}: {why}: calibrate the head again", self.path))
         };
+        if self.page.is_empty() && self.images.is_none() {
+            let message = format!(
+                "{}: this head was found by corners, without a camera, and its target is not the one that the camera's page tells: calibrate it with \
+                 `tracelight calibrate head --camera`",
+                self.path
+            );
+            return Err(Failure::usage("head-file", message));
+        }
         let frame = named(frame);
         if frame != self.page {
             return Err(again(format!(

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use tracelight_camera::{Opened, shown};
 use tracelight_files::{self as files, ResultFolder};
 use tracelight_job::{Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
+use tracelight_pipeline::Standing;
 use tracelight_report::{Finished, LogMeta, Picture, Setting, Summary, Target, Timing};
 use tracelight_rig::PanTilt;
 use tracelight_rigfile as rigfile;
@@ -13,6 +14,7 @@ use tracelight_task::{Failure, Stop, Task};
 
 use crate::at_wall::AtWall;
 use crate::bar::Bar;
+use crate::cli::driving::stand_by;
 use crate::cli::eyes::SimulatedEyeName;
 use crate::cli::request::TraceArgs;
 use crate::named;
@@ -62,10 +64,16 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
     args.law.apply(&mut driving.rig);
     driving.order.sequence = args.sequence.sequence();
+    let head = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
+    if args.eye.camera.is_none() {
+        head.iter().for_each(|known| stand_by(&mut driving, known));
+    }
+    let area_m = head.as_ref().and_then(|known| known.area_m);
+    let placing = args.wall.placing(args.placement.placing(), Some(&driving), area_m)?;
     let request = Request {
         name: args.name(),
         tracing: args.tracing.tracing(),
-        placing: args.placement.placing(),
+        placing,
         driving,
         run: RunRequest {
             laps: args.laps,
@@ -81,7 +89,6 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
             task,
         );
     }
-    let head = args.head.as_deref().map(|path| named::head(path, &request.driving.rig)).transpose()?;
     let mut opened = args.eye.open()?;
     let wall = Wall {
         scene: scene(args, &mut opened)?,
@@ -140,19 +147,24 @@ fn write(
     let plan = ran.plan(prepared);
     let tracking: Tracking = score(plan, &ran.last, plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
+    let bent = sketch.picture.as_ref().and_then(|picture| placed.bent_picture(picture));
     let name = shown(args.name());
     let job = Finished {
         picture_path: &name,
-        picture: sketch
-            .picture
-            .as_ref()
-            .map(|raster| Picture { raster, target_from_pixel: placed.target_from_sheet }),
+        picture: sketch.picture.as_ref().map(|raster| match &bent {
+            Some((raster, target_from_pixel)) => Picture { raster, target_from_pixel: *target_from_pixel },
+            None => Picture { raster, target_from_pixel: placed.target_from_sheet },
+        }),
         quality: sketch.quality.as_ref(),
         target: Target {
             width_m: placed.size_m.0,
             height_m: placed.size_m.1,
+            middle: placed.centre(),
             distance_m: driving.pose.distance_m,
         },
+        standing: Standing::of(drawing, driving),
+        align: placed.align.as_ref(),
+        left_out: placed.left_out,
         drawing,
         plan,
         run: &ran.last,

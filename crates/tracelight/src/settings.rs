@@ -31,7 +31,11 @@ pub(crate) fn of(args: &TraceArgs, driving: &Driving, placed: &Placed) -> Vec<Se
         ("laps", args.laps.to_string()),
         ("dry run", if args.dry_run { "yes" } else { "no" }.into()),
     ];
-    let all = rows.into_iter().chain(args.tracing.settings()).chain(args.seen_settings());
+    let all = rows
+        .into_iter()
+        .chain(args.wall.settings())
+        .chain(args.tracing.settings())
+        .chain(args.seen_settings());
     all.map(|(name, value)| Setting { name: name.into(), value }).collect()
 }
 

@@ -6,7 +6,7 @@ use tracelight_stroke::{Affine, Drawing, extent};
 use crate::limit::MAX_COORDINATE;
 use crate::meant::{is_meant, lengths};
 use crate::options::LengthUnit;
-use crate::{FormatError, Sheet};
+use crate::{Coordinates, FormatError, Sheet};
 
 /// Sides of a sheet are at least so long, in its unit, or numbers with four decimals would show.
 const LEAST_SIDE: f64 = 10.0;
@@ -111,6 +111,7 @@ pub(super) fn sheet(drawing: &Drawing, unit: Unit) -> Result<Option<Sized>, Form
         height: height * scale,
         metres_per_unit: Some(unit_m / scale),
         drawing: drawing.transformed(place),
+        coordinates: Coordinates::File(place * Affine::scale(1.0 / unit_m)),
     };
     let own = [bounds.width(), bounds.height()];
     Ok(Some(Sized { sheet, remark: unit.remark(own), doubt: unit.doubt(own) }))

@@ -12,7 +12,7 @@ use super::{guard, remarks};
 use crate::lettering::{faces, kind};
 use crate::options::{Hidden, Letters, ReadOptions};
 use crate::unpacked::{unpacked, xml_text};
-use crate::{FormatError, Reading, Sheet, check_size, is_sound};
+use crate::{Coordinates, FormatError, Reading, Sheet, check_size, is_sound};
 
 const METRES_PER_INCH: f64 = 0.0254;
 
@@ -93,7 +93,9 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     let mut said = remarks::things(&xml, painter.told);
     said.extend(remarks::lines(&seen, &painter.unseen, hypot(width, height), metres_per_unit));
     said.extend(painter.letters.as_ref().map_or_else(|| fonts.remarks(&tree), Lines::remarks));
-    let sheet = Sheet { width, height, metres_per_unit, drawing: Drawing { strokes: seen.strokes } };
+    let unit_m = Some(metres_per_unit.unwrap_or(METRES_PER_PX));
+    let drawing = Drawing { strokes: seen.strokes };
+    let sheet = Sheet { width, height, metres_per_unit, drawing, coordinates: Coordinates::Page { unit_m } };
     Ok(Reading { doubt: sheet.doubt(), sheet, remarks: said, is_list: false })
 }
 

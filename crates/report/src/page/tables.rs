@@ -99,7 +99,7 @@ fn picture_rows(job: &Finished<'_>, f: &Summary) -> Vec<String> {
     rows.extend([
         row("width on the target", inches(f.target.width_m), ""),
         row("height on the target", inches(f.target.height_m), ""),
-        row("distance of the target", number(f.target.distance_m, 4), "m"),
+        row("where the head stands", escaped(&f.head.words()), ""),
         row("strokes", f.strokes.count.to_string(), ""),
         row("length of the strokes", number(f.strokes.length_m, 4), "m"),
         row("travel between them", number(f.strokes.travel_m, 4), "m"),

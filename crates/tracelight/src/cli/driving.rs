@@ -1,7 +1,8 @@
 use clap::{Args, ValueEnum};
 use tracelight_aim::HeadPose;
 use tracelight_experiment::profile_name::ProfileName;
-use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, Driving, request_of};
+use tracelight_pipeline::{Asked, DEFAULT_DISTANCE_M, DEFAULT_SPEED_M_S, DistanceFrom, Driving, request_of};
+use tracelight_rigfile::head::KnownHead;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 use tracelight_trajectory::{LitSpeed, PlanRequest};
@@ -14,7 +15,7 @@ use crate::named;
 /// With what and how a drawing is run.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct DrivingArgs {
-    /// Distance from the head to the target [default: 3ft]
+    /// Distance from the head to the target [default: as the head file says, else 3ft is assumed, and said]
     #[arg(help_heading = "Size and place", long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive_length)]
     pub(crate) distance: Option<Length>,
     /// Speed of the lit spot on the target [default: 1ft/s]
@@ -85,9 +86,17 @@ impl DrivingArgs {
             corner_m: self.corner.map_or(0.0, |c| c.0),
             ..request_of(&rig)
         };
-        let asked = Asked { speed: self.speed.is_some(), acceleration: self.amax.is_some() };
+        let distance = if self.distance.is_some() { DistanceFrom::Asked } else { DistanceFrom::Assumed };
+        let asked = Asked { speed: self.speed.is_some(), acceleration: self.amax.is_some(), distance };
         Driving::new(rig, pose, request, asked)
     }
+}
+
+/// Puts a rig up where a head file says that it stands; a simulated one is built and stands truly so.
+pub(crate) fn stand_by(driving: &mut Driving, known: &KnownHead) {
+    driving.rig.truth.model.geometry = known.geometry;
+    driving.believe(known.geometry, known.pose);
+    driving.asked.distance = DistanceFrom::File;
 }
 
 pub(crate) fn positive_speed(text: &str) -> Result<Speed, String> {

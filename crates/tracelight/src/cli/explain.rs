@@ -49,6 +49,14 @@ const MESSAGES: &[(&str, &str)] = &[
     ),
     ("no-strokes", "A drawing has no strokes to plan."),
     (
+        "align",
+        "The marks of --align do not say where the drawing goes: they lie too near each other or on one line, mirror it, or are in a unit that the drawing does not have. Choose marks near the corners of the drawing; a DXF and a CSV have coordinates of their own, pictures are measured in px from the top left.",
+    ),
+    (
+        "corners",
+        "The angles of `calibrate corners` are not those of a rectangle of that size: two corners are exchanged, one was pointed at wrongly, or width and height are. The message says which.",
+    ),
+    (
         "unreachable",
         "Part of the drawing cannot be lit from where the head stands. Make it smaller, shift it, or step back.",
     ),

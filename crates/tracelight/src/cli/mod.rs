@@ -32,6 +32,7 @@ mod strokes;
 mod terminal;
 mod trace;
 pub(crate) mod tracing;
+pub(crate) mod wall;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -65,7 +66,7 @@ struct Cli {
 #[derive(Subcommand, Debug)]
 enum Command {
     Trace(Box<request::TraceArgs>),
-    Strokes(strokes::StrokesArgs),
+    Strokes(Box<strokes::StrokesArgs>),
     Plan(Box<plan::PlanArgs>),
     Calibrate(calibrate::CalibrateArgs),
     Lab(lab::LabArgs),

@@ -43,6 +43,7 @@ impl PlacementArgs {
             rotation_rad: self.rotate.map_or(0.0, |a| a.0),
             flip: self.flip,
             choice: self.choice.choice(),
+            ..Placing::default()
         }
     }
 }

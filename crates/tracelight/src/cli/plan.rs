@@ -3,7 +3,9 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use tracelight_files as files;
-use tracelight_pipeline::{Driving, OrderBy, OrderRequest, Placed, Schedule, place, schedule, sketch};
+use tracelight_pipeline::{
+    Driving, OrderBy, OrderRequest, Placed, Schedule, Standing, place, schedule, sketch,
+};
 use tracelight_report::{
     BoardAxis, ColourBy, HeadGcode, PlanFigures, StrokeFigures, drawing, head_gcode, preview, sequence,
 };
@@ -14,7 +16,7 @@ use tracelight_trajectory::{LitSpeed, Plan};
 
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice};
-use crate::cli::driving::DrivingArgs;
+use crate::cli::driving::{DrivingArgs, stand_by};
 use crate::cli::ending::ends_in;
 use crate::cli::gcode::PowerArgs;
 use crate::cli::lettering::LetteringArgs;
@@ -22,6 +24,7 @@ use crate::cli::ordering::SequenceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
+use crate::cli::wall::WallArgs;
 use crate::named;
 
 /// Order a drawing and time it within what the motors can do
@@ -62,8 +65,13 @@ pub(crate) struct PlanArgs {
     lettering: LetteringArgs,
     #[command(flatten, next_help_heading = "Size and place")]
     placement: PlacementArgs,
+    #[command(flatten, next_help_heading = "Size and place")]
+    wall: WallArgs,
     #[command(flatten)]
     driving: DrivingArgs,
+    /// Where the head stands, as `calibrate corners` or `calibrate head` has found it
+    #[arg(help_heading = "Size and place", long, value_name = "FILE.toml", conflicts_with = "distance")]
+    head: Option<String>,
     #[command(flatten, next_help_heading = "Output")]
     pub(crate) voice: Voice,
 }
@@ -177,6 +185,8 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let task = Task { progress: &bar, stop };
     check_out(args)?;
     let mut driving = args.driving.resolve()?;
+    let known = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
+    known.iter().for_each(|known| stand_by(&mut driving, known));
     driving.order = OrderRequest {
         sequence: args.sequence.sequence(),
         by: args.order_by.order_by(),
@@ -185,10 +195,11 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     task.stage("strokes", 1);
     let name = args.drawing.as_deref().or(args.lettering.name()).unwrap_or_default();
     let source = named::source(name, &args.reading.options()?, &args.lettering)?;
-    let placing = args.placement.placing();
+    let area_m = known.as_ref().and_then(|known| known.area_m);
+    let placing = args.wall.placing(args.placement.placing(), Some(&driving), area_m)?;
     let (sketch, vision_ms) = task.timed(|| sketch(name, source, &args.tracing.tracing(), &placing));
     let sketch = sketch?;
-    let placed = place(&sketch, &placing);
+    let placed = place(&sketch, &placing)?;
     stop.check()?;
     task.stage("plan", 1);
     let (schedule, plan_ms) = task.timed(|| schedule(&placed, &driving));
@@ -196,6 +207,7 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     sketch
         .notes()
         .iter()
+        .chain(&placed.notes)
         .chain(&driving.remarks(&schedule.plan))
         .for_each(|n| task.say(&format!("note: {n}")));
     if let Some(path) = &args.out {
@@ -208,7 +220,9 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     }
     let timing = serde_json::json!({ "vision": vision_ms, "plan": plan_ms });
     let shortest = args.order_by == OrderByName::Distance || driving.request.lit_speed == LitSpeed::Stops;
-    Ok(Answer::new(text(&schedule, shortest), json(&placed, &schedule, &timing)))
+    let standing = Standing::of(&placed.drawing, &driving);
+    let text = format!("{}\nhead: {}", text(&schedule, shortest), standing.words());
+    Ok(Answer::new(text, json(&placed, &standing, &schedule, &timing)))
 }
 
 /// Whether what the flags ask for goes together, before any work.
@@ -280,12 +294,15 @@ fn text(schedule: &Schedule, shortest: bool) -> String {
     )
 }
 
-fn json(placed: &Placed, schedule: &Schedule, timing: &serde_json::Value) -> String {
+fn json(placed: &Placed, standing: &Standing, schedule: &Schedule, timing: &serde_json::Value) -> String {
     let (ordered, plan) = (&schedule.ordered, &schedule.plan);
     let limits: serde_json::Map<_, _> =
         plan.limit_shares().into_iter().map(|(limit, share)| (key(&limit), share.into())).collect();
     serde_json::json!({
         "target": { "width_m": placed.size_m.0, "height_m": placed.size_m.1 },
+        "head": standing,
+        "align": placed.align,
+        "no_go": placed.left_out,
         "strokes": StrokeFigures::of(&ordered.drawing, plan),
         "plan": PlanFigures::of(plan),
         "order": {

@@ -16,6 +16,7 @@ use crate::cli::ordering::SequenceArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
+use crate::cli::wall::WallArgs;
 
 /// Draw a picture on the target: find its strokes, plan them, run them, show how exact it was
 #[derive(Args, Debug)]
@@ -34,14 +35,17 @@ pub(crate) struct TraceArgs {
     pub(crate) lettering: LetteringArgs,
     #[command(flatten, next_help_heading = "Size and place")]
     pub(crate) placement: PlacementArgs,
+    #[command(flatten, next_help_heading = "Size and place")]
+    pub(crate) wall: WallArgs,
     #[command(flatten)]
     pub(crate) driving: DrivingArgs,
     #[command(flatten, next_help_heading = "Rig and law")]
     pub(crate) law: LawArgs,
     #[command(flatten, next_help_heading = "Camera")]
     pub(crate) eye: EyeArgs,
-    /// The head as `calibrate head` has found it; without it the laser draws dots first, and the camera finds it
-    #[arg(help_heading = "Camera", long, value_name = "FILE.toml", requires = "camera")]
+    /// Where the head stands, as `calibrate corners` or `calibrate head` has found it; with a camera and without this the laser draws dots first, and the
+    /// camera finds it
+    #[arg(help_heading = "Size and place", long, value_name = "FILE.toml")]
     pub(crate) head: Option<String>,
     /// Home first, for a head that was just powered up or lost count: it draws dots that the camera sees and finds out where it points,
     /// as with `calibrate head --home`. The dots may fall anywhere: keep eyes away. A simulated head then starts at a random position
@@ -88,13 +92,20 @@ impl TraceArgs {
     /// Refuses what only a camera has use for without one: of a flag whose camera conflicts with the picture the parser asks no camera.
     pub(crate) fn check_camera(&self) -> Result<(), Failure> {
         let flags = [
-            ("--head", self.head.is_some()),
             ("--home", self.home),
             ("--calibration", self.eye.calibration.is_some()),
             ("--open-loop", self.follow.open_loop),
             ("--sim-trouble", !self.follow.sim_trouble.is_empty()),
             ("--sim-camera", self.eye.sim_camera != SimulatedEyeName::default()),
         ];
+        if self.wall.is_given() && self.eye.camera.is_some() {
+            let message = "--align, --from, --fit and --no-go place a drawing, and what a camera sees is drawn where it is: leave them or --camera out";
+            return Err(Failure::usage("usage", message));
+        }
+        if self.head.is_some() && self.eye.camera.is_none() && self.driving.distance.is_some() {
+            let message = "--head says where the head stands, and --distance too: leave one of them out";
+            return Err(Failure::usage("usage", message));
+        }
         let follows = self.follow.open_loop || !self.follow.sim_trouble.is_empty() || self.home;
         if follows && self.eye.camera.is_some() && !self.is_simulated() {
             let message = "--home, --open-loop and --sim-trouble are for simulated rooms, as no real head is driven yet: give --camera sim:PICTURE";

@@ -23,6 +23,7 @@ use crate::cli::lettering::LetteringArgs;
 use crate::cli::placing::PlacementArgs;
 use crate::cli::reading::ReadingArgs;
 use crate::cli::tracing::TracingArgs;
+use crate::cli::wall::WallArgs;
 use crate::named;
 
 /// Find the strokes of pictures, without a rig
@@ -65,6 +66,8 @@ pub(crate) struct StrokesArgs {
     again: bool,
     #[command(flatten, next_help_heading = "Size and place")]
     placement: PlacementArgs,
+    #[command(flatten, next_help_heading = "Size and place")]
+    wall: WallArgs,
     #[command(flatten, next_help_heading = "Output")]
     pub(crate) voice: Voice,
 }
@@ -163,6 +166,7 @@ fn made_with(args: &StrokesArgs, options: &ReadOptions) -> String {
     let StrokesArgs {
         tracing,
         placement,
+        wall,
         lettering,
         reading: _, // as options, with what is in its fonts
         gcode,
@@ -177,7 +181,7 @@ fn made_with(args: &StrokesArgs, options: &ReadOptions) -> String {
     } = args;
     let version = env!("CARGO_PKG_VERSION");
     let format = extension(args);
-    format!("{version} {format} {tracing:?} {placement:?} {options:?} {gcode:?} {lettering:?}")
+    format!("{version} {format} {tracing:?} {placement:?} {wall:?} {options:?} {gcode:?} {lettering:?}")
 }
 
 fn one(
@@ -195,7 +199,8 @@ fn one(
         }
         files::write(&path.display().to_string(), stages(picture, &source, &args.tracing.tracing())?)?;
     }
-    let (tracing, placing) = (args.tracing.tracing(), args.placement.placing());
+    let tracing = args.tracing.tracing();
+    let placing = args.wall.placing(args.placement.placing(), None, None)?;
     let began = Instant::now();
     let mut sketch = sketch(picture, source, &tracing, &placing)?;
     let vision_ms = began.elapsed().as_secs_f64() * 1e3;
@@ -203,9 +208,11 @@ fn one(
     let is_json = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let json = (args.voice.json || path.is_some_and(is_json)).then(|| drawing::json(&sketch));
     let mut note = None;
+    let placed = place(&sketch, &placing)?;
+    sketch.remarks.extend(placed.notes.iter().cloned());
     if let Some(path) = path {
         let json = json.as_deref().unwrap_or_default();
-        let file = drawing::file(path, &place(&sketch, &placing), json, args.gcode.options().as_ref())?;
+        let file = drawing::file(path, &placed, json, args.gcode.options().as_ref())?;
         files::write(&path.display().to_string(), file.bytes)?;
         sketch.remarks.extend(file.doubts);
         note = file.note;

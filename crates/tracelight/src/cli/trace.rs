@@ -50,6 +50,7 @@ fn text(s: &Summary) -> String {
         ),
         false => "\nerror:  none to measure, nothing was lit".to_owned(),
     };
+    text += &format!("\nhead:   {}", s.head.words());
     if s.simulated {
         text += "\nrig:    simulated, nothing of this was measured on a real head";
     }

@@ -25,6 +25,7 @@ const LINES: &[&str] = &[
     "recover @/dark/run.mcap -o @/whole.mcap",
     "calibrate sheet -o @/pages.pdf",
     "calibrate markers --camera sim -o @/camera.toml",
+    "calibrate corners --size 2.4m,1.2m --simulate -o @/corners.toml",
     "calibrate head --camera sim -o @/head.toml",
     "calibrate ruler examples/ruler-upright.png examples/ruler-level.png --marks 4in --wish 3ft,3ft",
     "lab amplifier --out @/amplifier",

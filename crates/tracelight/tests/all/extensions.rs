@@ -15,6 +15,7 @@ const COMMANDS: &[&str] = &[
     "plan examples/star.png --preview",
     "calibrate sheet -o",
     "calibrate markers examples/lens/near.jpg -o",
+    "calibrate corners --size 2.4m,1.2m --simulate -o",
     "calibrate head --camera sim -o",
     "recover @/dark/run.mcap -o",
     "lab profile --distance 180deg -o",

@@ -50,5 +50,6 @@ mod simulate;
 mod sizes;
 mod standing;
 mod support;
+mod where_on_wall;
 mod whole_rig;
 mod wrong_lines;

@@ -9,7 +9,7 @@ use tracelight_eye::wall::{SeenWall, see_wall, well_exposed};
 use tracelight_files as files;
 use tracelight_rig::PanTilt;
 use tracelight_rigfile as rigfile;
-use tracelight_rigfile::head::{HeadFile, KnownHead, NewHead};
+use tracelight_rigfile::head::{HeadFile, HeadScore, KnownHead, NewHead};
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, Stop, Task};
 
@@ -81,7 +81,7 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     let camera = wall.camera.camera;
     stand_before(&mut driving, &wall, known.as_ref())?;
     let homed = if args.home {
-        let images = known.as_ref().map(KnownHead::images);
+        let images = known.as_ref().and_then(KnownHead::images);
         let homed = home_head(&mut rig, &camera, &driving, images, task)?;
         room.homed(&mut rig, &homed);
         Some((homed, room.zero_error_m(known.is_some())))
@@ -97,9 +97,15 @@ pub(super) fn run(args: &HeadArgs, stop: &Stop) -> Result<Answer, Failure> {
     let file = HeadFile::of(&NewHead {
         date: &named::today(),
         rig: &driving.rig.name,
-        aligned: &found.aligned,
-        timing: found.timing,
-        exposure_s: found.exposure_s,
+        geometry: found.aligned.alignment.geometry,
+        pose: found.aligned.alignment.pose,
+        score: HeadScore {
+            rms_m: found.aligned.rms_m,
+            spots: found.aligned.spots,
+            outliers: found.aligned.outliers,
+        },
+        images: Some((found.timing, found.exposure_s)),
+        area_m: None,
         frame: wall.frame,
         pages: &wall.pages,
     });

@@ -1,3 +1,4 @@
+mod corners;
 mod head;
 mod markers;
 mod ruler;
@@ -18,6 +19,7 @@ pub(crate) struct CalibrateArgs {
 impl CalibrateArgs {
     pub(crate) const fn voice(&self) -> Voice {
         match &self.action {
+            CalibrateAction::Corners(args) => args.voice,
             CalibrateAction::Head(args) => args.voice,
             CalibrateAction::Lens(args) => args.voice,
             CalibrateAction::Markers(args) => args.voice,
@@ -30,6 +32,7 @@ impl CalibrateArgs {
 #[derive(Subcommand, Debug)]
 enum CalibrateAction {
     Sheet(sheet::SheetArgs),
+    Corners(corners::CornersArgs),
     Head(Box<head::HeadArgs>),
     Markers(markers::MarkersArgs),
     Lens(markers::LensArgs),
@@ -38,6 +41,7 @@ enum CalibrateAction {
 
 pub(crate) fn run(args: &CalibrateArgs, stop: &Stop) -> Result<Answer, Failure> {
     match &args.action {
+        CalibrateAction::Corners(args) => corners::run(args),
         CalibrateAction::Head(args) => head::run(args, stop),
         CalibrateAction::Lens(args) => markers::lens(args),
         CalibrateAction::Markers(args) => markers::run(args, stop),
