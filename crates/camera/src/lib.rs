@@ -7,6 +7,7 @@ mod film;
 #[cfg(test)]
 mod hostile;
 mod latest;
+mod looked;
 mod net;
 mod redirect;
 mod shown;
@@ -14,5 +15,6 @@ mod source;
 mod stream;
 
 pub use devices::devices;
+pub use looked::{SeenCamera, camera_json, camera_text, look_at};
 pub use shown::shown;
 pub use source::{Opened, Source};

@@ -11,6 +11,8 @@ use crate::whole::{part_name, renamed_when_whole};
 
 /// Where results of an earlier job lie until those of the next one are whole.
 const PREVIOUS: &str = "previous";
+/// Most folders of one name.
+const MOST_FOLDERS: u32 = 9999;
 /// What is locked where a folder itself cannot be.
 #[cfg(not(unix))]
 const LOCK: &str = ".tracelight-lock";
@@ -42,6 +44,41 @@ impl ResultFolder {
             Self { dir: dir.to_owned(), _lock: lock, names: names.iter().map(|&name| name.into()).collect() };
         folder.put_aside(kept)?;
         Ok(folder)
+    }
+
+    /// A folder of that name, or the first of `name-2`, `name-3` … that is not there yet, which is made: nothing that was made before is lost.
+    ///
+    /// # Errors
+    /// `cannot-write` where it cannot be made.
+    pub fn unused(wanted: &Path) -> Result<PathBuf, Failure> {
+        if let Some(parent) = wanted.parent() {
+            fs::create_dir_all(parent).map_err(|e| cannot_write(parent, &e))?;
+        }
+        for number in 1..=MOST_FOLDERS {
+            let mut name = wanted.as_os_str().to_owned();
+            if number > 1 {
+                name.push(format!("-{number}"));
+            }
+            let dir = PathBuf::from(name);
+            match fs::create_dir(&dir) {
+                Ok(()) => return Ok(dir),
+                Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
+                Err(e) => return Err(cannot_write(&dir, &e)),
+            }
+        }
+        let message = format!(
+            "{0} and {0}-2 to {0}-{MOST_FOLDERS} are there: take some away, or give --out",
+            wanted.display()
+        );
+        Err(Failure::failed("cannot-write", message))
+    }
+
+    /// Refuses a folder in which a job writes at present.
+    ///
+    /// # Errors
+    /// `cannot-write`.
+    pub fn check_unused(dir: &Path) -> Result<(), Failure> {
+        locked(dir).map(drop)
     }
 
     /// Where a result of that name is, or will be.

@@ -18,6 +18,12 @@ pub fn protect(path: &Path) {
     }
 }
 
+/// The files that this process has read, by their real paths.
+#[must_use]
+pub fn inputs() -> Vec<PathBuf> {
+    INPUTS.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+}
+
 /// Refuses to write where an input lies, by whatever name or link it was read.
 ///
 /// # Errors

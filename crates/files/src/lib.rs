@@ -7,6 +7,6 @@ mod pictures;
 mod whole;
 
 pub use folder::ResultFolder;
-pub use inputs::protect;
+pub use inputs::{inputs, protect};
 pub use pictures::{Found, Picture, find, stands_for_several};
 pub use whole::{is_same, read, replace, write, written_whole};

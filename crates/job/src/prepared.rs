@@ -4,7 +4,7 @@ use tracelight_eye::figures::EyeFigures;
 use tracelight_eye::room::{Furnished, left};
 use tracelight_eye::seen::SeenLight;
 use tracelight_picture::{Raster, Source};
-use tracelight_pipeline::{Driving, Placed, Schedule, Sketch, place, schedule, sketch};
+use tracelight_pipeline::{Driving, Placed, Schedule, Sketch, place, schedule, schedule_rest, sketch};
 use tracelight_sim::{RigConfig, Run, SimulatedRig};
 use tracelight_task::{Failure, Stop, Task};
 use tracelight_trajectory::Plan;
@@ -12,6 +12,7 @@ use tracelight_trajectory::Plan;
 use crate::by_hand::{Hands, run_lap_by_hand};
 use crate::keep::Keep;
 use crate::lap::{Learned, learn, run_lap};
+use crate::remainder;
 use crate::request::{Request, RunRequest};
 use crate::seen::Seen;
 use crate::watched::{WatchedJob, WatchedRun, run_watched};
@@ -130,6 +131,20 @@ impl Prepared {
     /// The simulated room that a camera looks at while the laser draws.
     fn watched(&self) -> Option<(&Seen, &Furnished)> {
         self.seen.as_ref().and_then(|seen| Some((seen, seen.room.as_ref()?)))
+    }
+
+    /// What is left of a job that was drawn up to a tick of its plan, to be begun from zero; `None` where nothing is. Less than half a
+    /// millimetre of a stroke is not worth a way there.
+    ///
+    /// # Errors
+    /// Why there is no plan for it.
+    pub fn after(self, plan_tick: u32) -> Result<Option<Self>, Failure> {
+        let Some((_, rest)) = remainder::left(&self.schedule.plan, &self.schedule.ordered.drawing, plan_tick)
+        else {
+            return Ok(None);
+        };
+        let schedule = schedule_rest(rest, &self.driving)?;
+        Ok(Some(Self { schedule, ..self }))
     }
 
     /// Runs the laps, each from power-up on the same head, and has every tick kept. Between two of them the head is identified from

@@ -22,6 +22,7 @@ mod sketch;
 mod standing;
 mod tracing;
 mod twice;
+mod typed;
 
 pub use align::{AlignFigures, AskedMark, MarkedAt};
 pub use carried::{carried, has_corner};
@@ -35,8 +36,9 @@ pub use paper::Paper;
 pub use placed::{Fit, Page, Placed, Placing, place, sketch};
 pub use quality::QualityFigures;
 pub use refused::refused;
-pub use schedule::{Schedule, check_speed, check_standing, schedule};
+pub use schedule::{Schedule, check_speed, check_standing, schedule, schedule_rest};
 pub use sheet::{PaperSeen, Straight, clockwise, page};
 pub use sketch::{Sketch, sketch_at};
 pub use standing::{Standing, spot_radius_m};
 pub use tracing::{LeastLength, Straighten, Tracing};
+pub use typed::{NoGo, TypedMark, typed_marks, typed_no_go};

@@ -1,7 +1,9 @@
 //! Strokes on the target to a plan: order, then time.
 
 use tracelight_sim::first_standing;
-use tracelight_stroke::{OrderOptions, Ordered, Point, Travel, order, order_by_layer, reading_order};
+use tracelight_stroke::{
+    Drawing, OrderOptions, Ordered, Point, Travel, order, order_by_layer, reading_order,
+};
 use tracelight_task::Failure;
 use tracelight_trajectory::{Plan, TravelTime, plan};
 
@@ -28,16 +30,34 @@ pub struct Schedule {
 pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure> {
     check_reach(placed, driving)?;
     hopeless::check(&placed.drawing, driving)?;
-    let ordered = ordered(placed, driving);
+    let schedule = timed(ordered(placed, driving), driving)?;
+    check_speed(&schedule.plan, driving)?;
+    Ok(schedule)
+}
+
+/// Times the rest of a drawing that was ordered and began to be drawn, in the order that it has.
+///
+/// # Errors
+/// As of [`schedule`], but that no speed is too fast for it: its longest stroke may be drawn.
+pub fn schedule_rest(drawing: Drawing, driving: &Driving) -> Result<Schedule, Failure> {
+    let cost = TravelTime::new(&driving.machine, &driving.request);
+    timed(Ordered::as_it_is(drawing, start_of(driving), &cost), driving)
+}
+
+fn timed(ordered: Ordered, driving: &Driving) -> Result<Schedule, Failure> {
     let plan = plan(&ordered.drawing, &driving.machine, &driving.request).map_err(refused)?;
-    check_speed(&plan, driving)?;
     check_standing(&plan, driving)?;
     Ok(Schedule { ordered, plan })
 }
 
+/// Where the beam falls at rest.
+fn start_of(driving: &Driving) -> Point {
+    driving.machine.geometry.spot(&driving.pose, Default::default()).unwrap_or(Point::ORIGIN)
+}
+
 /// A drawing's strokes in the order that is asked for, from where the beam falls at rest.
 fn ordered(placed: &Placed, driving: &Driving) -> Ordered {
-    let start = driving.machine.geometry.spot(&driving.pose, Default::default()).unwrap_or(Point::ORIGIN);
+    let start = start_of(driving);
     match driving.order.by {
         OrderBy::Time => {
             by_cost(placed, driving, start, &TravelTime::new(&driving.machine, &driving.request))

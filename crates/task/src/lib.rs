@@ -4,6 +4,7 @@
 
 mod failure;
 mod fan;
+mod meanings;
 mod place;
 mod progress;
 mod stop;
@@ -11,6 +12,7 @@ mod words;
 
 pub use failure::{Failure, Status};
 pub use fan::on_all_cores;
+pub use meanings::{codes, meaning};
 pub use place::Place;
 pub use progress::{NoProgress, Progress, Task};
 pub use stop::{Kept, Stop};

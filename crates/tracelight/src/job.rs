@@ -3,13 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use tracelight_camera::{Opened, shown};
-use tracelight_files::{self as files, ResultFolder};
-use tracelight_job::{Prepared, Ran, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
-use tracelight_pipeline::Standing;
-use tracelight_report::{Finished, LogMeta, Picture, Setting, Summary, Target, Timing};
-use tracelight_rig::PanTilt;
-use tracelight_rigfile as rigfile;
-use tracelight_sim::{Tracking, score};
+use tracelight_files::ResultFolder;
+use tracelight_job::{Prepared, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
+use tracelight_report::{LogMeta, Summary};
+use tracelight_results::{self as results, Asked, Before, Records, Told, write};
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::at_wall::AtWall;
@@ -18,7 +15,6 @@ use crate::cli::driving::stand_by;
 use crate::cli::eyes::SimulatedEyeName;
 use crate::cli::request::TraceArgs;
 use crate::named;
-use crate::results::{self, RunLog};
 use crate::settings;
 
 /// How a job ended.
@@ -32,32 +28,93 @@ pub(crate) struct Outcome {
 
 /// Picture → strokes → target → order → plan → run → results.
 pub(crate) fn trace(args: &TraceArgs, stop: &Stop) -> Result<Outcome, Failure> {
+    run(args, None, stop)
+}
+
+/// The rest of a run that ended on its way, as a run of its own.
+pub(crate) fn resume(args: &TraceArgs, earlier: &Earlier<'_>, stop: &Stop) -> Result<Outcome, Failure> {
+    run(args, Some(earlier), stop)
+}
+
+/// A run that ended on its way.
+pub(crate) struct Earlier<'a> {
+    /// What it was asked.
+    pub(crate) asked: &'a Asked,
+    /// It, and those that it went on with itself, the first one first.
+    pub(crate) runs: Vec<Before>,
+    /// The folder beside which the results go unless another one is given.
+    pub(crate) beside: &'a Path,
+}
+
+fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<Outcome, Failure> {
     let bar = Bar::new(args.voice.quiet);
     let task = Task { progress: &bar, stop };
     args.check_camera()?;
-    let prepared = prepared(args, task)?;
-    let dir = args.out.clone().unwrap_or_else(|| default_dir(args));
+    let (prepared, asked) = begun(args, earlier, task)?;
+    let dir = match &args.out {
+        Some(dir) => dir.clone(),
+        None => {
+            ResultFolder::unused(&earlier.map_or_else(|| default_dir(args), |run| run.beside.to_owned()))?
+        }
+    };
     // from here on the laser may be lit, and results belong together
     let _kept = stop.keep();
     let folder = results::open(&dir, &args.driving.rig)?;
     let settings = settings::of(args, &prepared.driving, &prepared.placed);
     let name = shown(args.name());
     let meta = LogMeta { picture_path: &name, settings: &settings, seed: args.seed };
-    let mut log = RunLog::open(&folder, &meta)?;
+    let strokes = prepared.schedule.ordered.drawing.strokes.len();
+    let mut kept = Records::begin(&folder, &asked, strokes, &meta)?;
     let mut ran = match AtWall::of(&args.by_hand, task, stop) {
-        Some(mut hands) => prepared.run_by_hand(&mut log, &mut hands, task)?,
-        None => prepared.run(&mut log, task)?,
+        Some(mut hands) => prepared.run_by_hand(&mut kept, &mut hands, task)?,
+        None => prepared.run(&mut kept, task)?,
     };
-    if let Some(remark) = log.finish()? {
+    if let Some(remark) = kept.finish()? {
         task.say(&format!("note: {remark}"));
         ran.notes.push(remark);
     }
     task.stage("report", 1);
-    let summary = write(args, &prepared, &ran, &folder, &settings)?;
+    let told = Told {
+        name: &name,
+        settings: &settings,
+        seed: args.seed,
+        dry_run: args.dry_run,
+        rig_file: &args.driving.rig,
+        today: named::today(),
+    };
+    let summary = write(&folder, &told, &prepared, &ran)?;
     folder.finish()?;
     // also who wants it to end while results are written is told so
     let failure = ran.failure.take().or_else(|| task.check().err());
     Ok(Outcome { summary, dir, failure })
+}
+
+/// What is to be run, and what is kept of what was asked: the whole of it, or the rest of earlier runs.
+fn begun(
+    args: &TraceArgs,
+    earlier: Option<&Earlier<'_>>,
+    task: Task<'_>,
+) -> Result<(Prepared, Asked), Failure> {
+    let mut whole = prepared(args, task)?;
+    let Some(Earlier { asked, runs, .. }) = earlier else {
+        let asked = Asked::of(&args.typed, named::now(), &whole)?;
+        return Ok((whole, asked));
+    };
+    asked.check_strokes(&whole)?;
+    for Before { folder, plan_tick } in runs {
+        let Some(rest) = whole.after(*plan_tick)? else {
+            let message = format!("{} was drawn to its end: nothing is left of it", folder.display());
+            return Err(Failure::failed("nothing-left", message));
+        };
+        whole = rest;
+    }
+    let left = whole.schedule.ordered.drawing.strokes.len();
+    let last = runs.last().map_or_else(String::new, |run| run.folder.display().to_string());
+    let note =
+        format!("goes on with {last}: {left} of {} strokes are left, or a part of the first", asked.strokes);
+    task.say(&format!("note: {note}"));
+    whole.notes.push(note);
+    Ok((whole, Asked { before: runs.clone(), ..Asked::clone(asked) }))
 }
 
 fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
@@ -130,73 +187,4 @@ fn default_dir(args: &TraceArgs) -> PathBuf {
         Path::new(picture).file_stem().filter(|_| picture != "-").unwrap_or_else(|| "picture".as_ref());
     let seen = if args.eye.camera.is_some() { "-camera" } else { "" };
     Path::new("out").join(format!("{}{seen}", stem.to_string_lossy()))
-}
-
-fn write(
-    args: &TraceArgs,
-    prepared: &Prepared,
-    ran: &Ran,
-    folder: &ResultFolder,
-    settings: &[Setting],
-) -> Result<Summary, Failure> {
-    let Prepared { sketch, placed, driving, schedule, .. } = prepared;
-    let drawing = &schedule.ordered.drawing;
-    folder.put(results::STROKES, placed.svg(drawing))?;
-    results::put_jpeg(folder, results::CAMERA, prepared.camera_image())?;
-    write_rig(args, folder, ran)?;
-    let plan = ran.plan(prepared);
-    let tracking: Tracking = score(plan, &ran.last, plan.set_speed_m_s);
-    let motors = &driving.rig.model.motors;
-    let bent = sketch.picture.as_ref().and_then(|picture| placed.bent_picture(picture));
-    let name = shown(args.name());
-    let job = Finished {
-        picture_path: &name,
-        picture: sketch.picture.as_ref().map(|raster| match &bent {
-            Some((raster, target_from_pixel)) => Picture { raster, target_from_pixel: *target_from_pixel },
-            None => Picture { raster, target_from_pixel: placed.target_from_sheet },
-        }),
-        quality: sketch.quality.as_ref(),
-        target: Target {
-            width_m: placed.size_m.0,
-            height_m: placed.size_m.1,
-            middle: placed.centre(),
-            distance_m: driving.pose.distance_m,
-        },
-        standing: Standing::of(drawing, driving),
-        align: placed.align.as_ref(),
-        left_out: placed.left_out,
-        drawing,
-        plan,
-        run: &ran.last,
-        earlier_laps: &ran.earlier,
-        tracking,
-        set_speed_m_s: plan.set_speed_m_s,
-        command_limit_v: motors.map(|m| m.limit_v),
-        torque_limit_nm: PanTilt::new(motors.pan.torque_limit_nm(), motors.tilt.torque_limit_nm()),
-        tolerance_mm: driving.request.tolerance_m * 1e3,
-        settings,
-        notes: &ran.notes,
-        timing: Timing {
-            vision_ms: prepared.vision_ms,
-            plan_ms: prepared.plan_ms,
-            run_ms: ran.run_ms,
-            report_ms: 0.0,
-        },
-        seed: args.seed,
-        dry_run: args.dry_run,
-        simulated: ran.simulated,
-        eye: ran.eye.clone(),
-        seen: ran.seen.as_ref(),
-    };
-    results::write_all(folder, &job)
-}
-
-/// Writes `rig.toml`, the rig as its laps identified it. A rig file that the job was given stays as it is.
-fn write_rig(args: &TraceArgs, folder: &ResultFolder, ran: &Ran) -> Result<(), Failure> {
-    let Some(mut rig) = ran.identified.clone() else { return Ok(()) };
-    if files::is_same(&folder.path(results::RIG).to_string_lossy(), &args.driving.rig) {
-        return Ok(());
-    }
-    named::date_rig(&mut rig);
-    folder.put(results::RIG, rigfile::write(&rig))
 }

@@ -8,7 +8,6 @@ mod interrupt;
 mod job;
 mod keys;
 mod named;
-mod results;
 mod settings;
 
 use std::process::ExitCode;

@@ -134,9 +134,7 @@ pub(crate) fn today() -> String {
     jiff::Timestamp::now().strftime("%Y-%m-%d").to_string()
 }
 
-/// Says that a rig was identified today.
-pub(crate) fn date_rig(rig: &mut RigConfig) {
-    if let Some(identified) = &mut rig.identified {
-        identified.date = today();
-    }
+/// Date and time, UTC.
+pub(crate) fn now() -> String {
+    jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S").to_string()
 }

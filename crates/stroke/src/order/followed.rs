@@ -40,7 +40,7 @@ pub fn order_by_layer<C: Travel>(
         at = ordered.drawing.strokes.last().map_or(at, |stroke| stroke.path.end());
         strokes.extend(ordered.drawing.strokes);
     }
-    measured(Drawing { strokes }, start, cost)
+    Ordered::as_it_is(Drawing { strokes }, start, cost)
 }
 
 /// Puts strokes in the order in which a page is read: rows from the top, each from the left; what lies round others
@@ -62,15 +62,18 @@ pub fn reading_order<C: Travel>(drawing: &Drawing, start: Point, cost: &C) -> Or
     }
     let ports = Ports::of(drawing);
     let strokes = sequence.into_iter().map(|stroke| first_entry(&ports, stroke).drawn(drawing, &ports));
-    measured(Drawing { strokes: strokes.collect() }, start, cost)
+    Ordered::as_it_is(Drawing { strokes: strokes.collect() }, start, cost)
 }
 
-fn measured(drawing: Drawing, start: Point, cost: &impl Travel) -> Ordered {
-    Ordered {
-        cost: travel_cost(&drawing, start, cost),
-        travel: drawing.travel(start),
-        lower_bound: 0.0,
-        drawing,
+impl Ordered {
+    /// A drawing in the order that it has. The lower bound is zero: nothing is known of a better one.
+    pub fn as_it_is(drawing: Drawing, start: Point, cost: &impl Travel) -> Self {
+        Self {
+            cost: travel_cost(&drawing, start, cost),
+            travel: drawing.travel(start),
+            lower_bound: 0.0,
+            drawing,
+        }
     }
 }
 

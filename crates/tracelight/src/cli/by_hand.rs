@@ -6,10 +6,10 @@ pub(crate) struct ByHandArgs {
     /// Run the simulated rig in real time, or FACTOR times as fast, from 0.25 to 8. In a terminal keys pause, stop and change the speed; ? lists
     /// them
     #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1", value_parser = factor,
-          allow_hyphen_values = true, conflicts_with = "camera")]
+          allow_hyphen_values = true)]
     pub(crate) real_time: Option<f64>,
     /// Print one JSON object per line while the job runs: states, strokes, faults, progress
-    #[arg(long, conflicts_with_all = ["json", "camera"])]
+    #[arg(long, conflicts_with = "json")]
     pub(crate) events: bool,
 }
 

@@ -13,7 +13,6 @@ use tracelight_camera::devices;
 use tracelight_picture::Source;
 use tracelight_sim::RigConfig;
 
-use crate::cli::explain;
 use crate::named;
 
 /// The variable in the environment by which a shell's script asks what to offer; its value is the shell.
@@ -94,7 +93,7 @@ fn is_drawing(path: &Path) -> bool {
 
 fn codes() -> Vec<CompletionCandidate> {
     let first = |words: String| words.split_inclusive(". ").next().unwrap_or_default().trim().to_owned();
-    let all = explain::codes().into_iter();
+    let all = tracelight_task::codes().into_iter();
     all.map(|(code, words)| CompletionCandidate::new(code).help(Some(first(words).into()))).collect()
 }
 

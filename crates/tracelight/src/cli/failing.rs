@@ -1,9 +1,7 @@
 //! What a failure is for scripts: one object, with what to do.
 
 use tracelight_camera::shown;
-use tracelight_task::Failure;
-
-use crate::cli::explain::meaning;
+use tracelight_task::{Failure, meaning};
 
 /// A failure as JSON; what to do is what its code means, as `explain` has it.
 pub(crate) fn json(failure: &Failure) -> String {

@@ -14,7 +14,7 @@ const ENDINGS: [&str; 20] = [
 ];
 
 /// Commands of which people have heard, and that are not there yet.
-const COMING: [&str; 8] = ["studio", "resume", "runs", "point", "jog", "home", "park", "rig"];
+const COMING: [&str; 6] = ["studio", "point", "jog", "home", "park", "rig"];
 
 /// A command line with its command put in where it begins with a picture; `sim:PICTURE` is a camera that sees one. The first argument is the
 /// program, as everywhere.

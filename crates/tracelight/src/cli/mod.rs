@@ -26,7 +26,9 @@ mod plan;
 mod reading;
 mod recover;
 pub(crate) mod request;
+mod resume;
 mod rigs;
+mod runs;
 pub(crate) mod shapes;
 mod strokes;
 mod terminal;
@@ -72,6 +74,8 @@ enum Command {
     Lab(lab::LabArgs),
     Doctor(doctor::DoctorArgs),
     Rigs(rigs::RigsArgs),
+    Resume(resume::ResumeArgs),
+    Runs(runs::RunsArgs),
     Recover(recover::RecoverArgs),
     Explain(explain::ExplainArgs),
     Completions(completions::CompletionsArgs),
@@ -91,6 +95,7 @@ pub(crate) fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(failure) => return report(terminal, json, json, &failure),
     };
+    let given = arguments.iter().skip(1).map(|argument| argument.to_string_lossy().into_owned()).collect();
     let parsed = program.clone().try_get_matches_from(&arguments);
     let cli = match parsed.and_then(|found| Cli::from_arg_matches(&found)) {
         Ok(cli) => cli,
@@ -98,8 +103,9 @@ pub(crate) fn main() -> ExitCode {
             return refuse(terminal, &error, json, &advice::more(&error, &program, &arguments));
         }
     };
-    let (voice, result) = perform(&cli.command, &interrupt::listen());
-    finish(terminal, &cli.command, voice, result)
+    let command = cli.command.typed(given);
+    let (voice, result) = perform(&command, &interrupt::listen());
+    finish(terminal, &command, voice, result)
 }
 
 /// Answers a shell that asks what to offer; `None` where none does.
@@ -121,6 +127,8 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Lab(args) => (args.voice(), lab::run(args, answer_to, stop)),
         Command::Doctor(args) => (args.voice, doctor::run(args, stop)),
         Command::Rigs(args) => (args.voice, rigs::run(args)),
+        Command::Resume(args) => (args.voice, resume::run(args, traced, stop)),
+        Command::Runs(args) => (args.voice, runs::run(args)),
         Command::Recover(args) => (args.voice, recover::run(args)),
         Command::Explain(args) => (args.voice, explain::run(args)),
         Command::Completions(args) => (args.voice, completions::run(args)),
@@ -132,10 +140,33 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
 fn answer_to(arguments: &[&str], stop: &Stop) -> Result<Answer, Failure> {
     let all = std::iter::once("tracelight").chain(arguments.iter().copied());
     let cli = Cli::try_parse_from(all).map_err(|e| Failure::failed("internal", e))?;
-    perform(&cli.command, stop).1
+    let typed = arguments.iter().map(|&argument| argument.to_owned()).collect();
+    perform(&cli.command.typed(typed), stop).1
+}
+
+/// What `trace` was asked by a command that was given earlier.
+fn traced(arguments: &[String]) -> Result<request::TraceArgs, Failure> {
+    let all = std::iter::once("tracelight").chain(arguments.iter().map(String::as_str));
+    let refused = |why: String| {
+        let message = format!("cannot go on with tracelight {}: {why}", arguments.join(" "));
+        Failure::usage("usage", message)
+    };
+    let cli = Cli::try_parse_from(all).map_err(|e| refused(e.to_string()))?;
+    match cli.command.typed(arguments.to_vec()) {
+        Command::Trace(args) => Ok(*args),
+        _ => Err(refused("only trace can be gone on with".to_owned())),
+    }
 }
 
 impl Command {
+    /// The same, with the command as it was given: a run keeps it, to be gone on with.
+    fn typed(mut self, typed: Vec<String>) -> Self {
+        if let Self::Trace(args) = &mut self {
+            args.typed = typed;
+        }
+        self
+    }
+
     /// Whether its answer is meant to become a file.
     fn prints_file(&self) -> bool {
         match self {

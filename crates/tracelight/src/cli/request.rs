@@ -75,7 +75,7 @@ pub(crate) struct TraceArgs {
     pub(crate) sim_unhomed: bool,
     #[command(flatten, next_help_heading = "At the wall")]
     pub(crate) by_hand: ByHandArgs,
-    /// Folder for the results [default: out/<the picture's name>/]
+    /// Folder for the results [default: out/<the picture's name>/, or the first of …-2/, …-3/ that is not there yet]
     #[arg(help_heading = "Output", long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Everything, with the laser's gate held dark
@@ -86,6 +86,9 @@ pub(crate) struct TraceArgs {
     pub(crate) open: bool,
     #[command(flatten, next_help_heading = "Output")]
     pub(crate) voice: Voice,
+    /// The command as it was given, without the program's name.
+    #[arg(skip)]
+    pub(crate) typed: Vec<String>,
 }
 
 impl TraceArgs {
@@ -104,6 +107,10 @@ impl TraceArgs {
         }
         if self.head.is_some() && self.eye.camera.is_none() && self.driving.distance.is_some() {
             let message = "--head says where the head stands, and --distance too: leave one of them out";
+            return Err(Failure::usage("usage", message));
+        }
+        if self.eye.camera.is_some() && (self.by_hand.real_time.is_some() || self.by_hand.events) {
+            let message = "--real-time and --events are not there yet for what a camera follows: leave them or --camera out";
             return Err(Failure::usage("usage", message));
         }
         let follows = self.follow.open_loop || !self.follow.sim_trouble.is_empty() || self.home;

@@ -12,12 +12,11 @@ use tracelight_picture::Source;
 use tracelight_pipeline::{Tracing, page, place, sketch};
 use tracelight_report as report;
 use tracelight_report::drawing::{self, FORMATS};
-use tracelight_task::{Failure, Progress as _, Stop, Task, counted};
+use tracelight_task::{Failure, Progress as _, Stop, Task, counted, meaning};
 use tracelight_vision::Stages;
 
 use crate::bar::Bar;
 use crate::cli::answer::{Answer, Voice, print_piece};
-use crate::cli::explain::meaning;
 use crate::cli::gcode::GcodeArgs;
 use crate::cli::lettering::LetteringArgs;
 use crate::cli::placing::PlacementArgs;

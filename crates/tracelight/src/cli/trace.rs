@@ -7,7 +7,12 @@ use crate::cli::request::TraceArgs;
 use crate::job::{self, Outcome};
 
 pub(crate) fn run(args: &TraceArgs, stop: &Stop) -> Result<Answer, Failure> {
-    let Outcome { summary, dir, failure } = job::trace(args, stop)?;
+    answered(args, job::trace(args, stop)?)
+}
+
+/// What a run that is over is answered with.
+pub(crate) fn answered(args: &TraceArgs, outcome: Outcome) -> Result<Answer, Failure> {
+    let Outcome { summary, dir, failure } = outcome;
     if args.open {
         open(&dir.join("report.html"));
     }

@@ -22,6 +22,8 @@ const LINES: &[&str] = &[
     "plan examples/star.png",
     "trace examples/star.png --out @/dark --dry-run",
     "trace --camera sim:examples/star.png --out @/seen",
+    "runs @",
+    "resume @/dark",
     "recover @/dark/run.mcap -o @/whole.mcap",
     "calibrate sheet -o @/pages.pdf",
     "calibrate markers --camera sim -o @/camera.toml",

@@ -44,6 +44,7 @@ mod readme_commands;
 mod readmes;
 mod reproduce;
 mod results;
+mod resume;
 mod sets;
 mod several;
 mod simulate;

@@ -1,11 +1,10 @@
-//! A job's results in a folder.
+//! The files of a run's folder.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, Read, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::time::Instant;
 
-use sha2::{Digest, Sha256};
 use tracelight_files::ResultFolder;
 use tracelight_job::Keep;
 use tracelight_picture::Raster;
@@ -17,17 +16,21 @@ use tracelight_sim::Tick;
 use tracelight_task::Failure;
 use tracelight_trajectory::Plan;
 
+use crate::journal::{Asked, JOB, Journal, PROGRESS, hash_of};
+
 /// The run log, written while the run goes on.
 const LOG: &str = "run.mcap";
-/// The same with an index, until it takes the log's place.
+/// The log with an index, until it takes the log's place.
 const INDEXED: &str = "run.mcap.part";
-const SUMMARY: &str = "summary.json";
+pub(crate) const SUMMARY: &str = "summary.json";
 pub(crate) const RIG: &str = "rig.toml";
 pub(crate) const STROKES: &str = "strokes.svg";
 pub(crate) const CAMERA: &str = "camera.jpg";
 
 /// All results that a job may have; the summary is written last.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 14] = [
+    JOB,
+    PROGRESS,
     LOG,
     INDEXED,
     STROKES,
@@ -43,28 +46,67 @@ const NAMES: [&str; 12] = [
 ];
 
 /// Takes a folder over for a job's results. A rig file that the job was given and that lies there under the name of one stays.
-pub(crate) fn open(dir: &Path, rig: &str) -> Result<ResultFolder, Failure> {
+///
+/// # Errors
+/// As of [`ResultFolder::open`].
+pub fn open(dir: &Path, rig: &str) -> Result<ResultFolder, Failure> {
     ResultFolder::open(dir, &NAMES, Some(Path::new(rig)))
 }
 
+/// All that is kept of a run while it goes on. What happened is known to the tick, whenever the program ends.
+pub struct Records<'a> {
+    journal: Journal,
+    log: RunLog<'a>,
+}
+
+impl<'a> Records<'a> {
+    /// Begins them, for a job of so many strokes.
+    ///
+    /// # Errors
+    /// `cannot-write`.
+    pub fn begin(
+        folder: &'a ResultFolder,
+        asked: &Asked,
+        strokes: usize,
+        meta: &LogMeta<'_>,
+    ) -> Result<Self, Failure> {
+        asked.put(folder)?;
+        Ok(Self { journal: Journal::begin(folder, strokes)?, log: RunLog::open(folder, meta)? })
+    }
+
+    /// Closes the log: indexed, and whole for every reader. Where there is no room for the index, the log stays without, and that is what is
+    /// returned: a remark.
+    ///
+    /// # Errors
+    /// `cannot-write`.
+    pub fn finish(self) -> Result<Option<String>, Failure> {
+        self.log.finish()
+    }
+}
+
+impl Keep for Records<'_> {
+    fn tick(&mut self, plan: &Plan, tick: &Tick) -> Result<(), Failure> {
+        self.journal.tick(plan, tick)?;
+        self.log.tick(plan, tick)
+    }
+}
+
 /// The run log `run.mcap`, written while the run goes on. A killed program leaves all of it but its index.
-pub(crate) struct RunLog<'a> {
+struct RunLog<'a> {
     folder: &'a ResultFolder,
     writer: LogWriter<BufWriter<File>>,
 }
 
 impl<'a> RunLog<'a> {
     /// Begins a log.
-    pub(crate) fn open(folder: &'a ResultFolder, meta: &LogMeta<'_>) -> Result<Self, Failure> {
+    fn open(folder: &'a ResultFolder, meta: &LogMeta<'_>) -> Result<Self, Failure> {
         let file = folder.begin(LOG)?;
         let writer =
             LogWriter::begin(BufWriter::new(file), meta).map_err(|e| cannot_log(&folder.path(LOG), &e))?;
         Ok(Self { folder, writer })
     }
 
-    /// Closes the log: indexed, and whole for every reader. Where there is no room for the index, the log stays without, and that is what is
-    /// returned: a remark.
-    pub(crate) fn finish(self) -> Result<Option<String>, Failure> {
+    fn finish(self) -> Result<Option<String>, Failure> {
         let Self { folder, writer } = self;
         let (path, indexed) = (folder.path(LOG), folder.path(INDEXED));
         writer.finish().map_err(|e| cannot_log(&path, &e))?;
@@ -133,19 +175,7 @@ pub(crate) fn write_all(folder: &ResultFolder, job: &Finished<'_>) -> Result<Sum
 
 /// By which anybody can tell whether a log is the one that a summary is of.
 fn log_figures(path: &Path) -> std::io::Result<LogFigures> {
-    let mut log = File::open(path)?;
-    let (mut hash, mut bytes) = (Sha256::new(), 0);
-    let mut piece = vec![0; 1 << 16];
-    loop {
-        let read = log.read(&mut piece)?;
-        if read == 0 {
-            break;
-        }
-        hash.update(&piece[..read]);
-        bytes += read as u64;
-    }
-    let sha256 = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(LogFigures { file: LOG, bytes, sha256 })
+    Ok(LogFigures { file: LOG, bytes: fs::metadata(path)?.len(), sha256: hash_of(path)? })
 }
 
 fn write_tables(folder: &ResultFolder, job: &Finished<'_>) -> Result<(), Failure> {

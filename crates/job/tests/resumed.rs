@@ -1,0 +1,184 @@
+//! A run that ended anywhere is gone on with: all of its ink is there afterwards, and hardly any twice.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on may panic, and shows figures"
+)]
+
+use std::collections::HashMap;
+
+use tracelight_aim::HeadPose;
+use tracelight_job::{Keep, Prepared, Request, RunRequest, prepare};
+use tracelight_picture::decode;
+use tracelight_pipeline::{Asked, Driving, Placing, Tracing, request_of};
+use tracelight_sim::{RigConfig, Tick};
+use tracelight_stroke::Point;
+use tracelight_task::{Failure, NoProgress, Stop, Task};
+use tracelight_trajectory::Plan;
+
+/// Places on the lines that are looked at, m apart.
+const STEP_M: f64 = 5e-5;
+/// Side of the squares by which places are found, m; further than that light is not from its line.
+const CELL_M: f64 = 2e-3;
+
+/// A circle, a square and an open line, which do not cross: whatever is lit twice is doubled.
+const DRAWING: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="400mm" height="300mm" viewBox="0 0 400 300" fill="none" stroke="black">
+    <circle cx="90" cy="90" r="60"/><path d="M200 40h120v90h-120z"/><path d="M40 200 L150 270 L260 190 C300 160 330 250 370 210"/></svg>"#;
+
+/// Keeps the light of a run, and ends it at a tick as a killed program would.
+struct Killed {
+    at: u32,
+    plan_tick: u32,
+    /// From where to where light went, tick by tick.
+    lit: Vec<[Point; 2]>,
+    last: Option<Point>,
+}
+
+impl Killed {
+    fn at(at: u32) -> Self {
+        Self { at, plan_tick: 0, lit: Vec::new(), last: None }
+    }
+}
+
+impl Keep for Killed {
+    fn tick(&mut self, _: &Plan, tick: &Tick) -> Result<(), Failure> {
+        let spot = tick.spot.filter(|_| tick.light);
+        if let (Some(from), Some(to)) = (self.last, tick.spot) {
+            self.lit.push([from, to]);
+        }
+        self.last = spot;
+        self.plan_tick = tick.telemetry.plan_tick;
+        match tick.telemetry.tick >= self.at {
+            true => Err(Failure::failed("killed", "it was killed")),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Places along the lines of a plan, found by where they are.
+struct Lines {
+    places: Vec<Point>,
+    cells: HashMap<(i64, i64), Vec<usize>>,
+}
+
+fn cell(p: Point) -> (i64, i64) {
+    ((p.x / CELL_M).floor() as i64, (p.y / CELL_M).floor() as i64)
+}
+
+impl Lines {
+    fn of(plan: &Plan) -> Self {
+        let mut places: Vec<Point> = Vec::new();
+        for pair in plan.points.windows(2).filter(|pair| pair.iter().all(|point| point.lit)) {
+            let (from, to) = (pair[0].spot, pair[1].spot);
+            let steps = (from.distance(to) / STEP_M).ceil();
+            for place in (0..steps as usize).map(|k| from.lerp(to, k as f64 / steps)) {
+                // where it is slow, ticks are nearer to each other
+                if places.last().is_none_or(|last| last.distance(place) >= 0.9 * STEP_M) {
+                    places.push(place);
+                }
+            }
+        }
+        let mut cells: HashMap<_, Vec<usize>> = HashMap::new();
+        for (number, place) in places.iter().enumerate() {
+            cells.entry(cell(*place)).or_default().push(number);
+        }
+        Self { places, cells }
+    }
+
+    /// Which places light passed.
+    fn passed(&self, lit: &[[Point; 2]]) -> Vec<bool> {
+        let mut passed = vec![false; self.places.len()];
+        for &[from, to] in lit {
+            let way = to - from;
+            let length_m = way.hypot();
+            let (x, y) = cell(from.midpoint(to));
+            let near = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (x + dx, y + dy)));
+            for &number in near.filter_map(|at| self.cells.get(&at)).flatten() {
+                let off = self.places[number] - from;
+                let along_m = off.dot(way) / length_m.max(1e-9);
+                let is_beside = (-STEP_M..=length_m + STEP_M).contains(&along_m);
+                passed[number] |= is_beside && (off - way * (along_m / length_m.max(1e-9))).hypot() < 3e-4;
+            }
+        }
+        passed
+    }
+}
+
+/// Longest row of places of that kind, mm.
+fn longest_mm(places: impl Iterator<Item = bool>) -> f64 {
+    let (mut row, mut longest) = (0_u32, 0);
+    for is in places {
+        row = if is { row + 1 } else { 0 };
+        longest = longest.max(row);
+    }
+    f64::from(longest) * STEP_M * 1e3
+}
+
+fn driving() -> Driving {
+    let rig = RigConfig::report();
+    let request = request_of(&rig);
+    Driving::new(rig, HeadPose::square_on(0.9144), request, Asked::default())
+}
+
+fn prepared(task: Task<'_>) -> Prepared {
+    let request = Request {
+        name: "drawing.svg",
+        tracing: Tracing::default(),
+        placing: Placing::default(),
+        driving: driving(),
+        run: RunRequest::default(),
+    };
+    prepare(&request, decode("drawing.svg", DRAWING.as_bytes()).unwrap(), task).unwrap()
+}
+
+/// What is missing and what is doubled of a run that was killed at each of some moments and gone on with, up to `times` times, mm.
+fn worst_of(moments: impl IntoIterator<Item = u64>, times: usize) -> (f64, f64) {
+    let stop = Stop::default();
+    let task = Task { progress: &NoProgress, stop: &stop };
+    let whole = prepared(task).schedule.plan;
+    let lines = Lines::of(&whole);
+    let (mut missing_mm, mut doubled_mm) = (0.0_f64, 0.0_f64);
+    for moment in moments {
+        let mut dice = oorandom::Rand64::new(u128::from(moment));
+        let mut job = prepared(task);
+        let mut runs: Vec<Vec<bool>> = Vec::new();
+        for _ in 0..times {
+            let most = job.schedule.plan.points.len() as u64;
+            let mut keep = Killed::at(dice.rand_range(0..most) as u32);
+            assert_eq!(job.run(&mut keep, task).err().unwrap().code, "killed");
+            runs.push(lines.passed(&keep.lit));
+            match job.after(keep.plan_tick).unwrap() {
+                Some(rest) => job = rest,
+                // it was all but done
+                None => {
+                    job = prepared(task);
+                    runs.clear();
+                }
+            }
+        }
+        let mut keep = Killed::at(u32::MAX);
+        let ran = job.run(&mut keep, task).unwrap();
+        assert!(ran.failure.is_none(), "{:?}", ran.failure);
+        runs.push(lines.passed(&keep.lit));
+        let drawn = |place: usize| runs.iter().filter(|run| run[place]).count();
+        let all = 0..lines.places.len();
+        missing_mm = missing_mm.max(longest_mm(all.clone().map(|place| drawn(place) == 0)));
+        doubled_mm = doubled_mm.max(longest_mm(all.map(|place| drawn(place) > 1)));
+    }
+    (missing_mm, doubled_mm)
+}
+
+#[test]
+fn a_run_killed_anywhere_is_whole_once_it_is_gone_on_with() {
+    let (missing_mm, doubled_mm) = worst_of(0..100, 1);
+    println!("killed at 100 moments: missing {missing_mm:.2} mm, doubled {doubled_mm:.2} mm");
+    assert!(missing_mm <= 0.5 && doubled_mm <= 0.5, "missing {missing_mm} mm, doubled {doubled_mm} mm");
+}
+
+#[test]
+fn and_once_more_when_that_is_killed_too() {
+    let (missing_mm, doubled_mm) = worst_of(100..120, 3);
+    println!("killed thrice at 20 moments each: missing {missing_mm:.2} mm, doubled {doubled_mm:.2} mm");
+    assert!(missing_mm <= 0.5 && doubled_mm <= 0.5, "missing {missing_mm} mm, doubled {doubled_mm} mm");
+}

@@ -1,0 +1,11 @@
+//! Folders of runs: what is written while a run goes on and when it is over, what it was asked, how far it came, and which runs there are.
+
+mod folder;
+mod journal;
+mod listed;
+mod written;
+
+pub use folder::{Records, open};
+pub use journal::{Asked, Before, Input, Kept, Progress, read};
+pub use listed::{ListedRun, runs};
+pub use written::{Told, write};

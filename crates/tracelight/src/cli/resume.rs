@@ -1,0 +1,96 @@
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use tracelight_files::ResultFolder;
+use tracelight_results::{Before, Kept, read};
+use tracelight_task::{Failure, Stop};
+
+use crate::cli::answer::{Answer, Voice};
+use crate::cli::by_hand::ByHandArgs;
+use crate::cli::request::TraceArgs;
+use crate::cli::trace;
+use crate::job::{self, Earlier};
+
+/// Go on with a run that ended on its way: killed, stopped, after a fault or a power cut
+///
+/// The head begins from zero and draws what is left, from the place that the light had reached. The results go into a new folder; those of the run before
+/// stay as they are. The files that the run was read from must be unchanged.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: tracelight resume out/house")]
+pub(crate) struct ResumeArgs {
+    /// The run's folder, such as out/house; `tracelight runs` lists them
+    #[arg(value_name = "DIR")]
+    dir: PathBuf,
+    #[command(flatten, next_help_heading = "At the wall")]
+    by_hand: ByHandArgs,
+    /// Folder for the results [default: DIR-2, or the first of DIR-3 … that is not there yet]
+    #[arg(help_heading = "Output", long, value_name = "OUT")]
+    out: Option<PathBuf>,
+    /// Show the report in the browser when done
+    #[arg(help_heading = "Output", long)]
+    open: bool,
+    #[command(flatten, next_help_heading = "Output")]
+    pub(crate) voice: Voice,
+}
+
+/// Reads a command that was given earlier.
+type Traced = fn(&[String]) -> Result<TraceArgs, Failure>;
+
+pub(crate) fn run(args: &ResumeArgs, traced: Traced, stop: &Stop) -> Result<Answer, Failure> {
+    let dir = std::fs::canonicalize(&args.dir).unwrap_or_else(|_| args.dir.clone());
+    let Kept { asked, progress } = read(&args.dir)?;
+    ResultFolder::check_unused(&dir)?;
+    let mut request = traced(&asked.arguments)?;
+    request.by_hand = args.by_hand.clone();
+    request.open = args.open;
+    request.out = args.out.as_deref().map(whole).transpose()?;
+    request.voice = args.voice;
+    check(&args.dir, &request)?;
+    asked.check_inputs()?;
+    // its names are those of there
+    std::env::set_current_dir(&asked.folder).map_err(|e| {
+        let message =
+            format!("cannot go on: the run was begun in {}, and there: {e}", asked.folder.display());
+        Failure::usage("changed", message)
+    })?;
+    let plan_tick = progress.map_or(0, |progress| progress.plan_tick);
+    let runs = asked.before.iter().cloned().chain([Before { folder: dir.clone(), plan_tick }]).collect();
+    let outcome = job::resume(&request, &Earlier { asked: &asked, runs, beside: &unnumbered(&dir) }, stop)?;
+    trace::answered(&request, outcome)
+}
+
+/// Refuses what cannot be gone on with.
+fn check(dir: &Path, request: &TraceArgs) -> Result<(), Failure> {
+    let name = dir.display();
+    let command = request.typed.join(" ");
+    if request.eye.camera.is_some() {
+        let message = format!(
+            "cannot go on with {name}: a camera followed it, and where the head then stood only that run knew; begin anew with tracelight {command}"
+        );
+        return Err(Failure::usage("cannot-resume", message));
+    }
+    if request.name() == "-" {
+        let message = format!(
+            "cannot go on with {name}: its picture came from standard input, and is gone; begin anew with tracelight {command}, or from a file"
+        );
+        return Err(Failure::usage("cannot-resume", message));
+    }
+    Ok(())
+}
+
+/// `out/house` of `out/house-2`, where both are there: the next one is `out/house-3`.
+fn unnumbered(dir: &Path) -> PathBuf {
+    let name = dir.file_name().unwrap_or_default().to_string_lossy();
+    let first = name
+        .rsplit_once('-')
+        .filter(|(_, number)| number.bytes().all(|digit| digit.is_ascii_digit()))
+        .map(|(name, _)| dir.with_file_name(name));
+    first.filter(|first| first.is_dir()).unwrap_or_else(|| dir.to_owned())
+}
+
+/// A path from the root, also of what is not there yet.
+fn whole(path: &Path) -> Result<PathBuf, Failure> {
+    std::path::absolute(path).map_err(|e| {
+        Failure::usage("usage", format!("cannot use {} as --out: {e}; name a folder", path.display()))
+    })
+}
