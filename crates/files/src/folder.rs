@@ -73,6 +73,17 @@ impl ResultFolder {
         Err(Failure::failed("cannot-write", message))
     }
 
+    /// `out/house` of `out/house-2`, where both are there: the next one is `out/house-3`.
+    #[must_use]
+    pub fn unnumbered(dir: &Path) -> PathBuf {
+        let name = dir.file_name().unwrap_or_default().to_string_lossy();
+        let first = name
+            .rsplit_once('-')
+            .filter(|(_, number)| number.bytes().all(|digit| digit.is_ascii_digit()))
+            .map(|(name, _)| dir.with_file_name(name));
+        first.filter(|first| first.is_dir()).unwrap_or_else(|| dir.to_owned())
+    }
+
     /// Refuses a folder in which a job writes at present.
     ///
     /// # Errors

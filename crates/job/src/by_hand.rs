@@ -10,18 +10,43 @@ use crate::keep::Keep;
 use crate::lap::GOODBYE_TICKS;
 
 /// Ticks at rest that are kept in memory; the log has all.
-const REST_TICKS: u32 = 500;
+pub(crate) const REST_TICKS: u32 = 500;
+
+/// What somebody at the wall asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ask {
+    /// Of the session.
+    Request(Request),
+    /// Another stroke, where strokes are drawn one at a time.
+    Step(Step),
+}
+
+/// Which stroke comes next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// This one is done, and the one after it comes.
+    Next,
+    /// The one before it.
+    Previous,
+    /// This one is left as it is, and the one after it comes.
+    Skip,
+    /// The one of that number, from 0.
+    To(u32),
+}
 
 /// Somebody at the wall while a lap runs.
 pub trait Hands {
     /// Told after each tick, and may wait, so that a simulated rig keeps real time. Returns what is asked, if anything is.
-    fn tick(&mut self, now: &Snapshot) -> Option<Request>;
+    fn tick(&mut self, now: &Snapshot) -> Option<Ask>;
 
     /// Told what happened.
     fn event(&mut self, event: &Event);
 
     /// Told why a request was refused.
     fn refused(&mut self, why: &Refused);
+
+    /// Told that a stroke was left, by its number from 0, and whether it is done.
+    fn left(&mut self, _stroke: u32, _done: bool) {}
 
     /// Whether anything may still be asked; otherwise a lap that is stopped, or that a fault ended, is over.
     fn is_there(&self) -> bool;
@@ -76,7 +101,7 @@ pub(crate) fn run_lap_by_hand(
         if task.stop.is_wanted() {
             let _ = wall.request(Request::Stop);
             goodbye -= 1;
-        } else if let Some(request) = hands.tick(&wall.snapshot())
+        } else if let Some(Ask::Request(request)) = hands.tick(&wall.snapshot())
             && let Err(why) = wall.request(request)
         {
             hands.refused(&why);
@@ -90,11 +115,11 @@ pub(crate) fn run_lap_by_hand(
     Ok(lap.ended(None))
 }
 
-fn step(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
+pub(crate) fn step(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
     wall.tick_by(|rig| Some(rig.step()), |tick| &tick.telemetry).ok_or_else(lost_power)
 }
 
-fn darken(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
+pub(crate) fn darken(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
     let _ = wall.request(Request::Stop);
     step(wall)
 }

@@ -22,10 +22,11 @@ mod recovery;
 mod remainder;
 mod request;
 mod seen;
+mod steps;
 mod wall;
 mod watched;
 
-pub use by_hand::Hands;
+pub use by_hand::{Ask, Hands, Step};
 pub use keep::{Keep, KeepNothing};
 pub use prepared::{Prepared, Ran, prepare};
 pub use request::{Request, RunRequest, Scene, Wall};

@@ -6,7 +6,8 @@ use tracelight_eye::seen::SeenLight;
 use tracelight_picture::{Raster, Source};
 use tracelight_pipeline::{Driving, Placed, Schedule, Sketch, place, schedule, schedule_rest, sketch};
 use tracelight_sim::{RigConfig, Run, SimulatedRig};
-use tracelight_task::{Failure, Stop, Task};
+use tracelight_stroke::{Drawing, Ordered};
+use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::Plan;
 
 use crate::by_hand::{Hands, run_lap_by_hand};
@@ -15,6 +16,7 @@ use crate::lap::{Learned, learn, run_lap};
 use crate::remainder;
 use crate::request::{Request, RunRequest};
 use crate::seen::Seen;
+use crate::steps::{StepRun, run_steps};
 use crate::watched::{WatchedJob, WatchedRun, run_watched};
 
 /// What the stages before the run made.
@@ -133,6 +135,25 @@ impl Prepared {
         self.seen.as_ref().and_then(|seen| Some((seen, seen.room.as_ref()?)))
     }
 
+    /// A job without the strokes before that one, from 1, in the order in which they are drawn.
+    ///
+    /// # Errors
+    /// `usage` where it has not so many.
+    pub fn from_stroke(self, number: u32) -> Result<Self, Failure> {
+        let strokes = &self.schedule.ordered.drawing.strokes;
+        if number <= 1 {
+            return Ok(self);
+        }
+        if number as usize > strokes.len() {
+            let message =
+                format!("--from-stroke {number}: the drawing has {}", counted(strokes.len(), "stroke"));
+            return Err(Failure::usage("usage", message));
+        }
+        let rest = Drawing { strokes: strokes[number as usize - 1..].to_vec() };
+        let schedule = schedule_rest(rest, &self.driving)?;
+        Ok(Self { schedule, ..self })
+    }
+
     /// What is left of a job that was drawn up to a tick of its plan, to be begun from zero; `None` where nothing is. Less than half a
     /// millimetre of a stroke is not worth a way there.
     ///
@@ -167,6 +188,63 @@ impl Prepared {
         task: Task<'_>,
     ) -> Result<Ran, Failure> {
         self.run_with(keep, Some(hands), task)
+    }
+
+    /// Goes through the strokes one at a time with somebody at the wall: each is drawn again and again, there and back where it is open, until another one is
+    /// asked for. `pace_m_s` is the speed of the spot, where it is to be another one.
+    ///
+    /// # Errors
+    /// As of [`run`](Self::run), and `standing-light` for a stroke so short that its light would stand.
+    pub fn run_steps(
+        &self,
+        keep: &mut dyn Keep,
+        hands: &mut dyn Hands,
+        pace_m_s: Option<f64>,
+        task: Task<'_>,
+    ) -> Result<(Self, Ran), Failure> {
+        let RunRequest { seed, dry, powered_up, .. } = self.how;
+        let mut driving = self.driving.clone();
+        driving.request.speed_m_s = pace_m_s.unwrap_or(driving.request.speed_m_s);
+        let put_up = if powered_up { left } else { SimulatedRig::new };
+        let mut rig = put_up(&driving.rig, driving.pose, seed);
+        task.stage("run", 1);
+        let drawing = &self.schedule.ordered.drawing;
+        let (ran, run_ms) = task.timed(|| run_steps(&mut rig, (drawing, &driving), dry, (keep, hands), task));
+        let StepRun { run, plan, drawing, failure, finished, notes } = ran?;
+        let fault = run.fault().map(Failure::fault);
+        let unfinished = || {
+            let stopped = task.stop.is_wanted();
+            let message = "it was ended before all strokes had their turn";
+            let why = if stopped { Failure::interrupted() } else { Failure::failed("unfinished", message) };
+            (!finished).then_some(why)
+        };
+        let failure = failure.or(fault).or_else(unfinished);
+        let notes: Vec<String> = self.notes.iter().cloned().chain(notes).collect();
+        let ordered = Ordered { drawing, ..self.schedule.ordered.clone() };
+        let seen = Self {
+            sketch: self.sketch.clone(),
+            placed: self.placed.clone(),
+            driving,
+            schedule: Schedule { ordered, plan },
+            notes: self.notes.clone(),
+            vision_ms: self.vision_ms,
+            plan_ms: self.plan_ms,
+            how: self.how,
+            seen: None,
+        };
+        let ran = Ran {
+            earlier: Vec::new(),
+            last: run,
+            plan: None,
+            identified: None,
+            eye: None,
+            seen: None,
+            notes,
+            failure,
+            simulated: true,
+            run_ms,
+        };
+        Ok((seen, ran))
     }
 
     fn run_with(

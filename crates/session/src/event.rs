@@ -56,8 +56,10 @@ pub struct Snapshot {
     pub plan_ticks: u32,
     /// Number of the stroke that is drawn or comes next, from 0; `None` without a job, or after its last.
     pub stroke: Option<u32>,
-    /// How many strokes the job has.
+    /// How many strokes the drawing has.
     pub strokes: u32,
+    /// How often a job that is done again and again was done.
+    pub laps: u32,
     /// Ticks for which it stays armed.
     pub armed_ticks: u32,
 }

@@ -16,8 +16,25 @@ pub struct Job {
     pub segments: Vec<Segment>,
     /// Its strokes, in time order.
     pub strokes: Vec<StrokeTicks>,
+    /// Number of the first of them in the drawing, from 0, and how many that has.
+    pub first: u32,
+    /// How many strokes the drawing has.
+    pub of: u32,
     /// Whether it is traced in the dark.
     pub dry: bool,
+    /// What it does at its end instead of ending.
+    pub again: Option<Again>,
+}
+
+/// A job's way from where it ends to there, again and again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Again {
+    /// Segments of that way; the first begins at tick 0, at rest.
+    pub segments: Vec<Segment>,
+    /// Strokes of that way.
+    pub strokes: Vec<StrokeTicks>,
+    /// How long it is dark before each, ticks: the light keeps within its budget.
+    pub wait_ticks: u32,
 }
 
 impl Job {

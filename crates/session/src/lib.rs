@@ -6,11 +6,14 @@
 mod event;
 mod job;
 mod request;
+mod running;
 mod session;
 mod state;
+mod told;
 
 pub use event::{Event, Snapshot, seconds};
-pub use job::{Feeder, Job, StrokeTicks};
-pub use request::{Refused, Request, When};
+pub use job::{Again, Feeder, Job, StrokeTicks};
+pub use request::{Refused, Request, When, faster, slower};
 pub use session::Session;
-pub use state::{ARMED_TICKS, PAUSED_TICKS, State};
+pub use state::{ARMED_TICKS, ATTENDED_TICKS, PAUSED_TICKS, State};
+pub use told::{event_json, snapshot_json};

@@ -23,6 +23,8 @@ pub enum Request {
     Disarm,
     /// Trace a job from its beginning.
     Trace(Job),
+    /// Darken, return to zero, and trace this one instead, armed as the one before was.
+    Next(Job),
     /// Pause the job.
     Pause(When),
     /// Go on where the light was.
@@ -45,6 +47,7 @@ impl Request {
             Self::Arm => "arm",
             Self::Disarm => "disarm",
             Self::Trace(_) => "trace",
+            Self::Next(_) => "next",
             Self::Pause(_) => "pause",
             Self::Resume => "resume",
             Self::Speed(_) => "speed",
@@ -95,4 +98,44 @@ pub enum Refused {
     /// The rig does not take it.
     #[error("the rig does not take it now: the joints move, or cannot be there")]
     Rig,
+}
+
+/// What may be asked in a state.
+pub(crate) const fn advice(state: State) -> &'static str {
+    match state {
+        State::Unhomed => "home the head first",
+        State::Ready | State::Done => "arm, then trace",
+        State::Armed => "trace or resume, or disarm",
+        State::Tracing | State::Stepping | State::Returning | State::Pausing => "pause or stop it first",
+        State::Paused => "resume, stop or park",
+        State::Stopped => "arm and resume, or park",
+        State::Parking => "wait until it is at zero",
+        State::Fault => "clear the fault first",
+        State::Lost => "connect the rig again",
+    }
+}
+
+/// Speeds that one goes through who hurries or slows a job, as multiples of the plan's.
+const SPEEDS: [f32; 9] = [0.1, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0];
+/// The next higher of the speeds that one goes through who hurries a job.
+#[must_use]
+pub fn faster(speed: f32) -> f32 {
+    SPEEDS.into_iter().find(|&next| next > speed + 1e-3).unwrap_or(SPEEDS[SPEEDS.len() - 1])
+}
+
+/// The next lower one.
+#[must_use]
+pub fn slower(speed: f32) -> f32 {
+    SPEEDS.into_iter().rev().find(|&next| next < speed - 1e-3).unwrap_or(SPEEDS[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_go_up_and_down_and_end() {
+        assert_eq!([faster(1.0), faster(0.3), faster(2.0)], [1.25, 0.5, 2.0]);
+        assert_eq!([slower(1.0), slower(0.3), slower(0.1)], [0.75, 0.25, 0.1]);
+    }
 }

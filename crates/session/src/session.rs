@@ -1,11 +1,12 @@
 use std::collections::VecDeque;
 
-use tracelight_rig::{Command, PanTilt, Phase, Rig, SPEED_RANGE, Segment, Telemetry};
+use tracelight_rig::{Command, PanTilt, Phase, Rig, SPEED_RANGE, Telemetry};
 
 use crate::event::{Event, Snapshot};
-use crate::job::{Feeder, Job, StrokeTicks, stroke_at};
-use crate::request::{Refused, Request, When};
-use crate::state::{ARMED_TICKS, PAUSED_TICKS, State};
+use crate::job::{Job, stroke_at};
+use crate::request::{Refused, Request, When, advice};
+use crate::running::Running;
+use crate::state::{ARMED_TICKS, ATTENDED_TICKS, PAUSED_TICKS, State};
 
 /// A head within this of where a job begins is there, rad: a little less than the controller allows.
 const THERE_RAD: f32 = 1.5e-3;
@@ -18,19 +19,6 @@ const ANSWER_TICKS: u32 = 250;
 /// Events that are kept for whoever does not fetch them; older ones go.
 const MOST_EVENTS: usize = 4096;
 
-/// The job in hand.
-#[derive(Clone, Debug)]
-struct Running {
-    feeder: Feeder<Vec<Segment>>,
-    strokes: Vec<StrokeTicks>,
-    ticks: u32,
-    dry: bool,
-    plan_tick: u32,
-    stroke: Option<u32>,
-    /// Whether the rig has said that it is armed since it was asked to be: what it says before is of something else.
-    answered: bool,
-}
-
 /// One rig and at most one job.
 #[derive(Clone, Debug)]
 pub struct Session<R> {
@@ -41,6 +29,10 @@ pub struct Session<R> {
     /// Tick in which it was armed, or paused, or the rig was asked to go on.
     since: u32,
     running: Option<Running>,
+    /// What is begun once it is parked.
+    next: Option<Job>,
+    /// Tick in which something was asked last.
+    asked: u32,
     speed: f32,
     told: Telemetry,
     /// Commands that the rig did not take yet, in order.
@@ -57,6 +49,8 @@ impl<R: Rig> Session<R> {
             armed_in: State::Unhomed,
             since: 0,
             running: None,
+            next: None,
+            asked: 0,
             speed: 1.0,
             told: Telemetry::default(),
             outbox: VecDeque::new(),
@@ -103,8 +97,11 @@ impl<R: Rig> Session<R> {
             speed: self.speed,
             plan_tick: job.map_or(0, |running| running.plan_tick),
             plan_ticks: job.map_or(0, |running| running.ticks),
-            stroke: job.and_then(|running| stroke_at(&running.strokes, running.plan_tick)),
-            strokes: job.map_or(0, |running| running.strokes.len() as u32),
+            stroke: job.and_then(|running| {
+                stroke_at(&running.strokes, running.plan_tick).map(|at| at + running.first)
+            }),
+            strokes: job.map_or(0, |running| running.of),
+            laps: job.map_or(0, |running| running.laps),
             armed_ticks: armed,
         }
     }
@@ -115,11 +112,13 @@ impl<R: Rig> Session<R> {
     /// Why it is refused; nothing has changed then.
     pub fn request(&mut self, request: Request) -> Result<(), Refused> {
         use State::{
-            Armed, Done, Fault, Parking, Paused, Pausing, Ready, Returning, Stopped, Tracing, Unhomed,
+            Armed, Done, Fault, Parking, Paused, Pausing, Ready, Returning, Stepping, Stopped, Tracing,
+            Unhomed,
         };
         if self.outbox.len() >= MOST_WAITING && request != Request::Stop {
             return Err(Refused::Busy);
         }
+        self.asked = self.told.tick;
         match (request, self.state) {
             (Request::Stop, _) => self.stop(),
             (Request::Speed(rate), _) => self.set_speed(rate)?,
@@ -133,12 +132,24 @@ impl<R: Rig> Session<R> {
             (Request::Trace(job), Ready | Done | Armed) if self.state != Armed || !self.is_resumable() => {
                 self.begin(job)?;
             }
-            (Request::Resume, Armed) if self.is_resumable() => self.go_on(),
+            (Request::Resume, Armed) if self.is_resumable() => self.resume(),
             (Request::Resume, Paused | Stopped) => {
                 self.check_resume()?;
-                self.go_on();
+                self.resume();
             }
-            (Request::Pause(when), Tracing | Returning) => {
+            (Request::Next(job), Parking) if self.next.is_some() => {
+                check(&job)?;
+                self.next = Some(job);
+            }
+            (Request::Next(job), Stepping | Returning | Pausing | Paused | Armed)
+                if self.on() == Stepping =>
+            {
+                self.check_resume()?;
+                check(&job)?;
+                self.park();
+                self.next = Some(job);
+            }
+            (Request::Pause(when), Tracing | Stepping | Returning) => {
                 self.send(if when == When::AtOnce { Command::Disarm } else { Command::Pause });
                 self.enter(Pausing);
             }
@@ -149,11 +160,7 @@ impl<R: Rig> Session<R> {
                     .into_iter()
                     .for_each(|command| self.send(command));
             }
-            (Request::Park, Ready | Done | Stopped | Paused) => {
-                self.running = None;
-                self.send(Command::Abandon);
-                self.enter(Parking);
-            }
+            (Request::Park, Ready | Done | Stopped | Paused) => self.park(),
             (request, state) => {
                 return Err(Refused::State { request: request.name(), state, advice: advice(state) });
             }
@@ -238,10 +245,20 @@ impl<R: Rig> Session<R> {
         self.since = self.told.tick;
     }
 
+    fn park(&mut self) {
+        self.running = None;
+        self.next = None;
+        self.send(Command::Abandon);
+        self.enter(State::Parking);
+    }
+
     fn stop(&mut self) {
         self.send(Command::Disarm);
+        self.next = None;
         match self.state {
-            State::Tracing | State::Returning | State::Pausing | State::Paused => self.enter(State::Stopped),
+            State::Tracing | State::Stepping | State::Returning | State::Pausing | State::Paused => {
+                self.enter(State::Stopped);
+            }
             State::Armed if self.is_resumable() => self.enter(State::Stopped),
             State::Armed => self.enter(State::Ready),
             _ => {}
@@ -268,10 +285,16 @@ impl<R: Rig> Session<R> {
     }
 
     fn begin(&mut self, job: Job) -> Result<(), Refused> {
-        let Some(first) = job.segments.first() else { return Err(Refused::Empty) };
+        check(&job)?;
         if !job.dry && self.state != State::Armed {
             return Err(Refused::NotArmed);
         }
+        self.start(job)
+    }
+
+    /// Begins a job where the head rests.
+    fn start(&mut self, job: Job) -> Result<(), Refused> {
+        let Some(first) = job.segments.first() else { return Err(Refused::Empty) };
         let start = first.sample(0.0);
         let off = PanTilt::from_fn(|j| (start[j].position_rad - self.told.position_rad[j]).abs());
         let off_rad = off.pan.max(off.tilt);
@@ -279,10 +302,7 @@ impl<R: Rig> Session<R> {
         if off_rad > THERE_RAD || off_rad.is_nan() || !self.rests() {
             return Err(Refused::Elsewhere { off_rad });
         }
-        let (ticks, Job { segments, strokes, dry }) = (job.ticks(), job);
-        let feeder = Feeder::new(segments, dry);
-        self.running =
-            Some(Running { feeder, strokes, ticks, dry, plan_tick: 0, stroke: None, answered: false });
+        self.running = Some(Running::of(job));
         self.go_on();
         Ok(())
     }
@@ -297,6 +317,18 @@ impl<R: Rig> Session<R> {
         }
     }
 
+    /// Goes on where it was; a job that was just done is begun again when it is time.
+    fn resume(&mut self) {
+        match &mut self.running {
+            Some(running) if running.ended.is_some() => {
+                running.answered = false;
+                self.since = self.told.tick;
+                self.enter(State::Stepping);
+            }
+            _ => self.go_on(),
+        }
+    }
+
     /// Arms the rig: a job begins, or goes on.
     fn go_on(&mut self) {
         let acknowledges = self.told.fault_number;
@@ -306,7 +338,29 @@ impl<R: Rig> Session<R> {
         if let Some(running) = &mut self.running {
             running.answered = false;
         }
-        self.enter(State::Tracing);
+        self.enter(self.on());
+    }
+
+    /// The state of the job in hand while its clock runs.
+    fn on(&self) -> State {
+        let is_stepping = self.running.as_ref().is_some_and(|running| running.again.is_some());
+        if is_stepping { State::Stepping } else { State::Tracing }
+    }
+
+    /// Begins a job again that is done again and again, once it was dark for long enough.
+    fn begin_again(&mut self) {
+        let PanTilt { pan, tilt } = self.told.velocity_rad_s;
+        let Some(running) = &mut self.running else { return };
+        let (Some(again), Some(ended)) = (&running.again, running.ended) else { return };
+        let waited = self.told.tick.wrapping_sub(ended);
+        if self.state != State::Stepping
+            || waited < again.wait_ticks
+            || pan.abs().max(tilt.abs()) >= REST_RAD_S
+        {
+            return;
+        }
+        running.begin_again();
+        self.go_on();
     }
 
     fn rests(&self) -> bool {
@@ -318,6 +372,7 @@ impl<R: Rig> Session<R> {
     fn follow(&mut self) {
         let Telemetry { tick, fault, homed, .. } = self.told;
         if let Some(fault) = fault {
+            self.next = None;
             if self.state != State::Fault {
                 self.tell(Event::Fault { tick, fault });
                 self.enter(State::Fault);
@@ -326,14 +381,20 @@ impl<R: Rig> Session<R> {
         }
         if !homed {
             self.running = None;
+            self.next = None;
             self.enter(State::Unhomed);
             return;
         }
         self.follow_job();
+        self.begin_again();
         match self.next_state() {
             State::Ready => {
                 self.running = None;
                 self.enter(State::Ready);
+                // whoever asked for it armed the one before
+                if let Some(job) = self.next.take() {
+                    let _ = self.start(job);
+                }
             }
             State::Paused if self.state == State::Pausing => {
                 self.since = tick;
@@ -347,22 +408,33 @@ impl<R: Rig> Session<R> {
     fn next_state(&self) -> State {
         let phase = self.told.phase;
         let answered = self.running.as_ref().is_some_and(|running| running.answered);
+        let is_again = self.on() == State::Stepping;
         match self.state {
             State::Unhomed => State::Ready,
             State::Fault if self.has_begun() => State::Stopped,
             State::Fault => State::Ready,
             State::Armed if self.waited() >= ARMED_TICKS => self.armed_in,
-            State::Tracing | State::Returning | State::Pausing if answered && phase == Phase::Done => {
+            State::Pausing if is_again && phase == Phase::Done => State::Paused,
+            State::Stepping
+                if phase == Phase::Done && self.told.tick.wrapping_sub(self.asked) > ATTENDED_TICKS =>
+            {
+                State::Done
+            }
+            State::Tracing | State::Returning | State::Pausing
+                if answered && !is_again && phase == Phase::Done =>
+            {
                 State::Done
             }
             // an open interlock, for instance, keeps it from arming
-            State::Tracing | State::Returning
+            State::Tracing | State::Stepping | State::Returning
                 if phase == Phase::Dark && (answered || self.waited() > ANSWER_TICKS) =>
             {
                 State::Stopped
             }
-            State::Tracing if matches!(phase, Phase::Holding | Phase::Testing) => State::Returning,
-            State::Returning if phase == Phase::Tracing => State::Tracing,
+            State::Tracing | State::Stepping if matches!(phase, Phase::Holding | Phase::Testing) => {
+                State::Returning
+            }
+            State::Returning if matches!(phase, Phase::Tracing | Phase::Done) => self.on(),
             State::Pausing if phase == Phase::Dark => State::Paused,
             State::Parking if self.is_parked() => State::Ready,
             state => state,
@@ -380,37 +452,17 @@ impl<R: Rig> Session<R> {
 
     /// Where the job is now.
     fn follow_job(&mut self) {
-        let Telemetry { tick, plan_tick, phase, .. } = self.told;
-        let is_on = matches!(self.state, State::Tracing | State::Returning | State::Pausing);
+        let is_on =
+            matches!(self.state, State::Tracing | State::Stepping | State::Returning | State::Pausing);
         let Some(running) = self.running.as_mut().filter(|_| is_on) else { return };
-        running.answered |= !matches!(phase, Phase::Dark | Phase::Done | Phase::Faulted);
-        if !running.answered {
-            return;
-        }
-        running.plan_tick = plan_tick;
-        let stroke = stroke_at(&running.strokes, plan_tick);
-        let of = running.strokes.len() as u32;
-        let begins = stroke
-            .filter(|&now| running.strokes.get(now as usize).is_some_and(|stroke| plan_tick >= stroke.start));
-        if begins.is_some() && begins != running.stroke {
-            running.stroke = begins;
-            let stroke = begins.unwrap_or_default();
-            self.tell(Event::Stroke { tick, stroke, of });
+        let of = running.of;
+        if let Some(stroke) = running.follow(&self.told) {
+            self.tell(Event::Stroke { tick: self.told.tick, stroke, of });
         }
     }
 }
 
-/// What may be asked in a state.
-const fn advice(state: State) -> &'static str {
-    match state {
-        State::Unhomed => "home the head first",
-        State::Ready | State::Done => "arm, then trace",
-        State::Armed => "trace or resume, or disarm",
-        State::Tracing | State::Returning | State::Pausing => "pause or stop it first",
-        State::Paused => "resume, stop or park",
-        State::Stopped => "arm and resume, or park",
-        State::Parking => "wait until it is at zero",
-        State::Fault => "clear the fault first",
-        State::Lost => "connect the rig again",
-    }
+/// Refuses a job with nothing in it.
+const fn check(job: &Job) -> Result<(), Refused> {
+    if job.segments.is_empty() { Err(Refused::Empty) } else { Ok(()) }
 }

@@ -2,6 +2,8 @@
 pub const ARMED_TICKS: u32 = 10_000;
 /// How long a paused job goes on without arming anew: 60 s.
 pub const PAUSED_TICKS: u32 = 60_000;
+/// How long a job is done again and again without anything that is asked: 10 min. Somebody stands there, or light goes on for nobody.
+pub const ATTENDED_TICKS: u32 = 600_000;
 
 /// What a session does.
 ///
@@ -17,7 +19,7 @@ pub const PAUSED_TICKS: u32 = 60_000;
 ///     └── Clear ──────────────►┘
 /// ```
 ///
-/// A dry job needs no arming: it goes from `Ready`, `Done`, `Stopped` or `Paused` to `Tracing`. `Lost` is entered from anywhere, and never left.
+/// A job that is done again and again is `Stepping` where another one is `Tracing`; `Next` parks it and begins another one. A dry job needs no arming: it goes from `Ready`, `Done`, `Stopped` or `Paused` to `Tracing`. `Lost` is entered from anywhere, and never left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum State {
     /// The rig does not know where it points.
@@ -28,6 +30,8 @@ pub enum State {
     Armed,
     /// The plan's clock runs.
     Tracing,
+    /// A job is done again and again, until something else is asked; dark between two times.
+    Stepping,
     /// The plan's clock stands until the head is back on its stroke. Dark.
     Returning,
     /// The stroke that is lit is drawn to its end.
@@ -48,11 +52,12 @@ pub enum State {
 
 impl State {
     /// Every state.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Unhomed,
         Self::Ready,
         Self::Armed,
         Self::Tracing,
+        Self::Stepping,
         Self::Returning,
         Self::Pausing,
         Self::Paused,
@@ -70,6 +75,7 @@ impl State {
             Self::Ready => "ready",
             Self::Armed => "armed",
             Self::Tracing => "tracing",
+            Self::Stepping => "stepping",
             Self::Returning => "returning",
             Self::Pausing => "pausing",
             Self::Paused => "paused",
@@ -83,6 +89,6 @@ impl State {
 
     /// Whether light may leave the head.
     pub const fn may_light(self) -> bool {
-        matches!(self, Self::Tracing | Self::Pausing)
+        matches!(self, Self::Tracing | Self::Stepping | Self::Pausing)
     }
 }

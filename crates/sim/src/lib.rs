@@ -8,6 +8,7 @@
     allow(clippy::disallowed_methods, reason = "tests may ask the C library: they allow for the last digit")
 )]
 
+mod again;
 mod alone;
 mod array;
 mod bench;
@@ -33,6 +34,7 @@ mod step;
 mod trouble;
 mod truth;
 
+pub use again::looped_job;
 pub use alone::{MotorReading, Mounting, READ_TICKS, head_alone, motor_readings};
 pub use array::{ArrayError, Between, MotionArray};
 pub use bench::BenchTick;

@@ -276,8 +276,9 @@ pub fn job_of(plan: &Plan, dry: bool) -> Job {
         end = lit.map_or(end, |[_, last]| last + 1);
         StrokeTicks { start, end }
     };
-    let strokes = plan.lit_ticks().into_iter().map(ticks).collect();
-    Job { segments: plan.segments.clone(), strokes, dry }
+    let strokes: Vec<StrokeTicks> = plan.lit_ticks().into_iter().map(ticks).collect();
+    let of = strokes.len() as u32;
+    Job { segments: plan.segments.clone(), strokes, first: 0, of, dry, again: None }
 }
 
 /// Arms a rig: the host is there, and has read every fault that the rig told of. False where the rig does not take it.

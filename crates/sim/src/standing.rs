@@ -30,10 +30,9 @@ pub struct Standing {
 
 /// Finds the first place of a plan where light would stand too long, starting from an unspent budget.
 pub fn first_standing(rig: &RigConfig, plan: &Plan) -> Option<Standing> {
-    let config = rig.control_config();
     let most_s = PLANNED_SHARE * rig.light.standing_s;
-    let config = Config { standing_ticks: (most_s / TICK_F64_S) as u32, ..config };
-    let tick = first_spent(&config, &plan.segments)?;
+    let config = planned_config(rig);
+    let tick = Watch::new(&config).pass(&plan.segments)?;
     let point = plan.points.get(tick).or(plan.points.last())?;
     let about_rad = ABOUT_RADII * f64::from(config.standing_radius_rad);
     let is_near = |other: &&PlanPoint| {
@@ -50,21 +49,80 @@ pub fn first_standing(rig: &RigConfig, plan: &Plan) -> Option<Standing> {
     })
 }
 
-/// The first tick in which a controller so configured would be dark by its light budget.
-fn first_spent(config: &Config, segments: &[Segment]) -> Option<usize> {
-    let mut budget = LightBudget::new();
-    let mut gate = false;
-    for segment in segments {
-        for n in 0..segment.ticks {
-            let at = segment.sample(f32::from(n));
-            let angle_rad = at.map(|setpoint| setpoint.position_rad);
-            budget.tick(config, Some(angle_rad), gate, None);
-            gate = segment.gate;
-            let rate_rad_s = at.map(|setpoint| setpoint.velocity_rad_s);
-            if gate && budget.is_spent(config, Some((angle_rad, rate_rad_s))) {
-                return Some(segment.start_tick as usize + usize::from(n));
-            }
+/// How long it must be dark between a way that is gone again and again, ticks, so that its light stands nowhere; `None` where no wait of up to
+/// 30 s is long enough.
+pub(crate) fn wait_between(rig: &RigConfig, segments: &[Segment]) -> Option<u32> {
+    /// How long it is gone again and again for the budget to show what it is in the long run, ticks.
+    const LONG_RUN: u32 = 120_000;
+    const MOST: u32 = 30_000;
+    const STEP: u32 = 50;
+    let config = planned_config(rig);
+    let lap = segments.last().map_or(0, Segment::end_tick).max(1);
+    let is_enough = |wait: u32| {
+        let laps = LONG_RUN.div_ceil(lap + wait).max(2);
+        let mut watch = Watch::new(&config);
+        (0..laps).all(|_| watch.pass(segments).is_none() && watch.wait(wait, segments))
+    };
+    let (mut least, mut most) = (0, MOST / STEP);
+    if is_enough(0) {
+        return Some(0);
+    }
+    if !is_enough(MOST) {
+        return None;
+    }
+    while most - least > 1 {
+        let middle = least.midpoint(most);
+        if is_enough(middle * STEP) {
+            most = middle;
+        } else {
+            least = middle;
         }
     }
-    None
+    Some(most * STEP)
+}
+
+/// A controller that allows a plan less than it would.
+fn planned_config(rig: &RigConfig) -> Config {
+    let most_s = PLANNED_SHARE * rig.light.standing_s;
+    Config { standing_ticks: (most_s / TICK_F64_S) as u32, ..rig.control_config() }
+}
+
+/// A light budget, looked after along segments.
+struct Watch<'a> {
+    config: &'a Config,
+    budget: LightBudget,
+    gate: bool,
+}
+
+impl<'a> Watch<'a> {
+    const fn new(config: &'a Config) -> Self {
+        Self { config, budget: LightBudget::new(), gate: false }
+    }
+
+    /// The first tick of segments in which a controller so configured would be dark by its light budget.
+    fn pass(&mut self, segments: &[Segment]) -> Option<usize> {
+        for segment in segments {
+            for n in 0..segment.ticks {
+                let at = segment.sample(f32::from(n));
+                let angle_rad = at.map(|setpoint| setpoint.position_rad);
+                self.budget.tick(self.config, Some(angle_rad), self.gate, None);
+                self.gate = segment.gate;
+                let rate_rad_s = at.map(|setpoint| setpoint.velocity_rad_s);
+                if self.gate && self.budget.is_spent(self.config, Some((angle_rad, rate_rad_s))) {
+                    return Some(segment.start_tick as usize + usize::from(n));
+                }
+            }
+        }
+        None
+    }
+
+    /// Lets dark ticks pass where segments end; true, to go on.
+    fn wait(&mut self, ticks: u32, segments: &[Segment]) -> bool {
+        let end = segments.last().map(|s| s.sample(f32::from(s.ticks)).map(|at| at.position_rad));
+        for _ in 0..ticks {
+            self.budget.tick(self.config, end, self.gate, None);
+            self.gate = false;
+        }
+        true
+    }
 }

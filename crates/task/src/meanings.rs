@@ -198,11 +198,7 @@ const MESSAGES: &[(&str, &str)] = &[
     ),
     (
         "cannot-resume",
-        "A run that a camera followed, or whose picture came from standard input, is not gone on with. Begin anew. The exit status is 2.",
-    ),
-    (
-        "nothing-left",
-        "A run drew all that it was to draw, or all but half a millimetre. There is nothing to go on with.",
+        "A run that a camera followed, that went from stroke to stroke, or whose picture came from standard input, is not gone on with. Begin anew, where it helps with --from-stroke. The exit status is 2.",
     ),
     (
         "unfinished",

@@ -36,6 +36,9 @@ pub(crate) fn resume(args: &TraceArgs, earlier: &Earlier<'_>, stop: &Stop) -> Re
     run(args, Some(earlier), stop)
 }
 
+/// Code of a run that drew all that it was to draw.
+pub(crate) const NOTHING_LEFT: &str = "nothing-left";
+
 /// A run that ended on its way.
 pub(crate) struct Earlier<'a> {
     /// What it was asked.
@@ -50,6 +53,7 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<O
     let bar = Bar::new(args.voice.quiet);
     let task = Task { progress: &bar, stop };
     args.check_camera()?;
+    args.check_keys()?;
     let (prepared, asked) = begun(args, earlier, task)?;
     let dir = match &args.out {
         Some(dir) => dir.clone(),
@@ -65,9 +69,18 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<O
     let meta = LogMeta { picture_path: &name, settings: &settings, seed: args.seed };
     let strokes = prepared.schedule.ordered.drawing.strokes.len();
     let mut kept = Records::begin(&folder, &asked, strokes, &meta)?;
-    let mut ran = match AtWall::of(&args.by_hand, task, stop) {
-        Some(mut hands) => prepared.run_by_hand(&mut kept, &mut hands, task)?,
-        None => prepared.run(&mut kept, task)?,
+    let (prepared, mut ran) = match AtWall::of(&args.by_hand, args.step, task, stop) {
+        Some(mut hands) if args.step => {
+            prepared.run_steps(&mut kept, &mut hands, args.pace.map(|pace| pace.0), task)?
+        }
+        Some(mut hands) => {
+            let ran = prepared.run_by_hand(&mut kept, &mut hands, task)?;
+            (prepared, ran)
+        }
+        None => {
+            let ran = prepared.run(&mut kept, task)?;
+            (prepared, ran)
+        }
     };
     if let Some(remark) = kept.finish()? {
         task.say(&format!("note: {remark}"));
@@ -95,7 +108,7 @@ fn begun(
     earlier: Option<&Earlier<'_>>,
     task: Task<'_>,
 ) -> Result<(Prepared, Asked), Failure> {
-    let mut whole = prepared(args, task)?;
+    let mut whole = prepared(args, task)?.from_stroke(args.from_stroke)?;
     let Some(Earlier { asked, runs, .. }) = earlier else {
         let asked = Asked::of(&args.typed, named::now(), &whole)?;
         return Ok((whole, asked));
@@ -104,7 +117,7 @@ fn begun(
     for Before { folder, plan_tick } in runs {
         let Some(rest) = whole.after(*plan_tick)? else {
             let message = format!("{} was drawn to its end: nothing is left of it", folder.display());
-            return Err(Failure::failed("nothing-left", message));
+            return Err(Failure::failed(NOTHING_LEFT, message));
         };
         whole = rest;
     }

@@ -12,6 +12,10 @@ pub(crate) enum Key {
     Enter,
     /// Escape, alone.
     Escape,
+    /// The right arrow, or page down: what pedals send.
+    Forwards,
+    /// The left arrow, or page up.
+    Backwards,
     /// Ctrl-C.
     Interrupt,
     /// A letter, sign or digit.
@@ -51,10 +55,13 @@ impl Keys {
     }
 }
 
-/// What the bytes that came at once say. Arrows and other keys that send several bytes mean nothing here.
+/// What the bytes that came at once say. Other keys that send several bytes mean nothing here.
 fn keys(bytes: &[u8]) -> Vec<Key> {
-    if bytes.len() > 1 && bytes[0] == 0x1b {
-        return Vec::new();
+    match bytes {
+        b"\x1b[C" | b"\x1bOC" | b"\x1b[6~" => return vec![Key::Forwards],
+        b"\x1b[D" | b"\x1bOD" | b"\x1b[5~" => return vec![Key::Backwards],
+        [0x1b, _, ..] => return Vec::new(),
+        _ => {}
     }
     let key = |byte: &u8| match byte {
         0x03 => Some(Key::Interrupt),
@@ -110,6 +117,10 @@ mod tests {
         assert_eq!(keys(b"\x1b"), [Key::Escape]);
         assert_eq!(keys(b"\x03"), [Key::Interrupt]);
         assert_eq!(keys(b"\x1b[A"), []);
+        assert_eq!(
+            [keys(b"\x1b[C"), keys(b"\x1b[6~"), keys(b"\x1b[D")].concat(),
+            [Key::Forwards, Key::Forwards, Key::Backwards]
+        );
         assert_eq!(keys(b"\xc3\xa9\x00"), []);
     }
 }

@@ -45,7 +45,7 @@ pub use machine::{AccelerationDemand, Machine};
 pub use motion::JointMotion;
 pub use move_point::MovePoint;
 pub use plan::{LONGEST_S, LegEnd, Plan, PlanPoint, Tightest};
-pub use planner::plan;
+pub use planner::{plan, plan_from};
 pub use profile::limits::{MoveLimits, Peaks};
 pub use profile::{Profile, Ramps, Shape};
 pub use request::{DarkMove, LitSpeed, PlanRequest};

@@ -23,12 +23,28 @@ pub(crate) const FINAL_REST_S: f64 = 0.4;
 /// Every stroke is reached in the dark. Its corners and ends are drawn from rest to rest, or passed at speed, with a dark
 /// way up and out: whichever makes the whole drawing faster, unless [`LitSpeed::Exact`] asks for the latter. A stroke that
 /// begins where the one before ends may stay lit between. The result is what is executed, tick by tick.
+///
+/// # Errors
+/// Why there is no such plan.
 pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Result<Plan, PlanError> {
+    plan_from(drawing, machine, request, PanTilt::default())
+}
+
+/// Times a drawing like [`plan`], starting from rest at these joint angles, rad.
+///
+/// # Errors
+/// As of [`plan`].
+pub fn plan_from(
+    drawing: &Drawing,
+    machine: &Machine,
+    request: &PlanRequest,
+    home_rad: PanTilt<f64>,
+) -> Result<Plan, PlanError> {
     check_length(drawing, request)?;
     let request = &request.within_jerk(machine);
     let (mut request, mut tightest) = at_one_speed(drawing, machine, request)?;
     loop {
-        let mut plan = at_speed(drawing, machine, &request)?;
+        let mut plan = at_speed(drawing, machine, &request, home_rad)?;
         plan.set_speed_m_s = request.speed_m_s;
         let uneven = if request.lit_speed == LitSpeed::Exact { slowest_place(machine, &plan) } else { None };
         let Some(place) = uneven.filter(|_| request.speed_m_s > SLOWEST_M_S) else {
@@ -42,8 +58,12 @@ pub fn plan(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Resu
 }
 
 /// Times a drawing at the speed asked for.
-fn at_speed(drawing: &Drawing, machine: &Machine, request: &PlanRequest) -> Result<Plan, PlanError> {
-    let home = PanTilt::new(0.0, 0.0);
+fn at_speed(
+    drawing: &Drawing,
+    machine: &Machine,
+    request: &PlanRequest,
+    home: PanTilt<f64>,
+) -> Result<Plan, PlanError> {
     let mut tour = Tour::new(drawing, machine, request, home)?;
     let runs = tour.settle().map_err(|why| match why {
         NoTour::Plan(error) => error,

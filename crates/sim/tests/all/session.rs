@@ -2,13 +2,15 @@
 
 #![allow(clippy::print_stdout, reason = "a test shows figures")]
 
-use tracelight_rig::{Fault, Joint, PanTilt, Phase, Segment};
-use tracelight_session::{ARMED_TICKS, Event, Job, Refused, Request, Session, State, When};
-use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, job_of};
+use tracelight_rig::{Darkness, Fault, Joint, PanTilt, Phase, Segment};
+use tracelight_session::{ARMED_TICKS, ATTENDED_TICKS, Event, Job, Refused, Request, Session, State, When};
+use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, job_of, looped_job};
+use tracelight_stroke::Path;
+use tracelight_trajectory::Plan;
 
 use crate::dice::Dice;
 use crate::shapes::ink::ink;
-use crate::shapes::{POSE, circle, house, plan_of, plan_of_all, star};
+use crate::shapes::{POSE, circle, house, plan_of, plan_of_all, plan_there, star};
 
 type Wall = Session<SimulatedRig>;
 
@@ -120,6 +122,93 @@ fn arming_is_forgotten_and_a_dry_job_needs_none() {
     );
 }
 
+fn looped_of(config: &RigConfig, path: Path, dry: bool) -> Job {
+    let once = plan_of(config, path.clone());
+    let end = once.points.last().unwrap().joints.map(|joint| joint.position_rad);
+    let again = plan_there(config, path, end);
+    looped_job(config, &once, &again, dry).unwrap()
+}
+
+/// How often the light passed so many places of a plan's lit way, at least and at most.
+fn passes(plan: &Plan, ticks: &[Tick]) -> (usize, usize) {
+    let lit: Vec<_> = plan.points.iter().filter(|point| point.lit).map(|point| point.spot).collect();
+    let places = (1..8).map(|k| lit[k * lit.len() / 8]);
+    let times = places.map(|place| {
+        let near: Vec<bool> =
+            ticks.iter().map(|t| t.light && t.spot.is_some_and(|spot| spot.distance(place) < 1e-3)).collect();
+        near.windows(2).filter(|pair| !pair[0] && pair[1]).count()
+    });
+    let times: Vec<usize> = times.collect();
+    (*times.iter().min().unwrap(), *times.iter().max().unwrap())
+}
+
+#[test]
+fn a_job_is_done_again_and_again_until_another_one_is_asked_for() {
+    let config = RigConfig::report();
+    let plan = plan_of(&config, circle(0.1));
+    let looped = looped_of(&config, circle(0.1), false);
+    let other = looped_of(&config, star(0.1), false);
+    let mut wall = at_the_wall(&config, 0);
+    wall.request(Request::Arm).unwrap();
+    wall.request(Request::Trace(looped)).unwrap();
+    assert_eq!(wall.state(), State::Stepping);
+    let mut ticks = Vec::new();
+    while wall.snapshot().laps < 5 {
+        ticks.push(step(&mut wall));
+    }
+    assert_eq!(passes(&plan, &ticks), (5, 5));
+    // in the middle of a time: it pauses, goes on, and is stopped
+    steps(&mut wall, 200);
+    wall.request(Request::Pause(When::AfterStroke)).unwrap();
+    until(&mut wall, State::Paused, 5000);
+    steps(&mut wall, 1000);
+    wall.request(Request::Resume).unwrap();
+    until(&mut wall, State::Stepping, 5000);
+    let laps = wall.snapshot().laps;
+    let more = steps(&mut wall, 8000);
+    assert!(wall.snapshot().laps > laps, "{:?}", wall.snapshot());
+    assert!(passes(&plan, &more).0 > 0);
+    wall.request(Request::Stop).unwrap();
+    assert_eq!(
+        wall.request(Request::Next(other.clone())).unwrap_err().to_string(),
+        "next is not possible while the session is stopped: arm and resume, or park"
+    );
+    wall.request(Request::Arm).unwrap();
+    wall.request(Request::Resume).unwrap();
+    steps(&mut wall, 500);
+    // another one: dark at once, by way of zero
+    wall.request(Request::Next(other.clone())).unwrap();
+    let gone = until(&mut wall, State::Stepping, 8000);
+    assert!(gone.iter().skip(1).all(|t| !t.telemetry.actuation.gate));
+    let star_plan = plan_of(&config, star(0.1));
+    let mut ticks = Vec::new();
+    while wall.snapshot().laps < 3 {
+        ticks.push(step(&mut wall));
+    }
+    assert_eq!(passes(&star_plan, &ticks).0, 3);
+    // nobody asks for anything any more
+    wall.request(Request::Speed(1.0)).unwrap();
+    until(&mut wall, State::Done, ATTENDED_TICKS as usize + 10_000);
+}
+
+#[test]
+fn light_that_is_drawn_again_and_again_stands_nowhere() {
+    let config = RigConfig::report();
+    for width in [0.004, 0.01, 0.03, 0.1] {
+        let looped = looped_of(&config, circle(width), false);
+        let wait = looped.again.as_ref().unwrap().wait_ticks;
+        let mut wall = at_the_wall(&config, 0);
+        wall.request(Request::Arm).unwrap();
+        wall.request(Request::Trace(looped)).unwrap();
+        let ticks = steps(&mut wall, 60_000);
+        assert_eq!(wall.state(), State::Stepping, "{width}");
+        let dark = ticks.iter().filter(|t| t.telemetry.darkness.contains(Darkness::Standing)).count();
+        let laps = wall.snapshot().laps;
+        println!("circle of {:.0} mm: {laps} times a minute, {wait} ms dark between", 1e3 * width);
+        assert!(dark == 0 && laps > 5, "{width}: {laps} times, {dark} ticks dark");
+    }
+}
+
 #[test]
 fn after_a_fault_it_goes_on_only_when_that_was_cleared_and_somebody_armed() {
     let config = RigConfig::report();
@@ -146,7 +235,7 @@ fn after_a_fault_it_goes_on_only_when_that_was_cleared_and_somebody_armed() {
 
 /// A request of any kind, legal here or not.
 fn any_request(dice: &mut Dice, jobs: &[Job]) -> Request {
-    match dice.below(14) {
+    match dice.below(16) {
         0 => Request::Home(PanTilt::new(dice.below(5) as i32 - 2, dice.below(5) as i32 - 2)),
         1 | 2 => Request::Arm,
         3 => Request::Disarm,
@@ -157,6 +246,7 @@ fn any_request(dice: &mut Dice, jobs: &[Job]) -> Request {
         10 => Request::Speed(dice.of(&[0.1, 0.5, 1.0, 2.0, 0.0, -1.0, f32::NAN])),
         11 => Request::Stop,
         12 => Request::Clear,
+        13 | 14 => Request::Next(jobs[dice.below(jobs.len())].clone()),
         _ => Request::Park,
     }
 }
@@ -231,6 +321,8 @@ fn at_random(requests: usize, seed: u64) -> [usize; State::ALL.len()] {
         job_of(&good, true),
         bad,
         Job::default(),
+        looped_of(&config, star(0.05), false),
+        looped_of(&config, circle(0.05), true),
     ];
     let mut dice = Dice::of_seed(u128::from(seed));
     let mut met = [0; State::ALL.len()];

@@ -1,14 +1,16 @@
 //! What `trace` is asked for; other commands share parts of it.
 
+use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
 use clap::Args;
 use tracelight_camera::Source;
 use tracelight_task::Failure;
+use tracelight_units::Speed;
 
 use crate::cli::answer::Voice;
 use crate::cli::by_hand::ByHandArgs;
-use crate::cli::driving::DrivingArgs;
+use crate::cli::driving::{DrivingArgs, positive_speed};
 use crate::cli::eyes::{EyeArgs, FollowArgs, SimulatedEyeName};
 use crate::cli::laws::LawArgs;
 use crate::cli::lettering::LetteringArgs;
@@ -75,6 +77,15 @@ pub(crate) struct TraceArgs {
     pub(crate) sim_unhomed: bool,
     #[command(flatten, next_help_heading = "At the wall")]
     pub(crate) by_hand: ByHandArgs,
+    /// Draw one stroke again and again, there and back where it is open, until Space, Enter, → or a pedal asks for the next; in real time
+    #[arg(help_heading = "At the wall", long, conflicts_with_all = ["laps", "camera"])]
+    pub(crate) step: bool,
+    /// Speed of the spot with --step, such as 5cm/s: slow enough for a pencil to follow [default: --speed]
+    #[arg(help_heading = "At the wall", long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed, requires = "step")]
+    pub(crate) pace: Option<Speed>,
+    /// Leave out the strokes before this one, in the order in which they are drawn
+    #[arg(help_heading = "At the wall", long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "camera")]
+    pub(crate) from_stroke: u32,
     /// Folder for the results [default: out/<the picture's name>/, or the first of …-2/, …-3/ that is not there yet]
     #[arg(help_heading = "Output", long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -124,6 +135,16 @@ impl TraceArgs {
             }
             None => Ok(()),
         }
+    }
+
+    /// Refuses to go from stroke to stroke where nobody can ask for the next.
+    pub(crate) fn check_keys(&self) -> Result<(), Failure> {
+        if !self.step || std::io::stdin().is_terminal() {
+            return Ok(());
+        }
+        let message =
+            "--step waits for keys, and standard input is no terminal: start it in one, without < or |";
+        Err(Failure::usage("usage", message))
     }
 
     /// What of a camera was set, flag and value; nothing without one.

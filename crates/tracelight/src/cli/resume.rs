@@ -9,7 +9,7 @@ use crate::cli::answer::{Answer, Voice};
 use crate::cli::by_hand::ByHandArgs;
 use crate::cli::request::TraceArgs;
 use crate::cli::trace;
-use crate::job::{self, Earlier};
+use crate::job::{self, Earlier, NOTHING_LEFT};
 
 /// Go on with a run that ended on its way: killed, stopped, after a fault or a power cut
 ///
@@ -55,8 +55,17 @@ pub(crate) fn run(args: &ResumeArgs, traced: Traced, stop: &Stop) -> Result<Answ
     })?;
     let plan_tick = progress.map_or(0, |progress| progress.plan_tick);
     let runs = asked.before.iter().cloned().chain([Before { folder: dir.clone(), plan_tick }]).collect();
-    let outcome = job::resume(&request, &Earlier { asked: &asked, runs, beside: &unnumbered(&dir) }, stop)?;
-    trace::answered(&request, outcome)
+    match job::resume(
+        &request,
+        &Earlier { asked: &asked, runs, beside: &ResultFolder::unnumbered(&dir) },
+        stop,
+    ) {
+        Err(none) if none.code == NOTHING_LEFT => {
+            let json = serde_json::json!({ "folder": args.dir, "finished": true });
+            Ok(Answer::new(format!("{}: nothing is left to draw", args.dir.display()), json.to_string()))
+        }
+        outcome => trace::answered(&request, outcome?),
+    }
 }
 
 /// Refuses what cannot be gone on with.
@@ -69,6 +78,12 @@ fn check(dir: &Path, request: &TraceArgs) -> Result<(), Failure> {
         );
         return Err(Failure::usage("cannot-resume", message));
     }
+    if request.step {
+        let message = format!(
+            "cannot go on with {name}: it went from stroke to stroke; begin anew from the one where it ended, with tracelight {command} --from-stroke N"
+        );
+        return Err(Failure::usage("cannot-resume", message));
+    }
     if request.name() == "-" {
         let message = format!(
             "cannot go on with {name}: its picture came from standard input, and is gone; begin anew with tracelight {command}, or from a file"
@@ -76,16 +91,6 @@ fn check(dir: &Path, request: &TraceArgs) -> Result<(), Failure> {
         return Err(Failure::usage("cannot-resume", message));
     }
     Ok(())
-}
-
-/// `out/house` of `out/house-2`, where both are there: the next one is `out/house-3`.
-fn unnumbered(dir: &Path) -> PathBuf {
-    let name = dir.file_name().unwrap_or_default().to_string_lossy();
-    let first = name
-        .rsplit_once('-')
-        .filter(|(_, number)| number.bytes().all(|digit| digit.is_ascii_digit()))
-        .map(|(name, _)| dir.with_file_name(name));
-    first.filter(|first| first.is_dir()).unwrap_or_else(|| dir.to_owned())
 }
 
 /// A path from the root, also of what is not there yet.

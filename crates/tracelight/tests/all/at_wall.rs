@@ -99,6 +99,52 @@ fn keys_pause_and_stop_a_job_and_let_it_go_on() {
 }
 
 #[test]
+fn strokes_are_drawn_one_at_a_time_until_a_key_asks_for_the_next() {
+    let dir = folder("steps");
+    let mut command = program();
+    command
+        .args(["trace", "examples/house.png", "--step", "--events", "--real-time", "8", "--out"])
+        .arg(&dir);
+    let mut wall = Terminal::of(command);
+    let began = |wall: &mut Terminal, number: u64| {
+        let event = wall.until(|event| event["event"] == "stroke" && event["stroke"] == number);
+        assert_eq!(event["strokes"], 28);
+    };
+    for number in 1..=28 {
+        began(&mut wall, number);
+        // again and again
+        wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
+        if number == 3 {
+            // back, forth, and past one that is not done
+            wall.press("\x1b[D");
+            began(&mut wall, 2);
+            wall.press("\x1b[C");
+            began(&mut wall, 3);
+            wall.press("p");
+            wall.until_state("paused");
+            wall.press(" ");
+            wall.until_state("stepping");
+        }
+        wall.press(if number == 3 { "s" } else { " " });
+        let left = wall.until(|event| event["event"] == "left");
+        assert!(left["stroke"] == number && left["done"] == (number != 3), "{left}");
+    }
+    let summary = wall.until(|event| event["event"] == "summary");
+    assert_eq!(wall.child.wait().unwrap().code(), Some(0), "{summary}");
+    assert!(summary["summary"]["run"]["finished"] == true, "{summary}");
+    let report = std::fs::read_to_string(dir.join("report.html")).unwrap();
+    assert!(report.contains("27 of 28 strokes done; not 3"), "the report tells of it");
+    assert!(summary["summary"]["tracking"]["max_mm"].as_f64().unwrap() < 0.3, "{summary}");
+}
+
+#[test]
+fn who_cannot_press_a_key_is_told_that_step_needs_one() {
+    let output = run(&["trace", "examples/star.png", "--step"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("standard input is no terminal"));
+}
+
+#[test]
 fn the_first_ctrl_c_pauses_and_the_second_ends() {
     let dir = folder("ctrl-c");
     let mut wall = Terminal::of(traced(&dir));

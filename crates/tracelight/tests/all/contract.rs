@@ -23,7 +23,19 @@ fn trace_leaves_exactly_its_files() {
     let mut names: Vec<_> =
         std::fs::read_dir(&dir).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    assert_eq!(names, ["report.html", "run.mcap", "strokes.svg", "summary.json", "trace.csv", "trace.png"]);
+    assert_eq!(
+        names,
+        [
+            "job.toml",
+            "progress",
+            "report.html",
+            "run.mcap",
+            "strokes.svg",
+            "summary.json",
+            "trace.csv",
+            "trace.png"
+        ]
+    );
     let report = std::fs::read_to_string(dir.join("report.html")).unwrap();
     let report = report.replace("http://www.w3.org/2000/svg", "");
     assert!(!report.contains("http://") && !report.contains("https://"), "the report asks the network");

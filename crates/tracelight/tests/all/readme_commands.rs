@@ -25,8 +25,10 @@ const NOT_RUN: [(&str, &str); 7] = [
 ];
 
 /// Help examples that need what another command has written.
-const BEFORE: [(&str, &str); 1] =
-    [("tracelight recover out/house/run.mcap", "tracelight trace examples/house.png")];
+const BEFORE: [(&str, &str); 2] = [
+    ("tracelight recover out/house/run.mcap", "tracelight trace examples/house.png"),
+    ("tracelight resume out/house", "tracelight trace examples/house.png"),
+];
 
 /// A command line of a page.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use tracelight_aim::HeadPose;
 use tracelight_rig::{Command, PanTilt, Rig};
 use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Tracking, run, score};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke};
-use tracelight_trajectory::{DarkMove, LitSpeed, Plan, PlanRequest, Ramps, Shape, plan};
+use tracelight_trajectory::{DarkMove, LitSpeed, Plan, PlanRequest, Ramps, Shape, plan, plan_from};
 
 /// 1 ft/s.
 pub(crate) const SPEED_M_S: f64 = 0.3048;
@@ -64,8 +64,14 @@ pub(crate) fn plan_at(config: &RigConfig, path: Path, lit_speed: LitSpeed) -> Pl
     plan_paths(config, vec![path], lit_speed)
 }
 
-fn plan_paths(config: &RigConfig, paths: Vec<Path>, lit_speed: LitSpeed) -> Plan {
-    let request = PlanRequest {
+/// The way of a path from rest at these joint angles, rad.
+pub(crate) fn plan_there(config: &RigConfig, path: Path, home_rad: PanTilt<f64>) -> Plan {
+    let drawing = Drawing { strokes: vec![Stroke::new(path)] };
+    plan_from(&drawing, &config.machine(POSE), &request(config, LitSpeed::Fastest), home_rad).unwrap()
+}
+
+fn request(config: &RigConfig, lit_speed: LitSpeed) -> PlanRequest {
+    PlanRequest {
         speed_m_s: SPEED_M_S,
         lit_speed,
         travel: DarkMove::Shaped(Shape::Ramped(Ramps::REPORT)),
@@ -73,9 +79,12 @@ fn plan_paths(config: &RigConfig, paths: Vec<Path>, lit_speed: LitSpeed) -> Plan
         settle_s: config.motion.settle_s,
         tolerance_m: config.control.tolerance_m,
         corner_m: 0.0,
-    };
+    }
+}
+
+fn plan_paths(config: &RigConfig, paths: Vec<Path>, lit_speed: LitSpeed) -> Plan {
     let drawing = Drawing { strokes: paths.into_iter().map(Stroke::new).collect() };
-    plan(&drawing, &config.machine(POSE), &request).unwrap()
+    plan(&drawing, &config.machine(POSE), &request(config, lit_speed)).unwrap()
 }
 
 pub(crate) fn trace(config: &RigConfig, path: Path, seed: u64) -> (Plan, Run, Tracking) {

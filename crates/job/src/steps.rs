@@ -1,0 +1,259 @@
+//! Strokes one at a time: each is drawn again and again until somebody asks for the next one.
+
+use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
+use tracelight_pipeline::{Driving, Schedule, schedule_rest};
+use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
+use tracelight_sim::{AFTERMATH_TICKS, Run, SimulatedRig, Tick, looped_job};
+use tracelight_stroke::{Drawing, Path, Stroke};
+use tracelight_task::{Failure, Task, counted};
+use tracelight_trajectory::{Plan, plan_from};
+
+use crate::by_hand::{Ask, Hands, REST_TICKS, Step, darken, step};
+use crate::keep::Keep;
+use crate::lap::GOODBYE_TICKS;
+use crate::remainder::join;
+
+/// What came of it.
+pub(crate) struct StepRun {
+    /// The first time of each stroke.
+    pub(crate) run: Run,
+    /// What that followed.
+    pub(crate) plan: Plan,
+    /// The strokes that were looked at, in the order in which they were asked for.
+    pub(crate) drawing: Drawing,
+    /// Why it ended before its time, if neither the rig nor the user ended it.
+    pub(crate) failure: Option<Failure>,
+    /// All strokes had their turn.
+    pub(crate) finished: bool,
+    pub(crate) notes: Vec<String>,
+}
+
+/// A stroke to be drawn again and again.
+struct Looped {
+    /// From zero to it, once.
+    once: Plan,
+    /// From its end, again and again.
+    again: Plan,
+    job: Job,
+}
+
+/// There along a stroke and back, where it is open: it ends where it begins.
+fn there_and_back(path: &Path) -> Path {
+    if path.is_closed() {
+        return path.clone();
+    }
+    let mut both = path.clone();
+    path.reversed().elements().iter().for_each(|&element| both.push(element));
+    both
+}
+
+impl Looped {
+    fn of(
+        stroke: &Stroke,
+        (number, of): (usize, usize),
+        driving: &Driving,
+        dry: bool,
+    ) -> Result<Self, Failure> {
+        let drawing = Drawing { strokes: vec![stroke.along(there_and_back(&stroke.path))] };
+        let Schedule { plan: once, .. } = schedule_rest(drawing.clone(), driving)?;
+        let end = once.points.last().map(|point| point.joints.map(|joint| joint.position_rad));
+        let again = plan_from(&drawing, &driving.machine, &driving.request, end.unwrap_or_default())
+            .map_err(tracelight_pipeline::refused)?;
+        let looped = looped_job(&driving.rig, &once, &again, dry).ok_or_else(|| stands(number))?;
+        let job = Job { first: number as u32, of: of as u32, ..looped };
+        Ok(Self { once, again, job })
+    }
+}
+
+fn stands(number: usize) -> Failure {
+    let message = format!(
+        "stroke {} is so short that its light would stand, drawn again and again: draw it larger (--width), or without --step",
+        number + 1
+    );
+    Failure::failed("standing-light", message)
+}
+
+/// A walk through the strokes of a drawing.
+struct Walk<'a> {
+    strokes: &'a [Stroke],
+    driving: &'a Driving,
+    dry: bool,
+    /// The stroke that is drawn.
+    at: usize,
+    looped: Looped,
+    /// What is drawn now begins there in `run`'s plan.
+    base: u32,
+    done: Vec<bool>,
+    seen: StepRun,
+    /// Ticks since it rests.
+    rests: u32,
+}
+
+/// Goes through the strokes of a drawing, each drawn again and again until somebody asks for another one.
+pub(crate) fn run_steps(
+    rig: &mut SimulatedRig,
+    (drawing, driving): (&Drawing, &Driving),
+    dry: bool,
+    (keep, hands): (&mut dyn Keep, &mut dyn Hands),
+    task: Task<'_>,
+) -> Result<StepRun, Failure> {
+    let mut walk = Walk::begin(&drawing.strokes, driving, dry)?;
+    let mut wall = Session::new(rig);
+    let first = step(&mut wall)?;
+    check_homed(&first.telemetry)?;
+    walk.keep(keep, first, State::Ready, 0)?;
+    if !dry {
+        wall.request(Request::Arm).map_err(refused)?;
+    }
+    wall.request(Request::Trace(walk.looped.job.clone())).map_err(refused)?;
+    let mut power = PowerWatch::default();
+    let (mut goodbye, mut aftermath) = (GOODBYE_TICKS, AFTERMATH_TICKS);
+    while !walk.seen.finished && wall.state() != State::Done && goodbye > 0 && aftermath > 0 {
+        // the tick in which a time ends belongs to that one
+        let laps = wall.snapshot().laps;
+        let tick = step(&mut wall)?;
+        if power.is_lost(&tick.telemetry) {
+            walk.seen.failure = Some(lost_power());
+            return Ok(walk.ended());
+        }
+        let now = wall.snapshot();
+        if let Err(why) = walk.keep(keep, tick, now.state, laps) {
+            darken(&mut wall)?;
+            return Err(why);
+        }
+        while let Some(event) = wall.event() {
+            if is_news(&event, &now) {
+                hands.event(&event);
+            }
+        }
+        let ended = matches!(wall.state(), State::Fault | State::Stopped | State::Ready);
+        aftermath -= u32::from(ended && !hands.is_there());
+        if task.stop.is_wanted() {
+            let _ = wall.request(Request::Stop);
+            goodbye -= 1;
+            continue;
+        }
+        let asked = match hands.tick(&now) {
+            Some(Ask::Request(request)) => wall.request(request),
+            Some(Ask::Step(step)) => walk.step(step, &mut wall, hands)?,
+            None => Ok(()),
+        };
+        if let Err(why) = asked {
+            hands.refused(&why);
+        }
+    }
+    if wall.told().actuation.lights() {
+        let laps = wall.snapshot().laps;
+        let tick = darken(&mut wall)?;
+        walk.keep(keep, tick, wall.state(), laps)?;
+    }
+    if wall.state() == State::Done {
+        walk.seen.notes.push("nothing was asked for ten minutes: it ended, dark".to_owned());
+    }
+    Ok(walk.ended())
+}
+
+fn refused(why: Refused) -> Failure {
+    Failure::failed("session", why.to_string())
+}
+
+impl<'a> Walk<'a> {
+    fn begin(strokes: &'a [Stroke], driving: &'a Driving, dry: bool) -> Result<Self, Failure> {
+        let Some(first) = strokes.first() else {
+            return Err(Failure::failed("no-strokes", "there is no stroke to step through"));
+        };
+        let looped = Looped::of(first, (0, strokes.len()), driving, dry)?;
+        let seen = StepRun {
+            run: Run::default(),
+            plan: looped.once.clone(),
+            drawing: Drawing { strokes: vec![first.along(there_and_back(&first.path))] },
+            failure: None,
+            finished: false,
+            notes: Vec::new(),
+        };
+        Ok(Self {
+            strokes,
+            driving,
+            dry,
+            at: 0,
+            looped,
+            base: 0,
+            done: vec![false; strokes.len()],
+            seen,
+            rests: 0,
+        })
+    }
+
+    /// Keeps a tick: all of them in the log, those of each stroke's first time for the figures.
+    fn keep(&mut self, keep: &mut dyn Keep, mut tick: Tick, state: State, laps: u32) -> Result<(), Failure> {
+        if laps > 0 && state != State::Parking {
+            return keep.tick(&self.looped.again, &tick);
+        }
+        // on its way to a stroke it is at rest at the beginning of that one's plan
+        let plan_tick = if state == State::Parking { 0 } else { tick.telemetry.plan_tick };
+        tick.telemetry.plan_tick = self.base + plan_tick;
+        keep.tick(&self.seen.plan, &tick)?;
+        let is_on = matches!(state, State::Stepping | State::Returning | State::Pausing);
+        self.rests = if is_on { 0 } else { self.rests.saturating_add(1) };
+        if state != State::Parking && self.rests <= REST_TICKS {
+            self.seen.run.ticks.push(tick);
+        }
+        Ok(())
+    }
+
+    /// Goes to another stroke; after the last one it is finished.
+    fn step(
+        &mut self,
+        step: Step,
+        wall: &mut Session<&mut SimulatedRig>,
+        hands: &mut dyn Hands,
+    ) -> Result<Result<(), Refused>, Failure> {
+        let to = match step {
+            Step::Next | Step::Skip => self.at + 1,
+            Step::Previous => self.at.saturating_sub(1),
+            Step::To(number) => (number as usize).min(self.strokes.len() - 1),
+        };
+        if to == self.strokes.len() {
+            self.tick_off(step, hands);
+            self.seen.finished = true;
+            return Ok(wall.request(Request::Stop));
+        }
+        let stroke = &self.strokes[to];
+        let looped = Looped::of(stroke, (to, self.strokes.len()), self.driving, self.dry)?;
+        if let Err(why) = wall.request(Request::Next(looped.job.clone())) {
+            return Ok(Err(why));
+        }
+        self.tick_off(step, hands);
+        let end = self.seen.plan.points.len().saturating_sub(1) as u32;
+        self.base = join(&mut self.seen.plan, end, &looped.once, self.seen.drawing.strokes.len() as u32);
+        self.seen.drawing.strokes.push(stroke.along(there_and_back(&stroke.path)));
+        (self.at, self.looped) = (to, looped);
+        Ok(Ok(()))
+    }
+
+    fn tick_off(&mut self, step: Step, hands: &mut dyn Hands) {
+        self.done[self.at] |= step == Step::Next;
+        hands.left(self.at as u32, self.done[self.at]);
+    }
+
+    fn ended(mut self) -> StepRun {
+        let done = self.done.iter().filter(|&&done| done).count();
+        let not: Vec<String> =
+            (1..).zip(&self.done).filter(|(_, done)| !**done).map(|(number, _)| number.to_string()).collect();
+        let all = counted(self.strokes.len(), "stroke");
+        let which = match not.len() {
+            0 => String::new(),
+            1..=20 => format!("; not {}", not.join(", ")),
+            n => format!("; not {}, and {} more", not[..20].join(", "), n - 20),
+        };
+        self.seen.notes.push(format!(
+            "stroke by stroke: {done} of {all} done{which}; the figures are of each one's first time"
+        ));
+        self.seen
+    }
+}
+
+/// Whether an event is worth telling: that a stroke is begun again is not.
+const fn is_news(event: &Event, now: &Snapshot) -> bool {
+    !matches!(event, Event::Stroke { .. }) || now.laps == 0
+}
