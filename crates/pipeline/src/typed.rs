@@ -1,7 +1,7 @@
 //! Marks and areas of a wall as people write them: `0mm,0mm=1.2m,0.4m`, `10cm,20cm,8cm,8cm`.
 
 use tracelight_rig::PanTilt;
-use tracelight_stroke::{Point, Vec2};
+use tracelight_stroke::{Point, Rect, Vec2};
 use tracelight_task::Failure;
 use tracelight_units::{ANGLES, LENGTHS, PIXELS, parse};
 
@@ -34,6 +34,26 @@ pub enum NoGo {
     Layer(String),
     /// An area: corner and size, m.
     Area(Vec2, Vec2),
+}
+
+impl NoGo {
+    /// The layer whose closed paths it is.
+    #[must_use]
+    pub fn layer(&self) -> Option<String> {
+        match self {
+            Self::Layer(name) => Some(name.clone()),
+            Self::Area(..) => None,
+        }
+    }
+
+    /// The area that it is, on the target, m.
+    #[must_use]
+    pub fn area(&self, from: &Origin) -> Option<Rect> {
+        match self {
+            Self::Area(corner, size) => Some(from.area(*corner, *size)),
+            Self::Layer(_) => None,
+        }
+    }
 }
 
 impl std::fmt::Display for NoGo {

@@ -19,6 +19,8 @@ use tracelight_trajectory::Plan;
 pub(crate) const JOB: &str = "job.toml";
 /// How far it came.
 pub(crate) const PROGRESS: &str = "progress";
+/// Code of a run that drew all that it was to draw.
+pub const NOTHING_LEFT: &str = "nothing-left";
 /// Largest file of either kind, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 
@@ -199,11 +201,30 @@ impl Asked {
         Ok(())
     }
 
-    /// Refuses to go on where other strokes come out of the same files.
+    /// What is left of the whole job after earlier runs of it, the first one first, and what is kept of what was asked then. Its last note says so.
     ///
     /// # Errors
-    /// `changed`.
-    pub fn check_strokes(&self, prepared: &Prepared) -> Result<(), Failure> {
+    /// `changed` where other strokes come out of the same files; [`NOTHING_LEFT`].
+    pub fn rest(&self, whole: Prepared, before: &[Before]) -> Result<(Prepared, Self), Failure> {
+        self.check_strokes(&whole)?;
+        let mut rest = whole;
+        for Before { folder, plan_tick } in before {
+            rest = rest.after(*plan_tick)?.ok_or_else(|| {
+                let message = format!("{} was drawn to its end: nothing is left of it", folder.display());
+                Failure::failed(NOTHING_LEFT, message)
+            })?;
+        }
+        let left = rest.schedule.ordered.drawing.strokes.len();
+        let last = before.last().map_or_else(String::new, |run| run.folder.display().to_string());
+        rest.notes.push(format!(
+            "goes on with {last}: {left} of {} strokes are left, or a part of the first",
+            self.strokes
+        ));
+        Ok((rest, Self { before: before.to_vec(), ..self.clone() }))
+    }
+
+    /// Refuses to go on where other strokes come out of the same files.
+    fn check_strokes(&self, prepared: &Prepared) -> Result<(), Failure> {
         if strokes_hash(prepared) == self.strokes_sha256 {
             return Ok(());
         }

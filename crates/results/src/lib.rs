@@ -6,6 +6,6 @@ mod listed;
 mod written;
 
 pub use folder::{Records, open};
-pub use journal::{Asked, Before, Input, Kept, Progress, read};
+pub use journal::{Asked, Before, Input, Kept, NOTHING_LEFT, Progress, read};
 pub use listed::{ListedRun, runs};
 pub use written::{Told, write};

@@ -36,9 +36,6 @@ pub(crate) fn resume(args: &TraceArgs, earlier: &Earlier<'_>, stop: &Stop) -> Re
     run(args, Some(earlier), stop)
 }
 
-/// Code of a run that drew all that it was to draw.
-pub(crate) const NOTHING_LEFT: &str = "nothing-left";
-
 /// A run that ended on its way.
 pub(crate) struct Earlier<'a> {
     /// What it was asked.
@@ -108,26 +105,14 @@ fn begun(
     earlier: Option<&Earlier<'_>>,
     task: Task<'_>,
 ) -> Result<(Prepared, Asked), Failure> {
-    let mut whole = prepared(args, task)?.from_stroke(args.from_stroke)?;
+    let whole = prepared(args, task)?.from_stroke(args.from_stroke)?;
     let Some(Earlier { asked, runs, .. }) = earlier else {
         let asked = Asked::of(&args.typed, named::now(), &whole)?;
         return Ok((whole, asked));
     };
-    asked.check_strokes(&whole)?;
-    for Before { folder, plan_tick } in runs {
-        let Some(rest) = whole.after(*plan_tick)? else {
-            let message = format!("{} was drawn to its end: nothing is left of it", folder.display());
-            return Err(Failure::failed(NOTHING_LEFT, message));
-        };
-        whole = rest;
-    }
-    let left = whole.schedule.ordered.drawing.strokes.len();
-    let last = runs.last().map_or_else(String::new, |run| run.folder.display().to_string());
-    let note =
-        format!("goes on with {last}: {left} of {} strokes are left, or a part of the first", asked.strokes);
-    task.say(&format!("note: {note}"));
-    whole.notes.push(note);
-    Ok((whole, Asked { before: runs.clone(), ..Asked::clone(asked) }))
+    let (rest, asked) = asked.rest(whole, runs)?;
+    rest.notes.last().iter().for_each(|note| task.say(&format!("note: {note}")));
+    Ok((rest, asked))
 }
 
 fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {

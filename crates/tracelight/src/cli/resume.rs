@@ -2,14 +2,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use tracelight_files::ResultFolder;
-use tracelight_results::{Before, Kept, read};
+use tracelight_results::{Before, Kept, NOTHING_LEFT, read};
 use tracelight_task::{Failure, Stop};
 
 use crate::cli::answer::{Answer, Voice};
 use crate::cli::by_hand::ByHandArgs;
 use crate::cli::request::TraceArgs;
 use crate::cli::trace;
-use crate::job::{self, Earlier, NOTHING_LEFT};
+use crate::job::{self, Earlier};
 
 /// Go on with a run that ended on its way: killed, stopped, after a fault or a power cut
 ///

@@ -98,10 +98,7 @@ impl WallArgs {
         let from = Origin { corner, at: told.or_else(|| area_m.map(|size| corner.of_centred(size))) };
         self.check(&placing)?;
         let marks = self.align.iter().flat_map(|marks| &marks.0).map(|mark| mark.placed(&from, driving));
-        let areas = self.no_go.iter().filter_map(|no_go| match no_go {
-            NoGo::Area(corner, size) => Some(from.area(*corner, *size)),
-            NoGo::Layer(_) => None,
-        });
+        let areas = self.no_go.iter().filter_map(|no_go| no_go.area(&from));
         let mut placing = Placing {
             from,
             fit: match self.fit {
@@ -113,7 +110,7 @@ impl WallArgs {
             margin_m: spot_radius_m(driving.map_or(DEFAULT_DISTANCE_M, |driving| driving.pose.distance_m)),
             ..placing
         };
-        placing.choice.no_go = self.no_go.iter().filter_map(layer).collect();
+        placing.choice.no_go = self.no_go.iter().filter_map(NoGo::layer).collect();
         Ok(placing)
     }
 
@@ -147,13 +144,6 @@ impl WallArgs {
             2.. if placing.rotation_rad != 0.0 => wrong("--rotate"),
             _ => Ok(()),
         }
-    }
-}
-
-fn layer(no_go: &NoGo) -> Option<String> {
-    match no_go {
-        NoGo::Layer(name) => Some(name.clone()),
-        NoGo::Area(..) => None,
     }
 }
 
