@@ -84,12 +84,12 @@ impl ResultFolder {
         first.filter(|first| first.is_dir()).unwrap_or_else(|| dir.to_owned())
     }
 
-    /// Refuses a folder in which a job writes at present.
+    /// Keeps jobs out of a folder for as long as what is returned lives.
     ///
     /// # Errors
-    /// `cannot-write`.
-    pub fn check_unused(dir: &Path) -> Result<(), Failure> {
-        locked(dir).map(drop)
+    /// `cannot-write` where one writes there at present.
+    pub fn hold(dir: &Path) -> Result<impl Sized + use<>, Failure> {
+        locked(dir)
     }
 
     /// Where a result of that name is, or will be.
@@ -144,6 +144,12 @@ impl ResultFolder {
                 .and_then(|mut file| write(&mut file))
                 .map_err(failed)
         })
+    }
+
+    /// Asks the disk to keep a result and its name, also through a power cut. A file system that cannot has nothing better.
+    pub fn keep(&self, name: &str) {
+        let synced = File::open(self.path(name)).and_then(|file| file.sync_all());
+        drop(synced.and_then(|()| File::open(&self.dir)?.sync_all()));
     }
 
     /// The job's results are whole: those of the earlier one are taken away.

@@ -57,6 +57,8 @@ pub struct Ran {
     pub notes: Vec<String>,
     /// Why it ended early: a rig's fault, lost power, or because the user wanted it.
     pub failure: Option<Failure>,
+    /// Whether it did all that it was to do.
+    pub finished: bool,
     /// Its rig was one of equations: nothing moved, no light fell. Whatever shows results says so.
     pub simulated: bool,
     /// How long all laps took to run, ms.
@@ -210,8 +212,8 @@ impl Prepared {
         task.stage("run", 1);
         let drawing = &self.schedule.ordered.drawing;
         let (ran, run_ms) = task.timed(|| run_steps(&mut rig, (drawing, &driving), dry, (keep, hands), task));
-        let StepRun { run, plan, drawing, failure, finished, notes } = ran?;
-        let fault = run.fault().map(Failure::fault);
+        let StepRun { run, plan, drawing, failure, fault, finished, notes } = ran?;
+        let fault = fault.map(Failure::fault);
         let unfinished = || {
             let stopped = task.stop.is_wanted();
             let message = "it was ended before all strokes had their turn";
@@ -241,6 +243,7 @@ impl Prepared {
             seen: None,
             notes,
             failure,
+            finished,
             simulated: true,
             run_ms,
         };
@@ -263,7 +266,8 @@ impl Prepared {
         let failure = failure.or_else(|| ending(&last, task.stop));
         let identified = learned.taken.then_some(learned.rig);
         let (plan, seen) = watched.map(|watched| (watched.plan, watched.seen)).unzip();
-        Ok(Ran { earlier, last, plan, identified, eye, seen, notes, failure, simulated, run_ms })
+        let finished = last.is_done();
+        Ok(Ran { earlier, last, plan, identified, eye, seen, notes, failure, finished, simulated, run_ms })
     }
 
     fn run_laps(

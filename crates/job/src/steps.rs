@@ -2,6 +2,7 @@
 
 use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
 use tracelight_pipeline::{Driving, Schedule, schedule_rest};
+use tracelight_rig::Fault;
 use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
 use tracelight_sim::{AFTERMATH_TICKS, Run, SimulatedRig, Tick, looped_job};
 use tracelight_stroke::{Drawing, Path, Stroke};
@@ -23,6 +24,8 @@ pub(crate) struct StepRun {
     pub(crate) drawing: Drawing,
     /// Why it ended before its time, if neither the rig nor the user ended it.
     pub(crate) failure: Option<Failure>,
+    /// The fault that ended it.
+    pub(crate) fault: Option<Fault>,
     /// All strokes had their turn.
     pub(crate) finished: bool,
     pub(crate) notes: Vec<String>,
@@ -134,8 +137,11 @@ pub(crate) fn run_steps(
             continue;
         }
         let asked = match hands.tick(&now) {
+            Some(ask) if wall.state() == State::Armed && now.plan_ticks == 0 => {
+                walk.begin_here(&ask, &mut wall)
+            }
             Some(Ask::Request(request)) => wall.request(request),
-            Some(Ask::Step(step)) => walk.step(step, &mut wall, hands)?,
+            Some(Ask::Step(step)) => walk.step(step, &mut wall, hands, task),
             None => Ok(()),
         };
         if let Err(why) = asked {
@@ -150,6 +156,7 @@ pub(crate) fn run_steps(
     if wall.state() == State::Done {
         walk.seen.notes.push("nothing was asked for ten minutes: it ended, dark".to_owned());
     }
+    walk.seen.fault = wall.told().fault;
     Ok(walk.ended())
 }
 
@@ -168,6 +175,7 @@ impl<'a> Walk<'a> {
             plan: looped.once.clone(),
             drawing: Drawing { strokes: vec![first.along(there_and_back(&first.path))] },
             failure: None,
+            fault: None,
             finished: false,
             notes: Vec::new(),
         };
@@ -201,38 +209,73 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// Goes to another stroke; after the last one it is finished.
+    /// The stroke that was to be drawn when it was stopped on the way there, or by a fault: it is begun again.
+    fn begin_here(&self, ask: &Ask, wall: &mut Session<&mut SimulatedRig>) -> Result<(), Refused> {
+        let request = match ask {
+            Ask::Step(_) | Ask::Request(Request::Resume) => Request::Trace(self.looped.job.clone()),
+            Ask::Request(request) => request.clone(),
+        };
+        let begun = wall.request(request);
+        if let Err(Refused::Elsewhere { .. }) = begun {
+            // from wherever that left it: back to zero first
+            wall.request(Request::Disarm)?;
+            wall.request(Request::Park)?;
+        }
+        begun
+    }
+
+    /// Goes to another stroke; after the last one it is finished. One that cannot be drawn again and again is left out, and said.
     fn step(
         &mut self,
         step: Step,
         wall: &mut Session<&mut SimulatedRig>,
         hands: &mut dyn Hands,
-    ) -> Result<Result<(), Refused>, Failure> {
-        let to = match step {
-            Step::Next | Step::Skip => self.at + 1,
-            Step::Previous => self.at.saturating_sub(1),
-            Step::To(number) => (number as usize).min(self.strokes.len() - 1),
+        task: Task<'_>,
+    ) -> Result<(), Refused> {
+        let forwards = !matches!(step, Step::Previous);
+        let mut to = match step {
+            Step::Next | Step::Skip => Some(self.at + 1),
+            Step::Previous => self.at.checked_sub(1),
+            Step::To(number) => Some((number as usize).min(self.strokes.len() - 1)),
         };
-        if to == self.strokes.len() {
-            self.tick_off(step, hands);
-            self.seen.finished = true;
-            return Ok(wall.request(Request::Stop));
+        while let Some(number) = to.filter(|&number| number < self.strokes.len()) {
+            let stroke = &self.strokes[number];
+            match Looped::of(stroke, (number, self.strokes.len()), self.driving, self.dry) {
+                Ok(looped) => {
+                    let lit = self.was_lit(wall);
+                    wall.request(Request::Next(looped.job.clone()))?;
+                    self.tick_off(step, lit, hands);
+                    let end = self.seen.plan.points.len().saturating_sub(1) as u32;
+                    let visits = self.seen.drawing.strokes.len() as u32;
+                    self.base = join(&mut self.seen.plan, end, &looped.once, visits);
+                    self.seen.drawing.strokes.push(stroke.along(there_and_back(&stroke.path)));
+                    (self.at, self.looped) = (number, looped);
+                    return Ok(());
+                }
+                Err(why) => {
+                    let note = format!("stroke {} is left out: {}", number + 1, why.message);
+                    task.say(&format!("note: {note}"));
+                    self.seen.notes.push(note);
+                    to = if forwards { Some(number + 1) } else { number.checked_sub(1) };
+                }
+            }
         }
-        let stroke = &self.strokes[to];
-        let looped = Looped::of(stroke, (to, self.strokes.len()), self.driving, self.dry)?;
-        if let Err(why) = wall.request(Request::Next(looped.job.clone())) {
-            return Ok(Err(why));
+        if !forwards {
+            return Ok(());
         }
-        self.tick_off(step, hands);
-        let end = self.seen.plan.points.len().saturating_sub(1) as u32;
-        self.base = join(&mut self.seen.plan, end, &looped.once, self.seen.drawing.strokes.len() as u32);
-        self.seen.drawing.strokes.push(stroke.along(there_and_back(&stroke.path)));
-        (self.at, self.looped) = (to, looped);
-        Ok(Ok(()))
+        self.tick_off(step, self.was_lit(wall), hands);
+        self.seen.finished = true;
+        wall.request(Request::Stop)
     }
 
-    fn tick_off(&mut self, step: Step, hands: &mut dyn Hands) {
-        self.done[self.at] |= step == Step::Next;
+    /// Whether the present stroke was drawn, or a part of it.
+    fn was_lit(&self, wall: &Session<&mut SimulatedRig>) -> bool {
+        let now = wall.snapshot();
+        now.laps > 0 || now.plan_tick > 0
+    }
+
+    fn tick_off(&mut self, step: Step, lit: bool, hands: &mut dyn Hands) {
+        self.done[self.at] |= step == Step::Next && (lit || self.dry);
         hands.left(self.at as u32, self.done[self.at]);
     }
 

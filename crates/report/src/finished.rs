@@ -34,6 +34,8 @@ pub struct Finished<'a> {
     pub plan: &'a Plan,
     /// What happened; with several laps, in the last one.
     pub run: &'a Run,
+    /// Whether it did all that it was to do.
+    pub finished: bool,
     /// The laps before it; empty for an ordinary job.
     pub earlier_laps: &'a [Run],
     /// How well `run` followed the plan.

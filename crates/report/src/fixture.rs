@@ -54,6 +54,7 @@ impl Fixture {
             drawing: &self.drawing,
             plan: &self.plan,
             run: &self.run,
+            finished: self.run.is_done(),
             earlier_laps: &[],
             tracking: tracking(),
             set_speed_m_s: SPEED_M_S,

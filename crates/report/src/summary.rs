@@ -181,7 +181,7 @@ impl Summary {
             no_go: job.left_out,
             strokes: StrokeFigures::of(job.drawing, job.plan),
             plan: PlanFigures::of(job.plan),
-            run: RunFigures::of(job.run),
+            run: RunFigures::of(job.run, job.finished),
             tracking: tracking(job),
             laser: LaserFigures {
                 lit_s: round(lit_s(job.run)),
@@ -232,11 +232,11 @@ fn picture(job: &Finished<'_>) -> PictureFigures {
 }
 
 impl RunFigures {
-    fn of(run: &Run) -> Self {
+    fn of(run: &Run, finished: bool) -> Self {
         let lost = run.ticks.last().map(|tick| tick.telemetry.lost_counts).unwrap_or_default();
         Self {
             duration_s: round(run.ticks.len().saturating_sub(1) as f64 * TICK_F64_S),
-            finished: run.is_done(),
+            finished,
             lost_counts: JointCounts { pan: lost.pan, tilt: lost.tilt },
         }
     }

@@ -43,6 +43,8 @@ pub struct Asked {
     pub size_m: [f64; 2],
     /// By which anybody can tell whether the same strokes come out again.
     pub strokes_sha256: String,
+    /// Whether `tracelight resume` can go on with it.
+    pub can_resume: bool,
     /// The files that were read.
     #[serde(default)]
     pub inputs: Vec<Input>,
@@ -106,6 +108,12 @@ impl Progress {
         })
     }
 
+    /// Whether its plan was run to its end.
+    #[must_use]
+    pub const fn is_at_end(&self) -> bool {
+        self.plan_ticks > 0 && self.plan_tick + 1 >= self.plan_ticks
+    }
+
     /// Time of the plan that was drawn, and all of it, s.
     #[must_use]
     pub fn seconds(&self) -> (f64, f64) {
@@ -149,7 +157,12 @@ impl Asked {
     ///
     /// # Errors
     /// `unreadable` where a file that it was read from is gone already.
-    pub fn of(arguments: &[String], begun: String, prepared: &Prepared) -> Result<Self, Failure> {
+    pub fn of(
+        arguments: &[String],
+        begun: String,
+        can_resume: bool,
+        prepared: &Prepared,
+    ) -> Result<Self, Failure> {
         let drawing = &prepared.schedule.ordered.drawing;
         let folder = std::env::current_dir().unwrap_or_default();
         let inputs = files::inputs().into_iter().map(|path| {
@@ -167,6 +180,7 @@ impl Asked {
             length_m: drawing.length(1e-6),
             size_m: [prepared.placed.size_m.0, prepared.placed.size_m.1],
             strokes_sha256: strokes_hash(prepared),
+            can_resume,
             inputs: inputs.collect::<Result<_, Failure>>()?,
             before: Vec::new(),
         })
@@ -176,7 +190,10 @@ impl Asked {
     pub(crate) fn put(&self, folder: &ResultFolder) -> Result<(), Failure> {
         let text = toml_edit::ser::to_string_pretty(self).map_err(|e| Failure::failed("internal", e))?;
         let head = "# What this run was asked, for `tracelight resume`. How far it came is in the file `progress`.\n";
-        folder.put(JOB, format!("{head}{text}"))
+        folder.put(JOB, format!("{head}{text}"))?;
+        // before any light: after a power cut it is what there is to go on with
+        folder.keep(JOB);
+        Ok(())
     }
 
     /// Refuses to go on where a file that the job was read from is another one now.
@@ -201,11 +218,16 @@ impl Asked {
         Ok(())
     }
 
-    /// What is left of the whole job after earlier runs of it, the first one first, and what is kept of what was asked then. Its last note says so.
+    /// What is left of the whole job after earlier runs of it, the first one first, and what is kept of what was asked then, `begun` now. Its last note says so.
     ///
     /// # Errors
     /// `changed` where other strokes come out of the same files; [`NOTHING_LEFT`].
-    pub fn rest(&self, whole: Prepared, before: &[Before]) -> Result<(Prepared, Self), Failure> {
+    pub fn rest(
+        &self,
+        whole: Prepared,
+        before: &[Before],
+        begun: String,
+    ) -> Result<(Prepared, Self), Failure> {
         self.check_strokes(&whole)?;
         let mut rest = whole;
         for Before { folder, plan_tick } in before {
@@ -220,7 +242,7 @@ impl Asked {
             "goes on with {last}: {left} of {} strokes are left, or a part of the first",
             self.strokes
         ));
-        Ok((rest, Self { before: before.to_vec(), ..self.clone() }))
+        Ok((rest, Self { before: before.to_vec(), begun, ..self.clone() }))
     }
 
     /// Refuses to go on where other strokes come out of the same files.

@@ -3,9 +3,11 @@
 mod folder;
 mod journal;
 mod listed;
+mod table;
 mod written;
 
 pub use folder::{Records, open};
 pub use journal::{Asked, Before, Input, Kept, NOTHING_LEFT, Progress, read};
-pub use listed::{ListedRun, runs};
+pub use listed::{ListedRun, check_newest, runs};
+pub use table::table;
 pub use written::{Told, write};

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
+use tracelight_files::ResultFolder;
 use tracelight_task::Failure;
 
 use crate::folder::SUMMARY;
@@ -23,6 +24,10 @@ pub struct ListedRun {
     pub progress: Option<Progress>,
     /// What stands in its summary; null where none was written.
     pub summary: Value,
+    /// A program writes to it at present.
+    pub is_running: bool,
+    /// The newest run that goes on with it.
+    pub went_on_in: Option<PathBuf>,
 }
 
 /// The runs in a folder, the oldest first.
@@ -41,11 +46,39 @@ pub fn runs(dir: &Path) -> Result<Vec<ListedRun>, Failure> {
         let dir = entry.map_err(unreadable)?.path();
         if let Ok(Kept { asked, progress }) = journal::read(&dir) {
             let summary = summary(&dir).unwrap_or(Value::Null);
-            rows.push(ListedRun { dir, asked, progress, summary });
+            let is_running = ResultFolder::hold(&dir).is_err();
+            rows.push(ListedRun { dir, asked, progress, summary, is_running, went_on_in: None });
         }
     }
     rows.sort_by(|a, b| (&a.asked.begun, &a.dir).cmp(&(&b.asked.begun, &b.dir)));
+    let newest = |row: &ListedRun| {
+        let real = fs::canonicalize(&row.dir).ok()?;
+        let goes_on = |other: &&ListedRun| {
+            other.dir != row.dir && other.asked.before.iter().any(|before| before.folder == real)
+        };
+        rows.iter().rev().find(goes_on).map(|other| other.dir.clone())
+    };
+    let newest: Vec<Option<PathBuf>> = rows.iter().map(newest).collect();
+    rows.iter_mut().zip(newest).for_each(|(row, newest)| row.went_on_in = newest);
     Ok(rows)
+}
+
+/// Refuses a run that another one beside it went on with: that one knows what is left. `dir` is its real path.
+///
+/// # Errors
+/// `cannot-resume`.
+pub fn check_newest(dir: &Path) -> Result<(), Failure> {
+    let all = dir.parent().map_or_else(|| Ok(Vec::new()), runs)?;
+    let is_it = |run: &&ListedRun| fs::canonicalize(&run.dir).is_ok_and(|other| other == dir);
+    let newest = all.iter().find(is_it).and_then(|run| run.went_on_in.as_ref());
+    newest.map_or(Ok(()), |newest| {
+        let message = format!(
+            "{} went on in {}: give that one, or what it drew would be drawn twice",
+            dir.display(),
+            newest.display()
+        );
+        Err(Failure::usage("cannot-resume", message))
+    })
 }
 
 fn summary(dir: &Path) -> Option<Value> {
@@ -59,6 +92,14 @@ impl ListedRun {
     #[must_use]
     pub fn is_finished(&self) -> bool {
         self.summary["run"]["finished"] == true
+    }
+
+    /// Whether something of it is left that no other run goes on with, and one can.
+    #[must_use]
+    pub fn is_left(&self) -> bool {
+        let is_at_end = self.progress.is_some_and(|progress| progress.is_at_end());
+        let is_free = !self.is_running && self.went_on_in.is_none();
+        self.asked.can_resume && is_free && !self.is_finished() && !is_at_end
     }
 
     /// In words.
@@ -78,8 +119,13 @@ impl ListedRun {
             .and_then(|faults| faults.last())
             .and_then(|fault| fault["code"].as_str())
             .map_or_else(String::new, |code| format!(", then {code}"));
-        let killed = if self.summary.is_null() { ", no results: killed, or still running" } else { "" };
-        format!("{before}{far}{why}{killed}")
+        let how = match &self.went_on_in {
+            Some(run) => format!(", went on in {}", run.display()),
+            None if self.is_running => ", running".to_owned(),
+            None if self.summary.is_null() => ", killed".to_owned(),
+            None => String::new(),
+        };
+        format!("{before}{far}{why}{how}")
     }
 
     /// Of what was lit, mm.
@@ -110,6 +156,8 @@ impl ListedRun {
             "max_mm": self.summary["tracking"]["max_mm"],
             "simulated": self.summary["simulated"],
             "finished": self.is_finished(),
+            "running": self.is_running,
+            "went_on_in": self.went_on_in,
             "progress": progress,
             "goes_on_with": self.asked.before.last().map(|before| &before.folder),
         })

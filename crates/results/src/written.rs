@@ -66,6 +66,7 @@ pub fn write(
         drawing,
         plan,
         run: &ran.last,
+        finished: ran.finished,
         earlier_laps: &ran.earlier,
         tracking,
         set_speed_m_s: plan.set_speed_m_s,

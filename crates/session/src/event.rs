@@ -1,5 +1,6 @@
 use tracelight_rig::{Fault, TICK_F64_S};
 
+use crate::request::Refused;
 use crate::state::State;
 
 /// Ticks as seconds.
@@ -27,6 +28,13 @@ pub enum Event {
         stroke: u32,
         /// How many there are.
         of: u32,
+    },
+    /// A job that was to be next did not begin.
+    NotBegun {
+        /// Tick of the rig.
+        tick: u32,
+        /// Why not.
+        why: Refused,
     },
     /// A fault was latched.
     Fault {

@@ -138,14 +138,13 @@ impl<R: Rig> Session<R> {
                 self.resume();
             }
             (Request::Next(job), Parking) if self.next.is_some() => {
-                check(&job)?;
+                self.check_next(&job, self.next.as_ref().is_some_and(|next| next.dry))?;
                 self.next = Some(job);
             }
             (Request::Next(job), Stepping | Returning | Pausing | Paused | Armed)
                 if self.on() == Stepping =>
             {
-                self.check_resume()?;
-                check(&job)?;
+                self.check_next(&job, self.running.as_ref().is_some_and(|running| running.dry))?;
                 self.park();
                 self.next = Some(job);
             }
@@ -245,9 +244,20 @@ impl<R: Rig> Session<R> {
         self.since = self.told.tick;
     }
 
+    /// Refuses a job in the place of another one: light is allowed to whom it was allowed before, and not for ever.
+    fn check_next(&self, job: &Job, before_was_dry: bool) -> Result<(), Refused> {
+        check(job)?;
+        if self.state == State::Armed {
+            return Ok(());
+        }
+        self.check_resume()?;
+        if before_was_dry && !job.dry { Err(Refused::NotArmed) } else { Ok(()) }
+    }
+
     fn park(&mut self) {
         self.running = None;
         self.next = None;
+        self.since = self.told.tick;
         self.send(Command::Abandon);
         self.enter(State::Parking);
     }
@@ -349,18 +359,22 @@ impl<R: Rig> Session<R> {
 
     /// Begins a job again that is done again and again, once it was dark for long enough.
     fn begin_again(&mut self) {
-        let PanTilt { pan, tilt } = self.told.velocity_rad_s;
-        let Some(running) = &mut self.running else { return };
+        let is_ready = self.state == State::Stepping && !self.is_unattended() && self.rests();
+        let Some(running) = self.running.as_mut().filter(|_| is_ready) else { return };
         let (Some(again), Some(ended)) = (&running.again, running.ended) else { return };
         let waited = self.told.tick.wrapping_sub(ended);
-        if self.state != State::Stepping
-            || waited < again.wait_ticks
-            || pan.abs().max(tilt.abs()) >= REST_RAD_S
-        {
+        // at half the speed there is twice the light in a place
+        let wait_ticks = again.wait_ticks as f32 / self.speed.min(1.0);
+        if (waited as f32) < wait_ticks {
             return;
         }
         running.begin_again();
         self.go_on();
+    }
+
+    /// Whether nothing was asked for so long that nobody may be there.
+    const fn is_unattended(&self) -> bool {
+        self.told.tick.wrapping_sub(self.asked) > ATTENDED_TICKS
     }
 
     fn rests(&self) -> bool {
@@ -391,10 +405,16 @@ impl<R: Rig> Session<R> {
             State::Ready => {
                 self.running = None;
                 self.enter(State::Ready);
-                // whoever asked for it armed the one before
-                if let Some(job) = self.next.take() {
-                    let _ = self.start(job);
+                // whoever asked for it armed the one before; what is held up for long is armed anew
+                let next = self.next.take().filter(|job| job.dry || self.waited() <= PAUSED_TICKS);
+                if let Some(Err(why)) = next.map(|job| self.start(job)) {
+                    self.tell(Event::NotBegun { tick, why });
                 }
+            }
+            State::Done if self.state == State::Stepping => {
+                self.running = None;
+                self.send(Command::Disarm);
+                self.enter(State::Done);
             }
             State::Paused if self.state == State::Pausing => {
                 self.since = tick;
@@ -409,17 +429,15 @@ impl<R: Rig> Session<R> {
         let phase = self.told.phase;
         let answered = self.running.as_ref().is_some_and(|running| running.answered);
         let is_again = self.on() == State::Stepping;
+        // between two times it is dark, and waits
+        let has_ended = self.running.as_ref().is_some_and(|running| running.ended.is_some());
         match self.state {
             State::Unhomed => State::Ready,
             State::Fault if self.has_begun() => State::Stopped,
             State::Fault => State::Ready,
             State::Armed if self.waited() >= ARMED_TICKS => self.armed_in,
             State::Pausing if is_again && phase == Phase::Done => State::Paused,
-            State::Stepping
-                if phase == Phase::Done && self.told.tick.wrapping_sub(self.asked) > ATTENDED_TICKS =>
-            {
-                State::Done
-            }
+            State::Stepping if has_ended && self.is_unattended() => State::Done,
             State::Tracing | State::Returning | State::Pausing
                 if answered && !is_again && phase == Phase::Done =>
             {
@@ -427,7 +445,7 @@ impl<R: Rig> Session<R> {
             }
             // an open interlock, for instance, keeps it from arming
             State::Tracing | State::Stepping | State::Returning
-                if phase == Phase::Dark && (answered || self.waited() > ANSWER_TICKS) =>
+                if phase == Phase::Dark && !has_ended && (answered || self.waited() > ANSWER_TICKS) =>
             {
                 State::Stopped
             }

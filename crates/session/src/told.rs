@@ -14,6 +14,9 @@ pub fn event_json(event: &Event) -> Value {
         Event::Stroke { tick, stroke, of } => {
             json!({"event": "stroke", "t_s": seconds(tick), "stroke": stroke + 1, "strokes": of})
         }
+        Event::NotBegun { tick, why } => {
+            json!({"event": "refused", "t_s": seconds(tick), "message": why.to_string()})
+        }
         Event::Fault { tick, fault } => json!({
             "event": "fault", "t_s": seconds(tick), "code": fault.code(), "message": fault.row().what,
         }),

@@ -198,7 +198,7 @@ const MESSAGES: &[(&str, &str)] = &[
     ),
     (
         "cannot-resume",
-        "A run that a camera followed, that went from stroke to stroke, or whose picture came from standard input, is not gone on with. Begin anew, where it helps with --from-stroke. The exit status is 2.",
+        "A run that a camera followed, that went from stroke to stroke, that was to be drawn several times, that another run went on with, or whose picture came from standard input, is not gone on with. Begin anew, where it helps with --from-stroke. The exit status is 2.",
     ),
     (
         "unfinished",

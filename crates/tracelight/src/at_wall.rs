@@ -121,6 +121,7 @@ impl Hands for AtWall<'_> {
         let words = match *event {
             Event::State { to, .. } => words(to).map(str::to_owned),
             Event::Stroke { stroke, of, .. } => self.steps.then(|| format!("stroke {} of {of}", stroke + 1)),
+            Event::NotBegun { why, .. } => Some(why.to_string()),
             Event::Fault { fault, .. } => {
                 Some(format!("fault {}: {} (C clears it)", fault.code(), fault.row().what))
             }

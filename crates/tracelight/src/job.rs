@@ -107,10 +107,10 @@ fn begun(
 ) -> Result<(Prepared, Asked), Failure> {
     let whole = prepared(args, task)?.from_stroke(args.from_stroke)?;
     let Some(Earlier { asked, runs, .. }) = earlier else {
-        let asked = Asked::of(&args.typed, named::now(), &whole)?;
+        let asked = Asked::of(&args.typed, named::now(), args.can_resume(), &whole)?;
         return Ok((whole, asked));
     };
-    let (rest, asked) = asked.rest(whole, runs)?;
+    let (rest, asked) = asked.rest(whole, runs, named::now())?;
     rest.notes.last().iter().for_each(|note| task.say(&format!("note: {note}")));
     Ok((rest, asked))
 }

@@ -189,6 +189,52 @@ fn a_job_is_done_again_and_again_until_another_one_is_asked_for() {
     // nobody asks for anything any more
     wall.request(Request::Speed(1.0)).unwrap();
     until(&mut wall, State::Done, ATTENDED_TICKS as usize + 10_000);
+    assert!(steps(&mut wall, 20_000).iter().all(|t| !t.light && !t.telemetry.actuation.gate));
+    assert_eq!(wall.state(), State::Done);
+}
+
+#[test]
+fn another_job_is_lit_only_where_the_one_before_was_and_waits_where_it_waited() {
+    let config = RigConfig::report();
+    let mut wall = at_the_wall(&config, 0);
+    // in the dark nobody needs to arm, and nothing that follows is lit
+    wall.request(Request::Trace(looped_of(&config, circle(0.1), true))).unwrap();
+    steps(&mut wall, 1500);
+    let lit = looped_of(&config, star(0.1), false);
+    assert_eq!(wall.request(Request::Next(lit.clone())), Err(Refused::NotArmed));
+    wall.request(Request::Next(looped_of(&config, star(0.1), true))).unwrap();
+    assert_eq!(wall.request(Request::Next(lit)), Err(Refused::NotArmed));
+    assert!(steps(&mut wall, 8000).iter().all(|t| !t.light));
+    wall.request(Request::Stop).unwrap();
+    wall.request(Request::Park).unwrap();
+    until(&mut wall, State::Ready, 8000);
+    // a small one waits in the dark between, and may be paused and go on there
+    let small = looped_of(&config, circle(0.004), false);
+    assert!(small.again.as_ref().unwrap().wait_ticks > 100);
+    wall.request(Request::Arm).unwrap();
+    wall.request(Request::Trace(small)).unwrap();
+    while wall.snapshot().laps < 2 || wall.told().phase != Phase::Done {
+        step(&mut wall);
+    }
+    wall.request(Request::Pause(When::AtOnce)).unwrap();
+    until(&mut wall, State::Paused, 100);
+    wall.request(Request::Resume).unwrap();
+    let laps = wall.snapshot().laps;
+    steps(&mut wall, 5000);
+    assert_eq!(wall.state(), State::Stepping);
+    assert!(wall.snapshot().laps > laps);
+    // held up on its way for more than a minute, another one is not begun
+    wall.request(Request::Next(looped_of(&config, star(0.1), false))).unwrap();
+    let hand = |wall: &mut Wall, nm: f64| wall.rig_mut().suffer(Trouble::Push(PanTilt::new(nm, 0.0)));
+    hand(&mut wall, 0.1);
+    let held = steps(&mut wall, 70_000);
+    let was_parking = wall.state() == State::Parking;
+    hand(&mut wall, 0.0);
+    if was_parking {
+        let after = steps(&mut wall, 20_000);
+        assert!(held.iter().chain(&after).skip(100).all(|t| !t.light));
+        assert_eq!(wall.state(), State::Ready);
+    }
 }
 
 #[test]

@@ -137,6 +137,11 @@ impl TraceArgs {
         }
     }
 
+    /// Whether a run of it can be gone on with.
+    pub(crate) fn can_resume(&self) -> bool {
+        self.eye.camera.is_none() && !self.step && self.laps == 1 && self.name() != "-"
+    }
+
     /// Refuses to go from stroke to stroke where nobody can ask for the next.
     pub(crate) fn check_keys(&self) -> Result<(), Failure> {
         if !self.step || std::io::stdin().is_terminal() {

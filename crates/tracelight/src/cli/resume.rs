@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use tracelight_files::ResultFolder;
-use tracelight_results::{Before, Kept, NOTHING_LEFT, read};
+use tracelight_results::{Before, Kept, NOTHING_LEFT, check_newest, read};
 use tracelight_task::{Failure, Stop};
 
 use crate::cli::answer::{Answer, Voice};
@@ -39,13 +39,22 @@ type Traced = fn(&[String]) -> Result<TraceArgs, Failure>;
 pub(crate) fn run(args: &ResumeArgs, traced: Traced, stop: &Stop) -> Result<Answer, Failure> {
     let dir = std::fs::canonicalize(&args.dir).unwrap_or_else(|_| args.dir.clone());
     let Kept { asked, progress } = read(&args.dir)?;
-    ResultFolder::check_unused(&dir)?;
+    // nobody else goes on with it meanwhile
+    let _held = ResultFolder::hold(&dir)?;
+    check_newest(&dir)?;
     let mut request = traced(&asked.arguments)?;
     request.by_hand = args.by_hand.clone();
     request.open = args.open;
     request.out = args.out.as_deref().map(whole).transpose()?;
     request.voice = args.voice;
     check(&args.dir, &request)?;
+    if request.out.as_deref().is_some_and(|out| std::fs::canonicalize(out).is_ok_and(|out| out == dir)) {
+        let message = format!(
+            "--out {0} is the run that is to be gone on with: give another folder",
+            args.dir.display()
+        );
+        return Err(Failure::usage("usage", message));
+    }
     asked.check_inputs()?;
     // its names are those of there
     std::env::set_current_dir(&asked.folder).map_err(|e| {
@@ -54,10 +63,10 @@ pub(crate) fn run(args: &ResumeArgs, traced: Traced, stop: &Stop) -> Result<Answ
         Failure::usage("changed", message)
     })?;
     let plan_tick = progress.map_or(0, |progress| progress.plan_tick);
-    let runs = asked.before.iter().cloned().chain([Before { folder: dir.clone(), plan_tick }]).collect();
+    let earlier = asked.before.iter().cloned().chain([Before { folder: dir.clone(), plan_tick }]).collect();
     match job::resume(
         &request,
-        &Earlier { asked: &asked, runs, beside: &ResultFolder::unnumbered(&dir) },
+        &Earlier { asked: &asked, runs: earlier, beside: &ResultFolder::unnumbered(&dir) },
         stop,
     ) {
         Err(none) if none.code == NOTHING_LEFT => {
@@ -78,9 +87,16 @@ fn check(dir: &Path, request: &TraceArgs) -> Result<(), Failure> {
         );
         return Err(Failure::usage("cannot-resume", message));
     }
+    if request.laps > 1 {
+        let message = format!(
+            "cannot go on with {name}: it was to be drawn {} times; begin anew with tracelight {command}, or with fewer --laps",
+            request.laps
+        );
+        return Err(Failure::usage("cannot-resume", message));
+    }
     if request.step {
         let message = format!(
-            "cannot go on with {name}: it went from stroke to stroke; begin anew from the one where it ended, with tracelight {command} --from-stroke N"
+            "cannot go on with {name}: it went from stroke to stroke; begin anew with --from-stroke N, the first one that is not done yet"
         );
         return Err(Failure::usage("cannot-resume", message));
     }

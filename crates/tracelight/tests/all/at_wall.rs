@@ -124,6 +124,17 @@ fn strokes_are_drawn_one_at_a_time_until_a_key_asks_for_the_next() {
             wall.until_state("paused");
             wall.press(" ");
             wall.until_state("stepping");
+            // stopped on the way to the next one: it begins when somebody arms
+            wall.press("\x1b[D");
+            wall.until_state("parking");
+            wall.press("\x1b");
+            wall.until_state("ready");
+            wall.press("a");
+            wall.until_state("armed");
+            wall.press("\r");
+            wall.until_state("stepping");
+            wall.press("\x1b[C");
+            began(&mut wall, 3);
         }
         wall.press(if number == 3 { "s" } else { " " });
         let left = wall.until(|event| event["event"] == "left");

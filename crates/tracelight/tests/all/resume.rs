@@ -58,6 +58,8 @@ fn a_killed_run_is_gone_on_with_again_and_again() {
     assert!(listed[0]["finished"] == false && progress["stroke"] == 2, "{listed:#?}");
     assert!(progress["plan_s"].as_f64().unwrap() >= told_s, "{progress} {told_s}");
     let whole_m = listed[0]["length_m"].as_f64().unwrap();
+    let text = String::from_utf8(within(&dir).arg("runs").output().unwrap().stdout).unwrap();
+    assert!(text.contains("killed") && text.contains("1 run not finished: tracelight resume"), "{text}");
     // the rest is killed too
     killed(&dir, &["resume", "out/house"], 2);
     let output = within(&dir).args(["resume", "out/house-2", "--json"]).output().unwrap();
@@ -73,7 +75,8 @@ fn a_killed_run_is_gone_on_with_again_and_again() {
         listed.iter().map(|run| (run["folder"].as_str().unwrap(), run["finished"] == true)).collect();
     assert_eq!(far, [("out/house", false), ("out/house-2", false), ("out/house-3", true)]);
     let text = String::from_utf8(within(&dir).arg("runs").output().unwrap().stdout).unwrap();
-    assert!(text.contains("500 × ") && text.contains("2 runs not finished: tracelight resume"), "{text}");
+    assert!(text.contains("500 × ") && text.contains("went on in out/house-3"), "{text}");
+    assert!(!text.contains("not finished") && text.contains("simulated"), "{text}");
 }
 
 #[test]
