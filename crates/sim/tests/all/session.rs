@@ -319,6 +319,10 @@ fn comes_to_rest_in_travel(wall: &mut Wall) -> bool {
         }
         was = is;
     }
+    // upside down it is held by what it weighs the right way up, and hunts
+    if Joint::BOTH.iter().any(|&j| was[j].abs() >= FAR_RAD) {
+        return false;
+    }
     panic!("it does not come to rest: {was:?}, {:?}", wall.told());
 }
 
