@@ -6,28 +6,28 @@ use unicode_width::UnicodeWidthStr;
 use crate::listed::ListedRun;
 
 /// What a line of the table says.
-fn cells(run: &ListedRun) -> [String; 6] {
+fn cells(run: &ListedRun) -> [String; 5] {
     let mm = |m: f64| 1e3 * m;
     let [width, height] = run.asked.size_m;
     let time = run.summary["run"]["duration_s"].as_f64();
     [
-        run.dir.display().to_string(),
-        run.asked.begun.clone(),
+        // to the minute
+        run.asked.begun.chars().take(16).collect(),
         format!("{:.0} × {:.0} mm", mm(width), mm(height)),
         time.map_or_else(|| "–".to_owned(), |s| format!("{s:.1} s")),
         run.rms_mm().map_or_else(|| "–".to_owned(), |mm| format!("{mm:.3} mm")),
-        run.how_far(),
+        format!("{}: {}", run.dir.display(), run.how_far()),
     ]
 }
 
 /// A table of runs for people, as wide as it needs to be.
 #[must_use]
 pub fn table(runs: &[ListedRun]) -> String {
-    let head = ["folder", "begun (UTC)", "size", "time", "rms error", "how far"].map(str::to_owned);
-    let lines: Vec<[String; 6]> = std::iter::once(head).chain(runs.iter().map(cells)).collect();
-    let widths: [usize; 6] =
+    let head = ["begun (UTC)", "size", "time", "rms error", "run, and how far it came"].map(str::to_owned);
+    let lines: Vec<[String; 5]> = std::iter::once(head).chain(runs.iter().map(cells)).collect();
+    let widths: [usize; 5] =
         std::array::from_fn(|i| lines.iter().map(|line| line[i].width()).max().unwrap_or_default());
-    let shown = |line: &[String; 6]| {
+    let shown = |line: &[String; 5]| {
         let cells = line.iter().zip(widths).map(|(cell, width)| {
             // by what it takes on a screen
             format!("{cell}{}", " ".repeat(width - cell.width()))
