@@ -66,7 +66,7 @@ impl CorneredHead {
     /// Root mean square of the residuals, m.
     #[must_use]
     pub fn rms_m(&self) -> f64 {
-        (self.residual_m.iter().map(|r| r * r).sum::<f64>() / 4.0).sqrt()
+        rms(&self.residual_m)
     }
 }
 
@@ -97,10 +97,7 @@ pub fn cornered(
     let fit = Fit { geometry, corners: &corners, angles, deviation_m };
     let no_fit = |rms_m: f64| CornersError::NoFit { rms_m, hint: hint(geometry, size_m, angles, rms_m) };
     let (pose, normal) = solve(&fit, start, MOST_STEPS).ok_or_else(|| no_fit(f64::INFINITY))?;
-    let mut residual_m = [0.0; 4];
-    for k in 0..4 {
-        residual_m[k] = geometry.spot(&pose, angles[k]).map_or(f64::INFINITY, |at| at.distance(corners[k]));
-    }
+    let residual_m = fit.residual_m(&pose);
     let covariance = normal.covariance().ok_or(CornersError::Degenerate)?;
     let found =
         CorneredHead { pose, residual_m, deviation: deviations(&covariance, &residual_m, deviation_m) };
@@ -109,6 +106,10 @@ pub fn cornered(
         true => Ok(found),
         false => Err(no_fit(found.rms_m())),
     }
+}
+
+fn rms(residual_m: &[f64; 4]) -> f64 {
+    (residual_m.iter().map(|r| r * r).sum::<f64>() / 4.0).sqrt()
 }
 
 /// Standard deviations of what was found, larger where corners are further off than was taken: they have two equations to spare.
@@ -126,16 +127,10 @@ fn hint(
     rms_m: f64,
 ) -> &'static str {
     let corners = corners_of((height, width));
-    let lies = start(&corners, &angles.map(|angle| geometry.ray(angle))).and_then(|from| {
-        let fit = Fit { geometry, corners: &corners, angles, deviation_m: POINTED_M };
-        solve(&fit, from, MOST_STEPS)
-    });
-    let off = lies.map_or(f64::INFINITY, |(pose, _)| {
-        let off = |k: usize| {
-            geometry.spot(&pose, angles[k]).map_or(f64::INFINITY, |at| at.distance_squared(corners[k]))
-        };
-        ((0..4).map(off).sum::<f64>() / 4.0).sqrt()
-    });
+    let fit = Fit { geometry, corners: &corners, angles, deviation_m: POINTED_M };
+    let lies = start(&corners, &angles.map(|angle| geometry.ray(angle)))
+        .and_then(|from| solve(&fit, from, MOST_STEPS));
+    let off = lies.map_or(f64::INFINITY, |(pose, _)| rms(&fit.residual_m(&pose)));
     if off < 0.3 * rms_m {
         "as high as you say it is wide, and the other way round"
     } else {
@@ -214,6 +209,14 @@ struct Fit<'a> {
 }
 
 impl Fit<'_> {
+    /// How far each corner lies from where a head that stands so has it, m.
+    fn residual_m(&self, pose: &HeadPose) -> [f64; 4] {
+        std::array::from_fn(|k| {
+            let at = self.geometry.spot(pose, self.angles[k]);
+            at.map_or(f64::INFINITY, |at| at.distance(self.corners[k]))
+        })
+    }
+
     /// How far the beam misses a corner, m, and the derivatives of that by the pose: central differences, whose error is next to nothing.
     fn misses(&self, pose: &HeadPose, k: usize) -> Option<(Vec2, [Vec2; 6])> {
         const STEP: f64 = 1e-6;

@@ -1,7 +1,8 @@
 //! A lap with somebody at the wall, who may pause, stop, hurry or slow it, and let it go on.
 
 use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
-use tracelight_session::{Event, Refused, Request, Session, Snapshot, State, seconds};
+use tracelight_rig::Fault;
+use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State, seconds};
 use tracelight_sim::{AFTERMATH_TICKS, Run, Simulated, SimulatedRig, Tick, job_of};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
@@ -69,88 +70,153 @@ pub(crate) fn run_lap_by_hand(
     (keep, hands): (&mut dyn Keep, &mut dyn Hands),
     task: Task<'_>,
 ) -> Result<LapByHand, Failure> {
-    let mut wall = Session::new(rig);
-    let first = step(&mut wall)?;
+    let mut lap = Lap { plan, task, run: Run::default(), rests: 0, diary: Diary::default() };
+    let ended = drive(rig, job_of(plan, dry), &mut lap, (keep, hands), task)?;
+    Ok(LapByHand { run: lap.run, failure: ended.failure, notes: lap.diary.notes })
+}
+
+/// What a session does with somebody at the wall, and what is kept of it.
+pub(crate) trait Course {
+    /// Keeps a tick; `laps` is how often a job that is done again and again had been done before it.
+    fn keep(&mut self, keep: &mut dyn Keep, tick: Tick, now: &Snapshot, laps: u32) -> Result<(), Failure>;
+
+    /// Sees what happened; false where nobody needs to be told.
+    fn see(&mut self, event: &Event, now: &Snapshot) -> bool;
+
+    /// Does what is asked.
+    fn ask(
+        &mut self,
+        ask: Ask,
+        wall: &mut Session<&mut SimulatedRig>,
+        hands: &mut dyn Hands,
+        task: Task<'_>,
+    ) -> Result<(), Refused>;
+
+    /// Whether nothing is to come any more.
+    fn is_over(&self) -> bool {
+        false
+    }
+}
+
+/// How a session ended.
+pub(crate) struct Ended {
+    /// Why, if its rig lost power.
+    pub(crate) failure: Option<Failure>,
+    /// The fault that is latched.
+    pub(crate) fault: Option<Fault>,
+    pub(crate) state: State,
+}
+
+/// Arms a rig for a job, as who calls for it has done both acts, and lets it run to its end, or to where nobody is there to go on with it. Whatever ends it darkens
+/// first.
+pub(crate) fn drive(
+    rig: &mut SimulatedRig,
+    job: Job,
+    course: &mut dyn Course,
+    (keep, hands): (&mut dyn Keep, &mut dyn Hands),
+    task: Task<'_>,
+) -> Result<Ended, Failure> {
+    let wall = &mut Session::new(rig);
+    let first = step(wall)?;
     check_homed(&first.telemetry)?;
-    keep.tick(plan, &first)?;
-    let begun = begin(&mut wall, plan, dry);
-    begun.map_err(|why| Failure::failed("session", why.to_string()))?;
-    let mut lap = Lap { run: Run { ticks: vec![first] }, rests: 0, diary: Diary::default() };
+    course.keep(keep, first, &wall.snapshot(), 0)?;
+    begin(wall, job).map_err(|why| Failure::failed("session", why.to_string()))?;
     let mut power = PowerWatch::default();
     let (mut goodbye, mut aftermath) = (GOODBYE_TICKS, AFTERMATH_TICKS);
-    while wall.state() != State::Done && goodbye > 0 && aftermath > 0 {
-        let tick = step(&mut wall)?;
+    while !course.is_over() && wall.state() != State::Done && goodbye > 0 && aftermath > 0 {
+        // the tick in which a lap ends belongs to that one
+        let laps = wall.snapshot().laps;
+        let tick = step(wall)?;
         if power.is_lost(&tick.telemetry) {
-            return Ok(lap.ended(Some(lost_power())));
+            return Ok(Ended { failure: Some(lost_power()), fault: None, state: wall.state() });
         }
-        if let Err(why) = keep.tick(plan, &tick) {
-            darken(&mut wall)?;
+        let now = wall.snapshot();
+        if let Err(why) = course.keep(keep, tick, &now, laps) {
+            darken(wall)?;
             return Err(why);
         }
-        lap.push(tick, wall.state());
-        lap.diary.watch(&wall.snapshot());
         while let Some(event) = wall.event() {
-            lap.diary.write(&event, &wall.snapshot());
-            hands.event(&event);
+            if course.see(&event, &now) {
+                hands.event(&event);
+            }
         }
-        if tick.telemetry.tick.is_multiple_of(256) {
-            task.at(u64::from(tick.telemetry.plan_tick));
-        }
-        let ended = matches!(wall.state(), State::Fault | State::Stopped | State::Ready);
+        let ended = matches!(now.state, State::Fault | State::Stopped | State::Ready);
         aftermath -= u32::from(ended && !hands.is_there());
         if task.stop.is_wanted() {
             let _ = wall.request(Request::Stop);
             goodbye -= 1;
-        } else if let Some(Ask::Request(request)) = hands.tick(&wall.snapshot())
-            && let Err(why) = wall.request(request)
+        } else if let Some(ask) = hands.tick(&now)
+            && let Err(why) = course.ask(ask, wall, hands, task)
         {
             hands.refused(&why);
         }
     }
     if wall.told().actuation.lights() {
-        let tick = darken(&mut wall)?;
-        keep.tick(plan, &tick)?;
-        lap.push(tick, wall.state());
+        let laps = wall.snapshot().laps;
+        let tick = darken(wall)?;
+        course.keep(keep, tick, &wall.snapshot(), laps)?;
     }
-    Ok(lap.ended(None))
+    Ok(Ended { failure: None, fault: wall.told().fault, state: wall.state() })
 }
 
-pub(crate) fn step(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
+fn step(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
     wall.tick_by(|rig| Some(rig.step()), |tick| &tick.telemetry).ok_or_else(lost_power)
 }
 
-pub(crate) fn darken(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
+fn darken(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
     let _ = wall.request(Request::Stop);
     step(wall)
 }
 
-/// Arms and traces: who calls for a lap has done both acts.
-fn begin(wall: &mut Session<&mut SimulatedRig>, plan: &Plan, dry: bool) -> Result<(), Refused> {
-    if !dry {
+fn begin(wall: &mut Session<&mut SimulatedRig>, job: Job) -> Result<(), Refused> {
+    if !job.dry {
         wall.request(Request::Arm)?;
     }
-    wall.request(Request::Trace(job_of(plan, dry)))
+    wall.request(Request::Trace(job))
 }
 
-struct Lap {
+struct Lap<'a> {
+    plan: &'a Plan,
+    task: Task<'a>,
     run: Run,
     /// Ticks since it rests.
     rests: u32,
     diary: Diary,
 }
 
-impl Lap {
-    fn push(&mut self, tick: Tick, state: State) {
+impl Course for Lap<'_> {
+    fn keep(&mut self, keep: &mut dyn Keep, tick: Tick, now: &Snapshot, _: u32) -> Result<(), Failure> {
+        keep.tick(self.plan, &tick)?;
         let is_resting =
-            matches!(state, State::Paused | State::Stopped | State::Armed | State::Fault) && !tick.light;
+            matches!(now.state, State::Paused | State::Stopped | State::Armed | State::Fault) && !tick.light;
         self.rests = if is_resting { self.rests.saturating_add(1) } else { 0 };
         if self.rests <= REST_TICKS {
             self.run.ticks.push(tick);
         }
+        self.diary.watch(now);
+        if tick.telemetry.tick.is_multiple_of(256) {
+            self.task.at(u64::from(tick.telemetry.plan_tick));
+        }
+        Ok(())
     }
 
-    fn ended(self, failure: Option<Failure>) -> LapByHand {
-        LapByHand { run: self.run, failure, notes: self.diary.notes }
+    fn see(&mut self, event: &Event, now: &Snapshot) -> bool {
+        self.diary.write(event, now);
+        true
+    }
+
+    fn ask(
+        &mut self,
+        ask: Ask,
+        wall: &mut Session<&mut SimulatedRig>,
+        _: &mut dyn Hands,
+        _: Task<'_>,
+    ) -> Result<(), Refused> {
+        match ask {
+            Ask::Request(request) => wall.request(request),
+            // strokes come one after the other by themselves
+            Ask::Step(_) => Ok(()),
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use tracelight_eye::seen::SeenLight;
 use tracelight_picture::{Raster, Source};
 use tracelight_pipeline::{Driving, Placed, Schedule, Sketch, place, schedule, schedule_rest, sketch};
 use tracelight_sim::{RigConfig, Run, SimulatedRig};
-use tracelight_stroke::{Drawing, Ordered};
+use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::Plan;
 
@@ -198,20 +198,20 @@ impl Prepared {
     /// # Errors
     /// As of [`run`](Self::run), and `standing-light` for a stroke so short that its light would stand.
     pub fn run_steps(
-        &self,
+        mut self,
         keep: &mut dyn Keep,
         hands: &mut dyn Hands,
         pace_m_s: Option<f64>,
         task: Task<'_>,
     ) -> Result<(Self, Ran), Failure> {
         let RunRequest { seed, dry, powered_up, .. } = self.how;
-        let mut driving = self.driving.clone();
+        let Self { driving, schedule, .. } = &mut self;
         driving.request.speed_m_s = pace_m_s.unwrap_or(driving.request.speed_m_s);
         let put_up = if powered_up { left } else { SimulatedRig::new };
         let mut rig = put_up(&driving.rig, driving.pose, seed);
         task.stage("run", 1);
-        let drawing = &self.schedule.ordered.drawing;
-        let (ran, run_ms) = task.timed(|| run_steps(&mut rig, (drawing, &driving), dry, (keep, hands), task));
+        let whole = (&schedule.ordered.drawing, &*driving);
+        let (ran, run_ms) = task.timed(|| run_steps(&mut rig, whole, dry, (keep, hands), task));
         let StepRun { run, plan, drawing, failure, fault, finished, notes } = ran?;
         let fault = fault.map(Failure::fault);
         let unfinished = || {
@@ -222,18 +222,7 @@ impl Prepared {
         };
         let failure = failure.or(fault).or_else(unfinished);
         let notes: Vec<String> = self.notes.iter().cloned().chain(notes).collect();
-        let ordered = Ordered { drawing, ..self.schedule.ordered.clone() };
-        let seen = Self {
-            sketch: self.sketch.clone(),
-            placed: self.placed.clone(),
-            driving,
-            schedule: Schedule { ordered, plan },
-            notes: self.notes.clone(),
-            vision_ms: self.vision_ms,
-            plan_ms: self.plan_ms,
-            how: self.how,
-            seen: None,
-        };
+        (self.schedule.ordered.drawing, self.schedule.plan) = (drawing, plan);
         let ran = Ran {
             earlier: Vec::new(),
             last: run,
@@ -247,7 +236,7 @@ impl Prepared {
             simulated: true,
             run_ms,
         };
-        Ok((seen, ran))
+        Ok((self, ran))
     }
 
     fn run_with(

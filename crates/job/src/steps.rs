@@ -1,17 +1,15 @@
 //! Strokes one at a time: each is drawn again and again until somebody asks for the next one.
 
-use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
 use tracelight_pipeline::{Driving, Schedule, schedule_rest};
 use tracelight_rig::Fault;
 use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
-use tracelight_sim::{AFTERMATH_TICKS, Run, SimulatedRig, Tick, looped_job};
+use tracelight_sim::{Run, SimulatedRig, Tick, looped_job};
 use tracelight_stroke::{Drawing, Path, Stroke};
 use tracelight_task::{Failure, Task, counted};
 use tracelight_trajectory::{Plan, plan_from};
 
-use crate::by_hand::{Ask, Hands, REST_TICKS, Step, darken, step};
+use crate::by_hand::{Ask, Course, Hands, REST_TICKS, Step, drive};
 use crate::keep::Keep;
-use crate::lap::GOODBYE_TICKS;
 use crate::remainder::join;
 
 /// What came of it.
@@ -33,6 +31,8 @@ pub(crate) struct StepRun {
 
 /// A stroke to be drawn again and again.
 struct Looped {
+    /// There and back, where it is open.
+    stroke: Stroke,
     /// From zero to it, once.
     once: Plan,
     /// From its end, again and again.
@@ -57,14 +57,15 @@ impl Looped {
         driving: &Driving,
         dry: bool,
     ) -> Result<Self, Failure> {
-        let drawing = Drawing { strokes: vec![stroke.along(there_and_back(&stroke.path))] };
+        let stroke = stroke.along(there_and_back(&stroke.path));
+        let drawing = Drawing { strokes: vec![stroke.clone()] };
         let Schedule { plan: once, .. } = schedule_rest(drawing.clone(), driving)?;
         let end = once.points.last().map(|point| point.joints.map(|joint| joint.position_rad));
         let again = plan_from(&drawing, &driving.machine, &driving.request, end.unwrap_or_default())
             .map_err(tracelight_pipeline::refused)?;
         let looped = looped_job(&driving.rig, &once, &again, dry).ok_or_else(|| stands(number))?;
         let job = Job { first: number as u32, of: of as u32, ..looped };
-        Ok(Self { once, again, job })
+        Ok(Self { stroke, once, again, job })
     }
 }
 
@@ -101,67 +102,12 @@ pub(crate) fn run_steps(
     task: Task<'_>,
 ) -> Result<StepRun, Failure> {
     let mut walk = Walk::begin(&drawing.strokes, driving, dry)?;
-    let mut wall = Session::new(rig);
-    let first = step(&mut wall)?;
-    check_homed(&first.telemetry)?;
-    walk.keep(keep, first, State::Ready, 0)?;
-    if !dry {
-        wall.request(Request::Arm).map_err(refused)?;
-    }
-    wall.request(Request::Trace(walk.looped.job.clone())).map_err(refused)?;
-    let mut power = PowerWatch::default();
-    let (mut goodbye, mut aftermath) = (GOODBYE_TICKS, AFTERMATH_TICKS);
-    while !walk.seen.finished && wall.state() != State::Done && goodbye > 0 && aftermath > 0 {
-        // the tick in which a time ends belongs to that one
-        let laps = wall.snapshot().laps;
-        let tick = step(&mut wall)?;
-        if power.is_lost(&tick.telemetry) {
-            walk.seen.failure = Some(lost_power());
-            return Ok(walk.ended());
-        }
-        let now = wall.snapshot();
-        if let Err(why) = walk.keep(keep, tick, now.state, laps) {
-            darken(&mut wall)?;
-            return Err(why);
-        }
-        while let Some(event) = wall.event() {
-            if is_news(&event, &now) {
-                hands.event(&event);
-            }
-        }
-        let ended = matches!(wall.state(), State::Fault | State::Stopped | State::Ready);
-        aftermath -= u32::from(ended && !hands.is_there());
-        if task.stop.is_wanted() {
-            let _ = wall.request(Request::Stop);
-            goodbye -= 1;
-            continue;
-        }
-        let asked = match hands.tick(&now) {
-            Some(ask) if wall.state() == State::Armed && now.plan_ticks == 0 => {
-                walk.begin_here(&ask, &mut wall)
-            }
-            Some(Ask::Request(request)) => wall.request(request),
-            Some(Ask::Step(step)) => walk.step(step, &mut wall, hands, task),
-            None => Ok(()),
-        };
-        if let Err(why) = asked {
-            hands.refused(&why);
-        }
-    }
-    if wall.told().actuation.lights() {
-        let laps = wall.snapshot().laps;
-        let tick = darken(&mut wall)?;
-        walk.keep(keep, tick, wall.state(), laps)?;
-    }
-    if wall.state() == State::Done {
+    let ended = drive(rig, walk.looped.job.clone(), &mut walk, (keep, hands), task)?;
+    if ended.state == State::Done {
         walk.seen.notes.push("nothing was asked for ten minutes: it ended, dark".to_owned());
     }
-    walk.seen.fault = wall.told().fault;
+    (walk.seen.failure, walk.seen.fault) = (ended.failure, ended.fault);
     Ok(walk.ended())
-}
-
-fn refused(why: Refused) -> Failure {
-    Failure::failed("session", why.to_string())
 }
 
 impl<'a> Walk<'a> {
@@ -173,7 +119,7 @@ impl<'a> Walk<'a> {
         let seen = StepRun {
             run: Run::default(),
             plan: looped.once.clone(),
-            drawing: Drawing { strokes: vec![first.along(there_and_back(&first.path))] },
+            drawing: Drawing { strokes: vec![looped.stroke.clone()] },
             failure: None,
             fault: None,
             finished: false,
@@ -192,36 +138,13 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// Keeps a tick: all of them in the log, those of each stroke's first time for the figures.
-    fn keep(&mut self, keep: &mut dyn Keep, mut tick: Tick, state: State, laps: u32) -> Result<(), Failure> {
-        if laps > 0 && state != State::Parking {
-            return keep.tick(&self.looped.again, &tick);
-        }
-        // on its way to a stroke it is at rest at the beginning of that one's plan
-        let plan_tick = if state == State::Parking { 0 } else { tick.telemetry.plan_tick };
-        tick.telemetry.plan_tick = self.base + plan_tick;
-        keep.tick(&self.seen.plan, &tick)?;
-        let is_on = matches!(state, State::Stepping | State::Returning | State::Pausing);
-        self.rests = if is_on { 0 } else { self.rests.saturating_add(1) };
-        if state != State::Parking && self.rests <= REST_TICKS {
-            self.seen.run.ticks.push(tick);
-        }
-        Ok(())
-    }
-
-    /// The stroke that was to be drawn when it was stopped on the way there, or by a fault: it is begun again.
-    fn begin_here(&self, ask: &Ask, wall: &mut Session<&mut SimulatedRig>) -> Result<(), Refused> {
-        let request = match ask {
-            Ask::Step(_) | Ask::Request(Request::Resume) => Request::Trace(self.looped.job.clone()),
-            Ask::Request(request) => request.clone(),
-        };
-        let begun = wall.request(request);
-        if let Err(Refused::Elsewhere { .. }) = begun {
-            // from wherever that left it: back to zero first
-            wall.request(Request::Disarm)?;
-            wall.request(Request::Park)?;
-        }
-        begun
+    /// The stroke that was to be drawn when it was stopped on the way there, or by a fault: it is begun again, from
+    /// wherever that left the head.
+    fn begin_here(&self, ask: Ask, wall: &mut Session<&mut SimulatedRig>) -> Result<(), Refused> {
+        wall.request(match ask {
+            Ask::Step(_) | Ask::Request(Request::Resume) => Request::Next(self.looped.job.clone()),
+            Ask::Request(request) => request,
+        })
     }
 
     /// Goes to another stroke; after the last one it is finished. One that cannot be drawn again and again is left out, and said.
@@ -239,8 +162,7 @@ impl<'a> Walk<'a> {
             Step::To(number) => Some((number as usize).min(self.strokes.len() - 1)),
         };
         while let Some(number) = to.filter(|&number| number < self.strokes.len()) {
-            let stroke = &self.strokes[number];
-            match Looped::of(stroke, (number, self.strokes.len()), self.driving, self.dry) {
+            match Looped::of(&self.strokes[number], (number, self.strokes.len()), self.driving, self.dry) {
                 Ok(looped) => {
                     let lit = self.was_lit(wall);
                     wall.request(Request::Next(looped.job.clone()))?;
@@ -248,7 +170,7 @@ impl<'a> Walk<'a> {
                     let end = self.seen.plan.points.len().saturating_sub(1) as u32;
                     let visits = self.seen.drawing.strokes.len() as u32;
                     self.base = join(&mut self.seen.plan, end, &looped.once, visits);
-                    self.seen.drawing.strokes.push(stroke.along(there_and_back(&stroke.path)));
+                    self.seen.drawing.strokes.push(looped.stroke.clone());
                     (self.at, self.looped) = (number, looped);
                     return Ok(());
                 }
@@ -296,7 +218,53 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Whether an event is worth telling: that a stroke is begun again is not.
-const fn is_news(event: &Event, now: &Snapshot) -> bool {
-    !matches!(event, Event::Stroke { .. }) || now.laps == 0
+impl Course for Walk<'_> {
+    /// Keeps all ticks in the log, and those of each stroke's first time for the figures.
+    fn keep(
+        &mut self,
+        keep: &mut dyn Keep,
+        mut tick: Tick,
+        now: &Snapshot,
+        laps: u32,
+    ) -> Result<(), Failure> {
+        let state = now.state;
+        if laps > 0 && state != State::Parking {
+            return keep.tick(&self.looped.again, &tick);
+        }
+        // on its way to a stroke it is at rest at the beginning of that one's plan
+        let plan_tick = if state == State::Parking { 0 } else { tick.telemetry.plan_tick };
+        tick.telemetry.plan_tick = self.base + plan_tick;
+        keep.tick(&self.seen.plan, &tick)?;
+        let is_on = matches!(state, State::Stepping | State::Returning | State::Pausing);
+        self.rests = if is_on { 0 } else { self.rests.saturating_add(1) };
+        if state != State::Parking && self.rests <= REST_TICKS {
+            self.seen.run.ticks.push(tick);
+        }
+        Ok(())
+    }
+
+    /// Tells all but strokes that are begun again.
+    fn see(&mut self, event: &Event, now: &Snapshot) -> bool {
+        !matches!(event, Event::Stroke { .. }) || now.laps == 0
+    }
+
+    fn ask(
+        &mut self,
+        ask: Ask,
+        wall: &mut Session<&mut SimulatedRig>,
+        hands: &mut dyn Hands,
+        task: Task<'_>,
+    ) -> Result<(), Refused> {
+        if wall.state() == State::Armed && wall.snapshot().plan_ticks == 0 {
+            return self.begin_here(ask, wall);
+        }
+        match ask {
+            Ask::Request(request) => wall.request(request),
+            Ask::Step(step) => self.step(step, wall, hands, task),
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        self.seen.finished
+    }
 }

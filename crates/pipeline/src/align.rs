@@ -5,6 +5,7 @@ use tracelight_aim::{MARK_DEVIATION_M, Mark, MarkError, Marked, MarkedBy, Marked
 use tracelight_stroke::Point;
 use tracelight_task::Failure;
 
+use crate::rounded::rounded;
 use crate::sketch::Sketch;
 
 /// A mark of a drawing, and where it belongs on the target.
@@ -104,11 +105,6 @@ fn on_sheet(sketch: &Sketch, mark: &AskedMark) -> Result<Point, Failure> {
             "nothing says how long this picture is: give the mark in pixels from its top left corner, such as \"120px,340px=1.2m,0.4m\"",
         ),
     }
-}
-
-/// A micrometre, a millionth of a degree.
-fn rounded(value: f64) -> f64 {
-    (1e6 * value).round() / 1e6
 }
 
 impl AlignFigures {

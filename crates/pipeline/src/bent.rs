@@ -83,6 +83,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use tracelight_aim::{Mark, MarkedSheet, marked};
+    use tracelight_stroke::distance_to_segment;
 
     use super::*;
 
@@ -117,18 +118,15 @@ mod tests {
             for piece in stroke.path.pieces() {
                 for k in 0..=200 {
                     let p = map.apply(piece.at(f64::from(k) / 200.0)).unwrap();
-                    let off = lines.windows(2).map(|w| distance(p, w[0], w[1])).fold(f64::INFINITY, f64::min);
+                    let off = lines
+                        .windows(2)
+                        .map(|w| distance_to_segment(p, w[0], w[1]))
+                        .fold(f64::INFINITY, f64::min);
                     assert!(off <= 1.1 * BENT_TOLERANCE_M, "{off:e} m");
                 }
             }
         }
         assert!(bent.strokes[0].path.elements().len() <= 64, "{}", bent.strokes[0].path.elements().len());
         assert!(matches!(bent.strokes[1].path.elements().last(), Some(Element::Line { .. })));
-    }
-
-    fn distance(p: Point, a: Point, b: Point) -> f64 {
-        let along = b - a;
-        let t = ((p - a).dot(along) / along.hypot2().max(1e-300)).clamp(0.0, 1.0);
-        p.distance(a + along * t)
     }
 }

@@ -16,6 +16,7 @@ mod placed;
 mod quality;
 mod reach;
 mod refused;
+mod rounded;
 mod schedule;
 mod sheet;
 mod sketch;

@@ -1,7 +1,7 @@
 //! Areas of the target that are never lit.
 
 use serde::Serialize;
-use tracelight_stroke::{Drawing, Path, Piece, Point, Rect};
+use tracelight_stroke::{Drawing, Path, Piece, Point, Rect, distance_to_segment};
 
 /// Strokes are cut within this of the border, m: a hundredth of a millimetre, on the dark side.
 const CUT_TOLERANCE_M: f64 = 1e-5;
@@ -77,12 +77,10 @@ impl Area {
         let (mut nearest, mut is_inside) = (f64::INFINITY, false);
         for pair in self.points.windows(2) {
             let (a, b) = (pair[0], pair[1]);
-            let (along, arm) = (b - a, p - a);
-            let share = (arm.dot(along) / along.hypot2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            nearest = nearest.min((arm - along * share).hypot2());
-            is_inside ^= (a.y > p.y) != (b.y > p.y) && p.x < a.x + along.x * (p.y - a.y) / along.y;
+            nearest = nearest.min(distance_to_segment(p, a, b));
+            is_inside ^= (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
         }
-        if is_inside { -nearest.sqrt() } else { nearest.sqrt() }
+        if is_inside { -nearest } else { nearest }
     }
 
     /// No more than that.

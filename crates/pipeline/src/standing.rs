@@ -8,6 +8,7 @@ use tracelight_stroke::{Drawing, Point};
 use crate::distance::DistanceFrom;
 use crate::driving::Driving;
 use crate::reach::PLACES;
+use crate::rounded::rounded;
 
 /// Largest angle between the beam and the wall's normal at which drawing is comfortable, rad: the spot is a sixth longer than wide.
 const COMFORTABLE_RAD: f64 = 30.0 * std::f64::consts::PI / 180.0;
@@ -85,10 +86,6 @@ impl Standing {
 
 fn up_to_centimetres(m: f64) -> f64 {
     (1e2 * m - 1e-6).ceil() / 1e2
-}
-
-fn rounded(value: f64) -> f64 {
-    (1e6 * value).round() / 1e6
 }
 
 #[cfg(test)]

@@ -40,8 +40,13 @@ pub struct Again {
 impl Job {
     /// Returns the length of the job, ticks.
     pub fn ticks(&self) -> u32 {
-        self.segments.last().map_or(0, Segment::end_tick)
+        ticks_of(&self.segments)
     }
+}
+
+/// Length of what begins at tick 0, ticks.
+pub(crate) fn ticks_of(segments: &[Segment]) -> u32 {
+    segments.last().map_or(0, Segment::end_tick)
 }
 
 /// Returns the number of the stroke that is drawn at a tick of the plan, or comes next.

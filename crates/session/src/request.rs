@@ -23,7 +23,7 @@ pub enum Request {
     Disarm,
     /// Trace a job from its beginning.
     Trace(Job),
-    /// Darken, return to zero, and trace this one instead, armed as the one before was.
+    /// Darken, return to zero, and trace this one instead, armed as the one before was, or by who armed just now.
     Next(Job),
     /// Pause the job.
     Pause(When),

@@ -1,6 +1,6 @@
 use tracelight_rig::{Phase, Segment, Telemetry};
 
-use crate::job::{Again, Feeder, Job, StrokeTicks, stroke_at};
+use crate::job::{Again, Feeder, Job, StrokeTicks, stroke_at, ticks_of};
 
 /// The job in hand.
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ impl Running {
         let Some(again) = &self.again else { return };
         self.feeder = Feeder::new(again.segments.clone(), self.dry);
         self.strokes.clone_from(&again.strokes);
-        self.ticks = again.segments.last().map_or(0, Segment::end_tick);
+        self.ticks = ticks_of(&again.segments);
         self.plan_tick = 0;
         self.ended = None;
         self.laps += 1;

@@ -142,7 +142,7 @@ impl<R: Rig> Session<R> {
                 self.next = Some(job);
             }
             (Request::Next(job), Stepping | Returning | Pausing | Paused | Armed)
-                if self.on() == Stepping =>
+                if self.on() == Stepping || self.state == Armed =>
             {
                 self.check_next(&job, self.running.as_ref().is_some_and(|running| running.dry))?;
                 self.park();

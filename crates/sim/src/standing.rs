@@ -30,7 +30,7 @@ pub struct Standing {
 
 /// Finds the first place of a plan where light would stand too long, starting from an unspent budget.
 pub fn first_standing(rig: &RigConfig, plan: &Plan) -> Option<Standing> {
-    let most_s = PLANNED_SHARE * rig.light.standing_s;
+    let most_s = planned_s(rig);
     let config = planned_config(rig);
     let tick = Watch::new(&config).pass(&plan.segments)?;
     let point = plan.points.get(tick).or(plan.points.last())?;
@@ -58,10 +58,15 @@ pub(crate) fn wait_between(rig: &RigConfig, segments: &[Segment]) -> Option<u32>
     const STEP: u32 = 50;
     let config = planned_config(rig);
     let lap = segments.last().map_or(0, Segment::end_tick).max(1);
+    let end = segments.last().map(|s| s.sample(f32::from(s.ticks)).map(|at| at.position_rad));
     let is_enough = |wait: u32| {
         let laps = LONG_RUN.div_ceil(lap + wait).max(2);
         let mut watch = Watch::new(&config);
-        (0..laps).all(|_| watch.pass(segments).is_none() && watch.wait(wait, segments))
+        (0..laps).all(|_| {
+            let is_lit = watch.pass(segments).is_none();
+            watch.wait(wait, end);
+            is_lit
+        })
     };
     let (mut least, mut most) = (0, MOST / STEP);
     if is_enough(0) {
@@ -81,10 +86,14 @@ pub(crate) fn wait_between(rig: &RigConfig, segments: &[Segment]) -> Option<u32>
     Some(most * STEP)
 }
 
+/// How long light may stand by plan, s.
+fn planned_s(rig: &RigConfig) -> f64 {
+    PLANNED_SHARE * rig.light.standing_s
+}
+
 /// A controller that allows a plan less than it would.
 fn planned_config(rig: &RigConfig) -> Config {
-    let most_s = PLANNED_SHARE * rig.light.standing_s;
-    Config { standing_ticks: (most_s / TICK_F64_S) as u32, ..rig.control_config() }
+    Config { standing_ticks: (planned_s(rig) / TICK_F64_S) as u32, ..rig.control_config() }
 }
 
 /// A light budget, looked after along segments.
@@ -116,13 +125,11 @@ impl<'a> Watch<'a> {
         None
     }
 
-    /// Lets dark ticks pass where segments end; true, to go on.
-    fn wait(&mut self, ticks: u32, segments: &[Segment]) -> bool {
-        let end = segments.last().map(|s| s.sample(f32::from(s.ticks)).map(|at| at.position_rad));
+    /// Lets dark ticks pass at these angles, rad.
+    fn wait(&mut self, ticks: u32, angle_rad: Option<PanTilt<f32>>) {
         for _ in 0..ticks {
-            self.budget.tick(self.config, end, self.gate, None);
+            self.budget.tick(self.config, angle_rad, self.gate, None);
             self.gate = false;
         }
-        true
     }
 }

@@ -35,7 +35,7 @@ pub use order::{
 pub use parts::{Measured, Span, parts};
 pub use path::{Element, Path, PathPoint, Piece};
 pub use polyline::polyline_length;
-pub use simplify::simplify;
+pub use simplify::{distance_to_segment, simplify};
 pub use stroke::{Drawing, Entity, Stroke, StrokeKind};
 
 /// The examples of `README.md`, as tests.

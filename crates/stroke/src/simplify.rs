@@ -34,7 +34,7 @@ fn furthest(points: &[Point], from: usize, to: usize) -> Option<(usize, f64)> {
 }
 
 /// Distance from `p` to the nearest point of the segment from `a` to `b`.
-fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
     let along = b - a;
     let length2 = along.hypot2();
     if length2 == 0.0 {

@@ -107,7 +107,7 @@ fn begun(
 ) -> Result<(Prepared, Asked), Failure> {
     let whole = prepared(args, task)?.from_stroke(args.from_stroke)?;
     let Some(Earlier { asked, runs, .. }) = earlier else {
-        let asked = Asked::of(&args.typed, named::now(), args.can_resume(), &whole)?;
+        let asked = Asked::of(&args.typed, named::now(), args.cannot_resume().is_none(), &whole)?;
         return Ok((whole, asked));
     };
     let (rest, asked) = asked.rest(whole, runs, named::now())?;

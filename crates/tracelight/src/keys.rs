@@ -55,23 +55,46 @@ impl Keys {
     }
 }
 
-/// What the bytes that came at once say. Other keys that send several bytes mean nothing here.
-fn keys(bytes: &[u8]) -> Vec<Key> {
-    match bytes {
-        b"\x1b[C" | b"\x1bOC" | b"\x1b[6~" => return vec![Key::Forwards],
-        b"\x1b[D" | b"\x1bOD" | b"\x1b[5~" => return vec![Key::Backwards],
-        [0x1b, _, ..] => return Vec::new(),
-        _ => {}
+/// What the bytes that came at once say, however many keys that are. Other keys that send several bytes mean nothing here.
+fn keys(mut bytes: &[u8]) -> Vec<Key> {
+    let mut keys = Vec::new();
+    while let Some((&first, rest)) = bytes.split_first() {
+        let (key, length) = match (first, rest) {
+            (0x1b, _) => escaped(rest),
+            (0x03, _) => (Some(Key::Interrupt), 0),
+            (b'\r' | b'\n', _) => (Some(Key::Enter), 0),
+            (b' ', _) => (Some(Key::Space), 0),
+            (byte, _) if byte.is_ascii_graphic() => {
+                (Some(Key::Char(char::from(byte).to_ascii_lowercase())), 0)
+            }
+            _ => (None, 0),
+        };
+        keys.extend(key);
+        bytes = &rest[length..];
     }
-    let key = |byte: &u8| match byte {
-        0x03 => Some(Key::Interrupt),
-        0x1b => Some(Key::Escape),
-        b'\r' | b'\n' => Some(Key::Enter),
-        b' ' => Some(Key::Space),
-        byte if byte.is_ascii_graphic() => Some(Key::Char(char::from(*byte).to_ascii_lowercase())),
+    keys
+}
+
+/// The key whose bytes begin with an escape, and how many more there are. What is no whole sequence is the key Escape
+/// and others after it: whoever presses it twice, or anything right after it, wants the light out.
+fn escaped(rest: &[u8]) -> (Option<Key>, usize) {
+    let end = match rest {
+        // the function keys of a Linux console
+        [b'[', b'[', _, ..] => Some(2),
+        [b'[', ..] => {
+            let last = rest.iter().skip(1).position(|byte| !(0x20..=0x3f).contains(byte));
+            last.map(|at| at + 1).filter(|&at| (0x40..=0x7e).contains(&rest[at]))
+        }
+        [b'O', byte, ..] if byte.is_ascii_alphabetic() => Some(1),
         _ => None,
     };
-    bytes.iter().filter_map(key).collect()
+    let Some(end) = end else { return (Some(Key::Escape), 0) };
+    let key = match &rest[..=end] {
+        b"[C" | b"OC" | b"[6~" => Some(Key::Forwards),
+        b"[D" | b"OD" | b"[5~" => Some(Key::Backwards),
+        _ => None,
+    };
+    (key, end + 1)
 }
 
 /// A terminal that hands over single keys, does not show them, and leaves Ctrl-C to the program.
@@ -122,5 +145,17 @@ mod tests {
             [Key::Forwards, Key::Forwards, Key::Backwards]
         );
         assert_eq!(keys(b"\xc3\xa9\x00"), []);
+    }
+
+    #[test]
+    fn keys_that_come_together_are_all_taken() {
+        use Key::{Backwards, Char, Escape, Forwards, Space};
+        assert_eq!(keys(b"\x1b\x1b"), [Escape, Escape]);
+        assert_eq!(keys(b"\x1ba\x1b"), [Escape, Char('a'), Escape]);
+        assert_eq!(keys(b"\x1b[C\x1b[Ds\x1b"), [Forwards, Backwards, Char('s'), Escape]);
+        assert_eq!(keys(b"\x1bOC\x1b[1;5D \x1bO"), [Forwards, Space, Escape, Char('o')]);
+        assert_eq!(keys(b"\x1b[[A\x1b[15~"), []);
+        assert_eq!(keys(b"\x1b["), [Escape, Char('[')]);
+        assert_eq!(keys(b"\x1b[\x1b"), [Escape, Char('['), Escape]);
     }
 }

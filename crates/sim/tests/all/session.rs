@@ -194,6 +194,35 @@ fn a_job_is_done_again_and_again_until_another_one_is_asked_for() {
 }
 
 #[test]
+fn stopped_anywhere_on_the_way_to_another_job_it_begins_when_somebody_arms() {
+    let config = RigConfig::report();
+    let [first, other] = [circle(0.1), star(0.1)].map(|path| looped_of(&config, path, false));
+    let mut wall = at_the_wall(&config, 0);
+    for moment in (0..400).step_by(25) {
+        wall.request(Request::Arm).unwrap();
+        wall.request(Request::Next(first.clone())).unwrap();
+        until(&mut wall, State::Stepping, 8000);
+        steps(&mut wall, 500);
+        wall.request(Request::Next(other.clone())).unwrap();
+        steps(&mut wall, moment);
+        wall.request(Request::Stop).unwrap();
+        while !matches!(wall.state(), State::Ready | State::Stopped) {
+            step(&mut wall);
+        }
+        wall.request(Request::Arm).unwrap();
+        wall.request(Request::Next(other.clone())).unwrap();
+        let gone = until(&mut wall, State::Stepping, 8000);
+        assert!(gone.iter().skip(1).all(|t| !t.telemetry.actuation.gate), "{moment}");
+        let laps = wall.snapshot().laps;
+        steps(&mut wall, 8000);
+        assert!(wall.snapshot().laps > laps, "{moment}: {:?}", wall.snapshot());
+        wall.request(Request::Stop).unwrap();
+        wall.request(Request::Park).unwrap();
+        until(&mut wall, State::Ready, 8000);
+    }
+}
+
+#[test]
 fn another_job_is_lit_only_where_the_one_before_was_and_waits_where_it_waited() {
     let config = RigConfig::report();
     let mut wall = at_the_wall(&config, 0);

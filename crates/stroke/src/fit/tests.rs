@@ -4,6 +4,7 @@ use kurbo::{Point, Vec2};
 use tracelight_maths::planar;
 
 use super::*;
+use crate::distance_to_segment;
 
 /// Points every 1 along a polyline, moved by seeded noise of this amplitude.
 fn drawn(path: &[Point], noise: f64, seed: u64) -> Vec<Point> {
@@ -48,11 +49,7 @@ fn greatest_curvature(path: &Path) -> f64 {
 fn off(path: &Path, truth: &[Point]) -> f64 {
     let line = path.flatten(0.01);
     let nearest = |p: &Point| {
-        let to = |w: &[Point]| {
-            let along = w[1] - w[0];
-            let share = ((*p - w[0]).dot(along) / along.hypot2().max(1e-300)).clamp(0.0, 1.0);
-            p.distance(w[0] + along * share)
-        };
+        let to = |w: &[Point]| distance_to_segment(*p, w[0], w[1]);
         line.windows(2).map(to).fold(f64::INFINITY, f64::min)
     };
     truth.iter().map(nearest).fold(0.0, f64::max)

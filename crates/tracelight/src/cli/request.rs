@@ -137,9 +137,22 @@ impl TraceArgs {
         }
     }
 
-    /// Whether a run of it can be gone on with.
-    pub(crate) fn can_resume(&self) -> bool {
-        self.eye.camera.is_none() && !self.step && self.laps == 1 && self.name() != "-"
+    /// Why a run of it cannot be gone on with, and what to do; nothing where it can.
+    pub(crate) fn cannot_resume(&self) -> Option<String> {
+        let anew = format!("begin anew with tracelight {}", self.typed.join(" "));
+        if self.eye.camera.is_some() {
+            let why = "a camera followed it, and where the head then stood only that run knew";
+            return Some(format!("{why}; {anew}"));
+        }
+        if self.laps > 1 {
+            return Some(format!("it was to be drawn {} times; {anew}, or with fewer --laps", self.laps));
+        }
+        if self.step {
+            let why = "it went from stroke to stroke; begin anew with --from-stroke N, the first one that is not done yet";
+            return Some(why.to_owned());
+        }
+        let is_gone = self.name() == "-";
+        is_gone.then(|| format!("its picture came from standard input, and is gone; {anew}, or from a file"))
     }
 
     /// Refuses to go from stroke to stroke where nobody can ask for the next.

@@ -47,7 +47,10 @@ pub(crate) fn run(args: &ResumeArgs, traced: Traced, stop: &Stop) -> Result<Answ
     request.open = args.open;
     request.out = args.out.as_deref().map(whole).transpose()?;
     request.voice = args.voice;
-    check(&args.dir, &request)?;
+    if let Some(why) = request.cannot_resume() {
+        let message = format!("cannot go on with {}: {why}", args.dir.display());
+        return Err(Failure::usage("cannot-resume", message));
+    }
     if request.out.as_deref().is_some_and(|out| std::fs::canonicalize(out).is_ok_and(|out| out == dir)) {
         let message = format!(
             "--out {0} is the run that is to be gone on with: give another folder",
@@ -75,38 +78,6 @@ pub(crate) fn run(args: &ResumeArgs, traced: Traced, stop: &Stop) -> Result<Answ
         }
         outcome => trace::answered(&request, outcome?),
     }
-}
-
-/// Refuses what cannot be gone on with.
-fn check(dir: &Path, request: &TraceArgs) -> Result<(), Failure> {
-    let name = dir.display();
-    let command = request.typed.join(" ");
-    if request.eye.camera.is_some() {
-        let message = format!(
-            "cannot go on with {name}: a camera followed it, and where the head then stood only that run knew; begin anew with tracelight {command}"
-        );
-        return Err(Failure::usage("cannot-resume", message));
-    }
-    if request.laps > 1 {
-        let message = format!(
-            "cannot go on with {name}: it was to be drawn {} times; begin anew with tracelight {command}, or with fewer --laps",
-            request.laps
-        );
-        return Err(Failure::usage("cannot-resume", message));
-    }
-    if request.step {
-        let message = format!(
-            "cannot go on with {name}: it went from stroke to stroke; begin anew with --from-stroke N, the first one that is not done yet"
-        );
-        return Err(Failure::usage("cannot-resume", message));
-    }
-    if request.name() == "-" {
-        let message = format!(
-            "cannot go on with {name}: its picture came from standard input, and is gone; begin anew with tracelight {command}, or from a file"
-        );
-        return Err(Failure::usage("cannot-resume", message));
-    }
-    Ok(())
 }
 
 /// A path from the root, also of what is not there yet.

@@ -227,7 +227,7 @@ fn corners_of_a_rectangle_tell_where_the_head_stands_and_a_drawing_goes_by_them(
         let (told, truth) = (&found["pose"]["distance_m"], &found["truth"]["pose"]["distance_m"]);
         near(told, truth.as_f64().unwrap(), 4.0 * found["deviation"]["distance_m"].as_f64().unwrap());
     }
-    let used = plan(&[
+    let asked = [
         &file,
         "--layer",
         "WALL",
@@ -239,25 +239,11 @@ fn corners_of_a_rectangle_tell_where_the_head_stands_and_a_drawing_goes_by_them(
         "bottom-left",
         "--offset",
         "20cm,10cm",
-    ]);
+    ];
+    let used = plan(&asked);
     assert_eq!(used["head"]["from"], "file");
     // the rectangle's edges are the wall's: nobody has to say where they are
-    let drawn = trace(
-        &[
-            &file,
-            "--layer",
-            "WALL",
-            "--fit",
-            "drawing",
-            "--head",
-            &head,
-            "--from",
-            "bottom-left",
-            "--offset",
-            "20cm,10cm",
-        ],
-        &folder.join("run"),
-    );
+    let drawn = trace(&asked, &folder.join("run"));
     assert!(drawn["run"]["finished"] == true, "{drawn}");
     let spots: Vec<(f64, f64)> = crate::support::rows(&folder.join("run"))
         .iter()
