@@ -207,6 +207,7 @@ fn save_strokes(file: &Path, size: Size, drawing: Drawing, mode: &str) -> Result
         metres_per_unit: None,
         drawing,
         coordinates: Coordinates::Page { unit_m: None },
+        places: Vec::new(),
     };
     write(file, json::write(&json::Traced { sheet, mode: mode.to_owned() }, TRUTH_PX).as_bytes())
 }

@@ -193,7 +193,7 @@ pub fn read(bytes: &[u8]) -> Result<Traced, FormatError> {
         return Err(FormatError::Nothing { hint: "\"strokes\" is empty" });
     }
     let (drawing, coordinates) = (Drawing { strokes }, Coordinates::Page { unit_m: None });
-    let sheet = Sheet { width, height, metres_per_unit: None, drawing, coordinates };
+    let sheet = Sheet { width, height, metres_per_unit: None, drawing, coordinates, places: Vec::new() };
     Ok(Traced { sheet, mode: document.mode })
 }
 

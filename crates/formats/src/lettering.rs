@@ -79,6 +79,7 @@ pub fn draw(
         metres_per_unit: capitals_m.map(|_| 1e-3),
         drawing: drawing.transformed(place),
         coordinates: Coordinates::Page { unit_m: capitals_m.map(|_| 1e-3) },
+        places: Vec::new(),
     };
     Ok(Reading { sheet, remarks, doubt: None, is_list: false })
 }

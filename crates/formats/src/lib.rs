@@ -45,7 +45,7 @@ pub use error::FormatError;
 pub use limit::{MAX_BYTES, MAX_COORDINATE};
 pub use number::{fixed, length};
 pub use options::{Font, FontFinder, Hatch, Hidden, LengthUnit, Letters, ReadOptions};
-use tracelight_stroke::{Affine, Colour, Drawing, Point};
+use tracelight_stroke::{Affine, Colour, Drawing, Place, Point};
 pub use unpacked::{head, unpacked};
 
 /// A drawing on its sheet, as a file has it: x right, y down, the sheet spans `[0, width] × [0, height]`.
@@ -61,6 +61,8 @@ pub struct Sheet {
     pub drawing: Drawing,
     /// In which coordinates people say where a place of it is.
     pub coordinates: Coordinates,
+    /// Points and places of blocks that the file has, in the file's unit and order.
+    pub places: Vec<Place>,
 }
 
 /// In which coordinates people say where a place of a drawing is.

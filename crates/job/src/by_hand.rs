@@ -4,6 +4,7 @@ use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
 use tracelight_rig::Fault;
 use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State, seconds};
 use tracelight_sim::{AFTERMATH_TICKS, Run, Simulated, SimulatedRig, Tick, job_of};
+use tracelight_stroke::Place;
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::Plan;
 
@@ -46,8 +47,11 @@ pub trait Hands {
     /// Told why a request was refused.
     fn refused(&mut self, why: &Refused);
 
-    /// Told that a stroke was left, by its number from 0, and whether it is done.
-    fn left(&mut self, _stroke: u32, _done: bool) {}
+    /// Told that a stroke or a point was left, by its number from 0, and whether it is done.
+    fn left(&mut self, _number: u32, _done: bool) {}
+
+    /// Told that the head sets off to a point, by its number from 0 of so many.
+    fn goes_to(&mut self, _point: &Place, _number: u32, _of: u32) {}
 
     /// Whether anything may still be asked; otherwise a lap that is stopped, or that a fault ended, is over.
     fn is_there(&self) -> bool;

@@ -30,4 +30,5 @@ pub use by_hand::{Ask, Hands, Step};
 pub use keep::{Keep, KeepNothing};
 pub use prepared::{Prepared, Ran, prepare};
 pub use request::{Request, RunRequest, Scene, Wall};
+pub use steps::PointDone;
 pub use wall::prepare_wall;

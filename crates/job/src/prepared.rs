@@ -16,7 +16,7 @@ use crate::lap::{Learned, learn, run_lap};
 use crate::remainder;
 use crate::request::{Request, RunRequest};
 use crate::seen::Seen;
-use crate::steps::{StepRun, run_steps};
+use crate::steps::{Item, PointDone, StepRun, run_steps};
 use crate::watched::{WatchedJob, WatchedRun, run_watched};
 
 /// What the stages before the run made.
@@ -57,6 +57,8 @@ pub struct Ran {
     pub notes: Vec<String>,
     /// Why it ended early: a rig's fault, lost power, or because the user wanted it.
     pub failure: Option<Failure>,
+    /// The points that it was to mark, where it was to mark points, and when each was ticked off.
+    pub points: Vec<PointDone>,
     /// Whether it did all that it was to do.
     pub finished: bool,
     /// Its rig was one of equations: nothing moved, no light fell. Whatever shows results says so.
@@ -137,23 +139,29 @@ impl Prepared {
         self.seen.as_ref().and_then(|seen| Some((seen, seen.room.as_ref()?)))
     }
 
-    /// A job without the strokes before that one, from 1, in the order in which they are drawn.
+    /// A job without the strokes, or points, before that one, from 1, in the order in which they are drawn.
     ///
     /// # Errors
     /// `usage` where it has not so many.
-    pub fn from_stroke(self, number: u32) -> Result<Self, Failure> {
+    pub fn from_stroke(mut self, number: u32) -> Result<Self, Failure> {
         let strokes = &self.schedule.ordered.drawing.strokes;
+        let points = self.placed.points.len();
         if number <= 1 {
             return Ok(self);
         }
-        if number as usize > strokes.len() {
-            let message =
-                format!("--from-stroke {number}: the drawing has {}", counted(strokes.len(), "stroke"));
+        let (all, of_one, word) = match points {
+            0 => (strokes.len(), 1, "stroke"),
+            points => (points, strokes.len() / points, "point"),
+        };
+        if number as usize > all {
+            let message = format!("--from-stroke {number}: the drawing has {}", counted(all, word));
             return Err(Failure::usage("usage", message));
         }
-        let rest = Drawing { strokes: strokes[number as usize - 1..].to_vec() };
-        let schedule = schedule_rest(rest, &self.driving)?;
-        Ok(Self { schedule, ..self })
+        let before = number as usize - 1;
+        let rest = Drawing { strokes: strokes[before * of_one..].to_vec() };
+        self.placed.points.drain(..before.min(points));
+        self.schedule = schedule_rest(rest, &self.driving)?;
+        Ok(self)
     }
 
     /// What is left of a job that was drawn up to a tick of its plan, to be begun from zero; `None` where nothing is. Less than half a
@@ -192,8 +200,8 @@ impl Prepared {
         self.run_with(keep, Some(hands), task)
     }
 
-    /// Goes through the strokes one at a time with somebody at the wall: each is drawn again and again, there and back where it is open, until another one is
-    /// asked for. `pace_m_s` is the speed of the spot, where it is to be another one.
+    /// Goes through the strokes, or the marks of points, one at a time with somebody at the wall: each is drawn again and again, there and back where it is open,
+    /// until another one is asked for. `pace_m_s` is the speed of the spot, where it is to be another one.
     ///
     /// # Errors
     /// As of [`run`](Self::run), and `standing-light` for a stroke so short that its light would stand.
@@ -205,18 +213,20 @@ impl Prepared {
         task: Task<'_>,
     ) -> Result<(Self, Ran), Failure> {
         let RunRequest { seed, dry, powered_up, .. } = self.how;
-        let Self { driving, schedule, .. } = &mut self;
+        let Self { driving, schedule, placed, .. } = &mut self;
         driving.request.speed_m_s = pace_m_s.unwrap_or(driving.request.speed_m_s);
         let put_up = if powered_up { left } else { SimulatedRig::new };
         let mut rig = put_up(&driving.rig, driving.pose, seed);
         task.stage("run", 1);
-        let whole = (&schedule.ordered.drawing, &*driving);
+        let items = Item::all(&schedule.ordered.drawing, &placed.points);
+        let whole = (items.as_slice(), &*driving);
         let (ran, run_ms) = task.timed(|| run_steps(&mut rig, whole, dry, (keep, hands), task));
-        let StepRun { run, plan, drawing, failure, fault, finished, notes } = ran?;
+        let StepRun { run, plan, drawing, failure, fault, finished, points, notes } = ran?;
         let fault = fault.map(Failure::fault);
         let unfinished = || {
             let stopped = task.stop.is_wanted();
-            let message = "it was ended before all strokes had their turn";
+            let word = if points.is_empty() { "strokes" } else { "points" };
+            let message = format!("it was ended before all {word} had their turn");
             let why = if stopped { Failure::interrupted() } else { Failure::failed("unfinished", message) };
             (!finished).then_some(why)
         };
@@ -232,6 +242,7 @@ impl Prepared {
             seen: None,
             notes,
             failure,
+            points,
             finished,
             simulated: true,
             run_ms,
@@ -256,7 +267,8 @@ impl Prepared {
         let identified = learned.taken.then_some(learned.rig);
         let (plan, seen) = watched.map(|watched| (watched.plan, watched.seen)).unzip();
         let finished = last.is_done();
-        Ok(Ran { earlier, last, plan, identified, eye, seen, notes, failure, finished, simulated, run_ms })
+        let points = Vec::new();
+        Ok(Ran { earlier, last, plan, identified, eye, seen, notes, failure, points, finished, simulated, run_ms })
     }
 
     fn run_laps(

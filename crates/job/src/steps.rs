@@ -1,10 +1,12 @@
-//! Strokes one at a time: each is drawn again and again until somebody asks for the next one.
+//! Strokes, or marks of points, one at a time: each is drawn again and again until somebody asks for the next one.
 
 use tracelight_pipeline::{Driving, Schedule, schedule_rest};
 use tracelight_rig::Fault;
-use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
+use tracelight_session::{
+    Again, Event, Job, Refused, Request, Session, Snapshot, State, StrokeTicks, seconds,
+};
 use tracelight_sim::{Run, SimulatedRig, Tick, looped_job};
-use tracelight_stroke::{Drawing, Path, Stroke};
+use tracelight_stroke::{Drawing, Path, Place, Stroke};
 use tracelight_task::{Failure, Task, counted};
 use tracelight_trajectory::{Plan, plan_from};
 
@@ -12,9 +14,42 @@ use crate::by_hand::{Ask, Course, Hands, REST_TICKS, Step, drive};
 use crate::keep::Keep;
 use crate::remainder::join;
 
+/// What is drawn again and again: a stroke, or the mark of a point.
+pub(crate) struct Item {
+    strokes: Vec<Stroke>,
+    /// The point that it marks.
+    point: Option<Place>,
+}
+
+impl Item {
+    /// Every stroke of a drawing, or every mark of one that has so many strokes a mark.
+    pub(crate) fn all(drawing: &Drawing, points: &[Place]) -> Vec<Self> {
+        if points.is_empty() {
+            let each = |stroke: &Stroke| stroke.along(there_and_back(&stroke.path));
+            let item = |stroke| Self { strokes: vec![each(stroke)], point: None };
+            return drawing.strokes.iter().map(item).collect();
+        }
+        let of_one = (drawing.strokes.len() / points.len()).max(1);
+        let marks = drawing.strokes.chunks(of_one).zip(points);
+        let item = |(strokes, point): (&[Stroke], &Place)| Self {
+            // a dot goes to and fro
+            strokes: match strokes {
+                [only] => vec![only.along(there_and_back(&only.path))],
+                _ => strokes.to_vec(),
+            },
+            point: Some(point.clone()),
+        };
+        marks.map(item).collect()
+    }
+
+    const fn word(&self) -> &'static str {
+        if self.point.is_some() { "point" } else { "stroke" }
+    }
+}
+
 /// What came of it.
 pub(crate) struct StepRun {
-    /// The first time of each stroke.
+    /// The first time of each item.
     pub(crate) run: Run,
     /// What that followed.
     pub(crate) plan: Plan,
@@ -24,15 +59,25 @@ pub(crate) struct StepRun {
     pub(crate) failure: Option<Failure>,
     /// The fault that ended it.
     pub(crate) fault: Option<Fault>,
-    /// All strokes had their turn.
+    /// All items had their turn.
     pub(crate) finished: bool,
+    /// When which point was ticked off, s of the run.
+    pub(crate) points: Vec<PointDone>,
     pub(crate) notes: Vec<String>,
 }
 
-/// A stroke to be drawn again and again.
+/// A point that was to be marked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointDone {
+    /// The point, on the target.
+    pub place: Place,
+    /// When it was ticked off, s from the beginning of the run; `None` where it was not.
+    pub done_s: Option<f64>,
+}
+
+/// An item to be drawn again and again.
 struct Looped {
-    /// There and back, where it is open.
-    stroke: Stroke,
+    strokes: Vec<Stroke>,
     /// From zero to it, once.
     once: Plan,
     /// From its end, again and again.
@@ -50,58 +95,73 @@ fn there_and_back(path: &Path) -> Path {
     both
 }
 
+/// All strokes of an item as one: its number is that of what is drawn.
+fn as_one(strokes: &[StrokeTicks]) -> Vec<StrokeTicks> {
+    let ends = strokes.first().zip(strokes.last());
+    ends.map(|(first, last)| StrokeTicks { start: first.start, end: last.end }).into_iter().collect()
+}
+
 impl Looped {
     fn of(
-        stroke: &Stroke,
+        item: &Item,
         (number, of): (usize, usize),
         driving: &Driving,
         dry: bool,
     ) -> Result<Self, Failure> {
-        let stroke = stroke.along(there_and_back(&stroke.path));
-        let drawing = Drawing { strokes: vec![stroke.clone()] };
+        let drawing = Drawing { strokes: item.strokes.clone() };
         let Schedule { plan: once, .. } = schedule_rest(drawing.clone(), driving)?;
         let end = once.points.last().map(|point| point.joints.map(|joint| joint.position_rad));
         let again = plan_from(&drawing, &driving.machine, &driving.request, end.unwrap_or_default())
             .map_err(tracelight_pipeline::refused)?;
-        let looped = looped_job(&driving.rig, &once, &again, dry).ok_or_else(|| stands(number))?;
-        let job = Job { first: number as u32, of: of as u32, ..looped };
-        Ok(Self { stroke, once, again, job })
+        let looped = looped_job(&driving.rig, &once, &again, dry).ok_or_else(|| stands(item, number))?;
+        let job = Job {
+            first: number as u32,
+            of: of as u32,
+            strokes: as_one(&looped.strokes),
+            again: looped.again.map(|again| Again { strokes: as_one(&again.strokes), ..again }),
+            ..looped
+        };
+        Ok(Self { strokes: drawing.strokes, once, again, job })
     }
 }
 
-fn stands(number: usize) -> Failure {
+fn stands(item: &Item, number: usize) -> Failure {
+    let way_out = if item.point.is_some() { "mark it by a larger cross (--mark)" } else { "draw it larger (--width), or without --step" };
     let message = format!(
-        "stroke {} is so short that its light would stand, drawn again and again: draw it larger (--width), or without --step",
+        "{} {} is so short that its light would stand, drawn again and again: {way_out}",
+        item.word(),
         number + 1
     );
     Failure::failed("standing-light", message)
 }
 
-/// A walk through the strokes of a drawing.
+/// A walk through the items of a drawing.
 struct Walk<'a> {
-    strokes: &'a [Stroke],
+    items: &'a [Item],
     driving: &'a Driving,
     dry: bool,
-    /// The stroke that is drawn.
+    /// The item that is drawn.
     at: usize,
     looped: Looped,
     /// What is drawn now begins there in `run`'s plan.
     base: u32,
-    done: Vec<bool>,
+    /// When each was ticked off, s.
+    done_s: Vec<Option<f64>>,
     seen: StepRun,
     /// Ticks since it rests.
     rests: u32,
 }
 
-/// Goes through the strokes of a drawing, each drawn again and again until somebody asks for another one.
+/// Goes through items, each drawn again and again until somebody asks for another one.
 pub(crate) fn run_steps(
     rig: &mut SimulatedRig,
-    (drawing, driving): (&Drawing, &Driving),
+    (items, driving): (&[Item], &Driving),
     dry: bool,
     (keep, hands): (&mut dyn Keep, &mut dyn Hands),
     task: Task<'_>,
 ) -> Result<StepRun, Failure> {
-    let mut walk = Walk::begin(&drawing.strokes, driving, dry)?;
+    let mut walk = Walk::begin(items, driving, dry)?;
+    walk.tell_where(hands);
     let ended = drive(rig, walk.looped.job.clone(), &mut walk, (keep, hands), task)?;
     if ended.state == State::Done {
         walk.seen.notes.push("nothing was asked for ten minutes: it ended, dark".to_owned());
@@ -111,34 +171,35 @@ pub(crate) fn run_steps(
 }
 
 impl<'a> Walk<'a> {
-    fn begin(strokes: &'a [Stroke], driving: &'a Driving, dry: bool) -> Result<Self, Failure> {
-        let Some(first) = strokes.first() else {
+    fn begin(items: &'a [Item], driving: &'a Driving, dry: bool) -> Result<Self, Failure> {
+        let Some(first) = items.first() else {
             return Err(Failure::failed("no-strokes", "there is no stroke to step through"));
         };
-        let looped = Looped::of(first, (0, strokes.len()), driving, dry)?;
+        let looped = Looped::of(first, (0, items.len()), driving, dry)?;
         let seen = StepRun {
             run: Run::default(),
             plan: looped.once.clone(),
-            drawing: Drawing { strokes: vec![looped.stroke.clone()] },
+            drawing: Drawing { strokes: looped.strokes.clone() },
             failure: None,
             fault: None,
             finished: false,
+            points: Vec::new(),
             notes: Vec::new(),
         };
         Ok(Self {
-            strokes,
+            items,
             driving,
             dry,
             at: 0,
             looped,
             base: 0,
-            done: vec![false; strokes.len()],
+            done_s: vec![None; items.len()],
             seen,
             rests: 0,
         })
     }
 
-    /// The stroke that was to be drawn when it was stopped on the way there, or by a fault: it is begun again, from
+    /// The item that was to be drawn when it was stopped on the way there, or by a fault: it is begun again, from
     /// wherever that left the head.
     fn begin_here(&self, ask: Ask, wall: &mut Session<&mut SimulatedRig>) -> Result<(), Refused> {
         wall.request(match ask {
@@ -147,7 +208,13 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// Goes to another stroke; after the last one it is finished. One that cannot be drawn again and again is left out, and said.
+    fn tell_where(&self, hands: &mut dyn Hands) {
+        let of = self.items.len() as u32;
+        let point = self.items.get(self.at).and_then(|item| item.point.as_ref());
+        point.into_iter().for_each(|point| hands.goes_to(point, self.at as u32, of));
+    }
+
+    /// Goes to another item; after the last one it is finished. One that cannot be drawn again and again is left out, and said.
     fn step(
         &mut self,
         step: Step,
@@ -159,23 +226,25 @@ impl<'a> Walk<'a> {
         let mut to = match step {
             Step::Next | Step::Skip => Some(self.at + 1),
             Step::Previous => self.at.checked_sub(1),
-            Step::To(number) => Some((number as usize).min(self.strokes.len() - 1)),
+            Step::To(number) => Some((number as usize).min(self.items.len() - 1)),
         };
-        while let Some(number) = to.filter(|&number| number < self.strokes.len()) {
-            match Looped::of(&self.strokes[number], (number, self.strokes.len()), self.driving, self.dry) {
+        while let Some(number) = to.filter(|&number| number < self.items.len()) {
+            let item = &self.items[number];
+            match Looped::of(item, (number, self.items.len()), self.driving, self.dry) {
                 Ok(looped) => {
                     let lit = self.was_lit(wall);
                     wall.request(Request::Next(looped.job.clone()))?;
-                    self.tick_off(step, lit, hands);
+                    self.tick_off(step, lit, wall, hands);
                     let end = self.seen.plan.points.len().saturating_sub(1) as u32;
                     let visits = self.seen.drawing.strokes.len() as u32;
                     self.base = join(&mut self.seen.plan, end, &looped.once, visits);
-                    self.seen.drawing.strokes.push(looped.stroke.clone());
+                    self.seen.drawing.strokes.extend(looped.strokes.iter().cloned());
                     (self.at, self.looped) = (number, looped);
+                    self.tell_where(hands);
                     return Ok(());
                 }
                 Err(why) => {
-                    let note = format!("stroke {} is left out: {}", number + 1, why.message);
+                    let note = format!("{} {} is left out: {}", item.word(), number + 1, why.message);
                     task.say(&format!("note: {note}"));
                     self.seen.notes.push(note);
                     to = if forwards { Some(number + 1) } else { number.checked_sub(1) };
@@ -185,35 +254,50 @@ impl<'a> Walk<'a> {
         if !forwards {
             return Ok(());
         }
-        self.tick_off(step, self.was_lit(wall), hands);
+        self.tick_off(step, self.was_lit(wall), wall, hands);
         self.seen.finished = true;
         wall.request(Request::Stop)
     }
 
-    /// Whether the present stroke was drawn, or a part of it.
+    /// Whether the present item was drawn, or a part of it.
     fn was_lit(&self, wall: &Session<&mut SimulatedRig>) -> bool {
         let now = wall.snapshot();
         now.laps > 0 || now.plan_tick > 0
     }
 
-    fn tick_off(&mut self, step: Step, lit: bool, hands: &mut dyn Hands) {
-        self.done[self.at] |= step == Step::Next && (lit || self.dry);
-        hands.left(self.at as u32, self.done[self.at]);
+    fn tick_off(
+        &mut self,
+        step: Step,
+        lit: bool,
+        wall: &Session<&mut SimulatedRig>,
+        hands: &mut dyn Hands,
+    ) {
+        let done_s = &mut self.done_s[self.at];
+        if step == Step::Next && (lit || self.dry) {
+            done_s.get_or_insert(seconds(wall.told().tick));
+        }
+        hands.left(self.at as u32, done_s.is_some());
     }
 
     fn ended(mut self) -> StepRun {
-        let done = self.done.iter().filter(|&&done| done).count();
-        let not: Vec<String> =
-            (1..).zip(&self.done).filter(|(_, done)| !**done).map(|(number, _)| number.to_string()).collect();
-        let all = counted(self.strokes.len(), "stroke");
+        let done = self.done_s.iter().flatten().count();
+        let not = (1..).zip(&self.done_s).filter(|(_, done_s)| done_s.is_none());
+        let not: Vec<String> = not.map(|(number, _)| number.to_string()).collect();
+        let word = self.items.first().map_or("stroke", Item::word);
+        let all = counted(self.items.len(), word);
         let which = match not.len() {
             0 => String::new(),
             1..=20 => format!("; not {}", not.join(", ")),
             n => format!("; not {}, and {} more", not[..20].join(", "), n - 20),
         };
         self.seen.notes.push(format!(
-            "stroke by stroke: {done} of {all} done{which}; the figures are of each one's first time"
+            "{word} by {word}: {done} of {all} done{which}; the figures are of each one's first time"
         ));
+        let points = self.items.iter().zip(&self.done_s);
+        let done = |(item, done_s): (&Item, &Option<f64>)| {
+            item.point.clone().map(|place| PointDone { place, done_s: *done_s })
+        };
+        self.seen.points = points.filter_map(done).collect();
         self.seen
     }
 }
@@ -243,7 +327,7 @@ impl Course for Walk<'_> {
         Ok(())
     }
 
-    /// Tells all but strokes that are begun again.
+    /// Tells all but what is begun again.
     fn see(&mut self, event: &Event, now: &Snapshot) -> bool {
         !matches!(event, Event::Stroke { .. }) || now.laps == 0
     }

@@ -87,6 +87,7 @@ fn sheet_about(drawing: &Drawing) -> Sheet {
         metres_per_unit: Some(1.0),
         drawing: drawing.transformed(sheet_from_file),
         coordinates: Coordinates::File(sheet_from_file),
+        places: Vec::new(),
     }
 }
 

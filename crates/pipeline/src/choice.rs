@@ -1,6 +1,6 @@
 //! Which strokes of a drawing are taken.
 
-use tracelight_stroke::{Colour, Drawing, Stroke};
+use tracelight_stroke::{Colour, Drawing, Place, Stroke};
 use tracelight_task::Failure;
 
 /// Which strokes of a drawing are taken; all of them by default.
@@ -59,13 +59,27 @@ impl Choice {
     }
 
     fn takes(&self, stroke: &Stroke) -> bool {
-        let on_layer = self.layers.is_empty() || self.layers.iter().any(|l| is_on(stroke, l));
-        on_layer && (self.colours.is_empty() || stroke.colour.is_some_and(|c| self.colours.contains(&c)))
+        self.takes_these(stroke.layer.as_deref(), stroke.colour)
+    }
+
+    /// Whether a place is on one of the layers, and of one of the colours, and light does not keep out of its layer.
+    pub(crate) fn takes_place(&self, place: &Place) -> bool {
+        let layer = place.layer.as_deref();
+        !self.no_go.iter().any(|own| is_same(layer, own)) && self.takes_these(layer, place.colour)
+    }
+
+    fn takes_these(&self, layer: Option<&str>, colour: Option<Colour>) -> bool {
+        let on_layer = self.layers.is_empty() || self.layers.iter().any(|own| is_same(layer, own));
+        on_layer && (self.colours.is_empty() || colour.is_some_and(|c| self.colours.contains(&c)))
     }
 }
 
 fn is_on(stroke: &Stroke, layer: &str) -> bool {
-    stroke.layer.as_deref().is_some_and(|own| own.to_lowercase() == layer.to_lowercase())
+    is_same(stroke.layer.as_deref(), layer)
+}
+
+fn is_same(own: Option<&str>, layer: &str) -> bool {
+    own.is_some_and(|own| own.to_lowercase() == layer.to_lowercase())
 }
 
 /// Each once, in order of appearance.

@@ -3,7 +3,7 @@
 use tracelight_aim::{MarkedBy, MarkedSheet, Placement, SheetMap, SizeRequest};
 use tracelight_formats::{Reading, svg};
 use tracelight_picture::{Raster, Source};
-use tracelight_stroke::{Affine, Drawing, Path, Point, Rect, Vec2, extent};
+use tracelight_stroke::{Affine, Drawing, Path, Place, Point, Rect, Vec2, extent};
 
 use tracelight_task::Failure;
 
@@ -12,6 +12,7 @@ use crate::bent::bent;
 use crate::choice::Choice;
 use crate::edges::Origin;
 use crate::no_go::{LeftOut, cut, rectangle};
+use crate::points::{Marked, Points, marked};
 use crate::sketch::{Sketch, sketch_at};
 use crate::tracing::{LeastLength, Tracing};
 
@@ -44,6 +45,8 @@ pub struct Placing {
     pub no_go: Vec<Rect>,
     /// How far light stays from these, m: the spot's radius.
     pub margin_m: f64,
+    /// Its places are marked, and its strokes are not drawn.
+    pub points: Option<Points>,
 }
 
 /// What a width, a height and corners are those of.
@@ -114,6 +117,8 @@ pub struct Placed {
     pub align: Option<AlignFigures>,
     /// What of it is left out, where it is to keep out of something.
     pub left_out: Option<LeftOut>,
+    /// The places that the drawing marks in its order, where it does that.
+    pub points: Vec<Place>,
     /// What the user should know of where it lies: one sentence each.
     pub notes: Vec<String>,
     /// How its marks bend it, where `target_from_sheet` is not right everywhere.
@@ -134,6 +139,7 @@ impl Placed {
             target_from_sheet,
             align: None,
             left_out: None,
+            points: Vec::new(),
             notes: Vec::new(),
             bent: None,
             corners_m: corners.map(|(u, v)| target_from_sheet * Point::new(u, v)),
@@ -210,7 +216,7 @@ pub fn sketch(name: &str, source: Source, tracing: &Tracing, placing: &Placing) 
 /// of is left out.
 ///
 /// # Errors
-/// `align`, see [`AskedMark`]; `usage` for a size that the drawing cannot have; `no-strokes` if all of it is to be kept out of.
+/// `align`, see [`AskedMark`]; `no-points` and `too-many-points`, see [`Points`]; `usage` for a size that the drawing cannot have; `no-strokes` if all of it is to be kept out of.
 pub fn place(sketch: &Sketch, placing: &Placing) -> Result<Placed, Failure> {
     let mut placed =
         if placing.marks.is_empty() { laid(sketch, placing)? } else { by_marks(sketch, placing)? };
@@ -223,7 +229,13 @@ pub fn place(sketch: &Sketch, placing: &Placing) -> Result<Placed, Failure> {
     let layers = moved(areas, map, unit_m).ok_or_else(beyond)?;
     let areas = placing.no_go.iter().filter_map(|area| rectangle(*area));
     let areas: Vec<Path> = layers.strokes.into_iter().map(|stroke| stroke.path).chain(areas).collect();
-    if !areas.is_empty() {
+    if let Some(points) = &placing.points {
+        let map = |at: Point| map.apply(at);
+        let around = (areas.as_slice(), placing.margin_m);
+        let Marked { points, drawing, notes } = marked(sketch, points, &map, around)?;
+        (placed.placed.points, placed.placed.drawing) = (points, drawing);
+        placed.placed.notes.extend(notes);
+    } else if !areas.is_empty() {
         let (drawing, left_out) = cut(&placed.placed.drawing, &areas, placing.margin_m);
         if drawing.strokes.is_empty() {
             let message = "all of the drawing lies in what --no-go keeps dark: move it, or keep less dark";

@@ -30,6 +30,10 @@ pub struct Schedule {
 pub fn schedule(placed: &Placed, driving: &Driving) -> Result<Schedule, Failure> {
     check_reach(placed, driving)?;
     hopeless::check(&placed.drawing, driving)?;
+    if !placed.points.is_empty() {
+        // in the order that they have; no speed is reached on lines that short
+        return schedule_rest(placed.drawing.clone(), driving);
+    }
     let schedule = timed(ordered(placed, driving), driving)?;
     check_speed(&schedule.plan, driving)?;
     Ok(schedule)

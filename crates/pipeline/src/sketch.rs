@@ -2,7 +2,7 @@
 
 use tracelight_formats::{Coordinates, Reading};
 use tracelight_picture::{Pixels, Raster, Source};
-use tracelight_stroke::{Drawing, Point, without_doubles};
+use tracelight_stroke::{Drawing, Place, Point, without_doubles};
 use tracelight_task::{Failure, counted};
 use tracelight_vision::{Comb, Dots, Quality, Traced, VisionError};
 
@@ -26,6 +26,8 @@ pub struct Sketch {
     pub coordinates: Coordinates,
     /// Closed paths that light keeps out of.
     pub no_go: Drawing,
+    /// Points and places of blocks that the file has.
+    pub places: Vec<Place>,
     /// The picture as it was read, for display: see [`Self::shown`].
     pub picture: Option<Raster>,
     /// How it was traced.
@@ -196,6 +198,7 @@ pub fn sketch_at(
         Source::Pixels(pixels) => traced(name, pixels, tracing, metres_per_unit)?,
     };
     (sketch.drawing, sketch.no_go) = choice.of(name, sketch.drawing)?;
+    sketch.places.retain(|place| choice.takes_place(place));
     // after the choice: a line that two layers have is needed where only one of them is drawn
     if is_drawing {
         sketch.draw_once();
@@ -224,6 +227,7 @@ fn taken(Reading { sheet, remarks, .. }: Reading) -> Sketch {
         drawing: sheet.drawing,
         coordinates: sheet.coordinates,
         no_go: Drawing::default(),
+        places: sheet.places,
         paper: None,
         picture: None,
         mode: "strokes",
@@ -261,6 +265,7 @@ fn traced(
         true_width_m,
         coordinates: Coordinates::Page { unit_m: true_width_m.map(|m| m / size.0) },
         no_go: Drawing::default(),
+        places: Vec::new(),
         remarks,
         drawing: traced.strokes,
         paper: page.sheet.map(|sheet| PaperSeen { sheet, picture_px, straight, slanted: None }),

@@ -203,7 +203,8 @@ fn round(px: f64) -> f64 {
 pub fn json(sketch: &Sketch) -> String {
     let (drawing, (width, height)) = sketch.in_picture();
     let coordinates = Coordinates::Page { unit_m: None };
-    let sheet = Sheet { width, height, metres_per_unit: None, drawing: drawing.clone(), coordinates };
+    let drawing = drawing.clone();
+    let sheet = Sheet { width, height, metres_per_unit: None, drawing, coordinates, places: Vec::new() };
     let text = json::write(&Traced { sheet, mode: sketch.mode.to_owned() }, POINTS_TOLERANCE_PX);
     let quality = sketch.quality.as_ref().map(QualityFigures::of);
     let quality = quality.and_then(|figures| serde_json::to_string(&figures).ok());

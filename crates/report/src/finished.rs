@@ -12,6 +12,8 @@ use tracelight_stroke::{Affine, Drawing, Point};
 use tracelight_trajectory::Plan;
 use tracelight_vision::Quality;
 
+use crate::summary::PointFigures;
+
 /// A finished (or stopped) job, as the outputs see it.
 pub struct Finished<'a> {
     /// The picture's file as the user named it.
@@ -28,6 +30,8 @@ pub struct Finished<'a> {
     pub align: Option<&'a AlignFigures>,
     /// What of it is left out, where it is to keep out of something.
     pub left_out: Option<LeftOut>,
+    /// The points that it marked, where it marked points.
+    pub points: Option<PointFigures>,
     /// The strokes in target metres, in tracing order.
     pub drawing: &'a Drawing,
     /// The same in time.

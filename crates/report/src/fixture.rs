@@ -51,6 +51,7 @@ impl Fixture {
             standing: STANDING,
             align: None,
             left_out: None,
+            points: None,
             drawing: &self.drawing,
             plan: &self.plan,
             run: &self.run,

@@ -49,4 +49,4 @@ pub use preview::{ColourBy, preview};
 pub use sample::planned;
 pub use seen::seen_csv;
 pub use sequence::{DrawnStroke, sequence};
-pub use summary::{LogFigures, PlanFigures, StrokeFigures, Summary};
+pub use summary::{LogFigures, PlanFigures, PointFigures, StrokeFigures, Summary};

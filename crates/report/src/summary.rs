@@ -29,6 +29,9 @@ pub struct Summary {
     /// What of it is left out of no-go areas; not there without any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub no_go: Option<LeftOut>,
+    /// The points that it marked; not there where it drew strokes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<PointFigures>,
     /// What it became.
     pub strokes: StrokeFigures,
     /// What was meant to happen.
@@ -69,6 +72,15 @@ pub struct TargetFigures {
     pub width_m: f64,
     pub height_m: f64,
     pub distance_m: f64,
+}
+
+/// See [`Summary::points`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct PointFigures {
+    /// How many there were to be marked.
+    pub count: usize,
+    /// How many were ticked off.
+    pub done: usize,
 }
 
 /// See [`Summary::strokes`].
@@ -179,6 +191,7 @@ impl Summary {
             head: job.standing,
             align: job.align.cloned(),
             no_go: job.left_out,
+            points: job.points,
             strokes: StrokeFigures::of(job.drawing, job.plan),
             plan: PlanFigures::of(job.plan),
             run: RunFigures::of(job.run, job.finished),

@@ -25,10 +25,12 @@ const INDEXED: &str = "run.mcap.part";
 pub(crate) const SUMMARY: &str = "summary.json";
 pub(crate) const RIG: &str = "rig.toml";
 pub(crate) const STROKES: &str = "strokes.svg";
+/// Which points were ticked off, and when.
+pub(crate) const POINTS: &str = "points.csv";
 pub(crate) const CAMERA: &str = "camera.jpg";
 
 /// All results that a job may have; the summary is written last.
-const NAMES: [&str; 14] = [
+const NAMES: [&str; 15] = [
     JOB,
     PROGRESS,
     LOG,
@@ -36,6 +38,7 @@ const NAMES: [&str; 14] = [
     STROKES,
     CAMERA,
     RIG,
+    POINTS,
     "trace.csv",
     "fault.csv",
     "seen.csv",

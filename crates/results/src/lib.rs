@@ -3,6 +3,7 @@
 mod folder;
 mod journal;
 mod listed;
+mod points;
 mod table;
 mod written;
 

@@ -10,6 +10,7 @@ use tracelight_sim::{Tracking, score};
 use tracelight_task::Failure;
 
 use crate::folder::{CAMERA, RIG, STROKES, put_jpeg, write_all};
+use crate::points::{figures as point_figures, put_points};
 
 /// What a run's results tell of what was asked.
 #[derive(Clone, Debug)]
@@ -43,6 +44,7 @@ pub fn write(
     folder.put(STROKES, placed.svg(drawing))?;
     put_jpeg(folder, CAMERA, prepared.camera_image())?;
     write_rig(folder, told, ran)?;
+    put_points(folder, &ran.points)?;
     let plan = ran.plan(prepared);
     let tracking: Tracking = score(plan, &ran.last, plan.set_speed_m_s);
     let motors = &driving.rig.model.motors;
@@ -63,6 +65,7 @@ pub fn write(
         standing: Standing::of(drawing, driving),
         align: placed.align.as_ref(),
         left_out: placed.left_out,
+        points: point_figures(&ran.points),
         drawing,
         plan,
         run: &ran.last,

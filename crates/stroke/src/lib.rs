@@ -19,6 +19,7 @@ mod fit;
 mod order;
 mod parts;
 mod path;
+mod places;
 mod polyline;
 mod simplify;
 mod stroke;
@@ -31,9 +32,11 @@ pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Rect, Vec2};
 pub use order::{
     Effort, OrderOptions, Ordered, StrokeEnd, Travel, least_cost, order, order_by_layer, reading_order,
+    reading_sequence,
 };
 pub use parts::{Measured, Span, parts};
 pub use path::{Element, Path, PathPoint, Piece};
+pub use places::{Place, PlaceKind, places, places_apart};
 pub use polyline::polyline_length;
 pub use simplify::{distance_to_segment, simplify};
 pub use stroke::{Drawing, Entity, Stroke, StrokeKind};

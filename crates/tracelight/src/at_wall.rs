@@ -6,6 +6,7 @@ use tracelight_rig::TICK_F64_S;
 use tracelight_session::{
     Event, Refused, Request, Snapshot, State, When, event_json, faster, slower, snapshot_json,
 };
+use tracelight_stroke::Place;
 use tracelight_task::{Pace, Stop, Task};
 
 use crate::cli::by_hand::ByHandArgs;
@@ -15,7 +16,7 @@ use crate::keys::{Key, Keys};
 const HELP: &str = "keys: Space pauses after this stroke, and goes on; P pauses at once; Esc stops; A arms, Enter goes on after that; + and − change the speed, \
                     = sets 100 %; C clears a fault; Q ends; ? shows this";
 /// What they do where strokes are drawn one at a time.
-const STEP_HELP: &str = "keys: Space, Enter, → or a pedal: this stroke is done, the next one; ← the one before; S skips this one; P pauses, Space goes on; Esc stops; A arms, Enter goes on \
+const STEP_HELP: &str = "keys: Space, Enter, → or a pedal: this one is done, the next one; ← the one before; S skips this one; P pauses, Space goes on; Esc stops; A arms, Enter goes on \
                          after that; + and − change the speed; C clears a fault; Q ends; ? shows this";
 /// How often progress is told, ticks of the rig.
 const PROGRESS_TICKS: u32 = 250;
@@ -29,6 +30,8 @@ pub(crate) struct AtWall<'a> {
     events: bool,
     /// Strokes are drawn one at a time.
     steps: bool,
+    /// They mark points.
+    points: bool,
 }
 
 impl<'a> AtWall<'a> {
@@ -43,7 +46,7 @@ impl<'a> AtWall<'a> {
             task.say(if steps { STEP_HELP } else { HELP });
         }
         let clock = real_time.map(|factor| Pace::new(TICK_F64_S / factor));
-        Some(Self { task, stop, clock, keys, events: args.events, steps })
+        Some(Self { task, stop, clock, keys, events: args.events, steps, points: false })
     }
 
     /// What a key asks for here.
@@ -113,14 +116,38 @@ impl Hands for AtWall<'_> {
         Some(Ask::Request(request))
     }
 
-    fn left(&mut self, stroke: u32, done: bool) {
-        self.print(&json!({"event": "left", "stroke": stroke + 1, "done": done}));
+    fn left(&mut self, number: u32, done: bool) {
+        let word = if self.points { "point" } else { "stroke" };
+        self.print(&json!({"event": "left", word: number + 1, "done": done}));
+    }
+
+    fn goes_to(&mut self, point: &Place, number: u32, of: u32) {
+        self.points = true;
+        let (kind, block, layer) = (point.kind.name(), point.block.as_deref(), point.layer.as_deref());
+        let mm = |m: f64| (1e6 * m).round() / 1e3;
+        let at = [("x_mm", mm(point.at.x)), ("y_mm", mm(point.at.y))];
+        let mut event =
+            json!({"event": "point", "point": number + 1, "points": of, "kind": kind, "block": block, "layer": layer});
+        at.iter().for_each(|(key, mm)| event[key] = json!(mm));
+        self.print(&event);
+        let name = |before: &str, name: Option<&str>| name.map_or_else(String::new, |name| format!("{before}{name}"));
+        let what = format!("{kind}{}{}", name(" ", block), name(" of layer ", layer));
+        self.task.say(&format!(
+            "point {} of {of}: {what}, at {:.3}, {:.3} m",
+            number + 1,
+            point.at.x,
+            point.at.y
+        ));
     }
 
     fn event(&mut self, event: &Event) {
         let words = match *event {
+            // who starts the program has armed it
+            Event::State { tick: 0, .. } => None,
             Event::State { to, .. } => words(to).map(str::to_owned),
-            Event::Stroke { stroke, of, .. } => self.steps.then(|| format!("stroke {} of {of}", stroke + 1)),
+            Event::Stroke { stroke, of, .. } => {
+                (self.steps && !self.points).then(|| format!("stroke {} of {of}", stroke + 1))
+            }
             Event::NotBegun { why, .. } => Some(why.to_string()),
             Event::Fault { fault, .. } => {
                 Some(format!("fault {}: {} (C clears it)", fault.code(), fault.row().what))

@@ -66,8 +66,8 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<O
     let meta = LogMeta { picture_path: &name, settings: &settings, seed: args.seed };
     let strokes = prepared.schedule.ordered.drawing.strokes.len();
     let mut kept = Records::begin(&folder, &asked, strokes, &meta)?;
-    let (prepared, mut ran) = match AtWall::of(&args.by_hand, args.step, task, stop) {
-        Some(mut hands) if args.step => {
+    let (prepared, mut ran) = match AtWall::of(&args.by_hand, args.is_by_steps(), task, stop) {
+        Some(mut hands) if args.is_by_steps() => {
             prepared.run_steps(&mut kept, &mut hands, args.pace.map(|pace| pace.0), task)?
         }
         Some(mut hands) => {
@@ -124,7 +124,8 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
         head.iter().for_each(|known| stand_by(&mut driving, known));
     }
     let area_m = head.as_ref().and_then(|known| known.area_m);
-    let placing = args.wall.placing(args.placement.placing(), Some(&driving), area_m)?;
+    let mut placing = args.wall.placing(args.placement.placing(), Some(&driving), area_m)?;
+    placing.points = args.points();
     let request = Request {
         name: args.name(),
         tracing: args.tracing.tracing(),

@@ -1,8 +1,9 @@
 //! Inserts unfolded: what is drawn, where, on which layer and in which colour, in the end.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
-use tracelight_stroke::{Affine, Colour, Element, Path, Point};
+use tracelight_stroke::{Affine, Colour, Element, Path, PlaceKind, Point};
 
 use super::curves::{has_length, moved};
 use super::dashes::{Dashed, dashed};
@@ -22,6 +23,9 @@ const MAX_VISITS: usize = 4_000_000;
 
 /// Elements from which on lines are drawn whole: dashes may not be why a drawing is refused.
 const MOST_DASHED: usize = super::MAX_ELEMENTS / 2;
+
+/// Points and inserts that are told, at most: nobody marks more of them.
+const MOST_SPOTS: usize = 100_000;
 
 /// Points beyond this, after all scales of all inserts, are a broken file's.
 const MAX_PLACE: f64 = 1e15;
@@ -44,6 +48,24 @@ impl Drawn {
     pub(super) const fn along(&self, path: Path) -> Self {
         Self { path, ..*self }
     }
+}
+
+/// A point, or where a block is inserted.
+pub(super) struct Spot {
+    pub(super) at: Point,
+    pub(super) kind: PlaceKind,
+    /// The block's name.
+    pub(super) block: Option<Arc<str>>,
+    pub(super) layer: usize,
+    pub(super) colour: Colour,
+    pub(super) origin: Origin,
+}
+
+/// All of some items that is visible, in file order.
+#[derive(Default)]
+pub(super) struct Unfolded {
+    pub(super) drawn: Vec<Drawn>,
+    pub(super) spots: Vec<Spot>,
 }
 
 /// Definitions that what is drawn refers to.
@@ -83,11 +105,12 @@ struct Unfolding<'a> {
     definitions: &'a Definitions<'a>,
     skipped: &'a mut Skipped,
     drawn: Vec<Drawn>,
+    spots: Vec<Spot>,
     elements: usize,
     visits: usize,
 }
 
-/// All of some items that is visible, in file order; what is not is counted.
+/// Unfolds some items; what is not visible is counted.
 ///
 /// # Errors
 /// Blocks that hold themselves, and ones that repeat each other beyond all measure.
@@ -95,8 +118,9 @@ pub(super) fn unfolded(
     items: &[Item],
     skipped: &mut Skipped,
     definitions: &Definitions,
-) -> Result<Vec<Drawn>, FormatError> {
-    let mut unfolding = Unfolding { definitions, skipped, drawn: Vec::new(), elements: 0, visits: 0 };
+) -> Result<Unfolded, FormatError> {
+    let (drawn, spots) = (Vec::new(), Vec::new());
+    let mut unfolding = Unfolding { definitions, skipped, drawn, spots, elements: 0, visits: 0 };
     let world = Setting {
         world_from_block: Affine::IDENTITY,
         layer: LAYER_0,
@@ -106,7 +130,7 @@ pub(super) fn unfolded(
         depth: 0,
     };
     unfolding.items(items, world)?;
-    Ok(unfolding.drawn)
+    Ok(Unfolded { drawn: unfolding.drawn, spots: unfolding.spots })
 }
 
 impl Unfolding<'_> {
@@ -168,7 +192,16 @@ impl Unfolding<'_> {
         self.check_place(&path)?;
         self.push(path, shown)?;
         self.drawn.iter_mut().last().into_iter().for_each(|own| own.is_dot = true);
+        self.spot(to, (PlaceKind::Point, None), shown);
         Ok(())
+    }
+
+    fn spot(&mut self, at: Point, (kind, block): (PlaceKind, Option<Arc<str>>), shown: Shown) {
+        let Shown { layer, colour, origin, .. } = shown;
+        if self.spots.len() >= MOST_SPOTS {
+            return;
+        }
+        self.spots.push(Spot { at, kind, block, layer, colour, origin });
     }
 
     /// How something looks; `None`, and counted, where its layer is not seen.
@@ -198,7 +231,8 @@ impl Unfolding<'_> {
 
     fn insert(&mut self, insert: &Insert, at: Setting) -> Result<(), FormatError> {
         let Definitions { blocks, layers, .. } = self.definitions; // outlives the loan of self
-        let Shown { layer, colour, line, origin } = self.shown(insert.look, at);
+        let shown = self.shown(insert.look, at);
+        let Shown { layer, colour, line, origin } = shown;
         if layers.get(layer).is_frozen {
             self.skipped.hidden += 1;
             return Ok(());
@@ -215,6 +249,11 @@ impl Unfolding<'_> {
             let step = insert.steps[0] * f64::from(column) + insert.steps[1] * f64::from(row);
             let step = at.world_from_block * step.to_point() - at.world_from_block * Point::ORIGIN;
             let world_from_block = Affine::translate(step) * placed;
+            let to = world_from_block * block.base;
+            // where its layer is off, others of its lines may be seen
+            if insert.look.origin.is_insert() && !layers.get(layer).is_off && to.is_finite() {
+                self.spot(to, (PlaceKind::Block, Some(insert.name.clone())), shown);
+            }
             self.skipped.add(&block.skipped);
             let own =
                 Setting { world_from_block, layer, colour, line, origin: Some(origin), depth: at.depth + 1 };

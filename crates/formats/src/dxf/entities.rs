@@ -177,6 +177,7 @@ fn insert(record: &Record, look: Look) -> Result<Insert, FormatError> {
     let count = |value: i64| u32::try_from(value.clamp(1, 1 << 20)).unwrap_or(1);
     Ok(Insert {
         block: record.key(2),
+        name: record.text(2).into(),
         place: at * Affine::scale_non_uniform(scale[0], scale[1]),
         steps: [step(record.number_or(44, 0.0)?, 0.0), step(0.0, record.number_or(45, 0.0)?)],
         columns: count(record.whole_or(70, 1)?),
@@ -190,6 +191,7 @@ fn picture(record: &Record, look: Look, to: Point) -> Result<Insert, FormatError
     let world = world_from_plane(record, 0.0)?;
     Ok(Insert {
         block: record.key(2),
+        name: record.text(2).into(),
         place: world * Affine::translate(to.to_vec2()),
         steps: [Vec2::ZERO; 2],
         columns: 1,

@@ -65,6 +65,11 @@ impl Origin {
         self.line
     }
 
+    /// Whether it is a block drawn in place, and no picture of a dimension or table.
+    pub(super) fn is_insert(self) -> bool {
+        self.kind == "INSERT"
+    }
+
     /// As strokes say it, with so many more that are one stroke with it.
     pub(super) fn entity(self, more: usize) -> Entity {
         let id = self.handle.map(|handle| format!("{handle:X}").into());

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use tracelight_stroke::{Drawing, Element, Path, Stroke, Vec2, extent};
+use tracelight_stroke::{Drawing, Element, Path, Place, Stroke, Vec2, extent};
 
-use super::blocks::{Definitions, Drawn, unfolded};
+use super::blocks::{Definitions, Drawn, Spot, Unfolded, unfolded};
 use super::entities::{Around, Entities};
 use super::groups::Record;
 use super::header::Header;
@@ -31,7 +31,7 @@ const DOT: f64 = 0.002;
 /// drawn by theirs; faces and meshes by their edges; hatches by the edges of their areas, and by their pattern if that is
 /// asked for; a point as a level line of 1/500 of the drawing's longer side. Text is drawn as single
 /// lines, or as outlines where these are asked for. Linetypes make dashes, half a dash or more at either end of a path. Paths of one layer and colour that meet end to end become one stroke; what
-/// lies on earlier lines of its layer and colour comes last. Each stroke has its layer's name, the colour it shows and its entity, of a block's lines the insert; what lies on layers that are off or frozen is left out. Where the model is
+/// lies on earlier lines of its layer and colour comes last. Points and the places of inserts are told, see [`Sheet::places`](crate::Sheet::places). Each stroke has its layer's name, the colour it shows and its entity, of a block's lines the insert; what lies on layers that are off or frozen is left out. Where the model is
 /// empty, the layout is drawn. Whatever is not drawn is counted by name in a remark.
 ///
 /// The sheet just holds the drawing, in millimetres, times a power of ten where that makes numbers of a usual size. Its
@@ -55,10 +55,11 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     let (mut scene, header) = scene(&mut records, options.hatch)?;
     let lettered = set_texts(&mut scene, header, options)?;
     let dash_scale = options.dashes.then_some(header.linetype_scale);
-    let (drawn, skipped, is_layout) = space(&scene, dash_scale)?;
+    let (Unfolded { drawn, spots }, skipped, is_layout) = space(&scene, dash_scale)?;
     let drawing = strokes(drawn, &scene.layers);
+    let places: Vec<Place> = spots.into_iter().map(|spot| place(spot, &scene.layers)).collect();
     let unit = Unit::of(options.unit, header.metres_per_unit());
-    let Some(size) = sheet(&drawing, unit)? else {
+    let Some(size) = sheet(&drawing, &places, unit)? else {
         return Err(match records.cut() {
             Some(_) => records.cut_off(),
             None => skipped.nothing(),
@@ -97,7 +98,7 @@ const fn cut_remark(cut: Cut) -> &'static str {
 }
 
 /// What is drawn of a scene, what is not, and whether that is a layout: the model, unless it is empty.
-fn space(scene: &Scene, dash_scale: Option<f64>) -> Result<(Vec<Drawn>, Skipped, bool), FormatError> {
+fn space(scene: &Scene, dash_scale: Option<f64>) -> Result<(Unfolded, Skipped, bool), FormatError> {
     let Scene { layers, lines, blocks, model, layout, in_layouts, styles: _ } = scene;
     let definitions = Definitions { layers, lines, blocks, dash_scale };
     let drawn = |items, skipped: &Skipped| {
@@ -112,7 +113,7 @@ fn space(scene: &Scene, dash_scale: Option<f64>) -> Result<(Vec<Drawn>, Skipped,
         let others = others.into_iter().map(|(_, block)| (&block.items, &block.skipped));
         for (items, skipped) in std::iter::once((&layout.items, &layout.skipped)).chain(others) {
             let (own, skipped) = drawn(items, skipped)?;
-            if !own.is_empty() {
+            if !own.drawn.is_empty() {
                 return Ok((own, skipped, true));
             }
         }
@@ -147,7 +148,7 @@ enum Section {
 }
 
 /// Where the reader is.
-struct Place {
+struct Reader {
     section: Section,
     /// The block whose entities come, and its key.
     block: Option<(String, Block)>,
@@ -164,21 +165,21 @@ struct Place {
 
 fn scene(records: &mut Records, hatch: Hatch) -> Result<(Scene, Header), FormatError> {
     let (mut scene, mut header) = (Scene::default(), Header::default());
-    let mut place = Place::new(hatch);
+    let mut reader = Reader::new(hatch);
     let mut record = Record::default();
     while records.read(&mut record)? {
         match record.kind {
             b"SECTION" => {
-                place.section = section(&record);
+                reader.section = section(&record);
                 if record.key(2) == "header" {
                     header = Header::of(&record);
                 }
             }
-            b"ENDSEC" => place.end_section(&mut scene),
-            _ => place.take(&record, &mut scene)?,
+            b"ENDSEC" => reader.end_section(&mut scene),
+            _ => reader.take(&record, &mut scene)?,
         }
     }
-    place.end_section(&mut scene);
+    reader.end_section(&mut scene);
     Ok((scene, header))
 }
 
@@ -191,7 +192,7 @@ fn section(record: &Record) -> Section {
     }
 }
 
-impl Place {
+impl Reader {
     fn new(hatch: Hatch) -> Self {
         let [entities, layout] = [Entities::default(), Entities::default()];
         let (section, block) = (Section::Other, None);
@@ -270,6 +271,18 @@ impl Place {
             }
         }
         self.section = Section::Other;
+    }
+}
+
+fn place(spot: Spot, layers: &Layers) -> Place {
+    let Spot { at, kind, block, layer, colour, origin } = spot;
+    Place {
+        at,
+        kind,
+        block,
+        layer: Some(layers.get(layer).name.clone()),
+        colour: Some(colour),
+        entity: Some(Arc::new(origin.entity(0))),
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a DXF holds, before its blocks are unfolded.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use tracelight_stroke::{Affine, Point};
 
@@ -63,6 +64,8 @@ pub(super) struct Dot {
 pub(super) struct Insert {
     /// Key of the block.
     pub(super) block: String,
+    /// Its name, as the insert has it.
+    pub(super) name: Arc<str>,
     /// From the block's points, its base point at the origin, to the point of insertion; without the steps of an array.
     pub(super) place: Affine,
     /// From one column to the next, and from one row to the next.

@@ -1,7 +1,7 @@
 //! The sheet round a drawing, and how large it truly is.
 
 use tracelight_maths::{ln, log10, powf};
-use tracelight_stroke::{Affine, Drawing, extent};
+use tracelight_stroke::{Affine, Drawing, Place, extent};
 
 use crate::limit::MAX_COORDINATE;
 use crate::meant::{is_meant, lengths};
@@ -86,11 +86,11 @@ impl Unit {
     }
 }
 
-/// The sheet round a drawing: y down, the corner at the origin. `None` for a drawing of nothing, or of a single point.
+/// The sheet round a drawing, and places of it: y down, the corner at the origin. `None` for a drawing of nothing, or of a single point.
 ///
 /// # Errors
 /// A drawing too large for numbers.
-pub(super) fn sheet(drawing: &Drawing, unit: Unit) -> Result<Option<Sized>, FormatError> {
+pub(super) fn sheet(drawing: &Drawing, places: &[Place], unit: Unit) -> Result<Option<Sized>, FormatError> {
     let Some(bounds) = extent(drawing) else { return Ok(None) };
     let size = bounds.width().max(bounds.height());
     if size == 0.0 {
@@ -112,6 +112,7 @@ pub(super) fn sheet(drawing: &Drawing, unit: Unit) -> Result<Option<Sized>, Form
         metres_per_unit: Some(unit_m / scale),
         drawing: drawing.transformed(place),
         coordinates: Coordinates::File(place * Affine::scale(1.0 / unit_m)),
+        places: places.iter().map(|own| own.moved(place * own.at)).collect(),
     };
     let own = [bounds.width(), bounds.height()];
     Ok(Some(Sized { sheet, remark: unit.remark(own), doubt: unit.doubt(own) }))

@@ -95,7 +95,8 @@ pub fn read_with(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatE
     said.extend(painter.letters.as_ref().map_or_else(|| fonts.remarks(&tree), Lines::remarks));
     let unit_m = Some(metres_per_unit.unwrap_or(METRES_PER_PX));
     let drawing = Drawing { strokes: seen.strokes };
-    let sheet = Sheet { width, height, metres_per_unit, drawing, coordinates: Coordinates::Page { unit_m } };
+    let coordinates = Coordinates::Page { unit_m };
+    let sheet = Sheet { width, height, metres_per_unit, drawing, coordinates, places: Vec::new() };
     Ok(Reading { doubt: sheet.doubt(), sheet, remarks: said, is_list: false })
 }
 

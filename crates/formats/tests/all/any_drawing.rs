@@ -125,6 +125,7 @@ fn any_drawing_comes_back_from_json_to_the_last_bit() {
             metres_per_unit: None,
             drawing: scaled,
             coordinates: Coordinates::Page { unit_m: None },
+            places: Vec::new(),
         };
         let traced = Traced { sheet, mode: "auto".into() };
         let back = json::read(json::write(&traced, 1.0).as_bytes()).unwrap();

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use tracelight_camera::Source;
+use tracelight_pipeline::{PointMark, Points, TypedKinds};
 use tracelight_task::Failure;
 use tracelight_units::Speed;
 
@@ -80,10 +81,17 @@ pub(crate) struct TraceArgs {
     /// Draw one stroke again and again, there and back where it is open, until Space, Enter, → or a pedal asks for the next; in real time
     #[arg(help_heading = "At the wall", long, conflicts_with_all = ["laps", "camera"])]
     pub(crate) step: bool,
-    /// Speed of the spot with --step, such as 5cm/s: slow enough for a pencil to follow [default: --speed]
-    #[arg(help_heading = "At the wall", long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed, requires = "step")]
+    /// Mark its points on the target, one after the other, as --step draws strokes: points and blocks of a DXF, centres of circles and arcs, corners, ends; with
+    /// --points=KINDS only those, such as --points=block,centre. Layer by layer, row by row; points.csv says which were ticked off
+    #[arg(help_heading = "At the wall", long, value_name = "KINDS", num_args = 0..=1, require_equals = true, default_missing_value = "all", conflicts_with_all = ["laps", "camera", "step"])]
+    pub(crate) points: Option<TypedKinds>,
+    /// What marks a point: a cross of this length, or dot, which goes on and off [default: 20mm]
+    #[arg(help_heading = "At the wall", long, value_name = "LENGTH|dot", allow_hyphen_values = true, requires = "points")]
+    pub(crate) mark: Option<PointMark>,
+    /// Speed of the spot with --step and --points, such as 5cm/s: slow enough for a pencil to follow [default: --speed]
+    #[arg(help_heading = "At the wall", long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed)]
     pub(crate) pace: Option<Speed>,
-    /// Leave out the strokes before this one, in the order in which they are drawn
+    /// Leave out the strokes, or points, before this one, in the order in which they are drawn
     #[arg(help_heading = "At the wall", long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "camera")]
     pub(crate) from_stroke: u32,
     /// Folder for the results [default: out/<the picture's name>/, or the first of …-2/, …-3/ that is not there yet]
@@ -147,21 +155,39 @@ impl TraceArgs {
         if self.laps > 1 {
             return Some(format!("it was to be drawn {} times; {anew}, or with fewer --laps", self.laps));
         }
-        if self.step {
-            let why = "it went from stroke to stroke; begin anew with --from-stroke N, the first one that is not done yet";
-            return Some(why.to_owned());
+        if self.is_by_steps() {
+            let word = if self.step { "stroke" } else { "point" };
+            return Some(format!(
+                "it went from {word} to {word}; begin anew with --from-stroke N, the first one that is not done yet"
+            ));
         }
         let is_gone = self.name() == "-";
         is_gone.then(|| format!("its picture came from standard input, and is gone; {anew}, or from a file"))
     }
 
+    /// Whether somebody goes from stroke to stroke, or from point to point.
+    pub(crate) const fn is_by_steps(&self) -> bool {
+        self.step || self.points.is_some()
+    }
+
+    /// The places that are to be marked, where some are.
+    pub(crate) fn points(&self) -> Option<Points> {
+        let TypedKinds(kinds) = self.points.clone()?;
+        Some(Points { kinds, mark: self.mark.unwrap_or_default(), corner_rad: self.tracing.corner_angle.0 })
+    }
+
     /// Refuses to go from stroke to stroke where nobody can ask for the next.
     pub(crate) fn check_keys(&self) -> Result<(), Failure> {
-        if !self.step || std::io::stdin().is_terminal() {
-            return Ok(());
-        }
-        let message =
-            "--step waits for keys, and standard input is no terminal: start it in one, without < or |";
+        let flag = if self.step { "--step" } else { "--points" };
+        let message = match self.is_by_steps() {
+            false if self.pace.is_some() => {
+                "--pace is the speed of --step and --points: give one of them, or --speed".to_owned()
+            }
+            true if !std::io::stdin().is_terminal() => {
+                format!("{flag} waits for keys, and standard input is no terminal: start it in one, without < or |")
+            }
+            _ => return Ok(()),
+        };
         Err(Failure::usage("usage", message))
     }
 

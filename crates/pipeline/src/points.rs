@@ -1,0 +1,256 @@
+//! Places of a drawing, each marked on the target by a cross or a dot.
+
+use std::collections::HashMap;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use tracelight_stroke::{
+    Drawing, Element, Path, Place, PlaceKind, Point, Rect, Stroke, Vec2, places, places_apart,
+    reading_sequence,
+};
+use tracelight_task::{Failure, counted};
+use tracelight_units::{LENGTHS, parse};
+
+use crate::no_go::cut;
+use crate::sketch::Sketch;
+
+/// Places that are nearer to each other are one, m: a carpenter's pencil is as wide.
+const APART_M: f64 = 1e-3;
+
+/// Length of a dot, m: the spot moves to and fro by it, as light that stands is shut off.
+const DOT_M: f64 = 1e-3;
+
+/// Shortest and longest cross, m.
+const CROSS_M: (f64, f64) = (4e-3, 1.0);
+
+/// Most points of a job: somebody goes to each of them.
+const MOST: usize = 2000;
+
+/// Which places of a drawing are marked, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Points {
+    /// Of these kinds; of every kind where none is named.
+    pub kinds: Vec<PlaceKind>,
+    /// How.
+    pub mark: PointMark,
+    /// Bends of at least this angle are corners, rad.
+    pub corner_rad: f64,
+}
+
+/// Kinds of places as people write them: `all`, or names with commas between.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TypedKinds(pub Vec<PlaceKind>);
+
+impl FromStr for TypedKinds {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim().eq_ignore_ascii_case("all") {
+            return Ok(Self::default());
+        }
+        let names = || PlaceKind::ALL.map(PlaceKind::name).join(", ");
+        let kind = |word: &str| {
+            let word = word.trim().to_lowercase();
+            let one = word.strip_suffix('s').unwrap_or(&word);
+            let found = PlaceKind::ALL.into_iter().find(|kind| kind.name() == one);
+            found.ok_or_else(|| format!("{word:?} is no kind of point: give all, or some of {}", names()))
+        };
+        text.split(',').map(kind).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+/// What marks a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PointMark {
+    /// A dot that goes on and off.
+    Dot,
+    /// Two lines of this length that cross there, m.
+    Cross(f64),
+}
+
+impl Default for PointMark {
+    /// A cross of 20 mm.
+    fn default() -> Self {
+        Self::Cross(0.02)
+    }
+}
+
+impl FromStr for PointMark {
+    type Err = String;
+
+    /// `dot`, or the length of a cross such as `20mm`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim().eq_ignore_ascii_case("dot") {
+            return Ok(Self::Dot);
+        }
+        let (least, most) = CROSS_M;
+        match parse(text, LENGTHS).map_err(|e| format!("{e}; or dot")) {
+            Ok(length) if (least..=most).contains(&length) => Ok(Self::Cross(length)),
+            Ok(_) => Err(format!("a cross of {text} is not between {:.0} mm and {most:.0} m long", 1e3 * least)),
+            Err(why) => Err(why),
+        }
+    }
+}
+
+/// The lines that mark places on the target.
+pub(crate) struct Marked {
+    pub(crate) points: Vec<Place>,
+    pub(crate) drawing: Drawing,
+    /// What the user should know.
+    pub(crate) notes: Vec<String>,
+}
+
+/// Marks the places of a sketch, layer by layer as the drawing has them, each layer's as a page is read. `map` says where on the target a place of the sheet is; light
+/// keeps `margin_m` from the areas.
+///
+/// # Errors
+/// `no-points` where there is none, or none that may be lit; `too-many-points`; `align` for one beyond the horizon.
+pub(crate) fn marked(
+    sketch: &Sketch,
+    asked: &Points,
+    map: &dyn Fn(Point) -> Option<Point>,
+    (areas, margin_m): (&[Path], f64),
+) -> Result<Marked, Failure> {
+    let found = places(&sketch.drawing, &sketch.places, asked.corner_rad);
+    let all: Vec<&Place> = sketch.places.iter().chain(&found).collect();
+    let wanted = all.iter().filter(|place| asked.kinds.is_empty() || asked.kinds.contains(&place.kind));
+    let on_target = wanted.map(|place| map(place.at).map(|at| place.moved(at))).collect::<Option<Vec<_>>>();
+    let beyond = || Failure::usage("align", "--align: the marks put a point beyond the horizon of the wall");
+    let points = places_apart(on_target.ok_or_else(beyond)?, APART_M);
+    if points.is_empty() {
+        let kinds: Vec<_> = asked.kinds.iter().map(|kind| kind.name()).collect();
+        let message = match all.is_empty() {
+            true => "--points: the drawing has no point, block, centre, corner or end".to_owned(),
+            false => format!("--points={}: there is none; the drawing has {}", kinds.join(","), kinds_of(&all)),
+        };
+        return Err(Failure::failed("no-points", message));
+    }
+    if points.len() > MOST {
+        let message = format!(
+            "--points: the drawing has {} of them ({}), and at most {MOST} are gone to: name the kinds, such as --points=centre,corner, or a --layer",
+            points.len(),
+            kinds_of(&points.iter().collect::<Vec<_>>())
+        );
+        return Err(Failure::failed("too-many-points", message));
+    }
+    let mut notes = vec![format!("marks {}: {}", counted(points.len(), "point"), kinds_of(&points.iter().collect::<Vec<_>>()))];
+    let before = points.len();
+    let lit: Vec<(Place, Vec<Stroke>)> = in_order(points)
+        .into_iter()
+        .map(|place| (asked.mark.strokes(&place), place))
+        .filter(|(strokes, _)| areas.is_empty() || cut(&Drawing { strokes: strokes.clone() }, areas, margin_m).1.strokes == 0)
+        .map(|(strokes, place)| (place, strokes))
+        .collect();
+    if lit.is_empty() {
+        let message = "all points lie in what --no-go keeps dark, or too near to it: keep less dark, or make their crosses smaller (--mark)";
+        return Err(Failure::failed("no-points", message));
+    }
+    if lit.len() < before {
+        notes.push(format!("{} left out, in what --no-go keeps dark", counted(before - lit.len(), "point")));
+    }
+    let (points, strokes): (Vec<_>, Vec<_>) = lit.into_iter().unzip();
+    Ok(Marked { points, drawing: Drawing { strokes: strokes.concat() }, notes })
+}
+
+/// How many there are of which kind, in words.
+fn kinds_of(places: &[&Place]) -> String {
+    let count = |kind: PlaceKind| places.iter().filter(|place| place.kind == kind).count();
+    let some = PlaceKind::ALL.into_iter().map(|kind| (kind, count(kind))).filter(|(_, count)| *count > 0);
+    some.map(|(kind, count)| counted(count, kind.name())).collect::<Vec<_>>().join(", ")
+}
+
+/// Layer by layer as they come first, each as a page is read.
+fn in_order(points: Vec<Place>) -> Vec<Place> {
+    let mut layers: Vec<Vec<Place>> = Vec::new();
+    let mut numbers: HashMap<Option<Arc<str>>, usize> = HashMap::new();
+    for place in points {
+        let number = *numbers.entry(place.layer.clone()).or_insert(layers.len());
+        match layers.get_mut(number) {
+            Some(layer) => layer.push(place),
+            None => layers.push(vec![place]),
+        }
+    }
+    // what differs in height by less than a cross is one row
+    let half = Vec2::new(5e-3, 5e-3);
+    let read = |layer: Vec<Place>| {
+        let boxes: Vec<Rect> =
+            layer.iter().map(|place| Rect::from_points(place.at - half, place.at + half)).collect();
+        reading_sequence(&boxes).into_iter().filter_map(move |number| layer.get(number).cloned())
+    };
+    layers.into_iter().flat_map(read).collect()
+}
+
+impl PointMark {
+    /// How many strokes a mark has.
+    #[must_use]
+    pub const fn stroke_count(self) -> usize {
+        match self {
+            Self::Dot => 1,
+            Self::Cross(_) => 2,
+        }
+    }
+
+    fn strokes(self, place: &Place) -> Vec<Stroke> {
+        let line = |half: Vec2| {
+            let mut path = Path::new(place.at - half);
+            path.push(Element::Line { to: place.at + half });
+            let Place { layer, colour, entity, .. } = place;
+            Stroke { layer: layer.clone(), colour: *colour, entity: entity.clone(), ..Stroke::new(path) }
+        };
+        match self {
+            Self::Dot => vec![line(Vec2::new(0.5 * DOT_M, 0.0))],
+            Self::Cross(length) => {
+                vec![line(Vec2::new(0.5 * length, 0.0)), line(Vec2::new(0.0, -0.5 * length))]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(layer: &str, x: f64, y: f64) -> Place {
+        let (kind, layer) = (PlaceKind::Corner, Some(Arc::from(layer)));
+        Place { at: Point::new(x, y), kind, block: None, layer, colour: None, entity: None }
+    }
+
+    #[test]
+    fn points_are_read_layer_by_layer_and_row_by_row() {
+        let points = [("b", 0.3, 0.0), ("a", 0.0, 1.0), ("b", 0.0, 0.002), ("b", 0.1, 0.5), ("a", 0.5, 1.001)];
+        let sorted = in_order(points.map(|(layer, x, y)| place(layer, x, y)).to_vec());
+        let found: Vec<_> = sorted.iter().map(|p| (p.layer.as_deref().unwrap(), p.at.x)).collect();
+        assert_eq!(found, [("b", 0.1), ("b", 0.0), ("b", 0.3), ("a", 0.0), ("a", 0.5)]);
+    }
+
+    #[test]
+    fn marks_are_typed_with_a_unit_and_bounds() {
+        assert_eq!("dot".parse(), Ok(PointMark::Dot));
+        assert_eq!("3cm".parse(), Ok(PointMark::Cross(0.03)));
+        let refused = |text: &str| text.parse::<PointMark>().unwrap_err();
+        assert!(refused("1mm").contains("between 4 mm and 1 m"), "{}", refused("1mm"));
+        assert!(refused("20").contains("no unit") && refused("20").contains("or dot"));
+    }
+
+    #[test]
+    fn kinds_are_typed_by_their_names() {
+        assert_eq!("all".parse(), Ok(TypedKinds(vec![])));
+        let two = TypedKinds(vec![PlaceKind::Block, PlaceKind::Centre]);
+        assert_eq!("blocks, Centre".parse(), Ok(two));
+        let refused = "block,door".parse::<TypedKinds>().unwrap_err();
+        assert!(refused.contains("\"door\"") && refused.contains("point, block, centre, corner, end"), "{refused}");
+    }
+
+    #[test]
+    fn a_mark_is_about_its_place() {
+        let place = place("a", 1.0, 2.0);
+        for mark in [PointMark::Dot, PointMark::default()] {
+            let strokes = mark.strokes(&place);
+            assert_eq!(strokes.len(), mark.stroke_count());
+            for stroke in strokes {
+                assert!(stroke.path.start().midpoint(stroke.path.end()).distance(place.at) < 1e-12);
+                assert_eq!(stroke.layer, place.layer);
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Points that were marked, and when each was ticked off.
+
+use tracelight_files::ResultFolder;
+use tracelight_job::PointDone;
+use tracelight_report::PointFigures;
+use tracelight_task::Failure;
+
+use crate::folder::POINTS;
+
+/// Columns of the table.
+const HEADER: [&str; 8] = ["point", "kind", "block", "layer", "entity", "x_mm", "y_mm", "done_s"];
+
+/// Writes the table of a run that marked points.
+pub(crate) fn put_points(folder: &ResultFolder, points: &[PointDone]) -> Result<(), Failure> {
+    if points.is_empty() {
+        return Ok(());
+    }
+    let table = table(points).map_err(|e| Failure::failed("cannot-write", format!("{POINTS}: {e}")))?;
+    folder.put(POINTS, table)
+}
+
+/// How many there are, and are done.
+pub(crate) fn figures(points: &[PointDone]) -> Option<PointFigures> {
+    let done = points.iter().filter(|point| point.done_s.is_some()).count();
+    (!points.is_empty()).then_some(PointFigures { count: points.len(), done })
+}
+
+/// One row a point, in the order in which they were gone to; `done_s` is empty where one was not ticked off.
+fn table(points: &[PointDone]) -> Result<Vec<u8>, csv::Error> {
+    let mut rows = csv::Writer::from_writer(Vec::new());
+    rows.write_record(HEADER)?;
+    for (number, PointDone { place, done_s }) in (1..).zip(points) {
+        let word = |text: Option<&str>| text.unwrap_or_default().to_owned();
+        rows.write_record([
+            number.to_string(),
+            place.kind.name().to_owned(),
+            word(place.block.as_deref()),
+            word(place.layer.as_deref()),
+            place.entity.as_ref().map_or_else(String::new, |entity| entity.to_string()),
+            format!("{:.3}", 1e3 * place.at.x),
+            format!("{:.3}", 1e3 * place.at.y),
+            done_s.map_or_else(String::new, |s| format!("{s:.3}")),
+        ])?;
+    }
+    rows.into_inner().map_err(|e| e.into_error().into())
+}
