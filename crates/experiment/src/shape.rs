@@ -20,7 +20,7 @@ pub enum Shape {
         /// What it is called.
         name: String,
         /// What is in it.
-        source: Source,
+        source: Box<Source>,
     },
 }
 
@@ -55,7 +55,7 @@ impl Shape {
             Self::Line => OnTarget::Path(level_line()),
             Self::Picture { name, source } => {
                 let placing = Placing::default();
-                let sketch = sketch(&name, source, &Tracing::default(), &placing)?;
+                let sketch = sketch(&name, *source, &Tracing::default(), &placing)?;
                 OnTarget::Picture(Box::new(place(&sketch, &placing)?))
             }
         })

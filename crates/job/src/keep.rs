@@ -11,6 +11,14 @@ pub trait Keep {
     /// # Errors
     /// Why it cannot be kept: then the run ends, as nothing that was measured may be lost.
     fn tick(&mut self, plan: &Plan, tick: &Tick) -> Result<(), Failure>;
+
+    /// One more tick that is not of the job itself, such as of its frame, and the plan that it follows.
+    ///
+    /// # Errors
+    /// As of [`tick`](Self::tick).
+    fn aside(&mut self, plan: &Plan, tick: &Tick) -> Result<(), Failure> {
+        self.tick(plan, tick)
+    }
 }
 
 /// Nobody: who wants the run alone finds it in [`Ran`](crate::Ran).

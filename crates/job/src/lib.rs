@@ -14,9 +14,13 @@
 //! ```
 
 mod by_hand;
+mod course;
+mod frame;
+mod hands;
 mod keep;
 mod kept;
 mod lap;
+mod looped;
 mod prepared;
 mod recovery;
 mod remainder;
@@ -26,7 +30,7 @@ mod steps;
 mod wall;
 mod watched;
 
-pub use by_hand::{Ask, Hands, Step};
+pub use hands::{Ask, Hands, Step};
 pub use keep::{Keep, KeepNothing};
 pub use prepared::{Prepared, Ran, prepare};
 pub use request::{Request, RunRequest, Scene, Wall};

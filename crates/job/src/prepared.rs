@@ -4,19 +4,24 @@ use tracelight_eye::figures::EyeFigures;
 use tracelight_eye::room::{Furnished, left};
 use tracelight_eye::seen::SeenLight;
 use tracelight_picture::{Raster, Source};
-use tracelight_pipeline::{Driving, Placed, Schedule, Sketch, place, schedule, schedule_rest, sketch};
+use tracelight_pipeline::{
+    Before, Check, Driving, Placed, Schedule, Sketch, place, preflight, schedule, schedule_rest, sketch,
+};
 use tracelight_sim::{RigConfig, Run, SimulatedRig};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::Plan;
 
-use crate::by_hand::{Hands, run_lap_by_hand};
+use crate::by_hand::run_lap_by_hand;
+use crate::frame::frame_of;
+use crate::hands::Hands;
 use crate::keep::Keep;
 use crate::lap::{Learned, learn, run_lap};
+use crate::looped::Item;
 use crate::remainder;
 use crate::request::{Request, RunRequest};
 use crate::seen::Seen;
-use crate::steps::{Item, PointDone, StepRun, run_steps};
+use crate::steps::{PointDone, StepRun, run_steps};
 use crate::watched::{WatchedJob, WatchedRun, run_watched};
 
 /// What the stages before the run made.
@@ -134,6 +139,13 @@ impl Prepared {
         self.seen.as_ref().map(|seen| &seen.image)
     }
 
+    /// What to look at before any light, on a day such as 2026-11-23.
+    #[must_use]
+    pub fn preflight(&self, today: &str) -> Vec<Check> {
+        let before = Before { homed: !self.how.powered_up, today };
+        preflight(&self.placed, &self.driving, &self.schedule.plan, before)
+    }
+
     /// The simulated room that a camera looks at while the laser draws.
     fn watched(&self) -> Option<(&Seen, &Furnished)> {
         self.seen.as_ref().and_then(|seen| Some((seen, seen.room.as_ref()?)))
@@ -219,8 +231,10 @@ impl Prepared {
         let mut rig = put_up(&driving.rig, driving.pose, seed);
         task.stage("run", 1);
         let items = Item::all(&schedule.ordered.drawing, &placed.points);
+        let frame = frame_of(placed.frame.as_ref(), driving, dry)?;
         let whole = (items.as_slice(), &*driving);
-        let (ran, run_ms) = task.timed(|| run_steps(&mut rig, whole, dry, (keep, hands), task));
+        let how = (frame.as_ref(), dry);
+        let (ran, run_ms) = task.timed(|| run_steps(&mut rig, whole, how, (keep, hands), task));
         let StepRun { run, plan, drawing, failure, fault, finished, points, notes } = ran?;
         let fault = fault.map(Failure::fault);
         let unfinished = || {
@@ -268,7 +282,20 @@ impl Prepared {
         let (plan, seen) = watched.map(|watched| (watched.plan, watched.seen)).unzip();
         let finished = last.is_done();
         let points = Vec::new();
-        Ok(Ran { earlier, last, plan, identified, eye, seen, notes, failure, points, finished, simulated, run_ms })
+        Ok(Ran {
+            earlier,
+            last,
+            plan,
+            identified,
+            eye,
+            seen,
+            notes,
+            failure,
+            points,
+            finished,
+            simulated,
+            run_ms,
+        })
     }
 
     fn run_laps(
@@ -293,7 +320,11 @@ impl Prepared {
                 let mut rig = put_up(&learned.rig, self.driving.pose, seed);
                 let (lap, why) = match &mut hands {
                     Some(hands) => {
-                        let done = run_lap_by_hand(&mut rig, plan, dry, (keep, &mut **hands), task)?;
+                        // of the first lap
+                        let frame = self.placed.frame.as_ref().filter(|_| laps.is_empty());
+                        let frame = frame_of(frame, &self.driving, dry)?;
+                        let drawn = (plan, frame.as_ref());
+                        let done = run_lap_by_hand(&mut rig, drawn, dry, (keep, &mut **hands), task)?;
                         learned.notes.extend(done.notes);
                         (done.run, done.failure)
                     }

@@ -1,51 +1,20 @@
 //! Strokes, or marks of points, one at a time: each is drawn again and again until somebody asks for the next one.
 
-use tracelight_pipeline::{Driving, Schedule, schedule_rest};
+use tracelight_pipeline::Driving;
 use tracelight_rig::Fault;
-use tracelight_session::{
-    Again, Event, Job, Refused, Request, Session, Snapshot, State, StrokeTicks, seconds,
-};
-use tracelight_sim::{Run, SimulatedRig, Tick, looped_job};
-use tracelight_stroke::{Drawing, Path, Place, Stroke};
+use tracelight_session::{Event, Refused, Request, Session, Snapshot, State, seconds};
+use tracelight_sim::{Run, SimulatedRig, Tick};
+use tracelight_stroke::{Drawing, Place};
 use tracelight_task::{Failure, Task, counted};
-use tracelight_trajectory::{Plan, plan_from};
+use tracelight_trajectory::Plan;
 
-use crate::by_hand::{Ask, Course, Hands, REST_TICKS, Step, drive};
+use crate::by_hand::REST_TICKS;
+use crate::course::Course;
+use crate::frame::drive_framed;
+use crate::hands::{Ask, Hands, Step};
 use crate::keep::Keep;
+use crate::looped::{Item, Looped};
 use crate::remainder::join;
-
-/// What is drawn again and again: a stroke, or the mark of a point.
-pub(crate) struct Item {
-    strokes: Vec<Stroke>,
-    /// The point that it marks.
-    point: Option<Place>,
-}
-
-impl Item {
-    /// Every stroke of a drawing, or every mark of one that has so many strokes a mark.
-    pub(crate) fn all(drawing: &Drawing, points: &[Place]) -> Vec<Self> {
-        if points.is_empty() {
-            let each = |stroke: &Stroke| stroke.along(there_and_back(&stroke.path));
-            let item = |stroke| Self { strokes: vec![each(stroke)], point: None };
-            return drawing.strokes.iter().map(item).collect();
-        }
-        let of_one = (drawing.strokes.len() / points.len()).max(1);
-        let marks = drawing.strokes.chunks(of_one).zip(points);
-        let item = |(strokes, point): (&[Stroke], &Place)| Self {
-            // a dot goes to and fro
-            strokes: match strokes {
-                [only] => vec![only.along(there_and_back(&only.path))],
-                _ => strokes.to_vec(),
-            },
-            point: Some(point.clone()),
-        };
-        marks.map(item).collect()
-    }
-
-    const fn word(&self) -> &'static str {
-        if self.point.is_some() { "point" } else { "stroke" }
-    }
-}
 
 /// What came of it.
 pub(crate) struct StepRun {
@@ -75,66 +44,6 @@ pub struct PointDone {
     pub done_s: Option<f64>,
 }
 
-/// An item to be drawn again and again.
-struct Looped {
-    strokes: Vec<Stroke>,
-    /// From zero to it, once.
-    once: Plan,
-    /// From its end, again and again.
-    again: Plan,
-    job: Job,
-}
-
-/// There along a stroke and back, where it is open: it ends where it begins.
-fn there_and_back(path: &Path) -> Path {
-    if path.is_closed() {
-        return path.clone();
-    }
-    let mut both = path.clone();
-    path.reversed().elements().iter().for_each(|&element| both.push(element));
-    both
-}
-
-/// All strokes of an item as one: its number is that of what is drawn.
-fn as_one(strokes: &[StrokeTicks]) -> Vec<StrokeTicks> {
-    let ends = strokes.first().zip(strokes.last());
-    ends.map(|(first, last)| StrokeTicks { start: first.start, end: last.end }).into_iter().collect()
-}
-
-impl Looped {
-    fn of(
-        item: &Item,
-        (number, of): (usize, usize),
-        driving: &Driving,
-        dry: bool,
-    ) -> Result<Self, Failure> {
-        let drawing = Drawing { strokes: item.strokes.clone() };
-        let Schedule { plan: once, .. } = schedule_rest(drawing.clone(), driving)?;
-        let end = once.points.last().map(|point| point.joints.map(|joint| joint.position_rad));
-        let again = plan_from(&drawing, &driving.machine, &driving.request, end.unwrap_or_default())
-            .map_err(tracelight_pipeline::refused)?;
-        let looped = looped_job(&driving.rig, &once, &again, dry).ok_or_else(|| stands(item, number))?;
-        let job = Job {
-            first: number as u32,
-            of: of as u32,
-            strokes: as_one(&looped.strokes),
-            again: looped.again.map(|again| Again { strokes: as_one(&again.strokes), ..again }),
-            ..looped
-        };
-        Ok(Self { strokes: drawing.strokes, once, again, job })
-    }
-}
-
-fn stands(item: &Item, number: usize) -> Failure {
-    let way_out = if item.point.is_some() { "mark it by a larger cross (--mark)" } else { "draw it larger (--width), or without --step" };
-    let message = format!(
-        "{} {} is so short that its light would stand, drawn again and again: {way_out}",
-        item.word(),
-        number + 1
-    );
-    Failure::failed("standing-light", message)
-}
-
 /// A walk through the items of a drawing.
 struct Walk<'a> {
     items: &'a [Item],
@@ -156,13 +65,13 @@ struct Walk<'a> {
 pub(crate) fn run_steps(
     rig: &mut SimulatedRig,
     (items, driving): (&[Item], &Driving),
-    dry: bool,
+    (frame, dry): (Option<&Looped>, bool),
     (keep, hands): (&mut dyn Keep, &mut dyn Hands),
     task: Task<'_>,
 ) -> Result<StepRun, Failure> {
     let mut walk = Walk::begin(items, driving, dry)?;
-    walk.tell_where(hands);
-    let ended = drive(rig, walk.looped.job.clone(), &mut walk, (keep, hands), task)?;
+    let first = walk.looped.job.clone();
+    let ended = drive_framed(rig, (first, &mut walk), frame, (keep, hands), task)?;
     if ended.state == State::Done {
         walk.seen.notes.push("nothing was asked for ten minutes: it ended, dark".to_owned());
     }
@@ -265,13 +174,7 @@ impl<'a> Walk<'a> {
         now.laps > 0 || now.plan_tick > 0
     }
 
-    fn tick_off(
-        &mut self,
-        step: Step,
-        lit: bool,
-        wall: &Session<&mut SimulatedRig>,
-        hands: &mut dyn Hands,
-    ) {
+    fn tick_off(&mut self, step: Step, lit: bool, wall: &Session<&mut SimulatedRig>, hands: &mut dyn Hands) {
         let done_s = &mut self.done_s[self.at];
         if step == Step::Next && (lit || self.dry) {
             done_s.get_or_insert(seconds(wall.told().tick));
@@ -303,6 +206,10 @@ impl<'a> Walk<'a> {
 }
 
 impl Course for Walk<'_> {
+    fn begins(&mut self, hands: &mut dyn Hands) {
+        self.tell_where(hands);
+    }
+
     /// Keeps all ticks in the log, and those of each stroke's first time for the figures.
     fn keep(
         &mut self,

@@ -33,6 +33,8 @@ pub struct Driving {
     pub asked: Asked,
     /// In which order strokes are drawn.
     pub order: OrderRequest,
+    /// The day of the file that says where it stands, such as 2026-11-23; `None` without one.
+    pub head_date: Option<String>,
 }
 
 /// What somebody asked for, and did not leave to the rig.
@@ -50,7 +52,15 @@ impl Driving {
     /// Of a rig that stands there; strokes come in whatever order saves time.
     #[must_use]
     pub fn new(rig: RigConfig, pose: HeadPose, request: PlanRequest, asked: Asked) -> Self {
-        Self { machine: rig.machine(pose), rig, pose, request, asked, order: OrderRequest::default() }
+        Self {
+            machine: rig.machine(pose),
+            rig,
+            pose,
+            request,
+            asked,
+            order: OrderRequest::default(),
+            head_date: None,
+        }
     }
 
     /// The head stands elsewhere than was told.

@@ -11,6 +11,7 @@ use crate::align::{AlignFigures, AskedMark, aligned};
 use crate::bent::bent;
 use crate::choice::Choice;
 use crate::edges::Origin;
+use crate::frame::Frame;
 use crate::no_go::{LeftOut, cut, rectangle};
 use crate::points::{Marked, Points, marked};
 use crate::sketch::{Sketch, sketch_at};
@@ -47,6 +48,8 @@ pub struct Placing {
     pub margin_m: f64,
     /// Its places are marked, and its strokes are not drawn.
     pub points: Option<Points>,
+    /// What is drawn round it before it is drawn.
+    pub frame: Option<Frame>,
 }
 
 /// What a width, a height and corners are those of.
@@ -119,6 +122,8 @@ pub struct Placed {
     pub left_out: Option<LeftOut>,
     /// The places that the drawing marks in its order, where it does that.
     pub points: Vec<Place>,
+    /// What shows where it will be, before it is drawn.
+    pub frame: Option<Drawing>,
     /// What the user should know of where it lies: one sentence each.
     pub notes: Vec<String>,
     /// How its marks bend it, where `target_from_sheet` is not right everywhere.
@@ -140,6 +145,7 @@ impl Placed {
             align: None,
             left_out: None,
             points: Vec::new(),
+            frame: None,
             notes: Vec::new(),
             bent: None,
             corners_m: corners.map(|(u, v)| target_from_sheet * Point::new(u, v)),
@@ -245,6 +251,10 @@ pub fn place(sketch: &Sketch, placing: &Placing) -> Result<Placed, Failure> {
         placed.placed.drawing = drawing;
         placed.placed.left_out = Some(left_out);
     }
+    placed.placed.frame = placing.frame.map(|frame| {
+        let frame = frame.of(&placed.placed.drawing);
+        if areas.is_empty() { frame } else { cut(&frame, &areas, placing.margin_m).0 }
+    });
     Ok(placed.placed)
 }
 

@@ -86,10 +86,44 @@ impl FromStr for PointMark {
         let (least, most) = CROSS_M;
         match parse(text, LENGTHS).map_err(|e| format!("{e}; or dot")) {
             Ok(length) if (least..=most).contains(&length) => Ok(Self::Cross(length)),
-            Ok(_) => Err(format!("a cross of {text} is not between {:.0} mm and {most:.0} m long", 1e3 * least)),
+            Ok(_) => {
+                Err(format!("a cross of {text} is not between {:.0} mm and {most:.0} m long", 1e3 * least))
+            }
             Err(why) => Err(why),
         }
     }
+}
+
+/// Where the head goes, for scripts: a place on the target by its number from 0 of so many.
+#[must_use]
+pub fn point_json(place: &Place, (number, of): (u32, u32)) -> serde_json::Value {
+    let mm = |m: f64| (1e6 * m).round() / 1e3;
+    serde_json::json!({
+        "event": "point",
+        "point": number + 1,
+        "points": of,
+        "kind": place.kind.name(),
+        "block": place.block.as_deref(),
+        "layer": place.layer.as_deref(),
+        "x_mm": mm(place.at.x),
+        "y_mm": mm(place.at.y),
+    })
+}
+
+/// Where the head goes, in words.
+#[must_use]
+pub fn point_words(place: &Place, (number, of): (u32, u32)) -> String {
+    let name =
+        |before: &str, name: Option<&str>| name.map_or_else(String::new, |name| format!("{before}{name}"));
+    format!(
+        "point {} of {of}: {}{}{}, at {:.3}, {:.3} m",
+        number + 1,
+        place.kind.name(),
+        name(" ", place.block.as_deref()),
+        name(" of layer ", place.layer.as_deref()),
+        place.at.x,
+        place.at.y
+    )
 }
 
 /// The lines that mark places on the target.
@@ -121,7 +155,9 @@ pub(crate) fn marked(
         let kinds: Vec<_> = asked.kinds.iter().map(|kind| kind.name()).collect();
         let message = match all.is_empty() {
             true => "--points: the drawing has no point, block, centre, corner or end".to_owned(),
-            false => format!("--points={}: there is none; the drawing has {}", kinds.join(","), kinds_of(&all)),
+            false => {
+                format!("--points={}: there is none; the drawing has {}", kinds.join(","), kinds_of(&all))
+            }
         };
         return Err(Failure::failed("no-points", message));
     }
@@ -133,12 +169,18 @@ pub(crate) fn marked(
         );
         return Err(Failure::failed("too-many-points", message));
     }
-    let mut notes = vec![format!("marks {}: {}", counted(points.len(), "point"), kinds_of(&points.iter().collect::<Vec<_>>()))];
+    let mut notes = vec![format!(
+        "marks {}: {}",
+        counted(points.len(), "point"),
+        kinds_of(&points.iter().collect::<Vec<_>>())
+    )];
     let before = points.len();
     let lit: Vec<(Place, Vec<Stroke>)> = in_order(points)
         .into_iter()
         .map(|place| (asked.mark.strokes(&place), place))
-        .filter(|(strokes, _)| areas.is_empty() || cut(&Drawing { strokes: strokes.clone() }, areas, margin_m).1.strokes == 0)
+        .filter(|(strokes, _)| {
+            areas.is_empty() || cut(&Drawing { strokes: strokes.clone() }, areas, margin_m).1.strokes == 0
+        })
         .map(|(strokes, place)| (place, strokes))
         .collect();
     if lit.is_empty() {
@@ -217,7 +259,8 @@ mod tests {
 
     #[test]
     fn points_are_read_layer_by_layer_and_row_by_row() {
-        let points = [("b", 0.3, 0.0), ("a", 0.0, 1.0), ("b", 0.0, 0.002), ("b", 0.1, 0.5), ("a", 0.5, 1.001)];
+        let points =
+            [("b", 0.3, 0.0), ("a", 0.0, 1.0), ("b", 0.0, 0.002), ("b", 0.1, 0.5), ("a", 0.5, 1.001)];
         let sorted = in_order(points.map(|(layer, x, y)| place(layer, x, y)).to_vec());
         let found: Vec<_> = sorted.iter().map(|p| (p.layer.as_deref().unwrap(), p.at.x)).collect();
         assert_eq!(found, [("b", 0.1), ("b", 0.0), ("b", 0.3), ("a", 0.0), ("a", 0.5)]);
@@ -238,7 +281,10 @@ mod tests {
         let two = TypedKinds(vec![PlaceKind::Block, PlaceKind::Centre]);
         assert_eq!("blocks, Centre".parse(), Ok(two));
         let refused = "block,door".parse::<TypedKinds>().unwrap_err();
-        assert!(refused.contains("\"door\"") && refused.contains("point, block, centre, corner, end"), "{refused}");
+        assert!(
+            refused.contains("\"door\"") && refused.contains("point, block, centre, corner, end"),
+            "{refused}"
+        );
     }
 
     #[test]

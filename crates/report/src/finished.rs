@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use serde::Serialize;
 use tracelight_eye::figures::EyeFigures;
 use tracelight_eye::seen::SeenLight;
 use tracelight_picture::Raster;
@@ -12,7 +13,14 @@ use tracelight_stroke::{Affine, Drawing, Point};
 use tracelight_trajectory::Plan;
 use tracelight_vision::Quality;
 
-use crate::summary::PointFigures;
+/// Points that a job marked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct PointFigures {
+    /// How many there were to be marked.
+    pub count: usize,
+    /// How many were ticked off.
+    pub done: usize,
+}
 
 /// A finished (or stopped) job, as the outputs see it.
 pub struct Finished<'a> {

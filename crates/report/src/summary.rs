@@ -9,7 +9,7 @@ use tracelight_stroke::Drawing;
 use tracelight_trajectory::Plan;
 
 use crate::events::{Event, events};
-use crate::finished::Finished;
+use crate::finished::{Finished, PointFigures};
 use crate::sample::lit_s;
 
 /// The figures of a job: `summary.json` and the `--json` of `trace`. Lengths in m unless the name says mm.
@@ -72,15 +72,6 @@ pub struct TargetFigures {
     pub width_m: f64,
     pub height_m: f64,
     pub distance_m: f64,
-}
-
-/// See [`Summary::points`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct PointFigures {
-    /// How many there were to be marked.
-    pub count: usize,
-    /// How many were ticked off.
-    pub done: usize,
 }
 
 /// See [`Summary::strokes`].

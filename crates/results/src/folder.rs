@@ -92,6 +92,10 @@ impl Keep for Records<'_> {
         self.journal.tick(plan, tick)?;
         self.log.tick(plan, tick)
     }
+
+    fn aside(&mut self, plan: &Plan, tick: &Tick) -> Result<(), Failure> {
+        self.log.tick(plan, tick)
+    }
 }
 
 /// The run log `run.mcap`, written while the run goes on. A killed program leaves all of it but its index.

@@ -96,6 +96,8 @@ pub struct KnownHead {
     path: String,
     page: String,
     pages: Vec<PageTable>,
+    /// The day on which it was found, such as 2026-11-23.
+    pub date: String,
     /// How it is built.
     pub geometry: HeadGeometry,
     /// target_from_head.
@@ -261,6 +263,7 @@ impl HeadFile {
                 (Timing { late_s, readout_s, unsure_s: Timing::USUAL.unsure_s }, exposure_s)
             }),
             path: path.to_owned(),
+            date: self.date.clone(),
             page: self.page.clone(),
             pages: self.pages.clone(),
         }

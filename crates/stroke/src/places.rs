@@ -62,7 +62,7 @@ impl Place {
         Self { at, kind, block: None, layer: layer.clone(), colour: *colour, entity: entity.clone() }
     }
 
-    /// The same place elsewhere.
+    /// Returns the place elsewhere.
     pub fn moved(&self, at: Point) -> Self {
         Self { at, ..self.clone() }
     }
@@ -119,8 +119,7 @@ fn is_circle(path: &Path) -> bool {
         _ => None,
     });
     let Some(Some((centre, radius))) = arcs.next() else { return false };
-    path.is_closed()
-        && arcs.all(|arc| arc.is_some_and(|(other, _)| other.distance(centre) < 1e-3 * radius))
+    path.is_closed() && arcs.all(|arc| arc.is_some_and(|(other, _)| other.distance(centre) < 1e-3 * radius))
 }
 
 fn size(drawing: &Drawing) -> f64 {
@@ -228,8 +227,7 @@ mod tests {
         use PlaceKind::{Block, Corner, End};
         let all = [(End, 0.0), (Corner, 1e-4), (Block, 5.0), (End, 5.0005), (End, 5.002)];
         let all = all.map(|(kind, x)| known(kind, (x, 0.0))).to_vec();
-        let left: Vec<_> =
-            places_apart(all, 1e-3).iter().map(|place| (place.kind, place.at.x)).collect();
+        let left: Vec<_> = places_apart(all, 1e-3).iter().map(|place| (place.kind, place.at.x)).collect();
         assert_eq!(left, [(Corner, 1e-4), (Block, 5.0), (End, 5.002)]);
     }
 }

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 use tracelight_job::{Ask, Hands, Step};
+use tracelight_pipeline::{Check, point_json, point_words};
 use tracelight_rig::TICK_F64_S;
 use tracelight_session::{
     Event, Refused, Request, Snapshot, State, When, event_json, faster, slower, snapshot_json,
@@ -18,6 +19,9 @@ const HELP: &str = "keys: Space pauses after this stroke, and goes on; P pauses 
 /// What they do where strokes are drawn one at a time.
 const STEP_HELP: &str = "keys: Space, Enter, → or a pedal: this one is done, the next one; ← the one before; S skips this one; P pauses, Space goes on; Esc stops; A arms, Enter goes on \
                          after that; + and − change the speed; C clears a fault; Q ends; ? shows this";
+/// What they do while the frame is drawn.
+const FRAME_HELP: &str = "keys: the frame is drawn until Space, Enter or → begins the drawing; P pauses, Space goes on; Esc stops; A arms, Enter goes on after that; \
+                          + and − change the speed; C clears a fault; Q ends; ? shows this";
 /// How often progress is told, ticks of the rig.
 const PROGRESS_TICKS: u32 = 250;
 
@@ -32,21 +36,39 @@ pub(crate) struct AtWall<'a> {
     steps: bool,
     /// They mark points.
     points: bool,
+    /// The frame is drawn.
+    framing: bool,
 }
 
 impl<'a> AtWall<'a> {
     /// Whoever stands there, if the job runs by hand at all.
     pub(crate) fn of(args: &ByHandArgs, steps: bool, task: Task<'a>, stop: &'a Stop) -> Option<Self> {
-        let real_time = args.real_time.or(steps.then_some(1.0));
+        let waits = steps || args.frame.is_some();
+        let real_time = args.real_time.or(waits.then_some(1.0));
         if real_time.is_none() && !args.events {
             return None;
         }
         let keys = real_time.and_then(|_| Keys::listen());
-        if keys.is_some() {
-            task.say(if steps { STEP_HELP } else { HELP });
-        }
         let clock = real_time.map(|factor| Pace::new(TICK_F64_S / factor));
-        Some(Self { task, stop, clock, keys, events: args.events, steps, points: false })
+        let framing = args.frame.is_some();
+        Some(Self { task, stop, clock, keys, events: args.events, steps, points: false, framing })
+    }
+
+    fn help(&self) {
+        self.task.say(match (self.framing, self.steps) {
+            (true, _) => FRAME_HELP,
+            (false, true) => STEP_HELP,
+            (false, false) => HELP,
+        });
+    }
+
+    /// Tells what was looked at before any light.
+    pub(crate) fn preflight(&self, checks: &[Check]) {
+        self.print(&json!({"event": "preflight", "checks": checks}));
+        if self.keys.is_some() {
+            checks.iter().for_each(|check| self.task.say(&check.line()));
+            self.help();
+        }
     }
 
     /// What a key asks for here.
@@ -69,7 +91,7 @@ impl<'a> AtWall<'a> {
             Key::Char('-') => Some(Request::Speed(slower(now.speed))),
             Key::Char('=') => Some(Request::Speed(1.0)),
             Key::Char('?') => {
-                self.task.say(if self.steps { STEP_HELP } else { HELP });
+                self.help();
                 None
             }
             Key::Forwards | Key::Backwards | Key::Char(_) => None,
@@ -80,7 +102,8 @@ impl<'a> AtWall<'a> {
     fn step(&self, key: Key, now: &Snapshot) -> Option<Step> {
         let is_on = matches!(now.state, State::Stepping | State::Returning | State::Pausing | State::Parking);
         match key {
-            _ if !self.steps => None,
+            _ if !self.steps && !self.framing => None,
+            Key::Backwards | Key::Char('s') if self.framing => None,
             Key::Space | Key::Enter if is_on => Some(Step::Next),
             Key::Forwards => Some(Step::Next),
             Key::Backwards => Some(Step::Previous),
@@ -121,23 +144,18 @@ impl Hands for AtWall<'_> {
         self.print(&json!({"event": "left", word: number + 1, "done": done}));
     }
 
+    fn frames(&mut self, on: bool) {
+        self.framing = on;
+        self.print(&json!({"event": "frame", "on": on}));
+        if !on && self.keys.is_some() {
+            self.help();
+        }
+    }
+
     fn goes_to(&mut self, point: &Place, number: u32, of: u32) {
         self.points = true;
-        let (kind, block, layer) = (point.kind.name(), point.block.as_deref(), point.layer.as_deref());
-        let mm = |m: f64| (1e6 * m).round() / 1e3;
-        let at = [("x_mm", mm(point.at.x)), ("y_mm", mm(point.at.y))];
-        let mut event =
-            json!({"event": "point", "point": number + 1, "points": of, "kind": kind, "block": block, "layer": layer});
-        at.iter().for_each(|(key, mm)| event[key] = json!(mm));
-        self.print(&event);
-        let name = |before: &str, name: Option<&str>| name.map_or_else(String::new, |name| format!("{before}{name}"));
-        let what = format!("{kind}{}{}", name(" ", block), name(" of layer ", layer));
-        self.task.say(&format!(
-            "point {} of {of}: {what}, at {:.3}, {:.3} m",
-            number + 1,
-            point.at.x,
-            point.at.y
-        ));
+        self.print(&point_json(point, (number, of)));
+        self.task.say(&point_words(point, (number, of)));
     }
 
     fn event(&mut self, event: &Event) {

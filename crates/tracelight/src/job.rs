@@ -11,6 +11,7 @@ use tracelight_task::{Failure, Stop, Task};
 
 use crate::at_wall::AtWall;
 use crate::bar::Bar;
+use crate::cli::by_hand::FrameName;
 use crate::cli::driving::stand_by;
 use crate::cli::eyes::SimulatedEyeName;
 use crate::cli::request::TraceArgs;
@@ -66,7 +67,9 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<O
     let meta = LogMeta { picture_path: &name, settings: &settings, seed: args.seed };
     let strokes = prepared.schedule.ordered.drawing.strokes.len();
     let mut kept = Records::begin(&folder, &asked, strokes, &meta)?;
-    let (prepared, mut ran) = match AtWall::of(&args.by_hand, args.is_by_steps(), task, stop) {
+    let hands = AtWall::of(&args.by_hand, args.is_by_steps(), task, stop);
+    hands.iter().for_each(|hands| hands.preflight(&prepared.preflight(&named::today())));
+    let (prepared, mut ran) = match hands {
         Some(mut hands) if args.is_by_steps() => {
             prepared.run_steps(&mut kept, &mut hands, args.pace.map(|pace| pace.0), task)?
         }
@@ -126,6 +129,7 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let area_m = head.as_ref().and_then(|known| known.area_m);
     let mut placing = args.wall.placing(args.placement.placing(), Some(&driving), area_m)?;
     placing.points = args.points();
+    placing.frame = args.by_hand.frame.map(FrameName::frame);
     let request = Request {
         name: args.name(),
         tracing: args.tracing.tracing(),

@@ -24,7 +24,7 @@ fn example() -> Traced {
         metres_per_unit: None,
         drawing: Drawing { strokes },
         coordinates: Coordinates::Page { unit_m: None },
-            places: Vec::new(),
+        places: Vec::new(),
     };
     Traced { sheet, mode: "auto".into() }
 }
@@ -108,7 +108,7 @@ fn every_bit_of_a_number_comes_back() {
         metres_per_unit: None,
         drawing,
         coordinates: Coordinates::Page { unit_m: None },
-            places: Vec::new(),
+        places: Vec::new(),
     };
     let traced = Traced { sheet, mode: "auto".into() };
     assert_eq!(read(write(&traced, 0.1).as_bytes()).unwrap(), traced);

@@ -1,4 +1,7 @@
-use clap::Args;
+//! Whoever stands at the wall while the job runs.
+
+use clap::{Args, ValueEnum};
+use tracelight_pipeline::Frame;
 
 /// Whoever stands at the wall while the job runs.
 #[derive(Args, Clone, Debug, Default)]
@@ -8,9 +11,41 @@ pub(crate) struct ByHandArgs {
     #[arg(long, value_name = "FACTOR", num_args = 0..=1, default_missing_value = "1", value_parser = factor,
           allow_hyphen_values = true)]
     pub(crate) real_time: Option<f64>,
+    /// First show where the drawing will be: by the box round it, its hull, or the box's corners, again and again until Space or Enter; in real time
+    #[arg(long, value_enum, value_name = "box|hull|corners")]
+    pub(crate) frame: Option<FrameName>,
     /// Print one JSON object per line while the job runs: states, strokes, faults, progress
     #[arg(long, conflicts_with = "json")]
     pub(crate) events: bool,
+}
+
+impl ByHandArgs {
+    /// Whether any of them is given.
+    pub(crate) const fn is_given(&self) -> bool {
+        self.real_time.is_some() || self.events || self.frame.is_some()
+    }
+}
+
+/// Frames of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FrameName {
+    /// The upright rectangle that just holds it
+    Box,
+    /// The shortest line round it
+    Hull,
+    /// The corners of that rectangle
+    Corners,
+}
+
+impl FrameName {
+    /// What it means.
+    pub(crate) const fn frame(self) -> Frame {
+        match self {
+            Self::Box => Frame::Box,
+            Self::Hull => Frame::Hull,
+            Self::Corners => Frame::Corners,
+        }
+    }
 }
 
 fn factor(text: &str) -> Result<f64, String> {

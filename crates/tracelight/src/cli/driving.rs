@@ -97,6 +97,7 @@ pub(crate) fn stand_by(driving: &mut Driving, known: &KnownHead) {
     driving.rig.truth.model.geometry = known.geometry;
     driving.believe(known.geometry, known.pose);
     driving.asked.distance = DistanceFrom::File;
+    driving.head_date = Some(known.date.clone());
 }
 
 pub(crate) fn positive_speed(text: &str) -> Result<Speed, String> {

@@ -1,15 +1,12 @@
-use std::fmt::Write;
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use tracelight_files as files;
-use tracelight_pipeline::{
-    Driving, OrderBy, OrderRequest, Placed, Schedule, Standing, place, schedule, sketch,
-};
+use tracelight_pipeline::{Driving, OrderBy, OrderRequest, Standing, place, schedule, sketch};
 use tracelight_report::{
-    BoardAxis, ColourBy, HeadGcode, PlanFigures, StrokeFigures, drawing, head_gcode, preview, sequence,
+    BoardAxis, ColourBy, HeadGcode, drawing, head_gcode, plan_csv, plan_json, plan_words, preview,
 };
-use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
+use tracelight_rig::{Joint, PanTilt};
 use tracelight_stroke::Effort;
 use tracelight_task::{Failure, Stop, Task, counted};
 use tracelight_trajectory::{LitSpeed, Plan};
@@ -221,8 +218,8 @@ pub(crate) fn run(args: &PlanArgs, stop: &Stop) -> Result<Answer, Failure> {
     let timing = serde_json::json!({ "vision": vision_ms, "plan": plan_ms });
     let shortest = args.order_by == OrderByName::Distance || driving.request.lit_speed == LitSpeed::Stops;
     let standing = Standing::of(&placed.drawing, &driving);
-    let text = format!("{}\nhead: {}", text(&schedule, shortest), standing.words());
-    Ok(Answer::new(text, json(&placed, &standing, &schedule, &timing)))
+    let text = format!("{}\nhead: {}", plan_words(&schedule, shortest), standing.words());
+    Ok(Answer::new(text, plan_json(&placed, &standing, &schedule, &timing)))
 }
 
 /// Whether what the flags ask for goes together, before any work.
@@ -259,7 +256,7 @@ fn file(
     plan: &Plan,
     driving: &Driving,
 ) -> Result<(String, Option<String>), Failure> {
-    let Some(axes) = args.axes else { return Ok((csv(plan), None)) };
+    let Some(axes) = args.axes else { return Ok((plan_csv(plan), None)) };
     let unit = args.reading.axis_unit()?.unwrap_or_default();
     let how = HeadGcode { axes, unit, power: args.power.s_word(), tolerance_m: BOARD_TOLERANCE_M };
     let program = head_gcode(plan, &|angle| driving.machine.geometry.spot(&driving.pose, angle), &how);
@@ -273,74 +270,4 @@ fn file(
         "{path}: {moves}, at most {most} in a second{doubt}; open loop, as the board does not measure where the head is"
     );
     Ok((program.text, Some(note)))
-}
-
-fn text(schedule: &Schedule, shortest: bool) -> String {
-    let (ordered, plan) = (&schedule.ordered, &schedule.plan);
-    // where ends are passed at speed the shortest way is not what is looked for
-    let gap = match ordered.gap_percent() {
-        Some(gap) if shortest => format!(", at most {gap:.1} % over the shortest"),
-        _ => String::new(),
-    };
-    format!(
-        "{}, {:.3} m lit, {:.3} m travel{gap}\n{:.3} s: {:.3} s lit, up to {:.3} m/s, torque up to {:.0} %",
-        counted(ordered.drawing.strokes.len(), "stroke"),
-        ordered.drawing.length(1e-6),
-        ordered.travel,
-        plan.duration_s(),
-        plan.lit_s(),
-        plan.top_speed_m_s(),
-        100.0 * plan.torque_peak_fraction(),
-    )
-}
-
-fn json(placed: &Placed, standing: &Standing, schedule: &Schedule, timing: &serde_json::Value) -> String {
-    let (ordered, plan) = (&schedule.ordered, &schedule.plan);
-    let limits: serde_json::Map<_, _> =
-        plan.limit_shares().into_iter().map(|(limit, share)| (key(&limit), share.into())).collect();
-    serde_json::json!({
-        "target": { "width_m": placed.size_m.0, "height_m": placed.size_m.1 },
-        "head": standing,
-        "align": placed.align,
-        "no_go": placed.left_out,
-        "strokes": StrokeFigures::of(&ordered.drawing, plan),
-        "plan": PlanFigures::of(plan),
-        "order": {
-            "travel_m": ordered.travel,
-            "travel_s": plan.travel_s(),
-            "lower_bound_m": ordered.lower_bound,
-            "gap_percent": ordered.gap_percent(),
-        },
-        "limits": limits,
-        "sequence": sequence(&ordered.drawing, plan),
-        "timing_ms": timing,
-    })
-    .to_string()
-}
-
-/// A limit's name as a key.
-fn key(limit: &impl ToString) -> String {
-    limit.to_string().replace(' ', "_")
-}
-
-fn csv(plan: &Plan) -> String {
-    let mut text = String::from("t_s,lit,pan_rad,tilt_rad,pan_rad_s,tilt_rad_s,x_m,y_m,limit\n");
-    for (tick, p) in plan.points.iter().enumerate() {
-        let (pan, tilt) = (&p.joints.pan, &p.joints.tilt);
-        // writing to a String cannot fail
-        let _ = writeln!(
-            text,
-            "{:.3},{},{:.9},{:.9},{:.9},{:.9},{:.9},{:.9},{}",
-            tick as f64 * TICK_F64_S,
-            u8::from(p.lit),
-            pan.position_rad,
-            tilt.position_rad,
-            pan.velocity_rad_s,
-            tilt.velocity_rad_s,
-            p.spot.x,
-            p.spot.y,
-            p.limit.map_or_else(String::new, |limit| limit.to_string())
-        );
-    }
-    text
 }

@@ -86,7 +86,13 @@ pub(crate) struct TraceArgs {
     #[arg(help_heading = "At the wall", long, value_name = "KINDS", num_args = 0..=1, require_equals = true, default_missing_value = "all", conflicts_with_all = ["laps", "camera", "step"])]
     pub(crate) points: Option<TypedKinds>,
     /// What marks a point: a cross of this length, or dot, which goes on and off [default: 20mm]
-    #[arg(help_heading = "At the wall", long, value_name = "LENGTH|dot", allow_hyphen_values = true, requires = "points")]
+    #[arg(
+        help_heading = "At the wall",
+        long,
+        value_name = "LENGTH|dot",
+        allow_hyphen_values = true,
+        requires = "points"
+    )]
     pub(crate) mark: Option<PointMark>,
     /// Speed of the spot with --step and --points, such as 5cm/s: slow enough for a pencil to follow [default: --speed]
     #[arg(help_heading = "At the wall", long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed)]
@@ -128,8 +134,8 @@ impl TraceArgs {
             let message = "--head says where the head stands, and --distance too: leave one of them out";
             return Err(Failure::usage("usage", message));
         }
-        if self.eye.camera.is_some() && (self.by_hand.real_time.is_some() || self.by_hand.events) {
-            let message = "--real-time and --events are not there yet for what a camera follows: leave them or --camera out";
+        if self.eye.camera.is_some() && self.by_hand.is_given() {
+            let message = "--real-time, --frame and --events are not there yet for what a camera follows: leave them or --camera out";
             return Err(Failure::usage("usage", message));
         }
         let follows = self.follow.open_loop || !self.follow.sim_trouble.is_empty() || self.home;
@@ -178,13 +184,20 @@ impl TraceArgs {
 
     /// Refuses to go from stroke to stroke where nobody can ask for the next.
     pub(crate) fn check_keys(&self) -> Result<(), Failure> {
-        let flag = if self.step { "--step" } else { "--points" };
-        let message = match self.is_by_steps() {
-            false if self.pace.is_some() => {
+        let flags = [
+            ("--step", self.step),
+            ("--points", self.points.is_some()),
+            ("--frame", self.by_hand.frame.is_some()),
+        ];
+        let waits = flags.iter().find(|(_, is_set)| *is_set);
+        let message = match waits {
+            _ if self.pace.is_some() && !self.is_by_steps() => {
                 "--pace is the speed of --step and --points: give one of them, or --speed".to_owned()
             }
-            true if !std::io::stdin().is_terminal() => {
-                format!("{flag} waits for keys, and standard input is no terminal: start it in one, without < or |")
+            Some((flag, _)) if !std::io::stdin().is_terminal() => {
+                format!(
+                    "{flag} waits for keys, and standard input is no terminal: start it in one, without < or |"
+                )
             }
             _ => return Ok(()),
         };

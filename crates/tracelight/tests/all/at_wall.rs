@@ -166,6 +166,102 @@ fn strokes_are_drawn_one_at_a_time_until_a_key_asks_for_the_next() {
     assert!(summary["summary"]["tracking"]["off_stroke_max_mm"].as_f64().unwrap() < 0.3, "{summary}");
 }
 
+/// A wall of 1.5 × 1 m with twelve sockets, each a block, and a nail.
+fn sockets() -> String {
+    let pairs = |text: &str| text.replace(", ", "\n").replace(' ', "\n") + "\n";
+    let mut dxf = pairs(
+        "0 SECTION, 2 HEADER, 9 $INSUNITS, 70 4, 0 ENDSEC, 0 SECTION, 2 BLOCKS, 0 BLOCK, 2 Socket, 10 5, 20 0",
+    ) + &pairs("0 CIRCLE, 8 0, 10 5, 20 0, 40 30, 0 ENDBLK, 0 ENDSEC, 0 SECTION, 2 ENTITIES");
+    for (x, y) in [100, 500, 900].into_iter().flat_map(|y| [150, 550, 950, 1350].map(|x| (x, y))) {
+        dxf += &pairs(&format!("0 INSERT, 8 SOCKETS, 2 Socket, 10 {x}, 20 {y}"));
+    }
+    dxf += &pairs(
+        "0 LWPOLYLINE, 8 WALL, 90 4, 70 1, 10 0, 20 0, 10 1500, 20 0, 10 1500, 20 1000, 10 0, 20 1000",
+    );
+    dxf + &pairs("0 POINT, 8 NAILS, 10 750, 20 750, 0 ENDSEC, 0 EOF")
+}
+
+#[test]
+fn points_are_ticked_off_one_after_the_other() {
+    let dir = folder("points");
+    let drawing = dir.with_extension("dxf");
+    std::fs::write(&drawing, sockets()).unwrap();
+    let mut command = program();
+    command
+        .arg("trace")
+        .arg(&drawing)
+        .args(["--points=block,point", "--distance", "3m", "--events", "--real-time", "8", "--out"])
+        .arg(&dir);
+    let mut wall = Terminal::of(command);
+    for number in 1..=13 {
+        let point = wall.until(|event| event["event"] == "point");
+        assert!(point["point"] == number && point["points"] == 13, "{point}");
+        wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
+        wall.press(if number == 5 { "s" } else { " " });
+        let left = wall.until(|event| event["event"] == "left");
+        assert!(left["point"] == number && left["done"] == (number != 5), "{left}");
+    }
+    let summary = wall.until(|event| event["event"] == "summary");
+    assert_eq!(wall.child.wait().unwrap().code(), Some(0), "{summary}");
+    assert_eq!(summary["summary"]["points"], serde_json::json!({ "count": 13, "done": 12 }));
+    assert!(summary["summary"]["tracking"]["off_stroke_max_mm"].as_f64().unwrap() < 0.3, "{summary}");
+    let mut table = csv::Reader::from_path(dir.join("points.csv")).unwrap();
+    let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().unwrap();
+    let places: Vec<[String; 5]> =
+        rows.iter().map(|row| [1, 2, 3, 5, 6].map(|k| row[k].to_owned())).collect();
+    // from the top left, about the middle of the wall, and then what lies on another layer
+    let mut wanted: Vec<[String; 5]> = Vec::new();
+    for (x, y) in [400, 0, -400].into_iter().flat_map(|y| [-600, -200, 200, 600].map(|x| (x, y))) {
+        wanted.push(
+            ["block", "Socket", "SOCKETS", &format!("{x}.000"), &format!("{y}.000")].map(str::to_owned),
+        );
+    }
+    wanted.push(["point", "", "NAILS", "0.000", "250.000"].map(str::to_owned));
+    assert_eq!(places, wanted);
+    let done: Vec<Option<f64>> = rows.iter().map(|row| row[7].parse().ok()).collect();
+    assert!(done[4].is_none() && done.iter().flatten().is_sorted() && done.iter().flatten().count() == 12);
+}
+
+#[test]
+fn a_frame_is_drawn_until_a_key_begins_the_drawing() {
+    let framed = |dir: &std::path::Path, frame: &str| {
+        let mut command = traced(dir);
+        command.args(["--frame", frame]);
+        let mut wall = Terminal::of(command);
+        let checks = wall.until(|event| event["event"] == "preflight")["checks"].clone();
+        assert!(checks.as_array().unwrap().iter().any(|check| check["name"] == "homed"), "{checks}");
+        wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
+        wall
+    };
+    let dir = folder("frame");
+    let mut wall = framed(&dir, "hull");
+    wall.press(" ");
+    wall.until(|event| event["event"] == "frame" && event["on"] == false);
+    wall.until_state("tracing");
+    let summary = wall.until(|event| event["event"] == "summary");
+    assert_eq!(wall.child.wait().unwrap().code(), Some(0), "{summary}");
+    // what is told is of the drawing alone
+    let run_s = summary["summary"]["run"]["duration_s"].as_f64().unwrap();
+    let plan_s = summary["summary"]["plan"]["duration_s"].as_f64().unwrap();
+    assert!((run_s - plan_s).abs() < 0.05 && summary["summary"]["strokes"]["count"] == 28, "{summary}");
+    // killed while the frame is drawn, nothing of the drawing is done
+    let dir = folder("frame-killed");
+    let mut wall = framed(&dir, "corners");
+    wall.child.kill().unwrap();
+    wall.child.wait().unwrap();
+    let rest = dir.with_extension("rest");
+    let output = program().arg("resume").arg(&dir).arg("--out").arg(&rest).arg("--json").output().unwrap();
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["strokes"]["count"], 28, "{summary}");
+    // stopped there, it may be ended
+    let mut wall = framed(&folder("frame-ended"), "box");
+    wall.press("\x1b");
+    wall.until_state("stopped");
+    wall.press("q");
+    wall.until(|event| event["event"] == "summary");
+    assert_eq!(wall.child.wait().unwrap().code(), Some(130));
+}
+
 #[test]
 fn who_cannot_press_a_key_is_told_that_step_needs_one() {
     let output = run(&["trace", "examples/star.png", "--step"]);

@@ -1,5 +1,9 @@
+use std::sync::Arc;
+
 use super::*;
+use crate::Coordinates;
 use crate::options::{Hatch, ReadOptions};
+use tracelight_stroke::Place;
 
 /// Lengths of strokes, mm.
 fn lengths_of(sheet: &Sheet) -> Vec<f64> {
@@ -252,4 +256,47 @@ fn strokes_know_the_entities_that_they_come_from() {
     let text = section("BLOCKS", block) + &file("0 INSERT, 5 3C, 2 b, 10 1, 20 1");
     let found = reading(&text).sheet.drawing;
     assert_eq!(found.strokes[0].entity.as_ref().unwrap().to_string(), "INSERT 3C");
+}
+
+#[test]
+fn points_and_places_of_blocks_are_told() {
+    // a nested block, an array, one whose layer is off, and the picture of a dimension, which is no place
+    let tables = section(
+        "TABLES",
+        "0 TABLE, 2 LAYER, 0 LAYER, 2 off, 70 0, 62 -7, 0 LAYER, 2 cold, 70 1, 62 7, 0 ENDTAB",
+    );
+    let blocks = section(
+        "BLOCKS",
+        "0 BLOCK, 2 Lamp, 10 1, 20 1, 0 LINE, 8 0, 10 1, 20 1, 11 2, 21 1, 0 POINT, 8 0, 10 3, 20 1, 0 ENDBLK,
+         0 BLOCK, 2 room, 10 0, 20 0, 0 INSERT, 8 0, 2 Lamp, 10 10, 20 0, 0 ENDBLK,
+         0 BLOCK, 2 *D1, 10 0, 20 0, 0 LINE, 8 0, 10 0, 20 0, 11 9, 21 0, 0 ENDBLK",
+    );
+    let entities = section(
+        "ENTITIES",
+        "0 INSERT, 8 a, 5 2A, 2 room, 10 100, 20 100, 50 90, 0 INSERT, 8 b, 2 lamp, 10 0, 20 0, 70 2, 44 50,
+         0 INSERT, 8 off, 2 lamp, 10 7, 20 7, 0 INSERT, 8 cold, 2 lamp, 10 8, 20 8,
+         0 POINT, 8 b, 10 20, 20 30, 0 DIMENSION, 8 b, 2 *D1",
+    );
+    let sheet =
+        reading(&(section("HEADER", "9 $INSUNITS, 70 4") + &tables + &blocks + &entities + "0\nEOF\n")).sheet;
+    let Coordinates::File(sheet_from_file) = sheet.coordinates else { panic!("{:?}", sheet.coordinates) };
+    let told = |place: &Place| {
+        let at = (sheet_from_file.inverse() * place.at).to_vec2() * 1e3;
+        let word = |text: &Option<Arc<str>>| text.as_deref().unwrap_or_default().to_owned();
+        let [x, y] = [at.x, at.y].map(|mm| mm.round() as i64);
+        format!("{} {} {} {x} {y}", place.kind.name(), word(&place.block), word(&place.layer))
+    };
+    let found: Vec<String> = sheet.places.iter().map(told).collect();
+    let wanted = [
+        "block room a 100 100",
+        "block Lamp a 100 110",
+        "point  a 100 112",
+        "block lamp b 0 0",
+        "point  b 2 0",
+        "block lamp b 50 0",
+        "point  b 52 0",
+        "point  b 20 30",
+    ];
+    assert_eq!(found, wanted);
+    assert_eq!(sheet.places[1].entity.as_ref().unwrap().to_string(), "INSERT 2A");
 }

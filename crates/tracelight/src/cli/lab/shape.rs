@@ -61,7 +61,7 @@ impl ShapeArgs {
         Ok(match self.shape.as_str() {
             "circle" => Shape::Circle,
             "line" => Shape::Line,
-            path => Shape::Picture { name: path.to_owned(), source: named::picture(path)? },
+            path => Shape::Picture { name: path.to_owned(), source: Box::new(named::picture(path)?) },
         })
     }
 }

@@ -1,0 +1,114 @@
+//! One way to drive a session with somebody at the wall, whatever is drawn.
+
+use tracelight_eye::power::{PowerWatch, check_homed, lost_power};
+use tracelight_rig::Fault;
+use tracelight_session::{Event, Job, Refused, Request, Session, Snapshot, State};
+use tracelight_sim::{AFTERMATH_TICKS, Simulated, SimulatedRig, Tick};
+use tracelight_task::{Failure, Task};
+
+use crate::hands::{Ask, Hands};
+use crate::keep::Keep;
+use crate::lap::GOODBYE_TICKS;
+
+/// What a session does with somebody at the wall, and what is kept of it.
+pub(crate) trait Course {
+    /// Its first job is about to begin.
+    fn begins(&mut self, _hands: &mut dyn Hands) {}
+
+    /// Keeps a tick; `laps` is how often a job that is done again and again had been done before it.
+    fn keep(&mut self, keep: &mut dyn Keep, tick: Tick, now: &Snapshot, laps: u32) -> Result<(), Failure>;
+
+    /// Sees what happened; false where nobody needs to be told.
+    fn see(&mut self, event: &Event, now: &Snapshot) -> bool;
+
+    /// Does what is asked.
+    fn ask(
+        &mut self,
+        ask: Ask,
+        wall: &mut Session<&mut SimulatedRig>,
+        hands: &mut dyn Hands,
+        task: Task<'_>,
+    ) -> Result<(), Refused>;
+
+    /// Whether nothing is to come any more.
+    fn is_over(&self) -> bool {
+        false
+    }
+}
+
+/// How a session ended.
+pub(crate) struct Ended {
+    /// Why, if its rig lost power.
+    pub(crate) failure: Option<Failure>,
+    /// The fault that is latched.
+    pub(crate) fault: Option<Fault>,
+    pub(crate) state: State,
+}
+
+/// Arms a rig for a job, as who calls for it has done both acts, and lets it run to its end, or to where nobody is there to go on with it. Whatever ends it darkens
+/// first.
+pub(crate) fn drive(
+    rig: &mut SimulatedRig,
+    job: Job,
+    course: &mut dyn Course,
+    (keep, hands): (&mut dyn Keep, &mut dyn Hands),
+    task: Task<'_>,
+) -> Result<Ended, Failure> {
+    let wall = &mut Session::new(rig);
+    let first = step(wall)?;
+    check_homed(&first.telemetry)?;
+    course.keep(keep, first, &wall.snapshot(), 0)?;
+    begin(wall, job).map_err(|why| Failure::failed("session", why.to_string()))?;
+    let mut power = PowerWatch::default();
+    let (mut goodbye, mut aftermath) = (GOODBYE_TICKS, AFTERMATH_TICKS);
+    while !course.is_over() && wall.state() != State::Done && goodbye > 0 && aftermath > 0 {
+        // the tick in which a lap ends belongs to that one
+        let laps = wall.snapshot().laps;
+        let tick = step(wall)?;
+        if power.is_lost(&tick.telemetry) {
+            return Ok(Ended { failure: Some(lost_power()), fault: None, state: wall.state() });
+        }
+        let now = wall.snapshot();
+        if let Err(why) = course.keep(keep, tick, &now, laps) {
+            darken(wall)?;
+            return Err(why);
+        }
+        while let Some(event) = wall.event() {
+            if course.see(&event, &now) {
+                hands.event(&event);
+            }
+        }
+        let ended = matches!(now.state, State::Fault | State::Stopped | State::Ready);
+        aftermath -= u32::from(ended && !hands.is_there());
+        if task.stop.is_wanted() {
+            let _ = wall.request(Request::Stop);
+            goodbye -= 1;
+        } else if let Some(ask) = hands.tick(&now)
+            && let Err(why) = course.ask(ask, wall, hands, task)
+        {
+            hands.refused(&why);
+        }
+    }
+    if wall.told().actuation.lights() {
+        let laps = wall.snapshot().laps;
+        let tick = darken(wall)?;
+        course.keep(keep, tick, &wall.snapshot(), laps)?;
+    }
+    Ok(Ended { failure: None, fault: wall.told().fault, state: wall.state() })
+}
+
+fn step(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
+    wall.tick_by(|rig| Some(rig.step()), |tick| &tick.telemetry).ok_or_else(lost_power)
+}
+
+fn darken(wall: &mut Session<&mut SimulatedRig>) -> Result<Tick, Failure> {
+    let _ = wall.request(Request::Stop);
+    step(wall)
+}
+
+fn begin(wall: &mut Session<&mut SimulatedRig>, job: Job) -> Result<(), Refused> {
+    if !job.dry {
+        wall.request(Request::Arm)?;
+    }
+    wall.request(Request::Trace(job))
+}

@@ -1,0 +1,50 @@
+//! Somebody at the wall: what they ask, and what they are told.
+
+use tracelight_session::{Event, Refused, Request, Snapshot};
+use tracelight_stroke::Place;
+
+/// What somebody at the wall asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ask {
+    /// Of the session.
+    Request(Request),
+    /// Another stroke, where strokes are drawn one at a time.
+    Step(Step),
+}
+
+/// Which stroke comes next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// This one is done, and the one after it comes.
+    Next,
+    /// The one before it.
+    Previous,
+    /// This one is left as it is, and the one after it comes.
+    Skip,
+    /// The one of that number, from 0.
+    To(u32),
+}
+
+/// Somebody at the wall while a lap runs.
+pub trait Hands {
+    /// Told after each tick, and may wait, so that a simulated rig keeps real time. Returns what is asked, if anything is.
+    fn tick(&mut self, now: &Snapshot) -> Option<Ask>;
+
+    /// Told what happened.
+    fn event(&mut self, event: &Event);
+
+    /// Told why a request was refused.
+    fn refused(&mut self, why: &Refused);
+
+    /// Told that a stroke or a point was left, by its number from 0, and whether it is done.
+    fn left(&mut self, _number: u32, _done: bool) {}
+
+    /// Told that the head sets off to a point, by its number from 0 of so many.
+    fn goes_to(&mut self, _point: &Place, _number: u32, _of: u32) {}
+
+    /// Told that the frame of the drawing is drawn again and again from now on, until [`Step::Next`] is asked for, or that it is over.
+    fn frames(&mut self, _on: bool) {}
+
+    /// Whether anything may still be asked; otherwise a lap that is stopped, or that a fault ended, is over.
+    fn is_there(&self) -> bool;
+}

@@ -1,0 +1,115 @@
+//! What is drawn again and again.
+
+use tracelight_pipeline::{Driving, Schedule, schedule_rest};
+use tracelight_session::{Again, Job, StrokeTicks};
+use tracelight_sim::looped_job;
+use tracelight_stroke::{Drawing, Path, Place, Stroke};
+use tracelight_task::Failure;
+use tracelight_trajectory::{Plan, plan_from};
+
+/// What is drawn again and again: a stroke, the mark of a point, or a frame.
+pub(crate) struct Item {
+    strokes: Vec<Stroke>,
+    /// The point that it marks.
+    pub(crate) point: Option<Place>,
+}
+
+impl Item {
+    /// Every stroke of a drawing, or every mark of one that has so many strokes a mark.
+    pub(crate) fn all(drawing: &Drawing, points: &[Place]) -> Vec<Self> {
+        if points.is_empty() {
+            let each = |stroke: &Stroke| stroke.along(there_and_back(&stroke.path));
+            let item = |stroke| Self { strokes: vec![each(stroke)], point: None };
+            return drawing.strokes.iter().map(item).collect();
+        }
+        let of_one = (drawing.strokes.len() / points.len()).max(1);
+        let marks = drawing.strokes.chunks(of_one).zip(points);
+        let item = |(strokes, point): (&[Stroke], &Place)| Self {
+            // a dot goes to and fro
+            strokes: match strokes {
+                [only] => vec![only.along(there_and_back(&only.path))],
+                _ => strokes.to_vec(),
+            },
+            point: Some(point.clone()),
+        };
+        marks.map(item).collect()
+    }
+
+    /// A drawing as one.
+    pub(crate) fn frame(drawing: Drawing) -> Self {
+        Self { strokes: drawing.strokes, point: None }
+    }
+
+    /// As messages call it.
+    pub(crate) const fn word(&self) -> &'static str {
+        if self.point.is_some() { "point" } else { "stroke" }
+    }
+}
+
+/// An item to be drawn again and again.
+pub(crate) struct Looped {
+    pub(crate) strokes: Vec<Stroke>,
+    /// From zero to it, once.
+    pub(crate) once: Plan,
+    /// From its end, again and again.
+    pub(crate) again: Plan,
+    pub(crate) job: Job,
+}
+
+/// There along a stroke and back, where it is open: it ends where it begins.
+fn there_and_back(path: &Path) -> Path {
+    if path.is_closed() {
+        return path.clone();
+    }
+    let mut both = path.clone();
+    path.reversed().elements().iter().for_each(|&element| both.push(element));
+    both
+}
+
+/// All strokes of an item as one: its number is that of what is drawn.
+fn as_one(strokes: &[StrokeTicks]) -> Vec<StrokeTicks> {
+    let ends = strokes.first().zip(strokes.last());
+    ends.map(|(first, last)| StrokeTicks { start: first.start, end: last.end }).into_iter().collect()
+}
+
+impl Looped {
+    /// Plans it: once from zero, and again and again from there.
+    ///
+    /// # Errors
+    /// Why it cannot be drawn so.
+    pub(crate) fn of(
+        item: &Item,
+        (number, of): (usize, usize),
+        driving: &Driving,
+        dry: bool,
+    ) -> Result<Self, Failure> {
+        let drawing = Drawing { strokes: item.strokes.clone() };
+        let Schedule { plan: once, .. } = schedule_rest(drawing.clone(), driving)?;
+        let end = once.points.last().map(|point| point.joints.map(|joint| joint.position_rad));
+        let again = plan_from(&drawing, &driving.machine, &driving.request, end.unwrap_or_default())
+            .map_err(tracelight_pipeline::refused)?;
+        let looped = looped_job(&driving.rig, &once, &again, dry).ok_or_else(|| stands(item, number))?;
+        let job = Job {
+            first: number as u32,
+            of: of as u32,
+            strokes: as_one(&looped.strokes),
+            again: looped.again.map(|again| Again { strokes: as_one(&again.strokes), ..again }),
+            ..looped
+        };
+        Ok(Self { strokes: drawing.strokes, once, again, job })
+    }
+}
+
+fn stands(item: &Item, number: usize) -> Failure {
+    let way_out = if item.point.is_some() {
+        "mark it by a larger cross (--mark)"
+    } else {
+        "draw it larger (--width), or without --step"
+    };
+    let message = format!(
+        "{} {} is so short that its light would stand, drawn again and again: {way_out}",
+        item.word(),
+        number + 1
+    );
+    Failure::failed("standing-light", message)
+}

@@ -1,0 +1,58 @@
+//! A job's figures in words.
+
+use tracelight_eye::figures::EyeFigures;
+use tracelight_task::counted;
+
+use crate::summary::Summary;
+
+impl Summary {
+    /// The figures for people: some lines.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let s = self;
+        let mm = |m: f64| m * 1e3;
+        let mut text = format!(
+            "{}: {}, {:.3} m of line at {:.0} × {:.0} mm\n\
+         time:   {:.2} s, of it lit {:.2} s at {:.3} m/s; torque up to {:.0} %",
+            s.picture.path,
+            counted(s.strokes.count, "stroke"),
+            s.strokes.length_m,
+            mm(s.target.width_m),
+            mm(s.target.height_m),
+            s.run.duration_s,
+            s.laser.lit_s,
+            s.tracking.lit_speed_m_s,
+            100.0 * s.plan.torque_peak_fraction,
+        );
+        if (s.run.duration_s - s.plan.duration_s).abs() > 0.01 {
+            text += &format!("\n        (planned: {:.2} s)", s.plan.duration_s);
+        }
+        text += &match s.laser.lit_s > 0.0 {
+            true => format!(
+                "\nerror:  {:.3} mm rms, {:.3} mm at most; overshoot {:.2} %, {:.3} mm at rest",
+                s.tracking.rms_mm, s.tracking.max_mm, s.tracking.overshoot_percent, s.tracking.final_error_mm,
+            ),
+            false => "\nerror:  none to measure, nothing was lit".to_owned(),
+        };
+        text += &format!("\nhead:   {}", s.head.words());
+        if s.simulated {
+            text += "\nrig:    simulated, nothing of this was measured on a real head";
+        }
+        s.camera.iter().flat_map(EyeFigures::words).for_each(|line| text += &format!("\n{line}"));
+        let lost = s.run.lost_counts;
+        if (lost.pan, lost.tilt) != (0, 0) {
+            text += &format!(
+                "\nlost:   counts, noticed and put back: pan {:+} and tilt {:+} are added to what the encoders read; look at their cables",
+                lost.pan, lost.tilt
+            );
+        }
+        match s.laser.faults.len() {
+            0 => {}
+            1 => text += "\ndark:   once where light was planned; the report says when and why",
+            n => {
+                text += &format!("\ndark:   {n} times where light was planned; the report says when and why")
+            }
+        }
+        text
+    }
+}
