@@ -76,7 +76,7 @@ struct Framed<'a> {
 
 impl Course for Framed<'_> {
     fn keep(&mut self, keep: &mut dyn Keep, tick: Tick, now: &Snapshot, laps: u32) -> Result<(), Failure> {
-        if self.stage == Stage::Between && matches!(now.state, State::Tracing | State::Stepping) {
+        if self.stage == Stage::Between && now.state.is_on() {
             self.stage = Stage::Course;
         }
         match self.stage {

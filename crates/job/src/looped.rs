@@ -1,7 +1,7 @@
 //! What is drawn again and again.
 
 use tracelight_pipeline::{Driving, Schedule, schedule_rest};
-use tracelight_session::{Again, Job, StrokeTicks};
+use tracelight_session::{Again, Job, Repeated, StrokeTicks};
 use tracelight_sim::looped_job;
 use tracelight_stroke::{Drawing, Path, Place, Stroke};
 use tracelight_task::Failure;
@@ -10,6 +10,7 @@ use tracelight_trajectory::{Plan, plan_from};
 /// What is drawn again and again: a stroke, the mark of a point, or a frame.
 pub(crate) struct Item {
     strokes: Vec<Stroke>,
+    what: Repeated,
     /// The point that it marks.
     pub(crate) point: Option<Place>,
 }
@@ -19,7 +20,7 @@ impl Item {
     pub(crate) fn all(drawing: &Drawing, points: &[Place]) -> Vec<Self> {
         if points.is_empty() {
             let each = |stroke: &Stroke| stroke.along(there_and_back(&stroke.path));
-            let item = |stroke| Self { strokes: vec![each(stroke)], point: None };
+            let item = |stroke| Self { strokes: vec![each(stroke)], what: Repeated::Stroke, point: None };
             return drawing.strokes.iter().map(item).collect();
         }
         let of_one = (drawing.strokes.len() / points.len()).max(1);
@@ -30,6 +31,7 @@ impl Item {
                 [only] => vec![only.along(there_and_back(&only.path))],
                 _ => strokes.to_vec(),
             },
+            what: Repeated::Point,
             point: Some(point.clone()),
         };
         marks.map(item).collect()
@@ -37,12 +39,16 @@ impl Item {
 
     /// A drawing as one.
     pub(crate) fn frame(drawing: Drawing) -> Self {
-        Self { strokes: drawing.strokes, point: None }
+        Self { strokes: drawing.strokes, what: Repeated::Frame, point: None }
     }
 
     /// As messages call it.
     pub(crate) const fn word(&self) -> &'static str {
-        if self.point.is_some() { "point" } else { "stroke" }
+        match self.what {
+            Repeated::Stroke => "stroke",
+            Repeated::Point => "point",
+            Repeated::Frame => "frame",
+        }
     }
 }
 
@@ -88,7 +94,8 @@ impl Looped {
         let end = once.points.last().map(|point| point.joints.map(|joint| joint.position_rad));
         let again = plan_from(&drawing, &driving.machine, &driving.request, end.unwrap_or_default())
             .map_err(tracelight_pipeline::refused)?;
-        let looped = looped_job(&driving.rig, &once, &again, dry).ok_or_else(|| stands(item, number))?;
+        let looped =
+            looped_job(&driving.rig, (item.what, &once, &again), dry).ok_or_else(|| stands(item, number))?;
         let job = Job {
             first: number as u32,
             of: of as u32,

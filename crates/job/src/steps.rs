@@ -226,7 +226,7 @@ impl Course for Walk<'_> {
         let plan_tick = if state == State::Parking { 0 } else { tick.telemetry.plan_tick };
         tick.telemetry.plan_tick = self.base + plan_tick;
         keep.tick(&self.seen.plan, &tick)?;
-        let is_on = matches!(state, State::Stepping | State::Returning | State::Pausing);
+        let is_on = state.is_on();
         self.rests = if is_on { 0 } else { self.rests.saturating_add(1) };
         if state != State::Parking && self.rests <= REST_TICKS {
             self.seen.run.ticks.push(tick);

@@ -1,5 +1,7 @@
 use tracelight_rig::{Command, Rig, Segment};
 
+use crate::state::State;
+
 /// Ticks of the plan in which a stroke is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StrokeTicks {
@@ -26,9 +28,34 @@ pub struct Job {
     pub again: Option<Again>,
 }
 
+/// What is done again and again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Repeated {
+    /// A stroke.
+    #[default]
+    Stroke,
+    /// The mark of a point.
+    Point,
+    /// The frame of a drawing.
+    Frame,
+}
+
+impl Repeated {
+    /// The state meanwhile.
+    pub(crate) const fn state(self) -> State {
+        match self {
+            Self::Stroke => State::Stepping,
+            Self::Point => State::Pointing,
+            Self::Frame => State::Framing,
+        }
+    }
+}
+
 /// A job's way from where it ends to there, again and again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Again {
+    /// What that is.
+    pub what: Repeated,
     /// Segments of that way; the first begins at tick 0, at rest.
     pub segments: Vec<Segment>,
     /// Strokes of that way.

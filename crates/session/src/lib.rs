@@ -12,7 +12,7 @@ mod state;
 mod told;
 
 pub use event::{Event, Snapshot, seconds};
-pub use job::{Again, Feeder, Job, StrokeTicks};
+pub use job::{Again, Feeder, Job, Repeated, StrokeTicks};
 pub use request::{Refused, Request, When, faster, slower};
 pub use session::Session;
 pub use state::{ARMED_TICKS, ATTENDED_TICKS, PAUSED_TICKS, State};

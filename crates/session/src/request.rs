@@ -106,7 +106,12 @@ pub(crate) const fn advice(state: State) -> &'static str {
         State::Unhomed => "home the head first",
         State::Ready | State::Done => "arm, then trace",
         State::Armed => "trace or resume, or disarm",
-        State::Tracing | State::Stepping | State::Returning | State::Pausing => "pause or stop it first",
+        State::Tracing
+        | State::Stepping
+        | State::Pointing
+        | State::Framing
+        | State::Returning
+        | State::Pausing => "pause or stop it first",
         State::Paused => "resume, stop or park",
         State::Stopped => "arm and resume, or park",
         State::Parking => "wait until it is at zero",

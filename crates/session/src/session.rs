@@ -112,8 +112,7 @@ impl<R: Rig> Session<R> {
     /// Why it is refused; nothing has changed then.
     pub fn request(&mut self, request: Request) -> Result<(), Refused> {
         use State::{
-            Armed, Done, Fault, Parking, Paused, Pausing, Ready, Returning, Stepping, Stopped, Tracing,
-            Unhomed,
+            Armed, Done, Fault, Parking, Paused, Pausing, Ready, Returning, Stopped, Tracing, Unhomed,
         };
         if self.outbox.len() >= MOST_WAITING && request != Request::Stop {
             return Err(Refused::Busy);
@@ -141,14 +140,16 @@ impl<R: Rig> Session<R> {
                 self.check_next(&job, self.next.as_ref().is_some_and(|next| next.dry))?;
                 self.next = Some(job);
             }
-            (Request::Next(job), Stepping | Returning | Pausing | Paused | Armed)
-                if self.on() == Stepping || self.state == Armed =>
+            (Request::Next(job), state)
+                if state == Armed
+                    || self.on().repeats()
+                        && (state.repeats() || matches!(state, Returning | Pausing | Paused)) =>
             {
                 self.check_next(&job, self.running.as_ref().is_some_and(|running| running.dry))?;
                 self.park();
                 self.next = Some(job);
             }
-            (Request::Pause(when), Tracing | Stepping | Returning) => {
+            (Request::Pause(when), state) if matches!(state, Tracing | Returning) || state.repeats() => {
                 self.send(if when == When::AtOnce { Command::Disarm } else { Command::Pause });
                 self.enter(Pausing);
             }
@@ -266,9 +267,8 @@ impl<R: Rig> Session<R> {
         self.send(Command::Disarm);
         self.next = None;
         match self.state {
-            State::Tracing | State::Stepping | State::Returning | State::Pausing | State::Paused => {
-                self.enter(State::Stopped);
-            }
+            State::Paused => self.enter(State::Stopped),
+            state if state.is_on() => self.enter(State::Stopped),
             State::Armed if self.is_resumable() => self.enter(State::Stopped),
             State::Armed => self.enter(State::Ready),
             _ => {}
@@ -329,11 +329,12 @@ impl<R: Rig> Session<R> {
 
     /// Goes on where it was; a job that was just done is begun again when it is time.
     fn resume(&mut self) {
+        let on = self.on();
         match &mut self.running {
             Some(running) if running.ended.is_some() => {
                 running.answered = false;
                 self.since = self.told.tick;
-                self.enter(State::Stepping);
+                self.enter(on);
             }
             _ => self.go_on(),
         }
@@ -353,13 +354,13 @@ impl<R: Rig> Session<R> {
 
     /// The state of the job in hand while its clock runs.
     fn on(&self) -> State {
-        let is_stepping = self.running.as_ref().is_some_and(|running| running.again.is_some());
-        if is_stepping { State::Stepping } else { State::Tracing }
+        let again = self.running.as_ref().and_then(|running| running.again.as_ref());
+        again.map_or(State::Tracing, |again| again.what.state())
     }
 
     /// Begins a job again that is done again and again, once it was dark for long enough.
     fn begin_again(&mut self) {
-        let is_ready = self.state == State::Stepping && !self.is_unattended() && self.rests();
+        let is_ready = self.state.repeats() && !self.is_unattended() && self.rests();
         let Some(running) = self.running.as_mut().filter(|_| is_ready) else { return };
         let (Some(again), Some(ended)) = (&running.again, running.ended) else { return };
         let waited = self.told.tick.wrapping_sub(ended);
@@ -411,7 +412,7 @@ impl<R: Rig> Session<R> {
                     self.tell(Event::NotBegun { tick, why });
                 }
             }
-            State::Done if self.state == State::Stepping => {
+            State::Done if self.state.repeats() => {
                 self.running = None;
                 self.send(Command::Disarm);
                 self.enter(State::Done);
@@ -428,7 +429,7 @@ impl<R: Rig> Session<R> {
     fn next_state(&self) -> State {
         let phase = self.told.phase;
         let answered = self.running.as_ref().is_some_and(|running| running.answered);
-        let is_again = self.on() == State::Stepping;
+        let is_again = self.on().repeats();
         // between two times it is dark, and waits
         let has_ended = self.running.as_ref().is_some_and(|running| running.ended.is_some());
         match self.state {
@@ -437,19 +438,26 @@ impl<R: Rig> Session<R> {
             State::Fault => State::Ready,
             State::Armed if self.waited() >= ARMED_TICKS => self.armed_in,
             State::Pausing if is_again && phase == Phase::Done => State::Paused,
-            State::Stepping if has_ended && self.is_unattended() => State::Done,
+            state if state.repeats() && has_ended && self.is_unattended() => State::Done,
             State::Tracing | State::Returning | State::Pausing
                 if answered && !is_again && phase == Phase::Done =>
             {
                 State::Done
             }
             // an open interlock, for instance, keeps it from arming
-            State::Tracing | State::Stepping | State::Returning
-                if phase == Phase::Dark && !has_ended && (answered || self.waited() > ANSWER_TICKS) =>
+            state
+                if state.is_on()
+                    && state != State::Pausing
+                    && phase == Phase::Dark
+                    && !has_ended
+                    && (answered || self.waited() > ANSWER_TICKS) =>
             {
                 State::Stopped
             }
-            State::Tracing | State::Stepping if matches!(phase, Phase::Holding | Phase::Testing) => {
+            state
+                if (state == State::Tracing || state.repeats())
+                    && matches!(phase, Phase::Holding | Phase::Testing) =>
+            {
                 State::Returning
             }
             State::Returning if matches!(phase, Phase::Tracing | Phase::Done) => self.on(),
@@ -470,8 +478,7 @@ impl<R: Rig> Session<R> {
 
     /// Where the job is now.
     fn follow_job(&mut self) {
-        let is_on =
-            matches!(self.state, State::Tracing | State::Stepping | State::Returning | State::Pausing);
+        let is_on = self.state.is_on();
         let Some(running) = self.running.as_mut().filter(|_| is_on) else { return };
         let of = running.of;
         if let Some(stroke) = running.follow(&self.told) {

@@ -19,7 +19,7 @@ pub const ATTENDED_TICKS: u32 = 600_000;
 ///     └── Clear ──────────────►┘
 /// ```
 ///
-/// A job that is done again and again is `Stepping` where another one is `Tracing`; `Next` parks it and begins another one. A dry job needs no arming: it goes from `Ready`, `Done`, `Stopped` or `Paused` to `Tracing`. `Lost` is entered from anywhere, and never left.
+/// A job that is done again and again is `Stepping`, `Pointing` or `Framing` where another one is `Tracing`; `Next` parks it and begins another one. A dry job needs no arming: it goes from `Ready`, `Done`, `Stopped` or `Paused` to `Tracing`. `Lost` is entered from anywhere, and never left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum State {
     /// The rig does not know where it points.
@@ -30,8 +30,12 @@ pub enum State {
     Armed,
     /// The plan's clock runs.
     Tracing,
-    /// A job is done again and again, until something else is asked; dark between two times.
+    /// A stroke is drawn again and again, until something else is asked; dark between two times.
     Stepping,
+    /// A point is marked again and again, likewise.
+    Pointing,
+    /// The frame of a drawing is drawn again and again, likewise.
+    Framing,
     /// The plan's clock stands until the head is back on its stroke. Dark.
     Returning,
     /// The stroke that is lit is drawn to its end.
@@ -52,12 +56,14 @@ pub enum State {
 
 impl State {
     /// Every state.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::Unhomed,
         Self::Ready,
         Self::Armed,
         Self::Tracing,
         Self::Stepping,
+        Self::Pointing,
+        Self::Framing,
         Self::Returning,
         Self::Pausing,
         Self::Paused,
@@ -76,6 +82,8 @@ impl State {
             Self::Armed => "armed",
             Self::Tracing => "tracing",
             Self::Stepping => "stepping",
+            Self::Pointing => "pointing",
+            Self::Framing => "framing",
             Self::Returning => "returning",
             Self::Pausing => "pausing",
             Self::Paused => "paused",
@@ -89,6 +97,16 @@ impl State {
 
     /// Whether light may leave the head.
     pub const fn may_light(self) -> bool {
-        matches!(self, Self::Tracing | Self::Stepping | Self::Pausing)
+        matches!(self, Self::Tracing | Self::Pausing) || self.repeats()
+    }
+
+    /// Whether a job is done again and again.
+    pub const fn repeats(self) -> bool {
+        matches!(self, Self::Stepping | Self::Pointing | Self::Framing)
+    }
+
+    /// Whether a job goes on by itself.
+    pub const fn is_on(self) -> bool {
+        matches!(self, Self::Tracing | Self::Returning | Self::Pausing) || self.repeats()
     }
 }

@@ -73,7 +73,7 @@ impl<'a> AtWall<'a> {
 
     /// What a key asks for here.
     fn meaning(&self, key: Key, now: &Snapshot) -> Option<Request> {
-        let is_on = matches!(now.state, State::Tracing | State::Stepping | State::Returning | State::Pausing);
+        let is_on = now.state.is_on();
         match key {
             Key::Space if is_on => Some(Request::Pause(When::AfterStroke)),
             Key::Space | Key::Enter => Some(Request::Resume),
@@ -100,7 +100,7 @@ impl<'a> AtWall<'a> {
 
     /// Which stroke a key asks for here, where strokes are drawn one at a time.
     fn step(&self, key: Key, now: &Snapshot) -> Option<Step> {
-        let is_on = matches!(now.state, State::Stepping | State::Returning | State::Pausing | State::Parking);
+        let is_on = now.state.is_on() || now.state == State::Parking;
         match key {
             _ if !self.steps && !self.framing => None,
             Key::Backwards | Key::Char('s') if self.framing => None,

@@ -3,7 +3,9 @@
 #![allow(clippy::print_stdout, reason = "a test shows figures")]
 
 use tracelight_rig::{Darkness, Fault, Joint, PanTilt, Phase, Segment};
-use tracelight_session::{ARMED_TICKS, ATTENDED_TICKS, Event, Job, Refused, Request, Session, State, When};
+use tracelight_session::{
+    ARMED_TICKS, ATTENDED_TICKS, Event, Job, Refused, Repeated, Request, Session, State, When,
+};
 use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Tick, Trouble, job_of, looped_job};
 use tracelight_stroke::Path;
 use tracelight_trajectory::Plan;
@@ -123,10 +125,14 @@ fn arming_is_forgotten_and_a_dry_job_needs_none() {
 }
 
 fn looped_of(config: &RigConfig, path: Path, dry: bool) -> Job {
+    repeated(config, path, (Repeated::Stroke, dry))
+}
+
+fn repeated(config: &RigConfig, path: Path, (what, dry): (Repeated, bool)) -> Job {
     let once = plan_of(config, path.clone());
     let end = once.points.last().unwrap().joints.map(|joint| joint.position_rad);
     let again = plan_there(config, path, end);
-    looped_job(config, &once, &again, dry).unwrap()
+    looped_job(config, (what, &once, &again), dry).unwrap()
 }
 
 /// How often the light passed so many places of a plan's lit way, at least and at most.
@@ -402,6 +408,8 @@ fn at_random(requests: usize, seed: u64) -> [usize; State::ALL.len()] {
         Job::default(),
         looped_of(&config, star(0.05), false),
         looped_of(&config, circle(0.05), true),
+        repeated(&config, star(0.05), (Repeated::Point, false)),
+        repeated(&config, circle(0.05), (Repeated::Frame, false)),
     ];
     let mut dice = Dice::of_seed(u128::from(seed));
     let mut met = [0; State::ALL.len()];

@@ -196,6 +196,7 @@ fn points_are_ticked_off_one_after_the_other() {
     for number in 1..=13 {
         let point = wall.until(|event| event["event"] == "point");
         assert!(point["point"] == number && point["points"] == 13, "{point}");
+        wall.until_state("pointing");
         wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
         wall.press(if number == 5 { "s" } else { " " });
         let left = wall.until(|event| event["event"] == "left");
@@ -230,6 +231,7 @@ fn a_frame_is_drawn_until_a_key_begins_the_drawing() {
         let mut wall = Terminal::of(command);
         let checks = wall.until(|event| event["event"] == "preflight")["checks"].clone();
         assert!(checks.as_array().unwrap().iter().any(|check| check["name"] == "homed"), "{checks}");
+        wall.until_state("framing");
         wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
         wall
     };
@@ -249,7 +251,7 @@ fn a_frame_is_drawn_until_a_key_begins_the_drawing() {
     let mut wall = framed(&dir, "corners");
     wall.child.kill().unwrap();
     wall.child.wait().unwrap();
-    let rest = dir.with_extension("rest");
+    let rest = folder("frame-rest");
     let output = program().arg("resume").arg(&dir).arg("--out").arg(&rest).arg("--json").output().unwrap();
     let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(summary["strokes"]["count"], 28, "{summary}");
