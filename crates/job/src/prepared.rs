@@ -114,6 +114,8 @@ pub(crate) fn planned(
         .collect();
     notes.iter().for_each(|n| task.say(&format!("note: {n}")));
     check_laps(how.laps, &schedule.plan)?;
+    // before anything is written of a run that cannot begin
+    frame_of(placed.frame.as_ref(), &driving, how.dry)?;
     Ok(Prepared { sketch, placed, driving, schedule, notes, vision_ms, plan_ms, how, seen })
 }
 
