@@ -33,7 +33,11 @@ pub(crate) fn run_lap_by_hand(
 ) -> Result<LapByHand, Failure> {
     let mut lap = Lap { plan, task, run: Run::default(), rests: 0, diary: Diary::default() };
     let ended = drive_framed(rig, (job_of(plan, dry), &mut lap), frame, (keep, hands), task)?;
-    Ok(LapByHand { run: lap.run, failure: ended.failure, notes: lap.diary.notes })
+    Ok(LapByHand {
+        run: lap.run,
+        failure: ended.failure.or(ended.fault.map(Failure::fault)),
+        notes: lap.diary.notes,
+    })
 }
 
 struct Lap<'a> {

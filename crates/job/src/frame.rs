@@ -30,7 +30,7 @@ pub(crate) fn frame_of(
         return Err(wrong("all of it lies in what --no-go keeps dark"));
     }
     let item = Item::frame(frame.clone());
-    Looped::of(&item, (0, 1), driving, dry).map(Some).map_err(|failure| wrong(&failure.message))
+    Looped::of(&item, 1, driving, dry).map(Some).map_err(|failure| wrong(&failure.message))
 }
 
 /// Drives a course, after its frame where it has one.

@@ -9,6 +9,8 @@ use tracelight_trajectory::{Plan, plan_from};
 
 /// What is drawn again and again: a stroke, the mark of a point, or a frame.
 pub(crate) struct Item {
+    /// Its number in the whole drawing, from 0.
+    pub(crate) number: u32,
     strokes: Vec<Stroke>,
     what: Repeated,
     /// The point that it marks.
@@ -16,21 +18,23 @@ pub(crate) struct Item {
 }
 
 impl Item {
-    /// Every stroke of a drawing, or every mark of one that has so many strokes a mark.
-    pub(crate) fn all(drawing: &Drawing, points: &[Place]) -> Vec<Self> {
+    /// Every stroke of a drawing, or every mark of its points, of which the first has this number.
+    pub(crate) fn all(drawing: &Drawing, points: &[Place], first: u32) -> Vec<Self> {
         if points.is_empty() {
             let each = |stroke: &Stroke| stroke.along(there_and_back(&stroke.path));
-            let item = |stroke| Self { strokes: vec![each(stroke)], what: Repeated::Stroke, point: None };
-            return drawing.strokes.iter().map(item).collect();
+            let item = |(number, stroke)| Self {
+                number,
+                strokes: vec![each(stroke)],
+                what: Repeated::Stroke,
+                point: None,
+            };
+            return (first..).zip(&drawing.strokes).map(item).collect();
         }
         let of_one = (drawing.strokes.len() / points.len()).max(1);
-        let marks = drawing.strokes.chunks(of_one).zip(points);
-        let item = |(strokes, point): (&[Stroke], &Place)| Self {
-            // a dot goes to and fro
-            strokes: match strokes {
-                [only] => vec![only.along(there_and_back(&only.path))],
-                _ => strokes.to_vec(),
-            },
+        let marks = (first..).zip(drawing.strokes.chunks(of_one).zip(points));
+        let item = |(number, (strokes, point)): (u32, (&[Stroke], &Place))| Self {
+            number,
+            strokes: strokes.to_vec(),
             what: Repeated::Point,
             point: Some(point.clone()),
         };
@@ -39,7 +43,7 @@ impl Item {
 
     /// A drawing as one.
     pub(crate) fn frame(drawing: Drawing) -> Self {
-        Self { strokes: drawing.strokes, what: Repeated::Frame, point: None }
+        Self { number: 0, strokes: drawing.strokes, what: Repeated::Frame, point: None }
     }
 
     /// As messages call it.
@@ -79,26 +83,20 @@ fn as_one(strokes: &[StrokeTicks]) -> Vec<StrokeTicks> {
 }
 
 impl Looped {
-    /// Plans it: once from zero, and again and again from there.
+    /// Plans it, one of so many: once from zero, and again and again from there.
     ///
     /// # Errors
     /// Why it cannot be drawn so.
-    pub(crate) fn of(
-        item: &Item,
-        (number, of): (usize, usize),
-        driving: &Driving,
-        dry: bool,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn of(item: &Item, of: u32, driving: &Driving, dry: bool) -> Result<Self, Failure> {
         let drawing = Drawing { strokes: item.strokes.clone() };
         let Schedule { plan: once, .. } = schedule_rest(drawing.clone(), driving)?;
         let end = once.points.last().map(|point| point.joints.map(|joint| joint.position_rad));
         let again = plan_from(&drawing, &driving.machine, &driving.request, end.unwrap_or_default())
             .map_err(tracelight_pipeline::refused)?;
-        let looped =
-            looped_job(&driving.rig, (item.what, &once, &again), dry).ok_or_else(|| stands(item, number))?;
+        let looped = looped_job(&driving.rig, (item.what, &once, &again), dry).ok_or_else(|| stands(item))?;
         let job = Job {
-            first: number as u32,
-            of: of as u32,
+            first: item.number,
+            of,
             strokes: as_one(&looped.strokes),
             again: looped.again.map(|again| Again { strokes: as_one(&again.strokes), ..again }),
             ..looped
@@ -107,16 +105,16 @@ impl Looped {
     }
 }
 
-fn stands(item: &Item, number: usize) -> Failure {
-    let way_out = if item.point.is_some() {
-        "mark it by a larger cross (--mark)"
-    } else {
-        "draw it larger (--width), or without --step"
+fn stands(item: &Item) -> Failure {
+    let way_out = match item.what {
+        Repeated::Stroke => "draw it larger (--width), or without --step",
+        Repeated::Point => "mark it by a larger cross (--mark)",
+        Repeated::Frame => "draw larger (--width)",
     };
     let message = format!(
         "{} {} is so short that its light would stand, drawn again and again: {way_out}",
         item.word(),
-        number + 1
+        item.number + 1
     );
     Failure::failed("standing-light", message)
 }

@@ -42,6 +42,8 @@ pub struct Prepared {
     pub plan_ms: f64,
     how: RunRequest,
     seen: Option<Seen>,
+    /// Number of the first stroke, or point, that is left of the drawing, from 0.
+    first: u32,
 }
 
 /// A job that was run.
@@ -116,7 +118,7 @@ pub(crate) fn planned(
     check_laps(how.laps, &schedule.plan)?;
     // before anything is written of a run that cannot begin
     frame_of(placed.frame.as_ref(), &driving, how.dry)?;
-    Ok(Prepared { sketch, placed, driving, schedule, notes, vision_ms, plan_ms, how, seen })
+    Ok(Prepared { sketch, placed, driving, schedule, notes, vision_ms, plan_ms, how, seen, first: 0 })
 }
 
 /// Longest run of all laps together, s: every tick is kept for the results, at some 200 bytes.
@@ -175,6 +177,7 @@ impl Prepared {
         let rest = Drawing { strokes: strokes[before * of_one..].to_vec() };
         self.placed.points.drain(..before.min(points));
         self.schedule = schedule_rest(rest, &self.driving)?;
+        self.first = number - 1;
         Ok(self)
     }
 
@@ -227,12 +230,12 @@ impl Prepared {
         task: Task<'_>,
     ) -> Result<(Self, Ran), Failure> {
         let RunRequest { seed, dry, powered_up, .. } = self.how;
-        let Self { driving, schedule, placed, .. } = &mut self;
+        let Self { driving, schedule, placed, first, .. } = &mut self;
         driving.request.speed_m_s = pace_m_s.unwrap_or(driving.request.speed_m_s);
         let put_up = if powered_up { left } else { SimulatedRig::new };
         let mut rig = put_up(&driving.rig, driving.pose, seed);
         task.stage("run", 1);
-        let items = Item::all(&schedule.ordered.drawing, &placed.points);
+        let items = Item::all(&schedule.ordered.drawing, &placed.points, *first);
         let frame = frame_of(placed.frame.as_ref(), driving, dry)?;
         let whole = (items.as_slice(), &*driving);
         let how = (frame.as_ref(), dry);

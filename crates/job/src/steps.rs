@@ -38,6 +38,8 @@ pub(crate) struct StepRun {
 /// A point that was to be marked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointDone {
+    /// Its number in the drawing, from 0.
+    pub number: u32,
     /// The point, on the target.
     pub place: Place,
     /// When it was ticked off, s from the beginning of the run; `None` where it was not.
@@ -79,12 +81,17 @@ pub(crate) fn run_steps(
     Ok(walk.ended())
 }
 
+/// How many there are in the whole drawing: the last one's number tells.
+fn of_all(items: &[Item]) -> u32 {
+    items.last().map_or(0, |item| item.number + 1)
+}
+
 impl<'a> Walk<'a> {
     fn begin(items: &'a [Item], driving: &'a Driving, dry: bool) -> Result<Self, Failure> {
         let Some(first) = items.first() else {
             return Err(Failure::failed("no-strokes", "there is no stroke to step through"));
         };
-        let looped = Looped::of(first, (0, items.len()), driving, dry)?;
+        let looped = Looped::of(first, of_all(items), driving, dry)?;
         let seen = StepRun {
             run: Run::default(),
             plan: looped.once.clone(),
@@ -118,9 +125,8 @@ impl<'a> Walk<'a> {
     }
 
     fn tell_where(&self, hands: &mut dyn Hands) {
-        let of = self.items.len() as u32;
-        let point = self.items.get(self.at).and_then(|item| item.point.as_ref());
-        point.into_iter().for_each(|point| hands.goes_to(point, self.at as u32, of));
+        let item = &self.items[self.at];
+        item.point.iter().for_each(|point| hands.goes_to(point, item.number, of_all(self.items)));
     }
 
     /// Goes to another item; after the last one it is finished. One that cannot be drawn again and again is left out, and said.
@@ -135,11 +141,14 @@ impl<'a> Walk<'a> {
         let mut to = match step {
             Step::Next | Step::Skip => Some(self.at + 1),
             Step::Previous => self.at.checked_sub(1),
-            Step::To(number) => Some((number as usize).min(self.items.len() - 1)),
+            Step::To(number) => {
+                let at = number.saturating_sub(self.items.first().map_or(0, |item| item.number));
+                Some((at as usize).min(self.items.len() - 1))
+            }
         };
         while let Some(number) = to.filter(|&number| number < self.items.len()) {
             let item = &self.items[number];
-            match Looped::of(item, (number, self.items.len()), self.driving, self.dry) {
+            match Looped::of(item, of_all(self.items), self.driving, self.dry) {
                 Ok(looped) => {
                     let lit = self.was_lit(wall);
                     wall.request(Request::Next(looped.job.clone()))?;
@@ -153,7 +162,7 @@ impl<'a> Walk<'a> {
                     return Ok(());
                 }
                 Err(why) => {
-                    let note = format!("{} {} is left out: {}", item.word(), number + 1, why.message);
+                    let note = format!("{} {} is left out: {}", item.word(), item.number + 1, why.message);
                     task.say(&format!("note: {note}"));
                     self.seen.notes.push(note);
                     to = if forwards { Some(number + 1) } else { number.checked_sub(1) };
@@ -171,7 +180,8 @@ impl<'a> Walk<'a> {
     /// Whether the present item was drawn, or a part of it.
     fn was_lit(&self, wall: &Session<&mut SimulatedRig>) -> bool {
         let now = wall.snapshot();
-        now.laps > 0 || now.plan_tick > 0
+        let begins = self.looped.job.strokes.first().map_or(0, |stroke| stroke.start);
+        now.laps > 0 || now.plan_tick > begins
     }
 
     fn tick_off(&mut self, step: Step, lit: bool, wall: &Session<&mut SimulatedRig>, hands: &mut dyn Hands) {
@@ -179,13 +189,13 @@ impl<'a> Walk<'a> {
         if step == Step::Next && (lit || self.dry) {
             done_s.get_or_insert(seconds(wall.told().tick));
         }
-        hands.left(self.at as u32, done_s.is_some());
+        hands.left(self.items[self.at].number, done_s.is_some());
     }
 
     fn ended(mut self) -> StepRun {
         let done = self.done_s.iter().flatten().count();
-        let not = (1..).zip(&self.done_s).filter(|(_, done_s)| done_s.is_none());
-        let not: Vec<String> = not.map(|(number, _)| number.to_string()).collect();
+        let not = self.items.iter().zip(&self.done_s).filter(|(_, done_s)| done_s.is_none());
+        let not: Vec<String> = not.map(|(item, _)| (item.number + 1).to_string()).collect();
         let word = self.items.first().map_or("stroke", Item::word);
         let all = counted(self.items.len(), word);
         let which = match not.len() {
@@ -198,7 +208,7 @@ impl<'a> Walk<'a> {
         ));
         let points = self.items.iter().zip(&self.done_s);
         let done = |(item, done_s): (&Item, &Option<f64>)| {
-            item.point.clone().map(|place| PointDone { place, done_s: *done_s })
+            item.point.clone().map(|place| PointDone { number: item.number, place, done_s: *done_s })
         };
         self.seen.points = points.filter_map(done).collect();
         self.seen

@@ -238,8 +238,9 @@ pub fn place(sketch: &Sketch, placing: &Placing) -> Result<Placed, Failure> {
     if let Some(points) = &placing.points {
         let map = |at: Point| map.apply(at);
         let around = (areas.as_slice(), placing.margin_m);
-        let Marked { points, drawing, notes } = marked(sketch, points, &map, around)?;
+        let Marked { points, drawing, left_out, notes } = marked(sketch, points, &map, around)?;
         (placed.placed.points, placed.placed.drawing) = (points, drawing);
+        placed.placed.left_out = left_out;
         placed.placed.notes.extend(notes);
     } else if !areas.is_empty() {
         let (drawing, left_out) = cut(&placed.placed.drawing, &areas, placing.margin_m);

@@ -1,24 +1,23 @@
-//! Places of a drawing, each marked on the target by a cross or a dot.
+//! Places of a drawing, each marked on the target by a cross.
 
 use std::collections::HashMap;
 use std::str::FromStr;
 use std::sync::Arc;
 
 use tracelight_stroke::{
-    Drawing, Element, Path, Place, PlaceKind, Point, Rect, Stroke, Vec2, places, places_apart,
-    reading_sequence,
+    Drawing, Element, Path, Place, PlaceKind, Point, Stroke, Vec2, places, places_apart,
 };
 use tracelight_task::{Failure, counted};
 use tracelight_units::{LENGTHS, parse};
 
-use crate::no_go::cut;
+use crate::no_go::{LeftOut, cut};
 use crate::sketch::Sketch;
 
 /// Places that are nearer to each other are one, m: a carpenter's pencil is as wide.
 const APART_M: f64 = 1e-3;
 
-/// Length of a dot, m: the spot moves to and fro by it, as light that stands is shut off.
-const DOT_M: f64 = 1e-3;
+/// Points that differ in height by less are one row, m.
+const ROW_M: f64 = 0.01;
 
 /// Shortest and longest cross, m.
 const CROSS_M: (f64, f64) = (4e-3, 1.0);
@@ -59,37 +58,26 @@ impl FromStr for TypedKinds {
     }
 }
 
-/// What marks a place.
+/// Length of the cross that marks a place, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PointMark {
-    /// A dot that goes on and off.
-    Dot,
-    /// Two lines of this length that cross there, m.
-    Cross(f64),
-}
+pub struct PointMark(pub f64);
 
 impl Default for PointMark {
     /// A cross of 20 mm.
     fn default() -> Self {
-        Self::Cross(0.02)
+        Self(0.02)
     }
 }
 
 impl FromStr for PointMark {
     type Err = String;
 
-    /// `dot`, or the length of a cross such as `20mm`.
+    /// Such as `20mm`.
     fn from_str(text: &str) -> Result<Self, String> {
-        if text.trim().eq_ignore_ascii_case("dot") {
-            return Ok(Self::Dot);
-        }
         let (least, most) = CROSS_M;
-        match parse(text, LENGTHS).map_err(|e| format!("{e}; or dot")) {
-            Ok(length) if (least..=most).contains(&length) => Ok(Self::Cross(length)),
-            Ok(_) => {
-                Err(format!("a cross of {text} is not between {:.0} mm and {most:.0} m long", 1e3 * least))
-            }
-            Err(why) => Err(why),
+        match parse(text, LENGTHS).map_err(|e| e.to_string())? {
+            length if (least..=most).contains(&length) => Ok(Self(length)),
+            _ => Err(format!("a cross of {text} is not between {:.0} mm and {most:.0} m long", 1e3 * least)),
         }
     }
 }
@@ -130,11 +118,13 @@ pub fn point_words(place: &Place, (number, of): (u32, u32)) -> String {
 pub(crate) struct Marked {
     pub(crate) points: Vec<Place>,
     pub(crate) drawing: Drawing,
+    /// What of them is left out, where light keeps out of something.
+    pub(crate) left_out: Option<LeftOut>,
     /// What the user should know.
     pub(crate) notes: Vec<String>,
 }
 
-/// Marks the places of a sketch, layer by layer as the drawing has them, each layer's as a page is read. `map` says where on the target a place of the sheet is; light
+/// Marks the places of a sketch, layer by layer as the drawing has them, each layer's row by row. `map` says where on the target a place of the sheet is; light
 /// keeps `margin_m` from the areas.
 ///
 /// # Errors
@@ -175,11 +165,11 @@ pub(crate) fn marked(
         kinds_of(&points.iter().collect::<Vec<_>>())
     )];
     let before = points.len();
-    let lit: Vec<(Place, Vec<Stroke>)> = in_order(points)
+    let lit: Vec<(Place, [Stroke; 2])> = in_order(points)
         .into_iter()
         .map(|place| (asked.mark.strokes(&place), place))
         .filter(|(strokes, _)| {
-            areas.is_empty() || cut(&Drawing { strokes: strokes.clone() }, areas, margin_m).1.strokes == 0
+            areas.is_empty() || cut(&Drawing { strokes: strokes.to_vec() }, areas, margin_m).1.strokes == 0
         })
         .map(|(strokes, place)| (place, strokes))
         .collect();
@@ -191,7 +181,13 @@ pub(crate) fn marked(
         notes.push(format!("{} left out, in what --no-go keeps dark", counted(before - lit.len(), "point")));
     }
     let (points, strokes): (Vec<_>, Vec<_>) = lit.into_iter().unzip();
-    Ok(Marked { points, drawing: Drawing { strokes: strokes.concat() }, notes })
+    let drawing = Drawing { strokes: strokes.concat() };
+    let left_out = (!areas.is_empty()).then(|| LeftOut {
+        strokes: 2 * (before - points.len()),
+        length_m: 2.0 * asked.mark.0 * (before - points.len()) as f64,
+        ..cut(&drawing, areas, margin_m).1
+    });
+    Ok(Marked { points, drawing, left_out, notes })
 }
 
 /// How many there are of which kind, in words.
@@ -201,7 +197,7 @@ fn kinds_of(places: &[&Place]) -> String {
     some.map(|(kind, count)| counted(count, kind.name())).collect::<Vec<_>>().join(", ")
 }
 
-/// Layer by layer as they come first, each as a page is read.
+/// Layer by layer as they come first, each row by row.
 fn in_order(points: Vec<Place>) -> Vec<Place> {
     let mut layers: Vec<Vec<Place>> = Vec::new();
     let mut numbers: HashMap<Option<Arc<str>>, usize> = HashMap::new();
@@ -212,39 +208,33 @@ fn in_order(points: Vec<Place>) -> Vec<Place> {
             None => layers.push(vec![place]),
         }
     }
-    // what differs in height by less than a cross is one row
-    let half = Vec2::new(5e-3, 5e-3);
-    let read = |layer: Vec<Place>| {
-        let boxes: Vec<Rect> =
-            layer.iter().map(|place| Rect::from_points(place.at - half, place.at + half)).collect();
-        reading_sequence(&boxes).into_iter().filter_map(move |number| layer.get(number).cloned())
-    };
-    layers.into_iter().flat_map(read).collect()
+    layers.into_iter().flat_map(rows).collect()
+}
+
+/// Row by row from the top, each from the left.
+fn rows(mut points: Vec<Place>) -> Vec<Place> {
+    points.sort_by(|a, b| b.at.y.total_cmp(&a.at.y));
+    let mut rows: Vec<Vec<Place>> = Vec::new();
+    for place in points {
+        match rows.last_mut().filter(|row| row.iter().all(|first| first.at.y - place.at.y < ROW_M)) {
+            Some(row) => row.push(place),
+            None => rows.push(vec![place]),
+        }
+    }
+    rows.iter_mut().for_each(|row| row.sort_by(|a, b| a.at.x.total_cmp(&b.at.x)));
+    rows.concat()
 }
 
 impl PointMark {
-    /// How many strokes a mark has.
-    #[must_use]
-    pub const fn stroke_count(self) -> usize {
-        match self {
-            Self::Dot => 1,
-            Self::Cross(_) => 2,
-        }
-    }
-
-    fn strokes(self, place: &Place) -> Vec<Stroke> {
+    /// Two lines that cross there.
+    fn strokes(self, place: &Place) -> [Stroke; 2] {
         let line = |half: Vec2| {
             let mut path = Path::new(place.at - half);
             path.push(Element::Line { to: place.at + half });
             let Place { layer, colour, entity, .. } = place;
             Stroke { layer: layer.clone(), colour: *colour, entity: entity.clone(), ..Stroke::new(path) }
         };
-        match self {
-            Self::Dot => vec![line(Vec2::new(0.5 * DOT_M, 0.0))],
-            Self::Cross(length) => {
-                vec![line(Vec2::new(0.5 * length, 0.0)), line(Vec2::new(0.0, -0.5 * length))]
-            }
-        }
+        [line(Vec2::new(0.5 * self.0, 0.0)), line(Vec2::new(0.0, -0.5 * self.0))]
     }
 }
 
@@ -267,12 +257,21 @@ mod tests {
     }
 
     #[test]
+    fn rows_are_read_also_where_columns_stand_further_apart() {
+        let grid = (0..9).map(|k| place("a", 0.7 * f64::from(k % 3), 0.2 * f64::from(k / 3)));
+        let found: Vec<_> = in_order(grid.collect()).iter().map(|p| (p.at.x, p.at.y)).collect();
+        let wanted = [2, 1, 0]
+            .into_iter()
+            .flat_map(|row| [0, 1, 2].map(|column| (0.7 * f64::from(column), 0.2 * f64::from(row))));
+        assert_eq!(found, wanted.collect::<Vec<_>>());
+    }
+
+    #[test]
     fn marks_are_typed_with_a_unit_and_bounds() {
-        assert_eq!("dot".parse(), Ok(PointMark::Dot));
-        assert_eq!("3cm".parse(), Ok(PointMark::Cross(0.03)));
+        assert_eq!("3cm".parse(), Ok(PointMark(0.03)));
         let refused = |text: &str| text.parse::<PointMark>().unwrap_err();
         assert!(refused("1mm").contains("between 4 mm and 1 m"), "{}", refused("1mm"));
-        assert!(refused("20").contains("no unit") && refused("20").contains("or dot"));
+        assert!(refused("20").contains("no unit"));
     }
 
     #[test]
@@ -290,13 +289,9 @@ mod tests {
     #[test]
     fn a_mark_is_about_its_place() {
         let place = place("a", 1.0, 2.0);
-        for mark in [PointMark::Dot, PointMark::default()] {
-            let strokes = mark.strokes(&place);
-            assert_eq!(strokes.len(), mark.stroke_count());
-            for stroke in strokes {
-                assert!(stroke.path.start().midpoint(stroke.path.end()).distance(place.at) < 1e-12);
-                assert_eq!(stroke.layer, place.layer);
-            }
+        for stroke in PointMark::default().strokes(&place) {
+            assert!(stroke.path.start().midpoint(stroke.path.end()).distance(place.at) < 1e-12);
+            assert_eq!(stroke.layer, place.layer);
         }
     }
 }

@@ -29,10 +29,10 @@ pub(crate) fn figures(points: &[PointDone]) -> Option<PointFigures> {
 fn table(points: &[PointDone]) -> Result<Vec<u8>, csv::Error> {
     let mut rows = csv::Writer::from_writer(Vec::new());
     rows.write_record(HEADER)?;
-    for (number, PointDone { place, done_s }) in (1..).zip(points) {
+    for PointDone { number, place, done_s } in points {
         let word = |text: Option<&str>| text.unwrap_or_default().to_owned();
         rows.write_record([
-            number.to_string(),
+            (number + 1).to_string(),
             place.kind.name().to_owned(),
             word(place.block.as_deref()),
             word(place.layer.as_deref()),

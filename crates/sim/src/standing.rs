@@ -3,6 +3,7 @@
 use tracelight_control::{Config, LightBudget};
 use tracelight_maths::{cos, hypot};
 use tracelight_rig::{PanTilt, Segment, TICK_F64_S};
+use tracelight_session::ATTENDED_TICKS;
 use tracelight_stroke::Point;
 use tracelight_trajectory::{Plan, PlanPoint};
 
@@ -52,15 +53,17 @@ pub fn first_standing(rig: &RigConfig, plan: &Plan) -> Option<Standing> {
 /// How long it must be dark between a way that is gone again and again, ticks, so that its light stands nowhere; `None` where no wait of up to
 /// 30 s is long enough.
 pub(crate) fn wait_between(rig: &RigConfig, segments: &[Segment]) -> Option<u32> {
-    /// How long it is gone again and again for the budget to show what it is in the long run, ticks.
-    const LONG_RUN: u32 = 120_000;
+    /// How long it is gone again and again while a wait is looked for, ticks.
+    const SHORT_RUN: u32 = 120_000;
+    /// As long as it may go on at all, and some more: what is found must last for that.
+    const LONG_RUN: u32 = ATTENDED_TICKS + 60_000;
     const MOST: u32 = 30_000;
     const STEP: u32 = 50;
     let config = planned_config(rig);
     let lap = segments.last().map_or(0, Segment::end_tick).max(1);
     let end = segments.last().map(|s| s.sample(f32::from(s.ticks)).map(|at| at.position_rad));
-    let is_enough = |wait: u32| {
-        let laps = LONG_RUN.div_ceil(lap + wait).max(2);
+    let is_enough = |wait: u32, run: u32| {
+        let laps = run.div_ceil(lap + wait).max(2);
         let mut watch = Watch::new(&config);
         (0..laps).all(|_| {
             let is_lit = watch.pass(segments).is_none();
@@ -69,21 +72,28 @@ pub(crate) fn wait_between(rig: &RigConfig, segments: &[Segment]) -> Option<u32>
         })
     };
     let (mut least, mut most) = (0, MOST / STEP);
-    if is_enough(0) {
+    if is_enough(0, LONG_RUN) {
         return Some(0);
     }
-    if !is_enough(MOST) {
+    if !is_enough(MOST, SHORT_RUN) {
         return None;
     }
     while most - least > 1 {
         let middle = least.midpoint(most);
-        if is_enough(middle * STEP) {
+        if is_enough(middle * STEP, SHORT_RUN) {
             most = middle;
         } else {
             least = middle;
         }
     }
-    Some(most * STEP)
+    let mut wait = most * STEP;
+    while !is_enough(wait, LONG_RUN) {
+        wait += wait / 10 + STEP;
+        if wait > MOST {
+            return None;
+        }
+    }
+    Some(wait)
 }
 
 /// How long light may stand by plan, s.

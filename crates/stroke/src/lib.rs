@@ -32,7 +32,6 @@ pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Rect, Vec2};
 pub use order::{
     Effort, OrderOptions, Ordered, StrokeEnd, Travel, least_cost, order, order_by_layer, reading_order,
-    reading_sequence,
 };
 pub use parts::{Measured, Span, parts};
 pub use path::{Element, Path, PathPoint, Piece};

@@ -8,6 +8,25 @@ use tracelight_maths::atan2;
 
 use crate::{Colour, Drawing, Element, Entity, Path, Piece, Stroke};
 
+/// Entities of a DXF whose lines may show a point.
+const POINTS: [&str; 2] = ["POINT", "INSERT"];
+
+/// Entities of drawing files whose ends and corners nobody marks: letters, patterns and measures.
+const WITHOUT: [&str; 12] = [
+    "TEXT",
+    "MTEXT",
+    "ATTRIB",
+    "text",
+    "HATCH",
+    "MPOLYGON",
+    "DIMENSION",
+    "ARC_DIMENSION",
+    "LARGE_RADIAL_DIMENSION",
+    "ACAD_TABLE",
+    "TOLERANCE",
+    "LEADER",
+];
+
 /// What a place is. Where several are in one place, the first of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PlaceKind {
@@ -69,17 +88,21 @@ impl Place {
 }
 
 /// Centres, corners and ends of a drawing's strokes, stroke by stroke. Corners bend by `corner_rad` or more. A stroke of a drawing file has the centres of
-/// all its arcs; any other that of a whole circle alone, since what of a picture is an arc is chance. Lines through one of the `known` points
-/// at their middle only show it: they have no ends.
+/// all its arcs; any other that of a whole circle alone, since what of a picture is an arc is chance. Letters, hatches and dimensions have none. A line of a point or
+/// a block with one of the `known` points at its middle only shows it, and has no ends.
 pub fn places(drawing: &Drawing, known: &[Place], corner_rad: f64) -> Vec<Place> {
     let points = known.iter().filter(|place| place.kind == PlaceKind::Point);
     let shown = Cells::of(points.map(|place| place.at), 1e-6 * size(drawing));
-    let is_shown = |path: &Path| match path.elements() {
-        [Element::Line { to }] => shown.has_near(path.start().midpoint(*to)),
+    let is_of = |stroke: &Stroke, kinds: &[&str]| {
+        stroke.entity.as_ref().is_some_and(|entity| kinds.contains(&&*entity.kind))
+    };
+    let is_shown = |stroke: &Stroke| match stroke.path.elements() {
+        [Element::Line { to }] if is_of(stroke, &POINTS) => shown.has_near(stroke.path.start().midpoint(*to)),
         _ => false,
     };
+    let has_places = |stroke: &&Stroke| !is_shown(stroke) && !is_of(stroke, &WITHOUT);
     let mut found = Vec::new();
-    for stroke in drawing.strokes.iter().filter(|stroke| !is_shown(&stroke.path)) {
+    for stroke in drawing.strokes.iter().filter(has_places) {
         let mut add = |kind, at| found.push(Place::of(stroke, kind, at));
         let path = &stroke.path;
         let centres = path.elements().iter().filter_map(|element| match element {
@@ -217,7 +240,15 @@ mod tests {
 
     #[test]
     fn a_line_that_shows_a_point_has_no_ends() {
-        let dash = polyline(&[(9.0, 5.0), (11.0, 5.0)], false);
+        let line = polyline(&[(9.0, 5.0), (11.0, 5.0)], false);
+        assert_eq!(
+            found(vec![line.clone()], &[known(PlaceKind::Point, (10.0, 5.0))]).len(),
+            2,
+            "a line of its own"
+        );
+        let entity = |kind: &str| Some(Arc::new(Entity { kind: kind.into(), id: None, line: None, more: 0 }));
+        assert_eq!(found(vec![Stroke { entity: entity("MTEXT"), ..line.clone() }], &[]), []);
+        let dash = Stroke { entity: entity("POINT"), ..line };
         assert_eq!(found(vec![dash.clone()], &[known(PlaceKind::Point, (10.0, 5.0))]), []);
         assert_eq!(found(vec![dash], &[known(PlaceKind::Block, (10.0, 5.0))]).len(), 2);
     }

@@ -143,11 +143,10 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
         },
     };
     if args.eye.camera.is_none() {
-        return prepare(
-            &request,
-            named::source(args.name(), &args.reading.options()?, &args.lettering)?,
-            task,
-        );
+        let mut reading = args.reading.options()?;
+        // an end of a dash is no place that anybody marks
+        reading.dashes &= args.points.is_none();
+        return prepare(&request, named::source(args.name(), &reading, &args.lettering)?, task);
     }
     let mut opened = args.eye.open()?;
     let wall = Wall {

@@ -43,32 +43,26 @@ pub fn order_by_layer<C: Travel>(
     Ordered::as_it_is(Drawing { strokes }, start, cost)
 }
 
-/// Puts strokes in the order in which a page is read, see [`reading_sequence`]. Each stroke begins at its left or upper end.
+/// Puts strokes in the order in which a page is read: rows from the top, each from the left; what lies round others
+/// before them. Each stroke begins at its left or upper end. The plane's y points up.
+///
+/// The drawing is cut along the widest gap that runs through all of it, across or down, and each part again (the
+/// XY cut: Nagy & Seth, "Hierarchical representation of optically scanned documents", 1984).
 pub fn reading_order<C: Travel>(drawing: &Drawing, start: Point, cost: &C) -> Ordered {
     let boxes: Vec<Rect> = drawing.strokes.iter().map(bounds).collect();
-    let ports = Ports::of(drawing);
-    let strokes =
-        reading_sequence(&boxes).into_iter().map(|stroke| first_entry(&ports, stroke).drawn(drawing, &ports));
-    Ordered::as_it_is(Drawing { strokes: strokes.collect() }, start, cost)
-}
-
-/// Returns the numbers of boxes in the order in which a page is read: rows from the top, each from the left; what lies round others before them. The plane's
-/// y points up.
-///
-/// The page is cut along the widest gap that runs through all of it, across or down, and each part again (the
-/// XY cut: Nagy & Seth, "Hierarchical representation of optically scanned documents", 1984).
-pub fn reading_sequence(boxes: &[Rect]) -> Vec<usize> {
     let mut sequence = Vec::with_capacity(boxes.len());
     let mut left = vec![(0..boxes.len()).collect::<Vec<_>>()];
     let mut work = 0;
     while let Some(part) = left.pop() {
         work += part.len();
-        match if work > MOST_WORK { Cut::Whole(slanting(boxes, part)) } else { cut(boxes, part) } {
+        match if work > MOST_WORK { Cut::Whole(slanting(&boxes, part)) } else { cut(&boxes, part) } {
             Cut::Parts(parts) => left.extend(parts.into_iter().rev()),
             Cut::Whole(strokes) => sequence.extend(strokes),
         }
     }
-    sequence
+    let ports = Ports::of(drawing);
+    let strokes = sequence.into_iter().map(|stroke| first_entry(&ports, stroke).drawn(drawing, &ports));
+    Ordered::as_it_is(Drawing { strokes: strokes.collect() }, start, cost)
 }
 
 impl Ordered {

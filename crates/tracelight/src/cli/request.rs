@@ -85,11 +85,11 @@ pub(crate) struct TraceArgs {
     /// --points=KINDS only those, such as --points=block,centre. Layer by layer, row by row; points.csv says which were ticked off
     #[arg(help_heading = "At the wall", long, value_name = "KINDS", num_args = 0..=1, require_equals = true, default_missing_value = "all", conflicts_with_all = ["laps", "camera", "step"])]
     pub(crate) points: Option<TypedKinds>,
-    /// What marks a point: a cross of this length, or dot, which goes on and off [default: 20mm]
+    /// Length of the cross that marks a point [default: 20mm]
     #[arg(
         help_heading = "At the wall",
         long,
-        value_name = "LENGTH|dot",
+        value_name = "LENGTH",
         allow_hyphen_values = true,
         requires = "points"
     )]
@@ -193,6 +193,9 @@ impl TraceArgs {
         let message = match waits {
             _ if self.pace.is_some() && !self.is_by_steps() => {
                 "--pace is the speed of --step and --points: give one of them, or --speed".to_owned()
+            }
+            _ if self.by_hand.frame.is_some() && self.laps > 1 => {
+                "--frame shows one drawing before it is drawn once: leave it or --laps out".to_owned()
             }
             Some((flag, _)) if !std::io::stdin().is_terminal() => {
                 format!(

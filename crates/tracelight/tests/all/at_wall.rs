@@ -181,6 +181,11 @@ fn sockets() -> String {
     dxf + &pairs("0 POINT, 8 NAILS, 10 750, 20 750, 0 ENDSEC, 0 EOF")
 }
 
+fn left_point(wall: &mut Terminal, number: u64, done: bool) {
+    let left = wall.until(|event| event["event"] == "left");
+    assert!(left["point"] == number && left["done"] == done, "{left}");
+}
+
 #[test]
 fn points_are_ticked_off_one_after_the_other() {
     let dir = folder("points");
@@ -199,8 +204,7 @@ fn points_are_ticked_off_one_after_the_other() {
         wall.until_state("pointing");
         wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
         wall.press(if number == 5 { "s" } else { " " });
-        let left = wall.until(|event| event["event"] == "left");
-        assert!(left["point"] == number && left["done"] == (number != 5), "{left}");
+        left_point(&mut wall, number, number != 5);
     }
     let summary = wall.until(|event| event["event"] == "summary");
     assert_eq!(wall.child.wait().unwrap().code(), Some(0), "{summary}");
@@ -221,6 +225,44 @@ fn points_are_ticked_off_one_after_the_other() {
     assert_eq!(places, wanted);
     let done: Vec<Option<f64>> = rows.iter().map(|row| row[7].parse().ok()).collect();
     assert!(done[4].is_none() && done.iter().flatten().is_sorted() && done.iter().flatten().count() == 12);
+}
+
+#[test]
+fn the_rest_of_the_points_keeps_its_numbers_and_what_was_not_lit_is_not_done() {
+    let dir = folder("points-rest");
+    let drawing = dir.with_extension("dxf");
+    std::fs::write(&drawing, sockets()).unwrap();
+    let mut command = program();
+    command
+        .arg("trace")
+        .arg(&drawing)
+        .args([
+            "--points=point,block",
+            "--from-stroke",
+            "11",
+            "--no-go=-70cm,-50cm,30cm,30cm",
+            "--distance",
+            "3m",
+        ])
+        .args(["--events", "--real-time", "8", "--out"])
+        .arg(&dir);
+    let mut wall = Terminal::of(command);
+    let checks = wall.until(|event| event["event"] == "preflight")["checks"].clone();
+    let no_go = checks.as_array().unwrap().iter().find(|check| check["name"] == "no-go").unwrap();
+    assert!(no_go["words"].as_str().unwrap().contains("in 1 no-go area"), "{no_go}");
+    let point = wall.until(|event| event["event"] == "point");
+    assert!(point["point"] == 11 && point["points"] == 12, "{point}");
+    wall.press(" ");
+    left_point(&mut wall, 11, false);
+    wall.until_state("pointing");
+    wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
+    wall.press(" ");
+    left_point(&mut wall, 12, true);
+    let summary = wall.until(|event| event["event"] == "summary");
+    assert_eq!(wall.child.wait().unwrap().code(), Some(0), "{summary}");
+    assert_eq!(summary["summary"]["points"], serde_json::json!({ "count": 2, "done": 1 }));
+    let table = std::fs::read_to_string(dir.join("points.csv")).unwrap();
+    assert!(table.lines().nth(1).unwrap().starts_with("11,block,Socket"), "{table}");
 }
 
 #[test]
