@@ -15,7 +15,7 @@ mod plate;
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use plate::plate;
 use tracelight_formats::json::Traced;
-use tracelight_formats::{Coordinates, Sheet, csv, dxf, json, svg};
+use tracelight_formats::{Sheet, csv, dxf, json, svg};
 use tracelight_stroke::Drawing;
 
 fn main() {
@@ -94,7 +94,7 @@ const BLOCKS: &str = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n\
 
 fn drawings(folder: &FilePath) {
     let drawing = plate();
-    let sheet = Sheet { width: 1.0, height: 1.0, metres_per_unit: None, drawing: drawing.clone(), coordinates: Coordinates::Page { unit_m: None } };
+    let sheet = Sheet::in_pixels(1.0, 1.0, drawing.clone());
     write(folder, "plate.svg", svg_of(&drawing));
     write(folder, "plate.dxf", dxf::write(&drawing, 0.3, 0.2));
     write(folder, "plate.csv", csv::write(&drawing, 1e-2));

@@ -2,7 +2,7 @@
 
 use tracelight_formats::gcode::GcodeOptions;
 use tracelight_formats::json::Traced;
-use tracelight_formats::{Coordinates, FormatError, Hidden, ReadOptions, Sheet, csv, dxf, gcode, hpgl, ild, json, svg};
+use tracelight_formats::{FormatError, Hidden, ReadOptions, Sheet, csv, dxf, gcode, hpgl, ild, json, svg};
 use tracelight_stroke::{Affine, Drawing, Element, Path, Point, Stroke, Vec2};
 
 use crate::sound::check_sheet;
@@ -24,7 +24,7 @@ const LONGEST_MESSAGE: usize = 2000;
 /// # Panics
 /// When that does not hold.
 pub fn check(file: &[u8]) {
-    let about = |drawing: Drawing| Sheet { width: 1.0, height: 1.0, metres_per_unit: None, drawing, coordinates: Coordinates::Page { unit_m: None } };
+    let about = |drawing: Drawing| Sheet::in_pixels(1.0, 1.0, drawing);
     let sheets = [
         svg::read(file).map(|r| r.sheet),
         dxf::read(file).map(|r| r.sheet),
@@ -61,7 +61,7 @@ fn check_written(sheet: &Sheet) {
         check_near("SVG", svg::read_with(svg.as_bytes(), &everything).map(|r| r.sheet), &drawing, 1e-3);
         check_near("DXF", dxf::read(dxf.as_bytes()).map(|r| r.sheet), &drawing, 1e-4);
         let back = csv::read(csv.as_bytes());
-        let back = back.map(|drawing| Sheet { width: 1.0, height: 1.0, metres_per_unit: None, drawing, coordinates: Coordinates::Page { unit_m: None } });
+        let back = back.map(|drawing| Sheet::in_pixels(1.0, 1.0, drawing));
         check_near("CSV", back.map(|s| flipped(s, 1.0)), &drawing, 1e-4);
     }
 }

@@ -14,7 +14,7 @@ use tracelight_bench_strokes::case::Wanted;
 use tracelight_bench_strokes::table::{self, Judged};
 use tracelight_bench_strokes::verdict::judge;
 use tracelight_bench_strokes::{Case, Degradation, Kind, Picture, Set, Size, nine, show};
-use tracelight_formats::{Coordinates, FormatError, Sheet, json};
+use tracelight_formats::{FormatError, Sheet, json};
 use tracelight_image::{Grey, ImageError};
 use tracelight_stroke::{Drawing, Score, score};
 use tracelight_vision::{Mode, Options, VisionError, trace};
@@ -201,14 +201,7 @@ fn save(folder: &Path, name: &str, picture: &Picture) -> Result<(), Failure> {
 
 fn save_strokes(file: &Path, size: Size, drawing: Drawing, mode: &str) -> Result<(), Failure> {
     let (width, height) = (size.width as f64, size.height as f64);
-    let sheet = Sheet {
-        width,
-        height,
-        metres_per_unit: None,
-        drawing,
-        coordinates: Coordinates::Page { unit_m: None },
-        places: Vec::new(),
-    };
+    let sheet = Sheet::in_pixels(width, height, drawing);
     write(file, json::write(&json::Traced { sheet, mode: mode.to_owned() }, TRUTH_PX).as_bytes())
 }
 

@@ -4,8 +4,7 @@
 //! A frame is a list of points that the scanners jump to at an even pace; lines are what they draw on the way. So
 //! points are set close enough that the way is straight, and repeated where the mirrors must come to rest.
 
-use tracelight_maths::atan2;
-use tracelight_stroke::{Affine, Colour, Drawing, Path, Point};
+use tracelight_stroke::{Affine, Colour, Drawing, Path, Point, turn_rad};
 
 /// Coordinates go from minus this to this.
 const RANGE: f64 = 32_767.0;
@@ -149,8 +148,7 @@ fn dots(path: &Path, colour: Colour) -> Vec<Dot> {
 }
 
 fn is_corner(before: Point, at: Point, after: Point) -> bool {
-    let (way_in, out) = (at - before, after - at);
-    atan2(way_in.cross(out), way_in.dot(out)).abs() >= CORNER_RAD
+    turn_rad(at - before, after - at) >= CORNER_RAD
 }
 
 /// Equal steps from one point to another, without the first.

@@ -7,7 +7,7 @@ use tracelight_stroke::{Colour, Drawing, Element, Entity, Path, Point, Stroke, S
 
 use crate::layers::Layers;
 use crate::pen::polyline;
-use crate::{Coordinates, FormatError, Sheet, check_size, is_sound};
+use crate::{FormatError, Sheet, check_size, is_sound};
 
 /// Strokes found in a picture, in its pixel frame, and how they were found.
 #[derive(Clone, Debug, PartialEq)]
@@ -192,8 +192,7 @@ pub fn read(bytes: &[u8]) -> Result<Traced, FormatError> {
     if strokes.is_empty() {
         return Err(FormatError::Nothing { hint: "\"strokes\" is empty" });
     }
-    let (drawing, coordinates) = (Drawing { strokes }, Coordinates::Page { unit_m: None });
-    let sheet = Sheet { width, height, metres_per_unit: None, drawing, coordinates, places: Vec::new() };
+    let sheet = Sheet::in_pixels(width, height, Drawing { strokes });
     Ok(Traced { sheet, mode: document.mode })
 }
 

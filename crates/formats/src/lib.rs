@@ -116,6 +116,19 @@ impl Reading {
 }
 
 impl Sheet {
+    /// A drawing whose unit is nobody's but its own, as the pixels of a picture are; `width` and `height` are in it.
+    #[must_use]
+    pub const fn in_pixels(width: f64, height: f64, drawing: Drawing) -> Self {
+        Self {
+            width,
+            height,
+            metres_per_unit: None,
+            drawing,
+            coordinates: Coordinates::Page { unit_m: None },
+            places: Vec::new(),
+        }
+    }
+
     /// Why its true size, where its file says one, cannot be meant.
     pub(crate) fn doubt(&self) -> Option<String> {
         self.metres_per_unit.and_then(|m| meant::doubt([self.width * m, self.height * m]))

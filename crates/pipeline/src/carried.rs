@@ -3,8 +3,7 @@
 
 use std::f64::consts::PI;
 
-use tracelight_maths::atan2;
-use tracelight_stroke::{Drawing, FitOptions, Path, Piece, Point, Stroke, fit};
+use tracelight_stroke::{Drawing, FitOptions, Path, Piece, Point, Stroke, fit, turn_rad};
 
 /// Spacing of the points that carry a stroke, px.
 const SPACING_PX: f64 = 1.5;
@@ -68,6 +67,5 @@ fn stretches(path: &Path) -> Vec<Vec<Point>> {
 /// Whether one piece goes on in another direction than the one before ends in.
 #[must_use]
 pub fn has_corner(before: Piece, after: Piece) -> bool {
-    let (a, b) = (before.end_tangent(), after.start_tangent());
-    atan2(a.cross(b), a.dot(b)).abs() > CORNER_RAD
+    turn_rad(before.end_tangent(), after.start_tangent()) > CORNER_RAD
 }

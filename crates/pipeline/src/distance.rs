@@ -16,3 +16,15 @@ pub enum DistanceFrom {
     /// A camera.
     Camera,
 }
+
+impl DistanceFrom {
+    /// In words.
+    pub(crate) const fn words(self) -> &'static str {
+        match self {
+            Self::Assumed => "assumed, --distance tells it",
+            Self::Asked => "as told",
+            Self::File => "by the head file",
+            Self::Camera => "found by the camera",
+        }
+    }
+}

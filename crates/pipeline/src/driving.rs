@@ -98,14 +98,17 @@ impl Driving {
                 1e3 * bend.point.y
             ));
         }
-        let (set, top) = (plan.set_speed_m_s, plan.top_speed_m_s());
-        if top < REACHED * set {
-            remarks.push(format!(
-                "{set:.3} m/s is reached nowhere: the lines are too short or too bent; the fastest is {top:.3} m/s"
-            ));
-        }
+        remarks.extend(unreached(plan));
         remarks
     }
+}
+
+/// Says that a plan reaches its speed nowhere, if it does not.
+pub(crate) fn unreached(plan: &Plan) -> Option<String> {
+    let (set, top) = (plan.set_speed_m_s, plan.top_speed_m_s());
+    (top < REACHED * set).then(|| {
+        format!("{set:.3} m/s is reached nowhere: the lines are too short or too bent; the fastest is {top:.3} m/s")
+    })
 }
 
 /// A speed counts as reached from this share of it on.

@@ -40,23 +40,53 @@ impl LeftOut {
     }
 }
 
-/// A drawing without what lies in one of the areas, or nearer to one than the margin, and what that is. Areas are closed paths; what lies within any of them
-/// is dark, also within a ring's hole.
-pub(crate) fn cut(drawing: &Drawing, areas: &[Path], margin_m: f64) -> (Drawing, LeftOut) {
-    let areas: Vec<Area> = areas.iter().filter_map(Area::of).collect();
-    let mut left_out = LeftOut { areas: areas.len(), margin_mm: 1e3 * margin_m, ..LeftOut::default() };
-    let mut strokes = Vec::new();
-    for stroke in &drawing.strokes {
-        let (parts, lost_m) = lit_parts(&stroke.path, &|p| clearance(&areas, p) - margin_m);
-        if lost_m == 0.0 {
-            strokes.push(stroke.clone());
-            continue;
-        }
-        left_out.strokes += 1;
-        left_out.length_m += lost_m;
-        strokes.extend(parts.into_iter().map(|path| stroke.along(path)));
+/// Areas that are kept dark: closed paths. What lies within any of them is dark, also within a ring's hole.
+pub(crate) struct KeptDark {
+    areas: Vec<Area>,
+    /// How far light stays from them, m.
+    margin_m: f64,
+}
+
+impl KeptDark {
+    pub(crate) fn of(areas: &[Path], margin_m: f64) -> Self {
+        Self { areas: areas.iter().filter_map(Area::of).collect(), margin_m }
     }
-    (Drawing { strokes }, left_out)
+
+    /// Whether there is none.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.areas.is_empty()
+    }
+
+    /// Nothing left out yet.
+    pub(crate) fn nothing_left_out(&self) -> LeftOut {
+        LeftOut { areas: self.areas.len(), margin_mm: 1e3 * self.margin_m, ..LeftOut::default() }
+    }
+
+    /// A drawing without what lies in one of the areas, or nearer to one than the margin, and what that is.
+    pub(crate) fn cut(&self, drawing: &Drawing) -> (Drawing, LeftOut) {
+        let mut left_out = self.nothing_left_out();
+        let mut strokes = Vec::new();
+        for stroke in &drawing.strokes {
+            let (parts, lost_m) = self.lit_parts(&stroke.path);
+            if lost_m == 0.0 {
+                strokes.push(stroke.clone());
+                continue;
+            }
+            left_out.strokes += 1;
+            left_out.length_m += lost_m;
+            strokes.extend(parts.into_iter().map(|path| stroke.along(path)));
+        }
+        (Drawing { strokes }, left_out)
+    }
+
+    /// Whether all of a path may be lit.
+    pub(crate) fn is_clear(&self, path: &Path) -> bool {
+        self.is_empty() || self.lit_parts(path).1 == 0.0
+    }
+
+    fn lit_parts(&self, path: &Path) -> (Vec<Path>, f64) {
+        lit_parts(path, &|p| clearance(&self.areas, p) - self.margin_m)
+    }
 }
 
 /// The border of an area.
@@ -177,6 +207,10 @@ mod tests {
     use tracelight_stroke::{Element, Stroke};
 
     use super::*;
+
+    fn cut(drawing: &Drawing, areas: &[Path], margin_m: f64) -> (Drawing, LeftOut) {
+        KeptDark::of(areas, margin_m).cut(drawing)
+    }
 
     fn square(side: f64) -> Path {
         rectangle(Rect::new(-0.5 * side, -0.5 * side, 0.5 * side, 0.5 * side)).unwrap()

@@ -12,7 +12,7 @@ use crate::bent::bent;
 use crate::choice::Choice;
 use crate::edges::Origin;
 use crate::frame::Frame;
-use crate::no_go::{LeftOut, cut, rectangle};
+use crate::no_go::{KeptDark, LeftOut, rectangle};
 use crate::points::{Marked, Points, marked};
 use crate::sketch::{Sketch, sketch_at};
 use crate::tracing::{LeastLength, Tracing};
@@ -235,15 +235,15 @@ pub fn place(sketch: &Sketch, placing: &Placing) -> Result<Placed, Failure> {
     let layers = moved(areas, map, unit_m).ok_or_else(beyond)?;
     let areas = placing.no_go.iter().filter_map(|area| rectangle(*area));
     let areas: Vec<Path> = layers.strokes.into_iter().map(|stroke| stroke.path).chain(areas).collect();
+    let dark = KeptDark::of(&areas, placing.margin_m);
     if let Some(points) = &placing.points {
         let map = |at: Point| map.apply(at);
-        let around = (areas.as_slice(), placing.margin_m);
-        let Marked { points, drawing, left_out, notes } = marked(sketch, points, &map, around)?;
+        let Marked { points, drawing, left_out, notes } = marked(sketch, points, &map, &dark)?;
         (placed.placed.points, placed.placed.drawing) = (points, drawing);
         placed.placed.left_out = left_out;
         placed.placed.notes.extend(notes);
-    } else if !areas.is_empty() {
-        let (drawing, left_out) = cut(&placed.placed.drawing, &areas, placing.margin_m);
+    } else if !dark.is_empty() {
+        let (drawing, left_out) = dark.cut(&placed.placed.drawing);
         if drawing.strokes.is_empty() {
             let message = "all of the drawing lies in what --no-go keeps dark: move it, or keep less dark";
             return Err(Failure::failed("no-strokes", message));
@@ -252,10 +252,7 @@ pub fn place(sketch: &Sketch, placing: &Placing) -> Result<Placed, Failure> {
         placed.placed.drawing = drawing;
         placed.placed.left_out = Some(left_out);
     }
-    placed.placed.frame = placing.frame.map(|frame| {
-        let frame = frame.of(&placed.placed.drawing);
-        if areas.is_empty() { frame } else { cut(&frame, &areas, placing.margin_m).0 }
-    });
+    placed.placed.frame = placing.frame.map(|frame| dark.cut(&frame.of(&placed.placed.drawing)).0);
     Ok(placed.placed)
 }
 

@@ -1,16 +1,14 @@
 //! Places of a drawing, each marked on the target by a cross.
 
-use std::collections::HashMap;
 use std::str::FromStr;
-use std::sync::Arc;
 
 use tracelight_stroke::{
-    Drawing, Element, Path, Place, PlaceKind, Point, Stroke, Vec2, places, places_apart,
+    Drawing, Element, Path, Place, PlaceKind, Point, Stroke, Vec2, by_layer, places, places_apart,
 };
 use tracelight_task::{Failure, counted};
 use tracelight_units::{LENGTHS, parse};
 
-use crate::no_go::{LeftOut, cut};
+use crate::no_go::{KeptDark, LeftOut};
 use crate::sketch::Sketch;
 
 /// Places that are nearer to each other are one, m: a carpenter's pencil is as wide.
@@ -125,7 +123,7 @@ pub(crate) struct Marked {
 }
 
 /// Marks the places of a sketch, layer by layer as the drawing has them, each layer's row by row. `map` says where on the target a place of the sheet is; light
-/// keeps `margin_m` from the areas.
+/// keeps out of what is `dark`.
 ///
 /// # Errors
 /// `no-points` where there is none, or none that may be lit; `too-many-points`; `align` for one beyond the horizon.
@@ -133,20 +131,20 @@ pub(crate) fn marked(
     sketch: &Sketch,
     asked: &Points,
     map: &dyn Fn(Point) -> Option<Point>,
-    (areas, margin_m): (&[Path], f64),
+    dark: &KeptDark,
 ) -> Result<Marked, Failure> {
     let found = places(&sketch.drawing, &sketch.places, asked.corner_rad);
-    let all: Vec<&Place> = sketch.places.iter().chain(&found).collect();
-    let wanted = all.iter().filter(|place| asked.kinds.is_empty() || asked.kinds.contains(&place.kind));
+    let all = sketch.places.iter().chain(&found);
+    let wanted = all.clone().filter(|place| asked.kinds.is_empty() || asked.kinds.contains(&place.kind));
     let on_target = wanted.map(|place| map(place.at).map(|at| place.moved(at))).collect::<Option<Vec<_>>>();
     let beyond = || Failure::usage("align", "--align: the marks put a point beyond the horizon of the wall");
     let points = places_apart(on_target.ok_or_else(beyond)?, APART_M);
     if points.is_empty() {
         let kinds: Vec<_> = asked.kinds.iter().map(|kind| kind.name()).collect();
-        let message = match all.is_empty() {
+        let message = match all.clone().next().is_none() {
             true => "--points: the drawing has no point, block, centre, corner or end".to_owned(),
             false => {
-                format!("--points={}: there is none; the drawing has {}", kinds.join(","), kinds_of(&all))
+                format!("--points={}: there is none; the drawing has {}", kinds.join(","), kinds_of(all))
             }
         };
         return Err(Failure::failed("no-points", message));
@@ -155,60 +153,45 @@ pub(crate) fn marked(
         let message = format!(
             "--points: the drawing has {} of them ({}), and at most {MOST} are gone to: name the kinds, such as --points=centre,corner, or a --layer",
             points.len(),
-            kinds_of(&points.iter().collect::<Vec<_>>())
+            kinds_of(points.iter())
         );
         return Err(Failure::failed("too-many-points", message));
     }
-    let mut notes = vec![format!(
-        "marks {}: {}",
-        counted(points.len(), "point"),
-        kinds_of(&points.iter().collect::<Vec<_>>())
-    )];
+    let mut notes = vec![format!("marks {}: {}", counted(points.len(), "point"), kinds_of(points.iter()))];
     let before = points.len();
-    let lit: Vec<(Place, [Stroke; 2])> = in_order(points)
+    let (points, strokes): (Vec<_>, Vec<_>) = in_order(points)
         .into_iter()
         .map(|place| (asked.mark.strokes(&place), place))
-        .filter(|(strokes, _)| {
-            areas.is_empty() || cut(&Drawing { strokes: strokes.to_vec() }, areas, margin_m).1.strokes == 0
-        })
+        .filter(|(strokes, _)| strokes.iter().all(|stroke| dark.is_clear(&stroke.path)))
         .map(|(strokes, place)| (place, strokes))
-        .collect();
-    if lit.is_empty() {
+        .unzip();
+    if strokes.is_empty() {
         let message = "all points lie in what --no-go keeps dark, or too near to it: keep less dark, or make their crosses smaller (--mark)";
         return Err(Failure::failed("no-points", message));
     }
-    if lit.len() < before {
-        notes.push(format!("{} left out, in what --no-go keeps dark", counted(before - lit.len(), "point")));
+    let dropped = before - points.len();
+    if dropped > 0 {
+        notes.push(format!("{} left out, in what --no-go keeps dark", counted(dropped, "point")));
     }
-    let (points, strokes): (Vec<_>, Vec<_>) = lit.into_iter().unzip();
-    let drawing = Drawing { strokes: strokes.concat() };
-    let left_out = (!areas.is_empty()).then(|| LeftOut {
-        strokes: 2 * (before - points.len()),
-        length_m: 2.0 * asked.mark.0 * (before - points.len()) as f64,
-        ..cut(&drawing, areas, margin_m).1
+    let left_out = (!dark.is_empty()).then(|| LeftOut {
+        strokes: 2 * dropped,
+        length_m: 2.0 * asked.mark.0 * dropped as f64,
+        ..dark.nothing_left_out()
     });
+    let drawing = Drawing { strokes: strokes.concat() };
     Ok(Marked { points, drawing, left_out, notes })
 }
 
 /// How many there are of which kind, in words.
-fn kinds_of(places: &[&Place]) -> String {
-    let count = |kind: PlaceKind| places.iter().filter(|place| place.kind == kind).count();
+fn kinds_of<'a>(places: impl Iterator<Item = &'a Place> + Clone) -> String {
+    let count = |kind: PlaceKind| places.clone().filter(|place| place.kind == kind).count();
     let some = PlaceKind::ALL.into_iter().map(|kind| (kind, count(kind))).filter(|(_, count)| *count > 0);
     some.map(|(kind, count)| counted(count, kind.name())).collect::<Vec<_>>().join(", ")
 }
 
 /// Layer by layer as they come first, each row by row.
 fn in_order(points: Vec<Place>) -> Vec<Place> {
-    let mut layers: Vec<Vec<Place>> = Vec::new();
-    let mut numbers: HashMap<Option<Arc<str>>, usize> = HashMap::new();
-    for place in points {
-        let number = *numbers.entry(place.layer.clone()).or_insert(layers.len());
-        match layers.get_mut(number) {
-            Some(layer) => layer.push(place),
-            None => layers.push(vec![place]),
-        }
-    }
-    layers.into_iter().flat_map(rows).collect()
+    by_layer(points, |place| place.layer.clone()).into_iter().flat_map(rows).collect()
 }
 
 /// Row by row from the top, each from the left.
@@ -216,7 +199,7 @@ fn rows(mut points: Vec<Place>) -> Vec<Place> {
     points.sort_by(|a, b| b.at.y.total_cmp(&a.at.y));
     let mut rows: Vec<Vec<Place>> = Vec::new();
     for place in points {
-        match rows.last_mut().filter(|row| row.iter().all(|first| first.at.y - place.at.y < ROW_M)) {
+        match rows.last_mut().filter(|row| row.first().is_some_and(|first| first.at.y - place.at.y < ROW_M)) {
             Some(row) => row.push(place),
             None => rows.push(vec![place]),
         }
@@ -240,6 +223,8 @@ impl PointMark {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
 
     fn place(layer: &str, x: f64, y: f64) -> Place {

@@ -7,7 +7,7 @@ use tracelight_task::counted;
 use tracelight_trajectory::Plan;
 
 use crate::distance::DistanceFrom;
-use crate::driving::{Driving, REACHED};
+use crate::driving::{Driving, unreached};
 use crate::placed::Placed;
 use crate::standing::Standing;
 
@@ -104,13 +104,10 @@ fn homed(is_homed: bool) -> Check {
 
 fn distance(standing: &Standing) -> Check {
     let m = standing.distance_m;
-    let (is_unknown, who) = match standing.from {
-        DistanceFrom::Assumed => {
-            (true, "assumed: every size is wrong as far as it is; measure it, --distance")
-        }
-        DistanceFrom::Asked => (false, "as told"),
-        DistanceFrom::File => (false, "by the head file"),
-        DistanceFrom::Camera => (false, "found by the camera"),
+    let is_unknown = standing.from == DistanceFrom::Assumed;
+    let who = match is_unknown {
+        true => "assumed: every size is wrong as far as it is; measure it, --distance",
+        false => standing.from.words(),
     };
     Check::warned_if("distance", is_unknown, format!("{m:.3} m, {who}"))
 }
@@ -146,14 +143,9 @@ fn torque(plan: &Plan) -> Check {
 }
 
 fn speed(plan: &Plan) -> Check {
-    let (set, top) = (plan.set_speed_m_s, plan.top_speed_m_s());
-    let is_slow = top < REACHED * set;
-    let words = match is_slow {
-        true => {
-            format!("{set:.3} m/s is reached nowhere, {top:.3} at most: the lines are too short or too bent")
-        }
-        false => format!("lit at {set:.3} m/s"),
-    };
+    let unreached = unreached(plan);
+    let is_slow = unreached.is_some();
+    let words = unreached.unwrap_or_else(|| format!("lit at {:.3} m/s", plan.set_speed_m_s));
     Check::warned_if("speed", is_slow, words)
 }
 

@@ -71,12 +71,7 @@ impl Standing {
     /// In words: one line.
     #[must_use]
     pub fn words(&self) -> String {
-        let who = match self.from {
-            DistanceFrom::Assumed => "assumed, --distance tells it",
-            DistanceFrom::Asked => "as told",
-            DistanceFrom::File => "by the head file",
-            DistanceFrom::Camera => "found by the camera",
-        };
+        let who = self.from.words();
         format!(
             "{:.3} m from the wall ({who}), beam up to {:.0}° from square; a pointer's spot {:.1} to {:.1} mm; best from {:.2} m",
             self.distance_m, self.largest_angle_deg, self.spot_mm, self.longest_spot_mm, self.best_distance_m

@@ -5,7 +5,7 @@ use std::path::Path;
 use tracelight_formats::gcode::GcodeOptions;
 use tracelight_formats::ild::Show;
 use tracelight_formats::json::Traced;
-use tracelight_formats::{Coordinates, Sheet, csv, dxf, gcode, hpgl, ild, json, svg};
+use tracelight_formats::{Sheet, csv, dxf, gcode, hpgl, ild, json, svg};
 use tracelight_pipeline::{Page, PaperSeen, Placed, QualityFigures, Sketch};
 use tracelight_stroke::Point;
 use tracelight_task::{Failure, counted};
@@ -202,9 +202,7 @@ fn round(px: f64) -> f64 {
 #[must_use]
 pub fn json(sketch: &Sketch) -> String {
     let (drawing, (width, height)) = sketch.in_picture();
-    let coordinates = Coordinates::Page { unit_m: None };
-    let drawing = drawing.clone();
-    let sheet = Sheet { width, height, metres_per_unit: None, drawing, coordinates, places: Vec::new() };
+    let sheet = Sheet::in_pixels(width, height, drawing.clone());
     let text = json::write(&Traced { sheet, mode: sketch.mode.to_owned() }, POINTS_TOLERANCE_PX);
     let quality = sketch.quality.as_ref().map(QualityFigures::of);
     let quality = quality.and_then(|figures| serde_json::to_string(&figures).ok());

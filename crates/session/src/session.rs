@@ -111,9 +111,7 @@ impl<R: Rig> Session<R> {
     /// # Errors
     /// Why it is refused; nothing has changed then.
     pub fn request(&mut self, request: Request) -> Result<(), Refused> {
-        use State::{
-            Armed, Done, Fault, Parking, Paused, Pausing, Ready, Returning, Stopped, Tracing, Unhomed,
-        };
+        use State::{Armed, Done, Fault, Parking, Paused, Pausing, Ready, Returning, Stopped, Unhomed};
         if self.outbox.len() >= MOST_WAITING && request != Request::Stop {
             return Err(Refused::Busy);
         }
@@ -149,7 +147,7 @@ impl<R: Rig> Session<R> {
                 self.park();
                 self.next = Some(job);
             }
-            (Request::Pause(when), state) if matches!(state, Tracing | Returning) || state.repeats() => {
+            (Request::Pause(when), state) if state.traces() || state == Returning => {
                 self.send(if when == When::AtOnce { Command::Disarm } else { Command::Pause });
                 self.enter(Pausing);
             }
@@ -446,20 +444,14 @@ impl<R: Rig> Session<R> {
             }
             // an open interlock, for instance, keeps it from arming
             state
-                if state.is_on()
-                    && state != State::Pausing
+                if (state.traces() || state == State::Returning)
                     && phase == Phase::Dark
                     && !has_ended
                     && (answered || self.waited() > ANSWER_TICKS) =>
             {
                 State::Stopped
             }
-            state
-                if (state == State::Tracing || state.repeats())
-                    && matches!(phase, Phase::Holding | Phase::Testing) =>
-            {
-                State::Returning
-            }
+            state if state.traces() && matches!(phase, Phase::Holding | Phase::Testing) => State::Returning,
             State::Returning if matches!(phase, Phase::Tracing | Phase::Done) => self.on(),
             State::Pausing if phase == Phase::Dark => State::Paused,
             State::Parking if self.is_parked() => State::Ready,

@@ -97,7 +97,12 @@ impl State {
 
     /// Whether light may leave the head.
     pub const fn may_light(self) -> bool {
-        matches!(self, Self::Tracing | Self::Pausing) || self.repeats()
+        self.traces() || matches!(self, Self::Pausing)
+    }
+
+    /// Whether the plan's clock runs for a job, done once or again and again.
+    pub const fn traces(self) -> bool {
+        matches!(self, Self::Tracing) || self.repeats()
     }
 
     /// Whether a job is done again and again.
@@ -107,6 +112,6 @@ impl State {
 
     /// Whether a job goes on by itself.
     pub const fn is_on(self) -> bool {
-        matches!(self, Self::Tracing | Self::Returning | Self::Pausing) || self.repeats()
+        self.traces() || matches!(self, Self::Returning | Self::Pausing)
     }
 }

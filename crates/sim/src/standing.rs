@@ -33,7 +33,7 @@ pub struct Standing {
 pub fn first_standing(rig: &RigConfig, plan: &Plan) -> Option<Standing> {
     let most_s = planned_s(rig);
     let config = planned_config(rig);
-    let tick = Watch::new(&config).pass(&plan.segments)?;
+    let tick = Watch::new(&config).pass(moments(&plan.segments))?;
     let point = plan.points.get(tick).or(plan.points.last())?;
     let about_rad = ABOUT_RADII * f64::from(config.standing_radius_rad);
     let is_near = |other: &&PlanPoint| {
@@ -62,11 +62,12 @@ pub(crate) fn wait_between(rig: &RigConfig, segments: &[Segment]) -> Option<u32>
     let config = planned_config(rig);
     let lap = segments.last().map_or(0, Segment::end_tick).max(1);
     let end = segments.last().map(|s| s.sample(f32::from(s.ticks)).map(|at| at.position_rad));
+    let way: Vec<_> = moments(segments).collect();
     let is_enough = |wait: u32, run: u32| {
         let laps = run.div_ceil(lap + wait).max(2);
         let mut watch = Watch::new(&config);
         (0..laps).all(|_| {
-            let is_lit = watch.pass(segments).is_none();
+            let is_lit = watch.pass(way.iter().copied()).is_none();
             watch.wait(wait, end);
             is_lit
         })
@@ -106,6 +107,27 @@ fn planned_config(rig: &RigConfig) -> Config {
     Config { standing_ticks: (planned_s(rig) / TICK_F64_S) as u32, ..rig.control_config() }
 }
 
+/// A tick of a way: where the head is to be, how fast, and whether it is lit.
+#[derive(Clone, Copy)]
+struct Moment {
+    angle_rad: PanTilt<f32>,
+    rate_rad_s: PanTilt<f32>,
+    gate: bool,
+}
+
+/// The ticks of segments that follow each other without a gap.
+fn moments(segments: &[Segment]) -> impl Iterator<Item = Moment> {
+    let of = |segment: &Segment, n: u16| {
+        let at = segment.sample(f32::from(n));
+        Moment {
+            angle_rad: at.map(|setpoint| setpoint.position_rad),
+            rate_rad_s: at.map(|setpoint| setpoint.velocity_rad_s),
+            gate: segment.gate,
+        }
+    };
+    segments.iter().flat_map(move |segment| (0..segment.ticks).map(move |n| of(segment, n)))
+}
+
 /// A light budget, looked after along segments.
 struct Watch<'a> {
     config: &'a Config,
@@ -118,18 +140,14 @@ impl<'a> Watch<'a> {
         Self { config, budget: LightBudget::new(), gate: false }
     }
 
-    /// The first tick of segments in which a controller so configured would be dark by its light budget.
-    fn pass(&mut self, segments: &[Segment]) -> Option<usize> {
-        for segment in segments {
-            for n in 0..segment.ticks {
-                let at = segment.sample(f32::from(n));
-                let angle_rad = at.map(|setpoint| setpoint.position_rad);
-                self.budget.tick(self.config, Some(angle_rad), self.gate, None);
-                self.gate = segment.gate;
-                let rate_rad_s = at.map(|setpoint| setpoint.velocity_rad_s);
-                if self.gate && self.budget.is_spent(self.config, Some((angle_rad, rate_rad_s))) {
-                    return Some(segment.start_tick as usize + usize::from(n));
-                }
+    /// The first tick of a way in which a controller so configured would be dark by its light budget.
+    fn pass(&mut self, way: impl IntoIterator<Item = Moment>) -> Option<usize> {
+        for (tick, moment) in way.into_iter().enumerate() {
+            self.budget.tick(self.config, Some(moment.angle_rad), self.gate, None);
+            self.gate = moment.gate;
+            let place = (moment.angle_rad, moment.rate_rad_s);
+            if self.gate && self.budget.is_spent(self.config, Some(place)) {
+                return Some(tick);
             }
         }
         None

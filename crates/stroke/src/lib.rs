@@ -31,10 +31,11 @@ pub use extent::{extent, extent_of};
 pub use fit::{FitOptions, Parabola, fit};
 pub use kurbo::{Affine, Point, Rect, Vec2};
 pub use order::{
-    Effort, OrderOptions, Ordered, StrokeEnd, Travel, least_cost, order, order_by_layer, reading_order,
+    Effort, OrderOptions, Ordered, StrokeEnd, Travel, by_layer, least_cost, order, order_by_layer,
+    reading_order,
 };
 pub use parts::{Measured, Span, parts};
-pub use path::{Element, Path, PathPoint, Piece};
+pub use path::{Element, Path, PathPoint, Piece, turn_rad};
 pub use places::{Place, PlaceKind, places, places_apart};
 pub use polyline::polyline_length;
 pub use simplify::{distance_to_segment, simplify};

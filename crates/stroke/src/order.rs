@@ -24,7 +24,7 @@ mod travel;
 use kurbo::Point;
 
 use crate::Drawing;
-pub use followed::{order_by_layer, reading_order};
+pub use followed::{by_layer, order_by_layer, reading_order};
 use ports::Ports;
 use route::Route;
 pub use travel::{StrokeEnd, Travel};

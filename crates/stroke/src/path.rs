@@ -1,5 +1,11 @@
 use kurbo::{Affine, CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, Point, Vec2};
-use tracelight_maths::{acos, sin_cos};
+use tracelight_maths::{acos, atan2, sin_cos};
+
+/// By how much a direction changes to another one, rad, without its sign.
+#[must_use]
+pub fn turn_rad(incoming: Vec2, outgoing: Vec2) -> f64 {
+    atan2(incoming.cross(outgoing), incoming.dot(outgoing)).abs()
+}
 
 /// One piece of a [`Path`], from the end of the piece before it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use kurbo::Point;
-use tracelight_maths::atan2;
 
+use crate::path::turn_rad;
 use crate::{Colour, Drawing, Element, Entity, Path, Piece, Stroke};
 
 /// Entities of a DXF whose lines may show a point.
@@ -117,7 +117,8 @@ pub fn places(drawing: &Drawing, known: &[Place], corner_rad: f64) -> Vec<Place>
         }
         let mut before = path.pieces().last().filter(|_| path.is_closed());
         for piece in path.pieces() {
-            if before.is_some_and(|before| bend_rad(&before, &piece) >= corner_rad) {
+            let turns = |before: Piece| turn_rad(before.end_tangent(), piece.start_tangent());
+            if before.is_some_and(|before| turns(before) >= corner_rad) {
                 add(PlaceKind::Corner, piece.from);
             }
             before = Some(piece);
@@ -127,12 +128,6 @@ pub fn places(drawing: &Drawing, known: &[Place], corner_rad: f64) -> Vec<Place>
         }
     }
     found
-}
-
-/// By how much the direction changes from one piece to the next, rad.
-fn bend_rad(before: &Piece, after: &Piece) -> f64 {
-    let (a, b) = (before.end_tangent(), after.start_tangent());
-    atan2(a.cross(b), a.dot(b)).abs()
 }
 
 /// Whether a path is one whole circle.
@@ -153,7 +148,7 @@ fn size(drawing: &Drawing) -> f64 {
 pub fn places_apart(places: Vec<Place>, least: f64) -> Vec<Place> {
     let mut by_kind: Vec<usize> = (0..places.len()).collect();
     by_kind.sort_by_key(|&number| (places[number].kind, number));
-    let mut cells = Cells { side: least.max(f64::MIN_POSITIVE), points: HashMap::new() };
+    let mut cells = Cells::of([].into_iter(), least);
     let mut stays = vec![false; places.len()];
     for number in by_kind {
         let at = places[number].at;

@@ -1,14 +1,13 @@
 //! Cuts strokes into legs: a corner is passed, rounded, or ends the leg.
 
 use tracelight_maths::{sin, tan};
-use tracelight_stroke::{Path, Piece};
+use tracelight_stroke::{Path, Piece, turn_rad};
 
 use crate::leg::{DUST_M, Fate, LENGTH_TOLERANCE_M, Leg};
 use crate::machine::Machine;
 use crate::mark::mark;
 use crate::request::{End, LitSpeed, MarkRequest, PlanRequest};
 use crate::retime::steady_speed;
-use crate::rounding::turn_rad;
 
 /// A break of the tangent from which on the head stops: 20°. Below it the spot passes with the speed that keeps the
 /// jump of velocity under [`JUMP_M_S`].

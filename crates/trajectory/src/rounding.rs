@@ -1,12 +1,7 @@
 //! Rounds corners.
 
-use tracelight_maths::{atan2, sin, tan};
-use tracelight_stroke::{Element, Piece, Vec2};
-
-/// The angle between two directions, rad.
-pub(crate) fn turn_rad(incoming: Vec2, outgoing: Vec2) -> f64 {
-    atan2(incoming.cross(outgoing), incoming.dot(outgoing)).abs()
-}
+use tracelight_maths::{sin, tan};
+use tracelight_stroke::{Element, Piece, turn_rad};
 
 /// The curve that leads from the end of one piece to the start of the next, touching both: between straight lines cut
 /// back equally, a circle's arc but for 3 parts in 10 000 of its radius.
@@ -24,7 +19,7 @@ mod tests {
     use tracelight_maths::planar;
 
     use super::*;
-    use tracelight_stroke::Point;
+    use tracelight_stroke::{Point, Vec2};
 
     #[test]
     fn a_rounded_corner_keeps_to_its_distance() {

@@ -62,7 +62,6 @@ pub(super) struct Spot {
 }
 
 /// All of some items that is visible, in file order.
-#[derive(Default)]
 pub(super) struct Unfolded {
     pub(super) drawn: Vec<Drawn>,
     pub(super) spots: Vec<Spot>,

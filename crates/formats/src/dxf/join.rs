@@ -7,8 +7,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::TAU;
 
-use tracelight_maths::atan2;
-use tracelight_stroke::{Element, Path, Piece, Point, Vec2};
+use tracelight_stroke::{Element, Path, Piece, Point, Vec2, turn_rad};
 
 use super::blocks::Drawn;
 use crate::circular::arc_between;
@@ -120,8 +119,7 @@ fn is_near(a: End, b: End, drawn: &[Drawn]) -> bool {
 
 /// The change of direction on the way in by one end and out by the other, rad.
 fn turn(a: End, b: End, drawn: &[Drawn]) -> f64 {
-    let (out_a, out_b) = (outwards(a, drawn), outwards(b, drawn));
-    atan2(out_a.cross(-out_b), out_a.dot(-out_b)).abs()
+    turn_rad(outwards(a, drawn), -outwards(b, drawn))
 }
 
 /// The direction into the path at one of its ends.

@@ -18,14 +18,7 @@ fn example() -> Traced {
         },
         Stroke { kind: StrokeKind::Outline, ..Stroke::new(square) },
     ];
-    let sheet = Sheet {
-        width: 640.0,
-        height: 480.0,
-        metres_per_unit: None,
-        drawing: Drawing { strokes },
-        coordinates: Coordinates::Page { unit_m: None },
-        places: Vec::new(),
-    };
+    let sheet = Sheet::in_pixels(640.0, 480.0, Drawing { strokes });
     Traced { sheet, mode: "auto".into() }
 }
 
@@ -101,15 +94,7 @@ fn broken_json_is_refused_with_its_place() {
 fn every_bit_of_a_number_comes_back() {
     let x = 0.003_711_742_597_104_224_2; // the quick way to read numbers is one bit off here
     let path = Path::polyline(&[Point::ORIGIN, Point::new(x, 1.0)], false).unwrap();
-    let drawing = Drawing { strokes: vec![Stroke::new(path)] };
-    let sheet = Sheet {
-        width: 1.0,
-        height: 1.0,
-        metres_per_unit: None,
-        drawing,
-        coordinates: Coordinates::Page { unit_m: None },
-        places: Vec::new(),
-    };
+    let sheet = Sheet::in_pixels(1.0, 1.0, Drawing { strokes: vec![Stroke::new(path)] });
     let traced = Traced { sheet, mode: "auto".into() };
     assert_eq!(read(write(&traced, 0.1).as_bytes()).unwrap(), traced);
 }

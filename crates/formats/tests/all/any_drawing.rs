@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use oorandom::Rand64;
 use tracelight_formats::json::Traced;
-use tracelight_formats::{Coordinates, Hidden, ReadOptions, Sheet, csv, dxf, json, svg};
+use tracelight_formats::{Hidden, ReadOptions, Sheet, csv, dxf, json, svg};
 use tracelight_stroke::{Affine, Colour, Drawing, Element, Path, Point, Stroke, StrokeKind};
 
 const WIDTH_M: f64 = 0.6;
@@ -119,14 +119,7 @@ fn any_drawing_comes_back_from_json_to_the_last_bit() {
     let mut r = Rand64::new(6);
     for number in 0..500 {
         let scaled = drawing(&mut r).transformed(Affine::scale(uniform(&mut r, 1.0, 3000.0)));
-        let sheet = Sheet {
-            width: 640.0,
-            height: 480.0,
-            metres_per_unit: None,
-            drawing: scaled,
-            coordinates: Coordinates::Page { unit_m: None },
-            places: Vec::new(),
-        };
+        let sheet = Sheet::in_pixels(640.0, 480.0, scaled);
         let traced = Traced { sheet, mode: "auto".into() };
         let back = json::read(json::write(&traced, 1.0).as_bytes()).unwrap();
         assert_eq!(back, traced, "drawing {number}");

@@ -1,5 +1,6 @@
 //! Orders that a person at the wall can follow: layer by layer, or as a page is read.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use kurbo::{Point, Rect};
@@ -17,6 +18,23 @@ const MOST_WORK: usize = 10_000_000;
 /// A gap of at least this share of the widest is cut at the same time: lines of a text are evenly spaced, nearly.
 const EVEN: f64 = 0.5;
 
+/// What lies on each layer, in its order; the layers as they come first.
+pub fn by_layer<T>(
+    all: impl IntoIterator<Item = T>,
+    layer_of: impl Fn(&T) -> Option<Arc<str>>,
+) -> Vec<Vec<T>> {
+    let mut layers: Vec<Vec<T>> = Vec::new();
+    let mut numbers = HashMap::new();
+    for one in all {
+        let number = *numbers.entry(layer_of(&one)).or_insert(layers.len());
+        match layers.get_mut(number) {
+            Some(layer) => layer.push(one),
+            None => layers.push(vec![one]),
+        }
+    }
+    layers
+}
+
 /// Puts each layer's strokes in an order with little travel, one layer after the other as the drawing has them first.
 ///
 /// The lower bound is zero: nothing is known of the best order of this kind.
@@ -26,16 +44,8 @@ pub fn order_by_layer<C: Travel>(
     options: OrderOptions,
     cost: &C,
 ) -> Ordered {
-    let mut layers: Vec<(Option<&Arc<str>>, Vec<Stroke>)> = Vec::new();
-    for stroke in &drawing.strokes {
-        let layer = stroke.layer.as_ref();
-        match layers.iter_mut().find(|(known, _)| *known == layer) {
-            Some((_, strokes)) => strokes.push(stroke.clone()),
-            None => layers.push((layer, vec![stroke.clone()])),
-        }
-    }
     let (mut at, mut strokes) = (start, Vec::new());
-    for (_, layer) in layers {
+    for layer in by_layer(drawing.strokes.iter().cloned(), |stroke| stroke.layer.clone()) {
         let ordered = order(&Drawing { strokes: layer }, at, options, cost);
         at = ordered.drawing.strokes.last().map_or(at, |stroke| stroke.path.end());
         strokes.extend(ordered.drawing.strokes);

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -68,7 +69,13 @@ impl Terminal {
     }
 }
 
-fn traced(out: &std::path::Path) -> Command {
+/// Light fell on its strokes, and beside where it belonged at that time by no more than a head that sets off again.
+fn assert_light(summary: &Value) {
+    let error = |name: &str| summary["summary"]["tracking"][name].as_f64().unwrap();
+    assert!(error("off_stroke_max_mm") < 0.3 && error("max_mm") < 1.0, "{summary}");
+}
+
+fn traced(out: &Path) -> Command {
     let mut command = program();
     command.args(["trace", "examples/house.png", "--events", "--real-time", "8", "--out"]).arg(out);
     command
@@ -105,7 +112,7 @@ fn keys_pause_and_stop_a_job_and_let_it_go_on() {
     wall.until_state("tracing");
     wall.until_state("done");
     let summary = wall.until(|event| event["event"] == "summary");
-    assert!(summary["summary"]["tracking"]["off_stroke_max_mm"].as_f64().unwrap() < 0.3, "{summary}");
+    assert_light(&summary);
     assert_eq!(wall.child.wait().unwrap().code(), Some(0));
     let report = std::fs::read_to_string(dir.join("report.html")).unwrap();
     assert!(
@@ -163,7 +170,7 @@ fn strokes_are_drawn_one_at_a_time_until_a_key_asks_for_the_next() {
     assert!(summary["summary"]["run"]["finished"] == true, "{summary}");
     let report = std::fs::read_to_string(dir.join("report.html")).unwrap();
     assert!(report.contains("27 of 28 strokes done; not 3"), "the report tells of it");
-    assert!(summary["summary"]["tracking"]["off_stroke_max_mm"].as_f64().unwrap() < 0.3, "{summary}");
+    assert_light(&summary);
 }
 
 /// A wall of 1.5 × 1 m with twelve sockets, each a block, and a nail.
@@ -181,6 +188,20 @@ fn sockets() -> String {
     dxf + &pairs("0 POINT, 8 NAILS, 10 750, 20 750, 0 ENDSEC, 0 EOF")
 }
 
+/// The points of that wall, with more flags.
+fn at_the_sockets(dir: &Path, flags: &[&str]) -> Terminal {
+    let drawing = dir.with_extension("dxf");
+    std::fs::write(&drawing, sockets()).unwrap();
+    let mut command = program();
+    command
+        .arg("trace")
+        .arg(&drawing)
+        .args(["--points=block,point", "--distance", "3m", "--events", "--real-time", "8", "--out"])
+        .arg(dir)
+        .args(flags);
+    Terminal::of(command)
+}
+
 fn left_point(wall: &mut Terminal, number: u64, done: bool) {
     let left = wall.until(|event| event["event"] == "left");
     assert!(left["point"] == number && left["done"] == done, "{left}");
@@ -189,15 +210,7 @@ fn left_point(wall: &mut Terminal, number: u64, done: bool) {
 #[test]
 fn points_are_ticked_off_one_after_the_other() {
     let dir = folder("points");
-    let drawing = dir.with_extension("dxf");
-    std::fs::write(&drawing, sockets()).unwrap();
-    let mut command = program();
-    command
-        .arg("trace")
-        .arg(&drawing)
-        .args(["--points=block,point", "--distance", "3m", "--events", "--real-time", "8", "--out"])
-        .arg(&dir);
-    let mut wall = Terminal::of(command);
+    let mut wall = at_the_sockets(&dir, &[]);
     for number in 1..=13 {
         let point = wall.until(|event| event["event"] == "point");
         assert!(point["point"] == number && point["points"] == 13, "{point}");
@@ -209,7 +222,7 @@ fn points_are_ticked_off_one_after_the_other() {
     let summary = wall.until(|event| event["event"] == "summary");
     assert_eq!(wall.child.wait().unwrap().code(), Some(0), "{summary}");
     assert_eq!(summary["summary"]["points"], serde_json::json!({ "count": 13, "done": 12 }));
-    assert!(summary["summary"]["tracking"]["off_stroke_max_mm"].as_f64().unwrap() < 0.3, "{summary}");
+    assert_light(&summary);
     let mut table = csv::Reader::from_path(dir.join("points.csv")).unwrap();
     let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().unwrap();
     let places: Vec<[String; 5]> =
@@ -230,23 +243,7 @@ fn points_are_ticked_off_one_after_the_other() {
 #[test]
 fn the_rest_of_the_points_keeps_its_numbers_and_what_was_not_lit_is_not_done() {
     let dir = folder("points-rest");
-    let drawing = dir.with_extension("dxf");
-    std::fs::write(&drawing, sockets()).unwrap();
-    let mut command = program();
-    command
-        .arg("trace")
-        .arg(&drawing)
-        .args([
-            "--points=point,block",
-            "--from-stroke",
-            "11",
-            "--no-go=-70cm,-50cm,30cm,30cm",
-            "--distance",
-            "3m",
-        ])
-        .args(["--events", "--real-time", "8", "--out"])
-        .arg(&dir);
-    let mut wall = Terminal::of(command);
+    let mut wall = at_the_sockets(&dir, &["--from-stroke", "11", "--no-go=-70cm,-50cm,30cm,30cm"]);
     let checks = wall.until(|event| event["event"] == "preflight")["checks"].clone();
     let no_go = checks.as_array().unwrap().iter().find(|check| check["name"] == "no-go").unwrap();
     assert!(no_go["words"].as_str().unwrap().contains("in 1 no-go area"), "{no_go}");
@@ -267,7 +264,7 @@ fn the_rest_of_the_points_keeps_its_numbers_and_what_was_not_lit_is_not_done() {
 
 #[test]
 fn a_frame_is_drawn_until_a_key_begins_the_drawing() {
-    let framed = |dir: &std::path::Path, frame: &str| {
+    let framed = |dir: &Path, frame: &str| {
         let mut command = traced(dir);
         command.args(["--frame", frame]);
         let mut wall = Terminal::of(command);
