@@ -47,12 +47,15 @@ rigs
 rigs --json
 rigs show report
 rigs show worn
+rigs show stepper
 explain following-error
 explain nothing-of-this-name
 completions bash
 trace examples/house.png --width 24in --out house
 trace examples/star.png --width 24in --out star --json
 trace examples/shapes.png --rig worn --out worn --quiet
+trace examples/star.png --rig stepper --out stepper
+trace examples/star.png --rig servo --out servo --json
 trace examples/chalk.png --dry-run --out dry
 trace examples/house.png --law pid-ff --laps 2 --seed 3 --out laps --json
 trace examples/star.png --lit-speed exact --rotate 15deg --offset 10cm,-5cm --out exact
@@ -230,6 +233,7 @@ lab reproduce -o book
 TIMES = [
     rb'"(?:vision|plan|run|report|timing_ms)":\s*([0-9.e+-]+)',
     rb'"modified_ns":([0-9]+)',
+    rb'begun = "([0-9: -]+)"',
     rb'"pictures_per_s":\s*([0-9.e+-]+)',
     rb"px of line on a sheet of [^,]*, ([0-9.]+ \w+)",
     rb"%(\s+[0-9.]+ m?s)  (?:good|usable|kept)",

@@ -4,11 +4,23 @@ use crate::axis::AxisConfig;
 use crate::model::HeadModel;
 use crate::watch::Foot;
 
+/// What turns the joints, and tells where they are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drive {
+    /// Motors that a law gives volts, measured by encoders.
+    Volts,
+    /// Steppers or servos that go where their pulses tell them, unmeasured: the joints are believed to be where they were told to be, and a count is
+    /// a step of what they were told.
+    Pulses,
+}
+
 /// Configuration of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
     /// The model of the head.
     pub model: HeadModel,
+    /// What turns both joints.
+    pub drive: Drive,
     /// Each axis.
     pub axes: PanTilt<AxisConfig>,
     /// Ticks the head may need to come back to its stroke before that is a fault.

@@ -1,12 +1,13 @@
 use tracelight_rig::{
-    Actuation, Command, Darkness, DarknessSet, Fault, Joint, Measurement, PanTilt, Phase, Sensed, Telemetry,
+    Actuation, Command, Darkness, DarknessSet, Fault, Joint, Measurement, PanTilt, Phase, Sensed, Setpoint,
+    Telemetry,
 };
 
 use crate::config::Config;
 use crate::creep::Pace;
 use crate::estimate::Estimate;
 use crate::light_budget::{LightBudget, longest_dot_ticks};
-use crate::player::{Played, Player, at_rest};
+use crate::player::{Played, Player};
 use crate::return_path::ReturnPath;
 use crate::servo::{Reference, Servo};
 use crate::supervisor::{Clock, Situation, Supervisor, rests};
@@ -48,6 +49,17 @@ impl State {
     /// Estimates of both joints.
     pub const fn estimates(&self) -> &PanTilt<Estimate> {
         self.servo.estimates()
+    }
+
+    /// Where the joints of a head on [`Drive::Pulses`](crate::Drive::Pulses) are to be at the start of the last tick, and how they are to move until its
+    /// end.
+    pub const fn told(&self) -> &PanTilt<Setpoint> {
+        self.servo.told()
+    }
+
+    /// What is added to the counts that are read, since the head was homed.
+    pub const fn home(&self) -> &PanTilt<i32> {
+        &self.home
     }
 }
 
@@ -292,7 +304,7 @@ impl Controller {
             rate_rad_s: state.servo.estimates().map(|estimate| estimate.velocity_rad_s),
             error_rad: PanTilt::from_fn(|j| played.setpoint[j].position_rad - position_rad[j]),
             doubtful: state.watch.is_doubtful(),
-            tested: state.watch.is_tested(),
+            tested: state.watch.is_tested(&self.config),
             steady: state.watch.is_steady(),
             tried: state.supervisor.are_tried(&state.sensed, state.player.has_light()),
             host_silent: !state.watch.hears_host(&self.config),
@@ -347,7 +359,7 @@ impl Controller {
             ReturnPath::from(state.servo.estimates())
         });
         let park = self.config.park_rad.filter(|_| state.supervisor.must_park());
-        let goal = park.map_or(played.setpoint, |park| park.map(at_rest));
+        let goal = park.map_or(played.setpoint, |park| park.map(Setpoint::at_rest));
         let now = way.tick(&self.config, &goal);
         state.way_back = Some(way);
         Reference { now, ahead: now }

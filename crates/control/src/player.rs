@@ -67,7 +67,7 @@ impl Player {
             gate_fell: None,
             pausing: false,
             runs_on_ticks: 0,
-            rest: position_rad.map(at_rest),
+            rest: position_rad.map(Setpoint::at_rest),
             end: None,
         }
     }
@@ -308,7 +308,7 @@ impl Player {
             if self.tick < segment.end_tick() {
                 return;
             }
-            self.rest = segment.sample(f32::from(segment.ticks)).map(|s| at_rest(s.position_rad));
+            self.rest = segment.sample(f32::from(segment.ticks)).map(|s| Setpoint::at_rest(s.position_rad));
             self.queue[self.head % QUEUE_LENGTH] = None;
             self.head = (self.head + 1) % QUEUE_LENGTH;
             self.length -= 1;
@@ -337,11 +337,6 @@ impl Player {
     fn current(&self) -> Option<Segment> {
         self.queue[self.head % QUEUE_LENGTH]
     }
-}
-
-/// A joint that rests at an angle, rad.
-pub(crate) fn at_rest(position_rad: f32) -> Setpoint {
-    Setpoint { position_rad, ..Setpoint::default() }
 }
 
 #[cfg(test)]

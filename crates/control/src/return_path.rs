@@ -1,6 +1,6 @@
 use tracelight_rig::{Joint, PanTilt, Setpoint, TICK_S};
 
-use crate::config::Config;
+use crate::config::{Config, Drive};
 use crate::estimate::Estimate;
 use crate::limit::within;
 
@@ -15,7 +15,7 @@ const LOST_COUNTS: f32 = 3.0;
 ///
 /// A step of tens of counts would drive the loop from one stop of the amplifier to the other; instead the reference
 /// starts where the head is, with its speed, and goes to the goal under a bound on acceleration: v = √(2 a d), linear
-/// near the goal (proximate time-optimal servomechanism; Workman 1987, cited in Franklin, Powell & Workman, *Digital
+/// near the goal, and no faster than the joint may be (proximate time-optimal servomechanism; Workman 1987, cited in Franklin, Powell & Workman, *Digital
 /// Control of Dynamic Systems*, §13).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReturnPath {
@@ -33,28 +33,47 @@ impl ReturnPath {
         Self { reference: estimates.map(start) }
     }
 
-    /// Whether the head is too far from this way to follow it.
+    /// Whether the head is too far from this way to follow it; one that is believed to be where it was told to be is on it.
     pub(crate) fn is_lost(&self, config: &Config, position_rad: PanTilt<f32>) -> bool {
-        Joint::BOTH.iter().any(|&j| {
-            (self.reference[j].position_rad - position_rad[j]).abs() > LOST_COUNTS * config.axes[j].count_rad
-        })
+        config.drive == Drive::Volts
+            && Joint::BOTH.iter().any(|&j| {
+                (self.reference[j].position_rad - position_rad[j]).abs()
+                    > LOST_COUNTS * config.axes[j].count_rad
+            })
     }
 
     /// The reference now, moved on by a tick towards `goal`.
     pub(crate) fn tick(&mut self, config: &Config, goal: &PanTilt<Setpoint>) -> PanTilt<Setpoint> {
         let now = self.reference;
-        self.reference =
-            PanTilt::from_fn(|j| step(&now[j], goal[j].position_rad, config.sped_up_by(j, TORQUE_SHARE)));
+        self.reference = PanTilt::from_fn(|j| {
+            let limits = &config.axes[j].limits;
+            let sped_up_rad_s2 = config.sped_up_by(j, TORQUE_SHARE);
+            let most = Most {
+                rate_rad_s: limits.speed_rad_s,
+                acceleration_rad_s2: match config.drive {
+                    Drive::Volts => sped_up_rad_s2,
+                    // nothing would notice that it does not follow
+                    Drive::Pulses => sped_up_rad_s2.min(limits.acceleration_rad_s2),
+                },
+            };
+            step(&now[j], goal[j].position_rad, &most)
+        });
         now
     }
 }
 
-fn step(from: &Setpoint, goal_rad: f32, most_rad_s2: f32) -> Setpoint {
+/// What a joint may do on its way.
+struct Most {
+    rate_rad_s: f32,
+    acceleration_rad_s2: f32,
+}
+
+fn step(from: &Setpoint, goal_rad: f32, most: &Most) -> Setpoint {
     let left = goal_rad - from.position_rad;
-    let braking = libm::sqrtf(2.0 * most_rad_s2 * left.abs());
-    let wanted = braking.min(left.abs() / APPROACH_S);
+    let braking = libm::sqrtf(2.0 * most.acceleration_rad_s2 * left.abs());
+    let wanted = braking.min(left.abs() / APPROACH_S).min(most.rate_rad_s);
     let wanted = if left < 0.0 { -wanted } else { wanted };
-    let acceleration = within((wanted - from.velocity_rad_s) / TICK_S, most_rad_s2);
+    let acceleration = within((wanted - from.velocity_rad_s) / TICK_S, most.acceleration_rad_s2);
     let velocity = from.velocity_rad_s + acceleration * TICK_S;
     Setpoint {
         position_rad: from.position_rad + 0.5 * TICK_S * (from.velocity_rad_s + velocity),

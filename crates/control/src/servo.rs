@@ -1,6 +1,6 @@
-use tracelight_rig::{Joint, Measurement, PanTilt, Setpoint};
+use tracelight_rig::{Joint, Measurement, PanTilt, Setpoint, TICK_S};
 
-use crate::config::Config;
+use crate::config::{Config, Drive};
 use crate::estimate::{Effort, Estimate};
 use crate::law::{LawInput, LawState, feedforward};
 use crate::limit::within;
@@ -18,6 +18,8 @@ pub struct Servo {
     torque_nm: PanTilt<f32>,
     /// The last volts were numbers.
     sound: bool,
+    /// Where the joints were told to be at the start of this tick.
+    told: PanTilt<Setpoint>,
 }
 
 /// Standard deviation of the speed of a joint at rest, rad/s.
@@ -37,13 +39,28 @@ pub struct Reference {
 impl Servo {
     /// Of a head at rest whose encoders read `measured`.
     pub fn at_rest(config: &Config, measured: &PanTilt<Measurement>) -> Self {
-        Self::begin(config, |j| Observer::begin(&config.axes[j], &measured[j], STILL_RAD_S))
+        let begun = Self::begin(config, |j| Observer::begin(&config.axes[j], &measured[j], STILL_RAD_S));
+        match config.drive {
+            Drive::Volts => begun,
+            Drive::Pulses => {
+                begun.standing_at(PanTilt::from_fn(|j| measured[j].count as f32 * config.axes[j].count_rad))
+            }
+        }
     }
 
     /// Of the same head, of which all but the counts that were put back is to be forgotten.
     pub(crate) fn anew(&self, config: &Config, measured: &PanTilt<Measurement>) -> Self {
+        if config.drive == Drive::Pulses {
+            return self.standing_at(self.told.map(|told| told.position_rad));
+        }
         let lost = |j: Joint| self.estimates[j].lost_counts;
         Self::begin(config, |j| Observer::anew(&config.axes[j], &measured[j], lost(j), ANY_RAD_S))
+    }
+
+    /// Believes the joints to rest at these angles, rad.
+    fn standing_at(self, position_rad: PanTilt<f32>) -> Self {
+        let told = position_rad.map(Setpoint::at_rest);
+        Self { told, estimates: told.map(|told| believed(&told)), ..self }
     }
 
     fn begin(config: &Config, observer: impl FnMut(Joint) -> Observer) -> Self {
@@ -51,7 +68,8 @@ impl Servo {
         let estimates = PanTilt::from_fn(|j| observers[j].estimate(&config.axes[j]));
         let torque_nm = PanTilt::default();
         let efforts = efforts(config, &estimates, torque_nm);
-        Self { observers, laws: PanTilt::default(), estimates, efforts, torque_nm, sound: true }
+        let told = PanTilt::default();
+        Self { observers, laws: PanTilt::default(), estimates, efforts, torque_nm, sound: true, told }
     }
 
     /// Estimates of both joints.
@@ -74,8 +92,17 @@ impl Servo {
         &self.efforts
     }
 
-    /// Takes what the encoders read at the end of a tick.
+    /// Where the joints are told to be at the start of this tick, and how they are to move on from there.
+    pub(crate) const fn told(&self) -> &PanTilt<Setpoint> {
+        &self.told
+    }
+
+    /// Takes what the encoders read at the end of a tick. Of joints without them, it takes what they were told.
     pub fn observe(&mut self, config: &Config, measured: &PanTilt<Measurement>) {
+        if config.drive == Drive::Pulses {
+            self.estimates = self.told.map(|told| believed(&moved_on(&told)));
+            return;
+        }
         self.efforts = efforts(config, &self.estimates, self.torque_nm);
         for joint in Joint::BOTH {
             self.observers[joint].tick(&config.axes[joint], &self.efforts[joint], &measured[joint]);
@@ -83,8 +110,11 @@ impl Servo {
         }
     }
 
-    /// Volts for this tick.
+    /// Volts for this tick; none for joints that are told where to be.
     pub fn drive(&mut self, config: &Config, reference: &Reference) -> PanTilt<f32> {
+        if config.drive == Drive::Pulses {
+            return self.tell(&reference.now);
+        }
         let added = feedforward(config, &reference.ahead, &self.estimates);
         let mut sound = true;
         let volts = PanTilt::from_fn(|j| {
@@ -107,14 +137,24 @@ impl Servo {
         volts
     }
 
+    /// Tells joints where to be. A number that is none leaves them where they are.
+    fn tell(&mut self, to: &PanTilt<Setpoint>) -> PanTilt<f32> {
+        let is_number =
+            |s: &Setpoint| (s.position_rad + s.velocity_rad_s + s.acceleration_rad_s2).is_finite();
+        self.sound = is_number(&to.pan) && is_number(&to.tilt);
+        self.told = if self.sound { *to } else { self.told.map(|told| Setpoint::at_rest(told.position_rad)) };
+        PanTilt::default()
+    }
+
     /// Volts that something else decided on for this tick: a record is played.
     pub fn apply(&mut self, config: &Config, command_v: PanTilt<f32>) {
         self.torque_nm = PanTilt::from_fn(|j| command_v[j] * config.axes[j].torque_nm_per_v);
     }
 
-    /// No volts in this tick.
+    /// No volts in this tick; joints that are told where to be stay.
     pub fn coast(&mut self) -> PanTilt<f32> {
         self.torque_nm = PanTilt::default();
+        self.told = self.told.map(|told| Setpoint::at_rest(told.position_rad));
         PanTilt::default()
     }
 
@@ -122,6 +162,22 @@ impl Servo {
     pub(crate) fn forget(&mut self) {
         self.laws = PanTilt::default();
     }
+}
+
+/// Where a setpoint leads within a tick.
+fn moved_on(from: &Setpoint) -> Setpoint {
+    let Setpoint { position_rad, velocity_rad_s, acceleration_rad_s2 } = *from;
+    Setpoint {
+        position_rad: position_rad + TICK_S * (velocity_rad_s + 0.5 * TICK_S * acceleration_rad_s2),
+        velocity_rad_s: velocity_rad_s + TICK_S * acceleration_rad_s2,
+        acceleration_rad_s2,
+    }
+}
+
+/// A joint that is believed to be where it was told to be.
+fn believed(told: &Setpoint) -> Estimate {
+    let Setpoint { position_rad, velocity_rad_s, acceleration_rad_s2 } = *told;
+    Estimate { position_rad, velocity_rad_s, acceleration_rad_s2, ..Estimate::default() }
 }
 
 /// What acts on the joints where they are believed to be.

@@ -251,6 +251,13 @@ impl SpotWatch {
         }
     }
 
+    /// Whether there is an image of the wall in the dark to hold one with the spot against.
+    #[must_use]
+    pub fn is_ready(&self) -> bool {
+        self.exposure_s == self.wished_s
+            && self.dark.as_ref().is_some_and(|dark| dark.is_exposed(self.exposure_s))
+    }
+
     /// How far down the image a place is.
     fn down(&self, at: Point) -> f64 {
         (at.y / self.camera.lens.size_px[1] as f64).clamp(0.0, 1.0)

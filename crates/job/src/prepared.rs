@@ -7,6 +7,7 @@ use tracelight_picture::{Raster, Source};
 use tracelight_pipeline::{
     Before, Check, Driving, Placed, Schedule, Sketch, place, preflight, schedule, schedule_rest, sketch,
 };
+use tracelight_rig::PanTilt;
 use tracelight_sim::{RigConfig, Run, SimulatedRig};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Stop, Task, counted};
@@ -315,7 +316,7 @@ impl Prepared {
         let mut learned = Learned { rig: self.driving.rig.clone(), taken: false, notes: Vec::new() };
         let (mut watched, mut failure) = (None, None);
         while laps.len() < wanted as usize && !task.stop.is_wanted() && failure.is_none() {
-            if !laps.is_empty() {
+            if !laps.is_empty() && !self.driving.rig.drive.kind.is_open_loop() {
                 task.stage("identify", 1);
                 learned = learn(&self.driving.rig, &laps);
             }
@@ -335,6 +336,7 @@ impl Prepared {
                     }
                     None => run_lap(&mut rig, plan, dry, keep, task)?,
                 };
+                learned.notes.extend(lost_note(&learned.rig, self.driving.pose.distance_m, rig.lost_steps()));
                 laps.push(lap);
                 failure = why;
                 continue;
@@ -368,6 +370,21 @@ impl Prepared {
         };
         run_watched(&job, room.watched(believed, driving.pose), keep, task)
     }
+}
+
+/// What to say of a lap after which stepper motors are behind their pulses.
+fn lost_note(rig: &RigConfig, distance_m: f64, lost: PanTilt<i64>) -> Option<String> {
+    let off_mm = |steps: i64| 1e3 * distance_m * steps as f64 * rig.drive.stepper.full_step_rad();
+    (lost != PanTilt::default()).then(|| {
+        format!(
+            "steps were lost: pan ends {} full steps behind its pulses ({:.1} mm at {distance_m:.3} m), tilt {} ({:.1} mm). The simulation tells; \
+             a real head would not notice. Lower motion.pan_speed, motion.tilt_speed or the accelerations",
+            lost.pan,
+            off_mm(lost.pan),
+            lost.tilt,
+            off_mm(lost.tilt)
+        )
+    })
 }
 
 /// Every lap that was run.

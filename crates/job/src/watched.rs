@@ -121,6 +121,9 @@ pub(crate) fn run_watched(
         unpowered: false,
         task,
     };
+    if job.driving.rig.drive.kind.is_open_loop() {
+        watched.await_darkness();
+    }
     // what was drawn until then is told whatever became of it
     let failure = watched.all(job.plan.clone(), job.drawing.clone()).err();
     watched.darken();
@@ -171,6 +174,18 @@ impl Watched<'_> {
                 let why = Why { words, seen_off: matches!(suspicion, Suspicion::Off(_)) };
                 return Ok(Some((why, first, left)));
             }
+        }
+    }
+
+    /// Waits until the camera has seen the wall in the dark. A head with encoders needs no less time to see that they follow its motors; one without
+    /// is lit at once.
+    fn await_darkness(&mut self) {
+        const MOST_TICKS: u32 = 1000;
+        for _ in 0..MOST_TICKS {
+            if self.follower.watch.is_ready() || self.is_over() {
+                return;
+            }
+            self.step(None);
         }
     }
 

@@ -80,7 +80,8 @@ impl Driving {
     pub fn remarks(&self, plan: &Plan) -> Vec<String> {
         let wishes = self.machine.impossible_wishes(WORKING_TILT_RAD);
         let asked = wishes.iter().filter(|_| self.asked.acceleration);
-        let mut remarks: Vec<String> = asked.map(wish_note).collect();
+        let mut remarks = self.rig.open_loop_remarks(self.pose.distance_m, plan.top_speed_m_s());
+        remarks.extend(asked.map(wish_note));
         if let Some(bend) = &plan.tightest {
             // all but straight: it is not the bend that holds it back
             let why = if bend.radius_m < 10.0 {

@@ -252,6 +252,47 @@ impl Plant {
         self.supply_left = left;
     }
 
+    /// A tick in which something else than its motors turns the joints to these angles, rad: laser, inputs, foot and gyroscope are as ever. What
+    /// somebody leans on the head with is whoever turns them to withstand: see [`pushed_nm`](Self::pushed_nm). The encoders read nothing new.
+    pub fn turned_to(&mut self, actuation: &Actuation, to_rad: PanTilt<f64>) -> Sensed {
+        let lasts_s = self.tick_s();
+        let before_rad_s = self.state.rate_rad_s;
+        let rate_rad_s = PanTilt::from_fn(|j| (to_rad[j] - self.state.angle_rad[j]) / lasts_s);
+        let sped_up_rad_s2 = PanTilt::from_fn(|j| (rate_rad_s[j] - before_rad_s[j]) / lasts_s);
+        self.foot.begin_tick();
+        let part_s = lasts_s / f64::from(SUBSTEPS);
+        for _ in 0..SUBSTEPS {
+            self.foot.substep(sped_up_rad_s2, part_s);
+            self.switch(actuation, part_s);
+        }
+        self.time_s += lasts_s;
+        self.state = JointState { angle_rad: to_rad, rate_rad_s };
+        self.beam_rad = to_rad;
+        self.sensed(lasts_s)
+    }
+
+    /// What somebody leans on the joints with, N m.
+    pub const fn pushed_nm(&self) -> PanTilt<f64> {
+        self.push_nm
+    }
+
+    fn switch(&mut self, actuation: &Actuation, time_s: f64) {
+        self.relay.drive(actuation.gate, time_s);
+        self.enable.drive(actuation.enable, time_s);
+    }
+
+    /// What is told of a tick that lasted so long, s.
+    fn sensed(&mut self, lasts_s: f64) -> Sensed {
+        Sensed {
+            encoders: self.encoders.map(|e| e.measurement()),
+            laser_on: Some(self.laser_on()),
+            light: Some(self.light()),
+            inputs: self.inputs,
+            foot_rad_s: self.foot.read_rad_s(),
+            lasted_ticks: Some((lasts_s / TICK_F64_S) as f32),
+        }
+    }
+
     /// A part of a tick that lasts `tick_s`.
     fn substep(&mut self, asked_nm: PanTilt<f64>, tick_s: f64, number: u32) {
         const LENGTH: f64 = 1.0 / SUBSTEPS as f64;
@@ -320,18 +361,9 @@ impl Head for Plant {
         let lasts_s = self.tick_s();
         for number in 0..SUBSTEPS {
             self.substep(asked, lasts_s, number);
-            let part_s = lasts_s / f64::from(SUBSTEPS);
-            self.relay.drive(actuation.gate, part_s);
-            self.enable.drive(actuation.enable, part_s);
+            self.switch(actuation, lasts_s / f64::from(SUBSTEPS));
         }
-        Sensed {
-            encoders: self.encoders.map(|e| e.measurement()),
-            laser_on: Some(self.laser_on()),
-            light: Some(self.light()),
-            inputs: self.inputs,
-            foot_rad_s: self.foot.read_rad_s(),
-            lasted_ticks: Some((lasts_s / TICK_F64_S) as f32),
-        }
+        self.sensed(lasts_s)
     }
 }
 

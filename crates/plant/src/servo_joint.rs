@@ -22,6 +22,8 @@ pub struct ServoDrive {
     pub response_s: f64,
     /// Play of its gear, rad: the beam turns freely by that much.
     pub play_rad: f64,
+    /// Greatest torque, N m: for whoever plans. The joint here turns as the catalogue says, whatever its load.
+    pub stall_torque_nm: f64,
 }
 
 /// The place of a joint behind a [`ServoDrive`], tick by tick.
@@ -44,6 +46,17 @@ impl ServoDrive {
         self.angle_rad(self.pulse_resolution_s.max(self.dead_band_s))
     }
 
+    /// Returns the angle of a step in which the board sets the pulse's width, rad; zero where it sets any.
+    pub fn pulse_step_rad(&self) -> f64 {
+        self.angle_rad(self.pulse_resolution_s)
+    }
+
+    /// Returns how far in time the gear is behind an angle that is set at a steady speed, s, dead band left out: its own response, and half of the
+    /// time from one pulse to the next.
+    pub fn lag_s(&self) -> f64 {
+        self.response_s + 0.5 * f64::from(self.refresh_ticks) * TICK_F64_S
+    }
+
     fn angle_rad(&self, width_s: f64) -> f64 {
         width_s / self.pulse_span_s * self.range_rad
     }
@@ -52,7 +65,7 @@ impl ServoDrive {
     fn asked_rad(&self, set_rad: f64) -> f64 {
         let half_rad = 0.5 * self.range_rad;
         let within_rad = set_rad.max(-half_rad).min(half_rad);
-        let step_rad = self.angle_rad(self.pulse_resolution_s);
+        let step_rad = self.pulse_step_rad();
         if step_rad > 0.0 { (within_rad / step_rad).round() * step_rad } else { within_rad }
     }
 
@@ -114,6 +127,7 @@ mod tests {
         speed_rad_s: PI / 3.0 / 0.17,
         response_s: 0.0,
         play_rad: 0.0,
+        stall_torque_nm: 0.9,
     };
 
     const IDEAL: ServoDrive = ServoDrive {

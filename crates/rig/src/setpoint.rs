@@ -10,3 +10,11 @@ pub struct Setpoint {
     /// Angular acceleration, rad/s².
     pub acceleration_rad_s2: f32,
 }
+
+impl Setpoint {
+    /// Of a joint that rests at an angle, rad.
+    #[must_use]
+    pub const fn at_rest(position_rad: f32) -> Self {
+        Self { position_rad, velocity_rad_s: 0.0, acceleration_rad_s2: 0.0 }
+    }
+}

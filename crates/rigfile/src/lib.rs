@@ -6,6 +6,7 @@
 
 pub mod camera;
 mod caret;
+mod drives;
 mod found;
 mod hand_tuned;
 pub mod head;
@@ -19,6 +20,7 @@ mod text;
 mod timing;
 mod whole;
 
+pub use drives::{measured, set_law};
 pub use hand_tuned::{FEEDFORWARDS, HIGHEST_GAIN};
 pub use pages::PageName;
 pub use rig::{RigFile, parse, read, write};

@@ -2,6 +2,7 @@
 
 use tracelight_sim::{LightSettings, Model, RigConfig};
 
+use crate::drives::impossible_drive;
 use crate::safety::impossible_park;
 
 /// Refuses a rig that there cannot be.
@@ -9,7 +10,9 @@ use crate::safety::impossible_park;
 /// # Errors
 /// What is impossible about it.
 pub(crate) fn possible(config: &RigConfig) -> Result<(), String> {
-    if let Some(trouble) = impossible_laser(config).or_else(|| impossible_park(config)) {
+    if let Some(trouble) =
+        impossible_laser(config).or_else(|| impossible_park(config)).or_else(|| impossible_drive(config))
+    {
         return Err(trouble);
     }
     for (half, model) in [("model", &config.model), ("truth", &config.truth.model)] {

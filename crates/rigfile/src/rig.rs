@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use toml_edit::{Document, Item, TableLike, Value};
-use tracelight_sim::{Identified, LightSettings, Model, RigConfig};
+use tracelight_sim::{DriveKind, Identified, LightSettings, Model, RigConfig};
 use tracelight_task::Failure;
 use tracelight_units as units;
 
 use crate::caret::Mark;
+use crate::drives::{DRIVE, all_drive_keys, drive_key, drive_keys, of_other_drive};
 use crate::found::identified_keys;
 use crate::hand_tuned::rig_keys;
 use crate::keys::{Choice, Key, Slot, model_keys};
@@ -79,7 +80,13 @@ fn parsed(file: &str, text: &str) -> Result<RigFile, String> {
         let place = Mark { file, text, span: entry.value.span() };
         set_other(&models, &mut config, entry, &place).unwrap_or_else(|| Err(unknown(file, text, entry)))?;
     }
-    let remark = if base.is_none() { whole(file, text, &entries)? } else { None };
+    for entry in &entries {
+        if let Some(trouble) = of_other_drive(&entry.path, config.drive.kind) {
+            return Err(Mark { file, text, span: entry.key_span.clone() }.message(&trouble));
+        }
+    }
+    config = config.driven();
+    let remark = if base.is_none() { whole(file, text, &entries, config.drive.kind)? } else { None };
     if !entries.iter().any(|entry| entry.path == STANDING) {
         config.light.standing_s = LightSettings::usual_standing_s(config.light.power_w);
     }
@@ -96,9 +103,9 @@ fn based(file: &str, text: &str, entries: &[Entry<'_>]) -> Result<Option<RigConf
 }
 
 /// What to remark of a file without a base that is whole.
-fn whole(file: &str, text: &str, entries: &[Entry<'_>]) -> Result<Option<String>, String> {
+fn whole(file: &str, text: &str, entries: &[Entry<'_>], kind: DriveKind) -> Result<Option<String>, String> {
     let given: Vec<&str> = entries.iter().map(|entry| entry.path.as_str()).collect();
-    let left_out = LeftOut::of(&given);
+    let left_out = LeftOut::of(&given, kind);
     left_out.trouble(file, text).map_or_else(|| Ok(left_out.remark(file)), Err)
 }
 
@@ -134,6 +141,9 @@ fn set_other(
         return Some(set(key, config.identified.get_or_insert(Identified::NONE), entry, place));
     }
     if let Some(key) = rig_keys().iter().find(|k| k.path == entry.path) {
+        return Some(set(key, config, entry, place));
+    }
+    if let Some(key) = all_drive_keys().iter().find(|k| k.path == entry.path) {
         return Some(set(key, config, entry, place));
     }
     let path = entry.path.strip_prefix("truth.")?;
@@ -203,7 +213,7 @@ fn known_paths() -> Vec<String> {
         ["model", "truth"].map(|half| model_keys().into_iter().map(move |k| format!("{half}.{}", k.path)));
     let found = identified_keys().into_iter().map(|k| format!("identified.{}", k.path));
     let texts = [BASE, "name", "description", "identified.date"].map(str::to_owned);
-    let own = rig_keys().into_iter().map(|k| k.path.to_owned()).chain(texts);
+    let own = rig_keys().into_iter().chain(all_drive_keys()).map(|k| k.path.to_owned()).chain(texts);
     halves.into_iter().flatten().chain(found).chain(own).collect()
 }
 
@@ -262,6 +272,10 @@ pub fn write(config: &RigConfig) -> String {
          # with `base = \"report\"` may leave out what is as in that preset.\n\n",
     );
     text += &format!("name = {}\ndescription = {}\n", quoted(&config.name), quoted(&config.description));
+    let drive = format!("{DRIVE} = {}", shown(&drive_key(), &mut config));
+    text += &format!("{drive:50} # {}\n", drive_key().meaning);
+    let kind = config.drive.kind;
+    section(&mut text, "", drive_keys(kind), &mut config);
     let models = model_keys();
     let (mut model, mut truth) = (config.model, config.truth.model);
     section(&mut text, "model", &models, &mut model);

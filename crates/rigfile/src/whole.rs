@@ -1,7 +1,8 @@
 //! Whether a rig file is whole: it has every key, or says whose the others are.
 
-use tracelight_sim::RigConfig;
+use tracelight_sim::{DriveKind, RigConfig};
 
+use crate::drives::drive_keys;
 use crate::hand_tuned::rig_keys;
 use crate::keys::{Key, Slot, model_keys};
 use crate::safety::STANDING;
@@ -39,10 +40,10 @@ pub(crate) struct LeftOut {
 
 impl LeftOut {
     /// What is left out by a file that has the keys of these paths.
-    pub(crate) fn of(given: &[&str]) -> Self {
+    pub(crate) fn of(given: &[&str], kind: DriveKind) -> Self {
         let is_older_than = |row: &&&str| !given.iter().any(|path| path.starts_with(**row));
         let older: Vec<&&str> = CAME_LATER.iter().filter(is_older_than).collect();
-        let left_out = needed().into_iter().filter(|path| !given.contains(&path.as_str()));
+        let left_out = needed(kind).into_iter().filter(|path| !given.contains(&path.as_str()));
         let (newer, missing) = left_out.partition(|path| older.iter().any(|row| path.starts_with(**row)));
         Self { missing, newer }
     }
@@ -72,12 +73,13 @@ impl LeftOut {
     }
 }
 
-/// Paths of all keys but those of what need not be: what was identified, a truth that differs, where a head is parked, and how long
+/// Paths of all keys of a rig with that drive but those of what need not be: what was identified, a truth that differs, where a head is parked, and how long
 /// light may stand, which follows from its power.
-fn needed() -> Vec<String> {
+fn needed(kind: DriveKind) -> Vec<String> {
     let models = model_keys().into_iter().map(|key| format!("model.{}", key.path));
+    let drive = drive_keys(kind).iter().map(|key| key.path.to_owned());
     let own = rig_keys().into_iter().filter(is_needed).map(|key| key.path.to_owned());
-    models.chain(own).collect()
+    drive.chain(models).chain(own).collect()
 }
 
 fn is_needed(key: &Key<RigConfig>) -> bool {
@@ -168,7 +170,8 @@ mod tests {
         assert_ne!(wide.truth.wear, Wear::NONE);
         let none = parse("my.toml", "base = \"brand-new\"\n").unwrap_err();
         assert!(
-            none.contains("my.toml:1:8") && none.contains("one of the presets report, report-b, worn"),
+            none.contains("my.toml:1:8")
+                && none.contains("one of the presets report, report-b, worn, stepper, servo"),
             "{none}"
         );
         assert!(parse("my.toml", "base = 3\n").unwrap_err().contains("base must be text"));

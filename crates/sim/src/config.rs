@@ -4,6 +4,7 @@ use tracelight_plant::{EncoderConfig, FootConfig, GyroscopeConfig, RelayConfig, 
 use tracelight_rig::{Joint, PanTilt};
 
 use crate::control_settings::ControlSettings;
+use crate::drive::DriveSettings;
 use crate::laws::{LawName, ObserverName};
 use crate::light_settings::LightSettings;
 use crate::safety_settings::SafetySettings;
@@ -15,6 +16,8 @@ pub struct RigConfig {
     pub name: String,
     /// One line on what it is.
     pub description: String,
+    /// What turns its joints.
+    pub drive: DriveSettings,
     /// What trajectory and control believe.
     pub model: Model,
     /// What the simulated plant is.

@@ -2,7 +2,8 @@
 
 use tracelight_aim::HeadPose;
 use tracelight_control::{
-    AxisConfig, Cable, Config, Creep, Foot, FrictionModel, HeadModel, MotorRating, Quirks, Ripple, Sway,
+    AxisConfig, Cable, Config, Creep, Drive, Foot, FrictionModel, HeadModel, MotorRating, Quirks, Ripple,
+    Sway,
 };
 use tracelight_dynamics::{Friction, Lumped};
 use tracelight_plant::{GyroscopeConfig, PlantConfig, Wear};
@@ -60,6 +61,7 @@ impl RigConfig {
     pub fn control_config(&self) -> Config {
         Config {
             model: head_model(&self.model.bodies.lumped()),
+            drive: if self.drive.kind.is_open_loop() { Drive::Pulses } else { Drive::Volts },
             axes: PanTilt::from_fn(|j| self.axis(j)),
             hold_limit_ticks: ticks(self.control.hold_limit_s),
             laser_on_ticks: ticks(self.model.relay.on_s),
@@ -92,7 +94,8 @@ impl RigConfig {
     }
 
     fn standing_radius_rad(&self) -> f64 {
-        standing_radius_rad(self.model.encoder.count_rad(), self.control.observer_in_use())
+        let counted = standing_radius_rad(self.model.encoder.count_rad(), self.control.observer_in_use());
+        counted + self.unseen_rad()
     }
 
     fn axis(&self, joint: Joint) -> AxisConfig {
@@ -130,7 +133,9 @@ impl RigConfig {
     /// Only for a law that knows friction, and with an observer that knows when a joint rests.
     fn creep(&self, joint: Joint) -> Option<Creep> {
         let control = &self.control;
-        let can = control.law == LawName::State && control.observer_in_use() == ObserverName::Kalman;
+        let can = !self.drive.kind.is_open_loop()
+            && control.law == LawName::State
+            && control.observer_in_use() == ObserverName::Kalman;
         if !(can && control.hops) {
             return None;
         }

@@ -3,12 +3,14 @@
 use std::f64::consts::PI;
 
 use tracelight_aim::HeadGeometry;
-use tracelight_dynamics::{Friction, HeadBodies, Motor};
+use tracelight_dynamics::{Body, Friction, HeadBodies, Inertia, Motor};
+use tracelight_maths::powi;
 use tracelight_plant::{EncoderConfig, FootConfig, GyroscopeConfig, RelayConfig, Wear};
 use tracelight_rig::PanTilt;
 
 use crate::config::{Model, MotionSettings, RigConfig, Truth};
 use crate::control_settings::ControlSettings;
+use crate::drive::{DriveKind, DriveSettings, top_speed_rad_s};
 use crate::light_settings::LightSettings;
 use crate::safety_settings::SafetySettings;
 use crate::{HandTuned, LawName};
@@ -25,7 +27,7 @@ const COMMAND_LIMIT_V: f64 = 10.0;
 impl RigConfig {
     /// Every preset, in the order they are listed.
     pub fn presets() -> Vec<Self> {
-        vec![Self::report(), Self::report_b(), Self::worn()]
+        vec![Self::report(), Self::report_b(), Self::worn(), Self::stepper(), Self::servo()]
     }
 
     /// The preset of that name.
@@ -39,6 +41,7 @@ impl RigConfig {
         Self {
             name: "report".into(),
             description: "the rig of the 2006 report, as good as new".into(),
+            drive: DriveSettings::MOTOR,
             model,
             truth: Truth { model, gyroscope: GyroscopeConfig::NONE, wear: Wear::NONE },
             identified: None,
@@ -127,6 +130,81 @@ impl RigConfig {
             truth: Truth { wear, ..new.truth },
             ..new
         }
+    }
+}
+
+/// Heads without encoders.
+impl RigConfig {
+    /// Returns a head on two NEMA 17 stepper motors behind belts.
+    pub fn stepper() -> Self {
+        let drive = DriveSettings { kind: DriveKind::Stepper, ..DriveSettings::MOTOR };
+        // the motors' own, 54 g cm2, times the ratio squared
+        let rotor = 54e-7 * powi(drive.stepper.gear_ratio, 2);
+        // tilt's motor rides on pan
+        let light = small_model(0.45, rotor);
+        Self::open_loop(
+            ("stepper", "two NEMA 17 stepper motors behind belts, no encoders (open loop)"),
+            drive,
+            light,
+        )
+    }
+
+    /// Returns a head on two MG996R hobby servos.
+    pub fn servo() -> Self {
+        let drive = DriveSettings { kind: DriveKind::Servo, ..DriveSettings::MOTOR };
+        // a core motor of some 10 g cm2 behind 1 to 200 or so
+        let light = small_model(0.1, 2e-3);
+        Self::open_loop(
+            ("servo", "two MG996R hobby servos, which tell nobody where they are (open loop)"),
+            drive,
+            light,
+        )
+    }
+
+    fn open_loop((name, description): (&str, &str), drive: DriveSettings, model: Model) -> Self {
+        let report = Self::report();
+        let top = top_speed_rad_s(drive.kind);
+        Self {
+            name: name.into(),
+            description: description.into(),
+            drive,
+            model,
+            truth: Truth { model, ..report.truth },
+            motion: MotionSettings {
+                torque_share: 0.6,
+                speed_limit_rad_s: top,
+                settle_s: 0.1,
+                ..report.motion
+            },
+            ..report
+        }
+        .driven()
+    }
+}
+
+/// A laser module of 60 g in a tilting holder, on a pan body of that mass: blocks of 6 cm, with plain bearings.
+fn small_model(pan_kg: f64, rotor_kg_m2: f64) -> Model {
+    const LASER_KG: f64 = 0.06;
+    const EDGE_M: f64 = 0.06;
+    let cube = |mass_kg: f64| {
+        let own = mass_kg * EDGE_M * EDGE_M / 6.0;
+        let inertia = Inertia { xx: own, yy: own, zz: own, ..Inertia::default() };
+        Body { mass_kg, centre_m: [0.0; 3], inertia }
+    };
+    let bodies = HeadBodies {
+        pan_body: cube(pan_kg),
+        // held a centimetre before the axis
+        tilt_body: Body { centre_m: [0.01, 0.0, 0.0], ..cube(LASER_KG) },
+        rotor_kg_m2: PanTilt::new(rotor_kg_m2, rotor_kg_m2),
+        gravity_m_s2: 9.81,
+    };
+    let friction = Friction::symmetric(0.001, 0.03);
+    let half_turn = (-0.5 * PI, 0.5 * PI);
+    Model {
+        bodies,
+        friction: PanTilt::new(friction, friction),
+        geometry: HeadGeometry::centred(PanTilt::new(half_turn, half_turn)),
+        ..report_model()
     }
 }
 

@@ -4,13 +4,14 @@ use tracelight_aim::{HeadGeometry, HeadPose};
 use tracelight_control::{Controller, Estimate, State};
 use tracelight_plant::Plant;
 use tracelight_rig::{
-    Command, Fault, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S, Telemetry,
+    Actuation, Command, Fault, Head, Joint, PanTilt, Phase, Rig, Segment, Sensed, TICK_F64_S, Telemetry,
 };
 use tracelight_session::{Feeder, Job, StrokeTicks};
 use tracelight_stroke::Point;
 use tracelight_trajectory::Plan;
 
 use crate::RigConfig;
+use crate::open_loop::OpenLoop;
 use crate::trouble::{Line, Trouble};
 
 /// Ticks a run goes on after a fault, so that the log shows what followed: 0.2 s.
@@ -74,6 +75,8 @@ pub struct SimulatedRig {
     controller: Controller,
     state: State,
     plant: Plant,
+    /// What turns the joints in place of the plant's motors, of a rig without encoders.
+    open_loop: Option<OpenLoop>,
     sensed: Sensed,
     /// The last tick's.
     told: Telemetry,
@@ -132,6 +135,7 @@ impl SimulatedRig {
         Self {
             state: controller.start_homed(&sensed),
             controller,
+            open_loop: OpenLoop::at_rest(config, plant.angle_rad()),
             plant,
             sensed,
             told: Telemetry::default(),
@@ -148,7 +152,7 @@ impl SimulatedRig {
 
     /// Encoders that count from where the joints are now, and a controller that knows nothing.
     fn power_up(&mut self) {
-        let found = self.plant.measured();
+        let found = self.open_loop.as_ref().map_or_else(|| self.plant.measured(), OpenLoop::measured);
         for j in Joint::BOTH {
             self.lines[j].off = found[j].count.wrapping_neg();
             self.sensed.encoders[j].count = 0;
@@ -195,10 +199,22 @@ impl SimulatedRig {
             asked: self.model.spot(&self.pose, asked),
             light: self.plant.light(),
         };
-        let seen = self.plant.exchange(&telemetry.actuation);
+        let seen = self.exchange(&telemetry.actuation);
         let encoders = PanTilt::from_fn(|j| self.lines[j].carry(seen.encoders[j]));
         self.sensed = Sensed { encoders, ..seen };
         tick
+    }
+
+    fn exchange(&mut self, actuation: &Actuation) -> Sensed {
+        let Some(open_loop) = &mut self.open_loop else { return self.plant.exchange(actuation) };
+        let to_rad = open_loop.turn(self.state.told(), self.state.home(), self.plant.pushed_nm());
+        Sensed { encoders: open_loop.measured(), ..self.plant.turned_to(actuation, to_rad) }
+    }
+
+    /// Full steps by which each joint is behind its pulses for good, where a stepper fell out of step: the simulated truth, which no real head
+    /// knows. None of a rig with encoders.
+    pub fn lost_steps(&self) -> PanTilt<i64> {
+        self.open_loop.as_ref().map_or(PanTilt::default(), OpenLoop::lost_steps)
     }
 
     /// What the controller believes of the joints.
@@ -212,7 +228,10 @@ impl SimulatedRig {
             Trouble::Push(torque_nm) => self.plant.push(torque_nm),
             Trouble::SupplySag(left) => self.plant.sag(left),
             Trouble::EncoderCut(j) => self.lines[j].cut_at = Some(self.sensed.encoders[j].count),
-            Trouble::EncoderJump(j, counts) => self.lines[j].off += counts,
+            Trouble::EncoderJump(j, counts) => match &mut self.open_loop {
+                Some(open_loop) => open_loop.lose(j, counts),
+                None => self.lines[j].off += counts,
+            },
             Trouble::EncoderNoise(j, share) => self.lines[j].noise = share,
             Trouble::EncoderSlip(j, share) => self.plant.slip_disc(j, share),
             Trouble::EdgesMissed(j, share) => self.lines[j].miss(share),

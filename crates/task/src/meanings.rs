@@ -51,6 +51,10 @@ const MESSAGES: &[(&str, &str)] = &[
         "motor-too-weak",
         "Gravity and friction take more torque than a plan may use. See motion.torque_share in the rig file.",
     ),
+    (
+        "open-loop-rig",
+        "The rig has no encoders (drive = \"stepper\" or \"servo\"), and what was asked needs some. Take a rig with drive = \"motor\".",
+    ),
     ("too-long", "The job takes longer than a run may. Draw larger steps, faster, or in parts."),
     (
         "no-way-at-speed",
@@ -117,7 +121,7 @@ const MESSAGES: &[(&str, &str)] = &[
     (
         "rig-file",
         "A rig file is wrong. The message shows file, line and value, what is allowed and what to do. \
-         A rig file has every key of [model], [truth.gyroscope], [truth.wear], [control], [motion], [laser] and [safety], as `tracelight rigs show report` prints them, or it begins with the line base = \"report\" (or another preset) and leaves out what is as there. \
+         A rig file has every key of [model], [truth.gyroscope], [truth.wear], [control], [motion], [laser] and [safety], as `tracelight rigs show report` prints them, or it begins with the line base = \"report\" (or another preset) and leaves out what is as there. drive = \"stepper\" or \"servo\" is a head without encoders; it has [stepper] or [servo] too. \
          Without that line a key that is missing is an error: the file was cut off. With it, nobody can tell. \
          These may be left out of any: keys of [model] under [truth], which are then as in [model]; [identified]; safety.standing, which follows from laser.power; safety.park_pan and safety.park_tilt, for a head that stays where it is; name, description. \
          A file older than some keys is read with a note that says which; `tracelight rigs show FILE` prints it with all of them.",

@@ -120,7 +120,7 @@ fn begun(
 
 fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let mut driving = args.driving.resolve()?;
-    args.law.apply(&mut driving.rig);
+    args.law.apply(&mut driving.rig)?;
     driving.order.sequence = args.sequence.sequence();
     let head = args.head.as_deref().map(|path| named::head(path, &driving.rig)).transpose()?;
     if args.eye.camera.is_none() {

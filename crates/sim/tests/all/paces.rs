@@ -25,7 +25,7 @@ fn plans(config: &RigConfig) -> [(&'static str, Plan); 3] {
 }
 
 /// A run whose clock is asked for another rate where it reaches these ticks of the plan; ten times as long as planned at most.
-fn at_speeds(config: &RigConfig, plan: &Plan, speeds: &[(u32, f32)]) -> Run {
+pub(crate) fn at_speeds(config: &RigConfig, plan: &Plan, speeds: &[(u32, f32)]) -> Run {
     let mut rig = SimulatedRig::new(config, POSE, 1);
     let mut feeder = Feeder::new(plan.segments.as_slice(), false);
     assert!(arm(&mut rig));
@@ -101,16 +101,16 @@ fn at_any_speed_motors_keep_their_limits_and_light_its_lines() {
 }
 
 /// How a run that was stopped once went.
-struct Stopped {
-    ran: Run,
+pub(crate) struct Stopped {
+    pub(crate) ran: Run,
     /// From the command to the first tick whose gate is shut, ticks, and to the stop.
-    dark_after: usize,
+    pub(crate) dark_after: usize,
     /// Where the plan's clock stood.
     at: u32,
 }
 
 /// Stops a run by a command where its clock reaches a tick of the plan, and arms it again once it has rested.
-fn stopped_at(config: &RigConfig, plan: &Plan, when: u32, stop: Command, seed: u64) -> Stopped {
+pub(crate) fn stopped_at(config: &RigConfig, plan: &Plan, when: u32, stop: Command, seed: u64) -> Stopped {
     const REST_TICKS: usize = 300;
     let mut rig = SimulatedRig::new(config, POSE, seed);
     let (mut told, mut rests, mut ticks, mut dark_after, mut at) = (None, 0, 0, None, 0);

@@ -1,6 +1,8 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use tracelight_rigfile::set_law;
 use tracelight_sim::{LawName, ObserverName, RigConfig};
+use tracelight_task::Failure;
 
 /// By what the head is held to its plan.
 #[derive(Args, Clone, Copy, Debug)]
@@ -15,8 +17,8 @@ pub(crate) struct LawArgs {
 
 impl LawArgs {
     /// Sets what was asked for.
-    pub(crate) fn apply(self, rig: &mut RigConfig) {
-        rig.set_law(self.law.unwrap_or(rig.control.law), self.observer);
+    pub(crate) fn apply(self, rig: &mut RigConfig) -> Result<(), Failure> {
+        set_law(rig, self.law, self.observer)
     }
 }
 

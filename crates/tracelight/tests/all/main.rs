@@ -14,6 +14,7 @@ mod command_lines;
 mod completing;
 mod contract;
 mod device;
+mod drives;
 mod every_command;
 mod examples;
 mod extensions;

@@ -113,7 +113,11 @@ const QUANTITIES: &[Row] = &[
 
 const RIGS: &[Row] = &[
     ("plan examples/star.png --rig reprot", 2, &["did you mean report?"]),
-    ("plan examples/star.png --rig banana", 2, &["no preset (report, report-b, worn) and no rig file"]),
+    (
+        "plan examples/star.png --rig banana",
+        2,
+        &["no preset (report, report-b, worn, stepper, servo) and no rig file"],
+    ),
     ("plan examples/star.png --rig /dev/ttyUSB0", 2, &["no real head can be driven yet"]),
     ("plan examples/star.png --rig COM3", 2, &["no real head can be driven yet"]),
     ("plan examples/star.png --rig nosuch.toml", 2, &["cannot read nosuch.toml"]),
@@ -123,7 +127,7 @@ const RIGS: &[Row] = &[
     ("plan examples/star.png --rig @/table.toml", 2, &["[model] has axis_skew, ", "pan, relay, tilt"]),
     ("plan examples/star.png --rig @/value.toml", 2, &["must be one of state, pid-ff", "^^^^^^^\n(see"]),
     ("plan examples/star.png --rig @/unit.toml", 2, &["3 has no unit", "s, ms, min"]),
-    ("plan examples/star.png --rig @/base.toml", 2, &["report, report-b, worn"]),
+    ("plan examples/star.png --rig @/base.toml", 2, &["report, report-b, worn, stepper, servo"]),
 ];
 
 const FILES: &[Row] = &[

@@ -43,6 +43,13 @@ impl Course {
         }
     }
 
+    /// The same on another rig.
+    pub(crate) fn on(mut self, rig: RigConfig) -> Self {
+        let light = self.config.light;
+        self.config = RigConfig { light, ..rig };
+        self
+    }
+
     /// The same on a rig that lets light stand.
     pub(crate) fn careless(mut self) -> Self {
         self.config.light.standing_s = 10.0;

@@ -173,9 +173,20 @@ fn no_disc_is_lit_longer_in_a_million_sequences() {
 
 fn hold(seeds: std::ops::Range<u64>) {
     for seed in seeds {
-        let course = Course::drawn(seed);
-        let (most, at) = lit_longest(&course);
-        assert!(most <= f64::from(course.budget_ticks), "seed {seed}: {most:.1} ms at {at}, {course:?}");
+        check(seed, &Course::drawn(seed));
+    }
+}
+
+fn check(seed: u64, course: &Course) {
+    let (most, at) = lit_longest(course);
+    assert!(most <= f64::from(course.budget_ticks), "seed {seed}: {most:.1} ms at {at}, {course:?}");
+}
+
+#[test]
+fn nor_is_one_of_a_head_without_encoders_that_turns_as_it_is_told() {
+    for seed in 0..300 {
+        check(seed, &Course::drawn(seed).on(RigConfig::stepper()));
+        check(seed, &Course::drawn(seed).on(RigConfig::servo()));
     }
 }
 

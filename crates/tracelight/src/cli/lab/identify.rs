@@ -66,7 +66,7 @@ impl IdentifyArgs {
     fn request(&self) -> Result<Request, Failure> {
         let mut rig = self.rig.config()?;
         self.rig.may_save(self.save)?;
-        self.law.apply(&mut rig);
+        self.law.apply(&mut rig)?;
         Ok(Request {
             rig,
             records: logs(&self.records)?,

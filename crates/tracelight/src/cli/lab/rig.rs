@@ -1,6 +1,7 @@
 //! `--rig` and `--set`: the rig of a command of the bench.
 
 use clap::Args;
+use tracelight_rigfile::measured;
 use tracelight_sim::RigConfig;
 use tracelight_task::Failure;
 
@@ -32,7 +33,7 @@ impl RigArgs {
     /// # Errors
     /// A rig file that is missing or wrong.
     pub(super) fn config(&self) -> Result<RigConfig, Failure> {
-        Ok(self.set.on(named::rig(&self.rig)?))
+        self.set.on(named::rig(&self.rig)?)
     }
 
     /// Returns what was given as `--rig`.
@@ -50,12 +51,10 @@ impl RigArgs {
 }
 
 impl SetArgs {
-    /// Returns a rig with these masses.
-    pub(super) fn on(self, rig: RigConfig) -> RigConfig {
-        match self.set {
-            Some(set) => set.set().on(rig),
-            None => rig,
-        }
+    /// Returns a rig with these masses; one without encoders is refused.
+    pub(super) fn on(self, rig: RigConfig) -> Result<RigConfig, Failure> {
+        measured(&rig, "this command of the bench")?;
+        Ok(self.set.map_or(rig.clone(), |set| set.set().on(rig)))
     }
 
     /// Refuses `--save` into what comes with the program, and of masses that are not the file's.

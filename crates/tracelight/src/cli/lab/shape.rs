@@ -46,9 +46,9 @@ impl ShapeArgs {
 
     /// The rig and what is asked of it.
     pub(super) fn driving(&self) -> Result<Driving, Failure> {
-        let rig = self.set.on(named::rig(&self.driving.rig)?);
+        let rig = self.set.on(named::rig(&self.driving.rig)?)?;
         let mut driving = self.driving.resolve_on(rig);
-        self.law.apply(&mut driving.rig);
+        self.law.apply(&mut driving.rig)?;
         if let Some(stamps) = self.edge_stamps {
             driving.rig.model.encoder.edge_stamps = stamps;
             driving.rig.truth.model.encoder.edge_stamps = stamps;
