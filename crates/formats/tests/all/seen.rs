@@ -179,3 +179,52 @@ fn a_template_for_cutting_keeps_what_is_hidden() {
     let open = ReadOptions { crop: false, ..ReadOptions::default() };
     assert!((length_mm(&read("<path d='M50 50H1000' stroke='#000'/>", &open)) - 950.0).abs() < 1e-2);
 }
+
+#[test]
+fn an_edge_that_all_but_runs_along_another_is_seen_where_it_leaves_it() {
+    // a white bar over a coloured one, a hundredth beside it, as programs export shapes that were cut out of each other
+    let below = "<path d='M20 40H80A15 15 0 0 1 80 70H20z' fill='#3c6eb4'/>";
+    for beside in [0.0, 0.004, 0.008, 0.012] {
+        let top = 40.0 + beside;
+        let above = format!("<path d='M20 {top}H60V70H20z' fill='#000'/>");
+        let found = read(&format!("{below}{above}"), &ReadOptions::default());
+        let long = length_mm(&found);
+        // the black one's edge, and what is left of the other: top, arc, bottom
+        let wanted = 140.0 - 2.0 * beside + 40.0 + 15.0 * std::f64::consts::PI;
+        assert!((long - wanted).abs() < 0.5, "{beside}: {long} mm of {wanted}");
+    }
+}
+
+#[test]
+fn however_many_shapes_there_are_each_ends_where_the_page_does() {
+    // rings across the upper edge, one beside the other: the more there are, the smaller the tiles in which they are looked at
+    for count in [1_usize, 3, 10, 40] {
+        let side = 100.0 / count as f64;
+        let ring = |k: usize| {
+            format!(
+                "<circle cx='{}' cy='0' r='{}' fill='none' stroke='#000' stroke-width='0.1'/>",
+                (k as f64 + 0.5) * side,
+                0.4 * side
+            )
+        };
+        let rings: String = (0..count).map(ring).collect();
+        let plate = "<rect x='-5' y='-5' width='120' height='120' fill='#ddd'/>";
+        let found = read(&format!("{plate}{rings}"), &ReadOptions::default());
+        let wanted = count as f64 * 0.4 * side * std::f64::consts::PI;
+        assert!((length_mm(&found) - wanted).abs() < 0.2, "{count}: {} mm of {wanted}", length_mm(&found));
+    }
+}
+
+#[test]
+fn a_white_line_on_a_wider_black_one_is_drawn_and_across_one_it_is_not() {
+    let line = |d: &str, width: f64, colour: &str| {
+        format!("<path d='{d}' fill='none' stroke='{colour}' stroke-width='{width}'/>")
+    };
+    let along = line("M20 20H80V80", 3.0, "#000") + &line("M20 20H80V80", 1.0, "#fff");
+    let found = read(&along, &ReadOptions::default());
+    assert!((length_mm(&found) - 120.0).abs() < 2.0, "{} mm", length_mm(&found));
+    // one that crosses below shows on both sides, too, for as long as it is wide
+    let across = line("M50 0V100", 3.0, "#000") + &line("M10 50H90", 1.0, "#fff");
+    let found = read(&across, &ReadOptions::default());
+    assert!((length_mm(&found) - 100.0).abs() < 2.0, "{} mm: {:?}", length_mm(&found), found.remarks);
+}

@@ -60,11 +60,14 @@ impl Grid {
         if first == last {
             return visit(first, self.column(a.x.min(b.x) - slack), self.column(a.x.max(b.x) + slack));
         }
-        let slope = (high.x - low.x) / (high.y - low.y).max(f64::MIN_POSITIVE);
-        let x_at = |y: f64| {
-            let (left, right) = (low.x.min(high.x), low.x.max(high.x));
-            (low.x + (y.clamp(low.y, high.y) - low.y) * slope).clamp(left, right)
-        };
+        let (left, right) = (low.x.min(high.x), low.x.max(high.x));
+        if high.y <= low.y {
+            // as close to the rows on both sides all along
+            let (from, to) = (self.column(left - slack), self.column(right + slack));
+            return (first..=last).for_each(|row| visit(row, from, to));
+        }
+        let slope = (high.x - low.x) / (high.y - low.y);
+        let x_at = |y: f64| (low.x + (y.clamp(low.y, high.y) - low.y) * slope).clamp(left, right);
         for row in first..=last {
             let top = self.corner.y + row as f64 * self.cell;
             // beyond the grid the rows at its edge go on
@@ -125,5 +128,21 @@ impl Listing {
                 &self.listed[self.begins[cell + first] as usize..self.begins[cell + last + 1] as usize];
             listed.iter().for_each(|&number| visit(number));
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_segment_on_the_border_of_two_rows_passes_both_from_end_to_end() {
+        let grid = Grid::new(Rect::new(0.0, 0.0, 8.0, 8.0), 64);
+        for y in [3.995, 4.0, 4.005] {
+            let mut passed = Vec::new();
+            let segment = [Point::new(1.5, y), Point::new(6.5, y)];
+            grid.passed(segment, 0.01, |row, first, last| passed.push((row, first, last)));
+            assert_eq!(passed, [(3, 1, 6), (4, 1, 6)], "at {y}");
+        }
     }
 }

@@ -104,6 +104,14 @@ impl<'a> Picture<'a> {
         layers
     }
 
+    /// Items of which something may be seen near a point, the topmost first.
+    pub(crate) fn items_at(&self, p: Point) -> impl Iterator<Item = Number> + '_ {
+        self.tiles.at(p).map(|(number, _)| {
+            self.add_work(1);
+            number
+        })
+    }
+
     /// Whether something painted after an item hides it at a point, of the items that count.
     pub(crate) fn is_covered(&self, of: Number, p: Point, counts: impl Fn(&Item) -> bool) -> bool {
         let item = &self.scene.items[of as usize];

@@ -202,7 +202,31 @@ impl Judge<'_> {
         let reach = 0.5 * item.pen.unwrap_or(0.0) + self.aside;
         let beside = [-1.0, 1.0].map(|side| place.point + place.normal * (side * reach));
         let around = |p: Point| self.picture.stack(p, |other, i| other != number && self.is_area(item, i));
-        beside.into_iter().all(|p| self.picture.look(&around(p), p).is_plain(ink))
+        let has_its_colour = |p: Point| self.picture.look(&around(p), p).is_plain(ink);
+        beside.into_iter().all(has_its_colour) && !self.is_cased(number, (place, reach), ink)
+    }
+
+    /// Whether another colour shows on both sides of a line, and a wider line below runs along with it: one that crosses does not.
+    fn is_cased(&self, number: Number, (place, reach): (Place, f64), ink: Rgb) -> bool {
+        let beside = |at: Point| [-1.0, 1.0].map(|side| at + place.normal * (side * reach));
+        let differs = |p: Point| {
+            let seen = self.picture.stack(p, |other, _| other != number);
+            !self.picture.look(&seen, p).is_plain(ink)
+        };
+        let sides = beside(place.point);
+        if !sides.into_iter().all(differs) {
+            return false;
+        }
+        let own = self.item(number).pen.unwrap_or(0.0);
+        let along = Vec2::new(place.normal.y, -place.normal.x);
+        let runs_along = |&wider: &Number| {
+            let pen = self.item(wider).pen.filter(|&pen| wider < number && pen > own);
+            pen.is_some_and(|pen| {
+                let holds = |at: Point| beside(at).into_iter().all(|p| self.picture.is_inside(wider, p));
+                holds(place.point) && [-pen, pen].into_iter().any(|way| holds(place.point + along * way))
+            })
+        };
+        self.picture.items_at(sides[0]).any(|wider| runs_along(&wider))
     }
 }
 
