@@ -5,13 +5,29 @@ use crate::model::HeadModel;
 use crate::watch::Foot;
 
 /// What turns the joints, and tells where they are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Drive {
     /// Motors that a law gives volts, measured by encoders.
     Volts,
     /// Steppers or servos that go where their pulses tell them, unmeasured: the joints are believed to be where they were told to be, and a count is
-    /// a step of what they were told.
-    Pulses,
+    /// a step of what they were told. On ways that no plan has, they keep to these bounds.
+    Pulses(Gentle),
+}
+
+/// What joints surely follow, whatever else acts on them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gentle {
+    /// Greatest speed, rad/s.
+    pub rate_rad_s: PanTilt<f32>,
+    /// Greatest acceleration, rad/s².
+    pub acceleration_rad_s2: PanTilt<f32>,
+}
+
+impl Drive {
+    /// Tells whether nothing measures where the joints are.
+    pub const fn is_open_loop(&self) -> bool {
+        matches!(self, Self::Pulses(_))
+    }
 }
 
 /// Configuration of the controller.

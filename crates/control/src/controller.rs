@@ -117,7 +117,7 @@ impl Controller {
             Command::Abandon => {
                 state.supervisor.disarm();
                 state.player.abandon();
-                state.way_back = Some(ReturnPath::from(state.servo.estimates()));
+                state.way_back = Some(ReturnPath::from(&state.servo.departure(&self.config)));
             }
             Command::KeepAlive => state.watch.hear(),
             Command::Finish => state.player.finish(),
@@ -144,7 +144,7 @@ impl Controller {
             }
             state.watch.rearm(&self.config, &state.sensed, state.servo.estimates());
             // from wherever it fell to, gently
-            state.way_back = Some(ReturnPath::from(state.servo.estimates()));
+            state.way_back = Some(ReturnPath::from(&state.servo.departure(&self.config)));
         }
         if state.supervisor.phase != Phase::Tracing {
             state.player.stop_in(0);
@@ -321,6 +321,8 @@ impl Controller {
         let reference = self.reference(state, played);
         if state.supervisor.blind {
             let none = state.servo.coast();
+            // joints that nothing holds go where they like, and nobody counts it
+            state.supervisor.homed &= !self.config.drive.is_open_loop();
             // a motor cools meanwhile; what it still is too hot for is known
             let _ = state.watch.drive(&self.config, &none);
             return none;

@@ -40,7 +40,7 @@ mod test_move;
 mod watch;
 
 pub use axis::AxisConfig;
-pub use config::{Config, Drive};
+pub use config::{Config, Drive, Gentle};
 pub use controller::{Controller, State};
 pub use creep::Creep;
 pub use estimate::{Effort, Estimate, Learned};

@@ -46,19 +46,26 @@ impl ReturnPath {
     pub(crate) fn tick(&mut self, config: &Config, goal: &PanTilt<Setpoint>) -> PanTilt<Setpoint> {
         let now = self.reference;
         self.reference = PanTilt::from_fn(|j| {
-            let limits = &config.axes[j].limits;
-            let sped_up_rad_s2 = config.sped_up_by(j, TORQUE_SHARE);
-            let most = Most {
-                rate_rad_s: limits.speed_rad_s,
-                acceleration_rad_s2: match config.drive {
-                    Drive::Volts => sped_up_rad_s2,
-                    // nothing would notice that it does not follow
-                    Drive::Pulses => sped_up_rad_s2.min(limits.acceleration_rad_s2),
+            let most = match &config.drive {
+                Drive::Volts => Most {
+                    rate_rad_s: config.axes[j].limits.speed_rad_s,
+                    acceleration_rad_s2: config.sped_up_by(j, TORQUE_SHARE),
+                },
+                Drive::Pulses(gentle) => Most {
+                    rate_rad_s: gentle.rate_rad_s[j],
+                    acceleration_rad_s2: gentle.acceleration_rad_s2[j],
                 },
             };
             step(&now[j], goal[j].position_rad, &most)
         });
-        now
+        if !config.drive.is_open_loop() {
+            return now;
+        }
+        // pulses go out for the tick that begins
+        PanTilt::from_fn(|j| Setpoint {
+            acceleration_rad_s2: self.reference[j].acceleration_rad_s2,
+            ..now[j]
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 use tracelight_rig::{Joint, Measurement, PanTilt, Setpoint, TICK_S};
 
-use crate::config::{Config, Drive};
+use crate::config::Config;
 use crate::estimate::{Effort, Estimate};
 use crate::law::{LawInput, LawState, feedforward};
 use crate::limit::within;
@@ -40,17 +40,16 @@ impl Servo {
     /// Of a head at rest whose encoders read `measured`.
     pub fn at_rest(config: &Config, measured: &PanTilt<Measurement>) -> Self {
         let begun = Self::begin(config, |j| Observer::begin(&config.axes[j], &measured[j], STILL_RAD_S));
-        match config.drive {
-            Drive::Volts => begun,
-            Drive::Pulses => {
-                begun.standing_at(PanTilt::from_fn(|j| measured[j].count as f32 * config.axes[j].count_rad))
-            }
+        if config.drive.is_open_loop() {
+            let told = |j: Joint| measured[j].count as f32 * config.axes[j].count_rad;
+            return begun.standing_at(PanTilt::from_fn(told));
         }
+        begun
     }
 
     /// Of the same head, of which all but the counts that were put back is to be forgotten.
     pub(crate) fn anew(&self, config: &Config, measured: &PanTilt<Measurement>) -> Self {
-        if config.drive == Drive::Pulses {
+        if config.drive.is_open_loop() {
             return self.standing_at(self.told.map(|told| told.position_rad));
         }
         let lost = |j: Joint| self.estimates[j].lost_counts;
@@ -77,6 +76,15 @@ impl Servo {
         &self.estimates
     }
 
+    /// Where a way that begins with the next tick begins: between two ticks, joints that are told where to be are on their way through the last one.
+    pub(crate) fn departure(&self, config: &Config) -> PanTilt<Estimate> {
+        if config.drive.is_open_loop() {
+            self.told.map(|told| believed(&moved_on(&told)))
+        } else {
+            self.estimates
+        }
+    }
+
     /// Where they are believed to be, rad.
     pub(crate) fn position_rad(&self) -> PanTilt<f32> {
         self.estimates.map(|estimate| estimate.position_rad)
@@ -99,7 +107,7 @@ impl Servo {
 
     /// Takes what the encoders read at the end of a tick. Of joints without them, it takes what they were told.
     pub fn observe(&mut self, config: &Config, measured: &PanTilt<Measurement>) {
-        if config.drive == Drive::Pulses {
+        if config.drive.is_open_loop() {
             self.estimates = self.told.map(|told| believed(&moved_on(&told)));
             return;
         }
@@ -112,7 +120,7 @@ impl Servo {
 
     /// Volts for this tick; none for joints that are told where to be.
     pub fn drive(&mut self, config: &Config, reference: &Reference) -> PanTilt<f32> {
-        if config.drive == Drive::Pulses {
+        if config.drive.is_open_loop() {
             return self.tell(&reference.now);
         }
         let added = feedforward(config, &reference.ahead, &self.estimates);

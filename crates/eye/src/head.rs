@@ -11,7 +11,7 @@ use tracelight_pipeline::{Driving, refused};
 use tracelight_rig::Command;
 use tracelight_rigfile::Timing;
 use tracelight_rigfile::head::KnownHead;
-use tracelight_sim::{Simulated, Tick, run_segments};
+use tracelight_sim::{DriveKind, RigConfig, Simulated, Tick, run_segments};
 use tracelight_stroke::{Drawing, Element, Path, Point, Stroke, Vec2};
 use tracelight_task::{Failure, Task};
 use tracelight_trajectory::{Plan, PlanRequest, plan};
@@ -163,6 +163,7 @@ pub fn find_head<R: Simulated + Eye>(
     task: Task<'_>,
     keep: &mut dyn FnMut(&Tick),
 ) -> Result<FoundHead, Failure> {
+    placed_finely(&driving.rig)?;
     let _kept = task.stop.keep();
     let mut seen = see_dots(rig, camera, driving, request, task, keep)?;
     let aligned = aligned(&request.belief, &mut seen.watch.timing, &seen.sightings, &seen.history)
@@ -174,6 +175,20 @@ pub fn find_head<R: Simulated + Eye>(
         dots: seen.dots,
         lost: seen.watch.lost,
     })
+}
+
+/// Refuses a head that places its dots further off than any camera sees them.
+fn placed_finely(rig: &RigConfig) -> Result<(), Failure> {
+    if rig.drive.kind != DriveKind::Servo {
+        return Ok(());
+    }
+    let message = format!(
+        "a camera cannot find the head of the rig {}: its hobby servos place a dot no finer than {:.2} degrees. Tell where it stands (--distance), and draw without a \
+         camera",
+        rig.name,
+        rig.drive.servo.resolution_rad().to_degrees()
+    );
+    Err(Failure::usage("open-loop-rig", message))
 }
 
 /// Has the head draw dots, and watches them. The rig is as for [`find_head`].

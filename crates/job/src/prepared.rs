@@ -7,7 +7,7 @@ use tracelight_picture::{Raster, Source};
 use tracelight_pipeline::{
     Before, Check, Driving, Placed, Schedule, Sketch, place, preflight, schedule, schedule_rest, sketch,
 };
-use tracelight_rig::PanTilt;
+use tracelight_rig::{Joint, PanTilt};
 use tracelight_sim::{RigConfig, Run, SimulatedRig};
 use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Stop, Task, counted};
@@ -374,15 +374,23 @@ impl Prepared {
 
 /// What to say of a lap after which stepper motors are behind their pulses.
 fn lost_note(rig: &RigConfig, distance_m: f64, lost: PanTilt<i64>) -> Option<String> {
-    let off_mm = |steps: i64| 1e3 * distance_m * steps as f64 * rig.drive.stepper.full_step_rad();
-    (lost != PanTilt::default()).then(|| {
+    let of = |j: Joint| {
+        let (steps, name) = (lost[j], j.name());
+        let off_mm = 1e3 * distance_m * steps.unsigned_abs() as f64 * rig.drive.stepper.full_step_rad();
+        let way = if steps > 0 { "behind" } else { "ahead of" };
+        (steps != 0).then(|| {
+            format!(
+                "{name} ends {} full steps {way} its pulses, {off_mm:.1} mm at {distance_m:.3} m",
+                steps.unsigned_abs()
+            )
+        })
+    };
+    let told: Vec<String> = Joint::BOTH.into_iter().filter_map(of).collect();
+    (!told.is_empty()).then(|| {
         format!(
-            "steps were lost: pan ends {} full steps behind its pulses ({:.1} mm at {distance_m:.3} m), tilt {} ({:.1} mm). The simulation tells; \
-             a real head would not notice. Lower motion.pan_speed, motion.tilt_speed or the accelerations",
-            lost.pan,
-            off_mm(lost.pan),
-            lost.tilt,
-            off_mm(lost.tilt)
+            "steps were lost: {}. Only a simulation can tell; a real head goes on and knows nothing. Give the motors less to do (motion.torque_share, speeds, \
+             accelerations), or look for what holds the joints",
+            told.join("; ")
         )
     })
 }

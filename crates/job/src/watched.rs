@@ -345,6 +345,9 @@ impl Watched<'_> {
             return;
         }
         let remark = match blind {
+            Some(why) if self.driving.rig.drive.kind.is_open_loop() => {
+                format!("{}; the job goes on, and nobody watches where its light falls", why.words())
+            }
             Some(why) => format!("{}; the job goes on by its encoders", why.words()),
             None => "the camera sees again".to_owned(),
         };

@@ -14,8 +14,8 @@ pub struct ServoDrive {
     pub pulse_resolution_s: f64,
     /// Change of the width that the servo does not yet answer, s.
     pub dead_band_s: f64,
-    /// Ticks from one pulse to the next: 20 at 50 Hz.
-    pub refresh_ticks: u32,
+    /// Time from one pulse to the next, s, in whole ticks: 0.02 at 50 Hz.
+    pub refresh_s: f64,
     /// Greatest speed, rad/s: π/3 over the catalogue's seconds for 60°.
     pub speed_rad_s: f64,
     /// Time in which it covers all but 1/e of what is left where that speed does not bind, s; zero for none.
@@ -51,10 +51,20 @@ impl ServoDrive {
         self.angle_rad(self.pulse_resolution_s)
     }
 
+    /// Returns the angle that it does not yet answer, rad.
+    pub fn dead_band_rad(&self) -> f64 {
+        self.angle_rad(self.dead_band_s)
+    }
+
+    /// Returns how long after its plan rests it rests, too, s: a pulse later, and once its own response has died away to a fiftieth.
+    pub fn settles_s(&self) -> f64 {
+        self.refresh_s + 4.0 * self.response_s
+    }
+
     /// Returns how far in time the gear is behind an angle that is set at a steady speed, s, dead band left out: its own response, and half of the
     /// time from one pulse to the next.
     pub fn lag_s(&self) -> f64 {
-        self.response_s + 0.5 * f64::from(self.refresh_ticks) * TICK_F64_S
+        self.response_s + 0.5 * self.refresh_s
     }
 
     fn angle_rad(&self, width_s: f64) -> f64 {
@@ -71,7 +81,7 @@ impl ServoDrive {
 
     /// How far off the gear still is after a tick, rad, if it is `away_rad` ≥ 0 off now.
     fn left_rad(&self, away_rad: f64) -> f64 {
-        let dead_rad = self.angle_rad(self.dead_band_s);
+        let dead_rad = self.dead_band_rad();
         if away_rad <= dead_rad { away_rad } else { self.approached_rad(away_rad).max(dead_rad) }
     }
 
@@ -100,7 +110,7 @@ impl ServoJoint {
     pub fn turn(&mut self, set_rad: f64) -> f64 {
         if self.ticks_to_pulse == 0 {
             self.asked_rad = self.drive.asked_rad(set_rad);
-            self.ticks_to_pulse = self.drive.refresh_ticks.max(1);
+            self.ticks_to_pulse = ((self.drive.refresh_s / TICK_F64_S).round() as u32).max(1);
         }
         self.ticks_to_pulse -= 1;
         let away_rad = self.asked_rad - self.gear_rad;
@@ -123,7 +133,7 @@ mod tests {
         pulse_span_s: 2e-3,
         pulse_resolution_s: 1e-6,
         dead_band_s: 5e-6,
-        refresh_ticks: 20,
+        refresh_s: 0.02,
         speed_rad_s: PI / 3.0 / 0.17,
         response_s: 0.0,
         play_rad: 0.0,
@@ -133,7 +143,7 @@ mod tests {
     const IDEAL: ServoDrive = ServoDrive {
         pulse_resolution_s: 0.0,
         dead_band_s: 0.0,
-        refresh_ticks: 1,
+        refresh_s: 0.001,
         speed_rad_s: f64::INFINITY,
         ..DRIVE
     };
@@ -161,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_set_angle_waits_for_the_next_pulse() {
-        let mut joint = ServoJoint::new(ServoDrive { refresh_ticks: 20, ..IDEAL });
+        let mut joint = ServoJoint::new(ServoDrive { refresh_s: 0.02, ..IDEAL });
         joint.turn(0.0);
         let seen: Vec<f64> = (1..=20).map(|_| joint.turn(0.3)).collect();
         assert!(seen[..19].iter().all(|&angle| angle == 0.0));

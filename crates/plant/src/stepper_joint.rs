@@ -22,6 +22,8 @@ pub struct StepperDrive {
     pub corner_rad_s: f64,
     /// Greatest speed at which a rotor at rest falls into step, rad/s.
     pub pull_in_rad_s: f64,
+    /// Inertia of its rotor, kg m².
+    pub rotor_kg_m2: f64,
     /// Furthest that a microstep lies beside its place, as a share of a full step; full steps lie where they should.
     pub microstep_error: f64,
 }
@@ -52,6 +54,8 @@ pub struct StepperJoint {
     /// Angle at which the rotor stands, rad of the motor, while it is out of step.
     stalled_rad: Option<f64>,
     rotor_rad: f64,
+    /// Where the field points, rad of the motor.
+    field_rad: f64,
 }
 
 impl StepperDrive {
@@ -70,6 +74,17 @@ impl StepperDrive {
         let speed = (joint_rad_s * self.gear_ratio).abs();
         let share = if speed > self.corner_rad_s { self.corner_rad_s / speed } else { 1.0 };
         self.holding_torque_nm * share * self.gear_ratio
+    }
+
+    /// Returns the angle by which a torque at the joint turns a motor at rest from where its pulses put it, rad at the joint; a full step where it
+    /// is more than the motor has.
+    pub fn load_angle_rad(&self, joint_nm: f64) -> f64 {
+        let share = (joint_nm / self.pull_out_nm(0.0)).abs().min(1.0);
+        asin(share) / self.cycles_a_turn() / self.gear_ratio
+    }
+
+    fn cycles_a_turn(&self) -> f64 {
+        f64::from(self.full_steps_per_turn) / STEPS_PER_CYCLE as f64
     }
 
     fn motor_step_rad(&self) -> f64 {
@@ -92,28 +107,36 @@ impl StepperDrive {
 impl StepperJoint {
     /// Returns a joint in step at angle zero.
     pub const fn new(drive: StepperDrive) -> Self {
-        Self { drive, lost_cycles: 0, stalled_rad: None, rotor_rad: 0.0 }
+        Self { drive, lost_cycles: 0, stalled_rad: None, rotor_rad: 0.0, field_rad: 0.0 }
+    }
+
+    /// Returns the same joint in step at an angle zero that is where it is now.
+    #[must_use]
+    pub const fn anew(&self) -> Self {
+        Self::new(self.drive)
     }
 
     /// Sends the pulses of a tick and returns the true angle of the joint at its end, rad.
     pub fn turn(&mut self, demand: StepperDemand) -> f64 {
         let share = demand.torque_nm / self.drive.pull_out_nm(demand.velocity_rad_s);
         let field_rad = self.drive.field_rad(demand.position_rad);
+        self.field_rad = field_rad;
         if share.abs() > 1.0 {
             self.stalled_rad.get_or_insert(self.rotor_rad);
         } else if self.catches(demand.velocity_rad_s) {
-            self.catch(field_rad);
+            self.catch();
         }
         if self.stalled_rad.is_none() {
-            let cycles_a_turn = f64::from(self.drive.full_steps_per_turn) / STEPS_PER_CYCLE as f64;
-            self.rotor_rad = field_rad - self.lost_rad() - asin(share) / cycles_a_turn;
+            self.rotor_rad = field_rad - self.lost_rad() - asin(share) / self.drive.cycles_a_turn();
         }
         self.rotor_rad / self.drive.gear_ratio
     }
 
-    /// Returns the full steps by which the joint is behind its pulses for good; negative where it is ahead. No real head knows this number.
-    pub const fn lost_steps(&self) -> i64 {
-        self.lost_cycles * STEPS_PER_CYCLE
+    /// Returns the full steps by which the joint is behind its pulses for good, or would be if it were caught now; negative where it is ahead. No real
+    /// head knows this number.
+    pub fn lost_steps(&self) -> i64 {
+        let cycles = self.stalled_rad.map_or(self.lost_cycles, |rotor_rad| self.cycles_behind(rotor_rad));
+        cycles * STEPS_PER_CYCLE
     }
 
     /// Tells whether the rotor has fallen out of step and stands.
@@ -125,10 +148,15 @@ impl StepperJoint {
         (joint_rad_s * self.drive.gear_ratio).abs() <= self.drive.pull_in_rad_s
     }
 
-    fn catch(&mut self, field_rad: f64) {
+    fn catch(&mut self) {
         if let Some(rotor_rad) = self.stalled_rad.take() {
-            self.lost_cycles = ((field_rad - rotor_rad) / self.drive.cycle_rad()).round() as i64;
+            self.lost_cycles = self.cycles_behind(rotor_rad);
         }
+    }
+
+    /// Cycles from a rotor that stands there to the place of rest that is nearest to where the field points.
+    fn cycles_behind(&self, rotor_rad: f64) -> i64 {
+        ((self.field_rad - rotor_rad) / self.drive.cycle_rad()).round() as i64
     }
 
     fn lost_rad(&self) -> f64 {
@@ -148,6 +176,7 @@ mod tests {
         holding_torque_nm: 0.4,
         corner_rad_s: 30.0,
         pull_in_rad_s: 6.0,
+        rotor_kg_m2: 0.0,
         microstep_error: 0.0,
     };
 

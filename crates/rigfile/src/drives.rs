@@ -4,7 +4,7 @@ use tracelight_sim::{DriveKind, LawName, ObserverName, RigConfig};
 use tracelight_task::Failure;
 use tracelight_units::{ANGLES, ANGULAR_SPEEDS, TIMES, Unit};
 
-use crate::keys::{Choice, Key, PURE, Slot, TORQUE, choice, real};
+use crate::keys::{Choice, INERTIA, Key, PURE, Slot, TORQUE, choice, real};
 
 /// The key that says which drive a rig has.
 pub(crate) const DRIVE: &str = "drive";
@@ -26,7 +26,7 @@ pub(crate) const fn drive_key() -> Key<RigConfig> {
     )
 }
 
-const STEPPER_KEYS: [Key<RigConfig>; 7] = [
+const STEPPER_KEYS: [Key<RigConfig>; 8] = [
     Key {
         path: "stepper.steps_per_turn",
         units: PURE,
@@ -65,6 +65,9 @@ const STEPPER_KEYS: [Key<RigConfig>; 7] = [
         "greatest speed of the field at which a motor at rest falls into step",
         |r| &mut r.drive.stepper.pull_in_rad_s,
     ),
+    real("stepper.rotor_inertia", INERTIA, (0.0, 1.0), "of the motor's rotor", |r| {
+        &mut r.drive.stepper.rotor_kg_m2
+    }),
     real(
         "stepper.microstep_error",
         PURE,
@@ -89,13 +92,13 @@ const SERVO_KEYS: [Key<RigConfig>; 9] = [
     real("servo.dead_band", PULSES, (0.0, 1e-3), "change of the width that the servo does not answer", |r| {
         &mut r.drive.servo.dead_band_s
     }),
-    Key {
-        path: "servo.refresh_ticks",
-        units: PURE,
-        bounds: (1.0, 100.0),
-        meaning: "milliseconds from one pulse to the next: 20 at 50 Hz",
-        slot: Slot::Count(|r| &mut r.drive.servo.refresh_ticks),
-    },
+    real(
+        "servo.refresh",
+        TIMES,
+        (1e-3, 0.1),
+        "from one pulse to the next, in whole ms: 20 ms at 50 Hz",
+        |r| &mut r.drive.servo.refresh_s,
+    ),
     real(
         "servo.speed",
         ANGULAR_SPEEDS,
@@ -165,8 +168,23 @@ pub(crate) fn all_drive_keys() -> Vec<Key<RigConfig>> {
     [drive_key()].into_iter().chain(STEPPER_KEYS).chain(SERVO_KEYS).collect()
 }
 
+/// Tells whether a key's value follows from the drive of a rig without encoders, so that no file of it has the key.
+pub(crate) fn follows(path: &str, kind: DriveKind) -> bool {
+    let own = path.strip_prefix("model.").or_else(|| path.strip_prefix("truth."));
+    let Some(own) = own.filter(|_| kind.is_open_loop()) else { return false };
+    let is_rotor = kind == DriveKind::Stepper && own.ends_with(".rotor_inertia");
+    let is_motor = own.ends_with(".motor.torque_per_volt") || own.ends_with(".motor.limit");
+    is_rotor || is_motor || own.starts_with("encoder.") || own.starts_with("wear.")
+}
+
 /// Says what is wrong with a key that belongs to another drive than the rig's.
 pub(crate) fn of_other_drive(path: &str, kind: DriveKind) -> Option<String> {
+    if follows(path, kind) {
+        return Some(format!(
+            "{path} follows from [{}] on a rig without encoders and cannot be set: leave it out",
+            kind.name()
+        ));
+    }
     let needed = [(STEPPER, DriveKind::Stepper), (SERVO, DriveKind::Servo)]
         .into_iter()
         .find_map(|(table, needed)| path.starts_with(table).then_some(needed))?;
@@ -205,9 +223,13 @@ mod tests {
         own.drive.stepper.gear_ratio = 4.5;
         own.motion.speed_limit_rad_s.pan = 12.0;
         let mut quick = RigConfig::servo();
-        quick.drive.servo.refresh_ticks = 3;
+        quick.drive.servo.refresh_s = 3e-3;
         quick.drive.servo.speed_rad_s = 4.0;
-        for rig in [RigConfig::stepper(), RigConfig::servo(), own.driven(), quick.driven()] {
+        // as far as keys go
+        let mut far = RigConfig::stepper();
+        let stepper = &mut far.drive.stepper;
+        (stepper.gear_ratio, stepper.holding_torque_nm, stepper.corner_rad_s) = (1000.0, 100.0, 1e4);
+        for rig in [RigConfig::stepper(), RigConfig::servo(), own.driven(), quick.driven(), far.driven()] {
             let text = write(&rig);
             let read = parse("own.toml", &text).unwrap();
             assert_eq!(read, rig, "{text}");
@@ -230,6 +252,10 @@ mod tests {
         assert!(odd.contains("201 is no multiple of 4"), "{odd}");
         let deaf = of("base = \"servo\"\n[servo]\ndead_band = \"1ms\"\npulse_span = \"0.5ms\"\n");
         assert!(deaf.contains("less than pulse_span"), "{deaf}");
+        let derived = of("base = \"stepper\"\n[model.encoder]\ncounts_per_rev = 4096\n");
+        assert!(derived.contains("follows from [stepper]") && derived.contains("my.toml:3"), "{derived}");
+        let worn = of("base = \"servo\"\n[truth.wear]\nbacklash = \"1deg\"\n");
+        assert!(worn.contains("follows from [servo]"), "{worn}");
         let typo = of("base = \"stepper\"\n[stepper]\nmicrostep = 8\n");
         assert!(typo.contains("did you mean stepper.microsteps?"), "{typo}");
     }

@@ -46,7 +46,7 @@ pub(crate) struct Key<T: 'static> {
 
 pub(crate) const PURE: &[Unit] = &[];
 const MASS: &[Unit] = &[("kg", 1.0), ("g", 1e-3)];
-const INERTIA: &[Unit] = &[("kgm2", 1.0), ("gcm2", 1e-7)];
+pub(crate) const INERTIA: &[Unit] = &[("kgm2", 1.0), ("gcm2", 1e-7)];
 const GRAVITY: &[Unit] = &[("m/s2", 1.0)];
 pub(crate) const TORQUE: &[Unit] = &[("Nm", 1.0), ("mNm", 1e-3)];
 const FREQUENCIES: &[Unit] = &[("Hz", 1.0)];

@@ -8,7 +8,7 @@ use tracelight_task::Failure;
 use tracelight_units as units;
 
 use crate::caret::Mark;
-use crate::drives::{DRIVE, all_drive_keys, drive_key, drive_keys, of_other_drive};
+use crate::drives::{DRIVE, all_drive_keys, drive_key, drive_keys, follows, of_other_drive};
 use crate::found::identified_keys;
 use crate::hand_tuned::rig_keys;
 use crate::keys::{Choice, Key, Slot, model_keys};
@@ -276,7 +276,8 @@ pub fn write(config: &RigConfig) -> String {
     text += &format!("{drive:50} # {}\n", drive_key().meaning);
     let kind = config.drive.kind;
     section(&mut text, "", drive_keys(kind), &mut config);
-    let models = model_keys();
+    let models: Vec<_> =
+        model_keys().into_iter().filter(|key| !follows(&format!("model.{}", key.path), kind)).collect();
     let (mut model, mut truth) = (config.model, config.truth.model);
     section(&mut text, "model", &models, &mut model);
     let differs = |key: &Key<Model>| shown(key, &mut config.model.clone()) != shown(key, &mut truth.clone());
@@ -286,7 +287,8 @@ pub fn write(config: &RigConfig) -> String {
         text += &format!("\n[identified]\ndate = {}\n", quoted(&identified.date));
         section(&mut text, "identified", &identified_keys(), identified);
     }
-    section(&mut text, "", &rig_keys(), &mut config);
+    let own: Vec<_> = rig_keys().into_iter().filter(|key| !follows(key.path, kind)).collect();
+    section(&mut text, "", &own, &mut config);
     follow_power(&mut text, &config.light);
     text
 }

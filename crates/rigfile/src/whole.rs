@@ -2,7 +2,7 @@
 
 use tracelight_sim::{DriveKind, RigConfig};
 
-use crate::drives::drive_keys;
+use crate::drives::{drive_keys, follows};
 use crate::hand_tuned::rig_keys;
 use crate::keys::{Key, Slot, model_keys};
 use crate::safety::STANDING;
@@ -79,7 +79,7 @@ fn needed(kind: DriveKind) -> Vec<String> {
     let models = model_keys().into_iter().map(|key| format!("model.{}", key.path));
     let drive = drive_keys(kind).iter().map(|key| key.path.to_owned());
     let own = rig_keys().into_iter().filter(is_needed).map(|key| key.path.to_owned());
-    drive.chain(models).chain(own).collect()
+    drive.chain(models).chain(own).filter(|path| !follows(path, kind)).collect()
 }
 
 fn is_needed(key: &Key<RigConfig>) -> bool {

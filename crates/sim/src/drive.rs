@@ -89,6 +89,8 @@ const NEMA_17: StepperDrive = StepperDrive {
     corner_rad_s: 51.0,
     // some 200 full steps a second, without load
     pull_in_rad_s: 6.0,
+    // 54 g cm2
+    rotor_kg_m2: 54e-7,
     microstep_error: 0.05,
 };
 
@@ -99,7 +101,7 @@ const MG996R: ServoDrive = ServoDrive {
     pulse_span_s: 2e-3,
     pulse_resolution_s: 1e-6,
     dead_band_s: 5e-6,
-    refresh_ticks: 20,
+    refresh_s: 0.02,
     speed_rad_s: PI / 3.0 / 0.17,
     // a gear train of such servos comes in within some pulses
     response_s: 0.02,

@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
+use tracelight_control::Gentle;
 use tracelight_dynamics::Motor;
-use tracelight_plant::{EncoderConfig, ServoDrive, StepperDrive};
-use tracelight_rig::{Joint, PanTilt, TICK_F64_S};
+use tracelight_maths::hypot;
+use tracelight_plant::{EncoderConfig, ServoDrive, StepperDrive, Wear};
+use tracelight_rig::{Joint, PanTilt};
 
 use crate::config::{Model, RigConfig};
 use crate::drive::DriveKind;
@@ -14,14 +16,15 @@ const FULL_COMMAND_V: f64 = 10.0;
 const MM: f64 = 1e3;
 
 impl RigConfig {
-    /// Gives model and truth what follows from a drive that measures nothing: torque, top speed and range, and counts that are steps of what is told.
+    /// Gives model and truth what follows from a drive that measures nothing: torque, rotor inertia, top speed, time to settle and range, no wear, and counts that are steps of what is told.
     /// A stepper's torque is that at its top speed, where it is least. A rig of motors stays as it is.
     #[must_use]
     pub fn driven(mut self) -> Self {
         let drive = self.drive;
         if drive.kind == DriveKind::Servo {
-            let speed = &mut self.motion.speed_limit_rad_s;
-            *speed = speed.map(|top| top.min(drive.servo.speed_rad_s));
+            let motion = &mut self.motion;
+            motion.speed_limit_rad_s = motion.speed_limit_rad_s.map(|top| top.min(drive.servo.speed_rad_s));
+            motion.settle_s = motion.settle_s.max(drive.servo.settles_s());
         }
         let torque_nm = |top_rad_s: f64| match drive.kind {
             DriveKind::Motor => None,
@@ -34,11 +37,16 @@ impl RigConfig {
             .map(|torque_nm| Motor { torque_nm_per_v: torque_nm / FULL_COMMAND_V, limit_v: FULL_COMMAND_V });
         for model in [&mut self.model, &mut self.truth.model] {
             model.motors = motors;
+            if drive.kind == DriveKind::Stepper {
+                let rotor = drive.stepper.rotor_kg_m2 * drive.stepper.gear_ratio * drive.stepper.gear_ratio;
+                model.bodies.rotor_kg_m2 = PanTilt::new(rotor, rotor);
+            }
             model.encoder = EncoderConfig { counts_per_rev: drive.steps_per_rev(), edge_stamps: false };
             if drive.kind == DriveKind::Servo {
                 stay_within(model, 0.5 * drive.servo.range_rad);
             }
         }
+        self.truth.wear = Wear::NONE;
         self
     }
 
@@ -47,7 +55,7 @@ impl RigConfig {
     pub fn open_loop_remarks(&self, distance_m: f64, speed_m_s: f64) -> Vec<String> {
         let expected = match self.drive.kind {
             DriveKind::Motor => return Vec::new(),
-            DriveKind::Stepper => stepper_remark(&self.drive.stepper, distance_m),
+            DriveKind::Stepper => stepper_remark(&self.drive.stepper, self.load_angle_rad(), distance_m),
             DriveKind::Servo => servo_remark(&self.drive.servo, distance_m, speed_m_s),
         };
         let believed = "open loop: this head has no encoders. Where it is, it was told to be and nobody measured; a joint that is blocked goes \
@@ -57,11 +65,58 @@ impl RigConfig {
 
     /// The angle within which a joint may stand still although its set angle moves, rad.
     pub(crate) fn unseen_rad(&self) -> f64 {
+        let (stepper, servo) = (&self.drive.stepper, &self.drive.servo);
         match self.drive.kind {
             DriveKind::Motor => 0.0,
-            DriveKind::Stepper => self.drive.stepper.microstep_rad(),
-            DriveKind::Servo => 2.0 * self.drive.servo.resolution_rad() + self.drive.servo.play_rad,
+            DriveKind::Stepper => {
+                let placed_rad = 2.0 * stepper.microstep_error * stepper.full_step_rad();
+                stepper.microstep_rad() + placed_rad + self.load_angle_rad()
+            }
+            DriveKind::Servo => 2.0 * servo.dead_band_rad() + servo.pulse_step_rad() + servo.play_rad,
         }
+    }
+
+    /// What joints that nothing measures surely follow; `None` of a rig with encoders. Half of the torque that friction and gravity leave is kept
+    /// for all else.
+    pub(crate) fn gentle(&self) -> Option<Gentle> {
+        const SHARE: f64 = 0.5;
+        /// Of a motor that friction and gravity leave nothing: it does not move whatever it is told.
+        const LEAST: f64 = 1e-3;
+        if !self.drive.kind.is_open_loop() {
+            return None;
+        }
+        let (motion, model) = (&self.motion, &self.model);
+        let lumped = model.bodies.lumped();
+        let tilts = (-6..=6).map(|step| f64::from(step) * PI / 12.0);
+        let most_inertia =
+            |j: Joint| tilts.clone().map(|tilt| lumped.mass(tilt).own_inertia()[j]).fold(0.0, f64::max);
+        let acceleration = PanTilt::from_fn(|j| {
+            let limit_nm = model.motors[j].torque_limit_nm();
+            let left_nm = (limit_nm - self.carried_nm(j)).max(LEAST * limit_nm);
+            (SHARE * left_nm / most_inertia(j)).min(motion.acceleration_limit_rad_s2[j])
+        });
+        Some(Gentle {
+            rate_rad_s: motion.speed_limit_rad_s.map(|rate| rate as f32),
+            acceleration_rad_s2: acceleration.map(|most| most as f32),
+        })
+    }
+
+    /// Torque that friction at top speed and gravity take at most, N m.
+    fn carried_nm(&self, joint: Joint) -> f64 {
+        let lumped = self.model.bodies.lumped();
+        let top = self.motion.speed_limit_rad_s[joint];
+        let friction = &self.model.friction[joint];
+        let friction_nm = friction.torque(top).max(-friction.torque(-top));
+        match joint {
+            Joint::Pan => friction_nm,
+            Joint::Tilt => friction_nm + hypot(lumped.gravity_c, lumped.gravity_s),
+        }
+    }
+
+    /// By how much friction and gravity turn a stepper's rotor from where its pulses put it, at most, rad at the joint.
+    fn load_angle_rad(&self) -> f64 {
+        let load_nm = self.carried_nm(Joint::Pan).max(self.carried_nm(Joint::Tilt));
+        self.drive.stepper.load_angle_rad(load_nm)
     }
 }
 
@@ -72,27 +127,28 @@ fn stay_within(model: &mut Model, half_rad: f64) {
     }
 }
 
-fn stepper_remark(drive: &StepperDrive, distance_m: f64) -> String {
-    let step_mm = MM * distance_m * drive.microstep_rad();
-    let off_mm = MM * distance_m * drive.full_step_rad() * drive.microstep_error;
+fn stepper_remark(drive: &StepperDrive, load_rad: f64, distance_m: f64) -> String {
+    let mm = |angle_rad: f64| MM * distance_m * angle_rad;
+    let half_mm = mm(0.5 * drive.microstep_rad());
+    let [off_mm, load_mm] = [drive.full_step_rad() * drive.microstep_error, load_rad].map(mm);
     format!(
-        "a microstep is {step_mm:.2} mm at {distance_m:.3} m, so expect {:.2} mm of error a joint: half a microstep, and {off_mm:.2} mm by which \
-         the motor places them wrong. Load adds to it",
-        0.5 * step_mm + off_mm
+        "expect up to {:.2} mm of error a joint at {distance_m:.3} m: {half_mm:.2} mm is half a microstep, by {off_mm:.2} mm the motor places them \
+         wrong, and by {load_mm:.2} mm friction and weight turn it",
+        half_mm + off_mm + load_mm
     )
 }
 
 fn servo_remark(drive: &ServoDrive, distance_m: f64, speed_m_s: f64) -> String {
     let dead_mm = MM * distance_m * drive.resolution_rad();
     let play_mm = MM * distance_m * drive.play_rad;
-    let refresh_s = f64::from(drive.refresh_ticks) * TICK_F64_S;
-    let between_mm = MM * speed_m_s * refresh_s;
+    let between_mm = MM * speed_m_s * drive.refresh_s;
     format!(
-        "the servos do not answer less than {:.2} degrees, {dead_mm:.1} mm at {distance_m:.3} m, and have {play_mm:.1} mm of play: expect {:.1} mm of \
-         error a joint. A pulse comes every {:.0} ms, in which the light goes {between_mm:.1} mm at {speed_m_s:.3} m/s: curves become steps; a \
-         lower --speed makes them smaller, and a shorter --distance all of it",
+        "expect up to {:.1} mm of error a joint at {distance_m:.3} m: {dead_mm:.1} mm ({:.2} degrees) is what the servos do not answer, {:.1} mm half of \
+         their play, and {:.1} mm half of the way at {speed_m_s:.3} m/s from one pulse to the next, {:.0} ms later. A shorter --distance makes it less",
+        dead_mm + 0.5 * play_mm + 0.5 * between_mm,
         drive.resolution_rad() * 180.0 / PI,
-        dead_mm + 0.5 * play_mm,
-        MM * refresh_s,
+        0.5 * play_mm,
+        0.5 * between_mm,
+        MM * drive.refresh_s,
     )
 }

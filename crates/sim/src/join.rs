@@ -61,7 +61,7 @@ impl RigConfig {
     pub fn control_config(&self) -> Config {
         Config {
             model: head_model(&self.model.bodies.lumped()),
-            drive: if self.drive.kind.is_open_loop() { Drive::Pulses } else { Drive::Volts },
+            drive: self.gentle().map_or(Drive::Volts, Drive::Pulses),
             axes: PanTilt::from_fn(|j| self.axis(j)),
             hold_limit_ticks: ticks(self.control.hold_limit_s),
             laser_on_ticks: ticks(self.model.relay.on_s),

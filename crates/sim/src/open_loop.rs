@@ -83,6 +83,21 @@ impl OpenLoop {
         at_rad
     }
 
+    /// Counts steps from where the joints are now, which nobody tells to move any more. Servos know their own angle, and go to where a pulse of the
+    /// first tick tells them.
+    pub(crate) fn power_up(&mut self, at_rad: PanTilt<f64>) {
+        for j in Joint::BOTH {
+            match &mut self.joints[j] {
+                OpenJoint::Stepper(stepper) => {
+                    (*stepper, self.start_rad[j]) = (stepper.anew(), at_rad[j]);
+                }
+                OpenJoint::Servo(_) => {}
+            }
+        }
+        self.counted_rad = PanTilt::default();
+        (self.told_rad, self.told_rad_s) = (PanTilt::default(), PanTilt::default());
+    }
+
     /// A joint stays behind by so many steps from now on.
     pub(crate) fn lose(&mut self, joint: Joint, steps: i32) {
         let lost_rad = f64::from(steps) * self.step_rad;

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use tracelight_aim::HeadGeometry;
 use tracelight_dynamics::{Body, Friction, HeadBodies, Inertia, Motor};
-use tracelight_maths::powi;
 use tracelight_plant::{EncoderConfig, FootConfig, GyroscopeConfig, RelayConfig, Wear};
 use tracelight_rig::PanTilt;
 
@@ -138,10 +137,8 @@ impl RigConfig {
     /// Returns a head on two NEMA 17 stepper motors behind belts.
     pub fn stepper() -> Self {
         let drive = DriveSettings { kind: DriveKind::Stepper, ..DriveSettings::MOTOR };
-        // the motors' own, 54 g cm2, times the ratio squared
-        let rotor = 54e-7 * powi(drive.stepper.gear_ratio, 2);
         // tilt's motor rides on pan
-        let light = small_model(0.45, rotor);
+        let light = small_model(0.45, 0.0);
         Self::open_loop(
             ("stepper", "two NEMA 17 stepper motors behind belts, no encoders (open loop)"),
             drive,

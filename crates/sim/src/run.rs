@@ -152,6 +152,9 @@ impl SimulatedRig {
 
     /// Encoders that count from where the joints are now, and a controller that knows nothing.
     fn power_up(&mut self) {
+        if let Some(open_loop) = &mut self.open_loop {
+            open_loop.power_up(self.plant.angle_rad());
+        }
         let found = self.open_loop.as_ref().map_or_else(|| self.plant.measured(), OpenLoop::measured);
         for j in Joint::BOTH {
             self.lines[j].off = found[j].count.wrapping_neg();

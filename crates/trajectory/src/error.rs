@@ -19,7 +19,7 @@ pub enum PlanError {
     },
     /// A motor cannot even hold or start its joint.
     #[error(
-        "the {joint} motor is too weak: gravity and friction take {needed_nm:.3} N m of the {available_nm:.3} N m a plan may use; raise motion.torque_share or the motor's limit in the rig file"
+        "the {joint} motor is too weak: gravity and friction take {needed_nm:.3} N m of the {available_nm:.3} N m a plan may use; raise motion.torque_share or what the rig file says of the motor (motor.limit, stepper.holding_torque or servo.stall_torque), or lower motion.pan_speed and motion.tilt_speed"
     )]
     TooWeak {
         /// Which joint.

@@ -13,7 +13,7 @@ mod scale_filter;
 
 use tracelight_rig::{Fault, Joint, PanTilt, Sensed};
 
-use crate::config::{Config, Drive};
+use crate::config::Config;
 use crate::estimate::Estimate;
 use crate::servo::Servo;
 use encoder::EncoderWatch;
@@ -78,7 +78,7 @@ impl Watch {
             self.encoders = encoders(sensed, servo.estimates());
             return Some(Fault::TickLate);
         }
-        if config.drive == Drive::Pulses {
+        if config.drive.is_open_loop() {
             let sped_up = servo.estimates().map(|estimate| estimate.acceleration_rad_s2);
             let turned = self.foot.tick(&config.foot, sensed.foot_rad_s, sped_up);
             return silence.or(turned);
@@ -109,7 +109,7 @@ impl Watch {
 
     /// Whether both encoders were seen to follow their motors, and nothing spoke against it since; of a head that has none, nothing ever does.
     pub(crate) fn is_tested(&self, config: &Config) -> bool {
-        config.drive == Drive::Pulses || (self.scales.pan.is_tested() && self.scales.tilt.is_tested())
+        config.drive.is_open_loop() || (self.scales.pan.is_tested() && self.scales.tilt.is_tested())
     }
 
     /// Whether what the head stands on stands, as far as a gyroscope tells.

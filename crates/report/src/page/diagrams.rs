@@ -147,15 +147,21 @@ fn torque(over: &Over<'_>, joint: Joint) -> Plot {
         Joint::Tilt => "Tilt torque",
     };
     let limit = format!("limit ±{} N m", number(over.job.torque_limit_nm[joint], 3));
-    over.plot(title, "share of the limit, %", y)
-        .line("planned", &over.curve(&y, |s| Some(planned(s))), Some("planned"))
-        .band(
+    let plot = over.plot(title, "share of the limit, %", y).line(
+        "planned",
+        &over.curve(&y, |s| Some(planned(s))),
+        Some("planned"),
+    );
+    // steppers and servos are told where to be, not what torque to give
+    let plot = match over.samples.iter().any(|s| used(s) != 0.0) {
+        true => plot.band(
             &joint.to_string(),
             &over.band(&y, |s| Some(used(s))),
             Some("commanded: mean, and lowest to highest"),
-        )
-        .level("limit", 100.0, Some(&limit))
-        .level("limit", -100.0, None)
+        ),
+        false => plot,
+    };
+    plot.level("limit", 100.0, Some(&limit)).level("limit", -100.0, None)
 }
 
 /// The plan in time: who is drawn when, and how fast.

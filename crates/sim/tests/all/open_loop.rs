@@ -4,8 +4,9 @@
 
 use std::ops::ControlFlow;
 
+use tracelight_dynamics::Friction;
 use tracelight_rig::{Command, Fault, Input, InputState, Joint, PanTilt, Rig};
-use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Trouble, run, score};
+use tracelight_sim::{RigConfig, Run, Simulated, SimulatedRig, Trouble, arm, run, score};
 use tracelight_trajectory::Plan;
 
 use crate::dice::Dice;
@@ -156,7 +157,7 @@ fn homed_elsewhere_it_draws_there_and_keeps_its_place_meanwhile() {
 }
 
 #[test]
-fn an_emergency_stop_darkens_a_head_without_encoders() {
+fn what_cuts_the_motors_leaves_nobody_who_knows_where_the_joints_are() {
     for rig in [RigConfig::stepper(), RigConfig::servo()] {
         let plan = plan_of(&rig, circle(0.2));
         let mut simulated = SimulatedRig::new(&rig, POSE, 1);
@@ -169,10 +170,63 @@ fn an_emergency_stop_darkens_a_head_without_encoders() {
             ControlFlow::Continue(())
         });
         let at = stopped.expect("it was lit");
-        assert!(run.fault().is_some_and(|fault: Fault| fault != Fault::SetpointInvalid), "{}", rig.name);
+        assert_eq!(run.fault(), Some(Fault::EmergencyStop), "{}", rig.name);
         let late = run.ticks.iter().filter(|tick| tick.telemetry.tick > at + 8 && tick.light).count();
         assert_eq!(late, 0, "{}", rig.name);
+        // arming alone brings no light back
+        simulated.suffer(Trouble::Input(Input::EmergencyStop, InputState::Fine));
+        simulated.step();
+        assert!(arm(&mut simulated));
+        for _ in 0..2000 {
+            simulated.send(Command::KeepAlive).unwrap();
+            let tick = simulated.step();
+            assert!(!tick.light && !tick.telemetry.homed, "{}: {tick:?}", rig.name);
+        }
     }
+}
+
+#[test]
+fn a_head_near_its_limit_comes_back_without_a_lost_step() {
+    let mut rig = RigConfig::stepper();
+    for model in [&mut rig.model, &mut rig.truth.model] {
+        model.friction = PanTilt::from_fn(|_| Friction::symmetric(0.001, 0.7));
+    }
+    rig.motion.torque_share = 0.95;
+    rig.motion.acceleration_limit_rad_s2 = PanTilt::new(1e4, 1e4);
+    let plan = plan_of_all(&rig, house());
+    let mut dice = Dice::of_seed(9);
+    for k in 0..30 {
+        let when = 100 + dice.below(plan.points.len() - 300) as u32;
+        let mut simulated = SimulatedRig::new(&rig, POSE, k);
+        let mut told = false;
+        run(&mut simulated, &plan, false, |rig, tick| {
+            if !told && tick.telemetry.plan_tick >= when {
+                told = true;
+                // forgets everything and goes home
+                rig.send(if k % 2 == 0 { Command::Abandon } else { Command::Disarm }).unwrap();
+            }
+            ControlFlow::Continue(())
+        });
+        for _ in 0..3000 {
+            simulated.step();
+        }
+        assert_eq!(simulated.lost_steps(), PanTilt::default(), "at {when}");
+    }
+}
+
+#[test]
+fn a_joint_that_never_moves_is_told_of() {
+    let rig = RigConfig::stepper();
+    let mut stuck = rig.clone();
+    stuck.truth.model.friction.tilt = Friction::symmetric(0.0, 5.0);
+    let plan = plan_of(&rig, star(0.2));
+    let mut simulated = SimulatedRig::new(&stuck, POSE, 1);
+    let mut furthest = 0;
+    run(&mut simulated, &plan, false, |rig, _| {
+        furthest = furthest.max(rig.lost_steps().tilt.abs());
+        ControlFlow::Continue(())
+    });
+    assert!(furthest >= 4, "{furthest}");
 }
 
 #[test]
@@ -180,14 +234,32 @@ fn the_expected_error_grows_with_the_distance() {
     assert!(RigConfig::worn().open_loop_remarks(1.0, 0.3).is_empty());
     let [believed, near] = &RigConfig::servo().open_loop_remarks(1.0, 0.3)[..] else { panic!("two remarks") };
     assert!(believed.contains("nobody measured"), "{believed}");
-    // 5 us of 2000 over 180 degrees are 0.45 degrees, 7.85 mm at a metre
-    assert!(
-        near.contains("0.45 degrees, 7.9 mm at 1.000 m") && near.contains("6.0 mm at 0.300 m/s"),
-        "{near}"
-    );
+    // 5 us of 2000 over 180 degrees are 0.45 degrees, 7.85 mm at a metre; 20 ms at 0.3 m/s are 6 mm
+    assert!(near.contains("7.9 mm (0.45 degrees)") && near.contains("3.0 mm half of the way"), "{near}");
+    assert!(near.contains("expect up to 15.2 mm"), "{near}");
     let far = &RigConfig::servo().open_loop_remarks(2.0, 0.3)[1];
-    assert!(far.contains("15.7 mm at 2.000 m"), "{far}");
-    // 360 / (200 × 16 × 3) degrees
+    assert!(far.contains("15.7 mm (0.45 degrees)"), "{far}");
+    // 360 / (200 × 16 × 3) degrees are 0.65 mm
     let stepper = &RigConfig::stepper().open_loop_remarks(1.0, 0.3)[1];
-    assert!(stepper.contains("a microstep is 0.65 mm at 1.000 m"), "{stepper}");
+    assert!(stepper.contains("0.33 mm is half a microstep"), "{stepper}");
+}
+
+#[test]
+fn no_spot_is_further_off_than_was_expected() {
+    for (rig, friction_nm) in
+        [(RigConfig::stepper(), 0.03), (RigConfig::stepper(), 0.5), (RigConfig::servo(), 0.03)]
+    {
+        let mut rig = rig;
+        for model in [&mut rig.model, &mut rig.truth.model] {
+            model.friction = PanTilt::from_fn(|_| Friction::symmetric(0.001, friction_nm));
+        }
+        let plan = plan_of(&rig, star(0.2));
+        let (run, _) = ran(&rig, &plan);
+        let remark = &rig.open_loop_remarks(POSE.distance_m, plan.set_speed_m_s)[1];
+        let told = remark.split_whitespace().nth(3).unwrap();
+        let told_mm: f64 = told.parse().unwrap();
+        // of both joints, and away from the middle a joint moves the spot by more
+        let tracking = score(&plan, &run, plan.set_speed_m_s);
+        assert!(tracking.max_mm < 1.6 * told_mm && tracking.max_mm > 0.3 * told_mm, "{remark}: {tracking:?}");
+    }
 }

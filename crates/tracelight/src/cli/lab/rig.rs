@@ -53,7 +53,7 @@ impl RigArgs {
 impl SetArgs {
     /// Returns a rig with these masses; one without encoders is refused.
     pub(super) fn on(self, rig: RigConfig) -> Result<RigConfig, Failure> {
-        measured(&rig, "this command of the bench")?;
+        measured(&rig, "this `lab` command")?;
         Ok(self.set.map_or(rig.clone(), |set| set.set().on(rig)))
     }
 
