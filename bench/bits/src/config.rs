@@ -1,5 +1,5 @@
 use tracelight_control::{
-    AxisConfig, Config, Creep, Feedback, Feedforward, FrictionModel, HeadModel, KalmanTuning, LawConfig,
+    AxisConfig, Config, Creep, Drive, Feedback, Feedforward, FrictionModel, HeadModel, KalmanTuning, LawConfig,
     Foot, MotorRating, ObserverConfig, Quirks, StateFeedback,
 };
 use tracelight_rig::{JointLimits, PanTilt};
@@ -7,6 +7,7 @@ use tracelight_rig::{JointLimits, PanTilt};
 /// What the controller of the preset `report` is told, as numbers: a board has no preset. A test holds it to the preset's.
 pub fn report() -> Config {
     Config {
+        drive: Drive::Volts,
         model: HeadModel {
             m11_fixed: 0.07470929,
             m11_ss: 0.00030430607,

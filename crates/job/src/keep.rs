@@ -4,6 +4,8 @@ use tracelight_sim::Tick;
 use tracelight_task::Failure;
 use tracelight_trajectory::Plan;
 
+use crate::points::PointDone;
+
 /// Told of every tick of a run as it happens: a log, a page, an array.
 pub trait Keep {
     /// One more tick, and the plan that it follows.
@@ -18,6 +20,15 @@ pub trait Keep {
     /// As of [`tick`](Self::tick).
     fn aside(&mut self, plan: &Plan, tick: &Tick) -> Result<(), Failure> {
         self.tick(plan, tick)
+    }
+
+    /// A point was ticked off: all of them, as they stand now.
+    ///
+    /// # Errors
+    /// As of [`tick`](Self::tick).
+    fn points(&mut self, points: &[PointDone]) -> Result<(), Failure> {
+        let _ = points;
+        Ok(())
     }
 }
 

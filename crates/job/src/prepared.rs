@@ -19,10 +19,11 @@ use crate::hands::Hands;
 use crate::keep::Keep;
 use crate::lap::{Learned, learn, run_lap};
 use crate::looped::Item;
+use crate::points::PointDone;
 use crate::remainder;
 use crate::request::{Request, RunRequest};
 use crate::seen::Seen;
-use crate::steps::{PointDone, StepRun, run_steps};
+use crate::steps::{StepRun, run_steps};
 use crate::watched::{WatchedJob, WatchedRun, run_watched};
 
 /// What the stages before the run made.

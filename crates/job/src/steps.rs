@@ -4,7 +4,7 @@ use tracelight_pipeline::Driving;
 use tracelight_rig::Fault;
 use tracelight_session::{Event, Refused, Request, Session, Snapshot, State, seconds};
 use tracelight_sim::{Run, SimulatedRig, Tick};
-use tracelight_stroke::{Drawing, Place};
+use tracelight_stroke::Drawing;
 use tracelight_task::{Failure, Task, counted};
 use tracelight_trajectory::Plan;
 
@@ -14,6 +14,7 @@ use crate::frame::drive_framed;
 use crate::hands::{Ask, Hands, Step};
 use crate::keep::Keep;
 use crate::looped::{Item, Looped};
+use crate::points::PointDone;
 use crate::remainder::join;
 
 /// What came of it.
@@ -35,17 +36,6 @@ pub(crate) struct StepRun {
     pub(crate) notes: Vec<String>,
 }
 
-/// A point that was to be marked.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PointDone {
-    /// Its number in the drawing, from 0.
-    pub number: u32,
-    /// The point, on the target.
-    pub place: Place,
-    /// When it was ticked off, s from the beginning of the run; `None` where it was not.
-    pub done_s: Option<f64>,
-}
-
 /// A walk through the items of a drawing.
 struct Walk<'a> {
     items: &'a [Item],
@@ -58,6 +48,8 @@ struct Walk<'a> {
     base: u32,
     /// When each was ticked off, s.
     done_s: Vec<Option<f64>>,
+    /// One was ticked off that is not kept yet.
+    is_new: bool,
     seen: StepRun,
     /// Ticks since it rests.
     rests: u32,
@@ -110,6 +102,7 @@ impl<'a> Walk<'a> {
             looped,
             base: 0,
             done_s: vec![None; items.len()],
+            is_new: false,
             seen,
             rests: 0,
         })
@@ -187,6 +180,7 @@ impl<'a> Walk<'a> {
     fn tick_off(&mut self, step: Step, lit: bool, wall: &Session<&mut SimulatedRig>, hands: &mut dyn Hands) {
         let done_s = &mut self.done_s[self.at];
         if step == Step::Next && (lit || self.dry) {
+            self.is_new |= done_s.is_none();
             done_s.get_or_insert(seconds(wall.told().tick));
         }
         hands.left(self.items[self.at].number, done_s.is_some());
@@ -206,12 +200,17 @@ impl<'a> Walk<'a> {
         self.seen.notes.push(format!(
             "{word} by {word}: {done} of {all} done{which}; the figures are of each one's first time"
         ));
+        self.seen.points = self.points();
+        self.seen
+    }
+
+    /// The points among the items, as they stand now.
+    fn points(&self) -> Vec<PointDone> {
         let points = self.items.iter().zip(&self.done_s);
         let done = |(item, done_s): (&Item, &Option<f64>)| {
             item.point.clone().map(|place| PointDone { number: item.number, place, done_s: *done_s })
         };
-        self.seen.points = points.filter_map(done).collect();
-        self.seen
+        points.filter_map(done).collect()
     }
 }
 
@@ -228,6 +227,9 @@ impl Course for Walk<'_> {
         now: &Snapshot,
         laps: u32,
     ) -> Result<(), Failure> {
+        if std::mem::take(&mut self.is_new) {
+            keep.points(&self.points())?;
+        }
         let state = now.state;
         if laps > 0 && state != State::Parking {
             return keep.tick(&self.looped.again, &tick);

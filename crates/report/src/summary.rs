@@ -124,7 +124,8 @@ pub struct TrackingFigures {
     pub off_stroke_rms_mm: f64,
     pub off_stroke_max_mm: f64,
     pub overshoot_percent: f64,
-    pub final_error_mm: f64,
+    /// `None` of a run that ended before its drawing did: nothing rests there.
+    pub final_error_mm: Option<f64>,
     pub lit_speed_m_s: f64,
     pub at_speed_share: f64,
 }
@@ -289,7 +290,7 @@ fn tracking(job: &Finished<'_>) -> TrackingFigures {
         off_stroke_rms_mm: round(t.off_stroke_rms_mm),
         off_stroke_max_mm: round(t.off_stroke_max_mm),
         overshoot_percent: round(t.overshoot_percent),
-        final_error_mm: round(t.final_error_mm),
+        final_error_mm: job.finished.then(|| round(t.final_error_mm)),
         lit_speed_m_s: round(t.lit_speed_m_s),
         at_speed_share: round(t.at_speed_share),
     }

@@ -28,11 +28,11 @@ impl Summary {
         }
         text += &match self.laser.lit_s > 0.0 {
             true => format!(
-                "\nerror:  {:.3} mm rms, {:.3} mm at most; overshoot {:.2} %, {:.3} mm at rest",
+                "\nerror:  {:.3} mm rms, {:.3} mm at most; overshoot {:.2} %{}",
                 self.tracking.rms_mm,
                 self.tracking.max_mm,
                 self.tracking.overshoot_percent,
-                self.tracking.final_error_mm,
+                self.tracking.final_error_mm.map_or_else(String::new, |mm| format!(", {mm:.3} mm at rest")),
             ),
             false => "\nerror:  none to measure, nothing was lit".to_owned(),
         };

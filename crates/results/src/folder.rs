@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use tracelight_files::ResultFolder;
-use tracelight_job::Keep;
+use tracelight_job::{Keep, PointDone};
 use tracelight_picture::Raster;
 use tracelight_report::{
     Finished, LogFigures, LogMeta, LogWriter, Summary, fault_csv, index, page, paint, planned, seen_csv,
@@ -17,6 +17,7 @@ use tracelight_task::Failure;
 use tracelight_trajectory::Plan;
 
 use crate::journal::{Asked, JOB, Journal, PROGRESS, hash_of};
+use crate::points::{POINTS, put_points};
 
 /// The run log, written while the run goes on.
 const LOG: &str = "run.mcap";
@@ -25,8 +26,6 @@ const INDEXED: &str = "run.mcap.part";
 pub(crate) const SUMMARY: &str = "summary.json";
 pub(crate) const RIG: &str = "rig.toml";
 pub(crate) const STROKES: &str = "strokes.svg";
-/// Which points were ticked off, and when.
-pub(crate) const POINTS: &str = "points.csv";
 pub(crate) const CAMERA: &str = "camera.jpg";
 
 /// All results that a job may have; the summary is written last.
@@ -95,6 +94,11 @@ impl Keep for Records<'_> {
 
     fn aside(&mut self, plan: &Plan, tick: &Tick) -> Result<(), Failure> {
         self.log.tick(plan, tick)
+    }
+
+    /// Written anew each time, whole: a killed program loses none.
+    fn points(&mut self, points: &[PointDone]) -> Result<(), Failure> {
+        put_points(self.log.folder, points)
     }
 }
 

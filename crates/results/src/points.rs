@@ -5,7 +5,8 @@ use tracelight_job::PointDone;
 use tracelight_report::PointFigures;
 use tracelight_task::Failure;
 
-use crate::folder::POINTS;
+/// Which points were ticked off, and when.
+pub(crate) const POINTS: &str = "points.csv";
 
 /// Columns of the table.
 const HEADER: [&str; 8] = ["point", "kind", "block", "layer", "entity", "x_mm", "y_mm", "done_s"];

@@ -15,7 +15,7 @@ pub(super) fn tiles(job: &Finished<'_>, figures: &Summary) -> String {
         (number(t.rms_mm, 4), "mm", "tracking error, rms"),
         (number(t.max_mm, 4), "mm", "largest error while lit"),
         (number(t.overshoot_percent, 3), "%", "overshoot past ends and corners"),
-        (number(t.final_error_mm, 4), "mm", "error at rest"),
+        (at_rest(t.final_error_mm), "mm", "error at rest"),
         (number(t.lit_speed_m_s, 4), "m/s", "speed of the lit spot"),
         (number(at_speed, 3), "%", "of the lit time within 2 % of the set speed"),
         (number(figures.run.duration_s, 3), "s", "for the whole job"),
@@ -25,6 +25,11 @@ pub(super) fn tiles(job: &Finished<'_>, figures: &Summary) -> String {
         format!(r#"<li><strong>{value}<small> {unit}</small></strong><span>{what}</span></li>"#)
     };
     tiles.into_iter().map(tile).collect()
+}
+
+/// A run that ended before its drawing did has no error at rest.
+fn at_rest(final_error_mm: Option<f64>) -> String {
+    final_error_mm.map_or_else(|| "–".to_owned(), |mm| number(mm, 4))
 }
 
 fn torque_peak(job: &Finished<'_>) -> f64 {
@@ -71,7 +76,7 @@ pub(super) fn figures(job: &Finished<'_>, f: &Summary) -> String {
                 row("spot to stroke, rms", number(f.tracking.off_stroke_rms_mm, 4), "mm"),
                 row("spot to stroke, largest", number(f.tracking.off_stroke_max_mm, 4), "mm"),
                 row("overshoot", number(f.tracking.overshoot_percent, 4), "%"),
-                row("final error", number(f.tracking.final_error_mm, 4), "mm"),
+                row("final error", at_rest(f.tracking.final_error_mm), "mm"),
                 row("speed of the lit spot", number(f.tracking.lit_speed_m_s, 4), "m/s"),
                 row("lit time at the set speed ± 2 %", share(f.tracking.at_speed_share), "%"),
                 row("light left the head for", number(f.laser.lit_s, 4), "s"),
