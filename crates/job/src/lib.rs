@@ -33,7 +33,7 @@ mod watched;
 
 pub use hands::{Ask, Hands, Step};
 pub use keep::{Keep, KeepNothing};
+pub use points::PointDone;
 pub use prepared::{Prepared, Ran, prepare};
 pub use request::{Request, RunRequest, Scene, Wall};
-pub use points::PointDone;
 pub use wall::prepare_wall;

@@ -315,6 +315,11 @@ impl Prepared {
         let plan = &self.schedule.plan;
         let mut laps: Vec<Run> = Vec::new();
         let mut learned = Learned { rig: self.driving.rig.clone(), taken: false, notes: Vec::new() };
+        if wanted > 1 && self.driving.rig.drive.kind.is_open_loop() {
+            let note =
+                "nothing is identified between laps: a head without encoders does not show what it does";
+            learned.notes.push(note.to_owned());
+        }
         let (mut watched, mut failure) = (None, None);
         while laps.len() < wanted as usize && !task.stop.is_wanted() && failure.is_none() {
             if !laps.is_empty() && !self.driving.rig.drive.kind.is_open_loop() {

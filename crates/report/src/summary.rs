@@ -48,6 +48,8 @@ pub struct Summary {
     /// The run log that these are the figures of; not there where none was kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub log: Option<LogFigures>,
+    /// Remarks and warnings, one sentence or two each.
+    pub notes: Vec<String>,
     /// Nothing of this was measured on a head: the rig was one of equations.
     pub simulated: bool,
     /// Wall-clock time of the stages, ms.
@@ -194,6 +196,7 @@ impl Summary {
             },
             camera: job.eye.clone(),
             log: None,
+            notes: job.notes.to_vec(),
             simulated: job.simulated,
             timing_ms: TimingFigures {
                 vision: job.timing.vision_ms,

@@ -26,6 +26,11 @@ fn both_presets_draw_a_star_and_say_what_is_not_measured() {
             assert!(notes.contains(words), "{rig}: {notes}");
         }
         assert!(!notes.contains("steps were lost"), "{rig}: {notes}");
+        let told = answer["notes"].as_array().unwrap();
+        assert!(
+            told.iter().any(|note| note.as_str().unwrap().contains("nobody measured")),
+            "{rig}: {told:?}"
+        );
         let page = std::fs::read_to_string(dir.join("out/report.html")).unwrap();
         assert!(page.contains("nobody measured"), "{rig}: the report does not say so");
     }
