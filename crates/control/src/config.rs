@@ -21,6 +21,8 @@ pub struct Gentle {
     pub rate_rad_s: PanTilt<f32>,
     /// Greatest acceleration, rad/s².
     pub acceleration_rad_s2: PanTilt<f32>,
+    /// Greatest share of a motor's torque that an acceleration takes.
+    pub torque_share: PanTilt<f32>,
 }
 
 impl Drive {

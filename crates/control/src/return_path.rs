@@ -53,7 +53,9 @@ impl ReturnPath {
                 },
                 Drive::Pulses(gentle) => Most {
                     rate_rad_s: gentle.rate_rad_s[j],
-                    acceleration_rad_s2: gentle.acceleration_rad_s2[j],
+                    acceleration_rad_s2: config
+                        .sped_up_by(j, gentle.torque_share[j])
+                        .min(gentle.acceleration_rad_s2[j]),
                 },
             };
             step(&now[j], goal[j].position_rad, &most)

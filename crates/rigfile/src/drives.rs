@@ -4,7 +4,7 @@ use tracelight_sim::{DriveKind, LawName, ObserverName, RigConfig};
 use tracelight_task::Failure;
 use tracelight_units::{ANGLES, ANGULAR_SPEEDS, TIMES, Unit};
 
-use crate::keys::{Choice, INERTIA, Key, PURE, Slot, TORQUE, choice, real};
+use crate::keys::{Choice, INERTIA, Key, PURE, TORQUE, choice, count, real};
 
 /// The key that says which drive a rig has.
 pub(crate) const DRIVE: &str = "drive";
@@ -27,20 +27,15 @@ pub(crate) const fn drive_key() -> Key<RigConfig> {
 }
 
 const STEPPER_KEYS: [Key<RigConfig>; 8] = [
-    Key {
-        path: "stepper.steps_per_turn",
-        units: PURE,
-        bounds: (4.0, 1e4),
-        meaning: "full steps of a turn of the motor, a multiple of 4; 200 of 1.8 degrees",
-        slot: Slot::Count(|r| &mut r.drive.stepper.full_steps_per_turn),
-    },
-    Key {
-        path: "stepper.microsteps",
-        units: PURE,
-        bounds: (1.0, 1024.0),
-        meaning: "microsteps of a full step, as the driver is set",
-        slot: Slot::Count(|r| &mut r.drive.stepper.microsteps),
-    },
+    count(
+        "stepper.steps_per_turn",
+        (4.0, 1e4),
+        "full steps of a turn of the motor, a multiple of 4; 200 of 1.8 degrees",
+        |r| &mut r.drive.stepper.full_steps_per_turn,
+    ),
+    count("stepper.microsteps", (1.0, 1024.0), "microsteps of a full step, as the driver is set", |r| {
+        &mut r.drive.stepper.microsteps
+    }),
     real("stepper.gear_ratio", PURE, (0.1, 1e3), "turns of the motor for one of the joint", |r| {
         &mut r.drive.stepper.gear_ratio
     }),

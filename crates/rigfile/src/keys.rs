@@ -67,6 +67,15 @@ pub(crate) const fn real<T>(
     Key { path, units, bounds, meaning, slot: Slot::Real(field) }
 }
 
+pub(crate) const fn count<T>(
+    path: &'static str,
+    bounds: (f64, f64),
+    meaning: &'static str,
+    field: fn(&mut T) -> &mut u32,
+) -> Key<T> {
+    Key { path, units: PURE, bounds, meaning, slot: Slot::Count(field) }
+}
+
 pub(crate) const fn flag<T>(
     path: &'static str,
     meaning: &'static str,
@@ -183,13 +192,9 @@ macro_rules! drive {
 /// What belongs to no joint.
 const WHOLE: [Key<Model>; 16] = [
     real("gravity", GRAVITY, (0.0, 30.0), "along −z", (|m| &mut m.bodies.gravity_m_s2) as Real),
-    Key {
-        path: "encoder.counts_per_rev",
-        units: PURE,
-        bounds: (16.0, 1e8),
-        meaning: "counts a turn of the joint",
-        slot: Slot::Count(|m| &mut m.encoder.counts_per_rev),
-    },
+    count("encoder.counts_per_rev", (16.0, 1e8), "counts a turn of the joint", |m| {
+        &mut m.encoder.counts_per_rev
+    }),
     Key {
         path: "encoder.edge_stamps",
         units: PURE,

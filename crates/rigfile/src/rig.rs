@@ -140,11 +140,8 @@ fn set_other(
         let key = keys.iter().find(|k| k.path == path)?;
         return Some(set(key, config.identified.get_or_insert(Identified::NONE), entry, place));
     }
-    if let Some(key) = rig_keys().iter().find(|k| k.path == entry.path) {
-        return Some(set(key, config, entry, place));
-    }
-    if let Some(key) = all_drive_keys().iter().find(|k| k.path == entry.path) {
-        return Some(set(key, config, entry, place));
+    if let Some(key) = own_keys().find(|k| k.path == entry.path) {
+        return Some(set(&key, config, entry, place));
     }
     let path = entry.path.strip_prefix("truth.")?;
     let key = models.iter().find(|k| k.path == path)?;
@@ -208,12 +205,17 @@ fn members(path: &str) -> String {
     }
 }
 
+/// Every key that is of no model, whatever the drive.
+fn own_keys() -> impl Iterator<Item = Key<RigConfig>> {
+    rig_keys().into_iter().chain(all_drive_keys())
+}
+
 fn known_paths() -> Vec<String> {
     let halves =
         ["model", "truth"].map(|half| model_keys().into_iter().map(move |k| format!("{half}.{}", k.path)));
     let found = identified_keys().into_iter().map(|k| format!("identified.{}", k.path));
     let texts = [BASE, "name", "description", "identified.date"].map(str::to_owned);
-    let own = rig_keys().into_iter().chain(all_drive_keys()).map(|k| k.path.to_owned()).chain(texts);
+    let own = own_keys().map(|k| k.path.to_owned()).chain(texts);
     halves.into_iter().flatten().chain(found).chain(own).collect()
 }
 

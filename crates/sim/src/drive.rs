@@ -1,9 +1,8 @@
 //! What turns a rig's joints.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use tracelight_plant::{ServoDrive, StepperDrive};
-use tracelight_rig::PanTilt;
 
 /// The kind of drive of both joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,19 +53,6 @@ impl DriveKind {
 impl DriveSettings {
     /// Motors with encoders; the other tables hold common parts.
     pub const MOTOR: Self = Self { kind: DriveKind::Motor, stepper: NEMA_17, servo: MG996R };
-}
-
-impl DriveSettings {
-    /// Steps in which the angle of a joint is told, of a whole turn: microsteps, or the steps of a pulse.
-    pub(crate) fn steps_per_rev(&self) -> u32 {
-        /// Where a board sets any width.
-        const FINEST_RAD: f64 = 1e-4;
-        let step_rad = match self.kind {
-            DriveKind::Motor | DriveKind::Stepper => self.stepper.microstep_rad(),
-            DriveKind::Servo => self.servo.pulse_step_rad().max(FINEST_RAD),
-        };
-        (TAU / step_rad).round().clamp(16.0, 1e8) as u32
-    }
 
     /// By how much pulses are sent early, s: as long as a servo is behind them on its way at a steady speed, but for its dead band.
     pub(crate) fn lead_s(&self) -> f64 {
@@ -109,12 +95,3 @@ const MG996R: ServoDrive = ServoDrive {
     play_rad: 0.5 * PI / 180.0,
     stall_torque_nm: 0.92,
 };
-
-/// Joint speeds that presets of these drives plan with, rad/s: the stepper's is where its torque begins to fall, 51 rad/s over 3.
-pub(crate) const fn top_speed_rad_s(kind: DriveKind) -> PanTilt<f64> {
-    match kind {
-        DriveKind::Motor => PanTilt::new(24.0, 24.0),
-        DriveKind::Stepper => PanTilt::new(17.0, 17.0),
-        DriveKind::Servo => PanTilt::new(MG996R.speed_rad_s, MG996R.speed_rad_s),
-    }
-}

@@ -1,6 +1,6 @@
 //! What follows for planner and controller from a drive that nothing measures, and what is told of it.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use tracelight_control::Gentle;
 use tracelight_dynamics::Motor;
@@ -13,11 +13,13 @@ use crate::drive::DriveKind;
 
 /// Command that stands for all the torque of a drive that takes pulses and no volts, V.
 const FULL_COMMAND_V: f64 = 10.0;
+/// Step in which an angle is told where a board sets any width of a pulse, rad.
+const FINEST_RAD: f64 = 1e-4;
 const MM: f64 = 1e3;
 
 impl RigConfig {
-    /// Gives model and truth what follows from a drive that measures nothing: torque, rotor inertia, top speed, time to settle and range, no wear, and counts that are steps of what is told.
-    /// A stepper's torque is that at its top speed, where it is least. A rig of motors stays as it is.
+    /// Gives model and truth what follows from a drive that measures nothing: torque, rotor inertia, top speed, time to settle and range, no wear,
+    /// and counts that are steps of what is told. A stepper's torque is that at its top speed, where it is least. A rig of motors stays as it is.
     #[must_use]
     pub fn driven(mut self) -> Self {
         let drive = self.drive;
@@ -26,14 +28,19 @@ impl RigConfig {
             motion.speed_limit_rad_s = motion.speed_limit_rad_s.map(|top| top.min(drive.servo.speed_rad_s));
             motion.settle_s = motion.settle_s.max(drive.servo.settles_s());
         }
-        let torque_nm = |top_rad_s: f64| match drive.kind {
-            DriveKind::Motor => None,
-            DriveKind::Stepper => Some(drive.stepper.pull_out_nm(top_rad_s)),
-            DriveKind::Servo => Some(drive.servo.stall_torque_nm),
-        };
         let top = self.motion.speed_limit_rad_s;
-        let (Some(pan_nm), Some(tilt_nm)) = (torque_nm(top.pan), torque_nm(top.tilt)) else { return self };
-        let motors = PanTilt::new(pan_nm, tilt_nm)
+        let (torque_nm, step_rad) = match drive.kind {
+            DriveKind::Motor => return self,
+            DriveKind::Stepper => {
+                (top.map(|top| drive.stepper.pull_out_nm(top)), drive.stepper.microstep_rad())
+            }
+            DriveKind::Servo => {
+                let stall_nm = drive.servo.stall_torque_nm;
+                (PanTilt::new(stall_nm, stall_nm), drive.servo.pulse_step_rad().max(FINEST_RAD))
+            }
+        };
+        let encoder = EncoderConfig { counts_per_rev: steps_per_rev(step_rad), edge_stamps: false };
+        let motors = torque_nm
             .map(|torque_nm| Motor { torque_nm_per_v: torque_nm / FULL_COMMAND_V, limit_v: FULL_COMMAND_V });
         for model in [&mut self.model, &mut self.truth.model] {
             model.motors = motors;
@@ -41,7 +48,7 @@ impl RigConfig {
                 let rotor = drive.stepper.rotor_kg_m2 * drive.stepper.gear_ratio * drive.stepper.gear_ratio;
                 model.bodies.rotor_kg_m2 = PanTilt::new(rotor, rotor);
             }
-            model.encoder = EncoderConfig { counts_per_rev: drive.steps_per_rev(), edge_stamps: false };
+            model.encoder = encoder;
             if drive.kind == DriveKind::Servo {
                 stay_within(model, 0.5 * drive.servo.range_rad);
             }
@@ -85,19 +92,14 @@ impl RigConfig {
         if !self.drive.kind.is_open_loop() {
             return None;
         }
-        let (motion, model) = (&self.motion, &self.model);
-        let lumped = model.bodies.lumped();
-        let tilts = (-6..=6).map(|step| f64::from(step) * PI / 12.0);
-        let most_inertia =
-            |j: Joint| tilts.clone().map(|tilt| lumped.mass(tilt).own_inertia()[j]).fold(0.0, f64::max);
-        let acceleration = PanTilt::from_fn(|j| {
-            let limit_nm = model.motors[j].torque_limit_nm();
-            let left_nm = (limit_nm - self.carried_nm(j)).max(LEAST * limit_nm);
-            (SHARE * left_nm / most_inertia(j)).min(motion.acceleration_limit_rad_s2[j])
+        let torque_share = PanTilt::from_fn(|j| {
+            let left = 1.0 - self.carried_nm(j) / self.model.motors[j].torque_limit_nm();
+            SHARE * left.max(LEAST)
         });
         Some(Gentle {
-            rate_rad_s: motion.speed_limit_rad_s.map(|rate| rate as f32),
-            acceleration_rad_s2: acceleration.map(|most| most as f32),
+            rate_rad_s: self.motion.speed_limit_rad_s.map(|rate| rate as f32),
+            acceleration_rad_s2: self.motion.acceleration_limit_rad_s2.map(|most| most as f32),
+            torque_share: torque_share.map(|share| share as f32),
         })
     }
 
@@ -118,6 +120,11 @@ impl RigConfig {
         let load_nm = self.carried_nm(Joint::Pan).max(self.carried_nm(Joint::Tilt));
         self.drive.stepper.load_angle_rad(load_nm)
     }
+}
+
+/// How many steps make a turn of the joint: as many as a rig file may say.
+fn steps_per_rev(step_rad: f64) -> u32 {
+    (TAU / step_rad).round().clamp(16.0, 1e8) as u32
 }
 
 fn stay_within(model: &mut Model, half_rad: f64) {

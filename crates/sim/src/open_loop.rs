@@ -15,8 +15,8 @@ pub(crate) struct OpenLoop {
     friction: PanTilt<Friction>,
     /// Where the joints truly stand before the first pulse, rad.
     start_rad: PanTilt<f64>,
-    /// What its steps count and it did not turn, rad.
-    counted_rad: PanTilt<f64>,
+    /// By how much they stay behind what their steps count, rad, besides what a motor lost by itself.
+    behind_rad: PanTilt<f64>,
     /// A step of the angle that is told, rad.
     step_rad: f64,
     /// By how much pulses are sent early, s.
@@ -46,7 +46,7 @@ impl OpenLoop {
             lumped: model.bodies.lumped(),
             friction: model.friction,
             start_rad,
-            counted_rad: PanTilt::default(),
+            behind_rad: PanTilt::default(),
             step_rad: model.encoder.count_rad(),
             lead_s: config.drive.lead_s(),
             told_rad: PanTilt::default(),
@@ -67,9 +67,8 @@ impl OpenLoop {
         let rate = PanTilt::from_fn(|j| (to_rad[j] - self.told_rad[j]) / TICK_F64_S);
         let acceleration = PanTilt::from_fn(|j| (rate[j] - self.told_rad_s[j]) / TICK_F64_S);
         (self.told_rad, self.told_rad_s) = (to_rad, rate);
-        let true_tilt = self.start_rad.tilt + to_rad.tilt;
-        let rigid = self.lumped.inverse(true_tilt, rate, acceleration);
-        let mut at_rad = self.start_rad;
+        let mut at_rad = PanTilt::from_fn(|j| self.start_rad[j] - self.behind_rad[j]);
+        let rigid = self.lumped.inverse(at_rad.tilt + to_rad.tilt, rate, acceleration);
         for j in Joint::BOTH {
             at_rad[j] += match &mut self.joints[j] {
                 OpenJoint::Stepper(stepper) => stepper.turn(StepperDemand {
@@ -91,25 +90,22 @@ impl OpenLoop {
                 OpenJoint::Stepper(stepper) => {
                     (*stepper, self.start_rad[j]) = (stepper.anew(), at_rad[j]);
                 }
-                OpenJoint::Servo(_) => {}
+                OpenJoint::Servo(_) => self.start_rad[j] -= self.behind_rad[j],
             }
         }
-        self.counted_rad = PanTilt::default();
+        self.behind_rad = PanTilt::default();
         (self.told_rad, self.told_rad_s) = (PanTilt::default(), PanTilt::default());
     }
 
     /// A joint stays behind by so many steps from now on.
     pub(crate) fn lose(&mut self, joint: Joint, steps: i32) {
-        let lost_rad = f64::from(steps) * self.step_rad;
-        self.start_rad[joint] -= lost_rad;
-        self.counted_rad[joint] += lost_rad;
+        self.behind_rad[joint] += f64::from(steps) * self.step_rad;
     }
 
     /// Steps that were told, counted from where true zero would be.
     pub(crate) fn measured(&self) -> PanTilt<Measurement> {
         PanTilt::from_fn(|j| {
-            let counted_rad = self.start_rad[j] + self.counted_rad[j] + self.told_rad[j];
-            let count = (counted_rad / self.step_rad).round() as i32;
+            let count = ((self.start_rad[j] + self.told_rad[j]) / self.step_rad).round() as i32;
             Measurement { count, edge_age_ticks: None }
         })
     }

@@ -9,7 +9,7 @@ use tracelight_rig::PanTilt;
 
 use crate::config::{Model, MotionSettings, RigConfig, Truth};
 use crate::control_settings::ControlSettings;
-use crate::drive::{DriveKind, DriveSettings, top_speed_rad_s};
+use crate::drive::{DriveKind, DriveSettings};
 use crate::light_settings::LightSettings;
 use crate::safety_settings::SafetySettings;
 use crate::{HandTuned, LawName};
@@ -139,11 +139,9 @@ impl RigConfig {
         let drive = DriveSettings { kind: DriveKind::Stepper, ..DriveSettings::MOTOR };
         // tilt's motor rides on pan
         let light = small_model(0.45, 0.0);
-        Self::open_loop(
-            ("stepper", "two NEMA 17 stepper motors behind belts, no encoders (open loop)"),
-            drive,
-            light,
-        )
+        let name = ("stepper", "two NEMA 17 stepper motors behind belts, no encoders (open loop)");
+        // where its torque begins to fall, 51 rad/s over 3
+        Self::open_loop(name, drive, light, 17.0)
     }
 
     /// Returns a head on two MG996R hobby servos.
@@ -151,16 +149,17 @@ impl RigConfig {
         let drive = DriveSettings { kind: DriveKind::Servo, ..DriveSettings::MOTOR };
         // a core motor of some 10 g cm2 behind 1 to 200 or so
         let light = small_model(0.1, 2e-3);
-        Self::open_loop(
-            ("servo", "two MG996R hobby servos, which tell nobody where they are (open loop)"),
-            drive,
-            light,
-        )
+        let name = ("servo", "two MG996R hobby servos, which tell nobody where they are (open loop)");
+        Self::open_loop(name, drive, light, drive.servo.speed_rad_s)
     }
 
-    fn open_loop((name, description): (&str, &str), drive: DriveSettings, model: Model) -> Self {
+    fn open_loop(
+        (name, description): (&str, &str),
+        drive: DriveSettings,
+        model: Model,
+        top_rad_s: f64,
+    ) -> Self {
         let report = Self::report();
-        let top = top_speed_rad_s(drive.kind);
         Self {
             name: name.into(),
             description: description.into(),
@@ -169,7 +168,7 @@ impl RigConfig {
             truth: Truth { model, ..report.truth },
             motion: MotionSettings {
                 torque_share: 0.6,
-                speed_limit_rad_s: top,
+                speed_limit_rad_s: PanTilt::new(top_rad_s, top_rad_s),
                 settle_s: 0.1,
                 ..report.motion
             },

@@ -53,7 +53,7 @@ const MESSAGES: &[(&str, &str)] = &[
     ),
     (
         "open-loop-rig",
-        "The rig has no encoders (drive = \"stepper\" or \"servo\"), and what was asked needs some. Take a rig with drive = \"motor\".",
+        "The rig has no encoders (drive = \"stepper\" or \"servo\"), and what was asked needs some, or joints that are placed more finely than hobby servos do. Take a rig with drive = \"motor\".",
     ),
     ("too-long", "The job takes longer than a run may. Draw larger steps, faster, or in parts."),
     (

@@ -120,6 +120,7 @@ fn look(scene: &Scene, view: View, paper: Rgb) -> Seen {
     let within = all.inflate(margin, margin);
     let mut seen = Seen { strokes: Vec::new(), unseen: Vec::new(), unjudged: 0, on_black: false };
     let covers = |item: Number| view.hides && is_cover(&scene.items[item as usize]);
+    // an edge within the distance from which lines are looked at changes what is seen there: where it ends, it must be met
     let ground = Ground { page: view.page, within, slack: 1.05 * aside };
     let Some(Layout { tiles, regions, edges }) = laid_out(scene, ground, covers) else {
         scene.marks.iter().for_each(|&mark| seen.leave(scene, mark));

@@ -54,7 +54,8 @@ impl SetArgs {
     /// Returns a rig with these masses; one without encoders is refused.
     pub(super) fn on(self, rig: RigConfig) -> Result<RigConfig, Failure> {
         measured(&rig, "this `lab` command")?;
-        Ok(self.set.map_or(rig.clone(), |set| set.set().on(rig)))
+        let Some(set) = self.set else { return Ok(rig) };
+        Ok(set.set().on(rig))
     }
 
     /// Refuses `--save` into what comes with the program, and of masses that are not the file's.
