@@ -15,11 +15,14 @@ from scipy.ndimage import distance_transform_edt
 
 SIDE = 400  # px, the picture's longer side
 MARGIN = 20  # px round each picture, so that nothing of a neighbour shows
-CONTRAST = 20  # of 255: less is no edge
+CONTRAST = 20  # of 255: an edge that has to be drawn
+FAINT = 10  # of 255: an edge that may be drawn
+FINER = 3  # times as fine as it is judged is the picture drawn: seams of anti-aliasing shrink, edges stay
 NEAR = 2.0  # px between a stroke and an edge of the picture, its pen aside
 RIM = 3  # px at the page's border where no edge is asked for
 UNSEEN, UNDRAWN = 0.03, 0.03  # shares of length, and of edge, that may be wrong in a file
 CHROMIUM = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--hide-scrollbars",
+            f"--force-device-scale-factor={FINER}",
             "--disable-background-networking", "--disable-component-update", "--disable-sync", "--allow-file-access-from-files"]
 
 
@@ -79,30 +82,32 @@ def pictures(chromium, sheets):
             subprocess.run([chromium, *CHROMIUM, f"--user-data-dir={folder}/profile", f"--screenshot={shot}",
                             f"--window-size={5 * cell},{(len(some) + 4) // 5 * cell}", page.as_uri()],
                            capture_output=True, timeout=120)
-            all_of_them = np.asarray(Image.open(shot).convert("RGB")).astype(int)
+            all_of_them = np.asarray(Image.open(shot).convert("RGB").reduce(FINER)).astype(int)
         for i in range(len(some)):
             x, y = i % 5 * cell, i // 5 * cell
             done.append(all_of_them[y : y + cell, x : x + cell])
     return done
 
 
-def edges_of(picture):
-    """Pixels beside which the colour changes."""
+def edges_of(picture, contrast=CONTRAST):
+    """Pixels beside which the colour changes, at once or, anti-aliased, over two pixels."""
     edge = np.zeros(picture.shape[:2], bool)
     for axis in (0, 1):
-        step = np.abs(np.diff(picture, axis=axis)).max(axis=2) >= CONTRAST
-        edge[tuple(slice(0, -1) if a == axis else slice(None) for a in (0, 1))] |= step
-        edge[tuple(slice(1, None) if a == axis else slice(None) for a in (0, 1))] |= step
+        part = lambda first, last: tuple(slice(first, last) if a == axis else slice(None) for a in (0, 1))
+        step = np.abs(np.diff(picture, axis=axis)).max(axis=2) >= contrast
+        edge[part(0, -1)] |= step
+        edge[part(1, None)] |= step
+        edge[part(1, -1)] |= np.abs(picture[part(2, None)] - picture[part(0, -2)]).max(axis=2) >= contrast
     return edge
 
 
 def judge(drawing, picture, scale):
-    """Share of the length that nothing is seen of, share of the edges that nothing is drawn of."""
-    edge = edges_of(picture)
+    """Shares of the length where no edge and not even a faint one is seen, share of the edges that nothing is drawn of."""
+    edge, faint = edges_of(picture), edges_of(picture, FAINT)
     if not edge.any():
         return None
-    to_edge = distance_transform_edt(~edge)
-    wrong = length = 0.0
+    to_edge, to_faint = distance_transform_edt(~edge), distance_transform_edt(~faint)
+    wrong, length = np.zeros(2), 0.0
     explained = np.zeros(edge.shape, bool)
     by_pen = {}
     for stroke in drawing["strokes"]:
@@ -115,9 +120,10 @@ def judge(drawing, picture, scale):
             x, y = (a + (b - a) * t).T
             column, row = x.astype(int), y.astype(int)
             inside = (row >= 0) & (row < edge.shape[0]) & (column >= 0) & (column < edge.shape[1])
-            far = np.full(count, True)
-            far[inside] = to_edge[row[inside], column[inside]] > pen + NEAR
-            wrong += long * far.mean()
+            for i, distance in enumerate((to_edge, to_faint)):
+                far = np.full(count, True)
+                far[inside] = distance[row[inside], column[inside]] > pen + NEAR
+                wrong[i] += long * far.mean()
             length += long
             by_pen.setdefault(round(2 * pen) / 2, []).append((row[inside], column[inside]))
     for pen, places in by_pen.items():
@@ -131,7 +137,7 @@ def judge(drawing, picture, scale):
     inner = np.zeros(edge.shape, bool)
     inner[MARGIN + RIM : MARGIN + height - RIM, MARGIN + RIM : MARGIN + width - RIM] = True
     asked = edge & inner
-    return wrong / max(length, 1e-9), (asked & ~explained).sum() / max(asked.sum(), 1)
+    return *wrong / max(length, 1e-9), (asked & ~explained).sum() / max(asked.sum(), 1)
 
 
 def overlay(folder, name, drawing, picture, scale):
@@ -162,7 +168,7 @@ def main():
     drawn = [(file, drawing, said) for file, drawing, said in read if drawing]
     scales = [SIDE / max(d["width_px"], d["height_px"]) for _, d, _ in drawn]
     sheets = [(f, d["width_px"] * s, d["height_px"] * s) for (f, d, _), s in zip(drawn, scales)]
-    count = dict.fromkeys(["as seen", "wrong, and told", "wrong, not told", "blank", "not drawn"], 0)
+    count = dict.fromkeys(["as seen", "faint edges too", "wrong, and told", "wrong, not told", "blank", "not drawn"], 0)
     count["not drawn"] = len(read) - len(drawn)
     for file, drawing, said in read:
         if not drawing:
@@ -171,10 +177,12 @@ def main():
         shares = judge(drawing, picture, scale)
         if shares is None:
             kind = "blank"
-        elif shares[0] <= UNSEEN and shares[1] <= UNDRAWN:
+        elif shares[0] <= UNSEEN and shares[2] <= UNDRAWN:
             kind = "as seen"
+        elif shares[1] <= UNSEEN and shares[2] <= UNDRAWN:
+            kind = "faint edges too"
         else:
-            told = "not applied" in said or "not drawn: text" in said or "pictures" in said or "patterns" in said or "is drawn in" in said
+            told = "not applied" in said or "not drawn: text" in said or "pictures" in said or "patterns" in said or "is drawn in" in said or "inside gradients" in said
             kind = "wrong, and told" if told else "wrong, not told"
         count[kind] += 1
         print(kind, *(f"{s:.3f}" for s in shares or ()), file, said.replace("\n", " | ")[:200], sep="\t")
@@ -189,4 +197,5 @@ def main():
         print(f"{kind:16} {number:5}{share}")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -9,7 +9,7 @@ use usvg::FillRule;
 use super::ink::ink_of;
 use super::seen::Region;
 use super::seen::scene::{Gate, GateKind, Ink, Light, Number, Scene, Veil};
-use super::shape::{affine, band, filled, lines};
+use super::shape::{affine, filled, lines, sides};
 
 /// Gates made of a clip path or mask.
 pub(super) struct Made {
@@ -172,7 +172,9 @@ impl Gates<'_, '_> {
             light(region, fill.paint(), fill.opacity())
         });
         let stroke = path.stroke().map(|stroke| {
-            light(band(path, stroke, at, self.tolerance, true), stroke.paint(), stroke.opacity())
+            let sides = sides(path, stroke, at, self.tolerance, true);
+            let band = filled(&sides, FillRule::NonZero, self.tolerance);
+            light(band, stroke.paint(), stroke.opacity())
         });
         let is_plain = |light: &Light| !matches!(light.ink, Ink::Mixed { .. });
         picture.is_plain &= fill.iter().chain(&stroke).all(is_plain);

@@ -68,6 +68,24 @@ fn gradient(found: &usvg::BaseGradient, along: Along, at: Affine) -> Ink {
     }
 }
 
+/// Whether a gradient changes at once from one look to another somewhere inside: an edge that nothing here draws.
+pub(super) fn has_hard_stops(paint: &usvg::Paint) -> bool {
+    let stops = match paint {
+        usvg::Paint::LinearGradient(found) => found.stops(),
+        usvg::Paint::RadialGradient(found) => found.stops(),
+        usvg::Paint::Color(_) | usvg::Paint::Pattern(_) => return false,
+    };
+    // stops that share an offset are told apart by whoever resolves the file as little as single precision can
+    const ONE: f32 = 1e-5;
+    let inside: Vec<_> =
+        stops.iter().filter(|stop| (ONE..1.0 - ONE).contains(&stop.offset().get())).collect();
+    inside.chunk_by(|a, b| (b.offset().get() - a.offset().get()).abs() <= ONE).any(|at_once| {
+        let (first, last) = (at_once[0], at_once[at_once.len() - 1]);
+        let look = |stop: &usvg::Stop| (stop.color(), stop.opacity().get().to_bits());
+        look(first) != look(last)
+    })
+}
+
 /// Whether a pattern's own picture begins with something opaque that fills its tile.
 fn is_full(pattern: &usvg::Pattern) -> bool {
     let rect = pattern.rect();

@@ -7,7 +7,7 @@ use tracelight_stroke::{Colour, Entity, Path, Point, Rect, Stroke, StrokeKind};
 
 use super::dash::MAX_DASHES;
 use super::gates::{Gates, Key};
-use super::ink::{adds_only, colour_of, ink_of};
+use super::ink::{adds_only, colour_of, has_hard_stops, ink_of};
 use super::lines::{Drawn, Lines};
 use super::names::{Names, Place};
 use super::painted::{Fill, Letters, Pen, points};
@@ -33,6 +33,8 @@ pub(super) struct Told {
     pub(super) filters: usize,
     pub(super) masks: usize,
     pub(super) patterns: usize,
+    /// Gradients that change at once somewhere inside.
+    pub(super) stops: usize,
     /// Dashed paths drawn as whole lines because there are too many dashes.
     pub(super) undashed: usize,
 }
@@ -248,7 +250,7 @@ impl<'a> Painter<'a> {
         around: &Around,
     ) -> Result<(), FormatError> {
         let Some(fill) = fill else { return Ok(()) };
-        self.told.patterns += usize::from(matches!(fill.paint(), usvg::Paint::Pattern(_)));
+        self.tell(fill.paint());
         let looks = looks(StrokeKind::Outline, None, fill.paint(), around);
         let at = affine(path.abs_transform());
         let shape = Fill { path, rule: fill.rule(), tolerance: self.view.tolerance(), is_drawn };
@@ -273,11 +275,16 @@ impl<'a> Painter<'a> {
         let dashes = pen.dashes().filter(|_| self.dashes);
         pen.is_dashed = dashes.is_some_and(|count| self.may_dash(count));
         self.count(if pen.is_dashed { dashes.unwrap_or(0) * LEAST_ELEMENTS } else { path.data().len() });
-        self.told.patterns += usize::from(matches!(stroke.paint(), usvg::Paint::Pattern(_)));
+        self.tell(stroke.paint());
         let looks = looks(StrokeKind::Centreline, Some(pen.width()), stroke.paint(), around);
         let item = self.item(Box::new(pen), ink_of(stroke.paint(), at), stroke.opacity(), looks, around);
         self.scene.marks.push(Mark { kind: MarkKind::Middle, item });
         self.check_count()
+    }
+
+    fn tell(&mut self, paint: &usvg::Paint) {
+        self.told.patterns += usize::from(matches!(paint, usvg::Paint::Pattern(_)));
+        self.told.stops += usize::from(has_hard_stops(paint));
     }
 
     fn may_dash(&mut self, count: usize) -> bool {

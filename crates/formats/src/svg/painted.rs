@@ -5,8 +5,8 @@ use tracelight_stroke::{Path, Point, Rect, extent_of};
 
 use super::dash::{Dashes, dot, moved};
 use super::seen::Region;
-use super::seen::scene::Shape;
-use super::shape::{affine, band, filled, lines, own_lines, scale};
+use super::seen::scene::{Shape, Sides};
+use super::shape::{affine, filled, lines, own_lines, scale, sides};
 use crate::is_sound;
 
 /// The inside of a path.
@@ -38,7 +38,7 @@ impl Shape for Fill<'_> {
     }
 }
 
-/// Tolerance of the edge of a band, which only hides what is below and is no line itself, in tolerances of lines.
+/// Tolerance of the edge of a band, which is seldom a line itself, in tolerances of lines.
 const BAND: f64 = 2.0;
 
 /// What a pen draws along a path.
@@ -84,9 +84,20 @@ impl Shape for Pen<'_> {
 
     fn region(&self) -> Region {
         match self.has_band {
-            true => band(self.path, self.stroke, self.at(), self.tolerance * BAND, self.is_dashed),
+            true => {
+                let sides = self.sides();
+                filled(&sides.paths, usvg::FillRule::NonZero, sides.tolerance)
+            }
             false => Region::default(),
         }
+    }
+
+    fn sides(&self) -> Sides {
+        if !self.has_band {
+            return Sides::default();
+        }
+        let tolerance = self.tolerance * BAND;
+        Sides { paths: sides(self.path, self.stroke, self.at(), tolerance, self.is_dashed), tolerance }
     }
 
     fn lines(&self) -> Vec<Path> {

@@ -25,7 +25,37 @@ pub(super) fn things(xml: &Document, told: Told) -> Vec<String> {
     let filters = said(told.filters, "not applied: filters; shapes are drawn as they are without");
     let masks = said(told.masks, "not applied: masks of patterns or pictures; all that they mask is drawn");
     let dashes = said(told.undashed, "drawn as whole lines: dashed lines of too many dashes");
-    [image, patterns, filters, masks, dashes].into_iter().flatten().collect()
+    let stops = said(told.stops, "not drawn: edges inside gradients whose colour changes at once");
+    let linear =
+        said(masks_by_linear_light(xml), "not applied: linearRGB in masks; their edges may lie elsewhere");
+    let view = said(
+        lengths_of_view(xml),
+        "not applied: lengths in vw, vh, vmin or vmax, which have no meaning on a wall",
+    );
+    [image, patterns, filters, masks, dashes, stops, linear, view].into_iter().flatten().collect()
+}
+
+/// Masks that measure brightness by linear light.
+fn masks_by_linear_light(xml: &Document) -> usize {
+    let is_linear = |node: Node| {
+        node.attribute("color-interpolation") == Some("linearRGB")
+            || node
+                .attribute("style")
+                .is_some_and(|style| style.replace(' ', "").contains("color-interpolation:linearRGB"))
+    };
+    xml.descendants().filter(|n| n.tag_name().name() == "mask" && n.ancestors().any(is_linear)).count()
+}
+
+/// Elements with lengths that are shares of a window.
+fn lengths_of_view(xml: &Document) -> usize {
+    const PLACES: [&str; 14] =
+        ["x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r", "rx", "ry", "width", "height", "stroke-width"];
+    let is_one = |value: &str| {
+        let number = ["vw", "vh", "vmin", "vmax"].iter().find_map(|unit| value.trim().strip_suffix(unit));
+        number.is_some_and(|number| number.trim().parse::<f64>().is_ok())
+    };
+    let has_one = |n: &Node| n.attributes().any(|a| PLACES.contains(&a.name()) && is_one(a.value()));
+    xml.descendants().filter(has_one).count()
 }
 
 /// What is left out of what is painted, a sentence for each reason, with its length.

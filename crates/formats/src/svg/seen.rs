@@ -4,7 +4,8 @@
 //! is divided where it meets the edge of a region, for only there can change what is seen of it. In between it is looked
 //! at once, from a small distance on both sides: what is painted there, from the top down to the first thing that hides
 //! the rest. The edge of a fill is seen if the colours on its sides differ and no fill above ends there too; the middle
-//! of a pen's band if nothing covers it and it has another colour than what lies around it. So covered lines, seams
+//! of a pen's band if nothing covers it and it has another colour than what lies around it, and where its middle is not
+//! drawn, a side of the band is as the edge of a fill. So covered lines, seams
 //! inside one colour, white on white and fills without area all fall out of one rule.
 
 mod colour;
@@ -14,6 +15,7 @@ mod flat;
 pub(super) mod gradient;
 mod grid;
 mod judged;
+mod middles;
 mod picture;
 mod region;
 pub(super) mod scene;
@@ -23,11 +25,13 @@ mod verdict;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use tracelight_stroke::{Path, Rect, Stroke};
+use tracelight_stroke::{Path, Rect, Stroke, StrokeKind};
 
-use self::judged::judged;
+use self::crossings::Edges;
+use self::judged::{Judged, judged};
+use self::middles::{Middle, Middles};
 use self::picture::{Picture, is_cover};
-use self::scene::{Gate, GateKind, Ink, Mark, MarkKind, Number, Scene};
+use self::scene::{Gate, GateKind, Ink, Item, Mark, MarkKind, Number, Scene};
 use self::tiles::{Ground, Layout, laid_out};
 use self::verdict::{Judge, Verdict};
 
@@ -118,40 +122,113 @@ fn look(scene: &Scene, view: View, paper: Rgb) -> Seen {
     let boxes = scene.items.iter().map(|item| item.shape.bounds());
     let all = boxes.fold(view.page, |all, bounds| if view.crops { all } else { all.union(bounds) });
     let within = all.inflate(margin, margin);
-    let mut seen = Seen { strokes: Vec::new(), unseen: Vec::new(), unjudged: 0, on_black: false };
+    let seen = Seen { strokes: Vec::new(), unseen: Vec::new(), unjudged: 0, on_black: false };
     let covers = |item: Number| view.hides && is_cover(&scene.items[item as usize]);
     // an edge within the distance from which lines are looked at changes what is seen there: where it ends, it must be met
     let ground = Ground { page: view.page, within, slack: 1.05 * aside };
     let Some(Layout { tiles, regions, edges }) = laid_out(scene, ground, covers) else {
+        let mut seen = seen;
         scene.marks.iter().for_each(|&mark| seen.leave(scene, mark));
         return seen;
     };
     let mut picture = Picture::new(scene, view.page, view.hides, (tiles, regions));
     picture.paper = paper;
     let step = if has_gradients(scene) { STEP * view.page.size().to_vec2().hypot() } else { f64::INFINITY };
-    let judge = Judge { picture: &picture, aside, crops: view.crops, step };
-    let mut work = 0;
-    for &mark in &scene.marks {
-        if !matches!(mark.kind, MarkKind::Cut(_)) && picture.is_unseen(mark.item) {
-            seen.hide(&judge, mark, view.tolerance());
-            continue;
+    let judge = Judge { picture: &picture, aside, crops: view.crops, step, middles: None };
+    let mut looking =
+        Looking { scene, view, edges, judge, seen, work: 0, middles: Vec::new(), halves: Vec::new() };
+    scene.marks.iter().for_each(|&mark| looking.mark(mark));
+    if !looking.halves.is_empty() {
+        looking.sides(within);
+    }
+    looking.seen
+}
+
+/// A scene being looked at.
+struct Looking<'a> {
+    scene: &'a Scene<'a>,
+    view: View,
+    edges: Edges,
+    judge: Judge<'a>,
+    seen: Seen,
+    work: usize,
+    /// What is drawn of the middles of bands.
+    middles: Vec<Middle>,
+    /// Bands whose middle is not drawn everywhere.
+    halves: Vec<Number>,
+}
+
+impl Looking<'_> {
+    fn mark(&mut self, mark: Mark) {
+        let (scene, tolerance) = (self.scene, self.view.tolerance());
+        if !matches!(mark.kind, MarkKind::Cut(_)) && self.judge.picture.is_unseen(mark.item) {
+            return self.seen.hide(&self.judge, mark, tolerance);
         }
         for path in &*lines_of(scene, mark) {
-            let judged =
-                judged(&judge, &edges, (mark, path), view.tolerance(), view.work.saturating_sub(work));
-            let Some(judged) = judged else {
-                work = view.work;
-                seen.leave_line(scene, mark, path);
+            let Some(judged) = self.judged(mark, path, tolerance) else {
+                self.seen.leave_line(scene, mark, path);
                 continue;
             };
-            work += judged.work;
-            seen.unseen.extend(judged.unseen);
+            if mark.kind == MarkKind::Middle {
+                self.note_band(mark.item, &judged);
+            }
+            self.seen.unseen.extend(judged.unseen);
             let looks = |item: Number| &scene.items[item as usize].looks;
-            seen.strokes.extend(judged.seen.into_iter().map(|(path, item)| looks(item).along(path)));
+            self.seen.strokes.extend(judged.seen.into_iter().map(|(path, item)| looks(item).along(path)));
         }
     }
-    seen
+
+    fn judged(&mut self, mark: Mark, path: &Path, tolerance: f64) -> Option<Judged> {
+        let left = self.view.work.saturating_sub(self.work);
+        let judged = judged(&self.judge, &self.edges, (mark, path), tolerance, left);
+        self.work = judged.as_ref().map_or(self.view.work, |judged| self.work + judged.work);
+        judged
+    }
+
+    /// Remembers which middles are drawn, and whose band may be seen where its middle is not.
+    fn note_band(&mut self, number: Number, judged: &Judged) {
+        let item = &self.scene.items[number as usize];
+        let Some(pen) = item.pen.filter(|_| self.judge.has_sides(item)) else { return };
+        let drawn =
+            judged.seen.iter().map(|(path, _)| Middle { path: path.clone(), pen, source: item.source });
+        self.middles.extend(drawn);
+        if !judged.unseen.is_empty() && self.halves.last() != Some(&number) {
+            self.halves.push(number);
+        }
+    }
+
+    /// Whether a piece of a band's side is only what is left beside another line that crosses the band.
+    fn is_scrap(&self, item: &Item, side: &Path) -> bool {
+        let pen = item.pen.unwrap_or(0.0);
+        let tolerance = self.view.tolerance();
+        side.length(tolerance) < SCRAP * pen && {
+            let corners = chords(side, tolerance);
+            let middle = corners[corners.len() / 2].point.midpoint(corners[(corners.len() - 1) / 2].point);
+            self.judge.middles.as_ref().is_some_and(|middles| middles.are_beside(middle, pen, item.source))
+        }
+    }
+
+    /// Draws the sides of bands where they are seen and no middle stands for them.
+    fn sides(&mut self, within: Rect) {
+        let middles = std::mem::take(&mut self.middles);
+        self.judge.middles = Some(Middles::new(&middles, within, self.view.tolerance()));
+        for number in std::mem::take(&mut self.halves) {
+            let item = &self.scene.items[number as usize];
+            let sides = item.shape.sides();
+            for path in &sides.paths {
+                let mark = Mark { kind: MarkKind::Side, item: number };
+                let seen = self.judged(mark, path, sides.tolerance).map(|judged| judged.seen);
+                let paths = seen.into_iter().flatten().map(|(path, _)| path);
+                let side = |path| Stroke { kind: StrokeKind::Outline, pen: None, ..item.looks.along(path) };
+                let drawn: Vec<Stroke> = paths.filter(|path| !self.is_scrap(item, path)).map(side).collect();
+                self.seen.strokes.extend(drawn);
+            }
+        }
+    }
 }
+
+/// Where another line crosses at a slant, shorter sides than so many widths of a band are left over.
+const SCRAP: f64 = 2.0;
 
 /// How far a line is followed before it is looked at again where colours change without an edge, as a share of the page's
 /// diagonal.

@@ -1,6 +1,6 @@
 //! Paths of the resolved tree as lines on the sheet, and the regions that they paint.
 
-use kurbo::{Affine, Vec2};
+use kurbo::Affine;
 use tracelight_stroke::{Path, Point};
 use usvg::tiny_skia_path::{self, PathSegment, PathStroker};
 
@@ -34,16 +34,16 @@ pub(super) struct Lines {
 
 /// The connected parts of a path, moved to the sheet.
 pub(super) fn lines(path: &usvg::Path, at: Affine, close_all: bool) -> Lines {
-    split(path, at, close_all, Some(noise(path.bounding_box(), at)))
+    split(path.data(), at, close_all, Some(noise(path.bounding_box(), at)))
 }
 
 /// The connected parts of a path in its own numbers, without arcs, so that any transform may move them.
 pub(super) fn own_lines(path: &usvg::Path) -> Vec<Path> {
-    split(path, Affine::IDENTITY, false, None).paths
+    split(path.data(), Affine::IDENTITY, false, None).paths
 }
 
 /// Cubics become arcs where they stand for one to the noise, if there is any.
-fn split(path: &usvg::Path, at: Affine, close_all: bool, noise: Option<f64>) -> Lines {
+fn split(path: &tiny_skia_path::Path, at: Affine, close_all: bool, noise: Option<f64>) -> Lines {
     let point = |p: tiny_skia_path::Point| at * Point::new(f64::from(p.x), f64::from(p.y));
     let mut lines = Lines { paths: Vec::new(), dots: Vec::new() };
     let mut open: Option<(Pen, Point, bool)> = None;
@@ -54,7 +54,7 @@ fn split(path: &usvg::Path, at: Affine, close_all: bool, noise: Option<f64>) -> 
             None => lines.dots.extend(is_drawn.then_some(start)),
         }
     };
-    for segment in path.data().segments() {
+    for segment in path.segments() {
         if let PathSegment::MoveTo(p) = segment {
             end(open.replace((Pen::new(point(p)), point(p), false)), close_all);
             continue;
@@ -89,57 +89,20 @@ pub(super) fn filled(outlines: &[Path], rule: usvg::FillRule, tolerance: f64) ->
     Region::new(&polygons, rule == usvg::FillRule::EvenOdd)
 }
 
-/// What a pen covers along a path, its ends and corners included.
-pub(super) fn band(
+/// The edge of what a pen covers along a path, its ends and corners included.
+pub(super) fn sides(
     path: &usvg::Path,
     stroke: &usvg::Stroke,
     at: Affine,
     tolerance: f64,
     dashed: bool,
-) -> Region {
+) -> Vec<Path> {
     let mut pen = stroke.to_tiny_skia();
     let dash = pen.dash.take().filter(|_| dashed);
     // the stroker's own tolerance is a quarter of a pixel of this resolution
     let resolution = (scale(at) * (0.25 / tolerance)).clamp(1e-3, 1e6) as f32;
     let dashes = dash.and_then(|dash| path.data().dash(&dash, resolution));
     let line = dashes.as_ref().unwrap_or(path.data());
-    let Some(outline) = PathStroker::new().stroke(line, &pen, resolution) else { return Region::default() };
-    Region::new(&polygons(&outline, at, tolerance), false)
-}
-
-fn polygons(path: &tiny_skia_path::Path, at: Affine, tolerance: f64) -> Vec<Vec<Point>> {
-    let point = |p: tiny_skia_path::Point| at * Point::new(f64::from(p.x), f64::from(p.y));
-    let mut polygons: Vec<Vec<Point>> = Vec::new();
-    for segment in path.segments() {
-        if let PathSegment::MoveTo(p) = segment {
-            polygons.push(vec![point(p)]);
-            continue;
-        }
-        let Some(polygon) = polygons.last_mut() else { continue };
-        let from = polygon.last().copied().unwrap_or_default();
-        match segment {
-            PathSegment::LineTo(p) => polygon.push(point(p)),
-            PathSegment::QuadTo(c, p) => {
-                let (c, to) = (point(c), point(p));
-                let third = |p: Point| p.lerp(c, 2.0 / 3.0);
-                bend(polygon, [from, third(from), third(to), to], tolerance);
-            }
-            PathSegment::CubicTo(c1, c2, p) => {
-                bend(polygon, [from, point(c1), point(c2), point(p)], tolerance)
-            }
-            PathSegment::MoveTo(_) | PathSegment::Close => {}
-        }
-    }
-    polygons
-}
-
-/// Chords of a cubic, by Wang's bound.
-fn bend(polygon: &mut Vec<Point>, [a, b, c, d]: [Point; 4], tolerance: f64) {
-    const MOST: f64 = 400.0;
-    let second: Vec2 = (a - b) + (c - b);
-    let bend = second.hypot().max(((b - c) + (d - c)).hypot());
-    let steps = (0.75 * bend / tolerance).sqrt().ceil().clamp(1.0, MOST) as usize;
-    let curve = kurbo::CubicBez::new(a, b, c, d);
-    polygon.extend((1..steps).map(|i| kurbo::ParamCurve::eval(&curve, i as f64 / steps as f64)));
-    polygon.push(d);
+    let Some(outline) = PathStroker::new().stroke(line, &pen, resolution) else { return Vec::new() };
+    split(&outline, at, true, None).paths
 }

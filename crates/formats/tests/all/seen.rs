@@ -228,3 +228,69 @@ fn a_white_line_on_a_wider_black_one_is_drawn_and_across_one_it_is_not() {
     let found = read(&across, &ReadOptions::default());
     assert!((length_mm(&found) - 100.0).abs() < 2.0, "{} mm: {:?}", length_mm(&found), found.remarks);
 }
+
+#[test]
+fn white_lines_on_black_ones_go_on_where_they_cross() {
+    let cross = |colour: &str, width: f64| {
+        let line = |d: &str| format!("<path d='{d}' fill='none' stroke='{colour}' stroke-width='{width}'/>");
+        line("M10 50H90") + &line("M50 10V90")
+    };
+    check(&(cross("#000", 6.0) + &cross("#fff", 2.0)), 2, 160.0, "covered");
+}
+
+/// Strokes and lengths, mm, that are drawn in each colour, and whether a pen draws them or they are an edge.
+fn drawn(content: &str) -> Vec<(String, bool, f64)> {
+    let found = read(content, &ReadOptions::default());
+    let mm = 1e3 * found.sheet.metres_per_unit.unwrap();
+    let strokes = found.sheet.drawing.strokes.iter();
+    strokes.map(|s| (s.colour.unwrap().to_string(), s.pen.is_some(), mm * s.path.length(1e-6))).collect()
+}
+
+#[test]
+fn where_the_middle_of_a_wide_pen_is_not_seen_its_sides_are() {
+    let plate = "<rect x='30' y='30' width='40' height='40' fill='#fa0'/>";
+    // white on white, but its side cuts the plate
+    let rubbed = format!("{plate}<path d='M26 10V90' stroke='#fff' stroke-width='12'/>");
+    check(&rubbed, 2, 38.0 + 40.0 + 38.0 + 40.0, "covered");
+    // below a plate of its colour one side is left; the ends belong to what is drawn of the middle
+    let behind = format!("<path d='M32 10V90' stroke='#fa0' stroke-width='8'/>{plate}");
+    let sides: Vec<_> =
+        drawn(&behind).into_iter().filter(|(_, is_pen, long)| !is_pen && *long < 38.0).collect();
+    assert!(matches!(&sides[..], [(.., long)] if (long - 31.7).abs() < 2.0), "{:?}", drawn(&behind));
+    // a shadow
+    let shadow = "<path d='M20 21H80' stroke='#888' stroke-width='4'/><path d='M20 20H80' stroke='#fff' stroke-width='4'/>";
+    let black = "<path d='M10 90H90' stroke='#000' stroke-width='4'/>";
+    let found = drawn(&format!("{shadow}{black}"));
+    let grey: f64 = found.iter().filter(|(colour, ..)| colour == "#888888").map(|(.., long)| long).sum();
+    assert!(grey > 60.0 && grey < 64.0, "{found:?}");
+}
+
+#[test]
+fn lines_that_cross_at_a_slant_leave_no_scraps_of_their_sides() {
+    let lines = "<path d='M10 40L90 60' stroke='#00f' stroke-width='4'/><path d='M10 50H90' stroke='#f00' stroke-width='4'/>";
+    let found = drawn(lines);
+    assert!(found.len() == 3 && found.iter().all(|(_, is_pen, _)| *is_pen), "{found:?}");
+}
+
+#[test]
+fn what_is_not_drawn_of_gradients_masks_and_windows_is_told() {
+    let plate = |x: &str, fill: &str| format!("<rect x='{x}' y='10' width='40' height='40' fill='{fill}'/>");
+    let gradient =
+        |stops: &str| format!("<linearGradient id='g'>{stops}</linearGradient>{}", plate("10", "url(#g)"));
+    let said = |content: &str, words: &str| {
+        let found = read(content, &ReadOptions::default());
+        found.remarks.iter().any(|remark| remark.contains(words))
+    };
+    let stop = |offset: f64, colour: &str| format!("<stop offset='{offset}' stop-color='{colour}'/>");
+    let soft = gradient(&(stop(0.0, "red") + &stop(0.5, "blue") + &stop(1.0, "green")));
+    let hard = gradient(&(stop(0.0, "red") + &stop(0.5, "red") + &stop(0.5, "blue") + &stop(1.0, "blue")));
+    // one colour from both sides, or a change at the very end, is no edge inside
+    let same = gradient(&(stop(0.0, "red") + &stop(0.5, "blue") + &stop(0.5, "blue") + &stop(1.0, "green")));
+    let end = gradient(&(stop(0.0, "red") + &stop(1.0, "blue") + &stop(1.0, "green")));
+    let found = [&soft, &hard, &same, &end].map(|content| said(content, "edges inside gradients"));
+    assert_eq!(found, [false, true, false, false]);
+    assert!(said(&(plate("1", "#000") + &plate("50vw", "#000")), "vw, vh"));
+    assert!(!said(&plate("5", "#000"), "vw, vh"));
+    let mask = "<mask id='m' style='color-interpolation: linearRGB'><circle cx='30' cy='30' r='9' fill='#fff'/></mask>";
+    assert!(said(&format!("{mask}<g mask='url(#m)'>{}</g>", plate("10", "#000")), "linearRGB"));
+}

@@ -120,6 +120,17 @@ impl Listing {
         found
     }
 
+    /// Segments in the cells closer to a point than `reach`, and some further ones; one in several cells comes up in each.
+    pub(crate) fn around(&self, p: Point, reach: f64, mut visit: impl FnMut(u32)) {
+        let grid = &self.grid;
+        let (first, last) = (grid.column(p.x - reach), grid.column(p.x + reach));
+        for row in grid.row(p.y - reach)..=grid.row(p.y + reach) {
+            let cell = row * grid.columns();
+            let listed = self.begins[cell + first] as usize..self.begins[cell + last + 1] as usize;
+            self.listed[listed].iter().for_each(|&number| visit(number));
+        }
+    }
+
     /// Segments in the cells that a segment passes; one in several cells comes up in each.
     pub(crate) fn near(&self, segment: [Point; 2], mut visit: impl FnMut(u32)) {
         self.grid.passed(segment, 0.0, |row, first, last| {

@@ -10,6 +10,9 @@ use super::verdict::{Judge, Place, Reason, Verdict};
 /// Stretches shorter than so many times the distance from which lines are looked at are not cut, nor drawn alone.
 const LEAST: f64 = 5.0;
 
+/// Stretches of a band's side shorter than so many times its width belong to the end of its middle.
+const CRUMB: f64 = 0.5;
+
 /// A stretch of a chord with one verdict.
 #[derive(Clone, Copy)]
 struct Stretch {
@@ -41,7 +44,8 @@ pub(crate) fn judged(
     let corners = chords(path, tolerance);
     let before = judge.picture.work.get();
     let (runs, met) = runs(judge, edges, mark, &corners, before.saturating_add(left))?;
-    let least = LEAST * judge.aside;
+    let pen = judge.picture.scene.items[mark.item as usize].pen.unwrap_or(0.0);
+    let least = if mark.kind == MarkKind::Side { CRUMB * pen } else { 0.0 }.max(LEAST * judge.aside);
     let runs = smoothed(runs, least, path.is_closed());
     let mut judged = Judged { seen: Vec::new(), unseen: Vec::new(), work: met };
     let mut items: Vec<Number> = Vec::new();
@@ -102,6 +106,10 @@ impl Walk<'_> {
             self.meet();
             return self.add(self.judge.hidden(self.mark, ends[0].midpoint(ends[1])), vec![whole]);
         }
+        if self.judge.is_stood_for(self.mark, ends) {
+            self.meet();
+            return self.add(Verdict::Unseen(None), vec![whole]);
+        }
         self.work += self.edges.met(ends, Own(self.mark.kind, self.mark.item), counts, met);
         let mut from = 0.0;
         for &to in &*met {
@@ -123,10 +131,10 @@ impl Walk<'_> {
     /// Goes along a stretch that meets no edge, and looks again where that is long.
     fn follow(&mut self, stretch: Stretch) {
         const MOST: f64 = 1024.0;
-        let parts = (stretch.length / self.judge.step).ceil().clamp(1.0, MOST);
-        let is_long = |pending: &[Stretch]| {
-            self.judge.step.is_finite() && pending.iter().map(|s| s.length).sum::<f64>() >= self.judge.step
-        };
+        let step = self.judge.step_of(self.mark);
+        let parts = (stretch.length / step).ceil().clamp(1.0, MOST);
+        let is_long =
+            |pending: &[Stretch]| step.is_finite() && pending.iter().map(|s| s.length).sum::<f64>() >= step;
         for i in 0..parts as usize {
             let at = |i: usize| stretch.from + (stretch.to - stretch.from) * i as f64 / parts;
             let [from, to] = [at(i), if i + 1 == parts as usize { stretch.to } else { at(i + 1) }];

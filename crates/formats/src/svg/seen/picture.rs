@@ -217,7 +217,7 @@ impl<'a> Picture<'a> {
         std::iter::successors(innermost, |&veil| self.scene.veils[veil as usize].around)
     }
 
-    fn add_work(&self, segments: usize) {
+    pub(crate) fn add_work(&self, segments: usize) {
         self.work.set(self.work.get() + segments);
     }
 }

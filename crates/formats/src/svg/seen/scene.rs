@@ -31,6 +31,19 @@ pub(crate) trait Shape {
 
     /// The lines that could be drawn.
     fn lines(&self) -> Vec<Path>;
+
+    /// The edges of the region, if the lines are its middle; as chords of their tolerance they are the region's own.
+    fn sides(&self) -> Sides {
+        Sides::default()
+    }
+}
+
+/// The sides of a pen's band.
+#[derive(Default)]
+pub(crate) struct Sides {
+    pub(crate) paths: Vec<Path>,
+    /// How closely chords follow them.
+    pub(crate) tolerance: f64,
 }
 
 /// One painted region: a fill, or the band of a pen.
@@ -130,6 +143,8 @@ pub(crate) struct Mark {
 pub(crate) enum MarkKind {
     /// The middle of a pen's band.
     Middle,
+    /// A side of a pen's band, where no middle stands for it.
+    Side,
     /// The edge of a fill.
     Edge,
     /// The edge of that gate's clip path, which becomes one of whatever it cuts.

@@ -3,6 +3,7 @@
 use tracelight_stroke::{Point, Vec2};
 
 use super::colour::Rgb;
+use super::middles::{Middles, WIDE};
 use super::picture::{FAINT, Layer, Picture, is_within};
 use super::scene::{Gate, GateKind, Ink, Item, Mark, MarkKind, Number};
 
@@ -46,8 +47,8 @@ pub(crate) struct Place {
     pub(crate) normal: Vec2,
 }
 
-/// Bands wider than so many times a line are areas that it lies on.
-const WIDE: f64 = 4.0;
+/// Bands narrower than so many times the distance from which lines are looked at are lines.
+const LEAST_BAND: f64 = 10.0;
 
 /// Looks at a line from a small distance on both sides.
 pub(crate) struct Judge<'a> {
@@ -58,6 +59,8 @@ pub(crate) struct Judge<'a> {
     pub(crate) crops: bool,
     /// How far a line is followed, at most, before it is looked at again.
     pub(crate) step: f64,
+    /// Lines that stand for the sides of bands.
+    pub(crate) middles: Option<Middles>,
 }
 
 impl Judge<'_> {
@@ -67,8 +70,10 @@ impl Judge<'_> {
         match mark.kind {
             MarkKind::Cut(_) if is_off[0] || is_off[1] => Verdict::Unseen(None),
             MarkKind::Cut(gate) => self.cut(gate, sides),
+            MarkKind::Side if is_off[0] || is_off[1] => Verdict::Unseen(None),
             _ if is_off[0] && is_off[1] => Verdict::Unseen(Some(Reason::OffPage)),
             MarkKind::Edge => self.edge(mark.item, sides),
+            MarkKind::Side => self.side(mark.item, place.point, sides),
             MarkKind::Middle => self.middle(mark, place, sides),
         }
     }
@@ -81,6 +86,15 @@ impl Judge<'_> {
         }
     }
 
+    /// How far a line is followed before it is looked at again: whether a middle stands for a side changes without an edge.
+    pub(crate) fn step_of(&self, mark: Mark) -> f64 {
+        const OF_PEN: f64 = 0.125;
+        match (mark.kind, self.item(mark.item).pen) {
+            (MarkKind::Side, Some(pen)) => self.step.min(OF_PEN * pen),
+            _ => self.step,
+        }
+    }
+
     fn sides(&self, place: Place) -> [Point; 2] {
         [-1.0, 1.0].map(|side| place.point + place.normal * (side * self.aside))
     }
@@ -89,7 +103,7 @@ impl Judge<'_> {
     pub(crate) fn hidden(&self, mark: Mark, p: Point) -> Verdict {
         let gate = self.item(mark.item).gate.map(|gate| &self.picture.scene.gates[gate as usize]);
         Verdict::Unseen(match mark.kind {
-            MarkKind::Cut(_) => None,
+            MarkKind::Cut(_) | MarkKind::Side => None,
             _ if self.crops && !is_within(self.picture.page, p) => Some(Reason::OffPage),
             _ => Some(gate.filter(|gate| !is_within(gate.bounds, p)).map_or(Reason::Covered, shut_by)),
         })
@@ -135,12 +149,48 @@ impl Judge<'_> {
 
     /// The topmost fill that is on one side only.
     fn topmost_edge(&self, stacks: [&[Layer]; 2]) -> Option<Number> {
+        self.topmost(stacks, |item| item.pen.is_none())
+    }
+
+    /// The topmost that is on one side only, of the items that count.
+    fn topmost(&self, stacks: [&[Layer]; 2], counts: impl Fn(&Item) -> bool) -> Option<Number> {
         let lacks = |stack: &[Layer], number| !stack.iter().any(|layer| layer.item == number);
         let alone = |mine: &[Layer], other: &[Layer]| {
-            let mut fills = mine.iter().filter(|layer| self.item(layer.item).pen.is_none());
-            fills.find(|layer| lacks(other, layer.item)).map(|layer| layer.item)
+            let mut counted = mine.iter().filter(|layer| counts(self.item(layer.item)));
+            counted.find(|layer| lacks(other, layer.item)).map(|layer| layer.item)
         };
         alone(stacks[0], stacks[1]).max(alone(stacks[1], stacks[0]))
+    }
+
+    /// The side of a band is drawn where it is seen and no line stands for it, nor for the band that it cuts.
+    fn side(&self, number: Number, p: Point, sides: [Point; 2]) -> Verdict {
+        if self.has_middle(number, p) {
+            return Verdict::Unseen(None);
+        }
+        let stacks = sides.map(|p| self.picture.stack(p, |_, _| true));
+        let is_same =
+            self.picture.look(&stacks[0], sides[0]).is_like(&self.picture.look(&stacks[1], sides[1]));
+        let is_seen = !is_same && self.topmost([&stacks[0], &stacks[1]], |_| true) == Some(number);
+        let cuts_line =
+            || stacks.iter().flatten().any(|layer| layer.item != number && self.has_middle(layer.item, p));
+        if is_seen && !cuts_line() { Verdict::Seen(number) } else { Verdict::Unseen(None) }
+    }
+
+    /// Whether a short chord of a line is surely nothing to look at: a drawn line stands for both its ends.
+    pub(crate) fn is_stood_for(&self, mark: Mark, chord: [Point; 2]) -> bool {
+        mark.kind == MarkKind::Side
+            && chord[0].distance(chord[1]) <= 2.0 * self.step_of(mark)
+            && chord.into_iter().all(|p| self.has_middle(mark.item, p))
+    }
+
+    /// Whether a drawn line stands for the side of an item's band.
+    fn has_middle(&self, number: Number, p: Point) -> bool {
+        let item = self.item(number);
+        self.middles.as_ref().zip(item.pen).is_some_and(|(middles, pen)| {
+            let (stands, work) = middles.stand_for(p, pen, item.source);
+            self.picture.add_work(work);
+            stands
+        })
     }
 
     /// The edge of a gate is that of what it cuts, the topmost of all that end here.
@@ -187,6 +237,11 @@ impl Judge<'_> {
         item.pen.is_none_or(|pen| pen > WIDE * line.pen.unwrap_or(0.0))
     }
 
+    /// Whether an item is a band wide enough to be more than a line, so that its sides may be drawn.
+    pub(crate) fn has_sides(&self, item: &Item) -> bool {
+        item.pen.is_some_and(|pen| self.picture.hides && pen >= LEAST_BAND * self.aside)
+    }
+
     /// Whether a line has the colour of what is below it and of what is beside it.
     fn is_lost(&self, number: Number, place: Place, sides: [Point; 2]) -> bool {
         let item = self.item(number);
@@ -203,14 +258,23 @@ impl Judge<'_> {
         let beside = [-1.0, 1.0].map(|side| place.point + place.normal * (side * reach));
         let around = |p: Point| self.picture.stack(p, |other, i| other != number && self.is_area(item, i));
         let has_its_colour = |p: Point| self.picture.look(&around(p), p).is_plain(ink);
-        beside.into_iter().all(has_its_colour) && !self.is_cased(number, (place, reach), ink)
+        // of a wide one that shows on one side only, that side is drawn
+        let is_lost = match self.has_sides(item) {
+            true => beside.into_iter().any(has_its_colour),
+            false => beside.into_iter().all(has_its_colour),
+        };
+        is_lost && !self.is_cased(number, (place, reach), ink)
     }
 
     /// Whether another colour shows on both sides of a line, and a wider line below runs along with it: one that crosses does not.
     fn is_cased(&self, number: Number, (place, reach): (Place, f64), ink: Rgb) -> bool {
         let beside = |at: Point| [-1.0, 1.0].map(|side| at + place.normal * (side * reach));
+        // another line like it that crosses here does not interrupt it
+        let is_like = |i: &Item| {
+            i.pen.is_some() && i.ink == self.item(number).ink && !self.is_area(self.item(number), i)
+        };
         let differs = |p: Point| {
-            let seen = self.picture.stack(p, |other, _| other != number);
+            let seen = self.picture.stack(p, |other, i| other != number && !is_like(i));
             !self.picture.look(&seen, p).is_plain(ink)
         };
         let sides = beside(place.point);
