@@ -240,6 +240,10 @@ impl Unfolding<'_> {
             self.skipped.missing_blocks += 1;
             return Ok(());
         };
+        if !insert.look.origin.is_insert() && block.items.is_empty() && block.skipped.is_empty() {
+            self.skipped.empty_pictures += 1;
+            return Ok(());
+        }
         check("DXF's nesting of blocks (one may hold itself)", [at.depth + 1, MAX_DEPTH], "levels")?;
         let placed = at.world_from_block * insert.place * Affine::translate(-block.base.to_vec2());
         for (row, column) in (0..insert.rows).flat_map(|r| (0..insert.columns).map(move |c| (r, c))) {

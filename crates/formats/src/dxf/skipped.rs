@@ -14,6 +14,8 @@ pub(super) struct Skipped {
     pub(super) in_paper_space: usize,
     /// Inserts of blocks that are in another file, or nowhere.
     pub(super) missing_blocks: usize,
+    /// Dimensions and tables whose block, which is their picture, is empty.
+    pub(super) empty_pictures: usize,
     /// Entities that are a point seen from above, such as upright lines.
     pub(super) without_length: usize,
     /// Lines drawn whole, as their dashes are too many.
@@ -87,7 +89,8 @@ impl Skipped {
 
     /// Whether nothing at all was counted but what lies in layouts.
     pub(super) fn is_empty(&self) -> bool {
-        let counts = [self.hidden, self.missing_blocks, self.without_length, self.unprinted];
+        let [blocks, pictures] = [self.missing_blocks, self.empty_pictures];
+        let counts = [self.hidden, blocks, pictures, self.without_length, self.unprinted];
         self.kinds.is_empty() && counts.iter().all(|&n| n == 0)
     }
 
@@ -100,6 +103,7 @@ impl Skipped {
             said(self.hidden, "what is invisible, or on a layer that is off or frozen"),
             said(self.in_paper_space, "layouts (paper space); the model is"),
             said(self.missing_blocks, "blocks that the file does not hold; bind them to it"),
+            said(self.empty_pictures, "dimensions and tables of which the file holds no lines; explode them"),
             said(self.without_length, "what has no length seen from above, such as upright lines"),
             said(self.unprinted, "points on the layer Defpoints, which is never printed"),
             said(self.too_dense, "patterns of hatches that have too many lines; their edges are"),

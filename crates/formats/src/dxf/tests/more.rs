@@ -84,6 +84,12 @@ fn dimensions_are_drawn_by_their_blocks() {
     assert!(found.remarks[0].contains("points on the layer Defpoints"), "{:?}", found.remarks);
     let told = with("0 LINE, 10 0, 20 0, 11 50, 21 0, 0 DIMENSION, 10 0, 20 60, 0 DIMENSION, 2 *D7").remarks;
     assert!(told[0].contains("1 DIMENSION") && told[1].contains("does not hold; bind them"), "{told:?}");
+    // those of constraints have an empty block
+    let empty = blocks.to_owned() + ", 0 BLOCK, 2 *D2, 10 0, 20 0, 0 ENDBLK";
+    let text = section("BLOCKS", &empty)
+        + &section("ENTITIES", "0 LINE, 10 0, 20 0, 11 50, 21 0, 0 DIMENSION, 2 *D2");
+    let told = reading(&(text + "0\nEOF\n")).remarks;
+    assert!(told.iter().any(|told| told.contains("holds no lines; explode them (1 found)")), "{told:?}");
 }
 
 /// A square of 10 with a hole, and lines of a pattern 1 apart.
