@@ -12,7 +12,8 @@
 //! | [`wall`] | the camera found from markers in sight |
 //! | [`figure`] | the figure on the wall, as strokes |
 //! | [`spots`] | the laser's spot in shots, held against what the encoders said |
-//! | [`head`] | the head found from spots |
+//! | [`head`] | the head found from spots; [`told`] in words and figures |
+//! | [`corners`] | the head found from the corners of a rectangle, as it is told; [`pointed`] by somebody simulated |
 //! | [`power`] | a rig that was just powered up, or lost power |
 //! | [`homing`] | a head that was just powered up finds where it points |
 //! | [`follow`] | the spot followed while a rig draws: what is off slowly, and suddenly |
@@ -29,6 +30,7 @@
 pub mod about;
 pub mod board;
 pub mod coding;
+pub mod corners;
 pub mod feed;
 pub mod figure;
 pub mod figures;
@@ -44,6 +46,7 @@ pub mod room;
 pub mod seen;
 mod shot;
 pub mod spots;
+pub mod told;
 pub mod trouble;
 pub mod wall;
 

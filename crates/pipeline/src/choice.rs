@@ -12,6 +12,8 @@ pub struct Choice {
     pub colours: Vec<Colour>,
     /// Layers whose closed paths light keeps out of; they are not drawn.
     pub no_go: Vec<String>,
+    /// Points and blocks are enough, without a stroke.
+    pub places: bool,
 }
 
 /// Names in a message at most.
@@ -22,20 +24,25 @@ impl Choice {
     /// keeps out of. Names of layers differ in more than case.
     ///
     /// # Errors
-    /// A layer or colour that no stroke has, with those there are; strokes of both that are none; and a path to keep out of that is not closed.
-    pub fn of(&self, name: &str, drawing: Drawing) -> Result<(Drawing, Drawing), Failure> {
+    /// A layer or colour that no stroke has, with those there are; strokes of both that are none; and a path to keep out of that is not closed. Where `places`
+    /// are enough, what one of them has is there.
+    pub fn of(&self, name: &str, drawing: Drawing, places: &[Place]) -> Result<(Drawing, Drawing), Failure> {
+        let places = if self.places { places } else { &[] };
         let refused = |message| Failure::failed("no-strokes", format!("{name}: {message}"));
         let layers = self.layers.iter().map(|layer| ("layer", layer));
         for (flag, layer) in layers.chain(self.no_go.iter().map(|layer| ("no-go", layer))) {
-            if !drawing.strokes.iter().any(|s| is_on(s, layer)) {
-                let known =
-                    names(drawing.strokes.iter().filter_map(|s| s.layer.as_deref().map(str::to_owned)));
+            let strokes = drawing.strokes.iter().map(|s| s.layer.as_deref());
+            let mut all = strokes.chain(places.iter().map(|place| place.layer.as_deref()));
+            if !all.clone().any(|own| is_same(own, layer)) {
+                let known = names(all.by_ref().flatten().map(str::to_owned));
                 return Err(refused(missing("layer", flag, layer, &known)));
             }
         }
         for colour in &self.colours {
-            if !drawing.strokes.iter().any(|s| s.colour == Some(*colour)) {
-                let known = names(drawing.strokes.iter().filter_map(|s| s.colour.map(|c| c.to_string())));
+            let strokes = drawing.strokes.iter().map(|s| s.colour);
+            let mut all = strokes.chain(places.iter().map(|place| place.colour));
+            if !all.clone().any(|own| own == Some(*colour)) {
+                let known = names(all.by_ref().flatten().map(|c| c.to_string()));
                 return Err(refused(missing("colour", "colour", &colour.to_string(), &known)));
             }
         }
@@ -52,7 +59,8 @@ impl Choice {
         }
         let no_go = Drawing { strokes: no_go };
         let strokes: Vec<Stroke> = drawn.into_iter().filter(|s| self.takes(s)).collect();
-        match strokes.is_empty() && !(self.layers.is_empty() && self.colours.is_empty()) {
+        let is_asked = !(self.layers.is_empty() && self.colours.is_empty());
+        match strokes.is_empty() && is_asked && !places.iter().any(|place| self.takes_place(place)) {
             true => Err(refused("no stroke is on these layers and of these colours; ask for less".into())),
             false => Ok((Drawing { strokes }, no_go)),
         }
@@ -120,7 +128,7 @@ mod tests {
     fn chosen(layers: &[&str], colours: &[&str]) -> Result<usize, String> {
         let layers = layers.iter().map(|&l| l.to_owned()).collect();
         let colours = colours.iter().map(|c| tracelight_formats::colour_of(c).unwrap()).collect();
-        let chosen = Choice { layers, colours, no_go: vec![] }.of("a.svg", drawing());
+        let chosen = Choice { layers, colours, no_go: vec![], places: false }.of("a.svg", drawing(), &[]);
         chosen.map(|(drawn, _)| drawn.strokes.len()).map_err(|failure| failure.message)
     }
 
@@ -142,7 +150,27 @@ mod tests {
         let message = chosen(&[], &["lime"]).unwrap_err();
         assert_eq!(message, "a.svg: no stroke has the colour #00ff00; there are: #ff0000, #0000ff");
         assert!(chosen(&["Cut"], &["blue"]).unwrap_err().contains("ask for less"));
-        let bare = Choice { layers: vec!["Cut".into()], ..Choice::default() }.of("a.png", Drawing::default());
+        let bare =
+            Choice { layers: vec!["Cut".into()], ..Choice::default() }.of("a.png", Drawing::default(), &[]);
         assert!(bare.unwrap_err().message.contains("it has no layers"));
+    }
+
+    #[test]
+    fn places_are_enough_where_they_are_what_is_wanted() {
+        let place = |layer: &str| Place {
+            at: Point::ORIGIN,
+            kind: tracelight_stroke::PlaceKind::Block,
+            block: Some("Socket".into()),
+            layer: Some(layer.into()),
+            colour: None,
+            entity: None,
+        };
+        let of = |layer: &str, places: bool| {
+            let choice = Choice { layers: vec![layer.into()], places, ..Choice::default() };
+            choice.of("a.dxf", drawing(), &[place("Sockets")])
+        };
+        assert!(of("sockets", false).is_err());
+        assert!(of("sockets", true).unwrap().0.strokes.is_empty());
+        assert!(of("lamps", true).unwrap_err().message.contains("Sockets"));
     }
 }

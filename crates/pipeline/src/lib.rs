@@ -24,6 +24,7 @@ mod schedule;
 mod sheet;
 mod sketch;
 mod standing;
+mod told;
 mod tracing;
 mod twice;
 mod typed;
@@ -47,5 +48,6 @@ pub use schedule::{Schedule, check_speed, check_standing, schedule, schedule_res
 pub use sheet::{PaperSeen, Straight, clockwise, page};
 pub use sketch::{Sketch, sketch_at};
 pub use standing::{Standing, spot_radius_m};
+pub use told::told_places;
 pub use tracing::{LeastLength, Straighten, Tracing};
 pub use typed::{NoGo, TypedMark, typed_marks, typed_no_go};

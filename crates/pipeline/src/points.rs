@@ -1,5 +1,6 @@
 //! Places of a drawing, each marked on the target by a cross.
 
+use std::f64::consts::TAU;
 use std::str::FromStr;
 
 use tracelight_stroke::{
@@ -30,6 +31,8 @@ pub struct Points {
     pub kinds: Vec<PlaceKind>,
     /// How.
     pub mark: PointMark,
+    /// One after the other as the drawing has them, not layer by layer and row by row.
+    pub as_told: bool,
     /// Bends of at least this angle are corners, rad.
     pub corner_rad: f64,
 }
@@ -56,25 +59,36 @@ impl FromStr for TypedKinds {
     }
 }
 
-/// Length of the cross that marks a place, m.
+/// What marks a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PointMark(pub f64);
+pub enum PointMark {
+    /// A cross, so long, m.
+    Cross(f64),
+    /// A dot: a ring so small that it is one, for light that stands still is dimmed.
+    Dot,
+}
+
+/// Radius of the ring that is a dot, m.
+const DOT_M: f64 = 1e-3;
 
 impl Default for PointMark {
     /// A cross of 20 mm.
     fn default() -> Self {
-        Self(0.02)
+        Self::Cross(0.02)
     }
 }
 
 impl FromStr for PointMark {
     type Err = String;
 
-    /// Such as `20mm`.
+    /// Such as `20mm`, or `dot`.
     fn from_str(text: &str) -> Result<Self, String> {
         let (least, most) = CROSS_M;
-        match parse(text, LENGTHS).map_err(|e| e.to_string())? {
-            length if (least..=most).contains(&length) => Ok(Self(length)),
+        if text.trim().eq_ignore_ascii_case("dot") {
+            return Ok(Self::Dot);
+        }
+        match parse(text, LENGTHS).map_err(|e| format!("{e}; or dot"))? {
+            length if (least..=most).contains(&length) => Ok(Self::Cross(length)),
             _ => Err(format!("a cross of {text} is not between {:.0} mm and {most:.0} m long", 1e3 * least)),
         }
     }
@@ -157,25 +171,27 @@ pub(crate) fn marked(
         );
         return Err(Failure::failed("too-many-points", message));
     }
-    let mut notes = vec![format!("marks {}: {}", counted(points.len(), "point"), kinds_of(points.iter()))];
-    let before = points.len();
-    let (points, strokes): (Vec<_>, Vec<_>) = in_order(points)
-        .into_iter()
-        .map(|place| (asked.mark.strokes(&place), place))
-        .filter(|(strokes, _)| strokes.iter().all(|stroke| dark.is_clear(&stroke.path)))
-        .map(|(strokes, place)| (place, strokes))
-        .unzip();
+    let kinds = kinds_of(points.iter());
+    let count = counted(points.len(), "point");
+    let mut notes =
+        vec![if kinds == count { format!("marks {count}") } else { format!("marks {count}: {kinds}") }];
+    let points = if asked.as_told { points } else { in_order(points) };
+    let marked = points.into_iter().map(|place| (asked.mark.strokes(&place), place));
+    let is_clear =
+        |(strokes, _): &(Vec<Stroke>, Place)| strokes.iter().all(|stroke| dark.is_clear(&stroke.path));
+    let (clear, dropped): (Vec<_>, Vec<_>) = marked.partition(is_clear);
+    let (strokes, points): (Vec<_>, Vec<_>) = clear.into_iter().unzip();
     if strokes.is_empty() {
         let message = "all points lie in what --no-go keeps dark, or too near to it: keep less dark, or make their crosses smaller (--mark)";
         return Err(Failure::failed("no-points", message));
     }
-    let dropped = before - points.len();
-    if dropped > 0 {
-        notes.push(format!("{} left out, in what --no-go keeps dark", counted(dropped, "point")));
+    if !dropped.is_empty() {
+        notes.push(format!("{} left out, in what --no-go keeps dark", counted(dropped.len(), "point")));
     }
+    let dropped = Drawing { strokes: dropped.into_iter().flat_map(|(strokes, _)| strokes).collect() };
     let left_out = (!dark.is_empty()).then(|| LeftOut {
-        strokes: 2 * dropped,
-        length_m: 2.0 * asked.mark.0 * dropped as f64,
+        strokes: dropped.strokes.len(),
+        length_m: dropped.length(1e-6),
         ..dark.nothing_left_out()
     });
     let drawing = Drawing { strokes: strokes.concat() };
@@ -209,21 +225,36 @@ fn rows(mut points: Vec<Place>) -> Vec<Place> {
 }
 
 impl PointMark {
-    /// Two lines that cross there.
-    fn strokes(self, place: &Place) -> [Stroke; 2] {
-        let line = |half: Vec2| {
-            let mut path = Path::new(place.at - half);
-            path.push(Element::Line { to: place.at + half });
+    /// Two lines that cross there, or a ring round it.
+    fn strokes(self, place: &Place) -> Vec<Stroke> {
+        let stroke = |path| {
             let Place { layer, colour, entity, .. } = place;
             Stroke { layer: layer.clone(), colour: *colour, entity: entity.clone(), ..Stroke::new(path) }
         };
-        [line(Vec2::new(0.5 * self.0, 0.0)), line(Vec2::new(0.0, -0.5 * self.0))]
+        let line = |half: Vec2| {
+            let mut path = Path::new(place.at - half);
+            path.push(Element::Line { to: place.at + half });
+            stroke(path)
+        };
+        match self {
+            Self::Cross(length) => {
+                vec![line(Vec2::new(0.5 * length, 0.0)), line(Vec2::new(0.0, -0.5 * length))]
+            }
+            Self::Dot => {
+                let mut ring = Path::new(place.at + Vec2::new(DOT_M, 0.0));
+                ring.push(Element::Arc { centre: place.at, sweep: TAU });
+                ring.close();
+                vec![stroke(ring)]
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
+
+    use tracelight_stroke::extent;
 
     use super::*;
 
@@ -253,7 +284,8 @@ mod tests {
 
     #[test]
     fn marks_are_typed_with_a_unit_and_bounds() {
-        assert_eq!("3cm".parse(), Ok(PointMark(0.03)));
+        assert_eq!("3cm".parse(), Ok(PointMark::Cross(0.03)));
+        assert_eq!("Dot".parse(), Ok(PointMark::Dot));
         let refused = |text: &str| text.parse::<PointMark>().unwrap_err();
         assert!(refused("1mm").contains("between 4 mm and 1 m"), "{}", refused("1mm"));
         assert!(refused("20").contains("no unit"));
@@ -274,9 +306,10 @@ mod tests {
     #[test]
     fn a_mark_is_about_its_place() {
         let place = place("a", 1.0, 2.0);
-        for stroke in PointMark::default().strokes(&place) {
-            assert!(stroke.path.start().midpoint(stroke.path.end()).distance(place.at) < 1e-12);
-            assert_eq!(stroke.layer, place.layer);
+        for mark in [PointMark::default(), PointMark::Dot] {
+            let strokes = Drawing { strokes: mark.strokes(&place) };
+            assert!(extent(&strokes).unwrap().center().distance(place.at) < 1e-12);
+            assert!(strokes.strokes.iter().all(|stroke| stroke.layer == place.layer));
         }
     }
 }

@@ -197,7 +197,7 @@ pub fn sketch_at(
         Source::Strokes(reading) => taken(reading),
         Source::Pixels(pixels) => traced(name, pixels, tracing, metres_per_unit)?,
     };
-    (sketch.drawing, sketch.no_go) = choice.of(name, sketch.drawing)?;
+    (sketch.drawing, sketch.no_go) = choice.of(name, sketch.drawing, &sketch.places)?;
     sketch.places.retain(|place| choice.takes_place(place));
     // after the choice: a line that two layers have is needed where only one of them is drawn
     if is_drawing {
@@ -205,6 +205,9 @@ pub fn sketch_at(
     }
     sketch.lay_square();
     let refused = |why: &str| Err(Failure::failed("no-strokes-found", format!("{name}: {why}")));
+    if choice.places && !sketch.places.is_empty() && sketch.drawing.strokes.is_empty() {
+        return Ok(sketch);
+    }
     if sketch.drawing.strokes.is_empty() {
         return refused("it has no strokes; give a picture with at least one line");
     }

@@ -9,6 +9,7 @@ use tracelight_task::Failure;
 
 use crate::folder::SUMMARY;
 use crate::journal::{self, Asked, Kept, Progress};
+use crate::points::ticked_off;
 
 /// Largest summary that is read, bytes.
 const MOST_BYTES: u64 = 1 << 24;
@@ -22,6 +23,8 @@ pub struct ListedRun {
     pub asked: Asked,
     /// How far it came; nothing where it ended before its first tick.
     pub progress: Option<Progress>,
+    /// How many points are ticked off, of how many, where it marks points.
+    pub points: Option<(usize, usize)>,
     /// What stands in its summary; null where none was written.
     pub summary: Value,
     /// A program writes to it at present.
@@ -47,7 +50,8 @@ pub fn runs(dir: &Path) -> Result<Vec<ListedRun>, Failure> {
         if let Ok(Kept { asked, progress }) = journal::read(&dir) {
             let summary = summary(&dir).unwrap_or(Value::Null);
             let is_running = ResultFolder::hold(&dir).is_err();
-            rows.push(ListedRun { dir, asked, progress, summary, is_running, went_on_in: None });
+            let points = ticked_off(&dir);
+            rows.push(ListedRun { dir, asked, progress, points, summary, is_running, went_on_in: None });
         }
     }
     rows.sort_by(|a, b| (&a.asked.begun, &a.dir).cmp(&(&b.asked.begun, &b.dir)));
@@ -106,6 +110,7 @@ impl ListedRun {
     #[must_use]
     pub fn how_far(&self) -> String {
         let before = if self.asked.before.is_empty() { "" } else { "the rest of an earlier run: " };
+        let ticked_off = |(done, all)| format!("{done} of {all} points ticked off");
         let far = match self.progress {
             _ if self.is_finished() => return format!("{before}done"),
             Some(progress) if progress.plan_ticks > 0 => {
@@ -114,6 +119,7 @@ impl ListedRun {
             }
             _ => "nothing".to_owned(),
         };
+        let far = self.points.map_or(far, ticked_off);
         let why = self.summary["laser"]["faults"]
             .as_array()
             .and_then(|faults| faults.last())
@@ -150,6 +156,7 @@ impl ListedRun {
             "width_m": self.asked.size_m[0],
             "height_m": self.asked.size_m[1],
             "strokes": self.asked.strokes,
+            "points": self.points.map(|(done, count)| json!({ "count": count, "done": done })),
             "length_m": self.asked.length_m,
             "duration_s": self.summary["run"]["duration_s"],
             "rms_mm": self.rms_mm(),

@@ -1,5 +1,8 @@
 //! Points that were marked, and when each was ticked off.
 
+use std::fs;
+use std::path::Path;
+
 use tracelight_files::ResultFolder;
 use tracelight_job::PointDone;
 use tracelight_report::PointFigures;
@@ -24,6 +27,17 @@ pub(crate) fn put_points(folder: &ResultFolder, points: &[PointDone]) -> Result<
 pub(crate) fn figures(points: &[PointDone]) -> Option<PointFigures> {
     let done = points.iter().filter(|point| point.done_s.is_some()).count();
     (!points.is_empty()).then_some(PointFigures { count: points.len(), done })
+}
+
+/// How many a run's folder says to be done, of how many; `None` of a run that marks none.
+pub(crate) fn ticked_off(dir: &Path) -> Option<(usize, usize)> {
+    const MOST_BYTES: u64 = 1 << 22;
+    let path = dir.join(POINTS);
+    let is_small = fs::metadata(&path).is_ok_and(|of| of.is_file() && of.len() <= MOST_BYTES);
+    let mut table = is_small.then(|| csv::Reader::from_path(&path).ok()).flatten()?;
+    let done: Vec<bool> =
+        table.records().map_while(Result::ok).map(|row| row.iter().next_back() != Some("")).collect();
+    (!done.is_empty()).then(|| (done.iter().filter(|is_done| **is_done).count(), done.len()))
 }
 
 /// One row a point, in the order in which they were gone to; `done_s` is empty where one was not ticked off.

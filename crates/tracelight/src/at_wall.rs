@@ -38,20 +38,26 @@ pub(crate) struct AtWall<'a> {
     points: bool,
     /// The frame is drawn.
     framing: bool,
+    /// After so many ticks on one stroke or point the next one follows.
+    each_ticks: Option<u32>,
+    /// Tick since which it is on one.
+    on_it_since: Option<u32>,
 }
 
 impl<'a> AtWall<'a> {
     /// Whoever stands there, if the job runs by hand at all.
     pub(crate) fn of(args: &ByHandArgs, steps: bool, task: Task<'a>, stop: &'a Stop) -> Option<Self> {
-        let waits = steps || args.frame.is_some();
+        let waits = steps && args.each.is_none() || args.frame.is_some();
         let real_time = args.real_time.or(waits.then_some(1.0));
-        if real_time.is_none() && !args.events {
+        if real_time.is_none() && !args.events && !steps {
             return None;
         }
         let keys = real_time.and_then(|_| Keys::listen());
         let clock = real_time.map(|factor| Pace::new(TICK_F64_S / factor));
         let framing = args.frame.is_some();
-        Some(Self { task, stop, clock, keys, events: args.events, steps, points: false, framing })
+        let each_ticks = args.each.map(|time_s| (time_s / TICK_F64_S) as u32);
+        let (events, points, on_it_since) = (args.events, false, None);
+        Some(Self { task, stop, clock, keys, events, steps, points, framing, each_ticks, on_it_since })
     }
 
     fn help(&self) {
@@ -112,6 +118,18 @@ impl<'a> AtWall<'a> {
         }
     }
 
+    /// The next one, where it is time for it by itself. One that was paused has its whole time again.
+    fn by_itself(&mut self, now: &Snapshot) -> Option<Ask> {
+        let each = self.each_ticks?;
+        if !matches!(now.state, State::Stepping | State::Pointing) {
+            self.on_it_since = None;
+            return None;
+        }
+        let since = *self.on_it_since.get_or_insert(now.tick);
+        let is_time = now.laps > 0 && now.tick.saturating_sub(since) >= each;
+        is_time.then_some(Ask::Step(Step::Next))
+    }
+
     #[expect(clippy::print_stdout, reason = "events are what was asked for")]
     fn print(&self, event: &Value) {
         if self.events {
@@ -128,7 +146,7 @@ impl Hands for AtWall<'_> {
         if now.tick.is_multiple_of(PROGRESS_TICKS) {
             self.print(&snapshot_json(now));
         }
-        let key = self.keys.as_ref()?.next()?;
+        let Some(key) = self.keys.as_ref().and_then(Keys::next) else { return self.by_itself(now) };
         if let Some(step) = self.step(key, now) {
             return Some(Ask::Step(step));
         }

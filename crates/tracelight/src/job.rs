@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 use tracelight_camera::{Opened, shown};
 use tracelight_files::ResultFolder;
 use tracelight_job::{Prepared, Request, RunRequest, Scene, Wall, prepare, prepare_wall};
+use tracelight_pipeline::told_places;
 use tracelight_report::{LogMeta, Summary};
 use tracelight_results::{self as results, Asked, Before, Records, Told, write};
+use tracelight_stroke::Vec2;
 use tracelight_task::{Failure, Stop, Task};
 
 use crate::at_wall::AtWall;
@@ -129,6 +131,9 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
     let area_m = head.as_ref().and_then(|known| known.area_m);
     let mut placing = args.wall.placing(args.placement.placing(), Some(&driving), area_m)?;
     placing.points = args.points();
+    placing.choice.places = args.points.is_some();
+    let told: Vec<Vec2> = args.at.iter().map(|at| Vec2::new(at.0.0, at.1.0)).collect();
+    let told = (!told.is_empty()).then(|| told_places(&told, &mut placing));
     placing.frame = args.by_hand.frame.map(FrameName::frame);
     let request = Request {
         name: args.name(),
@@ -146,7 +151,11 @@ fn prepared(args: &TraceArgs, task: Task<'_>) -> Result<Prepared, Failure> {
         let mut reading = args.reading.options()?;
         // an end of a dash is no place that anybody marks
         reading.dashes &= args.points.is_none();
-        return prepare(&request, named::source(args.name(), &reading, &args.lettering)?, task);
+        let source = match told {
+            Some(told) => told,
+            None => named::source(args.name(), &reading, &args.lettering)?,
+        };
+        return prepare(&request, source, task);
     }
     let mut opened = args.eye.open()?;
     let wall = Wall {

@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use tracelight_pipeline::Frame;
+use tracelight_units::{TIMES, parse};
 
 /// Whoever stands at the wall while the job runs.
 #[derive(Args, Clone, Debug, Default)]
@@ -14,6 +15,9 @@ pub(crate) struct ByHandArgs {
     /// First show where the drawing will be: by the box round it, its hull, or the box's corners, again and again until Space or Enter; in real time
     #[arg(long, value_enum, value_name = "box|hull|corners")]
     pub(crate) frame: Option<FrameName>,
+    /// With --step and --points: go on to the next by itself after this long on one, such as 5s, without a key
+    #[arg(long, value_name = "TIME", value_parser = each, allow_hyphen_values = true)]
+    pub(crate) each: Option<f64>,
     /// Print one JSON object per line while the job runs: states, strokes, faults, progress
     #[arg(long, conflicts_with = "json")]
     pub(crate) events: bool,
@@ -48,7 +52,17 @@ impl FrameName {
     }
 }
 
-fn factor(text: &str) -> Result<f64, String> {
+/// A time on one stroke or point, s.
+pub(crate) fn each(text: &str) -> Result<f64, String> {
+    const RANGE: std::ops::RangeInclusive<f64> = 0.1..=600.0;
+    let time_s = parse(text, TIMES).map_err(|e| e.to_string())?;
+    let is_one = RANGE.contains(&time_s);
+    is_one
+        .then_some(time_s)
+        .ok_or_else(|| format!("{text} is not between {} s and {} s", RANGE.start(), RANGE.end()))
+}
+
+pub(crate) fn factor(text: &str) -> Result<f64, String> {
     const RANGE: std::ops::RangeInclusive<f64> = 0.25..=8.0;
     let factor = text.parse().map_err(|_| format!("{text} is not a number; give one such as 2"))?;
     if RANGE.contains(&factor) {

@@ -21,6 +21,6 @@ fn colour(text: &str) -> Result<Colour, String> {
 impl ChoiceArgs {
     /// What they mean.
     pub(crate) fn choice(&self) -> Choice {
-        Choice { layers: self.layer.clone(), colours: self.colour.clone(), no_go: Vec::new() }
+        Choice { layers: self.layer.clone(), colours: self.colour.clone(), ..Choice::default() }
     }
 }

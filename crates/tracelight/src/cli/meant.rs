@@ -14,7 +14,7 @@ const ENDINGS: [&str; 20] = [
 ];
 
 /// Commands of which people have heard, and that are not there yet.
-const COMING: [&str; 6] = ["studio", "point", "jog", "home", "park", "rig"];
+const COMING: [&str; 5] = ["studio", "jog", "home", "park", "rig"];
 
 /// A command line with its command put in where it begins with a picture; `sim:PICTURE` is a camera that sees one. The first argument is the
 /// program, as everywhere.
@@ -32,7 +32,10 @@ pub(crate) fn meant(arguments: Vec<OsString>, program: &clap::Command) -> Result
         return Ok(arguments);
     }
     if text == "lab" {
-        return Ok(formulas_kept(arguments));
+        return Ok(values_kept(arguments, is_formula));
+    }
+    if text == "point" {
+        return Ok(values_kept(arguments, is_place));
     }
     if program.find_subcommand(&text).is_some() {
         return Ok(arguments);
@@ -46,17 +49,23 @@ pub(crate) fn meant(arguments: Vec<OsString>, program: &clap::Command) -> Result
     Err(neither(&text, program))
 }
 
-/// A space in front of formulas that begin with a minus, which would be read as flags: `-2/(s+1)`. What a flag takes is left alone.
-fn formulas_kept(mut arguments: Vec<OsString>) -> Vec<OsString> {
+/// A space in front of values that begin with a minus, which would be read as flags: `-2/(s+1)`, `-10cm,0mm`. What a flag takes is left alone.
+fn values_kept(mut arguments: Vec<OsString>, is_value: fn(&str) -> bool) -> Vec<OsString> {
     for i in 1..arguments.len() {
         let [before, text] = [i - 1, i].map(|at| arguments[at].to_string_lossy().into_owned());
         let is_taken =
             before.starts_with('-') && !before.contains('=') && !TAKES_NOTHING.contains(&before.as_str());
-        if is_formula(&text) && !is_taken {
+        if is_value(&text) && !is_taken {
             arguments[i] = format!(" {text}").into();
         }
     }
     arguments
+}
+
+/// Whether a word that begins with a minus is a place, and no flag.
+fn is_place(text: &str) -> bool {
+    let rest = text.strip_prefix(['-', '−']);
+    rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit() || c == '.') && rest.contains(','))
 }
 
 /// Whether a word that begins with a minus is a formula, and no flag.

@@ -23,6 +23,7 @@ pub(crate) mod nearest;
 pub(crate) mod ordering;
 pub(crate) mod placing;
 mod plan;
+mod point;
 mod reading;
 mod recover;
 pub(crate) mod request;
@@ -70,6 +71,7 @@ enum Command {
     Trace(Box<request::TraceArgs>),
     Strokes(Box<strokes::StrokesArgs>),
     Plan(Box<plan::PlanArgs>),
+    Point(Box<point::PointArgs>),
     Calibrate(calibrate::CalibrateArgs),
     Lab(lab::LabArgs),
     Doctor(doctor::DoctorArgs),
@@ -123,6 +125,7 @@ fn perform(command: &Command, stop: &Stop) -> (Voice, Result<Answer, Failure>) {
         Command::Trace(args) => (args.voice, trace::run(args, stop)),
         Command::Strokes(args) => (args.voice, strokes::run(args, stop)),
         Command::Plan(args) => (args.voice, plan::run(args, stop)),
+        Command::Point(args) => (args.voice, point::run(args, traced, stop)),
         Command::Calibrate(args) => (args.voice(), calibrate::run(args, stop)),
         Command::Lab(args) => (args.voice(), lab::run(args, answer_to, stop)),
         Command::Doctor(args) => (args.voice, doctor::run(args, stop)),
@@ -161,8 +164,10 @@ fn traced(arguments: &[String]) -> Result<request::TraceArgs, Failure> {
 impl Command {
     /// The same, with the command as it was given: a run keeps it, to be gone on with.
     fn typed(mut self, typed: Vec<String>) -> Self {
-        if let Self::Trace(args) = &mut self {
-            args.typed = typed;
+        match &mut self {
+            Self::Trace(args) => args.typed = typed,
+            Self::Point(args) => args.typed = typed,
+            _ => {}
         }
         self
     }

@@ -7,7 +7,7 @@ use clap::Args;
 use tracelight_camera::Source;
 use tracelight_pipeline::{PointMark, Points, TypedKinds};
 use tracelight_task::Failure;
-use tracelight_units::Speed;
+use tracelight_units::{Offset, Speed};
 
 use crate::cli::answer::Voice;
 use crate::cli::by_hand::ByHandArgs;
@@ -85,11 +85,11 @@ pub(crate) struct TraceArgs {
     /// --points=KINDS only those, such as --points=block,centre. Layer by layer, row by row; points.csv says which were ticked off
     #[arg(help_heading = "At the wall", long, value_name = "KINDS", num_args = 0..=1, require_equals = true, default_missing_value = "all", conflicts_with_all = ["laps", "camera", "step"])]
     pub(crate) points: Option<TypedKinds>,
-    /// Length of the cross that marks a point [default: 20mm]
+    /// What marks a point: a cross of that length, or a dot [default: 20mm]
     #[arg(
         help_heading = "At the wall",
         long,
-        value_name = "LENGTH",
+        value_name = "LENGTH|dot",
         allow_hyphen_values = true,
         requires = "points"
     )]
@@ -111,6 +111,9 @@ pub(crate) struct TraceArgs {
     pub(crate) open: bool,
     #[command(flatten, next_help_heading = "Output")]
     pub(crate) voice: Voice,
+    /// Places that are marked in place of a picture's, as `point` was told.
+    #[arg(skip)]
+    pub(crate) at: Vec<Offset>,
     /// The command as it was given, without the program's name.
     #[arg(skip)]
     pub(crate) typed: Vec<String>,
@@ -164,7 +167,8 @@ impl TraceArgs {
         if self.is_by_steps() {
             let word = if self.step { "stroke" } else { "point" };
             return Some(format!(
-                "it went from {word} to {word}; begin anew with --from-stroke N, the first one that is not done yet"
+                "it went from {word} to {word}; begin anew with {}, the first one that is not done yet",
+                if self.at.is_empty() { "--from-stroke N" } else { "the places that are left" }
             ));
         }
         let is_gone = self.name() == "-";
@@ -179,14 +183,20 @@ impl TraceArgs {
     /// The places that are to be marked, where some are.
     pub(crate) fn points(&self) -> Option<Points> {
         let TypedKinds(kinds) = self.points.clone()?;
-        Some(Points { kinds, mark: self.mark.unwrap_or_default(), corner_rad: self.tracing.corner_angle.0 })
+        let (mark, corner_rad) = (self.mark.unwrap_or_default(), self.tracing.corner_angle.0);
+        Some(Points { kinds, mark, corner_rad, as_told: !self.at.is_empty() })
+    }
+
+    /// Whether nothing goes on without a key.
+    pub(crate) const fn waits_for_keys(&self) -> bool {
+        self.by_hand.frame.is_some() || self.is_by_steps() && self.by_hand.each.is_none()
     }
 
     /// Refuses to go from stroke to stroke where nobody can ask for the next.
     pub(crate) fn check_keys(&self) -> Result<(), Failure> {
         let flags = [
             ("--step", self.step),
-            ("--points", self.points.is_some()),
+            (if self.at.is_empty() { "--points" } else { "point" }, self.points.is_some()),
             ("--frame", self.by_hand.frame.is_some()),
         ];
         let waits = flags.iter().find(|(_, is_set)| *is_set);
@@ -197,9 +207,13 @@ impl TraceArgs {
             _ if self.by_hand.frame.is_some() && self.laps > 1 => {
                 "--frame shows one drawing before it is drawn once: leave it or --laps out".to_owned()
             }
-            Some((flag, _)) if !std::io::stdin().is_terminal() => {
+            _ if self.by_hand.each.is_some() && !self.is_by_steps() => {
+                "--each is how long --step and --points stay on one: give one of them".to_owned()
+            }
+            Some((flag, _)) if self.waits_for_keys() && !std::io::stdin().is_terminal() => {
+                let each = if *flag == "--frame" { "" } else { ", or give --each TIME" };
                 format!(
-                    "{flag} waits for keys, and standard input is no terminal: start it in one, without < or |"
+                    "{flag} waits for keys, and standard input is no terminal: start it in one, without < or |{each}"
                 )
             }
             _ => return Ok(()),

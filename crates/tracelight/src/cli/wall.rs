@@ -18,14 +18,8 @@ pub(crate) struct WallArgs {
     /// also turn and size (with --width they check it), three skew, four keystone; more are averaged
     #[arg(long, value_name = "X,Y=U,V", allow_hyphen_values = true, value_parser = marks)]
     pub(crate) align: Vec<Marks>,
-    /// What --offset, U,V of --align and --no-go are measured from: an edge corner of the wall, inwards, so that bottom-left measures from the left edge and
-    /// from the floor. --offset then goes to the same corner of the drawing
-    #[arg(long, value_enum, value_name = "CORNER")]
-    pub(crate) from: Option<CornerName>,
-    /// Where that corner of the wall is, right and up of the point straight ahead of the head: -1.5m,-1.2m [default: by the head file of `calibrate corners`,
-    /// else straight ahead]
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, requires = "from")]
-    pub(crate) origin: Option<Offset>,
+    #[command(flatten)]
+    pub(crate) from: FromArgs,
     /// What --width, --height and --offset are those of: the page with its margins, or the drawing on it
     #[arg(long, value_enum, default_value_t)]
     pub(crate) fit: FitName,
@@ -33,6 +27,19 @@ pub(crate) struct WallArgs {
     /// Strokes are cut there, and dark moves may pass. Give it again for more
     #[arg(long, value_name = "LAYER|X,Y,W,H", allow_hyphen_values = true, value_parser = typed_no_go)]
     pub(crate) no_go: Vec<NoGo>,
+}
+
+/// From where places on a wall are measured.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(crate) struct FromArgs {
+    /// What places on the wall (--offset, U,V of --align, --no-go, X,Y of `point`) are measured from: an edge corner of the wall, inwards, so that bottom-left measures from the left edge and
+    /// from the floor. --offset then goes to the same corner of the drawing
+    #[arg(long, value_enum, value_name = "CORNER")]
+    from: Option<CornerName>,
+    /// Where that corner of the wall is, right and up of the point straight ahead of the head: -1.5m,-1.2m [default: by the head file of `calibrate corners`,
+    /// else straight ahead]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, requires = "from")]
+    origin: Option<Offset>,
 }
 
 /// A corner of a wall, or its middle.
@@ -81,7 +88,7 @@ impl WallArgs {
     /// Whether any of it is asked for.
     pub(crate) const fn is_given(&self) -> bool {
         !self.align.is_empty()
-            || self.from.is_some()
+            || self.from.from.is_some()
             || !self.no_go.is_empty()
             || matches!(self.fit, FitName::Drawing)
     }
@@ -93,8 +100,8 @@ impl WallArgs {
         driving: Option<&Driving>,
         area_m: Option<(f64, f64)>,
     ) -> Result<Placing, Failure> {
-        let corner = self.from.map_or(Corner::Centre, CornerName::corner);
-        let told = self.origin.map(|Offset(x, y)| Point::new(x.0, y.0));
+        let corner = self.from.from.map_or(Corner::Centre, CornerName::corner);
+        let told = self.from.origin.map(|Offset(x, y)| Point::new(x.0, y.0));
         let from = Origin { corner, at: told.or_else(|| area_m.map(|size| corner.of_centred(size))) };
         self.check(&placing)?;
         let marks = self.align.iter().flat_map(|marks| &marks.0).map(|mark| mark.placed(&from, driving));
@@ -121,8 +128,8 @@ impl WallArgs {
         let marks = marks.collect::<Vec<_>>().join(" ");
         let no_go = self.no_go.iter().map(NoGo::to_string).collect::<Vec<_>>().join("; ");
         rows.extend((!marks.is_empty()).then_some(("marks", marks)));
-        rows.extend(self.from.map(|from| ("measured from", from.corner().name().to_owned())));
-        rows.extend(self.origin.map(|Offset(x, y)| ("where that is", format!("{x}, {y}"))));
+        rows.extend(self.from.from.map(|from| ("measured from", from.corner().name().to_owned())));
+        rows.extend(self.from.origin.map(|Offset(x, y)| ("where that is", format!("{x}, {y}"))));
         rows.extend(
             (self.fit == FitName::Drawing).then(|| ("size of", "the drawing without its margins".to_owned())),
         );

@@ -271,6 +271,34 @@ fn the_rest_of_the_points_keeps_its_numbers_and_what_was_not_lit_is_not_done() {
 }
 
 #[test]
+fn places_that_are_told_are_marked_in_their_order() {
+    let dir = folder("told-points");
+    let mut command = program();
+    command
+        .args(["point", "-20cm,-10cm", "90cm,1.2m", "30cm,40cm", "--mark", "dot", "--distance", "2m"])
+        .args(["--from", "bottom-left", "--origin", "-70cm,-50cm", "--events", "--real-time", "8", "--out"])
+        .arg(&dir);
+    let mut wall = Terminal::of(command);
+    for (number, at) in (1..).zip([(-900.0, -600.0), (200.0, 700.0), (-400.0, -100.0)]) {
+        let point = wall.until(|event| event["event"] == "point");
+        assert!(point["point"] == number && point["points"] == 3, "{point}");
+        assert!((point["x_mm"].as_f64(), point["y_mm"].as_f64()) == (Some(at.0), Some(at.1)), "{point}");
+        wall.until_state("pointing");
+        wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
+        wall.press(if number == 2 { "s" } else { " " });
+        left_point(&mut wall, number, number != 2);
+    }
+    let summary = wall.until(|event| event["event"] == "summary");
+    assert_eq!(wall.child.wait().unwrap().code(), Some(0), "{summary}");
+    assert_eq!(summary["summary"]["points"], serde_json::json!({ "count": 3, "done": 2 }));
+    assert_light(&summary);
+    let listed = run(&["runs", dir.parent().unwrap().to_str().unwrap(), "--json"]);
+    let listed: Value = serde_json::from_slice(&listed.stdout).unwrap();
+    let own = listed["runs"].as_array().unwrap().iter().find(|run| run["folder"] == dir.to_str().unwrap());
+    assert_eq!(own.unwrap()["points"], serde_json::json!({ "count": 3, "done": 2 }), "{listed}");
+}
+
+#[test]
 fn a_frame_is_drawn_until_a_key_begins_the_drawing() {
     let framed = |dir: &Path, frame: &str| {
         let mut command = traced(dir);

@@ -63,6 +63,7 @@ const LINES: &[&str] = &[
     "lab nichols K11*G11",
     "lab response G11",
     "lab montecarlo --plants 4 --shape line",
+    "point 10cm,20cm -10cm,5cm --each 1s --out @/point",
     "lab move arc",
     "lab move line",
     "lab profile --distance 180deg",
