@@ -18,7 +18,7 @@ use crate::frame::frame_of;
 use crate::hands::Hands;
 use crate::keep::Keep;
 use crate::lap::{Learned, learn, run_lap};
-use crate::looped::Item;
+use crate::looped::{Item, Looped};
 use crate::points::PointDone;
 use crate::remainder;
 use crate::request::{Request, RunRequest};
@@ -219,21 +219,39 @@ impl Prepared {
         self.run_with(keep, Some(hands), task)
     }
 
-    /// Goes through the strokes, or the marks of points, one at a time with somebody at the wall: each is drawn again and again, there and back where it is open,
-    /// until another one is asked for. `pace_m_s` is the speed of the spot, where it is to be another one.
+    /// Makes it a job that is gone through one stroke, or point, at a time; `pace_m_s` is the speed of the spot, where it is to be another one. What is looked
+    /// at before any light then has that speed.
     ///
     /// # Errors
-    /// As of [`run`](Self::run), and `standing-light` for a stroke so short that its light would stand.
+    /// `standing-light` where the first one is so short, or the pace so slow, that light would stand.
+    pub fn by_steps(mut self, pace_m_s: Option<f64>) -> Result<Self, Failure> {
+        let dry = self.how.dry;
+        let Self { driving, schedule, placed, first, .. } = &mut self;
+        if let Some(pace_m_s) = pace_m_s {
+            driving.request.speed_m_s = pace_m_s;
+            // one that cannot be drawn so is left out on the way; the rest stays as it was planned
+            if let Ok(paced) = schedule_rest(schedule.ordered.drawing.clone(), driving) {
+                schedule.plan = paced.plan;
+            }
+        }
+        let items = Item::all(&schedule.ordered.drawing, &placed.points, *first);
+        items.first().map(|item| Looped::of(item, items.len() as u32, driving, dry)).transpose()?;
+        Ok(self)
+    }
+
+    /// Goes through the strokes, or the marks of points, one at a time with somebody at the wall: each is drawn again and again, there and back where it is open,
+    /// until another one is asked for.
+    ///
+    /// # Errors
+    /// As of [`run`](Self::run) and [`by_steps`](Self::by_steps).
     pub fn run_steps(
         mut self,
         keep: &mut dyn Keep,
         hands: &mut dyn Hands,
-        pace_m_s: Option<f64>,
         task: Task<'_>,
     ) -> Result<(Self, Ran), Failure> {
         let RunRequest { seed, dry, powered_up, .. } = self.how;
         let Self { driving, schedule, placed, first, .. } = &mut self;
-        driving.request.speed_m_s = pace_m_s.unwrap_or(driving.request.speed_m_s);
         let put_up = if powered_up { left } else { SimulatedRig::new };
         let mut rig = put_up(&driving.rig, driving.pose, seed);
         task.stage("run", 1);

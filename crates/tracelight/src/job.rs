@@ -72,9 +72,7 @@ fn run(args: &TraceArgs, earlier: Option<&Earlier<'_>>, stop: &Stop) -> Result<O
     let hands = AtWall::of(&args.by_hand, args.is_by_steps(), task, stop);
     hands.iter().for_each(|hands| hands.preflight(&prepared.preflight(&named::today())));
     let (prepared, mut ran) = match hands {
-        Some(mut hands) if args.is_by_steps() => {
-            prepared.run_steps(&mut kept, &mut hands, args.pace.map(|pace| pace.0), task)?
-        }
+        Some(mut hands) if args.is_by_steps() => prepared.run_steps(&mut kept, &mut hands, task)?,
         Some(mut hands) => {
             let ran = prepared.run_by_hand(&mut kept, &mut hands, task)?;
             (prepared, ran)
@@ -111,6 +109,7 @@ fn begun(
     task: Task<'_>,
 ) -> Result<(Prepared, Asked), Failure> {
     let whole = prepared(args, task)?.from_stroke(args.from_stroke)?;
+    let whole = if args.is_by_steps() { whole.by_steps(args.pace.map(|pace| pace.0))? } else { whole };
     let Some(Earlier { asked, runs, .. }) = earlier else {
         let asked = Asked::of(&args.typed, named::now(), args.cannot_resume().is_none(), &whole)?;
         return Ok((whole, asked));
