@@ -278,11 +278,19 @@ fn is_similarity(map: Affine) -> bool {
 }
 
 /// What of a sheet a width, a height and corners are those of, in its units.
-fn fitted(sketch: &Sketch, fit: Fit) -> Rect {
+fn fitted(sketch: &Sketch, placing: &Placing) -> Rect {
     let page = Rect::new(0.0, 0.0, sketch.size.0, sketch.size.1);
-    match fit {
+    match placing.fit {
         Fit::Page => page,
-        Fit::Drawing => extent(&sketch.drawing).unwrap_or(page),
+        Fit::Drawing => {
+            let places = sketch.places.iter().filter(|_| placing.points.is_some());
+            let places = places.map(|place| Rect::from_points(place.at, place.at));
+            extent(&sketch.drawing)
+                .into_iter()
+                .chain(places)
+                .reduce(|all, one| all.union(one))
+                .unwrap_or(page)
+        }
     }
 }
 
@@ -305,7 +313,7 @@ fn unit_m(sketch: &Sketch, placing: &Placing, of: Rect) -> Result<f64, Failure> 
 
 /// Where it is asked to be.
 fn laid(sketch: &Sketch, placing: &Placing) -> Result<Laid, Failure> {
-    let of = fitted(sketch, placing.fit);
+    let of = fitted(sketch, placing);
     let unit_m = unit_m(sketch, placing, of)?;
     if placing.fit == Fit::Page && placing.from == Origin::default() {
         let placement = placing.placement(sketch.size, sketch.true_width_m.unwrap_or(DEFAULT_WIDTH_M));
@@ -338,7 +346,7 @@ fn laid(sketch: &Sketch, placing: &Placing) -> Result<Laid, Failure> {
 
 /// Where its marks belong.
 fn by_marks(sketch: &Sketch, placing: &Placing) -> Result<Laid, Failure> {
-    let of = fitted(sketch, placing.fit);
+    let of = fitted(sketch, placing);
     let drawn = extent(&sketch.drawing).unwrap_or(of);
     let is_told = placing.marks.len() == 1 || placing.size.is_some();
     let sheet = MarkedSheet {

@@ -152,7 +152,9 @@ pub(crate) fn marked(
     let wanted = all.clone().filter(|place| asked.kinds.is_empty() || asked.kinds.contains(&place.kind));
     let on_target = wanted.map(|place| map(place.at).map(|at| place.moved(at))).collect::<Option<Vec<_>>>();
     let beyond = || Failure::usage("align", "--align: the marks put a point beyond the horizon of the wall");
-    let points = places_apart(on_target.ok_or_else(beyond)?, APART_M);
+    let on_target = on_target.ok_or_else(beyond)?;
+    // what somebody tells twice is meant twice
+    let points = if asked.as_told { on_target } else { places_apart(on_target, APART_M) };
     if points.is_empty() {
         let kinds: Vec<_> = asked.kinds.iter().map(|kind| kind.name()).collect();
         let message = match all.clone().next().is_none() {

@@ -112,7 +112,13 @@ impl ListedRun {
         let before = if self.asked.before.is_empty() { "" } else { "the rest of an earlier run: " };
         let ticked_off = |(done, all)| format!("{done} of {all} points ticked off");
         let far = match self.progress {
-            _ if self.is_finished() => return format!("{before}done"),
+            _ if self.is_finished() => {
+                let left = self.points.filter(|(done, all)| done < all);
+                return format!(
+                    "{before}done{}",
+                    left.map_or_else(String::new, |left| format!(", {}", ticked_off(left)))
+                );
+            }
             Some(progress) if progress.plan_ticks > 0 => {
                 let (drawn_s, all_s) = progress.seconds();
                 format!("stroke {} of {}, {drawn_s:.1} of {all_s:.1} s", progress.stroke, progress.strokes)

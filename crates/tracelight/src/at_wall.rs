@@ -1,5 +1,7 @@
 //! Somebody at the wall: keys and the clock to a job, what happens to a terminal or a script.
 
+use std::io::Write as _;
+
 use serde_json::{Value, json};
 use tracelight_job::{Ask, Hands, Step};
 use tracelight_pipeline::{Check, point_json, point_words};
@@ -130,10 +132,10 @@ impl<'a> AtWall<'a> {
         is_time.then_some(Ask::Step(Step::Next))
     }
 
-    #[expect(clippy::print_stdout, reason = "events are what was asked for")]
+    /// Prints an event. Where nobody reads them any more the job ends, and its results are kept.
     fn print(&self, event: &Value) {
-        if self.events {
-            println!("{event}");
+        if self.events && writeln!(std::io::stdout(), "{event}").is_err() {
+            self.stop.want();
         }
     }
 }

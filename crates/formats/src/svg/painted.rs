@@ -36,6 +36,11 @@ impl Shape for Fill<'_> {
     fn lines(&self) -> Vec<Path> {
         if self.is_drawn { self.outlines() } else { Vec::new() }
     }
+
+    fn sides(&self) -> Sides {
+        let paths = if self.is_drawn { Vec::new() } else { self.outlines() };
+        Sides { paths, tolerance: self.tolerance }
+    }
 }
 
 /// Tolerance of the edge of a band, which is seldom a line itself, in tolerances of lines.

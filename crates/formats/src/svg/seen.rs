@@ -25,13 +25,13 @@ mod verdict;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use tracelight_stroke::{Path, Rect, Stroke, StrokeKind};
+use tracelight_stroke::{Path, Point, Rect, Stroke, StrokeKind};
 
 use self::crossings::Edges;
 use self::judged::{Judged, judged};
 use self::middles::{Middle, Middles};
 use self::picture::{Picture, is_cover};
-use self::scene::{Gate, GateKind, Ink, Item, Mark, MarkKind, Number, Scene};
+use self::scene::{Gate, GateKind, Ink, Mark, MarkKind, Number, Scene};
 use self::tiles::{Ground, Layout, laid_out};
 use self::verdict::{Judge, Verdict};
 
@@ -180,6 +180,9 @@ impl Looking<'_> {
 
     fn judged(&mut self, mark: Mark, path: &Path, tolerance: f64) -> Option<Judged> {
         let left = self.view.work.saturating_sub(self.work);
+        if left == 0 {
+            return None;
+        }
         let judged = judged(&self.judge, &self.edges, (mark, path), tolerance, left);
         self.work = judged.as_ref().map_or(self.view.work, |judged| self.work + judged.work);
         judged
@@ -189,46 +192,71 @@ impl Looking<'_> {
     fn note_band(&mut self, number: Number, judged: &Judged) {
         let item = &self.scene.items[number as usize];
         let Some(pen) = item.pen.filter(|_| self.judge.has_sides(item)) else { return };
-        let drawn =
-            judged.seen.iter().map(|(path, _)| Middle { path: path.clone(), pen, source: item.source });
-        self.middles.extend(drawn);
+        let (tolerance, source) = (self.view.tolerance(), item.source);
+        let long = judged.seen.iter().filter(|(path, _)| path.length(tolerance) >= LEAST_MIDDLE * pen);
+        self.middles.extend(long.map(|(path, _)| Middle { path: path.clone(), pen, source }));
         if !judged.unseen.is_empty() && self.halves.last() != Some(&number) {
             self.halves.push(number);
         }
     }
 
     /// Whether a piece of a band's side is only what is left beside another line that crosses the band.
-    fn is_scrap(&self, item: &Item, side: &Path) -> bool {
-        let pen = item.pen.unwrap_or(0.0);
-        let tolerance = self.view.tolerance();
-        side.length(tolerance) < SCRAP * pen && {
-            let corners = chords(side, tolerance);
-            let middle = corners[corners.len() / 2].point.midpoint(corners[(corners.len() - 1) / 2].point);
-            self.judge.middles.as_ref().is_some_and(|middles| middles.are_beside(middle, pen, item.source))
-        }
+    fn is_scrap(&self, number: Number, side: &Path) -> bool {
+        let (item, tolerance) = (&self.scene.items[number as usize], self.view.tolerance());
+        let Some(pen) = item.pen.filter(|pen| side.length(tolerance) < SCRAP * pen) else { return false };
+        let corners = chords(side, tolerance);
+        let ends = corners.first().zip(corners.last()).map(|(first, last)| [first.point, last.point]);
+        let Some([first, last]) = ends.filter(|[first, last]| first != last) else { return false };
+        let crosses = |p: Point| {
+            self.judge
+                .middles
+                .as_ref()
+                .is_some_and(|middles| middles.cross(p, last - first, (pen, item.source)))
+        };
+        [first, last].into_iter().any(crosses)
     }
 
     /// Draws the sides of bands where they are seen and no middle stands for them.
     fn sides(&mut self, within: Rect) {
         let middles = std::mem::take(&mut self.middles);
-        self.judge.middles = Some(Middles::new(&middles, within, self.view.tolerance()));
-        for number in std::mem::take(&mut self.halves) {
-            let item = &self.scene.items[number as usize];
-            let sides = item.shape.sides();
-            for path in &sides.paths {
-                let mark = Mark { kind: MarkKind::Side, item: number };
-                let seen = self.judged(mark, path, sides.tolerance).map(|judged| judged.seen);
-                let paths = seen.into_iter().flatten().map(|(path, _)| path);
-                let side = |path| Stroke { kind: StrokeKind::Outline, pen: None, ..item.looks.along(path) };
-                let drawn: Vec<Stroke> = paths.filter(|path| !self.is_scrap(item, path)).map(side).collect();
-                self.seen.strokes.extend(drawn);
-            }
+        self.judge.middles = Middles::new(&middles, within, self.view.tolerance());
+        if self.judge.middles.is_none() {
+            return;
+        }
+        let halves = std::mem::take(&mut self.halves);
+        // the pen's own fill is painted just before it, or just after
+        let items = &self.scene.items;
+        let own = |&number: &Number| {
+            let source = items[number as usize].source;
+            let near = [number.wrapping_sub(1), number, number + 1].into_iter();
+            near.filter(move |&one| items.get(one as usize).is_some_and(|item| item.source == source))
+        };
+        let all: Vec<Number> = halves.iter().flat_map(own).collect();
+        all.into_iter().for_each(|number| self.sides_of(number));
+    }
+
+    fn sides_of(&mut self, number: Number) {
+        let item = &self.scene.items[number as usize];
+        if self.judge.picture.is_unseen(number) {
+            return;
+        }
+        let sides = item.shape.sides();
+        for path in &sides.paths {
+            let mark = Mark { kind: MarkKind::Side, item: number };
+            let seen = self.judged(mark, path, sides.tolerance).map(|judged| judged.seen);
+            let paths = seen.into_iter().flatten().map(|(path, _)| path);
+            let side = |path| Stroke { kind: StrokeKind::Outline, pen: None, ..item.looks.along(path) };
+            let drawn: Vec<Stroke> = paths.filter(|path| !self.is_scrap(number, path)).map(side).collect();
+            self.seen.strokes.extend(drawn);
         }
     }
 }
 
+/// Rests of a middle shorter than so many widths of its band do not stand for its sides.
+const LEAST_MIDDLE: f64 = 0.5;
+
 /// Where another line crosses at a slant, shorter sides than so many widths of a band are left over.
-const SCRAP: f64 = 2.0;
+const SCRAP: f64 = 1.25;
 
 /// How far a line is followed before it is looked at again where colours change without an edge, as a share of the page's
 /// diagonal.

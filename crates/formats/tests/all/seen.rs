@@ -294,3 +294,37 @@ fn what_is_not_drawn_of_gradients_masks_and_windows_is_told() {
     let mask = "<mask id='m' style='color-interpolation: linearRGB'><circle cx='30' cy='30' r='9' fill='#fff'/></mask>";
     assert!(said(&format!("{mask}<g mask='url(#m)'>{}</g>", plate("10", "#000")), "linearRGB"));
 }
+
+#[test]
+fn a_shape_stays_whole_whose_own_pen_below_it_has_the_colour_of_the_ground() {
+    let disc = |fill: &str, pen: &str| {
+        format!(
+            "<circle cx='50' cy='50' r='30' fill='{fill}' stroke='{pen}' stroke-width='6' paint-order='stroke'/>"
+        )
+    };
+    let round = 60.0 * std::f64::consts::PI;
+    check(&disc("#000", "#fff"), 1, round, "in the colour of what lies around");
+    let ground = "<rect width='100' height='100' fill='#246'/>";
+    check(
+        &format!("{ground}{}", disc("#fff", "#246")),
+        2,
+        round + 400.0,
+        "in the colour of what lies around",
+    );
+    // a halo that shows: one line, the pen's
+    check(&disc("#000", "#c00"), 1, round, "");
+    // and one that shows in part: the line of the pen there, the edge of the shape elsewhere
+    let over = format!("<rect x='50' y='10' width='45' height='80' fill='#c33'/>{}", disc("#33c", "#fff"));
+    let found = drawn(&over);
+    let about: f64 = found.iter().filter(|(colour, ..)| colour != "#cc3333").map(|(.., long)| long).sum();
+    assert!((about - round).abs() < 10.0, "{found:?}");
+}
+
+#[test]
+fn thin_lines_on_a_wide_band_do_not_hide_its_sides() {
+    // a plate of its colour hides its middle, and leaves both parts of one side, and all of the other
+    let band = "<path d='M0 50H100' stroke='#000' stroke-width='20'/><rect x='30' y='35' width='40' height='20' fill='#000'/>\
+                <path d='M0 50H100' stroke='#fff' stroke-width='1'/>";
+    let sides: f64 = drawn(band).iter().filter(|(.., is_pen, _)| !is_pen).map(|(.., long)| long).sum();
+    assert!((sides - (30.0 + 30.0 + 100.0 + 40.0 + 10.0)).abs() < 6.0, "{sides}: {:?}", drawn(band));
+}

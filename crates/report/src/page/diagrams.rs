@@ -1,6 +1,6 @@
 use tracelight_rig::{Joint, TICK_F64_S};
 use tracelight_stroke::Point;
-use tracelight_trajectory::Binding;
+use tracelight_trajectory::{Binding, PlanPoint};
 
 use super::axis::Axis;
 use super::curve::{Band, Curve, band, bands, curve, strip};
@@ -241,13 +241,25 @@ fn speed_between(from: Option<Point>, to: Option<Point>, ticks: u32) -> Option<f
 
 fn planned_speed<'a>(job: &'a Finished<'_>) -> impl Iterator<Item = (f64, Option<f64>)> + 'a {
     let points = &job.plan.points;
+    let joins: Vec<usize> = (1..points.len()).filter(|&i| are_joined(points, i)).collect();
     (0..points.len()).map(move |i| {
         let (from, to) = (i.saturating_sub(REACH), (i + REACH).min(points.len() - 1));
-        (
-            i as f64 * TICK_F64_S,
-            speed_between(Some(points[from].spot), Some(points[to].spot), (to - from) as u32),
-        )
+        let is_one = joins.get(joins.partition_point(|&join| join <= from)).is_none_or(|&join| join > to);
+        let speed = || speed_between(Some(points[from].spot), Some(points[to].spot), (to - from) as u32);
+        (i as f64 * TICK_F64_S, is_one.then(speed).flatten())
     })
+}
+
+/// Whether one plan ends before a tick and another one begins there, elsewhere: how the head came there is in neither. No motor makes a step so much
+/// longer than the ones before and after it.
+fn are_joined(points: &[PlanPoint], at: usize) -> bool {
+    const LONGER: f64 = 10.0;
+    const LEAST_M: f64 = 1e-3;
+    let step = |to: usize| {
+        let ends = to.checked_sub(1).and_then(|from| Some((points.get(from)?, points.get(to)?)));
+        ends.map_or(0.0, |(from, to)| from.spot.distance(to.spot))
+    };
+    step(at) > LONGER * step(at - 1).max(step(at + 1)) + LEAST_M
 }
 
 /// Speed of the true spot while the plan's clock ran, over that clock.
@@ -300,4 +312,26 @@ fn numbers(job: &Finished<'_>) -> Vec<((f64, f64), String)> {
         start += span.len();
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn no_speed_is_told_of_where_one_plan_ends_and_another_one_begins() {
+        let mut fixture = fixture::star();
+        let once = fastest(&fixture.job());
+        let points = &fixture.plan.points;
+        assert!((1..points.len()).all(|at| !are_joined(points, at)));
+        // stopped half-way, and begun anew from zero
+        let half = points.len() / 2;
+        let again: Vec<PlanPoint> = points[..half].to_vec();
+        fixture.plan.points.truncate(half);
+        fixture.plan.points.extend(again);
+        assert!(are_joined(&fixture.plan.points, half));
+        let speeds = planned_speed(&fixture.job()).filter(|(_, speed)| speed.is_none()).count();
+        assert!(fastest(&fixture.job()) <= once && speeds >= 2 * REACH, "{once}, {speeds}");
+    }
 }

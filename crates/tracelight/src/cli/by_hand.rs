@@ -15,7 +15,8 @@ pub(crate) struct ByHandArgs {
     /// First show where the drawing will be: by the box round it, its hull, or the box's corners, again and again until Space or Enter; in real time
     #[arg(long, value_enum, value_name = "box|hull|corners")]
     pub(crate) frame: Option<FrameName>,
-    /// With --step and --points: go on to the next by itself after this long on one, such as 5s, without a key
+    /// With --step and --points: go on to the next by itself after this long on one, such as 5s, without a key; without --real-time as fast as the
+    /// simulation runs
     #[arg(long, value_name = "TIME", value_parser = each, allow_hyphen_values = true)]
     pub(crate) each: Option<f64>,
     /// Print one JSON object per line while the job runs: states, strokes, faults, progress
@@ -54,7 +55,7 @@ impl FrameName {
 
 /// A time on one stroke or point, s.
 pub(crate) fn each(text: &str) -> Result<f64, String> {
-    const RANGE: std::ops::RangeInclusive<f64> = 0.1..=600.0;
+    const RANGE: std::ops::RangeInclusive<f64> = 0.1..=300.0;
     let time_s = parse(text, TIMES).map_err(|e| e.to_string())?;
     let is_one = RANGE.contains(&time_s);
     is_one

@@ -32,10 +32,10 @@ pub(crate) fn meant(arguments: Vec<OsString>, program: &clap::Command) -> Result
         return Ok(arguments);
     }
     if text == "lab" {
-        return Ok(values_kept(arguments, is_formula));
+        return Ok(formulas_kept(arguments));
     }
     if text == "point" {
-        return Ok(values_kept(arguments, is_place));
+        return Ok(places_kept(arguments));
     }
     if program.find_subcommand(&text).is_some() {
         return Ok(arguments);
@@ -49,13 +49,22 @@ pub(crate) fn meant(arguments: Vec<OsString>, program: &clap::Command) -> Result
     Err(neither(&text, program))
 }
 
-/// A space in front of values that begin with a minus, which would be read as flags: `-2/(s+1)`, `-10cm,0mm`. What a flag takes is left alone.
-fn values_kept(mut arguments: Vec<OsString>, is_value: fn(&str) -> bool) -> Vec<OsString> {
+/// A space in front of places that begin with a minus, which would be read as flags: `-10cm,0mm`. Flags whose values they are do not mind.
+fn places_kept(arguments: Vec<OsString>) -> Vec<OsString> {
+    let kept = |text: OsString| match text.to_str() {
+        Some(place) if is_place(place) => format!(" {place}").into(),
+        _ => text,
+    };
+    arguments.into_iter().map(kept).collect()
+}
+
+/// A space in front of formulas that begin with a minus, which would be read as flags: `-2/(s+1)`. What a flag takes is left alone.
+fn formulas_kept(mut arguments: Vec<OsString>) -> Vec<OsString> {
     for i in 1..arguments.len() {
         let [before, text] = [i - 1, i].map(|at| arguments[at].to_string_lossy().into_owned());
         let is_taken =
             before.starts_with('-') && !before.contains('=') && !TAKES_NOTHING.contains(&before.as_str());
-        if is_value(&text) && !is_taken {
+        if is_formula(&text) && !is_taken {
             arguments[i] = format!(" {text}").into();
         }
     }
@@ -64,8 +73,8 @@ fn values_kept(mut arguments: Vec<OsString>, is_value: fn(&str) -> bool) -> Vec<
 
 /// Whether a word that begins with a minus is a place, and no flag.
 fn is_place(text: &str) -> bool {
-    let rest = text.strip_prefix(['-', '−']);
-    rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit() || c == '.') && rest.contains(','))
+    text.strip_prefix('-')
+        .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit() || c == '.') && rest.contains(','))
 }
 
 /// Whether a word that begins with a minus is a formula, and no flag.

@@ -30,10 +30,10 @@ pub(crate) struct PointArgs {
     /// Speed of the spot on the mark [default: --speed]
     #[arg(long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive_speed)]
     pace: Option<Speed>,
-    /// Go on to the next place by itself after this long on one, such as 5s, without a key
+    /// Go on to the next place by itself after this long on one, such as 5s, without a key; without --real-time as fast as the simulation runs
     #[arg(long, value_name = "TIME", value_parser = each, allow_hyphen_values = true)]
     each: Option<f64>,
-    /// Run the simulated rig FACTOR times as fast as in real time, from 0.25 to 8 [default: 1; with --each as fast as it can]
+    /// Run the simulated rig FACTOR times as fast as in real time, from 0.25 to 8 [default: 1, without --each]
     #[arg(long, value_name = "FACTOR", value_parser = factor, allow_hyphen_values = true)]
     real_time: Option<f64>,
     /// Print one JSON object per line while the job runs: states, places, faults, progress

@@ -187,16 +187,12 @@ impl TraceArgs {
         Some(Points { kinds, mark, corner_rad, as_told: !self.at.is_empty() })
     }
 
-    /// Whether nothing goes on without a key.
-    pub(crate) const fn waits_for_keys(&self) -> bool {
-        self.by_hand.frame.is_some() || self.is_by_steps() && self.by_hand.each.is_none()
-    }
-
     /// Refuses to go from stroke to stroke where nobody can ask for the next.
     pub(crate) fn check_keys(&self) -> Result<(), Failure> {
+        let by_keys = self.by_hand.each.is_none();
         let flags = [
-            ("--step", self.step),
-            (if self.at.is_empty() { "--points" } else { "point" }, self.points.is_some()),
+            ("--step", self.step && by_keys),
+            (if self.at.is_empty() { "--points" } else { "point" }, self.points.is_some() && by_keys),
             ("--frame", self.by_hand.frame.is_some()),
         ];
         let waits = flags.iter().find(|(_, is_set)| *is_set);
@@ -210,7 +206,7 @@ impl TraceArgs {
             _ if self.by_hand.each.is_some() && !self.is_by_steps() => {
                 "--each is how long --step and --points stay on one: give one of them".to_owned()
             }
-            Some((flag, _)) if self.waits_for_keys() && !std::io::stdin().is_terminal() => {
+            Some((flag, _)) if !std::io::stdin().is_terminal() => {
                 let each = if *flag == "--frame" { "" } else { ", or give --each TIME" };
                 format!(
                     "{flag} waits for keys, and standard input is no terminal: start it in one, without < or |{each}"

@@ -10,6 +10,9 @@ use super::verdict::{Judge, Place, Reason, Verdict};
 /// Stretches shorter than so many times the distance from which lines are looked at are not cut, nor drawn alone.
 const LEAST: f64 = 5.0;
 
+/// A middle goes on where it has the colour of what is around it for no longer than so many widths of its band: beyond, a side is drawn instead.
+const GAP: f64 = 1.5;
+
 /// Stretches of a band's side shorter than so many times its width belong to the end of its middle.
 const CRUMB: f64 = 0.5;
 
@@ -45,8 +48,13 @@ pub(crate) fn judged(
     let before = judge.picture.work.get();
     let (runs, met) = runs(judge, edges, mark, &corners, before.saturating_add(left))?;
     let pen = judge.picture.scene.items[mark.item as usize].pen.unwrap_or(0.0);
-    let least = if mark.kind == MarkKind::Side { CRUMB * pen } else { 0.0 }.max(LEAST * judge.aside);
-    let runs = smoothed(runs, least, path.is_closed());
+    let crumb = LEAST * judge.aside;
+    let (rest, gap) = match mark.kind {
+        MarkKind::Side => (crumb.max(CRUMB * pen), crumb),
+        MarkKind::Middle => (crumb, crumb.max(GAP * pen)),
+        MarkKind::Edge | MarkKind::Cut(_) => (crumb, crumb),
+    };
+    let runs = smoothed(runs, Least { crumb, rest, gap }, path.is_closed());
     let mut judged = Judged { seen: Vec::new(), unseen: Vec::new(), work: met };
     let mut items: Vec<Number> = Vec::new();
     for run in &runs {
@@ -89,9 +97,15 @@ struct Walk<'a> {
     /// What covers these stretches, once that was asked.
     cover: Option<Option<Number>>,
     work: usize,
+    /// Work at most, that of looking included.
+    most: usize,
 }
 
 impl Walk<'_> {
+    fn is_spent(&self) -> bool {
+        self.work.saturating_add(self.judge.picture.work.get()) > self.most
+    }
+
     fn chord(&mut self, chord: usize, counts: impl Fn(Owner) -> bool, met: &mut Vec<f64>) {
         let ends = [self.corners[chord].point, self.corners[chord + 1].point];
         let length = ends[0].distance(ends[1]);
@@ -113,6 +127,9 @@ impl Walk<'_> {
         self.work += self.edges.met(ends, Own(self.mark.kind, self.mark.item), counts, met);
         let mut from = 0.0;
         for &to in &*met {
+            if self.is_spent() {
+                return;
+            }
             if to > from {
                 self.follow(Stretch { chord, from, to, length: (to - from) * length });
                 from = to;
@@ -189,11 +206,11 @@ fn runs(
 ) -> Option<(Vec<Run>, usize)> {
     let counts = |owner: Owner| does_count(judge, mark, owner);
     let (runs, pending) = (Vec::new(), Vec::new());
-    let mut walk = Walk { judge, edges, mark, corners, runs, pending, cover: None, work: 0 };
+    let mut walk = Walk { judge, edges, mark, corners, runs, pending, cover: None, work: 0, most };
     let mut met = Vec::new();
     for chord in 0..corners.len().saturating_sub(1) {
         walk.chord(chord, counts, &mut met);
-        if walk.work.saturating_add(judge.picture.work.get()) > most {
+        if walk.is_spent() {
             return None;
         }
     }
@@ -223,12 +240,25 @@ fn middle(corners: &[Corner], stretch: &Stretch) -> Place {
     Place { point: a.lerp(b, 0.5 * (stretch.from + stretch.to)), normal: Vec2::new(-along.y, along.x) }
 }
 
+/// What is too short to count.
+#[derive(Clone, Copy)]
+struct Least {
+    /// Of any gap.
+    crumb: f64,
+    /// Of what is drawn.
+    rest: f64,
+    /// Of a gap of one colour.
+    gap: f64,
+}
+
 /// Short gaps closed and short rests left out; round a closed line the last run and the first are one.
-fn smoothed(runs: Vec<Run>, least: f64, is_closed: bool) -> Vec<Run> {
+fn smoothed(runs: Vec<Run>, least: Least, is_closed: bool) -> Vec<Run> {
     let is_seen = |run: &Run| matches!(run.verdict, Verdict::Seen(_));
     let runs = merged(runs, |run, before, after| {
+        let is_one_colour = run.verdict == Verdict::Unseen(Some(Reason::OneColour));
+        let shortest = if is_one_colour { least.gap } else { least.crumb };
         let is_gap =
-            !is_seen(run) && run.length() < least && is_seen(before) && before.verdict == after.verdict;
+            !is_seen(run) && run.length() < shortest && is_seen(before) && before.verdict == after.verdict;
         is_gap.then_some(before.verdict)
     });
     if runs.len() < 2 {
@@ -238,7 +268,7 @@ fn smoothed(runs: Vec<Run>, least: f64, is_closed: bool) -> Vec<Run> {
     let joined = is_closed && runs[0].verdict == runs[count - 1].verdict;
     let round = if joined { runs[0].length() + runs[count - 1].length() } else { 0.0 };
     let whole = |i: usize| if joined && (i == 0 || i + 1 == count) { round } else { runs[i].length() };
-    let is_rest: Vec<bool> = (0..count).map(|i| is_seen(&runs[i]) && whole(i) < least).collect();
+    let is_rest: Vec<bool> = (0..count).map(|i| is_seen(&runs[i]) && whole(i) < least.rest).collect();
     let rests = runs.into_iter().zip(is_rest);
     rests
         .map(|(run, is_rest)| if is_rest { Run { verdict: Verdict::Unseen(None), ..run } } else { run })

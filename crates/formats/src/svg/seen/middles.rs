@@ -1,6 +1,6 @@
 //! Lines that are drawn as the middle of a pen's band, and stand for it.
 
-use tracelight_stroke::{Path, Point, Rect};
+use tracelight_stroke::{Path, Point, Rect, Vec2};
 
 use super::flat::chords;
 use super::grid::{Grid, Listing};
@@ -29,12 +29,15 @@ pub(crate) struct Middle {
     pub(crate) source: u32,
 }
 
+/// Segments in all cells at most, for the memory that they take.
+const MAX_PAIRS: usize = 4_000_000;
+
 /// The corner of a square end lies so many widths of the band from the end of its middle, and a little.
 const REACH: f64 = 0.72;
 
 impl Middles {
-    /// Middles within a rectangle, as chords of that tolerance.
-    pub(crate) fn new(middles: &[Middle], within: Rect, tolerance: f64) -> Self {
+    /// Middles within a rectangle, as chords of that tolerance; `None` where they take more memory than they may.
+    pub(crate) fn new(middles: &[Middle], within: Rect, tolerance: f64) -> Option<Self> {
         let mut segments = Vec::new();
         for middle in middles {
             let corners = chords(&middle.path, tolerance);
@@ -46,10 +49,12 @@ impl Middles {
         for (number, segment) in segments.iter().enumerate() {
             grid.passed(segment.ends, 0.0, |row, first, last| {
                 let row = row * grid.columns();
-                pairs.extend((row + first..=row + last).map(|cell| (cell as u32, number as u32)));
+                if pairs.len() <= MAX_PAIRS {
+                    pairs.extend((row + first..=row + last).map(|cell| (cell as u32, number as u32)));
+                }
             });
         }
-        Self { listing: Listing::new(grid, &pairs), segments }
+        (pairs.len() <= MAX_PAIRS).then(|| Self { listing: Listing::new(grid, &pairs), segments })
     }
 
     /// Whether one of them stands for the side of a band at a point: one of the same path, or a line on it that is not so
@@ -58,9 +63,13 @@ impl Middles {
         self.any(p, REACH * pen, |segment| segment.source == source || WIDE * segment.pen >= pen)
     }
 
-    /// Whether the line of another path is drawn no further from a point than a band is wide.
-    pub(crate) fn are_beside(&self, p: Point, pen: f64, source: u32) -> bool {
-        self.any(p, pen, |segment| segment.source != source).0
+    /// Whether the line of another path, not so much thinner that the band is an area for it, crosses the way of a band's side near a point of it.
+    pub(crate) fn cross(&self, p: Point, way: Vec2, (pen, source): (f64, u32)) -> bool {
+        const LEAST_SINE: f64 = 0.1;
+        let is_slanted =
+            |[a, b]: [Point; 2]| way.cross(b - a).abs() > LEAST_SINE * way.hypot() * (b - a).hypot();
+        let is_other = |s: &Segment| s.source != source && WIDE * s.pen >= pen;
+        self.any(p, pen, |segment| is_other(segment) && is_slanted(segment.ends)).0
     }
 
     fn any(&self, p: Point, reach: f64, counts: impl Fn(&Segment) -> bool) -> (bool, usize) {

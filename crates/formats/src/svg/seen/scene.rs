@@ -32,13 +32,13 @@ pub(crate) trait Shape {
     /// The lines that could be drawn.
     fn lines(&self) -> Vec<Path>;
 
-    /// The edges of the region, if the lines are its middle; as chords of their tolerance they are the region's own.
+    /// The edges of the region, if they are not its lines; as chords of their tolerance they are the region's own.
     fn sides(&self) -> Sides {
         Sides::default()
     }
 }
 
-/// The sides of a pen's band.
+/// The sides of a pen's band, or the edge of a fill along which a pen goes.
 #[derive(Default)]
 pub(crate) struct Sides {
     pub(crate) paths: Vec<Path>,
@@ -143,7 +143,7 @@ pub(crate) struct Mark {
 pub(crate) enum MarkKind {
     /// The middle of a pen's band.
     Middle,
-    /// A side of a pen's band, where no middle stands for it.
+    /// A side of a pen's band, or the edge of the pen's own fill, where no middle stands for it.
     Side,
     /// The edge of a fill.
     Edge,

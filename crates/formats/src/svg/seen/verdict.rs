@@ -89,7 +89,7 @@ impl Judge<'_> {
     /// How far a line is followed before it is looked at again: whether a middle stands for a side changes without an edge.
     pub(crate) fn step_of(&self, mark: Mark) -> f64 {
         const OF_PEN: f64 = 0.125;
-        match (mark.kind, self.item(mark.item).pen) {
+        match (mark.kind, self.own_pen(mark.item)) {
             (MarkKind::Side, Some(pen)) => self.step.min(OF_PEN * pen),
             _ => self.step,
         }
@@ -185,12 +185,20 @@ impl Judge<'_> {
 
     /// Whether a drawn line stands for the side of an item's band.
     fn has_middle(&self, number: Number, p: Point) -> bool {
-        let item = self.item(number);
-        self.middles.as_ref().zip(item.pen).is_some_and(|(middles, pen)| {
-            let (stands, work) = middles.stand_for(p, pen, item.source);
+        self.middles.as_ref().zip(self.own_pen(number)).is_some_and(|(middles, pen)| {
+            let (stands, work) = middles.stand_for(p, pen, self.item(number).source);
             self.picture.add_work(work);
             stands
         })
+    }
+
+    /// Width of an item's band; of a fill, of the pen that goes along its edge, which is painted just before it or just after.
+    fn own_pen(&self, number: Number) -> Option<f64> {
+        let item = self.item(number);
+        let beside = [number.wrapping_sub(1), number + 1].into_iter();
+        let items = beside.filter_map(|one| self.picture.scene.items.get(one as usize));
+        let pen = || items.filter(|other| other.source == item.source).find_map(|other| other.pen);
+        item.pen.or_else(pen)
     }
 
     /// The edge of a gate is that of what it cuts, the topmost of all that end here.
