@@ -7,7 +7,7 @@ text is in DejaVu Sans, the font that the program carries. A letter is seen if C
 it is drawn if strokes of a third of the box's height lie in it. Prints a line a file and a table.
 """
 
-import argparse, html, json, pathlib, re, subprocess, sys, tempfile
+import argparse, html, json, pathlib, re, subprocess, tempfile
 
 import numpy as np
 
