@@ -11,7 +11,7 @@ import argparse, html, json, pathlib, re, subprocess, tempfile
 
 import numpy as np
 
-from seen import CHROMIUM, MARGIN, SIDE, corners, edges_of, files_of, pictures, strokes_of
+from seen import CHROMIUM, MARGIN, SIDE, along, corners, edges_of, files_of, pictures, strokes_of
 
 STYLE = '<style type="text/css">text, text *, textPath, tspan { font-family: "DejaVu Sans" !important }</style>'
 SIZE = 1000  # px, the frame in which a file is shown
@@ -71,14 +71,9 @@ def judge(drawing, found, picture, scale):
     seen_at = np.stack([column, row], axis=1) - MARGIN
     middles, lengths = [np.zeros((0, 2))], [np.zeros(0)]
     for stroke in drawing["strokes"]:
-        points = corners(stroke, 2 / scale) * scale
-        parts = np.diff(points, axis=0)
-        long = np.linalg.norm(parts, axis=1)
-        for a, part, l in zip(points, parts, long):
-            count = max(1, int(np.ceil(2 * l)))
-            t = (np.arange(count) + 0.5)[:, None] / count
-            middles.append(a + part * t)
-            lengths.append(np.full(count, l / count))
+        for places, long in along(corners(stroke, 2 / scale) * scale):
+            middles.append(places)
+            lengths.append(np.full(len(places), long / len(places)))
     middles, lengths = np.concatenate(middles), np.concatenate(lengths)
     seen = drawn = 0
     for box in found["letters"]:

@@ -66,6 +66,14 @@ def corners(stroke, within):
     return np.array(points)
 
 
+def along(points):
+    """Places every half pixel along the chords between points, and how long the chord is, chord by chord."""
+    for a, b in zip(points, points[1:]):
+        long = np.linalg.norm(b - a)
+        count = max(1, int(np.ceil(2 * long)))
+        yield a + (b - a) * ((np.arange(count) + 0.5)[:, None] / count), long
+
+
 def pictures(chromium, sheets):
     """Chromium's pictures of (file, width, height), on white, each as grey levels of every channel."""
     done = []
@@ -113,11 +121,9 @@ def judge(drawing, picture, scale):
     for stroke in drawing["strokes"]:
         points = corners(stroke, 2 / scale) * scale + MARGIN
         pen = 0.5 * (stroke.get("pen_px") or 0.0) * scale
-        steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-        for a, b, long in zip(points, points[1:], steps):
-            count = max(1, int(np.ceil(2 * long)))
-            t = (np.arange(count) + 0.5)[:, None] / count
-            x, y = (a + (b - a) * t).T
+        for places, long in along(points):
+            count = len(places)
+            x, y = places.T
             column, row = x.astype(int), y.astype(int)
             inside = (row >= 0) & (row < edge.shape[0]) & (column >= 0) & (column < edge.shape[1])
             for i, distance in enumerate((to_edge, to_faint)):

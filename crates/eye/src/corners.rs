@@ -8,6 +8,7 @@ use tracelight_task::Failure;
 use tracelight_units::Angle;
 
 use crate::pointed::{Pointed, off_m};
+use crate::told::{degrees, pose, toward};
 
 /// Corners in the order in which they are told.
 pub const CORNERS: [&str; 4] = ["bottom-left", "bottom-right", "top-right", "top-left"];
@@ -87,21 +88,17 @@ pub fn text(found: &CorneredHead, truth: Option<&Truth>) -> String {
     let residuals: Vec<String> =
         CORNERS.iter().zip(found.residual_m).map(|(name, m)| format!("{name} {:.1}", mm(m))).collect();
     let mut text = format!(
-        "stands:   {distance_m:.4} m before the wall (± {:.1} mm), {:.4} m {} and {:.4} m {} the middle of the rectangle (± {:.1} and {:.1} mm)\n\
-         turned:   {:.2}° {} (± {:.2}°), {:.2}° {} (± {:.2}°), {:+.2}° about the beam (± {:.2}°)\n\
+        "stands:   {distance_m:.4} m before the wall (± {:.1} mm), {} and {} the middle of the rectangle (± {:.1} and {:.1} mm)\n\
+         turned:   {} (± {:.2}°), {} (± {:.2}°), {:+.2}° about the beam (± {:.2}°)\n\
          corners:  {:.2} mm off, rms: {} mm; two of eight numbers are left over to check by",
         mm(distance),
-        right_m.abs(),
-        if right_m < 0.0 { "left of" } else { "right of" },
-        up_m.abs(),
-        if up_m < 0.0 { "below" } else { "above" },
+        toward(right_m, 4, " m", "right of", "left of"),
+        toward(up_m, 4, " m", "above", "below"),
         mm(right),
         mm(up),
-        yaw_rad.to_degrees().abs(),
-        if yaw_rad < 0.0 { "right" } else { "left" },
+        degrees(yaw_rad, "left", "right"),
         yaw.to_degrees(),
-        pitch_rad.to_degrees().abs(),
-        if pitch_rad < 0.0 { "up" } else { "down" },
+        degrees(pitch_rad, "down", "up"),
         pitch.to_degrees(),
         roll_rad.to_degrees(),
         roll.to_degrees(),
@@ -125,12 +122,6 @@ pub fn text(found: &CorneredHead, truth: Option<&Truth>) -> String {
 /// Figures of a head that was found, and of the truth, for scripts.
 #[must_use]
 pub fn json(angles: &[PanTilt<f64>; 4], found: &CorneredHead, truth: Option<&Truth>) -> String {
-    let pose = |pose: &HeadPose| {
-        let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = *pose;
-        json!({
-            "distance_m": distance_m, "right_m": right_m, "up_m": up_m, "yaw_rad": yaw_rad, "pitch_rad": pitch_rad, "roll_rad": roll_rad,
-        })
-    };
     let [distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad] = found.deviation;
     let deviation = HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad };
     let corners: Vec<_> = CORNERS

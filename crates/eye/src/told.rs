@@ -49,22 +49,29 @@ pub fn text(wall: &SeenWall, found: &FoundHead, truth: Option<(f64, f64)>) -> St
 }
 
 /// A signed number as one without a sign, and which way it goes.
-fn toward(value: f64, decimals: usize, unit: &str, more: &str, less: &str) -> String {
+pub(crate) fn toward(value: f64, decimals: usize, unit: &str, more: &str, less: &str) -> String {
     format!("{:.decimals$}{unit} {}", value.abs(), if value < 0.0 { less } else { more })
 }
 
-fn degrees(angle_rad: f64, more: &str, less: &str) -> String {
+pub(crate) fn degrees(angle_rad: f64, more: &str, less: &str) -> String {
     toward(angle_rad.to_degrees(), 2, "°", more, less)
+}
+
+/// Where a head stands, for scripts.
+pub(crate) fn pose(pose: &HeadPose) -> serde_json::Value {
+    let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = *pose;
+    json!({
+        "distance_m": distance_m, "right_m": right_m, "up_m": up_m, "yaw_rad": yaw_rad, "pitch_rad": pitch_rad, "roll_rad": roll_rad,
+    })
 }
 
 /// Figures of a head that was found, for scripts.
 #[must_use]
 pub fn json(found: &FoundHead, truth: Option<(f64, f64)>) -> serde_json::Value {
-    let HeadPose { distance_m, right_m, up_m, yaw_rad, pitch_rad, roll_rad } = found.aligned.alignment.pose;
     let built = &found.aligned.alignment.geometry;
     let at_zero = found.aligned.deviation_m(PanTilt::default()).map(|m| 1e3 * m);
     let mut object = json!({
-        "pose": {"distance_m": distance_m, "right_m": right_m, "up_m": up_m, "yaw_rad": yaw_rad, "pitch_rad": pitch_rad, "roll_rad": roll_rad},
+        "pose": pose(&found.aligned.alignment.pose),
         "built": {"laser_offset_m": built.laser_offset_m, "beam_off_rad": built.beam_off_rad, "axis_skew_rad": built.axis_skew_rad},
         "images": {"late_s": found.timing.late_s, "readout_s": found.timing.readout_s, "exposure_s": found.exposure_s},
         "dots": found.dots,

@@ -9,7 +9,7 @@ use tracelight_task::Failure;
 
 use crate::folder::SUMMARY;
 use crate::journal::{self, Asked, Kept, Progress};
-use crate::points::ticked_off;
+use crate::points::{is_small, ticked_off};
 
 /// Largest summary that is read, bytes.
 const MOST_BYTES: u64 = 1 << 24;
@@ -87,8 +87,10 @@ pub fn check_newest(dir: &Path) -> Result<(), Failure> {
 
 fn summary(dir: &Path) -> Option<Value> {
     let path = dir.join(SUMMARY);
-    let is_small = fs::metadata(&path).is_ok_and(|of| of.is_file() && of.len() <= MOST_BYTES);
-    is_small.then(|| fs::read(&path).ok()).flatten().and_then(|bytes| serde_json::from_slice(&bytes).ok())
+    is_small(&path, MOST_BYTES)
+        .then(|| fs::read(&path).ok())
+        .flatten()
+        .and_then(|bytes| serde_json::from_slice(&bytes).ok())
 }
 
 impl ListedRun {

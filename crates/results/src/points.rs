@@ -33,11 +33,15 @@ pub(crate) fn figures(points: &[PointDone]) -> Option<PointFigures> {
 pub(crate) fn ticked_off(dir: &Path) -> Option<(usize, usize)> {
     const MOST_BYTES: u64 = 1 << 22;
     let path = dir.join(POINTS);
-    let is_small = fs::metadata(&path).is_ok_and(|of| of.is_file() && of.len() <= MOST_BYTES);
-    let mut table = is_small.then(|| csv::Reader::from_path(&path).ok()).flatten()?;
+    let mut table = is_small(&path, MOST_BYTES).then(|| csv::Reader::from_path(&path).ok()).flatten()?;
     let done: Vec<bool> =
         table.records().map_while(Result::ok).map(|row| row.iter().next_back() != Some("")).collect();
     (!done.is_empty()).then(|| (done.iter().filter(|is_done| **is_done).count(), done.len()))
+}
+
+/// Whether something is a file of so many bytes at most.
+pub(crate) fn is_small(path: &Path, most_bytes: u64) -> bool {
+    fs::metadata(path).is_ok_and(|of| of.is_file() && of.len() <= most_bytes)
 }
 
 /// One row a point, in the order in which they were gone to; `done_s` is empty where one was not ticked off.

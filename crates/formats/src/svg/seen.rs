@@ -122,12 +122,11 @@ fn look(scene: &Scene, view: View, paper: Rgb) -> Seen {
     let boxes = scene.items.iter().map(|item| item.shape.bounds());
     let all = boxes.fold(view.page, |all, bounds| if view.crops { all } else { all.union(bounds) });
     let within = all.inflate(margin, margin);
-    let seen = Seen { strokes: Vec::new(), unseen: Vec::new(), unjudged: 0, on_black: false };
+    let mut seen = Seen { strokes: Vec::new(), unseen: Vec::new(), unjudged: 0, on_black: false };
     let covers = |item: Number| view.hides && is_cover(&scene.items[item as usize]);
     // an edge within the distance from which lines are looked at changes what is seen there: where it ends, it must be met
     let ground = Ground { page: view.page, within, slack: 1.05 * aside };
     let Some(Layout { tiles, regions, edges }) = laid_out(scene, ground, covers) else {
-        let mut seen = seen;
         scene.marks.iter().for_each(|&mark| seen.leave(scene, mark));
         return seen;
     };

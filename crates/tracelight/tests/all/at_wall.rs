@@ -208,6 +208,12 @@ fn ticked_off(dir: &Path) -> usize {
     table.lines().skip(1).filter(|row| !row.ends_with(',')).count()
 }
 
+/// Reads on until a point was marked once, at least.
+fn marked_once(wall: &mut Terminal) {
+    wall.until_state("pointing");
+    wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
+}
+
 fn left_point(wall: &mut Terminal, number: u64, done: bool) {
     let left = wall.until(|event| event["event"] == "left");
     assert!(left["point"] == number && left["done"] == done, "{left}");
@@ -220,8 +226,7 @@ fn points_are_ticked_off_one_after_the_other() {
     for number in 1..=13 {
         let point = wall.until(|event| event["event"] == "point");
         assert!(point["point"] == number && point["points"] == 13, "{point}");
-        wall.until_state("pointing");
-        wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
+        marked_once(&mut wall);
         // kept as they are ticked off, whatever happens to the program
         assert_eq!(ticked_off(&dir), (1..number).filter(|&before| before != 5).count(), "before {number}");
         wall.press(if number == 5 { "s" } else { " " });
@@ -259,8 +264,7 @@ fn the_rest_of_the_points_keeps_its_numbers_and_what_was_not_lit_is_not_done() {
     assert!(point["point"] == 11 && point["points"] == 12, "{point}");
     wall.press(" ");
     left_point(&mut wall, 11, false);
-    wall.until_state("pointing");
-    wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
+    marked_once(&mut wall);
     wall.press(" ");
     left_point(&mut wall, 12, true);
     let summary = wall.until(|event| event["event"] == "summary");
@@ -283,8 +287,7 @@ fn places_that_are_told_are_marked_in_their_order() {
         let point = wall.until(|event| event["event"] == "point");
         assert!(point["point"] == number && point["points"] == 3, "{point}");
         assert!((point["x_mm"].as_f64(), point["y_mm"].as_f64()) == (Some(at.0), Some(at.1)), "{point}");
-        wall.until_state("pointing");
-        wall.until(|event| event["event"] == "progress" && event["laps"].as_u64() >= Some(1));
+        marked_once(&mut wall);
         wall.press(if number == 2 { "s" } else { " " });
         left_point(&mut wall, number, number != 2);
     }

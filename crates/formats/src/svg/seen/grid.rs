@@ -53,6 +53,14 @@ impl Grid {
         self.corner + tracelight_stroke::Vec2::new(column as f64 + 0.5, row as f64 + 0.5) * self.cell
     }
 
+    /// Adds each cell that a segment passes, or comes closer to than `slack`, with the segment's number: what [`Listing::new`] takes.
+    pub(crate) fn list(&self, segment: [Point; 2], slack: f64, number: u32, pairs: &mut Vec<(u32, u32)>) {
+        self.passed(segment, slack, |row, first, last| {
+            let row = row * self.columns;
+            pairs.extend((row + first..=row + last).map(|cell| (cell as u32, number)));
+        });
+    }
+
     /// Each cell that a segment passes, or comes closer to than `slack`, in a row: the row, its first and last column.
     pub(crate) fn passed(&self, [a, b]: [Point; 2], slack: f64, mut visit: impl FnMut(usize, usize, usize)) {
         let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };

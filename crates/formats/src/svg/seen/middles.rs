@@ -47,14 +47,12 @@ impl Middles {
         let grid = Grid::new(within, segments.len().max(1));
         let mut pairs = Vec::new();
         for (number, segment) in segments.iter().enumerate() {
-            grid.passed(segment.ends, 0.0, |row, first, last| {
-                let row = row * grid.columns();
-                if pairs.len() <= MAX_PAIRS {
-                    pairs.extend((row + first..=row + last).map(|cell| (cell as u32, number as u32)));
-                }
-            });
+            grid.list(segment.ends, 0.0, number as u32, &mut pairs);
+            if pairs.len() > MAX_PAIRS {
+                return None;
+            }
         }
-        (pairs.len() <= MAX_PAIRS).then(|| Self { listing: Listing::new(grid, &pairs), segments })
+        Some(Self { listing: Listing::new(grid, &pairs), segments })
     }
 
     /// Whether one of them stands for the side of a band at a point: one of the same path, or a line on it that is not so

@@ -220,10 +220,7 @@ impl<'a> Filling<'a> {
             let number = self.segments.len() as u32;
             self.segments.push(segment);
             self.owners.push(Owner::Gate);
-            grid.passed(segment, slack, |row, first, last| {
-                let row = row * grid.columns();
-                self.listed.extend((row + first..=row + last).map(|tile| (tile as u32, number)));
-            });
+            grid.list(segment, slack, number, &mut self.listed);
         }
     }
 

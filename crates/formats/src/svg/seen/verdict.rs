@@ -89,8 +89,8 @@ impl Judge<'_> {
     /// How far a line is followed before it is looked at again: whether a middle stands for a side changes without an edge.
     pub(crate) fn step_of(&self, mark: Mark) -> f64 {
         const OF_PEN: f64 = 0.125;
-        match (mark.kind, self.own_pen(mark.item)) {
-            (MarkKind::Side, Some(pen)) => self.step.min(OF_PEN * pen),
+        match mark.kind {
+            MarkKind::Side => self.own_pen(mark.item).map_or(self.step, |pen| self.step.min(OF_PEN * pen)),
             _ => self.step,
         }
     }
@@ -131,7 +131,7 @@ impl Judge<'_> {
         let [left, right] = sides.map(|p| self.picture.stack(p, |_, _| true));
         let holds = |layers: &[Layer]| layers.iter().any(|layer| layer.item == number);
         let is_there = [holds(&left), holds(&right)];
-        let reason = if self.picture.look(&left, sides[0]).is_like(&self.picture.look(&right, sides[1])) {
+        let reason = if self.are_alike([&left, &right], sides) {
             match is_there {
                 [false, false] if sides.iter().all(|&p| !self.picture.is_inside(number, p)) => Reason::NoArea,
                 [false, false] => Reason::Covered,
@@ -145,6 +145,12 @@ impl Judge<'_> {
             Reason::Again
         };
         Verdict::Unseen(Some(reason))
+    }
+
+    /// Whether nobody can tell what lies on both sides apart.
+    fn are_alike(&self, stacks: [&[Layer]; 2], sides: [Point; 2]) -> bool {
+        let [left, right] = [0, 1].map(|i| self.picture.look(stacks[i], sides[i]));
+        left.is_like(&right)
     }
 
     /// The topmost fill that is on one side only.
@@ -168,9 +174,8 @@ impl Judge<'_> {
             return Verdict::Unseen(None);
         }
         let stacks = sides.map(|p| self.picture.stack(p, |_, _| true));
-        let is_same =
-            self.picture.look(&stacks[0], sides[0]).is_like(&self.picture.look(&stacks[1], sides[1]));
-        let is_seen = !is_same && self.topmost([&stacks[0], &stacks[1]], |_| true) == Some(number);
+        let both = [stacks[0].as_slice(), stacks[1].as_slice()];
+        let is_seen = !self.are_alike(both, sides) && self.topmost(both, |_| true) == Some(number);
         let cuts_line =
             || stacks.iter().flatten().any(|layer| layer.item != number && self.has_middle(layer.item, p));
         if is_seen && !cuts_line() { Verdict::Seen(number) } else { Verdict::Unseen(None) }
@@ -204,9 +209,9 @@ impl Judge<'_> {
     /// The edge of a gate is that of what it cuts, the topmost of all that end here.
     fn cut(&self, gate: Number, sides: [Point; 2]) -> Verdict {
         let stacks = sides.map(|p| self.picture.stack(p, |_, _| true));
-        let is_same = self.picture.hides
-            && self.picture.look(&stacks[0], sides[0]).is_like(&self.picture.look(&stacks[1], sides[1]));
-        let edge = self.topmost_edge([&stacks[0], &stacks[1]]).filter(|_| !is_same);
+        let both = [stacks[0].as_slice(), stacks[1].as_slice()];
+        let is_same = self.picture.hides && self.are_alike(both, sides);
+        let edge = self.topmost_edge(both).filter(|_| !is_same);
         let is_cut = |&number: &Number| {
             let item = self.item(number);
             let shut = sides.into_iter().find_map(|p| self.picture.shut(item.gate, p));
